@@ -1,0 +1,116 @@
+//! What a character is made of: joints, skins, meshes.
+
+use sinew_math::{Affine, Rotation, Vec2, Vec3};
+
+/// Index of a joint in [`Rig::joints`].
+pub type JointIdx = usize;
+
+/// Translation, rotation and scale of a joint relative to its parent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LocalTransform {
+    /// File units, parent's axes.
+    pub translation: Vec3,
+    /// Unit.
+    pub rotation: Rotation,
+    /// Per axis, 1 by default.
+    pub scale: Vec3,
+}
+
+impl Default for LocalTransform {
+    fn default() -> Self {
+        Self { translation: Vec3::ZERO, rotation: Rotation::IDENTITY, scale: Vec3::ONE }
+    }
+}
+
+impl LocalTransform {
+    /// The map from the joint's space to its parent's.
+    pub fn to_affine(self) -> Affine {
+        Affine::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
+    }
+}
+
+/// A node of the file's scene: a bone, or an ancestor or attachment of one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Name in the file, or `""`.
+    pub name: String,
+    /// Parent; always of a smaller index. `None` for a root.
+    pub parent: Option<JointIdx>,
+    /// Rest pose of the file (the node's own transform).
+    pub rest: LocalTransform,
+    /// Index of the node in the file it came from (glTF node index): where a baked clip's channels point.
+    pub source: usize,
+}
+
+/// Which joints move a mesh, and where they were when it was bound.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skin {
+    /// Name in the file, or `""`.
+    pub name: String,
+    /// Joints by skin slot; vertices refer to slots.
+    pub joints: Vec<JointIdx>,
+    /// Inverse bind matrix per slot: from mesh space to the joint's space. Same length as `joints`.
+    pub inverse_bind: Vec<Affine>,
+}
+
+/// Part of a mesh with one look. All vertex arrays have the length of `positions` or are empty.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Primitive {
+    /// Mesh space, file units.
+    pub positions: Vec<Vec3>,
+    /// Unit, or empty: then flat.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates, (0, 0) at the top left; or empty.
+    pub uvs: Vec<Vec2>,
+    /// Linear RGBA per vertex, 0..=1; or empty.
+    pub colors: Vec<[f32; 4]>,
+    /// Skin slots, up to four a vertex; empty for a rigid mesh.
+    pub joints: Vec<[u16; 4]>,
+    /// Weights of the slots, their sum 1; empty for a rigid mesh.
+    pub weights: Vec<[f32; 4]>,
+    /// Vertex indices, three a triangle, counter-clockwise seen from outside.
+    pub indices: Vec<u32>,
+    /// Base colour, linear RGBA.
+    pub base_color: [f32; 4],
+    /// Index into [`Rig::textures`] of the base colour texture.
+    pub texture: Option<usize>,
+}
+
+/// A mesh as placed by one node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Name in the file, or `""`.
+    pub name: String,
+    /// The node that carries it. Ignored when skinned (glTF 2.0 §3.7.3.3).
+    pub joint: JointIdx,
+    /// Index into [`Rig::skins`]; `None` for a mesh that moves rigidly with `joint`.
+    pub skin: Option<usize>,
+    /// Parts.
+    pub primitives: Vec<Primitive>,
+}
+
+/// A picture on a surface: 8-bit sRGB with alpha, rows from the top.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Texture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// `width × height × 4` bytes, RGBA.
+    pub rgba: Vec<u8>,
+}
+
+/// A character as plain data: every node of its scene, parents before children, with what hangs on them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rig {
+    /// All nodes of the scene, parent before child.
+    pub joints: Vec<Joint>,
+    /// Skins.
+    pub skins: Vec<Skin>,
+    /// Meshes.
+    pub meshes: Vec<Mesh>,
+    /// Decoded base colour textures; empty where pictures were not asked for.
+    pub textures: Vec<Texture>,
+    /// Roles that the file itself states (VRM humanoid): VRM 1 bone name and joint.
+    pub stated_roles: Vec<(String, JointIdx)>,
+}

@@ -1,0 +1,4 @@
+//! The `sinew` command line.
+#![forbid(unsafe_code)]
+
+fn main() {}

@@ -1,0 +1,204 @@
+//! Bytes out and in, little-endian, for snapshots. The reader never panics and never allocates more than the bytes
+//! that are there can fill.
+
+use crate::{Rotation, Sym3, Transform, Vec3};
+
+/// What was wrong with the bytes, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReadError {
+    /// Offset of the byte at which reading failed.
+    pub at: usize,
+    /// What is wrong, a phrase in lower case.
+    pub what: &'static str,
+}
+
+impl core::fmt::Display for ReadError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "{} (at byte {})", self.what, self.at)
+    }
+}
+
+impl std::error::Error for ReadError {}
+
+/// Appends plain data to a byte vector.
+#[derive(Clone, Debug, Default)]
+pub struct Writer {
+    bytes: Vec<u8>,
+}
+
+impl Writer {
+    /// Empty.
+    pub fn new() -> Self {
+        Self::default()
+    }
+    /// Empty, but with the memory of `bytes` (whose content is dropped), so that a warm snapshot need not allocate.
+    pub fn reuse(mut bytes: Vec<u8>) -> Self {
+        bytes.clear();
+        Self { bytes }
+    }
+    /// What was written so far.
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+    /// What was written.
+    pub fn into_bytes(self) -> Vec<u8> {
+        self.bytes
+    }
+    /// Bytes as they are, without a length.
+    pub fn raw(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+    }
+    /// One byte.
+    pub fn u8(&mut self, v: u8) {
+        self.bytes.push(v);
+    }
+    /// Truth value as one byte, 0 or 1.
+    pub fn bool(&mut self, v: bool) {
+        self.u8(u8::from(v));
+    }
+    /// Four bytes.
+    pub fn u32(&mut self, v: u32) {
+        self.raw(&v.to_le_bytes());
+    }
+    /// Eight bytes.
+    pub fn u64(&mut self, v: u64) {
+        self.raw(&v.to_le_bytes());
+    }
+    /// The bits of a number, NaN payload and sign of zero included.
+    pub fn f32(&mut self, v: f32) {
+        self.u32(v.to_bits());
+    }
+    /// Three numbers.
+    pub fn vec3(&mut self, v: Vec3) {
+        self.f32(v.x);
+        self.f32(v.y);
+        self.f32(v.z);
+    }
+    /// x, y, z, w.
+    pub fn rotation(&mut self, r: Rotation) {
+        self.vec3(r.vector());
+        self.f32(r.w);
+    }
+    /// Translation, rotation.
+    pub fn transform(&mut self, t: Transform) {
+        self.vec3(t.translation);
+        self.rotation(t.rotation);
+    }
+    /// Diagonal, off-diagonal.
+    pub fn sym3(&mut self, s: Sym3) {
+        self.vec3(s.diagonal);
+        self.vec3(s.off);
+    }
+    /// A count of items that follow.
+    ///
+    /// # Panics
+    /// If the count does not fit 32 bits.
+    pub fn count(&mut self, n: usize) {
+        self.u32(u32::try_from(n).expect("a snapshot holds at most 2^32 items of a kind"));
+    }
+    /// Byte count, then the text as UTF-8.
+    pub fn text(&mut self, s: &str) {
+        self.count(s.len());
+        self.raw(s.as_bytes());
+    }
+}
+
+/// Reads what [`Writer`] wrote.
+#[derive(Clone, Debug)]
+pub struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    /// From the first byte of `bytes`.
+    pub fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes, at: 0 }
+    }
+    /// Offset of the next byte.
+    pub fn position(&self) -> usize {
+        self.at
+    }
+    /// Bytes that are left.
+    pub fn remaining(&self) -> usize {
+        self.bytes.len() - self.at
+    }
+    /// An error at the current place.
+    pub fn error(&self, what: &'static str) -> ReadError {
+        ReadError { at: self.at, what }
+    }
+    /// The next `n` bytes.
+    pub fn raw(&mut self, n: usize) -> Result<&'a [u8], ReadError> {
+        if n > self.remaining() {
+            return Err(self.error("ends too early"));
+        }
+        let slice = &self.bytes[self.at..self.at + n];
+        self.at += n;
+        Ok(slice)
+    }
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], ReadError> {
+        let mut out = [0; N];
+        out.copy_from_slice(self.raw(N)?);
+        Ok(out)
+    }
+    /// One byte.
+    pub fn u8(&mut self) -> Result<u8, ReadError> {
+        Ok(self.array::<1>()?[0])
+    }
+    /// A truth value; any byte but 0 and 1 is an error.
+    pub fn bool(&mut self) -> Result<bool, ReadError> {
+        match self.u8()? {
+            0 => Ok(false),
+            1 => Ok(true),
+            _ => Err(ReadError { at: self.at - 1, what: "truth value is neither 0 nor 1" }),
+        }
+    }
+    /// Four bytes.
+    pub fn u32(&mut self) -> Result<u32, ReadError> {
+        Ok(u32::from_le_bytes(self.array()?))
+    }
+    /// Eight bytes.
+    pub fn u64(&mut self) -> Result<u64, ReadError> {
+        Ok(u64::from_le_bytes(self.array()?))
+    }
+    /// A number, bit for bit.
+    pub fn f32(&mut self) -> Result<f32, ReadError> {
+        Ok(f32::from_bits(self.u32()?))
+    }
+    /// Three numbers.
+    pub fn vec3(&mut self) -> Result<Vec3, ReadError> {
+        Ok(Vec3::new(self.f32()?, self.f32()?, self.f32()?))
+    }
+    /// x, y, z, w.
+    pub fn rotation(&mut self) -> Result<Rotation, ReadError> {
+        let v = self.vec3()?;
+        Ok(Rotation::from_xyzw(v.x, v.y, v.z, self.f32()?))
+    }
+    /// Translation, rotation.
+    pub fn transform(&mut self) -> Result<Transform, ReadError> {
+        Ok(Transform::new(self.vec3()?, self.rotation()?))
+    }
+    /// Diagonal, off-diagonal.
+    pub fn sym3(&mut self) -> Result<Sym3, ReadError> {
+        Ok(Sym3 { diagonal: self.vec3()?, off: self.vec3()? })
+    }
+    /// A count of items of at least `item_bytes` bytes each: refused if the bytes that are left cannot hold them.
+    pub fn count(&mut self, item_bytes: usize) -> Result<usize, ReadError> {
+        let at = self.at;
+        let n = self.u32()? as usize;
+        if n.saturating_mul(item_bytes.max(1)) > self.remaining() {
+            return Err(ReadError { at, what: "claims more items than there are bytes" });
+        }
+        Ok(n)
+    }
+    /// Text with its byte count.
+    pub fn text(&mut self) -> Result<&'a str, ReadError> {
+        let n = self.count(1)?;
+        let at = self.at;
+        core::str::from_utf8(self.raw(n)?).map_err(|_| ReadError { at, what: "text is not UTF-8" })
+    }
+    /// Fails if bytes are left over.
+    pub fn finish(self) -> Result<(), ReadError> {
+        if self.remaining() == 0 { Ok(()) } else { Err(self.error("has bytes left over")) }
+    }
+}

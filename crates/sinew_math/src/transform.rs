@@ -1,0 +1,133 @@
+use crate::{Mat3, Rotation, Vec3};
+use core::ops::Mul;
+
+/// A rigid motion: rotate, then translate. `a * b` applies `b` first.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Transform {
+    /// Where the origin goes, metres.
+    pub translation: Vec3,
+    /// How the axes turn.
+    pub rotation: Rotation,
+}
+
+impl Transform {
+    /// No motion.
+    pub const IDENTITY: Self = Self { translation: Vec3::ZERO, rotation: Rotation::IDENTITY };
+
+    /// From its two parts.
+    #[inline(always)]
+    pub const fn new(translation: Vec3, rotation: Rotation) -> Self {
+        Self { translation, rotation }
+    }
+
+    /// A pure translation.
+    #[inline(always)]
+    pub const fn from_translation(translation: Vec3) -> Self {
+        Self { translation, rotation: Rotation::IDENTITY }
+    }
+
+    /// The motion that undoes this one.
+    #[inline]
+    pub fn inverse(self) -> Self {
+        let rotation = self.rotation.inverse();
+        Self { translation: -(rotation * self.translation), rotation }
+    }
+
+    /// Image of a point.
+    #[inline]
+    pub fn point(self, p: Vec3) -> Vec3 {
+        self.rotation * p + self.translation
+    }
+
+    /// Where a point was before: `self.inverse().point(p)`.
+    #[inline]
+    pub fn inverse_point(self, p: Vec3) -> Vec3 {
+        self.rotation.inverse() * (p - self.translation)
+    }
+
+    /// True if every number is finite.
+    pub fn is_finite(self) -> bool {
+        self.translation.is_finite() && self.rotation.is_finite()
+    }
+}
+
+impl Mul for Transform {
+    type Output = Self;
+    #[inline]
+    fn mul(self, b: Self) -> Self {
+        Self {
+            translation: self.point(b.translation),
+            rotation: (self.rotation * b.rotation).normalize(),
+        }
+    }
+}
+
+/// A linear map followed by a translation: joints of a rig may scale and shear. `a * b` applies `b` first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Affine {
+    /// The linear part, column vectors.
+    pub linear: Mat3,
+    /// Where the origin goes.
+    pub translation: Vec3,
+}
+
+impl Default for Affine {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+impl Affine {
+    /// No change.
+    pub const IDENTITY: Self = Self { linear: Mat3::IDENTITY, translation: Vec3::ZERO };
+
+    /// Scale (per axis), then rotate, then translate.
+    pub fn from_scale_rotation_translation(scale: Vec3, rotation: Rotation, translation: Vec3) -> Self {
+        let m = rotation.to_mat3();
+        Self {
+            linear: Mat3::from_cols(m.x_axis * scale.x, m.y_axis * scale.y, m.z_axis * scale.z),
+            translation,
+        }
+    }
+
+    /// The inverse map; not finite if the linear part has no inverse.
+    pub fn inverse(&self) -> Self {
+        let linear = self.linear.inverse();
+        Self { linear, translation: -(linear * self.translation) }
+    }
+
+    /// Image of a point.
+    #[inline]
+    pub fn point(&self, p: Vec3) -> Vec3 {
+        self.linear * p + self.translation
+    }
+
+    /// Image of a direction (no translation).
+    #[inline]
+    pub fn vector(&self, v: Vec3) -> Vec3 {
+        self.linear * v
+    }
+
+    /// The rigid part: translation, and the rotation nearest to the linear part without scale and shear.
+    pub fn to_rigid(&self) -> Transform {
+        Transform::new(self.translation, Rotation::from_mat3_lossy(&self.linear))
+    }
+
+    /// True if every number is finite.
+    pub fn is_finite(&self) -> bool {
+        self.linear.is_finite() && self.translation.is_finite()
+    }
+}
+
+impl From<Transform> for Affine {
+    fn from(t: Transform) -> Self {
+        Self { linear: t.rotation.to_mat3(), translation: t.translation }
+    }
+}
+
+impl Mul for Affine {
+    type Output = Self;
+    fn mul(self, b: Self) -> Self {
+        Self { linear: self.linear * b.linear, translation: self.point(b.translation) }
+    }
+}

@@ -1,0 +1,13 @@
+//! The world: bodies, shapes, joints, particles and springs, in one deterministic step.
+//!
+//! SI units, radians, +Y up, right-handed, `f32`. Read [`step`](crate::step) first: it is the physics, in order.
+#![forbid(unsafe_code)]
+
+pub mod collide;
+pub mod def;
+pub mod id;
+pub mod shape;
+
+pub use def::{BodyDef, BodyKind, JointCollision, JointDef, JointKind, WorldDef};
+pub use id::{BodyId, JointId};
+pub use shape::{Filter, MassProperties, Material, Shape, ShapeDef};

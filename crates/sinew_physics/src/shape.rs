@@ -1,0 +1,110 @@
+//! Collision shapes, what they are made of, and whom they meet.
+
+use sinew_math::{Sym3, Transform, Vec3};
+
+/// A convex shape in its own frame. All sizes are metres and positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// Box around the origin.
+    Box {
+        /// Half of each side.
+        half_extents: Vec3,
+    },
+    /// Ball around the origin.
+    Sphere {
+        /// Radius.
+        radius: f32,
+    },
+    /// Segment along y from −`half_height` to `half_height`, with a radius.
+    Capsule {
+        /// Half the length of the segment, without the caps; may be 0.
+        half_height: f32,
+        /// Radius.
+        radius: f32,
+    },
+    /// Everything below the plane y = 0 of its frame. Static bodies only.
+    HalfSpace,
+}
+
+/// Surface: friction and bounce. Pairs combine: geometric mean of frictions, larger restitution, larger rolling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Coulomb coefficient, ≥ 0. Default 0.6.
+    pub friction: f32,
+    /// Share of the approach speed given back, 0..=1. Default 0.
+    pub restitution: f32,
+    /// Rolling resistance: lever of the resisting torque, metres. Default 0.
+    pub rolling: f32,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self { friction: 0.6, restitution: 0.0, rolling: 0.0 }
+    }
+}
+
+/// Two shapes meet if each one's mask holds the other's layer, and they are not in the same negative group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Filter {
+    /// Bits of the layers it is on. Default 1.
+    pub layers: u32,
+    /// Bits of the layers it meets. Default all.
+    pub mask: u32,
+    /// Same non-zero group: positive always meets, negative never. Default 0: none.
+    pub group: i32,
+}
+
+impl Default for Filter {
+    fn default() -> Self {
+        Self { layers: 1, mask: u32::MAX, group: 0 }
+    }
+}
+
+impl Filter {
+    /// Whether two shapes meet.
+    pub fn meets(self, other: Self) -> bool {
+        if self.group != 0 && self.group == other.group {
+            return self.group > 0;
+        }
+        self.layers & other.mask != 0 && other.layers & self.mask != 0
+    }
+}
+
+/// A shape as part of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeDef {
+    /// Geometry.
+    pub shape: Shape,
+    /// Shape frame in the body's frame.
+    pub body_from_shape: Transform,
+    /// kg/m³, ≥ 0. Default 1000. Counts only where the body's mass is not given.
+    pub density: f32,
+    /// Surface.
+    pub material: Material,
+    /// Whom it meets.
+    pub filter: Filter,
+}
+
+impl ShapeDef {
+    /// At the body's origin, with defaults.
+    pub fn new(shape: Shape) -> Self {
+        Self {
+            shape,
+            body_from_shape: Transform::IDENTITY,
+            density: 1000.0,
+            material: Material::default(),
+            filter: Filter::default(),
+        }
+    }
+}
+
+/// Mass, centre of mass and inertia.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MassProperties {
+    /// kg.
+    pub mass: f32,
+    /// Centre of mass in the frame at hand, metres.
+    pub center: Vec3,
+    /// Inertia about the centre of mass, in the axes of the frame at hand, kg·m².
+    pub inertia: Sym3,
+}

@@ -1,0 +1,66 @@
+//! A ragdoll as plain data, in metres and kilograms: what `ragdoll build` writes and a game loads.
+
+use sinew_math::{Transform, Vec3};
+use sinew_physics::{JointKind, MassProperties, Shape};
+
+/// One body of a ragdoll.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RagdollBodyDef {
+    /// Name of the rig joint that carries it, or `joint N` where the file gives none.
+    pub bone: String,
+    /// Index of that joint in the rig.
+    pub joint: usize,
+    /// Further rig joints that move rigidly with it (merged twist, finger, helper joints), by index.
+    pub merged: Vec<usize>,
+    /// VRM 1 humanoid bone name, else `spine_n`, `tail_n`, `limb_n_m`.
+    pub role: String,
+    /// How sure the role is, 0..=1.
+    pub confidence: f32,
+    /// Geometry, metres.
+    pub shape: Shape,
+    /// Body frame in character space at the bind pose: metres, +Y up, facing +Z, feet at y = 0. The shape sits at the
+    /// body's origin, along its axes.
+    pub character_from_body: Transform,
+    /// kg, centre in the body's frame, inertia about it.
+    pub mass: MassProperties,
+}
+
+/// One joint of a ragdoll.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RagdollJointDef {
+    /// Index of the parent body.
+    pub parent: usize,
+    /// Index of the child body.
+    pub child: usize,
+    /// Joint frame in the parent body's frame; its x axis is the twist (or hinge) axis, at the cone's centre.
+    pub frame_parent: Transform,
+    /// Joint frame in the child body's frame.
+    pub frame_child: Transform,
+    /// What is free, with limits.
+    pub kind: JointKind,
+    /// N·m.
+    pub friction_torque: f32,
+}
+
+/// A ragdoll: bodies parent before child, joints in the same order (`joints[i].child == i + 1`).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RagdollDef {
+    /// Bodies; the first is the pelvis.
+    pub bodies: Vec<RagdollBodyDef>,
+    /// Joints.
+    pub joints: Vec<RagdollJointDef>,
+    /// Pairs of bodies that do not collide (beside jointed ones).
+    pub disabled_pairs: Vec<(usize, usize)>,
+    /// Rig joints that no body carries, by name.
+    pub dropped_bones: Vec<String>,
+    /// kg.
+    pub total_mass: f32,
+    /// Metres, at the bind pose.
+    pub height: f32,
+    /// Metres per file unit.
+    pub unit_scale: f32,
+    /// The file's axis that points up, as read off the skeleton: unit, along an axis.
+    pub up_axis: Vec3,
+    /// Rotation from model space (file) to character space (+Y up, facing +Z).
+    pub character_from_model: Transform,
+}

@@ -1,0 +1,2 @@
+//! Sinew.
+#![forbid(unsafe_code)]
