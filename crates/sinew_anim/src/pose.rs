@@ -1,0 +1,121 @@
+//! Poses as slices: local to model space, velocities from two poses, blends.
+//!
+//! A pose is one [`LocalTransform`] per joint of a rig, a model pose one [`Affine`] per joint. The jobs here own
+//! nothing: buffers belong to the caller and keep their memory from frame to frame.
+
+use crate::rig::{LocalTransform, Rig};
+use sinew_math::{Affine, Rotation, Vec3, clamp};
+
+/// Rest pose of the file: the nodes' own transforms.
+pub fn rest_pose(rig: &Rig) -> Vec<LocalTransform> {
+    rig.joints.iter().map(|joint| joint.rest).collect()
+}
+
+/// Model-space transform of every joint: `root` times the chain of local transforms down to the joint.
+///
+/// `root` maps the file's scene to wherever the caller wants it, the identity for the file's own space. `model` is
+/// cleared and filled, one entry per joint.
+///
+/// # Panics
+/// If `local` is not as long as the rig has joints.
+pub fn local_to_model(rig: &Rig, local: &[LocalTransform], root: &Affine, model: &mut Vec<Affine>) {
+    assert_eq!(local.len(), rig.joints.len(), "a pose has one local transform per joint");
+    model.clear();
+    for (joint, own) in rig.joints.iter().zip(local) {
+        let parent = joint.parent.map_or(*root, |p| model[p]);
+        model.push(parent * own.to_affine());
+    }
+}
+
+/// Motion of a joint's frame, model axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct JointVelocity {
+    /// Of the joint's origin, units of the pose per second.
+    pub linear: Vec3,
+    /// Radians per second.
+    pub angular: Vec3,
+}
+
+/// Mean velocity of every joint's rigid frame between two model poses `dt` seconds apart; zero where `dt` is not
+/// positive. Exact for motion at constant velocity that turns less than half a turn in `dt`.
+///
+/// # Panics
+/// If the poses differ in length.
+pub fn joint_velocities(before: &[Affine], after: &[Affine], dt: f32, out: &mut Vec<JointVelocity>) {
+    assert_eq!(before.len(), after.len(), "two poses of one rig");
+    out.clear();
+    out.extend(before.iter().zip(after).map(|(a, b)| {
+        if dt.is_nan() || dt <= 0.0 {
+            return JointVelocity::default();
+        }
+        let (a, b) = (a.to_rigid(), b.to_rigid());
+        JointVelocity {
+            linear: (b.translation - a.translation) / dt,
+            angular: a.rotation.angular_velocity_to(b.rotation, dt),
+        }
+    }));
+}
+
+/// A pose and how much of it goes into a blend.
+#[derive(Clone, Copy, Debug)]
+pub struct WeightedPose<'a> {
+    /// One local transform per joint.
+    pub pose: &'a [LocalTransform],
+    /// Share, ≥ 0; shares need not add up to 1. Negative and NaN count as 0.
+    pub weight: f32,
+}
+
+/// Weighted mean of any number of poses; the order of the layers does not matter beyond rounding.
+///
+/// Rotations are summed on the hemisphere of the **rest pose** and normalised once: pairwise spherical blends would
+/// depend on the order, and alignment to the first layer on which layer is first. Where the weights add up to zero,
+/// or a joint's rotations cancel, the rest pose stands in.
+///
+/// # Panics
+/// If a pose, `rest` or `out` differ in length.
+pub fn blend(rest: &[LocalTransform], layers: &[WeightedPose<'_>], out: &mut [LocalTransform]) {
+    assert_eq!(rest.len(), out.len(), "a pose has one local transform per joint");
+    assert!(layers.iter().all(|layer| layer.pose.len() == out.len()), "all poses are of one rig");
+    let share = |layer: &WeightedPose<'_>| if layer.weight > 0.0 { layer.weight } else { 0.0 };
+    let total: f32 = layers.iter().map(share).sum();
+    if total <= 0.0 {
+        out.copy_from_slice(rest);
+        return;
+    }
+    for (i, target) in out.iter_mut().enumerate() {
+        let mut translation = Vec3::ZERO;
+        let mut scale = Vec3::ZERO;
+        let mut sum = Rotation::from_xyzw(0.0, 0.0, 0.0, 0.0);
+        for layer in layers {
+            let (local, w) = (&layer.pose[i], share(layer) / total);
+            let q = local.rotation.toward(rest[i].rotation);
+            translation += local.translation * w;
+            scale += local.scale * w;
+            sum = Rotation::from_xyzw(sum.x + q.x * w, sum.y + q.y * w, sum.z + q.z * w, sum.w + q.w * w);
+        }
+        let cancelled = sum.dot(sum) < 1e-8;
+        let rotation = if cancelled { rest[i].rotation } else { sum.normalize() };
+        *target = LocalTransform { translation, rotation, scale };
+    }
+}
+
+/// Blend of two poses: `from` at `t` = 0, `to` at `t` = 1, `t` limited to 0..=1. See [`blend`].
+///
+/// # Panics
+/// If the slices differ in length.
+pub fn crossfade(
+    rest: &[LocalTransform],
+    from: &[LocalTransform],
+    to: &[LocalTransform],
+    t: f32,
+    out: &mut [LocalTransform],
+) {
+    let t = clamp(t, 0.0, 1.0);
+    blend(rest, &[WeightedPose { pose: from, weight: 1.0 - t }, WeightedPose { pose: to, weight: t }], out);
+}
+
+/// Ease in and out: `3x² − 2x³`, `x` limited to 0..=1; its slope is 0 at both ends.
+pub fn smoothstep(x: f32) -> f32 {
+    let x = clamp(x, 0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}

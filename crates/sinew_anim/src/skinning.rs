@@ -1,0 +1,90 @@
+//! Vertices of a posed mesh, for pictures.
+
+use crate::rig::{JointIdx, Primitive, Rig, Skin};
+use sinew_math::{Affine, Mat3, Vec3, normalize_or};
+
+/// Matrix per skin slot from mesh space (bind pose) to model space: joint × inverse bind. `palette` is cleared first.
+///
+/// # Panics
+/// If a joint of the skin is not in `model`.
+pub fn skin_palette(skin: &Skin, model: &[Affine], palette: &mut Vec<Affine>) {
+    palette.clear();
+    palette
+        .extend(skin.joints.iter().zip(&skin.inverse_bind).map(|(&joint, inverse)| model[joint] * *inverse));
+}
+
+/// Positions and normals of one primitive in model space under the model pose `model`: linear blend skinning, or
+/// rigidly with its joint where the mesh has no skin or the primitive no weights. Both buffers are cleared first;
+/// `normals` stays empty where the primitive has none.
+///
+/// # Panics
+/// If `mesh` or `primitive` is out of range, `model` is shorter than the rig, or a vertex names a slot that its skin
+/// does not have.
+pub fn skin_vertices(
+    rig: &Rig,
+    mesh: usize,
+    primitive: usize,
+    model: &[Affine],
+    positions: &mut Vec<Vec3>,
+    normals: &mut Vec<Vec3>,
+) {
+    positions.clear();
+    normals.clear();
+    let mesh = &rig.meshes[mesh];
+    let primitive = &mesh.primitives[primitive];
+    match mesh.skin.filter(|_| !primitive.joints.is_empty()) {
+        Some(skin) => deform(primitive, &rig.skins[skin], model, positions, normals),
+        None => carry(primitive, mesh.joint, model, positions, normals),
+    }
+}
+
+fn carry(
+    primitive: &Primitive,
+    joint: JointIdx,
+    model: &[Affine],
+    positions: &mut Vec<Vec3>,
+    normals: &mut Vec<Vec3>,
+) {
+    let place = &model[joint];
+    let turn = normal_matrix(&place.linear);
+    positions.extend(primitive.positions.iter().map(|&p| place.point(p)));
+    normals.extend(primitive.normals.iter().map(|&n| normalize_or(turn * n, n)));
+}
+
+fn deform(
+    primitive: &Primitive,
+    skin: &Skin,
+    model: &[Affine],
+    positions: &mut Vec<Vec3>,
+    normals: &mut Vec<Vec3>,
+) {
+    let mut palette = Vec::new();
+    skin_palette(skin, model, &mut palette);
+    for (i, &p) in primitive.positions.iter().enumerate() {
+        let place = blended(&palette, primitive.joints[i], primitive.weights[i]);
+        positions.push(place.point(p));
+        if let Some(&n) = primitive.normals.get(i) {
+            normals.push(normalize_or(normal_matrix(&place.linear) * n, n));
+        }
+    }
+}
+
+fn blended(palette: &[Affine], slots: [u16; 4], weights: [f32; 4]) -> Affine {
+    let mut sum = Affine { linear: Mat3::ZERO, translation: Vec3::ZERO };
+    for (slot, weight) in slots.into_iter().zip(weights) {
+        if weight > 0.0 {
+            let matrix = &palette[usize::from(slot)];
+            sum.linear += matrix.linear * weight;
+            sum.translation += matrix.translation * weight;
+        }
+    }
+    sum
+}
+
+/// How normals turn under a linear map, up to length: its cofactors, that is the inverse transpose times the
+/// determinant, with the sign of the determinant taken out so that a mirrored part does not turn inside out.
+fn normal_matrix(m: &Mat3) -> Mat3 {
+    let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
+    let sign = if x.dot(y.cross(z)) < 0.0 { -1.0 } else { 1.0 };
+    Mat3::from_cols(y.cross(z) * sign, z.cross(x) * sign, x.cross(y) * sign)
+}

@@ -1,0 +1,6 @@
+//! Tests of the animation library against closed forms and known files.
+
+mod pose;
+mod sample;
+mod skinning;
+mod toy;
