@@ -5,6 +5,7 @@
 
 pub mod collide;
 pub mod def;
+mod distance;
 pub mod id;
 pub mod shape;
 

@@ -1,0 +1,224 @@
+//! Box against box: separating axes (Gottschalk, Lin & Manocha 1996), then the two faces or the two edges that meet.
+
+use super::clip::{self, Face};
+use super::feature::{self, pair};
+use super::placed::{Obb, Segment, sign};
+use super::reduce::{midway, push_best};
+use super::{Manifold, ManifoldPoint};
+use sinew_math::{Vec3, min};
+
+/// A candidate normal from A to B and the gap along it.
+#[derive(Clone, Copy)]
+struct Axis {
+    normal: Vec3,
+    separation: f32,
+    of: AxisOf,
+}
+
+#[derive(Clone, Copy)]
+enum AxisOf {
+    FaceA(usize),
+    FaceB(usize),
+    Edges(usize, usize),
+}
+
+/// Edges whose sine is below this are taken as parallel: the faces' axes then say all there is to say.
+const PARALLEL_SINE: f32 = 0.005;
+
+/// Settles ties between the faces of A and B by geometry, so that neither the order of the shapes nor rounding
+/// decides. No common direction of a level (axes, diagonals) is at right angles to it.
+const TIE_DIRECTION: Vec3 = Vec3::new(0.331, 0.873, 0.357);
+
+pub(super) fn collide(a: &Obb, b: &Obb, margin: f32, out: &mut Manifold) {
+    let tolerance = tolerance(a, b);
+    let (face_a, face_b) = (best_face(a, b, 1.0, AxisOf::FaceA), best_face(b, a, -1.0, AxisOf::FaceB));
+    let face = choose_face(face_a, face_b, tolerance);
+    if face_a.separation > margin || face_b.separation > margin {
+        return;
+    }
+    let axis = match best_edges(a, b) {
+        Some(edges) if edges.separation > margin => return,
+        // Faces give up to four points and hold better: edges must be clearly the better axis.
+        Some(edges) if edges.separation > face.separation + tolerance + 0.05 * face.separation.abs() => edges,
+        _ => face,
+    };
+    let touched = match axis.of {
+        AxisOf::FaceA(k) => push_faces(a, k, b, &axis, margin, tolerance, out),
+        AxisOf::FaceB(k) => push_faces(b, k, a, &axis, margin, tolerance, out),
+        AxisOf::Edges(i, j) => push_edges(a, i, b, j, &axis, out),
+    };
+    if !touched {
+        if axis.separation > 0.0 {
+            push_closest(a, b, axis.normal, margin, out);
+        } else {
+            push_support(a, b, &axis, out);
+        }
+    }
+}
+
+/// Below which lengths don't matter for the choice of features: 1 % of the thinnest half side, at most 0.5 mm.
+fn tolerance(a: &Obb, b: &Obb) -> f32 {
+    min(0.0005, 0.01 * min(a.thinnest(), b.thinnest()))
+}
+
+/// The face of `of` that separates best; `toward_b` is −1 if `of` is B.
+fn best_face(of: &Obb, other: &Obb, toward_b: f32, name: fn(usize) -> AxisOf) -> Axis {
+    let offset = other.center - of.center;
+    let candidate = |k: usize| {
+        let along = offset.dot(of.axes[k]);
+        Axis {
+            normal: of.axes[k] * (sign(along) * toward_b),
+            separation: along.abs() - of.half[k] - other.half_width(of.axes[k]),
+            of: name(k),
+        }
+    };
+    let mut best = candidate(0);
+    for k in 1..3 {
+        let axis = candidate(k);
+        if axis.separation > best.separation {
+            best = axis;
+        }
+    }
+    best
+}
+
+fn choose_face(a: Axis, b: Axis, tolerance: f32) -> Axis {
+    let tied = (a.separation - b.separation).abs() <= tolerance;
+    let a_wins = if tied { a.normal.dot(TIE_DIRECTION) > 0.0 } else { a.separation > b.separation };
+    if a_wins { a } else { b }
+}
+
+fn best_edges(a: &Obb, b: &Obb) -> Option<Axis> {
+    let offset = b.center - a.center;
+    let mut best: Option<Axis> = None;
+    for i in 0..3 {
+        for j in 0..3 {
+            let cross = a.axes[i].cross(b.axes[j]);
+            let sine = cross.length();
+            if sine < PARALLEL_SINE {
+                continue;
+            }
+            let across = cross / sine;
+            let normal = across * sign(across.dot(offset));
+            let separation = normal.dot(offset) - a.half_width(normal) - b.half_width(normal);
+            if best.is_none_or(|axis| separation > axis.separation) {
+                best = Some(Axis { normal, separation, of: AxisOf::Edges(i, j) });
+            }
+        }
+    }
+    best
+}
+
+/// The other box's face cut to the reference face. False, and nothing pushed, if that does not show how far the
+/// boxes are apart: they pass each other beside the face.
+fn push_faces(
+    of: &Obb,
+    axis: usize,
+    other: &Obb,
+    best: &Axis,
+    margin: f32,
+    tolerance: f32,
+    out: &mut Manifold,
+) -> bool {
+    let is_a = matches!(best.of, AxisOf::FaceA(_));
+    let outward = if is_a { best.normal } else { -best.normal };
+    let reference = Face { of, axis, sign: sign(of.axes[axis].dot(outward)) };
+    let (incident_axis, incident_sign) = other.facing(-outward);
+    let incident = Face { of: other, axis: incident_axis, sign: incident_sign };
+
+    let mut points = [ManifoldPoint::default(); clip::MAX_CORNERS];
+    let (mut count, mut nearest) = (0, f32::INFINITY);
+    for corner in clip::clip(&reference, &incident, tolerance).corners() {
+        let separation = corner.local.z;
+        nearest = min(separation, nearest);
+        if separation <= margin {
+            let feature = if is_a {
+                pair(corner.reference, corner.incident)
+            } else {
+                pair(corner.incident, corner.reference)
+            };
+            let position = midway(reference.point(corner.local), outward, separation);
+            points[count] = ManifoldPoint { position, separation, feature };
+            count += 1;
+        }
+    }
+    if best.separation > 0.0 && nearest > best.separation + tolerance {
+        return false;
+    }
+    out.normal = best.normal;
+    push_best(&points[..count], tolerance, out);
+    out.count > 0
+}
+
+/// The edge of `of` along `axis` that reaches furthest along `direction`, and its feature.
+fn support_edge(of: &Obb, axis: usize, direction: Vec3) -> (Segment, u16) {
+    let index = of.support(direction) & !(1 << axis);
+    (Segment { ends: [of.vertex(index), of.vertex(index | 1 << axis)] }, feature::edge(axis, index))
+}
+
+/// The closest points of two edges. False, and nothing pushed, if the boxes are apart and these are not their
+/// closest points.
+fn push_edges(a: &Obb, i: usize, b: &Obb, j: usize, axis: &Axis, out: &mut Manifold) -> bool {
+    let (edge_a, feature_a) = support_edge(a, i, axis.normal);
+    let (edge_b, feature_b) = support_edge(b, j, -axis.normal);
+    let (s, t) = edge_a.closest_to_segment(&edge_b);
+    let inside = |x: f32| x > 0.0 && x < 1.0;
+    if axis.separation > 0.0 && !(inside(s) && inside(t)) {
+        return false;
+    }
+    out.normal = axis.normal;
+    out.push((edge_a.at(s) + edge_b.at(t)) * 0.5, axis.separation, pair(feature_a, feature_b));
+    true
+}
+
+/// The closest points of two boxes that are apart, by trying corners against boxes and edges against edges: slow
+/// and sure, for the rare pairs that pass each other corner by corner.
+fn push_closest(a: &Obb, b: &Obb, fallback: Vec3, margin: f32, out: &mut Manifold) {
+    let mut best = (f32::INFINITY, Vec3::ZERO, Vec3::ZERO, 0);
+    let mut consider = |on_a: Vec3, on_b: Vec3, feature: u32| {
+        let squared = (on_b - on_a).dot(on_b - on_a);
+        if squared < best.0 {
+            best = (squared, on_a, on_b, feature);
+        }
+    };
+    for index in 0..8 {
+        let (on_a, on_b) = (a.vertex(index), b.vertex(index));
+        consider(a.closest(on_b), on_b, pair(feature::WHOLE, feature::vertex(index)));
+        consider(on_a, b.closest(on_a), pair(feature::vertex(index), feature::WHOLE));
+    }
+    for (edge_a, feature_a) in edges(a) {
+        for (edge_b, feature_b) in edges(b) {
+            let (s, t) = edge_a.closest_to_segment(&edge_b);
+            consider(edge_a.at(s), edge_b.at(t), pair(feature_a, feature_b));
+        }
+    }
+    let (_, on_a, on_b, feature) = best;
+    let separation = (on_b - on_a).length();
+    if separation <= margin {
+        // The direction between points that all but coincide is noise.
+        let precise = separation > 1e-5 * (a.half + b.half).length();
+        out.normal = if precise { (on_b - on_a) / separation } else { fallback };
+        out.push((on_a + on_b) * 0.5, separation, feature);
+    }
+}
+
+fn edges(of: &Obb) -> impl Iterator<Item = (Segment, u16)> {
+    (0..3).flat_map(move |axis| {
+        (0..8).filter(move |index| index >> axis & 1 == 0).map(move |index| {
+            let ends = [of.vertex(index), of.vertex(index | 1 << axis)];
+            (Segment { ends }, feature::edge(axis, index))
+        })
+    })
+}
+
+/// B's deepest corner, for overlaps that no face or edge describes.
+fn push_support(a: &Obb, b: &Obb, axis: &Axis, out: &mut Manifold) {
+    let index = b.support(-axis.normal);
+    out.normal = axis.normal;
+    let position = midway(b.vertex(index), axis.normal, axis.separation);
+    out.push(
+        position,
+        axis.separation,
+        pair(feature::vertex(a.support(axis.normal)), feature::vertex(index)),
+    );
+}

@@ -1,0 +1,17 @@
+//! Box against sphere: the closest point of the box to the centre.
+
+use super::Manifold;
+use super::feature::{WHOLE, pair};
+use super::placed::{Ball, Obb};
+use crate::distance::box_distance;
+
+pub(super) fn collide(a: &Obb, b: &Ball, margin: f32, out: &mut Manifold) {
+    let (distance, normal) = box_distance(a.half, a.local_point(b.center));
+    let separation = distance - b.radius;
+    if separation > margin {
+        return;
+    }
+    out.normal = a.vector(normal);
+    // One id for all features of the box: the contact of a ball that rolls over an edge is still the same one.
+    out.push(b.center - out.normal * (b.radius + 0.5 * separation), separation, pair(WHOLE, WHOLE));
+}

@@ -1,0 +1,20 @@
+//! Capsule against sphere: the closest point of the core to the centre. Sphere against sphere is a capsule whose
+//! core is a point.
+
+use super::Manifold;
+use super::feature::{WHOLE, pair};
+use super::placed::{Ball, Pill};
+use sinew_math::{any_orthonormal, normalize_or};
+
+pub(super) fn collide(a: &Pill, b: &Ball, margin: f32, out: &mut Manifold) {
+    let on_core = a.core.at(a.core.closest(b.center));
+    let offset = b.center - on_core;
+    let separation = offset.length() - a.radius - b.radius;
+    if separation > margin {
+        return;
+    }
+    // A centre on the core: any way out across the core is as good as another.
+    out.normal = normalize_or(offset, any_orthonormal(a.axis));
+    let position = on_core + out.normal * (a.radius + 0.5 * separation);
+    out.push(position, separation, pair(WHOLE, WHOLE));
+}

@@ -1,0 +1,42 @@
+//! Half-space against box, capsule and sphere: heights over the plane.
+
+use super::Manifold;
+use super::feature::{self, WHOLE, end, pair};
+use super::placed::{Ball, Obb, Pill, Plane};
+use sinew_math::Vec3;
+
+/// The four corners of the face that looks at the plane: the deepest corner is always one of them.
+pub(super) fn against_box(a: &Plane, b: &Obb, margin: f32, out: &mut Manifold) {
+    let (axis, side) = b.facing(-a.normal);
+    out.normal = a.normal;
+    for index in 0..8 {
+        let on_face = (index >> axis & 1 == 1) == (side > 0.0);
+        if on_face {
+            push(a, b.vertex(index), 0.0, margin, feature::vertex(index), out);
+        }
+    }
+}
+
+/// Both ends.
+pub(super) fn against_capsule(a: &Plane, b: &Pill, margin: f32, out: &mut Manifold) {
+    out.normal = a.normal;
+    for (index, point) in b.core.ends.into_iter().enumerate() {
+        push(a, point, b.radius, margin, end(index), out);
+    }
+    // A capsule without a middle is a ball: one point, so that it is not pushed twice.
+    if out.count == 2 && b.core.ends[0] == b.core.ends[1] {
+        out.count = 1;
+    }
+}
+
+pub(super) fn against_sphere(a: &Plane, b: &Ball, margin: f32, out: &mut Manifold) {
+    out.normal = a.normal;
+    push(a, b.center, b.radius, margin, WHOLE, out);
+}
+
+fn push(a: &Plane, center: Vec3, radius: f32, margin: f32, feature: u16, out: &mut Manifold) {
+    let separation = a.height(center) - radius;
+    if separation <= margin {
+        out.push(center - a.normal * (radius + 0.5 * separation), separation, pair(WHOLE, feature));
+    }
+}

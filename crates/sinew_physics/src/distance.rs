@@ -1,0 +1,65 @@
+//! Signed distance from a point to a shape: what particles collide with, and what decides whether a point is inside.
+
+use crate::shape::Shape;
+use sinew_math::{Transform, Vec3, abs3, clamp, max3, normalize_or};
+
+impl Shape {
+    /// Distance from `point` (world) to the surface, metres, negative inside, and the unit outward normal (world)
+    /// at the closest point of the surface. Exact for every shape. Where several points are closest (the middle of
+    /// a box, the axis of a capsule), one of them, always the same.
+    pub fn signed_distance(&self, world_from_shape: &Transform, point: Vec3) -> (f32, Vec3) {
+        let (distance, normal) = self.local_distance(world_from_shape.inverse_point(point));
+        (distance, world_from_shape.rotation * normal)
+    }
+
+    /// [`signed_distance`](Self::signed_distance) in the shape's own frame.
+    pub(crate) fn local_distance(&self, p: Vec3) -> (f32, Vec3) {
+        match *self {
+            Shape::Box { half_extents } => box_distance(half_extents, p),
+            Shape::Sphere { radius } => (p.length() - radius, normalize_or(p, Vec3::Y)),
+            Shape::Capsule { half_height, radius } => {
+                let from_core = p - Vec3::new(0.0, clamp(p.y, -half_height, half_height), 0.0);
+                (from_core.length() - radius, normalize_or(from_core, Vec3::X))
+            }
+            Shape::HalfSpace => (p.y, Vec3::Y),
+        }
+    }
+}
+
+/// Signed distance to the box of the given half extents around the origin, and the outward normal.
+pub(crate) fn box_distance(half: Vec3, p: Vec3) -> (f32, Vec3) {
+    let beyond = abs3(p) - half;
+    let outside = max3(beyond, Vec3::ZERO);
+    let distance = outside.length();
+    if distance > 0.0 {
+        let toward =
+            Vec3::new(with_sign(outside.x, p.x), with_sign(outside.y, p.y), with_sign(outside.z, p.z));
+        // Squares of tiny distances vanish: measure them again at a larger scale.
+        return if distance > 1e-12 { (distance, toward / distance) } else { (0.0, face_normal(beyond, p)) };
+    }
+    let axis = nearest_face(beyond);
+    (beyond[axis], face_normal(beyond, p))
+}
+
+/// The axis of the face that is nearest from inside; the lowest among equals.
+fn nearest_face(beyond: Vec3) -> usize {
+    let mut axis = 0;
+    for k in 1..3 {
+        if beyond[k] > beyond[axis] {
+            axis = k;
+        }
+    }
+    axis
+}
+
+fn face_normal(beyond: Vec3, p: Vec3) -> Vec3 {
+    let axis = nearest_face(beyond);
+    let mut normal = Vec3::ZERO;
+    normal[axis] = with_sign(1.0, p[axis]);
+    normal
+}
+
+/// `magnitude` with the sign of `x`.
+fn with_sign(magnitude: f32, x: f32) -> f32 {
+    if x < 0.0 { -magnitude } else { magnitude }
+}
