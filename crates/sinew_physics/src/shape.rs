@@ -1,6 +1,6 @@
 //! Collision shapes, what they are made of, and whom they meet.
 
-use sinew_math::{Sym3, Transform, Vec3};
+use sinew_math::{Sym3, Transform, Vec3, min};
 
 /// A convex shape in its own frame. All sizes are metres and positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +24,55 @@ pub enum Shape {
     },
     /// Everything below the plane y = 0 of its frame. Static bodies only.
     HalfSpace,
+}
+
+impl Shape {
+    /// Whether its sizes are finite and positive (a capsule's half height may be 0); the phrase says what is wrong.
+    ///
+    /// # Errors
+    /// What is wrong, in lower case.
+    pub fn check(&self) -> Result<(), &'static str> {
+        // Written so that NaN fails.
+        let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
+        match *self {
+            Self::Box { half_extents: h } if !(positive(h.x) && positive(h.y) && positive(h.z)) => {
+                Err("half extents of a box must be positive and finite")
+            }
+            Self::Sphere { radius } | Self::Capsule { radius, .. } if !positive(radius) => {
+                Err("a radius must be positive and finite")
+            }
+            Self::Capsule { half_height, .. } if !(half_height == 0.0 || positive(half_height)) => {
+                Err("half height of a capsule must not be negative, and finite")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Radius of the largest ball inside, metres: half the width where the shape is thinnest. Infinite for a
+    /// half-space.
+    pub fn inner_radius(&self) -> f32 {
+        match *self {
+            Self::Box { half_extents: h } => min(min(h.x, h.y), h.z),
+            Self::Sphere { radius } | Self::Capsule { radius, .. } => radius,
+            Self::HalfSpace => f32::INFINITY,
+        }
+    }
+
+    /// Radius of the smallest ball around the shape's origin that holds it, metres. Infinite for a half-space.
+    pub fn bounding_radius(&self) -> f32 {
+        match *self {
+            Self::Box { half_extents } => half_extents.length(),
+            Self::Sphere { radius } => radius,
+            Self::Capsule { half_height, radius } => half_height + radius,
+            Self::HalfSpace => f32::INFINITY,
+        }
+    }
+
+    /// Width where the shape is thinnest, metres: what slop and speculative distance scale with. Infinite for a
+    /// half-space.
+    pub fn smallest_extent(&self) -> f32 {
+        2.0 * self.inner_radius()
+    }
 }
 
 /// Surface: friction and bounce. Pairs combine: geometric mean of frictions, larger restitution, larger rolling.

@@ -1,0 +1,85 @@
+//! Axis-aligned boxes: what pairs are sought with.
+
+use crate::shape::Shape;
+use sinew_math::{Transform, Vec3, abs3, max3, min3};
+
+/// Bounds of a half-space reach this far from the origin, metres: finite, so that sums and differences stay finite,
+/// and beyond any world.
+pub const HALF_SPACE_REACH: f32 = 1.0e9;
+
+/// Axis-aligned box, metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Aabb {
+    /// Lowest corner.
+    pub min: Vec3,
+    /// Highest corner.
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// From its centre and half of its sides.
+    pub fn around(center: Vec3, half_extents: Vec3) -> Self {
+        Self { min: center - half_extents, max: center + half_extents }
+    }
+
+    /// Whether the two have a point in common; boxes that only touch do.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.min.x <= other.max.x
+            && other.min.x <= self.max.x
+            && self.min.y <= other.max.y
+            && other.min.y <= self.max.y
+            && self.min.z <= other.max.z
+            && other.min.z <= self.max.z
+    }
+
+    /// Whether the other one is inside.
+    pub fn contains(&self, other: &Self) -> bool {
+        self.merge(other) == *self
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    pub fn merge(&self, other: &Self) -> Self {
+        Self { min: min3(self.min, other.min), max: max3(self.max, other.max) }
+    }
+
+    /// Larger by `margin` (metres) on every side.
+    #[must_use]
+    pub fn expand(&self, margin: f32) -> Self {
+        Self { min: self.min - Vec3::splat(margin), max: self.max + Vec3::splat(margin) }
+    }
+
+    /// Middle, metres.
+    pub fn center(&self) -> Vec3 {
+        (self.min + self.max) * 0.5
+    }
+}
+
+impl Shape {
+    /// Bounds of the placed shape, tight but for rounding. A half-space's reach to [`HALF_SPACE_REACH`] on every
+    /// side, except above a level one, whose top is its plane.
+    pub fn aabb(&self, world_from_shape: &Transform) -> Aabb {
+        let (center, rotation) = (world_from_shape.translation, world_from_shape.rotation);
+        match *self {
+            Shape::Box { half_extents } => {
+                let m = rotation.to_mat3();
+                let reach = abs3(m.x_axis) * half_extents.x
+                    + abs3(m.y_axis) * half_extents.y
+                    + abs3(m.z_axis) * half_extents.z;
+                Aabb::around(center, reach)
+            }
+            Shape::Sphere { radius } => Aabb::around(center, Vec3::splat(radius)),
+            Shape::Capsule { half_height, radius } => {
+                let core = abs3(rotation * Vec3::Y) * half_height;
+                Aabb::around(center, core + Vec3::splat(radius))
+            }
+            Shape::HalfSpace => {
+                let mut bounds = Aabb::around(Vec3::ZERO, Vec3::splat(HALF_SPACE_REACH));
+                if rotation * Vec3::Y == Vec3::Y {
+                    bounds.max.y = center.y;
+                }
+                bounds
+            }
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! Rays against shapes, exact for every shape.
+
+use crate::shape::Shape;
+use sinew_math::{Transform, Vec3, max, min, normalize_or};
+
+/// A stretch of a line, from `origin` to `origin + direction`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Start, metres.
+    pub origin: Vec3,
+    /// Way to the end, metres; its length is the ray's, so it need not be 1.
+    pub direction: Vec3,
+}
+
+impl Ray {
+    /// Point at `fraction`, 0..=1.
+    pub fn at(&self, fraction: f32) -> Vec3 {
+        self.origin + self.direction * fraction
+    }
+}
+
+/// Where a ray meets a shape first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayHit {
+    /// Share of the ray before the hit, 0..=1.
+    pub fraction: f32,
+    /// In the world, metres.
+    pub point: Vec3,
+    /// Unit, out of the shape, in the world.
+    pub normal: Vec3,
+}
+
+impl Shape {
+    /// The first point of the ray that lies in the shape, or `None` if there is none, or a number is not finite.
+    ///
+    /// A ray that starts inside (or on the surface) hits at fraction 0, with a normal opposite to its direction; if
+    /// its direction is zero too, with the outward normal of the closest surface. So it is for every shape. A ray
+    /// that leaves the shape from outside its surface never hits.
+    pub fn cast_ray(&self, world_from_shape: &Transform, ray: &Ray) -> Option<RayHit> {
+        if !(ray.origin.is_finite() && ray.direction.is_finite() && world_from_shape.is_finite()) {
+            return None;
+        }
+        let origin = world_from_shape.inverse_point(ray.origin);
+        let direction = world_from_shape.rotation.inverse() * ray.direction;
+        let (distance, outward) = self.local_distance(origin);
+        let (fraction, normal) = if distance <= 0.0 {
+            (0.0, normalize_or(-direction, outward))
+        } else {
+            self.enter(origin, direction).filter(|(fraction, _)| *fraction <= 1.0)?
+        };
+        Some(RayHit { fraction, point: ray.at(fraction), normal: world_from_shape.rotation * normal })
+    }
+
+    /// Fraction (≥ 0, may exceed 1) and normal where a line from outside enters, in the shape's frame.
+    fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+        match *self {
+            Self::Box { half_extents } => enter_box(half_extents, origin, direction),
+            Self::Sphere { radius } => enter_ball(Vec3::ZERO, radius, origin, direction),
+            Self::Capsule { half_height, radius } => {
+                // The surface of a union is entered where the first of its parts is.
+                let cap = Vec3::new(0.0, half_height, 0.0);
+                let side = enter_tube(half_height, radius, origin, direction);
+                let caps = [-cap, cap].map(|center| enter_ball(center, radius, origin, direction));
+                caps.into_iter().chain([side]).flatten().reduce(|a, b| if b.0 < a.0 { b } else { a })
+            }
+            Self::HalfSpace => (direction.y < 0.0).then(|| (origin.y / -direction.y, Vec3::Y)),
+        }
+    }
+}
+
+/// Slabs (Kay & Kajiya 1986).
+fn enter_box(half: Vec3, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+    let (mut first, mut last) = (f32::NEG_INFINITY, f32::INFINITY);
+    let mut normal = Vec3::ZERO;
+    for k in 0..3 {
+        if direction[k] == 0.0 {
+            if origin[k].abs() > half[k] {
+                return None;
+            }
+            continue;
+        }
+        let side = if direction[k] > 0.0 { -1.0 } else { 1.0 };
+        let enter = (side * half[k] - origin[k]) / direction[k];
+        if enter > first {
+            first = enter;
+            normal = Vec3::ZERO;
+            normal[k] = side;
+        }
+        last = min((-side * half[k] - origin[k]) / direction[k], last);
+    }
+    (first <= last && first >= 0.0).then_some((first, normal))
+}
+
+/// By the line's closest point to the centre: the usual quadratic loses the ball's radius beside a long way
+/// (Haines et al., "Precision improvements for ray/sphere intersection", Ray Tracing Gems 2019).
+fn enter_ball(center: Vec3, radius: f32, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+    let length_squared = direction.dot(direction);
+    if length_squared <= f32::MIN_POSITIVE {
+        return None;
+    }
+    let offset = origin - center;
+    let middle = -offset.dot(direction) / length_squared;
+    let closest = offset + direction * middle;
+    let depth = radius * radius - closest.dot(closest);
+    if depth < 0.0 || middle < 0.0 {
+        return None;
+    }
+    let fraction = max(middle - (depth / length_squared).sqrt(), 0.0);
+    Some((fraction, normalize_or(offset + direction * fraction, -direction)))
+}
+
+/// The side of a cylinder along y, without its ends.
+fn enter_tube(half_height: f32, radius: f32, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+    let flat = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
+    let (fraction, normal) = enter_ball(Vec3::ZERO, radius, flat(origin), flat(direction))?;
+    ((origin.y + direction.y * fraction).abs() <= half_height).then_some((fraction, normal))
+}
