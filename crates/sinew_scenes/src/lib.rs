@@ -1,2 +1,4 @@
-//! Sinew.
+//! Named scenarios and the embedded mannequin and cabin.
 #![forbid(unsafe_code)]
+
+pub mod mannequin;
