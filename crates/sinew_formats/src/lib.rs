@@ -1,2 +1,19 @@
-//! Sinew.
+//! Bytes to plain data and back: glTF, worlds, ragdolls.
+//!
+//! Everything takes bytes, and a closure for the files beside them; only the feature `fs` (on by default) touches the
+//! file system. Bytes are not trusted: whatever they hold, the answer is a value or an [`Error`] with a place, within
+//! memory in proportion to their number, never a panic.
 #![forbid(unsafe_code)]
+
+mod error;
+#[cfg(feature = "fs")]
+pub mod fs;
+mod glb;
+pub mod gltf;
+mod json;
+mod uri;
+
+pub use error::{Error, ErrorKind, Result};
+#[cfg(feature = "fs")]
+pub use fs::{load_gltf, read_bytes, write_atomic};
+pub use gltf::{Container, Document, ReadOptions, Resolver, Textures, append_clip, no_files, read_gltf};

@@ -1,0 +1,244 @@
+//! glTF 2.0 and its relatives (GLB, VRM 0 and 1, VRMA): a file becomes a rig, clips and the JSON it came from.
+//!
+//! The JSON is read with our own cursor rather than a typed model: every index, range and number is checked where it is
+//! used, errors can name the place, and the same value is what [`append_clip`] edits and writes back.
+
+mod accessor;
+mod animation;
+mod append;
+mod material;
+mod mesh;
+mod scene;
+mod source;
+mod vrm;
+
+pub use append::append_clip;
+
+use crate::error::{Error, Result};
+use crate::json::{self, At};
+use crate::{glb, uri};
+use serde_json::Value;
+use sinew_anim::{Clip, Rig};
+use source::{Buffer, Source};
+use std::collections::BTreeMap;
+
+/// What the bytes were wrapped in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Container {
+    /// Binary: JSON and one buffer in one file (also VRM and VRMA).
+    Glb,
+    /// JSON text; buffers inside as data URIs or beside it.
+    Gltf,
+}
+
+/// Whether base colour pictures are decoded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Textures {
+    /// No: [`Rig::textures`] stays empty.
+    #[default]
+    Skip,
+    /// Yes, PNG and JPEG; what cannot be decoded becomes a warning.
+    Decode,
+}
+
+/// What to read. Default: everything but pictures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// Default skip.
+    pub textures: Textures,
+}
+
+/// A glTF file as plain data, with what is needed to write it back.
+#[derive(Clone, Debug)]
+pub struct Document {
+    /// Every node of the default scene (else of the first scene, else every node), with skins and meshes.
+    pub rig: Rig,
+    /// Animations in file order.
+    pub clips: Vec<Clip>,
+    /// The file's JSON, keys in order, numbers as they were.
+    pub json: Value,
+    /// The file's binary chunk.
+    pub bin: Option<Vec<u8>>,
+    /// What the bytes were wrapped in.
+    pub container: Container,
+    /// What was left out and why, one line each (a picture that cannot be decoded, a missing file beside it).
+    pub warnings: Vec<String>,
+    /// Bytes of the buffers that are not the binary chunk.
+    buffers: Vec<Buffer>,
+    /// Bytes of pictures in files of their own, by image index.
+    external_images: BTreeMap<usize, Vec<u8>>,
+    /// Further chunks of a GLB.
+    other_chunks: Vec<u8>,
+}
+
+impl Document {
+    /// `asset.generator`: the program that wrote the file, or `""`.
+    pub fn generator(&self) -> &str {
+        self.json["asset"]["generator"].as_str().unwrap_or_default()
+    }
+
+    /// Names of the extensions that the file uses.
+    pub fn extensions(&self) -> Vec<&str> {
+        let used = self.json["extensionsUsed"].as_array();
+        used.into_iter().flatten().filter_map(Value::as_str).collect()
+    }
+}
+
+/// Gives the bytes of a file beside the one being read. The path is relative, decoded, has no `..` and no scheme.
+pub type Resolver<'a> = dyn FnMut(&str) -> Result<Vec<u8>> + 'a;
+
+/// A resolver for bytes that have no folder: every external file is missing.
+///
+/// # Errors
+/// Always.
+pub fn no_files(path: &str) -> Result<Vec<u8>> {
+    Err(Error::io(format!("`{path}` is not available")))
+}
+
+/// Reads a GLB, glTF, VRM or VRMA; the kind is told by the bytes, not by a name.
+///
+/// Memory stays in proportion to the bytes: what a length in the file claims is checked before anything is allocated,
+/// and what is decoded may not exceed 64 times the bytes present plus 16 MiB (meshes may be placed by many nodes).
+///
+/// # Errors
+/// Bytes that are no glTF 2.0, an index or range outside its list, numbers that are not finite, a node that is its own
+/// ancestor, a required extension that is not understood (Draco, meshopt), a missing external buffer.
+pub fn read_gltf(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<'_>) -> Result<Document> {
+    let (container, json_bytes, bin, other_chunks) = unwrap_container(bytes)?;
+    let json = json::parse(json_bytes)?;
+    let root = At::root(&json);
+    check_asset(root)?;
+    check_extensions(root)?;
+    let buffers = load_buffers(root, bin, resolve)?;
+    let mut warnings = Vec::new();
+    let external_images = load_images(root, resolve, &mut warnings)?;
+    let source = Source::new(root, &buffers, bin, bytes.len())?;
+    let mut materials = material::Materials::new(&source, &external_images, options.textures)?;
+    let mut scene = scene::read(&source)?;
+    scene.rig.meshes = mesh::read_all(&source, &scene, &mut materials)?;
+    scene.rig.textures = materials.textures;
+    warnings.append(&mut materials.warnings);
+    scene.rig.stated_roles = vrm::stated_roles(root, &scene.joint_of_node);
+    let clips = animation::read_all(&source, &scene.joint_of_node)?;
+    Ok(Document {
+        rig: scene.rig,
+        clips,
+        bin: bin.map(<[u8]>::to_vec),
+        container,
+        warnings,
+        buffers,
+        external_images,
+        other_chunks: other_chunks.to_vec(),
+        json,
+    })
+}
+
+type Unwrapped<'a> = (Container, &'a [u8], Option<&'a [u8]>, &'a [u8]);
+
+fn unwrap_container(bytes: &[u8]) -> Result<Unwrapped<'_>> {
+    if glb::is_glb(bytes) {
+        let glb = glb::parse(bytes)?;
+        return Ok((Container::Glb, glb.json, glb.bin, glb.other_chunks));
+    }
+    match bytes.iter().find(|b| !b.is_ascii_whitespace()) {
+        Some(b'{') => Ok((Container::Gltf, bytes, None, &[])),
+        Some(_) => {
+            Err(Error::malformed("not a glTF file: begins neither with `glTF` nor with `{`", "byte 0"))
+        }
+        None => Err(Error::malformed("file is empty", "byte 0")),
+    }
+}
+
+/// glTF 2.0 §3.2: the version has to be 2.x, the least version a reader needs at most 2.0.
+fn check_asset(root: At<'_>) -> Result<()> {
+    let asset = root.need("asset")?;
+    let version = asset.need("version")?;
+    let text = version.str()?;
+    if !text.starts_with("2.") {
+        return Err(version.unsupported(format!("glTF {} is not supported, only 2.0", text.escape_debug())));
+    }
+    if let Some(least) = asset.get("minVersion")?
+        && least.str()? != "2.0"
+    {
+        let text = least.str()?.escape_debug();
+        return Err(least.unsupported(format!("needs a reader of glTF {text}; this one reads 2.0")));
+    }
+    Ok(())
+}
+
+/// Extensions that may be required: understood, or without influence on geometry, joints and motion.
+const HARMLESS: [&str; 10] = [
+    "KHR_mesh_quantization",
+    "KHR_materials_",
+    "KHR_texture_",
+    "EXT_texture_",
+    "MSFT_texture_",
+    "KHR_lights_",
+    "KHR_xmp",
+    "KHR_node_",
+    "VRM",
+    "KHR_physics_",
+];
+
+fn check_extensions(root: At<'_>) -> Result<()> {
+    for required in root.list("extensionsRequired")? {
+        let name = required.str()?;
+        if !HARMLESS.iter().any(|prefix| name.starts_with(prefix)) {
+            let name = name.escape_debug();
+            return Err(required.unsupported(format!("needs the extension {name}, which is not supported")));
+        }
+    }
+    Ok(())
+}
+
+/// The bytes of every buffer: in the binary chunk, in a data URI, or beside the file.
+fn load_buffers(root: At<'_>, bin: Option<&[u8]>, resolve: &mut Resolver<'_>) -> Result<Vec<Buffer>> {
+    let mut buffers = Vec::new();
+    for (i, buffer) in root.list("buffers")?.into_iter().enumerate() {
+        let claimed = buffer.need("byteLength")?;
+        let loaded = match (buffer.get("uri")?, bin) {
+            (Some(at), _) => match uri::parse(at.str()?).map_err(|what| at.malformed(what))? {
+                uri::Uri::Data(bytes) => Buffer::DataUri(bytes),
+                uri::Uri::Relative(path) => Buffer::External(resolve(&path).map_err(|e| Error {
+                    where_: at.path(),
+                    what: e.what,
+                    ..e
+                })?),
+            },
+            (None, Some(_)) if i == 0 => Buffer::Chunk,
+            // A placeholder: an error only where something reads it.
+            (None, _) => Buffer::Absent,
+        };
+        let there = loaded.bytes(bin).map(<[u8]>::len);
+        if let Some(there) = there
+            && claimed.usize()? > there
+        {
+            let what = format!("buffer claims {} bytes, {there} are there", claimed.usize()?);
+            return Err(claimed.malformed(what));
+        }
+        buffers.push(loaded);
+    }
+    Ok(buffers)
+}
+
+/// Pictures in files of their own. A missing one does no harm to the motion: a warning.
+fn load_images(
+    root: At<'_>,
+    resolve: &mut Resolver<'_>,
+    warnings: &mut Vec<String>,
+) -> Result<BTreeMap<usize, Vec<u8>>> {
+    let mut images = BTreeMap::new();
+    for (i, image) in root.list("images")?.into_iter().enumerate() {
+        let Some(at) = image.get("uri")? else { continue };
+        let loaded = uri::parse(at.str()?).and_then(|uri| match uri {
+            uri::Uri::Relative(path) => resolve(&path).map(Some).map_err(|e| e.what),
+            uri::Uri::Data(_) => Ok(None),
+        });
+        match loaded {
+            Ok(Some(bytes)) => drop(images.insert(i, bytes)),
+            Ok(None) => {}
+            Err(what) => warnings.push(format!("picture left out: {what} ({})", at.path())),
+        }
+    }
+    Ok(images)
+}

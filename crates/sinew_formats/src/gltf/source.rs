@@ -1,0 +1,95 @@
+//! The lists of a glTF file that everything else refers to, and the budget of what may be decoded from them.
+
+use crate::error::Result;
+use crate::json::At;
+use core::cell::Cell;
+
+/// Where the bytes of a buffer come from.
+#[derive(Clone, Debug)]
+pub(super) enum Buffer {
+    /// The binary chunk of the GLB.
+    Chunk,
+    /// A data URI.
+    DataUri(Vec<u8>),
+    /// A file beside this one.
+    External(Vec<u8>),
+    /// Neither: a placeholder that nothing may read.
+    Absent,
+}
+
+impl Buffer {
+    pub(super) fn bytes<'a>(&'a self, bin: Option<&'a [u8]>) -> Option<&'a [u8]> {
+        match self {
+            Self::Chunk => bin,
+            Self::DataUri(bytes) | Self::External(bytes) => Some(bytes),
+            Self::Absent => None,
+        }
+    }
+}
+
+/// A parsed file, ready to be looked things up in.
+pub(super) struct Source<'a> {
+    pub(super) root: At<'a>,
+    pub(super) nodes: Vec<At<'a>>,
+    pub(super) accessors: Vec<At<'a>>,
+    views: Vec<At<'a>>,
+    buffers: &'a [Buffer],
+    buffer_entries: Vec<At<'a>>,
+    bin: Option<&'a [u8]>,
+    /// Bytes that may still be decoded.
+    budget: Cell<usize>,
+}
+
+impl<'a> Source<'a> {
+    pub(super) fn new(
+        root: At<'a>,
+        buffers: &'a [Buffer],
+        bin: Option<&'a [u8]>,
+        file_size: usize,
+    ) -> Result<Self> {
+        let outside: usize =
+            buffers.iter().map(|b| if let Buffer::External(bytes) = b { bytes.len() } else { 0 }).sum();
+        let present = file_size.saturating_add(outside);
+        Ok(Self {
+            root,
+            nodes: root.list("nodes")?,
+            accessors: root.list("accessors")?,
+            views: root.list("bufferViews")?,
+            buffers,
+            buffer_entries: root.list("buffers")?,
+            bin,
+            budget: Cell::new(present.saturating_mul(64).saturating_add(16 << 20)),
+        })
+    }
+
+    /// Books `count × size` bytes about to be decoded for `at`.
+    pub(super) fn spend(&self, at: At<'_>, count: usize, size: usize) -> Result<()> {
+        let left = count.checked_mul(size).and_then(|bytes| self.budget.get().checked_sub(bytes));
+        let Some(left) = left else {
+            return Err(
+                at.malformed(format!("{count} elements are more than the size of the file justifies"))
+            );
+        };
+        self.budget.set(left);
+        Ok(())
+    }
+
+    /// The bytes of the buffer view that `at` is the index of, and the view itself.
+    pub(super) fn view(&self, at: At<'a>) -> Result<(&'a [u8], At<'a>)> {
+        let view = self.views[at.index(self.views.len(), "buffer views")?];
+        let buffer_index = view.need("buffer")?.index(self.buffers.len(), "buffers")?;
+        let size = self.buffer_entries[buffer_index].need("byteLength")?.usize()?;
+        let buffer = self.buffers[buffer_index].bytes(self.bin).and_then(|bytes| bytes.get(..size));
+        let Some(buffer) = buffer else {
+            return Err(view.malformed(format!("buffer {buffer_index} has no bytes")));
+        };
+        let offset = view.get("byteOffset")?.map_or(Ok(0), At::usize)?;
+        let length = view.need("byteLength")?.usize()?;
+        let bytes = offset.checked_add(length).and_then(|end| buffer.get(offset..end));
+        let bytes = bytes.ok_or_else(|| {
+            let there = buffer.len();
+            view.malformed(format!("{length} bytes from {offset} on are outside a buffer of {there} bytes"))
+        })?;
+        Ok((bytes, view))
+    }
+}

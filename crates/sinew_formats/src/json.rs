@@ -1,0 +1,175 @@
+//! Reading JSON with a place for every complaint, and writing it so that a person can edit it.
+
+use crate::error::{Error, Result};
+use serde_json::Value;
+
+/// Parses bytes as JSON.
+pub(crate) fn parse(bytes: &[u8]) -> Result<Value> {
+    serde_json::from_slice(bytes).map_err(|e| {
+        let text = e.to_string();
+        let what = text.split(" at line ").next().unwrap_or_default();
+        Error::malformed(format!("not JSON: {what}"), format!("line {} column {}", e.line(), e.column()))
+    })
+}
+
+/// A value inside a JSON document. Its path is found by searching for its address, so that it costs nothing until
+/// there is something to complain about.
+#[derive(Clone, Copy)]
+pub(crate) struct At<'a> {
+    root: &'a Value,
+    value: &'a Value,
+}
+
+impl<'a> At<'a> {
+    pub(crate) fn root(root: &'a Value) -> Self {
+        Self { root, value: root }
+    }
+
+    pub(crate) fn value(self) -> &'a Value {
+        self.value
+    }
+
+    /// JSON path such as `bodies[3].shapes[0].half_extents`; `top level` for the document itself.
+    pub(crate) fn path(self) -> String {
+        let mut path = String::new();
+        if !find(self.root, self.value, &mut path) || path.is_empty() {
+            return "top level".into();
+        }
+        path
+    }
+
+    pub(crate) fn malformed(self, what: impl Into<String>) -> Error {
+        Error::malformed(what, self.path())
+    }
+
+    pub(crate) fn unsupported(self, what: impl Into<String>) -> Error {
+        Error::unsupported(what, self.path())
+    }
+
+    /// The value of an optional key. A value that is no object is an error.
+    pub(crate) fn get(self, key: &str) -> Result<Option<At<'a>>> {
+        let object = self.value.as_object().ok_or_else(|| self.malformed("must be an object"))?;
+        Ok(object.get(key).map(|value| At { root: self.root, value }))
+    }
+
+    /// The value of a key that has to be there.
+    pub(crate) fn need(self, key: &str) -> Result<At<'a>> {
+        self.get(key)?.ok_or_else(|| self.malformed(format!("`{key}` is missing")))
+    }
+
+    /// Keys and values of an object.
+    pub(crate) fn entries(self) -> Result<impl Iterator<Item = (&'a str, At<'a>)>> {
+        let object = self.value.as_object().ok_or_else(|| self.malformed("must be an object"))?;
+        Ok(object.iter().map(move |(key, value)| (key.as_str(), At { root: self.root, value })))
+    }
+
+    /// Elements of an array.
+    pub(crate) fn items(self) -> Result<Vec<At<'a>>> {
+        let array = self.value.as_array().ok_or_else(|| self.malformed("must be an array"))?;
+        Ok(array.iter().map(|value| At { root: self.root, value }).collect())
+    }
+
+    /// Elements of the array under an optional key; none if the key is absent.
+    pub(crate) fn list(self, key: &str) -> Result<Vec<At<'a>>> {
+        self.get(key)?.map_or_else(|| Ok(Vec::new()), Self::items)
+    }
+
+    pub(crate) fn str(self) -> Result<&'a str> {
+        self.value.as_str().ok_or_else(|| self.malformed("must be a string"))
+    }
+
+    /// The string under an optional key, `""` if it is absent or no string: for names, which nothing depends on.
+    pub(crate) fn name(self) -> String {
+        self.value.get("name").and_then(Value::as_str).unwrap_or_default().to_owned()
+    }
+
+    pub(crate) fn bool(self) -> Result<bool> {
+        self.value.as_bool().ok_or_else(|| self.malformed("must be true or false"))
+    }
+
+    /// A whole number ≥ 0; `3.0` counts as 3.
+    pub(crate) fn usize(self) -> Result<usize> {
+        const EXACT: f64 = 9_007_199_254_740_992.0;
+        let whole = self.value.as_u64().or_else(|| {
+            let x = self.value.as_f64()?;
+            ((0.0..EXACT).contains(&x) && x.fract() == 0.0).then_some(x as u64)
+        });
+        whole
+            .and_then(|n| usize::try_from(n).ok())
+            .ok_or_else(|| self.malformed("must be a whole number, 0 or more"))
+    }
+
+    /// A whole number below `len`, the length of the list `of`.
+    pub(crate) fn index(self, len: usize, of: &str) -> Result<usize> {
+        let index = self.usize()?;
+        if index >= len {
+            return Err(self.malformed(format!("index {index} is out of range: there are {len} {of}")));
+        }
+        Ok(index)
+    }
+
+    /// A number that is finite as `f32`.
+    pub(crate) fn f32(self) -> Result<f32> {
+        let number = self.value.as_f64().ok_or_else(|| self.malformed("must be a number"))? as f32;
+        if !number.is_finite() {
+            return Err(self.malformed("number is too large"));
+        }
+        Ok(number)
+    }
+
+    /// An array of exactly `N` finite numbers.
+    pub(crate) fn numbers<const N: usize>(self) -> Result<[f32; N]> {
+        let items = self.items()?;
+        if items.len() != N {
+            return Err(self.malformed(format!("must have {N} numbers, has {}", items.len())));
+        }
+        let mut out = [0.0; N];
+        for (slot, item) in out.iter_mut().zip(items) {
+            *slot = item.f32()?;
+        }
+        Ok(out)
+    }
+
+    /// The numbers under an optional key, or `default`.
+    pub(crate) fn numbers_or<const N: usize>(self, key: &str, default: [f32; N]) -> Result<[f32; N]> {
+        self.get(key)?.map_or(Ok(default), Self::numbers)
+    }
+
+    /// The number under an optional key, or `default`.
+    pub(crate) fn f32_or(self, key: &str, default: f32) -> Result<f32> {
+        self.get(key)?.map_or(Ok(default), Self::f32)
+    }
+}
+
+/// Appends the path from `from` to the value at the address of `target`; leaves `path` as it was if it is not there.
+fn find(from: &Value, target: &Value, path: &mut String) -> bool {
+    if core::ptr::eq(from, target) {
+        return true;
+    }
+    let length = path.len();
+    match from {
+        Value::Array(items) => {
+            for (i, item) in items.iter().enumerate() {
+                path.push_str(&format!("[{i}]"));
+                if find(item, target, path) {
+                    return true;
+                }
+                path.truncate(length);
+            }
+        }
+        Value::Object(entries) => {
+            for (key, value) in entries {
+                if !path.is_empty() {
+                    path.push('.');
+                }
+                path.push_str(key);
+                if find(value, target, path) {
+                    return true;
+                }
+                path.truncate(length);
+            }
+        }
+        _ => {}
+    }
+    false
+}
