@@ -1,0 +1,138 @@
+//! What the stages of the build know of a rig: its kept bones in character space, parents before children.
+
+use crate::build::part::{Part, Side, part_of_role};
+use sinew_anim::JointIdx;
+use sinew_anim::roles::Role;
+use sinew_math::{Vec3, normalize_or};
+
+/// One kept bone: what will become a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bone {
+    /// Rig joint that carries it.
+    pub joint: JointIdx,
+    /// Rig joints that move rigidly with it.
+    pub merged: Vec<JointIdx>,
+    /// What it is to the body.
+    pub role: Role,
+    /// How sure the role is, 0..=1.
+    pub confidence: f32,
+    /// Which kind of body part the role names.
+    pub part: Part,
+    /// Which side of the body.
+    pub side: Side,
+    /// Index of the parent bone; smaller than its own. `None` for the first.
+    pub parent: Option<usize>,
+    /// Pivot of the joint to the parent, character space at the bind pose, metres.
+    pub head: Vec3,
+}
+
+/// The kept bones of a character.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bones {
+    /// Parents before children; the first is the pelvis.
+    pub list: Vec<Bone>,
+    /// Indices of the children of each bone.
+    pub children: Vec<Vec<usize>>,
+    /// Whether the anatomy of a human applies.
+    pub anatomy: Anatomy,
+    /// Height at the bind pose, metres.
+    pub height: f32,
+}
+
+/// Which tables apply to a character.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anatomy {
+    /// Two arms, two legs, a head: anthropometry and joint ranges of humans.
+    Human,
+    /// Anything else: masses from volumes, joint ranges by kind of limb.
+    Creature,
+}
+
+impl Bones {
+    /// Links the bones up.
+    ///
+    /// # Panics
+    /// If a parent's index is not smaller than its child's.
+    pub fn new(list: Vec<Bone>, anatomy: Anatomy, height: f32) -> Self {
+        let mut children = vec![Vec::new(); list.len()];
+        for (index, bone) in list.iter().enumerate() {
+            if let Some(parent) = bone.parent {
+                assert!(parent < index, "bone {index} comes before its parent {parent}");
+                children[parent].push(index);
+            }
+        }
+        Self { list, children, anatomy, height }
+    }
+
+    /// The child that continues the bone: forearm of an upper arm, neck of a chest. `None` for the end of a chain, and
+    /// where no child continues it more than the others.
+    pub fn continuation(&self, bone: usize) -> Option<usize> {
+        let children = &self.children[bone];
+        let wanted = self.list[bone].part.continued_by();
+        wanted
+            .iter()
+            .find_map(|part| children.iter().copied().find(|&child| self.list[child].part == *part))
+            .or_else(|| (children.len() == 1 && wanted.is_empty()).then(|| children[0]))
+    }
+
+    /// Where the bone ends: the pivot of its continuation, else the mean of its children's pivots. `None` at the end
+    /// of a chain, or where that point is the bone's own pivot.
+    pub fn tail(&self, bone: usize) -> Option<Vec3> {
+        let children = &self.children[bone];
+        let tail = match self.continuation(bone) {
+            Some(child) => self.list[child].head,
+            None if children.is_empty() => return None,
+            None => {
+                children.iter().fold(Vec3::ZERO, |sum, &c| sum + self.list[c].head) / children.len() as f32
+            }
+        };
+        ((tail - self.list[bone].head).length() > 1e-3 * self.height).then_some(tail)
+    }
+
+    /// Unit vector from pivot to tail; at the end of a chain from the pivot to `middle` (the middle of its surface);
+    /// failing that on from the parent's pivot, or up.
+    pub fn direction(&self, bone: usize, middle: Option<Vec3>) -> Vec3 {
+        let head = self.list[bone].head;
+        let onward = self.list[bone]
+            .parent
+            .map_or(Vec3::Y, |parent| normalize_or(head - self.list[parent].head, Vec3::Y));
+        self.tail(bone).or(middle).map_or(onward, |end| normalize_or(end - head, onward))
+    }
+
+    /// Distance from pivot to tail, metres; `None` at the end of a chain.
+    pub fn length(&self, bone: usize) -> Option<f32> {
+        self.tail(bone).map(|tail| (tail - self.list[bone].head).length())
+    }
+
+    /// First bone that is this part on this side.
+    pub fn find(&self, part: Part, side: Side) -> Option<usize> {
+        self.list.iter().position(|bone| bone.part == part && bone.side == side)
+    }
+
+    /// Whether a bone lies in the body's plane of symmetry, so that its left and right halves are one shape.
+    pub fn is_central(&self, bone: usize) -> bool {
+        let bone = &self.list[bone];
+        self.anatomy == Anatomy::Human && bone.side == Side::Middle && bone.head.x.abs() < 0.02 * self.height
+    }
+
+    /// Number of joints between two bones of the tree.
+    pub fn distance(&self, a: usize, b: usize) -> usize {
+        let (mut a, mut b, mut steps) = (a, b, 0);
+        while a != b {
+            // Parents have smaller indices, so the larger one is never the common ancestor.
+            let later = if a > b { &mut a } else { &mut b };
+            let Some(parent) = self.list[*later].parent else { return usize::MAX };
+            *later = parent;
+            steps += 1;
+        }
+        steps
+    }
+}
+
+impl Bone {
+    /// A bone from its role's name.
+    pub fn new(joint: JointIdx, role: Role, parent: Option<usize>, head: Vec3) -> Self {
+        let (part, side) = part_of_role(role);
+        Self { joint, merged: Vec::new(), role, confidence: 1.0, part, side, parent, head }
+    }
+}

@@ -1,0 +1,102 @@
+//! Axes of a shape, from the skin it stands for.
+
+use crate::build::bones::Bones;
+use crate::build::part::Part;
+use crate::fit::patch::{Patch, bounds};
+use crate::fit::rectangle::{least_rectangle, rectangle_area};
+use sinew_math::{Mat3, Vec2, Vec3, any_orthonormal, normalize_or};
+
+/// Cosine of 35°: within it of the surface's own long axis, the bone's direction is taken for the shape.
+const NEAR: f32 = 0.819;
+/// The surface has a long axis if its variance there is so many times the next.
+const ELONGATED: f32 = 1.5;
+/// Another frame is taken when its box is smaller than this share of the preferred one's.
+const CLEARLY_SMALLER: f32 = 0.9;
+
+/// Unit vector along the flesh of a bone, pointing away from its joint.
+///
+/// The direction to the next joints where it agrees with the surface's long axis, else that axis; where the surface
+/// has none (a head), the direction from the joint to its middle.
+pub fn long_axis(bones: &Bones, bone: usize, patch: &Patch) -> Vec3 {
+    let mut direction = bones.direction(bone, Some(patch.center));
+    if bones.is_central(bone) {
+        direction = normalize_or(Vec3::new(0.0, direction.y, direction.z), Vec3::Y);
+    }
+    let (variance, axes) = patch.covariance.eigen();
+    let along = axes * Vec3::X;
+    let along = if along.dot(direction) < 0.0 { -along } else { along };
+    let elongated = variance.x > ELONGATED * variance.y;
+    let agrees = along.dot(direction) > NEAR && bones.tail(bone).is_some();
+    // The trunk is often wider than high: there the way to the next joint is what a capsule has to follow.
+    if !elongated || agrees || bones.is_central(bone) { direction } else { along }
+}
+
+/// Axes of a box around a bone's skin: columns, right-handed, in any order and sign.
+pub fn box_frame(bones: &Bones, bone: usize, patch: &Patch) -> Mat3 {
+    if bones.is_central(bone) {
+        // The skin is mirrored in x, so x is one of the axes and only the turn about it is open.
+        return around(patch, Vec3::X, Some(Vec3::Y));
+    }
+    if bones.list[bone].part == Part::Foot {
+        if let Some(frame) = sole_frame(patch) {
+            return frame;
+        }
+    }
+    let preferred = around(patch, long_axis(bones, bone, patch), None);
+    let (_, axes) = patch.covariance.eigen();
+    let mut best = (preferred, CLEARLY_SMALLER * volume(patch, &preferred));
+    for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+        let frame = around(patch, axes * axis, None);
+        let size = volume(patch, &frame);
+        if size < best.1 {
+            best = (frame, size);
+        }
+    }
+    best.0
+}
+
+/// A foot that stands level gets a level sole: a box tilted by a few degrees would stand on an edge.
+fn sole_frame(patch: &Patch) -> Option<Mat3> {
+    let (_, axes) = patch.covariance.eigen();
+    let along = axes * Vec3::X;
+    (along.y.abs() < 0.5).then(|| around(patch, Vec3::Y, None))
+}
+
+/// `axis` and the sides of the least rectangle around the patch seen along it; `preferred` (at right angles to the
+/// axis) instead of the rectangle's side unless that saves a tenth of the area.
+fn around(patch: &Patch, axis: Vec3, preferred: Option<Vec3>) -> Mat3 {
+    let u = preferred.unwrap_or_else(|| any_orthonormal(axis));
+    let v = axis.cross(u);
+    let mut points: Vec<_> =
+        patch.samples.iter().map(|s| Vec2::new(s.point.dot(u), s.point.dot(v))).collect();
+    let side = least_rectangle(&mut points);
+    let saves = rectangle_area(&points, side) < CLEARLY_SMALLER * rectangle_area(&points, Vec2::X);
+    let side = if preferred.is_none() || saves { side } else { Vec2::X };
+    let first = u * side.x + v * side.y;
+    Mat3::from_cols(axis, first, axis.cross(first))
+}
+
+fn volume(patch: &Patch, frame: &Mat3) -> f32 {
+    let extent = |axis: Vec3| {
+        let (lo, hi) = bounds(&patch.samples, |p| p.dot(axis));
+        hi - lo
+    };
+    extent(frame.x_axis) * extent(frame.y_axis) * extent(frame.z_axis)
+}
+
+/// The same axes, named and signed so that y is the one nearest to `direction`, z as far as it goes forward (+Z), and
+/// the three right-handed.
+pub fn with_y(frame: Mat3, direction: Vec3) -> Mat3 {
+    let axes = [frame.x_axis, frame.y_axis, frame.z_axis];
+    let nearest = |to: Vec3, axes: &[Vec3]| {
+        (1..axes.len()).fold(0, |b, i| if axes[i].dot(to).abs() > axes[b].dot(to).abs() { i } else { b })
+    };
+    let signed = |axis: Vec3, to: Vec3| if axis.dot(to) < 0.0 { -axis } else { axis };
+    let i = nearest(direction, &axes);
+    let y = signed(axes[i], direction);
+    let rest = [axes[(i + 1) % 3], axes[(i + 2) % 3]];
+    // Where y itself points forward, up takes the place of forward.
+    let forward = if y.z.abs() > 0.7 { Vec3::Y } else { Vec3::Z };
+    let z = signed(rest[nearest(forward, &rest)], forward);
+    Mat3::from_cols(y.cross(z), y, z)
+}

@@ -1,0 +1,174 @@
+//! Shapes from skin: one box or capsule per bone, along the flesh and not along the bone's own axes.
+//!
+//! Bone-aligned boxes are 3 to 4 times as large as they need be (measured on CesiumMan's arms); the axes of the
+//! area-weighted covariance are what the surface itself says.
+
+pub mod frame;
+pub mod patch;
+pub mod rectangle;
+pub mod surface;
+
+use crate::build::bones::Bones;
+use crate::build::part::Part;
+use frame::{box_frame, long_axis, with_y};
+use patch::{Patch, Selection, Symmetry, quantiles_of};
+use sinew_math::{Rotation, Transform, Vec3, clamp, max, max3, min};
+use sinew_physics::Shape;
+use surface::Share;
+
+/// No half side or radius is smaller, metres.
+const LEAST_HALF: f32 = 0.0075;
+/// Factor on the fitted cross-section: contacts lie inside the skin rather than outside.
+const SHRINK: f32 = 0.97;
+/// Share of a bone's length by which its shape may pass each of its joints: two neighbours then overlap by at most a
+/// quarter of it.
+const PAST_JOINT: f32 = 0.125;
+/// Another kind of shape than the part's own is taken when its error is below this share of it.
+const CLEARLY_BETTER: f32 = 0.6;
+
+/// Which shapes a ragdoll is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ShapeChoice {
+    /// Boxes only.
+    Box,
+    /// Capsules only.
+    Capsule,
+    /// Boxes for trunk, hands and feet, capsules for limbs, neck and head, unless the other is clearly closer to the skin.
+    #[default]
+    Auto,
+}
+
+/// A fitted shape and how well it fits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fit {
+    /// Geometry, metres.
+    pub shape: Shape,
+    /// Body frame in character space: origin at the shape's middle, y along the bone.
+    pub character_from_body: Transform,
+    /// Area-weighted mean distance between the bone's skin and the shape's surface, metres; 0 where there is no skin.
+    pub error: f32,
+    /// m² of that skin.
+    pub area: f32,
+    /// Which skin it was fitted to.
+    pub selection: Selection,
+}
+
+/// One shape per bone. `surface` as from [`surface::share_surface`].
+pub fn fit_shapes(bones: &Bones, surface: &[Vec<Share>], choice: ShapeChoice) -> Vec<Fit> {
+    (0..bones.list.len()).map(|bone| fit_bone(bones, bone, &surface[bone], choice)).collect()
+}
+
+fn fit_bone(bones: &Bones, bone: usize, shares: &[Share], choice: ShapeChoice) -> Fit {
+    let symmetry = if bones.is_central(bone) { Symmetry::Mirrored } else { Symmetry::AsIs };
+    let Some(patch) = Patch::select(shares, symmetry) else { return stand_in(bones, bone) };
+    let capsule = || fit_capsule(bones, bone, &patch);
+    let cuboid = || fit_box(bones, bone, &patch);
+    match choice {
+        ShapeChoice::Box => cuboid(),
+        ShapeChoice::Capsule => capsule(),
+        ShapeChoice::Auto => {
+            let (own, other) = if prefers_box(bones.list[bone].part) {
+                (cuboid(), capsule())
+            } else {
+                (capsule(), cuboid())
+            };
+            if other.error < CLEARLY_BETTER * own.error { other } else { own }
+        }
+    }
+}
+
+fn prefers_box(part: Part) -> bool {
+    matches!(part, Part::Pelvis | Part::Spine | Part::Hand | Part::Foot | Part::Toes)
+}
+
+/// A thin capsule along a bone that moves no skin.
+fn stand_in(bones: &Bones, bone: usize) -> Fit {
+    let direction = bones.direction(bone, None);
+    let parent_length = bones.list[bone].parent.and_then(|parent| bones.length(parent));
+    let length = bones.length(bone).or(parent_length.map(|l| 0.5 * l)).unwrap_or(0.1 * bones.height);
+    let radius = max(clamp(0.2 * length, 0.01 * bones.height, 0.05 * bones.height), LEAST_HALF);
+    let half_height = max(0.5 * length - radius, 0.0);
+    let middle = bones.list[bone].head + direction * (0.5 * length);
+    Fit {
+        shape: Shape::Capsule { half_height, radius },
+        character_from_body: Transform::new(middle, Rotation::from_arc(Vec3::Y, direction)),
+        error: 0.0,
+        area: 0.0,
+        selection: Selection::Nothing,
+    }
+}
+
+fn fit_capsule(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
+    let axis = long_axis(bones, bone, patch);
+    let height_of = |p: Vec3| (p - patch.center).dot(axis);
+    let [lo, hi] = patch.quantiles([0.01, 0.99], height_of);
+    let (lo, hi) = clip_at_joints(bones, bone, patch.center, axis, lo, hi);
+    let middle = patch.center + axis * (0.5 * (lo + hi));
+    let half = 0.5 * (hi - lo);
+    // The ends are left out: they reach around joints, where the surface is wider than the limb.
+    let mut radial: Vec<_> = patch
+        .samples
+        .iter()
+        .filter(|s| (s.point - middle).dot(axis).abs() < 0.8 * half)
+        .map(|s| (((s.point - middle) - axis * (s.point - middle).dot(axis)).length(), s.area))
+        .collect();
+    if radial.is_empty() {
+        radial.push((half, 1.0));
+    }
+    let rotation = Rotation::from_arc(Vec3::Y, axis);
+    // The 80 % quantile of the radial distance suits a cylinder; on a tapered limb it is fat and a lower one is nearer.
+    let mut best: Option<Fit> = None;
+    for radius in quantiles_of(&mut radial, [0.8, 0.65, 0.5]) {
+        let radius = max(min(radius * SHRINK, half), LEAST_HALF);
+        let shape = Shape::Capsule { half_height: max(half - radius, 0.0), radius };
+        let fit = measured(shape, Transform::new(middle, rotation), patch);
+        if best.is_none_or(|b| fit.error < 0.95 * b.error) {
+            best = Some(fit);
+        }
+    }
+    best.expect("three candidates")
+}
+
+fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
+    let direction = bones.direction(bone, Some(patch.center));
+    let axes = with_y(box_frame(bones, bone, patch), direction);
+    let extent = |axis: Vec3| patch.quantiles([0.01, 0.99], |p| (p - patch.center).dot(axis));
+    let ([x_lo, x_hi], [z_lo, z_hi]) = (extent(axes.x_axis), extent(axes.z_axis));
+    let [y_lo, y_hi] = extent(axes.y_axis);
+    let (y_lo, y_hi) = clip_at_joints(bones, bone, patch.center, axes.y_axis, y_lo, y_hi);
+    let lo = Vec3::new(x_lo, y_lo, z_lo);
+    let hi = Vec3::new(x_hi, y_hi, z_hi);
+    let half_extents = max3((hi - lo) * (0.5 * SHRINK), Vec3::splat(LEAST_HALF));
+    let middle = patch.center + axes * ((lo + hi) * 0.5);
+    let frame = Transform::new(middle, Rotation::from_mat3(&axes));
+    measured(Shape::Box { half_extents }, frame, patch)
+}
+
+/// The extent `lo..hi` of a shape along `axis` from `origin`, cut where it passes the bone's own joint and that of its
+/// continuation by more than [`PAST_JOINT`] of its length. Shapes across the bone (feet) are left alone.
+fn clip_at_joints(bones: &Bones, bone: usize, origin: Vec3, axis: Vec3, lo: f32, hi: f32) -> (f32, f32) {
+    let direction = bones.direction(bone, Some(origin));
+    if axis.dot(direction) < 0.7 || bones.list[bone].part == Part::Foot {
+        return (lo, hi);
+    }
+    let past = PAST_JOINT * bones.length(bone).unwrap_or(hi - lo);
+    let (mut new_lo, mut new_hi) = (lo, hi);
+    if bones.list[bone].parent.is_some() {
+        new_lo = max(lo, (bones.list[bone].head - origin).dot(axis) - past);
+    }
+    if let Some(next) = bones.continuation(bone) {
+        new_hi = min(hi, (bones.list[next].head - origin).dot(axis) + past);
+    }
+    // A rig whose pivots lie outside its skin leaves nothing: then the skin is right.
+    if new_hi - new_lo > 0.2 * (hi - lo) { (new_lo, new_hi) } else { (lo, hi) }
+}
+
+fn measured(shape: Shape, character_from_body: Transform, patch: &Patch) -> Fit {
+    let sum: f32 = patch
+        .samples
+        .iter()
+        .map(|s| shape.signed_distance(&character_from_body, s.point).0.abs() * s.area)
+        .sum();
+    let area: f32 = patch.samples.iter().map(|s| s.area).sum();
+    Fit { shape, character_from_body, error: sum / area, area: patch.area, selection: patch.selection }
+}

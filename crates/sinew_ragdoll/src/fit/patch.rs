@@ -1,0 +1,188 @@
+//! The piece of skin that one shape is fitted to: even samples and second moments.
+
+use crate::fit::surface::Share;
+use sinew_math::{Sym3, Vec3, clamp, max, min};
+
+/// About so many samples describe a patch.
+const SAMPLES: f32 = 400.0;
+/// With fewer triangles than this a threshold is relaxed.
+const LEAST_TRIANGLES: usize = 12;
+
+/// Which triangles of the skin were taken for a bone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Selection {
+    /// Those on which the bone's mean weight is at least this.
+    Weight(f32),
+    /// Those on which no other bone has more weight.
+    Most,
+    /// None: the bone moves no skin worth the name.
+    Nothing,
+}
+
+/// A sample of the surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Character space, metres.
+    pub point: Vec3,
+    /// Area it stands for, m².
+    pub area: f32,
+}
+
+/// Samples and moments of a bone's piece of skin.
+#[derive(Clone, Debug)]
+pub struct Patch {
+    /// Samples of about equal area.
+    pub samples: Vec<Sample>,
+    /// Area-weighted mean of the surface, character space, metres.
+    pub center: Vec3,
+    /// Area-weighted covariance of the surface, m².
+    pub covariance: Sym3,
+    /// m².
+    pub area: f32,
+    /// How its triangles were chosen.
+    pub selection: Selection,
+}
+
+/// Whether a patch is made even by adding its mirror image in x.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symmetry {
+    /// As it is.
+    AsIs,
+    /// With its mirror image.
+    Mirrored,
+}
+
+impl Patch {
+    /// The surface of a bone: triangles of weight ≥ 0.5, or ≥ 0.3 where those are too few or flat, or those where the
+    /// bone has the most weight. `None` if it has none.
+    pub fn select(shares: &[Share], symmetry: Symmetry) -> Option<Self> {
+        let choices =
+            [Selection::Weight(0.5), Selection::Weight(0.3), Selection::Most, Selection::Weight(0.05)];
+        let mut best: Option<Self> = None;
+        for selection in choices {
+            let chosen: Vec<[Vec3; 3]> = shares
+                .iter()
+                .filter(|share| match selection {
+                    Selection::Weight(least) => share.weight >= least,
+                    Selection::Most => share.most,
+                    Selection::Nothing => false,
+                })
+                .map(|share| share.corners)
+                .collect();
+            let Some(patch) = Self::of_triangles(&chosen, selection, symmetry) else { continue };
+            if chosen.len() >= LEAST_TRIANGLES && patch.is_solid() {
+                return Some(patch);
+            }
+            if best.as_ref().is_none_or(|b| patch.area > 2.0 * b.area) {
+                best = Some(patch);
+            }
+        }
+        best
+    }
+
+    /// Whether the patch extends in three directions: only then do its axes mean anything.
+    fn is_solid(&self) -> bool {
+        let (value, _) = self.covariance.eigen();
+        value.z > 1e-4 * value.x
+    }
+
+    /// Second moments by the closed form for triangles (Gottschalk, "Collision Queries using Oriented Bounding
+    /// Boxes", 2000, §5.3), about the first corner so that nothing cancels.
+    fn of_triangles(triangles: &[[Vec3; 3]], selection: Selection, symmetry: Symmetry) -> Option<Self> {
+        let origin = triangles.first()?[0];
+        let (mut area, mut first, mut second) = (0.0, Vec3::ZERO, Sym3::ZERO);
+        for corners in triangles {
+            let [p, q, r] = corners.map(|corner| corner - origin);
+            let a = triangle_area(corners);
+            let middle = (p + q + r) / 3.0;
+            area += a;
+            first += middle * a;
+            let sum = Sym3::outer(middle) * 9.0 + Sym3::outer(p) + Sym3::outer(q) + Sym3::outer(r);
+            second += sum * (a / 12.0);
+        }
+        if !(area > 1e-10 && area.is_finite()) {
+            return None;
+        }
+        let mean = first / area;
+        let mut patch = Self {
+            samples: sample(triangles, area),
+            center: origin + mean,
+            covariance: second * (1.0 / area) - Sym3::outer(mean),
+            area,
+            selection,
+        };
+        if symmetry == Symmetry::Mirrored {
+            patch.mirror();
+        }
+        Some(patch)
+    }
+
+    fn mirror(&mut self) {
+        let image = |s: &Sample| Sample { point: Vec3::new(-s.point.x, s.point.y, s.point.z), area: s.area };
+        let images: Vec<_> = self.samples.iter().map(image).collect();
+        self.samples.extend(images);
+        let (c, v) = (self.center.x, &mut self.covariance);
+        v.diagonal.x += c * c;
+        // What couples x with y and z has the other sign in the mirror image.
+        v.off = Vec3::new(v.off.x, 0.0, 0.0);
+        self.center.x = 0.0;
+    }
+
+    /// Values of `f` below which the share `share` of the area lies, for each of the shares.
+    pub fn quantiles<const N: usize>(&self, shares: [f32; N], f: impl Fn(Vec3) -> f32) -> [f32; N] {
+        let mut values: Vec<_> = self.samples.iter().map(|s| (f(s.point), s.area)).collect();
+        quantiles_of(&mut values, shares)
+    }
+}
+
+/// Values below which the given shares of the weight lie. `values` (value, weight) is sorted.
+///
+/// # Panics
+/// If it is empty.
+pub fn quantiles_of<const N: usize>(values: &mut [(f32, f32)], shares: [f32; N]) -> [f32; N] {
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let total: f32 = values.iter().map(|v| v.1).sum();
+    shares.map(|share| {
+        let mut sum = 0.0;
+        let reached = values.iter().find(|(_, weight)| {
+            sum += weight;
+            sum >= share * total
+        });
+        reached.unwrap_or(&values[values.len() - 1]).0
+    })
+}
+
+fn triangle_area(corners: &[Vec3; 3]) -> f32 {
+    0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length()
+}
+
+/// Middles of equal parts of the triangles; large triangles are cut finer, so that coarse meshes are sampled as
+/// evenly as fine ones.
+fn sample(triangles: &[[Vec3; 3]], area: f32) -> Vec<Sample> {
+    let mut samples = Vec::new();
+    for corners in triangles {
+        let a = triangle_area(corners);
+        let cuts = clamp((a * SAMPLES / area).sqrt() + 0.999, 1.0, 16.0) as usize;
+        let [p, q, r] = *corners;
+        let (u, v) = ((q - p) / cuts as f32, (r - p) / cuts as f32);
+        let part = a / (cuts * cuts) as f32;
+        for i in 0..cuts {
+            for j in 0..cuts - i {
+                let corner = p + u * i as f32 + v * j as f32;
+                samples.push(Sample { point: corner + (u + v) / 3.0, area: part });
+                if i + j + 1 < cuts {
+                    samples.push(Sample { point: corner + (u + v) * (2.0 / 3.0), area: part });
+                }
+            }
+        }
+    }
+    samples
+}
+
+/// Smallest and largest value of `f` over the samples.
+pub fn bounds(samples: &[Sample], f: impl Fn(Vec3) -> f32) -> (f32, f32) {
+    samples.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), s| {
+        let x = f(s.point);
+        (min(lo, x), max(hi, x))
+    })
+}

@@ -1,0 +1,135 @@
+//! Which part of the skin belongs to which bone.
+
+use crate::build::bones::Bones;
+use sinew_anim::skinning::skin_vertices;
+use sinew_anim::{JointIdx, Primitive, Rig};
+use sinew_math::{Affine, Transform, Vec3, max, min};
+
+/// A bone's pull on a triangle below which it is not looked at.
+const LEAST_SHARE: f32 = 0.05;
+
+/// A triangle of the skin as one bone sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Share {
+    /// Corners, character space at the bind pose, metres.
+    pub corners: [Vec3; 3],
+    /// Mean weight of the bone (with what is merged into it) on the corners, 0..=1.
+    pub weight: f32,
+    /// Whether no other bone has more weight here.
+    pub most: bool,
+}
+
+/// Which bone, if any, carries each joint of the rig.
+///
+/// A joint that is neither kept nor merged goes with its nearest ancestor that is.
+pub fn owners(rig: &Rig, bones: &Bones) -> Vec<Option<usize>> {
+    let mut owner = vec![None; rig.joints.len()];
+    let mut own = |joint: JointIdx, bone| {
+        if let Some(slot) = owner.get_mut(joint) {
+            *slot = Some(bone);
+        }
+    };
+    for (index, bone) in bones.list.iter().enumerate() {
+        bone.merged.iter().for_each(|&joint| own(joint, index));
+    }
+    for (index, bone) in bones.list.iter().enumerate() {
+        own(bone.joint, index);
+    }
+    for joint in 0..owner.len() {
+        if owner[joint].is_none() {
+            owner[joint] = rig.joints[joint].parent.and_then(|parent| owner[parent]);
+        }
+    }
+    owner
+}
+
+/// Where the bind pose is, and how to bring it to character space.
+#[derive(Clone, Copy, Debug)]
+pub struct BindPose<'a> {
+    /// Joint to model space, per joint of the rig, file units.
+    pub model: &'a [Affine],
+    /// Metres per file unit.
+    pub unit_scale: f32,
+    /// From model space in metres to character space.
+    pub character_from_model: Transform,
+}
+
+impl BindPose<'_> {
+    /// Character space, metres, from model space, file units.
+    pub fn character_point(&self, model_point: Vec3) -> Vec3 {
+        self.character_from_model.point(model_point * self.unit_scale)
+    }
+}
+
+/// The skin's triangles by bone. Meshes without a skin (armour, robots) count for the bones that have no skin at all,
+/// so that a sword does not make a hand longer.
+pub fn share_surface(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<Vec<Share>> {
+    let owner = owners(rig, bones);
+    let mut skinned = vec![Vec::new(); bones.list.len()];
+    let mut rigid = vec![Vec::new(); bones.list.len()];
+    let (mut positions, mut normals) = (Vec::new(), Vec::new());
+    for (m, mesh) in rig.meshes.iter().enumerate() {
+        for (p, primitive) in mesh.primitives.iter().enumerate() {
+            skin_vertices(rig, m, p, bind.model, &mut positions, &mut normals);
+            for position in &mut positions {
+                *position = bind.character_point(*position);
+            }
+            match mesh.skin.filter(|_| !primitive.joints.is_empty()) {
+                Some(skin) => {
+                    let slots: Vec<_> = rig.skins[skin].joints.iter().map(|&joint| owner[joint]).collect();
+                    share_skinned(primitive, &positions, &slots, &mut skinned);
+                }
+                None => {
+                    if let Some(bone) = owner[mesh.joint] {
+                        let whole = |corners| Share { corners, weight: 1.0, most: true };
+                        rigid[bone].extend(triangles(primitive, &positions).map(|(_, c)| whole(c)));
+                    }
+                }
+            }
+        }
+    }
+    for (bone, shares) in skinned.iter_mut().enumerate() {
+        if shares.is_empty() {
+            *shares = core::mem::take(&mut rigid[bone]);
+        }
+    }
+    skinned
+}
+
+/// Corner indices and corners of the triangles whose corners are there and finite.
+fn triangles<'a>(
+    primitive: &'a Primitive,
+    positions: &'a [Vec3],
+) -> impl Iterator<Item = ([usize; 3], [Vec3; 3])> + 'a {
+    primitive.indices.chunks_exact(3).filter_map(|corner| {
+        let index = [corner[0] as usize, corner[1] as usize, corner[2] as usize];
+        let at = |i: usize| positions.get(i).copied().filter(|p| p.is_finite());
+        Some((index, [at(index[0])?, at(index[1])?, at(index[2])?]))
+    })
+}
+
+fn share_skinned(
+    primitive: &Primitive,
+    positions: &[Vec3],
+    slots: &[Option<usize>],
+    by_bone: &mut [Vec<Share>],
+) {
+    // At most three corners with four weights each.
+    let mut pulls: Vec<(usize, f32)> = Vec::with_capacity(12);
+    for (index, corners) in triangles(primitive, positions) {
+        pulls.clear();
+        for vertex in index {
+            for (slot, weight) in primitive.joints[vertex].iter().zip(primitive.weights[vertex]) {
+                let Some(&Some(bone)) = slots.get(usize::from(*slot)) else { continue };
+                match pulls.iter_mut().find(|(b, _)| *b == bone) {
+                    Some((_, sum)) => *sum += weight / 3.0,
+                    None => pulls.push((bone, weight / 3.0)),
+                }
+            }
+        }
+        let most = pulls.iter().fold(0.0, |a, &(_, weight)| max(a, weight));
+        for &(bone, weight) in pulls.iter().filter(|(_, weight)| *weight > LEAST_SHARE) {
+            by_bone[bone].push(Share { corners, weight: min(weight, 1.0), most: weight >= most });
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! How each bone of a bind pose is turned from the anatomical pose.
+//!
+//! Ranges of motion are measured from a person who stands with arms hanging. Rigs are bound in a T, an A or something
+//! else, and their joints' own axes follow no rule. What can be relied on is where the bones lie: each bone is taken
+//! to have come from its anatomical direction by the shortest way from its parent. For arms that is right in a T pose
+//! (palms down) and in an A pose (palms inward), because raising a hanging arm sideways turns the palm down.
+
+use crate::build::bones::{Anatomy, Bones};
+use crate::build::part::Part;
+use sinew_math::{Mat3, Rotation, Vec3};
+
+/// Rotation per bone from the anatomical pose to the bind pose, character axes. `middles`: middle of each bone's shape.
+pub fn bind_from_anatomical(bones: &Bones, middles: &[Vec3]) -> Vec<Rotation> {
+    let mut turned: Vec<Rotation> = Vec::with_capacity(bones.list.len());
+    for (index, bone) in bones.list.iter().enumerate() {
+        let direction = bones.direction(index, Some(middles[index]));
+        let parent = bone.parent.map_or(Rotation::IDENTITY, |p| turned[p]);
+        let along_parent = || {
+            let from = bone.parent.map_or(-Vec3::Y, |p| bones.direction(p, Some(middles[p])));
+            Rotation::from_arc(from, direction) * parent
+        };
+        turned.push(match (bones.anatomy, bone.part) {
+            (Anatomy::Creature, _) => Rotation::IDENTITY,
+            (_, Part::UpperArm | Part::Thigh) => Rotation::from_arc(-Vec3::Y, direction),
+            (_, Part::Forearm | Part::Hand | Part::Shank) => along_parent(),
+            (_, Part::Foot) => level_heading(direction).unwrap_or(parent),
+            (_, Part::Toes) => parent,
+            _ => Rotation::IDENTITY,
+        });
+    }
+    turned
+}
+
+/// A level foot that points where `direction` does, seen from above; `None` if that is straight up or down.
+fn level_heading(direction: Vec3) -> Option<Rotation> {
+    let forward = Vec3::new(direction.x, 0.0, direction.z);
+    let length = forward.length();
+    (length > 0.3).then(|| {
+        let z = forward / length;
+        Rotation::from_mat3(&Mat3::from_cols(Vec3::Y.cross(z), Vec3::Y, z))
+    })
+}

@@ -1,0 +1,186 @@
+//! Joints: where they are, which way their axes point, how far they go.
+
+pub mod anatomy;
+pub mod table;
+
+use crate::build::bones::{Anatomy, Bones};
+use crate::build::part::Side;
+use crate::def::RagdollJointDef;
+use crate::fit::Fit;
+use anatomy::bind_from_anatomical;
+use sinew_math::limits::hinge_angle;
+use sinew_math::{
+    Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, any_orthonormal, max, min, normalize_or,
+};
+use sinew_physics::JointKind;
+use table::{Axes, Cone, Entry, Motion, entry};
+
+/// Share of the muscles' largest torque that a limp joint resists with.
+const FRICTION_SHARE: f32 = 0.05;
+/// Room that a bind pose has to every limit, radians (2°).
+const BIND_MARGIN: f32 = 0.034_906_585;
+/// A bone bent by more than this in the bind pose shows its hinge's axis itself (cosine of 10°).
+const BENT: f32 = 0.984_8;
+/// The axis it shows is believed within 50° of the anatomical one (cosine).
+const BELIEVED: f32 = 0.642_8;
+/// No swing half-angle is widened beyond this, radians (170°).
+const WIDEST: f32 = 2.967;
+
+/// A joint, and what had to be done to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointPlan {
+    /// The joint, in the frames of the two bodies.
+    pub def: RagdollJointDef,
+    /// How far the bind pose was beyond the table's limits, radians; they were widened by it. 0 for most.
+    pub widened: f32,
+}
+
+/// The joint of every bone but the first to its parent, in the bones' order.
+pub fn joints(bones: &Bones, fits: &[Fit], total_mass: f32) -> Vec<JointPlan> {
+    let middles: Vec<_> = fits.iter().map(|fit| fit.character_from_body.translation).collect();
+    let turned = bind_from_anatomical(bones, &middles);
+    let strength = total_mass * bones.height / (75.0 * 1.75);
+    (1..bones.list.len())
+        .map(|child| {
+            let parent = bones.list[child].parent.unwrap_or(0);
+            let entry = entry(bones, child);
+            let directions = [parent, child].map(|bone| bones.direction(bone, Some(middles[bone])));
+            let seen =
+                Seen { side: bones.list[child].side, turned: [turned[parent], turned[child]], directions };
+            let (frames, kind, widened) = seen.joint(&entry, bones.anatomy);
+            let pivot = bones.list[child].head;
+            let [frame_parent, frame_child] = [(parent, frames[0]), (child, frames[1])]
+                .map(|(body, frame)| fits[body].character_from_body.inverse() * Transform::new(pivot, frame));
+            let friction_torque = FRICTION_SHARE * entry.torque * strength;
+            let def = RagdollJointDef { parent, child, frame_parent, frame_child, kind, friction_torque };
+            JointPlan { def, widened }
+        })
+        .collect()
+}
+
+/// What is seen of a joint in the bind pose, in character axes: first the parent, then the child.
+struct Seen {
+    side: Side,
+    /// From the anatomical pose.
+    turned: [Rotation; 2],
+    /// Unit, along the bones.
+    directions: [Vec3; 2],
+}
+
+impl Seen {
+    /// The joint's frame as the parent and as the child carries it (character axes), what is free, and by how much a
+    /// limit was widened.
+    fn joint(&self, entry: &Entry, anatomy: Anatomy) -> ([Rotation; 2], JointKind, f32) {
+        match entry.motion {
+            Motion::Ball(cone) => {
+                let frames = self.cone_frames(entry.axes, cone);
+                let joint = frames[0].inverse() * frames[1];
+                let (limit, widened) = widened_cone(self.limit(cone), joint, Twist::Free);
+                (frames, JointKind::Ball { limit: Some(limit) }, widened)
+            }
+            Motion::Universal(cone) => {
+                let [parent, child] = self.cone_frames(entry.axes, cone);
+                // What twist the bind pose has is the joint's zero: a universal joint has none to give.
+                let (_, twist) = (parent.inverse() * child).swing_twist(Vec3::X);
+                let frames = [parent, child * twist.inverse()];
+                let joint = frames[0].inverse() * frames[1];
+                let (limit, widened) = widened_cone(self.limit(cone), joint, Twist::Locked);
+                (frames, JointKind::Universal { limit: Some(limit) }, widened)
+            }
+            Motion::Hinge(lo, hi) => {
+                debug_assert!(anatomy == Anatomy::Human, "only the human table has hinges");
+                let frames = self.hinge_frames(entry.axes);
+                let angle = hinge_angle(frames[0].inverse() * frames[1]);
+                let range = Range::degrees(lo, hi);
+                let limit =
+                    Range::new(min(range.lo, angle - BIND_MARGIN), max(range.hi, angle + BIND_MARGIN));
+                // A straight limb at its stop is how everybody stands: only what is beyond the table counts.
+                (frames, JointKind::Hinge { limit: Some(limit) }, range.excess(angle))
+            }
+        }
+    }
+
+    /// Joint axes in the anatomical pose, as columns.
+    fn basis(&self, axes: Axes) -> Rotation {
+        // Mirroring in x keeps the x part of an axis of rotation and turns its other parts round.
+        let mirror = if self.side == Side::Right { -1.0 } else { 1.0 };
+        let (x, y) = match axes {
+            Axes::Upright => (Vec3::Y, Vec3::X),
+            Axes::Hanging => (-Vec3::Y, -Vec3::X),
+            Axes::Palm => (-Vec3::Y, -Vec3::Z * mirror),
+            Axes::Sole => (-Vec3::Y, Vec3::X),
+            Axes::Bind => {
+                let x = self.directions[1];
+                let forward = Vec3::Z - x * x.z;
+                (x, normalize_or(forward, any_orthonormal(x)))
+            }
+        };
+        Rotation::from_mat3(&Mat3::from_cols(x, y, x.cross(y)))
+    }
+
+    /// Frames whose agreement is the middle of the cone.
+    fn cone_frames(&self, axes: Axes, cone: Cone) -> [Rotation; 2] {
+        let basis = self.basis(axes);
+        if axes == Axes::Bind {
+            return [basis, basis];
+        }
+        let [y, z] = cone.center.map(f32::to_radians);
+        let center = Rotation::from_scaled_axis(Vec3::new(0.0, y, z * self.mirror()));
+        [self.turned[0] * basis * center, self.turned[1] * basis]
+    }
+
+    /// −1 on the right: swing about z and twist have the other sign there.
+    fn mirror(&self) -> f32 {
+        if self.side == Side::Right { -1.0 } else { 1.0 }
+    }
+
+    fn limit(&self, cone: Cone) -> SwingTwistLimit {
+        let [y, z] = cone.half.map(|half| Range::symmetric(half.to_radians()));
+        let [lo, hi] = cone.twist;
+        let twist = if self.side == Side::Right { Range::degrees(-hi, -lo) } else { Range::degrees(lo, hi) };
+        SwingTwistLimit { swing_y: y, swing_z: z, twist }
+    }
+
+    /// Frames with the hinge's axis as x, whose angle is 0 where the two bones lie in line.
+    fn hinge_frames(&self, axes: Axes) -> [Rotation; 2] {
+        let [along_parent, along_child] = self.directions;
+        let anatomical = self.turned[0] * (self.basis(axes) * Vec3::Y);
+        let bend = along_parent.cross(along_child);
+        let shown = normalize_or(bend, anatomical);
+        let is_bent = along_parent.dot(along_child) < BENT;
+        let axis = if is_bent && shown.dot(anatomical) > BELIEVED { shown } else { anatomical };
+        [along_parent, along_child].map(|along| {
+            let y = normalize_or(along - axis * axis.dot(along), any_orthonormal(axis));
+            Rotation::from_mat3(&Mat3::from_cols(axis, y, axis.cross(y)))
+        })
+    }
+}
+
+/// Whether the twist counts.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Twist {
+    Free,
+    Locked,
+}
+
+/// The limit with room for the joint rotation `joint` (the bind pose), and how far it was beyond it, radians.
+fn widened_cone(limit: SwingTwistLimit, joint: Rotation, twisting: Twist) -> (SwingTwistLimit, f32) {
+    let mut wide = limit;
+    let (swing, twist) = SwingTwistLimit::angles(joint);
+    let angle = swing.length();
+    let mut beyond = 0.0;
+    if angle > 1e-4 {
+        let cone = limit.cone_angle(swing.y / angle, swing.z / angle);
+        beyond = max(angle - cone, 0.0);
+        let factor = max(1.0, (angle + BIND_MARGIN) / cone);
+        let stretched = |r: Range| Range::new(max(r.lo * factor, -WIDEST), min(r.hi * factor, WIDEST));
+        wide.swing_y = stretched(limit.swing_y);
+        wide.swing_z = stretched(limit.swing_z);
+    }
+    if twisting == Twist::Free {
+        beyond = max(beyond, limit.twist.excess(twist));
+        wide.twist =
+            Range::new(min(limit.twist.lo, twist - BIND_MARGIN), max(limit.twist.hi, twist + BIND_MARGIN));
+    }
+    (wide, beyond)
+}

@@ -1,0 +1,127 @@
+//! Ranges of motion by joint, degrees: clinical ranges (AAOS and the sources that agree with it within 10°) cast into
+//! what a joint can express. Left side; the right is its mirror image.
+
+use crate::build::bones::{Anatomy, Bones};
+use crate::build::part::{Part, Side};
+
+/// How a joint may move from the anatomical pose (standing, arms hanging, palms inward, feet level).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// Swing within an elliptic cone, and twist. Angles about the [`Axes`] of the joint.
+    Ball(Cone),
+    /// As `Ball`, without twist.
+    Universal(Cone),
+    /// Bends about one axis between these two angles; 0 is straight.
+    Hinge(f32, f32),
+}
+
+/// An elliptic swing cone with its own middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    /// Middle: swing about y and z.
+    pub center: [f32; 2],
+    /// Half-angles about y and z, from the middle.
+    pub half: [f32; 2],
+    /// Twist about x.
+    pub twist: [f32; 2],
+}
+
+/// Which way a joint's axes point in the anatomical pose, on the left side: x along the child bone, y the axis about
+/// which it flexes, z = x × y.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// x up, y to the left: forward is +y.
+    Upright,
+    /// x down, y to the right: forward (flexion) is +y, inward is +z, inward turn is +x.
+    Hanging,
+    /// x down, y back: toward the palm is +y, toward the little finger is +z.
+    Palm,
+    /// x down the shank, y to the left: plantar flexion is +y, sole outward is +z.
+    Sole,
+    /// As the bones lie in the bind pose.
+    Bind,
+}
+
+/// What the table says of one joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry {
+    /// Axes the motion is measured about.
+    pub axes: Axes,
+    /// How far it goes.
+    pub motion: Motion,
+    /// Largest torque of the muscles about it for 75 kg at 1.75 m, N·m (DeepMimic and dm_control humanoids).
+    pub torque: f32,
+}
+
+const fn ball(axes: Axes, center: [f32; 2], half: [f32; 2], twist: [f32; 2], torque: f32) -> Entry {
+    Entry { axes, motion: Motion::Ball(Cone { center, half, twist }), torque }
+}
+
+const SHOULDER: Entry = ball(Axes::Hanging, [45.0, -60.0], [95.0, 80.0], [-80.0, 80.0], 100.0);
+const SHOULDER_UNDER_CLAVICLE: Entry = ball(Axes::Hanging, [40.0, -40.0], [75.0, 65.0], [-80.0, 80.0], 100.0);
+const CLAVICLE: Entry = ball(Axes::Bind, [0.0; 2], [25.0, 20.0], [-10.0, 10.0], 100.0);
+const ELBOW: Entry = Entry { axes: Axes::Hanging, motion: Motion::Hinge(0.0, 145.0), torque: 60.0 };
+/// The elbow is a hinge, so the forearm's turn (palm up to palm down) is the wrist's twist.
+const WRIST: Entry = ball(Axes::Palm, [0.0, 6.0], [75.0, 30.0], [-85.0, 85.0], 20.0);
+const HIP: Entry = ball(Axes::Hanging, [50.0, -8.0], [72.0, 37.0], [-45.0, 40.0], 200.0);
+const KNEE: Entry = Entry { axes: Axes::Sole, motion: Motion::Hinge(-2.0, 142.0), torque: 150.0 };
+const ANKLE: Entry = Entry {
+    axes: Axes::Sole,
+    motion: Motion::Universal(Cone { center: [15.0, 0.0], half: [35.0, 25.0], twist: [0.0; 2] }),
+    torque: 90.0,
+};
+const TOES: Entry = Entry { axes: Axes::Hanging, motion: Motion::Hinge(-40.0, 65.0), torque: 20.0 };
+const LIMB: Entry = ball(Axes::Bind, [0.0; 2], [50.0, 50.0], [-20.0, 20.0], 60.0);
+const TAIL: Entry = ball(Axes::Bind, [0.0; 2], [25.0, 25.0], [-10.0, 10.0], 40.0);
+const CREATURE_NECK: Entry = ball(Axes::Bind, [0.0; 2], [40.0, 40.0], [-30.0, 30.0], 50.0);
+
+/// The table's entry for the joint between a bone and its parent.
+pub fn entry(bones: &Bones, bone: usize) -> Entry {
+    let part = bones.list[bone].part;
+    if bones.anatomy == Anatomy::Creature {
+        return match part {
+            Part::Neck | Part::Head => CREATURE_NECK,
+            Part::Pelvis | Part::Spine | Part::Tail => TAIL,
+            _ => LIMB,
+        };
+    }
+    let parent = bones.list[bone].parent.map(|p| bones.list[p].part);
+    match part {
+        Part::Spine => spine(count(bones, &[Part::Spine])),
+        Part::Neck | Part::Head => neck(count(bones, &[Part::Neck, Part::Head])),
+        // A hinge between bones that are not a limb's two halves would have a meaningless axis.
+        Part::Forearm if parent != Some(Part::UpperArm) => LIMB,
+        Part::Shank if parent != Some(Part::Thigh) => LIMB,
+        Part::Toes if parent != Some(Part::Foot) => LIMB,
+        Part::UpperArm if parent == Some(Part::Clavicle) => SHOULDER_UNDER_CLAVICLE,
+        Part::UpperArm => SHOULDER,
+        Part::Clavicle => CLAVICLE,
+        Part::Forearm => ELBOW,
+        Part::Hand => WRIST,
+        Part::Thigh => HIP,
+        Part::Shank => KNEE,
+        Part::Foot => ANKLE,
+        Part::Toes => TOES,
+        Part::Tail => TAIL,
+        Part::Pelvis | Part::Limb => LIMB,
+    }
+}
+
+fn count(bones: &Bones, parts: &[Part]) -> f32 {
+    let is = |part: Part| parts.contains(&part);
+    bones.list.iter().filter(|bone| is(bone.part) && bone.side == Side::Middle).count() as f32
+}
+
+/// The whole spine flexes 83, extends 30, leans 35 and turns 45 degrees; each of `n` joints has an equal part of it,
+/// and a fifth more of swing, as they never all reach their ends together.
+fn spine(n: f32) -> Entry {
+    let half = [1.2 * 0.5 * (83.0 + 30.0) / n, 1.2 * 35.0 / n];
+    ball(Axes::Upright, [0.5 * (83.0 - 30.0) / n, 0.0], half, [-45.0 / n, 45.0 / n], 200.0)
+}
+
+/// The whole neck nods 48, leans 40 and turns 70 degrees; shared as the spine's.
+fn neck(n: f32) -> Entry {
+    let more = if n > 1.0 { 1.2 } else { 1.0 };
+    let twist = if n > 1.0 { 76.0 / n } else { 70.0 };
+    ball(Axes::Upright, [0.0; 2], [more * 48.0 / n, more * 40.0 / n], [-twist, twist], 50.0)
+}

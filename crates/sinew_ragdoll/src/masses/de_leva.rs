@@ -1,0 +1,116 @@
+//! Anthropometry of adults: P. de Leva, "Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters",
+//! Journal of Biomechanics 29 (1996), table 4.
+
+/// Whose proportions are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sex {
+    /// 73.0 kg at 1.741 m.
+    #[default]
+    Male,
+    /// 61.9 kg at 1.735 m.
+    Female,
+}
+
+/// Numbers of one segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// Share of the body's mass.
+    pub mass: f32,
+    /// Centre of mass, share of the segment's length from its proximal end.
+    pub center: f32,
+    /// Radii of gyration about the centre, shares of the length: about the sagittal (fore and aft), transverse
+    /// (side to side) and longitudinal axis.
+    pub gyration: [f32; 3],
+}
+
+const fn segment(mass: f32, center: f32, sagittal: f32, transverse: f32, longitudinal: f32) -> Segment {
+    Segment {
+        mass: mass / 100.0,
+        center: center / 100.0,
+        gyration: [sagittal / 100.0, transverse / 100.0, longitudinal / 100.0],
+    }
+}
+
+/// The table of one sex. Limb segments are counted once: both sides are alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Table {
+    /// Mass of the reference body, kg.
+    pub reference_mass: f32,
+    /// Its height, metres.
+    pub reference_height: f32,
+    /// Head and neck, share of the body's mass.
+    pub head: f32,
+    /// Upper, middle and lower trunk: share of the body's mass, and length in millimetres.
+    pub trunk: [(f32, f32); 3],
+    /// Shoulder to elbow.
+    pub upper_arm: Segment,
+    /// Elbow to wrist.
+    pub forearm: Segment,
+    /// Wrist to third metacarpal.
+    pub hand: Segment,
+    /// Hip to knee.
+    pub thigh: Segment,
+    /// Knee to ankle.
+    pub shank: Segment,
+    /// Heel to toe tip.
+    pub foot: Segment,
+}
+
+/// Of the head and neck, the neck's share: 1.2 % of the body's mass. The table has them as one; the neck is cut off as
+/// a cylinder 11 cm wide and 10 cm high.
+pub const NECK_OF_HEAD: f32 = 0.17;
+/// Of the upper trunk, the share of each shoulder girdle where it is a body of its own.
+pub const GIRDLE_OF_UPPER_TRUNK: f32 = 0.10;
+/// Of the foot, the share of the toes where they are a body of their own.
+pub const TOES_OF_FOOT: f32 = 0.2;
+
+const MALE: Table = Table {
+    reference_mass: 73.0,
+    reference_height: 1.741,
+    head: 0.0694,
+    trunk: [(0.1596, 170.7), (0.1633, 215.5), (0.1117, 145.7)],
+    upper_arm: segment(2.71, 57.72, 28.5, 26.9, 15.8),
+    forearm: segment(1.62, 45.74, 27.6, 26.5, 12.1),
+    hand: segment(0.61, 79.00, 62.8, 51.3, 40.1),
+    thigh: segment(14.16, 40.95, 32.9, 32.9, 14.9),
+    shank: segment(4.33, 44.59, 25.5, 24.9, 10.3),
+    foot: segment(1.37, 44.15, 25.7, 24.5, 12.4),
+};
+
+const FEMALE: Table = Table {
+    reference_mass: 61.9,
+    reference_height: 1.735,
+    head: 0.0668,
+    trunk: [(0.1545, 142.5), (0.1465, 205.3), (0.1247, 181.5)],
+    upper_arm: segment(2.55, 57.54, 27.8, 26.0, 14.8),
+    forearm: segment(1.38, 45.59, 26.1, 25.7, 9.4),
+    hand: segment(0.56, 74.74, 53.1, 45.4, 33.5),
+    thigh: segment(14.78, 36.12, 36.9, 36.4, 16.2),
+    shank: segment(4.81, 44.16, 27.1, 26.7, 9.3),
+    foot: segment(1.29, 40.14, 29.9, 27.9, 13.9),
+};
+
+/// The table of a sex.
+pub fn table(sex: Sex) -> &'static Table {
+    match sex {
+        Sex::Male => &MALE,
+        Sex::Female => &FEMALE,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_table_adds_up_to_a_whole_body() {
+        for sex in [Sex::Male, Sex::Female] {
+            let t = table(sex);
+            let limbs = [t.upper_arm, t.forearm, t.hand, t.thigh, t.shank, t.foot];
+            let total = t.head
+                + t.trunk.iter().map(|part| part.0).sum::<f32>()
+                + 2.0 * limbs.iter().map(|s| s.mass).sum::<f32>();
+            assert!((total - 1.0).abs() < 2e-4, "{sex:?}: {total}");
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Inertias that a solver can live with.
+
+use sinew_math::{Vec3, clamp, max, max3};
+use sinew_physics::Shape;
+
+/// Largest ratio of principal moments: beyond it a body spins up about its long axis faster than a substep resolves.
+const LARGEST_RATIO: f32 = 8.0;
+
+/// Principal moments of a homogeneous shape of this mass about its middle, in its own axes, kg·m².
+pub fn of_shape(shape: Shape, mass: f32) -> Vec3 {
+    let unit = shape.mass_properties(1.0);
+    unit.inertia.diagonal * (mass / unit.mass)
+}
+
+/// Principal moments made fit for a solver: the smallest at least an eighth of the largest, and none above the sum of
+/// the others, which no real body has.
+pub fn conditioned(principal: Vec3) -> Vec3 {
+    let largest = max(principal.x, max(principal.y, principal.z));
+    let i = max3(principal, Vec3::splat(largest / LARGEST_RATIO));
+    let need = |a: f32, b: f32, c: f32| max(0.0, 0.5 * (c - a - b));
+    // Half of what is missing on each of the two smaller ones; at most one of the three conditions can fail.
+    let (x, y, z) = (need(i.y, i.z, i.x), need(i.x, i.z, i.y), need(i.x, i.y, i.z));
+    i + Vec3::new(y + z, x + z, x + y)
+}
+
+/// The point, moved to within nine tenths of the shape if it lies further out.
+pub fn inside(shape: Shape, p: Vec3) -> Vec3 {
+    let reach = match shape {
+        Shape::Box { half_extents } => half_extents,
+        Shape::Sphere { radius } => Vec3::splat(0.57 * radius),
+        Shape::Capsule { half_height, radius } => {
+            Vec3::new(0.6 * radius, half_height + 0.4 * radius, 0.6 * radius)
+        }
+        Shape::HalfSpace => Vec3::ZERO,
+    } * 0.9;
+    Vec3::new(clamp(p.x, -reach.x, reach.x), clamp(p.y, -reach.y, reach.y), clamp(p.z, -reach.z, reach.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn conditioned_moments_keep_ratio_and_triangle() {
+        let i = conditioned(Vec3::new(1.0, 0.01, 1.2));
+        assert!(i.y >= 0.15 && i.x + i.y >= i.z - 1e-6 && i.y + i.z >= i.x);
+    }
+}

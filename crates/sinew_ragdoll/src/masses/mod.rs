@@ -1,0 +1,220 @@
+//! Masses, centres and inertias of the bodies.
+//!
+//! Humans: shares of the whole by de Leva's table, never from the volumes of the shapes, whose sum is 1.3 to 2.2 times
+//! a body's (measured). Creatures: from volumes, there is no table.
+
+pub mod de_leva;
+mod inertia;
+
+use crate::build::bones::{Anatomy, Bones};
+use crate::build::part::{Part, Side};
+use crate::fit::Fit;
+use de_leva::{GIRDLE_OF_UPPER_TRUNK, NECK_OF_HEAD, Segment, Sex, TOES_OF_FOOT, Table, table};
+use inertia::{conditioned, inside, of_shape};
+use sinew_math::{Rotation, Sym3, Vec3, clamp, max, min};
+use sinew_physics::{MassProperties, Shape};
+
+/// kg/m³ of flesh.
+const DENSITY: f32 = 1000.0;
+/// Share of a box that flesh fills.
+const BOX_FILL: f32 = 0.55;
+/// Share of a capsule that flesh fills.
+const CAPSULE_FILL: f32 = 0.8;
+/// No body has less than this share of the total: the solver wants ratios below about 1000.
+const LEAST_SHARE: f32 = 0.001;
+/// No body of the trunk takes less than this share of the trunk's length.
+const LEAST_TRUNK: f32 = 0.1;
+
+/// What to weigh a character by.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MassOptions {
+    /// Mass of the whole, kg; `None`: [`default_mass`].
+    pub total: Option<f32>,
+    /// Whose table.
+    pub sex: Sex,
+}
+
+/// Mass of a person of this height at the body mass index of the table's reference body (male 24.1, female 20.6
+/// kg/m²): 73.0 kg × (height / 1.741 m)². kg.
+pub fn default_mass(height: f32, sex: Sex) -> f32 {
+    let table = table(sex);
+    let ratio = height / table.reference_height;
+    table.reference_mass * ratio * ratio
+}
+
+/// Mass, centre and inertia of every body, in the body's frame. Their sum is the total asked for.
+pub fn distribute(bones: &Bones, fits: &[Fit], options: MassOptions) -> Vec<MassProperties> {
+    let shares = match bones.anatomy {
+        Anatomy::Human => human_shares(bones, table(options.sex)),
+        Anatomy::Creature => fits.iter().map(|fit| flesh(fit.shape)).collect(),
+    };
+    let sum: f32 = shares.iter().sum();
+    let total = options.total.unwrap_or_else(|| match bones.anatomy {
+        Anatomy::Human => default_mass(bones.height, options.sex),
+        Anatomy::Creature => sum,
+    });
+    let shares: Vec<_> = shares.iter().map(|share| max(share / sum, LEAST_SHARE)).collect();
+    let sum: f32 = shares.iter().sum();
+    let mut masses: Vec<_> = shares.iter().map(|share| total * share / sum).collect();
+    // What rounding left over goes to the pelvis, which feels it least.
+    let rest = total - masses.iter().sum::<f32>();
+    masses[0] += rest;
+    (0..fits.len()).map(|body| properties(bones, &fits[body], body, masses[body], options.sex)).collect()
+}
+
+/// kg of flesh in a shape.
+fn flesh(shape: Shape) -> f32 {
+    let fill = if matches!(shape, Shape::Box { .. }) { BOX_FILL } else { CAPSULE_FILL };
+    DENSITY * fill * shape.volume()
+}
+
+/// Share of the body's mass per bone. What a rig lacks goes to the bone that would carry it.
+fn human_shares(bones: &Bones, table: &Table) -> Vec<f32> {
+    let mut shares = vec![0.0; bones.list.len()];
+    let carrier = |chain: &[Part], side: Side| {
+        chain.iter().find_map(|&part| {
+            // The trunk has no sides; of its bones the uppermost carries arms and head.
+            let side = if part.is_trunk() && part != Part::Clavicle { Side::Middle } else { side };
+            (0..bones.list.len()).rev().find(|&b| bones.list[b].part == part && bones.list[b].side == side)
+        })
+    };
+    let mut give = |chain: &[Part], side, share: f32| shares[carrier(chain, side).unwrap_or(0)] += share;
+
+    let neck = if bones.find(Part::Neck, Side::Middle).is_some() { NECK_OF_HEAD } else { 0.0 };
+    give(&[Part::Head, Part::Neck, Part::Spine], Side::Middle, table.head * (1.0 - neck));
+    let mut girdles = 0.0;
+    for side in [Side::Left, Side::Right] {
+        let arm = [Part::Hand, Part::Forearm, Part::UpperArm, Part::Clavicle, Part::Spine];
+        give(&arm, side, table.hand.mass);
+        give(&arm[1..], side, table.forearm.mass);
+        give(&arm[2..], side, table.upper_arm.mass);
+        let leg = [Part::Toes, Part::Foot, Part::Shank, Part::Thigh, Part::Pelvis];
+        let toes = if bones.find(Part::Toes, side).is_some() { TOES_OF_FOOT } else { 0.0 };
+        give(&leg, side, table.foot.mass * toes);
+        give(&leg[1..], side, table.foot.mass * (1.0 - toes));
+        give(&leg[2..], side, table.shank.mass);
+        give(&leg[3..], side, table.thigh.mass);
+        if bones.find(Part::Clavicle, side).is_some() {
+            let girdle = GIRDLE_OF_UPPER_TRUNK * table.trunk[0].0;
+            give(&[Part::Clavicle], side, girdle);
+            girdles += girdle;
+        }
+    }
+    share_necks(bones, &mut shares, table.head * neck);
+    share_trunk(bones, &mut shares, table, girdles);
+    share_others(bones, &mut shares);
+    shares
+}
+
+/// Several neck bones have the neck's mass in equal parts.
+fn share_necks(bones: &Bones, shares: &mut [f32], neck: f32) {
+    let necks: Vec<_> = (0..bones.list.len()).filter(|&b| bones.list[b].part == Part::Neck).collect();
+    for &bone in &necks {
+        shares[bone] += neck / necks.len() as f32;
+    }
+}
+
+/// The trunk's mass over the pelvis and the spine: each bone takes what the table has between its own pivot and the
+/// next, measured from the hips to the neck.
+fn share_trunk(bones: &Bones, shares: &mut [f32], table: &Table, girdles: f32) {
+    let mut chain = vec![0];
+    while let Some(next) = bones.continuation(chain[chain.len() - 1]) {
+        if bones.list[next].part != Part::Spine {
+            break;
+        }
+        chain.push(next);
+    }
+    let hips: Vec<_> = [Side::Left, Side::Right]
+        .into_iter()
+        .filter_map(|side| bones.find(Part::Thigh, side))
+        .map(|thigh| bones.list[thigh].head)
+        .collect();
+    let bottom = match hips.as_slice() {
+        [left, right] => (*left + *right) * 0.5,
+        _ => bones.list[0].head,
+    };
+    let last = chain[chain.len() - 1];
+    let top = bones.tail(last).unwrap_or(bones.list[last].head + Vec3::Y * (0.1 * bones.height));
+    let axis = top - bottom;
+    let height_of = |p: Vec3| (p - bottom).dot(axis) / max(axis.dot(axis), 1e-9);
+    let mut below = 0.0;
+    let count = chain.len();
+    let least = min(LEAST_TRUNK, 1.0 / (3.0 * count as f32));
+    for (i, &bone) in chain.iter().enumerate() {
+        let left = (count - 1 - i) as f32;
+        let above = match chain.get(i + 1) {
+            Some(&next) => clamp(height_of(bones.list[next].head), below + least, 1.0 - left * least),
+            None => 1.0,
+        };
+        shares[bone] += trunk_between(table, below, above);
+        below = above;
+    }
+    // Shoulder girdles that are bodies of their own were weighed already: they are the upper trunk's.
+    shares[last] -= girdles;
+}
+
+/// Share of the body's mass in the trunk between two heights, 0 at the hips and 1 at the neck.
+fn trunk_between(table: &Table, lo: f32, hi: f32) -> f32 {
+    let whole: f32 = table.trunk.iter().map(|part| part.1).sum();
+    let mut start = 0.0;
+    let mut share = 0.0;
+    for (mass, length) in table.trunk.iter().rev() {
+        let end = start + length / whole;
+        let (a, b) = (max(lo, start), min(hi, end));
+        share += mass * max(b - a, 0.0) / (end - start);
+        start = end;
+    }
+    share
+}
+
+/// Bones that no human has (tails, ears, capes, fingers): a light share each.
+fn share_others(bones: &Bones, shares: &mut [f32]) {
+    for (bone, share) in bones.list.iter().zip(shares) {
+        if matches!(bone.part, Part::Tail | Part::Limb) {
+            *share += 0.005;
+        }
+    }
+}
+
+/// The de Leva segment of a limb bone with joints at both its ends.
+fn limb_segment(part: Part, table: &Table) -> Option<Segment> {
+    match part {
+        Part::UpperArm => Some(table.upper_arm),
+        Part::Forearm => Some(table.forearm),
+        Part::Thigh => Some(table.thigh),
+        Part::Shank => Some(table.shank),
+        _ => None,
+    }
+}
+
+/// Centre and inertia of one body, in its frame.
+fn properties(bones: &Bones, fit: &Fit, body: usize, mass: f32, sex: Sex) -> MassProperties {
+    let shape_inertia = of_shape(fit.shape, mass);
+    let segment = match bones.anatomy {
+        Anatomy::Human => limb_segment(bones.list[body].part, table(sex)).zip(bones.tail(body)),
+        Anatomy::Creature => None,
+    };
+    // Trunk, head, hands and feet: how they are cut differs from rig to rig, so the shape knows best.
+    let Some((segment, tail)) = segment else {
+        let inertia = Sym3::from_diagonal(conditioned(shape_inertia));
+        return MassProperties { mass, center: Vec3::ZERO, inertia };
+    };
+    let head = bones.list[body].head;
+    let body_from_character = fit.character_from_body.inverse();
+    let center = body_from_character.point(head + (tail - head) * segment.center);
+    let axis = body_from_character.rotation * bones.direction(body, None);
+    let length = (tail - head).length();
+    let [sagittal, transverse, longitudinal] = segment.gyration.map(|g| {
+        let radius = g * length;
+        mass * radius * radius
+    });
+    // Radii about the two cross axes differ by a few per cent only; which way a limb's bind pose has turned them is
+    // not known, so both take the mean. Thick cartoon limbs are held to half their shape's inertia about the axis.
+    let across = 0.5 * (sagittal + transverse);
+    let principal = conditioned(Vec3::new(across, max(longitudinal, 0.5 * shape_inertia.y), across));
+    MassProperties {
+        mass,
+        center: inside(fit.shape, center),
+        inertia: Sym3::from_rotated_diagonal(Rotation::from_arc(Vec3::Y, axis), principal),
+    }
+}
