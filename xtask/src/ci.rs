@@ -1,0 +1,174 @@
+//! Everything that must hold before a change is merged. `.ci/run` calls the tests first, then this.
+
+use crate::command::{self, Profile};
+use crate::golden::{self, Coverage};
+use crate::{contract, tidy};
+use anyhow::{Context, Result, anyhow, bail};
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+const WASM: &str = "wasm32-unknown-unknown";
+
+/// `cargo xtask ci`.
+#[derive(clap::Args)]
+pub struct Ci {
+    /// Adds what is slow: state hashes in every build × thread count, not only the diagonal
+    #[arg(long)]
+    full: bool,
+}
+
+impl Ci {
+    /// Runs every check, also after one has failed.
+    ///
+    /// # Errors
+    /// If one has, with the names of those that did.
+    pub fn run(&self) -> Result<()> {
+        let coverage = if self.full { Coverage::All } else { Coverage::Diagonal };
+        let mut failed = Vec::new();
+        let mut check = |name: &'static str, outcome: &dyn Fn() -> Result<()>| {
+            eprintln!("── {name}");
+            let start = Instant::now();
+            if let Err(error) = outcome() {
+                eprintln!("{error:#}");
+                failed.push(name);
+            }
+            eprintln!("   {:.1} s", start.elapsed().as_secs_f32());
+        };
+        check("fmt", &|| command::run(&mut command::cargo(&["fmt", "--all", "--check"])));
+        check("clippy", &clippy);
+        check("tidy", &|| tidy::Tidy {}.run());
+        check("docs", &documentation);
+        check("golden", &|| golden::check(coverage));
+        check("demo", &demo);
+        check("wasm", &wasm);
+        if !failed.is_empty() {
+            bail!("failed: {}", failed.join(", "));
+        }
+        eprintln!("all checks passed");
+        Ok(())
+    }
+}
+
+fn clippy() -> Result<()> {
+    command::run(&mut command::cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+}
+
+fn documentation() -> Result<()> {
+    let mut doc = command::cargo(&["doc", "--workspace", "--no-deps"]);
+    command::run(doc.env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+/// The library users add compiles for the browser.
+fn wasm() -> Result<()> {
+    if let Err(error) = command::run(Command::new("rustup").args(["target", "add", WASM])) {
+        eprintln!("{error:#}");
+        eprintln!("SKIPPED: the target {WASM} cannot be added on this machine");
+        return Ok(());
+    }
+    command::run(&mut command::cargo(&["build", "--package", "sinew", "--target", WASM]))
+}
+
+/// What a figure of the demo's report must be (spec §4).
+#[derive(Clone, Copy, Debug)]
+enum Gate {
+    /// Exactly.
+    Is(f64),
+    /// Strictly below.
+    Below(f64),
+    /// A number, not null: it happened.
+    Happened,
+}
+
+/// The demo's hit is a wall hit of at most 15 m/s. No gate on time: that is `cargo xtask bench`'s.
+const GATES: &[(&str, Gate)] = &[
+    ("nan", Gate::Is(0.0)),
+    ("energy_gain_max", Gate::Below(0.01)),
+    ("joint_gap_p99_m", Gate::Below(0.001)),
+    ("joint_gap_max_m", Gate::Below(0.005)),
+    ("limit_overshoot_p99_deg", Gate::Below(2.0)),
+    ("limit_overshoot_max_deg", Gate::Below(4.0)),
+    ("penetration_rest_max_m", Gate::Below(0.005)),
+    ("first_contact_s", Gate::Happened),
+    ("settled_s", Gate::Happened),
+    ("up_s", Gate::Happened),
+];
+
+/// Runs the demo in an empty folder and holds its report against the contract and the gates.
+fn demo() -> Result<()> {
+    let sinew = command::build_sinew(Profile::Release)?;
+    let folder = std::env::temp_dir().join(format!("sinew-demo-{}", std::process::id()));
+    fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    let outcome = demo_in(&sinew, &folder);
+    fs::remove_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    outcome
+}
+
+fn demo_in(sinew: &PathBuf, folder: &Path) -> Result<()> {
+    command::run(Command::new(sinew).args(["demo", "--out", "."]).current_dir(folder))?;
+    for name in ["demo.glb", "demo.gif"] {
+        let length = fs::metadata(folder.join(name)).with_context(|| name.to_owned())?.len();
+        if length == 0 {
+            bail!("{name} is empty");
+        }
+    }
+    let report = fs::read_to_string(folder.join("report.json")).context("report.json")?;
+    let report: Value = serde_json::from_str(&report).context("report.json")?;
+    let table = fs::read_to_string(command::root().join(contract::PATH)).context(contract::PATH)?;
+    let rows =
+        contract::parse(&table).map_err(|(line, what)| anyhow!("{}:{line}: {what}", contract::PATH))?;
+    let mut violations = contract::violations(&rows, "demo", &report);
+    violations.extend(GATES.iter().filter_map(|&(key, gate)| miss(key, gate, &report[key])));
+    if !violations.is_empty() {
+        bail!("report.json:\n{}\n{report:#}", violations.join("\n"));
+    }
+    Ok(())
+}
+
+/// How `value` misses its gate, if it does.
+fn miss(key: &str, gate: Gate, value: &Value) -> Option<String> {
+    let number = value.as_f64();
+    let (holds, wanted) = match gate {
+        Gate::Is(wanted) => (number == Some(wanted), format!("{wanted}")),
+        Gate::Below(limit) => (number.is_some_and(|number| number < limit), format!("below {limit}")),
+        Gate::Happened => (number.is_some(), "a time".to_owned()),
+    };
+    (!holds).then(|| format!("{key} is {value}, must be {wanted}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn gates_hold_and_miss() {
+        assert_eq!(miss("nan", Gate::Is(0.0), &json!(0)), None);
+        assert_eq!(miss("nan", Gate::Is(0.0), &json!(2)), Some("nan is 2, must be 0".to_owned()));
+        assert_eq!(miss("gap", Gate::Below(0.005), &json!(0.004)), None);
+        assert_eq!(
+            miss("gap", Gate::Below(0.005), &json!(0.005)),
+            Some("gap is 0.005, must be below 0.005".to_owned())
+        );
+        assert_eq!(
+            miss("up_s", Gate::Happened, &Value::Null),
+            Some("up_s is null, must be a time".to_owned())
+        );
+    }
+
+    #[test]
+    fn every_gate_is_a_key_of_the_contract() {
+        let table =
+            fs::read_to_string(command::root().join(contract::PATH)).expect("docs/contract.md is there");
+        let rows = contract::parse(&table).expect("docs/contract.md is well formed");
+        let missing = contract::violations(&rows, "demo", &json!({}));
+        for (key, _) in GATES {
+            assert!(
+                missing.contains(&format!("demo: key `{key}` is missing")),
+                "{key} is not in the contract"
+            );
+        }
+    }
+}

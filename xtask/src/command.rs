@@ -1,0 +1,94 @@
+//! Running other programs, above all cargo and the `sinew` binary.
+
+use anyhow::{Context, Result, bail};
+use serde_json::Value;
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// The folder that holds the workspace.
+pub fn root() -> PathBuf {
+    // Cargo sets the variable when it runs us; the compile-time value serves a binary that is started by hand.
+    let manifest = env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
+    let manifest = PathBuf::from(manifest);
+    manifest.parent().map(Path::to_path_buf).unwrap_or(manifest)
+}
+
+/// The cargo that started us, in the root of the repository.
+pub fn cargo(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments).current_dir(root());
+    command
+}
+
+/// Runs `command` with its output on ours.
+///
+/// # Errors
+/// If it does not start, or does not exit with 0.
+pub fn run(command: &mut Command) -> Result<()> {
+    eprintln!("$ {}", shown(command));
+    let status = command.status().with_context(|| format!("cannot start `{}`", shown(command)))?;
+    if !status.success() {
+        bail!("`{}`: {status}", shown(command));
+    }
+    Ok(())
+}
+
+/// Runs `command` and gives what it wrote on stdout; stderr stays on ours.
+///
+/// # Errors
+/// If it does not start, does not exit with 0, or writes something that is not UTF-8.
+pub fn output(command: &mut Command) -> Result<String> {
+    let output = command
+        .stderr(Stdio::inherit())
+        .output()
+        .with_context(|| format!("cannot start `{}`", shown(command)))?;
+    if !output.status.success() {
+        bail!("`{}`: {}", shown(command), output.status);
+    }
+    String::from_utf8(output.stdout).with_context(|| format!("`{}`", shown(command)))
+}
+
+/// Runs `command` and parses its stdout as one JSON value.
+///
+/// # Errors
+/// As [`output`], and if stdout is anything but one JSON value.
+pub fn output_json(command: &mut Command) -> Result<Value> {
+    let text = output(command)?;
+    serde_json::from_str(&text).with_context(|| format!("`{}`: stdout is not one JSON value", shown(command)))
+}
+
+/// How the `sinew` binary is compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Profile {
+    /// Overflow checks and debug assertions on.
+    Debug,
+    /// As users run it.
+    Release,
+}
+
+/// Builds the command line and gives the path of its binary, wherever the target folder is.
+///
+/// # Errors
+/// If it does not compile.
+pub fn build_sinew(profile: Profile) -> Result<PathBuf> {
+    let mut command =
+        cargo(&["build", "--package", "sinew_cli", "--message-format", "json-render-diagnostics"]);
+    if profile == Profile::Release {
+        command.arg("--release");
+    }
+    eprintln!("$ {}", shown(&command));
+    let messages = output(&mut command)?;
+    messages
+        .lines()
+        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
+        .filter(|message| message["target"]["name"] == "sinew")
+        .find_map(|message| message["executable"].as_str().map(PathBuf::from))
+        .context("cargo names no executable `sinew`")
+}
+
+fn shown(command: &Command) -> String {
+    let program = Path::new(command.get_program()).file_name().unwrap_or(command.get_program());
+    let words = std::iter::once(program).chain(command.get_args());
+    words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,205 @@
+//! The rules of the house that no compiler checks. Each rule is one file and one function from the repository to
+//! findings; a test beside it plants a violation and sees it found.
+//!
+//! The rules read tokens, not types ([`lexer`]): comments and strings never trigger them, but a name that is reached
+//! through a macro or an alias escapes. What needs types is in `clippy.toml` (`disallowed-methods`).
+
+mod arrows;
+mod bits;
+mod dependencies;
+mod leftovers;
+mod lexer;
+mod libraries;
+mod size;
+mod stages;
+mod unsafety;
+
+use crate::{command, contract};
+use anyhow::{Context, Result, bail};
+use lexer::Token;
+use serde_json::Value;
+use std::fmt;
+use std::fs;
+use std::path::Path;
+
+/// The rules, in the order in which their findings are printed.
+const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
+    arrows::check,
+    libraries::check,
+    bits::check,
+    size::check,
+    unsafety::check,
+    stages::check,
+    contract::check,
+    leftovers::check,
+    dependencies::check,
+];
+
+/// `cargo xtask tidy`.
+#[derive(clap::Args)]
+pub struct Tidy {}
+
+impl Tidy {
+    /// Prints what breaks a rule, one line each.
+    ///
+    /// # Errors
+    /// If anything does, or the repository cannot be read.
+    pub fn run(&self) -> Result<()> {
+        let findings = check(&Repo::read()?);
+        for finding in &findings {
+            println!("{finding}");
+        }
+        if !findings.is_empty() {
+            bail!("tidy: {} findings", findings.len());
+        }
+        Ok(())
+    }
+}
+
+fn check(repo: &Repo) -> Vec<Finding> {
+    RULES.iter().flat_map(|rule| rule(repo)).collect()
+}
+
+/// A place that breaks a rule.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Finding {
+    file: String,
+    line: usize,
+    message: String,
+}
+
+impl Finding {
+    /// `line` counts from 1.
+    pub fn new(file: &str, line: usize, message: impl Into<String>) -> Self {
+        Self { file: file.to_owned(), line, message: message.into() }
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: {}", self.file, self.line, self.message)
+    }
+}
+
+/// A text file of the repository.
+pub struct File {
+    /// From the root, with `/` on every system.
+    pub path: String,
+    /// Contents.
+    pub text: String,
+}
+
+impl File {
+    fn is_rust(&self) -> bool {
+        self.path.ends_with(".rs")
+    }
+
+    /// Name of the crate whose `src` folder holds this file.
+    fn crate_of_source(&self) -> Option<&str> {
+        let (name, inside) = self.path.strip_prefix("crates/")?.split_once('/')?;
+        (self.is_rust() && inside.starts_with("src/")).then_some(name)
+    }
+
+    fn tokens(&self) -> Vec<Token<'_>> {
+        lexer::tokens(&self.text)
+    }
+
+    /// Tokens without `#[cfg(test)]` items; none for a file that is all tests.
+    fn tokens_without_tests(&self) -> Vec<Token<'_>> {
+        let is_test = self.path.contains("/tests/") || self.path.ends_with("/tests.rs");
+        if is_test { Vec::new() } else { lexer::without_tests(&self.tokens()) }
+    }
+}
+
+/// What the rules look at.
+pub struct Repo {
+    /// Text files, by path.
+    pub files: Vec<File>,
+    /// `cargo metadata --no-deps`.
+    metadata: Value,
+}
+
+impl Repo {
+    fn read() -> Result<Self> {
+        let mut files = Vec::new();
+        let root = command::root();
+        collect(&root, "", &mut files).with_context(|| root.display().to_string())?;
+        let metadata =
+            command::output_json(&mut command::cargo(&["metadata", "--no-deps", "--format-version", "1"]))?;
+        Ok(Self { files, metadata })
+    }
+
+    /// The file at `path`, if it is there.
+    pub fn file(&self, path: &str) -> Option<&File> {
+        self.files.iter().find(|file| file.path == path)
+    }
+
+    fn rust_files(&self) -> impl Iterator<Item = &File> {
+        self.files.iter().filter(|file| file.is_rust())
+    }
+
+    /// Packages of the workspace.
+    fn packages(&self) -> impl Iterator<Item = &Value> {
+        self.metadata["packages"].as_array().into_iter().flatten()
+    }
+}
+
+/// Folders that hold nothing of ours. Those of builds are named like `target` or `target-something`.
+fn is_foreign(name: &str) -> bool {
+    name == ".git" || name == "out" || name == "node_modules" || name.starts_with("target")
+}
+
+fn collect(folder: &Path, prefix: &str, files: &mut Vec<File>) -> std::io::Result<()> {
+    let mut entries = fs::read_dir(folder)?.collect::<std::io::Result<Vec<_>>>()?;
+    entries.sort_by_key(fs::DirEntry::file_name);
+    for entry in entries {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let path = format!("{prefix}{name}");
+        let kind = entry.file_type()?;
+        if kind.is_dir() && !is_foreign(&name) {
+            collect(&entry.path(), &format!("{path}/"), files)?;
+        } else if kind.is_file()
+            && let Ok(text) = String::from_utf8(fs::read(entry.path())?)
+        {
+            files.push(File { path, text });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    impl Repo {
+        /// A repository of these files (path, text) and no packages.
+        pub(crate) fn planted(files: &[(&str, &str)]) -> Self {
+            let files = files.iter().map(|&(path, text)| File { path: path.into(), text: text.into() });
+            Self { files: files.collect(), metadata: Value::Null }
+        }
+
+        /// A repository of these packages, as `cargo metadata` writes them, and no files.
+        pub(crate) fn planted_packages(packages: &Value) -> Self {
+            Self { files: Vec::new(), metadata: serde_json::json!({ "packages": packages }) }
+        }
+    }
+
+    /// `rule`, on a repository that holds only `text` at `path`, finds these lines.
+    pub(crate) fn check_lines(rule: fn(&Repo) -> Vec<Finding>, path: &str, text: &str, expected: &[usize]) {
+        let findings = rule(&Repo::planted(&[(path, text)]));
+        let lines: Vec<usize> = findings.iter().map(|finding| finding.line).collect();
+        assert_eq!(lines, expected, "{findings:#?}");
+    }
+
+    #[test]
+    fn the_repository_is_tidy() {
+        let findings = check(&Repo::read().expect("the repository can be read"));
+        let text: Vec<String> = findings.iter().map(ToString::to_string).collect();
+        assert!(findings.is_empty(), "{} findings:\n{}", text.len(), text.join("\n"));
+    }
+
+    #[test]
+    fn a_finding_reads_like_a_compiler_message() {
+        assert_eq!(Finding::new("a/b.rs", 7, "too long").to_string(), "a/b.rs:7: too long");
+    }
+}

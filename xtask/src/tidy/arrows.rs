@@ -1,0 +1,119 @@
+//! Which crate may depend on which (design §1), and on which crates from outside.
+
+use super::{Finding, Repo};
+use serde_json::Value;
+
+/// Each crate, and the crates it may name; it may also name what those may. One row per crate of the design,
+/// including those that are not there yet.
+const ARROWS: &[(&str, &[&str])] = &[
+    ("sinew_math", &[]),
+    ("sinew_physics", &["sinew_math"]),
+    ("sinew_anim", &["sinew_math"]),
+    ("sinew_ragdoll", &["sinew_physics", "sinew_anim"]),
+    ("sinew_formats", &["sinew_anim", "sinew_physics", "sinew_ragdoll"]),
+    ("sinew", &["sinew_math", "sinew_physics", "sinew_anim", "sinew_ragdoll", "sinew_formats"]),
+    ("sinew_scenes", &["sinew"]),
+    ("sinew_picture", &["sinew"]),
+    ("sinew_viewer", &["sinew_scenes", "sinew_picture"]),
+    ("sinew_cli", &["sinew_scenes", "sinew_picture", "sinew_viewer"]),
+    ("sinew_web", &["sinew_viewer"]),
+    ("xtask", &[]),
+];
+
+/// Crates from outside (by the start of their name) that only some of ours may name.
+const RESERVED: &[(&str, &[&str], &str)] = &[
+    ("wgpu", &["sinew_viewer", "sinew_web"], "only viewer and web know a GPU"),
+    ("winit", &["sinew_viewer", "sinew_web"], "only viewer and web know a window"),
+    ("egui", &["sinew_viewer", "sinew_web"], "only viewer and web know a window"),
+    ("anyhow", &["sinew_cli", "xtask"], "libraries have typed errors"),
+    ("rayon", &[], "threads come from a TaskRunner"),
+];
+
+/// Every normal dependency between crates of the workspace has its arrow, and reserved crates stay where they belong.
+pub fn check(repo: &Repo) -> Vec<Finding> {
+    repo.packages().flat_map(check_package).collect()
+}
+
+fn check_package(package: &Value) -> Vec<Finding> {
+    let name = package["name"].as_str().unwrap_or_default();
+    let manifest =
+        if name == "xtask" { "xtask/Cargo.toml".into() } else { format!("crates/{name}/Cargo.toml") };
+    if !ARROWS.iter().any(|&(row, _)| row == name) {
+        return vec![Finding::new(&manifest, 1, format!("{name} has no row in xtask/src/tidy/arrows.rs"))];
+    }
+    let allowed = reachable(name);
+    let mut findings = Vec::new();
+    for dependency in package["dependencies"].as_array().into_iter().flatten() {
+        // Tests may look at anything, so only normal edges count; cargo writes those as null.
+        if !dependency["kind"].is_null() {
+            continue;
+        }
+        let wanted = dependency["name"].as_str().unwrap_or_default();
+        let is_ours = ARROWS.iter().any(|&(row, _)| row == wanted);
+        if is_ours && !allowed.contains(&wanted) {
+            findings.push(Finding::new(
+                &manifest,
+                1,
+                format!("{name} must not depend on {wanted} (design §1)"),
+            ));
+        }
+        for (prefix, users, why) in RESERVED {
+            if wanted.starts_with(prefix) && !users.contains(&name) {
+                findings.push(Finding::new(
+                    &manifest,
+                    1,
+                    format!("{name} must not depend on {wanted}: {why}"),
+                ));
+            }
+        }
+    }
+    findings
+}
+
+/// All crates that `name` may depend on.
+fn reachable(name: &str) -> Vec<&'static str> {
+    let direct = ARROWS.iter().find(|&&(row, _)| row == name).map_or(&[][..], |&(_, direct)| direct);
+    direct.iter().flat_map(|&next| std::iter::once(next).chain(reachable(next))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn check_edge(from: &str, to: &str, kind: &Value) -> Vec<String> {
+        let dependency = json!({ "name": to, "kind": kind });
+        let repo = Repo::planted_packages(&json!([{ "name": from, "dependencies": [dependency] }]));
+        check(&repo).iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn a_planted_arrow_is_found() {
+        let findings = check_edge("sinew_physics", "sinew_anim", &Value::Null);
+        assert_eq!(
+            findings,
+            ["crates/sinew_physics/Cargo.toml:1: sinew_physics must not depend on sinew_anim (design §1)"]
+        );
+        assert_eq!(check_edge("sinew_math", "sinew", &Value::Null).len(), 1);
+        assert_eq!(check_edge("sinew_formats", "sinew_scenes", &Value::Null).len(), 1);
+    }
+
+    #[test]
+    fn arrows_of_the_design_and_of_tests_are_free() {
+        assert!(check_edge("sinew_ragdoll", "sinew_anim", &Value::Null).is_empty());
+        assert!(check_edge("sinew_cli", "sinew_math", &Value::Null).is_empty());
+        assert!(check_edge("sinew_physics", "sinew_anim", &json!("dev")).is_empty());
+    }
+
+    #[test]
+    fn a_gpu_or_an_untyped_error_in_a_library_is_found() {
+        assert_eq!(check_edge("sinew_picture", "wgpu", &Value::Null).len(), 1);
+        assert_eq!(check_edge("sinew_formats", "anyhow", &Value::Null).len(), 1);
+        assert!(check_edge("sinew_viewer", "wgpu", &Value::Null).is_empty());
+    }
+
+    #[test]
+    fn a_crate_without_a_row_is_found() {
+        assert_eq!(check_edge("sinew_helpers", "sinew", &Value::Null).len(), 1);
+    }
+}
