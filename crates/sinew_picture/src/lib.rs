@@ -1,2 +1,29 @@
-//! Sinew.
+//! Pictures that need no driver and are the same everywhere.
+//!
+//! Plain data in, pixels out: describe a [`Scene`] (models come from [`draw`] or from any mesh), point a [`Camera`]
+//! at it, [`Renderer::render`] gives an [`Image`], and [`Movie`] turns images into a GIF, APNG or WebP file.
+//! Every number is made by `+ − × ÷ √` and by `sinew::math`, so the same scene has the same bytes on every target.
+//!
+//! World space is right-handed with +Y up, in metres; colours are linear unless a name says sRGB.
 #![forbid(unsafe_code)]
+
+mod camera;
+mod clip;
+mod color;
+pub mod draw;
+pub mod encode;
+mod image;
+mod overlay;
+mod raster;
+mod render;
+mod scene;
+mod shade;
+mod shadow;
+mod texture;
+
+pub use camera::{Camera, FollowCamera};
+pub use encode::{EncodeError, Movie, PictureFormat};
+pub use image::Image;
+pub use render::{Antialiasing, RenderSettings, Renderer};
+pub use scene::{Caption, Faces, Line, LineDepth, Material, Model, Pattern, Scene, ShadowCasting, Sky, Sun};
+pub use texture::{Texture, TextureError};

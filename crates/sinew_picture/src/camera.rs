@@ -1,0 +1,194 @@
+use sinew::math::{Vec3, clamp, max, normalize_or, trig};
+
+/// A pinhole camera that stands upright.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// World space, metres.
+    pub position: Vec3,
+    /// The point in the middle of the picture, world space, metres. Shadows are sharpest around it.
+    pub target: Vec3,
+    /// Angle between the upper and the lower edge of the picture, radians, above 0 and below π.
+    pub fov_y: f32,
+}
+
+/// A vertical field of view that neither flattens nor stretches a person, radians (35°).
+const PORTRAIT_FOV: f32 = 0.610_865_24;
+
+impl Camera {
+    /// Looks at a ball from the side `direction` (from the ball to the camera, any length) so that it just fits
+    /// between the upper and the lower edge of the picture, with a field of view of 35°.
+    pub fn framing(center: Vec3, radius: f32, direction: Vec3) -> Self {
+        let distance = framing_distance(radius, PORTRAIT_FOV);
+        let direction = normalize_or(direction, Vec3::Z);
+        Self { position: center + direction * distance, target: center, fov_y: PORTRAIT_FOV }
+    }
+}
+
+/// How far away a ball just fits into the field of view.
+fn framing_distance(radius: f32, fov_y: f32) -> f32 {
+    radius / trig::sin(0.5 * fov_y)
+}
+
+/// A camera that goes along with a character, calmly: it stands still while the character stays near the middle
+/// of the picture, and glides after it else.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FollowCamera {
+    /// From the subject to the camera, unit, world space.
+    pub direction: Vec3,
+    /// From the point it looks at to the camera, metres.
+    pub distance: f32,
+    /// As [`Camera::fov_y`].
+    pub fov_y: f32,
+    /// Time in which the lag shrinks to 1/e, seconds, above 0. Default 0.35.
+    pub time_constant: f32,
+    /// How far the subject may move from the middle before the camera follows, metres. Default a fifth of the radius.
+    pub slack: f32,
+    /// The subject never gets farther than this from the middle, metres. Default 0.7 of the radius.
+    pub reach: f32,
+    target: Vec3,
+}
+
+impl FollowCamera {
+    /// Frames a ball of `radius` metres around `subject`, seen from `direction` (toward the camera, any length).
+    pub fn new(subject: Vec3, radius: f32, direction: Vec3) -> Self {
+        Self {
+            direction: normalize_or(direction, Vec3::Z),
+            distance: framing_distance(radius, PORTRAIT_FOV),
+            fov_y: PORTRAIT_FOV,
+            time_constant: 0.35,
+            slack: 0.2 * radius,
+            reach: 0.7 * radius,
+            target: subject,
+        }
+    }
+
+    /// The portrait photographer's place: 40° off the way a character faces, 16° above, so that its front, side and
+    /// top are all seen. `facing` is horizontal, any length.
+    pub fn three_quarter(subject: Vec3, radius: f32, facing: Vec3) -> Self {
+        let front = normalize_or(Vec3::new(facing.x, 0.0, facing.z), Vec3::Z);
+        let left = Vec3::Y.cross(front);
+        let (sin_turn, cos_turn) = trig::sin_cos(0.698_131_7);
+        let (sin_lift, cos_lift) = trig::sin_cos(0.279_252_68);
+        let direction = (front * cos_turn + left * sin_turn) * cos_lift + Vec3::Y * sin_lift;
+        Self::new(subject, radius, direction)
+    }
+
+    /// Goes on by `dt` seconds toward where the subject is now. A subject that is not finite is ignored.
+    ///
+    /// Exponential decay of the lag, solved exactly over `dt`: two half steps are one whole step.
+    pub fn update(&mut self, subject: Vec3, dt: f32) {
+        if !subject.is_finite() {
+            return;
+        }
+        let lag = subject - self.target;
+        let distance = lag.length();
+        if distance <= self.slack {
+            return;
+        }
+        let decay = trig::exp(-max(dt, 0.0) / max(self.time_constant, 1e-6));
+        let left_over = clamp(self.slack + (distance - self.slack) * decay, 0.0, max(self.reach, self.slack));
+        self.target = subject - lag * (left_over / distance);
+    }
+
+    /// The camera as it stands now.
+    pub fn camera(&self) -> Camera {
+        Camera {
+            position: self.target + self.direction * self.distance,
+            target: self.target,
+            fov_y: self.fov_y,
+        }
+    }
+}
+
+/// Nearest depth that is drawn, metres.
+pub(crate) const NEAR: f32 = 0.05;
+
+/// A camera made ready for a picture of some size: world → clip space and pixel → ray.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    pub(crate) eye: Vec3,
+    right: Vec3,
+    up: Vec3,
+    forward: Vec3,
+    /// `1 / tan` of half the field of view, across and down.
+    focal: [f32; 2],
+    half_size: [f32; 2],
+}
+
+impl View {
+    pub(crate) fn new(camera: &Camera, width: u32, height: u32) -> Self {
+        let forward = normalize_or(camera.target - camera.position, -Vec3::Z);
+        // Straight up or down leaves no horizon to be level with: any right-hand side will do.
+        let right = normalize_or(forward.cross(Vec3::Y), Vec3::X);
+        let tan = trig::tan(0.5 * clamp(camera.fov_y, 0.01, 3.1));
+        let half_size = [0.5 * width as f32, 0.5 * height as f32];
+        let focal = [half_size[1] / (half_size[0] * tan), 1.0 / tan];
+        Self { eye: camera.position, right, up: right.cross(forward), forward, focal, half_size }
+    }
+
+    /// Clip space: the picture spans ±w in x and y, w is the depth in metres.
+    #[inline(always)]
+    pub(crate) fn clip_from_world(&self, p: Vec3) -> [f32; 3] {
+        let v = p - self.eye;
+        [v.dot(self.right) * self.focal[0], v.dot(self.up) * self.focal[1], v.dot(self.forward)]
+    }
+
+    /// Direction, at depth 1, through a point of the picture in pixels from the upper left corner.
+    #[inline(always)]
+    pub(crate) fn ray(&self, x: f32, y: f32) -> Vec3 {
+        let across = (x / self.half_size[0] - 1.0) / self.focal[0];
+        let upward = (1.0 - y / self.half_size[1]) / self.focal[1];
+        self.forward + self.right * across + self.up * upward
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rays_and_clip_space_are_inverse() {
+        let camera =
+            Camera { position: Vec3::new(3.0, 2.0, 5.0), target: Vec3::new(0.0, 1.0, 0.0), fov_y: 0.7 };
+        let view = View::new(&camera, 640, 360);
+        for (x, y) in [(0.0, 0.0), (640.0, 10.0), (320.0, 180.0), (17.5, 359.5)] {
+            let [cx, cy, w] = view.clip_from_world(camera.position + view.ray(x, y) * 4.0);
+            let (px, py) = ((cx / w + 1.0) * 320.0, (1.0 - cy / w) * 180.0);
+            assert!(
+                (px - x).abs() < 1e-2 && (py - y).abs() < 1e-2 && (w - 4.0).abs() < 1e-4,
+                "{px} {py} {w}"
+            );
+        }
+    }
+
+    #[test]
+    fn following_does_not_depend_on_the_frame_rate() {
+        let mut coarse = FollowCamera::three_quarter(Vec3::Y, 2.0, Vec3::X);
+        let mut fine = coarse.clone();
+        let goal = Vec3::new(1.2, 0.4, -0.3);
+        coarse.update(goal, 0.5);
+        for _ in 0..60 {
+            fine.update(goal, 0.5 / 60.0);
+        }
+        assert!((coarse.camera().target - fine.camera().target).length() < 1e-4);
+        assert!((coarse.camera().target - Vec3::Y).length() > 0.5);
+    }
+
+    #[test]
+    fn the_subject_stays_in_reach_and_a_calm_one_moves_nothing() {
+        let mut follow = FollowCamera::new(Vec3::ZERO, 2.0, Vec3::Z);
+        follow.update(Vec3::new(0.3, 0.0, 0.0), 0.1);
+        assert_eq!(follow.camera().target, Vec3::ZERO);
+        follow.update(Vec3::new(90.0, 0.0, 0.0), 0.001);
+        assert!((follow.camera().target - Vec3::new(90.0, 0.0, 0.0)).length() <= follow.reach + 1e-3);
+        follow.update(Vec3::NAN, 0.1);
+        assert!(follow.camera().target.is_finite());
+    }
+
+    #[test]
+    fn framing_fits_the_ball() {
+        let camera = Camera::framing(Vec3::new(0.0, 1.0, 0.0), 1.0, Vec3::new(1.0, 0.4, 1.0));
+        let distance = (camera.position - camera.target).length();
+        assert!((trig::asin(1.0 / distance) - 0.5 * camera.fov_y).abs() < 1e-4);
+    }
+}

@@ -1,0 +1,65 @@
+//! sRGB bytes ↔ linear numbers (IEC 61966-2-1).
+
+use sinew::math::{clamp, trig};
+
+/// Entries of the encoding table: at the steep dark end one entry is 0.8 of a byte's step, so no byte is left out.
+const ENCODE_STEPS: usize = 4096;
+
+/// The two transfer functions as tables: a power per pixel would cost more than its shading.
+#[derive(Clone, Debug)]
+pub(crate) struct ColorTables {
+    linear: [f32; 256],
+    srgb: Vec<u8>,
+}
+
+impl ColorTables {
+    pub(crate) fn new() -> Self {
+        let mut linear = [0.0; 256];
+        for (byte, slot) in linear.iter_mut().enumerate() {
+            *slot = decode(byte as f32 / 255.0);
+        }
+        let top = (ENCODE_STEPS - 1) as f32;
+        let srgb = (0..ENCODE_STEPS).map(|i| (encode(i as f32 / top) * 255.0 + 0.5) as u8).collect();
+        Self { linear, srgb }
+    }
+
+    /// Linear value, 0..=1, of an sRGB byte.
+    #[inline(always)]
+    pub(crate) fn to_linear(&self, byte: u8) -> f32 {
+        self.linear[byte as usize]
+    }
+
+    /// sRGB byte of a linear value; limited to 0..=1, NaN gives 0.
+    #[inline(always)]
+    pub(crate) fn to_srgb(&self, linear: f32) -> u8 {
+        self.srgb[(clamp(linear, 0.0, 1.0) * (ENCODE_STEPS - 1) as f32 + 0.5) as usize]
+    }
+
+    /// sRGB bytes of a linear colour.
+    pub(crate) fn to_srgb3(&self, linear: [f32; 3]) -> [u8; 3] {
+        linear.map(|channel| self.to_srgb(channel))
+    }
+}
+
+fn decode(srgb: f32) -> f32 {
+    if srgb <= 0.04045 { srgb / 12.92 } else { trig::pow((srgb + 0.055) / 1.055, 2.4) }
+}
+
+fn encode(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * trig::pow(linear, 1.0 / 2.4) - 0.055 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_byte_survives_the_round_trip() {
+        let tables = ColorTables::new();
+        for byte in 0..=255 {
+            assert_eq!(tables.to_srgb(tables.to_linear(byte)), byte);
+        }
+        assert_eq!(tables.to_srgb(f32::NAN), 0);
+        assert_eq!(tables.to_srgb(7.0), 255);
+    }
+}

@@ -1,0 +1,193 @@
+//! Models from plain descriptions: boxes, balls, capsules, floors, meshes and their wire frames.
+
+use crate::scene::{Line, LineDepth, Material, Model, Pattern, ShadowCasting};
+use sinew::math::{Transform, Vec3, trig};
+
+/// A solid around the origin of its own frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Solid {
+    /// Box.
+    Box {
+        /// Half of each side, metres.
+        half_extents: Vec3,
+    },
+    /// Ball.
+    Sphere {
+        /// Metres.
+        radius: f32,
+    },
+    /// Segment along y from −`half_height` to `half_height`, with a radius.
+    Capsule {
+        /// Half the length of the segment, without the caps, metres.
+        half_height: f32,
+        /// Metres.
+        radius: f32,
+    },
+}
+
+/// Segments around a ball or capsule: 10° each is round at the sizes that pictures show.
+const AROUND: usize = 24;
+/// Segments from the equator to a pole.
+const TO_POLE: usize = 8;
+
+/// The surface of a solid. Boxes have flat faces, the others smooth normals.
+pub fn solid(solid: Solid, world_from_solid: Transform, material: Material) -> Model {
+    let mut model = match solid {
+        Solid::Box { half_extents } => box_model(half_extents),
+        Solid::Sphere { radius } => round_model(0.0, radius),
+        Solid::Capsule { half_height, radius } => round_model(half_height, radius),
+    };
+    for position in &mut model.positions {
+        *position = world_from_solid.point(*position);
+    }
+    for normal in &mut model.normals {
+        *normal = world_from_solid.rotation * *normal;
+    }
+    Model { material, ..model }
+}
+
+/// A level floor of two colours (linear), `half_size` metres to each side of `center`, in squares of 1 m. It throws
+/// no shadow.
+pub fn floor(center: Vec3, half_size: f32, color: [f32; 3], other: [f32; 3]) -> Model {
+    let corner = |x: f32, z: f32| center + Vec3::new(x * half_size, 0.0, z * half_size);
+    Model {
+        positions: vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)],
+        indices: vec![0, 1, 2, 0, 2, 3],
+        material: Material {
+            pattern: Pattern::Checker { size: 1.0, other },
+            shadow: ShadowCasting::No,
+            ..Material::new(color)
+        },
+        ..Model::default()
+    }
+}
+
+/// The edges of a solid: all twelve of a box; for ball and capsule three great circles and the sides.
+pub fn wire(solid: Solid, world_from_solid: Transform, color: [f32; 3], depth: LineDepth) -> Vec<Line> {
+    let mut segments = Vec::new();
+    match solid {
+        Solid::Box { half_extents } => box_edges(half_extents, &mut segments),
+        Solid::Sphere { radius } => capsule_edges(0.0, radius, &mut segments),
+        Solid::Capsule { half_height, radius } => capsule_edges(half_height, radius, &mut segments),
+    }
+    let line = |[from, to]: [Vec3; 2]| Line {
+        from: world_from_solid.point(from),
+        to: world_from_solid.point(to),
+        color,
+        depth,
+    };
+    segments.into_iter().map(line).collect()
+}
+
+/// The axes of a frame, `length` metres each: x red, y green, z blue.
+pub fn axes(frame: Transform, length: f32, depth: LineDepth) -> [Line; 3] {
+    [(Vec3::X, [0.8, 0.05, 0.05]), (Vec3::Y, [0.05, 0.55, 0.05]), (Vec3::Z, [0.05, 0.15, 0.85])]
+        .map(|(axis, color)| Line { from: frame.translation, to: frame.point(axis * length), color, depth })
+}
+
+fn box_corner(i: usize, half: Vec3) -> Vec3 {
+    let sign = |bit: usize| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+    Vec3::new(sign(0) * half.x, sign(1) * half.y, sign(2) * half.z)
+}
+
+/// Corners of the faces −x +x −y +y −z +z, counter-clockwise from outside; bit 0 of a corner is x, 1 y, 2 z.
+const BOX_FACES: [[u32; 4]; 6] =
+    [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+
+fn box_model(half: Vec3) -> Model {
+    Model {
+        positions: (0..8).map(|i| box_corner(i, half)).collect(),
+        indices: BOX_FACES.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect(),
+        ..Model::default()
+    }
+}
+
+fn box_edges(half: Vec3, segments: &mut Vec<[Vec3; 2]>) {
+    for i in 0..8usize {
+        for bit in (0..3).filter(|bit| i >> bit & 1 == 0) {
+            segments.push([box_corner(i, half), box_corner(i | 1 << bit, half)]);
+        }
+    }
+}
+
+/// A capsule as rings from the lower to the upper pole; the equator is there twice, `half_height` below and above.
+fn round_model(half_height: f32, radius: f32) -> Model {
+    let mut model = Model::default();
+    let quarter = core::f32::consts::FRAC_PI_2 / TO_POLE as f32;
+    let lower = (0..=TO_POLE).map(|i| (i as f32 * quarter - core::f32::consts::FRAC_PI_2, -half_height));
+    let upper = (0..=TO_POLE).map(|i| (i as f32 * quarter, half_height));
+    for (latitude, shift) in lower.chain(upper) {
+        let (sin, cos) = trig::sin_cos(latitude);
+        for i in 0..AROUND {
+            let [x, z] = circle(i);
+            let normal = Vec3::new(x * cos, sin, z * cos);
+            model.positions.push(normal * radius + Vec3::Y * shift);
+            model.normals.push(normal);
+        }
+    }
+    let rings = 2 * (TO_POLE + 1);
+    for ring in 0..rings - 1 {
+        for i in 0..AROUND {
+            let next = (i + 1) % AROUND;
+            let [a, b] = [ring * AROUND + i, ring * AROUND + next].map(|v| v as u32);
+            let [c, d] = [a, b].map(|v| v + AROUND as u32);
+            model.indices.extend([a, c, d, a, d, b]);
+        }
+    }
+    model
+}
+
+/// Point `i` of [`AROUND`] on the unit circle, x and z.
+fn circle(i: usize) -> [f32; 2] {
+    let (sin, cos) = trig::sin_cos(core::f32::consts::TAU * (i % AROUND) as f32 / AROUND as f32);
+    [cos, sin]
+}
+
+fn capsule_edges(half_height: f32, radius: f32, segments: &mut Vec<[Vec3; 2]>) {
+    let up = Vec3::Y * half_height;
+    for i in 0..AROUND {
+        let [[c, s], [c1, s1]] = [circle(i), circle(i + 1)].map(|p| p.map(|v| v * radius));
+        let rim = [Vec3::new(c, 0.0, s), Vec3::new(c1, 0.0, s1)];
+        segments.push(rim.map(|p| p + up));
+        if half_height > 0.0 {
+            segments.push(rim.map(|p| p - up));
+        }
+        let shift = if i < AROUND / 2 { up } else { -up };
+        segments.push([Vec3::new(c, s, 0.0) + shift, Vec3::new(c1, s1, 0.0) + shift]);
+        segments.push([Vec3::new(0.0, s, c) + shift, Vec3::new(0.0, s1, c1) + shift]);
+    }
+    if half_height > 0.0 {
+        for side in [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z].map(|axis| axis * radius) {
+            segments.push([side - up, side + up]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew::math::Rotation;
+
+    /// Six times the volume inside, by the divergence theorem: positive where all faces look outward.
+    fn volume(model: &Model) -> f32 {
+        let point = |i: u32| model.positions[i as usize];
+        model.indices.chunks_exact(3).map(|t| point(t[0]).dot(point(t[1]).cross(point(t[2])))).sum::<f32>()
+            / 6.0
+    }
+
+    #[test]
+    fn solids_are_closed_and_face_outward() {
+        let place = Transform::new(Vec3::new(1.0, -2.0, 0.5), Rotation::from_axis_angle(Vec3::X, 0.7));
+        let half_extents = Vec3::new(0.5, 0.25, 1.0);
+        let pi = core::f32::consts::PI;
+        for (shape, expected, tolerance) in [
+            (Solid::Box { half_extents }, 1.0, 1e-4),
+            (Solid::Sphere { radius: 0.5 }, pi / 6.0, 0.02),
+            (Solid::Capsule { half_height: 0.4, radius: 0.5 }, pi / 6.0 + pi * 0.2, 0.04),
+        ] {
+            let model = solid(shape, place, Material::default());
+            assert!((volume(&model) - expected).abs() < tolerance, "{shape:?}: {}", volume(&model));
+            assert!(!wire(shape, place, [1.0; 3], LineDepth::Tested).is_empty());
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Which part of each image is new: lossless animations store that rectangle alone.
+
+use super::{Rect, bounds};
+use crate::image::Image;
+
+/// Remembers the last image.
+#[derive(Default)]
+pub(super) struct Changes {
+    previous: Vec<u8>,
+}
+
+impl Changes {
+    /// The rectangle that differs from the last image, with its pixels as RGB; the whole image the first time, one
+    /// pixel where nothing differs. Its left and top are multiples of `grid`.
+    pub(super) fn take(&mut self, image: &Image, grid: usize) -> (Rect, Vec<u8>) {
+        let (width, height) = (image.width as usize, image.height as usize);
+        let pixel =
+            |bytes: &[u8], index: usize| [bytes[4 * index], bytes[4 * index + 1], bytes[4 * index + 2]];
+        let rect = if self.previous.is_empty() {
+            Rect { left: 0, top: 0, width, height }
+        } else {
+            let changed = |index: usize| pixel(&image.rgba, index) != pixel(&self.previous, index);
+            bounds(width, height, changed).unwrap_or(Rect { left: 0, top: 0, width: 1, height: 1 })
+        };
+        let (left, top) = (rect.left - rect.left % grid, rect.top - rect.top % grid);
+        let rect =
+            Rect { left, top, width: rect.width + rect.left - left, height: rect.height + rect.top - top };
+        self.previous.clone_from(&image.rgba);
+        (rect, rect.pixels(width).flat_map(|index| pixel(&image.rgba, index)).collect())
+    }
+}

@@ -1,0 +1,114 @@
+//! GIF: each frame holds only what changed, in a palette of its own.
+
+use super::palette::{Histogram, Palette};
+use super::{EncodeError, Rect, bounds};
+use crate::image::Image;
+use gif::{DisposalMethod, Encoder, Frame, Repeat};
+use std::borrow::Cow;
+
+/// A pixel whose channels all moved by at most this much since it was last drawn is left as it is: nobody sees it,
+/// and long runs of untouched pixels are what keeps the file small.
+const UNSEEN_CHANGE: u8 = 5;
+
+/// Strength of the dither, in steps of 1/255. Enough to break the bands of a clear sky; more would cost bytes.
+const DITHER: i32 = 3;
+
+/// Order in which the pixels of a 4 × 4 square get brighter (Bayer 1973).
+const BAYER: [[i32; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
+
+pub(super) struct GifWriter {
+    encoder: Encoder<Vec<u8>>,
+    width: usize,
+    height: usize,
+    fps: u32,
+    frames: u64,
+    histogram: Histogram,
+    palette: Palette,
+    /// The colour that each pixel had in its image when it was last drawn, before palette and dither.
+    drawn: Vec<[u8; 3]>,
+    changed: Vec<bool>,
+}
+
+impl GifWriter {
+    pub(super) fn new(width: u16, height: u16, fps: u32) -> Result<Self, EncodeError> {
+        let mut encoder = Encoder::new(Vec::new(), width, height, &[])?;
+        encoder.set_repeat(Repeat::Infinite)?;
+        Ok(Self {
+            encoder,
+            width: width as usize,
+            height: height as usize,
+            fps,
+            frames: 0,
+            histogram: Histogram::new(),
+            palette: Palette::new(),
+            drawn: Vec::new(),
+            changed: Vec::new(),
+        })
+    }
+
+    pub(super) fn push(&mut self, image: &Image) -> Result<(), EncodeError> {
+        let rect = self.take_changes(image);
+        self.histogram.clear();
+        for pixel in rect.pixels(self.width).filter(|&pixel| self.changed[pixel]) {
+            self.histogram.add(self.drawn[pixel]);
+        }
+        self.palette.fit(&mut self.histogram);
+        let transparent = self.palette.colors.len() as u8;
+        let mut indices = Vec::with_capacity(rect.width * rect.height);
+        for pixel in rect.pixels(self.width) {
+            indices.push(if self.changed[pixel] { self.shown(pixel) } else { transparent });
+        }
+        let mut palette = self.palette.colors.concat();
+        palette.extend([0; 3]);
+        let frame = Frame {
+            delay: self.delay(),
+            dispose: DisposalMethod::Keep,
+            transparent: Some(transparent),
+            left: rect.left as u16,
+            top: rect.top as u16,
+            width: rect.width as u16,
+            height: rect.height as u16,
+            palette: Some(palette),
+            buffer: Cow::Owned(indices),
+            ..Frame::default()
+        };
+        self.encoder.write_frame(&frame)?;
+        self.frames += 1;
+        Ok(())
+    }
+
+    pub(super) fn finish(self) -> Result<Vec<u8>, EncodeError> {
+        self.encoder.into_inner().map_err(|error| EncodeError::Gif(error.into()))
+    }
+
+    /// Marks the pixels that must be drawn and returns the rectangle around them. A frame needs at least one pixel.
+    fn take_changes(&mut self, image: &Image) -> Rect {
+        let colors = image.rgba.chunks_exact(4).map(|rgba| [rgba[0], rgba[1], rgba[2]]);
+        if self.frames == 0 {
+            self.drawn = colors.collect();
+            self.changed = vec![true; self.drawn.len()];
+        } else {
+            for ((drawn, changed), color) in self.drawn.iter_mut().zip(&mut self.changed).zip(colors) {
+                *changed = (0..3).any(|i| drawn[i].abs_diff(color[i]) > UNSEEN_CHANGE);
+                if *changed {
+                    *drawn = color;
+                }
+            }
+        }
+        let first_pixel = Rect { left: 0, top: 0, width: 1, height: 1 };
+        bounds(self.width, self.height, |pixel| self.changed[pixel]).unwrap_or(first_pixel)
+    }
+
+    /// Palette entry of a pixel, after dithering. The pattern is fixed to the picture, so that it does not flicker.
+    fn shown(&mut self, pixel: usize) -> u8 {
+        let threshold = BAYER[pixel / self.width % 4][pixel % self.width % 4];
+        let shift = (2 * threshold - 15) * DITHER / 15;
+        self.palette.entry(self.drawn[pixel].map(|channel| (i32::from(channel) + shift).clamp(0, 255) as u8))
+    }
+
+    /// Hundredths of a second to the next frame. Sums stay right where `fps` does not divide 100: 3, 3, 4 at 30.
+    fn delay(&self) -> u16 {
+        let time = |frame: u64| (frame * 100 + u64::from(self.fps) / 2) / u64::from(self.fps);
+        (time(self.frames + 1) - time(self.frames)) as u16
+    }
+}

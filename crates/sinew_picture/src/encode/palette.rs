@@ -1,0 +1,176 @@
+//! The 255 colours that show a frame best: boxes in colour space, split where they are widest.
+
+/// Bits kept of each channel: boxes and look-ups work on 2¹⁸ cells of colour.
+const BITS: u32 = 6;
+const CELLS: usize = 1 << (3 * BITS);
+const NO_ENTRY: u8 = 255;
+
+/// Up to 255 colours and, for each cell of colour, the nearest of them. Integers only.
+pub(super) struct Palette {
+    /// sRGB.
+    pub(super) colors: Vec<[u8; 3]>,
+    /// Nearest entry per cell, [`NO_ENTRY`] where nobody asked yet.
+    nearest: Vec<u8>,
+}
+
+/// How often each cell of colour occurs.
+pub(super) struct Histogram {
+    counts: Vec<u32>,
+    occupied: Vec<u32>,
+}
+
+/// Cells of similar colour that share one entry.
+struct ColorBox {
+    first: usize,
+    last: usize,
+    /// Channel along which they vary most.
+    axis: usize,
+    /// Sum of squared distances from the mean along that channel.
+    spread: u64,
+    mean: [u8; 3],
+}
+
+fn cell(color: [u8; 3]) -> usize {
+    let [r, g, b] = color.map(|channel| (channel >> (8 - BITS)) as usize);
+    r << (2 * BITS) | g << BITS | b
+}
+
+/// Middle of a cell.
+fn color_of(cell: u32) -> [u8; 3] {
+    let mask = (1 << BITS) - 1;
+    [cell >> (2 * BITS), cell >> BITS, cell].map(|part| {
+        let channel = (part & mask) as u8;
+        channel << (8 - BITS) | channel >> (2 * BITS - 8)
+    })
+}
+
+impl Histogram {
+    pub(super) fn new() -> Self {
+        Self { counts: vec![0; CELLS], occupied: Vec::new() }
+    }
+
+    pub(super) fn add(&mut self, color: [u8; 3]) {
+        let cell = cell(color);
+        if self.counts[cell] == 0 {
+            self.occupied.push(cell as u32);
+        }
+        self.counts[cell] += 1;
+    }
+
+    /// Forgets everything.
+    pub(super) fn clear(&mut self) {
+        for &cell in &self.occupied {
+            self.counts[cell as usize] = 0;
+        }
+        self.occupied.clear();
+    }
+
+    /// At most `limit` boxes: the one with the largest spread is split at its mean until there are enough (after
+    /// Heckbert, "Color Image Quantization for Frame Buffer Display", 1982, with Wu's choice of the box by variance).
+    fn split(&mut self, limit: usize) -> Vec<ColorBox> {
+        // Sorted: the boxes then depend on the colours alone, not on where they first occur.
+        self.occupied.sort_unstable();
+        let mut boxes = vec![ColorBox::around(&self.occupied, &self.counts, 0, self.occupied.len())];
+        while boxes.len() < limit {
+            let widest = (0..boxes.len()).rev().max_by_key(|&i| boxes[i].spread).unwrap_or(0);
+            let ColorBox { first, last, axis, spread, mean } = boxes[widest];
+            if spread == 0 {
+                break;
+            }
+            let cells = &mut self.occupied[first..last];
+            cells.sort_unstable_by_key(|&cell| (color_of(cell)[axis], cell));
+            let low = cells.partition_point(|&cell| color_of(cell)[axis] <= mean[axis]);
+            let middle = first + low.clamp(1, last - first - 1);
+            boxes[widest] = ColorBox::around(&self.occupied, &self.counts, first, middle);
+            boxes.push(ColorBox::around(&self.occupied, &self.counts, middle, last));
+        }
+        boxes
+    }
+}
+
+impl ColorBox {
+    fn around(occupied: &[u32], counts: &[u32], first: usize, last: usize) -> Self {
+        let (mut weight, mut sum, mut squares) = (0u64, [0u64; 3], [0u64; 3]);
+        for &cell in &occupied[first..last] {
+            let count = u64::from(counts[cell as usize]);
+            weight += count;
+            for (axis, channel) in color_of(cell).into_iter().enumerate() {
+                sum[axis] += count * u64::from(channel);
+                squares[axis] += count * u64::from(channel) * u64::from(channel);
+            }
+        }
+        let weight = weight.max(1);
+        // Green counts most and blue least to the eye.
+        let spread = |axis: usize| [3, 5, 2][axis] * (squares[axis] - sum[axis] * sum[axis] / weight);
+        let axis = (0..3).rev().max_by_key(|&axis| spread(axis)).unwrap_or(1);
+        let mean = sum.map(|sum| ((sum + weight / 2) / weight) as u8);
+        let spread = if last - first < 2 { 0 } else { spread(axis) };
+        Self { first, last, axis, spread, mean }
+    }
+}
+
+impl Palette {
+    pub(super) fn new() -> Self {
+        Self { colors: Vec::new(), nearest: vec![NO_ENTRY; CELLS] }
+    }
+
+    /// Takes the colours that suit a histogram; black alone for an empty one.
+    pub(super) fn fit(&mut self, histogram: &mut Histogram) {
+        self.colors.clear();
+        self.colors.extend(histogram.split(NO_ENTRY as usize).iter().map(|part| part.mean));
+        self.nearest.fill(NO_ENTRY);
+    }
+
+    /// Entry nearest to a colour, to the precision of a cell.
+    pub(super) fn entry(&mut self, color: [u8; 3]) -> u8 {
+        let cell = cell(color);
+        if self.nearest[cell] == NO_ENTRY {
+            let wanted = color_of(cell as u32);
+            let nearest = (0..self.colors.len()).min_by_key(|&i| distance(self.colors[i], wanted));
+            self.nearest[cell] = nearest.unwrap_or(0) as u8;
+        }
+        self.nearest[cell]
+    }
+}
+
+fn distance(a: [u8; 3], b: [u8; 3]) -> u32 {
+    let square = |i: usize| u32::from(a[i].abs_diff(b[i])) * u32::from(a[i].abs_diff(b[i]));
+    3 * square(0) + 5 * square(1) + 2 * square(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_colours_are_kept() {
+        let mut histogram = Histogram::new();
+        let wanted = [[0, 0, 0], [255, 255, 255], [200, 16, 40]];
+        for (i, &color) in wanted.iter().enumerate() {
+            (0..=1000 * i).for_each(|_| histogram.add(color));
+        }
+        let mut palette = Palette::new();
+        palette.fit(&mut histogram);
+        for color in wanted {
+            let shown = palette.colors[palette.entry(color) as usize];
+            assert!(distance(shown, color) <= 3 * 9 + 5 * 9 + 2 * 9, "{color:?} became {shown:?}");
+        }
+    }
+
+    #[test]
+    fn a_gradient_gets_evenly_spread_entries() {
+        let mut histogram = Histogram::new();
+        for i in 0..=255u8 {
+            histogram.add([i, i, 255 - i]);
+        }
+        let mut palette = Palette::new();
+        palette.fit(&mut histogram);
+        for i in 0..=255u8 {
+            let shown = palette.colors[palette.entry([i, i, 255 - i]) as usize];
+            assert!(shown[0].abs_diff(i) <= 3, "{i} became {shown:?}");
+        }
+        histogram.clear();
+        palette.fit(&mut histogram);
+        assert_eq!(palette.entry([9, 9, 9]), 0);
+    }
+}

@@ -1,0 +1,93 @@
+//! WebP, lossless, and animated from the second frame on (RFC 9649, §2.7).
+
+use super::changes::Changes;
+use super::{EncodeError, Rect};
+use crate::image::Image;
+use image_webp::{ColorType, WebPEncoder};
+
+/// Frames are compressed as they come; the file is put together at the end, because only then is it known whether
+/// it is an animation.
+pub(super) struct WebpWriter {
+    width: u32,
+    height: u32,
+    fps: u32,
+    changes: Changes,
+    frames: Vec<CompressedFrame>,
+}
+
+struct CompressedFrame {
+    rect: Rect,
+    /// A still WebP file of the rectangle.
+    webp: Vec<u8>,
+}
+
+/// `RIFF`, the length of what follows, `WEBP`.
+const FILE_HEADER: usize = 12;
+/// Bit of the extended header that says that there are frames.
+const ANIMATION: u8 = 1 << 1;
+/// Bit of a frame's header that says: drawn over, not blended.
+const DO_NOT_BLEND: u8 = 1 << 1;
+
+impl WebpWriter {
+    pub(super) fn new(width: u32, height: u32, fps: u32) -> Self {
+        Self { width, height, fps, changes: Changes::default(), frames: Vec::new() }
+    }
+
+    pub(super) fn push(&mut self, image: &Image) -> Result<(), EncodeError> {
+        // Frames are placed in steps of two pixels.
+        let (rect, rgb) = self.changes.take(image, 2);
+        let mut webp = Vec::new();
+        WebPEncoder::new(&mut webp).encode(&rgb, rect.width as u32, rect.height as u32, ColorType::Rgb8)?;
+        self.frames.push(CompressedFrame { rect, webp });
+        Ok(())
+    }
+
+    pub(super) fn finish(mut self) -> Vec<u8> {
+        if self.frames.len() == 1 {
+            return self.frames.remove(0).webp;
+        }
+        let mut body = Vec::new();
+        let mut extended = vec![ANIMATION, 0, 0, 0];
+        extended.extend(uint24(self.width - 1));
+        extended.extend(uint24(self.height - 1));
+        chunk(&mut body, *b"VP8X", &extended);
+        // Background colour and number of plays; 0 is for ever.
+        chunk(&mut body, *b"ANIM", &[0; 6]);
+        for (number, frame) in self.frames.iter().enumerate() {
+            chunk(&mut body, *b"ANMF", &self.frame(number as u64, frame));
+        }
+        let mut file = b"RIFF".to_vec();
+        file.extend((body.len() as u32 + 4).to_le_bytes());
+        file.extend(b"WEBP");
+        file.extend(body);
+        file
+    }
+
+    fn frame(&self, number: u64, frame: &CompressedFrame) -> Vec<u8> {
+        let CompressedFrame { rect, webp } = frame;
+        let time = |number: u64| (number * 1000 + u64::from(self.fps) / 2) / u64::from(self.fps);
+        let milliseconds = (time(number + 1) - time(number)) as u32;
+        let halves = [rect.left as u32 / 2, rect.top as u32 / 2];
+        let sizes = [rect.width as u32 - 1, rect.height as u32 - 1];
+        let numbers = [halves[0], halves[1], sizes[0], sizes[1], milliseconds];
+        let mut data: Vec<u8> = numbers.into_iter().flat_map(uint24).collect();
+        data.push(DO_NOT_BLEND);
+        // A still file of ours is its header and the one chunk with the pixels, which a frame takes as it is.
+        data.extend(&webp[FILE_HEADER..]);
+        data
+    }
+}
+
+fn uint24(value: u32) -> [u8; 3] {
+    let [a, b, c, _] = value.to_le_bytes();
+    [a, b, c]
+}
+
+fn chunk(file: &mut Vec<u8>, kind: [u8; 4], data: &[u8]) {
+    file.extend(kind);
+    file.extend((data.len() as u32).to_le_bytes());
+    file.extend(data);
+    if data.len() % 2 == 1 {
+        file.push(0);
+    }
+}

@@ -1,0 +1,170 @@
+//! Where the sun does not reach: an orthographic depth picture taken from the sun.
+
+use crate::clip::clip;
+use crate::raster::{Footprint, Layer, ScreenVertex};
+use sinew::math::{Vec3, any_orthonormal, clamp, max, normalize_or};
+
+/// Depths seen from the sun around one point of the world.
+#[derive(Clone, Debug)]
+pub(crate) struct ShadowMap {
+    layer: Layer,
+    /// Toward the sun, unit.
+    pub(crate) to_sun: Vec3,
+    axes: [Vec3; 2],
+    /// The focus along the axes, rounded to whole texels: shadows do not crawl when the camera moves.
+    center: [f32; 2],
+    focus: Vec3,
+    radius: f32,
+}
+
+impl ShadowMap {
+    pub(crate) fn new(size: usize) -> Self {
+        Self {
+            layer: Layer::new(size, size, [0, 0]),
+            to_sun: Vec3::Y,
+            axes: [Vec3::X, Vec3::Z],
+            center: [0.0; 2],
+            focus: Vec3::ZERO,
+            radius: 1.0,
+        }
+    }
+
+    /// Starts an empty map that reaches `radius` metres around `focus`.
+    pub(crate) fn begin(&mut self, to_sun: Vec3, focus: Vec3, radius: f32) {
+        self.to_sun = normalize_or(to_sun, Vec3::Y);
+        let across = any_orthonormal(self.to_sun);
+        self.axes = [across, self.to_sun.cross(across)];
+        self.radius = max(radius, 1e-3);
+        self.focus = if focus.is_finite() { focus } else { Vec3::ZERO };
+        let texel = self.texel();
+        self.center = self.axes.map(|axis| (self.focus.dot(axis) / texel).floor() * texel);
+        self.layer.clear(f32::NEG_INFINITY);
+    }
+
+    /// Side of a texel in the world, metres.
+    fn texel(&self) -> f32 {
+        2.0 * self.radius / self.layer.width as f32
+    }
+
+    /// Position on the map, ±1 at its edges, and height toward the sun.
+    fn map_from_world(&self, p: Vec3) -> [f32; 3] {
+        let flat = |i: usize| (p.dot(self.axes[i]) - self.center[i]) / self.radius;
+        [flat(0), flat(1), (p - self.focus).dot(self.to_sun)]
+    }
+
+    /// Lets a triangle throw its shadow.
+    pub(crate) fn cast(&mut self, corners: [Vec3; 3]) {
+        let on_map = corners.map(|p| self.map_from_world(p));
+        let polygon = clip(on_map.map(|[x, y, _]| [x, y, 1.0]), 0.5);
+        if polygon.corners().is_empty() {
+            return;
+        }
+        let half = 0.5 * self.layer.width as f32;
+        let slope = HeightOverMap::through(on_map);
+        let vertex = |[x, y, _]: [f32; 3]| ScreenVertex {
+            x: (x + 1.0) * half,
+            y: (1.0 - y) * half,
+            depth: slope.at(x, y),
+        };
+        let corners = polygon.corners();
+        for i in 1..corners.len() - 1 {
+            let fan = [corners[0], corners[i], corners[i + 1]].map(vertex);
+            if let Some((footprint, _)) = Footprint::new(fan, 0) {
+                self.layer.draw(&footprint);
+            }
+        }
+    }
+
+    /// Share of the sun's light, 0..=1, that reaches a point of a surface with unit `normal` (turned to the viewer).
+    ///
+    /// Mean of 3 × 3 bilinear comparisons. The point is first moved off the surface just far enough that the widest
+    /// tap cannot hit the surface itself: `d / cos θ ≥ 1.5 √2 · texel · tan θ`.
+    pub(crate) fn light_at(&self, point: Vec3, normal: Vec3, cos_to_sun: f32) -> f32 {
+        let sin = max(0.0, 1.0 - cos_to_sun * cos_to_sun).sqrt();
+        let [x, y, height] = self.map_from_world(point + normal * (self.texel() * (0.6 + 2.2 * sin)));
+        // The last tenth fades out, so that shadows end softly where the map ends.
+        let fade = 10.0 * (1.0 - max(x.abs(), y.abs()));
+        if fade.is_nan() || fade <= 0.0 {
+            return 1.0;
+        }
+        let size = self.layer.width;
+        let half = 0.5 * size as f32;
+        let (column, row) = ((x + 1.0) * half - 1.5, (1.0 - y) * half - 1.5);
+        let (left, top) = (column.floor(), row.floor());
+        let (fx, fy) = (column - left, row - top);
+        if left < 0.0 || top < 0.0 || left as usize + 4 > size || top as usize + 4 > size {
+            return 1.0;
+        }
+        let (columns, rows) = ([1.0 - fx, 1.0, 1.0, fx], [1.0 - fy, 1.0, 1.0, fy]);
+        let mut hidden = 0.0;
+        for (j, weight_of_row) in rows.into_iter().enumerate() {
+            let start = (top as usize + j) * size + left as usize;
+            for (depth, weight) in self.layer.depth[start..start + 4].iter().zip(columns) {
+                if *depth > height {
+                    hidden += weight * weight_of_row;
+                }
+            }
+        }
+        1.0 - hidden * (1.0 / 9.0) * clamp(fade, 0.0, 1.0)
+    }
+}
+
+/// The height of a triangle's plane as a linear function of the position on the map.
+#[derive(Clone, Copy, Debug)]
+struct HeightOverMap {
+    base: [f32; 3],
+    per_x: f32,
+    per_y: f32,
+}
+
+impl HeightOverMap {
+    fn through([a, b, c]: [[f32; 3]; 3]) -> Self {
+        let (bx, by, bz) = (b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+        let (cx, cy, cz) = (c[0] - a[0], c[1] - a[1], c[2] - a[2]);
+        let det = bx * cy - cx * by;
+        // A triangle seen edge on covers no texel; any finite slope will do.
+        let inverse = if det.abs() > 1e-12 { 1.0 / det } else { 0.0 };
+        Self { base: a, per_x: (bz * cy - cz * by) * inverse, per_y: (cz * bx - bz * cx) * inverse }
+    }
+
+    fn at(&self, x: f32, y: f32) -> f32 {
+        self.base[2] + (x - self.base[0]) * self.per_x + (y - self.base[1]) * self.per_y
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slab_shades_what_is_below_and_not_itself() {
+        let mut map = ShadowMap::new(256);
+        map.begin(Vec3::Y, Vec3::ZERO, 4.0);
+        let [a, b, c, d] =
+            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, z]| Vec3::new(x, 1.0, z));
+        map.cast([a, b, c]);
+        map.cast([a, c, d]);
+        assert_eq!(map.light_at(Vec3::new(0.2, 0.0, -0.3), Vec3::Y, 1.0), 0.0);
+        assert_eq!(map.light_at(Vec3::new(1.5, 0.0, 0.0), Vec3::Y, 1.0), 1.0);
+        assert_eq!(map.light_at(Vec3::new(0.2, 1.0, -0.3), Vec3::Y, 1.0), 1.0);
+        assert_eq!(map.light_at(Vec3::new(50.0, 0.0, 0.0), Vec3::Y, 1.0), 1.0);
+        let edge = map.light_at(Vec3::new(1.0, 0.0, 0.0), Vec3::Y, 1.0);
+        assert!(edge > 0.2 && edge < 0.8, "{edge}");
+    }
+
+    #[test]
+    fn slanted_surfaces_do_not_shade_themselves() {
+        let mut map = ShadowMap::new(128);
+        for tilt in [0.1, 0.4, 0.7, 0.95] {
+            let to_sun = Vec3::new(tilt, (1.0f32 - tilt * tilt).sqrt(), 0.0);
+            map.begin(to_sun, Vec3::new(0.31, 0.0, 0.17), 3.0);
+            let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
+            map.cast([corner(-30.0, -30.0), corner(30.0, -30.0), corner(30.0, 30.0)]);
+            map.cast([corner(-30.0, -30.0), corner(30.0, 30.0), corner(-30.0, 30.0)]);
+            for i in 0..400 {
+                let p = Vec3::new((i % 20) as f32 * 0.093 - 1.0, 0.0, (i / 20) as f32 * 0.087 - 1.0);
+                assert_eq!(map.light_at(p, Vec3::Y, to_sun.y), 1.0, "tilt {tilt}, {p}");
+            }
+        }
+    }
+}

@@ -1,0 +1,152 @@
+use crate::color::ColorTables;
+use sinew::math::Vec2;
+
+/// A picture laid on a surface, with its smaller copies so that it neither shimmers nor crawls at a distance.
+#[derive(Clone, Debug)]
+pub struct Texture {
+    /// Full size first, each next half as large in both directions, the last 1 × 1.
+    levels: Vec<Level>,
+}
+
+#[derive(Clone, Debug)]
+struct Level {
+    width: usize,
+    height: usize,
+    /// sRGB with alpha, rows from the top.
+    rgba: Vec<u8>,
+}
+
+/// The bytes are no picture.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a texture of {width} × {height} needs {needed} bytes and got {got}")]
+pub struct TextureError {
+    /// Pixels across, as asked for.
+    pub width: u32,
+    /// Pixels down, as asked for.
+    pub height: u32,
+    /// `width × height × 4`, or 4 where a side is 0.
+    pub needed: u64,
+    /// Bytes that were given.
+    pub got: u64,
+}
+
+impl Texture {
+    /// From 8-bit sRGB with alpha, `width × height × 4` bytes, rows from the top.
+    ///
+    /// # Errors
+    /// A side of 0, or a number of bytes that does not fit the sides.
+    pub fn new(width: u32, height: u32, rgba: Vec<u8>) -> Result<Self, TextureError> {
+        let needed = (u64::from(width) * u64::from(height)).saturating_mul(4);
+        let got = rgba.len() as u64;
+        if needed == 0 || needed != got {
+            return Err(TextureError { width, height, needed: needed.max(4), got });
+        }
+        let tables = ColorTables::new();
+        let mut levels = vec![Level { width: width as usize, height: height as usize, rgba }];
+        while let Some(smaller) = levels.last().and_then(|level| level.halved(&tables)) {
+            levels.push(smaller);
+        }
+        Ok(Self { levels })
+    }
+
+    /// Texels of the full picture.
+    pub(crate) fn texels(&self) -> f32 {
+        (self.levels[0].width * self.levels[0].height) as f32
+    }
+
+    /// The level whose texels are nearest in size to a pixel that covers `texels_per_pixel` of the full picture.
+    pub(crate) fn level_for(&self, texels_per_pixel: f32) -> usize {
+        let mut level = 0;
+        let mut area = texels_per_pixel;
+        // A level down quarters the area; half a level up is a factor of two.
+        while area > 2.0 && level + 1 < self.levels.len() {
+            area *= 0.25;
+            level += 1;
+        }
+        level
+    }
+
+    /// Linear colour at `uv`, bilinear, repeated beyond 0..1.
+    pub(crate) fn sample(&self, uv: Vec2, level: usize, tables: &ColorTables) -> [f32; 3] {
+        let level = &self.levels[level];
+        let (x0, x1, fx) = texel_pair(uv.x, level.width);
+        let (y0, y1, fy) = texel_pair(uv.y, level.height);
+        let [a, b, c, d] = [level.at(x0, y0), level.at(x1, y0), level.at(x0, y1), level.at(x1, y1)];
+        core::array::from_fn(|i| {
+            let [a, b, c, d] = [a, b, c, d].map(|texel| tables.to_linear(texel[i]));
+            let (top, bottom) = (a + (b - a) * fx, c + (d - c) * fx);
+            top + (bottom - top) * fy
+        })
+    }
+}
+
+impl Level {
+    fn at(&self, x: usize, y: usize) -> [u8; 4] {
+        let start = (y * self.width + x) * 4;
+        [self.rgba[start], self.rgba[start + 1], self.rgba[start + 2], self.rgba[start + 3]]
+    }
+
+    /// Each 2 × 2 texels averaged as light, not as bytes; `None` at 1 × 1.
+    fn halved(&self, tables: &ColorTables) -> Option<Self> {
+        if self.width == 1 && self.height == 1 {
+            return None;
+        }
+        let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
+        let mut rgba = Vec::with_capacity(width * height * 4);
+        for y in 0..height {
+            let (y0, y1) = (2 * y, (2 * y + 1).min(self.height - 1));
+            for x in 0..width {
+                let (x0, x1) = (2 * x, (2 * x + 1).min(self.width - 1));
+                let texels = [self.at(x0, y0), self.at(x1, y0), self.at(x0, y1), self.at(x1, y1)];
+                for channel in 0..3 {
+                    let [a, b, c, d] = texels.map(|texel| tables.to_linear(texel[channel]));
+                    rgba.push(tables.to_srgb((a + b + c + d) * 0.25));
+                }
+                let alpha: u32 = texels.iter().map(|texel| u32::from(texel[3])).sum();
+                rgba.push(((alpha + 2) / 4) as u8);
+            }
+        }
+        Some(Self { width, height, rgba })
+    }
+}
+
+/// The two texels around coordinate `u` in a row of `count`, and how far it is from the first to the second.
+fn texel_pair(u: f32, count: usize) -> (usize, usize, f32) {
+    let wrapped = u - u.floor();
+    let position = if wrapped >= 0.0 && wrapped < 1.0 { wrapped } else { 0.0 } * count as f32 - 0.5;
+    let base = position.floor();
+    let first = (base as i64).rem_euclid(count as i64) as usize;
+    (first, (first + 1) % count, position - base)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texel_centres_are_exact_and_borders_repeat() {
+        let tables = ColorTables::new();
+        let texture = Texture::new(2, 1, vec![255, 0, 0, 255, 0, 0, 255, 255]).expect("2 × 1");
+        assert_eq!(texture.sample(Vec2::new(0.25, 0.5), 0, &tables), [1.0, 0.0, 0.0]);
+        assert_eq!(texture.sample(Vec2::new(-0.25, 3.5), 0, &tables), [0.0, 0.0, 1.0]);
+        assert_eq!(texture.sample(Vec2::new(0.5, 0.5), 0, &tables), [0.5, 0.0, 0.5]);
+        assert_eq!(texture.sample(Vec2::new(f32::NAN, f32::INFINITY), 0, &tables).len(), 3);
+    }
+
+    #[test]
+    fn smaller_copies_keep_the_light() {
+        let tables = ColorTables::new();
+        let pixels = [[255, 255, 255, 255], [0, 0, 0, 255], [0, 0, 0, 255], [255, 255, 255, 255]].concat();
+        let texture = Texture::new(2, 2, pixels).expect("2 × 2");
+        assert_eq!(texture.level_for(4.0), 1);
+        let gray = texture.sample(Vec2::new(0.5, 0.5), 1, &tables)[0];
+        assert!((gray - 0.5).abs() < 0.01, "{gray}");
+    }
+
+    #[test]
+    fn wrong_sizes_are_errors() {
+        assert!(Texture::new(0, 4, vec![]).is_err());
+        assert!(Texture::new(2, 2, vec![0; 15]).is_err());
+        assert!(Texture::new(u32::MAX, u32::MAX, vec![0; 4]).is_err());
+    }
+}
