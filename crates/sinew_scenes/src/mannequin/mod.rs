@@ -1,10 +1,16 @@
 //! The embedded character: a wooden mannequin of 1.75 m, made by code.
 
 mod body;
+mod get_up;
+mod keys;
 mod loft;
+mod posture;
 mod skeleton;
+mod walk;
 
 use sinew::anim::{Clip, Rig};
+
+pub use walk::WALK_SPEED;
 
 /// The mannequin: rig with skinned mesh, and its clips.
 ///
@@ -23,5 +29,5 @@ pub struct Mannequin {
 pub fn mannequin() -> Mannequin {
     let mut rig = skeleton::skeleton();
     rig.meshes.push(body::mesh());
-    Mannequin { rig, clips: Vec::new() }
+    Mannequin { rig, clips: vec![walk::walk(), walk::idle(), get_up::from_back(), get_up::from_face()] }
 }

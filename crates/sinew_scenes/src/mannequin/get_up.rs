@@ -1,0 +1,229 @@
+//! Getting up, from the back and from the face: key postures and the curves between them.
+//!
+//! Both end in [`Posture::standing`] at the origin, facing +Z. Lying on the back the feet point along +Z, lying on the
+//! face the head does: so the way the body lies tells which way it will face once it stands.
+
+use super::keys::{Key, RATE, between, record};
+use super::posture::{Foot, Hand, Hanging, Posture};
+use super::skeleton::Side::{Left, Right};
+use sinew::anim::Clip;
+use sinew::math::Vec3;
+
+fn clip(name: &str, keys: &[Key]) -> Clip {
+    let frames = (keys[keys.len() - 1].at * RATE + 0.5) as usize;
+    record(name, frames, |time| between(keys, time))
+}
+
+fn v(x: f32, y: f32, z: f32) -> Vec3 {
+    Vec3::new(x, y, z)
+}
+
+/// A turn that only leans forward.
+fn lean(degrees: f32) -> Vec3 {
+    v(degrees, 0.0, 0.0)
+}
+
+/// A palm on the floor.
+fn palm(x: f32, z: f32, fingers_out: f32, elbow_out: f32) -> Hand {
+    Hand { wrist: v(x, 0.032, z), flat: 1.0, fingers_out, elbow_out }
+}
+
+/// A hand in the air or on a knee.
+fn hand(x: f32, y: f32, z: f32, elbow_out: f32) -> Hand {
+    Hand { wrist: v(x, y, z), flat: 0.0, fingers_out: 0.0, elbow_out }
+}
+
+/// A foot in the air.
+fn lifted(ankle: Vec3, pitch: f32, knee_out: f32) -> Foot {
+    Foot { ankle, turn: lean(pitch), toes: 0.0, knee_out }
+}
+
+/// From the back: sit up on both hands, draw the feet in, rock forward into a squat, stand.
+pub(super) fn from_back() -> Clip {
+    let lying = Posture {
+        pelvis: v(0.0, 0.122, -0.44),
+        pelvis_turn: lean(-90.0),
+        spine: lean(0.0),
+        chest: lean(0.0),
+        neck: lean(0.0),
+        head: v(0.0, 6.0, 0.0),
+        left_foot: lifted(v(0.15, 0.093, 0.41), -65.0, 12.0),
+        right_foot: lifted(v(-0.15, 0.093, 0.41), -65.0, 12.0),
+        left_hand: palm(0.34, -0.62, 0.0, 80.0),
+        right_hand: palm(-0.34, -0.62, 0.0, 80.0),
+    };
+    let curling = Posture {
+        pelvis_turn: lean(-74.0),
+        spine: lean(16.0),
+        chest: lean(14.0),
+        neck: lean(16.0),
+        head: lean(8.0),
+        left_foot: Foot::flat(Left, 0.13, 0.14, 8.0),
+        right_foot: lifted(v(-0.15, 0.10, 0.38), -50.0, 10.0),
+        ..lying
+    };
+    let sitting = Posture {
+        pelvis: v(0.0, 0.118, -0.42),
+        pelvis_turn: lean(-32.0),
+        spine: lean(10.0),
+        chest: lean(8.0),
+        neck: lean(6.0),
+        head: lean(0.0),
+        left_foot: Foot::flat(Left, 0.115, 0.0, 8.0),
+        right_foot: Foot::flat(Right, -0.135, 0.17, 8.0),
+        left_hand: palm(0.34, -0.62, 10.0, 40.0),
+        right_hand: palm(-0.34, -0.62, 10.0, 40.0),
+        ..curling
+    };
+    let pushing = Posture {
+        pelvis: v(-0.02, 0.15, -0.38),
+        pelvis_turn: v(6.0, -8.0, 12.0),
+        spine: lean(14.0),
+        chest: lean(12.0),
+        left_foot: Foot::flat(Left, 0.11, 0.0, 8.0),
+        right_foot: Foot::flat(Right, -0.12, 0.02, 8.0),
+        left_hand: hand(0.24, 0.52, 0.02, 20.0),
+        right_hand: palm(-0.34, -0.56, 20.0, 30.0),
+        ..sitting
+    };
+    let squatting = Posture {
+        pelvis: v(0.0, 0.34, -0.20),
+        pelvis_turn: lean(38.0),
+        spine: lean(12.0),
+        chest: lean(8.0),
+        neck: lean(-16.0),
+        head: lean(-12.0),
+        left_foot: Foot::on_ball(Left, 0.105, 0.0, 8.0, 10.0),
+        right_foot: Foot::on_ball(Right, -0.108, 0.0, 8.0, 14.0),
+        left_hand: hand(0.23, 0.42, 0.30, 25.0),
+        right_hand: hand(-0.26, 0.38, 0.22, 25.0),
+    };
+    let rising = Posture {
+        pelvis: v(0.0, 0.62, -0.15),
+        pelvis_turn: lean(40.0),
+        left_foot: Posture::standing().left_foot,
+        right_foot: Posture::standing().right_foot,
+        left_hand: hand(0.19, 0.60, 0.17, 35.0),
+        right_hand: hand(-0.19, 0.60, 0.16, 35.0),
+        ..squatting
+    };
+    let nearly = Posture {
+        pelvis: v(0.0, 0.87, -0.05),
+        pelvis_turn: lean(16.0),
+        spine: lean(4.0),
+        chest: lean(2.0),
+        neck: lean(-8.0),
+        head: lean(-6.0),
+        ..rising
+    }
+    .with_arms(Hanging { forward: 16.0, out: 10.0, elbow: 26.0 });
+    let postures = [
+        (0.0, lying),
+        (0.45, curling),
+        (0.9, sitting),
+        (1.2, pushing),
+        (1.6, squatting),
+        (2.0, rising),
+        (2.4, nearly),
+        (2.8, Posture::standing()),
+    ];
+    clip("get_up_supine", &postures.map(|(at, posture)| Key { at, posture }))
+}
+
+/// From the face: press the chest up, draw the knees in, plant the left foot, rise over it.
+pub(super) fn from_face() -> Clip {
+    let lying = Posture {
+        pelvis: v(0.0, 0.112, -0.15),
+        pelvis_turn: lean(90.0),
+        spine: lean(0.0),
+        chest: lean(0.0),
+        neck: v(0.0, 25.0, 0.0),
+        head: v(0.0, 45.0, 0.0),
+        left_foot: lifted(v(0.14, 0.078, -1.0), 152.0, 8.0),
+        right_foot: lifted(v(-0.14, 0.078, -1.0), 152.0, 8.0),
+        left_hand: palm(0.34, 0.16, 0.0, 60.0),
+        right_hand: palm(-0.34, 0.16, 0.0, 60.0),
+    };
+    let pressing = Posture {
+        pelvis: v(0.0, 0.135, -0.18),
+        pelvis_turn: lean(80.0),
+        spine: lean(-14.0),
+        chest: lean(-12.0),
+        neck: lean(-12.0),
+        head: lean(-8.0),
+        left_foot: lifted(v(0.14, 0.16, -0.96), 125.0, 8.0),
+        right_foot: lifted(v(-0.14, 0.16, -0.96), 125.0, 8.0),
+        left_hand: palm(0.34, 0.16, 0.0, 40.0),
+        right_hand: palm(-0.34, 0.16, 0.0, 40.0),
+    };
+    let drawing_in = Posture {
+        pelvis: v(0.0, 0.32, -0.29),
+        pelvis_turn: lean(82.0),
+        spine: lean(0.0),
+        chest: lean(-4.0),
+        left_foot: lifted(v(0.14, 0.21, -0.80), 95.0, 8.0),
+        right_foot: lifted(v(-0.14, 0.21, -0.80), 95.0, 8.0),
+        ..pressing
+    };
+    let on_all_fours = Posture {
+        pelvis: v(0.0, 0.475, -0.34),
+        pelvis_turn: lean(84.0),
+        spine: lean(6.0),
+        chest: lean(2.0),
+        left_foot: Foot::on_ball(Left, 0.12, -0.75, 4.0, 65.0),
+        right_foot: Foot::on_ball(Right, -0.12, -0.75, 4.0, 65.0),
+        ..drawing_in
+    };
+    let stepping = Posture {
+        pelvis: v(-0.02, 0.495, -0.34),
+        pelvis_turn: v(74.0, 0.0, 8.0),
+        spine: lean(14.0),
+        chest: lean(10.0),
+        left_foot: lifted(v(0.16, 0.20, -0.28), 35.0, 12.0),
+        left_hand: hand(0.28, 0.22, 0.18, 30.0),
+        right_hand: palm(-0.30, 0.16, 0.0, 30.0),
+        ..on_all_fours
+    };
+    let half_kneeling = Posture {
+        pelvis: v(0.0, 0.475, -0.30),
+        pelvis_turn: lean(40.0),
+        spine: lean(12.0),
+        chest: lean(6.0),
+        neck: lean(-12.0),
+        head: lean(-10.0),
+        left_foot: Posture::standing().left_foot,
+        left_hand: hand(0.16, 0.63, 0.08, 40.0),
+        right_hand: hand(-0.26, 0.46, 0.08, 20.0),
+        ..stepping
+    };
+    let rising = Posture {
+        pelvis: v(0.02, 0.66, -0.17),
+        pelvis_turn: lean(32.0),
+        left_hand: hand(0.16, 0.66, 0.14, 40.0),
+        right_hand: hand(-0.24, 0.62, 0.10, 20.0),
+        ..half_kneeling
+    };
+    let nearly = Posture {
+        pelvis: v(0.025, 0.86, -0.05),
+        pelvis_turn: lean(14.0),
+        spine: lean(4.0),
+        chest: lean(2.0),
+        neck: lean(-6.0),
+        head: lean(-6.0),
+        right_foot: lifted(v(-0.105, 0.17, -0.22), 26.0, 8.0),
+        ..rising
+    }
+    .with_arms(Hanging { forward: 14.0, out: 9.0, elbow: 28.0 });
+    let postures = [
+        (0.0, lying),
+        (0.45, pressing),
+        (0.75, drawing_in),
+        (1.05, on_all_fours),
+        (1.4, stepping),
+        (1.75, half_kneeling),
+        (2.15, rising),
+        (2.55, nearly),
+        (2.9, Posture::standing()),
+    ];
+    clip("get_up_prone", &postures.map(|(at, posture)| Key { at, posture }))
+}

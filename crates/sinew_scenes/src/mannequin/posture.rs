@@ -1,0 +1,288 @@
+//! Posing the mannequin as an animator does: trunk by turns, hands and feet by where they are.
+
+use super::skeleton::{ANKLE_HEIGHT, Bone, HIPS_ABOVE_HIP, Side, bind_offset, bind_position, left_arm_axes};
+use sinew::anim::LocalTransform;
+use sinew::math::{Mat3, Rotation, Vec3, clamp, normalize_or, trig};
+
+/// A turn in degrees: x leans forward, y turns to the left, z tips to the right. Applied in the order z, x, y.
+pub(super) type Turn = Vec3;
+
+/// A whole-body posture in world space (+Y up, floor at y = 0), metres and degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Posture {
+    /// Position of the hips joint.
+    pub(super) pelvis: Vec3,
+    /// Of the pelvis, against the world.
+    pub(super) pelvis_turn: Turn,
+    /// Of each trunk joint, against its parent.
+    pub(super) spine: Turn,
+    pub(super) chest: Turn,
+    pub(super) neck: Turn,
+    pub(super) head: Turn,
+    pub(super) left_foot: Foot,
+    pub(super) right_foot: Foot,
+    pub(super) left_hand: Hand,
+    pub(super) right_hand: Hand,
+}
+
+/// Where a foot is. The leg follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Foot {
+    /// Position of the ankle.
+    pub(super) ankle: Vec3,
+    /// Of the foot against the world; none stands flat and points along +Z.
+    pub(super) turn: Turn,
+    /// Toes bent up against the foot.
+    pub(super) toes: f32,
+    /// Knee turned outward from where the pelvis faces, about the line from hip to ankle.
+    pub(super) knee_out: f32,
+}
+
+/// Where a hand is. The arm follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Hand {
+    /// Position of the wrist.
+    pub(super) wrist: Vec3,
+    /// 0: in line with the forearm; 1: palm flat on the floor.
+    pub(super) flat: f32,
+    /// Where the fingers of a flat hand point: 0 along +Z, 90 outward.
+    pub(super) fingers_out: f32,
+    /// Elbow turned outward and up from behind the body, about the line from shoulder to wrist.
+    pub(super) elbow_out: f32,
+}
+
+/// How an arm hangs from the chest, degrees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hanging {
+    /// Upper arm forward of straight down.
+    pub(super) forward: f32,
+    /// Upper arm away from the body.
+    pub(super) out: f32,
+    /// Bend of the elbow.
+    pub(super) elbow: f32,
+}
+
+impl Foot {
+    /// Flat on the floor, toes a little outward.
+    pub(super) fn flat(side: Side, x: f32, z: f32, out: f32) -> Self {
+        let turn = Vec3::new(0.0, out * side.sign(), 0.0);
+        Self { ankle: Vec3::new(x, ANKLE_HEIGHT, z), turn, toes: 0.0, knee_out: out }
+    }
+
+    /// As [`flat`](Self::flat), then heel lifted by `pitch` degrees about the ball, the toes staying down.
+    pub(super) fn on_ball(side: Side, x: f32, z: f32, out: f32, pitch: f32) -> Self {
+        let flat = Self::flat(side, x, z, out);
+        let ball = bind_position(Bone::LeftToes) - bind_position(Bone::LeftFoot);
+        let contact = flat.ankle + turn(flat.turn) * ball;
+        let raised = Vec3::new(pitch, flat.turn.y, 0.0);
+        Self { ankle: contact - turn(raised) * ball, turn: raised, toes: pitch, ..flat }
+    }
+}
+
+/// Rotation of a turn.
+pub(super) fn turn(degrees: Turn) -> Rotation {
+    let about = |axis: Vec3, angle: f32| Rotation::from_axis_angle(axis, angle.to_radians());
+    about(Vec3::Y, degrees.y) * about(Vec3::X, degrees.x) * about(Vec3::Z, degrees.z)
+}
+
+/// World position and rotation of each joint, found parent first.
+struct Placed {
+    position: [Vec3; Bone::COUNT],
+    rotation: [Rotation; Bone::COUNT],
+}
+
+impl Placed {
+    fn at(&self, bone: Bone) -> (Vec3, Rotation) {
+        (self.position[bone.index()], self.rotation[bone.index()])
+    }
+
+    fn set(&mut self, bone: Bone, world: Rotation) {
+        let parent = bone.parent().map_or((Vec3::ZERO, Rotation::IDENTITY), |p| self.at(p));
+        self.position[bone.index()] = parent.0 + parent.1 * bind_offset(bone);
+        self.rotation[bone.index()] = world.normalize();
+    }
+
+    fn set_local(&mut self, bone: Bone, local: Rotation) {
+        let parent = bone.parent().map_or(Rotation::IDENTITY, |p| self.at(p).1);
+        self.set(bone, parent * local);
+    }
+}
+
+impl Posture {
+    /// Upright on both feet, arms hanging: where every clip that ends on its feet ends.
+    pub(super) fn standing() -> Self {
+        let hand = Hand { wrist: Vec3::ZERO, flat: 0.0, fingers_out: 0.0, elbow_out: 0.0 };
+        let posture = Self {
+            pelvis: Vec3::new(0.0, 0.916 + HIPS_ABOVE_HIP, 0.0),
+            pelvis_turn: Vec3::new(2.0, 0.0, 0.0),
+            spine: Vec3::new(-2.0, 0.0, 0.0),
+            chest: Vec3::ZERO,
+            neck: Vec3::new(3.0, 0.0, 0.0),
+            head: Vec3::new(-3.0, 0.0, 0.0),
+            left_foot: Foot::flat(Side::Left, 0.105, 0.0, 8.0),
+            right_foot: Foot::flat(Side::Right, -0.105, 0.0, 8.0),
+            left_hand: hand,
+            right_hand: hand,
+        };
+        posture.with_arms(Hanging { forward: 2.0, out: 7.0, elbow: 16.0 })
+    }
+
+    /// Both arms hanging alike.
+    pub(super) fn with_arms(self, hanging: Hanging) -> Self {
+        self.with_arm(Side::Left, hanging).with_arm(Side::Right, hanging)
+    }
+
+    /// One arm hanging from the chest as it is now.
+    pub(super) fn with_arm(mut self, side: Side, hanging: Hanging) -> Self {
+        let placed = self.place_trunk();
+        let (shoulder, _) = placed.at(Bone::LeftUpperArm.on(side));
+        let chest = placed.at(Bone::Chest).1;
+        let arm = turn(Vec3::new(-hanging.forward, 0.0, hanging.out * side.sign()));
+        let fore = arm * turn(Vec3::new(-hanging.elbow, 0.0, 0.0));
+        let (upper_length, fore_length) = (Limb::arm(side).upper.length(), Limb::arm(side).lower.length());
+        let wrist =
+            shoulder + chest * (arm * (Vec3::NEG_Y * upper_length) + fore * (Vec3::NEG_Y * fore_length));
+        let hand = if side == Side::Left { &mut self.left_hand } else { &mut self.right_hand };
+        *hand = Hand { wrist, flat: 0.0, fingers_out: 0.0, elbow_out: 0.0 };
+        self
+    }
+
+    /// Every number of the posture, in one fixed order, for interpolation.
+    pub(super) fn numbers(&mut self) -> Vec<&mut f32> {
+        let Self { pelvis, pelvis_turn, spine, chest, neck, head, .. } = self;
+        let mut vectors = vec![pelvis, pelvis_turn, spine, chest, neck, head];
+        let mut scalars = Vec::new();
+        for foot in [&mut self.left_foot, &mut self.right_foot] {
+            vectors.extend([&mut foot.ankle, &mut foot.turn]);
+            scalars.extend([&mut foot.toes, &mut foot.knee_out]);
+        }
+        for hand in [&mut self.left_hand, &mut self.right_hand] {
+            vectors.push(&mut hand.wrist);
+            scalars.extend([&mut hand.flat, &mut hand.fingers_out, &mut hand.elbow_out]);
+        }
+        let of_vectors = vectors.into_iter().flat_map(|v| [&mut v.x, &mut v.y, &mut v.z]);
+        of_vectors.chain(scalars).collect()
+    }
+
+    /// Local transforms of all joints, in the rig's order.
+    pub(super) fn solve(&self) -> Vec<LocalTransform> {
+        let mut placed = self.place_trunk();
+        for side in Side::BOTH {
+            self.place_arm(side, &mut placed);
+            self.place_leg(side, &mut placed);
+        }
+        let local = |bone: Bone| {
+            let parent = bone.parent().map_or(Rotation::IDENTITY, |p| placed.at(p).1);
+            let translation = if bone == Bone::Hips { self.pelvis } else { bind_offset(bone) };
+            let rotation = (parent.inverse() * placed.at(bone).1).normalize();
+            LocalTransform { translation, rotation, scale: Vec3::ONE }
+        };
+        Bone::all().map(local).collect()
+    }
+
+    fn place_trunk(&self) -> Placed {
+        let mut placed =
+            Placed { position: [Vec3::ZERO; Bone::COUNT], rotation: [Rotation::IDENTITY; Bone::COUNT] };
+        placed.set(Bone::Hips, turn(self.pelvis_turn));
+        placed.position[Bone::Hips.index()] = self.pelvis;
+        let trunk = [
+            (Bone::Spine, self.spine),
+            (Bone::Chest, self.chest),
+            (Bone::Neck, self.neck),
+            (Bone::Head, self.head),
+        ];
+        for (bone, degrees) in trunk {
+            placed.set_local(bone, turn(degrees));
+        }
+        for side in Side::BOTH {
+            placed.set_local(Bone::LeftShoulder.on(side), Rotation::IDENTITY);
+            placed.set_local(Bone::LeftUpperArm.on(side), Rotation::IDENTITY);
+        }
+        placed
+    }
+
+    fn place_leg(&self, side: Side, placed: &mut Placed) {
+        let foot = if side == Side::Left { &self.left_foot } else { &self.right_foot };
+        let pelvis = placed.at(Bone::Hips).1;
+        placed.set(Bone::LeftUpperLeg.on(side), Rotation::IDENTITY);
+        let hip = placed.at(Bone::LeftUpperLeg.on(side)).0;
+        let swivel = foot.knee_out * side.sign();
+        let (thigh, shank) = Limb::leg(side).reach(foot.ankle - hip, pelvis * Vec3::Z, -swivel);
+        placed.set(Bone::LeftUpperLeg.on(side), thigh);
+        placed.set(Bone::LeftLowerLeg.on(side), shank);
+        placed.set(Bone::LeftFoot.on(side), turn(foot.turn));
+        placed.set_local(Bone::LeftToes.on(side), turn(Vec3::new(-foot.toes, 0.0, 0.0)));
+    }
+
+    fn place_arm(&self, side: Side, placed: &mut Placed) {
+        let hand = if side == Side::Left { &self.left_hand } else { &self.right_hand };
+        let chest = placed.at(Bone::Chest).1;
+        let shoulder = placed.at(Bone::LeftUpperArm.on(side)).0;
+        let behind = chest * side.vector(Vec3::new(0.35, -0.2, -1.0));
+        let swivel = hand.elbow_out * side.sign();
+        let (upper, fore) = Limb::arm(side).reach(hand.wrist - shoulder, behind, swivel);
+        placed.set(Bone::LeftUpperArm.on(side), upper);
+        placed.set(Bone::LeftLowerArm.on(side), fore);
+        let flat = flat_hand(side, hand.fingers_out);
+        placed.set(Bone::LeftHand.on(side), fore.nlerp(flat, hand.flat));
+    }
+}
+
+/// World rotation of a hand whose palm is on the floor.
+fn flat_hand(side: Side, fingers_out: f32) -> Rotation {
+    let axes = left_arm_axes();
+    let (fingers, palm) = (side.vector(axes.fore), side.vector(axes.palm));
+    let (sin, cos) = trig::sin_cos(fingers_out.to_radians());
+    from_pairs([fingers, palm], [side.vector(Vec3::new(sin, 0.0, cos)), Vec3::NEG_Y])
+}
+
+/// The rotation that takes two orthonormal vectors to two others.
+fn from_pairs(from: [Vec3; 2], to: [Vec3; 2]) -> Rotation {
+    let basis = |[a, b]: [Vec3; 2]| Rotation::from_mat3(&Mat3::from_cols(a, b, a.cross(b)));
+    basis(to) * basis(from).inverse()
+}
+
+/// A limb of two bones with a hinge between them, as it is in the bind pose.
+struct Limb {
+    upper: Vec3,
+    lower: Vec3,
+    /// Turning the lower bone about it by a positive angle bends the limb. Unit, at right angles to both bones.
+    hinge: Vec3,
+}
+
+impl Limb {
+    fn between(joints: [Bone; 3], side: Side, hinge: impl Fn(Vec3) -> Vec3) -> Self {
+        let [a, b, c] = joints.map(|bone| bind_position(bone.on(side)));
+        Self { upper: b - a, lower: c - b, hinge: hinge((b - a).normalize()) }
+    }
+
+    fn leg(side: Side) -> Self {
+        Self::between([Bone::LeftUpperLeg, Bone::LeftLowerLeg, Bone::LeftFoot], side, |_| Vec3::X)
+    }
+
+    fn arm(side: Side) -> Self {
+        Self::between([Bone::LeftUpperArm, Bone::LeftLowerArm, Bone::LeftHand], side, |along| {
+            along.cross(Vec3::Z)
+        })
+    }
+
+    /// World rotations of the two bones that bring the limb's end to `target`, given from its root, with the hinge
+    /// pointing toward `pole` turned by `swivel` degrees about the way to the target. A target out of reach is
+    /// approached; the limb never stretches fully, so that the hinge does not snap.
+    fn reach(&self, target: Vec3, pole: Vec3, swivel: f32) -> (Rotation, Rotation) {
+        let (a, b) = (self.upper.length(), self.lower.length());
+        let along = normalize_or(target, Vec3::NEG_Y);
+        let distance = clamp(target.length(), 0.3 * (a + b), 0.999 * (a + b));
+        let pole = Rotation::from_axis_angle(along, swivel.to_radians()) * pole;
+        let hinge = normalize_or(pole.cross(along), Vec3::X);
+        let toward_pole = along.cross(hinge);
+        // Law of cosines: how far along the way, and how far off it, the hinge is.
+        let foot = (a * a + distance * distance - b * b) / (2.0 * distance);
+        let height = clamp(a * a - foot * foot, 0.0, a * a).sqrt();
+        let upper = along * foot + toward_pole * height;
+        let lower = along * distance - upper;
+        let bone =
+            |rest: Vec3, now: Vec3| from_pairs([self.hinge, rest.normalize()], [hinge, now.normalize()]);
+        (bone(self.upper, upper), bone(self.lower, lower))
+    }
+}
