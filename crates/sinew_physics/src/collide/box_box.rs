@@ -1,7 +1,7 @@
 //! Box against box: separating axes (Gottschalk, Lin & Manocha 1996), then the two faces or the two edges that meet.
 
 use super::clip::{self, Face};
-use super::feature::{self, pair};
+use super::feature::{self, WHOLE, pair};
 use super::placed::{Obb, Segment, sign};
 use super::reduce::{midway, push_best};
 use super::{Manifold, ManifoldPoint};
@@ -49,7 +49,7 @@ pub(super) fn collide(a: &Obb, b: &Obb, margin: f32, out: &mut Manifold) {
     };
     if !touched {
         if axis.separation > 0.0 {
-            push_closest(a, b, axis.normal, margin, out);
+            push_closest(a, b, axis.normal, margin, tolerance, out);
         } else {
             push_support(a, b, &axis, out);
         }
@@ -82,8 +82,9 @@ fn best_face(of: &Obb, other: &Obb, toward_b: f32, name: fn(usize) -> AxisOf) ->
     best
 }
 
+/// The better of the two. Faces that lie on each other are as good, and one of them is kept to.
 fn choose_face(a: Axis, b: Axis, tolerance: f32) -> Axis {
-    let tied = (a.separation - b.separation).abs() <= tolerance;
+    let tied = (a.separation - b.separation).abs() <= tolerance && a.normal.dot(b.normal) > 0.9;
     let a_wins = if tied { a.normal.dot(TIE_DIRECTION) > 0.0 } else { a.separation > b.separation };
     if a_wins { a } else { b }
 }
@@ -171,35 +172,75 @@ fn push_edges(a: &Obb, i: usize, b: &Obb, j: usize, axis: &Axis, out: &mut Manif
     true
 }
 
+/// A pair of points on A and B.
+#[derive(Clone, Copy, Default)]
+struct Bridge {
+    on_a: Vec3,
+    on_b: Vec3,
+    feature: u32,
+}
+
+impl Bridge {
+    fn span(&self) -> Vec3 {
+        self.on_b - self.on_a
+    }
+}
+
 /// The closest points of two boxes that are apart, by trying corners against boxes and edges against edges: slow
-/// and sure, for the rare pairs that pass each other corner by corner.
-fn push_closest(a: &Obb, b: &Obb, fallback: Vec3, margin: f32, out: &mut Manifold) {
-    let mut best = (f32::INFINITY, Vec3::ZERO, Vec3::ZERO, 0);
-    let mut consider = |on_a: Vec3, on_b: Vec3, feature: u32| {
-        let squared = (on_b - on_a).dot(on_b - on_a);
-        if squared < best.0 {
-            best = (squared, on_a, on_b, feature);
-        }
-    };
-    for index in 0..8 {
-        let (on_a, on_b) = (a.vertex(index), b.vertex(index));
-        consider(a.closest(on_b), on_b, pair(feature::WHOLE, feature::vertex(index)));
-        consider(on_a, b.closest(on_a), pair(feature::vertex(index), feature::WHOLE));
+/// and sure, for the rare pairs that pass each other corner by corner or edge by edge.
+fn push_closest(a: &Obb, b: &Obb, fallback: Vec3, margin: f32, tolerance: f32, out: &mut Manifold) {
+    let corners = corner_bridges(a, b);
+    let shorter = |x: Bridge, y: Bridge| if y.span().length() < x.span().length() { y } else { x };
+    let best = corners.into_iter().chain(edge_bridges(a, b)).reduce(shorter).unwrap_or_default();
+    let separation = best.span().length();
+    if separation > margin {
+        return;
     }
-    for (edge_a, feature_a) in edges(a) {
-        for (edge_b, feature_b) in edges(b) {
+    // The direction between points that all but coincide is noise.
+    let precise = separation > 1e-4 * (a.half + b.half).length();
+    out.normal = if precise { best.span() / separation } else { fallback };
+
+    // Parallel edges are equally close along a line, at whose ends there are corners.
+    let mut points = [ManifoldPoint::default(); 16];
+    let mut count = 0;
+    for bridge in corners {
+        let (length, along) = (bridge.span().length(), bridge.span().dot(out.normal));
+        let position = (bridge.on_a + bridge.on_b) * 0.5;
+        let known = points[..count].iter().any(|p| (p.position - position).length() <= 2.0 * tolerance);
+        if length <= separation + tolerance && along >= 0.99 * length && !known {
+            points[count] = ManifoldPoint { position, separation: along, feature: bridge.feature };
+            count += 1;
+        }
+    }
+    if count > 0 {
+        push_best(&points[..count], tolerance, out);
+    } else {
+        out.push((best.on_a + best.on_b) * 0.5, separation, best.feature);
+    }
+}
+
+/// Each corner and the other box's point closest to it.
+fn corner_bridges(a: &Obb, b: &Obb) -> [Bridge; 16] {
+    core::array::from_fn(|k| {
+        let (index, name) = (k % 8, feature::vertex(k % 8));
+        if k < 8 {
+            let on_a = a.vertex(index);
+            Bridge { on_a, on_b: b.closest(on_a), feature: pair(name, WHOLE) }
+        } else {
+            let on_b = b.vertex(index);
+            Bridge { on_a: a.closest(on_b), on_b, feature: pair(WHOLE, name) }
+        }
+    })
+}
+
+/// The closest points of each pair of edges.
+fn edge_bridges(a: &Obb, b: &Obb) -> impl Iterator<Item = Bridge> {
+    edges(a).flat_map(move |(edge_a, feature_a)| {
+        edges(b).map(move |(edge_b, feature_b)| {
             let (s, t) = edge_a.closest_to_segment(&edge_b);
-            consider(edge_a.at(s), edge_b.at(t), pair(feature_a, feature_b));
-        }
-    }
-    let (_, on_a, on_b, feature) = best;
-    let separation = (on_b - on_a).length();
-    if separation <= margin {
-        // The direction between points that all but coincide is noise.
-        let precise = separation > 1e-5 * (a.half + b.half).length();
-        out.normal = if precise { (on_b - on_a) / separation } else { fallback };
-        out.push((on_a + on_b) * 0.5, separation, feature);
-    }
+            Bridge { on_a: edge_a.at(s), on_b: edge_b.at(t), feature: pair(feature_a, feature_b) }
+        })
+    })
 }
 
 fn edges(of: &Obb) -> impl Iterator<Item = (Segment, u16)> {

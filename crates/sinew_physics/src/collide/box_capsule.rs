@@ -14,10 +14,12 @@ struct Meeting {
     on_core: Vec3,
 }
 
-/// Normals within 0.8° of a face's are that face's.
-const FACE_COSINE: f32 = 0.9999;
+/// Normals within 0.1° of a face's are that face's.
+const FACE_COSINE: f32 = 0.999_998;
 /// A core within 1.8° of a side's direction runs along it.
 const ALONG_COSINE: f32 = 0.9995;
+/// A normal within 1.8° of the plane across that side.
+const ACROSS_SINE: f32 = 0.03;
 
 pub(super) fn collide(a: &Obb, b: &Pill, margin: f32, out: &mut Manifold) {
     let core = Segment { ends: b.core.ends.map(|p| a.local_point(p)) };
@@ -64,7 +66,7 @@ fn apart(half: Vec3, core: &Segment) -> Option<Meeting> {
     let distance = squared.sqrt();
     // Closer than rounding can tell, the direction between the points is noise.
     let reach = half.length() + on_core.length();
-    (distance > 1e-5 * reach).then(|| Meeting { normal: (on_core - on_box) / distance, on_box, on_core })
+    (distance > 1e-4 * reach).then(|| Meeting { normal: (on_core - on_box) / distance, on_box, on_core })
 }
 
 /// The box's edge along `axis`, on the given sides of the other two axes.
@@ -158,7 +160,7 @@ fn push_line(
             }
         }
     } else if along[along_axis].abs() >= ALONG_COSINE * length
-        && meeting.normal[along_axis].abs() < 1.0 - ALONG_COSINE
+        && meeting.normal[along_axis].abs() < ACROSS_SINE
     {
         (normal, name) = (meeting.normal, feature::edge(along_axis, corner_index(meeting.on_box)));
         if !cut(core, along_axis, half[along_axis], &mut stretch) {

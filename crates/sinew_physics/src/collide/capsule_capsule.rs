@@ -2,8 +2,8 @@
 
 use super::Manifold;
 use super::feature::{WHOLE, end, pair};
-use super::placed::{Pill, Segment};
-use sinew_math::{any_orthonormal, clamp, max, min, normalize_or};
+use super::placed::{Pill, direction_or};
+use sinew_math::{Vec3, any_orthonormal, min, normalize_or};
 
 /// Cores that run side by side touch along a line; its two ends are used while the cores lie within this share of
 /// the smaller radius of each other's plane through the normal.
@@ -19,7 +19,7 @@ pub(super) fn collide(a: &Pill, b: &Pill, margin: f32, out: &mut Manifold) {
     // Crossing cores part along their common perpendicular; cores on one line across it.
     let across = normalize_or(a.axis.cross(b.axis), any_orthonormal(a.axis));
     let apart = if across.dot(b.core.at(0.5) - a.core.at(0.5)) < 0.0 { -across } else { across };
-    out.normal = normalize_or(pb - pa, apart);
+    out.normal = direction_or(pb - pa, a.radius + b.radius, apart);
     if !push_side_by_side(a, b, margin, out) {
         let position = pa + out.normal * (a.radius + 0.5 * separation);
         out.push(position, separation, pair(WHOLE, WHOLE));
@@ -33,28 +33,35 @@ fn push_side_by_side(a: &Pill, b: &Pill, margin: f32, out: &mut Manifold) -> boo
     if length_squared <= f32::MIN_POSITIVE {
         return false;
     }
-    let parameter = |i: usize| clamp((b.core.ends[i] - a.core.ends[0]).dot(along) / length_squared, 0.0, 1.0);
+    let parameter = |i: usize| (b.core.ends[i] - a.core.ends[0]).dot(along) / length_squared;
     let (t0, t1) = (parameter(0), parameter(1));
-    let (lo, hi) = (min(t0, t1), max(t0, t1));
+    let (first, last) = if t0 < t1 { ((t0, 0), (t1, 1)) } else { ((t1, 1), (t0, 0)) };
+    // Each end of the stretch is an end of one core, beside the other one.
+    let beside_a =
+        |i: usize| (a.core.at(a.core.closest(b.core.ends[i])), b.core.ends[i], pair(WHOLE, end(i)));
+    let beside_b =
+        |i: usize| (a.core.ends[i], b.core.at(b.core.closest(a.core.ends[i])), pair(end(i), WHOLE));
+    let ends = [
+        if first.0 > 0.0 { beside_a(first.1) } else { beside_b(0) },
+        if last.0 < 1.0 { beside_a(last.1) } else { beside_b(1) },
+    ];
     // Shorter than a tenth of the radius, the stretch is a point.
-    if (hi - lo) * length_squared.sqrt() < 0.1 * min(a.radius, b.radius) {
+    let thinner = min(a.radius, b.radius);
+    let middle = |k: usize| (ends[k].0 + ends[k].1) * 0.5;
+    if (middle(1) - middle(0)).length() < 0.1 * thinner {
         return false;
     }
-    let sideways_max = SIDEWAYS_SHARE * min(a.radius, b.radius);
-    let line_b = Segment { ends: b.core.ends };
-    let mut points = [None; 2];
-    for (i, t) in [lo, hi].into_iter().enumerate() {
-        let pa = a.core.at(t);
-        let gap = line_b.at(line_b.closest(pa)) - pa;
-        let along_normal = gap.dot(out.normal);
-        if (gap - out.normal * along_normal).length() > sideways_max {
-            return false;
-        }
-        points[i] = Some((pa, along_normal - a.radius - b.radius));
+    let sideways = |(pa, pb, _): &(Vec3, Vec3, u32)| {
+        let gap = *pb - *pa;
+        (gap - out.normal * gap.dot(out.normal)).length()
+    };
+    if ends.iter().any(|e| sideways(e) > SIDEWAYS_SHARE * thinner) {
+        return false;
     }
-    for (i, (pa, separation)) in points.into_iter().flatten().enumerate() {
+    for (pa, pb, feature) in ends {
+        let separation = (pb - pa).dot(out.normal) - a.radius - b.radius;
         if separation <= margin {
-            out.push(pa + out.normal * (a.radius + 0.5 * separation), separation, pair(end(i), WHOLE));
+            out.push((pa + pb) * 0.5 + out.normal * (0.5 * (a.radius - b.radius)), separation, feature);
         }
     }
     out.count > 0

@@ -3,8 +3,8 @@
 
 use super::Manifold;
 use super::feature::{WHOLE, pair};
-use super::placed::{Ball, Pill};
-use sinew_math::{any_orthonormal, normalize_or};
+use super::placed::{Ball, Pill, direction_or};
+use sinew_math::any_orthonormal;
 
 pub(super) fn collide(a: &Pill, b: &Ball, margin: f32, out: &mut Manifold) {
     let on_core = a.core.at(a.core.closest(b.center));
@@ -14,7 +14,7 @@ pub(super) fn collide(a: &Pill, b: &Ball, margin: f32, out: &mut Manifold) {
         return;
     }
     // A centre on the core: any way out across the core is as good as another.
-    out.normal = normalize_or(offset, any_orthonormal(a.axis));
+    out.normal = direction_or(offset, a.radius + b.radius, any_orthonormal(a.axis));
     let position = on_core + out.normal * (a.radius + 0.5 * separation);
     out.push(position, separation, pair(WHOLE, WHOLE));
 }

@@ -143,6 +143,13 @@ pub(super) fn sign(x: f32) -> f32 {
     if x < 0.0 { -1.0 } else { 1.0 }
 }
 
+/// Unit direction of the offset between two cores whose radii add up to `radii`, or `fallback` if the cores touch:
+/// then the offset is rounding.
+pub(super) fn direction_or(offset: Vec3, radii: f32, fallback: Vec3) -> Vec3 {
+    let length = offset.length();
+    if length > 1e-3 * radii { offset / length } else { fallback }
+}
+
 /// Line segment; its ends may coincide.
 #[derive(Clone, Copy)]
 pub(super) struct Segment {
