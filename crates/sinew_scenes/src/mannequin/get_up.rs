@@ -76,35 +76,35 @@ pub(super) fn from_back() -> Clip {
         ..curling
     };
     let pushing = Posture {
-        pelvis: v(-0.02, 0.15, -0.38),
-        pelvis_turn: v(6.0, -8.0, 12.0),
-        spine: lean(14.0),
-        chest: lean(12.0),
-        left_foot: Foot::flat(Left, 0.11, 0.0, 8.0),
-        right_foot: Foot::flat(Right, -0.12, 0.02, 8.0),
-        left_hand: hand(0.24, 0.52, 0.02, 20.0),
-        right_hand: palm(-0.34, -0.56, 20.0, 30.0),
+        pelvis: v(-0.02, 0.15, -0.41),
+        pelvis_turn: v(2.0, -8.0, 10.0),
+        spine: lean(8.0),
+        chest: lean(8.0),
+        left_foot: Foot { knee_out: 20.0, ..Foot::flat(Left, 0.11, 0.0, 8.0) },
+        right_foot: Foot { knee_out: 20.0, ..Foot::flat(Right, -0.12, 0.02, 8.0) },
+        left_hand: hand(0.28, 0.50, -0.02, 0.0),
+        right_hand: palm(-0.34, -0.58, 20.0, 30.0),
         ..sitting
     };
     let squatting = Posture {
-        pelvis: v(0.0, 0.34, -0.20),
-        pelvis_turn: lean(38.0),
-        spine: lean(12.0),
-        chest: lean(8.0),
-        neck: lean(-16.0),
+        pelvis: v(0.0, 0.37, -0.23),
+        pelvis_turn: lean(36.0),
+        spine: lean(8.0),
+        chest: lean(6.0),
+        neck: lean(-14.0),
         head: lean(-12.0),
-        left_foot: Foot::on_ball(Left, 0.105, 0.0, 8.0, 10.0),
-        right_foot: Foot::on_ball(Right, -0.108, 0.0, 8.0, 14.0),
-        left_hand: hand(0.23, 0.42, 0.30, 25.0),
-        right_hand: hand(-0.26, 0.38, 0.22, 25.0),
+        left_foot: Foot { knee_out: 24.0, ..Foot::on_ball(Left, 0.105, 0.0, 8.0, 8.0) },
+        right_foot: Foot { knee_out: 24.0, ..Foot::on_ball(Right, -0.108, 0.0, 8.0, 12.0) },
+        left_hand: hand(0.25, 0.40, 0.36, 0.0),
+        right_hand: hand(-0.27, 0.36, 0.26, 0.0),
     };
     let rising = Posture {
         pelvis: v(0.0, 0.62, -0.15),
         pelvis_turn: lean(40.0),
-        left_foot: Posture::standing().left_foot,
-        right_foot: Posture::standing().right_foot,
-        left_hand: hand(0.19, 0.60, 0.17, 35.0),
-        right_hand: hand(-0.19, 0.60, 0.16, 35.0),
+        left_foot: Foot { knee_out: 14.0, ..Posture::standing().left_foot },
+        right_foot: Foot { knee_out: 14.0, ..Posture::standing().right_foot },
+        left_hand: hand(0.20, 0.58, 0.22, 10.0),
+        right_hand: hand(-0.20, 0.58, 0.21, 10.0),
         ..squatting
     };
     let nearly = Posture {
@@ -130,77 +130,78 @@ pub(super) fn from_back() -> Clip {
     clip("get_up_supine", &postures.map(|(at, posture)| Key { at, posture }))
 }
 
-/// From the face: press the chest up, draw the knees in, plant the left foot, rise over it.
+/// From the face: press the chest up, rise onto the knees, plant the left foot, rise over it.
 pub(super) fn from_face() -> Clip {
     let lying = Posture {
-        pelvis: v(0.0, 0.112, -0.15),
+        pelvis: v(0.0, 0.112, 0.0),
         pelvis_turn: lean(90.0),
         spine: lean(0.0),
         chest: lean(0.0),
         neck: v(0.0, 25.0, 0.0),
         head: v(0.0, 45.0, 0.0),
-        left_foot: lifted(v(0.14, 0.078, -1.0), 152.0, 8.0),
-        right_foot: lifted(v(-0.14, 0.078, -1.0), 152.0, 8.0),
-        left_hand: palm(0.34, 0.16, 0.0, 60.0),
-        right_hand: palm(-0.34, 0.16, 0.0, 60.0),
+        left_foot: lifted(v(0.12, 0.082, -0.88), 152.0, 8.0),
+        right_foot: lifted(v(-0.12, 0.082, -0.88), 152.0, 8.0),
+        left_hand: palm(0.34, 0.31, 0.0, 60.0),
+        right_hand: palm(-0.34, 0.31, 0.0, 60.0),
     };
     let pressing = Posture {
-        pelvis: v(0.0, 0.135, -0.18),
-        pelvis_turn: lean(80.0),
+        pelvis: v(0.0, 0.150, -0.03),
+        pelvis_turn: lean(78.0),
         spine: lean(-14.0),
         chest: lean(-12.0),
         neck: lean(-12.0),
         head: lean(-8.0),
-        left_foot: lifted(v(0.14, 0.16, -0.96), 125.0, 8.0),
-        right_foot: lifted(v(-0.14, 0.16, -0.96), 125.0, 8.0),
-        left_hand: palm(0.34, 0.16, 0.0, 40.0),
-        right_hand: palm(-0.34, 0.16, 0.0, 40.0),
-    };
+        left_hand: palm(0.34, 0.31, 0.0, 40.0),
+        right_hand: palm(-0.34, 0.31, 0.0, 40.0),
+        ..lying
+    }
+    .with_knee_down(Left, 0.12, 0.205, 118.0, 20.0)
+    .with_knee_down(Right, -0.12, 0.205, 118.0, 20.0);
     let drawing_in = Posture {
-        pelvis: v(0.0, 0.32, -0.29),
+        pelvis: v(0.0, 0.33, -0.14),
         pelvis_turn: lean(82.0),
         spine: lean(0.0),
         chest: lean(-4.0),
-        left_foot: lifted(v(0.14, 0.21, -0.80), 95.0, 8.0),
-        right_foot: lifted(v(-0.14, 0.21, -0.80), 95.0, 8.0),
         ..pressing
-    };
+    }
+    .with_knee_down(Left, 0.12, 0.195, 88.0, 40.0)
+    .with_knee_down(Right, -0.12, 0.195, 88.0, 40.0);
     let on_all_fours = Posture {
-        pelvis: v(0.0, 0.475, -0.34),
+        pelvis: v(0.0, 0.465, -0.28),
         pelvis_turn: lean(84.0),
         spine: lean(6.0),
         chest: lean(2.0),
-        left_foot: Foot::on_ball(Left, 0.12, -0.75, 4.0, 65.0),
-        right_foot: Foot::on_ball(Right, -0.12, -0.75, 4.0, 65.0),
         ..drawing_in
-    };
+    }
+    .with_knee_down(Left, 0.12, 0.172, 65.0, 62.0)
+    .with_knee_down(Right, -0.12, 0.172, 65.0, 62.0);
     let stepping = Posture {
-        pelvis: v(-0.02, 0.495, -0.34),
+        pelvis: v(-0.02, 0.485, -0.27),
         pelvis_turn: v(74.0, 0.0, 8.0),
         spine: lean(14.0),
         chest: lean(10.0),
-        left_foot: lifted(v(0.16, 0.20, -0.28), 35.0, 12.0),
-        left_hand: hand(0.28, 0.22, 0.18, 30.0),
-        right_hand: palm(-0.30, 0.16, 0.0, 30.0),
+        left_foot: lifted(v(0.17, 0.19, -0.36), 35.0, 14.0),
+        left_hand: Hand { flat: 0.8, ..hand(0.30, 0.20, 0.30, 10.0) },
+        right_hand: palm(-0.30, 0.31, 0.0, 30.0),
         ..on_all_fours
     };
     let half_kneeling = Posture {
-        pelvis: v(0.0, 0.475, -0.30),
+        pelvis: v(0.0, 0.475, -0.27),
         pelvis_turn: lean(40.0),
         spine: lean(12.0),
         chest: lean(6.0),
         neck: lean(-12.0),
         head: lean(-10.0),
         left_foot: Posture::standing().left_foot,
-        left_hand: hand(0.16, 0.63, 0.08, 40.0),
-        right_hand: hand(-0.26, 0.46, 0.08, 20.0),
+        left_hand: hand(0.18, 0.60, 0.14, 5.0),
+        right_hand: hand(-0.27, 0.46, 0.10, 5.0),
         ..stepping
     };
     let rising = Posture {
         pelvis: v(0.02, 0.66, -0.17),
         pelvis_turn: lean(32.0),
-        left_hand: hand(0.16, 0.66, 0.14, 40.0),
-        right_hand: hand(-0.24, 0.62, 0.10, 20.0),
+        left_hand: hand(0.18, 0.64, 0.18, 5.0),
+        right_hand: hand(-0.25, 0.60, 0.10, 5.0),
         ..half_kneeling
     };
     let nearly = Posture {

@@ -4,6 +4,9 @@ use super::skeleton::{ANKLE_HEIGHT, Bone, HIPS_ABOVE_HIP, Side, bind_offset, bin
 use sinew::anim::LocalTransform;
 use sinew::math::{Mat3, Rotation, Vec3, clamp, normalize_or, trig};
 
+/// From the middle of the knee to its skin in front, metres.
+const KNEE_RADIUS: f32 = 0.056;
+
 /// A turn in degrees: x leans forward, y turns to the left, z tips to the right. Applied in the order z, x, y.
 pub(super) type Turn = Vec3;
 
@@ -34,7 +37,7 @@ pub(super) struct Foot {
     pub(super) turn: Turn,
     /// Toes bent up against the foot.
     pub(super) toes: f32,
-    /// Knee turned outward from where the pelvis faces, about the line from hip to ankle.
+    /// Hinge of the knee turned outward against the pelvis.
     pub(super) knee_out: f32,
 }
 
@@ -147,6 +150,21 @@ impl Posture {
         self
     }
 
+    /// One knee on the floor behind the hip, the shank trailing: ankle `height` above the floor, `x` to the left.
+    pub(super) fn with_knee_down(mut self, side: Side, x: f32, height: f32, pitch: f32, toes: f32) -> Self {
+        let hip = self.place_trunk().at(Bone::LeftUpperLeg.on(side)).0;
+        let leg = Limb::leg(side);
+        let behind = |bone: Vec3, drop: f32, aside: f32| {
+            let left = bone.length_squared() - drop * drop - aside * aside;
+            if left > 0.0 { left.sqrt() } else { 0.0 }
+        };
+        let knee_z = hip.z - behind(leg.upper, hip.y - KNEE_RADIUS, x - hip.x);
+        let ankle = Vec3::new(x, height, knee_z - behind(leg.lower, height - KNEE_RADIUS, 0.0));
+        let foot = if side == Side::Left { &mut self.left_foot } else { &mut self.right_foot };
+        *foot = Foot { ankle, turn: Vec3::new(pitch, 0.0, 0.0), toes, knee_out: 0.0 };
+        self
+    }
+
     /// Every number of the posture, in one fixed order, for interpolation.
     pub(super) fn numbers(&mut self) -> Vec<&mut f32> {
         let Self { pelvis, pelvis_turn, spine, chest, neck, head, .. } = self;
@@ -194,9 +212,10 @@ impl Posture {
         for (bone, degrees) in trunk {
             placed.set_local(bone, turn(degrees));
         }
-        for side in Side::BOTH {
-            placed.set_local(Bone::LeftShoulder.on(side), Rotation::IDENTITY);
-            placed.set_local(Bone::LeftUpperArm.on(side), Rotation::IDENTITY);
+        for limb in [Bone::LeftShoulder, Bone::LeftUpperArm, Bone::LeftUpperLeg] {
+            for side in Side::BOTH {
+                placed.set_local(limb.on(side), Rotation::IDENTITY);
+            }
         }
         placed
     }
@@ -204,10 +223,9 @@ impl Posture {
     fn place_leg(&self, side: Side, placed: &mut Placed) {
         let foot = if side == Side::Left { &self.left_foot } else { &self.right_foot };
         let pelvis = placed.at(Bone::Hips).1;
-        placed.set(Bone::LeftUpperLeg.on(side), Rotation::IDENTITY);
         let hip = placed.at(Bone::LeftUpperLeg.on(side)).0;
-        let swivel = foot.knee_out * side.sign();
-        let (thigh, shank) = Limb::leg(side).reach(foot.ankle - hip, pelvis * Vec3::Z, -swivel);
+        let outward = turn(Vec3::new(0.0, foot.knee_out * side.sign(), 0.0));
+        let (thigh, shank) = Limb::leg(side).reach(foot.ankle - hip, pelvis * (outward * Vec3::X));
         placed.set(Bone::LeftUpperLeg.on(side), thigh);
         placed.set(Bone::LeftLowerLeg.on(side), shank);
         placed.set(Bone::LeftFoot.on(side), turn(foot.turn));
@@ -218,9 +236,11 @@ impl Posture {
         let hand = if side == Side::Left { &self.left_hand } else { &self.right_hand };
         let chest = placed.at(Bone::Chest).1;
         let shoulder = placed.at(Bone::LeftUpperArm.on(side)).0;
-        let behind = chest * side.vector(Vec3::new(0.35, -0.2, -1.0));
-        let swivel = hand.elbow_out * side.sign();
-        let (upper, fore) = Limb::arm(side).reach(hand.wrist - shoulder, behind, swivel);
+        let behind = chest * side.vector(Vec3::new(0.3, -0.8, -1.0));
+        let way = hand.wrist - shoulder;
+        let swivel = (hand.elbow_out * side.sign()).to_radians();
+        let elbow = Rotation::from_axis_angle(normalize_or(way, Vec3::NEG_Y), swivel) * behind;
+        let (upper, fore) = Limb::arm(side).reach(way, elbow.cross(way));
         placed.set(Bone::LeftUpperArm.on(side), upper);
         placed.set(Bone::LeftLowerArm.on(side), fore);
         let flat = flat_hand(side, hand.fingers_out);
@@ -266,20 +286,17 @@ impl Limb {
         })
     }
 
-    /// World rotations of the two bones that bring the limb's end to `target`, given from its root, with the hinge
-    /// pointing toward `pole` turned by `swivel` degrees about the way to the target. A target out of reach is
-    /// approached; the limb never stretches fully, so that the hinge does not snap.
-    fn reach(&self, target: Vec3, pole: Vec3, swivel: f32) -> (Rotation, Rotation) {
+    /// World rotations of the two bones that bring the limb's end to `target`, given from its root, with the hinge's axis
+    /// as near `hinge` as the way there allows. A target out of reach is approached; the limb never stretches fully.
+    fn reach(&self, target: Vec3, hinge: Vec3) -> (Rotation, Rotation) {
         let (a, b) = (self.upper.length(), self.lower.length());
         let along = normalize_or(target, Vec3::NEG_Y);
         let distance = clamp(target.length(), 0.3 * (a + b), 0.999 * (a + b));
-        let pole = Rotation::from_axis_angle(along, swivel.to_radians()) * pole;
-        let hinge = normalize_or(pole.cross(along), Vec3::X);
-        let toward_pole = along.cross(hinge);
-        // Law of cosines: how far along the way, and how far off it, the hinge is.
+        let hinge = normalize_or(hinge - along * hinge.dot(along), Vec3::X);
+        // Law of cosines: how far along the way, and how far off it, the joint between the two bones is.
         let foot = (a * a + distance * distance - b * b) / (2.0 * distance);
         let height = clamp(a * a - foot * foot, 0.0, a * a).sqrt();
-        let upper = along * foot + toward_pole * height;
+        let upper = along * foot + along.cross(hinge) * height;
         let lower = along * distance - upper;
         let bone =
             |rest: Vec3, now: Vec3| from_pairs([self.hinge, rest.normalize()], [hinge, now.normalize()]);
