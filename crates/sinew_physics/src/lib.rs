@@ -1,17 +1,45 @@
 //! The world: bodies, shapes, joints, particles and springs, in one deterministic step.
 //!
 //! SI units, radians, +Y up, right-handed, `f32`. Read [`step`](crate::step) first: it is the physics, in order.
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)] // `slices` alone allows it
+
+pub mod def;
+pub mod stage;
+pub mod step;
+mod world;
+
+pub mod collide;
+mod finalize;
+mod islands;
+mod pairs;
+mod sensors;
+mod sleep;
+mod solver;
+mod touch;
 
 pub mod aabb;
-pub mod collide;
-pub mod def;
+mod arena;
+mod body;
+mod contact;
 mod distance;
+mod draw;
 pub mod id;
+mod joint;
 mod mass;
+mod query;
 pub mod ray;
+pub mod runner;
 pub mod shape;
+mod slices;
+mod snapshot;
+mod spatial;
 
-pub use def::{BodyDef, BodyKind, JointCollision, JointDef, JointKind, WorldDef};
+pub use body::Velocity;
+pub use def::{BodyDef, BodyKind, JointCollision, JointDef, JointKind, Sleeping, WorldDef};
+pub use draw::{DebugDraw, DrawKind};
 pub use id::{BodyId, JointId};
-pub use shape::{Filter, MassProperties, Material, Shape, ShapeDef};
+pub use query::{BodyHit, Energy, Momentum};
+pub use runner::{Serial, TaskRunner, Threads};
+pub use shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
+pub use touch::Events;
+pub use world::World;

@@ -132,6 +132,18 @@ pub struct ShapeDef {
     pub material: Material,
     /// Whom it meets.
     pub filter: Filter,
+    /// Whether it pushes.
+    pub sensing: Sensing,
+}
+
+/// What a shape does to those it meets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sensing {
+    /// It pushes them. Default.
+    #[default]
+    Solid,
+    /// It only reports them.
+    Sensor,
 }
 
 impl ShapeDef {
@@ -143,6 +155,7 @@ impl ShapeDef {
             density: 1000.0,
             material: Material::default(),
             filter: Filter::default(),
+            sensing: Sensing::Solid,
         }
     }
 }

@@ -1,0 +1,229 @@
+//! A body as the world keeps it.
+
+use crate::def::{BodyDef, BodyKind};
+use crate::shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
+use sinew_math::{Rotation, Sym3, Transform, Vec3};
+
+/// Linear velocity of the centre of mass and angular velocity, world axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Velocity {
+    /// m/s.
+    pub linear: Vec3,
+    /// rad/s.
+    pub angular: Vec3,
+}
+
+impl Velocity {
+    /// Velocity of a point at `arm` from the centre of mass, m/s.
+    pub fn at(self, arm: Vec3) -> Vec3 {
+        self.linear + self.angular.cross(arm)
+    }
+}
+
+/// Awake, or asleep with the island it fell asleep with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Rest {
+    /// Seconds for which it has been slow.
+    Awake { calm: f32 },
+    /// All bodies with the same number wake together.
+    Asleep { island: u32 },
+}
+
+/// A shape of a body, in the body's principal frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BodyShape {
+    pub shape: Shape,
+    pub principal_from_shape: Transform,
+    pub density: f32,
+    pub material: Material,
+    pub filter: Filter,
+    pub sensing: Sensing,
+}
+
+/// The pose is that of the **principal frame**: origin at the centre of mass, axes along the principal axes of
+/// inertia, so that the inertia is a diagonal everywhere in the solver.
+#[derive(Clone, Debug)]
+pub(crate) struct Body {
+    pub kind: BodyKind,
+    pub world_from_principal: Transform,
+    /// Before the last step: for interpolation and for what it may have passed.
+    pub previous: Transform,
+    pub velocity: Velocity,
+    /// Applied by the user for the next step, N and N·m, world axes.
+    pub force: Vec3,
+    pub torque: Vec3,
+    pub principal_from_body: Transform,
+    /// kg; 0 unless dynamic.
+    pub mass: f32,
+    /// Principal moments, kg·m².
+    pub inertia: Vec3,
+    pub linear_damping: f32,
+    pub angular_damping: f32,
+    pub gravity_scale: f32,
+    pub shapes: Vec<BodyShape>,
+    pub rest: Rest,
+    /// Set when its state became non-finite: it was rolled back and takes no further part.
+    pub quarantined: bool,
+    pub user_data: u64,
+}
+
+/// Principal moments below this share of the largest make long thin bodies spin wildly at a touch
+/// (`r × n` dominates the effective mass); they are raised to it.
+const SMALLEST_MOMENT: f32 = 1e-3;
+
+impl Body {
+    /// # Panics
+    /// If a number is not finite, a shape is not valid, or a dynamic body has no mass.
+    pub fn new(def: &BodyDef) -> Self {
+        assert!(def.position.is_finite() && def.rotation.is_finite(), "a body's pose is finite");
+        assert!(
+            def.linear_velocity.is_finite() && def.angular_velocity.is_finite(),
+            "a body's velocity is finite"
+        );
+        for shape in &def.shapes {
+            if let Err(what) = shape.shape.check() {
+                panic!("a body's shape is valid: {what}");
+            }
+            assert!(
+                def.kind == BodyKind::Static || shape.shape != Shape::HalfSpace,
+                "half-spaces are static bodies"
+            );
+        }
+        let world_from_body = Transform::new(def.position, def.rotation.normalize());
+        let properties = def.mass.unwrap_or_else(|| mass_of_shapes(&def.shapes));
+        let (moments, body_from_principal) = match def.kind {
+            BodyKind::Dynamic => principal_frame(&properties),
+            BodyKind::Static | BodyKind::Kinematic => (Vec3::ZERO, Transform::IDENTITY),
+        };
+        let principal_from_body = body_from_principal.inverse();
+        let mass = if def.kind == BodyKind::Dynamic { properties.mass } else { 0.0 };
+        if def.kind == BodyKind::Dynamic {
+            let solid = mass > 0.0 && mass < f32::INFINITY && moments.z > 0.0 && moments.is_finite();
+            assert!(solid, "a dynamic body has positive, finite mass and inertia");
+        }
+        Self {
+            kind: def.kind,
+            world_from_principal: world_from_body * body_from_principal,
+            previous: world_from_body * body_from_principal,
+            velocity: Velocity { linear: def.linear_velocity, angular: def.angular_velocity },
+            force: Vec3::ZERO,
+            torque: Vec3::ZERO,
+            principal_from_body,
+            mass,
+            inertia: moments,
+            linear_damping: def.linear_damping,
+            angular_damping: def.angular_damping,
+            gravity_scale: def.gravity_scale,
+            shapes: def.shapes.iter().map(|shape| body_shape(shape, principal_from_body)).collect(),
+            rest: Rest::Awake { calm: 0.0 },
+            quarantined: false,
+            user_data: def.user_data,
+        }
+    }
+
+    pub fn world_from_body(&self) -> Transform {
+        self.world_from_principal * self.principal_from_body
+    }
+
+    pub fn set_world_from_body(&mut self, world_from_body: Transform) {
+        self.world_from_principal = world_from_body * self.principal_from_body.inverse();
+        self.previous = self.world_from_principal;
+    }
+
+    pub fn world_from_shape(&self, shape: usize) -> Transform {
+        self.world_from_principal * self.shapes[shape].principal_from_shape
+    }
+
+    /// World position of the centre of mass.
+    pub fn center(&self) -> Vec3 {
+        self.world_from_principal.translation
+    }
+
+    pub fn is_awake(&self) -> bool {
+        matches!(self.rest, Rest::Awake { .. })
+    }
+
+    /// Takes part in the step as something that forces move.
+    pub fn is_active(&self) -> bool {
+        self.kind == BodyKind::Dynamic && self.is_awake() && !self.quarantined
+    }
+
+    /// May start a contact: it moves.
+    pub fn can_touch(&self) -> bool {
+        match self.kind {
+            BodyKind::Dynamic => self.is_active(),
+            BodyKind::Kinematic => self.velocity != Velocity::default(),
+            BodyKind::Static => false,
+        }
+    }
+
+    pub fn inverse_mass(&self) -> f32 {
+        if self.mass > 0.0 { 1.0 / self.mass } else { 0.0 }
+    }
+
+    /// `I⁻¹ v` in world axes.
+    pub fn inverse_inertia_mul(&self, v: Vec3) -> Vec3 {
+        if self.mass == 0.0 {
+            return Vec3::ZERO;
+        }
+        let r = self.world_from_principal.rotation;
+        r * ((r.inverse() * v) / self.inertia)
+    }
+
+    /// `I v` in world axes.
+    pub fn inertia_mul(&self, v: Vec3) -> Vec3 {
+        let r = self.world_from_principal.rotation;
+        r * ((r.inverse() * v) * self.inertia)
+    }
+
+    /// J.
+    pub fn kinetic_energy(&self) -> f32 {
+        let w = self.world_from_principal.rotation.inverse() * self.velocity.angular;
+        0.5 * self.mass * self.velocity.linear.length_squared() + 0.5 * (w * self.inertia).dot(w)
+    }
+
+    /// Half the largest distance from the centre of mass to the surface, roughly: turns rad/s into m/s.
+    pub fn reach(&self) -> f32 {
+        let mut reach = 0.0;
+        for shape in &self.shapes {
+            let r = shape.principal_from_shape.translation.length() + shape.shape.bounding_radius();
+            reach = sinew_math::max(reach, r);
+        }
+        reach
+    }
+}
+
+fn body_shape(def: &ShapeDef, principal_from_body: Transform) -> BodyShape {
+    BodyShape {
+        shape: def.shape,
+        principal_from_shape: principal_from_body * def.body_from_shape,
+        density: def.density,
+        material: def.material,
+        filter: def.filter,
+        sensing: def.sensing,
+    }
+}
+
+fn mass_of_shapes(shapes: &[ShapeDef]) -> MassProperties {
+    let mut sum = MassProperties::default();
+    for def in shapes {
+        sum = sum.combine(&def.shape.mass_properties(def.density).transformed(&def.body_from_shape));
+    }
+    sum
+}
+
+/// Principal moments (largest first) and the frame they belong to.
+fn principal_frame(properties: &MassProperties) -> (Vec3, Transform) {
+    let Sym3 { diagonal, off } = properties.inertia;
+    if off == Vec3::ZERO {
+        // Keeps the axes of boxes and capsules as they are.
+        return (raise(diagonal), Transform::from_translation(properties.center));
+    }
+    let (moments, rotation): (Vec3, Rotation) = properties.inertia.eigen();
+    (raise(moments), Transform::new(properties.center, rotation))
+}
+
+fn raise(moments: Vec3) -> Vec3 {
+    let largest = sinew_math::max(moments.x, sinew_math::max(moments.y, moments.z));
+    sinew_math::max3(moments, Vec3::splat(largest * SMALLEST_MOMENT))
+}

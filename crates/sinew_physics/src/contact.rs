@@ -1,0 +1,97 @@
+//! Contacts: pairs of shapes that are near each other, with what the solver remembers of them.
+
+use crate::collide::{MAX_POINTS, Manifold};
+use crate::shape::Material;
+use sinew_math::{Vec3, max};
+
+/// Which two shapes: body index and shape number of each, the smaller body index first. Sorting by it is the order
+/// in which everything about contacts happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct ContactKey {
+    pub a: u32,
+    pub b: u32,
+    pub shape_a: u32,
+    pub shape_b: u32,
+}
+
+/// Impulses of one manifold point over a substep, N·s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct PointImpulse {
+    /// Of the last substep and the one before: an impact must not be repeated, so warm starting takes the lesser.
+    pub now: f32,
+    pub before: f32,
+    /// Largest within the step: whether the point was hit at all.
+    pub peak: f32,
+}
+
+/// What a contact carries from step to step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct ContactMemory {
+    pub points: [PointImpulse; MAX_POINTS],
+    /// Friction at the manifold's centre as a world vector, N·s.
+    pub friction: Vec3,
+    /// About the normal, N·m·s.
+    pub twist: f32,
+    /// Rolling resistance, world vector, N·m·s.
+    pub rolling: Vec3,
+}
+
+impl ContactMemory {
+    /// Keeps what belongs to points that are still there, by feature.
+    pub fn matched(&self, old: &Manifold, new: &Manifold) -> Self {
+        let mut memory =
+            Self { friction: self.friction, twist: self.twist, rolling: self.rolling, ..Self::default() };
+        let mut found = false;
+        for (i, point) in new.points().iter().enumerate() {
+            if let Some(j) = old.points().iter().position(|p| p.feature == point.feature) {
+                memory.points[i] = self.points[j];
+                memory.points[i].peak = 0.0;
+                found = true;
+            }
+        }
+        if found { memory } else { Self::default() }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contact {
+    pub key: ContactKey,
+    pub manifold: Manifold,
+    pub memory: ContactMemory,
+    /// Surfaces overlap or touch.
+    pub touching: bool,
+    /// One of the shapes only senses.
+    pub sensor: bool,
+}
+
+impl Contact {
+    pub fn new(key: ContactKey) -> Self {
+        Self {
+            key,
+            manifold: Manifold::default(),
+            memory: ContactMemory::default(),
+            touching: false,
+            sensor: false,
+        }
+    }
+
+    /// Whether the solver has to do with it.
+    pub fn pushes(&self) -> bool {
+        self.manifold.count > 0 && !self.sensor
+    }
+}
+
+/// Combined surface of two materials.
+pub(crate) fn combine(a: &Material, b: &Material) -> Material {
+    Material {
+        friction: (a.friction * b.friction).sqrt(),
+        restitution: max(a.restitution, b.restitution),
+        rolling: max(a.rolling, b.rolling),
+    }
+}
+
+/// Penetration that is left alone: a contact at rest keeps touching. 5 mm, or 2 % of the smallest extent of either
+/// shape, so that small props are as solid as crates.
+pub(crate) fn slop(smallest_extent: f32) -> f32 {
+    sinew_math::min(0.005, 0.02 * smallest_extent)
+}

@@ -1,0 +1,114 @@
+//! Debug drawing: the world as lines, for any renderer.
+
+use crate::def::BodyKind;
+use crate::shape::Shape;
+use crate::world::World;
+use sinew_math::{Transform, Vec3, trig};
+
+/// What a line stands for; the host chooses the colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DrawKind {
+    /// Outline of a static shape.
+    Static,
+    /// Outline of a kinematic shape.
+    Kinematic,
+    /// Outline of an awake dynamic shape.
+    Awake,
+    /// Outline of a sleeping one.
+    Asleep,
+    /// From a body's centre to a joint's anchor.
+    Joint,
+    /// A contact normal, 10 cm long.
+    Contact,
+}
+
+/// Receives lines in world space.
+pub trait DebugDraw {
+    /// A line from `from` to `to`, metres.
+    fn line(&mut self, from: Vec3, to: Vec3, kind: DrawKind);
+}
+
+/// Straight pieces of a full circle.
+const SEGMENTS: usize = 16;
+/// Half the side of the square that stands for a half-space, metres.
+const PLANE_SIZE: f32 = 10.0;
+
+impl World {
+    /// Draws shapes, joints and contacts.
+    pub fn draw(&self, out: &mut dyn DebugDraw) {
+        for (_, body) in self.bodies.iter() {
+            let kind = match body.kind {
+                BodyKind::Static => DrawKind::Static,
+                BodyKind::Kinematic => DrawKind::Kinematic,
+                BodyKind::Dynamic if body.is_awake() => DrawKind::Awake,
+                BodyKind::Dynamic => DrawKind::Asleep,
+            };
+            for (i, s) in body.shapes.iter().enumerate() {
+                draw_shape(&s.shape, &body.world_from_shape(i), kind, out);
+            }
+        }
+        for (_, joint) in self.joints.iter() {
+            for (body, frame) in [(joint.a, joint.frame_a), (joint.b, joint.frame_b)] {
+                let pose = self.bodies.at(body).world_from_principal;
+                out.line(pose.translation, pose.point(frame.translation), DrawKind::Joint);
+            }
+        }
+        for contact in self.contacts.iter().filter(|contact| contact.touching) {
+            for point in contact.manifold.points() {
+                out.line(point.position, point.position + contact.manifold.normal * 0.1, DrawKind::Contact);
+            }
+        }
+    }
+}
+
+fn draw_shape(shape: &Shape, pose: &Transform, kind: DrawKind, out: &mut dyn DebugDraw) {
+    let mut line = |from: Vec3, to: Vec3| out.line(pose.point(from), pose.point(to), kind);
+    match *shape {
+        Shape::Box { half_extents } => draw_box(half_extents, &mut line),
+        Shape::Sphere { radius } => draw_capsule(0.0, radius, &mut line),
+        Shape::Capsule { half_height, radius } => draw_capsule(half_height, radius, &mut line),
+        Shape::HalfSpace => {
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+            let corner = |i: usize| Vec3::new(corners[i % 4].0, 0.0, corners[i % 4].1) * PLANE_SIZE;
+            for i in 0..4 {
+                line(corner(i), corner(i + 1));
+            }
+        }
+    }
+}
+
+fn draw_box(h: Vec3, line: &mut dyn FnMut(Vec3, Vec3)) {
+    let corner = |bits: u32| {
+        let sign = |bit: u32| if bits & bit == 0 { -1.0 } else { 1.0 };
+        Vec3::new(h.x * sign(1), h.y * sign(2), h.z * sign(4))
+    };
+    for bits in 0..8 {
+        for axis in [1, 2, 4] {
+            if bits & axis == 0 {
+                line(corner(bits), corner(bits | axis));
+            }
+        }
+    }
+}
+
+/// Rings at both ends, and the outline in two planes through the axis.
+fn draw_capsule(half_height: f32, radius: f32, line: &mut dyn FnMut(Vec3, Vec3)) {
+    let at = |i: usize| {
+        let (sin, cos) = trig::sin_cos(i as f32 * (2.0 * core::f32::consts::PI / SEGMENTS as f32));
+        (sin * radius, cos * radius)
+    };
+    for i in 0..SEGMENTS {
+        let ((s0, c0), (s1, c1)) = (at(i), at(i + 1));
+        for y in [-half_height, half_height] {
+            line(Vec3::new(c0, y, s0), Vec3::new(c1, y, s1));
+        }
+        // The upper half of the outline is lifted, the lower one lowered; the straight sides follow where they meet.
+        let lift = if s0 + s1 > 0.0 { half_height } else { -half_height };
+        line(Vec3::new(c0, s0 + lift, 0.0), Vec3::new(c1, s1 + lift, 0.0));
+        line(Vec3::new(0.0, s0 + lift, c0), Vec3::new(0.0, s1 + lift, c1));
+    }
+    for side in [-radius, radius] {
+        line(Vec3::new(side, -half_height, 0.0), Vec3::new(side, half_height, 0.0));
+        line(Vec3::new(0.0, -half_height, side), Vec3::new(0.0, half_height, side));
+    }
+}

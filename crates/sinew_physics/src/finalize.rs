@@ -1,0 +1,116 @@
+//! `store`, `finalize` and `continuous`: the world takes what the islands computed.
+
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::contact::Contact;
+use crate::def::BodyKind;
+use crate::islands::IslandTask;
+use crate::joint::Joint;
+use crate::ray::Ray;
+use crate::step::StepContext;
+use crate::touch::{Events, id};
+use sinew_math::{Transform, Vec3};
+
+/// `store`: impulses and joint forces that the next step starts from.
+pub(crate) fn store(tasks: &[IslandTask], joints: &mut Arena<Joint>, contacts: &mut [Contact]) {
+    for task in tasks {
+        for (contact, memory) in task.solver.memories() {
+            contacts[contact as usize].memory = memory;
+        }
+        for solved in &task.solver.joints {
+            let joint = joints.at_mut(solved.index);
+            joint.limits = solved.limits;
+            joint.force = solved.force;
+        }
+        for (joint, impulse) in task.solver.loop_impulses() {
+            joints.at_mut(joint).loop_impulse = impulse;
+        }
+    }
+}
+
+/// `finalize`: poses and velocities; a body whose state is not finite keeps its old pose, stops and is quarantined.
+/// Kinematic bodies move as their velocity says; forces of the step are used up.
+pub(crate) fn finalize(
+    tasks: &[IslandTask],
+    bodies: &mut Arena<Body>,
+    events: &mut Events,
+    context: &StepContext<'_>,
+) {
+    events.quarantined.clear();
+    for task in tasks {
+        for (i, solved) in task.solver.moving_bodies().iter().enumerate() {
+            let velocity = task.solver.velocity(i);
+            let body = bodies.at_mut(solved.index);
+            body.previous = body.world_from_principal;
+            body.force = Vec3::ZERO;
+            body.torque = Vec3::ZERO;
+            if solved.pose.is_finite() && velocity.linear.is_finite() && velocity.angular.is_finite() {
+                body.world_from_principal = solved.pose;
+                body.velocity = velocity;
+            } else {
+                body.velocity = Default::default();
+                body.quarantined = true;
+                let id = id(bodies, solved.index);
+                events.quarantined.push(id);
+            }
+        }
+    }
+    for (_, body) in bodies.iter_mut().filter(|(_, body)| body.kind == BodyKind::Kinematic) {
+        body.previous = body.world_from_principal;
+        for _ in 0..context.substeps {
+            let Transform { translation, rotation } = body.world_from_principal;
+            body.world_from_principal = Transform::new(
+                translation + body.velocity.linear * context.h,
+                rotation.integrate(body.velocity.angular, context.h),
+            );
+        }
+    }
+}
+
+/// `continuous`: a body without joints whose centre passed through a static shape within the step is put back to where
+/// its core touches. Speculative contacts stop nearly everything before; this is for what they miss. Jointed bodies are
+/// left to the speculative contacts: moving one link would tear its joints.
+pub(crate) fn continuous(bodies: &mut Arena<Body>, tasks: &[IslandTask]) {
+    for task in tasks.iter().filter(|task| task.island.joints.is_empty()) {
+        for &index in &task.island.bodies {
+            let body = bodies.at(index);
+            let core = core_radius(body);
+            let motion = body.center() - body.previous.translation;
+            if core == 0.0 || motion.length() <= core {
+                continue;
+            }
+            let ray = Ray { origin: body.previous.translation, direction: motion };
+            if let Some(fraction) = first_static_hit(bodies, body, &ray) {
+                let back = sinew_math::max(fraction - core / motion.length(), 0.0);
+                let center = ray.at(back);
+                bodies.at_mut(index).world_from_principal.translation = center;
+            }
+        }
+    }
+}
+
+/// Radius of the largest ball about the centre of mass that surely lies inside a body of one shape; 0 if none.
+fn core_radius(body: &Body) -> f32 {
+    match body.shapes.as_slice() {
+        [only] if only.principal_from_shape.translation.length() < 1e-4 => only.shape.inner_radius(),
+        _ => 0.0,
+    }
+}
+
+fn first_static_hit(bodies: &Arena<Body>, mover: &Body, ray: &Ray) -> Option<f32> {
+    let mut first: Option<f32> = None;
+    for (_, body) in bodies.iter().filter(|(_, body)| body.kind == BodyKind::Static) {
+        for (shape, s) in body.shapes.iter().enumerate() {
+            if !mover.shapes.iter().any(|own| own.filter.meets(s.filter)) {
+                continue;
+            }
+            let hit = s.shape.cast_ray(&body.world_from_shape(shape), ray);
+            // A start inside is an overlap that the contacts are working on.
+            if let Some(hit) = hit.filter(|hit| hit.fraction > 0.0 && first.is_none_or(|f| hit.fraction < f))
+            {
+                first = Some(hit.fraction);
+            }
+        }
+    }
+    first
+}

@@ -1,0 +1,146 @@
+//! Questions to the world: energies, momenta, joint gaps, overlaps, rays. Metrics of scenes come from here alone.
+
+use crate::collide::{Manifold, collide};
+use crate::def::BodyKind;
+use crate::id::{BodyId, JointId};
+use crate::joint::{JointGeometry, JointPose, overshoot};
+use crate::ray::{Ray, RayHit};
+use crate::world::World;
+use sinew_math::{Vec3, max};
+
+/// Energy of bodies, joules.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Of motion and spin.
+    pub kinetic: f32,
+    /// Of height in uniform gravity, 0 at the origin.
+    pub potential: f32,
+}
+
+impl Energy {
+    /// Sum, joules.
+    pub fn total(self) -> f32 {
+        self.kinetic + self.potential
+    }
+}
+
+/// Linear and angular momentum.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Momentum {
+    /// N·s.
+    pub linear: Vec3,
+    /// About the world's origin, N·m·s.
+    pub angular: Vec3,
+}
+
+/// A ray that met a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyHit {
+    /// The body.
+    pub body: BodyId,
+    /// Where on the ray and on the surface.
+    pub hit: RayHit,
+}
+
+impl World {
+    /// Energy of one body.
+    pub fn body_energy(&self, id: BodyId) -> Energy {
+        let body = self.expect(id);
+        let weight = self.def.gravity * (body.mass * body.gravity_scale);
+        Energy { kinetic: body.kinetic_energy(), potential: -weight.dot(body.center()) }
+    }
+
+    /// Energy of all dynamic bodies.
+    pub fn energy(&self) -> Energy {
+        self.body_ids().fold(Energy::default(), |sum, id| {
+            let energy = self.body_energy(id);
+            Energy { kinetic: sum.kinetic + energy.kinetic, potential: sum.potential + energy.potential }
+        })
+    }
+
+    /// Momentum of all dynamic bodies.
+    pub fn momentum(&self) -> Momentum {
+        let mut sum = Momentum::default();
+        for (_, body) in self.bodies.iter().filter(|(_, body)| body.kind == BodyKind::Dynamic) {
+            let p = body.velocity.linear * body.mass;
+            sum.linear += p;
+            sum.angular += body.center().cross(p) + body.inertia_mul(body.velocity.angular);
+        }
+        sum
+    }
+
+    fn joint_pose(&self, id: JointId) -> (JointGeometry, JointPose) {
+        let joint = self.joints.get(id.index, id.generation).expect("the joint is there");
+        let geometry = JointGeometry { frame_a: joint.frame_a, frame_b: joint.frame_b, kind: joint.kind };
+        let pose = |index| &self.bodies.at(index).world_from_principal;
+        (geometry, JointPose::new(&geometry, pose(joint.a), pose(joint.b)))
+    }
+
+    /// Distance between the joint's two anchors, metres.
+    pub fn joint_gap(&self, id: JointId) -> f32 {
+        self.joint_pose(id).1.gap.length()
+    }
+
+    /// How far the joint is beyond its limits, radians; 0 inside.
+    pub fn joint_overshoot(&self, id: JointId) -> f32 {
+        let (geometry, pose) = self.joint_pose(id);
+        overshoot(&geometry.kind, pose.relative())
+    }
+
+    /// Deepest overlap of two bodies, metres; 0 if they do not overlap.
+    pub fn overlap(&self, a: BodyId, b: BodyId) -> f32 {
+        let (body_a, body_b) = (self.expect(a), self.expect(b));
+        let mut deepest = 0.0;
+        let mut manifold = Manifold::default();
+        for (i, s) in body_a.shapes.iter().enumerate() {
+            for (j, t) in body_b.shapes.iter().enumerate() {
+                let (from_s, from_t) = (body_a.world_from_shape(i), body_b.world_from_shape(j));
+                collide(&s.shape, &from_s, &t.shape, &from_t, 0.0, &mut manifold);
+                for point in manifold.points() {
+                    deepest = max(deepest, -point.separation);
+                }
+            }
+        }
+        deepest
+    }
+
+    /// Bodies that `id` touches or nearly touches, in the order of contacts.
+    pub fn neighbors(&self, id: BodyId) -> impl Iterator<Item = BodyId> {
+        let other = move |a: u32, b: u32| if a == id.index { Some(b) } else { (b == id.index).then_some(a) };
+        self.contacts
+            .iter()
+            .filter(|contact| contact.pushes())
+            .filter_map(move |contact| other(contact.key.a, contact.key.b))
+            .map(|index| BodyId { index, generation: self.bodies.generation(index) })
+    }
+
+    /// Deepest overlap of a body with static ones, metres, at its present pose.
+    pub fn penetration(&self, id: BodyId) -> f32 {
+        self.expect(id);
+        self.neighbors(id)
+            .filter(|&other| self.kind(other) == BodyKind::Static)
+            .fold(0.0, |deepest, other| max(deepest, self.overlap(id, other)))
+    }
+
+    /// The first shape on the ray whose body passes `accept`; the smaller body wins a tie.
+    pub fn cast_ray(&self, ray: &Ray, mut accept: impl FnMut(BodyId) -> bool) -> Option<BodyHit> {
+        let mut first: Option<BodyHit> = None;
+        for id in self.body_ids().filter(|&id| accept(id)) {
+            let body = self.expect(id);
+            for (i, s) in body.shapes.iter().enumerate() {
+                if let Some(hit) = s.shape.cast_ray(&body.world_from_shape(i), ray)
+                    && first.is_none_or(|best| hit.fraction < best.hit.fraction)
+                {
+                    first = Some(BodyHit { body: id, hit });
+                }
+            }
+        }
+        first
+    }
+
+    /// Shapes of a body with their world poses, for drawing.
+    pub fn shapes(&self, id: BodyId) -> impl Iterator<Item = (crate::shape::Shape, sinew_math::Transform)> {
+        let body = self.expect(id);
+        body.shapes.iter().enumerate().map(|(i, s)| (s.shape, body.world_from_shape(i)))
+    }
+}

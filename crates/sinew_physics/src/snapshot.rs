@@ -1,0 +1,396 @@
+//! Snapshots: everything that decides the future, and nothing else, in one order.
+
+use crate::arena::Arena;
+use crate::body::{Body, BodyShape, Rest, Velocity};
+use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
+use crate::contact::{Contact, ContactKey, ContactMemory, PointImpulse};
+use crate::def::{BodyKind, JointCollision, JointKind, Sleeping, WorldDef};
+use crate::joint::{Joint, LimitImpulse, MAX_LIMITS};
+use crate::pairs::BroadPhase;
+use crate::shape::{Filter, Material, Sensing, Shape};
+use crate::spatial::ZERO6;
+use crate::touch::Events;
+use crate::world::World;
+use sinew_math::{Range, ReadError, Reader, SwingTwistLimit, Vec3, Writer};
+
+/// First bytes of a snapshot; the last is its version.
+const MAGIC: &[u8; 8] = b"sinew-w\x01";
+
+impl World {
+    /// Writes the state: what [`load`](Self::load) brings back, bit for bit.
+    pub fn save(&self, w: &mut Writer) {
+        w.raw(MAGIC);
+        save_def(w, &self.def);
+        w.u64(self.steps);
+        w.u64(self.pending_nanoseconds);
+        w.u32(self.sleepers);
+        self.bodies.save(w, save_body);
+        self.joints.save(w, save_joint);
+        w.count(self.contacts.len());
+        for contact in &self.contacts {
+            save_contact(w, contact);
+        }
+        w.count(self.disabled.len());
+        for &(a, b) in &self.disabled {
+            w.u32(a);
+            w.u32(b);
+        }
+    }
+
+    /// Brings back a saved state. Events are those of no step.
+    ///
+    /// # Errors
+    /// If the bytes are not a snapshot of this version; the world is then as it was.
+    pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
+        if r.raw(MAGIC.len())? != MAGIC {
+            return Err(ReadError { at: 0, what: "is not a world snapshot of this version" });
+        }
+        let def = load_def(r)?;
+        let (steps, pending, sleepers) = (r.u64()?, r.u64()?, r.u32()?);
+        let bodies = Arena::load(r, load_body)?;
+        let joints = Arena::load(r, |r| load_joint(r, &bodies))?;
+        let count = r.count(8)?;
+        let mut contacts = Vec::with_capacity(count);
+        for _ in 0..count {
+            contacts.push(load_contact(r, &bodies)?);
+        }
+        if !contacts.is_sorted_by(|p: &Contact, q| p.key < q.key) {
+            return Err(r.error("contacts are out of order"));
+        }
+        let count = r.count(8)?;
+        let mut disabled = Vec::with_capacity(count);
+        for _ in 0..count {
+            disabled.push((body_index(r, &bodies)?, body_index(r, &bodies)?));
+        }
+        if !disabled.is_sorted() {
+            return Err(r.error("disabled pairs are out of order"));
+        }
+        self.def = def;
+        (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
+        (self.bodies, self.joints, self.contacts, self.disabled) = (bodies, joints, contacts, disabled);
+        self.events = Events::default();
+        self.broad = BroadPhase::default();
+        self.broad.invalidate();
+        self.refresh_no_collide();
+        Ok(())
+    }
+
+    /// Hash of the snapshot's bytes.
+    pub fn hash(&self) -> u64 {
+        let mut w = Writer::new();
+        self.save(&mut w);
+        sinew_math::hash::hash_bytes(w.as_bytes())
+    }
+
+    /// Marks the present state as the one that [`reset`](Self::reset) returns to.
+    pub fn mark(&mut self) {
+        let mut w = Writer::reuse(core::mem::take(&mut self.marked));
+        self.save(&mut w);
+        self.marked = w.into_bytes();
+    }
+
+    /// Returns to the marked state, exactly.
+    ///
+    /// # Panics
+    /// If no state was marked.
+    pub fn reset(&mut self) {
+        assert!(!self.marked.is_empty(), "a state was marked");
+        let marked = core::mem::take(&mut self.marked);
+        self.load(&mut Reader::new(&marked)).expect("a marked state is valid");
+        self.marked = marked;
+    }
+}
+
+fn save_def(w: &mut Writer, def: &WorldDef) {
+    w.vec3(def.gravity);
+    w.u64(def.step_nanoseconds);
+    w.u32(def.substeps);
+    w.bool(def.sleeping == Sleeping::On);
+}
+
+fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
+    let gravity = r.vec3()?;
+    let (step_nanoseconds, substeps) = (r.u64()?, r.u32()?);
+    if step_nanoseconds == 0 || substeps == 0 {
+        return Err(r.error("a step takes no time"));
+    }
+    let sleeping = if r.bool()? { Sleeping::On } else { Sleeping::Off };
+    Ok(WorldDef { gravity, step_nanoseconds, substeps, sleeping })
+}
+
+fn save_body(w: &mut Writer, body: &Body) {
+    w.u8(match body.kind {
+        BodyKind::Static => 0,
+        BodyKind::Kinematic => 1,
+        BodyKind::Dynamic => 2,
+    });
+    w.transform(body.world_from_principal);
+    w.transform(body.previous);
+    w.vec3(body.velocity.linear);
+    w.vec3(body.velocity.angular);
+    w.vec3(body.force);
+    w.vec3(body.torque);
+    w.transform(body.principal_from_body);
+    w.f32(body.mass);
+    w.vec3(body.inertia);
+    w.f32(body.linear_damping);
+    w.f32(body.angular_damping);
+    w.f32(body.gravity_scale);
+    w.count(body.shapes.len());
+    for shape in &body.shapes {
+        save_shape(w, shape);
+    }
+    match body.rest {
+        Rest::Awake { calm } => {
+            w.u8(0);
+            w.f32(calm);
+        }
+        Rest::Asleep { island } => {
+            w.u8(1);
+            w.u32(island);
+        }
+    }
+    w.bool(body.quarantined);
+    w.u64(body.user_data);
+}
+
+fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
+    let kind = match r.u8()? {
+        0 => BodyKind::Static,
+        1 => BodyKind::Kinematic,
+        2 => BodyKind::Dynamic,
+        _ => return Err(r.error("unknown kind of body")),
+    };
+    let (world_from_principal, previous) = (r.transform()?, r.transform()?);
+    let velocity = Velocity { linear: r.vec3()?, angular: r.vec3()? };
+    let (force, torque) = (r.vec3()?, r.vec3()?);
+    let principal_from_body = r.transform()?;
+    let (mass, inertia) = (r.f32()?, r.vec3()?);
+    let solid = mass > 0.0 && inertia.x > 0.0 && inertia.y > 0.0 && inertia.z > 0.0;
+    if kind == BodyKind::Dynamic && !solid {
+        return Err(r.error("a dynamic body has no mass"));
+    }
+    let (linear_damping, angular_damping, gravity_scale) = (r.f32()?, r.f32()?, r.f32()?);
+    let count = r.count(40)?;
+    let mut shapes = Vec::with_capacity(count);
+    for _ in 0..count {
+        shapes.push(load_shape(r)?);
+    }
+    let rest = match r.u8()? {
+        0 => Rest::Awake { calm: r.f32()? },
+        1 => Rest::Asleep { island: r.u32()? },
+        _ => return Err(r.error("a body neither awake nor asleep")),
+    };
+    Ok(Body {
+        kind,
+        world_from_principal,
+        previous,
+        velocity,
+        force,
+        torque,
+        principal_from_body,
+        mass,
+        inertia,
+        linear_damping,
+        angular_damping,
+        gravity_scale,
+        shapes,
+        rest,
+        quarantined: r.bool()?,
+        user_data: r.u64()?,
+    })
+}
+
+fn save_shape(w: &mut Writer, s: &BodyShape) {
+    match s.shape {
+        Shape::Box { half_extents } => {
+            w.u8(0);
+            w.vec3(half_extents);
+        }
+        Shape::Sphere { radius } => {
+            w.u8(1);
+            w.f32(radius);
+        }
+        Shape::Capsule { half_height, radius } => {
+            w.u8(2);
+            w.f32(half_height);
+            w.f32(radius);
+        }
+        Shape::HalfSpace => w.u8(3),
+    }
+    w.transform(s.principal_from_shape);
+    w.f32(s.density);
+    w.f32(s.material.friction);
+    w.f32(s.material.restitution);
+    w.f32(s.material.rolling);
+    w.u32(s.filter.layers);
+    w.u32(s.filter.mask);
+    w.u32(s.filter.group.cast_unsigned());
+    w.bool(s.sensing == Sensing::Sensor);
+}
+
+fn load_shape(r: &mut Reader<'_>) -> Result<BodyShape, ReadError> {
+    let shape = match r.u8()? {
+        0 => Shape::Box { half_extents: r.vec3()? },
+        1 => Shape::Sphere { radius: r.f32()? },
+        2 => Shape::Capsule { half_height: r.f32()?, radius: r.f32()? },
+        3 => Shape::HalfSpace,
+        _ => return Err(r.error("unknown shape")),
+    };
+    shape.check().map_err(|what| r.error(what))?;
+    Ok(BodyShape {
+        shape,
+        principal_from_shape: r.transform()?,
+        density: r.f32()?,
+        material: Material { friction: r.f32()?, restitution: r.f32()?, rolling: r.f32()? },
+        filter: Filter { layers: r.u32()?, mask: r.u32()?, group: r.u32()?.cast_signed() },
+        sensing: if r.bool()? { Sensing::Sensor } else { Sensing::Solid },
+    })
+}
+
+fn save_range(w: &mut Writer, range: Range) {
+    w.f32(range.lo);
+    w.f32(range.hi);
+}
+
+fn load_range(r: &mut Reader<'_>) -> Result<Range, ReadError> {
+    Ok(Range::new(r.f32()?, r.f32()?))
+}
+
+fn save_cone(w: &mut Writer, limit: Option<SwingTwistLimit>) {
+    w.bool(limit.is_some());
+    if let Some(limit) = limit {
+        save_range(w, limit.swing_y);
+        save_range(w, limit.swing_z);
+        save_range(w, limit.twist);
+    }
+}
+
+fn load_cone(r: &mut Reader<'_>) -> Result<Option<SwingTwistLimit>, ReadError> {
+    if !r.bool()? {
+        return Ok(None);
+    }
+    Ok(Some(SwingTwistLimit { swing_y: load_range(r)?, swing_z: load_range(r)?, twist: load_range(r)? }))
+}
+
+fn save_joint(w: &mut Writer, joint: &Joint) {
+    w.u32(joint.a);
+    w.u32(joint.b);
+    w.transform(joint.frame_a);
+    w.transform(joint.frame_b);
+    match joint.kind {
+        JointKind::Ball { limit } => {
+            w.u8(0);
+            save_cone(w, limit);
+        }
+        JointKind::Hinge { limit } => {
+            w.u8(1);
+            w.bool(limit.is_some());
+            if let Some(limit) = limit {
+                save_range(w, limit);
+            }
+        }
+        JointKind::Universal { limit } => {
+            w.u8(2);
+            save_cone(w, limit);
+        }
+        JointKind::Fixed => w.u8(3),
+    }
+    w.f32(joint.friction_torque);
+    w.bool(joint.collision == JointCollision::Enabled);
+    for limit in &joint.limits {
+        w.f32(limit.now);
+        w.f32(limit.before);
+    }
+    for x in joint.loop_impulse {
+        w.f32(x);
+    }
+    w.vec3(joint.force);
+}
+
+fn load_joint(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Joint, ReadError> {
+    let (a, b) = (body_index(r, bodies)?, body_index(r, bodies)?);
+    let (frame_a, frame_b) = (r.transform()?, r.transform()?);
+    let kind = match r.u8()? {
+        0 => JointKind::Ball { limit: load_cone(r)? },
+        1 => JointKind::Hinge { limit: if r.bool()? { Some(load_range(r)?) } else { None } },
+        2 => JointKind::Universal { limit: load_cone(r)? },
+        3 => JointKind::Fixed,
+        _ => return Err(r.error("unknown kind of joint")),
+    };
+    let friction_torque = r.f32()?;
+    let collision = if r.bool()? { JointCollision::Enabled } else { JointCollision::Disabled };
+    let mut limits = [LimitImpulse::default(); MAX_LIMITS];
+    for limit in &mut limits {
+        *limit = LimitImpulse { now: r.f32()?, before: r.f32()? };
+    }
+    let mut loop_impulse = ZERO6;
+    for x in &mut loop_impulse {
+        *x = r.f32()?;
+    }
+    Ok(Joint {
+        a,
+        b,
+        frame_a,
+        frame_b,
+        kind,
+        friction_torque,
+        collision,
+        limits,
+        loop_impulse,
+        force: r.vec3()?,
+    })
+}
+
+fn save_contact(w: &mut Writer, contact: &Contact) {
+    for x in [contact.key.a, contact.key.b, contact.key.shape_a, contact.key.shape_b] {
+        w.u32(x);
+    }
+    w.bool(contact.touching);
+    w.bool(contact.sensor);
+    w.vec3(contact.manifold.normal);
+    w.count(contact.manifold.count);
+    for (point, impulse) in contact.manifold.points().iter().zip(&contact.memory.points) {
+        w.vec3(point.position);
+        w.f32(point.separation);
+        w.u32(point.feature);
+        w.f32(impulse.now);
+        w.f32(impulse.before);
+    }
+    w.vec3(contact.memory.friction);
+    w.f32(contact.memory.twist);
+    w.vec3(contact.memory.rolling);
+}
+
+fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, ReadError> {
+    let (a, b) = (body_index(r, bodies)?, body_index(r, bodies)?);
+    let key = ContactKey { a, b, shape_a: r.u32()?, shape_b: r.u32()? };
+    let shapes = |body: u32| bodies.at(body).shapes.len() as u32;
+    if key.shape_a >= shapes(a) || key.shape_b >= shapes(b) {
+        return Err(r.error("a contact names a shape that is not there"));
+    }
+    let (touching, sensor) = (r.bool()?, r.bool()?);
+    let mut manifold = Manifold { normal: r.vec3()?, ..Manifold::default() };
+    manifold.count = r.count(24)?;
+    if manifold.count > MAX_POINTS {
+        return Err(r.error("a contact has too many points"));
+    }
+    let mut memory = ContactMemory::default();
+    for i in 0..manifold.count {
+        manifold.points[i] = ManifoldPoint { position: r.vec3()?, separation: r.f32()?, feature: r.u32()? };
+        // The peak is of the step that is over.
+        memory.points[i] = PointImpulse { now: r.f32()?, before: r.f32()?, peak: 0.0 };
+    }
+    let friction: Vec3 = r.vec3()?;
+    memory.friction = friction;
+    memory.twist = r.f32()?;
+    memory.rolling = r.vec3()?;
+    Ok(Contact { key, manifold, memory, touching, sensor })
+}
+
+fn body_index(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<u32, ReadError> {
+    let index = r.u32()?;
+    let there =
+        (index as usize) < bodies.slot_count() && bodies.get(index, bodies.generation(index)).is_some();
+    if there { Ok(index) } else { Err(r.error("names a body that is not there")) }
+}

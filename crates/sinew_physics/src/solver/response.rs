@@ -1,0 +1,112 @@
+//! Articulated inverse inertia: the velocity change of one body of a tree from an impulse on another, with the
+//! joints holding. A contact that sees its link's own mass instead sinks: a 1 kg foot under 69 kg by 72 mm.
+
+use super::tree::{Link, NONE};
+use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, mul, product, transpose};
+
+/// Blocks `W_ij` (6×6) between the bodies of each tree that carry rows, and their ancestors.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Response {
+    /// Per body: its position among the members of its tree, or `NONE`.
+    slot: Vec<u32>,
+    /// Members of all trees, tree after tree, parents first.
+    members: Vec<u32>,
+    /// Per tree: range in `members`, start of its blocks.
+    trees: Vec<TreeBlocks>,
+    blocks: Vec<Mat6>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct TreeBlocks {
+    first: usize,
+    count: usize,
+    blocks: usize,
+}
+
+impl Response {
+    /// Chooses the members: `wanted` bodies with everything between them and the root. Links of a tree are contiguous.
+    pub fn choose(&mut self, links: &[Link], tree_count: usize, wanted: &[bool]) {
+        self.slot.clear();
+        self.slot.resize(links.len(), NONE);
+        for i in (0..links.len()).rev() {
+            let parent = links[i].parent as usize;
+            if (wanted[i] || self.slot[i] != NONE) && parent < links.len() {
+                self.slot[parent] = 0;
+            }
+            if wanted[i] {
+                self.slot[i] = 0;
+            }
+        }
+        self.members.clear();
+        self.trees.clear();
+        self.trees.resize(tree_count, TreeBlocks::default());
+        let mut blocks = 0;
+        let mut i = 0;
+        for (tree, entry) in self.trees.iter_mut().enumerate() {
+            entry.first = self.members.len();
+            entry.blocks = blocks;
+            while i < links.len() && links[i].tree as usize == tree {
+                if self.slot[i] != NONE {
+                    self.slot[i] = (self.members.len() - entry.first) as u32;
+                    self.members.push(i as u32);
+                }
+                i += 1;
+            }
+            entry.count = self.members.len() - entry.first;
+            blocks += entry.count * entry.count;
+        }
+        self.blocks.resize(blocks, [[0.0; 6]; 6]);
+    }
+
+    /// Fills the blocks from the factored links: for `c` below `p`, `W_cj = A_c W_pj` with `A_c` the transfer of the
+    /// joint, since nothing acts below it; `W_cc = L_c + A_c W_pp A_cᵀ`.
+    pub fn fill(&mut self, links: &[Link]) {
+        for tree in &self.trees {
+            let members = &self.members[tree.first..tree.first + tree.count];
+            let n = tree.count;
+            let blocks = &mut self.blocks[tree.blocks..tree.blocks + n * n];
+            for (c, &body) in members.iter().enumerate() {
+                let link = &links[body as usize];
+                blocks[c * n + c] = link.response_with_parent_held();
+                let parent = link.parent as usize;
+                if parent >= links.len() {
+                    continue; // the root, always the first member
+                }
+                let p = self.slot[parent] as usize;
+                let transfer = link.transfer();
+                for j in 0..c {
+                    let block = product(&transfer, &blocks[p * n + j]);
+                    blocks[j * n + c] = transpose(&block);
+                    blocks[c * n + j] = block;
+                }
+                let through = product(&transfer, &blocks[p * n + c]);
+                for (own, add) in blocks[c * n + c].iter_mut().zip(&through) {
+                    add_scaled(own, add, 1.0);
+                }
+            }
+        }
+    }
+
+    /// Velocity change of body `to` per impulse `p` on body `from`; zero for fixed bodies and across trees.
+    pub fn at(&self, links: &[Link], to: usize, from: usize, p: &Vec6) -> Vec6 {
+        if to >= links.len() || from >= links.len() || links[to].tree != links[from].tree {
+            return ZERO6;
+        }
+        let tree = &self.trees[links[to].tree as usize];
+        let (i, j) = (self.slot[to] as usize, self.slot[from] as usize);
+        mul(&self.blocks[tree.blocks + i * tree.count + j], p)
+    }
+
+    /// Adds the velocity changes of an impulse `p` on body `from` to all members of its tree.
+    pub fn apply(&self, links: &[Link], from: usize, p: &Vec6, velocities: &mut [Vec6]) {
+        if from >= links.len() {
+            return;
+        }
+        let tree = &self.trees[links[from].tree as usize];
+        let column = self.slot[from] as usize;
+        for (i, &body) in self.members[tree.first..tree.first + tree.count].iter().enumerate() {
+            let change = mul(&self.blocks[tree.blocks + i * tree.count + column], p);
+            add_scaled(&mut velocities[body as usize], &change, 1.0);
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Sweeps over contact, loop and limit rows in impulse space. While they run, only the bodies that carry rows are
+//! kept up to date, through the articulated response; then the trees are solved once with all impulses, so that the
+//! joints hold exactly.
+
+use super::contact_rows::Push;
+use super::{IslandSolver, SWEEPS_FREE, SWEEPS_JOINTED};
+use crate::spatial::{ZERO6, add_scaled, linear};
+
+/// What a pass over the rows is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pass {
+    /// With bias, no friction.
+    Solve,
+    /// Without bias, with friction: friction that reacts to bias velocities pumps tall stacks.
+    Relax,
+    /// Bounce.
+    Restitution,
+}
+
+impl IslandSolver {
+    /// Visits all rows and gives the bodies their impulses.
+    pub(super) fn sweep(&mut self, pass: Pass) {
+        if self.manifolds.is_empty() && self.limits.is_empty() && self.loops.is_empty() {
+            return;
+        }
+        self.reset_impulses();
+        let moving = self.links.len();
+        self.scratch.before.clear();
+        self.scratch.before.extend_from_slice(&self.velocities[..moving]);
+        let sweeps = if self.joints.is_empty() { SWEEPS_FREE } else { SWEEPS_JOINTED };
+        for _ in 0..sweeps {
+            match pass {
+                Pass::Solve | Pass::Relax => self.visit_contacts(pass),
+                Pass::Restitution => self.visit_bounces(),
+            }
+            self.visit_loops(pass);
+            self.visit_limits(pass);
+        }
+        self.finish_sweep();
+    }
+
+    fn visit_contacts(&mut self, pass: Pass) {
+        for i in 0..self.manifolds.len() {
+            if pass == Pass::Relax {
+                let push = self.manifolds[i].visit_friction(&self.velocities);
+                self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
+            }
+            let push = self.manifolds[i].visit_normal(&self.velocities, pass == Pass::Solve, self.h);
+            self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
+        }
+    }
+
+    fn visit_bounces(&mut self) {
+        for i in 0..self.manifolds.len() {
+            for point in 0..self.manifolds[i].count() {
+                if let Some(push) = self.manifolds[i].visit_bounce(point, &self.velocities) {
+                    self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
+                }
+            }
+        }
+    }
+
+    fn visit_loops(&mut self, pass: Pass) {
+        for i in 0..self.loops.len() {
+            for row in 0..self.loops[i].rows.rigid {
+                let joint = &self.joints[self.loops[i].joint as usize];
+                let change = self.loops[i].visit(row, joint, &self.velocities, pass, self.h);
+                let (mut on_a, mut on_b) = (ZERO6, ZERO6);
+                add_scaled(&mut on_a, &self.loops[i].rows.a[row], change);
+                add_scaled(&mut on_b, &self.loops[i].rows.b[row], change);
+                self.push(joint.a, joint.b, &(on_a, on_b));
+            }
+        }
+    }
+
+    /// Limits come last in a sweep: they have the last word over contacts.
+    fn visit_limits(&mut self, pass: Pass) {
+        for i in 0..self.limits.len() {
+            let joint = &self.joints[self.limits[i].joint as usize];
+            let (a, b) = (joint.a, joint.b);
+            if let Some(on_b) = self.limits[i].visit(&self.joints, &self.velocities, pass, self.h) {
+                self.push(a, b, &(on_b.map(|x| -x), on_b));
+            }
+        }
+    }
+
+    /// Puts impulses on two bodies and their trees.
+    fn push(&mut self, a: u32, b: u32, push: &Push) {
+        for (body, p) in [(a, &push.0), (b, &push.1)] {
+            if let Some(sum) = self.impulses.get_mut(body as usize) {
+                add_scaled(sum, p, 1.0);
+                self.response.apply(&self.links, body as usize, p, &mut self.velocities);
+            }
+        }
+    }
+
+    pub(super) fn reset_impulses(&mut self) {
+        self.impulses.clear();
+        self.impulses.resize(self.links.len(), ZERO6);
+    }
+
+    /// Velocities of all bodies from the impulses of the sweeps, exactly.
+    fn finish_sweep(&mut self) {
+        for (push, p) in self.contact_push.iter_mut().zip(&self.impulses) {
+            *push += linear(p);
+        }
+        if self.joints.is_empty() {
+            return; // every tree is one body, and the response was exact
+        }
+        let moving = self.links.len();
+        let s = &mut self.scratch;
+        self.velocities[..moving].copy_from_slice(&s.before);
+        s.impulses.clear();
+        s.impulses.extend_from_slice(&self.impulses);
+        s.residuals.clear();
+        s.residuals.resize(moving, ZERO6);
+        self.solve_trees();
+    }
+}

@@ -1,0 +1,187 @@
+//! Joint trees: the joints of a tree are solved exactly, in linear time, by block LDLᵀ from the leaves to the root.
+//!
+//! For child `c`, joint rows `J_c v_c + J_p v_p + Γ λ = r` and parent `p` (Baraff 1996; a tree has no fill-in):
+//! ```text
+//! P  = M'_c⁻¹                  M'_c: inertia of c with all that hangs below it
+//! D  = J_c P J_cᵀ + Γ          Y = P J_cᵀ
+//! M'_p += J_pᵀ D⁻¹ J_p
+//! ```
+//! Γ is zero for rigid rows and the inverse of a viscosity for dry friction.
+
+use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, dot, mul, spd_inverse};
+
+/// No parent, no joint, no slot.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// A moving body as a node of its tree. Nodes of a tree are contiguous, parents before children.
+#[derive(Clone, Debug)]
+pub(crate) struct Link {
+    /// Local index of the parent body: a moving one before it, or a fixed one if this root is grounded.
+    pub parent: u32,
+    /// Local index of the joint to the parent.
+    pub joint: u32,
+    /// Which tree.
+    pub tree: u32,
+    /// Rows in use, and how many of them are rigid.
+    pub rows: usize,
+    pub rigid: usize,
+    /// Jacobians of child and parent, row by row.
+    pub child: [Vec6; 6],
+    pub parent_rows: [Vec6; 6],
+    /// Γ, row by row.
+    pub compliance: Vec6,
+    /// P.
+    pub inverse: Mat6,
+    /// Rows of Yᵀ.
+    pub y: [Vec6; 6],
+    /// D⁻¹.
+    pub d_inverse: Mat6,
+}
+
+impl Link {
+    pub fn new(parent: u32, joint: u32, tree: u32) -> Self {
+        Self {
+            parent,
+            joint,
+            tree,
+            rows: 0,
+            rigid: 0,
+            child: [ZERO6; 6],
+            parent_rows: [ZERO6; 6],
+            compliance: ZERO6,
+            inverse: ZERO66,
+            y: [ZERO6; 6],
+            d_inverse: ZERO66,
+        }
+    }
+
+    /// `J_c v_c + J_p v_p`, row by row.
+    pub fn rate(&self, child: &Vec6, parent: &Vec6) -> Vec6 {
+        let mut out = ZERO6;
+        for row in 0..self.rows {
+            out[row] = dot(&self.child[row], child) + dot(&self.parent_rows[row], parent);
+        }
+        out
+    }
+
+    /// `−Y D⁻¹ J_p`: velocity that this body takes on from its parent's, when nothing acts below the joint.
+    pub fn transfer(&self) -> Mat6 {
+        let mut z = [ZERO6; 6];
+        for (row, zr) in z.iter_mut().enumerate().take(self.rows) {
+            for k in 0..self.rows {
+                add_scaled(zr, &self.parent_rows[k], self.d_inverse[row][k]);
+            }
+        }
+        let mut out = ZERO66;
+        for row in 0..self.rows {
+            for (i, line) in out.iter_mut().enumerate() {
+                add_scaled(line, &z[row], -self.y[row][i]);
+            }
+        }
+        out
+    }
+
+    /// `P − Y D⁻¹ Yᵀ`: response to an impulse on this body while its parent is held.
+    pub fn response_with_parent_held(&self) -> Mat6 {
+        let mut out = self.inverse;
+        for row in 0..self.rows {
+            let mut line = ZERO6;
+            for k in 0..self.rows {
+                add_scaled(&mut line, &self.y[k], self.d_inverse[row][k]);
+            }
+            for (i, o) in out.iter_mut().enumerate() {
+                add_scaled(o, &line, -self.y[row][i]);
+            }
+        }
+        out
+    }
+
+    /// Computes P, Y, D⁻¹ from the articulated inertia of the child.
+    fn factor(&mut self, inertia: &Mat6) {
+        self.inverse = robust_inverse(inertia, 6);
+        let mut d = ZERO66;
+        for row in 0..self.rows {
+            self.y[row] = mul(&self.inverse, &self.child[row]);
+        }
+        for row in 0..self.rows {
+            for k in 0..self.rows {
+                d[row][k] = dot(&self.child[row], &self.y[k]);
+            }
+            d[row][row] += self.compliance[row];
+        }
+        self.d_inverse = robust_inverse(&d, self.rows);
+    }
+
+    /// `J_pᵀ D⁻¹ J_p`: what this joint adds to its parent's inertia.
+    fn add_to_parent(&self, inertia: &mut Mat6) {
+        for row in 0..self.rows {
+            let mut line = ZERO6;
+            for k in 0..self.rows {
+                add_scaled(&mut line, &self.parent_rows[k], self.d_inverse[row][k]);
+            }
+            for (i, m) in inertia.iter_mut().enumerate() {
+                add_scaled(m, &line, self.parent_rows[row][i]);
+            }
+        }
+    }
+}
+
+/// Inverse of a matrix that is positive definite but for rounding: a bad pivot raises the diagonal and tries again
+/// (as Newton Dynamics does); what stays bad gives zero, so the row does nothing, never a NaN.
+fn robust_inverse(m: &Mat6, n: usize) -> Mat6 {
+    let mut m = *m;
+    for _ in 0..6 {
+        if let Some(inverse) = spd_inverse(&m, n) {
+            return inverse;
+        }
+        for (i, row) in m.iter_mut().enumerate().take(n) {
+            row[i] += 1e-6 + row[i].abs() * 1e-4;
+        }
+    }
+    ZERO66
+}
+
+/// Factors all trees: `inertia` holds the bodies' own inertias and is overwritten by the articulated ones.
+pub(crate) fn factor(links: &mut [Link], inertia: &mut [Mat6]) {
+    for i in (0..links.len()).rev() {
+        let m = inertia[i];
+        links[i].factor(&m);
+        let parent = links[i].parent as usize;
+        if parent < links.len() {
+            links[i].add_to_parent(&mut inertia[parent]);
+        }
+    }
+}
+
+/// Velocity change of every body from impulses on the bodies and residuals of the joint rows: solves
+/// `M dv = impulses + Jᵀ λ`, `J dv + Γ λ = residuals`. `impulses` and `residuals` are used up.
+pub(crate) fn solve(links: &[Link], impulses: &mut [Vec6], residuals: &mut [Vec6], dv: &mut [Vec6]) {
+    // Leaf to root: what the subtree below a joint pushes through it.
+    for i in (0..links.len()).rev() {
+        let link = &links[i];
+        for row in 0..link.rows {
+            residuals[i][row] -= dot(&link.y[row], &impulses[i]);
+        }
+        let parent = link.parent as usize;
+        if parent < links.len() {
+            let push = mul(&link.d_inverse, &residuals[i]);
+            for row in 0..link.rows {
+                add_scaled(&mut impulses[parent], &link.parent_rows[row], push[row]);
+            }
+        }
+    }
+    // Root to leaf.
+    for (i, link) in links.iter().enumerate() {
+        let parent = link.parent as usize;
+        if parent < links.len() {
+            for row in 0..link.rows {
+                residuals[i][row] -= dot(&link.parent_rows[row], &dv[parent]);
+            }
+        }
+        dv[i] = mul(&link.inverse, &impulses[i]);
+        let lambda = mul(&link.d_inverse, &residuals[i]);
+        for row in 0..link.rows {
+            add_scaled(&mut dv[i], &link.y[row], lambda[row]);
+        }
+    }
+}

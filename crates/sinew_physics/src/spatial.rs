@@ -1,0 +1,170 @@
+//! Six-dimensional algebra of the joint trees: linear part first, angular part second.
+
+use sinew_math::Vec3;
+
+/// Velocity (m/s, rad/s) or impulse (N·s, N·m·s) of a body at its centre of mass, or one row of a Jacobian.
+pub(crate) type Vec6 = [f32; 6];
+/// Rows of a 6×6 matrix.
+pub(crate) type Mat6 = [[f32; 6]; 6];
+
+pub(crate) const ZERO6: Vec6 = [0.0; 6];
+pub(crate) const ZERO66: Mat6 = [[0.0; 6]; 6];
+
+#[inline(always)]
+pub(crate) fn join(linear: Vec3, angular: Vec3) -> Vec6 {
+    [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
+}
+
+#[inline(always)]
+pub(crate) fn linear(v: &Vec6) -> Vec3 {
+    Vec3::new(v[0], v[1], v[2])
+}
+
+#[inline(always)]
+pub(crate) fn angular(v: &Vec6) -> Vec3 {
+    Vec3::new(v[3], v[4], v[5])
+}
+
+#[inline(always)]
+pub(crate) fn dot(a: &Vec6, b: &Vec6) -> f32 {
+    (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
+}
+
+/// `a += k b`
+#[inline(always)]
+pub(crate) fn add_scaled(a: &mut Vec6, b: &Vec6, k: f32) {
+    for i in 0..6 {
+        a[i] += b[i] * k;
+    }
+}
+
+/// `m v`
+#[inline(always)]
+pub(crate) fn mul(m: &Mat6, v: &Vec6) -> Vec6 {
+    [dot(&m[0], v), dot(&m[1], v), dot(&m[2], v), dot(&m[3], v), dot(&m[4], v), dot(&m[5], v)]
+}
+
+/// `a b`
+#[inline]
+pub(crate) fn product(a: &Mat6, b: &Mat6) -> Mat6 {
+    let mut out = ZERO66;
+    for i in 0..6 {
+        for k in 0..6 {
+            add_scaled(&mut out[i], &b[k], a[i][k]);
+        }
+    }
+    out
+}
+
+/// `mᵀ`
+#[inline]
+pub(crate) fn transpose(m: &Mat6) -> Mat6 {
+    let mut out = ZERO66;
+    for i in 0..6 {
+        for j in 0..6 {
+            out[j][i] = m[i][j];
+        }
+    }
+    out
+}
+
+/// Inverse of the leading `n`×`n` block of a symmetric positive definite matrix by LDLᵀ; the rest is zero.
+/// `None` if a pivot is not safely positive (below 1e-7 of its diagonal entry) or not finite.
+pub(crate) fn spd_inverse(m: &Mat6, n: usize) -> Option<Mat6> {
+    // L below the diagonal, 1/D on it.
+    let mut l = ZERO66;
+    for i in 0..n {
+        for j in 0..=i {
+            // Row i holds L·D until it is divided below.
+            let mut sum = m[i][j];
+            if i != j {
+                for k in 0..j {
+                    sum -= l[i][k] * l[j][k];
+                }
+                l[i][j] = sum;
+                continue;
+            }
+            for k in 0..i {
+                sum -= l[i][k] * l[i][k] * l[k][k];
+            }
+            let safe = sum > 1e-7 * m[i][i] && sum < f32::INFINITY;
+            if !safe {
+                return None;
+            }
+            l[i][i] = 1.0 / sum;
+        }
+        for k in 0..i {
+            l[i][k] *= l[k][k];
+        }
+    }
+    Some(invert_factor(&l, n))
+}
+
+/// `(L D Lᵀ)⁻¹` from unit lower triangular `L` (below the diagonal) and `1/D` (on it).
+fn invert_factor(l: &Mat6, n: usize) -> Mat6 {
+    let mut inverse = ZERO66;
+    for column in 0..n {
+        let mut x = ZERO6;
+        x[column] = 1.0;
+        for i in column..n {
+            for k in column..i {
+                x[i] -= l[i][k] * x[k];
+            }
+        }
+        for i in 0..n {
+            x[i] *= l[i][i];
+        }
+        for i in (0..n).rev() {
+            for k in i + 1..n {
+                x[i] -= l[k][i] * x[k];
+            }
+        }
+        for i in 0..n {
+            inverse[i][column] = x[i];
+        }
+    }
+    inverse
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_math::Random;
+
+    #[test]
+    fn inverse_of_random_spd_matrices() {
+        let mut random = Random::new(7);
+        for n in 1..=6 {
+            for _ in 0..50 {
+                let mut g = ZERO66;
+                for row in g.iter_mut().take(n) {
+                    for x in row.iter_mut().take(n) {
+                        *x = random.range(-1.0, 1.0);
+                    }
+                }
+                let mut m = product(&g, &transpose(&g));
+                for i in 0..n {
+                    m[i][i] += 0.5;
+                }
+                let inverse = spd_inverse(&m, n).expect("positive definite");
+                let unit = product(&m, &inverse);
+                for i in 0..n {
+                    for j in 0..n {
+                        let expected = if i == j { 1.0 } else { 0.0 };
+                        assert!((unit[i][j] - expected).abs() < 2e-4, "n {n}: {unit:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_singular_matrix_is_refused() {
+        let mut m = ZERO66;
+        m[0] = [1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
+        m[1] = [1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
+        assert!(spd_inverse(&m, 2).is_none());
+        m[1][1] = f32::NAN;
+        assert!(spd_inverse(&m, 2).is_none());
+    }
+}

@@ -1,0 +1,55 @@
+//! One step, in order. `docs/step.md` has a heading for each stage.
+
+use crate::islands::IslandTask;
+use crate::runner::TaskRunner;
+use crate::slices::for_each_mut;
+use crate::solver::View;
+use crate::stage::{Profiler, Stage, zone};
+use crate::world::World;
+use crate::{finalize, sensors, sleep, touch};
+
+/// Everything that lives for one step.
+pub(crate) struct StepContext<'a> {
+    /// Step and substep, seconds.
+    pub dt: f32,
+    pub h: f32,
+    pub substeps: u32,
+    pub runner: &'a dyn TaskRunner,
+    pub profiler: &'a dyn Profiler,
+}
+
+/// Advances the world by one step.
+pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
+    let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
+    let World { def, bodies, joints, contacts, events, broad, islands, no_collide, sleepers, .. } = world;
+
+    stage(Stage::Pairs, &mut || broad.update(bodies, no_collide, contacts, context.dt));
+    stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
+    stage(Stage::Touch, &mut || touch::touch(bodies, contacts, events));
+    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts));
+    stage(Stage::Color, &mut || islands.color(bodies, contacts));
+
+    let view = View { bodies, joints, contacts, gravity: def.gravity, h: context.h };
+    for_each_mut(context.runner, islands.tasks_mut(), |task| substeps(task, &view, context));
+
+    stage(Stage::Store, &mut || finalize::store(islands.tasks(), joints, contacts));
+    stage(Stage::Finalize, &mut || finalize::finalize(islands.tasks(), bodies, events, context));
+    stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands.tasks()));
+    stage(Stage::Sleep, &mut || sleep::sleep(islands.tasks(), bodies, sleepers, def.sleeping, context.dt));
+    stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, events));
+}
+
+/// All substeps of one island, as one task without barriers.
+fn substeps(task: &mut IslandTask, view: &View<'_>, context: &StepContext<'_>) {
+    let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
+    let IslandTask { island, solver } = task;
+    stage(Stage::Prepare, &mut || solver.prepare(island, view));
+    for _ in 0..context.substeps {
+        stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity());
+        stage(Stage::WarmStart, &mut || solver.warm_start());
+        stage(Stage::Solve, &mut || solver.solve());
+        stage(Stage::IntegratePosition, &mut || solver.integrate_position());
+        stage(Stage::Relax, &mut || solver.relax());
+    }
+    stage(Stage::Restitution, &mut || solver.restitution());
+}

@@ -1,0 +1,102 @@
+//! `collide` and `touch`: manifolds of all near pairs, then who began and stopped touching, and who wakes.
+
+use crate::arena::Arena;
+use crate::body::{Body, Rest};
+use crate::collide::{Manifold, collide as narrow_phase};
+use crate::contact::{Contact, slop};
+use crate::def::BodyKind;
+use crate::id::BodyId;
+use crate::shape::Sensing;
+use crate::slices::for_each_mut;
+use crate::step::StepContext;
+use sinew_math::{max, min};
+
+/// What happened in the last step, in the order of body indices.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Events {
+    /// Pairs of bodies that began to touch.
+    pub begin: Vec<(BodyId, BodyId)>,
+    /// Pairs of bodies that stopped.
+    pub end: Vec<(BodyId, BodyId)>,
+    /// Pairs of bodies of which one began to be inside a sensor of the other.
+    pub sensor_begin: Vec<(BodyId, BodyId)>,
+    /// Likewise, ended.
+    pub sensor_end: Vec<(BodyId, BodyId)>,
+    /// Bodies whose state became non-finite: rolled back to the step before, stopped and taken out of the simulation.
+    pub quarantined: Vec<BodyId>,
+}
+
+/// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
+pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &StepContext<'_>) {
+    for_each_mut(context.runner, contacts, |contact| {
+        let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
+        if !a.can_touch() && !b.can_touch() {
+            return;
+        }
+        let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
+        let (shape_a, shape_b) = (&a.shapes[sa].shape, &b.shapes[sb].shape);
+        let extent = min(shape_a.smallest_extent(), shape_b.smallest_extent());
+        let approach = (a.velocity.linear - b.velocity.linear).length()
+            + a.velocity.angular.length() * a.reach()
+            + b.velocity.angular.length() * b.reach();
+        let margin = max(4.0 * slop(extent), approach * context.dt);
+        let mut manifold = Manifold::default();
+        narrow_phase(
+            shape_a,
+            &a.world_from_shape(sa),
+            shape_b,
+            &b.world_from_shape(sb),
+            margin,
+            &mut manifold,
+        );
+        contact.sensor = a.shapes[sa].sensing == Sensing::Sensor || b.shapes[sb].sensing == Sensing::Sensor;
+        contact.memory = contact.memory.matched(&contact.manifold, &manifold);
+        contact.manifold = manifold;
+    });
+}
+
+/// `touch`: events, and waking of what an awake body touches.
+pub(crate) fn touch(bodies: &mut Arena<Body>, contacts: &mut [Contact], events: &mut Events) {
+    events.begin.clear();
+    events.end.clear();
+    for contact in contacts.iter_mut() {
+        let (a, b) = (contact.key.a, contact.key.b);
+        let touching = contact.manifold.points().iter().any(|point| point.separation <= 0.0);
+        if touching != contact.touching && !contact.sensor {
+            let list = if touching { &mut events.begin } else { &mut events.end };
+            list.push((id(bodies, a), id(bodies, b)));
+            contact.touching = touching;
+        }
+        if contact.pushes() {
+            wake_touched(bodies, a, b);
+            wake_touched(bodies, b, a);
+        }
+    }
+}
+
+pub(crate) fn id(bodies: &Arena<Body>, index: u32) -> BodyId {
+    BodyId { index, generation: bodies.generation(index) }
+}
+
+fn wake_touched(bodies: &mut Arena<Body>, mover: u32, sleeper: u32) {
+    let body = bodies.at(mover);
+    let wakes = body.is_active() || (body.kind == BodyKind::Kinematic && body.can_touch());
+    if wakes {
+        wake(bodies, sleeper);
+    }
+}
+
+/// Wakes a body and everything it fell asleep with.
+pub(crate) fn wake(bodies: &mut Arena<Body>, index: u32) {
+    let body = bodies.at_mut(index);
+    match body.rest {
+        Rest::Awake { .. } => {}
+        Rest::Asleep { island } => {
+            for (_, other) in bodies.iter_mut() {
+                if other.rest == (Rest::Asleep { island }) {
+                    other.rest = Rest::Awake { calm: 0.0 };
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,344 @@
+//! The world: owner of everything that is simulated.
+
+use crate::arena::Arena;
+use crate::body::{Body, Velocity};
+use crate::contact::Contact;
+use crate::def::{BodyDef, BodyKind, JointCollision, JointDef, WorldDef};
+use crate::id::{BodyId, JointId};
+use crate::islands::Islands;
+use crate::joint::Joint;
+use crate::pairs::BroadPhase;
+use crate::runner::{Serial, TaskRunner};
+use crate::shape::MassProperties;
+use crate::stage::{NoProfiler, Profiler};
+use crate::step::{StepContext, step};
+use crate::touch::{Events, wake};
+use sinew_math::{Sym3, Transform, Vec3};
+
+/// Bodies and joints, stepped at a fixed rate.
+///
+/// # Panics
+/// Every method that takes an id panics if the id is stale or from another world, and every method that takes a number
+/// panics if it is not finite.
+pub struct World {
+    pub(crate) def: WorldDef,
+    pub(crate) bodies: Arena<Body>,
+    pub(crate) joints: Arena<Joint>,
+    pub(crate) contacts: Vec<Contact>,
+    /// Pairs of body indices that the user disabled, smaller first, ascending.
+    pub(crate) disabled: Vec<(u32, u32)>,
+    /// The same with the jointed pairs.
+    pub(crate) no_collide: Vec<(u32, u32)>,
+    pub(crate) events: Events,
+    pub(crate) broad: BroadPhase,
+    pub(crate) islands: Islands,
+    /// Number of islands that fell asleep so far.
+    pub(crate) sleepers: u32,
+    pub(crate) steps: u64,
+    /// Time that `update` was given and no step has used yet, nanoseconds.
+    pub(crate) pending_nanoseconds: u64,
+    pub(crate) marked: Vec<u8>,
+}
+
+impl World {
+    /// An empty world.
+    ///
+    /// # Panics
+    /// If the step or the number of substeps is 0, or gravity is not finite.
+    pub fn new(def: WorldDef) -> Self {
+        assert!(def.step_nanoseconds > 0 && def.substeps > 0, "a step takes time");
+        assert!(def.gravity.is_finite(), "gravity is finite");
+        Self {
+            def,
+            bodies: Arena::default(),
+            joints: Arena::default(),
+            contacts: Vec::new(),
+            disabled: Vec::new(),
+            no_collide: Vec::new(),
+            events: Events::default(),
+            broad: BroadPhase::default(),
+            islands: Islands::default(),
+            sleepers: 0,
+            steps: 0,
+            pending_nanoseconds: 0,
+            marked: Vec::new(),
+        }
+    }
+
+    /// Settings.
+    pub fn def(&self) -> &WorldDef {
+        &self.def
+    }
+
+    /// Adds a body.
+    ///
+    /// # Panics
+    /// If a number is not finite, a shape is not valid, or a dynamic body has no mass.
+    pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
+        let (index, generation) = self.bodies.insert(Body::new(def));
+        self.broad.invalidate();
+        BodyId { index, generation }
+    }
+
+    /// Takes a body out, with its joints; what it touched wakes.
+    pub fn remove_body(&mut self, id: BodyId) {
+        self.expect(id);
+        self.wake_neighbors(id.index);
+        let joints: Vec<JointId> = self.joints_of(id.index).collect();
+        for joint in joints {
+            self.remove_joint(joint);
+        }
+        self.contacts.retain(|contact| contact.key.a != id.index && contact.key.b != id.index);
+        self.disabled.retain(|&(a, b)| a != id.index && b != id.index);
+        self.bodies.remove(id.index, id.generation);
+        self.broad.invalidate();
+        self.refresh_no_collide();
+    }
+
+    /// Adds a joint; both bodies wake.
+    ///
+    /// # Panics
+    /// If both bodies are the same or neither is dynamic.
+    pub fn add_joint(&mut self, def: &JointDef) -> JointId {
+        let (a, b) = (self.expect(def.body_a), self.expect(def.body_b));
+        assert!(def.body_a != def.body_b, "a joint holds two bodies");
+        assert!(a.kind == BodyKind::Dynamic || b.kind == BodyKind::Dynamic, "a joint needs a dynamic body");
+        let (ia, ib) = (def.body_a.index, def.body_b.index);
+        let joint = Joint::new(def, ia, ib, a.principal_from_body, b.principal_from_body);
+        let (index, generation) = self.joints.insert(joint);
+        wake(&mut self.bodies, ia);
+        wake(&mut self.bodies, ib);
+        self.refresh_no_collide();
+        JointId { index, generation }
+    }
+
+    /// Takes a joint out; both bodies wake.
+    pub fn remove_joint(&mut self, id: JointId) {
+        let joint = self.joints.remove(id.index, id.generation).expect("the joint is there");
+        wake(&mut self.bodies, joint.a);
+        wake(&mut self.bodies, joint.b);
+        self.refresh_no_collide();
+    }
+
+    /// From now on two bodies pass through each other.
+    pub fn disable_pair(&mut self, a: BodyId, b: BodyId) {
+        self.expect(a);
+        self.expect(b);
+        let pair = (a.index.min(b.index), a.index.max(b.index));
+        if let Err(place) = self.disabled.binary_search(&pair) {
+            self.disabled.insert(place, pair);
+        }
+        self.refresh_no_collide();
+    }
+
+    /// One step on the calling thread.
+    pub fn step(&mut self) {
+        self.step_with(&Serial, &NoProfiler);
+    }
+
+    /// One step with the host's threads and stage times. The result does not depend on either.
+    pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
+        let (dt, substeps) = (self.def.dt(), self.def.substeps);
+        let context = StepContext { dt, h: dt / substeps as f32, substeps, runner, profiler };
+        step(self, &context);
+        self.steps += 1;
+    }
+
+    /// Runs the whole steps that `nanoseconds` more of time hold; gives the rest as a share of a step, 0..1, for
+    /// [`interpolated`](Self::interpolated). Time is counted in whole nanoseconds, so the state after step k is the same
+    /// at any frame rate.
+    pub fn update(&mut self, nanoseconds: u64) -> f32 {
+        self.pending_nanoseconds += nanoseconds;
+        while self.pending_nanoseconds >= self.def.step_nanoseconds {
+            self.pending_nanoseconds -= self.def.step_nanoseconds;
+            self.step();
+        }
+        self.pending_nanoseconds as f32 / self.def.step_nanoseconds as f32
+    }
+
+    /// Steps taken.
+    pub fn step_count(&self) -> u64 {
+        self.steps
+    }
+
+    /// Simulated time, seconds.
+    pub fn time(&self) -> f64 {
+        (self.steps * self.def.step_nanoseconds) as f64 * 1e-9
+    }
+
+    /// What happened in the last step.
+    pub fn events(&self) -> &Events {
+        &self.events
+    }
+
+    /// All bodies, by index.
+    pub fn body_ids(&self) -> impl Iterator<Item = BodyId> {
+        self.bodies.iter().map(|(index, _)| BodyId { index, generation: self.bodies.generation(index) })
+    }
+
+    /// All joints, by index.
+    pub fn joint_ids(&self) -> impl Iterator<Item = JointId> {
+        self.joints.iter().map(|(index, _)| JointId { index, generation: self.joints.generation(index) })
+    }
+
+    /// True if the id names a body that is there.
+    pub fn contains(&self, id: BodyId) -> bool {
+        self.bodies.get(id.index, id.generation).is_some()
+    }
+
+    /// Pose of the body's frame.
+    pub fn transform(&self, id: BodyId) -> Transform {
+        self.expect(id).world_from_body()
+    }
+
+    /// Pose between the last step (`alpha` 0) and this one (1), for drawing.
+    pub fn interpolated(&self, id: BodyId, alpha: f32) -> Transform {
+        let body = self.expect(id);
+        let (from, to) = (body.previous, body.world_from_principal);
+        let between = Transform::new(
+            from.translation * (1.0 - alpha) + to.translation * alpha,
+            from.rotation.nlerp(to.rotation, alpha),
+        );
+        between * body.principal_from_body
+    }
+
+    /// Puts a body somewhere; it wakes. It does not sweep what lies between.
+    pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
+        assert!(world_from_body.is_finite(), "a body's pose is finite");
+        self.expect_mut(id).set_world_from_body(world_from_body);
+        self.wake_neighbors(id.index);
+        self.broad.invalidate();
+    }
+
+    /// World position of the centre of mass.
+    pub fn center_of_mass(&self, id: BodyId) -> Vec3 {
+        self.expect(id).center()
+    }
+
+    /// Velocity of the centre of mass and angular velocity.
+    pub fn velocity(&self, id: BodyId) -> Velocity {
+        self.expect(id).velocity
+    }
+
+    /// Sets the velocity of a dynamic or kinematic body; it wakes.
+    pub fn set_velocity(&mut self, id: BodyId, velocity: Velocity) {
+        assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "a velocity is finite");
+        wake(&mut self.bodies, id.index);
+        self.expect_mut(id).velocity = velocity;
+    }
+
+    /// Impulse (N·s) at a world point: changes the velocity at once. No effect on static and kinematic bodies.
+    pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
+        assert!(impulse.is_finite() && point.is_finite(), "an impulse is finite");
+        wake(&mut self.bodies, id.index);
+        let body = self.expect_mut(id);
+        let turn = body.inverse_inertia_mul((point - body.center()).cross(impulse));
+        body.velocity.linear += impulse * body.inverse_mass();
+        body.velocity.angular += turn;
+    }
+
+    /// Impulse (N·s) at the centre of mass.
+    pub fn apply_impulse_at_center(&mut self, id: BodyId, impulse: Vec3) {
+        self.apply_impulse(id, impulse, self.center_of_mass(id));
+    }
+
+    /// Angular impulse (N·m·s).
+    pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Vec3) {
+        assert!(impulse.is_finite(), "an impulse is finite");
+        wake(&mut self.bodies, id.index);
+        let body = self.expect_mut(id);
+        body.velocity.angular += body.inverse_inertia_mul(impulse);
+    }
+
+    /// Force (N) at a world point for the next step.
+    pub fn apply_force(&mut self, id: BodyId, force: Vec3, point: Vec3) {
+        assert!(force.is_finite() && point.is_finite(), "a force is finite");
+        wake(&mut self.bodies, id.index);
+        let body = self.expect_mut(id);
+        body.force += force;
+        let torque = (point - body.center()).cross(force);
+        body.torque += torque;
+    }
+
+    /// Torque (N·m) for the next step.
+    pub fn apply_torque(&mut self, id: BodyId, torque: Vec3) {
+        assert!(torque.is_finite(), "a torque is finite");
+        wake(&mut self.bodies, id.index);
+        self.expect_mut(id).torque += torque;
+    }
+
+    /// Static, kinematic or dynamic.
+    pub fn kind(&self, id: BodyId) -> BodyKind {
+        self.expect(id).kind
+    }
+
+    /// Mass (0 unless dynamic), centre and inertia in the body's frame.
+    pub fn mass(&self, id: BodyId) -> MassProperties {
+        let body = self.expect(id);
+        let body_from_principal = body.principal_from_body.inverse();
+        MassProperties {
+            mass: body.mass,
+            center: body_from_principal.translation,
+            inertia: Sym3::from_rotated_diagonal(body_from_principal.rotation, body.inertia),
+        }
+    }
+
+    /// False while it sleeps.
+    pub fn is_awake(&self, id: BodyId) -> bool {
+        self.expect(id).is_awake()
+    }
+
+    /// Wakes a body and its island.
+    pub fn wake(&mut self, id: BodyId) {
+        self.expect(id);
+        wake(&mut self.bodies, id.index);
+    }
+
+    /// The user's number on a body.
+    pub fn user_data(&self, id: BodyId) -> u64 {
+        self.expect(id).user_data
+    }
+
+    /// The two bodies of a joint.
+    pub fn joint_bodies(&self, id: JointId) -> (BodyId, BodyId) {
+        let joint = self.joints.get(id.index, id.generation).expect("the joint is there");
+        let id = |index| BodyId { index, generation: self.bodies.generation(index) };
+        (id(joint.a), id(joint.b))
+    }
+
+    pub(crate) fn expect(&self, id: BodyId) -> &Body {
+        self.bodies.get(id.index, id.generation).expect("the body is there")
+    }
+
+    fn expect_mut(&mut self, id: BodyId) -> &mut Body {
+        self.bodies.get_mut(id.index, id.generation).expect("the body is there")
+    }
+
+    fn joints_of(&self, body: u32) -> impl Iterator<Item = JointId> {
+        let touches = move |joint: &Joint| joint.a == body || joint.b == body;
+        self.joints
+            .iter()
+            .filter(move |(_, joint)| touches(joint))
+            .map(|(index, _)| JointId { index, generation: self.joints.generation(index) })
+    }
+
+    /// Wakes a body and all that touch it.
+    fn wake_neighbors(&mut self, body: u32) {
+        wake(&mut self.bodies, body);
+        for contact in &self.contacts {
+            if contact.key.a == body || contact.key.b == body {
+                wake(&mut self.bodies, contact.key.a);
+                wake(&mut self.bodies, contact.key.b);
+            }
+        }
+    }
+
+    pub(crate) fn refresh_no_collide(&mut self) {
+        let jointed = self.joints.iter().filter(|(_, joint)| joint.collision == JointCollision::Disabled);
+        self.no_collide.clear();
+        self.no_collide.extend_from_slice(&self.disabled);
+        self.no_collide.extend(jointed.map(|(_, joint)| (joint.a.min(joint.b), joint.a.max(joint.b))));
+        self.no_collide.sort_unstable();
+        self.no_collide.dedup();
+    }
+}
