@@ -1,4 +1,5 @@
 //! Named scenarios and the embedded mannequin and cabin.
 #![forbid(unsafe_code)]
 
+pub mod cabin;
 pub mod mannequin;
