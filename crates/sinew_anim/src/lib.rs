@@ -1,12 +1,13 @@
 //! Animation as plain data and stateless jobs: rig, clips, poses, roles.
 //!
 //! Nothing here knows physics, files or a renderer. Rotations are [`sinew_math::Rotation`], times are seconds, lengths
-//! are **file units** until roles has told how many metres one is.
+//! are **file units** until [`roles`] has told how many metres one is.
 #![forbid(unsafe_code)]
 
 pub mod clip;
 pub mod pose;
 pub mod rig;
+pub mod roles;
 pub mod sample;
 pub mod skinning;
 
@@ -15,5 +16,6 @@ pub use pose::{
     JointVelocity, WeightedPose, blend, crossfade, joint_velocities, local_to_model, rest_pose, smoothstep,
 };
 pub use rig::{Joint, JointIdx, LocalTransform, Mesh, Primitive, Rig, Skin, Texture};
+pub use roles::{KeptBone, NoSkin, RigAnalysis, Role, RoleGuess, Side, analyze};
 pub use sample::{SampleCache, Wrap, sample, sample_cached};
 pub use skinning::{skin_palette, skin_vertices};

@@ -1,0 +1,154 @@
+//! The bind pose: where joints and skin were when the skin was made.
+
+use crate::pose::{local_to_model, rest_pose};
+use crate::rig::{Mesh, Rig};
+use crate::skinning::skin_vertices;
+use sinew_math::{Affine, Vec3, max3, min3};
+
+/// Geometry of a rig in its bind pose, model space, file units.
+pub(super) struct Bound {
+    /// Transform of every joint.
+    pub model: Vec<Affine>,
+    /// Skin area that each joint moves (its weights times the area around the vertices).
+    pub area: Vec<f32>,
+    /// All skinned vertices.
+    pub vertices: Vec<Vec3>,
+    /// Least corner of the skin.
+    pub lo: Vec3,
+    /// Greatest corner of the skin.
+    pub hi: Vec3,
+}
+
+impl Bound {
+    /// `None` when no finite vertex of the rig is bound to a joint.
+    pub fn of(rig: &Rig) -> Option<Self> {
+        let model = bind_pose(rig);
+        let mut bound = Self {
+            area: vec![0.0; rig.joints.len()],
+            vertices: Vec::new(),
+            lo: Vec3::splat(f32::INFINITY),
+            hi: Vec3::splat(f32::NEG_INFINITY),
+            model,
+        };
+        for (m, mesh) in rig.meshes.iter().enumerate() {
+            for p in 0..mesh.primitives.len() {
+                bound.add_primitive(rig, m, p);
+            }
+        }
+        (bound.area.iter().any(|&a| a > 0.0)).then_some(bound)
+    }
+
+    /// The longest side of the skin's box.
+    pub fn size(&self) -> f32 {
+        let d = self.hi - self.lo;
+        sinew_math::max(d.x, sinew_math::max(d.y, d.z))
+    }
+
+    fn add_primitive(&mut self, rig: &Rig, m: usize, p: usize) {
+        let primitive = &rig.meshes[m].primitives[p];
+        let Some(skin) = rig.meshes[m].skin.map(|s| &rig.skins[s]).filter(|_| !primitive.joints.is_empty())
+        else {
+            return;
+        };
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        skin_vertices(rig, m, p, &self.model, &mut positions, &mut normals);
+        let share = vertex_areas(&positions, &primitive.indices);
+        for (i, &position) in positions.iter().enumerate() {
+            if !position.is_finite() || !share[i].is_finite() {
+                continue;
+            }
+            self.vertices.push(position);
+            self.lo = min3(self.lo, position);
+            self.hi = max3(self.hi, position);
+            for (slot, weight) in primitive.joints[i].into_iter().zip(primitive.weights[i]) {
+                if weight > 0.0 {
+                    self.area[skin.joints[usize::from(slot)]] += weight * share[i];
+                }
+            }
+        }
+    }
+}
+
+/// A third of the area of every triangle around a vertex; equal shares where there is no area at all.
+fn vertex_areas(positions: &[Vec3], indices: &[u32]) -> Vec<f32> {
+    let mut share = vec![0.0; positions.len()];
+    for corners in indices.chunks_exact(3) {
+        let [a, b, c] = [corners[0] as usize, corners[1] as usize, corners[2] as usize];
+        let doubled = (positions[b] - positions[a]).cross(positions[c] - positions[a]).length();
+        for corner in [a, b, c] {
+            share[corner] += doubled / 6.0;
+        }
+    }
+    if share.iter().any(|&s| s > 0.0) { share } else { vec![1.0; positions.len()] }
+}
+
+/// Model-space transform of every joint in the bind pose. Joints that no skin names hang off their parents as in the
+/// rest pose.
+fn bind_pose(rig: &Rig) -> Vec<Affine> {
+    let mut rest = Vec::new();
+    local_to_model(rig, &rest_pose(rig), &Affine::IDENTITY, &mut rest);
+    let mut bound: Vec<Option<Affine>> = vec![None; rig.joints.len()];
+    // The skin with the most vertices says where its joints were; smaller ones (a sword) only add what it lacks.
+    let mut meshes: Vec<&Mesh> = rig.meshes.iter().filter(|mesh| mesh.skin.is_some()).collect();
+    let vertices = |mesh: &Mesh| mesh.primitives.iter().map(|p| p.positions.len()).sum::<usize>();
+    meshes.sort_by_key(|mesh| core::cmp::Reverse(vertices(mesh)));
+    for mesh in meshes {
+        let Some(skin) = mesh.skin.map(|s| &rig.skins[s]) else { continue };
+        let model_from_mesh = model_from_mesh(rig, mesh, &rest);
+        for (&joint, inverse) in skin.joints.iter().zip(&skin.inverse_bind) {
+            let place = model_from_mesh * inverse.inverse();
+            if bound[joint].is_none() && place.is_finite() {
+                bound[joint] = Some(place);
+            }
+        }
+    }
+    let mut model: Vec<Affine> = Vec::with_capacity(rig.joints.len());
+    for (i, joint) in rig.joints.iter().enumerate() {
+        let hung = joint.parent.map_or(rest[i], |p| model[p] * joint.rest.to_affine());
+        model.push(bound[i].unwrap_or(hung));
+    }
+    model
+}
+
+/// Where the skinned mesh stands in model space when it is in its bind pose.
+///
+/// In a rest pose equal to the bind pose, every joint says the same (joint × inverse bind). Where the rest pose is
+/// some other pose the joints disagree; then the mesh's own node counts if any joint confirms it, else the first joint.
+fn model_from_mesh(rig: &Rig, mesh: &Mesh, rest: &[Affine]) -> Affine {
+    let skin = &rig.skins[mesh.skin.expect("only skinned meshes are asked for")];
+    let said: Vec<Affine> = skin
+        .joints
+        .iter()
+        .zip(&skin.inverse_bind)
+        .map(|(&joint, inverse)| rest[joint] * *inverse)
+        .filter(Affine::is_finite)
+        .collect();
+    let votes = |candidate: &Affine| said.iter().filter(|other| alike(candidate, other)).count();
+    let best = said
+        .iter()
+        .map(|candidate| (votes(candidate), candidate))
+        .reduce(|a, b| if b.0 > a.0 { b } else { a });
+    let Some((count, majority)) = best else { return rest[mesh.joint] };
+    if 2 * count > said.len() {
+        *majority
+    } else if votes(&rest[mesh.joint]) > 0 {
+        rest[mesh.joint]
+    } else {
+        let first =
+            skin.joints.iter().enumerate().min_by_key(|&(_, &joint)| joint).map_or(0, |(slot, _)| slot);
+        said.get(first).copied().unwrap_or(*majority)
+    }
+}
+
+/// Equal up to a thousandth of their scale.
+fn alike(a: &Affine, b: &Affine) -> bool {
+    let scale = a.linear.x_axis.length() + b.linear.x_axis.length() + 1e-12;
+    let columns = [
+        a.linear.x_axis - b.linear.x_axis,
+        a.linear.y_axis - b.linear.y_axis,
+        a.linear.z_axis - b.linear.z_axis,
+    ];
+    let moved = (a.translation - b.translation).length();
+    columns.iter().all(|d| d.length() < 2e-3 * scale)
+        && moved <= 2e-3 * (a.translation.length() + b.translation.length()) + 1e-3 * scale
+}

@@ -1,0 +1,64 @@
+//! Generic roles for whatever is not a human shape.
+
+use super::axes::possible_ups;
+use super::bind::Bound;
+use super::graph::Graph;
+use super::humanoid::Stance;
+use super::role::Role;
+use super::symmetry::Symmetry;
+use sinew_math::Vec3;
+
+/// A role per node: the midline chain with the most skin is the trunk, the first other midline chain the tail, every
+/// other chain a limb.
+pub(super) fn generic_roles(graph: &Graph, symmetry: &Symmetry) -> Vec<Role> {
+    let mut roles: Vec<Option<Role>> = vec![None; graph.nodes.len()];
+    let heavier = |a: usize, b: usize| if graph.subtree_area(b) > graph.subtree_area(a) { b } else { a };
+    let midline = |from: usize, roles: &[Option<Role>]| {
+        let children = graph.nodes[from].children.iter().copied();
+        children.filter(|&i| symmetry.on_midline(i) && roles[i].is_none()).reduce(heavier)
+    };
+    let mut trunk = vec![graph.root];
+    while let Some(next) = midline(trunk[trunk.len() - 1], &roles) {
+        trunk.push(next);
+    }
+    for (n, &node) in (0..).zip(&trunk) {
+        roles[node] = Some(Role::SpineSegment(n));
+    }
+    let tail_root = trunk.iter().find_map(|&node| midline(node, &roles));
+    let tail: Vec<usize> = core::iter::successors(tail_root, |&node| midline(node, &roles)).collect();
+    for (n, &node) in (0..).zip(&tail) {
+        roles[node] = Some(Role::TailSegment(n));
+    }
+    let mut limb = 0;
+    for &node in &graph.order {
+        if roles[node].is_some() {
+            continue;
+        }
+        // Parents come first, so a node without a role begins a chain; its side branches begin others.
+        for (segment, part) in (0..).zip(core::iter::successors(Some(node), |&i| longest(graph, i))) {
+            roles[part] = Some(Role::LimbSegment { limb, segment });
+        }
+        limb += 1;
+    }
+    roles.into_iter().map(|role| role.expect("every node is in a chain")).collect()
+}
+
+fn longest(graph: &Graph, node: usize) -> Option<usize> {
+    let way = |child: usize| graph.distance(node, child) + graph.reach(child);
+    graph.nodes[node].children.iter().copied().reduce(|a, b| if way(b) > way(a) { b } else { a })
+}
+
+/// The direction opposite to which most mirrored chains end low; the file's own up (+Y) when nothing tells.
+pub(super) fn up_by_feet(graph: &Graph, bound: &Bound, symmetry: &Symmetry) -> Vec3 {
+    let feet: Vec<Vec3> = (0..graph.nodes.len())
+        .filter(|&i| graph.nodes[i].children.is_empty() && symmetry.other(i).is_some())
+        .map(|i| graph.nodes[i].position)
+        .collect();
+    let low = |up: Vec3| {
+        let stance = Stance::new(bound, up);
+        feet.iter().filter(|&&foot| stance.level(foot) < 0.25).count()
+    };
+    let best =
+        possible_ups(symmetry.lateral).map(|up| (low(up), up)).reduce(|a, b| if b.0 > a.0 { b } else { a });
+    best.filter(|&(count, _)| count > 0).map_or(Vec3::Y, |(_, up)| up)
+}

@@ -1,0 +1,146 @@
+//! The tree of joints that move skin, with strays put back where they belong.
+
+use super::bind::Bound;
+use crate::rig::{JointIdx, Rig};
+use sinew_math::Vec3;
+
+/// A joint that moves skin.
+pub(super) struct Node {
+    pub joint: JointIdx,
+    pub parent: Option<usize>,
+    pub children: Vec<usize>,
+    /// Bind position, model space.
+    pub position: Vec3,
+    /// Skin area it moves.
+    pub area: f32,
+}
+
+/// A tree of [`Node`]s with one root.
+pub(super) struct Graph {
+    pub nodes: Vec<Node>,
+    pub root: usize,
+    /// Parents before children.
+    pub order: Vec<usize>,
+    /// Nodes whose parent the rig does not give: found by geometry.
+    pub adopted: Vec<usize>,
+}
+
+impl Graph {
+    /// The tree over the joints that move skin and pass `wanted`; `None` if there is none.
+    pub fn of(rig: &Rig, bound: &Bound, wanted: impl Fn(JointIdx) -> bool) -> Option<Self> {
+        let mut node_of: Vec<Option<usize>> = vec![None; rig.joints.len()];
+        let mut nodes: Vec<Node> = Vec::new();
+        for joint in 0..rig.joints.len() {
+            if !(bound.area[joint] > 0.0 && wanted(joint)) {
+                continue;
+            }
+            let parent = ancestors(rig, joint).find_map(|ancestor| node_of[ancestor]);
+            node_of[joint] = Some(nodes.len());
+            if let Some(parent) = parent {
+                let child = nodes.len();
+                nodes[parent].children.push(child);
+            }
+            let position = bound.model[joint].translation;
+            nodes.push(Node { joint, parent, children: Vec::new(), position, area: bound.area[joint] });
+        }
+        let mut graph = Self { nodes, root: 0, order: Vec::new(), adopted: Vec::new() };
+        graph.join(rig, bound, &node_of)?;
+        Some(graph)
+    }
+
+    /// Makes one tree of several: the one with the most skin stays, the others are adopted, large ones first.
+    fn join(&mut self, rig: &Rig, bound: &Bound, node_of: &[Option<usize>]) -> Option<()> {
+        let mut roots: Vec<usize> =
+            (0..self.nodes.len()).filter(|&i| self.nodes[i].parent.is_none()).collect();
+        let area = |i: usize| self.subtree(i).iter().map(|&k| self.nodes[k].area).sum::<f32>();
+        let areas: Vec<f32> = roots.iter().map(|&root| area(root)).collect();
+        let main = (0..roots.len()).reduce(|a, b| if areas[b] > areas[a] { b } else { a })?;
+        self.root = roots.remove(main);
+        roots.sort_by_key(|&root| core::cmp::Reverse(self.subtree(root).len()));
+        let ends = ends(rig, bound, node_of);
+        for stray in roots {
+            let parent = self.place_for(stray, &ends, bound.size());
+            self.nodes[stray].parent = Some(parent);
+            self.nodes[parent].children.push(stray);
+            self.adopted.push(stray);
+        }
+        self.order = self.subtree(self.root);
+        Some(())
+    }
+
+    /// Where a stray tree belongs. Rigs baked from inverse kinematics leave the feet beside the body: such a short
+    /// stray belongs to the leaf whose end it starts at, or to a leaf much nearer than the root; all others to the
+    /// root.
+    fn place_for(&self, stray: usize, ends: &[(usize, Vec3)], size: f32) -> usize {
+        let start = self.nodes[stray].position;
+        let own = self.subtree(stray);
+        let body = self.subtree(self.root);
+        let nearest = |places: &mut dyn Iterator<Item = (usize, Vec3)>| {
+            places
+                .filter(|(node, _)| body.contains(node) && !own.contains(node))
+                .map(|(node, place)| ((place - start).length(), node))
+                .reduce(|a, b| if b.0 < a.0 { b } else { a })
+        };
+        if let Some((distance, node)) = nearest(&mut ends.iter().copied())
+            && distance < 0.03 * size
+        {
+            return node;
+        }
+        let leaves = |i: &usize| self.nodes[*i].children.is_empty() && self.nodes[*i].parent.is_some();
+        let mut leaves = (0..self.nodes.len()).filter(leaves).map(|i| (i, self.nodes[i].position));
+        match nearest(&mut leaves) {
+            Some((distance, leaf))
+                if own.len() <= 2 && distance < 0.75 * (self.nodes[self.root].position - start).length() =>
+            {
+                leaf
+            }
+            _ => self.root,
+        }
+    }
+
+    /// A node and all below it, parents before children.
+    pub fn subtree(&self, from: usize) -> Vec<usize> {
+        let mut found = vec![from];
+        let mut next = 0;
+        while next < found.len() {
+            found.extend(&self.nodes[found[next]].children);
+            next += 1;
+        }
+        found
+    }
+
+    /// Skin area of a node and all below it.
+    pub fn subtree_area(&self, from: usize) -> f32 {
+        self.subtree(from).into_iter().map(|i| self.nodes[i].area).sum()
+    }
+
+    /// A node, its parent and so on up to the root.
+    pub fn up_from(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+        core::iter::successors(Some(node), |&i| self.nodes[i].parent)
+    }
+
+    /// Length of the longest way down from a node.
+    pub fn reach(&self, node: usize) -> f32 {
+        let below = |&child: &usize| self.distance(node, child) + self.reach(child);
+        self.nodes[node].children.iter().map(below).fold(0.0, sinew_math::max)
+    }
+
+    /// Distance of two nodes in the bind pose.
+    pub fn distance(&self, a: usize, b: usize) -> f32 {
+        (self.nodes[a].position - self.nodes[b].position).length()
+    }
+}
+
+/// Joint's parent, its parent, and so on.
+pub(super) fn ancestors(rig: &Rig, joint: JointIdx) -> impl Iterator<Item = JointIdx> + '_ {
+    core::iter::successors(rig.joints[joint].parent, |&i| rig.joints[i].parent)
+}
+
+/// Joints without skin under a leaf, and where they are: the far ends of its bone.
+fn ends(rig: &Rig, bound: &Bound, node_of: &[Option<usize>]) -> Vec<(usize, Vec3)> {
+    let end = |joint: JointIdx| {
+        let node = ancestors(rig, joint).find_map(|ancestor| node_of[ancestor])?;
+        Some((node, bound.model[joint].translation))
+    };
+    (0..rig.joints.len()).filter(|&joint| node_of[joint].is_none()).filter_map(end).collect()
+}

@@ -1,0 +1,271 @@
+//! A human shape in a tree of joints, by geometry alone: mirrored chains that reach the floor are legs, the mirrored
+//! chains highest on the trunk and widest are arms, the unpaired chain above them ends in the head.
+
+use super::bind::Bound;
+use super::graph::Graph;
+use super::names::{Part, Reading};
+use super::symmetry::Symmetry;
+use sinew_math::{Vec3, clamp, max, min, trig};
+
+/// Where a posture stands: directions and measures of the bind pose under the assumption that `up` is up.
+pub(super) struct Stance {
+    /// Unit, model space.
+    pub up: Vec3,
+    /// Least height of the skin, file units along `up`.
+    pub floor: f32,
+    /// From floor to crown, file units.
+    pub height: f32,
+}
+
+impl Stance {
+    pub fn new(bound: &Bound, up: Vec3) -> Self {
+        let heights = bound.vertices.iter().map(|v| v.dot(up));
+        let (mut floor, mut crown) = (f32::INFINITY, f32::NEG_INFINITY);
+        for h in heights {
+            (floor, crown) = (min(floor, h), max(crown, h));
+        }
+        Self { up, floor, height: max(crown - floor, 1e-12) }
+    }
+
+    /// Height of a point, 0 at the floor, 1 at the crown.
+    pub fn level(&self, point: Vec3) -> f32 {
+        (point.dot(self.up) - self.floor) / self.height
+    }
+}
+
+/// Places in a chain of (upper, lower, hand or foot); the last may be missing.
+type Split = (usize, usize, Option<usize>);
+
+/// An arm or a leg with its mirror image. Index 0 is the side toward [`Symmetry::lateral`].
+#[derive(Clone, Debug)]
+pub(super) struct Limb {
+    /// From the trunk outward, as far as both sides agree.
+    pub chain: [Vec<usize>; 2],
+    pub split: Split,
+}
+
+/// The joints of a human shape.
+#[derive(Clone, Debug)]
+pub(super) struct Humanoid {
+    pub pelvis: usize,
+    /// From above the pelvis to where the arms attach.
+    pub spine: Vec<usize>,
+    /// From above the chest to below the head.
+    pub neck: Vec<usize>,
+    pub head: usize,
+    pub arms: Limb,
+    pub legs: Limb,
+}
+
+/// What recognition looks at.
+pub(super) struct Evidence<'a> {
+    pub graph: &'a Graph,
+    pub symmetry: &'a Symmetry,
+    pub stance: &'a Stance,
+    /// Readings per node; all empty when the names cannot be trusted.
+    pub readings: &'a [Reading],
+}
+
+impl Evidence<'_> {
+    fn level(&self, node: usize) -> f32 {
+        self.stance.level(self.graph.nodes[node].position)
+    }
+
+    fn part(&self, node: usize) -> Option<Part> {
+        self.readings[node].part
+    }
+
+    /// The human shape that stands upright in this stance, if there is one.
+    pub fn recognise(&self) -> Option<Humanoid> {
+        let mut limbs = self.limbs();
+        let legs = self.take_legs(&mut limbs)?;
+        let arms = self.take_arms(&limbs, &legs)?;
+        let pelvis = self.pelvis(&legs, &arms);
+        let chest = self.attachment(&arms);
+        let spine: Vec<usize> = {
+            let mut path: Vec<usize> = self.graph.up_from(chest).take_while(|&i| i != pelvis).collect();
+            path.reverse();
+            path
+        };
+        let (neck, head) = self.neck_and_head(chest, &arms, pelvis)?;
+        let limb = |chain: [Vec<usize>; 2], wanted: [Part; 3]| {
+            let split = self.split(&chain[0], wanted)?;
+            Some(Limb { chain, split })
+        };
+        let found = Humanoid {
+            pelvis,
+            spine,
+            neck,
+            head,
+            arms: limb(arms, [Part::UpperArm, Part::LowerArm, Part::Hand])?,
+            legs: limb(legs, [Part::UpperLeg, Part::LowerLeg, Part::Foot])?,
+        };
+        self.stands(&found).then_some(found)
+    }
+
+    /// The trunk goes up and the legs go down.
+    fn stands(&self, found: &Humanoid) -> bool {
+        let position = |i: usize| self.graph.nodes[i].position;
+        let along = |from: usize, to: usize| {
+            let d = position(to) - position(from);
+            d.dot(self.stance.up) / max(d.length(), 1e-12)
+        };
+        let leg = &found.legs.chain[0];
+        along(found.pelvis, found.head) > 0.8 && along(leg[0], leg[leg.len() - 1]) < -0.6
+    }
+
+    /// All mirrored chains that grow out of the midline.
+    fn limbs(&self) -> Vec<[Vec<usize>; 2]> {
+        let starts = |&i: &usize| {
+            let parent_on_midline = self.graph.nodes[i].parent.is_some_and(|p| self.symmetry.on_midline(p));
+            parent_on_midline && self.symmetry.other(i).is_some() && self.symmetry.side(self.graph, i) > 0.0
+        };
+        (0..self.graph.nodes.len()).filter(starts).map(|root| self.limb_from(root)).collect()
+    }
+
+    /// The main chain from `root` and its mirror image, up to where fingers branch.
+    fn limb_from(&self, root: usize) -> [Vec<usize>; 2] {
+        let mut chain = vec![root];
+        loop {
+            let node = &self.graph.nodes[chain[chain.len() - 1]];
+            let mut ways: Vec<usize> =
+                node.children.iter().copied().filter(|&child| self.symmetry.other(child).is_some()).collect();
+            let long = ways.iter().filter(|&&way| !self.graph.nodes[way].children.is_empty()).count();
+            if ways.is_empty() || chain.len() > 2 && (long >= 2 || ways.len() >= 3) {
+                break;
+            }
+            let reach = |way: usize| self.graph.distance(chain[chain.len() - 1], way) + self.graph.reach(way);
+            ways.sort_by(|&a, &b| reach(b).total_cmp(&reach(a)));
+            chain.push(ways[0]);
+        }
+        let mirrored = chain.iter().filter_map(|&i| self.symmetry.other(i)).collect();
+        [chain, mirrored]
+    }
+
+    /// The pair of chains of at least two joints with the most skin among those that reach the floor.
+    fn take_legs(&self, limbs: &mut Vec<[Vec<usize>; 2]>) -> Option<[Vec<usize>; 2]> {
+        let reaches_floor = |chain: &[usize]| {
+            let lowest = chain.iter().map(|&i| self.level(i)).fold(f32::INFINITY, min);
+            // Without a foot joint the chain ends at the knee.
+            let limit = if chain.len() > 2 { 0.2 } else { 0.35 };
+            chain.len() > 1 && lowest < limit && (0.2..0.75).contains(&self.level(chain[0]))
+        };
+        let best = (0..limbs.len())
+            .filter(|&i| reaches_floor(&limbs[i][0]))
+            .map(|i| (self.graph.subtree_area(limbs[i][0][0]), i))
+            .reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+        Some(limbs.swap_remove(best.1))
+    }
+
+    /// The pair of chains of at least two joints that spreads widest among those above the legs and off the floor.
+    fn take_arms(&self, limbs: &[[Vec<usize>; 2]], legs: &[Vec<usize>; 2]) -> Option<[Vec<usize>; 2]> {
+        let hip = self.level(legs[0][0]);
+        let width = |chain: &[usize]| chain.iter().map(|&i| self.symmetry.side(self.graph, i)).fold(0.0, max);
+        let candidate = |chain: &[usize]| {
+            let lowest = chain.iter().map(|&i| self.level(i)).fold(f32::INFINITY, min);
+            chain.len() > 1 && self.level(chain[0]) > hip + 0.1 && lowest > 0.22
+        };
+        let best = (0..limbs.len())
+            .filter(|&i| candidate(&limbs[i][0]))
+            .map(|i| (width(&limbs[i][0]), i))
+            .reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+        Some(limbs[best.1].clone())
+    }
+
+    fn attachment(&self, limb: &[Vec<usize>; 2]) -> usize {
+        self.graph.nodes[limb[0][0]].parent.expect("limbs grow out of the midline")
+    }
+
+    /// The midline joint at the height of the hips. Thighs may hang off some other joint of the trunk, so the
+    /// joints from the root to the chest compete: by name, else the first of those near the hips that moves a fair
+    /// share of skin.
+    fn pelvis(&self, legs: &[Vec<usize>; 2], arms: &[Vec<usize>; 2]) -> usize {
+        let hip = self.level(legs[0][0]);
+        let mut trunk: Vec<usize> = self.graph.up_from(self.attachment(arms)).collect();
+        trunk.reverse();
+        let off = |i: usize| (self.level(i) - hip).abs();
+        let nearest = trunk.iter().map(|&i| off(i)).fold(f32::INFINITY, min);
+        let near: Vec<usize> =
+            trunk.iter().copied().filter(|&i| off(i) < max(nearest + 0.01, 0.07)).collect();
+        if let Some(&named) = near.iter().find(|&&i| self.part(i) == Some(Part::Hips)) {
+            return named;
+        }
+        let most = near.iter().map(|&i| self.graph.nodes[i].area).fold(0.0, max);
+        near.iter().copied().find(|&i| self.graph.nodes[i].area >= 0.2 * most).unwrap_or(trunk[0])
+    }
+
+    /// The midline chain above the arms that carries the most skin: its last joint with a fair share is the head.
+    fn neck_and_head(
+        &self,
+        chest: usize,
+        arms: &[Vec<usize>; 2],
+        pelvis: usize,
+    ) -> Option<(Vec<usize>, usize)> {
+        let shoulder = self.level(arms[0][0]);
+        let above =
+            |&i: &usize| self.symmetry.on_midline(i) && i != pelvis && self.level(i) > shoulder - 0.03;
+        let mut chain: Vec<usize> = Vec::new();
+        let mut at = chest;
+        loop {
+            let next = self.graph.nodes[at].children.iter().copied().filter(above);
+            let best =
+                next.map(|i| (self.graph.subtree_area(i), i)).reduce(|a, b| if b.0 > a.0 { b } else { a });
+            let Some((_, next)) = best else { break };
+            chain.push(next);
+            at = next;
+        }
+        let all = self.graph.subtree_area(*chain.first()?);
+        let named = chain.iter().position(|&i| self.part(i) == Some(Part::Head));
+        let fair = chain.iter().rposition(|&i| self.graph.subtree_area(i) >= 0.15 * all).unwrap_or(0);
+        let head = chain[named.unwrap_or(fair)];
+        chain.truncate(named.unwrap_or(fair));
+        Some((chain, head))
+    }
+
+    /// Which joints of a chain begin the upper part, the lower part and the hand or foot: by name, else by length.
+    fn split(&self, chain: &[usize], parts: [Part; 3]) -> Option<Split> {
+        let place = |part: Part| chain.iter().position(|&i| self.part(i) == Some(part));
+        if let (Some(upper), Some(lower)) = (place(parts[0]), place(parts[1])) {
+            let last = place(parts[2]).filter(|&last| last > lower);
+            if upper < lower && chain.iter().filter(|&&i| self.part(i) == Some(parts[1])).count() == 1 {
+                return Some((upper, lower, last.or((lower + 1 < chain.len()).then_some(lower + 1))));
+            }
+        }
+        let leg = parts[2] == Part::Foot;
+        match chain.len() {
+            0 | 1 => None,
+            2 => Some((0, 1, None)),
+            3 => Some((0, 1, Some(2))),
+            4 if leg => Some((0, 1, Some(2))),
+            _ => Some(self.split_by_length(chain)),
+        }
+    }
+
+    /// In a chain of four and more: the two consecutive stretches whose lengths are most like those of an upper arm
+    /// and a forearm, or a thigh and a shank (0.9 : 1), that cover at least half of the way. A joint with hardly any
+    /// bone after it (a clavicle's end, a wrist before the hand) begins neither.
+    fn split_by_length(&self, chain: &[usize]) -> Split {
+        let mut way = vec![0.0];
+        for pair in chain.windows(2) {
+            way.push(way[way.len() - 1] + self.graph.distance(pair[0], pair[1]));
+        }
+        let longest = way.windows(2).map(|w| w[1] - w[0]).fold(0.0, max);
+        let short = |i: usize| way[i + 1] - way[i] < 0.35 * longest;
+        let mut best = (f32::INFINITY, (0, 1, Some(2)));
+        for lower in 1..chain.len() - 1 {
+            for upper in 0..lower {
+                for last in lower + 1..chain.len() {
+                    let (a, b) = (way[lower] - way[upper], way[last] - way[lower]);
+                    if short(upper) || short(lower) || a + b < 0.5 * way[way.len() - 1] {
+                        continue;
+                    }
+                    let misfit = trig::ln(clamp(b / max(a, 1e-12), 1e-3, 1e3) / 0.9).abs();
+                    if misfit < best.0 {
+                        best = (misfit, (upper, lower, Some(last)));
+                    }
+                }
+            }
+        }
+        best.1
+    }
+}

@@ -1,0 +1,147 @@
+//! What the joints of a rig are: roles, axes, units, and which joints deserve a body.
+//!
+//! Roles that the file states (VRM) come first; then geometry (mirrored chains of the bind pose) decides and names
+//! only bear witness: they settle how a limb is divided, raise the confidence where they agree and lower it where
+//! they don't. Names whose left and right do not mirror each other are not listened to at all.
+
+mod anatomy;
+mod axes;
+mod bind;
+mod creature;
+mod graph;
+mod humanoid;
+mod keep;
+mod names;
+mod role;
+mod symmetry;
+
+pub use role::{HUMANOID_ROLES, Role, Side};
+
+use crate::rig::{JointIdx, Rig};
+use anatomy::Anatomy;
+use bind::Bound;
+use humanoid::Stance;
+use keep::{Kept, Selection};
+use sinew_math::{Affine, Transform, Vec3};
+
+/// A role and how sure it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoleGuess {
+    /// The role.
+    pub role: Role,
+    /// 0..=1; 1 where the file itself states the role.
+    pub confidence: f32,
+}
+
+/// A joint that deserves a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeptBone {
+    /// The joint, whose origin is where the body turns against its parent.
+    pub joint: JointIdx,
+    /// Its role.
+    pub role: Role,
+    /// 0..=1.
+    pub confidence: f32,
+    /// Index into [`RigAnalysis::kept`], smaller than the bone's own; `None` for the first. Anatomy, not the rig's
+    /// hierarchy: a shank carries the foot even where the rig hangs it elsewhere.
+    pub parent: Option<usize>,
+    /// Other joints that move with this body and whose skin is its skin.
+    pub merged: Vec<JointIdx>,
+    /// Transform in the bind pose, model space, file units.
+    pub bind_model: Affine,
+}
+
+/// What [`analyze`] found out about a rig.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigAnalysis {
+    /// Metres per file unit.
+    pub unit_scale: f32,
+    /// Unit vector, model space.
+    pub up_axis: Vec3,
+    /// Rotation to the character's axes: +Y up, +Z the way it faces, so that its left is on +X. A model point in file
+    /// units is at `character_from_model.point(point * unit_scale)`, metres. The translation is zero.
+    pub character_from_model: Transform,
+    /// Height of the lowest skin in the bind pose, metres, character axes.
+    pub floor: f32,
+    /// From the lowest to the highest skin in the bind pose, metres.
+    pub height: f32,
+    /// True if the roles are those of the VRM humanoid, else generic.
+    pub humanoid: bool,
+    /// Role per joint, if it has one.
+    pub roles: Vec<Option<RoleGuess>>,
+    /// Joints that deserve a body, parents before children, the pelvis (or a creature's root) first.
+    pub kept: Vec<KeptBone>,
+    /// Per joint the kept joint that it follows; `None` for kept joints, for what lies above them in the rig, and
+    /// for joints without skin that hang on no body (IK targets).
+    pub merge_into: Vec<Option<JointIdx>>,
+    /// Transform of every joint in the bind pose, model space, file units: from the inverse bind matrices, and from
+    /// the rest pose for joints that no skin names.
+    pub bind_model: Vec<Affine>,
+    /// Joints of the skins that are not kept.
+    pub dropped: Vec<JointIdx>,
+    /// What was assumed, a sentence each.
+    pub notes: Vec<String>,
+}
+
+impl RigAnalysis {
+    /// Index into [`kept`](Self::kept) of the bone with that role.
+    pub fn kept_with(&self, role: Role) -> Option<usize> {
+        self.kept.iter().position(|bone| bone.role == role)
+    }
+
+    /// The joint with that role, kept or not.
+    pub fn joint_with(&self, role: Role) -> Option<JointIdx> {
+        self.roles.iter().position(|guess| guess.is_some_and(|guess| guess.role == role))
+    }
+
+    /// The linear map and translation from model space (file units) to character space (metres).
+    pub fn character_from_file(&self) -> Affine {
+        let turn = self.character_from_model;
+        Affine::from_scale_rotation_translation(Vec3::splat(self.unit_scale), turn.rotation, turn.translation)
+    }
+}
+
+/// The rig has no skin, so there is no body to understand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no skin: nothing to build a ragdoll from")]
+pub struct NoSkin;
+
+/// Roles, axes, unit and bodies of a rig. Never refuses a shape: what is not human gets generic roles.
+///
+/// # Errors
+/// [`NoSkin`] if no vertex is bound to a joint.
+///
+/// # Panics
+/// If the rig's indices (parents, skin joints, vertex slots) are out of range.
+pub fn analyze(rig: &Rig) -> Result<RigAnalysis, NoSkin> {
+    let bound = Bound::of(rig).ok_or(NoSkin)?;
+    let Anatomy { graph, roles, humanoid, up, left, mut notes } = Anatomy::of(rig, &bound).ok_or(NoSkin)?;
+    let stance = Stance::new(&bound, up);
+    let (unit_scale, unit_note) = axes::unit_scale(stance.height, bound.size(), humanoid);
+    notes.extend(unit_note);
+    if up.dot(Vec3::Y) < 0.9 {
+        notes.push(format!("the body stands along {up} of the file, not along +Y"));
+    }
+    let carrier = keep::carriers(rig, &bound, &graph);
+    let selection =
+        Selection { rig, bound: &bound, graph: &graph, roles: &roles, height: stance.height, carrier };
+    let Kept { bones: kept, merge_into } = if humanoid { selection.humanoid() } else { selection.creature() };
+    let mut dropped: Vec<JointIdx> = rig.skins.iter().flat_map(|skin| skin.joints.iter().copied()).collect();
+    dropped.sort_unstable();
+    dropped.dedup();
+    dropped.retain(|joint| kept.iter().all(|bone| bone.joint != *joint));
+    Ok(RigAnalysis {
+        unit_scale,
+        up_axis: up,
+        character_from_model: Transform::new(Vec3::ZERO, axes::character_from_model(left, up)),
+        floor: stance.floor * unit_scale,
+        height: stance.height * unit_scale,
+        humanoid,
+        roles,
+        kept,
+        merge_into,
+        bind_model: bound.model,
+        dropped,
+        notes,
+    })
+}

@@ -1,0 +1,17 @@
+//! Rigs of ../shared/data.
+
+use sinew_anim::{Clip, Rig};
+use std::path::Path;
+
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/");
+
+/// Rig and clips of a file under ../shared/data; `None`, with a line that says so, where the data is absent.
+pub fn load(path: &str) -> Option<(Rig, Vec<Clip>)> {
+    if !Path::new(DATA).is_dir() {
+        println!("skipped: no ../shared/data");
+        return None;
+    }
+    let document = sinew_formats::load_gltf(format!("{DATA}{path}"), sinew_formats::ReadOptions::default());
+    let document = document.unwrap_or_else(|error| panic!("{path}: {error}"));
+    Some((document.rig, document.clips))
+}
