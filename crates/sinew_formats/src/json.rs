@@ -57,10 +57,16 @@ impl<'a> At<'a> {
         self.get(key)?.ok_or_else(|| self.malformed(format!("`{key}` is missing")))
     }
 
-    /// Keys and values of an object.
-    pub(crate) fn entries(self) -> Result<impl Iterator<Item = (&'a str, At<'a>)>> {
+    /// Refuses keys that are not among `known`: a typing error would otherwise be a silent default.
+    pub(crate) fn only(self, known: &[&str]) -> Result<()> {
         let object = self.value.as_object().ok_or_else(|| self.malformed("must be an object"))?;
-        Ok(object.iter().map(move |(key, value)| (key.as_str(), At { root: self.root, value })))
+        match object.keys().find(|key| !known.contains(&key.as_str())) {
+            Some(key) => {
+                let key = key.escape_debug();
+                Err(self.malformed(format!("unknown key `{key}`; known are {}", known.join(", "))))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Elements of an array.
@@ -99,6 +105,11 @@ impl<'a> At<'a> {
             .ok_or_else(|| self.malformed("must be a whole number, 0 or more"))
     }
 
+    /// A whole number ≥ 0, up to 64 bits.
+    pub(crate) fn u64(self) -> Result<u64> {
+        self.value.as_u64().ok_or_else(|| self.malformed("must be a whole number, 0 or more"))
+    }
+
     /// A whole number below `len`, the length of the list `of`.
     pub(crate) fn index(self, len: usize, of: &str) -> Result<usize> {
         let index = self.usize()?;
@@ -108,9 +119,14 @@ impl<'a> At<'a> {
         Ok(index)
     }
 
+    /// A number.
+    pub(crate) fn f64(self) -> Result<f64> {
+        self.value.as_f64().ok_or_else(|| self.malformed("must be a number"))
+    }
+
     /// A number that is finite as `f32`.
     pub(crate) fn f32(self) -> Result<f32> {
-        let number = self.value.as_f64().ok_or_else(|| self.malformed("must be a number"))? as f32;
+        let number = self.f64()? as f32;
         if !number.is_finite() {
             return Err(self.malformed("number is too large"));
         }
@@ -130,14 +146,27 @@ impl<'a> At<'a> {
         Ok(out)
     }
 
+    /// A finite number above 0.
+    pub(crate) fn positive(self) -> Result<f32> {
+        let number = self.f32()?;
+        if number <= 0.0 {
+            return Err(self.malformed("must be more than 0"));
+        }
+        Ok(number)
+    }
+
+    /// A finite number, 0 or more.
+    pub(crate) fn not_negative(self) -> Result<f32> {
+        let number = self.f32()?;
+        if number < 0.0 {
+            return Err(self.malformed("must not be negative"));
+        }
+        Ok(number)
+    }
+
     /// The numbers under an optional key, or `default`.
     pub(crate) fn numbers_or<const N: usize>(self, key: &str, default: [f32; N]) -> Result<[f32; N]> {
         self.get(key)?.map_or(Ok(default), Self::numbers)
-    }
-
-    /// The number under an optional key, or `default`.
-    pub(crate) fn f32_or(self, key: &str, default: f32) -> Result<f32> {
-        self.get(key)?.map_or(Ok(default), Self::f32)
     }
 }
 
@@ -172,4 +201,91 @@ fn find(from: &Value, target: &Value, path: &mut String) -> bool {
         _ => {}
     }
     false
+}
+
+/// A number as its shortest decimals that read back as the same `f32`.
+///
+/// # Panics
+/// If it is not finite: JSON has no such number.
+pub(crate) fn number(x: f32) -> Value {
+    assert!(x.is_finite(), "a file can only hold finite numbers, not {x}");
+    Value::from(x.to_string().parse::<f64>().unwrap_or_default())
+}
+
+/// An array of numbers, each as by [`number`].
+pub(crate) fn numbers(xs: &[f32]) -> Value {
+    xs.iter().map(|&x| number(x)).collect()
+}
+
+/// Text for people: what fits on a line stands on one line.
+pub(crate) fn to_text(value: &Value) -> String {
+    let mut out = String::new();
+    write_value(value, 0, &mut out);
+    out.push('\n');
+    out
+}
+
+fn write_value(value: &Value, indent: usize, out: &mut String) {
+    const WIDTH: usize = 100;
+    let start = out.rfind('\n').map_or(0, |i| i + 1);
+    let flat = one_line(value);
+    if out.len() - start + flat.len() <= WIDTH {
+        out.push_str(&flat);
+        return;
+    }
+    let (open, close, entries): (_, _, Vec<(Option<&String>, &Value)>) = match value {
+        Value::Array(items) => ('[', ']', items.iter().map(|v| (None, v)).collect()),
+        Value::Object(map) => ('{', '}', map.iter().map(|(k, v)| (Some(k), v)).collect()),
+        _ => return out.push_str(&flat),
+    };
+    out.push(open);
+    for (i, (key, value)) in entries.into_iter().enumerate() {
+        out.push_str(if i == 0 { "\n" } else { ",\n" });
+        out.push_str(&"  ".repeat(indent + 1));
+        if let Some(key) = key {
+            out.push_str(&format!("{}: ", Value::from(key.as_str())));
+        }
+        write_value(value, indent + 1, out);
+    }
+    out.push('\n');
+    out.push_str(&"  ".repeat(indent));
+    out.push(close);
+}
+
+/// Compact JSON with spaces after commas and colons. Whole numbers drop their `.0`.
+fn one_line(value: &Value) -> String {
+    let join = |parts: Vec<String>| parts.join(", ");
+    match value {
+        Value::Array(items) => format!("[{}]", join(items.iter().map(one_line).collect())),
+        Value::Object(map) if map.is_empty() => "{}".into(),
+        Value::Object(map) => {
+            let entry = |(key, value): (&String, &Value)| {
+                format!("{}: {}", Value::from(key.as_str()), one_line(value))
+            };
+            format!("{{ {} }}", join(map.iter().map(entry).collect()))
+        }
+        Value::Number(n) => {
+            let text = n.to_string();
+            text.strip_suffix(".0").map_or_else(|| text.clone(), str::to_owned)
+        }
+        _ => value.to_string(),
+    }
+}
+
+/// Checks how every file of ours begins: `{"sinew": kind, "version": version, …}`.
+pub(crate) fn check_header(root: At<'_>, kind: &str, version: usize) -> Result<()> {
+    let kind_at = root.need("sinew")?;
+    let found = kind_at.str()?;
+    if found != kind {
+        return Err(kind_at.malformed(format!("this is a `{}` file, not a `{kind}`", found.escape_debug())));
+    }
+    let version_at = root.need("version")?;
+    match version_at.usize()? {
+        0 => Err(version_at.malformed("versions count from 1")),
+        found if found > version => {
+            Err(version_at
+                .unsupported(format!("version {found} is newer than {version}, the last one known")))
+        }
+        _ => Ok(()),
+    }
 }

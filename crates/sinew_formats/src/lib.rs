@@ -11,9 +11,14 @@ pub mod fs;
 mod glb;
 pub mod gltf;
 mod json;
+mod parts;
+pub mod ragdoll;
 mod uri;
+pub mod world;
 
 pub use error::{Error, ErrorKind, Result};
 #[cfg(feature = "fs")]
 pub use fs::{load_gltf, read_bytes, write_atomic};
 pub use gltf::{Container, Document, ReadOptions, Resolver, Textures, append_clip, no_files, read_gltf};
+pub use ragdoll::{read_ragdoll, write_ragdoll};
+pub use world::{read_world, write_world};

@@ -1,10 +1,246 @@
-//! Writing a clip into the user's own file.
-use super::Document;
-use crate::error::Result;
-use sinew_anim::Clip;
+//! Writing a clip into the user's own file: the original JSON is edited as a value, the original bytes stay a prefix.
 
-/// Stub.
-#[allow(clippy::missing_errors_doc)]
-pub fn append_clip(_d: &Document, _c: &Clip, _name: &str, _e: Option<serde_json::Value>) -> Result<Vec<u8>> {
-    Err(crate::Error::io("not yet"))
+use super::Document;
+use super::source::Buffer;
+use crate::error::{Error, Result};
+use crate::{glb, uri};
+use serde_json::{Map, Value, json};
+use sinew_anim::{Channel, Clip, Interpolation, Joint, LocalTransform, Property};
+use std::collections::BTreeMap;
+
+const FLOAT: u32 = 5126;
+
+/// The user's own file with one more animation, as a GLB.
+///
+/// Everything that was in the JSON stays as it was, in its order, unknown extensions included, and the old binary chunk
+/// is a prefix of the new one. New are one buffer view, the accessors of the keys and the animation, each at the end of
+/// its list. Channels point at the nodes that the joints came from. `extras` becomes the animation's `extras`.
+///
+/// What has to change in old entries, and nothing else does:
+/// - `buffers[0].byteLength` grows.
+/// - A `.gltf` becomes one file that can be moved: `buffers[0]` loses its `uri` and becomes the binary chunk, pictures
+///   in files of their own move into it, further external buffers become data URIs. A picture that was missing when
+///   the file was read keeps its `uri`.
+/// - A node that has a `matrix` and is animated gets `translation`, `rotation` and `scale` instead, as glTF 2.0 §3.5.3
+///   demands.
+///
+/// Channels are left out where a node's channels only repeat its rest pose and the format would rather not have them:
+/// the node has a `matrix`, which so can stay, or it carries a skinned mesh, whose own transform does not count.
+///
+/// # Errors
+/// Nothing to write (no channel is left), the first buffer is a placeholder without bytes, or the result is over 4 GiB.
+///
+/// # Panics
+/// If a channel names a joint that the document's rig does not have, or breaks the rules of [`Channel`].
+pub fn append_clip(document: &Document, clip: &Clip, name: &str, extras: Option<Value>) -> Result<Vec<u8>> {
+    let mut editor = Editor::open(document)?;
+    editor.embed_external(document)?;
+    let joints = &document.rig.joints;
+    let moved = moved_nodes(clip, joints);
+    editor.free_matrices(&moved)?;
+    let channels = clip.channels.iter().filter(|c| {
+        let node = joints[c.joint].source;
+        moved.contains_key(&node) || !better_left_alone(&document.json["nodes"][node])
+    });
+    let mut animation = Map::new();
+    if !name.is_empty() {
+        animation.insert("name".into(), name.into());
+    }
+    editor.write_channels(channels, joints, &mut animation)?;
+    if let Some(extras) = extras {
+        animation.insert("extras".into(), extras);
+    }
+    editor.push("animations", animation.into())?;
+    editor.finish(&document.other_chunks)
+}
+
+fn better_left_alone(node: &Value) -> bool {
+    node.get("matrix").is_some() || node.get("skin").is_some()
+}
+
+/// Nodes of joints that some channel takes away from their rest pose, with that pose.
+fn moved_nodes(clip: &Clip, joints: &[Joint]) -> BTreeMap<usize, LocalTransform> {
+    let moving = clip.channels.iter().filter(|c| !repeats_rest(c, &joints[c.joint].rest));
+    moving.map(|c| (joints[c.joint].source, joints[c.joint].rest)).collect()
+}
+
+fn repeats_rest(channel: &Channel, rest: &LocalTransform) -> bool {
+    let (t, r, s) = (rest.translation, rest.rotation, rest.scale);
+    let value: &[f32] = match channel.property {
+        Property::Translation => &t.to_array(),
+        Property::Rotation => &[r.x, r.y, r.z, r.w],
+        Property::Scale => &s.to_array(),
+    };
+    let near = |(a, b): (&f32, &f32)| (a - b).abs() <= 1e-6 * (1.0 + b.abs());
+    channel.interpolation != Interpolation::CubicSpline
+        && channel.values.chunks(value.len()).all(|key| key.iter().zip(value).all(near))
+}
+
+/// A file in the making.
+struct Editor {
+    root: Map<String, Value>,
+    bin: Vec<u8>,
+}
+
+impl Editor {
+    /// Starts from the document, with its first buffer as the binary chunk.
+    fn open(document: &Document) -> Result<Self> {
+        let Value::Object(root) = document.json.clone() else {
+            return Err(Error::malformed("must be an object", "top level"));
+        };
+        let bin = match document.buffers.first() {
+            None | Some(Buffer::Chunk) => document.bin.clone().unwrap_or_default(),
+            Some(Buffer::DataUri(bytes) | Buffer::External(bytes)) => bytes.clone(),
+            Some(Buffer::Absent) => {
+                return Err(Error::unsupported("buffer has no bytes of its own to add to", "buffers[0]"));
+            }
+        };
+        let mut editor = Self { root, bin };
+        editor.align();
+        if document.buffers.is_empty() {
+            editor.push("buffers", json!({}))?;
+        }
+        editor.entry("buffers", 0)?.shift_remove("uri");
+        Ok(editor)
+    }
+
+    /// Takes what lies in files of its own into this one.
+    fn embed_external(&mut self, document: &Document) -> Result<()> {
+        for (i, buffer) in document.buffers.iter().enumerate().skip(1) {
+            if let Buffer::External(bytes) = buffer {
+                self.entry("buffers", i)?.insert("uri".into(), uri::encode_data(bytes).into());
+            }
+        }
+        for (&i, bytes) in &document.external_images {
+            // A picture in a buffer view must state its type; one of another type stays where it is.
+            let mime = match bytes.as_slice() {
+                [0x89, b'P', b'N', b'G', ..] => "image/png",
+                [0xFF, 0xD8, 0xFF, ..] => "image/jpeg",
+                _ => continue,
+            };
+            let view = self.push_view(bytes)?;
+            let image = self.entry("images", i)?;
+            image.shift_remove("uri");
+            image.insert("bufferView".into(), view.into());
+            image.insert("mimeType".into(), mime.into());
+        }
+        Ok(())
+    }
+
+    /// Replaces the matrix of animated nodes by translation, rotation and scale.
+    fn free_matrices(&mut self, moved: &BTreeMap<usize, LocalTransform>) -> Result<()> {
+        for (&node, rest) in moved {
+            let node = self.entry("nodes", node)?;
+            if node.shift_remove("matrix").is_some() {
+                let r = rest.rotation;
+                node.insert("translation".into(), json!(rest.translation.to_array()));
+                node.insert("rotation".into(), json!([r.x, r.y, r.z, r.w]));
+                node.insert("scale".into(), json!(rest.scale.to_array()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes keys into one new buffer view, and `channels` and `samplers` into `animation`. Channels with the same
+    /// key times share them.
+    fn write_channels<'c>(
+        &mut self,
+        channels: impl Iterator<Item = &'c Channel>,
+        joints: &[Joint],
+        animation: &mut Map<String, Value>,
+    ) -> Result<()> {
+        let mut data = Vec::new();
+        let mut inputs: Vec<(&[f32], usize)> = Vec::new();
+        let (mut channel_list, mut samplers) = (Vec::new(), Vec::new());
+        let view = self.list("bufferViews")?.len();
+        for channel in channels {
+            let known =
+                inputs.iter().find(|(times, _)| *times == channel.times).map(|(_, accessor)| *accessor);
+            let input = if let Some(accessor) = known {
+                accessor
+            } else {
+                let accessor = self.push_keys(view, &mut data, &channel.times, "SCALAR")?;
+                inputs.push((&channel.times, accessor));
+                accessor
+            };
+            let (path, kind) = match channel.property {
+                Property::Translation => ("translation", "VEC3"),
+                Property::Rotation => ("rotation", "VEC4"),
+                Property::Scale => ("scale", "VEC3"),
+            };
+            let interpolation = match channel.interpolation {
+                Interpolation::Step => "STEP",
+                Interpolation::Linear => "LINEAR",
+                Interpolation::CubicSpline => "CUBICSPLINE",
+            };
+            let output = self.push_keys(view, &mut data, &channel.values, kind)?;
+            let node = joints[channel.joint].source;
+            channel_list.push(json!({"sampler": samplers.len(), "target": {"node": node, "path": path}}));
+            samplers.push(json!({"input": input, "interpolation": interpolation, "output": output}));
+        }
+        if channel_list.is_empty() {
+            return Err(Error::unsupported(
+                "the clip moves nothing: there is no channel to write",
+                "animations",
+            ));
+        }
+        self.push_view(&data)?;
+        animation.insert("channels".into(), channel_list.into());
+        animation.insert("samplers".into(), samplers.into());
+        Ok(())
+    }
+
+    /// Adds numbers to the `data` of the view-to-be, and an accessor for them. Times carry their bounds, as §3.11 asks.
+    fn push_keys(&mut self, view: usize, data: &mut Vec<u8>, numbers: &[f32], kind: &str) -> Result<usize> {
+        let width = match kind {
+            "SCALAR" => 1,
+            "VEC3" => 3,
+            _ => 4,
+        };
+        let mut accessor = json!({
+            "bufferView": view, "byteOffset": data.len(), "componentType": FLOAT,
+            "count": numbers.len() / width, "type": kind,
+        });
+        if width == 1 {
+            accessor["min"] = json!([f64::from(numbers[0])]);
+            accessor["max"] = json!([f64::from(numbers[numbers.len() - 1])]);
+        }
+        data.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
+        self.push("accessors", accessor)
+    }
+
+    fn push_view(&mut self, bytes: &[u8]) -> Result<usize> {
+        self.align();
+        let view = json!({"buffer": 0, "byteOffset": self.bin.len(), "byteLength": bytes.len()});
+        self.bin.extend(bytes);
+        self.push("bufferViews", view)
+    }
+
+    /// The next thing begins at a multiple of 4 bytes.
+    fn align(&mut self) {
+        self.bin.resize(self.bin.len().div_ceil(4) * 4, 0);
+    }
+
+    fn list(&mut self, name: &str) -> Result<&mut Vec<Value>> {
+        let list = self.root.entry(name).or_insert_with(|| Value::Array(Vec::new()));
+        list.as_array_mut().ok_or_else(|| Error::malformed("must be an array", name))
+    }
+
+    fn push(&mut self, list: &str, value: Value) -> Result<usize> {
+        let list = self.list(list)?;
+        list.push(value);
+        Ok(list.len() - 1)
+    }
+
+    fn entry(&mut self, list: &str, index: usize) -> Result<&mut Map<String, Value>> {
+        let entry = self.list(list)?.get_mut(index).and_then(Value::as_object_mut);
+        entry.ok_or_else(|| Error::malformed("must be an object", format!("{list}[{index}]")))
+    }
+
+    fn finish(mut self, other_chunks: &[u8]) -> Result<Vec<u8>> {
+        let length = self.bin.len();
+        self.entry("buffers", 0)?.insert("byteLength".into(), length.into());
+        let text = Value::Object(self.root).to_string();
+        glb::write(text.as_bytes(), &self.bin, other_chunks)
+    }
 }

@@ -114,9 +114,14 @@ fn read_transform(node: At<'_>) -> Result<LocalTransform> {
     let [x, y, z, w] = node.numbers_or("rotation", [0.0, 0.0, 0.0, 1.0])?;
     Ok(LocalTransform {
         translation: Vec3::from_array(node.numbers_or("translation", [0.0; 3])?),
-        rotation: Rotation::from_xyzw(x, y, z, w).normalize(),
+        rotation: unit(Rotation::from_xyzw(x, y, z, w)),
         scale: Vec3::from_array(node.numbers_or("scale", [1.0; 3])?),
     })
+}
+
+/// At length 1. What is there already within rounding stays as it is, so that a file's numbers come through unchanged.
+fn unit(rotation: Rotation) -> Rotation {
+    if (rotation.dot(rotation) - 1.0).abs() < 1e-6 { rotation } else { rotation.normalize() }
 }
 
 /// Column-major 4×4 numbers as an affine map; the last row is (0, 0, 0, 1) by the rules of the format.

@@ -1,1 +1,229 @@
+//! Bytes that want to break the reader: an error with a place each time, never a panic, never memory on credit.
 
+use crate::data::{GLTF, files, shared_data};
+use sinew_formats::{ErrorKind, ReadOptions, Result, Textures, append_clip, load_gltf, no_files, read_gltf};
+use sinew_math::Random;
+use std::path::Path;
+
+const DECODE: ReadOptions = ReadOptions { textures: Textures::Decode };
+
+/// What the reader says about a JSON text, or "" if it accepts it.
+fn complaint(json: &str) -> String {
+    read_gltf(json.as_bytes(), DECODE, &mut no_files).err().map(|e| e.to_string()).unwrap_or_default()
+}
+
+/// A GLB of a JSON text and a binary chunk.
+fn glb(json: &str, bin: &[u8]) -> Vec<u8> {
+    let padded = json.to_owned() + &" ".repeat(json.len().next_multiple_of(4) - json.len());
+    let total = 12 + 8 + padded.len() + 8 + bin.len();
+    let mut bytes = b"glTF\x02\0\0\0".to_vec();
+    bytes.extend((total as u32).to_le_bytes());
+    for (kind, data) in [(b"JSON", padded.as_bytes()), (b"BIN\0", bin)] {
+        bytes.extend((data.len() as u32).to_le_bytes());
+        bytes.extend(kind);
+        bytes.extend(data);
+    }
+    bytes
+}
+
+/// A skinned triangle, small enough to cut at every byte. `joints` are the twelve slots of its vertices.
+fn triangle(joints: [u8; 12]) -> Vec<u8> {
+    let json = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
+        "nodes":[{"mesh":0,"skin":0},{"name":"bone"}],"skins":[{"joints":[1]}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2}}]}],
+        "animations":[{"channels":[{"sampler":0,"target":{"node":1,"path":"translation"}}],
+            "samplers":[{"input":3,"output":0}]}],
+        "accessors":[
+            {"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},
+            {"bufferView":1,"componentType":5121,"count":3,"type":"VEC4"},
+            {"bufferView":2,"componentType":5121,"normalized":true,"count":3,"type":"VEC4"},
+            {"bufferView":3,"componentType":5126,"count":3,"type":"SCALAR"}],
+        "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":12},
+            {"buffer":0,"byteOffset":48,"byteLength":12},{"buffer":0,"byteOffset":60,"byteLength":12}],
+        "buffers":[{"byteLength":72}]}"#;
+    let mut bin = Vec::new();
+    bin.extend([0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|x| x.to_le_bytes()));
+    bin.extend(joints);
+    bin.extend([255, 0, 0, 0, 200, 55, 0, 0, 0, 0, 0, 0]);
+    bin.extend([0.0_f32, 0.5, 1.0].iter().flat_map(|x| x.to_le_bytes()));
+    glb(json, &bin)
+}
+
+#[test]
+fn a_whole_triangle_is_read() {
+    let document = read_gltf(&triangle([0; 12]), DECODE, &mut no_files).unwrap();
+    let part = &document.rig.meshes[0].primitives[0];
+    assert_eq!(part.indices, [0, 1, 2]);
+    assert_eq!(part.weights[1], [200.0 / 255.0, 55.0 / 255.0, 0.0, 0.0]);
+    assert_eq!(part.weights[2], [1.0, 0.0, 0.0, 0.0]);
+    assert_eq!(document.clips[0].channels[0].times, [0.0, 0.5, 1.0]);
+}
+
+#[test]
+fn every_prefix_of_a_glb_is_refused() {
+    let whole = triangle([0; 12]);
+    for length in 0..whole.len() {
+        let error = read_gltf(&whole[..length], DECODE, &mut no_files).unwrap_err();
+        assert!(!error.what.is_empty() && !error.where_.is_empty(), "{length}: {error}");
+    }
+}
+
+#[test]
+fn a_chunk_that_claims_four_gibibytes_is_refused() {
+    let mut bytes = triangle([0; 12]);
+    bytes[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
+    let error = read_gltf(&bytes, DECODE, &mut no_files).unwrap_err();
+    let there = bytes.len() - 20;
+    assert_eq!(error.to_string(), format!("chunk claims 4294967295 bytes, {there} are there (byte 12)"));
+}
+
+#[test]
+fn a_text_file_is_no_glb() {
+    let error = read_gltf(b"hello\n", DECODE, &mut no_files).unwrap_err();
+    let said = error.with_file("x.glb").to_string();
+    assert_eq!(said, "x.glb: not a glTF file: begins neither with `glTF` nor with `{` (byte 0)");
+}
+
+#[test]
+fn a_joint_index_out_of_range_is_refused() {
+    let error =
+        read_gltf(&triangle([0, 0, 0, 0, 0, 7, 0, 0, 0, 0, 0, 0]), DECODE, &mut no_files).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "vertex 1: joint index 7 is out of range: the skin has 1 (meshes[0].primitives[0].attributes.JOINTS_0)"
+    );
+}
+
+#[test]
+fn complaints_name_the_place() {
+    for (json, expected) in [
+        (r#"{"asset":{"version":"1.0"}}"#, "glTF 1.0 is not supported, only 2.0 (asset.version)"),
+        ("{}", "`asset` is missing (top level)"),
+        (r#"{"asset":7}"#, "must be an object (asset)"),
+        (r#"{"asset":"#, "not JSON: EOF while parsing a value (line 1 column 9)"),
+        (
+            r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_draco_mesh_compression"]}"#,
+            "needs the extension KHR_draco_mesh_compression, which is not supported (extensionsRequired[0])",
+        ),
+        (
+            r#"{"asset":{"version":"2.0"},"nodes":[{"children":[1]},{"children":[9]}]}"#,
+            "index 9 is out of range: there are 2 nodes (nodes[1].children[0])",
+        ),
+        (
+            r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]}"#,
+            "node is its own ancestor, or listed twice in a scene (nodes[0])",
+        ),
+        (
+            r#"{"asset":{"version":"2.0"},"scenes":[{}],"skins":[{"joints":[1]}],
+                "nodes":[{"children":[1]},{"children":[0]}]}"#,
+            "node is its own ancestor (nodes[1])",
+        ),
+        (
+            r#"{"asset":{"version":"2.0"},"nodes":[{"translation":[0,1e39,0]}]}"#,
+            "number is too large (nodes[0].translation[1])",
+        ),
+        (
+            r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":9,"uri":"data:;base64,AAAA"}]}"#,
+            "buffer claims 9 bytes, 3 are there (buffers[0].byteLength)",
+        ),
+        (
+            r#"{"asset":{"version":"2.0"},"buffers":[{"byteLength":9,"uri":"../../etc/passwd"}]}"#,
+            "URI `../../etc/passwd` leaves the folder of the file (buffers[0].uri)",
+        ),
+        (
+            r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+                "accessors":[{"componentType":5126,"count":4000000000,"type":"VEC3"}]}"#,
+            "4000000000 elements are more than the size of the file justifies (accessors[0])",
+        ),
+    ] {
+        assert_eq!(complaint(json), expected);
+    }
+}
+
+/// One mesh placed by very many nodes may not make much of little.
+#[test]
+fn instances_cannot_multiply_memory_without_bound() {
+    let bin = vec![0; 1_200_000];
+    let nodes = vec![r#"{"mesh":0}"#; 20_000].join(",");
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"nodes":[{nodes}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],"buffers":[{{"byteLength":1200000}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":100000,"type":"VEC3"}}],
+        "bufferViews":[{{"buffer":0,"byteLength":1200000}}]}}"#
+    );
+    let error = read_gltf(&glb(&json, &bin), DECODE, &mut no_files).unwrap_err();
+    assert!(error.what.contains("more than the size of the file justifies"), "{error}");
+}
+
+/// Deep chains are data, not call depth.
+#[test]
+fn a_chain_of_a_hundred_thousand_nodes_is_read() {
+    let nodes: Vec<_> = (1..100_000).map(|i| format!(r#"{{"children":[{i}]}}"#)).collect();
+    let json = format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{},{{}}]}}"#, nodes.join(","));
+    let document = read_gltf(json.as_bytes(), DECODE, &mut no_files).unwrap();
+    assert_eq!(document.rig.joints.len(), 100_000);
+    assert_eq!(document.rig.joints[99_999].parent, Some(99_998));
+}
+
+/// Reads a file and, where that works, holds it against the promises of the types.
+fn read_and_check(bytes: &[u8], path: &Path) -> Result<()> {
+    let folder = path.parent().unwrap();
+    let mut beside = |name: &str| std::fs::read(folder.join(name)).or_else(|_| no_files(name));
+    let document = read_gltf(bytes, DECODE, &mut beside)?;
+    crate::rigs::assert_sound(&document);
+    if let Some(clip) = document.clips.iter().find(|c| !c.channels.is_empty()) {
+        append_clip(&document, clip, "again", None).map(drop)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn files_made_to_be_bad_do_no_harm() {
+    let Some(data) = shared_data() else { return };
+    let (mut read, mut refused) = (0, 0);
+    for folder in ["bad_input", "negative", "worlds"] {
+        for path in files(&data.join(folder), &GLTF) {
+            match read_and_check(&std::fs::read(&path).unwrap(), &path) {
+                Ok(()) => read += 1,
+                Err(e) => {
+                    refused += 1;
+                    let one_line = e.with_file(path.file_name().unwrap().to_str().unwrap()).to_string();
+                    assert!(!one_line.contains('\n'), "{one_line}");
+                    println!("{one_line}");
+                }
+            }
+        }
+    }
+    println!("{read} read, {refused} refused");
+    assert!(read > 60 && refused > 40, "{read} read, {refused} refused");
+}
+
+#[test]
+fn valid_files_that_are_no_characters_are_read() {
+    let Some(data) = shared_data() else { return };
+    for path in files(&data.join("negative"), &GLTF) {
+        load_gltf(&path, DECODE).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+/// Random bytes changed in small rigs. 2,000 cases when `SINEW_FULL` is set, a tenth of that otherwise.
+#[test]
+fn mutated_rigs_do_no_harm() {
+    let Some(data) = shared_data() else { return };
+    let cases = if std::env::var_os("SINEW_FULL").is_some() { 2000 } else { 200 };
+    for (seed, name) in ["RiggedSimple.glb", "SimpleSkin.gltf", "vrma_test.vrma"].iter().enumerate() {
+        let path = data.join("rigs").join(name);
+        let whole = std::fs::read(&path).unwrap();
+        let mut random = Random::new(seed as u64);
+        for _ in 0..cases {
+            let mut bytes = whole.clone();
+            for _ in 0..=random.index(8) {
+                let at = random.index(bytes.len());
+                bytes[at] = random.index(256) as u8;
+            }
+            if let Err(e) = read_and_check(&bytes, &path) {
+                assert_ne!(e.kind, ErrorKind::Io, "{e}");
+            }
+        }
+    }
+}

@@ -1,5 +1,11 @@
 //! Integration tests: real files, hostile files, round trips.
 
+mod append;
 mod data;
+#[cfg(feature = "fs")]
+mod fs;
+mod geometry;
 mod hostile;
+mod ragdoll;
 mod rigs;
+mod world;

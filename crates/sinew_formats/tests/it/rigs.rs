@@ -1,7 +1,9 @@
 //! Rigs that nobody here drew: what the manifest beside them says is what is read.
 
 use crate::data::{GLTF, files, shared_data};
+use sinew_anim::{Interpolation, Primitive};
 use sinew_formats::{Document, ReadOptions, Textures, load_gltf};
+use sinew_math::{Affine, Vec3};
 
 fn load(name: &str) -> Option<Document> {
     let path = shared_data()?.join("rigs").join(name);
@@ -36,23 +38,107 @@ fn counts_match_the_manifest() {
     check("quaternius_Robot.glb", 43, 7218, 3238, 14, 3.33);
 }
 
+/// The promises that the documentation of [`Rig`] and [`Clip`](sinew_anim::Clip) makes.
+pub fn assert_sound(document: &Document) {
+    let rig = &document.rig;
+    for (i, joint) in rig.joints.iter().enumerate() {
+        assert!(joint.parent.is_none_or(|p| p < i));
+        assert!(joint.rest.translation.is_finite() && joint.rest.scale.is_finite());
+        assert!((joint.rest.rotation.dot(joint.rest.rotation) - 1.0).abs() < 1e-5);
+    }
+    for skin in &rig.skins {
+        assert_eq!(skin.joints.len(), skin.inverse_bind.len());
+        assert!(skin.joints.iter().all(|&j| j < rig.joints.len()));
+        assert!(skin.inverse_bind.iter().all(sinew_math::Affine::is_finite));
+    }
+    for mesh in &rig.meshes {
+        assert!(mesh.joint < rig.joints.len());
+        let slots = mesh.skin.map(|s| rig.skins[s].joints.len());
+        mesh.primitives.iter().for_each(|p| assert_sound_primitive(p, slots, rig.textures.len()));
+    }
+    assert!(rig.textures.iter().all(|t| t.rgba.len() == (t.width * t.height * 4) as usize));
+    assert!(rig.stated_roles.iter().all(|(_, joint)| *joint < rig.joints.len()));
+    for channel in document.clips.iter().flat_map(|c| &c.channels) {
+        let per_key = if channel.interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        assert!(channel.joint < rig.joints.len() && !channel.times.is_empty());
+        assert!(channel.times.windows(2).all(|w| w[0] < w[1]));
+        assert_eq!(channel.values.len(), channel.times.len() * per_key * channel.property.width());
+        assert!(channel.times.iter().chain(&channel.values).all(|x| x.is_finite()));
+    }
+}
+
+fn assert_sound_primitive(part: &Primitive, slots: Option<usize>, textures: usize) {
+    let count = part.positions.len();
+    let fits = |n: usize| n == count || n == 0;
+    assert!(fits(part.normals.len()) && fits(part.uvs.len()) && fits(part.colors.len()));
+    assert!(part.positions.iter().all(|p| p.is_finite()));
+    assert!(part.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-4));
+    assert!(part.indices.len().is_multiple_of(3) && part.indices.iter().all(|&i| (i as usize) < count));
+    assert!(part.texture.is_none_or(|t| t < textures));
+    let expected = if slots.is_some() { count } else { 0 };
+    assert_eq!((part.joints.len(), part.weights.len()), (expected, expected));
+    for (joints, weights) in part.joints.iter().zip(&part.weights) {
+        assert!(joints.iter().all(|&j| usize::from(j) < slots.unwrap()));
+        assert!(weights.iter().all(|&w| w >= 0.0) && (weights.iter().sum::<f32>() - 1.0).abs() < 1e-5);
+    }
+}
+
 #[test]
 fn every_rig_keeps_the_promises_of_its_types() {
     let Some(data) = shared_data() else { return };
     for path in files(&data.join("rigs"), &GLTF) {
-        let document =
-            load_gltf(&path, ReadOptions { textures: Textures::Decode }).unwrap_or_else(|e| panic!("{e}"));
-        let rig = &document.rig;
-        println!(
-            "{}: {} joints, {} skins, {} meshes, {} textures, {} clips, roles {}, {:?}",
-            path.display(),
-            rig.joints.len(),
-            rig.skins.len(),
-            rig.meshes.len(),
-            rig.textures.len(),
-            document.clips.len(),
-            rig.stated_roles.len(),
-            document.warnings
-        );
+        let document = load_gltf(&path, ReadOptions { textures: Textures::Decode });
+        let document = document.unwrap_or_else(|e| panic!("{e}"));
+        assert_sound(&document);
+        assert_eq!(document.warnings, [""; 0], "{}", path.display());
     }
+}
+
+/// At rest a skinned mesh is where the file's bind pose says: rest × inverse bind is the identity, up to the place of
+/// the armature, for rigs of which the manifest says that both poses agree.
+#[test]
+fn inverse_bind_matrices_undo_the_rest_pose() {
+    for name in
+        ["CesiumMan.glb", "RiggedFigure.glb", "kaykit_Knight.glb", "mannequiny.glb", "quaternius_Robot.glb"]
+    {
+        let Some(document) = load(name) else { return };
+        let rig = &document.rig;
+        let mut model: Vec<Affine> = Vec::new();
+        for joint in &rig.joints {
+            let local = joint.rest.to_affine();
+            model.push(joint.parent.map_or(local, |p| model[p] * local));
+        }
+        let skin = &rig.skins[0];
+        let place = |slot: usize| model[skin.joints[slot]] * skin.inverse_bind[slot];
+        for slot in 1..skin.joints.len() {
+            for point in [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z] {
+                let gap = place(slot).point(point).distance(place(0).point(point));
+                assert!(gap < 2e-3, "{name} slot {slot}: {gap}");
+            }
+        }
+    }
+}
+
+#[test]
+fn vrm_files_state_their_roles_by_the_names_of_vrm_1() {
+    let Some(document) = load("CoolLoops_mixamorig_vrm0.vrm") else { return };
+    let rig = &document.rig;
+    let joint = |role: &str| {
+        let stated = rig.stated_roles.iter().find(|(name, _)| name == role);
+        rig.joints[stated.unwrap_or_else(|| panic!("{role}")).1].name.as_str()
+    };
+    assert_eq!(joint("hips"), "mixamorig:Hips");
+    assert_eq!(joint("leftThumbMetacarpal"), "mixamorig:LeftHandThumb1");
+    assert_eq!(joint("leftThumbProximal"), "mixamorig:LeftHandThumb2");
+    assert_eq!(joint("rightThumbDistal"), "mixamorig:RightHandThumb3");
+    assert_eq!(joint("rightLowerLeg"), "mixamorig:RightLeg");
+
+    let document = load("vrm1_unskinned_humanoid.vrm").unwrap();
+    assert!(
+        document
+            .rig
+            .stated_roles
+            .iter()
+            .any(|(role, joint)| { role == "hips" && document.rig.joints[*joint].source == 21 })
+    );
 }

@@ -1,0 +1,148 @@
+//! What world files and ragdoll files have in common: poses, shapes, masses.
+
+use crate::error::Result;
+use crate::json::{At, number, numbers};
+use serde_json::{Map, Value};
+use sinew_math::{Rotation, Sym3, Transform, Vec3};
+use sinew_physics::{MassProperties, Shape};
+
+/// Keys of a pose, to be listed among those of the object that has one.
+pub(crate) const POSE_KEYS: [&str; 2] = ["position", "rotation"];
+
+/// `position` and `rotation` of an object; none of both is the identity.
+pub(crate) fn read_pose(at: At<'_>) -> Result<Transform> {
+    let translation = read_vector(at, "position")?;
+    let rotation = at.get("rotation")?.map_or(Ok(Rotation::IDENTITY), read_rotation)?;
+    Ok(Transform { translation, rotation })
+}
+
+/// The vector under an optional key; zero if absent.
+pub(crate) fn read_vector(at: At<'_>, key: &str) -> Result<Vec3> {
+    Ok(Vec3::from_array(at.numbers_or(key, [0.0; 3])?))
+}
+
+/// A quaternion `[x, y, z, w]` of length 1, or `{"axis": [x, y, z], "degrees": d}`.
+fn read_rotation(at: At<'_>) -> Result<Rotation> {
+    if at.value().is_object() {
+        at.only(&["axis", "degrees"])?;
+        let axis_at = at.need("axis")?;
+        let axis = Vec3::from_array(axis_at.numbers()?);
+        let length = axis.length();
+        if !(length > 1e-6 && length.is_finite()) {
+            return Err(axis_at.malformed("axis has no direction"));
+        }
+        return Ok(Rotation::from_axis_angle(axis / length, at.need("degrees")?.f32()?.to_radians()));
+    }
+    let [x, y, z, w] = at.numbers()?;
+    let rotation = Rotation::from_xyzw(x, y, z, w);
+    let square = rotation.dot(rotation);
+    if !((square - 1.0).abs() < 1e-2) {
+        return Err(at.malformed("quaternion must have length 1"));
+    }
+    // Numbers that we wrote come back as they were.
+    Ok(if (square - 1.0).abs() < 1e-6 { rotation } else { rotation.normalize() })
+}
+
+/// Writes what [`read_pose`] reads, the identity as nothing.
+pub(crate) fn write_pose(pose: Transform, object: &mut Map<String, Value>) {
+    let r = pose.rotation;
+    if pose.translation != Vec3::ZERO {
+        object.insert("position".into(), numbers(&pose.translation.to_array()));
+    }
+    if r != Rotation::IDENTITY {
+        object.insert("rotation".into(), numbers(&[r.x, r.y, r.z, r.w]));
+    }
+}
+
+/// Keys of a shape's geometry.
+pub(crate) const SHAPE_KEYS: [&str; 4] = ["type", "half_extents", "radius", "half_height"];
+
+/// A shape by its `type` and sizes.
+pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
+    let kind = at.need("type")?;
+    let (shape, needed): (Shape, &[&str]) = match kind.str()? {
+        "box" => (Shape::Box { half_extents: read_half_extents(at)? }, &["half_extents"]),
+        "sphere" => (Shape::Sphere { radius: at.need("radius")?.positive()? }, &["radius"]),
+        "capsule" => {
+            let half_height = at.need("half_height")?.not_negative()?;
+            (
+                Shape::Capsule { half_height, radius: at.need("radius")?.positive()? },
+                &["half_height", "radius"],
+            )
+        }
+        "half_space" => (Shape::HalfSpace, &[]),
+        other => {
+            let other = other.escape_debug();
+            return Err(kind
+                .malformed(format!("unknown shape `{other}`; known are box, sphere, capsule, half_space")));
+        }
+    };
+    for size in &SHAPE_KEYS[1..] {
+        if let Some(extra) = at.get(size)?
+            && !needed.contains(size)
+        {
+            return Err(extra.malformed(format!("a shape of this type has no `{size}`")));
+        }
+    }
+    Ok(shape)
+}
+
+fn read_half_extents(at: At<'_>) -> Result<Vec3> {
+    let at = at.need("half_extents")?;
+    let sizes = at.numbers::<3>()?;
+    for (item, size) in at.items()?.into_iter().zip(sizes) {
+        if size <= 0.0 {
+            return Err(item.malformed("must be more than 0"));
+        }
+    }
+    Ok(Vec3::from_array(sizes))
+}
+
+/// Writes what [`read_shape`] reads.
+pub(crate) fn write_shape(shape: Shape, object: &mut Map<String, Value>) {
+    let mut put = |key: &str, value: Value| drop(object.insert(key.into(), value));
+    match shape {
+        Shape::Box { half_extents } => {
+            put("type", "box".into());
+            put("half_extents", numbers(&half_extents.to_array()));
+        }
+        Shape::Sphere { radius } => {
+            put("type", "sphere".into());
+            put("radius", number(radius));
+        }
+        Shape::Capsule { half_height, radius } => {
+            put("type", "capsule".into());
+            put("half_height", number(half_height));
+            put("radius", number(radius));
+        }
+        Shape::HalfSpace => put("type", "half_space".into()),
+    }
+}
+
+/// `{"kg": m, "center": [x, y, z], "inertia": [xx, yy, zz, yz, xz, xy]}`, the last in kg·m² about the centre.
+pub(crate) fn read_mass(at: At<'_>) -> Result<MassProperties> {
+    at.only(&["kg", "center", "inertia"])?;
+    let inertia_at = at.need("inertia")?;
+    let [xx, yy, zz, yz, xz, xy] = inertia_at.numbers()?;
+    // Leading minors (Sylvester) in f64, where the products of small numbers do not vanish.
+    let [a, b, c, d, e, f] = [xx, yy, zz, yz, xz, xy].map(f64::from);
+    let minors = [a, a * b - f * f, a * (b * c - d * d) - f * (f * c - d * e) + e * (f * d - b * e)];
+    if minors.iter().any(|&m| m <= 0.0) {
+        return Err(inertia_at.malformed("must be positive definite"));
+    }
+    Ok(MassProperties {
+        mass: at.need("kg")?.positive()?,
+        center: read_vector(at, "center")?,
+        inertia: Sym3 { diagonal: Vec3::new(xx, yy, zz), off: Vec3::new(yz, xz, xy) },
+    })
+}
+
+/// Writes what [`read_mass`] reads.
+pub(crate) fn write_mass(mass: &MassProperties) -> Value {
+    let (d, o) = (mass.inertia.diagonal, mass.inertia.off);
+    let mut object = Map::new();
+    object.insert("kg".into(), number(mass.mass));
+    object.insert("center".into(), numbers(&mass.center.to_array()));
+    object.insert("inertia".into(), numbers(&[d.x, d.y, d.z, o.x, o.y, o.z]));
+    object.into()
+}

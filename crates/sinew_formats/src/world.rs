@@ -1,0 +1,251 @@
+//! World files, version 1: a level or a set-up of bodies, written by hand or by `sinew boxes`.
+//!
+//! ```json
+//! {
+//!   "sinew": "world",
+//!   "version": 1,
+//!   "materials": { "ice": { "friction": 0.05 } },
+//!   "bodies": [
+//!     { "name": "ground", "shapes": [{ "type": "half_space" }] },
+//!     {
+//!       "name": "ramp",
+//!       "position": [0, 1, 2],
+//!       "rotation": { "axis": [1, 0, 0], "degrees": 20 },
+//!       "shapes": [{ "type": "box", "half_extents": [1, 0.1, 2], "material": "ice" }]
+//!     },
+//!     {
+//!       "name": "dumb-bell",
+//!       "kind": "dynamic",
+//!       "position": [0, 3, 2],
+//!       "linear_velocity": [0, 0, -1],
+//!       "shapes": [
+//!         { "type": "capsule", "half_height": 0.3, "radius": 0.02, "density": 7800 },
+//!         { "type": "sphere", "radius": 0.1, "position": [0, 0.3, 0], "material": { "restitution": 0.4 } },
+//!         { "type": "sphere", "radius": 0.1, "position": [0, -0.3, 0] }
+//!       ]
+//!     }
+//!   ]
+//! }
+//! ```
+//!
+//! Metres, kilograms, seconds, +Y up. Of a **body**, only `shapes` has to be there:
+//! - `kind`: `static` (default), `kinematic` or `dynamic`; `name` is for people and not kept.
+//! - `position` (default the origin), `rotation`: a unit quaternion `[x, y, z, w]` or `{ "axis", "degrees" }`.
+//! - `linear_velocity` (m/s), `angular_velocity` (rad/s), `linear_damping`, `angular_damping` (1/s), all 0 by default;
+//!   `gravity_scale`, default 1; `user_data`, a whole number.
+//! - `mass`: `{ "kg", "center", "inertia": [xx, yy, zz, yz, xz, xy] }`; without it from the shapes' densities.
+//!
+//! A **shape** has a `type`: `box` with `half_extents`, `sphere` with `radius`, `capsule` with `half_height` (of the
+//! segment along y, without the caps) and `radius`, or `half_space`, everything below y = 0, for static bodies. Also a
+//! `position` and `rotation` in the body's frame, a `density` (kg/m³, default 1000), a `material` and a `filter`
+//! `{ "layers", "mask", "group" }`. With `"sensor": true` it reports whom it meets and does not push.
+//!
+//! A **material** is the name of an entry of `materials`, or such an entry itself: `friction` (default 0.6),
+//! `restitution` (0..=1, default 0), `rolling` (metres, default 0).
+//!
+//! A key that is not listed here is an error, so that a typing error does not pass in silence.
+
+use crate::error::Result;
+use crate::json::{self, At, number, numbers};
+use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
+use serde_json::{Map, Value, json};
+use sinew_math::{Transform, Vec3};
+use sinew_physics::{BodyDef, BodyKind, Filter, Material, Sensing, Shape, ShapeDef};
+
+const VERSION: usize = 1;
+
+const BODY_KEYS: [&str; 11] = [
+    "name",
+    "kind",
+    "linear_velocity",
+    "angular_velocity",
+    "linear_damping",
+    "angular_damping",
+    "gravity_scale",
+    "user_data",
+    "mass",
+    "shapes",
+    "comment",
+];
+
+/// The bodies of a world file, in file order.
+///
+/// # Errors
+/// Names the place, such as `bodies[3].shapes[0].half_extents[1]`: sizes that are not positive, numbers that are not
+/// finite, unknown keys, types and materials, a half-space on a body that moves, a later version.
+pub fn read_world(bytes: &[u8]) -> Result<Vec<BodyDef>> {
+    let value = json::parse(bytes)?;
+    let root = At::root(&value);
+    json::check_header(root, "world", VERSION)?;
+    root.only(&["sinew", "version", "comment", "materials", "bodies"])?;
+    let materials = root.get("materials")?;
+    root.need("bodies")?.items()?.into_iter().map(|at| read_body(at, materials)).collect()
+}
+
+fn read_body(at: At<'_>, materials: Option<At<'_>>) -> Result<BodyDef> {
+    at.only(&[&BODY_KEYS[..], &POSE_KEYS].concat())?;
+    let kind = match at.get("kind")? {
+        None => BodyKind::Static,
+        Some(kind) => match kind.str()? {
+            "static" => BodyKind::Static,
+            "kinematic" => BodyKind::Kinematic,
+            "dynamic" => BodyKind::Dynamic,
+            _ => return Err(kind.malformed("must be static, kinematic or dynamic")),
+        },
+    };
+    let mut shapes = Vec::new();
+    for shape_at in at.need("shapes")?.items()? {
+        let shape = read_shape(shape_at, materials)?;
+        if shape.shape == Shape::HalfSpace && kind != BodyKind::Static {
+            return Err(shape_at.malformed("only a static body can be a half_space"));
+        }
+        shapes.push(shape);
+    }
+    let mass = at.get("mass")?.map(parts::read_mass).transpose()?;
+    if kind == BodyKind::Dynamic && mass.is_none() && !shapes.iter().any(|s| s.density > 0.0) {
+        return Err(at.malformed("a dynamic body needs a mass, or a shape with a density above 0"));
+    }
+    let pose = parts::read_pose(at)?;
+    Ok(BodyDef {
+        kind,
+        position: pose.translation,
+        rotation: pose.rotation,
+        linear_velocity: parts::read_vector(at, "linear_velocity")?,
+        angular_velocity: parts::read_vector(at, "angular_velocity")?,
+        linear_damping: at.get("linear_damping")?.map_or(Ok(0.0), At::not_negative)?,
+        angular_damping: at.get("angular_damping")?.map_or(Ok(0.0), At::not_negative)?,
+        gravity_scale: at.get("gravity_scale")?.map_or(Ok(1.0), At::f32)?,
+        shapes,
+        mass,
+        user_data: at.get("user_data")?.map_or(Ok(0), At::u64)?,
+    })
+}
+
+fn read_shape(at: At<'_>, materials: Option<At<'_>>) -> Result<ShapeDef> {
+    at.only(
+        &[&SHAPE_KEYS[..], &POSE_KEYS, &["density", "material", "filter", "sensor", "comment"]].concat(),
+    )?;
+    let default = ShapeDef::new(parts::read_shape(at)?);
+    Ok(ShapeDef {
+        body_from_shape: parts::read_pose(at)?,
+        density: at.get("density")?.map_or(Ok(default.density), At::not_negative)?,
+        material: match at.get("material")? {
+            Some(material) => read_material(material, materials)?,
+            None => default.material,
+        },
+        filter: at.get("filter")?.map_or(Ok(default.filter), read_filter)?,
+        sensing: match at.get("sensor")?.map_or(Ok(false), At::bool)? {
+            true => Sensing::Sensor,
+            false => Sensing::Solid,
+        },
+        ..default
+    })
+}
+
+/// A material itself, or the name of one.
+fn read_material(at: At<'_>, materials: Option<At<'_>>) -> Result<Material> {
+    let at = match at.value().as_str() {
+        None => at,
+        Some(name) => {
+            let named = materials.map(|m| m.get(name)).transpose()?.flatten();
+            named.ok_or_else(|| at.malformed(format!("there is no material `{}`", name.escape_debug())))?
+        }
+    };
+    at.only(&["friction", "restitution", "rolling", "comment"])?;
+    let default = Material::default();
+    let restitution = at.get("restitution")?;
+    let material = Material {
+        friction: at.get("friction")?.map_or(Ok(default.friction), At::not_negative)?,
+        restitution: restitution.map_or(Ok(default.restitution), At::not_negative)?,
+        rolling: at.get("rolling")?.map_or(Ok(default.rolling), At::not_negative)?,
+    };
+    match restitution {
+        Some(at) if material.restitution > 1.0 => Err(at.malformed("must not be more than 1")),
+        _ => Ok(material),
+    }
+}
+
+fn read_filter(at: At<'_>) -> Result<Filter> {
+    at.only(&["layers", "mask", "group"])?;
+    let default = Filter::default();
+    let bits = |key: &str, default: u32| -> Result<u32> {
+        let Some(at) = at.get(key)? else { return Ok(default) };
+        u32::try_from(at.usize()?).map_err(|_| at.malformed("must fit 32 bits"))
+    };
+    let group = match at.get("group")? {
+        None => default.group,
+        Some(at) => {
+            let whole = at.value().as_i64().and_then(|n| i32::try_from(n).ok());
+            whole.ok_or_else(|| at.malformed("must be a whole number of 32 bits"))?
+        }
+    };
+    Ok(Filter { layers: bits("layers", default.layers)?, mask: bits("mask", default.mask)?, group })
+}
+
+/// The text of a world file with these bodies; what is default is left out. Reads back as equal bodies.
+///
+/// # Panics
+/// If a number is not finite.
+pub fn write_world(bodies: &[BodyDef]) -> String {
+    let bodies: Vec<Value> = bodies.iter().map(write_body).collect();
+    json::to_text(&json!({"sinew": "world", "version": VERSION, "bodies": bodies}))
+}
+
+fn write_body(body: &BodyDef) -> Value {
+    let mut object = Map::new();
+    let kind = match body.kind {
+        BodyKind::Static => "static",
+        BodyKind::Kinematic => "kinematic",
+        BodyKind::Dynamic => "dynamic",
+    };
+    object.insert("kind".into(), kind.into());
+    parts::write_pose(Transform::new(body.position, body.rotation), &mut object);
+    for (key, vector) in
+        [("linear_velocity", body.linear_velocity), ("angular_velocity", body.angular_velocity)]
+    {
+        if vector != Vec3::ZERO {
+            object.insert(key.into(), numbers(&vector.to_array()));
+        }
+    }
+    put(&mut object, "linear_damping", body.linear_damping, 0.0);
+    put(&mut object, "angular_damping", body.angular_damping, 0.0);
+    put(&mut object, "gravity_scale", body.gravity_scale, 1.0);
+    if body.user_data != 0 {
+        object.insert("user_data".into(), body.user_data.into());
+    }
+    if let Some(mass) = &body.mass {
+        object.insert("mass".into(), parts::write_mass(mass));
+    }
+    object.insert("shapes".into(), body.shapes.iter().map(write_shape).collect());
+    object.into()
+}
+
+fn write_shape(def: &ShapeDef) -> Value {
+    let mut object = Map::new();
+    let default = ShapeDef::new(def.shape);
+    parts::write_shape(def.shape, &mut object);
+    parts::write_pose(def.body_from_shape, &mut object);
+    put(&mut object, "density", def.density, default.density);
+    if def.material != default.material {
+        let mut material = Map::new();
+        put(&mut material, "friction", def.material.friction, default.material.friction);
+        put(&mut material, "restitution", def.material.restitution, default.material.restitution);
+        put(&mut material, "rolling", def.material.rolling, default.material.rolling);
+        object.insert("material".into(), material.into());
+    }
+    if def.filter != default.filter {
+        let Filter { layers, mask, group } = def.filter;
+        object.insert("filter".into(), json!({"layers": layers, "mask": mask, "group": group}));
+    }
+    if def.sensing == Sensing::Sensor {
+        object.insert("sensor".into(), true.into());
+    }
+    object.into()
+}
+
+/// Writes a number unless it is the default.
+fn put(object: &mut Map<String, Value>, key: &str, x: f32, default: f32) {
+    if x.to_bits() != default.to_bits() {
+        object.insert(key.into(), number(x));
+    }
+}

@@ -1,0 +1,146 @@
+//! A clip written into the user's own file: everything old is still there, and what comes back is what went in.
+
+use crate::data::{GLTF, files, shared_data};
+use serde_json::{Value, json};
+use sinew_anim::{Channel, Clip, Interpolation, Property};
+use sinew_formats::{Container, Document, ReadOptions, append_clip, load_gltf, no_files, read_gltf};
+
+/// A motion of every joint that has neither a matrix nor a skinned mesh, with every kind of channel.
+fn motion(document: &Document) -> Clip {
+    let free = |joint: &usize| {
+        let node = &document.json["nodes"][document.rig.joints[*joint].source];
+        node.get("matrix").is_none() && node.get("skin").is_none()
+    };
+    let mut clip = Clip { name: "Moved".into(), duration: 1.1, channels: Vec::new() };
+    for joint in (0..document.rig.joints.len()).filter(free) {
+        let times = vec![0.0, 0.1, 1.1];
+        clip.channels.push(Channel {
+            joint,
+            property: Property::Rotation,
+            interpolation: Interpolation::Linear,
+            times: times.clone(),
+            values: vec![0.0, 0.0, 0.0, 1.0, 0.6, 0.0, 0.0, 0.8, 0.0, 0.6, 0.8, 0.0],
+        });
+        clip.channels.push(Channel {
+            joint,
+            property: Property::Translation,
+            interpolation: Interpolation::CubicSpline,
+            times,
+            values: (0..27).map(|i| i as f32 * 0.1).collect(),
+        });
+        clip.channels.push(Channel {
+            joint,
+            property: Property::Scale,
+            interpolation: Interpolation::Step,
+            times: vec![0.25],
+            values: vec![1.0, 1.0, 1.0],
+        });
+    }
+    clip
+}
+
+/// Everything in `old` is in `new` at the same place; lists may be longer. Places in `allowed` may differ.
+fn assert_kept(old: &Value, new: &Value, path: &str, allowed: &dyn Fn(&str) -> bool) {
+    if allowed(path) {
+        return;
+    }
+    match (old, new) {
+        (Value::Object(old), Value::Object(new)) => {
+            let order: Vec<_> = new.keys().filter(|k| old.contains_key(*k)).collect();
+            let kept: Vec<_> = old.keys().filter(|k| new.contains_key(*k)).collect();
+            assert_eq!(order, kept, "{path}: order of keys");
+            for (key, value) in old {
+                let path = format!("{path}.{key}");
+                assert_kept(value, new.get(key).unwrap_or(&Value::Null), &path, allowed);
+            }
+        }
+        (Value::Array(old), Value::Array(new)) => {
+            assert!(new.len() >= old.len(), "{path}");
+            for (i, value) in old.iter().enumerate() {
+                assert_kept(value, &new[i], &format!("{path}[{i}]"), allowed);
+            }
+        }
+        _ => assert_eq!(old, new, "{path}"),
+    }
+}
+
+#[test]
+fn the_old_file_is_still_in_the_new_one() {
+    let Some(data) = shared_data() else { return };
+    for path in files(&data.join("rigs"), &GLTF) {
+        let old = load_gltf(&path, ReadOptions::default()).unwrap();
+        let clip = motion(&old);
+        let extras = json!({"sinew_events": []});
+        let bytes = append_clip(&old, &clip, "Moved", Some(extras.clone())).unwrap();
+        if let Some(folder) = option_env!("SINEW_KEEP_OUTPUTS") {
+            let name = path.file_name().unwrap().to_str().unwrap();
+            std::fs::write(format!("{folder}/{name}.glb"), &bytes).unwrap();
+        }
+        let new = read_gltf(&bytes, ReadOptions::default(), &mut no_files).unwrap();
+
+        let from_text = old.container == Container::Gltf;
+        assert_kept(&old.json, &new.json, "", &|path| {
+            path == ".buffers[0].byteLength"
+                || from_text
+                    && (path == ".buffers[0].uri" || path.starts_with(".images[") && path.ends_with(".uri"))
+        });
+        if let Some(bin) = &old.bin {
+            assert!(new.bin.as_ref().unwrap().starts_with(bin), "{}", path.display());
+        }
+        assert_eq!(new.rig, old.rig, "{}", path.display());
+        assert_eq!(new.clips.last(), Some(&clip), "{}", path.display());
+        assert_eq!(new.clips[..old.clips.len()], old.clips, "{}", path.display());
+        assert_eq!(new.json["animations"][old.clips.len()]["extras"], extras);
+    }
+}
+
+const WITH_MATRIX: &str = r#"{"asset":{"version":"2.0"},"nodes":[
+    {"matrix":[0,1,0,0, -1,0,0,0, 0,0,1,0, 5,6,7,1],"children":[1]},{"name":"leaf"}]}"#;
+
+fn shift(joint: usize, to: [f32; 3]) -> Channel {
+    Channel {
+        joint,
+        property: Property::Translation,
+        interpolation: Interpolation::Linear,
+        times: vec![0.0],
+        values: to.to_vec(),
+    }
+}
+
+#[test]
+fn a_matrix_gives_way_only_where_the_clip_moves_its_node() {
+    let document = read_gltf(WITH_MATRIX.as_bytes(), ReadOptions::default(), &mut no_files).unwrap();
+    let still =
+        Clip { channels: vec![shift(0, [5.0, 6.0, 7.0]), shift(1, [1.0, 0.0, 0.0])], ..Clip::default() };
+    let bytes = append_clip(&document, &still, "", None).unwrap();
+    let new = read_gltf(&bytes, ReadOptions::default(), &mut no_files).unwrap();
+    assert_eq!(new.json["nodes"], document.json["nodes"]);
+    assert_eq!(new.clips[0].channels, [shift(1, [1.0, 0.0, 0.0])]);
+
+    let moving = Clip { channels: vec![shift(0, [5.0, 6.0, 8.0])], ..Clip::default() };
+    let bytes = append_clip(&document, &moving, "", None).unwrap();
+    let new = read_gltf(&bytes, ReadOptions::default(), &mut no_files).unwrap();
+    assert!(new.json["nodes"][0].get("matrix").is_none());
+    assert_eq!(new.rig, document.rig);
+    assert_eq!(new.clips[0].channels, moving.channels);
+}
+
+#[test]
+fn numbers_keep_every_digit() {
+    let text = r#"{"asset":{"version":"2.0","extras":[0.10000000149011612,1e-45,123456789012345678,
+        2.2250738585072011e-308,-0.0,9007199254740993]},"nodes":[{}]}"#;
+    let document = read_gltf(text.as_bytes(), ReadOptions::default(), &mut no_files).unwrap();
+    let clip = Clip { channels: vec![shift(0, [1.0, 0.0, 0.0])], ..Clip::default() };
+    let bytes = append_clip(&document, &clip, "", None).unwrap();
+    let new = read_gltf(&bytes, ReadOptions::default(), &mut no_files).unwrap();
+    assert_eq!(new.json["asset"], document.json["asset"]);
+    let text = String::from_utf8_lossy(&bytes);
+    assert!(text.contains("0.10000000149011612,1e-45,123456789012345678,"), "{text}");
+}
+
+#[test]
+fn a_clip_without_motion_is_refused_in_one_line() {
+    let document = read_gltf(WITH_MATRIX.as_bytes(), ReadOptions::default(), &mut no_files).unwrap();
+    let error = append_clip(&document, &Clip::default(), "", None).unwrap_err();
+    assert_eq!(error.to_string(), "the clip moves nothing: there is no channel to write (animations)");
+}

@@ -1,0 +1,66 @@
+//! Files on disk: whole or not at all, and nothing from outside a glTF's folder.
+
+use sinew_formats::{ErrorKind, ReadOptions, load_gltf, read_bytes, write_atomic};
+use std::fs;
+use std::path::PathBuf;
+
+/// An empty folder of this test run's own.
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("sinew-formats-{}-{name}", std::process::id()));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+#[test]
+fn a_write_replaces_and_leaves_nothing_beside_it() {
+    let folder = folder("write");
+    let path = folder.join("a.json");
+    write_atomic(&path, b"one").unwrap();
+    write_atomic(&path, b"two").unwrap();
+    assert_eq!(read_bytes(&path).unwrap(), b"two");
+    // A folder of that name cannot be replaced by a file: the write fails and cleans up.
+    fs::create_dir(folder.join("taken")).unwrap();
+    let error = write_atomic(folder.join("taken"), b"x").unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Io);
+    assert!(error.file.ends_with("taken") && error.what.starts_with("cannot write: "), "{error}");
+    let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|e| e.unwrap().file_name()).collect();
+    left.sort();
+    assert_eq!(left, ["a.json", "taken"]);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn missing_files_and_folders_are_named() {
+    let folder = folder("missing");
+    let missing = folder.join("none.glb");
+    let error = load_gltf(&missing, ReadOptions::default()).unwrap_err();
+    assert_eq!(error.to_string(), format!("{}: no such file", missing.display()));
+    let error = read_bytes(&folder).unwrap_err();
+    assert_eq!(error.to_string(), format!("{}: is not a regular file", folder.display()));
+    let error = write_atomic(folder.join("none/a"), b"").unwrap_err();
+    assert_eq!(error.what, "cannot write: no such file");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_out_of_the_folder_is_not_followed() {
+    let folder = folder("jail");
+    let inside = folder.join("inside");
+    fs::create_dir(&inside).unwrap();
+    fs::write(folder.join("secret.bin"), [0; 4]).unwrap();
+    fs::write(inside.join("own file.bin"), [0; 4]).unwrap();
+    std::os::unix::fs::symlink(folder.join("secret.bin"), inside.join("link.bin")).unwrap();
+    let gltf = |uri: &str| {
+        let path = inside.join("a.gltf");
+        let text = format!(r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":4,"uri":"{uri}"}}]}}"#);
+        fs::write(&path, text).unwrap();
+        load_gltf(path, ReadOptions::default())
+    };
+    assert!(gltf("own%20file.bin").is_ok());
+    let error = gltf("link.bin").unwrap_err();
+    assert_eq!(error.what, "`link.bin`: leaves the folder of the file");
+    assert_eq!(error.where_, "buffers[0].uri");
+    fs::remove_dir_all(folder).unwrap();
+}

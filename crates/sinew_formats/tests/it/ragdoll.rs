@@ -1,0 +1,160 @@
+//! Ragdoll files: the example of the documentation, round trips, complaints.
+
+use crate::world::documented_example;
+use sinew_formats::{read_ragdoll, write_ragdoll};
+use sinew_math::{Random, Range, SwingTwistLimit, Sym3, Transform, Vec3};
+use sinew_physics::{JointKind, MassProperties, Shape};
+use sinew_ragdoll::{RagdollBodyDef, RagdollDef, RagdollJointDef};
+
+fn example() -> String {
+    documented_example(include_str!("../../src/ragdoll.rs"))
+}
+
+#[test]
+fn the_documented_example_is_read() {
+    let def = read_ragdoll(example().as_bytes()).unwrap();
+    assert_eq!(def.bodies[1].merged, [6]);
+    assert_eq!(def.joints[0].parent, 0);
+    assert_eq!(def.disabled_pairs, [(0, 1)]);
+    assert_eq!(def.dropped_bones, ["LeftHandThumb1"]);
+    let limit = SwingTwistLimit {
+        swing_y: Range::degrees(-40.0, 40.0),
+        swing_z: Range::degrees(-20.0, 110.0),
+        twist: Range::degrees(-35.0, 35.0),
+    };
+    assert_eq!(def.joints[0].kind, JointKind::Ball { limit: Some(limit) });
+    assert_eq!(read_ragdoll(write_ragdoll(&def).as_bytes()).unwrap(), def);
+}
+
+fn random_limit(random: &mut Random) -> SwingTwistLimit {
+    SwingTwistLimit {
+        swing_y: Range::new(-random.range(0.0, 3.0), random.range(0.0, 3.0)),
+        swing_z: Range::new(-random.range(0.0, 3.0), random.range(0.0, 3.0)),
+        twist: Range::new(-core::f32::consts::PI, random.range(-3.0, core::f32::consts::PI)),
+    }
+}
+
+fn random_body(random: &mut Random, index: usize) -> RagdollBodyDef {
+    let principal = Vec3::new(random.range(0.001, 2.0), random.range(0.001, 2.0), random.range(0.001, 2.0));
+    RagdollBodyDef {
+        // Names are not unique in real rigs.
+        bone: format!("bone \"{}\"", index / 2 * 2),
+        joint: random.index(1000),
+        merged: (0..random.index(3)).map(|_| random.index(1000)).collect(),
+        role: format!("spine_{index}"),
+        confidence: random.unit(),
+        shape: Shape::Capsule { half_height: random.unit(), radius: random.range(0.01, 1.0) },
+        character_from_body: Transform::new(random.in_cube(), random.rotation()),
+        mass: MassProperties {
+            mass: random.range(0.1, 30.0),
+            center: random.in_cube(),
+            inertia: Sym3::from_rotated_diagonal(random.rotation(), principal),
+        },
+    }
+}
+
+#[test]
+fn what_is_written_reads_back_equal() {
+    let mut random = Random::new(11);
+    let mut def = RagdollDef {
+        bodies: (0..40).map(|i| random_body(&mut random, i)).collect(),
+        joints: Vec::new(),
+        disabled_pairs: vec![(0, 3), (7, 2), (38, 39)],
+        dropped_bones: vec!["a".into(), String::new()],
+        total_mass: 71.3,
+        height: 1.83,
+        unit_scale: 0.01,
+        up_axis: Vec3::new(0.0, 0.0, -1.0),
+        character_from_model: Transform::new(random.in_cube(), random.rotation()),
+    };
+    for child in 1..def.bodies.len() {
+        let limit = (random.index(4) > 0).then(|| random_limit(&mut random));
+        let kind = match random.index(4) {
+            0 => JointKind::Ball { limit },
+            1 => JointKind::Hinge { limit: limit.map(|l| l.twist) },
+            2 => JointKind::Universal { limit },
+            _ => JointKind::Fixed,
+        };
+        def.joints.push(RagdollJointDef {
+            parent: random.index(child),
+            child,
+            frame_parent: Transform::new(random.in_cube(), random.rotation()),
+            frame_child: Transform::new(random.in_cube(), random.rotation()),
+            kind,
+            friction_torque: random.unit(),
+        });
+    }
+    assert_eq!(read_ragdoll(write_ragdoll(&def).as_bytes()).unwrap(), def);
+}
+
+#[test]
+fn angles_that_people_think_of_stay_short() {
+    let mut def = read_ragdoll(example().as_bytes()).unwrap();
+    def.joints[0].kind = JointKind::Hinge { limit: Some(Range::degrees(-2.5, 140.0)) };
+    let text = write_ragdoll(&def);
+    assert!(text.contains(r#""limits_deg": { "twist": [-2.5, 140] }"#), "{text}");
+}
+
+#[test]
+fn complaints_name_the_place() {
+    let text = example();
+    for (from, to, expected) in [
+        (
+            r#""rig_joint": 5"#,
+            r#""rig_joint": -5"#,
+            "must be a whole number, 0 or more (bodies[1].rig_joint)",
+        ),
+        (
+            r#""parent": "Hips""#,
+            r#""parent": "Head""#,
+            "no body above has the bone name `Head` (bodies[1].joint.parent)",
+        ),
+        (
+            r#""parent": "Hips""#,
+            r#""parent": "LeftUpLeg""#,
+            "a parent has to stand before its child (bodies[1].joint.parent)",
+        ),
+        ("[-40, 40]", "[40, -40]", "the lower end comes first (bodies[1].joint.limits_deg.swing_y)"),
+        (
+            "[-40, 40]",
+            "[4, 40]",
+            "zero has to lie inside a swing's range (bodies[1].joint.limits_deg.swing_y)",
+        ),
+        (
+            "[-35, 35]",
+            "[-35, 350]",
+            "must lie between -180 and 180 degrees (bodies[1].joint.limits_deg.twist[1])",
+        ),
+        (r#""kg": 40"#, r#""kg": 0"#, "must be more than 0 (bodies[0].mass.kg)"),
+        (
+            r#""up_axis": [0, 1, 0]"#,
+            r#""up_axis": [0, 1, 1]"#,
+            "must be a unit vector along an axis (up_axis)",
+        ),
+        (
+            r#""type": "box", "half_extents": [0.16, 0.1, 0.1]"#,
+            r#""type": "half_space""#,
+            "a body of a ragdoll cannot be a half_space (bodies[0].shape)",
+        ),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let error = read_ragdoll(text.replacen(from, to, 1).as_bytes()).unwrap_err();
+        assert_eq!(error.to_string(), expected);
+    }
+}
+
+#[test]
+fn bytes_changed_at_random_do_no_harm() {
+    let whole = example().into_bytes();
+    let mut random = Random::new(5);
+    for _ in 0..2000 {
+        let mut bytes = whole.clone();
+        for _ in 0..=random.index(4) {
+            let at = random.index(bytes.len());
+            bytes[at] = random.index(256) as u8;
+        }
+        if let Ok(def) = read_ragdoll(&bytes) {
+            assert_eq!(read_ragdoll(write_ragdoll(&def).as_bytes()).unwrap(), def);
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! World files: the example of the documentation, round trips, complaints.
+
+use sinew_formats::{read_world, write_world};
+use sinew_math::{Random, Rotation, Sym3, Transform, Vec3};
+use sinew_physics::{BodyDef, BodyKind, Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
+
+/// The first block of JSON in a module's documentation.
+pub fn documented_example(source: &str) -> String {
+    let lines = source.lines().map(|line| line.strip_prefix("//!").unwrap_or_default());
+    lines.skip_while(|l| l.trim() != "```json").skip(1).take_while(|l| l.trim() != "```").collect()
+}
+
+#[test]
+fn the_documented_example_is_read() {
+    let text = documented_example(include_str!("../../src/world.rs"));
+    let bodies = read_world(text.as_bytes()).unwrap();
+    assert_eq!(bodies.len(), 3);
+    assert_eq!(bodies[0].kind, BodyKind::Static);
+    assert_eq!(bodies[0].shapes, [ShapeDef::new(Shape::HalfSpace)]);
+    let ramp = &bodies[1];
+    assert_eq!(ramp.rotation, Rotation::from_axis_angle(Vec3::X, 20_f32.to_radians()));
+    assert_eq!(ramp.shapes[0].material, Material { friction: 0.05, ..Material::default() });
+    assert_eq!(bodies[2].kind, BodyKind::Dynamic);
+    assert_eq!(bodies[2].linear_velocity, Vec3::new(0.0, 0.0, -1.0));
+    assert_eq!(bodies[2].shapes[0].density, 7800.0);
+    assert_eq!(bodies[2].shapes[1].material.restitution, 0.4);
+    assert_eq!(bodies[2].shapes[2].body_from_shape.translation, Vec3::new(0.0, -0.3, 0.0));
+}
+
+fn random_shape(random: &mut Random, kind: BodyKind) -> ShapeDef {
+    let radius = random.range(0.001, 3.0);
+    let shape = match random.index(if kind == BodyKind::Static { 4 } else { 3 }) {
+        0 => Shape::Box { half_extents: (random.in_cube() + Vec3::splat(1.1)) * 1e-3 },
+        1 => Shape::Sphere { radius },
+        2 => Shape::Capsule { half_height: random.unit(), radius },
+        _ => Shape::HalfSpace,
+    };
+    ShapeDef {
+        shape,
+        body_from_shape: Transform::new(random.in_cube(), random.rotation()),
+        density: random.range(0.1, 1e4),
+        material: Material { friction: random.unit(), restitution: random.unit(), rolling: random.unit() },
+        filter: Filter {
+            layers: random.bits() as u32,
+            mask: random.bits() as u32,
+            group: random.bits() as i32,
+        },
+        sensing: [Sensing::Solid, Sensing::Sensor][random.index(2)],
+    }
+}
+
+fn random_body(random: &mut Random) -> BodyDef {
+    let kind = [BodyKind::Static, BodyKind::Kinematic, BodyKind::Dynamic][random.index(3)];
+    let principal = Vec3::new(random.range(0.1, 2.0), random.range(0.1, 2.0), random.range(0.1, 2.0));
+    BodyDef {
+        kind,
+        position: random.in_cube() * 1e4,
+        rotation: random.rotation(),
+        linear_velocity: random.in_cube(),
+        angular_velocity: random.in_cube() * 1e-20,
+        linear_damping: random.unit(),
+        angular_damping: random.unit(),
+        gravity_scale: random.range(-2.0, 2.0),
+        shapes: (0..=random.index(3)).map(|_| random_shape(random, kind)).collect(),
+        mass: (random.index(2) == 0).then(|| MassProperties {
+            mass: random.range(1e-6, 1e6),
+            center: random.in_cube(),
+            inertia: Sym3::from_rotated_diagonal(random.rotation(), principal),
+        }),
+        user_data: random.bits(),
+    }
+}
+
+#[test]
+fn what_is_written_reads_back_equal() {
+    let mut random = Random::new(7);
+    let bodies: Vec<_> = (0..200).map(|_| random_body(&mut random)).collect();
+    let text = write_world(&bodies);
+    assert_eq!(read_world(text.as_bytes()).unwrap(), bodies);
+    assert!(text.starts_with("{\n  \"sinew\": \"world\",\n  \"version\": 1,\n"));
+    assert_eq!(read_world(write_world(&[]).as_bytes()).unwrap(), []);
+}
+
+#[test]
+fn defaults_are_left_out() {
+    let shapes = vec![ShapeDef::new(Shape::Box { half_extents: Vec3::new(1.0, 0.1, 2.5) })];
+    let text = write_world(&[BodyDef { kind: BodyKind::Static, shapes, ..BodyDef::default() }]);
+    assert!(
+        text.contains(
+            r#"{ "kind": "static", "shapes": [{ "type": "box", "half_extents": [1, 0.1, 2.5] }] }"#
+        ),
+        "{text}"
+    );
+}
+
+#[test]
+fn complaints_name_the_place() {
+    let world = |bodies: &str| format!(r#"{{"sinew":"world","version":1,"bodies":[{bodies}]}}"#);
+    for (json, expected) in [
+        (r#"{"sinew":"ragdoll","version":1}"#.into(), "this is a `ragdoll` file, not a `world` (sinew)"),
+        (
+            r#"{"sinew":"world","version":2}"#.into(),
+            "version 2 is newer than 1, the last one known (version)",
+        ),
+        (r#"{"sinew":"world","version":1}"#.into(), "`bodies` is missing (top level)"),
+        ("[]".into(), "must be an object (top level)"),
+        (
+            world(r#"{"shapes":[]},{"shapes":[{"type":"box","half_extents":[1,-2,1]}]}"#),
+            "must be more than 0 (bodies[1].shapes[0].half_extents[1])",
+        ),
+        (
+            world(r#"{"shapes":[{"type":"box","half_extents":[1,2]}]}"#),
+            "must have 3 numbers, has 2 (bodies[0].shapes[0].half_extents)",
+        ),
+        (
+            world(r#"{"shapes":[{"type":"sphere","radius":1e39}]}"#),
+            "number is too large (bodies[0].shapes[0].radius)",
+        ),
+        (
+            world(r#"{"shapes":[{"type":"sphere","radius":1,"half_height":1}]}"#),
+            "a shape of this type has no `half_height` (bodies[0].shapes[0].half_height)",
+        ),
+        (
+            world(r#"{"kind":"dynamic","shapes":[{"type":"half_space"}]}"#),
+            "only a static body can be a half_space (bodies[0].shapes[0])",
+        ),
+        (
+            world(r#"{"kind":"dynamic","shapes":[]}"#),
+            "a dynamic body needs a mass, or a shape with a density above 0 (bodies[0])",
+        ),
+        (
+            world(r#"{"rotation":[0,0,0,2],"shapes":[]}"#),
+            "quaternion must have length 1 (bodies[0].rotation)",
+        ),
+        (
+            world(r#"{"shapes":[{"type":"sphere","radius":1,"material":"ice"}]}"#),
+            "there is no material `ice` (bodies[0].shapes[0].material)",
+        ),
+        (
+            world(r#"{"mass":{"kg":1,"inertia":[1,1,-1,0,0,0]},"shapes":[]}"#),
+            "must be positive definite (bodies[0].mass.inertia)",
+        ),
+    ] {
+        assert_eq!(read_world(json.as_bytes()).unwrap_err().to_string(), expected);
+    }
+    let error = read_world(world(r#"{"shape":[]}"#).as_bytes()).unwrap_err();
+    assert!(error.what.starts_with("unknown key `shape`; known are name, kind,"), "{error}");
+}
