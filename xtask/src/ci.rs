@@ -6,7 +6,7 @@ use crate::{contract, tidy};
 use anyhow::{Context, Result, anyhow, bail};
 use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
@@ -106,7 +106,7 @@ fn demo() -> Result<()> {
     outcome
 }
 
-fn demo_in(sinew: &PathBuf, folder: &Path) -> Result<()> {
+fn demo_in(sinew: &Path, folder: &Path) -> Result<()> {
     command::run(Command::new(sinew).args(["demo", "--out", "."]).current_dir(folder))?;
     for name in ["demo.glb", "demo.gif"] {
         let length = fs::metadata(folder.join(name)).with_context(|| name.to_owned())?.len();

@@ -3,7 +3,7 @@
 use crate::command::{self, Profile};
 use anyhow::{Context, Result, bail};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// Committed hashes, one line per scene: name, steps, hash.
@@ -145,7 +145,7 @@ fn scenes(binary: &Path) -> Result<Vec<String>> {
     names.context("`sinew scenes --json`: a scene without a name")
 }
 
-fn hash(binary: &PathBuf, scene: &str, steps: u32, threads: u32) -> Result<String> {
+fn hash(binary: &Path, scene: &str, steps: u32, threads: u32) -> Result<String> {
     let mut run = Command::new(binary);
     run.args(["run", scene, "--json", "--steps", &steps.to_string(), "--threads", &threads.to_string()]);
     let report = command::output_json(&mut run)?;

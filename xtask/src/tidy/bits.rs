@@ -150,7 +150,7 @@ fn forbidden(tokens: &[Token<'_>], at: usize, converts: bool) -> Option<String> 
         }
         if SHARED.contains(&name) && (of_floats || !is_of_integers(tokens, at + 1)) {
             return Some(format!(
-                "`{name}`: NaN and −0 differ between targets; {SELECTION}; integers: `usize::{name}`"
+                "`{name}`: NaN and −0 differ between targets; {SELECTION}; integers say `u32::{name}(a, b)`"
             ));
         }
     }
