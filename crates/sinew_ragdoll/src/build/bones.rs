@@ -112,7 +112,13 @@ impl Bones {
     /// Whether a bone lies in the body's plane of symmetry, so that its left and right halves are one shape.
     pub fn is_central(&self, bone: usize) -> bool {
         let bone = &self.list[bone];
-        self.anatomy == Anatomy::Human && bone.side == Side::Middle && bone.head.x.abs() < 0.02 * self.height
+        let aside = (bone.head.x - self.plane_of_symmetry()).abs();
+        self.anatomy == Anatomy::Human && bone.side == Side::Middle && aside < 0.02 * self.height
+    }
+
+    /// The x of the plane that separates left from right: the pelvis's, character space, metres.
+    pub fn plane_of_symmetry(&self) -> f32 {
+        self.list[0].head.x
     }
 
     /// Number of joints between two bones of the tree.

@@ -17,6 +17,7 @@ use crate::masses::{MassOptions, distribute};
 use bones::{Anatomy, Bone, Bones};
 use sinew_anim::roles::RigAnalysis;
 use sinew_anim::{JointIdx, Rig};
+use sinew_math::{Transform, Vec3};
 
 /// A widening of limits below this is not worth a note, radians (1°).
 const NOTEWORTHY: f32 = 0.017;
@@ -64,11 +65,11 @@ pub fn build(
     if let Some(mass) = options.mass.filter(|mass| !(mass.is_finite() && *mass > 0.0)) {
         return Err(BuildError::Mass(mass));
     }
-    let bind = BindPose {
-        model: &analysis.bind_model,
-        unit_scale: analysis.unit_scale,
-        character_from_model: analysis.character_from_model,
-    };
+    // Character space has the soles at y = 0.
+    let character_from_model =
+        Transform::from_translation(Vec3::Y * -analysis.floor) * analysis.character_from_model;
+    let bind =
+        BindPose { model: &analysis.bind_model, unit_scale: analysis.unit_scale, character_from_model };
     let bones = kept_bones(analysis, bind)?;
     let mut fits = fit_shapes(&bones, &share_surface(rig, &bones, bind), options.shapes);
     let filter = filter_pairs(&bones, &mut fits);
@@ -87,16 +88,17 @@ pub fn build(
         character_from_body: fit.character_from_body,
         mass,
     });
+    let dropped = analysis.dropped.iter().filter(|&&joint| analysis.merge_into[joint].is_none());
     let def = RagdollDef {
         bodies: bodies.collect(),
         joints: plans.iter().map(|plan| plan.def).collect(),
         disabled_pairs: filter.disabled,
-        dropped_bones: analysis.dropped.iter().map(|&joint| name(joint)).collect(),
+        dropped_bones: dropped.map(|&joint| name(joint)).collect(),
         total_mass,
         height: analysis.height,
         unit_scale: analysis.unit_scale,
         up_axis: analysis.up_axis,
-        character_from_model: analysis.character_from_model,
+        character_from_model,
     };
     Ok((def, report))
 }

@@ -59,7 +59,8 @@ pub fn fit_shapes(bones: &Bones, surface: &[Vec<Share>], choice: ShapeChoice) ->
 }
 
 fn fit_bone(bones: &Bones, bone: usize, shares: &[Share], choice: ShapeChoice) -> Fit {
-    let symmetry = if bones.is_central(bone) { Symmetry::Mirrored } else { Symmetry::AsIs };
+    let symmetry =
+        if bones.is_central(bone) { Symmetry::Mirrored(bones.plane_of_symmetry()) } else { Symmetry::AsIs };
     let Some(patch) = Patch::select(shares, symmetry) else { return stand_in(bones, bone) };
     let capsule = || fit_capsule(bones, bone, &patch);
     let cuboid = || fit_box(bones, bone, &patch);
@@ -98,8 +99,22 @@ fn stand_in(bones: &Bones, bone: usize) -> Fit {
     }
 }
 
+/// Of the axes that come into question, the capsule nearest to the skin.
 fn fit_capsule(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     let axis = long_axis(bones, bone, patch);
+    let along = capsule_along(bones, bone, patch, axis);
+    if bones.list[bone].part != Part::Head {
+        return along;
+    }
+    // A head may be longer from chin to crown or from nose to nape, and neither is where its bone points.
+    [Vec3::Y, Vec3::Z].into_iter().map(|axis| capsule_along(bones, bone, patch, axis)).fold(along, nearer)
+}
+
+fn nearer(a: Fit, b: Fit) -> Fit {
+    if b.error < a.error { b } else { a }
+}
+
+fn capsule_along(bones: &Bones, bone: usize, patch: &Patch, axis: Vec3) -> Fit {
     let height_of = |p: Vec3| (p - patch.center).dot(axis);
     let [lo, hi] = patch.quantiles([0.01, 0.99], height_of);
     let (lo, hi) = clip_at_joints(bones, bone, patch.center, axis, lo, hi);
@@ -115,18 +130,13 @@ fn fit_capsule(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     if radial.is_empty() {
         radial.push((half, 1.0));
     }
-    let rotation = Rotation::from_arc(Vec3::Y, axis);
+    let frame = Transform::new(middle, Rotation::from_arc(Vec3::Y, axis));
     // The 80 % quantile of the radial distance suits a cylinder; on a tapered limb it is fat and a lower one is nearer.
-    let mut best: Option<Fit> = None;
-    for radius in quantiles_of(&mut radial, [0.8, 0.65, 0.5]) {
+    let [thick, mean, thin] = quantiles_of(&mut radial, [0.8, 0.65, 0.5]).map(|radius| {
         let radius = max(min(radius * SHRINK, half), LEAST_HALF);
-        let shape = Shape::Capsule { half_height: max(half - radius, 0.0), radius };
-        let fit = measured(shape, Transform::new(middle, rotation), patch);
-        if best.is_none_or(|b| fit.error < 0.95 * b.error) {
-            best = Some(fit);
-        }
-    }
-    best.expect("three candidates")
+        measured(Shape::Capsule { half_height: max(half - radius, 0.0), radius }, frame, patch)
+    });
+    nearer(nearer(thick, mean), thin)
 }
 
 fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {

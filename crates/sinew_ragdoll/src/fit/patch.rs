@@ -43,13 +43,13 @@ pub struct Patch {
     pub selection: Selection,
 }
 
-/// Whether a patch is made even by adding its mirror image in x.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Whether a patch is made even by adding its mirror image.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Symmetry {
     /// As it is.
     AsIs,
-    /// With its mirror image.
-    Mirrored,
+    /// With its mirror image in the plane of this x, metres.
+    Mirrored(f32),
 }
 
 impl Patch {
@@ -111,21 +111,23 @@ impl Patch {
             area,
             selection,
         };
-        if symmetry == Symmetry::Mirrored {
-            patch.mirror();
+        if let Symmetry::Mirrored(x) = symmetry {
+            patch.mirror(x);
         }
         Some(patch)
     }
 
-    fn mirror(&mut self) {
-        let image = |s: &Sample| Sample { point: Vec3::new(-s.point.x, s.point.y, s.point.z), area: s.area };
-        let images: Vec<_> = self.samples.iter().map(image).collect();
+    fn mirror(&mut self, x: f32) {
+        let image = |p: Vec3| Vec3::new(2.0 * x - p.x, p.y, p.z);
+        let images: Vec<_> =
+            self.samples.iter().map(|s| Sample { point: image(s.point), area: s.area }).collect();
         self.samples.extend(images);
-        let (c, v) = (self.center.x, &mut self.covariance);
-        v.diagonal.x += c * c;
+        let aside = self.center.x - x;
+        let v = &mut self.covariance;
+        v.diagonal.x += aside * aside;
         // What couples x with y and z has the other sign in the mirror image.
         v.off = Vec3::new(v.off.x, 0.0, 0.0);
-        self.center.x = 0.0;
+        self.center.x = x;
     }
 
     /// Values of `f` below which the share `share` of the area lies, for each of the shares.

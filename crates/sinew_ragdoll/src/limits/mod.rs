@@ -4,7 +4,7 @@ pub mod anatomy;
 pub mod table;
 
 use crate::build::bones::{Anatomy, Bones};
-use crate::build::part::Side;
+use crate::build::part::{Part, Side};
 use crate::def::RagdollJointDef;
 use crate::fit::Fit;
 use anatomy::bind_from_anatomical;
@@ -44,7 +44,11 @@ pub fn joints(bones: &Bones, fits: &[Fit], total_mass: f32) -> Vec<JointPlan> {
         .map(|child| {
             let parent = bones.list[child].parent.unwrap_or(0);
             let entry = entry(bones, child);
-            let directions = [parent, child].map(|bone| bones.direction(bone, Some(middles[bone])));
+            let mut directions = [parent, child].map(|bone| bones.direction(bone, Some(middles[bone])));
+            if bones.list[child].part == Part::Toes {
+                // From ankle to toes a foot slopes down; toes are straight when they lie level with the sole.
+                directions[0] = turned[parent] * Vec3::Z;
+            }
             let seen =
                 Seen { side: bones.list[child].side, turned: [turned[parent], turned[child]], directions };
             let (frames, kind, widened) = seen.joint(&entry, bones.anatomy);
