@@ -1,0 +1,270 @@
+//! Particles and springs: ropes, strands, cloth, blobs.
+//!
+//! A substep of a group is two calls: [`ParticleGroup::integrate`] moves it under gravity, springs and attachments,
+//! [`ParticleGroup::collide`] keeps it out of shapes. Both act back: on the bodies that particles are attached to
+//! and on those they touch.
+//!
+//! Springs that form no loops (a mass on a spring, a rope, a strand of hair) are solved in one implicit step, see
+//! `forest.rs`: the stretch at rest is the exact one, `m g / k`, for a chain as for a single mass, whatever the
+//! substeps. A spring that closes a loop is projected once per substep instead, with compliance `1/k` and no
+//! accumulated multiplier: exact at rest for one mass on one spring, softer by `h² (w₁ + w₂)` per particle in a net.
+//! Damping acts on the velocity at the start of the substep, before forces.
+
+mod contact;
+mod def;
+mod forest;
+mod snapshot;
+
+pub use contact::{BodyImpulse, Obstacle, ObstacleBody};
+pub use def::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, RopeDef, SpringDef};
+
+use crate::aabb::Aabb;
+use crate::shape::{Filter, Material};
+use forest::{Forest, System};
+use sinew_math::{Sym3, Vec3};
+
+/// The point that holds an attached particle, in one substep.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Anchor {
+    /// World, metres.
+    pub position: Vec3,
+    /// m/s, at the start of the substep, forces on the body included.
+    pub velocity: Vec3,
+    /// How the point yields, 1/kg: velocity gained per impulse at the point, `I/m − [r]× J⁻¹ [r]×`. Zero if nothing
+    /// moves it.
+    pub inverse_mass: Sym3,
+}
+
+/// Particles and springs at run time. One array per quantity, by index of the particle.
+#[derive(Clone, Debug)]
+pub struct ParticleGroup {
+    positions: Vec<Vec3>,
+    velocities: Vec<Vec3>,
+    masses: Vec<f32>,
+    radii: Vec<f32>,
+    springs: Vec<SpringDef>,
+    attachments: Vec<AttachmentDef>,
+    material: Material,
+    linear_damping: f32,
+    gravity_scale: f32,
+    filter: Filter,
+    /// Impulse of shapes on each particle in the last substep, and in the one before.
+    contact_impulses: [Vec<Vec3>; 2],
+
+    forest: Forest,
+    system: System,
+    /// Where each particle was before the substep.
+    previous: Vec<Vec3>,
+    /// Attachment of each particle, or `u32::MAX`.
+    attachment_of: Vec<u32>,
+    attachment_impulses: Vec<Vec3>,
+    body_impulses: Vec<BodyImpulse>,
+    /// Sums per particle; zero between uses.
+    reactions: Vec<Vec3>,
+    /// Gravity of the last substep, scaled.
+    gravity: Vec3,
+}
+
+impl ParticleGroup {
+    /// From its definition.
+    ///
+    /// # Panics
+    /// If [`GroupDef::check`] finds something wrong.
+    pub fn new(def: &GroupDef) -> Self {
+        if let Err(what) = def.check() {
+            panic!("{what}");
+        }
+        let count = def.particles.len();
+        let mut group = Self {
+            positions: def.particles.iter().map(|p| p.position).collect(),
+            velocities: def.particles.iter().map(|p| p.velocity).collect(),
+            masses: def.particles.iter().map(|p| p.mass).collect(),
+            radii: def.particles.iter().map(|p| p.radius).collect(),
+            springs: def.springs.clone(),
+            attachments: def.attachments.clone(),
+            material: def.material,
+            linear_damping: def.linear_damping,
+            gravity_scale: def.gravity_scale,
+            filter: def.filter,
+            contact_impulses: [vec![Vec3::ZERO; count], vec![Vec3::ZERO; count]],
+            forest: Forest::default(),
+            system: System::default(),
+            previous: Vec::new(),
+            attachment_of: Vec::new(),
+            attachment_impulses: Vec::new(),
+            body_impulses: Vec::new(),
+            reactions: Vec::new(),
+            gravity: Vec3::ZERO,
+        };
+        group.derive();
+        group
+    }
+
+    /// Everything that follows from particles, springs and attachments.
+    fn derive(&mut self) {
+        let count = self.positions.len();
+        self.attachment_of = vec![u32::MAX; count];
+        let mut held_in_world = vec![false; count];
+        for (index, a) in self.attachments.iter().enumerate() {
+            self.attachment_of[a.particle as usize] = index as u32;
+            held_in_world[a.particle as usize] = matches!(a.target, AttachmentTarget::World(_));
+        }
+        self.forest = Forest::new(count, &self.springs, &held_in_world);
+        self.system = System::new(count, self.springs.len());
+        self.previous = self.positions.clone();
+        self.attachment_impulses = vec![Vec3::ZERO; self.attachments.len()];
+        // A particle in a corner touches two bodies at most.
+        self.body_impulses = Vec::with_capacity(2 * count);
+        self.reactions = vec![Vec3::ZERO; count];
+    }
+
+    /// World, metres.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// m/s.
+    pub fn velocities(&self) -> &[Vec3] {
+        &self.velocities
+    }
+
+    /// kg.
+    pub fn masses(&self) -> &[f32] {
+        &self.masses
+    }
+
+    /// Metres.
+    pub fn radii(&self) -> &[f32] {
+        &self.radii
+    }
+
+    /// As they were defined.
+    pub fn springs(&self) -> &[SpringDef] {
+        &self.springs
+    }
+
+    /// As they were defined; [`integrate`](Self::integrate) takes one [`Anchor`] for each.
+    pub fn attachments(&self) -> &[AttachmentDef] {
+        &self.attachments
+    }
+
+    /// Which shapes it meets.
+    pub fn filter(&self) -> Filter {
+        self.filter
+    }
+
+    /// Around all particles, with their radii, and where they were before the last substep. Empty, with infinite
+    /// corners the wrong way round, for a group without particles.
+    pub fn bounds(&self) -> Aabb {
+        let mut bounds = Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
+        for i in 0..self.positions.len() {
+            for center in [self.positions[i], self.previous[i]] {
+                bounds = bounds.merge(&Aabb::around(center, Vec3::splat(self.radii[i])));
+            }
+        }
+        bounds
+    }
+
+    /// Impulse (N·s, world) of each attachment on what holds it, in the last substep.
+    pub fn attachment_impulses(&self) -> &[Vec3] {
+        &self.attachment_impulses
+    }
+
+    /// Impulses on bodies that particles touched in the last substep, in order of particles.
+    pub fn body_impulses(&self) -> &[BodyImpulse] {
+        &self.body_impulses
+    }
+
+    /// Changes a particle's velocity by an impulse (N·s, world).
+    ///
+    /// # Panics
+    /// If there is no such particle.
+    pub fn apply_impulse(&mut self, particle: u32, impulse: Vec3) {
+        let i = particle as usize;
+        self.velocities[i] += impulse / self.masses[i];
+    }
+
+    /// Moves the group by one substep of `h` seconds under `gravity` (m/s²), its springs and its attachments:
+    /// `anchors[k]` holds attachment `k`. Anchors that are bodies yield to the springs within the same solve, so that
+    /// a stiff rope does not shake a light body; each such point is solved as if it were the body's only one.
+    ///
+    /// # Panics
+    /// If there is not one anchor for each attachment.
+    pub fn integrate(&mut self, h: f32, gravity: Vec3, anchors: &[Anchor]) {
+        assert_eq!(anchors.len(), self.attachments.len(), "each attachment needs its anchor");
+        self.gravity = gravity * self.gravity_scale;
+        self.begin(h);
+        for (a, anchor) in self.attachments.iter().zip(anchors) {
+            let i = a.particle as usize;
+            let mass = anchor.inverse_mass.inverse();
+            self.positions[i] = anchor.position;
+            self.previous[i] = anchor.position;
+            self.velocities[i] = anchor.velocity;
+            self.system.fixed[i] = mass == Sym3::ZERO;
+            self.system.inertia[i] += mass;
+            self.system.momentum[i] =
+                mass * anchor.velocity + (anchor.velocity + self.gravity * h) * self.masses[i];
+        }
+        self.system.solve(&self.forest, &self.springs, &self.positions, h, &mut self.velocities);
+        self.system.add_reactions(&self.forest, &self.springs, h, &self.velocities, &mut self.reactions);
+        for i in 0..self.positions.len() {
+            self.positions[i] += self.velocities[i] * h;
+        }
+        self.project_loops(h);
+        self.collect_attachment_impulses(h, anchors);
+    }
+
+    /// Damping, and what each particle brings into the system.
+    fn begin(&mut self, h: f32) {
+        let damping = 1.0 / (1.0 + h * self.linear_damping);
+        for i in 0..self.positions.len() {
+            let mass = self.masses[i];
+            self.previous[i] = self.positions[i];
+            self.velocities[i] *= damping;
+            self.reactions[i] = Vec3::ZERO;
+            self.system.fixed[i] = false;
+            self.system.inertia[i] = Sym3::from_diagonal(Vec3::splat(mass));
+            self.system.momentum[i] =
+                (self.velocities[i] + self.gravity * h) * mass + self.expected_contact_impulse(i);
+        }
+    }
+
+    /// Springs that close a loop, each once: `Δx = −C / (w₁ + w₂ + α/h²) ∇C` with `α = 1/k` (Macklin et al., "Small
+    /// Steps in Physics Simulation", SCA 2019, without its multiplier), then damping of the axial speed.
+    fn project_loops(&mut self, h: f32) {
+        for &index in self.forest.loops() {
+            let s = &self.springs[index as usize];
+            let (a, b) = (s.a as usize, s.b as usize);
+            let weight = |i: usize| if self.system.fixed[i] { 0.0 } else { 1.0 / self.masses[i] };
+            let (wa, wb) = (weight(a), weight(b));
+            let (apart, sum) = (self.positions[b] - self.positions[a], wa + wb);
+            let length = apart.length();
+            if length <= 1e-9 || sum == 0.0 {
+                continue;
+            }
+            let direction = apart / length;
+            let compliance = 1.0 / (s.stiffness * h * h);
+            let mut impulse = (length - s.rest_length) / (sum + compliance) / h;
+            let speed = (self.velocities[b] - self.velocities[a]).dot(direction) - impulse * sum;
+            impulse += speed * h * s.damping / (1.0 + h * s.damping * sum);
+            let (to_a, to_b) = (direction * (impulse * wa), direction * (-impulse * wb));
+            self.velocities[a] += to_a;
+            self.velocities[b] += to_b;
+            self.positions[a] += to_a * h;
+            self.positions[b] += to_b * h;
+            self.reactions[a] += direction * impulse;
+            self.reactions[b] -= direction * impulse;
+        }
+    }
+
+    fn collect_attachment_impulses(&mut self, h: f32, anchors: &[Anchor]) {
+        for (k, (a, anchor)) in self.attachments.iter().zip(anchors).enumerate() {
+            let i = a.particle as usize;
+            self.attachment_impulses[k] = if self.system.fixed[i] {
+                self.reactions[i] + self.gravity * (self.masses[i] * h)
+            } else {
+                anchor.inverse_mass.inverse() * (self.velocities[i] - anchor.velocity)
+            };
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Particle groups to bytes and back.
+
+use super::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, ParticleGroup, SpringDef};
+use crate::id::BodyId;
+use crate::shape::{Filter, Material};
+use sinew_math::{ReadError, Reader, Vec3, Writer};
+
+/// Bytes of a particle: position, velocity, mass, radius, two contact impulses.
+const PARTICLE_BYTES: usize = 4 * (3 + 3 + 1 + 1 + 3 + 3);
+const SPRING_BYTES: usize = 4 * 5;
+/// Of the shortest attachment.
+const ATTACHMENT_BYTES: usize = 4 + 1 + 12;
+
+impl ParticleGroup {
+    /// Writes everything that the next substep depends on.
+    pub fn save(&self, out: &mut Writer) {
+        for x in [self.material.friction, self.material.restitution, self.material.rolling] {
+            out.f32(x);
+        }
+        out.f32(self.linear_damping);
+        out.f32(self.gravity_scale);
+        out.u32(self.filter.layers);
+        out.u32(self.filter.mask);
+        out.u32(self.filter.group as u32);
+        out.count(self.positions.len());
+        for i in 0..self.positions.len() {
+            out.vec3(self.positions[i]);
+            out.vec3(self.velocities[i]);
+            out.f32(self.masses[i]);
+            out.f32(self.radii[i]);
+            out.vec3(self.contact_impulses[0][i]);
+            out.vec3(self.contact_impulses[1][i]);
+        }
+        out.count(self.springs.len());
+        for s in &self.springs {
+            out.u32(s.a);
+            out.u32(s.b);
+            out.f32(s.rest_length);
+            out.f32(s.stiffness);
+            out.f32(s.damping);
+        }
+        out.count(self.attachments.len());
+        for a in &self.attachments {
+            out.u32(a.particle);
+            match a.target {
+                AttachmentTarget::World(place) => {
+                    out.u8(0);
+                    out.vec3(place);
+                }
+                AttachmentTarget::Body { body, point } => {
+                    out.u8(1);
+                    out.u64(body.to_bits());
+                    out.vec3(point);
+                }
+            }
+        }
+    }
+
+    /// Reads what [`save`](Self::save) wrote. Whether attached bodies exist is for the caller to check.
+    ///
+    /// # Errors
+    /// If the bytes end too early or [`GroupDef::check`] finds something wrong.
+    pub fn load(input: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let material = Material { friction: input.f32()?, restitution: input.f32()?, rolling: input.f32()? };
+        let (linear_damping, gravity_scale) = (input.f32()?, input.f32()?);
+        let filter = Filter { layers: input.u32()?, mask: input.u32()?, group: input.u32()? as i32 };
+        let mut def = GroupDef { material, linear_damping, gravity_scale, filter, ..GroupDef::default() };
+        let mut contact_impulses = [Vec::new(), Vec::new()];
+        for _ in 0..input.count(PARTICLE_BYTES)? {
+            def.particles.push(read_particle(input)?);
+            for impulses in &mut contact_impulses {
+                impulses.push(input.vec3()?);
+            }
+        }
+        for _ in 0..input.count(SPRING_BYTES)? {
+            let (a, b) = (input.u32()?, input.u32()?);
+            let (rest_length, stiffness, damping) = (input.f32()?, input.f32()?, input.f32()?);
+            def.springs.push(SpringDef { a, b, rest_length, stiffness, damping });
+        }
+        for _ in 0..input.count(ATTACHMENT_BYTES)? {
+            def.attachments.push(read_attachment(input)?);
+        }
+        def.check().map_err(|what| input.error(what))?;
+        if !contact_impulses.iter().flatten().all(|v: &Vec3| v.is_finite()) {
+            return Err(input.error("an impulse is not finite"));
+        }
+        Ok(Self { contact_impulses, ..Self::new(&def) })
+    }
+}
+
+fn read_particle(input: &mut Reader<'_>) -> Result<ParticleDef, ReadError> {
+    Ok(ParticleDef {
+        position: input.vec3()?,
+        velocity: input.vec3()?,
+        mass: input.f32()?,
+        radius: input.f32()?,
+    })
+}
+
+fn read_attachment(input: &mut Reader<'_>) -> Result<AttachmentDef, ReadError> {
+    let particle = input.u32()?;
+    let target = match input.u8()? {
+        0 => AttachmentTarget::World(input.vec3()?),
+        1 => AttachmentTarget::Body { body: BodyId::from_bits(input.u64()?), point: input.vec3()? },
+        _ => return Err(input.error("attachment is neither to the world nor to a body")),
+    };
+    Ok(AttachmentDef { particle, target })
+}
