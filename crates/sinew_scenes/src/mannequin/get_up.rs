@@ -49,8 +49,8 @@ pub(super) fn from_back() -> Clip {
         head: v(0.0, 6.0, 0.0),
         left_foot: lifted(v(0.15, 0.093, 0.41), -65.0, 12.0),
         right_foot: lifted(v(-0.15, 0.093, 0.41), -65.0, 12.0),
-        left_hand: palm(0.34, -0.62, 0.0, 80.0),
-        right_hand: palm(-0.34, -0.62, 0.0, 80.0),
+        left_hand: palm(0.34, -0.62, 0.0, 98.0),
+        right_hand: palm(-0.34, -0.62, 0.0, 98.0),
     };
     let curling = Posture {
         pelvis_turn: lean(-74.0),
@@ -71,9 +71,8 @@ pub(super) fn from_back() -> Clip {
         head: lean(0.0),
         left_foot: Foot::flat(Left, 0.115, 0.0, 8.0),
         right_foot: Foot::flat(Right, -0.135, 0.17, 8.0),
-        left_hand: palm(0.34, -0.62, 10.0, 40.0),
-        right_hand: palm(-0.34, -0.62, 10.0, 40.0),
-        ..curling
+        left_hand: palm(0.34, -0.62, 10.0, 50.0),
+        right_hand: palm(-0.34, -0.62, 10.0, 50.0),
     };
     let pushing = Posture {
         pelvis: v(-0.02, 0.15, -0.41),

@@ -1,4 +1,7 @@
-//! The embedded character: a wooden mannequin of 1.75 m, made by code.
+//! The embedded character: a wooden mannequin of 1.75 m with its motions, made by code.
+//!
+//! `skeleton` says where the joints are, `loft` and `body` put a surface round them; `posture` poses them by hand and
+//! foot goals, `keys` turns postures into clips, `walk` and `get_up` hold the motions themselves.
 
 mod body;
 mod get_up;
@@ -19,15 +22,34 @@ pub use walk::WALK_SPEED;
 /// identity. Joint names are those of VRM 1 under one root `mannequin` that moves no vertex.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mannequin {
-    /// Joints, one skin, one mesh of three primitives.
+    /// Joints, one skin, one mesh of three primitives (wood, joints, shoes and visor).
     pub rig: Rig,
-    /// All clips.
+    /// All clips, linear keys at 30 Hz; [`motions`](Self::motions) says which is which.
     pub clips: Vec<Clip>,
+    /// What the clips are for.
+    pub motions: Motions,
+}
+
+/// Which clip does what: indices into [`Mannequin::clips`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motions {
+    /// A cycle of two steps on the spot, starting as the left heel strikes.
+    pub walk: usize,
+    /// Speed along +Z at which the feet of `walk` do not slide, m/s.
+    pub walk_speed: f32,
+    /// Standing and breathing, a cycle.
+    pub idle: usize,
+    /// From lying on the back, feet along +Z, to the first pose of `idle`, facing +Z.
+    pub get_up_supine: usize,
+    /// From lying on the face, head along +Z, to the first pose of `idle`, facing +Z.
+    pub get_up_prone: usize,
 }
 
 /// Makes the mannequin. The same bits on every target.
 pub fn mannequin() -> Mannequin {
     let mut rig = skeleton::skeleton();
     rig.meshes.push(body::mesh());
-    Mannequin { rig, clips: vec![walk::walk(), walk::idle(), get_up::from_back(), get_up::from_face()] }
+    let clips = vec![walk::walk(), walk::idle(), get_up::from_back(), get_up::from_face()];
+    let motions = Motions { walk: 0, walk_speed: WALK_SPEED, idle: 1, get_up_supine: 2, get_up_prone: 3 };
+    Mannequin { rig, clips, motions }
 }

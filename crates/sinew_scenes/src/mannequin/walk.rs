@@ -14,7 +14,7 @@ const CYCLE_FRAMES: usize = 32;
 /// Way in one cycle, metres.
 const STRIDE: f32 = WALK_SPEED * CYCLE_FRAMES as f32 / RATE;
 /// Share of the cycle that a foot is on the ground.
-const STANCE: f32 = 0.61;
+const STANCE: f32 = 0.625;
 /// Where the heel lands, metres in front of the hips.
 const HEEL_STRIKE: f32 = 0.25;
 /// Pitch of the foot as it lands: toes up 20°.
@@ -22,7 +22,7 @@ const LANDING_PITCH: f32 = -20.0;
 /// Pitch of the foot as it leaves: heel up.
 const LEAVING_PITCH: f32 = 58.0;
 /// Phase at which the sole is down, and at which the heel rises.
-const FLAT: [f32; 2] = [0.09, 0.32];
+const FLAT: [f32; 2] = [0.09375, 0.3125];
 /// From the ankle to the heel's contact point in the bind pose.
 const HEEL: Vec3 = Vec3::new(0.0, -ANKLE_HEIGHT, -0.055);
 
@@ -92,7 +92,7 @@ fn planted(side: Side, phase: f32) -> Foot {
 fn swinging(side: Side, phase: f32) -> Foot {
     let (leave, land) = (planted(side, STANCE), planted(side, 0.0));
     let before = planted(side, STANCE - 0.03);
-    let phases = [STANCE - 0.03, STANCE, 0.69, 0.78, 0.88, 1.0];
+    let phases = [STANCE - 0.03, STANCE, 0.70, 0.79, 0.89, 1.0];
     let ends = |f: fn(&Foot) -> f32, middle: [f32; 3]| {
         let [a, b, c] = middle;
         monotone(&phases, &[f(&before), f(&leave), a, b, c, f(&land)], phase)
