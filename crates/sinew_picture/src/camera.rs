@@ -107,12 +107,11 @@ pub(crate) const NEAR: f32 = 0.05;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     pub(crate) eye: Vec3,
-    right: Vec3,
-    up: Vec3,
-    forward: Vec3,
-    /// `1 / tan` of half the field of view, across and down.
-    focal: [f32; 2],
-    half_size: [f32; 2],
+    /// Rows of clip from world, without the translation: x and y already divided by the picture's half size at depth 1.
+    rows: [Vec3; 3],
+    /// The ray through the upper left corner of the picture, and how it changes per pixel to the right and down.
+    corner_ray: Vec3,
+    ray_per_pixel: [Vec3; 2],
 }
 
 impl View {
@@ -120,25 +119,37 @@ impl View {
         let forward = normalize_or(camera.target - camera.position, -Vec3::Z);
         // Straight up or down leaves no horizon to be level with: any right-hand side will do.
         let right = normalize_or(forward.cross(Vec3::Y), Vec3::X);
-        let tan = trig::tan(0.5 * clamp(camera.fov_y, 0.01, 3.1));
-        let half_size = [0.5 * width as f32, 0.5 * height as f32];
-        let focal = [half_size[1] / (half_size[0] * tan), 1.0 / tan];
-        Self { eye: camera.position, right, up: right.cross(forward), forward, focal, half_size }
+        let up = right.cross(forward);
+        // Half the picture's height and width at depth 1, metres.
+        let half_height = trig::tan(0.5 * clamp(camera.fov_y, 0.01, 3.1));
+        let half_width = half_height * width as f32 / height as f32;
+        Self {
+            eye: camera.position,
+            rows: [right / half_width, up / half_height, forward],
+            corner_ray: forward - right * half_width + up * half_height,
+            ray_per_pixel: [
+                right * (2.0 * half_width / width as f32),
+                up * (-2.0 * half_height / height as f32),
+            ],
+        }
     }
 
     /// Clip space: the picture spans ±w in x and y, w is the depth in metres.
     #[inline(always)]
     pub(crate) fn clip_from_world(&self, p: Vec3) -> [f32; 3] {
         let v = p - self.eye;
-        [v.dot(self.right) * self.focal[0], v.dot(self.up) * self.focal[1], v.dot(self.forward)]
+        [v.dot(self.rows[0]), v.dot(self.rows[1]), v.dot(self.rows[2])]
     }
 
     /// Direction, at depth 1, through a point of the picture in pixels from the upper left corner.
     #[inline(always)]
     pub(crate) fn ray(&self, x: f32, y: f32) -> Vec3 {
-        let across = (x / self.half_size[0] - 1.0) / self.focal[0];
-        let upward = (1.0 - y / self.half_size[1]) / self.focal[1];
-        self.forward + self.right * across + self.up * upward
+        self.corner_ray + self.ray_per_pixel[0] * x + self.ray_per_pixel[1] * y
+    }
+
+    /// Side of a pixel at depth 1, metres.
+    pub(crate) fn pixel_size(&self) -> f32 {
+        self.ray_per_pixel[1].length()
     }
 }
 

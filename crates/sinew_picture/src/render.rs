@@ -20,6 +20,8 @@ pub struct RenderSettings {
     pub antialiasing: Antialiasing,
     /// Texels along a side of the shadow map, 16..=8192. Default 1280.
     pub shadow_texels: u32,
+    /// Threads that share the work, at least 1 (the default). The picture is the same with any number.
+    pub threads: usize,
 }
 
 /// How edges are smoothed.
@@ -34,7 +36,13 @@ pub enum Antialiasing {
 
 impl Default for RenderSettings {
     fn default() -> Self {
-        Self { width: 640, height: 360, antialiasing: Antialiasing::default(), shadow_texels: 1280 }
+        Self {
+            width: 640,
+            height: 360,
+            antialiasing: Antialiasing::default(),
+            shadow_texels: 1280,
+            threads: 1,
+        }
     }
 }
 
@@ -74,9 +82,10 @@ impl Renderer {
     /// # Panics
     /// Where a size lies outside the range that [`RenderSettings`] gives.
     pub fn new(settings: RenderSettings) -> Self {
-        let RenderSettings { width, height, antialiasing, shadow_texels } = settings;
+        let RenderSettings { width, height, antialiasing, shadow_texels, threads } = settings;
         assert!((1..=8192).contains(&width) && (1..=8192).contains(&height), "picture of {width} × {height}");
         assert!((16..=8192).contains(&shadow_texels), "shadow map of {shadow_texels} texels");
+        assert!(threads >= 1, "a picture needs a thread");
         let layer = |&offset: &[i64; 2]| Layer::new(width as usize, height as usize, offset);
         let layers: Vec<Layer> = antialiasing.offsets().iter().map(layer).collect();
         Self {
@@ -105,14 +114,7 @@ impl Renderer {
         for (index, model) in scene.models.iter().enumerate() {
             self.add(model, index, &view);
         }
-        for layer in &mut self.solid {
-            layer.clear(0.0);
-            self.footprints.solid.iter().for_each(|footprint| layer.draw(footprint));
-        }
-        for (layer, behind) in self.translucent.iter_mut().zip(&self.solid) {
-            layer.clear_in_front_of(behind);
-            self.footprints.translucent.iter().for_each(|footprint| layer.draw(footprint));
-        }
+        self.draw_layers();
         let mut image = self.shade(scene, &view);
         overlay::draw_lines(&mut image, &scene.lines, &view, &self.solid[0], &self.tables);
         overlay::draw_captions(&mut image, &scene.captions, &self.tables);
@@ -136,21 +138,37 @@ impl Renderer {
             };
             let id = self.triangles.len() as u32;
             if visible && project(points, id, material.faces, view, &self.solid[0], list) {
-                self.triangles.push(Triangle { model: index as u32, corners });
+                self.triangles.push(Triangle::new(index as u32, corners, points, view.eye));
             }
         }
     }
 
+    fn draw_layers(&mut self) {
+        let footprints = &self.footprints;
+        let pairs = self.solid.iter_mut().zip(&mut self.translucent).collect();
+        share(self.settings.threads, pairs, |(solid, translucent): (&mut Layer, &mut Layer)| {
+            solid.clear(0.0);
+            footprints.solid.iter().for_each(|footprint| solid.draw(footprint));
+            if !footprints.translucent.is_empty() {
+                translucent.clear_in_front_of(solid);
+                footprints.translucent.iter().for_each(|footprint| translucent.draw(footprint));
+            }
+        });
+    }
+
     fn shade(&self, scene: &Scene, view: &View) -> Image {
-        let (width, height) = (self.settings.width as usize, self.settings.height as usize);
-        let shader = Shader::new(scene, view, &self.shadow, &self.triangles, &self.tables, height);
+        let width = self.settings.width as usize;
+        let height = self.settings.height as usize;
+        let Self { shadow, triangles, tables, .. } = self;
+        let shader = Shader { scene, view, shadow, triangles, tables };
         let mut rgba = vec![255; width * height * 4];
-        for (y, row) in rgba.chunks_exact_mut(width * 4).enumerate() {
+        let rows = rgba.chunks_exact_mut(width * 4).enumerate().collect();
+        share(self.settings.threads, rows, |(y, row): (usize, &mut [u8])| {
             for (x, pixel) in row.chunks_exact_mut(4).enumerate() {
                 let color = self.pixel(&shader, x, y);
                 pixel[..3].copy_from_slice(&self.tables.to_srgb3(color));
             }
-        }
+        });
         Image { width: self.settings.width, height: self.settings.height, rgba }
     }
 
@@ -180,6 +198,23 @@ impl Renderer {
     }
 }
 
+/// Does the work on every item, split over threads by turns: neighbours cost alike, so the shares come out even.
+fn share<T: Send>(threads: usize, items: Vec<T>, work: impl Fn(T) + Sync) {
+    if threads == 1 {
+        items.into_iter().for_each(work);
+        return;
+    }
+    let mut shares: Vec<Vec<T>> = (0..threads).map(|_| Vec::new()).collect();
+    for (i, item) in items.into_iter().enumerate() {
+        shares[i % threads].push(item);
+    }
+    std::thread::scope(|scope| {
+        for share in shares {
+            scope.spawn(|| share.into_iter().for_each(&work));
+        }
+    });
+}
+
 /// The corners of a triangle, unless one is missing, not finite or too far out.
 fn points_of(model: &Model, corners: [u32; 3]) -> Option<[Vec3; 3]> {
     let point = |corner: u32| model.positions.get(corner as usize).copied();
@@ -199,11 +234,12 @@ fn project(
     list: &mut Vec<Footprint>,
 ) -> bool {
     let before = list.len();
-    let polygon = clip(points.map(|p| view.clip_from_world(p)), NEAR);
+    let [a, b, c] = points;
+    let polygon = clip([view.clip_from_world(a), view.clip_from_world(b), view.clip_from_world(c)], NEAR);
     let corners = polygon.corners();
     for i in 2..corners.len() {
-        let fan = [corners[0], corners[i - 1], corners[i]];
-        let fan = fan.map(|v| ScreenVertex::from_clip(v, picture.width, picture.height));
+        let vertex = |i: usize| ScreenVertex::from_clip(corners[i], picture.width, picture.height);
+        let fan = [vertex(0), vertex(i - 1), vertex(i)];
         if let Some((footprint, winding)) = Footprint::new(fan, id)
             && (faces == Faces::Both || winding == Winding::CounterClockwise)
         {
@@ -220,6 +256,10 @@ fn mean_of_layers(
     index: usize,
     mut shade: impl FnMut(u32, [f32; 2]) -> [f32; 3],
 ) -> [f32; 3] {
+    let first_id = layers[0].ids[index];
+    if layers[1..].iter().all(|layer| layer.ids[index] == first_id) {
+        return shade(first_id, [0.5; 2]);
+    }
     let mut sum = [0.0; 3];
     for (first, layer) in layers.iter().enumerate() {
         let id = layer.ids[index];

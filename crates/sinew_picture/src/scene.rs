@@ -181,7 +181,7 @@ impl Default for Material {
 
 impl Default for Sun {
     fn default() -> Self {
-        Self { direction: Vec3::new(-0.45, 0.8, 0.4), color: [1.02, 0.96, 0.86], shadow_radius: 7.0 }
+        Self { direction: Vec3::new(-0.45, 0.8, 0.4), color: [1.12, 1.04, 0.92], shadow_radius: 7.0 }
     }
 }
 
@@ -190,7 +190,7 @@ impl Default for Sky {
         Self {
             zenith: [0.26, 0.44, 0.72],
             horizon: [0.78, 0.85, 0.91],
-            ground: [0.16, 0.145, 0.13],
+            ground: [0.13, 0.115, 0.10],
             haze_distance: 45.0,
         }
     }

@@ -2,37 +2,55 @@
 
 use crate::camera::View;
 use crate::color::ColorTables;
-use crate::raster::NOTHING;
-use crate::scene::{Material, Model, Pattern, Scene};
+use crate::raster::{NOTHING, floor};
+use crate::scene::{Material, Model, Pattern, Scene, Sky};
 use crate::shadow::ShadowMap;
 use sinew::math::{Vec2, Vec3, abs3, clamp, max, min, normalize_or};
 
+/// How much of the sky's brightness falls on things. Less than all, as if much of it were hidden: shadows need to
+/// be dark to be read.
+const SKY_LIGHT: f32 = 0.55;
+
 /// A drawn triangle: its number among these is its id in the layers.
+///
+/// Where a ray from the eye meets it is a quotient of dot products with vectors that belong to the triangle alone
+/// (Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997, with the products regrouped):
+/// `depth = k / (ray·m)`, second and third barycentric coordinate `(ray·p) / (ray·m)` and `(ray·q) / (ray·m)`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triangle {
     /// Index into the scene's models.
-    pub(crate) model: u32,
+    model: u32,
     /// Indices into the model's vertices, all in range.
-    pub(crate) corners: [u32; 3],
+    corners: [u32; 3],
+    m: Vec3,
+    p: Vec3,
+    q: Vec3,
+    k: f32,
+    /// Unit normal on the side of the eye.
+    face: Vec3,
+    /// −1 where the eye sees the back: vertex normals must be turned too.
+    side: f32,
 }
 
-/// What a translucent or solid surface sends to the eye.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen {
-    /// Linear.
-    pub(crate) color: [f32; 3],
-    pub(crate) opacity: f32,
-}
+impl Triangle {
+    pub(crate) fn new(model: u32, corners: [u32; 3], [a, b, c]: [Vec3; 3], eye: Vec3) -> Self {
+        let (ab, ac, from_a) = (b - a, c - a, eye - a);
+        let (normal, q) = (ab.cross(ac), from_a.cross(ab));
+        let side = if normal.dot(from_a) < 0.0 { -1.0 } else { 1.0 };
+        let face = normalize_or(normal, Vec3::Y) * side;
+        Self { model, corners, m: -normal, p: ac.cross(from_a), q, k: ac.dot(q), face, side }
+    }
 
-/// All that shading needs, for one picture.
-pub(crate) struct Shader<'a> {
-    scene: &'a Scene,
-    view: &'a View,
-    shadow: &'a ShadowMap,
-    triangles: &'a [Triangle],
-    tables: &'a ColorTables,
-    /// Side of a pixel at depth 1, metres.
-    pixel_size: f32,
+    /// Where a ray meets the triangle; it is known to hit, or to pass within a pixel.
+    #[inline(always)]
+    fn meet(&self, eye: Vec3, ray: Vec3) -> Hit {
+        let det = ray.dot(self.m);
+        let inverse = if det == 0.0 { 0.0 } else { 1.0 / det };
+        let depth = self.k * inverse;
+        let second = clamp(ray.dot(self.p) * inverse, 0.0, 1.0);
+        let third = clamp(ray.dot(self.q) * inverse, 0.0, 1.0);
+        Hit { point: eye + ray * depth, shares: [second, third], depth }
+    }
 }
 
 /// Where a ray meets the plane of a triangle.
@@ -45,20 +63,24 @@ struct Hit {
     depth: f32,
 }
 
-impl<'a> Shader<'a> {
-    pub(crate) fn new(
-        scene: &'a Scene,
-        view: &'a View,
-        shadow: &'a ShadowMap,
-        triangles: &'a [Triangle],
-        tables: &'a ColorTables,
-        height: usize,
-    ) -> Self {
-        let middle = 0.5 * height as f32;
-        let pixel_size = (view.ray(0.0, middle + 0.5) - view.ray(0.0, middle - 0.5)).length();
-        Self { scene, view, shadow, triangles, tables, pixel_size }
-    }
+/// What a translucent or solid surface sends to the eye.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    /// Linear.
+    pub(crate) color: [f32; 3],
+    pub(crate) opacity: f32,
+}
 
+/// All that shading needs, for one picture.
+pub(crate) struct Shader<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) view: &'a View,
+    pub(crate) shadow: &'a ShadowMap,
+    pub(crate) triangles: &'a [Triangle],
+    pub(crate) tables: &'a ColorTables,
+}
+
+impl<'a> Shader<'a> {
     /// The sky behind a point of the picture, in pixels.
     pub(crate) fn sky(&self, x: f32, y: f32) -> [f32; 3] {
         let ray = self.view.ray(x, y);
@@ -69,64 +91,56 @@ impl<'a> Shader<'a> {
 
     /// Opacity of a triangle, 0 for none.
     pub(crate) fn opacity(&self, id: u32) -> f32 {
-        if id == NOTHING { 0.0 } else { self.model(id).material.opacity }
+        if id == NOTHING { 0.0 } else { self.model(&self.triangles[id as usize]).material.opacity }
     }
 
-    fn model(&self, id: u32) -> &'a Model {
-        &self.scene.models[self.triangles[id as usize].model as usize]
+    #[inline(always)]
+    fn model(&self, triangle: &Triangle) -> &'a Model {
+        &self.scene.models[triangle.model as usize]
     }
 
     /// What triangle `id` sends to the eye at a point of the picture, in pixels.
     pub(crate) fn surface(&self, id: u32, x: f32, y: f32) -> Seen {
-        let model = self.model(id);
-        let corners = self.triangles[id as usize].corners.map(|corner| corner as usize);
-        let points = corners.map(|corner| model.positions[corner]);
+        let triangle = &self.triangles[id as usize];
+        let model = self.model(triangle);
         let ray = self.view.ray(x, y);
-        let hit = meet(self.view.eye, ray, points);
-        let face = normalize_or((points[1] - points[0]).cross(points[2] - points[0]), Vec3::Y);
-        let side = if face.dot(ray) > 0.0 { -1.0 } else { 1.0 };
+        let hit = triangle.meet(self.view.eye, ray);
         let normal = if model.normals.len() == model.positions.len() {
-            let normals = corners.map(|corner| model.normals[corner]);
-            normalize_or(blend3(normals, hit.shares), face) * side
+            let normals = triangle.corners.map(|corner| model.normals[corner as usize]);
+            normalize_or(blend3(normals, hit.shares) * triangle.side, triangle.face)
         } else {
-            face * side
+            triangle.face
         };
-        let cos_view = face.dot(ray).abs() / ray.length();
-        let pixel_area = hit.depth * self.pixel_size * (hit.depth * self.pixel_size) / max(cos_view, 0.15);
-        let base = self.base_color(model, corners, &hit, pixel_area, (x, y), points);
-        let lit = self.light(base, hit.point, normal, face * side);
-        let distance = hit.depth * ray.length() / max(self.scene.sky.haze_distance, 1e-3);
-        let haze = 1.0 - 1.0 / (1.0 + distance * distance);
+        let base = self.base_color(model, triangle, &hit, (x, y));
+        let lit = self.light(base, hit.point, normal, triangle.face);
+        let distance_squared = hit.depth * hit.depth * ray.length_squared();
+        let half_haze = self.scene.sky.haze_distance * self.scene.sky.haze_distance;
+        let haze = distance_squared / (distance_squared + max(half_haze, 1e-6));
         Seen { color: mix(lit, self.scene.sky.horizon, haze), opacity: model.material.opacity }
     }
 
-    fn base_color(
-        &self,
-        model: &Model,
-        corners: [usize; 3],
-        hit: &Hit,
-        pixel_area: f32,
-        (x, y): (f32, f32),
-        points: [Vec3; 3],
-    ) -> [f32; 3] {
+    fn base_color(&self, model: &Model, triangle: &Triangle, hit: &Hit, (x, y): (f32, f32)) -> [f32; 3] {
         let Material { color, texture, pattern, .. } = &model.material;
         let mut base = *color;
         if let Pattern::Checker { size, other } = *pattern {
-            let beside = meet(self.view.eye, self.view.ray(x + 1.0, y), points).point;
-            let below = meet(self.view.eye, self.view.ray(x, y + 1.0), points).point;
-            let footprint = abs3(beside - hit.point) + abs3(below - hit.point);
-            base = mix(base, other, checker(hit.point, footprint, max(size, 1e-3)));
+            let point_at = |x: f32, y: f32| triangle.meet(self.view.eye, self.view.ray(x, y)).point;
+            let across = abs3(point_at(x + 1.0, y) - hit.point);
+            let down = abs3(point_at(x, y + 1.0) - hit.point);
+            base = mix(base, other, checker(hit.point, across + down, max(size, 1e-3)));
         }
         if model.colors.len() == model.positions.len() {
-            let colors = corners.map(|corner| Vec3::from_array(model.colors[corner]));
+            let colors = triangle.corners.map(|corner| Vec3::from_array(model.colors[corner as usize]));
             base = multiply(base, blend3(colors, hit.shares).to_array());
         }
         if let Some(texture) = texture
             && model.uvs.len() == model.positions.len()
         {
-            let [a, b, c] = corners.map(|corner| model.uvs[corner]);
+            let [a, b, c] = triangle.corners.map(|corner| model.uvs[corner as usize]);
             let uv = a + (b - a) * hit.shares[0] + (c - a) * hit.shares[1];
-            let texels = texture.texels() * pixel_area * uv_per_area([a, b, c], points);
+            let pixel = hit.depth * self.view.pixel_size();
+            // Seen at a slant a pixel covers more; up to a point, for sharp texture is worth some shimmer.
+            let cos_view = max(triangle.face.dot(self.view.eye - hit.point) / hit.depth, 0.15);
+            let texels = texture.texels() * uv_per_area([a, b, c], triangle.m) * pixel * pixel / cos_view;
             base = multiply(base, texture.sample(uv, texture.level_for(texels), self.tables));
         }
         base
@@ -134,30 +148,17 @@ impl<'a> Shader<'a> {
 
     /// A matt surface under the sun and a sky that is bright above and dark below.
     fn light(&self, base: [f32; 3], point: Vec3, normal: Vec3, face: Vec3) -> [f32; 3] {
-        let sky = &self.scene.sky;
-        let around = mix(sky.ground, mix(sky.horizon, sky.zenith, 0.5), 0.5 + 0.5 * normal.y);
+        let Sky { zenith, horizon, ground, .. } = self.scene.sky;
+        let above = mix(horizon, zenith, 0.6).map(|channel| channel * SKY_LIGHT);
+        let around = mix(ground, above, 0.5 + 0.5 * normal.y);
         let cos = normal.dot(self.shadow.to_sun);
-        let mut sun = [0.0; 3];
+        let mut sun = 0.0;
         if cos > 0.0 {
-            let light = cos * self.shadow.light_at(point, face, face.dot(self.shadow.to_sun));
-            sun = self.scene.sun.color.map(|channel| channel * light);
+            sun = cos * self.shadow.light_at(point, face, face.dot(self.shadow.to_sun));
         }
-        core::array::from_fn(|i| base[i] * (around[i] + sun[i]))
+        let color = self.scene.sun.color;
+        core::array::from_fn(|i| base[i] * (around[i] + color[i] * sun))
     }
-}
-
-/// Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997; here the ray is known to hit, or to
-/// pass within a pixel.
-#[inline(always)]
-fn meet(eye: Vec3, ray: Vec3, [a, b, c]: [Vec3; 3]) -> Hit {
-    let (ab, ac, from_a) = (b - a, c - a, eye - a);
-    let (p, q) = (ray.cross(ac), from_a.cross(ab));
-    let det = ab.dot(p);
-    let inverse = if det == 0.0 { 0.0 } else { 1.0 / det };
-    let depth = ac.dot(q) * inverse;
-    let second = clamp(from_a.dot(p) * inverse, 0.0, 1.0);
-    let third = clamp(ray.dot(q) * inverse, 0.0, 1.0);
-    Hit { point: eye + ray * depth, shares: [second, third], depth }
 }
 
 fn blend3([a, b, c]: [Vec3; 3], [second, third]: [f32; 2]) -> Vec3 {
@@ -172,11 +173,10 @@ fn multiply(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     core::array::from_fn(|i| a[i] * b[i])
 }
 
-/// Area of a triangle in texture coordinates over its area in the world, 1/m².
-fn uv_per_area([a, b, c]: [Vec2; 3], [p, q, r]: [Vec3; 3]) -> f32 {
+/// Area of a triangle in texture coordinates over its area in the world, 1/m²; `normal` is twice the latter long.
+fn uv_per_area([a, b, c]: [Vec2; 3], normal: Vec3) -> f32 {
     let on_texture = ((b - a).x * (c - a).y - (b - a).y * (c - a).x).abs();
-    let in_world = (q - p).cross(r - p).length();
-    on_texture / max(in_world, 1e-12)
+    on_texture / max(normal.length(), 1e-12)
 }
 
 /// Share of the second colour in a box of `footprint` around `p`: 0 and 1 within squares, between where the box
@@ -195,6 +195,6 @@ fn square_wave_mean(x: f32, width: f32) -> f32 {
 
 /// Integral of the square wave from 0: up to 1 at odd numbers, 0 at even ones.
 fn triangle_wave(x: f32) -> f32 {
-    let phase = x - 2.0 * (0.5 * x).floor();
+    let phase = x - 2.0 * floor(0.5 * x) as f32;
     min(phase, 2.0 - phase)
 }

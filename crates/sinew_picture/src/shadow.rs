@@ -1,7 +1,7 @@
 //! Where the sun does not reach: an orthographic depth picture taken from the sun.
 
 use crate::clip::clip;
-use crate::raster::{Footprint, Layer, ScreenVertex};
+use crate::raster::{Footprint, Layer, ScreenVertex, floor};
 use sinew::math::{Vec3, any_orthonormal, clamp, max, normalize_or};
 
 /// Depths seen from the sun around one point of the world.
@@ -10,11 +10,13 @@ pub(crate) struct ShadowMap {
     layer: Layer,
     /// Toward the sun, unit.
     pub(crate) to_sun: Vec3,
+    /// World to map: the edges of the map are at ±1.
     axes: [Vec3; 2],
     /// The focus along the axes, rounded to whole texels: shadows do not crawl when the camera moves.
     center: [f32; 2],
     focus: Vec3,
-    radius: f32,
+    /// Side of a texel in the world, metres.
+    texel: f32,
 }
 
 impl ShadowMap {
@@ -25,37 +27,36 @@ impl ShadowMap {
             axes: [Vec3::X, Vec3::Z],
             center: [0.0; 2],
             focus: Vec3::ZERO,
-            radius: 1.0,
+            texel: 1.0,
         }
     }
 
     /// Starts an empty map that reaches `radius` metres around `focus`.
     pub(crate) fn begin(&mut self, to_sun: Vec3, focus: Vec3, radius: f32) {
         self.to_sun = normalize_or(to_sun, Vec3::Y);
+        let radius = max(radius, 1e-3);
         let across = any_orthonormal(self.to_sun);
-        self.axes = [across, self.to_sun.cross(across)];
-        self.radius = max(radius, 1e-3);
+        self.axes = [across / radius, self.to_sun.cross(across) / radius];
         self.focus = if focus.is_finite() { focus } else { Vec3::ZERO };
-        let texel = self.texel();
-        self.center = self.axes.map(|axis| (self.focus.dot(axis) / texel).floor() * texel);
+        let texel_on_map = 2.0 / self.layer.width as f32;
+        self.center = self.axes.map(|axis| (self.focus.dot(axis) / texel_on_map).floor() * texel_on_map);
+        self.texel = texel_on_map * radius;
         self.layer.clear(f32::NEG_INFINITY);
     }
 
-    /// Side of a texel in the world, metres.
-    fn texel(&self) -> f32 {
-        2.0 * self.radius / self.layer.width as f32
-    }
-
     /// Position on the map, ±1 at its edges, and height toward the sun.
+    #[inline(always)]
     fn map_from_world(&self, p: Vec3) -> [f32; 3] {
-        let flat = |i: usize| (p.dot(self.axes[i]) - self.center[i]) / self.radius;
+        let flat = |i: usize| p.dot(self.axes[i]) - self.center[i];
         [flat(0), flat(1), (p - self.focus).dot(self.to_sun)]
     }
 
     /// Lets a triangle throw its shadow.
     pub(crate) fn cast(&mut self, corners: [Vec3; 3]) {
-        let on_map = corners.map(|p| self.map_from_world(p));
-        let polygon = clip(on_map.map(|[x, y, _]| [x, y, 1.0]), 0.5);
+        let place = |i: usize| self.map_from_world(corners[i]);
+        let on_map = [place(0), place(1), place(2)];
+        let flat = |i: usize| [on_map[i][0], on_map[i][1], 1.0];
+        let polygon = clip([flat(0), flat(1), flat(2)], 0.5);
         if polygon.corners().is_empty() {
             return;
         }
@@ -68,7 +69,7 @@ impl ShadowMap {
         };
         let corners = polygon.corners();
         for i in 1..corners.len() - 1 {
-            let fan = [corners[0], corners[i], corners[i + 1]].map(vertex);
+            let fan = [vertex(corners[0]), vertex(corners[i]), vertex(corners[i + 1])];
             if let Some((footprint, _)) = Footprint::new(fan, 0) {
                 self.layer.draw(&footprint);
             }
@@ -81,7 +82,7 @@ impl ShadowMap {
     /// tap cannot hit the surface itself: `d / cos θ ≥ 1.5 √2 · texel · tan θ`.
     pub(crate) fn light_at(&self, point: Vec3, normal: Vec3, cos_to_sun: f32) -> f32 {
         let sin = max(0.0, 1.0 - cos_to_sun * cos_to_sun).sqrt();
-        let [x, y, height] = self.map_from_world(point + normal * (self.texel() * (0.6 + 2.2 * sin)));
+        let [x, y, height] = self.map_from_world(point + normal * (self.texel * (0.6 + 2.2 * sin)));
         // The last tenth fades out, so that shadows end softly where the map ends.
         let fade = 10.0 * (1.0 - max(x.abs(), y.abs()));
         if fade.is_nan() || fade <= 0.0 {
@@ -90,20 +91,18 @@ impl ShadowMap {
         let size = self.layer.width;
         let half = 0.5 * size as f32;
         let (column, row) = ((x + 1.0) * half - 1.5, (1.0 - y) * half - 1.5);
-        let (left, top) = (column.floor(), row.floor());
-        let (fx, fy) = (column - left, row - top);
-        if left < 0.0 || top < 0.0 || left as usize + 4 > size || top as usize + 4 > size {
+        let (left, top) = (floor(column), floor(row));
+        let (fx, fy) = (column - left as f32, row - top as f32);
+        let last = size as i32 - 4;
+        if left < 0 || top < 0 || left > last || top > last {
             return 1.0;
         }
-        let (columns, rows) = ([1.0 - fx, 1.0, 1.0, fx], [1.0 - fy, 1.0, 1.0, fy]);
         let mut hidden = 0.0;
-        for (j, weight_of_row) in rows.into_iter().enumerate() {
+        for (j, weight_of_row) in [1.0 - fy, 1.0, 1.0, fy].into_iter().enumerate() {
             let start = (top as usize + j) * size + left as usize;
-            for (depth, weight) in self.layer.depth[start..start + 4].iter().zip(columns) {
-                if *depth > height {
-                    hidden += weight * weight_of_row;
-                }
-            }
+            let row = &self.layer.depth[start..start + 4];
+            let above = |i: usize| if row[i] > height { 1.0 } else { 0.0 };
+            hidden += ((1.0 - fx) * above(0) + above(1) + above(2) + fx * above(3)) * weight_of_row;
         }
         1.0 - hidden * (1.0 / 9.0) * clamp(fade, 0.0, 1.0)
     }

@@ -152,7 +152,8 @@ mod tests {
         let mut palette = Palette::new();
         palette.fit(&mut histogram);
         for color in wanted {
-            let shown = palette.colors[palette.entry(color) as usize];
+            let entry = palette.entry(color);
+            let shown = palette.colors[entry as usize];
             assert!(distance(shown, color) <= 3 * 9 + 5 * 9 + 2 * 9, "{color:?} became {shown:?}");
         }
     }
@@ -166,7 +167,8 @@ mod tests {
         let mut palette = Palette::new();
         palette.fit(&mut histogram);
         for i in 0..=255u8 {
-            let shown = palette.colors[palette.entry([i, i, 255 - i]) as usize];
+            let entry = palette.entry([i, i, 255 - i]);
+            let shown = palette.colors[entry as usize];
             assert!(shown[0].abs_diff(i) <= 3, "{i} became {shown:?}");
         }
         histogram.clear();

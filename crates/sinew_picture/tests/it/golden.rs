@@ -1,0 +1,39 @@
+//! The same bytes in every build, on every target, with any number of threads.
+
+use crate::stairs;
+use sinew::math::hash::hash_bytes;
+use sinew_picture::{PictureFormat, RenderSettings, Renderer, encode};
+
+const SMALL: RenderSettings = RenderSettings {
+    width: 320,
+    height: 180,
+    antialiasing: sinew_picture::Antialiasing::Samples4,
+    shadow_texels: 512,
+    threads: 1,
+};
+
+#[test]
+fn the_picture_of_the_stairs() {
+    let image = Renderer::new(SMALL).render(&stairs::scene(0.9), &stairs::camera(0.9));
+    assert_eq!(format!("{:016x}", hash_bytes(&image.rgba)), "0");
+}
+
+#[test]
+fn the_movie_of_the_stairs() {
+    let mut renderer = Renderer::new(SMALL);
+    let images = [0.0, 0.04, 0.08].map(|time| renderer.render(&stairs::scene(time), &stairs::camera(time)));
+    let bytes = encode::encode(PictureFormat::Gif, &images, 25).expect("three images");
+    assert_eq!(format!("{:016x}", hash_bytes(&bytes)), "0");
+}
+
+#[test]
+fn the_number_of_threads_and_earlier_pictures_change_nothing() {
+    let scene = stairs::scene(0.5);
+    let camera = stairs::camera(0.5);
+    let alone = Renderer::new(SMALL).render(&scene, &camera);
+    for threads in [2, 3, 7] {
+        let mut renderer = Renderer::new(RenderSettings { threads, ..SMALL });
+        renderer.render(&stairs::scene(1.4), &stairs::camera(0.1));
+        assert!(renderer.render(&scene, &camera) == alone, "{threads} threads");
+    }
+}
