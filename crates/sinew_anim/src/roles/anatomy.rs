@@ -5,7 +5,7 @@ use super::axes::{feet_lead, left_by_name, possible_ups, snap};
 use super::bind::Bound;
 use super::creature::{generic_roles, up_by_feet};
 use super::graph::Graph;
-use super::humanoid::{Evidence, Humanoid, Limb, Stance};
+use super::humanoid::{Evidence, Humanoid, Limb, Split, Stance};
 use super::names::{Part, Reading, read_names, settle_duplicates};
 use super::role::{Role, Side};
 use super::symmetry::Symmetry;
@@ -139,9 +139,7 @@ impl<'a> Scene<'a> {
 
     fn shape_draft(&self, up: Vec3, found: &Humanoid, notes: &mut Vec<String>) -> Draft {
         let legs = &found.legs;
-        let ankle =
-            |chain: &Vec<usize>| self.graph.nodes[chain[legs.split.2.unwrap_or(legs.split.1)]].position;
-        let ankles = legs.chain.each_ref().map(ankle);
+        let ankles = legs.chain.each_ref().map(|chain| self.ankle(chain, legs.split));
         let left = self.left(up, &ankles, notes);
         let first = if left.dot(self.symmetry.lateral) > 0.0 { Side::Left } else { Side::Right };
         let mut roles = vec![None; self.rig.joints.len()];
@@ -165,6 +163,16 @@ impl<'a> Scene<'a> {
         }
         self.find_bare_feet(&mut roles);
         Draft { roles, humanoid: true, up, left }
+    }
+
+    /// Where the foot begins: its node, or the end of the shank where the foot moves no skin of its own.
+    fn ankle(&self, chain: &[usize], split: Split) -> Vec3 {
+        let node = chain[split.2.unwrap_or(split.1)];
+        let joint = self.graph.nodes[node].joint;
+        let bare_end =
+            |&end: &JointIdx| self.rig.joints[end].parent == Some(joint) && self.bound.area[end] <= 0.0;
+        let end = (0..self.rig.joints.len()).find(bare_end).filter(|_| split.2.is_none());
+        self.bound.model[end.unwrap_or(joint)].translation
     }
 
     /// Feet without skin of their own, beside the body in the rig: found by name at the end of the shank.
@@ -234,6 +242,9 @@ impl<'a> Scene<'a> {
             across += place(limb(Side::Left))? - place(limb(Side::Right))?;
         }
         let left = snap(across - up * across.dot(up));
+        if left.dot(up).abs() > 0.5 {
+            return None;
+        }
         let mut roles = vec![None; self.rig.joints.len()];
         for (role, joint) in known {
             roles[joint] = Some(RoleGuess { role, confidence });
@@ -302,6 +313,10 @@ fn leg_roles(legs: &Limb, k: usize, side: Side) -> Vec<(usize, Role)> {
 fn confidence(role: Role, reading: &Reading) -> f32 {
     let [agree, silent, contradict] = CONFIDENCE;
     let Some(part) = reading.part else { return silent };
+    // Rigify and CesiumMan count the pelvis among the spine.
+    if role == Role::Hips && part == Part::Spine {
+        return silent;
+    }
     let wrong_side = reading.side.is_some() && role.side().is_some() && reading.side != role.side();
     if part_of(role) == Some(part) && !wrong_side { agree } else { contradict }
 }

@@ -12,10 +12,13 @@ use sinew_math::Vec3;
 /// other chain a limb.
 pub(super) fn generic_roles(graph: &Graph, symmetry: &Symmetry) -> Vec<Role> {
     let mut roles: Vec<Option<Role>> = vec![None; graph.nodes.len()];
-    let heavier = |a: usize, b: usize| if graph.subtree_area(b) > graph.subtree_area(a) { b } else { a };
+    let skin = |i: usize| graph.nodes[i].subtree_area;
+    let heavier = |a: usize, b: usize| if skin(b) > skin(a) { b } else { a };
+    // A chain that bends aside without branching still goes on.
     let midline = |from: usize, roles: &[Option<Role>]| {
-        let children = graph.nodes[from].children.iter().copied();
-        children.filter(|&i| symmetry.on_midline(i) && roles[i].is_none()).reduce(heavier)
+        let children = &graph.nodes[from].children;
+        let goes_on = |i: &usize| roles[*i].is_none() && (children.len() == 1 || symmetry.on_midline(*i));
+        children.iter().copied().filter(goes_on).reduce(heavier)
     };
     let mut trunk = vec![graph.root];
     while let Some(next) = midline(trunk[trunk.len() - 1], &roles) {
@@ -44,7 +47,7 @@ pub(super) fn generic_roles(graph: &Graph, symmetry: &Symmetry) -> Vec<Role> {
 }
 
 fn longest(graph: &Graph, node: usize) -> Option<usize> {
-    let way = |child: usize| graph.distance(node, child) + graph.reach(child);
+    let way = |child: usize| graph.distance(node, child) + graph.nodes[child].reach;
     graph.nodes[node].children.iter().copied().reduce(|a, b| if way(b) > way(a) { b } else { a })
 }
 

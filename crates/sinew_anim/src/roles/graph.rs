@@ -13,6 +13,10 @@ pub(super) struct Node {
     pub position: Vec3,
     /// Skin area it moves.
     pub area: f32,
+    /// Skin area that it and all below it move.
+    pub subtree_area: f32,
+    /// Length of the longest way down from it.
+    pub reach: f32,
 }
 
 /// A tree of [`Node`]s with one root.
@@ -41,7 +45,16 @@ impl Graph {
                 nodes[parent].children.push(child);
             }
             let position = bound.model[joint].translation;
-            nodes.push(Node { joint, parent, children: Vec::new(), position, area: bound.area[joint] });
+            let area = bound.area[joint];
+            nodes.push(Node {
+                joint,
+                parent,
+                children: Vec::new(),
+                position,
+                area,
+                subtree_area: area,
+                reach: 0.0,
+            });
         }
         let mut graph = Self { nodes, root: 0, order: Vec::new(), adopted: Vec::new() };
         graph.join(rig, bound, &node_of)?;
@@ -65,6 +78,14 @@ impl Graph {
             self.adopted.push(stray);
         }
         self.order = self.subtree(self.root);
+        for k in (0..self.order.len()).rev() {
+            let i = self.order[k];
+            if let Some(parent) = self.nodes[i].parent {
+                let reach = self.distance(parent, i) + self.nodes[i].reach;
+                self.nodes[parent].reach = sinew_math::max(self.nodes[parent].reach, reach);
+                self.nodes[parent].subtree_area += self.nodes[i].subtree_area;
+            }
+        }
         Some(())
     }
 
@@ -73,11 +94,11 @@ impl Graph {
     /// root.
     fn place_for(&self, stray: usize, ends: &[(usize, Vec3)], size: f32) -> usize {
         let start = self.nodes[stray].position;
-        let own = self.subtree(stray);
-        let body = self.subtree(self.root);
+        let mut in_body = vec![false; self.nodes.len()];
+        self.subtree(self.root).into_iter().for_each(|i| in_body[i] = true);
         let nearest = |places: &mut dyn Iterator<Item = (usize, Vec3)>| {
             places
-                .filter(|(node, _)| body.contains(node) && !own.contains(node))
+                .filter(|&(node, _)| in_body[node])
                 .map(|(node, place)| ((place - start).length(), node))
                 .reduce(|a, b| if b.0 < a.0 { b } else { a })
         };
@@ -90,7 +111,8 @@ impl Graph {
         let mut leaves = (0..self.nodes.len()).filter(leaves).map(|i| (i, self.nodes[i].position));
         match nearest(&mut leaves) {
             Some((distance, leaf))
-                if own.len() <= 2 && distance < 0.75 * (self.nodes[self.root].position - start).length() =>
+                if self.subtree(stray).len() <= 2
+                    && distance < 0.75 * (self.nodes[self.root].position - start).length() =>
             {
                 leaf
             }
@@ -109,20 +131,9 @@ impl Graph {
         found
     }
 
-    /// Skin area of a node and all below it.
-    pub fn subtree_area(&self, from: usize) -> f32 {
-        self.subtree(from).into_iter().map(|i| self.nodes[i].area).sum()
-    }
-
     /// A node, its parent and so on up to the root.
     pub fn up_from(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
         core::iter::successors(Some(node), |&i| self.nodes[i].parent)
-    }
-
-    /// Length of the longest way down from a node.
-    pub fn reach(&self, node: usize) -> f32 {
-        let below = |&child: &usize| self.distance(node, child) + self.reach(child);
-        self.nodes[node].children.iter().map(below).fold(0.0, sinew_math::max)
     }
 
     /// Distance of two nodes in the bind pose.

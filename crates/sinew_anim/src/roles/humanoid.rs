@@ -34,7 +34,7 @@ impl Stance {
 }
 
 /// Places in a chain of (upper, lower, hand or foot); the last may be missing.
-type Split = (usize, usize, Option<usize>);
+pub(super) type Split = (usize, usize, Option<usize>);
 
 /// An arm or a leg with its mirror image. Index 0 is the side toward [`Symmetry::lateral`].
 #[derive(Clone, Debug)]
@@ -134,7 +134,8 @@ impl Evidence<'_> {
             if ways.is_empty() || chain.len() > 2 && (long >= 2 || ways.len() >= 3) {
                 break;
             }
-            let reach = |way: usize| self.graph.distance(chain[chain.len() - 1], way) + self.graph.reach(way);
+            let reach =
+                |way: usize| self.graph.distance(chain[chain.len() - 1], way) + self.graph.nodes[way].reach;
             ways.sort_by(|&a, &b| reach(b).total_cmp(&reach(a)));
             chain.push(ways[0]);
         }
@@ -152,7 +153,7 @@ impl Evidence<'_> {
         };
         let best = (0..limbs.len())
             .filter(|&i| reaches_floor(&limbs[i][0]))
-            .map(|i| (self.graph.subtree_area(limbs[i][0][0]), i))
+            .map(|i| (self.graph.nodes[limbs[i][0][0]].subtree_area, i))
             .reduce(|a, b| if b.0 > a.0 { b } else { a })?;
         Some(limbs.swap_remove(best.1))
     }
@@ -208,15 +209,16 @@ impl Evidence<'_> {
         let mut at = chest;
         loop {
             let next = self.graph.nodes[at].children.iter().copied().filter(above);
-            let best =
-                next.map(|i| (self.graph.subtree_area(i), i)).reduce(|a, b| if b.0 > a.0 { b } else { a });
+            let best = next
+                .map(|i| (self.graph.nodes[i].subtree_area, i))
+                .reduce(|a, b| if b.0 > a.0 { b } else { a });
             let Some((_, next)) = best else { break };
             chain.push(next);
             at = next;
         }
-        let all = self.graph.subtree_area(*chain.first()?);
+        let all = self.graph.nodes[*chain.first()?].subtree_area;
         let named = chain.iter().position(|&i| self.part(i) == Some(Part::Head));
-        let fair = chain.iter().rposition(|&i| self.graph.subtree_area(i) >= 0.15 * all).unwrap_or(0);
+        let fair = chain.iter().rposition(|&i| self.graph.nodes[i].subtree_area >= 0.15 * all).unwrap_or(0);
         let head = chain[named.unwrap_or(fair)];
         chain.truncate(named.unwrap_or(fair));
         Some((chain, head))

@@ -6,8 +6,11 @@ use super::role::Role;
 use super::{KeptBone, RoleGuess};
 use crate::rig::{JointIdx, Rig};
 
-/// Least share of all skin for a creature's body, or for a part of the spine of its own.
+/// Least share of all skin for a creature's body.
 const LEAST_SHARE: f32 = 0.004;
+
+/// Least share of all skin for a part of the spine of its own.
+const LEAST_SPINE_SHARE: f32 = 0.02;
 
 /// A clavicle shorter than this share of the height is no body.
 const LEAST_CLAVICLE: f32 = 0.05;
@@ -31,9 +34,14 @@ pub(super) struct Kept {
     pub merge_into: Vec<Option<JointIdx>>,
 }
 
-/// What carries each joint: the rig's parent, or for strays what they were adopted by; for a stray without skin the
-/// bone at whose end it sits.
-pub(super) fn carriers(rig: &Rig, bound: &Bound, graph: &Graph) -> Vec<Option<JointIdx>> {
+/// What carries each joint: the rig's parent; for strays what they were adopted by; for a stray without skin the bone
+/// at whose end it sits; for what sits at a wrist beside the hand, the hand.
+pub(super) fn carriers(
+    rig: &Rig,
+    bound: &Bound,
+    graph: &Graph,
+    roles: &[Option<RoleGuess>],
+) -> Vec<Option<JointIdx>> {
     let mut carrier: Vec<Option<JointIdx>> = rig.joints.iter().map(|joint| joint.parent).collect();
     let mut in_body = vec![false; rig.joints.len()];
     let mut above = vec![false; rig.joints.len()];
@@ -45,9 +53,10 @@ pub(super) fn carriers(rig: &Rig, bound: &Bound, graph: &Graph) -> Vec<Option<Jo
         let node = &graph.nodes[stray];
         carrier[node.joint] = node.parent.map(|parent| graph.nodes[parent].joint);
     }
-    let hangs: Vec<bool> = (0..rig.joints.len())
-        .map(|joint| in_body[joint] || ancestors(rig, joint).any(|ancestor| in_body[ancestor]))
-        .collect();
+    let mut hangs = in_body.clone();
+    for joint in 0..rig.joints.len() {
+        hangs[joint] |= rig.joints[joint].parent.is_some_and(|parent| hangs[parent]);
+    }
     for joint in 0..rig.joints.len() {
         if hangs[joint] || above[joint] {
             continue;
@@ -60,6 +69,19 @@ pub(super) fn carriers(rig: &Rig, bound: &Bound, graph: &Graph) -> Vec<Option<Jo
         };
         if let Some(end) = (0..rig.joints.len()).find(sits) {
             carrier[joint] = Some(end);
+        }
+    }
+    for (hand, guess) in roles.iter().enumerate() {
+        let (Some(Role::Hand(_)), Some(forearm)) = (guess.map(|guess| guess.role), carrier[hand]) else {
+            continue;
+        };
+        let distance =
+            |joint: JointIdx| (bound.model[joint].translation - bound.model[hand].translation).length();
+        let near = 0.2 * distance(forearm);
+        for joint in 0..rig.joints.len() {
+            if joint != hand && carrier[joint] == Some(forearm) && distance(joint) < near {
+                carrier[joint] = Some(hand);
+            }
         }
     }
     carrier
@@ -75,9 +97,10 @@ impl Selection<'_> {
         self.drop_short_clavicles(&mut joints);
         self.join_thin_spine(&mut joints);
         self.drop_bare(&mut joints);
-        let parent = |joint: JointIdx, kept: &[JointIdx]| {
+        let place = self.places(&joints);
+        let parent = |joint: JointIdx| {
             let parents = self.role(joint).anatomical_parents().iter();
-            parents.filter_map(|&role| self.joint_of(role)).find_map(|p| kept.iter().position(|&k| k == p))
+            parents.filter_map(|&role| self.joint_of(role)).find_map(|parent| place[parent])
         };
         self.bones(&joints, parent)
     }
@@ -85,14 +108,26 @@ impl Selection<'_> {
     /// Bodies of a creature: every joint with a fair share of skin.
     pub fn creature(&self) -> Kept {
         let total: f32 = self.bound.area.iter().sum();
-        let fair = |&&i: &&usize| i == self.graph.root || self.graph.nodes[i].area >= LEAST_SHARE * total;
-        let joints: Vec<JointIdx> =
-            self.graph.order.iter().filter(fair).map(|&i| self.graph.nodes[i].joint).collect();
-        let parent = |joint: JointIdx, kept: &[JointIdx]| {
-            let carried = self.carried_by(joint, |ancestor| kept.contains(&ancestor))?;
-            kept.iter().position(|&k| k == carried)
-        };
-        self.bones(&joints, parent)
+        let nodes = &self.graph.nodes;
+        // From the tips inward, so that a toe too small goes with its foot and counts there.
+        let mut area: Vec<f32> = nodes.iter().map(|node| node.area).collect();
+        for &i in self.graph.order.iter().rev() {
+            let Some(parent) = nodes[i].parent else { continue };
+            if area[i] < LEAST_SHARE * total {
+                area[parent] += area[i];
+            }
+        }
+        let fair = |&&i: &&usize| i == self.graph.root || area[i] >= LEAST_SHARE * total;
+        let joints: Vec<JointIdx> = self.graph.order.iter().filter(fair).map(|&i| nodes[i].joint).collect();
+        let place = self.places(&joints);
+        self.bones(&joints, |joint| place[self.carried_by(joint, |i| place[i].is_some())?])
+    }
+
+    /// Per joint its place among the kept ones.
+    fn places(&self, kept: &[JointIdx]) -> Vec<Option<usize>> {
+        let mut place = vec![None; self.rig.joints.len()];
+        kept.iter().enumerate().for_each(|(i, &joint)| place[joint] = Some(i));
+        place
     }
 
     fn role(&self, joint: JointIdx) -> Role {
@@ -134,26 +169,28 @@ impl Selection<'_> {
                 sum = 0.0;
             }
             sum += self.bound.area[part];
-            open = sum < LEAST_SHARE * total;
+            open = sum < LEAST_SPINE_SHARE * total;
         }
     }
 
     /// Removes joints that would have no skin even with what they take along; the root stays.
     fn drop_bare(&self, joints: &mut Vec<JointIdx>) {
         loop {
-            let area = |joint: JointIdx| -> f32 {
-                let follows = |&j: &JointIdx| {
-                    j == joint
-                        || !joints.contains(&j) && self.carried_by(j, |i| joints.contains(&i)) == Some(joint)
-                };
-                (0..self.rig.joints.len()).filter(follows).map(|j| self.bound.area[j]).sum()
-            };
-            let Some(bare) = joints.iter().skip(1).position(|&joint| area(joint) <= 0.0) else { return };
-            joints.remove(bare + 1);
+            let place = self.places(joints);
+            let mut area = vec![0.0; joints.len()];
+            for joint in 0..self.rig.joints.len() {
+                let follows =
+                    place[joint].or_else(|| place[self.carried_by(joint, |i| place[i].is_some())?]);
+                if let Some(bone) = follows {
+                    area[bone] += self.bound.area[joint];
+                }
+            }
+            let Some(bare) = (1..joints.len()).find(|&i| area[i] <= 0.0) else { return };
+            joints.remove(bare);
         }
     }
 
-    fn bones(&self, joints: &[JointIdx], parent: impl Fn(JointIdx, &[JointIdx]) -> Option<usize>) -> Kept {
+    fn bones(&self, joints: &[JointIdx], parent: impl Fn(JointIdx) -> Option<usize>) -> Kept {
         let mut bones: Vec<KeptBone> = Vec::with_capacity(joints.len());
         for (i, &joint) in joints.iter().enumerate() {
             let guess = self.roles[joint].as_ref().expect("kept joints have roles");
@@ -162,20 +199,21 @@ impl Selection<'_> {
                 role: guess.role,
                 confidence: guess.confidence,
                 // All but the first hang on something; on the first where nothing nearer is kept.
-                parent: parent(joint, joints).or((i > 0).then_some(0)),
+                parent: parent(joint).or((i > 0).then_some(0)),
                 merged: Vec::new(),
                 bind_model: self.bound.model[joint],
             });
         }
+        let place = self.places(joints);
         let mut merge_into = vec![None; self.rig.joints.len()];
         for joint in 0..self.rig.joints.len() {
-            if joints.contains(&joint) {
+            if place[joint].is_some() {
                 continue;
             }
-            let carried = self.carried_by(joint, |i| joints.contains(&i));
+            let carrier = self.carried_by(joint, |i| place[i].is_some());
             // Skin must go somewhere; a joint without skin and without a carrier keeps its own motion.
-            let target = carried.or((self.bound.area[joint] > 0.0).then(|| joints[0]));
-            if let Some(bone) = target.and_then(|t| joints.iter().position(|&k| k == t)) {
+            let target = carrier.or((self.bound.area[joint] > 0.0).then(|| joints[0]));
+            if let Some(bone) = target.and_then(|target| place[target]) {
                 bones[bone].merged.push(joint);
                 merge_into[joint] = target;
             }

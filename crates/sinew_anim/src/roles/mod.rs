@@ -122,7 +122,7 @@ pub fn analyze(rig: &Rig) -> Result<RigAnalysis, NoSkin> {
     if up.dot(Vec3::Y) < 0.9 {
         notes.push(format!("the body stands along {up} of the file, not along +Y"));
     }
-    let carrier = keep::carriers(rig, &bound, &graph);
+    let carrier = keep::carriers(rig, &bound, &graph, &roles);
     let selection =
         Selection { rig, bound: &bound, graph: &graph, roles: &roles, height: stance.height, carrier };
     let Kept { bones: kept, merge_into } = if humanoid { selection.humanoid() } else { selection.creature() };

@@ -127,7 +127,9 @@ pub(super) fn settle_duplicates(readings: &mut [Reading], has_skin: impl Fn(usiz
     let claims: Vec<(Option<Part>, Option<Side>)> =
         readings.iter().enumerate().map(|(i, r)| (r.part.filter(|_| has_skin(i)), r.side)).collect();
     for (i, claim) in claims.iter().enumerate() {
-        if matches!(claim.0, None | Some(Part::Spine | Part::Tail | Part::Neck | Part::Appendix)) {
+        let many =
+            Some(Part::Neck) == claim.0 && readings.iter().any(|reading| reading.part == Some(Part::Head));
+        if many || matches!(claim.0, None | Some(Part::Spine | Part::Tail | Part::Appendix)) {
             continue;
         }
         let first = claims.iter().position(|other| other == claim) == Some(i);

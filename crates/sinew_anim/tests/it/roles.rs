@@ -1,27 +1,440 @@
-use crate::rigs;
-use sinew_anim::{Rig, RigAnalysis, analyze};
+use crate::{rigs, toy};
+use expect_test::{Expect, expect};
+use sinew_anim::{LocalTransform, NoSkin, Rig, RigAnalysis, Role, Side, analyze};
+use sinew_math::{Affine, Random, Rotation, Vec3};
 
-fn table(name: &str, rig: &Rig, a: &RigAnalysis) -> String {
-    let mut out = format!("{name}: humanoid {} unit {} up {} height {:.3} floor {:.3} forward {}\n", a.humanoid, a.unit_scale, a.up_axis, a.height, a.floor,
-        a.character_from_model.rotation.inverse() * sinew_math::Vec3::Z);
-    for note in &a.notes {
-        out += &format!("  note: {note}\n");
+/// Bodies as lines of role, parent role, confidence and joint name, before them what the body as a whole is like.
+fn table(rig: &Rig, found: &RigAnalysis) -> String {
+    let forward = found.character_from_model.rotation.inverse() * Vec3::Z;
+    let kind = if found.humanoid { "humanoid" } else { "creature" };
+    let mut out =
+        format!("{kind}, {:.2} m, unit {}, forward {}\n", found.height, found.unit_scale, axis(forward));
+    for bone in &found.kept {
+        let parent = bone.parent.map_or("-".into(), |parent| found.kept[parent].role.name());
+        let name = &rig.joints[bone.joint].name;
+        let line = format!("{} < {parent} {:.2} {name}", bone.role.name(), bone.confidence);
+        out += &format!("{}\n", line.trim_end());
     }
-    for (i, bone) in a.kept.iter().enumerate() {
-        let p = a.character_from_file().point(bone.bind_model.translation);
-        let merged: Vec<_> = bone.merged.iter().map(|&j| rig.joints[j].name.as_str()).collect();
-        out += &format!("  {i:2} {:14} <- {:14} {:.2} {:28} ({:6.3} {:6.3} {:6.3}) + {merged:?}\n", bone.role.name(), bone.parent.map_or(String::new(), |p| a.kept[p].role.name()), bone.confidence, rig.joints[bone.joint].name, p.x, p.y, p.z);
-    }
-    let other: Vec<_> = a.roles.iter().enumerate().filter_map(|(j, g)| g.filter(|g| a.kept_with(g.role).is_none()).map(|g| format!("{}={}", g.role.name(), rig.joints[j].name))).collect();
-    out += &format!("  not kept: {other:?}\n");
     out
 }
 
+/// The signed axis that a direction is close to.
+fn axis(v: Vec3) -> String {
+    let axes = [("x", v.x), ("y", v.y), ("z", v.z)];
+    let (name, value) = axes.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).expect("three axes");
+    format!("{}{name}", if value < 0.0 { "-" } else { "+" })
+}
+
+fn analyzed(file: &str) -> Option<(Rig, RigAnalysis)> {
+    let (rig, _) = rigs::load(&format!("rigs/{file}"))?;
+    let found = analyze(&rig).expect("a skin");
+    sound(&rig, &found);
+    Some((rig, found))
+}
+
+/// What holds for every analysis, whatever the rig.
+fn sound(rig: &Rig, found: &RigAnalysis) {
+    let mut carried = vec![0; rig.joints.len()];
+    for (i, bone) in found.kept.iter().enumerate() {
+        assert_eq!(bone.parent.is_none(), i == 0, "one root, first");
+        assert!(bone.parent.is_none_or(|parent| parent < i), "parents before children");
+        assert!(bone.bind_model.is_finite() && (0.0..=1.0).contains(&bone.confidence));
+        carried[bone.joint] += 1;
+        for &joint in &bone.merged {
+            carried[joint] += 1;
+            assert_eq!(found.merge_into[joint], Some(bone.joint));
+        }
+    }
+    assert!(carried.iter().all(|&times| times <= 1), "every joint has one body at most");
+    for (joint, _) in skinned_joints(rig) {
+        assert_eq!(carried[joint], 1, "skin of joint {joint} ({}) has a body", rig.joints[joint].name);
+    }
+    assert!(found.unit_scale > 0.0 && found.height > 0.0);
+}
+
+/// Joints with any weight, and its sum.
+fn skinned_joints(rig: &Rig) -> Vec<(usize, f32)> {
+    let mut weight = vec![0.0; rig.joints.len()];
+    for mesh in &rig.meshes {
+        let Some(skin) = mesh.skin.map(|skin| &rig.skins[skin]) else { continue };
+        for primitive in &mesh.primitives {
+            for (slots, weights) in primitive.joints.iter().zip(&primitive.weights) {
+                for (slot, w) in slots.iter().zip(weights) {
+                    weight[skin.joints[usize::from(*slot)]] += w;
+                }
+            }
+        }
+    }
+    weight.into_iter().enumerate().filter(|&(_, w)| w > 0.0).collect()
+}
+
+/// A human body: all parts there, each on its own side and at its own height.
+fn check_humanoid(file: &str, bodies: usize) -> Option<RigAnalysis> {
+    let (_, found) = analyzed(file)?;
+    assert!(found.humanoid, "{file}");
+    assert_eq!(found.kept.len(), bodies, "{file}");
+    assert!((0.5..3.0).contains(&found.height), "{file}: {} m", found.height);
+    let place = |role: Role| {
+        let joint = found.joint_with(role).unwrap_or_else(|| panic!("{file}: no {}", role.name()));
+        found.character_from_file().point(found.bind_model[joint].translation)
+    };
+    let (hips, head) = (place(Role::Hips), place(Role::Head));
+    assert!(head.y > hips.y + 0.2 * found.height, "{file}: head {head}, hips {hips}");
+    for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
+        let chain = [Role::UpperArm(side), Role::LowerArm(side), Role::Hand(side)].map(place);
+        assert!(chain.iter().all(|p| p.x * sign > 0.0), "{file}: left is on +X");
+        assert!(
+            chain[0].x * sign < chain[1].x * sign && chain[1].x * sign < chain[2].x * sign,
+            "{file}: {chain:?}"
+        );
+        let chain = [Role::UpperLeg(side), Role::LowerLeg(side), Role::Foot(side)].map(place);
+        assert!(chain.iter().all(|p| p.x * sign > 0.0), "{file}: left is on +X");
+        assert!(chain[0].y > chain[1].y && chain[1].y > chain[2].y, "{file}: {chain:?}");
+        assert!(chain[2].y - found.floor < 0.12 * found.height, "{file}: feet on the floor");
+    }
+    Some(found)
+}
+
 #[test]
-fn print() {
-    for name in ["CesiumMan.glb","RiggedFigure.glb","mannequiny.glb","mesh2motion_human_rigify.glb","kaykit_Knight.glb","quaternius_cyberpunk_Character.glb","CoolLoops_mixamorig_vrm0.vrm","Fox.glb","quaternius_Spider.glb","quaternius_MandarinFish.glb","RiggedSimple.glb","quaternius_Robot.glb","kaykit_mannequin/manny_med_mod.gltf","SimpleSkin.gltf","RecursiveSkeletons.glb"] {
-        let Some((rig, _)) = rigs::load(&format!("rigs/{name}")) else { return };
-        let a = analyze(&rig).expect("a skin");
-        println!("{}", table(name, &rig, &a));
+fn human_shapes_are_recognised_with_both_sides_right() {
+    for (file, bodies) in [
+        ("CesiumMan.glb", 17),
+        ("RiggedFigure.glb", 17),
+        ("mannequiny.glb", 19),
+        ("mesh2motion_human_rigify.glb", 20),
+        ("kaykit_Knight.glb", 16),
+        ("kaykit_mannequin/manny_med_mod.gltf", 16),
+        ("quaternius_cyberpunk_Character.glb", 16),
+        ("CoolLoops_mixamorig_vrm0.vrm", 18),
+        ("quaternius_Robot.glb", 14),
+    ] {
+        let Some(_) = check_humanoid(file, bodies) else { return };
+    }
+}
+
+#[test]
+fn files_face_where_their_toes_point() {
+    for (file, forward) in [
+        ("CesiumMan.glb", "+z"),
+        ("RiggedFigure.glb", "+z"),
+        ("quaternius_cyberpunk_Character.glb", "+z"),
+        ("CoolLoops_mixamorig_vrm0.vrm", "-z"),
+        ("Fox.glb", "+z"),
+    ] {
+        let Some((_, found)) = analyzed(file) else { return };
+        assert_eq!(axis(found.character_from_model.rotation.inverse() * Vec3::Z), forward, "{file}");
+    }
+}
+
+fn check(file: &str, expected: &Expect) {
+    if let Some((rig, found)) = analyzed(file) {
+        expected.assert_eq(&table(&rig, &found));
+    }
+}
+
+#[test]
+fn a_rig_with_misleading_names() {
+    check(
+        "CesiumMan.glb",
+        &expect![[r#"
+        humanoid, 1.51 m, unit 1, forward +z
+        hips < - 0.80 Skeleton_torso_joint_1
+        spine < hips 0.95 Skeleton_torso_joint_2
+        chest < spine 0.95 torso_joint_3
+        neck < chest 0.80 Skeleton_neck_joint_1
+        head < neck 0.80 Skeleton_neck_joint_2
+        leftUpperArm < chest 0.80 Skeleton_arm_joint_L__4_
+        leftLowerArm < leftUpperArm 0.80 Skeleton_arm_joint_L__3_
+        leftHand < leftLowerArm 0.80 Skeleton_arm_joint_L__2_
+        rightUpperArm < chest 0.80 Skeleton_arm_joint_R
+        rightLowerArm < rightUpperArm 0.80 Skeleton_arm_joint_R__2_
+        rightHand < rightLowerArm 0.80 Skeleton_arm_joint_R__3_
+        leftUpperLeg < hips 0.80 leg_joint_L_1
+        leftLowerLeg < leftUpperLeg 0.80 leg_joint_L_2
+        leftFoot < leftLowerLeg 0.80 leg_joint_L_3
+        rightUpperLeg < hips 0.80 leg_joint_R_1
+        rightLowerLeg < rightUpperLeg 0.80 leg_joint_R_2
+        rightFoot < rightLowerLeg 0.80 leg_joint_R_3
+    "#]],
+    );
+}
+
+#[test]
+fn feet_beside_the_body_and_a_joint_above_the_hips() {
+    check(
+        "quaternius_cyberpunk_Character.glb",
+        &expect![[r#"
+            humanoid, 1.40 m, unit 1, forward +z
+            hips < - 0.95 Hips
+            spine < hips 0.95 Abdomen
+            chest < spine 0.95 Torso
+            upperChest < chest 0.95 Chest
+            neck < upperChest 0.95 Neck
+            head < neck 0.95 Head
+            leftUpperArm < upperChest 0.95 UpperArm.L
+            leftLowerArm < leftUpperArm 0.95 LowerArm.L
+            leftHand < leftLowerArm 0.95 Hand.L
+            rightUpperArm < upperChest 0.95 UpperArm.R
+            rightLowerArm < rightUpperArm 0.95 LowerArm.R
+            rightHand < rightLowerArm 0.95 Hand.R
+            leftUpperLeg < hips 0.95 UpperLeg.L
+            leftLowerLeg < leftUpperLeg 0.95 LowerLeg.L
+            rightUpperLeg < hips 0.95 UpperLeg.R
+            rightLowerLeg < rightUpperLeg 0.95 LowerLeg.R
+        "#]],
+    );
+}
+
+#[test]
+fn a_fox_is_no_human_whatever_its_joints_are_called() {
+    check(
+        "Fox.glb",
+        &expect![[r#"
+        creature, 0.79 m, unit 0.01, forward +z
+        spine_0 < - 0.60 b_Hip_01
+        spine_1 < spine_0 0.60 b_Spine01_02
+        tail_0 < spine_0 0.60 b_Tail01_012
+        limb_0_0 < spine_0 0.60 b_LeftLeg01_015
+        limb_1_0 < spine_0 0.60 b_RightLeg01_019
+        spine_2 < spine_1 0.60 b_Spine02_03
+        tail_1 < tail_0 0.60 b_Tail02_013
+        limb_0_1 < limb_0_0 0.60 b_LeftLeg02_016
+        limb_1_1 < limb_1_0 0.60 b_RightLeg02_020
+        spine_3 < spine_2 0.60 b_Neck_04
+        limb_2_0 < spine_2 0.60 b_RightUpperArm_06
+        limb_3_0 < spine_2 0.60 b_LeftUpperArm_09
+        tail_2 < tail_1 0.60 b_Tail03_014
+        limb_0_2 < limb_0_1 0.60 b_LeftFoot01_017
+        limb_1_2 < limb_1_1 0.60 b_RightFoot01_021
+        spine_4 < spine_3 0.60 b_Head_05
+        limb_2_1 < limb_2_0 0.60 b_RightForeArm_07
+        limb_3_1 < limb_3_0 0.60 b_LeftForeArm_010
+        limb_0_3 < limb_0_2 0.60 b_LeftFoot02_018
+        limb_1_3 < limb_1_2 0.60 b_RightFoot02_022
+        limb_2_2 < limb_2_1 0.60 b_RightHand_08
+        limb_3_2 < limb_3_1 0.60 b_LeftHand_011
+    "#]],
+    );
+}
+
+#[test]
+fn a_spider_gets_its_feet_back() {
+    check(
+        "quaternius_Spider.glb",
+        &expect![[r#"
+        creature, 1.95 m, unit 1, forward +z
+        spine_0 < - 0.60 Abdomen
+        limb_0_0 < spine_0 0.60 FrontLeg.L
+        limb_1_0 < spine_0 0.60 MidFrontLeg.L
+        limb_2_0 < spine_0 0.60 BackLeg.L
+        limb_3_0 < spine_0 0.60 MidBackLeg.L
+        limb_4_0 < spine_0 0.60 FrontLeg.R
+        limb_5_0 < spine_0 0.60 MidFrontLeg.R
+        limb_6_0 < spine_0 0.60 BackLeg.R
+        limb_7_0 < spine_0 0.60 MidBackLeg.R
+        spine_1 < spine_0 0.60 Thorax
+        limb_0_1 < limb_0_0 0.60 FrontLeg2.L
+        limb_1_1 < limb_1_0 0.60 MidFrontLeg2.L
+        limb_2_1 < limb_2_0 0.60 BackLeg2.L
+        limb_3_1 < limb_3_0 0.60 MidBackLeg2.L
+        limb_4_1 < limb_4_0 0.60 FrontLeg2.R
+        limb_5_1 < limb_5_0 0.60 MidFrontLeg2.R
+        limb_6_1 < limb_6_0 0.60 BackLeg2.R
+        limb_7_1 < limb_7_0 0.60 MidBackLeg2.R
+        spine_2 < spine_1 0.60 Head
+        limb_0_2 < limb_0_1 0.60 FrontLeg3.L
+        limb_1_2 < limb_1_1 0.60 MidFrontLeg3.L
+        limb_2_2 < limb_2_1 0.60 BackLeg3.L
+        limb_3_2 < limb_3_1 0.60 MidBackLeg3.L
+        limb_4_2 < limb_4_1 0.60 FrontLeg3.R
+        limb_5_2 < limb_5_1 0.60 MidFrontLeg3.R
+        limb_6_2 < limb_6_1 0.60 BackLeg3.R
+        limb_7_2 < limb_7_1 0.60 MidBackLeg3.R
+    "#]],
+    );
+}
+
+#[test]
+fn chains_without_limbs() {
+    check(
+        "quaternius_MandarinFish.glb",
+        &expect![[r#"
+        creature, 1.95 m, unit 1, forward +z
+        spine_0 < - 0.60 Main1
+        spine_1 < spine_0 0.60 Main2
+        spine_2 < spine_1 0.60 Main3
+        spine_3 < spine_2 0.60 Main4
+        spine_4 < spine_3 0.60 Main5
+        spine_5 < spine_4 0.60 Main6
+    "#]],
+    );
+    check(
+        "RiggedSimple.glb",
+        &expect![[r#"
+            creature, 9.15 m, unit 1, forward +z
+            spine_0 < - 0.60
+            spine_1 < spine_0 0.60
+        "#]],
+    );
+    check(
+        "SimpleSkin.gltf",
+        &expect![[r#"
+            creature, 2.00 m, unit 1, forward +z
+            spine_0 < - 0.60
+            spine_1 < spine_0 0.60
+        "#]],
+    );
+}
+
+#[test]
+fn many_skeletons_in_one_file_are_analysed_without_complaint() {
+    let Some((_, found)) = analyzed("RecursiveSkeletons.glb") else { return };
+    assert!(!found.humanoid);
+}
+
+/// The rig with its scene put into another frame: every root moved by `turn` and `scale`.
+fn placed(rig: &Rig, turn: Rotation, scale: f32) -> Rig {
+    let mut rig = rig.clone();
+    for joint in rig.joints.iter_mut().filter(|joint| joint.parent.is_none()) {
+        joint.rest = LocalTransform {
+            translation: turn * joint.rest.translation * scale,
+            rotation: (turn * joint.rest.rotation).normalize(),
+            scale: joint.rest.scale * scale,
+        };
+    }
+    rig
+}
+
+fn shuffled(rig: &Rig, seed: u64) -> Rig {
+    let mut rig = rig.clone();
+    let mut random = Random::new(seed);
+    for i in (1..rig.joints.len()).rev() {
+        let j = random.index(i + 1);
+        let name = std::mem::take(&mut rig.joints[i].name);
+        let name = std::mem::replace(&mut rig.joints[j].name, name);
+        rig.joints[i].name = name;
+    }
+    rig
+}
+
+#[test]
+fn names_size_and_axes_of_the_file_do_not_change_the_roles() {
+    let z_up = Rotation::from_axis_angle(Vec3::X, std::f32::consts::FRAC_PI_2);
+    for file in ["CesiumMan.glb", "RiggedFigure.glb", "mannequiny.glb", "mesh2motion_human_rigify.glb"] {
+        let Some((rig, plain)) = analyzed(file) else { return };
+        for seed in 0..5 {
+            let other = shuffled(&placed(&rig, z_up, 100.0), seed);
+            let found = analyze(&other).expect("a skin");
+            sound(&other, &found);
+            let kept = |found: &RigAnalysis| {
+                found.kept.iter().map(|b| (b.joint, b.role, b.parent)).collect::<Vec<_>>()
+            };
+            assert_eq!(kept(&found), kept(&plain), "{file}, seed {seed}: {:?}", found.notes);
+            assert!((found.height / plain.height - 1.0).abs() < 1e-3, "{file}: {} m", found.height);
+            assert_eq!(found.unit_scale, 0.01);
+            assert!((found.up_axis - Vec3::Z).length() < 1e-6, "{file}");
+            for (a, b) in found.kept.iter().zip(&plain.kept) {
+                let p = found.character_from_file().point(a.bind_model.translation);
+                let q = plain.character_from_file().point(b.bind_model.translation);
+                assert!((p - q).length() < 1e-3, "{file}: {} at {p} and {q}", a.role.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_character_turned_around_keeps_its_left_hand() {
+    let Some((rig, _)) = analyzed("mannequiny.glb") else { return };
+    let about = placed(&rig, Rotation::from_axis_angle(Vec3::Y, std::f32::consts::PI), 1.0);
+    let found = analyze(&about).expect("a skin");
+    assert_eq!(axis(found.character_from_model.rotation.inverse() * Vec3::Z), "-z");
+    let left = found.joint_with(Role::Hand(Side::Left)).expect("a left hand");
+    assert_eq!(about.joints[left].name, "hand.l");
+}
+
+#[test]
+fn a_body_without_names_is_recognised() {
+    let rig = toy::body(|_| String::new());
+    let found = analyze(&rig).expect("a skin");
+    sound(&rig, &found);
+    let mut expected = String::from("humanoid, 1.76 m, unit 1, forward +z\n");
+    for (name, parent, _) in toy::BODY {
+        expected += &format!("{name} < {} 0.80\n", if parent.is_empty() { "-" } else { parent });
+    }
+    // Bodies come in the order of the roles, the toy's joints too.
+    assert_eq!(table(&rig, &found), expected);
+}
+
+#[test]
+fn names_stand_in_where_the_shape_is_not_symmetric() {
+    let mut rig = toy::body(Role::name);
+    for (joint, (name, ..)) in toy::BODY.iter().enumerate() {
+        // The right arm is bound straight up, so that no mirror finds it.
+        if name.starts_with("rightLowerArm") || name.starts_with("rightHand") {
+            rig.skins[0].inverse_bind[joint].translation += Vec3::new(-0.3, -0.3, 0.0);
+        }
+    }
+    let found = analyze(&rig).expect("a skin");
+    sound(&rig, &found);
+    assert!(found.humanoid, "{:?}", found.notes);
+    for (joint, (name, ..)) in toy::BODY.iter().enumerate() {
+        assert_eq!(found.roles[joint].map(|guess| guess.role.name()).as_deref(), Some(*name));
+        assert!(found.roles[joint].is_some_and(|guess| guess.confidence < 0.7));
+    }
+}
+
+#[test]
+fn feet_that_contradict_the_names_win_and_say_so() {
+    let rig = toy::body(|role| role.mirror().name());
+    let found = analyze(&rig).expect("a skin");
+    let hand = found.joint_with(Role::Hand(Side::Left)).expect("a left hand");
+    assert_eq!(rig.joints[hand].name, "rightHand");
+    assert!(found.roles[hand].is_some_and(|guess| guess.confidence <= 0.5));
+    assert!(found.notes.iter().any(|note| note.contains("the feet count")), "{:?}", found.notes);
+}
+
+#[test]
+fn roles_that_the_file_states_are_taken_at_their_word() {
+    let mut rig = toy::body(|_| "x".into());
+    rig.stated_roles =
+        toy::BODY.iter().enumerate().map(|(joint, (name, ..))| ((*name).into(), joint)).collect();
+    let found = analyze(&rig).expect("a skin");
+    assert!(found.kept.iter().all(|bone| bone.confidence == 1.0));
+    assert_eq!(found.kept.len(), toy::BODY.len());
+}
+
+#[test]
+fn a_rig_without_skin_is_refused() {
+    assert_eq!(analyze(&Rig::default()), Err(NoSkin));
+    let Some((rig, _)) = rigs::load("negative/kenney_character_unskinned.glb") else { return };
+    assert_eq!(analyze(&rig), Err(NoSkin));
+    assert_eq!(NoSkin.to_string(), "no skin: nothing to build a ragdoll from");
+}
+
+#[test]
+fn the_bind_pose_is_that_of_the_skin_not_of_the_rest_pose() {
+    let Some((rig, plain)) = analyzed("mannequiny.glb") else { return };
+    // Bend the arms of the rest pose: the skin still says where they were.
+    let mut bent = rig.clone();
+    for joint in bent.joints.iter_mut().filter(|joint| joint.name.starts_with("upperarm")) {
+        joint.rest.rotation = (joint.rest.rotation * Rotation::from_axis_angle(Vec3::X, 1.0)).normalize();
+    }
+    let found = analyze(&bent).expect("a skin");
+    let moved = |(a, b): (&Affine, &Affine)| (a.translation - b.translation).length();
+    let worst = found.bind_model.iter().zip(&plain.bind_model).map(moved).fold(0.0, sinew_math::max);
+    assert!(worst < 1e-4, "{worst}");
+    assert_eq!(found.kept, plain.kept);
+}
+
+#[test]
+fn role_names_round_trip() {
+    let generic = [Role::SpineSegment(3), Role::TailSegment(0), Role::LimbSegment { limb: 2, segment: 11 }];
+    for role in sinew_anim::roles::HUMANOID_ROLES.into_iter().chain(generic) {
+        assert_eq!(Role::from_name(&role.name()), Some(role));
+        assert_eq!(role.mirror().mirror(), role);
+        assert_eq!(role.is_left(), role.mirror().is_right());
+    }
+    for wrong in ["", "leftfoot", "spine_", "spine_x", "limb_1", "limb_1_2_3", "tail_-1", "spine_99999"] {
+        assert_eq!(Role::from_name(wrong), None, "{wrong}");
     }
 }

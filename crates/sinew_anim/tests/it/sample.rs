@@ -1,4 +1,4 @@
-use crate::toy;
+use crate::{rigs, toy};
 use sinew_anim::{
     Channel, Clip, Interpolation, LocalTransform, Property, Rig, SampleCache, Wrap, sample, sample_cached,
 };
@@ -117,5 +117,61 @@ fn a_cache_never_changes_the_pose() {
         sample_cached(clip, &rig, time, Wrap::Loop, &mut cache, &mut cached);
         sample(clip, &rig, time, Wrap::Loop, &mut plain);
         assert_eq!(cached, plain, "step {i}");
+    }
+}
+
+#[test]
+fn the_interpolation_sample_moves_as_its_titles_say() {
+    let Some((rig, clips)) = rigs::load("negative/InterpolationTest/InterpolationTest.gltf") else { return };
+    assert_eq!(clips.len(), 9);
+    let mut out: Vec<LocalTransform> = rig.joints.iter().map(|joint| joint.rest).collect();
+    for clip in &clips {
+        let channel = &clip.channels[0];
+        let (width, cubic) = (channel.property.width(), channel.interpolation == Interpolation::CubicSpline);
+        for (key, &time) in channel.times.iter().enumerate() {
+            sample(clip, &rig, time, Wrap::Clamp, &mut out);
+            // At a key every interpolation gives the key; a cubic one holds it between its two tangents.
+            let start = if cubic { (3 * key + 1) * width } else { key * width };
+            let expected = &channel.values[start..start + width];
+            let local = out[channel.joint];
+            let error = match channel.property {
+                Property::Translation => (local.translation - Vec3::from_slice(expected)).length(),
+                Property::Scale => (local.scale - Vec3::from_slice(expected)).length(),
+                Property::Rotation => {
+                    let q = Rotation::from_xyzw(expected[0], expected[1], expected[2], expected[3]);
+                    local.rotation.angle_to(q.normalize())
+                }
+            };
+            assert!(error < 1e-3, "{} at key {key}: off by {error}", clip.name);
+        }
+        // Halfway between the first two keys a step still holds, the others have left.
+        let (a, b) = (channel.times[0], channel.times[1]);
+        sample(clip, &rig, a, Wrap::Clamp, &mut out);
+        let at_key = out[channel.joint];
+        sample(clip, &rig, 0.5 * (a + b), Wrap::Clamp, &mut out);
+        assert_eq!(
+            out[channel.joint] == at_key,
+            channel.interpolation == Interpolation::Step,
+            "{}",
+            clip.name
+        );
+    }
+}
+
+#[test]
+fn every_clip_of_every_rig_gives_finite_unit_poses() {
+    for file in ["CesiumMan.glb", "mannequiny.glb", "Fox.glb", "quaternius_Spider.glb", "kaykit_Knight.glb"] {
+        let Some((rig, clips)) = rigs::load(&format!("rigs/{file}")) else { return };
+        let mut out = vec![LocalTransform::default(); rig.joints.len()];
+        for clip in &clips {
+            for i in -2..=12 {
+                sample(clip, &rig, clip.duration * i as f32 / 10.0, Wrap::Loop, &mut out);
+                for (joint, local) in out.iter().enumerate() {
+                    let finite = local.translation.is_finite() && local.scale.is_finite();
+                    let unit = (local.rotation.dot(local.rotation) - 1.0).abs() < 1e-4;
+                    assert!(finite && unit, "{file}, {}, joint {joint}: {local:?}", clip.name);
+                }
+            }
+        }
     }
 }
