@@ -70,7 +70,27 @@ pub fn filter_pairs(bones: &Bones, fits: &mut [Fit]) -> FilterReport {
             }
         }
     }
+    mirror_remedies(bones, fits, &mut report);
     report
+}
+
+/// What was done on one side is done on the other, so that a slight asymmetry of the mesh makes no limping ragdoll.
+fn mirror_remedies(bones: &Bones, fits: &mut [Fit], report: &mut FilterReport) {
+    for body in 0..fits.len() {
+        let Some(twin) = bones.twin(body) else { continue };
+        let factor = report.scale[twin] / report.scale[body];
+        if factor < 1.0 {
+            report.scale[body] = report.scale[twin];
+            fits[body].shape = thinner(fits[body].shape, factor);
+        }
+    }
+    for index in 0..report.disabled.len() {
+        let (a, b) = report.disabled[index];
+        let (a, b) = (bones.twin(a).unwrap_or(a), bones.twin(b).unwrap_or(b));
+        report.disabled.push((core::cmp::min(a, b), core::cmp::max(a, b)));
+    }
+    report.disabled.sort_unstable();
+    report.disabled.dedup();
 }
 
 fn remedy(bones: &Bones, fits: &mut [Fit], scale: &mut [f32], (a, b): (usize, usize), depth: f32) -> Remedy {

@@ -109,11 +109,18 @@ impl Bones {
         self.list.iter().position(|bone| bone.part == part && bone.side == side)
     }
 
+    /// The same bone of the other side; `None` for bones without a side.
+    pub fn twin(&self, bone: usize) -> Option<usize> {
+        let role = self.list[bone].role;
+        role.side()?;
+        self.list.iter().position(|other| other.role == role.mirror())
+    }
+
     /// Whether a bone lies in the body's plane of symmetry, so that its left and right halves are one shape.
     pub fn is_central(&self, bone: usize) -> bool {
         let bone = &self.list[bone];
         let aside = (bone.head.x - self.plane_of_symmetry()).abs();
-        self.anatomy == Anatomy::Human && bone.side == Side::Middle && aside < 0.02 * self.height
+        bone.side == Side::Middle && bone.part != Part::Limb && aside < 0.02 * self.height
     }
 
     /// The x of the plane that separates left from right: the pelvis's, character space, metres.

@@ -148,6 +148,9 @@ fn report(rig: &Rig, bones: &Bones, fits: &[Fit], filter: &FilterReport, plans: 
         if body.selection == Selection::Nothing {
             notes.push(format!("{} moves no skin: a thin capsule along the bone stands in", name(index)));
         }
+        if body.selection == Selection::Twin {
+            notes.push(format!("{} carries something: its shape is its twin's", name(index)));
+        }
         if body.widened > NOTEWORTHY {
             let degrees = body.widened.to_degrees();
             notes

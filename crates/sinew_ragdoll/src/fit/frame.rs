@@ -1,6 +1,6 @@
 //! Axes of a shape, from the skin it stands for.
 
-use crate::build::bones::Bones;
+use crate::build::bones::{Anatomy, Bones};
 use crate::build::part::Part;
 use crate::fit::patch::{Patch, bounds};
 use crate::fit::rectangle::{least_rectangle, rectangle_area};
@@ -10,6 +10,8 @@ use sinew_math::{Mat3, Vec2, Vec3, any_orthonormal, normalize_or};
 const NEAR: f32 = 0.819;
 /// The surface has a long axis if its variance there is so many times the next.
 const ELONGATED: f32 = 1.5;
+/// A trunk's box is tilted only when that makes it smaller than this share of the upright one.
+const WORTH_TILTING: f32 = 0.75;
 /// Another frame is taken when its box is smaller than this share of the preferred one's.
 const CLEARLY_SMALLER: f32 = 0.9;
 
@@ -35,7 +37,12 @@ pub fn long_axis(bones: &Bones, bone: usize, patch: &Patch) -> Vec3 {
 pub fn box_frame(bones: &Bones, bone: usize, patch: &Patch) -> Mat3 {
     if bones.is_central(bone) {
         // The skin is mirrored in x, so x is one of the axes and only the turn about it is open.
-        return around(patch, Vec3::X, Some(Vec3::Y));
+        // People's trunks stand upright, creatures' follow their spine.
+        let upright = match bones.anatomy {
+            Anatomy::Human => Vec3::Y,
+            Anatomy::Creature => long_axis(bones, bone, patch),
+        };
+        return around(patch, Vec3::X, Some(upright));
     }
     if bones.list[bone].part == Part::Foot {
         if let Some(frame) = sole_frame(patch) {
@@ -63,14 +70,14 @@ fn sole_frame(patch: &Patch) -> Option<Mat3> {
 }
 
 /// `axis` and the sides of the least rectangle around the patch seen along it; `preferred` (at right angles to the
-/// axis) instead of the rectangle's side unless that saves a tenth of the area.
+/// axis) instead of the rectangle's side unless that saves a quarter of the area.
 fn around(patch: &Patch, axis: Vec3, preferred: Option<Vec3>) -> Mat3 {
     let u = preferred.unwrap_or_else(|| any_orthonormal(axis));
     let v = axis.cross(u);
     let mut points: Vec<_> =
         patch.samples.iter().map(|s| Vec2::new(s.point.dot(u), s.point.dot(v))).collect();
     let side = least_rectangle(&mut points);
-    let saves = rectangle_area(&points, side) < CLEARLY_SMALLER * rectangle_area(&points, Vec2::X);
+    let saves = rectangle_area(&points, side) < WORTH_TILTING * rectangle_area(&points, Vec2::X);
     let side = if preferred.is_none() || saves { side } else { Vec2::X };
     let first = u * side.x + v * side.y;
     Mat3::from_cols(axis, first, axis.cross(first))

@@ -12,7 +12,7 @@ use crate::build::bones::Bones;
 use crate::build::part::Part;
 use frame::{box_frame, long_axis, with_y};
 use patch::{Patch, Selection, Symmetry, quantiles_of};
-use sinew_math::{Rotation, Transform, Vec3, clamp, max, max3, min};
+use sinew_math::{Mat3, Rotation, Transform, Vec3, clamp, max, max3, min};
 use sinew_physics::Shape;
 use surface::Share;
 
@@ -23,6 +23,8 @@ const SHRINK: f32 = 0.97;
 /// Share of a bone's length by which its shape may pass each of its joints: two neighbours then overlap by at most a
 /// quarter of it.
 const PAST_JOINT: f32 = 0.125;
+/// A shape so many times as long as its twin on the other side has something in it that is not the body's.
+const BURDENED: f32 = 1.6;
 /// Another kind of shape than the part's own is taken when its error is below this share of it.
 const CLEARLY_BETTER: f32 = 0.6;
 
@@ -55,7 +57,30 @@ pub struct Fit {
 
 /// One shape per bone. `surface` as from [`surface::share_surface`].
 pub fn fit_shapes(bones: &Bones, surface: &[Vec<Share>], choice: ShapeChoice) -> Vec<Fit> {
-    (0..bones.list.len()).map(|bone| fit_bone(bones, bone, &surface[bone], choice)).collect()
+    let fits: Vec<_> =
+        (0..bones.list.len()).map(|bone| fit_bone(bones, bone, &surface[bone], choice)).collect();
+    (0..fits.len()).map(|bone| without_burden(bones, &fits, bone)).collect()
+}
+
+/// The shape of a bone, or the mirror image of its twin's where that is much smaller: a sword that is skinned to a hand
+/// is no part of it.
+fn without_burden(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
+    let own = fits[bone];
+    let Some(twin) = bones.twin(bone) else { return own };
+    let plane = bones.plane_of_symmetry();
+    let image = |p: Vec3| Vec3::new(2.0 * plane - p.x, p.y, p.z);
+    let mirrored_pivots = (image(bones.list[twin].head) - bones.list[bone].head).length();
+    let larger = own.shape.bounding_radius() > BURDENED * fits[twin].shape.bounding_radius();
+    if !larger || fits[twin].selection == Selection::Nothing || mirrored_pivots > 0.05 * bones.height {
+        return own;
+    }
+    let frame = fits[twin].character_from_body;
+    let axes = frame.rotation.to_mat3();
+    let turned = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
+    // A mirror image of three axes is left-handed; shapes are even in x, so x may be turned round.
+    let axes = Mat3::from_cols(-turned(axes.x_axis), turned(axes.y_axis), turned(axes.z_axis));
+    let character_from_body = Transform::new(image(frame.translation), Rotation::from_mat3(&axes));
+    Fit { character_from_body, selection: Selection::Twin, ..fits[twin] }
 }
 
 fn fit_bone(bones: &Bones, bone: usize, shares: &[Share], choice: ShapeChoice) -> Fit {
@@ -132,15 +157,19 @@ fn capsule_along(bones: &Bones, bone: usize, patch: &Patch, axis: Vec3) -> Fit {
     }
     let frame = Transform::new(middle, Rotation::from_arc(Vec3::Y, axis));
     // The 80 % quantile of the radial distance suits a cylinder; on a tapered limb it is fat and a lower one is nearer.
-    let [thick, mean, thin] = quantiles_of(&mut radial, [0.8, 0.65, 0.5]).map(|radius| {
+    let [thick, thin] = quantiles_of(&mut radial, [0.8, 0.65]).map(|radius| {
         let radius = max(min(radius * SHRINK, half), LEAST_HALF);
         measured(Shape::Capsule { half_height: max(half - radius, 0.0), radius }, frame, patch)
     });
-    nearer(nearer(thick, mean), thin)
+    if thin.error < 0.95 * thick.error { thin } else { thick }
 }
 
 fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
-    let direction = bones.direction(bone, Some(patch.center));
+    let mut direction = bones.direction(bone, Some(patch.center));
+    if bones.list[bone].part == Part::Foot {
+        // A foot is long from heel to toes, although its bone slopes down to them.
+        direction.y = 0.0;
+    }
     let axes = with_y(box_frame(bones, bone, patch), direction);
     let extent = |axis: Vec3| patch.quantiles([0.01, 0.99], |p| (p - patch.center).dot(axis));
     let ([x_lo, x_hi], [z_lo, z_hi]) = (extent(axes.x_axis), extent(axes.z_axis));
@@ -154,20 +183,23 @@ fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     measured(Shape::Box { half_extents }, frame, patch)
 }
 
-/// The extent `lo..hi` of a shape along `axis` from `origin`, cut where it passes the bone's own joint and that of its
-/// continuation by more than [`PAST_JOINT`] of its length. Shapes across the bone (feet) are left alone.
+/// The extent `lo..hi` of a shape along `axis` from `origin`: cut where it passes the bone's own joint and that of its
+/// continuation by more than [`PAST_JOINT`] of its length, and for the
+/// trunk stretched to reach them. Shapes across the bone (feet) are left alone.
 fn clip_at_joints(bones: &Bones, bone: usize, origin: Vec3, axis: Vec3, lo: f32, hi: f32) -> (f32, f32) {
     let direction = bones.direction(bone, Some(origin));
     if axis.dot(direction) < 0.7 || bones.list[bone].part == Part::Foot {
         return (lo, hi);
     }
+    let own = bones.list[bone].parent.map(|_| (bones.list[bone].head - origin).dot(axis));
+    let next = bones.continuation(bone).map(|next| (bones.list[next].head - origin).dot(axis));
     let past = PAST_JOINT * bones.length(bone).unwrap_or(hi - lo);
-    let (mut new_lo, mut new_hi) = (lo, hi);
-    if bones.list[bone].parent.is_some() {
-        new_lo = max(lo, (bones.list[bone].head - origin).dot(axis) - past);
-    }
-    if let Some(next) = bones.continuation(bone) {
-        new_hi = min(hi, (bones.list[next].head - origin).dot(axis) + past);
+    let (mut new_lo, mut new_hi) =
+        (own.map_or(lo, |own| max(lo, own - past)), next.map_or(hi, |next| min(hi, next + past)));
+    if bones.is_central(bone) && bones.list[bone].part.is_trunk() {
+        // Where weights fade from one bone to the next the skin is neither's: close the gap up to the joint.
+        new_lo = own.map_or(new_lo, |own| min(new_lo, own));
+        new_hi = next.map_or(new_hi, |next| max(new_hi, next));
     }
     // A rig whose pivots lie outside its skin leaves nothing: then the skin is right.
     if new_hi - new_lo > 0.2 * (hi - lo) { (new_lo, new_hi) } else { (lo, hi) }

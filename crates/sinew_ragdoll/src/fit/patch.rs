@@ -1,6 +1,6 @@
 //! The piece of skin that one shape is fitted to: even samples and second moments.
 
-use crate::fit::surface::Share;
+use crate::fit::surface::{Share, for_each_part};
 use sinew_math::{Sym3, Vec3, clamp, max, min};
 
 /// About so many samples describe a patch.
@@ -17,6 +17,8 @@ pub enum Selection {
     Most,
     /// None: the bone moves no skin worth the name.
     Nothing,
+    /// Those of the same bone on the other side, which is free of what this one carries.
+    Twin,
 }
 
 /// A sample of the surface.
@@ -65,7 +67,7 @@ impl Patch {
                 .filter(|share| match selection {
                     Selection::Weight(least) => share.weight >= least,
                     Selection::Most => share.most,
-                    Selection::Nothing => false,
+                    Selection::Nothing | Selection::Twin => false,
                 })
                 .map(|share| share.corners)
                 .collect();
@@ -166,17 +168,11 @@ fn sample(triangles: &[[Vec3; 3]], area: f32) -> Vec<Sample> {
         let a = triangle_area(corners);
         let cuts = clamp((a * SAMPLES / area).sqrt() + 0.999, 1.0, 16.0) as usize;
         let [p, q, r] = *corners;
-        let (u, v) = ((q - p) / cuts as f32, (r - p) / cuts as f32);
         let part = a / (cuts * cuts) as f32;
-        for i in 0..cuts {
-            for j in 0..cuts - i {
-                let corner = p + u * i as f32 + v * j as f32;
-                samples.push(Sample { point: corner + (u + v) / 3.0, area: part });
-                if i + j + 1 < cuts {
-                    samples.push(Sample { point: corner + (u + v) * (2.0 / 3.0), area: part });
-                }
-            }
-        }
+        for_each_part(cuts, |at| {
+            let middle = at.map(|[u, v]| (q - p) * u + (r - p) * v);
+            samples.push(Sample { point: p + (middle[0] + middle[1] + middle[2]) / 3.0, area: part });
+        });
     }
     samples
 }

@@ -3,10 +3,14 @@
 use crate::build::bones::Bones;
 use sinew_anim::skinning::skin_vertices;
 use sinew_anim::{JointIdx, Primitive, Rig};
-use sinew_math::{Affine, Transform, Vec3, max, min};
+use sinew_math::{Affine, Transform, Vec3, clamp, max, min};
 
 /// A bone's pull on a triangle below which it is not looked at.
 const LEAST_SHARE: f32 = 0.05;
+/// A triangle that several bones move is cut into parts of this share of the character's height.
+const FINEST: f32 = 0.03;
+/// No side of a triangle is cut into more parts.
+const MOST_CUTS: f32 = 8.0;
 
 /// A triangle of the skin as one bone sees it.
 #[derive(Clone, Copy, Debug)]
@@ -77,7 +81,7 @@ pub fn share_surface(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<Vec<Sh
             match mesh.skin.filter(|_| !primitive.joints.is_empty()) {
                 Some(skin) => {
                     let slots: Vec<_> = rig.skins[skin].joints.iter().map(|&joint| owner[joint]).collect();
-                    share_skinned(primitive, &positions, &slots, &mut skinned);
+                    share_skinned(primitive, &positions, &slots, FINEST * bones.height, &mut skinned);
                 }
                 None => {
                     if let Some(bone) = owner[mesh.joint] {
@@ -108,28 +112,70 @@ fn triangles<'a>(
     })
 }
 
+/// Weights of one bone on the corners of a triangle.
+type Pull = (usize, [f32; 3]);
+
+/// Triangles that several bones move are cut until no side is longer than `finest` (metres), so that on a coarse mesh
+/// too each bone gets its own part of them: weights are linear over a triangle.
 fn share_skinned(
     primitive: &Primitive,
     positions: &[Vec3],
     slots: &[Option<usize>],
+    finest: f32,
     by_bone: &mut [Vec<Share>],
 ) {
     // At most three corners with four weights each.
-    let mut pulls: Vec<(usize, f32)> = Vec::with_capacity(12);
+    let mut pulls: Vec<Pull> = Vec::with_capacity(12);
     for (index, corners) in triangles(primitive, positions) {
         pulls.clear();
-        for vertex in index {
+        for (corner, vertex) in index.into_iter().enumerate() {
             for (slot, weight) in primitive.joints[vertex].iter().zip(primitive.weights[vertex]) {
                 let Some(&Some(bone)) = slots.get(usize::from(*slot)) else { continue };
-                match pulls.iter_mut().find(|(b, _)| *b == bone) {
-                    Some((_, sum)) => *sum += weight / 3.0,
-                    None => pulls.push((bone, weight / 3.0)),
+                if !pulls.iter().any(|(b, _)| *b == bone) {
+                    pulls.push((bone, [0.0; 3]));
+                }
+                if let Some((_, weights)) = pulls.iter_mut().find(|(b, _)| *b == bone) {
+                    weights[corner] += weight;
                 }
             }
         }
-        let most = pulls.iter().fold(0.0, |a, &(_, weight)| max(a, weight));
-        for &(bone, weight) in pulls.iter().filter(|(_, weight)| *weight > LEAST_SHARE) {
-            by_bone[bone].push(Share { corners, weight: min(weight, 1.0), most: weight >= most });
+        pulls.retain(|(_, weights)| weights.iter().any(|&w| w > LEAST_SHARE));
+        let cuts = if pulls.len() > 1 { cuts_of(&corners, finest) } else { 1 };
+        for_each_part(cuts, |at| share_part(&corners, at, &pulls, by_bone));
+    }
+}
+
+/// Into how many parts a triangle's sides are cut.
+fn cuts_of(corners: &[Vec3; 3], finest: f32) -> usize {
+    let [p, q, r] = *corners;
+    let longest = max((q - p).length(), max((r - q).length(), (p - r).length()));
+    clamp(longest / finest + 0.999, 1.0, MOST_CUTS) as usize
+}
+
+/// Calls `f` with the corners of the `cuts`² equal parts of a triangle, in coordinates along its first two sides.
+pub fn for_each_part(cuts: usize, mut f: impl FnMut([[f32; 2]; 3])) {
+    let step = 1.0 / cuts as f32;
+    for i in 0..cuts {
+        for j in 0..cuts - i {
+            let (u, v) = (i as f32 * step, j as f32 * step);
+            f([[u, v], [u + step, v], [u, v + step]]);
+            if i + j + 1 < cuts {
+                f([[u + step, v + step], [u, v + step], [u + step, v]]);
+            }
+        }
+    }
+}
+
+fn share_part(corners: &[Vec3; 3], at: [[f32; 2]; 3], pulls: &[Pull], by_bone: &mut [Vec<Share>]) {
+    let [p, q, r] = *corners;
+    let part = at.map(|[u, v]| p + (q - p) * u + (r - p) * v);
+    let (u, v) = ((at[0][0] + at[1][0] + at[2][0]) / 3.0, (at[0][1] + at[1][1] + at[2][1]) / 3.0);
+    let weight_of = |w: &[f32; 3]| w[0] * (1.0 - u - v) + w[1] * u + w[2] * v;
+    let most = pulls.iter().fold(0.0, |a, (_, w)| max(a, weight_of(w)));
+    for (bone, weights) in pulls {
+        let weight = weight_of(weights);
+        if weight > LEAST_SHARE {
+            by_bone[*bone].push(Share { corners: part, weight: min(weight, 1.0), most: weight >= most });
         }
     }
 }
