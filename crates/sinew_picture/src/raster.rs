@@ -197,8 +197,8 @@ impl EdgeWalk {
     #[inline(always)]
     fn next_row(&mut self, first: &mut i64, last: &mut i64) {
         match self.side {
-            Side::Left => *first = (*first).max(-self.quotient),
-            Side::Right => *last = (*last).min(self.quotient),
+            Side::Left => *first = i64::max(*first, -self.quotient),
+            Side::Right => *last = i64::min(*last, self.quotient),
             Side::Level if self.quotient < 0 => *last = -1,
             Side::Level => {}
         }

@@ -113,7 +113,7 @@ impl Level {
 /// The two texels around coordinate `u` in a row of `count`, and how far it is from the first to the second.
 fn texel_pair(u: f32, count: usize) -> (usize, usize, f32) {
     let wrapped = u - u.floor();
-    let position = if wrapped >= 0.0 && wrapped < 1.0 { wrapped } else { 0.0 } * count as f32 - 0.5;
+    let position = if (0.0..1.0).contains(&wrapped) { wrapped } else { 0.0 } * count as f32 - 0.5;
     let base = position.floor();
     let first = (base as i64).rem_euclid(count as i64) as usize;
     (first, (first + 1) % count, position - base)

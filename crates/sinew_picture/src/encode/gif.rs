@@ -78,7 +78,7 @@ impl GifWriter {
     }
 
     pub(super) fn finish(self) -> Result<Vec<u8>, EncodeError> {
-        self.encoder.into_inner().map_err(|error| EncodeError::Gif(error.into()))
+        self.encoder.into_inner().map_err(EncodeError::Gif)
     }
 
     /// Marks the pixels that must be drawn and returns the rectangle around them. A frame needs at least one pixel.

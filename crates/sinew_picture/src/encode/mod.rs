@@ -72,6 +72,9 @@ pub enum EncodeError {
         /// Pixels a side.
         most: u32,
     },
+    /// A WebP movie of more than 4 GiB.
+    #[error("the movie is longer than a WebP file can be")]
+    TooLong,
     /// From the GIF encoder.
     #[error("GIF: {0}")]
     Gif(#[from] ::gif::EncodingError),
@@ -128,12 +131,12 @@ impl Movie {
     /// The bytes of the file.
     ///
     /// # Errors
-    /// No image was pushed.
+    /// No image was pushed, or more than the format can hold.
     pub fn finish(self) -> Result<Vec<u8>, EncodeError> {
         match self.writer.ok_or(EncodeError::Empty)? {
             FrameWriter::Gif(writer) => writer.finish(),
             FrameWriter::Png(writer) => writer.finish(),
-            FrameWriter::WebP(writer) => Ok(writer.finish()),
+            FrameWriter::WebP(writer) => writer.finish(),
         }
     }
 }

@@ -42,9 +42,9 @@ impl WebpWriter {
         Ok(())
     }
 
-    pub(super) fn finish(mut self) -> Vec<u8> {
+    pub(super) fn finish(mut self) -> Result<Vec<u8>, EncodeError> {
         if self.frames.len() == 1 {
-            return self.frames.remove(0).webp;
+            return Ok(self.frames.remove(0).webp);
         }
         let mut body = Vec::new();
         let mut extended = vec![ANIMATION, 0, 0, 0];
@@ -57,10 +57,11 @@ impl WebpWriter {
             chunk(&mut body, *b"ANMF", &self.frame(number as u64, frame));
         }
         let mut file = b"RIFF".to_vec();
-        file.extend((body.len() as u32 + 4).to_le_bytes());
+        let length = u32::try_from(body.len() + 4).map_err(|_| EncodeError::TooLong)?;
+        file.extend(length.to_le_bytes());
         file.extend(b"WEBP");
         file.extend(body);
-        file
+        Ok(file)
     }
 
     fn frame(&self, number: u64, frame: &CompressedFrame) -> Vec<u8> {

@@ -266,7 +266,7 @@ fn captions_are_written_where_they_are_asked_for() {
     scene.captions = vec![
         Caption { x: 4, y: 4, scale: 1, ..Caption::new("I") },
         Caption { x: -4, y: -4, scale: 2, ..Caption::new("_") },
-        Caption { x: 90, y: 60, ..Caption::new("beyond the edge") },
+        Caption { x: 90, y: 20, ..Caption::new("beyond the edge") },
     ];
     let image = draw(&scene, Antialiasing::Off);
     let stem = (0..7).all(|row| image.pixel(6, 4 + row) == [255; 4]);
