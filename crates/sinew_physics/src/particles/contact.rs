@@ -1,18 +1,23 @@
-//! Particles against shapes: signed distance at the end of the substep, a ray along the way there.
+//! Contacts that a particle is in, or reaches slowly, as part of the spring solve.
 //!
-//! The impulse that a shape gave a particle in the last substep enters the next one's spring solve as an expected
-//! force, and the contact only corrects it: otherwise a rope bent over an edge would hang with the wrong tension,
-//! since its solve would let the particle on the edge fall freely. After an impact the expected impulse would be far
-//! too large, so the smaller one of the last two substeps is expected.
+//! Without them the solve would let a particle on an edge fall freely, and a rope bent over the edge would hang with
+//! the wrong tension. Each particle that touches a surface sticks to it or slides on it: its velocity, or one
+//! component of it, is given in the linear system, which stays exact and cannot diverge. Impulses read off the
+//! solution tell who must let go, slip or stick; grips are kept from substep to substep, so that at rest one solve is
+//! enough. On bodies that can move, the body's inertia at the point is added instead.
 
 use super::ParticleGroup;
+use super::forest::Freedom;
 use crate::contact::combine;
-use crate::ray::Ray;
 use crate::shape::{Material, Shape};
-use sinew_math::{Sym3, Transform, Vec3, max, normalize_or};
+use sinew_math::{Mat3, Sym3, Transform, Vec3, max, min, normalize_or};
 
-/// Slower impacts do not bounce, m/s.
-const BOUNCE_SPEED: f32 = 1.0;
+/// Faster approaches are impacts, which may bounce, m/s.
+pub(super) const IMPACT_SPEED: f32 = 1.0;
+/// Slower than that, nothing moves, m/s.
+const NO_SPEED: f32 = 1e-6;
+/// Solves per substep until grips have to be right.
+const GRIP_ROUNDS: u32 = 4;
 
 /// The motion of a body that particles may touch. Its velocity changes as they do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,17 +35,24 @@ pub struct ObstacleBody {
 }
 
 impl ObstacleBody {
-    fn velocity_at(&self, point: Vec3) -> Vec3 {
+    pub(super) fn velocity_at(&self, point: Vec3) -> Vec3 {
         self.linear_velocity + self.angular_velocity.cross(point - self.center)
     }
 
     /// Velocity gained at `point` along `direction` per impulse there, 1/kg.
-    fn yielding(&self, point: Vec3, direction: Vec3) -> f32 {
+    pub(super) fn yielding(&self, point: Vec3, direction: Vec3) -> f32 {
         let lever = (point - self.center).cross(direction);
         self.inverse_mass + lever.dot(self.inverse_inertia * lever)
     }
 
-    fn push(&mut self, point: Vec3, impulse: Vec3) {
+    /// Inertia that resists a push at `point`, kg: the inverse of `I/m − [r]× J⁻¹ [r]×`.
+    fn inertia_at(&self, point: Vec3) -> Sym3 {
+        let r = point - self.center;
+        let gained = |e: Vec3| e * self.inverse_mass + (self.inverse_inertia * r.cross(e)).cross(r);
+        Sym3::from_mat3(&Mat3::from_cols(gained(Vec3::X), gained(Vec3::Y), gained(Vec3::Z))).inverse()
+    }
+
+    pub(super) fn push(&mut self, point: Vec3, impulse: Vec3) {
         self.linear_velocity += impulse * self.inverse_mass;
         self.angular_velocity += self.inverse_inertia * (point - self.center).cross(impulse);
     }
@@ -70,172 +82,214 @@ pub struct BodyImpulse {
     pub point: Vec3,
 }
 
-/// A particle and a shape within reach of each other.
-#[derive(Clone, Copy)]
-struct Touch {
-    obstacle: usize,
+/// A particle and a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    pub obstacle: usize,
+    pub body: usize,
     /// Unit, out of the shape.
-    normal: Vec3,
-    /// Gap at the end of the substep, metres.
-    gap: f32,
+    pub normal: Vec3,
+    /// Gap, metres; negative inside.
+    pub gap: f32,
+    /// Where, on the surface.
+    pub point: Vec3,
+    /// Of the pair of surfaces.
+    pub material: Material,
+    /// Slowest allowed velocity along the normal, m/s: negative while there is a gap to be closed.
+    pub speed_min: f32,
+}
+
+impl Touch {
+    /// The impulse on the particle that keeps it from approaching faster than `speed_min`, rubbed by Coulomb's law,
+    /// if an impulse changes its velocity by `response` alone; the body is pushed the other way.
+    pub fn impulse(&self, response: f32, velocity: Vec3, body: &mut ObstacleBody) -> Vec3 {
+        let n = self.normal;
+        let approach = (velocity - body.velocity_at(self.point)).dot(n) - self.speed_min;
+        let normal = max(-approach / (response + body.yielding(self.point, n)), 0.0);
+        body.push(self.point, n * -normal);
+
+        let relative = velocity + n * (normal * response) - body.velocity_at(self.point);
+        let slip = relative - n * relative.dot(n);
+        let along = normalize_or(slip, Vec3::ZERO);
+        let stick = slip.length() / (response + body.yielding(self.point, along));
+        let friction = along * -min(stick, self.material.friction * normal);
+        body.push(self.point, -friction);
+        n * normal + friction
+    }
+}
+
+/// How a surface holds a particle that touches it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Grip {
+    /// Not at all.
+    #[default]
+    Off,
+    /// Along the normal; friction is a force.
+    Slide,
+    /// In all directions.
+    Stick,
 }
 
 impl ParticleGroup {
-    /// Keeps particles out of shapes, after [`integrate`](Self::integrate) with the same `h`: places them on the
-    /// surface, stops them (they bounce above 1 m/s), rubs them by Coulomb's law. Bodies are pushed back: their
-    /// velocities change at once, and [`body_impulses`](Self::body_impulses) lists how. Particles that cross a shape
-    /// within the substep are stopped on the side they came from.
-    ///
-    /// Attached particles are left alone. A particle touches at most two shapes in one substep. Every particle is
-    /// tried against every obstacle: pass those that come near [`bounds`](Self::bounds).
-    pub fn collide(&mut self, h: f32, obstacles: &[Obstacle], bodies: &mut [ObstacleBody]) {
-        self.body_impulses.clear();
-        self.contact_impulses.swap(0, 1);
+    /// The nearest surface within reach of each particle that approaches it slowly.
+    pub(super) fn find_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         for i in 0..self.positions.len() {
-            let expected = self.expected_from(1, i);
-            self.contact_impulses[0][i] = Vec3::ZERO;
-            if self.attachment_of[i] != u32::MAX {
-                continue;
+            self.touches[i] = None;
+            if self.attachment_of[i] == u32::MAX {
+                self.touches[i] = self.slow_contact(i, h, obstacles, bodies);
             }
-            let reach = expected.length() * h / self.masses[i];
-            let crossed = self.first_crossed(i, h, obstacles, bodies);
-            let Some(touch) = crossed.or_else(|| self.deepest(i, reach, None, obstacles)) else {
-                self.take_back(i, h, expected);
-                continue;
-            };
-            self.respond(i, h, &touch, expected, obstacles, bodies);
-            if let Some(second) = self.deepest(i, 0.0, Some(touch.obstacle), obstacles) {
-                self.respond(i, h, &second, Vec3::ZERO, obstacles, bodies);
+            if self.touches[i].is_none() {
+                self.grips[i] = Grip::Off;
             }
         }
     }
 
-    /// The contact impulse that the solve of this substep counts on.
-    pub(super) fn expected_contact_impulse(&self, i: usize) -> Vec3 {
-        if self.attachment_of[i] == u32::MAX { self.expected_from(0, i) } else { Vec3::ZERO }
+    /// Solves for the velocities; repeats while contacts open, close, stick or slip.
+    pub(super) fn solve_with_contacts(&mut self, h: f32, bodies: &[ObstacleBody]) {
+        self.system.load_springs(&self.forest, &self.springs, &self.positions, h);
+        for _ in 0..GRIP_ROUNDS {
+            self.apply_grips(bodies);
+            self.system.solve(&self.forest, &self.springs, h, &mut self.velocities);
+            self.reactions.fill(Vec3::ZERO);
+            self.system.add_spring_impulses(
+                &self.forest,
+                &self.springs,
+                h,
+                &self.velocities,
+                &mut self.reactions,
+            );
+            if !self.change_grips(bodies) {
+                break;
+            }
+        }
     }
 
-    /// The impulse in slot `last`, cut to the length of that in the other slot.
-    fn expected_from(&self, last: usize, i: usize) -> Vec3 {
-        let (impulse, before) = (self.contact_impulses[last][i], self.contact_impulses[1 - last][i]);
-        let (length, limit) = (impulse.length(), before.length());
-        if length > limit { impulse * (limit / length) } else { impulse }
+    /// Turns grips into what the linear system knows: fixed velocities, or the inertia of a body that yields.
+    fn apply_grips(&mut self, bodies: &[ObstacleBody]) {
+        for i in 0..self.positions.len() {
+            if self.attachment_of[i] != u32::MAX {
+                continue;
+            }
+            let (mut freedom, mut inertia, mut momentum) = (Freedom::Free, Sym3::ZERO, Vec3::ZERO);
+            if let Some(touch) = &self.touches[i] {
+                let (n, body) = (touch.normal, &bodies[touch.body]);
+                let target = body.velocity_at(touch.point) + n * touch.speed_min;
+                let movable = body.inverse_mass > 0.0;
+                match self.grips[i] {
+                    Grip::Off => {}
+                    Grip::Slide if movable => {
+                        inertia = Sym3::outer(n) * (1.0 / body.yielding(touch.point, n));
+                        momentum = inertia * target + self.friction(i, n);
+                    }
+                    Grip::Slide => {
+                        freedom = Freedom::Along { normal: n, speed: target.dot(n) };
+                        momentum = self.friction(i, n);
+                    }
+                    Grip::Stick if movable => {
+                        inertia = body.inertia_at(touch.point);
+                        momentum = inertia * target;
+                    }
+                    Grip::Stick => {
+                        freedom = Freedom::Fixed;
+                        self.velocities[i] = target;
+                    }
+                }
+            }
+            self.system.freedom[i] = freedom;
+            self.system.added_inertia[i] = inertia;
+            self.system.added_momentum[i] = momentum;
+        }
     }
 
-    /// The expected contact is gone: without it the particle would be flung away by a force that nothing exerts.
-    fn take_back(&mut self, i: usize, h: f32, expected: Vec3) {
-        let change = expected / self.masses[i];
-        self.velocities[i] -= change;
-        self.positions[i] -= change * h;
+    /// The part along the surface of the last contact impulse.
+    fn friction(&self, i: usize, normal: Vec3) -> Vec3 {
+        let impulse = self.contact_impulses[i];
+        impulse - normal * impulse.dot(normal)
     }
 
-    /// The first shape on the way of a particle that moves further than half its radius, seen from the shape.
-    fn first_crossed(
+    /// Reads off the contact impulses of the last solve and decides again who is held how; whether anyone's grip has
+    /// changed.
+    fn change_grips(&mut self, bodies: &[ObstacleBody]) -> bool {
+        let mut changed = false;
+        for i in 0..self.positions.len() {
+            let Some(touch) = self.touches[i] else {
+                self.contact_impulses[i] = Vec3::ZERO;
+                continue;
+            };
+            let n = touch.normal;
+            let relative = self.velocities[i] - bodies[touch.body].velocity_at(touch.point);
+            let impulse = self.velocities[i] * self.masses[i] - self.system.momentum[i] - self.reactions[i];
+            let (normal, friction) = (impulse.dot(n), impulse - n * impulse.dot(n));
+            let limit = touch.material.friction * normal;
+            let slip = relative - n * relative.dot(n);
+            let (grip, impulse) = match self.grips[i] {
+                Grip::Off if relative.dot(n) < touch.speed_min - NO_SPEED => (Grip::Stick, Vec3::ZERO),
+                Grip::Off => (Grip::Off, Vec3::ZERO),
+                // A surface does not pull.
+                _ if normal <= 0.0 => (Grip::Off, Vec3::ZERO),
+                Grip::Stick if friction.length() > limit => {
+                    (Grip::Slide, n * normal + friction * (limit / friction.length()))
+                }
+                Grip::Stick => (Grip::Stick, impulse),
+                // Friction that drives the motion has stopped it on the way.
+                Grip::Slide if slip.dot(friction) > 0.0 => (Grip::Stick, impulse),
+                Grip::Slide => (Grip::Slide, n * normal - normalize_or(slip, Vec3::ZERO) * limit),
+            };
+            changed |= grip != self.grips[i];
+            (self.grips[i], self.contact_impulses[i]) = (grip, impulse);
+        }
+        changed
+    }
+
+    fn slow_contact(
         &self,
         i: usize,
         h: f32,
         obstacles: &[Obstacle],
         bodies: &[ObstacleBody],
     ) -> Option<Touch> {
-        let (position, radius) = (self.positions[i], self.radii[i]);
-        let mut first: Option<(f32, Touch)> = None;
+        let mut nearest: Option<Touch> = None;
         for (index, o) in obstacles.iter().enumerate() {
-            let start = self.previous[i] + bodies[o.body as usize].velocity_at(position) * h;
-            let way = position - start;
-            let length = way.length();
-            if length <= 0.5 * radius {
-                continue;
-            }
-            let ray = Ray { origin: start, direction: way * (1.0 + radius / length) };
-            let Some(hit) = o.shape.cast_ray(&o.world_from_shape, &ray) else { continue };
-            // A start inside says nothing about the side it came from.
-            let gap = (position - hit.point).dot(hit.normal) - radius;
-            if hit.fraction > 0.0 && gap < 0.0 && first.is_none_or(|(fraction, _)| hit.fraction < fraction) {
-                first = Some((hit.fraction, Touch { obstacle: index, normal: hit.normal, gap }));
-            }
-        }
-        first.map(|(_, touch)| touch)
-    }
-
-    /// The shape it is deepest in, or nearest to if that is within `reach`.
-    fn deepest(&self, i: usize, reach: f32, but: Option<usize>, obstacles: &[Obstacle]) -> Option<Touch> {
-        let mut deepest: Option<Touch> = None;
-        for (index, o) in obstacles.iter().enumerate() {
-            if but == Some(index) {
-                continue;
-            }
-            let (distance, normal) = o.shape.signed_distance(&o.world_from_shape, self.positions[i]);
+            let body = &bodies[o.body as usize];
+            // Obstacles have moved already: where the particle is, seen from there.
+            let drift = body.velocity_at(self.positions[i]);
+            let seen = self.positions[i] + drift * h;
+            let (distance, normal) = o.shape.signed_distance(&o.world_from_shape, seen);
             let gap = distance - self.radii[i];
-            if gap <= reach && deepest.is_none_or(|touch| gap < touch.gap) {
-                deepest = Some(Touch { obstacle: index, normal, gap });
+            let approach = (self.velocities[i] - drift).dot(normal);
+            // Within reach in this substep, gravity and a share of the other forces included.
+            let reach = h * (max(-approach, 0.0) + 2.0 * h * self.gravity.length()) + 0.05 * self.radii[i];
+            if gap <= reach && approach > -IMPACT_SPEED && nearest.is_none_or(|touch| gap < touch.gap) {
+                nearest = Some(Touch {
+                    obstacle: index,
+                    body: o.body as usize,
+                    normal,
+                    gap,
+                    point: seen - normal * (self.radii[i] + gap),
+                    material: combine(&self.material, &o.material),
+                    speed_min: -max(gap, 0.0) / h,
+                });
             }
         }
-        deepest
+        nearest
     }
 
-    /// Normal impulse, friction, bounce; `expected` is what the solve has already given the particle.
-    fn respond(
-        &mut self,
-        i: usize,
-        h: f32,
-        touch: &Touch,
-        expected: Vec3,
-        obstacles: &[Obstacle],
-        bodies: &mut [ObstacleBody],
-    ) {
-        let (n, own) = (touch.normal, 1.0 / self.masses[i]);
-        let obstacle = &obstacles[touch.obstacle];
-        let body = &mut bodies[obstacle.body as usize];
-        let material = combine(&self.material, &obstacle.material);
-        let point = self.positions[i] - n * (self.radii[i] + touch.gap);
-        body.push(point, -expected);
-
-        // Along the normal: no approach, and no pull.
-        let approach = (self.velocities[i] - body.velocity_at(point)).dot(n);
-        let yielding = own + body.yielding(point, n);
-        let wanted = if touch.gap > 0.0 {
-            approach - touch.gap / h
-        } else {
-            self.rebound(approach, h, touch, material.restitution)
-        };
-        let normal = max(expected.dot(n) + (wanted - approach) / yielding, 0.0);
-        let change = n * (normal - expected.dot(n));
-        self.velocities[i] += change * own;
-        body.push(point, -change);
-
-        // Along the surface: stick if Coulomb's cone allows it.
-        let relative = self.velocities[i] - body.velocity_at(point);
-        let slip = relative - n * relative.dot(n);
-        let along = normalize_or(slip, Vec3::ZERO);
-        let before = expected - n * expected.dot(n);
-        let mut friction = before - slip / (own + body.yielding(point, along));
-        let limit = material.friction * normal;
-        if friction.length() > limit {
-            friction = normalize_or(friction, Vec3::ZERO) * limit;
-        }
-        self.velocities[i] += (friction - before) * own;
-        body.push(point, before - friction);
-
-        // What the velocity lost, the position must not have gained.
-        let lift = if touch.gap > 0.0 { change * (own * h) } else { n * -touch.gap };
-        self.positions[i] += lift + (friction - before) * (own * h);
-        let impulse = n * normal + friction;
-        self.contact_impulses[0][i] += impulse;
-        if body.inverse_mass > 0.0 {
-            self.body_impulses.push(BodyImpulse { body: obstacle.body, impulse: -impulse, point });
+    /// Pushes bodies back by the impulses that the solve found.
+    pub(super) fn push_bodies(&mut self, bodies: &mut [ObstacleBody]) {
+        for i in 0..self.positions.len() {
+            if let Some(touch) = self.touches[i] {
+                let impulse = self.contact_impulses[i];
+                bodies[touch.body].push(touch.point, -impulse);
+                self.report(&touch, impulse, bodies);
+            }
         }
     }
 
-    /// Normal speed after an impact at `approach` (negative), so that a bounce neither gains nor loses height by the
-    /// length of the substep. A velocity of symplectic Euler is that of half a substep ago, and gravity kept working
-    /// between the surface and where the particle ended.
-    fn rebound(&self, approach: f32, h: f32, touch: &Touch, restitution: f32) -> f32 {
-        if approach >= -BOUNCE_SPEED || restitution == 0.0 {
-            return 0.0;
+    /// Lists an impulse on a particle as its opposite on the body, if that can move.
+    pub(super) fn report(&mut self, touch: &Touch, on_particle: Vec3, bodies: &[ObstacleBody]) {
+        if bodies[touch.body].inverse_mass > 0.0 && on_particle != Vec3::ZERO {
+            let body = touch.body as u32;
+            self.body_impulses.push(BodyImpulse { body, impulse: -on_particle, point: touch.point });
         }
-        let pull = max(-self.gravity.dot(touch.normal), 0.0);
-        let at_end = approach - 0.5 * pull * h;
-        let at_surface = max(at_end * at_end + 2.0 * pull * touch.gap, 0.0).sqrt();
-        restitution * at_surface + 0.5 * pull * h
     }
 }

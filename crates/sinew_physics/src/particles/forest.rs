@@ -83,6 +83,12 @@ impl Forest {
         forest
     }
 
+    /// Springs of the linear system.
+    fn solved_springs(&self) -> impl Iterator<Item = u32> {
+        let of_links = self.links.iter().map(|link| link.spring);
+        of_links.chain(self.ties.iter().map(|tie| tie.spring))
+    }
+
     /// Springs that close a loop.
     pub fn loops(&self) -> &[u32] {
         &self.loops
@@ -118,104 +124,126 @@ impl Load {
     }
 }
 
-/// Memory of one step's system: inertia and right-hand side of each particle, blocks of each spring.
+/// What a particle may do in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Freedom {
+    /// Anything.
+    #[default]
+    Free,
+    /// Only at right angles to a unit normal; along it, its velocity is given.
+    Along { normal: Vec3, speed: f32 },
+    /// Nothing: its velocity is given.
+    Fixed,
+}
+
+/// Memory of one step's system, by particle and by spring.
 #[derive(Clone, Debug, Default)]
 pub(super) struct System {
-    /// kg: the particle's own, and what its target adds.
+    /// kg: the particle's own, and what its anchor adds.
     pub inertia: Vec<Sym3>,
-    /// kg·m/s: momentum at the end of the step without springs.
+    /// kg·m/s: momentum at the end of the step without springs and contacts.
     pub momentum: Vec<Vec3>,
-    /// Particles whose velocity is given.
-    pub fixed: Vec<bool>,
+    /// What contacts add to the inertia.
+    pub added_inertia: Vec<Sym3>,
+    /// What contacts add to the momentum.
+    pub added_momentum: Vec<Vec3>,
+    /// The velocity of a fixed particle is read from the velocities.
+    pub freedom: Vec<Freedom>,
     loads: Vec<Load>,
-    /// `(S + B)⁻¹` of each particle with its link.
-    inverse: Vec<Sym3>,
+    /// Of each particle with all that hangs below it.
+    gathered_inertia: Vec<Sym3>,
+    gathered_momentum: Vec<Vec3>,
+    /// Velocity gained per impulse while the parent keeps its velocity.
+    response: Vec<Sym3>,
 }
 
 impl System {
     pub fn new(particles: usize, springs: usize) -> Self {
+        let (matrices, vectors) = (vec![Sym3::ZERO; particles], vec![Vec3::ZERO; particles]);
         Self {
-            inertia: vec![Sym3::ZERO; particles],
-            momentum: vec![Vec3::ZERO; particles],
-            fixed: vec![false; particles],
+            inertia: matrices.clone(),
+            momentum: vectors.clone(),
+            added_inertia: matrices.clone(),
+            added_momentum: vectors.clone(),
+            freedom: vec![Freedom::Free; particles],
             loads: vec![Load::default(); springs],
-            inverse: vec![Sym3::ZERO; particles],
+            gathered_inertia: matrices.clone(),
+            gathered_momentum: vectors,
+            response: matrices,
         }
     }
 
-    /// Velocities at the end of a step of `h` seconds; those of fixed particles are read.
-    pub fn solve(
-        &mut self,
-        forest: &Forest,
-        springs: &[SpringDef],
-        positions: &[Vec3],
-        h: f32,
-        velocities: &mut [Vec3],
-    ) {
+    /// Evaluates the springs of the forest for a step of `h` seconds.
+    pub fn load_springs(&mut self, forest: &Forest, springs: &[SpringDef], positions: &[Vec3], h: f32) {
+        for spring in forest.solved_springs() {
+            let s = &springs[spring as usize];
+            self.loads[spring as usize] = Load::new(s, positions[s.b as usize] - positions[s.a as usize], h);
+        }
+    }
+
+    /// Velocities at the end of the step.
+    pub fn solve(&mut self, forest: &Forest, springs: &[SpringDef], h: f32, velocities: &mut [Vec3]) {
+        for i in 0..velocities.len() {
+            self.gathered_inertia[i] = self.inertia[i] + self.added_inertia[i];
+            self.gathered_momentum[i] = self.momentum[i] + self.added_momentum[i];
+        }
         for tie in &forest.ties {
-            let (load, on_particle) = self.load(springs, positions, tie.spring, tie.particle, h);
-            self.momentum[tie.particle as usize] +=
-                on_particle * h + load.block * velocities[tie.held as usize];
-            self.inertia[tie.particle as usize] += load.block;
+            let (i, load) = (tie.particle as usize, self.loads[tie.spring as usize]);
+            let force = if springs[tie.spring as usize].a == tie.particle { load.force } else { -load.force };
+            self.gathered_momentum[i] += force * h + load.block * velocities[tie.held as usize];
+            self.gathered_inertia[i] += load.block;
         }
-        for link in &forest.links {
-            let (_, on_child) = self.load(springs, positions, link.spring, link.child, h);
-            self.momentum[link.child as usize] += on_child * h;
-            self.momentum[link.parent as usize] -= on_child * h;
-        }
-        self.eliminate(forest, velocities);
+        self.gather(forest, springs, h, velocities);
         for &root in &forest.roots {
             let root = root as usize;
-            if !self.fixed[root] {
-                velocities[root] = self.inertia[root].inverse() * self.momentum[root];
-            }
+            let inverse = self.gathered_inertia[root].inverse();
+            self.response[root] = constrained(&inverse, &self.freedom[root]);
+            self.settle(root, &inverse, Vec3::ZERO, velocities);
         }
         for link in forest.links.iter().rev() {
-            let (child, parent) = (link.child as usize, link.parent as usize);
-            if !self.fixed[child] {
-                let pull = self.loads[link.spring as usize].block * velocities[parent];
-                velocities[child] = self.inverse[child] * (self.momentum[child] + pull);
-            }
+            let (child, load) = (link.child as usize, self.loads[link.spring as usize]);
+            let inverse = (self.gathered_inertia[child] + load.block).inverse();
+            self.settle(child, &inverse, load.block * velocities[link.parent as usize], velocities);
         }
     }
 
-    /// Evaluates a spring; the force on `particle`, one of its two.
-    fn load(
-        &mut self,
-        springs: &[SpringDef],
-        positions: &[Vec3],
-        spring: u32,
-        particle: u32,
-        h: f32,
-    ) -> (Load, Vec3) {
-        let s = &springs[spring as usize];
-        let load = Load::new(s, positions[s.b as usize] - positions[s.a as usize], h);
-        self.loads[spring as usize] = load;
-        (load, if s.a == particle { load.force } else { -load.force })
-    }
-
-    /// Leaves to roots. With S the child's inertia so far and B the spring's block, the parent's gains
-    /// `B − B (S + B)⁻¹ B = S (S + B)⁻¹ B`: in the second form a stiff spring does not cancel itself out.
-    fn eliminate(&mut self, forest: &Forest, velocities: &[Vec3]) {
+    /// Leaves to roots: each parent feels the inertia and momentum of what hangs below it.
+    fn gather(&mut self, forest: &Forest, springs: &[SpringDef], h: f32, velocities: &[Vec3]) {
         for link in &forest.links {
             let (child, parent) = (link.child as usize, link.parent as usize);
-            let (inertia, block) = (self.inertia[child], self.loads[link.spring as usize].block);
-            if self.fixed[child] {
-                self.inertia[parent] += block;
-                self.momentum[parent] += block * velocities[child];
-                continue;
-            }
+            let Load { force, block } = self.loads[link.spring as usize];
+            let on_child = if springs[link.spring as usize].a == link.child { force * h } else { -force * h };
+            self.gathered_momentum[child] += on_child;
+            self.gathered_momentum[parent] -= on_child;
+
+            let inertia = self.gathered_inertia[child];
             let inverse = (inertia + block).inverse();
-            self.inverse[child] = inverse;
-            let felt = inertia.to_mat3() * inverse.to_mat3() * block.to_mat3();
-            self.inertia[parent] += Sym3::from_mat3(&felt);
-            let momentum = block * (inverse * self.momentum[child]);
-            self.momentum[parent] += momentum;
+            self.response[child] = constrained(&inverse, &self.freedom[child]);
+            let velocity = self.velocity(child, &inverse, Vec3::ZERO, velocities);
+            self.gathered_momentum[parent] += block * velocity;
+            self.gathered_inertia[parent] += felt_by_parent(&inertia, &inverse, &block, &self.freedom[child]);
         }
     }
 
-    /// Adds to `sums` the impulse of each tree spring on each of its particles that is fixed or held.
-    pub fn add_reactions(
+    fn settle(&self, i: usize, inverse: &Sym3, pull: Vec3, velocities: &mut [Vec3]) {
+        velocities[i] = self.velocity(i, inverse, pull, velocities);
+    }
+
+    /// Velocity of a particle under the momentum of what hangs below it and the pull of its parent.
+    fn velocity(&self, i: usize, inverse: &Sym3, pull: Vec3, velocities: &[Vec3]) -> Vec3 {
+        let free = || self.response[i] * (self.gathered_momentum[i] + pull);
+        match self.freedom[i] {
+            Freedom::Free => free(),
+            Freedom::Along { normal, speed } => {
+                let along = *inverse * normal;
+                free() + along * (speed / normal.dot(along))
+            }
+            Freedom::Fixed => velocities[i],
+        }
+    }
+
+    /// Adds to `sums` the impulse of each tree spring on its two particles.
+    pub fn add_spring_impulses(
         &self,
         forest: &Forest,
         springs: &[SpringDef],
@@ -223,15 +251,38 @@ impl System {
         velocities: &[Vec3],
         sums: &mut [Vec3],
     ) {
-        let of_links = forest.links.iter().map(|link| link.spring);
-        for spring in of_links.chain(forest.ties.iter().map(|tie| tie.spring)) {
+        for spring in forest.solved_springs() {
             let s = &springs[spring as usize];
             let (a, b) = (s.a as usize, s.b as usize);
-            if self.fixed[a] || self.fixed[b] {
-                let impulse = self.loads[spring as usize].impulse(h, velocities[a], velocities[b]);
-                sums[a] += impulse;
-                sums[b] -= impulse;
-            }
+            let impulse = self.loads[spring as usize].impulse(h, velocities[a], velocities[b]);
+            sums[a] += impulse;
+            sums[b] -= impulse;
         }
+    }
+}
+
+/// The inverse inertia of a particle that may not gain velocity along the normal: `W − W n nᵀ W / (n·W n)`.
+fn constrained(inverse: &Sym3, freedom: &Freedom) -> Sym3 {
+    match freedom {
+        Freedom::Free => *inverse,
+        Freedom::Along { normal, .. } => {
+            let along = *inverse * *normal;
+            *inverse - Sym3::outer(along) * (1.0 / normal.dot(along))
+        }
+        Freedom::Fixed => Sym3::ZERO,
+    }
+}
+
+/// With S the child's inertia, B the spring's block and W its response, the parent gains `B − B W B`. Free, that is
+/// `S (S + B)⁻¹ B`: in this form a stiff spring does not cancel itself out.
+fn felt_by_parent(inertia: &Sym3, inverse: &Sym3, block: &Sym3, freedom: &Freedom) -> Sym3 {
+    let free = || Sym3::from_mat3(&(inertia.to_mat3() * inverse.to_mat3() * block.to_mat3()));
+    match freedom {
+        Freedom::Free => free(),
+        Freedom::Along { normal, .. } => {
+            let along = *inverse * *normal;
+            free() + Sym3::outer(*block * along) * (1.0 / normal.dot(along))
+        }
+        Freedom::Fixed => *block,
     }
 }

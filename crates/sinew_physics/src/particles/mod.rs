@@ -1,18 +1,21 @@
 //! Particles and springs: ropes, strands, cloth, blobs.
 //!
-//! A substep of a group is two calls: [`ParticleGroup::integrate`] moves it under gravity, springs and attachments,
-//! [`ParticleGroup::collide`] keeps it out of shapes. Both act back: on the bodies that particles are attached to
-//! and on those they touch.
+//! [`ParticleGroup::substep`] moves a group under gravity, springs, attachments and contacts, after the bodies have
+//! moved. It acts back on the bodies that particles are attached to and on those they touch.
 //!
 //! Springs that form no loops (a mass on a spring, a rope, a strand of hair) are solved in one implicit step, see
 //! `forest.rs`: the stretch at rest is the exact one, `m g / k`, for a chain as for a single mass, whatever the
 //! substeps. A spring that closes a loop is projected once per substep instead, with compliance `1/k` and no
 //! accumulated multiplier: exact at rest for one mass on one spring, softer by `h² (w₁ + w₂)` per particle in a net.
 //! Damping acts on the velocity at the start of the substep, before forces.
+//!
+//! Contacts that are there before the substep are part of the spring solve, or a rope bent over an edge would hang
+//! with the wrong tension (`contact.rs`). Impacts and what is left are dealt with after it (`impact.rs`).
 
 mod contact;
 mod def;
 mod forest;
+mod impact;
 mod snapshot;
 
 pub use contact::{BodyImpulse, Obstacle, ObstacleBody};
@@ -20,7 +23,9 @@ pub use def::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, RopeDef, S
 
 use crate::aabb::Aabb;
 use crate::shape::{Filter, Material};
-use forest::{Forest, System};
+use contact::{Grip, Touch};
+use forest::{Forest, Freedom, System};
+use impact::MAX_TOUCHES;
 use sinew_math::{Sym3, Vec3};
 
 /// The point that holds an attached particle, in one substep.
@@ -48,8 +53,10 @@ pub struct ParticleGroup {
     linear_damping: f32,
     gravity_scale: f32,
     filter: Filter,
-    /// Impulse of shapes on each particle in the last substep, and in the one before.
-    contact_impulses: [Vec<Vec3>; 2],
+    /// How surfaces hold the particles.
+    grips: Vec<Grip>,
+    /// Impulse of a surface on each particle in the last solve.
+    contact_impulses: Vec<Vec3>,
 
     forest: Forest,
     system: System,
@@ -59,8 +66,10 @@ pub struct ParticleGroup {
     attachment_of: Vec<u32>,
     attachment_impulses: Vec<Vec3>,
     body_impulses: Vec<BodyImpulse>,
-    /// Sums per particle; zero between uses.
+    /// Impulse of the springs on each particle in this substep.
     reactions: Vec<Vec3>,
+    /// What each particle touches in this substep.
+    touches: Vec<Option<Touch>>,
     /// Gravity of the last substep, scaled.
     gravity: Vec3,
 }
@@ -86,7 +95,8 @@ impl ParticleGroup {
             linear_damping: def.linear_damping,
             gravity_scale: def.gravity_scale,
             filter: def.filter,
-            contact_impulses: [vec![Vec3::ZERO; count], vec![Vec3::ZERO; count]],
+            grips: vec![Grip::Off; count],
+            contact_impulses: vec![Vec3::ZERO; count],
             forest: Forest::default(),
             system: System::default(),
             previous: Vec::new(),
@@ -94,6 +104,7 @@ impl ParticleGroup {
             attachment_impulses: Vec::new(),
             body_impulses: Vec::new(),
             reactions: Vec::new(),
+            touches: Vec::new(),
             gravity: Vec3::ZERO,
         };
         group.derive();
@@ -113,8 +124,8 @@ impl ParticleGroup {
         self.system = System::new(count, self.springs.len());
         self.previous = self.positions.clone();
         self.attachment_impulses = vec![Vec3::ZERO; self.attachments.len()];
-        // A particle in a corner touches two bodies at most.
-        self.body_impulses = Vec::with_capacity(2 * count);
+        self.touches = vec![None; count];
+        self.body_impulses = Vec::with_capacity(MAX_TOUCHES * count);
         self.reactions = vec![Vec3::ZERO; count];
     }
 
@@ -143,7 +154,7 @@ impl ParticleGroup {
         &self.springs
     }
 
-    /// As they were defined; [`integrate`](Self::integrate) takes one [`Anchor`] for each.
+    /// As they were defined; [`substep`](Self::substep) takes one [`Anchor`] for each.
     pub fn attachments(&self) -> &[AttachmentDef] {
         &self.attachments
     }
@@ -184,34 +195,57 @@ impl ParticleGroup {
         self.velocities[i] += impulse / self.masses[i];
     }
 
-    /// Moves the group by one substep of `h` seconds under `gravity` (m/s²), its springs and its attachments:
+    /// Moves the group by `h` seconds under `gravity` (m/s²), its springs, its attachments and its contacts.
+    ///
     /// `anchors[k]` holds attachment `k`. Anchors that are bodies yield to the springs within the same solve, so that
-    /// a stiff rope does not shake a light body; each such point is solved as if it were the body's only one.
+    /// a stiff rope does not shake a light body; each such point is solved as if it were the body's only one. What
+    /// the body gains is in [`attachment_impulses`](Self::attachment_impulses), for the caller to apply.
+    ///
+    /// `obstacles` and `bodies` are at the end of the substep; every particle is tried against every obstacle, so
+    /// pass those that come near [`bounds`](Self::bounds). Bodies are pushed back: their velocities change at once,
+    /// and [`body_impulses`](Self::body_impulses) lists how. Attached particles touch nothing.
     ///
     /// # Panics
-    /// If there is not one anchor for each attachment.
-    pub fn integrate(&mut self, h: f32, gravity: Vec3, anchors: &[Anchor]) {
+    /// If there is not one anchor for each attachment, or an obstacle's body is not in `bodies`.
+    pub fn substep(
+        &mut self,
+        h: f32,
+        gravity: Vec3,
+        anchors: &[Anchor],
+        obstacles: &[Obstacle],
+        bodies: &mut [ObstacleBody],
+    ) {
         assert_eq!(anchors.len(), self.attachments.len(), "each attachment needs its anchor");
         self.gravity = gravity * self.gravity_scale;
+        self.body_impulses.clear();
         self.begin(h);
+        self.hold(h, anchors);
+        self.find_contacts(h, obstacles, bodies);
+        self.solve_with_contacts(h, bodies);
+        self.push_bodies(bodies);
+        for i in 0..self.positions.len() {
+            self.positions[i] += self.velocities[i] * h;
+        }
+        self.project_loops(h);
+        self.collect_attachment_impulses(h, anchors);
+        self.stop_impacts(h, obstacles, bodies);
+    }
+
+    /// Puts attached particles where their anchors are.
+    fn hold(&mut self, h: f32, anchors: &[Anchor]) {
         for (a, anchor) in self.attachments.iter().zip(anchors) {
             let i = a.particle as usize;
             let mass = anchor.inverse_mass.inverse();
             self.positions[i] = anchor.position;
             self.previous[i] = anchor.position;
             self.velocities[i] = anchor.velocity;
-            self.system.fixed[i] = mass == Sym3::ZERO;
+            if mass == Sym3::ZERO {
+                self.system.freedom[i] = Freedom::Fixed;
+            }
             self.system.inertia[i] += mass;
             self.system.momentum[i] =
                 mass * anchor.velocity + (anchor.velocity + self.gravity * h) * self.masses[i];
         }
-        self.system.solve(&self.forest, &self.springs, &self.positions, h, &mut self.velocities);
-        self.system.add_reactions(&self.forest, &self.springs, h, &self.velocities, &mut self.reactions);
-        for i in 0..self.positions.len() {
-            self.positions[i] += self.velocities[i] * h;
-        }
-        self.project_loops(h);
-        self.collect_attachment_impulses(h, anchors);
     }
 
     /// Damping, and what each particle brings into the system.
@@ -221,11 +255,9 @@ impl ParticleGroup {
             let mass = self.masses[i];
             self.previous[i] = self.positions[i];
             self.velocities[i] *= damping;
-            self.reactions[i] = Vec3::ZERO;
-            self.system.fixed[i] = false;
+            self.system.freedom[i] = Freedom::Free;
             self.system.inertia[i] = Sym3::from_diagonal(Vec3::splat(mass));
-            self.system.momentum[i] =
-                (self.velocities[i] + self.gravity * h) * mass + self.expected_contact_impulse(i);
+            self.system.momentum[i] = (self.velocities[i] + self.gravity * h) * mass;
         }
     }
 
@@ -235,7 +267,8 @@ impl ParticleGroup {
         for &index in self.forest.loops() {
             let s = &self.springs[index as usize];
             let (a, b) = (s.a as usize, s.b as usize);
-            let weight = |i: usize| if self.system.fixed[i] { 0.0 } else { 1.0 / self.masses[i] };
+            let weight =
+                |i: usize| if self.system.freedom[i] == Freedom::Fixed { 0.0 } else { 1.0 / self.masses[i] };
             let (wa, wb) = (weight(a), weight(b));
             let (apart, sum) = (self.positions[b] - self.positions[a], wa + wb);
             let length = apart.length();
@@ -260,7 +293,7 @@ impl ParticleGroup {
     fn collect_attachment_impulses(&mut self, h: f32, anchors: &[Anchor]) {
         for (k, (a, anchor)) in self.attachments.iter().zip(anchors).enumerate() {
             let i = a.particle as usize;
-            self.attachment_impulses[k] = if self.system.fixed[i] {
+            self.attachment_impulses[k] = if self.system.freedom[i] == Freedom::Fixed {
                 self.reactions[i] + self.gravity * (self.masses[i] * h)
             } else {
                 anchor.inverse_mass.inverse() * (self.velocities[i] - anchor.velocity)

@@ -1,12 +1,13 @@
 //! Particle groups to bytes and back.
 
+use super::contact::Grip;
 use super::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, ParticleGroup, SpringDef};
 use crate::id::BodyId;
 use crate::shape::{Filter, Material};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
-/// Bytes of a particle: position, velocity, mass, radius, two contact impulses.
-const PARTICLE_BYTES: usize = 4 * (3 + 3 + 1 + 1 + 3 + 3);
+/// Bytes of a particle: position, velocity, mass, radius, contact impulse, grip.
+const PARTICLE_BYTES: usize = 4 * (3 + 3 + 1 + 1 + 3) + 1;
 const SPRING_BYTES: usize = 4 * 5;
 /// Of the shortest attachment.
 const ATTACHMENT_BYTES: usize = 4 + 1 + 12;
@@ -28,8 +29,12 @@ impl ParticleGroup {
             out.vec3(self.velocities[i]);
             out.f32(self.masses[i]);
             out.f32(self.radii[i]);
-            out.vec3(self.contact_impulses[0][i]);
-            out.vec3(self.contact_impulses[1][i]);
+            out.vec3(self.contact_impulses[i]);
+            out.u8(match self.grips[i] {
+                Grip::Off => 0,
+                Grip::Slide => 1,
+                Grip::Stick => 2,
+            });
         }
         out.count(self.springs.len());
         for s in &self.springs {
@@ -65,12 +70,16 @@ impl ParticleGroup {
         let (linear_damping, gravity_scale) = (input.f32()?, input.f32()?);
         let filter = Filter { layers: input.u32()?, mask: input.u32()?, group: input.u32()? as i32 };
         let mut def = GroupDef { material, linear_damping, gravity_scale, filter, ..GroupDef::default() };
-        let mut contact_impulses = [Vec::new(), Vec::new()];
+        let (mut contact_impulses, mut grips) = (Vec::new(), Vec::new());
         for _ in 0..input.count(PARTICLE_BYTES)? {
             def.particles.push(read_particle(input)?);
-            for impulses in &mut contact_impulses {
-                impulses.push(input.vec3()?);
-            }
+            contact_impulses.push(input.vec3()?);
+            grips.push(match input.u8()? {
+                0 => Grip::Off,
+                1 => Grip::Slide,
+                2 => Grip::Stick,
+                _ => return Err(input.error("a grip is none of the three")),
+            });
         }
         for _ in 0..input.count(SPRING_BYTES)? {
             let (a, b) = (input.u32()?, input.u32()?);
@@ -81,10 +90,10 @@ impl ParticleGroup {
             def.attachments.push(read_attachment(input)?);
         }
         def.check().map_err(|what| input.error(what))?;
-        if !contact_impulses.iter().flatten().all(|v: &Vec3| v.is_finite()) {
+        if !contact_impulses.iter().all(|v: &Vec3| v.is_finite()) {
             return Err(input.error("an impulse is not finite"));
         }
-        Ok(Self { contact_impulses, ..Self::new(&def) })
+        Ok(Self { contact_impulses, grips, ..Self::new(&def) })
     }
 }
 
