@@ -56,6 +56,16 @@ impl Error {
     }
 }
 
+/// Text from a file, fit for a message: on one line, and not longer than a line.
+pub(crate) fn quoted(text: &str) -> String {
+    const LONGEST: usize = 60;
+    let mut out: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        out.push('…');
+    }
+    format!("`{out}`")
+}
+
 struct Prefix<'a>(&'a str);
 
 impl fmt::Display for Prefix<'_> {

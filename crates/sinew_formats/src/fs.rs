@@ -1,6 +1,6 @@
 //! The only file IO of the libraries: read, atomic write, and files beside a file that stay beside it.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, quoted};
 use crate::gltf::{Document, ReadOptions, read_gltf};
 use std::fs;
 use std::io::{self, Write};
@@ -38,23 +38,56 @@ fn reason(error: &io::Error) -> String {
 /// # Errors
 /// Names the file: its folder is missing, full or write-protected. The temporary file is removed.
 pub fn write_atomic(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
-    let path = path.as_ref();
-    let fail = |e: io::Error| {
-        Error::io(format!("cannot write: {}", reason(&e))).with_file(path.display().to_string())
-    };
-    let name = path.file_name().ok_or_else(|| fail(io::ErrorKind::IsADirectory.into()))?;
-    let mut temporary_name = std::ffi::OsString::from(".");
-    temporary_name.push(name);
-    temporary_name.push(format!(".{}.tmp", std::process::id()));
-    let temporary = path.with_file_name(temporary_name);
-    let written = fs::File::create(&temporary)
-        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
-        .and_then(|()| fs::rename(&temporary, path));
-    written.map_err(|e| {
-        // Best effort: the error to report is the first one.
-        let _ = fs::remove_file(&temporary);
-        fail(e)
-    })
+    write_all_atomic(&[(path, bytes)])
+}
+
+/// Writes files that belong together, each as [`write_atomic`] does; none takes its place before the bytes of all are
+/// on the disk.
+///
+/// # Errors
+/// Names the first file that could not be written. Those that have their place already keep it.
+pub fn write_all_atomic(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)]) -> Result<()> {
+    let mut staged = Vec::with_capacity(files.len());
+    for (path, bytes) in files {
+        let path = path.as_ref();
+        staged.push(Staged::write(path, bytes.as_ref()).map_err(|e| cannot_write(path, &e))?);
+    }
+    staged.into_iter().try_for_each(|file| file.publish().map_err(|e| cannot_write(file.path, &e)))
+}
+
+fn cannot_write(path: &Path, error: &io::Error) -> Error {
+    Error::io(format!("cannot write: {}", reason(error))).with_file(path.display().to_string())
+}
+
+/// A file's bytes under a temporary name beside its place; removed when dropped, if they are still there.
+struct Staged<'a> {
+    path: &'a Path,
+    temporary: PathBuf,
+}
+
+impl<'a> Staged<'a> {
+    fn write(path: &'a Path, bytes: &[u8]) -> io::Result<Self> {
+        let name = path.file_name().ok_or(io::ErrorKind::IsADirectory)?;
+        let mut temporary_name = std::ffi::OsString::from(".");
+        temporary_name.push(name);
+        temporary_name.push(format!(".{}.tmp", std::process::id()));
+        let staged = Self { path, temporary: path.with_file_name(temporary_name) };
+        let mut file = fs::File::create(&staged.temporary)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        Ok(staged)
+    }
+
+    fn publish(&self) -> io::Result<()> {
+        fs::rename(&self.temporary, self.path)
+    }
+}
+
+impl Drop for Staged<'_> {
+    fn drop(&mut self) {
+        // Published files are gone from here; of others the error to report is the first one, not this.
+        let _ = fs::remove_file(&self.temporary);
+    }
 }
 
 /// Reads a GLB, glTF, VRM or VRMA with the files beside it.
@@ -71,7 +104,7 @@ pub fn load_gltf(path: impl AsRef<Path>, options: ReadOptions) -> Result<Documen
 
 /// Reads `relative` inside `folder`, refusing links that lead out of it.
 fn read_beside(folder: &Path, relative: &str) -> Result<Vec<u8>> {
-    let fail = |what: String| Error::io(format!("`{relative}`: {what}"));
+    let fail = |what: String| Error::io(format!("{}: {what}", quoted(relative)));
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let real = |path: &Path| -> Result<PathBuf> { fs::canonicalize(path).map_err(|e| fail(reason(&e))) };
     let target = real(&folder.join(relative))?;

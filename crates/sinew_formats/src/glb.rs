@@ -25,7 +25,10 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Glb<'_>> {
     match header(4)? {
         2 => {}
         version @ (0 | 1) => {
-            return Err(Error::unsupported(format!("glTF {version}.0 is not supported, only 2.0"), "byte 4"));
+            return Err(Error::unsupported(
+                format!("glTF version {version} is not supported, only 2"),
+                "byte 4",
+            ));
         }
         version => return Err(Error::malformed(format!("unknown GLB version {version}"), "byte 4")),
     }

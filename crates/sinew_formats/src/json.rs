@@ -1,6 +1,6 @@
 //! Reading JSON with a place for every complaint, and writing it so that a person can edit it.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, quoted};
 use serde_json::Value;
 
 /// Parses bytes as JSON.
@@ -62,8 +62,7 @@ impl<'a> At<'a> {
         let object = self.value.as_object().ok_or_else(|| self.malformed("must be an object"))?;
         match object.keys().find(|key| !known.contains(&key.as_str())) {
             Some(key) => {
-                let key = key.escape_debug();
-                Err(self.malformed(format!("unknown key `{key}`; known are {}", known.join(", "))))
+                Err(self.malformed(format!("unknown key {}; known are {}", quoted(key), known.join(", "))))
             }
             None => Ok(()),
         }
@@ -191,7 +190,8 @@ fn find(from: &Value, target: &Value, path: &mut String) -> bool {
                 if !path.is_empty() {
                     path.push('.');
                 }
-                path.push_str(key);
+                // Keys are the file's to choose; a path stays on one line.
+                path.extend(key.chars().flat_map(char::escape_debug));
                 if find(value, target, path) {
                     return true;
                 }
@@ -277,7 +277,7 @@ pub(crate) fn check_header(root: At<'_>, kind: &str, version: usize) -> Result<(
     let kind_at = root.need("sinew")?;
     let found = kind_at.str()?;
     if found != kind {
-        return Err(kind_at.malformed(format!("this is a `{}` file, not a `{kind}`", found.escape_debug())));
+        return Err(kind_at.malformed(format!("this is a {} file, not a `{kind}`", quoted(found))));
     }
     let version_at = root.need("version")?;
     match version_at.usize()? {

@@ -1,6 +1,6 @@
 //! What world files and ragdoll files have in common: poses, shapes, masses.
 
-use crate::error::Result;
+use crate::error::{Result, quoted};
 use crate::json::{At, number, numbers};
 use serde_json::{Map, Value};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
@@ -36,7 +36,7 @@ fn read_rotation(at: At<'_>) -> Result<Rotation> {
     let [x, y, z, w] = at.numbers()?;
     let rotation = Rotation::from_xyzw(x, y, z, w);
     let square = rotation.dot(rotation);
-    if !((square - 1.0).abs() < 1e-2) {
+    if (square - 1.0).abs() >= 1e-2 {
         return Err(at.malformed("quaternion must have length 1"));
     }
     // Numbers that we wrote come back as they were.
@@ -72,9 +72,10 @@ pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
         }
         "half_space" => (Shape::HalfSpace, &[]),
         other => {
-            let other = other.escape_debug();
-            return Err(kind
-                .malformed(format!("unknown shape `{other}`; known are box, sphere, capsule, half_space")));
+            let other = quoted(other);
+            return Err(
+                kind.malformed(format!("unknown shape {other}; known are box, sphere, capsule, half_space"))
+            );
         }
     };
     for size in &SHAPE_KEYS[1..] {

@@ -54,7 +54,7 @@
 //! A body is referred to by its `bone`, or by its number from 0 where two have the same bone name. Shapes, poses and
 //! masses are as in [world files](crate::world). A key that is not listed here is an error.
 
-use crate::error::Result;
+use crate::error::{Result, quoted};
 use crate::json::{self, At, number, numbers};
 use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
 use serde_json::{Map, Value, json};
@@ -197,7 +197,7 @@ fn read_reference(at: At<'_>, bodies: &[RagdollBodyDef]) -> Result<usize> {
     match (named.next(), named.next()) {
         (Some(body), None) => Ok(body),
         (Some(_), Some(_)) => Err(at.malformed("two bodies have this bone name: use the number of the body")),
-        (None, _) => Err(at.malformed(format!("no body above has the bone name `{}`", name.escape_debug()))),
+        (None, _) => Err(at.malformed(format!("no body above has the bone name {}", quoted(name)))),
     }
 }
 

@@ -1,5 +1,7 @@
 //! URIs inside a glTF file: `data:` URIs, and relative ones that may not leave the file's folder.
 
+use crate::error::quoted;
+
 /// What a URI in a file refers to.
 pub(crate) enum Uri {
     /// The bytes themselves.
@@ -30,13 +32,13 @@ pub(crate) fn relative_path(uri: &str) -> Result<String, String> {
     let path = String::from_utf8(percent_decode(uri)?).map_err(|_| "URI is not UTF-8")?;
     let head = path.split('/').next().unwrap_or_default();
     if head.contains(':') {
-        return Err(format!("URI `{uri}` has a scheme; only files beside this one are read"));
+        return Err(format!("URI {} has a scheme; only files beside this one are read", quoted(uri)));
     }
     if path.contains(['\\', '\0']) {
-        return Err(format!("URI `{}` has a character that no URI may have", uri.escape_debug()));
+        return Err(format!("URI {} has a character that no URI may have", quoted(uri)));
     }
     if path.is_empty() || path.starts_with('/') || path.split('/').any(|part| part == "..") {
-        return Err(format!("URI `{uri}` leaves the folder of the file"));
+        return Err(format!("URI {} leaves the folder of the file", quoted(uri)));
     }
     Ok(path)
 }

@@ -45,7 +45,7 @@
 //!
 //! A key that is not listed here is an error, so that a typing error does not pass in silence.
 
-use crate::error::Result;
+use crate::error::{Result, quoted};
 use crate::json::{self, At, number, numbers};
 use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
 use serde_json::{Map, Value, json};
@@ -148,7 +148,7 @@ fn read_material(at: At<'_>, materials: Option<At<'_>>) -> Result<Material> {
         None => at,
         Some(name) => {
             let named = materials.map(|m| m.get(name)).transpose()?.flatten();
-            named.ok_or_else(|| at.malformed(format!("there is no material `{}`", name.escape_debug())))?
+            named.ok_or_else(|| at.malformed(format!("there is no material {}", quoted(name))))?
         }
     };
     at.only(&["friction", "restitution", "rolling", "comment"])?;

@@ -117,12 +117,16 @@ impl<'s, 'a> Materials<'s, 'a> {
 /// A PNG or JPEG as RGBA, within the limits of side and of `budget` bytes.
 fn decode_picture(bytes: &[u8], budget: usize) -> Result<Texture, String> {
     let mut reader =
-        image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
+        image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| one_line(&e))?;
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
     limits.max_image_height = Some(MAX_SIDE);
     limits.max_alloc = Some(budget as u64);
     reader.limits(limits);
-    let rgba = reader.decode().map_err(|e| e.to_string())?.into_rgba8();
+    let rgba = reader.decode().map_err(|e| one_line(&e))?.into_rgba8();
     Ok(Texture { width: rgba.width(), height: rgba.height(), rgba: rgba.into_raw() })
+}
+
+fn one_line(error: &dyn core::fmt::Display) -> String {
+    error.to_string().lines().next().unwrap_or_default().to_owned()
 }

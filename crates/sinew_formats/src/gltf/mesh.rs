@@ -83,7 +83,7 @@ fn refuse_compressed<'a>(source: &Source<'a>, primitive: At<'a>, position: At<'a
     let plain = accessor.get("bufferView")?.is_some() || accessor.get("sparse")?.is_some();
     if !plain && primitive.value()["extensions"].get("KHR_draco_mesh_compression").is_some() {
         return Err(
-            primitive.unsupported("needs the extension KHR_draco_mesh_compression, which is not supported")
+            primitive.unsupported("needs the extension `KHR_draco_mesh_compression`, which is not supported")
         );
     }
     Ok(())

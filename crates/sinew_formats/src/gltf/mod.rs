@@ -14,7 +14,7 @@ mod vrm;
 
 pub use append::append_clip;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, quoted};
 use crate::json::{self, At};
 use crate::{glb, uri};
 use serde_json::Value;
@@ -92,7 +92,7 @@ pub type Resolver<'a> = dyn FnMut(&str) -> Result<Vec<u8>> + 'a;
 /// # Errors
 /// Always.
 pub fn no_files(path: &str) -> Result<Vec<u8>> {
-    Err(Error::io(format!("`{path}` is not available")))
+    Err(Error::io(format!("{} is not available", quoted(path))))
 }
 
 /// Reads a GLB, glTF, VRM or VRMA; the kind is told by the bytes, not by a name.
@@ -155,12 +155,12 @@ fn check_asset(root: At<'_>) -> Result<()> {
     let version = asset.need("version")?;
     let text = version.str()?;
     if !text.starts_with("2.") {
-        return Err(version.unsupported(format!("glTF {} is not supported, only 2.0", text.escape_debug())));
+        return Err(version.unsupported(format!("glTF version {} is not supported, only 2.0", quoted(text))));
     }
     if let Some(least) = asset.get("minVersion")?
         && least.str()? != "2.0"
     {
-        let text = least.str()?.escape_debug();
+        let text = quoted(least.str()?);
         return Err(least.unsupported(format!("needs a reader of glTF {text}; this one reads 2.0")));
     }
     Ok(())
@@ -184,7 +184,7 @@ fn check_extensions(root: At<'_>) -> Result<()> {
     for required in root.list("extensionsRequired")? {
         let name = required.str()?;
         if !HARMLESS.iter().any(|prefix| name.starts_with(prefix)) {
-            let name = name.escape_debug();
+            let name = quoted(name);
             return Err(required.unsupported(format!("needs the extension {name}, which is not supported")));
         }
     }

@@ -1,6 +1,6 @@
 //! Files on disk: whole or not at all, and nothing from outside a glTF's folder.
 
-use sinew_formats::{ErrorKind, ReadOptions, load_gltf, read_bytes, write_atomic};
+use sinew_formats::{ErrorKind, ReadOptions, load_gltf, read_bytes, write_all_atomic, write_atomic};
 use std::fs;
 use std::path::PathBuf;
 
@@ -27,6 +27,19 @@ fn a_write_replaces_and_leaves_nothing_beside_it() {
     let mut left: Vec<_> = fs::read_dir(&folder).unwrap().map(|e| e.unwrap().file_name()).collect();
     left.sort();
     assert_eq!(left, ["a.json", "taken"]);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn of_several_files_none_appears_before_all_are_written() {
+    let folder = folder("several");
+    let (good, bad) = (folder.join("a"), folder.join("none/b"));
+    let error = write_all_atomic(&[(&good, "one"), (&bad, "two")]).unwrap_err();
+    assert_eq!(error.file, bad.display().to_string());
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+    write_all_atomic(&[(&good, "one"), (&folder.join("b"), "two")]).unwrap();
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
+    assert_eq!(read_bytes(&good).unwrap(), b"one");
     fs::remove_dir_all(folder).unwrap();
 }
 
