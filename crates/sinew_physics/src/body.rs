@@ -182,10 +182,11 @@ impl Body {
         0.5 * self.mass * self.velocity.linear.length_squared() + 0.5 * (w * self.inertia).dot(w)
     }
 
-    /// Half the largest distance from the centre of mass to the surface, roughly: turns rad/s into m/s.
+    /// Largest distance from the centre of mass to the surface, roughly: turns rad/s into m/s. 0 for static bodies,
+    /// which do not turn (and may reach to infinity).
     pub fn reach(&self) -> f32 {
         let mut reach = 0.0;
-        for shape in &self.shapes {
+        for shape in self.shapes.iter().filter(|_| self.kind != BodyKind::Static) {
             let r = shape.principal_from_shape.translation.length() + shape.shape.bounding_radius();
             reach = sinew_math::max(reach, r);
         }

@@ -14,6 +14,11 @@ pub(crate) struct ContactKey {
     pub shape_b: u32,
 }
 
+/// A pair of body indices, the smaller first.
+pub(crate) fn ordered(a: u32, b: u32) -> (u32, u32) {
+    if a < b { (a, b) } else { (b, a) }
+}
+
 /// Impulses of one manifold point over a substep, N·s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PointImpulse {
@@ -90,8 +95,9 @@ pub(crate) fn combine(a: &Material, b: &Material) -> Material {
     }
 }
 
-/// Penetration that is left alone: a contact at rest keeps touching. 5 mm, or 2 % of the smallest extent of either
-/// shape, so that small props are as solid as crates.
+/// Length that contacts are scaled by: 5 mm, or 2 % of the smallest extent of either shape, so that small props are as
+/// solid as crates. Points are looked for within 4 of it; a fifth of it is left overlapping, so that a contact at rest
+/// keeps touching (a dead zone of all of it lets piles settle deep).
 pub(crate) fn slop(smallest_extent: f32) -> f32 {
     sinew_math::min(0.005, 0.02 * smallest_extent)
 }

@@ -79,7 +79,7 @@ impl Islands {
     /// The smaller root wins, so that the result does not depend on the order of joining.
     fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
-        self.parent[a.max(b) as usize] = a.min(b);
+        self.parent[u32::max(a, b) as usize] = u32::min(a, b);
     }
 
     fn island_of(&mut self, body: u32) -> &mut Island {

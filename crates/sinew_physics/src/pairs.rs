@@ -3,7 +3,7 @@
 use crate::aabb::Aabb;
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::contact::{Contact, ContactKey};
+use crate::contact::{Contact, ContactKey, ordered};
 use crate::def::BodyKind;
 use sinew_math::Vec3;
 
@@ -143,5 +143,5 @@ fn may_collide(bodies: &Arena<Body>, no_collide: &[(u32, u32)], p: &Proxy, q: &P
         && a.shapes[p.shape as usize].filter.meets(b.shapes[q.shape as usize].filter)
         && !a.quarantined
         && !b.quarantined
-        && no_collide.binary_search(&(p.body.min(q.body), p.body.max(q.body))).is_err()
+        && no_collide.binary_search(&ordered(p.body, q.body)).is_err()
 }

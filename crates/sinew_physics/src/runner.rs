@@ -36,7 +36,7 @@ impl Threads {
 
 impl TaskRunner for Threads {
     fn run(&self, count: usize, task: &(dyn Fn() + Sync)) {
-        let threads = self.count.min(count);
+        let threads = usize::min(self.count, count);
         if threads <= 1 {
             return Serial.run(count, task);
         }

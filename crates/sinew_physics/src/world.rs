@@ -2,7 +2,7 @@
 
 use crate::arena::Arena;
 use crate::body::{Body, Velocity};
-use crate::contact::Contact;
+use crate::contact::{Contact, ordered};
 use crate::def::{BodyDef, BodyKind, JointCollision, JointDef, WorldDef};
 use crate::id::{BodyId, JointId};
 use crate::islands::Islands;
@@ -124,7 +124,7 @@ impl World {
     pub fn disable_pair(&mut self, a: BodyId, b: BodyId) {
         self.expect(a);
         self.expect(b);
-        let pair = (a.index.min(b.index), a.index.max(b.index));
+        let pair = ordered(a.index, b.index);
         if let Err(place) = self.disabled.binary_search(&pair) {
             self.disabled.insert(place, pair);
         }
@@ -337,7 +337,7 @@ impl World {
         let jointed = self.joints.iter().filter(|(_, joint)| joint.collision == JointCollision::Disabled);
         self.no_collide.clear();
         self.no_collide.extend_from_slice(&self.disabled);
-        self.no_collide.extend(jointed.map(|(_, joint)| (joint.a.min(joint.b), joint.a.max(joint.b))));
+        self.no_collide.extend(jointed.map(|(_, joint)| ordered(joint.a, joint.b)));
         self.no_collide.sort_unstable();
         self.no_collide.dedup();
     }

@@ -8,7 +8,7 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, combine, slop};
 use crate::islands::Island;
-use crate::joint::{Joint, JointGeometry, JointPose, JointRows};
+use crate::joint::{Joint, JointGeometry, JointPose, JointRows, MAX_LIMITS};
 use crate::shape::Shape;
 use crate::spatial::{ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
@@ -52,6 +52,7 @@ impl IslandSolver {
         self.refresh_inertia();
         self.factor_joints();
         self.copy_contacts(island, view);
+        self.limits.clear();
         self.choose_limits();
         self.refresh_response();
     }
@@ -193,6 +194,7 @@ impl IslandSolver {
                 friction_torque: joint.friction_torque,
                 pose,
                 limits: joint.limits,
+                limit_impulse: [0.0; MAX_LIMITS],
                 force: joint.force,
             });
             if !self.scratch.build.used[place] {

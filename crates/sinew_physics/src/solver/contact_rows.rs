@@ -101,7 +101,8 @@ pub(crate) struct ManifoldRows {
     a_moves: bool,
     b_moves: bool,
     material: Material,
-    slop: f32,
+    /// Overlap that is left alone, metres.
+    dead_zone: f32,
     soft: Softness,
     /// Of the present pose.
     separation: [f32; MAX_POINTS],
@@ -160,7 +161,7 @@ impl ManifoldRows {
             a_moves: source.a_moves,
             b_moves: source.b_moves,
             material: source.material,
-            slop: source.slop,
+            dead_zone: 0.2 * source.slop,
             soft: Softness::new(min(hertz, 0.25 / source.h), CONTACT_DAMPING, source.h),
             separation: [0.0; MAX_POINTS],
             rows: [Row::ZERO; MAX_POINTS],
@@ -295,7 +296,7 @@ impl ManifoldRows {
             let bias = if s > 0.0 {
                 s / h
             } else if biased {
-                max(self.soft.bias_rate * min(s + self.slop, 0.0), -PUSH_SPEED)
+                max(self.soft.bias_rate * min(s + self.dead_zone, 0.0), -PUSH_SPEED)
             } else {
                 0.0
             };

@@ -4,7 +4,7 @@ use super::response::Response;
 use super::sweep::Pass;
 use super::tree::{self, Link, NONE};
 use super::{IslandSolver, STICK_RATE, SolverJoint, advance};
-use crate::joint::{JointPose, JointRows, LimitImpulse, limit_states, rigid_error};
+use crate::joint::{JointPose, JointRows, LimitImpulse, MAX_LIMITS, limit_states, rigid_error};
 use crate::spatial::{Vec6, ZERO6, ZERO66, add_scaled, angular, dot, join, linear};
 use sinew_math::{Vec3, max, min};
 
@@ -12,6 +12,11 @@ use sinew_math::{Vec3, max, min};
 const LIMIT_PUSH: f32 = 4.0;
 /// A limit closer than this gets a row even at rest, radians.
 const LIMIT_MARGIN: f32 = 0.15;
+/// Most rounds of position corrections in a pass, and the error that needs none, m or rad.
+const POSITION_CORRECTIONS: usize = 6;
+const POSITION_TOLERANCE: f32 = 1e-6;
+/// A limit may end a substep this far beyond where it should, radians, before its row is tightened.
+const LIMIT_SLACK: f32 = 0.01;
 /// A hit turns linear speed into rotation over at least this lever, metres.
 const LEVER: f32 = 0.2;
 /// In `relax` a limit with less room than this holds, radians.
@@ -57,7 +62,7 @@ impl IslandSolver {
             link.rigid = rows.rigid;
             (link.child, link.parent_rows) = if child_is_b { (rows.b, rows.a) } else { (rows.a, rows.b) };
             // Dry friction as the viscosity τ/|ω| of the present rate: c λ = −h τ ω/|ω|, implicit, so it cannot overshoot.
-            let rate = angular_rate(&self.velocities, joint);
+            let rate = relative_rate(&self.velocities, joint).length();
             link.compliance = ZERO6;
             for row in link.rigid..link.rows {
                 link.compliance[row] = max(rate, STICK_RATE) / (joint.friction_torque * self.h);
@@ -94,12 +99,26 @@ impl IslandSolver {
         self.solve_trees();
     }
 
-    /// One SHAKE correction: the position error at the pose that the velocities lead to, removed with the same factor.
+    /// SHAKE: removes the position error at the pose that the velocities lead to, with the same factor, until it is
+    /// small enough (one or two rounds but for violent hits).
     pub(super) fn correct_positions(&mut self) {
         if self.joints.is_empty() {
             return;
         }
+        for _ in 0..POSITION_CORRECTIONS {
+            if self.predict_errors() < POSITION_TOLERANCE {
+                break;
+            }
+            self.scratch.impulses.clear();
+            self.scratch.impulses.resize(self.links.len(), ZERO6);
+            self.solve_trees();
+        }
+    }
+
+    /// Residuals that would remove the position errors at the predicted pose; gives the largest error (m or rad).
+    fn predict_errors(&mut self) -> f32 {
         let h = self.h;
+        let mut largest = 0.0;
         self.scratch.residuals.clear();
         for link in &self.links {
             let mut residual = ZERO6;
@@ -111,13 +130,12 @@ impl IslandSolver {
                 let error = rigid_error(&joint.geometry, &predicted);
                 for row in 0..link.rigid {
                     residual[row] = -error[row] / h;
+                    largest = max(largest, error[row].abs());
                 }
             }
             self.scratch.residuals.push(residual);
         }
-        self.scratch.impulses.clear();
-        self.scratch.impulses.resize(self.links.len(), ZERO6);
-        self.solve_trees();
+        largest
     }
 
     /// Adds to the velocities the answer of the trees to `scratch.impulses` and `scratch.residuals`.
@@ -158,7 +176,13 @@ impl IslandSolver {
 
     /// Rows for the limits that may be reached within the substep.
     pub(super) fn choose_limits(&mut self) {
-        self.limits.clear();
+        // Impulses of the substep so far go on counting, so that `relax` can take back what `solve` gave too much.
+        for joint in &mut self.joints {
+            joint.limit_impulse = [0.0; MAX_LIMITS];
+        }
+        for row in self.limits.drain(..) {
+            self.joints[row.joint as usize].limit_impulse[row.slot] += row.impulse;
+        }
         self.hit_rate = 0.0;
         if !self.manifolds.is_empty() {
             for v in &self.velocities[..self.links.len()] {
@@ -167,7 +191,7 @@ impl IslandSolver {
         }
         for (index, joint) in self.joints.iter().enumerate() {
             let states = limit_states(&joint.geometry.kind, joint.pose.relative());
-            let rate = max(angular_rate(&self.velocities, joint), self.hit_rate);
+            let rate = max(relative_rate(&self.velocities, joint).length(), self.hit_rate);
             let reach = LIMIT_MARGIN + 2.0 * self.h * rate;
             for (slot, state) in states.into_iter().enumerate() {
                 let Some(state) = state else { continue };
@@ -178,11 +202,42 @@ impl IslandSolver {
                         room: state.room,
                         axis: joint.pose.rotation_a * state.axis,
                         effective: 0.0,
-                        impulse: 0.0,
+                        rate: 0.0,
+                        foreseen: false,
+                        impulse: joint.limit_impulse[slot],
                     });
                 }
             }
         }
+    }
+
+    /// Looks where the velocities lead: a limit row is linear, and a limb that turns by much of a radian within the
+    /// substep may end up far beyond, or leave a cone on a side that its row does not face. For each such limit comes
+    /// one more row, linearised at the pose that the velocities lead to; the sweeps must then run again.
+    pub(super) fn tighten_limits(&mut self) -> bool {
+        let known = self.limits.len();
+        for i in 0..known {
+            let row = &self.limits[i];
+            let joint = &self.joints[row.joint as usize];
+            let pose = |body: u32| {
+                advance(&self.bodies[body as usize].pose, &self.velocities[body as usize], self.h)
+            };
+            let predicted = JointPose::new(&joint.geometry, &pose(joint.a), &pose(joint.b));
+            let Some(state) = limit_states(&joint.geometry.kind, predicted.relative())[row.slot] else {
+                continue;
+            };
+            let beyond = min(row.room, 0.0) - state.room;
+            if row.foreseen || beyond < LIMIT_SLACK {
+                continue;
+            }
+            let axis = predicted.rotation_a * state.axis;
+            let rate = axis.dot(relative_rate(&self.velocities, joint));
+            let mut row =
+                LimitRow { axis, rate: rate + beyond / self.h, impulse: 0.0, foreseen: true, ..row.clone() };
+            row.respond(&self.joints, &self.links, &self.response);
+            self.limits.push(row);
+        }
+        self.limits.len() > known
     }
 
     /// Limit impulses of this substep become memory.
@@ -193,13 +248,14 @@ impl IslandSolver {
             }
         }
         for row in &self.limits {
-            self.joints[row.joint as usize].limits[row.slot].now = row.impulse;
+            self.joints[row.joint as usize].limits[row.slot].now += row.impulse;
         }
     }
 }
 
-fn angular_rate(velocities: &[Vec6], joint: &SolverJoint) -> f32 {
-    (angular(&velocities[joint.b as usize]) - angular(&velocities[joint.a as usize])).length()
+/// Angular velocity of B seen from A, world axes.
+fn relative_rate(velocities: &[Vec6], joint: &SolverJoint) -> Vec3 {
+    angular(&velocities[joint.b as usize]) - angular(&velocities[joint.a as usize])
 }
 
 /// A limit near its stop: `axis · (ω_b − ω_a) ≥ −room/h`.
@@ -214,6 +270,10 @@ pub(super) struct LimitRow {
     pub axis: Vec3,
     /// Response of the row to its own impulse.
     effective: f32,
+    /// Rate that a foreseen row asks for, rad/s.
+    rate: f32,
+    /// Linearised at the end of the substep rather than at its start; lives through `solve` only.
+    foreseen: bool,
     /// Of this substep, ≥ 0.
     pub impulse: f32,
 }
@@ -241,8 +301,9 @@ impl LimitRow {
             return None;
         }
         let joint = &joints[self.joint as usize];
-        let w = angular(&velocities[joint.b as usize]) - angular(&velocities[joint.a as usize]);
+        let w = relative_rate(velocities, joint);
         let wanted = match pass {
+            Pass::Solve if self.foreseen => self.rate,
             Pass::Solve if self.room < 0.0 => min(-self.room / h, LIMIT_PUSH),
             Pass::Solve => -self.room / h,
             _ if self.room > LIMIT_TOUCH => -self.room / h,

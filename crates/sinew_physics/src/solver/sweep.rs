@@ -3,7 +3,7 @@
 //! joints hold exactly.
 
 use super::contact_rows::Push;
-use super::{IslandSolver, SWEEPS_FREE, SWEEPS_JOINTED};
+use super::{IslandSolver, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED};
 use crate::spatial::{ZERO6, add_scaled, linear};
 
 /// What a pass over the rows is for.
@@ -27,7 +27,11 @@ impl IslandSolver {
         let moving = self.links.len();
         self.scratch.before.clear();
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
-        let sweeps = if self.joints.is_empty() { SWEEPS_FREE } else { SWEEPS_JOINTED };
+        let sweeps = match (self.joints.is_empty(), pass) {
+            (false, _) => SWEEPS_JOINTED,
+            (true, Pass::Relax) => SWEEPS_FREE_RELAX,
+            (true, _) => SWEEPS_FREE,
+        };
         for _ in 0..sweeps {
             match pass {
                 Pass::Solve | Pass::Relax => self.visit_contacts(pass),
