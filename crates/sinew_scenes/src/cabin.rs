@@ -1,7 +1,7 @@
 //! The embedded world: a cabin whose porch ends in a flight of stairs, out of boxes.
 //!
-//! Metres, +Y up. The front edge of the porch is the line z = 0 at [`PORCH_HEIGHT`]; the stairs go down toward +Z and the
-//! cabin stands behind, at z < 0. Everything is static.
+//! Metres, +Y up. The front edge of the porch is the line z = 0 at [`PORCH_HEIGHT`]; the stairs go down toward +Z and
+//! the cabin stands behind, at z < 0. Everything is static.
 
 use sinew::math::{Rotation, Transform, Vec3, trig};
 use sinew::physics::def::{BodyDef, BodyKind};

@@ -239,7 +239,8 @@ fn shoe() -> (Loft, Chain) {
     (loft, chain)
 }
 
-/// A section across the arm or hand: distance from the start, half-width toward the thumb, half-thickness toward the palm.
+/// A section across the arm or hand: distance from the start, half-width toward the thumb, half-thickness toward the
+/// palm.
 type Across = [f32; 3];
 
 fn across(origin: Vec3, along: Vec3, table: &[Across]) -> Vec<Section> {

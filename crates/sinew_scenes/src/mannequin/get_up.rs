@@ -40,6 +40,22 @@ fn lifted(ankle: Vec3, pitch: f32, knee_out: f32) -> Foot {
 
 /// From the back: sit up on both hands, draw the feet in, rock forward into a squat, stand.
 pub(super) fn from_back() -> Clip {
+    let [lying, curling, sitting] = sitting_up();
+    let [pushing, squatting, rising, nearly] = standing_up(sitting);
+    let postures = [
+        (0.0, lying),
+        (0.45, curling),
+        (0.9, sitting),
+        (1.2, pushing),
+        (1.6, squatting),
+        (2.0, rising),
+        (2.4, nearly),
+        (2.8, Posture::standing()),
+    ];
+    clip("get_up_supine", &postures.map(|(at, posture)| Key { at, posture }))
+}
+
+fn sitting_up() -> [Posture; 3] {
     let lying = Posture {
         pelvis: v(0.0, 0.122, -0.44),
         pelvis_turn: lean(-90.0),
@@ -74,11 +90,15 @@ pub(super) fn from_back() -> Clip {
         left_hand: palm(0.34, -0.62, 10.0, 50.0),
         right_hand: palm(-0.34, -0.62, 10.0, 50.0),
     };
+    [lying, curling, sitting]
+}
+
+fn standing_up(sitting: Posture) -> [Posture; 4] {
     let pushing = Posture {
         pelvis: v(-0.02, 0.15, -0.41),
-        pelvis_turn: v(2.0, -8.0, 10.0),
-        spine: lean(8.0),
-        chest: lean(8.0),
+        pelvis_turn: v(-15.0, -8.0, 10.0),
+        spine: lean(20.0),
+        chest: lean(12.0),
         left_foot: Foot { knee_out: 20.0, ..Foot::flat(Left, 0.11, 0.0, 8.0) },
         right_foot: Foot { knee_out: 20.0, ..Foot::flat(Right, -0.12, 0.02, 8.0) },
         left_hand: hand(0.28, 0.50, -0.02, 0.0),
@@ -87,10 +107,10 @@ pub(super) fn from_back() -> Clip {
     };
     let squatting = Posture {
         pelvis: v(0.0, 0.37, -0.23),
-        pelvis_turn: lean(36.0),
-        spine: lean(8.0),
-        chest: lean(6.0),
-        neck: lean(-14.0),
+        pelvis_turn: lean(18.0),
+        spine: lean(20.0),
+        chest: lean(14.0),
+        neck: lean(-16.0),
         head: lean(-12.0),
         left_foot: Foot { knee_out: 24.0, ..Foot::on_ball(Left, 0.105, 0.0, 8.0, 8.0) },
         right_foot: Foot { knee_out: 24.0, ..Foot::on_ball(Right, -0.108, 0.0, 8.0, 12.0) },
@@ -99,7 +119,9 @@ pub(super) fn from_back() -> Clip {
     };
     let rising = Posture {
         pelvis: v(0.0, 0.62, -0.15),
-        pelvis_turn: lean(40.0),
+        pelvis_turn: lean(34.0),
+        spine: lean(12.0),
+        chest: lean(8.0),
         left_foot: Foot { knee_out: 14.0, ..Posture::standing().left_foot },
         right_foot: Foot { knee_out: 14.0, ..Posture::standing().right_foot },
         left_hand: hand(0.20, 0.58, 0.22, 10.0),
@@ -116,21 +138,28 @@ pub(super) fn from_back() -> Clip {
         ..rising
     }
     .with_arms(Hanging { forward: 16.0, out: 10.0, elbow: 26.0 });
-    let postures = [
-        (0.0, lying),
-        (0.45, curling),
-        (0.9, sitting),
-        (1.2, pushing),
-        (1.6, squatting),
-        (2.0, rising),
-        (2.4, nearly),
-        (2.8, Posture::standing()),
-    ];
-    clip("get_up_supine", &postures.map(|(at, posture)| Key { at, posture }))
+    [pushing, squatting, rising, nearly]
 }
 
 /// From the face: press the chest up, rise onto the knees, plant the left foot, rise over it.
 pub(super) fn from_face() -> Clip {
+    let [lying, pressing, drawing_in, on_all_fours] = pressing_up();
+    let [stepping, half_kneeling, rising, nearly] = stepping_up(on_all_fours);
+    let postures = [
+        (0.0, lying),
+        (0.45, pressing),
+        (0.75, drawing_in),
+        (1.05, on_all_fours),
+        (1.4, stepping),
+        (1.75, half_kneeling),
+        (2.15, rising),
+        (2.55, nearly),
+        (2.9, Posture::standing()),
+    ];
+    clip("get_up_prone", &postures.map(|(at, posture)| Key { at, posture }))
+}
+
+fn pressing_up() -> [Posture; 4] {
     let lying = Posture {
         pelvis: v(0.0, 0.112, 0.0),
         pelvis_turn: lean(90.0),
@@ -140,8 +169,8 @@ pub(super) fn from_face() -> Clip {
         head: v(0.0, 45.0, 0.0),
         left_foot: lifted(v(0.12, 0.082, -0.88), 152.0, 8.0),
         right_foot: lifted(v(-0.12, 0.082, -0.88), 152.0, 8.0),
-        left_hand: palm(0.34, 0.31, 0.0, 60.0),
-        right_hand: palm(-0.34, 0.31, 0.0, 60.0),
+        left_hand: palm(0.34, 0.40, 0.0, -35.0),
+        right_hand: palm(-0.34, 0.40, 0.0, -35.0),
     };
     let pressing = Posture {
         pelvis: v(0.0, 0.150, -0.03),
@@ -150,14 +179,14 @@ pub(super) fn from_face() -> Clip {
         chest: lean(-12.0),
         neck: lean(-12.0),
         head: lean(-8.0),
-        left_hand: palm(0.34, 0.31, 0.0, 40.0),
-        right_hand: palm(-0.34, 0.31, 0.0, 40.0),
+        left_hand: palm(0.34, 0.40, 0.0, 10.0),
+        right_hand: palm(-0.34, 0.40, 0.0, 10.0),
         ..lying
     }
     .with_knee_down(Left, 0.12, 0.205, 118.0, 20.0)
     .with_knee_down(Right, -0.12, 0.205, 118.0, 20.0);
     let drawing_in = Posture {
-        pelvis: v(0.0, 0.33, -0.14),
+        pelvis: v(0.0, 0.33, -0.12),
         pelvis_turn: lean(82.0),
         spine: lean(0.0),
         chest: lean(-4.0),
@@ -166,7 +195,7 @@ pub(super) fn from_face() -> Clip {
     .with_knee_down(Left, 0.12, 0.195, 88.0, 40.0)
     .with_knee_down(Right, -0.12, 0.195, 88.0, 40.0);
     let on_all_fours = Posture {
-        pelvis: v(0.0, 0.465, -0.28),
+        pelvis: v(0.0, 0.465, -0.23),
         pelvis_turn: lean(84.0),
         spine: lean(6.0),
         chest: lean(2.0),
@@ -174,21 +203,25 @@ pub(super) fn from_face() -> Clip {
     }
     .with_knee_down(Left, 0.12, 0.172, 65.0, 62.0)
     .with_knee_down(Right, -0.12, 0.172, 65.0, 62.0);
+    [lying, pressing, drawing_in, on_all_fours]
+}
+
+fn stepping_up(on_all_fours: Posture) -> [Posture; 4] {
     let stepping = Posture {
-        pelvis: v(-0.02, 0.485, -0.27),
-        pelvis_turn: v(74.0, 0.0, 8.0),
-        spine: lean(14.0),
-        chest: lean(10.0),
+        pelvis: v(-0.02, 0.50, -0.24),
+        pelvis_turn: v(66.0, 0.0, 8.0),
+        spine: lean(18.0),
+        chest: lean(14.0),
         left_foot: lifted(v(0.17, 0.19, -0.36), 35.0, 14.0),
-        left_hand: Hand { flat: 0.8, ..hand(0.30, 0.20, 0.30, 10.0) },
-        right_hand: palm(-0.30, 0.31, 0.0, 30.0),
+        left_hand: Hand { flat: 0.8, ..hand(0.31, 0.20, 0.34, 10.0) },
+        right_hand: palm(-0.34, 0.40, 0.0, 10.0),
         ..on_all_fours
     };
     let half_kneeling = Posture {
-        pelvis: v(0.0, 0.475, -0.27),
-        pelvis_turn: lean(40.0),
-        spine: lean(12.0),
-        chest: lean(6.0),
+        pelvis: v(0.0, 0.475, -0.26),
+        pelvis_turn: lean(24.0),
+        spine: lean(16.0),
+        chest: lean(10.0),
         neck: lean(-12.0),
         head: lean(-10.0),
         left_foot: Posture::standing().left_foot,
@@ -198,7 +231,7 @@ pub(super) fn from_face() -> Clip {
     };
     let rising = Posture {
         pelvis: v(0.02, 0.66, -0.17),
-        pelvis_turn: lean(32.0),
+        pelvis_turn: lean(26.0),
         left_hand: hand(0.18, 0.64, 0.18, 5.0),
         right_hand: hand(-0.25, 0.60, 0.10, 5.0),
         ..half_kneeling
@@ -214,16 +247,5 @@ pub(super) fn from_face() -> Clip {
         ..rising
     }
     .with_arms(Hanging { forward: 14.0, out: 9.0, elbow: 28.0 });
-    let postures = [
-        (0.0, lying),
-        (0.45, pressing),
-        (0.75, drawing_in),
-        (1.05, on_all_fours),
-        (1.4, stepping),
-        (1.75, half_kneeling),
-        (2.15, rising),
-        (2.55, nearly),
-        (2.9, Posture::standing()),
-    ];
-    clip("get_up_prone", &postures.map(|(at, posture)| Key { at, posture }))
+    [stepping, half_kneeling, rising, nearly]
 }

@@ -44,8 +44,8 @@ pub(super) struct Key {
     pub(super) posture: Posture,
 }
 
-/// The posture at `time` between keys in order of time: every number by [`monotone`], so that what holds still between two
-/// keys (a planted hand) holds still exactly.
+/// The posture at `time` between keys in order of time: every number by [`monotone`], so that what holds still between
+/// two keys (a planted hand) holds still exactly.
 pub(super) fn between(keys: &[Key], time: f32) -> Posture {
     let times: Vec<f32> = keys.iter().map(|key| key.at).collect();
     let mut result = keys[0].posture;

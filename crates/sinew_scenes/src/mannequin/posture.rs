@@ -286,8 +286,8 @@ impl Limb {
         })
     }
 
-    /// World rotations of the two bones that bring the limb's end to `target`, given from its root, with the hinge's axis
-    /// as near `hinge` as the way there allows. A target out of reach is approached; the limb never stretches fully.
+    /// World rotations of the two bones that bring the limb's end to `target`, given from its root, with the hinge's
+    /// axis as near `hinge` as the way there allows. A target out of reach is approached; the limb never stretches fully.
     fn reach(&self, target: Vec3, hinge: Vec3) -> (Rotation, Rotation) {
         let (a, b) = (self.upper.length(), self.lower.length());
         let along = normalize_or(target, Vec3::NEG_Y);
