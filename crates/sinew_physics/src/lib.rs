@@ -26,6 +26,7 @@ mod draw;
 pub mod id;
 mod joint;
 mod mass;
+pub mod particles;
 mod query;
 pub mod ray;
 pub mod runner;

@@ -197,7 +197,7 @@ fn push_closest(a: &Obb, b: &Obb, fallback: Vec3, margin: f32, tolerance: f32, o
         return;
     }
     // The direction between points that all but coincide is noise.
-    let precise = separation > 1e-4 * (a.half + b.half).length();
+    let precise = separation > 2e-5 * (a.half + b.half).length();
     out.normal = if precise { best.span() / separation } else { fallback };
 
     // Parallel edges are equally close along a line, at whose ends there are corners.

@@ -138,8 +138,28 @@ impl ParticleGroup {
             if self.attachment_of[i] == u32::MAX {
                 self.touches[i] = self.slow_contact(i, h, obstacles, bodies);
             }
+        }
+        self.leave_light_bodies(bodies);
+        for i in 0..self.positions.len() {
             if self.touches[i].is_none() {
                 self.grips[i] = Grip::Off;
+            }
+        }
+    }
+
+    /// Each particle is solved as if it alone pushed the body. Where those that touch it outweigh it, their sum would
+    /// push it too far: such contacts are left to the impacts, which come one after the other.
+    fn leave_light_bodies(&mut self, bodies: &[ObstacleBody]) {
+        self.loads.clear();
+        self.loads.resize(bodies.len(), 0.0);
+        for (touch, mass) in self.touches.iter().zip(&self.masses) {
+            if let Some(touch) = touch {
+                self.loads[touch.body] += mass;
+            }
+        }
+        for slot in &mut self.touches {
+            if slot.is_some_and(|touch| self.loads[touch.body] * bodies[touch.body].inverse_mass > 1.0) {
+                *slot = None;
             }
         }
     }

@@ -142,7 +142,7 @@ impl GroupDef {
     pub fn check(&self) -> Result<(), &'static str> {
         // Written so that NaN fails.
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
-        let not_negative = |x: f32| x >= 0.0 && x < f32::INFINITY;
+        let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
         let count = self.particles.len();
         let known = |index: u32| (index as usize) < count;
         for p in &self.particles {

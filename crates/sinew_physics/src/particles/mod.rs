@@ -70,6 +70,8 @@ pub struct ParticleGroup {
     reactions: Vec<Vec3>,
     /// What each particle touches in this substep.
     touches: Vec<Option<Touch>>,
+    /// Mass of the particles that touch each body.
+    loads: Vec<f32>,
     /// Gravity of the last substep, scaled.
     gravity: Vec3,
 }
@@ -105,6 +107,7 @@ impl ParticleGroup {
             body_impulses: Vec::new(),
             reactions: Vec::new(),
             touches: Vec::new(),
+            loads: Vec::new(),
             gravity: Vec3::ZERO,
         };
         group.derive();

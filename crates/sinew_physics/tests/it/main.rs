@@ -1,4 +1,9 @@
 //! Integration tests of the world, held against closed forms and brute force.
 
+mod build;
+mod closed_forms;
 mod collide;
+mod humanoid;
+mod particles;
 mod ray;
+mod trees;
