@@ -1,14 +1,25 @@
 //! From a rig to a ragdoll, and back to a clip. The only crate that knows physics **and** animation.
 #![forbid(unsafe_code)]
 
+pub mod bake;
 pub mod build;
+pub mod character;
 pub mod def;
 pub mod filter;
 pub mod fit;
+pub mod hand_over;
 pub mod limits;
+pub mod mapping;
 pub mod masses;
+pub mod quality;
+pub mod ragdoll;
 
+pub use bake::{BakeInput, Baked, Hit, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
+pub use character::{AfterSettling, Character, CharacterDef, Event, Locomotion, State};
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 pub use fit::ShapeChoice;
+pub use mapping::Mapping;
 pub use masses::de_leva::Sex;
+pub use quality::{DropReport, Quality, QualityMeter, Verdict, drop_test, gate};
+pub use ragdoll::{BodyState, Flesh, Ragdoll};

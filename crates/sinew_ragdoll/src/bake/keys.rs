@@ -1,0 +1,52 @@
+//! Poses over time as channels of a clip.
+
+use super::Frame;
+use sinew_anim::{Channel, Clip, Interpolation, JointIdx, LocalTransform, Property, Rig};
+use sinew_math::Rotation;
+
+/// Linear channels for what differs from the rest pose in any frame: joints without a channel stay in their rest pose.
+pub(super) fn clip(rig: &Rig, name: &str, frames: &[Frame]) -> Clip {
+    let times: Vec<f32> = frames.iter().map(|frame| frame.time).collect();
+    let mut channels = Vec::new();
+    for (joint, node) in rig.joints.iter().enumerate() {
+        for property in [Property::Translation, Property::Rotation, Property::Scale] {
+            if frames.iter().any(|frame| differs(property, &frame.pose[joint], &node.rest)) {
+                channels.push(Channel {
+                    joint,
+                    property,
+                    interpolation: Interpolation::Linear,
+                    times: times.clone(),
+                    values: values(frames, joint, property),
+                });
+            }
+        }
+    }
+    Clip { name: name.to_owned(), duration: times.last().copied().unwrap_or(0.0), channels }
+}
+
+fn values(frames: &[Frame], joint: JointIdx, property: Property) -> Vec<f32> {
+    let mut values = Vec::with_capacity(frames.len() * property.width());
+    let mut last: Option<Rotation> = None;
+    for frame in frames {
+        let local = &frame.pose[joint];
+        match property {
+            Property::Translation => values.extend(local.translation.to_array()),
+            Property::Scale => values.extend(local.scale.to_array()),
+            Property::Rotation => {
+                // Players that blend keys by component must not go the long way round.
+                let q = last.map_or(local.rotation, |last| local.rotation.toward(last));
+                values.extend([q.x, q.y, q.z, q.w]);
+                last = Some(q);
+            }
+        }
+    }
+    values
+}
+
+fn differs(property: Property, a: &LocalTransform, b: &LocalTransform) -> bool {
+    match property {
+        Property::Translation => a.translation != b.translation,
+        Property::Rotation => a.rotation != b.rotation.toward(a.rotation),
+        Property::Scale => a.scale != b.scale,
+    }
+}

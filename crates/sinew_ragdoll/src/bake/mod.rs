@@ -1,0 +1,278 @@
+//! A simulated stretch of a character's life, back as a clip on the user's own rig.
+
+mod keys;
+
+use crate::character::{Character, CharacterDef, Event, State};
+use crate::quality::{Quality, QualityMeter};
+use sinew_anim::{Clip, LocalTransform};
+use sinew_math::{Affine, Transform, Vec3, clamp};
+use sinew_physics::{BodyDef, World, WorldDef};
+use std::sync::Arc;
+
+/// A push at a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Seconds from the start.
+    pub time: f32,
+    /// Body, by index in the definition.
+    pub body: usize,
+    /// N·s, world axes, at the body's centre of mass.
+    pub impulse: Vec3,
+}
+
+/// What is to be simulated.
+#[derive(Clone, Debug)]
+pub struct BakeInput<'a> {
+    /// The character.
+    pub character: Arc<CharacterDef>,
+    /// Where it starts.
+    pub world_from_character: Transform,
+    /// Seconds into its looped clip at the start. Default 0.
+    pub phase: f32,
+    /// Settings of the world. Its step is the simulation's.
+    pub world: WorldDef,
+    /// What is in the world.
+    pub bodies: &'a [BodyDef],
+    /// Pushes, in any order.
+    pub hits: &'a [Hit],
+    /// When it goes limp without being pushed, seconds; `None`: only by a hit.
+    pub limp_at: Option<f32>,
+    /// Length, seconds.
+    pub seconds: f32,
+    /// Frames per second of the clip, at least 1.
+    pub fps: f32,
+    /// Name of the clip.
+    pub name: &'a str,
+}
+
+impl<'a> BakeInput<'a> {
+    /// Ten seconds at 30 frames a second at the world's origin, nothing in the world and nothing done.
+    pub fn new(character: Arc<CharacterDef>) -> Self {
+        Self {
+            character,
+            world_from_character: Transform::IDENTITY,
+            phase: 0.0,
+            world: WorldDef::default(),
+            bodies: &[],
+            hits: &[],
+            limp_at: None,
+            seconds: 10.0,
+            fps: 30.0,
+            name: "sinew",
+        }
+    }
+}
+
+/// A frame of a bake.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Seconds.
+    pub time: f32,
+    /// What decided the pose.
+    pub state: State,
+    /// Local transform of every joint; see [`Baked::world_from_model`].
+    pub pose: Vec<LocalTransform>,
+}
+
+/// The result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Baked {
+    /// Linear keys at the frame rate, for every joint that moves: rotations, and translations where they change. It
+    /// starts where the file's character stands, and all root motion is in the pelvis.
+    pub clip: Clip,
+    /// The frames that the clip was made of.
+    pub frames: Vec<Frame>,
+    /// From the model space of the file to the world, the same for all frames.
+    pub world_from_model: Affine,
+    /// The figures.
+    pub quality: Quality,
+    /// What happened when, seconds.
+    pub events: Vec<(f32, Event)>,
+    /// Number of bodies of the ragdoll.
+    pub bodies: usize,
+    /// Steps that were simulated.
+    pub steps: u64,
+    /// Hash of the world's snapshot at the end.
+    pub hash: u64,
+}
+
+/// Runs a character through a world. The same bits on every target and for every frame rate.
+///
+/// # Panics
+/// If a number is not finite, `fps` is below 1, or a hit names a body that is not there.
+pub fn bake(input: &BakeInput<'_>) -> Baked {
+    assert!(input.seconds.is_finite() && input.fps >= 1.0, "a bake has a length and a frame rate");
+    assert!(input.hits.iter().all(|hit| hit.time.is_finite()), "hits have a time");
+    let mut run = Run::new(input);
+    let mut frames = Frames::new(input);
+    frames.add_until(&run);
+    while run.time() < input.seconds {
+        run.step();
+        frames.add_until(&run);
+    }
+    Baked {
+        clip: keys::clip(&input.character.rig, input.name, &frames.list),
+        frames: frames.list,
+        world_from_model: input.character.mapping().world_from_model(input.world_from_character),
+        quality: run.meter.quality(),
+        events: run.events,
+        bodies: input.character.ragdoll.bodies.len(),
+        steps: run.world.step_count(),
+        hash: run.world.hash(),
+    }
+}
+
+/// A bake on its way.
+struct Run {
+    world: World,
+    character: Character,
+    meter: QualityMeter,
+    /// Not yet done, the latest first.
+    pending: Vec<(f32, Push)>,
+    events: Vec<(f32, Event)>,
+}
+
+/// What is done to the character at a moment.
+#[derive(Clone, Copy)]
+enum Push {
+    Limp,
+    Hit { body: usize, impulse: Vec3 },
+}
+
+impl Run {
+    fn new(input: &BakeInput<'_>) -> Self {
+        let mut world = World::new(input.world.clone());
+        for body in input.bodies {
+            world.add_body(body);
+        }
+        let hits =
+            input.hits.iter().map(|hit| (hit.time, Push::Hit { body: hit.body, impulse: hit.impulse }));
+        let mut pending: Vec<_> =
+            input.limp_at.map(|time| (time, Push::Limp)).into_iter().chain(hits).collect();
+        // Stable, so that pushes at one moment keep their order.
+        pending.sort_by(|a, b| a.0.total_cmp(&b.0));
+        pending.reverse();
+        let mut run = Self {
+            world,
+            character: Character::new(input.character.clone(), input.world_from_character, input.phase),
+            meter: QualityMeter::new(&input.character.ragdoll, input.seconds),
+            pending,
+            events: Vec::new(),
+        };
+        run.push_due();
+        run
+    }
+
+    fn time(&self) -> f32 {
+        self.world.time() as f32
+    }
+
+    /// One step of the world, and what is due at its end.
+    fn step(&mut self) {
+        self.meter.before_step(&self.world);
+        self.world.step();
+        if let Some(ragdoll) = self.character.ragdoll() {
+            self.meter.after_step(&self.world, ragdoll);
+        }
+        self.character.update(&mut self.world);
+        self.note_events(0);
+        self.push_due();
+    }
+
+    /// Pushes whose time has come.
+    fn push_due(&mut self) {
+        let noted = self.character.events().len();
+        // Half a step early is nearer than half a step late.
+        let now = self.time() + 0.5 * self.world.def().dt();
+        while let Some(&(time, push)) = self.pending.last().filter(|(time, _)| *time <= now) {
+            debug_assert!(time <= now);
+            self.pending.pop();
+            let was_limp = self.character.state() == State::Limp;
+            match push {
+                Push::Limp => self.character.go_limp(&mut self.world),
+                Push::Hit { body, impulse } => {
+                    let work = self.character.hit(&mut self.world, body, impulse);
+                    self.meter.pushed(work);
+                }
+            }
+            if !was_limp {
+                self.meter.went_limp();
+            }
+        }
+        self.note_events(noted);
+    }
+
+    /// Keeps the character's events from the `first` on.
+    fn note_events(&mut self, first: usize) {
+        let time = self.time();
+        for &event in &self.character.events()[first..] {
+            if event == Event::Up {
+                self.meter.got_up(&self.world);
+            }
+            self.events.push((time, event));
+        }
+    }
+}
+
+/// Frames at their own rate out of the steps at theirs.
+struct Frames {
+    list: Vec<Frame>,
+    fps: f32,
+    seconds: f32,
+    world_from_character: Transform,
+    /// Pose and time of the last step, for the frames between it and the next.
+    last: Vec<LocalTransform>,
+    last_time: f32,
+    now: Vec<LocalTransform>,
+}
+
+impl Frames {
+    fn new(input: &BakeInput<'_>) -> Self {
+        Self {
+            list: Vec::with_capacity(1 + (clamp(input.seconds, 0.0, 3600.0) * input.fps) as usize),
+            fps: input.fps,
+            seconds: input.seconds,
+            world_from_character: input.world_from_character,
+            last: Vec::new(),
+            last_time: 0.0,
+            now: Vec::new(),
+        }
+    }
+
+    /// Adds the frames between the last step and the present one.
+    fn add_until(&mut self, run: &Run) {
+        let character = &run.character;
+        let time = run.time();
+        self.now.clear();
+        self.now.extend_from_slice(character.pose());
+        // All frames are seen from where the character started.
+        character.def().mapping().reframe(
+            &mut self.now,
+            character.world_from_character(),
+            self.world_from_character,
+        );
+        if self.last.is_empty() {
+            self.last.clone_from(&self.now);
+        }
+        loop {
+            let at = self.list.len() as f32 / self.fps;
+            if at > time || at > self.seconds {
+                break;
+            }
+            let span = time - self.last_time;
+            let t = if span > 0.0 { clamp((at - self.last_time) / span, 0.0, 1.0) } else { 1.0 };
+            let pose = self.last.iter().zip(&self.now).map(|(a, b)| between(a, b, t)).collect();
+            self.list.push(Frame { time: at, state: character.state(), pose });
+        }
+        core::mem::swap(&mut self.last, &mut self.now);
+        self.last_time = time;
+    }
+}
+
+fn between(a: &LocalTransform, b: &LocalTransform, t: f32) -> LocalTransform {
+    LocalTransform {
+        translation: a.translation * (1.0 - t) + b.translation * t,
+        rotation: a.rotation.nlerp(b.rotation, t),
+        scale: a.scale * (1.0 - t) + b.scale * t,
+    }
+}

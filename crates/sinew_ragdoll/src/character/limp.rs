@@ -1,0 +1,109 @@
+//! Going limp at the speed of the animation, and lying still.
+
+use super::{AfterSettling, Character, Event, State};
+use crate::hand_over::body_velocity;
+use crate::ragdoll::{BodyState, Ragdoll};
+use sinew_physics::{BodyId, World};
+
+/// Half the time between the two poses that the hand-over takes velocities from, seconds: short against any motion,
+/// long against rounding.
+const HAND_OVER: f32 = 1.0 / 240.0;
+
+/// A body below both speeds lies still, m/s and rad/s.
+pub(crate) const STILL_LINEAR: f32 = 0.02;
+pub(crate) const STILL_ANGULAR: f32 = 0.05;
+/// Seconds that all bodies must be still.
+pub(crate) const STILL_TIME: f32 = 0.5;
+
+/// How long a limp character has been still.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Stillness {
+    /// Steps since it went limp.
+    pub steps: u32,
+    /// Steps for which every body has been slow.
+    pub calm_steps: u32,
+    pub settled: bool,
+    pub touched: bool,
+}
+
+impl Character {
+    /// Lets the bodies take over, at the pose and the speed that the animation has now. Nothing happens if they did
+    /// already.
+    pub fn go_limp(&mut self, world: &mut World) {
+        if self.state == State::Limp {
+            return;
+        }
+        let (mut before, mut after) =
+            (core::mem::take(&mut self.scratch.before), core::mem::take(&mut self.scratch.after));
+        self.animated_bodies(-HAND_OVER, &mut before);
+        self.animated_bodies(HAND_OVER, &mut after);
+        let velocities: Vec<_> = before
+            .iter()
+            .zip(&after)
+            .zip(&self.def.ragdoll.bodies)
+            .map(|((&before, &after), body)| {
+                body_velocity(before, after, body.mass.center, 2.0 * HAND_OVER, self.def.speed_bound)
+            })
+            .collect();
+        self.animate();
+        self.bodies_of_pose(self.world_from_character, &mut after);
+        let states: Vec<_> = after
+            .iter()
+            .zip(velocities)
+            .map(|(&world_from_body, velocity)| BodyState { world_from_body, velocity })
+            .collect();
+        self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
+        self.ragdoll = Some(Ragdoll::spawn(world, &self.def.ragdoll, &states, &self.def.flesh));
+        self.state = State::Limp;
+        self.stillness = Stillness::default();
+        self.events.push(Event::WentLimp);
+        (self.scratch.before, self.scratch.after) = (before, after);
+    }
+
+    /// Takes the pose from the bodies and waits until they lie still.
+    pub(super) fn follow_bodies(&mut self, world: &mut World) {
+        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
+        ragdoll.poses(world, &mut self.scratch.after);
+        self.physical.pose(
+            self.def.mapping(),
+            &self.def.rig,
+            self.world_from_character,
+            &self.scratch.after,
+            &mut self.pose,
+        );
+        let dt = world.def().dt();
+        let still = &mut self.stillness;
+        still.steps += 1;
+        if !still.touched && touches_world(world, &ragdoll.bodies) {
+            still.touched = true;
+            self.events.push(Event::Touched);
+        }
+        still.calm_steps = if is_still(world, &ragdoll.bodies) { still.calm_steps + 1 } else { 0 };
+        let calm = still.calm_steps as f32 * dt;
+        if !still.settled && calm >= STILL_TIME {
+            still.settled = true;
+            self.events.push(Event::Settled { since: world.time() as f32 - calm });
+        }
+        let impatient = !still.settled && still.steps as f32 * dt >= self.def.patience;
+        if self.def.after_settling == AfterSettling::GetUp && (still.settled || impatient) {
+            if impatient {
+                self.events.push(Event::NeverSettled);
+            }
+            self.get_up(world);
+        }
+    }
+}
+
+/// Whether every body is slower than what counts as still.
+pub(crate) fn is_still(world: &World, bodies: &[BodyId]) -> bool {
+    bodies.iter().all(|&body| {
+        let velocity = world.velocity(body);
+        velocity.linear.length() < STILL_LINEAR && velocity.angular.length() < STILL_ANGULAR
+    })
+}
+
+/// Whether one of the bodies began to touch something else in the last step.
+pub(crate) fn touches_world(world: &World, bodies: &[BodyId]) -> bool {
+    let own = |body: &BodyId| bodies.contains(body);
+    world.events().begin.iter().any(|(a, b)| own(a) != own(b))
+}

@@ -1,0 +1,184 @@
+//! A character: animated until something knocks it over, limp until it lies still, getting up, animated again.
+//!
+//! The host steps the world, then calls [`Character::update`]; poses and bodies are those of the same moment.
+
+mod animate;
+mod def;
+mod get_up;
+mod ground;
+mod limp;
+mod save;
+
+pub(crate) use limp::{STILL_TIME, is_still, touches_world};
+
+pub use def::{AfterSettling, CharacterDef, Locomotion};
+
+use crate::mapping::Physical;
+use crate::ragdoll::Ragdoll;
+use animate::Motion;
+use limp::Stillness;
+use sinew_anim::LocalTransform;
+use sinew_math::{Affine, Transform, Vec3};
+use sinew_physics::World;
+use std::sync::Arc;
+
+/// What decides the character's pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// A clip; the character has no bodies in the world.
+    Animated,
+    /// Its bodies.
+    Limp,
+    /// A get-up clip, faded in from where the bodies lay.
+    GettingUp,
+}
+
+/// Something that happened to a character.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// It was pushed.
+    Hit {
+        /// Which body, by index in the definition.
+        body: usize,
+    },
+    /// Its bodies took over.
+    WentLimp,
+    /// The first of its bodies touched something of the world since it went limp.
+    Touched,
+    /// It lies still.
+    Settled {
+        /// When it began to lie still, seconds of the world's time.
+        since: f32,
+    },
+    /// It did not come to rest in the time it was given.
+    NeverSettled,
+    /// It began to get up.
+    GettingUp {
+        /// Index of the clip; `None`: it has none that fits, and fades to standing.
+        clip: Option<usize>,
+    },
+    /// It is animated again.
+    Up,
+}
+
+/// A character in a world.
+#[derive(Clone, Debug)]
+pub struct Character {
+    def: Arc<CharacterDef>,
+    state: State,
+    motion: Motion,
+    world_from_character: Transform,
+    /// Velocity of the character's origin, m/s: what the ground and the locomotion did to it in the last step.
+    root_velocity: Vec3,
+    pose: Vec<LocalTransform>,
+    ragdoll: Option<Ragdoll>,
+    stillness: Stillness,
+    events: Vec<Event>,
+    physical: Physical,
+    scratch: Scratch,
+}
+
+/// Buffers that are kept to be used again; they hold nothing from one call to the next.
+#[derive(Clone, Debug, Default)]
+struct Scratch {
+    pose: Vec<LocalTransform>,
+    model: Vec<Affine>,
+    before: Vec<Transform>,
+    after: Vec<Transform>,
+}
+
+impl Character {
+    /// An animated character that stands at `world_from_character` (metres, its +Y up, +Z the way it faces), `phase`
+    /// seconds into its looped clip.
+    pub fn new(def: Arc<CharacterDef>, world_from_character: Transform, phase: f32) -> Self {
+        let rest = def.rest().to_vec();
+        let mut character = Self {
+            state: State::Animated,
+            motion: Motion::looping(&def, phase),
+            world_from_character,
+            root_velocity: animate::locomotion(&def, world_from_character.rotation),
+            scratch: Scratch { pose: rest.clone(), ..Scratch::default() },
+            pose: rest,
+            ragdoll: None,
+            stillness: Stillness::default(),
+            events: Vec::new(),
+            physical: Physical::default(),
+            def,
+        };
+        character.animate();
+        character
+    }
+
+    /// What it shares with its kind.
+    pub fn def(&self) -> &Arc<CharacterDef> {
+        &self.def
+    }
+
+    /// What decides its pose.
+    pub fn state(&self) -> State {
+        self.state
+    }
+
+    /// Its bodies, while it is limp.
+    pub fn ragdoll(&self) -> Option<&Ragdoll> {
+        self.ragdoll.as_ref()
+    }
+
+    /// Local transform of every joint of the rig; nodes above the pelvis are at rest (see [`crate::mapping`]).
+    pub fn pose(&self) -> &[LocalTransform] {
+        &self.pose
+    }
+
+    /// Where it stands. While it is limp: where it stood when it went limp.
+    pub fn world_from_character(&self) -> Transform {
+        self.world_from_character
+    }
+
+    /// From the file's model space to the world: what a renderer puts above the pose.
+    pub fn world_from_model(&self) -> Affine {
+        self.def.mapping().world_from_model(self.world_from_character)
+    }
+
+    /// What happened since the last [`update`](Self::update) began, in order.
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// Follows the world by the step that it has just taken.
+    ///
+    /// # Panics
+    /// If the world is not the one that the character went limp in.
+    pub fn update(&mut self, world: &mut World) {
+        self.events.clear();
+        match self.state {
+            State::Limp => self.follow_bodies(world),
+            State::Animated => {
+                self.motion.time += world.def().dt();
+                self.walk(world);
+                self.animate();
+            }
+            State::GettingUp => {
+                self.motion.time += world.def().dt();
+                self.root_velocity = Vec3::ZERO;
+                self.animate();
+                if self.motion.time >= self.motion.ends {
+                    self.stand(world);
+                }
+            }
+        }
+    }
+
+    /// Hits a body with an impulse (N·s, world axes) at its centre of mass; the character goes limp at the speed it
+    /// has. Gives the work that the impulse did, joules.
+    ///
+    /// # Panics
+    /// If there is no such body or the impulse is not finite.
+    pub fn hit(&mut self, world: &mut World, body: usize, impulse: Vec3) -> f32 {
+        self.go_limp(world);
+        self.events.push(Event::Hit { body });
+        let id = self.ragdoll.as_ref().expect("a limp character has bodies").bodies[body];
+        let before = world.body_energy(id).kinetic;
+        world.apply_impulse_at_center(id, impulse);
+        world.body_energy(id).kinetic - before
+    }
+}

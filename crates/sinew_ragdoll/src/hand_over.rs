@@ -1,0 +1,50 @@
+//! From animated to physical at the speed of the animation.
+
+use sinew_math::{Transform, Vec3};
+use sinew_physics::Velocity;
+
+/// The fastest that a body may be when it is handed over; motion capture glitches exceed it, people do not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpeedBound {
+    /// m/s. Default 30.
+    pub linear: f32,
+    /// rad/s. Default 40.
+    pub angular: f32,
+}
+
+impl Default for SpeedBound {
+    fn default() -> Self {
+        Self { linear: 30.0, angular: 40.0 }
+    }
+}
+
+/// Velocity of a body that moves from `before` to `after` within `dt` seconds: of its centre of mass (`center` in the
+/// body's frame), and angular. Exact for a motion at constant velocity that turns less than half a turn.
+///
+/// # Panics
+/// If `dt` is not positive.
+pub fn body_velocity(
+    before: Transform,
+    after: Transform,
+    center: Vec3,
+    dt: f32,
+    bound: SpeedBound,
+) -> Velocity {
+    assert!(dt > 0.0, "two poses are a time apart");
+    Velocity {
+        linear: shortened((after.point(center) - before.point(center)) / dt, bound.linear),
+        angular: shortened(before.rotation.angular_velocity_to(after.rotation, dt), bound.angular),
+    }
+}
+
+/// `v`, at most `longest` long; zero if it is not finite.
+fn shortened(v: Vec3, longest: f32) -> Vec3 {
+    let length = v.length();
+    if !v.is_finite() {
+        Vec3::ZERO
+    } else if length > longest {
+        v * (longest / length)
+    } else {
+        v
+    }
+}

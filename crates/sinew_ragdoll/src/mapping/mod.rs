@@ -1,0 +1,170 @@
+//! Poses of the rig ↔ poses of the bodies, for every joint of the file.
+//!
+//! Three spaces: the **model** space of the file (file units, its own up axis), the **character** space of the ragdoll
+//! (metres, +Y up, facing +Z) and the world. A body keeps the offset to its bone that it had in the bind pose.
+//!
+//! Root motion must end up in one place, or a clip that moves a root node above the pelvis and a ragdoll that moves the
+//! pelvis could not be blended. So all poses here are **flat**: nodes above the pelvis stay in their rest pose, and the
+//! *heads* below them (the pelvis, as a rule alone) carry all motion.
+
+mod heads;
+mod physical;
+
+pub use physical::Physical;
+
+use crate::def::RagdollDef;
+use heads::Head;
+use sinew_anim::{JointIdx, LocalTransform, Rig};
+use sinew_math::{Affine, Rotation, Transform, Vec3};
+
+/// How a joint with a body follows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Follow {
+    /// It turns with the body; its place is given by its parent, because joints do not stretch.
+    Turn,
+    /// It turns and moves with the body: the pelvis, and what the rig hangs elsewhere than the anatomy does.
+    Move,
+}
+
+/// What a rig joint takes from a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Driven {
+    body: usize,
+    follow: Follow,
+}
+
+/// The fixed relations between a rig and its ragdoll.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mapping {
+    /// Model space (file units) to character space (metres).
+    character_from_model: Affine,
+    model_from_character: Affine,
+    /// Per body: its joint, and the body's frame in the bone's rigid frame, metres.
+    bones: Vec<(JointIdx, Transform)>,
+    /// Per joint of the rig.
+    driven: Vec<Option<Driven>>,
+    /// The pelvis first.
+    heads: Vec<Head>,
+    /// Nodes above the heads, ascending.
+    carriers: Vec<JointIdx>,
+}
+
+impl Mapping {
+    /// From a rig, its ragdoll, and the bind pose in model space (`RigAnalysis::bind_model`).
+    ///
+    /// # Panics
+    /// If the definition has no body or names joints that the rig does not have, or `bind_model` is not as long as the
+    /// rig has joints.
+    pub fn new(rig: &Rig, def: &RagdollDef, bind_model: &[Affine]) -> Self {
+        assert_eq!(bind_model.len(), rig.joints.len(), "the bind pose has one transform per joint");
+        assert!(!def.bodies.is_empty(), "a ragdoll has bodies");
+        let character_from_model = character_from_model(def);
+        let bones = def.bodies.iter().map(|body| {
+            let bone = (character_from_model * bind_model[body.joint]).to_rigid();
+            (body.joint, bone.inverse() * body.character_from_body)
+        });
+        let heads = heads::find(rig, def);
+        Self {
+            character_from_model,
+            model_from_character: character_from_model.inverse(),
+            bones: bones.collect(),
+            driven: driven(rig, def),
+            carriers: heads::carriers(rig, &heads),
+            heads,
+        }
+    }
+
+    /// From model space (file units) to character space (metres, +Y up, facing +Z).
+    pub fn character_from_model(&self) -> Affine {
+        self.character_from_model
+    }
+
+    /// From model space to the world, for a character that stands at `world_from_character`.
+    pub fn world_from_model(&self, world_from_character: Transform) -> Affine {
+        Affine::from(world_from_character) * self.character_from_model
+    }
+
+    /// The joints that carry root motion, the pelvis first.
+    pub fn heads(&self) -> impl Iterator<Item = JointIdx> {
+        self.heads.iter().map(|head| head.joint)
+    }
+
+    /// World pose of every body for a model pose: `bodies` is cleared and filled.
+    ///
+    /// # Panics
+    /// If `model` is shorter than the rig has joints.
+    pub fn bodies_from_model(
+        &self,
+        model: &[Affine],
+        world_from_character: Transform,
+        bodies: &mut Vec<Transform>,
+    ) {
+        bodies.clear();
+        bodies.extend(self.bones.iter().map(|&(joint, bone_from_body)| {
+            world_from_character * self.bone(&model[joint]) * bone_from_body
+        }));
+    }
+
+    /// Rigid frame of a bone in character space, metres.
+    fn bone(&self, model: &Affine) -> Transform {
+        (self.character_from_model * *model).to_rigid()
+    }
+
+    /// A rigid motion in character space as the affine map of model space that looks the same.
+    fn in_model(&self, motion: Transform) -> Affine {
+        self.model_from_character * Affine::from(motion) * self.character_from_model
+    }
+}
+
+/// From model space (file units) to character space (metres).
+pub fn character_from_model(def: &RagdollDef) -> Affine {
+    let turn = def.character_from_model;
+    Affine::from_scale_rotation_translation(Vec3::splat(def.unit_scale), turn.rotation, turn.translation)
+}
+
+/// The local transform of `local_affine` that keeps the scale of `like`: shear has no place in a rig's local transform.
+fn with_scale_of(like: &LocalTransform, local_affine: &Affine) -> LocalTransform {
+    let s = like.scale;
+    let unscaled = |column: Vec3, scale: f32| if scale.abs() > 1e-12 { column / scale } else { column };
+    let m = &local_affine.linear;
+    let columns = sinew_math::Mat3::from_cols(
+        unscaled(m.x_axis, s.x),
+        unscaled(m.y_axis, s.y),
+        unscaled(m.z_axis, s.z),
+    );
+    LocalTransform {
+        translation: local_affine.translation,
+        // On the hemisphere of the pose it replaces, so that keys made from it do not flip sign.
+        rotation: Rotation::from_mat3_lossy(&columns).toward(like.rotation),
+        scale: s,
+    }
+}
+
+/// What each joint takes from which body.
+fn driven(rig: &Rig, def: &RagdollDef) -> Vec<Option<Driven>> {
+    let mut driven: Vec<Option<Driven>> = vec![None; rig.joints.len()];
+    let body_of = |joint: JointIdx| def.bodies.iter().position(|body| body.joint == joint);
+    let above = |joint: JointIdx| {
+        let mut at = rig.joints[joint].parent;
+        while let Some(joint) = at {
+            if let Some(body) = body_of(joint) {
+                return Some(body);
+            }
+            at = rig.joints[joint].parent;
+        }
+        None
+    };
+    for (body, bone) in def.bodies.iter().enumerate() {
+        let parent = def.joints.iter().find(|joint| joint.child == body).map(|joint| joint.parent);
+        let follow =
+            if parent.is_some() && above(bone.joint) == parent { Follow::Turn } else { Follow::Move };
+        driven[bone.joint] = Some(Driven { body, follow });
+        // A merged joint below its body rides along by itself; elsewhere in the rig it must be carried.
+        for &merged in &bone.merged {
+            if above(merged) != Some(body) && body_of(merged).is_none() {
+                driven[merged] = Some(Driven { body, follow: Follow::Move });
+            }
+        }
+    }
+    driven
+}

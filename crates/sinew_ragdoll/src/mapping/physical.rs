@@ -1,0 +1,83 @@
+//! From bodies back to every joint of the rig.
+
+use super::{Follow, Mapping, with_scale_of};
+use sinew_anim::{LocalTransform, Rig, local_to_model};
+use sinew_math::{Affine, Transform, max};
+
+/// Turns body poses into poses of the rig, on top of the pose that the character had when its bodies took over. Keeps
+/// its buffers from step to step.
+#[derive(Clone, Debug, Default)]
+pub struct Physical {
+    base: Vec<LocalTransform>,
+    base_model: Vec<Affine>,
+    /// Per body: from character space to the body as the base pose has it.
+    body_from_character: Vec<Transform>,
+    /// Per body: how it moved since the base pose, in model space.
+    moved: Vec<Affine>,
+    model: Vec<Affine>,
+}
+
+impl Physical {
+    /// Takes a flat pose as the base: joints that no body drives keep it, and driven joints keep their scale, and but
+    /// for the pelvis their translation.
+    pub fn rebase(&mut self, mapping: &Mapping, rig: &Rig, base: &[LocalTransform]) {
+        self.base.clear();
+        self.base.extend_from_slice(base);
+        local_to_model(rig, base, &Affine::IDENTITY, &mut self.base_model);
+        self.body_from_character.clear();
+        self.body_from_character.extend(mapping.bones.iter().map(|&(joint, bone_from_body)| {
+            (mapping.bone(&self.base_model[joint]) * bone_from_body).inverse()
+        }));
+    }
+
+    /// The pose that [`rebase`](Self::rebase) was given last.
+    pub fn base(&self) -> &[LocalTransform] {
+        &self.base
+    }
+
+    /// Pose of all joints for bodies at `world_from_body`, seen by a character at `world_from_character`. Gives the
+    /// hidden stretch: the largest distance between where a body has its bone and where the pose, whose bones cannot
+    /// stretch, has it; metres.
+    ///
+    /// # Panics
+    /// If there is no base pose, or not one pose per body.
+    pub fn pose(
+        &mut self,
+        mapping: &Mapping,
+        rig: &Rig,
+        world_from_character: Transform,
+        world_from_body: &[Transform],
+        pose: &mut [LocalTransform],
+    ) -> f32 {
+        assert_eq!(self.base.len(), rig.joints.len(), "a base pose was given");
+        assert_eq!(world_from_body.len(), mapping.bones.len(), "every body has a pose");
+        let character_from_world = world_from_character.inverse();
+        self.moved.clear();
+        self.moved.extend(
+            world_from_body
+                .iter()
+                .zip(&self.body_from_character)
+                .map(|(&now, &base)| mapping.in_model(character_from_world * now * base)),
+        );
+        self.model.clear();
+        let mut stretch = 0.0;
+        for (joint, node) in rig.joints.iter().enumerate() {
+            let parent = node.parent.map_or(Affine::IDENTITY, |parent| self.model[parent]);
+            pose[joint] = self.base[joint];
+            if let Some(driven) = mapping.driven[joint] {
+                let wanted = self.moved[driven.body] * self.base_model[joint];
+                let followed = with_scale_of(&self.base[joint], &(parent.inverse() * wanted));
+                pose[joint].rotation = followed.rotation;
+                match driven.follow {
+                    Follow::Move => pose[joint].translation = followed.translation,
+                    Follow::Turn => {
+                        let gap = parent.point(pose[joint].translation) - wanted.translation;
+                        stretch = max(stretch, mapping.character_from_model.vector(gap).length());
+                    }
+                }
+            }
+            self.model.push(parent * pose[joint].to_affine());
+        }
+        stretch
+    }
+}

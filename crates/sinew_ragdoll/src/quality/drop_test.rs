@@ -1,0 +1,157 @@
+//! Eight falls and a crash: what every ragdoll must survive.
+
+use super::{Quality, QualityMeter, Verdict, judge};
+use crate::def::RagdollDef;
+use crate::ragdoll::{BodyState, Flesh, Ragdoll};
+use sinew_math::{Rotation, Transform, Vec3, max, min};
+use sinew_physics::{BodyDef, BodyKind, Shape, ShapeDef, Velocity, World, WorldDef};
+
+/// Height of a drop: from the lowest point to the floor, metres.
+const HEIGHT: f32 = 1.0;
+/// Longest that a drop is watched, seconds.
+const DROP_SECONDS: f32 = 10.0;
+/// Speed and duration of the wall hit, m/s and seconds.
+const WALL_SPEED: f32 = 15.0;
+const WALL_SECONDS: f32 = 3.0;
+
+/// Result of [`drop_test`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct DropReport {
+    /// The worst of the 8 drops, figure by figure; a time is `None` if any drop never came to it.
+    pub drop: Quality,
+    /// Each drop.
+    pub drops: Vec<Quality>,
+    /// The wall hit.
+    pub wall: Quality,
+    /// What to make of it.
+    pub verdict: Verdict,
+    /// Why, a sentence each.
+    pub reasons: Vec<String>,
+}
+
+/// Drops the ragdoll from 1 m in eight orientations and throws it at a wall at 15 m/s.
+///
+/// # Panics
+/// If the definition is not one that `build` gives: no bodies, masses that are not positive.
+pub fn drop_test(def: &RagdollDef) -> DropReport {
+    let drops: Vec<_> = releases().into_iter().map(|(turn, spin)| drop_once(def, turn, spin)).collect();
+    let drop = drops.iter().copied().reduce(worse).unwrap_or_default();
+    let wall = wall_hit(def);
+    let (verdict, reasons) = judge(&drop, &wall);
+    DropReport { drop, drops, wall, verdict, reasons }
+}
+
+/// Orientations and angular velocities (rad/s) of the eight drops: standing, on the face, on the back, on each side, on
+/// the head, and two that tumble.
+fn releases() -> [(Rotation, Vec3); 8] {
+    let turned = |axis, degrees: f32| Rotation::from_axis_angle(axis, degrees.to_radians());
+    let askew = turned(Vec3::Z, 40.0) * turned(Vec3::X, 25.0);
+    [
+        (Rotation::IDENTITY, Vec3::ZERO),
+        (turned(Vec3::X, 90.0), Vec3::ZERO),
+        (turned(Vec3::X, -90.0), Vec3::ZERO),
+        (turned(Vec3::Z, 90.0), Vec3::ZERO),
+        (turned(Vec3::Z, -90.0), Vec3::ZERO),
+        (turned(Vec3::X, 180.0), Vec3::ZERO),
+        (askew, Vec3::new(3.0, 1.0, -2.0)),
+        (askew.inverse(), Vec3::new(-4.0, 2.0, 3.0)),
+    ]
+}
+
+/// A static half-space with its surface at y = 0.
+fn floor() -> BodyDef {
+    BodyDef { kind: BodyKind::Static, shapes: vec![ShapeDef::new(Shape::HalfSpace)], ..BodyDef::default() }
+}
+
+fn drop_once(def: &RagdollDef, turn: Rotation, spin: Vec3) -> Quality {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&floor());
+    let ragdoll = released(&mut world, def, turn, spin, Vec3::ZERO);
+    measure(&mut world, def, &ragdoll, DROP_SECONDS)
+}
+
+fn wall_hit(def: &RagdollDef) -> Quality {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&floor());
+    let half_extents = Vec3::new(4.0, 3.0, 0.25);
+    let reach = 0.5 * def.height + 0.5;
+    world.add_body(&BodyDef {
+        kind: BodyKind::Static,
+        position: Vec3::new(0.0, half_extents.y, reach + half_extents.z),
+        shapes: vec![ShapeDef::new(Shape::Box { half_extents })],
+        ..BodyDef::default()
+    });
+    let ragdoll = released(&mut world, def, Rotation::IDENTITY, Vec3::ZERO, Vec3::Z * WALL_SPEED);
+    measure(&mut world, def, &ragdoll, WALL_SECONDS)
+}
+
+/// The ragdoll in its bind pose, turned and moving as one, [`HEIGHT`] above the floor.
+fn released(world: &mut World, def: &RagdollDef, turn: Rotation, spin: Vec3, speed: Vec3) -> Ragdoll {
+    let pivot = def.bodies[0].character_from_body.translation;
+    let turned = Transform::new(-(turn * pivot), turn);
+    let lowest = def.bodies.iter().fold(f32::INFINITY, |lowest, body| {
+        min(lowest, body.shape.aabb(&(turned * body.character_from_body)).min.y)
+    });
+    let world_from_character = Transform::from_translation(Vec3::Y * (HEIGHT - lowest)) * turned;
+    let states = carried(def, world_from_character, spin, speed);
+    Ragdoll::spawn(world, def, &states, &Flesh::default())
+}
+
+/// States of the bodies in the bind pose, moving as one rigid body that spins about its pelvis.
+pub(super) fn carried(
+    def: &RagdollDef,
+    world_from_character: Transform,
+    spin: Vec3,
+    speed: Vec3,
+) -> Vec<BodyState> {
+    let pivot = world_from_character.point(def.bodies[0].character_from_body.translation);
+    let state = |world_from_body: Transform, center: Vec3| BodyState {
+        world_from_body,
+        velocity: Velocity {
+            linear: speed + spin.cross(world_from_body.point(center) - pivot),
+            angular: spin,
+        },
+    };
+    def.bodies
+        .iter()
+        .map(|body| state(world_from_character * body.character_from_body, body.mass.center))
+        .collect()
+}
+
+/// Steps until it sleeps, or the time is over.
+pub(super) fn measure(world: &mut World, def: &RagdollDef, ragdoll: &Ragdoll, seconds: f32) -> Quality {
+    let mut meter = QualityMeter::new(def, seconds);
+    let steps = (seconds / world.def().dt()) as u32;
+    for _ in 0..steps {
+        meter.before_step(world);
+        world.step();
+        meter.after_step(world, ragdoll);
+        if ragdoll.bodies.iter().all(|&body| !world.is_awake(body)) {
+            break;
+        }
+    }
+    meter.quality()
+}
+
+/// The worse of two, figure by figure.
+pub(super) fn worse(a: Quality, b: Quality) -> Quality {
+    let later = |a: Option<f32>, b: Option<f32>| Some(max(a?, b?));
+    Quality {
+        energy_gain_max: max(a.energy_gain_max, b.energy_gain_max),
+        work_in_j: max(a.work_in_j, b.work_in_j),
+        joint_gap_max_m: max(a.joint_gap_max_m, b.joint_gap_max_m),
+        joint_gap_p99_m: max(a.joint_gap_p99_m, b.joint_gap_p99_m),
+        limit_overshoot_max_deg: max(a.limit_overshoot_max_deg, b.limit_overshoot_max_deg),
+        limit_overshoot_p99_deg: max(a.limit_overshoot_p99_deg, b.limit_overshoot_p99_deg),
+        penetration_max_m: max(a.penetration_max_m, b.penetration_max_m),
+        penetration_rest_max_m: max(a.penetration_rest_max_m, b.penetration_rest_max_m),
+        nonadjacent_overlap_max_m: max(a.nonadjacent_overlap_max_m, b.nonadjacent_overlap_max_m),
+        first_contact_s: later(a.first_contact_s, b.first_contact_s),
+        settled_s: later(a.settled_s, b.settled_s),
+        up_s: later(a.up_s, b.up_s),
+        settled_omega_max: later(a.settled_omega_max, b.settled_omega_max),
+        asleep_s: later(a.asleep_s, b.asleep_s),
+        calm_to_asleep_s: later(a.calm_to_asleep_s, b.calm_to_asleep_s),
+        nan: a.nan + b.nan,
+    }
+}

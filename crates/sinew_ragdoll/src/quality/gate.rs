@@ -1,0 +1,174 @@
+//! Many random falls: pose × velocity × terrain.
+
+use super::drop_test::{carried, measure, worse};
+use super::{Quality, Verdict, judge};
+use crate::def::RagdollDef;
+use crate::ragdoll::{BodyState, Flesh, Ragdoll, colliding_pairs};
+use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, min};
+use sinew_physics::{BodyDef, BodyKind, JointKind, Shape, ShapeDef, World, WorldDef};
+
+/// Longest that a fall is watched, seconds.
+const SECONDS: f32 = 10.0;
+/// Share of a joint's range that a random pose uses.
+const POSE_SHARE: f32 = 0.6;
+/// Tries to find a pose in which no two bodies overlap.
+const TRIES: u32 = 16;
+
+/// Result of [`gate`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct GateReport {
+    /// Falls.
+    pub spawns: usize,
+    /// Falls by verdict: good, usable, bad.
+    pub verdicts: [usize; 3],
+    /// The worst of all, figure by figure.
+    pub worst: Quality,
+    /// Number of the first fall with the worst verdict, for a look at it alone.
+    pub worst_spawn: usize,
+}
+
+/// Lets the ragdoll fall `spawns` times; fall `k` is the same whatever `spawns` is.
+pub fn gate(def: &RagdollDef, spawns: usize) -> GateReport {
+    let mut report = GateReport { spawns, verdicts: [0; 3], worst: Quality::default(), worst_spawn: 0 };
+    let mut lowest = Verdict::Good;
+    for spawn in 0..spawns {
+        let quality = fall(def, spawn as u64);
+        // A fall has no wall hit; its own figures stand for both.
+        let (verdict, _) = judge(&quality, &quality);
+        let place = match verdict {
+            Verdict::Good => 0,
+            Verdict::Usable => 1,
+            Verdict::Bad => 2,
+        };
+        report.verdicts[place] += 1;
+        if verdict < lowest {
+            (lowest, report.worst_spawn) = (verdict, spawn);
+        }
+        report.worst = if spawn == 0 { quality } else { worse(report.worst, quality) };
+    }
+    report
+}
+
+/// One random fall.
+fn fall(def: &RagdollDef, seed: u64) -> Quality {
+    let mut random = Random::new(seed);
+    let mut world = World::new(WorldDef::default());
+    terrain(&mut world, &mut random);
+    let states = posed(def, &mut random);
+    let ragdoll = Ragdoll::spawn(&mut world, def, &states, &Flesh::default());
+    measure(&mut world, def, &ragdoll, SECONDS)
+}
+
+/// A floor, and on it nothing, a slope, a stair, or scattered boxes.
+fn terrain(world: &mut World, random: &mut Random) {
+    let mut add = |position: Vec3, rotation: Rotation, shape: Shape| {
+        world.add_body(&BodyDef {
+            kind: BodyKind::Static,
+            position,
+            rotation,
+            shapes: vec![ShapeDef::new(shape)],
+            ..BodyDef::default()
+        });
+    };
+    add(Vec3::ZERO, Rotation::IDENTITY, Shape::HalfSpace);
+    let upright = |yaw: f32| Rotation::from_axis_angle(Vec3::Y, yaw);
+    match random.index(4) {
+        0 => {}
+        1 => {
+            let tilt = Rotation::from_axis_angle(random.direction(), random.range(0.0, 0.5));
+            add(Vec3::ZERO, tilt, Shape::Box { half_extents: Vec3::new(3.0, 0.3, 3.0) });
+        }
+        2 => {
+            for step in 0..6 {
+                let top = 0.17 * (6 - step) as f32;
+                let half_extents = Vec3::new(1.5, 0.5 * top, 0.15);
+                let position = Vec3::new(0.0, 0.5 * top, 0.3 * step as f32 - 0.6);
+                add(position, Rotation::IDENTITY, Shape::Box { half_extents });
+            }
+        }
+        _ => {
+            for _ in 0..6 {
+                let half_extents =
+                    Vec3::new(random.range(0.1, 0.5), random.range(0.05, 0.4), random.range(0.1, 0.5));
+                let position = Vec3::new(random.range(-1.0, 1.0), half_extents.y, random.range(-1.0, 1.0));
+                add(position, upright(random.range(-3.0, 3.0)), Shape::Box { half_extents });
+            }
+        }
+    }
+}
+
+/// A random pose within the limits, place and motion.
+fn posed(def: &RagdollDef, random: &mut Random) -> Vec<BodyState> {
+    let turn = random.rotation();
+    let (spin, speed) = (random.in_cube() * 6.0, random.in_cube() * 5.0);
+    let mut shrink = POSE_SHARE;
+    let mut pose = random_pose(def, random, shrink);
+    for _ in 0..TRIES {
+        if !overlaps(def, &pose) {
+            break;
+        }
+        shrink *= 0.8;
+        pose = random_pose(def, random, shrink);
+    }
+    let lowest = pose.iter().zip(&def.bodies).fold(f32::INFINITY, |lowest, (&at, body)| {
+        let turned = Transform::new(Vec3::ZERO, turn) * at;
+        min(lowest, body.shape.aabb(&turned).min.y)
+    });
+    // Above the highest terrain.
+    let height = random.range(1.3, 2.5) - lowest;
+    let world_from_character = Transform::new(Vec3::Y * height, turn);
+    let mut states = carried(def, world_from_character, spin, speed);
+    let pivot = states[0].world_from_body.translation;
+    for ((state, at), body) in states.iter_mut().zip(pose).zip(&def.bodies) {
+        state.world_from_body = world_from_character * at;
+        let center = state.world_from_body.point(body.mass.center);
+        state.velocity.linear = speed + spin.cross(center - pivot);
+    }
+    states
+}
+
+/// Body poses in character space with joints turned at random, by a share of their ranges.
+fn random_pose(def: &RagdollDef, random: &mut Random, share: f32) -> Vec<Transform> {
+    let mut pose: Vec<_> = def.bodies.iter().map(|body| body.character_from_body).collect();
+    for joint in &def.joints {
+        let within = |random: &mut Random, range: Range| {
+            range.center() + 0.5 * (range.hi - range.lo) * share * random.range(-1.0, 1.0)
+        };
+        let free = SwingTwistLimit {
+            swing_y: Range::symmetric(1.0),
+            swing_z: Range::symmetric(1.0),
+            twist: Range::symmetric(1.0),
+        };
+        let turned = match joint.kind {
+            JointKind::Ball { limit } | JointKind::Universal { limit } => {
+                let limit = limit.unwrap_or(free);
+                // On the ellipse's inscribed box, so that both swings together stay inside.
+                let [y, z] = [limit.swing_y, limit.swing_z].map(|range| 0.7 * within(random, range));
+                let swing = Rotation::from_scaled_axis(Vec3::new(0.0, y, z));
+                let ball = matches!(joint.kind, JointKind::Ball { .. });
+                let twist = if ball { within(random, limit.twist) } else { 0.0 };
+                swing * Rotation::from_axis_angle(Vec3::X, twist)
+            }
+            JointKind::Hinge { limit } => {
+                let range = limit.unwrap_or(Range::symmetric(1.0));
+                Rotation::from_axis_angle(Vec3::X, within(random, range))
+            }
+            JointKind::Fixed => Rotation::IDENTITY,
+        };
+        pose[joint.child] = pose[joint.parent]
+            * joint.frame_parent
+            * Transform::new(Vec3::ZERO, turned)
+            * joint.frame_child.inverse();
+    }
+    pose
+}
+
+/// Whether two bodies that are meant to collide overlap.
+fn overlaps(def: &RagdollDef, pose: &[Transform]) -> bool {
+    let states: Vec<_> =
+        pose.iter().map(|&world_from_body| BodyState { world_from_body, ..BodyState::default() }).collect();
+    let mut world = World::new(WorldDef::default());
+    let ragdoll = Ragdoll::spawn(&mut world, def, &states, &Flesh::default());
+    // Those that overlap at the start are not among the colliding ones.
+    ragdoll.colliding.len() < colliding_pairs(def).len()
+}

@@ -1,0 +1,133 @@
+//! Measures a ragdoll step by step.
+
+use super::Quality;
+use crate::character::{STILL_TIME, is_still, touches_world};
+use crate::def::RagdollDef;
+use crate::ragdoll::Ragdoll;
+use sinew_math::max;
+use sinew_physics::{BodyId, Energy, World};
+
+/// All bodies below this are calm, m/s.
+const CALM: f32 = 0.3;
+
+/// Collects the figures of [`Quality`] over the steps in which a character is limp.
+#[derive(Clone, Debug)]
+pub struct QualityMeter {
+    quality: Quality,
+    total_mass: f32,
+    before: Energy,
+    /// One entry per joint and step.
+    gaps: Vec<f32>,
+    overshoots: Vec<f32>,
+    calm_steps: u32,
+    calm_since: Option<f32>,
+}
+
+impl QualityMeter {
+    /// For falls of about `seconds` of one ragdoll, so that memory is there from the start.
+    pub fn new(def: &RagdollDef, seconds: f32) -> Self {
+        let samples = (max(seconds, 0.0) * 60.0) as usize * def.joints.len();
+        // The estimate is the caller's; a wrong one must cost time, not memory.
+        let samples = samples.min(1 << 20);
+        Self {
+            quality: Quality::default(),
+            total_mass: def.bodies.iter().map(|body| body.mass.mass).sum(),
+            before: Energy::default(),
+            gaps: Vec::with_capacity(samples),
+            overshoots: Vec::with_capacity(samples),
+            calm_steps: 0,
+            calm_since: None,
+        }
+    }
+
+    /// A ragdoll takes over; call it when it has been spawned, before the step.
+    pub fn went_limp(&mut self) {
+        self.calm_steps = 0;
+        self.calm_since = None;
+    }
+
+    /// A push did this much work, J.
+    pub fn pushed(&mut self, work: f32) {
+        self.quality.work_in_j += work;
+    }
+
+    /// The character is animated again.
+    pub fn got_up(&mut self, world: &World) {
+        self.quality.up_s.get_or_insert(world.time() as f32);
+    }
+
+    /// Before a step, after all pushes.
+    pub fn before_step(&mut self, world: &World) {
+        self.before = world.energy();
+    }
+
+    /// After a step, with the bodies still there.
+    pub fn after_step(&mut self, world: &World, ragdoll: &Ragdoll) {
+        self.measure_energy(world);
+        let q = &mut self.quality;
+        for &joint in &ragdoll.joints {
+            self.gaps.push(world.joint_gap(joint));
+            self.overshoots.push(world.joint_overshoot(joint).to_degrees());
+        }
+        let penetration = ragdoll.bodies.iter().fold(0.0, |deepest, &b| max(deepest, world.penetration(b)));
+        q.penetration_max_m = max(q.penetration_max_m, penetration);
+        for &(a, b) in &ragdoll.colliding {
+            q.nonadjacent_overlap_max_m = max(q.nonadjacent_overlap_max_m, world.overlap(a, b));
+        }
+        q.nan += world.events().quarantined.len() as u32;
+        let now = world.time() as f32;
+        if q.first_contact_s.is_none() && touches_world(world, &ragdoll.bodies) {
+            q.first_contact_s = Some(now);
+        }
+        self.measure_rest(world, ragdoll, penetration, now);
+    }
+
+    fn measure_energy(&mut self, world: &World) {
+        let after = world.energy();
+        // Differences of each kind by itself: their sums are large and lose digits.
+        let rise = (after.kinetic - self.before.kinetic) + (after.potential - self.before.potential);
+        let gain = rise / max(self.before.kinetic, self.total_mass);
+        self.quality.energy_gain_max = max(self.quality.energy_gain_max, gain);
+    }
+
+    fn measure_rest(&mut self, world: &World, ragdoll: &Ragdoll, penetration: f32, now: f32) {
+        let q = &mut self.quality;
+        self.calm_steps = if is_still(world, &ragdoll.bodies) { self.calm_steps + 1 } else { 0 };
+        let still = self.calm_steps as f32 * world.def().dt();
+        if still >= STILL_TIME {
+            q.settled_s.get_or_insert(now - still);
+        }
+        if q.settled_s.is_some() {
+            let spin = |&body: &BodyId| world.velocity(body).angular.length();
+            let fastest = ragdoll.bodies.iter().map(spin).fold(q.settled_omega_max.unwrap_or(0.0), max);
+            q.settled_omega_max = Some(fastest);
+            q.penetration_rest_max_m = max(q.penetration_rest_max_m, penetration);
+        }
+        let calm = |&body: &BodyId| world.velocity(body).linear.length() < CALM;
+        if q.first_contact_s.is_some() && self.calm_since.is_none() && ragdoll.bodies.iter().all(calm) {
+            self.calm_since = Some(now);
+        }
+        if q.asleep_s.is_none() && ragdoll.bodies.iter().all(|&body| !world.is_awake(body)) {
+            q.asleep_s = Some(now);
+            q.calm_to_asleep_s = self.calm_since.map(|since| now - since);
+        }
+    }
+
+    /// The figures so far.
+    pub fn quality(&self) -> Quality {
+        let mut quality = self.quality;
+        let mut sorted = self.gaps.clone();
+        (quality.joint_gap_p99_m, quality.joint_gap_max_m) = p99_and_max(&mut sorted);
+        sorted.clone_from(&self.overshoots);
+        (quality.limit_overshoot_p99_deg, quality.limit_overshoot_max_deg) = p99_and_max(&mut sorted);
+        quality
+    }
+}
+
+/// 99th percentile (nearest rank) and largest; 0 of nothing.
+fn p99_and_max(samples: &mut [f32]) -> (f32, f32) {
+    samples.sort_unstable_by(f32::total_cmp);
+    let Some(&largest) = samples.last() else { return (0.0, 0.0) };
+    let rank = (samples.len() * 99).div_ceil(100);
+    (samples[rank - 1], largest)
+}

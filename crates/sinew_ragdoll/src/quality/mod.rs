@@ -1,0 +1,49 @@
+//! How good a fall was: the figures of the contract, from queries to the world alone.
+
+mod drop_test;
+mod gate;
+mod meter;
+mod verdict;
+
+pub use drop_test::{DropReport, drop_test};
+pub use gate::{GateReport, gate};
+pub use meter::QualityMeter;
+pub use verdict::{Verdict, judge};
+
+/// Figures of a character's falls, see the fields. Times are seconds of the world.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Quality {
+    /// Largest rise of kinetic and potential energy of all dynamic bodies within one step (pushes come between steps
+    /// and do not count), as a share of the kinetic energy before it, or of 1 J per kg of the character if that is more.
+    pub energy_gain_max: f32,
+    /// Work of the pushes, J.
+    pub work_in_j: f32,
+    /// Largest distance between the two anchors of a joint, metres.
+    pub joint_gap_max_m: f32,
+    /// 99th percentile over joints and steps, metres.
+    pub joint_gap_p99_m: f32,
+    /// Farthest beyond a joint limit, degrees.
+    pub limit_overshoot_max_deg: f32,
+    /// 99th percentile over joints and steps, degrees.
+    pub limit_overshoot_p99_deg: f32,
+    /// Deepest overlap with a static body while limp, metres.
+    pub penetration_max_m: f32,
+    /// Likewise, once settled.
+    pub penetration_rest_max_m: f32,
+    /// Deepest overlap of two bodies of the character that are meant to collide and that no joint connects, metres.
+    pub nonadjacent_overlap_max_m: f32,
+    /// First contact with the world after going limp.
+    pub first_contact_s: Option<f32>,
+    /// Start of the first half second in which every body is below 0.05 rad/s and 2 cm/s.
+    pub settled_s: Option<f32>,
+    /// First time that it was animated again.
+    pub up_s: Option<f32>,
+    /// Fastest spin of a body once settled, rad/s.
+    pub settled_omega_max: Option<f32>,
+    /// First time that all bodies slept.
+    pub asleep_s: Option<f32>,
+    /// From the first moment when every body was below 0.3 m/s to sleep, seconds.
+    pub calm_to_asleep_s: Option<f32>,
+    /// Bodies whose state became non-finite, counted once per step.
+    pub nan: u32,
+}

@@ -1,0 +1,219 @@
+//! A ragdoll in a world: its bodies and joints.
+
+use crate::def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
+use crate::filter::TOLERATED;
+use sinew_math::limits::hinge_angle;
+use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, clamp, max, min};
+use sinew_physics::{
+    BodyDef, BodyId, Filter, JointCollision, JointDef, JointId, JointKind, Material, ShapeDef, Velocity,
+    World,
+};
+
+/// Where a body starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BodyState {
+    /// Pose of the body's frame.
+    pub world_from_body: Transform,
+    /// Of its centre of mass, world axes.
+    pub velocity: Velocity,
+}
+
+/// What the bodies of a ragdoll have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flesh {
+    /// Surface. Default: friction 0.7, no bounce, and a rolling resistance of 2 cm, without which round limbs roll for
+    /// ever.
+    pub material: Material,
+    /// Whom the bodies meet. Default: everything, each other too but for the definition's disabled pairs.
+    pub filter: Filter,
+    /// 1/s: share of the spin lost per second, which is soft tissue's. Default 0.05.
+    pub angular_damping: f32,
+}
+
+impl Default for Flesh {
+    fn default() -> Self {
+        Self {
+            material: Material { friction: 0.7, restitution: 0.0, rolling: 0.02 },
+            filter: Filter::default(),
+            angular_damping: 0.05,
+        }
+    }
+}
+
+/// A ragdoll in a world.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Ragdoll {
+    /// In the order of the definition.
+    pub bodies: Vec<BodyId>,
+    /// In the order of the definition.
+    pub joints: Vec<JointId>,
+    /// Pairs of bodies that collide with each other: no joint, definition or starting pose keeps them from it.
+    pub colliding: Vec<(BodyId, BodyId)>,
+}
+
+impl Ragdoll {
+    /// Puts a ragdoll into the world as it is, at `states` (one per body).
+    ///
+    /// A pose of an animation need not fit the ragdoll's joints: it may bend a knee sideways, pull a bone out or reach
+    /// beyond a limit, and its limbs may pass through each other. To tear it into place would add energy from nothing;
+    /// so the joints of this instance are fitted to the pose ([`fitted`]), and pairs of bodies that overlap in it pass
+    /// through each other.
+    ///
+    /// # Panics
+    /// If there is not one finite state per body.
+    pub fn spawn(world: &mut World, def: &RagdollDef, states: &[BodyState], flesh: &Flesh) -> Self {
+        assert_eq!(states.len(), def.bodies.len(), "every body has a state");
+        let bodies: Vec<BodyId> = def
+            .bodies
+            .iter()
+            .zip(states)
+            .enumerate()
+            .map(|(index, (body, state))| world.add_body(&body_def(body, state, flesh, index)))
+            .collect();
+        for &(a, b) in &def.disabled_pairs {
+            world.disable_pair(bodies[a], bodies[b]);
+        }
+        let joints: Vec<JointId> = def
+            .joints
+            .iter()
+            .map(|joint| {
+                let pose = |body: usize| states[body].world_from_body;
+                let fitted = fitted(joint, pose(joint.parent), pose(joint.child));
+                world.add_joint(&joint_def(&fitted, &bodies))
+            })
+            .collect();
+        let mut colliding = Vec::new();
+        for (a, b) in colliding_pairs(def) {
+            let (a, b) = (bodies[a], bodies[b]);
+            if world.overlap(a, b) > TOLERATED {
+                world.disable_pair(a, b);
+            } else {
+                colliding.push((a, b));
+            }
+        }
+        Self { bodies, joints, colliding }
+    }
+
+    /// Takes the ragdoll out of the world.
+    ///
+    /// # Panics
+    /// If a body is no longer there.
+    pub fn despawn(self, world: &mut World) {
+        for body in self.bodies {
+            world.remove_body(body);
+        }
+    }
+
+    /// Poses of the bodies: `poses` is cleared and filled.
+    pub fn poses(&self, world: &World, poses: &mut Vec<Transform>) {
+        poses.clear();
+        poses.extend(self.bodies.iter().map(|&body| world.transform(body)));
+    }
+}
+
+/// Pairs of bodies, by index, that neither a joint nor the definition keeps apart.
+pub fn colliding_pairs(def: &RagdollDef) -> Vec<(usize, usize)> {
+    let same = |pair: (usize, usize), a, b| pair == (a, b) || pair == (b, a);
+    let mut pairs = Vec::new();
+    for a in 0..def.bodies.len() {
+        for b in a + 1..def.bodies.len() {
+            let jointed = def.joints.iter().any(|joint| same((joint.parent, joint.child), a, b));
+            if !jointed && !def.disabled_pairs.iter().any(|&pair| same(pair, a, b)) {
+                pairs.push((a, b));
+            }
+        }
+    }
+    pairs
+}
+
+fn body_def(body: &RagdollBodyDef, state: &BodyState, flesh: &Flesh, index: usize) -> BodyDef {
+    let shape = ShapeDef { material: flesh.material, filter: flesh.filter, ..ShapeDef::new(body.shape) };
+    BodyDef {
+        position: state.world_from_body.translation,
+        rotation: state.world_from_body.rotation,
+        linear_velocity: state.velocity.linear,
+        angular_velocity: state.velocity.angular,
+        angular_damping: flesh.angular_damping,
+        shapes: vec![shape],
+        mass: Some(body.mass),
+        user_data: index as u64,
+        ..BodyDef::default()
+    }
+}
+
+fn joint_def(joint: &RagdollJointDef, bodies: &[BodyId]) -> JointDef {
+    JointDef {
+        body_a: bodies[joint.parent],
+        body_b: bodies[joint.child],
+        frame_a: joint.frame_parent,
+        frame_b: joint.frame_child,
+        kind: joint.kind,
+        friction_torque: joint.friction_torque,
+        collision: JointCollision::Disabled,
+    }
+}
+
+/// The joint as it fits two bodies in the given poses: the anchors meet where the child has its own, rotations that the
+/// joint does not leave free are taken over from the pose, and limits that the pose exceeds are widened to it.
+pub fn fitted(
+    joint: &RagdollJointDef,
+    world_from_parent: Transform,
+    world_from_child: Transform,
+) -> RagdollJointDef {
+    let (parent, child) = (joint.frame_parent.rotation, joint.frame_child.rotation);
+    let anchor = (world_from_child * joint.frame_child).translation;
+    let seen = (world_from_parent.rotation * parent).inverse() * (world_from_child.rotation * child);
+    let (swing, twist) = seen.swing_twist(Vec3::X);
+    let (parent, child, kind) = match joint.kind {
+        JointKind::Ball { limit } => {
+            (parent, child, JointKind::Ball { limit: limit.map(|l| holding(l, seen)) })
+        }
+        JointKind::Hinge { limit } => {
+            let limit = limit.map(|range| stretched(range, hinge_angle(twist)));
+            (parent * swing, child, JointKind::Hinge { limit })
+        }
+        JointKind::Universal { limit } => (
+            parent,
+            child * twist.inverse(),
+            JointKind::Universal { limit: limit.map(|l| holding(l, swing)) },
+        ),
+        JointKind::Fixed => (parent * seen, child, JointKind::Fixed),
+    };
+    let frame = |translation: Vec3, rotation: Rotation| Transform::new(translation, rotation.normalize());
+    RagdollJointDef {
+        frame_parent: frame(world_from_parent.inverse_point(anchor), parent),
+        frame_child: frame(joint.frame_child.translation, child),
+        kind,
+        ..*joint
+    }
+}
+
+/// No swing half-angle is widened beyond this, radians (175°).
+const WIDEST: f32 = 3.054;
+
+/// The limit, widened where the rotation is outside.
+fn holding(limit: SwingTwistLimit, seen: Rotation) -> SwingTwistLimit {
+    if limit.overshoot(seen) <= 0.0 {
+        return limit;
+    }
+    let (swing, twist) = SwingTwistLimit::angles(seen);
+    let middle = limit.twist.center();
+    let twist = middle + sinew_math::limits::wrap(twist - middle);
+    let wide = SwingTwistLimit {
+        swing_y: stretched(limit.swing_y, swing.y),
+        swing_z: stretched(limit.swing_z, swing.z),
+        twist: stretched(limit.twist, twist),
+    };
+    // Each axis by itself is wide enough now; the ellipse between them may not be yet.
+    let angle = swing.length();
+    let room = if angle > 1e-6 { wide.cone_angle(swing.y / angle, swing.z / angle) } else { angle };
+    let factor = if room < angle { 1.001 * angle / room } else { 1.0 };
+    let scaled = |range: Range| Range::new(max(range.lo * factor, -WIDEST), min(range.hi * factor, WIDEST));
+    SwingTwistLimit { swing_y: scaled(wide.swing_y), swing_z: scaled(wide.swing_z), twist: wide.twist }
+}
+
+/// The range, widened to hold `angle`.
+fn stretched(range: Range, angle: f32) -> Range {
+    let angle = clamp(angle, -core::f32::consts::PI, core::f32::consts::PI);
+    Range::new(min(range.lo, angle), max(range.hi, angle))
+}

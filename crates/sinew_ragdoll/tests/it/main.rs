@@ -1,0 +1,4 @@
+//! Integration tests of the ragdoll crate.
+
+mod actor;
+mod bake;
