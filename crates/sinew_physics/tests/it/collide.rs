@@ -171,7 +171,7 @@ fn all_pairs() -> impl Iterator<Item = (Kind, Kind)> {
 fn matches_the_support_functions() {
     let mut random = Random::new(1);
     for (ka, kb) in all_pairs() {
-        for case in 0..400 {
+        for case in 0..200 {
             let (a, b) = random_pair(ka, kb, &mut random);
             let size = f64::from(a.size() + b.size());
             let margin = 0.05 * a.size().max(b.size());
@@ -211,7 +211,7 @@ fn points_lie_between_the_surfaces() {
     let mut off = 0;
     let mut points = 0;
     for (ka, kb) in all_pairs() {
-        for _ in 0..400 {
+        for _ in 0..200 {
             let (a, b) = random_pair(ka, kb, &mut random);
             let size = a.size().max(b.size());
             let m = a.collide(&b, 0.05 * size);
@@ -225,7 +225,7 @@ fn points_lie_between_the_surfaces() {
             }
         }
     }
-    assert!(points > 5000, "{points} points");
+    assert!(points > 2500, "{points} points");
     println!("{off} of {points} points off a surface");
     assert!(off * 100 < points, "{off} of {points} points are off a surface");
 }
@@ -235,7 +235,7 @@ fn points_lie_between_the_surfaces() {
 fn the_order_of_the_shapes_does_not_matter() {
     let mut random = Random::new(3);
     for (ka, kb) in all_pairs() {
-        for case in 0..300 {
+        for case in 0..150 {
             let (a, b) = random_pair(ka, kb, &mut random);
             let size = a.size().max(b.size());
             let (ab, ba) = (a.collide(&b, 0.05 * size), b.collide(&a, 0.05 * size));
