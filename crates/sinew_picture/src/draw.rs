@@ -25,10 +25,10 @@ pub enum Solid {
     },
 }
 
-/// Segments around a ball or capsule: 10° each is round at the sizes that pictures show.
+/// Segments around a ball or capsule: 15° each looks round at the sizes that pictures show.
 const AROUND: usize = 24;
 /// Segments from the equator to a pole.
-const TO_POLE: usize = 8;
+const TO_POLE: usize = 6;
 
 /// The surface of a solid. Boxes have flat faces, the others smooth normals.
 pub fn solid(solid: Solid, world_from_solid: Transform, material: Material) -> Model {

@@ -21,7 +21,7 @@ pub(crate) struct Layer {
     pub(crate) height: usize,
     /// Where in its pixel the sample lies, 1/256 pixel from the middle.
     pub(crate) offset: [i64; 2],
-    /// Larger is nearer; 0 (perspective) or −∞ (shadow) where nothing is.
+    /// `1 / w`: larger is nearer, 0 where nothing is.
     pub(crate) depth: Vec<f32>,
     /// Triangle per pixel; [`NOTHING`] where none is.
     pub(crate) ids: Vec<u32>,
@@ -119,8 +119,8 @@ impl Layer {
         Self { width, height, offset, depth: vec![0.0; pixels], ids: vec![NOTHING; pixels] }
     }
 
-    pub(crate) fn clear(&mut self, depth: f32) {
-        self.depth.fill(depth);
+    pub(crate) fn clear(&mut self) {
+        self.depth.fill(0.0);
         self.ids.fill(NOTHING);
     }
 
@@ -211,9 +211,10 @@ impl EdgeWalk {
     }
 }
 
-/// Calls `visit(pixel, depth)` for every covered sample, row by row.
+/// Calls `visit(pixel, depth)` for every pixel of a `width × height` picture whose sample, `offset` (in 1/256 pixel)
+/// from its middle, is covered; row by row.
 #[inline(always)]
-fn scan(
+pub(crate) fn scan(
     footprint: &Footprint,
     width: usize,
     height: usize,
@@ -331,7 +332,7 @@ mod tests {
     fn depth_is_linear_and_the_nearer_wins() {
         let corner = |x: f32, y: f32, depth: f32| ScreenVertex { x, y, depth };
         let mut layer = Layer::new(SIZE, SIZE, [0, 0]);
-        layer.clear(0.0);
+        layer.clear();
         let tilted = [corner(0.0, 0.0, 0.0), corner(80.0, 0.0, 2.0), corner(0.0, 80.0, 0.0)];
         let level = [corner(0.0, 0.0, 0.5), corner(0.0, 80.0, 0.5), corner(80.0, 0.0, 0.5)];
         for (id, vertices) in [tilted, level].into_iter().enumerate() {

@@ -147,7 +147,7 @@ impl Renderer {
         let footprints = &self.footprints;
         let pairs = self.solid.iter_mut().zip(&mut self.translucent).collect();
         share(self.settings.threads, pairs, |(solid, translucent): (&mut Layer, &mut Layer)| {
-            solid.clear(0.0);
+            solid.clear();
             footprints.solid.iter().for_each(|footprint| solid.draw(footprint));
             if !footprints.translucent.is_empty() {
                 translucent.clear_in_front_of(solid);

@@ -1,13 +1,16 @@
 //! Where the sun does not reach: an orthographic depth picture taken from the sun.
 
 use crate::clip::clip;
-use crate::raster::{Footprint, Layer, ScreenVertex, floor};
+use crate::raster::{Footprint, NOTHING, ScreenVertex, floor, scan};
 use sinew::math::{Vec3, any_orthonormal, clamp, max, normalize_or};
 
 /// Depths seen from the sun around one point of the world.
 #[derive(Clone, Debug)]
 pub(crate) struct ShadowMap {
-    layer: Layer,
+    /// Texels along a side.
+    size: usize,
+    /// Height toward the sun per texel; −∞ where nothing is.
+    heights: Vec<f32>,
     /// Toward the sun, unit.
     pub(crate) to_sun: Vec3,
     /// World to map: the edges of the map are at ±1.
@@ -22,7 +25,8 @@ pub(crate) struct ShadowMap {
 impl ShadowMap {
     pub(crate) fn new(size: usize) -> Self {
         Self {
-            layer: Layer::new(size, size, [0, 0]),
+            size,
+            heights: vec![f32::NEG_INFINITY; size * size],
             to_sun: Vec3::Y,
             axes: [Vec3::X, Vec3::Z],
             center: [0.0; 2],
@@ -38,10 +42,10 @@ impl ShadowMap {
         let across = any_orthonormal(self.to_sun);
         self.axes = [across / radius, self.to_sun.cross(across) / radius];
         self.focus = if focus.is_finite() { focus } else { Vec3::ZERO };
-        let texel_on_map = 2.0 / self.layer.width as f32;
+        let texel_on_map = 2.0 / self.size as f32;
         self.center = self.axes.map(|axis| (self.focus.dot(axis) / texel_on_map).floor() * texel_on_map);
         self.texel = texel_on_map * radius;
-        self.layer.clear(f32::NEG_INFINITY);
+        self.heights.fill(f32::NEG_INFINITY);
     }
 
     /// Position on the map, ±1 at its edges, and height toward the sun.
@@ -60,7 +64,7 @@ impl ShadowMap {
         if polygon.corners().is_empty() {
             return;
         }
-        let half = 0.5 * self.layer.width as f32;
+        let half = 0.5 * self.size as f32;
         let slope = HeightOverMap::through(on_map);
         let vertex = |[x, y, _]: [f32; 3]| ScreenVertex {
             x: (x + 1.0) * half,
@@ -70,8 +74,13 @@ impl ShadowMap {
         let corners = polygon.corners();
         for i in 1..corners.len() - 1 {
             let fan = [vertex(corners[0]), vertex(corners[i]), vertex(corners[i + 1])];
-            if let Some((footprint, _)) = Footprint::new(fan, 0) {
-                self.layer.draw(&footprint);
+            if let Some((footprint, _)) = Footprint::new(fan, NOTHING) {
+                let heights = &mut self.heights;
+                scan(&footprint, self.size, self.size, [0, 0], |texel, height| {
+                    if height > heights[texel] {
+                        heights[texel] = height;
+                    }
+                });
             }
         }
     }
@@ -88,7 +97,7 @@ impl ShadowMap {
         if fade.is_nan() || fade <= 0.0 {
             return 1.0;
         }
-        let size = self.layer.width;
+        let size = self.size;
         let half = 0.5 * size as f32;
         let (column, row) = ((x + 1.0) * half - 1.5, (1.0 - y) * half - 1.5);
         let (left, top) = (floor(column), floor(row));
@@ -100,7 +109,7 @@ impl ShadowMap {
         let mut hidden = 0.0;
         for (j, weight_of_row) in [1.0 - fy, 1.0, 1.0, fy].into_iter().enumerate() {
             let start = (top as usize + j) * size + left as usize;
-            let row = &self.layer.depth[start..start + 4];
+            let row = &self.heights[start..start + 4];
             let above = |i: usize| if row[i] > height { 1.0 } else { 0.0 };
             hidden += ((1.0 - fx) * above(0) + above(1) + above(2) + fx * above(3)) * weight_of_row;
         }
