@@ -149,7 +149,7 @@ fn report(rig: &Rig, bones: &Bones, fits: &[Fit], filter: &FilterReport, plans: 
             notes.push(format!("{} moves no skin: a thin capsule along the bone stands in", name(index)));
         }
         if body.selection == Selection::Twin {
-            notes.push(format!("{} carries something: its shape is its twin's", name(index)));
+            notes.push(format!("{} fits worse than its twin: it has the twin's shape", name(index)));
         }
         if body.widened > NOTEWORTHY {
             let degrees = body.widened.to_degrees();

@@ -10,6 +10,7 @@ pub mod surface;
 
 use crate::build::bones::Bones;
 use crate::build::part::Part;
+use core::mem::discriminant;
 use frame::{box_frame, long_axis, with_y};
 use patch::{Patch, Selection, Symmetry, quantiles_of};
 use sinew_math::{Mat3, Rotation, Transform, Vec3, clamp, max, max3, min};
@@ -25,6 +26,8 @@ const SHRINK: f32 = 0.97;
 const PAST_JOINT: f32 = 0.125;
 /// A shape so many times as long as its twin on the other side has something in it that is not the body's.
 const BURDENED: f32 = 1.6;
+/// Twins whose volumes differ by more than this factor get the shape of the one that fits better.
+const UNLIKE: f32 = 1.3;
 /// Another kind of shape than the part's own is taken when its error is below this share of it.
 const CLEARLY_BETTER: f32 = 0.6;
 
@@ -59,28 +62,35 @@ pub struct Fit {
 pub fn fit_shapes(bones: &Bones, surface: &[Vec<Share>], choice: ShapeChoice) -> Vec<Fit> {
     let fits: Vec<_> =
         (0..bones.list.len()).map(|bone| fit_bone(bones, bone, &surface[bone], choice)).collect();
-    (0..fits.len()).map(|bone| without_burden(bones, &fits, bone)).collect()
+    (0..fits.len()).map(|bone| reconciled(bones, &fits, bone)).collect()
 }
 
-/// The shape of a bone, or the mirror image of its twin's where that is much smaller: a sword that is skinned to a hand
-/// is no part of it.
-fn without_burden(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
+/// The shape of a bone, or the mirror image of its twin's where that is the better one: a sword that is skinned to a
+/// hand is no part of it, and a coarse mesh may give the two sides different shapes.
+fn reconciled(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
     let own = fits[bone];
     let Some(twin) = bones.twin(bone) else { return own };
+    let other = fits[twin];
     let plane = bones.plane_of_symmetry();
     let image = |p: Vec3| Vec3::new(2.0 * plane - p.x, p.y, p.z);
     let mirrored_pivots = (image(bones.list[twin].head) - bones.list[bone].head).length();
-    let larger = own.shape.bounding_radius() > BURDENED * fits[twin].shape.bounding_radius();
-    if !larger || fits[twin].selection == Selection::Nothing || mirrored_pivots > 0.05 * bones.height {
+    if other.selection == Selection::Nothing || mirrored_pivots > 0.05 * bones.height {
         return own;
     }
-    let frame = fits[twin].character_from_body;
+    let burdened = own.shape.bounding_radius() > BURDENED * other.shape.bounding_radius();
+    let burdens = BURDENED * own.shape.bounding_radius() < other.shape.bounding_radius();
+    let (v, w) = (own.shape.volume(), other.shape.volume());
+    let alike = discriminant(&own.shape) == discriminant(&other.shape) && max(v, w) < UNLIKE * min(v, w);
+    if !burdened && (burdens || alike || own.error <= other.error) {
+        return own;
+    }
+    let frame = other.character_from_body;
     let axes = frame.rotation.to_mat3();
     let turned = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
     // A mirror image of three axes is left-handed; shapes are even in x, so x may be turned round.
     let axes = Mat3::from_cols(-turned(axes.x_axis), turned(axes.y_axis), turned(axes.z_axis));
     let character_from_body = Transform::new(image(frame.translation), Rotation::from_mat3(&axes));
-    Fit { character_from_body, selection: Selection::Twin, ..fits[twin] }
+    Fit { character_from_body, selection: Selection::Twin, ..other }
 }
 
 fn fit_bone(bones: &Bones, bone: usize, shares: &[Share], choice: ShapeChoice) -> Fit {

@@ -5,8 +5,8 @@ use sinew_math::{Sym3, Vec3, clamp, max, min};
 
 /// About so many samples describe a patch.
 const SAMPLES: f32 = 400.0;
-/// With fewer triangles than this a threshold is relaxed.
-const LEAST_TRIANGLES: usize = 12;
+/// A selection with less than this share of the area that the bone moves, weight by weight, is not all of its flesh.
+const LEAST_AREA: f32 = 0.4;
 
 /// Which triangles of the skin were taken for a bone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,11 +55,12 @@ pub enum Symmetry {
 }
 
 impl Patch {
-    /// The surface of a bone: triangles of weight ≥ 0.5, or ≥ 0.3 where those are too few or flat, or those where the
+    /// The surface of a bone: triangles of weight ≥ 0.5, or ≥ 0.3 where those are too little or flat, or those where the
     /// bone has the most weight. `None` if it has none.
     pub fn select(shares: &[Share], symmetry: Symmetry) -> Option<Self> {
         let choices =
             [Selection::Weight(0.5), Selection::Weight(0.3), Selection::Most, Selection::Weight(0.05)];
+        let moved: f32 = shares.iter().map(|share| triangle_area(&share.corners) * share.weight).sum();
         let mut best: Option<Self> = None;
         for selection in choices {
             let chosen: Vec<[Vec3; 3]> = shares
@@ -72,7 +73,7 @@ impl Patch {
                 .map(|share| share.corners)
                 .collect();
             let Some(patch) = Self::of_triangles(&chosen, selection, symmetry) else { continue };
-            if chosen.len() >= LEAST_TRIANGLES && patch.is_solid() {
+            if patch.area >= LEAST_AREA * moved && patch.is_solid() {
                 return Some(patch);
             }
             if best.as_ref().is_none_or(|b| patch.area > 2.0 * b.area) {

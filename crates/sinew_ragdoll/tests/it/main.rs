@@ -1,4 +1,5 @@
 //! Integration tests of the ragdoll crate.
 
-mod actor;
-mod bake;
+mod build;
+mod build_limits;
+mod data;

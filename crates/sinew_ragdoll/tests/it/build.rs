@@ -1,0 +1,173 @@
+//! From files to definitions: bodies, masses, invariances.
+
+use crate::data::rig;
+use sinew_anim::Rig;
+use sinew_anim::roles::analyze;
+use sinew_math::{Affine, Rotation, Vec3};
+use sinew_physics::Shape;
+use sinew_ragdoll::{BuildError, BuildOptions, BuildReport, RagdollDef, Sex, ShapeChoice, build};
+
+const PEOPLE: [&str; 4] =
+    ["CesiumMan.glb", "RiggedFigure.glb", "mannequiny.glb", "mesh2motion_human_rigify.glb"];
+const OTHERS: [&str; 11] = [
+    "kaykit_Knight.glb",
+    "quaternius_cyberpunk_Character.glb",
+    "CoolLoops_mixamorig_vrm0.vrm",
+    "Fox.glb",
+    "quaternius_Spider.glb",
+    "quaternius_MandarinFish.glb",
+    "quaternius_Robot.glb",
+    "RecursiveSkeletons.glb",
+    "RiggedSimple.glb",
+    "SimpleSkin.gltf",
+    "kaykit_mannequin/manny_med_mod.gltf",
+];
+
+fn built(rig: &Rig, options: &BuildOptions) -> (RagdollDef, BuildReport) {
+    let analysis = analyze(rig).expect("a skin");
+    build(rig, &analysis, options).expect("a ragdoll")
+}
+
+fn body(def: &RagdollDef, role: &str) -> usize {
+    def.bodies.iter().position(|body| body.role == role).unwrap_or_else(|| panic!("no {role}"))
+}
+
+/// What every definition must be, whatever the rig.
+fn check_sound(name: &str, def: &RagdollDef) {
+    assert!(!def.bodies.is_empty(), "{name}");
+    assert_eq!(def.joints.len() + 1, def.bodies.len(), "{name}");
+    for (i, joint) in def.joints.iter().enumerate() {
+        assert_eq!(joint.child, i + 1, "{name}");
+        assert!(joint.parent < joint.child, "{name}");
+        assert!(joint.frame_parent.is_finite() && joint.frame_child.is_finite(), "{name} joint {i}");
+        let pivot = |body: usize, p: Vec3| def.bodies[body].character_from_body.point(p);
+        let gap = pivot(joint.parent, joint.frame_parent.translation)
+            - pivot(joint.child, joint.frame_child.translation);
+        assert!(gap.length() < 1e-4 * def.height.max(1.0), "{name} joint {i}: {gap}");
+        assert!(joint.friction_torque > 0.0 && joint.friction_torque.is_finite(), "{name} joint {i}");
+    }
+    for body in &def.bodies {
+        let who = format!("{name} {}", body.role);
+        assert_eq!(body.shape.check(), Ok(()), "{who}");
+        assert!(body.shape.smallest_extent() >= 0.0149, "{who}: {:?}", body.shape);
+        assert!(body.character_from_body.is_finite(), "{who}");
+        assert!(body.mass.mass > 0.0 && body.mass.mass.is_finite(), "{who}");
+        let (distance, _) = body.shape.signed_distance(&sinew_math::Transform::IDENTITY, body.mass.center);
+        assert!(distance < 0.0, "{who}: centre of mass {distance} m outside");
+        let (moments, _) = body.mass.inertia.eigen();
+        assert!(moments.z > 0.0 && moments.x <= 8.01 * moments.z, "{who}: {moments}");
+        assert!(moments.x <= 1.001 * (moments.y + moments.z), "{who}: {moments}");
+    }
+    let sum: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
+    assert!((sum - def.total_mass).abs() <= 1e-5 * def.total_mass, "{name}: {sum} of {}", def.total_mass);
+    for &(a, b) in &def.disabled_pairs {
+        assert!(a < b && b < def.bodies.len(), "{name}");
+    }
+}
+
+#[test]
+fn people_have_the_bodies_of_people() {
+    for name in PEOPLE {
+        let Some(rig) = rig(name) else { return };
+        let (def, report) = built(&rig, &BuildOptions { mass: Some(75.0), ..BuildOptions::default() });
+        check_sound(name, &def);
+        assert!((13..=25).contains(&def.bodies.len()), "{name}: {} bodies", def.bodies.len());
+        assert!((def.total_mass - 75.0).abs() < 1e-3, "{name}: {}", def.total_mass);
+        assert!(report.mean_error < 0.0125 * def.height, "{name}: mean error {} m", report.mean_error);
+        assert!(report.shape_volume < 1.6 * 0.075, "{name}: shapes of {} m³", report.shape_volume);
+        for role in ["hips", "spine", "head"] {
+            body(&def, role);
+        }
+        for part in ["UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot"] {
+            let [left, right] = ["left", "right"].map(|side| body(&def, &format!("{side}{part}")));
+            let (l, r) = (def.bodies[left].mass.mass, def.bodies[right].mass.mass);
+            assert!((l - r).abs() < 0.01 * l, "{name} {part}: {l} and {r} kg");
+        }
+        // De Leva: a thigh is 14.16 % of a man, a shank 4.33 %.
+        let thigh = def.bodies[body(&def, "leftUpperLeg")].mass.mass;
+        assert!((thigh / 75.0 - 0.1416).abs() < 0.001, "{name}: {thigh}");
+    }
+}
+
+#[test]
+fn odd_rigs_are_sound_too() {
+    for name in OTHERS {
+        let Some(rig) = rig(name) else { return };
+        for shapes in [ShapeChoice::Auto, ShapeChoice::Box, ShapeChoice::Capsule] {
+            let (def, _) = built(&rig, &BuildOptions { shapes, ..BuildOptions::default() });
+            check_sound(name, &def);
+            let boxes = def.bodies.iter().filter(|body| matches!(body.shape, Shape::Box { .. })).count();
+            assert!(shapes != ShapeChoice::Capsule || boxes == 0, "{name}: {boxes} boxes");
+        }
+    }
+}
+
+/// The rig in other units and axes: every root and every bind matrix is told of it.
+fn transformed(rig: &Rig, scale: f32, turn: Rotation) -> Rig {
+    let mut rig = rig.clone();
+    for joint in rig.joints.iter_mut().filter(|joint| joint.parent.is_none()) {
+        joint.rest.translation = turn * (joint.rest.translation * scale);
+        joint.rest.rotation = turn * joint.rest.rotation;
+        joint.rest.scale *= scale;
+    }
+    // Mesh space is turned and scaled with the model: p' = S p, so inverse_bind' = inverse_bind S⁻¹.
+    let there = Affine::from_scale_rotation_translation(Vec3::splat(scale), turn, Vec3::ZERO);
+    let back = there.inverse();
+    for skin in &mut rig.skins {
+        for inverse in &mut skin.inverse_bind {
+            *inverse = *inverse * back;
+        }
+    }
+    for mesh in rig.meshes.iter_mut().filter(|mesh| mesh.skin.is_some()) {
+        for position in mesh.primitives.iter_mut().flat_map(|p| &mut p.positions) {
+            *position = there.point(*position);
+        }
+    }
+    rig
+}
+
+#[test]
+fn units_axes_and_names_do_not_matter() {
+    for name in PEOPLE {
+        let Some(rig) = rig(name) else { return };
+        let (plain, _) = built(&rig, &BuildOptions::default());
+        let quarter = Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_2);
+        let mut other = transformed(&rig, 100.0, quarter);
+        let count = other.joints.len();
+        for (i, joint) in other.joints.iter_mut().enumerate() {
+            joint.name = format!("node{}", (i * 7 + 3) % count);
+        }
+        let (turned, _) = built(&other, &BuildOptions::default());
+        assert_eq!(plain.bodies.len(), turned.bodies.len(), "{name}");
+        for (a, b) in plain.bodies.iter().zip(&turned.bodies) {
+            assert_eq!((a.joint, &a.role), (b.joint, &b.role), "{name}");
+            let (m, n) = (a.mass.mass, b.mass.mass);
+            assert!((m - n).abs() < 0.01 * m, "{name} {}: {m} and {n} kg", a.role);
+            let moved = (a.character_from_body.translation - b.character_from_body.translation).length();
+            assert!(moved < 0.01 * plain.height, "{name} {}: moved by {moved} m", a.role);
+        }
+    }
+}
+
+#[test]
+fn sex_and_mass_are_heeded() {
+    let Some(rig) = rig("mannequiny.glb") else { return };
+    let of = |sex, mass| built(&rig, &BuildOptions { sex, mass, ..BuildOptions::default() }).0;
+    let (man, woman) = (of(Sex::Male, None), of(Sex::Female, None));
+    let thigh = |def: &RagdollDef| def.bodies[body(def, "leftUpperLeg")].mass.mass / def.total_mass;
+    assert!((thigh(&man) - 0.1416).abs() < 1e-3 && (thigh(&woman) - 0.1478).abs() < 1e-3);
+    let index = 73.0 / (1.741 * 1.741) * man.height * man.height;
+    assert!((man.total_mass - index).abs() < 0.01, "{} kg at {} m", man.total_mass, man.height);
+    assert!((of(Sex::Male, Some(60.0)).total_mass - 60.0).abs() < 1e-3);
+}
+
+#[test]
+fn refuses_what_it_cannot_build() {
+    let Some(rig) = rig("SimpleSkin.gltf") else { return };
+    let analysis = analyze(&rig).expect("a skin");
+    let bare = Rig { skins: Vec::new(), ..rig.clone() };
+    assert_eq!(build(&bare, &analysis, &BuildOptions::default()), Err(BuildError::NoSkin));
+    assert_eq!(BuildError::NoSkin.to_string(), "no skin: nothing to build a ragdoll from");
+    let options = BuildOptions { mass: Some(-1.0), ..BuildOptions::default() };
+    assert_eq!(build(&rig, &analysis, &options), Err(BuildError::Mass(-1.0)));
+}

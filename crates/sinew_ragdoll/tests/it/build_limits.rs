@@ -1,0 +1,224 @@
+//! Joint limits in anatomical terms, on skeletons made by hand: which way knees bend, where cones point.
+
+use sinew_anim::roles::{Role, Side};
+use sinew_math::{Range, Rotation, Transform, Vec3, limits::hinge_angle, trig};
+use sinew_physics::{JointKind, Shape};
+use sinew_ragdoll::build::bones::{Anatomy, Bone, Bones};
+use sinew_ragdoll::fit::{Fit, patch::Selection};
+use sinew_ragdoll::limits::{JointPlan, joints};
+
+/// A person of 1.75 m whose arms hang `drop` radians below the horizontal.
+fn person(drop: f32) -> Bones {
+    let mut list = vec![
+        Bone::new(0, Role::Hips, None, Vec3::new(0.0, 1.0, 0.0)),
+        Bone::new(1, Role::Spine, Some(0), Vec3::new(0.0, 1.1, 0.0)),
+        Bone::new(2, Role::Head, Some(1), Vec3::new(0.0, 1.55, 0.0)),
+    ];
+    for side in [Side::Left, Side::Right] {
+        let s = if side == Side::Left { 1.0 } else { -1.0 };
+        let arm = Vec3::new(s * trig::cos(drop), -trig::sin(drop), 0.0);
+        let shoulder = Vec3::new(s * 0.2, 1.45, 0.0);
+        let first = list.len();
+        let mut add = |role, parent, head| list.push(Bone::new(0, role, Some(parent), head));
+        add(Role::UpperArm(side), 1, shoulder);
+        add(Role::LowerArm(side), first, shoulder + arm * 0.28);
+        add(Role::Hand(side), first + 1, shoulder + arm * 0.55);
+        add(Role::UpperLeg(side), 0, Vec3::new(s * 0.1, 0.95, 0.0));
+        add(Role::LowerLeg(side), first + 3, Vec3::new(s * 0.1, 0.52, 0.0));
+        add(Role::Foot(side), first + 4, Vec3::new(s * 0.1, 0.09, 0.0));
+        add(Role::Toes(side), first + 5, Vec3::new(s * 0.1, 0.02, 0.15));
+    }
+    Bones::new(list, Anatomy::Human, 1.75)
+}
+
+/// Bodies whose frames are turned at random: limits must not depend on them.
+fn fits(bones: &Bones) -> Vec<Fit> {
+    (0..bones.list.len())
+        .map(|i| {
+            let middle = bones.tail(i).map_or_else(
+                || bones.list[i].head + bones.direction(i, None) * 0.1,
+                |tail| (bones.list[i].head + tail) * 0.5,
+            );
+            let turn = Rotation::from_scaled_axis(Vec3::new(i as f32, 1.0, -0.3 * i as f32));
+            Fit {
+                shape: Shape::Sphere { radius: 0.05 },
+                character_from_body: Transform::new(middle, turn),
+                error: 0.0,
+                area: 1.0,
+                selection: Selection::Nothing,
+            }
+        })
+        .collect()
+}
+
+fn plans(bones: &Bones) -> Vec<JointPlan> {
+    joints(bones, &fits(bones), 75.0)
+}
+
+fn index(bones: &Bones, role: Role) -> usize {
+    bones.list.iter().position(|bone| bone.role == role).expect("made by hand")
+}
+
+/// Joint rotation at the bind pose, parent frame to child frame, and the parent's frame in character axes.
+fn at_bind(bones: &Bones, plan: &JointPlan) -> (Rotation, Rotation) {
+    let fits = fits(bones);
+    let of = |body: usize, frame: Transform| fits[body].character_from_body.rotation * frame.rotation;
+    let (parent, child) =
+        (of(plan.def.parent, plan.def.frame_parent), of(plan.def.child, plan.def.frame_child));
+    (parent.inverse() * child, parent)
+}
+
+/// Where a point carried by the child goes when the joint rotation becomes `joint`, character space.
+fn moved(bones: &Bones, child: usize, joint: Rotation, point: Vec3) -> Vec3 {
+    let plan = &plans(bones)[child - 1];
+    let (bind, parent) = at_bind(bones, plan);
+    let pivot = bones.list[child].head;
+    let turn = parent * joint * bind.inverse() * parent.inverse();
+    pivot + turn * (point - pivot)
+}
+
+fn hinge(plan: &JointPlan) -> Range {
+    match plan.def.kind {
+        JointKind::Hinge { limit: Some(limit) } => limit,
+        other => panic!("not a hinge: {other:?}"),
+    }
+}
+
+#[test]
+fn knees_bend_backward_and_elbows_forward() {
+    for drop in [0.0, 0.7, 1.4] {
+        let bones = person(drop);
+        let bend = Rotation::from_axis_angle(Vec3::X, 90f32.to_radians());
+        for side in [Side::Left, Side::Right] {
+            let knee = index(&bones, Role::LowerLeg(side));
+            let ankle = bones.list[index(&bones, Role::Foot(side))].head;
+            let foot = moved(&bones, knee, bend, ankle);
+            let back = Vec3::new(ankle.x, 0.52, -0.43);
+            assert!((foot - back).length() < 1e-3, "{side:?}: ankle at {foot}");
+
+            let elbow = index(&bones, Role::LowerArm(side));
+            let wrist = bones.list[index(&bones, Role::Hand(side))].head;
+            let hand = moved(&bones, elbow, bend, wrist);
+            let front = bones.list[elbow].head + Vec3::Z * 0.27;
+            assert!((hand - front).length() < 1e-3, "{side:?} at {drop}: wrist at {hand}");
+        }
+    }
+}
+
+#[test]
+fn hinges_keep_the_table_in_absolute_terms() {
+    let bones = person(0.7);
+    let plans = plans(&bones);
+    let knee = &plans[index(&bones, Role::LowerLeg(Side::Left)) - 1];
+    assert!((hinge(knee).hi.to_degrees() - 142.0).abs() < 1e-3);
+    assert!((hinge(knee).lo.to_degrees() + 2.0).abs() < 1e-3);
+    assert!(hinge_angle(at_bind(&bones, knee).0).abs() < 1e-3, "straight legs are at 0");
+}
+
+#[test]
+fn a_bent_bind_pose_is_counted_from_straight() {
+    let mut bones = person(0.7);
+    // The left shank points 30° backward.
+    let knee = index(&bones, Role::LowerLeg(Side::Left));
+    let ankle = index(&bones, Role::Foot(Side::Left));
+    let angle = 30f32.to_radians();
+    bones.list[ankle].head =
+        bones.list[knee].head + Vec3::new(0.0, -trig::cos(angle), -trig::sin(angle)) * 0.43;
+    let plan = &plans(&bones)[knee - 1];
+    assert!((hinge_angle(at_bind(&bones, plan).0).to_degrees() - 30.0).abs() < 0.1);
+    assert!((hinge(plan).hi.to_degrees() - 142.0).abs() < 1e-3, "142° from straight, not from the bind pose");
+}
+
+#[test]
+fn hips_reach_forward_and_hardly_back() {
+    let bones = person(0.7);
+    for side in [Side::Left, Side::Right] {
+        let thigh = index(&bones, Role::UpperLeg(side));
+        let plan = &plans(&bones)[thigh - 1];
+        let (bind, parent) = at_bind(&bones, plan);
+        let JointKind::Ball { limit: Some(limit) } = plan.def.kind else { panic!("a hip is a ball joint") };
+        let beyond = |turn: Vec3| {
+            let turned = Rotation::from_scaled_axis(turn) * parent * bind;
+            limit.overshoot(parent.inverse() * turned).to_degrees()
+        };
+        let out = if side == Side::Left { 1.0 } else { -1.0 };
+        assert_eq!(beyond(Vec3::ZERO), 0.0, "standing");
+        assert_eq!(beyond(-Vec3::X * 110f32.to_radians()), 0.0, "110° forward");
+        assert!(beyond(Vec3::X * 40f32.to_radians()) > 10.0, "40° back");
+        assert_eq!(beyond(Vec3::Z * out * 30f32.to_radians()), 0.0, "30° outward");
+        assert!(beyond(-Vec3::Z * out * 50f32.to_radians()) > 10.0, "50° across the other leg");
+    }
+}
+
+#[test]
+fn shoulders_reach_the_same_places_from_any_bind_pose() {
+    let reach = |drop: f32, side: Side, direction: Vec3| {
+        let bones = person(drop);
+        let arm = index(&bones, Role::UpperArm(side));
+        let plan = &plans(&bones)[arm - 1];
+        let (bind, parent) = at_bind(&bones, plan);
+        let JointKind::Ball { limit: Some(limit) } = plan.def.kind else { panic!("a ball joint") };
+        let now = bones.direction(arm, None);
+        let turned = Rotation::from_arc(now, direction) * parent * bind;
+        -limit.swing_state(parent.inverse() * turned).room
+    };
+    for side in [Side::Left, Side::Right] {
+        let out = if side == Side::Left { Vec3::X } else { -Vec3::X };
+        for drop in [0.0, 0.7, 1.3] {
+            for inside in [-Vec3::Y, out, Vec3::Z] {
+                let beyond = reach(drop, side, inside);
+                assert!(beyond < 0.0, "{side:?} bound at {drop}: {inside} is {beyond} rad out of reach");
+            }
+            let behind = (-Vec3::Z * 0.9 - out * 0.43).normalize();
+            assert!(reach(drop, side, behind) > 0.1, "{side:?} bound at {drop}: behind the back");
+        }
+    }
+}
+
+#[test]
+fn right_is_the_mirror_image_of_left() {
+    let bones = person(0.4);
+    let plans = plans(&bones);
+    for bone in 0..bones.list.len() {
+        let Some(twin) = bones.twin(bone).filter(|_| bones.list[bone].role.is_left()) else { continue };
+        let (l, r) = (&plans[bone - 1].def, &plans[twin - 1].def);
+        match (l.kind, r.kind) {
+            (JointKind::Hinge { limit: Some(a) }, JointKind::Hinge { limit: Some(b) }) => {
+                assert!((a.lo - b.lo).abs() < 1e-4 && (a.hi - b.hi).abs() < 1e-4);
+            }
+            (JointKind::Ball { limit: Some(a) }, JointKind::Ball { limit: Some(b) })
+            | (JointKind::Universal { limit: Some(a) }, JointKind::Universal { limit: Some(b) }) => {
+                assert_eq!(a.swing_y, b.swing_y);
+                assert_eq!((a.swing_z.lo, a.swing_z.hi), (-b.swing_z.hi, -b.swing_z.lo));
+                assert_eq!((a.twist.lo, a.twist.hi), (-b.twist.hi, -b.twist.lo));
+            }
+            other => panic!("unlike kinds {other:?}"),
+        }
+        // An axis of rotation keeps its x and turns its other parts round in the mirror; so does a rotation's vector.
+        let (a, b) = (at_bind(&bones, &plans[bone - 1]).1, at_bind(&bones, &plans[twin - 1]).1);
+        let along = |frame: Rotation| frame * Vec3::X;
+        let mirrored = if matches!(l.kind, JointKind::Hinge { .. }) {
+            Vec3::new(along(a).x, -along(a).y, -along(a).z)
+        } else {
+            Vec3::new(-along(a).x, along(a).y, along(a).z)
+        };
+        assert!((mirrored - along(b)).length() < 1e-4, "{:?}", bones.list[bone].role);
+    }
+}
+
+#[test]
+fn every_bind_pose_is_inside_its_limits() {
+    for drop in [-1.5, -0.5, 0.0, 0.7, 1.5] {
+        let bones = person(drop);
+        for plan in plans(&bones) {
+            let (joint, _) = at_bind(&bones, &plan);
+            let beyond = match plan.def.kind {
+                JointKind::Ball { limit: Some(limit) } => limit.overshoot(joint),
+                JointKind::Universal { limit: Some(limit) } => -limit.swing_state(joint).room,
+                JointKind::Hinge { limit: Some(limit) } => limit.excess(hinge_angle(joint)),
+                _ => 0.0,
+            };
+            assert!(beyond <= 0.0, "{:?} at {drop}: {beyond}", bones.list[plan.def.child].role);
+        }
+    }
+}
