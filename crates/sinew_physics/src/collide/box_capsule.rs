@@ -14,8 +14,8 @@ struct Meeting {
     on_core: Vec3,
 }
 
-/// Normals within 0.1° of a face's are that face's.
-const FACE_COSINE: f32 = 0.999_998;
+/// Normals within 0.03° of a face's are that face's: rounding is below that, and the rim of a long box not far off.
+const FACE_SINE: f32 = 5e-4;
 /// A core within 1.8° of a side's direction runs along it.
 const ALONG_COSINE: f32 = 0.9995;
 /// A normal within 1.8° of the plane across that side.
@@ -23,7 +23,7 @@ const ACROSS_SINE: f32 = 0.03;
 
 pub(super) fn collide(a: &Obb, b: &Pill, margin: f32, out: &mut Manifold) {
     let core = Segment { ends: b.core.ends.map(|p| a.local_point(p)) };
-    let meeting = apart(a.half, &core).unwrap_or_else(|| pierced(a.half, &core));
+    let meeting = apart(a.half, &core).unwrap_or_else(|| pierced(a.half, &core, b.radius));
     let nearest = (meeting.on_core - meeting.on_box).dot(meeting.normal) - b.radius;
     if nearest > margin {
         return;
@@ -82,10 +82,10 @@ fn edge(half: Vec3, axis: usize, positive: [bool; 2]) -> Segment {
 }
 
 /// The shortest way out, over the box's faces and the directions across the core and an edge.
-fn pierced(half: Vec3, core: &Segment) -> Meeting {
+fn pierced(half: Vec3, core: &Segment, radius: f32) -> Meeting {
     let (face_gap, face) = best_face(half, core);
     // A face can carry two points: an edge must be clearly the better way.
-    let preference = 0.05 * face_gap.abs() + 0.01 * min(min(half.x, half.y), half.z);
+    let preference = 0.05 * face_gap.abs() + 0.01 * min(min(half.x, half.y), min(half.z, radius));
     match best_edge(half, core) {
         Some((edge_gap, edge)) if edge_gap > face_gap + preference => edge,
         _ => face,
@@ -149,10 +149,10 @@ fn push_line(
     let mut stretch = (0.0, 1.0);
     let face = largest_axis(meeting.normal);
     let along_axis = largest_axis(along);
+    let mut straight = Vec3::ZERO;
+    straight[face] = sign(meeting.normal[face]);
     let (normal, name);
-    if meeting.normal[face].abs() >= FACE_COSINE {
-        let mut straight = Vec3::ZERO;
-        straight[face] = sign(meeting.normal[face]);
+    if (meeting.normal - straight).length() <= FACE_SINE {
         (normal, name) = (straight, feature::face(face, straight[face]));
         for axis in (0..3).filter(|axis| *axis != face) {
             if !cut(core, axis, half[axis], &mut stretch) {
