@@ -19,6 +19,8 @@ pub mod world;
 pub use error::{Error, ErrorKind, Result};
 #[cfg(feature = "fs")]
 pub use fs::{load_gltf, read_bytes, write_all_atomic, write_atomic};
-pub use gltf::{Container, Document, ReadOptions, Resolver, Textures, append_clip, no_files, read_gltf};
+pub use gltf::{
+    Container, Document, ReadOptions, Resolver, Textures, append_clip, no_files, read_gltf, write_gltf,
+};
 pub use ragdoll::{read_ragdoll, write_ragdoll};
 pub use world::{read_world, write_world};

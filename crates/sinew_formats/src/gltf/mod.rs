@@ -11,8 +11,10 @@ mod mesh;
 mod scene;
 mod source;
 mod vrm;
+mod write;
 
 pub use append::append_clip;
+pub use write::write_gltf;
 
 use crate::error::{Error, Result, quoted};
 use crate::json::{self, At};

@@ -9,3 +9,4 @@ mod hostile;
 mod ragdoll;
 mod rigs;
 mod world;
+mod write;
