@@ -44,10 +44,8 @@ pub fn box_frame(bones: &Bones, bone: usize, patch: &Patch) -> Mat3 {
         };
         return around(patch, Vec3::X, Some(upright));
     }
-    if bones.list[bone].part == Part::Foot {
-        if let Some(frame) = sole_frame(patch) {
-            return frame;
-        }
+    if let Some(frame) = (bones.list[bone].part == Part::Foot).then(|| sole_frame(patch)).flatten() {
+        return frame;
     }
     let preferred = around(patch, long_axis(bones, bone, patch), None);
     let (_, axes) = patch.covariance.eigen();
