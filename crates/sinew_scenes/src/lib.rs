@@ -3,3 +3,4 @@
 
 pub mod cabin;
 pub mod mannequin;
+pub mod scenes;

@@ -1,5 +1,6 @@
-//! Tests of the embedded character and world.
+//! Tests of the embedded character and world, and of the scenes.
 
 mod cabin;
 mod mannequin;
 mod motions;
+mod scenes;

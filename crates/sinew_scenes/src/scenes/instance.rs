@@ -1,0 +1,113 @@
+//! A scene that runs.
+
+use super::metric::{Expected, Metric};
+use sinew::math::max;
+use sinew::physics::stage::{NoProfiler, Profiler};
+use sinew::physics::{Energy, Serial, TaskRunner, World};
+
+/// The part of a scene that goes along with its world.
+pub trait Script: Send {
+    /// After each step: watches, and pushes what the next step is to feel. What it pushes depends on the world alone,
+    /// so that a restored world goes on as the saved one did.
+    fn after_step(&mut self, world: &mut World);
+
+    /// The figures so far.
+    fn metrics(&self, world: &World) -> Vec<Metric>;
+}
+
+/// A scene that runs.
+pub struct Instance {
+    world: World,
+    script: Box<dyn Script>,
+    health: Health,
+}
+
+impl Instance {
+    pub(super) fn new(world: World, script: impl Script + 'static) -> Self {
+        let health = Health::new(&world);
+        Self { world, script: Box::new(script), health }
+    }
+
+    /// Its world, for questions, drawing, snapshots.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// Its world, to be pushed about or to load a snapshot of the same scene into.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    /// One step on the calling thread.
+    pub fn step(&mut self) {
+        self.step_with(&Serial, &NoProfiler);
+    }
+
+    /// One step with the host's threads and stage times.
+    pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
+        let before = self.world.energy();
+        self.world.step_with(runner, profiler);
+        self.after_step(before);
+    }
+
+    /// Runs the whole steps that `nanoseconds` more of time hold, as [`World::update`] does; gives the rest as a share
+    /// of a step.
+    pub fn update(&mut self, nanoseconds: u64) -> f32 {
+        let step = self.world.def().step_nanoseconds;
+        let mut left = nanoseconds;
+        loop {
+            // At most one step fits into what is pending and this portion, so that the script sees each.
+            let portion = u64::min(left, step);
+            let (before, steps) = (self.world.energy(), self.world.step_count());
+            let alpha = self.world.update(portion);
+            if self.world.step_count() > steps {
+                self.after_step(before);
+            }
+            left -= portion;
+            if left == 0 {
+                return alpha;
+            }
+        }
+    }
+
+    fn after_step(&mut self, energy_before: Energy) {
+        self.health.after_step(&self.world, energy_before);
+        self.script.after_step(&mut self.world);
+    }
+
+    /// The figures so far: those of the scene, then `energy_gain_max` and `nan`, which every scene has.
+    pub fn metrics(&self) -> Vec<Metric> {
+        let mut metrics = self.script.metrics(&self.world);
+        metrics.extend(self.health.metrics());
+        metrics
+    }
+}
+
+/// What no scene may show, however long it runs.
+struct Health {
+    mass: f32,
+    energy_gain_max: f32,
+    quarantined: u32,
+}
+
+impl Health {
+    fn new(world: &World) -> Self {
+        let mass = world.body_ids().map(|id| world.mass(id).mass).sum();
+        Self { mass, energy_gain_max: 0.0, quarantined: 0 }
+    }
+
+    fn after_step(&mut self, world: &World, before: Energy) {
+        let after = world.energy();
+        // Each kind by itself: their sums are large and lose digits.
+        let rise = (after.kinetic - before.kinetic) + (after.potential - before.potential);
+        self.energy_gain_max = max(self.energy_gain_max, rise / max(before.kinetic, self.mass));
+        self.quarantined += world.events().quarantined.len() as u32;
+    }
+
+    fn metrics(&self) -> [Metric; 2] {
+        [
+            Metric::new("energy_gain_max", self.energy_gain_max, Expected::AtMost(0.01)),
+            Metric::new("nan", self.quarantined, Expected::AtMost(0.0)),
+        ]
+    }
+}

@@ -1,0 +1,97 @@
+//! Named scenarios: each builds a world, drives it, and says by figures whether the physics holds.
+//!
+//! ```
+//! let scene = sinew_scenes::scenes::find("pendulum").expect("it is one of the registry's");
+//! let mut settings = scene.settings();
+//! settings.assign("amplitude=30")?;
+//! let mut run = scene.start(&settings);
+//! for _ in 0..scene.steps {
+//!     run.step();
+//! }
+//! assert!(run.metrics().iter().all(|metric| metric.is_met()));
+//! # Ok::<(), sinew_scenes::scenes::SettingError>(())
+//! ```
+
+mod flight;
+mod instance;
+mod metric;
+mod parts;
+mod setting;
+
+mod ballistics;
+mod incline;
+mod pendulums;
+mod piles;
+mod ragdolls;
+mod weightless;
+
+pub use instance::{Instance, Script};
+pub use metric::{Expected, Metric};
+pub use setting::{Domain, Setting, SettingError, Settings};
+
+use setting::Setup;
+
+/// A named scenario.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene {
+    /// What `sinew run` calls it.
+    pub name: &'static str,
+    /// One line for people.
+    pub about: &'static str,
+    /// Steps of 1/60 s after which its expectations hold.
+    pub steps: u32,
+    settings: &'static [Setting],
+    build: fn(&Setup<'_>) -> Instance,
+}
+
+impl Scene {
+    /// Its settings, all at their defaults.
+    pub fn settings(&self) -> Settings {
+        Settings::new(self.settings)
+    }
+
+    /// Builds it.
+    ///
+    /// # Panics
+    /// If the settings are those of another scene.
+    pub fn start(&self, settings: &Settings) -> Instance {
+        self.start_under(settings, 1.0)
+    }
+
+    /// Builds it in a world whose gravity is wrong by a factor, while its expectations remain those of the right one:
+    /// they must fail wherever gravity matters.
+    ///
+    /// # Panics
+    /// If the settings are those of another scene.
+    pub fn start_under(&self, settings: &Settings, gravity_factor: f32) -> Instance {
+        (self.build)(&Setup { settings, gravity_factor })
+    }
+}
+
+/// All scenes, closed forms first.
+pub fn registry() -> &'static [Scene] {
+    const {
+        &[
+            ballistics::FREE_FALL,
+            ballistics::PROJECTILE,
+            ballistics::BOUNCE,
+            pendulums::PENDULUM,
+            pendulums::DOUBLE_PENDULUM,
+            pendulums::CHAIN,
+            incline::HOLDS,
+            incline::SLIDES,
+            weightless::ZERO_GRAVITY_PILE,
+            piles::STACK,
+            piles::PYRAMID,
+            piles::DOMINOES,
+            ragdolls::DROP,
+            ragdolls::WALL,
+            ragdolls::STAIRS,
+        ]
+    }
+}
+
+/// The scene of that name.
+pub fn find(name: &str) -> Option<&'static Scene> {
+    registry().iter().find(|scene| scene.name == name)
+}

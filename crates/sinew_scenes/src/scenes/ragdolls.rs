@@ -1,0 +1,160 @@
+//! The mannequin, limp: dropped, thrown at a wall, down the cabin's stairs.
+
+use super::flight::Flight;
+use super::metric::{Expected, Metric};
+use super::parts::{cuboid, fixed, floor};
+use super::{Instance, Scene, Script, Setting, Setup};
+use crate::cabin::{PORCH_HEIGHT, Site};
+use crate::mannequin::{WALK_SPEED, mannequin};
+use sinew::anim::analyze;
+use sinew::math::{Rotation, Transform, Vec3, max, min};
+use sinew::physics::{BodyId, Velocity, World};
+use sinew::ragdoll::{BodyState, BuildOptions, Flesh, QualityMeter, Ragdoll, RagdollDef, build};
+
+pub(super) const DROP: Scene = Scene {
+    name: "ragdoll_drop",
+    about: "the mannequin falls limp on the floor and comes to rest",
+    steps: 600,
+    settings: &[
+        Setting::number("height", 1.0, (0.1, 50.0), "from its lowest point to the floor, m"),
+        Setting::number("pitch", 25.0, (-180.0, 180.0), "leaning forward, degrees"),
+        Setting::number("roll", 0.0, (-180.0, 180.0), "leaning to its right, degrees"),
+    ],
+    build: drop,
+};
+
+pub(super) const WALL: Scene = Scene {
+    name: "ragdoll_wall",
+    about: "the mannequin is thrown at a wall: nothing stretches, nothing explodes",
+    steps: 480,
+    settings: &[Setting::number("speed", 15.0, (1.0, 60.0), "toward the wall, m/s")],
+    build: wall,
+};
+
+pub(super) const STAIRS: Scene = Scene {
+    name: "stairs",
+    about: "the mannequin stumbles limp down the cabin's stairs",
+    steps: 900,
+    settings: &[
+        Setting::number("speed", WALK_SPEED, (0.0, 10.0), "with which it leaves the porch, m/s"),
+        Setting::number("impulse", 30.0, (0.0, 500.0), "push forward on its chest as it falls, N·s"),
+    ],
+    build: stairs,
+};
+
+fn drop(setup: &Setup<'_>) -> Instance {
+    let mut world = setup.world();
+    world.add_body(&floor());
+    let turn = Rotation::from_axis_angle(Vec3::Z, setup.number("roll").to_radians())
+        * Rotation::from_axis_angle(Vec3::X, setup.number("pitch").to_radians());
+    let limp = Limp::spawn(&mut world, turn, Vec3::Y * setup.number("height"), Vec3::ZERO);
+    Instance::new(world, limp)
+}
+
+fn wall(setup: &Setup<'_>) -> Instance {
+    let mut world = setup.world();
+    world.add_body(&floor());
+    world.add_body(&fixed(cuboid(Vec3::new(6.0, 4.0, 0.25), Vec3::new(0.0, 4.0, 3.0))));
+    let speed = Vec3::Z * setup.number("speed");
+    let limp = Limp::spawn(&mut world, Rotation::IDENTITY, Vec3::Y, speed);
+    Instance::new(world, limp)
+}
+
+fn stairs(setup: &Setup<'_>) -> Instance {
+    let mut world = setup.world();
+    for prop in Site::CabinWithStairs.props() {
+        world.add_body(&prop.body);
+    }
+    // A hand's breadth off the boards, at the edge.
+    let edge = Vec3::new(0.0, PORCH_HEIGHT + 0.1, -0.3);
+    let speed = Vec3::Z * setup.number("speed");
+    let mut limp = Limp::spawn(&mut world, Rotation::IDENTITY, edge, speed);
+    limp.push = Vec3::Z * setup.number("impulse");
+    Instance::new(world, limp)
+}
+
+/// A limp mannequin and how it fares.
+struct Limp {
+    def: RagdollDef,
+    ragdoll: Ragdoll,
+    meter: QualityMeter,
+    flight: Flight,
+    /// On the chest, N·s, at [`PUSH_STEP`].
+    push: Vec3,
+    lowest: f32,
+}
+
+/// Step after which the push comes: in mid-stumble.
+const PUSH_STEP: u64 = 12;
+
+impl Limp {
+    /// The mannequin in its bind pose, turned about its soles and moving as one, its lowest point at the height of
+    /// `place`.
+    fn spawn(world: &mut World, turn: Rotation, place: Vec3, speed: Vec3) -> Self {
+        let def = ragdoll_of_mannequin();
+        let turned = Transform::new(Vec3::ZERO, turn);
+        let lowest = def.bodies.iter().fold(f32::INFINITY, |lowest, body| {
+            min(lowest, body.shape.aabb(&(turned * body.character_from_body)).min.y)
+        });
+        let placed = Transform::new(place - Vec3::Y * lowest, turn);
+        let velocity = Velocity { linear: speed, angular: Vec3::ZERO };
+        let state = |pose| BodyState { world_from_body: placed * pose, velocity };
+        let states: Vec<_> = def.bodies.iter().map(|body| state(body.character_from_body)).collect();
+        let ragdoll = Ragdoll::spawn(world, &def, &states, &Flesh::default());
+        let mut meter = QualityMeter::new(&def, 10.0);
+        meter.before_step(world);
+        let flight = Flight::new(world);
+        Self { def, ragdoll, meter, flight, push: Vec3::ZERO, lowest: f32::INFINITY }
+    }
+
+    fn push(&mut self, world: &mut World) {
+        let chest = self.def.bodies.iter().position(|body| body.role == "chest");
+        let chest = self.ragdoll.bodies[chest.expect("the mannequin has a chest")];
+        let before = world.body_energy(chest).kinetic;
+        world.apply_impulse_at_center(chest, self.push);
+        self.meter.pushed(world.body_energy(chest).kinetic - before);
+    }
+}
+
+fn ragdoll_of_mannequin() -> RagdollDef {
+    let rig = mannequin().rig;
+    let analysis = analyze(&rig).expect("the mannequin has a skin");
+    build(&rig, &analysis, &BuildOptions::default()).expect("and bones").0
+}
+
+impl Script for Limp {
+    fn after_step(&mut self, world: &mut World) {
+        self.meter.after_step(world, &self.ragdoll);
+        self.flight.after_step(world);
+        let center = |id: &BodyId| world.center_of_mass(*id).y;
+        self.lowest = self.ragdoll.bodies.iter().map(center).fold(self.lowest, min);
+        if world.step_count() == PUSH_STEP && self.push != Vec3::ZERO {
+            self.push(world);
+        }
+        self.meter.before_step(world);
+    }
+
+    /// Limits of the specification for the quality of a ragdoll.
+    fn metrics(&self, world: &World) -> Vec<Metric> {
+        let q = self.meter.quality();
+        let pelvis = world.center_of_mass(self.ragdoll.bodies[0]);
+        vec![
+            self.flight.metric(),
+            Metric::new("joint_gap_p99_m", q.joint_gap_p99_m, Expected::AtMost(1e-3)),
+            Metric::new("joint_gap_max_m", q.joint_gap_max_m, Expected::AtMost(5e-3)),
+            Metric::new("limit_overshoot_p99_deg", q.limit_overshoot_p99_deg, Expected::AtMost(2.0)),
+            Metric::new("limit_overshoot_max_deg", q.limit_overshoot_max_deg, Expected::AtMost(4.0)),
+            Metric::new("penetration_max_m", q.penetration_max_m, Expected::Anything),
+            Metric::new("penetration_rest_max_m", q.penetration_rest_max_m, Expected::AtMost(5e-3)),
+            Metric::new("nonadjacent_overlap_max_m", q.nonadjacent_overlap_max_m, Expected::AtMost(0.01)),
+            Metric::awaited("first_contact_s", q.first_contact_s, Expected::Anything),
+            Metric::awaited("settled_s", q.settled_s, Expected::Anything),
+            Metric::awaited("settled_omega_max_rad_s", q.settled_omega_max, Expected::AtMost(0.05)),
+            Metric::awaited("asleep_s", q.asleep_s, Expected::Anything),
+            Metric::awaited("calm_to_asleep_s", q.calm_to_asleep_s, Expected::AtMost(3.0)),
+            Metric::new("fallen_through_m", max(-self.lowest, 0.0), Expected::AtMost(0.0)),
+            Metric::new("pelvis_height_m", pelvis.y, Expected::AtMost(0.4)),
+            Metric::new("work_in_j", q.work_in_j, Expected::Anything),
+        ]
+    }
+}

@@ -1,0 +1,174 @@
+//! What a user may change about a scene.
+
+use super::parts::GRAVITY;
+use sinew::math::Vec3;
+use sinew::physics::{Sleeping, World, WorldDef};
+
+/// Which numbers a setting takes, ends included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Domain {
+    /// Any number from the first to the second.
+    Number(f32, f32),
+    /// Any whole number from the first to the second.
+    Whole(u16, u16),
+}
+
+/// A setting of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// Its name.
+    pub key: &'static str,
+    /// What it is, with its unit.
+    pub about: &'static str,
+    /// Value unless set.
+    pub default: f32,
+    /// What it may be.
+    pub domain: Domain,
+}
+
+impl Setting {
+    pub(super) const fn number(
+        key: &'static str,
+        default: f32,
+        (lo, hi): (f32, f32),
+        about: &'static str,
+    ) -> Self {
+        Self { key, about, default, domain: Domain::Number(lo, hi) }
+    }
+
+    pub(super) const fn whole(
+        key: &'static str,
+        default: u16,
+        (lo, hi): (u16, u16),
+        about: &'static str,
+    ) -> Self {
+        Self { key, about, default: default as f32, domain: Domain::Whole(lo, hi) }
+    }
+
+    fn parse(&self, text: &str) -> Option<f32> {
+        match self.domain {
+            Domain::Number(lo, hi) => text.parse().ok().filter(|value| (lo..=hi).contains(value)),
+            Domain::Whole(lo, hi) => {
+                let whole: u16 = text.parse().ok()?;
+                (lo..=hi).contains(&whole).then(|| f32::from(whole))
+            }
+        }
+    }
+}
+
+/// Why a setting was refused. One line each.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SettingError {
+    /// It is not `key=value`.
+    #[error("`{0}` is not key=value")]
+    NotAnAssignment(String),
+    /// The scene has no such setting.
+    #[error("no setting `{key}`; there is {}", list(.known))]
+    UnknownKey {
+        /// What was asked for.
+        key: String,
+        /// What there is.
+        known: Vec<&'static str>,
+    },
+    /// Its value is not one that it takes.
+    #[error("`{value}` is no value for `{key}`: it takes {domain}")]
+    Value {
+        /// The setting.
+        key: &'static str,
+        /// What was given.
+        value: String,
+        /// What it takes.
+        domain: String,
+    },
+}
+
+fn list(keys: &[&'static str]) -> String {
+    if keys.is_empty() { "none".into() } else { keys.join(", ") }
+}
+
+impl core::fmt::Display for Domain {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Number(lo, hi) => write!(f, "a number from {lo} to {hi}"),
+            Self::Whole(lo, hi) => write!(f, "a whole number from {lo} to {hi}"),
+        }
+    }
+}
+
+/// The settings of one scene with their values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    declared: &'static [Setting],
+    values: Vec<f32>,
+}
+
+impl Settings {
+    pub(super) fn new(declared: &'static [Setting]) -> Self {
+        Self { declared, values: declared.iter().map(|setting| setting.default).collect() }
+    }
+
+    /// What there is to set.
+    pub fn declared(&self) -> &'static [Setting] {
+        self.declared
+    }
+
+    /// Sets one by `key=value`.
+    ///
+    /// # Errors
+    /// See [`SettingError`].
+    pub fn assign(&mut self, assignment: &str) -> Result<(), SettingError> {
+        let (key, value) =
+            assignment.split_once('=').ok_or_else(|| SettingError::NotAnAssignment(assignment.to_owned()))?;
+        let Some(place) = self.declared.iter().position(|setting| setting.key == key) else {
+            let known = self.declared.iter().map(|setting| setting.key).collect();
+            return Err(SettingError::UnknownKey { key: key.to_owned(), known });
+        };
+        let Setting { key, domain, .. } = self.declared[place];
+        self.values[place] = self.declared[place].parse(value).ok_or_else(|| SettingError::Value {
+            key,
+            value: value.to_owned(),
+            domain: domain.to_string(),
+        })?;
+        Ok(())
+    }
+
+    /// Value of a setting.
+    ///
+    /// # Panics
+    /// If there is no such setting.
+    pub fn get(&self, key: &str) -> f32 {
+        let place = self.declared.iter().position(|setting| setting.key == key);
+        self.values[place.expect("the scene declares this setting")]
+    }
+}
+
+/// What a scene is built from.
+pub(super) struct Setup<'a> {
+    pub settings: &'a Settings,
+    /// Of the world's gravity over the one that expectations are made for.
+    pub gravity_factor: f32,
+}
+
+impl Setup<'_> {
+    pub fn number(&self, key: &str) -> f32 {
+        self.settings.get(key)
+    }
+
+    pub fn whole(&self, key: &str) -> usize {
+        self.settings.get(key) as usize
+    }
+
+    /// An empty world.
+    pub fn world(&self) -> World {
+        self.world_with(WorldDef::default())
+    }
+
+    /// An empty world in which nothing falls asleep: for what swings or flies for ever.
+    pub fn sleepless_world(&self) -> World {
+        self.world_with(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() })
+    }
+
+    fn world_with(&self, def: WorldDef) -> World {
+        World::new(WorldDef { gravity: Vec3::NEG_Y * (GRAVITY * self.gravity_factor), ..def })
+    }
+}
