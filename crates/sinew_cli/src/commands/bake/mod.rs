@@ -1,0 +1,214 @@
+//! `sinew bake`: a character is hit or goes limp, falls, and the fall becomes a clip on the user's own rig.
+
+mod clips;
+mod hit;
+
+use crate::failure::{Failure, Result};
+use crate::fall::Fall;
+use crate::files::{CharacterFile, Outputs, read_world_file};
+use crate::film::{Film, body_models};
+use crate::report::Report;
+use crate::table::shown;
+use clips::Motions;
+use hit::HitArg;
+use sinew::formats::{Textures, append_clip};
+use sinew::math::Vec3;
+use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
+use sinew::ragdoll::{AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, RagdollBodyDef, build};
+use sinew_picture::{PictureFormat, Sun};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// When a character goes limp that nothing hits, seconds.
+const LIMP_AT: f32 = 0.5;
+const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
+const OBSTACLES: [[f32; 3]; 3] = [[0.45, 0.33, 0.22], [0.40, 0.36, 0.30], [0.33, 0.27, 0.22]];
+
+/// Let your character fall: simulated from its animation, written back as a clip into a copy of your file
+#[derive(clap::Args)]
+#[command(after_help = "\
+Example:
+  sinew bake character.glb -o fall.glb
+  sinew bake character.glb --clip Walk --hit chest=0,0,-60@1.0 -o fall.glb --picture fall.gif
+  sinew bake character.glb --world house.json --limp-at 1.2 --seconds 6 -o fall.glb --json")]
+pub struct Bake {
+    /// A glTF, GLB or VRM file with a skinned character
+    character: PathBuf,
+    /// The clip that plays until the fall; without it the file's walk, else its idle, else its first clip, and
+    /// without any clip the rest pose
+    #[arg(long, value_name = "NAME")]
+    clip: Option<String>,
+    /// Further files with clips for the same skeleton (joints are found by name)
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    clips: Vec<PathBuf>,
+    /// A world file (JSON) to fall in; without it a floor at y = 0. The character stands at the origin
+    #[arg(long, value_name = "FILE")]
+    world: Option<PathBuf>,
+    /// Push a bone: joint name or role, impulse in N·s along the world's axes (+Y up), time in seconds; repeatable
+    #[arg(long = "hit", value_name = "BONE=IX,IY,IZ@T", allow_hyphen_values = true)]
+    hits: Vec<HitArg>,
+    /// Go limp at this time, seconds; without any --hit the default is 0.5
+    #[arg(long, value_name = "T", value_parser = seconds)]
+    limp_at: Option<f32>,
+    /// Length of the clip, seconds
+    #[arg(long, value_name = "S", default_value = "8", value_parser = length)]
+    seconds: f32,
+    /// Frames per second of the clip
+    #[arg(long, value_name = "N", default_value = "30", value_parser = clap::value_parser!(u16).range(1..=240))]
+    fps: u16,
+    /// Where to write the copy of your file with the new clip in it
+    #[arg(short, long, value_name = "OUT.glb")]
+    output: PathBuf,
+    /// Also draw it: a .gif, .png (animated) or .webp file
+    #[arg(long, value_name = "OUT.(gif|png|webp)", value_parser = picture_path)]
+    picture: Option<PathBuf>,
+}
+
+/// A time from the start.
+fn seconds(text: &str) -> Result<f32, String> {
+    let time: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..=LONGEST).contains(&time) {
+        Ok(time)
+    } else {
+        Err(format!("must lie between 0 and {LONGEST} s"))
+    }
+}
+
+fn length(text: &str) -> Result<f32, String> {
+    let time = seconds(text)?;
+    if time > 0.0 { Ok(time) } else { Err("must be above 0".to_owned()) }
+}
+
+/// Longest bake, seconds: what is longer belongs into several clips.
+const LONGEST: f32 = 600.0;
+
+fn picture_path(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    picture_format(&path).map(|_| path).ok_or_else(|| "must end in .gif, .png or .webp".to_owned())
+}
+
+fn picture_format(path: &Path) -> Option<PictureFormat> {
+    PictureFormat::from_extension(path.extension()?.to_str()?)
+}
+
+impl Bake {
+    /// Reads, simulates, draws, writes.
+    pub fn run(&self) -> Result<Report> {
+        self.check_outputs()?;
+        let textures = if self.picture.is_some() { Textures::Decode } else { Textures::Skip };
+        let file = CharacterFile::load(&self.character, textures)?;
+        let motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
+        let bodies = match &self.world {
+            Some(path) => read_world_file(path)?,
+            None => vec![floor()],
+        };
+        let character = Arc::new(character(&file, motions)?);
+        let hits =
+            self.hits.iter().map(|hit| aim(hit, &character, &file.name)).collect::<Result<Vec<_>>>()?;
+        let limp_at = self.limp_at.or(if hits.is_empty() { Some(LIMP_AT) } else { None });
+        let input = BakeInput {
+            bodies: &bodies,
+            hits: &hits,
+            limp_at,
+            seconds: self.seconds,
+            fps: f32::from(self.fps),
+            ..BakeInput::new(character)
+        };
+        let fall = Fall::simulate(&input);
+        self.write(&file, &fall)?;
+        Ok(self.report(&file, &fall))
+    }
+
+    /// The user's own file is never the output.
+    fn check_outputs(&self) -> Result<()> {
+        let real = |path: &Path| std::fs::canonicalize(path).ok();
+        let inputs: Vec<_> = self
+            .clips
+            .iter()
+            .chain(&self.world)
+            .chain([&self.character])
+            .filter_map(|path| real(path))
+            .collect();
+        for output in self.outputs() {
+            if real(output).is_some_and(|output| inputs.contains(&output)) {
+                let output = output.display();
+                return Err(Failure::Usage(format!("{output} is an input: write to another file")));
+            }
+        }
+        Ok(())
+    }
+
+    fn outputs(&self) -> Vec<&Path> {
+        std::iter::once(&self.output).chain(&self.picture).map(PathBuf::as_path).collect()
+    }
+
+    fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<()> {
+        let Fall { input, baked, .. } = fall;
+        let bytes = append_clip(&file.document, &baked.clip, input.name, None)
+            .map_err(|error| error.with_file(&file.name))?;
+        let mut outputs = Outputs::default();
+        outputs.add(&self.output, bytes);
+        if let Some((path, format)) =
+            self.picture.as_ref().and_then(|path| Some((path, picture_format(path)?)))
+        {
+            let film = film(fall);
+            let bytes =
+                film.shoot(format).map_err(|error| Failure::of_file(path.display().to_string(), error))?;
+            outputs.add(path, bytes);
+        }
+        outputs.write()
+    }
+
+    fn report(&self, file: &CharacterFile, fall: &Fall<'_>) -> Report {
+        let outputs = self.outputs();
+        let text = format!("{}\n{}", shown(&file.name), fall.to_text(&outputs));
+        Report { json: fall.to_json(&outputs), text }
+    }
+}
+
+/// A static half-space with its surface at y = 0.
+fn floor() -> BodyDef {
+    BodyDef { kind: BodyKind::Static, shapes: vec![ShapeDef::new(Shape::HalfSpace)], ..BodyDef::default() }
+}
+
+/// The ragdoll and the motions of the user's character.
+fn character(file: &CharacterFile, motions: Motions) -> Result<CharacterDef> {
+    let CharacterFile { name, document, analysis } = file;
+    let (ragdoll, _) = build(&document.rig, analysis, &BuildOptions::default())
+        .map_err(|error| Failure::of_file(name, error))?;
+    let mut def = CharacterDef::new(document.rig.clone(), ragdoll, &analysis.bind_model);
+    def.clips = motions.clips;
+    def.looped = motions.looped;
+    // A body that lies down and has no motion to get up by would float to its feet.
+    def.after_settling =
+        if motions.get_ups.is_empty() { AfterSettling::StayDown } else { AfterSettling::GetUp };
+    def.get_ups = motions.get_ups;
+    Ok(def)
+}
+
+/// The body that a hit means.
+fn aim(hit: &HitArg, character: &CharacterDef, file: &str) -> Result<Hit> {
+    let Some(body) = character.body_named(&hit.bone) else {
+        let known: Vec<String> = character.ragdoll.bodies.iter().map(known_as).collect();
+        let what = format!("no bone '{}' to hit; there are {}", hit.bone, known.join(", "));
+        return Err(Failure::at(file, what, "--hit"));
+    };
+    Ok(Hit { time: hit.time, body, impulse: hit.impulse })
+}
+
+/// A role, with the joint's name where that says something else.
+fn known_as(body: &RagdollBodyDef) -> String {
+    if body.role == body.bone { body.role.clone() } else { format!("{} ({})", body.role, shown(&body.bone)) }
+}
+
+/// The whole character, seen from its front left.
+fn film<'a>(fall: &'a Fall<'a>) -> Film<'a> {
+    let mut set = Vec::new();
+    for (index, body) in fall.input.bodies.iter().enumerate() {
+        let is_floor = body.shapes.iter().any(|shape| shape.shape == Shape::HalfSpace);
+        let [color, other] = if is_floor { FLOOR } else { [OBSTACLES[index % OBSTACLES.len()]; 2] };
+        set.extend(body_models(body, color, other));
+    }
+    let height = fall.input.character.ragdoll.height;
+    Film { fall, set, direction: Vec3::new(0.75, 0.4, 0.75), radius: 0.85 * height, sun: Sun::default() }
+}

@@ -1,0 +1,65 @@
+//! The commands: one struct and one file each.
+
+mod bake;
+mod demo;
+mod inspect;
+mod later;
+mod ragdoll_build;
+
+use crate::failure::Result;
+use crate::report::Report;
+use clap::Subcommand;
+use later::Later;
+
+/// What `sinew` can do.
+#[derive(Subcommand)]
+pub enum Command {
+    Demo(demo::Demo),
+    Bake(bake::Bake),
+    /// Work on ragdolls: build one from a rigged file
+    #[command(subcommand)]
+    Ragdoll(Ragdoll),
+    Inspect(inspect::Inspect),
+    #[command(hide = true, disable_help_flag = true)]
+    Boxes(Later),
+    #[command(hide = true, disable_help_flag = true)]
+    Events(Later),
+    #[command(hide = true, disable_help_flag = true)]
+    View(Later),
+    #[command(hide = true, disable_help_flag = true)]
+    Record(Later),
+    #[command(hide = true, disable_help_flag = true)]
+    Replay(Later),
+    #[command(hide = true, disable_help_flag = true)]
+    Convert(Later),
+}
+
+/// What `sinew ragdoll` can do.
+#[derive(Subcommand)]
+pub enum Ragdoll {
+    Build(ragdoll_build::RagdollBuild),
+    #[command(hide = true, disable_help_flag = true)]
+    Doctor(Later),
+    #[command(hide = true, disable_help_flag = true)]
+    Export(Later),
+}
+
+impl Command {
+    /// Does it.
+    pub fn run(&self) -> Result<Report> {
+        match self {
+            Self::Demo(command) => command.run(),
+            Self::Bake(command) => command.run(),
+            Self::Ragdoll(Ragdoll::Build(command)) => command.run(),
+            Self::Ragdoll(Ragdoll::Doctor(_)) => later::refuse("sinew ragdoll doctor"),
+            Self::Ragdoll(Ragdoll::Export(_)) => later::refuse("sinew ragdoll export"),
+            Self::Inspect(command) => command.run(),
+            Self::Boxes(_) => later::refuse("sinew boxes"),
+            Self::Events(_) => later::refuse("sinew events"),
+            Self::View(_) => later::refuse("sinew view"),
+            Self::Record(_) => later::refuse("sinew record"),
+            Self::Replay(_) => later::refuse("sinew replay"),
+            Self::Convert(_) => later::refuse("sinew convert"),
+        }
+    }
+}

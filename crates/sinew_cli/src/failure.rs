@@ -1,0 +1,66 @@
+//! Why a command did not do its work.
+
+use serde_json::{Value, json};
+use std::fmt;
+use std::process::ExitCode;
+
+/// Shorthand of this crate.
+pub type Result<T, E = Failure> = std::result::Result<T, E>;
+
+/// Why a command did not do its work; displays as one line.
+#[derive(Debug)]
+pub enum Failure {
+    /// A file, or the work on it. Exit code 1.
+    File(sinew::formats::Error),
+    /// What was asked for makes no sense. Exit code 2.
+    Usage(String),
+}
+
+impl Failure {
+    /// The work on a file failed for a reason that has no place in it.
+    pub fn of_file(file: impl Into<String>, what: impl fmt::Display) -> Self {
+        Self::File(sinew::formats::Error::unsupported(what.to_string(), "").with_file(file))
+    }
+
+    /// As [`of_file`](Self::of_file), with the place.
+    pub fn at(file: impl Into<String>, what: impl fmt::Display, place: impl Into<String>) -> Self {
+        Self::File(sinew::formats::Error::unsupported(what.to_string(), place).with_file(file))
+    }
+
+    /// What the process says to its caller.
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::File(_) => 1,
+            Self::Usage(_) => 2,
+        })
+    }
+
+    /// What `--json` prints: the file, what is wrong with it, and where. Usage has none of these.
+    pub fn to_json(&self) -> Option<Value> {
+        match self {
+            Self::File(error) => {
+                Some(json!({"error": {"file": error.file, "what": error.what, "where": error.where_}}))
+            }
+            Self::Usage(_) => None,
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let line = match self {
+            Self::File(error) => error.to_string(),
+            Self::Usage(what) => what.clone(),
+        };
+        // Names come from files: a line feed in one must not make two lines of this.
+        line.chars().try_for_each(|c| {
+            if c.is_control() { write!(f, "{}", c.escape_default()) } else { write!(f, "{c}") }
+        })
+    }
+}
+
+impl From<sinew::formats::Error> for Failure {
+    fn from(error: sinew::formats::Error) -> Self {
+        Self::File(error)
+    }
+}

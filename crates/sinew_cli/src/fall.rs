@@ -1,0 +1,63 @@
+//! A fall: a character, what is done to it, and what became of it. What `bake` and `demo` have in common.
+
+use crate::cpu_clock::timed;
+use crate::quality_report::{quality_json, quality_text};
+use crate::report::number;
+use crate::story;
+use serde_json::{Map, Value, json};
+use sinew::ragdoll::{BakeInput, Baked, bake};
+use std::fmt::Write;
+use std::path::Path;
+
+/// A bake and what it cost.
+pub struct Fall<'a> {
+    /// What was simulated.
+    pub input: &'a BakeInput<'a>,
+    /// What came of it.
+    pub baked: Baked,
+    /// Simulated seconds per second of processor time.
+    pub realtime_factor: f64,
+}
+
+impl<'a> Fall<'a> {
+    /// Simulates it.
+    pub fn simulate(input: &'a BakeInput<'a>) -> Self {
+        let (baked, cpu_seconds) = timed(|| bake(input));
+        let seconds = baked.steps as f64 * input.world.step_nanoseconds as f64 * 1e-9;
+        // The clock may be too coarse for a short bake.
+        Self { input, baked, realtime_factor: seconds / cpu_seconds.max(1e-6) }
+    }
+
+    /// The figures of the contract.
+    pub fn to_json(&self, outputs: &[&Path]) -> Value {
+        let outputs: Vec<String> = outputs.iter().map(|path| path.display().to_string()).collect();
+        let mut object = Map::new();
+        object.insert("seconds".into(), number(self.input.seconds));
+        object.insert("frames".into(), self.baked.frames.len().into());
+        object.insert("bodies".into(), self.baked.bodies.into());
+        object.insert("realtime_factor".into(), json!(self.realtime_factor));
+        object.append(&mut quality_json(&self.baked.quality));
+        object.insert("hash".into(), format!("{:016x}", self.baked.hash).into());
+        object.insert("outputs".into(), outputs.into());
+        object.into()
+    }
+
+    /// What happened, how well it went, and where it is.
+    pub fn to_text(&self, outputs: &[&Path]) -> String {
+        let mut text = String::new();
+        for (time, what) in story::told(self.input, &self.baked.events) {
+            let _ = writeln!(text, "  {time:5.2} s  {what}");
+        }
+        text += "\nQuality\n";
+        text += &quality_text(&self.baked.quality);
+        let _ = writeln!(
+            text,
+            "\n{} s of {} bodies at {:.0} × real time, state {:016x}",
+            self.input.seconds, self.baked.bodies, self.realtime_factor, self.baked.hash
+        );
+        for path in outputs {
+            let _ = writeln!(text, "wrote {}", path.display());
+        }
+        text
+    }
+}

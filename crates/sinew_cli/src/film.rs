@@ -1,0 +1,198 @@
+//! Moving pictures of a fall.
+
+use crate::fall::Fall;
+use crate::progress::Progress;
+use crate::story;
+use sinew::anim::{Primitive, Rig, Wrap, local_to_model, sample, skin_vertices};
+use sinew::math::{Affine, Rotation, Transform, Vec2, Vec3};
+use sinew::physics::{BodyDef, Shape};
+use sinew_picture::draw::{self, Solid};
+use sinew_picture::{
+    Caption, EncodeError, FollowCamera, Image, Material, Model, Movie, PictureFormat, RenderSettings,
+    Renderer, Scene, Sun, Texture,
+};
+use std::sync::Arc;
+
+/// Pictures a second: a whole number of a GIF's hundredths of a second, and enough to follow a fall.
+const FPS: u32 = 20;
+/// Seconds for which a hit's arrow is shown.
+const ARROW_SECONDS: f32 = 0.35;
+const ARROW_COLOR: [f32; 3] = [0.85, 0.06, 0.03];
+
+/// What is filmed, and from where.
+pub struct Film<'a> {
+    /// The fall.
+    pub fall: &'a Fall<'a>,
+    /// What stands around.
+    pub set: Vec<Model>,
+    /// From the character to the camera.
+    pub direction: Vec3,
+    /// What the camera shows around the pelvis, metres.
+    pub radius: f32,
+    /// Light.
+    pub sun: Sun,
+}
+
+impl Film<'_> {
+    /// The bytes of a picture file.
+    pub fn shoot(self, format: PictureFormat) -> Result<Vec<u8>, EncodeError> {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let mut renderer = Renderer::new(RenderSettings { threads, ..RenderSettings::default() });
+        let mut movie = Movie::new(format, FPS);
+        let frames = (self.fall.input.seconds * FPS as f32) as u32 + 1;
+        let progress = Progress::new("drawing", frames as usize);
+        let mut shots = Shots::new(self);
+        for frame in 0..frames {
+            movie.push(&shots.shoot(&mut renderer, frame as f32 / FPS as f32))?;
+            progress.step();
+        }
+        movie.finish()
+    }
+}
+
+/// A film on its way.
+struct Shots<'a> {
+    fall: &'a Fall<'a>,
+    scene: Scene,
+    /// Models of the scene that stay from picture to picture; the character's come after them.
+    standing: usize,
+    looks: Vec<Material>,
+    phases: Vec<story::Phase>,
+    camera: Option<FollowCamera>,
+    direction: Vec3,
+    radius: f32,
+    model: Vec<Affine>,
+}
+
+impl<'a> Shots<'a> {
+    fn new(film: Film<'a>) -> Self {
+        let Film { fall, set, direction, radius, sun } = film;
+        let rig = &fall.input.character.rig;
+        Self {
+            fall,
+            standing: set.len(),
+            scene: Scene { models: set, sun, ..Scene::default() },
+            looks: looks(rig),
+            phases: story::phases(&fall.input.character, &fall.baked.events),
+            camera: None,
+            direction,
+            radius,
+            model: Vec::new(),
+        }
+    }
+
+    fn shoot(&mut self, renderer: &mut Renderer, time: f32) -> Image {
+        self.pose(time);
+        self.scene.models.truncate(self.standing);
+        self.add_character();
+        self.add_arrows(time);
+        let pelvis = self.body_position(0);
+        let (direction, radius) = (self.direction, self.radius);
+        let camera = self.camera.get_or_insert_with(|| FollowCamera::new(pelvis, radius, direction));
+        camera.update(pelvis, 1.0 / FPS as f32);
+        let phase = self.phases.iter().rev().find(|(since, _)| *since <= time).map_or("", |&(_, what)| what);
+        self.scene.captions = vec![Caption::new(format!("{time:5.2} s  {phase}"))];
+        renderer.render(&self.scene, &camera.camera())
+    }
+
+    /// Model pose, in the world, at a time.
+    fn pose(&mut self, time: f32) {
+        let (rig, baked) = (&self.fall.input.character.rig, &self.fall.baked);
+        let mut local = self.fall.input.character.rest().to_vec();
+        sample(&baked.clip, rig, time, Wrap::Clamp, &mut local);
+        local_to_model(rig, &local, &baked.world_from_model, &mut self.model);
+    }
+
+    fn body_position(&self, body: usize) -> Vec3 {
+        self.model[self.fall.input.character.ragdoll.bodies[body].joint].translation
+    }
+
+    fn add_character(&mut self) {
+        let rig = &self.fall.input.character.rig;
+        let mut looks = self.looks.iter();
+        for (mesh_index, mesh) in rig.meshes.iter().enumerate() {
+            for (part_index, part) in mesh.primitives.iter().enumerate() {
+                let (mut positions, mut normals) = (Vec::new(), Vec::new());
+                skin_vertices(rig, mesh_index, part_index, &self.model, &mut positions, &mut normals);
+                let material = looks.next().cloned().unwrap_or_default();
+                self.scene.models.push(surface(part, positions, normals, material));
+            }
+        }
+    }
+
+    /// An arrow for each hit that has just happened, its tip where it struck.
+    fn add_arrows(&mut self, time: f32) {
+        for hit in self.fall.input.hits {
+            let since = time - hit.time;
+            if (0.0..ARROW_SECONDS).contains(&since) && hit.impulse.length() > 0.0 {
+                let tip = self.body_position(hit.body);
+                self.scene.models.extend(arrow(tip, hit.impulse.normalize()));
+            }
+        }
+    }
+}
+
+fn surface(part: &Primitive, positions: Vec<Vec3>, normals: Vec<Vec3>, material: Material) -> Model {
+    Model {
+        positions,
+        normals,
+        uvs: part.uvs.iter().map(|uv| Vec2::new(uv.x, uv.y)).collect(),
+        colors: part.colors.iter().map(|&[r, g, b, _]| [r, g, b]).collect(),
+        indices: part.indices.clone(),
+        material,
+    }
+}
+
+/// One material per primitive, in the order of the meshes.
+fn looks(rig: &Rig) -> Vec<Material> {
+    // A picture that is none leaves its surface in its plain colour.
+    let picture = |texture: &sinew::anim::Texture| {
+        Texture::new(texture.width, texture.height, texture.rgba.clone()).ok().map(Arc::new)
+    };
+    let textures: Vec<Option<Arc<Texture>>> = rig.textures.iter().map(picture).collect();
+    let look = |part: &Primitive| {
+        let [r, g, b, _] = part.base_color;
+        let texture = part.texture.and_then(|index| textures.get(index).cloned().flatten());
+        Material { texture, ..Material::new([r, g, b]) }
+    };
+    rig.meshes.iter().flat_map(|mesh| mesh.primitives.iter().map(look)).collect()
+}
+
+/// A shaft and a head that end at `tip`, along the unit vector `along`.
+fn arrow(tip: Vec3, along: Vec3) -> [Model; 2] {
+    let turn = Rotation::from_arc(Vec3::Y, along);
+    let part = |behind: f32, solid: Solid| {
+        draw::solid(solid, Transform::new(tip - along * behind, turn), Material::new(ARROW_COLOR))
+    };
+    [
+        part(0.55, Solid::Capsule { half_height: 0.3, radius: 0.025 }),
+        part(0.22, Solid::Capsule { half_height: 0.02, radius: 0.07 }),
+    ]
+}
+
+/// How large a floor without end is drawn, metres to each side.
+const FLOOR_HALF_SIZE: f32 = 40.0;
+
+/// The surface of a body of the world in one colour (linear); half-spaces become floors with a checker of `other`.
+pub fn body_models(body: &BodyDef, color: [f32; 3], other: [f32; 3]) -> Vec<Model> {
+    let world_from_body = Transform::new(body.position, body.rotation);
+    let model = |shape: &sinew::physics::ShapeDef| {
+        let place = world_from_body * shape.body_from_shape;
+        let solid = match shape.shape {
+            Shape::Box { half_extents } => Solid::Box { half_extents },
+            Shape::Sphere { radius } => Solid::Sphere { radius },
+            Shape::Capsule { half_height, radius } => Solid::Capsule { half_height, radius },
+            Shape::HalfSpace => return floor(place, color, other),
+        };
+        draw::solid(solid, place, Material::new(color))
+    };
+    body.shapes.iter().map(model).collect()
+}
+
+fn floor(place: Transform, color: [f32; 3], other: [f32; 3]) -> Model {
+    let mut model = draw::floor(Vec3::ZERO, FLOOR_HALF_SIZE, color, other);
+    for position in &mut model.positions {
+        *position = place.point(*position);
+    }
+    model
+}

@@ -1,0 +1,39 @@
+//! A bar on stderr for work that a person waits for.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::{Duration, Instant};
+
+/// Work shorter than this passes without a bar.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// A bar that shows itself once the work takes over a second, and only on a terminal.
+pub struct Progress {
+    bar: ProgressBar,
+    start: Instant,
+}
+
+impl Progress {
+    /// For `steps` steps of `what`.
+    pub fn new(what: &'static str, steps: usize) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::hidden());
+        let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_message(what);
+        Self { bar, start: Instant::now() }
+    }
+
+    /// One step is done.
+    pub fn step(&self) {
+        if self.bar.is_hidden() && self.start.elapsed() > PATIENCE {
+            // Stays hidden where stderr is no terminal.
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        self.bar.inc(1);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

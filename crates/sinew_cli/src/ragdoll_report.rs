@@ -1,0 +1,176 @@
+//! What `ragdoll build` says about a ragdoll.
+
+use crate::report::{Report, number, numbers};
+use crate::table::{Table, shown};
+use serde_json::{Map, Value, json};
+use sinew::math::{Range, SwingTwistLimit, Vec3};
+use sinew::physics::{JointKind, Shape};
+use sinew::ragdoll::{RagdollDef, RagdollJointDef};
+use std::fmt::Write;
+
+/// A ragdoll to be reported.
+pub struct RagdollReport<'a> {
+    /// The file it came from.
+    pub file: &'a str,
+    /// The ragdoll.
+    pub def: &'a RagdollDef,
+    /// What the build wants a person to know.
+    pub notes: &'a [String],
+}
+
+impl RagdollReport<'_> {
+    /// Both forms of the report.
+    pub fn finish(&self) -> Report {
+        Report { json: self.to_json(), text: self.to_text() }
+    }
+
+    fn to_json(&self) -> Value {
+        let def = self.def;
+        let bone = |body: usize| &def.bodies[body].bone;
+        let pairs: Vec<Value> = def.disabled_pairs.iter().map(|&(a, b)| json!([bone(a), bone(b)])).collect();
+        json!({
+            "bodies": (0..def.bodies.len()).map(|body| self.body_json(body)).collect::<Vec<_>>(),
+            "joints": def.joints.iter().map(|joint| self.joint_json(joint)).collect::<Vec<_>>(),
+            "total_mass_kg": number(def.total_mass),
+            "height_m": number(def.height),
+            "unit_scale": number(def.unit_scale),
+            "up_axis": axis_name(def.up_axis),
+            "dropped_bones": def.dropped_bones,
+            "disabled_pairs": pairs,
+            "notes": self.notes,
+        })
+    }
+
+    fn body_json(&self, body: usize) -> Value {
+        let body = &self.def.bodies[body];
+        let mut object = Map::new();
+        let mut put = |key: &str, value: Value| object.insert(key.into(), value);
+        put("bone", json!(body.bone));
+        put("role", json!(body.role));
+        put("confidence", number(body.confidence));
+        match body.shape {
+            Shape::Box { half_extents } => {
+                put("shape", json!("box"));
+                put("half_extents_m", numbers(&half_extents.to_array()));
+            }
+            Shape::Sphere { radius } => {
+                put("shape", json!("sphere"));
+                put("radius_m", number(radius));
+            }
+            Shape::Capsule { half_height, radius } => {
+                put("shape", json!("capsule"));
+                put("radius_m", number(radius));
+                put("half_height_m", number(half_height));
+            }
+            Shape::HalfSpace => unreachable!("no body of a ragdoll is a half-space"),
+        }
+        put("mass_kg", number(body.mass.mass));
+        object.into()
+    }
+
+    fn joint_json(&self, joint: &RagdollJointDef) -> Value {
+        let bone = |body: usize| &self.def.bodies[body].bone;
+        let (kind, limit) = match joint.kind {
+            JointKind::Ball { limit } => ("ball", limit.unwrap_or(FREE)),
+            JointKind::Universal { limit } => {
+                ("universal", SwingTwistLimit { twist: NONE, ..limit.unwrap_or(FREE) })
+            }
+            JointKind::Hinge { limit } => (
+                "hinge",
+                SwingTwistLimit { swing_y: NONE, swing_z: NONE, twist: limit.unwrap_or(FREE.twist) },
+            ),
+            JointKind::Fixed => ("fixed", SwingTwistLimit { swing_y: NONE, swing_z: NONE, twist: NONE }),
+        };
+        json!({
+            "parent": bone(joint.parent),
+            "child": bone(joint.child),
+            "type": kind,
+            "limits_deg": {
+                "swing_y": degrees(limit.swing_y),
+                "swing_z": degrees(limit.swing_z),
+                "twist": degrees(limit.twist),
+            },
+        })
+    }
+
+    fn to_text(&self) -> String {
+        let def = self.def;
+        let (bodies, mass, height) = (def.bodies.len(), def.total_mass, def.height);
+        let mut text = format!("{}: {bodies} bodies, {mass:.1} kg, {height:.2} m\n\n", shown(self.file));
+        let mut table = Table::titled(&["bone", "role", "sure", "shape", "kg", "joint", "limits"]);
+        for (index, body) in def.bodies.iter().enumerate() {
+            let joint = index.checked_sub(1).map(|joint| self.joint_json(&def.joints[joint]));
+            let (kind, limits) = joint.map_or((String::new(), String::new()), |joint| joint_cells(&joint));
+            table.row([
+                shown(&body.bone),
+                body.role.clone(),
+                format!("{:.2}", body.confidence),
+                shape_cell(&body.shape),
+                format!("{:.2}", body.mass.mass),
+                kind,
+                limits,
+            ]);
+        }
+        text += &table.to_text();
+        if !def.dropped_bones.is_empty() {
+            let names: Vec<String> = def.dropped_bones.iter().map(|name| shown(name)).collect();
+            let _ = writeln!(text, "\nwithout a body: {}", names.join(", "));
+        }
+        for note in self.notes {
+            let _ = writeln!(text, "note: {}", shown(note));
+        }
+        text
+    }
+}
+
+/// No rotation at all.
+const NONE: Range = Range { lo: 0.0, hi: 0.0 };
+/// Every rotation.
+const FREE: SwingTwistLimit = {
+    const ALL: Range = Range { lo: -core::f32::consts::PI, hi: core::f32::consts::PI };
+    SwingTwistLimit { swing_y: ALL, swing_z: ALL, twist: ALL }
+};
+
+/// A tenth of a degree is as exact as a limit can be meant.
+fn degrees(range: Range) -> [f64; 2] {
+    // Adding zero turns −0 into 0.
+    [range.lo, range.hi].map(|angle| (f64::from(angle).to_degrees() * 10.0).round() / 10.0 + 0.0)
+}
+
+/// Type of a joint and its limits, as the report's cells.
+fn joint_cells(joint: &Value) -> (String, String) {
+    let range = |key: &str| {
+        let range = &joint["limits_deg"][key];
+        let [lo, hi] = [&range[0], &range[1]].map(|angle| angle.as_f64().unwrap_or(0.0));
+        (lo != 0.0 || hi != 0.0).then(|| format!("{key} {lo:.0}..{hi:.0}°"))
+    };
+    let limits: Vec<String> = ["swing_y", "swing_z", "twist"].into_iter().filter_map(range).collect();
+    (joint["type"].as_str().unwrap_or_default().to_owned(), limits.join(", "))
+}
+
+/// Full sizes in centimetres.
+fn shape_cell(shape: &Shape) -> String {
+    let cm = |meters: f32| format!("{:.0}", 200.0 * meters);
+    match *shape {
+        Shape::Box { half_extents: h } => format!("box {} × {} × {} cm", cm(h.x), cm(h.y), cm(h.z)),
+        Shape::Sphere { radius } => format!("sphere ⌀ {} cm", cm(radius)),
+        Shape::Capsule { half_height, radius } => {
+            format!("capsule {} × ⌀ {} cm", cm(half_height + radius), cm(radius))
+        }
+        Shape::HalfSpace => "half-space".into(),
+    }
+}
+
+/// `+Y` and the like: the axis that a unit vector is nearest to.
+pub fn axis_name(axis: Vec3) -> &'static str {
+    let [x, y, z] = axis.to_array();
+    let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
+    let pick = |value: f32, names: [&'static str; 2]| if value < 0.0 { names[0] } else { names[1] };
+    if ay >= ax && ay >= az {
+        pick(y, ["-Y", "+Y"])
+    } else if az >= ax {
+        pick(z, ["-Z", "+Z"])
+    } else {
+        pick(x, ["-X", "+X"])
+    }
+}
