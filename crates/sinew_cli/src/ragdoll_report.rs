@@ -1,11 +1,13 @@
 //! What `ragdoll build` says about a ragdoll.
 
+use crate::quality_report::{quality_json, quality_text};
 use crate::report::{Report, number, numbers};
 use crate::table::{Table, shown};
 use serde_json::{Map, Value, json};
 use sinew::math::{Range, SwingTwistLimit, Vec3};
 use sinew::physics::{JointKind, Shape};
-use sinew::ragdoll::{RagdollDef, RagdollJointDef};
+use sinew::ragdoll::quality::GateReport;
+use sinew::ragdoll::{DropReport, RagdollDef, RagdollJointDef};
 use std::fmt::Write;
 
 /// A ragdoll to be reported.
@@ -16,6 +18,10 @@ pub struct RagdollReport<'a> {
     pub def: &'a RagdollDef,
     /// What the build wants a person to know.
     pub notes: &'a [String],
+    /// Eight drops and a wall hit.
+    pub tested: &'a DropReport,
+    /// Random falls, if they were asked for.
+    pub gated: Option<&'a GateReport>,
 }
 
 impl RagdollReport<'_> {
@@ -38,7 +44,48 @@ impl RagdollReport<'_> {
             "dropped_bones": def.dropped_bones,
             "disabled_pairs": pairs,
             "notes": self.notes,
+            "quality": self.quality_json(),
         })
+    }
+
+    fn quality_json(&self) -> Value {
+        let DropReport { drop, wall, verdict, reasons, .. } = self.tested;
+        let time = |seconds: Option<f32>| seconds.map_or(Value::Null, number);
+        let mut quality = json!({
+            "drop": quality_json(drop),
+            "wall": quality_json(wall),
+            "asleep_s": time(drop.asleep_s),
+            "calm_to_asleep_s": time(drop.calm_to_asleep_s),
+            "settled_omega_max_rad_s": time(drop.settled_omega_max),
+            "nonadjacent_overlap_max_m": number(drop.nonadjacent_overlap_max_m),
+        });
+        if let Some(gated) = self.gated {
+            quality["gate"] = gate_json(gated);
+        }
+        quality["verdict"] = verdict.name().into();
+        quality["reasons"] = reasons.as_slice().into();
+        quality
+    }
+
+    fn quality_text(&self) -> String {
+        let DropReport { drop, wall, verdict, reasons, .. } = self.tested;
+        let time = |seconds: Option<f32>| seconds.map_or("never".to_owned(), |s| format!("after {s:.1} s"));
+        let mut text = format!("\nEight drops from 1 m, the worst: asleep {}\n", time(drop.asleep_s));
+        text += &quality_text(drop);
+        text += "Thrown at a wall at 15 m/s\n";
+        text += &quality_text(wall);
+        if let Some(GateReport { spawns, verdicts: [good, usable, bad], worst, worst_spawn }) = self.gated {
+            let _ = writeln!(
+                text,
+                "{spawns} random falls: {good} good, {usable} usable, {bad} bad (worst is fall {worst_spawn})"
+            );
+            text += &quality_text(worst);
+        }
+        let _ = writeln!(text, "verdict: {}", verdict.name());
+        for reason in reasons {
+            let _ = writeln!(text, "  {reason}");
+        }
+        text
     }
 
     fn body_json(&self, body: usize) -> Value {
@@ -119,8 +166,20 @@ impl RagdollReport<'_> {
         for note in self.notes {
             let _ = writeln!(text, "note: {}", shown(note));
         }
-        text
+        text + &self.quality_text()
     }
+}
+
+fn gate_json(gated: &GateReport) -> Value {
+    let GateReport { spawns, verdicts: [good, usable, bad], worst, worst_spawn } = gated;
+    json!({
+        "spawns": spawns,
+        "good": good,
+        "usable": usable,
+        "bad": bad,
+        "worst": quality_json(worst),
+        "worst_spawn": worst_spawn,
+    })
 }
 
 /// No rotation at all.

@@ -5,6 +5,8 @@ mod demo;
 mod inspect;
 mod later;
 mod ragdoll_build;
+mod run;
+mod scenes;
 
 use crate::failure::Result;
 use crate::report::Report;
@@ -20,6 +22,8 @@ pub enum Command {
     #[command(subcommand)]
     Ragdoll(Ragdoll),
     Inspect(inspect::Inspect),
+    Run(run::Run),
+    Scenes(scenes::Scenes),
     #[command(hide = true, disable_help_flag = true)]
     Boxes(Later),
     #[command(hide = true, disable_help_flag = true)]
@@ -54,6 +58,8 @@ impl Command {
             Self::Ragdoll(Ragdoll::Doctor(_)) => later::refuse("sinew ragdoll doctor"),
             Self::Ragdoll(Ragdoll::Export(_)) => later::refuse("sinew ragdoll export"),
             Self::Inspect(command) => command.run(),
+            Self::Run(command) => command.run(),
+            Self::Scenes(command) => command.run(),
             Self::Boxes(_) => later::refuse("sinew boxes"),
             Self::Events(_) => later::refuse("sinew events"),
             Self::View(_) => later::refuse("sinew view"),

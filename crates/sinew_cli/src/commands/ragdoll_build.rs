@@ -6,7 +6,7 @@ use crate::ragdoll_report::RagdollReport;
 use crate::report::Report;
 use clap::ValueEnum;
 use sinew::formats::{Textures, write_ragdoll};
-use sinew::ragdoll::{BuildOptions, Sex, ShapeChoice, build};
+use sinew::ragdoll::{BuildOptions, Sex, ShapeChoice, build, drop_test, gate};
 use std::path::PathBuf;
 
 /// Build a ragdoll from a rigged file: shapes, masses, limits, collision filter, and a quality report
@@ -30,6 +30,9 @@ pub struct RagdollBuild {
     /// Whose distribution of mass over the body
     #[arg(long, value_enum, default_value_t = SexArg::M)]
     sex: SexArg,
+    /// Also let it fall this many times at random: pose, speed and ground
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    gate: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -54,12 +57,21 @@ impl RagdollBuild {
         let CharacterFile { name, document, analysis } = &character;
         let (def, report) =
             build(&document.rig, analysis, &self.options()).map_err(|error| Failure::of_file(name, error))?;
+        let tested = drop_test(&def);
+        let gated = self.gate.map(|spawns| gate(&def, spawns as usize));
+        let report = RagdollReport {
+            file: name,
+            def: &def,
+            notes: &report.notes,
+            tested: &tested,
+            gated: gated.as_ref(),
+        };
         let mut outputs = Outputs::default();
         if let Some(path) = &self.output {
             outputs.add(path, write_ragdoll(&def).into_bytes());
         }
         outputs.write()?;
-        Ok(RagdollReport { file: name, def: &def, notes: &report.notes }.finish())
+        Ok(report.finish())
     }
 
     fn options(&self) -> BuildOptions {

@@ -1,0 +1,145 @@
+//! `sinew run`: a named scene without a picture: figures, times, state hash.
+
+use crate::failure::{Failure, Result};
+use crate::progress::Progress;
+use crate::report::Report;
+use crate::table::Table;
+use serde_json::{Map, Value, json};
+use sinew::physics::stage::NoProfiler;
+use sinew::physics::{Serial, TaskRunner, Threads};
+use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, find};
+use std::fmt::Write;
+use std::time::Instant;
+
+/// Run a named scene without a picture, and print its figures and the hash of its state
+#[derive(clap::Args)]
+#[command(after_help = "\
+Example:
+  sinew run pendulum
+  sinew run stairs --steps 600 --threads 2 --set impulse=50 --json
+
+'sinew scenes' lists the scenes, 'sinew scenes --json' their settings too.")]
+pub struct Run {
+    /// Name of the scene
+    scene: String,
+    /// Steps of 1/60 s; by default as many as the scene needs to show what it is about
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    steps: Option<u32>,
+    /// Threads; the state is the same with any number
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
+    threads: u16,
+    /// Change a setting of the scene; repeatable
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    settings: Vec<String>,
+}
+
+impl Run {
+    /// Steps the scene.
+    pub fn run(&self) -> Result<Report> {
+        let scene = find(&self.scene).ok_or_else(|| {
+            Failure::Usage(format!("no scene '{}'; 'sinew scenes' lists what there is", self.scene))
+        })?;
+        let mut settings = scene.settings();
+        for assignment in &self.settings {
+            settings.assign(assignment).map_err(|error| Failure::Usage(format!("--set: {error}")))?;
+        }
+        let steps = self.steps.unwrap_or(scene.steps);
+        let mut instance = scene.start(&settings);
+        let times = StepTimes::measure(&mut instance, steps, &*self.runner());
+        let outcome = Outcome {
+            scene,
+            steps,
+            threads: self.threads,
+            times,
+            hash: instance.world().hash(),
+            metrics: instance.metrics(),
+        };
+        Ok(Report { json: outcome.to_json(), text: outcome.to_text() })
+    }
+
+    fn runner(&self) -> Box<dyn TaskRunner> {
+        match self.threads {
+            1 => Box::new(Serial),
+            threads => Box::new(Threads::new(usize::from(threads))),
+        }
+    }
+}
+
+/// Wall time of steps, milliseconds.
+struct StepTimes {
+    median: f64,
+    p99: f64,
+}
+
+impl StepTimes {
+    fn measure(instance: &mut Instance, steps: u32, runner: &dyn TaskRunner) -> Self {
+        let progress = Progress::new("running", steps as usize);
+        let mut times: Vec<f64> = (0..steps)
+            .map(|_| {
+                let start = Instant::now();
+                instance.step_with(runner, &NoProfiler);
+                progress.step();
+                start.elapsed().as_secs_f64() * 1e3
+            })
+            .collect();
+        times.sort_unstable_by(f64::total_cmp);
+        let rank = |percent: usize| times[(times.len() * percent).div_ceil(100) - 1];
+        Self { median: rank(50), p99: rank(99) }
+    }
+}
+
+/// A scene that has been run.
+struct Outcome<'a> {
+    scene: &'a Scene,
+    steps: u32,
+    threads: u16,
+    times: StepTimes,
+    hash: u64,
+    metrics: Vec<Metric>,
+}
+
+impl Outcome<'_> {
+    fn to_json(&self) -> Value {
+        let metrics: Map<String, Value> =
+            self.metrics.iter().map(|metric| (metric.name.to_owned(), json!(metric.value))).collect();
+        json!({
+            "scene": self.scene.name,
+            "steps": self.steps,
+            "threads": self.threads,
+            "ms_per_step_median": self.times.median,
+            "ms_per_step_p99": self.times.p99,
+            "hash": format!("{:016x}", self.hash),
+            "metrics": metrics,
+        })
+    }
+
+    fn to_text(&self) -> String {
+        let Self { scene, steps, threads, times, hash, metrics } = self;
+        let mut text = format!("{}: {}\n\n", scene.name, scene.about);
+        let mut table = Table::titled(&["figure", "value", "expected"]);
+        for metric in metrics {
+            let value = metric.value.map_or("not yet".to_owned(), |value| format!("{value:.6}"));
+            // What a scene expects holds once it has run its course.
+            let missed = *steps >= scene.steps && !metric.is_met();
+            let mark = if missed { "  MISSED" } else { "" };
+            table.row([metric.name.to_owned(), value, expectation(metric.expected) + mark]);
+        }
+        text += &table.to_text();
+        let _ = writeln!(
+            text,
+            "\n{steps} steps on {threads} {}: median {:.3} ms, 99 % below {:.3} ms; state {hash:016x}",
+            if *threads == 1 { "thread" } else { "threads" },
+            times.median,
+            times.p99,
+        );
+        text
+    }
+}
+
+fn expectation(expected: Expected) -> String {
+    match expected {
+        Expected::Near { value, tolerance } => format!("{value:.6} ± {tolerance:.1e}"),
+        Expected::AtMost(most) => format!("at most {most}"),
+        Expected::Anything => String::new(),
+    }
+}
