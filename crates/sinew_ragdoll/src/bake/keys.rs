@@ -43,10 +43,14 @@ fn values(frames: &[Frame], joint: JointIdx, property: Property) -> Vec<f32> {
     values
 }
 
-fn differs(property: Property, a: &LocalTransform, b: &LocalTransform) -> bool {
+/// Whether a value is not the rest pose's: by more than what blending the same value with itself rounds off.
+fn differs(property: Property, a: &LocalTransform, rest: &LocalTransform) -> bool {
+    const ROUNDING: f32 = 1e-6;
     match property {
-        Property::Translation => a.translation != b.translation,
-        Property::Rotation => a.rotation != b.rotation.toward(a.rotation),
-        Property::Scale => a.scale != b.scale,
+        Property::Translation => {
+            (a.translation - rest.translation).length() > ROUNDING * rest.translation.length()
+        }
+        Property::Rotation => a.rotation.dot(rest.rotation).abs() < 1.0 - ROUNDING,
+        Property::Scale => (a.scale - rest.scale).length() > ROUNDING * rest.scale.length(),
     }
 }

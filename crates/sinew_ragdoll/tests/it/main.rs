@@ -1,5 +1,8 @@
 //! Integration tests of the ragdoll crate.
 
-mod build;
-mod build_limits;
-mod data;
+mod actor;
+mod bake;
+mod character;
+mod hand_over;
+mod mapping;
+mod quality;

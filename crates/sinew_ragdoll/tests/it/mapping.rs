@@ -1,0 +1,130 @@
+//! From a pose to bodies and back, on rigs with the ways of real files.
+
+use crate::actor::{in_centimetres_and_z_up, somewhere, walker};
+use sinew_anim::{LocalTransform, Wrap, local_to_model, sample};
+use sinew_math::{Affine, Random, Rotation, Transform, Vec3};
+use sinew_ragdoll::CharacterDef;
+use sinew_ragdoll::mapping::Physical;
+
+fn model_of(def: &CharacterDef, pose: &[LocalTransform]) -> Vec<Affine> {
+    let mut model = Vec::new();
+    local_to_model(&def.rig, pose, &Affine::IDENTITY, &mut model);
+    model
+}
+
+fn walking(def: &CharacterDef, time: f32) -> Vec<LocalTransform> {
+    let mut pose = def.rest().to_vec();
+    sample(&def.clips[0], &def.rig, time, Wrap::Loop, &mut pose);
+    pose
+}
+
+/// Largest distance between what the two poses make of points a hand's breadth from each joint, metres.
+fn distance(def: &CharacterDef, a: &[LocalTransform], b: &[LocalTransform]) -> f32 {
+    let to_metres = def.mapping().character_from_model();
+    let (a, b) = (model_of(def, a), model_of(def, b));
+    let mut worst = 0.0_f32;
+    for (a, b) in a.iter().zip(&b) {
+        // In file units of the joint itself, which its own scale undoes.
+        let reach = 0.1 / (to_metres.linear * a.linear).x_axis.length();
+        for p in [Vec3::ZERO, Vec3::X * reach, Vec3::Y * reach, Vec3::Z * reach] {
+            let gap = to_metres.vector(a.point(p) - b.point(p)).length();
+            worst = if gap > worst { gap } else { worst };
+        }
+    }
+    worst
+}
+
+/// Bodies of one pose, mapped back on the base of another.
+fn round_trip(
+    def: &CharacterDef,
+    pose: &[LocalTransform],
+    base: &[LocalTransform],
+) -> (Vec<LocalTransform>, f32) {
+    let mut bodies = Vec::new();
+    def.mapping().bodies_from_model(&model_of(def, pose), somewhere(), &mut bodies);
+    let mut physical = Physical::default();
+    physical.rebase(def.mapping(), &def.rig, base);
+    let mut back = base.to_vec();
+    let stretch = physical.pose(def.mapping(), &def.rig, somewhere(), &bodies, &mut back);
+    (back, stretch)
+}
+
+#[test]
+fn bodies_of_a_pose_give_it_back() {
+    for def in [walker(), in_centimetres_and_z_up()] {
+        for k in 0..8 {
+            let pose = walking(&def, 0.13 * k as f32);
+            // The base is another pose, but for the joints that no body moves.
+            let mut base = walking(&def, 0.05);
+            for (joint, local) in pose.iter().enumerate() {
+                if def.ragdoll.bodies.iter().all(|body| body.joint != joint) {
+                    base[joint] = *local;
+                }
+            }
+            let (back, stretch) = round_trip(&def, &pose, &base);
+            let gap = distance(&def, &pose, &back);
+            assert!(gap < 1e-4, "pose {k}: {gap} m");
+            assert!(stretch < 1e-4, "pose {k}: {stretch} m stretched");
+        }
+    }
+}
+
+#[test]
+fn joints_without_a_body_ride_along() {
+    let mut def = walker();
+    // The hands lose their bodies: they must keep their local pose on forearms that turn.
+    let hand = def.rig.joints.iter().position(|joint| joint.name == "leftHand").expect("it has hands");
+    def.ragdoll.bodies.retain(|body| !body.role.contains("Hand"));
+    let kept = def.ragdoll.bodies.len();
+    def.ragdoll.joints.clear();
+    let bind = model_of(&def, def.rest());
+    let def = CharacterDef::new(def.rig, def.ragdoll, &bind);
+    let mut random = Random::new(7);
+    let bodies: Vec<_> = (0..kept).map(|_| Transform::new(random.in_cube(), random.rotation())).collect();
+    let mut base = def.rest().to_vec();
+    base[hand].rotation = Rotation::from_axis_angle(Vec3::X, 0.4);
+    let mut physical = Physical::default();
+    physical.rebase(def.mapping(), &def.rig, &base);
+    let mut pose = base.clone();
+    physical.pose(def.mapping(), &def.rig, Transform::IDENTITY, &bodies, &mut pose);
+    assert_eq!(pose[hand], base[hand]);
+}
+
+#[test]
+fn motion_of_nodes_above_the_pelvis_goes_into_the_pelvis() {
+    for def in [walker(), in_centimetres_and_z_up()] {
+        let mut pose = walking(&def, 0.2);
+        let root = def.rig.joints.iter().position(|joint| joint.name == "mannequin").expect("it has a root");
+        pose[root].rotation = Rotation::from_axis_angle(Vec3::Z, 0.8) * pose[root].rotation;
+        pose[root].translation += Vec3::new(0.3, -0.2, 0.5);
+        let mut flat = pose.clone();
+        def.mapping().flatten(&def.rig, &mut flat);
+        assert_eq!(flat[root], def.rest()[root]);
+        let pelvis = def.ragdoll.bodies[0].joint;
+        let (moved, flattened) = (model_of(&def, &pose), model_of(&def, &flat));
+        for joint in pelvis..def.rig.joints.len() {
+            let gap = def
+                .mapping()
+                .character_from_model()
+                .vector(moved[joint].translation - flattened[joint].translation);
+            assert!(gap.length() < 1e-4, "joint {joint}: {gap}");
+        }
+    }
+}
+
+#[test]
+fn a_pose_seen_from_elsewhere_stays_where_it_is() {
+    for def in [walker(), in_centimetres_and_z_up()] {
+        let pose = walking(&def, 0.4);
+        let to = Transform::new(Vec3::new(-0.5, 0.3, 4.0), Rotation::from_axis_angle(Vec3::Y, -2.0));
+        let mut moved = pose.clone();
+        def.mapping().reframe(&mut moved, somewhere(), to);
+        let (mut here, mut there) = (Vec::new(), Vec::new());
+        def.mapping().bodies_from_model(&model_of(&def, &pose), somewhere(), &mut here);
+        def.mapping().bodies_from_model(&model_of(&def, &moved), to, &mut there);
+        for (a, b) in here.iter().zip(&there) {
+            assert!((a.translation - b.translation).length() < 1e-4);
+            assert!(a.rotation.angle_to(b.rotation) < 1e-3);
+        }
+    }
+}
