@@ -8,11 +8,12 @@ use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, max};
 /// At most this many limit rows has a joint: swing, twist below, twist above.
 pub(crate) const MAX_LIMITS: usize = 3;
 
-/// Impulse of a limit row in the last substep and the one before.
+/// Impulse of a limit in the last substep and the one before, N·m·s, in frame A: as a vector, because the axis of a cone
+/// turns, and an impulse about the old axis must not be handed on about the new one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct LimitImpulse {
-    pub now: f32,
-    pub before: f32,
+    pub now: Vec3,
+    pub before: Vec3,
 }
 
 #[derive(Clone, Debug)]

@@ -299,8 +299,8 @@ fn save_joint(w: &mut Writer, joint: &Joint) {
     w.f32(joint.friction_torque);
     w.bool(joint.collision == JointCollision::Enabled);
     for limit in &joint.limits {
-        w.f32(limit.now);
-        w.f32(limit.before);
+        w.vec3(limit.now);
+        w.vec3(limit.before);
     }
     for x in joint.loop_impulse {
         w.f32(x);
@@ -322,7 +322,7 @@ fn load_joint(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Joint, ReadErr
     let collision = if r.bool()? { JointCollision::Enabled } else { JointCollision::Disabled };
     let mut limits = [LimitImpulse::default(); MAX_LIMITS];
     for limit in &mut limits {
-        *limit = LimitImpulse { now: r.f32()?, before: r.f32()? };
+        *limit = LimitImpulse { now: r.vec3()?, before: r.vec3()? };
     }
     let mut loop_impulse = ZERO6;
     for x in &mut loop_impulse {

@@ -194,7 +194,7 @@ impl IslandSolver {
                 friction_torque: joint.friction_torque,
                 pose,
                 limits: joint.limits,
-                limit_impulse: [0.0; MAX_LIMITS],
+                limit_impulse: [Vec3::ZERO; MAX_LIMITS],
                 force: joint.force,
             });
             if !self.scratch.build.used[place] {

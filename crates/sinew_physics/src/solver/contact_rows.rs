@@ -13,6 +13,8 @@ use sinew_math::{Mat3, Vec3, any_orthonormal, max, min};
 const PUSH_SPEED: f32 = 3.0;
 /// Approach below which nothing bounces, m/s.
 const BOUNCE_SPEED: f32 = 1.0;
+/// A body that turns by less than this within a substep counts as being where it was, radians.
+const RELAX_TURN: f32 = 0.15;
 /// Contact stiffness as a frequency, Hz, against moving and against fixed bodies, and damping ratio.
 const CONTACT_HERTZ: f32 = 30.0;
 const FIXED_HERTZ: f32 = 60.0;
@@ -121,6 +123,10 @@ pub(crate) struct ManifoldRows {
     approach: [f32; MAX_POINTS],
     /// Impulses of this substep.
     impulse: [f32; MAX_POINTS],
+    /// What `relax` may not go below.
+    floor: [f32; MAX_POINTS],
+    /// Points that `solve` pushed out of an overlap.
+    pushed: [bool; MAX_POINTS],
     friction: Vec3,
     twist: f32,
     rolling: Vec3,
@@ -175,6 +181,8 @@ impl ManifoldRows {
             k_roll: Mat3::ZERO,
             approach: [0.0; MAX_POINTS],
             impulse: [0.0; MAX_POINTS],
+            floor: [0.0; MAX_POINTS],
+            pushed: [false; MAX_POINTS],
             friction: source.memory.friction,
             twist: source.memory.twist,
             rolling: source.memory.rolling,
@@ -267,6 +275,7 @@ impl ManifoldRows {
         }
         let share = if total > 0.0 { kept / total } else { 0.0 };
         self.friction = (self.memory.friction - self.normal * self.normal.dot(self.memory.friction)) * share;
+        self.floor = [0.0; MAX_POINTS];
         self.twist = self.memory.twist * share;
         self.rolling = self.memory.rolling * share;
         let mut push = (ZERO6, ZERO6);
@@ -281,6 +290,25 @@ impl ManifoldRows {
         super::joint_rows::add_row(impulses, self.b, &push.1, 1.0);
     }
 
+    /// Starts from nothing.
+    pub fn forget(&mut self) {
+        self.impulse = [0.0; MAX_POINTS];
+        self.friction = Vec3::ZERO;
+        self.twist = 0.0;
+        self.rolling = Vec3::ZERO;
+    }
+
+    /// `relax` takes back what pushed bodies out of an overlap, and only that: the rest of an impulse was given at the
+    /// pose of the substep's beginning, and to take it back at another pose puts energy in (a hand that turned by a
+    /// radian went from 70 to 2,700 rad/s). So do pushes, if a body turned by more than a little.
+    pub fn begin_relax(&mut self, velocities: &[Vec6], h: f32) {
+        let turn = |body: u32| angular(&velocities[body as usize]).length() * h;
+        let still = turn(self.a) < RELAX_TURN && turn(self.b) < RELAX_TURN;
+        for i in 0..self.count {
+            self.floor[i] = if still { 0.0 } else { self.impulse[i] };
+        }
+    }
+
     fn add(&self, push: &mut Push, row: &Row, impulse: f32) {
         add_scaled(&mut push.0, &row.a, impulse);
         add_scaled(&mut push.1, &row.b, impulse);
@@ -291,11 +319,15 @@ impl ManifoldRows {
         let pair = self.pair();
         let mut v = [0.0; MAX_POINTS];
         let mut mean = 0.0;
+        if biased {
+            self.pushed = [false; MAX_POINTS];
+        }
         for i in 0..self.count {
             let s = self.separation[i];
             let bias = if s > 0.0 {
                 s / h
             } else if biased {
+                self.pushed[i] = s < -self.dead_zone;
                 max(self.soft.bias_rate * min(s + self.dead_zone, 0.0), -PUSH_SPEED)
             } else {
                 0.0
@@ -308,13 +340,17 @@ impl ManifoldRows {
         // The block's softness is taken at the manifold's centre; taken at each point a 1 kg foot under 69 kg sinks 7 mm.
         let at_center = self.soft.impulse_scale / self.soft.mass_scale * mean / self.count as f32;
         let soft = self.separation.map(|s| if biased && s <= 0.0 { at_center } else { 0.0 });
-        let new = lcp::solve(&self.k, &v, &self.impulse, &soft, self.count);
+        let mut free = [0.0; MAX_POINTS];
+        for i in 0..self.count {
+            free[i] = self.impulse[i] - self.floor[i];
+        }
+        let new = lcp::solve(&self.k, &v, &free, &soft, self.count);
         let mut push = (ZERO6, ZERO6);
         for i in 0..self.count {
             let row = self.rows[i];
-            self.add(&mut push, &row, new[i] - self.impulse[i]);
-            self.impulse[i] = new[i];
-            self.memory.points[i].peak = max(self.memory.points[i].peak, new[i]);
+            self.add(&mut push, &row, new[i] - free[i]);
+            self.impulse[i] = new[i] + self.floor[i];
+            self.memory.points[i].peak = max(self.memory.points[i].peak, self.impulse[i]);
         }
         push
     }

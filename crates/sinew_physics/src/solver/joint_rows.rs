@@ -100,18 +100,33 @@ impl IslandSolver {
     }
 
     /// SHAKE: removes the position error at the pose that the velocities lead to, with the same factor, until it is
-    /// small enough (one or two rounds but for violent hits).
+    /// small enough (one or two rounds but for violent hits). The factor is that of the substep's beginning: for a body
+    /// that turns by more than a radian it may lead away, so a round that does not halve the error is taken back and
+    /// the next substep goes on from there.
     pub(super) fn correct_positions(&mut self) {
         if self.joints.is_empty() {
             return;
         }
+        let moving = self.links.len();
+        let mut error = self.predict_errors();
         for _ in 0..POSITION_CORRECTIONS {
-            if self.predict_errors() < POSITION_TOLERANCE {
+            if error < POSITION_TOLERANCE {
                 break;
             }
+            self.scratch.before.clear();
+            self.scratch.before.extend_from_slice(&self.velocities[..moving]);
             self.scratch.impulses.clear();
-            self.scratch.impulses.resize(self.links.len(), ZERO6);
+            self.scratch.impulses.resize(moving, ZERO6);
             self.solve_trees();
+            let left = self.predict_errors();
+            let better = left < 0.5 * error;
+            if !better {
+                if left > error {
+                    self.velocities[..moving].copy_from_slice(&self.scratch.before);
+                }
+                break;
+            }
+            error = left;
         }
     }
 
@@ -178,10 +193,10 @@ impl IslandSolver {
     pub(super) fn choose_limits(&mut self) {
         // Impulses of the substep so far go on counting, so that `relax` can take back what `solve` gave too much.
         for joint in &mut self.joints {
-            joint.limit_impulse = [0.0; MAX_LIMITS];
+            joint.limit_impulse = [Vec3::ZERO; MAX_LIMITS];
         }
         for row in self.limits.drain(..) {
-            self.joints[row.joint as usize].limit_impulse[row.slot] += row.impulse;
+            self.joints[row.joint as usize].limit_impulse[row.slot] += row.axis * row.impulse;
         }
         self.hit_rate = 0.0;
         if !self.manifolds.is_empty() {
@@ -196,15 +211,17 @@ impl IslandSolver {
             for (slot, state) in states.into_iter().enumerate() {
                 let Some(state) = state else { continue };
                 if state.room < reach {
+                    let axis = joint.pose.rotation_a * state.axis;
                     self.limits.push(LimitRow {
                         joint: index as u32,
                         slot,
                         room: state.room,
-                        axis: joint.pose.rotation_a * state.axis,
+                        axis,
                         effective: 0.0,
                         rate: 0.0,
                         foreseen: false,
-                        impulse: joint.limit_impulse[slot],
+                        impulse: share(joint.limit_impulse[slot], axis),
+                        floor: 0.0,
                     });
                 }
             }
@@ -244,11 +261,12 @@ impl IslandSolver {
     pub(super) fn end_limits(&mut self) {
         for joint in &mut self.joints {
             for limit in &mut joint.limits {
-                *limit = LimitImpulse { now: 0.0, before: limit.now };
+                *limit = LimitImpulse { now: Vec3::ZERO, before: limit.now };
             }
         }
         for row in &self.limits {
-            self.joints[row.joint as usize].limits[row.slot].now += row.impulse;
+            let joint = &mut self.joints[row.joint as usize];
+            joint.limits[row.slot].now += joint.pose.rotation_a.inverse() * (row.axis * row.impulse);
         }
     }
 }
@@ -256,6 +274,11 @@ impl IslandSolver {
 /// Angular velocity of B seen from A, world axes.
 fn relative_rate(velocities: &[Vec6], joint: &SolverJoint) -> Vec3 {
     angular(&velocities[joint.b as usize]) - angular(&velocities[joint.a as usize])
+}
+
+/// The part of an impulse vector that a unilateral row about `axis` can have given.
+fn share(impulse: Vec3, axis: Vec3) -> f32 {
+    max(impulse.dot(axis), 0.0) / axis.length_squared()
 }
 
 /// A limit near its stop: `axis · (ω_b − ω_a) ≥ −room/h`.
@@ -276,6 +299,8 @@ pub(super) struct LimitRow {
     foreseen: bool,
     /// Of this substep, ≥ 0.
     pub impulse: f32,
+    /// What `relax` may not go below.
+    floor: f32,
 }
 
 impl LimitRow {
@@ -283,10 +308,16 @@ impl LimitRow {
     pub fn warm_start(&mut self, joints: &[SolverJoint], impulses: &mut [Vec6]) {
         let joint = &joints[self.joint as usize];
         let limit = joint.limits[self.slot];
-        self.impulse = min(limit.now, limit.before);
+        let axis = joint.pose.rotation_a.inverse() * self.axis;
+        self.impulse = min(share(limit.now, axis), share(limit.before, axis));
         let row = join(Vec3::ZERO, self.axis);
         add_row(impulses, joint.b, &row, self.impulse);
         add_row(impulses, joint.a, &row, -self.impulse);
+    }
+
+    /// As for contacts, `relax` takes back only what pushed a limb out of a violated limit.
+    pub fn begin_relax(&mut self) {
+        self.floor = 0.0;
     }
 
     pub fn respond(&mut self, joints: &[SolverJoint], links: &[Link], response: &Response) {
@@ -309,7 +340,7 @@ impl LimitRow {
             _ if self.room > LIMIT_TOUCH => -self.room / h,
             _ => 0.0,
         };
-        let new = max(self.impulse + (wanted - self.axis.dot(w)) / self.effective, 0.0);
+        let new = max(self.impulse + (wanted - self.axis.dot(w)) / self.effective, self.floor);
         let change = new - self.impulse;
         self.impulse = new;
         (change != 0.0).then(|| join(Vec3::ZERO, self.axis * change))

@@ -3,8 +3,9 @@
 //! joints hold exactly.
 
 use super::contact_rows::Push;
-use super::{IslandSolver, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED};
-use crate::spatial::{ZERO6, add_scaled, linear};
+use super::{ENERGY_SLACK, IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED};
+use crate::spatial::{Vec6, ZERO6, add_scaled, linear};
+use sinew_math::max;
 
 /// What a pass over the rows is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,14 +34,18 @@ impl IslandSolver {
             (true, _) => SWEEPS_FREE,
         };
         for _ in 0..sweeps {
+            self.largest_change = 0.0;
             match pass {
                 Pass::Solve | Pass::Relax => self.visit_contacts(pass),
                 Pass::Restitution => self.visit_bounces(),
             }
             self.visit_loops(pass);
             self.visit_limits(pass);
+            if self.largest_change < SWEEP_TOLERANCE {
+                break;
+            }
         }
-        self.finish_sweep();
+        self.finish_sweep(pass);
     }
 
     fn visit_contacts(&mut self, pass: Pass) {
@@ -90,10 +95,14 @@ impl IslandSolver {
 
     /// Puts impulses on two bodies and their trees.
     fn push(&mut self, a: u32, b: u32, push: &Push) {
-        for (body, p) in [(a, &push.0), (b, &push.1)] {
-            if let Some(sum) = self.impulses.get_mut(body as usize) {
-                add_scaled(sum, p, 1.0);
-                self.response.apply(&self.links, body as usize, p, &mut self.velocities);
+        for (body, p) in [(a as usize, &push.0), (b as usize, &push.1)] {
+            if body < self.links.len() {
+                add_scaled(&mut self.impulses[body], p, 1.0);
+                let before = self.velocities[body];
+                self.response.apply(&self.links, body, p, &mut self.velocities);
+                for (x, y) in self.velocities[body].iter().zip(&before) {
+                    self.largest_change = max(self.largest_change, (x - y).abs());
+                }
             }
         }
     }
@@ -104,7 +113,7 @@ impl IslandSolver {
     }
 
     /// Velocities of all bodies from the impulses of the sweeps, exactly.
-    fn finish_sweep(&mut self) {
+    fn finish_sweep(&mut self, pass: Pass) {
         for (push, p) in self.contact_push.iter_mut().zip(&self.impulses) {
             *push += linear(p);
         }
@@ -119,5 +128,39 @@ impl IslandSolver {
         s.residuals.clear();
         s.residuals.resize(moving, ZERO6);
         self.solve_trees();
+        if pass == Pass::Relax && self.is_passive() {
+            self.keep_energy();
+        }
     }
+
+    /// Nothing that rows push against moves by itself.
+    fn is_passive(&self) -> bool {
+        self.velocities[self.links.len()..].iter().all(|v| *v == ZERO6)
+    }
+
+    /// `relax` cannot give energy, but impulses taken back at another pose than they were given at can, in violent
+    /// hits. Then the velocities go only as far along the change as energy falls: joints hold on the whole way.
+    fn keep_energy(&mut self) {
+        let moving = self.links.len();
+        let before = &self.scratch.before[..moving];
+        let start = self.kinetic_energy(before);
+        let rise = self.kinetic_energy(&self.velocities[..moving]) - start;
+        if rise <= ENERGY_SLACK * max(start, self.mass()) {
+            return;
+        }
+        // Energy along the change is E(0) + b s + a s², with a that of the change itself.
+        let s = &mut self.scratch;
+        s.dv.clear();
+        s.dv.extend(self.velocities.iter().zip(&s.before).map(|(v, before)| difference(v, before)));
+        let a = self.kinetic_energy(&self.scratch.dv);
+        let b = rise - a;
+        let share = sinew_math::clamp(-b / (2.0 * a), 0.0, 1.0);
+        for (v, before) in self.velocities.iter_mut().zip(&self.scratch.before) {
+            *v = core::array::from_fn(|k| before[k] + (v[k] - before[k]) * share);
+        }
+    }
+}
+
+fn difference(a: &Vec6, b: &Vec6) -> Vec6 {
+    core::array::from_fn(|k| a[k] - b[k])
 }
