@@ -2,7 +2,7 @@
 
 use super::response::Response;
 use super::tree::Link;
-use super::{SolverBody, lcp};
+use super::{SolverBody, disk, lcp};
 use crate::collide::MAX_POINTS;
 use crate::contact::ContactMemory;
 use crate::shape::Material;
@@ -355,8 +355,8 @@ impl ManifoldRows {
         push
     }
 
-    /// One visit of friction, limited by the normal impulses as they are: a 2×2 row clamped to the circle, twist about
-    /// the normal, rolling resistance.
+    /// One visit of friction, limited by the normal impulses as they are: a 2×2 row limited to the circle, twist
+    /// about the normal, rolling resistance.
     pub fn visit_friction(&mut self, velocities: &[Vec6]) -> Push {
         let pair = self.pair();
         let mut push = (ZERO6, ZERO6);
@@ -364,23 +364,16 @@ impl ManifoldRows {
         for i in 0..self.count {
             load += self.impulse[i];
         }
+        let k = &self.k_tangent;
+        let old = self.tangent_axes.map(|axis| self.friction.dot(axis));
         let rates = self.tangents.map(|row| row.rate(pair, velocities));
-        let [[k00, k01], [_, k11]] = self.k_tangent;
-        let det = k00 * k11 - k01 * k01;
-        if det > 1e-12 * k00 * k11 {
-            let mut x = [0.0; 2];
-            x[0] = self.friction.dot(self.tangent_axes[0]) - (k11 * rates[0] - k01 * rates[1]) / det;
-            x[1] = self.friction.dot(self.tangent_axes[1]) - (k00 * rates[1] - k01 * rates[0]) / det;
-            let length = (x[0] * x[0] + x[1] * x[1]).sqrt();
-            let most = self.material.friction * load;
-            let scale = if length > most { most / length } else { 1.0 };
-            let new = self.tangent_axes[0] * (x[0] * scale) + self.tangent_axes[1] * (x[1] * scale);
-            let change = new - self.friction;
-            for (row, axis) in self.tangents.iter().zip(self.tangent_axes) {
-                self.add(&mut push, row, change.dot(axis));
-            }
-            self.friction = new;
+        let b = [0, 1].map(|i| k[i][0] * old[0] + k[i][1] * old[1] - rates[i]);
+        let new = disk::least_energy(k, b, self.material.friction * load);
+        for i in 0..2 {
+            let row = self.tangents[i];
+            self.add(&mut push, &row, new[i] - old[i]);
         }
+        self.friction = self.tangent_axes[0] * new[0] + self.tangent_axes[1] * new[1];
         let mut turn = Vec3::ZERO;
         if self.k_spin > 1e-12 {
             let most = self.material.friction * self.lever * load;
@@ -400,12 +393,7 @@ impl ManifoldRows {
             return Vec3::ZERO;
         }
         let w = angular(&velocities[self.b as usize]) - angular(&velocities[self.a as usize]);
-        let wanted = self.rolling - self.k_roll.inverse() * w;
-        let (length, most) = (wanted.length(), self.material.rolling * load);
-        let new = if length > most { wanted * (most / length) } else { wanted };
-        if !new.is_finite() {
-            return Vec3::ZERO;
-        }
+        let new = disk::step_in_ball(&self.k_roll, self.rolling, w, self.material.rolling * load);
         let change = new - self.rolling;
         self.rolling = new;
         change

@@ -5,6 +5,7 @@
 
 mod build;
 mod contact_rows;
+mod disk;
 mod joint_rows;
 pub(crate) mod lcp;
 mod response;
