@@ -2,5 +2,6 @@
 #![forbid(unsafe_code)]
 
 pub mod cabin;
+pub mod demo;
 pub mod mannequin;
 pub mod scenes;

@@ -1,38 +1,43 @@
-//! Free fall of many bodies at once.
+//! Free fall of bodies that hang together.
 
 use super::metric::{Expected, Metric};
 use super::parts::GRAVITY;
 use sinew::math::Vec3;
-use sinew::physics::{BodyKind, World};
+use sinew::physics::{BodyId, World};
 
-/// Watches how the momentum of all bodies changes until one of them meets something static: by the weight alone,
-/// whatever their joints and contacts do among themselves.
+/// Watches how the momentum of some bodies changes until they meet another: by their weight alone, whatever their
+/// joints and contacts do among themselves.
 pub(super) struct Flight {
-    start: Vec3,
+    bodies: Vec<BodyId>,
     mass: f32,
+    start: Vec3,
     fall: Option<f32>,
     landed: bool,
 }
 
 impl Flight {
-    /// Begins now.
-    pub fn new(world: &World) -> Self {
-        let mass = world.body_ids().map(|id| world.mass(id).mass).sum();
-        Self { start: world.momentum().linear, mass, fall: None, landed: false }
+    /// Begins with the world's first step.
+    pub fn new(world: &World, bodies: Vec<BodyId>) -> Self {
+        let mass = bodies.iter().map(|&id| world.mass(id).mass).sum();
+        let start = momentum(world, &bodies);
+        Self { bodies, mass, start, fall: None, landed: false }
     }
 
     pub fn after_step(&mut self, world: &World) {
-        let is_static = |id| world.kind(id) == BodyKind::Static;
-        let falling = world.body_ids().filter(|&id| world.kind(id) == BodyKind::Dynamic);
-        self.landed |= falling.into_iter().any(|id| world.neighbors(id).any(is_static));
+        let is_other = |id| !self.bodies.contains(&id);
+        self.landed |= self.bodies.iter().any(|&id| world.neighbors(id).any(is_other));
         if !self.landed {
-            let gained = world.momentum().linear - self.start;
+            let gained = momentum(world, &self.bodies) - self.start;
             self.fall = Some(-gained.y / (self.mass * world.time() as f32));
         }
     }
 
-    /// Mean acceleration until the first touch, against gravity.
+    /// Mean acceleration until then, against that of gravity.
     pub fn metric(&self) -> Metric {
         Metric::awaited("fall_m_s2", self.fall, Expected::near(GRAVITY, 1e-3))
     }
+}
+
+fn momentum(world: &World, bodies: &[BodyId]) -> Vec3 {
+    bodies.iter().map(|&id| world.velocity(id).linear * world.mass(id).mass).sum()
 }

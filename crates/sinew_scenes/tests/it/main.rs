@@ -4,3 +4,4 @@ mod cabin;
 mod mannequin;
 mod motions;
 mod scenes;
+mod scenes_repeat;

@@ -1,6 +1,6 @@
 //! Every scene of the registry: its figures, and what they depend on.
 
-use sinew_scenes::scenes::{Metric, Scene, SettingError, find, registry};
+use sinew_scenes::scenes::{Metric, Scene, find, registry};
 
 fn metrics_after(scene: &Scene, gravity_factor: f32) -> Vec<Metric> {
     let mut run = scene.start_under(&scene.settings(), gravity_factor);

@@ -1,0 +1,75 @@
+//! The main job on the embedded character and world: the mannequin walks out of the cabin, is hit in the back at the
+//! top of the stairs, falls down, gets up and walks on. Nothing in it is choreographed but the hit.
+
+use crate::cabin::{Prop, Site};
+use crate::mannequin::{Mannequin, mannequin};
+use sinew::anim::analyze;
+use sinew::math::{Transform, Vec3};
+use sinew::physics::BodyDef;
+use sinew::ragdoll::{BakeInput, BuildOptions, CharacterDef, Hit, Locomotion, build};
+use std::sync::Arc;
+
+/// Length: the walk, the fall, getting up, and a few steps; seconds.
+const SECONDS: f32 = 12.0;
+/// How far before the edge of the porch the hit comes, metres.
+const HIT_BEFORE_EDGE: f32 = 0.35;
+/// In the back, N·s: what a shove with both hands gives.
+const IMPULSE: Vec3 = Vec3::new(0.0, 0.0, 110.0);
+const HIT_ROLE: &str = "chest";
+
+/// The job, ready to be simulated or changed.
+#[derive(Clone, Debug)]
+pub struct Demo {
+    /// The mannequin with its walk and both ways to get up.
+    pub character: Arc<CharacterDef>,
+    /// Where it starts.
+    pub world_from_character: Transform,
+    /// What stands in the world.
+    pub props: Vec<Prop>,
+    /// The bodies of `props`.
+    pub bodies: Vec<BodyDef>,
+    /// The hit.
+    pub hits: Vec<Hit>,
+}
+
+impl Demo {
+    /// The job in one of the worlds; only [`Site::CabinWithStairs`] has stairs to fall down.
+    pub fn new(site: Site) -> Self {
+        let (character, walk_speed) = walking_mannequin();
+        let (props, spawn) = (site.props(), site.spawn());
+        let body = character.body_named(HIT_ROLE).expect("the mannequin has a chest");
+        let time = (spawn.walk_length - HIT_BEFORE_EDGE) / walk_speed;
+        Self {
+            character: Arc::new(character),
+            world_from_character: spawn.world_from_character,
+            bodies: props.iter().map(|prop| prop.body.clone()).collect(),
+            props,
+            hits: vec![Hit { time, body, impulse: IMPULSE }],
+        }
+    }
+
+    /// What [`bake`](sinew::ragdoll::bake()) takes.
+    pub fn input(&self) -> BakeInput<'_> {
+        BakeInput {
+            world_from_character: self.world_from_character,
+            bodies: &self.bodies,
+            hits: &self.hits,
+            seconds: SECONDS,
+            name: "fall",
+            ..BakeInput::new(self.character.clone())
+        }
+    }
+}
+
+/// The character, and how fast it walks, m/s.
+fn walking_mannequin() -> (CharacterDef, f32) {
+    let Mannequin { rig, clips, motions } = mannequin();
+    let analysis = analyze(&rig).expect("the mannequin has a skin");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
+    let mut character = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    character.clips = clips;
+    character.looped = Some(motions.walk);
+    character.get_ups = vec![motions.get_up_supine, motions.get_up_prone];
+    character.locomotion = Locomotion::Forward { speed: motions.walk_speed };
+    (character, motions.walk_speed)
+}

@@ -1,0 +1,116 @@
+//! Every scene gives the same bits, however it is run; and its settings are checked.
+
+use sinew::math::{Reader, Transform, Writer};
+use sinew::physics::stage::NoProfiler;
+use sinew::physics::{Threads, World};
+use sinew_scenes::scenes::{Instance, Scene, SettingError, find, registry};
+
+/// Enough for everything to fall, hit and lie.
+fn steps(scene: &Scene) -> u64 {
+    u64::min(u64::from(scene.steps), 180)
+}
+
+fn started(scene: &Scene) -> Instance {
+    scene.start(&scene.settings())
+}
+
+fn stepped(scene: &Scene) -> Instance {
+    let mut run = started(scene);
+    for _ in 0..steps(scene) {
+        run.step();
+    }
+    run
+}
+
+fn poses(world: &World) -> Vec<Transform> {
+    world.body_ids().map(|id| world.transform(id)).collect()
+}
+
+#[test]
+fn twice_and_with_threads() {
+    for scene in registry() {
+        let hash = stepped(scene).world().hash();
+        assert_eq!(stepped(scene).world().hash(), hash, "{} again", scene.name);
+        let mut threaded = started(scene);
+        for _ in 0..steps(scene) {
+            threaded.step_with(&Threads::new(2), &NoProfiler);
+        }
+        assert_eq!(threaded.world().hash(), hash, "{} with 2 threads", scene.name);
+    }
+}
+
+#[test]
+fn at_any_frame_rate() {
+    for scene in registry() {
+        let expected = poses(stepped(scene).world());
+        for rate in [24, 60, 144] {
+            let mut run = started(scene);
+            let step = run.world().def().step_nanoseconds;
+            // The last frame is as long as it takes to come to the same number of steps.
+            let mut left = steps(scene) * step;
+            while left > 0 {
+                let frame = u64::min(1_000_000_000 / rate, left);
+                run.update(frame);
+                left -= frame;
+            }
+            assert_eq!(run.world().step_count(), steps(scene));
+            assert!(poses(run.world()) == expected, "{} at {rate} frames a second", scene.name);
+        }
+    }
+}
+
+#[test]
+fn restored_in_the_middle() {
+    for scene in registry() {
+        let mut run = started(scene);
+        let (middle, end) = (steps(scene) / 20, steps(scene));
+        for _ in 0..middle {
+            run.step();
+        }
+        let mut saved = Writer::new();
+        run.world().save(&mut saved);
+        let mut restored = started(scene);
+        restored.world_mut().load(&mut Reader::new(saved.as_bytes())).expect("it was just saved");
+        for step in middle..end {
+            run.step();
+            restored.step();
+            assert_eq!(restored.world().hash(), run.world().hash(), "{}, step {step}", scene.name);
+        }
+    }
+}
+
+#[test]
+fn settings_are_checked() {
+    let scene = find("chain").expect("the registry has it");
+    let mut settings = scene.settings();
+    settings.assign("links=3").expect("a whole number in range");
+    assert_eq!(scene.start(&settings).world().joint_ids().count(), 4);
+    assert_eq!(scene.start(&scene.settings()).world().joint_ids().count(), 11);
+
+    let mut refused = |assignment: &str| settings.assign(assignment).expect_err("it is wrong").to_string();
+    assert_eq!(refused("links"), "`links` is not key=value");
+    assert_eq!(refused("lnks=3"), "no setting `lnks`; there is links, ratio");
+    let links = "no value for `links`: it takes a whole number from 1 to 200";
+    for value in ["0", "201", "2.5", "", "many"] {
+        assert_eq!(refused(&format!("links={value}")), format!("`{value}` is {links}"));
+    }
+    for value in ["NaN", "inf", "0.5", "1e9"] {
+        assert!(refused(&format!("ratio={value}")).contains("a number from 1 to 100000"), "{value}");
+    }
+    assert_eq!(settings.get("links"), 3.0);
+    let none = find("free_fall").expect("the registry has it").settings().assign("x=1");
+    assert_eq!(none, Err(SettingError::UnknownKey { key: "x".into(), known: vec![] }));
+}
+
+#[test]
+fn names_and_settings_are_fit_for_a_command_line() {
+    for scene in registry() {
+        let plain = |name: &str| name.chars().all(|c| c.is_ascii_lowercase() || c == '_');
+        assert!(plain(scene.name) && !scene.about.is_empty());
+        for setting in scene.settings().declared() {
+            assert!(plain(setting.key), "{}", setting.key);
+            let default = format!("{}={}", setting.key, setting.default);
+            scene.settings().assign(&default).expect("a default is in its own range");
+        }
+    }
+}
