@@ -33,7 +33,7 @@ impl IslandSolver {
             (true, Pass::Relax) => SWEEPS_FREE_RELAX,
             (true, _) => SWEEPS_FREE,
         };
-        for _ in 0..sweeps {
+        for done in 1..=sweeps {
             self.largest_change = 0.0;
             match pass {
                 Pass::Solve | Pass::Relax => self.visit_contacts(pass),
@@ -41,7 +41,7 @@ impl IslandSolver {
             }
             self.visit_loops(pass);
             self.visit_limits(pass);
-            if self.largest_change < SWEEP_TOLERANCE {
+            if done > 1 && self.largest_change < SWEEP_TOLERANCE {
                 break;
             }
         }
