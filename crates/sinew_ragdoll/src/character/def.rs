@@ -33,7 +33,7 @@ pub enum AfterSettling {
 pub struct CharacterDef {
     /// The file's nodes, skins and meshes.
     pub rig: Rig,
-    /// Its bodies and joints.
+    /// Its bodies and joints; other bodies need another definition, for the mapping was made from these.
     pub ragdoll: RagdollDef,
     /// All motions, for the indices below.
     pub clips: Vec<Clip>,

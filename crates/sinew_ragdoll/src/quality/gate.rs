@@ -32,7 +32,7 @@ pub fn gate(def: &RagdollDef, spawns: usize) -> GateReport {
     let mut report = GateReport { spawns, verdicts: [0; 3], worst: Quality::default(), worst_spawn: 0 };
     let mut lowest = Verdict::Good;
     for spawn in 0..spawns {
-        let quality = fall(def, spawn as u64);
+        let quality = random_fall(def, spawn as u64);
         // A fall has no wall hit; its own figures stand for both.
         let (verdict, _) = judge(&quality, &quality);
         let place = match verdict {
@@ -49,8 +49,8 @@ pub fn gate(def: &RagdollDef, spawns: usize) -> GateReport {
     report
 }
 
-/// One random fall.
-fn fall(def: &RagdollDef, seed: u64) -> Quality {
+/// One random fall: number `seed` of a [`gate`], for a look at it alone.
+pub fn random_fall(def: &RagdollDef, seed: u64) -> Quality {
     let mut random = Random::new(seed);
     let mut world = World::new(WorldDef::default());
     terrain(&mut world, &mut random);
