@@ -58,7 +58,7 @@ fn the_clip_shows_what_happened() {
             }
             heights.push(played[hips].translation.y);
         }
-        let lowest = heights.iter().copied().fold(f32::INFINITY, f32::min);
+        let lowest = heights.iter().copied().fold(f32::INFINITY, sinew_math::min);
         assert!(heights[0] > 0.8 && lowest < 0.25 && heights[225] > 0.8, "{heights:?}");
     }
 }
