@@ -67,7 +67,8 @@ pub fn judge(drop: &Quality, wall: &Quality) -> (Verdict, Vec<String>) {
     for Limit { what, value, good, usable } in limits {
         let Some(value) = value else {
             reasons.push(format!("{what}: it never came to that within the test"));
-            verdict = verdict.min(if usable < f32::INFINITY { Verdict::Bad } else { Verdict::Usable });
+            verdict =
+                Verdict::min(verdict, if usable < f32::INFINITY { Verdict::Bad } else { Verdict::Usable });
             continue;
         };
         // Comparisons with NaN are false, so a poisoned figure is bad.
@@ -75,7 +76,7 @@ pub fn judge(drop: &Quality, wall: &Quality) -> (Verdict, Vec<String>) {
             continue;
         }
         reasons.push(format!("{what}: {value:.4}, limit {good}"));
-        verdict = verdict.min(if value <= usable { Verdict::Usable } else { Verdict::Bad });
+        verdict = Verdict::min(verdict, if value <= usable { Verdict::Usable } else { Verdict::Bad });
     }
     reasons.push("hand-over momentum: not measured, no clip is played here".to_owned());
     (verdict, reasons)
