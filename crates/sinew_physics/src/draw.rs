@@ -18,6 +18,8 @@ pub enum DrawKind {
     Asleep,
     /// From a body's centre to a joint's anchor.
     Joint,
+    /// A spring between two particles.
+    Spring,
     /// A contact normal, 10 cm long.
     Contact,
 }
@@ -51,6 +53,12 @@ impl World {
             for (body, frame) in [(joint.a, joint.frame_a), (joint.b, joint.frame_b)] {
                 let pose = self.bodies.at(body).world_from_principal;
                 out.line(pose.translation, pose.point(frame.translation), DrawKind::Joint);
+            }
+        }
+        for (_, group) in self.groups.iter() {
+            for spring in group.springs() {
+                let [a, b] = [spring.a, spring.b].map(|i| group.positions()[i as usize]);
+                out.line(a, b, DrawKind::Spring);
             }
         }
         for contact in self.contacts.iter().filter(|contact| contact.touching) {

@@ -4,16 +4,23 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::Contact;
 use crate::def::BodyKind;
-use crate::islands::IslandTask;
+use crate::islands::{IslandTask, Islands};
 use crate::joint::Joint;
+use crate::particles::ParticleGroup;
 use crate::ray::Ray;
 use crate::step::StepContext;
 use crate::touch::{Events, id};
 use sinew_math::{Transform, Vec3};
 
-/// `store`: impulses and joint forces that the next step starts from.
-pub(crate) fn store(tasks: &[IslandTask], joints: &mut Arena<Joint>, contacts: &mut [Contact]) {
-    for task in tasks {
+/// `store`: impulses and joint forces that the next step starts from; particle groups return to the world.
+pub(crate) fn store(
+    islands: &mut Islands,
+    joints: &mut Arena<Joint>,
+    contacts: &mut [Contact],
+    groups: &mut Arena<ParticleGroup>,
+) {
+    islands.release(groups);
+    for task in islands.tasks() {
         for (contact, memory) in task.solver.memories() {
             contacts[contact as usize].memory = memory;
         }

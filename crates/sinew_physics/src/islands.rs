@@ -1,9 +1,11 @@
-//! `islands` and `color`: which active bodies hang together through contacts and joints.
+//! `islands` and `color`: which active bodies hang together through contacts, joints and particles.
 
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::Contact;
 use crate::joint::Joint;
+use crate::particles::ParticleGroup;
+use crate::project::{IslandParticles, Neighbors};
 use crate::solver::IslandSolver;
 
 /// Members of one island, by index, each list ascending.
@@ -28,15 +30,18 @@ impl Island {
 pub(crate) struct IslandTask {
     pub island: Island,
     pub solver: IslandSolver,
+    pub particles: IslandParticles,
 }
 
-/// Union-find over the slots of bodies.
+/// Union-find over the slots of bodies, then of particle groups.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Islands {
     parent: Vec<u32>,
     island_of_root: Vec<u32>,
     tasks: Vec<IslandTask>,
     count: usize,
+    /// Per slot of particle groups.
+    neighbors: Vec<Neighbors>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -52,10 +57,18 @@ impl Islands {
         &mut self.tasks[..self.count]
     }
 
-    /// Finds the islands.
-    pub fn find(&mut self, bodies: &Arena<Body>, joints: &Arena<Joint>, contacts: &[Contact]) {
+    /// Finds the islands and takes the particle groups into them for the length of the step.
+    pub fn find(
+        &mut self,
+        bodies: &Arena<Body>,
+        joints: &Arena<Joint>,
+        contacts: &[Contact],
+        groups: &mut Arena<ParticleGroup>,
+        dt: f32,
+    ) {
+        let first_group = bodies.slot_count() as u32;
         self.parent.clear();
-        self.parent.extend(0..bodies.slot_count() as u32);
+        self.parent.extend(0..first_group + groups.slot_count() as u32);
         let active = |index: u32| bodies.at(index).is_active();
         for contact in contacts.iter().filter(|contact| contact.pushes()) {
             if active(contact.key.a) && active(contact.key.b) {
@@ -65,7 +78,32 @@ impl Islands {
         for (_, joint) in joints.iter().filter(|(_, joint)| active(joint.a) && active(joint.b)) {
             self.join(joint.a, joint.b);
         }
+        self.neighbors.resize(groups.slot_count(), Neighbors::default());
+        for (index, group) in groups.iter() {
+            self.neighbors[index as usize].find(group, bodies, dt);
+            for i in 0..self.neighbors[index as usize].bodies.len() {
+                let body = self.neighbors[index as usize].bodies[i];
+                if active(body) {
+                    self.join(first_group + index, body);
+                }
+            }
+        }
         self.collect(bodies, joints, contacts);
+        for (index, group) in groups.iter_mut() {
+            let near = core::mem::take(&mut self.neighbors[index as usize]);
+            let group = core::mem::take(group);
+            self.task_of(first_group + index).particles.groups.push((index, group, near));
+        }
+    }
+
+    /// Gives the groups back.
+    pub fn release(&mut self, groups: &mut Arena<ParticleGroup>) {
+        for task in &mut self.tasks[..self.count] {
+            for (index, group, near) in task.particles.groups.drain(..) {
+                *groups.at_mut(index) = group;
+                self.neighbors[index as usize] = near;
+            }
+        }
     }
 
     fn root(&mut self, mut i: u32) -> u32 {
@@ -83,7 +121,11 @@ impl Islands {
     }
 
     fn island_of(&mut self, body: u32) -> &mut Island {
-        let root = self.root(body) as usize;
+        &mut self.task_of(body).island
+    }
+
+    fn task_of(&mut self, slot: u32) -> &mut IslandTask {
+        let root = self.root(slot) as usize;
         if self.island_of_root[root] == NONE {
             self.island_of_root[root] = self.count as u32;
             if self.count == self.tasks.len() {
@@ -92,7 +134,7 @@ impl Islands {
             self.tasks[self.count].island.clear();
             self.count += 1;
         }
-        &mut self.tasks[self.island_of_root[root] as usize].island
+        &mut self.tasks[self.island_of_root[root] as usize]
     }
 
     fn collect(&mut self, bodies: &Arena<Body>, joints: &Arena<Joint>, contacts: &[Contact]) {

@@ -2,18 +2,18 @@
 
 use crate::collide::{Manifold, collide};
 use crate::def::BodyKind;
-use crate::id::{BodyId, JointId};
+use crate::id::{BodyId, GroupId, JointId};
 use crate::joint::{JointGeometry, JointPose, overshoot};
 use crate::ray::{Ray, RayHit};
 use crate::world::World;
 use sinew_math::{Vec3, max};
 
-/// Energy of bodies, joules.
+/// Energy, joules.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// Of motion and spin.
     pub kinetic: f32,
-    /// Of height in uniform gravity, 0 at the origin.
+    /// Of height in uniform gravity, 0 at the origin, and of stretched springs.
     pub potential: f32,
 }
 
@@ -50,21 +50,47 @@ impl World {
         Energy { kinetic: body.kinetic_energy(), potential: -weight.dot(body.center()) }
     }
 
-    /// Energy of all dynamic bodies.
+    /// Energy of one particle group.
+    pub fn group_energy(&self, id: GroupId) -> Energy {
+        let group = self.particles(id);
+        let mut sum = Energy::default();
+        for i in 0..group.positions().len() {
+            let mass = group.masses()[i];
+            sum.kinetic += 0.5 * mass * group.velocities()[i].length_squared();
+            sum.potential -= mass * group.gravity_scale() * self.def.gravity.dot(group.positions()[i]);
+        }
+        for spring in group.springs() {
+            let [a, b] = [spring.a, spring.b].map(|i| group.positions()[i as usize]);
+            let stretch = (b - a).length() - spring.rest_length;
+            sum.potential += 0.5 * spring.stiffness * stretch * stretch;
+        }
+        sum
+    }
+
+    /// Energy of all dynamic bodies and all particles.
     pub fn energy(&self) -> Energy {
-        self.body_ids().fold(Energy::default(), |sum, id| {
-            let energy = self.body_energy(id);
-            Energy { kinetic: sum.kinetic + energy.kinetic, potential: sum.potential + energy.potential }
+        let bodies = self.body_ids().map(|id| self.body_energy(id));
+        let groups = self.group_ids().map(|id| self.group_energy(id));
+        bodies.chain(groups).fold(Energy::default(), |sum, energy| Energy {
+            kinetic: sum.kinetic + energy.kinetic,
+            potential: sum.potential + energy.potential,
         })
     }
 
-    /// Momentum of all dynamic bodies.
+    /// Momentum of all dynamic bodies and all particles.
     pub fn momentum(&self) -> Momentum {
         let mut sum = Momentum::default();
         for (_, body) in self.bodies.iter().filter(|(_, body)| body.kind == BodyKind::Dynamic) {
             let p = body.velocity.linear * body.mass;
             sum.linear += p;
             sum.angular += body.center().cross(p) + body.inertia_mul(body.velocity.angular);
+        }
+        for (_, group) in self.groups.iter() {
+            for i in 0..group.positions().len() {
+                let p = group.velocities()[i] * group.masses()[i];
+                sum.linear += p;
+                sum.angular += group.positions()[i].cross(p);
+            }
         }
         sum
     }

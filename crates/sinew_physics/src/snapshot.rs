@@ -7,6 +7,7 @@ use crate::contact::{Contact, ContactKey, ContactMemory, PointImpulse};
 use crate::def::{BodyKind, JointCollision, JointKind, Sleeping, WorldDef};
 use crate::joint::{Joint, LimitImpulse, MAX_LIMITS};
 use crate::pairs::BroadPhase;
+use crate::particles::{AttachmentTarget, ParticleGroup};
 use crate::shape::{Filter, Material, Sensing, Shape};
 use crate::spatial::ZERO6;
 use crate::touch::Events;
@@ -30,6 +31,7 @@ impl World {
         for contact in &self.contacts {
             save_contact(w, contact);
         }
+        self.groups.save(w, |w, group| group.save(w));
         w.count(self.disabled.len());
         for &(a, b) in &self.disabled {
             w.u32(a);
@@ -57,6 +59,7 @@ impl World {
         if !contacts.is_sorted_by(|p: &Contact, q| p.key < q.key) {
             return Err(r.error("contacts are out of order"));
         }
+        let groups = Arena::load(r, |r| load_group(r, &bodies))?;
         let count = r.count(8)?;
         let mut disabled = Vec::with_capacity(count);
         for _ in 0..count {
@@ -68,6 +71,7 @@ impl World {
         self.def = def;
         (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
         (self.bodies, self.joints, self.contacts, self.disabled) = (bodies, joints, contacts, disabled);
+        self.groups = groups;
         self.events = Events::default();
         self.broad = BroadPhase::default();
         self.broad.invalidate();
@@ -386,6 +390,19 @@ fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, Rea
     memory.twist = r.f32()?;
     memory.rolling = r.vec3()?;
     Ok(Contact { key, manifold, memory, touching, sensor })
+}
+
+fn load_group(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<ParticleGroup, ReadError> {
+    let group = ParticleGroup::load(r)?;
+    let held = |target| match target {
+        AttachmentTarget::Body { body, .. } => bodies.get(body.index, body.generation).is_some(),
+        AttachmentTarget::World(_) => true,
+    };
+    if group.attachments().iter().all(|a| held(a.target)) {
+        Ok(group)
+    } else {
+        Err(r.error("attached to no body"))
+    }
 }
 
 fn body_index(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<u32, ReadError> {

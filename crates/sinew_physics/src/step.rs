@@ -21,18 +21,19 @@ pub(crate) struct StepContext<'a> {
 /// Advances the world by one step.
 pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
-    let World { def, bodies, joints, contacts, events, broad, islands, no_collide, sleepers, .. } = world;
+    let World { def, bodies, joints, contacts, groups, events, broad, islands, no_collide, sleepers, .. } =
+        world;
 
     stage(Stage::Pairs, &mut || broad.update(bodies, no_collide, contacts, context.dt));
     stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
     stage(Stage::Touch, &mut || touch::touch(bodies, contacts, events));
-    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts));
+    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, context.dt));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
 
     let view = View { bodies, joints, contacts, gravity: def.gravity, h: context.h };
     for_each_mut(context.runner, islands.tasks_mut(), |task| substeps(task, &view, context));
 
-    stage(Stage::Store, &mut || finalize::store(islands.tasks(), joints, contacts));
+    stage(Stage::Store, &mut || finalize::store(islands, joints, contacts, groups));
     stage(Stage::Finalize, &mut || finalize::finalize(islands.tasks(), bodies, events, context));
     stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands.tasks()));
     stage(Stage::Sleep, &mut || sleep::sleep(islands.tasks(), bodies, sleepers, def.sleeping, context.dt));
@@ -42,13 +43,14 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
 /// All substeps of one island, as one task without barriers.
 fn substeps(task: &mut IslandTask, view: &View<'_>, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
-    let IslandTask { island, solver } = task;
+    let IslandTask { island, solver, particles } = task;
     stage(Stage::Prepare, &mut || solver.prepare(island, view));
     for _ in 0..context.substeps {
         stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity());
         stage(Stage::WarmStart, &mut || solver.warm_start());
         stage(Stage::Solve, &mut || solver.solve());
         stage(Stage::IntegratePosition, &mut || solver.integrate_position());
+        stage(Stage::Project, &mut || particles.project(solver, view));
         stage(Stage::Relax, &mut || solver.relax());
     }
     stage(Stage::Restitution, &mut || solver.restitution());

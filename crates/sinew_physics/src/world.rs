@@ -4,10 +4,11 @@ use crate::arena::Arena;
 use crate::body::{Body, Velocity};
 use crate::contact::{Contact, ordered};
 use crate::def::{BodyDef, BodyKind, JointCollision, JointDef, WorldDef};
-use crate::id::{BodyId, JointId};
+use crate::id::{BodyId, GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
 use crate::pairs::BroadPhase;
+use crate::particles::{AttachmentTarget, GroupDef, ParticleGroup};
 use crate::runner::{Serial, TaskRunner};
 use crate::shape::MassProperties;
 use crate::stage::{NoProfiler, Profiler};
@@ -25,6 +26,7 @@ pub struct World {
     pub(crate) bodies: Arena<Body>,
     pub(crate) joints: Arena<Joint>,
     pub(crate) contacts: Vec<Contact>,
+    pub(crate) groups: Arena<ParticleGroup>,
     /// Pairs of body indices that the user disabled, smaller first, ascending.
     pub(crate) disabled: Vec<(u32, u32)>,
     /// The same with the jointed pairs.
@@ -53,6 +55,7 @@ impl World {
             bodies: Arena::default(),
             joints: Arena::default(),
             contacts: Vec::new(),
+            groups: Arena::default(),
             disabled: Vec::new(),
             no_collide: Vec::new(),
             events: Events::default(),
@@ -81,8 +84,15 @@ impl World {
     }
 
     /// Takes a body out, with its joints; what it touched wakes.
+    ///
+    /// # Panics
+    /// If particles are attached to it.
     pub fn remove_body(&mut self, id: BodyId) {
         self.expect(id);
+        let held = |target| matches!(target, AttachmentTarget::Body { body, .. } if body == id);
+        let attached =
+            self.groups.iter().any(|(_, group)| group.attachments().iter().any(|a| held(a.target)));
+        assert!(!attached, "no particles are attached to a body that is taken out");
         self.wake_neighbors(id.index);
         let joints: Vec<JointId> = self.joints_of(id.index).collect();
         for joint in joints {
@@ -118,6 +128,41 @@ impl World {
         wake(&mut self.bodies, joint.a);
         wake(&mut self.bodies, joint.b);
         self.refresh_no_collide();
+    }
+
+    /// Adds particles with their springs. They do not sleep; a body that sleeps is a wall to them.
+    ///
+    /// # Panics
+    /// If the definition is not valid or names a body that is not there.
+    pub fn add_particles(&mut self, def: &GroupDef) -> GroupId {
+        for attachment in &def.attachments {
+            if let AttachmentTarget::Body { body, .. } = attachment.target {
+                self.expect(body);
+                wake(&mut self.bodies, body.index);
+            }
+        }
+        let (index, generation) = self.groups.insert(ParticleGroup::new(def));
+        GroupId { index, generation }
+    }
+
+    /// Takes a particle group out.
+    pub fn remove_particles(&mut self, id: GroupId) {
+        self.groups.remove(id.index, id.generation).expect("the group is there");
+    }
+
+    /// A particle group.
+    pub fn particles(&self, id: GroupId) -> &ParticleGroup {
+        self.groups.get(id.index, id.generation).expect("the group is there")
+    }
+
+    /// A particle group, to be pushed.
+    pub fn particles_mut(&mut self, id: GroupId) -> &mut ParticleGroup {
+        self.groups.get_mut(id.index, id.generation).expect("the group is there")
+    }
+
+    /// All particle groups, by index.
+    pub fn group_ids(&self) -> impl Iterator<Item = GroupId> {
+        self.groups.iter().map(|(index, _)| GroupId { index, generation: self.groups.generation(index) })
     }
 
     /// From now on two bodies pass through each other.

@@ -41,7 +41,7 @@ pub struct Anchor {
 }
 
 /// Particles and springs at run time. One array per quantity, by index of the particle.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ParticleGroup {
     positions: Vec<Vec3>,
     velocities: Vec<Vec3>,
@@ -160,6 +160,11 @@ impl ParticleGroup {
     /// As they were defined; [`substep`](Self::substep) takes one [`Anchor`] for each.
     pub fn attachments(&self) -> &[AttachmentDef] {
         &self.attachments
+    }
+
+    /// Factor on the world's gravity.
+    pub fn gravity_scale(&self) -> f32 {
+        self.gravity_scale
     }
 
     /// Which shapes it meets.

@@ -274,6 +274,18 @@ impl IslandSolver {
         self.refresh();
     }
 
+    /// Impulses from outside the island's rows, one for each moving body, through the trees.
+    pub fn apply_impulses(&mut self, impulses: &[Vec6]) {
+        if impulses.iter().all(|p| *p == ZERO6) {
+            return;
+        }
+        self.scratch.impulses.clear();
+        self.scratch.impulses.extend_from_slice(impulses);
+        self.scratch.residuals.clear();
+        self.scratch.residuals.resize(self.links.len(), ZERO6);
+        self.solve_trees();
+    }
+
     /// Joint velocities to zero at the new pose (RATTLE), contacts and limits without bias, friction.
     pub fn relax(&mut self) {
         for rows in &mut self.manifolds {

@@ -6,4 +6,5 @@ mod collide;
 mod humanoid;
 mod particles;
 mod ray;
+mod rope;
 mod trees;

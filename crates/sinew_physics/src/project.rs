@@ -1,0 +1,192 @@
+//! `project`: the particle groups of an island, after its bodies have moved and before their contacts are relaxed.
+
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::def::BodyKind;
+use crate::particles::{Anchor, AttachmentTarget, Obstacle, ObstacleBody, ParticleGroup};
+use crate::solver::{IslandSolver, View};
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
+use sinew_math::{Sym3, Transform, Vec3};
+
+/// Particles of an island: its groups for the length of the step, and what is near them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct IslandParticles {
+    /// Index in the world, the group itself (taken out of the world until `store`), its neighbours.
+    pub groups: Vec<(u32, ParticleGroup, Neighbors)>,
+    obstacles: Vec<Obstacle>,
+    anchors: Vec<Anchor>,
+    bodies: Vec<ObstacleBody>,
+    seen: Vec<Seen>,
+    /// Impulses on the bodies of the island, by local index.
+    impulses: Vec<Vec6>,
+}
+
+/// Bodies that a group hangs on or may touch in this step, and their shapes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Neighbors {
+    /// World body indices, ascending.
+    pub bodies: Vec<u32>,
+    /// Position in `bodies`, shape number.
+    pub shapes: Vec<(u32, u32)>,
+}
+
+impl Neighbors {
+    /// Everything whose bounds the group may reach within `dt` seconds.
+    pub fn find(&mut self, group: &ParticleGroup, bodies: &Arena<Body>, dt: f32) {
+        self.bodies.clear();
+        self.shapes.clear();
+        let fastest = group.velocities().iter().fold(0.0, |most, v| sinew_math::max(most, v.length()));
+        let reach = 0.02 + (fastest + bodies.iter().fold(0.0, |most, (_, b)| fastest_point(most, b))) * dt;
+        let bounds = group.bounds().expand(reach);
+        for (index, body) in bodies.iter().filter(|(_, body)| !body.quarantined) {
+            let held = group.attachments().iter().any(|a| match a.target {
+                AttachmentTarget::Body { body, .. } => body.index == index,
+                AttachmentTarget::World(_) => false,
+            });
+            let near = |shape: &usize| {
+                let s = &body.shapes[*shape];
+                s.filter.meets(group.filter())
+                    && s.shape.aabb(&body.world_from_shape(*shape)).overlaps(&bounds)
+            };
+            let place = self.bodies.len() as u32;
+            let known = self.shapes.len();
+            self.shapes.extend((0..body.shapes.len()).filter(near).map(|shape| (place, shape as u32)));
+            if held || self.shapes.len() > known {
+                self.bodies.push(index);
+            }
+        }
+    }
+}
+
+fn fastest_point(most: f32, body: &Body) -> f32 {
+    sinew_math::max(most, body.velocity.linear.length() + body.velocity.angular.length() * body.reach())
+}
+
+/// A body as particles see it: where it is now, and where to put what they do to it.
+#[derive(Clone, Debug)]
+struct Seen {
+    pose: Transform,
+    velocity: Vec6,
+    /// Velocity that the forces of the coming substep will add.
+    coming: Vec3,
+    inverse_mass: f32,
+    inverse_inertia: Sym3,
+    /// Local index in the island, if it moves.
+    local: Option<usize>,
+}
+
+impl Seen {
+    fn new(index: u32, solver: &IslandSolver, view: &View<'_>) -> Self {
+        if let Some(local) = solver.moving_bodies().iter().position(|body| body.index == index) {
+            let body = &solver.moving_bodies()[local];
+            return Self {
+                pose: body.pose,
+                velocity: solver.velocities[local],
+                coming: body.force * (view.h / body.mass),
+                inverse_mass: 1.0 / body.mass,
+                inverse_inertia: body.inverse_inertia,
+                local: Some(local),
+            };
+        }
+        let body = view.bodies.at(index);
+        let velocity = match body.kind {
+            BodyKind::Kinematic => join(body.velocity.linear, body.velocity.angular),
+            BodyKind::Static | BodyKind::Dynamic => ZERO6,
+        };
+        Self {
+            pose: body.world_from_principal,
+            velocity,
+            coming: Vec3::ZERO,
+            inverse_mass: 0.0,
+            inverse_inertia: Sym3::ZERO,
+            local: None,
+        }
+    }
+}
+
+impl IslandParticles {
+    /// Moves the groups by one substep. Bodies get what springs and contacts push them with through their trees.
+    pub fn project(&mut self, solver: &mut IslandSolver, view: &View<'_>) {
+        for g in 0..self.groups.len() {
+            self.seen.clear();
+            self.seen.extend(self.groups[g].2.bodies.iter().map(|&index| Seen::new(index, solver, view)));
+            self.place(g, view);
+            let (_, group, _) = &mut self.groups[g];
+            group.substep(view.h, view.gravity, &self.anchors, &self.obstacles, &mut self.bodies);
+            self.push_bodies(g, solver);
+        }
+    }
+
+    /// Obstacles and anchors of group `g` at the present poses.
+    fn place(&mut self, g: usize, view: &View<'_>) {
+        let ((_, group, near), seen) = (&self.groups[g], &self.seen);
+        self.bodies.clear();
+        self.bodies.extend(seen.iter().map(|body| ObstacleBody {
+            center: body.pose.translation,
+            linear_velocity: linear(&body.velocity),
+            angular_velocity: angular(&body.velocity),
+            inverse_mass: body.inverse_mass,
+            inverse_inertia: body.inverse_inertia,
+        }));
+        self.obstacles.clear();
+        for &(place, shape) in &near.shapes {
+            let s = &view.bodies.at(near.bodies[place as usize]).shapes[shape as usize];
+            self.obstacles.push(Obstacle {
+                shape: s.shape,
+                world_from_shape: seen[place as usize].pose * s.principal_from_shape,
+                body: place,
+                material: s.material,
+            });
+        }
+        self.anchors.clear();
+        for attachment in group.attachments() {
+            self.anchors.push(match attachment.target {
+                AttachmentTarget::World(position) => Anchor { position, ..Anchor::default() },
+                AttachmentTarget::Body { body, point } => {
+                    let place = near.bodies.binary_search(&body.index).unwrap_or(0);
+                    let principal_from_body = view.bodies.at(body.index).principal_from_body;
+                    anchor(&seen[place], principal_from_body.point(point))
+                }
+            });
+        }
+    }
+
+    /// Hands the impulses of group `g` to the island's bodies.
+    fn push_bodies(&mut self, g: usize, solver: &mut IslandSolver) {
+        let ((_, group, near), seen) = (&self.groups[g], &self.seen);
+        self.impulses.clear();
+        self.impulses.resize(solver.moving_bodies().len(), ZERO6);
+        let mut push = |place: usize, point: Vec3, impulse: Vec3| {
+            if let Some(local) = seen[place].local {
+                let arm = point - seen[place].pose.translation;
+                add_scaled(&mut self.impulses[local], &join(impulse, arm.cross(impulse)), 1.0);
+            }
+        };
+        for hit in group.body_impulses() {
+            push(hit.body as usize, hit.point, hit.impulse);
+        }
+        for (k, attachment) in group.attachments().iter().enumerate() {
+            if let AttachmentTarget::Body { body, .. } = attachment.target {
+                let place = near.bodies.binary_search(&body.index).unwrap_or(0);
+                push(place, self.anchors[k].position, group.attachment_impulses()[k]);
+            }
+        }
+        solver.apply_impulses(&self.impulses);
+    }
+}
+
+/// A point of a body (principal frame) as an attachment sees it.
+fn anchor(body: &Seen, point: Vec3) -> Anchor {
+    let position = body.pose.point(point);
+    let arm = position - body.pose.translation;
+    // Velocity gained at the point per impulse there: 1/m − [r]× I⁻¹ [r]×.
+    let gained = |e: Vec3| e * body.inverse_mass + (body.inverse_inertia * arm.cross(e)).cross(arm);
+    let columns = sinew_math::Mat3::from_cols(gained(Vec3::X), gained(Vec3::Y), gained(Vec3::Z));
+    Anchor {
+        position,
+        // The springs push for the interval to come, so they must know what else pulls in it, or a hung body would
+        // hang lower by g h².
+        velocity: linear(&body.velocity) + body.coming + angular(&body.velocity).cross(arm),
+        inverse_mass: if body.local.is_some() { Sym3::from_mat3(&columns) } else { Sym3::ZERO },
+    }
+}

@@ -1,0 +1,147 @@
+//! Particles and springs as part of a world: with bodies, both ways.
+
+use crate::build::{box_body, floor, sphere_body};
+use sinew_math::Vec3;
+use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, RopeDef, SpringDef};
+use sinew_physics::*;
+
+fn run(world: &mut World, steps: usize) {
+    for _ in 0..steps {
+        world.step();
+    }
+}
+
+/// One mass on one spring of 1000 N/m under the origin.
+fn hung_mass(world: &mut World, mass: f32) -> GroupId {
+    let particle = |y, mass| ParticleDef { position: Vec3::Y * y, velocity: Vec3::ZERO, mass, radius: 0.01 };
+    world.add_particles(&GroupDef {
+        particles: vec![particle(0.0, 1.0), particle(-0.5, mass)],
+        springs: vec![SpringDef { a: 0, b: 1, rest_length: 0.5, stiffness: 1000.0, damping: 20.0 }],
+        attachments: vec![AttachmentDef { particle: 0, target: AttachmentTarget::World(Vec3::ZERO) }],
+        ..GroupDef::default()
+    })
+}
+
+#[test]
+fn a_mass_stretches_its_spring_by_mg_over_k() {
+    for substeps in [1, 4, 8] {
+        let mut world = World::new(WorldDef { substeps, ..WorldDef::default() });
+        let id = hung_mass(&mut world, 2.0);
+        run(&mut world, 600);
+        let stretch = -0.5 - world.particles(id).positions()[1].y;
+        let expected = 2.0 * 9.81 / 1000.0;
+        assert!((stretch / expected - 1.0).abs() < 1e-3, "{substeps} substeps: {stretch} for {expected}");
+    }
+}
+
+#[test]
+fn a_rope_holds_a_body_and_hangs_from_a_beam() {
+    let mut world = World::new(WorldDef::default());
+    let mut beam = box_body(Vec3::new(0.5, 0.1, 0.1), Vec3::new(0.0, 3.0, 0.0));
+    beam.kind = BodyKind::Static;
+    let beam = world.add_body(&beam);
+    let weight = world.add_body(&sphere_body(0.1, Vec3::new(0.0, 1.8, 0.0)));
+    let mut rope = GroupDef::rope(&RopeDef {
+        from: Vec3::new(0.0, 2.9, 0.0),
+        to: Vec3::new(0.0, 1.9, 0.0),
+        links: 10,
+        mass: 0.2,
+        stiffness: 5000.0,
+        radius: 0.01,
+    });
+    let hold =
+        |particle, body, point| AttachmentDef { particle, target: AttachmentTarget::Body { body, point } };
+    rope.attachments = vec![hold(0, beam, -Vec3::Y * 0.1), hold(10, weight, Vec3::Y * 0.1)];
+    world.add_particles(&rope);
+    let mass = world.mass(weight).mass;
+    run(&mut world, 900);
+    // The weight stretches all of it, the rope's own weight half of it on average.
+    let sunk = 1.8 - world.transform(weight).translation.y;
+    let expected = (mass + 0.1) * 9.81 / 5000.0;
+    assert!((sunk / expected - 1.0).abs() < 0.02, "sunk by {sunk} for {expected}");
+    // Between two steps the pull of the last substep is there and the weight of the next is not: g h.
+    assert!(world.velocity(weight).linear.length() < 0.05);
+}
+
+#[test]
+fn a_rope_falls_over_a_box_and_rests_on_it() {
+    let mut world = World::new(WorldDef::default());
+    floor(&mut world);
+    let crate_body = world.add_body(&box_body(Vec3::splat(0.25), Vec3::new(0.0, 0.25, 0.0)));
+    let id = world.add_particles(&GroupDef::rope(&RopeDef {
+        from: Vec3::new(-1.0, 0.8, 0.02),
+        to: Vec3::new(1.0, 0.8, 0.02),
+        links: 40,
+        mass: 1.0,
+        stiffness: 2000.0,
+        radius: 0.01,
+    }));
+    run(&mut world, 600);
+    let rope = world.particles(id);
+    let lowest = rope.positions().iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+    let highest = rope.positions().iter().map(|p| p.y).fold(0.0, f32::max);
+    assert!(lowest > 0.0 && highest > 0.5 && highest < 0.53, "from {lowest} to {highest}");
+    assert!(rope.velocities().iter().all(|v| v.length() < 0.02));
+    assert!((world.transform(crate_body).translation - Vec3::new(0.0, 0.25, 0.0)).length() < 0.01);
+}
+
+#[test]
+fn rope_and_body_keep_their_momentum_together() {
+    let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+    let body = world.add_body(&sphere_body(0.1, Vec3::ZERO));
+    let mut rope = GroupDef::rope(&RopeDef {
+        from: Vec3::X * 0.1,
+        to: Vec3::X * 1.1,
+        links: 5,
+        mass: 1.0,
+        stiffness: 500.0,
+        radius: 0.01,
+    });
+    rope.attachments =
+        vec![AttachmentDef { particle: 0, target: AttachmentTarget::Body { body, point: Vec3::X * 0.1 } }];
+    for (i, particle) in rope.particles.iter_mut().enumerate().skip(1) {
+        particle.velocity = Vec3::new(0.0, i as f32, 0.0);
+    }
+    world.add_particles(&rope);
+    let before = world.momentum().linear;
+    run(&mut world, 300);
+    let after = world.momentum().linear;
+    // The particle that is tied to the body follows it with its own 0.1 kg of 5.2 kg, without asking what that takes.
+    assert!((after - before).length() < 0.04 * before.length(), "{before:?} became {after:?}");
+}
+
+#[test]
+fn a_world_with_particles_restores_and_threads_alike() {
+    let build = || {
+        let mut world = World::new(WorldDef::default());
+        floor(&mut world);
+        hung_mass(&mut world, 1.0);
+        world.add_body(&box_body(Vec3::splat(0.2), Vec3::new(0.3, 0.2, 0.0)));
+        world.add_particles(&GroupDef::rope(&RopeDef {
+            from: Vec3::new(-0.5, 0.6, 0.0),
+            to: Vec3::new(0.9, 0.7, 0.1),
+            links: 20,
+            mass: 0.5,
+            stiffness: 800.0,
+            radius: 0.01,
+        }));
+        world
+    };
+    let mut world = build();
+    run(&mut world, 60);
+    let mut w = sinew_math::Writer::new();
+    world.save(&mut w);
+    let mut copy = World::new(WorldDef::default());
+    copy.load(&mut sinew_math::Reader::new(w.as_bytes())).expect("own snapshot");
+    let mut threaded = build();
+    for _ in 0..60 {
+        threaded.step_with(&Threads::new(2), &stage::NoProfiler);
+    }
+    for _ in 0..120 {
+        world.step();
+        copy.step();
+        threaded.step_with(&Threads::new(2), &stage::NoProfiler);
+        assert_eq!(world.hash(), copy.hash());
+        assert_eq!(world.hash(), threaded.hash());
+    }
+}
