@@ -1,6 +1,5 @@
-//! `docs/contract.md`, the table of the command line's JSON keys, as data.
+//! `docs/contract.md`, the table of the command line's JSON keys, as data. The tests of `sinew_cli` read it with this too.
 
-use crate::tidy::{Finding, Repo};
 use serde_json::Value;
 
 /// Where the table is.
@@ -11,10 +10,18 @@ pub const PATH: &str = "docs/contract.md";
 pub struct Row {
     commands: Vec<String>,
     /// Path to the value: names with dots between; `[]` after a name goes into each element.
-    key: String,
+    pub key: String,
     kind: String,
     presence: Presence,
-    line: usize,
+    /// Where it stands, from 1.
+    pub line: usize,
+}
+
+impl Row {
+    /// Whether both rows give the same key to one command.
+    pub fn repeats(&self, other: &Self) -> bool {
+        other.key == self.key && other.commands.iter().any(|command| self.commands.contains(command))
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,24 +34,6 @@ enum Presence {
 }
 
 const KINDS: &[&str] = &["number", "integer", "string", "boolean", "array", "object"];
-
-/// Tidy rule: the table can be read, and no command has a key twice.
-pub fn check(repo: &Repo) -> Vec<Finding> {
-    let Some(file) = repo.file(PATH) else { return Vec::new() };
-    let rows = match parse(&file.text) {
-        Ok(rows) => rows,
-        Err((line, what)) => return vec![Finding::new(PATH, line, what)],
-    };
-    let mut findings = Vec::new();
-    for (index, row) in rows.iter().enumerate() {
-        let is_same =
-            |other: &Row| other.key == row.key && other.commands.iter().any(|c| row.commands.contains(c));
-        if rows[..index].iter().any(is_same) {
-            findings.push(Finding::new(PATH, row.line, format!("`{}` is there twice", row.key)));
-        }
-    }
-    findings
-}
 
 /// All rows, or the line and reason of the first that is malformed.
 ///
@@ -158,17 +147,5 @@ mod tests {
             &[],
         );
         check_output("build", &json!({ "bodies": [{}] }), &["build: key `bodies[].bone` is missing"]);
-    }
-
-    #[test]
-    fn a_malformed_table_is_found() {
-        let found = |text: &str| {
-            check(&Repo::planted(&[(PATH, text)])).iter().map(ToString::to_string).collect::<Vec<_>>()
-        };
-        assert!(found(TABLE).is_empty());
-        let twice = format!("{TABLE}| `bake` | `nan` | integer | – | again |\n");
-        assert_eq!(found(&twice), ["docs/contract.md:10: `nan` is there twice"]);
-        assert_eq!(found("| command | key |\n| a | b |"), ["docs/contract.md:2: 2 columns, not 5"]);
-        assert_eq!(found("| command |\n| a | b | float | c | d |").len(), 1);
     }
 }

@@ -6,6 +6,7 @@
 
 mod arrows;
 mod bits;
+mod contract_table;
 mod dependencies;
 mod leftovers;
 mod lexer;
@@ -14,7 +15,7 @@ mod size;
 mod stages;
 mod unsafety;
 
-use crate::{command, contract};
+use crate::command;
 use anyhow::{Context, Result, bail};
 use lexer::Token;
 use serde_json::Value;
@@ -30,7 +31,7 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     size::check,
     unsafety::check,
     stages::check,
-    contract::check,
+    contract_table::check,
     leftovers::check,
     dependencies::check,
 ];

@@ -90,7 +90,7 @@ impl<'a> Shots<'a> {
         let (direction, radius) = (self.direction, self.radius);
         let camera = self.camera.get_or_insert_with(|| FollowCamera::new(pelvis, radius, direction));
         camera.update(pelvis, 1.0 / FPS as f32);
-        let phase = self.phases.iter().rev().find(|(since, _)| *since <= time).map_or("", |&(_, what)| what);
+        let phase = self.phases.iter().rev().find(|(since, _)| *since <= time).map_or("", |(_, what)| what);
         self.scene.captions = vec![Caption::new(format!("{time:5.2} s  {phase}"))];
         renderer.render(&self.scene, &camera.camera())
     }

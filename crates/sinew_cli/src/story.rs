@@ -1,24 +1,28 @@
 //! What happens to a character, in words.
 
+use crate::table::shown;
 use sinew::ragdoll::{BakeInput, CharacterDef, Event, Locomotion};
 
 /// What the character is doing from some time on, in a word or two for the corner of a picture.
-pub type Phase = (f32, &'static str);
+pub type Phase = (f32, String);
 
 /// Seconds for which a hit is called one.
 const HIT_SECONDS: f32 = 0.4;
 
 /// The phases of a bake, in order of time.
 pub fn phases(def: &CharacterDef, events: &[(f32, Event)]) -> Vec<Phase> {
-    let upright = upright(def);
-    let mut phases = vec![(0.0, upright)];
+    let mut phases = vec![(0.0, upright(def))];
+    let mut add = |time: f32, what: &str| phases.push((time, what.to_owned()));
     for &(time, event) in events {
         match event {
-            Event::Hit { .. } => phases.extend([(time, "hit"), (time + HIT_SECONDS, "falls")]),
-            Event::WentLimp => phases.push((time, "falls")),
-            Event::Settled { since } => phases.push((since, "lies still")),
-            Event::GettingUp { .. } => phases.push((time, "gets up")),
-            Event::Up => phases.push((time, upright)),
+            Event::Hit { .. } => {
+                add(time, "is hit");
+                add(time + HIT_SECONDS, "falls");
+            }
+            Event::WentLimp => add(time, "falls"),
+            Event::Settled { since } => add(since, "lies still"),
+            Event::GettingUp { .. } => add(time, "gets up"),
+            Event::Up => add(time, &upright(def)),
             Event::Touched | Event::NeverSettled => {}
         }
     }
@@ -27,37 +31,36 @@ pub fn phases(def: &CharacterDef, events: &[(f32, Event)]) -> Vec<Phase> {
     phases
 }
 
-fn upright(def: &CharacterDef) -> &'static str {
-    match (def.looped, def.locomotion) {
-        (Some(_), Locomotion::Forward { .. }) => "walks",
-        (Some(_), Locomotion::InPlace) => "animated",
-        (None, _) => "stands",
+fn upright(def: &CharacterDef) -> String {
+    match (def.looped.map(|clip| shown(&def.clips[clip].name)), def.locomotion) {
+        (Some(_), Locomotion::Forward { .. }) => "walks".to_owned(),
+        (Some(clip), Locomotion::InPlace) => format!("plays clip {clip}"),
+        (None, _) => "stands in its rest pose".to_owned(),
     }
 }
 
 /// The events of a bake as sentences, in order of time.
 pub fn told(input: &BakeInput<'_>, events: &[(f32, Event)]) -> Vec<(f32, String)> {
     let def = &input.character;
-    let mut told = vec![(0.0, upright(def).to_owned())];
-    let mut limp_already = false;
+    let mut told = vec![(0.0, upright(def))];
     for &(time, event) in events {
         let sentence = match event {
             Event::Hit { body } => hit_sentence(input, time, body),
             // A hit says it better.
             Event::WentLimp if events.iter().any(|other| is_hit_at(other, time)) => continue,
             Event::WentLimp => "goes limp".to_owned(),
-            Event::Touched if limp_already => continue,
             Event::Touched => "touches the world".to_owned(),
             Event::Settled { since } => {
                 told.push((since, "lies still".to_owned()));
                 continue;
             }
             Event::NeverSettled => "does not come to rest".to_owned(),
-            Event::GettingUp { clip: Some(clip) } => format!("gets up by '{}'", def.clips[clip].name),
+            Event::GettingUp { clip: Some(clip) } => {
+                format!("gets up by clip {}", shown(&def.clips[clip].name))
+            }
             Event::GettingUp { clip: None } => "gets up".to_owned(),
             Event::Up => format!("{} again", upright(def)),
         };
-        limp_already = matches!(event, Event::Touched);
         told.push((time, sentence));
     }
     told

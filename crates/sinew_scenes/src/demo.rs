@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Length: the walk, the fall, getting up, and a few steps; seconds.
 const SECONDS: f32 = 12.0;
 /// How far before the edge of the porch the hit comes, metres.
-const HIT_BEFORE_EDGE: f32 = 0.35;
+const HIT_BEFORE_EDGE: f32 = 0.45;
 /// In the back, N·s: what a shove with both hands gives.
 const IMPULSE: Vec3 = Vec3::new(0.0, 0.0, 110.0);
 const HIT_ROLE: &str = "chest";

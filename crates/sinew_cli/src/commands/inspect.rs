@@ -1,7 +1,8 @@
 //! `sinew inspect`: what is in a file.
 
 use crate::failure::Result;
-use crate::report::Report;
+use crate::ragdoll_report::axis_name;
+use crate::report::{Report, number};
 use crate::table::{Table, shown};
 use serde_json::{Value, json};
 use sinew::anim::{RigAnalysis, analyze};
@@ -45,7 +46,7 @@ impl Content<'_> {
         let joints: Vec<Value> = (0..rig.joints.len()).map(|joint| self.joint_json(joint)).collect();
         let clips: Vec<Value> = clips
             .iter()
-            .map(|clip| json!({"name": clip.name, "duration_s": clip.duration, "channels": clip.channels.len()}))
+            .map(|clip| json!({"name": clip.name, "duration_s": number(clip.duration), "channels": clip.channels.len()}))
             .collect();
         let (vertices, triangles) = self.mesh_size();
         json!({
@@ -57,9 +58,9 @@ impl Content<'_> {
             "vertices": vertices,
             "triangles": triangles,
             "skins": rig.skins.len(),
-            "unit_scale": self.analysis.map(|analysis| analysis.unit_scale),
-            "up_axis": self.analysis.map(|analysis| crate::ragdoll_report::axis_name(analysis.up_axis)),
-            "height_m": self.analysis.map(|analysis| analysis.height),
+            "unit_scale": self.analysis.map(|analysis| number(analysis.unit_scale)),
+            "up_axis": self.analysis.map(|analysis| axis_name(analysis.up_axis)),
+            "height_m": self.analysis.map(|analysis| number(analysis.height)),
             "humanoid": self.analysis.map(|analysis| analysis.humanoid),
             "joints": joints,
             "clips": clips,
@@ -75,7 +76,7 @@ impl Content<'_> {
             "name": own.name,
             "parent": own.parent,
             "role": guess.map(|guess| guess.role.name()),
-            "confidence": guess.map(|guess| guess.confidence),
+            "confidence": guess.map(|guess| number(guess.confidence)),
             "has_body": self.has_body(joint),
         })
     }
@@ -116,7 +117,7 @@ impl Content<'_> {
         };
         let kind = if analysis.humanoid { "a humanoid" } else { "a creature" };
         let (height, unit, bodies) = (analysis.height, analysis.unit_scale, analysis.kept.len());
-        let up = crate::ragdoll_report::axis_name(analysis.up_axis);
+        let up = axis_name(analysis.up_axis);
         format!(
             "{kind} of {height:.2} m, {up} up, one unit is {unit} m; {bodies} joints deserve a body (*)\n"
         )

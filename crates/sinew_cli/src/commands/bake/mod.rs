@@ -210,5 +210,5 @@ fn film<'a>(fall: &'a Fall<'a>) -> Film<'a> {
         set.extend(body_models(body, color, other));
     }
     let height = fall.input.character.ragdoll.height;
-    Film { fall, set, direction: Vec3::new(0.75, 0.4, 0.75), radius: 0.85 * height, sun: Sun::default() }
+    Film { fall, set, direction: Vec3::new(0.75, 0.4, 0.75), radius: 0.75 * height, sun: Sun::default() }
 }

@@ -1,0 +1,135 @@
+//! `sinew bake` on a file of its own making.
+
+use crate::contract::check_keys;
+use crate::sinew::{Folder, shared_data, sinew};
+use sinew::formats::{ReadOptions, load_gltf, write_world};
+use sinew_scenes::cabin::Site;
+use std::fs;
+
+#[test]
+fn the_fall_is_a_clip_in_a_copy_of_the_file() {
+    let folder = Folder::new("bake");
+    let (file, out) = (folder.mannequin(), folder.path("fall.glb"));
+    let picture = folder.path("fall.png");
+    let arguments = [
+        "bake",
+        &file,
+        "--clip",
+        "Walk",
+        "--hit",
+        "chest=0,0,40@0.2",
+        "--seconds",
+        "0.5",
+        "--fps",
+        "24",
+        "-o",
+        &out,
+        "--picture",
+        &picture,
+        "--json",
+    ];
+    let object = sinew(&arguments).json();
+    check_keys("bake", &object);
+    assert_eq!((&object["seconds"], &object["frames"]), (&0.5.into(), &13.into()));
+    assert_eq!(object["outputs"], serde_json::json!([out, picture]));
+    let [old, new] =
+        [&file, &out].map(|path| load_gltf(path, ReadOptions::default()).expect("it can be read"));
+    assert_eq!(new.clips.len(), old.clips.len() + 1);
+    assert_eq!(new.clips[0], old.clips[0]);
+    let baked = new.clips.last().expect("a clip");
+    assert!((baked.duration - 0.5).abs() < 1e-6, "{} s", baked.duration);
+    assert!(fs::read(&picture).expect("a picture").starts_with(b"\x89PNG"));
+    assert_eq!(folder.names(), ["fall.glb", "fall.png", "mannequin.glb"]);
+}
+
+#[test]
+fn the_same_command_gives_the_same_bytes() {
+    let folder = Folder::new("twice");
+    let file = folder.mannequin();
+    let baked = |name: &str| {
+        let out = folder.path(name);
+        let hash = sinew(&["bake", &file, "--seconds", "1.5", "-o", &out, "--json"]).json()["hash"].clone();
+        (hash, fs::read(out).expect("the output"))
+    };
+    assert_eq!(baked("a.glb"), baked("b.glb"));
+}
+
+#[test]
+fn without_a_hit_it_goes_limp_at_half_a_second_on_a_floor() {
+    let folder = Folder::new("limp");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let object = sinew(&["bake", &file, "--seconds", "5", "-o", &out, "--json"]).json();
+    let number = |key: &str| object[key].as_f64().unwrap_or_else(|| panic!("{key} in {object:#}"));
+    assert!((0.5..0.8).contains(&number("first_contact_s")));
+    assert!(number("settled_s") > 1.0);
+    assert!(number("penetration_rest_max_m") < 0.005);
+    assert_eq!((&object["nan"], &object["up_s"]), (&0.into(), &serde_json::Value::Null));
+    let text = sinew(&["bake", &file, "--limp-at", "0.25", "--seconds", "0.5", "-o", &out]).stdout;
+    assert!(text.contains("   0.25 s  goes limp"), "{text}");
+}
+
+#[test]
+fn a_world_file_is_fallen_into() {
+    let folder = Folder::new("world");
+    let file = folder.mannequin();
+    let bodies: Vec<_> = Site::CabinWithStairs.props().into_iter().map(|prop| prop.body).collect();
+    let world = folder.file("cabin.json", write_world(&bodies));
+    let hash = |extra: &[&str]| {
+        let out = folder.path("out.glb");
+        let arguments = [&["bake", file.as_str(), "--seconds", "1", "-o", &out, "--json"], extra].concat();
+        sinew(&arguments).json()["hash"].clone()
+    };
+    assert_ne!(hash(&["--world", &world]), hash(&[]));
+    let broken = folder.file("broken.json", r#"{"sinew":"world","version":1,"bodies":[{"shapes":[{}]}]}"#);
+    let out = folder.path("none.glb");
+    let run = sinew(&["bake", &file, "--world", &broken, "-o", &out]);
+    assert!(run.refusal(1).starts_with(&format!("error: {broken}: ")), "{run:?}");
+}
+
+#[test]
+fn what_does_not_exist_is_told_with_what_does() {
+    let folder = Folder::new("names");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let line = |extra: &[&str]| {
+        let arguments = [&["bake", file.as_str(), "-o", &out], extra].concat();
+        sinew(&arguments).refusal(1).to_owned()
+    };
+    assert_eq!(
+        line(&["--clip", "Fly"]),
+        format!("error: {file}: no clip 'Fly'; there are 0 'Walk' (--clip)")
+    );
+    let hit = line(&["--hit", "tail=0,0,1@1"]);
+    assert!(hit.contains("no bone 'tail' to hit; there are hips, spine, chest"), "{hit}");
+    assert_eq!(folder.names(), ["mannequin.glb"]);
+}
+
+#[test]
+fn outputs_come_together_or_not_at_all_and_never_over_an_input() {
+    let folder = Folder::new("outputs");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let picture = folder.path("missing/out.gif");
+    let run = sinew(&["bake", &file, "--seconds", "0.1", "-o", &out, "--picture", &picture]);
+    assert_eq!(run.refusal(1), format!("error: {picture}: cannot write: no such file"));
+    assert_eq!(folder.names(), ["mannequin.glb"]);
+    let run = sinew(&["bake", &file, "-o", &file]);
+    assert_eq!(run.refusal(2), format!("error: {file} is an input: write to another file"));
+}
+
+#[test]
+fn strangers_are_baked() {
+    let Some(data) = shared_data() else { return };
+    let folder = Folder::new("strangers");
+    for name in [
+        "CesiumMan.glb",
+        "kaykit_Knight.glb",
+        "quaternius_cyberpunk_Character.glb",
+        "CoolLoops_mixamorig_vrm0.vrm",
+        "Fox.glb",
+    ] {
+        let (file, out) = (data.join("rigs").join(name).display().to_string(), folder.path("out.glb"));
+        let object = sinew(&["bake", &file, "--seconds", "2", "-o", &out, "--json"]).json();
+        assert_eq!(object["nan"], 0, "{name}");
+        assert!(object["first_contact_s"].is_number(), "{name}: {object:#}");
+        assert!(load_gltf(&out, ReadOptions::default()).is_ok(), "{name}");
+    }
+}

@@ -1,0 +1,14 @@
+//! The binary as its users meet it: arguments in, exit code, stdout and stderr out.
+
+mod bake;
+mod contract;
+mod demo;
+mod refusals;
+mod scenes;
+mod sinew;
+mod usage;
+
+/// The reader of `docs/contract.md` that `cargo xtask` holds the demo's report against.
+#[path = "../../../../xtask/src/contract.rs"]
+#[allow(dead_code)] // xtask's tidy rule uses the rest of it
+mod contract_table;

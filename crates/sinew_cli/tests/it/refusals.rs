@@ -1,0 +1,106 @@
+//! Files that must be refused: exit code 1, one line, little memory, nothing written.
+
+use crate::sinew::{Folder, Run, command, glb, gltf_files, shared_data, sinew};
+use sinew::anim::Rig;
+use sinew_scenes::mannequin::mannequin;
+use std::process::Command;
+
+/// Most memory that a refusal may take, KiB.
+const MEMORY_KIB: u32 = 64 * 1024;
+
+/// Runs `sinew` where the system denies it more memory than that, if the system can.
+fn frugal(arguments: &[&str]) -> Run {
+    if !cfg!(target_os = "linux") {
+        return sinew(arguments);
+    }
+    let limited = format!("ulimit -v {MEMORY_KIB} && exec \"$0\" \"$@\"");
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &limited]).arg(command(arguments).get_program()).args(arguments);
+    Run::of(&mut shell)
+}
+
+/// `bake` and `ragdoll build` refuse the file with a line that holds `reason`, and write nothing.
+fn check_refused(folder: &Folder, file: &str, reason: &str) {
+    let before = folder.names();
+    let out = folder.path("out");
+    for arguments in [["bake", file, "-o", &out].as_slice(), &["ragdoll", "build", file, "-o", &out]] {
+        let run = frugal(arguments);
+        let line = run.refusal(1);
+        assert!(line.starts_with(&format!("error: {file}: ")) && line.contains(reason), "{line}");
+        assert_eq!(run.stdout, "");
+    }
+    assert_eq!(folder.names(), before);
+}
+
+#[test]
+fn broken_containers() {
+    let folder = Folder::new("containers");
+    let whole = glb(&mannequin().rig, &[]);
+    let truncated = folder.file("truncated.glb", &whole[..whole.len() / 2]);
+    check_refused(&folder, &truncated, "claims");
+    let text = folder.file("text.glb", "To whom it may concern");
+    check_refused(&folder, &text, "not a glTF file");
+    let mut huge = whole.clone();
+    huge[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
+    let huge = folder.file("huge.glb", huge);
+    check_refused(&folder, &huge, "chunk claims 4294967295 bytes");
+    let empty = folder.file("empty.glb", "");
+    check_refused(&folder, &empty, "empty");
+    check_refused(&folder, &folder.path("missing.glb"), "no such file");
+}
+
+#[test]
+fn a_joint_out_of_range() {
+    let folder = Folder::new("joint");
+    let file = folder.file(
+        "joint.gltf",
+        r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0,"skin":0}],"skins":[{"joints":[7]}],"meshes":[]}"#,
+    );
+    let run = sinew(&["ragdoll", "build", &file, "--json"]);
+    assert!(run.refusal(1).contains("(skins[0].joints[0])"), "{run:?}");
+    let object: serde_json::Value = serde_json::from_str(&run.stdout).expect("one JSON object");
+    assert_eq!(object["error"]["where"], "skins[0].joints[0]");
+    check_refused(&folder, &file, "skins[0].joints[0]");
+}
+
+#[test]
+fn a_mesh_without_a_skin() {
+    let folder = Folder::new("skinless");
+    let mut rig = Rig { skins: Vec::new(), ..mannequin().rig };
+    for mesh in &mut rig.meshes {
+        mesh.skin = None;
+        for part in &mut mesh.primitives {
+            (part.joints, part.weights) = (Vec::new(), Vec::new());
+        }
+    }
+    let file = folder.file("skinless.glb", glb(&rig, &[]));
+    check_refused(&folder, &file, "no skin: nothing to build a ragdoll from");
+    assert_eq!(sinew(&["inspect", &file]).code, Some(0));
+}
+
+#[test]
+fn valid_files_that_hold_no_character() {
+    let Some(data) = shared_data() else { return };
+    let folder = Folder::new("negative");
+    let files = gltf_files(&data.join("negative"));
+    assert!(!files.is_empty());
+    for file in files {
+        check_refused(&folder, &file, "no skin: nothing to build a ragdoll from");
+        let inspected = frugal(&["inspect", &file, "--json"]).json();
+        assert_eq!(inspected["skins"], 0, "{file}");
+    }
+}
+
+#[test]
+fn bad_input_is_inspected_or_refused() {
+    let Some(data) = shared_data() else { return };
+    let files = gltf_files(&data.join("bad_input"));
+    assert!(!files.is_empty());
+    for file in files {
+        let run = sinew(&["inspect", &file]);
+        match run.code {
+            Some(0) => assert!(run.stderr.is_empty() && !run.stdout.is_empty(), "{file}: {run:?}"),
+            _ => assert!(run.refusal(1).starts_with(&format!("error: {file}: ")), "{file}: {run:?}"),
+        }
+    }
+}

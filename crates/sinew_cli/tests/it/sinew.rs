@@ -1,0 +1,134 @@
+//! Running the binary, and what it runs on.
+
+use serde_json::Value;
+use sinew::anim::{Clip, Rig};
+use sinew::formats::write_gltf;
+use sinew_scenes::mannequin::mannequin;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// How a run ended.
+#[derive(Debug)]
+pub struct Run {
+    pub code: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Run {
+    /// Of a command that is ready to be started.
+    pub fn of(command: &mut Command) -> Self {
+        let Output { status, stdout, stderr } = command.output().expect("the binary starts");
+        let text = |bytes| String::from_utf8(bytes).expect("it prints UTF-8");
+        Self { code: status.code(), stdout: text(stdout), stderr: text(stderr) }
+    }
+
+    /// The object of a run that succeeded under `--json`.
+    pub fn json(&self) -> Value {
+        assert_eq!((self.code, self.stderr.as_str()), (Some(0), ""), "{self:?}");
+        serde_json::from_str(&self.stdout).expect("stdout is one JSON object and nothing else")
+    }
+
+    /// The line of a run that was refused with `code`.
+    pub fn refusal(&self, code: i32) -> &str {
+        assert_eq!(self.code, Some(code), "{self:?}");
+        let line = self.stderr.strip_suffix('\n').expect("the line ends");
+        assert!(line.starts_with("error: ") && !line.contains('\n'), "not one line: {self:?}");
+        line
+    }
+}
+
+/// `sinew` with arguments.
+pub fn command<A: AsRef<std::ffi::OsStr>>(arguments: &[A]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sinew"));
+    command.args(arguments);
+    command
+}
+
+/// Runs `sinew` with arguments.
+pub fn sinew<A: AsRef<std::ffi::OsStr>>(arguments: &[A]) -> Run {
+    Run::of(&mut command(arguments))
+}
+
+/// An empty folder of one test's own, removed at its end.
+pub struct Folder {
+    path: PathBuf,
+}
+
+impl Folder {
+    pub fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("sinew-cli-{}-{test}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).expect("a folder for outputs");
+        Self { path }
+    }
+
+    pub fn path(&self, name: &str) -> String {
+        self.path.join(name).display().to_string()
+    }
+
+    /// A file in it.
+    pub fn file(&self, name: &str, bytes: impl AsRef<[u8]>) -> String {
+        let path = self.path(name);
+        fs::write(&path, bytes).expect("a file for the test");
+        path
+    }
+
+    /// The mannequin as a user's file, with its walk.
+    pub fn mannequin(&self) -> String {
+        let mannequin = mannequin();
+        let walk = Clip { name: "Walk".into(), ..mannequin.clips[mannequin.motions.walk].clone() };
+        self.file("mannequin.glb", glb(&mannequin.rig, &[walk]))
+    }
+
+    /// Names of what is in it, sorted.
+    pub fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(&self.path).expect("the folder is there");
+        let name = |entry: std::io::Result<fs::DirEntry>| {
+            entry.expect("an entry").file_name().to_string_lossy().into_owned()
+        };
+        let mut names: Vec<String> = entries.map(name).collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.path);
+    }
+}
+
+pub fn glb(rig: &Rig, clips: &[Clip]) -> Vec<u8> {
+    write_gltf(rig, clips).expect("a rig made by code can be written")
+}
+
+/// The folder of test data beside the workspace, or a note on why the test does nothing.
+pub fn shared_data() -> Option<PathBuf> {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
+    if folder.is_dir() {
+        return Some(folder.to_path_buf());
+    }
+    println!("skipped: no ../shared/data");
+    None
+}
+
+/// Every glTF, GLB, VRM and VRMA file below `folder`, sorted.
+pub fn gltf_files(folder: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut open = vec![folder.to_path_buf()];
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(&folder).expect("a folder of test data") {
+            let path = entry.expect("an entry").path();
+            let kind = path.extension().and_then(|kind| kind.to_str());
+            if path.is_dir() {
+                open.push(path);
+            } else if matches!(kind, Some("glb" | "gltf" | "vrm" | "vrma")) {
+                found.push(path.display().to_string());
+            }
+        }
+    }
+    found.sort();
+    found
+}

@@ -1,0 +1,52 @@
+//! Help, and what is refused before any work.
+
+use crate::sinew::sinew;
+
+#[test]
+fn every_command_shows_an_example() {
+    for command in [&["demo"][..], &["bake"], &["ragdoll", "build"], &["inspect"], &["run"], &["scenes"]] {
+        let run = sinew(&[command, &["--help"]].concat());
+        let example = format!("Example:\n  sinew {}", command.join(" "));
+        assert!(run.code == Some(0) && run.stdout.contains(&example), "{command:?}: {run:?}");
+    }
+}
+
+#[test]
+fn what_later_releases_bring_is_told_from_a_typing_error() {
+    let commands: [&[&str]; 8] = [
+        &["ragdoll", "doctor", "a.glb", "--fix", "-o", "b.json"],
+        &["ragdoll", "export", "a.glb", "--as", "khr"],
+        &["boxes", "a.glb", "-o", "b.json"],
+        &["events", "detect", "a.glb"],
+        &["view", "--picture", "a.png", "--at", "1"],
+        &["record", "stairs", "-o", "r.sinewrec"],
+        &["replay", "r.sinewrec", "--verify"],
+        &["convert", "--help"],
+    ];
+    for arguments in commands {
+        let line = sinew(arguments).refusal(2).to_owned();
+        assert!(line.ends_with("' comes with a later release"), "{arguments:?}: {line}");
+    }
+    let typing_error = sinew(&["vieww"]);
+    assert_eq!(typing_error.code, Some(2));
+    assert!(!typing_error.stderr.contains("later release"), "{typing_error:?}");
+}
+
+#[test]
+fn bad_arguments_are_bad_usage() {
+    let commands: [&[&str]; 9] = [
+        &[],
+        &["bake", "a.glb"],
+        &["bake", "a.glb", "-o", "b.glb", "--hit", "chest=1,2@1"],
+        &["bake", "a.glb", "-o", "b.glb", "--seconds", "0"],
+        &["bake", "a.glb", "-o", "b.glb", "--seconds", "NaN"],
+        &["bake", "a.glb", "-o", "b.glb", "--fps", "0"],
+        &["bake", "a.glb", "-o", "b.glb", "--picture", "b.bmp"],
+        &["run", "pendulum", "--steps", "0"],
+        &["ragdoll", "build", "a.glb", "--shapes", "hull"],
+    ];
+    for arguments in commands {
+        let run = sinew(arguments);
+        assert!(run.code == Some(2) && run.stdout.is_empty(), "{arguments:?}: {run:?}");
+    }
+}
