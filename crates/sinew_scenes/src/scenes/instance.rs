@@ -92,7 +92,9 @@ struct Health {
 
 impl Health {
     fn new(world: &World) -> Self {
-        let mass = world.body_ids().map(|id| world.mass(id).mass).sum();
+        let of_bodies: f32 = world.body_ids().map(|id| world.mass(id).mass).sum();
+        let of_particles: f32 = world.group_ids().flat_map(|id| world.particles(id).masses()).sum();
+        let mass = of_bodies + of_particles;
         Self { mass, energy_gain_max: 0.0, quarantined: 0 }
     }
 

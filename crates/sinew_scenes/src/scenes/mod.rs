@@ -23,6 +23,7 @@ mod incline;
 mod pendulums;
 mod piles;
 mod ragdolls;
+mod springs;
 mod weightless;
 
 pub use instance::{Instance, Script};
@@ -80,10 +81,13 @@ pub fn registry() -> &'static [Scene] {
             pendulums::CHAIN,
             incline::HOLDS,
             incline::SLIDES,
+            springs::SPRING,
+            springs::SPRING_CHAIN,
             weightless::ZERO_GRAVITY_PILE,
             piles::STACK,
             piles::PYRAMID,
             piles::DOMINOES,
+            springs::ROPE_ON_BOX,
             ragdolls::DROP,
             ragdolls::WALL,
             ragdolls::STAIRS,

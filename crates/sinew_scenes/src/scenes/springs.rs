@@ -1,0 +1,152 @@
+//! Particles and springs: a mass on a spring, a chain of them, a rope over a box.
+
+use super::metric::{Expected, Metric};
+use super::parts::{GRAVITY, cuboid, floor};
+use super::{Instance, Scene, Script, Setting, Setup};
+use sinew::math::{Vec3, max, min};
+use sinew::physics::particles::{
+    AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, ParticleGroup, RopeDef, SpringDef,
+};
+use sinew::physics::{BodyId, GroupId, World};
+
+pub(super) const SPRING: Scene = Scene {
+    name: "spring",
+    about: "a mass on a spring comes to rest where the spring is stretched by m g / k",
+    steps: 600,
+    settings: &[Setting::whole("masses", 1, (1, 50), "hung under each other"), MASS, STIFFNESS],
+    build: hung,
+};
+
+pub(super) const SPRING_CHAIN: Scene = Scene {
+    name: "spring_chain",
+    about: "each spring of a hanging chain is stretched by all that hangs below it",
+    steps: 900,
+    settings: &[Setting::whole("masses", 10, (1, 50), "hung under each other"), MASS, STIFFNESS],
+    build: hung,
+};
+
+const MASS: Setting = Setting::number("mass", 1.0, (0.001, 100.0), "of each, kg");
+const STIFFNESS: Setting = Setting::number("stiffness", 1000.0, (10.0, 1e6), "of each spring, N/m");
+
+/// Rest length of each spring, metres.
+const LENGTH: f32 = 0.2;
+
+fn hung(setup: &Setup<'_>) -> Instance {
+    let mut world = setup.world();
+    let (masses, mass, stiffness) = (setup.whole("masses"), setup.number("mass"), setup.number("stiffness"));
+    let particle = |i: usize| ParticleDef {
+        position: Vec3::NEG_Y * (LENGTH * i as f32),
+        velocity: Vec3::ZERO,
+        mass,
+        radius: 0.02,
+    };
+    // A fifth of what is critical for one mass on one spring.
+    let damping = 0.4 * (mass * stiffness).sqrt();
+    let spring =
+        |i: usize| SpringDef { a: i as u32, b: i as u32 + 1, rest_length: LENGTH, stiffness, damping };
+    let group = world.add_particles(&GroupDef {
+        particles: (0..=masses).map(particle).collect(),
+        springs: (0..masses).map(spring).collect(),
+        attachments: vec![AttachmentDef { particle: 0, target: AttachmentTarget::World(Vec3::ZERO) }],
+        // The slowest swing of a long chain stretches its springs too slowly for their own damping.
+        linear_damping: 2.0,
+        ..GroupDef::default()
+    });
+    let hanging = (masses * (masses + 1) / 2) as f32;
+    let stretch = hanging * mass * GRAVITY / stiffness;
+    Instance::new(world, Hung { group, stretch })
+}
+
+struct Hung {
+    group: GroupId,
+    /// Of all springs together, by `m g / k`, metres.
+    stretch: f32,
+}
+
+impl Script for Hung {
+    fn after_step(&mut self, _: &mut World) {}
+
+    fn metrics(&self, world: &World) -> Vec<Metric> {
+        let group = world.particles(self.group);
+        let ends = [0, group.positions().len() - 1].map(|i| group.positions()[i]);
+        let stretch = (ends[1] - ends[0]).length() - LENGTH * group.springs().len() as f32;
+        vec![
+            Metric::new("stretch_m", stretch, Expected::near(self.stretch, 1e-3)),
+            Metric::new("fastest_m_s", fastest(group), Expected::Anything),
+        ]
+    }
+}
+
+fn fastest(group: &ParticleGroup) -> f32 {
+    group.velocities().iter().fold(0.0, |most, v| max(most, v.length()))
+}
+
+pub(super) const ROPE_ON_BOX: Scene = Scene {
+    name: "rope_on_box",
+    about: "a rope falls over a box and comes to hang over its edges",
+    steps: 600,
+    settings: &[
+        Setting::whole("links", 24, (2, 400), "number of springs"),
+        Setting::number("mass", 1.0, (0.01, 50.0), "of the rope, kg"),
+        Setting::number("length", 1.2, (0.2, 5.0), "of the rope, m"),
+    ],
+    build: rope_on_box,
+};
+
+/// Of the box, metres.
+const HALF: f32 = 0.25;
+const ROPE_RADIUS: f32 = 0.01;
+/// Where the rope starts, metres.
+const HEIGHT: f32 = 0.8;
+/// Steps for which it falls freely, at least.
+const FALLING: u64 = 6;
+
+fn rope_on_box(setup: &Setup<'_>) -> Instance {
+    let mut world = setup.world();
+    world.add_body(&floor());
+    let mut block = cuboid(Vec3::splat(HALF), Vec3::Y * HALF);
+    // Of cardboard, 5 kg: the rope could push it.
+    block.shapes[0].density = 40.0;
+    let block = world.add_body(&block);
+    let (length, middle) = (setup.number("length"), Vec3::new(0.0, HEIGHT, 0.02));
+    let rope = world.add_particles(&GroupDef::rope(&RopeDef {
+        from: middle - Vec3::X * (0.5 * length),
+        to: middle + Vec3::X * (0.5 * length),
+        links: setup.whole("links") as u32,
+        mass: setup.number("mass"),
+        stiffness: 2000.0,
+        radius: ROPE_RADIUS,
+    }));
+    Instance::new(world, Rope { block, rope, fall: None })
+}
+
+struct Rope {
+    block: BodyId,
+    rope: GroupId,
+    fall: Option<f32>,
+}
+
+impl Script for Rope {
+    fn after_step(&mut self, world: &mut World) {
+        if world.step_count() == FALLING {
+            self.fall = Some(-world.particles(self.rope).velocities()[0].y / world.time() as f32);
+        }
+    }
+
+    fn metrics(&self, world: &World) -> Vec<Metric> {
+        let rope = world.particles(self.rope);
+        let (mut lowest, mut highest) = (f32::INFINITY, f32::NEG_INFINITY);
+        for p in rope.positions() {
+            (lowest, highest) = (min(lowest, p.y), max(highest, p.y));
+        }
+        let pushed = (world.center_of_mass(self.block) - Vec3::Y * HALF).length();
+        let on_top = Expected::Near { value: f64::from(2.0 * HALF + ROPE_RADIUS), tolerance: 0.01 };
+        vec![
+            Metric::awaited("fall_m_s2", self.fall, Expected::near(GRAVITY, 1e-3)),
+            Metric::new("highest_m", highest, on_top),
+            Metric::new("fallen_through_m", max(-lowest, 0.0), Expected::AtMost(0.0)),
+            Metric::new("fastest_m_s", fastest(rope), Expected::AtMost(0.02)),
+            Metric::new("box_pushed_m", pushed, Expected::AtMost(0.01)),
+        ]
+    }
+}
