@@ -44,8 +44,6 @@ struct Thrown {
 }
 
 impl Script for Thrown {
-    fn after_step(&mut self, _: &mut World) {}
-
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let at = world.transform(self.ball).translation;
         let drop = fallen(world);

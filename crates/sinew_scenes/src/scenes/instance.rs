@@ -9,7 +9,7 @@ use sinew::physics::{Energy, Serial, TaskRunner, World};
 pub trait Script: Send {
     /// After each step: watches, and pushes what the next step is to feel. What it pushes depends on the world alone,
     /// so that a restored world goes on as the saved one did.
-    fn after_step(&mut self, world: &mut World);
+    fn after_step(&mut self, _world: &mut World) {}
 
     /// The figures so far.
     fn metrics(&self, world: &World) -> Vec<Metric>;

@@ -160,15 +160,16 @@ impl Setup<'_> {
 
     /// An empty world.
     pub fn world(&self) -> World {
-        self.world_with(WorldDef::default())
+        self.world_with(Sleeping::On)
     }
 
     /// An empty world in which nothing falls asleep: for what swings or flies for ever.
     pub fn sleepless_world(&self) -> World {
-        self.world_with(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() })
+        self.world_with(Sleeping::Off)
     }
 
-    fn world_with(&self, def: WorldDef) -> World {
-        World::new(WorldDef { gravity: Vec3::NEG_Y * (GRAVITY * self.gravity_factor), ..def })
+    fn world_with(&self, sleeping: Sleeping) -> World {
+        let gravity = Vec3::NEG_Y * (GRAVITY * self.gravity_factor);
+        World::new(WorldDef { gravity, sleeping, ..WorldDef::default() })
     }
 }

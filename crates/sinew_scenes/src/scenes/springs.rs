@@ -64,8 +64,6 @@ struct Hung {
 }
 
 impl Script for Hung {
-    fn after_step(&mut self, _: &mut World) {}
-
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let group = world.particles(self.group);
         let ends = [0, group.positions().len() - 1].map(|i| group.positions()[i]);

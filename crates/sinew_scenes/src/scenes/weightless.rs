@@ -41,8 +41,6 @@ struct Pile {
 }
 
 impl Script for Pile {
-    fn after_step(&mut self, _: &mut World) {}
-
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let now = world.momentum();
         let drift = (now.linear - self.start.linear).length() / self.scale;
