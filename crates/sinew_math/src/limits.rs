@@ -60,7 +60,7 @@ pub struct LimitState {
     /// Room left, radians; negative when violated.
     pub room: f32,
     /// Gradient of `room` in frame A's axes: `room` grows at the rate `axis · ω`, ω the angular velocity of B relative
-    /// to A. Of length 1 for a swing, a little more for a twist at a large swing.
+    /// to A. Of length 1 for small swings, longer for large ones.
     pub axis: Vec3,
 }
 
@@ -80,19 +80,27 @@ impl SwingTwistLimit {
         1.0 / crate::max((ya * ya + zb * zb).sqrt(), 1e-6)
     }
 
-    /// State of the swing cone for the joint rotation `a⁻¹ b`. The axis is the outward normal of the elliptic cone,
-    /// not the swing's own direction, so that the push back does not slide along the ellipse.
+    /// State of the swing cone for the joint rotation `a⁻¹ b`. Room is the distance to the ellipse in the plane of the
+    /// swing's scaled axis, to first order; its gradient is exact at the stop.
+    ///
+    /// With swing angle φ about unit `u`, `n` the ellipse's outward normal and `τ` the tangent at right angles to `u`:
+    /// `φ̇ = ω·u`, and the axis itself turns at `−ω·(u × x_b)/sin φ`, since a swung body that spins about the axis of A
+    /// carries its swing round to another side of the cone.
     pub fn swing_state(&self, joint: Rotation) -> LimitState {
         let (swing, _) = Self::angles(joint);
         let angle = swing.length();
-        let (y, z) = if angle > 1e-6 { (swing.y / angle, swing.z / angle) } else { (1.0, 0.0) };
-        let a = crate::max(if y < 0.0 { -self.swing_y.lo } else { self.swing_y.hi }, 1e-4);
-        let b = crate::max(if z < 0.0 { -self.swing_z.lo } else { self.swing_z.hi }, 1e-4);
-        // Gradient of (y/a)² + (z/b)² at the swing, normalised; on a circle it is the swing's direction itself.
-        let normal = crate::normalize_or(Vec3::new(0.0, y / (a * a), z / (b * b)), Vec3::new(0.0, y, z));
-        // Radial room projected on the normal: the distance to the tangent of the cone.
-        let room = (self.cone_angle(y, z) - angle) * (normal.y * y + normal.z * z);
-        LimitState { room, axis: -normal }
+        let u = if angle > 1e-6 { Vec3::new(0.0, swing.y, swing.z) / angle } else { Vec3::Y };
+        let a = crate::max(if u.y < 0.0 { -self.swing_y.lo } else { self.swing_y.hi }, 1e-4);
+        let b = crate::max(if u.z < 0.0 { -self.swing_z.lo } else { self.swing_z.hi }, 1e-4);
+        let normal = crate::normalize_or(Vec3::new(0.0, u.y / (a * a), u.z / (b * b)), u);
+        let tangent = Vec3::new(0.0, -u.z, u.y);
+        let room = (self.cone_angle(u.y, u.z) - angle) * normal.dot(u);
+        // φ/sin φ is held off its pole at half a turn.
+        let (sin, cos) = trig::sin_cos(angle);
+        let turning = if angle > 1e-4 { angle / crate::max(sin, 0.1) } else { 1.0 };
+        let x_b = Vec3::new(cos, sin * u.z, -sin * u.y);
+        let axis = u.cross(x_b) * (turning * normal.dot(tangent)) - u * normal.dot(u);
+        LimitState { room, axis }
     }
 
     /// States of the lower and the upper twist stop for the joint rotation `a⁻¹ b`.
@@ -134,4 +142,49 @@ pub fn wrap(angle: f32) -> f32 {
 pub fn hinge_angle(joint: Rotation) -> f32 {
     let q = joint.positive();
     2.0 * trig::atan2(q.x, q.w)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Random;
+
+    /// Rate of `room` by differences, for angular velocity `w` of B in A's axes.
+    fn rate(room: impl Fn(Rotation) -> f32, joint: Rotation, w: Vec3) -> f32 {
+        let h = 1e-3;
+        let at = |h: f32| room(Rotation::from_scaled_axis(w * h) * joint);
+        (at(h) - at(-h)) / (2.0 * h)
+    }
+
+    #[test]
+    fn gradients_are_those_of_the_room() {
+        let limit = SwingTwistLimit {
+            swing_y: Range::degrees(-75.0, 60.0),
+            swing_z: Range::degrees(-30.0, 40.0),
+            twist: Range::degrees(-85.0, 70.0),
+        };
+        let mut random = Random::new(8);
+        let (mut swings, mut twists) = (0, 0);
+        while swings < 200 || twists < 200 {
+            let joint = random.rotation();
+            let w = random.direction();
+            let swing = limit.swing_state(joint);
+            let (axis, _) = SwingTwistLimit::angles(joint);
+            // The normal jumps where the sides of the cone meet, and the distance is exact at the stop alone.
+            if swing.room.abs() < 0.02 && axis.y.abs() > 0.05 && axis.z.abs() > 0.05 {
+                let measured = rate(|q| limit.swing_state(q).room, joint, w);
+                assert!((measured - swing.axis.dot(w)).abs() < 0.06, "{measured} for {}", swing.axis.dot(w));
+                swings += 1;
+            }
+            if axis.length() < 2.0 {
+                for (side, stop) in limit.twist_states(joint).into_iter().enumerate() {
+                    if stop.room.abs() < 1.0 {
+                        let measured = rate(|q| limit.twist_states(q)[side].room, joint, w);
+                        assert!((measured - stop.axis.dot(w)).abs() < 0.02, "{measured} for {}", stop.axis.dot(w));
+                        twists += 1;
+                    }
+                }
+            }
+        }
+    }
 }
