@@ -61,7 +61,9 @@ struct Shots<'a> {
     camera: Option<FollowCamera>,
     direction: Vec3,
     radius: f32,
+    /// The character at the time: joints and bodies, in the world.
     model: Vec<Affine>,
+    bodies: Vec<Transform>,
 }
 
 impl<'a> Shots<'a> {
@@ -78,6 +80,7 @@ impl<'a> Shots<'a> {
             direction,
             radius,
             model: Vec::new(),
+            bodies: Vec::new(),
         }
     }
 
@@ -86,7 +89,7 @@ impl<'a> Shots<'a> {
         self.scene.models.truncate(self.standing);
         self.add_character();
         self.add_arrows(time);
-        let pelvis = self.body_position(0);
+        let pelvis = self.bodies[0].translation;
         let (direction, radius) = (self.direction, self.radius);
         let camera = self.camera.get_or_insert_with(|| FollowCamera::new(pelvis, radius, direction));
         camera.update(pelvis, 1.0 / FPS as f32);
@@ -95,16 +98,16 @@ impl<'a> Shots<'a> {
         renderer.render(&self.scene, &camera.camera())
     }
 
-    /// Model pose, in the world, at a time.
     fn pose(&mut self, time: f32) {
-        let (rig, baked) = (&self.fall.input.character.rig, &self.fall.baked);
-        let mut local = self.fall.input.character.rest().to_vec();
-        sample(&baked.clip, rig, time, Wrap::Clamp, &mut local);
-        local_to_model(rig, &local, &baked.world_from_model, &mut self.model);
-    }
-
-    fn body_position(&self, body: usize) -> Vec3 {
-        self.model[self.fall.input.character.ragdoll.bodies[body].joint].translation
+        let Fall { input, baked, .. } = self.fall;
+        let character = &input.character;
+        let mut local = character.rest().to_vec();
+        sample(&baked.clip, &character.rig, time, Wrap::Clamp, &mut local);
+        local_to_model(&character.rig, &local, &Affine::IDENTITY, &mut self.model);
+        character.mapping().bodies_from_model(&self.model, input.world_from_character, &mut self.bodies);
+        for joint in &mut self.model {
+            *joint = baked.world_from_model * *joint;
+        }
     }
 
     fn add_character(&mut self) {
@@ -125,7 +128,7 @@ impl<'a> Shots<'a> {
         for hit in self.fall.input.hits {
             let since = time - hit.time;
             if (0.0..ARROW_SECONDS).contains(&since) && hit.impulse.length() > 0.0 {
-                let tip = self.body_position(hit.body);
+                let tip = self.bodies[hit.body].translation;
                 self.scene.models.extend(arrow(tip, hit.impulse.normalize()));
             }
         }
@@ -170,11 +173,12 @@ fn arrow(tip: Vec3, along: Vec3) -> [Model; 2] {
     ]
 }
 
-/// How large a floor without end is drawn, metres to each side.
-const FLOOR_HALF_SIZE: f32 = 40.0;
+/// How much of a floor without end is drawn, metres to each side: as far as the haze lets see.
+pub const FLOOR_HALF_SIZE: f32 = 40.0;
 
-/// The surface of a body of the world in one colour (linear); half-spaces become floors with a checker of `other`.
-pub fn body_models(body: &BodyDef, color: [f32; 3], other: [f32; 3]) -> Vec<Model> {
+/// The surface of a body of the world in one colour (linear); half-spaces become floors, `half_size` metres to each
+/// side, with a checker of `other`.
+pub fn body_models(body: &BodyDef, half_size: f32, color: [f32; 3], other: [f32; 3]) -> Vec<Model> {
     let world_from_body = Transform::new(body.position, body.rotation);
     let model = |shape: &sinew::physics::ShapeDef| {
         let place = world_from_body * shape.body_from_shape;
@@ -182,15 +186,15 @@ pub fn body_models(body: &BodyDef, color: [f32; 3], other: [f32; 3]) -> Vec<Mode
             Shape::Box { half_extents } => Solid::Box { half_extents },
             Shape::Sphere { radius } => Solid::Sphere { radius },
             Shape::Capsule { half_height, radius } => Solid::Capsule { half_height, radius },
-            Shape::HalfSpace => return floor(place, color, other),
+            Shape::HalfSpace => return floor(place, half_size, color, other),
         };
         draw::solid(solid, place, Material::new(color))
     };
     body.shapes.iter().map(model).collect()
 }
 
-fn floor(place: Transform, color: [f32; 3], other: [f32; 3]) -> Model {
-    let mut model = draw::floor(Vec3::ZERO, FLOOR_HALF_SIZE, color, other);
+fn floor(place: Transform, half_size: f32, color: [f32; 3], other: [f32; 3]) -> Model {
+    let mut model = draw::floor(Vec3::ZERO, half_size, color, other);
     for position in &mut model.positions {
         *position = place.point(*position);
     }

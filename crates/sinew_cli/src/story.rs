@@ -46,10 +46,10 @@ pub fn told(input: &BakeInput<'_>, events: &[(f32, Event)]) -> Vec<(f32, String)
     for &(time, event) in events {
         let sentence = match event {
             Event::Hit { body } => hit_sentence(input, time, body),
-            // A hit says it better.
+            // A hit says it better, and whoever goes limp on its feet touches the ground at once.
             Event::WentLimp if events.iter().any(|other| is_hit_at(other, time)) => continue,
+            Event::Touched => continue,
             Event::WentLimp => "goes limp".to_owned(),
-            Event::Touched => "touches the world".to_owned(),
             Event::Settled { since } => {
                 told.push((since, "lies still".to_owned()));
                 continue;

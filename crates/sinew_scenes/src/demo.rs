@@ -10,7 +10,7 @@ use sinew::ragdoll::{BakeInput, BuildOptions, CharacterDef, Hit, Locomotion, bui
 use std::sync::Arc;
 
 /// Length: the walk, the fall, getting up, and a few steps; seconds.
-const SECONDS: f32 = 12.0;
+const SECONDS: f32 = 10.5;
 /// How far before the edge of the porch the hit comes, metres.
 const HIT_BEFORE_EDGE: f32 = 0.45;
 /// In the back, N·s: what a shove with both hands gives.

@@ -3,14 +3,17 @@
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
 use crate::files::Outputs;
-use crate::film::{Film, body_models};
+use crate::film::{FLOOR_HALF_SIZE, Film, body_models};
 use crate::report::Report;
+use sinew::anim::{Joint, LocalTransform, Mesh, Primitive, Rig};
 use sinew::formats::write_gltf;
 use sinew::math::Vec3;
 use sinew_picture::{PictureFormat, Sun};
 use sinew_scenes::cabin::{Prop, Site};
 use std::path::{Path, PathBuf};
 
+/// How much of the meadow the file has, metres to each side; the picture shows it up to the haze.
+const MEADOW_HALF_SIZE: f32 = 12.0;
 /// Every second square of the meadow.
 const MOWN: [f32; 3] = [0.19, 0.30, 0.11];
 
@@ -19,7 +22,7 @@ const MOWN: [f32; 3] = [0.19, 0.30, 0.11];
 #[command(after_help = "\
 Example:
   sinew demo
-  sinew demo --out /tmp/demo --json
+  sinew demo --out fall --json
 
 Writes demo.glb (the mannequin with the fall as a clip), demo.gif and report.json.")]
 pub struct Demo {
@@ -45,7 +48,7 @@ impl Demo {
         std::fs::create_dir_all(&self.out)
             .map_err(|error| Failure::of_file(self.out.display().to_string(), error))?;
         let mut outputs = Outputs::default();
-        outputs.add(&clip, write_gltf(&input.character.rig, std::slice::from_ref(&fall.baked.clip))?);
+        outputs.add(&clip, write_gltf(&staged(&fall, &demo.props), std::slice::from_ref(&fall.baked.clip))?);
         outputs.add(&picture, picture_bytes);
         outputs.add(&figures, format!("{json:#}\n").into_bytes());
         outputs.write()?;
@@ -54,9 +57,36 @@ impl Demo {
     }
 }
 
+/// The character's rig with the props beside it, so that other programs show what it falls down.
+fn staged(fall: &Fall<'_>, props: &[Prop]) -> Rig {
+    let mut rig = fall.input.character.rig.clone();
+    let model_from_world = fall.baked.world_from_model.inverse();
+    let mut primitives: Vec<Primitive> = Vec::new();
+    for prop in props {
+        let [r, g, b] = prop.color;
+        let base_color = [r, g, b, 1.0];
+        let of_this_color = primitives.iter().position(|part| part.base_color == base_color);
+        let index = of_this_color.unwrap_or_else(|| {
+            primitives.push(Primitive { base_color, ..Primitive::default() });
+            primitives.len() - 1
+        });
+        for model in body_models(&prop.body, MEADOW_HALF_SIZE, prop.color, MOWN) {
+            let part = &mut primitives[index];
+            let first = part.positions.len() as u32;
+            part.positions.extend(model.positions.iter().map(|&point| model_from_world.point(point)));
+            part.indices.extend(model.indices.iter().map(|vertex| first + vertex));
+        }
+    }
+    let rest = LocalTransform::default();
+    rig.joints.push(Joint { name: "cabin".into(), parent: None, rest, source: rig.joints.len() });
+    rig.meshes.push(Mesh { name: "cabin".into(), joint: rig.joints.len() - 1, skin: None, primitives });
+    rig
+}
+
 /// The stairs from the side, a little from the front.
 fn film<'a>(fall: &'a Fall<'a>, props: &[Prop]) -> Film<'a> {
-    let set = props.iter().flat_map(|prop| body_models(&prop.body, prop.color, MOWN)).collect();
+    let set =
+        props.iter().flat_map(|prop| body_models(&prop.body, FLOOR_HALF_SIZE, prop.color, MOWN)).collect();
     let sun = Sun { direction: Vec3::new(0.45, 0.8, 0.5), ..Sun::default() };
     Film { fall, set, direction: Vec3::new(0.9, 0.28, 0.42), radius: 1.5, sun }
 }

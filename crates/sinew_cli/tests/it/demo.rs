@@ -1,6 +1,9 @@
-//! The demo: a simulation, not a choreography.
+//! The demo: complete, and a simulation, not a choreography.
 
+use crate::contract::check_keys;
+use crate::sinew::{Folder, sinew};
 use sinew::anim::{LocalTransform, local_to_model};
+use sinew::formats::{ReadOptions, load_gltf};
 use sinew::math::Vec3;
 use sinew::ragdoll::{BakeInput, Baked, Quality, State, bake};
 use sinew_scenes::cabin::{PORCH_HEIGHT, Site};
@@ -90,4 +93,22 @@ fn the_same_demo_is_the_same_state() {
     let demo = Demo::new(Site::CabinWithStairs);
     let hash = || bake(&BakeInput { seconds: 3.0, ..demo.input() }).hash;
     assert_eq!(hash(), hash());
+}
+
+#[test]
+fn it_writes_the_file_the_picture_and_the_figures() {
+    let folder = Folder::new("demo");
+    let out = folder.path("new/folder");
+    let object = sinew(&["demo", "--out", &out, "--json"]).json();
+    check_keys("demo", &object);
+    for happened in ["first_contact_s", "settled_s", "up_s"] {
+        assert!(object[happened].is_number(), "{happened}: {object:#}");
+    }
+    let read = |name: &str| std::fs::read(folder.path(&format!("new/folder/{name}"))).expect(name);
+    let figures: serde_json::Value = serde_json::from_slice(&read("report.json")).expect("a JSON object");
+    assert_eq!(figures, object);
+    assert!(read("demo.gif").starts_with(b"GIF89a"));
+    let document = load_gltf(folder.path("new/folder/demo.glb"), ReadOptions::default()).expect("a GLB");
+    assert_eq!((document.clips.len(), document.rig.skins.len()), (1, 1));
+    assert!(document.rig.meshes.iter().any(|mesh| mesh.name == "cabin"), "the stairs are shown with it");
 }

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::glb;
 use serde_json::{Map, Value, json};
 use sinew_anim::{Clip, Mesh, Primitive, Rig, Skin};
-use sinew_math::{Affine, Vec3, max, min};
+use sinew_math::{Affine, Vec2, Vec3, max, min};
 
 const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
@@ -120,17 +120,17 @@ impl Writer {
 
     fn primitive(&mut self, part: &Primitive) -> Value {
         let mut attributes = Map::new();
-        let positions = self.floats("VEC3", part.positions.iter().map(|p| p.to_array()));
+        let positions = self.floats("VEC3", part.positions.iter().map(Vec3::to_array));
         let (low, high) = bounds(&part.positions);
         self.accessors[positions]["min"] = json!(low.to_array());
         self.accessors[positions]["max"] = json!(high.to_array());
         attributes.insert("POSITION".into(), positions.into());
         if !part.normals.is_empty() {
-            let accessor = self.floats("VEC3", part.normals.iter().map(|n| n.to_array()));
+            let accessor = self.floats("VEC3", part.normals.iter().map(Vec3::to_array));
             attributes.insert("NORMAL".into(), accessor.into());
         }
         if !part.uvs.is_empty() {
-            let accessor = self.floats("VEC2", part.uvs.iter().map(|uv| uv.to_array()));
+            let accessor = self.floats("VEC2", part.uvs.iter().map(Vec2::to_array));
             attributes.insert("TEXCOORD_0".into(), accessor.into());
         }
         if !part.colors.is_empty() {

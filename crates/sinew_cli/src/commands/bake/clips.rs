@@ -52,12 +52,17 @@ fn find(clips: &[Clip], name: &str) -> Result<usize, String> {
     let found = clips.iter().position(|clip| clip.name == name).or_else(numbered);
     found.ok_or_else(|| {
         let names: Vec<String> =
-            clips.iter().enumerate().map(|(index, clip)| format!("{index} {}", shown(&clip.name))).collect();
+            clips.iter().enumerate().map(|(index, clip)| called(index, &clip.name)).collect();
         match names.len() {
             0 => format!("no clip '{name}': there are no clips"),
             _ => format!("no clip '{name}'; there are {}", names.join(", ")),
         }
     })
+}
+
+/// What the user may call a clip.
+fn called(index: usize, name: &str) -> String {
+    if name.is_empty() { format!("{index} (without a name)") } else { shown(name) }
 }
 
 /// The clips of another file, for the joints of `rig` that have the same names.

@@ -6,7 +6,7 @@ mod hit;
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
 use crate::files::{CharacterFile, Outputs, read_world_file};
-use crate::film::{Film, body_models};
+use crate::film::{FLOOR_HALF_SIZE, Film, body_models};
 use crate::report::Report;
 use crate::table::shown;
 use clips::Motions;
@@ -34,8 +34,8 @@ Example:
 pub struct Bake {
     /// A glTF, GLB or VRM file with a skinned character
     character: PathBuf,
-    /// The clip that plays until the fall; without it the file's walk, else its idle, else its first clip, and
-    /// without any clip the rest pose
+    /// The clip that plays until the fall, by name, or by number from 0 if it has none; without it the file's walk,
+    /// else its idle, else its first clip; in a file without clips the rest pose
     #[arg(long, value_name = "NAME")]
     clip: Option<String>,
     /// Further files with clips for the same skeleton (joints are found by name)
@@ -207,7 +207,7 @@ fn film<'a>(fall: &'a Fall<'a>) -> Film<'a> {
     for (index, body) in fall.input.bodies.iter().enumerate() {
         let is_floor = body.shapes.iter().any(|shape| shape.shape == Shape::HalfSpace);
         let [color, other] = if is_floor { FLOOR } else { [OBSTACLES[index % OBSTACLES.len()]; 2] };
-        set.extend(body_models(body, color, other));
+        set.extend(body_models(body, FLOOR_HALF_SIZE, color, other));
     }
     let height = fall.input.character.ragdoll.height;
     Film { fall, set, direction: Vec3::new(0.75, 0.4, 0.75), radius: 0.75 * height, sun: Sun::default() }
