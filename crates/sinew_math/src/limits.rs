@@ -180,7 +180,11 @@ mod tests {
                 for (side, stop) in limit.twist_states(joint).into_iter().enumerate() {
                     if stop.room.abs() < 1.0 {
                         let measured = rate(|q| limit.twist_states(q)[side].room, joint, w);
-                        assert!((measured - stop.axis.dot(w)).abs() < 0.02, "{measured} for {}", stop.axis.dot(w));
+                        assert!(
+                            (measured - stop.axis.dot(w)).abs() < 0.02,
+                            "{measured} for {}",
+                            stop.axis.dot(w)
+                        );
                         twists += 1;
                     }
                 }

@@ -23,7 +23,7 @@ impl Velocity {
 /// Awake, or asleep with the island it fell asleep with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rest {
-    /// Seconds for which it has been slow.
+    /// Seconds for which it has stayed in its place.
     Awake { calm: f32 },
     /// All bodies with the same number wake together.
     Asleep { island: u32 },
@@ -62,6 +62,8 @@ pub(crate) struct Body {
     pub gravity_scale: f32,
     pub shapes: Vec<BodyShape>,
     pub rest: Rest,
+    /// Where it was when the time it has been calm began.
+    pub place: Transform,
     /// Set when its state became non-finite: it was rolled back and takes no further part.
     pub quarantined: bool,
     pub user_data: u64,
@@ -116,6 +118,7 @@ impl Body {
             gravity_scale: def.gravity_scale,
             shapes: def.shapes.iter().map(|shape| body_shape(shape, principal_from_body)).collect(),
             rest: Rest::Awake { calm: 0.0 },
+            place: world_from_body * body_from_principal,
             quarantined: false,
             user_data: def.user_data,
         }

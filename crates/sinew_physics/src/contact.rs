@@ -22,7 +22,7 @@ pub(crate) fn ordered(a: u32, b: u32) -> (u32, u32) {
 /// Impulses of one manifold point over a substep, N·s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PointImpulse {
-    /// Of the last substep and the one before: an impact must not be repeated, so warm starting takes the lesser.
+    /// Of the last substep and the one before: an impact must not be repeated, so warm starting looks at both.
     pub now: f32,
     pub before: f32,
     /// Largest within the step: whether the point was hit at all.

@@ -15,6 +15,8 @@ pub(crate) struct Island {
     pub joints: Vec<u32>,
     /// Positions in the contact array. `color` puts those with static bodies last: what cannot move has the last word.
     pub contacts: Vec<u32>,
+    /// Particle groups hang on its bodies or touch them.
+    pub has_particles: bool,
 }
 
 impl Island {
@@ -22,6 +24,7 @@ impl Island {
         self.bodies.clear();
         self.joints.clear();
         self.contacts.clear();
+        self.has_particles = false;
     }
 }
 
@@ -92,7 +95,9 @@ impl Islands {
         for (index, group) in groups.iter_mut() {
             let near = core::mem::take(&mut self.neighbors[index as usize]);
             let group = core::mem::take(group);
-            self.task_of(first_group + index).particles.groups.push((index, group, near));
+            let task = self.task_of(first_group + index);
+            task.island.has_particles = true;
+            task.particles.groups.push((index, group, near));
         }
     }
 

@@ -154,6 +154,7 @@ fn save_body(w: &mut Writer, body: &Body) {
             w.u32(island);
         }
     }
+    w.transform(body.place);
     w.bool(body.quarantined);
     w.u64(body.user_data);
 }
@@ -200,6 +201,7 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
         gravity_scale,
         shapes,
         rest,
+        place: r.transform()?,
         quarantined: r.bool()?,
         user_data: r.u64()?,
     })

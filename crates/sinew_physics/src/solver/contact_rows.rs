@@ -13,6 +13,8 @@ use sinew_math::{Mat3, Vec3, any_orthonormal, max, min};
 const PUSH_SPEED: f32 = 3.0;
 /// Approach below which nothing bounces, m/s.
 const BOUNCE_SPEED: f32 = 1.0;
+/// An impulse that grew by more than this factor since the substep before is an impact.
+pub(super) const IMPACT_JUMP: f32 = 2.0;
 /// A body that turns by less than this within a substep counts as being where it was, radians.
 const RELAX_TURN: f32 = 0.15;
 /// Contact stiffness as a frequency, Hz, against moving and against fixed bodies, and damping ratio.
@@ -112,7 +114,9 @@ pub(crate) struct ManifoldRows {
     tangents: [Row; 2],
     tangent_axes: [Vec3; 2],
     spin: Row,
-    /// Mean distance of the points from the centre: lever of the twist friction.
+    /// Share of the load that each point had when the step began: friction acts at the centre of pressure.
+    weight: [f32; MAX_POINTS],
+    /// Weighted distance of the points from that centre: lever of the twist friction.
     lever: f32,
     /// Responses.
     k: [[f32; MAX_POINTS]; MAX_POINTS],
@@ -174,6 +178,7 @@ impl ManifoldRows {
             tangents: [Row::ZERO; 2],
             tangent_axes: [Vec3::ZERO; 2],
             spin: Row::about(n),
+            weight: weights(&source.memory, source.manifold.count),
             lever: 0.0,
             k: [[0.0; MAX_POINTS]; MAX_POINTS],
             k_tangent: [[0.0; 2]; 2],
@@ -221,13 +226,12 @@ impl ManifoldRows {
                 (false, true) => on_b,
                 _ => (on_a + on_b) * 0.5,
             };
-            center += points[i];
+            center += points[i] * self.weight[i];
         }
-        center /= self.count as f32;
         self.lever = 0.0;
         for i in 0..self.count {
             self.rows[i] = Row::at(n, points[i] - pose_a.translation, points[i] - pose_b.translation);
-            self.lever += (points[i] - center).length() / self.count as f32;
+            self.lever += (points[i] - center).length() * self.weight[i];
         }
         let t1 = any_orthonormal(n);
         self.tangent_axes = [t1, n.cross(t1)];
@@ -263,17 +267,18 @@ impl ManifoldRows {
         }
     }
 
-    /// Puts the starting impulses on the bodies: of each point the lesser of the last two substeps, of friction the
-    /// same share.
+    /// Puts the starting impulses on the bodies: those of the last substep, unless they jumped up from the one before:
+    /// an impact must not be repeated. Judged for the manifold as a whole, since at rest the load wanders between points.
     pub fn warm_start(&mut self, impulses: &mut [Vec6]) {
-        let (mut kept, mut total) = (0.0, 0.0);
-        for i in 0..self.count {
-            let point = self.memory.points[i];
-            self.impulse[i] = min(point.now, point.before);
-            kept += self.impulse[i];
-            total += point.now;
+        let (mut now, mut before) = (0.0, 0.0);
+        for point in &self.memory.points[..self.count] {
+            now += point.now;
+            before += point.before;
         }
-        let share = if total > 0.0 { kept / total } else { 0.0 };
+        let share = if now > IMPACT_JUMP * before { before / now } else { 1.0 };
+        for i in 0..self.count {
+            self.impulse[i] = self.memory.points[i].now * share;
+        }
         self.friction = (self.memory.friction - self.normal * self.normal.dot(self.memory.friction)) * share;
         self.floor = [0.0; MAX_POINTS];
         self.twist = self.memory.twist * share;
@@ -439,4 +444,19 @@ impl ManifoldRows {
         self.memory.twist = self.twist;
         self.memory.rolling = self.rolling;
     }
+}
+
+/// Shares of the load by point, smoothed so that a point which is about to bear some has a say.
+fn weights(memory: &ContactMemory, count: usize) -> [f32; MAX_POINTS] {
+    let mut total = 0.0;
+    for point in &memory.points[..count] {
+        total += point.now;
+    }
+    let mut weights = [0.0; MAX_POINTS];
+    for i in 0..count {
+        let even = 1.0 / count as f32;
+        let share = if total > 0.0 { memory.points[i].now / total } else { even };
+        weights[i] = 0.8 * share + 0.2 * even;
+    }
+    weights
 }

@@ -1,5 +1,6 @@
 //! Joints inside the island: tree rows for the exact solve, loop rows and limit rows for the sweeps.
 
+use super::contact_rows::IMPACT_JUMP;
 use super::response::Response;
 use super::sweep::Pass;
 use super::tree::{self, Link, NONE};
@@ -304,12 +305,13 @@ pub(super) struct LimitRow {
 }
 
 impl LimitRow {
-    /// Starts with the lesser of the last two substeps' impulses.
+    /// Starts with the last substep's impulse, or with the one before if it jumped up since.
     pub fn warm_start(&mut self, joints: &[SolverJoint], impulses: &mut [Vec6]) {
         let joint = &joints[self.joint as usize];
         let limit = joint.limits[self.slot];
         let axis = joint.pose.rotation_a.inverse() * self.axis;
-        self.impulse = min(share(limit.now, axis), share(limit.before, axis));
+        let (now, before) = (share(limit.now, axis), share(limit.before, axis));
+        self.impulse = if now > IMPACT_JUMP * before { before } else { now };
         let row = join(Vec3::ZERO, self.axis);
         add_row(impulses, joint.b, &row, self.impulse);
         add_row(impulses, joint.a, &row, -self.impulse);

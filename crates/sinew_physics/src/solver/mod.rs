@@ -35,7 +35,7 @@ const MAX_SPEED: f32 = 4000.0;
 const ENERGY_SLACK: f32 = 1e-3;
 /// Most visits of all contact and limit rows per pass in an island with joints. A heavy body on a jointed light one
 /// needs them; most passes end sooner, once a sweep changes no velocity by more than the tolerance (m/s or rad/s).
-const SWEEPS_JOINTED: usize = 16;
+const SWEEPS_JOINTED: usize = 24;
 const SWEEP_TOLERANCE: f32 = 2e-3;
 /// Likewise in one without: one with bias; two in `relax`, since friction of the first knows only the soft impulses of
 /// `solve` (1.5 % too little) and the second those that really press.
