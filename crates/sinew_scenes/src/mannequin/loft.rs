@@ -136,7 +136,7 @@ impl Loft {
         let last = self.sections.len() - 1;
         for span in 0..last {
             let s = |i: usize| &self.sections[i];
-            let around = [s(span.saturating_sub(1)), s(span), s(span + 1), s((span + 2).min(last))];
+            let around = [s(span.saturating_sub(1)), s(span), s(span + 1), s(usize::min(span + 2, last))];
             for k in 0..self.rings_per_span {
                 let t = k as f32 / self.rings_per_span as f32;
                 rings.push(Section::combine(around, catmull_rom(t)));
