@@ -23,7 +23,7 @@ impl Velocity {
 /// Awake, or asleep with the island it fell asleep with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rest {
-    /// Seconds for which it has stayed in its place.
+    /// Seconds for which it has been slow or in its place.
     Awake { calm: f32 },
     /// All bodies with the same number wake together.
     Asleep { island: u32 },

@@ -42,19 +42,36 @@ pub(crate) struct ContactMemory {
 }
 
 impl ContactMemory {
-    /// Keeps what belongs to points that are still there, by feature.
+    /// What a new manifold of the same shapes starts with. Points keep their impulses by feature; those of points that
+    /// are gone go to the new ones in equal parts, since the load stays when the shapes tip from one corner to another.
+    /// Nothing is kept if the normal turned by more than about 25°.
     pub fn matched(&self, old: &Manifold, new: &Manifold) -> Self {
-        let mut memory =
-            Self { friction: self.friction, twist: self.twist, rolling: self.rolling, ..Self::default() };
-        let mut found = false;
-        for (i, point) in new.points().iter().enumerate() {
-            if let Some(j) = old.points().iter().position(|p| p.feature == point.feature) {
-                memory.points[i] = self.points[j];
-                memory.points[i].peak = 0.0;
-                found = true;
+        if new.count == 0 || old.count == 0 || old.normal.dot(new.normal) < 0.9 {
+            return Self::default();
+        }
+        let mut memory = Self { points: Default::default(), ..*self };
+        let mut fresh = [true; MAX_POINTS];
+        let mut lost = PointImpulse::default();
+        for (point, impulse) in old.points().iter().zip(&self.points) {
+            match new.points().iter().position(|p| p.feature == point.feature) {
+                Some(i) => {
+                    memory.points[i] = PointImpulse { peak: 0.0, ..*impulse };
+                    fresh[i] = false;
+                }
+                None => {
+                    lost.now += impulse.now;
+                    lost.before += impulse.before;
+                }
             }
         }
-        if found { memory } else { Self::default() }
+        let fresh = &fresh[..new.count];
+        let all = !fresh.contains(&true);
+        let heirs = if all { new.count } else { fresh.iter().filter(|f| **f).count() };
+        for (point, _) in memory.points.iter_mut().zip(fresh).filter(|(_, fresh)| all || **fresh) {
+            point.now += lost.now / heirs as f32;
+            point.before += lost.before / heirs as f32;
+        }
+        memory
     }
 }
 

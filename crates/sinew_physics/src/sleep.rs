@@ -1,17 +1,20 @@
-//! `sleep`: an island in which every body has stayed in its place for a while stops being simulated. Displacement
-//! counts, not velocity: a body held between others may tremble and still sleep, one that creeps may not.
+//! `sleep`: an island in which every body has been slow, or has stayed in its place, for a while stops being simulated.
+//! Displacement counts as well as velocity: a body held between others may tremble and still sleep.
 
 use crate::arena::Arena;
 use crate::body::{Body, Rest, Velocity};
 use crate::def::Sleeping;
 use crate::islands::IslandTask;
 
-/// Seconds of staying in place until sleep.
+/// Seconds of being slow or in place until sleep.
 const TIME_TO_SLEEP: f32 = 0.5;
-/// In place: within both of these of where it was when the time began, m and rad. A drift of 2 cm/s or 0.05 rad/s leaves
-/// them in that time; a body that trembles between others does not, and may sleep.
-const PLACE_LINEAR: f32 = 0.02 * TIME_TO_SLEEP;
-const PLACE_ANGULAR: f32 = 0.05 * TIME_TO_SLEEP;
+/// Slow: below both of these, m/s and rad/s.
+const SLOW_LINEAR: f32 = 0.02;
+const SLOW_ANGULAR: f32 = 0.05;
+/// In place: within both of these of where it was when it was last slow, m and rad. What sets off from rest leaves them
+/// before it may sleep; a body that trembles between others does not.
+const PLACE_LINEAR: f32 = 0.003;
+const PLACE_ANGULAR: f32 = 0.025;
 /// Faster than either of these is no trembling, m/s and rad/s.
 const TREMBLE_LINEAR: f32 = 0.2;
 const TREMBLE_ANGULAR: f32 = 1.0;
@@ -28,8 +31,9 @@ pub(crate) fn sleep(
         let mut least = f32::INFINITY;
         for &index in &task.island.bodies {
             let body = bodies.at_mut(index);
-            let in_place = stays(body) && (!task.island.has_particles || slow(body));
-            if !in_place {
+            let slow = is_slow(body);
+            let in_place = slow || (stays(body) && !task.island.has_particles);
+            if slow || !in_place {
                 body.place = body.world_from_principal;
             }
             if let Rest::Awake { calm } = &mut body.rest {
@@ -49,12 +53,11 @@ pub(crate) fn sleep(
     }
 }
 
-/// What hangs on springs swings about its place, and must come to rest before it may sleep.
-fn slow(body: &Body) -> bool {
-    body.velocity.linear.length() * TIME_TO_SLEEP < PLACE_LINEAR
-        && body.velocity.angular.length() * TIME_TO_SLEEP < PLACE_ANGULAR
+fn is_slow(body: &Body) -> bool {
+    body.velocity.linear.length() < SLOW_LINEAR && body.velocity.angular.length() < SLOW_ANGULAR
 }
 
+/// Trembles about its place. Bodies on springs swing about it, and must come to rest before they may sleep.
 fn stays(body: &Body) -> bool {
     let (was, is) = (body.place, body.world_from_principal);
     (is.translation - was.translation).length() < PLACE_LINEAR

@@ -122,11 +122,16 @@ pub(super) fn carried(
 pub(super) fn measure(world: &mut World, def: &RagdollDef, ragdoll: &Ragdoll, seconds: f32) -> Quality {
     let mut meter = QualityMeter::new(def, seconds);
     let steps = (seconds / world.def().dt()) as u32;
+    let steps_of_rest = (0.5 / world.def().dt()) as u32 + 1;
+    let mut asleep = 0;
     for _ in 0..steps {
         meter.before_step(world);
         world.step();
         meter.after_step(world, ragdoll);
-        if ragdoll.bodies.iter().all(|&body| !world.is_awake(body)) {
+        let all = ragdoll.bodies.iter().all(|&body| !world.is_awake(body));
+        asleep = if all { asleep + 1 } else { 0 };
+        // The figures at rest are of the first half second of it.
+        if asleep > steps_of_rest {
             break;
         }
     }
