@@ -9,8 +9,8 @@ use sinew::ragdoll::{BakeInput, Baked, Quality, State, bake};
 use sinew_scenes::cabin::{PORCH_HEIGHT, Site};
 use sinew_scenes::demo::Demo;
 
-/// Enough to fall and lie still.
-const SECONDS: f32 = 6.0;
+/// Enough to fall and lie still, even after hanging over the railing for a while.
+const SECONDS: f32 = 9.0;
 
 fn fall(demo: &Demo) -> Baked {
     bake(&BakeInput { seconds: SECONDS, ..demo.input() })
