@@ -82,7 +82,7 @@ enum Gate {
     Happened,
 }
 
-/// The demo's hit is a wall hit of at most 15 m/s. No gate on time: that is `cargo xtask bench`'s.
+/// The demo's hit is a wall hit of at most 15 m/s. No gate on time: no test looks at the clock.
 const GATES: &[(&str, Gate)] = &[
     ("nan", Gate::Is(0.0)),
     ("energy_gain_max", Gate::Below(0.01)),

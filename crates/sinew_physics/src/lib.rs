@@ -1,6 +1,6 @@
 //! The world: bodies, shapes, joints, particles and springs, in one deterministic step.
 //!
-//! SI units, radians, +Y up, right-handed, `f32`. Read [`step`](crate::step) first: it is the physics, in order.
+//! SI units, radians, +Y up, right-handed, `f32`. Read [`step`] first: it is the physics, in order.
 #![deny(unsafe_code)] // `slices` alone allows it
 
 pub mod def;
