@@ -27,7 +27,7 @@ pub struct Film<'a> {
     pub set: Vec<Model>,
     /// From the character to the camera.
     pub direction: Vec3,
-    /// What the camera shows around the pelvis, metres.
+    /// What the camera shows around the character, metres.
     pub radius: f32,
     /// Light.
     pub sun: Sun,
@@ -89,10 +89,10 @@ impl<'a> Shots<'a> {
         self.scene.models.truncate(self.standing);
         self.add_character();
         self.add_arrows(time);
-        let pelvis = self.bodies[0].translation;
+        let subject = self.middle();
         let (direction, radius) = (self.direction, self.radius);
-        let camera = self.camera.get_or_insert_with(|| FollowCamera::new(pelvis, radius, direction));
-        camera.update(pelvis, 1.0 / FPS as f32);
+        let camera = self.camera.get_or_insert_with(|| FollowCamera::new(subject, radius, direction));
+        camera.update(subject, 1.0 / FPS as f32);
         let phase = self.phases.iter().rev().find(|(since, _)| *since <= time).map_or("", |(_, what)| what);
         self.scene.captions = vec![Caption::new(format!("{time:5.2} s  {phase}"))];
         renderer.render(&self.scene, &camera.camera())
@@ -108,6 +108,13 @@ impl<'a> Shots<'a> {
         for joint in &mut self.model {
             *joint = baked.world_from_model * *joint;
         }
+    }
+
+    /// The middle of the box around all bodies, in the world.
+    fn middle(&self) -> Vec3 {
+        let bodies = &self.fall.input.character.ragdoll.bodies;
+        let boxes = bodies.iter().zip(&self.bodies).map(|(body, place)| body.shape.aabb(place));
+        boxes.reduce(|all, one| all.merge(&one)).map_or(Vec3::ZERO, |all| all.center())
     }
 
     fn add_character(&mut self) {

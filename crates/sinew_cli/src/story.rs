@@ -32,9 +32,10 @@ pub fn phases(def: &CharacterDef, events: &[(f32, Event)]) -> Vec<Phase> {
 }
 
 fn upright(def: &CharacterDef) -> String {
-    match (def.looped.map(|clip| shown(&def.clips[clip].name)), def.locomotion) {
+    match (def.looped.map(|clip| def.clips[clip].name.as_str()), def.locomotion) {
         (Some(_), Locomotion::Forward { .. }) => "walks".to_owned(),
-        (Some(clip), Locomotion::InPlace) => format!("plays clip {clip}"),
+        (Some(""), Locomotion::InPlace) => "plays a clip without a name".to_owned(),
+        (Some(clip), Locomotion::InPlace) => format!("plays clip {}", shown(clip)),
         (None, _) => "stands in its rest pose".to_owned(),
     }
 }

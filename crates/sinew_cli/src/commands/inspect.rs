@@ -90,11 +90,11 @@ impl Content<'_> {
         }
         let _ = writeln!(
             text,
-            "\n{} meshes with {vertices} vertices and {triangles} triangles, {} skins, {} joints, {} clips",
-            rig.meshes.len(),
-            rig.skins.len(),
-            rig.joints.len(),
-            clips.len()
+            "\n{} with {vertices} vertices and {triangles} triangles, {}, {}, {}",
+            counted(rig.meshes.len(), "mesh", "meshes"),
+            counted(rig.skins.len(), "skin", "skins"),
+            counted(rig.joints.len(), "joint", "joints"),
+            counted(clips.len(), "clip", "clips")
         );
         text += &self.body_text();
         if !clips.is_empty() {
@@ -118,9 +118,7 @@ impl Content<'_> {
         let kind = if analysis.humanoid { "a humanoid" } else { "a creature" };
         let (height, unit, bodies) = (analysis.height, analysis.unit_scale, analysis.kept.len());
         let up = axis_name(analysis.up_axis);
-        format!(
-            "{kind} of {height:.2} m, {up} up, one unit is {unit} m; {bodies} joints deserve a body (*)\n"
-        )
+        format!("{kind} of {height:.2} m, {up} up, one unit is {unit} m; {bodies} joints get a body (*)\n")
     }
 
     fn clip_table(&self) -> Table {
@@ -175,3 +173,7 @@ impl Content<'_> {
 }
 
 const DEEPEST_INDENT: usize = 24;
+
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}

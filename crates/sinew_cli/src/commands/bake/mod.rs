@@ -14,7 +14,9 @@ use hit::HitArg;
 use sinew::formats::{Textures, append_clip};
 use sinew::math::Vec3;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
-use sinew::ragdoll::{AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, RagdollBodyDef, build};
+use sinew::ragdoll::{
+    AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, RagdollBodyDef, RagdollDef, build,
+};
 use sinew_picture::{PictureFormat, Sun};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -209,6 +211,12 @@ fn film<'a>(fall: &'a Fall<'a>) -> Film<'a> {
         let [color, other] = if is_floor { FLOOR } else { [OBSTACLES[index % OBSTACLES.len()]; 2] };
         set.extend(body_models(body, FLOOR_HALF_SIZE, color, other));
     }
-    let height = fall.input.character.ragdoll.height;
-    Film { fall, set, direction: Vec3::new(0.75, 0.4, 0.75), radius: 0.75 * height, sun: Sun::default() }
+    let radius = reach(&fall.input.character.ragdoll);
+    Film { fall, set, direction: Vec3::new(0.75, 0.4, 0.75), radius, sun: Sun::default() }
+}
+
+/// Half the diagonal of the box around the bind pose, metres: no pose is much larger.
+fn reach(ragdoll: &RagdollDef) -> f32 {
+    let boxes = ragdoll.bodies.iter().map(|body| body.shape.aabb(&body.character_from_body));
+    boxes.reduce(|all, one| all.merge(&one)).map_or(ragdoll.height, |all| 0.5 * (all.max - all.min).length())
 }
