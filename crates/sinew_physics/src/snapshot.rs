@@ -226,12 +226,8 @@ fn save_shape(w: &mut Writer, s: &BodyShape) {
     }
     w.transform(s.principal_from_shape);
     w.f32(s.density);
-    w.f32(s.material.friction);
-    w.f32(s.material.restitution);
-    w.f32(s.material.rolling);
-    w.u32(s.filter.layers);
-    w.u32(s.filter.mask);
-    w.u32(s.filter.group.cast_unsigned());
+    save_material(w, s.material);
+    save_filter(w, s.filter);
     w.bool(s.sensing == Sensing::Sensor);
 }
 
@@ -248,10 +244,30 @@ fn load_shape(r: &mut Reader<'_>) -> Result<BodyShape, ReadError> {
         shape,
         principal_from_shape: r.transform()?,
         density: r.f32()?,
-        material: Material { friction: r.f32()?, restitution: r.f32()?, rolling: r.f32()? },
-        filter: Filter { layers: r.u32()?, mask: r.u32()?, group: r.u32()?.cast_signed() },
+        material: load_material(r)?,
+        filter: load_filter(r)?,
         sensing: if r.bool()? { Sensing::Sensor } else { Sensing::Solid },
     })
+}
+
+pub(crate) fn save_material(w: &mut Writer, material: Material) {
+    w.f32(material.friction);
+    w.f32(material.restitution);
+    w.f32(material.rolling);
+}
+
+pub(crate) fn load_material(r: &mut Reader<'_>) -> Result<Material, ReadError> {
+    Ok(Material { friction: r.f32()?, restitution: r.f32()?, rolling: r.f32()? })
+}
+
+pub(crate) fn save_filter(w: &mut Writer, filter: Filter) {
+    w.u32(filter.layers);
+    w.u32(filter.mask);
+    w.u32(filter.group.cast_unsigned());
+}
+
+pub(crate) fn load_filter(r: &mut Reader<'_>) -> Result<Filter, ReadError> {
+    Ok(Filter { layers: r.u32()?, mask: r.u32()?, group: r.u32()?.cast_signed() })
 }
 
 fn save_range(w: &mut Writer, range: Range) {

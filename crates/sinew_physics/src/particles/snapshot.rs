@@ -3,7 +3,7 @@
 use super::contact::Grip;
 use super::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, ParticleGroup, SpringDef};
 use crate::id::BodyId;
-use crate::shape::{Filter, Material};
+use crate::snapshot::{load_filter, load_material, save_filter, save_material};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
 /// Bytes of a particle: position, velocity, mass, radius, contact impulse, grip.
@@ -15,14 +15,10 @@ const ATTACHMENT_BYTES: usize = 4 + 1 + 12;
 impl ParticleGroup {
     /// Writes everything that the next substep depends on.
     pub fn save(&self, out: &mut Writer) {
-        for x in [self.material.friction, self.material.restitution, self.material.rolling] {
-            out.f32(x);
-        }
+        save_material(out, self.material);
         out.f32(self.linear_damping);
         out.f32(self.gravity_scale);
-        out.u32(self.filter.layers);
-        out.u32(self.filter.mask);
-        out.u32(self.filter.group as u32);
+        save_filter(out, self.filter);
         out.count(self.positions.len());
         for i in 0..self.positions.len() {
             out.vec3(self.positions[i]);
@@ -66,9 +62,9 @@ impl ParticleGroup {
     /// # Errors
     /// If the bytes end too early or [`GroupDef::check`] finds something wrong.
     pub fn load(input: &mut Reader<'_>) -> Result<Self, ReadError> {
-        let material = Material { friction: input.f32()?, restitution: input.f32()?, rolling: input.f32()? };
+        let material = load_material(input)?;
         let (linear_damping, gravity_scale) = (input.f32()?, input.f32()?);
-        let filter = Filter { layers: input.u32()?, mask: input.u32()?, group: input.u32()? as i32 };
+        let filter = load_filter(input)?;
         let mut def = GroupDef { material, linear_damping, gravity_scale, filter, ..GroupDef::default() };
         let (mut contact_impulses, mut grips) = (Vec::new(), Vec::new());
         for _ in 0..input.count(PARTICLE_BYTES)? {

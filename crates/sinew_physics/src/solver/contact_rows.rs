@@ -129,8 +129,6 @@ pub(crate) struct ManifoldRows {
     impulse: [f32; MAX_POINTS],
     /// What `relax` may not go below.
     floor: [f32; MAX_POINTS],
-    /// Points that `solve` pushed out of an overlap.
-    pushed: [bool; MAX_POINTS],
     friction: Vec3,
     twist: f32,
     rolling: Vec3,
@@ -187,7 +185,6 @@ impl ManifoldRows {
             approach: [0.0; MAX_POINTS],
             impulse: [0.0; MAX_POINTS],
             floor: [0.0; MAX_POINTS],
-            pushed: [false; MAX_POINTS],
             friction: source.memory.friction,
             twist: source.memory.twist,
             rolling: source.memory.rolling,
@@ -303,15 +300,12 @@ impl ManifoldRows {
         self.rolling = Vec3::ZERO;
     }
 
-    /// `relax` takes back what pushed bodies out of an overlap, and only that: the rest of an impulse was given at the
-    /// pose of the substep's beginning, and to take it back at another pose puts energy in (a hand that turned by a
-    /// radian went from 70 to 2,700 rad/s). So do pushes, if a body turned by more than a little.
+    /// `relax` may take back what `solve` gave too much, but not from bodies that turned by more than a little since: an
+    /// impulse taken back at another pose than it was given at puts energy in (a hand went from 70 to 2,700 rad/s).
     pub fn begin_relax(&mut self, velocities: &[Vec6], h: f32) {
         let turn = |body: u32| angular(&velocities[body as usize]).length() * h;
         let still = turn(self.a) < RELAX_TURN && turn(self.b) < RELAX_TURN;
-        for i in 0..self.count {
-            self.floor[i] = if still { 0.0 } else { self.impulse[i] };
-        }
+        self.floor = if still { [0.0; MAX_POINTS] } else { self.impulse };
     }
 
     fn add(&self, push: &mut Push, row: &Row, impulse: f32) {
@@ -324,15 +318,11 @@ impl ManifoldRows {
         let pair = self.pair();
         let mut v = [0.0; MAX_POINTS];
         let mut mean = 0.0;
-        if biased {
-            self.pushed = [false; MAX_POINTS];
-        }
         for i in 0..self.count {
             let s = self.separation[i];
             let bias = if s > 0.0 {
                 s / h
             } else if biased {
-                self.pushed[i] = s < -self.dead_zone;
                 max(self.soft.bias_rate * min(s + self.dead_zone, 0.0), -PUSH_SPEED)
             } else {
                 0.0

@@ -222,7 +222,6 @@ impl IslandSolver {
                         rate: 0.0,
                         foreseen: false,
                         impulse: share(joint.limit_impulse[slot], axis),
-                        floor: 0.0,
                     });
                 }
             }
@@ -300,8 +299,6 @@ pub(super) struct LimitRow {
     foreseen: bool,
     /// Of this substep, ≥ 0.
     pub impulse: f32,
-    /// What `relax` may not go below.
-    floor: f32,
 }
 
 impl LimitRow {
@@ -315,11 +312,6 @@ impl LimitRow {
         let row = join(Vec3::ZERO, self.axis);
         add_row(impulses, joint.b, &row, self.impulse);
         add_row(impulses, joint.a, &row, -self.impulse);
-    }
-
-    /// As for contacts, `relax` takes back only what pushed a limb out of a violated limit.
-    pub fn begin_relax(&mut self) {
-        self.floor = 0.0;
     }
 
     pub fn respond(&mut self, joints: &[SolverJoint], links: &[Link], response: &Response) {
@@ -342,7 +334,7 @@ impl LimitRow {
             _ if self.room > LIMIT_TOUCH => -self.room / h,
             _ => 0.0,
         };
-        let new = max(self.impulse + (wanted - self.axis.dot(w)) / self.effective, self.floor);
+        let new = max(self.impulse + (wanted - self.axis.dot(w)) / self.effective, 0.0);
         let change = new - self.impulse;
         self.impulse = new;
         (change != 0.0).then(|| join(Vec3::ZERO, self.axis * change))

@@ -6,6 +6,7 @@
 mod build;
 mod contact_rows;
 mod disk;
+mod energy;
 mod joint_rows;
 pub(crate) mod lcp;
 mod response;
@@ -20,19 +21,14 @@ pub(crate) use build::View;
 use contact_rows::ManifoldRows;
 use joint_rows::{LimitRow, LoopRows};
 use response::Response;
-use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max, max3, min, normalize_or, skew};
+use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew};
 use sweep::Pass;
 use tree::{Link, NONE};
 
 /// Angle that a body may turn within a substep, radians: beyond it rows linearised at its start mean nothing.
 const MAX_TURN: f32 = core::f32::consts::FRAC_PI_2;
-/// Likewise for a link beside the motion of its tree as a whole: position corrections converge below it.
-const MAX_INNER_TURN: f32 = 1.0;
 /// m/s.
 const MAX_SPEED: f32 = 4000.0;
-/// Share of the kinetic energy (of at least 1 J/kg) that warm starting or relaxing may give before it counts as an error:
-/// rounding and the give and take of resting contacts are far below.
-const ENERGY_SLACK: f32 = 1e-3;
 /// Most visits of all contact and limit rows per pass in an island with joints. A heavy body on a jointed light one
 /// needs them; most passes end sooner, once a sweep changes no velocity by more than the tolerance (m/s or rad/s).
 const SWEEPS_JOINTED: usize = 24;
@@ -188,82 +184,6 @@ impl IslandSolver {
         }
     }
 
-    /// Impulses that hold up weights take energy away; those of an impact, repeated at another pose, add it. If they did,
-    /// the substep starts without them.
-    fn drop_bad_warm_start(&mut self) {
-        let moving = self.links.len();
-        let before = self.kinetic_energy(&self.unconstrained);
-        let rise = self.kinetic_energy(&self.velocities[..moving]) - before;
-        if self.joints.is_empty() || rise <= ENERGY_SLACK * max(before, self.mass()) {
-            return;
-        }
-        self.velocities[..moving].copy_from_slice(&self.unconstrained);
-        self.contact_push.fill(Vec3::ZERO);
-        for rows in &mut self.manifolds {
-            rows.forget();
-        }
-        for rows in &mut self.loops {
-            rows.impulse = ZERO6;
-        }
-        for row in &mut self.limits {
-            row.impulse = 0.0;
-        }
-        self.project_joints(Pass::Solve);
-    }
-
-    /// Of the moving bodies with the given velocities, joules.
-    fn kinetic_energy(&self, velocities: &[Vec6]) -> f32 {
-        let mut sum = 0.0;
-        for (body, v) in self.bodies.iter().zip(velocities) {
-            let w = body.pose.rotation.inverse() * angular(v);
-            sum += 0.5 * body.mass * linear(v).length_squared() + 0.5 * (w * body.inertia).dot(w);
-        }
-        sum
-    }
-
-    /// Of the moving bodies, kg.
-    fn mass(&self) -> f32 {
-        self.bodies[..self.links.len()].iter().fold(0.0, |sum, body| sum + body.mass)
-    }
-
-    /// Slows the inner motion of trees with links that would turn too far within the substep: towards the rigid motion
-    /// with the same momentum, by one factor for the whole tree. Joints hold as before, since their rows are linear, and
-    /// momentum stays; a clamp of single links would tear them apart. Only whips in violent hits come here.
-    fn calm_trees(&mut self) {
-        let most = MAX_INNER_TURN / self.h;
-        let mut first = 0;
-        while first < self.links.len() {
-            let tree = self.links[first].tree;
-            let count = self.links[first..].iter().take_while(|link| link.tree == tree).count();
-            let range = first..first + count;
-            let fast = self.velocities[range.clone()].iter().any(|v| angular(v).length() > most);
-            if count > 1 && fast {
-                self.calm_tree(range, most);
-            }
-            first += count;
-        }
-    }
-
-    fn calm_tree(&mut self, range: core::ops::Range<usize>, most: f32) {
-        let rigid = if self.links[range.start].joint == NONE {
-            RigidMotion::of(&self.bodies[range.clone()], &self.velocities[range.clone()])
-        } else {
-            RigidMotion::default() // held by a fixed body
-        };
-        let mut keep: f32 = 1.0;
-        for v in &self.velocities[range.clone()] {
-            let inner = (angular(v) - rigid.angular).length();
-            let room = max(most - rigid.angular.length(), 0.0);
-            keep = min(keep, if inner > room { room / inner } else { 1.0 });
-        }
-        for i in range {
-            let rigid = rigid.at(self.bodies[i].pose.translation);
-            for (v, r) in self.velocities[i].iter_mut().zip(rigid) {
-                *v = r + (*v - r) * keep;
-            }
-        }
-    }
-
     /// Velocities to poses; joint forces of the substep; then everything that depends on the pose, once, for `relax`
     /// and the next substep's `solve`.
     pub fn integrate_position(&mut self) {
@@ -290,9 +210,6 @@ impl IslandSolver {
     pub fn relax(&mut self) {
         for rows in &mut self.manifolds {
             rows.begin_relax(&self.velocities, self.h);
-        }
-        for row in &mut self.limits {
-            row.begin_relax();
         }
         self.project_joints(Pass::Relax);
         self.sweep(Pass::Relax);
@@ -407,41 +324,6 @@ impl IslandSolver {
     /// What the contact of world index `contact` carries on.
     pub fn memories(&self) -> impl Iterator<Item = (u32, ContactMemory)> {
         self.manifolds.iter().map(|rows| (rows.contact, rows.memory))
-    }
-}
-
-/// The motion of a tree as if it were rigid.
-#[derive(Clone, Copy, Debug, Default)]
-struct RigidMotion {
-    center: Vec3,
-    linear: Vec3,
-    angular: Vec3,
-}
-
-impl RigidMotion {
-    /// With the momentum and angular momentum that the bodies have.
-    fn of(bodies: &[SolverBody], velocities: &[Vec6]) -> Self {
-        let (mut mass, mut center, mut momentum) = (0.0, Vec3::ZERO, Vec3::ZERO);
-        for (body, v) in bodies.iter().zip(velocities) {
-            mass += body.mass;
-            center += body.pose.translation * body.mass;
-            momentum += linear(v) * body.mass;
-        }
-        center /= mass;
-        let mut inertia = Sym3::ZERO;
-        let mut spin = Vec3::ZERO;
-        for (body, v) in bodies.iter().zip(velocities) {
-            let arm = body.pose.translation - center;
-            let own = Sym3::from_rotated_diagonal(body.pose.rotation, body.inertia);
-            let carried = Sym3::from_diagonal(Vec3::splat(arm.length_squared())) - Sym3::outer(arm);
-            inertia += own + carried * body.mass;
-            spin += own * angular(v) + arm.cross(linear(v) * body.mass);
-        }
-        Self { center, linear: momentum / mass, angular: inertia.inverse() * spin }
-    }
-
-    fn at(&self, point: Vec3) -> Vec6 {
-        join(self.linear + self.angular.cross(point - self.center), self.angular)
     }
 }
 

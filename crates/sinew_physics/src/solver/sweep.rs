@@ -3,8 +3,8 @@
 //! joints hold exactly.
 
 use super::contact_rows::Push;
-use super::{ENERGY_SLACK, IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED};
-use crate::spatial::{Vec6, ZERO6, add_scaled, linear};
+use super::{IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED};
+use crate::spatial::{ZERO6, add_scaled, linear};
 use sinew_math::max;
 
 /// What a pass over the rows is for.
@@ -132,35 +132,4 @@ impl IslandSolver {
             self.keep_energy();
         }
     }
-
-    /// Nothing that rows push against moves by itself.
-    fn is_passive(&self) -> bool {
-        self.velocities[self.links.len()..].iter().all(|v| *v == ZERO6)
-    }
-
-    /// `relax` cannot give energy, but impulses taken back at another pose than they were given at can, in violent
-    /// hits. Then the velocities go only as far along the change as energy falls: joints hold on the whole way.
-    fn keep_energy(&mut self) {
-        let moving = self.links.len();
-        let before = &self.scratch.before[..moving];
-        let start = self.kinetic_energy(before);
-        let rise = self.kinetic_energy(&self.velocities[..moving]) - start;
-        if rise <= ENERGY_SLACK * max(start, self.mass()) {
-            return;
-        }
-        // Energy along the change is E(0) + b s + a s², with a that of the change itself.
-        let s = &mut self.scratch;
-        s.dv.clear();
-        s.dv.extend(self.velocities.iter().zip(&s.before).map(|(v, before)| difference(v, before)));
-        let a = self.kinetic_energy(&self.scratch.dv);
-        let b = rise - a;
-        let share = sinew_math::clamp(-b / (2.0 * a), 0.0, 1.0);
-        for (v, before) in self.velocities.iter_mut().zip(&self.scratch.before) {
-            *v = core::array::from_fn(|k| before[k] + (v[k] - before[k]) * share);
-        }
-    }
-}
-
-fn difference(a: &Vec6, b: &Vec6) -> Vec6 {
-    core::array::from_fn(|k| a[k] - b[k])
 }

@@ -1,0 +1,160 @@
+//! What keeps violent hits from adding energy. Rows are linear and hold at the pose they were made at; a limb that a
+//! hit turns by a good part of a radian within a substep leaves that pose, and impulses that were right before can do
+//! work. None of this acts at rest or in ordinary falls.
+
+use super::sweep::Pass;
+use super::tree::NONE;
+use super::{IslandSolver, SolverBody};
+use crate::spatial::{Vec6, ZERO6, angular, join, linear};
+use sinew_math::{Sym3, Vec3, max, min};
+
+/// Angle that a link may turn within a substep beside the motion of its tree as a whole, radians: position corrections
+/// converge below it.
+const MAX_INNER_TURN: f32 = 1.0;
+/// Share of the kinetic energy (of at least 1 J/kg) that warm starting or relaxing may give before it counts as an error:
+/// rounding and the give and take of resting contacts are far below.
+const ENERGY_SLACK: f32 = 1e-3;
+
+impl IslandSolver {
+    /// Impulses that hold up weights take energy away; those of an impact, repeated at another pose, add it. If they did,
+    /// the substep starts without them.
+    pub(super) fn drop_bad_warm_start(&mut self) {
+        let moving = self.links.len();
+        let before = self.kinetic_energy(&self.unconstrained);
+        let rise = self.kinetic_energy(&self.velocities[..moving]) - before;
+        if self.joints.is_empty() || rise <= ENERGY_SLACK * max(before, self.mass()) {
+            return;
+        }
+        self.velocities[..moving].copy_from_slice(&self.unconstrained);
+        self.contact_push.fill(Vec3::ZERO);
+        for rows in &mut self.manifolds {
+            rows.forget();
+        }
+        for rows in &mut self.loops {
+            rows.impulse = ZERO6;
+        }
+        for row in &mut self.limits {
+            row.impulse = 0.0;
+        }
+        self.project_joints(Pass::Solve);
+    }
+
+    /// Of the moving bodies with the given velocities, joules.
+    fn kinetic_energy(&self, velocities: &[Vec6]) -> f32 {
+        let mut sum = 0.0;
+        for (body, v) in self.bodies.iter().zip(velocities) {
+            let w = body.pose.rotation.inverse() * angular(v);
+            sum += 0.5 * body.mass * linear(v).length_squared() + 0.5 * (w * body.inertia).dot(w);
+        }
+        sum
+    }
+
+    /// Of the moving bodies, kg.
+    fn mass(&self) -> f32 {
+        self.bodies[..self.links.len()].iter().fold(0.0, |sum, body| sum + body.mass)
+    }
+
+    /// Slows the inner motion of trees with links that would turn too far within the substep: towards the rigid motion
+    /// with the same momentum, by one factor for the whole tree. Joints hold as before, since their rows are linear, and
+    /// momentum stays; a clamp of single links would tear them apart. Only whips in violent hits come here.
+    pub(super) fn calm_trees(&mut self) {
+        let most = MAX_INNER_TURN / self.h;
+        let mut first = 0;
+        while first < self.links.len() {
+            let tree = self.links[first].tree;
+            let count = self.links[first..].iter().take_while(|link| link.tree == tree).count();
+            let range = first..first + count;
+            let fast = self.velocities[range.clone()].iter().any(|v| angular(v).length() > most);
+            if count > 1 && fast {
+                self.calm_tree(range, most);
+            }
+            first += count;
+        }
+    }
+
+    fn calm_tree(&mut self, range: core::ops::Range<usize>, most: f32) {
+        let rigid = if self.links[range.start].joint == NONE {
+            RigidMotion::of(&self.bodies[range.clone()], &self.velocities[range.clone()])
+        } else {
+            RigidMotion::default() // held by a fixed body
+        };
+        let mut keep: f32 = 1.0;
+        for v in &self.velocities[range.clone()] {
+            let inner = (angular(v) - rigid.angular).length();
+            let room = max(most - rigid.angular.length(), 0.0);
+            keep = min(keep, if inner > room { room / inner } else { 1.0 });
+        }
+        for i in range {
+            let rigid = rigid.at(self.bodies[i].pose.translation);
+            for (v, r) in self.velocities[i].iter_mut().zip(rigid) {
+                *v = r + (*v - r) * keep;
+            }
+        }
+    }
+
+    /// Nothing that rows push against moves by itself.
+    pub(super) fn is_passive(&self) -> bool {
+        self.velocities[self.links.len()..].iter().all(|v| *v == ZERO6)
+    }
+
+    /// `relax` cannot give energy, but impulses taken back at another pose than they were given at can, in violent
+    /// hits. Then the velocities go only as far along the change as energy falls: joints hold on the whole way.
+    pub(super) fn keep_energy(&mut self) {
+        let moving = self.links.len();
+        let before = &self.scratch.before[..moving];
+        let start = self.kinetic_energy(before);
+        let rise = self.kinetic_energy(&self.velocities[..moving]) - start;
+        if rise <= ENERGY_SLACK * max(start, self.mass()) {
+            return;
+        }
+        // Energy along the change is E(0) + b s + a s², with a that of the change itself.
+        let s = &mut self.scratch;
+        s.dv.clear();
+        s.dv.extend(self.velocities.iter().zip(&s.before).map(|(v, before)| difference(v, before)));
+        let a = self.kinetic_energy(&self.scratch.dv);
+        let b = rise - a;
+        let share = sinew_math::clamp(-b / (2.0 * a), 0.0, 1.0);
+        for (v, before) in self.velocities.iter_mut().zip(&self.scratch.before) {
+            *v = core::array::from_fn(|k| before[k] + (v[k] - before[k]) * share);
+        }
+    }
+}
+
+/// The motion of a tree as if it were rigid.
+#[derive(Clone, Copy, Debug, Default)]
+struct RigidMotion {
+    center: Vec3,
+    linear: Vec3,
+    angular: Vec3,
+}
+
+impl RigidMotion {
+    /// With the momentum and angular momentum that the bodies have.
+    fn of(bodies: &[SolverBody], velocities: &[Vec6]) -> Self {
+        let (mut mass, mut center, mut momentum) = (0.0, Vec3::ZERO, Vec3::ZERO);
+        for (body, v) in bodies.iter().zip(velocities) {
+            mass += body.mass;
+            center += body.pose.translation * body.mass;
+            momentum += linear(v) * body.mass;
+        }
+        center /= mass;
+        let mut inertia = Sym3::ZERO;
+        let mut spin = Vec3::ZERO;
+        for (body, v) in bodies.iter().zip(velocities) {
+            let arm = body.pose.translation - center;
+            let own = Sym3::from_rotated_diagonal(body.pose.rotation, body.inertia);
+            let carried = Sym3::from_diagonal(Vec3::splat(arm.length_squared())) - Sym3::outer(arm);
+            inertia += own + carried * body.mass;
+            spin += own * angular(v) + arm.cross(linear(v) * body.mass);
+        }
+        Self { center, linear: momentum / mass, angular: inertia.inverse() * spin }
+    }
+
+    fn at(&self, point: Vec3) -> Vec6 {
+        join(self.linear + self.angular.cross(point - self.center), self.angular)
+    }
+}
+
+fn difference(a: &Vec6, b: &Vec6) -> Vec6 {
+    core::array::from_fn(|k| a[k] - b[k])
+}
