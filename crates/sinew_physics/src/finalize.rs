@@ -21,8 +21,9 @@ pub(crate) fn store(
 ) {
     islands.release(groups);
     for task in islands.tasks() {
-        for (contact, memory) in task.solver.memories() {
-            contacts[contact as usize].memory = memory;
+        for (contact, manifold, memory) in task.solver.contacts() {
+            contacts[contact as usize].manifold = *manifold;
+            contacts[contact as usize].memory = *memory;
         }
         for solved in &task.solver.joints {
             let joint = joints.at_mut(solved.index);

@@ -1,6 +1,6 @@
 //! `prepare`: from the world to the arrays of one island's solver.
 
-use super::contact_rows::{ManifoldRows, ManifoldSource};
+use super::contact_rows::{ManifoldRows, ManifoldSource, PlacedShape};
 use super::joint_rows::LoopRows;
 use super::tree::{Link, NONE};
 use super::{IslandSolver, SolverBody, SolverJoint};
@@ -9,7 +9,6 @@ use crate::body::Body;
 use crate::contact::{Contact, combine, slop};
 use crate::islands::Island;
 use crate::joint::{Joint, JointGeometry, JointPose, JointRows, MAX_LIMITS};
-use crate::shape::Shape;
 use crate::spatial::{ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
 
@@ -230,19 +229,10 @@ impl IslandSolver {
                 memory: contact.memory,
                 material: combine(&shape_a.material, &shape_b.material),
                 slop: slop(extent),
-                round_a: round_radius(&shape_a.shape),
-                round_b: round_radius(&shape_b.shape),
+                shapes: [shape_a, shape_b].map(|s| PlacedShape::new(s.shape, s.principal_from_shape)),
                 h: view.h,
             };
             self.manifolds.push(ManifoldRows::new(&source, &self.bodies, &self.velocities));
         }
-    }
-}
-
-/// Radius of a shape's rounding around its core.
-fn round_radius(shape: &Shape) -> f32 {
-    match *shape {
-        Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
-        Shape::Box { .. } | Shape::HalfSpace => 0.0,
     }
 }

@@ -3,11 +3,11 @@
 use super::response::Response;
 use super::tree::Link;
 use super::{SolverBody, disk, lcp};
-use crate::collide::MAX_POINTS;
-use crate::contact::ContactMemory;
-use crate::shape::Material;
-use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join};
-use sinew_math::{Mat3, Vec3, any_orthonormal, max, min};
+use crate::collide::{MAX_POINTS, Manifold, collide};
+use crate::contact::{ContactMemory, PointImpulse};
+use crate::shape::{Material, Shape};
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
+use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max, min};
 
 /// Fastest speed with which overlap is pushed apart, m/s.
 const PUSH_SPEED: f32 = 3.0;
@@ -15,6 +15,10 @@ const PUSH_SPEED: f32 = 3.0;
 const BOUNCE_SPEED: f32 = 1.0;
 /// An impulse that grew by more than this factor since the substep before is an impact.
 pub(super) const IMPACT_JUMP: f32 = 2.0;
+/// Share of the slop that is left overlapping.
+const DEAD_ZONE: f32 = 0.2;
+/// A body that turns by more than this within a substep has its contacts looked for anew, radians.
+const REFIND_TURN: f32 = 0.03;
 /// A body that turns by less than this within a substep counts as being where it was, radians.
 const RELAX_TURN: f32 = 0.15;
 /// Contact stiffness as a frequency, Hz, against moving and against fixed bodies, and damping ratio.
@@ -94,19 +98,19 @@ pub(crate) struct ManifoldRows {
     /// Local bodies.
     pub a: u32,
     pub b: u32,
+    /// As last found: at the step's beginning, or since, if a body turned fast.
+    pub manifold: Manifold,
+    shapes: [PlacedShape; 2],
     normal: Vec3,
     count: usize,
     /// Cores of the surfaces at each point, in the principal frames, and their distances from the surfaces: a ball's
     /// contact does not turn with it, a box's corner does.
     core_a: [Vec3; MAX_POINTS],
     core_b: [Vec3; MAX_POINTS],
-    round_a: f32,
-    round_b: f32,
     a_moves: bool,
     b_moves: bool,
     material: Material,
-    /// Overlap that is left alone, metres.
-    dead_zone: f32,
+    slop: f32,
     soft: Softness,
     /// Of the present pose.
     separation: [f32; MAX_POINTS],
@@ -135,6 +139,25 @@ pub(crate) struct ManifoldRows {
     pub memory: ContactMemory,
 }
 
+/// One of the two shapes of a manifold.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlacedShape {
+    pub shape: Shape,
+    pub principal_from_shape: Transform,
+    /// Radius of its rounding around its core; 0 for boxes and half-spaces.
+    round: f32,
+}
+
+impl PlacedShape {
+    pub fn new(shape: Shape, principal_from_shape: Transform) -> Self {
+        let round = match shape {
+            Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
+            Shape::Box { .. } | Shape::HalfSpace => 0.0,
+        };
+        Self { shape, principal_from_shape, round }
+    }
+}
+
 /// What a manifold's rows are made from.
 pub(crate) struct ManifoldSource<'a> {
     pub contact: u32,
@@ -142,13 +165,11 @@ pub(crate) struct ManifoldSource<'a> {
     pub b: u32,
     pub a_moves: bool,
     pub b_moves: bool,
-    pub manifold: &'a crate::collide::Manifold,
+    pub manifold: &'a Manifold,
     pub memory: ContactMemory,
     pub material: Material,
     pub slop: f32,
-    /// Radii of the round parts of the shapes; 0 for boxes and half-spaces.
-    pub round_a: f32,
-    pub round_b: f32,
+    pub shapes: [PlacedShape; 2],
     pub h: f32,
 }
 
@@ -160,16 +181,16 @@ impl ManifoldRows {
             contact: source.contact,
             a: source.a,
             b: source.b,
+            manifold: *source.manifold,
+            shapes: source.shapes,
             normal: n,
             count: source.manifold.count,
             core_a: [Vec3::ZERO; MAX_POINTS],
             core_b: [Vec3::ZERO; MAX_POINTS],
-            round_a: source.round_a,
-            round_b: source.round_b,
             a_moves: source.a_moves,
             b_moves: source.b_moves,
             material: source.material,
-            dead_zone: 0.2 * source.slop,
+            slop: source.slop,
             soft: Softness::new(min(hertz, 0.25 / source.h), CONTACT_DAMPING, source.h),
             separation: [0.0; MAX_POINTS],
             rows: [Row::ZERO; MAX_POINTS],
@@ -190,18 +211,63 @@ impl ManifoldRows {
             rolling: source.memory.rolling,
             memory: source.memory,
         };
-        let (pose_a, pose_b) = (bodies[source.a as usize].pose, bodies[source.b as usize].pose);
-        for (i, point) in source.manifold.points().iter().enumerate() {
-            let half = n * (0.5 * point.separation);
-            rows.core_a[i] = pose_a.inverse_point(point.position - half - n * source.round_a);
-            rows.core_b[i] = pose_b.inverse_point(point.position + half + n * source.round_b);
-        }
+        rows.take_manifold(bodies);
         rows.place(bodies);
         let pair = rows.pair();
         for i in 0..rows.count {
             rows.approach[i] = rows.rows[i].rate(pair, velocities);
         }
         rows
+    }
+
+    /// Cores of the manifold's points at the present poses.
+    fn take_manifold(&mut self, bodies: &[SolverBody]) {
+        let (pose_a, pose_b) = (bodies[self.a as usize].pose, bodies[self.b as usize].pose);
+        self.normal = self.manifold.normal;
+        self.count = self.manifold.count;
+        self.spin = Row::about(self.normal);
+        let n = self.normal;
+        for (i, point) in self.manifold.points().iter().enumerate() {
+            let half = n * (0.5 * point.separation);
+            self.core_a[i] = pose_a.inverse_point(point.position - half - n * self.shapes[0].round);
+            self.core_b[i] = pose_b.inverse_point(point.position + half + n * self.shapes[1].round);
+        }
+    }
+
+    /// Looks for the contact anew if a body turned fast in this substep: the points of the step's beginning say nothing
+    /// of the corner that swings in. Impulses go on by feature. A pair that has come apart keeps its rows.
+    pub fn refind(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) {
+        let turn = |body: u32| angular(&velocities[body as usize]).length() * h;
+        if turn(self.a) < REFIND_TURN && turn(self.b) < REFIND_TURN {
+            return;
+        }
+        let [a, b] = self.shapes;
+        let (pose_a, pose_b) = (bodies[self.a as usize].pose, bodies[self.b as usize].pose);
+        let relative = linear(&velocities[self.b as usize]) - linear(&velocities[self.a as usize]);
+        let reach = a.shape.bounding_radius() * turn(self.a) + b.shape.bounding_radius() * turn(self.b);
+        let turning = if reach < f32::INFINITY { reach } else { 0.0 };
+        let margin = 4.0 * self.slop + relative.length() * h + turning;
+        let mut manifold = Manifold::default();
+        let (frame_a, frame_b) = (pose_a * a.principal_from_shape, pose_b * b.principal_from_shape);
+        collide(&a.shape, &frame_a, &b.shape, &frame_b, margin, &mut manifold);
+        if manifold.count == 0 {
+            return;
+        }
+        let impulse = self.impulse.map(|now| PointImpulse { now, ..PointImpulse::default() });
+        let of_substep = ContactMemory { points: impulse, ..self.memory }.matched(&self.manifold, &manifold);
+        let mut memory = self.memory.matched(&self.manifold, &manifold);
+        let mean = self.approach[..self.count].iter().sum::<f32>() / self.count as f32;
+        let old = (self.manifold, self.approach);
+        for (i, point) in manifold.points().iter().enumerate() {
+            let known = old.0.points().iter().position(|p| p.feature == point.feature);
+            self.approach[i] = known.map_or(mean, |k| old.1[k]);
+            self.impulse[i] = of_substep.points[i].now;
+            memory.points[i].peak = self.impulse[i];
+        }
+        self.memory = memory;
+        self.weight = weights(&self.memory, manifold.count);
+        self.manifold = manifold;
+        self.take_manifold(bodies);
     }
 
     fn pair(&self) -> Pair {
@@ -215,8 +281,8 @@ impl ManifoldRows {
         let mut points = [Vec3::ZERO; MAX_POINTS];
         let mut center = Vec3::ZERO;
         for i in 0..self.count {
-            let on_a = pose_a.point(self.core_a[i]) + n * self.round_a;
-            let on_b = pose_b.point(self.core_b[i]) - n * self.round_b;
+            let on_a = pose_a.point(self.core_a[i]) + n * self.shapes[0].round;
+            let on_b = pose_b.point(self.core_b[i]) - n * self.shapes[1].round;
             self.separation[i] = (on_b - on_a).dot(n);
             points[i] = match (self.a_moves, self.b_moves) {
                 (true, false) => on_a,
@@ -323,7 +389,7 @@ impl ManifoldRows {
             let bias = if s > 0.0 {
                 s / h
             } else if biased {
-                max(self.soft.bias_rate * min(s + self.dead_zone, 0.0), -PUSH_SPEED)
+                max(self.soft.bias_rate * min(s + DEAD_ZONE * self.slop, 0.0), -PUSH_SPEED)
             } else {
                 0.0
             };

@@ -14,6 +14,7 @@ mod sweep;
 mod tree;
 
 use crate::body::Velocity;
+use crate::collide::Manifold;
 use crate::contact::ContactMemory;
 use crate::joint::{JointGeometry, JointPose, LimitImpulse, MAX_LIMITS};
 use crate::spatial::{Mat6, Vec6, ZERO6, angular, join, linear};
@@ -232,6 +233,7 @@ impl IslandSolver {
         self.refresh_inertia();
         self.factor_joints();
         for rows in &mut self.manifolds {
+            rows.refind(&self.bodies, &self.velocities, self.h);
             rows.place(&self.bodies);
         }
         self.choose_limits();
@@ -321,9 +323,9 @@ impl IslandSolver {
         self.loops.iter().map(|rows| (self.joints[rows.joint as usize].index, rows.impulse))
     }
 
-    /// What the contact of world index `contact` carries on.
-    pub fn memories(&self) -> impl Iterator<Item = (u32, ContactMemory)> {
-        self.manifolds.iter().map(|rows| (rows.contact, rows.memory))
+    /// World index of each contact, with what it carries on.
+    pub fn contacts(&self) -> impl Iterator<Item = (u32, &Manifold, &ContactMemory)> {
+        self.manifolds.iter().map(|rows| (rows.contact, &rows.manifold, &rows.memory))
     }
 }
 
