@@ -5,7 +5,8 @@ mod keys;
 use crate::character::{Character, CharacterDef, Event, State};
 use crate::quality::{Quality, QualityMeter};
 use sinew_anim::{Clip, LocalTransform};
-use sinew_math::{Affine, Transform, Vec3, clamp};
+use sinew_math::hash::hash_bytes;
+use sinew_math::{Affine, Transform, Vec3, Writer, clamp};
 use sinew_physics::{BodyDef, World, WorldDef};
 use std::sync::Arc;
 
@@ -92,7 +93,8 @@ pub struct Baked {
     pub bodies: usize,
     /// Steps that were simulated.
     pub steps: u64,
-    /// Hash of the world's snapshot at the end.
+    /// Hash of the snapshots of world and character at the end: of the world alone it would tell nothing of the fall,
+    /// once the character is up and its bodies are gone.
     pub hash: u64,
 }
 
@@ -110,6 +112,7 @@ pub fn bake(input: &BakeInput<'_>) -> Baked {
         run.step();
         frames.add_until(&run);
     }
+    let hash = run.hash();
     Baked {
         clip: keys::clip(&input.character.rig, input.name, &frames.list),
         frames: frames.list,
@@ -118,7 +121,7 @@ pub fn bake(input: &BakeInput<'_>) -> Baked {
         events: run.events,
         bodies: input.character.ragdoll.bodies.len(),
         steps: run.world.step_count(),
-        hash: run.world.hash(),
+        hash,
     }
 }
 
@@ -165,6 +168,13 @@ impl Run {
 
     fn time(&self) -> f32 {
         self.world.time() as f32
+    }
+
+    fn hash(&self) -> u64 {
+        let mut w = Writer::new();
+        self.world.save(&mut w);
+        self.character.save(&mut w);
+        hash_bytes(w.as_bytes())
     }
 
     /// One step of the world, and what is due at its end.
