@@ -257,10 +257,10 @@ impl ManifoldRows {
         let of_substep = ContactMemory { points: impulse, ..self.memory }.matched(&self.manifold, &manifold);
         let mut memory = self.memory.matched(&self.manifold, &manifold);
         let mean = self.approach[..self.count].iter().sum::<f32>() / self.count as f32;
-        let old = (self.manifold, self.approach);
+        let (was, approach) = (self.manifold, self.approach);
         for (i, point) in manifold.points().iter().enumerate() {
-            let known = old.0.points().iter().position(|p| p.feature == point.feature);
-            self.approach[i] = known.map_or(mean, |k| old.1[k]);
+            let known = was.points().iter().position(|p| p.feature == point.feature);
+            self.approach[i] = known.map_or(mean, |k| approach[k]);
             self.impulse[i] = of_substep.points[i].now;
             memory.points[i].peak = self.impulse[i];
         }

@@ -145,7 +145,7 @@ impl IslandSolver {
         self.contact_push.resize(self.links.len(), Vec3::ZERO);
     }
 
-    /// The impulses of contacts and limits that lasted through the last two substeps.
+    /// The last substep's impulses of contacts and limits, but for what jumped up in it: an impact is not repeated.
     pub fn warm_start(&mut self) {
         self.reset_impulses();
         for rows in &mut self.manifolds {
