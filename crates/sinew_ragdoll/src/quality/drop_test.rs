@@ -74,7 +74,13 @@ fn wall_hit(def: &RagdollDef) -> Quality {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
     let half_extents = Vec3::new(4.0, 3.0, 0.25);
-    let reach = 0.5 * def.height + 0.5;
+    // Half a metre before whatever sticks out farthest, so that long creatures do not start in the wall.
+    let pivot = def.bodies[0].character_from_body.translation;
+    let front = def
+        .bodies
+        .iter()
+        .fold(0.0, |front, body| max(front, body.shape.aabb(&body.character_from_body).max.z - pivot.z));
+    let reach = front + 0.5;
     world.add_body(&BodyDef {
         kind: BodyKind::Static,
         position: Vec3::new(0.0, half_extents.y, reach + half_extents.z),
