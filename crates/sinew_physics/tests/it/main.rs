@@ -1,5 +1,6 @@
 //! Integration tests of the world, held against closed forms and brute force.
 
+mod allocations;
 mod build;
 mod closed_forms;
 mod collide;

@@ -1,0 +1,138 @@
+//! A warm step allocates nothing (specification §5).
+//!
+//! The crate `allocation_counter` brings a global allocator that counts per thread: tests beside this one are not seen.
+
+use crate::build::{ball, box_body, capsule_body, floor, sphere_body};
+use crate::humanoid::figure;
+use sinew_math::trig::{cos, sin};
+use sinew_math::{Transform, Vec3};
+use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, RopeDef};
+use sinew_physics::*;
+
+/// Steps until the boxes are thrown back to where they began.
+const CYCLE: usize = 150;
+
+/// Steps until what hangs from joints and springs has come to rest, or nearly.
+const SETTLE: usize = 400;
+
+/// Everything that a step can hold: loose boxes, a figure, a chain, a ring of joints and a rope that carries a weight.
+/// The boxes are given with the poses in which they begin.
+fn crowded() -> (World, Vec<(BodyId, Transform)>) {
+    let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
+    floor(&mut world);
+    let mut world = figure(world, Transform::from_translation(Vec3::new(0.0, 0.6, 0.0)), Vec3::ZERO).world;
+    let boxes = pile(&mut world, 40);
+    chain(&mut world, 10);
+    ring(&mut world, 6);
+    rope(&mut world);
+    assert_eq!(world.joint_ids().count(), 14 + 10 + 6);
+    (world, boxes)
+}
+
+/// Boxes in layers of four, each a little farther to the side than the one below, so that they tumble.
+fn pile(world: &mut World, count: u32) -> Vec<(BodyId, Transform)> {
+    let mut place = |i: u32| {
+        let (layer, corner) = ((i / 4) as f32, i % 4);
+        let side = |bit| if corner & bit == 0 { -0.14 } else { 0.14 };
+        let at = Vec3::new(3.0 + side(1) + 0.02 * layer, 0.2 + 0.3 * layer, side(2));
+        let id = world.add_body(&box_body(Vec3::splat(0.12), at));
+        (id, world.transform(id))
+    };
+    (0..count).map(&mut place).collect()
+}
+
+/// Capsules hung from the world, stretched out to the side.
+fn chain(world: &mut World, links: u32) {
+    let mut last = world.add_body(&BodyDef {
+        kind: BodyKind::Static,
+        position: Vec3::new(-3.0, 2.0, 0.0),
+        ..BodyDef::default()
+    });
+    for i in 0..links {
+        let at = Vec3::new(-3.0, 2.0, 0.15 + 0.3 * i as f32);
+        let link = world.add_body(&capsule_body(0.1, 0.03, at));
+        world.add_joint(&ball(world, last, link, at - Vec3::Z * 0.15));
+        last = link;
+    }
+}
+
+/// Spheres joined in a circle, which falls flat.
+fn ring(world: &mut World, count: u32) {
+    let place = |i: u32| {
+        let angle = i as f32 * core::f32::consts::TAU / count as f32;
+        Vec3::new(0.4 * cos(angle), 1.0 + 0.4 * sin(angle), -2.0)
+    };
+    let spheres: Vec<BodyId> = (0..count).map(|i| world.add_body(&sphere_body(0.1, place(i)))).collect();
+    for i in 0..count {
+        let next = (i + 1) % count;
+        let middle = (place(i) + place(next)) * 0.5;
+        world.add_joint(&ball(world, spheres[i as usize], spheres[next as usize], middle));
+    }
+}
+
+/// From the world's height down to a weight, which swings.
+fn rope(world: &mut World) {
+    let (from, to) = (Vec3::new(1.5, 2.5, 0.0), Vec3::new(1.5, 1.5, 1.0));
+    let weight = world.add_body(&sphere_body(0.15, to));
+    let mut rope = GroupDef::rope(&RopeDef { from, to, links: 16, mass: 0.2, stiffness: 1e4, radius: 0.01 });
+    rope.attachments = vec![
+        AttachmentDef { particle: 0, target: AttachmentTarget::World(from) },
+        AttachmentDef { particle: 16, target: AttachmentTarget::Body { body: weight, point: Vec3::ZERO } },
+    ];
+    world.add_particles(&rope);
+}
+
+/// What the steps of one cycle saw.
+#[derive(Debug, Default)]
+struct Seen {
+    allocations: u64,
+    touches_begun: usize,
+    touches_ended: usize,
+}
+
+fn run(world: &mut World, steps: usize, seen: &mut Seen) {
+    for _ in 0..steps {
+        seen.allocations += allocation_counter::measure(|| world.step()).count_total;
+        seen.touches_begun += world.events().begin.len();
+        seen.touches_ended += world.events().end.len();
+    }
+}
+
+/// Takes the boxes apart for a step, so that they forget their contacts, and lets them fall as the first time: each cycle
+/// asks for the room of the one before, no more.
+fn cycle(world: &mut World, boxes: &[(BodyId, Transform)]) -> Seen {
+    let mut seen = Seen::default();
+    for apart in [true, false] {
+        for (i, &(id, mut pose)) in boxes.iter().enumerate() {
+            if apart {
+                pose.translation += Vec3::new(0.0, 50.0, i as f32);
+            }
+            world.set_transform(id, pose);
+            world.set_velocity(id, Velocity::default());
+        }
+        run(world, if apart { 1 } else { CYCLE }, &mut seen);
+    }
+    seen
+}
+
+#[test]
+fn a_warm_step_allocates_nothing() {
+    let (mut world, boxes) = crowded();
+    let mut cold = Seen::default();
+    run(&mut world, SETTLE, &mut cold);
+    assert!(cold.allocations > 0, "the first steps fill the buffers, and the counter sees it");
+    cycle(&mut world, &boxes);
+    for _ in 0..2 {
+        let warm = cycle(&mut world, &boxes);
+        assert!(warm.touches_begun > 40 && warm.touches_ended > 40, "contacts come and go: {warm:?}");
+        assert_eq!(warm.allocations, 0, "{warm:?}");
+    }
+}
+
+#[test]
+fn the_counter_sees_one_push() {
+    let mut list: Vec<u32> = Vec::new();
+    assert_eq!(allocation_counter::measure(|| list.push(1)).count_total, 1);
+    list.clear();
+    assert_eq!(allocation_counter::measure(|| list.push(1)).count_total, 0, "it kept its room");
+}
