@@ -1,0 +1,154 @@
+//! What an engine has to do to be measured.
+
+use serde_json::{Value, json};
+use sinew::math::{Rotation, SwingTwistLimit, Transform, Vec3};
+use sinew_scenes::blueprint::Blueprint;
+use thiserror::Error;
+
+use crate::scenes::{BoxPairs, ClothScene, RayScene};
+
+/// An engine under measurement, with the settings it comes with.
+///
+/// What an engine cannot run it answers with [`Unsupported`], never with a scene that is nearly the same.
+pub trait Engine {
+    /// What is measured.
+    fn describe(&self) -> Description;
+
+    /// A world with everything the blueprint says, before its first step.
+    ///
+    /// # Errors
+    /// What the engine lacks.
+    fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported>;
+
+    /// A cloth over obstacles.
+    ///
+    /// # Errors
+    /// What the engine lacks.
+    fn build_cloth(&self, _scene: &ClothScene) -> Result<Box<dyn ClothSimulation>, Unsupported> {
+        Err(Unsupported::new("no cloth"))
+    }
+
+    /// Static boxes, ready to be met by rays.
+    ///
+    /// # Errors
+    /// What the engine lacks.
+    fn build_rays(&self, _scene: &RayScene) -> Result<Box<dyn RayCaster>, Unsupported> {
+        Err(Unsupported::new("no rays"))
+    }
+
+    /// Pairs of boxes, in the form in which the engine tests them.
+    ///
+    /// # Errors
+    /// What the engine lacks.
+    fn build_boxes(&self, _pairs: &BoxPairs) -> Result<Box<dyn OverlapTester>, Unsupported> {
+        Err(Unsupported::new("no public test of two boxes for overlap"))
+    }
+}
+
+/// A world of bodies.
+pub trait Simulation {
+    /// One step of 1/60 s on the calling thread.
+    fn step(&mut self);
+
+    /// Replaces `out` by the state of every body, static ones too, in the blueprint's order.
+    fn states(&self, out: &mut Vec<BodyState>);
+}
+
+/// A cloth and its obstacles.
+pub trait ClothSimulation {
+    /// One step of 1/60 s on the calling thread.
+    fn step(&mut self);
+
+    /// Replaces `out` by the state of every particle, row by row.
+    fn particles(&self, out: &mut Vec<ParticleState>);
+}
+
+/// Static boxes that rays meet.
+pub trait RayCaster {
+    /// How many of the scene's rays `range` meet a box; for each, the closest hit is found.
+    fn count_hits(&mut self, range: core::ops::Range<usize>) -> usize;
+}
+
+/// Pairs of boxes that may overlap.
+pub trait OverlapTester {
+    /// How many of the pairs in `range` overlap.
+    fn count_overlaps(&mut self, range: core::ops::Range<usize>) -> usize;
+}
+
+/// Where a body is and how it moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BodyState {
+    /// World position and orientation of the body's **origin** (not of its centre of mass).
+    pub world_from_body: Transform,
+    /// Of the **centre of mass**, m/s.
+    pub linear_velocity: Vec3,
+    /// rad/s, world axes.
+    pub angular_velocity: Vec3,
+}
+
+impl BodyState {
+    /// At rest.
+    pub fn at(position: Vec3, rotation: Rotation) -> Self {
+        Self { world_from_body: Transform::new(position, rotation), ..Self::default() }
+    }
+}
+
+/// Where a particle is and how it moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ParticleState {
+    /// World, metres.
+    pub position: Vec3,
+    /// m/s.
+    pub velocity: Vec3,
+}
+
+/// What is measured: printed beside every figure.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Description {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// Version of the code that runs.
+    pub version: String,
+    /// How it was compiled.
+    pub flags: String,
+    /// Solver settings, in words; "defaults" first where they are.
+    pub settings: String,
+}
+
+impl Description {
+    /// As part of a report.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "engine": self.name,
+            "version": self.version,
+            "flags": self.flags,
+            "settings": self.settings,
+        })
+    }
+}
+
+/// What an engine lacks to run a scene.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{0}")]
+pub struct Unsupported(String);
+
+impl Unsupported {
+    /// In words, lower case, without a full stop.
+    pub fn new(why: impl Into<String>) -> Self {
+        Self(why.into())
+    }
+}
+
+/// Half-angle of a limit whose swing is a circular cone, radians.
+///
+/// # Errors
+/// If its sides differ: peers have cones only.
+pub fn circular_cone(limit: &SwingTwistLimit) -> Result<f32, Unsupported> {
+    let half = limit.swing_y.hi;
+    let sides = [-limit.swing_y.lo, limit.swing_z.hi, -limit.swing_z.lo];
+    if sides.iter().all(|side| (side - half).abs() < 1e-5) {
+        Ok(half)
+    } else {
+        Err(Unsupported::new("a swing cone that is not circular"))
+    }
+}

@@ -1,0 +1,42 @@
+//! The engines, each a file. Calls into C and C++ are in `crate::ffi`, the only place with `unsafe`.
+
+#[cfg(feature = "box3d")]
+mod box3d;
+#[cfg(feature = "jolt")]
+mod jolt;
+#[cfg(feature = "rapier")]
+mod rapier;
+mod sinew;
+
+use crate::engine::Engine;
+
+/// An engine by its name, built into this binary or not.
+#[derive(Clone, Copy)]
+pub struct Entry {
+    /// On the command line.
+    pub name: &'static str,
+    /// `None` if this binary was built without it.
+    pub engine: Option<&'static dyn Engine>,
+}
+
+/// All engines, ours first.
+pub const ENGINES: &[Entry] = &[
+    Entry { name: "sinew", engine: Some(&sinew::Sinew) },
+    #[cfg(feature = "rapier")]
+    Entry { name: rapier::NAME, engine: Some(&rapier::Rapier) },
+    #[cfg(not(feature = "rapier"))]
+    Entry { name: "rapier", engine: None },
+    #[cfg(feature = "box3d")]
+    Entry { name: "box3d", engine: Some(&box3d::Box3d) },
+    #[cfg(not(feature = "box3d"))]
+    Entry { name: "box3d", engine: None },
+    #[cfg(feature = "jolt")]
+    Entry { name: "jolt", engine: Some(&jolt::Jolt) },
+    #[cfg(not(feature = "jolt"))]
+    Entry { name: "jolt", engine: None },
+];
+
+/// The engine of that name.
+pub fn find(name: &str) -> Option<&'static Entry> {
+    ENGINES.iter().find(|entry| entry.name == name)
+}

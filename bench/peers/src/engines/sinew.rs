@@ -1,0 +1,106 @@
+//! Sinew, as it is in this repository.
+
+use crate::engine::{
+    BodyState, Description, Engine, OverlapTester, RayCaster, Simulation, Unsupported,
+};
+use crate::scenes::{BoxPair, BoxPairs, PlacedBox, RayScene};
+use core::ops::Range;
+use sinew::physics::collide::{Manifold, collide};
+use sinew::physics::ray::Ray;
+use sinew::physics::{BodyDef, BodyId, BodyKind, Shape, ShapeDef, World, WorldDef};
+use sinew_scenes::blueprint::Blueprint;
+
+/// This engine.
+pub struct Sinew;
+
+impl Engine for Sinew {
+    fn describe(&self) -> Description {
+        let def = WorldDef::default();
+        Description {
+            name: "sinew",
+            version: env!("SINEW_VERSION").into(),
+            flags: env!("PEERS_FLAGS").into(),
+            settings: format!("defaults: {} substeps", def.substeps),
+        }
+    }
+
+    fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported> {
+        let (world, bodies, _) = scene.build();
+        Ok(Box::new(SinewWorld { world, bodies }))
+    }
+
+    fn build_rays(&self, scene: &RayScene) -> Result<Box<dyn RayCaster>, Unsupported> {
+        let mut world = World::new(WorldDef::default());
+        for place in &scene.boxes {
+            world.add_body(&BodyDef {
+                kind: BodyKind::Static,
+                position: place.world_from_box.translation,
+                rotation: place.world_from_box.rotation,
+                shapes: vec![ShapeDef::new(box_shape(place))],
+                ..BodyDef::default()
+            });
+        }
+        Ok(Box::new(SinewRays { world, rays: scene.rays.clone() }))
+    }
+
+    fn build_boxes(&self, pairs: &BoxPairs) -> Result<Box<dyn OverlapTester>, Unsupported> {
+        Ok(Box::new(SinewBoxes { pairs: pairs.pairs.clone(), manifold: Manifold::default() }))
+    }
+}
+
+fn box_shape(place: &PlacedBox) -> Shape {
+    Shape::Box { half_extents: place.half_extents }
+}
+
+struct SinewWorld {
+    world: World,
+    bodies: Vec<BodyId>,
+}
+
+impl Simulation for SinewWorld {
+    fn step(&mut self) {
+        self.world.step();
+    }
+
+    fn states(&self, out: &mut Vec<BodyState>) {
+        out.clear();
+        out.extend(self.bodies.iter().map(|&id| {
+            let velocity = self.world.velocity(id);
+            BodyState {
+                world_from_body: self.world.transform(id),
+                linear_velocity: velocity.linear,
+                angular_velocity: velocity.angular,
+            }
+        }));
+    }
+}
+
+/// `World::cast_ray` tries every box: it has no tree yet.
+struct SinewRays {
+    world: World,
+    rays: Vec<Ray>,
+}
+
+impl RayCaster for SinewRays {
+    fn count_hits(&mut self, range: Range<usize>) -> usize {
+        self.rays[range].iter().filter(|ray| self.world.cast_ray(ray, |_| true).is_some()).count()
+    }
+}
+
+/// The contact of two boxes: there is no test yet that only says whether they overlap.
+struct SinewBoxes {
+    pairs: Vec<BoxPair>,
+    manifold: Manifold,
+}
+
+impl OverlapTester for SinewBoxes {
+    fn count_overlaps(&mut self, range: Range<usize>) -> usize {
+        let manifold = &mut self.manifold;
+        let overlap = |pair: &&BoxPair| {
+            let BoxPair { a, b } = pair;
+            collide(&box_shape(a), &a.world_from_box, &box_shape(b), &b.world_from_box, 0.0, manifold);
+            manifold.count > 0
+        };
+        self.pairs[range].iter().filter(overlap).count()
+    }
+}

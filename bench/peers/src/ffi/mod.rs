@@ -1,0 +1,1 @@
+//! The only place with `unsafe`: what the engines need of C and C++ libraries, each a file, safe to call from outside.

@@ -1,0 +1,10 @@
+//! The same scenes on Sinew and on other engines, measured by one tool: time, and beside it what the time bought.
+#![deny(unsafe_code)] // `ffi` alone allows it
+
+pub mod engine;
+pub mod engines;
+mod ffi;
+pub mod measure;
+mod parry;
+pub mod quality;
+pub mod scenes;

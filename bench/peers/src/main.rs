@@ -1,0 +1,2 @@
+//! The command `peers`.
+fn main() {}

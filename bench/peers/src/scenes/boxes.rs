@@ -1,0 +1,48 @@
+//! Pairs of boxes that may overlap.
+
+use super::draw::{rotation, vector};
+use super::rays::PlacedBox;
+use sinew::math::{Random, Transform, Vec3};
+
+/// Two boxes, the first around the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoxPair {
+    /// Around the origin.
+    pub a: PlacedBox,
+    /// Up to 1.6 m away on each axis.
+    pub b: PlacedBox,
+}
+
+/// Pairs in a row; 51.4 % overlap.
+pub struct BoxPairs {
+    /// Tested from first to last, then again.
+    pub pairs: Vec<BoxPair>,
+    /// Pairs that share one measured step.
+    pub per_step: usize,
+}
+
+impl BoxPairs {
+    /// Scene F of the baselines, of which the first `count` pairs.
+    pub fn new(count: usize, per_step: usize) -> Self {
+        let mut random = Random::new(42);
+        let pairs = (0..count)
+            .map(|_| {
+                let [a, b] = [(); 2].map(|()| {
+                    let half_extents = vector(&mut random, 0.2, 1.0);
+                    let world_from_box = Transform::new(Vec3::ZERO, rotation(&mut random));
+                    PlacedBox { half_extents, world_from_box }
+                });
+                let offset = vector(&mut random, -1.6, 1.6);
+                let world_from_box = Transform::new(offset, b.world_from_box.rotation);
+                BoxPair { a, b: PlacedBox { world_from_box, ..b } }
+            })
+            .collect();
+        Self { pairs, per_step }
+    }
+
+    /// Pairs of the measured step number `step`, round and round.
+    pub fn pairs_of_step(&self, step: usize) -> core::ops::Range<usize> {
+        let start = step * self.per_step % self.pairs.len();
+        start..start + self.per_step
+    }
+}

@@ -1,0 +1,102 @@
+//! The scenes: those made of bodies come from `sinew_scenes`, the others are here.
+
+mod boxes;
+mod cloth;
+mod draw;
+mod rays;
+
+pub use boxes::{BoxPair, BoxPairs};
+pub use cloth::ClothScene;
+pub use rays::{PlacedBox, RayScene};
+
+use sinew_scenes::blueprint::{self, Blueprint};
+
+/// Step length of every scene, seconds.
+pub const DT: f32 = 1.0 / 60.0;
+
+/// A scene by its name.
+#[derive(Clone, Copy)]
+pub struct Scene {
+    /// On the command line.
+    pub name: &'static str,
+    /// In one line.
+    pub about: &'static str,
+    /// What an engine is given to do.
+    pub work: fn() -> Work,
+}
+
+/// What an engine is given to do.
+pub enum Work {
+    /// Bodies and joints.
+    Bodies(Blueprint),
+    /// A cloth.
+    Cloth(ClothScene),
+    /// Rays against boxes.
+    Rays(RayScene),
+    /// Boxes against boxes.
+    Boxes(BoxPairs),
+}
+
+
+macro_rules! bodies {
+    ($name:literal, $about:literal, $blueprint:expr) => {
+        Scene { name: $name, about: $about, work: || Work::Bodies($blueprint) }
+    };
+}
+
+/// All scenes, in the order in which they are printed.
+pub const SCENES: &[Scene] = &[
+    bodies!("ragdoll_pile", "100 ragdolls fall on 50 boxes", blueprint::ragdoll_pile()),
+    bodies!("box_pyramid", "1,240 unit cubes in 15 layers", blueprint::box_pyramid()),
+    bodies!("box_rain", "4,000 boxes fall into a pit", blueprint::box_rain()),
+    bodies!("chain_100_links", "10 chains of 100 links, 100 kg at each end", blueprint::chain_100_links()),
+    bodies!("joint_grid", "100 × 100 balls, all neighbours joined", blueprint::joint_grid()),
+    bodies!("large_pyramid", "a wall of 5,050 unit cubes in 100 rows", blueprint::large_pyramid()),
+    bodies!("rain", "300 ragdolls fall on the ground", blueprint::rain()),
+    bodies!("chain_swing_1000", "10 level links of 1 m, 1,000 kg at the end", blueprint::chain_swing(1e3, 1.0)),
+    bodies!("chain_swing_1000_half", "the same with links of 0.5 m", blueprint::chain_swing(1e3, 0.5)),
+    bodies!("chain_swing_1000_quarter", "the same with links of 0.25 m", blueprint::chain_swing(1e3, 0.25)),
+    bodies!("chain_swing_100", "10 level links of 1 m, 100 kg at the end", blueprint::chain_swing(1e2, 1.0)),
+    bodies!("chain_hang_100", "10 plumb links of 1 m, 100 kg at the end", blueprint::chain_hang(1e2)),
+    bodies!("chain_hang_1000", "10 plumb links of 1 m, 1,000 kg at the end", blueprint::chain_hang(1e3)),
+    bodies!("heavy_rope", "19 level links, at the end 1,800 times one's mass", blueprint::heavy_rope()),
+    bodies!("hanging_rope", "48 plumb links, at the end 200 times one's mass", blueprint::hanging_rope()),
+    bodies!("net", "12 × 12 knots sag from two corners, 25 kg below", blueprint::net()),
+    Scene {
+        name: "cloth",
+        about: "100 × 100 particles fall over a ball and a box",
+        work: || Work::Cloth(ClothScene::new()),
+    },
+    Scene {
+        name: "rays",
+        about: "rays of 100 m against 10,000 boxes, 1,000 rays a step",
+        work: || Work::Rays(RayScene::new()),
+    },
+    Scene {
+        name: "obb_tests",
+        about: "do two boxes overlap: 4,096 pairs that stay in the cache, all in a step",
+        work: || Work::Boxes(BoxPairs::new(4_096, 4_096)),
+    },
+    Scene {
+        name: "obb_tests_streamed",
+        about: "do two boxes overlap: a million pairs from memory, 10,000 a step",
+        work: || Work::Boxes(BoxPairs::new(1_000_000, 10_000)),
+    },
+];
+
+/// The scene of that name.
+pub fn find(name: &str) -> Option<&'static Scene> {
+    SCENES.iter().find(|scene| scene.name == name)
+}
+
+impl Work {
+    /// Steps that it is measured for.
+    pub fn steps(&self) -> usize {
+        match self {
+            Self::Bodies(scene) => scene.steps as usize,
+            Self::Cloth(_) => 300,
+            Self::Rays(_) => 100,
+            Self::Boxes(_) => 100,
+        }
+    }
+}
