@@ -127,6 +127,7 @@ impl RagdollReport<'_> {
                 SwingTwistLimit { swing_y: NONE, swing_z: NONE, twist: limit.unwrap_or(FREE.twist) },
             ),
             JointKind::Fixed => ("fixed", SwingTwistLimit { swing_y: NONE, swing_z: NONE, twist: NONE }),
+            kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
         };
         json!({
             "parent": bone(joint.parent),

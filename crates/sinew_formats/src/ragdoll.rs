@@ -318,6 +318,7 @@ fn write_joint(def: &RagdollDef, joint: &RagdollJointDef) -> Value {
         JointKind::Universal { limit } => ("universal", limit.map(cone)),
         JointKind::Hinge { limit } => ("hinge", limit.map(|range| json!({"twist": write_range(range)}))),
         JointKind::Fixed => ("fixed", None),
+        kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
     };
     let mut object = Map::new();
     object.insert("parent".into(), write_reference(def, joint.parent));

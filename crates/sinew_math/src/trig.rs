@@ -32,6 +32,10 @@ pub fn atan2(y: f32, x: f32) -> f32 {
 pub fn exp(x: f32) -> f32 {
     libm::expf(x)
 }
+/// `e` to the power `x`, less 1, with all its digits near 0.
+pub fn exp_m1(x: f32) -> f32 {
+    libm::expm1f(x)
+}
 /// Natural logarithm.
 pub fn ln(x: f32) -> f32 {
     libm::logf(x)

@@ -82,6 +82,12 @@ impl<T> Arena<T> {
         self.slots.iter_mut().enumerate().filter_map(|(i, slot)| Some((i as u32, slot.item.as_mut()?)))
     }
 
+    /// Items with their indices and generations, mutable.
+    pub fn entries_mut(&mut self) -> impl Iterator<Item = (u32, u32, &mut T)> {
+        let slots = self.slots.iter_mut().enumerate();
+        slots.filter_map(|(i, slot)| Some((i as u32, slot.generation, slot.item.as_mut()?)))
+    }
+
     /// Writes slots and free list; `item` writes one item.
     pub fn save(&self, w: &mut Writer, mut item: impl FnMut(&mut Writer, &T)) {
         w.count(self.slots.len());

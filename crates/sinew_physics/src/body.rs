@@ -14,6 +14,11 @@ pub struct Velocity {
 }
 
 impl Velocity {
+    /// True if nothing moves.
+    pub fn is_zero(&self) -> bool {
+        self.linear == Vec3::ZERO && self.angular == Vec3::ZERO
+    }
+
     /// Velocity of a point at `arm` from the centre of mass, m/s.
     pub fn at(self, arm: Vec3) -> Vec3 {
         self.linear + self.angular.cross(arm)

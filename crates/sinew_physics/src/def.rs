@@ -1,8 +1,7 @@
-//! Definitions: plain data that the world's objects are made from.
+//! Definitions of worlds and bodies: plain data that they are made from.
 
-use crate::id::BodyId;
 use crate::shape::{MassProperties, ShapeDef};
-use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3};
+use sinew_math::{Rotation, Vec3};
 
 /// Settings of a world.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,78 +95,6 @@ impl Default for BodyDef {
             shapes: Vec::new(),
             mass: None,
             user_data: 0,
-        }
-    }
-}
-
-/// What a joint leaves free. The joint's frames are `JointDef::frame_a` and `frame_b`; zero angle is where they agree.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum JointKind {
-    /// Three rotations, within limits.
-    Ball {
-        /// `None`: unlimited.
-        limit: Option<SwingTwistLimit>,
-    },
-    /// One rotation, about the frames' x axis.
-    Hinge {
-        /// Radians, inside −π..=π; `None`: unlimited.
-        limit: Option<Range>,
-    },
-    /// Two rotations: swing about y and z, no twist about x.
-    Universal {
-        /// Swing half-angles; its twist range is ignored. `None`: unlimited.
-        limit: Option<SwingTwistLimit>,
-    },
-    /// None.
-    Fixed,
-}
-
-/// Whether the two bodies of a joint collide with each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum JointCollision {
-    /// They do.
-    Enabled,
-    /// They do not.
-    Disabled,
-}
-
-/// A joint to be made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JointDef {
-    /// First body (the parent, where there is one).
-    pub body_a: BodyId,
-    /// Second body.
-    pub body_b: BodyId,
-    /// Joint frame in A's frame: anchor and axes.
-    pub frame_a: Transform,
-    /// Joint frame in B's frame.
-    pub frame_b: Transform,
-    /// What is free.
-    pub kind: JointKind,
-    /// Torque that resists the free rotations, N·m. Default 0.
-    pub friction_torque: f32,
-    /// Default disabled.
-    pub collision: JointCollision,
-}
-
-impl JointDef {
-    /// A joint whose frames agree in the bodies' present pose: `world_from_joint` is seen from both bodies.
-    pub fn new(
-        body_a: BodyId,
-        body_b: BodyId,
-        world_from_a: Transform,
-        world_from_b: Transform,
-        world_from_joint: Transform,
-        kind: JointKind,
-    ) -> Self {
-        Self {
-            body_a,
-            body_b,
-            frame_a: world_from_a.inverse() * world_from_joint,
-            frame_b: world_from_b.inverse() * world_from_joint,
-            kind,
-            friction_torque: 0.0,
-            collision: JointCollision::Disabled,
         }
     }
 }

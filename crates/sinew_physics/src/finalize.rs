@@ -4,8 +4,11 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::Contact;
 use crate::def::BodyKind;
+use crate::id::JointId;
 use crate::islands::{IslandTask, Islands};
 use crate::joint::Joint;
+use crate::joint::def::JointState;
+use crate::parted::PartedPairs;
 use crate::particles::ParticleGroup;
 use crate::ray::Ray;
 use crate::step::StepContext;
@@ -18,6 +21,7 @@ pub(crate) fn store(
     joints: &mut Arena<Joint>,
     contacts: &mut [Contact],
     groups: &mut Arena<ParticleGroup>,
+    dt: f32,
 ) {
     islands.release(groups);
     for task in islands.tasks() {
@@ -29,10 +33,26 @@ pub(crate) fn store(
             let joint = joints.at_mut(solved.index);
             joint.limits = solved.limits;
             joint.force = solved.force;
+            joint.saturated = solved.saturated;
+            joint.reaction = solved.reaction.map(|impulse| impulse / dt);
         }
         for (joint, impulse) in task.solver.loop_impulses() {
             joints.at_mut(joint).loop_impulse = impulse;
         }
+    }
+}
+
+/// In `store`: joints that the step loaded beyond their strength break.
+pub(crate) fn break_joints(joints: &mut Arena<Joint>, parted: &mut PartedPairs, events: &mut Events) {
+    events.broken.clear();
+    for (index, generation, joint) in joints.entries_mut() {
+        if joint.is_enabled() && joint.is_overloaded() {
+            joint.state = JointState::Disabled;
+            events.broken.push(JointId { index, generation });
+        }
+    }
+    if !events.broken.is_empty() {
+        parted.invalidate();
     }
 }
 

@@ -78,7 +78,8 @@ impl Islands {
                 self.join(contact.key.a, contact.key.b);
             }
         }
-        for (_, joint) in joints.iter().filter(|(_, joint)| active(joint.a) && active(joint.b)) {
+        let joins = |joint: &Joint| joint.is_enabled() && active(joint.a) && active(joint.b);
+        for (_, joint) in joints.iter().filter(|(_, joint)| joins(joint)) {
             self.join(joint.a, joint.b);
         }
         self.neighbors.resize(groups.slot_count(), Neighbors::default());
@@ -150,7 +151,7 @@ impl Islands {
             self.island_of(index).bodies.push(index);
         }
         let active = |index: &u32| bodies.at(*index).is_active();
-        for (index, joint) in joints.iter() {
+        for (index, joint) in joints.iter().filter(|(_, joint)| joint.is_enabled()) {
             if let Some(body) = [joint.a, joint.b].into_iter().find(active) {
                 self.island_of(body).joints.push(index);
             }

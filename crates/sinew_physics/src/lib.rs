@@ -12,6 +12,7 @@ pub mod collide;
 mod finalize;
 mod islands;
 mod pairs;
+mod parted;
 mod project;
 mod sensors;
 mod sleep;
@@ -25,7 +26,7 @@ mod contact;
 mod distance;
 mod draw;
 pub mod id;
-mod joint;
+pub mod joint;
 mod mass;
 pub mod particles;
 mod query;
@@ -37,9 +38,14 @@ mod snapshot;
 mod spatial;
 
 pub use body::Velocity;
-pub use def::{BodyDef, BodyKind, JointCollision, JointDef, JointKind, Sleeping, WorldDef};
+pub use def::{BodyDef, BodyKind, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
 pub use id::{BodyId, GroupId, JointId};
+pub use joint::Reaction;
+pub use joint::def::{
+    AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
+    Spring, Strength,
+};
 pub use query::{BodyHit, Energy, Momentum};
 pub use runner::{Serial, TaskRunner, Threads};
 pub use shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};

@@ -2,8 +2,7 @@
 
 use crate::collide::{Manifold, collide};
 use crate::def::BodyKind;
-use crate::id::{BodyId, GroupId, JointId};
-use crate::joint::{JointGeometry, JointPose, overshoot};
+use crate::id::{BodyId, GroupId};
 use crate::ray::{Ray, RayHit};
 use crate::world::World;
 use sinew_math::{Vec3, max};
@@ -93,24 +92,6 @@ impl World {
             }
         }
         sum
-    }
-
-    fn joint_pose(&self, id: JointId) -> (JointGeometry, JointPose) {
-        let joint = self.joints.get(id.index, id.generation).expect("the joint is there");
-        let geometry = JointGeometry { frame_a: joint.frame_a, frame_b: joint.frame_b, kind: joint.kind };
-        let pose = |index| &self.bodies.at(index).world_from_principal;
-        (geometry, JointPose::new(&geometry, pose(joint.a), pose(joint.b)))
-    }
-
-    /// Distance between the joint's two anchors, metres.
-    pub fn joint_gap(&self, id: JointId) -> f32 {
-        self.joint_pose(id).1.gap.length()
-    }
-
-    /// How far the joint is beyond its limits, radians; 0 inside.
-    pub fn joint_overshoot(&self, id: JointId) -> f32 {
-        let (geometry, pose) = self.joint_pose(id);
-        overshoot(&geometry.kind, pose.relative())
     }
 
     /// Deepest overlap of two bodies, metres; 0 if they do not overlap.

@@ -4,18 +4,18 @@ use crate::arena::Arena;
 use crate::body::{Body, BodyShape, Rest, Velocity};
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use crate::contact::{Contact, ContactKey, ContactMemory, PointImpulse};
-use crate::def::{BodyKind, JointCollision, JointKind, Sleeping, WorldDef};
-use crate::joint::{Joint, LimitImpulse, MAX_LIMITS};
+use crate::def::{BodyKind, Sleeping, WorldDef};
+use crate::joint::Joint;
 use crate::pairs::BroadPhase;
+use crate::parted::PartedPairs;
 use crate::particles::{AttachmentTarget, ParticleGroup};
 use crate::shape::{Filter, Material, Sensing, Shape};
-use crate::spatial::ZERO6;
 use crate::touch::Events;
 use crate::world::World;
-use sinew_math::{Range, ReadError, Reader, SwingTwistLimit, Vec3, Writer};
+use sinew_math::{ReadError, Reader, Vec3, Writer};
 
 /// First bytes of a snapshot; the last is its version.
-const MAGIC: &[u8; 8] = b"sinew-w\x01";
+const MAGIC: &[u8; 8] = b"sinew-w\x02";
 
 impl World {
     /// Writes the state: what [`load`](Self::load) brings back, bit for bit.
@@ -26,14 +26,14 @@ impl World {
         w.u64(self.pending_nanoseconds);
         w.u32(self.sleepers);
         self.bodies.save(w, save_body);
-        self.joints.save(w, save_joint);
+        self.joints.save(w, |w, joint| joint.save(w));
         w.count(self.contacts.len());
         for contact in &self.contacts {
             save_contact(w, contact);
         }
         self.groups.save(w, |w, group| group.save(w));
-        w.count(self.disabled.len());
-        for &(a, b) in &self.disabled {
+        w.count(self.parted.disabled.len());
+        for &(a, b) in &self.parted.disabled {
             w.u32(a);
             w.u32(b);
         }
@@ -50,7 +50,10 @@ impl World {
         let def = load_def(r)?;
         let (steps, pending, sleepers) = (r.u64()?, r.u64()?, r.u32()?);
         let bodies = Arena::load(r, load_body)?;
-        let joints = Arena::load(r, |r| load_joint(r, &bodies))?;
+        let joints = Arena::load(r, |r| {
+            let (a, b) = (body_index(r, &bodies)?, body_index(r, &bodies)?);
+            Joint::load(r, a, b)
+        })?;
         let count = r.count(8)?;
         let mut contacts = Vec::with_capacity(count);
         for _ in 0..count {
@@ -70,12 +73,12 @@ impl World {
         }
         self.def = def;
         (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
-        (self.bodies, self.joints, self.contacts, self.disabled) = (bodies, joints, contacts, disabled);
+        (self.bodies, self.joints, self.contacts) = (bodies, joints, contacts);
+        self.parted = PartedPairs::new(disabled);
         self.groups = groups;
         self.events = Events::default();
         self.broad = BroadPhase::default();
         self.broad.invalidate();
-        self.refresh_no_collide();
         Ok(())
     }
 
@@ -268,100 +271,6 @@ pub(crate) fn save_filter(w: &mut Writer, filter: Filter) {
 
 pub(crate) fn load_filter(r: &mut Reader<'_>) -> Result<Filter, ReadError> {
     Ok(Filter { layers: r.u32()?, mask: r.u32()?, group: r.u32()?.cast_signed() })
-}
-
-fn save_range(w: &mut Writer, range: Range) {
-    w.f32(range.lo);
-    w.f32(range.hi);
-}
-
-fn load_range(r: &mut Reader<'_>) -> Result<Range, ReadError> {
-    Ok(Range::new(r.f32()?, r.f32()?))
-}
-
-fn save_cone(w: &mut Writer, limit: Option<SwingTwistLimit>) {
-    w.bool(limit.is_some());
-    if let Some(limit) = limit {
-        save_range(w, limit.swing_y);
-        save_range(w, limit.swing_z);
-        save_range(w, limit.twist);
-    }
-}
-
-fn load_cone(r: &mut Reader<'_>) -> Result<Option<SwingTwistLimit>, ReadError> {
-    if !r.bool()? {
-        return Ok(None);
-    }
-    Ok(Some(SwingTwistLimit { swing_y: load_range(r)?, swing_z: load_range(r)?, twist: load_range(r)? }))
-}
-
-fn save_joint(w: &mut Writer, joint: &Joint) {
-    w.u32(joint.a);
-    w.u32(joint.b);
-    w.transform(joint.frame_a);
-    w.transform(joint.frame_b);
-    match joint.kind {
-        JointKind::Ball { limit } => {
-            w.u8(0);
-            save_cone(w, limit);
-        }
-        JointKind::Hinge { limit } => {
-            w.u8(1);
-            w.bool(limit.is_some());
-            if let Some(limit) = limit {
-                save_range(w, limit);
-            }
-        }
-        JointKind::Universal { limit } => {
-            w.u8(2);
-            save_cone(w, limit);
-        }
-        JointKind::Fixed => w.u8(3),
-    }
-    w.f32(joint.friction_torque);
-    w.bool(joint.collision == JointCollision::Enabled);
-    for limit in &joint.limits {
-        w.vec3(limit.now);
-        w.vec3(limit.before);
-    }
-    for x in joint.loop_impulse {
-        w.f32(x);
-    }
-    w.vec3(joint.force);
-}
-
-fn load_joint(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Joint, ReadError> {
-    let (a, b) = (body_index(r, bodies)?, body_index(r, bodies)?);
-    let (frame_a, frame_b) = (r.transform()?, r.transform()?);
-    let kind = match r.u8()? {
-        0 => JointKind::Ball { limit: load_cone(r)? },
-        1 => JointKind::Hinge { limit: if r.bool()? { Some(load_range(r)?) } else { None } },
-        2 => JointKind::Universal { limit: load_cone(r)? },
-        3 => JointKind::Fixed,
-        _ => return Err(r.error("unknown kind of joint")),
-    };
-    let friction_torque = r.f32()?;
-    let collision = if r.bool()? { JointCollision::Enabled } else { JointCollision::Disabled };
-    let mut limits = [LimitImpulse::default(); MAX_LIMITS];
-    for limit in &mut limits {
-        *limit = LimitImpulse { now: r.vec3()?, before: r.vec3()? };
-    }
-    let mut loop_impulse = ZERO6;
-    for x in &mut loop_impulse {
-        *x = r.f32()?;
-    }
-    Ok(Joint {
-        a,
-        b,
-        frame_a,
-        frame_b,
-        kind,
-        friction_torque,
-        collision,
-        limits,
-        loop_impulse,
-        force: r.vec3()?,
-    })
 }
 
 fn save_contact(w: &mut Writer, contact: &Contact) {

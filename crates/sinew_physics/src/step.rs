@@ -21,19 +21,21 @@ pub(crate) struct StepContext<'a> {
 /// Advances the world by one step.
 pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
-    let World { def, bodies, joints, contacts, groups, events, broad, islands, no_collide, sleepers, .. } =
-        world;
+    let World { def, bodies, joints, contacts, groups, events, broad, islands, parted, sleepers, .. } = world;
 
-    stage(Stage::Pairs, &mut || broad.update(bodies, no_collide, contacts, context.dt));
+    stage(Stage::Pairs, &mut || broad.update(bodies, parted.of(joints), contacts, context.dt));
     stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
-    stage(Stage::Touch, &mut || touch::touch(bodies, contacts, events));
+    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, events));
     stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, context.dt));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
 
     let view = View { bodies, joints, contacts, gravity: def.gravity, h: context.h };
     for_each_mut(context.runner, islands.tasks_mut(), |task| substeps(task, &view, context));
 
-    stage(Stage::Store, &mut || finalize::store(islands, joints, contacts, groups));
+    stage(Stage::Store, &mut || {
+        finalize::store(islands, joints, contacts, groups, context.dt);
+        finalize::break_joints(joints, parted, events);
+    });
     stage(Stage::Finalize, &mut || finalize::finalize(islands.tasks(), bodies, events, context));
     stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands.tasks()));
     stage(Stage::Sleep, &mut || sleep::sleep(islands.tasks(), bodies, sleepers, def.sleeping, context.dt));

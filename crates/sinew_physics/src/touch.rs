@@ -5,7 +5,8 @@ use crate::body::{Body, Rest};
 use crate::collide::{Manifold, collide as narrow_phase};
 use crate::contact::{Contact, slop};
 use crate::def::BodyKind;
-use crate::id::BodyId;
+use crate::id::{BodyId, JointId};
+use crate::joint::Joint;
 use crate::shape::Sensing;
 use crate::slices::for_each_mut;
 use crate::step::StepContext;
@@ -24,6 +25,8 @@ pub struct Events {
     pub sensor_end: Vec<(BodyId, BodyId)>,
     /// Bodies whose state became non-finite: rolled back to the step before, stopped and taken out of the simulation.
     pub quarantined: Vec<BodyId>,
+    /// Joints that broke, in the order of joint indices. They are there, but disabled.
+    pub broken: Vec<JointId>,
 }
 
 /// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
@@ -55,8 +58,13 @@ pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &
     });
 }
 
-/// `touch`: events, and waking of what an awake body touches.
-pub(crate) fn touch(bodies: &mut Arena<Body>, contacts: &mut [Contact], events: &mut Events) {
+/// `touch`: events, and waking of what an awake body touches or a moving kinematic one holds.
+pub(crate) fn touch(
+    bodies: &mut Arena<Body>,
+    joints: &Arena<Joint>,
+    contacts: &mut [Contact],
+    events: &mut Events,
+) {
     events.begin.clear();
     events.end.clear();
     for contact in contacts.iter_mut() {
@@ -70,6 +78,14 @@ pub(crate) fn touch(bodies: &mut Arena<Body>, contacts: &mut [Contact], events: 
         if contact.pushes() {
             wake_touched(bodies, a, b);
             wake_touched(bodies, b, a);
+        }
+    }
+    for (_, joint) in joints.iter().filter(|(_, joint)| joint.is_enabled()) {
+        for (mover, held) in [(joint.a, joint.b), (joint.b, joint.a)] {
+            let body = bodies.at(mover);
+            if body.kind == BodyKind::Kinematic && !body.velocity.is_zero() {
+                wake(bodies, held);
+            }
         }
     }
 }

@@ -2,12 +2,13 @@
 
 use crate::arena::Arena;
 use crate::body::{Body, Velocity};
-use crate::contact::{Contact, ordered};
-use crate::def::{BodyDef, BodyKind, JointCollision, JointDef, WorldDef};
+use crate::contact::Contact;
+use crate::def::{BodyDef, BodyKind, WorldDef};
 use crate::id::{BodyId, GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
 use crate::pairs::BroadPhase;
+use crate::parted::PartedPairs;
 use crate::particles::{AttachmentTarget, GroupDef, ParticleGroup};
 use crate::runner::{Serial, TaskRunner};
 use crate::shape::MassProperties;
@@ -27,10 +28,7 @@ pub struct World {
     pub(crate) joints: Arena<Joint>,
     pub(crate) contacts: Vec<Contact>,
     pub(crate) groups: Arena<ParticleGroup>,
-    /// Pairs of body indices that the user disabled, smaller first, ascending.
-    pub(crate) disabled: Vec<(u32, u32)>,
-    /// The same with the jointed pairs.
-    pub(crate) no_collide: Vec<(u32, u32)>,
+    pub(crate) parted: PartedPairs,
     pub(crate) events: Events,
     pub(crate) broad: BroadPhase,
     pub(crate) islands: Islands,
@@ -56,8 +54,7 @@ impl World {
             joints: Arena::default(),
             contacts: Vec::new(),
             groups: Arena::default(),
-            disabled: Vec::new(),
-            no_collide: Vec::new(),
+            parted: PartedPairs::default(),
             events: Events::default(),
             broad: BroadPhase::default(),
             islands: Islands::default(),
@@ -94,40 +91,14 @@ impl World {
             self.groups.iter().any(|(_, group)| group.attachments().iter().any(|a| held(a.target)));
         assert!(!attached, "no particles are attached to a body that is taken out");
         self.wake_neighbors(id.index);
-        let joints: Vec<JointId> = self.joints_of(id.index).collect();
+        let joints: Vec<JointId> = self.joints_of(id).collect();
         for joint in joints {
             self.remove_joint(joint);
         }
         self.contacts.retain(|contact| contact.key.a != id.index && contact.key.b != id.index);
-        self.disabled.retain(|&(a, b)| a != id.index && b != id.index);
+        self.parted.forget(id.index);
         self.bodies.remove(id.index, id.generation);
         self.broad.invalidate();
-        self.refresh_no_collide();
-    }
-
-    /// Adds a joint; both bodies wake.
-    ///
-    /// # Panics
-    /// If both bodies are the same or neither is dynamic.
-    pub fn add_joint(&mut self, def: &JointDef) -> JointId {
-        let (a, b) = (self.expect(def.body_a), self.expect(def.body_b));
-        assert!(def.body_a != def.body_b, "a joint holds two bodies");
-        assert!(a.kind == BodyKind::Dynamic || b.kind == BodyKind::Dynamic, "a joint needs a dynamic body");
-        let (ia, ib) = (def.body_a.index, def.body_b.index);
-        let joint = Joint::new(def, ia, ib, a.principal_from_body, b.principal_from_body);
-        let (index, generation) = self.joints.insert(joint);
-        wake(&mut self.bodies, ia);
-        wake(&mut self.bodies, ib);
-        self.refresh_no_collide();
-        JointId { index, generation }
-    }
-
-    /// Takes a joint out; both bodies wake.
-    pub fn remove_joint(&mut self, id: JointId) {
-        let joint = self.joints.remove(id.index, id.generation).expect("the joint is there");
-        wake(&mut self.bodies, joint.a);
-        wake(&mut self.bodies, joint.b);
-        self.refresh_no_collide();
     }
 
     /// Adds particles with their springs. They do not sleep; a body that sleeps is a wall to them.
@@ -169,11 +140,7 @@ impl World {
     pub fn disable_pair(&mut self, a: BodyId, b: BodyId) {
         self.expect(a);
         self.expect(b);
-        let pair = ordered(a.index, b.index);
-        if let Err(place) = self.disabled.binary_search(&pair) {
-            self.disabled.insert(place, pair);
-        }
-        self.refresh_no_collide();
+        self.parted.disable(a.index, b.index);
     }
 
     /// One step on the calling thread.
@@ -219,11 +186,6 @@ impl World {
     /// All bodies, by index.
     pub fn body_ids(&self) -> impl Iterator<Item = BodyId> {
         self.bodies.iter().map(|(index, _)| BodyId { index, generation: self.bodies.generation(index) })
-    }
-
-    /// All joints, by index.
-    pub fn joint_ids(&self) -> impl Iterator<Item = JointId> {
-        self.joints.iter().map(|(index, _)| JointId { index, generation: self.joints.generation(index) })
     }
 
     /// True if the id names a body that is there.
@@ -344,27 +306,12 @@ impl World {
         self.expect(id).user_data
     }
 
-    /// The two bodies of a joint.
-    pub fn joint_bodies(&self, id: JointId) -> (BodyId, BodyId) {
-        let joint = self.joints.get(id.index, id.generation).expect("the joint is there");
-        let id = |index| BodyId { index, generation: self.bodies.generation(index) };
-        (id(joint.a), id(joint.b))
-    }
-
     pub(crate) fn expect(&self, id: BodyId) -> &Body {
         self.bodies.get(id.index, id.generation).expect("the body is there")
     }
 
-    fn expect_mut(&mut self, id: BodyId) -> &mut Body {
+    pub(crate) fn expect_mut(&mut self, id: BodyId) -> &mut Body {
         self.bodies.get_mut(id.index, id.generation).expect("the body is there")
-    }
-
-    fn joints_of(&self, body: u32) -> impl Iterator<Item = JointId> {
-        let touches = move |joint: &Joint| joint.a == body || joint.b == body;
-        self.joints
-            .iter()
-            .filter(move |(_, joint)| touches(joint))
-            .map(|(index, _)| JointId { index, generation: self.joints.generation(index) })
     }
 
     /// Wakes a body and all that touch it.
@@ -376,14 +323,5 @@ impl World {
                 wake(&mut self.bodies, contact.key.b);
             }
         }
-    }
-
-    pub(crate) fn refresh_no_collide(&mut self) {
-        let jointed = self.joints.iter().filter(|(_, joint)| joint.collision == JointCollision::Disabled);
-        self.no_collide.clear();
-        self.no_collide.extend_from_slice(&self.disabled);
-        self.no_collide.extend(jointed.map(|(_, joint)| ordered(joint.a, joint.b)));
-        self.no_collide.sort_unstable();
-        self.no_collide.dedup();
     }
 }

@@ -36,7 +36,7 @@ pub struct RagdollJointDef {
     pub frame_parent: Transform,
     /// Joint frame in the child body's frame.
     pub frame_child: Transform,
-    /// What is free, with limits.
+    /// What is free, with limits: a ball, hinge, universal or fixed joint.
     pub kind: JointKind,
     /// N·m.
     pub friction_torque: f32,

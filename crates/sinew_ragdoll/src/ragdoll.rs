@@ -5,8 +5,7 @@ use crate::filter::TOLERATED;
 use sinew_math::limits::hinge_angle;
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, clamp, max, min};
 use sinew_physics::{
-    BodyDef, BodyId, Filter, JointCollision, JointDef, JointId, JointKind, Material, ShapeDef, Velocity,
-    World,
+    BodyDef, BodyId, Filter, JointDef, JointId, JointKind, Material, ShapeDef, Velocity, World,
 };
 
 /// Where a body starts.
@@ -142,14 +141,10 @@ fn body_def(body: &RagdollBodyDef, state: &BodyState, flesh: &Flesh, index: usiz
 }
 
 fn joint_def(joint: &RagdollJointDef, bodies: &[BodyId]) -> JointDef {
+    let (parent, child) = (bodies[joint.parent], bodies[joint.child]);
     JointDef {
-        body_a: bodies[joint.parent],
-        body_b: bodies[joint.child],
-        frame_a: joint.frame_parent,
-        frame_b: joint.frame_child,
-        kind: joint.kind,
         friction_torque: joint.friction_torque,
-        collision: JointCollision::Disabled,
+        ..JointDef::between(parent, child, joint.frame_parent, joint.frame_child, joint.kind)
     }
 }
 
@@ -178,6 +173,7 @@ pub fn fitted(
             JointKind::Universal { limit: limit.map(|l| holding(l, swing)) },
         ),
         JointKind::Fixed => (parent * seen, child, JointKind::Fixed),
+        kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
     };
     let frame = |translation: Vec3, rotation: Rotation| Transform::new(translation, rotation.normalize());
     RagdollJointDef {

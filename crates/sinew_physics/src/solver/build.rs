@@ -1,19 +1,23 @@
 //! `prepare`: from the world to the arrays of one island's solver.
 
 use super::contact_rows::{ManifoldRows, ManifoldSource, PlacedShape};
-use super::joint_rows::LoopRows;
+use super::drives::SoftRow;
+use super::loops::MAX_EXACT_ROWS;
 use super::tree::{Link, NONE};
 use super::{IslandSolver, SolverBody, SolverJoint};
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, combine, slop};
 use crate::islands::Island;
-use crate::joint::{Joint, JointGeometry, JointPose, JointRows, MAX_LIMITS};
+use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS, locked_count};
 use crate::spatial::{ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
 
 /// At most this many bodies are solved as one tree; joints beyond become loop rows.
 const MAX_TREE: usize = 1024;
+
+/// An island whose loops have at least this share (its inverse) of the rows of its trees is solved without trees.
+const ENTANGLED: usize = 2;
 
 /// What an island's solver reads of the world.
 pub(crate) struct View<'a> {
@@ -47,6 +51,7 @@ impl IslandSolver {
         self.order_trees(island, view);
         self.copy_bodies(island, view);
         self.copy_joints(island, view);
+        self.weigh_joints();
         self.refresh_joints();
         self.refresh_inertia();
         self.factor_joints();
@@ -89,6 +94,34 @@ impl IslandSolver {
         for root in 0..island.bodies.len() as u32 {
             self.grow_tree(island, view, root, NONE);
         }
+        self.articulated = self.links.iter().any(|link| link.joint != NONE);
+        if self.is_entangled(island, view) {
+            self.cut_trees(island);
+        }
+    }
+
+    /// More rows of loops than of trees: a net, not a tree with a few loops.
+    fn is_entangled(&self, island: &Island, view: &View<'_>) -> bool {
+        let mut rows = [0, 0];
+        for (&index, &used) in island.joints.iter().zip(&self.scratch.build.used) {
+            rows[usize::from(used)] += locked_count(&view.joints.at(index).kind);
+        }
+        rows[0] > MAX_EXACT_ROWS && rows[0] * ENTANGLED > rows[1]
+    }
+
+    /// Every body by itself, every joint for the sweeps.
+    fn cut_trees(&mut self, island: &Island) {
+        let s = &mut self.scratch.build;
+        s.used.fill(false);
+        s.order.clear();
+        self.links.clear();
+        for (place, &body) in island.bodies.iter().enumerate() {
+            s.local[place] = place as u32;
+            s.order.push((body, NONE, NONE));
+            self.links.push(Link::new(NONE, NONE, place as u32));
+        }
+        self.tree_count = self.links.len();
+        self.articulated = false;
     }
 
     /// Adds the tree of `root` (a place in the island), held by `ground` (a joint's place) or free.
@@ -182,7 +215,7 @@ impl IslandSolver {
         for (place, &index) in island.joints.iter().enumerate() {
             let joint = view.joints.at(index);
             let (a, b) = (self.local(island, joint.a), self.local(island, joint.b));
-            let geometry = JointGeometry { frame_a: joint.frame_a, frame_b: joint.frame_b, kind: joint.kind };
+            let geometry = joint.geometry();
             let pose =
                 JointPose::new(&geometry, &self.bodies[a as usize].pose, &self.bodies[b as usize].pose);
             self.joints.push(SolverJoint {
@@ -190,17 +223,24 @@ impl IslandSolver {
                 a,
                 b,
                 geometry,
-                friction_torque: joint.friction_torque,
+                drive: joint.drive,
                 pose,
+                rows: JointRows::new(&geometry, &pose, [false; DIRECTIONS]),
+                rigid: 0,
+                soft: [SoftRow::default(); DIRECTIONS],
+                mass: ZERO6,
+                start_rate: ZERO6,
+                saturated: joint.saturated,
                 limits: joint.limits,
                 limit_impulse: [Vec3::ZERO; MAX_LIMITS],
                 force: joint.force,
+                reaction: ZERO6,
             });
             if !self.scratch.build.used[place] {
-                let rows = JointRows::new(&geometry, &pose, false);
-                self.loops.push(LoopRows::new(place as u32, rows, joint.loop_impulse));
+                self.loops.push(place as u32, joint.loop_impulse);
             }
         }
+        self.loops.group(&self.joints, &self.links);
         // A grounded root's parent is the fixed body of its joint.
         for i in 0..self.links.len() {
             let link = &self.links[i];

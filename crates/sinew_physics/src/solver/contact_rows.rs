@@ -346,6 +346,13 @@ impl ManifoldRows {
         self.floor = [0.0; MAX_POINTS];
         self.twist = self.memory.twist * share;
         self.rolling = self.memory.rolling * share;
+        let push = self.total_push();
+        super::limit_rows::add_row(impulses, self.a, &push.0, 1.0);
+        super::limit_rows::add_row(impulses, self.b, &push.1, 1.0);
+    }
+
+    /// What all rows put on the bodies in this substep.
+    pub fn total_push(&self) -> Push {
         let mut push = (ZERO6, ZERO6);
         for i in 0..self.count {
             self.add(&mut push, &self.rows[i], self.impulse[i]);
@@ -354,8 +361,7 @@ impl ManifoldRows {
             self.add(&mut push, row, self.friction.dot(axis));
         }
         self.add(&mut push, &Row::about(self.normal * self.twist + self.rolling), 1.0);
-        super::joint_rows::add_row(impulses, self.a, &push.0, 1.0);
-        super::joint_rows::add_row(impulses, self.b, &push.1, 1.0);
+        push
     }
 
     /// Starts from nothing.

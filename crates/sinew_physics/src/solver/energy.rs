@@ -22,16 +22,17 @@ impl IslandSolver {
         let moving = self.links.len();
         let before = self.kinetic_energy(&self.unconstrained);
         let rise = self.kinetic_energy(&self.velocities[..moving]) - before;
-        if self.joints.is_empty() || rise <= ENERGY_SLACK * max(before, self.mass()) {
+        if !self.is_articulated() || rise <= ENERGY_SLACK * max(before, self.mass()) {
             return;
         }
         self.velocities[..moving].copy_from_slice(&self.unconstrained);
+        self.scratch.started.copy_from_slice(&self.unconstrained);
         self.contact_push.fill(Vec3::ZERO);
         for rows in &mut self.manifolds {
             rows.forget();
         }
-        for rows in &mut self.loops {
-            rows.impulse = ZERO6;
+        for of in &mut self.loops.joints {
+            of.impulse = ZERO6;
         }
         for row in &mut self.limits {
             row.impulse = 0.0;

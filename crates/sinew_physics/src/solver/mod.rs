@@ -4,23 +4,32 @@
 //! `finalize`, so that threads never share what they write.
 
 mod build;
+mod composite;
 mod contact_rows;
 mod disk;
+mod drives;
 mod energy;
-mod joint_rows;
 pub(crate) mod lcp;
+mod limit_rows;
+mod loops;
+mod reaction;
 mod response;
 mod sweep;
 mod tree;
+mod tree_joints;
 
 use crate::body::Velocity;
 use crate::collide::Manifold;
 use crate::contact::ContactMemory;
-use crate::joint::{JointGeometry, JointPose, LimitImpulse, MAX_LIMITS};
-use crate::spatial::{Mat6, Vec6, ZERO6, angular, join, linear};
+use crate::joint::{
+    DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
+};
+use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, angular, join, linear};
 pub(crate) use build::View;
 use contact_rows::ManifoldRows;
-use joint_rows::{LimitRow, LoopRows};
+use drives::SoftRow;
+use limit_rows::LimitRow;
+use loops::Loops;
 use response::Response;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew};
 use sweep::Pass;
@@ -38,12 +47,10 @@ const SWEEP_TOLERANCE: f32 = 2e-3;
 /// `solve` (1.5 % too little) and the second those that really press.
 const SWEEPS_FREE: usize = 1;
 const SWEEPS_FREE_RELAX: usize = 2;
+/// Likewise in one whose joints are too much entangled for trees.
+const SWEEPS_ROWS: usize = 4;
 /// Rounds in which limits that the substep would pass by far are tightened.
 const LIMIT_CORRECTIONS: usize = 4;
-/// Joint friction is a viscosity that gives the full torque at the joint's present rate, but never more than this
-/// slow rate would ask, rad/s: a joint that should stick creeps below it, and sleep ends the creep.
-const STICK_RATE: f32 = 0.02;
-
 /// A body of the island. Moving ones come first, in tree order; fixed ones (static, kinematic, asleep) follow.
 #[derive(Clone, Debug)]
 pub(crate) struct SolverBody {
@@ -64,6 +71,13 @@ pub(crate) struct SolverBody {
     pub angular_damping: f32,
 }
 
+impl SolverBody {
+    /// Answer to an impulse if no joint held it.
+    fn velocity_change(&self, p: &Vec6) -> Vec6 {
+        join(linear(p) / self.mass, self.inverse_inertia * angular(p))
+    }
+}
+
 /// A joint of the island.
 #[derive(Clone, Debug)]
 pub(crate) struct SolverJoint {
@@ -73,12 +87,24 @@ pub(crate) struct SolverJoint {
     pub a: u32,
     pub b: u32,
     pub geometry: JointGeometry,
-    pub friction_torque: f32,
+    pub drive: JointDrive,
     pub pose: JointPose,
+    pub rows: JointRows,
+    /// Rows that hold exactly.
+    rigid: usize,
+    /// The others, row by row.
+    soft: [SoftRow; DIRECTIONS],
+    /// What springs and motors move, direction by direction, kg or kg·m².
+    mass: Vec6,
+    /// Rates of driven directions when the substep began.
+    start_rate: Vec6,
+    pub saturated: Saturation,
     pub limits: [LimitImpulse; MAX_LIMITS],
     /// Impulses of the limits in the substep so far, world axes.
-    pub limit_impulse: [Vec3; MAX_LIMITS],
+    limit_impulse: [Vec3; MAX_LIMITS],
     pub force: Vec3,
+    /// Impulses of the substeps so far on B, torque about its anchor.
+    pub reaction: Vec6,
 }
 
 /// The solver of one island. Its memory is kept from step to step.
@@ -92,7 +118,8 @@ pub(crate) struct IslandSolver {
     /// One per moving body.
     links: Vec<Link>,
     tree_count: usize,
-    loops: Vec<LoopRows>,
+    articulated: bool,
+    loops: Loops,
     limits: Vec<LimitRow>,
     response: Response,
     /// Impulses of contacts and limits that the sweeps in progress have put on each moving body.
@@ -114,10 +141,14 @@ pub(crate) struct IslandSolver {
 struct Scratch {
     inertia: Vec<Mat6>,
     residuals: Vec<Vec6>,
+    loop_residuals: Vec<Vec6>,
     impulses: Vec<Vec6>,
     dv: Vec<Vec6>,
     wanted: Vec<bool>,
     before: Vec<Vec6>,
+    /// Velocities that the joints of the substep are solved from.
+    started: Vec<Vec6>,
+    pieces: Vec<composite::Piece>,
     build: build::Scratch,
 }
 
@@ -126,6 +157,7 @@ impl IslandSolver {
     /// Newton step in the principal frame), speed limits. Limits act here, never after the solve: there they tear joints.
     pub fn integrate_velocity(&mut self) {
         let h = self.h;
+        self.begin_drives();
         for (body, v) in self.bodies.iter().zip(&mut self.velocities).take(self.links.len()) {
             let inverse_mass = 1.0 / body.mass;
             let lin = linear(v) / (1.0 + h * body.linear_damping) + body.force * (inverse_mass * h);
@@ -139,6 +171,7 @@ impl IslandSolver {
             }
             *v = join(limit_length(lin, MAX_SPEED), limit_length(ang, MAX_TURN / h));
         }
+        self.push_saturated();
         self.unconstrained.clear();
         self.unconstrained.extend_from_slice(&self.velocities[..self.links.len()]);
         self.contact_push.clear();
@@ -151,19 +184,18 @@ impl IslandSolver {
         for rows in &mut self.manifolds {
             rows.warm_start(&mut self.impulses);
         }
-        for rows in &self.loops {
-            rows.warm_start(&self.joints, &mut self.impulses);
-        }
+        self.warm_start_loops();
         for row in &mut self.limits {
             row.warm_start(&self.joints, &mut self.impulses);
         }
         for i in 0..self.links.len() {
             let p = self.impulses[i];
             self.contact_push[i] += linear(&p);
-            let body = &self.bodies[i];
-            let v = &mut self.velocities[i];
-            *v = join(linear(v) + linear(&p) / body.mass, angular(v) + body.inverse_inertia * angular(&p));
+            let change = self.bodies[i].velocity_change(&p);
+            add_scaled(&mut self.velocities[i], &change, 1.0);
         }
+        self.scratch.started.clear();
+        self.scratch.started.extend_from_slice(&self.velocities[..self.links.len()]);
     }
 
     /// Joints exactly, then contacts and limits with bias, then SHAKE: the joints' positions at the pose to come.
@@ -172,6 +204,7 @@ impl IslandSolver {
     pub fn solve(&mut self) {
         self.project_joints(Pass::Solve);
         self.drop_bad_warm_start();
+        self.saturate_motors();
         self.sweep(Pass::Solve);
         self.calm_trees();
         self.correct_positions();
@@ -202,9 +235,7 @@ impl IslandSolver {
         }
         self.scratch.impulses.clear();
         self.scratch.impulses.extend_from_slice(impulses);
-        self.scratch.residuals.clear();
-        self.scratch.residuals.resize(self.links.len(), ZERO6);
-        self.solve_trees();
+        self.answer_impulses();
     }
 
     /// Joint velocities to zero at the new pose (RATTLE), contacts and limits without bias, friction.
@@ -218,6 +249,8 @@ impl IslandSolver {
             rows.end_substep();
         }
         self.end_limits();
+        self.release_motors();
+        self.add_reactions();
     }
 
     /// Bounce of what was hit, after the substeps.
@@ -289,22 +322,25 @@ impl IslandSolver {
             want(rows.a);
             want(rows.b);
         }
-        let jointed = self.loops.iter().map(|rows| rows.joint).chain(self.limits.iter().map(|row| row.joint));
-        for joint in jointed {
+        let loops = self.loops.joints.iter().map(|of| of.joint);
+        for joint in loops.chain(self.limits.iter().map(|row| row.joint)) {
             want(self.joints[joint as usize].a);
             want(self.joints[joint as usize].b);
         }
         self.response.choose(&self.links, self.tree_count, wanted);
         self.response.fill(&self.links);
+        self.loops.respond(&self.joints, &self.bodies, &self.links, &mut self.response);
         for rows in &mut self.manifolds {
             rows.respond(&self.links, &self.response);
         }
         for row in &mut self.limits {
             row.respond(&self.joints, &self.links, &self.response);
         }
-        for rows in &mut self.loops {
-            rows.respond(&self.joints, &self.links, &self.response);
-        }
+    }
+
+    /// True if some joints are solved as trees.
+    fn is_articulated(&self) -> bool {
+        self.articulated
     }
 
     /// State of a body for the world.
@@ -320,7 +356,7 @@ impl IslandSolver {
 
     /// World index and impulses of the joints that close loops.
     pub fn loop_impulses(&self) -> impl Iterator<Item = (u32, Vec6)> {
-        self.loops.iter().map(|rows| (self.joints[rows.joint as usize].index, rows.impulse))
+        self.loops.joints.iter().map(|of| (self.joints[of.joint as usize].index, of.impulse))
     }
 
     /// World index of each contact, with what it carries on.

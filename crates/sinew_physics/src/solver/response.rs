@@ -1,6 +1,7 @@
 //! Articulated inverse inertia: the velocity change of one body of a tree from an impulse on another, with the
 //! joints holding. A contact that sees its link's own mass instead sinks: a 1 kg foot under 69 kg by 72 mm.
 
+use super::loops::MAX_EXACT_ROWS;
 use super::tree::{Link, NONE};
 use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, mul, product, transpose};
 
@@ -82,6 +83,54 @@ impl Response {
                 let through = product(&transfer, &blocks[p * n + c]);
                 for (own, add) in blocks[c * n + c].iter_mut().zip(&through) {
                     add_scaled(own, add, 1.0);
+                }
+            }
+        }
+    }
+
+    /// Members of a tree, parents first.
+    pub fn members(&self, tree: u32) -> &[u32] {
+        let tree = &self.trees[tree as usize];
+        &self.members[tree.first..tree.first + tree.count]
+    }
+
+    /// Place of a body among the members of its tree; `None` for fixed bodies.
+    pub fn slot(&self, body: u32) -> Option<usize> {
+        self.slot.get(body as usize).map(|&slot| slot as usize)
+    }
+
+    /// Appends the velocity changes of all members of a tree per impulse along the rows of its bodies.
+    pub fn column(&self, tree: u32, rows: [(u32, &Vec6); 2], out: &mut Vec<Vec6>) {
+        let TreeBlocks { count, blocks, .. } = self.trees[tree as usize];
+        for i in 0..count {
+            let mut change = ZERO6;
+            for (body, row) in rows {
+                if let Some(slot) = self.slot(body) {
+                    add_scaled(&mut change, &mul(&self.blocks[blocks + i * count + slot], row), 1.0);
+                }
+            }
+            out.push(change);
+        }
+    }
+
+    /// Closes the loops of a tree: `W −= U S⁻¹ Uᵀ` with the columns U of the loop rows, `n` of them.
+    pub fn close(&mut self, tree: u32, columns: &[Vec6], inverse: &[f32], n: usize) {
+        let TreeBlocks { count, blocks, .. } = self.trees[tree as usize];
+        for j in 0..count {
+            // S⁻¹ U_jᵀ, row by row of S⁻¹.
+            let mut answer = [ZERO6; MAX_EXACT_ROWS];
+            for (k, line) in answer.iter_mut().enumerate().take(n) {
+                for l in 0..n {
+                    add_scaled(line, &columns[l * count + j], inverse[k * n + l]);
+                }
+            }
+            for i in 0..count {
+                let block = &mut self.blocks[blocks + i * count + j];
+                for (k, line) in answer.iter().enumerate().take(n) {
+                    let column = &columns[k * count + i];
+                    for (row, factor) in block.iter_mut().zip(column) {
+                        add_scaled(row, line, -factor);
+                    }
                 }
             }
         }

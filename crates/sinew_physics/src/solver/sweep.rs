@@ -3,7 +3,7 @@
 //! joints hold exactly.
 
 use super::contact_rows::Push;
-use super::{IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED};
+use super::{IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED, SWEEPS_ROWS};
 use crate::spatial::{ZERO6, add_scaled, linear};
 use sinew_math::max;
 
@@ -21,17 +21,18 @@ pub(crate) enum Pass {
 impl IslandSolver {
     /// Visits all rows and gives the bodies their impulses.
     pub(super) fn sweep(&mut self, pass: Pass) {
-        if self.manifolds.is_empty() && self.limits.is_empty() && self.loops.is_empty() {
+        if self.manifolds.is_empty() && self.limits.is_empty() && !self.loops.has_visited() {
             return;
         }
         self.reset_impulses();
         let moving = self.links.len();
         self.scratch.before.clear();
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
-        let sweeps = match (self.joints.is_empty(), pass) {
-            (false, _) => SWEEPS_JOINTED,
-            (true, Pass::Relax) => SWEEPS_FREE_RELAX,
-            (true, _) => SWEEPS_FREE,
+        let sweeps = match (self.is_articulated(), pass) {
+            (true, _) => SWEEPS_JOINTED,
+            _ if self.loops.has_visited() => SWEEPS_ROWS,
+            (_, Pass::Relax) => SWEEPS_FREE_RELAX,
+            (..) => SWEEPS_FREE,
         };
         for done in 1..=sweeps {
             self.largest_change = 0.0;
@@ -39,7 +40,7 @@ impl IslandSolver {
                 Pass::Solve | Pass::Relax => self.visit_contacts(pass),
                 Pass::Restitution => self.visit_bounces(),
             }
-            self.visit_loops(pass);
+            self.visit_loops(pass, done % 2 == 0);
             self.visit_limits(pass);
             if done > 1 && self.largest_change < SWEEP_TOLERANCE {
                 break;
@@ -69,32 +70,8 @@ impl IslandSolver {
         }
     }
 
-    fn visit_loops(&mut self, pass: Pass) {
-        for i in 0..self.loops.len() {
-            for row in 0..self.loops[i].rows.rigid {
-                let joint = &self.joints[self.loops[i].joint as usize];
-                let change = self.loops[i].visit(row, joint, &self.velocities, pass, self.h);
-                let (mut on_a, mut on_b) = (ZERO6, ZERO6);
-                add_scaled(&mut on_a, &self.loops[i].rows.a[row], change);
-                add_scaled(&mut on_b, &self.loops[i].rows.b[row], change);
-                self.push(joint.a, joint.b, &(on_a, on_b));
-            }
-        }
-    }
-
-    /// Limits come last in a sweep: they have the last word over contacts.
-    fn visit_limits(&mut self, pass: Pass) {
-        for i in 0..self.limits.len() {
-            let joint = &self.joints[self.limits[i].joint as usize];
-            let (a, b) = (joint.a, joint.b);
-            if let Some(on_b) = self.limits[i].visit(&self.joints, &self.velocities, pass, self.h) {
-                self.push(a, b, &(on_b.map(|x| -x), on_b));
-            }
-        }
-    }
-
     /// Puts impulses on two bodies and their trees.
-    fn push(&mut self, a: u32, b: u32, push: &Push) {
+    pub(super) fn push(&mut self, a: u32, b: u32, push: &Push) {
         for (body, p) in [(a as usize, &push.0), (b as usize, &push.1)] {
             if body < self.links.len() {
                 add_scaled(&mut self.impulses[body], p, 1.0);
@@ -117,17 +94,14 @@ impl IslandSolver {
         for (push, p) in self.contact_push.iter_mut().zip(&self.impulses) {
             *push += linear(p);
         }
-        if self.joints.is_empty() {
+        if !self.is_articulated() {
             return; // every tree is one body, and the response was exact
         }
         let moving = self.links.len();
-        let s = &mut self.scratch;
-        self.velocities[..moving].copy_from_slice(&s.before);
-        s.impulses.clear();
-        s.impulses.extend_from_slice(&self.impulses);
-        s.residuals.clear();
-        s.residuals.resize(moving, ZERO6);
-        self.solve_trees();
+        self.velocities[..moving].copy_from_slice(&self.scratch.before);
+        self.scratch.impulses.clear();
+        self.scratch.impulses.extend_from_slice(&self.impulses);
+        self.answer_impulses();
         if pass == Pass::Relax && self.is_passive() {
             self.keep_energy();
         }

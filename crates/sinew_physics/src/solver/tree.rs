@@ -55,15 +55,6 @@ impl Link {
         }
     }
 
-    /// `J_c v_c + J_p v_p`, row by row.
-    pub fn rate(&self, child: &Vec6, parent: &Vec6) -> Vec6 {
-        let mut out = ZERO6;
-        for row in 0..self.rows {
-            out[row] = dot(&self.child[row], child) + dot(&self.parent_rows[row], parent);
-        }
-        out
-    }
-
     /// `−Y D⁻¹ J_p`: velocity that this body takes on from its parent's, when nothing acts below the joint.
     pub fn transfer(&self) -> Mat6 {
         let mut z = [ZERO6; 6];

@@ -5,6 +5,7 @@ mod build;
 mod closed_forms;
 mod collide;
 mod humanoid;
+mod joints;
 mod particles;
 mod ray;
 mod rope;

@@ -154,6 +154,7 @@ fn random_pose(def: &RagdollDef, random: &mut Random, share: f32) -> Vec<Transfo
                 Rotation::from_axis_angle(Vec3::X, within(random, range))
             }
             JointKind::Fixed => Rotation::IDENTITY,
+            kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
         };
         pose[joint.child] = pose[joint.parent]
             * joint.frame_parent

@@ -1,0 +1,361 @@
+//! Definitions of joints: plain data.
+
+use crate::body::Velocity;
+use crate::id::BodyId;
+use sinew_math::{Range, SwingTwistLimit, Transform, Vec3};
+
+/// What a joint leaves free. The joint's frames are `JointDef::frame_a` and `frame_b`; zero is where they agree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum JointKind {
+    /// Three rotations, within limits.
+    Ball {
+        /// `None`: unlimited.
+        limit: Option<SwingTwistLimit>,
+    },
+    /// One rotation, about the frames' x axis.
+    Hinge {
+        /// Radians, inside −π..=π; `None`: unlimited.
+        limit: Option<Range>,
+    },
+    /// Two rotations: swing about y and z, no twist about x.
+    Universal {
+        /// Swing half-angles; its twist range is ignored. `None`: unlimited.
+        limit: Option<SwingTwistLimit>,
+    },
+    /// None.
+    Fixed,
+    /// One translation, along the frames' x axis.
+    Slider {
+        /// Metres; `None`: unlimited.
+        limit: Option<Range>,
+    },
+    /// All but the distance of the two anchors, which stays within a range: a rod where both ends are equal, a rope
+    /// where the lower one is 0, a spring with [`JointDef::spring`] and a wide range.
+    Distance {
+        /// Metres, at least 0.
+        range: Range,
+    },
+    /// Each of the six directions as said.
+    SixDof(SixDof),
+}
+
+/// Which of the six relative motions of two frames are free.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SixDof {
+    /// Translation along the axes of frame A, metres.
+    pub linear: [AxisMotion; 3],
+    /// Rotation about x, radians, inside −π..=π.
+    pub twist: AxisMotion,
+    /// Swing about y, radians, with 0 inside; limits on both swings make an elliptic cone.
+    pub swing_y: AxisMotion,
+    /// Swing about z, likewise.
+    pub swing_z: AxisMotion,
+}
+
+impl SixDof {
+    /// Everything free: for motors that pull.
+    pub const FREE: Self = Self {
+        linear: [AxisMotion::Free; 3],
+        twist: AxisMotion::Free,
+        swing_y: AxisMotion::Free,
+        swing_z: AxisMotion::Free,
+    };
+}
+
+/// One direction of a [`SixDof`] joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AxisMotion {
+    /// Held at zero.
+    Locked,
+    /// Unlimited.
+    Free,
+    /// Free within a range, metres or radians.
+    Limited(Range),
+}
+
+/// How hard a spring is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Softness {
+    /// Whatever the masses.
+    Stiffness {
+        /// N/m or N·m/rad.
+        stiffness: f32,
+        /// N·s/m or N·m·s/rad.
+        damping: f32,
+    },
+    /// Whatever hangs on the joint: it swings as a damped oscillator whose mass is that of the two sides of the joint,
+    /// each taken as one rigid piece in its present pose.
+    Frequency {
+        /// Natural frequency, Hz.
+        hertz: f32,
+        /// 1 is critical.
+        damping_ratio: f32,
+    },
+}
+
+/// Pulls the free directions toward a rest pose. Never tires; see [`Motor`] for one that may.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring {
+    /// How hard.
+    pub softness: Softness,
+    /// Frame B seen from frame A at rest. For [`JointKind::Distance`] the rest length is its `translation.x`.
+    pub rest: Transform,
+}
+
+/// What a motor aims at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Gains {
+    /// The target velocity, as exactly as the caps allow.
+    Velocity,
+    /// The target pose, and the target velocity by way of damping.
+    Position(Softness),
+}
+
+/// Drives the free directions of a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motor {
+    /// How.
+    pub gains: Gains,
+    /// Frame B seen from frame A. Of a hinge's rotation only that about x counts, of a slider's translation x.
+    pub target: Transform,
+    /// Of frame B seen from frame A, in A's axes, m/s and rad/s.
+    pub velocity: Velocity,
+    /// Most force along each free axis, N; 0 leaves translations alone.
+    pub max_force: f32,
+    /// Most torque about each free axis, N·m; 0 leaves rotations alone.
+    pub max_torque: f32,
+}
+
+impl Motor {
+    /// Toward a pose, with no cap.
+    pub fn toward(target: Transform, softness: Softness) -> Self {
+        Self {
+            gains: Gains::Position(softness),
+            target,
+            velocity: Velocity::default(),
+            max_force: f32::INFINITY,
+            max_torque: f32::INFINITY,
+        }
+    }
+
+    /// Turns a hinge at `speed` (rad/s) with at most `max_torque` (N·m).
+    pub fn spin(speed: f32, max_torque: f32) -> Self {
+        Self {
+            gains: Gains::Velocity,
+            target: Transform::IDENTITY,
+            velocity: Velocity { linear: Vec3::ZERO, angular: Vec3::X * speed },
+            max_force: 0.0,
+            max_torque,
+        }
+    }
+
+    /// Moves a slider at `speed` (m/s) with at most `max_force` (N).
+    pub fn push(speed: f32, max_force: f32) -> Self {
+        Self {
+            gains: Gains::Velocity,
+            target: Transform::IDENTITY,
+            velocity: Velocity { linear: Vec3::X * speed, angular: Vec3::ZERO },
+            max_force,
+            max_torque: 0.0,
+        }
+    }
+}
+
+/// Softens the end of a joint's rotation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SoftZone {
+    /// From here to the stop a spring pushes back, radians. 5° suits limbs.
+    pub width: f32,
+    /// How hard. 10 Hz and critical suits limbs.
+    pub softness: Softness,
+}
+
+/// When a joint breaks. It is then disabled, and told of in `Events::broken`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strength {
+    /// Mean force over a step, N.
+    pub force: f32,
+    /// Mean torque over a step, N·m, motors, limits and friction included.
+    pub torque: f32,
+}
+
+impl Strength {
+    /// Never breaks.
+    pub const UNBREAKABLE: Self = Self { force: f32::INFINITY, torque: f32::INFINITY };
+}
+
+/// Whether the two bodies of a joint collide with each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointCollision {
+    /// They do.
+    Enabled,
+    /// They do not, as long as the joint is enabled.
+    Disabled,
+}
+
+/// Whether a joint acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointState {
+    /// It does.
+    Enabled,
+    /// As if it were not there.
+    Disabled,
+}
+
+/// A joint to be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointDef {
+    /// First body (the parent, where there is one).
+    pub body_a: BodyId,
+    /// Second body.
+    pub body_b: BodyId,
+    /// Joint frame in A's frame: anchor and axes.
+    pub frame_a: Transform,
+    /// Joint frame in B's frame.
+    pub frame_b: Transform,
+    /// What is free.
+    pub kind: JointKind,
+    /// Of what is not free. Default `None`: it holds exactly.
+    pub weld: Option<Softness>,
+    /// Of the limits. Default `None`: hard stops without bounce.
+    pub limit_softness: Option<Softness>,
+    /// Before the limits of rotations. Default `None`.
+    pub soft_zone: Option<SoftZone>,
+    /// Default `None`.
+    pub spring: Option<Spring>,
+    /// Default `None`.
+    pub motor: Option<Motor>,
+    /// Torque that resists the free rotations, N·m, and force that resists the free translations, N. Default 0.
+    pub friction_torque: f32,
+    /// Default unbreakable.
+    pub strength: Strength,
+    /// Default disabled.
+    pub collision: JointCollision,
+    /// Default enabled.
+    pub state: JointState,
+}
+
+impl JointDef {
+    /// A joint whose frames agree in the bodies' present pose: `world_from_joint` is seen from both bodies.
+    pub fn new(
+        body_a: BodyId,
+        body_b: BodyId,
+        world_from_a: Transform,
+        world_from_b: Transform,
+        world_from_joint: Transform,
+        kind: JointKind,
+    ) -> Self {
+        let frame_a = world_from_a.inverse() * world_from_joint;
+        let frame_b = world_from_b.inverse() * world_from_joint;
+        Self::between(body_a, body_b, frame_a, frame_b, kind)
+    }
+
+    /// A joint with a frame on each body, in that body's axes.
+    pub fn between(
+        body_a: BodyId,
+        body_b: BodyId,
+        frame_a: Transform,
+        frame_b: Transform,
+        kind: JointKind,
+    ) -> Self {
+        Self {
+            body_a,
+            body_b,
+            frame_a,
+            frame_b,
+            kind,
+            weld: None,
+            limit_softness: None,
+            soft_zone: None,
+            spring: None,
+            motor: None,
+            friction_torque: 0.0,
+            strength: Strength::UNBREAKABLE,
+            collision: JointCollision::Disabled,
+            state: JointState::Enabled,
+        }
+    }
+
+    /// A hand that pulls a point of `body_b` toward the origin of `hand`, a static or kinematic body: move the hand, or
+    /// the motor's target. `point` in B's frame; at most `max_force` (N).
+    pub fn drag(hand: BodyId, body_b: BodyId, point: Vec3, softness: Softness, max_force: f32) -> Self {
+        let frame_b = Transform::from_translation(point);
+        let kind = JointKind::SixDof(SixDof::FREE);
+        let motor = Motor { max_force, max_torque: 0.0, ..Motor::toward(Transform::IDENTITY, softness) };
+        Self {
+            motor: Some(motor),
+            collision: JointCollision::Enabled,
+            ..Self::between(hand, body_b, Transform::IDENTITY, frame_b, kind)
+        }
+    }
+
+    /// # Panics
+    /// If a number is not finite (but for infinite caps and strengths), negative where it may not be, or a range empty.
+    pub(crate) fn check(&self) {
+        assert!(self.frame_a.is_finite() && self.frame_b.is_finite(), "a joint's frames are finite");
+        assert!(
+            self.friction_torque >= 0.0 && self.friction_torque < f32::INFINITY,
+            "a joint's friction torque is at least 0 and finite"
+        );
+        assert!(
+            self.strength.force >= 0.0 && self.strength.torque >= 0.0,
+            "a joint's strength is at least 0"
+        );
+        assert!(self.kind.ranges_are_valid(), "a joint's ranges are not empty");
+        let zone = self.soft_zone.map(|zone| zone.softness);
+        let spring = self.spring.map(|spring| spring.softness);
+        let motor = self.motor.and_then(|motor| match motor.gains {
+            Gains::Velocity => None,
+            Gains::Position(softness) => Some(softness),
+        });
+        for softness in [self.weld, self.limit_softness, zone, spring, motor].into_iter().flatten() {
+            assert!(softness.is_valid(), "a spring's numbers are at least 0 and finite");
+        }
+        assert!(self.soft_zone.is_none_or(|zone| zone.width >= 0.0), "a soft zone's width is at least 0");
+        assert!(self.spring.is_none_or(|spring| spring.rest.is_finite()), "a spring's rest pose is finite");
+        assert!(self.motor.is_none_or(|motor| motor.is_valid()), "a motor's numbers are finite");
+    }
+}
+
+impl JointKind {
+    fn ranges_are_valid(&self) -> bool {
+        let some = |range: Range| range.lo <= range.hi;
+        let cone = |limit: &SwingTwistLimit| {
+            let inside = |swing: Range| swing.lo <= 0.0 && swing.hi >= 0.0;
+            inside(limit.swing_y) && inside(limit.swing_z) && some(limit.twist)
+        };
+        let axis = |motion: &AxisMotion| match *motion {
+            AxisMotion::Limited(range) => some(range),
+            _ => true,
+        };
+        match self {
+            Self::Ball { limit } | Self::Universal { limit } => limit.as_ref().is_none_or(cone),
+            Self::Hinge { limit } | Self::Slider { limit } => limit.is_none_or(some),
+            Self::Fixed => true,
+            Self::Distance { range } => some(*range) && range.lo >= 0.0,
+            Self::SixDof(six) => {
+                six.linear.iter().all(axis) && [six.twist, six.swing_y, six.swing_z].iter().all(axis)
+            }
+        }
+    }
+}
+
+impl Softness {
+    fn is_valid(&self) -> bool {
+        let (p, q) = match *self {
+            Self::Stiffness { stiffness, damping } => (stiffness, damping),
+            Self::Frequency { hertz, damping_ratio } => (hertz, damping_ratio),
+        };
+        p >= 0.0 && p < f32::INFINITY && q >= 0.0 && q < f32::INFINITY
+    }
+}
+
+impl Motor {
+    pub(super) fn is_valid(&self) -> bool {
+        self.target.is_finite()
+            && self.velocity.linear.is_finite()
+            && self.velocity.angular.is_finite()
+            && self.max_force >= 0.0
+            && self.max_torque >= 0.0
+    }
+}

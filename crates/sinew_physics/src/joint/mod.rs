@@ -1,0 +1,154 @@
+//! A joint as the world keeps it: its definition and what it remembers.
+
+pub mod def;
+mod rows;
+mod snapshot;
+mod world;
+
+use crate::spatial::{Vec6, ZERO6};
+use def::{
+    Gains, JointCollision, JointDef, JointKind, JointState, Motor, SoftZone, Softness, Spring, Strength,
+};
+pub(crate) use rows::{
+    DIRECTIONS, JointGeometry, JointPose, JointRows, MAX_LIMITS, Row, Stop, TWIST, anchor_gap, displacement,
+    locked_count, locked_error, open_directions, open_row, overshoot, stops, turns,
+};
+use sinew_math::{Transform, Vec3};
+pub use world::Reaction;
+
+/// Impulse of a limit in the last substep and the one before, N·s or N·m·s, in frame A: as a vector, because the axis of
+/// a cone turns, and an impulse about the old axis must not be handed on about the new one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct LimitImpulse {
+    pub now: Vec3,
+    pub before: Vec3,
+}
+
+/// What acts in a joint's directions beside the hard constraint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct JointDrive {
+    pub weld: Option<Softness>,
+    pub limit_softness: Option<Softness>,
+    pub soft_zone: Option<SoftZone>,
+    pub spring: Option<Spring>,
+    pub motor: Option<Motor>,
+    pub friction: f32,
+}
+
+impl JointDrive {
+    fn new(def: &JointDef) -> Self {
+        Self {
+            weld: def.weld,
+            limit_softness: def.limit_softness,
+            soft_zone: def.soft_zone,
+            spring: def.spring,
+            motor: def.motor,
+            friction: def.friction_torque,
+        }
+    }
+
+    /// True if some row needs to know what mass it moves.
+    pub fn needs_mass(&self) -> bool {
+        self.weld.is_some() || self.spring.is_some() || self.motor.is_some()
+    }
+}
+
+/// Which way a motor pushes with all it has, by direction: −1, 1, or 0 while it is strong enough.
+pub(crate) type Saturation = [i8; DIRECTIONS];
+
+#[derive(Clone, Debug)]
+pub(crate) struct Joint {
+    /// Body indices.
+    pub a: u32,
+    pub b: u32,
+    /// Joint frame in the principal frames of the bodies.
+    pub frame_a: Transform,
+    pub frame_b: Transform,
+    pub kind: JointKind,
+    pub drive: JointDrive,
+    pub strength: Strength,
+    pub collision: JointCollision,
+    pub state: JointState,
+    pub limits: [LimitImpulse; MAX_LIMITS],
+    pub saturated: Saturation,
+    /// Impulses of the last substep if the joint closes a loop, direction by direction.
+    pub loop_impulse: Vec6,
+    /// Linear force of the last substep on body B, N, world axes: geometric stiffness needs it.
+    pub force: Vec3,
+    /// Mean over the last step on body B, N and N·m about its anchor, world axes.
+    pub reaction: Vec6,
+}
+
+impl Joint {
+    pub fn new(
+        def: &JointDef,
+        a: u32,
+        b: u32,
+        principal_from_a: Transform,
+        principal_from_b: Transform,
+    ) -> Self {
+        def.check();
+        Self {
+            a,
+            b,
+            frame_a: principal_from_a * def.frame_a,
+            frame_b: principal_from_b * def.frame_b,
+            kind: def.kind,
+            drive: JointDrive::new(def),
+            strength: def.strength,
+            collision: def.collision,
+            state: def.state,
+            limits: [LimitImpulse::default(); MAX_LIMITS],
+            saturated: [0; DIRECTIONS],
+            loop_impulse: ZERO6,
+            force: Vec3::ZERO,
+            reaction: ZERO6,
+        }
+    }
+
+    /// Takes on another definition; what is remembered goes on where it still means the same.
+    pub fn redefine(&mut self, def: &JointDef, principal_from_a: Transform, principal_from_b: Transform) {
+        let new = Self::new(def, self.a, self.b, principal_from_a, principal_from_b);
+        let same = core::mem::discriminant(&self.kind) == core::mem::discriminant(&new.kind);
+        *self = if same {
+            Self {
+                limits: self.limits,
+                saturated: self.saturated,
+                loop_impulse: self.loop_impulse,
+                force: self.force,
+                reaction: self.reaction,
+                ..new
+            }
+        } else {
+            new
+        };
+    }
+
+    pub fn geometry(&self) -> JointGeometry {
+        JointGeometry { frame_a: self.frame_a, frame_b: self.frame_b, kind: self.kind }
+    }
+
+    pub fn is_enabled(&self) -> bool {
+        self.state == JointState::Enabled
+    }
+
+    /// True if the pair of bodies is kept from colliding.
+    pub fn parts_bodies(&self) -> bool {
+        self.is_enabled() && self.collision == JointCollision::Disabled
+    }
+
+    /// True if the last step loaded it beyond its strength.
+    pub fn is_overloaded(&self) -> bool {
+        crate::spatial::linear(&self.reaction).length() > self.strength.force
+            || crate::spatial::angular(&self.reaction).length() > self.strength.torque
+    }
+
+    /// A motor moves it to where it is not: its bodies may be put to sleep all the same once they stand still.
+    pub fn set_motor(&mut self, motor: Option<Motor>) {
+        let aims = |motor: &Option<Motor>| motor.map(|m| matches!(m.gains, Gains::Velocity));
+        if aims(&motor) != aims(&self.drive.motor) {
+            self.saturated = [0; DIRECTIONS];
+        }
+        self.drive.motor = motor;
+    }
+}

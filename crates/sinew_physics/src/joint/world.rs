@@ -1,0 +1,169 @@
+//! The joints of a world: made, changed, asked.
+
+use super::def::{JointDef, JointState, Motor};
+use super::{Joint, JointPose, anchor_gap, overshoot};
+use crate::def::BodyKind;
+use crate::id::{BodyId, JointId};
+use crate::spatial::{angular, linear};
+use crate::touch::wake;
+use crate::world::World;
+use sinew_math::{Transform, Vec3};
+
+/// What a joint carried in the last step, as a mean over its time, on body B, world axes. While the bodies sleep it is
+/// that of the step in which they fell asleep.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reaction {
+    /// N.
+    pub force: Vec3,
+    /// N·m about B's anchor; limits, springs, motors and friction included.
+    pub torque: Vec3,
+}
+
+impl World {
+    /// Adds a joint; both bodies wake.
+    ///
+    /// # Panics
+    /// If both bodies are the same, neither is dynamic, or a number of the definition is not valid.
+    pub fn add_joint(&mut self, def: &JointDef) -> JointId {
+        let (a, b) = (self.expect(def.body_a), self.expect(def.body_b));
+        assert!(def.body_a != def.body_b, "a joint holds two bodies");
+        assert!(a.kind == BodyKind::Dynamic || b.kind == BodyKind::Dynamic, "a joint needs a dynamic body");
+        let (ia, ib) = (def.body_a.index, def.body_b.index);
+        let joint = Joint::new(def, ia, ib, a.principal_from_body, b.principal_from_body);
+        let (index, generation) = self.joints.insert(joint);
+        let id = JointId { index, generation };
+        self.joint_changed(id);
+        id
+    }
+
+    /// Takes a joint out; both bodies wake.
+    pub fn remove_joint(&mut self, id: JointId) {
+        self.joint_changed(id);
+        self.joints.remove(id.index, id.generation);
+    }
+
+    /// All joints, by index.
+    pub fn joint_ids(&self) -> impl Iterator<Item = JointId> {
+        self.joints.iter().map(|(index, _)| JointId { index, generation: self.joints.generation(index) })
+    }
+
+    /// The joints of a body, by index.
+    pub fn joints_of(&self, body: BodyId) -> impl Iterator<Item = JointId> {
+        self.expect(body);
+        let touches = move |joint: &Joint| joint.a == body.index || joint.b == body.index;
+        self.joints
+            .iter()
+            .filter(move |(_, joint)| touches(joint))
+            .map(|(index, _)| JointId { index, generation: self.joints.generation(index) })
+    }
+
+    /// True if the id names a joint that is there.
+    pub fn contains_joint(&self, id: JointId) -> bool {
+        self.joints.get(id.index, id.generation).is_some()
+    }
+
+    /// The two bodies of a joint.
+    pub fn joint_bodies(&self, id: JointId) -> (BodyId, BodyId) {
+        let joint = self.expect_joint(id);
+        let id = |index| BodyId { index, generation: self.bodies.generation(index) };
+        (id(joint.a), id(joint.b))
+    }
+
+    /// A joint's definition as it is now.
+    pub fn joint(&self, id: JointId) -> JointDef {
+        let joint = self.expect_joint(id);
+        let (body_a, body_b) = self.joint_bodies(id);
+        let from_principal = |body: BodyId| self.expect(body).principal_from_body.inverse();
+        JointDef {
+            body_a,
+            body_b,
+            frame_a: from_principal(body_a) * joint.frame_a,
+            frame_b: from_principal(body_b) * joint.frame_b,
+            kind: joint.kind,
+            weld: joint.drive.weld,
+            limit_softness: joint.drive.limit_softness,
+            soft_zone: joint.drive.soft_zone,
+            spring: joint.drive.spring,
+            motor: joint.drive.motor,
+            friction_torque: joint.drive.friction,
+            strength: joint.strength,
+            collision: joint.collision,
+            state: joint.state,
+        }
+    }
+
+    /// Gives a joint another definition; both bodies wake.
+    ///
+    /// # Panics
+    /// If it names other bodies, or a number is not valid.
+    pub fn set_joint(&mut self, id: JointId, def: &JointDef) {
+        assert!(self.joint_bodies(id) == (def.body_a, def.body_b), "a joint keeps its bodies");
+        let from_body = |body: BodyId| self.expect(body).principal_from_body;
+        let (a, b) = (from_body(def.body_a), from_body(def.body_b));
+        self.expect_joint_mut(id).redefine(def, a, b);
+        self.joint_changed(id);
+    }
+
+    /// Gives a joint another motor, or none; both bodies wake. Cheap enough for every step.
+    ///
+    /// # Panics
+    /// If a number is not valid.
+    pub fn set_motor(&mut self, id: JointId, motor: Option<Motor>) {
+        assert!(motor.is_none_or(|motor| motor.is_valid()), "a motor's numbers are finite");
+        self.expect_joint_mut(id).set_motor(motor);
+        self.wake_joint(id);
+    }
+
+    /// Lets a joint act, or not; both bodies wake. One that broke acts again, with the gap that it has.
+    pub fn set_joint_state(&mut self, id: JointId, state: JointState) {
+        self.expect_joint_mut(id).state = state;
+        self.joint_changed(id);
+    }
+
+    /// What a joint carried in the last step.
+    pub fn reaction(&self, id: JointId) -> Reaction {
+        let reaction = self.expect_joint(id).reaction;
+        Reaction { force: linear(&reaction), torque: angular(&reaction) }
+    }
+
+    fn joint_pose(&self, joint: &Joint) -> JointPose {
+        let pose = |index| &self.bodies.at(index).world_from_principal;
+        JointPose::new(&joint.geometry(), pose(joint.a), pose(joint.b))
+    }
+
+    /// Frame B of a joint seen from its frame A: angles and travel.
+    pub fn joint_transform(&self, id: JointId) -> Transform {
+        self.joint_pose(self.expect_joint(id)).a_from_b()
+    }
+
+    /// How far the joint's anchors are from where it allows them to be, metres: of a ball joint their distance.
+    pub fn joint_gap(&self, id: JointId) -> f32 {
+        let joint = self.expect_joint(id);
+        anchor_gap(&joint.kind, &self.joint_pose(joint))
+    }
+
+    /// How far the joint is beyond its limits of rotation, radians; 0 inside.
+    pub fn joint_overshoot(&self, id: JointId) -> f32 {
+        let joint = self.expect_joint(id);
+        overshoot(&joint.kind, &self.joint_pose(joint))
+    }
+
+    fn expect_joint(&self, id: JointId) -> &Joint {
+        self.joints.get(id.index, id.generation).expect("the joint is there")
+    }
+
+    fn expect_joint_mut(&mut self, id: JointId) -> &mut Joint {
+        self.joints.get_mut(id.index, id.generation).expect("the joint is there")
+    }
+
+    fn wake_joint(&mut self, id: JointId) {
+        let &Joint { a, b, .. } = self.expect_joint(id);
+        wake(&mut self.bodies, a);
+        wake(&mut self.bodies, b);
+    }
+
+    fn joint_changed(&mut self, id: JointId) {
+        self.wake_joint(id);
+        self.parted.invalidate();
+    }
+}

@@ -1,0 +1,54 @@
+//! Pairs of bodies that pass through each other.
+
+use crate::arena::Arena;
+use crate::contact::ordered;
+use crate::joint::Joint;
+
+/// Pairs that the user disabled, and those that joints keep apart.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PartedPairs {
+    /// By the user: body indices, smaller first, ascending.
+    pub disabled: Vec<(u32, u32)>,
+    /// The same with the jointed pairs.
+    all: Vec<(u32, u32)>,
+    /// `all` misses something.
+    stale: bool,
+}
+
+impl PartedPairs {
+    pub fn new(disabled: Vec<(u32, u32)>) -> Self {
+        Self { disabled, all: Vec::new(), stale: true }
+    }
+
+    /// Joints came, went, or changed.
+    pub fn invalidate(&mut self) {
+        self.stale = true;
+    }
+
+    pub fn disable(&mut self, a: u32, b: u32) {
+        let pair = ordered(a, b);
+        if let Err(place) = self.disabled.binary_search(&pair) {
+            self.disabled.insert(place, pair);
+        }
+        self.stale = true;
+    }
+
+    /// Forgets a body that is taken out.
+    pub fn forget(&mut self, body: u32) {
+        self.disabled.retain(|&(a, b)| a != body && b != body);
+        self.stale = true;
+    }
+
+    /// All of them, ascending.
+    pub fn of(&mut self, joints: &Arena<Joint>) -> &[(u32, u32)] {
+        if core::mem::take(&mut self.stale) {
+            let jointed = joints.iter().filter(|(_, joint)| joint.parts_bodies());
+            self.all.clear();
+            self.all.extend_from_slice(&self.disabled);
+            self.all.extend(jointed.map(|(_, joint)| ordered(joint.a, joint.b)));
+            self.all.sort_unstable();
+            self.all.dedup();
+        }
+        &self.all
+    }
+}

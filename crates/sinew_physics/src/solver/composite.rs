@@ -1,0 +1,152 @@
+//! What mass a joint's springs and motors move: each side of the joint as one rigid piece.
+
+use super::tree::{Link, NONE};
+use super::{IslandSolver, SolverBody, SolverJoint};
+use crate::joint::{DIRECTIONS, JointRows};
+use crate::spatial::{Vec6, ZERO6, ZERO66, angular, linear, spd_inverse};
+use sinew_math::{Sym3, Vec3};
+
+/// Mass, first moment and inertia of rigidly held bodies about a common reference point.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Piece {
+    mass: f32,
+    moment: Vec3,
+    inertia: Sym3,
+}
+
+impl Piece {
+    fn of(body: &SolverBody, reference: Vec3) -> Self {
+        let arm = body.pose.translation - reference;
+        let own = Sym3::from_rotated_diagonal(body.pose.rotation, body.inertia);
+        Self { mass: body.mass, moment: arm * body.mass, inertia: own + parallel_axis(arm) * body.mass }
+    }
+
+    fn plus(self, other: &Self) -> Self {
+        Self {
+            mass: self.mass + other.mass,
+            moment: self.moment + other.moment,
+            inertia: self.inertia + other.inertia,
+        }
+    }
+
+    fn minus(self, other: &Self) -> Self {
+        Self {
+            mass: self.mass - other.mass,
+            moment: self.moment - other.moment,
+            inertia: self.inertia - other.inertia,
+        }
+    }
+
+    /// Velocity response matrix of rows on this piece; each row is given for a body whose centre is at `arm` from the
+    /// reference point. Nothing for a piece without mass.
+    fn add_response(&self, rows: &[Vec6], arm: Vec3, out: &mut [Vec6; DIRECTIONS]) {
+        if self.mass <= 0.0 {
+            return;
+        }
+        let center = self.moment / self.mass;
+        let inverse = (self.inertia - parallel_axis(center) * self.mass).inverse();
+        let wrench = |row: &Vec6| (linear(row), angular(row) + (arm - center).cross(linear(row)));
+        for (i, row) in rows.iter().enumerate() {
+            let (force, torque) = wrench(row);
+            let (push, turn) = (force / self.mass, inverse * torque);
+            for (k, other) in rows.iter().enumerate() {
+                let (force, torque) = wrench(other);
+                out[i][k] += push.dot(force) + turn.dot(torque);
+            }
+        }
+    }
+}
+
+/// `|r|² 1 − r rᵀ`
+fn parallel_axis(arm: Vec3) -> Sym3 {
+    Sym3::from_diagonal(Vec3::splat(arm.length_squared())) - Sym3::outer(arm)
+}
+
+impl IslandSolver {
+    /// Masses of all joints that need them, at the step's beginning.
+    pub(super) fn weigh_joints(&mut self) {
+        if self.joints.iter().all(|joint| !joint.drive.needs_mass()) {
+            return;
+        }
+        self.sum_pieces();
+        let pieces = &self.scratch.pieces;
+        for j in 0..self.joints.len() {
+            if !self.joints[j].drive.needs_mass() {
+                continue;
+            }
+            let joint = &self.joints[j];
+            let rows = JointRows::new(&joint.geometry, &joint.pose, [true; DIRECTIONS]);
+            let mut response = ZERO66;
+            for (side, rows) in [(joint.a, &rows.a), (joint.b, &rows.b)] {
+                let Some(link) = self.links.get(side as usize) else { continue };
+                let center = self.bodies[side as usize].pose.translation;
+                // Below this joint the subtree, above it the rest of the tree, unless a fixed body holds that.
+                let (piece, reference) = if link.joint as usize == j {
+                    (Some(pieces[side as usize]), self.reference(link.tree))
+                } else if self.is_tree_joint(j) {
+                    let child = if side == joint.a { joint.b } else { joint.a };
+                    let root = self.root(link.tree);
+                    let free = self.links[root].joint == NONE;
+                    let rest = pieces[root].minus(&pieces[child as usize]);
+                    (free.then_some(rest), self.reference(link.tree))
+                } else {
+                    (Some(Piece::of(&self.bodies[side as usize], center)), center)
+                };
+                if let Some(piece) = piece {
+                    piece.add_response(&rows[..], center - reference, &mut response);
+                }
+            }
+            self.joints[j].mass = masses(&self.joints[j], &rows, &response);
+        }
+    }
+
+    /// Each link's piece: itself with everything below.
+    fn sum_pieces(&mut self) {
+        self.scratch.pieces.clear();
+        for (i, link) in self.links.iter().enumerate() {
+            let reference = self.reference(link.tree);
+            self.scratch.pieces.push(Piece::of(&self.bodies[i], reference));
+        }
+        for i in (0..self.links.len()).rev() {
+            let parent = self.links[i].parent as usize;
+            if parent < self.links.len() {
+                self.scratch.pieces[parent] = self.scratch.pieces[parent].plus(&self.scratch.pieces[i]);
+            }
+        }
+    }
+
+    fn is_tree_joint(&self, joint: usize) -> bool {
+        let of =
+            |body: u32| self.links.get(body as usize).is_some_and(|link: &Link| link.joint as usize == joint);
+        of(self.joints[joint].a) || of(self.joints[joint].b)
+    }
+
+    fn root(&self, tree: u32) -> usize {
+        self.links.partition_point(|link| link.tree < tree)
+    }
+
+    fn reference(&self, tree: u32) -> Vec3 {
+        self.bodies[self.root(tree)].pose.translation
+    }
+}
+
+/// By direction: the mass that answers an impulse along each row while the rigid rows hold.
+fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS]) -> Vec6 {
+    let rigid = if joint.drive.weld.is_some() { 0 } else { rows.locked };
+    let mut out = ZERO6;
+    for row in rigid..rows.count {
+        let mut held = ZERO66;
+        let place = |k: usize| if k == rigid { row } else { k };
+        for i in 0..=rigid {
+            for k in 0..=rigid {
+                held[i][k] = response[place(i)][place(k)];
+            }
+        }
+        let inverse = spd_inverse(&held, rigid + 1);
+        let alone = response[row][row];
+        // Rows that depend on each other (a gimbal's end) leave the row by itself.
+        let mass = inverse.map_or(if alone > 0.0 { 1.0 / alone } else { 0.0 }, |m| m[rigid][rigid]);
+        out[rows.direction[row]] = mass;
+    }
+    out
+}

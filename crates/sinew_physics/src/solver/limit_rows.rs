@@ -1,0 +1,258 @@
+//! Rows of joint limits: unilateral, outside the tree factor, visited by the sweeps.
+
+use super::contact_rows::IMPACT_JUMP;
+use super::response::Response;
+use super::sweep::Pass;
+use super::tree::Link;
+use super::{IslandSolver, SolverJoint, advance};
+use crate::joint::def::Softness;
+use crate::joint::{JointPose, LimitImpulse, MAX_LIMITS, Row, Stop, stops, turns};
+use crate::spatial::{Vec6, add_scaled, angular, dot, linear};
+use sinew_math::{Vec3, max, min};
+
+/// Fastest rate with which a violated limit pushes back, rad/s or m/s.
+const LIMIT_PUSH: f32 = 4.0;
+/// A limit closer than this gets a row even at rest, radians or metres.
+const LIMIT_MARGIN: f32 = 0.15;
+/// A limit may end a substep this far beyond where it should, radians or metres, before its row is tightened.
+const LIMIT_SLACK: f32 = 0.01;
+/// A hit turns linear speed into rotation over at least this lever, metres.
+const LEVER: f32 = 0.2;
+/// In `relax` a limit with less room than this holds, radians or metres.
+const LIMIT_TOUCH: f32 = 1e-4;
+
+/// How a limit row answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Hardness {
+    /// A stop.
+    Hard,
+    /// A stop that a foreseen pose asks for: linearised at the end of the substep rather than at its start, to reach at
+    /// least this rate; lives through `solve` only.
+    Foreseen(f32),
+    /// A spring that pushes while there is no room, with this share of its damping.
+    Soft(Softness, f32),
+}
+
+/// A limit near its stop: `J v ≥ −room/h`.
+#[derive(Clone, Debug)]
+pub(super) struct LimitRow {
+    pub joint: u32,
+    /// Which of the joint's stops, and which memory it has.
+    stop: usize,
+    limit: usize,
+    /// Radians or metres.
+    room: f32,
+    hardness: Hardness,
+    /// Gradient of the room, world axes.
+    axis: Vec3,
+    row: Row,
+    /// Response of the row to its own impulse.
+    effective: f32,
+    /// Of this substep, ≥ 0.
+    pub impulse: f32,
+}
+
+impl IslandSolver {
+    /// Rows for the limits that may be reached within the substep.
+    pub(super) fn choose_limits(&mut self) {
+        // Impulses of the substep so far go on counting, so that `relax` can take back what `solve` gave too much.
+        for joint in &mut self.joints {
+            joint.limit_impulse = [Vec3::ZERO; MAX_LIMITS];
+        }
+        for row in self.limits.drain(..).filter(|row| !matches!(row.hardness, Hardness::Soft(..))) {
+            self.joints[row.joint as usize].limit_impulse[row.limit] += row.axis * row.impulse;
+        }
+        self.hit_rate = 0.0;
+        if !self.manifolds.is_empty() {
+            for v in &self.velocities[..self.links.len()] {
+                self.hit_rate = max(self.hit_rate, angular(v).length() + linear(v).length() / LEVER);
+            }
+        }
+        for (index, joint) in self.joints.iter().enumerate() {
+            let stops = stops(&joint.geometry.kind, &joint.pose);
+            if stops.iter().all(Option::is_none) {
+                continue;
+            }
+            let [slide, turn] = joint.anchor_rates(&self.velocities);
+            for (place, stop) in stops.into_iter().enumerate() {
+                let Some(stop) = stop else { continue };
+                let rate = if turns(stop.limit) { max(turn, self.hit_rate) } else { slide };
+                let reach = LIMIT_MARGIN + 2.0 * self.h * rate;
+                let soft = joint.drive.limit_softness;
+                if stop.room < reach {
+                    let hardness = soft.map_or(Hardness::Hard, |soft| Hardness::Soft(soft, 1.0));
+                    let axis = joint.pose.rotation_a * stop.axis;
+                    let impulse = share(joint.limit_impulse[stop.limit], axis);
+                    let impulse = if soft.is_some() { 0.0 } else { impulse };
+                    self.limits.push(LimitRow::new((index, joint), place, &stop, hardness, impulse));
+                }
+                let zone = joint.drive.soft_zone.filter(|zone| turns(stop.limit) && stop.room < zone.width);
+                if let (Some(zone), None) = (zone, soft) {
+                    let early = Stop { room: stop.room - zone.width, ..stop };
+                    // Damping comes with depth: all of it at once would be a blow at the zone's edge.
+                    let depth = min(-early.room / zone.width, 1.0);
+                    let hardness = Hardness::Soft(zone.softness, depth);
+                    self.limits.push(LimitRow::new((index, joint), place, &early, hardness, 0.0));
+                }
+            }
+        }
+    }
+
+    /// Looks where the velocities lead: a limit row is linear, and a limb that turns by much of a radian within the
+    /// substep may end up far beyond, or leave a cone on a side that its row does not face. For each such limit comes
+    /// one more row, linearised at the pose that the velocities lead to; the sweeps must then run again.
+    pub(super) fn tighten_limits(&mut self) -> bool {
+        let known = self.limits.len();
+        for i in 0..known {
+            let row = &self.limits[i];
+            if row.hardness != Hardness::Hard {
+                continue;
+            }
+            let joint = &self.joints[row.joint as usize];
+            let pose = |body: u32| {
+                advance(&self.bodies[body as usize].pose, &self.velocities[body as usize], self.h)
+            };
+            let predicted = JointPose::new(&joint.geometry, &pose(joint.a), &pose(joint.b));
+            let Some(stop) = stops(&joint.geometry.kind, &predicted)[row.stop] else { continue };
+            let beyond = min(row.room, 0.0) - stop.room;
+            if beyond < LIMIT_SLACK {
+                continue;
+            }
+            let rate = stop.row.rate(joint, &self.velocities) + beyond / self.h;
+            let axis = predicted.rotation_a * stop.axis;
+            let hardness = Hardness::Foreseen(rate);
+            let mut row = LimitRow { axis, row: stop.row, hardness, impulse: 0.0, ..row.clone() };
+            row.respond(&self.joints, &self.links, &self.response);
+            self.limits.push(row);
+        }
+        self.limits.len() > known
+    }
+
+    /// Limits come last in a sweep: they have the last word over contacts.
+    pub(super) fn visit_limits(&mut self, pass: Pass) {
+        for i in 0..self.limits.len() {
+            let joint = &self.joints[self.limits[i].joint as usize];
+            let (a, b) = (joint.a, joint.b);
+            if let Some(push) = self.limits[i].visit(joint, &self.velocities, pass, self.h) {
+                self.push(a, b, &push);
+            }
+        }
+    }
+
+    /// Limit impulses of this substep become memory.
+    pub(super) fn end_limits(&mut self) {
+        for joint in &mut self.joints {
+            for limit in &mut joint.limits {
+                *limit = LimitImpulse { now: Vec3::ZERO, before: limit.now };
+            }
+        }
+        for row in self.limits.iter().filter(|row| !matches!(row.hardness, Hardness::Soft(..))) {
+            let joint = &mut self.joints[row.joint as usize];
+            joint.limits[row.limit].now += joint.pose.rotation_a.inverse() * (row.axis * row.impulse);
+        }
+    }
+}
+
+/// The part of an impulse vector that a unilateral row about `axis` can have given.
+fn share(impulse: Vec3, axis: Vec3) -> f32 {
+    max(impulse.dot(axis), 0.0) / axis.length_squared()
+}
+
+impl LimitRow {
+    fn new(
+        (index, joint): (usize, &SolverJoint),
+        place: usize,
+        stop: &Stop,
+        hardness: Hardness,
+        impulse: f32,
+    ) -> Self {
+        Self {
+            joint: index as u32,
+            stop: place,
+            limit: stop.limit,
+            room: stop.room,
+            hardness,
+            axis: joint.pose.rotation_a * stop.axis,
+            row: stop.row,
+            effective: 0.0,
+            impulse,
+        }
+    }
+
+    /// Starts with the last substep's impulse, or with the one before if it jumped up since.
+    pub fn warm_start(&mut self, joints: &[SolverJoint], impulses: &mut [Vec6]) {
+        self.impulse = 0.0;
+        if self.hardness != Hardness::Hard {
+            return;
+        }
+        let joint = &joints[self.joint as usize];
+        let limit = joint.limits[self.limit];
+        let axis = joint.pose.rotation_a.inverse() * self.axis;
+        let (now, before) = (share(limit.now, axis), share(limit.before, axis));
+        self.impulse = if now > IMPACT_JUMP * before { before } else { now };
+        add_row(impulses, joint.a, &self.row.a, self.impulse);
+        add_row(impulses, joint.b, &self.row.b, self.impulse);
+    }
+
+    pub fn respond(&mut self, joints: &[SolverJoint], links: &[Link], response: &Response) {
+        let joint = &joints[self.joint as usize];
+        let (a, b) = (joint.a as usize, joint.b as usize);
+        let Row { a: ja, b: jb } = &self.row;
+        self.effective = dot(jb, &response.at(links, b, b, jb))
+            + dot(ja, &response.at(links, a, a, ja))
+            + dot(jb, &response.at(links, b, a, ja))
+            + dot(ja, &response.at(links, a, b, jb));
+    }
+
+    /// Change of the impulses on both bodies for the present velocities.
+    fn visit(
+        &mut self,
+        joint: &SolverJoint,
+        velocities: &[Vec6],
+        pass: Pass,
+        h: f32,
+    ) -> Option<(Vec6, Vec6)> {
+        if self.effective < 1e-9 {
+            return None;
+        }
+        let rate = self.row.rate(joint, velocities);
+        let new = match self.hardness {
+            Hardness::Soft(..) if pass != Pass::Solve || self.room >= 0.0 => return None,
+            Hardness::Soft(softness, damped) => {
+                let (stiffness, damping) = softness.of_mass(1.0 / self.effective);
+                // Implicit: λ = −h (k (room + h v) + c v), never pulling.
+                let gain = h * (h * stiffness + damped * damping);
+                let pull = gain * rate + h * stiffness * self.room + self.impulse;
+                self.impulse - pull / (1.0 + gain * self.effective)
+            }
+            _ => self.impulse + (self.wanted(pass, h) - rate) / self.effective,
+        };
+        let change = max(new, 0.0) - self.impulse;
+        self.impulse += change;
+        (change != 0.0).then(|| (self.row.a.map(|x| x * change), self.row.b.map(|x| x * change)))
+    }
+
+    /// Rate that a stop asks for.
+    fn wanted(&self, pass: Pass, h: f32) -> f32 {
+        match (pass, self.hardness) {
+            (Pass::Solve, Hardness::Foreseen(rate)) => rate,
+            (Pass::Solve, _) if self.room < 0.0 => min(-self.room / h, LIMIT_PUSH),
+            (Pass::Solve, _) => -self.room / h,
+            _ if self.room > LIMIT_TOUCH => -self.room / h,
+            _ => 0.0,
+        }
+    }
+}
+
+impl Row {
+    fn rate(&self, joint: &SolverJoint, velocities: &[Vec6]) -> f32 {
+        dot(&self.a, &velocities[joint.a as usize]) + dot(&self.b, &velocities[joint.b as usize])
+    }
+}
+
+/// Adds `row · impulse` to a body, if it moves.
+pub(super) fn add_row(impulses: &mut [Vec6], body: u32, row: &Vec6, impulse: f32) {
+    if let Some(p) = impulses.get_mut(body as usize) {
+        add_scaled(p, row, impulse);
+    }
+}

@@ -1,0 +1,200 @@
+//! The joints of the trees: their rows, the factor, and the exact solve of velocities (RATTLE) and positions (SHAKE).
+
+use super::sweep::Pass;
+use super::tree::{self, NONE};
+use super::{IslandSolver, advance};
+use crate::joint::JointPose;
+use crate::spatial::{ZERO6, ZERO66, add_scaled, linear};
+use sinew_math::max;
+
+/// Most rounds of position corrections in a pass, and the error that needs none, m or rad.
+const POSITION_CORRECTIONS: usize = 6;
+const POSITION_TOLERANCE: f32 = 1e-6;
+
+impl IslandSolver {
+    /// Poses and rows of all joints.
+    pub(super) fn refresh_joints(&mut self) {
+        for joint in &mut self.joints {
+            let (a, b) = (&self.bodies[joint.a as usize].pose, &self.bodies[joint.b as usize].pose);
+            joint.pose = JointPose::new(&joint.geometry, a, b);
+        }
+        self.refresh_rows();
+    }
+
+    pub(super) fn refresh_rows(&mut self) {
+        for joint in &mut self.joints {
+            joint.refresh_rows(&self.velocities, self.h);
+        }
+    }
+
+    /// Rows of the tree joints and the factor of all trees.
+    pub(super) fn factor_joints(&mut self) {
+        let inertia = &mut self.scratch.inertia;
+        inertia.clear();
+        for (i, link) in self.links.iter_mut().enumerate() {
+            let body = &self.bodies[i];
+            let mut m = ZERO66;
+            let r = body.pose.rotation;
+            let angular = sinew_math::Sym3::from_rotated_diagonal(r, body.inertia + body.excess).to_mat3();
+            for k in 0..3 {
+                m[k][k] = body.mass;
+                let row = angular.row(k);
+                m[3 + k][3..].copy_from_slice(&[row.x, row.y, row.z]);
+            }
+            inertia.push(m);
+            if link.joint == NONE {
+                link.rows = 0;
+                continue;
+            }
+            let joint = &self.joints[link.joint as usize];
+            let rows = &joint.rows;
+            let child_is_b = joint.b as usize == i;
+            link.rows = rows.count;
+            link.rigid = joint.rigid;
+            (link.child, link.parent_rows) = if child_is_b { (rows.b, rows.a) } else { (rows.a, rows.b) };
+            link.compliance = core::array::from_fn(|row| joint.compliance(row));
+        }
+        tree::factor(&mut self.links, inertia);
+    }
+
+    /// Solves the joint rows exactly.
+    pub(super) fn project_joints(&mut self, pass: Pass) {
+        if !self.is_articulated() {
+            return;
+        }
+        let solve = pass == Pass::Solve;
+        self.scratch.residuals.clear();
+        for link in &self.links {
+            let residual = match self.joints.get(link.joint as usize) {
+                Some(joint) => joint.residual(&joint.rate(&self.velocities), solve, self.h),
+                None => ZERO6,
+            };
+            self.scratch.residuals.push(residual);
+        }
+        self.scratch.loop_residuals.clear();
+        for of in &self.loops.joints {
+            let joint = &self.joints[of.joint as usize];
+            self.scratch.loop_residuals.push(joint.residual(&joint.rate(&self.velocities), solve, self.h));
+        }
+        self.scratch.impulses.clear();
+        self.scratch.impulses.resize(self.links.len(), ZERO6);
+        self.solve_trees();
+    }
+
+    /// SHAKE: removes the position error at the pose that the velocities lead to, with the same factor, until it is
+    /// small enough (one or two rounds but for violent hits). The factor is that of the substep's beginning: for a body
+    /// that turns by more than a radian it may lead away, so a round that does not halve the error is taken back and
+    /// the next substep goes on from there.
+    pub(super) fn correct_positions(&mut self) {
+        if !self.is_articulated() {
+            return;
+        }
+        let moving = self.links.len();
+        let mut error = self.predict_errors();
+        for _ in 0..POSITION_CORRECTIONS {
+            if error < POSITION_TOLERANCE {
+                break;
+            }
+            self.scratch.before.clear();
+            self.scratch.before.extend_from_slice(&self.velocities[..moving]);
+            self.scratch.impulses.clear();
+            self.scratch.impulses.resize(moving, ZERO6);
+            self.solve_trees();
+            let left = self.predict_errors();
+            let better = left < 0.5 * error;
+            if !better {
+                if left > error {
+                    self.velocities[..moving].copy_from_slice(&self.scratch.before);
+                }
+                break;
+            }
+            error = left;
+        }
+    }
+
+    /// Residuals that would remove the position errors at the predicted pose; gives the largest error (m or rad).
+    fn predict_errors(&mut self) -> f32 {
+        let h = self.h;
+        let mut largest = 0.0;
+        let mut residual = |joint: &super::SolverJoint| {
+            let pose =
+                |body: u32| advance(&self.bodies[body as usize].pose, &self.velocities[body as usize], h);
+            let predicted = JointPose::new(&joint.geometry, &pose(joint.a), &pose(joint.b));
+            let error = joint.rigid_error(&predicted);
+            let mut residual = ZERO6;
+            for row in 0..joint.rigid {
+                residual[row] = -error[row] / h;
+                largest = max(largest, error[row].abs());
+            }
+            residual
+        };
+        self.scratch.residuals.clear();
+        for link in &self.links {
+            self.scratch.residuals.push(self.joints.get(link.joint as usize).map_or(ZERO6, &mut residual));
+        }
+        self.scratch.loop_residuals.clear();
+        for of in &self.loops.joints {
+            self.scratch.loop_residuals.push(if of.is_exact() {
+                residual(&self.joints[of.joint as usize])
+            } else {
+                ZERO6
+            });
+        }
+        largest
+    }
+
+    /// Adds to the velocities the answer of the trees to `scratch.impulses` and `scratch.residuals`, exact loops closed.
+    pub(super) fn solve_trees(&mut self) {
+        let s = &mut self.scratch;
+        s.dv.clear();
+        s.dv.resize(self.links.len(), ZERO6);
+        tree::solve(&self.links, &mut s.impulses, &mut s.residuals, &mut s.dv);
+        for (v, dv) in self.velocities.iter_mut().zip(&s.dv) {
+            add_scaled(v, dv, 1.0);
+        }
+        if self.loops.has_exact() {
+            s.impulses.fill(ZERO6);
+            s.residuals.fill(ZERO6);
+            self.loops.close(&self.joints, &s.loop_residuals, &s.dv, &mut s.impulses);
+            s.dv.fill(ZERO6);
+            tree::solve(&self.links, &mut s.impulses, &mut s.residuals, &mut s.dv);
+            for (v, dv) in self.velocities.iter_mut().zip(&s.dv) {
+                add_scaled(v, dv, 1.0);
+            }
+        }
+    }
+
+    /// [`solve_trees`](Self::solve_trees) for `scratch.impulses` alone.
+    pub(super) fn answer_impulses(&mut self) {
+        self.scratch.residuals.clear();
+        self.scratch.residuals.resize(self.links.len(), ZERO6);
+        self.scratch.loop_residuals.clear();
+        self.scratch.loop_residuals.resize(self.loops.joints.len(), ZERO6);
+        self.solve_trees();
+    }
+
+    /// The linear force of each tree joint on its child in this substep: what the momentum of the subtree below gained,
+    /// less what contacts gave it.
+    pub(super) fn store_joint_forces(&mut self) {
+        if !self.is_articulated() {
+            return;
+        }
+        let push = &mut self.contact_push;
+        for i in 0..self.links.len() {
+            let gained = linear(&self.velocities[i]) - linear(&self.unconstrained[i]);
+            push[i] = gained * self.bodies[i].mass - push[i];
+        }
+        for (i, link) in self.links.iter().enumerate().rev() {
+            if link.joint == NONE {
+                continue;
+            }
+            let total = push[i];
+            if (link.parent as usize) < push.len() {
+                push[link.parent as usize] += total;
+            }
+            let joint = &mut self.joints[link.joint as usize];
+            let on_b = if joint.b as usize == i { total } else { -total };
+            joint.force = on_b / self.h;
+        }
+    }
+}

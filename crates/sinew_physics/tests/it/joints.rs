@@ -1,0 +1,532 @@
+//! Every kind of joint, its springs, motors, limits and strength, against closed forms.
+
+use crate::build::{ball, joint};
+use sinew_math::{Range, Rotation, SwingTwistLimit, Sym3, Transform, Vec3};
+use sinew_physics::*;
+
+const G: f32 = 9.81;
+
+fn world(gravity: f32) -> World {
+    World::new(WorldDef { gravity: Vec3::NEG_Y * gravity, sleeping: Sleeping::Off, ..WorldDef::default() })
+}
+
+fn anchor(world: &mut World) -> BodyId {
+    world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() })
+}
+
+/// A body without shape.
+fn lump(world: &mut World, position: Vec3, mass: f32, inertia: f32) -> BodyId {
+    let inertia = Sym3::from_diagonal(Vec3::splat(inertia));
+    let mass = Some(MassProperties { mass, center: Vec3::ZERO, inertia });
+    world.add_body(&BodyDef { position, mass, ..BodyDef::default() })
+}
+
+/// Frame at a point whose x axis is the world's z: a hinge that lets things swing in the picture.
+fn facing(at: Vec3) -> Transform {
+    Transform::new(at, Rotation::from_arc(Vec3::X, Vec3::Z))
+}
+
+const HINGE: JointKind = JointKind::Hinge { limit: None };
+
+/// An arm of 2 kg whose centre is at x = 0.5, hinged about z at the origin. Moment about the hinge: 0.58 kg m².
+fn arm(gravity: f32) -> (World, BodyId, JointDef) {
+    let mut world = world(gravity);
+    let a = anchor(&mut world);
+    let b = lump(&mut world, Vec3::X * 0.5, 2.0, 0.08);
+    let def = joint(&world, a, b, facing(Vec3::ZERO), HINGE);
+    (world, b, def)
+}
+
+const ARM_MOMENT: f32 = 0.58;
+
+fn angle(world: &World, body: BodyId) -> f32 {
+    let p = world.center_of_mass(body);
+    sinew_math::trig::atan2(p.y, p.x)
+}
+
+fn run(world: &mut World, seconds: f32) {
+    for _ in 0..(seconds * 60.0) as usize {
+        world.step();
+    }
+}
+
+fn spring(hertz: f32, damping_ratio: f32) -> Softness {
+    Softness::Frequency { hertz, damping_ratio }
+}
+
+fn turned(angle: f32) -> Transform {
+    Transform::new(Vec3::ZERO, Rotation::from_axis_angle(Vec3::X, angle))
+}
+
+fn near(found: f32, expected: f32, share: f32, what: &str) {
+    assert!((found - expected).abs() <= share * expected.abs(), "{what}: {found} is not {expected}");
+}
+
+#[test]
+fn a_motor_holds_an_arm_with_the_error_of_its_stiffness() {
+    for (hertz, damping_ratio) in [(3.0, 0.3), (5.0, 1.0), (10.0, 0.7), (25.0, 1.0)] {
+        let (mut world, b, mut def) = arm(G);
+        def.motor = Some(Motor::toward(Transform::IDENTITY, spring(hertz, damping_ratio)));
+        world.add_joint(&def);
+        run(&mut world, 6.0);
+        let sag = -angle(&world, b);
+        let omega = core::f32::consts::TAU * hertz;
+        // k φ = m g l cos φ
+        let expected = 2.0 * G * 0.5 * sinew_math::trig::cos(sag) / (ARM_MOMENT * omega * omega);
+        near(sag, expected, 0.02, "sag");
+    }
+}
+
+#[test]
+fn a_motor_steps_as_a_second_order_system() {
+    for (hertz, zeta) in [(0.5, 0.2), (1.0, 0.5), (2.0, 0.7), (2.0, 1.5), (4.0, 0.3)] {
+        let (mut world, b, mut def) = arm(0.0);
+        let goal = 0.5;
+        def.motor = Some(Motor::toward(turned(goal), spring(hertz, zeta)));
+        world.add_joint(&def);
+        let omega = core::f32::consts::TAU * hertz;
+        for step in 1..=120 {
+            world.step();
+            // Velocities stand between positions: half a substep ahead, as a falling body is.
+            let t = step as f32 / 60.0 + 0.5 / 240.0;
+            let decay = (-zeta * omega * t).exp();
+            let expected = if zeta < 1.0 {
+                let root = (1.0 - zeta * zeta).sqrt();
+                let phase = omega * root * t;
+                1.0 - decay * (phase.cos() + zeta / root * phase.sin())
+            } else {
+                let root = (zeta * zeta - 1.0).sqrt();
+                let phase = omega * root * t;
+                1.0 - decay * (phase.cosh() + zeta / root * phase.sinh())
+            };
+            let found = angle(&world, b) / goal;
+            assert!(
+                (found - expected).abs() < 0.02,
+                "{hertz} Hz, ζ {zeta}, t {t}: {found} is not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_weak_motor_pushes_with_its_cap_and_no_more() {
+    let (mut world, b, mut def) = arm(0.0);
+    def.motor = Some(Motor::spin(1000.0, 3.0));
+    world.add_joint(&def);
+    run(&mut world, 1.0);
+    near(world.velocity(b).angular.z, 3.0 / ARM_MOMENT, 0.01, "speed after a second at full torque");
+    let (mut world, b, mut def) = arm(0.0);
+    def.motor = Some(Motor::spin(2.0, 3.0));
+    let id = world.add_joint(&def);
+    run(&mut world, 1.0);
+    near(world.velocity(b).angular.z, 2.0, 0.005, "speed wanted");
+    world.set_motor(id, Some(Motor::spin(-2.0, 3.0)));
+    run(&mut world, 0.3);
+    near(world.velocity(b).angular.z, 2.0 - 0.3 * 3.0 / ARM_MOMENT, 0.03, "braking at full torque");
+    run(&mut world, 1.5);
+    near(world.velocity(b).angular.z, -2.0, 0.005, "the other way");
+}
+
+#[test]
+fn a_motor_too_weak_for_the_load_sinks_and_one_strong_enough_holds() {
+    for (torque, holds) in [(9.0, false), (11.0, true)] {
+        let (mut world, b, mut def) = arm(G);
+        // m g l = 9.81 N·m
+        def.motor =
+            Some(Motor { max_torque: torque, ..Motor::toward(Transform::IDENTITY, spring(20.0, 1.0)) });
+        world.add_joint(&def);
+        run(&mut world, 2.0);
+        assert_eq!(angle(&world, b) > -0.05, holds, "{torque} N·m: {}", angle(&world, b));
+    }
+}
+
+#[test]
+fn motors_in_a_chain_saturate_only_where_they_are_weak() {
+    // Three horizontal links; the root motor must carry 1.5 + 2.5·… of torque, the tip's little.
+    let mut world = world(G);
+    let mut last = anchor(&mut world);
+    let mut joints = Vec::new();
+    for i in 0..3 {
+        let b = lump(&mut world, Vec3::X * (i as f32 + 0.5), 1.0, 0.08);
+        let mut def = joint(&world, last, b, facing(Vec3::X * i as f32), HINGE);
+        // Loads: 44, 19.6 and 4.9 N·m.
+        let max_torque = [60.0, 10.0, 20.0][i];
+        def.motor = Some(Motor { max_torque, ..Motor::toward(Transform::IDENTITY, spring(15.0, 1.0)) });
+        joints.push(world.add_joint(&def));
+        last = b;
+    }
+    let mut most = [0.0f32; 3];
+    for _ in 0..180 {
+        world.step();
+        for (most, &id) in most.iter_mut().zip(&joints) {
+            *most = most.max(sinew_math::limits::hinge_angle(world.joint_transform(id).rotation).abs());
+        }
+    }
+    assert!(most[0] < 0.1, "the root holds: {most:?}");
+    assert!(most[1] > 0.7, "the middle gives way: {most:?}");
+    assert!(most[2] < 0.1, "the tip holds: {most:?}");
+}
+
+#[test]
+fn a_slider_slides_along_its_axis_alone_and_stops_at_its_end() {
+    let mut world = world(G);
+    let a = anchor(&mut world);
+    let b = lump(&mut world, Vec3::ZERO, 2.0, 0.1);
+    let down = Rotation::from_axis_angle(Vec3::Z, -0.5);
+    let limit = Some(Range::new(-1.0, 2.0));
+    let def = joint(&world, a, b, Transform::new(Vec3::ZERO, down), JointKind::Slider { limit });
+    let id = world.add_joint(&def);
+    run(&mut world, 0.5);
+    let slid = world.joint_transform(id);
+    // Symplectic Euler falls half a substep further.
+    let expected = 0.5 * G * 0.5f32.sin() * 0.5 * (0.5 + 1.0 / 240.0);
+    near(slid.translation.x, expected, 0.005, "travel");
+    assert!(slid.translation.y.abs() < 1e-4 && slid.rotation.angle_to(Rotation::IDENTITY) < 1e-3);
+    run(&mut world, 2.0);
+    assert!((world.joint_transform(id).translation.x - 2.0).abs() < 1e-3, "it stops at its end");
+    assert!(world.velocity(b).linear.length() < 1e-3);
+    world.set_motor(id, Some(Motor::push(-1.0, 100.0)));
+    run(&mut world, 1.0);
+    near(world.joint_transform(id).translation.x, 1.0, 0.02, "driven back");
+}
+
+#[test]
+fn distances_are_rods_ropes_and_springs() {
+    // A rod swings with its length.
+    let mut rod = world(G);
+    let a = anchor(&mut rod);
+    let b = lump(&mut rod, Vec3::X, 1.0, 0.01);
+    let kind = JointKind::Distance { range: Range::new(1.0, 1.0) };
+    let id = rod.add_joint(&JointDef::between(a, b, Transform::IDENTITY, Transform::IDENTITY, kind));
+    for _ in 0..300 {
+        rod.step();
+        assert!(rod.joint_gap(id) < 1e-4, "the rod keeps its length: {}", rod.joint_gap(id));
+    }
+    // A rope lets its end fall, then holds it.
+    let mut rope = world(G);
+    let a = anchor(&mut rope);
+    let b = lump(&mut rope, Vec3::X * 0.1, 1.0, 0.01);
+    let kind = JointKind::Distance { range: Range::new(0.0, 1.5) };
+    let id = rope.add_joint(&JointDef::between(a, b, Transform::IDENTITY, Transform::IDENTITY, kind));
+    run(&mut rope, 0.3);
+    near(-rope.center_of_mass(b).y, 0.5 * G * 0.3 * (0.3 + 1.0 / 240.0), 0.01, "slack");
+    for _ in 0..600 {
+        rope.step();
+        assert!(rope.joint_gap(id) < 5e-3, "the rope holds: {}", rope.joint_gap(id));
+    }
+    // A spring stretches by mg/k.
+    let mut elastic = world(G);
+    let a = anchor(&mut elastic);
+    let b = lump(&mut elastic, Vec3::NEG_Y, 3.0, 0.01);
+    let kind = JointKind::Distance { range: Range::new(0.0, 100.0) };
+    let mut def = JointDef::between(a, b, Transform::IDENTITY, Transform::IDENTITY, kind);
+    def.spring = Some(Spring {
+        softness: Softness::Stiffness { stiffness: 500.0, damping: 30.0 },
+        rest: Transform::from_translation(Vec3::X),
+    });
+    elastic.add_joint(&def);
+    run(&mut elastic, 10.0);
+    near(-elastic.center_of_mass(b).y - 1.0, 3.0 * G / 500.0, 0.005, "mg/k");
+}
+
+#[test]
+fn an_undamped_spring_keeps_its_period_and_energy() {
+    let mut world = world(0.0);
+    let a = anchor(&mut world);
+    let b = lump(&mut world, Vec3::X * 0.2, 2.0, 0.1);
+    let kind = JointKind::Slider { limit: None };
+    let mut def = JointDef::between(a, b, Transform::IDENTITY, Transform::IDENTITY, kind);
+    def.spring = Some(Spring { softness: spring(1.5, 0.0), rest: Transform::IDENTITY });
+    world.add_joint(&def);
+    for step in 1..=600 {
+        world.step();
+        let expected = 0.2 * (core::f32::consts::TAU * 1.5 * step as f32 / 60.0).cos();
+        let found = world.center_of_mass(b).x;
+        assert!((found - expected).abs() < 0.008, "step {step}: {found} is not {expected}");
+    }
+}
+
+#[test]
+fn a_soft_weld_bends_under_load_by_its_stiffness() {
+    let mut world = world(G);
+    let a = anchor(&mut world);
+    let b = lump(&mut world, Vec3::X * 0.5, 1.0, 0.05);
+    let mut def = joint(&world, a, b, Transform::IDENTITY, JointKind::Fixed);
+    def.weld = Some(Softness::Stiffness { stiffness: 400.0, damping: 40.0 });
+    let id = world.add_joint(&def);
+    run(&mut world, 8.0);
+    let bent = world.joint_transform(id);
+    let moment = G * world.center_of_mass(b).x;
+    near(-bent.rotation.to_scaled_axis().z, moment / 400.0, 0.02, "bend");
+    near(-bent.translation.y, G / 400.0, 0.02, "sag");
+    let exact = joint(&world, a, b, Transform::IDENTITY, JointKind::Fixed);
+    let exact = JointDef { frame_a: exact.frame_a, frame_b: def.frame_b, ..exact };
+    world.set_joint(id, &exact);
+    run(&mut world, 1.0);
+    assert!(
+        world.joint_gap(id) < 1e-4 && world.joint_transform(id).rotation.angle_to(Rotation::IDENTITY) < 1e-3
+    );
+}
+
+#[test]
+fn six_directions_are_free_or_held_as_said() {
+    use AxisMotion::{Free, Limited, Locked};
+    // Free in x and about z alone: a bead that may turn like a wheel.
+    let six = SixDof {
+        linear: [Free, Locked, Limited(Range::new(-0.1, 0.1))],
+        twist: Locked,
+        swing_y: Locked,
+        swing_z: Free,
+    };
+    let mut world = world(0.0);
+    let a = anchor(&mut world);
+    let b = lump(&mut world, Vec3::ZERO, 1.0, 0.1);
+    let kind = JointKind::SixDof(six);
+    let id = world.add_joint(&joint(&world, a, b, Transform::IDENTITY, kind));
+    world.set_velocity(b, Velocity { linear: Vec3::new(1.0, 1.0, 1.0), angular: Vec3::new(1.0, 1.0, 1.0) });
+    for _ in 0..60 {
+        world.step();
+        assert!(world.joint_gap(id) < 1e-3);
+    }
+    let seen = world.joint_transform(id);
+    near(seen.translation.x, 1.0, 0.01, "free travel");
+    assert!(seen.translation.y.abs() < 1e-4 && (seen.translation.z - 0.1).abs() < 2e-3, "{seen:?}");
+    let v = seen.rotation.to_scaled_axis();
+    assert!(v.x.abs() < 5e-3 && v.y.abs() < 5e-3, "{v}");
+    near(v.z, 1.0, 0.02, "free turn");
+}
+
+#[test]
+fn a_hand_drags_a_body_to_it_and_no_harder_than_it_may() {
+    let mut world = world(G);
+    let hand = anchor(&mut world);
+    let b = lump(&mut world, Vec3::new(2.0, 0.0, 0.0), 3.0, 0.1);
+    let id = world.add_joint(&JointDef::drag(hand, b, Vec3::ZERO, spring(3.0, 1.0), 200.0));
+    run(&mut world, 4.0);
+    let sag = G / (core::f32::consts::TAU * 3.0).powi(2);
+    assert!(
+        (world.center_of_mass(b) - Vec3::NEG_Y * sag).length() < 0.02 * sag + 1e-4,
+        "{}",
+        world.center_of_mass(b)
+    );
+    let weak = Motor { max_force: 20.0, max_torque: 0.0, ..world.joint(id).motor.expect("it has one") };
+    world.set_motor(id, Some(weak));
+    let before = world.center_of_mass(b).y;
+    run(&mut world, 1.0);
+    // 20 N against 29.43 N.
+    near(before - world.center_of_mass(b).y, 0.5 * (G - 20.0 / 3.0), 0.02, "fall under the pull");
+}
+
+#[test]
+fn friction_slows_a_hinge_by_its_torque() {
+    let (mut world, b, mut def) = arm(0.0);
+    def.friction_torque = 0.5;
+    world.add_joint(&def);
+    world.set_velocity(b, Velocity { linear: Vec3::Y * 2.5, angular: Vec3::Z * 5.0 });
+    run(&mut world, 2.0);
+    near(world.velocity(b).angular.z, 5.0 - 2.0 * 0.5 / ARM_MOMENT, 0.02, "slowed");
+    run(&mut world, 6.0);
+    assert!(world.velocity(b).angular.length() < 1e-3, "and stopped");
+}
+
+#[test]
+fn reactions_are_the_weights_that_hang_below() {
+    let mut world = world(G);
+    let mut last = anchor(&mut world);
+    let mut joints = Vec::new();
+    for i in 0..5 {
+        let b = lump(&mut world, Vec3::NEG_Y * (i as f32 + 0.5), 1.0 + i as f32, 0.1);
+        joints.push(world.add_joint(&ball(&world, last, b, Vec3::NEG_Y * i as f32)));
+        last = b;
+    }
+    run(&mut world, 1.0);
+    for (i, &id) in joints.iter().enumerate() {
+        let below: f32 = (i..5).map(|k| 1.0 + k as f32).sum();
+        near(world.reaction(id).force.y, below * G, 0.001, "weight below");
+    }
+    // A beam held at one end: the moment is that of its weight.
+    let mut beam = self::world(G);
+    let a = anchor(&mut beam);
+    let b = lump(&mut beam, Vec3::X * 0.5, 4.0, 0.3);
+    let id = beam.add_joint(&joint(&beam, a, b, Transform::IDENTITY, JointKind::Fixed));
+    run(&mut beam, 0.5);
+    near(beam.reaction(id).torque.z, 4.0 * G * 0.5, 0.001, "moment of the beam");
+}
+
+#[test]
+fn joints_break_above_their_strength_and_tell() {
+    for (strength, breaks) in [(18.0, true), (21.0, false)] {
+        let mut world = world(G);
+        let a = anchor(&mut world);
+        let b = lump(&mut world, Vec3::NEG_Y, 2.0, 0.1); // 19.62 N
+        let mut def = ball(&world, a, b, Vec3::ZERO);
+        def.strength = Strength { force: strength, ..Strength::UNBREAKABLE };
+        let id = world.add_joint(&def);
+        let mut told = 0;
+        for _ in 0..60 {
+            world.step();
+            told += world.events().broken.len();
+        }
+        assert_eq!(told, usize::from(breaks), "strength {strength}");
+        assert_eq!(world.joint(id).state == JointState::Disabled, breaks);
+        assert_eq!(world.center_of_mass(b).y < -1.5, breaks, "it falls if it broke");
+        if breaks {
+            world.set_joint(
+                id,
+                &JointDef { state: JointState::Enabled, ..ball(&world, a, b, world.center_of_mass(b)) },
+            );
+            let y = world.center_of_mass(b).y;
+            world.set_velocity(b, Velocity::default());
+            run(&mut world, 1.0);
+            assert!((world.center_of_mass(b).y - y).abs() < 1e-3, "attached anew where it is");
+        }
+    }
+    // By torque.
+    let mut world = world(G);
+    let a = anchor(&mut world);
+    let b = lump(&mut world, Vec3::X, 1.0, 0.1);
+    let mut def = joint(&world, a, b, Transform::IDENTITY, JointKind::Fixed);
+    def.strength = Strength { torque: 9.0, ..Strength::UNBREAKABLE };
+    world.add_joint(&def);
+    world.step();
+    assert_eq!(world.events().broken.len(), 1);
+}
+
+#[test]
+fn soft_limits_give_by_their_stiffness() {
+    let (mut world, b, mut def) = arm(G);
+    def.kind = JointKind::Hinge { limit: Some(Range::new(-0.2, 1.0)) };
+    def.limit_softness = Some(Softness::Stiffness { stiffness: 100.0, damping: 10.0 });
+    world.add_joint(&def);
+    run(&mut world, 5.0);
+    let at = -angle(&world, b);
+    near(at - 0.2, G * sinew_math::trig::cos(at) / 100.0, 0.02, "beyond the soft stop");
+}
+
+#[test]
+fn a_soft_zone_brakes_before_the_stop() {
+    let hardest = |zone: Option<SoftZone>| {
+        let (mut world, b, mut def) = arm(0.0);
+        def.kind = JointKind::Hinge { limit: Some(Range::new(-1.0, 1.0)) };
+        def.soft_zone = zone;
+        let id = world.add_joint(&def);
+        world.set_velocity(b, Velocity { linear: Vec3::Y * 2.0, angular: Vec3::Z * 4.0 });
+        let mut hardest = 0.0f32;
+        for _ in 0..120 {
+            world.step();
+            hardest = hardest.max(world.reaction(id).torque.length());
+            assert!(world.joint_overshoot(id) < 0.01);
+        }
+        hardest
+    };
+    let hard = hardest(None);
+    let soft = hardest(Some(SoftZone { width: 0.2, softness: spring(5.0, 0.7) }));
+    assert!(soft < 0.5 * hard, "{soft} N·m with, {hard} N·m without");
+}
+
+#[test]
+fn limits_hold_against_load_for_every_kind() {
+    let cone = SwingTwistLimit {
+        swing_y: Range::degrees(-30.0, 40.0),
+        swing_z: Range::degrees(-20.0, 25.0),
+        twist: Range::degrees(-10.0, 15.0),
+    };
+    let six = SixDof {
+        linear: [AxisMotion::Limited(Range::new(-0.2, 0.3)); 3],
+        twist: AxisMotion::Limited(Range::degrees(-10.0, 10.0)),
+        swing_y: AxisMotion::Limited(Range::degrees(-20.0, 20.0)),
+        swing_z: AxisMotion::Locked,
+    };
+    let kinds = [
+        JointKind::Ball { limit: Some(cone) },
+        JointKind::Universal { limit: Some(cone) },
+        JointKind::Hinge { limit: Some(Range::degrees(-30.0, 45.0)) },
+        JointKind::Slider { limit: Some(Range::new(-0.3, 0.5)) },
+        JointKind::SixDof(six),
+        JointKind::Distance { range: Range::new(0.2, 0.9) },
+    ];
+    for kind in kinds {
+        for pull in [Vec3::new(3.0, -9.0, 4.0), Vec3::new(-9.0, 2.0, -5.0), Vec3::new(0.5, 9.0, 9.0)] {
+            let mut world =
+                World::new(WorldDef { gravity: pull, sleeping: Sleeping::Off, ..WorldDef::default() });
+            let a = anchor(&mut world);
+            let b = lump(&mut world, Vec3::X * 0.5, 2.0, 0.08);
+            let mut def = joint(&world, a, b, Transform::IDENTITY, kind);
+            if matches!(kind, JointKind::Distance { .. }) {
+                def.frame_b = Transform::IDENTITY;
+            }
+            def.friction_torque = 0.2;
+            let id = world.add_joint(&def);
+            world.set_velocity(b, Velocity { linear: Vec3::ZERO, angular: Vec3::new(4.0, -2.0, 3.0) });
+            let (mut gap, mut over) = (0.0f32, 0.0f32);
+            for _ in 0..600 {
+                world.step();
+                gap = gap.max(world.joint_gap(id));
+                over = over.max(world.joint_overshoot(id));
+            }
+            assert!(gap < 5e-3 && over < 0.02, "{kind:?} under {pull}: gap {gap} m, overshoot {over} rad");
+        }
+    }
+}
+
+/// A parallelogram of four bars hinged about z, hung by its upper bar's ends: three moving bars, four hinges, one loop,
+/// whose rows say several things twice.
+#[test]
+fn a_four_bar_linkage_of_hinges_stays_closed() {
+    let mut world = world(G);
+    let a = anchor(&mut world);
+    let bar = |world: &mut World, at: Vec3| lump(world, at, 1.0, 0.1);
+    let left = bar(&mut world, Vec3::new(0.0, -0.5, 0.0));
+    let right = bar(&mut world, Vec3::new(1.0, -0.5, 0.0));
+    let low = bar(&mut world, Vec3::new(0.5, -1.0, 0.0));
+    let mut joints = Vec::new();
+    for (p, q, at) in [
+        (a, left, Vec3::ZERO),
+        (a, right, Vec3::X),
+        (left, low, Vec3::NEG_Y),
+        (right, low, Vec3::new(1.0, -1.0, 0.0)),
+    ] {
+        joints.push(world.add_joint(&joint(&world, p, q, facing(at), HINGE)));
+    }
+    world.apply_impulse(low, Vec3::X * 6.0, world.center_of_mass(low));
+    world.step(); // the blow reaches the other bars
+    let start = world.energy().total();
+    let (mut gap, mut swing) = (0.0f32, 0.0f32);
+    for _ in 0..1200 {
+        world.step();
+        gap = joints.iter().map(|&id| world.joint_gap(id)).fold(gap, f32::max);
+        swing = swing.max(world.center_of_mass(low).x - 0.5);
+        let level = world.transform(low).rotation.angle_to(Rotation::IDENTITY);
+        assert!(level < 5e-3, "the lower bar stays level: {level}");
+    }
+    let drift = (world.energy().total() - start) / (3.0 * G);
+    assert!(gap < 1e-4, "gap {gap}");
+    assert!(drift.abs() < 0.01, "energy drift {drift}");
+    assert!(swing > 0.2, "it swings: {swing}");
+}
+
+#[test]
+fn a_ring_of_links_hangs_from_two_points_without_a_gap() {
+    let mut world = world(G);
+    let a = anchor(&mut world);
+    let n = 8;
+    let at = |i: usize| {
+        let angle = core::f32::consts::TAU * i as f32 / n as f32;
+        Vec3::new(angle.cos(), angle.sin(), 0.0)
+    };
+    let links: Vec<BodyId> = (0..n)
+        .map(|i| lump(&mut world, (at(i) + at(i + 1)) * 0.5, 1.0 + 20.0 * (i % 2) as f32, 0.02))
+        .collect();
+    let mut joints = Vec::new();
+    for i in 0..n {
+        joints.push(world.add_joint(&ball(&world, links[i], links[(i + 1) % n], at(i + 1))));
+    }
+    joints.push(world.add_joint(&ball(&world, a, links[0], at(0))));
+    joints.push(world.add_joint(&ball(&world, a, links[2], at(3))));
+    let mut gap = 0.0f32;
+    for _ in 0..900 {
+        world.step();
+        gap = joints.iter().map(|&id| world.joint_gap(id)).fold(gap, f32::max);
+    }
+    assert!(gap < 1e-3, "gap {gap}");
+}
