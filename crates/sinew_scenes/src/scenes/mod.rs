@@ -15,7 +15,6 @@
 mod flight;
 mod instance;
 mod metric;
-mod parts;
 mod setting;
 
 mod ballistics;
@@ -30,6 +29,7 @@ pub use instance::{Instance, Script};
 pub use metric::{Expected, Metric};
 pub use setting::{Domain, Setting, SettingError, Settings};
 
+use crate::parts;
 use setting::Setup;
 
 /// A named scenario.
