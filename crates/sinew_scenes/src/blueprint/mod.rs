@@ -11,7 +11,7 @@ mod grids;
 pub use boxes::{box_pyramid, box_rain, large_pyramid};
 pub use chains::{chain_100_links, chain_hang, chain_swing, hanging_rope, heavy_rope};
 pub use figure::{ragdoll_pile, rain};
-pub use grids::{joint_grid, net};
+pub use grids::{joint_grid, joint_grid_of, net};
 
 use crate::parts::{GRAVITY, ghost};
 use sinew::math::{Random, Rotation, Transform, Vec3, trig};

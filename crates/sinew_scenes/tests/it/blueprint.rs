@@ -32,8 +32,10 @@ fn they_are_as_large_as_described() {
     check(&blueprint::chain_hang(100.0), 12, 11, 11);
     check(&blueprint::heavy_rope(), 20, 19, 19);
     check(&blueprint::hanging_rope(), 50, 49, 49);
-    check(&blueprint::net(), 145, 143, 265);
-    check(&blueprint::joint_grid(), 10_000, 9_900, 19_800 - 99);
+    check(&blueprint::net(), 64 + 112 + 1, 62 + 112 + 1, 225);
+    check(&blueprint::joint_grid_of(30), 900, 870, 1740 - 29);
+    let full = blueprint::joint_grid();
+    assert_eq!((full.bodies.len(), full.dynamic().count(), full.joints.len()), (10_000, 9_900, 19_800 - 99));
 }
 
 fn mass_ratio(scene: &Blueprint) -> f32 {
