@@ -1,4 +1,4 @@
-//! Bytes to plain data and back: glTF, worlds, ragdolls.
+//! Bytes to plain data and back: glTF, worlds, ragdolls, MJCF.
 //!
 //! Everything takes bytes, and a closure for the files beside them; only the feature `fs` (on by default) touches the
 //! file system. Bytes are not trusted: whatever they hold, the answer is a value or an [`Error`] with a place, within
@@ -11,6 +11,7 @@ pub mod fs;
 mod glb;
 pub mod gltf;
 mod json;
+pub mod mjcf;
 mod parts;
 pub mod ragdoll;
 mod uri;
@@ -22,5 +23,6 @@ pub use fs::{load_gltf, read_bytes, write_all_atomic, write_atomic};
 pub use gltf::{
     Container, Document, ReadOptions, Resolver, Textures, append_clip, no_files, read_gltf, write_gltf,
 };
+pub use mjcf::{MjcfModel, read_mjcf};
 pub use ragdoll::{read_ragdoll, write_ragdoll};
 pub use world::{read_world, write_world};

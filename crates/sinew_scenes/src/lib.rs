@@ -1,7 +1,9 @@
 //! Named scenarios and the embedded mannequin and cabin.
 #![forbid(unsafe_code)]
 
+pub mod blueprint;
 pub mod cabin;
 pub mod demo;
 pub mod mannequin;
+mod parts;
 pub mod scenes;

@@ -6,6 +6,7 @@ mod data;
 mod fs;
 mod geometry;
 mod hostile;
+mod mjcf;
 mod ragdoll;
 mod rigs;
 mod world;

@@ -15,11 +15,13 @@
 mod flight;
 mod instance;
 mod metric;
-mod parts;
 mod setting;
 
 mod ballistics;
+mod chains;
+mod crowds;
 mod incline;
+mod nets;
 mod pendulums;
 mod piles;
 mod ragdolls;
@@ -30,6 +32,7 @@ pub use instance::{Instance, Script};
 pub use metric::{Expected, Metric};
 pub use setting::{Domain, Setting, SettingError, Settings};
 
+use crate::parts;
 use setting::Setup;
 
 /// A named scenario.
@@ -91,6 +94,16 @@ pub fn registry() -> &'static [Scene] {
             ragdolls::DROP,
             ragdolls::WALL,
             ragdolls::STAIRS,
+            chains::SWING_1000,
+            chains::SWING_100,
+            chains::HANG_1000,
+            chains::HANG_100,
+            chains::LINKS_100,
+            chains::HEAVY_ROPE,
+            chains::HANGING_ROPE,
+            nets::JOINT_GRID,
+            nets::NET,
+            crowds::PILE,
         ]
     }
 }

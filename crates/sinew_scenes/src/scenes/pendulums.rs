@@ -1,10 +1,10 @@
 //! Things that swing: pendulum, double pendulum, chain.
 
 use super::metric::{Expected, Metric};
-use super::parts::{GRAVITY, ball, body, ghost, hook, join, mass, tilt};
+use super::parts::{GRAVITY, ball, ghost, hook, join, level_rod, mass, tilt};
 use super::{Instance, Scene, Script, Setting, Setup};
 use sinew::math::{Sym3, Vec3, max, trig};
-use sinew::physics::{BodyDef, BodyId, JointId, MassProperties, Shape, World};
+use sinew::physics::{BodyId, JointId, MassProperties, World};
 
 pub(super) const PENDULUM: Scene = Scene {
     name: "pendulum",
@@ -151,13 +151,6 @@ impl Script for DoublePendulum {
             Metric::new("joint_gap_max_m", self.gap, Expected::AtMost(1e-3)),
         ]
     }
-}
-
-/// A capsule that reaches from x = `start` over `length` along x and meets nothing.
-fn level_rod(start: f32, length: f32, radius: f32) -> BodyDef {
-    let half_height = 0.5 * length - radius;
-    let def = body(Shape::Capsule { half_height, radius }, Vec3::X * (start + 0.5 * length));
-    BodyDef { rotation: tilt(90.0), ..ghost(def) }
 }
 
 fn largest_gap(before: f32, joints: &[JointId], world: &World) -> f32 {

@@ -1,5 +1,6 @@
 //! Tests of the embedded character and world, and of the scenes.
 
+mod blueprint;
 mod cabin;
 mod mannequin;
 mod motions;

@@ -7,23 +7,23 @@ use sinew::physics::{
 };
 
 /// That all closed forms are made for, m/s².
-pub(super) const GRAVITY: f32 = 9.81;
+pub(crate) const GRAVITY: f32 = 9.81;
 
 /// A dynamic body of one shape.
-pub(super) fn body(shape: Shape, position: Vec3) -> BodyDef {
+pub(crate) fn body(shape: Shape, position: Vec3) -> BodyDef {
     BodyDef { position, shapes: vec![ShapeDef::new(shape)], ..BodyDef::default() }
 }
 
-pub(super) fn ball(radius: f32, position: Vec3) -> BodyDef {
+pub(crate) fn ball(radius: f32, position: Vec3) -> BodyDef {
     body(Shape::Sphere { radius }, position)
 }
 
-pub(super) fn cuboid(half_extents: Vec3, position: Vec3) -> BodyDef {
+pub(crate) fn cuboid(half_extents: Vec3, position: Vec3) -> BodyDef {
     body(Shape::Box { half_extents }, position)
 }
 
 /// The same, meeting nothing.
-pub(super) fn ghost(mut def: BodyDef) -> BodyDef {
+pub(crate) fn ghost(mut def: BodyDef) -> BodyDef {
     for shape in &mut def.shapes {
         shape.filter = Filter { mask: 0, ..Filter::default() };
     }
@@ -31,7 +31,7 @@ pub(super) fn ghost(mut def: BodyDef) -> BodyDef {
 }
 
 /// The same, of one material.
-pub(super) fn made_of(mut def: BodyDef, material: Material) -> BodyDef {
+pub(crate) fn made_of(mut def: BodyDef, material: Material) -> BodyDef {
     for shape in &mut def.shapes {
         shape.material = material;
     }
@@ -39,39 +39,46 @@ pub(super) fn made_of(mut def: BodyDef, material: Material) -> BodyDef {
 }
 
 /// The same, unmoved.
-pub(super) fn fixed(def: BodyDef) -> BodyDef {
+pub(crate) fn fixed(def: BodyDef) -> BodyDef {
     BodyDef { kind: BodyKind::Static, ..def }
 }
 
 /// A floor at y = 0.
-pub(super) fn floor() -> BodyDef {
+pub(crate) fn floor() -> BodyDef {
     fixed(body(Shape::HalfSpace, Vec3::ZERO))
 }
 
 /// A place to hang things on.
-pub(super) fn hook() -> BodyDef {
+pub(crate) fn hook() -> BodyDef {
     BodyDef { kind: BodyKind::Static, ..BodyDef::default() }
 }
 
+/// A capsule that reaches from x = `start` over `length` along x and meets nothing.
+pub(crate) fn level_rod(start: f32, length: f32, radius: f32) -> BodyDef {
+    let half_height = 0.5 * length - radius;
+    let def = body(Shape::Capsule { half_height, radius }, Vec3::X * (start + 0.5 * length));
+    BodyDef { rotation: tilt(90.0), ..ghost(def) }
+}
+
 /// Mass and inertia about the body's origin, the same about each axis.
-pub(super) fn mass(mass: f32, moment: f32) -> MassProperties {
+pub(crate) fn mass(mass: f32, moment: f32) -> MassProperties {
     MassProperties { mass, center: Vec3::ZERO, inertia: Sym3::from_diagonal(Vec3::splat(moment)) }
 }
 
 /// Joins two bodies at a world point by a ball joint.
-pub(super) fn join(world: &mut World, a: BodyId, b: BodyId, at: Vec3) -> JointId {
+pub(crate) fn join(world: &mut World, a: BodyId, b: BodyId, at: Vec3) -> JointId {
     let joint = Transform::from_translation(at);
     let kind = JointKind::Ball { limit: None };
     world.add_joint(&JointDef::new(a, b, world.transform(a), world.transform(b), joint, kind))
 }
 
 /// About z, from x toward y.
-pub(super) fn tilt(degrees: f32) -> Rotation {
+pub(crate) fn tilt(degrees: f32) -> Rotation {
     Rotation::from_axis_angle(Vec3::Z, degrees.to_radians())
 }
 
 /// From the start of its second to the end of `steps` substeps, symplectic Euler takes `t (t + h) / 2` for `t² / 2`.
-pub(super) fn fallen(world: &World) -> f64 {
+pub(crate) fn fallen(world: &World) -> f64 {
     let dt = f64::from(world.def().dt());
     let t = world.step_count() as f64 * dt;
     let h = dt / f64::from(world.def().substeps);

@@ -1,0 +1,298 @@
+//! Robot and body models in MuJoCo's format MJCF: the part of it that rigid bodies and joints need.
+//!
+//! What is read: bodies with their poses (`pos`, and `quat`, `axisangle`, `euler`, `xyaxes` or `zaxis`), geoms of type
+//! plane, sphere, capsule and box (`size`, `fromto`, `density`, `mass`, sliding friction, `contype`, `conaffinity`),
+//! `<inertial>`, hinges with ranges and `frictionloss`, ball joints, free joints, `childclass` and default classes,
+//! `<exclude>`, keyframes, and of `<compiler>`: `angle`, `eulerseq`, `autolimits`, `inertiafromgeom`. Metres, kilograms;
+//! the file's z up becomes our y up, its x stays x.
+//!
+//! What has no counterpart is left out and said so in [`MjcfModel::notes`]: damping, springs and rotor inertia of joints,
+//! actuators, sensors, tendons, equalities, softness of contacts. What would make another body of it is an error: files
+//! that include others, meshes that collide, slides, `<frame>`, `<replicate>`.
+//!
+//! - **Bodies without joints** are parts of their parent. They stay bodies of their own, with their own name and mass,
+//!   on a fixed joint; as in MuJoCo, contacts are left out between parts of one thing, and between a thing and what is
+//!   jointed to it, unless that is the world.
+//! - **Hinges of one body** become one joint, whose zero is the pose of the file: one a hinge, two or three a ball whose
+//!   swing and twist ranges are theirs. They must be at right angles to each other. The twist is that of the last hinge,
+//!   exactly; with two hinges the swing is that of the first, exactly; with three, both swings lie within an ellipse for
+//!   each quadrant where MuJoCo has a rectangle.
+//! - **Friction** of a pair is the geometric mean here, and the larger in MuJoCo.
+
+mod bodies;
+mod compiler;
+mod defaults;
+mod geom;
+mod joint;
+mod keyframe;
+mod notes;
+mod xml;
+
+use crate::error::{Result, quoted};
+use bodies::{Reading, Tree};
+use compiler::{Compiler, y_up};
+use defaults::Classes;
+use joint::{BodyJoint, Freedom};
+use notes::Notes;
+use sinew_math::{Rotation, Transform, Vec3};
+use sinew_physics::{BodyDef, BodyId, BodyKind, JointCollision, JointDef, JointId, JointKind, World};
+use xml::{Element, Value, children, malformed, unsupported};
+
+/// A model of bodies and joints, as plain data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MjcfModel {
+    /// Name of the model, or `""`.
+    pub name: String,
+    /// m/s², world axes. `spawn` does not set it.
+    pub gravity: Vec3,
+    /// Parents before children; the first, named `world`, is static and has the shapes that never move.
+    pub bodies: Vec<MjcfBody>,
+    /// In the order of their children.
+    pub joints: Vec<MjcfJoint>,
+    /// Pairs of bodies, by index, that pass through each other though no joint is between them.
+    pub excluded_pairs: Vec<(usize, usize)>,
+    /// Named poses.
+    pub keyframes: Vec<MjcfKeyframe>,
+    /// What was left out or changed, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// A body of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MjcfBody {
+    /// In the file, or `""`.
+    pub name: String,
+    /// In the pose of the file. A dynamic body's mass is given; `user_data` is its index.
+    pub def: BodyDef,
+}
+
+/// A joint of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MjcfJoint {
+    /// Names of the file's joints that it is made of, joined by `+`; of a weld, the body's.
+    pub name: String,
+    /// Index of the body that is nearer to the world.
+    pub parent: usize,
+    /// Index of the other body.
+    pub child: usize,
+    /// Joint frame in the parent's frame. Both agree in the pose of the file.
+    pub frame_a: Transform,
+    /// Joint frame in the child's frame.
+    pub frame_b: Transform,
+    /// What is free.
+    pub kind: JointKind,
+    /// N·m, the largest `frictionloss` of its hinges.
+    pub friction_torque: f32,
+    /// Whether parent and child collide: only if nothing moves the parent.
+    pub collision: JointCollision,
+}
+
+/// A named pose: what is elsewhere than in the pose of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MjcfKeyframe {
+    /// In the file, or `""`.
+    pub name: String,
+    /// Free bodies, by index, and their place in the world.
+    pub placed: Vec<(usize, Transform)>,
+    /// Joints, by index, and the turn of their `frame_b` seen from `frame_a`.
+    pub turned: Vec<(usize, Rotation)>,
+}
+
+/// A model in a world.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MjcfInstance {
+    /// In the order of the model.
+    pub bodies: Vec<BodyId>,
+    /// In the order of the model.
+    pub joints: Vec<JointId>,
+}
+
+/// Reads an MJCF file.
+///
+/// # Errors
+/// Names line and column: text that is not XML; elements, attributes and values that the format does not have where
+/// they stand; what is not read and would make another model; bodies that move and have no mass; more than 4 MiB, 1,024
+/// bodies or 32 nested default classes.
+pub fn read_mjcf(bytes: &[u8]) -> Result<MjcfModel> {
+    let document = xml::parse(bytes)?;
+    let root = document.root_element();
+    if root.tag_name().name() != "mujoco" {
+        let what = format!("not an MJCF file: begins with {}", quoted(root.tag_name().name()));
+        return Err(malformed(root, what));
+    }
+    let mut notes = Notes::default();
+    check_sections(root, &mut notes)?;
+    let compiler = Compiler::read(root, &mut notes)?;
+    let mut reading = Reading { compiler, classes: Classes::read(root)?, notes: &mut notes };
+    let tree = Tree::read(root, &mut reading)?;
+    let joints = read_joints(&tree, &mut notes)?;
+    let keyframes = keyframe::read(root, &tree, &joints)?;
+    let excluded_pairs = excluded_pairs(root, &tree, &mut notes)?;
+    let bodies = tree.links.into_iter().map(|link| MjcfBody { name: link.name, def: link.def }).collect();
+    let name = root.attribute("model").unwrap_or_default().to_owned();
+    let gravity = read_gravity(root)?;
+    Ok(MjcfModel { name, gravity, bodies, joints, excluded_pairs, keyframes, notes: notes.into_sentences() })
+}
+
+/// Refuses sections that are not of the format, and notes those that are not read.
+fn check_sections(root: Element<'_>, notes: &mut Notes) -> Result<()> {
+    for (tag, section) in children(root) {
+        let what = match tag {
+            "actuator" => "actuators",
+            "tendon" => "tendons",
+            "equality" => "equalities",
+            "sensor" => "sensors",
+            "compiler" | "option" | "size" | "visual" | "statistic" | "asset" | "default" | "worldbody"
+            | "contact" | "keyframe" | "custom" => continue,
+            "include" => return Err(unsupported(section, "files that include others are not read")),
+            "extension" | "deformable" => {
+                return Err(unsupported(section, format!("{} is not read", quoted(tag))));
+            }
+            _ => return Err(malformed(section, format!("no section {}", quoted(tag)))),
+        };
+        children(section).for_each(|_| notes.left_out(what));
+    }
+    Ok(())
+}
+
+fn read_gravity(root: Element<'_>) -> Result<Vec3> {
+    let options = children(root).filter(|(tag, _)| *tag == "option");
+    let said = options.filter_map(|(_, option)| Value::of(option, "gravity")).next_back();
+    Ok(y_up(Vec3::from_array(said.map_or(Ok([0.0, 0.0, -9.81]), Value::numbers)?)))
+}
+
+/// Joints between moving bodies and those that they hang on.
+fn read_joints(tree: &Tree<'_>, notes: &mut Notes) -> Result<Vec<MjcfJoint>> {
+    let mut joints = Vec::new();
+    for (child, link) in tree.links.iter().enumerate() {
+        let joint = match &link.freedom {
+            _ if link.def.kind != BodyKind::Dynamic => continue,
+            Freedom::Free => continue,
+            Freedom::Welded => BodyJoint::WELD,
+            Freedom::Ball(ball) => BodyJoint::of_ball(ball),
+            Freedom::Hinges(hinges) => BodyJoint::of_hinges(hinges, link.element, notes)?,
+        };
+        let pose = |body: usize| {
+            let def = &tree.links[body].def;
+            Transform::new(def.position, def.rotation)
+        };
+        let parent_from_child = pose(link.parent).inverse() * pose(child);
+        let of_world = tree.links[link.parent].weld == 0;
+        joints.push(MjcfJoint {
+            name: link.freedom.name().unwrap_or_else(|| link.name.clone()),
+            parent: link.parent,
+            child,
+            frame_a: parent_from_child * joint.frame,
+            frame_b: joint.frame,
+            kind: joint.kind,
+            friction_torque: joint.friction,
+            collision: if of_world { JointCollision::Enabled } else { JointCollision::Disabled },
+        });
+    }
+    Ok(joints)
+}
+
+/// What `<exclude>` says, and what MuJoCo leaves out by itself: parts of one thing, and things jointed to each other.
+/// Pairs with a joint between them have that from the joint.
+fn excluded_pairs(root: Element<'_>, tree: &Tree<'_>, notes: &mut Notes) -> Result<Vec<(usize, usize)>> {
+    let mut pairs = Vec::new();
+    let contacts = children(root).filter(|(tag, _)| *tag == "contact");
+    for (tag, element) in contacts.flat_map(|(_, section)| children(section)) {
+        match tag {
+            "exclude" => {
+                let (a, b) = (tree.named_by(element, "body1")?, tree.named_by(element, "body2")?);
+                if a != b {
+                    pairs.push((usize::min(a, b), usize::max(a, b)));
+                }
+            }
+            "pair" => notes.left_out("contact pairs"),
+            _ => return Err(malformed(element, format!("{} is no part of it", quoted(tag)))),
+        }
+    }
+    let links = &tree.links;
+    let above = |weld: usize| links[links[weld].parent].weld;
+    for b in (0..links.len()).filter(|&b| links[b].weld != 0) {
+        for a in (0..b).filter(|&a| links[a].weld != 0 && a != links[b].parent) {
+            let (weld_a, weld_b) = (links[a].weld, links[b].weld);
+            if weld_a == weld_b || weld_a == above(weld_b) || weld_b == above(weld_a) {
+                pairs.push((a, b));
+            }
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    Ok(pairs)
+}
+
+impl MjcfModel {
+    /// Index of the body of that name.
+    pub fn body(&self, name: &str) -> Option<usize> {
+        self.bodies.iter().position(|body| body.name == name)
+    }
+
+    /// The keyframe of that name.
+    pub fn keyframe(&self, name: &str) -> Option<&MjcfKeyframe> {
+        self.keyframes.iter().find(|keyframe| keyframe.name == name)
+    }
+
+    /// World poses of all bodies in the pose of the file.
+    pub fn rest_pose(&self) -> Vec<Transform> {
+        self.bodies.iter().map(|body| Transform::new(body.def.position, body.def.rotation)).collect()
+    }
+
+    /// World poses of all bodies in a keyframe: joints hold in it, but a limit may be passed.
+    ///
+    /// # Panics
+    /// If the keyframe is that of another model.
+    pub fn pose(&self, keyframe: &MjcfKeyframe) -> Vec<Transform> {
+        let mut pose = self.rest_pose();
+        for &(body, place) in &keyframe.placed {
+            pose[body] = place;
+        }
+        let mut turns = vec![Rotation::IDENTITY; self.joints.len()];
+        for &(joint, turn) in &keyframe.turned {
+            turns[joint] = turn;
+        }
+        // Joints are in the order of their children, and parents come before children.
+        for (joint, turn) in self.joints.iter().zip(turns) {
+            let frame = pose[joint.parent] * joint.frame_a * Transform::new(Vec3::ZERO, turn);
+            let placed = frame * joint.frame_b.inverse();
+            pose[joint.child] = Transform::new(placed.translation, placed.rotation.normalize());
+        }
+        pose
+    }
+
+    /// Puts the model into a world, in the pose of the file.
+    pub fn spawn(&self, world: &mut World) -> MjcfInstance {
+        self.spawn_at(world, &self.rest_pose())
+    }
+
+    /// Puts the model into a world, each body at the pose given.
+    ///
+    /// # Panics
+    /// If there is not one finite pose per body.
+    pub fn spawn_at(&self, world: &mut World, pose: &[Transform]) -> MjcfInstance {
+        assert_eq!(pose.len(), self.bodies.len(), "every body has a pose");
+        let place = |(body, at): (&MjcfBody, &Transform)| {
+            let def = BodyDef { position: at.translation, rotation: at.rotation, ..body.def.clone() };
+            world.add_body(&def)
+        };
+        let bodies: Vec<BodyId> = self.bodies.iter().zip(pose).map(place).collect();
+        for &(a, b) in &self.excluded_pairs {
+            world.disable_pair(bodies[a], bodies[b]);
+        }
+        let join = |joint: &MjcfJoint| {
+            world.add_joint(&JointDef {
+                body_a: bodies[joint.parent],
+                body_b: bodies[joint.child],
+                frame_a: joint.frame_a,
+                frame_b: joint.frame_b,
+                kind: joint.kind,
+                friction_torque: joint.friction_torque,
+                collision: joint.collision,
+            })
+        };
+        let joints = self.joints.iter().map(join).collect();
+        MjcfInstance { bodies, joints }
+    }
+}

@@ -1,0 +1,62 @@
+//! Boxes on boxes.
+
+use super::{Blueprint, damped, in_box, rotation};
+use crate::parts::{cuboid, fixed};
+use sinew::math::{Random, Vec3};
+use sinew::physics::Sleeping;
+
+/// A square pyramid of 15 layers of unit cubes side by side.
+pub fn box_pyramid() -> Blueprint {
+    const LAYERS: usize = 15;
+    let mut scene = Blueprint::new("box_pyramid", Sleeping::Off, 300);
+    scene.body(fixed(cuboid(Vec3::new(50.0, 1.0, 50.0), Vec3::NEG_Y)));
+    for layer in 0..LAYERS {
+        let side = LAYERS - layer;
+        let middle = 0.5 * (side - 1) as f32;
+        for (a, b) in (0..side).flat_map(|a| (0..side).map(move |b| (a, b))) {
+            let at = Vec3::new(a as f32 - middle, 0.5 + layer as f32, b as f32 - middle);
+            scene.body(damped(cuboid(Vec3::splat(0.5), at)));
+        }
+    }
+    scene
+}
+
+/// A wall of 100 rows of unit cubes, one fewer in each row, as Box3D's `large_pyramid`.
+pub fn large_pyramid() -> Blueprint {
+    const ROWS: usize = 100;
+    let mut scene = Blueprint::new("large_pyramid", Sleeping::Off, 200);
+    scene.body(fixed(cuboid(Vec3::new(400.0, 1.0, 400.0), Vec3::NEG_Y)));
+    for row in 0..ROWS {
+        for i in 0..ROWS - row {
+            let x = i as f32 - 0.5 * (ROWS - row - 1) as f32;
+            scene.body(cuboid(Vec3::splat(0.5), Vec3::new(x, 0.5 + row as f32, 0.0)));
+        }
+    }
+    scene
+}
+
+/// 4,000 boxes of all sizes fall into a pit.
+pub fn box_rain() -> Blueprint {
+    const COUNT: usize = 4000;
+    const SIDE: usize = 12;
+    /// Half of the pit's width, metres.
+    const HALF: f32 = 8.4;
+    let mut scene = Blueprint::new("box_rain", Sleeping::Off, 600);
+    let outer = HALF + 2.0;
+    scene.body(fixed(cuboid(Vec3::new(outer, 1.0, outer), Vec3::NEG_Y)));
+    for side in [-1.0, 1.0] {
+        let out = side * (HALF + 1.0);
+        scene.body(fixed(cuboid(Vec3::new(1.0, 10.0, outer), Vec3::new(out, 10.0, 0.0))));
+        scene.body(fixed(cuboid(Vec3::new(outer, 10.0, 1.0), Vec3::new(0.0, 10.0, out))));
+    }
+    let mut random = Random::new(3);
+    for i in 0..COUNT {
+        let (layer, a, b) = (i / (SIDE * SIDE), i / SIDE % SIDE, i % SIDE);
+        let place = |index: usize| (index as f32 - 5.5) * 1.4;
+        let half_extents = in_box(&mut random, 0.1, 0.4);
+        let mut def = cuboid(half_extents, Vec3::new(place(a), 2.0 + 1.4 * layer as f32, place(b)));
+        def.rotation = rotation(&mut random);
+        scene.body(damped(def));
+    }
+    scene
+}

@@ -1,0 +1,145 @@
+//! Scenes as plain data, so that Sinew and other engines are built from the same words.
+//!
+//! Metres, kilograms, y up, gravity 9.81 m/s² down, steps of 1/60 s. Unless a scene says otherwise: friction 0.6,
+//! restitution 0, density 1000 kg/m³.
+
+mod boxes;
+mod chains;
+mod figure;
+mod grids;
+
+pub use boxes::{box_pyramid, box_rain, large_pyramid};
+pub use chains::{chain_100_links, chain_hang, chain_swing, hanging_rope, heavy_rope};
+pub use figure::{ragdoll_pile, rain};
+pub use grids::{joint_grid, joint_grid_of, net};
+
+use crate::parts::{GRAVITY, ghost};
+use sinew::math::{Random, Rotation, Transform, Vec3, trig};
+use sinew::physics::{
+    BodyDef, BodyId, BodyKind, JointDef, JointId, JointKind, ShapeDef, Sleeping, World, WorldDef,
+};
+
+/// A scene before any engine has it.
+#[derive(Clone, Debug)]
+pub struct Blueprint {
+    /// What people call it.
+    pub name: &'static str,
+    /// m/s².
+    pub gravity: Vec3,
+    /// Whether bodies may fall asleep.
+    pub sleeping: Sleeping,
+    /// Steps of 1/60 s that it is run for.
+    pub steps: u32,
+    /// All bodies; joints name them by their places here. One whose shapes have filter mask 0 collides with nothing.
+    pub bodies: Vec<BodyDef>,
+    /// All joints.
+    pub joints: Vec<BlueprintJoint>,
+}
+
+/// A joint of a [`Blueprint`]: its angles are zero in the start pose, and its two bodies do not collide.
+#[derive(Clone, Copy, Debug)]
+pub struct BlueprintJoint {
+    /// Place of the first body, the parent where there is one.
+    pub a: usize,
+    /// Place of the second body.
+    pub b: usize,
+    /// Anchor and axes in the start pose; hinges and twists are about x.
+    pub world_from_joint: Transform,
+    /// What is free.
+    pub kind: JointKind,
+}
+
+/// What a [`Blueprint`] has become in a world: ids in its order.
+#[derive(Clone, Debug, Default)]
+pub struct Built {
+    /// One for each body.
+    pub bodies: Vec<BodyId>,
+    /// One for each joint.
+    pub joints: Vec<JointId>,
+}
+
+impl Blueprint {
+    /// Without bodies, in Earth's gravity.
+    fn new(name: &'static str, sleeping: Sleeping, steps: u32) -> Self {
+        let gravity = Vec3::NEG_Y * GRAVITY;
+        Self { name, gravity, sleeping, steps, bodies: Vec::new(), joints: Vec::new() }
+    }
+
+    /// A world of its own.
+    pub fn build(&self) -> (World, Vec<BodyId>, Vec<JointId>) {
+        let Self { gravity, sleeping, .. } = *self;
+        let mut world = World::new(WorldDef { gravity, sleeping, ..WorldDef::default() });
+        let Built { bodies, joints } = self.build_into(&mut world);
+        (world, bodies, joints)
+    }
+
+    /// Adds its bodies and joints to a world, whose gravity and sleeping are its own.
+    pub fn build_into(&self, world: &mut World) -> Built {
+        let bodies: Vec<_> = self.bodies.iter().map(|def| world.add_body(def)).collect();
+        let joint = |joint: &BlueprintJoint| {
+            let [a, b] = [joint.a, joint.b].map(|place| (bodies[place], pose(&self.bodies[place])));
+            world.add_joint(&JointDef::new(a.0, b.0, a.1, b.1, joint.world_from_joint, joint.kind))
+        };
+        let joints = self.joints.iter().map(joint).collect();
+        Built { bodies, joints }
+    }
+
+    /// The same, moved.
+    pub fn moved(mut self, by: Vec3) -> Self {
+        for body in &mut self.bodies {
+            body.position += by;
+        }
+        for joint in &mut self.joints {
+            joint.world_from_joint.translation += by;
+        }
+        self
+    }
+
+    /// Places of the bodies that move.
+    pub fn dynamic(&self) -> impl Iterator<Item = usize> {
+        (0..self.bodies.len()).filter(|&place| self.bodies[place].kind == BodyKind::Dynamic)
+    }
+
+    /// Adds a body; gives its place.
+    fn body(&mut self, def: BodyDef) -> usize {
+        self.bodies.push(def);
+        self.bodies.len() - 1
+    }
+
+    /// Adds an unlimited ball joint.
+    fn ball(&mut self, a: usize, b: usize, anchor: Vec3) {
+        let world_from_joint = Transform::from_translation(anchor);
+        self.joints.push(BlueprintJoint { a, b, world_from_joint, kind: JointKind::Ball { limit: None } });
+    }
+}
+
+fn pose(def: &BodyDef) -> Transform {
+    Transform::new(def.position, def.rotation)
+}
+
+/// The same, colliding with nothing and `mass` heavy, its inertia that of its one shape.
+fn weighed_ghost(mass: f32, def: BodyDef) -> BodyDef {
+    let ShapeDef { shape, density, .. } = def.shapes[0];
+    BodyDef { mass: Some(shape.mass_properties(density).scaled_to(mass)), ..ghost(def) }
+}
+
+/// The same, losing 5 % of its speeds per second: what the piles are made of.
+fn damped(def: BodyDef) -> BodyDef {
+    BodyDef { linear_damping: 0.05, angular_damping: 0.05, ..def }
+}
+
+/// Three numbers of `lo..hi`, x first.
+fn in_box(random: &mut Random, lo: f32, hi: f32) -> Vec3 {
+    let mut next = || random.range(lo, hi);
+    Vec3::new(next(), next(), next())
+}
+
+/// Uniform over all rotations (Shoemake 1992: three numbers, without rejection, so that other programs can draw the
+/// same).
+fn rotation(random: &mut Random) -> Rotation {
+    let [u, v, w] = [random.unit(), random.unit(), random.unit()];
+    let (sin_v, cos_v) = trig::sin_cos(core::f32::consts::TAU * v);
+    let (sin_w, cos_w) = trig::sin_cos(core::f32::consts::TAU * w);
+    let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
+    Rotation::from_xyzw(a * sin_v, a * cos_v, b * sin_w, b * cos_w).normalize()
+}

@@ -1,0 +1,99 @@
+//! Many figures at once.
+
+use super::flight::Flight;
+use super::metric::{Expected, Metric};
+use super::{Instance, Scene, Script, Setup};
+use crate::blueprint::ragdoll_pile;
+use sinew::math::max;
+use sinew::physics::{BodyId, JointId, World};
+
+pub(super) const PILE: Scene = Scene {
+    name: "ragdoll_pile",
+    about: "100 figures of 15 bodies fall into a heap, and no joint opens or bends too far",
+    steps: 600,
+    settings: &[],
+    build: pile,
+};
+
+fn pile(setup: &Setup<'_>) -> Instance {
+    let mut world = setup.sleepless_world();
+    let plan = ragdoll_pile();
+    let built = plan.build_into(&mut world);
+    let bodies: Vec<_> = plan.dynamic().map(|place| built.bodies[place]).collect();
+    let damping = plan.bodies[plan.bodies.len() - 1].linear_damping;
+    let flight = Flight::damped(&world, bodies[..BODIES_OF_ONE].to_vec(), damping);
+    let joints = built.joints;
+    let heap = Pile { bodies, joints, flight, gap_max: 0.0, exceeded: 0, penetration_max: 0.0 };
+    Instance::new(world, heap)
+}
+
+/// Of a figure.
+const BODIES_OF_ONE: usize = 15;
+/// Beyond a limit, radians: what counts as exceeded.
+const EXCEEDED: f32 = 0.1;
+/// Steps from one look at all overlaps to the next: they cost more than a step.
+const LOOK: u64 = 30;
+
+struct Pile {
+    bodies: Vec<BodyId>,
+    joints: Vec<JointId>,
+    /// Of the first figure.
+    flight: Flight,
+    gap_max: f32,
+    /// Most joints beyond their limits at once.
+    exceeded: usize,
+    penetration_max: f32,
+}
+
+impl Pile {
+    fn exceeded(&self, world: &World) -> usize {
+        self.joints.iter().filter(|&&joint| world.joint_overshoot(joint) > EXCEEDED).count()
+    }
+
+    fn gap(&self, world: &World) -> f32 {
+        self.joints.iter().fold(0.0, |gap, &joint| max(gap, world.joint_gap(joint)))
+    }
+
+    /// Overlaps of all pairs that touch, shallowest first.
+    fn penetrations(&self, world: &World) -> Vec<f32> {
+        let of = |&id: &BodyId| {
+            world
+                .neighbors(id)
+                .filter(move |&other| other > id || !world.mass(other).mass.is_normal())
+                .map(move |other| world.overlap(id, other))
+        };
+        let mut depths: Vec<f32> = self.bodies.iter().flat_map(of).collect();
+        depths.sort_unstable_by(f32::total_cmp);
+        depths
+    }
+}
+
+impl Script for Pile {
+    fn after_step(&mut self, world: &mut World) {
+        self.flight.after_step(world);
+        self.gap_max = max(self.gap_max, self.gap(world));
+        self.exceeded = usize::max(self.exceeded, self.exceeded(world));
+        if world.step_count() % LOOK == 0 {
+            let deepest = self.penetrations(world).last().copied();
+            self.penetration_max = max(self.penetration_max, deepest.unwrap_or(0.0));
+        }
+    }
+
+    fn metrics(&self, world: &World) -> Vec<Metric> {
+        let depths = self.penetrations(world);
+        let rank = |percent: usize| depths.get((depths.len() * percent).div_ceil(100).saturating_sub(1));
+        let depth = |percent: usize| rank(percent).copied().unwrap_or(0.0);
+        let count = |joints: usize| joints as u32;
+        vec![
+            self.flight.metric(),
+            Metric::new("joint_gap_max_m", self.gap_max, Expected::AtMost(0.002)),
+            Metric::new("joint_gap_end_m", self.gap(world), Expected::AtMost(0.002)),
+            Metric::new("limits_exceeded", count(self.exceeded), Expected::AtMost(0.0)),
+            Metric::new("limits_exceeded_end", count(self.exceeded(world)), Expected::AtMost(0.0)),
+            Metric::new("penetration_max_m", max(self.penetration_max, depth(100)), Expected::Anything),
+            Metric::new("penetration_end_max_m", depth(100), Expected::Anything),
+            Metric::new("penetration_end_p99_m", depth(99), Expected::Anything),
+            Metric::new("kinetic_end_j", world.energy().kinetic, Expected::Anything),
+        ]
+    }
+}

@@ -1,0 +1,52 @@
+//! Scenes as plain data: as many bodies and joints as their descriptions count, and joints that fit.
+
+use sinew_scenes::blueprint::{self, Blueprint};
+
+fn check(scene: &Blueprint, bodies: usize, dynamic: usize, joints: usize) {
+    let (world, body_ids, joint_ids) = scene.build();
+    let name = scene.name;
+    assert_eq!(
+        (body_ids.len(), scene.dynamic().count(), joint_ids.len()),
+        (bodies, dynamic, joints),
+        "{name}"
+    );
+    for (def, &id) in scene.bodies.iter().zip(&body_ids) {
+        assert!((world.transform(id).translation - def.position).length() < 1e-5, "{name}");
+    }
+    for &joint in &joint_ids {
+        // A few units in the last place 100 m from the origin.
+        assert!(world.joint_gap(joint) < 5e-5, "{name}: a gap of {} m", world.joint_gap(joint));
+        assert!(world.joint_overshoot(joint) < 1e-3, "{name}");
+    }
+}
+
+#[test]
+fn they_are_as_large_as_described() {
+    check(&blueprint::ragdoll_pile(), 1551, 1500, 1400);
+    check(&blueprint::rain(), 1 + 100 + 300 * 15, 300 * 15, 300 * 14);
+    check(&blueprint::box_pyramid(), 1241, 1240, 0);
+    check(&blueprint::box_rain(), 4005, 4000, 0);
+    check(&blueprint::large_pyramid(), 5051, 5050, 0);
+    check(&blueprint::chain_100_links(), 10 * 102, 10 * 101, 10 * 101);
+    check(&blueprint::chain_swing(1000.0, 0.25), 12, 11, 11);
+    check(&blueprint::chain_hang(100.0), 12, 11, 11);
+    check(&blueprint::heavy_rope(), 20, 19, 19);
+    check(&blueprint::hanging_rope(), 50, 49, 49);
+    check(&blueprint::net(), 64 + 112 + 1, 62 + 112 + 1, 225);
+    check(&blueprint::joint_grid_of(30), 900, 870, 1740 - 29);
+    let full = blueprint::joint_grid();
+    assert_eq!((full.bodies.len(), full.dynamic().count(), full.joints.len()), (10_000, 9_900, 19_800 - 99));
+}
+
+fn mass_ratio(scene: &Blueprint) -> f32 {
+    let (world, bodies, _) = scene.build();
+    let masses: Vec<f32> = scene.dynamic().map(|place| world.mass(bodies[place]).mass).collect();
+    masses[masses.len() - 1] / masses[0]
+}
+
+#[test]
+fn weights_are_as_heavy_as_described() {
+    assert_eq!(mass_ratio(&blueprint::heavy_rope()), 1800.0);
+    assert_eq!(mass_ratio(&blueprint::hanging_rope()), 200.0);
+    assert_eq!(mass_ratio(&blueprint::chain_swing(1000.0, 0.5)), 1000.0);
+}
