@@ -282,14 +282,11 @@ impl MjcfModel {
             world.disable_pair(bodies[a], bodies[b]);
         }
         let join = |joint: &MjcfJoint| {
+            let (parent, child) = (bodies[joint.parent], bodies[joint.child]);
             world.add_joint(&JointDef {
-                body_a: bodies[joint.parent],
-                body_b: bodies[joint.child],
-                frame_a: joint.frame_a,
-                frame_b: joint.frame_b,
-                kind: joint.kind,
                 friction_torque: joint.friction_torque,
                 collision: joint.collision,
+                ..JointDef::between(parent, child, joint.frame_a, joint.frame_b, joint.kind)
             })
         };
         let joints = self.joints.iter().map(join).collect();

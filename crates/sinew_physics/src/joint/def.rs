@@ -346,7 +346,8 @@ impl Softness {
             Self::Stiffness { stiffness, damping } => (stiffness, damping),
             Self::Frequency { hertz, damping_ratio } => (hertz, damping_ratio),
         };
-        p >= 0.0 && p < f32::INFINITY && q >= 0.0 && q < f32::INFINITY
+        let sound = 0.0..f32::INFINITY;
+        sound.contains(&p) && sound.contains(&q)
     }
 }
 
