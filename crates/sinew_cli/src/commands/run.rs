@@ -7,7 +7,7 @@ use crate::table::Table;
 use serde_json::{Map, Value, json};
 use sinew::physics::stage::NoProfiler;
 use sinew::physics::{Serial, TaskRunner, Threads};
-use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, find};
+use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, SettingError, find};
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -41,8 +41,9 @@ impl Run {
         })?;
         let mut settings = scene.settings();
         for assignment in &self.settings {
-            settings.assign(assignment).map_err(|error| Failure::Usage(format!("--set: {error}")))?;
+            settings.assign(assignment).map_err(refused)?;
         }
+        settings.check().map_err(refused)?;
         let steps = self.steps.unwrap_or(scene.steps);
         let mut instance = scene.start(&settings);
         let times = StepTimes::measure(&mut instance, steps, &*self.runner());
@@ -62,6 +63,13 @@ impl Run {
             1 => Box::new(Serial),
             threads => Box::new(Threads::new(usize::from(threads))),
         }
+    }
+}
+
+fn refused(error: SettingError) -> Failure {
+    match error {
+        SettingError::File(error) => error.into(),
+        error => Failure::Usage(format!("--set: {error}")),
     }
 }
 

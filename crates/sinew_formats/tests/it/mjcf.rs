@@ -1,6 +1,7 @@
 //! MJCF: MuJoCo's humanoid against what MuJoCo makes of it, small models against closed forms, and hostile bytes.
 
 use crate::data::shared_data;
+use core::f32::consts::FRAC_1_SQRT_2 as H;
 use sinew_formats::mjcf::MjcfJoint;
 use sinew_formats::{Error, MjcfModel, read_mjcf};
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, max};
@@ -100,8 +101,8 @@ fn the_joints_of_the_humanoid_are_where_mujoco_has_them() {
         ("shin_left", [-0.01, 0.09, 0.437], [0.0, -1.0, 0.0]),
         // Two hinges, 4 cm apart in the file.
         ("foot_right", [-0.01, -0.09, 0.087], [0.8944, 0.0, 0.4472]),
-        ("upper_arm_left", [0.0, 0.17, 1.342], [0.0, -0.7071, -0.7071]),
-        ("lower_arm_right", [0.18, -0.35, 1.162], [0.0, -0.7071, 0.7071]),
+        ("upper_arm_left", [0.0, 0.17, 1.342], [0.0, -H, -H]),
+        ("lower_arm_right", [0.18, -0.35, 1.162], [0.0, -H, H]),
     ] {
         let joint = joint(&model, child);
         for (body, frame) in [(joint.parent, joint.frame_a), (joint.child, joint.frame_b)] {

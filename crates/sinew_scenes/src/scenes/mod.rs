@@ -21,6 +21,7 @@ mod ballistics;
 mod chains;
 mod crowds;
 mod incline;
+mod mjcf;
 mod nets;
 mod pendulums;
 mod piles;
@@ -57,7 +58,7 @@ impl Scene {
     /// Builds it.
     ///
     /// # Panics
-    /// If the settings are those of another scene.
+    /// If the settings are those of another scene, or one that has to be set is not: see [`Settings::check`].
     pub fn start(&self, settings: &Settings) -> Instance {
         self.start_under(settings, 1.0)
     }
@@ -108,7 +109,10 @@ pub fn registry() -> &'static [Scene] {
     }
 }
 
-/// The scene of that name.
+/// Scenes that need a file of the user's, and so are in no list.
+const OF_FILES: &[Scene] = &[mjcf::DROP];
+
+/// The scene of that name; of those that need a file, too, which the registry does not list.
 pub fn find(name: &str) -> Option<&'static Scene> {
-    registry().iter().find(|scene| scene.name == name)
+    registry().iter().chain(OF_FILES).find(|scene| scene.name == name)
 }

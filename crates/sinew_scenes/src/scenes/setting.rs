@@ -1,16 +1,19 @@
 //! What a user may change about a scene.
 
 use super::parts::GRAVITY;
+use sinew::formats::{MjcfModel, read_bytes, read_mjcf};
 use sinew::math::Vec3;
 use sinew::physics::{Sleeping, World, WorldDef};
 
-/// Which numbers a setting takes, ends included.
+/// What a setting takes: which numbers, ends included, or a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Domain {
     /// Any number from the first to the second.
     Number(f32, f32),
     /// Any whole number from the first to the second.
     Whole(u16, u16),
+    /// Path of a model in MJCF, which is read when it is set.
+    Model,
 }
 
 /// A setting of a scene.
@@ -20,7 +23,7 @@ pub struct Setting {
     pub key: &'static str,
     /// What it is, with its unit.
     pub about: &'static str,
-    /// Value unless set.
+    /// Value unless set; 0 for a model, which has to be set.
     pub default: f32,
     /// What it may be.
     pub domain: Domain,
@@ -45,6 +48,11 @@ impl Setting {
         Self { key, about, default: default as f32, domain: Domain::Whole(lo, hi) }
     }
 
+    pub(super) const fn model(key: &'static str, about: &'static str) -> Self {
+        Self { key, about, default: 0.0, domain: Domain::Model }
+    }
+
+    /// The number that a text is; a model has none.
     fn parse(&self, text: &str) -> Option<f32> {
         match self.domain {
             Domain::Number(lo, hi) => text.parse().ok().filter(|value| (lo..=hi).contains(value)),
@@ -52,6 +60,7 @@ impl Setting {
                 let whole: u16 = text.parse().ok()?;
                 (lo..=hi).contains(&whole).then(|| f32::from(whole))
             }
+            Domain::Model => None,
         }
     }
 }
@@ -80,6 +89,17 @@ pub enum SettingError {
         /// What it takes.
         domain: String,
     },
+    /// The file that it names cannot be read.
+    #[error(transparent)]
+    File(#[from] sinew::formats::Error),
+    /// The scene cannot start without it.
+    #[error("`{key}` is not set: it takes {domain}")]
+    Missing {
+        /// The setting.
+        key: &'static str,
+        /// What it takes.
+        domain: String,
+    },
 }
 
 fn list(keys: &[&'static str]) -> String {
@@ -91,6 +111,7 @@ impl core::fmt::Display for Domain {
         match self {
             Self::Number(lo, hi) => write!(f, "a number from {lo} to {hi}"),
             Self::Whole(lo, hi) => write!(f, "a whole number from {lo} to {hi}"),
+            Self::Model => write!(f, "the path of a model in MJCF"),
         }
     }
 }
@@ -100,11 +121,12 @@ impl core::fmt::Display for Domain {
 pub struct Settings {
     declared: &'static [Setting],
     values: Vec<f32>,
+    model: Option<MjcfModel>,
 }
 
 impl Settings {
     pub(super) fn new(declared: &'static [Setting]) -> Self {
-        Self { declared, values: declared.iter().map(|setting| setting.default).collect() }
+        Self { declared, values: declared.iter().map(|setting| setting.default).collect(), model: None }
     }
 
     /// What there is to set.
@@ -124,6 +146,11 @@ impl Settings {
             return Err(SettingError::UnknownKey { key: key.to_owned(), known });
         };
         let Setting { key, domain, .. } = self.declared[place];
+        if domain == Domain::Model {
+            let bytes = read_bytes(value)?;
+            self.model = Some(read_mjcf(&bytes).map_err(|error| error.with_file(value))?);
+            return Ok(());
+        }
         self.values[place] = self.declared[place].parse(value).ok_or_else(|| SettingError::Value {
             key,
             value: value.to_owned(),
@@ -132,7 +159,21 @@ impl Settings {
         Ok(())
     }
 
-    /// Value of a setting.
+    /// Whether the scene can start.
+    ///
+    /// # Errors
+    /// A model that has to be set is not.
+    pub fn check(&self) -> Result<(), SettingError> {
+        let model = self.declared.iter().find(|setting| setting.domain == Domain::Model);
+        match (model, &self.model) {
+            (Some(Setting { key, domain, .. }), None) => {
+                Err(SettingError::Missing { key, domain: domain.to_string() })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Number that a setting is set to.
     ///
     /// # Panics
     /// If there is no such setting.
@@ -156,6 +197,12 @@ impl Setup<'_> {
 
     pub fn whole(&self, key: &str) -> usize {
         self.settings.get(key) as usize
+    }
+
+    /// # Panics
+    /// If it is not set: see [`Settings::check`].
+    pub fn model(&self) -> &MjcfModel {
+        self.settings.model.as_ref().expect("the model is set")
     }
 
     /// An empty world.
