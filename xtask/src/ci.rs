@@ -2,7 +2,7 @@
 
 use crate::command::{self, Profile};
 use crate::golden::{self, Coverage};
-use crate::{contract, tidy};
+use crate::{bench, contract, tidy};
 use anyhow::{Context, Result, anyhow, bail};
 use serde_json::Value;
 use std::fs;
@@ -15,7 +15,7 @@ const WASM: &str = "wasm32-unknown-unknown";
 /// `cargo xtask ci`.
 #[derive(clap::Args)]
 pub struct Ci {
-    /// Adds what is slow: state hashes in every build × thread count, not only the diagonal
+    /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; instruction counts
     #[arg(long)]
     full: bool,
 }
@@ -44,6 +44,9 @@ impl Ci {
         check("golden", &|| golden::check(coverage));
         check("demo", &demo);
         check("wasm", &wasm);
+        if self.full {
+            check("counts", &bench::check_counts);
+        }
         if !failed.is_empty() {
             bail!("failed: {}", failed.join(", "));
         }

@@ -14,6 +14,11 @@ pub fn root() -> PathBuf {
     manifest.parent().map(Path::to_path_buf).unwrap_or(manifest)
 }
 
+/// The folder that holds what is built.
+pub fn target() -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
+}
+
 /// The cargo that started us, in the root of the repository.
 pub fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
@@ -67,24 +72,32 @@ pub enum Profile {
     Release,
 }
 
-/// Builds the command line and gives the path of its binary, wherever the target folder is.
+/// Builds the command line and gives the path of its binary.
 ///
 /// # Errors
 /// If it does not compile.
 pub fn build_sinew(profile: Profile) -> Result<PathBuf> {
-    let mut command =
-        cargo(&["build", "--package", "sinew_cli", "--message-format", "json-render-diagnostics"]);
+    let mut command = cargo(&["build", "--package", "sinew_cli"]);
     if profile == Profile::Release {
         command.arg("--release");
     }
-    eprintln!("$ {}", shown(&command));
-    let messages = output(&mut command)?;
+    build(&mut command, "sinew")
+}
+
+/// Runs `command`, a `cargo build`, and gives the path of the executable `name`, wherever the target folder is.
+///
+/// # Errors
+/// If it does not compile.
+pub fn build(command: &mut Command, name: &str) -> Result<PathBuf> {
+    command.args(["--message-format", "json-render-diagnostics"]);
+    eprintln!("$ {}", shown(command));
+    let messages = output(command)?;
     messages
         .lines()
         .filter_map(|line| serde_json::from_str::<Value>(line).ok())
-        .filter(|message| message["target"]["name"] == "sinew")
+        .filter(|message| message["target"]["name"] == name)
         .find_map(|message| message["executable"].as_str().map(PathBuf::from))
-        .context("cargo names no executable `sinew`")
+        .with_context(|| format!("cargo names no executable `{name}`"))
 }
 
 fn shown(command: &Command) -> String {

@@ -1,6 +1,7 @@
-//! All automation of this repository: `cargo xtask ci | tidy | golden`.
+//! All automation of this repository: `cargo xtask ci | tidy | golden | bench`.
 #![forbid(unsafe_code)]
 
+mod bench;
 mod ci;
 mod command;
 mod contract;
@@ -8,6 +9,7 @@ mod golden;
 mod tidy;
 
 use clap::{Parser, Subcommand};
+use std::process::ExitCode;
 
 #[derive(Parser)]
 #[command(name = "cargo xtask", about = "Automation of the Sinew repository")]
@@ -24,12 +26,16 @@ enum Task {
     Tidy(tidy::Tidy),
     /// State hashes of all scenes, against the committed ones
     Golden(golden::Golden),
+    /// Time and quality beside other engines, into docs/benchmarks.md; or instructions of the kernels
+    Bench(bench::Bench),
 }
 
-fn main() -> anyhow::Result<()> {
+fn main() -> anyhow::Result<ExitCode> {
     match Xtask::parse().task {
-        Task::Ci(ci) => ci.run(),
-        Task::Tidy(tidy) => tidy.run(),
-        Task::Golden(golden) => golden.run(),
+        Task::Ci(ci) => ci.run()?,
+        Task::Tidy(tidy) => tidy.run()?,
+        Task::Golden(golden) => golden.run()?,
+        Task::Bench(bench) => return bench.run(),
     }
+    Ok(ExitCode::SUCCESS)
 }

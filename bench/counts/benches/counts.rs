@@ -1,0 +1,120 @@
+//! Instructions that the kernels take, counted under valgrind: the same on a busy machine and on a quiet one.
+//!
+//! `cargo xtask bench --counts` runs these and compares them with `bench/counts/baseline.txt`. What is not public is
+//! measured as the step of a world in which it is nearly all there is.
+
+use gungraun::prelude::*;
+use sinew::math::{Random, Rotation, Transform, Vec3};
+use sinew::physics::collide::{Manifold, collide};
+use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef, Sleeping, World, WorldDef};
+use sinew_scenes::blueprint;
+use sinew_scenes::scenes::{self, Instance};
+use std::hint::black_box;
+
+/// The mannequin of `ragdoll_drop` after `steps`, its buffers warm.
+fn ragdoll(steps: u32) -> Instance {
+    let scene = scenes::find("ragdoll_drop").expect("the registry has it");
+    let mut drop = scene.start(&scene.settings());
+    for _ in 0..steps {
+        drop.world_mut().step();
+    }
+    let world = drop.world();
+    assert!(world.body_ids().any(|id| world.is_awake(id)), "it is not yet asleep");
+    drop
+}
+
+/// In the air, 0.2 s after it was let go.
+fn falling() -> Instance {
+    ragdoll(12)
+}
+
+/// On the floor, twitching.
+fn lying() -> Instance {
+    ragdoll(60)
+}
+
+#[library_benchmark]
+#[bench::falling(falling())]
+#[bench::lying(lying())]
+fn ragdoll_step(mut drop: Instance) -> Instance {
+    drop.world_mut().step();
+    drop
+}
+
+/// Ten chains of a hundred links and a weight: factor and solve of long trees, and nothing else.
+fn chains() -> World {
+    let (mut world, ..) = blueprint::chain_100_links().build();
+    world.step();
+    world
+}
+
+/// One box that lies on a floor: a manifold of four points, and its complementarity problem.
+fn lone_box() -> World {
+    let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
+    let cuboid = |half_extents, y| BodyDef {
+        position: Vec3::Y * y,
+        shapes: vec![ShapeDef::new(Shape::Box { half_extents })],
+        ..BodyDef::default()
+    };
+    world.add_body(&BodyDef { kind: BodyKind::Static, ..cuboid(Vec3::new(5.0, 1.0, 5.0), -1.0) });
+    world.add_body(&cuboid(Vec3::splat(0.5), 0.5));
+    for _ in 0..30 {
+        world.step();
+    }
+    world
+}
+
+#[library_benchmark]
+#[bench::chains_10_of_100_links(chains())]
+#[bench::manifold_of_one_box(lone_box())]
+fn step(mut world: World) -> World {
+    world.step();
+    world
+}
+
+/// Pairs of a box and another shape that touch, or nearly.
+const PAIRS: usize = 64;
+
+type Placed = (Shape, Transform);
+
+fn pairs(other: fn(&mut Random) -> Shape) -> Vec<(Placed, Placed)> {
+    let mut random = Random::new(42);
+    let pair = |_| {
+        let [a, b] = [cuboid(&mut random), other(&mut random)];
+        let mut turn = || {
+            let axis = Vec3::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0), random.range(0.1, 1.0));
+            Rotation::from_axis_angle(axis.normalize(), random.range(0.0, 3.0))
+        };
+        let [turn_a, turn_b] = [turn(), turn()];
+        let side = |random: &mut Random| random.range(-0.8, 0.8);
+        let offset = Vec3::new(side(&mut random), side(&mut random), side(&mut random));
+        ((a, Transform::new(Vec3::ZERO, turn_a)), (b, Transform::new(offset, turn_b)))
+    };
+    (0..PAIRS).map(pair).collect()
+}
+
+fn cuboid(random: &mut Random) -> Shape {
+    let mut half = || random.range(0.2, 0.6);
+    Shape::Box { half_extents: Vec3::new(half(), half(), half()) }
+}
+
+fn capsule(random: &mut Random) -> Shape {
+    Shape::Capsule { half_height: random.range(0.1, 0.5), radius: random.range(0.1, 0.4) }
+}
+
+#[library_benchmark]
+#[bench::box_box(pairs(cuboid))]
+#[bench::box_capsule(pairs(capsule))]
+fn collide_64(pairs: Vec<(Placed, Placed)>) -> usize {
+    let mut manifold = Manifold::default();
+    let mut points = 0;
+    for ((a, world_from_a), (b, world_from_b)) in black_box(&pairs) {
+        collide(a, world_from_a, b, world_from_b, 0.02, &mut manifold);
+        points += black_box(&manifold).count;
+    }
+    core::mem::forget(pairs);
+    points
+}
+
+library_benchmark_group!(name = kernels, benchmarks = [ragdoll_step, step, collide_64]);
+main!(library_benchmark_groups = kernels);

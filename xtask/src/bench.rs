@@ -1,0 +1,192 @@
+//! Time, and what it buys, on Sinew and other engines.
+
+mod counts;
+mod figures;
+mod machine;
+mod musts;
+mod needs;
+mod page;
+mod peers;
+mod results;
+mod table;
+
+use crate::command::{self, Profile};
+use anyhow::{Context, Result, bail};
+use machine::Machine;
+use peers::{Engine, Judging};
+use results::{EngineResult, Results, SceneResult};
+use serde_json::Value;
+use std::fs;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::process::{Command, ExitCode};
+use std::time::Duration;
+
+pub use counts::check as check_counts;
+
+/// The page for readers.
+const PAGE: &str = "docs/benchmarks.md";
+
+/// Rounds in which the engines take turns.
+const ROUNDS: u32 = 3;
+
+/// Steps of a scene in a quick run.
+const QUICK_STEPS: u32 = 60;
+
+/// A run that takes longer is stopped: some scenes drive some engines out of their minds.
+const LIMIT: Duration = Duration::from_secs(900);
+
+/// Not a scene of the peers: a character from rig to baked clip, whose speed is held against real time.
+const BAKE: &str = "bake";
+
+/// `cargo xtask bench`: writes docs/benchmarks.md and target/bench/benchmarks.json.
+///
+/// Exits with 2 if a peer cannot be built.
+#[derive(clap::Args)]
+#[command(after_help = "Example: cargo xtask bench --scene ragdoll_pile --scene chain_swing_1000 --quick")]
+pub struct Bench {
+    /// Only this scene, of those that `peers list` names, or `bake`; others keep the figures that they have
+    #[arg(long = "scene", value_name = "NAME")]
+    scenes: Vec<String>,
+    /// One short round, printed and not written down
+    #[arg(long)]
+    quick: bool,
+    /// Exit with 1 if Sinew falls short of a speed that it must have
+    #[arg(long)]
+    check: bool,
+    /// Instead, count the instructions of the kernels and compare them with bench/counts/baseline.txt
+    #[arg(long, conflicts_with_all = ["scenes", "quick", "check"])]
+    counts: bool,
+    /// Take the counts as the right ones and write them down
+    #[arg(long, requires = "counts")]
+    bless: bool,
+}
+
+impl Bench {
+    /// # Errors
+    /// If a run cannot be started or its figures cannot be written.
+    pub fn run(&self) -> Result<ExitCode> {
+        if self.counts {
+            let counted = if self.bless { counts::bless() } else { counts::check() };
+            return counted.map(|()| ExitCode::SUCCESS);
+        }
+        let engines = match needs::check().and_then(|()| peers::build()) {
+            Ok(engines) => engines,
+            Err(error) => {
+                eprintln!("error: {error:#}");
+                return Ok(ExitCode::from(2));
+            }
+        };
+        let names = peers::scenes(engines.first().context("`peers list` has no engine")?)?;
+        self.refuse_unknown(&names)?;
+        let results = self.measure(&engines, &names)?;
+        println!("{}\n{}\n{}", page::glance(&results), page::holds(&results), page::speeds(&results));
+        if !self.quick {
+            write(results.clone(), &names)?;
+        }
+        Ok(self.verdict(&results))
+    }
+
+    fn refuse_unknown(&self, names: &[(String, String)]) -> Result<()> {
+        let is_known = |scene: &String| scene == BAKE || names.iter().any(|(name, _)| name == scene);
+        match self.scenes.iter().find(|scene| !is_known(scene)) {
+            Some(scene) => {
+                let names: Vec<&str> = names.iter().map(|(name, _)| name.as_str()).collect();
+                bail!("no scene `{scene}`; there are {}, {BAKE}", names.join(", "))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn is_wanted(&self, scene: &str) -> bool {
+        self.scenes.is_empty() || self.scenes.iter().any(|name| name == scene)
+    }
+
+    fn measure(&self, engines: &[Engine], names: &[(String, String)]) -> Result<Results> {
+        let revision = machine::revision();
+        let mut results = Results::default();
+        for (name, about) in names.iter().filter(|(name, _)| self.is_wanted(name)) {
+            let engines = self.race(engines, name)?;
+            let (name, about) = (name.clone(), about.clone());
+            results.scenes.push(SceneResult { name, about, revision: revision.clone(), engines });
+        }
+        if self.is_wanted(BAKE) && !self.quick {
+            results.bake = Some(bake()?);
+        }
+        Ok(results)
+    }
+
+    /// A scene on all engines, which take turns, so that a neighbour's load hits all alike.
+    fn race(&self, engines: &[Engine], scene: &str) -> Result<Vec<EngineResult>> {
+        let result = |engine: &Engine| EngineResult { name: engine.name.clone(), reports: Vec::new() };
+        let mut results: Vec<_> = engines.iter().map(result).collect();
+        let (rounds, steps) = if self.quick { (1, Some(QUICK_STEPS)) } else { (ROUNDS, None) };
+        for round in 1..=rounds {
+            for (engine, result) in engines.iter().zip(&mut results) {
+                if result.why_not().is_some() {
+                    continue;
+                }
+                eprint!("{scene:<26} round {round} of {rounds}  {:<14}", engine.name);
+                std::io::stderr().flush()?;
+                let judging = if round == 1 { Judging::On } else { Judging::Off };
+                let report = engine.run(scene, steps, judging, LIMIT)?;
+                eprintln!("{}", in_a_word(&report));
+                result.reports.push(report);
+            }
+        }
+        Ok(results)
+    }
+
+    fn verdict(&self, results: &Results) -> ExitCode {
+        if !self.check {
+            return ExitCode::SUCCESS;
+        }
+        let (missed, open) = musts::shortfalls(results);
+        for line in &missed {
+            println!("falls short: {line}");
+        }
+        for line in &open {
+            println!("not measured: {line}");
+        }
+        if missed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    }
+}
+
+/// What came of a run, for those who wait.
+fn in_a_word(report: &Value) -> String {
+    match report["cpu_ms"]["median"].as_f64() {
+        Some(median) => format!("{:>9} ms", figures::rounded(median)),
+        None => report["unsupported"]
+            .as_str()
+            .or_else(|| report["failed"].as_str())
+            .unwrap_or("nothing")
+            .to_owned(),
+    }
+}
+
+/// Simulated seconds per processor second of the demo's bake.
+fn bake() -> Result<f64> {
+    let sinew = command::build_sinew(Profile::Release)?;
+    let folder = std::env::temp_dir().join(format!("sinew-bench-{}", std::process::id()));
+    fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    let report = command::output_json(Command::new(sinew).args(["demo", "--json", "--out"]).arg(&folder));
+    fs::remove_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    report?["realtime_factor"].as_f64().context("`sinew demo --json`: no `realtime_factor`")
+}
+
+/// Adds the figures to those of earlier runs, and writes the page once there are some of every scene.
+fn write(results: Results, names: &[(String, String)]) -> Result<()> {
+    let path: PathBuf = command::target().join("bench/benchmarks.json");
+    let earlier = fs::read_to_string(&path).ok().and_then(|text| serde_json::from_str(&text).ok());
+    let mut all = Results::from_json(&earlier.unwrap_or(Value::Null));
+    all.update(results, names);
+    fs::write(&path, format!("{:#}\n", all.to_json())).with_context(|| path.display().to_string())?;
+    eprintln!("wrote {}", path.display());
+    if all.scenes.len() < names.len() {
+        eprintln!("{PAGE} stays as it is: {} of {} scenes are measured", all.scenes.len(), names.len());
+        return Ok(());
+    }
+    fs::write(command::root().join(PAGE), page::page(&all, &Machine::this())).context(PAGE)?;
+    eprintln!("wrote {PAGE}");
+    Ok(())
+}

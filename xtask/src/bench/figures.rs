@@ -1,0 +1,184 @@
+//! The figures of quality that stand beside the times, and how they are written.
+
+use super::results::EngineResult;
+use serde_json::Value;
+
+/// What a number counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// In metres, written in millimetres up to a metre.
+    Length,
+    /// Of a whole, written in per cent.
+    Share,
+    /// In joules.
+    Energy,
+    /// In radians, written in degrees.
+    Angle,
+    /// Of things.
+    Count,
+}
+
+/// A figure of quality.
+pub struct Figure {
+    /// As a reader knows it.
+    pub heading: &'static str,
+    /// What it counts.
+    pub unit: Unit,
+    /// The figure, if it was measured.
+    pub of: fn(&EngineResult) -> Option<f64>,
+}
+
+/// Largest distance between the two anchors of a joint after any step.
+pub const GAP: Figure = Figure { heading: "gap", unit: Unit::Length, of: |e| number(e, "joint_gap_peak_m") };
+/// Of a chain: all its gaps together over its length, after any step.
+pub const STRETCH: Figure =
+    Figure { heading: "stretch", unit: Unit::Share, of: |e| number(e, "stretch_peak") };
+/// The same after the last one.
+pub const STRETCH_END: Figure =
+    Figure { heading: "stretch at the end", unit: Unit::Share, of: |e| number(e, "stretch_end") };
+/// Mean gap of the joints of a rope at its worst.
+pub const GAP_PER_LINK: Figure =
+    Figure { heading: "gap per link", unit: Unit::Length, of: |e| number(e, "gap_per_link") };
+/// Limits that were exceeded by more than 0.1 rad after any step.
+pub const LIMITS: Figure = Figure {
+    heading: "limits > 0.1 rad",
+    unit: Unit::Count,
+    of: |e| over_limits(e, "exceeded_run", |a, b| a + b),
+};
+/// Deepest overlap of two bodies after any step that was looked at.
+pub const DEPTH: Figure =
+    Figure { heading: "depth", unit: Unit::Length, of: |e| number(e, "penetration_run_max_m") };
+/// How far from its place a body is that should stay.
+pub const SHIFT: Figure =
+    Figure { heading: "shift", unit: Unit::Length, of: |e| number(e, "displacement_max_m") };
+/// Mean stretch of a cloth's edges.
+pub const CLOTH: Figure =
+    Figure { heading: "mean stretch", unit: Unit::Share, of: |e| number(e, "stretch_mean") };
+/// Share of rays or pairs that hit.
+pub const HITS: Figure = Figure { heading: "hits", unit: Unit::Share, of: |e| e.number("hit_share") };
+
+/// All of them, in the order of the columns.
+pub const FIGURES: &[Figure] = &[
+    GAP,
+    Figure { heading: "gap at the end", unit: Unit::Length, of: |e| number(e, "joint_gap_end_max_m") },
+    GAP_PER_LINK,
+    STRETCH,
+    STRETCH_END,
+    LIMITS,
+    Figure { heading: "worst limit", unit: Unit::Angle, of: |e| over_limits(e, "worst_run_rad", f64::max) },
+    DEPTH,
+    Figure { heading: "depth at the end", unit: Unit::Length, of: |e| number(e, "penetration_end_max_m") },
+    Figure { heading: "its p99", unit: Unit::Length, of: |e| number(e, "penetration_end_p99_m") },
+    SHIFT,
+    CLOTH,
+    Figure { heading: "largest stretch", unit: Unit::Share, of: |e| number(e, "stretch_max") },
+    Figure { heading: "motion at the end", unit: Unit::Energy, of: |e| number(e, "kinetic_energy_end_j") },
+    Figure { heading: "energy gained", unit: Unit::Energy, of: energy_gained },
+    Figure { heading: "lost bodies", unit: Unit::Count, of: |e| number(e, "lost_bodies") },
+    HITS,
+];
+
+/// The figure by which a scene shows whether its time is the time of the same work.
+pub fn headline(scene: &str) -> &'static Figure {
+    match scene {
+        "box_pyramid" => &SHIFT,
+        "box_rain" | "large_pyramid" => &DEPTH,
+        "chain_100_links" => &STRETCH,
+        "heavy_rope" | "hanging_rope" => &GAP_PER_LINK,
+        "cloth" => &CLOTH,
+        "rays" | "obb_tests" | "obb_tests_streamed" => &HITS,
+        _ => &GAP,
+    }
+}
+
+/// Whether the joints do not hold what they join any more, so that the time is that of another scene.
+pub fn came_apart(engine: &EngineResult) -> bool {
+    const GAP_MAX: f64 = 0.5;
+    const STRETCH_MAX: f64 = 1.0;
+    (GAP.of)(engine).is_some_and(|gap| gap > GAP_MAX) || (STRETCH.of)(engine).is_some_and(|s| s > STRETCH_MAX)
+}
+
+fn number(engine: &EngineResult, key: &str) -> Option<f64> {
+    engine.quality()?.get(key)?.as_f64()
+}
+
+fn over_limits(engine: &EngineResult, key: &str, fold: fn(f64, f64) -> f64) -> Option<f64> {
+    let kinds = engine.quality()?.get("limits")?.as_object()?;
+    kinds.values().map(|kind: &Value| kind[key].as_f64()).try_fold(0.0, |sum, value| Some(fold(sum, value?)))
+}
+
+/// The most that the world ever had above what it began with; nothing put any in.
+fn energy_gained(engine: &EngineResult) -> Option<f64> {
+    Some((number(engine, "energy_peak_j")? - number(engine, "energy_start_j")?).max(0.0))
+}
+
+impl Unit {
+    /// A number with its unit, short.
+    pub fn show(self, value: f64) -> String {
+        match self {
+            Self::Length if value.abs() >= 1.0 => format!("{} m", rounded(value)),
+            Self::Length => format!("{} mm", rounded(value * 1e3)),
+            Self::Share => format!("{} %", rounded(value * 1e2)),
+            Self::Energy if value.abs() >= 1e3 => format!("{} kJ", rounded(value * 1e-3)),
+            Self::Energy => format!("{} J", rounded(value)),
+            Self::Angle => format!("{}°", rounded(value.to_degrees())),
+            Self::Count => format!("{value:.0}"),
+        }
+    }
+}
+
+/// Three digits, but no more than three behind the point.
+pub fn rounded(value: f64) -> String {
+    let decimals = match value.abs() {
+        x if x >= 99.95 => 0,
+        x if x >= 9.995 => 1,
+        x if x >= 0.9995 => 2,
+        _ => 3,
+    };
+    let text = format!("{value:.decimals$}");
+    if value != 0.0 && text.trim_start_matches('-').chars().all(|digit| "0.".contains(digit)) {
+        return "< 0.001".to_owned();
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::results::tests::engine;
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn numbers_are_short_and_have_units() {
+        assert_eq!(
+            [0.0, 0.0004, 0.12, 1.0, 23.456, 1234.5].map(rounded),
+            ["0.000", "< 0.001", "0.120", "1.00", "23.5", "1234"]
+        );
+        assert_eq!(Unit::Length.show(0.1734), "173 mm");
+        assert_eq!(Unit::Length.show(15.2), "15.2 m");
+        assert_eq!(Unit::Share.show(0.063), "6.30 %");
+        assert_eq!(Unit::Energy.show(27.5), "27.5 J");
+        assert_eq!(Unit::Count.show(12.0), "12");
+    }
+
+    #[test]
+    fn limits_of_all_kinds_count_together() {
+        let limits = json!({ "cone": { "exceeded_run": 2, "worst_run_rad": 0.1 },
+                             "hinge": { "exceeded_run": 3, "worst_run_rad": 0.4 } });
+        let quality = json!({ "limits": limits, "energy_start_j": 10.0, "energy_peak_j": 12.5 });
+        let engine = engine("rapier", &[1.0], &quality);
+        assert_eq!((LIMITS.of)(&engine), Some(5.0));
+        let worst = FIGURES.iter().find(|figure| figure.heading == "worst limit").expect("it is a column");
+        assert_eq!((worst.of)(&engine), Some(0.4));
+        assert_eq!(energy_gained(&engine), Some(2.5));
+        assert_eq!((GAP.of)(&engine), None);
+    }
+
+    #[test]
+    fn what_came_apart_is_known() {
+        let of = |quality| engine("jolt", &[1.0], &quality);
+        assert!(came_apart(&of(json!({ "joint_gap_peak_m": 11.0 }))));
+        assert!(came_apart(&of(json!({ "joint_gap_peak_m": 0.2, "stretch_peak": 16.6 }))));
+        assert!(!came_apart(&of(json!({ "joint_gap_peak_m": 0.2, "stretch_peak": 0.3 }))));
+    }
+}

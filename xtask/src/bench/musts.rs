@@ -1,0 +1,302 @@
+//! What Sinew must reach, and whether it does.
+
+use super::figures::{CLOTH, Figure, GAP, GAP_PER_LINK, LIMITS, STRETCH, STRETCH_END, rounded};
+use super::results::{EngineResult, Results, SceneResult};
+
+/// Whether a must is reached.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It is; and the goal beyond it, too.
+    Goal,
+    /// It is.
+    Met,
+    /// It is not.
+    Missed,
+    /// It was not measured, for this reason.
+    Open(String),
+}
+
+/// A row of the specification's table of speeds.
+pub struct Speed {
+    /// Its words.
+    pub work: &'static str,
+    /// What has to be reached.
+    pub bar: Bar,
+}
+
+/// What a [`Speed`] has to reach.
+pub enum Bar {
+    /// A factor that must be at least so much, and should be more.
+    Factor { must: f64, goal: f64, measure: Measure },
+    /// Nothing here measures it.
+    Elsewhere { must: &'static str, goal: &'static str, why: &'static str },
+}
+
+/// Where the factor of a [`Speed`] comes from.
+#[derive(Clone, Copy)]
+pub enum Measure {
+    /// A scene: the fastest peer's time over ours.
+    Peers(&'static str),
+    /// Likewise, but a peer whose figure is larger than ours does not count.
+    PeersNoWorse(&'static str, &'static Figure),
+    /// The bake of one character, in seconds per second.
+    Bake,
+}
+
+const fn factor(work: &'static str, must: f64, goal: f64, measure: Measure) -> Speed {
+    Speed { work, bar: Bar::Factor { must, goal, measure } }
+}
+
+const fn elsewhere(work: &'static str, must: &'static str, goal: &'static str, why: &'static str) -> Speed {
+    Speed { work, bar: Bar::Elsewhere { must, goal, why } }
+}
+
+/// Section 5 of the specification.
+pub const SPEEDS: &[Speed] = &[
+    factor("ragdoll pile", 1.3, 3.0, Measure::Peers("ragdoll_pile")),
+    factor("box pyramid", 1.2, 3.0, Measure::Peers("box_pyramid")),
+    factor("box pile", 1.2, 3.0, Measure::Peers("box_rain")),
+    factor("joint grid", 1.2, 3.0, Measure::Peers("joint_grid")),
+    factor("cloth, against those that stretch no more", 1.2, 3.0, Measure::PeersNoWorse("cloth", &CLOTH)),
+    elsewhere("separating axes of two boxes: share of the limit", "≥ 0.3", "≥ 0.6", "no batch of pairs yet"),
+    elsewhere("point in box, springs: share of the limit", "≥ 0.4", "≥ 0.7", "no batches yet"),
+    factor("rays against 10,000 boxes", 1.2, 3.0, Measure::Peers("rays")),
+    elsewhere("heap allocations per step", "0", "0", "a test counts them: `a_warm_step_allocates_nothing`"),
+    elsewhere("rig file to ragdoll", "< 100 ms", "< 10 ms", "no command times it without the drops"),
+    factor("bake of one character, of real time", 500.0, 2000.0, Measure::Bake),
+];
+
+impl Speed {
+    /// What was measured, and what that means.
+    pub fn judge(&self, results: &Results) -> (Option<f64>, Verdict) {
+        let (must, goal, measure) = match self.bar {
+            Bar::Factor { must, goal, measure } => (must, goal, measure),
+            Bar::Elsewhere { why, .. } => return (None, Verdict::Open(why.to_owned())),
+        };
+        match measure.take(results) {
+            Err(verdict) => (None, verdict),
+            Ok(value) if value >= goal => (Some(value), Verdict::Goal),
+            Ok(value) if value >= must => (Some(value), Verdict::Met),
+            Ok(value) => (Some(value), Verdict::Missed),
+        }
+    }
+}
+
+impl Measure {
+    fn take(self, results: &Results) -> Result<f64, Verdict> {
+        let factor = match self {
+            Self::Bake => results.bake,
+            Self::Peers(scene) => raced(results, scene)?.0.speed(),
+            Self::PeersNoWorse(scene, figure) => speed_of_quality(raced(results, scene)?.0, figure),
+        };
+        factor.ok_or_else(not_run)
+    }
+}
+
+/// A scene that Sinew came to the end of. What dies or is stopped was run and falls short, what is not there yet is
+/// open.
+fn raced<'a>(results: &'a Results, scene: &str) -> Result<(&'a SceneResult, &'a EngineResult), Verdict> {
+    let scene = results.scene(scene).ok_or_else(not_run)?;
+    let ours = scene.sinew().ok_or_else(not_run)?;
+    match ours.why_not() {
+        None => Ok((scene, ours)),
+        Some(_) if ours.is_failed() => Err(Verdict::Missed),
+        Some(why) => Err(Verdict::Open(why.to_owned())),
+    }
+}
+
+fn not_run() -> Verdict {
+    Verdict::Open("not run".to_owned())
+}
+
+/// As [`SceneResult::speed`], against the peers that are as good; with none of these there is no race, and it is won.
+fn speed_of_quality(scene: &SceneResult, figure: &Figure) -> Option<f64> {
+    let ours = (figure.of)(scene.sinew()?)?;
+    let mut fair = scene.clone();
+    fair.engines
+        .retain(|engine| engine.is_sinew() || (figure.of)(engine).is_some_and(|theirs| theirs <= ours));
+    if fair.peers().next().is_none() { Some(f64::INFINITY) } else { fair.speed() }
+}
+
+/// A row of the table of joints that must hold.
+pub struct Hold {
+    /// The scene.
+    pub scene: &'static str,
+    /// What is looked at.
+    pub figure: &'static Figure,
+    /// What it may be.
+    pub most: Most,
+}
+
+/// How large a figure may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Most {
+    /// As large as this.
+    Value(f64),
+    /// As large as that of the best peer.
+    BestPeer,
+}
+
+const fn hold(scene: &'static str, figure: &'static Figure, most: f64) -> Hold {
+    Hold { scene, figure, most: Most::Value(most) }
+}
+
+/// Joints that do not stretch.
+pub const HOLDS: &[Hold] = &[
+    hold("chain_swing_1000", &GAP, 1e-3),
+    hold("chain_swing_1000_half", &GAP, 1e-3),
+    hold("chain_swing_1000_quarter", &GAP, 1e-3),
+    hold("chain_swing_100", &GAP, 2e-4),
+    hold("chain_hang_100", &GAP, 2e-4),
+    hold("chain_hang_1000", &GAP, 1e-3),
+    hold("chain_100_links", &STRETCH, 1e-3),
+    hold("chain_100_links", &STRETCH_END, 1e-3),
+    hold("heavy_rope", &GAP_PER_LINK, 5e-3),
+    hold("hanging_rope", &GAP_PER_LINK, 5e-3),
+    Hold { scene: "joint_grid", figure: &GAP, most: Most::BestPeer },
+    Hold { scene: "net", figure: &GAP, most: Most::BestPeer },
+    hold("ragdoll_pile", &GAP, 2e-3),
+    hold("ragdoll_pile", &LIMITS, 0.0),
+];
+
+impl Hold {
+    /// Whether Sinew holds it.
+    pub fn judge(&self, results: &Results) -> Verdict {
+        let (scene, ours) = match raced(results, self.scene) {
+            Ok(raced) => raced,
+            Err(verdict) => return verdict,
+        };
+        let most = match self.most {
+            Most::Value(most) => most,
+            Most::BestPeer => {
+                scene.peers().filter_map(self.figure.of).min_by(f64::total_cmp).unwrap_or(f64::INFINITY)
+            }
+        };
+        let holds = (self.figure.of)(ours).is_some_and(|figure| figure <= most);
+        if holds { Verdict::Met } else { Verdict::Missed }
+    }
+
+    /// What must be, in words.
+    pub fn must(&self) -> String {
+        match self.most {
+            Most::Value(0.0) => "0".to_owned(),
+            Most::Value(most) => format!("≤ {}", self.figure.unit.show(most)),
+            Most::BestPeer => "≤ best peer".to_owned(),
+        }
+    }
+}
+
+/// A line for each row of the specification's table that falls short, and one for each that was not measured.
+pub fn shortfalls(results: &Results) -> (Vec<String>, Vec<String>) {
+    let (mut missed, mut open) = (Vec::new(), Vec::new());
+    for speed in SPEEDS {
+        match speed.judge(results) {
+            (_, Verdict::Goal | Verdict::Met) => {}
+            (_, Verdict::Open(why)) => open.push(format!("{}: {why}", speed.work)),
+            (value, Verdict::Missed) => {
+                let value = value
+                    .map_or("does not come to its end".to_owned(), |value| format!("{}×", rounded(value)));
+                missed.push(format!("{}: {value}, must be {}", speed.work, speed.bar.must()));
+            }
+        }
+    }
+    (missed, open)
+}
+
+impl Bar {
+    /// What must be, in words.
+    pub fn must(&self) -> String {
+        match self {
+            Self::Factor { must, .. } => format!("≥ {must}×"),
+            Self::Elsewhere { must, .. } => (*must).to_owned(),
+        }
+    }
+
+    /// What should be, in words.
+    pub fn goal(&self) -> String {
+        match self {
+            Self::Factor { goal, .. } => format!("≥ {goal}×"),
+            Self::Elsewhere { goal, .. } => (*goal).to_owned(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::results::tests::{engine, scene};
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn of(name: &str, ours: EngineResult, theirs: EngineResult) -> Results {
+        Results { scenes: vec![scene(name, vec![ours, theirs])], bake: None }
+    }
+
+    fn speed(work: &str) -> &'static Speed {
+        SPEEDS.iter().find(|speed| speed.work == work).expect("the table has it")
+    }
+
+    #[test]
+    fn speeds_are_met_and_missed() {
+        let pile = |ours: f64| {
+            let results = of(
+                "ragdoll_pile",
+                engine("sinew", &[ours], &Value::Null),
+                engine("jolt", &[4.0], &Value::Null),
+            );
+            speed("ragdoll pile").judge(&results)
+        };
+        assert_eq!(pile(1.0), (Some(4.0), Verdict::Goal));
+        assert_eq!(pile(2.0), (Some(2.0), Verdict::Met));
+        assert_eq!(pile(4.0), (Some(1.0), Verdict::Missed));
+        assert_eq!(speed("ragdoll pile").judge(&Results::default()).1, Verdict::Open("not run".into()));
+    }
+
+    #[test]
+    fn what_is_not_there_is_open_but_what_dies_is_missed() {
+        let ours =
+            |key: &str| EngineResult { name: "sinew".into(), reports: vec![json!({ key: "no cloth" })] };
+        let cloth = |key| of("cloth", ours(key), engine("jolt", &[3.0], &json!({ "stretch_mean": 0.03 })));
+        assert_eq!(
+            speed("cloth, against those that stretch no more").judge(&cloth("unsupported")).1,
+            Verdict::Open("no cloth".into())
+        );
+        assert_eq!(
+            speed("cloth, against those that stretch no more").judge(&cloth("failed")).1,
+            Verdict::Missed
+        );
+        let (missed, _) = shortfalls(&cloth("failed"));
+        assert_eq!(
+            missed,
+            ["cloth, against those that stretch no more: does not come to its end, must be ≥ 1.2×"]
+        );
+    }
+
+    #[test]
+    fn a_softer_peer_is_no_rival() {
+        let cloth = |stretch: f64| json!({ "stretch_mean": stretch });
+        let (ours, softer) = (engine("sinew", &[4.0], &cloth(0.02)), engine("jolt", &[3.0], &cloth(0.03)));
+        assert_eq!(
+            speed("cloth, against those that stretch no more").judge(&of("cloth", ours.clone(), softer)).1,
+            Verdict::Goal
+        );
+        let stiffer = engine("jolt", &[3.0], &cloth(0.02));
+        assert_eq!(
+            speed("cloth, against those that stretch no more").judge(&of("cloth", ours, stiffer)).1,
+            Verdict::Missed
+        );
+    }
+
+    #[test]
+    fn joints_hold_or_not() {
+        let gap = |gap: f64| json!({ "joint_gap_peak_m": gap });
+        let net = HOLDS.iter().find(|hold| hold.scene == "net").expect("the table has it");
+        let judge = |ours, theirs| {
+            let results =
+                of("net", engine("sinew", &[1.0], &gap(ours)), engine("rapier", &[1.0], &gap(theirs)));
+            net.judge(&results)
+        };
+        assert_eq!(judge(0.01, 0.02), Verdict::Met);
+        assert_eq!(judge(0.03, 0.02), Verdict::Missed);
+        assert_eq!(HOLDS[0].must(), "≤ 1.00 mm");
+    }
+}

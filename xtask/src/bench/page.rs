@@ -1,0 +1,242 @@
+//! `docs/benchmarks.md`: for readers who want to know what an engine gives for its time.
+
+use super::figures::{FIGURES, came_apart, headline, rounded};
+use super::machine::Machine;
+use super::musts::{HOLDS, SPEEDS, Verdict};
+use super::results::{EngineResult, Results, SceneResult};
+use super::table::Table;
+use std::fmt::Write as _;
+
+/// No figure.
+const NONE: &str = "–";
+
+/// The whole page.
+pub fn page(results: &Results, machine: &Machine) -> String {
+    let mut page = String::from(INTRODUCTION);
+    let mut add = |heading: &str, text: &str| {
+        write!(page, "\n## {heading}\n\n{text}").expect("a string takes everything");
+    };
+    add("At a glance", &format!("{GLANCE}\n{}\n{LEGEND}", glance(results)));
+    add("Joints that hold", &format!("{HOLD}\n{}", holds(results)));
+    add("Against the specification", &format!("{SPECIFICATION}\n{}", speeds(results)));
+    add("Scene by scene", SCENES);
+    for scene in &results.scenes {
+        write!(page, "\n### {}\n\n{}", scene.name, details(scene)).expect("a string takes everything");
+    }
+    write!(page, "\n## Engines and machine\n\n{}\n{machine}", engines(results))
+        .expect("a string takes everything");
+    page
+}
+
+const INTRODUCTION: &str = "# Benchmarks
+
+The same scenes on Sinew and on Rapier, Box3D and Jolt, each with its default settings, on one thread. **Time never stands
+alone**: an engine that lets joints stretch and bodies sink has less to do. So beside each time stands what it bought,
+measured by one tool for all engines from the poses after each step.
+
+Written by `cargo xtask bench`; do not edit.
+";
+
+const GLANCE: &str = "Processor time of the median step in milliseconds, then the figure that tells whether it is the time of the
+same work.
+";
+
+const LEGEND: &str = "*gap*: largest distance between the two anchors of a joint after any step · *stretch*: all gaps of a chain over its length ·
+*depth*: deepest overlap of two bodies · *shift*: how far a body of a stack at rest has moved · *speed*: the fastest peer's
+time over Sinew's, above 1 is faster · † the joints came apart: the time is that of another scene.
+";
+
+const HOLD: &str = "What must hold with default settings, and what others do with theirs: the worst after any step of the run.
+**Bold** where Sinew holds it.
+";
+
+const SPECIFICATION: &str = "Factors against the fastest peer of this run.\n";
+
+const SCENES: &str = "Times in milliseconds per step: the median step (in brackets: of the best round), the 99th percentile, the median of the last
+third of the run, when piles have settled. Memory in MiB is the peak above what the process had before the scene.
+*depth* is sampled every tenth step. *energy gained* is the most the world ever had above its start.
+";
+
+/// Engines in the order of the columns.
+fn columns(results: &Results) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for engine in results.scenes.iter().flat_map(|scene| &scene.engines) {
+        if !names.contains(&engine.name) {
+            names.push(engine.name.clone());
+        }
+    }
+    names
+}
+
+/// As readers know it.
+fn title(engine: &str) -> &str {
+    match engine {
+        "sinew" => "Sinew",
+        "rapier" => "Rapier",
+        "rapier_simd8" => "Rapier, 8 lanes",
+        "box3d" => "Box3D",
+        "jolt" => "Jolt",
+        other => other,
+    }
+}
+
+fn heading<'a>(before: &[&'a str], engines: &'a [String], after: &[&'a str]) -> Table {
+    Table::new([before, &engines.iter().map(|name| title(name)).collect::<Vec<_>>(), after].concat())
+}
+
+fn of<'a>(scene: &'a SceneResult, engine: &str) -> Option<&'a EngineResult> {
+    scene.engines.iter().find(|result| result.name == engine)
+}
+
+/// One line per scene: time and figure of each engine.
+pub fn glance(results: &Results) -> Table {
+    let engines = columns(results);
+    let mut table = heading(&["scene", "figure"], &engines, &["speed"]);
+    for scene in &results.scenes {
+        let figure = headline(&scene.name);
+        let cell = |name: &String| {
+            let Some(engine) = of(scene, name) else { return NONE.to_owned() };
+            let Some(times) = engine.times() else { return absence(engine) };
+            let mark = if came_apart(engine) { " †" } else { "" };
+            let figure = (figure.of)(engine).map_or(NONE.to_owned(), |value| figure.unit.show(value));
+            format!("{} · {figure}{mark}", rounded(times.median))
+        };
+        let speed = scene.speed().map_or(NONE.to_owned(), |speed| format!("{}×", rounded(speed)));
+        let before = [scene.name.clone(), figure.heading.to_owned()];
+        table.row(before.into_iter().chain(engines.iter().map(cell)).chain([speed]));
+    }
+    table
+}
+
+/// Why there is no figure.
+fn absence(engine: &EngineResult) -> String {
+    if engine.is_failed() { engine.why_not().unwrap_or(NONE).to_owned() } else { NONE.to_owned() }
+}
+
+/// What must hold, and what does.
+pub fn holds(results: &Results) -> Table {
+    let engines = columns(results);
+    let mut table = heading(&["scene", "figure", "must"], &engines, &[]);
+    for hold in HOLDS {
+        let is_held = hold.judge(results) == Verdict::Met;
+        let cell = |name: &String| {
+            let engine = results.scene(hold.scene).and_then(|scene| of(scene, name));
+            let value = engine.and_then(hold.figure.of).map(|value| hold.figure.unit.show(value));
+            match value {
+                Some(value) if is_held && name == "sinew" => format!("**{value}**"),
+                Some(value) => value,
+                None => engine.map_or(NONE.to_owned(), absence),
+            }
+        };
+        let before = [hold.scene.to_owned(), hold.figure.heading.to_owned(), hold.must()];
+        table.row(before.into_iter().chain(engines.iter().map(cell)));
+    }
+    table
+}
+
+/// The specification's table, judged.
+pub fn speeds(results: &Results) -> Table {
+    let mut table = Table::new(["work", "must", "goal", "measured", "verdict"]);
+    for speed in SPEEDS {
+        let (value, verdict) = speed.judge(results);
+        let measured = value.map_or(NONE.to_owned(), |value| format!("{}×", rounded(value)));
+        let verdict = match verdict {
+            Verdict::Goal => "reaches the goal".to_owned(),
+            Verdict::Met => "met".to_owned(),
+            Verdict::Missed => "**falls short**".to_owned(),
+            Verdict::Open(why) => why,
+        };
+        table.row([speed.work.to_owned(), speed.bar.must(), speed.bar.goal(), measured, verdict]);
+    }
+    table
+}
+
+/// Everything about one scene.
+fn details(scene: &SceneResult) -> String {
+    let sizes = ["bodies", "particles", "joints", "steps"];
+    let sizes = sizes.iter().filter_map(|key| Some((scene.size(key).filter(|&size| size > 0)?, key)));
+    let sizes: Vec<String> = sizes.map(|(size, key)| format!("{size} {key}")).collect();
+    let figures: Vec<_> = FIGURES
+        .iter()
+        .filter(|figure| scene.engines.iter().any(|engine| (figure.of)(engine).is_some()))
+        .collect();
+    let times = ["engine", "median (best)", "p99", "last third", "MiB"];
+    let mut table = Table::new(times.into_iter().chain(figures.iter().map(|figure| figure.heading)));
+    let mut absent = String::new();
+    for engine in &scene.engines {
+        if let Some(why) = engine.why_not() {
+            writeln!(absent, "\n{}: {why}.", title(&engine.name)).expect("a string takes everything");
+        }
+        let Some(times) = engine.times() else { continue };
+        let mark = if came_apart(engine) { " †" } else { "" };
+        let cells = [
+            format!("{}{mark}", title(&engine.name)),
+            format!("{} ({})", rounded(times.median), rounded(times.best)),
+            rounded(times.p99),
+            rounded(times.last_third),
+            engine.memory().map_or(NONE.to_owned(), rounded),
+        ];
+        let figure = |value: Option<f64>, unit: super::figures::Unit| {
+            value.map_or(NONE.to_owned(), |value| unit.show(value))
+        };
+        let figures = figures.iter().map(|column| figure((column.of)(engine), column.unit));
+        table.row(cells.into_iter().chain(figures));
+    }
+    let about = format!("{}: {}. Measured at {}.", scene.about, sizes.join(", "), scene.revision);
+    format!("{about}\n\n{table}{absent}")
+}
+
+/// What was measured, and how it was compiled.
+fn engines(results: &Results) -> Table {
+    let mut table = Table::new(["engine", "version", "compiled", "settings"]);
+    for name in columns(results) {
+        let found = results.scenes.iter().filter_map(|scene| of(scene, &name));
+        let Some(engine) = found.into_iter().find(|engine| engine.text("version").is_some()) else {
+            continue;
+        };
+        let text = |key: &str| engine.text(key).unwrap_or(NONE).to_owned();
+        table.row([title(&name).to_owned(), text("version"), text("flags"), text("settings")]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::results::tests::{engine, scene};
+    use super::*;
+    use serde_json::json;
+
+    fn results() -> Results {
+        let gap = |gap: f64| json!({ "joint_gap_peak_m": gap });
+        let lacks =
+            EngineResult { name: "box3d".into(), reports: vec![json!({ "unsupported": "no balls" })] };
+        let engines = vec![engine("sinew", &[2.0], &gap(0.0001)), engine("jolt", &[1.0], &gap(11.0)), lacks];
+        Results { scenes: vec![scene("chain_swing_1000", engines)], bake: None }
+    }
+
+    #[test]
+    fn time_stands_beside_what_it_bought() {
+        let glance = glance(&results()).to_string();
+        let row: Vec<&str> = glance.lines().nth(2).expect("a row").split('|').map(str::trim).collect();
+        assert_eq!(
+            row[1..7],
+            ["chain_swing_1000", "gap", "2.00 · 0.100 mm", "1.00 · 11.0 m †", "–", "0.500×"]
+        );
+    }
+
+    #[test]
+    fn what_holds_is_bold() {
+        let holds = holds(&results()).to_string();
+        let row = holds.lines().nth(2).expect("a row");
+        assert!(row.contains("≤ 1.00 mm") && row.contains("**0.100 mm**"), "{row}");
+    }
+
+    #[test]
+    fn the_page_has_all_parts() {
+        let page = page(&results(), &Machine::this());
+        for part in ["At a glance", "### chain_swing_1000", "Box3D: no balls.", "-O3"] {
+            assert!(page.contains(part), "{part} is missing:\n{page}");
+        }
+        assert!(!page.contains("\n\n\n"), "one empty line is enough:\n{page}");
+    }
+}

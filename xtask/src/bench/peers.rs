@@ -1,0 +1,158 @@
+//! The binary of `bench/peers`: built twice, and run engine by engine, scene by scene.
+
+use crate::command;
+use anyhow::{Context, Result, bail};
+use serde_json::{Value, json};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+const MANIFEST: &str = "bench/peers/Cargo.toml";
+
+/// How often a running process is looked at.
+const POLL: Duration = Duration::from_millis(20);
+
+/// An engine in a binary.
+#[derive(Clone, Debug)]
+pub struct Engine {
+    /// As the binary and the reports name it.
+    pub name: String,
+    binary: PathBuf,
+}
+
+/// Whether a run is followed by one that is looked at instead of timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Judging {
+    /// Time only.
+    Off,
+    /// Time, then quality.
+    On,
+}
+
+/// Builds the peers as most users have them, and Rapier once more for wide registers where this machine has them: the
+/// two cannot be in one binary. Sinew comes first.
+///
+/// # Errors
+/// If one does not compile.
+pub fn build() -> Result<Vec<Engine>> {
+    let plain = build_with("peers", "rapier,box3d,jolt", None)?;
+    let mut engines = engines(&plain)?;
+    if has_wide_registers() {
+        let wide = build_with("peers-x86-64-v3", "simd8", Some("-C target-cpu=x86-64-v3"))?;
+        let rapier = self::engines(&wide)?.into_iter().filter(|engine| engine.name.starts_with("rapier"));
+        let place =
+            engines.iter().position(|engine| engine.name == "rapier").map_or(engines.len(), |at| at + 1);
+        engines.splice(place..place, rapier);
+    } else {
+        eprintln!("SKIPPED: rapier_simd8, whose eight lanes this machine does not have");
+    }
+    Ok(engines)
+}
+
+#[cfg(target_arch = "x86_64")]
+fn has_wide_registers() -> bool {
+    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") && is_x86_feature_detected!("bmi2")
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn has_wide_registers() -> bool {
+    false
+}
+
+fn build_with(folder: &str, features: &str, rust_flags: Option<&str>) -> Result<PathBuf> {
+    let folder = command::target().join("bench").join(folder);
+    let mut build = command::cargo(&["build", "--release", "--locked", "--manifest-path", MANIFEST]);
+    build.args(["--features", features, "--target-dir"]).arg(folder);
+    if let Some(flags) = rust_flags {
+        build.env("RUSTFLAGS", flags);
+    }
+    command::build(&mut build, "peers")
+}
+
+/// The engines of a binary.
+fn engines(binary: &Path) -> Result<Vec<Engine>> {
+    let list = command::output_json(Command::new(binary).arg("list"))?;
+    let engines = list["engines"].as_array().context("`peers list` names no engines")?;
+    let built = engines.iter().filter(|engine| engine["built"] == true);
+    let names = built.map(|engine| engine["name"].as_str().context("an engine without a name"));
+    names.map(|name| Ok(Engine { name: name?.to_owned(), binary: binary.to_owned() })).collect()
+}
+
+/// Names of all scenes, each with a line about it.
+///
+/// # Errors
+/// If the binary does not say.
+pub fn scenes(engine: &Engine) -> Result<Vec<(String, String)>> {
+    let list = command::output_json(Command::new(&engine.binary).arg("list"))?;
+    let scenes = list["scenes"].as_array().context("`peers list` names no scenes")?;
+    let text = |scene: &Value, key: &str| scene[key].as_str().map(str::to_owned);
+    let scene = |scene| Some((text(scene, "name")?, text(scene, "about")?));
+    scenes.iter().map(|value| scene(value).context("a scene without a name")).collect()
+}
+
+impl Engine {
+    /// Runs a scene; gives what the process printed, or an object with `failed` if it died or took too long: that is
+    /// a result, too.
+    ///
+    /// # Errors
+    /// If it cannot be started, or prints something else.
+    pub fn run(&self, scene: &str, steps: Option<u32>, judging: Judging, limit: Duration) -> Result<Value> {
+        let mut run = Command::new(&self.binary);
+        run.args(["run", "--engine", &self.name, "--scene", scene]);
+        if let Some(steps) = steps {
+            run.args(["--steps", &steps.to_string()]);
+        }
+        if judging == Judging::On {
+            run.arg("--quality");
+        }
+        match output_within(&mut run, limit)? {
+            Ok(text) => serde_json::from_str(&text)
+                .with_context(|| format!("{} on {scene}: stdout is not one JSON value", self.name)),
+            Err(why) => Ok(json!({ "engine": self.name, "scene": scene, "failed": why })),
+        }
+    }
+}
+
+/// What a program prints, or in words why it does not end well.
+fn output_within(command: &mut Command, limit: Duration) -> Result<Result<String, String>> {
+    let mut child = command.stdout(Stdio::piped()).spawn().context("cannot start `peers`")?;
+    let Some(mut stdout) = child.stdout.take() else { bail!("`peers` has no stdout") };
+    let reader = thread::spawn(move || {
+        let mut text = String::new();
+        stdout.read_to_string(&mut text).map(|_| text)
+    });
+    let start = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break status;
+        }
+        if start.elapsed() > limit {
+            child.kill()?;
+            child.wait()?;
+            return Ok(Err(format!("stopped after {} s", limit.as_secs())));
+        }
+        thread::sleep(POLL);
+    };
+    let text = reader.join().map_err(|_| anyhow::anyhow!("reading from `peers` failed"))??;
+    Ok(if status.success() { Ok(text) } else { Err(status.to_string()) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shell(script: &str, limit: Duration) -> Result<String, String> {
+        output_within(Command::new("sh").args(["-c", script]), limit).expect("there is a shell")
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_run_ends_well_dies_or_is_stopped() {
+        let long = Duration::from_secs(60);
+        assert_eq!(shell("echo 1", long), Ok("1\n".to_owned()));
+        assert_eq!(shell("exit 3", long), Err("exit status: 3".to_owned()));
+        assert_eq!(shell("exec sleep 60", Duration::ZERO), Err("stopped after 0 s".to_owned()));
+    }
+}

@@ -1,0 +1,231 @@
+//! What was measured: the reports of the peers, kept as they are, and the figures in them.
+
+use serde_json::{Map, Value, json};
+
+/// All scenes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Results {
+    /// In the order in which the peers list them.
+    pub scenes: Vec<SceneResult>,
+    /// Simulated seconds per processor second of a bake on one thread, if that was measured.
+    pub bake: Option<f64>,
+}
+
+/// A scene on all engines, their rounds interleaved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneResult {
+    /// As the peers name it.
+    pub name: String,
+    /// In one line.
+    pub about: String,
+    /// Commit that was measured.
+    pub revision: String,
+    /// Ours first.
+    pub engines: Vec<EngineResult>,
+}
+
+/// A scene on one engine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EngineResult {
+    /// As the peers name it.
+    pub name: String,
+    /// One of each round, as it was printed.
+    pub reports: Vec<Value>,
+}
+
+/// Processor time of a step, milliseconds: of each statistic over the steps of a round, the median over the rounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Times {
+    /// Median step.
+    pub median: f64,
+    /// The same in the best round.
+    pub best: f64,
+    /// 99th percentile.
+    pub p99: f64,
+    /// Median of the last third of the steps.
+    pub last_third: f64,
+}
+
+impl Results {
+    /// The scene of that name, if it was measured.
+    pub fn scene(&self, name: &str) -> Option<&SceneResult> {
+        self.scenes.iter().find(|scene| scene.name == name)
+    }
+
+    /// Takes what is newer, keeps the rest, in the order of `names`; forgets other scenes.
+    pub fn update(&mut self, newer: Self, names: &[(String, String)]) {
+        let older = std::mem::replace(self, newer);
+        self.bake = self.bake.or(older.bake);
+        let mut found: Vec<SceneResult> = self.scenes.drain(..).chain(older.scenes).collect();
+        for (name, _) in names {
+            if let Some(at) = found.iter().position(|scene| scene.name == *name) {
+                self.scenes.push(found.remove(at));
+            }
+        }
+    }
+
+    /// As it is written to the file.
+    pub fn to_json(&self) -> Value {
+        let engine = |engine: &EngineResult| (engine.name.clone(), Value::from(engine.reports.clone()));
+        let scene = |scene: &SceneResult| {
+            json!({
+                "scene": scene.name,
+                "about": scene.about,
+                "revision": scene.revision,
+                "engines": Value::Object(scene.engines.iter().map(engine).collect()),
+            })
+        };
+        let scenes: Vec<Value> = self.scenes.iter().map(scene).collect();
+        json!({ "sinew": "benchmarks", "version": 1, "bake_realtime_factor": self.bake, "scenes": scenes })
+    }
+
+    /// As it was written; what cannot be read counts as not measured.
+    pub fn from_json(value: &Value) -> Self {
+        let scenes = value["scenes"].as_array().into_iter().flatten();
+        Self { scenes: scenes.filter_map(scene).collect(), bake: value["bake_realtime_factor"].as_f64() }
+    }
+}
+
+fn scene(value: &Value) -> Option<SceneResult> {
+    let text = |key: &str| value[key].as_str().map(str::to_owned);
+    let engine = |(name, reports): (&String, &Value)| {
+        Some(EngineResult { name: name.clone(), reports: reports.as_array()?.clone() })
+    };
+    Some(SceneResult {
+        name: text("scene")?,
+        about: text("about")?,
+        revision: text("revision")?,
+        engines: value["engines"].as_object()?.iter().filter_map(engine).collect(),
+    })
+}
+
+impl SceneResult {
+    /// What Sinew did.
+    pub fn sinew(&self) -> Option<&EngineResult> {
+        self.engines.iter().find(|engine| engine.is_sinew())
+    }
+
+    /// What the others did.
+    pub fn peers(&self) -> impl Iterator<Item = &EngineResult> {
+        self.engines.iter().filter(|engine| !engine.is_sinew())
+    }
+
+    /// Median time of the fastest peer over Sinew's, if both ran.
+    pub fn speed(&self) -> Option<f64> {
+        let fastest = self.peers().filter_map(EngineResult::times).map(|times| times.median);
+        Some(fastest.min_by(f64::total_cmp)? / self.sinew()?.times()?.median)
+    }
+
+    /// A number that is the same for all engines, such as `bodies`.
+    pub fn size(&self, key: &str) -> Option<u64> {
+        self.engines.iter().find_map(|engine| engine.reports.first()?[key].as_u64())
+    }
+}
+
+impl EngineResult {
+    /// Whether it is ours.
+    pub fn is_sinew(&self) -> bool {
+        self.name == "sinew"
+    }
+
+    /// Whether it died or was stopped.
+    pub fn is_failed(&self) -> bool {
+        self.reports.iter().any(|report| report["failed"].is_string())
+    }
+
+    /// Why there are no figures, if there are none.
+    pub fn why_not(&self) -> Option<&str> {
+        let report = self.reports.last()?;
+        report["unsupported"].as_str().or_else(|| report["failed"].as_str())
+    }
+
+    /// Processor times, if it ran.
+    pub fn times(&self) -> Option<Times> {
+        let over_rounds = |key: &str| -> Option<Vec<f64>> {
+            let mut values: Vec<f64> =
+                self.reports.iter().map(|report| report["cpu_ms"][key].as_f64()).collect::<Option<_>>()?;
+            values.sort_by(f64::total_cmp);
+            (!values.is_empty()).then_some(values)
+        };
+        let median = |key: &str| over_rounds(key).map(|values| values[values.len() / 2]);
+        Some(Times {
+            median: median("median")?,
+            best: over_rounds("median")?[0],
+            p99: median("p99")?,
+            last_third: median("last_third")?,
+        })
+    }
+
+    /// Peak of the memory that the scene took, MiB.
+    pub fn memory(&self) -> Option<f64> {
+        self.reports.iter().filter_map(|report| report["peak_rss_mib"].as_f64()).min_by(f64::total_cmp)
+    }
+
+    /// Figures of the run that was looked at.
+    pub fn quality(&self) -> Option<&Map<String, Value>> {
+        self.reports.iter().find_map(|report| report["quality"].as_object())
+    }
+
+    /// A text such as `version`.
+    pub fn text(&self, key: &str) -> Option<&str> {
+        self.reports.first()?[key].as_str()
+    }
+
+    /// A number that stands beside the times.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        self.reports.first()?[key].as_f64()
+    }
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+
+    /// An engine with a round for each of these median times.
+    pub fn engine(name: &str, medians: &[f64], quality: &Value) -> EngineResult {
+        let report = |&median: &f64| {
+            json!({
+                "engine": name, "version": "1", "flags": "-O3", "settings": "defaults",
+                "steps": 100, "bodies": 10, "joints": 5, "peak_rss_mib": 2.5,
+                "cpu_ms": { "median": median, "p99": 2.0 * median, "last_third": median },
+                "quality": quality,
+            })
+        };
+        EngineResult { name: name.into(), reports: medians.iter().map(report).collect() }
+    }
+
+    /// A scene of these engines.
+    pub fn scene(name: &str, engines: Vec<EngineResult>) -> SceneResult {
+        SceneResult { name: name.into(), about: "a scene".into(), revision: "abc".into(), engines }
+    }
+
+    #[test]
+    fn times_are_medians_over_the_rounds() {
+        let times = engine("sinew", &[3.0, 1.0, 2.0], &Value::Null).times().expect("it ran");
+        assert_eq!(times, Times { median: 2.0, best: 1.0, p99: 4.0, last_third: 2.0 });
+        let failed = EngineResult { name: "x".into(), reports: vec![json!({ "failed": "stopped" })] };
+        assert_eq!((failed.times(), failed.why_not()), (None, Some("stopped")));
+    }
+
+    #[test]
+    fn speed_is_against_the_fastest_peer() {
+        let ours = engine("sinew", &[2.0], &Value::Null);
+        let peers = [engine("rapier", &[3.0], &Value::Null), engine("jolt", &[4.0], &Value::Null)];
+        let pile = scene("pile", [vec![ours.clone()], peers.into()].concat());
+        assert_eq!(pile.speed(), Some(1.5));
+        assert_eq!(scene("pile", vec![ours]).speed(), None);
+    }
+
+    #[test]
+    fn newer_figures_replace_older_ones_and_keep_the_order() {
+        let names = ["a", "b", "c"].map(|name| (name.to_owned(), String::new()));
+        let of = |name: &str, time| scene(name, vec![engine("sinew", &[time], &Value::Null)]);
+        let mut results =
+            Results { scenes: vec![of("c", 1.0), of("gone", 1.0), of("a", 1.0)], bake: Some(5.0) };
+        let newer = Results { scenes: vec![of("b", 2.0), of("a", 2.0)], bake: None };
+        results.update(newer, &names);
+        assert_eq!(results.scenes, [of("a", 2.0), of("b", 2.0), of("c", 1.0)]);
+        assert_eq!(results.bake, Some(5.0));
+        assert_eq!(Results::from_json(&results.to_json()), results);
+    }
+}

@@ -1,0 +1,66 @@
+//! Tables in Markdown, aligned, so that they read as well in a terminal and a diff as on a page.
+
+use std::fmt;
+
+/// A table; its first row is the heading.
+pub struct Table {
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// With a heading and nothing below.
+    pub fn new<S: Into<String>>(heading: impl IntoIterator<Item = S>) -> Self {
+        Self { rows: vec![heading.into_iter().map(Into::into).collect()] }
+    }
+
+    /// Adds a row.
+    ///
+    /// # Panics
+    /// If it is not as wide as the heading.
+    pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
+        let row: Vec<String> = cells.into_iter().map(Into::into).collect();
+        assert_eq!(row.len(), self.rows[0].len(), "a row is as wide as the heading: {row:?}");
+        self.rows.push(row);
+    }
+}
+
+/// The first column stands at the left, as names do, the others at the right, as numbers do.
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let width =
+            |column: usize| self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..self.rows[0].len()).map(width).collect();
+        for (number, row) in self.rows.iter().enumerate() {
+            write!(f, "|")?;
+            for (column, (cell, width)) in row.iter().zip(&widths).enumerate() {
+                if column == 0 { write!(f, " {cell:<width$} |")? } else { write!(f, " {cell:>width$} |")? }
+            }
+            writeln!(f)?;
+            if number == 0 {
+                write!(f, "|")?;
+                for (column, width) in widths.iter().enumerate() {
+                    let end = if column == 0 { '-' } else { ':' };
+                    write!(f, "{}{end}|", "-".repeat(width + 1))?;
+                }
+                writeln!(f)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_aligned() {
+        let mut table = Table::new(["scene", "ms"]);
+        table.row(["pile", "7.1"]);
+        table.row(["a wall", "12.25"]);
+        assert_eq!(
+            table.to_string(),
+            "| scene  |    ms |\n|--------|------:|\n| pile   |   7.1 |\n| a wall | 12.25 |\n"
+        );
+    }
+}
