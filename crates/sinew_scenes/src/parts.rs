@@ -60,9 +60,13 @@ pub(crate) fn level_rod(start: f32, length: f32, radius: f32) -> BodyDef {
     BodyDef { rotation: tilt(90.0), ..ghost(def) }
 }
 
-/// Mass and inertia about the body's origin, the same about each axis.
-pub(crate) fn mass(mass: f32, moment: f32) -> MassProperties {
-    MassProperties { mass, center: Vec3::ZERO, inertia: Sym3::from_diagonal(Vec3::splat(moment)) }
+/// A thin rod, `m l²/12` about its middle, that reaches from x = `start` over `length` along x and meets nothing.
+pub(crate) fn thin_rod(start: f32, length: f32, mass: f32) -> BodyDef {
+    let moment = mass * length * length / 12.0;
+    // Its own axis is y.
+    let inertia = Sym3::from_diagonal(Vec3::new(moment, 0.02 * moment, moment));
+    let mass = Some(MassProperties { mass, center: Vec3::ZERO, inertia });
+    BodyDef { mass, ..level_rod(start, length, 0.03 * length) }
 }
 
 /// Joins two bodies at a world point by a ball joint.

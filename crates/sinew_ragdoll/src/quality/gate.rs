@@ -101,15 +101,7 @@ fn terrain(world: &mut World, random: &mut Random) {
 fn posed(def: &RagdollDef, random: &mut Random) -> Vec<BodyState> {
     let turn = random.rotation();
     let (spin, speed) = (random.in_cube() * 6.0, random.in_cube() * 5.0);
-    let mut shrink = POSE_SHARE;
-    let mut pose = random_pose(def, random, shrink);
-    for _ in 0..TRIES {
-        if !overlaps(def, &pose) {
-            break;
-        }
-        shrink *= 0.8;
-        pose = random_pose(def, random, shrink);
-    }
+    let pose = random_pose(def, random);
     let lowest = pose.iter().zip(&def.bodies).fold(f32::INFINITY, |lowest, (&at, body)| {
         let turned = Transform::new(Vec3::ZERO, turn) * at;
         min(lowest, body.shape.aabb(&turned).min.y)
@@ -127,8 +119,23 @@ fn posed(def: &RagdollDef, random: &mut Random) -> Vec<BodyState> {
     states
 }
 
+/// A random pose within the limits, in which no two bodies that are meant to collide overlap, unless that is hard to
+/// find: poses of the bodies in character space.
+pub fn random_pose(def: &RagdollDef, random: &mut Random) -> Vec<Transform> {
+    let mut shrink = POSE_SHARE;
+    let mut pose = turned_joints(def, random, shrink);
+    for _ in 0..TRIES {
+        if !overlaps(def, &pose) {
+            break;
+        }
+        shrink *= 0.8;
+        pose = turned_joints(def, random, shrink);
+    }
+    pose
+}
+
 /// Body poses in character space with joints turned at random, by a share of their ranges.
-fn random_pose(def: &RagdollDef, random: &mut Random, share: f32) -> Vec<Transform> {
+fn turned_joints(def: &RagdollDef, random: &mut Random, share: f32) -> Vec<Transform> {
     let mut pose: Vec<_> = def.bodies.iter().map(|body| body.character_from_body).collect();
     for joint in &def.joints {
         let within = |random: &mut Random, range: Range| {

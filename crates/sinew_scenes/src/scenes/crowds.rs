@@ -5,7 +5,7 @@ use super::metric::{Expected, Metric};
 use super::{Instance, Scene, Script, Setup};
 use crate::blueprint::ragdoll_pile;
 use sinew::math::max;
-use sinew::physics::{BodyId, JointId, World};
+use sinew::physics::{BodyId, BodyKind, JointId, World};
 
 pub(super) const PILE: Scene = Scene {
     name: "ragdoll_pile",
@@ -59,7 +59,7 @@ impl Pile {
         let of = |&id: &BodyId| {
             world
                 .neighbors(id)
-                .filter(move |&other| other > id || !world.mass(other).mass.is_normal())
+                .filter(move |&other| other > id || world.kind(other) == BodyKind::Static)
                 .map(move |other| world.overlap(id, other))
         };
         let mut depths: Vec<f32> = self.bodies.iter().flat_map(of).collect();

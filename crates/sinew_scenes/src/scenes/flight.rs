@@ -39,6 +39,11 @@ impl Flight {
         }
     }
 
+    /// Whether they have met another.
+    pub fn landed(&self) -> bool {
+        self.landed
+    }
+
     /// Time in which a fall without damping gains what this one has after `time` seconds: `(1 − e^(−c t)) / c`.
     fn effective(&self, time: f32) -> f32 {
         let c = self.damping;

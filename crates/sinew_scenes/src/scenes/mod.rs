@@ -20,6 +20,7 @@ mod setting;
 mod ballistics;
 mod chains;
 mod crowds;
+mod falls;
 mod incline;
 mod mjcf;
 mod nets;
@@ -27,6 +28,7 @@ mod pendulums;
 mod piles;
 mod ragdolls;
 mod springs;
+mod trees;
 mod weightless;
 
 pub use instance::{Instance, Script};
@@ -82,18 +84,24 @@ pub fn registry() -> &'static [Scene] {
             ballistics::BOUNCE,
             pendulums::PENDULUM,
             pendulums::DOUBLE_PENDULUM,
-            pendulums::CHAIN,
+            pendulums::TRIPLE_PENDULUM,
             incline::HOLDS,
             incline::SLIDES,
             springs::SPRING,
             springs::SPRING_CHAIN,
+            springs::SPRINGS_RATIO,
             weightless::ZERO_GRAVITY_PILE,
+            weightless::SPIN_DOUBLE,
+            weightless::SPIN_TRIPLE,
+            weightless::SPIN_RAGDOLL,
             piles::STACK,
             piles::PYRAMID,
             piles::DOMINOES,
             springs::ROPE_ON_BOX,
             ragdolls::DROP,
+            falls::POSES,
             ragdolls::WALL,
+            ragdolls::WALL_FAST,
             ragdolls::STAIRS,
             chains::SWING_1000,
             chains::SWING_100,
@@ -105,6 +113,8 @@ pub fn registry() -> &'static [Scene] {
             nets::JOINT_GRID,
             nets::NET,
             crowds::PILE,
+            trees::HEAVY_FOOT,
+            trees::MASS_RATIO,
         ]
     }
 }

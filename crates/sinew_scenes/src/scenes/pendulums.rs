@@ -1,16 +1,21 @@
-//! Things that swing: pendulum, double pendulum, chain.
+//! Things that swing freely: pendulum, double and triple pendulum.
 
 use super::metric::{Expected, Metric};
-use super::parts::{GRAVITY, ball, ghost, hook, join, level_rod, mass, tilt};
+use super::parts::{GRAVITY, ball, ghost, hook, join, thin_rod, tilt};
 use super::{Instance, Scene, Script, Setting, Setup};
-use sinew::math::{Sym3, Vec3, max, trig};
-use sinew::physics::{BodyId, JointId, MassProperties, World};
+use sinew::math::{Vec3, max, trig};
+use sinew::physics::{BodyId, JointId, World};
 
 pub(super) const PENDULUM: Scene = Scene {
     name: "pendulum",
     about: "a ball on a massless rod of 1 m: its period against the elliptic integral",
-    steps: 900,
-    settings: &[Setting::number("amplitude", 90.0, (1.0, 170.0), "from the vertical, degrees")],
+    steps: 1200,
+    settings: &[Setting::number(
+        "amplitude",
+        0.0,
+        (0.0, 170.0),
+        "from the vertical, degrees; 0: 30, 90 and 150, side by side",
+    )],
     build: pendulum,
 };
 
@@ -19,23 +24,27 @@ const BOB_RADIUS: f32 = 0.04;
 fn pendulum(setup: &Setup<'_>) -> Instance {
     let mut world = setup.sleepless_world();
     let amplitude = setup.number("amplitude");
-    let hook = world.add_body(&hook());
-    let bob = world.add_body(&ghost(ball(BOB_RADIUS, tilt(amplitude) * Vec3::NEG_Y)));
-    let joint = join(&mut world, hook, bob, Vec3::ZERO);
-    let start = world.energy().total();
-    let depth = GRAVITY * world.mass(bob).mass;
-    Instance::new(
-        world,
-        Pendulum { bob, joint, amplitude, start, depth, before: 1.0, passes: [None; 2], count: 0, gap: 0.0 },
-    )
+    let swings = if amplitude > 0.0 {
+        vec![("period_s", amplitude)]
+    } else {
+        vec![("period_30_s", 30.0), ("period_90_s", 90.0), ("period_150_s", 150.0)]
+    };
+    let swings = swings.into_iter().enumerate();
+    let bobs = swings.map(|(i, (name, amplitude))| Bob::hang(&mut world, name, amplitude, i)).collect();
+    Instance::new(world, Pendulums { bobs })
 }
 
-struct Pendulum {
-    bob: BodyId,
+struct Bob {
+    /// Of the figure that is its period.
+    name: &'static str,
+    id: BodyId,
     joint: JointId,
     amplitude: f32,
+    /// Energy, J.
     start: f32,
-    /// Energy of the bob for one metre of height, J.
+    /// The farthest that the energy was from the start, J.
+    drift: f32,
+    /// Energy for one metre of height, J.
     depth: f32,
     /// x one step ago.
     before: f32,
@@ -57,10 +66,26 @@ fn pendulum_period(amplitude: f32) -> f64 {
     core::f64::consts::TAU * ((1.0 + 0.4 * radius * radius) / f64::from(GRAVITY)).sqrt() / a
 }
 
-impl Script for Pendulum {
-    fn after_step(&mut self, world: &mut World) {
+impl Bob {
+    /// The pendulum number `index`, beside the others.
+    fn hang(world: &mut World, name: &'static str, amplitude: f32, index: usize) -> Self {
+        let pivot = Vec3::Z * index as f32;
+        let mut hook = hook();
+        hook.position = pivot;
+        let hook = world.add_body(&hook);
+        let bob = ghost(ball(BOB_RADIUS, pivot + tilt(amplitude) * Vec3::NEG_Y));
+        let id = world.add_body(&bob);
+        let joint = join(world, hook, id, pivot);
+        let start = world.body_energy(id).total();
+        let depth = GRAVITY * world.mass(id).mass;
+        let (passes, before) = ([None; 2], 1.0);
+        Self { name, id, joint, amplitude, start, drift: 0.0, depth, before, passes, count: 0, gap: 0.0 }
+    }
+
+    fn after_step(&mut self, world: &World) {
         self.gap = max(self.gap, world.joint_gap(self.joint));
-        let x = world.transform(self.bob).translation.x;
+        self.drift = max(self.drift, (world.body_energy(self.id).total() - self.start).abs());
+        let x = world.transform(self.id).translation.x;
         if self.before > 0.0 && x <= 0.0 {
             let ago = x / (x - self.before);
             let now = world.time() as f32 - ago * world.def().dt();
@@ -70,26 +95,53 @@ impl Script for Pendulum {
         self.before = x;
     }
 
-    fn metrics(&self, world: &World) -> Vec<Metric> {
+    fn period(&self) -> Metric {
         let period = match self.passes {
             [Some(first), Some(last)] if self.count > 1 => Some((last - first) / (self.count - 1) as f32),
             _ => None,
         };
-        let drift = (world.energy().total() - self.start) / self.depth;
-        vec![
-            Metric::awaited("period_s", period, Expected::near(pendulum_period(self.amplitude), 0.003)),
-            Metric::new("energy_drift", drift.abs(), Expected::AtMost(0.01)),
-            Metric::new("joint_gap_max_m", self.gap, Expected::AtMost(1e-3)),
-        ]
+        Metric::awaited(self.name, period, Expected::near(pendulum_period(self.amplitude), 0.001))
+    }
+}
+
+struct Pendulums {
+    bobs: Vec<Bob>,
+}
+
+impl Script for Pendulums {
+    fn after_step(&mut self, world: &mut World) {
+        for bob in &mut self.bobs {
+            bob.after_step(world);
+        }
+    }
+
+    fn metrics(&self, _: &World) -> Vec<Metric> {
+        let worst = |figure: &dyn Fn(&Bob) -> f32| self.bobs.iter().map(figure).fold(0.0, max);
+        let mut metrics: Vec<_> = self.bobs.iter().map(Bob::period).collect();
+        metrics.extend([
+            Metric::new("energy_drift", worst(&|bob| bob.drift / bob.depth), Expected::AtMost(0.01)),
+            Metric::new("joint_gap_max_m", worst(&|bob| bob.gap), Expected::AtMost(1e-3)),
+        ]);
+        metrics
     }
 }
 
 pub(super) const DOUBLE_PENDULUM: Scene = Scene {
     name: "double_pendulum",
-    about: "two rods let go from the horizontal keep their energy",
-    steps: 1200,
+    about: "two rods let go from the horizontal keep their energy for a minute",
+    steps: 3600,
     settings: &[],
-    build: double_pendulum,
+    // Angular accelerations, from `[4/3 1/2; 1/2 1/3] α = g/l [3/2; 1/2]` (Lagrange).
+    build: |setup| rods(setup, &[9.0 / 7.0, -3.0 / 7.0]),
+};
+
+pub(super) const TRIPLE_PENDULUM: Scene = Scene {
+    name: "triple_pendulum",
+    about: "three rods let go from the horizontal keep their energy for a minute",
+    steps: 3600,
+    settings: &[],
+    // Likewise, `[7/3 3/2 1/2; 3/2 4/3 1/2; 1/2 1/2 1/3] α = g/l [5/2; 3/2; 1/2]`.
+    build: |setup| rods(setup, &[33.0 / 26.0, -9.0 / 26.0, 3.0 / 26.0]),
 };
 
 /// Metres.
@@ -97,136 +149,64 @@ const ROD_LENGTH: f32 = 1.0;
 /// kg.
 const ROD_MASS: f32 = 1.0;
 
-fn double_pendulum(setup: &Setup<'_>) -> Instance {
+/// Level rods end to end, with the angular accelerations that they start with, downward, in g/l.
+fn rods(setup: &Setup<'_>, starts: &'static [f32]) -> Instance {
     let mut world = setup.sleepless_world();
     let mut last = world.add_body(&hook());
     let mut rods = Vec::new();
     let mut joints = Vec::new();
-    for i in 0..2 {
+    for i in 0..starts.len() {
         let at = ROD_LENGTH * i as f32;
-        let mut def = level_rod(at, ROD_LENGTH, 0.03);
-        // A thin rod, m l²/12, whatever it looks like.
-        let moment = ROD_MASS * ROD_LENGTH * ROD_LENGTH / 12.0;
-        let inertia = Sym3::from_diagonal(Vec3::new(moment, 0.02 * moment, moment));
-        def.mass = Some(MassProperties { mass: ROD_MASS, center: Vec3::ZERO, inertia });
-        let rod = world.add_body(&def);
+        let rod = world.add_body(&thin_rod(at, ROD_LENGTH, ROD_MASS));
         joints.push(join(&mut world, last, rod, Vec3::X * at));
         rods.push(rod);
         last = rod;
     }
     let start = world.energy().total();
-    Instance::new(
-        world,
-        DoublePendulum { rods: [rods[0], rods[1]], joints, start, first: [None; 2], gap: 0.0 },
-    )
+    Instance::new(world, Rods { rods, joints, starts, start, drift: 0.0, first: Vec::new(), gap: 0.0 })
 }
 
-struct DoublePendulum {
-    rods: [BodyId; 2],
+struct Rods {
+    rods: Vec<BodyId>,
     joints: Vec<JointId>,
+    starts: &'static [f32],
+    /// Energy, J.
     start: f32,
+    /// The farthest that the energy was from the start, J.
+    drift: f32,
     /// Angular accelerations in the first step, rad/s², downward.
-    first: [Option<f32>; 2],
+    first: Vec<f32>,
     gap: f32,
 }
 
-impl Script for DoublePendulum {
+impl Script for Rods {
     fn after_step(&mut self, world: &mut World) {
-        self.gap = largest_gap(self.gap, &self.joints, world);
+        self.gap = self.joints.iter().fold(self.gap, |gap, &joint| max(gap, world.joint_gap(joint)));
+        self.drift = max(self.drift, (world.energy().total() - self.start).abs());
         if world.step_count() == 1 {
             let dt = world.def().dt();
-            self.first = self.rods.map(|rod| Some(-world.velocity(rod).angular.z / dt));
+            self.first = self.rods.iter().map(|&rod| -world.velocity(rod).angular.z / dt).collect();
         }
     }
 
-    fn metrics(&self, world: &World) -> Vec<Metric> {
-        let depth = 2.0 * ROD_MASS * GRAVITY * ROD_LENGTH;
-        let drift = (world.energy().total() - self.start) / depth;
-        // Lagrange's equations of two equal rods, both level and at rest: `[4/3 1/2; 1/2 1/3] α = g/l [3/2; 1/2]`.
-        let unit = GRAVITY / ROD_LENGTH / 7.0;
-        vec![
-            Metric::awaited("first_rad_s2", self.first[0], Expected::near(9.0 * unit, 0.005)),
-            Metric::awaited("second_rad_s2", self.first[1], Expected::near(-3.0 * unit, 0.005)),
-            Metric::new("energy_drift", drift.abs(), Expected::AtMost(0.01)),
+    fn metrics(&self, _: &World) -> Vec<Metric> {
+        let count = self.rods.len() as f32;
+        // From the horizontal to the plumb line: the middle of rod i falls by (i + ½) l.
+        let depth = 0.5 * count * count * ROD_MASS * GRAVITY * ROD_LENGTH;
+        let names = ["first_rad_s2", "second_rad_s2", "third_rad_s2"];
+        let mut metrics: Vec<_> = names
+            .into_iter()
+            .zip(self.starts)
+            .enumerate()
+            .map(|(i, (name, start))| {
+                let expected = Expected::near(start * GRAVITY / ROD_LENGTH, 0.005);
+                Metric::awaited(name, self.first.get(i).copied(), expected)
+            })
+            .collect();
+        metrics.extend([
+            Metric::new("energy_drift", self.drift / depth, Expected::AtMost(0.01)),
             Metric::new("joint_gap_max_m", self.gap, Expected::AtMost(1e-3)),
-        ]
-    }
-}
-
-fn largest_gap(before: f32, joints: &[JointId], world: &World) -> f32 {
-    joints.iter().fold(before, |gap, &joint| max(gap, world.joint_gap(joint)))
-}
-
-pub(super) const CHAIN: Scene = Scene {
-    name: "chain",
-    about: "a weight on a chain of light links swings from the horizontal, and no joint opens",
-    steps: 240,
-    settings: &[
-        Setting::whole("links", 10, (1, 200), "number of links"),
-        Setting::number("ratio", 1000.0, (1.0, 100_000.0), "mass of the weight over that of a link"),
-    ],
-    build: chain,
-};
-
-/// Metres.
-const LINK_LENGTH: f32 = 1.0;
-/// kg.
-const LINK_MASS: f32 = 1.0;
-
-fn chain(setup: &Setup<'_>) -> Instance {
-    let mut world = setup.sleepless_world();
-    let (links, ratio) = (setup.whole("links"), setup.number("ratio"));
-    let mut last = world.add_body(&hook());
-    let mut joints = Vec::new();
-    for i in 0..links {
-        let at = i as f32 * LINK_LENGTH;
-        let mut def = level_rod(at, LINK_LENGTH, 0.05);
-        def.mass = Some(mass(LINK_MASS, 0.1 * LINK_MASS * LINK_LENGTH * LINK_LENGTH));
-        let link = world.add_body(&def);
-        joints.push(join(&mut world, last, link, Vec3::X * at));
-        last = link;
-    }
-    let length = links as f32 * LINK_LENGTH;
-    let radius = 0.25 * LINK_LENGTH;
-    let weight_mass = ratio * LINK_MASS;
-    let mut def = ghost(ball(radius, Vec3::X * length));
-    def.mass = Some(mass(weight_mass, 0.4 * weight_mass * radius * radius));
-    let weight = world.add_body(&def);
-    joints.push(join(&mut world, last, weight, Vec3::X * length));
-    let start = world.energy().total();
-    let depth = weight_mass * GRAVITY * length;
-    Instance::new(world, Chain { weight, joints, start, depth, gap: 0.0, first: None, ratio })
-}
-
-struct Chain {
-    weight: BodyId,
-    joints: Vec<JointId>,
-    start: f32,
-    /// Energy that the weight loses from the horizontal to the lowest point, J.
-    depth: f32,
-    gap: f32,
-    /// Downward acceleration of the weight in the first step, m/s².
-    first: Option<f32>,
-    /// Mass of the weight over that of a link.
-    ratio: f32,
-}
-
-impl Script for Chain {
-    fn after_step(&mut self, world: &mut World) {
-        self.gap = largest_gap(self.gap, &self.joints, world);
-        if world.step_count() == 1 {
-            self.first = Some(-world.velocity(self.weight).linear.y / world.def().dt());
-        }
-    }
-
-    fn metrics(&self, world: &World) -> Vec<Metric> {
-        let change = (world.energy().total() - self.start) / self.depth;
-        // Level and at rest, the chain bears nothing of the weight, but for a share of what it weighs itself.
-        let bound = f64::from(0.002 + 1.0 / self.ratio);
-        vec![
-            Metric::new("joint_gap_max_m", self.gap, Expected::AtMost(1e-3)),
-            Metric::awaited("first_m_s2", self.first, Expected::near(GRAVITY, bound)),
-            Metric::new("energy_change", change, Expected::Near { value: 0.0, tolerance: 0.02 }),
-        ]
+        ]);
+        metrics
     }
 }

@@ -14,7 +14,7 @@ pub(super) const SPRING: Scene = Scene {
     about: "a mass on a spring comes to rest where the spring is stretched by m g / k",
     steps: 600,
     settings: &[Setting::whole("masses", 1, (1, 50), "hung under each other"), MASS, STIFFNESS],
-    build: hung,
+    build: hung_alike,
 };
 
 pub(super) const SPRING_CHAIN: Scene = Scene {
@@ -22,7 +22,18 @@ pub(super) const SPRING_CHAIN: Scene = Scene {
     about: "each spring of a hanging chain is stretched by all that hangs below it",
     steps: 900,
     settings: &[Setting::whole("masses", 10, (1, 50), "hung under each other"), MASS, STIFFNESS],
-    build: hung,
+    build: hung_alike,
+};
+
+pub(super) const SPRINGS_RATIO: Scene = Scene {
+    name: "springs_ratio",
+    about: "springs of 1,000 and of 1,000,000 N/m in one hanging chain are each as long as they should be",
+    steps: 900,
+    settings: &[],
+    build: |setup| {
+        let stiffness = |i: usize| if i % 2 == 0 { 1e6 } else { 1e3 };
+        hung(setup, 1.0, (0..8).map(stiffness).collect())
+    },
 };
 
 const MASS: Setting = Setting::number("mass", 1.0, (0.001, 100.0), "of each, kg");
@@ -31,45 +42,60 @@ const STIFFNESS: Setting = Setting::number("stiffness", 1000.0, (10.0, 1e6), "of
 /// Rest length of each spring, metres.
 const LENGTH: f32 = 0.2;
 
-fn hung(setup: &Setup<'_>) -> Instance {
+fn hung_alike(setup: &Setup<'_>) -> Instance {
+    hung(setup, setup.number("mass"), vec![setup.number("stiffness"); setup.whole("masses")])
+}
+
+/// As many masses as springs, from above.
+fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: Vec<f32>) -> Instance {
     let mut world = setup.world();
-    let (masses, mass, stiffness) = (setup.whole("masses"), setup.number("mass"), setup.number("stiffness"));
     let particle = |i: usize| ParticleDef {
         position: Vec3::NEG_Y * (LENGTH * i as f32),
         velocity: Vec3::ZERO,
         mass,
         radius: 0.02,
     };
-    // A fifth of what is critical for one mass on one spring.
-    let damping = 0.4 * (mass * stiffness).sqrt();
-    let spring =
-        |i: usize| SpringDef { a: i as u32, b: i as u32 + 1, rest_length: LENGTH, stiffness, damping };
+    let spring = |(i, &stiffness): (usize, &f32)| SpringDef {
+        a: i as u32,
+        b: i as u32 + 1,
+        rest_length: LENGTH,
+        stiffness,
+        // A fifth of what is critical for one mass on one spring.
+        damping: 0.4 * (mass * stiffness).sqrt(),
+    };
+    let springs: Vec<_> = stiffnesses.iter().enumerate().map(spring).collect();
     let group = world.add_particles(&GroupDef {
-        particles: (0..=masses).map(particle).collect(),
-        springs: (0..masses).map(spring).collect(),
+        particles: (0..=springs.len()).map(particle).collect(),
+        springs,
         attachments: vec![AttachmentDef { particle: 0, target: AttachmentTarget::World(Vec3::ZERO) }],
         // The slowest swing of a long chain stretches its springs too slowly for their own damping.
         linear_damping: 2.0,
         ..GroupDef::default()
     });
-    let hanging = (masses * (masses + 1) / 2) as f32;
-    let stretch = hanging * mass * GRAVITY / stiffness;
-    Instance::new(world, Hung { group, stretch })
+    let hanging = |i: usize| (stiffnesses.len() - i) as f32 * mass * GRAVITY;
+    let stretches = stiffnesses.iter().enumerate().map(|(i, stiffness)| hanging(i) / stiffness).collect();
+    Instance::new(world, Hung { group, stretches })
 }
 
 struct Hung {
     group: GroupId,
-    /// Of all springs together, by `m g / k`, metres.
-    stretch: f32,
+    /// Of each spring, by what hangs below it over `k`, metres.
+    stretches: Vec<f32>,
 }
 
 impl Script for Hung {
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let group = world.particles(self.group);
-        let ends = [0, group.positions().len() - 1].map(|i| group.positions()[i]);
-        let stretch = (ends[1] - ends[0]).length() - LENGTH * group.springs().len() as f32;
+        let stretch = |spring: &SpringDef| {
+            let [a, b] = [spring.a, spring.b].map(|i| group.positions()[i as usize]);
+            (b - a).length() - spring.rest_length
+        };
+        let found: f32 = group.springs().iter().map(stretch).sum();
+        let gaps = group.springs().iter().zip(&self.stretches).map(|(spring, right)| stretch(spring) - right);
+        let worst = gaps.fold(0.0, |worst, gap| max(worst, gap.abs()));
         vec![
-            Metric::new("stretch_m", stretch, Expected::near(self.stretch, 1e-3)),
+            Metric::new("stretch_m", found, Expected::near(self.stretches.iter().sum::<f32>(), 1e-3)),
+            Metric::new("gap_per_link", worst / LENGTH, Expected::AtMost(0.005)),
             Metric::new("fastest_m_s", fastest(group), Expected::Anything),
         ]
     }
