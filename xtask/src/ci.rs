@@ -15,7 +15,8 @@ const WASM: &str = "wasm32-unknown-unknown";
 /// `cargo xtask ci`.
 #[derive(clap::Args)]
 pub struct Ci {
-    /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; instruction counts
+    /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
+    /// peers that need no C; instruction counts
     #[arg(long)]
     full: bool,
 }
@@ -37,7 +38,7 @@ impl Ci {
             }
             eprintln!("   {:.1} s", start.elapsed().as_secs_f32());
         };
-        check("fmt", &|| command::run(&mut command::cargo(&["fmt", "--all", "--check"])));
+        check("fmt", &fmt);
         check("clippy", &clippy);
         check("tidy", &|| tidy::Tidy {}.run());
         check("docs", &documentation);
@@ -45,6 +46,7 @@ impl Ci {
         check("demo", &demo);
         check("wasm", &wasm);
         if self.full {
+            check("peers", &peers);
             check("counts", &bench::check_counts);
         }
         if !failed.is_empty() {
@@ -53,6 +55,26 @@ impl Ci {
         eprintln!("all checks passed");
         Ok(())
     }
+}
+
+/// Workspaces beside the root's. They are compiled only where it is worth the time, but always well formatted.
+const OTHER_WORKSPACES: &[&str] = &["bench/peers", "bench/counts"];
+
+fn fmt() -> Result<()> {
+    command::run(&mut command::cargo(&["fmt", "--all", "--check"]))?;
+    for workspace in OTHER_WORKSPACES {
+        let manifest = format!("{workspace}/Cargo.toml");
+        command::run(&mut command::cargo(&["fmt", "--manifest-path", &manifest, "--check"]))?;
+    }
+    Ok(())
+}
+
+/// The peers compile, but for those in C and C++, which need more than a Rust toolchain.
+fn peers() -> Result<()> {
+    let mut clippy =
+        command::cargo(&["clippy", "--manifest-path", "bench/peers/Cargo.toml", "--all-targets"]);
+    clippy.arg("--target-dir").arg(command::target().join("bench/check"));
+    command::run(clippy.args(["--", "-D", "warnings"]))
 }
 
 fn clippy() -> Result<()> {

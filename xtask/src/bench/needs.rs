@@ -38,7 +38,7 @@ fn complaint(missing: &[&Need]) -> Option<String> {
         missing.iter().map(|need| part(need)).collect::<Vec<_>>().join(between)
     };
     let (names, packages) = (list(|need| need.name, ", "), list(|need| need.package, " "));
-    Some(format!("to build Box3D and Jolt, {names} is missing: on Debian `apt-get install {packages}`"))
+    Some(format!("missing to build Box3D and Jolt: {names}; on Debian `apt-get install {packages}`"))
 }
 
 fn is_program(name: &str) -> bool {
@@ -90,7 +90,7 @@ mod tests {
         assert_eq!(
             complaint(&[&NEEDS[0], &NEEDS[2]]).as_deref(),
             Some(
-                "to build Box3D and Jolt, cmake, libclang is missing: on Debian `apt-get install cmake libclang-dev`"
+                "missing to build Box3D and Jolt: cmake, libclang; on Debian `apt-get install cmake libclang-dev`"
             )
         );
     }
