@@ -33,11 +33,9 @@ pub(crate) fn store(
             let joint = joints.at_mut(solved.index);
             joint.limits = solved.limits;
             joint.force = solved.force;
+            joint.warm_impulse = solved.warm_impulse;
             joint.saturated = solved.saturated;
             joint.reaction = solved.reaction.map(|impulse| impulse / dt);
-        }
-        for (joint, impulse) in task.solver.loop_impulses() {
-            joints.at_mut(joint).loop_impulse = impulse;
         }
     }
 }

@@ -11,9 +11,10 @@ use def::{
 };
 pub(crate) use rows::{
     DIRECTIONS, JointGeometry, JointPose, JointRows, MAX_LIMITS, Row, Stop, TWIST, anchor_gap, displacement,
-    locked_count, locked_error, open_directions, open_row, overshoot, stops, turns,
+    locked_error, open_directions, open_row, overshoot, stops, turns,
 };
 use sinew_math::{Transform, Vec3};
+use rows::locked_count;
 pub use world::Reaction;
 
 /// Impulse of a limit in the last substep and the one before, N·s or N·m·s, in frame A: as a vector, because the axis of
@@ -71,8 +72,8 @@ pub(crate) struct Joint {
     pub state: JointState,
     pub limits: [LimitImpulse; MAX_LIMITS],
     pub saturated: Saturation,
-    /// Impulses of the last substep if the joint closes a loop, direction by direction.
-    pub loop_impulse: Vec6,
+    /// Impulses of the last substep if the joint closes one of many loops, direction by direction.
+    pub warm_impulse: Vec6,
     /// Linear force of the last substep on body B, N, world axes: geometric stiffness needs it.
     pub force: Vec3,
     /// Mean over the last step on body B, N and N·m about its anchor, world axes.
@@ -100,7 +101,7 @@ impl Joint {
             state: def.state,
             limits: [LimitImpulse::default(); MAX_LIMITS],
             saturated: [0; DIRECTIONS],
-            loop_impulse: ZERO6,
+            warm_impulse: ZERO6,
             force: Vec3::ZERO,
             reaction: ZERO6,
         }
@@ -114,7 +115,7 @@ impl Joint {
             Self {
                 limits: self.limits,
                 saturated: self.saturated,
-                loop_impulse: self.loop_impulse,
+                warm_impulse: self.warm_impulse,
                 force: self.force,
                 reaction: self.reaction,
                 ..new
@@ -130,6 +131,13 @@ impl Joint {
 
     pub fn is_enabled(&self) -> bool {
         self.state == JointState::Enabled
+    }
+
+    /// Most rows that it can have.
+    pub fn most_rows(&self) -> usize {
+        let drive = &self.drive;
+        let driven = drive.spring.is_some() || drive.motor.is_some() || drive.friction > 0.0;
+        locked_count(&self.kind) + if driven { open_directions(self.kind).count() } else { 0 }
     }
 
     /// True if the pair of bodies is kept from colliding.

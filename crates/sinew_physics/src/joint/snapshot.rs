@@ -29,7 +29,7 @@ impl Joint {
         for sign in self.saturated {
             w.u8(sign.cast_unsigned());
         }
-        save_vec6(w, &self.loop_impulse);
+        save_vec6(w, &self.warm_impulse);
         w.vec3(self.force);
         save_vec6(w, &self.reaction);
     }
@@ -50,7 +50,7 @@ impl Joint {
         for sign in &mut saturated {
             *sign = r.u8()?.cast_signed().signum();
         }
-        let loop_impulse = load_vec6(r)?;
+        let warm_impulse = load_vec6(r)?;
         let force = r.vec3()?;
         let reaction = load_vec6(r)?;
         Ok(Self {
@@ -65,7 +65,7 @@ impl Joint {
             state,
             limits,
             saturated,
-            loop_impulse,
+            warm_impulse,
             force,
             reaction,
         })

@@ -9,15 +9,12 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, combine, slop};
 use crate::islands::Island;
-use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS, locked_count};
+use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
 use crate::spatial::{ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
 
 /// At most this many bodies are solved as one tree; joints beyond become loop rows.
 const MAX_TREE: usize = 1024;
-
-/// An island whose loops have at least this share (its inverse) of the rows of its trees is solved without trees.
-const ENTANGLED: usize = 2;
 
 /// What an island's solver reads of the world.
 pub(crate) struct View<'a> {
@@ -32,9 +29,17 @@ pub(crate) struct View<'a> {
 /// Memory for building.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
-    /// World indices of the moving bodies in tree order, with the local parent and the joint's place in the island.
-    order: Vec<(u32, u32, u32)>,
-    /// Per body of the island (by its place there): local index.
+    /// Bodies in the order in which the trees grew over them.
+    seeds: Vec<Seed>,
+    /// Per tree: rows of loops.
+    loop_rows: Vec<usize>,
+    /// How many of the seeds have been looked around from.
+    grown: usize,
+    /// Number of bodies of each tree.
+    sizes: Vec<usize>,
+    /// World indices of the moving bodies in tree order.
+    order: Vec<u32>,
+    /// Per body of the island (by its place there): local index; while trees grow, no more than not `NONE`.
     local: Vec<u32>,
     /// World indices of the fixed bodies, ascending.
     fixed: Vec<u32>,
@@ -42,6 +47,67 @@ pub(super) struct Scratch {
     used: Vec<bool>,
     /// (body's place, joint's place), ascending: which joints a body has.
     adjacent: Vec<(u32, u32)>,
+}
+
+/// In which order the trees of an island grow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Roots {
+    /// Each as far as it can before the next begins.
+    InTurn,
+    /// Those on fixed bodies side by side.
+    AtOnce,
+}
+
+/// A body that a tree has grown over.
+#[derive(Clone, Copy, Debug)]
+struct Seed {
+    tree: u32,
+    /// Its number among all.
+    found: u32,
+    /// Places in the island: of the body, of its parent, of the joint between them.
+    place: u32,
+    parent: u32,
+    joint: u32,
+}
+
+impl Scratch {
+    /// A new tree, held by the joint `ground` or free.
+    fn plant(&mut self, root: u32, ground: u32) {
+        let tree = self.sizes.len() as u32;
+        self.sizes.push(0);
+        self.add(tree, root, NONE, ground);
+    }
+
+    fn add(&mut self, tree: u32, place: u32, parent: u32, joint: u32) {
+        let found = self.seeds.len() as u32;
+        self.sizes[tree as usize] += 1;
+        self.local[place as usize] = found;
+        if joint != NONE {
+            self.used[joint as usize] = true;
+        }
+        self.seeds.push(Seed { tree, found, place, parent, joint });
+    }
+
+    /// Lets all trees grow as far as they can.
+    fn grow(&mut self, island: &Island, view: &View<'_>) {
+        while let Some(&Seed { tree, place, .. }) = self.seeds.get(self.grown) {
+            self.grown += 1;
+            let body = island.bodies[place as usize];
+            let start = self.adjacent.partition_point(|&(p, _)| p < place);
+            for k in start..self.adjacent.len() {
+                let (p, j) = self.adjacent[k];
+                if p != place || self.sizes[tree as usize] >= MAX_TREE {
+                    break;
+                }
+                let joint = view.joints.at(island.joints[j as usize]);
+                let other = if joint.a == body { joint.b } else { joint.a };
+                let Ok(other) = island.bodies.binary_search(&other) else { continue };
+                if self.local[other] == NONE {
+                    self.add(tree, other as u32, place, j);
+                }
+            }
+        }
+    }
 }
 
 impl IslandSolver {
@@ -61,106 +127,90 @@ impl IslandSolver {
         self.refresh_response();
     }
 
-    /// Spanning trees by breadth-first search: first from bodies jointed to fixed ones (a tree has one ground at most),
-    /// then from the smallest body that is left.
+    /// Spanning trees: few loops are closed exactly in one tree per thing that hangs together. Where there are too many
+    /// for that, all bodies jointed to fixed ones become roots at once, so that ropes side by side are a tree each.
     fn order_trees(&mut self, island: &Island, view: &View<'_>) {
+        self.span(island, view, Roots::InTurn);
+        if self.is_entangled(island, view) {
+            self.span(island, view, Roots::AtOnce);
+        }
+    }
+
+    /// Spanning trees by breadth-first search: from bodies jointed to fixed ones (a tree has one ground at most), then from
+    /// the smallest body that is left.
+    fn span(&mut self, island: &Island, view: &View<'_>, roots: Roots) {
         let s = &mut self.scratch.build;
-        s.order.clear();
+        s.seeds.clear();
+        s.sizes.clear();
+        s.grown = 0;
         s.local.clear();
         s.local.resize(island.bodies.len(), NONE);
         s.used.clear();
         s.used.resize(island.joints.len(), false);
         s.adjacent.clear();
         let place = |body: u32| island.bodies.binary_search(&body).ok().map(|i| i as u32);
+        let ends = |index: u32| [view.joints.at(index).a, view.joints.at(index).b].map(place);
         for (j, &index) in island.joints.iter().enumerate() {
-            let joint = view.joints.at(index);
-            for body in [joint.a, joint.b] {
-                if let Some(place) = place(body) {
-                    s.adjacent.push((place, j as u32));
-                }
-            }
+            let moving = ends(index).into_iter().flatten();
+            s.adjacent.extend(moving.map(|place| (place, j as u32)));
         }
         s.adjacent.sort_unstable();
-        self.links.clear();
-        self.tree_count = 0;
-        // Ground joints first, so that a chain hung on a wall is one tree with the wall as its root.
-        for j in 0..island.joints.len() {
-            let joint = view.joints.at(island.joints[j]);
-            let (a, b) = (place(joint.a), place(joint.b));
-            if let (Some(root), None) | (None, Some(root)) = (a, b) {
-                self.grow_tree(island, view, root, j as u32);
+        for (j, &index) in island.joints.iter().enumerate() {
+            if let [Some(root), None] | [None, Some(root)] = ends(index)
+                && s.local[root as usize] == NONE
+            {
+                s.plant(root, j as u32);
+                if roots == Roots::InTurn {
+                    s.grow(island, view);
+                }
             }
         }
+        s.grow(island, view);
         for root in 0..island.bodies.len() as u32 {
-            self.grow_tree(island, view, root, NONE);
+            if s.local[root as usize] == NONE {
+                s.plant(root, NONE);
+                s.grow(island, view);
+            }
         }
-        self.articulated = self.links.iter().any(|link| link.joint != NONE);
-        if self.is_entangled(island, view) {
-            self.cut_trees(island);
-        }
+        self.number_links(island);
     }
 
-    /// More rows of loops than of trees: a net, not a tree with a few loops.
-    fn is_entangled(&self, island: &Island, view: &View<'_>) -> bool {
-        let mut rows = [0, 0];
-        for (&index, &used) in island.joints.iter().zip(&self.scratch.build.used) {
-            rows[usize::from(used)] += locked_count(&view.joints.at(index).kind);
-        }
-        rows[0] > MAX_EXACT_ROWS && rows[0] * ENTANGLED > rows[1]
-    }
-
-    /// Every body by itself, every joint for the sweeps.
-    fn cut_trees(&mut self, island: &Island) {
+    /// More loops than can be closed exactly in one of its trees, or loops between trees.
+    fn is_entangled(&mut self, island: &Island, view: &View<'_>) -> bool {
         let s = &mut self.scratch.build;
-        s.used.fill(false);
+        s.loop_rows.clear();
+        s.loop_rows.resize(self.tree_count, 0);
+        let tree = |body: u32| {
+            let place = island.bodies.binary_search(&body).ok()?;
+            Some(self.links[s.local[place] as usize].tree as usize)
+        };
+        for (&index, _) in island.joints.iter().zip(&s.used).filter(|(_, used)| !**used) {
+            let joint = view.joints.at(index);
+            let tree = match (tree(joint.a), tree(joint.b)) {
+                (Some(a), Some(b)) if a != b => return true,
+                (a, b) => a.or(b).unwrap_or(0),
+            };
+            s.loop_rows[tree] += joint.most_rows();
+        }
+        s.loop_rows.iter().any(|&rows| rows > MAX_EXACT_ROWS)
+    }
+
+    /// Local indices, tree by tree, parents first.
+    fn number_links(&mut self, island: &Island) {
+        let s = &mut self.scratch.build;
+        s.seeds.sort_unstable_by_key(|seed| (seed.tree, seed.found));
         s.order.clear();
         self.links.clear();
-        for (place, &body) in island.bodies.iter().enumerate() {
-            s.local[place] = place as u32;
-            s.order.push((body, NONE, NONE));
-            self.links.push(Link::new(NONE, NONE, place as u32));
+        for (local, seed) in s.seeds.iter().enumerate() {
+            s.local[seed.place as usize] = local as u32;
         }
-        self.tree_count = self.links.len();
-        self.articulated = false;
-    }
-
-    /// Adds the tree of `root` (a place in the island), held by `ground` (a joint's place) or free.
-    fn grow_tree(&mut self, island: &Island, view: &View<'_>, root: u32, ground: u32) {
-        let s = &mut self.scratch.build;
-        if s.local[root as usize] != NONE {
-            return;
+        for seed in &s.seeds {
+            let parent = if seed.parent == NONE { NONE } else { s.local[seed.parent as usize] };
+            s.order.push(island.bodies[seed.place as usize]);
+            self.links.push(Link::new(parent, seed.joint, seed.tree));
         }
-        let first = s.order.len();
-        s.local[root as usize] = first as u32;
-        if ground != NONE {
-            s.used[ground as usize] = true;
-        }
-        s.order.push((island.bodies[root as usize], NONE, ground));
-        let mut next = first;
-        while next < s.order.len() {
-            let (body, _, _) = s.order[next];
-            let place = island.bodies.binary_search(&body).unwrap_or(0) as u32;
-            let start = s.adjacent.partition_point(|&(p, _)| p < place);
-            for k in start..s.adjacent.len() {
-                let (p, j) = s.adjacent[k];
-                if p != place || s.order.len() - first >= MAX_TREE {
-                    break;
-                }
-                let joint = view.joints.at(island.joints[j as usize]);
-                let other = if joint.a == body { joint.b } else { joint.a };
-                let Ok(other) = island.bodies.binary_search(&other) else { continue };
-                if s.local[other] == NONE {
-                    s.local[other] = s.order.len() as u32;
-                    s.used[j as usize] = true;
-                    s.order.push((island.bodies[other], next as u32, j));
-                }
-            }
-            next += 1;
-        }
-        for &(_, parent, joint) in &s.order[first..] {
-            self.links.push(Link::new(parent, joint, self.tree_count as u32));
-        }
-        self.tree_count += 1;
+        self.tree_count = s.sizes.len();
+        self.articulated = self.links.iter().any(|link| link.joint != NONE);
     }
 
     fn copy_bodies(&mut self, island: &Island, view: &View<'_>) {
@@ -179,7 +229,7 @@ impl IslandSolver {
         s.fixed.dedup();
         self.bodies.clear();
         self.velocities.clear();
-        let ordered = s.order.iter().map(|&(body, _, _)| body);
+        let ordered = s.order.iter().copied();
         for index in ordered.chain(s.fixed.iter().copied()) {
             let body = view.bodies.at(index);
             self.bodies.push(SolverBody {
@@ -227,6 +277,7 @@ impl IslandSolver {
                 pose,
                 rows: JointRows::new(&geometry, &pose, [false; DIRECTIONS]),
                 rigid: 0,
+                most_rows: joint.most_rows(),
                 soft: [SoftRow::default(); DIRECTIONS],
                 mass: ZERO6,
                 start_rate: ZERO6,
@@ -234,10 +285,12 @@ impl IslandSolver {
                 limits: joint.limits,
                 limit_impulse: [Vec3::ZERO; MAX_LIMITS],
                 force: joint.force,
+                impulse: ZERO6,
+                warm_impulse: joint.warm_impulse,
                 reaction: ZERO6,
             });
             if !self.scratch.build.used[place] {
-                self.loops.push(place as u32, joint.loop_impulse);
+                self.loops.joints.push(place as u32);
             }
         }
         self.loops.group(&self.joints, &self.links);

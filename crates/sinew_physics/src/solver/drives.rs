@@ -131,9 +131,7 @@ impl SolverJoint {
             if let Some(weld) = self.drive.weld {
                 soft.add_spring(weld, self.mass[direction], self.rows.error[row], 0.0, h);
             }
-            return soft;
-        }
-        if let Some(spring) = self.drive.spring {
+        } else if let Some(spring) = self.drive.spring {
             let x = displacement(&self.geometry.kind, &self.pose, direction, &spring.rest);
             soft.add_spring(spring.softness, self.mass[direction], x, 0.0, h);
         }
@@ -227,14 +225,6 @@ impl SolverJoint {
         out
     }
 
-    /// Most rows that it can have.
-    pub(super) fn most_rows(&self) -> usize {
-        let drive = &self.drive;
-        let driven = drive.spring.is_some() || drive.motor.is_some() || drive.friction > 0.0;
-        let open = crate::joint::open_directions(self.geometry.kind).count();
-        crate::joint::locked_count(&self.geometry.kind) + if driven { open } else { 0 }
-    }
-
     /// Position errors of the rigid rows at other poses of the bodies.
     pub(super) fn rigid_error(&self, pose: &crate::joint::JointPose) -> Vec6 {
         if self.rigid == 0 { ZERO6 } else { locked_error(&self.geometry, pose) }
@@ -318,6 +308,9 @@ impl IslandSolver {
             }
             self.scratch.started.clear();
             self.scratch.started.extend_from_slice(&self.velocities[..self.links.len()]);
+            for joint in &mut self.joints {
+                joint.impulse = ZERO6;
+            }
             self.refresh_rows();
             self.factor_joints();
             self.refresh_response();

@@ -31,8 +31,8 @@ impl IslandSolver {
         for rows in &mut self.manifolds {
             rows.forget();
         }
-        for of in &mut self.loops.joints {
-            of.impulse = ZERO6;
+        for joint in &mut self.joints {
+            joint.impulse = ZERO6;
         }
         for row in &mut self.limits {
             row.impulse = 0.0;

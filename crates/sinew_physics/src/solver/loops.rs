@@ -1,36 +1,27 @@
-//! Joints that close loops. Few of them in one tree are solved exactly, by the Schur complement of the tree (Baraff 1996):
-//! with the tree's inverse inertia `W`, rows `J` of the loops and `S = J W Jᵀ + Γ`, `λ = S⁻¹ (r − J dv)`. Many of them, and
-//! those between trees, are visited by the sweeps, joint by joint.
+//! Joints that close loops. Few of them are solved exactly, by the Schur complement of the tree (Baraff 1996): with the
+//! tree's inverse inertia `W`, rows `J` of the loops and `S = J W Jᵀ + Γ`, `λ = S⁻¹ (r − J dv)`. Many of them, or loops
+//! between trees, are solved by conjugate gradients on the same equations: `S p` is one pass through the trees, so a net
+//! that hangs by its ropes is carried at once, and each round takes energy out, however early it ends.
 
-use super::contact_rows::Softness;
+use super::limit_rows::add_row;
 use super::response::Response;
-use super::sweep::Pass;
-use super::tree::Link;
-use super::{IslandSolver, SolverBody, SolverJoint};
-use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, dot, mul, spd_inverse};
-use sinew_math::Sym3;
+use super::tree::{self, Link, NONE};
+use super::{IslandSolver, Scratch, SolverBody, SolverJoint};
+use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
+use sinew_math::{Sym3, max};
 
-/// At most this many rows of loops are solved exactly in one tree.
+/// At most this many rows of loops in one tree are solved exactly.
 pub(super) const MAX_EXACT_ROWS: usize = 24;
 /// Added to the diagonal of S as a share of what the bodies would answer if nothing held them. Rows that say what the tree
 /// says already (a planar four-bar linkage of hinges) answer with rounding errors of that size alone; what this leaves of
 /// the others is removed by the position corrections.
 const REDUNDANCY: f32 = 1e-5;
-/// Stiffness of visited rows as a share of the substep rate, and damping ratio.
-const STIFFNESS: f32 = 0.25;
-const DAMPING_RATIO: f32 = 2.0;
 
-/// A joint that closes a loop.
-#[derive(Clone, Debug)]
-pub(super) struct LoopJoint {
-    pub joint: u32,
-    /// In tree `tree` it is solved exactly; otherwise it is visited.
-    closure: Option<u32>,
-    /// `(J W Jᵀ + Γ)⁻¹` of its own rows.
-    inverse: Mat6,
-    /// Of this substep, row by row, if it is visited.
-    pub impulse: Vec6,
-}
+/// Most rounds of conjugate gradients, and the rate that needs none, m/s or rad/s.
+const ROUNDS: usize = 16;
+const RATE_TOLERANCE: f32 = 1e-5;
+/// Share of the residual's square that ends the rounds.
+const RESIDUAL_SHARE: f32 = 1e-6;
 
 /// The loops of one tree, solved together.
 #[derive(Clone, Debug)]
@@ -48,14 +39,28 @@ struct Closure {
 /// All loops of an island.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Loops {
-    /// Those of a closure are neighbours.
-    pub joints: Vec<LoopJoint>,
+    /// Joints of the island; those of a closure are neighbours.
+    pub joints: Vec<u32>,
+    /// None if the loops are iterated.
     closures: Vec<Closure>,
     /// S⁻¹ of all closures, row by row.
     inverses: Vec<f32>,
     /// `W Jᵀ` of all closures: per row, per member of the tree, a velocity change.
     columns: Vec<Vec6>,
     scratch: Vec<f32>,
+    gradient: Gradient,
+}
+
+/// Vectors of conjugate gradients.
+#[derive(Clone, Debug, Default)]
+struct Gradient {
+    /// Per row of the loops.
+    residual: Vec<f32>,
+    direction: Vec<f32>,
+    answer: Vec<f32>,
+    /// Per moving body: answer to the direction, and to all so far.
+    dv: Vec<Vec6>,
+    sum: Vec<Vec6>,
 }
 
 impl Loops {
@@ -64,53 +69,44 @@ impl Loops {
         self.closures.clear();
     }
 
-    /// A joint that closes a loop, with its impulses of the last substep.
-    pub fn push(&mut self, joint: u32, impulse: Vec6) {
-        self.joints.push(LoopJoint { joint, closure: None, inverse: ZERO66, impulse });
+    pub fn is_empty(&self) -> bool {
+        self.joints.is_empty()
     }
 
-    /// Decides which are solved exactly.
+    pub fn are_iterated(&self) -> bool {
+        self.closures.is_empty() && !self.joints.is_empty()
+    }
+
+    /// Those that the responses know of.
+    pub fn closed_exactly(&self) -> &[u32] {
+        if self.are_iterated() { &[] } else { &self.joints }
+    }
+
+    /// Groups them by tree; many, or some between trees, are left to be iterated.
     pub fn group(&mut self, joints: &[SolverJoint], links: &[Link]) {
-        let tree_of = |of: &LoopJoint| {
-            let joint = &joints[of.joint as usize];
-            let tree = |body: u32| links.get(body as usize).map(|link| link.tree);
-            match (tree(joint.a), tree(joint.b)) {
-                (Some(a), Some(b)) if a != b => None,
-                (a, b) => a.or(b),
-            }
-        };
-        self.joints.sort_by_key(|of| (tree_of(of), of.joint));
+        let tree = |body: u32| links.get(body as usize).map(|link| link.tree);
+        let ends = |joint: u32| (tree(joints[joint as usize].a), tree(joints[joint as usize].b));
+        let tree_of = |joint: u32| ends(joint).0.or(ends(joint).1).unwrap_or(NONE);
+        self.joints.sort_unstable_by_key(|&joint| (tree_of(joint), joint));
         self.closures.clear();
-        let mut first = 0;
-        while first < self.joints.len() {
-            let tree = tree_of(&self.joints[first]);
-            let count = self.joints[first..].iter().take_while(|of| tree_of(of) == tree).count();
-            let most: usize = self.joints[first..first + count]
-                .iter()
-                .map(|of| joints[of.joint as usize].most_rows())
-                .sum();
-            if let Some(tree) = tree.filter(|_| most <= MAX_EXACT_ROWS) {
-                for of in &mut self.joints[first..first + count] {
-                    of.closure = Some(self.closures.len() as u32);
-                    of.impulse = ZERO6;
+        for (place, &joint) in self.joints.iter().enumerate() {
+            let tree = tree_of(joint);
+            match self.closures.last_mut() {
+                Some(closure) if closure.tree == tree => closure.count += 1,
+                _ => {
+                    let (first, count) = (place, 1);
+                    self.closures.push(Closure { tree, first, count, rows: 0, inverse: 0, columns: 0 });
                 }
-                self.closures.push(Closure { tree, first, count, rows: 0, inverse: 0, columns: 0 });
             }
-            first += count;
         }
-    }
-
-    /// Those that the sweeps visit.
-    fn visited(&self) -> impl Iterator<Item = &LoopJoint> {
-        self.joints.iter().filter(|of| of.closure.is_none())
-    }
-
-    pub fn has_visited(&self) -> bool {
-        self.visited().next().is_some()
-    }
-
-    pub fn has_exact(&self) -> bool {
-        !self.closures.is_empty()
+        let rows = |closure: &Closure| -> usize {
+            let joints_of = &self.joints[closure.first..closure.first + closure.count];
+            joints_of.iter().map(|&joint| joints[joint as usize].most_rows).sum()
+        };
+        let between = self.joints.iter().any(|&joint| matches!(ends(joint), (Some(a), Some(b)) if a != b));
+        if between || self.closures.iter().any(|closure| rows(closure) > MAX_EXACT_ROWS) {
+            self.closures.clear();
+        }
     }
 
     /// Matrices for the present rows; the response of each closed tree becomes that with its loops closed.
@@ -118,19 +114,15 @@ impl Loops {
         &mut self,
         joints: &[SolverJoint],
         bodies: &[SolverBody],
-        links: &[Link],
         response: &mut Response,
     ) {
-        for of in self.joints.iter_mut().filter(|of| of.closure.is_none()) {
-            of.respond(&joints[of.joint as usize], bodies, links, response);
-        }
         self.inverses.clear();
         self.columns.clear();
         for closure in &mut self.closures {
             let loops = &self.joints[closure.first..closure.first + closure.count];
             let rows = || {
-                loops.iter().flat_map(|of| {
-                    let joint = &joints[of.joint as usize];
+                loops.iter().flat_map(|&joint| {
+                    let joint = &joints[joint as usize];
                     (0..joint.rows.count).map(move |row| (joint, row))
                 })
             };
@@ -163,81 +155,125 @@ impl Loops {
         }
     }
 
-    /// Impulses of the exact loops that make up for what `dv` leaves of `residuals` (row by row of each loop joint), put on
-    /// the bodies.
-    pub fn close(&mut self, joints: &[SolverJoint], residuals: &[Vec6], dv: &[Vec6], impulses: &mut [Vec6]) {
+    /// Makes `scratch.dv` the further velocity change by which the loops make up for what it leaves of
+    /// `scratch.loop_residuals` (row by row of each loop joint).
+    pub fn close(&mut self, joints: &mut [SolverJoint], links: &[Link], scratch: &mut Scratch) {
+        if self.are_iterated() {
+            self.iterate(joints, links, scratch);
+        } else {
+            self.close_exactly(joints, scratch);
+            scratch.dv.fill(ZERO6);
+            tree::solve(links, &mut scratch.impulses, &mut scratch.residuals, &mut scratch.dv);
+        }
+    }
+
+    /// Impulses of the loops, put on the bodies.
+    fn close_exactly(&mut self, joints: &mut [SolverJoint], scratch: &mut Scratch) {
+        scratch.impulses.fill(ZERO6);
         for closure in &self.closures {
             let range = closure.first..closure.first + closure.count;
             let left = &mut self.scratch;
             left.clear();
-            for (of, residual) in self.joints[range.clone()].iter().zip(&residuals[range.clone()]) {
-                let joint = &joints[of.joint as usize];
-                let rate = joint.rate(dv);
+            for (&joint, residual) in self.joints[range.clone()].iter().zip(&scratch.loop_residuals[range.clone()])
+            {
+                let joint = &joints[joint as usize];
+                let rate = joint.rate(&scratch.dv);
                 left.extend((0..joint.rows.count).map(|row| residual[row] - rate[row]));
             }
             let inverse = &self.inverses[closure.inverse..];
-            let mut k = 0;
-            for of in &self.joints[range] {
-                let joint = &joints[of.joint as usize];
+            let mut lines = inverse.chunks_exact(closure.rows);
+            for &joint in &self.joints[range] {
+                let joint = &mut joints[joint as usize];
                 for row in 0..joint.rows.count {
-                    let line = &inverse[k * closure.rows..(k + 1) * closure.rows];
+                    let line = lines.next().unwrap_or_default();
                     let lambda = line.iter().zip(left.iter()).fold(0.0, |sum, (s, r)| sum + s * r);
-                    super::limit_rows::add_row(impulses, joint.a, &joint.rows.a[row], lambda);
-                    super::limit_rows::add_row(impulses, joint.b, &joint.rows.b[row], lambda);
-                    k += 1;
+                    joint.impulse[row] += lambda;
+                    add_row(&mut scratch.impulses, joint.a, &joint.rows.a[row], lambda);
+                    add_row(&mut scratch.impulses, joint.b, &joint.rows.b[row], lambda);
                 }
             }
         }
     }
+
+    /// Conjugate gradients (Hestenes and Stiefel 1952) on `S λ = r − J dv`.
+    fn iterate(&mut self, joints: &mut [SolverJoint], links: &[Link], scratch: &mut Scratch) {
+        let g = &mut self.gradient;
+        g.residual.clear();
+        for (&joint, residual) in self.joints.iter().zip(&scratch.loop_residuals) {
+            let joint = &joints[joint as usize];
+            let rate = joint.rate(&scratch.dv);
+            g.residual.extend((0..joint.rows.count).map(|row| residual[row] - rate[row]));
+        }
+        g.direction.clone_from(&g.residual);
+        g.sum.clear();
+        g.sum.resize(links.len(), ZERO6);
+        g.dv.resize(links.len(), ZERO6);
+        let mut square = dot_of(&g.residual, &g.residual);
+        let enough = max(RESIDUAL_SHARE * square, RATE_TOLERANCE * RATE_TOLERANCE);
+        for _ in 0..ROUNDS {
+            if square <= enough {
+                break;
+            }
+            answer(&self.joints, joints, links, scratch, g);
+            let curvature = dot_of(&g.direction, &g.answer);
+            if curvature <= 0.0 {
+                break; // rounding: nothing left that answers
+            }
+            let step = square / curvature;
+            let mut row = 0;
+            for &joint in &self.joints {
+                let joint = &mut joints[joint as usize];
+                for impulse in &mut joint.impulse[..joint.rows.count] {
+                    *impulse += step * g.direction[row];
+                    g.residual[row] -= step * g.answer[row];
+                    row += 1;
+                }
+            }
+            for (sum, dv) in g.sum.iter_mut().zip(&g.dv) {
+                add_scaled(sum, dv, step);
+            }
+            let before = square;
+            square = dot_of(&g.residual, &g.residual);
+            let keep = square / before;
+            for (direction, residual) in g.direction.iter_mut().zip(&g.residual) {
+                *direction = residual + keep * *direction;
+            }
+        }
+        scratch.dv.clone_from(&g.sum);
+    }
 }
 
-impl LoopJoint {
-    pub fn is_exact(&self) -> bool {
-        self.closure.is_some()
-    }
-
-    fn respond(&mut self, joint: &SolverJoint, bodies: &[SolverBody], links: &[Link], response: &Response) {
-        let (a, b) = (joint.a as usize, joint.b as usize);
-        let n = joint.rows.count;
-        let mut k = ZERO66;
-        for column in 0..n {
-            let (ja, jb) = (&joint.rows.a[column], &joint.rows.b[column]);
-            let mut on_a = response.at(links, a, a, ja);
-            add_scaled(&mut on_a, &response.at(links, a, b, jb), 1.0);
-            let mut on_b = response.at(links, b, b, jb);
-            add_scaled(&mut on_b, &response.at(links, b, a, ja), 1.0);
-            for row in 0..n {
-                k[row][column] = dot(&joint.rows.a[row], &on_a) + dot(&joint.rows.b[row], &on_b);
-            }
-            k[column][column] += joint.compliance(column) + REDUNDANCY * joint.free_response(column, bodies);
+/// `S p` for the direction `p`, and the velocities that it gives.
+fn answer(
+    loops: &[u32],
+    joints: &[SolverJoint],
+    links: &[Link],
+    scratch: &mut Scratch,
+    g: &mut Gradient,
+) {
+    scratch.impulses.fill(ZERO6);
+    scratch.residuals.fill(ZERO6);
+    let mut push = g.direction.iter();
+    for &joint in loops {
+        let joint = &joints[joint as usize];
+        for (row, &p) in (0..joint.rows.count).zip(&mut push) {
+            add_row(&mut scratch.impulses, joint.a, &joint.rows.a[row], p);
+            add_row(&mut scratch.impulses, joint.b, &joint.rows.b[row], p);
         }
-        self.inverse = spd_inverse(&k, n).unwrap_or(ZERO66);
     }
-
-    /// Change of impulse, row by row: rigid rows are a soft constraint in `solve`, as stiff as the substep allows, and
-    /// rigid in `relax`.
-    fn visit(&mut self, joint: &SolverJoint, velocities: &[Vec6], pass: Pass, h: f32) -> Vec6 {
-        let soft = Softness::new(STIFFNESS / h, DAMPING_RATIO, h);
-        let rate = joint.rate(velocities);
-        let mut wanted = ZERO6;
+    tree::solve(links, &mut scratch.impulses, &mut scratch.residuals, &mut g.dv);
+    g.answer.clear();
+    for &joint in loops {
+        let joint = &joints[joint as usize];
+        let rate = joint.rate(&g.dv);
         for row in 0..joint.rows.count {
-            wanted[row] = if row >= joint.rigid {
-                joint.wanted(row) - rate[row] - joint.compliance(row) * self.impulse[row]
-            } else if pass == Pass::Solve {
-                -soft.mass_scale * (rate[row] + soft.bias_rate * joint.rows.error[row])
-            } else {
-                -rate[row]
-            };
+            g.answer.push(rate[row] + joint.compliance(row) * g.direction[g.answer.len()]);
         }
-        let mut change = mul(&self.inverse, &wanted);
-        for row in 0..joint.rigid {
-            if pass == Pass::Solve {
-                change[row] -= soft.impulse_scale * self.impulse[row];
-            }
-        }
-        add_scaled(&mut self.impulse, &change, 1.0);
-        change
     }
+}
+
+fn dot_of(a: &[f32], b: &[f32]) -> f32 {
+    a.iter().zip(b).fold(0.0, |sum, (x, y)| sum + x * y)
 }
 
 impl SolverJoint {
@@ -252,32 +288,37 @@ impl SolverJoint {
 }
 
 impl IslandSolver {
-    /// Starts visited loops from the last substep's impulses.
+    /// Starts iterated loops from the last substep's impulses.
     pub(super) fn warm_start_loops(&mut self) {
-        for of in &self.loops.joints {
-            let joint = &self.joints[of.joint as usize];
+        if !self.loops.are_iterated() {
+            return;
+        }
+        for &joint in &self.loops.joints {
+            let joint = &mut self.joints[joint as usize];
+            let (mut on_a, mut on_b) = (ZERO6, ZERO6);
             for row in 0..joint.rows.count {
-                let impulse = of.impulse[row];
-                super::limit_rows::add_row(&mut self.impulses, joint.a, &joint.rows.a[row], impulse);
-                super::limit_rows::add_row(&mut self.impulses, joint.b, &joint.rows.b[row], impulse);
+                let impulse = joint.warm_impulse[joint.rows.direction[row]];
+                joint.impulse[row] = impulse;
+                add_scaled(&mut on_a, &joint.rows.a[row], impulse);
+                add_scaled(&mut on_b, &joint.rows.b[row], impulse);
+            }
+            for (body, push) in [(joint.a as usize, on_a), (joint.b as usize, on_b)] {
+                if body < self.links.len() {
+                    let change = self.bodies[body].velocity_change(&push);
+                    add_scaled(&mut self.velocities[body], &change, 1.0);
+                }
             }
         }
     }
 
-    pub(super) fn visit_loops(&mut self, pass: Pass, backward: bool) {
-        for k in 0..self.loops.joints.len() {
-            let i = if backward { self.loops.joints.len() - 1 - k } else { k };
-            if self.loops.joints[i].closure.is_some() {
-                continue;
-            }
-            let joint = &self.joints[self.loops.joints[i].joint as usize];
-            let change = self.loops.joints[i].visit(joint, &self.velocities, pass, self.h);
-            let (mut on_a, mut on_b) = (ZERO6, ZERO6);
+    /// Impulses of the substep become memory.
+    pub(super) fn end_loops(&mut self) {
+        for &joint in &self.loops.joints {
+            let joint = &mut self.joints[joint as usize];
+            joint.warm_impulse = ZERO6;
             for row in 0..joint.rows.count {
-                add_scaled(&mut on_a, &joint.rows.a[row], change[row]);
-                add_scaled(&mut on_b, &joint.rows.b[row], change[row]);
+                joint.warm_impulse[joint.rows.direction[row]] = joint.impulse[row];
             }
-            self.push(joint.a, joint.b, &(on_a, on_b));
         }
     }
 }

@@ -33,7 +33,7 @@ use loops::Loops;
 use response::Response;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew};
 use sweep::Pass;
-use tree::{Link, NONE};
+use tree::Link;
 
 /// Angle that a body may turn within a substep, radians: beyond it rows linearised at its start mean nothing.
 const MAX_TURN: f32 = core::f32::consts::FRAC_PI_2;
@@ -47,8 +47,6 @@ const SWEEP_TOLERANCE: f32 = 2e-3;
 /// `solve` (1.5 % too little) and the second those that really press.
 const SWEEPS_FREE: usize = 1;
 const SWEEPS_FREE_RELAX: usize = 2;
-/// Likewise in one whose joints are too much entangled for trees.
-const SWEEPS_ROWS: usize = 4;
 /// Rounds in which limits that the substep would pass by far are tightened.
 const LIMIT_CORRECTIONS: usize = 4;
 /// A body of the island. Moving ones come first, in tree order; fixed ones (static, kinematic, asleep) follow.
@@ -72,6 +70,18 @@ pub(crate) struct SolverBody {
 }
 
 impl SolverBody {
+    /// Mass and inertia at the centre of mass, world axes, geometric stiffness included.
+    fn mass_matrix(&self) -> Mat6 {
+        let mut m = [ZERO6; 6];
+        let angular = Sym3::from_rotated_diagonal(self.pose.rotation, self.inertia + self.excess).to_mat3();
+        for k in 0..3 {
+            m[k][k] = self.mass;
+            let row = angular.row(k);
+            m[3 + k][3..].copy_from_slice(&[row.x, row.y, row.z]);
+        }
+        m
+    }
+
     /// Answer to an impulse if no joint held it.
     fn velocity_change(&self, p: &Vec6) -> Vec6 {
         join(linear(p) / self.mass, self.inverse_inertia * angular(p))
@@ -92,6 +102,8 @@ pub(crate) struct SolverJoint {
     pub rows: JointRows,
     /// Rows that hold exactly.
     rigid: usize,
+    /// Rows that it may have.
+    most_rows: usize,
     /// The others, row by row.
     soft: [SoftRow; DIRECTIONS],
     /// What springs and motors move, direction by direction, kg or kg·m².
@@ -103,6 +115,10 @@ pub(crate) struct SolverJoint {
     /// Impulses of the limits in the substep so far, world axes.
     limit_impulse: [Vec3; MAX_LIMITS],
     pub force: Vec3,
+    /// Impulses of this substep if it closes a loop, row by row.
+    impulse: Vec6,
+    /// Likewise of the last substep, direction by direction.
+    pub warm_impulse: Vec6,
     /// Impulses of the substeps so far on B, torque about its anchor.
     pub reaction: Vec6,
 }
@@ -181,10 +197,12 @@ impl IslandSolver {
     /// The last substep's impulses of contacts and limits, but for what jumped up in it: an impact is not repeated.
     pub fn warm_start(&mut self) {
         self.reset_impulses();
+        for joint in &mut self.joints {
+            joint.impulse = ZERO6;
+        }
         for rows in &mut self.manifolds {
             rows.warm_start(&mut self.impulses);
         }
-        self.warm_start_loops();
         for row in &mut self.limits {
             row.warm_start(&self.joints, &mut self.impulses);
         }
@@ -194,6 +212,7 @@ impl IslandSolver {
             let change = self.bodies[i].velocity_change(&p);
             add_scaled(&mut self.velocities[i], &change, 1.0);
         }
+        self.warm_start_loops();
         self.scratch.started.clear();
         self.scratch.started.extend_from_slice(&self.velocities[..self.links.len()]);
     }
@@ -249,6 +268,7 @@ impl IslandSolver {
             rows.end_substep();
         }
         self.end_limits();
+        self.end_loops();
         self.release_motors();
         self.add_reactions();
     }
@@ -281,8 +301,7 @@ impl IslandSolver {
             body.excess = Vec3::ZERO;
         }
         let h2 = self.h * self.h;
-        for link in self.links.iter().filter(|link| link.joint != NONE) {
-            let joint = &self.joints[link.joint as usize];
+        for joint in &self.joints {
             for (body, arm, force) in
                 [(joint.a, joint.pose.arm_a, -joint.force), (joint.b, joint.pose.arm_b, joint.force)]
             {
@@ -322,14 +341,14 @@ impl IslandSolver {
             want(rows.a);
             want(rows.b);
         }
-        let loops = self.loops.joints.iter().map(|of| of.joint);
+        let loops = self.loops.closed_exactly().iter().copied();
         for joint in loops.chain(self.limits.iter().map(|row| row.joint)) {
             want(self.joints[joint as usize].a);
             want(self.joints[joint as usize].b);
         }
         self.response.choose(&self.links, self.tree_count, wanted);
         self.response.fill(&self.links);
-        self.loops.respond(&self.joints, &self.bodies, &self.links, &mut self.response);
+        self.loops.respond(&self.joints, &self.bodies, &mut self.response);
         for rows in &mut self.manifolds {
             rows.respond(&self.links, &self.response);
         }
@@ -352,11 +371,6 @@ impl IslandSolver {
     /// The bodies that move, in tree order.
     pub fn moving_bodies(&self) -> &[SolverBody] {
         &self.bodies[..self.links.len()]
-    }
-
-    /// World index and impulses of the joints that close loops.
-    pub fn loop_impulses(&self) -> impl Iterator<Item = (u32, Vec6)> {
-        self.loops.joints.iter().map(|of| (self.joints[of.joint as usize].index, of.impulse))
     }
 
     /// World index of each contact, with what it carries on.

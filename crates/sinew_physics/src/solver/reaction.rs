@@ -1,16 +1,17 @@
 //! What the joints carry: from the momentum that the bodies gained beside the contacts.
 
 use super::IslandSolver;
+use super::limit_rows::add_row;
 use super::tree::NONE;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
 use sinew_math::Sym3;
 
 impl IslandSolver {
     /// Adds the impulses of this substep to the reactions of all joints: what the momentum of the subtree below gained
-    /// since the forces acted, less what contacts and visited loops gave it. Torques are about the anchor of B. What
+    /// since the forces acted, less what contacts and loops gave it. Torques are about the anchor of B. What
     /// saturated motors push counts among the forces, and adds itself.
     pub(super) fn add_reactions(&mut self) {
-        if self.joints.is_empty() {
+        if !self.is_articulated() {
             return;
         }
         let moving = self.links.len();
@@ -25,29 +26,19 @@ impl IslandSolver {
         for rows in &self.manifolds {
             let push = rows.total_push();
             for (body, p) in [(rows.a, &push.0), (rows.b, &push.1)] {
-                super::limit_rows::add_row(&mut self.scratch.impulses, body, p, -1.0);
+                add_row(&mut self.scratch.impulses, body, p, -1.0);
             }
         }
-        for of in &self.loops.joints {
-            let joint = &self.joints[of.joint as usize];
+        for k in 0..self.loops.joints.len() {
+            let joint = &mut self.joints[self.loops.joints[k] as usize];
             let mut on_b = ZERO6;
             for row in 0..joint.rows.count {
-                add_scaled(&mut on_b, &joint.rows.b[row], of.impulse[row]);
-                super::limit_rows::add_row(
-                    &mut self.scratch.impulses,
-                    joint.a,
-                    &joint.rows.a[row],
-                    -of.impulse[row],
-                );
-                super::limit_rows::add_row(
-                    &mut self.scratch.impulses,
-                    joint.b,
-                    &joint.rows.b[row],
-                    -of.impulse[row],
-                );
+                let impulse = joint.impulse[row];
+                add_scaled(&mut on_b, &joint.rows.b[row], impulse);
+                add_row(&mut self.scratch.impulses, joint.a, &joint.rows.a[row], -impulse);
+                add_row(&mut self.scratch.impulses, joint.b, &joint.rows.b[row], -impulse);
             }
-            let arm = joint.pose.arm_b;
-            self.joints[of.joint as usize].add_reaction(&on_b, arm);
+            joint.add_reaction(&on_b, joint.pose.arm_b);
         }
         self.pass_down();
     }

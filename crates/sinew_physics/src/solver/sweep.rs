@@ -3,7 +3,7 @@
 //! joints hold exactly.
 
 use super::contact_rows::Push;
-use super::{IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED, SWEEPS_ROWS};
+use super::{IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED};
 use crate::spatial::{ZERO6, add_scaled, linear};
 use sinew_math::max;
 
@@ -21,7 +21,7 @@ pub(crate) enum Pass {
 impl IslandSolver {
     /// Visits all rows and gives the bodies their impulses.
     pub(super) fn sweep(&mut self, pass: Pass) {
-        if self.manifolds.is_empty() && self.limits.is_empty() && !self.loops.has_visited() {
+        if self.manifolds.is_empty() && self.limits.is_empty() {
             return;
         }
         self.reset_impulses();
@@ -30,7 +30,6 @@ impl IslandSolver {
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
         let sweeps = match (self.is_articulated(), pass) {
             (true, _) => SWEEPS_JOINTED,
-            _ if self.loops.has_visited() => SWEEPS_ROWS,
             (_, Pass::Relax) => SWEEPS_FREE_RELAX,
             (..) => SWEEPS_FREE,
         };
@@ -40,7 +39,6 @@ impl IslandSolver {
                 Pass::Solve | Pass::Relax => self.visit_contacts(pass),
                 Pass::Restitution => self.visit_bounces(),
             }
-            self.visit_loops(pass, done % 2 == 0);
             self.visit_limits(pass);
             if done > 1 && self.largest_change < SWEEP_TOLERANCE {
                 break;

@@ -8,6 +8,7 @@
 //! ```
 //! Γ is zero for rigid rows and the inverse of a viscosity for dry friction.
 
+use super::SolverJoint;
 use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, dot, mul, spd_inverse};
 
 /// No parent, no joint, no slot.
@@ -53,6 +54,15 @@ impl Link {
             y: [ZERO6; 6],
             d_inverse: ZERO66,
         }
+    }
+
+    /// Takes the rows of its joint at the present pose.
+    pub fn take_rows(&mut self, joint: &SolverJoint, child_is_b: bool) {
+        let rows = &joint.rows;
+        self.rows = rows.count;
+        self.rigid = joint.rigid;
+        (self.child, self.parent_rows) = if child_is_b { (rows.b, rows.a) } else { (rows.a, rows.b) };
+        self.compliance = core::array::from_fn(|row| joint.compliance(row));
     }
 
     /// `−Y D⁻¹ J_p`: velocity that this body takes on from its parent's, when nothing acts below the joint.

@@ -4,11 +4,12 @@ use super::sweep::Pass;
 use super::tree::{self, NONE};
 use super::{IslandSolver, advance};
 use crate::joint::JointPose;
-use crate::spatial::{ZERO6, ZERO66, add_scaled, linear};
+use crate::spatial::{ZERO6, add_scaled, linear};
 use sinew_math::max;
 
-/// Most rounds of position corrections in a pass, and the error that needs none, m or rad.
+/// Most rounds of position corrections in a pass, likewise with many loops, and the error that needs none, m or rad.
 const POSITION_CORRECTIONS: usize = 6;
+const POSITION_CORRECTIONS_ITERATED: usize = 1;
 const POSITION_TOLERANCE: f32 = 1e-6;
 
 impl IslandSolver {
@@ -32,27 +33,11 @@ impl IslandSolver {
         let inertia = &mut self.scratch.inertia;
         inertia.clear();
         for (i, link) in self.links.iter_mut().enumerate() {
-            let body = &self.bodies[i];
-            let mut m = ZERO66;
-            let r = body.pose.rotation;
-            let angular = sinew_math::Sym3::from_rotated_diagonal(r, body.inertia + body.excess).to_mat3();
-            for k in 0..3 {
-                m[k][k] = body.mass;
-                let row = angular.row(k);
-                m[3 + k][3..].copy_from_slice(&[row.x, row.y, row.z]);
+            inertia.push(self.bodies[i].mass_matrix());
+            link.rows = 0;
+            if let Some(joint) = self.joints.get(link.joint as usize) {
+                link.take_rows(joint, joint.b as usize == i);
             }
-            inertia.push(m);
-            if link.joint == NONE {
-                link.rows = 0;
-                continue;
-            }
-            let joint = &self.joints[link.joint as usize];
-            let rows = &joint.rows;
-            let child_is_b = joint.b as usize == i;
-            link.rows = rows.count;
-            link.rigid = joint.rigid;
-            (link.child, link.parent_rows) = if child_is_b { (rows.b, rows.a) } else { (rows.a, rows.b) };
-            link.compliance = core::array::from_fn(|row| joint.compliance(row));
         }
         tree::factor(&mut self.links, inertia);
     }
@@ -72,8 +57,8 @@ impl IslandSolver {
             self.scratch.residuals.push(residual);
         }
         self.scratch.loop_residuals.clear();
-        for of in &self.loops.joints {
-            let joint = &self.joints[of.joint as usize];
+        for &joint in &self.loops.joints {
+            let joint = &self.joints[joint as usize];
             self.scratch.loop_residuals.push(joint.residual(&joint.rate(&self.velocities), solve, self.h));
         }
         self.scratch.impulses.clear();
@@ -91,7 +76,9 @@ impl IslandSolver {
         }
         let moving = self.links.len();
         let mut error = self.predict_errors();
-        for _ in 0..POSITION_CORRECTIONS {
+        let rounds =
+            if self.loops.are_iterated() { POSITION_CORRECTIONS_ITERATED } else { POSITION_CORRECTIONS };
+        for _ in 0..rounds {
             if error < POSITION_TOLERANCE {
                 break;
             }
@@ -133,17 +120,13 @@ impl IslandSolver {
             self.scratch.residuals.push(self.joints.get(link.joint as usize).map_or(ZERO6, &mut residual));
         }
         self.scratch.loop_residuals.clear();
-        for of in &self.loops.joints {
-            self.scratch.loop_residuals.push(if of.is_exact() {
-                residual(&self.joints[of.joint as usize])
-            } else {
-                ZERO6
-            });
+        for &joint in &self.loops.joints {
+            self.scratch.loop_residuals.push(residual(&self.joints[joint as usize]));
         }
         largest
     }
 
-    /// Adds to the velocities the answer of the trees to `scratch.impulses` and `scratch.residuals`, exact loops closed.
+    /// Adds to the velocities the answer of the trees to `scratch.impulses` and `scratch.residuals`, loops closed.
     pub(super) fn solve_trees(&mut self) {
         let s = &mut self.scratch;
         s.dv.clear();
@@ -152,15 +135,14 @@ impl IslandSolver {
         for (v, dv) in self.velocities.iter_mut().zip(&s.dv) {
             add_scaled(v, dv, 1.0);
         }
-        if self.loops.has_exact() {
-            s.impulses.fill(ZERO6);
-            s.residuals.fill(ZERO6);
-            self.loops.close(&self.joints, &s.loop_residuals, &s.dv, &mut s.impulses);
-            s.dv.fill(ZERO6);
-            tree::solve(&self.links, &mut s.impulses, &mut s.residuals, &mut s.dv);
-            for (v, dv) in self.velocities.iter_mut().zip(&s.dv) {
-                add_scaled(v, dv, 1.0);
-            }
+        if self.loops.is_empty() {
+            return;
+        }
+        s.residuals.fill(ZERO6);
+        let moving = self.links.len();
+        self.loops.close(&mut self.joints, &self.links, s);
+        for (v, dv) in self.velocities[..moving].iter_mut().zip(&s.dv) {
+            add_scaled(v, dv, 1.0);
         }
     }
 
@@ -183,6 +165,19 @@ impl IslandSolver {
         for i in 0..self.links.len() {
             let gained = linear(&self.velocities[i]) - linear(&self.unconstrained[i]);
             push[i] = gained * self.bodies[i].mass - push[i];
+        }
+        for &joint in &self.loops.joints {
+            let joint = &mut self.joints[joint as usize];
+            let mut on_b = ZERO6;
+            for row in 0..joint.rows.count {
+                add_scaled(&mut on_b, &joint.rows.b[row], joint.impulse[row]);
+            }
+            joint.force = linear(&on_b) / self.h;
+            for (body, sign) in [(joint.a, 1.0), (joint.b, -1.0)] {
+                if let Some(push) = push.get_mut(body as usize) {
+                    *push += linear(&on_b) * sign;
+                }
+            }
         }
         for (i, link) in self.links.iter().enumerate().rev() {
             if link.joint == NONE {
