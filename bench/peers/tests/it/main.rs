@@ -1,0 +1,6 @@
+//! The tests: the quality tool against states made by hand, the scenes against what the baselines say of them, and every
+//! engine of this build against closed forms.
+
+mod engines;
+mod quality;
+mod scenes;
