@@ -2,7 +2,7 @@
 
 use crate::engine::{
     BodyState, ClothSimulation, Description, Engine, OverlapTester, ParticleState, RayCaster, Simulation,
-    Unsupported, circular_cone,
+    Unsupported, circular_cone, joint_frames,
 };
 use crate::parry::{from_pose, from_vector, pose, shape, vector};
 use crate::scenes::{BoxPairs, ClothScene, DT, PlacedBox, RayScene};
@@ -170,11 +170,8 @@ fn joint(def: &BlueprintJoint, scene: &Blueprint) -> Result<GenericJointBuilder,
         JointKind::Fixed => GenericJointBuilder::new(free_rotation | JointAxesMask::ANG_AXES),
         _ => return Err(Unsupported::new("a kind of joint that is not mapped yet")),
     };
-    let frame_in = |place: usize| {
-        let body = &scene.bodies[place];
-        pose(Transform::new(body.position, body.rotation).inverse() * def.world_from_joint)
-    };
-    Ok(builder.local_frame1(frame_in(def.a)).local_frame2(frame_in(def.b)).contacts_enabled(false))
+    let [frame1, frame2] = joint_frames(scene, def).map(pose);
+    Ok(builder.local_frame1(frame1).local_frame2(frame2).contacts_enabled(false))
 }
 
 struct RapierWorld {

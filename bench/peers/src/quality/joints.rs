@@ -1,8 +1,8 @@
 //! How far joints come apart.
 
 use super::chains::Chain;
-use super::{joint_frames, worse};
-use crate::engine::BodyState;
+use super::worse;
+use crate::engine::{BodyState, joint_frames};
 use sinew::math::Vec3;
 use sinew_scenes::blueprint::Blueprint;
 

@@ -1,7 +1,7 @@
 //! How far joints turn beyond their limits.
 
-use super::{joint_frames, worse};
-use crate::engine::BodyState;
+use super::worse;
+use crate::engine::{BodyState, joint_frames};
 use serde_json::{Value, json};
 use sinew::math::limits::{hinge_angle, wrap};
 use sinew::math::{Range, Rotation, SwingTwistLimit, Vec3, trig};

@@ -22,8 +22,7 @@ use limits::LimitMeter;
 use penetration::PenetrationMeter;
 use place::PlaceMeter;
 use serde_json::{Map, Value, json};
-use sinew::math::Transform;
-use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
+use sinew_scenes::blueprint::Blueprint;
 
 /// Watches a run.
 pub struct QualityMeter {
@@ -114,14 +113,6 @@ impl Quality {
         add("displacement_max_m", json!(self.place.displacement_max));
         Value::Object(report)
     }
-}
-
-/// The joint's frame in body `a` and in body `b`, from the start pose, in which they agree.
-fn joint_frames(scene: &Blueprint, joint: &BlueprintJoint) -> [Transform; 2] {
-    [joint.a, joint.b].map(|place| {
-        let body = &scene.bodies[place];
-        Transform::new(body.position, body.rotation).inverse() * joint.world_from_joint
-    })
 }
 
 /// The larger of two; one that is no number wins, so that it shows.

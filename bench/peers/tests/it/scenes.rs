@@ -32,23 +32,6 @@ fn bodies_and_joints_are_as_many_as_published() {
     assert_eq!(counts("large_pyramid").1, 5_050);
 }
 
-/// 51.4 % of a million pairs; 20,000 of them may stray by 1 % (three standard deviations).
-#[test]
-fn half_of_the_boxes_overlap() {
-    let pairs = BoxPairs::new(20_000, 20_000);
-    let overlaps = sinew().build_boxes(&pairs).expect("boxes").count_overlaps(0..20_000);
-    let share = overlaps as f64 / 20_000.0;
-    assert!((share - 0.514).abs() < 0.01, "{share}");
-}
-
-/// 75.8 % of 100,000 rays; 1,000 of them may stray by 4 % (three standard deviations).
-#[test]
-fn three_of_four_rays_hit() {
-    let scene = RayScene::new();
-    let hits = sinew().build_rays(&scene).expect("rays").count_hits(scene.rays_of_step(0));
-    assert!((hits as f64 / 1_000.0 - 0.758).abs() < 0.04, "{hits}");
-}
-
 #[test]
 fn every_step_has_its_share_of_rays_and_pairs() {
     let scene = RayScene::new();
