@@ -2,5 +2,7 @@
 //! engine of this build against closed forms.
 
 mod engines;
+mod joints;
 mod quality;
+mod queries;
 mod scenes;
