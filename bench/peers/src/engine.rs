@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use sinew::math::{Rotation, SwingTwistLimit, Transform, Vec3};
-use sinew_scenes::blueprint::Blueprint;
+use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
 use thiserror::Error;
 
 use crate::scenes::{BoxPairs, ClothScene, RayScene};
@@ -10,7 +10,7 @@ use crate::scenes::{BoxPairs, ClothScene, RayScene};
 /// An engine under measurement, with the settings it comes with.
 ///
 /// What an engine cannot run it answers with [`Unsupported`], never with a scene that is nearly the same.
-pub trait Engine {
+pub trait Engine: Sync {
     /// What is measured.
     fn describe(&self) -> Description;
 
@@ -151,4 +151,12 @@ pub fn circular_cone(limit: &SwingTwistLimit) -> Result<f32, Unsupported> {
     } else {
         Err(Unsupported::new("a swing cone that is not circular"))
     }
+}
+
+/// Frame of a joint as its two bodies see it in the start pose.
+pub fn joint_frames(scene: &Blueprint, joint: &BlueprintJoint) -> [Transform; 2] {
+    [joint.a, joint.b].map(|place| {
+        let body = &scene.bodies[place];
+        Transform::new(body.position, body.rotation).inverse() * joint.world_from_joint
+    })
 }

@@ -7,4 +7,5 @@ mod ffi;
 pub mod measure;
 mod parry;
 pub mod quality;
+pub mod run;
 pub mod scenes;

@@ -1,6 +1,6 @@
 //! The figures of quality that stand beside the times, and how they are written.
 
-use super::results::EngineResult;
+use super::results::{EngineResult, SceneResult};
 use serde_json::Value;
 
 /// What a number counts.
@@ -74,6 +74,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { heading: "largest stretch", unit: Unit::Share, of: |e| number(e, "stretch_max") },
     Figure { heading: "motion at the end", unit: Unit::Energy, of: |e| number(e, "kinetic_energy_end_j") },
     Figure { heading: "energy gained", unit: Unit::Energy, of: energy_gained },
+    Figure { heading: "energy lost", unit: Unit::Energy, of: energy_lost },
     Figure { heading: "lost bodies", unit: Unit::Count, of: |e| number(e, "lost_bodies") },
     HITS,
 ];
@@ -81,8 +82,8 @@ pub const FIGURES: &[Figure] = &[
 /// The figure by which a scene shows whether its time is the time of the same work.
 pub fn headline(scene: &str) -> &'static Figure {
     match scene {
-        "box_pyramid" => &SHIFT,
-        "box_rain" | "large_pyramid" => &DEPTH,
+        "box_pyramid" | "large_pyramid" => &SHIFT,
+        "box_rain" => &DEPTH,
         "chain_100_links" => &STRETCH,
         "heavy_rope" | "hanging_rope" => &GAP_PER_LINK,
         "cloth" => &CLOTH,
@@ -110,6 +111,22 @@ fn over_limits(engine: &EngineResult, key: &str, fold: fn(f64, f64) -> f64) -> O
 /// The most that the world ever had above what it began with; nothing put any in.
 fn energy_gained(engine: &EngineResult) -> Option<f64> {
     Some((number(engine, "energy_peak_j")? - number(engine, "energy_start_j")?).max(0.0))
+}
+
+/// What is gone at the end, into heat or into nothing.
+fn energy_lost(engine: &EngineResult) -> Option<f64> {
+    Some(number(engine, "energy_start_j")? - number(engine, "energy_end_j")?)
+}
+
+/// The figures that say something about a scene: those that were measured and are not 0 throughout, and the shift of
+/// bodies only where they should stay.
+pub fn telling(scene: &SceneResult) -> Vec<&'static Figure> {
+    let is_telling = |figure: &Figure| {
+        let mut values = scene.engines.iter().filter_map(figure.of);
+        let belongs = figure.heading != SHIFT.heading || headline(&scene.name).heading == SHIFT.heading;
+        belongs && (figure.heading == headline(&scene.name).heading || values.any(|value| value != 0.0))
+    };
+    FIGURES.iter().filter(|figure| is_telling(figure)).collect()
 }
 
 impl Unit {

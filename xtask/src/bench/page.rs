@@ -1,6 +1,6 @@
 //! `docs/benchmarks.md`: for readers who want to know what an engine gives for its time.
 
-use super::figures::{FIGURES, came_apart, headline, rounded};
+use super::figures::{Figure, came_apart, headline, rounded, telling};
 use super::machine::Machine;
 use super::musts::{HOLDS, SPEEDS, Verdict};
 use super::results::{EngineResult, Results, SceneResult};
@@ -94,16 +94,14 @@ pub fn glance(results: &Results) -> Table {
     let mut table = heading(&["scene", "figure"], &engines, &["speed"]);
     for scene in &results.scenes {
         let figure = headline(&scene.name);
-        let cell = |name: &String| {
+        let time = |name: &String| {
             let Some(engine) = of(scene, name) else { return NONE.to_owned() };
             let Some(times) = engine.times() else { return absence(engine) };
-            let mark = if came_apart(engine) { " †" } else { "" };
-            let figure = (figure.of)(engine).map_or(NONE.to_owned(), |value| figure.unit.show(value));
-            format!("{} · {figure}{mark}", rounded(times.median))
+            format!("{} · {}{}", rounded(times.median), cell(figure, engine), mark(engine))
         };
         let speed = scene.speed().map_or(NONE.to_owned(), |speed| format!("{}×", rounded(speed)));
         let before = [scene.name.clone(), figure.heading.to_owned()];
-        table.row(before.into_iter().chain(engines.iter().map(cell)).chain([speed]));
+        table.row(before.into_iter().chain(engines.iter().map(time)).chain([speed]));
     }
     table
 }
@@ -119,17 +117,17 @@ pub fn holds(results: &Results) -> Table {
     let mut table = heading(&["scene", "figure", "must"], &engines, &[]);
     for hold in HOLDS {
         let is_held = hold.judge(results) == Verdict::Met;
-        let cell = |name: &String| {
+        let figure = |name: &String| {
             let engine = results.scene(hold.scene).and_then(|scene| of(scene, name));
-            let value = engine.and_then(hold.figure.of).map(|value| hold.figure.unit.show(value));
-            match value {
-                Some(value) if is_held && name == "sinew" => format!("**{value}**"),
-                Some(value) => value,
-                None => engine.map_or(NONE.to_owned(), absence),
+            let Some(engine) = engine else { return NONE.to_owned() };
+            if engine.why_not().is_some() {
+                return absence(engine);
             }
+            let value = cell(hold.figure, engine);
+            if is_held && engine.is_sinew() { format!("**{value}**") } else { value }
         };
         let before = [hold.scene.to_owned(), hold.figure.heading.to_owned(), hold.must()];
-        table.row(before.into_iter().chain(engines.iter().map(cell)));
+        table.row(before.into_iter().chain(engines.iter().map(figure)));
     }
     table
 }
@@ -153,37 +151,41 @@ pub fn speeds(results: &Results) -> Table {
 
 /// Everything about one scene.
 fn details(scene: &SceneResult) -> String {
-    let sizes = ["bodies", "particles", "joints", "steps"];
-    let sizes = sizes.iter().filter_map(|key| Some((scene.size(key).filter(|&size| size > 0)?, key)));
+    let sizes = ["bodies", "particles", "joints", "steps"].into_iter();
+    let sizes = sizes.filter_map(|key| Some((scene.size(key).filter(|&size| size > 0)?, key)));
     let sizes: Vec<String> = sizes.map(|(size, key)| format!("{size} {key}")).collect();
-    let figures: Vec<_> = FIGURES
-        .iter()
-        .filter(|figure| scene.engines.iter().any(|engine| (figure.of)(engine).is_some()))
-        .collect();
+    let figures = telling(scene);
     let times = ["engine", "median (best)", "p99", "last third", "MiB"];
     let mut table = Table::new(times.into_iter().chain(figures.iter().map(|figure| figure.heading)));
-    let mut absent = String::new();
     for engine in &scene.engines {
-        if let Some(why) = engine.why_not() {
-            writeln!(absent, "\n{}: {why}.", title(&engine.name)).expect("a string takes everything");
-        }
-        let Some(times) = engine.times() else { continue };
-        let mark = if came_apart(engine) { " †" } else { "" };
-        let cells = [
-            format!("{}{mark}", title(&engine.name)),
-            format!("{} ({})", rounded(times.median), rounded(times.best)),
-            rounded(times.p99),
-            rounded(times.last_third),
-            engine.memory().map_or(NONE.to_owned(), rounded),
-        ];
-        let figure = |value: Option<f64>, unit: super::figures::Unit| {
-            value.map_or(NONE.to_owned(), |value| unit.show(value))
-        };
-        let figures = figures.iter().map(|column| figure((column.of)(engine), column.unit));
-        table.row(cells.into_iter().chain(figures));
+        let Some(times) = time_cells(engine) else { continue };
+        let figures = figures.iter().map(|figure| cell(figure, engine));
+        table.row(times.into_iter().chain(figures));
     }
-    let about = format!("{}: {}. Measured at {}.", scene.about, sizes.join(", "), scene.revision);
-    format!("{about}\n\n{table}{absent}")
+    let absent = scene.engines.iter().filter_map(|engine| Some((title(&engine.name), engine.why_not()?)));
+    let absent: String = absent.map(|(name, why)| format!("\n{name}: {why}.\n")).collect();
+    format!("{}: {}. Measured at {}.\n\n{table}{absent}", scene.about, sizes.join(", "), scene.revision)
+}
+
+fn time_cells(engine: &EngineResult) -> Option<[String; 5]> {
+    let times = engine.times()?;
+    Some([
+        format!("{}{}", title(&engine.name), mark(engine)),
+        format!("{} ({})", rounded(times.median), rounded(times.best)),
+        rounded(times.p99),
+        rounded(times.last_third),
+        engine.memory().map_or(NONE.to_owned(), rounded),
+    ])
+}
+
+/// A figure with its unit.
+fn cell(figure: &Figure, engine: &EngineResult) -> String {
+    (figure.of)(engine).map_or(NONE.to_owned(), |value| figure.unit.show(value))
+}
+
+/// Warns of a time that is no time of the scene.
+fn mark(engine: &EngineResult) -> &'static str {
+    if came_apart(engine) { " †" } else { "" }
 }
 
 /// What was measured, and how it was compiled.

@@ -2,7 +2,7 @@
 
 use crate::engine::{
     BodyState, ClothSimulation, Description, Engine, OverlapTester, ParticleState, RayCaster, Simulation,
-    Unsupported, circular_cone,
+    Unsupported, circular_cone, joint_frames,
 };
 use crate::parry::{from_pose, from_vector, pose, shape, vector};
 use crate::scenes::{BoxPairs, ClothScene, DT, PlacedBox, RayScene};
@@ -64,13 +64,14 @@ impl Engine for Rapier {
         // Its grid runs along the first direction last; ours along rows, which are x.
         let [along_rows, to_next_row] = [Vec3::X, Vec3::Z].map(|axis| vector(axis * scene.spacing));
         let surface = ColliderBuilder::ball(0.1).friction(scene.friction);
-        let cloth = SoftBodyBuilder::cloth(vector(scene.corner), to_next_row, along_rows, scene.side, scene.side)
-            .particle_radius(scene.particle_radius)
-            .particle_mass(scene.particle_mass)
-            .linear_damping(scene.damping)
-            .surface_collider(surface)
-            .can_sleep(false)
-            .pinned(scene.pinned().map(|i| i as u32));
+        let cloth =
+            SoftBodyBuilder::cloth(vector(scene.corner), to_next_row, along_rows, scene.side, scene.side)
+                .particle_radius(scene.particle_radius)
+                .particle_mass(scene.particle_mass)
+                .linear_damping(scene.damping)
+                .surface_collider(surface)
+                .can_sleep(false)
+                .pinned_particles(scene.pinned().map(|i| i as u32));
         let cloth = world.insert_soft_body(cloth);
         Ok(Box::new(RapierCloth { world, cloth }))
     }
@@ -87,7 +88,8 @@ impl Engine for Rapier {
     }
 
     fn build_boxes(&self, pairs: &BoxPairs) -> Result<Box<dyn OverlapTester>, Unsupported> {
-        let placed = |place: &PlacedBox| (pose(place.world_from_box), Cuboid::new(vector(place.half_extents)));
+        let placed =
+            |place: &PlacedBox| (pose(place.world_from_box), Cuboid::new(vector(place.half_extents)));
         let pairs = pairs.pairs.iter().map(|pair| [placed(&pair.a), placed(&pair.b)]).collect();
         Ok(Box::new(ParryBoxes { pairs }))
     }
@@ -125,7 +127,8 @@ fn body(def: &BodyDef, sleeping: Sleeping) -> RigidBodyBuilder {
             let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| vector(given.inertia * axis));
             let inertia = Matrix::from_cols(axes[0], axes[1], axes[2]);
             let center = vector(given.center);
-            builder.additional_mass_properties(MassProperties::with_inertia_matrix(center, given.mass, inertia))
+            builder
+                .additional_mass_properties(MassProperties::with_inertia_matrix(center, given.mass, inertia))
         }
     }
 }
@@ -167,11 +170,8 @@ fn joint(def: &BlueprintJoint, scene: &Blueprint) -> Result<GenericJointBuilder,
         JointKind::Fixed => GenericJointBuilder::new(free_rotation | JointAxesMask::ANG_AXES),
         _ => return Err(Unsupported::new("a kind of joint that is not mapped yet")),
     };
-    let frame_in = |place: usize| {
-        let body = &scene.bodies[place];
-        pose(Transform::new(body.position, body.rotation).inverse() * def.world_from_joint)
-    };
-    Ok(builder.local_frame1(frame_in(def.a)).local_frame2(frame_in(def.b)).contacts_enabled(false))
+    let [frame1, frame2] = joint_frames(scene, def).map(pose);
+    Ok(builder.local_frame1(frame1).local_frame2(frame2).contacts_enabled(false))
 }
 
 struct RapierWorld {
@@ -237,7 +237,7 @@ struct ParryBoxes {
 impl OverlapTester for ParryBoxes {
     fn count_overlaps(&mut self, range: Range<usize>) -> usize {
         let overlap = |[a, b]: &&[(Pose, Cuboid); 2]| {
-            parry3d::query::intersection_test(&a.0, &a.1, &b.0, &b.1).unwrap_or(false)
+            parry3d::query::intersection_test(&a.0, &a.1, &b.0, &b.1).is_ok_and(|result| result.intersecting)
         };
         self.pairs[range].iter().filter(overlap).count()
     }

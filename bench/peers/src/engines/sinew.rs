@@ -1,8 +1,6 @@
 //! Sinew, as it is in this repository.
 
-use crate::engine::{
-    BodyState, Description, Engine, OverlapTester, RayCaster, Simulation, Unsupported,
-};
+use crate::engine::{BodyState, Description, Engine, OverlapTester, RayCaster, Simulation, Unsupported};
 use crate::scenes::{BoxPair, BoxPairs, PlacedBox, RayScene};
 use core::ops::Range;
 use sinew::physics::collide::{Manifold, collide};

@@ -2,6 +2,7 @@
 
 use super::rays::PlacedBox;
 use sinew::math::{Rotation, Transform, Vec3};
+use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 
 /// A square grid of particles in the plane y = const, and what it falls on.
 ///
@@ -66,16 +67,29 @@ impl ClothScene {
         [self.index(0, 0), self.index(0, self.side - 1)]
     }
 
+    /// What it falls on, as static bodies.
+    pub fn obstacles(&self) -> Vec<BodyDef> {
+        let ball = |&(position, radius): &(Vec3, f32)| BodyDef {
+            kind: BodyKind::Static,
+            position,
+            shapes: vec![ShapeDef::new(Shape::Sphere { radius })],
+            ..BodyDef::default()
+        };
+        let mut bodies: Vec<_> =
+            self.boxes.iter().map(PlacedBox::fixed).chain(self.spheres.iter().map(ball)).collect();
+        for shape in bodies.iter_mut().flat_map(|body| &mut body.shapes) {
+            shape.material.friction = self.friction;
+        }
+        bodies
+    }
+
     /// Neighbours along the grid: structural links.
     pub fn structural_links(&self) -> Vec<[usize; 2]> {
         let n = self.side;
         let along = (0..n).flat_map(|row| (1..n).map(move |k| (row, k)));
         along
             .flat_map(|(row, k)| {
-                [
-                    [self.index(row, k - 1), self.index(row, k)],
-                    [self.index(k - 1, row), self.index(k, row)],
-                ]
+                [[self.index(row, k - 1), self.index(row, k)], [self.index(k - 1, row), self.index(k, row)]]
             })
             .collect()
     }

@@ -37,7 +37,6 @@ pub enum Work {
     Boxes(BoxPairs),
 }
 
-
 macro_rules! bodies {
     ($name:literal, $about:literal, $blueprint:expr) => {
         Scene { name: $name, about: $about, work: || Work::Bodies($blueprint) }
@@ -53,7 +52,11 @@ pub const SCENES: &[Scene] = &[
     bodies!("joint_grid", "100 × 100 balls, all neighbours joined", blueprint::joint_grid()),
     bodies!("large_pyramid", "a wall of 5,050 unit cubes in 100 rows", blueprint::large_pyramid()),
     bodies!("rain", "300 ragdolls fall on the ground", blueprint::rain()),
-    bodies!("chain_swing_1000", "10 level links of 1 m, 1,000 kg at the end", blueprint::chain_swing(1e3, 1.0)),
+    bodies!(
+        "chain_swing_1000",
+        "10 level links of 1 m, 1,000 kg at the end",
+        blueprint::chain_swing(1e3, 1.0)
+    ),
     bodies!("chain_swing_1000_half", "the same with links of 0.5 m", blueprint::chain_swing(1e3, 0.5)),
     bodies!("chain_swing_1000_quarter", "the same with links of 0.25 m", blueprint::chain_swing(1e3, 0.25)),
     bodies!("chain_swing_100", "10 level links of 1 m, 100 kg at the end", blueprint::chain_swing(1e2, 1.0)),

@@ -3,6 +3,7 @@
 use super::draw::{rotation, vector};
 use sinew::math::{Random, Transform, Vec3};
 use sinew::physics::ray::Ray;
+use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 
 /// Rays that share one measured step: long enough for the clock, short enough for an engine that tries every box.
 const RAYS_PER_STEP: usize = 1_000;
@@ -14,6 +15,19 @@ pub struct PlacedBox {
     pub half_extents: Vec3,
     /// Its centre and orientation.
     pub world_from_box: Transform,
+}
+
+impl PlacedBox {
+    /// As a static body.
+    pub fn fixed(&self) -> BodyDef {
+        BodyDef {
+            kind: BodyKind::Static,
+            position: self.world_from_box.translation,
+            rotation: self.world_from_box.rotation,
+            shapes: vec![ShapeDef::new(Shape::Box { half_extents: self.half_extents })],
+            ..BodyDef::default()
+        }
+    }
 }
 
 /// Static boxes, and rays that look for their closest hit.

@@ -17,8 +17,10 @@ use std::time::Instant;
 Example:
   sinew run pendulum
   sinew run stairs --steps 600 --threads 2 --set impulse=50 --json
+  sinew run mjcf_drop --set file=humanoid.xml
 
-'sinew scenes' lists the scenes, 'sinew scenes --json' their settings too.")]
+'sinew scenes' lists the scenes, 'sinew scenes --json' their settings too. 'mjcf_drop', which it does
+not list, drops MuJoCo's humanoid, or another model in MJCF with the poses 'prone' and 'supine'.")]
 pub struct Run {
     /// Name of the scene
     scene: String,

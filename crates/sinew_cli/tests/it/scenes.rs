@@ -1,6 +1,6 @@
 //! `sinew scenes` and `sinew run`.
 
-use crate::sinew::sinew;
+use crate::sinew::{Folder, sinew};
 
 #[test]
 fn one_a_line_with_the_name_first_and_no_header() {
@@ -42,4 +42,29 @@ fn what_is_not_there_is_bad_usage() {
     assert_eq!(line(&["run", "nix"]), "error: no scene 'nix'; 'sinew scenes' lists what there is");
     assert!(line(&["run", "pendulum", "--set", "nix=1"]).starts_with("error: --set: no setting `nix`"));
     assert!(line(&["run", "pendulum", "--set", "amplitude"]).contains("is not key=value"));
+}
+
+#[test]
+fn a_scene_about_a_file_needs_one_and_refuses_a_bad_one() {
+    let run = |set: &[&str]| sinew(&[&["run", "mjcf_drop", "--steps", "2"], set].concat());
+    let missing = run(&[]);
+    assert_eq!(missing.refusal(2), "error: --set: `file` is not set: it takes the path of a model in MJCF");
+    let manifest = concat!("file=", env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+    assert!(
+        run(&["--set", manifest])
+            .refusal(1)
+            .ends_with("Cargo.toml: not XML: unknown token (line 1 column 1)")
+    );
+    assert_eq!(run(&["--set", "file=nix.xml"]).refusal(1), "error: nix.xml: no such file");
+}
+
+#[test]
+fn a_model_in_mjcf_is_dropped() {
+    let folder = Folder::new("mjcf");
+    let text = "<mujoco><worldbody><geom type='plane' size='0 0 1'/>
+        <body pos='0 0 1'><freejoint/><geom size='.1'/></body></worldbody></mujoco>";
+    let file = format!("file={}", folder.file("ball.xml", text));
+    let object = sinew(&["run", "mjcf_drop", "--set", &file, "--set", "pose=1", "--json"]).json();
+    let height = object["metrics"]["prone_rest_height_m"].as_f64().expect("a height");
+    assert!((height - 0.1).abs() < 0.002, "{height}");
 }

@@ -7,6 +7,7 @@ mod collide;
 mod humanoid;
 mod joints;
 mod particles;
+mod random_worlds;
 mod ray;
 mod rope;
 mod trees;

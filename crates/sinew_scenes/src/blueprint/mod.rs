@@ -129,14 +129,14 @@ fn damped(def: BodyDef) -> BodyDef {
 }
 
 /// Three numbers of `lo..hi`, x first.
-fn in_box(random: &mut Random, lo: f32, hi: f32) -> Vec3 {
+pub fn in_box(random: &mut Random, lo: f32, hi: f32) -> Vec3 {
     let mut next = || random.range(lo, hi);
     Vec3::new(next(), next(), next())
 }
 
 /// Uniform over all rotations (Shoemake 1992: three numbers, without rejection, so that other programs can draw the
 /// same).
-fn rotation(random: &mut Random) -> Rotation {
+pub fn rotation(random: &mut Random) -> Rotation {
     let [u, v, w] = [random.unit(), random.unit(), random.unit()];
     let (sin_v, cos_v) = trig::sin_cos(core::f32::consts::TAU * v);
     let (sin_w, cos_w) = trig::sin_cos(core::f32::consts::TAU * w);

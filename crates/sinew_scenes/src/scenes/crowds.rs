@@ -73,7 +73,7 @@ impl Script for Pile {
         self.flight.after_step(world);
         self.gap_max = max(self.gap_max, self.gap(world));
         self.exceeded = usize::max(self.exceeded, self.exceeded(world));
-        if world.step_count() % LOOK == 0 {
+        if world.step_count().is_multiple_of(LOOK) {
             let deepest = self.penetrations(world).last().copied();
             self.penetration_max = max(self.penetration_max, deepest.unwrap_or(0.0));
         }

@@ -22,6 +22,9 @@ pub(super) const NET: Scene = Scene {
     build: |setup| woven(setup, &net()),
 };
 
+/// Widest gap that passes, metres. The true bar is the best of the other engines, which the benchmark measures.
+const GAP: f64 = 0.005;
+
 fn woven(setup: &Setup<'_>, plan: &Blueprint) -> Instance {
     let mut world = setup.sleepless_world();
     let joints = plan.build_into(&mut world).joints;
@@ -55,9 +58,8 @@ impl Script for Woven {
     }
 
     fn metrics(&self, world: &World) -> Vec<Metric> {
-        // What they must be is what the best of other engines reaches: the benchmark tells.
         vec![
-            Metric::new("joint_gap_peak_m", self.gap_peak, Expected::Anything),
+            Metric::new("joint_gap_peak_m", self.gap_peak, Expected::AtMost(GAP)),
             Metric::new("joint_gap_end_m", self.gaps(world).fold(0.0, max), Expected::Anything),
             Metric::new("kinetic_peak_j", self.kinetic_peak, Expected::Anything),
             Metric::new("energy_rise_j", self.rise, Expected::Anything),

@@ -31,8 +31,8 @@ pub(super) const SPRINGS_RATIO: Scene = Scene {
     steps: 900,
     settings: &[],
     build: |setup| {
-        let stiffness = |i: usize| if i % 2 == 0 { 1e6 } else { 1e3 };
-        hung(setup, 1.0, (0..8).map(stiffness).collect())
+        let stiffness = |i: usize| if i.is_multiple_of(2) { 1e6 } else { 1e3 };
+        hung(setup, 1.0, &(0..8).map(stiffness).collect::<Vec<_>>())
     },
 };
 
@@ -43,11 +43,11 @@ const STIFFNESS: Setting = Setting::number("stiffness", 1000.0, (10.0, 1e6), "of
 const LENGTH: f32 = 0.2;
 
 fn hung_alike(setup: &Setup<'_>) -> Instance {
-    hung(setup, setup.number("mass"), vec![setup.number("stiffness"); setup.whole("masses")])
+    hung(setup, setup.number("mass"), &vec![setup.number("stiffness"); setup.whole("masses")])
 }
 
 /// As many masses as springs, from above.
-fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: Vec<f32>) -> Instance {
+fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: &[f32]) -> Instance {
     let mut world = setup.world();
     let particle = |i: usize| ParticleDef {
         position: Vec3::NEG_Y * (LENGTH * i as f32),

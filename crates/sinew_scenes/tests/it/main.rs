@@ -3,6 +3,7 @@
 mod blueprint;
 mod cabin;
 mod mannequin;
+mod mjcf;
 mod motions;
 mod scenes;
 mod scenes_repeat;

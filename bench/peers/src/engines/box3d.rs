@@ -1,0 +1,182 @@
+//! Box3D with its defaults.
+
+use crate::engine::{
+    BodyState, Description, Engine, OverlapTester, RayCaster, Simulation, Unsupported, circular_cone,
+    joint_frames,
+};
+use crate::ffi::box3d::{Body, BoxPair, Joint, Motion, Shape, Surface, World, version};
+use crate::scenes::{BoxPairs, DT, RayScene};
+use core::ops::Range;
+use sinew::math::{Rotation, Transform, Vec3};
+use sinew::physics::ray::Ray;
+use sinew::physics::{BodyDef, BodyKind, JointKind, Sensing, ShapeDef, Sleeping};
+use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
+
+/// Substeps of a step: as its samples and its manual have it.
+const SUBSTEPS: i32 = 4;
+
+/// Below this distance Box3D's own overlap tests call shapes overlapping (`B3_OVERLAP_SLOP`), metres.
+const OVERLAP_SLOP: f32 = 5e-4;
+
+/// Half sizes of the box that stands for a half-space, metres; its upper face is the plane.
+const HALF_SPACE: Vec3 = Vec3::new(1000.0, 10.0, 1000.0);
+
+/// x of our joint frames becomes z of Box3D's, in which hinges, cones and twists are about z.
+const Z_TO_X: Rotation = Rotation { x: 0.5, y: 0.5, z: 0.5, w: 0.5 };
+
+/// This engine.
+pub struct Box3d;
+
+impl Engine for Box3d {
+    fn describe(&self) -> Description {
+        let lanes = if cfg!(target_arch = "x86_64") { "SSE2" } else { "NEON or scalar" };
+        Description {
+            name: "box3d",
+            // The crate does not say which commit it bundles.
+            version: format!("{}, C source in crate box3d-sys 0.1.16", version()),
+            flags: format!(
+                "Release: -O3 -DNDEBUG -ffp-contract=off, {lanes} (4 lanes), BOX3D_VALIDATE=OFF, no LTO"
+            ),
+            settings: format!("defaults: {SUBSTEPS} substeps, continuous on, 1 worker"),
+        }
+    }
+
+    fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported> {
+        let mut world = World::new(scene.gravity);
+        for def in &scene.bodies {
+            add_body(&mut world, def, scene.sleeping)?;
+        }
+        for def in &scene.joints {
+            let frames = joint_frames(scene, def).map(|frame| frame * Transform::new(Vec3::ZERO, Z_TO_X));
+            world.add_joint([def.a, def.b], frames, joint(def)?);
+        }
+        Ok(Box::new(Box3dWorld { world, bodies: scene.bodies.len() }))
+    }
+
+    fn build_rays(&self, scene: &RayScene) -> Result<Box<dyn RayCaster>, Unsupported> {
+        let mut world = World::new(Vec3::ZERO);
+        for place in &scene.boxes {
+            add_body(&mut world, &place.fixed(), Sleeping::On)?;
+        }
+        world.step(DT, SUBSTEPS);
+        Ok(Box::new(Box3dRays { world, rays: scene.rays.clone() }))
+    }
+
+    fn build_boxes(&self, pairs: &BoxPairs) -> Result<Box<dyn OverlapTester>, Unsupported> {
+        let pair = |pair: &crate::scenes::BoxPair| {
+            let places = [pair.a, pair.b];
+            BoxPair::new(places.map(|place| place.half_extents), places.map(|place| place.world_from_box))
+        };
+        Ok(Box::new(Box3dBoxes { pairs: pairs.pairs.iter().map(pair).collect() }))
+    }
+}
+
+fn add_body(world: &mut World, def: &BodyDef, sleeping: Sleeping) -> Result<(), Unsupported> {
+    let body = world.add_body(&Body {
+        motion: match def.kind {
+            BodyKind::Static => Motion::Static,
+            BodyKind::Kinematic => Motion::Kinematic,
+            BodyKind::Dynamic => Motion::Dynamic,
+        },
+        world_from_body: Transform::new(def.position, def.rotation),
+        linear_damping: def.linear_damping,
+        angular_damping: def.angular_damping,
+        gravity_scale: def.gravity_scale,
+        may_sleep: sleeping == Sleeping::On,
+    });
+    for part in &def.shapes {
+        if part.sensing == Sensing::Sensor || part.material.rolling != 0.0 {
+            return Err(Unsupported::new("sensors and rolling resistance that are not mapped yet"));
+        }
+        world.add_shape(body, &shape(part), &surface(part));
+    }
+    if let (BodyKind::Dynamic, Some(mass)) = (def.kind, &def.mass) {
+        world.set_mass(body, mass);
+    }
+    if def.kind != BodyKind::Static {
+        world.set_velocity(body, def.linear_velocity, def.angular_velocity);
+    }
+    Ok(())
+}
+
+fn shape(def: &ShapeDef) -> Shape {
+    use sinew::physics::Shape as Ours;
+    let body_from_shape = def.body_from_shape;
+    match def.shape {
+        Ours::Box { half_extents } => Shape::Box { half_extents, body_from_box: body_from_shape },
+        Ours::Sphere { radius } => Shape::Sphere { center: body_from_shape.translation, radius },
+        Ours::Capsule { half_height, radius } => {
+            let ends = [-half_height, half_height].map(|y| body_from_shape.point(Vec3::Y * y));
+            Shape::Capsule { ends, radius }
+        }
+        Ours::HalfSpace => {
+            let below = Transform::from_translation(Vec3::NEG_Y * HALF_SPACE.y);
+            Shape::Box { half_extents: HALF_SPACE, body_from_box: body_from_shape * below }
+        }
+    }
+}
+
+fn surface(def: &ShapeDef) -> Surface {
+    Surface {
+        density: def.density,
+        friction: def.material.friction,
+        restitution: def.material.restitution,
+        layers: def.filter.layers,
+        mask: def.filter.mask,
+        group: def.filter.group,
+    }
+}
+
+fn joint(def: &BlueprintJoint) -> Result<Joint, Unsupported> {
+    Ok(match def.kind {
+        JointKind::Ball { limit: None } => Joint::Spherical { cone: None, twist: None },
+        JointKind::Ball { limit: Some(limit) } => Joint::Spherical {
+            cone: Some(circular_cone(&limit)?),
+            twist: Some([limit.twist.lo, limit.twist.hi]),
+        },
+        JointKind::Hinge { limit } => Joint::Revolute { limit: limit.map(|range| [range.lo, range.hi]) },
+        JointKind::Fixed => Joint::Weld,
+        _ => return Err(Unsupported::new("a kind of joint that is not mapped yet")),
+    })
+}
+
+struct Box3dWorld {
+    world: World,
+    bodies: usize,
+}
+
+impl Simulation for Box3dWorld {
+    fn step(&mut self) {
+        self.world.step(DT, SUBSTEPS);
+    }
+
+    fn states(&self, out: &mut Vec<BodyState>) {
+        out.clear();
+        out.extend((0..self.bodies).map(|place| {
+            let [linear_velocity, angular_velocity] = self.world.velocity(place);
+            BodyState { world_from_body: self.world.pose(place), linear_velocity, angular_velocity }
+        }));
+    }
+}
+
+struct Box3dRays {
+    world: World,
+    rays: Vec<Ray>,
+}
+
+impl RayCaster for Box3dRays {
+    fn count_hits(&mut self, range: Range<usize>) -> usize {
+        self.rays[range].iter().filter(|ray| self.world.meets_ray(ray)).count()
+    }
+}
+
+/// The distance of two boxes (GJK): Box3D has no other public test of two boxes that stops short of a manifold.
+struct Box3dBoxes {
+    pairs: Vec<BoxPair>,
+}
+
+impl OverlapTester for Box3dBoxes {
+    fn count_overlaps(&mut self, range: Range<usize>) -> usize {
+        self.pairs[range].iter().filter(|pair| pair.distance() < OVERLAP_SLOP).count()
+    }
+}

@@ -1,0 +1,320 @@
+//! Box3D behind a safe face.
+//!
+//! What keeps it safe: ids never leave their [`World`], so none outlives it or is used with another; definitions come
+//! from Box3D's own defaults and are lent for the length of a call, which copies them.
+
+#![allow(unsafe_code)]
+
+use box3d_sys::*;
+use core::marker::PhantomData;
+use core::ptr;
+use sinew::math::{Rotation, Transform, Vec3};
+use sinew::physics::MassProperties;
+use sinew::physics::ray::Ray;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Held while worlds come and go: Box3D's table of worlds has no lock of its own.
+static WORLDS: Mutex<()> = Mutex::new(());
+
+fn lock_worlds() -> MutexGuard<'static, ()> {
+    WORLDS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Version of the library, as it says itself.
+pub fn version() -> String {
+    // SAFETY: takes nothing, returns a value.
+    let b3Version { major, minor, revision } = unsafe { b3GetVersion() };
+    format!("{major}.{minor}.{revision}")
+}
+
+/// A world and everything in it. Bodies are named by the order in which they were added.
+pub struct World {
+    id: b3WorldId,
+    bodies: Vec<b3BodyId>,
+    /// Queries of one world from several threads are nowhere promised to be safe.
+    not_shared: PhantomData<*const ()>,
+}
+
+/// How a body moves; the library's own numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Motion {
+    Static = b3BodyType_b3_staticBody,
+    Kinematic = b3BodyType_b3_kinematicBody,
+    Dynamic = b3BodyType_b3_dynamicBody,
+}
+
+/// A body to be made.
+#[derive(Clone, Copy, Debug)]
+pub struct Body {
+    pub motion: Motion,
+    pub world_from_body: Transform,
+    pub linear_damping: f32,
+    pub angular_damping: f32,
+    pub gravity_scale: f32,
+    pub may_sleep: bool,
+}
+
+/// A shape in its body's frame.
+#[derive(Clone, Copy, Debug)]
+pub enum Shape {
+    Box { half_extents: Vec3, body_from_box: Transform },
+    Sphere { center: Vec3, radius: f32 },
+    Capsule { ends: [Vec3; 2], radius: f32 },
+}
+
+/// What a shape is made of and whom it meets.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    pub density: f32,
+    pub friction: f32,
+    pub restitution: f32,
+    pub layers: u32,
+    pub mask: u32,
+    pub group: i32,
+}
+
+/// What a joint leaves free. Hinges, cones and twists are about **z** of the joint's frames.
+#[derive(Clone, Copy, Debug)]
+pub enum Joint {
+    Revolute { limit: Option<[f32; 2]> },
+    Spherical { cone: Option<f32>, twist: Option<[f32; 2]> },
+    Weld,
+}
+
+impl World {
+    /// Empty, with default settings: continuous collision on, 30 Hz contacts, one worker.
+    ///
+    /// # Panics
+    /// If Box3D has no room for another world (it has 128).
+    pub fn new(gravity: Vec3) -> Self {
+        let _held = lock_worlds();
+        // SAFETY: takes nothing, returns a value.
+        let mut def = unsafe { b3DefaultWorldDef() };
+        def.gravity = vector(gravity);
+        // SAFETY: `def` comes from the default and lives through the call; no other world comes or goes meanwhile.
+        let id = unsafe { b3CreateWorld(&raw const def) };
+        assert!(id.index1 != 0, "Box3D has room for another world");
+        Self { id, bodies: Vec::new(), not_shared: PhantomData }
+    }
+
+    /// Adds a body without shapes; gives its place.
+    pub fn add_body(&mut self, body: &Body) -> usize {
+        // SAFETY: takes nothing, returns a value.
+        let mut def = unsafe { b3DefaultBodyDef() };
+        def.type_ = body.motion as b3BodyType;
+        def.position = vector(body.world_from_body.translation);
+        def.rotation = quaternion(body.world_from_body.rotation);
+        def.linearDamping = body.linear_damping;
+        def.angularDamping = body.angular_damping;
+        def.gravityScale = body.gravity_scale;
+        def.enableSleep = body.may_sleep;
+        // SAFETY: the world lives as long as `self`; `def` comes from the default and is copied.
+        self.bodies.push(unsafe { b3CreateBody(self.id, &raw const def) });
+        self.bodies.len() - 1
+    }
+
+    /// Adds a shape to a body, whose mass and inertia grow by those of the shape.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    pub fn add_shape(&mut self, body: usize, shape: &Shape, surface: &Surface) {
+        let body = self.bodies[body];
+        // SAFETY: takes nothing, returns a value.
+        let mut def = unsafe { b3DefaultShapeDef() };
+        def.density = surface.density;
+        def.baseMaterial.friction = surface.friction;
+        def.baseMaterial.restitution = surface.restitution;
+        def.filter = b3Filter {
+            categoryBits: surface.layers.into(),
+            maskBits: surface.mask.into(),
+            groupIndex: surface.group,
+        };
+        let def = &raw const def;
+        match *shape {
+            Shape::Box { half_extents: h, body_from_box } => {
+                // SAFETY: takes and returns values. Its pointer covers the whole box, into whose arrays the hull at
+                // its start reaches by offsets; the library copies it.
+                unsafe {
+                    let hull = b3MakeTransformedBoxHull(h.x, h.y, h.z, transform(body_from_box));
+                    b3CreateHullShape(body, def, (&raw const hull).cast::<b3HullData>());
+                }
+            }
+            Shape::Sphere { center, radius } => {
+                let sphere = b3Sphere { center: vector(center), radius };
+                // SAFETY: the body lives as long as the world; `def` and `sphere` are copied.
+                unsafe { b3CreateSphereShape(body, def, &raw const sphere) };
+            }
+            Shape::Capsule { ends: [a, b], radius } => {
+                let capsule = b3Capsule { center1: vector(a), center2: vector(b), radius };
+                // SAFETY: as for spheres.
+                unsafe { b3CreateCapsuleShape(body, def, &raw const capsule) };
+            }
+        }
+    }
+
+    /// Replaces mass, centre and inertia that a body has from its shapes.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    pub fn set_mass(&mut self, body: usize, mass: &MassProperties) {
+        let [cx, cy, cz] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| vector(mass.inertia * axis));
+        let data =
+            b3MassData { mass: mass.mass, center: vector(mass.center), inertia: b3Matrix3 { cx, cy, cz } };
+        // SAFETY: the body lives as long as the world; the rest is values.
+        unsafe { b3Body_SetMassData(self.bodies[body], data) };
+    }
+
+    /// Velocities of a body: of its centre of mass, and angular in world axes.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    pub fn set_velocity(&mut self, body: usize, linear: Vec3, angular: Vec3) {
+        let id = self.bodies[body];
+        // SAFETY: the body lives as long as the world; the rest is values.
+        unsafe {
+            b3Body_SetLinearVelocity(id, vector(linear));
+            b3Body_SetAngularVelocity(id, vector(angular));
+        }
+    }
+
+    /// Joins two bodies, which then do not collide with each other.
+    ///
+    /// # Panics
+    /// If there are no such bodies.
+    pub fn add_joint(&mut self, bodies: [usize; 2], frames: [Transform; 2], joint: Joint) {
+        let [a, b] = bodies.map(|place| self.bodies[place]);
+        let [frame_a, frame_b] = frames.map(transform);
+        let attach = |base: &mut b3JointDef| {
+            (base.bodyIdA, base.bodyIdB) = (a, b);
+            (base.localFrameA, base.localFrameB) = (frame_a, frame_b);
+        };
+        // SAFETY: defaults take nothing and return values; both bodies live as long as this world; definitions come from
+        // the defaults and are copied.
+        unsafe {
+            match joint {
+                Joint::Revolute { limit } => {
+                    let mut def = b3DefaultRevoluteJointDef();
+                    attach(&mut def.base);
+                    if let Some([lower, upper]) = limit {
+                        def.enableLimit = true;
+                        (def.lowerAngle, def.upperAngle) = (lower, upper);
+                    }
+                    b3CreateRevoluteJoint(self.id, &raw const def);
+                }
+                Joint::Spherical { cone, twist } => {
+                    let mut def = b3DefaultSphericalJointDef();
+                    attach(&mut def.base);
+                    if let Some(half_angle) = cone {
+                        def.enableConeLimit = true;
+                        def.coneAngle = half_angle;
+                    }
+                    if let Some([lower, upper]) = twist {
+                        def.enableTwistLimit = true;
+                        (def.lowerTwistAngle, def.upperTwistAngle) = (lower, upper);
+                    }
+                    b3CreateSphericalJoint(self.id, &raw const def);
+                }
+                Joint::Weld => {
+                    let mut def = b3DefaultWeldJointDef();
+                    attach(&mut def.base);
+                    b3CreateWeldJoint(self.id, &raw const def);
+                }
+            }
+        }
+    }
+
+    /// One step of `dt` seconds.
+    pub fn step(&mut self, dt: f32, substeps: i32) {
+        // SAFETY: the world lives as long as `self`, which nobody else has now.
+        unsafe { b3World_Step(self.id, dt, substeps) }
+    }
+
+    /// Pose of a body's origin.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    pub fn pose(&self, body: usize) -> Transform {
+        // SAFETY: the body lives as long as the world; returns a value.
+        let b3Transform { p, q } = unsafe { b3Body_GetTransform(self.bodies[body]) };
+        Transform::new(from_vector(p), Rotation::from_xyzw(q.v.x, q.v.y, q.v.z, q.s))
+    }
+
+    /// Velocity of a body's centre of mass, and its angular velocity in world axes.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    pub fn velocity(&self, body: usize) -> [Vec3; 2] {
+        let id = self.bodies[body];
+        // SAFETY: the body lives as long as the world; both return values.
+        unsafe { [b3Body_GetLinearVelocity(id), b3Body_GetAngularVelocity(id)].map(from_vector) }
+    }
+
+    /// Whether a ray meets a shape; the closest is found. One that starts inside a shape does not see it.
+    pub fn meets_ray(&self, ray: &Ray) -> bool {
+        // SAFETY: the world lives as long as `self`, which is on one thread; no callback runs; returns values.
+        unsafe {
+            let filter = b3DefaultQueryFilter();
+            b3World_CastRayClosest(self.id, vector(ray.origin), vector(ray.direction), filter).hit
+        }
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        let _held = lock_worlds();
+        // SAFETY: the world is destroyed here, once; no other world comes or goes meanwhile.
+        unsafe { b3DestroyWorld(self.id) }
+    }
+}
+
+/// Two boxes as point clouds, the second in the frame of the first.
+pub struct BoxPair {
+    corners: [[b3Vec3; 8]; 2],
+    a_from_b: b3Transform,
+}
+
+impl BoxPair {
+    /// Of these half extents and poses.
+    pub fn new(half_extents: [Vec3; 2], world_from_box: [Transform; 2]) -> Self {
+        let corners = half_extents.map(|half| {
+            core::array::from_fn(|i| {
+                let sign = |bit: usize| if i & bit == 0 { -1.0 } else { 1.0 };
+                vector(half * Vec3::new(sign(1), sign(2), sign(4)))
+            })
+        });
+        let [world_from_a, world_from_b] = world_from_box;
+        Self { corners, a_from_b: transform(world_from_a.inverse() * world_from_b) }
+    }
+
+    /// Distance, metres; 0 where they overlap. The first call of a pair that the library has no cache for.
+    pub fn distance(&self) -> f32 {
+        let proxy = |points: &[b3Vec3; 8]| b3ShapeProxy { points: points.as_ptr(), count: 8, radius: 0.0 };
+        let input = b3DistanceInput {
+            proxyA: proxy(&self.corners[0]),
+            proxyB: proxy(&self.corners[1]),
+            transform: self.a_from_b,
+            useRadii: false,
+        };
+        let mut cache = b3SimplexCache::default();
+        // SAFETY: both clouds have the 8 points they are said to have and live through the call, as do `input` and
+        // `cache`; null and 0 ask for no record of simplexes.
+        unsafe { b3ShapeDistance(&raw const input, &raw mut cache, ptr::null_mut(), 0).distance }
+    }
+}
+
+fn vector(v: Vec3) -> b3Vec3 {
+    b3Vec3 { x: v.x, y: v.y, z: v.z }
+}
+
+fn from_vector(v: b3Vec3) -> Vec3 {
+    Vec3::new(v.x, v.y, v.z)
+}
+
+fn quaternion(r: Rotation) -> b3Quat {
+    b3Quat { v: b3Vec3 { x: r.x, y: r.y, z: r.z }, s: r.w }
+}
+
+fn transform(t: Transform) -> b3Transform {
+    b3Transform { p: vector(t.translation), q: quaternion(t.rotation) }
+}

@@ -1,0 +1,145 @@
+//! How deep shapes are inside each other.
+
+use crate::engine::BodyState;
+use crate::parry;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::math::Pose;
+use parry3d::query::sat;
+use parry3d::shape::{Cuboid, SharedShape};
+use sinew::math::Transform;
+use sinew::physics::{BodyKind, Filter, Sensing};
+use sinew_scenes::blueprint::Blueprint;
+
+/// Depths of the pairs of shapes that may collide, metres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PenetrationQuality {
+    /// Deepest at the end.
+    pub end_max: f32,
+    /// Of the pairs that overlap at the end, 99 % are no deeper.
+    pub end_p99: f32,
+    /// Deepest after any step that was looked at.
+    pub run_max: f32,
+    /// From one such step to the next.
+    pub every: usize,
+}
+
+pub(super) struct PenetrationMeter {
+    shapes: Vec<PlacedShape>,
+    /// Pairs of bodies that joints hold, the smaller place first, sorted: they do not collide.
+    jointed: Vec<(usize, usize)>,
+    every: usize,
+    run_max: f32,
+}
+
+struct PlacedShape {
+    body: usize,
+    is_dynamic: bool,
+    filter: Filter,
+    body_from_shape: Transform,
+    shape: SharedShape,
+}
+
+impl PenetrationMeter {
+    pub fn new(scene: &Blueprint, every: usize) -> Self {
+        let mut shapes = Vec::new();
+        for (body, def) in scene.bodies.iter().enumerate() {
+            let collides = |filter: Filter| filter.mask != 0 && filter.layers != 0;
+            let solid = def.shapes.iter().filter(|s| s.sensing == Sensing::Solid && collides(s.filter));
+            shapes.extend(solid.map(|s| PlacedShape {
+                body,
+                is_dynamic: def.kind == BodyKind::Dynamic,
+                filter: s.filter,
+                body_from_shape: s.body_from_shape,
+                shape: parry::shape(&s.shape),
+            }));
+        }
+        let mut jointed: Vec<_> = scene.joints.iter().map(|joint| ordered(joint.a, joint.b)).collect();
+        jointed.sort_unstable();
+        Self { shapes, jointed, every, run_max: 0.0 }
+    }
+
+    pub fn observe(&mut self, step: usize, states: &[BodyState]) {
+        if step.is_multiple_of(self.every) {
+            self.run_max = self.depths(states).into_iter().fold(self.run_max, f32::max);
+        }
+    }
+
+    pub fn finish(&mut self, states: &[BodyState]) -> Option<PenetrationQuality> {
+        if self.shapes.is_empty() {
+            return None;
+        }
+        let mut depths = self.depths(states);
+        depths.sort_unstable_by(f32::total_cmp);
+        let end_max = depths.last().copied().unwrap_or(0.0);
+        let rank = (depths.len() * 99).div_ceil(100);
+        let end_p99 = if depths.is_empty() { 0.0 } else { depths[rank - 1] };
+        Some(PenetrationQuality { end_max, end_p99, run_max: self.run_max.max(end_max), every: self.every })
+    }
+
+    /// Depth of each pair that overlaps.
+    fn depths(&self, states: &[BodyState]) -> Vec<f32> {
+        let mut placed: Vec<_> = self
+            .shapes
+            .iter()
+            .map(|shape| {
+                let pose = parry::pose(states[shape.body].world_from_body * shape.body_from_shape);
+                (shape.shape.compute_aabb(&pose), pose, shape)
+            })
+            .filter(|(aabb, ..)| aabb.mins.is_finite() && aabb.maxs.is_finite())
+            .collect();
+        // Sweep along x: only what starts before the other ends can overlap it.
+        placed.sort_by(|(a, ..), (b, ..)| a.mins.x.total_cmp(&b.mins.x));
+        let mut depths = Vec::new();
+        for (i, a) in placed.iter().enumerate() {
+            let rest = placed[i + 1..].iter();
+            for b in rest.take_while(|b| b.0.mins.x <= a.0.maxs.x) {
+                depths.extend(self.depth(a, b));
+            }
+        }
+        depths
+    }
+
+    fn depth(&self, a: &(Aabb, Pose, &PlacedShape), b: &(Aabb, Pose, &PlacedShape)) -> Option<f32> {
+        let (box_a, pose_a, shape_a) = a;
+        let (box_b, pose_b, shape_b) = b;
+        if !box_a.intersects(box_b) || !self.may_collide(shape_a, shape_b) {
+            return None;
+        }
+        let depth = depth_of_shapes(pose_a, &shape_a.shape, pose_b, &shape_b.shape)?;
+        // What takes the bounding boxes apart takes the shapes apart, so the depth cannot be more.
+        let overlap = box_a.maxs.min(box_b.maxs) - box_a.mins.max(box_b.mins);
+        Some(depth.min(overlap.min_element()))
+    }
+
+    fn may_collide(&self, a: &PlacedShape, b: &PlacedShape) -> bool {
+        a.body != b.body
+            && (a.is_dynamic || b.is_dynamic)
+            && a.filter.meets(b.filter)
+            && self.jointed.binary_search(&ordered(a.body, b.body)).is_err()
+    }
+}
+
+/// The smallest distance that takes two shapes apart, metres; `None` if they are.
+fn depth_of_shapes(pose_a: &Pose, a: &SharedShape, pose_b: &Pose, b: &SharedShape) -> Option<f32> {
+    if let (Some(a), Some(b)) = (a.as_cuboid(), b.as_cuboid()) {
+        return depth_of_boxes(pose_a, a, pose_b, b);
+    }
+    let contact = parry3d::query::contact(pose_a, &**a, pose_b, &**b, 0.0);
+    let contact = contact.expect("Parry knows every pair of our shapes")?;
+    (contact.dist < 0.0).then_some(-contact.dist)
+}
+
+/// By the axis on which two boxes overlap least. Parry's `contact` finds the axis too, but measures the depth from the
+/// nearest face to a corner, which may be a face across: 3 m for a cube of 1 m on a slab of 2 m.
+fn depth_of_boxes(pose_a: &Pose, a: &Cuboid, pose_b: &Pose, b: &Cuboid) -> Option<f32> {
+    let b_in_a = pose_a.inv_mul(pose_b);
+    let (faces_of_a, _) = sat::cuboid_cuboid_find_local_separating_normal_oneway(a, b, &b_in_a);
+    let (faces_of_b, _) = sat::cuboid_cuboid_find_local_separating_normal_oneway(b, a, &b_in_a.inverse());
+    let (edges, _) = sat::cuboid_cuboid_find_local_separating_edge_twoway(a, b, &b_in_a);
+    let separation = faces_of_a.max(faces_of_b).max(edges);
+    (separation < 0.0).then_some(-separation)
+}
+
+fn ordered(a: usize, b: usize) -> (usize, usize) {
+    if a < b { (a, b) } else { (b, a) }
+}

@@ -1,0 +1,146 @@
+//! One scene on one engine: a run for the time, and on demand another for the quality.
+
+use crate::engine::{BodyState, Engine, Unsupported};
+use crate::measure::{Memory, StepTimes};
+use crate::quality::{ClothMeter, QualityMeter};
+use crate::scenes::{BoxPairs, ClothScene, RayScene, Scene, Work};
+use serde_json::{Value, json};
+use sinew_scenes::blueprint::Blueprint;
+
+/// Depths are looked at after every one of so many steps.
+const PENETRATION_EVERY: usize = 10;
+
+/// An engine that tries every box for every ray must come to an end too: no more rays after so much time, ms.
+const ENOUGH_TIME: f64 = 10_000.0;
+
+/// Whether the run is repeated to look at its quality.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Judging {
+    /// Time only.
+    Off,
+    /// Another run, which is not timed, and is looked at after every step.
+    On,
+}
+
+/// What was measured, as one JSON object; `"unsupported"` in it says why there are no figures.
+///
+/// `steps`: as many as the scene says if `None`.
+pub fn run(engine: &dyn Engine, scene: &Scene, steps: Option<usize>, judging: Judging) -> Value {
+    let work = (scene.work)();
+    let steps = steps.unwrap_or(work.steps());
+    let mut report = engine.describe().to_json();
+    report["scene"] = json!(scene.name);
+    report["steps"] = json!(steps);
+    let figures = match &work {
+        Work::Bodies(blueprint) => run_bodies(engine, blueprint, steps, judging),
+        Work::Cloth(cloth) => run_cloth(engine, cloth, steps, judging),
+        Work::Rays(rays) => run_rays(engine, rays, steps),
+        Work::Boxes(pairs) => run_boxes(engine, pairs, steps),
+    };
+    match figures {
+        Ok(Value::Object(figures)) => {
+            report.as_object_mut().expect("a report is an object").extend(figures);
+        }
+        Ok(_) => unreachable!("figures are an object"),
+        Err(unsupported) => report["unsupported"] = json!(unsupported.to_string()),
+    }
+    report
+}
+
+fn run_bodies(
+    engine: &dyn Engine,
+    scene: &Blueprint,
+    steps: usize,
+    judging: Judging,
+) -> Result<Value, Unsupported> {
+    let memory = Memory::now();
+    let mut simulation = engine.build(scene)?;
+    let times = StepTimes::measure(steps, |_| simulation.step());
+    drop(simulation);
+    let mut figures = json!({
+        "bodies": scene.bodies.len(),
+        "joints": scene.joints.len(),
+        "cpu_ms": times.to_json(),
+        "peak_rss_mib": memory.peak_above_mib(),
+    });
+    if judging == Judging::On {
+        figures["quality"] = judge_bodies(engine, scene, steps)?;
+    }
+    Ok(figures)
+}
+
+fn judge_bodies(engine: &dyn Engine, scene: &Blueprint, steps: usize) -> Result<Value, Unsupported> {
+    let mut simulation = engine.build(scene)?;
+    let mut meter = QualityMeter::new(scene, PENETRATION_EVERY);
+    let mut states: Vec<BodyState> = Vec::new();
+    for _ in 0..steps {
+        simulation.step();
+        simulation.states(&mut states);
+        meter.observe(&states);
+    }
+    Ok(meter.finish(&states).to_json())
+}
+
+fn run_cloth(
+    engine: &dyn Engine,
+    scene: &ClothScene,
+    steps: usize,
+    judging: Judging,
+) -> Result<Value, Unsupported> {
+    let memory = Memory::now();
+    let mut simulation = engine.build_cloth(scene)?;
+    let times = StepTimes::measure(steps, |_| simulation.step());
+    let mut figures = json!({
+        "bodies": scene.boxes.len() + scene.spheres.len(),
+        "particles": scene.side * scene.side,
+        "joints": 0,
+        "cpu_ms": times.to_json(),
+        "peak_rss_mib": memory.peak_above_mib(),
+    });
+    if judging == Judging::On {
+        // Nothing was looked at during the run, and its end is all that is judged.
+        let mut particles = Vec::new();
+        simulation.particles(&mut particles);
+        figures["quality"] = ClothMeter::new(scene).finish(&particles).to_json();
+    }
+    Ok(figures)
+}
+
+fn run_rays(engine: &dyn Engine, scene: &RayScene, steps: usize) -> Result<Value, Unsupported> {
+    let memory = Memory::now();
+    let mut caster = engine.build_rays(scene)?;
+    let (mut rays, mut hits) = (0, 0);
+    let times = StepTimes::measure_until(steps, ENOUGH_TIME, |step| {
+        let range = scene.rays_of_step(step);
+        rays += range.len();
+        hits += caster.count_hits(range);
+    });
+    Ok(json!({
+        "steps": times.count(),
+        "bodies": scene.boxes.len(),
+        "joints": 0,
+        "cpu_ms": times.to_json(),
+        "peak_rss_mib": memory.peak_above_mib(),
+        "per_step": rays / times.count(),
+        "hit_share": hits as f64 / rays as f64,
+    }))
+}
+
+fn run_boxes(engine: &dyn Engine, scene: &BoxPairs, steps: usize) -> Result<Value, Unsupported> {
+    let memory = Memory::now();
+    let mut tester = engine.build_boxes(scene)?;
+    let (mut pairs, mut overlaps) = (0, 0);
+    let times = StepTimes::measure(steps, |step| {
+        let range = scene.pairs_of_step(step);
+        pairs += range.len();
+        overlaps += tester.count_overlaps(range);
+    });
+    Ok(json!({
+        "bodies": 0,
+        "joints": 0,
+        "cpu_ms": times.to_json(),
+        "peak_rss_mib": memory.peak_above_mib(),
+        "per_step": pairs / times.count(),
+        "hit_share": overlaps as f64 / pairs as f64,
+    }))
+}

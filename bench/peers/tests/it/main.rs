@@ -1,0 +1,8 @@
+//! The tests: the quality tool against states made by hand, the scenes against what the baselines say of them, and every
+//! engine of this build against closed forms.
+
+mod engines;
+mod joints;
+mod quality;
+mod queries;
+mod scenes;

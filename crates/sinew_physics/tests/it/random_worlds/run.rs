@@ -1,0 +1,290 @@
+//! Runs a plan and watches it.
+
+use super::energy::{Energies, energies};
+use super::plan::{Change, Frames, JointPlan, WorldPlan};
+use crate::build::floor;
+use sinew_math::{Reader, Writer};
+use sinew_physics::*;
+
+/// Largest rise of energy within a step, as a share of max(kinetic energy, 1 J/kg).
+const ENERGY_GAIN: f64 = 0.01;
+/// After a change that leaves joints apart or beyond their stops, energy is not held against the world until they have
+/// come together, nor longer than this many steps.
+const SETTLING: u32 = 60;
+/// Together: metres and radians.
+const GAP_CLOSED: f32 = 1e-3;
+const STOP_REACHED: f32 = 0.02;
+/// So many steps after it was saved the world is compared with its restored twin.
+const TWIN_STEPS: u32 = 60;
+/// A world is violent while a body is faster, m/s or rad/s.
+const VIOLENT_LINEAR: f32 = 15.0;
+const VIOLENT_ANGULAR: f32 = 30.0;
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fault {
+    NotFinite,
+    Quarantined,
+    /// Rise of energy in the step, as a share of what is there.
+    EnergyGain(f64),
+    Restore,
+    Panic(String),
+}
+
+impl Fault {
+    pub fn same_kind(&self, other: &Self) -> bool {
+        core::mem::discriminant(self) == core::mem::discriminant(other)
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    pub step: u32,
+    pub fault: Fault,
+}
+
+/// What a run that held showed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Figures {
+    /// Largest gap of an exact joint while all joints formed trees and nothing was violent, metres.
+    pub gap: f32,
+    /// Largest rise of energy, as [`Fault::EnergyGain`].
+    pub gain: f64,
+    /// Steps whose energy was held against the world.
+    pub watched: u32,
+}
+
+#[derive(Clone)]
+struct Ids {
+    bodies: Vec<Option<BodyId>>,
+    joints: Vec<Option<JointId>>,
+}
+
+struct Run<'a> {
+    plan: &'a WorldPlan,
+    world: World,
+    ids: Ids,
+}
+
+impl<'a> Run<'a> {
+    fn new(plan: &'a WorldPlan) -> Self {
+        let def = WorldDef { gravity: plan.gravity, sleeping: plan.sleeping, ..WorldDef::default() };
+        let mut world = World::new(def);
+        if plan.floor {
+            floor(&mut world);
+        }
+        let bodies: Vec<_> = plan.bodies.iter().map(|body| world.add_body(&body.def())).collect();
+        if plan.parted {
+            for (i, &a) in bodies.iter().enumerate() {
+                for &b in bodies[..i].iter().filter(|&&b| world.overlap(a, b) > 0.0).collect::<Vec<_>>() {
+                    world.disable_pair(a, b);
+                }
+            }
+            for joint in &plan.joints {
+                world.disable_pair(bodies[joint.a], bodies[joint.b]);
+            }
+        }
+        let bodies = bodies.into_iter().map(Some).collect();
+        let ids = Ids { bodies, joints: vec![None; plan.joints.len()] };
+        Self { plan, world, ids }
+    }
+
+    fn saved(&self) -> (Vec<u8>, Ids) {
+        let mut w = Writer::new();
+        self.world.save(&mut w);
+        (w.into_bytes(), self.ids.clone())
+    }
+
+    /// In a new world, so that nothing is kept but what was saved.
+    fn restored(plan: &'a WorldPlan, (bytes, ids): (Vec<u8>, Ids)) -> Self {
+        let mut world = World::new(WorldDef::default());
+        world.load(&mut Reader::new(&bytes)).expect("a saved world is valid");
+        Self { plan, world, ids }
+    }
+
+    fn body(&self, body: usize) -> Option<BodyId> {
+        self.ids.bodies[body].filter(|&id| self.world.contains(id))
+    }
+
+    fn joint(&self, joint: usize) -> Option<JointId> {
+        self.ids.joints[joint].filter(|&id| self.world.contains_joint(id))
+    }
+
+    /// Does what the plan has for a step; true if that was something.
+    fn change(&mut self, step: u32) -> bool {
+        let plan = self.plan;
+        let mut changed = false;
+        for (j, joint) in plan.joints.iter().enumerate().filter(|(_, joint)| joint.born == step) {
+            let (Some(a), Some(b)) = (self.body(joint.a), self.body(joint.b)) else { continue };
+            let def = joint.def(&self.world, a, b);
+            self.ids.joints[j] = Some(self.world.add_joint(&def));
+            changed = true;
+        }
+        for (_, change) in plan.changes.iter().filter(|(at, _)| *at == step) {
+            changed |= self.apply(change).is_some();
+        }
+        changed
+    }
+
+    /// `None` if there is nothing left to change.
+    fn apply(&mut self, change: &Change) -> Option<()> {
+        match change {
+            Change::RemoveJoint(j) => self.world.remove_joint(self.joint(*j)?),
+            Change::SetState(j, state) => self.world.set_joint_state(self.joint(*j)?, *state),
+            Change::SetMotor(j, motor) => self.world.set_motor(self.joint(*j)?, *motor),
+            Change::Redefine(j, joint, frames) => self.redefine(self.joint(*j)?, joint, *frames),
+            Change::RemoveBody(b) => self.world.remove_body(self.body(*b)?),
+            Change::Kick(b, kick) => {
+                let body = self.body(*b).filter(|&body| self.world.kind(body) == BodyKind::Dynamic)?;
+                let v = self.world.velocity(body);
+                let linear = v.linear + kick.linear;
+                self.world.set_velocity(body, Velocity { linear, angular: v.angular + kick.angular });
+            }
+            Change::Reload => {
+                let (bytes, _) = self.saved();
+                self.world.load(&mut Reader::new(&bytes)).expect("a saved world is valid");
+            }
+        }
+        Some(())
+    }
+
+    fn redefine(&mut self, id: JointId, joint: &JointPlan, frames: Frames) {
+        let old = self.world.joint(id);
+        let mut def = joint.def(&self.world, old.body_a, old.body_b);
+        if frames == Frames::Kept {
+            (def.frame_a, def.frame_b) = (old.frame_a, old.frame_b);
+        }
+        self.world.set_joint(id, &JointDef { state: old.state, ..def });
+    }
+
+    fn step(&mut self, step: u32) -> bool {
+        let changed = self.change(step);
+        self.world.step();
+        changed
+    }
+
+    fn fault(&self) -> Option<Fault> {
+        if !self.world.events().quarantined.is_empty() {
+            return Some(Fault::Quarantined);
+        }
+        let finite = self.world.body_ids().all(|id| {
+            let v = self.world.velocity(id);
+            self.world.transform(id).is_finite() && v.linear.is_finite() && v.angular.is_finite()
+        });
+        (!finite).then_some(Fault::NotFinite)
+    }
+
+    fn enabled_joints(&self) -> impl Iterator<Item = (JointId, JointDef)> {
+        let joints = self.world.joint_ids().map(|id| (id, self.world.joint(id)));
+        joints.filter(|(_, def)| def.state == JointState::Enabled)
+    }
+
+    /// True if a joint is apart or beyond its stops.
+    fn is_settling(&self) -> bool {
+        self.enabled_joints().any(|(id, _)| {
+            self.world.joint_gap(id) > GAP_CLOSED || self.world.joint_overshoot(id) > STOP_REACHED
+        })
+    }
+
+    fn is_violent(&self) -> bool {
+        self.world
+            .body_ids()
+            .map(|id| self.world.velocity(id))
+            .any(|v| v.linear.length() > VIOLENT_LINEAR || v.angular.length() > VIOLENT_ANGULAR)
+    }
+
+    /// True if no joint closes a loop; what is not dynamic is one ground.
+    fn is_forest(&self) -> bool {
+        let bodies: Vec<BodyId> = self.world.body_ids().collect();
+        let node = |id: BodyId| match self.world.kind(id) {
+            BodyKind::Dynamic => bodies.iter().position(|&b| b == id).expect("the body is there"),
+            _ => bodies.len(),
+        };
+        let mut tree: Vec<usize> = (0..=bodies.len()).collect();
+        for (_, def) in self.enabled_joints() {
+            let (a, b) = (tree[node(def.body_a)], tree[node(def.body_b)]);
+            if a == b {
+                return false;
+            }
+            tree.iter_mut().filter(|t| **t == a).for_each(|t| *t = b);
+        }
+        true
+    }
+
+    /// Of joints that hold exactly, metres.
+    fn gap(&self) -> f32 {
+        self.enabled_joints()
+            .filter(|(_, def)| def.weld.is_none() && def.limit_softness.is_none())
+            .map(|(id, _)| self.world.joint_gap(id))
+            .fold(0.0, sinew_math::max)
+    }
+}
+
+/// Watches the energy from step to step.
+#[derive(Default)]
+struct Meter {
+    before: Energies,
+    /// Steps for which changes may still release energy.
+    settling: u32,
+}
+
+impl Meter {
+    /// Rise of energy in the step that is over, as a share, if it is the world's own doing.
+    fn rise(&mut self, run: &Run<'_>, changed: bool) -> Option<f64> {
+        let now = energies(&run.world);
+        let before = core::mem::replace(&mut self.before, now);
+        if changed {
+            self.settling = SETTLING;
+        } else if self.settling > 0 {
+            self.settling = if run.is_settling() { self.settling - 1 } else { 0 };
+        }
+        (self.settling == 0).then(|| (now.total - before.total) / f64::max(before.kinetic, now.mass))
+    }
+}
+
+/// Runs a plan for some steps.
+pub fn check(plan: &WorldPlan, steps: u32) -> Result<Figures, Failure> {
+    let run = || watched(plan, steps);
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).unwrap_or_else(|cause| {
+        let text = cause.downcast_ref::<String>().cloned();
+        let text = text.or_else(|| cause.downcast_ref::<&str>().map(|s| (*s).to_owned()));
+        Err(Failure { step: 0, fault: Fault::Panic(text.unwrap_or_default()) })
+    })
+}
+
+fn watched(plan: &WorldPlan, steps: u32) -> Result<Figures, Failure> {
+    let mut run = Run::new(plan);
+    let mut figures = Figures::default();
+    let mut meter = Meter::default();
+    let mut saved = None;
+    for step in 0..steps {
+        if step == plan.save_at {
+            saved = Some(run.saved());
+        }
+        let changed = run.step(step) || step == 0;
+        let fail = |fault| Err(Failure { step, fault });
+        if let Some(fault) = run.fault() {
+            return fail(fault);
+        }
+        let rise = meter.rise(&run, changed);
+        if let Some(rise) = rise.filter(|_| plan.passive) {
+            figures.watched += 1;
+            figures.gain = f64::max(figures.gain, rise);
+            if rise > ENERGY_GAIN {
+                return fail(Fault::EnergyGain(rise));
+            }
+        }
+        if meter.settling == 0 && !run.is_violent() && run.is_forest() {
+            figures.gap = sinew_math::max(figures.gap, run.gap());
+        }
+        if step + 1 == plan.save_at + TWIN_STEPS
+            && let Some(saved) = saved.take()
+        {
+            let mut twin = Run::restored(plan, saved);
+            (plan.save_at..=step).for_each(|step| _ = twin.step(step));
+            if twin.world.hash() != run.world.hash() {
+                return fail(Fault::Restore);
+            }
+        }
+    }
+    Ok(figures)
+}

@@ -1,0 +1,52 @@
+//! MuJoCo's humanoid, where its file is present.
+
+use sinew_scenes::scenes::{Metric, SettingError, find, registry};
+use std::io::Write as _;
+use std::path::Path;
+
+const HUMANOID: &str =
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/robots/mujoco_humanoid.xml");
+
+fn unmet(pose: u32, gravity_factor: f32) -> Vec<Metric> {
+    let scene = find("mjcf_drop").expect("it can be found");
+    let mut settings = scene.settings();
+    settings.assign(&format!("file={HUMANOID}")).expect("the humanoid can be read");
+    settings.assign(&format!("pose={pose}")).expect("there is such a pose");
+    let mut run = scene.start_under(&settings, gravity_factor);
+    for _ in 0..scene.steps {
+        run.step();
+    }
+    let mut metrics = run.metrics();
+    for metric in &metrics {
+        println!("pose {pose}: {} = {:?}, {:?}", metric.name, metric.value, metric.expected);
+    }
+    metrics.retain(|metric| !metric.is_met());
+    metrics
+}
+
+#[test]
+fn mujocos_humanoid_rests_as_high_as_in_mujoco() {
+    if !Path::new(HUMANOID).is_file() {
+        // Not println, which the harness swallows where a test passes.
+        let _ = writeln!(std::io::stderr(), "MuJoCo's humanoid skipped: no ../shared/data");
+        return;
+    }
+    for pose in 0..=2 {
+        assert_eq!(unmet(pose, 1.0), []);
+    }
+    for factor in [0.99, 1.01] {
+        assert!(!unmet(1, factor).is_empty(), "nobody notices {factor} g");
+    }
+}
+
+#[test]
+fn the_scene_asks_for_its_file_and_is_in_no_list() {
+    let scene = find("mjcf_drop").expect("it can be found");
+    assert!(registry().iter().all(|listed| listed.name != scene.name));
+    let mut settings = scene.settings();
+    let missing = settings.check().expect_err("it has no file yet");
+    assert_eq!(missing.to_string(), "`file` is not set: it takes the path of a model in MJCF");
+    let absent = settings.assign("file=no/such.xml").expect_err("there is no such file");
+    assert!(matches!(absent, SettingError::File(_)) && absent.to_string() == "no/such.xml: no such file");
+    assert_eq!(find("pendulum").expect("it is listed").settings().check(), Ok(()));
+}
