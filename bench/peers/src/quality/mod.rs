@@ -22,6 +22,7 @@ use limits::LimitMeter;
 use penetration::PenetrationMeter;
 use place::PlaceMeter;
 use serde_json::{Map, Value, json};
+use sinew::physics::{Sensing, ShapeDef};
 use sinew_scenes::blueprint::Blueprint;
 
 /// Watches a run.
@@ -113,6 +114,11 @@ impl Quality {
         add("displacement_max_m", json!(self.place.displacement_max));
         Value::Object(report)
     }
+}
+
+/// Whether anything can touch a shape and be pushed.
+fn collides(shape: &ShapeDef) -> bool {
+    shape.sensing == Sensing::Solid && shape.filter.mask != 0 && shape.filter.layers != 0
 }
 
 /// The larger of two; one that is no number wins, so that it shows.

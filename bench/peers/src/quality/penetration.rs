@@ -1,5 +1,6 @@
 //! How deep shapes are inside each other.
 
+use super::collides;
 use crate::engine::BodyState;
 use crate::parry;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
@@ -7,7 +8,7 @@ use parry3d::math::Pose;
 use parry3d::query::sat;
 use parry3d::shape::{Cuboid, SharedShape};
 use sinew::math::Transform;
-use sinew::physics::{BodyKind, Filter, Sensing};
+use sinew::physics::{BodyKind, Filter};
 use sinew_scenes::blueprint::Blueprint;
 
 /// Depths of the pairs of shapes that may collide, metres.
@@ -24,14 +25,15 @@ pub struct PenetrationQuality {
 }
 
 pub(super) struct PenetrationMeter {
-    shapes: Vec<PlacedShape>,
+    shapes: Vec<Solid>,
     /// Pairs of bodies that joints hold, the smaller place first, sorted: they do not collide.
     jointed: Vec<(usize, usize)>,
     every: usize,
     run_max: f32,
 }
 
-struct PlacedShape {
+/// A shape that can collide.
+struct Solid {
     body: usize,
     is_dynamic: bool,
     filter: Filter,
@@ -43,9 +45,7 @@ impl PenetrationMeter {
     pub fn new(scene: &Blueprint, every: usize) -> Self {
         let mut shapes = Vec::new();
         for (body, def) in scene.bodies.iter().enumerate() {
-            let collides = |filter: Filter| filter.mask != 0 && filter.layers != 0;
-            let solid = def.shapes.iter().filter(|s| s.sensing == Sensing::Solid && collides(s.filter));
-            shapes.extend(solid.map(|s| PlacedShape {
+            shapes.extend(def.shapes.iter().filter(|s| collides(s)).map(|s| Solid {
                 body,
                 is_dynamic: def.kind == BodyKind::Dynamic,
                 filter: s.filter,
@@ -78,44 +78,48 @@ impl PenetrationMeter {
 
     /// Depth of each pair that overlaps.
     fn depths(&self, states: &[BodyState]) -> Vec<f32> {
-        let mut placed: Vec<_> = self
-            .shapes
-            .iter()
-            .map(|shape| {
-                let pose = parry::pose(states[shape.body].world_from_body * shape.body_from_shape);
-                (shape.shape.compute_aabb(&pose), pose, shape)
-            })
-            .filter(|(aabb, ..)| aabb.mins.is_finite() && aabb.maxs.is_finite())
-            .collect();
+        let placed = self.shapes.iter().map(|shape| {
+            let pose = parry::pose(states[shape.body].world_from_body * shape.body_from_shape);
+            PlacedShape { shape, pose, bounds: shape.shape.compute_aabb(&pose) }
+        });
+        let mut placed: Vec<_> = placed.filter(PlacedShape::is_finite).collect();
         // Sweep along x: only what starts before the other ends can overlap it.
-        placed.sort_by(|(a, ..), (b, ..)| a.mins.x.total_cmp(&b.mins.x));
+        placed.sort_by(|a, b| a.bounds.mins.x.total_cmp(&b.bounds.mins.x));
         let mut depths = Vec::new();
         for (i, a) in placed.iter().enumerate() {
-            let rest = placed[i + 1..].iter();
-            for b in rest.take_while(|b| b.0.mins.x <= a.0.maxs.x) {
-                depths.extend(self.depth(a, b));
-            }
+            let near = placed[i + 1..].iter().take_while(|b| b.bounds.mins.x <= a.bounds.maxs.x);
+            let near = near.filter(|b| a.bounds.intersects(&b.bounds) && self.may_collide(a.shape, b.shape));
+            depths.extend(near.filter_map(|b| a.depth_in(b)));
         }
         depths
     }
 
-    fn depth(&self, a: &(Aabb, Pose, &PlacedShape), b: &(Aabb, Pose, &PlacedShape)) -> Option<f32> {
-        let (box_a, pose_a, shape_a) = a;
-        let (box_b, pose_b, shape_b) = b;
-        if !box_a.intersects(box_b) || !self.may_collide(shape_a, shape_b) {
-            return None;
-        }
-        let depth = depth_of_shapes(pose_a, &shape_a.shape, pose_b, &shape_b.shape)?;
-        // What takes the bounding boxes apart takes the shapes apart, so the depth cannot be more.
-        let overlap = box_a.maxs.min(box_b.maxs) - box_a.mins.max(box_b.mins);
-        Some(depth.min(overlap.min_element()))
-    }
-
-    fn may_collide(&self, a: &PlacedShape, b: &PlacedShape) -> bool {
+    fn may_collide(&self, a: &Solid, b: &Solid) -> bool {
         a.body != b.body
             && (a.is_dynamic || b.is_dynamic)
             && a.filter.meets(b.filter)
             && self.jointed.binary_search(&ordered(a.body, b.body)).is_err()
+    }
+}
+
+/// A shape where it is now.
+struct PlacedShape<'a> {
+    shape: &'a Solid,
+    pose: Pose,
+    bounds: Aabb,
+}
+
+impl PlacedShape<'_> {
+    /// Bodies that have no place any more count as lost, not as deep.
+    fn is_finite(&self) -> bool {
+        self.pose.is_finite()
+    }
+
+    fn depth_in(&self, other: &Self) -> Option<f32> {
+        let depth = depth_of_shapes(&self.pose, &self.shape.shape, &other.pose, &other.shape.shape)?;
+        // What takes the bounding boxes apart takes the shapes apart, so the depth cannot be more.
+        let overlap = self.bounds.maxs.min(other.bounds.maxs) - self.bounds.mins.max(other.bounds.mins);
+        Some(depth.min(overlap.min_element()))
     }
 }
 

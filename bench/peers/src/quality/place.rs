@@ -1,5 +1,6 @@
 //! Where the dynamic bodies are at the end.
 
+use super::{collides, worse};
 use crate::engine::BodyState;
 use crate::parry;
 use parry3d::bounding_volume::Aabb;
@@ -22,35 +23,45 @@ pub struct PlaceQuality {
 }
 
 pub(super) struct PlaceMeter {
-    /// Places of dynamic bodies, and where they start.
-    start: Vec<(usize, Vec3)>,
-    /// Bodies below are lost.
+    bodies: Vec<Start>,
+    /// Bodies that collide are lost below, metres.
     bottom: f32,
+}
+
+/// A dynamic body before the first step.
+struct Start {
+    place: usize,
+    position: Vec3,
+    collides: bool,
 }
 
 impl PlaceMeter {
     pub fn new(scene: &Blueprint) -> Self {
-        let start = scene.dynamic().map(|place| (place, scene.bodies[place].position)).collect();
+        let bodies = scene.dynamic().map(|place| {
+            let def = &scene.bodies[place];
+            Start { place, position: def.position, collides: def.shapes.iter().any(collides) }
+        });
         let bottoms = scene.bodies.iter().filter(|def| def.kind == BodyKind::Static).flat_map(|def| {
             let world_from_body = Transform::new(def.position, def.rotation);
-            def.shapes.iter().map(move |shape| bottom(&shape.shape, world_from_body * shape.body_from_shape))
+            let shapes = def.shapes.iter().filter(|shape| collides(shape));
+            shapes.map(move |shape| bottom(&shape.shape, world_from_body * shape.body_from_shape))
         });
-        // Without static shapes nothing can be fallen through.
+        // Where nothing is below, nothing can be fallen through.
         let bottom = bottoms.reduce(f32::min).map_or(f32::NEG_INFINITY, |bottom| bottom - LOST_BELOW);
-        Self { start, bottom }
+        Self { bodies: bodies.collect(), bottom }
     }
 
     pub fn finish(&mut self, states: &[BodyState]) -> PlaceQuality {
         let (mut lost, mut height, mut displacement_max) = (0, 0.0, 0.0);
-        for &(place, start) in &self.start {
-            let now = states[place].world_from_body.translation;
-            if !now.is_finite() || now.y < self.bottom {
+        for body in &self.bodies {
+            let now = states[body.place].world_from_body.translation;
+            if !now.is_finite() || (body.collides && now.y < self.bottom) {
                 lost += 1;
             }
             height += f64::from(now.y);
-            displacement_max = super::worse(displacement_max, (now - start).length());
+            displacement_max = worse(displacement_max, (now - body.position).length());
         }
-        PlaceQuality { lost, mean_height: height / self.start.len() as f64, displacement_max }
+        PlaceQuality { lost, mean_height: height / self.bodies.len() as f64, displacement_max }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Pairs of boxes that may overlap.
 
-use super::draw::{rotation, vector};
 use super::rays::PlacedBox;
 use sinew::math::{Random, Transform, Vec3};
+use sinew_scenes::blueprint::{in_box, rotation};
 
 /// Two boxes, the first around the origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,11 +28,11 @@ impl BoxPairs {
         let pairs = (0..count)
             .map(|_| {
                 let [a, b] = [(); 2].map(|()| {
-                    let half_extents = vector(&mut random, 0.2, 1.0);
+                    let half_extents = in_box(&mut random, 0.2, 1.0);
                     let world_from_box = Transform::new(Vec3::ZERO, rotation(&mut random));
                     PlacedBox { half_extents, world_from_box }
                 });
-                let offset = vector(&mut random, -1.6, 1.6);
+                let offset = in_box(&mut random, -1.6, 1.6);
                 let world_from_box = Transform::new(offset, b.world_from_box.rotation);
                 BoxPair { a, b: PlacedBox { world_from_box, ..b } }
             })

@@ -35,7 +35,7 @@ impl ClothScene {
     pub fn new() -> Self {
         let floor = Transform::from_translation(Vec3::new(0.0, -0.5, 0.0));
         let yaw = Rotation::from_axis_angle(Vec3::Y, 30f32.to_radians());
-        let crate_ = Transform::new(Vec3::new(1.0, 0.6, 0.6), yaw);
+        let block = Transform::new(Vec3::new(1.0, 0.6, 0.6), yaw);
         Self {
             side: 100,
             spacing: 0.04,
@@ -46,7 +46,7 @@ impl ClothScene {
             friction: 0.6,
             boxes: vec![
                 PlacedBox { half_extents: Vec3::new(50.0, 0.5, 50.0), world_from_box: floor },
-                PlacedBox { half_extents: Vec3::splat(0.6), world_from_box: crate_ },
+                PlacedBox { half_extents: Vec3::splat(0.6), world_from_box: block },
             ],
             spheres: vec![(Vec3::new(-1.0, 0.8, 0.2), 0.8)],
         }

@@ -2,7 +2,6 @@
 
 mod boxes;
 mod cloth;
-mod draw;
 mod rays;
 
 pub use boxes::{BoxPair, BoxPairs};

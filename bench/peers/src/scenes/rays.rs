@@ -1,9 +1,9 @@
 //! Rays against static boxes.
 
-use super::draw::{rotation, vector};
 use sinew::math::{Random, Transform, Vec3};
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
+use sinew_scenes::blueprint::{in_box, rotation};
 
 /// Rays that share one measured step: long enough for the clock, short enough for an engine that tries every box.
 const RAYS_PER_STEP: usize = 1_000;
@@ -44,8 +44,8 @@ impl RayScene {
         let mut random = Random::new(7);
         let boxes = (0..10_000)
             .map(|_| {
-                let half_extents = vector(&mut random, 0.2, 1.0);
-                let center = vector(&mut random, -50.0, 50.0);
+                let half_extents = in_box(&mut random, 0.2, 1.0);
+                let center = in_box(&mut random, -50.0, 50.0);
                 let world_from_box = Transform::new(center, rotation(&mut random));
                 PlacedBox { half_extents, world_from_box }
             })
@@ -53,8 +53,8 @@ impl RayScene {
         let mut random = Random::new(8);
         let rays = (0..100_000)
             .map(|_| {
-                let origin = vector(&mut random, -60.0, 60.0);
-                let target = vector(&mut random, -60.0, 60.0);
+                let origin = in_box(&mut random, -60.0, 60.0);
+                let target = in_box(&mut random, -60.0, 60.0);
                 Ray { origin, direction: (target - origin).normalize() * 100.0 }
             })
             .collect();

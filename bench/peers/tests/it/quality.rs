@@ -235,6 +235,18 @@ fn bodies_below_the_floor_or_without_numbers_are_lost() {
 }
 
 #[test]
+fn what_collides_with_nothing_may_hang_below_everything() {
+    let mut hook = floor();
+    hook.shapes[0].filter = Filter { mask: 0, ..Filter::default() };
+    let hung = scene(vec![hook, cube(Vec3::NEG_Y * 9.0)], vec![]);
+    assert_eq!(judge(&hung, &[start(&hung)]).place.lost, 0, "a hook is no floor");
+    let mut ghost = cube(Vec3::NEG_Y * 9.0);
+    ghost.shapes[0].filter = Filter { mask: 0, ..Filter::default() };
+    let fallen = scene(vec![floor(), ghost], vec![]);
+    assert_eq!(judge(&fallen, &[start(&fallen)]).place.lost, 0, "a floor is none to a ghost");
+}
+
+#[test]
 fn a_cloth_pulled_by_a_tenth_is_stretched_by_half_of_that_on_average() {
     let scene = ClothScene::new();
     let particles: Vec<_> = (0..scene.side * scene.side)
