@@ -241,6 +241,7 @@ impl IslandSolver {
                 inverse_inertia: Sym3::ZERO,
                 force: body.force + view.gravity * (body.gravity_scale * body.mass),
                 torque: body.torque,
+                momentum: Vec3::ZERO,
                 linear_damping: body.linear_damping,
                 angular_damping: body.angular_damping,
             });

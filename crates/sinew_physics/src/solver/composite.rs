@@ -4,7 +4,10 @@ use super::tree::{Link, NONE};
 use super::{IslandSolver, SolverBody, SolverJoint};
 use crate::joint::{DIRECTIONS, JointRows};
 use crate::spatial::{Vec6, ZERO6, ZERO66, angular, linear, spd_inverse};
-use sinew_math::{Sym3, Vec3};
+use sinew_math::{Sym3, Vec3, max};
+
+/// What has no mass to speak of (both bodies held) counts as this, kg or kg·m².
+const LEAST_MASS: f32 = 1e-9;
 
 /// Mass, first moment and inertia of rigidly held bodies about a common reference point.
 #[derive(Clone, Copy, Debug, Default)]
@@ -146,7 +149,7 @@ fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS]) 
         let alone = response[row][row];
         // Rows that depend on each other (a gimbal's end) leave the row by itself.
         let mass = inverse.map_or(if alone > 0.0 { 1.0 / alone } else { 0.0 }, |m| m[rigid][rigid]);
-        out[rows.direction[row]] = mass;
+        out[rows.direction[row]] = max(mass, LEAST_MASS);
     }
     out
 }

@@ -2,7 +2,7 @@
 
 use super::response::Response;
 use super::tree::Link;
-use super::{SolverBody, disk, lcp};
+use super::{REDUNDANCY, SolverBody, disk, free_response, lcp};
 use crate::collide::{MAX_POINTS, Manifold, collide};
 use crate::contact::{ContactMemory, PointImpulse};
 use crate::shape::{Material, Shape};
@@ -303,8 +303,11 @@ impl ManifoldRows {
     }
 
     /// Effective masses from the response of the bodies.
-    pub fn respond(&mut self, links: &[Link], response: &Response) {
+    pub fn respond(&mut self, bodies: &[SolverBody], links: &[Link], response: &Response) {
         let pair = self.pair();
+        let least = |row: &Row| {
+            REDUNDANCY * free_response(bodies, links.len(), [(pair.a, &row.a), (pair.b, &row.b)])
+        };
         let mut answers = [Row::ZERO; MAX_POINTS];
         for i in 0..self.count {
             answers[i] = self.rows[i].response(pair, links, response);
@@ -313,18 +316,20 @@ impl ManifoldRows {
             for j in 0..self.count {
                 self.k[i][j] = self.rows[i].dot(&answers[j]);
             }
+            self.k[i][i] += least(&self.rows[i]);
         }
         let across = self.tangents.map(|row| row.response(pair, links, response));
         for i in 0..2 {
             for j in 0..2 {
                 self.k_tangent[i][j] = self.tangents[i].dot(&across[j]);
             }
+            self.k_tangent[i][i] += least(&self.tangents[i]);
         }
-        self.k_spin = self.spin.dot(&self.spin.response(pair, links, response));
+        self.k_spin = self.spin.dot(&self.spin.response(pair, links, response)) + least(&self.spin);
         if self.material.rolling > 0.0 {
             let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
                 let answer = Row::about(axis).response(pair, links, response);
-                angular(&answer.b) - angular(&answer.a)
+                angular(&answer.b) - angular(&answer.a) + axis * least(&Row::about(axis))
             });
             self.k_roll = Mat3::from_cols(columns[0], columns[1], columns[2]);
         }

@@ -144,7 +144,7 @@ impl SolverJoint {
             soft.add(&self.motor_row(direction, h));
         }
         // A spring of no stiffness and no damping would be a row of infinite compliance.
-        soft.gain = max(soft.gain, f32::MIN_POSITIVE);
+        soft.gain = max(soft.gain, 1e-12);
         soft
     }
 
@@ -278,6 +278,23 @@ impl IslandSolver {
         Some(on_b)
     }
 
+    /// What springs, welds that give and motors have given in this substep, at most.
+    pub(super) fn add_drive_work(&mut self) {
+        let mut work = 0.0;
+        for joint in self.joints.iter().filter(|joint| joint.rigid < joint.rows.count) {
+            let rate = joint.rate(&self.velocities);
+            for row in joint.rigid..joint.rows.count {
+                let before = joint.start_rate[joint.rows.direction[row]];
+                let impulse = joint.soft[row].impulse(before, rate[row]);
+                work += max(0.5 * impulse * (before + rate[row]), 0.0);
+            }
+        }
+        for row in &self.limits {
+            work += row.soft_work(&self.joints[row.joint as usize], &self.velocities);
+        }
+        self.drive_work += work;
+    }
+
     /// Motors that ask for more than their caps push with these from now on; then the substep's joints are solved again
     /// from `started`, its velocities before them. A motor stays saturated until it asks for less, see
     /// [`release_motors`](Self::release_motors): without that memory the wrong ones of a chain of motors saturate.
@@ -297,7 +314,10 @@ impl IslandSolver {
                     let asked = self.asked_of_motor(j, i);
                     if self.joints[j].saturated[i] == 0 && asked.abs() > self.joints[j].motor_cap(i, self.h) {
                         self.joints[j].saturated[i] = if asked > 0.0 { 1 } else { -1 };
+                        let before = self.joints[j].open_rate(i, &self.velocities);
                         self.push_motor(j, i);
+                        let rate = 0.5 * (before + self.joints[j].open_rate(i, &self.velocities));
+                        self.drive_work += rate.abs() * self.joints[j].motor_cap(i, self.h);
                         changed = true;
                     }
                 }

@@ -15,6 +15,15 @@ const MAX_INNER_TURN: f32 = 1.0;
 /// rounding and the give and take of resting contacts are far below.
 const ENERGY_SLACK: f32 = 1e-3;
 
+/// Which velocities count when those after do not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Before {
+    /// After the forces.
+    Constraints,
+    /// After `solve`.
+    Relaxing,
+}
+
 impl IslandSolver {
     /// Impulses that hold up weights take energy away; those of an impact, repeated at another pose, add it. If they did,
     /// the substep starts without them.
@@ -27,6 +36,11 @@ impl IslandSolver {
         }
         self.velocities[..moving].copy_from_slice(&self.unconstrained);
         self.scratch.started.copy_from_slice(&self.unconstrained);
+        self.forget_impulses();
+        self.project_joints(Pass::Solve);
+    }
+
+    fn forget_impulses(&mut self) {
         self.contact_push.fill(Vec3::ZERO);
         for rows in &mut self.manifolds {
             rows.forget();
@@ -37,11 +51,10 @@ impl IslandSolver {
         for row in &mut self.limits {
             row.impulse = 0.0;
         }
-        self.project_joints(Pass::Solve);
     }
 
     /// Of the moving bodies with the given velocities, joules.
-    fn kinetic_energy(&self, velocities: &[Vec6]) -> f32 {
+    pub(super) fn kinetic_energy(&self, velocities: &[Vec6]) -> f32 {
         let mut sum = 0.0;
         for (body, v) in self.bodies.iter().zip(velocities) {
             let w = body.pose.rotation.inverse() * angular(v);
@@ -90,6 +103,54 @@ impl IslandSolver {
             for (v, r) in self.velocities[i].iter_mut().zip(rigid) {
                 *v = r + (*v - r) * keep;
             }
+        }
+    }
+
+    /// A system of rows that no finite impulses solve (a body dragged into the floor by what nothing stops) leaves the
+    /// velocities as they were before it.
+    pub(super) fn drop_nonsense(&mut self, before: Before) {
+        let moving = self.links.len();
+        if self.velocities[..moving].iter().flatten().all(|x| x.is_finite()) {
+            return;
+        }
+        let before = match before {
+            Before::Constraints => &self.unconstrained,
+            Before::Relaxing => &self.scratch.relaxed_from,
+        };
+        self.velocities[..moving].copy_from_slice(before);
+        self.forget_impulses();
+    }
+
+    /// Rigid joints and stops cannot give energy, springs and motors no more than their work. What rounding, redundant rows
+    /// or stops met at another pose than foreseen have given all the same is taken from the motion of the island beside
+    /// that as a whole: joints hold as before, since their rows are linear, and momentum stays.
+    pub(super) fn govern_energy(&mut self) {
+        let moving = self.links.len();
+        if self.pushed_from_outside || !self.is_passive() {
+            return;
+        }
+        let allowed = self.kinetic_start + self.drive_work;
+        let slack = ENERGY_SLACK * max(self.kinetic_start, self.mass());
+        let after = self.kinetic_energy(&self.velocities[..moving]);
+        if after <= allowed + slack {
+            return;
+        }
+        let rigid = if self.bodies.len() == moving {
+            RigidMotion::of(&self.bodies, &self.velocities)
+        } else {
+            RigidMotion::default()
+        };
+        let s = &mut self.scratch;
+        s.dv.clear();
+        for (body, v) in self.bodies.iter().zip(&self.velocities[..moving]) {
+            s.dv.push(difference(v, &rigid.at(body.pose.translation)));
+        }
+        let inner = self.kinetic_energy(&self.scratch.dv);
+        let share = max(allowed - (after - inner), 0.0) / inner;
+        let keep = if share < 1.0 { share.sqrt() } else { 1.0 };
+        for (body, v) in self.bodies.iter().zip(&mut self.velocities[..moving]) {
+            let rigid = rigid.at(body.pose.translation);
+            *v = core::array::from_fn(|k| rigid[k] + (v[k] - rigid[k]) * keep);
         }
     }
 

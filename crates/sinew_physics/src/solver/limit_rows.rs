@@ -4,11 +4,11 @@ use super::contact_rows::IMPACT_JUMP;
 use super::response::Response;
 use super::sweep::Pass;
 use super::tree::Link;
-use super::{IslandSolver, SolverJoint, advance};
+use super::{IslandSolver, REDUNDANCY, SolverBody, SolverJoint, advance, free_response};
 use crate::joint::def::Softness;
 use crate::joint::{JointPose, LimitImpulse, MAX_LIMITS, Row, Stop, stops, turns};
 use crate::spatial::{Vec6, add_scaled, angular, dot, linear};
-use sinew_math::{Vec3, max, min};
+use sinew_math::{Vec3, clamp, max, min};
 
 /// Fastest rate with which a violated limit pushes back, rad/s or m/s.
 const LIMIT_PUSH: f32 = 4.0;
@@ -18,8 +18,6 @@ const LIMIT_MARGIN: f32 = 0.15;
 const LIMIT_SLACK: f32 = 0.01;
 /// A hit turns linear speed into rotation over at least this lever, metres.
 const LEVER: f32 = 0.2;
-/// In `relax` a limit with less room than this holds, radians or metres.
-const LIMIT_TOUCH: f32 = 1e-4;
 
 /// How a limit row answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -122,7 +120,7 @@ impl IslandSolver {
             let axis = predicted.rotation_a * stop.axis;
             let hardness = Hardness::Foreseen(rate);
             let mut row = LimitRow { axis, row: stop.row, hardness, impulse: 0.0, ..row.clone() };
-            row.respond(&self.joints, &self.links, &self.response);
+            row.respond(&self.joints, &self.bodies, &self.links, &self.response);
             self.limits.push(row);
         }
         self.limits.len() > known
@@ -194,14 +192,21 @@ impl LimitRow {
         add_row(impulses, joint.b, &self.row.b, self.impulse);
     }
 
-    pub fn respond(&mut self, joints: &[SolverJoint], links: &[Link], response: &Response) {
+    pub fn respond(
+        &mut self,
+        joints: &[SolverJoint],
+        bodies: &[SolverBody],
+        links: &[Link],
+        response: &Response,
+    ) {
         let joint = &joints[self.joint as usize];
         let (a, b) = (joint.a as usize, joint.b as usize);
         let Row { a: ja, b: jb } = &self.row;
         self.effective = dot(jb, &response.at(links, b, b, jb))
             + dot(ja, &response.at(links, a, a, ja))
             + dot(jb, &response.at(links, b, a, ja))
-            + dot(ja, &response.at(links, a, b, jb));
+            + dot(ja, &response.at(links, a, b, jb))
+            + REDUNDANCY * free_response(bodies, links.len(), [(joint.a, ja), (joint.b, jb)]);
     }
 
     /// Change of the impulses on both bodies for the present velocities.
@@ -225,21 +230,29 @@ impl LimitRow {
                 let pull = gain * rate + h * stiffness * self.room + self.impulse;
                 self.impulse - pull / (1.0 + gain * self.effective)
             }
-            _ => self.impulse + (self.wanted(pass, h) - rate) / self.effective,
+            _ => self.impulse + (self.wanted(pass, rate, h) - rate) / self.effective,
         };
         let change = max(new, 0.0) - self.impulse;
         self.impulse += change;
         (change != 0.0).then(|| (self.row.a.map(|x| x * change), self.row.b.map(|x| x * change)))
     }
 
-    /// Rate that a stop asks for.
-    fn wanted(&self, pass: Pass, h: f32) -> f32 {
+    /// What a soft row has given, at most.
+    pub fn soft_work(&self, joint: &SolverJoint, velocities: &[Vec6]) -> f32 {
+        match self.hardness {
+            Hardness::Soft(..) => max(self.impulse * self.row.rate(joint, velocities), 0.0),
+            _ => 0.0,
+        }
+    }
+
+    /// Rate that a stop asks for at the present one. In `relax` a limb on its way to the stop is not hurried there: to
+    /// take an impulse back at another pose than it was given at gives energy.
+    fn wanted(&self, pass: Pass, rate: f32, h: f32) -> f32 {
         match (pass, self.hardness) {
             (Pass::Solve, Hardness::Foreseen(rate)) => rate,
             (Pass::Solve, _) if self.room < 0.0 => min(-self.room / h, LIMIT_PUSH),
             (Pass::Solve, _) => -self.room / h,
-            _ if self.room > LIMIT_TOUCH => -self.room / h,
-            _ => 0.0,
+            _ => clamp(rate, min(-self.room / h, 0.0), 0.0),
         }
     }
 }

@@ -6,17 +6,12 @@
 use super::limit_rows::add_row;
 use super::response::Response;
 use super::tree::{self, Link, NONE};
-use super::{IslandSolver, Scratch, SolverBody, SolverJoint};
+use super::{IslandSolver, REDUNDANCY, Scratch, SolverBody, SolverJoint, free_response};
 use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
-use sinew_math::{Sym3, max};
+use sinew_math::max;
 
 /// At most this many rows of loops in one tree are solved exactly.
 pub(super) const MAX_EXACT_ROWS: usize = 24;
-/// Added to the diagonal of S as a share of what the bodies would answer if nothing held them. Rows that say what the tree
-/// says already (a planar four-bar linkage of hinges) answer with rounding errors of that size alone; what this leaves of
-/// the others is removed by the position corrections.
-const REDUNDANCY: f32 = 1e-5;
-
 /// Most rounds of conjugate gradients, and the rate that needs none, m/s or rad/s.
 const ROUNDS: usize = 16;
 const RATE_TOLERANCE: f32 = 1e-5;
@@ -114,6 +109,7 @@ impl Loops {
         &mut self,
         joints: &[SolverJoint],
         bodies: &[SolverBody],
+        moving: usize,
         response: &mut Response,
     ) {
         self.inverses.clear();
@@ -144,7 +140,8 @@ impl Loops {
                         |body: u32, j: &Vec6| response.slot(body).map_or(0.0, |slot| dot(j, &column[slot]));
                     let mut entry = on(joint.a, &joint.rows.a[row]) + on(joint.b, &joint.rows.b[row]);
                     if k == l {
-                        entry += joint.compliance(row) + REDUNDANCY * joint.free_response(row, bodies);
+                        let ends = [(joint.a, &joint.rows.a[row]), (joint.b, &joint.rows.b[row])];
+                        entry += joint.compliance(row) + REDUNDANCY * free_response(bodies, moving, ends);
                     }
                     s.push(entry);
                 }
@@ -180,8 +177,10 @@ impl Loops {
                 let rate = joint.rate(&scratch.dv);
                 left.extend((0..joint.rows.count).map(|row| residual[row] - rate[row]));
             }
-            let inverse = &self.inverses[closure.inverse..];
-            let mut lines = inverse.chunks_exact(closure.rows);
+            if closure.rows == 0 {
+                continue;
+            }
+            let mut lines = self.inverses[closure.inverse..].chunks_exact(closure.rows);
             for &joint in &self.joints[range] {
                 let joint = &mut joints[joint as usize];
                 for row in 0..joint.rows.count {
@@ -274,17 +273,6 @@ fn answer(
 
 fn dot_of(a: &[f32], b: &[f32]) -> f32 {
     a.iter().zip(b).fold(0.0, |sum, (x, y)| sum + x * y)
-}
-
-impl SolverJoint {
-    /// Answer of a row to its own impulse if nothing else held the bodies.
-    fn free_response(&self, row: usize, bodies: &[SolverBody]) -> f32 {
-        let on = |body: u32, j: &Vec6| {
-            let body = &bodies[body as usize];
-            if body.inverse_inertia == Sym3::ZERO { 0.0 } else { dot(j, &body.velocity_change(j)) }
-        };
-        on(self.a, &self.rows.a[row]) + on(self.b, &self.rows.b[row])
-    }
 }
 
 impl IslandSolver {

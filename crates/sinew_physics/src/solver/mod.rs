@@ -24,10 +24,11 @@ use crate::contact::ContactMemory;
 use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
-use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, angular, join, linear};
+use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, angular, dot, join, linear};
 pub(crate) use build::View;
 use contact_rows::ManifoldRows;
 use drives::SoftRow;
+use energy::Before;
 use limit_rows::LimitRow;
 use loops::Loops;
 use response::Response;
@@ -65,8 +66,23 @@ pub(crate) struct SolverBody {
     /// Force and torque per substep second: gravity and the user's, N and N·m.
     pub force: Vec3,
     pub torque: Vec3,
+    /// Angular momentum that the body would have at the substep's end without impulses, N·m·s.
+    momentum: Vec3,
     pub linear_damping: f32,
     pub angular_damping: f32,
+}
+
+/// What is added to the response of every row of contacts, limits and loops, as a share of what the bodies would answer if
+/// nothing held them: rows that cannot move anything, since joints hold it already, answer with rounding errors alone.
+const REDUNDANCY: f32 = 1e-5;
+
+/// A row's answer to its own impulse if nothing held the bodies; those from `moving` on are fixed.
+fn free_response(bodies: &[SolverBody], moving: usize, ends: [(u32, &Vec6); 2]) -> f32 {
+    let on = |(body, row): (u32, &Vec6)| match bodies.get(body as usize) {
+        Some(of) if (body as usize) < moving => dot(row, &of.velocity_change(row)),
+        _ => 0.0,
+    };
+    on(ends[0]) + on(ends[1])
 }
 
 impl SolverBody {
@@ -80,6 +96,11 @@ impl SolverBody {
             m[3 + k][3..].copy_from_slice(&[row.x, row.y, row.z]);
         }
         m
+    }
+
+    /// N·m·s, without what geometric stiffness adds.
+    fn angular_momentum(&self, w: Vec3) -> Vec3 {
+        self.pose.rotation * ((self.pose.rotation.inverse() * w) * self.inertia)
     }
 
     /// Answer to an impulse if no joint held it.
@@ -147,6 +168,11 @@ pub(crate) struct IslandSolver {
     scratch: Scratch,
     /// Largest change of a velocity component in the sweep in progress.
     largest_change: f32,
+    /// Kinetic energy when the forces had acted in this substep, and work of springs and motors since, J.
+    kinetic_start: f32,
+    drive_work: f32,
+    /// Particles pushed in this substep.
+    pushed_from_outside: bool,
     /// How fast a hit may make a joint turn, rad/s: limits within reach of it get rows.
     hit_rate: f32,
     /// Substep, seconds.
@@ -164,6 +190,7 @@ struct Scratch {
     before: Vec<Vec6>,
     /// Velocities that the joints of the substep are solved from.
     started: Vec<Vec6>,
+    relaxed_from: Vec<Vec6>,
     pieces: Vec<composite::Piece>,
     build: build::Scratch,
 }
@@ -174,20 +201,24 @@ impl IslandSolver {
     pub fn integrate_velocity(&mut self) {
         let h = self.h;
         self.begin_drives();
-        for (body, v) in self.bodies.iter().zip(&mut self.velocities).take(self.links.len()) {
+        self.push_saturated();
+        for (body, v) in self.bodies.iter_mut().zip(&mut self.velocities).take(self.links.len()) {
             let inverse_mass = 1.0 / body.mass;
             let lin = linear(v) / (1.0 + h * body.linear_damping) + body.force * (inverse_mass * h);
             let mut ang = angular(v) / (1.0 + h * body.angular_damping);
             ang += body.inverse_inertia * (body.torque * h);
-            ang = gyroscopic(body, ang, h);
             // Geometric stiffness beyond the inertia acts as inertia: the spin it takes part in is shared with it.
             if body.excess != Vec3::ZERO {
                 let r = body.pose.rotation;
                 ang = r * ((r.inverse() * ang) * body.inertia / (body.inertia + body.excess));
             }
-            *v = join(limit_length(lin, MAX_SPEED), limit_length(ang, MAX_TURN / h));
+            ang = limit_length(ang, MAX_TURN / h);
+            body.momentum = body.angular_momentum(ang);
+            *v = join(limit_length(lin, MAX_SPEED), gyroscopic(body, ang, 0.5 * h));
         }
-        self.push_saturated();
+        self.kinetic_start = self.kinetic_of_momenta();
+        self.drive_work = 0.0;
+        self.pushed_from_outside = false;
         self.unconstrained.clear();
         self.unconstrained.extend_from_slice(&self.velocities[..self.links.len()]);
         self.contact_push.clear();
@@ -235,14 +266,24 @@ impl IslandSolver {
             self.calm_trees();
             self.correct_positions();
         }
+        self.drop_nonsense(Before::Constraints);
+        self.add_drive_work();
     }
 
     /// Velocities to poses; joint forces of the substep; then everything that depends on the pose, once, for `relax`
     /// and the next substep's `solve`.
     pub fn integrate_position(&mut self) {
         self.store_joint_forces();
-        for (body, v) in self.bodies.iter_mut().zip(&self.velocities) {
+        for (i, (body, v)) in self.bodies.iter_mut().zip(&mut self.velocities).enumerate() {
+            let turned = self.unconstrained.get(i).map(|before| {
+                // What impulses gave, at the inertia that they met.
+                body.momentum + body.angular_momentum(angular(v) - angular(before))
+            });
             body.pose = advance(&body.pose, v, self.h);
+            if let Some(momentum) = turned {
+                let r = body.pose.rotation;
+                *v = join(linear(v), r * ((r.inverse() * momentum) / body.inertia));
+            }
         }
         self.refresh();
     }
@@ -252,6 +293,7 @@ impl IslandSolver {
         if impulses.iter().all(|p| *p == ZERO6) {
             return;
         }
+        self.pushed_from_outside = true;
         self.scratch.impulses.clear();
         self.scratch.impulses.extend_from_slice(impulses);
         self.answer_impulses();
@@ -259,11 +301,15 @@ impl IslandSolver {
 
     /// Joint velocities to zero at the new pose (RATTLE), contacts and limits without bias, friction.
     pub fn relax(&mut self) {
+        self.scratch.relaxed_from.clear();
+        self.scratch.relaxed_from.extend_from_slice(&self.velocities[..self.links.len()]);
         for rows in &mut self.manifolds {
             rows.begin_relax(&self.velocities, self.h);
         }
         self.project_joints(Pass::Relax);
         self.sweep(Pass::Relax);
+        self.drop_nonsense(Before::Relaxing);
+        self.govern_energy();
         for rows in &mut self.manifolds {
             rows.end_substep();
         }
@@ -348,18 +394,28 @@ impl IslandSolver {
         }
         self.response.choose(&self.links, self.tree_count, wanted);
         self.response.fill(&self.links);
-        self.loops.respond(&self.joints, &self.bodies, &mut self.response);
+        self.loops.respond(&self.joints, &self.bodies, self.links.len(), &mut self.response);
         for rows in &mut self.manifolds {
-            rows.respond(&self.links, &self.response);
+            rows.respond(&self.bodies, &self.links, &self.response);
         }
         for row in &mut self.limits {
-            row.respond(&self.joints, &self.links, &self.response);
+            row.respond(&self.joints, &self.bodies, &self.links, &self.response);
         }
     }
 
     /// True if some joints are solved as trees.
     fn is_articulated(&self) -> bool {
         self.articulated
+    }
+
+    /// Of the moving bodies as the forces leave them, J.
+    fn kinetic_of_momenta(&self) -> f32 {
+        let mut sum = 0.0;
+        for (body, v) in self.bodies.iter().zip(&self.velocities[..self.links.len()]) {
+            let momentum = body.pose.rotation.inverse() * body.momentum;
+            sum += 0.5 * body.mass * linear(v).length_squared() + 0.5 * (momentum / body.inertia).dot(momentum);
+        }
+        sum
     }
 
     /// State of a body for the world.
