@@ -12,6 +12,8 @@ use sinew_math::{max, trig};
 const STICK_RATE: f32 = 0.02;
 /// A velocity motor is a viscosity that would bring what it moves to its speed within this share of a substep.
 const MOTOR_SHARE: f32 = 1e-3;
+/// `(ωh)²` of the fastest spring whose oscillation is kept.
+const FASTEST: f32 = 1.0;
 /// Rounds in which motors that ask for more than their caps are saturated within a substep.
 const SATURATION_ROUNDS: usize = 4;
 
@@ -33,7 +35,9 @@ impl SoftRow {
         let (stiffness, damping) = softness.of_mass(mass);
         let omega2 = stiffness / mass * h * h;
         let a = 0.5 * damping / mass * h;
-        let (alpha, gamma) = if omega2 > 0.0 { exact_oscillator(omega2, a) } else { (2.0 * a, 0.0) };
+        // Faster oscillations than a substep can show, and none at all, are left to implicit Euler.
+        let shown = omega2 > 0.0 && omega2 < FASTEST;
+        let (alpha, gamma) = if shown { exact_oscillator(omega2, a) } else { (2.0 * a + omega2, 0.0) };
         self.gain += mass * alpha;
         self.carry += mass * gamma;
         self.push += h * stiffness * x - mass * (alpha + gamma) * rate;
