@@ -130,16 +130,28 @@ pub fn telling(scene: &SceneResult) -> Vec<&'static Figure> {
 }
 
 impl Unit {
-    /// A number with its unit, short.
+    /// A number with its unit, rounded.
     pub fn show(self, value: f64) -> String {
+        let (value, unit) = self.scaled(value);
+        if self == Self::Count { format!("{value:.0}") } else { format!("{}{unit}", rounded(value)) }
+    }
+
+    /// A number with its unit, as it was written.
+    pub fn show_bound(self, value: f64) -> String {
+        let (value, unit) = self.scaled(value);
+        format!("{}{unit}", value as f32)
+    }
+
+    /// In a unit that people like for such a size.
+    fn scaled(self, value: f64) -> (f64, &'static str) {
         match self {
-            Self::Length if value.abs() >= 1.0 => format!("{} m", rounded(value)),
-            Self::Length => format!("{} mm", rounded(value * 1e3)),
-            Self::Share => format!("{} %", rounded(value * 1e2)),
-            Self::Energy if value.abs() >= 1e3 => format!("{} kJ", rounded(value * 1e-3)),
-            Self::Energy => format!("{} J", rounded(value)),
-            Self::Angle => format!("{}°", rounded(value.to_degrees())),
-            Self::Count => format!("{value:.0}"),
+            Self::Length if value.abs() >= 1.0 => (value, " m"),
+            Self::Length => (value * 1e3, " mm"),
+            Self::Share => (value * 1e2, " %"),
+            Self::Energy if value.abs() >= 1e3 => (value * 1e-3, " kJ"),
+            Self::Energy => (value, " J"),
+            Self::Angle => (value.to_degrees(), "°"),
+            Self::Count => (value, ""),
         }
     }
 }
@@ -176,6 +188,7 @@ mod tests {
         assert_eq!(Unit::Share.show(0.063), "6.30 %");
         assert_eq!(Unit::Energy.show(27.5), "27.5 J");
         assert_eq!(Unit::Count.show(12.0), "12");
+        assert_eq!(Unit::Length.show_bound(2e-4), "0.2 mm");
     }
 
     #[test]

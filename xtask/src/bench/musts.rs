@@ -12,8 +12,10 @@ pub enum Verdict {
     Met,
     /// It is not.
     Missed,
-    /// It was not measured, for this reason.
+    /// It cannot be measured yet, for this reason.
     Open(String),
+    /// It was not asked for.
+    NotRun,
 }
 
 /// A row of the specification's table of speeds.
@@ -89,24 +91,20 @@ impl Measure {
             Self::Peers(scene) => raced(results, scene)?.0.speed(),
             Self::PeersNoWorse(scene, figure) => speed_of_quality(raced(results, scene)?.0, figure),
         };
-        factor.ok_or_else(not_run)
+        factor.ok_or(Verdict::NotRun)
     }
 }
 
 /// A scene that Sinew came to the end of. What dies or is stopped was run and falls short, what is not there yet is
 /// open.
 fn raced<'a>(results: &'a Results, scene: &str) -> Result<(&'a SceneResult, &'a EngineResult), Verdict> {
-    let scene = results.scene(scene).ok_or_else(not_run)?;
-    let ours = scene.sinew().ok_or_else(not_run)?;
+    let scene = results.scene(scene).ok_or(Verdict::NotRun)?;
+    let ours = scene.sinew().ok_or(Verdict::NotRun)?;
     match ours.why_not() {
         None => Ok((scene, ours)),
         Some(_) if ours.is_failed() => Err(Verdict::Missed),
         Some(why) => Err(Verdict::Open(why.to_owned())),
     }
-}
-
-fn not_run() -> Verdict {
-    Verdict::Open("not run".to_owned())
 }
 
 /// As [`SceneResult::speed`], against the peers that are as good; with none of these there is no race, and it is won.
@@ -180,18 +178,18 @@ impl Hold {
     pub fn must(&self) -> String {
         match self.most {
             Most::Value(0.0) => "0".to_owned(),
-            Most::Value(most) => format!("≤ {}", self.figure.unit.show(most)),
+            Most::Value(most) => format!("≤ {}", self.figure.unit.show_bound(most)),
             Most::BestPeer => "≤ best peer".to_owned(),
         }
     }
 }
 
-/// A line for each row of the specification's table that falls short, and one for each that was not measured.
+/// A line for each row of the specification's table that falls short, and one for each that cannot be measured yet.
 pub fn shortfalls(results: &Results) -> (Vec<String>, Vec<String>) {
     let (mut missed, mut open) = (Vec::new(), Vec::new());
     for speed in SPEEDS {
         match speed.judge(results) {
-            (_, Verdict::Goal | Verdict::Met) => {}
+            (_, Verdict::Goal | Verdict::Met | Verdict::NotRun) => {}
             (_, Verdict::Open(why)) => open.push(format!("{}: {why}", speed.work)),
             (value, Verdict::Missed) => {
                 let value = value
@@ -248,7 +246,7 @@ mod tests {
         assert_eq!(pile(1.0), (Some(4.0), Verdict::Goal));
         assert_eq!(pile(2.0), (Some(2.0), Verdict::Met));
         assert_eq!(pile(4.0), (Some(1.0), Verdict::Missed));
-        assert_eq!(speed("ragdoll pile").judge(&Results::default()).1, Verdict::Open("not run".into()));
+        assert_eq!(speed("ragdoll pile").judge(&Results::default()).1, Verdict::NotRun);
     }
 
     #[test]
@@ -297,6 +295,6 @@ mod tests {
         };
         assert_eq!(judge(0.01, 0.02), Verdict::Met);
         assert_eq!(judge(0.03, 0.02), Verdict::Missed);
-        assert_eq!(HOLDS[0].must(), "≤ 1.00 mm");
+        assert_eq!(HOLDS[0].must(), "≤ 1 mm");
     }
 }

@@ -53,7 +53,7 @@ const HOLD: &str = "What must hold with default settings, and what others do wit
 const SPECIFICATION: &str = "Factors against the fastest peer of this run.\n";
 
 const SCENES: &str = "Times in milliseconds per step: the median step (in brackets: of the best round), the 99th percentile, the median of the last
-third of the run, when piles have settled. Memory in MiB is the peak above what the process had before the scene.
+third of the run, when piles have settled. *Sinew's speed* is the engine's median over Sinew's. Memory in MiB is the peak above what the process had before the scene.
 *depth* is sampled every tenth step. *energy gained* is the most the world ever had above its start.
 ";
 
@@ -80,8 +80,9 @@ fn title(engine: &str) -> &str {
     }
 }
 
+/// A table with two columns of words and one for each engine.
 fn heading<'a>(before: &[&'a str], engines: &'a [String], after: &[&'a str]) -> Table {
-    Table::new([before, &engines.iter().map(|name| title(name)).collect::<Vec<_>>(), after].concat())
+    Table::new(2, [before, &engines.iter().map(|name| title(name)).collect::<Vec<_>>(), after].concat())
 }
 
 fn of<'a>(scene: &'a SceneResult, engine: &str) -> Option<&'a EngineResult> {
@@ -116,7 +117,11 @@ pub fn holds(results: &Results) -> Table {
     let engines = columns(results);
     let mut table = heading(&["scene", "figure", "must"], &engines, &[]);
     for hold in HOLDS {
-        let is_held = hold.judge(results) == Verdict::Met;
+        let verdict = hold.judge(results);
+        if verdict == Verdict::NotRun {
+            continue;
+        }
+        let is_held = verdict == Verdict::Met;
         let figure = |name: &String| {
             let engine = results.scene(hold.scene).and_then(|scene| of(scene, name));
             let Some(engine) = engine else { return NONE.to_owned() };
@@ -134,7 +139,7 @@ pub fn holds(results: &Results) -> Table {
 
 /// The specification's table, judged.
 pub fn speeds(results: &Results) -> Table {
-    let mut table = Table::new(["work", "must", "goal", "measured", "verdict"]);
+    let mut table = Table::new(2, ["work", "verdict", "must", "goal", "measured"]);
     for speed in SPEEDS {
         let (value, verdict) = speed.judge(results);
         let measured = value.map_or(NONE.to_owned(), |value| format!("{}×", rounded(value)));
@@ -143,8 +148,9 @@ pub fn speeds(results: &Results) -> Table {
             Verdict::Met => "met".to_owned(),
             Verdict::Missed => "**falls short**".to_owned(),
             Verdict::Open(why) => why,
+            Verdict::NotRun => continue,
         };
-        table.row([speed.work.to_owned(), speed.bar.must(), speed.bar.goal(), measured, verdict]);
+        table.row([speed.work.to_owned(), verdict, speed.bar.must(), speed.bar.goal(), measured]);
     }
     table
 }
@@ -155,10 +161,10 @@ fn details(scene: &SceneResult) -> String {
     let sizes = sizes.filter_map(|key| Some((scene.size(key).filter(|&size| size > 0)?, key)));
     let sizes: Vec<String> = sizes.map(|(size, key)| format!("{size} {key}")).collect();
     let figures = telling(scene);
-    let times = ["engine", "median (best)", "p99", "last third", "MiB"];
-    let mut table = Table::new(times.into_iter().chain(figures.iter().map(|figure| figure.heading)));
+    let times = ["engine", "median (best)", "Sinew's speed", "p99", "last third", "MiB"];
+    let mut table = Table::new(1, times.into_iter().chain(figures.iter().map(|figure| figure.heading)));
     for engine in &scene.engines {
-        let Some(times) = time_cells(engine) else { continue };
+        let Some(times) = time_cells(scene, engine) else { continue };
         let figures = figures.iter().map(|figure| cell(figure, engine));
         table.row(times.into_iter().chain(figures));
     }
@@ -167,11 +173,12 @@ fn details(scene: &SceneResult) -> String {
     format!("{}: {}. Measured at {}.\n\n{table}{absent}", scene.about, sizes.join(", "), scene.revision)
 }
 
-fn time_cells(engine: &EngineResult) -> Option<[String; 5]> {
+fn time_cells(scene: &SceneResult, engine: &EngineResult) -> Option<[String; 6]> {
     let times = engine.times()?;
     Some([
         format!("{}{}", title(&engine.name), mark(engine)),
         format!("{} ({})", rounded(times.median), rounded(times.best)),
+        scene.speed_against(engine).map_or(NONE.to_owned(), |speed| format!("{}×", rounded(speed))),
         rounded(times.p99),
         rounded(times.last_third),
         engine.memory().map_or(NONE.to_owned(), rounded),
@@ -190,7 +197,7 @@ fn mark(engine: &EngineResult) -> &'static str {
 
 /// What was measured, and how it was compiled.
 fn engines(results: &Results) -> Table {
-    let mut table = Table::new(["engine", "version", "compiled", "settings"]);
+    let mut table = Table::new(4, ["engine", "version", "compiled", "settings"]);
     for name in columns(results) {
         let found = results.scenes.iter().filter_map(|scene| of(scene, &name));
         let Some(engine) = found.into_iter().find(|engine| engine.text("version").is_some()) else {
@@ -230,7 +237,7 @@ mod tests {
     fn what_holds_is_bold() {
         let holds = holds(&results()).to_string();
         let row = holds.lines().nth(2).expect("a row");
-        assert!(row.contains("≤ 1.00 mm") && row.contains("**0.100 mm**"), "{row}");
+        assert!(row.contains("≤ 1 mm") && row.contains("**0.100 mm**"), "{row}");
     }
 
     #[test]

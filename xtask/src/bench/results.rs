@@ -110,10 +110,14 @@ impl SceneResult {
         self.engines.iter().filter(|engine| !engine.is_sinew())
     }
 
-    /// Median time of the fastest peer over Sinew's, if both ran.
+    /// Sinew's speed: the median time of an engine over ours, if both ran.
+    pub fn speed_against(&self, engine: &EngineResult) -> Option<f64> {
+        Some(engine.times()?.median / self.sinew()?.times()?.median)
+    }
+
+    /// The same, against the fastest peer.
     pub fn speed(&self) -> Option<f64> {
-        let fastest = self.peers().filter_map(EngineResult::times).map(|times| times.median);
-        Some(fastest.min_by(f64::total_cmp)? / self.sinew()?.times()?.median)
+        self.peers().filter_map(|peer| self.speed_against(peer)).min_by(f64::total_cmp)
     }
 
     /// A number that is the same for all engines, such as `bodies`.

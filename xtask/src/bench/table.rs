@@ -2,15 +2,17 @@
 
 use std::fmt;
 
-/// A table; its first row is the heading.
+/// A table; its first row is the heading. Words stand at the left of their columns, numbers at the right.
 pub struct Table {
+    /// How many columns, the first ones, hold words.
+    words: usize,
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// With a heading and nothing below.
-    pub fn new<S: Into<String>>(heading: impl IntoIterator<Item = S>) -> Self {
-        Self { rows: vec![heading.into_iter().map(Into::into).collect()] }
+    /// With a heading and nothing below; the first `words` columns are to hold words.
+    pub fn new<S: Into<String>>(words: usize, heading: impl IntoIterator<Item = S>) -> Self {
+        Self { words, rows: vec![heading.into_iter().map(Into::into).collect()] }
     }
 
     /// Adds a row.
@@ -22,27 +24,31 @@ impl Table {
         assert_eq!(row.len(), self.rows[0].len(), "a row is as wide as the heading: {row:?}");
         self.rows.push(row);
     }
+
+    fn holds_words(&self, column: usize) -> bool {
+        column < self.words
+    }
 }
 
-/// The first column stands at the left, as names do, the others at the right, as numbers do.
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let width =
             |column: usize| self.rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
         let widths: Vec<usize> = (0..self.rows[0].len()).map(width).collect();
         for (number, row) in self.rows.iter().enumerate() {
-            write!(f, "|")?;
             for (column, (cell, width)) in row.iter().zip(&widths).enumerate() {
-                if column == 0 { write!(f, " {cell:<width$} |")? } else { write!(f, " {cell:>width$} |")? }
-            }
-            writeln!(f)?;
-            if number == 0 {
-                write!(f, "|")?;
-                for (column, width) in widths.iter().enumerate() {
-                    let end = if column == 0 { '-' } else { ':' };
-                    write!(f, "{}{end}|", "-".repeat(width + 1))?;
+                match self.holds_words(column) {
+                    true => write!(f, "| {cell:<width$} ")?,
+                    false => write!(f, "| {cell:>width$} ")?,
                 }
-                writeln!(f)?;
+            }
+            writeln!(f, "|")?;
+            if number == 0 {
+                for (column, width) in widths.iter().enumerate() {
+                    let end = if self.holds_words(column) { '-' } else { ':' };
+                    write!(f, "|{}{end}", "-".repeat(width + 1))?;
+                }
+                writeln!(f, "|")?;
             }
         }
         Ok(())
@@ -55,7 +61,7 @@ mod tests {
 
     #[test]
     fn columns_are_aligned() {
-        let mut table = Table::new(["scene", "ms"]);
+        let mut table = Table::new(1, ["scene", "ms"]);
         table.row(["pile", "7.1"]);
         table.row(["a wall", "12.25"]);
         assert_eq!(

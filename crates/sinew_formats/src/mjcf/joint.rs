@@ -1,13 +1,13 @@
-//! From the hinges of a body to one joint.
+//! From the `<joint>` elements of a body to one joint.
 
-use super::compiler::{Compiler, Limits, direction, y_up};
+use super::compiler::{Compiler, Limits, direction, quaternion, turn_y_up, y_up};
 use super::defaults::Merged;
 use super::notes::Notes;
-use super::xml::{Element, Value, unsupported};
+use super::xml::{Element, Value, malformed, unsupported};
 use crate::error::{Result, quoted};
 use core::f32::consts::PI;
-use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, clamp, max};
-use sinew_physics::JointKind;
+use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, clamp, max, min};
+use sinew_physics::{AxisMotion, JointKind, SixDof, Softness, Spring};
 
 /// What lets a body move in its parent.
 pub(super) enum Freedom {
@@ -17,22 +17,35 @@ pub(super) enum Freedom {
     Free,
     /// A `<joint type="ball">`.
     Ball(Pivot),
+    /// A `<joint type="slide">`.
+    Slide(Pivot),
     /// One to three hinges, from the parent to the body.
     Hinges(Vec<Pivot>),
 }
 
-/// A `<joint>` of a body, in the body's frame.
+/// A `<joint>` of a body, in the body's frame. What depends on its type is in radians, or metres for a slide.
 pub(super) struct Pivot {
-    pub name: String,
+    name: String,
     anchor: Vec3,
-    /// Of a hinge: of length 1.
-    pub axis: Vec3,
-    /// Radians from the pose of the file; `None`: unlimited.
+    /// Of length 1.
+    axis: Vec3,
+    /// From the pose of the file; `None`: unlimited.
     range: Option<Range>,
-    /// Joint coordinate in the pose of the file, radians.
-    pub reference: f32,
-    /// N·m.
-    pub friction: f32,
+    /// Coordinate in the pose of the file.
+    reference: f32,
+    /// Where its spring rests, from the pose of the file.
+    spring_rest: f32,
+    stiffness: f32,
+    damping: f32,
+    /// N·m or N.
+    friction: f32,
+}
+
+/// What the numbers of a joint measure.
+#[derive(Clone, Copy, PartialEq)]
+enum Measure {
+    Angle,
+    Length,
 }
 
 /// Cosine of the angle between hinges that are taken to be at right angles: 6° from it.
@@ -40,10 +53,9 @@ const NEARLY_PERPENDICULAR: f32 = 0.1;
 /// Anchors that are farther apart are worth a note, metres.
 const SAME_ANCHOR: f32 = 1e-3;
 
-const UNREAD: [(&str, &str); 5] = [
-    ("damping", "damping of joints"),
-    ("stiffness", "springs of joints"),
+const UNREAD: [(&str, &str); 4] = [
     ("armature", "rotor inertia of joints"),
+    ("springdamper", "springdamper"),
     ("solreflimit", "solreflimit"),
     ("solimplimit", "solimplimit"),
 ];
@@ -52,19 +64,21 @@ impl Freedom {
     /// Adds a `<joint>` to what the body has so far.
     pub fn and_joint(self, joint: &Merged<'_, '_>, compiler: &Compiler, notes: &mut Notes) -> Result<Self> {
         let kind = joint.get("type").map_or("hinge", Value::text);
+        let mut read = |measure| Pivot::read(joint, measure, compiler, notes);
         match (kind, self) {
             ("free", Self::Welded) => Ok(Self::Free),
-            ("ball", Self::Welded) => Ok(Self::Ball(Pivot::read(joint, compiler, notes)?)),
-            ("hinge", Self::Welded) => Ok(Self::Hinges(vec![Pivot::read(joint, compiler, notes)?])),
+            ("ball", Self::Welded) => Ok(Self::Ball(read(Measure::Angle)?)),
+            ("slide", Self::Welded) => Ok(Self::Slide(read(Measure::Length)?)),
+            ("hinge", Self::Welded) => Ok(Self::Hinges(vec![read(Measure::Angle)?])),
             ("hinge", Self::Hinges(mut hinges)) if hinges.len() < 3 => {
-                hinges.push(Pivot::read(joint, compiler, notes)?);
+                hinges.push(read(Measure::Angle)?);
                 Ok(Self::Hinges(hinges))
             }
-            ("free" | "ball" | "hinge", _) => {
-                let what = "a body has one free joint, one ball joint, or up to three hinges";
+            ("free" | "ball" | "slide" | "hinge", _) => {
+                let what = "a body has one free joint, one ball joint, one slide, or up to three hinges";
                 Err(unsupported(joint.element, what))
             }
-            _ => Err(unsupported(joint.element, format!("joints of type {} are not read", quoted(kind)))),
+            _ => Err(malformed(joint.element, format!("no joint of type {}", quoted(kind)))),
         }
     }
 
@@ -72,7 +86,7 @@ impl Freedom {
     pub fn name(&self) -> Option<String> {
         match self {
             Self::Welded | Self::Free => None,
-            Self::Ball(ball) => Some(ball.name.clone()),
+            Self::Ball(pivot) | Self::Slide(pivot) => Some(pivot.name.clone()),
             Self::Hinges(hinges) => {
                 let names: Vec<_> = hinges.iter().map(|hinge| hinge.name.as_str()).collect();
                 Some(names.join("+"))
@@ -86,56 +100,96 @@ impl Freedom {
             Self::Welded => 0,
             Self::Free => 7,
             Self::Ball(_) => 4,
+            Self::Slide(_) => 1,
             Self::Hinges(hinges) => hinges.len(),
         }
     }
+
+    /// How far a body that has a joint is from the pose of the file at the `coordinates` that `value` holds; in the
+    /// body's axes, about its anchor.
+    pub fn motion(&self, coordinates: &[f32], value: Value<'_>) -> Result<Transform> {
+        Ok(match (self, coordinates) {
+            (Self::Ball(_), &[w, x, y, z]) => {
+                Transform::new(Vec3::ZERO, turn_y_up(quaternion(value, [w, x, y, z])?))
+            }
+            (Self::Slide(slide), &[along]) => {
+                Transform::from_translation(slide.axis * (along - slide.reference))
+            }
+            (Self::Hinges(hinges), angles) => {
+                let turns = hinges.iter().zip(angles).map(|(hinge, angle)| (hinge, angle - hinge.reference));
+                Transform::new(Vec3::ZERO, turned(turns))
+            }
+            _ => Transform::IDENTITY,
+        })
+    }
+}
+
+/// MuJoCo turns a body by its hinges in their order, each in the axes that those before it left.
+fn turned<'a>(hinges: impl Iterator<Item = (&'a Pivot, f32)>) -> Rotation {
+    hinges
+        .fold(Rotation::IDENTITY, |turn, (hinge, angle)| turn * Rotation::from_axis_angle(hinge.axis, angle))
 }
 
 impl Pivot {
-    fn read(joint: &Merged<'_, '_>, compiler: &Compiler, notes: &mut Notes) -> Result<Self> {
+    fn read(
+        joint: &Merged<'_, '_>,
+        measure: Measure,
+        compiler: &Compiler,
+        notes: &mut Notes,
+    ) -> Result<Self> {
         for (key, what) in UNREAD {
             if joint.get(key).is_some_and(|value| value.text().trim() != "0") {
                 notes.left_out(what);
             }
         }
-        let reference = compiler.radians(joint.get("ref").map_or(Ok(0.0), Value::number)?);
+        let number = |key: &str| joint.get(key).map_or(Ok(0.0), Value::number);
+        let not_negative = |key: &str| joint.get(key).map_or(Ok(0.0), Value::not_negative);
+        let in_si = |number: f32| match measure {
+            Measure::Angle => compiler.radians(number),
+            Measure::Length => number,
+        };
+        let reference = in_si(number("ref")?);
         let position = joint.get("pos").map_or(Ok([0.0; 3]), Value::numbers)?;
         let axis = match joint.get("axis") {
             Some(value) => direction(value, value.numbers()?)?,
             None => Vec3::Z,
         };
+        let range = read_range(joint, compiler.limits)?
+            .map(|[lo, hi]| Range::new(in_si(lo) - reference, in_si(hi) - reference));
+        let range = match measure {
+            Measure::Angle => range.filter(|range| range.hi - range.lo < 2.0 * PI).map(whole_turns_off),
+            Measure::Length => range,
+        };
         Ok(Self {
             name: joint.element.attribute("name").unwrap_or_default().to_owned(),
             anchor: y_up(Vec3::from_array(position)),
             axis: y_up(axis),
-            range: read_range(joint, compiler, reference)?,
+            range,
             reference,
-            friction: joint.get("frictionloss").map_or(Ok(0.0), Value::not_negative)?,
+            spring_rest: in_si(number("springref")?) - reference,
+            stiffness: not_negative("stiffness")?,
+            damping: not_negative("damping")?,
+            friction: not_negative("frictionloss")?,
         })
     }
 }
 
-/// Radians from the pose of the file.
-fn read_range(joint: &Merged<'_, '_>, compiler: &Compiler, reference: f32) -> Result<Option<Range>> {
+/// In the unit of the file; `None`: unlimited.
+fn read_range(joint: &Merged<'_, '_>, limits: Limits) -> Result<Option<[f32; 2]>> {
     let Some(value) = joint.get("range") else { return Ok(None) };
-    let by_range = compiler.limits == Limits::ByRange;
+    let by_range = limits == Limits::ByRange;
     let limited = match joint.get("limited") {
         None => by_range,
         Some(said) => said.word(&[("true", true), ("false", false), ("auto", by_range)])?,
     };
     let [lo, hi] = value.numbers()?;
-    if !limited {
-        return Ok(None);
-    }
-    if lo > hi {
+    if limited && lo > hi {
         return Err(value.malformed("the lower end is above the upper one"));
     }
-    let from_file = |angle: f32| compiler.radians(angle) - reference;
-    let range = Range::new(from_file(lo), from_file(hi));
-    Ok(Some(whole_turns_off(range)).filter(|range| range.hi - range.lo < 2.0 * PI))
+    Ok(limited.then_some([lo, hi]))
 }
 
-/// The same range with its middle within ±π.
+/// The same range of angles with its middle within ±π.
 fn whole_turns_off(range: Range) -> Range {
     let turns = (range.center() / (2.0 * PI)).round() * (2.0 * PI);
     Range::new(range.lo - turns, range.hi - turns)
@@ -146,72 +200,112 @@ pub(super) struct BodyJoint {
     /// Joint frame in the body's frame.
     pub frame: Transform,
     pub kind: JointKind,
-    /// N·m.
+    pub spring: Option<Spring>,
+    /// N·m or N.
     pub friction: f32,
 }
 
 impl BodyJoint {
     /// Of a welded body.
-    pub const WELD: Self = Self { frame: Transform::IDENTITY, kind: JointKind::Fixed, friction: 0.0 };
+    pub const WELD: Self =
+        Self { frame: Transform::IDENTITY, kind: JointKind::Fixed, spring: None, friction: 0.0 };
 
     /// Of a ball joint, whose one range is that of the whole angle from the pose of the file.
     pub fn of_ball(ball: &Pivot) -> Self {
         let limit = ball.range.map(|range| {
-            let within = Range::symmetric(range.hi);
+            let within = Range::symmetric(max(range.hi, 0.0));
             SwingTwistLimit { swing_y: within, swing_z: within, twist: within }
         });
         let frame = Transform::from_translation(ball.anchor);
-        Self { frame, kind: JointKind::Ball { limit }, friction: ball.friction }
+        let spring = softest_spring(core::slice::from_ref(ball), Transform::IDENTITY);
+        Self { frame, kind: JointKind::Ball { limit }, spring, friction: ball.friction }
+    }
+
+    /// Of a slide.
+    pub fn of_slide(slide: &Pivot) -> Self {
+        let frame = Transform::new(slide.anchor, Rotation::from_arc(Vec3::X, slide.axis));
+        let rest = Transform::from_translation(Vec3::X * slide.spring_rest);
+        let spring = softest_spring(core::slice::from_ref(slide), rest);
+        Self { frame, kind: JointKind::Slider { limit: slide.range }, spring, friction: slide.friction }
     }
 
     /// Of one to three hinges at right angles to each other, the first next to the parent.
     ///
-    /// The body turns by `R₁ R₂ R₃`. A swing and a twist are `R₁ R₂ R₃` with the **last** hinge's axis as x: what that
-    /// hinge does is the twist, exactly. With two hinges the first one is all of the swing, exactly. With three, `R₁ R₂`
-    /// is a swing about both other axes and, to second order, a twist of `2 atan(tan ½θ₁ tan ½θ₂)`; and the swings lie
-    /// within an ellipse for each quadrant, not within a rectangle. Hinges of limbs have the widest range last (bending
-    /// a hip), for which this fits best.
+    /// The body turns by `R₁ R₂ R₃`. A swing and a twist are that with the **last** hinge's axis as x: what that hinge
+    /// does is the twist, exactly. With two hinges the first one is all of the swing, exactly. With three, `R₁ R₂` is a
+    /// swing about both other axes and, to second order, a twist of `2 atan(tan ½θ₁ tan ½θ₂)`; and the swings lie within
+    /// an ellipse for each quadrant, not within a rectangle. Hinges of limbs have the widest range last (bending a hip),
+    /// for which this fits best.
     pub fn of_hinges(hinges: &[Pivot], element: Element<'_>, notes: &mut Notes) -> Result<Self> {
-        let frame = Transform::new(shared_anchor(hinges, notes), joint_axes(hinges, element)?);
-        let around = |range: Option<Range>| range.unwrap_or(Range::symmetric(PI));
+        let axes = joint_axes(hinges, element)?;
         let kind = match hinges {
+            [] => JointKind::Fixed,
             [hinge] => JointKind::Hinge { limit: hinge.range },
-            [first, rest @ .., last] => {
-                let swing_z = match rest {
-                    [middle] => {
-                        let z = frame.rotation * Vec3::Z;
-                        let range = swing(middle, notes);
-                        if middle.axis.dot(z) < 0.0 { Range::new(-range.hi, -range.lo) } else { range }
-                    }
-                    _ => Range::symmetric(0.0),
-                };
-                let limit =
-                    SwingTwistLimit { swing_y: swing(first, notes), swing_z, twist: around(last.range) };
+            [first, last] => JointKind::SixDof(SixDof {
+                linear: [AxisMotion::Locked; 3],
+                twist: within(last.range),
+                swing_y: within(first.range.map(|range| swing(first, range, notes))),
+                swing_z: AxisMotion::Locked,
+            }),
+            [first, middle, .., last] => {
+                let open = Range::symmetric(PI);
+                let mut side = |hinge: &Pivot| hinge.range.map_or(open, |range| swing(hinge, range, notes));
+                let (swing_y, mut swing_z) = (side(first), side(middle));
+                if middle.axis.dot(axes * Vec3::Z) < 0.0 {
+                    swing_z = Range::new(-swing_z.hi, -swing_z.lo);
+                }
+                let limit = SwingTwistLimit { swing_y, swing_z, twist: last.range.unwrap_or(open) };
                 JointKind::Ball { limit: Some(limit) }
             }
-            [] => JointKind::Fixed,
         };
-        let friction = hinges.iter().map(|hinge| hinge.friction).fold(0.0, max);
-        Ok(Self { frame, kind, friction })
+        let at_rest = turned(hinges.iter().map(|hinge| (hinge, hinge.spring_rest)));
+        let rest = Transform::new(Vec3::ZERO, axes.inverse() * at_rest * axes);
+        let differs =
+            |hinge: &Pivot| (hinge.stiffness, hinge.damping) != (hinges[0].stiffness, hinges[0].damping);
+        if hinges.iter().any(differs) {
+            notes
+                .changed(format!("springs of {} are not the same; here all have the softest", names(hinges)));
+        }
+        Ok(Self {
+            frame: Transform::new(shared_anchor(hinges, notes), axes),
+            kind,
+            spring: softest_spring(hinges, rest),
+            friction: hinges.iter().map(|hinge| hinge.friction).fold(0.0, max),
+        })
     }
 }
 
+fn within(range: Option<Range>) -> AxisMotion {
+    range.map_or(AxisMotion::Free, AxisMotion::Limited)
+}
+
 /// The range of a hinge as a swing: no more than half a turn each way, and 0 inside.
-fn swing(hinge: &Pivot, notes: &mut Notes) -> Range {
-    let Some(range) = hinge.range else { return Range::symmetric(PI) };
+fn swing(hinge: &Pivot, range: Range, notes: &mut Notes) -> Range {
     if range.lo > 0.0 || range.hi < 0.0 {
-        notes
-            .changed(format!("the range of {} is widened to hold the pose of the file", quoted(&hinge.name)));
+        let name = quoted(&hinge.name);
+        notes.changed(format!("the range of {name} is widened to hold the pose of the file"));
     }
     Range::new(clamp(range.lo, -PI, 0.0), clamp(range.hi, 0.0, PI))
+}
+
+/// The softest spring of a body's joints: no direction is stiffer than in the file.
+fn softest_spring(pivots: &[Pivot], rest: Transform) -> Option<Spring> {
+    let least = |of: fn(&Pivot) -> f32| pivots.iter().map(of).reduce(min).unwrap_or_default();
+    let (stiffness, damping) = (least(|pivot| pivot.stiffness), least(|pivot| pivot.damping));
+    let softness = Softness::Stiffness { stiffness, damping };
+    (stiffness > 0.0 || damping > 0.0).then_some(Spring { softness, rest })
+}
+
+fn names(hinges: &[Pivot]) -> String {
+    let names: Vec<_> = hinges.iter().map(|hinge| quoted(&hinge.name)).collect();
+    names.join(" and ")
 }
 
 /// Axes of the joint in the body's frame: x along the last hinge, y along the first of several.
 fn joint_axes(hinges: &[Pivot], element: Element<'_>) -> Result<Rotation> {
     let [first, .., last] = hinges else {
-        return Ok(hinges
-            .first()
-            .map_or(Rotation::IDENTITY, |hinge| Rotation::from_arc(Vec3::X, hinge.axis)));
+        let one = hinges.first();
+        return Ok(one.map_or(Rotation::IDENTITY, |hinge| Rotation::from_arc(Vec3::X, hinge.axis)));
     };
     for (index, a) in hinges.iter().enumerate() {
         if hinges[index + 1..].iter().any(|b| a.axis.dot(b.axis).abs() > NEARLY_PERPENDICULAR) {
@@ -226,13 +320,10 @@ fn joint_axes(hinges: &[Pivot], element: Element<'_>) -> Result<Rotation> {
 /// The one point about which the body turns, in its frame.
 fn shared_anchor(hinges: &[Pivot], notes: &mut Notes) -> Vec3 {
     let sum: Vec3 = hinges.iter().map(|hinge| hinge.anchor).sum();
-    let middle = sum / max(hinges.len() as f32, 1.0);
     let apart = hinges.iter().map(|hinge| (hinge.anchor - hinges[0].anchor).length()).fold(0.0, max);
     if apart > SAME_ANCHOR {
-        let names: Vec<_> = hinges.iter().map(|hinge| quoted(&hinge.name)).collect();
-        let names = names.join(" and ");
-        notes
-            .changed(format!("{names} are {apart:.3} m apart; here they turn about the point in the middle"));
+        let names = names(hinges);
+        notes.changed(format!("{names} are {apart:.3} m apart; here they are one, in the middle"));
     }
-    middle
+    sum / max(hinges.len() as f32, 1.0)
 }

@@ -6,7 +6,7 @@ use super::joint::Freedom;
 use super::xml::{Element, Value, children};
 use super::{MjcfJoint, MjcfKeyframe};
 use crate::error::Result;
-use sinew_math::{Rotation, Transform, Vec3};
+use sinew_math::{Transform, Vec3};
 
 /// Those of a document.
 pub(super) fn read(root: Element<'_>, tree: &Tree<'_>, joints: &[MjcfJoint]) -> Result<Vec<MjcfKeyframe>> {
@@ -16,7 +16,7 @@ pub(super) fn read(root: Element<'_>, tree: &Tree<'_>, joints: &[MjcfJoint]) -> 
         .filter(|(tag, _)| *tag == "key");
     let read_key = |(_, key): (&str, Element<'_>)| {
         let name = key.attribute("name").unwrap_or_default().to_owned();
-        let mut keyframe = MjcfKeyframe { name, placed: Vec::new(), turned: Vec::new() };
+        let mut keyframe = MjcfKeyframe { name, placed: Vec::new(), moved: Vec::new() };
         if let Some(value) = Value::of(key, "qpos") {
             keyframe.fill(value, tree, joints)?;
         }
@@ -43,28 +43,16 @@ impl MjcfKeyframe {
                     let rotation = turn_y_up(quaternion(value, [qw, qx, qy, qz])?);
                     self.placed.push((body, Transform::new(y_up(Vec3::new(x, y, z)), rotation)));
                 }
-                (Freedom::Ball(_), &[qw, qx, qy, qz]) => {
-                    let turn = turn_y_up(quaternion(value, [qw, qx, qy, qz])?);
-                    self.turn(joints, body, turn);
+                (Freedom::Welded, _) => {}
+                (freedom, coordinates) => {
+                    let motion = freedom.motion(coordinates, value)?;
+                    let joint = joints.binary_search_by_key(&body, |joint| joint.child);
+                    let joint = joint.expect("a body that moves in its parent has a joint");
+                    let axes = Transform::new(Vec3::ZERO, joints[joint].frame_b.rotation);
+                    self.moved.push((joint, axes.inverse() * motion * axes));
                 }
-                (Freedom::Hinges(hinges), angles) => {
-                    // MuJoCo turns a body by its joints in their order, each in the axes that those before it left.
-                    let turn = hinges.iter().zip(angles).fold(Rotation::IDENTITY, |turn, (hinge, angle)| {
-                        turn * Rotation::from_axis_angle(hinge.axis, angle - hinge.reference)
-                    });
-                    self.turn(joints, body, turn);
-                }
-                _ => {}
             }
         }
         Ok(())
-    }
-
-    /// `turn` is in the body's axes.
-    fn turn(&mut self, joints: &[MjcfJoint], body: usize, turn: Rotation) {
-        let joint = joints.binary_search_by_key(&body, |joint| joint.child);
-        let joint = joint.expect("a body that turns in its parent has a joint");
-        let axes = joints[joint].frame_b.rotation;
-        self.turned.push((joint, axes.inverse() * turn * axes));
     }
 }

@@ -2,21 +2,22 @@
 //!
 //! What is read: bodies with their poses (`pos`, and `quat`, `axisangle`, `euler`, `xyaxes` or `zaxis`), geoms of type
 //! plane, sphere, capsule and box (`size`, `fromto`, `density`, `mass`, sliding friction, `contype`, `conaffinity`),
-//! `<inertial>`, hinges with ranges and `frictionloss`, ball joints, free joints, `childclass` and default classes,
-//! `<exclude>`, keyframes, and of `<compiler>`: `angle`, `eulerseq`, `autolimits`, `inertiafromgeom`. Metres, kilograms;
-//! the file's z up becomes our y up, its x stays x.
+//! `<inertial>`, hinges, slides and ball joints (`range`, `ref`, `stiffness`, `springref`, `damping`, `frictionloss`),
+//! free joints, `childclass` and default classes, `<exclude>`, keyframes, and of `<compiler>`: `angle`, `eulerseq`,
+//! `autolimits`, `inertiafromgeom`. Metres, kilograms; the file's z up becomes our y up, its x stays x.
 //!
-//! What has no counterpart is left out and said so in [`MjcfModel::notes`]: damping, springs and rotor inertia of joints,
-//! actuators, sensors, tendons, equalities, softness of contacts. What would make another body of it is an error: files
-//! that include others, meshes that collide, slides, `<frame>`, `<replicate>`.
+//! What has no counterpart is left out and said so in [`MjcfModel::notes`]: rotor inertia of joints, actuators, sensors,
+//! tendons, equalities, softness of contacts and limits. What would make another body of it is an error: files that
+//! include others, meshes that collide, slides together with hinges, `<frame>`, `<replicate>`.
 //!
 //! - **Bodies without joints** are parts of their parent. They stay bodies of their own, with their own name and mass,
 //!   on a fixed joint; as in MuJoCo, contacts are left out between parts of one thing, and between a thing and what is
 //!   jointed to it, unless that is the world.
-//! - **Hinges of one body** become one joint, whose zero is the pose of the file: one a hinge, two or three a ball whose
-//!   swing and twist ranges are theirs. They must be at right angles to each other. The twist is that of the last hinge,
-//!   exactly; with two hinges the swing is that of the first, exactly; with three, both swings lie within an ellipse for
-//!   each quadrant where MuJoCo has a rectangle.
+//! - **Hinges of one body** become one joint, whose zero is the pose of the file. They must be at right angles to each
+//!   other. One is a hinge; two are a joint that swings about the first and twists about the last, exactly; three are a
+//!   ball whose twist is that of the last, exactly, and whose swings lie within an ellipse for each quadrant where MuJoCo
+//!   has a rectangle. Where their anchors differ, the joint's is in the middle; where their springs differ, it has the
+//!   softest.
 //! - **Friction** of a pair is the geometric mean here, and the larger in MuJoCo.
 
 mod bodies;
@@ -34,8 +35,8 @@ use compiler::{Compiler, y_up};
 use defaults::Classes;
 use joint::{BodyJoint, Freedom};
 use notes::Notes;
-use sinew_math::{Rotation, Transform, Vec3};
-use sinew_physics::{BodyDef, BodyId, BodyKind, JointCollision, JointDef, JointId, JointKind, World};
+use sinew_math::{Transform, Vec3};
+use sinew_physics::{BodyDef, BodyId, BodyKind, JointCollision, JointDef, JointId, JointKind, Spring, World};
 use xml::{Element, Value, children, malformed, unsupported};
 
 /// A model of bodies and joints, as plain data.
@@ -81,7 +82,9 @@ pub struct MjcfJoint {
     pub frame_b: Transform,
     /// What is free.
     pub kind: JointKind,
-    /// N·m, the largest `frictionloss` of its hinges.
+    /// The softest of its hinges': the least stiffness and the least damping.
+    pub spring: Option<Spring>,
+    /// N·m or N, the largest `frictionloss` of its hinges.
     pub friction_torque: f32,
     /// Whether parent and child collide: only if nothing moves the parent.
     pub collision: JointCollision,
@@ -94,8 +97,8 @@ pub struct MjcfKeyframe {
     pub name: String,
     /// Free bodies, by index, and their place in the world.
     pub placed: Vec<(usize, Transform)>,
-    /// Joints, by index, and the turn of their `frame_b` seen from `frame_a`.
-    pub turned: Vec<(usize, Rotation)>,
+    /// Joints, by index, and their `frame_b` seen from `frame_a`.
+    pub moved: Vec<(usize, Transform)>,
 }
 
 /// A model in a world.
@@ -170,6 +173,7 @@ fn read_joints(tree: &Tree<'_>, notes: &mut Notes) -> Result<Vec<MjcfJoint>> {
             Freedom::Free => continue,
             Freedom::Welded => BodyJoint::WELD,
             Freedom::Ball(ball) => BodyJoint::of_ball(ball),
+            Freedom::Slide(slide) => BodyJoint::of_slide(slide),
             Freedom::Hinges(hinges) => BodyJoint::of_hinges(hinges, link.element, notes)?,
         };
         let pose = |body: usize| {
@@ -185,6 +189,7 @@ fn read_joints(tree: &Tree<'_>, notes: &mut Notes) -> Result<Vec<MjcfJoint>> {
             frame_a: parent_from_child * joint.frame,
             frame_b: joint.frame,
             kind: joint.kind,
+            spring: joint.spring,
             friction_torque: joint.friction,
             collision: if of_world { JointCollision::Enabled } else { JointCollision::Disabled },
         });
@@ -249,14 +254,13 @@ impl MjcfModel {
         for &(body, place) in &keyframe.placed {
             pose[body] = place;
         }
-        let mut turns = vec![Rotation::IDENTITY; self.joints.len()];
-        for &(joint, turn) in &keyframe.turned {
-            turns[joint] = turn;
+        let mut moves = vec![Transform::IDENTITY; self.joints.len()];
+        for &(joint, moved) in &keyframe.moved {
+            moves[joint] = moved;
         }
         // Joints are in the order of their children, and parents come before children.
-        for (joint, turn) in self.joints.iter().zip(turns) {
-            let frame = pose[joint.parent] * joint.frame_a * Transform::new(Vec3::ZERO, turn);
-            let placed = frame * joint.frame_b.inverse();
+        for (joint, moved) in self.joints.iter().zip(moves) {
+            let placed = pose[joint.parent] * joint.frame_a * moved * joint.frame_b.inverse();
             pose[joint.child] = Transform::new(placed.translation, placed.rotation.normalize());
         }
         pose
@@ -284,6 +288,7 @@ impl MjcfModel {
         let join = |joint: &MjcfJoint| {
             let (parent, child) = (bodies[joint.parent], bodies[joint.child]);
             world.add_joint(&JointDef {
+                spring: joint.spring,
                 friction_torque: joint.friction_torque,
                 collision: joint.collision,
                 ..JointDef::between(parent, child, joint.frame_a, joint.frame_b, joint.kind)

@@ -5,7 +5,9 @@ use core::f32::consts::FRAC_1_SQRT_2 as H;
 use sinew_formats::mjcf::MjcfJoint;
 use sinew_formats::{Error, MjcfModel, read_mjcf};
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, max};
-use sinew_physics::{BodyKind, JointCollision, JointKind, Shape, World, WorldDef};
+use sinew_physics::{
+    AxisMotion, BodyKind, JointCollision, JointKind, Shape, Softness, Spring, World, WorldDef,
+};
 
 fn humanoid_text() -> Option<String> {
     let path = shared_data()?.join("robots/mujoco_humanoid.xml");
@@ -121,6 +123,16 @@ fn assert_range(found: Range, lo: f32, hi: f32) {
     assert!(max((found.lo - expected.lo).abs(), (found.hi - expected.hi).abs()) < 1e-6, "{found:?}");
 }
 
+/// Of a joint that swings about one axis and twists.
+fn two_ranges(joint: &MjcfJoint) -> [Range; 2] {
+    let JointKind::SixDof(six) = joint.kind else { panic!("{:?}", joint.kind) };
+    assert_eq!((six.linear, six.swing_z), ([AxisMotion::Locked; 3], AxisMotion::Locked));
+    [six.swing_y, six.twist].map(|motion| match motion {
+        AxisMotion::Limited(range) => range,
+        _ => panic!("{motion:?}"),
+    })
+}
+
 #[test]
 fn the_ranges_of_the_humanoid_are_those_of_its_classes() {
     let Some(model) = humanoid() else { return };
@@ -137,10 +149,9 @@ fn the_ranges_of_the_humanoid_are_those_of_its_classes() {
         assert_range(hip.swing_y, -30.0, 10.0);
         assert_range(hip.swing_z, z.0, z.1);
     }
-    let shoulder = limit("upper_arm_left");
-    assert_range(shoulder.twist, -85.0, 60.0);
-    assert_range(shoulder.swing_y, -85.0, 60.0);
-    assert_eq!(shoulder.swing_z, Range::symmetric(0.0));
+    for range in two_ranges(joint(&model, "upper_arm_left")) {
+        assert_range(range, -85.0, 60.0);
+    }
 }
 
 #[test]
@@ -204,9 +215,8 @@ fn keyframes_are_the_poses_that_mujoco_makes() {
 fn what_is_left_out_is_said() {
     let Some(model) = humanoid() else { return };
     for note in [
-        "`ankle_y_right` and `ankle_x_right` are 0.040 m apart; here they turn about the point in the middle",
-        "left out: damping of joints (21)",
-        "left out: springs of joints (19)",
+        "`ankle_y_right` and `ankle_x_right` are 0.040 m apart; here they are one, in the middle",
+        "springs of `abdomen_z` and `abdomen_y` are not the same; here all have the softest",
         "left out: rotor inertia of joints (21)",
         "left out: tendons (2)",
         "left out: actuators (21)",
@@ -292,12 +302,12 @@ fn two_hinges_are_one_swing_and_one_twist_exactly() {
         let [first, last] = [turn * Vec3::X, turn * Vec3::Y];
         let angles = [random.range(-1.4, 1.0), random.range(-1.4, 1.0)];
         let model = on_hinges(&[first, last], &angles, [-85.0, 60.0]);
-        let (swing, twist) = SwingTwistLimit::angles(model.keyframes[0].turned[0].1);
+        let (swing, twist) = SwingTwistLimit::angles(model.keyframes[0].moved[0].1.rotation);
         assert_close(swing, Vec3::Y * angles[0], 2e-5, "swing");
         assert!((twist - angles[1]).abs() < 2e-5, "{twist} for {}", angles[1]);
-        let JointKind::Ball { limit: Some(limit) } = model.joints[0].kind else { panic!("a ball") };
-        assert_range(limit.swing_y, -85.0, 60.0);
-        assert_range(limit.twist, -85.0, 60.0);
+        for range in two_ranges(&model.joints[0]) {
+            assert_range(range, -85.0, 60.0);
+        }
     }
 }
 
@@ -314,7 +324,7 @@ fn three_hinges_keep_their_ranges_one_by_one() {
         let JointKind::Ball { limit: Some(limit) } = model.joints[0].kind else { panic!("a ball") };
         // Each hinge alone is stopped where its own range ends, whatever the handedness of the three axes.
         let beyond = Range::degrees(-60.0, 30.0).excess(angles[used]);
-        let found = limit.overshoot(model.keyframes[0].turned[0].1);
+        let found = limit.overshoot(model.keyframes[0].moved[0].1.rotation);
         assert!((found - beyond).abs() < 1e-4, "hinge {used} at {}: {found} for {beyond}", angles[used]);
     }
 }
@@ -393,7 +403,7 @@ fn complaints_name_the_place() {
         (body("<geom size='1' class='c'/>"), "`class`: no class `c` (line 3 column 18)"),
         (body("<geom size='1' pos='1 2'/>"), "`pos`: takes 3 numbers, not 2 (line 3 column 18)"),
         (body("<joint axis='0 0 0'/>"), "`axis`: the vector has no direction (line 3 column 10)"),
-        (body("<joint type='slide'/>"), "joints of type `slide` are not read (line 3 column 3)"),
+        (body("<joint type='slid'/>"), "no joint of type `slid` (line 3 column 3)"),
         (body("<joint range='2 1'/>"), "`range`: the lower end is above the upper one (line 3 column 10)"),
         (body("<joint/>"), "mass and inertia of what moves must be positive, and finite (line 2 column 12)"),
         (
@@ -524,4 +534,28 @@ fn a_free_body_is_placed_and_its_parts_follow() {
     // Half a turn about the file's z.
     assert_close(pose[2].translation, y_up([0.0, 2.0, 3.0]), 1e-6, "b");
     assert_eq!(model.rest_pose()[2], Transform::from_translation(Vec3::new(1.0, 1.0, 0.0)));
+}
+
+#[test]
+fn springs_and_slides_are_those_of_the_file() {
+    let model = read(
+        "<mujoco><worldbody><body pos='0 0 1'><joint type='slide' axis='0 0 2' range='-.5 .25' ref='.125' stiffness='30'
+            damping='4' springref='.25' frictionloss='3'/><geom size='.1'/>
+            <body><joint axis='0 1 0' damping='2' stiffness='3'/>
+                <joint axis='1 0 0' damping='1' stiffness='6' springref='90'/>
+                <geom size='.1'/></body></body></worldbody>
+        <keyframe><key qpos='.375 0 0'/></keyframe></mujoco>",
+    );
+    let [slide, hinges] = &model.joints[..] else { panic!("two joints") };
+    assert_eq!(slide.kind, JointKind::Slider { limit: Some(Range::new(-0.625, 0.125)) });
+    let Some(Spring { softness, rest }) = slide.spring else { panic!("a spring") };
+    assert_eq!(softness, Softness::Stiffness { stiffness: 30.0, damping: 4.0 });
+    assert_eq!((rest.translation, slide.friction_torque), (Vec3::X * 0.125, 3.0));
+    assert_close(model.pose(&model.keyframes[0])[1].translation, Vec3::Y * 1.25, 1e-6, "slid");
+
+    let Some(Spring { softness, rest }) = hinges.spring else { panic!("a spring") };
+    assert_eq!(softness, Softness::Stiffness { stiffness: 3.0, damping: 1.0 });
+    // The last hinge is the twist.
+    let quarter = Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_2);
+    assert!(rest.rotation.angle_to(quarter) < 1e-3, "{rest:?}");
 }

@@ -168,7 +168,7 @@ fn softness(r: &mut Random, temper: Temper, light: f32) -> Softness {
     let stiffness = if chance(r, 0.05) { 0.0 } else { decades(r, 0.0, 6.0) };
     let slow = stiffness < 100.0 * light;
     let time =
-        if (temper == Temper::Driven || slow) && chance(r, 0.5) { 0.0 } else { decades(r, -1.7, -0.5) };
+        if (temper == Temper::Driven || slow) && chance(r, 0.5) { 0.0 } else { decades(r, -2.3, -0.7) };
     Softness::Stiffness { stiffness, damping: stiffness * time }
 }
 

@@ -8,6 +8,8 @@ use sinew_physics::*;
 
 /// Largest rise of energy within a step, as a share of max(kinetic energy, 1 J/kg).
 const ENERGY_GAIN: f64 = 0.01;
+/// Share of the springs' energy that rounding of poses may seem to give.
+const ROUNDING: f64 = 1e-5;
 /// After a change that leaves joints apart or beyond their stops, energy is not held against the world until they have
 /// come together, nor longer than this many steps.
 const SETTLING: u32 = 60;
@@ -38,6 +40,7 @@ impl Fault {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
+    /// In which step; 0 for a panic.
     pub step: u32,
     pub fault: Fault,
 }
@@ -237,7 +240,8 @@ impl Meter {
         } else if self.settling > 0 {
             self.settling = if run.is_settling() { self.settling - 1 } else { 0 };
         }
-        (self.settling == 0).then(|| (now.total - before.total) / f64::max(before.kinetic, now.mass))
+        let rise = now.total - before.total - ROUNDING * now.elastic;
+        (self.settling == 0).then(|| rise / f64::max(before.kinetic, now.mass))
     }
 }
 

@@ -1,21 +1,28 @@
 //! Makes a failing plan smaller for as long as it fails in the same way, and prints it.
 
 use super::plan::{Change, WorldPlan};
-use super::run::{Failure, check};
+use super::run::{Failure, Fault, check};
 use sinew_math::Vec3;
 use sinew_physics::*;
+
+/// Runs until what is left is taken as it is.
+const ATTEMPTS: usize = 1000;
 
 /// A plan that fails as the given one does, from which nothing can be left out, and how it fails.
 pub fn shrunk(plan: &WorldPlan, failure: &Failure, steps: u32) -> (WorldPlan, Failure) {
     let mut least = (plan.clone(), failure.clone());
-    let mut steps = steps;
+    let (mut steps, mut left) = (steps, ATTEMPTS);
     loop {
-        let smaller = candidates(&least.0).find_map(|plan| {
+        let smaller = candidates(&least.0).take(left).find_map(|plan| {
+            left -= 1;
             let found = check(&plan, steps).err()?;
             found.fault.same_kind(&failure.fault).then_some((plan, found))
         });
         let Some(smaller) = smaller else { return least };
-        steps = u32::min(steps, smaller.1.step.saturating_add(if smaller.1.step == 0 { steps } else { 1 }));
+        // The step of a panic is not known.
+        if !matches!(smaller.1.fault, Fault::Panic(_)) {
+            steps = u32::min(steps, smaller.1.step + 1);
+        }
         least = smaller;
     }
 }
