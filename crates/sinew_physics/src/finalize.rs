@@ -35,6 +35,7 @@ pub(crate) fn store(
             joint.force = solved.force;
             joint.warm_impulse = solved.warm_impulse;
             joint.saturated = solved.saturated;
+            joint.mass = solved.mass;
             joint.reaction = solved.reaction.map(|impulse| impulse / dt);
         }
     }

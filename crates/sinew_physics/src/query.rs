@@ -12,7 +12,7 @@ use sinew_math::{Vec3, max};
 pub struct Energy {
     /// Of motion and spin.
     pub kinetic: f32,
-    /// Of height in uniform gravity, 0 at the origin, and of stretched springs.
+    /// Of height in uniform gravity, 0 at the origin, and of stretched springs, those of joints among them.
     pub potential: f32,
 }
 
@@ -66,11 +66,13 @@ impl World {
         sum
     }
 
-    /// Energy of all dynamic bodies and all particles.
+    /// Energy of all dynamic bodies, all particles and all springs.
     pub fn energy(&self) -> Energy {
         let bodies = self.body_ids().map(|id| self.body_energy(id));
         let groups = self.group_ids().map(|id| self.group_energy(id));
-        bodies.chain(groups).fold(Energy::default(), |sum, energy| Energy {
+        let of_joint = |id| Energy { kinetic: 0.0, potential: self.joint_energy(id) };
+        let joints = self.joint_ids().map(of_joint);
+        bodies.chain(groups).chain(joints).fold(Energy::default(), |sum, energy| Energy {
             kinetic: sum.kinetic + energy.kinetic,
             potential: sum.potential + energy.potential,
         })

@@ -9,12 +9,12 @@ use crate::spatial::{Vec6, ZERO6};
 use def::{
     Gains, JointCollision, JointDef, JointKind, JointState, Motor, SoftZone, Softness, Spring, Strength,
 };
+use rows::locked_count;
 pub(crate) use rows::{
     DIRECTIONS, JointGeometry, JointPose, JointRows, MAX_LIMITS, Row, Stop, TWIST, anchor_gap, displacement,
     locked_error, open_directions, open_row, overshoot, stops, turns,
 };
 use sinew_math::{Transform, Vec3};
-use rows::locked_count;
 pub use world::Reaction;
 
 /// Impulse of a limit in the last substep and the one before, N·s or N·m·s, in frame A: as a vector, because the axis of
@@ -54,6 +54,19 @@ impl JointDrive {
     }
 }
 
+impl Softness {
+    /// Stiffness and damping for a mass.
+    pub(crate) fn of_mass(self, mass: f32) -> (f32, f32) {
+        match self {
+            Self::Stiffness { stiffness, damping } => (stiffness, damping),
+            Self::Frequency { hertz, damping_ratio } => {
+                let omega = 2.0 * core::f32::consts::PI * hertz;
+                (mass * omega * omega, 2.0 * damping_ratio * omega * mass)
+            }
+        }
+    }
+}
+
 /// Which way a motor pushes with all it has, by direction: −1, 1, or 0 while it is strong enough.
 pub(crate) type Saturation = [i8; DIRECTIONS];
 
@@ -76,6 +89,8 @@ pub(crate) struct Joint {
     pub warm_impulse: Vec6,
     /// Linear force of the last substep on body B, N, world axes: geometric stiffness needs it.
     pub force: Vec3,
+    /// What springs and motors moved in the last step, direction by direction, kg or kg·m².
+    pub mass: Vec6,
     /// Mean over the last step on body B, N and N·m about its anchor, world axes.
     pub reaction: Vec6,
 }
@@ -103,6 +118,7 @@ impl Joint {
             saturated: [0; DIRECTIONS],
             warm_impulse: ZERO6,
             force: Vec3::ZERO,
+            mass: ZERO6,
             reaction: ZERO6,
         }
     }
@@ -117,6 +133,7 @@ impl Joint {
                 saturated: self.saturated,
                 warm_impulse: self.warm_impulse,
                 force: self.force,
+                mass: self.mass,
                 reaction: self.reaction,
                 ..new
             }
@@ -131,6 +148,31 @@ impl Joint {
 
     pub fn is_enabled(&self) -> bool {
         self.state == JointState::Enabled
+    }
+
+    /// J.
+    fn elastic_energy(&self, pose: &JointPose) -> f32 {
+        let half = |softness: Softness, direction: usize, x: f32| {
+            0.5 * softness.of_mass(self.mass[direction]).0 * x * x
+        };
+        let mut sum = 0.0;
+        if let Some(weld) = self.drive.weld {
+            let rows = JointRows::new(&self.geometry(), pose, [false; DIRECTIONS]);
+            for row in 0..rows.locked {
+                sum += half(weld, rows.direction[row], rows.error[row]);
+            }
+        }
+        if let Some(spring) = self.drive.spring {
+            for i in open_directions(self.kind) {
+                sum += half(spring.softness, i, displacement(&self.kind, pose, i, &spring.rest));
+            }
+        }
+        if let Some(Softness::Stiffness { stiffness, .. }) = self.drive.limit_softness {
+            for stop in stops(&self.kind, pose).into_iter().flatten().filter(|stop| stop.room < 0.0) {
+                sum += 0.5 * stiffness * stop.room * stop.room;
+            }
+        }
+        sum
     }
 
     /// Most rows that it can have.

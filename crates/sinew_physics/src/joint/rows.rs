@@ -175,7 +175,7 @@ pub(crate) fn locks(kind: &JointKind) -> [bool; DIRECTIONS] {
 
 /// A distance joint knows one translation only.
 fn exists(kind: &JointKind, direction: usize) -> bool {
-    !matches!(kind, JointKind::Distance { .. }) || direction == 0 || direction >= TWIST
+    !matches!(kind, JointKind::Distance { .. }) || direction == 0
 }
 
 /// Error and row of a locked direction.

@@ -31,6 +31,7 @@ impl Joint {
         }
         save_vec6(w, &self.warm_impulse);
         w.vec3(self.force);
+        save_vec6(w, &self.mass);
         save_vec6(w, &self.reaction);
     }
 
@@ -52,6 +53,7 @@ impl Joint {
         }
         let warm_impulse = load_vec6(r)?;
         let force = r.vec3()?;
+        let mass = load_vec6(r)?;
         let reaction = load_vec6(r)?;
         Ok(Self {
             a,
@@ -67,6 +69,7 @@ impl Joint {
             saturated,
             warm_impulse,
             force,
+            mass,
             reaction,
         })
     }

@@ -148,6 +148,13 @@ impl World {
         overshoot(&joint.kind, &self.joint_pose(joint))
     }
 
+    /// Energy that a joint's spring and its weld hold, and its soft limits where their stiffness is given, J. Of a spring
+    /// given by its frequency it is known from the first step on.
+    pub fn joint_energy(&self, id: JointId) -> f32 {
+        let joint = self.expect_joint(id);
+        if joint.is_enabled() { joint.elastic_energy(&self.joint_pose(joint)) } else { 0.0 }
+    }
+
     fn expect_joint(&self, id: JointId) -> &Joint {
         self.joints.get(id.index, id.generation).expect("the joint is there")
     }

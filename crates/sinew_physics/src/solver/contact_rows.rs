@@ -305,9 +305,8 @@ impl ManifoldRows {
     /// Effective masses from the response of the bodies.
     pub fn respond(&mut self, bodies: &[SolverBody], links: &[Link], response: &Response) {
         let pair = self.pair();
-        let least = |row: &Row| {
-            REDUNDANCY * free_response(bodies, links.len(), [(pair.a, &row.a), (pair.b, &row.b)])
-        };
+        let least =
+            |row: &Row| REDUNDANCY * free_response(bodies, links.len(), [(pair.a, &row.a), (pair.b, &row.b)]);
         let mut answers = [Row::ZERO; MAX_POINTS];
         for i in 0..self.count {
             answers[i] = self.rows[i].response(pair, links, response);

@@ -86,19 +86,6 @@ fn exact_oscillator(omega2: f32, a: f32) -> (f32, f32) {
     (one_plus_alpha - 1.0, 1.0 - det * one_plus_alpha)
 }
 
-impl Softness {
-    /// Stiffness and damping for a mass.
-    pub(super) fn of_mass(self, mass: f32) -> (f32, f32) {
-        match self {
-            Self::Stiffness { stiffness, damping } => (stiffness, damping),
-            Self::Frequency { hertz, damping_ratio } => {
-                let omega = 2.0 * core::f32::consts::PI * hertz;
-                (mass * omega * omega, 2.0 * damping_ratio * omega * mass)
-            }
-        }
-    }
-}
-
 impl Motor {
     /// Most force or torque in a direction.
     fn cap(&self, direction: usize) -> f32 {

@@ -171,7 +171,8 @@ impl Loops {
             let range = closure.first..closure.first + closure.count;
             let left = &mut self.scratch;
             left.clear();
-            for (&joint, residual) in self.joints[range.clone()].iter().zip(&scratch.loop_residuals[range.clone()])
+            for (&joint, residual) in
+                self.joints[range.clone()].iter().zip(&scratch.loop_residuals[range.clone()])
             {
                 let joint = &joints[joint as usize];
                 let rate = joint.rate(&scratch.dv);
@@ -243,13 +244,7 @@ impl Loops {
 }
 
 /// `S p` for the direction `p`, and the velocities that it gives.
-fn answer(
-    loops: &[u32],
-    joints: &[SolverJoint],
-    links: &[Link],
-    scratch: &mut Scratch,
-    g: &mut Gradient,
-) {
+fn answer(loops: &[u32], joints: &[SolverJoint], links: &[Link], scratch: &mut Scratch, g: &mut Gradient) {
     scratch.impulses.fill(ZERO6);
     scratch.residuals.fill(ZERO6);
     let mut push = g.direction.iter();

@@ -128,7 +128,7 @@ pub(crate) struct SolverJoint {
     /// The others, row by row.
     soft: [SoftRow; DIRECTIONS],
     /// What springs and motors move, direction by direction, kg or kg·m².
-    mass: Vec6,
+    pub mass: Vec6,
     /// Rates of driven directions when the substep began.
     start_rate: Vec6,
     pub saturated: Saturation,
@@ -413,7 +413,8 @@ impl IslandSolver {
         let mut sum = 0.0;
         for (body, v) in self.bodies.iter().zip(&self.velocities[..self.links.len()]) {
             let momentum = body.pose.rotation.inverse() * body.momentum;
-            sum += 0.5 * body.mass * linear(v).length_squared() + 0.5 * (momentum / body.inertia).dot(momentum);
+            sum +=
+                0.5 * body.mass * linear(v).length_squared() + 0.5 * (momentum / body.inertia).dot(momentum);
         }
         sum
     }
