@@ -159,6 +159,7 @@ impl Unit {
 /// Three digits, but no more than three behind the point.
 pub fn rounded(value: f64) -> String {
     let decimals = match value.abs() {
+        0.0 => 0,
         x if x >= 99.95 => 0,
         x if x >= 9.995 => 1,
         x if x >= 0.9995 => 2,
@@ -181,7 +182,7 @@ mod tests {
     fn numbers_are_short_and_have_units() {
         assert_eq!(
             [0.0, 0.0004, 0.12, 1.0, 23.456, 1234.5].map(rounded),
-            ["0.000", "< 0.001", "0.120", "1.00", "23.5", "1234"]
+            ["0", "< 0.001", "0.120", "1.00", "23.5", "1234"]
         );
         assert_eq!(Unit::Length.show(0.1734), "173 mm");
         assert_eq!(Unit::Length.show(15.2), "15.2 m");

@@ -37,9 +37,7 @@ measured by one tool for all engines from the poses after each step.
 Written by `cargo xtask bench`; do not edit.
 ";
 
-const GLANCE: &str = "Processor time of the median step in milliseconds, then the figure that tells whether it is the time of the
-same work.
-";
+const GLANCE: &str = "Processor time of the median step in milliseconds, then the figure that tells whether it is the time of the same work.\n";
 
 const LEGEND: &str = "*gap*: largest distance between the two anchors of a joint after any step · *stretch*: all gaps of a chain over its length ·
 *depth*: deepest overlap of two bodies · *shift*: how far a body of a stack at rest has moved · *speed*: the fastest peer's
@@ -52,9 +50,11 @@ const HOLD: &str = "What must hold with default settings, and what others do wit
 
 const SPECIFICATION: &str = "Factors against the fastest peer of this run.\n";
 
-const SCENES: &str = "Times in milliseconds per step: the median step (in brackets: of the best round), the 99th percentile, the median of the last
-third of the run, when piles have settled. *Sinew's speed* is the engine's median over Sinew's. Memory in MiB is the peak above what the process had before the scene.
-*depth* is sampled every tenth step. *energy gained* is the most the world ever had above its start.
+const SCENES: &str = "Times in milliseconds per step: the median step (in brackets: of the best round), the 99th percentile, the median of the
+last third of the run, when piles have settled. *Sinew's speed* is the engine's median over Sinew's. Memory in MiB is the
+peak above what the process had before the scene. *depth* is looked at after every tenth step, everything else after every
+step. *energy gained* is the most the world ever had above its start, *energy lost* what is missing at the end. Figures that
+are 0 for all are left out.
 ";
 
 /// Engines in the order of the columns.

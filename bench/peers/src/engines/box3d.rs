@@ -1,4 +1,7 @@
 //! Box3D with its defaults.
+//!
+//! Beside Rapier it takes 0.68 of the time for the pile of figures, 1.05 for the pyramid, 1.61 for the chain of 100 links
+//! on an Intel Xeon; earlier figures, of another commit on a Zen 4, were 0.59, 0.94 and 1.44.
 
 use crate::engine::{
     BodyState, Description, Engine, OverlapTester, RayCaster, Simulation, Unsupported, circular_cone,

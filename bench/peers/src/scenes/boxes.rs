@@ -22,7 +22,7 @@ pub struct BoxPairs {
 }
 
 impl BoxPairs {
-    /// Scene F of the baselines, of which the first `count` pairs.
+    /// The first `count` of a fixed sequence, of which `per_step` are tested in one step.
     pub fn new(count: usize, per_step: usize) -> Self {
         let mut random = Random::new(42);
         let pairs = (0..count)

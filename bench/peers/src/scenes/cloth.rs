@@ -31,7 +31,7 @@ pub struct ClothScene {
 }
 
 impl ClothScene {
-    /// Scene D of the baselines.
+    /// 10,000 particles of 2 g, 4 m by 4 m, pinned by two corners 2.2 m above the floor.
     pub fn new() -> Self {
         let floor = Transform::from_translation(Vec3::new(0.0, -0.5, 0.0));
         let yaw = Rotation::from_axis_angle(Vec3::Y, 30f32.to_radians());

@@ -39,7 +39,7 @@ pub struct RayScene {
 }
 
 impl RayScene {
-    /// Scene G of the baselines.
+    /// Always the same.
     pub fn new() -> Self {
         let mut random = Random::new(7);
         let boxes = (0..10_000)

@@ -1,4 +1,4 @@
-//! The tests: the quality tool against states made by hand, the scenes against what the baselines say of them, and every
+//! The tests: the quality tool against states made by hand, the scenes against their known sizes, and every
 //! engine of this build against closed forms.
 
 mod engines;

@@ -1,4 +1,4 @@
-//! The scenes against what the baselines say of them.
+//! The scenes have the sizes that their figures are known for, and their reports what readers need.
 
 use sinew_peers::engine::Engine;
 use sinew_peers::engines;

@@ -1,4 +1,11 @@
 //! Jolt with its defaults, through the safe crate `oxijolt`.
+//!
+//! Against earlier figures of Jolt 5.5.1 with link-time optimisation on a Zen 4, this Jolt 5.6.0 without it on an Intel
+//! Xeon takes about as long beside Rapier for joints (pile of figures 0.79 of Rapier's time, then 0.72; chain 0.98, then
+//! 1.01), but longer for stacks of boxes (pyramid of 15 layers 1.40, then 0.98 to 1.10) and rays (0.9, then 0.6). It is
+//! not this crate's doing: of the pyramid, 51 % is one self-contained function of Jolt, the velocity solver of a contact,
+//! which 5.6 has new friction in; of the rays, 86 % is Jolt's tree and boxes. Nor the caches: pyramids of 6 and 11 layers
+//! stand at 1.43 and 1.44.
 
 mod cloth;
 mod filters;
@@ -193,7 +200,7 @@ impl Simulation for JoltWorld {
     }
 }
 
-/// oxijolt looks up the hit's normal and layer too, which costs it some of Jolt's lead.
+/// oxijolt looks up the hit's normal and layer too: less than a tenth of the time.
 struct JoltRays {
     world: PhysicsWorld,
     rays: Vec<RayCast>,

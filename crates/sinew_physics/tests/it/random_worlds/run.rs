@@ -16,6 +16,9 @@ const SETTLING: u32 = 60;
 /// Together: metres and radians.
 const GAP_CLOSED: f32 = 1e-3;
 const STOP_REACHED: f32 = 0.02;
+/// Joints are not made between bodies further apart, metres: what has flown apart would be held by arms a
+/// hundred times its size.
+const REACH: f32 = 10.0;
 /// So many steps after it was saved the world is compared with its restored twin.
 const TWIN_STEPS: u32 = 60;
 /// A world is violent while a body is faster, m/s or rad/s.
@@ -118,6 +121,9 @@ impl<'a> Run<'a> {
         let mut changed = false;
         for (j, joint) in plan.joints.iter().enumerate().filter(|(_, joint)| joint.born == step) {
             let (Some(a), Some(b)) = (self.body(joint.a), self.body(joint.b)) else { continue };
+            if self.distance(a, b) > REACH {
+                continue;
+            }
             let def = joint.def(&self.world, a, b);
             self.ids.joints[j] = Some(self.world.add_joint(&def));
             changed = true;
@@ -153,10 +159,14 @@ impl<'a> Run<'a> {
     fn redefine(&mut self, id: JointId, joint: &JointPlan, frames: Frames) {
         let old = self.world.joint(id);
         let mut def = joint.def(&self.world, old.body_a, old.body_b);
-        if frames == Frames::Kept {
+        if frames == Frames::Kept || self.distance(old.body_a, old.body_b) > REACH {
             (def.frame_a, def.frame_b) = (old.frame_a, old.frame_b);
         }
         self.world.set_joint(id, &JointDef { state: old.state, ..def });
+    }
+
+    fn distance(&self, a: BodyId, b: BodyId) -> f32 {
+        (self.world.center_of_mass(a) - self.world.center_of_mass(b)).length()
     }
 
     fn step(&mut self, step: u32) -> bool {
