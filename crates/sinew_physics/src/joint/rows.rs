@@ -206,8 +206,11 @@ fn locked_rotation(locks: &[bool; 6], pose: &JointPose, direction: usize) -> (f3
     }
     match direction {
         TWIST => {
-            let stop = twist_stops(Range::symmetric(0.0), pose.relative())[0];
-            (stop.room, ra * stop.axis)
+            // The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b). Without the divisor the row fades where a swing of half a turn
+            // leaves the twist undefined, instead of growing beyond all bounds.
+            let (swing, twist) = pose.relative().swing_twist(Vec3::X);
+            let sum = Vec3::X + swing * Vec3::X;
+            (twist.twist_angle(Vec3::X) * 0.5 * sum.x, ra * (sum * 0.5))
         }
         // C = −z_a · x_b and y_a · x_b keep x_b out of the planes it would swing into. Ċ = (x_b × y_a) · (ω_b − ω_a).
         4 => {

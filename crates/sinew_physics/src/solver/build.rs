@@ -278,6 +278,7 @@ impl IslandSolver {
                 pose,
                 rows: JointRows::new(&geometry, &pose, [false; DIRECTIONS]),
                 rigid: 0,
+                left_open: ZERO6,
                 most_rows: joint.most_rows(),
                 soft: [SoftRow::default(); DIRECTIONS],
                 mass: ZERO6,

@@ -5,13 +5,15 @@ use super::{IslandSolver, SolverJoint};
 use crate::joint::def::{Gains, Motor, Softness};
 use crate::joint::{DIRECTIONS, JointRows, TWIST, displacement, locked_error, open_row};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, linear};
-use sinew_math::{max, trig};
+use sinew_math::{clamp, max, trig};
 
 /// Joint friction is a viscosity that gives the full torque at the joint's present rate, but never more than this slow
 /// rate would ask, rad/s or m/s: a joint that should stick creeps below it, and sleep ends the creep.
 const STICK_RATE: f32 = 0.02;
 /// A velocity motor is a viscosity that would bring what it moves to its speed within this share of a substep.
 const MOTOR_SHARE: f32 = 1e-3;
+/// Fastest that a joint which is open closes, m/s or rad/s: one attached anew at a distance does not jump.
+const CLOSING: f32 = 4.0;
 /// `(ωh)²` of the fastest spring whose oscillation is kept.
 const FASTEST: f32 = 1.0;
 /// Rounds in which motors that ask for more than their caps are saturated within a substep.
@@ -52,6 +54,11 @@ impl SoftRow {
         self.gain += other.gain;
         self.carry += other.carry;
         self.push += other.push;
+    }
+
+    /// Work that the row does from one rate to the other.
+    fn work(&self, before: f32, after: f32) -> f32 {
+        0.5 * self.impulse(before, after) * (before + after)
     }
 
     fn impulse(&self, before: f32, after: f32) -> f32 {
@@ -106,6 +113,7 @@ impl SolverJoint {
         let open = core::array::from_fn(|i| always || motor(i));
         self.rows = JointRows::new(&self.geometry, &self.pose, open);
         self.rigid = if self.drive.weld.is_some() { 0 } else { self.rows.locked };
+        self.left_open = self.rows.error.map(|error| error - clamp(error, -CLOSING * h, CLOSING * h));
         self.soft = [SoftRow::default(); DIRECTIONS];
         if self.rigid < self.rows.count {
             let rates = self.anchor_rates(velocities);
@@ -186,7 +194,7 @@ impl SolverJoint {
         let mut out = ZERO6;
         for row in 0..self.rows.count {
             out[row] = match (solve, row < self.rigid) {
-                (true, true) => -self.rows.error[row] / h - rate[row],
+                (true, true) => -(self.rows.error[row] - self.left_open[row]) / h - rate[row],
                 (true, false) => self.wanted(row) - rate[row],
                 (false, true) => -rate[row],
                 (false, false) => 0.0,
@@ -216,9 +224,16 @@ impl SolverJoint {
         out
     }
 
-    /// Position errors of the rigid rows at other poses of the bodies.
+    /// Position errors of the rigid rows at other poses of the bodies, but for what this substep leaves open.
     pub(super) fn rigid_error(&self, pose: &crate::joint::JointPose) -> Vec6 {
-        if self.rigid == 0 { ZERO6 } else { locked_error(&self.geometry, pose) }
+        if self.rigid == 0 {
+            return ZERO6;
+        }
+        let mut error = locked_error(&self.geometry, pose);
+        for row in 0..self.rigid {
+            error[row] -= self.left_open[row];
+        }
+        error
     }
 }
 
@@ -276,14 +291,13 @@ impl IslandSolver {
             let rate = joint.rate(&self.velocities);
             for row in joint.rigid..joint.rows.count {
                 let before = joint.start_rate[joint.rows.direction[row]];
-                let impulse = joint.soft[row].impulse(before, rate[row]);
-                work += max(0.5 * impulse * (before + rate[row]), 0.0);
+                work += joint.soft[row].work(before, rate[row]);
             }
         }
         for row in &self.limits {
-            work += row.soft_work(&self.joints[row.joint as usize], &self.velocities);
+            work += row.soft_work(&self.joints[row.joint as usize], &self.velocities, self.h);
         }
-        self.drive_work += work;
+        self.drive_work += max(work, 0.0);
     }
 
     /// Motors that ask for more than their caps push with these from now on; then the substep's joints are solved again

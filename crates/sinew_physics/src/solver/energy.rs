@@ -15,14 +15,8 @@ const MAX_INNER_TURN: f32 = 1.0;
 /// rounding and the give and take of resting contacts are far below.
 const ENERGY_SLACK: f32 = 1e-3;
 
-/// Which velocities count when those after do not.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Before {
-    /// After the forces.
-    Constraints,
-    /// After `solve`.
-    Relaxing,
-}
+/// A joint that a substep leaves open by this much more than it was has not been solved, m or rad.
+const TORN: f32 = 0.1;
 
 impl IslandSolver {
     /// Impulses that hold up weights take energy away; those of an impact, repeated at another pose, add it. If they did,
@@ -106,19 +100,30 @@ impl IslandSolver {
         }
     }
 
-    /// A system of rows that no finite impulses solve (a body dragged into the floor by what nothing stops) leaves the
-    /// velocities as they were before it.
-    pub(super) fn drop_nonsense(&mut self, before: Before) {
+    /// Rows that cannot all hold (a body dragged into the floor, joints that contradict each other) may have no solution
+    /// that means anything: not finite, or one that leaves joints `torn` by so much, m or rad. Then the island moves as one
+    /// piece for this pass, with the momentum that the forces left it: no joint opens, and no energy comes of it.
+    pub(super) fn drop_nonsense(&mut self, torn: f32) {
         let moving = self.links.len();
-        if self.velocities[..moving].iter().flatten().all(|x| x.is_finite()) {
+        let finite = self.velocities[..moving].iter().flatten().all(|x| x.is_finite());
+        if finite && torn < TORN {
             return;
         }
-        let before = match before {
-            Before::Constraints => &self.unconstrained,
-            Before::Relaxing => &self.scratch.relaxed_from,
-        };
-        self.velocities[..moving].copy_from_slice(before);
+        self.velocities[..moving].copy_from_slice(&self.unconstrained);
+        let rigid = self.motion_as_one();
+        for (body, v) in self.bodies.iter().zip(&mut self.velocities[..moving]) {
+            *v = rigid.at(body.pose.translation);
+        }
         self.forget_impulses();
+    }
+
+    /// Of the island as if it were one piece: at rest if it touches or hangs on a fixed body.
+    fn motion_as_one(&self) -> RigidMotion {
+        if self.bodies.len() == self.links.len() {
+            RigidMotion::of(&self.bodies, &self.velocities)
+        } else {
+            RigidMotion::default()
+        }
     }
 
     /// Rigid joints and stops cannot give energy, springs and motors no more than their work. What rounding, redundant rows
@@ -135,11 +140,7 @@ impl IslandSolver {
         if after <= allowed + slack {
             return;
         }
-        let rigid = if self.bodies.len() == moving {
-            RigidMotion::of(&self.bodies, &self.velocities)
-        } else {
-            RigidMotion::default()
-        };
+        let rigid = self.motion_as_one();
         let s = &mut self.scratch;
         s.dv.clear();
         for (body, v) in self.bodies.iter().zip(&self.velocities[..moving]) {

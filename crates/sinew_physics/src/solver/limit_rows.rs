@@ -222,7 +222,8 @@ impl LimitRow {
         }
         let rate = self.row.rate(joint, velocities);
         let new = match self.hardness {
-            Hardness::Soft(..) if pass != Pass::Solve || self.room >= 0.0 => return None,
+            Hardness::Soft(..) if pass != Pass::Solve => return None,
+            Hardness::Soft(..) if self.impulse == 0.0 && self.room + h * rate >= 0.0 => return None,
             Hardness::Soft(softness, damped) => {
                 let (stiffness, damping) = softness.of_mass(1.0 / self.effective);
                 // Implicit: λ = −h (k (room + h v) + c v), never pulling.
@@ -237,12 +238,13 @@ impl LimitRow {
         (change != 0.0).then(|| (self.row.a.map(|x| x * change), self.row.b.map(|x| x * change)))
     }
 
-    /// What a soft row has given, at most.
-    pub fn soft_work(&self, joint: &SolverJoint, velocities: &[Vec6]) -> f32 {
-        match self.hardness {
-            Hardness::Soft(..) => max(self.impulse * self.row.rate(joint, velocities), 0.0),
-            _ => 0.0,
-        }
+    /// What the spring of a soft row gives in a substep.
+    pub fn soft_work(&self, joint: &SolverJoint, velocities: &[Vec6], h: f32) -> f32 {
+        let Hardness::Soft(softness, _) = self.hardness else { return 0.0 };
+        let (stiffness, _) = softness.of_mass(1.0 / max(self.effective, 1e-9));
+        let before = min(self.room, 0.0);
+        let after = min(self.room + h * self.row.rate(joint, velocities), 0.0);
+        0.5 * stiffness * (before * before - after * after)
     }
 
     /// Rate that a stop asks for at the present one. In `relax` a limb on its way to the stop is not hurried there: to

@@ -28,7 +28,6 @@ use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, angular, dot, join, linear};
 pub(crate) use build::View;
 use contact_rows::ManifoldRows;
 use drives::SoftRow;
-use energy::Before;
 use limit_rows::LimitRow;
 use loops::Loops;
 use response::Response;
@@ -123,6 +122,8 @@ pub(crate) struct SolverJoint {
     pub rows: JointRows,
     /// Rows that hold exactly.
     rigid: usize,
+    /// What they may leave of their errors in this substep, row by row.
+    left_open: Vec6,
     /// Rows that it may have.
     most_rows: usize,
     /// The others, row by row.
@@ -190,7 +191,6 @@ struct Scratch {
     before: Vec<Vec6>,
     /// Velocities that the joints of the substep are solved from.
     started: Vec<Vec6>,
-    relaxed_from: Vec<Vec6>,
     pieces: Vec<composite::Piece>,
     build: build::Scratch,
 }
@@ -257,16 +257,16 @@ impl IslandSolver {
         self.saturate_motors();
         self.sweep(Pass::Solve);
         self.calm_trees();
-        self.correct_positions();
+        let mut torn = self.correct_positions();
         for _ in 0..LIMIT_CORRECTIONS {
             if !self.tighten_limits() {
                 break;
             }
             self.sweep(Pass::Solve);
             self.calm_trees();
-            self.correct_positions();
+            torn = self.correct_positions();
         }
-        self.drop_nonsense(Before::Constraints);
+        self.drop_nonsense(torn);
         self.add_drive_work();
     }
 
@@ -301,14 +301,12 @@ impl IslandSolver {
 
     /// Joint velocities to zero at the new pose (RATTLE), contacts and limits without bias, friction.
     pub fn relax(&mut self) {
-        self.scratch.relaxed_from.clear();
-        self.scratch.relaxed_from.extend_from_slice(&self.velocities[..self.links.len()]);
         for rows in &mut self.manifolds {
             rows.begin_relax(&self.velocities, self.h);
         }
         self.project_joints(Pass::Relax);
         self.sweep(Pass::Relax);
-        self.drop_nonsense(Before::Relaxing);
+        self.drop_nonsense(0.0);
         self.govern_energy();
         for rows in &mut self.manifolds {
             rows.end_substep();

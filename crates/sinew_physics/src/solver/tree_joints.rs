@@ -70,9 +70,11 @@ impl IslandSolver {
     /// small enough (one or two rounds but for violent hits). The factor is that of the substep's beginning: for a body
     /// that turns by more than a radian it may lead away, so a round that does not halve the error is taken back and
     /// the next substep goes on from there.
-    pub(super) fn correct_positions(&mut self) {
+    ///
+    /// Gives the largest error that is left, m or rad.
+    pub(super) fn correct_positions(&mut self) -> f32 {
         if !self.is_articulated() {
-            return;
+            return 0.0;
         }
         let moving = self.links.len();
         let mut error = self.predict_errors();
@@ -97,6 +99,7 @@ impl IslandSolver {
             }
             error = left;
         }
+        error
     }
 
     /// Residuals that would remove the position errors at the predicted pose; gives the largest error (m or rad).

@@ -113,6 +113,9 @@ fn spring_square(kind: &JointKind, locks: &[bool; 6], seen: &Transform, rest: &T
         }
         _ => masked_square(seen.translation - rest.translation, &open[..3]),
     };
+    if matches!(kind, JointKind::Distance { .. }) {
+        return linear;
+    }
     let turn = (seen.rotation * rest.rotation.inverse()).to_scaled_axis();
     linear + masked_square(turn, &open[3..])
 }
