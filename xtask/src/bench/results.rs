@@ -52,6 +52,11 @@ impl Results {
         self.scenes.iter().find(|scene| scene.name == name)
     }
 
+    /// Whether the scene of that name was measured, or the bake.
+    pub fn has(&self, name: &str) -> bool {
+        self.scene(name).is_some() || name == super::BAKE && self.bake.is_some()
+    }
+
     /// Takes what is newer, keeps the rest, in the order of `names`; forgets other scenes.
     pub fn update(&mut self, newer: Self, names: &[(String, String)]) {
         let older = std::mem::replace(self, newer);
