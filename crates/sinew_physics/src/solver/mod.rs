@@ -169,8 +169,11 @@ pub(crate) struct IslandSolver {
     scratch: Scratch,
     /// Largest change of a velocity component in the sweep in progress.
     largest_change: f32,
-    /// Kinetic energy when the forces had acted in this substep, and work of springs and motors since, J.
+    /// Kinetic energy before and after the forces acted in this substep, J.
+    kinetic_before: f32,
     kinetic_start: f32,
+    /// Work in this substep of the forces, and of springs and motors, J.
+    force_work: f32,
     drive_work: f32,
     /// Particles pushed in this substep.
     pushed_from_outside: bool,
@@ -201,6 +204,7 @@ impl IslandSolver {
     pub fn integrate_velocity(&mut self) {
         let h = self.h;
         self.begin_drives();
+        self.kinetic_before = self.kinetic_energy(&self.velocities[..self.links.len()]);
         self.push_saturated();
         for (body, v) in self.bodies.iter_mut().zip(&mut self.velocities).take(self.links.len()) {
             let inverse_mass = 1.0 / body.mass;
@@ -274,6 +278,7 @@ impl IslandSolver {
     /// and the next substep's `solve`.
     pub fn integrate_position(&mut self) {
         self.store_joint_forces();
+        self.force_work = self.work_of_forces();
         for (i, (body, v)) in self.bodies.iter_mut().zip(&mut self.velocities).enumerate() {
             let turned = self.unconstrained.get(i).map(|before| {
                 // What impulses gave, at the inertia that they met.
@@ -404,6 +409,13 @@ impl IslandSolver {
     /// True if some joints are solved as trees.
     fn is_articulated(&self) -> bool {
         self.articulated
+    }
+
+    /// In the motion of this substep, J.
+    fn work_of_forces(&self) -> f32 {
+        let power = |(body, v): (&SolverBody, &Vec6)| body.force.dot(linear(v)) + body.torque.dot(angular(v));
+        let moving = self.bodies[..self.links.len()].iter().zip(&self.velocities);
+        self.h * moving.map(power).fold(0.0, |sum, power| sum + power)
     }
 
     /// Of the moving bodies as the forces leave them, J.

@@ -12,8 +12,8 @@ use sinew_physics::*;
 /// Steps until the boxes are thrown back to where they began.
 const CYCLE: usize = 150;
 
-/// Cycles until every number of islands has been seen that there will be.
-const WARM_UP: usize = 3;
+/// Cycles until every size has been seen that islands will have: heaps differ from one fall to the next.
+const WARM_UP: usize = 30;
 
 /// Steps until what hangs from joints and springs has come to rest, or nearly.
 const SETTLE: usize = 400;
