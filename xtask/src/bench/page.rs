@@ -28,6 +28,11 @@ pub fn page(results: &Results, missing: &[&str], machine: &Machine) -> String {
     page
 }
 
+/// How many scenes a page has.
+pub fn scene_count(page: &str) -> usize {
+    page.lines().filter(|line| line.starts_with("### ")).count()
+}
+
 fn gaps(missing: &[&str]) -> String {
     if missing.is_empty() { String::new() } else { format!("\nNot measured yet: {}.\n", missing.join(", ")) }
 }
@@ -250,6 +255,7 @@ mod tests {
         for part in ["At a glance", "### chain_swing_1000", "Box3D: no balls.", "yet: net, bake.", "-O3"] {
             assert!(page.contains(part), "{part} is missing:\n{page}");
         }
+        assert_eq!(scene_count(&page), 1);
         assert!(!page.contains("\n\n\n"), "one empty line is enough:\n{page}");
     }
 }
