@@ -1,7 +1,7 @@
 //! Every kind of joint, its springs, motors, limits and strength, against closed forms.
 
 use crate::build::{ball, joint};
-use sinew_math::{Range, Rotation, SwingTwistLimit, Sym3, Transform, Vec3};
+use sinew_math::{Range, Rotation, SwingTwistLimit, Sym3, Transform, Vec3, trig};
 use sinew_physics::*;
 
 const G: f32 = 9.81;
