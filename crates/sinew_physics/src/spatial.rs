@@ -44,6 +44,16 @@ pub(crate) fn mul(m: &Mat6, v: &Vec6) -> Vec6 {
     [dot(&m[0], v), dot(&m[1], v), dot(&m[2], v), dot(&m[3], v), dot(&m[4], v), dot(&m[5], v)]
 }
 
+/// `mᵀ v`: sums whole rows, which fills vector registers where `mul` has to add across them.
+#[inline(always)]
+pub(crate) fn mul_transposed(m: &Mat6, v: &Vec6) -> Vec6 {
+    let mut out = ZERO6;
+    for k in 0..6 {
+        add_scaled(&mut out, &m[k], v[k]);
+    }
+    out
+}
+
 /// `a b`
 #[inline]
 pub(crate) fn product(a: &Mat6, b: &Mat6) -> Mat6 {

@@ -131,6 +131,10 @@ impl IslandSolver {
         for i in 0..self.limits.len() {
             let joint = &self.joints[self.limits[i].joint as usize];
             let (a, b) = (joint.a, joint.b);
+            let now = self.unrest.of(&self.links, a, b);
+            if !self.unrest.wakes_limit(i, now) {
+                continue;
+            }
             if let Some(push) = self.limits[i].visit(joint, &self.velocities, pass, self.h) {
                 self.push(a, b, &push);
             }

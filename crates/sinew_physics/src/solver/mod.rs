@@ -32,7 +32,7 @@ use limit_rows::LimitRow;
 use loops::Loops;
 use response::Response;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew};
-use sweep::Pass;
+use sweep::{Pass, Unrest};
 use tree::Link;
 
 /// Angle that a body may turn within a substep, radians: beyond it rows linearised at its start mean nothing.
@@ -167,6 +167,7 @@ pub(crate) struct IslandSolver {
     /// Velocities after the forces, before any constraint.
     unconstrained: Vec<Vec6>,
     scratch: Scratch,
+    unrest: Unrest,
     /// Largest change of a velocity component in the sweep in progress.
     largest_change: f32,
     /// Kinetic energy before and after the forces acted in this substep, J.

@@ -3,7 +3,7 @@
 
 use super::loops::MAX_EXACT_ROWS;
 use super::tree::{Link, NONE};
-use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, mul, product, transpose};
+use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, mul, mul_transposed, product, transpose};
 
 /// Blocks `W_ij` (6×6) between the bodies of each tree that carry rows, and their ancestors.
 #[derive(Clone, Debug, Default)]
@@ -143,7 +143,7 @@ impl Response {
         }
         let tree = &self.trees[links[to].tree as usize];
         let (i, j) = (self.slot[to] as usize, self.slot[from] as usize);
-        mul(&self.blocks[tree.blocks + i * tree.count + j], p)
+        mul_transposed(&self.blocks[tree.blocks + j * tree.count + i], p)
     }
 
     /// Adds the velocity changes of an impulse `p` on body `from` to all members of its tree.
@@ -151,11 +151,13 @@ impl Response {
         if from >= links.len() {
             return;
         }
-        let tree = &self.trees[links[from].tree as usize];
-        let column = self.slot[from] as usize;
-        for (i, &body) in self.members[tree.first..tree.first + tree.count].iter().enumerate() {
-            let change = mul(&self.blocks[tree.blocks + i * tree.count + column], p);
-            add_scaled(&mut velocities[body as usize], &change, 1.0);
+        let TreeBlocks { first, count, blocks } = self.trees[links[from].tree as usize];
+        // W is symmetric: the row of blocks of `from`, transposed, is its column, and lies in one piece of memory.
+        let row = blocks + self.slot[from] as usize * count;
+        for (&body, block) in
+            self.members[first..first + count].iter().zip(&self.blocks[row..row + count])
+        {
+            add_scaled(&mut velocities[body as usize], &mul_transposed(block, p), 1.0);
         }
     }
 }

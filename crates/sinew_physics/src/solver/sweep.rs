@@ -3,6 +3,7 @@
 //! joints hold exactly.
 
 use super::contact_rows::Push;
+use super::tree::Link;
 use super::{IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED};
 use crate::spatial::{ZERO6, add_scaled, linear};
 use sinew_math::max;
@@ -18,6 +19,52 @@ pub(crate) enum Pass {
     Restitution,
 }
 
+/// How much the velocities of each tree have changed in a pass: rows whose trees lie still need no further visit, and in a
+/// heap most of them do after a few sweeps. m/s or rad/s, summed.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Unrest {
+    trees: Vec<f32>,
+    /// Per manifold and per limit row: the sum of its trees when it was last visited.
+    manifolds: Vec<f32>,
+    limits: Vec<f32>,
+}
+
+impl Unrest {
+    fn start(&mut self, trees: usize, manifolds: usize, limits: usize) {
+        for (list, count, start) in [
+            (&mut self.trees, trees, 0.0),
+            (&mut self.manifolds, manifolds, f32::NEG_INFINITY),
+            (&mut self.limits, limits, f32::NEG_INFINITY),
+        ] {
+            list.clear();
+            list.resize(count, start);
+        }
+    }
+
+    /// Of the trees of two bodies.
+    pub fn of(&self, links: &[Link], a: u32, b: u32) -> f32 {
+        let tree = |body: u32| links.get(body as usize).map_or(0.0, |link| self.trees[link.tree as usize]);
+        tree(a) + tree(b)
+    }
+
+    fn wakes_manifold(&mut self, i: usize, now: f32) -> bool {
+        wakes(&mut self.manifolds[i], now)
+    }
+
+    pub fn wakes_limit(&mut self, i: usize, now: f32) -> bool {
+        wakes(&mut self.limits[i], now)
+    }
+}
+
+/// Whether enough has happened since the last visit; then this is the last one.
+fn wakes(seen: &mut f32, now: f32) -> bool {
+    let wakes = now - *seen >= SWEEP_TOLERANCE;
+    if wakes {
+        *seen = now;
+    }
+    wakes
+}
+
 impl IslandSolver {
     /// Visits all rows and gives the bodies their impulses.
     pub(super) fn sweep(&mut self, pass: Pass) {
@@ -25,6 +72,7 @@ impl IslandSolver {
             return;
         }
         self.reset_impulses();
+        self.unrest.start(self.tree_count, self.manifolds.len(), self.limits.len());
         let moving = self.links.len();
         self.scratch.before.clear();
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
@@ -49,6 +97,10 @@ impl IslandSolver {
 
     fn visit_contacts(&mut self, pass: Pass) {
         for i in 0..self.manifolds.len() {
+            let now = self.unrest.of(&self.links, self.manifolds[i].a, self.manifolds[i].b);
+            if self.is_articulated() && !self.unrest.wakes_manifold(i, now) {
+                continue;
+            }
             if pass == Pass::Relax {
                 let push = self.manifolds[i].visit_friction(&self.velocities);
                 self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
@@ -71,13 +123,16 @@ impl IslandSolver {
     /// Puts impulses on two bodies and their trees.
     pub(super) fn push(&mut self, a: u32, b: u32, push: &Push) {
         for (body, p) in [(a as usize, &push.0), (b as usize, &push.1)] {
-            if body < self.links.len() {
+            if body < self.links.len() && *p != ZERO6 {
                 add_scaled(&mut self.impulses[body], p, 1.0);
                 let before = self.velocities[body];
                 self.response.apply(&self.links, body, p, &mut self.velocities);
+                let mut change = 0.0;
                 for (x, y) in self.velocities[body].iter().zip(&before) {
-                    self.largest_change = max(self.largest_change, (x - y).abs());
+                    change = max(change, (x - y).abs());
                 }
+                self.unrest.trees[self.links[body].tree as usize] += change;
+                self.largest_change = max(self.largest_change, change);
             }
         }
     }
