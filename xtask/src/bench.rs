@@ -81,9 +81,6 @@ impl Bench {
         self.refuse_unknown(&names)?;
         let results = self.measure(&engines, &names)?;
         println!("{}\n{}\n{}", page::glance(&results), page::holds(&results), page::speeds(&results));
-        if !self.quick {
-            write(results.clone(), &names)?;
-        }
         Ok(self.verdict(&results))
     }
 
@@ -109,11 +106,18 @@ impl Bench {
             let engines = self.race(engines, name)?;
             let (name, about) = (name.clone(), about.clone());
             results.scenes.push(SceneResult { name, about, revision: revision.clone(), engines });
+            self.keep(&results, names)?;
         }
         if self.is_wanted(BAKE) && !self.quick {
             results.bake = Some(bake()?);
+            self.keep(&results, names)?;
         }
         Ok(results)
+    }
+
+    /// Writes down what there is so far: whoever stops a long run loses one scene only.
+    fn keep(&self, results: &Results, names: &[(String, String)]) -> Result<()> {
+        if self.quick { Ok(()) } else { write(results.clone(), names) }
     }
 
     /// A scene on all engines, which take turns, so that a neighbour's load hits all alike.
@@ -181,7 +185,6 @@ fn write(results: Results, names: &[(String, String)]) -> Result<()> {
     let mut all = Results::from_json(&earlier.unwrap_or(Value::Null));
     all.update(results, names);
     fs::write(&path, format!("{:#}\n", all.to_json())).with_context(|| path.display().to_string())?;
-    eprintln!("wrote {}", path.display());
     let names = names.iter().map(|(name, _)| name.as_str()).chain([BAKE]);
     let missing: Vec<&str> = names.filter(|name| !all.has(name)).collect();
     let page = command::root().join(PAGE);
@@ -192,7 +195,5 @@ fn write(results: Results, names: &[(String, String)]) -> Result<()> {
         );
         return Ok(());
     }
-    fs::write(&page, page::page(&all, &missing, &Machine::this())).context(PAGE)?;
-    eprintln!("wrote {PAGE}");
-    Ok(())
+    fs::write(&page, page::page(&all, &missing, &Machine::this())).context(PAGE)
 }

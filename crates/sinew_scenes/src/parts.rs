@@ -69,6 +69,21 @@ pub(crate) fn thin_rod(start: f32, length: f32, mass: f32) -> BodyDef {
     BodyDef { mass, ..level_rod(start, length, 0.03 * length) }
 }
 
+/// The same from one point to another.
+pub(crate) fn thin_rod_between(from: Vec3, to: Vec3, mass: f32) -> BodyDef {
+    let along = to - from;
+    let turn = Rotation::from_arc(Vec3::X, along.normalize());
+    let level = thin_rod(0.0, along.length(), mass);
+    BodyDef { position: from + turn * level.position, rotation: turn * level.rotation, ..level }
+}
+
+/// A hinge of two bodies about an axis through a world point.
+pub(crate) fn hinge(world: &World, a: BodyId, b: BodyId, at: Vec3, axis: Vec3) -> JointDef {
+    let frame = Transform::new(at, Rotation::from_arc(Vec3::X, axis));
+    let kind = JointKind::Hinge { limit: None };
+    JointDef::new(a, b, world.transform(a), world.transform(b), frame, kind)
+}
+
 /// Joins two bodies at a world point by a ball joint.
 pub(crate) fn join(world: &mut World, a: BodyId, b: BodyId, at: Vec3) -> JointId {
     let joint = Transform::from_translation(at);

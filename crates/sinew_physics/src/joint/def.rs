@@ -17,9 +17,10 @@ pub enum JointKind {
         /// Radians, inside −π..=π; `None`: unlimited.
         limit: Option<Range>,
     },
-    /// Two rotations: swing about y and z, no twist about x.
+    /// Two rotations: swing about y and z, no twist about x. At a swing of half a turn twist means nothing, and near it
+    /// is held weakly: limit the swing where that may be reached.
     Universal {
-        /// Swing half-angles; its twist range is ignored. `None`: unlimited.
+        /// The cone; its twist range is ignored. `None`: unlimited.
         limit: Option<SwingTwistLimit>,
     },
     /// None.
@@ -44,7 +45,7 @@ pub enum JointKind {
 pub struct SixDof {
     /// Translation along the axes of frame A, metres.
     pub linear: [AxisMotion; 3],
-    /// Rotation about x, radians, inside −π..=π.
+    /// Rotation about x, radians, inside −π..=π. Locked beside free swings it is that of [`JointKind::Universal`].
     pub twist: AxisMotion,
     /// Swing about y, radians, with 0 inside; limits on both swings make an elliptic cone.
     pub swing_y: AxisMotion,
@@ -69,7 +70,7 @@ pub enum AxisMotion {
     Locked,
     /// Unlimited.
     Free,
-    /// Free within a range, metres or radians.
+    /// Free within a range, metres or radians. One without width is better `Locked`.
     Limited(Range),
 }
 
@@ -84,7 +85,8 @@ pub enum Softness {
         damping: f32,
     },
     /// Whatever hangs on the joint: it swings as a damped oscillator whose mass is that of the two sides of the joint,
-    /// each taken as one rigid piece in its present pose.
+    /// each taken as one rigid piece in the pose of the step's beginning; of a joint that closes a loop, that of its two
+    /// bodies. For limits and soft zones it is what answers to their row while the joints hold.
     Frequency {
         /// Natural frequency, Hz.
         hertz: f32,
@@ -93,7 +95,8 @@ pub enum Softness {
     },
 }
 
-/// Pulls the free directions toward a rest pose. Never tires; see [`Motor`] for one that may.
+/// Pulls the free directions toward a rest pose. Never tires; see [`Motor`] for one that may. A stiff one whose rest pose
+/// lies beyond a hard stop may give energy: keep it inside, or let the limits be soft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
     /// How hard.
@@ -111,7 +114,7 @@ pub enum Gains {
     Position(Softness),
 }
 
-/// Drives the free directions of a joint.
+/// Drives the free directions of a joint. Its targets belong inside the limits, see [`Spring`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor {
     /// How.
@@ -120,9 +123,9 @@ pub struct Motor {
     pub target: Transform,
     /// Of frame B seen from frame A, in A's axes, m/s and rad/s.
     pub velocity: Velocity,
-    /// Most force along each free axis, N; 0 leaves translations alone.
+    /// Most force along each free axis by itself, N, may be infinite; 0 leaves translations alone.
     pub max_force: f32,
-    /// Most torque about each free axis, N·m; 0 leaves rotations alone.
+    /// Most torque about each free axis by itself, N·m, may be infinite; 0 leaves rotations alone.
     pub max_torque: f32,
 }
 
@@ -161,12 +164,12 @@ impl Motor {
     }
 }
 
-/// Softens the end of a joint's rotation.
+/// Softens the end of a joint's rotation. Without effect on translations, and where the limits themselves are soft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftZone {
-    /// From here to the stop a spring pushes back, radians. 5° suits limbs.
+    /// So far before the stop a spring begins to push back, radians. 5° suits limbs.
     pub width: f32,
-    /// How hard. 10 Hz and critical suits limbs.
+    /// How hard; damping grows from none at the zone's edge to all of it at the stop. 10 Hz and critical suits limbs.
     pub softness: Softness,
 }
 
@@ -175,7 +178,7 @@ pub struct SoftZone {
 pub struct Strength {
     /// Mean force over a step, N.
     pub force: f32,
-    /// Mean torque over a step, N·m, motors, limits and friction included.
+    /// Mean torque over a step, N·m about B's anchor, springs, motors, limits and friction included.
     pub torque: f32,
 }
 
@@ -215,15 +218,15 @@ pub struct JointDef {
     pub frame_b: Transform,
     /// What is free.
     pub kind: JointKind,
-    /// Of what is not free. Default `None`: it holds exactly.
+    /// How what is not free gives. Default `None`: it holds exactly.
     pub weld: Option<Softness>,
-    /// Of the limits. Default `None`: hard stops without bounce.
+    /// How the limits give. Default `None`: hard stops without bounce.
     pub limit_softness: Option<Softness>,
-    /// Before the limits of rotations. Default `None`.
+    /// Before hard limits of rotations. Default `None`.
     pub soft_zone: Option<SoftZone>,
-    /// Default `None`.
+    /// Pulls what is free. Default `None`.
     pub spring: Option<Spring>,
-    /// Default `None`.
+    /// Drives what is free. Default `None`.
     pub motor: Option<Motor>,
     /// Torque that resists the free rotations, N·m, and force that resists the free translations, N. Default 0.
     pub friction_torque: f32,

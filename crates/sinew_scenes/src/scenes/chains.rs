@@ -2,6 +2,7 @@
 
 use super::metric::{Expected, Metric};
 use super::parts::GRAVITY;
+use super::support::Support;
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::blueprint::{Blueprint, chain_100_links, chain_hang, chain_swing, hanging_rope, heavy_rope};
 use sinew::math::{Vec3, max};
@@ -90,7 +91,8 @@ fn hung(setup: &Setup<'_>, plans: &[Blueprint], musts: Musts) -> Instance {
     let chains: Vec<_> = plans.iter().flat_map(|plan| Chain::build_all(&mut world, plan)).collect();
     let start = world.energy().total();
     let depth = chains.iter().map(|chain| world.mass(chain.weight).mass * GRAVITY * chain.length).sum();
-    Instance::new(world, Hung { chains, musts, start, depth, drift: 0.0, first: None })
+    let support = Support::new(&world);
+    Instance::new(world, Hung { chains, musts, start, depth, drift: 0.0, first: None, support })
 }
 
 /// A chain in a world.
@@ -155,6 +157,7 @@ struct Hung {
     drift: f32,
     /// Slowest downward acceleration of a weight in the first step, m/s², where the chains are level.
     first: Option<f32>,
+    support: Support,
 }
 
 impl Script for Hung {
@@ -162,6 +165,7 @@ impl Script for Hung {
         for chain in &mut self.chains {
             chain.after_step(world);
         }
+        self.support.after_step(world);
         self.drift = max(self.drift, (world.energy().total() - self.start).abs());
         if world.step_count() == 1 {
             let level = self.chains.iter().filter(|chain| chain.level);
@@ -179,6 +183,7 @@ impl Script for Hung {
             Metric::new("stretch", worst(&|chain| chain.stretch_peak), stretch),
             Metric::new("stretch_end", worst(&|chain| chain.stretch(world)), stretch),
             Metric::new("energy_drift", self.drift / self.depth, Expected::Anything),
+            self.support.metric(),
         ];
         if self.chains.iter().any(|chain| chain.level) {
             // A level chain at rest bears nothing of its weight: what holds the hook's end up dies away link by link.

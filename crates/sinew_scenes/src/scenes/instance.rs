@@ -11,6 +11,12 @@ pub trait Script: Send {
     /// so that a restored world goes on as the saved one did.
     fn after_step(&mut self, _world: &mut World) {}
 
+    /// Energy that drives have given the world since the start, less what they took, J; asked after
+    /// [`after_step`](Self::after_step).
+    fn work_in(&self, _world: &World) -> f32 {
+        0.0
+    }
+
     /// The figures so far.
     fn metrics(&self, world: &World) -> Vec<Metric>;
 }
@@ -71,8 +77,10 @@ impl Instance {
     }
 
     fn after_step(&mut self, energy_before: Energy) {
-        self.health.after_step(&self.world, energy_before);
+        // What the script pushes is no work of this step.
+        let after = self.world.energy();
         self.script.after_step(&mut self.world);
+        self.health.after_step(&self.world, [energy_before, after], self.script.work_in(&self.world));
     }
 
     /// The figures so far: those of the scene, then `energy_gain_max` and `nan`, which every scene has.
@@ -86,6 +94,8 @@ impl Instance {
 /// What no scene may show, however long it runs.
 struct Health {
     mass: f32,
+    /// That drives have put in, J.
+    work_in: f32,
     energy_gain_max: f32,
     quarantined: u32,
 }
@@ -95,13 +105,14 @@ impl Health {
         let of_bodies: f32 = world.body_ids().map(|id| world.mass(id).mass).sum();
         let of_particles: f32 = world.group_ids().flat_map(|id| world.particles(id).masses()).sum();
         let mass = of_bodies + of_particles;
-        Self { mass, energy_gain_max: 0.0, quarantined: 0 }
+        Self { mass, work_in: 0.0, energy_gain_max: 0.0, quarantined: 0 }
     }
 
-    fn after_step(&mut self, world: &World, before: Energy) {
-        let after = world.energy();
+    fn after_step(&mut self, world: &World, [before, after]: [Energy; 2], work_in: f32) {
         // Each kind by itself: their sums are large and lose digits.
-        let rise = (after.kinetic - before.kinetic) + (after.potential - before.potential);
+        let rise = (after.kinetic - before.kinetic) + (after.potential - before.potential)
+            - (work_in - self.work_in);
+        self.work_in = work_in;
         self.energy_gain_max = max(self.energy_gain_max, rise / max(before.kinetic, self.mass));
         self.quarantined += world.events().quarantined.len() as u32;
     }

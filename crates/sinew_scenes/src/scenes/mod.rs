@@ -22,12 +22,15 @@ mod chains;
 mod crowds;
 mod falls;
 mod incline;
+mod linkages;
 mod mjcf;
+mod motors;
 mod nets;
 mod pendulums;
 mod piles;
 mod ragdolls;
 mod springs;
+mod support;
 mod trees;
 mod weightless;
 
@@ -85,6 +88,8 @@ pub fn registry() -> &'static [Scene] {
             pendulums::PENDULUM,
             pendulums::DOUBLE_PENDULUM,
             pendulums::TRIPLE_PENDULUM,
+            motors::ARM,
+            linkages::LINKAGE,
             incline::HOLDS,
             incline::SLIDES,
             springs::SPRING,

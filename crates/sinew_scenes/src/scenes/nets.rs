@@ -1,6 +1,7 @@
 //! Joints in loops.
 
 use super::metric::{Expected, Metric};
+use super::support::Support;
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::blueprint::{Blueprint, joint_grid_of, net};
 use sinew::math::max;
@@ -29,7 +30,8 @@ fn woven(setup: &Setup<'_>, plan: &Blueprint) -> Instance {
     let mut world = setup.sleepless_world();
     let joints = plan.build_into(&mut world).joints;
     let start = world.energy().total();
-    Instance::new(world, Woven { joints, start, gap_peak: 0.0, kinetic_peak: 0.0, rise: 0.0 })
+    let support = Support::new(&world);
+    Instance::new(world, Woven { joints, start, gap_peak: 0.0, kinetic_peak: 0.0, rise: 0.0, support })
 }
 
 struct Woven {
@@ -41,6 +43,7 @@ struct Woven {
     kinetic_peak: f32,
     /// The most that the energy was above its start, J.
     rise: f32,
+    support: Support,
 }
 
 impl Woven {
@@ -52,6 +55,7 @@ impl Woven {
 impl Script for Woven {
     fn after_step(&mut self, world: &mut World) {
         self.gap_peak = self.gaps(world).fold(self.gap_peak, max);
+        self.support.after_step(world);
         let energy = world.energy();
         self.kinetic_peak = max(self.kinetic_peak, energy.kinetic);
         self.rise = max(self.rise, energy.total() - self.start);
@@ -63,6 +67,7 @@ impl Script for Woven {
             Metric::new("joint_gap_end_m", self.gaps(world).fold(0.0, max), Expected::Anything),
             Metric::new("kinetic_peak_j", self.kinetic_peak, Expected::Anything),
             Metric::new("energy_rise_j", self.rise, Expected::Anything),
+            self.support.metric(),
         ]
     }
 }

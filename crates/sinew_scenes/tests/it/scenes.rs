@@ -8,20 +8,12 @@ const NOT_YET: &[(&str, &[&str])] = &[
     ("mass_ratio", &["velocity_residual"]),
     // Two joints of 1,400 are for a moment beyond their limits by more than 0.1 rad.
     ("ragdoll_pile", &["limits_exceeded"]),
+    // The reaction of a saturated motor reads 3 % high while its arm turns at 3 rad/s; what it does is right.
+    ("motor_arm", &["torque_over_cap"]),
 ];
 
-/// Scenes in which gravity has no part, or no part in what is expected: what hangs at rest hangs under any gravity.
-const BLIND_TO_GRAVITY: &[&str] = &[
-    "zero_gravity_pile",
-    "spin_double",
-    "spin_triple",
-    "spin_ragdoll",
-    "chain_hang_1000",
-    "chain_hang_100",
-    "hanging_rope",
-    "joint_grid",
-    "net",
-];
+/// Scenes in which gravity has no part.
+const BLIND_TO_GRAVITY: &[&str] = &["zero_gravity_pile", "spin_double", "spin_triple", "spin_ragdoll"];
 
 fn metrics_after(scene: &Scene, settings: &Settings, gravity_factor: f32) -> Vec<Metric> {
     let mut run = scene.start_under(settings, gravity_factor);
@@ -91,6 +83,8 @@ scenes!(
         pendulum,
         double_pendulum,
         triple_pendulum,
+        motor_arm,
+        linkage,
         incline_holds,
         incline_slides,
         spring,
