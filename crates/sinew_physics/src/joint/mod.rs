@@ -193,7 +193,7 @@ impl Joint {
             || crate::spatial::angular(&self.reaction).length() > self.strength.torque
     }
 
-    /// A motor moves it to where it is not: its bodies may be put to sleep all the same once they stand still.
+    /// Another kind of motor forgets which way the old one pushed with all it had.
     pub fn set_motor(&mut self, motor: Option<Motor>) {
         let aims = |motor: &Option<Motor>| motor.map(|m| matches!(m.gains, Gains::Velocity));
         if aims(&motor) != aims(&self.drive.motor) {

@@ -49,6 +49,7 @@ const SWEEPS_FREE: usize = 1;
 const SWEEPS_FREE_RELAX: usize = 2;
 /// Rounds in which limits that the substep would pass by far are tightened.
 const LIMIT_CORRECTIONS: usize = 4;
+
 /// A body of the island. Moving ones come first, in tree order; fixed ones (static, kinematic, asleep) follow.
 #[derive(Clone, Debug)]
 pub(crate) struct SolverBody {
@@ -62,7 +63,7 @@ pub(crate) struct SolverBody {
     pub excess: Vec3,
     /// Inverse of inertia and excess, world axes.
     pub inverse_inertia: Sym3,
-    /// Force and torque per substep second: gravity and the user's, N and N·m.
+    /// Gravity's and the user's, N and N·m.
     pub force: Vec3,
     pub torque: Vec3,
     /// Angular momentum that the body would have at the substep's end without impulses, N·m·s.
@@ -200,8 +201,8 @@ struct Scratch {
 }
 
 impl IslandSolver {
-    /// Forces to velocities: damping on the old velocity, gravity and applied forces, gyroscopic torque (one implicit
-    /// Newton step in the principal frame), speed limits. Limits act here, never after the solve: there they tear joints.
+    /// Forces to velocities: damping on the old velocity, gravity and applied forces, speed limits, the spin of the middle of
+    /// the substep by gyroscopic torque. Limits act here, never after the solve: there they tear joints.
     pub fn integrate_velocity(&mut self) {
         let h = self.h;
         self.begin_drives();
@@ -282,7 +283,7 @@ impl IslandSolver {
         self.force_work = self.work_of_forces();
         for (i, (body, v)) in self.bodies.iter_mut().zip(&mut self.velocities).enumerate() {
             let turned = self.unconstrained.get(i).map(|before| {
-                // What impulses gave, at the inertia that they met.
+                // What impulses gave. Geometric stiffness is no inertia of the body.
                 body.momentum + body.angular_momentum(angular(v) - angular(before))
             });
             body.pose = advance(&body.pose, v, self.h);
@@ -311,6 +312,7 @@ impl IslandSolver {
             rows.begin_relax(&self.velocities, self.h);
         }
         self.project_joints(Pass::Relax);
+        self.refine_joints();
         self.sweep(Pass::Relax);
         self.drop_nonsense(0.0);
         self.govern_energy();
@@ -458,7 +460,7 @@ fn limit_length(v: Vec3, most: f32) -> Vec3 {
 }
 
 /// One Newton step of `I (ω⁺ − ω) + h ω⁺ × I ω⁺ = 0` in the principal frame, from ω (Catto, GDC 2015): the explicit
-/// torque explodes, leaving it out makes wrong tops.
+/// torque explodes, leaving it out makes wrong tops. With half a substep for `h` it gives the ω of its middle.
 fn gyroscopic(body: &SolverBody, w: Vec3, h: f32) -> Vec3 {
     let i = body.inertia;
     if i.x == i.y && i.y == i.z {

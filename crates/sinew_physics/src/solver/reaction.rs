@@ -4,7 +4,6 @@ use super::IslandSolver;
 use super::limit_rows::add_row;
 use super::tree::NONE;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
-use sinew_math::Sym3;
 
 impl IslandSolver {
     /// Adds the impulses of this substep to the reactions of all joints: what the momentum of the subtree below gained
@@ -18,9 +17,8 @@ impl IslandSolver {
         self.scratch.impulses.clear();
         for i in 0..moving {
             let (body, v, before) = (&self.bodies[i], &self.velocities[i], &self.unconstrained[i]);
-            let inertia = Sym3::from_rotated_diagonal(body.pose.rotation, body.inertia + body.excess);
-            let gained =
-                join((linear(v) - linear(before)) * body.mass, inertia * (angular(v) - angular(before)));
+            let spin = body.angular_momentum(angular(v)) - body.momentum;
+            let gained = join((linear(v) - linear(before)) * body.mass, spin);
             self.scratch.impulses.push(gained);
         }
         for rows in &self.manifolds {

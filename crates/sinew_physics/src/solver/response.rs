@@ -154,9 +154,7 @@ impl Response {
         let TreeBlocks { first, count, blocks } = self.trees[links[from].tree as usize];
         // W is symmetric: the row of blocks of `from`, transposed, is its column, and lies in one piece of memory.
         let row = blocks + self.slot[from] as usize * count;
-        for (&body, block) in
-            self.members[first..first + count].iter().zip(&self.blocks[row..row + count])
-        {
+        for (&body, block) in self.members[first..first + count].iter().zip(&self.blocks[row..row + count]) {
             add_scaled(&mut velocities[body as usize], &mul_transposed(block, p), 1.0);
         }
     }

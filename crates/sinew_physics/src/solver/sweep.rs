@@ -1,4 +1,4 @@
-//! Sweeps over contact, loop and limit rows in impulse space. While they run, only the bodies that carry rows are
+//! Sweeps over contact and limit rows in impulse space. While they run, only the bodies that carry rows are
 //! kept up to date, through the articulated response; then the trees are solved once with all impulses, so that the
 //! joints hold exactly.
 

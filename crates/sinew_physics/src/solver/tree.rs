@@ -6,7 +6,7 @@
 //! D  = J_c P J_cᵀ + Γ          Y = P J_cᵀ
 //! M'_p += J_pᵀ D⁻¹ J_p
 //! ```
-//! Γ is zero for rigid rows and the inverse of a viscosity for dry friction.
+//! Γ is zero for rigid rows, the compliance of springs, motors and dry friction for the others.
 
 use super::SolverJoint;
 use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, dot, mul, spd_inverse};

@@ -37,7 +37,8 @@ fn decades(random: &mut Random, lo: f32, hi: f32) -> f32 {
 const KNOWN: &[(&str, &[u64])] = &[
     ("a stiff spring that pulls beyond a hard stop gives energy", &[1, 27, 74, 97]),
     ("a limit of no width between bodies that other joints hold gives energy", &[16]),
-    ("loops that say what others say already lose their pivots", &[39, 66]),
+    ("loops that say what others say already lose their pivots", &[47, 66]),
+    ("a net of ropes, taut and slack by turns, gives energy", &[48]),
 ];
 
 /// Of the worlds beyond the first hundred, so many in a thousand do not hold yet.

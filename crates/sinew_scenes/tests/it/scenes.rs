@@ -4,10 +4,6 @@ use sinew_scenes::scenes::{Expected, Metric, Scene, Settings, find, registry};
 
 /// Figures that are not yet as expected, by scene. One that comes to be met must be taken off, or its test fails.
 const NOT_YET: &[(&str, &[&str])] = &[
-    // 1.9e-3.
-    ("mass_ratio", &["velocity_residual"]),
-    // Two joints of 1,400 are for a moment beyond their limits by more than 0.1 rad.
-    ("ragdoll_pile", &["limits_exceeded"]),
     // The reaction of a saturated motor reads 3 % high while its arm turns at 3 rad/s; what it does is right.
     ("motor_arm", &["torque_over_cap"]),
 ];
