@@ -284,20 +284,40 @@ impl IslandSolver {
         Some(on_b)
     }
 
-    /// What springs, welds that give and motors have given in this substep, at most.
+    /// What drives have given in this substep: impulse times the rate after it. Kinetic energy rises by that at most, less
+    /// by half of what the change of velocity would hold by itself. Motors are not asked for what they take.
     pub(super) fn add_drive_work(&mut self) {
-        let mut work = 0.0;
+        let (mut given, mut by_motors) = (0.0, 0.0);
         for joint in self.joints.iter().filter(|joint| joint.rigid < joint.rows.count) {
             let rate = joint.rate(&self.velocities);
             for row in joint.rigid..joint.rows.count {
                 let before = joint.start_rate[joint.rows.direction[row]];
-                work += joint.soft[row].work(before, rate[row]);
+                if joint.drive.motor.is_some() {
+                    by_motors += joint.soft[row].work(before, rate[row]);
+                } else {
+                    given += joint.soft[row].impulse(before, rate[row]) * rate[row];
+                }
             }
         }
         for row in &self.limits {
-            work += row.soft_work(&self.joints[row.joint as usize], &self.velocities, self.h);
+            given += row.soft_work(&self.joints[row.joint as usize], &self.velocities);
         }
-        self.drive_work += max(work, 0.0);
+        self.drive_work += max(by_motors, 0.0) + given;
+    }
+
+    /// What springs take, J, at `s` times the present velocities: the coefficients of `s²` and `s`.
+    pub(super) fn passive_resistance(&self) -> (f32, f32) {
+        let (mut square, mut linear) = (0.0, 0.0);
+        let passive = |joint: &&SolverJoint| joint.rigid < joint.rows.count && joint.drive.motor.is_none();
+        for joint in self.joints.iter().filter(passive) {
+            let rate = joint.rate(&self.velocities);
+            for row in joint.rigid..joint.rows.count {
+                let (soft, before) = (&joint.soft[row], joint.start_rate[joint.rows.direction[row]]);
+                square += soft.gain * rate[row] * rate[row];
+                linear += (soft.carry * before + soft.push) * rate[row];
+            }
+        }
+        (square, linear)
     }
 
     /// Motors that ask for more than their caps push with these from now on; then the substep's joints are solved again

@@ -109,18 +109,18 @@ impl IslandSolver {
         if finite && torn < TORN {
             return;
         }
-        self.velocities[..moving].copy_from_slice(&self.unconstrained);
-        let rigid = self.motion_as_one();
+        let rigid = self.motion_as_one(&self.unconstrained);
         for (body, v) in self.bodies.iter().zip(&mut self.velocities[..moving]) {
             *v = rigid.at(body.pose.translation);
         }
         self.forget_impulses();
     }
 
-    /// Of the island as if it were one piece: at rest if it touches or hangs on a fixed body.
-    fn motion_as_one(&self) -> RigidMotion {
+    /// Of the island as if it were one piece with the momentum of the given velocities: at rest if it touches or hangs on a
+    /// fixed body.
+    fn motion_as_one(&self, velocities: &[Vec6]) -> RigidMotion {
         if self.bodies.len() == self.links.len() {
-            RigidMotion::of(&self.bodies, &self.velocities)
+            RigidMotion::of(&self.bodies, velocities)
         } else {
             RigidMotion::default()
         }
@@ -148,17 +148,53 @@ impl IslandSolver {
         if after <= most {
             return;
         }
-        let rigid = self.motion_as_one();
+        // Whatever went wrong inside the island, its momentum is what the forces left it.
+        let (now, meant) =
+            (self.motion_as_one(&self.velocities[..moving]), self.motion_as_one(&self.unconstrained));
         let s = &mut self.scratch;
         s.dv.clear();
+        s.before.clear();
         for (body, v) in self.bodies.iter().zip(&self.velocities[..moving]) {
-            s.dv.push(difference(v, &rigid.at(body.pose.translation)));
+            s.dv.push(difference(v, &now.at(body.pose.translation)));
+            s.before.push(meant.at(body.pose.translation));
         }
         let inner = self.kinetic_energy(&self.scratch.dv);
-        let share = max(allowed - (after - inner), 0.0) / inner;
+        let share = max(allowed - self.kinetic_energy(&self.scratch.before), 0.0) / inner;
         let keep = if share < 1.0 { share.sqrt() } else { 1.0 };
+        for (i, v) in self.velocities[..moving].iter_mut().enumerate() {
+            let (meant, inner) = (&self.scratch.before[i], &self.scratch.dv[i]);
+            *v = core::array::from_fn(|k| meant[k] + inner[k] * keep);
+        }
+    }
+
+    /// A stop that was passed pushes back, and a spring beyond it may resist: what the stop then winds up must be there as
+    /// kinetic energy. Where it is not, the whole motion beside that of the island as one piece is slowed, and the stop is
+    /// reached later.
+    pub(super) fn pay_for_stops(&mut self) {
+        if !self.is_passive() || !self.stops_push_back() {
+            return;
+        }
+        let (square, linear) = self.passive_resistance();
+        let there = ENERGY_SLACK * max(self.kinetic_start, self.mass());
+        if square + linear <= there {
+            return;
+        }
+        let moving = self.links.len();
+        let (now, before) =
+            (self.motion_as_one(&self.velocities[..moving]), self.motion_as_one(&self.unconstrained));
+        let s = &mut self.scratch;
+        s.dv.clear();
+        let inner = |(body, v): (&SolverBody, &Vec6)| difference(v, &before.at(body.pose.translation));
+        s.dv.extend(self.bodies.iter().zip(&self.unconstrained).map(inner));
+        let there = there + self.kinetic_energy(&self.scratch.dv);
+        if square + linear <= there {
+            return;
+        }
+        // square s² + linear s = there
+        let root = (linear * linear + 4.0 * square * there).sqrt();
+        let keep = 2.0 * there / (linear + root);
         for (body, v) in self.bodies.iter().zip(&mut self.velocities[..moving]) {
-            let rigid = rigid.at(body.pose.translation);
+            let rigid = now.at(body.pose.translation);
             *v = core::array::from_fn(|k| rigid[k] + (v[k] - rigid[k]) * keep);
         }
     }

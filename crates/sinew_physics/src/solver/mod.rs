@@ -273,6 +273,7 @@ impl IslandSolver {
             torn = self.correct_positions();
         }
         self.drop_nonsense(torn);
+        self.pay_for_stops();
         self.add_drive_work();
     }
 
