@@ -306,7 +306,7 @@ impl IslandSolver {
     }
 
     /// What springs take, J, at `s` times the present velocities: the coefficients of `s²` and `s`.
-    pub(super) fn passive_resistance(&self) -> (f32, f32) {
+    pub(super) fn resistance_of_springs(&self) -> (f32, f32) {
         let (mut square, mut linear) = (0.0, 0.0);
         let passive = |joint: &&SolverJoint| joint.rigid < joint.rows.count && joint.drive.motor.is_none();
         for joint in self.joints.iter().filter(passive) {

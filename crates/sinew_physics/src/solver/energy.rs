@@ -15,6 +15,8 @@ const MAX_INNER_TURN: f32 = 1.0;
 /// rounding and the give and take of resting contacts are far below.
 const ENERGY_SLACK: f32 = 1e-3;
 
+/// A joint that is open by no more than this, m or rad, may stay so for a while.
+const CLOSED: f32 = 1e-3;
 /// A joint that a substep leaves open by this much more than it was has not been solved, m or rad.
 const TORN: f32 = 0.1;
 
@@ -167,26 +169,34 @@ impl IslandSolver {
         }
     }
 
-    /// A stop that was passed pushes back, and a spring beyond it may resist: what the stop then winds up must be there as
-    /// kinetic energy. Where it is not, the whole motion beside that of the island as one piece is slowed, and the stop is
-    /// reached later.
-    pub(super) fn pay_for_stops(&mut self) {
-        if !self.is_passive() || !self.stops_push_back() {
+    /// Stops that were passed push back, joints that rounding has opened close, and springs may resist: what is wound up
+    /// by that must be there as kinetic energy. Where it is not, the whole motion beside that of the island as one piece is
+    /// slowed, and the rest is done later. Joints that are open by more are closed at any price.
+    pub(super) fn pay_for_positions(&mut self) {
+        if self.pushed_from_outside || !self.is_passive() || !self.is_articulated() {
             return;
         }
-        let (square, linear) = self.passive_resistance();
-        let there = ENERGY_SLACK * max(self.kinetic_start, self.mass());
-        if square + linear <= there {
+        let (square, mut linear) = self.resistance_of_springs();
+        let held = self.bodies.len() > self.links.len() && self.manifolds.is_empty();
+        let mut there = self.kinetic_start;
+        if held {
+            linear -= self.work_of_forces();
+            there = self.kinetic_before;
+        }
+        let slack = ENERGY_SLACK * max(there, self.mass());
+        if square + linear <= slack || !(self.stops_push_back() || self.joints_are_closed()) {
             return;
         }
         let moving = self.links.len();
-        let (now, before) =
-            (self.motion_as_one(&self.velocities[..moving]), self.motion_as_one(&self.unconstrained));
-        let s = &mut self.scratch;
-        s.dv.clear();
-        let inner = |(body, v): (&SolverBody, &Vec6)| difference(v, &before.at(body.pose.translation));
-        s.dv.extend(self.bodies.iter().zip(&self.unconstrained).map(inner));
-        let there = there + self.kinetic_energy(&self.scratch.dv);
+        let now = self.motion_as_one(&self.velocities[..moving]);
+        if !held {
+            let before = self.motion_as_one(&self.unconstrained);
+            let inner = |(body, v): (&SolverBody, &Vec6)| difference(v, &before.at(body.pose.translation));
+            self.scratch.dv.clear();
+            self.scratch.dv.extend(self.bodies.iter().zip(&self.unconstrained).map(inner));
+            there = self.kinetic_energy(&self.scratch.dv);
+        }
+        let there = there + slack;
         if square + linear <= there {
             return;
         }
@@ -197,6 +207,12 @@ impl IslandSolver {
             let rigid = now.at(body.pose.translation);
             *v = core::array::from_fn(|k| rigid[k] + (v[k] - rigid[k]) * keep);
         }
+    }
+
+    fn joints_are_closed(&self) -> bool {
+        let open =
+            |joint: &super::SolverJoint| joint.rows.error[..joint.rigid].iter().any(|e| e.abs() > CLOSED);
+        !self.joints.iter().any(open)
     }
 
     /// Nothing that rows push against moves by itself.

@@ -273,7 +273,7 @@ impl IslandSolver {
             torn = self.correct_positions();
         }
         self.drop_nonsense(torn);
-        self.pay_for_stops();
+        self.pay_for_positions();
         self.add_drive_work();
     }
 
