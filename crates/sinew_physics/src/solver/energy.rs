@@ -16,7 +16,7 @@ const MAX_INNER_TURN: f32 = 1.0;
 const ENERGY_SLACK: f32 = 1e-3;
 
 /// A joint that is open by no more than this, m or rad, may stay so for a while.
-const CLOSED: f32 = 1e-3;
+const CLOSED: f32 = 5e-3;
 /// A joint that a substep leaves open by this much more than it was has not been solved, m or rad.
 const TORN: f32 = 0.1;
 
