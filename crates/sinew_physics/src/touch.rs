@@ -39,7 +39,9 @@ pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &
         let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
         let (shape_a, shape_b) = (&a.shapes[sa].shape, &b.shapes[sb].shape);
         let extent = min(shape_a.smallest_extent(), shape_b.smallest_extent());
-        let approach = (a.velocity.linear - b.velocity.linear).length()
+        // Beside their approach: two that move together may not do so any more once one of them is hit.
+        let (va, vb) = (a.velocity.linear, b.velocity.linear);
+        let approach = max((va - vb).length(), max(va.length(), vb.length()))
             + a.velocity.angular.length() * a.reach()
             + b.velocity.angular.length() * b.reach();
         let margin = max(4.0 * slop(extent), approach * context.dt);

@@ -12,6 +12,7 @@ mod energy;
 pub(crate) mod lcp;
 mod limit_rows;
 mod loops;
+mod momentum;
 mod reaction;
 mod response;
 mod sweep;
@@ -30,6 +31,7 @@ use contact_rows::ManifoldRows;
 use drives::SoftRow;
 use limit_rows::LimitRow;
 use loops::Loops;
+use momentum::Momentum;
 use response::Response;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew};
 use sweep::{Pass, Unrest};
@@ -43,8 +45,11 @@ const MAX_SPEED: f32 = 4000.0;
 /// needs them; most passes end sooner, once a sweep changes no velocity by more than the tolerance (m/s or rad/s).
 const SWEEPS_JOINTED: usize = 24;
 const SWEEP_TOLERANCE: f32 = 2e-3;
+/// Sweeps of `relax` before which friction learns its loads anew: the impulses of `solve` first, then those that really
+/// press. From then on loads stay, or friction and normals may chase each other for ever.
+const WEIGHINGS: usize = 2;
 /// Likewise in one without: one with bias; two in `relax`, since friction of the first knows only the soft impulses of
-/// `solve` (1.5 % too little) and the second those that really press.
+/// `solve` (1.5 % too little).
 const SWEEPS_FREE: usize = 1;
 const SWEEPS_FREE_RELAX: usize = 2;
 /// Rounds in which limits that the substep would pass by far are tightened.
@@ -169,6 +174,9 @@ pub(crate) struct IslandSolver {
     unconstrained: Vec<Vec6>,
     scratch: Scratch,
     unrest: Unrest,
+    momentum: Momentum,
+    /// Energy that the changes of the sweep in progress have one by one, J.
+    change_energy: f32,
     /// Largest change of a velocity component in the sweep in progress.
     largest_change: f32,
     /// Kinetic energy before and after the forces acted in this substep, J.
