@@ -167,6 +167,10 @@ pub(crate) struct IslandSolver {
     contact_push: Vec<Vec3>,
     /// Velocities after the forces, before any constraint.
     unconstrained: Vec<Vec6>,
+    /// Velocities when the bodies have moved, before `relax`.
+    moved: Vec<Vec6>,
+    /// What bodies gain after that without having it from their joints; what contacts and loops gave before, negative.
+    accounted: Vec<Vec6>,
     scratch: Scratch,
     unrest: Unrest,
     /// Largest change of a velocity component in the sweep in progress.
@@ -280,6 +284,7 @@ impl IslandSolver {
     /// and the next substep's `solve`.
     pub fn integrate_position(&mut self) {
         self.store_joint_forces();
+        self.add_solve_reactions();
         self.force_work = self.work_of_forces();
         for (i, (body, v)) in self.bodies.iter_mut().zip(&mut self.velocities).enumerate() {
             let turned = self.unconstrained.get(i).map(|before| {
@@ -293,6 +298,7 @@ impl IslandSolver {
             }
         }
         self.refresh();
+        self.begin_relax_reactions();
     }
 
     /// Impulses from outside the island's rows, one for each moving body, through the trees.
@@ -301,6 +307,9 @@ impl IslandSolver {
             return;
         }
         self.pushed_from_outside = true;
+        for (accounted, p) in self.accounted.iter_mut().zip(impulses) {
+            add_scaled(accounted, p, 1.0);
+        }
         self.scratch.impulses.clear();
         self.scratch.impulses.extend_from_slice(impulses);
         self.answer_impulses();
@@ -322,7 +331,7 @@ impl IslandSolver {
         self.end_limits();
         self.end_loops();
         self.release_motors();
-        self.add_reactions();
+        self.add_relax_reactions();
     }
 
     /// Bounce of what was hit, after the substeps.
