@@ -14,13 +14,11 @@ mod limit_rows;
 mod loops;
 mod reaction;
 mod response;
+mod solution;
 mod sweep;
 mod tree;
 mod tree_joints;
 
-use crate::body::Velocity;
-use crate::collide::Manifold;
-use crate::contact::ContactMemory;
 use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
@@ -32,6 +30,7 @@ use limit_rows::LimitRow;
 use loops::Loops;
 use response::Response;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew};
+pub(crate) use solution::{IslandSolution, Solution, SolvedBody, split_off};
 use sweep::{Pass, Unrest};
 use tree::Link;
 
@@ -146,7 +145,7 @@ pub(crate) struct SolverJoint {
     pub reaction: Vec6,
 }
 
-/// The solver of one island. Its memory is kept from step to step.
+/// The solver of one island. Its memory is kept for the next one, but nothing in it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct IslandSolver {
     pub bodies: Vec<SolverBody>,
@@ -441,20 +440,9 @@ impl IslandSolver {
         sum
     }
 
-    /// State of a body for the world.
-    pub fn velocity(&self, body: usize) -> Velocity {
-        let v = &self.velocities[body];
-        Velocity { linear: linear(v), angular: angular(v) }
-    }
-
     /// The bodies that move, in tree order.
     pub fn moving_bodies(&self) -> &[SolverBody] {
         &self.bodies[..self.links.len()]
-    }
-
-    /// World index of each contact, with what it carries on.
-    pub fn contacts(&self) -> impl Iterator<Item = (u32, &Manifold, &ContactMemory)> {
-        self.manifolds.iter().map(|rows| (rows.contact, &rows.manifold, &rows.memory))
     }
 }
 
