@@ -71,11 +71,8 @@ pub(crate) fn touch(
     events.end.clear();
     for contact in contacts.iter_mut() {
         let (a, b) = (contact.key.a, contact.key.b);
-        let touching = contact.manifold.points().iter().any(|point| point.separation <= 0.0);
-        if touching != contact.touching && !contact.sensor {
-            let list = if touching { &mut events.begin } else { &mut events.end };
-            list.push((id(bodies, a), id(bodies, b)));
-            contact.touching = touching;
+        if !contact.sensor {
+            note_change(bodies, contact, &mut events.begin, &mut events.end);
         }
         if contact.pushes() {
             wake_touched(bodies, a, b);
@@ -89,6 +86,21 @@ pub(crate) fn touch(
                 wake(bodies, held);
             }
         }
+    }
+}
+
+/// Puts the pair of a contact that began or ceased to touch since it was last looked at into one of the lists.
+pub(crate) fn note_change(
+    bodies: &Arena<Body>,
+    contact: &mut Contact,
+    begin: &mut Vec<(BodyId, BodyId)>,
+    end: &mut Vec<(BodyId, BodyId)>,
+) {
+    let touching = contact.manifold.points().iter().any(|point| point.separation <= 0.0);
+    if touching != contact.touching {
+        let list = if touching { begin } else { end };
+        list.push((id(bodies, contact.key.a), id(bodies, contact.key.b)));
+        contact.touching = touching;
     }
 }
 

@@ -15,13 +15,11 @@ mod loops;
 mod momentum;
 mod reaction;
 mod response;
+mod solution;
 mod sweep;
 mod tree;
 mod tree_joints;
 
-use crate::body::Velocity;
-use crate::collide::Manifold;
-use crate::contact::ContactMemory;
 use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
@@ -34,6 +32,7 @@ use loops::Loops;
 use momentum::Momentum;
 use response::Response;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew};
+pub(crate) use solution::{IslandSolution, Solution, SolvedBody, split_off};
 use sweep::{Pass, Unrest};
 use tree::Link;
 
@@ -151,7 +150,7 @@ pub(crate) struct SolverJoint {
     pub reaction: Vec6,
 }
 
-/// The solver of one island. Its memory is kept from step to step.
+/// The solver of one island. Its memory is kept for the next one, but nothing in it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct IslandSolver {
     pub bodies: Vec<SolverBody>,
@@ -172,6 +171,10 @@ pub(crate) struct IslandSolver {
     contact_push: Vec<Vec3>,
     /// Velocities after the forces, before any constraint.
     unconstrained: Vec<Vec6>,
+    /// Velocities when the bodies have moved, before `relax`.
+    moved: Vec<Vec6>,
+    /// What bodies gain after that without having it from their joints; what contacts and loops gave before, negative.
+    accounted: Vec<Vec6>,
     scratch: Scratch,
     unrest: Unrest,
     momentum: Momentum,
@@ -288,6 +291,7 @@ impl IslandSolver {
     /// and the next substep's `solve`.
     pub fn integrate_position(&mut self) {
         self.store_joint_forces();
+        self.add_solve_reactions();
         self.force_work = self.work_of_forces();
         for (i, (body, v)) in self.bodies.iter_mut().zip(&mut self.velocities).enumerate() {
             let turned = self.unconstrained.get(i).map(|before| {
@@ -301,6 +305,7 @@ impl IslandSolver {
             }
         }
         self.refresh();
+        self.begin_relax_reactions();
     }
 
     /// Impulses from outside the island's rows, one for each moving body, through the trees.
@@ -309,6 +314,9 @@ impl IslandSolver {
             return;
         }
         self.pushed_from_outside = true;
+        for (accounted, p) in self.accounted.iter_mut().zip(impulses) {
+            add_scaled(accounted, p, 1.0);
+        }
         self.scratch.impulses.clear();
         self.scratch.impulses.extend_from_slice(impulses);
         self.answer_impulses();
@@ -330,7 +338,7 @@ impl IslandSolver {
         self.end_limits();
         self.end_loops();
         self.release_motors();
-        self.add_reactions();
+        self.add_relax_reactions();
     }
 
     /// Bounce of what was hit, after the substeps.
@@ -440,20 +448,9 @@ impl IslandSolver {
         sum
     }
 
-    /// State of a body for the world.
-    pub fn velocity(&self, body: usize) -> Velocity {
-        let v = &self.velocities[body];
-        Velocity { linear: linear(v), angular: angular(v) }
-    }
-
     /// The bodies that move, in tree order.
     pub fn moving_bodies(&self) -> &[SolverBody] {
         &self.bodies[..self.links.len()]
-    }
-
-    /// World index of each contact, with what it carries on.
-    pub fn contacts(&self) -> impl Iterator<Item = (u32, &Manifold, &ContactMemory)> {
-        self.manifolds.iter().map(|rows| (rows.contact, &rows.manifold, &rows.memory))
     }
 }
 
