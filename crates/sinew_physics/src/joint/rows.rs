@@ -206,11 +206,12 @@ fn locked_rotation(locks: &[bool; 6], pose: &JointPose, direction: usize) -> (f3
     }
     match direction {
         TWIST => {
-            // The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b). Without the divisor the row fades where a swing of half a turn
-            // leaves the twist undefined, instead of growing beyond all bounds.
+            // The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b). C = ½ (1 + x_a·x_b) θ fades where a swing of half a turn leaves
+            // the twist θ undefined, instead of growing beyond all bounds: Ċ = ω · ½ (x_a + x_b + θ x_b × x_a).
             let (swing, twist) = pose.relative().swing_twist(Vec3::X);
-            let sum = Vec3::X + swing * Vec3::X;
-            (twist.twist_angle(Vec3::X) * 0.5 * sum.x, ra * (sum * 0.5))
+            let (x_b, angle) = (swing * Vec3::X, twist.twist_angle(Vec3::X));
+            let sum = Vec3::X + x_b;
+            (angle * 0.5 * sum.x, ra * ((sum + x_b.cross(Vec3::X) * angle) * 0.5))
         }
         // C = −z_a · x_b and y_a · x_b keep x_b out of the planes it would swing into. Ċ = (x_b × y_a) · (ω_b − ω_a).
         4 => {

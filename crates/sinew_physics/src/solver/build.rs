@@ -293,6 +293,8 @@ impl IslandSolver {
                 left_open: ZERO6,
                 most_rows: joint.most_rows(),
                 soft: [SoftRow::default(); DIRECTIONS],
+                bent: ZERO6,
+                bent_before: ZERO6,
                 mass: ZERO6,
                 start_rate: ZERO6,
                 saturated: joint.saturated,

@@ -14,6 +14,8 @@ const STICK_RATE: f32 = 0.02;
 const MOTOR_SHARE: f32 = 1e-3;
 /// Fastest that a joint which is open closes, m/s or rad/s: one attached anew at a distance does not jump.
 const CLOSING: f32 = 4.0;
+/// Most that a weld is off beyond what its rows foresaw, m or rad.
+const MOST_BENT: f32 = 0.1;
 /// `(ωh)²` of the fastest spring whose oscillation is kept.
 const FASTEST: f32 = 1.0;
 /// Rounds in which motors that ask for more than their caps are saturated within a substep.
@@ -224,6 +226,24 @@ impl SolverJoint {
         out
     }
 
+    /// How much further a weld that gives is off at other poses of the bodies than its rows foresaw, beyond what is made up
+    /// for: a body on a soft weld that turns would drift outward by `½ ω² r h²` in each substep, and a damper takes long to
+    /// take that back.
+    pub(super) fn bend_error(&self, pose: &crate::joint::JointPose, velocities: &[Vec6], h: f32) -> Vec6 {
+        let mut bend = ZERO6;
+        if self.drive.weld.is_none() {
+            return bend;
+        }
+        let error = locked_error(&self.geometry, pose);
+        let rate = self.rate(velocities);
+        for row in 0..self.rows.locked {
+            let bent = error[row] - (self.rows.error[row] + h * rate[row]);
+            // An angle that jumped by a full turn is no displacement.
+            bend[row] = if bent.abs() < MOST_BENT { bent - self.bent[row] } else { 0.0 };
+        }
+        bend
+    }
+
     /// Position errors of the rigid rows at other poses of the bodies, but for what this substep leaves open.
     pub(super) fn rigid_error(&self, pose: &crate::joint::JointPose) -> Vec6 {
         if self.rigid == 0 {
@@ -284,20 +304,42 @@ impl IslandSolver {
         Some(on_b)
     }
 
-    /// What springs, welds that give and motors have given in this substep, at most.
+    /// What drives have given in this substep: impulse times the rate after it. Kinetic energy rises by that at most, less
+    /// by half of what the change of velocity would hold by itself. Motors are not asked for what they take.
     pub(super) fn add_drive_work(&mut self) {
-        let mut work = 0.0;
+        let (mut given, mut by_motors) = (0.0, 0.0);
         for joint in self.joints.iter().filter(|joint| joint.rigid < joint.rows.count) {
             let rate = joint.rate(&self.velocities);
             for row in joint.rigid..joint.rows.count {
                 let before = joint.start_rate[joint.rows.direction[row]];
-                work += joint.soft[row].work(before, rate[row]);
+                let rate = rate[row] + joint.bent[row] / self.h;
+                if joint.drive.motor.is_some() {
+                    by_motors += joint.soft[row].work(before, rate);
+                } else {
+                    given += joint.soft[row].impulse(before, rate) * rate;
+                }
             }
         }
         for row in &self.limits {
-            work += row.soft_work(&self.joints[row.joint as usize], &self.velocities, self.h);
+            given += row.soft_work(&self.joints[row.joint as usize], &self.velocities);
         }
-        self.drive_work += max(work, 0.0);
+        self.drive_work += max(by_motors, 0.0) + given;
+    }
+
+    /// What springs take, J, at `s` times the present velocities: the coefficients of `s²` and `s`.
+    pub(super) fn resistance_of_springs(&self) -> (f32, f32) {
+        let (mut square, mut linear) = (0.0, 0.0);
+        let passive = |joint: &&SolverJoint| joint.rigid < joint.rows.count && joint.drive.motor.is_none();
+        for joint in self.joints.iter().filter(passive) {
+            let rate = joint.rate(&self.velocities);
+            for row in joint.rigid..joint.rows.count {
+                let (soft, before) = (&joint.soft[row], joint.start_rate[joint.rows.direction[row]]);
+                let rate = rate[row] + joint.bent[row] / self.h;
+                square += soft.gain * rate * rate;
+                linear += (soft.carry * before + soft.push) * rate;
+            }
+        }
+        (square, linear)
     }
 
     /// Motors that ask for more than their caps push with these from now on; then the substep's joints are solved again

@@ -15,6 +15,8 @@ const MAX_INNER_TURN: f32 = 1.0;
 /// rounding and the give and take of resting contacts are far below.
 const ENERGY_SLACK: f32 = 1e-3;
 
+/// A joint that is open by no more than this, m or rad, may stay so for a while.
+const CLOSED: f32 = 5e-3;
 /// A joint that a substep leaves open by this much more than it was has not been solved, m or rad.
 const TORN: f32 = 0.1;
 
@@ -109,18 +111,18 @@ impl IslandSolver {
         if finite && torn < TORN {
             return;
         }
-        self.velocities[..moving].copy_from_slice(&self.unconstrained);
-        let rigid = self.motion_as_one();
+        let rigid = self.motion_as_one(&self.unconstrained);
         for (body, v) in self.bodies.iter().zip(&mut self.velocities[..moving]) {
             *v = rigid.at(body.pose.translation);
         }
         self.forget_impulses();
     }
 
-    /// Of the island as if it were one piece: at rest if it touches or hangs on a fixed body.
-    fn motion_as_one(&self) -> RigidMotion {
+    /// Of the island as if it were one piece with the momentum of the given velocities: at rest if it touches or hangs on a
+    /// fixed body.
+    fn motion_as_one(&self, velocities: &[Vec6]) -> RigidMotion {
         if self.bodies.len() == self.links.len() {
-            RigidMotion::of(&self.bodies, &self.velocities)
+            RigidMotion::of(&self.bodies, velocities)
         } else {
             RigidMotion::default()
         }
@@ -148,19 +150,69 @@ impl IslandSolver {
         if after <= most {
             return;
         }
-        let rigid = self.motion_as_one();
+        // Whatever went wrong inside the island, its momentum is what the forces left it.
+        let (now, meant) =
+            (self.motion_as_one(&self.velocities[..moving]), self.motion_as_one(&self.unconstrained));
         let s = &mut self.scratch;
         s.dv.clear();
+        s.before.clear();
         for (body, v) in self.bodies.iter().zip(&self.velocities[..moving]) {
-            s.dv.push(difference(v, &rigid.at(body.pose.translation)));
+            s.dv.push(difference(v, &now.at(body.pose.translation)));
+            s.before.push(meant.at(body.pose.translation));
         }
         let inner = self.kinetic_energy(&self.scratch.dv);
-        let share = max(allowed - (after - inner), 0.0) / inner;
+        let share = max(allowed - self.kinetic_energy(&self.scratch.before), 0.0) / inner;
         let keep = if share < 1.0 { share.sqrt() } else { 1.0 };
+        for (i, v) in self.velocities[..moving].iter_mut().enumerate() {
+            let (meant, inner) = (&self.scratch.before[i], &self.scratch.dv[i]);
+            *v = core::array::from_fn(|k| meant[k] + inner[k] * keep);
+        }
+    }
+
+    /// Stops that were passed push back, joints that rounding has opened close, and springs may resist: what is wound up
+    /// by that must be there as kinetic energy. Where it is not, the whole motion beside that of the island as one piece is
+    /// slowed, and the rest is done later. Joints that are open by more are closed at any price.
+    pub(super) fn pay_for_positions(&mut self) {
+        if self.pushed_from_outside || !self.is_passive() || !self.is_articulated() {
+            return;
+        }
+        let (square, mut linear) = self.resistance_of_springs();
+        let held = self.bodies.len() > self.links.len() && self.manifolds.is_empty();
+        let mut there = self.kinetic_start;
+        if held {
+            linear -= self.work_of_forces();
+            there = self.kinetic_before;
+        }
+        let slack = ENERGY_SLACK * max(there, self.mass());
+        if square + linear <= slack || !(self.stops_push_back() || self.joints_are_closed()) {
+            return;
+        }
+        let moving = self.links.len();
+        let now = self.motion_as_one(&self.velocities[..moving]);
+        if !held {
+            let before = self.motion_as_one(&self.unconstrained);
+            let inner = |(body, v): (&SolverBody, &Vec6)| difference(v, &before.at(body.pose.translation));
+            self.scratch.dv.clear();
+            self.scratch.dv.extend(self.bodies.iter().zip(&self.unconstrained).map(inner));
+            there = self.kinetic_energy(&self.scratch.dv);
+        }
+        let there = there + slack;
+        if square + linear <= there {
+            return;
+        }
+        // square s² + linear s = there
+        let root = (linear * linear + 4.0 * square * there).sqrt();
+        let keep = 2.0 * there / (linear + root);
         for (body, v) in self.bodies.iter().zip(&mut self.velocities[..moving]) {
-            let rigid = rigid.at(body.pose.translation);
+            let rigid = now.at(body.pose.translation);
             *v = core::array::from_fn(|k| rigid[k] + (v[k] - rigid[k]) * keep);
         }
+    }
+
+    fn joints_are_closed(&self) -> bool {
+        let open =
+            |joint: &super::SolverJoint| joint.rows.error[..joint.rigid].iter().any(|e| e.abs() > CLOSED);
+        !self.joints.iter().any(open)
     }
 
     /// Nothing that rows push against moves by itself.

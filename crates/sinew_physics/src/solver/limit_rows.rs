@@ -141,6 +141,14 @@ impl IslandSolver {
         }
     }
 
+    /// True if some hard stop was passed and pushes back.
+    pub(super) fn stops_push_back(&self) -> bool {
+        self.limits.iter().any(|row| {
+            let soft = matches!(row.hardness, Hardness::Soft(..));
+            !soft && row.room < 0.0 && row.impulse > 0.0
+        })
+    }
+
     /// Limit impulses of this substep become memory.
     pub(super) fn end_limits(&mut self) {
         for joint in &mut self.joints {
@@ -249,12 +257,9 @@ impl LimitRow {
     }
 
     /// What the spring of a soft row gives in a substep.
-    pub fn soft_work(&self, joint: &SolverJoint, velocities: &[Vec6], h: f32) -> f32 {
-        let Hardness::Soft(softness, _) = self.hardness else { return 0.0 };
-        let (stiffness, _) = softness.of_mass(1.0 / max(self.effective, 1e-9));
-        let before = min(self.room, 0.0);
-        let after = min(self.room + h * self.row.rate(joint, velocities), 0.0);
-        0.5 * stiffness * (before * before - after * after)
+    pub fn soft_work(&self, joint: &SolverJoint, velocities: &[Vec6]) -> f32 {
+        let is_soft = matches!(self.hardness, Hardness::Soft(..));
+        if is_soft { self.impulse * self.row.rate(joint, velocities) } else { 0.0 }
     }
 
     /// Rate that a stop asks for at the present one. In `relax` a limb on its way to the stop is not hurried there: to

@@ -6,15 +6,17 @@
 use super::limit_rows::add_row;
 use super::response::Response;
 use super::tree::{self, Link, NONE};
-use super::{IslandSolver, REDUNDANCY, Scratch, SolverBody, SolverJoint, free_response};
+use super::{IslandSolver, Scratch, SolverBody, SolverJoint, free_response};
 use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
-use sinew_math::max;
+use sinew_math::{clamp, max};
 
 /// At most this many rows of loops in one tree are solved exactly.
 pub(super) const MAX_EXACT_ROWS: usize = 24;
 /// Most rounds of conjugate gradients, and the rate that needs none, m/s or rad/s.
 const ROUNDS: usize = 16;
 const RATE_TOLERANCE: f32 = 1e-5;
+/// [`REDUNDANCY`](super::REDUNDANCY) of the rows of loops: they meet the rounding of a whole way around.
+const LOOP_REDUNDANCY: f32 = 3e-5;
 /// Share of the residual's square that ends the rounds.
 const RESIDUAL_SHARE: f32 = 1e-6;
 
@@ -141,7 +143,8 @@ impl Loops {
                     let mut entry = on(joint.a, &joint.rows.a[row]) + on(joint.b, &joint.rows.b[row]);
                     if k == l {
                         let ends = [(joint.a, &joint.rows.a[row]), (joint.b, &joint.rows.b[row])];
-                        entry += joint.compliance(row) + REDUNDANCY * free_response(bodies, moving, ends);
+                        entry +=
+                            joint.compliance(row) + LOOP_REDUNDANCY * free_response(bodies, moving, ends);
                     }
                     s.push(entry);
                 }
@@ -161,12 +164,49 @@ impl Loops {
             self.close_exactly(joints, scratch);
             scratch.dv.fill(ZERO6);
             tree::solve(links, &mut scratch.impulses, &mut scratch.residuals, &mut scratch.dv);
+            self.keep_descent(joints, scratch);
+        }
+    }
+
+    /// The inverse of a closure whose rows nearly say the same is mostly rounding. Where its answer does not halve what it
+    /// was made for, only as much of it is taken as lessens that most.
+    fn keep_descent(&mut self, joints: &mut [SolverJoint], scratch: &mut Scratch) {
+        let Gradient { residual, direction: lambda, .. } = &self.gradient;
+        let (mut square, mut along, mut answered, mut row) = (0.0, 0.0, 0.0, 0);
+        for &joint in &self.joints {
+            let joint = &joints[joint as usize];
+            let rate = joint.rate(&scratch.dv);
+            for (k, rate) in rate.iter().enumerate().take(joint.rows.count) {
+                let answer = rate + joint.compliance(k) * lambda[row];
+                square += residual[row] * residual[row];
+                along += residual[row] * answer;
+                answered += answer * answer;
+                row += 1;
+            }
+        }
+        // |r − a|² against |r|²
+        if answered - 2.0 * along <= -0.75 * square || answered <= 0.0 {
+            return;
+        }
+        let share = clamp(along / answered, 0.0, 1.0);
+        for dv in &mut scratch.dv {
+            *dv = dv.map(|x| x * share);
+        }
+        let mut lambda = lambda.iter();
+        for &joint in &self.joints {
+            let joint = &mut joints[joint as usize];
+            for (impulse, lambda) in joint.impulse[..joint.rows.count].iter_mut().zip(&mut lambda) {
+                *impulse -= (1.0 - share) * lambda;
+            }
         }
     }
 
     /// Impulses of the loops, put on the bodies.
     fn close_exactly(&mut self, joints: &mut [SolverJoint], scratch: &mut Scratch) {
         scratch.impulses.fill(ZERO6);
+        let Gradient { residual, direction: lambdas, .. } = &mut self.gradient;
+        residual.clear();
+        lambdas.clear();
         for closure in &self.closures {
             let range = closure.first..closure.first + closure.count;
             let left = &mut self.scratch;
@@ -181,12 +221,14 @@ impl Loops {
             if closure.rows == 0 {
                 continue;
             }
+            residual.extend_from_slice(left);
             let mut lines = self.inverses[closure.inverse..].chunks_exact(closure.rows);
             for &joint in &self.joints[range] {
                 let joint = &mut joints[joint as usize];
                 for row in 0..joint.rows.count {
                     let line = lines.next().unwrap_or_default();
                     let lambda = line.iter().zip(left.iter()).fold(0.0, |sum, (s, r)| sum + s * r);
+                    lambdas.push(lambda);
                     joint.impulse[row] += lambda;
                     add_row(&mut scratch.impulses, joint.a, &joint.rows.a[row], lambda);
                     add_row(&mut scratch.impulses, joint.b, &joint.rows.b[row], lambda);

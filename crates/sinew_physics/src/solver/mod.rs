@@ -133,6 +133,9 @@ pub(crate) struct SolverJoint {
     most_rows: usize,
     /// The others, row by row.
     soft: [SoftRow; DIRECTIONS],
+    /// How much further than along its rows a weld that gives goes in this substep, m or rad, and before the last correction.
+    bent: Vec6,
+    bent_before: Vec6,
     /// What springs and motors move, direction by direction, kg or kg·m².
     pub mass: Vec6,
     /// Rates of driven directions when the substep began.
@@ -284,6 +287,7 @@ impl IslandSolver {
             torn = self.correct_positions();
         }
         self.drop_nonsense(torn);
+        self.pay_for_positions();
         self.add_drive_work();
     }
 

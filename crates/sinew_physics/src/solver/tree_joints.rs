@@ -52,6 +52,11 @@ impl IslandSolver {
             return;
         }
         let solve = pass == Pass::Solve;
+        if solve {
+            for joint in &mut self.joints {
+                joint.bent = ZERO6;
+            }
+        }
         self.scratch.residuals.clear();
         for link in &self.links {
             let residual = match self.joints.get(link.joint as usize) {
@@ -113,12 +118,16 @@ impl IslandSolver {
             self.scratch.before.extend_from_slice(&self.velocities[..moving]);
             self.scratch.impulses.clear();
             self.scratch.impulses.resize(moving, ZERO6);
+            self.bend_welds();
             self.solve_trees();
             let left = self.predict_errors();
             let better = left < 0.5 * error;
             if !better {
                 if left > error {
                     self.velocities[..moving].copy_from_slice(&self.scratch.before);
+                    for joint in &mut self.joints {
+                        joint.bent = joint.bent_before;
+                    }
                 }
                 break;
             }
@@ -131,27 +140,48 @@ impl IslandSolver {
     fn predict_errors(&mut self) -> f32 {
         let h = self.h;
         let mut largest = 0.0;
-        let mut residual = |joint: &super::SolverJoint| {
+        let mut residual = |joint: &mut super::SolverJoint| {
             let pose =
                 |body: u32| advance(&self.bodies[body as usize].pose, &self.velocities[body as usize], h);
             let predicted = JointPose::new(&joint.geometry, &pose(joint.a), &pose(joint.b));
-            let error = joint.rigid_error(&predicted);
-            let mut residual = ZERO6;
-            for row in 0..joint.rigid {
-                residual[row] = -error[row] / h;
-                largest = max(largest, error[row].abs());
-            }
-            residual
+            let error = if joint.rigid > 0 {
+                joint.rigid_error(&predicted)
+            } else {
+                joint.bend_error(&predicted, &self.velocities, h)
+            };
+            largest = error.iter().fold(largest, |most, error| max(most, error.abs()));
+            error.map(|error| -error / h)
         };
         self.scratch.residuals.clear();
         for link in &self.links {
-            self.scratch.residuals.push(self.joints.get(link.joint as usize).map_or(ZERO6, &mut residual));
+            self.scratch
+                .residuals
+                .push(self.joints.get_mut(link.joint as usize).map_or(ZERO6, &mut residual));
         }
         self.scratch.loop_residuals.clear();
         for &joint in &self.loops.joints {
-            self.scratch.loop_residuals.push(residual(&self.joints[joint as usize]));
+            self.scratch.loop_residuals.push(residual(&mut self.joints[joint as usize]));
         }
         largest
+    }
+
+    /// The residuals of welds that give, as they stand, are made up for.
+    fn bend_welds(&mut self) {
+        let h = self.h;
+        let bend = |joint: &mut super::SolverJoint, residual: &crate::spatial::Vec6| {
+            joint.bent_before = joint.bent;
+            if joint.rigid == 0 {
+                add_scaled(&mut joint.bent, residual, -h);
+            }
+        };
+        for (link, residual) in self.links.iter().zip(&self.scratch.residuals) {
+            if let Some(joint) = self.joints.get_mut(link.joint as usize) {
+                bend(joint, residual);
+            }
+        }
+        for (&joint, residual) in self.loops.joints.iter().zip(&self.scratch.loop_residuals) {
+            bend(&mut self.joints[joint as usize], residual);
+        }
     }
 
     /// Adds to the velocities the answer of the trees to `scratch.impulses` and `scratch.residuals`, loops closed.

@@ -95,8 +95,9 @@ fn weld_square(kind: &JointKind, locks: &[bool; 6], seen: &Transform) -> f32 {
     let angular = match locks[3..] {
         [true, true, true] => seen.rotation.to_scaled_axis().length_squared(),
         [twist, y, z] => {
+            // Twist fades where a swing of half a turn leaves it undefined.
             let (_, turn) = SwingTwistLimit::angles(seen.rotation);
-            masked_square(Vec3::new(turn, x_b.z, x_b.y), &[twist, y, z])
+            masked_square(Vec3::new(turn * 0.5 * (1.0 + x_b.x), x_b.z, x_b.y), &[twist, y, z])
         }
         _ => 0.0,
     };
