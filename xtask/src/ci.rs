@@ -16,7 +16,8 @@ const WASM: &str = "wasm32-unknown-unknown";
 #[derive(clap::Args)]
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
-    /// peers that need no C; instruction counts
+    /// large scenes; 10,000 random worlds (or the seeds of SINEW_WORLDS, as in 100..200); the peers
+    /// that need no C; instruction counts
     #[arg(long)]
     full: bool,
 }
@@ -46,6 +47,8 @@ impl Ci {
         check("demo", &demo);
         check("wasm", &wasm);
         if self.full {
+            check("large scenes", &large_scenes);
+            check("random worlds", &random_worlds);
             check("peers", &peers);
             check("counts", &bench::check_counts);
         }
@@ -75,6 +78,19 @@ fn peers() -> Result<()> {
         command::cargo(&["clippy", "--manifest-path", "bench/peers/Cargo.toml", "--all-targets"]);
     clippy.arg("--target-dir").arg(command::target().join("bench/check"));
     command::run(clippy.args(["--", "-D", "warnings"]))
+}
+
+/// Scenes that take minutes in a debug build.
+fn large_scenes() -> Result<()> {
+    let test = ["test", "--release", "--package", "sinew_scenes", "--test", "it"];
+    command::run(command::cargo(&test).args(["--", "--ignored"]))
+}
+
+/// Those beyond the hundred that every test run has. They tell how far they are.
+fn random_worlds() -> Result<()> {
+    let test = ["test", "--release", "--package", "sinew_physics", "--test", "it"];
+    let mut test = command::cargo(&test);
+    command::run(test.args(["--", "--nocapture", "ten_thousand_random_worlds"]).env("SINEW_FULL", "1"))
 }
 
 fn clippy() -> Result<()> {

@@ -5,12 +5,13 @@ use crate::body::Body;
 use crate::contact::Contact;
 use crate::def::BodyKind;
 use crate::id::JointId;
-use crate::islands::{IslandTask, Islands};
+use crate::islands::Islands;
 use crate::joint::Joint;
 use crate::joint::def::JointState;
 use crate::parted::PartedPairs;
 use crate::particles::ParticleGroup;
 use crate::ray::Ray;
+use crate::solver::SolvedBody;
 use crate::step::StepContext;
 use crate::touch::{Events, id};
 use sinew_math::{Transform, Vec3};
@@ -24,20 +25,20 @@ pub(crate) fn store(
     dt: f32,
 ) {
     islands.release(groups);
-    for task in islands.tasks() {
-        for (contact, manifold, memory) in task.solver.contacts() {
-            contacts[contact as usize].manifold = *manifold;
-            contacts[contact as usize].memory = *memory;
-        }
-        for solved in &task.solver.joints {
-            let joint = joints.at_mut(solved.index);
-            joint.limits = solved.limits;
-            joint.force = solved.force;
-            joint.warm_impulse = solved.warm_impulse;
-            joint.saturated = solved.saturated;
-            joint.mass = solved.mass;
-            joint.reaction = solved.reaction.map(|impulse| impulse / dt);
-        }
+    let solution = islands.solution();
+    for solved in &solution.contacts {
+        let contact = &mut contacts[solved.index as usize];
+        contact.manifold = solved.manifold;
+        contact.memory = solved.memory;
+    }
+    for solved in &solution.joints {
+        let joint = joints.at_mut(solved.index);
+        joint.limits = solved.limits;
+        joint.force = solved.force;
+        joint.warm_impulse = solved.warm_impulse;
+        joint.saturated = solved.saturated;
+        joint.mass = solved.mass;
+        joint.reaction = solved.reaction.map(|impulse| impulse / dt);
     }
 }
 
@@ -58,28 +59,25 @@ pub(crate) fn break_joints(joints: &mut Arena<Joint>, parted: &mut PartedPairs, 
 /// `finalize`: poses and velocities; a body whose state is not finite keeps its old pose, stops and is quarantined.
 /// Kinematic bodies move as their velocity says; forces of the step are used up.
 pub(crate) fn finalize(
-    tasks: &[IslandTask],
+    solved: &[SolvedBody],
     bodies: &mut Arena<Body>,
     events: &mut Events,
     context: &StepContext<'_>,
 ) {
     events.quarantined.clear();
-    for task in tasks {
-        for (i, solved) in task.solver.moving_bodies().iter().enumerate() {
-            let velocity = task.solver.velocity(i);
-            let body = bodies.at_mut(solved.index);
-            body.previous = body.world_from_principal;
-            body.force = Vec3::ZERO;
-            body.torque = Vec3::ZERO;
-            if solved.pose.is_finite() && velocity.linear.is_finite() && velocity.angular.is_finite() {
-                body.world_from_principal = solved.pose;
-                body.velocity = velocity;
-            } else {
-                body.velocity = Default::default();
-                body.quarantined = true;
-                let id = id(bodies, solved.index);
-                events.quarantined.push(id);
-            }
+    for SolvedBody { index, pose, velocity } in solved {
+        let body = bodies.at_mut(*index);
+        body.previous = body.world_from_principal;
+        body.force = Vec3::ZERO;
+        body.torque = Vec3::ZERO;
+        if pose.is_finite() && velocity.linear.is_finite() && velocity.angular.is_finite() {
+            body.world_from_principal = *pose;
+            body.velocity = *velocity;
+        } else {
+            body.velocity = Default::default();
+            body.quarantined = true;
+            let id = id(bodies, *index);
+            events.quarantined.push(id);
         }
     }
     for (_, body) in bodies.iter_mut().filter(|(_, body)| body.kind == BodyKind::Kinematic) {
@@ -97,9 +95,9 @@ pub(crate) fn finalize(
 /// `continuous`: a body without joints whose centre passed through a static shape within the step is put back to where
 /// its core touches. Speculative contacts stop nearly everything before; this is for what they miss. Jointed bodies are
 /// left to the speculative contacts: moving one link would tear its joints.
-pub(crate) fn continuous(bodies: &mut Arena<Body>, tasks: &[IslandTask]) {
-    for task in tasks.iter().filter(|task| task.island.joints.is_empty()) {
-        for &index in &task.island.bodies {
+pub(crate) fn continuous(bodies: &mut Arena<Body>, islands: &Islands) {
+    for island in islands.iter().filter(|island| island.joints.is_empty()) {
+        for &index in island.bodies {
             let body = bodies.at(index);
             let core = core_radius(body);
             let motion = body.center() - body.previous.translation;

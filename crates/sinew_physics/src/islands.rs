@@ -5,59 +5,58 @@ use crate::body::Body;
 use crate::contact::Contact;
 use crate::joint::Joint;
 use crate::particles::ParticleGroup;
-use crate::project::{IslandParticles, Neighbors};
-use crate::solver::IslandSolver;
+use crate::project::{Neighbors, TakenGroup};
+use crate::runner::TaskRunner;
+use crate::solver::Solution;
+use crate::tasks::{Queue, Task, Workspace};
 
 /// Members of one island, by index, each list ascending.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Island {
-    pub bodies: Vec<u32>,
-    pub joints: Vec<u32>,
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Island<'a> {
+    pub bodies: &'a [u32],
+    pub joints: &'a [u32],
     /// Positions in the contact array. `color` puts those with static bodies last: what cannot move has the last word.
-    pub contacts: Vec<u32>,
-    /// Particle groups hang on its bodies or touch them.
-    pub has_particles: bool,
+    pub contacts: &'a [u32],
+    /// Particle groups that hang on its bodies or may touch them.
+    pub groups: &'a [u32],
 }
 
-impl Island {
-    fn clear(&mut self) {
-        self.bodies.clear();
-        self.joints.clear();
-        self.contacts.clear();
-        self.has_particles = false;
-    }
-}
-
-/// The unit of work: an island and the solver that runs its substeps, whose memory is kept from step to step.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct IslandTask {
-    pub island: Island,
-    pub solver: IslandSolver,
-    pub particles: IslandParticles,
-}
-
-/// Union-find over the slots of bodies, then of particle groups.
+/// Union-find over the slots of bodies, then of particle groups. Everything of one kind lies in one list for all islands:
+/// memory that belonged to an island would have to grow whenever another takes its place.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Islands {
     parent: Vec<u32>,
     island_of_root: Vec<u32>,
-    tasks: Vec<IslandTask>,
     count: usize,
+    bodies: Lists,
+    joints: Lists,
+    contacts: Lists,
+    groups: Lists,
     /// Per slot of particle groups.
     neighbors: Vec<Neighbors>,
+    /// Out of the world for the length of the step, island after island.
+    taken: Vec<TakenGroup>,
+    solution: Solution,
+    /// One for each thread that has worked at the same time as others.
+    idle: Vec<Workspace>,
 }
 
 const NONE: u32 = u32::MAX;
 
 impl Islands {
     /// The islands of this step, ordered by their smallest body.
-    pub fn tasks(&self) -> &[IslandTask] {
-        &self.tasks[..self.count]
+    pub fn iter(&self) -> impl Iterator<Item = Island<'_>> {
+        (0..self.count).map(|i| Island {
+            bodies: self.bodies.of(i),
+            joints: self.joints.of(i),
+            contacts: self.contacts.of(i),
+            groups: self.groups.of(i),
+        })
     }
 
-    /// Likewise, to be run.
-    pub fn tasks_mut(&mut self) -> &mut [IslandTask] {
-        &mut self.tasks[..self.count]
+    /// What came of them.
+    pub fn solution(&self) -> &Solution {
+        &self.solution
     }
 
     /// Finds the islands and takes the particle groups into them for the length of the step.
@@ -93,22 +92,25 @@ impl Islands {
             }
         }
         self.collect(bodies, joints, contacts);
-        for (index, group) in groups.iter_mut() {
-            let near = core::mem::take(&mut self.neighbors[index as usize]);
-            let group = core::mem::take(group);
-            let task = self.task_of(first_group + index);
-            task.island.has_particles = true;
-            task.particles.groups.push((index, group, near));
+        for (index, _) in groups.iter() {
+            let island = self.island_of(first_group + index);
+            self.groups.push(island, index);
         }
+        for lists in [&mut self.bodies, &mut self.joints, &mut self.contacts, &mut self.groups] {
+            lists.sort(self.count);
+        }
+        self.taken.extend(self.groups.numbers.iter().map(|&index| TakenGroup {
+            index,
+            group: core::mem::take(groups.at_mut(index)),
+            near: core::mem::take(&mut self.neighbors[index as usize]),
+        }));
     }
 
     /// Gives the groups back.
     pub fn release(&mut self, groups: &mut Arena<ParticleGroup>) {
-        for task in &mut self.tasks[..self.count] {
-            for (index, group, near) in task.particles.groups.drain(..) {
-                *groups.at_mut(index) = group;
-                self.neighbors[index as usize] = near;
-            }
+        for TakenGroup { index, group, near } in self.taken.drain(..) {
+            *groups.at_mut(index) = group;
+            self.neighbors[index as usize] = near;
         }
     }
 
@@ -126,39 +128,38 @@ impl Islands {
         self.parent[u32::max(a, b) as usize] = u32::min(a, b);
     }
 
-    fn island_of(&mut self, body: u32) -> &mut Island {
-        &mut self.task_of(body).island
-    }
-
-    fn task_of(&mut self, slot: u32) -> &mut IslandTask {
+    /// Number of the island of a slot; a new one if it is the first of its island.
+    fn island_of(&mut self, slot: u32) -> u32 {
         let root = self.root(slot) as usize;
         if self.island_of_root[root] == NONE {
             self.island_of_root[root] = self.count as u32;
-            if self.count == self.tasks.len() {
-                self.tasks.push(IslandTask::default());
-            }
-            self.tasks[self.count].island.clear();
             self.count += 1;
         }
-        &mut self.tasks[self.island_of_root[root] as usize]
+        self.island_of_root[root]
     }
 
     fn collect(&mut self, bodies: &Arena<Body>, joints: &Arena<Joint>, contacts: &[Contact]) {
         self.count = 0;
+        for lists in [&mut self.bodies, &mut self.joints, &mut self.contacts, &mut self.groups] {
+            lists.clear();
+        }
         self.island_of_root.clear();
         self.island_of_root.resize(self.parent.len(), NONE);
         for (index, _) in bodies.iter().filter(|(_, body)| body.is_active()) {
-            self.island_of(index).bodies.push(index);
+            let island = self.island_of(index);
+            self.bodies.push(island, index);
         }
         let active = |index: &u32| bodies.at(*index).is_active();
         for (index, joint) in joints.iter().filter(|(_, joint)| joint.is_enabled()) {
             if let Some(body) = [joint.a, joint.b].into_iter().find(active) {
-                self.island_of(body).joints.push(index);
+                let island = self.island_of(body);
+                self.joints.push(island, index);
             }
         }
         for (index, contact) in contacts.iter().enumerate().filter(|(_, contact)| contact.pushes()) {
             if let Some(body) = [contact.key.a, contact.key.b].into_iter().find(active) {
-                self.island_of(body).contacts.push(index as u32);
+                let island = self.island_of(body);
+                self.contacts.push(island, index as u32);
             }
         }
     }
@@ -167,11 +168,75 @@ impl Islands {
     /// colour is no more than this order.
     pub fn color(&mut self, bodies: &Arena<Body>, contacts: &[Contact]) {
         let fixed = |index: u32| !bodies.at(index).is_active();
-        for task in &mut self.tasks[..self.count] {
-            task.island.contacts.sort_unstable_by_key(|&i| {
+        for island in 0..self.count {
+            self.contacts.of_mut(island).sort_unstable_by_key(|&i| {
                 let key = contacts[i as usize].key;
                 (fixed(key.a) || fixed(key.b), i)
             });
         }
+    }
+
+    /// Calls `work` once for each island, on `runner`'s threads.
+    pub fn run(&mut self, runner: &dyn TaskRunner, work: impl Fn(&mut Task<'_>) + Sync) {
+        let mut solution = core::mem::take(&mut self.solution);
+        let mut taken = core::mem::take(&mut self.taken);
+        let mut idle = core::mem::take(&mut self.idle);
+        solution.resize(self.bodies.numbers.len(), self.joints.numbers.len(), self.contacts.numbers.len());
+        Queue::new(self.iter(), &mut taken, &mut solution, &mut idle).run(runner, self.count, work);
+        (self.solution, self.taken, self.idle) = (solution, taken, idle);
+    }
+}
+
+/// Ascending lists of numbers, one for each island, one after the other in memory.
+#[derive(Clone, Debug, Default)]
+struct Lists {
+    /// Island and number, as they come.
+    pairs: Vec<(u32, u32)>,
+    numbers: Vec<u32>,
+    /// Where the list of each island ends.
+    ends: Vec<usize>,
+}
+
+impl Lists {
+    fn clear(&mut self) {
+        self.pairs.clear();
+    }
+
+    fn push(&mut self, island: u32, number: u32) {
+        self.pairs.push((island, number));
+    }
+
+    /// Makes the lists of what was pushed, each in the order in which it came: a counting sort.
+    fn sort(&mut self, islands: usize) {
+        self.ends.clear();
+        self.ends.resize(islands, 0);
+        for &(island, _) in &self.pairs {
+            self.ends[island as usize] += 1;
+        }
+        let mut start = 0;
+        for end in &mut self.ends {
+            // Where the list starts, until it is filled.
+            start += core::mem::replace(end, start);
+        }
+        self.numbers.resize(self.pairs.len(), 0);
+        for &(island, number) in &self.pairs {
+            let end = &mut self.ends[island as usize];
+            self.numbers[*end] = number;
+            *end += 1;
+        }
+    }
+
+    fn range(&self, island: usize) -> core::ops::Range<usize> {
+        let start = if island == 0 { 0 } else { self.ends[island - 1] };
+        start..self.ends[island]
+    }
+
+    fn of(&self, island: usize) -> &[u32] {
+        &self.numbers[self.range(island)]
+    }
+
+    fn of_mut(&mut self, island: usize) -> &mut [u32] {
+        let range = self.range(island);
+        &mut self.numbers[range]
     }
 }

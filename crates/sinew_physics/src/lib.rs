@@ -17,6 +17,7 @@ mod project;
 mod sensors;
 mod sleep;
 mod solver;
+mod tasks;
 mod touch;
 
 pub mod aabb;

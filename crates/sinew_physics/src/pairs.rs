@@ -39,12 +39,12 @@ impl BroadPhase {
     pub fn update(
         &mut self,
         bodies: &Arena<Body>,
-        no_collide: &[(u32, u32)],
+        parted: &[(u32, u32)],
         contacts: &mut Vec<Contact>,
         dt: f32,
     ) {
         self.refresh(bodies, dt);
-        self.sweep(bodies, no_collide);
+        self.sweep(bodies, parted);
         self.keys.sort_unstable();
         self.merge(bodies, contacts);
     }
@@ -89,7 +89,7 @@ impl BroadPhase {
         }
     }
 
-    fn sweep(&mut self, bodies: &Arena<Body>, no_collide: &[(u32, u32)]) {
+    fn sweep(&mut self, bodies: &Arena<Body>, parted: &[(u32, u32)]) {
         self.keys.clear();
         self.open.clear();
         for (i, proxy) in self.proxies.iter().enumerate() {
@@ -99,7 +99,7 @@ impl BroadPhase {
                 let other = &proxies[j as usize];
                 if (proxy.can_touch || other.can_touch)
                     && proxy.bounds.overlaps(&other.bounds)
-                    && may_collide(bodies, no_collide, proxy, other)
+                    && may_collide(bodies, parted, proxy, other)
                 {
                     self.keys.push(key(proxy, other));
                 }
@@ -134,7 +134,7 @@ fn key(p: &Proxy, q: &Proxy) -> ContactKey {
     ContactKey { a: a.body, b: b.body, shape_a: a.shape, shape_b: b.shape }
 }
 
-fn may_collide(bodies: &Arena<Body>, no_collide: &[(u32, u32)], p: &Proxy, q: &Proxy) -> bool {
+fn may_collide(bodies: &Arena<Body>, parted: &[(u32, u32)], p: &Proxy, q: &Proxy) -> bool {
     if p.body == q.body {
         return false;
     }
@@ -143,5 +143,5 @@ fn may_collide(bodies: &Arena<Body>, no_collide: &[(u32, u32)], p: &Proxy, q: &P
         && a.shapes[p.shape as usize].filter.meets(b.shapes[q.shape as usize].filter)
         && !a.quarantined
         && !b.quarantined
-        && no_collide.binary_search(&ordered(p.body, q.body)).is_err()
+        && parted.binary_search(&ordered(p.body, q.body)).is_err()
 }

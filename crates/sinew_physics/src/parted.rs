@@ -4,12 +4,12 @@ use crate::arena::Arena;
 use crate::contact::ordered;
 use crate::joint::Joint;
 
-/// Pairs that the user disabled, and those that joints keep apart.
+/// Those that the user named, and those of joints whose bodies do not collide.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PartedPairs {
     /// By the user: body indices, smaller first, ascending.
     pub disabled: Vec<(u32, u32)>,
-    /// The same with the jointed pairs.
+    /// Likewise with those of joints.
     all: Vec<(u32, u32)>,
     /// `all` misses something.
     stale: bool,

@@ -3,16 +3,24 @@
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::def::BodyKind;
+use crate::islands::Island;
 use crate::particles::{Anchor, AttachmentTarget, Obstacle, ObstacleBody, ParticleGroup};
 use crate::solver::{IslandSolver, View};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
 use sinew_math::{Sym3, Transform, Vec3};
 
-/// Particles of an island: its groups for the length of the step, and what is near them.
+/// A particle group, taken out of the world until `store`.
+#[derive(Clone, Debug)]
+pub(crate) struct TakenGroup {
+    /// In the world.
+    pub index: u32,
+    pub group: ParticleGroup,
+    pub near: Neighbors,
+}
+
+/// What a particle group sees of bodies.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct IslandParticles {
-    /// Index in the world, the group itself (taken out of the world until `store`), its neighbours.
-    pub groups: Vec<(u32, ParticleGroup, Neighbors)>,
+pub(crate) struct Surroundings {
     obstacles: Vec<Obstacle>,
     anchors: Vec<Anchor>,
     bodies: Vec<ObstacleBody>,
@@ -104,22 +112,28 @@ impl Seen {
     }
 }
 
-impl IslandParticles {
-    /// Moves the groups by one substep. Bodies get what springs and contacts push them with through their trees.
-    pub fn project(&mut self, solver: &mut IslandSolver, view: &View<'_>) {
-        for g in 0..self.groups.len() {
+impl Surroundings {
+    /// What only islands with particles need, also for one that has none: memory goes on to the next, which may have some.
+    pub fn make_room(&mut self, island: &Island<'_>) {
+        self.impulses.clear();
+        self.impulses.reserve(island.bodies.len());
+    }
+
+    /// Moves the groups of an island by one substep. Bodies get what springs and contacts push them with through their
+    /// trees.
+    pub fn project(&mut self, groups: &mut [TakenGroup], solver: &mut IslandSolver, view: &View<'_>) {
+        for taken in groups {
             self.seen.clear();
-            self.seen.extend(self.groups[g].2.bodies.iter().map(|&index| Seen::new(index, solver, view)));
-            self.place(g, view);
-            let (_, group, _) = &mut self.groups[g];
-            group.substep(view.h, view.gravity, &self.anchors, &self.obstacles, &mut self.bodies);
-            self.push_bodies(g, solver);
+            self.seen.extend(taken.near.bodies.iter().map(|&index| Seen::new(index, solver, view)));
+            self.place(taken, view);
+            taken.group.substep(view.h, view.gravity, &self.anchors, &self.obstacles, &mut self.bodies);
+            self.push_bodies(taken, solver);
         }
     }
 
-    /// Obstacles and anchors of group `g` at the present poses.
-    fn place(&mut self, g: usize, view: &View<'_>) {
-        let ((_, group, near), seen) = (&self.groups[g], &self.seen);
+    /// Obstacles and anchors of a group at the present poses.
+    fn place(&mut self, TakenGroup { group, near, .. }: &TakenGroup, view: &View<'_>) {
+        let seen = &self.seen;
         self.bodies.clear();
         self.bodies.extend(seen.iter().map(|body| ObstacleBody {
             center: body.pose.translation,
@@ -151,9 +165,9 @@ impl IslandParticles {
         }
     }
 
-    /// Hands the impulses of group `g` to the island's bodies.
-    fn push_bodies(&mut self, g: usize, solver: &mut IslandSolver) {
-        let ((_, group, near), seen) = (&self.groups[g], &self.seen);
+    /// Hands the impulses of a group to the island's bodies.
+    fn push_bodies(&mut self, TakenGroup { group, near, .. }: &TakenGroup, solver: &mut IslandSolver) {
+        let seen = &self.seen;
         self.impulses.clear();
         self.impulses.resize(solver.moving_bodies().len(), ZERO6);
         let mut push = |place: usize, point: Vec3, impulse: Vec3| {

@@ -4,7 +4,7 @@
 use crate::arena::Arena;
 use crate::body::{Body, Rest, Velocity};
 use crate::def::Sleeping;
-use crate::islands::IslandTask;
+use crate::islands::Islands;
 
 /// Seconds of being slow or in place until sleep.
 const TIME_TO_SLEEP: f32 = 0.5;
@@ -21,18 +21,18 @@ const TREMBLE_ANGULAR: f32 = 1.0;
 
 /// Counts the calm time of every body and puts islands to sleep. `sleepers` numbers them.
 pub(crate) fn sleep(
-    tasks: &[IslandTask],
+    islands: &Islands,
     bodies: &mut Arena<Body>,
     sleepers: &mut u32,
     sleeping: Sleeping,
     dt: f32,
 ) {
-    for task in tasks {
+    for island in islands.iter() {
         let mut least = f32::INFINITY;
-        for &index in &task.island.bodies {
+        for &index in island.bodies {
             let body = bodies.at_mut(index);
             let slow = is_slow(body);
-            let in_place = slow || (stays(body) && !task.island.has_particles);
+            let in_place = slow || (stays(body) && island.groups.is_empty());
             if slow || !in_place {
                 body.place = body.world_from_principal;
             }
@@ -41,8 +41,8 @@ pub(crate) fn sleep(
                 least = sinew_math::min(*calm, least);
             }
         }
-        if sleeping == Sleeping::On && least >= TIME_TO_SLEEP && !task.island.bodies.is_empty() {
-            for &index in &task.island.bodies {
+        if sleeping == Sleeping::On && least >= TIME_TO_SLEEP && !island.bodies.is_empty() {
+            for &index in island.bodies {
                 let body = bodies.at_mut(index);
                 body.rest = Rest::Asleep { island: *sleepers };
                 body.velocity = Velocity::default();

@@ -1,10 +1,9 @@
 //! One step, in order. `docs/step.md` has a heading for each stage.
 
-use crate::islands::IslandTask;
 use crate::runner::TaskRunner;
-use crate::slices::for_each_mut;
 use crate::solver::View;
 use crate::stage::{Profiler, Stage, zone};
+use crate::tasks::{Task, Workspace};
 use crate::world::World;
 use crate::{finalize, sensors, sleep, touch};
 
@@ -30,30 +29,34 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
 
     let view = View { bodies, joints, contacts, gravity: def.gravity, h: context.h };
-    for_each_mut(context.runner, islands.tasks_mut(), |task| substeps(task, &view, context));
+    islands.run(context.runner, |task| substeps(task, &view, context));
 
     stage(Stage::Store, &mut || {
         finalize::store(islands, joints, contacts, groups, context.dt);
         finalize::break_joints(joints, parted, events);
     });
-    stage(Stage::Finalize, &mut || finalize::finalize(islands.tasks(), bodies, events, context));
-    stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands.tasks()));
-    stage(Stage::Sleep, &mut || sleep::sleep(islands.tasks(), bodies, sleepers, def.sleeping, context.dt));
+    stage(Stage::Finalize, &mut || finalize::finalize(&islands.solution().bodies, bodies, events, context));
+    stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands));
+    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, sleepers, def.sleeping, context.dt));
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, events));
 }
 
 /// All substeps of one island, as one task without barriers.
-fn substeps(task: &mut IslandTask, view: &View<'_>, context: &StepContext<'_>) {
+fn substeps(task: &mut Task<'_>, view: &View<'_>, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
-    let IslandTask { island, solver, particles } = task;
-    stage(Stage::Prepare, &mut || solver.prepare(island, view));
+    let Task { island, groups, solution, workspace: Workspace { solver, surroundings } } = task;
+    stage(Stage::Prepare, &mut || {
+        solver.prepare(island, view);
+        surroundings.make_room(island);
+    });
     for _ in 0..context.substeps {
         stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity());
         stage(Stage::WarmStart, &mut || solver.warm_start());
         stage(Stage::Solve, &mut || solver.solve());
         stage(Stage::IntegratePosition, &mut || solver.integrate_position());
-        stage(Stage::Project, &mut || particles.project(solver, view));
+        stage(Stage::Project, &mut || surroundings.project(groups, solver, view));
         stage(Stage::Relax, &mut || solver.relax());
     }
     stage(Stage::Restitution, &mut || solver.restitution());
+    stage(Stage::Store, &mut || solver.store(solution));
 }

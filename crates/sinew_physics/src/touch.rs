@@ -39,7 +39,9 @@ pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &
         let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
         let (shape_a, shape_b) = (&a.shapes[sa].shape, &b.shapes[sb].shape);
         let extent = min(shape_a.smallest_extent(), shape_b.smallest_extent());
-        let approach = (a.velocity.linear - b.velocity.linear).length()
+        // Beside their approach: two that move together may not do so any more once one of them is hit.
+        let (va, vb) = (a.velocity.linear, b.velocity.linear);
+        let approach = max((va - vb).length(), max(va.length(), vb.length()))
             + a.velocity.angular.length() * a.reach()
             + b.velocity.angular.length() * b.reach();
         let margin = max(4.0 * slop(extent), approach * context.dt);
@@ -69,11 +71,8 @@ pub(crate) fn touch(
     events.end.clear();
     for contact in contacts.iter_mut() {
         let (a, b) = (contact.key.a, contact.key.b);
-        let touching = contact.manifold.points().iter().any(|point| point.separation <= 0.0);
-        if touching != contact.touching && !contact.sensor {
-            let list = if touching { &mut events.begin } else { &mut events.end };
-            list.push((id(bodies, a), id(bodies, b)));
-            contact.touching = touching;
+        if !contact.sensor {
+            note_change(bodies, contact, &mut events.begin, &mut events.end);
         }
         if contact.pushes() {
             wake_touched(bodies, a, b);
@@ -87,6 +86,21 @@ pub(crate) fn touch(
                 wake(bodies, held);
             }
         }
+    }
+}
+
+/// Puts the pair of a contact that began or ceased to touch since it was last looked at into one of the lists.
+pub(crate) fn note_change(
+    bodies: &Arena<Body>,
+    contact: &mut Contact,
+    begin: &mut Vec<(BodyId, BodyId)>,
+    end: &mut Vec<(BodyId, BodyId)>,
+) {
+    let touching = contact.manifold.points().iter().any(|point| point.separation <= 0.0);
+    if touching != contact.touching {
+        let list = if touching { begin } else { end };
+        list.push((id(bodies, contact.key.a), id(bodies, contact.key.b)));
+        contact.touching = touching;
     }
 }
 

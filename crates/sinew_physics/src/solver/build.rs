@@ -89,7 +89,7 @@ impl Scratch {
     }
 
     /// Lets all trees grow as far as they can.
-    fn grow(&mut self, island: &Island, view: &View<'_>) {
+    fn grow(&mut self, island: &Island<'_>, view: &View<'_>) {
         while let Some(&Seed { tree, place, .. }) = self.seeds.get(self.grown) {
             self.grown += 1;
             let body = island.bodies[place as usize];
@@ -112,9 +112,10 @@ impl Scratch {
 
 impl IslandSolver {
     /// Fills the solver with an island of the world.
-    pub fn prepare(&mut self, island: &Island, view: &View<'_>) {
+    pub fn prepare(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.h = view.h;
         self.order_trees(island, view);
+        self.make_room();
         self.copy_bodies(island, view);
         self.copy_joints(island, view);
         self.weigh_joints();
@@ -127,9 +128,20 @@ impl IslandSolver {
         self.refresh_response();
     }
 
+    /// What only islands with joints need, also for one that has none: memory goes on to the next, which may have some.
+    fn make_room(&mut self) {
+        let s = &mut self.scratch;
+        for list in [&mut s.residuals, &mut s.impulses, &mut s.dv, &mut self.moved, &mut self.accounted] {
+            list.clear();
+            list.reserve(self.links.len());
+        }
+        s.pieces.clear();
+        s.pieces.reserve(self.links.len());
+    }
+
     /// Spanning trees: few loops are closed exactly in one tree per thing that hangs together. Where there are too many
     /// for that, all bodies jointed to fixed ones become roots at once, so that ropes side by side are a tree each.
-    fn order_trees(&mut self, island: &Island, view: &View<'_>) {
+    fn order_trees(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.span(island, view, Roots::InTurn);
         if self.is_entangled(island, view) {
             self.span(island, view, Roots::AtOnce);
@@ -138,7 +150,7 @@ impl IslandSolver {
 
     /// Spanning trees by breadth-first search: from bodies jointed to fixed ones (a tree has one ground at most), then from
     /// the smallest body that is left.
-    fn span(&mut self, island: &Island, view: &View<'_>, roots: Roots) {
+    fn span(&mut self, island: &Island<'_>, view: &View<'_>, roots: Roots) {
         let s = &mut self.scratch.build;
         s.seeds.clear();
         s.sizes.clear();
@@ -176,7 +188,7 @@ impl IslandSolver {
     }
 
     /// More loops than can be closed exactly in one of its trees, or loops between trees.
-    fn is_entangled(&mut self, island: &Island, view: &View<'_>) -> bool {
+    fn is_entangled(&mut self, island: &Island<'_>, view: &View<'_>) -> bool {
         let s = &mut self.scratch.build;
         s.loop_rows.clear();
         s.loop_rows.resize(self.tree_count, 0);
@@ -196,7 +208,7 @@ impl IslandSolver {
     }
 
     /// Local indices, tree by tree, parents first.
-    fn number_links(&mut self, island: &Island) {
+    fn number_links(&mut self, island: &Island<'_>) {
         let s = &mut self.scratch.build;
         s.seeds.sort_unstable_by_key(|seed| (seed.tree, seed.found));
         s.order.clear();
@@ -213,15 +225,15 @@ impl IslandSolver {
         self.articulated = self.links.iter().any(|link| link.joint != NONE);
     }
 
-    fn copy_bodies(&mut self, island: &Island, view: &View<'_>) {
+    fn copy_bodies(&mut self, island: &Island<'_>, view: &View<'_>) {
         let s = &mut self.scratch.build;
         s.fixed.clear();
         let moving = |body: u32| view.bodies.at(body).is_active();
-        for &index in &island.joints {
+        for &index in island.joints {
             let joint = view.joints.at(index);
             s.fixed.extend([joint.a, joint.b].into_iter().filter(|&body| !moving(body)));
         }
-        for &index in &island.contacts {
+        for &index in island.contacts {
             let key = view.contacts[index as usize].key;
             s.fixed.extend([key.a, key.b].into_iter().filter(|&body| !moving(body)));
         }
@@ -252,7 +264,7 @@ impl IslandSolver {
     }
 
     /// Local index of a world body.
-    fn local(&self, island: &Island, body: u32) -> u32 {
+    fn local(&self, island: &Island<'_>, body: u32) -> u32 {
         let s = &self.scratch.build;
         match island.bodies.binary_search(&body) {
             Ok(place) => s.local[place],
@@ -260,7 +272,7 @@ impl IslandSolver {
         }
     }
 
-    fn copy_joints(&mut self, island: &Island, view: &View<'_>) {
+    fn copy_joints(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.joints.clear();
         self.loops.clear();
         for (place, &index) in island.joints.iter().enumerate() {
@@ -308,9 +320,9 @@ impl IslandSolver {
         }
     }
 
-    fn copy_contacts(&mut self, island: &Island, view: &View<'_>) {
+    fn copy_contacts(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.manifolds.clear();
-        for &index in &island.contacts {
+        for &index in island.contacts {
             let contact = &view.contacts[index as usize];
             let (a, b) = (view.bodies.at(contact.key.a), view.bodies.at(contact.key.b));
             let shape_a = &a.shapes[contact.key.shape_a as usize];

@@ -88,6 +88,27 @@ impl Row {
     }
 }
 
+/// Impulses of a manifold's rows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Given {
+    normal: [f32; MAX_POINTS],
+    friction: Vec3,
+    twist: f32,
+    rolling: Vec3,
+}
+
+impl Given {
+    /// With `share` of another.
+    pub fn plus(&self, other: &Self, share: f32) -> Self {
+        Self {
+            normal: core::array::from_fn(|i| self.normal[i] + other.normal[i] * share),
+            friction: self.friction + other.friction * share,
+            twist: self.twist + other.twist * share,
+            rolling: self.rolling + other.rolling * share,
+        }
+    }
+}
+
 /// Change of impulse of a manifold: on A and on B.
 pub(super) type Push = (Vec6, Vec6);
 
@@ -126,11 +147,15 @@ pub(crate) struct ManifoldRows {
     k: [[f32; MAX_POINTS]; MAX_POINTS],
     k_tangent: [[f32; 2]; 2],
     k_spin: f32,
+    /// Of the twist to the tangents.
+    k_spin_tangent: [f32; 2],
     k_roll: Mat3,
     /// Normal velocity at the step's beginning, for restitution.
     approach: [f32; MAX_POINTS],
     /// Impulses of this substep.
     impulse: [f32; MAX_POINTS],
+    /// Sum of the normal impulses that friction is limited by.
+    load: f32,
     /// What `relax` may not go below.
     floor: [f32; MAX_POINTS],
     friction: Vec3,
@@ -202,9 +227,11 @@ impl ManifoldRows {
             k: [[0.0; MAX_POINTS]; MAX_POINTS],
             k_tangent: [[0.0; 2]; 2],
             k_spin: 0.0,
+            k_spin_tangent: [0.0; 2],
             k_roll: Mat3::ZERO,
             approach: [0.0; MAX_POINTS],
             impulse: [0.0; MAX_POINTS],
+            load: 0.0,
             floor: [0.0; MAX_POINTS],
             friction: source.memory.friction,
             twist: source.memory.twist,
@@ -324,6 +351,7 @@ impl ManifoldRows {
             }
             self.k_tangent[i][i] += least(&self.tangents[i]);
         }
+        self.k_spin_tangent = across.map(|answer| self.spin.dot(&answer));
         self.k_spin = self.spin.dot(&self.spin.response(pair, links, response)) + least(&self.spin);
         if self.material.rolling > 0.0 {
             let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
@@ -355,6 +383,24 @@ impl ManifoldRows {
         super::limit_rows::add_row(impulses, self.b, &push.1, 1.0);
     }
 
+    /// Impulses of this substep.
+    pub(super) fn given(&self) -> Given {
+        Given { normal: self.impulse, friction: self.friction, twist: self.twist, rolling: self.rolling }
+    }
+
+    /// Adds a share of impulses to those of this substep; the caller puts them on the bodies. Gives the largest speed that
+    /// one of them makes by itself, m/s or rad/s.
+    pub(super) fn give(&mut self, more: &Given, share: f32) -> f32 {
+        let Given { normal, friction, twist, rolling } = self.given().plus(more, share);
+        (self.impulse, self.friction, self.twist, self.rolling) = (normal, friction, twist, rolling);
+        let k = self.k_tangent[0][0] + self.k_tangent[1][1];
+        let mut most = max(more.friction.length() * k, more.twist.abs() * self.k_spin);
+        for i in 0..self.count {
+            most = max(most, more.normal[i].abs() * self.k[i][i]);
+        }
+        most * share
+    }
+
     /// What all rows put on the bodies in this substep.
     pub fn total_push(&self) -> Push {
         let mut push = (ZERO6, ZERO6);
@@ -382,6 +428,11 @@ impl ManifoldRows {
         let turn = |body: u32| angular(&velocities[body as usize]).length() * h;
         let still = turn(self.a) < RELAX_TURN && turn(self.b) < RELAX_TURN;
         self.floor = if still { [0.0; MAX_POINTS] } else { self.impulse };
+    }
+
+    /// Takes the normal impulses as they are for the load of friction.
+    pub fn weigh(&mut self) {
+        self.load = self.impulse[..self.count].iter().fold(0.0, |sum, p| sum + p);
     }
 
     fn add(&self, push: &mut Push, row: &Row, impulse: f32) {
@@ -426,48 +477,45 @@ impl ManifoldRows {
         push
     }
 
-    /// One visit of friction, limited by the normal impulses as they are: a 2×2 row limited to the circle, twist
-    /// about the normal, rolling resistance.
+    /// One visit of friction, limited by the load that was weighed last: a 2×2 row limited to the circle, twist about the
+    /// normal.
     pub fn visit_friction(&mut self, velocities: &[Vec6]) -> Push {
         let pair = self.pair();
         let mut push = (ZERO6, ZERO6);
-        let mut load = 0.0;
-        for i in 0..self.count {
-            load += self.impulse[i];
-        }
         let k = &self.k_tangent;
         let old = self.tangent_axes.map(|axis| self.friction.dot(axis));
         let rates = self.tangents.map(|row| row.rate(pair, velocities));
         let b = [0, 1].map(|i| k[i][0] * old[0] + k[i][1] * old[1] - rates[i]);
-        let new = disk::least_energy(k, b, self.material.friction * load);
+        let new = disk::least_energy(k, b, self.material.friction * self.load);
         for i in 0..2 {
             let row = self.tangents[i];
             self.add(&mut push, &row, new[i] - old[i]);
         }
         self.friction = self.tangent_axes[0] * new[0] + self.tangent_axes[1] * new[1];
-        let mut turn = Vec3::ZERO;
         if self.k_spin > 1e-12 {
-            let most = self.material.friction * self.lever * load;
-            let rate = self.spin.rate(pair, velocities);
+            // After the tangents: a light hand turns far about a contact beside its centre, and to answer both at once
+            // overshoots, sweep by sweep more.
+            let [k0, k1] = self.k_spin_tangent;
+            let rate = self.spin.rate(pair, velocities) + k0 * (new[0] - old[0]) + k1 * (new[1] - old[1]);
+            let most = self.material.friction * self.lever * self.load;
             let new = sinew_math::clamp(self.twist - rate / self.k_spin, -most, most);
-            turn += self.normal * (new - self.twist);
+            self.add(&mut push, &self.spin, new - self.twist);
             self.twist = new;
         }
-        turn += self.visit_rolling(velocities, load);
-        self.add(&mut push, &Row::about(turn), 1.0);
         push
     }
 
-    /// Change of the rolling resistance: a torque against the relative rotation, at most `rolling × load`.
-    fn visit_rolling(&mut self, velocities: &[Vec6], load: f32) -> Vec3 {
+    /// One visit of the rolling resistance: a torque against the relative rotation, at most `rolling × load`.
+    pub fn visit_rolling(&mut self, velocities: &[Vec6]) -> Option<Push> {
         if self.material.rolling <= 0.0 {
-            return Vec3::ZERO;
+            return None;
         }
         let w = angular(&velocities[self.b as usize]) - angular(&velocities[self.a as usize]);
-        let new = disk::step_in_ball(&self.k_roll, self.rolling, w, self.material.rolling * load);
-        let change = new - self.rolling;
+        let new = disk::step_in_ball(&self.k_roll, self.rolling, w, self.material.rolling * self.load);
+        let mut push = (ZERO6, ZERO6);
+        self.add(&mut push, &Row::about(new - self.rolling), 1.0);
         self.rolling = new;
-        change
+        Some(push)
     }
 
     /// A point that came in fast and was hit will bounce.
@@ -504,7 +552,7 @@ impl ManifoldRows {
         for i in 0..self.count {
             let point = &mut self.memory.points[i];
             point.before = point.now;
-            point.now = self.impulse[i];
+            point.now = max(self.impulse[i], 0.0);
         }
         self.memory.friction = self.friction;
         self.memory.twist = self.twist;

@@ -223,6 +223,10 @@ impl IslandSolver {
 
     /// `relax` cannot give energy, but impulses taken back at another pose than they were given at can, in violent
     /// hits. Then the velocities go only as far along the change as energy falls: joints hold on the whole way.
+    ///
+    /// [`govern_energy`](Self::govern_energy) does not make up for it: what `solve` lost it lets `relax` give, and it takes
+    /// nothing from the island's motion as one piece. Without this, of 400 random worlds as many hold, but two of the others
+    /// explode (to 8e4 and 2e14 times their energy), and a figure thrown at a wall sinks in by 10 mm instead of 1.
     pub(super) fn keep_energy(&mut self) {
         let moving = self.links.len();
         let before = &self.scratch.before[..moving];
@@ -244,7 +248,7 @@ impl IslandSolver {
     }
 }
 
-/// The motion of a tree as if it were rigid.
+/// The motion of several bodies as if they were one.
 #[derive(Clone, Copy, Debug, Default)]
 struct RigidMotion {
     center: Vec3,

@@ -221,6 +221,12 @@ impl LimitRow {
             + REDUNDANCY * free_response(bodies, links.len(), [(joint.a, ja), (joint.b, jb)]);
     }
 
+    /// Adds to the impulse of this substep; the caller puts it on the bodies. Gives the speed that it makes by itself.
+    pub fn give(&mut self, more: f32) -> f32 {
+        self.impulse += more;
+        more.abs() * self.effective
+    }
+
     /// Change of the impulses on both bodies for the present velocities.
     fn visit(
         &mut self,

@@ -12,15 +12,14 @@ mod energy;
 pub(crate) mod lcp;
 mod limit_rows;
 mod loops;
+mod momentum;
 mod reaction;
 mod response;
+mod solution;
 mod sweep;
 mod tree;
 mod tree_joints;
 
-use crate::body::Velocity;
-use crate::collide::Manifold;
-use crate::contact::ContactMemory;
 use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
@@ -30,8 +29,10 @@ use contact_rows::ManifoldRows;
 use drives::SoftRow;
 use limit_rows::LimitRow;
 use loops::Loops;
+use momentum::Momentum;
 use response::Response;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew};
+pub(crate) use solution::{IslandSolution, Solution, SolvedBody, split_off};
 use sweep::{Pass, Unrest};
 use tree::Link;
 
@@ -43,8 +44,11 @@ const MAX_SPEED: f32 = 4000.0;
 /// needs them; most passes end sooner, once a sweep changes no velocity by more than the tolerance (m/s or rad/s).
 const SWEEPS_JOINTED: usize = 24;
 const SWEEP_TOLERANCE: f32 = 2e-3;
+/// Sweeps of `relax` before which friction learns its loads anew: the impulses of `solve` first, then those that really
+/// press. From then on loads stay, or friction and normals may chase each other for ever.
+const WEIGHINGS: usize = 2;
 /// Likewise in one without: one with bias; two in `relax`, since friction of the first knows only the soft impulses of
-/// `solve` (1.5 % too little) and the second those that really press.
+/// `solve` (1.5 % too little).
 const SWEEPS_FREE: usize = 1;
 const SWEEPS_FREE_RELAX: usize = 2;
 /// Rounds in which limits that the substep would pass by far are tightened.
@@ -149,7 +153,7 @@ pub(crate) struct SolverJoint {
     pub reaction: Vec6,
 }
 
-/// The solver of one island. Its memory is kept from step to step.
+/// The solver of one island. Its memory is kept for the next one, but nothing in it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct IslandSolver {
     pub bodies: Vec<SolverBody>,
@@ -170,8 +174,15 @@ pub(crate) struct IslandSolver {
     contact_push: Vec<Vec3>,
     /// Velocities after the forces, before any constraint.
     unconstrained: Vec<Vec6>,
+    /// Velocities when the bodies have moved, before `relax`.
+    moved: Vec<Vec6>,
+    /// What bodies gain after that without having it from their joints; what contacts and loops gave before, negative.
+    accounted: Vec<Vec6>,
     scratch: Scratch,
     unrest: Unrest,
+    momentum: Momentum,
+    /// Energy that the changes of the sweep in progress have one by one, J.
+    change_energy: f32,
     /// Largest change of a velocity component in the sweep in progress.
     largest_change: f32,
     /// Kinetic energy before and after the forces acted in this substep, J.
@@ -284,6 +295,7 @@ impl IslandSolver {
     /// and the next substep's `solve`.
     pub fn integrate_position(&mut self) {
         self.store_joint_forces();
+        self.add_solve_reactions();
         self.force_work = self.work_of_forces();
         for (i, (body, v)) in self.bodies.iter_mut().zip(&mut self.velocities).enumerate() {
             let turned = self.unconstrained.get(i).map(|before| {
@@ -297,6 +309,7 @@ impl IslandSolver {
             }
         }
         self.refresh();
+        self.begin_relax_reactions();
     }
 
     /// Impulses from outside the island's rows, one for each moving body, through the trees.
@@ -305,6 +318,9 @@ impl IslandSolver {
             return;
         }
         self.pushed_from_outside = true;
+        for (accounted, p) in self.accounted.iter_mut().zip(impulses) {
+            add_scaled(accounted, p, 1.0);
+        }
         self.scratch.impulses.clear();
         self.scratch.impulses.extend_from_slice(impulses);
         self.answer_impulses();
@@ -326,7 +342,7 @@ impl IslandSolver {
         self.end_limits();
         self.end_loops();
         self.release_motors();
-        self.add_reactions();
+        self.add_relax_reactions();
     }
 
     /// Bounce of what was hit, after the substeps.
@@ -437,20 +453,9 @@ impl IslandSolver {
         sum
     }
 
-    /// State of a body for the world.
-    pub fn velocity(&self, body: usize) -> Velocity {
-        let v = &self.velocities[body];
-        Velocity { linear: linear(v), angular: angular(v) }
-    }
-
     /// The bodies that move, in tree order.
     pub fn moving_bodies(&self) -> &[SolverBody] {
         &self.bodies[..self.links.len()]
-    }
-
-    /// World index of each contact, with what it carries on.
-    pub fn contacts(&self) -> impl Iterator<Item = (u32, &Manifold, &ContactMemory)> {
-        self.manifolds.iter().map(|rows| (rows.contact, &rows.manifold, &rows.memory))
     }
 }
 

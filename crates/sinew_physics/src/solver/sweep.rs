@@ -2,9 +2,10 @@
 //! kept up to date, through the articulated response; then the trees are solved once with all impulses, so that the
 //! joints hold exactly.
 
-use super::contact_rows::Push;
+use super::contact_rows::{ManifoldRows, Push};
+use super::momentum::{Momentum, Rows};
 use super::tree::Link;
-use super::{IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED};
+use super::{IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED, WEIGHINGS};
 use crate::spatial::{ZERO6, add_scaled, linear};
 use sinew_math::max;
 
@@ -47,6 +48,20 @@ impl Unrest {
         tree(a) + tree(b)
     }
 
+    /// A tree's velocities have changed by this much.
+    pub fn stir(&mut self, tree: u32, change: f32) {
+        self.trees[tree as usize] += change;
+    }
+
+    /// A row needs a visit whatever its trees do.
+    pub fn wake_manifold(&mut self, i: usize) {
+        self.manifolds[i] = f32::NEG_INFINITY;
+    }
+
+    pub fn wake_limit(&mut self, i: usize) {
+        self.limits[i] = f32::NEG_INFINITY;
+    }
+
     fn wakes_manifold(&mut self, i: usize, now: f32) -> bool {
         wakes(&mut self.manifolds[i], now)
     }
@@ -81,18 +96,46 @@ impl IslandSolver {
             (_, Pass::Relax) => SWEEPS_FREE_RELAX,
             (..) => SWEEPS_FREE,
         };
+        let converges = self.is_articulated() && pass != Pass::Restitution;
+        self.momentum.start();
         for done in 1..=sweeps {
             self.largest_change = 0.0;
+            self.change_energy = 0.0;
+            if pass == Pass::Relax && done <= WEIGHINGS {
+                self.manifolds.iter_mut().for_each(ManifoldRows::weigh);
+            }
+            if converges {
+                let (momentum, rows) = self.rows_with_momentum();
+                momentum.before(&rows);
+            }
             match pass {
                 Pass::Solve | Pass::Relax => self.visit_contacts(pass),
                 Pass::Restitution => self.visit_bounces(),
             }
             self.visit_limits(pass);
-            if done > 1 && self.largest_change < SWEEP_TOLERANCE {
+            if done == sweeps || (done > 1 && self.largest_change < SWEEP_TOLERANCE) {
                 break;
+            }
+            if converges {
+                let energy = self.change_energy;
+                let (momentum, mut rows) = self.rows_with_momentum();
+                momentum.after(&mut rows, energy);
             }
         }
         self.finish_sweep(pass);
+    }
+
+    fn rows_with_momentum(&mut self) -> (&mut Momentum, Rows<'_>) {
+        let moving = self.links.len();
+        let rows = Rows {
+            manifolds: &mut self.manifolds,
+            limits: &mut self.limits,
+            impulses: &mut self.impulses,
+            velocities: &mut self.velocities[..moving],
+            links: &self.links,
+            unrest: &mut self.unrest,
+        };
+        (&mut self.momentum, rows)
     }
 
     fn visit_contacts(&mut self, pass: Pass) {
@@ -103,6 +146,11 @@ impl IslandSolver {
             }
             if pass == Pass::Relax {
                 let push = self.manifolds[i].visit_friction(&self.velocities);
+                self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
+            }
+            if pass == Pass::Relax
+                && let Some(push) = self.manifolds[i].visit_rolling(&self.velocities)
+            {
                 self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
             }
             let push = self.manifolds[i].visit_normal(&self.velocities, pass == Pass::Solve, self.h);
@@ -128,10 +176,11 @@ impl IslandSolver {
                 let before = self.velocities[body];
                 self.response.apply(&self.links, body, p, &mut self.velocities);
                 let mut change = 0.0;
-                for (x, y) in self.velocities[body].iter().zip(&before) {
+                for ((x, y), p) in self.velocities[body].iter().zip(&before).zip(p) {
                     change = max(change, (x - y).abs());
+                    self.change_energy += (x - y) * p;
                 }
-                self.unrest.trees[self.links[body].tree as usize] += change;
+                self.unrest.stir(self.links[body].tree, change);
                 self.largest_change = max(self.largest_change, change);
             }
         }

@@ -2,6 +2,7 @@
 
 use crate::build::{ball, joint};
 use sinew_math::{Range, Rotation, SwingTwistLimit, Sym3, Transform, Vec3, trig};
+use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, RopeDef};
 use sinew_physics::*;
 
 const G: f32 = 9.81;
@@ -113,9 +114,10 @@ fn a_motor_steps_as_a_second_order_system() {
 fn a_weak_motor_pushes_with_its_cap_and_no_more() {
     let (mut world, b, mut def) = arm(0.0);
     def.motor = Some(Motor::spin(1000.0, 3.0));
-    world.add_joint(&def);
+    let id = world.add_joint(&def);
     run(&mut world, 1.0);
     near(world.velocity(b).angular.z, 3.0 / ARM_MOMENT, 0.01, "speed after a second at full torque");
+    near(world.reaction(id).torque.z, 3.0, 1e-3, "torque of the motor while its arm turns");
     let (mut world, b, mut def) = arm(0.0);
     def.motor = Some(Motor::spin(2.0, 3.0));
     let id = world.add_joint(&def);
@@ -364,6 +366,22 @@ fn reactions_are_the_weights_that_hang_below() {
     let id = beam.add_joint(&joint(&beam, a, b, Transform::IDENTITY, JointKind::Fixed));
     run(&mut beam, 0.5);
     near(beam.reaction(id).torque.z, 4.0 * G * 0.5, 0.001, "moment of the beam");
+}
+
+#[test]
+fn reactions_bear_what_hangs_by_springs() {
+    let mut world = world(G);
+    let a = anchor(&mut world);
+    let b = lump(&mut world, Vec3::NEG_Y * 0.5, 1.0, 0.1);
+    let id = world.add_joint(&ball(&world, a, b, Vec3::ZERO));
+    let (from, to) = (Vec3::NEG_Y * 0.5, Vec3::NEG_Y * 1.5);
+    let mut rope = GroupDef::rope(&RopeDef { from, to, links: 8, mass: 0.2, stiffness: 1e4, radius: 0.01 });
+    let target = AttachmentTarget::Body { body: b, point: Vec3::ZERO };
+    rope.attachments = vec![AttachmentDef { particle: 0, target }];
+    world.add_particles(&rope);
+    run(&mut world, 3.0);
+    // The first particle goes with the body, and its mass takes a share of what the rope pulls.
+    near(world.reaction(id).force.y, 1.2 * G, 0.003, "weight of the body and its rope");
 }
 
 #[test]

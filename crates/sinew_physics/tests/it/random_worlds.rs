@@ -2,7 +2,7 @@
 //! comes, numbers stay finite, nothing gives energy that it does not have, and a restored world goes on as the saved one
 //! did.
 //!
-//! 100 worlds, or 10,000 when `SINEW_FULL` is set. To look into one:
+//! 100 worlds, or 10,000 when `SINEW_FULL` is set, as `cargo xtask ci --full` does. To look into one:
 //! `SINEW_WORLDS=17..18 cargo test --release -p sinew_physics --test it -- --ignored --nocapture survey` runs the seeds of
 //! the range, makes what fails as small as it goes and prints it.
 //!
@@ -46,9 +46,13 @@ const KNOWN_PER_THOUSAND: usize = 75;
 
 type Outcome = (u64, Result<Figures, Failure>);
 
+/// Worlds after which those who wait are told how far a long run is.
+const PROGRESS: u64 = 500;
+
 /// Runs the worlds of some seeds on all cores; outcomes by seed.
 fn outcomes(seeds: core::ops::Range<u64>) -> Vec<Outcome> {
     let next = AtomicU64::new(seeds.start);
+    let failed = AtomicU64::new(0);
     let worker = || {
         let mut found = Vec::new();
         loop {
@@ -56,7 +60,13 @@ fn outcomes(seeds: core::ops::Range<u64>) -> Vec<Outcome> {
             if seed >= seeds.end {
                 return found;
             }
-            found.push((seed, check(&generate::world(seed), STEPS)));
+            let outcome = check(&generate::world(seed), STEPS);
+            failed.fetch_add(u64::from(outcome.is_err()), Ordering::Relaxed);
+            found.push((seed, outcome));
+            if (seed + 1).is_multiple_of(PROGRESS) {
+                let failed = failed.load(Ordering::Relaxed);
+                eprintln!("random worlds: at {} of {}, {failed} do not hold", seed + 1, seeds.end);
+            }
         }
     };
     let cores = std::thread::available_parallelism().map_or(1, core::num::NonZero::get);
@@ -66,6 +76,13 @@ fn outcomes(seeds: core::ops::Range<u64>) -> Vec<Outcome> {
     });
     found.sort_unstable_by_key(|&(seed, _)| seed);
     found
+}
+
+/// What `SINEW_WORLDS` says.
+fn asked_seeds() -> Option<core::ops::Range<u64>> {
+    let range = std::env::var("SINEW_WORLDS").ok()?;
+    let (lo, hi) = range.split_once("..").expect("SINEW_WORLDS is lo..hi");
+    Some(lo.parse().expect("a seed")..hi.parse().expect("a seed"))
 }
 
 /// The world of a seed holds.
@@ -97,7 +114,7 @@ fn ten_thousand_random_worlds_hold() {
     if std::env::var_os("SINEW_FULL").is_none() {
         return println!("skipped: SINEW_FULL is not set");
     }
-    let outcomes = outcomes(100..10_000);
+    let outcomes = outcomes(asked_seeds().unwrap_or(100..10_000));
     let failed: Vec<_> = outcomes.iter().filter_map(|(seed, o)| Some((seed, o.as_ref().err()?))).collect();
     let share = failed.len() * 1000 / outcomes.len();
     assert!(share <= KNOWN_PER_THOUSAND, "{share} of 1000 worlds do not hold: {failed:?}");
@@ -109,9 +126,7 @@ fn ten_thousand_random_worlds_hold() {
 #[test]
 #[ignore = "for people: prints, asserts nothing"]
 fn survey() {
-    let range = std::env::var("SINEW_WORLDS").unwrap_or_else(|_| "0..100".to_owned());
-    let (lo, hi) = range.split_once("..").expect("SINEW_WORLDS is lo..hi");
-    let seeds = lo.parse().expect("a seed")..hi.parse().expect("a seed");
+    let seeds = asked_seeds().unwrap_or(0..100);
     let count = seeds.end - seeds.start;
     let outcomes = outcomes(seeds);
     let mut gaps: Vec<f32> = outcomes.iter().filter_map(|(_, o)| o.as_ref().ok()).map(|f| f.gap).collect();

@@ -16,7 +16,7 @@ use sinew_physics::JointKind;
 use table::{Axes, Cone, Entry, Motion, entry};
 
 /// Share of the muscles' largest torque that a limp joint resists with.
-const FRICTION_SHARE: f32 = 0.025;
+const FRICTION_SHARE: f32 = 0.02;
 /// Room that a bind pose has to every limit, radians (2°).
 const BIND_MARGIN: f32 = 0.034_906_585;
 /// A bone bent by more than this in the bind pose shows its hinge's axis itself (cosine of 10°).

@@ -3,10 +3,7 @@
 use sinew_scenes::scenes::{Expected, Metric, Scene, Settings, find, registry};
 
 /// Figures that are not yet as expected, by scene. One that comes to be met must be taken off, or its test fails.
-const NOT_YET: &[(&str, &[&str])] = &[
-    // The reaction of a saturated motor reads 3 % high while its arm turns at 3 rad/s; what it does is right.
-    ("motor_arm", &["torque_over_cap"]),
-];
+const NOT_YET: &[(&str, &[&str])] = &[];
 
 /// Scenes in which gravity has no part.
 const BLIND_TO_GRAVITY: &[&str] = &["zero_gravity_pile", "spin_double", "spin_triple", "spin_ragdoll"];

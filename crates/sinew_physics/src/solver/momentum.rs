@@ -1,0 +1,123 @@
+//! Momentum for the sweeps: each sweep's change of all impulses is a step downhill, and steps downhill are made conjugate
+//! (nonsmooth nonlinear conjugate gradients: Silcowitz, Niebe and Erleben 2010). What plain sweeps approach by an
+//! eightieth at a time, a hand between the floor and the chest that lies on it, is there in a few.
+
+use super::SWEEP_TOLERANCE;
+use super::contact_rows::{Given, ManifoldRows};
+use super::limit_rows::LimitRow;
+use super::sweep::Unrest;
+use super::tree::Link;
+use crate::spatial::{Vec6, add_scaled};
+use sinew_math::max;
+
+/// Where a pass stands. Lists are empty until its second sweep.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Momentum {
+    /// Before the sweep, then its change, then the direction to go on in.
+    was: State,
+    direction: State,
+    /// Energy of the changes of the last sweep, J.
+    energy: f32,
+}
+
+/// Impulses of all rows, and what the bodies have of them.
+#[derive(Clone, Debug, Default)]
+struct State {
+    manifolds: Vec<Given>,
+    limits: Vec<f32>,
+    impulses: Vec<Vec6>,
+    velocities: Vec<Vec6>,
+}
+
+/// What the rows of an island and its bodies have in a pass.
+pub(super) struct Rows<'a> {
+    pub manifolds: &'a mut [ManifoldRows],
+    pub limits: &'a mut [LimitRow],
+    pub impulses: &'a mut [Vec6],
+    pub velocities: &'a mut [Vec6],
+    pub links: &'a [Link],
+    pub unrest: &'a mut Unrest,
+}
+
+impl Momentum {
+    /// Before the first sweep.
+    pub fn start(&mut self) {
+        self.energy = 0.0;
+    }
+
+    /// Before a sweep.
+    pub fn before(&mut self, rows: &Rows<'_>) {
+        self.was.manifolds.clear();
+        self.was.manifolds.extend(rows.manifolds.iter().map(ManifoldRows::given));
+        self.was.limits.clear();
+        self.was.limits.extend(rows.limits.iter().map(|row| row.impulse));
+        self.was.impulses.clear();
+        self.was.impulses.extend_from_slice(rows.impulses);
+        self.was.velocities.clear();
+        self.was.velocities.extend_from_slice(rows.velocities);
+    }
+
+    /// After a sweep whose changes had this energy: goes on in the direction so far. What it asks too much of rows, the
+    /// next sweep takes back.
+    pub fn after(&mut self, rows: &mut Rows<'_>, energy: f32) {
+        let share = if energy < self.energy { energy / self.energy } else { 0.0 };
+        self.energy = energy;
+        if share == 0.0 {
+            core::mem::swap(&mut self.direction, &mut self.was);
+            self.direction.set_difference(rows);
+            return;
+        }
+        self.was.set_difference(rows);
+        self.direction.go_on(rows, &self.was, share);
+    }
+}
+
+impl State {
+    /// From an earlier state to the change from it to the present one.
+    fn set_difference(&mut self, rows: &Rows<'_>) {
+        for (was, row) in self.manifolds.iter_mut().zip(rows.manifolds.iter()) {
+            *was = row.given().plus(was, -1.0);
+        }
+        for (was, row) in self.limits.iter_mut().zip(rows.limits.iter()) {
+            *was = row.impulse - *was;
+        }
+        for (was, now) in self.impulses.iter_mut().zip(rows.impulses.iter()) {
+            *was = sum(now, was, -1.0);
+        }
+        for (was, now) in self.velocities.iter_mut().zip(rows.velocities.iter()) {
+            *was = sum(now, was, -1.0);
+        }
+    }
+
+    /// Adds `share` of this direction to the rows; then it is that share and the change.
+    fn go_on(&mut self, rows: &mut Rows<'_>, change: &Self, share: f32) {
+        for (i, row) in rows.manifolds.iter_mut().enumerate() {
+            let d = &mut self.manifolds[i];
+            if row.give(d, share) >= SWEEP_TOLERANCE {
+                rows.unrest.wake_manifold(i);
+            }
+            *d = change.manifolds[i].plus(d, share);
+        }
+        for (i, row) in rows.limits.iter_mut().enumerate() {
+            let d = &mut self.limits[i];
+            if row.give(*d * share) >= SWEEP_TOLERANCE {
+                rows.unrest.wake_limit(i);
+            }
+            *d = change.limits[i] + *d * share;
+        }
+        for (i, link) in rows.links.iter().enumerate() {
+            add_scaled(&mut rows.impulses[i], &self.impulses[i], share);
+            add_scaled(&mut rows.velocities[i], &self.velocities[i], share);
+            let largest = self.velocities[i].iter().fold(0.0, |most, x| max(most, x.abs()));
+            rows.unrest.stir(link.tree, largest * share);
+            self.impulses[i] = sum(&change.impulses[i], &self.impulses[i], share);
+            self.velocities[i] = sum(&change.velocities[i], &self.velocities[i], share);
+        }
+    }
+}
+
+fn sum(a: &Vec6, b: &Vec6, share: f32) -> Vec6 {
+    let mut sum = *a;
+    add_scaled(&mut sum, b, share);
+    sum
+}

@@ -1,0 +1,111 @@
+//! What comes of the islands' substeps, for the world to take.
+
+use super::IslandSolver;
+use crate::body::Velocity;
+use crate::collide::Manifold;
+use crate::contact::ContactMemory;
+use crate::islands::Island;
+use crate::joint::{LimitImpulse, MAX_LIMITS, Saturation};
+use crate::spatial::{Vec6, angular, linear};
+use sinew_math::{Transform, Vec3};
+
+/// A moving body after the step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SolvedBody {
+    /// In the world.
+    pub index: u32,
+    pub pose: Transform,
+    pub velocity: Velocity,
+}
+
+/// What a joint carries on.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SolvedJoint {
+    /// In the world.
+    pub index: u32,
+    pub limits: [LimitImpulse; MAX_LIMITS],
+    pub force: Vec3,
+    pub warm_impulse: Vec6,
+    pub saturated: Saturation,
+    pub mass: Vec6,
+    /// Impulses of all substeps on B, torque about its anchor.
+    pub reaction: Vec6,
+}
+
+/// What a contact carries on.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SolvedContact {
+    /// In the world.
+    pub index: u32,
+    pub manifold: Manifold,
+    pub memory: ContactMemory,
+}
+
+/// Of all islands, one after the other.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Solution {
+    pub bodies: Vec<SolvedBody>,
+    pub joints: Vec<SolvedJoint>,
+    pub contacts: Vec<SolvedContact>,
+}
+
+impl Solution {
+    /// Makes room for so many of each.
+    pub fn resize(&mut self, bodies: usize, joints: usize, contacts: usize) {
+        self.bodies.resize(bodies, SolvedBody::default());
+        self.joints.resize(joints, SolvedJoint::default());
+        self.contacts.resize(contacts, SolvedContact::default());
+    }
+
+    /// The room of all islands, to be split among them.
+    pub fn as_mut(&mut self) -> IslandSolution<'_> {
+        IslandSolution { bodies: &mut self.bodies, joints: &mut self.joints, contacts: &mut self.contacts }
+    }
+}
+
+/// Room for what comes of an island, or of several.
+pub(crate) struct IslandSolution<'a> {
+    bodies: &'a mut [SolvedBody],
+    joints: &'a mut [SolvedJoint],
+    contacts: &'a mut [SolvedContact],
+}
+
+impl<'a> IslandSolution<'a> {
+    /// Takes the room for the first island out.
+    pub fn split_off(&mut self, island: &Island<'_>) -> Self {
+        Self {
+            bodies: split_off(&mut self.bodies, island.bodies.len()),
+            joints: split_off(&mut self.joints, island.joints.len()),
+            contacts: split_off(&mut self.contacts, island.contacts.len()),
+        }
+    }
+}
+
+/// Takes the first items out of what is left.
+pub(crate) fn split_off<'a, T>(left: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    left.split_off_mut(..count).expect("there is room for each island")
+}
+
+impl IslandSolver {
+    /// Writes down what has come of the island.
+    pub fn store(&self, solution: &mut IslandSolution<'_>) {
+        for ((solved, body), v) in solution.bodies.iter_mut().zip(&self.bodies).zip(&self.velocities) {
+            let velocity = Velocity { linear: linear(v), angular: angular(v) };
+            *solved = SolvedBody { index: body.index, pose: body.pose, velocity };
+        }
+        for (solved, joint) in solution.joints.iter_mut().zip(&self.joints) {
+            *solved = SolvedJoint {
+                index: joint.index,
+                limits: joint.limits,
+                force: joint.force,
+                warm_impulse: joint.warm_impulse,
+                saturated: joint.saturated,
+                mass: joint.mass,
+                reaction: joint.reaction,
+            };
+        }
+        for (solved, rows) in solution.contacts.iter_mut().zip(&self.manifolds) {
+            *solved = SolvedContact { index: rows.contact, manifold: rows.manifold, memory: rows.memory };
+        }
+    }
+}
