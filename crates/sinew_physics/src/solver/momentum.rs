@@ -60,7 +60,9 @@ impl Momentum {
     /// After a sweep whose changes had this energy: goes on in the direction so far. What it asks too much of rows, the
     /// next sweep takes back.
     pub fn after(&mut self, rows: &mut Rows<'_>, energy: f32) {
-        let share = if energy < self.energy { energy / self.energy } else { 0.0 };
+        // Where joints hold nearly all, rounding may leave less than none.
+        let falls = energy > 0.0 && energy < self.energy;
+        let share = if falls { energy / self.energy } else { 0.0 };
         self.energy = energy;
         if share == 0.0 {
             core::mem::swap(&mut self.direction, &mut self.was);
