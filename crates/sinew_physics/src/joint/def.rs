@@ -95,8 +95,8 @@ pub enum Softness {
     },
 }
 
-/// Pulls the free directions toward a rest pose. Never tires; see [`Motor`] for one that may. A stiff one whose rest pose
-/// lies beyond a hard stop may give energy: keep it inside, or let the limits be soft.
+/// Pulls the free directions toward a rest pose. Never tires; see [`Motor`] for one that may. Its rest pose belongs inside
+/// the limits: a stop that a stiff spring has dragged a joint beyond pushes it back no faster than there is energy for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
     /// How hard.

@@ -2,9 +2,9 @@
 
 use super::sweep::Pass;
 use super::tree::{self, NONE};
-use super::{IslandSolver, advance};
+use super::{IslandSolver, SolverJoint, advance};
 use crate::joint::JointPose;
-use crate::spatial::{ZERO6, add_scaled, linear};
+use crate::spatial::{Vec6, ZERO6, add_scaled, linear};
 use sinew_math::max;
 
 /// Most rounds of position corrections in a pass, likewise with many loops, and the error that needs none, m or rad.
@@ -140,7 +140,7 @@ impl IslandSolver {
     fn predict_errors(&mut self) -> f32 {
         let h = self.h;
         let mut largest = 0.0;
-        let mut residual = |joint: &mut super::SolverJoint| {
+        let mut residual = |joint: &mut SolverJoint| {
             let pose =
                 |body: u32| advance(&self.bodies[body as usize].pose, &self.velocities[body as usize], h);
             let predicted = JointPose::new(&joint.geometry, &pose(joint.a), &pose(joint.b));
@@ -168,7 +168,7 @@ impl IslandSolver {
     /// The residuals of welds that give, as they stand, are made up for.
     fn bend_welds(&mut self) {
         let h = self.h;
-        let bend = |joint: &mut super::SolverJoint, residual: &crate::spatial::Vec6| {
+        let bend = |joint: &mut SolverJoint, residual: &Vec6| {
             joint.bent_before = joint.bent;
             if joint.rigid == 0 {
                 add_scaled(&mut joint.bent, residual, -h);

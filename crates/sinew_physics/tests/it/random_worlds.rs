@@ -34,15 +34,10 @@ fn decades(random: &mut Random, lo: f32, hi: f32) -> f32 {
 }
 
 /// Worlds of the first hundred that do not hold yet, and why. A world that holds again leaves the list.
-const KNOWN: &[(&str, &[u64])] = &[
-    ("a stiff spring that pulls beyond a hard stop gives energy", &[1, 27, 74, 97]),
-    ("a limit of no width between bodies that other joints hold gives energy", &[16]),
-    ("loops that say what others say already lose their pivots", &[47, 66]),
-    ("a net of ropes, taut and slack by turns, gives energy", &[48]),
-];
+const KNOWN: &[(&str, &[u64])] = &[("a net under a spring of kilojoules gains 1.3 % as it closes", &[27])];
 
 /// Of the worlds beyond the first hundred, so many in a thousand do not hold yet.
-const KNOWN_PER_THOUSAND: usize = 75;
+const KNOWN_PER_THOUSAND: usize = 35;
 
 type Outcome = (u64, Result<Figures, Failure>);
 
