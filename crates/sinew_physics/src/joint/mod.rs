@@ -130,7 +130,7 @@ impl Joint {
         *self = if same {
             Self {
                 limits: self.limits,
-                saturated: self.saturated,
+                saturated: self.saturation_under(new.drive.motor),
                 warm_impulse: self.warm_impulse,
                 force: self.force,
                 mass: self.mass,
@@ -193,12 +193,18 @@ impl Joint {
             || crate::spatial::angular(&self.reaction).length() > self.strength.torque
     }
 
-    /// Another kind of motor forgets which way the old one pushed with all it had.
+    /// Another motor takes over which way the old one pushed with all it had, if it is of the same kind and has caps.
     pub fn set_motor(&mut self, motor: Option<Motor>) {
+        self.saturated = self.saturation_under(motor);
+        self.drive.motor = motor;
+    }
+
+    fn saturation_under(&self, motor: Option<Motor>) -> Saturation {
         let aims = |motor: &Option<Motor>| motor.map(|m| matches!(m.gains, Gains::Velocity));
         if aims(&motor) != aims(&self.drive.motor) {
-            self.saturated = [0; DIRECTIONS];
+            return [0; DIRECTIONS];
         }
-        self.drive.motor = motor;
+        let capped = |i: usize| motor.is_some_and(|m| m.cap(i) < f32::INFINITY);
+        core::array::from_fn(|i| if capped(i) { self.saturated[i] } else { 0 })
     }
 }

@@ -97,7 +97,7 @@ fn exact_oscillator(omega2: f32, a: f32) -> (f32, f32) {
 
 impl Motor {
     /// Most force or torque in a direction.
-    fn cap(&self, direction: usize) -> f32 {
+    pub(crate) fn cap(&self, direction: usize) -> f32 {
         if direction < TWIST { self.max_force } else { self.max_torque }
     }
 

@@ -15,8 +15,8 @@ const MAX_INNER_TURN: f32 = 1.0;
 /// rounding and the give and take of resting contacts are far below.
 const ENERGY_SLACK: f32 = 1e-3;
 
-/// A joint that is open by no more than this, m or rad, may stay so for a while.
-const CLOSED: f32 = 5e-3;
+/// No velocity is as fast, m/s or rad/s.
+const NONSENSE: f32 = 1e4;
 /// A joint that a substep leaves open by this much more than it was has not been solved, m or rad.
 const TORN: f32 = 0.1;
 
@@ -103,12 +103,12 @@ impl IslandSolver {
     }
 
     /// Rows that cannot all hold (a body dragged into the floor, joints that contradict each other) may have no solution
-    /// that means anything: not finite, or one that leaves joints `torn` by so much, m or rad. Then the island moves as one
+    /// that means anything: not finite or beyond all measure, or one that leaves joints `torn` by so much, m or rad. Then the island moves as one
     /// piece for this pass, with the momentum that the forces left it: no joint opens, and no energy comes of it.
     pub(super) fn drop_nonsense(&mut self, torn: f32) {
         let moving = self.links.len();
-        let finite = self.velocities[..moving].iter().flatten().all(|x| x.is_finite());
-        if finite && torn < TORN {
+        let sane = self.velocities[..moving].iter().flatten().all(|x| x.abs() < NONSENSE);
+        if sane && torn < TORN {
             return;
         }
         let rigid = self.motion_as_one(&self.unconstrained);
@@ -200,19 +200,20 @@ impl IslandSolver {
         if square + linear <= there {
             return;
         }
-        // square s² + linear s = there
+        // square s² + linear s = there, by the form that does not cancel.
         let root = (linear * linear + 4.0 * square * there).sqrt();
-        let keep = 2.0 * there / (linear + root);
+        let keep =
+            if linear > 0.0 { 2.0 * there / (linear + root) } else { (root - linear) / (2.0 * square) };
+        let keep = min(keep, 1.0);
         for (body, v) in self.bodies.iter().zip(&mut self.velocities[..moving]) {
             let rigid = now.at(body.pose.translation);
             *v = core::array::from_fn(|k| rigid[k] + (v[k] - rigid[k]) * keep);
         }
     }
 
+    /// None is open by more than it may close in a substep.
     fn joints_are_closed(&self) -> bool {
-        let open =
-            |joint: &super::SolverJoint| joint.rows.error[..joint.rigid].iter().any(|e| e.abs() > CLOSED);
-        !self.joints.iter().any(open)
+        !self.joints.iter().any(|joint| joint.left_open[..joint.rigid].iter().any(|left| *left != 0.0))
     }
 
     /// Nothing that rows push against moves by itself.

@@ -349,6 +349,7 @@ impl IslandSolver {
     pub fn restitution(&mut self) {
         if self.manifolds.iter().any(ManifoldRows::bounces) {
             self.sweep(Pass::Restitution);
+            self.drop_nonsense(0.0);
         }
     }
 
