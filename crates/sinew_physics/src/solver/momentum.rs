@@ -40,6 +40,18 @@ pub(super) struct Rows<'a> {
 }
 
 impl Momentum {
+    /// For so many of each, also if they have no use for it: memory goes on to the next island, which may have some.
+    pub fn make_room(&mut self, bodies: usize, manifolds: usize) {
+        for state in [&mut self.was, &mut self.direction] {
+            state.manifolds.clear();
+            state.manifolds.reserve(manifolds);
+            for list in [&mut state.impulses, &mut state.velocities] {
+                list.clear();
+                list.reserve(bodies);
+            }
+        }
+    }
+
     /// Before the first sweep.
     pub fn start(&mut self) {
         self.energy = 0.0;
@@ -60,7 +72,8 @@ impl Momentum {
     /// After a sweep whose changes had this energy: goes on in the direction so far. What it asks too much of rows, the
     /// next sweep takes back.
     pub fn after(&mut self, rows: &mut Rows<'_>, energy: f32) {
-        let share = if energy < self.energy { energy / self.energy } else { 0.0 };
+        // Rounding may make an energy negative, where joints hold all that the rows push against.
+        let share = if energy > 0.0 && energy < self.energy { energy / self.energy } else { 0.0 };
         self.energy = energy;
         if share == 0.0 {
             core::mem::swap(&mut self.direction, &mut self.was);
