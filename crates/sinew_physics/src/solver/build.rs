@@ -137,7 +137,7 @@ impl IslandSolver {
         }
         s.pieces.clear();
         s.pieces.reserve(island.bodies.len());
-        self.momentum.make_room(island.bodies.len(), island.contacts.len());
+        self.conjugate.make_room(island.bodies.len(), island.contacts.len());
     }
 
     /// Spanning trees: few loops are closed exactly in one tree per thing that hangs together. Where there are too many
