@@ -97,7 +97,7 @@ impl Islands {
             self.groups.push(island, index);
         }
         for lists in [&mut self.bodies, &mut self.joints, &mut self.contacts, &mut self.groups] {
-            lists.sort(self.count);
+            lists.sort(self.count, self.parent.len());
         }
         self.taken.extend(self.groups.numbers.iter().map(|&index| TakenGroup {
             index,
@@ -206,9 +206,11 @@ impl Lists {
         self.pairs.push((island, number));
     }
 
-    /// Makes the lists of what was pushed, each in the order in which it came: a counting sort.
-    fn sort(&mut self, islands: usize) {
+    /// Makes the lists of what was pushed, each in the order in which it came: a counting sort. Makes room for the `most`
+    /// islands that there can be.
+    fn sort(&mut self, islands: usize, most: usize) {
         self.ends.clear();
+        self.ends.reserve(most);
         self.ends.resize(islands, 0);
         for &(island, _) in &self.pairs {
             self.ends[island as usize] += 1;

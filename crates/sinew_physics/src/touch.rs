@@ -67,8 +67,11 @@ pub(crate) fn touch(
     contacts: &mut [Contact],
     events: &mut Events,
 ) {
-    events.begin.clear();
-    events.end.clear();
+    for list in [&mut events.begin, &mut events.end] {
+        list.clear();
+        // All of them: how many come at once differs from hit to hit.
+        list.reserve(contacts.len());
+    }
     for contact in contacts.iter_mut() {
         let (a, b) = (contact.key.a, contact.key.b);
         if !contact.sensor {

@@ -115,7 +115,7 @@ impl IslandSolver {
     pub fn prepare(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.h = view.h;
         self.order_trees(island, view);
-        self.make_room();
+        self.make_room(island);
         self.copy_bodies(island, view);
         self.copy_joints(island, view);
         self.weigh_joints();
@@ -129,14 +129,15 @@ impl IslandSolver {
     }
 
     /// What only islands with joints need, also for one that has none: memory goes on to the next, which may have some.
-    fn make_room(&mut self) {
+    fn make_room(&mut self, island: &Island<'_>) {
         let s = &mut self.scratch;
         for list in [&mut s.residuals, &mut s.impulses, &mut s.dv, &mut self.moved, &mut self.accounted] {
             list.clear();
-            list.reserve(self.links.len());
+            list.reserve(island.bodies.len());
         }
         s.pieces.clear();
-        s.pieces.reserve(self.links.len());
+        s.pieces.reserve(island.bodies.len());
+        self.conjugate.make_room(island.bodies.len(), island.contacts.len());
     }
 
     /// Spanning trees: few loops are closed exactly in one tree per thing that hangs together. Where there are too many

@@ -21,6 +21,9 @@ const DEAD_ZONE: f32 = 0.2;
 const REFIND_TURN: f32 = 0.03;
 /// A body that turns by less than this within a substep counts as being where it was, radians.
 const RELAX_TURN: f32 = 0.15;
+/// Then points this far apart count, as a share of the smaller bounding radius: a hand between thigh and floor that spins
+/// off one corner meets the other within the substep.
+const FAR_CORNER: f32 = 0.4;
 /// Contact stiffness as a frequency, Hz, against moving and against fixed bodies, and damping ratio.
 const CONTACT_HERTZ: f32 = 30.0;
 const FIXED_HERTZ: f32 = 60.0;
@@ -273,7 +276,8 @@ impl ManifoldRows {
         let relative = linear(&velocities[self.b as usize]) - linear(&velocities[self.a as usize]);
         let reach = a.shape.bounding_radius() * turn(self.a) + b.shape.bounding_radius() * turn(self.b);
         let turning = if reach < f32::INFINITY { reach } else { 0.0 };
-        let margin = 4.0 * self.slop + relative.length() * h + turning;
+        let far_corner = FAR_CORNER * min(a.shape.bounding_radius(), b.shape.bounding_radius());
+        let margin = max(4.0 * self.slop + relative.length() * h + turning, far_corner);
         let mut manifold = Manifold::default();
         let (frame_a, frame_b) = (pose_a * a.principal_from_shape, pose_b * b.principal_from_shape);
         collide(&a.shape, &frame_a, &b.shape, &frame_b, margin, &mut manifold);

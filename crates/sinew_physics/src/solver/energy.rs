@@ -111,7 +111,7 @@ impl IslandSolver {
         if sane && torn < TORN {
             return;
         }
-        let rigid = self.motion_as_one(&self.unconstrained);
+        let rigid = self.meant_as_one();
         for (body, v) in self.bodies.iter().zip(&mut self.velocities[..moving]) {
             *v = rigid.at(body.pose.translation);
         }
@@ -121,11 +121,31 @@ impl IslandSolver {
     /// Of the island as if it were one piece with the momentum of the given velocities: at rest if it touches or hangs on a
     /// fixed body.
     fn motion_as_one(&self, velocities: &[Vec6]) -> RigidMotion {
-        if self.bodies.len() == self.links.len() {
-            RigidMotion::of(&self.bodies, velocities)
-        } else {
+        if self.is_held() { RigidMotion::default() } else { RigidMotion::of(&self.bodies, velocities) }
+    }
+
+    /// Likewise with the momentum that the forces left it, at the present poses.
+    fn meant_as_one(&self) -> RigidMotion {
+        if self.is_held() {
             RigidMotion::default()
+        } else {
+            RigidMotion::with_momentum(&self.bodies, &self.momentum_start)
         }
+    }
+
+    /// Something fixed is in reach.
+    fn is_held(&self) -> bool {
+        self.bodies.len() > self.links.len()
+    }
+
+    /// Of the moving bodies as the forces leave them.
+    pub(super) fn momentum_of_start(&self) -> Momentum {
+        let mut momentum = Momentum::default();
+        let center = center_of_mass(&self.bodies[..self.links.len()]).1;
+        for (body, v) in self.bodies.iter().zip(&self.velocities[..self.links.len()]) {
+            momentum.add(body, center, linear(v), body.momentum);
+        }
+        momentum
     }
 
     /// Rigid joints and stops cannot give energy, springs and motors no more than their work. What rounding, redundant rows
@@ -151,8 +171,7 @@ impl IslandSolver {
             return;
         }
         // Whatever went wrong inside the island, its momentum is what the forces left it.
-        let (now, meant) =
-            (self.motion_as_one(&self.velocities[..moving]), self.motion_as_one(&self.unconstrained));
+        let (now, meant) = (self.motion_as_one(&self.velocities[..moving]), self.meant_as_one());
         let s = &mut self.scratch;
         s.dv.clear();
         s.before.clear();
@@ -177,7 +196,7 @@ impl IslandSolver {
             return;
         }
         let (square, mut linear) = self.resistance_of_springs();
-        let held = self.bodies.len() > self.links.len() && self.manifolds.is_empty();
+        let held = self.is_held() && self.manifolds.is_empty();
         let mut there = self.kinetic_start;
         if held {
             linear -= self.work_of_forces();
@@ -259,28 +278,52 @@ struct RigidMotion {
 impl RigidMotion {
     /// With the momentum and angular momentum that the bodies have.
     fn of(bodies: &[SolverBody], velocities: &[Vec6]) -> Self {
-        let (mut mass, mut center, mut momentum) = (0.0, Vec3::ZERO, Vec3::ZERO);
+        let center = center_of_mass(bodies).1;
+        let mut momentum = Momentum::default();
         for (body, v) in bodies.iter().zip(velocities) {
-            mass += body.mass;
-            center += body.pose.translation * body.mass;
-            momentum += linear(v) * body.mass;
+            momentum.add(body, center, linear(v), body.angular_momentum(angular(v)));
         }
-        center /= mass;
+        Self::with_momentum(bodies, &momentum)
+    }
+
+    fn with_momentum(bodies: &[SolverBody], momentum: &Momentum) -> Self {
+        let (mass, center) = center_of_mass(bodies);
         let mut inertia = Sym3::ZERO;
-        let mut spin = Vec3::ZERO;
-        for (body, v) in bodies.iter().zip(velocities) {
+        for body in bodies {
             let arm = body.pose.translation - center;
-            let own = Sym3::from_rotated_diagonal(body.pose.rotation, body.inertia);
             let carried = Sym3::from_diagonal(Vec3::splat(arm.length_squared())) - Sym3::outer(arm);
-            inertia += own + carried * body.mass;
-            spin += own * angular(v) + arm.cross(linear(v) * body.mass);
+            inertia += Sym3::from_rotated_diagonal(body.pose.rotation, body.inertia) + carried * body.mass;
         }
-        Self { center, linear: momentum / mass, angular: inertia.inverse() * spin }
+        Self { center, linear: momentum.linear / mass, angular: inertia.inverse() * momentum.angular }
     }
 
     fn at(&self, point: Vec3) -> Vec6 {
         join(self.linear + self.angular.cross(point - self.center), self.angular)
     }
+}
+
+/// Of several bodies, N·s and N·m·s; angular momentum about their centre of mass.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Momentum {
+    linear: Vec3,
+    angular: Vec3,
+}
+
+impl Momentum {
+    fn add(&mut self, body: &SolverBody, center: Vec3, velocity: Vec3, spin: Vec3) {
+        self.linear += velocity * body.mass;
+        self.angular += spin + (body.pose.translation - center).cross(velocity * body.mass);
+    }
+}
+
+/// Total mass, and where its centre is.
+fn center_of_mass(bodies: &[SolverBody]) -> (f32, Vec3) {
+    let (mut mass, mut center) = (0.0, Vec3::ZERO);
+    for body in bodies {
+        mass += body.mass;
+        center += body.pose.translation * body.mass;
+    }
+    (mass, center / mass)
 }
 
 fn difference(a: &Vec6, b: &Vec6) -> Vec6 {

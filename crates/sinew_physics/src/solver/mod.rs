@@ -5,6 +5,7 @@
 
 mod build;
 mod composite;
+mod conjugate;
 mod contact_rows;
 mod disk;
 mod drives;
@@ -12,7 +13,6 @@ mod energy;
 pub(crate) mod lcp;
 mod limit_rows;
 mod loops;
-mod momentum;
 mod reaction;
 mod response;
 mod solution;
@@ -25,11 +25,12 @@ use crate::joint::{
 };
 use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, angular, dot, join, linear};
 pub(crate) use build::View;
+use conjugate::Conjugate;
 use contact_rows::ManifoldRows;
 use drives::SoftRow;
+use energy::Momentum;
 use limit_rows::LimitRow;
 use loops::Loops;
-use momentum::Momentum;
 use response::Response;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew};
 pub(crate) use solution::{IslandSolution, Solution, SolvedBody, split_off};
@@ -180,7 +181,7 @@ pub(crate) struct IslandSolver {
     accounted: Vec<Vec6>,
     scratch: Scratch,
     unrest: Unrest,
-    momentum: Momentum,
+    conjugate: Conjugate,
     /// Energy that the changes of the sweep in progress have one by one, J.
     change_energy: f32,
     /// Largest change of a velocity component in the sweep in progress.
@@ -188,6 +189,8 @@ pub(crate) struct IslandSolver {
     /// Kinetic energy before and after the forces acted in this substep, J.
     kinetic_before: f32,
     kinetic_start: f32,
+    /// Momentum after the forces acted.
+    momentum_start: Momentum,
     /// Work in this substep of the forces, and of springs and motors, J.
     force_work: f32,
     drive_work: f32,
@@ -237,6 +240,7 @@ impl IslandSolver {
             *v = join(limit_length(lin, MAX_SPEED), gyroscopic(body, ang, 0.5 * h));
         }
         self.kinetic_start = self.kinetic_of_momenta();
+        self.momentum_start = self.momentum_of_start();
         self.drive_work = 0.0;
         self.pushed_from_outside = false;
         self.unconstrained.clear();

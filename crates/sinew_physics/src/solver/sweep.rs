@@ -2,8 +2,8 @@
 //! kept up to date, through the articulated response; then the trees are solved once with all impulses, so that the
 //! joints hold exactly.
 
+use super::conjugate::{Conjugate, Rows};
 use super::contact_rows::{ManifoldRows, Push};
-use super::momentum::{Momentum, Rows};
 use super::tree::Link;
 use super::{IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED, WEIGHINGS};
 use crate::spatial::{ZERO6, add_scaled, linear};
@@ -97,7 +97,7 @@ impl IslandSolver {
             (..) => SWEEPS_FREE,
         };
         let converges = self.is_articulated() && pass != Pass::Restitution;
-        self.momentum.start();
+        self.conjugate.start();
         for done in 1..=sweeps {
             self.largest_change = 0.0;
             self.change_energy = 0.0;
@@ -105,8 +105,8 @@ impl IslandSolver {
                 self.manifolds.iter_mut().for_each(ManifoldRows::weigh);
             }
             if converges {
-                let (momentum, rows) = self.rows_with_momentum();
-                momentum.before(&rows);
+                let (conjugate, rows) = self.rows_to_conjugate();
+                conjugate.before(&rows);
             }
             match pass {
                 Pass::Solve | Pass::Relax => self.visit_contacts(pass),
@@ -118,14 +118,14 @@ impl IslandSolver {
             }
             if converges {
                 let energy = self.change_energy;
-                let (momentum, mut rows) = self.rows_with_momentum();
-                momentum.after(&mut rows, energy);
+                let (conjugate, mut rows) = self.rows_to_conjugate();
+                conjugate.after(&mut rows, energy);
             }
         }
         self.finish_sweep(pass);
     }
 
-    fn rows_with_momentum(&mut self) -> (&mut Momentum, Rows<'_>) {
+    fn rows_to_conjugate(&mut self) -> (&mut Conjugate, Rows<'_>) {
         let moving = self.links.len();
         let rows = Rows {
             manifolds: &mut self.manifolds,
@@ -135,7 +135,7 @@ impl IslandSolver {
             links: &self.links,
             unrest: &mut self.unrest,
         };
-        (&mut self.momentum, rows)
+        (&mut self.conjugate, rows)
     }
 
     fn visit_contacts(&mut self, pass: Pass) {

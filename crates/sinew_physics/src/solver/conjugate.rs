@@ -1,4 +1,4 @@
-//! Momentum for the sweeps: each sweep's change of all impulses is a step downhill, and steps downhill are made conjugate
+//! Faster sweeps: each sweep's change of all impulses is a step downhill, and steps downhill are made conjugate
 //! (nonsmooth nonlinear conjugate gradients: Silcowitz, Niebe and Erleben 2010). What plain sweeps approach by an
 //! eightieth at a time, a hand between the floor and the chest that lies on it, is there in a few.
 
@@ -12,7 +12,7 @@ use sinew_math::max;
 
 /// Where a pass stands. Lists are empty until its second sweep.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Momentum {
+pub(super) struct Conjugate {
     /// Before the sweep, then its change, then the direction to go on in.
     was: State,
     direction: State,
@@ -39,7 +39,19 @@ pub(super) struct Rows<'a> {
     pub unrest: &'a mut Unrest,
 }
 
-impl Momentum {
+impl Conjugate {
+    /// For so many of each, also if they have no use for it: memory goes on to the next island, which may have some.
+    pub fn make_room(&mut self, bodies: usize, manifolds: usize) {
+        for state in [&mut self.was, &mut self.direction] {
+            state.manifolds.clear();
+            state.manifolds.reserve(manifolds);
+            for list in [&mut state.impulses, &mut state.velocities] {
+                list.clear();
+                list.reserve(bodies);
+            }
+        }
+    }
+
     /// Before the first sweep.
     pub fn start(&mut self) {
         self.energy = 0.0;
@@ -60,9 +72,8 @@ impl Momentum {
     /// After a sweep whose changes had this energy: goes on in the direction so far. What it asks too much of rows, the
     /// next sweep takes back.
     pub fn after(&mut self, rows: &mut Rows<'_>, energy: f32) {
-        // Where joints hold nearly all, rounding may leave less than none.
-        let falls = energy > 0.0 && energy < self.energy;
-        let share = if falls { energy / self.energy } else { 0.0 };
+        // Rounding may make an energy negative, where joints hold all that the rows push against.
+        let share = if energy > 0.0 && energy < self.energy { energy / self.energy } else { 0.0 };
         self.energy = energy;
         if share == 0.0 {
             core::mem::swap(&mut self.direction, &mut self.was);
