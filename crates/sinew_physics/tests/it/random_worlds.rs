@@ -34,7 +34,8 @@ fn decades(random: &mut Random, lo: f32, hi: f32) -> f32 {
 }
 
 /// Worlds of the first hundred that do not hold yet, and why. A world that holds again leaves the list.
-const KNOWN: &[(&str, &[u64])] = &[("a net under a spring of kilojoules gains some per cent as it closes", &[27])];
+const KNOWN: &[(&str, &[u64])] =
+    &[("a net under a spring of kilojoules gains some per cent as it closes", &[27])];
 
 /// Of the worlds beyond the first hundred, so many in a thousand do not hold yet.
 const KNOWN_PER_THOUSAND: usize = 40;
