@@ -97,7 +97,8 @@ impl IslandSolver {
     }
 
     /// Looks where the velocities lead: a limit row is linear, and a limb that turns by much of a radian within the
-    /// substep may end up far beyond, or leave a cone on a side that its row does not face. For each such limit comes
+    /// substep may end up far beyond, leave a cone on a side that its row does not face, or whirl around outside of it as
+    /// fast as the row would bring it back. For each such limit comes
     /// one more row, linearised at the pose that the velocities lead to; the sweeps must then run again.
     pub(super) fn tighten_limits(&mut self) -> bool {
         let known = self.limits.len();
@@ -112,7 +113,7 @@ impl IslandSolver {
             };
             let predicted = JointPose::new(&joint.geometry, &pose(joint.a), &pose(joint.b));
             let Some(stop) = stops(&joint.geometry.kind, &predicted)[row.stop] else { continue };
-            let beyond = min(row.room, 0.0) - stop.room;
+            let beyond = min(row.room + LIMIT_PUSH * self.h, 0.0) - stop.room;
             if beyond < LIMIT_SLACK {
                 continue;
             }
