@@ -15,6 +15,8 @@ const PUSH_SPEED: f32 = 3.0;
 const BOUNCE_SPEED: f32 = 1.0;
 /// An impulse that grew by more than this factor since the substep before is an impact.
 pub(super) const IMPACT_JUMP: f32 = 2.0;
+/// Slops of overlap that are deep.
+const DEEP: f32 = 2.0;
 /// Share of the slop that is left overlapping.
 const DEAD_ZONE: f32 = 0.2;
 /// A body that turns by more than this within a substep has its contacts looked for anew, radians.
@@ -403,6 +405,11 @@ impl ManifoldRows {
             most = max(most, more.normal[i].abs() * self.k[i][i]);
         }
         most * share
+    }
+
+    /// Overlaps by much more than contacts at rest do.
+    pub fn is_deep(&self) -> bool {
+        self.separation[..self.count].iter().any(|s| *s < -DEEP * self.slop)
     }
 
     /// What all rows put on the bodies in this substep.

@@ -191,7 +191,8 @@ pub(crate) struct IslandSolver {
     kinetic_start: f32,
     /// Momentum after the forces acted.
     momentum_start: Momentum,
-    /// Work in this substep of springs and motors, J.
+    /// Work in this substep of the forces, and of springs and motors, J.
+    force_work: f32,
     drive_work: f32,
     /// Particles pushed in this substep.
     pushed_from_outside: bool,
@@ -299,6 +300,7 @@ impl IslandSolver {
     pub fn integrate_position(&mut self) {
         self.store_joint_forces();
         self.add_solve_reactions();
+        self.force_work = self.work_of_forces();
         for (i, (body, v)) in self.bodies.iter_mut().zip(&mut self.velocities).enumerate() {
             let turned = self.unconstrained.get(i).map(|before| {
                 // What impulses gave. Geometric stiffness is no inertia of the body.
