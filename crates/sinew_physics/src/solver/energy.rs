@@ -104,8 +104,9 @@ impl IslandSolver {
     }
 
     /// Rows that cannot all hold (a body dragged into the floor, joints that contradict each other) may have no solution
-    /// that means anything: not finite or beyond all measure, or one that leaves joints `torn` by so much, m or rad. Then the island moves as one
-    /// piece for this pass, with the momentum that the forces left it: no joint opens, and no energy comes of it.
+    /// that means anything: not finite or beyond all measure, or one that leaves joints `torn` by so much, m or rad. Then the
+    /// island moves as one piece for this pass, with the momentum that the forces left it: no joint opens, and no energy comes
+    /// of it.
     pub(super) fn drop_nonsense(&mut self, torn: f32) {
         let moving = self.links.len();
         let sane = self.velocities[..moving].iter().flatten().all(|x| x.abs() < NONSENSE);
