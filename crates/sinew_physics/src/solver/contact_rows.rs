@@ -15,17 +15,17 @@ const PUSH_SPEED: f32 = 3.0;
 const BOUNCE_SPEED: f32 = 1.0;
 /// An impulse that grew by more than this factor since the substep before is an impact.
 pub(super) const IMPACT_JUMP: f32 = 2.0;
-/// Slops of overlap that are deep.
+/// Overlap beyond this many slops is deep.
 const DEEP: f32 = 2.0;
 /// Share of the slop that is left overlapping.
 const DEAD_ZONE: f32 = 0.2;
 /// A body that turns by more than this within a substep has its contacts looked for anew, radians.
 const REFIND_TURN: f32 = 0.03;
-/// A body that turns by less than this within a substep counts as being where it was, radians.
-const RELAX_TURN: f32 = 0.15;
 /// Then points this far apart count, as a share of the smaller bounding radius: a hand between thigh and floor that spins
 /// off one corner meets the other within the substep.
 const FAR_CORNER: f32 = 0.4;
+/// A body that turns by less than this within a substep counts as being where it was, radians.
+const RELAX_TURN: f32 = 0.15;
 /// Contact stiffness as a frequency, Hz, against moving and against fixed bodies, and damping ratio.
 const CONTACT_HERTZ: f32 = 30.0;
 const FIXED_HERTZ: f32 = 60.0;
@@ -443,7 +443,7 @@ impl ManifoldRows {
 
     /// Takes the normal impulses as they are for the load of friction.
     pub fn weigh(&mut self) {
-        self.load = self.impulse[..self.count].iter().fold(0.0, |sum, p| sum + p);
+        self.load = self.impulse[..self.count].iter().fold(0.0, |sum, p| sum + max(*p, 0.0));
     }
 
     fn add(&self, push: &mut Push, row: &Row, impulse: f32) {

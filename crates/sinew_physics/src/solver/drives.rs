@@ -246,9 +246,6 @@ impl SolverJoint {
 
     /// Position errors of the rigid rows at other poses of the bodies, but for what this substep leaves open.
     pub(super) fn rigid_error(&self, pose: &crate::joint::JointPose) -> Vec6 {
-        if self.rigid == 0 {
-            return ZERO6;
-        }
         let mut error = locked_error(&self.geometry, pose);
         for row in 0..self.rigid {
             error[row] -= self.left_open[row];

@@ -44,6 +44,7 @@ impl IslandSolver {
         }
         for joint in &mut self.joints {
             joint.impulse = ZERO6;
+            joint.bent = ZERO6;
         }
         for row in &mut self.limits {
             row.impulse = 0.0;
@@ -207,7 +208,7 @@ impl IslandSolver {
             there = self.kinetic_before;
         }
         let slack = ENERGY_SLACK * max(there, self.mass());
-        if square + linear <= slack || !(self.stops_push_back() || self.joints_are_closed()) {
+        if square + linear <= slack || !(self.stops_push_back() || self.joints_close_in_time()) {
             return;
         }
         let moving = self.links.len();
@@ -234,8 +235,8 @@ impl IslandSolver {
         }
     }
 
-    /// None is open by more than it may close in a substep.
-    fn joints_are_closed(&self) -> bool {
+    /// No joint is left open by what it may not close in this substep.
+    fn joints_close_in_time(&self) -> bool {
         !self.joints.iter().any(|joint| joint.left_open[..joint.rigid].iter().any(|left| *left != 0.0))
     }
 

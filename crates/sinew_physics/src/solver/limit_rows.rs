@@ -46,7 +46,7 @@ pub(super) struct LimitRow {
     row: Row,
     /// Response of the row to its own impulse.
     effective: f32,
-    /// Of this substep, ≥ 0.
+    /// Of this substep: ≥ 0 after a visit, less between sweeps by what a conjugate step asked too much.
     pub impulse: f32,
 }
 

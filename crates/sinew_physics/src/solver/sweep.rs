@@ -147,11 +147,9 @@ impl IslandSolver {
             if pass == Pass::Relax {
                 let push = self.manifolds[i].visit_friction(&self.velocities);
                 self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
-            }
-            if pass == Pass::Relax
-                && let Some(push) = self.manifolds[i].visit_rolling(&self.velocities)
-            {
-                self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
+                if let Some(push) = self.manifolds[i].visit_rolling(&self.velocities) {
+                    self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
+                }
             }
             let push = self.manifolds[i].visit_normal(&self.velocities, pass == Pass::Solve, self.h);
             self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
