@@ -37,8 +37,9 @@ fn decades(random: &mut Random, lo: f32, hi: f32) -> f32 {
 const KNOWN: &[(&str, &[u64])] =
     &[("a net under a spring of kilojoules gains some per cent as it closes", &[27])];
 
-/// Of the worlds beyond the first hundred, so many in a thousand do not hold yet.
-const KNOWN_PER_THOUSAND: usize = 40;
+/// Of the worlds beyond the first hundred, so many in a thousand do not hold yet: 279 of 9,900, none with a panic or another
+/// future.
+const KNOWN_PER_THOUSAND: usize = 28;
 
 type Outcome = (u64, Result<Figures, Failure>);
 
