@@ -1,6 +1,6 @@
 //! Faster sweeps: each sweep's change of all impulses is a step downhill, and steps downhill are made conjugate
-//! (nonsmooth nonlinear conjugate gradients: Silcowitz, Niebe and Erleben 2010). For a hand between the floor and the chest that lies on
-//! it, 12 sweeps do what took 30 (ADR 0011).
+//! (nonsmooth nonlinear conjugate gradients: Silcowitz, Niebe and Erleben 2010). For a hand between the floor and the
+//! chest that lies on it, 12 sweeps do what took 30 (ADR 0011).
 
 use super::SWEEP_TOLERANCE;
 use super::contact_rows::{Given, ManifoldRows};

@@ -45,13 +45,13 @@ const MAX_SPEED: f32 = 4000.0;
 /// needs them; most passes end sooner, once a sweep changes no velocity by more than the tolerance (m/s or rad/s).
 const SWEEPS_JOINTED: usize = 24;
 const SWEEP_TOLERANCE: f32 = 2e-3;
-/// Sweeps of `relax` before which friction learns its loads anew: the impulses of `solve` first, then those that really
-/// press. From then on loads stay, or friction and normals may chase each other for ever.
-const WEIGHINGS: usize = 2;
 /// Likewise in one without: one with bias; two in `relax`, since friction of the first knows only the soft impulses of
 /// `solve` (1.5 % too little).
 const SWEEPS_FREE: usize = 1;
 const SWEEPS_FREE_RELAX: usize = 2;
+/// Sweeps of `relax` before which friction learns its loads anew: the impulses of `solve` first, then those that really
+/// press. From then on loads stay, or friction and normals may chase each other for ever.
+const WEIGHINGS: usize = 2;
 /// Rounds in which limits that the substep would pass by far are tightened.
 const LIMIT_CORRECTIONS: usize = 4;
 
