@@ -96,7 +96,7 @@ impl IslandSolver {
             (_, Pass::Relax) => SWEEPS_FREE_RELAX,
             (..) => SWEEPS_FREE,
         };
-        let converges = self.is_articulated() && pass != Pass::Restitution;
+        let conjugates = self.is_articulated() && pass != Pass::Restitution;
         self.conjugate.start();
         for done in 1..=sweeps {
             self.largest_change = 0.0;
@@ -104,7 +104,7 @@ impl IslandSolver {
             if pass == Pass::Relax && done <= WEIGHINGS {
                 self.manifolds.iter_mut().for_each(ManifoldRows::weigh);
             }
-            if converges {
+            if conjugates {
                 let (conjugate, rows) = self.rows_to_conjugate();
                 conjugate.before(&rows);
             }
@@ -116,7 +116,7 @@ impl IslandSolver {
             if done == sweeps || (done > 1 && self.largest_change < SWEEP_TOLERANCE) {
                 break;
             }
-            if converges {
+            if conjugates {
                 let energy = self.change_energy;
                 let (conjugate, mut rows) = self.rows_to_conjugate();
                 conjugate.after(&mut rows, energy);
