@@ -34,3 +34,7 @@ id! {
     /// A particle group of a [`World`](crate::World).
     GroupId
 }
+id! {
+    /// A field of a [`World`](crate::World).
+    FieldId
+}

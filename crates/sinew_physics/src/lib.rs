@@ -4,6 +4,8 @@
 #![deny(unsafe_code)] // `slices` alone allows it
 
 pub mod def;
+pub mod field;
+mod force;
 pub mod stage;
 pub mod step;
 mod world;
@@ -41,7 +43,12 @@ mod spatial;
 pub use body::Velocity;
 pub use def::{BodyDef, BodyKind, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
-pub use id::{BodyId, GroupId, JointId};
+pub use field::{
+    Buoyancy, Drag, Explosion, Fade, FieldDef, FieldKind, FieldPoint, Gusts, MutualGravity, Occlusion,
+    PointGravity, Region, UniformGravity, Wind,
+};
+pub use force::{ForceDef, ForceFrame, ForceId, Wrench};
+pub use id::{BodyId, FieldId, GroupId, JointId};
 pub use joint::Reaction;
 pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,

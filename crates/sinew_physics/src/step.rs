@@ -1,5 +1,6 @@
 //! One step, in order. `docs/step.md` has a heading for each stage.
 
+use crate::field::Fields;
 use crate::runner::TaskRunner;
 use crate::solver::View;
 use crate::stage::{Profiler, Stage, zone};
@@ -21,14 +22,15 @@ pub(crate) struct StepContext<'a> {
 pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
     let World { def, bodies, joints, contacts, groups, events, broad, islands, parted, sleepers, .. } = world;
+    let fields = Fields::new(&world.fields, &world.functions, def, world.steps);
 
     stage(Stage::Pairs, &mut || broad.update(bodies, parted.of(joints), contacts, context.dt));
     stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
-    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, events));
-    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, context.dt));
+    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, &fields, events));
+    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, &fields, context.dt));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
 
-    let view = View { bodies, joints, contacts, gravity: def.gravity, h: context.h };
+    let view = View { bodies, joints, contacts, gravity: def.gravity, fields, h: context.h };
     islands.run(context.runner, |task| substeps(task, &view, context));
 
     stage(Stage::Store, &mut || {
@@ -37,7 +39,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     });
     stage(Stage::Finalize, &mut || finalize::finalize(&islands.solution().bodies, bodies, events, context));
     stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands));
-    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, sleepers, def.sleeping, context.dt));
+    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, &fields, sleepers, def.sleeping, context.dt));
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, events));
 }
 
@@ -50,7 +52,7 @@ fn substeps(task: &mut Task<'_>, view: &View<'_>, context: &StepContext<'_>) {
         surroundings.make_room(island);
     });
     for _ in 0..context.substeps {
-        stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity());
+        stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity(view, groups));
         stage(Stage::WarmStart, &mut || solver.warm_start());
         stage(Stage::Solve, &mut || solver.solve());
         stage(Stage::IntegratePosition, &mut || solver.integrate_position());

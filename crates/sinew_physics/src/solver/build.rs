@@ -8,6 +8,7 @@ use super::{IslandSolver, SolverBody, SolverJoint};
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, combine, slop};
+use crate::field::Fields;
 use crate::islands::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
 use crate::spatial::{ZERO6, join};
@@ -22,6 +23,7 @@ pub(crate) struct View<'a> {
     pub joints: &'a Arena<Joint>,
     pub contacts: &'a [Contact],
     pub gravity: Vec3,
+    pub fields: Fields<'a>,
     /// Substep, seconds.
     pub h: f32,
 }
@@ -117,6 +119,7 @@ impl IslandSolver {
         self.order_trees(island, view);
         self.make_room(island);
         self.copy_bodies(island, view);
+        self.keep_applied(view);
         self.copy_joints(island, view);
         self.weigh_joints();
         self.refresh_joints();
