@@ -99,8 +99,8 @@ impl BodyForces {
             let frame = if r.bool()? { ForceFrame::Body } else { ForceFrame::World };
             forces.list.push((number, ForceDef { force, torque, point, frame }));
         }
-        let numbers = forces.list.iter().map(|&(number, _)| number);
-        if !forces.list.is_sorted_by(|a, b| a.0 < b.0) || numbers.last().is_some_and(|n| n >= forces.next) {
+        let known = forces.list.last().is_none_or(|&(number, _)| number < forces.next);
+        if !(known && forces.list.is_sorted_by(|a, b| a.0 < b.0)) {
             return Err(r.error("lasting forces are out of order"));
         }
         Ok(forces)

@@ -140,7 +140,7 @@ fn box_below(half: Vec3, plane: &WaterPlane) -> Submerged {
             corner
         })
     });
-    submerged_hull(faces.iter().map(|face| face.as_slice()), plane)
+    submerged_hull(faces.iter().map(<[Vec3; 4]>::as_slice), plane)
 }
 
 /// Part with `n·x ≤ s` of a capsule of radius 1 along y: its cylinder and its two half balls.

@@ -200,7 +200,7 @@ fn a_plate_aslant_is_lifted() {
     let rotation = Rotation::from_axis_angle(Vec3::Z, -30f32.to_radians());
     let def = BodyDef { rotation, ..box_body(Vec3::new(1e-6, 0.5, 0.5), Vec3::ZERO) };
     let Wrench { force, torque } = blown(&def, wind);
-    let (cos, sin) = (30f32.to_radians().cos(), 30f32.to_radians().sin());
+    let (sin, cos) = sinew_math::trig::sin_cos(30f32.to_radians());
     let pressure = 0.5 * 1.2 * 100.0;
     close(force.x, pressure * cos, 1e-4, "drag");
     close(force.y, -pressure * 0.8 * cos * sin, 1e-4, "lift");
