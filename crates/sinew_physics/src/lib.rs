@@ -20,9 +20,9 @@ mod solver;
 mod tasks;
 mod touch;
 
-pub mod aabb;
 mod arena;
 mod body;
+pub mod boxes;
 mod contact;
 mod distance;
 mod draw;
@@ -39,6 +39,7 @@ mod snapshot;
 mod spatial;
 
 pub use body::Velocity;
+pub use boxes::{Aabb, Obb};
 pub use def::{BodyDef, BodyKind, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
 pub use id::{BodyId, GroupId, JointId};
