@@ -22,9 +22,9 @@ mod solver;
 mod tasks;
 mod touch;
 
-pub mod aabb;
 mod arena;
 mod body;
+pub mod boxes;
 mod contact;
 mod distance;
 mod draw;
@@ -41,6 +41,7 @@ mod snapshot;
 mod spatial;
 
 pub use body::Velocity;
+pub use boxes::{Aabb, Obb};
 pub use def::{BodyDef, BodyKind, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
 pub use field::{

@@ -21,7 +21,7 @@ mod snapshot;
 pub use contact::{BodyImpulse, Obstacle, ObstacleBody};
 pub use def::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, RopeDef, SpringDef};
 
-use crate::aabb::Aabb;
+use crate::boxes::Aabb;
 use crate::shape::{Filter, Material};
 use contact::{Grip, Touch};
 use forest::{Forest, Freedom, System};
@@ -181,7 +181,7 @@ impl ParticleGroup {
         let mut bounds = Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
         for i in 0..self.positions.len() {
             for center in [self.positions[i], self.previous[i]] {
-                bounds = bounds.merge(&Aabb::around(center, Vec3::splat(self.radii[i])));
+                bounds = bounds.merge(&Aabb::reaching(center, Vec3::splat(self.radii[i])));
             }
         }
         bounds

@@ -2,6 +2,7 @@
 
 mod allocations;
 mod bounce;
+mod boxes;
 mod build;
 mod closed_forms;
 mod collide;
