@@ -12,6 +12,9 @@ pub struct WorldDef {
     pub step_nanoseconds: u64,
     /// Substeps per step, at least 1. Default 4.
     pub substeps: u32,
+    /// Most steps that one [`World::update`](crate::World::update) takes, at least 1: a host that was held up, or steps that
+    /// take longer than they last, must not end in ever longer frames. Default 15, a quarter of a second of default steps.
+    pub catch_up_steps: u32,
     /// Bodies may fall asleep. Default yes.
     pub sleeping: Sleeping,
 }
@@ -31,6 +34,7 @@ impl Default for WorldDef {
             gravity: Vec3::new(0.0, -9.81, 0.0),
             step_nanoseconds: 16_666_667,
             substeps: 4,
+            catch_up_steps: 15,
             sleeping: Sleeping::On,
         }
     }

@@ -34,3 +34,7 @@ id! {
     /// A particle group of a [`World`](crate::World).
     GroupId
 }
+id! {
+    /// An object of the user's own kind in a [`World`](crate::World).
+    ObjectId
+}

@@ -19,6 +19,7 @@ mod sleep;
 mod solver;
 mod tasks;
 mod touch;
+mod update;
 
 pub mod aabb;
 mod arena;
@@ -29,6 +30,7 @@ mod draw;
 pub mod id;
 pub mod joint;
 mod mass;
+pub mod object;
 pub mod particles;
 mod query;
 pub mod ray;
@@ -41,14 +43,16 @@ mod spatial;
 pub use body::Velocity;
 pub use def::{BodyDef, BodyKind, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
-pub use id::{BodyId, GroupId, JointId};
+pub use id::{BodyId, GroupId, JointId, ObjectId};
 pub use joint::Reaction;
 pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
     Spring, Strength,
 };
+pub use object::{Corrections, Forces, PhysicsObject, Substep};
 pub use query::{BodyHit, Energy, Momentum};
 pub use runner::{Serial, TaskRunner, Threads};
 pub use shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
 pub use touch::Events;
+pub use update::Update;
 pub use world::World;

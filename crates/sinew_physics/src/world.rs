@@ -7,6 +7,7 @@ use crate::def::{BodyDef, BodyKind, WorldDef};
 use crate::id::{BodyId, GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
+use crate::object::Objects;
 use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
 use crate::particles::{AttachmentTarget, GroupDef, ParticleGroup};
@@ -15,7 +16,7 @@ use crate::shape::MassProperties;
 use crate::stage::{NoProfiler, Profiler};
 use crate::step::{StepContext, step};
 use crate::touch::{Events, wake};
-use sinew_math::{Sym3, Transform, Vec3};
+use sinew_math::{Transform, Vec3};
 
 /// Bodies and joints, stepped at a fixed rate.
 ///
@@ -28,6 +29,7 @@ pub struct World {
     pub(crate) joints: Arena<Joint>,
     pub(crate) contacts: Vec<Contact>,
     pub(crate) groups: Arena<ParticleGroup>,
+    pub(crate) objects: Objects,
     pub(crate) parted: PartedPairs,
     pub(crate) events: Events,
     pub(crate) broad: BroadPhase,
@@ -44,9 +46,10 @@ impl World {
     /// An empty world.
     ///
     /// # Panics
-    /// If the step or the number of substeps is 0, or gravity is not finite.
+    /// If the step, the number of substeps or that of steps to catch up is 0, or gravity is not finite.
     pub fn new(def: WorldDef) -> Self {
         assert!(def.step_nanoseconds > 0 && def.substeps > 0, "a step takes time");
+        assert!(def.catch_up_steps > 0, "an update may take a step");
         assert!(def.gravity.is_finite(), "gravity is finite");
         Self {
             def,
@@ -54,6 +57,7 @@ impl World {
             joints: Arena::default(),
             contacts: Vec::new(),
             groups: Arena::default(),
+            objects: Objects::default(),
             parted: PartedPairs::default(),
             events: Events::default(),
             broad: BroadPhase::default(),
@@ -151,21 +155,10 @@ impl World {
     /// One step with the host's threads and stage times. The result does not depend on either.
     pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
         let (dt, substeps) = (self.def.dt(), self.def.substeps);
-        let context = StepContext { dt, h: dt / substeps as f32, substeps, runner, profiler };
+        let h = dt / substeps as f32;
+        let context = StepContext { dt, h, substeps, time: self.time(), runner, profiler };
         step(self, &context);
         self.steps += 1;
-    }
-
-    /// Runs the whole steps that `nanoseconds` more of time hold; gives the rest as a share of a step, 0..1, for
-    /// [`interpolated`](Self::interpolated). Time is counted in whole nanoseconds, so the state after step k is the same
-    /// at any frame rate.
-    pub fn update(&mut self, nanoseconds: u64) -> f32 {
-        self.pending_nanoseconds += nanoseconds;
-        while self.pending_nanoseconds >= self.def.step_nanoseconds {
-            self.pending_nanoseconds -= self.def.step_nanoseconds;
-            self.step();
-        }
-        self.pending_nanoseconds as f32 / self.def.step_nanoseconds as f32
     }
 
     /// Steps taken.
@@ -281,13 +274,7 @@ impl World {
 
     /// Mass (0 unless dynamic), centre and inertia in the body's frame.
     pub fn mass(&self, id: BodyId) -> MassProperties {
-        let body = self.expect(id);
-        let body_from_principal = body.principal_from_body.inverse();
-        MassProperties {
-            mass: body.mass,
-            center: body_from_principal.translation,
-            inertia: Sym3::from_rotated_diagonal(body_from_principal.rotation, body.inertia),
-        }
+        self.expect(id).mass_properties()
     }
 
     /// False while it sleeps.
