@@ -127,16 +127,18 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
     w.u32(def.substeps);
     w.u32(def.catch_up_steps);
     w.bool(def.sleeping == Sleeping::On);
+    w.f32(def.max_speed);
+    w.f32(def.max_turn);
 }
 
 fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
     let gravity = r.vec3()?;
     let (step_nanoseconds, substeps, catch_up_steps) = (r.u64()?, r.u32()?, r.u32()?);
-    if step_nanoseconds == 0 || substeps == 0 || catch_up_steps == 0 {
-        return Err(r.error("a step takes no time"));
-    }
     let sleeping = if r.bool()? { Sleeping::On } else { Sleeping::Off };
-    Ok(WorldDef { gravity, step_nanoseconds, substeps, catch_up_steps, sleeping })
+    let (max_speed, max_turn) = (r.f32()?, r.f32()?);
+    let def = WorldDef { gravity, step_nanoseconds, substeps, catch_up_steps, sleeping, max_speed, max_turn };
+    def.check().map_err(|what| r.error(what))?;
+    Ok(def)
 }
 
 fn save_body(w: &mut Writer, body: &Body) {
@@ -323,8 +325,7 @@ fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, Rea
     let mut memory = ContactMemory::default();
     for i in 0..manifold.count {
         manifold.points[i] = ManifoldPoint { position: r.vec3()?, separation: r.f32()?, feature: r.u32()? };
-        // The peak is of the step that is over.
-        memory.points[i] = PointImpulse { now: r.f32()?, before: r.f32()?, peak: 0.0 };
+        memory.points[i] = PointImpulse { now: r.f32()?, before: r.f32()? };
     }
     let friction: Vec3 = r.vec3()?;
     memory.friction = friction;

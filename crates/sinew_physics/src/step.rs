@@ -32,7 +32,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, context.dt));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
 
-    let view = View { bodies, joints, contacts, gravity: def.gravity, h: context.h };
+    let view = View { bodies, joints, contacts, def, h: context.h };
     if objects.is_empty() {
         let all = || Phase::of_step(context.substeps);
         islands.run(context.runner, |task| all().for_each(|phase| solve(phase, task, &view, context)));
@@ -67,10 +67,10 @@ pub(crate) fn solve(phase: Phase, task: &mut Task<'_>, view: &View<'_>, context:
             stage(Stage::IntegratePosition, &mut || solver.integrate_position());
             stage(Stage::Project, &mut || surroundings.project(groups, solver, view));
         }
-        Phase::Relax(_) => stage(Stage::Relax, &mut || solver.relax()),
-        Phase::Store => {
+        Phase::Relax(_) => {
+            stage(Stage::Relax, &mut || solver.relax());
             stage(Stage::Restitution, &mut || solver.restitution());
-            stage(Stage::Store, &mut || solver.store(solution));
         }
+        Phase::Store => stage(Stage::Store, &mut || solver.store(solution)),
     }
 }

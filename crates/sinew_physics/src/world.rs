@@ -46,11 +46,11 @@ impl World {
     /// An empty world.
     ///
     /// # Panics
-    /// If the step, the number of substeps or that of steps to catch up is 0, or gravity is not finite.
+    /// If [`WorldDef::check`] finds something wrong.
     pub fn new(def: WorldDef) -> Self {
-        assert!(def.step_nanoseconds > 0 && def.substeps > 0, "a step takes time");
-        assert!(def.catch_up_steps > 0, "an update may take a step");
-        assert!(def.gravity.is_finite(), "gravity is finite");
+        if let Err(what) = def.check() {
+            panic!("{what}");
+        }
         Self {
             def,
             bodies: Arena::default(),

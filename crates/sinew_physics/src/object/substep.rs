@@ -58,7 +58,7 @@ impl<'a> Substep<'a> {
 
     /// The world's gravity, m/s².
     pub fn gravity(&self) -> Vec3 {
-        self.view.gravity
+        self.view.def.gravity
     }
 
     /// All bodies, by index.

@@ -8,6 +8,7 @@ use super::{IslandSolver, SolverBody, SolverJoint};
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, combine, slop};
+use crate::def::WorldDef;
 use crate::islands::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
 use crate::spatial::{ZERO6, join};
@@ -21,7 +22,7 @@ pub(crate) struct View<'a> {
     pub bodies: &'a Arena<Body>,
     pub joints: &'a Arena<Joint>,
     pub contacts: &'a [Contact],
-    pub gravity: Vec3,
+    pub def: &'a WorldDef,
     /// Substep, seconds.
     pub h: f32,
 }
@@ -112,7 +113,7 @@ impl Scratch {
 
 /// Force and torque that act on a body all through the step: gravity and the user's.
 pub(super) fn lasting_force(body: &Body, view: &View<'_>) -> (Vec3, Vec3) {
-    (body.force + view.gravity * (body.gravity_scale * body.mass), body.torque)
+    (body.force + view.def.gravity * (body.gravity_scale * body.mass), body.torque)
 }
 
 impl IslandSolver {
@@ -120,6 +121,7 @@ impl IslandSolver {
     pub fn prepare(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.h = view.h;
         self.displaced = false;
+        (self.max_speed, self.max_turn) = (view.def.max_speed, view.def.max_turn);
         self.order_trees(island, view);
         self.make_room(island);
         self.copy_bodies(island, view);
@@ -349,7 +351,7 @@ impl IslandSolver {
                 shapes: [shape_a, shape_b].map(|s| PlacedShape::new(s.shape, s.principal_from_shape)),
                 h: view.h,
             };
-            self.manifolds.push(ManifoldRows::new(&source, &self.bodies, &self.velocities));
+            self.manifolds.push(ManifoldRows::new(&source, &self.bodies));
         }
     }
 }
