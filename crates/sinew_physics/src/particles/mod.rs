@@ -211,6 +211,17 @@ impl ParticleGroup {
         self.velocities[i] += impulse / self.masses[i];
     }
 
+    /// Moves a particle by `by` (m, world), with the velocity that takes it there within `h` seconds.
+    ///
+    /// # Panics
+    /// If there is no such particle, or a number is not finite.
+    pub fn correct(&mut self, particle: u32, by: Vec3, h: f32) {
+        let velocity = by / h;
+        assert!(velocity.is_finite(), "a particle's way is finite");
+        self.positions[particle as usize] += by;
+        self.velocities[particle as usize] += velocity;
+    }
+
     /// Moves the group by `h` seconds under `gravity` (m/s²), its springs, its attachments and its contacts.
     ///
     /// `anchors[k]` holds attachment `k`. Anchors that are bodies yield to the springs within the same solve, so that
