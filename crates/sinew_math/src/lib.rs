@@ -6,8 +6,11 @@
 #![forbid(unsafe_code)]
 
 pub mod bytes;
+mod euler;
 pub mod hash;
 pub mod limits;
+mod orthonormal;
+mod quaternion;
 pub mod random;
 mod rotation;
 mod symmetric;
@@ -15,9 +18,12 @@ mod transform;
 pub mod trig;
 
 pub use bytes::{ReadError, Reader, Writer};
+pub use euler::{EulerAngles, EulerAxes, EulerConvention, EulerOrder, GimbalLock};
 pub use glam::{Mat3, Vec2, Vec3};
 pub use hash::StableHasher;
 pub use limits::{Range, SwingTwistLimit};
+pub use orthonormal::{MatrixDrift, Orthonormalization, Orthonormalized, Uniqueness, orthonormalize};
+pub use quaternion::Quaternion;
 pub use random::Random;
 pub use rotation::Rotation;
 pub use symmetric::Sym3;
@@ -64,6 +70,16 @@ pub fn abs3(v: Vec3) -> Vec3 {
 pub fn normalize_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let length = v.length();
     if length > 1e-12 && length < f32::INFINITY { v / length } else { fallback }
+}
+
+/// `v` at length 1, however long or short it is; `None` if it is zero or not finite.
+#[inline]
+pub fn direction(v: Vec3) -> Option<Vec3> {
+    let a = abs3(v);
+    let largest = max(a.x, max(a.y, a.z));
+    // Divided by the largest first: the squares neither overflow nor vanish.
+    let scaled = v / largest;
+    (largest > 0.0 && v.is_finite()).then(|| scaled / scaled.length())
 }
 
 /// A unit vector at right angles to the unit vector `n`, continuous but for one jump

@@ -1,0 +1,7 @@
+//! Tests of the mathematics against arithmetic in `f64`, over random cases and those at the edge.
+
+mod euler;
+mod oracle;
+mod orthonormal;
+mod quaternion;
+mod rotation;
