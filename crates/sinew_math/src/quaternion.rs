@@ -122,6 +122,16 @@ impl Quaternion {
         (norm > 0.0 && norm < f32::INFINITY).then(|| versor.conjugate() * (1.0 / norm))
     }
 
+    /// A part of it, or a multiple: `|q|ᵗ (cos tθ + n sin tθ)`, so `q.power(0.5) * q.power(0.5)` is `q`. Zero stays zero. The
+    /// part of a negative number, which does not say about what it turns, is taken about x.
+    pub fn power(self, t: f32) -> Self {
+        let norm = self.norm();
+        if norm == 0.0 {
+            return Self::ZERO;
+        }
+        Self::from_scale_axis_angle(trig::pow(norm, t), self.axis().unwrap_or(Vec3::X), self.angle() * t)
+    }
+
     /// Turns `v` by [`angle`](Self::angle) about [`axis`](Self::axis) and stretches it by [`norm`](Self::norm). A number
     /// multiplies; zero gives zero.
     ///

@@ -90,6 +90,7 @@ impl Rotation {
 
     /// Exponential map: rotation about `v` by its length in radians. Exact for the zero vector; identity for one that is
     /// not finite or longer than 1e19.
+    #[doc(alias = "exp")]
     pub fn from_scaled_axis(v: Vec3) -> Self {
         let angle = v.length();
         let (sin, cos) = trig::sin_cos(0.5 * angle);
@@ -101,6 +102,8 @@ impl Rotation {
     /// Logarithm: axis times angle (radians, at most π long), the inverse of [`from_scaled_axis`](Self::from_scaled_axis)
     /// for vectors no longer than π. Zero for the identity. Of half a turn one of two opposite vectors, as its four numbers
     /// say.
+    #[doc(alias = "ln")]
+    #[doc(alias = "log")]
     pub fn to_scaled_axis(self) -> Vec3 {
         let q = self.positive();
         let v = q.vector();

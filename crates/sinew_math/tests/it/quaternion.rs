@@ -137,6 +137,19 @@ fn quotients_in_one_plane_follow_each_other() {
 }
 
 #[test]
+fn parts_make_up_the_whole() {
+    let error = worst(45, |random| {
+        let (q, t) = (random_quaternion(random), random.range(-2.0, 3.0));
+        largest([apart(q.power(t) * q.power(1.0 - t), q), apart(q.power(2.0), q * q)])
+    });
+    assert!(error < 5e-6, "{error}");
+    assert_eq!(Quaternion::ZERO.power(2.0), Quaternion::ZERO);
+    assert_eq!(Quaternion::new(4.0, Vec3::ZERO).power(0.5), Quaternion::new(2.0, Vec3::ZERO));
+    // The root of −1.
+    assert!((Quaternion::new(-1.0, Vec3::ZERO).power(0.5) - Quaternion::from(Vec3::X)).norm() < 1e-6);
+}
+
+#[test]
 fn every_size_has_a_versor_and_an_inverse() {
     for size in [1e-36, 1e-20, 1.0, 1e20, 1e36] {
         let q = Quaternion::new(3.0, Vec3::new(0.0, 4.0, 0.0)) * size;

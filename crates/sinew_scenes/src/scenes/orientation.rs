@@ -152,8 +152,7 @@ impl Journey {
         let (q, dt) = (self.quotient(world), world.def().dt());
         let axis = q.axis().expect("the places do not lie in line with the origin");
         let (share, place) = (1.0 / JOURNEY as f32, world.center_of_mass(self.walker));
-        let part = Quaternion::from_scale_axis_angle(trig::pow(q.norm(), share), axis, q.angle() * share);
-        let linear = (part.apply(place) - place) / dt;
+        let linear = (q.power(share).apply(place) - place) / dt;
         let angular = axis * (q.angle() * share / dt);
         world.set_velocity(self.walker, Velocity { linear, angular });
     }
