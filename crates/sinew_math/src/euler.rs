@@ -1,7 +1,8 @@
 //! Euler angles: three turns about coordinate axes, in any of the 24 conventions, and what they cannot say.
 
+use crate::limits::wrap;
 use crate::{Rotation, Vec3, clamp, trig};
-use core::f32::consts::{FRAC_PI_2, PI, TAU};
+use core::f32::consts::{FRAC_PI_2, PI};
 
 /// Which coordinate axes the three turns are about, in the order of the turns.
 ///
@@ -132,8 +133,8 @@ pub struct EulerAngles {
     /// In the order of the turns, radians. First and third −π..=π; the second −π/2..=π/2 of a Tait-Bryan order, 0..=π of
     /// a proper one.
     pub angles: [f32; 3],
-    /// How far the second angle is from gimbal lock, radians, 0..=π/2. First and third angle are by its sine less exact
-    /// than the rotation: at a margin of 0.001 an error of 1e-7 in the rotation is one of 1e-4 in each of them.
+    /// How far the second angle is from gimbal lock, radians, 0..=π/2. The error of first and third angle is that of the
+    /// rotation over the sine of this: at a margin of 0.001 an error of 1e-7 in the rotation is one of 1e-4 in each of them.
     pub lock_margin: f32,
     /// Whether they are locked: whether [`lock_margin`](Self::lock_margin) is below [`EulerAngles::LOCKED_BELOW`].
     pub lock: GimbalLock,
@@ -141,7 +142,8 @@ pub struct EulerAngles {
 
 impl EulerAngles {
     /// Margin, radians, below which outer angles are noise: the third is then given as 0 and the first takes over the
-    /// turns of both. The rotation is still met within as much.
+    /// turns of both. The rotation is still met within as much. Three turns with the second exactly at lock are always
+    /// found to be locked.
     pub const LOCKED_BELOW: f32 = 2e-6;
 }
 
@@ -168,12 +170,12 @@ impl Rotation {
     /// The three turns that make up this rotation, and whether it is one at which they lock.
     ///
     /// After Bernardes & Viollet, "Quaternion to Euler angles conversion: a direct, general and computationally efficient
-    /// method", PLoS ONE 17(11), 2022. The quaternion of three half turns about axes i, j, i with third axis l and
-    /// `e_i e_j = ε e_l` is
+    /// method", PLoS ONE 17(11), 2022. The quaternion of turns by α, β, γ about axes i, j, i, with third axis l and
+    /// `e_i e_j = ε e_l`, is
     ///
     /// ```text
-    /// w = cos(β/2) cos((α+γ)/2)    q_j   = sin(β/2) cos((α−γ)/2)
-    /// q_i = cos(β/2) sin((α+γ)/2)    ε q_l = sin(β/2) sin((α−γ)/2)
+    /// w   = cos(β/2) cos((α+γ)/2)      q_j   = sin(β/2) cos((α−γ)/2)
+    /// q_i = cos(β/2) sin((α+γ)/2)      ε q_l = sin(β/2) sin((α−γ)/2)
     /// ```
     ///
     /// so that two arctangents give sum and difference and a third gives β, without the loss of an arccosine. A
@@ -197,58 +199,48 @@ impl Rotation {
                 [third, second, first]
             }
         };
-        let solved = NestedTurns::of(self, order);
-        let lock = solved.lock();
-        let (sum, difference, sign) = (solved.sum, solved.difference, solved.inner_sign);
-        let [outer, inner] = match (lock, convention.axes) {
-            (None, _) => [sum + difference, sign * (sum - difference)],
-            (Some(Blend::Sum), EulerAxes::Moving) => [2.0 * sum, 0.0],
-            (Some(Blend::Sum), EulerAxes::Fixed) => [0.0, sign * 2.0 * sum],
-            (Some(Blend::Difference), EulerAxes::Moving) => [2.0 * difference, 0.0],
-            (Some(Blend::Difference), EulerAxes::Fixed) => [0.0, sign * -2.0 * difference],
+        let rings = Rings::of(self, order);
+        let is_locked = rings.margin < EulerAngles::LOCKED_BELOW;
+        let [outer, inner] = match (is_locked, convention.axes) {
+            (false, _) => [rings.outer, rings.inner],
+            (true, EulerAxes::Moving) => [rings.outer_alone, 0.0],
+            (true, EulerAxes::Fixed) => [0.0, rings.inner_alone],
         }
         .map(wrap);
         let angles = match convention.axes {
-            EulerAxes::Moving => [outer, solved.middle, inner],
-            EulerAxes::Fixed => [inner, solved.middle, outer],
+            EulerAxes::Moving => [outer, rings.middle, inner],
+            EulerAxes::Fixed => [inner, rings.middle, outer],
         };
-        EulerAngles { angles, lock_margin: solved.margin, lock: solved.reported(lock) }
+        let lock = if is_locked { rings.nearest_lock } else { GimbalLock::Free };
+        EulerAngles { angles, lock_margin: rings.margin, lock }
     }
 }
 
-/// What nested rings say of a rotation, before the outer two angles are told apart.
-struct NestedTurns {
-    /// Half the sum of outer and inner angle, the inner one seen about the outer's axis.
-    sum: f32,
-    /// Half their difference.
-    difference: f32,
-    /// The middle angle.
+/// Three rings, one in the other, that make up a rotation: its turns about moving axes, outer one first. Angles of outer
+/// and inner one within −2π..=2π.
+struct Rings {
+    outer: f32,
     middle: f32,
+    inner: f32,
     /// From the middle angle to the nearer lock.
     margin: f32,
-    /// What the middle angle leaves of sum and difference at the nearer lock.
-    nearer: Blend,
-    /// −1 where the inner axis comes to lie against the outer one, not on it.
-    inner_sign: f32,
+    /// The kind of that one.
+    nearest_lock: GimbalLock,
+    /// What the outer angle is there when the inner one is 0.
+    outer_alone: f32,
+    /// What the inner angle is there when the outer one is 0.
+    inner_alone: f32,
 }
 
-/// What is left of two angles.
-#[derive(Clone, Copy)]
-enum Blend {
-    Sum,
-    Difference,
-}
-
-impl NestedTurns {
+impl Rings {
     fn of(rotation: Rotation, [i, j, k]: [usize; 3]) -> Self {
         let is_proper = i == k;
         let l = 3 - i - j;
         let parity = if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 };
         let v = rotation.vector();
         let (w, x, y, z) = (rotation.w, v[i], v[j], parity * v[l]);
-        let proper = if is_proper { [w, x, y, z] } else { [w - y, x - z, y + w, z + x] };
         let tilt = 4.0 * (w * y + x * z);
-        let [w, x, y, z] = proper;
+        let [w, x, y, z] = if is_proper { [w, x, y, z] } else { [w - y, x - z, y + w, z + x] };
         // Cosine and sine of half the middle angle.
         let (cos, sin) = ((w * w + x * x).sqrt(), (y * y + z * z).sqrt());
         let middle = if is_proper {
@@ -258,36 +250,19 @@ impl NestedTurns {
             // loses nothing where the angle is small.
             clamp(2.0 * trig::atan2(tilt / (cos + sin), cos + sin), -FRAC_PI_2, FRAC_PI_2)
         };
-        let (small, large, nearer) =
-            if sin < cos { (sin, cos, Blend::Sum) } else { (cos, sin, Blend::Difference) };
+        // The inner axis of a Tait-Bryan order is brought onto the outer one, or against it.
+        let sign = if is_proper { 1.0 } else { -parity };
+        let (half_sum, half_difference) = (trig::atan2(x, w), trig::atan2(z, y));
+        let (small, large, share) = if sin < cos { (sin, cos, 1.0) } else { (cos, sin, -1.0) };
+        let alone = 2.0 * if sin < cos { half_sum } else { half_difference };
         Self {
-            sum: trig::atan2(x, w),
-            difference: trig::atan2(z, y),
+            outer: half_sum + half_difference,
             middle,
+            inner: sign * (half_sum - half_difference),
             margin: 2.0 * trig::atan2(small, large),
-            nearer,
-            inner_sign: if is_proper { 1.0 } else { -parity },
+            nearest_lock: if share == sign { GimbalLock::OnlySum } else { GimbalLock::OnlyDifference },
+            outer_alone: alone,
+            inner_alone: share * sign * alone,
         }
-    }
-
-    fn lock(&self) -> Option<Blend> {
-        (self.margin < EulerAngles::LOCKED_BELOW).then_some(self.nearer)
-    }
-
-    fn reported(&self, lock: Option<Blend>) -> GimbalLock {
-        match (lock, self.inner_sign > 0.0) {
-            (None, _) => GimbalLock::Free,
-            (Some(Blend::Sum), true) | (Some(Blend::Difference), false) => GimbalLock::OnlySum,
-            (Some(Blend::Difference), true) | (Some(Blend::Sum), false) => GimbalLock::OnlyDifference,
-        }
-    }
-}
-
-/// An angle within −2π..=2π, brought into −π..=π.
-fn wrap(angle: f32) -> f32 {
-    match angle {
-        _ if angle > PI => angle - TAU,
-        _ if angle < -PI => angle + TAU,
-        _ => angle,
     }
 }

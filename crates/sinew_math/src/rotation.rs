@@ -69,7 +69,7 @@ impl Rotation {
     }
 
     /// Rotation by `angle` radians (any size) about `axis`, right-handed: `cos(angle/2) + axis sin(angle/2)`.
-    /// `axis` has length 1; see [`about`](Self::about) for one that may not.
+    /// `axis` has length 1, or else the quaternion has not; see [`about`](Self::about) for an axis of any length.
     pub fn from_axis_angle(axis: Vec3, angle: f32) -> Self {
         let (sin, cos) = trig::sin_cos(0.5 * angle);
         Self::from_vector(axis * sin, cos)
@@ -131,7 +131,8 @@ impl Rotation {
         Self::from_vector(sin, square / (1.0 - cos)).normalize()
     }
 
-    /// From a rotation matrix with orthonormal columns (Shepperd 1978: by the largest component). Of other matrices the
+    /// From a rotation matrix with orthonormal columns (Shepperd, "Quaternion from rotation matrix", 1978: by the component
+    /// that is largest, so that nothing cancels). Of other matrices the
     /// result is a rotation, but not one that stands for anything: see [`orthonormalize`](crate::orthonormalize).
     pub fn from_mat3(m: &Mat3) -> Self {
         let (a, b, c) = (m.x_axis, m.y_axis, m.z_axis);
@@ -261,7 +262,7 @@ impl Rotation {
     }
 
     /// Splits into `(swing, twist)` with `self = swing * twist`, `twist` about unit vector `axis` and the axis of
-    /// `swing` at right angles to it. At a swing of half a turn the twist is not defined and taken as none.
+    /// `swing` at right angles to it. At a swing of half a turn (within 2e-4) the twist is not defined and taken as none.
     pub fn swing_twist(self, axis: Vec3) -> (Self, Self) {
         let q = self.positive();
         let along = q.vector().dot(axis);
