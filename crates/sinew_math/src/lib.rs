@@ -3,6 +3,21 @@
 //! Vectors and 3×3 matrices are [`glam::Vec3`] and [`glam::Mat3`], plain scalar structs whose `+ − × ÷ √` are
 //! IEEE-exact everywhere. Everything whose bits differ between targets in `glam` or in std (quaternion algebra,
 //! trigonometry, `min`/`max` with NaN) lives here instead. See `docs/adr/0006-glam-and-bits.md`.
+//!
+//! **Conventions.** Right-handed axes, +Y up, SI units, radians. Vectors are columns: `m * v` and `r * v` turn a vector,
+//! `a * b` applies `b` first, and the columns of a rotation matrix are where the axes go. `world_from_body` names what turns
+//! a vector of the body's axes into one of the world's. A positive turn is counter-clockwise for who looks against its axis.
+//!
+//! **How to write a turn down:**
+//!
+//! | as | type | good for | look out for |
+//! |---|---|---|---|
+//! | four numbers of length 1 | [`Rotation`] | everything: products, blends, integration | q and −q are the same turn |
+//! | axis × angle | [`Vec3`], by [`Rotation::to_scaled_axis`] | rates, small turns, averages | at most half a turn |
+//! | nine numbers | [`Mat3`], by [`Rotation::to_mat3`] | many vectors, other libraries | drift: [`MatrixDrift`], [`orthonormalize`] |
+//! | three angles | [`EulerAngles`], by [`Rotation::to_euler`] | people, files | 24 meanings, [`GimbalLock`] in each |
+//! | two vectors | [`Rotation::from_arc`], [`Quaternion::quotient`] | aiming | opposite vectors name no axis |
+//! | stretch and turn | [`Quaternion`] | Hamilton's algebra | holds the whole angle, [`Rotation`] the half |
 #![forbid(unsafe_code)]
 
 pub mod bytes;
