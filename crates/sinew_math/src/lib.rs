@@ -3,10 +3,12 @@
 //! Vectors and 3×3 matrices are [`glam::Vec3`] and [`glam::Mat3`], plain scalar structs whose `+ − × ÷ √` are
 //! IEEE-exact everywhere. Everything whose bits differ between targets in `glam` or in std (quaternion algebra,
 //! trigonometry, `min`/`max` with NaN) lives here instead. See `docs/adr/0006-glam-and-bits.md`.
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)] // `lanes` and `dispatch` alone allow it
 
 pub mod bytes;
+pub mod dispatch;
 pub mod hash;
+pub mod lanes;
 pub mod limits;
 pub mod random;
 mod rotation;
