@@ -32,7 +32,10 @@ impl<const N: usize> Kernel for Chains<N> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> [f32; WIDTH] {
-        let mut chains = [L::splat(black_box(1.5)); N];
+        let mut chains = [L::splat(1.5); N];
+        for chain in &mut chains {
+            *chain = L::splat(black_box(1.5));
+        }
         let by = L::splat(black_box(1.000_000_1));
         // One loop for each, or the choice would be in the loop.
         match self.0 {

@@ -28,6 +28,18 @@ impl<R: Real> Vector3<R> {
         Self::new(R::splat(v.x), R::splat(v.y), R::splat(v.z))
     }
 
+    /// The coordinates.
+    #[inline(always)]
+    pub fn to_array(self) -> [R; 3] {
+        [self.x, self.y, self.z]
+    }
+
+    /// The coordinates' sum.
+    #[inline(always)]
+    pub fn sum(self) -> R {
+        self.x + self.y + self.z
+    }
+
     /// Dot product.
     #[inline(always)]
     pub fn dot(self, other: Self) -> R {
@@ -60,8 +72,15 @@ impl<R: Real> Vector3<R> {
 impl<L: Lanes> Vector3<L> {
     /// Eight vectors from three rows of a [`Block`](super::Block).
     #[inline(always)]
-    pub fn load(rows: &[[f32; WIDTH]; 3]) -> Self {
-        Self::new(L::load(&rows[0]), L::load(&rows[1]), L::load(&rows[2]))
+    pub fn load(x: &[f32; WIDTH], y: &[f32; WIDTH], z: &[f32; WIDTH]) -> Self {
+        Self::new(L::load(x), L::load(y), L::load(z))
+    }
+}
+
+impl From<Vec3> for Vector3<f32> {
+    #[inline(always)]
+    fn from(v: Vec3) -> Self {
+        Self::new(v.x, v.y, v.z)
     }
 }
 

@@ -4,10 +4,12 @@
 //! whatever [`dispatch`](sinew_math::dispatch) finds. So an item's answer has the same bits alone and in a batch, and on
 //! every processor. NaN in an item gives NaN, or false, for that item alone.
 
+mod overlap;
 mod pairs;
 mod points;
+mod record;
 mod separation;
 
-pub use pairs::{Axes, FindSeparations, Pairs, Separations};
+pub use pairs::{Axes, FindOverlaps, FindSeparations, Pairs, Separations};
 pub use points::{ContainsPoints, Points, SignedDistances};
 pub use separation::{SeparatingAxis, Separation};

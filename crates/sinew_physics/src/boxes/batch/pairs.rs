@@ -1,13 +1,15 @@
 //! Many pairs of boxes.
 
-use super::separation::{Best, Relative, SeparatingAxis, Separation, record};
+use super::overlap::Overlap;
+use super::record::{NUMBERS, Record};
+use super::separation::{Best, Relative, SeparatingAxis, Separation};
 use crate::boxes::Obb;
 use sinew_math::dispatch::{self, Kernel};
-use sinew_math::lanes::{Block, Blocks, Lanes};
+use sinew_math::lanes::{Block, Blocks, LaneMask, Lanes, WIDTH};
 
 /// Pairs of boxes, stored so that eight are examined at a time: 80 bytes a pair.
 #[derive(Clone, Debug, Default)]
-pub struct Pairs(Blocks<20>);
+pub struct Pairs(Blocks<{ 2 * NUMBERS }>);
 
 /// What [`Pairs::separations`] finds, in the order of the pairs: 8 bytes a pair.
 #[derive(Clone, Debug, Default)]
@@ -31,13 +33,24 @@ impl Pairs {
 
     /// Adds the pair of `a` and `b` at the end.
     pub fn push(&mut self, a: &Obb, b: &Obb) {
-        let (a, b) = (record(a), record(b));
-        self.0.push(core::array::from_fn(|row| if row < 10 { a[row] } else { b[row - 10] }));
+        let mut pair = [0.0; 2 * NUMBERS];
+        pair[..NUMBERS].copy_from_slice(&Record::of(a).to_array());
+        pair[NUMBERS..].copy_from_slice(&Record::of(b).to_array());
+        self.0.push(pair);
     }
 
     /// Removes all and keeps the memory.
     pub fn clear(&mut self) {
         self.0.clear();
+    }
+
+    /// Which pairs overlap, by all fifteen axes: `Obb::overlaps_obb` of each, to the bit. Bit `k` of `overlapping[i]` is
+    /// pair `8 i + k`, bits beyond the last pair are 0. A pair with NaN does not overlap.
+    ///
+    /// # Panics
+    /// If `overlapping` is not one byte for every eight pairs, the last eight begun.
+    pub fn overlaps(&self, overlapping: &mut [u8]) {
+        dispatch::run(FindOverlaps { pairs: self, overlapping });
     }
 
     /// Finds, for each pair, the axis among the fifteen along which the two boxes are furthest apart or overlap least:
@@ -94,6 +107,34 @@ impl Separations {
     }
 }
 
+/// The kernel of [`Pairs::overlaps`], for those who choose the registers.
+#[derive(Debug)]
+pub struct FindOverlaps<'a> {
+    /// The boxes.
+    pub pairs: &'a Pairs,
+    /// One byte for every eight pairs.
+    pub overlapping: &'a mut [u8],
+}
+
+impl Kernel for FindOverlaps<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let blocks = self.pairs.0.blocks();
+        assert_eq!(self.overlapping.len(), blocks.len(), "one byte for every eight pairs");
+        for (pair, overlapping) in blocks.iter().zip(&mut *self.overlapping) {
+            let (a, b) = load::<L>(pair);
+            let boxes = Overlap::new(&a, &b);
+            let near = boxes.faces();
+            *overlapping = if near.any() { (near & boxes.edges()).bits() } else { 0 };
+        }
+        if let (tail @ 1.., Some(last)) = (self.pairs.len() % WIDTH, self.overlapping.last_mut()) {
+            *last &= (1 << tail) - 1;
+        }
+    }
+}
+
 /// The kernel of [`Pairs::separations`], for those who choose the registers.
 #[derive(Debug)]
 pub struct FindSeparations<'a> {
@@ -115,12 +156,20 @@ impl Kernel for FindSeparations<'_> {
         match self.axes {
             Axes::Faces => {
                 for (pair, found) in blocks {
-                    relative::<L>(pair).six_faces().store(found);
+                    {
+                        let (a, b) = load::<L>(pair);
+                        Relative::new(&a, &b).six_faces()
+                    }
+                    .store(found);
                 }
             }
             Axes::Fifteen => {
                 for (pair, found) in blocks {
-                    relative::<L>(pair).fifteen_axes().store(found);
+                    {
+                        let (a, b) = load::<L>(pair);
+                        Relative::new(&a, &b).fifteen_axes()
+                    }
+                    .store(found);
                 }
             }
         }
@@ -136,13 +185,9 @@ impl<L: Lanes> Best<L> {
     }
 }
 
+/// The first and the second box of eight pairs.
 #[inline(always)]
-fn relative<L: Lanes>(pair: &Block<20>) -> Relative<L> {
-    let mut rows = [L::splat(0.0); 20];
-    for (row, numbers) in rows.iter_mut().zip(&pair.0) {
-        *row = L::load(numbers);
-    }
-    let [a @ .., _, _, _, _, _, _, _, _, _, _] = rows;
-    let [_, _, _, _, _, _, _, _, _, _, b @ ..] = rows;
-    Relative::new(&a, &b)
+fn load<L: Lanes>(pair: &Block<{ 2 * NUMBERS }>) -> (Record<L>, Record<L>) {
+    let [cx, cy, cz, x, y, z, w, hx, hy, hz, rest @ ..] = &pair.0;
+    (Record::load([cx, cy, cz, x, y, z, w, hx, hy, hz]), Record::load(rest.each_ref()))
 }

@@ -149,7 +149,7 @@ impl Kernel for ContainsPoints<'_> {
         let blocks = self.points.0.blocks();
         assert_eq!(self.inside.len(), blocks.len(), "one byte for every eight points");
         for (Block(rows), inside) in blocks.iter().zip(&mut *self.inside) {
-            *inside = obb.contains(Vector3::load(rows)).bits();
+            *inside = obb.contains(load(rows)).bits();
         }
         if let (tail @ 1.., Some(last)) = (self.points.len() % WIDTH, self.inside.last_mut()) {
             *last &= (1 << tail) - 1;
@@ -178,12 +178,17 @@ impl Kernel for SignedDistances<'_> {
         assert_eq!(self.distances.len(), self.points.len(), "one distance for every point");
         let (whole, tail) = self.distances.as_chunks_mut::<WIDTH>();
         for (Block(rows), distances) in blocks.iter().zip(&mut *whole) {
-            obb.signed_distance(Vector3::load(rows)).store(distances);
+            obb.signed_distance(load(rows)).store(distances);
         }
         if let Some(Block(rows)) = blocks.get(whole.len()) {
             let mut distances = [0.0; WIDTH];
-            obb.signed_distance(Vector3::load(rows)).store(&mut distances);
+            obb.signed_distance(load(rows)).store(&mut distances);
             tail.copy_from_slice(&distances[..tail.len()]);
         }
     }
+}
+
+#[inline(always)]
+fn load<L: Lanes>([x, y, z]: &[[f32; WIDTH]; 3]) -> Vector3<L> {
+    Vector3::load(x, y, z)
 }

@@ -1,9 +1,10 @@
 //! How far two boxes are apart or overlap: the separating axis theorem (Gottschalk, Lin & Manocha, "OBBTree", SIGGRAPH
 //! 1996), with the amount along each axis.
 
+use super::record::{Record, matrix};
 use crate::boxes::Obb;
 use sinew_math::Vec3;
-use sinew_math::lanes::{Real, Vector3};
+use sinew_math::lanes::Real;
 
 /// Squared sine below which two edges are taken as parallel: the faces' axes then say all there is to say.
 const PARALLEL: f32 = 2.5e-5;
@@ -63,16 +64,9 @@ impl Separation {
     ///
     /// Swapping them gives the same distance but for rounding, and the same axis where no other is as good.
     pub fn between(a: &Obb, b: &Obb) -> Self {
-        let found = Relative::<f32>::new(&record(a), &record(b)).fifteen_axes();
+        let found = Relative::new(&Record::of(a), &Record::of(b)).fifteen_axes();
         Self { distance: found.distance, axis: SeparatingAxis::from_index(found.index as u8) }
     }
-}
-
-/// Centre, rotation, half extents: a box as the batches hold it.
-#[inline]
-pub(super) fn record(obb: &Obb) -> [f32; 10] {
-    let (c, q, h) = (obb.center, obb.rotation, obb.half_extents);
-    [c.x, c.y, c.z, q.x, q.y, q.z, q.w, h.x, h.y, h.z]
 }
 
 /// The axis found so far that separates most.
@@ -110,31 +104,23 @@ pub(super) struct Relative<R> {
     cosine: [[R; 3]; 3],
 }
 
-/// The two other indices than `k`.
-const OTHERS: [(usize, usize); 3] = [(1, 2), (2, 0), (0, 1)];
-
 impl<R: Real> Relative<R> {
-    /// From two boxes as [`record`] gives them.
     #[inline(always)]
-    pub fn new(a: &[R; 10], b: &[R; 10]) -> Self {
-        let [cax, cay, caz, ax, ay, az, aw, ha, ha1, ha2] = *a;
-        let [cbx, cby, cbz, bx, by, bz, bw, hb, hb1, hb2] = *b;
+    pub fn new(a: &Record<R>, b: &Record<R>) -> Self {
+        let (u, v) = (a.vector, b.vector);
         // The turn from B to A: conjugate of A's times B's.
-        let w = aw * bw + ax * bx + (ay * by + az * bz);
-        let x = aw * bx - ax * bw - (ay * bz - az * by);
-        let y = aw * by - ay * bw - (az * bx - ax * bz);
-        let z = aw * bz - az * bw - (ax * by - ay * bx);
-        let way = Vector3::new(cbx - cax, cby - cay, cbz - caz);
-        // v − w t + u × t with t = 2 u × v, the turn by the conjugate.
-        let u = Vector3::new(ax, ay, az);
+        let w = a.w * b.w + u.x * v.x + (u.y * v.y + u.z * v.z);
+        let turn = v * a.w - u * b.w - u.cross(v);
+        // And the turn of the way to B's centre by A's conjugate.
+        let way = b.center - a.center;
         let t = u.cross(way);
         let t = t + t;
-        let offset = way - t * aw + u.cross(t);
+        let offset = way - t * a.w + u.cross(t);
         Self {
-            half_a: [ha, ha1, ha2],
-            half_b: [hb, hb1, hb2],
-            offset: [offset.x, offset.y, offset.z],
-            cosine: matrix(x, y, z, w),
+            half_a: a.half.to_array(),
+            half_b: b.half.to_array(),
+            offset: offset.to_array(),
+            cosine: matrix(turn, w),
         }
     }
 
@@ -185,38 +171,32 @@ impl<R: Real> Relative<R> {
     /// is as long as their sine, and its square needs no root.
     #[inline(always)]
     fn best_edges(&self) -> Best<R> {
-        let (c, t, a, b) = (&self.cosine, &self.offset, &self.half_a, &self.half_b);
         let mut best = Best::of(R::splat(f32::NEG_INFINITY), 0);
-        for i in 0..3 {
-            let (k, l) = OTHERS[i];
-            for j in 0..3 {
-                let (m, n) = OTHERS[j];
-                let along = t[l] * c[k][j] - t[k] * c[l][j];
-                let reach_a = a[k] * c[l][j].abs() + a[l] * c[k][j].abs();
-                let reach_b = b[m] * c[i][n].abs() + b[n] * c[i][m].abs();
-                let gap = along.abs() - (reach_a + reach_b);
-                let squared_sine = c[k][j] * c[k][j] + c[l][j] * c[l][j];
-                let squared =
-                    (gap * gap.abs() / squared_sine).nan_where(R::le(squared_sine, R::splat(PARALLEL)));
-                best.try_axis(squared, 6 + 3 * i + j);
-            }
-        }
+        // By hand, or they stay loops whose indices reach into memory.
+        best.try_axis(self.edges::<0, 0>(), 6);
+        best.try_axis(self.edges::<0, 1>(), 7);
+        best.try_axis(self.edges::<0, 2>(), 8);
+        best.try_axis(self.edges::<1, 0>(), 9);
+        best.try_axis(self.edges::<1, 1>(), 10);
+        best.try_axis(self.edges::<1, 2>(), 11);
+        best.try_axis(self.edges::<2, 0>(), 12);
+        best.try_axis(self.edges::<2, 1>(), 13);
+        best.try_axis(self.edges::<2, 2>(), 14);
         best
     }
-}
 
-/// The matrix of a rotation, rows first, with the bits of `Rotation::to_mat3`.
-#[inline(always)]
-fn matrix<R: Real>(x: R, y: R, z: R, w: R) -> [[R; 3]; 3] {
-    let one = R::splat(1.0);
-    // Twice a product is the product with twice a factor, to the bit.
-    let (x2, y2, z2) = (x + x, y + y, z + z);
-    let (xx, yy, zz) = (x * x2, y * y2, z * z2);
-    let (xy, xz, yz) = (x * y2, x * z2, y * z2);
-    let (wx, wy, wz) = (w * x2, w * y2, w * z2);
-    [
-        [one - (yy + zz), xy - wz, xz + wy],
-        [xy + wz, one - (xx + zz), yz - wx],
-        [xz - wy, yz + wx, one - (xx + yy)],
-    ]
+    /// Along what is at right angles to edge `I` of A and edge `J` of B: the gap's square with its sign; NaN if the
+    /// edges are parallel.
+    #[inline(always)]
+    fn edges<const I: usize, const J: usize>(&self) -> R {
+        let (c, t, a, b) = (&self.cosine, &self.offset, &self.half_a, &self.half_b);
+        let (k, l, m, n) = ((I + 1) % 3, (I + 2) % 3, (J + 1) % 3, (J + 2) % 3);
+        let along = t[l] * c[k][J] - t[k] * c[l][J];
+        let reach_a = a[k] * c[l][J].abs() + a[l] * c[k][J].abs();
+        let reach_b = b[m] * c[I][n].abs() + b[n] * c[I][m].abs();
+        let gap = along.abs() - (reach_a + reach_b);
+        let squared_sine = c[k][J] * c[k][J] + c[l][J] * c[l][J];
+        let parallel = R::le(squared_sine, R::splat(PARALLEL));
+        (gap * gap.abs() / squared_sine).nan_where(parallel)
+    }
 }
