@@ -2,7 +2,7 @@
 
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::boxes::Aabb;
+use crate::boxes::{Aabb, Overlap};
 use crate::contact::{Contact, ContactKey, ordered};
 use crate::def::BodyKind;
 use sinew_math::Vec3;

@@ -2,6 +2,7 @@
 
 use crate::arena::Arena;
 use crate::body::Body;
+use crate::boxes::Overlap;
 use crate::def::BodyKind;
 use crate::islands::Island;
 use crate::particles::{Anchor, AttachmentTarget, Obstacle, ObstacleBody, ParticleGroup};
@@ -126,7 +127,7 @@ impl Surroundings {
             self.seen.clear();
             self.seen.extend(taken.near.bodies.iter().map(|&index| Seen::new(index, solver, view)));
             self.place(taken, view);
-            taken.group.substep(view.h, view.gravity, &self.anchors, &self.obstacles, &mut self.bodies);
+            taken.group.substep(view.h, view.def.gravity, &self.anchors, &self.obstacles, &mut self.bodies);
             self.push_bodies(taken, solver);
         }
     }

@@ -47,16 +47,6 @@ impl Aabb {
         Self { min: center - half_extents, max: center + half_extents }
     }
 
-    /// Whether the two have a point in common; boxes that only touch do.
-    pub fn overlaps(&self, other: &Self) -> bool {
-        self.min.x <= other.max.x
-            && other.min.x <= self.max.x
-            && self.min.y <= other.max.y
-            && other.min.y <= self.max.y
-            && self.min.z <= other.max.z
-            && other.min.z <= self.max.z
-    }
-
     /// Whether the other one is inside.
     pub fn contains(&self, other: &Self) -> bool {
         self.merge(other) == *self

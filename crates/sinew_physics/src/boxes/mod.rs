@@ -12,10 +12,20 @@ use sinew_math::Vec3;
 
 mod aabb;
 pub mod batch;
+mod cuboid;
 mod obb;
+mod overlap;
+pub(crate) mod placed;
+mod point;
+pub(crate) mod segment;
+pub(crate) mod separation;
 
 pub use aabb::{Aabb, HALF_SPACE_REACH};
+pub use cuboid::Cuboid;
 pub use obb::Obb;
+pub use overlap::{Capsule, Overlap, Sphere};
+pub use placed::PlacedBox;
+pub use point::{Penetration, SurfacePoint};
 
 /// # Panics
 /// If one is negative or not finite.

@@ -1,6 +1,8 @@
 //! Integration tests of the world, held against closed forms and brute force.
 
 mod allocations;
+mod bounce;
+mod boxes;
 mod build;
 mod closed_forms;
 mod collide;

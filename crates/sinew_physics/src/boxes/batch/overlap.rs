@@ -1,10 +1,8 @@
 //! Whether two boxes overlap: fifteen comparisons without a root or a division.
 
 use super::record::Record;
+use crate::boxes::separation::TOUCH;
 use sinew_math::lanes::{Real, Vector3};
-
-/// Share of the lengths at hand by which boxes may be apart and still count as touching: several roundings.
-const TOUCH: f32 = 5e-7;
 
 /// Two boxes in the frame of the first, as `Obb::overlaps_obb` has them, operation by operation: the bits are equal.
 pub(super) struct Overlap<R> {
