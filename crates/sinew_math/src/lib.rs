@@ -18,11 +18,13 @@
 //! | three angles | [`EulerAngles`], by [`Rotation::to_euler`] | people, files | 24 meanings, [`GimbalLock`] in each |
 //! | two vectors | [`Rotation::from_arc`], [`Quaternion::quotient`] | aiming | opposite vectors name no axis |
 //! | stretch and turn | [`Quaternion`] | Hamilton's algebra | holds the whole angle, [`Rotation`] the half |
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)] // `lanes` and `dispatch` alone allow it
 
 pub mod bytes;
+pub mod dispatch;
 mod euler;
 pub mod hash;
+pub mod lanes;
 pub mod limits;
 mod orthonormal;
 mod quaternion;

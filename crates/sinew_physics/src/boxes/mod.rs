@@ -11,6 +11,7 @@
 use sinew_math::Vec3;
 
 mod aabb;
+pub mod batch;
 mod cuboid;
 mod obb;
 mod overlap;
