@@ -9,7 +9,8 @@ const NOT_YET: &[(&str, &[&str])] = &[
 ];
 
 /// Scenes in which gravity has no part.
-const BLIND_TO_GRAVITY: &[&str] = &["zero_gravity_pile", "spin_double", "spin_triple", "spin_ragdoll"];
+const BLIND_TO_GRAVITY: &[&str] =
+    &["zero_gravity_pile", "spin_double", "spin_triple", "spin_ragdoll", "aabb_vs_obb"];
 
 fn metrics_after(scene: &Scene, settings: &Settings, gravity_factor: f32) -> Vec<Metric> {
     let mut run = scene.start_under(settings, gravity_factor);
@@ -107,6 +108,8 @@ scenes!(
         hanging_rope,
         heavy_foot,
         mass_ratio,
+        aabb_vs_obb,
+        point_in_obb,
     ],
     large: [chain_100_links, joint_grid, net, ragdoll_pile],
 );
