@@ -18,6 +18,7 @@ mod metric;
 mod setting;
 
 mod ballistics;
+mod boxes;
 mod chains;
 mod crowds;
 mod falls;
@@ -126,6 +127,8 @@ pub fn registry() -> &'static [Scene] {
             crowds::PILE,
             trees::HEAVY_FOOT,
             trees::MASS_RATIO,
+            boxes::AABB_VS_OBB,
+            boxes::POINT_IN_OBB,
         ]
     }
 }
