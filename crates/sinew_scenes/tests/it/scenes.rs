@@ -3,8 +3,7 @@
 use sinew_scenes::scenes::{Expected, Metric, Scene, Settings, find, registry};
 
 /// Figures that are not yet as expected, by scene. One that comes to be met must be taken off, or its test fails.
-const NOT_YET: &[(&str, &[&str])] = &[
-];
+const NOT_YET: &[(&str, &[&str])] = &[];
 
 /// Scenes in which gravity has no part.
 const BLIND_TO_GRAVITY: &[&str] = &[
