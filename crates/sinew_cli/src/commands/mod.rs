@@ -7,6 +7,7 @@ mod later;
 mod ragdoll_build;
 mod run;
 mod scenes;
+mod view;
 
 use crate::failure::Result;
 use crate::report::Report;
@@ -24,12 +25,11 @@ pub enum Command {
     Inspect(inspect::Inspect),
     Run(run::Run),
     Scenes(scenes::Scenes),
+    View(view::View),
     #[command(hide = true, disable_help_flag = true)]
     Boxes(Later),
     #[command(hide = true, disable_help_flag = true)]
     Events(Later),
-    #[command(hide = true, disable_help_flag = true)]
-    View(Later),
     #[command(hide = true, disable_help_flag = true)]
     Record(Later),
     #[command(hide = true, disable_help_flag = true)]
@@ -60,9 +60,9 @@ impl Command {
             Self::Inspect(command) => command.run(),
             Self::Run(command) => command.run(),
             Self::Scenes(command) => command.run(),
+            Self::View(command) => command.run(),
             Self::Boxes(_) => later::refuse("sinew boxes"),
             Self::Events(_) => later::refuse("sinew events"),
-            Self::View(_) => later::refuse("sinew view"),
             Self::Record(_) => later::refuse("sinew record"),
             Self::Replay(_) => later::refuse("sinew replay"),
             Self::Convert(_) => later::refuse("sinew convert"),

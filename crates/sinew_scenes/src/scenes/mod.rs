@@ -16,6 +16,7 @@ mod flight;
 mod instance;
 mod metric;
 mod setting;
+mod sight;
 
 mod ballistics;
 mod chains;
@@ -37,6 +38,7 @@ mod weightless;
 pub use instance::{Instance, Script};
 pub use metric::{Expected, Metric};
 pub use setting::{Domain, Setting, SettingError, Settings};
+pub use sight::{Sight, Trails};
 
 use crate::parts;
 use setting::Setup;
