@@ -126,7 +126,7 @@ impl Surroundings {
             self.seen.clear();
             self.seen.extend(taken.near.bodies.iter().map(|&index| Seen::new(index, solver, view)));
             self.place(taken, view);
-            taken.group.substep(view.h, view.gravity, &self.anchors, &self.obstacles, &mut self.bodies);
+            taken.group.substep(view.h, view.def.gravity, &self.anchors, &self.obstacles, &mut self.bodies);
             self.push_bodies(taken, solver);
         }
     }

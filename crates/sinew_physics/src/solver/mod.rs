@@ -37,18 +37,15 @@ pub(crate) use solution::{IslandSolution, Solution, SolvedBody, split_off};
 use sweep::{Pass, Unrest};
 use tree::Link;
 
-/// Angle that a body may turn within a substep, radians: beyond it rows linearised at its start mean nothing.
-const MAX_TURN: f32 = core::f32::consts::FRAC_PI_2;
-/// m/s.
-const MAX_SPEED: f32 = 4000.0;
 /// Most visits of all contact and limit rows per pass in an island with joints. A heavy body on a jointed light one
 /// needs them; most passes end sooner, once a sweep changes no velocity by more than the tolerance (m/s or rad/s).
 const SWEEPS_JOINTED: usize = 24;
 const SWEEP_TOLERANCE: f32 = 2e-3;
 /// Likewise in one without: one with bias; two in `relax`, since friction of the first knows only the soft impulses of
-/// `solve` (1.5 % too little).
+/// `solve` (1.5 % too little); more in the few substeps in which something bounces, off what may lie on something else.
 const SWEEPS_FREE: usize = 1;
 const SWEEPS_FREE_RELAX: usize = 2;
+const SWEEPS_FREE_BOUNCE: usize = 8;
 /// Sweeps of `relax` before which friction learns its loads anew: the impulses of `solve` first, then those that really
 /// press. From then on loads stay, or friction and normals may chase each other for ever.
 const WEIGHINGS: usize = 2;
@@ -200,6 +197,9 @@ pub(crate) struct IslandSolver {
     hit_rate: f32,
     /// Substep, seconds.
     h: f32,
+    /// Most that a body moves, m/s, and turns within a substep, radians.
+    max_speed: f32,
+    max_turn: f32,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -222,6 +222,9 @@ impl IslandSolver {
     /// the substep by gyroscopic torque. Limits act here, never after the solve: there they tear joints.
     pub fn integrate_velocity(&mut self) {
         let h = self.h;
+        for rows in &mut self.manifolds {
+            rows.begin_approach(&self.velocities);
+        }
         self.begin_drives();
         self.kinetic_before = self.kinetic_energy(&self.velocities[..self.links.len()]);
         self.push_saturated();
@@ -235,9 +238,9 @@ impl IslandSolver {
                 let r = body.pose.rotation;
                 ang = r * ((r.inverse() * ang) * body.inertia / (body.inertia + body.excess));
             }
-            ang = limit_length(ang, MAX_TURN / h);
+            ang = limit_length(ang, self.max_turn / h);
             body.momentum = body.angular_momentum(ang);
-            *v = join(limit_length(lin, MAX_SPEED), gyroscopic(body, ang, 0.5 * h));
+            *v = join(limit_length(lin, self.max_speed), gyroscopic(body, ang, 0.5 * h));
         }
         self.kinetic_start = self.kinetic_of_momenta();
         self.momentum_start = self.momentum_of_start();
@@ -279,6 +282,9 @@ impl IslandSolver {
         self.project_joints(Pass::Solve);
         self.drop_bad_warm_start();
         self.saturate_motors();
+        for rows in &mut self.manifolds {
+            rows.pull_approach(&self.velocities);
+        }
         self.sweep(Pass::Solve);
         self.calm_trees();
         let mut torn = self.correct_positions();
@@ -291,6 +297,9 @@ impl IslandSolver {
             torn = self.correct_positions();
         }
         self.drop_nonsense(torn);
+        for rows in &mut self.manifolds {
+            rows.end_approach(self.h);
+        }
         self.pay_for_positions();
         self.add_drive_work();
     }
@@ -349,7 +358,7 @@ impl IslandSolver {
         self.add_relax_reactions();
     }
 
-    /// Bounce of what was hit, after the substeps.
+    /// Bounce of what was hit in this substep.
     pub fn restitution(&mut self) {
         if self.manifolds.iter().any(ManifoldRows::bounces) {
             self.sweep(Pass::Restitution);
