@@ -22,16 +22,20 @@ mod ballistics;
 mod chains;
 mod crowds;
 mod falls;
+mod impacts;
 mod incline;
 mod linkages;
 mod mjcf;
 mod motors;
 mod nets;
+mod overhang;
 mod pendulums;
 mod piles;
 mod ragdolls;
+mod rolling;
 mod springs;
 mod support;
+mod tops;
 mod trees;
 mod weightless;
 
@@ -94,6 +98,16 @@ pub fn registry() -> &'static [Scene] {
             linkages::LINKAGE,
             incline::HOLDS,
             incline::SLIDES,
+            incline::ROLLS,
+            rolling::SLIDE_TO_ROLL,
+            rolling::ROLLING_BALLS,
+            impacts::ELASTIC_PAIRS,
+            impacts::NEWTONS_CRADLE,
+            impacts::BOUNCING_BALLS,
+            overhang::BLOCK_OVERHANG,
+            tops::DZHANIBEKOV,
+            tops::SYMMETRIC_TOP,
+            tops::SPINNING_TOP,
             springs::SPRING,
             springs::SPRING_CHAIN,
             springs::SPRINGS_RATIO,

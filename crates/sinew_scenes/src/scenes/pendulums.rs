@@ -1,7 +1,7 @@
 //! Things that swing freely: pendulum, double and triple pendulum.
 
 use super::metric::{Expected, Metric};
-use super::parts::{GRAVITY, ball, ghost, hook, join, thin_rod, tilt};
+use super::parts::{GRAVITY, agm, ball, ghost, hook, join, thin_rod, tilt};
 use super::{Instance, Scene, Script, Setting, Setup};
 use sinew::math::{Vec3, max, trig};
 use sinew::physics::{BodyId, JointId, World};
@@ -58,12 +58,9 @@ struct Bob {
 /// `2π √(l/g) · 2 K(sin(θ/2)) / π`, with `K` by the arithmetic-geometric mean (Gauss); the bob is fixed to its rod, a
 /// compound pendulum of moment `m (l² + 0.4 r²)`.
 fn pendulum_period(amplitude: f32) -> f64 {
-    let (mut a, mut b) = (1.0, f64::from(trig::cos(0.5 * amplitude.to_radians())));
-    for _ in 0..6 {
-        (a, b) = (0.5 * (a + b), (a * b).sqrt());
-    }
+    let mean = agm(1.0, f64::from(trig::cos(0.5 * amplitude.to_radians())));
     let radius = f64::from(BOB_RADIUS);
-    core::f64::consts::TAU * ((1.0 + 0.4 * radius * radius) / f64::from(GRAVITY)).sqrt() / a
+    core::f64::consts::TAU * ((1.0 + 0.4 * radius * radius) / f64::from(GRAVITY)).sqrt() / mean
 }
 
 impl Bob {

@@ -9,7 +9,15 @@ const NOT_YET: &[(&str, &[&str])] = &[
 ];
 
 /// Scenes in which gravity has no part.
-const BLIND_TO_GRAVITY: &[&str] = &["zero_gravity_pile", "spin_double", "spin_triple", "spin_ragdoll"];
+const BLIND_TO_GRAVITY: &[&str] = &[
+    "zero_gravity_pile",
+    "spin_double",
+    "spin_triple",
+    "spin_ragdoll",
+    "elastic_pairs",
+    "dzhanibekov",
+    "symmetric_top",
+];
 
 fn metrics_after(scene: &Scene, settings: &Settings, gravity_factor: f32) -> Vec<Metric> {
     let mut run = scene.start_under(settings, gravity_factor);
@@ -83,6 +91,16 @@ scenes!(
         linkage,
         incline_holds,
         incline_slides,
+        incline_rolls,
+        slide_to_roll,
+        rolling_balls,
+        elastic_pairs,
+        newtons_cradle,
+        bouncing_balls,
+        block_overhang,
+        dzhanibekov,
+        symmetric_top,
+        spinning_top,
         spring,
         spring_chain,
         springs_ratio,
