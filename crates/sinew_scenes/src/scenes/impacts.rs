@@ -2,7 +2,7 @@
 
 use super::metric::{Expected, Metric};
 use super::parts::{GRAVITY, ball, floor, hook, join, made_of, tilt};
-use super::support::Support;
+use super::pendulums::pendulum_period;
 use super::weightless::weightless_world;
 use super::{Instance, Scene, Script, Setting, Setup};
 use sinew::math::{Vec3, max};
@@ -121,8 +121,7 @@ fn newtons_cradle(setup: &Setup<'_>) -> Instance {
         (ball, pivot)
     };
     let balls = (0..5).map(hung).collect();
-    let support = Support::new(&world);
-    Instance::new(world, Cradle { balls, lift, support, out: 0.0, left_behind: 0.0 })
+    Instance::new(world, Cradle { balls, lift, before: -lift, quarter: None, out: 0.0, left_behind: 0.0 })
 }
 
 struct Cradle {
@@ -130,7 +129,10 @@ struct Cradle {
     balls: Vec<(BodyId, Vec3)>,
     /// Degrees.
     lift: f32,
-    support: Support,
+    /// How far the first ball was from hanging straight one step ago, degrees.
+    before: f32,
+    /// When it first hung straight, s.
+    quarter: Option<f32>,
     /// How far the last ball has come, degrees.
     out: f32,
     /// How far the others were from hanging straight then, degrees.
@@ -139,11 +141,16 @@ struct Cradle {
 
 impl Script for Cradle {
     fn after_step(&mut self, world: &mut World) {
-        self.support.after_step(world);
         let lean = |&(ball, pivot): &(BodyId, Vec3)| {
             let from = world.center_of_mass(ball) - pivot;
             sinew::math::trig::atan2(from.x, -from.y).to_degrees()
         };
+        let first = lean(&self.balls[0]);
+        if self.quarter.is_none() && first >= 0.0 {
+            let ago = first / (first - self.before);
+            self.quarter = Some(world.time() as f32 - ago * world.def().dt());
+        }
+        self.before = first;
         let (last, others) = self.balls.split_last().expect("there are five");
         if lean(last) > self.out {
             self.out = lean(last);
@@ -152,10 +159,11 @@ impl Script for Cradle {
     }
 
     fn metrics(&self, _: &World) -> Vec<Metric> {
+        let quarter = 0.25 * pendulum_period(self.lift, CRADLE_RADIUS);
         vec![
             Metric::new("last_out_deg", self.out, Expected::near(self.lift, 0.02)),
             Metric::new("left_behind_deg", self.left_behind, Expected::AtMost(1.0)),
-            self.support.metric(),
+            Metric::awaited("quarter_s", self.quarter, Expected::near(quarter, 0.003)),
         ]
     }
 }

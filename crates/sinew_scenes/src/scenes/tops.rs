@@ -14,7 +14,7 @@ pub(super) const DZHANIBEKOV: Scene = Scene {
     steps: 700,
     settings: &[
         Setting::number("spin", 10.0, (1.0, 30.0), "about the middle axis, rad/s"),
-        Setting::number("nudge", 0.02, (0.001, 0.5), "about the long axis, rad/s"),
+        Setting::number("nudge", 0.1, (0.001, 0.5), "about the long axis, rad/s"),
     ],
     build: dzhanibekov,
 };
