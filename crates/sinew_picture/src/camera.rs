@@ -1,5 +1,5 @@
 use sinew::math::{Vec3, clamp, max, normalize_or, trig};
-use sinew::physics::aabb::Aabb;
+use sinew::physics::boxes::Aabb;
 
 /// A pinhole camera that stands upright.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use crate::draw::{self, Solid};
 use crate::scene::{Line, LineDepth, Material, Model, Scene};
 use sinew::math::{Transform, Vec3, max};
-use sinew::physics::aabb::Aabb;
+use sinew::physics::boxes::Aabb;
 use sinew::physics::particles::{ParticleGroup, SpringDef};
 use sinew::physics::{BodyId, BodyKind, DebugDraw, DrawKind, JointDef, JointId, Shape, World};
 

@@ -1,7 +1,7 @@
 //! How a picture looks at a scene.
 
 use sinew::math::Vec3;
-use sinew::physics::aabb::Aabb;
+use sinew::physics::boxes::Aabb;
 
 /// From where a picture looks at a scene, and at what.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use super::Subject;
 use crate::progress::Progress;
 use sinew::math::{Vec3, clamp, max};
-use sinew::physics::aabb::Aabb;
+use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyId, BodyKind};
 use sinew_picture::world::{self, Frame};
