@@ -19,15 +19,18 @@ mod setting;
 mod sight;
 
 mod ballistics;
+mod boxes;
 mod chains;
 mod crowds;
 mod falls;
+mod gimbal;
 mod impacts;
 mod incline;
 mod linkages;
 mod mjcf;
 mod motors;
 mod nets;
+mod orientation;
 mod overhang;
 mod pendulums;
 mod piles;
@@ -111,6 +114,10 @@ pub fn registry() -> &'static [Scene] {
             springs::SPRING,
             springs::SPRING_CHAIN,
             springs::SPRINGS_RATIO,
+            gimbal::GIMBAL,
+            orientation::MATRIX_DRIFT,
+            orientation::VERSOR,
+            orientation::HELPERS,
             weightless::ZERO_GRAVITY_PILE,
             weightless::SPIN_DOUBLE,
             weightless::SPIN_TRIPLE,
@@ -136,6 +143,8 @@ pub fn registry() -> &'static [Scene] {
             crowds::PILE,
             trees::HEAVY_FOOT,
             trees::MASS_RATIO,
+            boxes::AABB_VS_OBB,
+            boxes::POINT_IN_OBB,
         ]
     }
 }
