@@ -19,6 +19,7 @@ pub(crate) mod placed;
 mod point;
 pub(crate) mod segment;
 pub(crate) mod separation;
+mod world;
 
 pub use aabb::{Aabb, HALF_SPACE_REACH};
 pub use cuboid::Cuboid;
