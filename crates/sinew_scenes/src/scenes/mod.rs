@@ -20,6 +20,7 @@ mod setting;
 mod ballistics;
 mod chains;
 mod crowds;
+mod engine;
 mod falls;
 mod incline;
 mod linkages;
@@ -118,6 +119,8 @@ pub fn registry() -> &'static [Scene] {
             nets::JOINT_GRID,
             nets::NET,
             crowds::PILE,
+            engine::FRAME_RATES,
+            engine::TAUTOCHRONE,
             trees::HEAVY_FOOT,
             trees::MASS_RATIO,
         ]

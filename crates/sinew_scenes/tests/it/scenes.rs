@@ -107,6 +107,8 @@ scenes!(
         hanging_rope,
         heavy_foot,
         mass_ratio,
+        frame_rates,
+        tautochrone,
     ],
     large: [chain_100_links, joint_grid, net, ragdoll_pile],
 );
