@@ -1,6 +1,7 @@
 //! A body as the world keeps it.
 
 use crate::def::{BodyDef, BodyKind};
+use crate::force::BodyForces;
 use crate::shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
 
@@ -57,6 +58,8 @@ pub(crate) struct Body {
     /// Applied by the user for the next step, N and N·m, world axes.
     pub force: Vec3,
     pub torque: Vec3,
+    /// Those that last.
+    pub forces: BodyForces,
     pub principal_from_body: Transform,
     /// kg; 0 unless dynamic.
     pub mass: f32,
@@ -115,6 +118,7 @@ impl Body {
             velocity: Velocity { linear: def.linear_velocity, angular: def.angular_velocity },
             force: Vec3::ZERO,
             torque: Vec3::ZERO,
+            forces: BodyForces::default(),
             principal_from_body,
             mass,
             inertia: moments,

@@ -35,6 +35,10 @@ id! {
     GroupId
 }
 id! {
+    /// A field of a [`World`](crate::World).
+    FieldId
+}
+id! {
     /// An object of the user's own kind in a [`World`](crate::World).
     ObjectId
 }

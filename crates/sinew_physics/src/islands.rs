@@ -1,8 +1,9 @@
-//! `islands` and `color`: which active bodies hang together through contacts, joints and particles.
+//! `islands` and `color`: which active bodies hang together through contacts, joints, particles and attraction.
 
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::Contact;
+use crate::field::{Fields, Target};
 use crate::joint::Joint;
 use crate::particles::ParticleGroup;
 use crate::project::{Neighbors, TakenGroup};
@@ -68,6 +69,7 @@ impl Islands {
         joints: &Arena<Joint>,
         contacts: &[Contact],
         groups: &mut Arena<ParticleGroup>,
+        fields: &Fields<'_>,
         dt: f32,
     ) {
         let first_group = bodies.slot_count() as u32;
@@ -93,6 +95,7 @@ impl Islands {
                 }
             }
         }
+        self.join_attracted(bodies, groups, fields);
         self.collect(bodies, joints, contacts);
         for (index, _) in groups.iter() {
             let island = self.island_of(first_group + index);
@@ -106,6 +109,23 @@ impl Islands {
             group: core::mem::take(groups.at_mut(index)),
             near: core::mem::take(&mut self.neighbors[index as usize]),
         }));
+    }
+
+    /// All that a field lets attract each other.
+    fn join_attracted(&mut self, bodies: &Arena<Body>, groups: &Arena<ParticleGroup>, fields: &Fields<'_>) {
+        let first_group = bodies.slot_count() as u32;
+        for (field, _) in fields.mutual() {
+            let reached = |body: &Body| body.is_active() && field.reaches(&Target::of_body(body));
+            let bodies = bodies.iter().filter(|(_, body)| reached(body)).map(|(index, _)| index);
+            let reached = |group: &ParticleGroup| {
+                (0..group.positions().len()).any(|i| field.reaches(&Target::of_particle(group, i)))
+            };
+            let groups = groups.iter().filter(|(_, group)| reached(group)).map(|(i, _)| first_group + i);
+            let mut first = None;
+            for slot in bodies.chain(groups) {
+                self.join(*first.get_or_insert(slot), slot);
+            }
+        }
     }
 
     /// Gives the groups back.

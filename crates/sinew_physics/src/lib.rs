@@ -4,6 +4,8 @@
 #![deny(unsafe_code)] // `slices` alone allows it
 
 pub mod def;
+pub mod field;
+mod force;
 pub mod stage;
 pub mod step;
 mod world;
@@ -21,9 +23,9 @@ mod tasks;
 mod touch;
 mod update;
 
-pub mod aabb;
 mod arena;
 mod body;
+pub mod boxes;
 mod contact;
 mod distance;
 mod draw;
@@ -41,9 +43,15 @@ mod snapshot;
 mod spatial;
 
 pub use body::Velocity;
+pub use boxes::{Aabb, Obb};
 pub use def::{BodyDef, BodyKind, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
-pub use id::{BodyId, GroupId, JointId, ObjectId};
+pub use field::{
+    Buoyancy, Drag, Explosion, Fade, FieldDef, FieldKind, FieldPoint, Gusts, MutualGravity, Occlusion,
+    PointGravity, Region, UniformGravity, Wind,
+};
+pub use force::{ForceDef, ForceFrame, ForceId, Wrench};
+pub use id::{BodyId, FieldId, GroupId, JointId, ObjectId};
 pub use joint::Reaction;
 pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,

@@ -5,6 +5,8 @@ use crate::body::{Body, BodyShape, Rest, Velocity};
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use crate::contact::{Contact, ContactKey, ContactMemory, PointImpulse};
 use crate::def::{BodyKind, Sleeping, WorldDef};
+use crate::field::FieldDef;
+use crate::force::BodyForces;
 use crate::joint::Joint;
 use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
@@ -32,6 +34,7 @@ impl World {
             save_contact(w, contact);
         }
         self.groups.save(w, |w, group| group.save(w));
+        self.fields.save(w, |w, field| field.save(w));
         w.count(self.parted.disabled.len());
         for &(a, b) in &self.parted.disabled {
             w.u32(a);
@@ -47,8 +50,8 @@ impl World {
     /// since are dropped.
     ///
     /// # Errors
-    /// If the bytes are not a snapshot of this version, or an object is not there whose kind was not registered; the world
-    /// is then as it was.
+    /// If the bytes are not a snapshot of this version, a field names a function that is not registered, or an object is not
+    /// there whose kind was not registered; the world is then as it was.
     ///
     /// # Panics
     /// If an object does not take the state that it wrote itself.
@@ -72,6 +75,7 @@ impl World {
             return Err(r.error("contacts are out of order"));
         }
         let groups = Arena::load(r, |r| load_group(r, &bodies))?;
+        let fields = Arena::load(r, |r| FieldDef::load(r, &self.functions))?;
         let count = r.count(8)?;
         let mut disabled = Vec::with_capacity(count);
         for _ in 0..count {
@@ -85,7 +89,7 @@ impl World {
         (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
         (self.bodies, self.joints, self.contacts) = (bodies, joints, contacts);
         self.parted = PartedPairs::new(disabled);
-        self.groups = groups;
+        (self.groups, self.fields) = (groups, fields);
         self.events = Events::default();
         self.broad = BroadPhase::default();
         self.broad.invalidate();
@@ -153,6 +157,7 @@ fn save_body(w: &mut Writer, body: &Body) {
     w.vec3(body.velocity.angular);
     w.vec3(body.force);
     w.vec3(body.torque);
+    body.forces.save(w);
     w.transform(body.principal_from_body);
     w.f32(body.mass);
     w.vec3(body.inertia);
@@ -188,6 +193,7 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
     let (world_from_principal, previous) = (r.transform()?, r.transform()?);
     let velocity = Velocity { linear: r.vec3()?, angular: r.vec3()? };
     let (force, torque) = (r.vec3()?, r.vec3()?);
+    let forces = BodyForces::load(r)?;
     let principal_from_body = r.transform()?;
     let (mass, inertia) = (r.f32()?, r.vec3()?);
     let solid = mass > 0.0 && inertia.x > 0.0 && inertia.y > 0.0 && inertia.z > 0.0;
@@ -212,6 +218,7 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
         velocity,
         force,
         torque,
+        forces,
         principal_from_body,
         mass,
         inertia,
@@ -227,7 +234,27 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
 }
 
 fn save_shape(w: &mut Writer, s: &BodyShape) {
-    match s.shape {
+    save_geometry(w, &s.shape);
+    w.transform(s.principal_from_shape);
+    w.f32(s.density);
+    save_material(w, s.material);
+    save_filter(w, s.filter);
+    w.bool(s.sensing == Sensing::Sensor);
+}
+
+fn load_shape(r: &mut Reader<'_>) -> Result<BodyShape, ReadError> {
+    Ok(BodyShape {
+        shape: load_geometry(r)?,
+        principal_from_shape: r.transform()?,
+        density: r.f32()?,
+        material: load_material(r)?,
+        filter: load_filter(r)?,
+        sensing: if r.bool()? { Sensing::Sensor } else { Sensing::Solid },
+    })
+}
+
+pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {
+    match *shape {
         Shape::Box { half_extents } => {
             w.u8(0);
             w.vec3(half_extents);
@@ -243,14 +270,9 @@ fn save_shape(w: &mut Writer, s: &BodyShape) {
         }
         Shape::HalfSpace => w.u8(3),
     }
-    w.transform(s.principal_from_shape);
-    w.f32(s.density);
-    save_material(w, s.material);
-    save_filter(w, s.filter);
-    w.bool(s.sensing == Sensing::Sensor);
 }
 
-fn load_shape(r: &mut Reader<'_>) -> Result<BodyShape, ReadError> {
+pub(crate) fn load_geometry(r: &mut Reader<'_>) -> Result<Shape, ReadError> {
     let shape = match r.u8()? {
         0 => Shape::Box { half_extents: r.vec3()? },
         1 => Shape::Sphere { radius: r.f32()? },
@@ -259,14 +281,7 @@ fn load_shape(r: &mut Reader<'_>) -> Result<BodyShape, ReadError> {
         _ => return Err(r.error("unknown shape")),
     };
     shape.check().map_err(|what| r.error(what))?;
-    Ok(BodyShape {
-        shape,
-        principal_from_shape: r.transform()?,
-        density: r.f32()?,
-        material: load_material(r)?,
-        filter: load_filter(r)?,
-        sensing: if r.bool()? { Sensing::Sensor } else { Sensing::Solid },
-    })
+    Ok(shape)
 }
 
 pub(crate) fn save_material(w: &mut Writer, material: Material) {

@@ -1,5 +1,6 @@
 //! One step, in order. `docs/step.md` has a heading for each stage.
 
+use crate::field::Fields;
 use crate::object::lockstep;
 use crate::runner::TaskRunner;
 use crate::solver::View;
@@ -25,14 +26,15 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
     let World { def, bodies, joints, contacts, groups, objects, .. } = world;
     let World { events, broad, islands, parted, sleepers, .. } = world;
+    let fields = Fields::new(&world.fields, &world.functions, def, world.steps);
 
     stage(Stage::Pairs, &mut || broad.update(bodies, parted.of(joints), contacts, context.dt));
     stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
-    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, events));
-    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, context.dt));
+    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, &fields, events));
+    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, &fields, context.dt));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
 
-    let view = View { bodies, joints, contacts, def, h: context.h };
+    let view = View { bodies, joints, contacts, def, fields, h: context.h };
     if objects.is_empty() {
         let all = || Phase::of_step(context.substeps);
         islands.run(context.runner, |task| all().for_each(|phase| solve(phase, task, &view, context)));
@@ -47,7 +49,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     });
     stage(Stage::Finalize, &mut || finalize::finalize(&islands.solution().bodies, bodies, events, context));
     stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands));
-    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, sleepers, def.sleeping, context.dt));
+    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, &fields, sleepers, def.sleeping, context.dt));
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, events));
 }
 
@@ -61,7 +63,7 @@ pub(crate) fn solve(phase: Phase, task: &mut Task<'_>, view: &View<'_>, context:
             surroundings.make_room(island);
         }),
         Phase::Move(_) => {
-            stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity());
+            stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity(view, groups));
             stage(Stage::WarmStart, &mut || solver.warm_start());
             stage(Stage::Solve, &mut || solver.solve());
             stage(Stage::IntegratePosition, &mut || solver.integrate_position());

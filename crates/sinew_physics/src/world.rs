@@ -4,6 +4,7 @@ use crate::arena::Arena;
 use crate::body::{Body, Velocity};
 use crate::contact::Contact;
 use crate::def::{BodyDef, BodyKind, WorldDef};
+use crate::field::{FieldDef, Functions};
 use crate::id::{BodyId, GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
@@ -29,6 +30,8 @@ pub struct World {
     pub(crate) joints: Arena<Joint>,
     pub(crate) contacts: Vec<Contact>,
     pub(crate) groups: Arena<ParticleGroup>,
+    pub(crate) fields: Arena<FieldDef>,
+    pub(crate) functions: Functions,
     pub(crate) objects: Objects,
     pub(crate) parted: PartedPairs,
     pub(crate) events: Events,
@@ -57,6 +60,8 @@ impl World {
             joints: Arena::default(),
             contacts: Vec::new(),
             groups: Arena::default(),
+            fields: Arena::default(),
+            functions: Functions::default(),
             objects: Objects::default(),
             parted: PartedPairs::default(),
             events: Events::default(),
@@ -225,46 +230,6 @@ impl World {
         assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "a velocity is finite");
         wake(&mut self.bodies, id.index);
         self.expect_mut(id).velocity = velocity;
-    }
-
-    /// Impulse (N·s) at a world point: changes the velocity at once. No effect on static and kinematic bodies.
-    pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
-        assert!(impulse.is_finite() && point.is_finite(), "an impulse is finite");
-        wake(&mut self.bodies, id.index);
-        let body = self.expect_mut(id);
-        let turn = body.inverse_inertia_mul((point - body.center()).cross(impulse));
-        body.velocity.linear += impulse * body.inverse_mass();
-        body.velocity.angular += turn;
-    }
-
-    /// Impulse (N·s) at the centre of mass.
-    pub fn apply_impulse_at_center(&mut self, id: BodyId, impulse: Vec3) {
-        self.apply_impulse(id, impulse, self.center_of_mass(id));
-    }
-
-    /// Angular impulse (N·m·s).
-    pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Vec3) {
-        assert!(impulse.is_finite(), "an impulse is finite");
-        wake(&mut self.bodies, id.index);
-        let body = self.expect_mut(id);
-        body.velocity.angular += body.inverse_inertia_mul(impulse);
-    }
-
-    /// Force (N) at a world point for the next step.
-    pub fn apply_force(&mut self, id: BodyId, force: Vec3, point: Vec3) {
-        assert!(force.is_finite() && point.is_finite(), "a force is finite");
-        wake(&mut self.bodies, id.index);
-        let body = self.expect_mut(id);
-        body.force += force;
-        let torque = (point - body.center()).cross(force);
-        body.torque += torque;
-    }
-
-    /// Torque (N·m) for the next step.
-    pub fn apply_torque(&mut self, id: BodyId, torque: Vec3) {
-        assert!(torque.is_finite(), "a torque is finite");
-        wake(&mut self.bodies, id.index);
-        self.expect_mut(id).torque += torque;
     }
 
     /// Static, kinematic or dynamic.

@@ -9,6 +9,7 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, combine, slop};
 use crate::def::WorldDef;
+use crate::field::Fields;
 use crate::islands::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
 use crate::spatial::{ZERO6, join};
@@ -23,6 +24,7 @@ pub(crate) struct View<'a> {
     pub joints: &'a Arena<Joint>,
     pub contacts: &'a [Contact],
     pub def: &'a WorldDef,
+    pub fields: Fields<'a>,
     /// Substep, seconds.
     pub h: f32,
 }
@@ -125,6 +127,7 @@ impl IslandSolver {
         self.order_trees(island, view);
         self.make_room(island);
         self.copy_bodies(island, view);
+        self.keep_applied(view);
         self.copy_joints(island, view);
         self.weigh_joints();
         self.refresh_joints();

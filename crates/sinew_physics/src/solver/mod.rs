@@ -10,6 +10,7 @@ mod contact_rows;
 mod disk;
 mod drives;
 mod energy;
+mod fields;
 pub(crate) mod lcp;
 mod limit_rows;
 mod loops;
@@ -21,15 +22,18 @@ mod sweep;
 mod tree;
 mod tree_joints;
 
+use crate::force::Wrench;
 use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
+use crate::project::TakenGroup;
 use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, angular, dot, join, linear};
 pub(crate) use build::View;
 use conjugate::Conjugate;
 use contact_rows::ManifoldRows;
 use drives::SoftRow;
 use energy::Momentum;
+use fields::Attraction;
 use limit_rows::LimitRow;
 use loops::Loops;
 use response::Response;
@@ -69,7 +73,7 @@ pub(crate) struct SolverBody {
     pub excess: Vec3,
     /// Inverse of inertia and excess, world axes.
     pub inverse_inertia: Sym3,
-    /// Gravity's and the user's, N and N·m.
+    /// Gravity's, the user's and those of fields, N and N·m.
     pub force: Vec3,
     pub torque: Vec3,
     /// Angular momentum that the body would have at the substep's end without impulses, N·m·s.
@@ -180,6 +184,9 @@ pub(crate) struct IslandSolver {
     moved: Vec<Vec6>,
     /// What bodies gain after that without having it from their joints; what contacts and loops gave before, negative.
     accounted: Vec<Vec6>,
+    /// What acts through the whole step on each moving body, beside fields and lasting forces; none without those.
+    applied: Vec<Wrench>,
+    attraction: Attraction,
     scratch: Scratch,
     unrest: Unrest,
     conjugate: Conjugate,
@@ -224,12 +231,15 @@ struct Scratch {
 }
 
 impl IslandSolver {
-    /// Forces to velocities: damping on the old velocity, gravity and applied forces, speed limits, the spin of the middle of
-    /// the substep by gyroscopic torque. Limits act here, never after the solve: there they tear joints.
-    pub fn integrate_velocity(&mut self) {
+    /// Forces to velocities: damping on the old velocity, gravity, applied forces and fields, speed limits, the spin of the
+    /// middle of the substep by gyroscopic torque. Limits act here, never after the solve: there they tear joints.
+    pub fn integrate_velocity(&mut self, view: &View<'_>, groups: &mut [TakenGroup]) {
         let h = self.h;
         for rows in &mut self.manifolds {
             rows.begin_approach(&self.velocities);
+        }
+        if !(self.applied.is_empty() && view.fields.is_empty()) {
+            self.add_fields(view, groups);
         }
         self.begin_drives();
         self.kinetic_before = self.kinetic_energy(&self.velocities[..self.links.len()]);

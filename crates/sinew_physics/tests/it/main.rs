@@ -2,9 +2,11 @@
 
 mod allocations;
 mod bounce;
+mod boxes;
 mod build;
 mod closed_forms;
 mod collide;
+mod fields;
 mod humanoid;
 mod joints;
 mod objects;

@@ -18,15 +18,18 @@ mod metric;
 mod setting;
 
 mod ballistics;
+mod boxes;
 mod chains;
 mod crowds;
 mod engine;
 mod falls;
+mod gimbal;
 mod incline;
 mod linkages;
 mod mjcf;
 mod motors;
 mod nets;
+mod orientation;
 mod pendulums;
 mod piles;
 mod ragdolls;
@@ -96,6 +99,10 @@ pub fn registry() -> &'static [Scene] {
             springs::SPRING,
             springs::SPRING_CHAIN,
             springs::SPRINGS_RATIO,
+            gimbal::GIMBAL,
+            orientation::MATRIX_DRIFT,
+            orientation::VERSOR,
+            orientation::HELPERS,
             weightless::ZERO_GRAVITY_PILE,
             weightless::SPIN_DOUBLE,
             weightless::SPIN_TRIPLE,
@@ -123,6 +130,8 @@ pub fn registry() -> &'static [Scene] {
             engine::TAUTOCHRONE,
             trees::HEAVY_FOOT,
             trees::MASS_RATIO,
+            boxes::AABB_VS_OBB,
+            boxes::POINT_IN_OBB,
         ]
     }
 }
