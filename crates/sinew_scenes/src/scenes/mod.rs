@@ -22,6 +22,7 @@ mod ballistics;
 mod boxes;
 mod chains;
 mod crowds;
+mod engine;
 mod falls;
 mod gimbal;
 mod impacts;
@@ -141,6 +142,8 @@ pub fn registry() -> &'static [Scene] {
             nets::JOINT_GRID,
             nets::NET,
             crowds::PILE,
+            engine::FRAME_RATES,
+            engine::TAUTOCHRONE,
             trees::HEAVY_FOOT,
             trees::MASS_RATIO,
             boxes::AABB_VS_OBB,

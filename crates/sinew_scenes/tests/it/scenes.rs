@@ -131,6 +131,8 @@ scenes!(
         hanging_rope,
         heavy_foot,
         mass_ratio,
+        frame_rates,
+        tautochrone,
         aabb_vs_obb,
         point_in_obb,
     ],
