@@ -17,21 +17,26 @@ mod instance;
 mod metric;
 mod setting;
 
+mod air;
 mod ballistics;
+mod blasts;
 mod chains;
 mod crowds;
 mod falls;
+mod forces;
 mod incline;
 mod linkages;
 mod mjcf;
 mod motors;
 mod nets;
+mod orbits;
 mod pendulums;
 mod piles;
 mod ragdolls;
 mod springs;
 mod support;
 mod trees;
+mod water;
 mod weightless;
 
 pub use instance::{Instance, Script};
@@ -85,6 +90,16 @@ pub fn registry() -> &'static [Scene] {
             ballistics::FREE_FALL,
             ballistics::PROJECTILE,
             ballistics::BOUNCE,
+            forces::TWO_MEN,
+            forces::PUSH,
+            forces::BULLET,
+            orbits::KEPLER,
+            orbits::SUN_EARTH,
+            orbits::THREE_BODIES,
+            air::WIND,
+            air::TERMINAL_VELOCITY,
+            water::FLOAT,
+            blasts::EXPLOSION,
             pendulums::PENDULUM,
             pendulums::DOUBLE_PENDULUM,
             pendulums::TRIPLE_PENDULUM,

@@ -16,7 +16,7 @@ pub(super) const ZERO_GRAVITY_PILE: Scene = Scene {
     build: zero_gravity_pile,
 };
 
-fn weightless_world() -> World {
+pub(super) fn weightless_world() -> World {
     World::new(WorldDef { gravity: Vec3::ZERO, sleeping: Sleeping::Off, ..WorldDef::default() })
 }
 
