@@ -133,6 +133,28 @@ impl Body {
         }
     }
 
+    /// Where the principal frame of a kinematic body comes to be by its velocity, after `count` substeps of `h` seconds.
+    pub fn carried(&self, h: f32, count: u32) -> Transform {
+        let mut pose = self.world_from_principal;
+        for _ in 0..count {
+            pose = Transform::new(
+                pose.translation + self.velocity.linear * h,
+                pose.rotation.integrate(self.velocity.angular, h),
+            );
+        }
+        pose
+    }
+
+    /// Mass, centre and inertia in the body's frame.
+    pub fn mass_properties(&self) -> MassProperties {
+        let body_from_principal = self.principal_from_body.inverse();
+        MassProperties {
+            mass: self.mass,
+            center: body_from_principal.translation,
+            inertia: Sym3::from_rotated_diagonal(body_from_principal.rotation, self.inertia),
+        }
+    }
+
     pub fn world_from_body(&self) -> Transform {
         self.world_from_principal * self.principal_from_body
     }

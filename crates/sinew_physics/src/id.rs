@@ -38,3 +38,7 @@ id! {
     /// A field of a [`World`](crate::World).
     FieldId
 }
+id! {
+    /// An object of the user's own kind in a [`World`](crate::World).
+    ObjectId
+}

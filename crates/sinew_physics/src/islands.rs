@@ -9,7 +9,7 @@ use crate::particles::ParticleGroup;
 use crate::project::{Neighbors, TakenGroup};
 use crate::runner::TaskRunner;
 use crate::solver::Solution;
-use crate::tasks::{Queue, Task, Workspace};
+use crate::tasks::{Queue, Task, Workspace, Workspaces};
 
 /// Members of one island, by index, each list ascending.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +40,8 @@ pub(crate) struct Islands {
     solution: Solution,
     /// One for each thread that has worked at the same time as others.
     idle: Vec<Workspace>,
+    /// One for each island, where they go in lockstep.
+    own: Vec<Workspace>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -196,14 +198,39 @@ impl Islands {
         }
     }
 
-    /// Calls `work` once for each island, on `runner`'s threads.
+    /// Calls `work` once for each island, on `runner`'s threads: all that there is to do for it in this step.
     pub fn run(&mut self, runner: &dyn TaskRunner, work: impl Fn(&mut Task<'_>) + Sync) {
+        let mut idle = core::mem::take(&mut self.idle);
+        self.run_in(Workspaces::Idle(&mut idle), runner, work);
+        self.idle = idle;
+    }
+
+    /// Likewise for a part of it: each island finds its workspace as the part before left it.
+    pub fn run_part(&mut self, runner: &dyn TaskRunner, work: impl Fn(&mut Task<'_>) + Sync) {
+        let mut own = core::mem::take(&mut self.own);
+        if own.len() < self.count {
+            own.resize_with(self.count, Workspace::default);
+        }
+        self.run_in(Workspaces::Own(&mut own), runner, work);
+        self.own = own;
+    }
+
+    fn run_in(
+        &mut self,
+        workspaces: Workspaces<'_>,
+        runner: &dyn TaskRunner,
+        work: impl Fn(&mut Task<'_>) + Sync,
+    ) {
         let mut solution = core::mem::take(&mut self.solution);
         let mut taken = core::mem::take(&mut self.taken);
-        let mut idle = core::mem::take(&mut self.idle);
         solution.resize(self.bodies.numbers.len(), self.joints.numbers.len(), self.contacts.numbers.len());
-        Queue::new(self.iter(), &mut taken, &mut solution, &mut idle).run(runner, self.count, work);
-        (self.solution, self.taken, self.idle) = (solution, taken, idle);
+        Queue::new(self.iter(), &mut taken, &mut solution, workspaces).run(runner, self.count, work);
+        (self.solution, self.taken) = (solution, taken);
+    }
+
+    /// Between two parts: the workspaces in the order of islands, and the particle groups.
+    pub fn halted(&mut self) -> (&mut [Workspace], &mut [TakenGroup]) {
+        (&mut self.own[..self.count], &mut self.taken)
     }
 }
 

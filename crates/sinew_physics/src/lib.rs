@@ -21,16 +21,18 @@ mod sleep;
 mod solver;
 mod tasks;
 mod touch;
+mod update;
 
-pub mod aabb;
 mod arena;
 mod body;
+pub mod boxes;
 mod contact;
 mod distance;
 mod draw;
 pub mod id;
 pub mod joint;
 mod mass;
+pub mod object;
 pub mod particles;
 mod query;
 pub mod ray;
@@ -41,6 +43,7 @@ mod snapshot;
 mod spatial;
 
 pub use body::Velocity;
+pub use boxes::{Aabb, Obb};
 pub use def::{BodyDef, BodyKind, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
 pub use field::{
@@ -48,14 +51,16 @@ pub use field::{
     PointGravity, Region, UniformGravity, Wind,
 };
 pub use force::{ForceDef, ForceFrame, ForceId, Wrench};
-pub use id::{BodyId, FieldId, GroupId, JointId};
+pub use id::{BodyId, FieldId, GroupId, JointId, ObjectId};
 pub use joint::Reaction;
 pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
     Spring, Strength,
 };
+pub use object::{Corrections, Forces, PhysicsObject, Substep};
 pub use query::{BodyHit, Energy, Momentum};
 pub use runner::{Serial, TaskRunner, Threads};
 pub use shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
 pub use touch::Events;
+pub use update::Update;
 pub use world::World;

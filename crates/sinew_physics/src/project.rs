@@ -2,6 +2,7 @@
 
 use crate::arena::Arena;
 use crate::body::Body;
+use crate::boxes::Overlap;
 use crate::def::BodyKind;
 use crate::field::{Fields, Target};
 use crate::islands::Island;

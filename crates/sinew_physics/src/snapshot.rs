@@ -40,13 +40,21 @@ impl World {
             w.u32(a);
             w.u32(b);
         }
+        self.objects.save(w);
     }
 
     /// Brings back a saved state. Events are those of no step.
     ///
+    /// Objects of the user's own take their state where they are: the one that the snapshot was taken of, if it is still
+    /// there, or else a new one of a kind that [`register_kind`](Self::register_kind) was told. Objects that were added
+    /// since are dropped.
+    ///
     /// # Errors
-    /// If the bytes are not a snapshot of this version, or a field names a function that is not registered; the world is
-    /// then as it was.
+    /// If the bytes are not a snapshot of this version, a field names a function that is not registered, or an object is not
+    /// there whose kind was not registered; the world is then as it was.
+    ///
+    /// # Panics
+    /// If an object does not take the state that it wrote itself.
     pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
             return Err(ReadError { at: 0, what: "is not a world snapshot of this version" });
@@ -76,6 +84,7 @@ impl World {
         if !disabled.is_sorted() {
             return Err(r.error("disabled pairs are out of order"));
         }
+        self.objects.load(r)?;
         self.def = def;
         (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
         (self.bodies, self.joints, self.contacts) = (bodies, joints, contacts);
@@ -94,17 +103,20 @@ impl World {
         sinew_math::hash::hash_bytes(w.as_bytes())
     }
 
-    /// Marks the present state as the one that [`reset`](Self::reset) returns to.
+    /// Marks the present state as the one that [`reset`](Self::reset) returns to: all that [`save`](Self::save) writes.
     pub fn mark(&mut self) {
         let mut w = Writer::reuse(core::mem::take(&mut self.marked));
         self.save(&mut w);
         self.marked = w.into_bytes();
     }
 
-    /// Returns to the marked state, exactly.
+    /// Returns to the marked state, exactly: what follows has the same bits as what followed the mark, ids of what is
+    /// added included. What was added since is gone, what was taken out is back; [`events`](Self::events) are those of no
+    /// step. Settings that are not part of the state (threads, kinds) stay.
     ///
     /// # Panics
-    /// If no state was marked.
+    /// If no state was marked, or an object was taken out since whose kind was not
+    /// [registered](Self::register_kind).
     pub fn reset(&mut self) {
         assert!(!self.marked.is_empty(), "a state was marked");
         let marked = core::mem::take(&mut self.marked);
@@ -117,6 +129,7 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
     w.vec3(def.gravity);
     w.u64(def.step_nanoseconds);
     w.u32(def.substeps);
+    w.u32(def.catch_up_steps);
     w.bool(def.sleeping == Sleeping::On);
     w.f32(def.max_speed);
     w.f32(def.max_turn);
@@ -124,13 +137,10 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
 
 fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
     let gravity = r.vec3()?;
-    let (step_nanoseconds, substeps) = (r.u64()?, r.u32()?);
-    if step_nanoseconds == 0 || substeps == 0 {
-        return Err(r.error("a step takes no time"));
-    }
+    let (step_nanoseconds, substeps, catch_up_steps) = (r.u64()?, r.u32()?, r.u32()?);
     let sleeping = if r.bool()? { Sleeping::On } else { Sleeping::Off };
-    let def =
-        WorldDef { gravity, step_nanoseconds, substeps, sleeping, max_speed: r.f32()?, max_turn: r.f32()? };
+    let (max_speed, max_turn) = (r.f32()?, r.f32()?);
+    let def = WorldDef { gravity, step_nanoseconds, substeps, catch_up_steps, sleeping, max_speed, max_turn };
     def.check().map_err(|what| r.error(what))?;
     Ok(def)
 }

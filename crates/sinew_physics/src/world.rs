@@ -8,6 +8,7 @@ use crate::field::{FieldDef, Functions};
 use crate::id::{BodyId, GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
+use crate::object::Objects;
 use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
 use crate::particles::{AttachmentTarget, GroupDef, ParticleGroup};
@@ -16,7 +17,7 @@ use crate::shape::MassProperties;
 use crate::stage::{NoProfiler, Profiler};
 use crate::step::{StepContext, step};
 use crate::touch::{Events, wake};
-use sinew_math::{Sym3, Transform, Vec3};
+use sinew_math::{Transform, Vec3};
 
 /// Bodies and joints, stepped at a fixed rate.
 ///
@@ -31,6 +32,7 @@ pub struct World {
     pub(crate) groups: Arena<ParticleGroup>,
     pub(crate) fields: Arena<FieldDef>,
     pub(crate) functions: Functions,
+    pub(crate) objects: Objects,
     pub(crate) parted: PartedPairs,
     pub(crate) events: Events,
     pub(crate) broad: BroadPhase,
@@ -60,6 +62,7 @@ impl World {
             groups: Arena::default(),
             fields: Arena::default(),
             functions: Functions::default(),
+            objects: Objects::default(),
             parted: PartedPairs::default(),
             events: Events::default(),
             broad: BroadPhase::default(),
@@ -157,21 +160,10 @@ impl World {
     /// One step with the host's threads and stage times. The result does not depend on either.
     pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
         let (dt, substeps) = (self.def.dt(), self.def.substeps);
-        let context = StepContext { dt, h: dt / substeps as f32, substeps, runner, profiler };
+        let h = dt / substeps as f32;
+        let context = StepContext { dt, h, substeps, time: self.time(), runner, profiler };
         step(self, &context);
         self.steps += 1;
-    }
-
-    /// Runs the whole steps that `nanoseconds` more of time hold; gives the rest as a share of a step, 0..1, for
-    /// [`interpolated`](Self::interpolated). Time is counted in whole nanoseconds, so the state after step k is the same
-    /// at any frame rate.
-    pub fn update(&mut self, nanoseconds: u64) -> f32 {
-        self.pending_nanoseconds += nanoseconds;
-        while self.pending_nanoseconds >= self.def.step_nanoseconds {
-            self.pending_nanoseconds -= self.def.step_nanoseconds;
-            self.step();
-        }
-        self.pending_nanoseconds as f32 / self.def.step_nanoseconds as f32
     }
 
     /// Steps taken.
@@ -247,13 +239,7 @@ impl World {
 
     /// Mass (0 unless dynamic), centre and inertia in the body's frame.
     pub fn mass(&self, id: BodyId) -> MassProperties {
-        let body = self.expect(id);
-        let body_from_principal = body.principal_from_body.inverse();
-        MassProperties {
-            mass: body.mass,
-            center: body_from_principal.translation,
-            inertia: Sym3::from_rotated_diagonal(body_from_principal.rotation, body.inertia),
-        }
+        self.expect(id).mass_properties()
     }
 
     /// False while it sleeps.

@@ -21,7 +21,7 @@ mod snapshot;
 pub use contact::{BodyImpulse, Obstacle, ObstacleBody};
 pub use def::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, RopeDef, SpringDef};
 
-use crate::aabb::Aabb;
+use crate::boxes::Aabb;
 use crate::shape::{Filter, Material};
 use contact::{Grip, Touch};
 use forest::{Forest, Freedom, System};
@@ -181,7 +181,7 @@ impl ParticleGroup {
         let mut bounds = Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
         for i in 0..self.positions.len() {
             for center in [self.positions[i], self.previous[i]] {
-                bounds = bounds.merge(&Aabb::around(center, Vec3::splat(self.radii[i])));
+                bounds = bounds.merge(&Aabb::reaching(center, Vec3::splat(self.radii[i])));
             }
         }
         bounds
@@ -209,6 +209,17 @@ impl ParticleGroup {
     pub fn apply_impulse(&mut self, particle: u32, impulse: Vec3) {
         let i = particle as usize;
         self.velocities[i] += impulse / self.masses[i];
+    }
+
+    /// Moves a particle by `by` (m, world), with the velocity that takes it there within `h` seconds.
+    ///
+    /// # Panics
+    /// If there is no such particle, or a number is not finite.
+    pub fn correct(&mut self, particle: u32, by: Vec3, h: f32) {
+        let velocity = by / h;
+        assert!(velocity.is_finite(), "a particle's way is finite");
+        self.positions[particle as usize] += by;
+        self.velocities[particle as usize] += velocity;
     }
 
     /// Moves the group by `h` seconds under `gravity` (m/s²), its springs, its attachments and its contacts.

@@ -14,6 +14,7 @@ mod fields;
 pub(crate) mod lcp;
 mod limit_rows;
 mod loops;
+mod outside;
 mod reaction;
 mod response;
 mod solution;
@@ -201,8 +202,10 @@ pub(crate) struct IslandSolver {
     /// Work in this substep of the forces, and of springs and motors, J.
     force_work: f32,
     drive_work: f32,
-    /// Particles pushed in this substep.
+    /// Particles or objects pushed in this substep.
     pushed_from_outside: bool,
+    /// Poses changed since all that depends on them was computed.
+    displaced: bool,
     /// How fast a hit may make a joint turn, rad/s: limits within reach of it get rows.
     hit_rate: f32,
     /// Substep, seconds.
@@ -354,6 +357,9 @@ impl IslandSolver {
 
     /// Joint velocities to zero at the new pose (RATTLE), contacts and limits without bias, friction.
     pub fn relax(&mut self) {
+        if core::mem::take(&mut self.displaced) {
+            self.refresh();
+        }
         for rows in &mut self.manifolds {
             rows.begin_relax(&self.velocities, self.h);
         }

@@ -2,14 +2,17 @@
 
 mod allocations;
 mod bounce;
+mod boxes;
 mod build;
 mod closed_forms;
 mod collide;
 mod fields;
 mod humanoid;
 mod joints;
+mod objects;
 mod particles;
 mod random_worlds;
 mod ray;
 mod rope;
 mod trees;
+mod update;
