@@ -18,14 +18,17 @@ mod metric;
 mod setting;
 mod sight;
 
+mod air;
 mod ballistics;
 mod boxes;
+mod blasts;
 mod chains;
 mod crowds;
 mod engine;
 mod falls;
 mod gimbal;
 mod impacts;
+mod forces;
 mod incline;
 mod linkages;
 mod mjcf;
@@ -33,6 +36,7 @@ mod motors;
 mod nets;
 mod orientation;
 mod overhang;
+mod orbits;
 mod pendulums;
 mod piles;
 mod ragdolls;
@@ -41,6 +45,7 @@ mod springs;
 mod support;
 mod tops;
 mod trees;
+mod water;
 mod weightless;
 
 pub use instance::{Instance, Script};
@@ -95,6 +100,16 @@ pub fn registry() -> &'static [Scene] {
             ballistics::FREE_FALL,
             ballistics::PROJECTILE,
             ballistics::BOUNCE,
+            forces::TWO_MEN,
+            forces::PUSH,
+            forces::BULLET,
+            orbits::KEPLER,
+            orbits::SUN_EARTH,
+            orbits::THREE_BODIES,
+            air::WIND,
+            air::TERMINAL_VELOCITY,
+            water::FLOAT,
+            blasts::EXPLOSION,
             pendulums::PENDULUM,
             pendulums::DOUBLE_PENDULUM,
             pendulums::TRIPLE_PENDULUM,

@@ -20,6 +20,8 @@ const BLIND_TO_GRAVITY: &[&str] = &[
     "symmetric_top",
     "aabb_vs_obb",
 ];
+const BLIND_TO_GRAVITY: &[&str] =
+    &["push_centre_off_centre", "zero_gravity_pile", "spin_double", "spin_triple", "spin_ragdoll"];
 
 fn metrics_after(scene: &Scene, settings: &Settings, gravity_factor: f32) -> Vec<Metric> {
     let mut run = scene.start_under(settings, gravity_factor);
@@ -86,6 +88,16 @@ scenes!(
         free_fall,
         projectile,
         bounce,
+        two_men,
+        push_centre_off_centre,
+        bullet,
+        kepler,
+        sun_earth,
+        three_bodies,
+        wind,
+        terminal_velocity,
+        float,
+        explosion,
         pendulum,
         double_pendulum,
         triple_pendulum,
