@@ -1,6 +1,7 @@
 //! The commands: one struct and one file each.
 
 mod bake;
+mod boxes;
 mod demo;
 mod inspect;
 mod later;
@@ -21,11 +22,10 @@ pub enum Command {
     /// Work on ragdolls: build one from a rigged file
     #[command(subcommand)]
     Ragdoll(Ragdoll),
+    Boxes(boxes::Boxes),
     Inspect(inspect::Inspect),
     Run(run::Run),
     Scenes(scenes::Scenes),
-    #[command(hide = true, disable_help_flag = true)]
-    Boxes(Later),
     #[command(hide = true, disable_help_flag = true)]
     Events(Later),
     #[command(hide = true, disable_help_flag = true)]
@@ -57,10 +57,10 @@ impl Command {
             Self::Ragdoll(Ragdoll::Build(command)) => command.run(),
             Self::Ragdoll(Ragdoll::Doctor(_)) => later::refuse("sinew ragdoll doctor"),
             Self::Ragdoll(Ragdoll::Export(_)) => later::refuse("sinew ragdoll export"),
+            Self::Boxes(command) => command.run(),
             Self::Inspect(command) => command.run(),
             Self::Run(command) => command.run(),
             Self::Scenes(command) => command.run(),
-            Self::Boxes(_) => later::refuse("sinew boxes"),
             Self::Events(_) => later::refuse("sinew events"),
             Self::View(_) => later::refuse("sinew view"),
             Self::Record(_) => later::refuse("sinew record"),

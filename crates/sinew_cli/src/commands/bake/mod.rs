@@ -7,6 +7,7 @@ use crate::failure::{Failure, Result};
 use crate::fall::Fall;
 use crate::files::{CharacterFile, Outputs, read_world_file};
 use crate::film::{FLOOR_HALF_SIZE, Film, body_models};
+use crate::picture::{picture_format, picture_path};
 use crate::report::Report;
 use crate::table::shown;
 use clips::Motions;
@@ -17,7 +18,7 @@ use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::{
     AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, RagdollBodyDef, RagdollDef, build,
 };
-use sinew_picture::{PictureFormat, Sun};
+use sinew_picture::Sun;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -83,15 +84,6 @@ fn length(text: &str) -> Result<f32, String> {
 
 /// Longest bake, seconds: what is longer belongs into several clips.
 const LONGEST: f32 = 600.0;
-
-fn picture_path(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    picture_format(&path).map(|_| path).ok_or_else(|| "must end in .gif, .png or .webp".to_owned())
-}
-
-fn picture_format(path: &Path) -> Option<PictureFormat> {
-    PictureFormat::from_extension(path.extension()?.to_str()?)
-}
 
 impl Bake {
     /// Reads, simulates, draws, writes.
