@@ -75,7 +75,25 @@ impl MeshBvh {
 
     /// The point of the surface closest to `p`; of several the one found first, always the same.
     pub fn closest_point(&self, p: Vec3) -> ClosestPoint {
-        let mut best = (f32::INFINITY, Vec3::ZERO, 0);
+        let (square, point, at) = self.search(p, f32::INFINITY);
+        self.answer(square, point, at)
+    }
+
+    /// [`closest_point`](Self::closest_point), if it is nearer than `reach`, metres: faster where most is farther.
+    pub fn closest_point_within(&self, p: Vec3, reach: f32) -> Option<ClosestPoint> {
+        let (square, point, at) = self.search(p, reach * reach);
+        (square < reach * reach).then(|| self.answer(square, point, at))
+    }
+
+    fn answer(&self, square: f32, point: Vec3, at: u32) -> ClosestPoint {
+        let [a, b, c] = self.triangles[at as usize];
+        let normal = normalize_or((b - a).cross(c - a), Vec3::Y);
+        ClosestPoint { point, distance: square.sqrt(), normal, triangle: self.numbers[at as usize] }
+    }
+
+    /// The closest point, its squared distance, if that is less than `square`, and the triangle's place.
+    fn search(&self, p: Vec3, square: f32) -> (f32, Vec3, u32) {
+        let mut best = (square, Vec3::ZERO, 0);
         let mut open = [(0_u32, 0.0_f32); DEPTH];
         let mut count = 1;
         while count > 0 {
@@ -101,10 +119,7 @@ impl MeshBvh {
             open[count + 1] = near;
             count += 2;
         }
-        let (square, point, at) = best;
-        let [a, b, c] = self.triangles[at as usize];
-        let normal = normalize_or((b - a).cross(c - a), Vec3::Y);
-        ClosestPoint { point, distance: square.sqrt(), normal, triangle: self.numbers[at as usize] }
+        best
     }
 
     fn square_to(&self, node: u32, p: Vec3) -> f32 {

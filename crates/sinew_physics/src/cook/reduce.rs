@@ -5,6 +5,7 @@ use super::block::Block;
 use super::bvh::MeshBvh;
 use super::fit::{cluster, orientations};
 use super::sample::SurfacePoint;
+use crate::aabb::Aabb;
 use sinew_math::{Random, Rotation, Vec3, max3, min};
 
 /// Points of a candidate's surface that are held against the mesh.
@@ -16,10 +17,9 @@ const NEIGHBORS: usize = 10;
 #[derive(Clone)]
 struct Entry {
     block: Block,
+    bounds: Aabb,
     /// Points of the mesh to which it is the closest.
     points: Vec<u32>,
-    /// Integral of squared distance to the mesh over its surface, m⁴.
-    surface: f32,
     /// Neither dropped nor merged so far.
     alive: bool,
 }
@@ -27,14 +27,18 @@ struct Entry {
 /// What can be done to come by with one box less.
 #[derive(Clone, Copy)]
 enum Step {
+    /// Leave out a box.
     Drop(usize),
-    Merge(usize, usize, Block, f32),
+    /// Put a box in the place of two.
+    Merge(usize, usize, Block),
 }
 
 struct Candidate {
-    /// What it adds to the integral of squared distances, m⁴.
-    cost: f32,
     step: Step,
+    /// What it added to the integral of squared distances when last looked at, m⁴.
+    cost: f32,
+    /// How many boxes were left then.
+    seen: usize,
 }
 
 /// Boxes, points of the mesh, and what may become of them.
@@ -46,10 +50,11 @@ pub(super) struct Reduction<'a> {
     scale: Scale,
     entries: Vec<Entry>,
     candidates: Vec<Candidate>,
-    random: Random,
+    left: usize,
 }
 
 impl<'a> Reduction<'a> {
+    /// Of `blocks` that stand for a mesh of which `points` are known, each for `area` square metres.
     pub fn new(
         bvh: &'a MeshBvh,
         points: &'a [SurfacePoint],
@@ -57,20 +62,15 @@ impl<'a> Reduction<'a> {
         scale: Scale,
         blocks: &[Block],
     ) -> Self {
-        let random = Random::new(blocks.len() as u64);
-        let mut reduction =
-            Self { bvh, points, area, scale, entries: Vec::new(), candidates: Vec::new(), random };
-        let entry = |&block| Entry { block, points: Vec::new(), surface: 0.0, alive: true };
-        reduction.entries = blocks.iter().map(entry).collect();
-        for i in 0..blocks.len() {
-            let around = reduction.neighbors(i);
-            reduction.entries[i].surface = reduction.surface_cost(&blocks[i], &around);
-        }
+        let entries: Vec<Entry> = blocks.iter().map(|&block| Entry::new(block)).collect();
+        let left = entries.len();
+        let mut reduction = Self { bvh, points, area, scale, entries, candidates: Vec::new(), left };
         for point in 0..points.len() as u32 {
             reduction.give(point);
         }
-        for i in 0..reduction.entries.len() {
-            reduction.propose(i);
+        for i in 0..left {
+            reduction.propose(Step::Drop(i));
+            reduction.propose_merges(i, |other| other > i);
         }
         reduction
     }
@@ -78,21 +78,25 @@ impl<'a> Reduction<'a> {
     /// Boxes that are left when no more than `most` are, and none can go without being missed. `tick` is told how
     /// many are left after each step.
     pub fn run(mut self, most: usize, tick: &mut dyn FnMut(usize)) -> Vec<Block> {
-        let mut left = self.entries.len();
         // Squared distance, times the area concerned, that nobody sees.
         let free = self.scale.unseen * self.scale.unseen;
-        while left > 1 {
-            let cheapest = (0..self.candidates.len())
-                .reduce(|a, b| if self.candidates[b].cost < self.candidates[a].cost { b } else { a });
-            let Some(index) = cheapest else { break };
-            if left <= most && self.candidates[index].cost > free * self.extent(&self.candidates[index].step)
-            {
+        while self.left > 1 {
+            let cheaper = |a: usize, b: usize| {
+                if self.candidates[b].cost < self.candidates[a].cost { b } else { a }
+            };
+            let Some(index) = (0..self.candidates.len()).reduce(cheaper) else { break };
+            let Candidate { step, cost, seen } = self.candidates[index];
+            if seen != self.left {
+                // Much may have changed around it.
+                self.candidates[index] = Candidate { step, cost: self.cost(&step), seen: self.left };
+                continue;
+            }
+            if self.left <= most && cost > free * self.extent(&step) {
                 break;
             }
-            let Candidate { step, .. } = self.candidates.swap_remove(index);
+            self.candidates.swap_remove(index);
             self.apply(step);
-            left -= 1;
-            tick(left);
+            tick(self.left);
         }
         self.entries.iter().filter(|entry| entry.alive).map(|entry| entry.block).collect()
     }
@@ -101,57 +105,89 @@ impl<'a> Reduction<'a> {
     fn extent(&self, step: &Step) -> f32 {
         match *step {
             Step::Drop(i) => self.entries[i].block.area(),
-            Step::Merge(a, b, ..) => min(self.entries[a].block.area(), self.entries[b].block.area()),
+            Step::Merge(a, b, _) => min(self.entries[a].block.area(), self.entries[b].block.area()),
         }
     }
 
     fn apply(&mut self, step: Step) {
         let (gone, heir) = match step {
             Step::Drop(i) => ([i, i], None),
-            Step::Merge(a, b, block, surface) => ([a, b], Some((block, surface))),
+            Step::Merge(a, b, block) => ([a, b], Some(block)),
         };
-        let mut touched = self.neighbors(gone[0]);
-        touched.extend(self.neighbors(gone[1]));
         let mut points = Vec::new();
         for i in gone {
             self.entries[i].alive = false;
             points.append(&mut self.entries[i].points);
         }
-        if let Some((block, surface)) = heir {
-            touched.push(self.entries.len());
-            self.entries.push(Entry { block, points: Vec::new(), surface, alive: true });
+        self.left -= 1;
+        self.candidates.retain(|candidate| match candidate.step {
+            Step::Drop(i) => !gone.contains(&i),
+            Step::Merge(a, b, _) => !gone.contains(&a) && !gone.contains(&b),
+        });
+        if let Some(block) = heir {
+            self.entries.push(Entry::new(block));
         }
         points.into_iter().for_each(|point| self.give(point));
-        touched.retain(|&i| self.entries[i].alive);
-        touched.sort_unstable();
-        touched.dedup();
-        let is_stale = |step: &Step| match *step {
-            Step::Drop(i) => gone.contains(&i) || touched.contains(&i),
-            Step::Merge(a, b, ..) => gone.contains(&a) || gone.contains(&b),
-        };
-        self.candidates.retain(|candidate| !is_stale(&candidate.step));
-        for &i in &touched {
-            self.propose_drop(i);
-        }
         if heir.is_some() {
-            self.propose_merges(self.entries.len() - 1, |_| true);
+            let last = self.entries.len() - 1;
+            self.propose(Step::Drop(last));
+            self.propose_merges(last, |_| true);
+        }
+    }
+
+    fn propose(&mut self, step: Step) {
+        let cost = self.cost(&step);
+        self.candidates.push(Candidate { step, cost, seen: self.left });
+    }
+
+    fn propose_merges(&mut self, i: usize, accept: impl Fn(usize) -> bool) {
+        for j in self.neighbors(i) {
+            if accept(j) {
+                self.propose(Step::Merge(i, j, self.merged(i, j)));
+            }
+        }
+    }
+
+    /// What a step adds to the integral of squared distances, m⁴.
+    fn cost(&self, step: &Step) -> f32 {
+        match *step {
+            Step::Drop(i) => {
+                let change = |&point: &u32| {
+                    let p = self.points[point as usize].position;
+                    let now = self.entries[i].block.signed_distance(p);
+                    let then = self.nearest(p, i).1;
+                    then * then - now * now
+                };
+                self.entries[i].points.iter().map(change).sum::<f32>() * self.area
+            }
+            Step::Merge(i, j, block) => {
+                let [a, b] = [&self.entries[i], &self.entries[j]];
+                let before = self.points_cost(&a.block, &a.points)
+                    + self.points_cost(&b.block, &b.points)
+                    + self.surface_cost(&a.block, [i, i])
+                    + self.surface_cost(&b.block, [j, j]);
+                self.points_cost(&block, &a.points)
+                    + self.points_cost(&block, &b.points)
+                    + self.surface_cost(&block, [i, j])
+                    - before
+            }
         }
     }
 
     /// Gives a point of the mesh to the box whose surface is closest.
     fn give(&mut self, point: u32) {
         let p = self.points[point as usize].position;
-        let (nearest, _) = self.nearest(p, &[]);
+        let (nearest, _) = self.nearest(p, usize::MAX);
         if let Some(i) = nearest {
             self.entries[i].points.push(point);
         }
     }
 
-    /// The box whose faces are closest to `p`, without some, and how far they are.
-    fn nearest(&self, p: Vec3, without: &[usize]) -> (Option<usize>, f32) {
+    /// The box whose faces are closest to `p`, one left out, and how far they are.
+    fn nearest(&self, p: Vec3, without: usize) -> (Option<usize>, f32) {
         let mut best = (None, f32::INFINITY);
         for (i, entry) in self.entries.iter().enumerate() {
-            if !entry.alive || without.contains(&i) {
+            if !entry.alive || i == without {
                 continue;
             }
             let from_center = (p - entry.block.world_from_block.translation).length();
@@ -165,41 +201,13 @@ impl<'a> Reduction<'a> {
         best
     }
 
-    fn propose(&mut self, i: usize) {
-        self.propose_drop(i);
-        self.propose_merges(i, |other| other > i);
-    }
-
-    fn propose_drop(&mut self, i: usize) {
-        let cost: f32 = self.entries[i]
-            .points
-            .iter()
-            .map(|&point| {
-                let p = self.points[point as usize].position;
-                let now = self.entries[i].block.signed_distance(p);
-                let then = self.nearest(p, &[i]).1;
-                (then * then - now * now) * self.area
-            })
-            .sum();
-        self.candidates.push(Candidate { cost, step: Step::Drop(i) });
-    }
-
-    fn propose_merges(&mut self, i: usize, accept: impl Fn(usize) -> bool) {
-        for j in self.neighbors(i) {
-            if accept(j) {
-                let candidate = self.merge(i, j);
-                self.candidates.push(candidate);
-            }
-        }
-    }
-
     /// The nearest boxes by the gap between bounds, then by the size of what holds both.
     fn neighbors(&self, i: usize) -> Vec<usize> {
-        let bounds = self.entries[i].block.bounds();
+        let bounds = self.entries[i].bounds;
         let mut near: Vec<(f32, f32, usize)> = Vec::new();
         for (j, entry) in self.entries.iter().enumerate() {
             if j != i && entry.alive {
-                let other = entry.block.bounds();
+                let other = entry.bounds;
                 let gap = max3(max3(bounds.min - other.max, other.min - bounds.max), Vec3::ZERO).length();
                 let both = bounds.merge(&other);
                 near.push((gap, (both.max - both.min).length(), j));
@@ -209,27 +217,17 @@ impl<'a> Reduction<'a> {
         near.into_iter().take(NEIGHBORS).map(|(_, _, j)| j).collect()
     }
 
-    /// The best single box instead of two.
-    fn merge(&mut self, i: usize, j: usize) -> Candidate {
+    /// The smallest single box around two: along the axes of either, of the world, or of the mesh there.
+    fn merged(&self, i: usize, j: usize) -> Block {
         let [a, b] = [&self.entries[i], &self.entries[j]];
-        let points: Vec<u32> = a.points.iter().chain(&b.points).copied().collect();
-        let before = a.surface
-            + b.surface
-            + self.points_cost(&a.block, &a.points)
-            + self.points_cost(&b.block, &b.points);
         let corners = [a.block.corners(), b.block.corners()].concat();
         let rotations = [a, b].map(|entry| entry.block.world_from_block.rotation);
-        let facing = cluster(points.iter().map(|&p| (self.points[p as usize].normal, 1.0)));
+        let points = a.points.iter().chain(&b.points);
+        let facing = cluster(points.map(|&p| (self.points[p as usize].normal, 1.0)));
         let tried = rotations.into_iter().chain([Rotation::IDENTITY]).chain(orientations(&facing).take(1));
         let blocks =
             tried.map(|rotation| Block::around(corners.iter().copied(), rotation, self.scale.thinnest));
-        let smallest = blocks.reduce(|a, b| if b.volume() < 0.999 * a.volume() { b } else { a });
-        let block = smallest.unwrap_or(self.entries[i].block);
-        let mut around = [self.neighbors(i), self.neighbors(j)].concat();
-        around.retain(|&k| k != i && k != j);
-        let surface = self.surface_cost(&block, &around);
-        let cost = self.points_cost(&block, &points) + surface - before;
-        Candidate { cost, step: Step::Merge(i, j, block, surface) }
+        blocks.reduce(|a, b| if b.volume() < 0.999 * a.volume() { b } else { a }).unwrap_or(a.block)
     }
 
     /// Integral of squared distance from the points' area to a box, m⁴.
@@ -241,17 +239,33 @@ impl<'a> Reduction<'a> {
         points.iter().map(square).sum::<f32>() * self.area
     }
 
-    /// Integral of squared distance to the mesh over a box's surface outside the boxes around it, m⁴.
-    fn surface_cost(&mut self, block: &Block, around: &[usize]) -> f32 {
+    /// Integral of squared distance to the mesh over a box's surface outside all other boxes, m⁴. `own` are those that
+    /// it stands for.
+    fn surface_cost(&self, block: &Block, own: [usize; 2]) -> f32 {
+        // The same points of the same box, so that costs can be compared.
         let mut points = Vec::with_capacity(SURFACE);
-        block.sample(SURFACE, &mut self.random, &mut points);
-        points.retain(|&p| {
-            around.iter().all(|&i| self.entries[i].block.signed_distance(p) > -self.scale.thinnest)
-        });
+        block.sample(SURFACE, &mut Random::new(0), &mut points);
         let square = |&p: &Vec3| {
             let distance = self.bvh.closest_point(p).distance;
             distance * distance
         };
-        points.iter().map(square).sum::<f32>() * (block.area() / SURFACE as f32)
+        let outer = points.iter().filter(|&&p| !self.is_inside_another(p, own));
+        outer.map(square).sum::<f32>() * (block.area() / SURFACE as f32)
+    }
+
+    fn is_inside_another(&self, p: Vec3, own: [usize; 2]) -> bool {
+        let holds = |(i, entry): (usize, &Entry)| {
+            entry.alive
+                && !own.contains(&i)
+                && entry.bounds.overlaps(&Aabb { min: p, max: p })
+                && entry.block.signed_distance(p) < -self.scale.thinnest
+        };
+        self.entries.iter().enumerate().any(holds)
+    }
+}
+
+impl Entry {
+    fn new(block: Block) -> Self {
+        Self { block, bounds: block.bounds(), points: Vec::new(), alive: true }
     }
 }

@@ -32,10 +32,13 @@ pub(super) fn blocks_of_part(
     random: &mut Random,
 ) -> Vec<Block> {
     let (points, _) = sample(mesh, triangles, SAMPLES, random);
-    let one = vec![fit(mesh, triangles, scale.thinnest)];
-    let [there, back] = rms_distances(bvh, &points, &one, random);
-    if there < scale.tolerance && back < FILLED * scale.tolerance {
-        return one;
+    let one = fit(mesh, triangles, scale.thinnest);
+    if one.shape().inner_radius() <= scale.thinnest {
+        return plates(mesh, triangles, scale);
+    }
+    let [there, back] = rms_distances(bvh, &points, &[one], random);
+    if there < scale.tolerance && back < FILLED * scale.tolerance && !is_seen_from_inside(bvh, &one) {
+        return vec![one];
     }
     let directions = facet_directions(mesh, triangles);
     let rotation = orientations(&directions).next().unwrap_or(Rotation::IDENTITY);
@@ -70,6 +73,11 @@ fn rms_distances(bvh: &MeshBvh, points: &[SurfacePoint], blocks: &[Block], rando
     let there = rms(points.iter().map(|p| set.distance_to_faces(p.position)).collect());
     let outer = set.outer_surface(SAMPLES, random);
     [there, rms(outer.iter().map(|&p| bvh.closest_point(p).distance).collect())]
+}
+
+/// Whether the faces around the middle of a box look inward, as a room's.
+fn is_seen_from_inside(bvh: &MeshBvh, block: &Block) -> bool {
+    bvh.winding_number(block.world_from_block.translation) < -0.5
 }
 
 fn is_inside(bvh: &MeshBvh, p: Vec3) -> bool {

@@ -4,6 +4,7 @@ mod allocations;
 mod build;
 mod closed_forms;
 mod collide;
+mod cook;
 mod humanoid;
 mod joints;
 mod particles;
