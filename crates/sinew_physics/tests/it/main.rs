@@ -7,6 +7,7 @@ mod build;
 mod closed_forms;
 mod collide;
 mod fields;
+mod cook;
 mod humanoid;
 mod joints;
 mod objects;
