@@ -1,12 +1,12 @@
 //! `sinew boxes` on meshes of its own making, on the house of the shared data, and on bad files.
 
 use crate::contract::check_keys;
-use crate::sinew::{Folder, shared_data, sinew};
+use crate::sinew::{Folder, sinew};
 use serde_json::Value;
 use sinew::formats::read_world;
 use sinew::math::Vec3;
 use sinew::physics::shape::Shape;
-use sinew::physics::{BodyDef, BodyKind, World, WorldDef};
+use sinew::physics::{BodyDef, BodyKind};
 use std::fmt::Write;
 use std::fs;
 

@@ -4,8 +4,16 @@ use crate::sinew::sinew;
 
 #[test]
 fn every_command_shows_an_example() {
-    let commands: [&[&str]; 8] =
-        [&["demo"], &["bake"], &["ragdoll", "build"], &["boxes"], &["inspect"], &["run"], &["scenes"], &["view"]];
+    let commands: [&[&str]; 8] = [
+        &["demo"],
+        &["bake"],
+        &["ragdoll", "build"],
+        &["boxes"],
+        &["inspect"],
+        &["run"],
+        &["scenes"],
+        &["view"],
+    ];
     for command in commands {
         let run = sinew(&[command, &["--help"]].concat());
         let example = format!("Example:\n  sinew {}", command.join(" "));

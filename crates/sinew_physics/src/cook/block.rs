@@ -1,6 +1,6 @@
 //! Oriented boxes while they are being found: distance, corners, samples of their surface.
 
-use crate::aabb::Aabb;
+use crate::boxes::Aabb;
 use crate::def::{BodyDef, BodyKind};
 use crate::distance::box_distance;
 use crate::shape::{Shape, ShapeDef};

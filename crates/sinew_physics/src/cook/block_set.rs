@@ -1,7 +1,7 @@
 //! Boxes together: distance to their faces, the outer surface and the volume of their union.
 
 use super::block::Block;
-use crate::aabb::Aabb;
+use crate::boxes::Aabb;
 use sinew_math::{Random, Vec3, max3, min};
 
 /// Boxes with their bounds.

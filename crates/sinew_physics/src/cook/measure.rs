@@ -5,7 +5,7 @@ use super::block_set::BlockSet;
 use super::bvh::MeshBvh;
 use super::mesh::SurfaceMesh;
 use super::sample::sample;
-use crate::aabb::Aabb;
+use crate::boxes::{Aabb, Overlap};
 use sinew_math::{Random, Vec3, max};
 
 /// Points on either side.

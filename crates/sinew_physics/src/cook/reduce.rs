@@ -5,7 +5,7 @@ use super::block::Block;
 use super::bvh::MeshBvh;
 use super::fit::{cluster, orientations};
 use super::sample::SurfacePoint;
-use crate::aabb::Aabb;
+use crate::boxes::{Aabb, Overlap};
 use sinew_math::{Random, Rotation, Vec3, max3, min};
 
 /// Points of a candidate's surface that are held against the mesh.

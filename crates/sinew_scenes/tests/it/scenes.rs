@@ -19,9 +19,8 @@ const BLIND_TO_GRAVITY: &[&str] = &[
     "dzhanibekov",
     "symmetric_top",
     "aabb_vs_obb",
+    "push_centre_off_centre",
 ];
-const BLIND_TO_GRAVITY: &[&str] =
-    &["push_centre_off_centre", "zero_gravity_pile", "spin_double", "spin_triple", "spin_ragdoll"];
 
 fn metrics_after(scene: &Scene, settings: &Settings, gravity_factor: f32) -> Vec<Metric> {
     let mut run = scene.start_under(settings, gravity_factor);
