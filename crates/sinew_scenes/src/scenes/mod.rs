@@ -16,30 +16,42 @@ mod flight;
 mod instance;
 mod metric;
 mod setting;
+mod sight;
 
+mod air;
 mod ballistics;
+mod blasts;
 mod boxes;
 mod chains;
 mod crowds;
+mod engine;
 mod falls;
+mod forces;
 mod gimbal;
+mod impacts;
 mod incline;
 mod linkages;
 mod mjcf;
 mod motors;
 mod nets;
+mod orbits;
 mod orientation;
+mod overhang;
 mod pendulums;
 mod piles;
 mod ragdolls;
+mod rolling;
 mod springs;
 mod support;
+mod tops;
 mod trees;
+mod water;
 mod weightless;
 
 pub use instance::{Instance, Script};
 pub use metric::{Expected, Metric};
 pub use setting::{Domain, Setting, SettingError, Settings};
+pub use sight::{Sight, Trails};
 
 use crate::parts;
 use setting::Setup;
@@ -88,6 +100,16 @@ pub fn registry() -> &'static [Scene] {
             ballistics::FREE_FALL,
             ballistics::PROJECTILE,
             ballistics::BOUNCE,
+            forces::TWO_MEN,
+            forces::PUSH,
+            forces::BULLET,
+            orbits::KEPLER,
+            orbits::SUN_EARTH,
+            orbits::THREE_BODIES,
+            air::WIND,
+            air::TERMINAL_VELOCITY,
+            water::FLOAT,
+            blasts::EXPLOSION,
             pendulums::PENDULUM,
             pendulums::DOUBLE_PENDULUM,
             pendulums::TRIPLE_PENDULUM,
@@ -95,6 +117,16 @@ pub fn registry() -> &'static [Scene] {
             linkages::LINKAGE,
             incline::HOLDS,
             incline::SLIDES,
+            incline::ROLLS,
+            rolling::SLIDE_TO_ROLL,
+            rolling::ROLLING_BALLS,
+            impacts::ELASTIC_PAIRS,
+            impacts::NEWTONS_CRADLE,
+            impacts::BOUNCING_BALLS,
+            overhang::BLOCK_OVERHANG,
+            tops::DZHANIBEKOV,
+            tops::SYMMETRIC_TOP,
+            tops::SPINNING_TOP,
             springs::SPRING,
             springs::SPRING_CHAIN,
             springs::SPRINGS_RATIO,
@@ -125,6 +157,8 @@ pub fn registry() -> &'static [Scene] {
             nets::JOINT_GRID,
             nets::NET,
             crowds::PILE,
+            engine::FRAME_RATES,
+            engine::TAUTOCHRONE,
             trees::HEAVY_FOOT,
             trees::MASS_RATIO,
             boxes::AABB_VS_OBB,
