@@ -55,10 +55,10 @@ fn boxes_are_culled_as_their_points_are_seen() {
         let seen = frustum.sees(&obb);
         match seen {
             Visibility::Inside => {
-                assert!(lowest > -tolerance, "case {case}: {lowest} of {obb:?} {frustum:?}")
+                assert!(lowest > -tolerance, "case {case}: {lowest} of {obb:?} {frustum:?}");
             }
             Visibility::Outside => {
-                assert!(highest < tolerance, "case {case}: {highest} of {obb:?} {frustum:?}")
+                assert!(highest < tolerance, "case {case}: {highest} of {obb:?} {frustum:?}");
             }
             Visibility::Intersects => {
                 assert!(lowest < tolerance, "case {case}: {obb:?} {frustum:?}");
