@@ -40,6 +40,7 @@
 use sinew_math::Vec3;
 
 mod aabb;
+pub mod batch;
 mod cuboid;
 mod fit;
 mod frustum;

@@ -22,11 +22,13 @@ mod boxes;
 mod chains;
 mod crowds;
 mod falls;
+mod gimbal;
 mod incline;
 mod linkages;
 mod mjcf;
 mod motors;
 mod nets;
+mod orientation;
 mod pendulums;
 mod piles;
 mod ragdolls;
@@ -96,6 +98,10 @@ pub fn registry() -> &'static [Scene] {
             springs::SPRING,
             springs::SPRING_CHAIN,
             springs::SPRINGS_RATIO,
+            gimbal::GIMBAL,
+            orientation::MATRIX_DRIFT,
+            orientation::VERSOR,
+            orientation::HELPERS,
             weightless::ZERO_GRAVITY_PILE,
             weightless::SPIN_DOUBLE,
             weightless::SPIN_TRIPLE,
