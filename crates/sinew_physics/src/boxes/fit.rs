@@ -33,20 +33,21 @@ impl Obb {
     ///
     /// The least box has two adjacent faces that each lie on an edge of the convex hull (O'Rourke 1985). Tried are all boxes
     /// with an axis along the normal of a facet or across two edges, of the hull of up to 52 extreme points with up to 64
-    /// edges, each turned about this axis as fits best. The best of them, the box of
+    /// edges, each turned about this axis as fits best. The best eight, the box of
     /// [`from_points_pca`](Self::from_points_pca) and the one along the axes are then turned about each of their axes in
     /// turn while that helps. So it is the least box itself where that has a face on a facet or two opposite edges in two
-    /// opposite faces (boxes, prisms, a regular tetrahedron); it is never larger than the other two. Of other points it
-    /// has been seen 3 % above the least.
+    /// opposite faces (boxes, prisms, a regular tetrahedron); it is never larger than the other two. Of 10,000
+    /// random clouds of 4 to 63 points it was 6 % above the least that random turns found at worst, and on average below it.
     ///
     /// What is guaranteed of points and of degenerate input is as for [`from_points_pca`](Self::from_points_pca).
     pub fn from_points(points: &[Vec3]) -> Option<Self> {
         let cloud = Cloud::new(points)?;
         let extreme = cloud.extreme_points();
-        let tried = extreme.axes_of_hull().into_iter().map(|axis| extreme.best_about(axis));
-        let searched = tried.reduce(Candidate::cheaper);
+        let mut tried: Vec<_> =
+            extreme.axes_of_hull().into_iter().map(|axis| extreme.best_about(axis)).collect();
+        tried.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         let simple = [principal_axes(&cloud.points), [Vec3::X, Vec3::Y, Vec3::Z]];
-        let starts = searched.map(|found| found.axes).into_iter().chain(simple);
+        let starts = tried.iter().take(MOST_STARTS).map(|found| found.axes).chain(simple);
         let best = starts.map(|axes| cloud.improved(axes)).reduce(Candidate::cheaper)?;
         Some(around(points, best.axes))
     }
@@ -73,6 +74,8 @@ impl Obb {
 const ROUNDS: usize = 12;
 /// Hulls of more points are searched by their extreme ones: the most that [`DIRECTIONS`] can find along two frames.
 const MOST_POINTS: usize = 52;
+/// The cheapest boxes of the search that are improved.
+const MOST_STARTS: usize = 8;
 /// The longest edges of a hull that are crossed with each other.
 const MOST_EDGES: usize = 64;
 /// Share of the cloud's size by which a point may be beyond the plane of a facet.

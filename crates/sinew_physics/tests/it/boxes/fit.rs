@@ -47,7 +47,7 @@ fn corners_of_a_box_give_the_box_back() {
         let corners = obb.corners();
         let fit = Obb::from_points(&corners).expect("finite points");
         assert!(holds_all(&fit, &corners), "{obb:?} {fit:?}");
-        assert!((fit.volume() - obb.volume()).abs() < 1e-5, "{obb:?} {fit:?}");
+        assert!((fit.volume() - obb.volume()).abs() < 1e-5 * (1.0 + obb.volume()), "{obb:?} {fit:?}");
         // Flat ones too: their sides are those of the box, in another order.
         let sorted = |half: Vec3| {
             let mut sides = half.to_array();
@@ -111,7 +111,7 @@ fn no_box_is_much_smaller() {
         (worst, sum) = (worst.max(excess), sum + excess);
     }
     println!("{count} clouds: {:.4} above the search on average, {worst:.4} at worst", sum / count as f32);
-    assert!(worst < 0.03, "{worst}");
+    assert!(worst < 0.06 && sum < 0.0, "{worst}, {sum}");
 }
 
 /// Makes a box around points.
