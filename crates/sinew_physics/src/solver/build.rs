@@ -113,8 +113,8 @@ impl Scratch {
     }
 }
 
-/// Force and torque that act on a body all through the step: gravity and the user's.
-pub(super) fn lasting_force(body: &Body, view: &View<'_>) -> (Vec3, Vec3) {
+/// Gravity and what the user applied for the step.
+pub(super) fn applied_force(body: &Body, view: &View<'_>) -> (Vec3, Vec3) {
     (body.force + view.def.gravity * (body.gravity_scale * body.mass), body.torque)
 }
 
@@ -256,7 +256,7 @@ impl IslandSolver {
         let ordered = s.order.iter().copied();
         for index in ordered.chain(s.fixed.iter().copied()) {
             let body = view.bodies.at(index);
-            let (force, torque) = lasting_force(body, view);
+            let (force, torque) = applied_force(body, view);
             self.bodies.push(SolverBody {
                 index,
                 pose: body.world_from_principal,

@@ -184,7 +184,7 @@ pub(crate) struct IslandSolver {
     moved: Vec<Vec6>,
     /// What bodies gain after that without having it from their joints; what contacts and loops gave before, negative.
     accounted: Vec<Vec6>,
-    /// What acts through the whole step on each moving body, beside fields and lasting forces; none without those.
+    /// What acts on each moving body beside fields and lasting forces; none without those.
     applied: Vec<Wrench>,
     attraction: Attraction,
     scratch: Scratch,

@@ -1,6 +1,6 @@
 //! What the user's objects do to the moving bodies of an island between its stages.
 
-use super::build::{View, lasting_force};
+use super::build::{View, applied_force};
 use super::{IslandSolver, advance, tree};
 use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
 use sinew_math::Vec3;
@@ -10,8 +10,9 @@ impl IslandSolver {
     pub fn renew_forces(&mut self, view: &View<'_>) {
         let moving = self.links.len();
         for body in &mut self.bodies[..moving] {
-            (body.force, body.torque) = lasting_force(view.bodies.at(body.index), view);
+            (body.force, body.torque) = applied_force(view.bodies.at(body.index), view);
         }
+        self.keep_applied(view);
     }
 
     /// Adds to what `integrate_velocity` will apply, N and N·m about the centre of mass.
@@ -19,6 +20,10 @@ impl IslandSolver {
         let body = &mut self.bodies[local];
         body.force += force;
         body.torque += torque;
+        if let Some(applied) = self.applied.get_mut(local) {
+            applied.force += force;
+            applied.torque += torque;
+        }
     }
 
     /// An impulse before the substep: what joints make of it comes with `solve`.
