@@ -1,6 +1,7 @@
 //! The commands: one struct and one file each.
 
 mod bake;
+mod boxes;
 mod demo;
 mod inspect;
 mod later;
@@ -22,12 +23,11 @@ pub enum Command {
     /// Work on ragdolls: build one from a rigged file
     #[command(subcommand)]
     Ragdoll(Ragdoll),
+    Boxes(boxes::Boxes),
     Inspect(inspect::Inspect),
     Run(run::Run),
     Scenes(scenes::Scenes),
     View(view::View),
-    #[command(hide = true, disable_help_flag = true)]
-    Boxes(Later),
     #[command(hide = true, disable_help_flag = true)]
     Events(Later),
     #[command(hide = true, disable_help_flag = true)]
@@ -57,11 +57,11 @@ impl Command {
             Self::Ragdoll(Ragdoll::Build(command)) => command.run(),
             Self::Ragdoll(Ragdoll::Doctor(_)) => later::refuse("sinew ragdoll doctor"),
             Self::Ragdoll(Ragdoll::Export(_)) => later::refuse("sinew ragdoll export"),
+            Self::Boxes(command) => command.run(),
             Self::Inspect(command) => command.run(),
             Self::Run(command) => command.run(),
             Self::Scenes(command) => command.run(),
             Self::View(command) => command.run(),
-            Self::Boxes(_) => later::refuse("sinew boxes"),
             Self::Events(_) => later::refuse("sinew events"),
             Self::Record(_) => later::refuse("sinew record"),
             Self::Replay(_) => later::refuse("sinew replay"),

@@ -1,6 +1,7 @@
 //! The binary as its users meet it: arguments in, exit code, stdout and stderr out.
 
 mod bake;
+mod boxes;
 mod contract;
 mod demo;
 mod refusals;

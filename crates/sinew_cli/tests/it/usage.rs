@@ -4,8 +4,16 @@ use crate::sinew::sinew;
 
 #[test]
 fn every_command_shows_an_example() {
-    let commands: [&[&str]; 7] =
-        [&["demo"], &["bake"], &["ragdoll", "build"], &["inspect"], &["run"], &["scenes"], &["view"]];
+    let commands: [&[&str]; 8] = [
+        &["demo"],
+        &["bake"],
+        &["ragdoll", "build"],
+        &["boxes"],
+        &["inspect"],
+        &["run"],
+        &["scenes"],
+        &["view"],
+    ];
     for command in commands {
         let run = sinew(&[command, &["--help"]].concat());
         let example = format!("Example:\n  sinew {}", command.join(" "));
@@ -15,10 +23,9 @@ fn every_command_shows_an_example() {
 
 #[test]
 fn what_later_releases_bring_is_told_from_a_typing_error() {
-    let commands: [&[&str]; 7] = [
+    let commands: [&[&str]; 6] = [
         &["ragdoll", "doctor", "a.glb", "--fix", "-o", "b.json"],
         &["ragdoll", "export", "a.glb", "--as", "khr"],
-        &["boxes", "a.glb", "-o", "b.json"],
         &["events", "detect", "a.glb"],
         &["record", "stairs", "-o", "r.sinewrec"],
         &["replay", "r.sinewrec", "--verify"],
@@ -35,8 +42,11 @@ fn what_later_releases_bring_is_told_from_a_typing_error() {
 
 #[test]
 fn bad_arguments_are_bad_usage() {
-    let commands: [&[&str]; 9] = [
+    let commands: [&[&str]; 12] = [
         &[],
+        &["boxes", "a.glb"],
+        &["boxes", "a.glb", "-o", "b.json", "--max", "0"],
+        &["boxes", "a.glb", "-o", "b.json", "--picture", "b.bmp"],
         &["bake", "a.glb"],
         &["bake", "a.glb", "-o", "b.glb", "--hit", "chest=1,2@1"],
         &["bake", "a.glb", "-o", "b.glb", "--seconds", "0"],

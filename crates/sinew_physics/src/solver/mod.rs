@@ -22,7 +22,6 @@ mod sweep;
 mod tree;
 mod tree_joints;
 
-use crate::force::Wrench;
 use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
@@ -184,8 +183,8 @@ pub(crate) struct IslandSolver {
     moved: Vec<Vec6>,
     /// What bodies gain after that without having it from their joints; what contacts and loops gave before, negative.
     accounted: Vec<Vec6>,
-    /// What acts through the whole step on each moving body, beside fields and lasting forces; none without those.
-    applied: Vec<Wrench>,
+    /// Fields and lasting forces act: they are taken anew in each substep.
+    forces_vary: bool,
     attraction: Attraction,
     scratch: Scratch,
     unrest: Unrest,
@@ -238,7 +237,7 @@ impl IslandSolver {
         for rows in &mut self.manifolds {
             rows.begin_approach(&self.velocities);
         }
-        if !(self.applied.is_empty() && view.fields.is_empty()) {
+        if self.forces_vary {
             self.add_fields(view, groups);
         }
         self.begin_drives();

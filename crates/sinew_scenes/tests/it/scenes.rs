@@ -23,6 +23,7 @@ const BLIND_TO_GRAVITY: &[&str] = &[
     "symmetric_top",
     "aabb_vs_obb",
     "rolling_balls",
+    "push_centre_off_centre",
 ];
 
 fn metrics_after(scene: &Scene, settings: &Settings, gravity_factor: f32) -> Vec<Metric> {
@@ -90,6 +91,16 @@ scenes!(
         free_fall,
         projectile,
         bounce,
+        two_men,
+        push_centre_off_centre,
+        bullet,
+        kepler,
+        sun_earth,
+        three_bodies,
+        wind,
+        terminal_velocity,
+        float,
+        explosion,
         pendulum,
         double_pendulum,
         triple_pendulum,
@@ -135,6 +146,8 @@ scenes!(
         hanging_rope,
         heavy_foot,
         mass_ratio,
+        frame_rates,
+        tautochrone,
         aabb_vs_obb,
         point_in_obb,
     ],
