@@ -7,6 +7,7 @@ mod build;
 mod closed_forms;
 mod collide;
 mod fields;
+mod finite;
 mod humanoid;
 mod joints;
 mod objects;
