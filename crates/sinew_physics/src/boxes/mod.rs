@@ -11,6 +11,7 @@
 use sinew_math::Vec3;
 
 mod aabb;
+pub mod batch;
 mod cuboid;
 mod obb;
 mod overlap;
@@ -18,6 +19,7 @@ pub(crate) mod placed;
 mod point;
 pub(crate) mod segment;
 pub(crate) mod separation;
+mod world;
 
 pub use aabb::{Aabb, HALF_SPACE_REACH};
 pub use cuboid::Cuboid;

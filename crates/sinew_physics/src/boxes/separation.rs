@@ -8,7 +8,7 @@ use sinew_math::{Vec3, abs3, max};
 /// Edges whose sine is below this are parallel: what their direction would add to the faces' is rounding.
 pub(super) const PARALLEL_SINE: f32 = 1e-5;
 /// Share of the lengths at hand by which boxes may be apart and still count as touching: several roundings.
-const TOUCH: f32 = 5e-7;
+pub(super) const TOUCH: f32 = 5e-7;
 
 /// A candidate normal from A to B and the gap along it.
 #[derive(Clone, Copy)]

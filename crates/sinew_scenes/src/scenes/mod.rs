@@ -24,12 +24,18 @@ mod chains;
 mod crowds;
 mod falls;
 mod forces;
+mod boxes;
+mod chains;
+mod crowds;
+mod falls;
+mod gimbal;
 mod incline;
 mod linkages;
 mod mjcf;
 mod motors;
 mod nets;
 mod orbits;
+mod orientation;
 mod pendulums;
 mod piles;
 mod ragdolls;
@@ -110,6 +116,10 @@ pub fn registry() -> &'static [Scene] {
             springs::SPRING,
             springs::SPRING_CHAIN,
             springs::SPRINGS_RATIO,
+            gimbal::GIMBAL,
+            orientation::MATRIX_DRIFT,
+            orientation::VERSOR,
+            orientation::HELPERS,
             weightless::ZERO_GRAVITY_PILE,
             weightless::SPIN_DOUBLE,
             weightless::SPIN_TRIPLE,
@@ -135,6 +145,8 @@ pub fn registry() -> &'static [Scene] {
             crowds::PILE,
             trees::HEAVY_FOOT,
             trees::MASS_RATIO,
+            boxes::AABB_VS_OBB,
+            boxes::POINT_IN_OBB,
         ]
     }
 }

@@ -16,6 +16,7 @@ pub(super) const ZERO_GRAVITY_PILE: Scene = Scene {
     build: zero_gravity_pile,
 };
 
+/// Free space, in which nothing falls asleep.
 pub(super) fn weightless_world() -> World {
     World::new(WorldDef { gravity: Vec3::ZERO, sleeping: Sleeping::Off, ..WorldDef::default() })
 }
