@@ -6,8 +6,6 @@ use sinew_scenes::scenes::{Expected, Metric, Scene, Settings, find, registry};
 const NOT_YET: &[(&str, &[&str])] = &[];
 
 /// Scenes in which gravity has no part.
-const BLIND_TO_GRAVITY: &[&str] =
-    &["push_centre_off_centre", "zero_gravity_pile", "spin_double", "spin_triple", "spin_ragdoll"];
 const BLIND_TO_GRAVITY: &[&str] = &[
     "gimbal",
     "matrix_drift",
@@ -17,7 +15,11 @@ const BLIND_TO_GRAVITY: &[&str] = &[
     "spin_double",
     "spin_triple",
     "spin_ragdoll",
+    "elastic_pairs",
+    "dzhanibekov",
+    "symmetric_top",
     "aabb_vs_obb",
+    "push_centre_off_centre",
 ];
 
 fn metrics_after(scene: &Scene, settings: &Settings, gravity_factor: f32) -> Vec<Metric> {
@@ -102,6 +104,16 @@ scenes!(
         linkage,
         incline_holds,
         incline_slides,
+        incline_rolls,
+        slide_to_roll,
+        rolling_balls,
+        elastic_pairs,
+        newtons_cradle,
+        bouncing_balls,
+        block_overhang,
+        dzhanibekov,
+        symmetric_top,
+        spinning_top,
         spring,
         spring_chain,
         springs_ratio,
@@ -130,6 +142,8 @@ scenes!(
         hanging_rope,
         heavy_foot,
         mass_ratio,
+        frame_rates,
+        tautochrone,
         aabb_vs_obb,
         point_in_obb,
     ],
