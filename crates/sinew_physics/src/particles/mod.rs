@@ -221,8 +221,9 @@ impl ParticleGroup {
     /// Changes a particle's velocity by an impulse (N·s, world).
     ///
     /// # Panics
-    /// If there is no such particle.
+    /// If there is no such particle, or the impulse is not finite.
     pub fn apply_impulse(&mut self, particle: u32, impulse: Vec3) {
+        assert!(impulse.is_finite(), "an impulse is finite");
         let i = particle as usize;
         self.velocities[i] += impulse / self.masses[i];
     }
@@ -233,7 +234,7 @@ impl ParticleGroup {
     /// If there is no such particle, or a number is not finite.
     pub fn correct(&mut self, particle: u32, by: Vec3, h: f32) {
         let velocity = by / h;
-        assert!(velocity.is_finite(), "a particle's way is finite");
+        assert!(by.is_finite() && h.is_finite() && velocity.is_finite(), "a particle's way is finite");
         self.positions[particle as usize] += by;
         self.velocities[particle as usize] += velocity;
     }
