@@ -16,7 +16,7 @@ use sinew_scenes::scenes::{Expected, Instance, Metric, Sight, Trails};
 /// Pictures a second: a whole number of a GIF's hundredths of a second.
 const FPS: u32 = 20;
 /// Figures on a picture.
-const MOST_FIGURES: usize = 4;
+const MOST_FIGURES: usize = 3;
 /// Of more bodies no trails are drawn: nobody could tell them apart.
 const MOST_TRAILS: usize = 4;
 /// Steps that trails go back.
