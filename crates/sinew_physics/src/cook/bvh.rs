@@ -1,6 +1,6 @@
 //! A tree of bounds over triangles: the closest point of a mesh, and how often it winds around a point.
 
-use crate::aabb::Aabb;
+use crate::boxes::Aabb;
 use sinew_math::{Vec3, abs3, max3, min3, normalize_or, trig};
 
 /// Triangles in a leaf.

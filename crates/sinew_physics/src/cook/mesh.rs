@@ -1,6 +1,6 @@
 //! A triangle mesh made fit for cooking: checked, welded, split into its connected parts.
 
-use crate::aabb::Aabb;
+use crate::boxes::Aabb;
 use core::fmt;
 use sinew_math::{Vec3, max3, min3};
 use std::collections::HashMap;

@@ -277,8 +277,9 @@ impl ParticleGroup {
             let (distance, normal) = o.shape.signed_distance(&o.world_from_shape, seen);
             let gap = distance - self.radii[i];
             let approach = (self.velocities[i] - drift).dot(normal);
-            // Within reach in this substep, gravity and a share of the other forces included.
-            let reach = h * (max(-approach, 0.0) + 2.0 * h * self.gravity.length()) + 0.05 * self.radii[i];
+            // Within reach in this substep, gravity, outer force and a share of the other forces included.
+            let reach =
+                h * (max(-approach, 0.0) + 2.0 * h * self.accelerations[i].length()) + 0.05 * self.radii[i];
             if gap <= reach && approach > -IMPACT_SPEED && nearest.is_none_or(|touch| gap < touch.gap) {
                 nearest = Some(Touch {
                     obstacle: index,

@@ -86,7 +86,7 @@ impl ParticleGroup {
     fn respond(&mut self, i: usize, h: f32, mut touch: Touch, bodies: &mut [ObstacleBody]) {
         let body = &mut bodies[touch.body];
         let approach = (self.velocities[i] - body.velocity_at(touch.point)).dot(touch.normal);
-        touch.speed_min = self.rebound(approach, h, &touch);
+        touch.speed_min = self.rebound(i, approach, h, &touch);
         let own = 1.0 / self.masses[i];
         let impulse = touch.impulse(own, self.velocities[i], body);
         let change = impulse * own;
@@ -100,11 +100,11 @@ impl ParticleGroup {
     /// Normal speed after an impact at `approach` (negative), so that a bounce neither gains nor loses height by the
     /// length of the substep. A velocity of symplectic Euler is that of half a substep ago, and gravity kept working
     /// between the surface and where the particle ended.
-    fn rebound(&self, approach: f32, h: f32, touch: &Touch) -> f32 {
+    fn rebound(&self, i: usize, approach: f32, h: f32, touch: &Touch) -> f32 {
         if approach >= -IMPACT_SPEED || touch.material.restitution == 0.0 {
             return 0.0;
         }
-        let pull = max(-self.gravity.dot(touch.normal), 0.0);
+        let pull = max(-self.accelerations[i].dot(touch.normal), 0.0);
         let at_end = approach - 0.5 * pull * h;
         let at_surface = max(at_end * at_end + 2.0 * pull * touch.gap, 0.0).sqrt();
         touch.material.restitution * at_surface + 0.5 * pull * h

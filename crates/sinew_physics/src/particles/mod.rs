@@ -21,7 +21,7 @@ mod snapshot;
 pub use contact::{BodyImpulse, Obstacle, ObstacleBody};
 pub use def::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, RopeDef, SpringDef};
 
-use crate::aabb::Aabb;
+use crate::boxes::Aabb;
 use crate::shape::{Filter, Material};
 use contact::{Grip, Touch};
 use forest::{Forest, Freedom, System};
@@ -72,8 +72,10 @@ pub struct ParticleGroup {
     touches: Vec<Option<Touch>>,
     /// Mass of the particles that touch each body.
     loads: Vec<f32>,
-    /// Gravity of the last substep, scaled.
-    gravity: Vec3,
+    /// Forces of fields on each particle in the substep to come, N; none without fields.
+    outer: Vec<Vec3>,
+    /// Gravity and outer force of the last substep on each particle, over its mass, m/s².
+    accelerations: Vec<Vec3>,
 }
 
 impl ParticleGroup {
@@ -108,7 +110,8 @@ impl ParticleGroup {
             reactions: Vec::new(),
             touches: Vec::new(),
             loads: Vec::new(),
-            gravity: Vec3::ZERO,
+            outer: Vec::new(),
+            accelerations: Vec::new(),
         };
         group.derive();
         group
@@ -178,7 +181,7 @@ impl ParticleGroup {
         let mut bounds = Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
         for i in 0..self.positions.len() {
             for center in [self.positions[i], self.previous[i]] {
-                bounds = bounds.merge(&Aabb::around(center, Vec3::splat(self.radii[i])));
+                bounds = bounds.merge(&Aabb::reaching(center, Vec3::splat(self.radii[i])));
             }
         }
         bounds
@@ -194,6 +197,11 @@ impl ParticleGroup {
         &self.body_impulses
     }
 
+    /// Forces on the particles, one for each or none at all, that the next substep feels and uses up, N, world.
+    pub(crate) fn outer_forces(&mut self) -> &mut Vec<Vec3> {
+        &mut self.outer
+    }
+
     /// Changes a particle's velocity by an impulse (N·s, world).
     ///
     /// # Panics
@@ -201,6 +209,17 @@ impl ParticleGroup {
     pub fn apply_impulse(&mut self, particle: u32, impulse: Vec3) {
         let i = particle as usize;
         self.velocities[i] += impulse / self.masses[i];
+    }
+
+    /// Moves a particle by `by` (m, world), with the velocity that takes it there within `h` seconds.
+    ///
+    /// # Panics
+    /// If there is no such particle, or a number is not finite.
+    pub fn correct(&mut self, particle: u32, by: Vec3, h: f32) {
+        let velocity = by / h;
+        assert!(velocity.is_finite(), "a particle's way is finite");
+        self.positions[particle as usize] += by;
+        self.velocities[particle as usize] += velocity;
     }
 
     /// Moves the group by `h` seconds under `gravity` (m/s²), its springs, its attachments and its contacts.
@@ -224,7 +243,13 @@ impl ParticleGroup {
         bodies: &mut [ObstacleBody],
     ) {
         assert_eq!(anchors.len(), self.attachments.len(), "each attachment needs its anchor");
-        self.gravity = gravity * self.gravity_scale;
+        let gravity = gravity * self.gravity_scale;
+        self.accelerations.clear();
+        self.accelerations.resize(self.positions.len(), gravity);
+        for ((sum, force), mass) in self.accelerations.iter_mut().zip(self.outer.drain(..)).zip(&self.masses)
+        {
+            *sum += force / *mass;
+        }
         self.body_impulses.clear();
         self.begin(h);
         self.hold(h, anchors);
@@ -252,7 +277,7 @@ impl ParticleGroup {
             }
             self.system.inertia[i] += mass;
             self.system.momentum[i] =
-                mass * anchor.velocity + (anchor.velocity + self.gravity * h) * self.masses[i];
+                mass * anchor.velocity + (anchor.velocity + self.accelerations[i] * h) * self.masses[i];
         }
     }
 
@@ -265,7 +290,7 @@ impl ParticleGroup {
             self.velocities[i] *= damping;
             self.system.freedom[i] = Freedom::Free;
             self.system.inertia[i] = Sym3::from_diagonal(Vec3::splat(mass));
-            self.system.momentum[i] = (self.velocities[i] + self.gravity * h) * mass;
+            self.system.momentum[i] = (self.velocities[i] + self.accelerations[i] * h) * mass;
         }
     }
 
@@ -302,7 +327,7 @@ impl ParticleGroup {
         for (k, (a, anchor)) in self.attachments.iter().zip(anchors).enumerate() {
             let i = a.particle as usize;
             self.attachment_impulses[k] = if self.system.freedom[i] == Freedom::Fixed {
-                self.reactions[i] + self.gravity * (self.masses[i] * h)
+                self.reactions[i] + self.accelerations[i] * (self.masses[i] * h)
             } else {
                 anchor.inverse_mass.inverse() * (self.velocities[i] - anchor.velocity)
             };

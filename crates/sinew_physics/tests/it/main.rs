@@ -1,14 +1,19 @@
 //! Integration tests of the world, held against closed forms and brute force.
 
 mod allocations;
+mod bounce;
+mod boxes;
 mod build;
 mod closed_forms;
 mod collide;
 mod cook;
+mod fields;
 mod humanoid;
 mod joints;
+mod objects;
 mod particles;
 mod random_worlds;
 mod ray;
 mod rope;
 mod trees;
+mod update;

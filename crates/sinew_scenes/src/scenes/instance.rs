@@ -1,9 +1,10 @@
 //! A scene that runs.
 
 use super::metric::{Expected, Metric};
+use core::time::Duration;
 use sinew::math::max;
 use sinew::physics::stage::{NoProfiler, Profiler};
-use sinew::physics::{Energy, Serial, TaskRunner, World};
+use sinew::physics::{Energy, Serial, TaskRunner, Update, World};
 
 /// The part of a scene that goes along with its world.
 pub trait Script: Send {
@@ -51,36 +52,14 @@ impl Instance {
 
     /// One step with the host's threads and stage times.
     pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
-        let before = self.world.energy();
-        self.world.step_with(runner, profiler);
-        self.after_step(before);
+        let Self { world, script, health } = self;
+        step(world, script.as_mut(), health, &|world| world.step_with(runner, profiler));
     }
 
-    /// Runs the whole steps that `nanoseconds` more of time hold, as [`World::update`] does; gives the rest as a share
-    /// of a step.
-    pub fn update(&mut self, nanoseconds: u64) -> f32 {
-        let step = self.world.def().step_nanoseconds;
-        let mut left = nanoseconds;
-        loop {
-            // At most one step fits into what is pending and this portion, so that the script sees each.
-            let portion = u64::min(left, step);
-            let (before, steps) = (self.world.energy(), self.world.step_count());
-            let alpha = self.world.update(portion);
-            if self.world.step_count() > steps {
-                self.after_step(before);
-            }
-            left -= portion;
-            if left == 0 {
-                return alpha;
-            }
-        }
-    }
-
-    fn after_step(&mut self, energy_before: Energy) {
-        // What the script pushes is no work of this step.
-        let after = self.world.energy();
-        self.script.after_step(&mut self.world);
-        self.health.after_step(&self.world, [energy_before, after], self.script.work_in(&self.world));
+    /// Runs the whole steps that `time` more holds, as [`World::update`] does; the script sees each.
+    pub fn update(&mut self, time: Duration) -> Update {
+        let Self { world, script, health } = self;
+        world.update_with(time, |world| step(world, script.as_mut(), health, &World::step))
     }
 
     /// The figures so far: those of the scene, then `energy_gain_max` and `nan`, which every scene has.
@@ -89,6 +68,16 @@ impl Instance {
         metrics.extend(self.health.metrics());
         metrics
     }
+}
+
+/// One step, and what goes along with it.
+fn step(world: &mut World, script: &mut dyn Script, health: &mut Health, step: &dyn Fn(&mut World)) {
+    let before = world.energy();
+    step(world);
+    // What the script pushes is no work of this step.
+    let after = world.energy();
+    script.after_step(world);
+    health.after_step(world, [before, after], script.work_in(world));
 }
 
 /// What no scene may show, however long it runs.

@@ -18,14 +18,18 @@ mod metric;
 mod setting;
 
 mod ballistics;
+mod boxes;
+mod cabin;
 mod chains;
 mod crowds;
 mod falls;
+mod gimbal;
 mod incline;
 mod linkages;
 mod mjcf;
 mod motors;
 mod nets;
+mod orientation;
 mod pendulums;
 mod piles;
 mod ragdolls;
@@ -95,10 +99,15 @@ pub fn registry() -> &'static [Scene] {
             springs::SPRING,
             springs::SPRING_CHAIN,
             springs::SPRINGS_RATIO,
+            gimbal::GIMBAL,
+            orientation::MATRIX_DRIFT,
+            orientation::VERSOR,
+            orientation::HELPERS,
             weightless::ZERO_GRAVITY_PILE,
             weightless::SPIN_DOUBLE,
             weightless::SPIN_TRIPLE,
             weightless::SPIN_RAGDOLL,
+            cabin::CABIN,
             piles::STACK,
             piles::PYRAMID,
             piles::DOMINOES,
@@ -120,6 +129,8 @@ pub fn registry() -> &'static [Scene] {
             crowds::PILE,
             trees::HEAVY_FOOT,
             trees::MASS_RATIO,
+            boxes::AABB_VS_OBB,
+            boxes::POINT_IN_OBB,
         ]
     }
 }
