@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Result};
 use crate::files::Outputs;
 use crate::film::body_models;
-use crate::picture::{picture_format, picture_path};
+use crate::picture_file::PictureFile;
 use crate::progress::Progress;
 use crate::report::{Report, number};
 use crate::table::{Table, shown};
@@ -15,7 +15,7 @@ use sinew::physics::cook::{self, CookOptions, Cooked, cook};
 use sinew_picture::{
     Camera, Caption, Material, Model, Movie, PictureFormat, RenderSettings, Renderer, Scene, Sky, Sun,
 };
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Turn a render mesh into a world of boxes to collide with, and say how far they are from it
 #[derive(clap::Args)]
@@ -34,8 +34,8 @@ pub struct Boxes {
     #[arg(short, long, value_name = "WORLD.json")]
     output: PathBuf,
     /// Also draw it, the boxes beside the mesh: a .gif, .png or .webp file
-    #[arg(long, value_name = "OUT.(gif|png|webp)", value_parser = picture_path)]
-    picture: Option<PathBuf>,
+    #[arg(long, value_name = "OUT.(gif|png|webp)")]
+    picture: Option<PictureFile>,
 }
 
 impl Boxes {
@@ -48,12 +48,9 @@ impl Boxes {
         let bodies = cooked.to_bodies();
         let mut outputs = Outputs::default();
         outputs.add(&self.output, write_world(&bodies).into_bytes());
-        if let Some((path, format)) =
-            self.picture.as_ref().and_then(|path| Some((path, picture_format(path)?)))
-        {
-            let bytes = draw(&mesh, &bodies, format)
-                .map_err(|error| Failure::of_file(path.display().to_string(), error))?;
-            outputs.add(path, bytes);
+        if let Some(picture) = &self.picture {
+            let failed = |error| Failure::of_file(picture.path().display().to_string(), error);
+            outputs.add(picture.path(), draw(&mesh, &bodies, picture.format).map_err(failed)?);
         }
         outputs.write()?;
         Ok(self.report(&name, &mesh, &cooked))
@@ -71,12 +68,9 @@ impl Boxes {
 
     /// The mesh itself is never the output.
     fn check_outputs(&self) -> Result<()> {
-        let real = |path: &PathBuf| std::fs::canonicalize(path).ok();
+        let real = |path: &Path| std::fs::canonicalize(path).ok();
         let input = real(&self.mesh);
-        match std::iter::once(&self.output)
-            .chain(&self.picture)
-            .find(|path| input.is_some() && real(path) == input)
-        {
+        match self.outputs().find(|path| input.is_some() && real(path) == input) {
             Some(path) => {
                 Err(Failure::Usage(format!("{} is an input: write to another file", path.display())))
             }
@@ -84,14 +78,16 @@ impl Boxes {
         }
     }
 
+    /// Files that it writes.
+    fn outputs(&self) -> impl Iterator<Item = &Path> {
+        std::iter::once(self.output.as_path()).chain(self.picture.iter().map(PictureFile::path))
+    }
+
     fn report(&self, name: &str, mesh: &TriangleMesh, cooked: &Cooked) -> Report {
         let Cooked { boxes, deviation, repairs, parts } = cooked;
         let height = height(mesh);
         let warnings = warnings(mesh, cooked);
-        let outputs: Vec<String> = std::iter::once(&self.output)
-            .chain(&self.picture)
-            .map(|path| path.display().to_string())
-            .collect();
+        let outputs: Vec<String> = self.outputs().map(|path| path.display().to_string()).collect();
         let json = json!({
             "boxes": boxes.len(),
             "volume_ratio": deviation.volume_ratio.map(number),

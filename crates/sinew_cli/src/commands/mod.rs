@@ -8,6 +8,7 @@ mod later;
 mod ragdoll_build;
 mod run;
 mod scenes;
+mod view;
 
 use crate::failure::Result;
 use crate::report::Report;
@@ -26,10 +27,9 @@ pub enum Command {
     Inspect(inspect::Inspect),
     Run(run::Run),
     Scenes(scenes::Scenes),
+    View(view::View),
     #[command(hide = true, disable_help_flag = true)]
     Events(Later),
-    #[command(hide = true, disable_help_flag = true)]
-    View(Later),
     #[command(hide = true, disable_help_flag = true)]
     Record(Later),
     #[command(hide = true, disable_help_flag = true)]
@@ -61,8 +61,8 @@ impl Command {
             Self::Inspect(command) => command.run(),
             Self::Run(command) => command.run(),
             Self::Scenes(command) => command.run(),
+            Self::View(command) => command.run(),
             Self::Events(_) => later::refuse("sinew events"),
-            Self::View(_) => later::refuse("sinew view"),
             Self::Record(_) => later::refuse("sinew record"),
             Self::Replay(_) => later::refuse("sinew replay"),
             Self::Convert(_) => later::refuse("sinew convert"),

@@ -8,6 +8,7 @@ mod refusals;
 mod scenes;
 mod sinew;
 mod usage;
+mod view;
 
 /// The reader of `docs/contract.md` that `cargo xtask` holds the demo's report against.
 #[path = "../../../../xtask/src/contract.rs"]

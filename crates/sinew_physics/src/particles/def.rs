@@ -161,6 +161,14 @@ impl GroupDef {
                 return Err("a spring's stiffness must be positive, its length and damping not negative");
             }
         }
+        self.material.check()?;
+        let finite = |target| match target {
+            AttachmentTarget::World(place) => place.is_finite(),
+            AttachmentTarget::Body { point, .. } => point.is_finite(),
+        };
+        if !self.attachments.iter().all(|a| finite(a.target)) {
+            return Err("the point of an attachment must be finite");
+        }
         let mut held = vec![false; count];
         for a in &self.attachments {
             if !known(a.particle) || core::mem::replace(&mut held[a.particle as usize], true) {

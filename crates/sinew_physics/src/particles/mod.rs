@@ -58,6 +58,9 @@ pub struct ParticleGroup {
     /// Impulse of a surface on each particle in the last solve.
     contact_impulses: Vec<Vec3>,
 
+    /// Where each particle was before the last step, for drawing.
+    drawn_from: Vec<Vec3>,
+
     forest: Forest,
     system: System,
     /// Where each particle was before the substep.
@@ -101,6 +104,7 @@ impl ParticleGroup {
             filter: def.filter,
             grips: vec![Grip::Off; count],
             contact_impulses: vec![Vec3::ZERO; count],
+            drawn_from: Vec::new(),
             forest: Forest::default(),
             system: System::default(),
             previous: Vec::new(),
@@ -129,6 +133,7 @@ impl ParticleGroup {
         self.forest = Forest::new(count, &self.springs, &held_in_world);
         self.system = System::new(count, self.springs.len());
         self.previous = self.positions.clone();
+        self.drawn_from = self.positions.clone();
         self.attachment_impulses = vec![Vec3::ZERO; self.attachments.len()];
         self.touches = vec![None; count];
         self.body_impulses = Vec::with_capacity(MAX_TOUCHES * count);
@@ -138,6 +143,17 @@ impl ParticleGroup {
     /// World, metres.
     pub fn positions(&self) -> &[Vec3] {
         &self.positions
+    }
+
+    /// Positions between the last step (`alpha` 0) and this one (1), for drawing; see [`Update`](crate::Update).
+    pub fn interpolated(&self, alpha: f32) -> impl Iterator<Item = Vec3> {
+        let steps = self.drawn_from.iter().zip(&self.positions);
+        steps.map(move |(&from, &to)| from * (1.0 - alpha) + to * alpha)
+    }
+
+    /// Where particles are is from now on where they were before the step.
+    pub(crate) fn begin_step(&mut self) {
+        self.drawn_from.copy_from_slice(&self.positions);
     }
 
     /// m/s.
@@ -205,8 +221,9 @@ impl ParticleGroup {
     /// Changes a particle's velocity by an impulse (N·s, world).
     ///
     /// # Panics
-    /// If there is no such particle.
+    /// If there is no such particle, or the impulse is not finite.
     pub fn apply_impulse(&mut self, particle: u32, impulse: Vec3) {
+        assert!(impulse.is_finite(), "an impulse is finite");
         let i = particle as usize;
         self.velocities[i] += impulse / self.masses[i];
     }
@@ -217,7 +234,7 @@ impl ParticleGroup {
     /// If there is no such particle, or a number is not finite.
     pub fn correct(&mut self, particle: u32, by: Vec3, h: f32) {
         let velocity = by / h;
-        assert!(velocity.is_finite(), "a particle's way is finite");
+        assert!(by.is_finite() && h.is_finite() && velocity.is_finite(), "a particle's way is finite");
         self.positions[particle as usize] += by;
         self.velocities[particle as usize] += velocity;
     }

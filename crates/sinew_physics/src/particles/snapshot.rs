@@ -6,8 +6,8 @@ use crate::id::BodyId;
 use crate::snapshot::{load_filter, load_material, save_filter, save_material};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
-/// Bytes of a particle: position, velocity, mass, radius, contact impulse, grip.
-const PARTICLE_BYTES: usize = 4 * (3 + 3 + 1 + 1 + 3) + 1;
+/// Bytes of a particle: position, velocity, mass, radius, contact impulse, grip, position before the step.
+const PARTICLE_BYTES: usize = 4 * (3 + 3 + 1 + 1 + 3 + 3) + 1;
 const SPRING_BYTES: usize = 4 * 5;
 /// Of the shortest attachment.
 const ATTACHMENT_BYTES: usize = 4 + 1 + 12;
@@ -31,6 +31,7 @@ impl ParticleGroup {
                 Grip::Slide => 1,
                 Grip::Stick => 2,
             });
+            out.vec3(self.drawn_from[i]);
         }
         out.count(self.springs.len());
         for s in &self.springs {
@@ -66,7 +67,7 @@ impl ParticleGroup {
         let (linear_damping, gravity_scale) = (input.f32()?, input.f32()?);
         let filter = load_filter(input)?;
         let mut def = GroupDef { material, linear_damping, gravity_scale, filter, ..GroupDef::default() };
-        let (mut contact_impulses, mut grips) = (Vec::new(), Vec::new());
+        let (mut contact_impulses, mut grips, mut drawn_from) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..input.count(PARTICLE_BYTES)? {
             def.particles.push(read_particle(input)?);
             contact_impulses.push(input.vec3()?);
@@ -76,6 +77,7 @@ impl ParticleGroup {
                 2 => Grip::Stick,
                 _ => return Err(input.error("a grip is none of the three")),
             });
+            drawn_from.push(input.vec3()?);
         }
         for _ in 0..input.count(SPRING_BYTES)? {
             let (a, b) = (input.u32()?, input.u32()?);
@@ -86,10 +88,10 @@ impl ParticleGroup {
             def.attachments.push(read_attachment(input)?);
         }
         def.check().map_err(|what| input.error(what))?;
-        if !contact_impulses.iter().all(|v: &Vec3| v.is_finite()) {
-            return Err(input.error("an impulse is not finite"));
+        if !contact_impulses.iter().chain(&drawn_from).all(|v: &Vec3| v.is_finite()) {
+            return Err(input.error("an impulse or a place is not finite"));
         }
-        Ok(Self { contact_impulses, grips, ..Self::new(&def) })
+        Ok(Self { contact_impulses, grips, drawn_from, ..Self::new(&def) })
     }
 }
 

@@ -3,9 +3,12 @@
 use sinew_scenes::scenes::{Expected, Metric, Scene, Settings, find, registry};
 
 /// Figures that are not yet as expected, by scene. One that comes to be met must be taken off, or its test fails.
-const NOT_YET: &[(&str, &[&str])] = &[];
+const NOT_YET: &[(&str, &[&str])] = &[
+    // 1.90 instead of 2.95 m/s, 0.47 instead of 0.84 m/s: bodies lose momentum that roll on one that slides.
+    ("rolling_balls", &["box_m_s", "slowest_ball_m_s"]),
+];
 
-/// Scenes in which gravity has no part.
+/// Scenes in which gravity has no part, or no figure that would notice is met.
 const BLIND_TO_GRAVITY: &[&str] = &[
     "gimbal",
     "matrix_drift",
@@ -15,7 +18,12 @@ const BLIND_TO_GRAVITY: &[&str] = &[
     "spin_double",
     "spin_triple",
     "spin_ragdoll",
+    "elastic_pairs",
+    "dzhanibekov",
+    "symmetric_top",
     "aabb_vs_obb",
+    "rolling_balls",
+    "push_centre_off_centre",
 ];
 
 fn metrics_after(scene: &Scene, settings: &Settings, gravity_factor: f32) -> Vec<Metric> {
@@ -83,6 +91,16 @@ scenes!(
         free_fall,
         projectile,
         bounce,
+        two_men,
+        push_centre_off_centre,
+        bullet,
+        kepler,
+        sun_earth,
+        three_bodies,
+        wind,
+        terminal_velocity,
+        float,
+        explosion,
         pendulum,
         double_pendulum,
         triple_pendulum,
@@ -90,6 +108,16 @@ scenes!(
         linkage,
         incline_holds,
         incline_slides,
+        incline_rolls,
+        slide_to_roll,
+        rolling_balls,
+        elastic_pairs,
+        newtons_cradle,
+        bouncing_balls,
+        block_overhang,
+        dzhanibekov,
+        symmetric_top,
+        spinning_top,
         spring,
         spring_chain,
         springs_ratio,
@@ -119,6 +147,8 @@ scenes!(
         hanging_rope,
         heavy_foot,
         mass_ratio,
+        frame_rates,
+        tautochrone,
         aabb_vs_obb,
         point_in_obb,
     ],
