@@ -93,7 +93,7 @@ fn bounce_down(house: &[BodyDef]) {
     let rubber = Material { restitution: 0.3, ..Material::default() };
     let ball = ShapeDef { material: rubber, ..ShapeDef::new(Shape::Sphere { radius: BALL }) };
     let ball = world.add_body(&BodyDef {
-        position: Vec3::new(0.0, STEPS[0] + BALL + 0.05, 1.0),
+        position: Vec3::new(0.0, STEPS[0] + BALL + 0.05, 1.07),
         linear_velocity: Vec3::new(0.0, 0.0, 0.35),
         shapes: vec![ball],
         ..BodyDef::default()

@@ -47,11 +47,12 @@ fn the_example_of_the_page_is_read_and_stands() {
     assert_eq!(read_world(write_world(&bodies).as_bytes()).unwrap(), bodies);
 
     // A set-up that reads back equal is the same world, to the last bit, and stays so.
-    let [mut world, mut again] = [bodies.clone(), read_world(write_world(&bodies).as_bytes()).unwrap()].map(|bodies| {
-        let mut world = World::new(WorldDef::default());
-        bodies.iter().for_each(|body| drop(world.add_body(body)));
-        world
-    });
+    let [mut world, mut again] =
+        [bodies.clone(), read_world(write_world(&bodies).as_bytes()).unwrap()].map(|bodies| {
+            let mut world = World::new(WorldDef::default());
+            bodies.iter().for_each(|body| drop(world.add_body(body)));
+            world
+        });
     for _ in 0..60 {
         assert_eq!(world.hash(), again.hash());
         world.step();
@@ -72,7 +73,18 @@ fn the_page_lists_what_there_is() {
             assert!(page.contains(&format!("`{key}`")), "{key} is not on the page");
         }
     }
-    for word in ["box", "sphere", "capsule", "half_space", "static", "kinematic", "dynamic", "friction", "restitution", "rolling"] {
+    for word in [
+        "box",
+        "sphere",
+        "capsule",
+        "half_space",
+        "static",
+        "kinematic",
+        "dynamic",
+        "friction",
+        "restitution",
+        "rolling",
+    ] {
         assert!(page.contains(&format!("`{word}`")), "{word} is not on the page");
     }
 }

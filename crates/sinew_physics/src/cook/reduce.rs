@@ -285,6 +285,14 @@ impl<'a> Reduction<'a> {
 
 impl Entry {
     fn new(block: Obb) -> Self {
-        Self { block, placed: block.placed(), bounds: bounds(&block), points: Vec::new(), cost: 0.0, seen: usize::MAX, alive: true }
+        Self {
+            block,
+            placed: block.placed(),
+            bounds: bounds(&block),
+            points: Vec::new(),
+            cost: 0.0,
+            seen: usize::MAX,
+            alive: true,
+        }
     }
 }
