@@ -11,6 +11,7 @@ pub mod step;
 mod world;
 
 pub mod collide;
+pub mod cook;
 mod finalize;
 mod islands;
 mod pairs;

@@ -72,6 +72,7 @@ pub(crate) fn solve(phase: Phase, task: &mut Task<'_>, view: &View<'_>, context:
         Phase::Relax(_) => {
             stage(Stage::Relax, &mut || solver.relax());
             stage(Stage::Restitution, &mut || solver.restitution());
+            solver.drop_fields(view);
         }
         Phase::Store => stage(Stage::Store, &mut || solver.store(solution)),
     }

@@ -127,7 +127,7 @@ impl IslandSolver {
         self.order_trees(island, view);
         self.make_room(island);
         self.copy_bodies(island, view);
-        self.keep_applied(view);
+        self.look_for_fields(view);
         self.copy_joints(island, view);
         self.weigh_joints();
         self.refresh_joints();

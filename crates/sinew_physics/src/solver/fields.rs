@@ -18,25 +18,19 @@ pub(super) struct Attraction {
 }
 
 impl IslandSolver {
-    /// Keeps what acts through the whole step, if in its substeps more will.
-    pub(super) fn keep_applied(&mut self, view: &View<'_>) {
-        self.applied.clear();
-        let moving = &self.bodies[..self.links.len()];
+    /// Whether something in this step depends on how bodies move within it.
+    pub(super) fn look_for_fields(&mut self, view: &View<'_>) {
         let lasting = |body: &SolverBody| !view.bodies.at(body.index).forces.list.is_empty();
-        if !view.fields.is_empty() || moving.iter().any(lasting) {
-            self.applied.extend(moving.iter().map(|body| Wrench { force: body.force, torque: body.torque }));
-        }
+        self.forces_vary = !view.fields.is_empty() || self.bodies[..self.links.len()].iter().any(lasting);
     }
 
-    /// Forces on bodies and particles at the beginning of a substep.
+    /// Forces on bodies and particles at the beginning of a substep, beside those that act through the whole step.
     pub(super) fn add_fields(&mut self, view: &View<'_>, groups: &mut [TakenGroup]) {
-        let moving = self.bodies.iter_mut().zip(&self.velocities);
-        for ((body, v), applied) in moving.zip(&self.applied) {
+        for (body, v) in self.bodies[..self.links.len()].iter_mut().zip(&self.velocities) {
             let load = view.fields.load(&target(view, body, v));
             let of = view.bodies.at(body.index);
             let lasting = of.forces.sum(of, body.pose);
-            let other =
-                Wrench { force: applied.force + lasting.force, torque: applied.torque + lasting.torque };
+            let other = Wrench { force: body.force + lasting.force, torque: body.torque + lasting.torque };
             let Wrench { force, torque } = load.with(other, body.mass, least(body.inertia), self.h);
             (body.force, body.torque) = (force, torque);
         }
@@ -44,6 +38,13 @@ impl IslandSolver {
             taken.feel(&view.fields, self.h);
         }
         self.attract(view, groups);
+    }
+
+    /// After a substep: what it was pushed with is no part of the next one.
+    pub fn drop_fields(&mut self, view: &View<'_>) {
+        if self.forces_vary {
+            self.renew_forces(view);
+        }
     }
 
     /// Each pair of an attraction's gets the same force, one this way, one that way: nothing holds it back, or momentum

@@ -22,7 +22,6 @@ mod sweep;
 mod tree;
 mod tree_joints;
 
-use crate::force::Wrench;
 use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
@@ -37,7 +36,7 @@ use fields::Attraction;
 use limit_rows::LimitRow;
 use loops::Loops;
 use response::Response;
-use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew, trig};
+use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, min, normalize_or, skew, trig};
 pub(crate) use solution::{IslandSolution, Solution, SolvedBody, split_off};
 use sweep::{Pass, Unrest};
 use tree::Link;
@@ -184,8 +183,8 @@ pub(crate) struct IslandSolver {
     moved: Vec<Vec6>,
     /// What bodies gain after that without having it from their joints; what contacts and loops gave before, negative.
     accounted: Vec<Vec6>,
-    /// What acts on each moving body beside fields and lasting forces; none without those.
-    applied: Vec<Wrench>,
+    /// Fields and lasting forces act: they are taken anew in each substep.
+    forces_vary: bool,
     attraction: Attraction,
     scratch: Scratch,
     unrest: Unrest,
@@ -238,7 +237,7 @@ impl IslandSolver {
         for rows in &mut self.manifolds {
             rows.begin_approach(&self.velocities);
         }
-        if !(self.applied.is_empty() && view.fields.is_empty()) {
+        if self.forces_vary {
             self.add_fields(view, groups);
         }
         self.begin_drives();
@@ -503,9 +502,10 @@ fn limit_length(v: Vec3, most: f32) -> Vec3 {
 
 /// Angular velocity that turns a free body within `h` seconds as its inertia lets it (world axes).
 ///
-/// The implicit midpoint `I (m − ω) + ½h m × I m = 0` in the principal frame keeps energy and the length of the momentum
-/// to rounding, and with the Cayley map for the turn, `2 atan(½h |m|)` about `m`, the momentum itself (after Austin,
-/// Krishnaprasad and Wang 1993). The explicit torque explodes; leaving it out makes wrong tops.
+/// The implicit midpoint `I (m − ω) + τ m × I m = 0` in the principal frame keeps energy and the length of the momentum to
+/// rounding, and with the Cayley map for the turn, `2 atan(τ|m|)` about `m`, the momentum itself (after Austin,
+/// Krishnaprasad and Wang 1993), whatever `τ`. With `τ = tan(½h|m|) / |m|` that turn is `h|m|`: `m` is the spin that joints
+/// and contacts feel, no slower one. The explicit torque explodes; leaving it out makes wrong tops.
 fn gyroscopic(body: &SolverBody, w: Vec3, h: f32) -> Vec3 {
     let i = body.inertia;
     if i.x == i.y && i.y == i.z {
@@ -516,14 +516,16 @@ fn gyroscopic(body: &SolverBody, w: Vec3, h: f32) -> Vec3 {
     let mut m = w0;
     for _ in 0..MIDPOINT_STEPS {
         let l = m * i;
-        // Jacobian I + ½h (m× I − (I m)×).
-        let jacobian = Mat3::from_diagonal(i) + (skew(m) * Mat3::from_diagonal(i) - skew(l)) * (0.5 * h);
-        let change = jacobian.inverse() * ((m - w0) * i + m.cross(l) * (0.5 * h));
+        // Within a quarter of a turn, should the world's limit allow more.
+        let angle = min(0.5 * h * m.length(), 1.2);
+        let tau = 0.5 * h * (if angle > 1e-3 { trig::tan(angle) / angle } else { 1.0 });
+        // Jacobian I + τ (m× I − (I m)×), but for what τ changes with m.
+        let jacobian = Mat3::from_diagonal(i) + (skew(m) * Mat3::from_diagonal(i) - skew(l)) * tau;
+        let change = jacobian.inverse() * ((m - w0) * i + m.cross(l) * tau);
         m -= change;
         if change.length_squared() <= MIDPOINT_TOLERANCE * w0.length_squared() {
             break;
         }
     }
-    let x = 0.5 * h * m.length();
-    r * (if x > 1e-3 { m * (trig::atan2(x, 1.0) / x) } else { m })
+    r * m
 }

@@ -12,7 +12,6 @@ impl IslandSolver {
         for body in &mut self.bodies[..moving] {
             (body.force, body.torque) = applied_force(view.bodies.at(body.index), view);
         }
-        self.keep_applied(view);
     }
 
     /// Adds to what `integrate_velocity` will apply, N and N·m about the centre of mass.
@@ -20,10 +19,6 @@ impl IslandSolver {
         let body = &mut self.bodies[local];
         body.force += force;
         body.torque += torque;
-        if let Some(applied) = self.applied.get_mut(local) {
-            applied.force += force;
-            applied.torque += torque;
-        }
     }
 
     /// An impulse before the substep: what joints make of it comes with `solve`.

@@ -1,6 +1,7 @@
 //! A scene that runs.
 
 use super::metric::{Expected, Metric};
+use super::sight::Sight;
 use core::time::Duration;
 use sinew::math::max;
 use sinew::physics::stage::{NoProfiler, Profiler};
@@ -20,6 +21,20 @@ pub trait Script: Send {
 
     /// The figures so far.
     fn metrics(&self, world: &World) -> Vec<Metric>;
+
+    /// How a picture looks at it.
+    fn sight(&self) -> Sight {
+        Sight::default()
+    }
+}
+
+/// Nothing but the world itself.
+struct Unwatched;
+
+impl Script for Unwatched {
+    fn metrics(&self, _: &World) -> Vec<Metric> {
+        Vec::new()
+    }
 }
 
 /// A scene that runs.
@@ -33,6 +48,16 @@ impl Instance {
     pub(super) fn new(world: World, script: impl Script + 'static) -> Self {
         let health = Health::new(&world);
         Self { world, script: Box::new(script), health }
+    }
+
+    /// Of a world that no scene made, such as a file's.
+    pub fn of_world(world: World) -> Self {
+        Self::new(world, Unwatched)
+    }
+
+    /// How a picture looks at it.
+    pub fn sight(&self) -> Sight {
+        self.script.sight()
     }
 
     /// Its world, for questions, drawing, snapshots.
@@ -61,6 +86,9 @@ impl Instance {
         let Self { world, script, health } = self;
         world.update_with(time, |world| step(world, script.as_mut(), health, &World::step))
     }
+
+    /// How many figures every scene has, at the end of its own.
+    pub const METRICS_OF_EVERY_SCENE: usize = 2;
 
     /// The figures so far: those of the scene, then `energy_gain_max` and `nan`, which every scene has.
     pub fn metrics(&self) -> Vec<Metric> {
@@ -106,7 +134,7 @@ impl Health {
         self.quarantined += world.events().quarantined.len() as u32;
     }
 
-    fn metrics(&self) -> [Metric; 2] {
+    fn metrics(&self) -> [Metric; Instance::METRICS_OF_EVERY_SCENE] {
         [
             Metric::new("energy_gain_max", self.energy_gain_max, Expected::AtMost(0.01)),
             Metric::new("nan", self.quarantined, Expected::AtMost(0.0)),

@@ -6,17 +6,20 @@ use crate::boxes::Obb;
 use sinew_math::Vec3;
 use sinew_math::lanes::Real;
 
-/// Squared sine below which two edges are taken as parallel: the faces' axes then say all there is to say.
-const PARALLEL: f32 = 2.5e-5;
+/// Squared sine below which two edges are taken as parallel. Without that axis the distance is off by up to the sine times
+/// the boxes' size, with it by roundings divided by the sine: at a thousandth neither is worse than a thousandth.
+const PARALLEL: f32 = 1e-6;
 
 /// The axis along which two boxes are furthest apart, or overlap least, and how far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Separation {
     /// Gap along the axis, metres; negative if the boxes overlap: then it is the shortest way out, by moving B along
-    /// [`direction`](SeparatingAxis::direction). At 0 they touch. NaN if a number of the boxes is NaN or infinite.
+    /// [`direction`](SeparatingAxis::direction). At 0 they touch. NaN if a number of the boxes is NaN;
+    /// nothing to rely on if one is infinite.
     ///
     /// A gap is at most the boxes' distance: less where their closest points are a corner and a corner, or a corner and
-    /// an edge.
+    /// an edge. Exact but for rounding, except where edges are within a milliradian of parallel: there it may be off by
+    /// that angle times the boxes' size.
     pub distance: f32,
     /// Of the best axes, the first in the order in which they are listed at [`SeparatingAxis`].
     pub axis: SeparatingAxis,

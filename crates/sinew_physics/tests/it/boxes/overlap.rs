@@ -9,7 +9,7 @@ use sinew_physics::{Aabb, Obb};
 
 /// Checks what is said about a pair against `meets(shift, grow)`: whether the two, one of them moved by `shift` and grown
 /// by `grow`, have a point in common.
-fn check(
+pub fn check(
     found: Option<Penetration>,
     meets: impl Fn(Wide, f64) -> bool,
     [fine, coarse]: [f64; 2],
@@ -49,7 +49,7 @@ fn check(
 
 /// What two boxes may be off by: roundings of their sizes, their distance, and of the centre of an aligned one; and where rounding leaves no direction across
 /// edges that are nearly parallel, what that direction is worth.
-fn tolerances(a: &WideBox, b: &WideBox, of_center: f64) -> [f64; 2] {
+pub fn tolerances(a: &WideBox, b: &WideBox, of_center: f64) -> [f64; 2] {
     let scale = a.size() + b.size() + length(add(a.center, b.center, -1.0));
     let fine = 1e-6 * scale + of_center + 1e-12;
     let sine = a.least_sine(b);

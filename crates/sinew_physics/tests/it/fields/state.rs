@@ -2,7 +2,7 @@
 
 use super::closed_forms::{particle, point_mass, run, weightless};
 use crate::build::{box_body, capsule_body, floor, sphere_body};
-use sinew_math::{Random, Reader, Transform, Vec3, Writer};
+use sinew_math::{Random, ReadError, Reader, Transform, Vec3, Writer};
 use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, RopeDef};
 use sinew_physics::*;
 
@@ -196,4 +196,39 @@ fn a_particle_hung_on_a_body_hands_on_what_it_feels() {
     let gained = 0.5 * 100.0 * 60.0 * world.def().dt();
     let found = world.velocity(body).linear.x * (world.mass(body).mass + 0.5);
     assert!((found / gained - 1.0).abs() < 1e-3, "{found} for {gained}");
+}
+
+/// Pulls a body along x.
+struct Puller {
+    body: BodyId,
+    force: f32,
+}
+
+impl PhysicsObject for Puller {
+    fn kind(&self) -> &'static str {
+        "puller"
+    }
+
+    fn add_forces(&mut self, forces: &mut Forces<'_>) {
+        forces.apply_force_at_center(self.body, Vec3::X * self.force);
+    }
+
+    fn save(&self, _: &mut Writer) {}
+
+    fn load(&mut self, _: &mut Reader<'_>) -> Result<(), ReadError> {
+        Ok(())
+    }
+}
+
+#[test]
+fn fields_objects_and_lasting_forces_add_up() {
+    let mut world = weightless();
+    let body = world.add_body(&point_mass(2.0, Vec3::ZERO, Vec3::ZERO));
+    world.add_object(Box::new(Puller { body, force: 6.0 }));
+    let up = UniformGravity { acceleration: Vec3::Y * 3.0 };
+    world.add_field(&FieldDef::new(FieldKind::Uniform(up)));
+    world.add_force(body, &ForceDef { force: Vec3::Z * 6.0, ..ForceDef::default() });
+    run(&mut world, 60);
+    let expected = Vec3::splat(3.0 * 60.0 * world.def().dt());
+    assert!((world.velocity(body).linear - expected).length() < 1e-4, "{:?}", world.velocity(body));
 }
