@@ -1,6 +1,6 @@
 //! From meshes to boxes: closed forms, brute force, bad input.
 
-use sinew_math::{Mat3, Random, Rotation, Vec3};
+use sinew_math::{Mat3, Random, Rotation, Vec3, trig};
 use sinew_physics::boxes::Cuboid;
 use sinew_physics::cook::{CookError, CookOptions, Cooked, MeshBvh, cook};
 use sinew_physics::{Obb, Shape};
@@ -50,11 +50,9 @@ impl Mesh {
         let mut mesh = Self::default();
         let around = 2 * rings;
         let at = |i: u32, j: u32| {
-            let (u, v) = (
-                core::f32::consts::PI * i as f32 / rings as f32,
-                core::f32::consts::PI * j as f32 / rings as f32,
-            );
-            Vec3::new(u.sin() * v.cos(), u.cos(), -u.sin() * v.sin()) * radius
+            let turn = |k: u32| trig::sin_cos(core::f32::consts::PI * k as f32 / rings as f32);
+            let ((su, cu), (sv, cv)) = (turn(i), turn(j));
+            Vec3::new(su * cv, cu, -su * sv) * radius
         };
         for i in 0..rings {
             for j in 0..around {
