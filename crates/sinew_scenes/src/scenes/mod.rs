@@ -145,7 +145,6 @@ pub fn registry() -> &'static [Scene] {
             boxes::POINT_IN_OBB,
         ]
     }
-    REGISTRY
 }
 
 const REGISTRY: &[Scene] = &[
