@@ -5,7 +5,7 @@ use super::parts::{ball, cuboid, fallen, fixed, ghost, tilt};
 use super::{Instance, Scene, Script, Setting, Setup};
 use sinew::math::{Rotation, Vec3, max, trig};
 use sinew::physics::boxes::{Cuboid, Penetration, SurfacePoint};
-use sinew::physics::{BodyDef, BodyId, Obb, Shape, World};
+use sinew::physics::{BodyDef, BodyId, DebugDraw, DrawKind, Obb, Shape, World};
 
 pub(super) const AABB_VS_OBB: Scene = Scene {
     name: "aabb_vs_obb",
@@ -66,6 +66,21 @@ impl Turning {
 }
 
 impl Script for Turning {
+    /// The bounds.
+    fn draw(&self, world: &World, out: &mut dyn DebugDraw) {
+        let bounds = world.bounds(self.body);
+        let corner = |bits: usize| {
+            let pick = |bit: usize, lo: f32, hi: f32| if bits >> bit & 1 == 1 { hi } else { lo };
+            let (lo, hi) = (bounds.min, bounds.max);
+            Vec3::new(pick(0, lo.x, hi.x), pick(1, lo.y, hi.y), pick(2, lo.z, hi.z))
+        };
+        for bits in 0..8 {
+            for edge in [1, 2, 4].into_iter().filter(|edge| bits & edge == 0) {
+                out.line(corner(bits), corner(bits | edge), DrawKind::Object);
+            }
+        }
+    }
+
     fn after_step(&mut self, world: &mut World) {
         let [bounds, oriented] = volumes(world, self.body);
         let ratio = bounds / oriented;
