@@ -13,7 +13,8 @@ const SAMPLES: usize = 20_000;
 /// Distances between two surfaces and a ratio of volumes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
-    /// Volume of the boxes' union over the volume that the mesh encloses; `None` if the mesh is open.
+    /// Volume of the boxes' union over the volume that the mesh encloses; `None` if the mesh is open,
+    /// or encloses nothing.
     pub volume_ratio: Option<f32>,
     /// 95 of 100 points of either surface are closer than this to the other, metres: the larger of both ways.
     pub distance_p95: f32,
@@ -31,8 +32,10 @@ pub(super) fn measure(mesh: &SurfaceMesh, bvh: &MeshBvh, blocks: &[Obb], random:
     let [p95_there, max_there] = quantiles(to_boxes.collect());
     let outer = tree.outer_surface(SAMPLES, random);
     let [p95_back, max_back] = quantiles(outer.iter().map(|&p| bvh.closest_point(p).distance).collect());
+    let ratio = mesh.is_closed().then(|| tree.volume(random) / enclosed_volume(mesh, bvh, random));
     Deviation {
-        volume_ratio: mesh.is_closed().then(|| tree.volume(random) / enclosed_volume(mesh, bvh, random)),
+        // Closed shells may cancel out: then nothing is enclosed.
+        volume_ratio: ratio.filter(|ratio| ratio.is_finite()),
         distance_p95: max(p95_there, p95_back),
         distance_max: max(max_there, max_back),
     }
@@ -54,7 +57,8 @@ fn enclosed_volume(mesh: &SurfaceMesh, bvh: &MeshBvh, random: &mut Random) -> f3
             let [a, b, c] = mesh.corners(t).map(|p| p - center);
             f64::from(a.dot(b.cross(c)))
         };
-        return ((0..mesh.triangles.len()).map(sixfold).sum::<f64>() / 6.0) as f32;
+        // Of a room, whose faces look inward, it is negative.
+        return ((0..mesh.triangles.len()).map(sixfold).sum::<f64>() / 6.0).abs() as f32;
     }
     let size = mesh.bounds.max - mesh.bounds.min;
     let mut inside = 0;

@@ -5,6 +5,7 @@ use super::bvh::MeshBvh;
 use super::fit::{cluster, orientations};
 use super::fitted::{around, bounds, sample_surface};
 use super::sample::MeshPoint;
+use super::solid::is_seen_from_inside;
 use crate::boxes::{Aabb, Cuboid, Obb, Overlap, PlacedBox};
 use sinew_math::{Random, Rotation, Vec3, max3, min};
 
@@ -167,6 +168,12 @@ impl<'a> Reduction<'a> {
                 self.entries[i].points.iter().map(change).sum::<f32>() * self.area
             }
             Step::Merge(i, j, block) => {
+                if is_seen_from_inside(self.bvh, &block)
+                    && !self.is_inside_another(block.center, [usize::MAX; 2])
+                {
+                    // The floor and the ceiling of a room are not one box.
+                    return f32::INFINITY;
+                }
                 let before = self.cost_of(i) + self.cost_of(j);
                 let points = [i, j].map(|k| self.points_cost(&block, &self.entries[k].points));
                 points[0] + points[1] + self.surface_cost(&block, [i, j]) - before

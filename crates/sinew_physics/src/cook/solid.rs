@@ -77,7 +77,7 @@ fn rms_distances(bvh: &MeshBvh, points: &[MeshPoint], blocks: &[Obb], random: &m
 }
 
 /// Whether the faces around the middle of a box look inward, as a room's.
-fn is_seen_from_inside(bvh: &MeshBvh, block: &Obb) -> bool {
+pub(super) fn is_seen_from_inside(bvh: &MeshBvh, block: &Obb) -> bool {
     bvh.winding_number(block.center) < -0.5
 }
 
