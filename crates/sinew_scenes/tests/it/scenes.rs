@@ -129,6 +129,7 @@ scenes!(
         spin_double,
         spin_triple,
         spin_ragdoll,
+        cabin,
         stack,
         pyramid,
         dominoes,
