@@ -141,6 +141,7 @@ const REGISTRY: &[Scene] = &[
     weightless::SPIN_DOUBLE,
     weightless::SPIN_TRIPLE,
     weightless::SPIN_RAGDOLL,
+    cabin::CABIN,
     piles::STACK,
     piles::PYRAMID,
     piles::DOMINOES,

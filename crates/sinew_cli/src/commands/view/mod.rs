@@ -61,9 +61,9 @@ impl View {
             return Err(Failure::Usage(line.into()));
         };
         let subject = Subject::find(name, &self.settings)?;
-        let reel = Reel { title: subject.title(), settings: self.render_settings() };
-        let at = self.at.unwrap_or(subject.seconds());
-        let seconds = self.seconds.unwrap_or(subject.seconds());
+        let ends = subject.seconds();
+        let reel = Reel { title: subject.title(), ends, settings: self.render_settings() };
+        let (at, seconds) = (self.at.unwrap_or(ends), self.seconds.unwrap_or(ends));
         let mut outputs = Outputs::default();
         if let Some(file) = &self.picture {
             outputs.add(file.path(), reel.picture(&subject, at, file.format).map_err(failed(file))?);

@@ -32,6 +32,8 @@ const MARGIN: f32 = 0.1;
 pub struct Reel<'a> {
     /// What is shown.
     pub title: &'a str,
+    /// When its closed forms hold, seconds.
+    pub ends: f32,
     /// Size and quality.
     pub settings: RenderSettings,
 }
@@ -52,7 +54,7 @@ impl Reel<'_> {
             progress.step();
         }
         take.turn_to_see();
-        let image = take.draw(self.title, &take.whole, &mut Renderer::new(self.settings));
+        let image = take.draw(self, &take.whole, &mut Renderer::new(self.settings));
         sinew_picture::encode::encode(format, &[image], FPS)
     }
 
@@ -75,7 +77,7 @@ impl Reel<'_> {
         let mut take = Take { sight: rehearsal.sight, ..Take::new(subject.start()) };
         for frame in 0..frames {
             take.step_to(time(frame));
-            movie.push(&take.draw(self.title, &rehearsal.whole, &mut renderer))?;
+            movie.push(&take.draw(self, &rehearsal.whole, &mut renderer))?;
             progress.step();
         }
         movie.finish()
@@ -160,13 +162,13 @@ impl Take {
     }
 
     /// As it stands now, in a frame for all of `whole`.
-    fn draw(&self, title: &str, whole: &Aabb, renderer: &mut Renderer) -> Image {
+    fn draw(&self, reel: &Reel<'_>, whole: &Aabb, renderer: &mut Renderer) -> Image {
         let shown = self.shown(whole);
         let frame = Frame { center: shown.center(), radius: 0.5 * (shown.max - shown.min).length() };
         let mut scene = Scene {
             sun: Sun { shadow_radius: 1.3 * frame.radius, ..Sun::default() },
             sky: Sky { haze_distance: max(45.0, 15.0 * frame.radius), ..Sky::default() },
-            captions: self.captions(title),
+            captions: self.captions(reel),
             ..Scene::default()
         };
         world::paint(self.run.world(), &frame, &mut scene);
@@ -202,9 +204,12 @@ impl Take {
         radii.reduce(max).unwrap_or(f32::INFINITY)
     }
 
-    fn captions(&self, title: &str) -> Vec<Caption> {
-        let head = Caption::new(format!("{title}  {:.2} s", self.run.world().time()));
-        let lines = figures(&self.run.metrics());
+    fn captions(&self, reel: &Reel<'_>) -> Vec<Caption> {
+        let world = self.run.world();
+        let is_over = world.time() as f32 > reel.ends - 0.5 * world.def().dt();
+        let moment = if is_over { Moment::AtTheEnd } else { Moment::OnTheWay };
+        let head = Caption::new(format!("{}  {:.2} s", reel.title, world.time()));
+        let lines = figures(&self.run.metrics(), moment);
         let count = lines.len() as i32;
         let place = |(i, text): (usize, String)| Caption {
             y: -8 - 12 * (count - 1 - i as i32),
@@ -239,20 +244,29 @@ impl Trail {
     }
 }
 
+/// Whether all that is expected of a scene has had time to happen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Moment {
+    OnTheWay,
+    AtTheEnd,
+}
+
 /// The figures that a scene is about: those with a closed form, else what else it measures; never those that every
-/// scene has.
-fn figures(metrics: &[Metric]) -> Vec<String> {
+/// scene has. What is expected holds at the end; before that it is shown of those that are right already.
+fn figures(metrics: &[Metric], moment: Moment) -> Vec<String> {
     let own = &metrics[..metrics.len().saturating_sub(Instance::METRICS_OF_EVERY_SCENE)];
     let is_closed = |metric: &&Metric| matches!(metric.expected, Expected::Near { .. });
     let any_closed = own.iter().any(|metric| is_closed(&metric));
     let chosen = own.iter().filter(|metric| !any_closed || is_closed(metric));
-    chosen.filter_map(figure).take(MOST_FIGURES).collect()
+    chosen.filter_map(|metric| figure(metric, moment)).take(MOST_FIGURES).collect()
 }
 
-fn figure(metric: &Metric) -> Option<String> {
+fn figure(metric: &Metric, moment: Moment) -> Option<String> {
     let found = digits(metric.value?);
     Some(match metric.expected {
-        Expected::Near { value, .. } => format!("{} {found} (closed form {})", metric.name, digits(value)),
+        Expected::Near { value, .. } if moment == Moment::AtTheEnd || metric.is_met() => {
+            format!("{} {found} (closed form {})", metric.name, digits(value))
+        }
         _ => format!("{} {found}", metric.name),
     })
 }
