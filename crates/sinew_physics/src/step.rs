@@ -49,12 +49,12 @@ fn substeps(task: &mut Task<'_>, view: &View<'_>, context: &StepContext<'_>) {
         solver.prepare(island, view);
         surroundings.make_room(island);
     });
-    for _ in 0..context.substeps {
+    for substep in 0..context.substeps {
         stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity());
         stage(Stage::WarmStart, &mut || solver.warm_start());
         stage(Stage::Solve, &mut || solver.solve());
         stage(Stage::IntegratePosition, &mut || solver.integrate_position());
-        stage(Stage::Project, &mut || surroundings.project(groups, solver, view));
+        stage(Stage::Project, &mut || surroundings.project(groups, solver, view, substep));
         stage(Stage::Relax, &mut || solver.relax());
     }
     stage(Stage::Restitution, &mut || solver.restitution());
