@@ -145,7 +145,8 @@ impl Repo {
     }
 }
 
-/// Folders that hold nothing of ours. Those of builds are named like `target` or `target-something`.
+/// What holds nothing of ours. Folders of builds are named like `target` or `target-something`; `.git` is a file in a linked
+/// working tree.
 fn is_foreign(name: &str) -> bool {
     name == ".git" || name == "out" || name == "node_modules" || name.starts_with("target")
 }
@@ -157,7 +158,10 @@ fn collect(folder: &Path, prefix: &str, files: &mut Vec<File>) -> std::io::Resul
         let name = entry.file_name().to_string_lossy().into_owned();
         let path = format!("{prefix}{name}");
         let kind = entry.file_type()?;
-        if kind.is_dir() && !is_foreign(&name) {
+        if is_foreign(&name) {
+            continue;
+        }
+        if kind.is_dir() {
             collect(&entry.path(), &format!("{path}/"), files)?;
         } else if kind.is_file()
             && let Ok(text) = String::from_utf8(fs::read(entry.path())?)

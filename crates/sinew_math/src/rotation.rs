@@ -224,6 +224,22 @@ impl Rotation {
         (later * self.inverse()).to_scaled_axis() / dt
     }
 
+    /// `self * v` without what the quaternion's length is off from 1 by. After normalising, that is up to 1e-7 and on the
+    /// average positive: turned to and fro in every substep, a vector would grow by 1e-3 in a minute.
+    #[inline]
+    pub fn turn(self, v: Vec3) -> Vec3 {
+        let [x, y, z, w] = [self.x, self.y, self.z, self.w].map(f64::from);
+        let [a, b, c] = v.to_array().map(f64::from);
+        let s = 2.0 / (x * x + y * y + z * z + w * w);
+        let t = [y * c - z * b, z * a - x * c, x * b - y * a];
+        let u = [y * t[2] - z * t[1], z * t[0] - x * t[2], x * t[1] - y * t[0]];
+        Vec3::new(
+            (a + s * (w * t[0] + u[0])) as f32,
+            (b + s * (w * t[1] + u[1])) as f32,
+            (c + s * (w * t[2] + u[2])) as f32,
+        )
+    }
+
     /// True if all four numbers are finite.
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite() && self.z.is_finite() && self.w.is_finite()

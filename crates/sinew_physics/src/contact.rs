@@ -25,8 +25,6 @@ pub(crate) struct PointImpulse {
     /// Of the last substep and the one before: an impact must not be repeated, so warm starting looks at both.
     pub now: f32,
     pub before: f32,
-    /// Largest within the step: whether the point was hit at all.
-    pub peak: f32,
 }
 
 /// What a contact carries from step to step.
@@ -55,7 +53,7 @@ impl ContactMemory {
         for (point, impulse) in old.points().iter().zip(&self.points) {
             match new.points().iter().position(|p| p.feature == point.feature) {
                 Some(i) => {
-                    memory.points[i] = PointImpulse { peak: 0.0, ..*impulse };
+                    memory.points[i] = *impulse;
                     fresh[i] = false;
                 }
                 None => {

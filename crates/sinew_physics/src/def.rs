@@ -14,6 +14,11 @@ pub struct WorldDef {
     pub substeps: u32,
     /// Bodies may fall asleep. Default yes.
     pub sleeping: Sleeping,
+    /// Most that a body moves, m/s: it is held to it when forces act, before joints and contacts. Default 4,000.
+    pub max_speed: f32,
+    /// Most that a body turns within a substep, radians, likewise. Beyond a quarter of a turn (the default, 377 rad/s at
+    /// 1/60 s and 4 substeps) rows that are linearised at the substep's start mean little; a top may spin faster.
+    pub max_turn: f32,
 }
 
 /// Whether islands at rest are put to sleep.
@@ -32,11 +37,32 @@ impl Default for WorldDef {
             step_nanoseconds: 16_666_667,
             substeps: 4,
             sleeping: Sleeping::On,
+            max_speed: 4000.0,
+            max_turn: core::f32::consts::FRAC_PI_2,
         }
     }
 }
 
 impl WorldDef {
+    /// Whether its numbers make sense; the phrase says what is wrong.
+    ///
+    /// # Errors
+    /// What is wrong, in lower case.
+    pub fn check(&self) -> Result<(), &'static str> {
+        // Written so that NaN fails.
+        let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
+        if self.step_nanoseconds == 0 || self.substeps == 0 {
+            return Err("a step takes time and has substeps");
+        }
+        if !self.gravity.is_finite() {
+            return Err("gravity is finite");
+        }
+        if !(positive(self.max_speed) && positive(self.max_turn)) {
+            return Err("the speed limits are positive and finite");
+        }
+        Ok(())
+    }
+
     /// Step length, seconds.
     pub fn dt(&self) -> f32 {
         self.step_nanoseconds as f32 * 1e-9

@@ -166,7 +166,7 @@ impl Surroundings {
             let see = |&index: &u32| Seen::new(index, &self.starts, solver, view, substep);
             self.seen.extend(taken.near.bodies.iter().map(see));
             self.place(taken, view);
-            taken.group.substep(view.h, view.gravity, &self.anchors, &self.obstacles, &mut self.bodies);
+            taken.group.substep(view.h, view.def.gravity, &self.anchors, &self.obstacles, &mut self.bodies);
             self.push_bodies(taken, solver);
         }
     }

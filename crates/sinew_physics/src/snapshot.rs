@@ -113,6 +113,8 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
     w.u64(def.step_nanoseconds);
     w.u32(def.substeps);
     w.bool(def.sleeping == Sleeping::On);
+    w.f32(def.max_speed);
+    w.f32(def.max_turn);
 }
 
 fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
@@ -122,7 +124,10 @@ fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
         return Err(r.error("a step takes no time"));
     }
     let sleeping = if r.bool()? { Sleeping::On } else { Sleeping::Off };
-    Ok(WorldDef { gravity, step_nanoseconds, substeps, sleeping })
+    let def =
+        WorldDef { gravity, step_nanoseconds, substeps, sleeping, max_speed: r.f32()?, max_turn: r.f32()? };
+    def.check().map_err(|what| r.error(what))?;
+    Ok(def)
 }
 
 fn save_body(w: &mut Writer, body: &Body) {
@@ -309,8 +314,7 @@ fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, Rea
     let mut memory = ContactMemory::default();
     for i in 0..manifold.count {
         manifold.points[i] = ManifoldPoint { position: r.vec3()?, separation: r.f32()?, feature: r.u32()? };
-        // The peak is of the step that is over.
-        memory.points[i] = PointImpulse { now: r.f32()?, before: r.f32()?, peak: 0.0 };
+        memory.points[i] = PointImpulse { now: r.f32()?, before: r.f32()? };
     }
     let friction: Vec3 = r.vec3()?;
     memory.friction = friction;

@@ -28,7 +28,7 @@ pub enum Stage {
     Project,
     /// Joints, contacts and limits without bias; friction.
     Relax,
-    /// Bounce.
+    /// Bounce of what was hit in the substep.
     Restitution,
     /// Impulses kept for the next step.
     Store,

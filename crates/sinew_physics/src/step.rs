@@ -28,7 +28,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, context.dt));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
 
-    let view = View { bodies, joints, contacts, gravity: def.gravity, h: context.h };
+    let view = View { bodies, joints, contacts, def, h: context.h };
     islands.run(context.runner, |task| substeps(task, &view, context));
 
     stage(Stage::Store, &mut || {
@@ -56,7 +56,7 @@ fn substeps(task: &mut Task<'_>, view: &View<'_>, context: &StepContext<'_>) {
         stage(Stage::IntegratePosition, &mut || solver.integrate_position());
         stage(Stage::Project, &mut || surroundings.project(groups, solver, view, substep));
         stage(Stage::Relax, &mut || solver.relax());
+        stage(Stage::Restitution, &mut || solver.restitution());
     }
-    stage(Stage::Restitution, &mut || solver.restitution());
     stage(Stage::Store, &mut || solver.store(solution));
 }

@@ -44,10 +44,11 @@ impl World {
     /// An empty world.
     ///
     /// # Panics
-    /// If the step or the number of substeps is 0, or gravity is not finite.
+    /// If [`WorldDef::check`] finds something wrong.
     pub fn new(def: WorldDef) -> Self {
-        assert!(def.step_nanoseconds > 0 && def.substeps > 0, "a step takes time");
-        assert!(def.gravity.is_finite(), "gravity is finite");
+        if let Err(what) = def.check() {
+            panic!("{what}");
+        }
         Self {
             def,
             bodies: Arena::default(),

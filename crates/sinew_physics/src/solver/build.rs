@@ -8,6 +8,7 @@ use super::{IslandSolver, SolverBody, SolverJoint};
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, combine, slop};
+use crate::def::WorldDef;
 use crate::islands::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
 use crate::spatial::{ZERO6, join};
@@ -21,7 +22,7 @@ pub(crate) struct View<'a> {
     pub bodies: &'a Arena<Body>,
     pub joints: &'a Arena<Joint>,
     pub contacts: &'a [Contact],
-    pub gravity: Vec3,
+    pub def: &'a WorldDef,
     /// Substep, seconds.
     pub h: f32,
 }
@@ -114,6 +115,7 @@ impl IslandSolver {
     /// Fills the solver with an island of the world.
     pub fn prepare(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.h = view.h;
+        (self.max_speed, self.max_turn) = (view.def.max_speed, view.def.max_turn);
         self.order_trees(island, view);
         self.make_room(island);
         self.copy_bodies(island, view);
@@ -252,7 +254,7 @@ impl IslandSolver {
                 inertia: body.inertia,
                 excess: Vec3::ZERO,
                 inverse_inertia: Sym3::ZERO,
-                force: body.force + view.gravity * (body.gravity_scale * body.mass),
+                force: body.force + view.def.gravity * (body.gravity_scale * body.mass),
                 torque: body.torque,
                 momentum: Vec3::ZERO,
                 linear_damping: body.linear_damping,
@@ -342,7 +344,7 @@ impl IslandSolver {
                 shapes: [shape_a, shape_b].map(|s| PlacedShape::new(s.shape, s.principal_from_shape)),
                 h: view.h,
             };
-            self.manifolds.push(ManifoldRows::new(&source, &self.bodies, &self.velocities));
+            self.manifolds.push(ManifoldRows::new(&source, &self.bodies));
         }
     }
 }

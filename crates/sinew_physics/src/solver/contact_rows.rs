@@ -1,6 +1,7 @@
 //! Contact rows of one manifold: up to four normal rows solved as a block, friction at the centre, twist, rolling.
 
 use super::response::Response;
+use super::sweep::Pass;
 use super::tree::Link;
 use super::{REDUNDANCY, SolverBody, disk, free_response, lcp};
 use crate::collide::{MAX_POINTS, Manifold, collide};
@@ -13,6 +14,8 @@ use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max, min};
 const PUSH_SPEED: f32 = 3.0;
 /// Approach below which nothing bounces, m/s.
 const BOUNCE_SPEED: f32 = 1.0;
+/// Distance over time of a point that no substep brings to touch, m/s.
+const NEVER: f32 = 1e6;
 /// An impulse that grew by more than this factor since the substep before is an impact.
 pub(super) const IMPACT_JUMP: f32 = 2.0;
 /// Overlap beyond this many slops is deep.
@@ -114,6 +117,26 @@ impl Given {
     }
 }
 
+/// Motion of a point along its normal, in a substep.
+#[derive(Clone, Copy, Debug, Default)]
+struct Approach {
+    /// At its beginning, m/s; negative if it comes nearer.
+    rate: f32,
+    /// Likewise, metres; 0 if it overlaps.
+    gap: f32,
+    /// What forces and joints add in the substep before contacts, toward the surface, m/s; not negative.
+    pull: f32,
+}
+
+impl Approach {
+    /// Speed at the surface, m/s. A velocity of symplectic Euler is that of half a substep ago, and what pulls goes on between
+    /// here and the surface.
+    fn speed_at_surface(&self, h: f32) -> f32 {
+        let now = self.rate - 0.5 * self.pull;
+        if now < 0.0 { (now * now + 2.0 * (self.pull / h) * self.gap).sqrt() } else { 0.0 }
+    }
+}
+
 /// Change of impulse of a manifold: on A and on B.
 pub(super) type Push = (Vec6, Vec6);
 
@@ -155,8 +178,10 @@ pub(crate) struct ManifoldRows {
     /// Of the twist to the tangents.
     k_spin_tangent: [f32; 2],
     k_roll: Mat3,
-    /// Normal velocity at the step's beginning, for restitution.
-    approach: [f32; MAX_POINTS],
+    /// How each point comes in, in this substep.
+    approach: [Approach; MAX_POINTS],
+    /// Normal speed with which each point leaves what it hit in this substep, m/s; 0 if it does not bounce.
+    rebound: [f32; MAX_POINTS],
     /// Impulses of this substep.
     impulse: [f32; MAX_POINTS],
     /// Sum of the normal impulses that friction is limited by.
@@ -204,7 +229,7 @@ pub(crate) struct ManifoldSource<'a> {
 }
 
 impl ManifoldRows {
-    pub fn new(source: &ManifoldSource<'_>, bodies: &[SolverBody], velocities: &[Vec6]) -> Self {
+    pub fn new(source: &ManifoldSource<'_>, bodies: &[SolverBody]) -> Self {
         let n = source.manifold.normal;
         let hertz = if source.a_moves && source.b_moves { CONTACT_HERTZ } else { FIXED_HERTZ };
         let mut rows = Self {
@@ -234,7 +259,8 @@ impl ManifoldRows {
             k_spin: 0.0,
             k_spin_tangent: [0.0; 2],
             k_roll: Mat3::ZERO,
-            approach: [0.0; MAX_POINTS],
+            approach: [Approach::default(); MAX_POINTS],
+            rebound: [0.0; MAX_POINTS],
             impulse: [0.0; MAX_POINTS],
             load: 0.0,
             floor: [0.0; MAX_POINTS],
@@ -245,10 +271,6 @@ impl ManifoldRows {
         };
         rows.take_manifold(bodies);
         rows.place(bodies);
-        let pair = rows.pair();
-        for i in 0..rows.count {
-            rows.approach[i] = rows.rows[i].rate(pair, velocities);
-        }
         rows
     }
 
@@ -288,14 +310,13 @@ impl ManifoldRows {
         }
         let impulse = self.impulse.map(|now| PointImpulse { now, ..PointImpulse::default() });
         let of_substep = ContactMemory { points: impulse, ..self.memory }.matched(&self.manifold, &manifold);
-        let mut memory = self.memory.matched(&self.manifold, &manifold);
-        let mean = self.approach[..self.count].iter().sum::<f32>() / self.count as f32;
-        let (was, approach) = (self.manifold, self.approach);
+        let memory = self.memory.matched(&self.manifold, &manifold);
+        let mean = self.rebound[..self.count].iter().sum::<f32>() / self.count as f32;
+        let (was, rebound) = (self.manifold, self.rebound);
         for (i, point) in manifold.points().iter().enumerate() {
             let known = was.points().iter().position(|p| p.feature == point.feature);
-            self.approach[i] = known.map_or(mean, |k| approach[k]);
+            self.rebound[i] = known.map_or(mean, |k| rebound[k]);
             self.impulse[i] = of_substep.points[i].now;
-            memory.points[i].peak = self.impulse[i];
         }
         self.memory = memory;
         self.weight = weights(&self.memory, manifold.count);
@@ -452,13 +473,17 @@ impl ManifoldRows {
     }
 
     /// One visit of the normal rows as a block.
-    pub fn visit_normal(&mut self, velocities: &[Vec6], biased: bool, h: f32) -> Push {
-        let pair = self.pair();
+    pub fn visit_normal(&mut self, velocities: &[Vec6], pass: Pass, h: f32) -> Push {
+        let (pair, biased) = (self.pair(), pass == Pass::Solve);
         let mut v = [0.0; MAX_POINTS];
         let mut mean = 0.0;
         for i in 0..self.count {
             let s = self.separation[i];
-            let bias = if s > 0.0 {
+            let bias = if pass == Pass::Restitution && self.rebound[i] > 0.0 {
+                -self.rebound[i]
+            } else if s > 0.0 && self.comes_to_bounce(i) && !biased {
+                NEVER
+            } else if s > 0.0 {
                 s / h
             } else if biased {
                 max(self.soft.bias_rate * min(s + DEAD_ZONE * self.slop, 0.0), -PUSH_SPEED)
@@ -483,7 +508,6 @@ impl ManifoldRows {
             let row = self.rows[i];
             self.add(&mut push, &row, new[i] - free[i]);
             self.impulse[i] = new[i] + self.floor[i];
-            self.memory.points[i].peak = max(self.memory.points[i].peak, self.impulse[i]);
         }
         push
     }
@@ -529,33 +553,46 @@ impl ManifoldRows {
         Some(push)
     }
 
-    /// A point that came in fast and was hit will bounce.
-    pub fn bounces(&self) -> bool {
-        self.material.restitution > 0.0 && (0..self.count).any(|i| self.bouncing(i))
-    }
-
-    fn bouncing(&self, i: usize) -> bool {
-        self.approach[i] < -BOUNCE_SPEED && self.memory.points[i].peak > 0.0
-    }
-
-    /// Gives a bouncing point its share of the approach speed back.
-    pub fn visit_bounce(&mut self, i: usize, velocities: &[Vec6]) -> Option<Push> {
-        if i >= self.count || !self.bouncing(i) || self.material.restitution == 0.0 || self.k[i][i] <= 0.0 {
-            return None;
+    /// How its points come in, when the substep begins.
+    pub fn begin_approach(&mut self, velocities: &[Vec6]) {
+        for i in 0..self.bouncy_count() {
+            let rate = self.rows[i].rate(self.pair(), velocities);
+            self.approach[i] = Approach { rate, gap: max(self.separation[i], 0.0), pull: 0.0 };
         }
-        let rate = self.rows[i].rate(self.pair(), velocities);
-        let new =
-            max(self.impulse[i] - (rate + self.material.restitution * self.approach[i]) / self.k[i][i], 0.0);
-        let mut push = (ZERO6, ZERO6);
-        let row = self.rows[i];
-        self.add(&mut push, &row, new - self.impulse[i]);
-        self.impulse[i] = new;
-        Some(push)
     }
 
-    /// Points in use.
-    pub fn count(&self) -> usize {
-        self.count
+    /// What the forces and the joints have added to that.
+    pub fn pull_approach(&mut self, velocities: &[Vec6]) {
+        for i in 0..self.bouncy_count() {
+            let rate = self.rows[i].rate(self.pair(), velocities);
+            self.approach[i].pull = max(self.approach[i].rate - rate, 0.0);
+        }
+    }
+
+    /// Points that came in fast and were hit will bounce, to the height that their speed at the surface is good for.
+    pub fn end_approach(&mut self, h: f32) {
+        self.rebound = [0.0; MAX_POINTS];
+        for i in 0..self.bouncy_count() {
+            let speed = self.approach[i].speed_at_surface(h);
+            if self.impulse[i] > 0.0 && speed > BOUNCE_SPEED {
+                self.rebound[i] = self.material.restitution * speed + 0.5 * self.approach[i].pull;
+            }
+        }
+    }
+
+    /// A point that will bounce, but has not touched yet: `relax` must not brake it on its way.
+    fn comes_to_bounce(&self, i: usize) -> bool {
+        self.material.restitution > 0.0 && self.impulse[i] == 0.0
+    }
+
+    /// Points that may bounce.
+    fn bouncy_count(&self) -> usize {
+        if self.material.restitution > 0.0 { self.count } else { 0 }
+    }
+
+    /// Whether a point leaves what it hit.
+    pub fn bounces(&self) -> bool {
+        (0..self.bouncy_count()).any(|i| self.rebound[i] > 0.0)
     }
 
     /// Impulses of this substep become memory.

@@ -32,26 +32,26 @@ use energy::Momentum;
 use limit_rows::LimitRow;
 use loops::Loops;
 use response::Response;
-use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew};
+use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew, trig};
 pub(crate) use solution::{IslandSolution, Solution, SolvedBody, split_off};
 use sweep::{Pass, Unrest};
 use tree::Link;
 
-/// Angle that a body may turn within a substep, radians: beyond it rows linearised at its start mean nothing.
-const MAX_TURN: f32 = core::f32::consts::FRAC_PI_2;
-/// m/s.
-const MAX_SPEED: f32 = 4000.0;
 /// Most visits of all contact and limit rows per pass in an island with joints. A heavy body on a jointed light one
 /// needs them; most passes end sooner, once a sweep changes no velocity by more than the tolerance (m/s or rad/s).
 const SWEEPS_JOINTED: usize = 24;
 const SWEEP_TOLERANCE: f32 = 2e-3;
 /// Likewise in one without: one with bias; two in `relax`, since friction of the first knows only the soft impulses of
-/// `solve` (1.5 % too little).
+/// `solve` (1.5 % too little); more in the few substeps in which something bounces, off what may lie on something else.
 const SWEEPS_FREE: usize = 1;
 const SWEEPS_FREE_RELAX: usize = 2;
+const SWEEPS_FREE_BOUNCE: usize = 8;
 /// Sweeps of `relax` before which friction learns its loads anew: the impulses of `solve` first, then those that really
 /// press. From then on loads stay, or friction and normals may chase each other for ever.
 const WEIGHINGS: usize = 2;
+/// Most Newton steps to the middle of a free body's spin, and the square of the relative change with which they end.
+const MIDPOINT_STEPS: usize = 4;
+const MIDPOINT_TOLERANCE: f32 = 1e-12;
 /// Rounds in which limits that the substep would pass by far are tightened.
 const LIMIT_CORRECTIONS: usize = 4;
 
@@ -105,7 +105,7 @@ impl SolverBody {
 
     /// N·m·s, without what geometric stiffness adds.
     fn angular_momentum(&self, w: Vec3) -> Vec3 {
-        self.pose.rotation * ((self.pose.rotation.inverse() * w) * self.inertia)
+        self.pose.rotation.turn(self.pose.rotation.inverse().turn(w) * self.inertia)
     }
 
     /// Answer to an impulse if no joint held it.
@@ -200,6 +200,9 @@ pub(crate) struct IslandSolver {
     hit_rate: f32,
     /// Substep, seconds.
     h: f32,
+    /// Most that a body moves, m/s, and turns within a substep, radians.
+    max_speed: f32,
+    max_turn: f32,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -222,6 +225,9 @@ impl IslandSolver {
     /// the substep by gyroscopic torque. Limits act here, never after the solve: there they tear joints.
     pub fn integrate_velocity(&mut self) {
         let h = self.h;
+        for rows in &mut self.manifolds {
+            rows.begin_approach(&self.velocities);
+        }
         self.begin_drives();
         self.kinetic_before = self.kinetic_energy(&self.velocities[..self.links.len()]);
         self.push_saturated();
@@ -235,9 +241,9 @@ impl IslandSolver {
                 let r = body.pose.rotation;
                 ang = r * ((r.inverse() * ang) * body.inertia / (body.inertia + body.excess));
             }
-            ang = limit_length(ang, MAX_TURN / h);
+            ang = limit_length(ang, self.max_turn / h);
             body.momentum = body.angular_momentum(ang);
-            *v = join(limit_length(lin, MAX_SPEED), gyroscopic(body, ang, 0.5 * h));
+            *v = join(limit_length(lin, self.max_speed), gyroscopic(body, ang, h));
         }
         self.kinetic_start = self.kinetic_of_momenta();
         self.momentum_start = self.momentum_of_start();
@@ -279,6 +285,9 @@ impl IslandSolver {
         self.project_joints(Pass::Solve);
         self.drop_bad_warm_start();
         self.saturate_motors();
+        for rows in &mut self.manifolds {
+            rows.pull_approach(&self.velocities);
+        }
         self.sweep(Pass::Solve);
         self.calm_trees();
         let mut torn = self.correct_positions();
@@ -291,6 +300,9 @@ impl IslandSolver {
             torn = self.correct_positions();
         }
         self.drop_nonsense(torn);
+        for rows in &mut self.manifolds {
+            rows.end_approach(self.h);
+        }
         self.pay_for_positions();
         self.add_drive_work();
     }
@@ -309,7 +321,7 @@ impl IslandSolver {
             body.pose = advance(&body.pose, v, self.h);
             if let Some(momentum) = turned {
                 let r = body.pose.rotation;
-                *v = join(linear(v), r * ((r.inverse() * momentum) / body.inertia));
+                *v = join(linear(v), r.turn(r.inverse().turn(momentum) / body.inertia));
             }
         }
         self.refresh();
@@ -349,7 +361,7 @@ impl IslandSolver {
         self.add_relax_reactions();
     }
 
-    /// Bounce of what was hit, after the substeps.
+    /// Bounce of what was hit in this substep.
     pub fn restitution(&mut self) {
         if self.manifolds.iter().any(ManifoldRows::bounces) {
             self.sweep(Pass::Restitution);
@@ -473,8 +485,11 @@ fn limit_length(v: Vec3, most: f32) -> Vec3 {
     if length > most { v * (most / length) } else { v }
 }
 
-/// One Newton step of `I (ω⁺ − ω) + h ω⁺ × I ω⁺ = 0` in the principal frame, from ω (Catto, GDC 2015): the explicit
-/// torque explodes, leaving it out makes wrong tops. With half a substep for `h` it gives the ω of its middle.
+/// Angular velocity that turns a free body within `h` seconds as its inertia lets it (world axes).
+///
+/// The implicit midpoint `I (m − ω) + ½h m × I m = 0` in the principal frame keeps energy and the length of the momentum
+/// to rounding, and with the Cayley map for the turn, `2 atan(½h |m|)` about `m`, the momentum itself (after Austin,
+/// Krishnaprasad and Wang 1993). The explicit torque explodes; leaving it out makes wrong tops.
 fn gyroscopic(body: &SolverBody, w: Vec3, h: f32) -> Vec3 {
     let i = body.inertia;
     if i.x == i.y && i.y == i.z {
@@ -482,9 +497,17 @@ fn gyroscopic(body: &SolverBody, w: Vec3, h: f32) -> Vec3 {
     }
     let r = body.pose.rotation;
     let w0 = r.inverse() * w;
-    let l = w0 * i;
-    let f = w0.cross(l) * h;
-    // Jacobian I + h (ω× I − (Iω)×).
-    let jacobian = Mat3::from_diagonal(i) + (skew(w0) * Mat3::from_diagonal(i) - skew(l)) * h;
-    r * (w0 - jacobian.inverse() * f)
+    let mut m = w0;
+    for _ in 0..MIDPOINT_STEPS {
+        let l = m * i;
+        // Jacobian I + ½h (m× I − (I m)×).
+        let jacobian = Mat3::from_diagonal(i) + (skew(m) * Mat3::from_diagonal(i) - skew(l)) * (0.5 * h);
+        let change = jacobian.inverse() * ((m - w0) * i + m.cross(l) * (0.5 * h));
+        m -= change;
+        if change.length_squared() <= MIDPOINT_TOLERANCE * w0.length_squared() {
+            break;
+        }
+    }
+    let x = 0.5 * h * m.length();
+    r * (if x > 1e-3 { m * (trig::atan2(x, 1.0) / x) } else { m })
 }

@@ -5,7 +5,10 @@
 use super::conjugate::{Conjugate, Rows};
 use super::contact_rows::{ManifoldRows, Push};
 use super::tree::Link;
-use super::{IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED, WEIGHINGS};
+use super::{
+    IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_BOUNCE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED,
+    WEIGHINGS,
+};
 use crate::spatial::{ZERO6, add_scaled, linear};
 use sinew_math::max;
 
@@ -16,7 +19,7 @@ pub(crate) enum Pass {
     Solve,
     /// Without bias, with friction: friction that reacts to bias velocities pumps tall stacks.
     Relax,
-    /// Bounce.
+    /// As `relax` leaves it, and what was hit bounces: what it stands on must bear that, too.
     Restitution,
 }
 
@@ -93,8 +96,9 @@ impl IslandSolver {
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
         let sweeps = match (self.is_articulated(), pass) {
             (true, _) => SWEEPS_JOINTED,
+            (_, Pass::Solve) => SWEEPS_FREE,
             (_, Pass::Relax) => SWEEPS_FREE_RELAX,
-            (..) => SWEEPS_FREE,
+            (_, Pass::Restitution) => SWEEPS_FREE_BOUNCE,
         };
         let conjugates = self.is_articulated() && pass != Pass::Restitution;
         self.conjugate.start();
@@ -108,10 +112,7 @@ impl IslandSolver {
                 let (conjugate, rows) = self.rows_to_conjugate();
                 conjugate.before(&rows);
             }
-            match pass {
-                Pass::Solve | Pass::Relax => self.visit_contacts(pass),
-                Pass::Restitution => self.visit_bounces(),
-            }
+            self.visit_contacts(pass);
             self.visit_limits(pass);
             if done == sweeps || (done > 1 && self.largest_change < SWEEP_TOLERANCE) {
                 break;
@@ -151,18 +152,8 @@ impl IslandSolver {
                     self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
                 }
             }
-            let push = self.manifolds[i].visit_normal(&self.velocities, pass == Pass::Solve, self.h);
+            let push = self.manifolds[i].visit_normal(&self.velocities, pass, self.h);
             self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
-        }
-    }
-
-    fn visit_bounces(&mut self) {
-        for i in 0..self.manifolds.len() {
-            for point in 0..self.manifolds[i].count() {
-                if let Some(push) = self.manifolds[i].visit_bounce(point, &self.velocities) {
-                    self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
-                }
-            }
         }
     }
 

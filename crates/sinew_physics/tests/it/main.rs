@@ -1,6 +1,7 @@
 //! Integration tests of the world, held against closed forms and brute force.
 
 mod allocations;
+mod bounce;
 mod build;
 mod closed_forms;
 mod collide;

@@ -102,8 +102,7 @@ impl Script for Bounce {
 
     fn metrics(&self, _: &World) -> Vec<Metric> {
         let rebound = self.height * self.restitution * self.restitution;
-        // The approach speed is taken at the start of the step, up to `g dt` before the impact.
-        let rebound = Metric::awaited("rebound_m", self.rebound, Expected::near(rebound, 0.1));
+        let rebound = Metric::awaited("rebound_m", self.rebound, Expected::near(rebound, 0.002));
         vec![self.flight.metric(), rebound]
     }
 }
