@@ -18,7 +18,9 @@ mod metric;
 mod setting;
 
 mod ballistics;
+mod blobs;
 mod chains;
+mod cloths;
 mod crowds;
 mod falls;
 mod incline;
@@ -26,10 +28,12 @@ mod linkages;
 mod mjcf;
 mod motors;
 mod nets;
+mod particles;
 mod pendulums;
 mod piles;
 mod ragdolls;
 mod springs;
+mod strings;
 mod support;
 mod trees;
 mod weightless;
@@ -95,6 +99,14 @@ pub fn registry() -> &'static [Scene] {
             springs::SPRING,
             springs::SPRING_CHAIN,
             springs::SPRINGS_RATIO,
+            strings::CATENARY,
+            strings::CHAIN_MODES,
+            particles::PARTICLE,
+            particles::FAST_PARTICLE,
+            cloths::CLOTH,
+            cloths::CLOTH_BALL,
+            blobs::BLOB,
+            blobs::STEEL_VS_BASKETBALL,
             weightless::ZERO_GRAVITY_PILE,
             weightless::SPIN_DOUBLE,
             weightless::SPIN_TRIPLE,
