@@ -19,6 +19,8 @@ use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 const NO_SPEED: f32 = 1e-6;
 /// Solves per iteration until grips and directions have to be right.
 const GRIP_ROUNDS: u32 = 8;
+/// Gap that a net may close by pressing, metres.
+const TOUCHING: f32 = 1e-4;
 /// What is less deep at the end of an iteration is left to impacts, metres.
 const FORESEEN_DEPTH: f32 = 1e-5;
 /// Where a way may lead is told from its length, and turned a little by what is still to push, by this factor.
@@ -384,6 +386,33 @@ impl ParticleGroup {
             let bent = self.system.follow_springs(&self.forest, &self.springs, ends, h);
             if !(changed || found || bent) {
                 break;
+            }
+        }
+    }
+
+    /// What lies behind each particle that is on a surface: its share of the body's inertia along the normal.
+    pub(super) fn back_contacts(&mut self, h: f32, bodies: &[ObstacleBody]) {
+        for i in 0..self.positions.len() {
+            (self.backings[i], self.presses[i]) = (0.0, Vec3::ZERO);
+            let Some(touch) = self.touches[i] else { continue };
+            let relative = self.velocities[i] - bodies[touch.body].velocity_at(touch.point);
+            if (relative.dot(touch.normal) - touch.speed_min) * h > TOUCHING {
+                continue;
+            }
+            let yielding = bodies[touch.body].yielding(touch.point, touch.normal);
+            self.press_normals[i] = touch.normal;
+            // M / (m + M), of M = m / (load · yielding).
+            self.backings[i] = 1.0 / (1.0 + self.loads[touch.body] * yielding);
+        }
+    }
+
+    /// Hands on to bodies what presses particles onto them.
+    pub(super) fn press_bodies(&mut self, bodies: &mut [ObstacleBody]) {
+        for i in 0..self.positions.len() {
+            if let Some(touch) = self.touches[i].filter(|_| self.backings[i] > 0.0) {
+                let impulse = self.presses[i];
+                bodies[touch.body].push(touch.point, impulse);
+                self.report(&touch, -impulse, bodies);
             }
         }
     }

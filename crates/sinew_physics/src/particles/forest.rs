@@ -98,7 +98,7 @@ impl Forest {
     }
 
     /// Springs of the linear system.
-    fn solved_springs(&self) -> impl Iterator<Item = u32> {
+    pub fn solved_springs(&self) -> impl Iterator<Item = u32> {
         let of_links = self.links.iter().map(|link| link.spring);
         of_links.chain(self.ties.iter().map(|tie| tie.spring))
     }

@@ -12,8 +12,8 @@ const IMPACT_SPEED: f32 = 1.0;
 const ROUNDS: usize = 2;
 /// Depths within rounding, metres.
 const ROUNDING: f32 = 1e-6;
-/// Impulses on bodies per particle and iteration: in the solve, of its bounce, and of impacts.
-pub(super) const MAX_TOUCHES: usize = 2 + ROUNDS + 1;
+/// Impulses on bodies per particle and iteration: in the solve, of the net, of its bounce, and of impacts.
+pub(super) const MAX_TOUCHES: usize = 3 + ROUNDS + 1;
 
 impl ParticleGroup {
     /// Gives back their share to particles that the solve has stopped.

@@ -61,6 +61,8 @@ pub struct ParticleGroup {
     filter: Filter,
     /// How surfaces hold the particles.
     grips: Vec<Grip>,
+    /// Length of the last iteration, seconds; 0 before the first.
+    span: f32,
     /// Impulse of a surface on each particle in the last solve.
     contact_impulses: Vec<Vec3>,
 
@@ -88,6 +90,13 @@ pub struct ParticleGroup {
     touches: Vec<Option<Touch>>,
     /// Distance to any shape that each particle surely has when the iteration begins, less what the shape moves, metres.
     clearances: Vec<f32>,
+    /// Share of an impulse against the surface that each particle touches that goes on to the body: its share of the body's
+    /// inertia over that and its own.
+    backings: Vec<f32>,
+    /// Of that surface, out of it.
+    press_normals: Vec<Vec3>,
+    /// What has gone on to the body in this iteration, N·s.
+    presses: Vec<Vec3>,
     /// Velocities that bring particles into the corner of two surfaces.
     wedges: Vec<Vec3>,
     /// Mass of the particles that touch each body.
@@ -152,6 +161,9 @@ impl ParticleGroup {
         self.gradients = vec![Vec3::ZERO; count];
         self.touches = vec![None; count];
         self.clearances = vec![0.0; count];
+        self.backings = vec![0.0; count];
+        self.press_normals = vec![Vec3::ZERO; count];
+        self.presses = vec![Vec3::ZERO; count];
         self.wedges = vec![Vec3::ZERO; count];
         self.body_impulses = Vec::with_capacity(MAX_TOUCHES * count * self.iterations as usize);
         self.reactions = vec![Vec3::ZERO; count];
@@ -304,6 +316,7 @@ impl ParticleGroup {
         bodies: &mut [ObstacleBody],
     ) {
         let h = part.h();
+        self.span = h;
         self.place(part, obstacles, bodies);
         self.begin(h);
         self.hold(part, anchors);
@@ -313,7 +326,9 @@ impl ParticleGroup {
         for i in 0..self.positions.len() {
             self.positions[i] += self.velocities[i] * h;
         }
+        self.back_contacts(h, bodies);
         self.project_net(h);
+        self.press_bodies(bodies);
         self.let_go(part, anchors);
         self.bounce(h, bodies);
         self.stop_impacts(h, obstacles, bodies);

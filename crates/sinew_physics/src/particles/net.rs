@@ -1,7 +1,10 @@
 //! What forms loops, each row once per iteration: `Δx = −C / (Σ w ∇C² + α/h²) w ∇C` with `α = 1/k` (Macklin et al.,
 //! "Small Steps in Physics Simulation", SCA 2019, without its multipliers). A row alone is a step of implicit Euler. Rows
 //! that share particles are solved one after the other, in the order of their definition, and those before do not hear of
-//! those after: each particle of a net yields as if by `h² (w₁ + w₂)` more.
+//! those after: each spring of a net yields by about `h² (w₁ + w₂)` more.
+//!
+//! What presses a particle onto a surface moves it with its share of the body's inertia, and is handed on to the body: a ball
+//! in a cloth would else be carried by the cloth's own few grams.
 
 use super::{BendDef, ParticleGroup, Resists, SpringDef, TetherDef, VolumeDef};
 use sinew_math::{Vec3, max};
@@ -26,9 +29,23 @@ impl ParticleGroup {
         self.volumes = volumes;
     }
 
+    /// What a particle moves by along a force, per impulse: `∇Cᵀ W ∇C` if `force` is as long as the gradient, 1/kg.
+    fn mobility(&self, i: usize, force: Vec3) -> f32 {
+        let pressing = force.dot(self.press_normals[i]);
+        let backed = if pressing < 0.0 { self.backings[i] * pressing * pressing } else { 0.0 };
+        self.weights[i] * (force.length_squared() - backed)
+    }
+
     /// An impulse that acts at the end of the iteration, as if it had from its beginning.
     fn nudge(&mut self, i: usize, impulse: Vec3, h: f32) {
-        let change = impulse * self.weights[i];
+        let pressing = impulse.dot(self.press_normals[i]);
+        let mut own = impulse;
+        if pressing < 0.0 {
+            let handed_on = self.press_normals[i] * (pressing * self.backings[i]);
+            own -= handed_on;
+            self.presses[i] += handed_on;
+        }
+        let change = own * self.weights[i];
         self.velocities[i] += change;
         self.positions[i] += change * h;
         self.reactions[i] += impulse;
@@ -36,27 +53,36 @@ impl ParticleGroup {
 
     fn project_tether(&mut self, tether: TetherDef, h: f32) {
         let (i, to) = (tether.particle as usize, tether.to as usize);
-        let (apart, sum) = (self.positions[to] - self.positions[i], self.weights[i] + self.weights[to]);
+        let apart = self.positions[to] - self.positions[i];
         let length = apart.length();
-        if length <= tether.length || sum == 0.0 {
+        if length <= tether.length {
             return;
         }
-        let impulse = apart * ((length - tether.length) / (length * sum * h));
-        self.nudge(i, impulse, h);
-        self.nudge(to, -impulse, h);
+        let direction = apart / length;
+        let sum = self.mobility(i, direction) + self.weights[to];
+        if sum > 0.0 {
+            let impulse = direction * ((length - tether.length) / (sum * h));
+            self.nudge(i, impulse, h);
+            self.nudge(to, -impulse, h);
+        }
     }
 
     fn project_spring(&mut self, s: SpringDef, h: f32) {
         let (a, b) = (s.a as usize, s.b as usize);
-        let (apart, sum) = (self.positions[b] - self.positions[a], self.weights[a] + self.weights[b]);
+        let apart = self.positions[b] - self.positions[a];
         let length = apart.length();
-        let slack = s.resists == Resists::Stretch && length <= s.rest_length;
-        if length <= 1e-9 || sum == 0.0 || slack {
+        let stretch = length - s.rest_length;
+        if length <= 1e-9 || s.resists == Resists::Stretch && stretch <= 0.0 {
             return;
         }
         let direction = apart / length;
+        let pull = if stretch < 0.0 { -direction } else { direction };
+        let sum = self.mobility(a, pull) + self.mobility(b, -pull);
+        if sum == 0.0 {
+            return;
+        }
         let compliance = 1.0 / (s.stiffness * h * h);
-        let mut impulse = (length - s.rest_length) / (sum + compliance) / h;
+        let mut impulse = stretch / (sum + compliance) / h;
         // Damping of the axial speed that this leaves.
         let speed = (self.velocities[b] - self.velocities[a]).dot(direction) - impulse * sum;
         impulse += speed * h * s.damping / (1.0 + h * s.damping * sum);
@@ -68,12 +94,16 @@ impl ParticleGroup {
         let [a, b, c] = bend.particles.map(|i| i as usize);
         let bow = self.positions[a] - self.positions[b] * 2.0 + self.positions[c];
         let length = bow.length();
-        let sum = self.weights[a] + 4.0 * self.weights[b] + self.weights[c];
-        if length <= 1e-9 || sum == 0.0 {
+        if length <= 1e-9 {
+            return;
+        }
+        let back = bow * (if bend.rest < length { -1.0 } else { 1.0 } / length);
+        let sum = self.mobility(a, back) + self.mobility(b, back * -2.0) + self.mobility(c, back);
+        if sum == 0.0 {
             return;
         }
         let compliance = 1.0 / (bend.stiffness * h * h);
-        let impulse = bow * ((bend.rest - length) / (length * (sum + compliance) * h));
+        let impulse = back * ((bend.rest - length).abs() / ((sum + compliance) * h));
         self.nudge(a, impulse, h);
         self.nudge(b, impulse * -2.0, h);
         self.nudge(c, impulse, h);
@@ -84,10 +114,11 @@ impl ParticleGroup {
         self.gradients.fill(Vec3::ZERO);
         let enclosed =
             enclosed_volume(&volume.triangles, &self.positions, |i, area| self.gradients[i] += area);
-        let sum =
-            self.weights.iter().zip(&self.gradients).fold(0.0, |sum, (w, g)| sum + w * g.length_squared());
+        let missing = volume.rest_volume - enclosed;
+        let sign = if missing < 0.0 { -1.0 } else { 1.0 };
+        let sum: f32 = (0..self.positions.len()).map(|i| self.mobility(i, self.gradients[i] * sign)).sum();
         let compliance = volume.rest_volume / (volume.bulk_modulus * h * h);
-        let impulse = (volume.rest_volume - enclosed) / (sum + compliance) / h;
+        let impulse = missing / (sum + compliance) / h;
         for i in 0..self.positions.len() {
             let along = self.gradients[i] * impulse;
             if along != Vec3::ZERO {

@@ -29,6 +29,7 @@ impl ParticleGroup {
         save_filter(out, self.filter);
         out.u8(u8::from(self.scheme == SpringScheme::Projected));
         out.u32(self.iterations);
+        out.f32(self.span);
         out.count(self.positions.len());
         for i in 0..self.positions.len() {
             out.vec3(self.positions[i]);
@@ -105,7 +106,7 @@ impl ParticleGroup {
             1 => SpringScheme::Projected,
             _ => return Err(input.error("a scheme is neither of the two")),
         };
-        let iterations = input.u32()?;
+        let (iterations, span) = (input.u32()?, input.f32()?);
         let mut def = GroupDef {
             material,
             linear_damping,
@@ -134,10 +135,10 @@ impl ParticleGroup {
             def.attachments.push(read_attachment(input)?);
         }
         def.check().map_err(|what| input.error(what))?;
-        if !contact_impulses.iter().all(|v: &Vec3| v.is_finite()) {
-            return Err(input.error("an impulse is not finite"));
+        if !(contact_impulses.iter().all(|v: &Vec3| v.is_finite()) && span.is_finite()) {
+            return Err(input.error("an impulse or a time is not finite"));
         }
-        Ok(Self { contact_impulses, grips, ..Self::new(&def) })
+        Ok(Self { span, contact_impulses, grips, ..Self::new(&def) })
     }
 }
 

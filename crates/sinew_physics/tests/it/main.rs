@@ -7,6 +7,7 @@ mod closed_forms;
 mod collide;
 mod humanoid;
 mod joints;
+mod nets;
 mod particles;
 mod random_worlds;
 mod ray;
