@@ -1,7 +1,8 @@
-//! All automation of this repository: `cargo xtask ci | tidy | golden | bench`.
+//! All automation of this repository: `cargo xtask ci | tidy | golden | book | bench`.
 #![forbid(unsafe_code)]
 
 mod bench;
+mod book;
 mod ci;
 mod command;
 mod contract;
@@ -26,6 +27,8 @@ enum Task {
     Tidy(tidy::Tidy),
     /// State hashes of all scenes, against the committed ones
     Golden(golden::Golden),
+    /// The pictures of docs/book.md, drawn anew
+    Book(book::Book),
     /// Time and quality beside other engines, into docs/benchmarks.md; or instructions of the kernels
     Bench(bench::Bench),
 }
@@ -35,6 +38,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Task::Ci(ci) => ci.run()?,
         Task::Tidy(tidy) => tidy.run()?,
         Task::Golden(golden) => golden.run()?,
+        Task::Book(book) => book.run()?,
         Task::Bench(bench) => return bench.run(),
     }
     Ok(ExitCode::SUCCESS)

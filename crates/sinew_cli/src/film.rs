@@ -5,7 +5,7 @@ use crate::progress::Progress;
 use crate::story;
 use sinew::anim::{Primitive, Rig, Wrap, local_to_model, sample, skin_vertices};
 use sinew::math::{Affine, Rotation, Transform, Vec2, Vec3};
-use sinew::physics::{BodyDef, Shape};
+use sinew::physics::BodyDef;
 use sinew_picture::draw::{self, Solid};
 use sinew_picture::{
     Caption, EncodeError, FollowCamera, Image, Material, Model, Movie, PictureFormat, RenderSettings,
@@ -189,21 +189,10 @@ pub fn body_models(body: &BodyDef, half_size: f32, color: [f32; 3], other: [f32;
     let world_from_body = Transform::new(body.position, body.rotation);
     let model = |shape: &sinew::physics::ShapeDef| {
         let place = world_from_body * shape.body_from_shape;
-        let solid = match shape.shape {
-            Shape::Box { half_extents } => Solid::Box { half_extents },
-            Shape::Sphere { radius } => Solid::Sphere { radius },
-            Shape::Capsule { half_height, radius } => Solid::Capsule { half_height, radius },
-            Shape::HalfSpace => return floor(place, half_size, color, other),
-        };
-        draw::solid(solid, place, Material::new(color))
+        match Solid::of(&shape.shape) {
+            Some(solid) => draw::solid(solid, place, Material::new(color)),
+            None => draw::plane(place, half_size, 1.0, [color, other]),
+        }
     };
     body.shapes.iter().map(model).collect()
-}
-
-fn floor(place: Transform, half_size: f32, color: [f32; 3], other: [f32; 3]) -> Model {
-    let mut model = draw::floor(Vec3::ZERO, half_size, color, other);
-    for position in &mut model.positions {
-        *position = place.point(*position);
-    }
-    model
 }

@@ -7,10 +7,12 @@ mod failure;
 mod fall;
 mod files;
 mod film;
+mod picture_file;
 mod progress;
 mod quality_report;
 mod ragdoll_report;
 mod report;
+mod scene_choice;
 mod story;
 mod table;
 
@@ -31,8 +33,9 @@ Start here:
   sinew demo                                  a mannequin walks, is hit, falls down stairs, gets up
   sinew inspect character.glb                 what is in your file
   sinew bake character.glb -o fall.glb        let your character fall; written back as a clip
+  sinew boxes house.glb -o house.json         a world to fall in, from a mesh
 
-Later releases bring: boxes, convert, events, ragdoll doctor, ragdoll export, record, replay, view.";
+Later releases bring: convert, events, ragdoll doctor, ragdoll export, record, replay.";
 
 /// Physics for characters: give it a rigged file, and it falls, collides, is hit, gets up and walks on.
 #[derive(Parser)]

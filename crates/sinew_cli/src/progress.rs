@@ -24,11 +24,21 @@ impl Progress {
 
     /// One step is done.
     pub fn step(&self) {
+        self.bar.inc(1);
+        self.show();
+    }
+
+    /// So many steps are done.
+    pub fn reach(&self, steps: usize) {
+        self.bar.set_position(steps as u64);
+        self.show();
+    }
+
+    /// Shows the bar once it is due; it stays hidden where stderr is no terminal.
+    fn show(&self) {
         if self.bar.is_hidden() && self.start.elapsed() > PATIENCE {
-            // Stays hidden where stderr is no terminal.
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
-        self.bar.inc(1);
     }
 }
 

@@ -2,6 +2,8 @@
 
 use crate::error::{Error, Result, quoted};
 use crate::gltf::{Document, ReadOptions, read_gltf};
+use crate::mesh::TriangleMesh;
+use crate::obj::read_obj;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -100,6 +102,19 @@ pub fn load_gltf(path: impl AsRef<Path>, options: ReadOptions) -> Result<Documen
     let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
     let mut resolve = |relative: &str| read_beside(&folder, relative);
     read_gltf(&bytes, options, &mut resolve).map_err(|e| e.with_file(path.display().to_string()))
+}
+
+/// Reads the triangles of a mesh file: an OBJ by its name, else what [`load_gltf`] reads.
+///
+/// # Errors
+/// As [`load_gltf`] and [`read_obj`], naming the file.
+pub fn load_mesh(path: impl AsRef<Path>) -> Result<TriangleMesh> {
+    let path = path.as_ref();
+    let name = path.display().to_string();
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj")) {
+        return read_obj(&read_bytes(path)?).map_err(|e| e.with_file(name));
+    }
+    TriangleMesh::from_document(&load_gltf(path, ReadOptions::default())?).map_err(|e| e.with_file(name))
 }
 
 /// Reads `relative` inside `folder`, refusing links that lead out of it.

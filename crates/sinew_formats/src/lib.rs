@@ -11,7 +11,9 @@ pub mod fs;
 mod glb;
 pub mod gltf;
 mod json;
+pub mod mesh;
 pub mod mjcf;
+pub mod obj;
 mod parts;
 pub mod ragdoll;
 mod uri;
@@ -19,10 +21,12 @@ pub mod world;
 
 pub use error::{Error, ErrorKind, Result};
 #[cfg(feature = "fs")]
-pub use fs::{load_gltf, read_bytes, write_all_atomic, write_atomic};
+pub use fs::{load_gltf, load_mesh, read_bytes, write_all_atomic, write_atomic};
 pub use gltf::{
     Container, Document, ReadOptions, Resolver, Textures, append_clip, no_files, read_gltf, write_gltf,
 };
+pub use mesh::TriangleMesh;
 pub use mjcf::{MjcfModel, read_mjcf};
+pub use obj::read_obj;
 pub use ragdoll::{read_ragdoll, write_ragdoll};
 pub use world::{read_world, write_world};

@@ -96,6 +96,17 @@ impl Writer {
     pub fn count(&mut self, n: usize) {
         self.u32(u32::try_from(n).expect("a snapshot holds at most 2^32 items of a kind"));
     }
+    /// Byte count, then what `write` writes: who reads it can neither read too much nor leave something.
+    ///
+    /// # Panics
+    /// If it is 4 GiB or more.
+    pub fn block(&mut self, write: impl FnOnce(&mut Self)) {
+        let at = self.bytes.len();
+        self.u32(0);
+        write(self);
+        let count = u32::try_from(self.bytes.len() - at - 4).expect("a block holds less than 4 GiB");
+        self.bytes[at..at + 4].copy_from_slice(&count.to_le_bytes());
+    }
     /// Byte count, then the text as UTF-8.
     pub fn text(&mut self, s: &str) {
         self.count(s.len());
@@ -190,6 +201,13 @@ impl<'a> Reader<'a> {
             return Err(ReadError { at, what: "claims more items than there are bytes" });
         }
         Ok(n)
+    }
+    /// What [`Writer::block`] wrote, by itself; offsets of errors remain those in the whole.
+    pub fn block(&mut self) -> Result<Self, ReadError> {
+        let n = self.count(1)?;
+        let start = self.at;
+        self.raw(n)?;
+        Ok(Self { bytes: &self.bytes[..self.at], at: start })
     }
     /// Text with its byte count.
     pub fn text(&mut self) -> Result<&'a str, ReadError> {

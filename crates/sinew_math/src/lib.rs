@@ -3,11 +3,31 @@
 //! Vectors and 3×3 matrices are [`glam::Vec3`] and [`glam::Mat3`], plain scalar structs whose `+ − × ÷ √` are
 //! IEEE-exact everywhere. Everything whose bits differ between targets in `glam` or in std (quaternion algebra,
 //! trigonometry, `min`/`max` with NaN) lives here instead. See `docs/adr/0006-glam-and-bits.md`.
-#![forbid(unsafe_code)]
+//!
+//! **Conventions.** Right-handed axes, +Y up, SI units, radians. Vectors are columns: `m * v` and `r * v` turn a vector,
+//! `a * b` applies `b` first, and the columns of a rotation matrix are where the axes go. `world_from_body` names what turns
+//! a vector of the body's axes into one of the world's. A positive turn is counter-clockwise for who looks against its axis.
+//!
+//! **How to write a turn down:**
+//!
+//! | as | type | good for | look out for |
+//! |---|---|---|---|
+//! | four numbers of length 1 | [`Rotation`] | everything: products, blends, integration | q and −q are the same turn |
+//! | axis × angle | [`Vec3`], by [`Rotation::to_scaled_axis`] | rates, small turns, averages | at most half a turn |
+//! | nine numbers | [`Mat3`], by [`Rotation::to_mat3`] | many vectors, other libraries | drift: [`MatrixDrift`], [`orthonormalize`] |
+//! | three angles | [`EulerAngles`], by [`Rotation::to_euler`] | people, files | 24 meanings, [`GimbalLock`] in each |
+//! | two vectors | [`Rotation::from_arc`], [`Quaternion::quotient`] | aiming | opposite vectors name no axis |
+//! | stretch and turn | [`Quaternion`] | Hamilton's algebra | holds the whole angle, [`Rotation`] the half |
+#![deny(unsafe_code)] // `lanes` and `dispatch` alone allow it
 
 pub mod bytes;
+pub mod dispatch;
+mod euler;
 pub mod hash;
+pub mod lanes;
 pub mod limits;
+mod orthonormal;
+mod quaternion;
 pub mod random;
 mod rotation;
 mod symmetric;
@@ -15,9 +35,12 @@ mod transform;
 pub mod trig;
 
 pub use bytes::{ReadError, Reader, Writer};
+pub use euler::{EulerAngles, EulerAxes, EulerConvention, EulerOrder, GimbalLock};
 pub use glam::{Mat3, Vec2, Vec3};
 pub use hash::StableHasher;
 pub use limits::{Range, SwingTwistLimit};
+pub use orthonormal::{MatrixDrift, Orthonormalization, Orthonormalized, Uniqueness, orthonormalize};
+pub use quaternion::Quaternion;
 pub use random::Random;
 pub use rotation::Rotation;
 pub use symmetric::Sym3;
@@ -64,6 +87,16 @@ pub fn abs3(v: Vec3) -> Vec3 {
 pub fn normalize_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let length = v.length();
     if length > 1e-12 && length < f32::INFINITY { v / length } else { fallback }
+}
+
+/// `v` at length 1, however long or short it is; `None` if it is zero or not finite.
+#[inline]
+pub fn direction(v: Vec3) -> Option<Vec3> {
+    let a = abs3(v);
+    let largest = max(a.x, max(a.y, a.z));
+    // Divided by the largest first: the squares neither overflow nor vanish.
+    let scaled = v / largest;
+    (largest > 0.0 && v.is_finite()).then(|| scaled / scaled.length())
 }
 
 /// A unit vector at right angles to the unit vector `n`, continuous but for one jump

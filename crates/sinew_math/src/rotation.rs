@@ -1,10 +1,33 @@
-use crate::{Mat3, Vec3, any_orthonormal, trig};
+use crate::orthonormal::gram_schmidt;
+use crate::{Mat3, Vec3, any_orthonormal, direction, trig};
 use core::ops::Mul;
 
 /// A rotation as a unit quaternion `x i + y j + z k + w`.
 ///
 /// Its algebra is scalar and ours: the bits of `glam::Quat` differ between targets. Converts from and to
 /// `glam::Quat` with `From`, component by component. `a * b` applies `b` first; `r * v` turns a vector.
+///
+/// A turn by angle θ about the unit vector n is `cos(θ/2) + n sin(θ/2)`, and turns v into `q v q̄`; so q and −q are the
+/// same rotation. For quaternions of any length, and for whole angles instead of half ones, see
+/// [`Quaternion`](crate::Quaternion).
+///
+/// The five operations that the rest is made of:
+///
+/// ```
+/// use sinew_math::{Rotation, Vec3};
+/// // From axis and angle, radians, counter-clockwise for who looks against the axis.
+/// let q = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_2);
+/// assert!((q * Vec3::Z - Vec3::X).length() < 1e-6);
+/// // To a matrix, whose columns are where the axes go, and from it.
+/// let m = q.to_mat3();
+/// assert!((m * Vec3::Z - Vec3::X).length() < 1e-6);
+/// assert!(Rotation::from_mat3(&m).angle_to(q) < 1e-6);
+/// // Normalise: what many products have worn off.
+/// let worn = Rotation::from_xyzw(q.x * 1.01, q.y * 1.01, q.z * 1.01, q.w * 1.01);
+/// assert!((worn.normalize().length() - 1.0).abs() < 1e-6);
+/// // Inverse: the turn back.
+/// assert!((q.inverse() * (q * Vec3::X) - Vec3::X).length() < 1e-6);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Rotation {
@@ -45,13 +68,29 @@ impl Rotation {
         Vec3::new(self.x, self.y, self.z)
     }
 
-    /// Rotation by `angle` radians about `axis`, right-handed. `axis` has length 1.
+    /// Rotation by `angle` radians (any size) about `axis`, right-handed: `cos(angle/2) + axis sin(angle/2)`.
+    /// `axis` has length 1, or else the quaternion has not; see [`about`](Self::about) for an axis of any length.
     pub fn from_axis_angle(axis: Vec3, angle: f32) -> Self {
         let (sin, cos) = trig::sin_cos(0.5 * angle);
         Self::from_vector(axis * sin, cos)
     }
 
-    /// Exponential map: rotation about `v` by its length in radians. Exact for the zero vector.
+    /// Rotation by `angle` radians about an axis of any length. Identity if the axis is zero, or a number not finite.
+    pub fn about(axis: Vec3, angle: f32) -> Self {
+        direction(axis).map_or(Self::IDENTITY, |axis| Self::from_axis_angle(axis, angle).normalize())
+    }
+
+    /// Axis (length 1) and angle, radians, 0..=π. For the identity the axis is x.
+    /// A rotation by more than half a turn is one by less about the opposite axis.
+    pub fn to_axis_angle(self) -> (Vec3, f32) {
+        let q = self.positive();
+        let axis_and_angle = |axis: Vec3| (axis, 2.0 * trig::atan2(axis.dot(q.vector()), q.w));
+        direction(q.vector()).map_or((Vec3::X, 0.0), axis_and_angle)
+    }
+
+    /// Exponential map: rotation about `v` by its length in radians. Exact for the zero vector; identity for one that is
+    /// not finite or longer than 1e19.
+    #[doc(alias = "exp")]
     pub fn from_scaled_axis(v: Vec3) -> Self {
         let angle = v.length();
         let (sin, cos) = trig::sin_cos(0.5 * angle);
@@ -60,7 +99,11 @@ impl Rotation {
         Self::from_vector(v * scale, cos).normalize()
     }
 
-    /// Logarithm: axis times angle (radians, at most π long), the inverse of [`from_scaled_axis`](Self::from_scaled_axis).
+    /// Logarithm: axis times angle (radians, at most π long), the inverse of [`from_scaled_axis`](Self::from_scaled_axis)
+    /// for vectors no longer than π. Zero for the identity. Of half a turn one of two opposite vectors, as its four numbers
+    /// say.
+    #[doc(alias = "ln")]
+    #[doc(alias = "log")]
     pub fn to_scaled_axis(self) -> Vec3 {
         let q = self.positive();
         let v = q.vector();
@@ -73,15 +116,24 @@ impl Rotation {
 
     /// The shortest rotation that turns unit vector `from` onto unit vector `to`.
     /// For opposite vectors: half a turn about an axis at right angles to `from`, the same one always.
+    /// For vectors of other lengths see [`Quaternion::quotient`](crate::Quaternion::quotient).
     pub fn from_arc(from: Vec3, to: Vec3) -> Self {
         let cos = from.dot(to);
-        if cos < -0.999_999 {
+        if cos > -0.99 {
+            return Self::from_vector(from.cross(to), 1.0 + cos).normalize();
+        }
+        // The same from numbers that have not lost their digits: from × to, and sin²/(1 − cos) for 1 + cos.
+        let sin = from.cross(from + to);
+        let square = sin.length_squared();
+        if square < 1e-13 {
             return Self::from_vector(any_orthonormal(from), 0.0);
         }
-        Self::from_vector(from.cross(to), 1.0 + cos).normalize()
+        Self::from_vector(sin, square / (1.0 - cos)).normalize()
     }
 
-    /// From a rotation matrix with orthonormal columns (Shepperd 1978: by the largest component).
+    /// From a rotation matrix with orthonormal columns (Shepperd, "Quaternion from rotation matrix", 1978: by the component
+    /// that is largest, so that nothing cancels). Of other matrices the
+    /// result is a rotation, but not one that stands for anything: see [`orthonormalize`](crate::orthonormalize).
     pub fn from_mat3(m: &Mat3) -> Self {
         let (a, b, c) = (m.x_axis, m.y_axis, m.z_axis);
         let trace = a.x + b.y + c.z;
@@ -97,16 +149,14 @@ impl Rotation {
         q.normalize()
     }
 
-    /// The rotation whose columns are closest to those of `m` after removing scale and shear (Gram-Schmidt, x first).
-    /// A mirrored matrix gives the rotation of its mirror image in z. Degenerate columns are replaced.
+    /// The rotation of `m` without scale and shear, by Gram-Schmidt, x first. A mirrored matrix gives the rotation of its
+    /// mirror image in z. Degenerate columns are replaced. See [`orthonormalize`](crate::orthonormalize) for the rotation
+    /// that is nearest to `m`, for what was lost and for whether there was one answer.
     pub fn from_mat3_lossy(m: &Mat3) -> Self {
-        let x = crate::normalize_or(m.x_axis, Vec3::X);
-        let y = m.y_axis - x * x.dot(m.y_axis);
-        let y = crate::normalize_or(y, any_orthonormal(x));
-        Self::from_mat3(&Mat3::from_cols(x, y, x.cross(y)))
+        gram_schmidt(m).0
     }
 
-    /// The same rotation as a matrix.
+    /// The same rotation as a matrix; its columns are where the axes go.
     #[inline]
     pub fn to_mat3(self) -> Mat3 {
         let Self { x, y, z, w } = self;
@@ -117,9 +167,15 @@ impl Rotation {
         )
     }
 
-    /// The opposite rotation.
+    /// The opposite rotation. Of a quaternion of length 1 it is the [`conjugate`](Self::conjugate).
     #[inline(always)]
     pub fn inverse(self) -> Self {
+        self.conjugate()
+    }
+
+    /// The quaternion with its vector part reversed.
+    #[inline(always)]
+    pub fn conjugate(self) -> Self {
         Self { x: -self.x, y: -self.y, z: -self.z, w: self.w }
     }
 
@@ -129,10 +185,16 @@ impl Rotation {
         self.x * other.x + self.y * other.y + (self.z * other.z + self.w * other.w)
     }
 
-    /// At length 1; the zero quaternion and non-finite ones give the identity.
+    /// Length of the quaternion: 1, and how far from it tells how far rounding has carried it.
+    #[inline(always)]
+    pub fn length(self) -> f32 {
+        self.dot(self).sqrt()
+    }
+
+    /// At length 1; the zero quaternion (below 1e-12) and those that are not finite (above 1e19) give the identity.
     #[inline]
     pub fn normalize(self) -> Self {
-        let length = self.dot(self).sqrt();
+        let length = self.length();
         if length > 1e-12 && length < f32::INFINITY {
             let s = 1.0 / length;
             Self { x: self.x * s, y: self.y * s, z: self.z * s, w: self.w * s }
@@ -163,7 +225,8 @@ impl Rotation {
         (self.inverse() * other).to_scaled_axis().length()
     }
 
-    /// Normalised linear blend, the short way; `t` in 0..=1.
+    /// Normalised linear blend, the short way; `t` in 0..=1. Same path as [`slerp`](Self::slerp), but faster in its middle.
+    /// Of two rotations half a turn apart, between which both ways are as long, that of the signs they come with.
     pub fn nlerp(self, other: Self, t: f32) -> Self {
         let b = other.toward(self);
         let s = 1.0 - t;
@@ -176,7 +239,10 @@ impl Rotation {
         .normalize()
     }
 
-    /// Spherical blend at constant angular speed, the short way; `t` in 0..=1 (Shoemake 1985).
+    /// Spherical blend at constant angular speed, the short way; `t` in 0..=1 (Shoemake, "Animating rotation with quaternion
+    /// curves", 1985): `(q sin((1−t)φ) + p sin(tφ)) / sin φ` with `cos φ = q·p`. Below 3.6° between the two it is
+    /// [`nlerp`](Self::nlerp), which there is as good. Opposite quaternions are the same rotation, and stay it. Of two
+    /// rotations half a turn apart, between which both ways are as long, it goes that of the signs they come with.
     pub fn slerp(self, other: Self, t: f32) -> Self {
         let b = other.toward(self);
         let cos = self.dot(b);
@@ -196,7 +262,7 @@ impl Rotation {
     }
 
     /// Splits into `(swing, twist)` with `self = swing * twist`, `twist` about unit vector `axis` and the axis of
-    /// `swing` at right angles to it. At a swing of half a turn the twist is not defined and taken as none.
+    /// `swing` at right angles to it. At a swing of half a turn (within 2e-4) the twist is not defined and taken as none.
     pub fn swing_twist(self, axis: Vec3) -> (Self, Self) {
         let q = self.positive();
         let along = q.vector().dot(axis);
@@ -207,7 +273,7 @@ impl Rotation {
         (q * twist.inverse(), twist)
     }
 
-    /// Twist angle about unit vector `axis`, radians, −π..=π.
+    /// Twist angle about unit vector `axis`, radians, −π..=π: that of the second part of [`swing_twist`](Self::swing_twist).
     pub fn twist_angle(self, axis: Vec3) -> f32 {
         let q = self.positive();
         2.0 * trig::atan2(q.vector().dot(axis), q.w)
@@ -219,7 +285,8 @@ impl Rotation {
         (Self::from_scaled_axis(w * h) * self).normalize()
     }
 
-    /// The constant angular velocity (rad/s, world axes) that turns `self` into `later` within `dt` seconds, the short way.
+    /// The constant angular velocity (rad/s, world axes) that turns `self` into `later` within `dt` seconds, the short way:
+    /// the logarithm of what is between them over `dt`, at most `π/dt`. `dt` is not 0.
     pub fn angular_velocity_to(self, later: Self, dt: f32) -> Vec3 {
         (later * self.inverse()).to_scaled_axis() / dt
     }

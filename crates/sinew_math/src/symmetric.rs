@@ -91,56 +91,64 @@ impl Sym3 {
     /// Eigenvalues, largest first, and the rotation whose columns are their eigenvectors
     /// (cyclic Jacobi, Golub & Van Loan §8.5, until the off-diagonal part is below 1e-9 of the trace).
     pub fn eigen(self) -> (Vec3, Rotation) {
-        let mut a = [
-            [self.diagonal.x, self.off.z, self.off.y],
-            [self.off.z, self.diagonal.y, self.off.x],
-            [self.off.y, self.off.x, self.diagonal.z],
-        ];
-        let mut v = [[1.0f32, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        for _ in 0..16 {
-            let off = a[0][1].abs() + a[0][2].abs() + a[1][2].abs();
-            if off <= 1e-9 * (a[0][0].abs() + a[1][1].abs() + a[2][2].abs()) {
-                break;
-            }
-            for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-                if a[p][q] == 0.0 {
-                    continue;
-                }
-                let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-                let sign = if theta >= 0.0 { 1.0 } else { -1.0 };
-                let t = sign / (theta.abs() + (theta * theta + 1.0).sqrt());
-                let c = 1.0 / (t * t + 1.0).sqrt();
-                let s = t * c;
-                for k in 0..3 {
-                    let (kp, kq) = (a[k][p], a[k][q]);
-                    a[k][p] = c * kp - s * kq;
-                    a[k][q] = s * kp + c * kq;
-                }
-                for k in 0..3 {
-                    let (pk, qk) = (a[p][k], a[q][k]);
-                    a[p][k] = c * pk - s * qk;
-                    a[q][k] = s * pk + c * qk;
-                    let (kp, kq) = (v[k][p], v[k][q]);
-                    v[k][p] = c * kp - s * kq;
-                    v[k][q] = s * kp + c * kq;
-                }
-            }
-        }
+        let (d, o) = (self.diagonal, self.off);
+        let (values, vectors) = jacobi([[d.x, o.z, o.y], [o.z, d.y, o.x], [o.y, o.x, d.z]]);
         let mut order = [0, 1, 2];
         // Stable insertion by value, so that equal eigenvalues keep the order of the axes.
         for i in 1..3 {
             let mut j = i;
-            while j > 0 && a[order[j]][order[j]] > a[order[j - 1]][order[j - 1]] {
+            while j > 0 && values[order[j]] > values[order[j - 1]] {
                 order.swap(j, j - 1);
                 j -= 1;
             }
         }
-        let column = |i: usize| Vec3::new(v[0][i], v[1][i], v[2][i]);
+        let column = |i: usize| Vec3::new(vectors[0][i], vectors[1][i], vectors[2][i]);
         let (x, y) = (column(order[0]), column(order[1]));
         let frame = Mat3::from_cols(x, y, x.cross(y));
-        let value = |i: usize| a[order[i]][order[i]];
-        (Vec3::new(value(0), value(1), value(2)), Rotation::from_mat3(&frame))
+        let [first, second, third] = order.map(|i| values[i]);
+        (Vec3::new(first, second, third), Rotation::from_mat3(&frame))
     }
+}
+
+/// Eigenvalues of a symmetric matrix, and the matrix whose columns are their eigenvectors, in no order
+/// (cyclic Jacobi, Golub & Van Loan §8.5, until the off-diagonal part is below 1e-9 of the trace).
+pub(crate) fn jacobi<const N: usize>(mut a: [[f32; N]; N]) -> ([f32; N], [[f32; N]; N]) {
+    let mut v = [[0.0; N]; N];
+    for i in 0..N {
+        v[i][i] = 1.0;
+    }
+    let pairs = || (0..N).flat_map(|p| (p + 1..N).map(move |q| (p, q)));
+    for _ in 0..16 {
+        let off: f32 = pairs().map(|(p, q)| a[p][q].abs()).sum();
+        let trace: f32 = (0..N).map(|i| a[i][i].abs()).sum();
+        if off <= 1e-9 * trace {
+            break;
+        }
+        for (p, q) in pairs() {
+            if a[p][q] == 0.0 {
+                continue;
+            }
+            let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+            let sign = if theta >= 0.0 { 1.0 } else { -1.0 };
+            let t = sign / (theta.abs() + (theta * theta + 1.0).sqrt());
+            let c = 1.0 / (t * t + 1.0).sqrt();
+            let s = t * c;
+            for k in 0..N {
+                let (kp, kq) = (a[k][p], a[k][q]);
+                a[k][p] = c * kp - s * kq;
+                a[k][q] = s * kp + c * kq;
+            }
+            for k in 0..N {
+                let (pk, qk) = (a[p][k], a[q][k]);
+                a[p][k] = c * pk - s * qk;
+                a[q][k] = s * pk + c * qk;
+                let (kp, kq) = (v[k][p], v[k][q]);
+                v[k][p] = c * kp - s * kq;
+                v[k][q] = s * kp + c * kq;
+            }
+        }
+    }
+    (core::array::from_fn(|i| a[i][i]), v)
 }
 
 impl Add for Sym3 {

@@ -67,6 +67,20 @@ impl<T> Arena<T> {
         self.slots[index as usize].generation
     }
 
+    /// True if no slot is in use.
+    pub fn is_empty(&self) -> bool {
+        self.free.len() == self.slots.len()
+    }
+
+    /// The same slots with other items; `item` makes one from index, generation and item.
+    pub fn map<U>(self, mut item: impl FnMut(u32, u32, T) -> U) -> Arena<U> {
+        let slots = self.slots.into_iter().enumerate().map(|(index, Slot { generation, item: it })| Slot {
+            generation,
+            item: it.map(|it| item(index as u32, generation, it)),
+        });
+        Arena { slots: slots.collect(), free: self.free }
+    }
+
     /// Number of slots, free ones included.
     pub fn slot_count(&self) -> usize {
         self.slots.len()
@@ -82,7 +96,13 @@ impl<T> Arena<T> {
         self.slots.iter_mut().enumerate().filter_map(|(i, slot)| Some((i as u32, slot.item.as_mut()?)))
     }
 
-    /// Items with their indices and generations, mutable.
+    /// Items with their indices and generations.
+    pub fn entries(&self) -> impl Iterator<Item = (u32, u32, &T)> {
+        let slots = self.slots.iter().enumerate();
+        slots.filter_map(|(i, slot)| Some((i as u32, slot.generation, slot.item.as_ref()?)))
+    }
+
+    /// Likewise, mutable.
     pub fn entries_mut(&mut self) -> impl Iterator<Item = (u32, u32, &mut T)> {
         let slots = self.slots.iter_mut().enumerate();
         slots.filter_map(|(i, slot)| Some((i as u32, slot.generation, slot.item.as_mut()?)))
@@ -105,9 +125,9 @@ impl<T> Arena<T> {
     }
 
     /// Reads what [`save`](Self::save) wrote.
-    pub fn load(
-        r: &mut Reader<'_>,
-        mut item: impl FnMut(&mut Reader<'_>) -> Result<T, ReadError>,
+    pub fn load<'a>(
+        r: &mut Reader<'a>,
+        mut item: impl FnMut(&mut Reader<'a>) -> Result<T, ReadError>,
     ) -> Result<Self, ReadError> {
         let count = r.count(5)?;
         let mut slots = Vec::with_capacity(count);

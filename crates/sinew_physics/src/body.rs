@@ -1,6 +1,7 @@
 //! A body as the world keeps it.
 
 use crate::def::{BodyDef, BodyKind};
+use crate::force::BodyForces;
 use crate::shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
 
@@ -57,6 +58,8 @@ pub(crate) struct Body {
     /// Applied by the user for the next step, N and N·m, world axes.
     pub force: Vec3,
     pub torque: Vec3,
+    /// Those that last.
+    pub forces: BodyForces,
     pub principal_from_body: Transform,
     /// kg; 0 unless dynamic.
     pub mass: f32,
@@ -115,6 +118,7 @@ impl Body {
             velocity: Velocity { linear: def.linear_velocity, angular: def.angular_velocity },
             force: Vec3::ZERO,
             torque: Vec3::ZERO,
+            forces: BodyForces::default(),
             principal_from_body,
             mass,
             inertia: moments,
@@ -126,6 +130,28 @@ impl Body {
             place: world_from_body * body_from_principal,
             quarantined: false,
             user_data: def.user_data,
+        }
+    }
+
+    /// Where the principal frame of a kinematic body comes to be by its velocity, after `count` substeps of `h` seconds.
+    pub fn carried(&self, h: f32, count: u32) -> Transform {
+        let mut pose = self.world_from_principal;
+        for _ in 0..count {
+            pose = Transform::new(
+                pose.translation + self.velocity.linear * h,
+                pose.rotation.integrate(self.velocity.angular, h),
+            );
+        }
+        pose
+    }
+
+    /// Mass, centre and inertia in the body's frame.
+    pub fn mass_properties(&self) -> MassProperties {
+        let body_from_principal = self.principal_from_body.inverse();
+        MassProperties {
+            mass: self.mass,
+            center: body_from_principal.translation,
+            inertia: Sym3::from_rotated_diagonal(body_from_principal.rotation, self.inertia),
         }
     }
 

@@ -12,6 +12,9 @@ pub struct WorldDef {
     pub step_nanoseconds: u64,
     /// Substeps per step, at least 1. Default 4.
     pub substeps: u32,
+    /// Most steps that one [`World::update`](crate::World::update) takes, at least 1: a host that was held up, or steps that
+    /// take longer than they last, must not end in ever longer frames. Default 15, a quarter of a second of default steps.
+    pub catch_up_steps: u32,
     /// Bodies may fall asleep. Default yes.
     pub sleeping: Sleeping,
     /// Most that a body moves, m/s: it is held to it when forces act, before joints and contacts. Default 4,000.
@@ -36,6 +39,7 @@ impl Default for WorldDef {
             gravity: Vec3::new(0.0, -9.81, 0.0),
             step_nanoseconds: 16_666_667,
             substeps: 4,
+            catch_up_steps: 15,
             sleeping: Sleeping::On,
             max_speed: 4000.0,
             max_turn: core::f32::consts::FRAC_PI_2,
@@ -53,6 +57,9 @@ impl WorldDef {
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         if self.step_nanoseconds == 0 || self.substeps == 0 {
             return Err("a step takes time and has substeps");
+        }
+        if self.catch_up_steps == 0 {
+            return Err("an update may take a step");
         }
         if !self.gravity.is_finite() {
             return Err("gravity is finite");

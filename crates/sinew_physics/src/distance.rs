@@ -28,7 +28,12 @@ impl Shape {
 
 /// Signed distance to the box of the given half extents around the origin, and the outward normal.
 pub(crate) fn box_distance(half: Vec3, p: Vec3) -> (f32, Vec3) {
-    let beyond = abs3(p) - half;
+    distance_beyond(abs3(p) - half, p)
+}
+
+/// Signed distance to a box and its outward normal, from how far a point is beyond the nearer face along each axis, and a
+/// vector whose signs tell on which side that face is.
+pub(crate) fn distance_beyond(beyond: Vec3, p: Vec3) -> (f32, Vec3) {
     let outside = max3(beyond, Vec3::ZERO);
     let distance = outside.length();
     if distance > 0.0 {

@@ -22,6 +22,8 @@ pub enum DrawKind {
     Spring,
     /// A contact normal, 10 cm long.
     Contact,
+    /// Of an object of the user's own.
+    Object,
 }
 
 /// Receives lines in world space.
@@ -36,7 +38,7 @@ const SEGMENTS: usize = 16;
 const PLANE_SIZE: f32 = 10.0;
 
 impl World {
-    /// Draws shapes, joints and contacts.
+    /// Draws shapes, joints, springs, contacts, and what objects draw of themselves.
     pub fn draw(&self, out: &mut dyn DebugDraw) {
         for (_, body) in self.bodies.iter() {
             let kind = match body.kind {
@@ -66,6 +68,7 @@ impl World {
                 out.line(point.position, point.position + contact.manifold.normal * 0.1, DrawKind::Contact);
             }
         }
+        self.draw_objects(out);
     }
 }
 

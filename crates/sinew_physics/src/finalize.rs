@@ -14,7 +14,7 @@ use crate::ray::Ray;
 use crate::solver::SolvedBody;
 use crate::step::StepContext;
 use crate::touch::{Events, id};
-use sinew_math::{Transform, Vec3};
+use sinew_math::Vec3;
 
 /// `store`: impulses and joint forces that the next step starts from; particle groups return to the world.
 pub(crate) fn store(
@@ -82,13 +82,7 @@ pub(crate) fn finalize(
     }
     for (_, body) in bodies.iter_mut().filter(|(_, body)| body.kind == BodyKind::Kinematic) {
         body.previous = body.world_from_principal;
-        for _ in 0..context.substeps {
-            let Transform { translation, rotation } = body.world_from_principal;
-            body.world_from_principal = Transform::new(
-                translation + body.velocity.linear * context.h,
-                rotation.integrate(body.velocity.angular, context.h),
-            );
-        }
+        body.world_from_principal = body.carried(context.h, context.substeps);
     }
 }
 

@@ -34,3 +34,11 @@ id! {
     /// A particle group of a [`World`](crate::World).
     GroupId
 }
+id! {
+    /// A field of a [`World`](crate::World).
+    FieldId
+}
+id! {
+    /// An object of the user's own kind in a [`World`](crate::World).
+    ObjectId
+}

@@ -1,14 +1,15 @@
-//! `islands` and `color`: which active bodies hang together through contacts, joints and particles.
+//! `islands` and `color`: which active bodies hang together through contacts, joints, particles and attraction.
 
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::Contact;
+use crate::field::{Fields, Target};
 use crate::joint::Joint;
 use crate::particles::ParticleGroup;
 use crate::project::{Neighbors, TakenGroup};
 use crate::runner::TaskRunner;
 use crate::solver::Solution;
-use crate::tasks::{Queue, Task, Workspace};
+use crate::tasks::{Queue, Task, Workspace, Workspaces};
 
 /// Members of one island, by index, each list ascending.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +40,8 @@ pub(crate) struct Islands {
     solution: Solution,
     /// One for each thread that has worked at the same time as others.
     idle: Vec<Workspace>,
+    /// One for each island, where they go in lockstep.
+    own: Vec<Workspace>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -66,6 +69,7 @@ impl Islands {
         joints: &Arena<Joint>,
         contacts: &[Contact],
         groups: &mut Arena<ParticleGroup>,
+        fields: &Fields<'_>,
         dt: f32,
     ) {
         let first_group = bodies.slot_count() as u32;
@@ -91,6 +95,7 @@ impl Islands {
                 }
             }
         }
+        self.join_attracted(bodies, groups, fields);
         self.collect(bodies, joints, contacts);
         for (index, _) in groups.iter() {
             let island = self.island_of(first_group + index);
@@ -104,6 +109,23 @@ impl Islands {
             group: core::mem::take(groups.at_mut(index)),
             near: core::mem::take(&mut self.neighbors[index as usize]),
         }));
+    }
+
+    /// All that a field lets attract each other.
+    fn join_attracted(&mut self, bodies: &Arena<Body>, groups: &Arena<ParticleGroup>, fields: &Fields<'_>) {
+        let first_group = bodies.slot_count() as u32;
+        for (field, _) in fields.mutual() {
+            let reached = |body: &Body| body.is_active() && field.reaches(&Target::of_body(body));
+            let bodies = bodies.iter().filter(|(_, body)| reached(body)).map(|(index, _)| index);
+            let reached = |group: &ParticleGroup| {
+                (0..group.positions().len()).any(|i| field.reaches(&Target::of_particle(group, i)))
+            };
+            let groups = groups.iter().filter(|(_, group)| reached(group)).map(|(i, _)| first_group + i);
+            let mut first = None;
+            for slot in bodies.chain(groups) {
+                self.join(*first.get_or_insert(slot), slot);
+            }
+        }
     }
 
     /// Gives the groups back.
@@ -176,14 +198,39 @@ impl Islands {
         }
     }
 
-    /// Calls `work` once for each island, on `runner`'s threads.
+    /// Calls `work` once for each island, on `runner`'s threads: all that there is to do for it in this step.
     pub fn run(&mut self, runner: &dyn TaskRunner, work: impl Fn(&mut Task<'_>) + Sync) {
+        let mut idle = core::mem::take(&mut self.idle);
+        self.run_in(Workspaces::Idle(&mut idle), runner, work);
+        self.idle = idle;
+    }
+
+    /// Likewise for a part of it: each island finds its workspace as the part before left it.
+    pub fn run_part(&mut self, runner: &dyn TaskRunner, work: impl Fn(&mut Task<'_>) + Sync) {
+        let mut own = core::mem::take(&mut self.own);
+        if own.len() < self.count {
+            own.resize_with(self.count, Workspace::default);
+        }
+        self.run_in(Workspaces::Own(&mut own), runner, work);
+        self.own = own;
+    }
+
+    fn run_in(
+        &mut self,
+        workspaces: Workspaces<'_>,
+        runner: &dyn TaskRunner,
+        work: impl Fn(&mut Task<'_>) + Sync,
+    ) {
         let mut solution = core::mem::take(&mut self.solution);
         let mut taken = core::mem::take(&mut self.taken);
-        let mut idle = core::mem::take(&mut self.idle);
         solution.resize(self.bodies.numbers.len(), self.joints.numbers.len(), self.contacts.numbers.len());
-        Queue::new(self.iter(), &mut taken, &mut solution, &mut idle).run(runner, self.count, work);
-        (self.solution, self.taken, self.idle) = (solution, taken, idle);
+        Queue::new(self.iter(), &mut taken, &mut solution, workspaces).run(runner, self.count, work);
+        (self.solution, self.taken) = (solution, taken);
+    }
+
+    /// Between two parts: the workspaces in the order of islands, and the particle groups.
+    pub fn halted(&mut self) -> (&mut [Workspace], &mut [TakenGroup]) {
+        (&mut self.own[..self.count], &mut self.taken)
     }
 }
 

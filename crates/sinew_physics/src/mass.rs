@@ -21,15 +21,18 @@ impl Shape {
     pub fn mass_properties(&self, density: f32) -> MassProperties {
         let mass = density * self.volume();
         let diagonal = match *self {
-            Shape::Box { half_extents: h } => {
-                Vec3::new(h.y * h.y + h.z * h.z, h.x * h.x + h.z * h.z, h.x * h.x + h.y * h.y) * (mass / 3.0)
-            }
+            Shape::Box { half_extents } => box_inertia(half_extents, mass),
             Shape::Sphere { radius } => Vec3::splat(0.4 * mass * radius * radius),
             Shape::Capsule { half_height, radius } => capsule_inertia(half_height, radius, density),
             Shape::HalfSpace => Vec3::ZERO,
         };
         MassProperties { mass, center: Vec3::ZERO, inertia: Sym3::from_diagonal(diagonal) }
     }
+}
+
+/// About its centre and along its axes.
+pub(crate) fn box_inertia(h: Vec3, mass: f32) -> Vec3 {
+    Vec3::new(h.y * h.y + h.z * h.z, h.x * h.x + h.z * h.z, h.x * h.x + h.y * h.y) * (mass / 3.0)
 }
 
 fn ball_volume(radius: f32) -> f32 {

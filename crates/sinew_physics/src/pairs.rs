@@ -1,8 +1,8 @@
 //! `pairs`: which shapes may meet. Sweep and prune along x over the bounds of all shapes.
 
-use crate::aabb::Aabb;
 use crate::arena::Arena;
 use crate::body::Body;
+use crate::boxes::{Aabb, Overlap};
 use crate::contact::{Contact, ContactKey, ordered};
 use crate::def::BodyKind;
 use sinew_math::Vec3;

@@ -2,7 +2,9 @@
 
 use crate::arena::Arena;
 use crate::body::{Body, Velocity};
+use crate::boxes::Overlap;
 use crate::def::BodyKind;
+use crate::field::{Fields, Target};
 use crate::islands::Island;
 use crate::particles::{Anchor, AttachmentTarget, Obstacle, ObstacleBody, ParticleGroup};
 use crate::solver::{IslandSolver, View};
@@ -16,6 +18,19 @@ pub(crate) struct TakenGroup {
     pub index: u32,
     pub group: ParticleGroup,
     pub near: Neighbors,
+}
+
+impl TakenGroup {
+    /// What fields do to the particles from where they are; not more than would stop them: see [`crate::field`].
+    pub fn feel(&mut self, fields: &Fields<'_>, h: f32) {
+        self.group.outer_forces().clear();
+        for i in 0..self.group.positions().len() {
+            let target = Target::of_particle(&self.group, i);
+            let weight = fields.gravity * (target.mass * target.gravity_scale);
+            let force = fields.load(&target).beside(weight, target.mass, h);
+            self.group.outer_forces().push(force);
+        }
+    }
 }
 
 /// What a particle group sees of bodies.

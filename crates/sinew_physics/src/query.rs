@@ -62,13 +62,16 @@ impl World {
         sum
     }
 
-    /// Energy of all dynamic bodies, all particles and all springs.
+    /// Energy of all dynamic bodies, all particles, all springs, and of all these in the world's fields
+    /// ([`field_energy`](Self::field_energy)).
     pub fn energy(&self) -> Energy {
         let bodies = self.body_ids().map(|id| self.body_energy(id));
         let groups = self.group_ids().map(|id| self.group_energy(id));
         let of_joint = |id| Energy { kinetic: 0.0, potential: self.joint_energy(id) };
         let joints = self.joint_ids().map(of_joint);
-        bodies.chain(groups).chain(joints).fold(Energy::default(), |sum, energy| Energy {
+        let of_field = |id| Energy { kinetic: 0.0, potential: self.field_energy(id) };
+        let fields = self.field_ids().map(of_field);
+        bodies.chain(groups).chain(joints).chain(fields).fold(Energy::default(), |sum, energy| Energy {
             kinetic: sum.kinetic + energy.kinetic,
             potential: sum.potential + energy.potential,
         })

@@ -13,6 +13,11 @@ pub struct Ray {
 }
 
 impl Ray {
+    /// From one point to another.
+    pub fn between(from: Vec3, to: Vec3) -> Self {
+        Self { origin: from, direction: to - from }
+    }
+
     /// Point at `fraction`, 0..=1.
     pub fn at(&self, fraction: f32) -> Vec3 {
         self.origin + self.direction * fraction
@@ -22,7 +27,7 @@ impl Ray {
 /// Where a ray meets a shape first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
-    /// Share of the ray before the hit, 0..=1.
+    /// Share of the ray before the hit, 0..=1; for a half-line lengths of its direction, ≥ 0.
     pub fraction: f32,
     /// In the world, metres.
     pub point: Vec3,
@@ -37,21 +42,31 @@ impl Shape {
     /// its direction is zero too, with the outward normal of the closest surface. So it is for every shape. A ray
     /// that leaves the shape from outside its surface never hits.
     pub fn cast_ray(&self, world_from_shape: &Transform, ray: &Ray) -> Option<RayHit> {
+        self.cast_half_line(world_from_shape, ray).filter(|hit| hit.fraction <= 1.0)
+    }
+
+    /// As [`cast_ray`](Self::cast_ray) for the ray without an end: the fraction counts lengths of its direction, and may
+    /// exceed 1.
+    pub fn cast_half_line(&self, world_from_shape: &Transform, ray: &Ray) -> Option<RayHit> {
         if !(ray.origin.is_finite() && ray.direction.is_finite() && world_from_shape.is_finite()) {
             return None;
         }
         let origin = world_from_shape.inverse_point(ray.origin);
         let direction = world_from_shape.rotation.inverse() * ray.direction;
-        let (distance, outward) = self.local_distance(origin);
-        let (fraction, normal) = if distance <= 0.0 {
-            (0.0, normalize_or(-direction, outward))
-        } else {
-            self.enter(origin, direction).filter(|(fraction, _)| *fraction <= 1.0)?
-        };
+        let (fraction, normal) = self.cast_local(origin, direction)?;
         Some(RayHit { fraction, point: ray.at(fraction), normal: world_from_shape.rotation * normal })
     }
 
-    /// Fraction (≥ 0, may exceed 1) and normal where a line from outside enters, in the shape's frame.
+    /// Fraction (≥ 0, may exceed 1) and normal where a line enters, in the shape's frame.
+    pub(crate) fn cast_local(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+        let (distance, outward) = self.local_distance(origin);
+        if distance <= 0.0 {
+            return Some((0.0, normalize_or(-direction, outward)));
+        }
+        self.enter(origin, direction).filter(|(fraction, _)| *fraction < f32::INFINITY)
+    }
+
+    /// As [`cast_local`](Self::cast_local), of a line from outside, in the shape's frame.
     fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         match *self {
             Self::Box { half_extents } => enter_box(half_extents, origin, direction),

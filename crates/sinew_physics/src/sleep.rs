@@ -4,6 +4,7 @@
 use crate::arena::Arena;
 use crate::body::{Body, Rest, Velocity};
 use crate::def::Sleeping;
+use crate::field::Fields;
 use crate::islands::Islands;
 
 /// Seconds of being slow or in place until sleep.
@@ -23,6 +24,7 @@ const TREMBLE_ANGULAR: f32 = 1.0;
 pub(crate) fn sleep(
     islands: &Islands,
     bodies: &mut Arena<Body>,
+    fields: &Fields<'_>,
     sleepers: &mut u32,
     sleeping: Sleeping,
     dt: f32,
@@ -32,7 +34,7 @@ pub(crate) fn sleep(
         for &index in island.bodies {
             let body = bodies.at_mut(index);
             let slow = is_slow(body);
-            let in_place = slow || (stays(body) && island.groups.is_empty());
+            let in_place = (slow || (stays(body) && island.groups.is_empty())) && !fields.keep_awake(body);
             if slow || !in_place {
                 body.place = body.world_from_principal;
             }

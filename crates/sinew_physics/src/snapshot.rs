@@ -5,6 +5,8 @@ use crate::body::{Body, BodyShape, Rest, Velocity};
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use crate::contact::{Contact, ContactKey, ContactMemory, PointImpulse};
 use crate::def::{BodyKind, Sleeping, WorldDef};
+use crate::field::FieldDef;
+use crate::force::BodyForces;
 use crate::joint::Joint;
 use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
@@ -15,7 +17,7 @@ use crate::world::World;
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
 /// First bytes of a snapshot; the last is its version.
-const MAGIC: &[u8; 8] = b"sinew-w\x02";
+const MAGIC: &[u8; 8] = b"sinew-w\x03";
 
 impl World {
     /// Writes the state: what [`load`](Self::load) brings back, bit for bit.
@@ -32,17 +34,27 @@ impl World {
             save_contact(w, contact);
         }
         self.groups.save(w, |w, group| group.save(w));
+        self.fields.save(w, |w, field| field.save(w));
         w.count(self.parted.disabled.len());
         for &(a, b) in &self.parted.disabled {
             w.u32(a);
             w.u32(b);
         }
+        self.objects.save(w);
     }
 
     /// Brings back a saved state. Events are those of no step.
     ///
+    /// Objects of the user's own take their state where they are: the one that the snapshot was taken of, if it is still
+    /// there, or else a new one of a kind that [`register_kind`](Self::register_kind) was told. Objects that were added
+    /// since are dropped.
+    ///
     /// # Errors
-    /// If the bytes are not a snapshot of this version; the world is then as it was.
+    /// If the bytes are not a snapshot of this version, a field names a function that is not registered, or an object is not
+    /// there whose kind was not registered; the world is then as it was.
+    ///
+    /// # Panics
+    /// If an object does not take the state that it wrote itself.
     pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
         if r.raw(MAGIC.len())? != MAGIC {
             return Err(ReadError { at: 0, what: "is not a world snapshot of this version" });
@@ -63,6 +75,7 @@ impl World {
             return Err(r.error("contacts are out of order"));
         }
         let groups = Arena::load(r, |r| load_group(r, &bodies))?;
+        let fields = Arena::load(r, |r| FieldDef::load(r, &self.functions))?;
         let count = r.count(8)?;
         let mut disabled = Vec::with_capacity(count);
         for _ in 0..count {
@@ -71,11 +84,12 @@ impl World {
         if !disabled.is_sorted() {
             return Err(r.error("disabled pairs are out of order"));
         }
+        self.objects.load(r)?;
         self.def = def;
         (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
         (self.bodies, self.joints, self.contacts) = (bodies, joints, contacts);
         self.parted = PartedPairs::new(disabled);
-        self.groups = groups;
+        (self.groups, self.fields) = (groups, fields);
         self.events = Events::default();
         self.broad = BroadPhase::default();
         self.broad.invalidate();
@@ -89,17 +103,20 @@ impl World {
         sinew_math::hash::hash_bytes(w.as_bytes())
     }
 
-    /// Marks the present state as the one that [`reset`](Self::reset) returns to.
+    /// Marks the present state as the one that [`reset`](Self::reset) returns to: all that [`save`](Self::save) writes.
     pub fn mark(&mut self) {
         let mut w = Writer::reuse(core::mem::take(&mut self.marked));
         self.save(&mut w);
         self.marked = w.into_bytes();
     }
 
-    /// Returns to the marked state, exactly.
+    /// Returns to the marked state, exactly: what follows has the same bits as what followed the mark, ids of what is
+    /// added included. What was added since is gone, what was taken out is back; [`events`](Self::events) are those of no
+    /// step. Settings that are not part of the state (threads, kinds) stay.
     ///
     /// # Panics
-    /// If no state was marked.
+    /// If no state was marked, or an object was taken out since whose kind was not
+    /// [registered](Self::register_kind).
     pub fn reset(&mut self) {
         assert!(!self.marked.is_empty(), "a state was marked");
         let marked = core::mem::take(&mut self.marked);
@@ -112,6 +129,7 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
     w.vec3(def.gravity);
     w.u64(def.step_nanoseconds);
     w.u32(def.substeps);
+    w.u32(def.catch_up_steps);
     w.bool(def.sleeping == Sleeping::On);
     w.f32(def.max_speed);
     w.f32(def.max_turn);
@@ -119,13 +137,10 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
 
 fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
     let gravity = r.vec3()?;
-    let (step_nanoseconds, substeps) = (r.u64()?, r.u32()?);
-    if step_nanoseconds == 0 || substeps == 0 {
-        return Err(r.error("a step takes no time"));
-    }
+    let (step_nanoseconds, substeps, catch_up_steps) = (r.u64()?, r.u32()?, r.u32()?);
     let sleeping = if r.bool()? { Sleeping::On } else { Sleeping::Off };
-    let def =
-        WorldDef { gravity, step_nanoseconds, substeps, sleeping, max_speed: r.f32()?, max_turn: r.f32()? };
+    let (max_speed, max_turn) = (r.f32()?, r.f32()?);
+    let def = WorldDef { gravity, step_nanoseconds, substeps, catch_up_steps, sleeping, max_speed, max_turn };
     def.check().map_err(|what| r.error(what))?;
     Ok(def)
 }
@@ -142,6 +157,7 @@ fn save_body(w: &mut Writer, body: &Body) {
     w.vec3(body.velocity.angular);
     w.vec3(body.force);
     w.vec3(body.torque);
+    body.forces.save(w);
     w.transform(body.principal_from_body);
     w.f32(body.mass);
     w.vec3(body.inertia);
@@ -177,6 +193,7 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
     let (world_from_principal, previous) = (r.transform()?, r.transform()?);
     let velocity = Velocity { linear: r.vec3()?, angular: r.vec3()? };
     let (force, torque) = (r.vec3()?, r.vec3()?);
+    let forces = BodyForces::load(r)?;
     let principal_from_body = r.transform()?;
     let (mass, inertia) = (r.f32()?, r.vec3()?);
     let solid = mass > 0.0 && inertia.x > 0.0 && inertia.y > 0.0 && inertia.z > 0.0;
@@ -201,6 +218,7 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
         velocity,
         force,
         torque,
+        forces,
         principal_from_body,
         mass,
         inertia,
@@ -216,7 +234,27 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
 }
 
 fn save_shape(w: &mut Writer, s: &BodyShape) {
-    match s.shape {
+    save_geometry(w, &s.shape);
+    w.transform(s.principal_from_shape);
+    w.f32(s.density);
+    save_material(w, s.material);
+    save_filter(w, s.filter);
+    w.bool(s.sensing == Sensing::Sensor);
+}
+
+fn load_shape(r: &mut Reader<'_>) -> Result<BodyShape, ReadError> {
+    Ok(BodyShape {
+        shape: load_geometry(r)?,
+        principal_from_shape: r.transform()?,
+        density: r.f32()?,
+        material: load_material(r)?,
+        filter: load_filter(r)?,
+        sensing: if r.bool()? { Sensing::Sensor } else { Sensing::Solid },
+    })
+}
+
+pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {
+    match *shape {
         Shape::Box { half_extents } => {
             w.u8(0);
             w.vec3(half_extents);
@@ -232,14 +270,9 @@ fn save_shape(w: &mut Writer, s: &BodyShape) {
         }
         Shape::HalfSpace => w.u8(3),
     }
-    w.transform(s.principal_from_shape);
-    w.f32(s.density);
-    save_material(w, s.material);
-    save_filter(w, s.filter);
-    w.bool(s.sensing == Sensing::Sensor);
 }
 
-fn load_shape(r: &mut Reader<'_>) -> Result<BodyShape, ReadError> {
+pub(crate) fn load_geometry(r: &mut Reader<'_>) -> Result<Shape, ReadError> {
     let shape = match r.u8()? {
         0 => Shape::Box { half_extents: r.vec3()? },
         1 => Shape::Sphere { radius: r.f32()? },
@@ -248,14 +281,7 @@ fn load_shape(r: &mut Reader<'_>) -> Result<BodyShape, ReadError> {
         _ => return Err(r.error("unknown shape")),
     };
     shape.check().map_err(|what| r.error(what))?;
-    Ok(BodyShape {
-        shape,
-        principal_from_shape: r.transform()?,
-        density: r.f32()?,
-        material: load_material(r)?,
-        filter: load_filter(r)?,
-        sensing: if r.bool()? { Sensing::Sensor } else { Sensing::Solid },
-    })
+    Ok(shape)
 }
 
 pub(crate) fn save_material(w: &mut Writer, material: Material) {

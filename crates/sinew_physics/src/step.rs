@@ -1,9 +1,11 @@
 //! One step, in order. `docs/step.md` has a heading for each stage.
 
+use crate::field::Fields;
+use crate::object::lockstep;
 use crate::runner::TaskRunner;
 use crate::solver::View;
 use crate::stage::{Profiler, Stage, zone};
-use crate::tasks::{Task, Workspace};
+use crate::tasks::{Phase, Task, Workspace};
 use crate::world::World;
 use crate::{finalize, sensors, sleep, touch};
 
@@ -13,6 +15,8 @@ pub(crate) struct StepContext<'a> {
     pub dt: f32,
     pub h: f32,
     pub substeps: u32,
+    /// When it begins, seconds.
+    pub time: f64,
     pub runner: &'a dyn TaskRunner,
     pub profiler: &'a dyn Profiler,
 }
@@ -20,16 +24,24 @@ pub(crate) struct StepContext<'a> {
 /// Advances the world by one step.
 pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
-    let World { def, bodies, joints, contacts, groups, events, broad, islands, parted, sleepers, .. } = world;
+    let World { def, bodies, joints, contacts, groups, objects, .. } = world;
+    let World { events, broad, islands, parted, sleepers, .. } = world;
+    let fields = Fields::new(&world.fields, &world.functions, def, world.steps);
 
     stage(Stage::Pairs, &mut || broad.update(bodies, parted.of(joints), contacts, context.dt));
     stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
-    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, events));
-    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, context.dt));
+    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, &fields, events));
+    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, &fields, context.dt));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
 
-    let view = View { bodies, joints, contacts, def, h: context.h };
-    islands.run(context.runner, |task| substeps(task, &view, context));
+    let view = View { bodies, joints, contacts, def, fields, h: context.h };
+    if objects.is_empty() {
+        let all = || Phase::of_step(context.substeps);
+        islands.run(context.runner, |task| all().for_each(|phase| solve(phase, task, &view, context)));
+    } else {
+        lockstep(objects, islands, &view, context);
+        objects.rouse(bodies);
+    }
 
     stage(Stage::Store, &mut || {
         finalize::store(islands, joints, contacts, groups, context.dt);
@@ -37,26 +49,31 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     });
     stage(Stage::Finalize, &mut || finalize::finalize(&islands.solution().bodies, bodies, events, context));
     stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands));
-    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, sleepers, def.sleeping, context.dt));
+    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, &fields, sleepers, def.sleeping, context.dt));
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, events));
 }
 
-/// All substeps of one island, as one task without barriers.
-fn substeps(task: &mut Task<'_>, view: &View<'_>, context: &StepContext<'_>) {
+/// A part of an island's step, which goes on where the part before ended.
+pub(crate) fn solve(phase: Phase, task: &mut Task<'_>, view: &View<'_>, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
-    let Task { island, groups, solution, workspace: Workspace { solver, surroundings } } = task;
-    stage(Stage::Prepare, &mut || {
-        solver.prepare(island, view);
-        surroundings.make_room(island);
-    });
-    for substep in 0..context.substeps {
-        stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity());
-        stage(Stage::WarmStart, &mut || solver.warm_start());
-        stage(Stage::Solve, &mut || solver.solve());
-        stage(Stage::IntegratePosition, &mut || solver.integrate_position());
-        stage(Stage::Project, &mut || surroundings.project(groups, solver, view, substep));
-        stage(Stage::Relax, &mut || solver.relax());
-        stage(Stage::Restitution, &mut || solver.restitution());
+    let Task { island, groups, solution, workspace: Workspace { solver, surroundings }, .. } = task;
+    match phase {
+        Phase::Prepare => stage(Stage::Prepare, &mut || {
+            solver.prepare(island, view);
+            surroundings.make_room(island);
+        }),
+        Phase::Move(substep) => {
+            stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity(view, groups));
+            stage(Stage::WarmStart, &mut || solver.warm_start());
+            stage(Stage::Solve, &mut || solver.solve());
+            stage(Stage::IntegratePosition, &mut || solver.integrate_position());
+            stage(Stage::Project, &mut || surroundings.project(groups, solver, view, substep));
+        }
+        Phase::Relax(_) => {
+            stage(Stage::Relax, &mut || solver.relax());
+            stage(Stage::Restitution, &mut || solver.restitution());
+            solver.drop_fields(view);
+        }
+        Phase::Store => stage(Stage::Store, &mut || solver.store(solution)),
     }
-    stage(Stage::Store, &mut || solver.store(solution));
 }

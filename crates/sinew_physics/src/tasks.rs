@@ -14,8 +14,54 @@ pub(crate) struct Workspace {
     pub surroundings: Surroundings,
 }
 
+/// A part of a step that an island does by itself. Where there are objects they act between two of them, and so all
+/// islands do the same one at a time; else a task does one after the other without barriers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Phase {
+    Prepare,
+    /// The substep of that number until everything has moved.
+    Move(u32),
+    /// The rest of it.
+    Relax(u32),
+    Store,
+}
+
+impl Phase {
+    /// Those of a step, in order.
+    pub fn of_step(substeps: u32) -> impl Iterator<Item = Self> {
+        let of_substeps = (0..substeps).flat_map(|substep| [Self::Move(substep), Self::Relax(substep)]);
+        core::iter::once(Self::Prepare).chain(of_substeps).chain(core::iter::once(Self::Store))
+    }
+}
+
+/// Where islands are solved.
+pub(crate) enum Workspaces<'a> {
+    /// Wherever there is room: nothing is to last.
+    Idle(&'a mut Vec<Workspace>),
+    /// Each in its own, where it goes on with what is there, in the order of islands.
+    Own(&'a mut [Workspace]),
+}
+
+impl Workspaces<'_> {
+    fn take(&mut self, island: usize) -> Workspace {
+        match self {
+            Self::Idle(idle) => idle.pop().unwrap_or_default(),
+            Self::Own(own) => core::mem::take(&mut own[island]),
+        }
+    }
+
+    fn put_back(&mut self, island: usize, workspace: Workspace) {
+        match self {
+            Self::Idle(idle) => idle.push(workspace),
+            Self::Own(own) => own[island] = workspace,
+        }
+    }
+}
+
 /// The unit of work: an island, and all that its substeps write.
 pub(crate) struct Task<'a> {
+    /// Which of the islands.
+    number: usize,
     pub island: Island<'a>,
     pub groups: &'a mut [TakenGroup],
     pub solution: IslandSolution<'a>,
@@ -24,10 +70,10 @@ pub(crate) struct Task<'a> {
 
 /// Islands that are still to be solved, with the room for what will come of them.
 pub(crate) struct Queue<'a, I> {
-    islands: I,
+    islands: core::iter::Enumerate<I>,
     groups: &'a mut [TakenGroup],
     solution: IslandSolution<'a>,
-    idle: &'a mut Vec<Workspace>,
+    workspaces: Workspaces<'a>,
 }
 
 impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
@@ -36,9 +82,9 @@ impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
         islands: I,
         groups: &'a mut [TakenGroup],
         solution: &'a mut Solution,
-        idle: &'a mut Vec<Workspace>,
+        workspaces: Workspaces<'a>,
     ) -> Self {
-        Self { islands, groups, solution: solution.as_mut(), idle }
+        Self { islands: islands.enumerate(), groups, solution: solution.as_mut(), workspaces }
     }
 
     /// Calls `work` once for each of the `count` islands, spread over `runner`'s threads.
@@ -51,7 +97,7 @@ impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
             let next = lock().next();
             let Some(mut task) = next else { return false };
             work(&mut task);
-            lock().idle.push(task.workspace);
+            lock().workspaces.put_back(task.number, task.workspace);
             true
         };
         runner.run(count, &|| {
@@ -62,12 +108,13 @@ impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
     }
 
     fn next(&mut self) -> Option<Task<'a>> {
-        let island = self.islands.next()?;
+        let (number, island) = self.islands.next()?;
         Some(Task {
+            number,
             island,
             groups: split_off(&mut self.groups, island.groups.len()),
             solution: self.solution.split_off(&island),
-            workspace: self.idle.pop().unwrap_or_default(),
+            workspace: self.workspaces.take(number),
         })
     }
 }

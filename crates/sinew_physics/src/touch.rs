@@ -5,6 +5,7 @@ use crate::body::{Body, Rest};
 use crate::collide::{Manifold, collide as narrow_phase};
 use crate::contact::{Contact, slop};
 use crate::def::BodyKind;
+use crate::field::Fields;
 use crate::id::{BodyId, JointId};
 use crate::joint::Joint;
 use crate::shape::Sensing;
@@ -60,11 +61,12 @@ pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &
     });
 }
 
-/// `touch`: events, and waking of what an awake body touches or a moving kinematic one holds.
+/// `touch`: events, and waking of what an awake body touches or attracts, or a moving kinematic one holds.
 pub(crate) fn touch(
     bodies: &mut Arena<Body>,
     joints: &Arena<Joint>,
     contacts: &mut [Contact],
+    fields: &Fields<'_>,
     events: &mut Events,
 ) {
     for list in [&mut events.begin, &mut events.end] {
@@ -89,6 +91,9 @@ pub(crate) fn touch(
                 wake(bodies, held);
             }
         }
+    }
+    while let Some(attracted) = fields.next_to_wake(bodies) {
+        wake(bodies, attracted);
     }
 }
 

@@ -4,9 +4,11 @@ use crate::arena::Arena;
 use crate::body::{Body, Velocity};
 use crate::contact::Contact;
 use crate::def::{BodyDef, BodyKind, WorldDef};
+use crate::field::{FieldDef, Functions};
 use crate::id::{BodyId, GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
+use crate::object::Objects;
 use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
 use crate::particles::{AttachmentTarget, GroupDef, ParticleGroup};
@@ -15,7 +17,7 @@ use crate::shape::MassProperties;
 use crate::stage::{NoProfiler, Profiler};
 use crate::step::{StepContext, step};
 use crate::touch::{Events, wake};
-use sinew_math::{Sym3, Transform, Vec3};
+use sinew_math::{Transform, Vec3};
 
 /// Bodies and joints, stepped at a fixed rate.
 ///
@@ -28,6 +30,9 @@ pub struct World {
     pub(crate) joints: Arena<Joint>,
     pub(crate) contacts: Vec<Contact>,
     pub(crate) groups: Arena<ParticleGroup>,
+    pub(crate) fields: Arena<FieldDef>,
+    pub(crate) functions: Functions,
+    pub(crate) objects: Objects,
     pub(crate) parted: PartedPairs,
     pub(crate) events: Events,
     pub(crate) broad: BroadPhase,
@@ -55,6 +60,9 @@ impl World {
             joints: Arena::default(),
             contacts: Vec::new(),
             groups: Arena::default(),
+            fields: Arena::default(),
+            functions: Functions::default(),
+            objects: Objects::default(),
             parted: PartedPairs::default(),
             events: Events::default(),
             broad: BroadPhase::default(),
@@ -152,21 +160,10 @@ impl World {
     /// One step with the host's threads and stage times. The result does not depend on either.
     pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
         let (dt, substeps) = (self.def.dt(), self.def.substeps);
-        let context = StepContext { dt, h: dt / substeps as f32, substeps, runner, profiler };
+        let h = dt / substeps as f32;
+        let context = StepContext { dt, h, substeps, time: self.time(), runner, profiler };
         step(self, &context);
         self.steps += 1;
-    }
-
-    /// Runs the whole steps that `nanoseconds` more of time hold; gives the rest as a share of a step, 0..1, for
-    /// [`interpolated`](Self::interpolated). Time is counted in whole nanoseconds, so the state after step k is the same
-    /// at any frame rate.
-    pub fn update(&mut self, nanoseconds: u64) -> f32 {
-        self.pending_nanoseconds += nanoseconds;
-        while self.pending_nanoseconds >= self.def.step_nanoseconds {
-            self.pending_nanoseconds -= self.def.step_nanoseconds;
-            self.step();
-        }
-        self.pending_nanoseconds as f32 / self.def.step_nanoseconds as f32
     }
 
     /// Steps taken.
@@ -235,46 +232,6 @@ impl World {
         self.expect_mut(id).velocity = velocity;
     }
 
-    /// Impulse (N·s) at a world point: changes the velocity at once. No effect on static and kinematic bodies.
-    pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
-        assert!(impulse.is_finite() && point.is_finite(), "an impulse is finite");
-        wake(&mut self.bodies, id.index);
-        let body = self.expect_mut(id);
-        let turn = body.inverse_inertia_mul((point - body.center()).cross(impulse));
-        body.velocity.linear += impulse * body.inverse_mass();
-        body.velocity.angular += turn;
-    }
-
-    /// Impulse (N·s) at the centre of mass.
-    pub fn apply_impulse_at_center(&mut self, id: BodyId, impulse: Vec3) {
-        self.apply_impulse(id, impulse, self.center_of_mass(id));
-    }
-
-    /// Angular impulse (N·m·s).
-    pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Vec3) {
-        assert!(impulse.is_finite(), "an impulse is finite");
-        wake(&mut self.bodies, id.index);
-        let body = self.expect_mut(id);
-        body.velocity.angular += body.inverse_inertia_mul(impulse);
-    }
-
-    /// Force (N) at a world point for the next step.
-    pub fn apply_force(&mut self, id: BodyId, force: Vec3, point: Vec3) {
-        assert!(force.is_finite() && point.is_finite(), "a force is finite");
-        wake(&mut self.bodies, id.index);
-        let body = self.expect_mut(id);
-        body.force += force;
-        let torque = (point - body.center()).cross(force);
-        body.torque += torque;
-    }
-
-    /// Torque (N·m) for the next step.
-    pub fn apply_torque(&mut self, id: BodyId, torque: Vec3) {
-        assert!(torque.is_finite(), "a torque is finite");
-        wake(&mut self.bodies, id.index);
-        self.expect_mut(id).torque += torque;
-    }
-
     /// Static, kinematic or dynamic.
     pub fn kind(&self, id: BodyId) -> BodyKind {
         self.expect(id).kind
@@ -282,13 +239,7 @@ impl World {
 
     /// Mass (0 unless dynamic), centre and inertia in the body's frame.
     pub fn mass(&self, id: BodyId) -> MassProperties {
-        let body = self.expect(id);
-        let body_from_principal = body.principal_from_body.inverse();
-        MassProperties {
-            mass: body.mass,
-            center: body_from_principal.translation,
-            inertia: Sym3::from_rotated_diagonal(body_from_principal.rotation, body.inertia),
-        }
+        self.expect(id).mass_properties()
     }
 
     /// False while it sleeps.

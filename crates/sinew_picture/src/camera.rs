@@ -1,4 +1,5 @@
 use sinew::math::{Vec3, clamp, max, normalize_or, trig};
+use sinew::physics::boxes::Aabb;
 
 /// A pinhole camera that stands upright.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,26 @@ impl Camera {
         let distance = framing_distance(radius, PORTRAIT_FOV);
         let direction = normalize_or(direction, Vec3::Z);
         Self { position: center + direction * distance, target: center, fov_y: PORTRAIT_FOV }
+    }
+
+    /// Looks at the middle of a box (world space, metres) from the side `direction` (toward the camera, any length)
+    /// from just so far that the whole box is on a picture `aspect` times as wide as it is high, with a field of view
+    /// of 35°.
+    pub fn framing_box(bounds: &Aabb, direction: Vec3, aspect: f32) -> Self {
+        let back = normalize_or(direction, Vec3::Z);
+        let right = normalize_or(Vec3::Y.cross(back), Vec3::X);
+        let up = back.cross(right);
+        let half_height = trig::tan(0.5 * PORTRAIT_FOV);
+        let half_width = half_height * aspect;
+        let (center, half) = (bounds.center(), (bounds.max - bounds.min) * 0.5);
+        let mut distance = 2.0 * NEAR;
+        for corner in 0..8 {
+            let sign = |bit: usize| if corner >> bit & 1 == 1 { 1.0 } else { -1.0 };
+            let corner = Vec3::new(half.x * sign(0), half.y * sign(1), half.z * sign(2));
+            let across = max(corner.dot(right).abs() / half_width, corner.dot(up).abs() / half_height);
+            distance = max(distance, corner.dot(back) + across);
+        }
+        Self { position: center + back * distance, target: center, fov_y: PORTRAIT_FOV }
     }
 }
 
@@ -194,6 +215,24 @@ mod tests {
         assert!((follow.camera().target - Vec3::new(90.0, 0.0, 0.0)).length() <= follow.reach + 1e-3);
         follow.update(Vec3::NAN, 0.1);
         assert!(follow.camera().target.is_finite());
+    }
+
+    #[test]
+    fn framing_fits_the_box_and_no_more() {
+        let bounds = Aabb { min: Vec3::new(-1.0, 0.0, 2.0), max: Vec3::new(4.0, 0.5, 2.2) };
+        for direction in [Vec3::Z, Vec3::new(0.4, 0.3, 1.0), Vec3::new(-1.0, 2.0, 0.1), Vec3::Y] {
+            let camera = Camera::framing_box(&bounds, direction, 16.0 / 9.0);
+            let view = View::new(&camera, 640, 360);
+            let mut farthest = 0.0;
+            for corner in 0..8 {
+                let pick = |bit: usize, lo: f32, hi: f32| if corner >> bit & 1 == 1 { hi } else { lo };
+                let Aabb { min, max } = bounds;
+                let corner = Vec3::new(pick(0, min.x, max.x), pick(1, min.y, max.y), pick(2, min.z, max.z));
+                let [x, y, w] = view.clip_from_world(corner);
+                farthest = sinew::math::max(farthest, sinew::math::max((x / w).abs(), (y / w).abs()));
+            }
+            assert!((farthest - 1.0).abs() < 1e-3, "from {direction}: {farthest}");
+        }
     }
 
     #[test]

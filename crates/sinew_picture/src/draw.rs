@@ -1,7 +1,8 @@
 //! Models from plain descriptions: boxes, balls, capsules, floors, meshes and their wire frames.
 
 use crate::scene::{Line, LineDepth, Material, Model, Pattern, ShadowCasting};
-use sinew::math::{Transform, Vec3, trig};
+use sinew::math::{Rotation, Transform, Vec3, normalize_or, trig};
+use sinew::physics::Shape;
 
 /// A solid around the origin of its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +26,18 @@ pub enum Solid {
     },
 }
 
+impl Solid {
+    /// The solid of a collision shape; none of a half-space, which has no end: see [`floor`].
+    pub fn of(shape: &Shape) -> Option<Self> {
+        match *shape {
+            Shape::Box { half_extents } => Some(Self::Box { half_extents }),
+            Shape::Sphere { radius } => Some(Self::Sphere { radius }),
+            Shape::Capsule { half_height, radius } => Some(Self::Capsule { half_height, radius }),
+            Shape::HalfSpace => None,
+        }
+    }
+}
+
 /// Segments around a ball or capsule: 15° each looks round at the sizes that pictures show.
 const AROUND: usize = 24;
 /// Segments from the equator to a pole.
@@ -46,15 +59,43 @@ pub fn solid(solid: Solid, world_from_solid: Transform, material: Material) -> M
     Model { material, ..model }
 }
 
+/// A ball of eight fields, every second one darker, so that it is seen to turn.
+pub fn ball(radius: f32, world_from_ball: Transform, material: Material) -> Model {
+    let mut model = solid(Solid::Sphere { radius }, world_from_ball, material);
+    let shade = |vertex: usize| {
+        let (ring, around) = (vertex / AROUND, vertex % AROUND);
+        let quarter = around / (AROUND / 4);
+        let dark = (quarter % 2 == 1) != (ring > TO_POLE);
+        [if dark { 0.5 } else { 1.0 }; 3]
+    };
+    model.colors = (0..model.positions.len()).map(shade).collect();
+    model
+}
+
+/// A round rod from one point to another, with round ends, all in metres of the world.
+pub fn rod(from: Vec3, to: Vec3, radius: f32, material: Material) -> Model {
+    let along = to - from;
+    let turn = Rotation::from_arc(Vec3::Y, normalize_or(along, Vec3::Y));
+    let place = Transform::new((from + to) * 0.5, turn);
+    solid(Solid::Capsule { half_height: 0.5 * along.length(), radius }, place, material)
+}
+
 /// A level floor of two colours (linear), `half_size` metres to each side of `center`, in squares of 1 m. It throws
 /// no shadow.
 pub fn floor(center: Vec3, half_size: f32, color: [f32; 3], other: [f32; 3]) -> Model {
-    let corner = |x: f32, z: f32| center + Vec3::new(x * half_size, 0.0, z * half_size);
+    plane(Transform::from_translation(center), half_size, 1.0, [color, other])
+}
+
+/// The plane y = 0 of its frame, `half_size` metres to each side, in squares of `tile` metres of two colours
+/// (linear). It throws no shadow.
+pub fn plane(world_from_plane: Transform, half_size: f32, tile: f32, colors: [[f32; 3]; 2]) -> Model {
+    let [color, other] = colors;
+    let corner = |x: f32, z: f32| world_from_plane.point(Vec3::new(x * half_size, 0.0, z * half_size));
     Model {
         positions: vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)],
         indices: vec![0, 1, 2, 0, 2, 3],
         material: Material {
-            pattern: Pattern::Checker { size: 1.0, other },
+            pattern: Pattern::Checker { size: tile, other },
             shadow: ShadowCasting::No,
             ..Material::new(color)
         },

@@ -20,6 +20,7 @@ mod scene;
 mod shade;
 mod shadow;
 mod texture;
+pub mod world;
 
 pub use camera::{Camera, FollowCamera};
 pub use encode::{EncodeError, Movie, PictureFormat};

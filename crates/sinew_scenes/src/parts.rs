@@ -103,3 +103,12 @@ pub(crate) fn fallen(world: &World) -> f64 {
     let h = dt / f64::from(world.def().substeps);
     0.5 * f64::from(GRAVITY) * t * (t + h)
 }
+
+/// Arithmetic-geometric mean of two positive numbers; the complete elliptic integral of the first kind is
+/// `K(k) = π / (2 agm(1, √(1 − k²)))` (Gauss).
+pub(crate) fn agm(mut a: f64, mut b: f64) -> f64 {
+    for _ in 0..6 {
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+    }
+    a
+}

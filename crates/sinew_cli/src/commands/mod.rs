@@ -1,12 +1,14 @@
 //! The commands: one struct and one file each.
 
 mod bake;
+mod boxes;
 mod demo;
 mod inspect;
 mod later;
 mod ragdoll_build;
 mod run;
 mod scenes;
+mod view;
 
 use crate::failure::Result;
 use crate::report::Report;
@@ -21,15 +23,13 @@ pub enum Command {
     /// Work on ragdolls: build one from a rigged file
     #[command(subcommand)]
     Ragdoll(Ragdoll),
+    Boxes(boxes::Boxes),
     Inspect(inspect::Inspect),
     Run(run::Run),
     Scenes(scenes::Scenes),
-    #[command(hide = true, disable_help_flag = true)]
-    Boxes(Later),
+    View(view::View),
     #[command(hide = true, disable_help_flag = true)]
     Events(Later),
-    #[command(hide = true, disable_help_flag = true)]
-    View(Later),
     #[command(hide = true, disable_help_flag = true)]
     Record(Later),
     #[command(hide = true, disable_help_flag = true)]
@@ -57,12 +57,12 @@ impl Command {
             Self::Ragdoll(Ragdoll::Build(command)) => command.run(),
             Self::Ragdoll(Ragdoll::Doctor(_)) => later::refuse("sinew ragdoll doctor"),
             Self::Ragdoll(Ragdoll::Export(_)) => later::refuse("sinew ragdoll export"),
+            Self::Boxes(command) => command.run(),
             Self::Inspect(command) => command.run(),
             Self::Run(command) => command.run(),
             Self::Scenes(command) => command.run(),
-            Self::Boxes(_) => later::refuse("sinew boxes"),
+            Self::View(command) => command.run(),
             Self::Events(_) => later::refuse("sinew events"),
-            Self::View(_) => later::refuse("sinew view"),
             Self::Record(_) => later::refuse("sinew record"),
             Self::Replay(_) => later::refuse("sinew replay"),
             Self::Convert(_) => later::refuse("sinew convert"),

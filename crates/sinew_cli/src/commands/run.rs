@@ -1,13 +1,14 @@
 //! `sinew run`: a named scene without a picture: figures, times, state hash.
 
-use crate::failure::{Failure, Result};
+use crate::failure::Result;
 use crate::progress::Progress;
 use crate::report::Report;
+use crate::scene_choice::choose;
 use crate::table::Table;
 use serde_json::{Map, Value, json};
 use sinew::physics::stage::NoProfiler;
 use sinew::physics::{Serial, TaskRunner, Threads};
-use sinew_scenes::scenes::{Expected, Instance, Metric, Scene, SettingError, find};
+use sinew_scenes::scenes::{Expected, Instance, Metric, Scene};
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -38,14 +39,7 @@ pub struct Run {
 impl Run {
     /// Steps the scene.
     pub fn run(&self) -> Result<Report> {
-        let scene = find(&self.scene).ok_or_else(|| {
-            Failure::Usage(format!("no scene '{}'; 'sinew scenes' lists what there is", self.scene))
-        })?;
-        let mut settings = scene.settings();
-        for assignment in &self.settings {
-            settings.assign(assignment).map_err(refused)?;
-        }
-        settings.check().map_err(refused)?;
+        let (scene, settings) = choose(&self.scene, &self.settings)?;
         let steps = self.steps.unwrap_or(scene.steps);
         let mut instance = scene.start(&settings);
         let times = StepTimes::measure(&mut instance, steps, &*self.runner());
@@ -65,13 +59,6 @@ impl Run {
             1 => Box::new(Serial),
             threads => Box::new(Threads::new(usize::from(threads))),
         }
-    }
-}
-
-fn refused(error: SettingError) -> Failure {
-    match error {
-        SettingError::File(error) => error.into(),
-        error => Failure::Usage(format!("--set: {error}")),
     }
 }
 

@@ -1,12 +1,14 @@
 //! The binary as its users meet it: arguments in, exit code, stdout and stderr out.
 
 mod bake;
+mod boxes;
 mod contract;
 mod demo;
 mod refusals;
 mod scenes;
 mod sinew;
 mod usage;
+mod view;
 
 /// The reader of `docs/contract.md` that `cargo xtask` holds the demo's report against.
 #[path = "../../../../xtask/src/contract.rs"]

@@ -7,6 +7,7 @@ mod fs;
 mod geometry;
 mod hostile;
 mod mjcf;
+mod obj;
 mod ragdoll;
 mod rigs;
 mod world;

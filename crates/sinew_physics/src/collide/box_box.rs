@@ -2,25 +2,11 @@
 
 use super::clip::{self, Face};
 use super::feature::{self, WHOLE, pair};
-use super::placed::{Obb, Segment, sign};
+use super::placed::{PlacedBox, Segment, sign};
 use super::reduce::{midway, push_best};
 use super::{Manifold, ManifoldPoint};
+use crate::boxes::separation::{Axis, AxisOf, best_edges, best_face};
 use sinew_math::{Vec3, min};
-
-/// A candidate normal from A to B and the gap along it.
-#[derive(Clone, Copy)]
-struct Axis {
-    normal: Vec3,
-    separation: f32,
-    of: AxisOf,
-}
-
-#[derive(Clone, Copy)]
-enum AxisOf {
-    FaceA(usize),
-    FaceB(usize),
-    Edges(usize, usize),
-}
 
 /// Edges whose sine is below this are taken as parallel: the faces' axes then say all there is to say.
 const PARALLEL_SINE: f32 = 0.005;
@@ -29,14 +15,14 @@ const PARALLEL_SINE: f32 = 0.005;
 /// decides. No common direction of a level (axes, diagonals) is at right angles to it.
 const TIE_DIRECTION: Vec3 = Vec3::new(0.331, 0.873, 0.357);
 
-pub(super) fn collide(a: &Obb, b: &Obb, margin: f32, out: &mut Manifold) {
+pub(super) fn collide(a: &PlacedBox, b: &PlacedBox, margin: f32, out: &mut Manifold) {
     let tolerance = tolerance(a, b);
     let (face_a, face_b) = (best_face(a, b, 1.0, AxisOf::FaceA), best_face(b, a, -1.0, AxisOf::FaceB));
     let face = choose_face(face_a, face_b, tolerance);
     if face_a.separation > margin || face_b.separation > margin {
         return;
     }
-    let axis = match best_edges(a, b) {
+    let axis = match best_edges(a, b, PARALLEL_SINE) {
         Some(edges) if edges.separation > margin => return,
         // Faces give up to four points and hold better: edges must be clearly the better axis.
         Some(edges) if edges.separation > face.separation + tolerance + 0.05 * face.separation.abs() => edges,
@@ -57,29 +43,8 @@ pub(super) fn collide(a: &Obb, b: &Obb, margin: f32, out: &mut Manifold) {
 }
 
 /// Below which lengths don't matter for the choice of features: 1 % of the thinnest half side, at most 0.5 mm.
-fn tolerance(a: &Obb, b: &Obb) -> f32 {
+fn tolerance(a: &PlacedBox, b: &PlacedBox) -> f32 {
     min(0.0005, 0.01 * min(a.thinnest(), b.thinnest()))
-}
-
-/// The face of `of` that separates best; `toward_b` is −1 if `of` is B.
-fn best_face(of: &Obb, other: &Obb, toward_b: f32, name: fn(usize) -> AxisOf) -> Axis {
-    let offset = other.center - of.center;
-    let candidate = |k: usize| {
-        let along = offset.dot(of.axes[k]);
-        Axis {
-            normal: of.axes[k] * (sign(along) * toward_b),
-            separation: along.abs() - of.half[k] - other.half_width(of.axes[k]),
-            of: name(k),
-        }
-    };
-    let mut best = candidate(0);
-    for k in 1..3 {
-        let axis = candidate(k);
-        if axis.separation > best.separation {
-            best = axis;
-        }
-    }
-    best
 }
 
 /// The better of the two. Faces that lie on each other are as good, and one of them is kept to.
@@ -89,33 +54,12 @@ fn choose_face(a: Axis, b: Axis, tolerance: f32) -> Axis {
     if a_wins { a } else { b }
 }
 
-fn best_edges(a: &Obb, b: &Obb) -> Option<Axis> {
-    let offset = b.center - a.center;
-    let mut best: Option<Axis> = None;
-    for i in 0..3 {
-        for j in 0..3 {
-            let cross = a.axes[i].cross(b.axes[j]);
-            let sine = cross.length();
-            if sine < PARALLEL_SINE {
-                continue;
-            }
-            let across = cross / sine;
-            let normal = across * sign(across.dot(offset));
-            let separation = normal.dot(offset) - a.half_width(normal) - b.half_width(normal);
-            if best.is_none_or(|axis| separation > axis.separation) {
-                best = Some(Axis { normal, separation, of: AxisOf::Edges(i, j) });
-            }
-        }
-    }
-    best
-}
-
 /// The other box's face cut to the reference face. False, and nothing pushed, if that does not show how far the
 /// boxes are apart: they pass each other beside the face.
 fn push_faces(
-    of: &Obb,
+    of: &PlacedBox,
     axis: usize,
-    other: &Obb,
+    other: &PlacedBox,
     best: &Axis,
     margin: f32,
     tolerance: f32,
@@ -152,14 +96,14 @@ fn push_faces(
 }
 
 /// The edge of `of` along `axis` that reaches furthest along `direction`, and its feature.
-fn support_edge(of: &Obb, axis: usize, direction: Vec3) -> (Segment, u16) {
+fn support_edge(of: &PlacedBox, axis: usize, direction: Vec3) -> (Segment, u16) {
     let index = of.support(direction) & !(1 << axis);
     (Segment { ends: [of.vertex(index), of.vertex(index | 1 << axis)] }, feature::edge(axis, index))
 }
 
 /// The closest points of two edges. False, and nothing pushed, if the boxes are apart and these are not their
 /// closest points.
-fn push_edges(a: &Obb, i: usize, b: &Obb, j: usize, axis: &Axis, out: &mut Manifold) -> bool {
+fn push_edges(a: &PlacedBox, i: usize, b: &PlacedBox, j: usize, axis: &Axis, out: &mut Manifold) -> bool {
     let (edge_a, feature_a) = support_edge(a, i, axis.normal);
     let (edge_b, feature_b) = support_edge(b, j, -axis.normal);
     let (s, t) = edge_a.closest_to_segment(&edge_b);
@@ -188,7 +132,14 @@ impl Bridge {
 
 /// The closest points of two boxes that are apart, by trying corners against boxes and edges against edges: slow
 /// and sure, for the rare pairs that pass each other corner by corner or edge by edge.
-fn push_closest(a: &Obb, b: &Obb, fallback: Vec3, margin: f32, tolerance: f32, out: &mut Manifold) {
+fn push_closest(
+    a: &PlacedBox,
+    b: &PlacedBox,
+    fallback: Vec3,
+    margin: f32,
+    tolerance: f32,
+    out: &mut Manifold,
+) {
     let corners = corner_bridges(a, b);
     let shorter = |x: Bridge, y: Bridge| if y.span().length() < x.span().length() { y } else { x };
     let best = corners.into_iter().chain(edge_bridges(a, b)).reduce(shorter).unwrap_or_default();
@@ -220,7 +171,7 @@ fn push_closest(a: &Obb, b: &Obb, fallback: Vec3, margin: f32, tolerance: f32, o
 }
 
 /// Each corner and the other box's point closest to it.
-fn corner_bridges(a: &Obb, b: &Obb) -> [Bridge; 16] {
+fn corner_bridges(a: &PlacedBox, b: &PlacedBox) -> [Bridge; 16] {
     core::array::from_fn(|k| {
         let (index, name) = (k % 8, feature::vertex(k % 8));
         if k < 8 {
@@ -234,7 +185,7 @@ fn corner_bridges(a: &Obb, b: &Obb) -> [Bridge; 16] {
 }
 
 /// The closest points of each pair of edges.
-fn edge_bridges(a: &Obb, b: &Obb) -> impl Iterator<Item = Bridge> {
+fn edge_bridges(a: &PlacedBox, b: &PlacedBox) -> impl Iterator<Item = Bridge> {
     edges(a).flat_map(move |(edge_a, feature_a)| {
         edges(b).map(move |(edge_b, feature_b)| {
             let (s, t) = edge_a.closest_to_segment(&edge_b);
@@ -243,7 +194,7 @@ fn edge_bridges(a: &Obb, b: &Obb) -> impl Iterator<Item = Bridge> {
     })
 }
 
-fn edges(of: &Obb) -> impl Iterator<Item = (Segment, u16)> {
+fn edges(of: &PlacedBox) -> impl Iterator<Item = (Segment, u16)> {
     (0..3).flat_map(move |axis| {
         (0..8).filter(move |index| index >> axis & 1 == 0).map(move |index| {
             let ends = [of.vertex(index), of.vertex(index | 1 << axis)];
@@ -253,7 +204,7 @@ fn edges(of: &Obb) -> impl Iterator<Item = (Segment, u16)> {
 }
 
 /// B's deepest corner, for overlaps that no face or edge describes.
-fn push_support(a: &Obb, b: &Obb, axis: &Axis, out: &mut Manifold) {
+fn push_support(a: &PlacedBox, b: &PlacedBox, axis: &Axis, out: &mut Manifold) {
     let index = b.support(-axis.normal);
     out.normal = axis.normal;
     let position = midway(b.vertex(index), axis.normal, axis.separation);

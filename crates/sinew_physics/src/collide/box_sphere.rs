@@ -2,10 +2,10 @@
 
 use super::Manifold;
 use super::feature::{WHOLE, pair};
-use super::placed::{Ball, Obb};
+use super::placed::{Ball, PlacedBox};
 use crate::distance::box_distance;
 
-pub(super) fn collide(a: &Obb, b: &Ball, margin: f32, out: &mut Manifold) {
+pub(super) fn collide(a: &PlacedBox, b: &Ball, margin: f32, out: &mut Manifold) {
     let (distance, normal) = box_distance(a.half, a.local_point(b.center));
     let separation = distance - b.radius;
     if separation > margin {

@@ -1,7 +1,7 @@
 //! The face of one box cut to the prism over a face of another, with the names of the features that meet.
 
 use super::feature;
-use super::placed::Obb;
+use super::placed::PlacedBox;
 use sinew_math::Vec3;
 
 /// A quadrilateral cut by four planes has at most eight corners.
@@ -53,7 +53,7 @@ impl Polygon {
 
 /// A face of a box: its axis and side, the axes of its sides, its centre.
 pub(super) struct Face<'a> {
-    pub of: &'a Obb,
+    pub of: &'a PlacedBox,
     pub axis: usize,
     pub sign: f32,
 }

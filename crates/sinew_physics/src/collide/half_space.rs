@@ -2,11 +2,11 @@
 
 use super::Manifold;
 use super::feature::{self, WHOLE, end, pair};
-use super::placed::{Ball, Obb, Pill, Plane};
+use super::placed::{Ball, Pill, PlacedBox, Plane};
 use sinew_math::Vec3;
 
 /// The four corners of the face that looks at the plane: the deepest corner is always one of them.
-pub(super) fn against_box(a: &Plane, b: &Obb, margin: f32, out: &mut Manifold) {
+pub(super) fn against_box(a: &Plane, b: &PlacedBox, margin: f32, out: &mut Manifold) {
     let (axis, side) = b.facing(-a.normal);
     out.normal = a.normal;
     for index in 0..8 {

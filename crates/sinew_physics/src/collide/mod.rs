@@ -16,7 +16,7 @@ mod placed;
 mod reduce;
 
 use crate::shape::Shape;
-use placed::{Ball, Obb, Pill, Plane};
+use placed::{Ball, Pill, PlacedBox, Plane};
 use sinew_math::{Transform, Vec3};
 
 /// At most this many points describe the contact of two shapes.
@@ -121,7 +121,7 @@ fn collide_ranked(a: &Shape, wa: &Transform, b: &Shape, wb: &Transform, margin: 
         (Transform::new(wa.translation - origin, wa.rotation), Transform::new(Vec3::ZERO, wb.rotation));
     match (*a, *b) {
         (Shape::HalfSpace, Shape::Box { half_extents }) => {
-            half_space::against_box(&Plane::new(&wa), &Obb::new(half_extents, &wb), margin, out);
+            half_space::against_box(&Plane::new(&wa), &PlacedBox::new(half_extents, &wb), margin, out);
         }
         (Shape::HalfSpace, Shape::Capsule { half_height, radius }) => {
             half_space::against_capsule(&Plane::new(&wa), &Pill::new(half_height, radius, &wb), margin, out);
@@ -130,14 +130,14 @@ fn collide_ranked(a: &Shape, wa: &Transform, b: &Shape, wb: &Transform, margin: 
             half_space::against_sphere(&Plane::new(&wa), &Ball::new(radius, &wb), margin, out);
         }
         (Shape::Box { half_extents: half_a }, Shape::Box { half_extents: half_b }) => {
-            box_box::collide(&Obb::new(half_a, &wa), &Obb::new(half_b, &wb), margin, out);
+            box_box::collide(&PlacedBox::new(half_a, &wa), &PlacedBox::new(half_b, &wb), margin, out);
         }
         (Shape::Box { half_extents }, Shape::Capsule { half_height, radius }) => {
             let pill = Pill::new(half_height, radius, &wb);
-            box_capsule::collide(&Obb::new(half_extents, &wa), &pill, margin, out);
+            box_capsule::collide(&PlacedBox::new(half_extents, &wa), &pill, margin, out);
         }
         (Shape::Box { half_extents }, Shape::Sphere { radius }) => {
-            box_sphere::collide(&Obb::new(half_extents, &wa), &Ball::new(radius, &wb), margin, out);
+            box_sphere::collide(&PlacedBox::new(half_extents, &wa), &Ball::new(radius, &wb), margin, out);
         }
         (
             Shape::Capsule { half_height: height_a, radius: radius_a },

@@ -51,7 +51,7 @@ impl ParticleGroup {
         let (h, [_, to]) = (part.h(), part.shares());
         for (k, (a, anchor)) in self.attachments.iter().zip(anchors).enumerate() {
             let i = a.particle as usize;
-            let lost = self.begun[i] + self.gravity * h - self.velocities[i];
+            let lost = self.begun[i] + self.accelerations[i] * h - self.velocities[i];
             let impulse = self.reactions[i] + lost * self.masses[i];
             self.attachment_impulses[k] += impulse;
             self.anchor_velocities[k] +=

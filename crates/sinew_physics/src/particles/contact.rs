@@ -10,7 +10,7 @@
 use super::forest::Freedom;
 use super::sweep::{Meeting, sweep_ball};
 use super::{Part, ParticleGroup};
-use crate::aabb::Aabb;
+use crate::boxes::Aabb;
 use crate::contact::combine;
 use crate::shape::{Material, Shape};
 use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
@@ -212,7 +212,7 @@ impl ParticleGroup {
         let (position, radius) = (self.positions[i], self.radii[i]);
         let way = self.velocities[i].length() * h;
         // Gravity included, and a share of the other forces.
-        let reach = 2.0 * h * h * self.gravity.length() + 0.05 * radius;
+        let reach = 2.0 * h * h * self.accelerations[i].length() + 0.05 * radius;
         let mut clearance = f32::INFINITY;
         for (index, (o, placed)) in obstacles.iter().zip(&self.placed).enumerate() {
             let at_least = placed.distance_at_least(position) - radius;

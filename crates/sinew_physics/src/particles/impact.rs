@@ -24,7 +24,7 @@ impl ParticleGroup {
                 continue;
             }
             let approach = (self.begun[i] - bodies[touch.body].velocity_at(touch.point)).dot(touch.normal);
-            touch.speed_min = self.rebound(approach, h, &touch);
+            touch.speed_min = self.rebound(i, approach, h, &touch);
             if touch.speed_min > 0.0 {
                 self.push_off(i, &touch, bodies);
             }
@@ -91,7 +91,7 @@ impl ParticleGroup {
     /// Takes a particle out of a surface that it met when `left` seconds were left.
     fn respond(&mut self, i: usize, h: f32, mut touch: Touch, left: f32, bodies: &mut [ObstacleBody]) {
         let approach = (self.velocities[i] - bodies[touch.body].velocity_at(touch.point)).dot(touch.normal);
-        touch.speed_min = self.rebound(approach, h, &touch);
+        touch.speed_min = self.rebound(i, approach, h, &touch);
         let change = self.push_off(i, &touch, bodies);
         // What friction took from the velocity, the position must not have gained.
         let aside = change - touch.normal * change.dot(touch.normal);
@@ -110,11 +110,11 @@ impl ParticleGroup {
     /// Normal speed after an impact at `approach` (negative), so that a bounce neither gains nor loses height by the
     /// length of the iteration. A velocity of symplectic Euler is that of half an iteration ago, and gravity works
     /// between the surface and where the particle was, or is, when it has that velocity.
-    fn rebound(&self, approach: f32, h: f32, touch: &Touch) -> f32 {
+    fn rebound(&self, i: usize, approach: f32, h: f32, touch: &Touch) -> f32 {
         if approach >= -IMPACT_SPEED || touch.material.restitution == 0.0 {
             return 0.0;
         }
-        let pull = max(-self.gravity.dot(touch.normal), 0.0);
+        let pull = max(-self.accelerations[i].dot(touch.normal), 0.0);
         let there = approach - 0.5 * pull * h;
         let at_surface = max(there * there + 2.0 * pull * touch.gap, 0.0).sqrt();
         touch.material.restitution * at_surface + 0.5 * pull * h

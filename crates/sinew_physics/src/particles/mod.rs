@@ -34,7 +34,7 @@ pub use def::{
     TetherDef, VolumeDef,
 };
 
-use crate::aabb::Aabb;
+use crate::boxes::Aabb;
 use crate::shape::{Filter, Material};
 use contact::{Grip, Placed, Touch};
 use forest::{Forest, Freedom, System};
@@ -101,8 +101,10 @@ pub struct ParticleGroup {
     wedges: Vec<Vec3>,
     /// Mass of the particles that touch each body.
     loads: Vec<f32>,
-    /// Gravity of the last substep, scaled.
-    gravity: Vec3,
+    /// Forces of fields on each particle in the substep to come, N; none without fields.
+    outer: Vec<Vec3>,
+    /// Gravity and outer force of the last substep on each particle, over its mass, m/s².
+    accelerations: Vec<Vec3>,
 }
 
 impl ParticleGroup {
@@ -156,6 +158,7 @@ impl ParticleGroup {
         self.previous = self.positions.clone();
         self.attachment_impulses = vec![Vec3::ZERO; self.attachments.len()];
         self.weights = vec![0.0; count];
+        self.accelerations = vec![Vec3::ZERO; count];
         self.begun = vec![Vec3::ZERO; count];
         self.anchor_velocities = vec![Vec3::ZERO; self.attachments.len()];
         self.gradients = vec![Vec3::ZERO; count];
@@ -230,7 +233,7 @@ impl ParticleGroup {
         let mut bounds = Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
         for i in 0..self.positions.len() {
             for center in [self.positions[i], self.previous[i]] {
-                bounds = bounds.merge(&Aabb::around(center, Vec3::splat(self.radii[i])));
+                bounds = bounds.merge(&Aabb::reaching(center, Vec3::splat(self.radii[i])));
             }
         }
         bounds
@@ -244,6 +247,11 @@ impl ParticleGroup {
     /// Impulses on bodies that particles touched in the last substep, in order of particles.
     pub fn body_impulses(&self) -> &[BodyImpulse] {
         &self.body_impulses
+    }
+
+    /// Forces on the particles, one for each or none at all, that the next substep feels and uses up, N, world.
+    pub(crate) fn outer_forces(&mut self) -> &mut Vec<Vec3> {
+        &mut self.outer
     }
 
     /// Changes a particle's velocity by an impulse (N·s, world).
@@ -275,6 +283,17 @@ impl ParticleGroup {
         self.previous[particle as usize] = position;
     }
 
+    /// Moves a particle by `by` (m, world), with the velocity that takes it there within `h` seconds.
+    ///
+    /// # Panics
+    /// If there is no such particle, or a number is not finite.
+    pub fn correct(&mut self, particle: u32, by: Vec3, h: f32) {
+        let velocity = by / h;
+        assert!(velocity.is_finite(), "a particle's way is finite");
+        self.positions[particle as usize] += by;
+        self.velocities[particle as usize] += velocity;
+    }
+
     /// Moves the group by `h` seconds under `gravity` (m/s²), its springs, its attachments and its contacts.
     ///
     /// `anchors[k]` holds attachment `k`. Anchors that are bodies yield to the springs within the same solve, so that
@@ -297,7 +316,13 @@ impl ParticleGroup {
         bodies: &mut [ObstacleBody],
     ) {
         assert_eq!(anchors.len(), self.attachments.len(), "each attachment needs its anchor");
-        self.gravity = gravity * self.gravity_scale;
+        let gravity = gravity * self.gravity_scale;
+        self.accelerations.clear();
+        self.accelerations.resize(self.positions.len(), gravity);
+        for ((sum, force), mass) in self.accelerations.iter_mut().zip(self.outer.drain(..)).zip(&self.masses)
+        {
+            *sum += force / *mass;
+        }
         self.body_impulses.clear();
         self.attachment_impulses.fill(Vec3::ZERO);
         self.anchor_velocities.clear();
@@ -345,7 +370,7 @@ impl ParticleGroup {
             self.weights[i] = 1.0 / mass;
             self.system.freedom[i] = Freedom::Free;
             self.system.inertia[i] = Sym3::from_diagonal(Vec3::splat(mass));
-            self.system.momentum[i] = (self.velocities[i] + self.gravity * h) * mass;
+            self.system.momentum[i] = (self.velocities[i] + self.accelerations[i] * h) * mass;
         }
     }
 }

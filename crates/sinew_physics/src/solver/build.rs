@@ -9,6 +9,7 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, combine, slop};
 use crate::def::WorldDef;
+use crate::field::Fields;
 use crate::islands::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
 use crate::spatial::{ZERO6, join};
@@ -23,6 +24,7 @@ pub(crate) struct View<'a> {
     pub joints: &'a Arena<Joint>,
     pub contacts: &'a [Contact],
     pub def: &'a WorldDef,
+    pub fields: Fields<'a>,
     /// Substep, seconds.
     pub h: f32,
 }
@@ -111,14 +113,21 @@ impl Scratch {
     }
 }
 
+/// Force and torque that act on a body all through the step: gravity and the user's.
+pub(super) fn lasting_force(body: &Body, view: &View<'_>) -> (Vec3, Vec3) {
+    (body.force + view.def.gravity * (body.gravity_scale * body.mass), body.torque)
+}
+
 impl IslandSolver {
     /// Fills the solver with an island of the world.
     pub fn prepare(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.h = view.h;
+        self.displaced = false;
         (self.max_speed, self.max_turn) = (view.def.max_speed, view.def.max_turn);
         self.order_trees(island, view);
         self.make_room(island);
         self.copy_bodies(island, view);
+        self.look_for_fields(view);
         self.copy_joints(island, view);
         self.weigh_joints();
         self.refresh_joints();
@@ -247,6 +256,7 @@ impl IslandSolver {
         let ordered = s.order.iter().copied();
         for index in ordered.chain(s.fixed.iter().copied()) {
             let body = view.bodies.at(index);
+            let (force, torque) = lasting_force(body, view);
             self.bodies.push(SolverBody {
                 index,
                 pose: body.world_from_principal,
@@ -254,8 +264,8 @@ impl IslandSolver {
                 inertia: body.inertia,
                 excess: Vec3::ZERO,
                 inverse_inertia: Sym3::ZERO,
-                force: body.force + view.def.gravity * (body.gravity_scale * body.mass),
-                torque: body.torque,
+                force,
+                torque,
                 momentum: Vec3::ZERO,
                 linear_damping: body.linear_damping,
                 angular_damping: body.angular_damping,

@@ -10,9 +10,11 @@ mod contact_rows;
 mod disk;
 mod drives;
 mod energy;
+mod fields;
 pub(crate) mod lcp;
 mod limit_rows;
 mod loops;
+mod outside;
 mod reaction;
 mod response;
 mod solution;
@@ -23,16 +25,18 @@ mod tree_joints;
 use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
+use crate::project::TakenGroup;
 use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, angular, dot, join, linear};
 pub(crate) use build::View;
 use conjugate::Conjugate;
 use contact_rows::ManifoldRows;
 use drives::SoftRow;
 use energy::Momentum;
+use fields::Attraction;
 use limit_rows::LimitRow;
 use loops::Loops;
 use response::Response;
-use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, normalize_or, skew, trig};
+use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, min, normalize_or, skew, trig};
 pub(crate) use solution::{IslandSolution, Solution, SolvedBody, split_off};
 use sweep::{Pass, Unrest};
 use tree::Link;
@@ -68,7 +72,7 @@ pub(crate) struct SolverBody {
     pub excess: Vec3,
     /// Inverse of inertia and excess, world axes.
     pub inverse_inertia: Sym3,
-    /// Gravity's and the user's, N and N·m.
+    /// Gravity's, the user's and those of fields, N and N·m.
     pub force: Vec3,
     pub torque: Vec3,
     /// Angular momentum that the body would have at the substep's end without impulses, N·m·s.
@@ -179,6 +183,9 @@ pub(crate) struct IslandSolver {
     moved: Vec<Vec6>,
     /// What bodies gain after that without having it from their joints; what contacts and loops gave before, negative.
     accounted: Vec<Vec6>,
+    /// Fields and lasting forces act: they are taken anew in each substep.
+    forces_vary: bool,
+    attraction: Attraction,
     scratch: Scratch,
     unrest: Unrest,
     conjugate: Conjugate,
@@ -194,8 +201,10 @@ pub(crate) struct IslandSolver {
     /// Work in this substep of the forces, and of springs and motors, J.
     force_work: f32,
     drive_work: f32,
-    /// Particles pushed in this substep.
+    /// Particles or objects pushed in this substep.
     pushed_from_outside: bool,
+    /// Poses changed since all that depends on them was computed.
+    displaced: bool,
     /// How fast a hit may make a joint turn, rad/s: limits within reach of it get rows.
     hit_rate: f32,
     /// Substep, seconds.
@@ -221,12 +230,15 @@ struct Scratch {
 }
 
 impl IslandSolver {
-    /// Forces to velocities: damping on the old velocity, gravity and applied forces, speed limits, the spin of the middle of
-    /// the substep by gyroscopic torque. Limits act here, never after the solve: there they tear joints.
-    pub fn integrate_velocity(&mut self) {
+    /// Forces to velocities: damping on the old velocity, gravity, applied forces and fields, speed limits, the spin of the
+    /// middle of the substep by gyroscopic torque. Limits act here, never after the solve: there they tear joints.
+    pub fn integrate_velocity(&mut self, view: &View<'_>, groups: &mut [TakenGroup]) {
         let h = self.h;
         for rows in &mut self.manifolds {
             rows.begin_approach(&self.velocities);
+        }
+        if self.forces_vary {
+            self.add_fields(view, groups);
         }
         self.begin_drives();
         self.kinetic_before = self.kinetic_energy(&self.velocities[..self.links.len()]);
@@ -344,6 +356,9 @@ impl IslandSolver {
 
     /// Joint velocities to zero at the new pose (RATTLE), contacts and limits without bias, friction.
     pub fn relax(&mut self) {
+        if core::mem::take(&mut self.displaced) {
+            self.refresh();
+        }
         for rows in &mut self.manifolds {
             rows.begin_relax(&self.velocities, self.h);
         }
@@ -487,9 +502,10 @@ fn limit_length(v: Vec3, most: f32) -> Vec3 {
 
 /// Angular velocity that turns a free body within `h` seconds as its inertia lets it (world axes).
 ///
-/// The implicit midpoint `I (m − ω) + ½h m × I m = 0` in the principal frame keeps energy and the length of the momentum
-/// to rounding, and with the Cayley map for the turn, `2 atan(½h |m|)` about `m`, the momentum itself (after Austin,
-/// Krishnaprasad and Wang 1993). The explicit torque explodes; leaving it out makes wrong tops.
+/// The implicit midpoint `I (m − ω) + τ m × I m = 0` in the principal frame keeps energy and the length of the momentum to
+/// rounding, and with the Cayley map for the turn, `2 atan(τ|m|)` about `m`, the momentum itself (after Austin,
+/// Krishnaprasad and Wang 1993), whatever `τ`. With `τ = tan(½h|m|) / |m|` that turn is `h|m|`: `m` is the spin that joints
+/// and contacts feel, no slower one. The explicit torque explodes; leaving it out makes wrong tops.
 fn gyroscopic(body: &SolverBody, w: Vec3, h: f32) -> Vec3 {
     let i = body.inertia;
     if i.x == i.y && i.y == i.z {
@@ -500,14 +516,16 @@ fn gyroscopic(body: &SolverBody, w: Vec3, h: f32) -> Vec3 {
     let mut m = w0;
     for _ in 0..MIDPOINT_STEPS {
         let l = m * i;
-        // Jacobian I + ½h (m× I − (I m)×).
-        let jacobian = Mat3::from_diagonal(i) + (skew(m) * Mat3::from_diagonal(i) - skew(l)) * (0.5 * h);
-        let change = jacobian.inverse() * ((m - w0) * i + m.cross(l) * (0.5 * h));
+        // Within a quarter of a turn, should the world's limit allow more.
+        let angle = min(0.5 * h * m.length(), 1.2);
+        let tau = 0.5 * h * (if angle > 1e-3 { trig::tan(angle) / angle } else { 1.0 });
+        // Jacobian I + τ (m× I − (I m)×), but for what τ changes with m.
+        let jacobian = Mat3::from_diagonal(i) + (skew(m) * Mat3::from_diagonal(i) - skew(l)) * tau;
+        let change = jacobian.inverse() * ((m - w0) * i + m.cross(l) * tau);
         m -= change;
         if change.length_squared() <= MIDPOINT_TOLERANCE * w0.length_squared() {
             break;
         }
     }
-    let x = 0.5 * h * m.length();
-    r * (if x > 1e-3 { m * (trig::atan2(x, 1.0) / x) } else { m })
+    r * m
 }

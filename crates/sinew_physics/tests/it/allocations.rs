@@ -4,6 +4,7 @@
 
 use crate::build::{ball, box_body, capsule_body, floor, joint, sphere_body};
 use crate::humanoid::figure;
+use crate::objects::inhabited;
 use sinew_math::trig::{cos, sin};
 use sinew_math::{Transform, Vec3};
 use sinew_physics::particles::{AttachmentDef, AttachmentTarget, RopeDef};
@@ -154,6 +155,16 @@ fn a_warm_step_allocates_nothing() {
         assert!(warm.touches_begun > 40 && warm.touches_ended > 40, "contacts come and go: {warm:?}");
         assert_eq!(warm.allocations, 0, "{warm:?}");
     }
+}
+
+#[test]
+fn objects_let_a_warm_step_allocate_nothing() {
+    let mut world = inhabited();
+    let mut seen = Seen::default();
+    run(&mut world, SETTLE, &mut seen);
+    let before = seen.allocations;
+    run(&mut world, CYCLE, &mut seen);
+    assert_eq!(seen.allocations, before, "{seen:?}");
 }
 
 #[test]

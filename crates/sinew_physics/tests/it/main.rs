@@ -2,14 +2,19 @@
 
 mod allocations;
 mod bounce;
+mod boxes;
 mod build;
 mod closed_forms;
 mod collide;
+mod cook;
+mod fields;
 mod humanoid;
 mod joints;
 mod nets;
+mod objects;
 mod particles;
 mod random_worlds;
 mod ray;
 mod rope;
 mod trees;
+mod update;

@@ -1,9 +1,11 @@
 //! A scene that runs.
 
 use super::metric::{Expected, Metric};
+use super::sight::Sight;
+use core::time::Duration;
 use sinew::math::max;
 use sinew::physics::stage::{NoProfiler, Profiler};
-use sinew::physics::{Energy, Serial, TaskRunner, World};
+use sinew::physics::{Energy, Serial, TaskRunner, Update, World};
 
 /// The part of a scene that goes along with its world.
 pub trait Script: Send {
@@ -19,6 +21,20 @@ pub trait Script: Send {
 
     /// The figures so far.
     fn metrics(&self, world: &World) -> Vec<Metric>;
+
+    /// How a picture looks at it.
+    fn sight(&self) -> Sight {
+        Sight::default()
+    }
+}
+
+/// Nothing but the world itself.
+struct Unwatched;
+
+impl Script for Unwatched {
+    fn metrics(&self, _: &World) -> Vec<Metric> {
+        Vec::new()
+    }
 }
 
 /// A scene that runs.
@@ -32,6 +48,16 @@ impl Instance {
     pub(super) fn new(world: World, script: impl Script + 'static) -> Self {
         let health = Health::new(&world);
         Self { world, script: Box::new(script), health }
+    }
+
+    /// Of a world that no scene made, such as a file's.
+    pub fn of_world(world: World) -> Self {
+        Self::new(world, Unwatched)
+    }
+
+    /// How a picture looks at it.
+    pub fn sight(&self) -> Sight {
+        self.script.sight()
     }
 
     /// Its world, for questions, drawing, snapshots.
@@ -51,37 +77,18 @@ impl Instance {
 
     /// One step with the host's threads and stage times.
     pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
-        let before = self.world.energy();
-        self.world.step_with(runner, profiler);
-        self.after_step(before);
+        let Self { world, script, health } = self;
+        step(world, script.as_mut(), health, &|world| world.step_with(runner, profiler));
     }
 
-    /// Runs the whole steps that `nanoseconds` more of time hold, as [`World::update`] does; gives the rest as a share
-    /// of a step.
-    pub fn update(&mut self, nanoseconds: u64) -> f32 {
-        let step = self.world.def().step_nanoseconds;
-        let mut left = nanoseconds;
-        loop {
-            // At most one step fits into what is pending and this portion, so that the script sees each.
-            let portion = u64::min(left, step);
-            let (before, steps) = (self.world.energy(), self.world.step_count());
-            let alpha = self.world.update(portion);
-            if self.world.step_count() > steps {
-                self.after_step(before);
-            }
-            left -= portion;
-            if left == 0 {
-                return alpha;
-            }
-        }
+    /// Runs the whole steps that `time` more holds, as [`World::update`] does; the script sees each.
+    pub fn update(&mut self, time: Duration) -> Update {
+        let Self { world, script, health } = self;
+        world.update_with(time, |world| step(world, script.as_mut(), health, &World::step))
     }
 
-    fn after_step(&mut self, energy_before: Energy) {
-        // What the script pushes is no work of this step.
-        let after = self.world.energy();
-        self.script.after_step(&mut self.world);
-        self.health.after_step(&self.world, [energy_before, after], self.script.work_in(&self.world));
-    }
+    /// How many figures every scene has, at the end of its own.
+    pub const METRICS_OF_EVERY_SCENE: usize = 2;
 
     /// The figures so far: those of the scene, then `energy_gain_max` and `nan`, which every scene has.
     pub fn metrics(&self) -> Vec<Metric> {
@@ -89,6 +96,16 @@ impl Instance {
         metrics.extend(self.health.metrics());
         metrics
     }
+}
+
+/// One step, and what goes along with it.
+fn step(world: &mut World, script: &mut dyn Script, health: &mut Health, step: &dyn Fn(&mut World)) {
+    let before = world.energy();
+    step(world);
+    // What the script pushes is no work of this step.
+    let after = world.energy();
+    script.after_step(world);
+    health.after_step(world, [before, after], script.work_in(world));
 }
 
 /// What no scene may show, however long it runs.
@@ -117,7 +134,7 @@ impl Health {
         self.quarantined += world.events().quarantined.len() as u32;
     }
 
-    fn metrics(&self) -> [Metric; 2] {
+    fn metrics(&self) -> [Metric; Instance::METRICS_OF_EVERY_SCENE] {
         [
             Metric::new("energy_gain_max", self.energy_gain_max, Expected::AtMost(0.01)),
             Metric::new("nan", self.quarantined, Expected::AtMost(0.0)),

@@ -16,31 +16,46 @@ mod flight;
 mod instance;
 mod metric;
 mod setting;
+mod sight;
 
+mod air;
 mod ballistics;
+mod blasts;
 mod blobs;
+mod boxes;
 mod chains;
 mod cloths;
 mod crowds;
+mod engine;
 mod falls;
+mod forces;
+mod gimbal;
+mod impacts;
 mod incline;
 mod linkages;
 mod mjcf;
 mod motors;
 mod nets;
+mod orbits;
+mod orientation;
+mod overhang;
 mod particles;
 mod pendulums;
 mod piles;
 mod ragdolls;
+mod rolling;
 mod springs;
 mod strings;
 mod support;
+mod tops;
 mod trees;
+mod water;
 mod weightless;
 
 pub use instance::{Instance, Script};
 pub use metric::{Expected, Metric};
 pub use setting::{Domain, Setting, SettingError, Settings};
+pub use sight::{Sight, Trails};
 
 use crate::parts;
 use setting::Setup;
@@ -84,57 +99,85 @@ impl Scene {
 
 /// All scenes, closed forms first.
 pub fn registry() -> &'static [Scene] {
-    const {
-        &[
-            ballistics::FREE_FALL,
-            ballistics::PROJECTILE,
-            ballistics::BOUNCE,
-            pendulums::PENDULUM,
-            pendulums::DOUBLE_PENDULUM,
-            pendulums::TRIPLE_PENDULUM,
-            motors::ARM,
-            linkages::LINKAGE,
-            incline::HOLDS,
-            incline::SLIDES,
-            springs::SPRING,
-            springs::SPRING_CHAIN,
-            springs::SPRINGS_RATIO,
-            strings::CATENARY,
-            strings::CHAIN_MODES,
-            particles::PARTICLE,
-            particles::FAST_PARTICLE,
-            cloths::CLOTH,
-            cloths::CLOTH_BALL,
-            blobs::BLOB,
-            blobs::STEEL_VS_BASKETBALL,
-            weightless::ZERO_GRAVITY_PILE,
-            weightless::SPIN_DOUBLE,
-            weightless::SPIN_TRIPLE,
-            weightless::SPIN_RAGDOLL,
-            piles::STACK,
-            piles::PYRAMID,
-            piles::DOMINOES,
-            springs::ROPE_ON_BOX,
-            ragdolls::DROP,
-            falls::POSES,
-            ragdolls::WALL,
-            ragdolls::WALL_FAST,
-            ragdolls::STAIRS,
-            chains::SWING_1000,
-            chains::SWING_100,
-            chains::HANG_1000,
-            chains::HANG_100,
-            chains::LINKS_100,
-            chains::HEAVY_ROPE,
-            chains::HANGING_ROPE,
-            nets::JOINT_GRID,
-            nets::NET,
-            crowds::PILE,
-            trees::HEAVY_FOOT,
-            trees::MASS_RATIO,
-        ]
-    }
+    REGISTRY
 }
+
+const REGISTRY: &[Scene] = &[
+    ballistics::FREE_FALL,
+    ballistics::PROJECTILE,
+    ballistics::BOUNCE,
+    forces::TWO_MEN,
+    forces::PUSH,
+    forces::BULLET,
+    orbits::KEPLER,
+    orbits::SUN_EARTH,
+    orbits::THREE_BODIES,
+    air::WIND,
+    air::TERMINAL_VELOCITY,
+    water::FLOAT,
+    blasts::EXPLOSION,
+    pendulums::PENDULUM,
+    pendulums::DOUBLE_PENDULUM,
+    pendulums::TRIPLE_PENDULUM,
+    motors::ARM,
+    linkages::LINKAGE,
+    incline::HOLDS,
+    incline::SLIDES,
+    incline::ROLLS,
+    rolling::SLIDE_TO_ROLL,
+    rolling::ROLLING_BALLS,
+    impacts::ELASTIC_PAIRS,
+    impacts::NEWTONS_CRADLE,
+    impacts::BOUNCING_BALLS,
+    overhang::BLOCK_OVERHANG,
+    tops::DZHANIBEKOV,
+    tops::SYMMETRIC_TOP,
+    tops::SPINNING_TOP,
+    springs::SPRING,
+    springs::SPRING_CHAIN,
+    springs::SPRINGS_RATIO,
+    strings::CATENARY,
+    strings::CHAIN_MODES,
+    particles::PARTICLE,
+    particles::FAST_PARTICLE,
+    cloths::CLOTH,
+    cloths::CLOTH_BALL,
+    blobs::BLOB,
+    blobs::STEEL_VS_BASKETBALL,
+    gimbal::GIMBAL,
+    orientation::MATRIX_DRIFT,
+    orientation::VERSOR,
+    orientation::HELPERS,
+    weightless::ZERO_GRAVITY_PILE,
+    weightless::SPIN_DOUBLE,
+    weightless::SPIN_TRIPLE,
+    weightless::SPIN_RAGDOLL,
+    piles::STACK,
+    piles::PYRAMID,
+    piles::DOMINOES,
+    springs::ROPE_ON_BOX,
+    ragdolls::DROP,
+    falls::POSES,
+    ragdolls::WALL,
+    ragdolls::WALL_FAST,
+    ragdolls::STAIRS,
+    chains::SWING_1000,
+    chains::SWING_100,
+    chains::HANG_1000,
+    chains::HANG_100,
+    chains::LINKS_100,
+    chains::HEAVY_ROPE,
+    chains::HANGING_ROPE,
+    nets::JOINT_GRID,
+    nets::NET,
+    crowds::PILE,
+    engine::FRAME_RATES,
+    engine::TAUTOCHRONE,
+    trees::HEAVY_FOOT,
+    trees::MASS_RATIO,
+    boxes::AABB_VS_OBB,
+    boxes::POINT_IN_OBB,
+];
 
 /// Scenes that need a file of the user's, and so are in no list.
 const OF_FILES: &[Scene] = &[mjcf::DROP];

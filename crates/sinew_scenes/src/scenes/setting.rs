@@ -216,7 +216,11 @@ impl Setup<'_> {
     }
 
     fn world_with(&self, sleeping: Sleeping) -> World {
-        let gravity = Vec3::NEG_Y * (GRAVITY * self.gravity_factor);
-        World::new(WorldDef { gravity, sleeping, ..WorldDef::default() })
+        World::new(WorldDef { sleeping, ..self.world_def() })
+    }
+
+    /// For a world that differs from the usual one in more than sleep.
+    pub fn world_def(&self) -> WorldDef {
+        WorldDef { gravity: Vec3::NEG_Y * (GRAVITY * self.gravity_factor), ..WorldDef::default() }
     }
 }

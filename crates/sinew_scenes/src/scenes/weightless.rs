@@ -16,7 +16,8 @@ pub(super) const ZERO_GRAVITY_PILE: Scene = Scene {
     build: zero_gravity_pile,
 };
 
-fn weightless_world() -> World {
+/// Free space, in which nothing falls asleep.
+pub(super) fn weightless_world() -> World {
     World::new(WorldDef { gravity: Vec3::ZERO, sleeping: Sleeping::Off, ..WorldDef::default() })
 }
 

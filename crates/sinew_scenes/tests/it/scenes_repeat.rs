@@ -1,5 +1,6 @@
 //! Every scene gives the same bits, however it is run; and its settings are checked.
 
+use core::time::Duration;
 use sinew::math::{Reader, Transform, Writer};
 use sinew::physics::stage::NoProfiler;
 use sinew::physics::{Threads, World};
@@ -58,7 +59,7 @@ fn at_any_frame_rate() {
             let mut left = steps(scene) * step;
             while left > 0 {
                 let frame = u64::min(1_000_000_000 / rate, left);
-                run.update(frame);
+                run.update(Duration::from_nanos(frame));
                 left -= frame;
             }
             assert_eq!(run.world().step_count(), steps(scene));

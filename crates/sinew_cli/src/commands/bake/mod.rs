@@ -7,6 +7,7 @@ use crate::failure::{Failure, Result};
 use crate::fall::Fall;
 use crate::files::{CharacterFile, Outputs, read_world_file};
 use crate::film::{FLOOR_HALF_SIZE, Film, body_models};
+use crate::picture_file::{PictureFile, length, seconds};
 use crate::report::Report;
 use crate::table::shown;
 use clips::Motions;
@@ -17,7 +18,7 @@ use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::{
     AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, RagdollBodyDef, RagdollDef, build,
 };
-use sinew_picture::{PictureFormat, Sun};
+use sinew_picture::Sun;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -62,35 +63,8 @@ pub struct Bake {
     #[arg(short, long, value_name = "OUT.glb")]
     output: PathBuf,
     /// Also draw it: a .gif, .png (animated) or .webp file
-    #[arg(long, value_name = "OUT.(gif|png|webp)", value_parser = picture_path)]
-    picture: Option<PathBuf>,
-}
-
-/// A time from the start.
-fn seconds(text: &str) -> Result<f32, String> {
-    let time: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (0.0..=LONGEST).contains(&time) {
-        Ok(time)
-    } else {
-        Err(format!("must lie between 0 and {LONGEST} s"))
-    }
-}
-
-fn length(text: &str) -> Result<f32, String> {
-    let time = seconds(text)?;
-    if time > 0.0 { Ok(time) } else { Err("must be above 0".to_owned()) }
-}
-
-/// Longest bake, seconds: what is longer belongs into several clips.
-const LONGEST: f32 = 600.0;
-
-fn picture_path(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    picture_format(&path).map(|_| path).ok_or_else(|| "must end in .gif, .png or .webp".to_owned())
-}
-
-fn picture_format(path: &Path) -> Option<PictureFormat> {
-    PictureFormat::from_extension(path.extension()?.to_str()?)
+    #[arg(long, value_name = "OUT.(gif|png|webp)")]
+    picture: Option<PictureFile>,
 }
 
 impl Bake {
@@ -141,7 +115,7 @@ impl Bake {
     }
 
     fn outputs(&self) -> Vec<&Path> {
-        std::iter::once(&self.output).chain(&self.picture).map(PathBuf::as_path).collect()
+        std::iter::once(self.output.as_path()).chain(self.picture.iter().map(PictureFile::path)).collect()
     }
 
     fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<()> {
@@ -150,13 +124,9 @@ impl Bake {
             .map_err(|error| error.with_file(&file.name))?;
         let mut outputs = Outputs::default();
         outputs.add(&self.output, bytes);
-        if let Some((path, format)) =
-            self.picture.as_ref().and_then(|path| Some((path, picture_format(path)?)))
-        {
-            let film = film(fall);
-            let bytes =
-                film.shoot(format).map_err(|error| Failure::of_file(path.display().to_string(), error))?;
-            outputs.add(path, bytes);
+        if let Some(picture) = &self.picture {
+            let failed = |error| Failure::of_file(picture.path().display().to_string(), error);
+            outputs.add(picture.path(), film(fall).shoot(picture.format).map_err(failed)?);
         }
         outputs.write()
     }

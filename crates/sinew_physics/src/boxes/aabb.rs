@@ -1,5 +1,6 @@
 //! Axis-aligned boxes: what pairs are sought with.
 
+use super::expect_half_extents;
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, abs3, max3, min3};
 
@@ -17,19 +18,33 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// From its centre and half of its sides.
-    pub fn around(center: Vec3, half_extents: Vec3) -> Self {
-        Self { min: center - half_extents, max: center + half_extents }
+    /// From two opposite corners, the lowest and the highest.
+    ///
+    /// # Panics
+    /// If a number is not finite, or `min` is above `max` along an axis.
+    pub fn new(min: Vec3, max: Vec3) -> Self {
+        assert!(min.is_finite() && max.is_finite(), "corners of a box are finite");
+        assert!(
+            min.x <= max.x && min.y <= max.y && min.z <= max.z,
+            "the lowest corner of a box is below its highest"
+        );
+        Self { min, max }
     }
 
-    /// Whether the two have a point in common; boxes that only touch do.
-    pub fn overlaps(&self, other: &Self) -> bool {
-        self.min.x <= other.max.x
-            && other.min.x <= self.max.x
-            && self.min.y <= other.max.y
-            && other.min.y <= self.max.y
-            && self.min.z <= other.max.z
-            && other.min.z <= self.max.z
+    /// From its centre and half of its sides.
+    ///
+    /// # Panics
+    /// If a number is not finite or a half extent is negative.
+    pub fn around(center: Vec3, half_extents: Vec3) -> Self {
+        assert!(center.is_finite(), "a box stands somewhere");
+        expect_half_extents(half_extents);
+        Self::reaching(center, half_extents)
+    }
+
+    /// [`around`](Self::around) for what the world works out: a number that has gone wrong must get as far as the check
+    /// of the bodies, not panic.
+    pub(crate) fn reaching(center: Vec3, half_extents: Vec3) -> Self {
+        Self { min: center - half_extents, max: center + half_extents }
     }
 
     /// Whether the other one is inside.
@@ -53,6 +68,11 @@ impl Aabb {
     pub fn center(&self) -> Vec3 {
         (self.min + self.max) * 0.5
     }
+
+    /// Half of its sides, metres.
+    pub fn half_extents(&self) -> Vec3 {
+        (self.max - self.min) * 0.5
+    }
 }
 
 impl Shape {
@@ -66,15 +86,15 @@ impl Shape {
                 let reach = abs3(m.x_axis) * half_extents.x
                     + abs3(m.y_axis) * half_extents.y
                     + abs3(m.z_axis) * half_extents.z;
-                Aabb::around(center, reach)
+                Aabb::reaching(center, reach)
             }
-            Shape::Sphere { radius } => Aabb::around(center, Vec3::splat(radius)),
+            Shape::Sphere { radius } => Aabb::reaching(center, Vec3::splat(radius)),
             Shape::Capsule { half_height, radius } => {
                 let core = abs3(rotation * Vec3::Y) * half_height;
-                Aabb::around(center, core + Vec3::splat(radius))
+                Aabb::reaching(center, core + Vec3::splat(radius))
             }
             Shape::HalfSpace => {
-                let mut bounds = Aabb::around(Vec3::ZERO, Vec3::splat(HALF_SPACE_REACH));
+                let mut bounds = Aabb::reaching(Vec3::ZERO, Vec3::splat(HALF_SPACE_REACH));
                 if rotation * Vec3::Y == Vec3::Y {
                     bounds.max.y = center.y;
                 }

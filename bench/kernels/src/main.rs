@@ -1,0 +1,53 @@
+//! Speed of the eight-lane kernels, beside what the machine's arithmetic allows, measured in the same minute.
+//!
+//! `cargo xtask bench --kernels` runs this and makes a table of it. Printed are lines of
+//! `level kernel items_per_second limit_items_per_second`.
+#![forbid(unsafe_code)]
+
+mod counted;
+mod limit;
+mod work;
+
+use limit::Limits;
+use sinew_math::dispatch::Level;
+use std::time::{Duration, Instant};
+
+/// A sample is to be short, so that some are measured while nobody else wants the processor.
+const SAMPLE: Duration = Duration::from_micros(400);
+
+/// Samples of each figure. They are taken in turns, so that a clock that changes does so for all.
+const ROUNDS: usize = 200;
+
+fn main() {
+    let mut works = work::all();
+    for level in Level::available() {
+        let mut limits = Limits::default();
+        let mut times = vec![f64::INFINITY; works.len()];
+        for _ in 0..ROUNDS {
+            limits.measure(level);
+            for (work, time) in works.iter_mut().zip(&mut times) {
+                *time = f64::min(*time, seconds(|| work.run_at(level)));
+            }
+        }
+        limits.print(level);
+        for (work, time) in works.iter().zip(times) {
+            let items = work.items() as f64;
+            let limit = limits.seconds(&work.operations());
+            println!("{level:?} {} {:.4e} {:.4e}", work.name, items / time, items / limit);
+        }
+    }
+}
+
+/// How long a call takes, on average over as many as fill a sample.
+fn seconds(mut call: impl FnMut()) -> f64 {
+    let start = Instant::now();
+    let mut calls = 0_u32;
+    loop {
+        call();
+        calls += 1;
+        let elapsed = start.elapsed();
+        if elapsed >= SAMPLE {
+            return elapsed.as_secs_f64() / f64::from(calls);
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! The kernels, with data to work on.
+
+use crate::counted::{self, Operations};
+use sinew_math::dispatch::{self, Level};
+use sinew_math::{Random, Vec3};
+use sinew_physics::boxes::Obb;
+use sinew_physics::boxes::batch::{
+    Axes, ContainsPoints, FindSeparations, Pairs, Points, Separations, SignedDistances,
+};
+use std::hint::black_box;
+
+/// How many points: with their answers they stay in the second cache.
+const POINTS: usize = 8_192;
+
+/// How many pairs, likewise.
+const PAIRS: usize = 2_048;
+
+/// A kernel and its data.
+pub struct Work {
+    /// What it is called in the table.
+    pub name: &'static str,
+    kind: Kind,
+}
+
+enum Kind {
+    Contains { obb: Obb, points: Points, inside: Vec<u8> },
+    Distances { obb: Obb, points: Points, distances: Vec<f32> },
+    Separations { axes: Axes, pairs: Pairs, found: Separations },
+}
+
+/// All of them.
+pub fn all() -> Vec<Work> {
+    let mut random = Random::new(7);
+    let obb = cuboid(&mut random);
+    let points: Points = (0..POINTS).map(|_| random.in_cube() * 2.0).collect();
+    let mut pairs = Pairs::new();
+    for _ in 0..PAIRS {
+        let (a, b) = (cuboid(&mut random), cuboid(&mut random));
+        pairs.push(&a, &b);
+    }
+    let separations = |axes| Kind::Separations { axes, pairs: pairs.clone(), found: Separations::new() };
+    let work = |name, kind| Work { name, kind };
+    vec![
+        work("point_in_obb", Kind::Contains { obb, points: points.clone(), inside: vec![0; POINTS / 8] }),
+        work("point_obb_distance", Kind::Distances { obb, points, distances: vec![0.0; POINTS] }),
+        work("obb_obb_6_axes", separations(Axes::Faces)),
+        work("obb_obb_15_axes", separations(Axes::Fifteen)),
+    ]
+}
+
+/// Somewhere near the origin: about half of the pairs overlap.
+fn cuboid(random: &mut Random) -> Obb {
+    let mut half = || random.range(0.2, 0.8);
+    let half_extents = Vec3::new(half(), half(), half());
+    Obb::new(random.in_cube(), random.rotation(), half_extents)
+}
+
+impl Work {
+    /// Of what a run does how many.
+    pub fn items(&self) -> usize {
+        match &self.kind {
+            Kind::Contains { points, .. } | Kind::Distances { points, .. } => points.len(),
+            Kind::Separations { pairs, .. } => pairs.len(),
+        }
+    }
+
+    /// Once over the data.
+    pub fn run_at(&mut self, level: Level) {
+        match &mut self.kind {
+            Kind::Contains { obb, points, inside } => {
+                dispatch::run_at(level, ContainsPoints { obb: black_box(obb), points, inside });
+                black_box(inside);
+            }
+            Kind::Distances { obb, points, distances } => {
+                dispatch::run_at(level, SignedDistances { obb: black_box(obb), points, distances });
+                black_box(distances);
+            }
+            Kind::Separations { axes, pairs, found } => {
+                dispatch::run_at(level, FindSeparations { pairs, axes: *axes, found });
+                black_box(found);
+            }
+        }
+    }
+
+    /// What a run asks of the arithmetic.
+    pub fn operations(&self) -> Operations {
+        match &self.kind {
+            Kind::Contains { obb, points, inside } => {
+                counted::count(ContainsPoints { obb, points, inside: &mut inside.clone() })
+            }
+            Kind::Distances { obb, points, distances } => {
+                counted::count(SignedDistances { obb, points, distances: &mut distances.clone() })
+            }
+            Kind::Separations { axes, pairs, found } => {
+                counted::count(FindSeparations { pairs, axes: *axes, found: &mut found.clone() })
+            }
+        }
+    }
+}

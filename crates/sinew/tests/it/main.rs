@@ -1,0 +1,16 @@
+//! The examples run, and what they assert holds.
+
+#[path = "../../examples/flock.rs"]
+mod flock;
+#[path = "../../examples/pendulum_clock.rs"]
+mod pendulum_clock;
+
+#[test]
+fn the_flock_flies() {
+    flock::main();
+}
+
+#[test]
+fn the_clock_keeps_time() {
+    pendulum_clock::main();
+}

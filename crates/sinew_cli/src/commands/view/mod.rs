@@ -1,0 +1,159 @@
+//! `sinew view`: a scene or a world file as a picture or a movie.
+
+mod reel;
+
+use crate::failure::{Failure, Result};
+use crate::files::{Outputs, read_world_file};
+use crate::picture_file::{PictureFile, length, seconds};
+use crate::report::{Report, number};
+use crate::scene_choice::choose;
+use reel::Reel;
+use serde_json::json;
+use sinew::physics::{BodyDef, World, WorldDef};
+use sinew_picture::{EncodeError, RenderSettings};
+use sinew_scenes::scenes::{Instance, Scene, Settings, find};
+use std::path::Path;
+
+/// Length of the movie of a world file, and when a picture of one is taken, seconds: things have fallen by then.
+const WORLD_SECONDS: f32 = 3.0;
+
+/// Draw a named scene, or what happens in a world file, as a picture or a movie
+#[derive(clap::Args)]
+#[command(after_help = "\
+Example:
+  sinew view pendulum --picture pendulum.png --at 1.5
+  sinew view stairs --movie stairs.gif --set impulse=50
+  sinew view house.json --picture house.png --at 0 --width 1280 --height 720
+
+A window comes with a later release. The same command draws the same bytes on every machine.")]
+pub struct View {
+    /// Name of a scene ('sinew scenes' lists them), or a world file (.json)
+    subject: Option<String>,
+    /// Draw one picture: a .png, .gif or .webp file
+    #[arg(long, value_name = "OUT.(png|gif|webp)")]
+    picture: Option<PictureFile>,
+    /// When the picture is taken, seconds from the start; by default at the scene's end
+    #[arg(long, value_name = "T", requires = "picture", value_parser = seconds)]
+    at: Option<f32>,
+    /// Draw all of it, 20 pictures a second: a .gif, .png (animated) or .webp file
+    #[arg(long, value_name = "OUT.(gif|png|webp)")]
+    movie: Option<PictureFile>,
+    /// Length of the movie, seconds; by default the scene's
+    #[arg(long, value_name = "S", requires = "movie", value_parser = length)]
+    seconds: Option<f32>,
+    /// Change a setting of the scene; repeatable
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    settings: Vec<String>,
+    /// Pixels across
+    #[arg(long, value_name = "N", default_value_t = 640, value_parser = clap::value_parser!(u16).range(16..=4096))]
+    width: u16,
+    /// Pixels down
+    #[arg(long, value_name = "N", default_value_t = 360, value_parser = clap::value_parser!(u16).range(16..=4096))]
+    height: u16,
+}
+
+impl View {
+    /// Simulates, draws, writes.
+    pub fn run(&self) -> Result<Report> {
+        let Some(name) = self.subject.as_deref().filter(|_| self.outputs().next().is_some()) else {
+            let line = "the window of 'sinew view' comes with a later release; \
+                        give a scene and --picture OUT or --movie OUT";
+            return Err(Failure::Usage(line.into()));
+        };
+        let subject = Subject::find(name, &self.settings)?;
+        let reel = Reel { title: subject.title(), settings: self.render_settings() };
+        let at = self.at.unwrap_or(subject.seconds());
+        let seconds = self.seconds.unwrap_or(subject.seconds());
+        let mut outputs = Outputs::default();
+        if let Some(file) = &self.picture {
+            outputs.add(file.path(), reel.picture(&subject, at, file.format).map_err(failed(file))?);
+        }
+        if let Some(file) = &self.movie {
+            outputs.add(file.path(), reel.movie(&subject, seconds, file.format).map_err(failed(file))?);
+        }
+        outputs.write()?;
+        Ok(self.report(reel.title, at, seconds))
+    }
+
+    fn outputs(&self) -> impl Iterator<Item = &PictureFile> {
+        self.picture.iter().chain(&self.movie)
+    }
+
+    fn render_settings(&self) -> RenderSettings {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let (width, height) = (u32::from(self.width), u32::from(self.height));
+        RenderSettings { width, height, threads, ..RenderSettings::default() }
+    }
+
+    fn report(&self, subject: &str, at: f32, seconds: f32) -> Report {
+        let paths: Vec<String> = self.outputs().map(|file| file.path().display().to_string()).collect();
+        let at = self.picture.as_ref().map(|_| number(at));
+        let seconds = self.movie.as_ref().map(|_| number(seconds));
+        let text = format!("{subject}\n\n  wrote {}\n", paths.join(", "));
+        let json = json!({"subject": subject, "at_s": at, "seconds": seconds, "outputs": paths});
+        Report { json, text }
+    }
+}
+
+fn failed(file: &PictureFile) -> impl Fn(EncodeError) -> Failure {
+    |error| Failure::of_file(file.path().display().to_string(), error)
+}
+
+/// What is drawn.
+pub enum Subject<'a> {
+    /// A named scene with its settings.
+    Scene(&'static Scene, Box<Settings>),
+    /// The bodies of a world file.
+    World(&'a str, Vec<BodyDef>),
+}
+
+impl<'a> Subject<'a> {
+    fn find(name: &'a str, assignments: &[String]) -> Result<Self> {
+        if find(name).is_none() {
+            match Path::new(name).extension().and_then(|extension| extension.to_str()) {
+                Some("json") if assignments.is_empty() => {
+                    return Ok(Self::World(name, read_world_file(Path::new(name))?));
+                }
+                Some("json") => {
+                    return Err(Failure::Usage("--set is for scenes; a world file has none".into()));
+                }
+                Some("glb" | "gltf" | "vrm" | "sinewrec") => {
+                    let line = format!("'sinew view' of such a file comes with a later release: {name}");
+                    return Err(Failure::Usage(line));
+                }
+                _ => {}
+            }
+        }
+        let (scene, settings) = choose(name, assignments)?;
+        Ok(Self::Scene(scene, Box::new(settings)))
+    }
+
+    /// Set up anew.
+    pub fn start(&self) -> Instance {
+        match self {
+            Self::Scene(scene, settings) => scene.start(settings),
+            Self::World(_, bodies) => {
+                let mut world = World::new(WorldDef::default());
+                for body in bodies {
+                    world.add_body(body);
+                }
+                Instance::of_world(world)
+            }
+        }
+    }
+
+    fn title(&self) -> &str {
+        match self {
+            Self::Scene(scene, _) => scene.name,
+            Self::World(file, _) => file,
+        }
+    }
+
+    /// How long it takes to show what it is about.
+    fn seconds(&self) -> f32 {
+        match self {
+            Self::Scene(scene, settings) => scene.steps as f32 * scene.start(settings).world().def().dt(),
+            Self::World(..) => WORLD_SECONDS,
+        }
+    }
+}

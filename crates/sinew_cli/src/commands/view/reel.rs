@@ -1,0 +1,262 @@
+//! Pictures of a scene that runs.
+
+use super::Subject;
+use crate::progress::Progress;
+use sinew::math::{Vec3, clamp, max};
+use sinew::physics::boxes::Aabb;
+use sinew::physics::ray::Ray;
+use sinew::physics::{BodyId, BodyKind};
+use sinew_picture::world::{self, Frame};
+use sinew_picture::{
+    Camera, Caption, EncodeError, Image, Line, LineDepth, Movie, PictureFormat, RenderSettings, Renderer,
+    Scene, Sky, Sun,
+};
+use sinew_scenes::scenes::{Expected, Instance, Metric, Sight, Trails};
+
+/// Pictures a second: a whole number of a GIF's hundredths of a second.
+const FPS: u32 = 20;
+/// Figures on a picture.
+const MOST_FIGURES: usize = 4;
+/// Of more bodies no trails are drawn: nobody could tell them apart.
+const MOST_TRAILS: usize = 4;
+/// Steps that trails go back.
+const TRAIL_STEPS: usize = 600;
+/// Rays that look whether something stands in the way.
+const MOST_RAYS: usize = 64;
+/// How many radii of the largest thing that moves a picture reaches around it at most.
+const WIDEST: f32 = 120.0;
+/// Around what is shown, as a share of its size.
+const MARGIN: f32 = 0.1;
+
+/// How pictures are made, and what stands on them.
+pub struct Reel<'a> {
+    /// What is shown.
+    pub title: &'a str,
+    /// Size and quality.
+    pub settings: RenderSettings,
+}
+
+impl Reel<'_> {
+    /// The bytes of a picture `at` seconds from the start.
+    pub fn picture(
+        &self,
+        subject: &Subject<'_>,
+        at: f32,
+        format: PictureFormat,
+    ) -> Result<Vec<u8>, EncodeError> {
+        let mut take = Take::new(subject.start());
+        let step = take.step_at(at);
+        let progress = Progress::new("running", step as usize);
+        while take.run.world().step_count() < step {
+            take.step();
+            progress.step();
+        }
+        take.turn_to_see();
+        let image = take.draw(self.title, &take.whole, &mut Renderer::new(self.settings));
+        sinew_picture::encode::encode(format, &[image], FPS)
+    }
+
+    /// The bytes of a movie of its first `seconds`.
+    pub fn movie(
+        &self,
+        subject: &Subject<'_>,
+        seconds: f32,
+        format: PictureFormat,
+    ) -> Result<Vec<u8>, EncodeError> {
+        let frames = (seconds * FPS as f32) as u32 + 1;
+        let time = |frame: u32| frame as f32 / FPS as f32;
+        // Once to see how far everything goes, so that the camera need not move; once to draw it.
+        let mut rehearsal = Take::new(subject.start());
+        rehearsal.step_to(time(frames - 1));
+        rehearsal.turn_to_see();
+        let progress = Progress::new("drawing", frames as usize);
+        let mut renderer = Renderer::new(self.settings);
+        let mut movie = Movie::new(format, FPS);
+        let mut take = Take { sight: rehearsal.sight, ..Take::new(subject.start()) };
+        for frame in 0..frames {
+            take.step_to(time(frame));
+            movie.push(&take.draw(self.title, &rehearsal.whole, &mut renderer))?;
+            progress.step();
+        }
+        movie.finish()
+    }
+}
+
+/// A scene on its way, and where everything has been.
+struct Take {
+    run: Instance,
+    sight: Sight,
+    /// Around all that a picture is about, so far.
+    whole: Aabb,
+    /// Ways of the centres of mass so far, each with its colour.
+    trails: Vec<Trail>,
+}
+
+struct Trail {
+    body: BodyId,
+    color: [f32; 3],
+    points: Vec<Vec3>,
+}
+
+impl Take {
+    fn new(run: Instance) -> Self {
+        let sight = run.sight();
+        let mut take = Self { sight, whole: Aabb::default(), trails: trails(&run, &sight), run };
+        take.whole = take.now();
+        take
+    }
+
+    /// The step nearest to a time.
+    fn step_at(&self, time: f32) -> u64 {
+        (f64::from(time) / f64::from(self.run.world().def().dt())).round() as u64
+    }
+
+    fn step_to(&mut self, time: f32) {
+        while self.run.world().step_count() < self.step_at(time) {
+            self.step();
+        }
+    }
+
+    fn step(&mut self) {
+        self.run.step();
+        self.whole = self.whole.merge(&self.now());
+        let world = self.run.world();
+        for trail in self.trails.iter_mut().filter(|trail| world.contains(trail.body)) {
+            trail.points.push(world.center_of_mass(trail.body));
+        }
+    }
+
+    /// Goes around what is shown, by quarters, to where least of what moves is hidden behind what stands.
+    fn turn_to_see(&mut self) {
+        let Vec3 { x, y, z } = self.sight.direction;
+        let sides = [Vec3::new(x, y, z), Vec3::new(z, y, -x), Vec3::new(-z, y, x), Vec3::new(-x, y, -z)];
+        // Of equal ones the first: the one that was asked for.
+        self.sight.direction = sides.into_iter().min_by_key(|&side| self.hidden(side)).unwrap_or(sides[0]);
+    }
+
+    /// Of the first bodies that move, how many are hidden.
+    fn hidden(&self, direction: Vec3) -> usize {
+        let world = self.run.world();
+        let size = (self.whole.max - self.whole.min).length();
+        let way = direction.normalize() * (2.0 * size);
+        let stands = |id: BodyId| world.kind(id) == BodyKind::Static;
+        let moving = world.body_ids().filter(|&id| !stands(id)).take(MOST_RAYS);
+        let rays = moving.map(|id| Ray { origin: world.center_of_mass(id), direction: way });
+        rays.filter(|ray| world.cast_ray(ray, stands).is_some()).count()
+    }
+
+    /// Around all that a picture is about, now.
+    fn now(&self) -> Aabb {
+        let seen = self.sight.bounds.or_else(|| world::subject(self.run.world()));
+        seen.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE))
+    }
+
+    /// As it stands now, in a frame for all of `whole`.
+    fn draw(&self, title: &str, whole: &Aabb, renderer: &mut Renderer) -> Image {
+        let shown = self.shown(whole);
+        let frame = Frame { center: shown.center(), radius: 0.5 * (shown.max - shown.min).length() };
+        let mut scene = Scene {
+            sun: Sun { shadow_radius: 1.3 * frame.radius, ..Sun::default() },
+            sky: Sky { haze_distance: max(45.0, 15.0 * frame.radius), ..Sky::default() },
+            captions: self.captions(title),
+            ..Scene::default()
+        };
+        world::paint(self.run.world(), &frame, &mut scene);
+        scene.lines.extend(self.trails.iter().flat_map(Trail::lines));
+        let size = renderer.settings();
+        let aspect = size.width as f32 / size.height as f32;
+        renderer.render(&scene, &Camera::framing_box(&shown, self.sight.direction, aspect))
+    }
+
+    /// The part of `whole` that a picture shows: all of it, unless things are then too small to be seen; always all
+    /// that is there now.
+    fn shown(&self, whole: &Aabb) -> Aabb {
+        let now = self.now();
+        let limit = WIDEST * self.largest();
+        let axis = |lo: f32, hi: f32, now_lo: f32, now_hi: f32| {
+            let half = max(sinew::math::min(0.5 * (hi - lo), limit), 0.5 * (now_hi - now_lo));
+            let center = clamp(0.5 * (lo + hi), now_hi - half, now_lo + half);
+            (center - half, center + half)
+        };
+        let x = axis(whole.min.x, whole.max.x, now.min.x, now.max.x);
+        let y = axis(whole.min.y, whole.max.y, now.min.y, now.max.y);
+        let z = axis(whole.min.z, whole.max.z, now.min.z, now.max.z);
+        let shown = Aabb { min: Vec3::new(x.0, y.0, z.0), max: Vec3::new(x.1, y.1, z.1) };
+        shown.expand(max(MARGIN * 0.5 * (shown.max - shown.min).length(), 1e-3))
+    }
+
+    /// Radius of the largest shape that moves, metres; infinite if none has one.
+    fn largest(&self) -> f32 {
+        let world = self.run.world();
+        let moving = world.body_ids().filter(|&id| world.kind(id) != BodyKind::Static);
+        let radii = moving.flat_map(|id| world.shapes(id)).map(|(shape, _)| shape.bounding_radius());
+        radii.reduce(max).unwrap_or(f32::INFINITY)
+    }
+
+    fn captions(&self, title: &str) -> Vec<Caption> {
+        let head = Caption::new(format!("{title}  {:.2} s", self.run.world().time()));
+        let lines = figures(&self.run.metrics());
+        let count = lines.len() as i32;
+        let place = |(i, text): (usize, String)| Caption {
+            y: -8 - 12 * (count - 1 - i as i32),
+            scale: 1,
+            ..Caption::new(text)
+        };
+        std::iter::once(head).chain(lines.into_iter().enumerate().map(place)).collect()
+    }
+}
+
+fn trails(run: &Instance, sight: &Sight) -> Vec<Trail> {
+    let world = run.world();
+    let bodies = world.body_ids().enumerate();
+    let moving: Vec<_> = bodies.filter(|&(_, id)| world.kind(id) != BodyKind::Static).collect();
+    if sight.trails == Trails::None || moving.len() > MOST_TRAILS {
+        return Vec::new();
+    }
+    let start = |(number, body)| Trail {
+        body,
+        color: world::body_color(number),
+        points: vec![world.center_of_mass(body)],
+    };
+    moving.into_iter().map(start).collect()
+}
+
+impl Trail {
+    fn lines(&self) -> impl Iterator<Item = Line> {
+        let recent = &self.points[self.points.len().saturating_sub(TRAIL_STEPS)..];
+        let line =
+            |ends: &[Vec3]| Line { from: ends[0], to: ends[1], color: self.color, depth: LineDepth::Tested };
+        recent.windows(2).map(line)
+    }
+}
+
+/// The figures that a scene is about: those with a closed form, else what else it measures; never those that every
+/// scene has.
+fn figures(metrics: &[Metric]) -> Vec<String> {
+    let own = &metrics[..metrics.len().saturating_sub(Instance::METRICS_OF_EVERY_SCENE)];
+    let is_closed = |metric: &&Metric| matches!(metric.expected, Expected::Near { .. });
+    let any_closed = own.iter().any(|metric| is_closed(&metric));
+    let chosen = own.iter().filter(|metric| !any_closed || is_closed(metric));
+    chosen.filter_map(figure).take(MOST_FIGURES).collect()
+}
+
+fn figure(metric: &Metric) -> Option<String> {
+    let found = digits(metric.value?);
+    Some(match metric.expected {
+        Expected::Near { value, .. } => format!("{} {found} (closed form {})", metric.name, digits(value)),
+        _ => format!("{} {found}", metric.name),
+    })
+}
+
+/// Five digits.
+fn digits(x: f64) -> String {
+    let size = x.abs();
+    if size == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e5).contains(&size) {
+        return format!("{x:.3e}");
+    }
+    let decimals = [1.0, 10.0, 100.0, 1000.0].iter().filter(|&&bound| size < bound).count();
+    format!("{x:.*}", decimals + usize::from(size < 1.0))
+}

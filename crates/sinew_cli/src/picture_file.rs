@@ -1,0 +1,50 @@
+//! Arguments of commands that draw.
+
+use sinew_picture::PictureFormat;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// Longest simulation that is written as a clip or a movie, seconds: what is longer belongs into several.
+const LONGEST: f32 = 600.0;
+
+/// Where to write a picture, of a kind that its name tells.
+#[derive(Clone, Debug)]
+pub struct PictureFile {
+    path: PathBuf,
+    /// Of its bytes.
+    pub format: PictureFormat,
+}
+
+impl PictureFile {
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl FromStr for PictureFile {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let path = PathBuf::from(text);
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        let format = extension.and_then(PictureFormat::from_extension);
+        format.map(|format| Self { path, format }).ok_or("must end in .gif, .png or .webp")
+    }
+}
+
+/// A time from the start.
+pub fn seconds(text: &str) -> Result<f32, String> {
+    let time: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.0..=LONGEST).contains(&time) {
+        Ok(time)
+    } else {
+        Err(format!("must lie between 0 and {LONGEST} s"))
+    }
+}
+
+/// A time that takes a while.
+pub fn length(text: &str) -> Result<f32, String> {
+    let time = seconds(text)?;
+    if time > 0.0 { Ok(time) } else { Err("must be above 0".to_owned()) }
+}

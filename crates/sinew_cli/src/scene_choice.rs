@@ -1,0 +1,23 @@
+//! A scene by its name, with what `--set` says.
+
+use crate::failure::{Failure, Result};
+use sinew_scenes::scenes::{Scene, SettingError, Settings, find};
+
+/// The scene of that name, ready to be started.
+pub fn choose(name: &str, assignments: &[String]) -> Result<(&'static Scene, Settings)> {
+    let unknown = || Failure::Usage(format!("no scene '{name}'; 'sinew scenes' lists what there is"));
+    let scene = find(name).ok_or_else(unknown)?;
+    let mut settings = scene.settings();
+    for assignment in assignments {
+        settings.assign(assignment).map_err(refused)?;
+    }
+    settings.check().map_err(refused)?;
+    Ok((scene, settings))
+}
+
+fn refused(error: SettingError) -> Failure {
+    match error {
+        SettingError::File(error) => error.into(),
+        error => Failure::Usage(format!("--set: {error}")),
+    }
+}

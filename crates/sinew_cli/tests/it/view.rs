@@ -1,0 +1,98 @@
+//! `sinew view`: pictures of scenes and worlds, the same bytes everywhere.
+
+use crate::contract::check_keys;
+use crate::sinew::{Folder, sinew};
+use sinew::math::hash::hash_bytes;
+
+#[test]
+fn the_same_picture_on_every_machine() {
+    let folder = Folder::new("view-golden");
+    let out = folder.path("pendulum.png");
+    let arguments = ["view", "pendulum", "--picture", &out, "--at", "0", "--width", "160", "--height", "90"];
+    let object = sinew(&[&arguments[..], &["--json"]].concat()).json();
+    check_keys("view", &object);
+    assert_eq!(object["outputs"][0], out.as_str());
+    assert_eq!(object["at_s"], 0.0);
+    assert!(object["seconds"].is_null(), "{object}");
+    let bytes = std::fs::read(&out).expect("the picture is there");
+    assert_eq!(format!("{:016x}", hash_bytes(&bytes)), "b1f3ac56c5a34763");
+}
+
+#[test]
+fn a_setting_and_the_time_change_the_picture() {
+    let folder = Folder::new("view-settings");
+    let picture = |name: &str, extra: &[&str]| {
+        let out = folder.path(name);
+        let run = sinew(
+            &[&["view", "pendulum", "--picture", &out, "--width", "64", "--height", "36"], extra].concat(),
+        );
+        assert_eq!(run.code, Some(0), "{run:?}");
+        std::fs::read(&out).expect("the picture is there")
+    };
+    let one = picture("a.png", &["--at", "0.5"]);
+    assert_eq!(picture("b.png", &["--at", "0.5"]), one);
+    assert_ne!(picture("c.png", &["--at", "0.9"]), one);
+    assert_ne!(picture("d.png", &["--at", "0.5", "--set", "amplitude=80"]), one);
+    assert!(picture("e.webp", &["--at", "0.5"]).starts_with(b"RIFF"));
+}
+
+#[test]
+fn a_movie_has_a_picture_for_each_twentieth_of_a_second() {
+    let folder = Folder::new("view-movie");
+    let out = folder.path("bounce.gif");
+    let arguments =
+        ["view", "bounce", "--movie", &out, "--seconds", "0.5", "--width", "64", "--height", "36"];
+    let object = sinew(&[&arguments[..], &["--json"]].concat()).json();
+    check_keys("view", &object);
+    assert!(object["at_s"].is_null(), "{object}");
+    let bytes = std::fs::read(&out).expect("the movie is there");
+    assert!(bytes.starts_with(b"GIF89a"));
+    // Each picture begins with a graphic control extension of four bytes.
+    let pictures = bytes.windows(3).filter(|window| *window == [0x21, 0xf9, 4]).count();
+    assert_eq!(pictures, 11);
+}
+
+#[test]
+fn a_world_file_is_drawn_as_it_falls() {
+    let folder = Folder::new("view-world");
+    let text = r#"{"sinew": "world", "version": 1, "bodies": [
+        {"shapes": [{"type": "half_space"}]},
+        {"kind": "dynamic", "position": [0, 2, 0], "shapes": [{"type": "sphere", "radius": 0.3}]}]}"#;
+    let file = folder.file("ball.json", text);
+    let picture = |at: &str| {
+        let out = folder.path("ball.png");
+        let run = sinew(&["view", &file, "--picture", &out, "--at", at, "--width", "64", "--height", "36"]);
+        assert_eq!(run.code, Some(0), "{run:?}");
+        std::fs::read(&out).expect("the picture is there")
+    };
+    assert_ne!(picture("0"), picture("0.4"));
+    let refused = sinew(&["view", &file, "--picture", &folder.path("x.png"), "--set", "a=1"]);
+    assert_eq!(refused.refusal(2), "error: --set is for scenes; a world file has none");
+    let missing = sinew(&["view", "nowhere.json", "--picture", &folder.path("x.png")]);
+    assert_eq!(missing.refusal(1), "error: nowhere.json: no such file");
+    assert_eq!(folder.names(), ["ball.json", "ball.png"]);
+}
+
+#[test]
+fn what_it_cannot_draw_is_bad_usage() {
+    let line = |arguments: &[&str]| sinew(arguments).refusal(2).to_owned();
+    for no_picture in [&["view"][..], &["view", "pendulum"], &["view", "--picture", "a.png"]] {
+        assert!(line(no_picture).contains("comes with a later release"), "{no_picture:?}");
+    }
+    for file in ["fall.glb", "run.sinewrec"] {
+        assert!(line(&["view", file, "--picture", "a.png"]).contains("comes with a later release"), "{file}");
+    }
+    let unknown = line(&["view", "nix", "--picture", "a.png"]);
+    assert_eq!(unknown, "error: no scene 'nix'; 'sinew scenes' lists what there is");
+    for wrong in [
+        &["--picture", "a.bmp"][..],
+        &["--picture", "a.png", "--at", "-1"],
+        &["--picture", "a.png", "--at", "NaN"],
+        &["--movie", "a.gif", "--seconds", "0"],
+        &["--movie", "a.gif", "--at", "1"],
+        &["--picture", "a.png", "--width", "0"],
+    ] {
+        let run = sinew(&[&["view", "pendulum"], wrong].concat());
+        assert!(run.code == Some(2) && run.stdout.is_empty(), "{wrong:?}: {run:?}");
+    }
+}

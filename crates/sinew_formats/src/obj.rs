@@ -1,0 +1,169 @@
+//! Wavefront OBJ: vertices and faces; materials, normals and texture coordinates are passed over.
+
+use crate::error::{Error, Result, quoted};
+use crate::mesh::TriangleMesh;
+use sinew_math::Vec3;
+
+/// Most corners of a face: to cut a larger one would take too long.
+const MOST_CORNERS: usize = 1024;
+/// What a surface looks like of which the file says nothing here.
+const GREY: [f32; 3] = [0.6; 3];
+
+/// The triangles of an OBJ file. Faces with more than three corners are cut, concave ones too.
+///
+/// # Errors
+/// Names the line: a number that is none or not finite, an index out of range, a face with fewer than three corners.
+pub fn read_obj(bytes: &[u8]) -> Result<TriangleMesh> {
+    let text = core::str::from_utf8(bytes).map_err(|error| {
+        Error::malformed("not an OBJ file: not text in UTF-8", format!("byte {}", error.valid_up_to()))
+    })?;
+    let mut mesh = TriangleMesh::default();
+    let mut elements = 0;
+    for (number, line) in logical_lines(text) {
+        let mut words = line.split_ascii_whitespace();
+        let place = || format!("line {number}");
+        match words.next() {
+            Some("v") => {
+                mesh.positions.push(read_vertex(words).map_err(|what| Error::malformed(what, place()))?)
+            }
+            Some("f") => {
+                let face =
+                    read_face(words, mesh.positions.len()).map_err(|what| Error::malformed(what, place()))?;
+                cut(&mesh.positions, face, &mut mesh.triangles);
+            }
+            Some(word) if !KNOWN.contains(&word) && !word.starts_with('#') => {
+                return Err(Error::malformed(
+                    format!("not an OBJ file: unknown word {}", quoted(word)),
+                    place(),
+                ));
+            }
+            _ => continue,
+        }
+        elements += 1;
+    }
+    if elements == 0 {
+        return Err(Error::malformed(
+            "not an OBJ file, or an empty one: it has neither vertices nor faces",
+            "line 1",
+        ));
+    }
+    mesh.colors = vec![GREY; mesh.positions.len()];
+    Ok(mesh)
+}
+
+/// First words of lines that are passed over.
+const KNOWN: [&str; 34] = [
+    "vt",
+    "vn",
+    "vp",
+    "g",
+    "o",
+    "s",
+    "mg",
+    "l",
+    "p",
+    "usemtl",
+    "mtllib",
+    "usemap",
+    "maplib",
+    "curv",
+    "curv2",
+    "surf",
+    "deg",
+    "bmat",
+    "step",
+    "cstype",
+    "parm",
+    "trim",
+    "hole",
+    "scrv",
+    "sp",
+    "end",
+    "con",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "shadow_obj",
+    "trace_obj",
+    "call",
+];
+
+/// Lines with their numbers, those that end in `\` joined with the next.
+fn logical_lines(text: &str) -> impl Iterator<Item = (usize, std::borrow::Cow<'_, str>)> {
+    let mut lines = text.lines().enumerate();
+    core::iter::from_fn(move || {
+        let (index, line) = lines.next()?;
+        let mut whole = std::borrow::Cow::Borrowed(line);
+        while let Some(cut) = whole.trim_end().strip_suffix('\\') {
+            let mut joined = format!("{cut} ");
+            match lines.next() {
+                Some((_, next)) => joined.push_str(next),
+                None => return Some((index + 1, joined.into())),
+            }
+            whole = joined.into();
+        }
+        Some((index + 1, whole))
+    })
+}
+
+fn read_vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<Vec3, String> {
+    let mut p = [0.0_f32; 3];
+    for (coordinate, axis) in p.iter_mut().zip(["x", "y", "z"]) {
+        let word = words.next().ok_or_else(|| format!("a vertex without {axis}"))?;
+        *coordinate = word.parse().map_err(|_| format!("{} is not a number", quoted(word)))?;
+        if !coordinate.is_finite() {
+            return Err(format!("{} is not finite", quoted(word)));
+        }
+    }
+    Ok(Vec3::from_array(p))
+}
+
+/// Vertex indices of a face, from 0. In the file they count from 1, or from −1 backwards from the last vertex so far.
+fn read_face<'a>(words: impl Iterator<Item = &'a str>, vertices: usize) -> Result<Vec<u32>, String> {
+    let mut face = Vec::new();
+    for word in words.take_while(|word| !word.starts_with('#')) {
+        let index = word.split('/').next().unwrap_or_default();
+        let number: i64 = index.parse().map_err(|_| format!("{} is not an index", quoted(word)))?;
+        let from_zero = match number {
+            1.. => number - 1,
+            ..=0 => number.saturating_add(if number == 0 { -1 } else { vertices as i64 }),
+        };
+        if !(0..vertices as i64).contains(&from_zero) {
+            return Err(format!("index {number} is out of range: there are {vertices} vertices before it"));
+        }
+        face.push(u32::try_from(from_zero).map_err(|_| "more vertices than 32 bits can count".to_owned())?);
+    }
+    match face.len() {
+        0..3 => Err(format!("a face with {} corners", face.len())),
+        n if n > MOST_CORNERS => Err(format!("a face with {n} corners; the most is {MOST_CORNERS}")),
+        _ => Ok(face),
+    }
+}
+
+/// Cuts a polygon into triangles, ear by ear (Meisters 1975): a corner that turns outward with no other corner in its
+/// triangle. Where a twisted polygon has none left, the next corner is taken all the same.
+fn cut(positions: &[Vec3], mut face: Vec<u32>, triangles: &mut Vec<[u32; 3]>) {
+    let at = |i: u32| positions[i as usize];
+    // Newell's normal, from the first corner so that far-away polygons keep their digits.
+    let origin = at(face[0]);
+    let normal: Vec3 =
+        (0..face.len()).map(|k| (at(face[k]) - origin).cross(at(face[(k + 1) % face.len()]) - origin)).sum();
+    let is_left = |a: Vec3, b: Vec3, c: Vec3| (b - a).cross(c - a).dot(normal) > 0.0;
+    while face.len() > 3 {
+        let n = face.len();
+        let ear = (0..n).find(|&k| {
+            let corners = [face[(k + n - 1) % n], face[k], face[(k + 1) % n]];
+            let [a, b, c] = corners.map(at);
+            is_left(a, b, c)
+                && face.iter().all(|other| {
+                    let p = at(*other);
+                    corners.contains(other) || !(is_left(a, b, p) && is_left(b, c, p) && is_left(c, a, p))
+                })
+        });
+        let k = ear.unwrap_or(1);
+        triangles.push([face[(k + n - 1) % n], face[k], face[(k + 1) % n]]);
+        face.remove(k);
+    }
+    triangles.push([face[0], face[1], face[2]]);
+}

@@ -1,0 +1,115 @@
+//! Runs kernels on the widest registers that the processor has; the bits of the results are the same on all of them.
+//!
+//! ```
+//! use sinew_math::dispatch::{self, Kernel};
+//! use sinew_math::lanes::{Lanes, Real, WIDTH};
+//!
+//! /// The roots of many numbers.
+//! struct Roots<'a>(&'a mut [[f32; WIDTH]]);
+//!
+//! impl Kernel for Roots<'_> {
+//!     type Output = ();
+//!     #[inline(always)]
+//!     fn run<L: Lanes>(self) {
+//!         for block in self.0 {
+//!             L::load(block).sqrt().store(block);
+//!         }
+//!     }
+//! }
+//!
+//! let mut numbers = [[0.0, 1.0, 4.0, 9.0, 16.0, 25.0, 36.0, 49.0]; 2];
+//! dispatch::run(Roots(&mut numbers));
+//! assert_eq!(numbers[1][7], 7.0);
+//! ```
+#![allow(unsafe_code)] // the call into code that is compiled for AVX2
+
+use crate::lanes::{Lanes, Scalar};
+
+/// A loop over data, written once for all processors.
+pub trait Kernel {
+    /// What comes of it.
+    type Output;
+
+    /// Runs it with `L` for eight lanes. To be marked `#[inline(always)]`, as all that it calls:
+    /// see [`lanes`](crate::lanes).
+    fn run<L: Lanes>(self) -> Self::Output;
+}
+
+/// What a processor has for eight lanes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Level {
+    /// Eight times one.
+    Scalar,
+    /// Two registers of SSE2: every x86-64.
+    Sse2,
+    /// One register of AVX: x86-64 since about 2013, if the operating system keeps its registers.
+    Avx2,
+    /// Two registers of NEON: every aarch64.
+    Neon,
+    /// Two registers of WebAssembly, in builds with `-C target-feature=+simd128`.
+    Simd128,
+}
+
+impl Level {
+    /// All there are, the widest of each processor last.
+    pub const ALL: [Self; 5] = [Self::Scalar, Self::Sse2, Self::Avx2, Self::Neon, Self::Simd128];
+
+    /// Whether this processor, and this build, has it.
+    #[inline]
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Scalar => true,
+            Self::Sse2 => cfg!(target_arch = "x86_64"),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => std::arch::is_x86_feature_detected!("avx2"),
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Avx2 => false,
+            Self::Neon => cfg!(target_arch = "aarch64"),
+            Self::Simd128 => cfg!(all(target_arch = "wasm32", target_feature = "simd128")),
+        }
+    }
+
+    /// Those that this processor has: for tests, which hold them against each other.
+    pub fn available() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().filter(|level| level.is_available())
+    }
+
+    /// What [`run`] takes.
+    #[inline]
+    pub fn best() -> Self {
+        Self::ALL.into_iter().rfind(|level| level.is_available()).unwrap_or(Self::Scalar)
+    }
+}
+
+/// Runs a kernel on the widest registers there are.
+#[inline]
+pub fn run<K: Kernel>(kernel: K) -> K::Output {
+    run_at(Level::best(), kernel)
+}
+
+/// Runs a kernel on the registers of `level`, for tests and measurements.
+///
+/// # Panics
+/// If they are not [available](Level::is_available).
+#[inline]
+pub fn run_at<K: Kernel>(level: Level, kernel: K) -> K::Output {
+    assert!(level.is_available(), "{level:?} is not available on this processor");
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        Level::Sse2 => kernel.run::<crate::lanes::sse2::Sse2>(),
+        // SAFETY: the processor has AVX2, as was asserted.
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2 => unsafe { on_avx2(kernel) },
+        #[cfg(target_arch = "aarch64")]
+        Level::Neon => kernel.run::<crate::lanes::neon::Neon>(),
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        Level::Simd128 => kernel.run::<crate::lanes::simd128::Simd128>(),
+        _ => kernel.run::<Scalar>(),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn on_avx2<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run::<crate::lanes::avx2::Avx2>()
+}

@@ -1,0 +1,268 @@
+//! Euler angles: three turns about coordinate axes, in any of the 24 conventions, and what they cannot say.
+
+use crate::limits::wrap;
+use crate::{Rotation, Vec3, clamp, trig};
+use core::f32::consts::{FRAC_PI_2, PI};
+
+/// Which coordinate axes the three turns are about, in the order of the turns.
+///
+/// The first six are Tait-Bryan orders (three different axes: heading, pitch and roll are such), the last six the proper
+/// Euler orders (first and third axis the same: precession, nutation and spin of a top are such).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum EulerOrder {
+    /// About x, y, z.
+    Xyz,
+    /// About x, z, y.
+    Xzy,
+    /// About y, x, z: heading, pitch and roll of a world with +Y up, when the axes move along.
+    Yxz,
+    /// About y, z, x.
+    Yzx,
+    /// About z, x, y.
+    Zxy,
+    /// About z, y, x: yaw, pitch and roll of an aircraft whose z points down, when the axes move along.
+    Zyx,
+    /// About x, y, x.
+    Xyx,
+    /// About x, z, x.
+    Xzx,
+    /// About y, x, y.
+    Yxy,
+    /// About y, z, y.
+    Yzy,
+    /// About z, x, z: the classical angles of a top, when the axes move along.
+    Zxz,
+    /// About z, y, z.
+    Zyz,
+}
+
+impl EulerOrder {
+    /// All twelve.
+    pub const ALL: [Self; 12] = [
+        Self::Xyz,
+        Self::Xzy,
+        Self::Yxz,
+        Self::Yzx,
+        Self::Zxy,
+        Self::Zyx,
+        Self::Xyx,
+        Self::Xzx,
+        Self::Yxy,
+        Self::Yzy,
+        Self::Zxz,
+        Self::Zyz,
+    ];
+
+    /// Each turn about axes that have moved along with the turns before it: `R = R₁ R₂ R₃`.
+    pub const fn intrinsic(self) -> EulerConvention {
+        EulerConvention { order: self, axes: EulerAxes::Moving }
+    }
+
+    /// Each turn about axes that stay as they are: `R = R₃ R₂ R₁`.
+    pub const fn extrinsic(self) -> EulerConvention {
+        EulerConvention { order: self, axes: EulerAxes::Fixed }
+    }
+
+    /// The axes in the order of the turns; 0, 1, 2 for x, y, z.
+    pub const fn indices(self) -> [usize; 3] {
+        match self {
+            Self::Xyz => [0, 1, 2],
+            Self::Xzy => [0, 2, 1],
+            Self::Yxz => [1, 0, 2],
+            Self::Yzx => [1, 2, 0],
+            Self::Zxy => [2, 0, 1],
+            Self::Zyx => [2, 1, 0],
+            Self::Xyx => [0, 1, 0],
+            Self::Xzx => [0, 2, 0],
+            Self::Yxy => [1, 0, 1],
+            Self::Yzy => [1, 2, 1],
+            Self::Zxz => [2, 0, 2],
+            Self::Zyz => [2, 1, 2],
+        }
+    }
+
+    /// Whether the first and the third axis are the same.
+    pub const fn is_proper(self) -> bool {
+        let [first, _, third] = self.indices();
+        first == third
+    }
+}
+
+/// Whether the axes of the second and third turn have moved with the turns before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum EulerAxes {
+    /// They have: *intrinsic* angles, those of nested rings. The axes are the body's.
+    Moving,
+    /// They have not: *extrinsic* angles. The axes are the world's.
+    Fixed,
+}
+
+/// One of the 24 meanings that three angles may have. Made by [`EulerOrder::intrinsic`] and [`EulerOrder::extrinsic`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct EulerConvention {
+    /// About which axes.
+    pub order: EulerOrder,
+    /// Whether these move along.
+    pub axes: EulerAxes,
+}
+
+impl EulerConvention {
+    /// All 24.
+    pub fn all() -> impl Iterator<Item = Self> {
+        EulerOrder::ALL.into_iter().flat_map(|order| [order.intrinsic(), order.extrinsic()])
+    }
+}
+
+/// Whether the three angles can be told apart.
+///
+/// Where the middle turn brings the third axis onto the first, both turn about the same line: one freedom of the three
+/// is lost, and of the two outer angles only a combination means anything. No convention is without such places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum GimbalLock {
+    /// They can.
+    Free,
+    /// Only the sum of the first and the third angle is determined. The third is given as 0.
+    OnlySum,
+    /// Only the difference of the first and the third angle is determined. The third is given as 0.
+    OnlyDifference,
+}
+
+/// Euler angles of a rotation, and how well it determines them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EulerAngles {
+    /// In the order of the turns, radians. First and third −π..=π; the second −π/2..=π/2 of a Tait-Bryan order, 0..=π of
+    /// a proper one.
+    pub angles: [f32; 3],
+    /// How far the second angle is from gimbal lock, radians, 0..=π/2. The error of first and third angle is that of the
+    /// rotation over the sine of this: at a margin of 0.001 an error of 1e-7 in the rotation is one of 1e-4 in each of them.
+    pub lock_margin: f32,
+    /// Whether they are locked: whether [`lock_margin`](Self::lock_margin) is below [`EulerAngles::LOCKED_BELOW`].
+    pub lock: GimbalLock,
+}
+
+impl EulerAngles {
+    /// Margin, radians, below which outer angles are noise: the third is then given as 0 and the first takes over the
+    /// turns of both. The rotation is still met within as much. Three turns with the second exactly at lock are always
+    /// found to be locked.
+    pub const LOCKED_BELOW: f32 = 2e-6;
+}
+
+impl Rotation {
+    /// Three turns by `angles` (radians, in the order of the turns, any size). Identity if one is not finite.
+    ///
+    /// ```
+    /// use sinew_math::{EulerOrder, Rotation, Vec3};
+    /// let right = core::f32::consts::FRAC_PI_2;
+    /// // Turn left, then look up: the nose (−z) ends up pointing at the sky.
+    /// let plane = Rotation::from_euler(EulerOrder::Yxz.intrinsic(), [right, right, 0.0]);
+    /// assert!((plane * Vec3::NEG_Z - Vec3::Y).length() < 1e-6);
+    /// ```
+    pub fn from_euler(convention: EulerConvention, angles: [f32; 3]) -> Self {
+        let [first, second, third] = convention.order.indices();
+        let turn = |axis: usize, angle: f32| Self::from_axis_angle(Vec3::AXES[axis], angle);
+        let (a, b, c) = (turn(first, angles[0]), turn(second, angles[1]), turn(third, angles[2]));
+        match convention.axes {
+            EulerAxes::Moving => (a * b * c).normalize(),
+            EulerAxes::Fixed => (c * b * a).normalize(),
+        }
+    }
+
+    /// The three turns that make up this rotation, and whether it is one at which they lock.
+    ///
+    /// After Bernardes & Viollet, "Quaternion to Euler angles conversion: a direct, general and computationally efficient
+    /// method", PLoS ONE 17(11), 2022. The quaternion of turns by α, β, γ about axes i, j, i, with third axis l and
+    /// `e_i e_j = ε e_l`, is
+    ///
+    /// ```text
+    /// w   = cos(β/2) cos((α+γ)/2)      q_j   = sin(β/2) cos((α−γ)/2)
+    /// q_i = cos(β/2) sin((α+γ)/2)      ε q_l = sin(β/2) sin((α−γ)/2)
+    /// ```
+    ///
+    /// so that two arctangents give sum and difference and a third gives β, without the loss of an arccosine. A
+    /// Tait-Bryan order becomes a proper one by a quarter turn: `R_i(α) R_j(β) R_l(γ) R_j(π/2) = R_i(α) R_j(β+π/2) R_i(−εγ)`.
+    ///
+    /// ```
+    /// use sinew_math::{EulerOrder, GimbalLock, Rotation};
+    /// let nose_up = Rotation::from_euler(EulerOrder::Yxz.intrinsic(), [0.3, core::f32::consts::FRAC_PI_2, 0.5]);
+    /// let found = nose_up.to_euler(EulerOrder::Yxz.intrinsic());
+    /// // Heading and roll turn about one line now. What is left of them is their difference.
+    /// assert_eq!(found.lock, GimbalLock::OnlyDifference);
+    /// assert_eq!(found.angles[2], 0.0);
+    /// assert!((found.angles[0] - (0.3 - 0.5)).abs() < 1e-6);
+    /// ```
+    pub fn to_euler(self, convention: EulerConvention) -> EulerAngles {
+        let order = match convention.axes {
+            EulerAxes::Moving => convention.order.indices(),
+            // Turns about fixed axes are those about moving ones, last first.
+            EulerAxes::Fixed => {
+                let [first, second, third] = convention.order.indices();
+                [third, second, first]
+            }
+        };
+        let rings = Rings::of(self, order);
+        let is_locked = rings.margin < EulerAngles::LOCKED_BELOW;
+        let [outer, inner] = match (is_locked, convention.axes) {
+            (false, _) => [rings.outer, rings.inner],
+            (true, EulerAxes::Moving) => [rings.outer_alone, 0.0],
+            (true, EulerAxes::Fixed) => [0.0, rings.inner_alone],
+        }
+        .map(wrap);
+        let angles = match convention.axes {
+            EulerAxes::Moving => [outer, rings.middle, inner],
+            EulerAxes::Fixed => [inner, rings.middle, outer],
+        };
+        let lock = if is_locked { rings.nearest_lock } else { GimbalLock::Free };
+        EulerAngles { angles, lock_margin: rings.margin, lock }
+    }
+}
+
+/// Three rings, one in the other, that make up a rotation: its turns about moving axes, outer one first. Angles of outer
+/// and inner one within −2π..=2π.
+struct Rings {
+    outer: f32,
+    middle: f32,
+    inner: f32,
+    /// From the middle angle to the nearer lock.
+    margin: f32,
+    /// The kind of that one.
+    nearest_lock: GimbalLock,
+    /// What the outer angle is there when the inner one is 0.
+    outer_alone: f32,
+    /// What the inner angle is there when the outer one is 0.
+    inner_alone: f32,
+}
+
+impl Rings {
+    fn of(rotation: Rotation, [i, j, k]: [usize; 3]) -> Self {
+        let is_proper = i == k;
+        let l = 3 - i - j;
+        let parity = if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 };
+        let v = rotation.vector();
+        let (w, x, y, z) = (rotation.w, v[i], v[j], parity * v[l]);
+        let tilt = 4.0 * (w * y + x * z);
+        let [w, x, y, z] = if is_proper { [w, x, y, z] } else { [w - y, x - z, y + w, z + x] };
+        // Cosine and sine of half the middle angle.
+        let (cos, sin) = ((w * w + x * x).sqrt(), (y * y + z * z).sqrt());
+        let middle = if is_proper {
+            clamp(2.0 * trig::atan2(sin, cos), 0.0, PI)
+        } else {
+            // Less a quarter turn, as `sin − cos` over `sin + cos`; the former is `(sin² − cos²) / (sin + cos)`, which
+            // loses nothing where the angle is small.
+            clamp(2.0 * trig::atan2(tilt / (cos + sin), cos + sin), -FRAC_PI_2, FRAC_PI_2)
+        };
+        // The inner axis of a Tait-Bryan order is brought onto the outer one, or against it.
+        let sign = if is_proper { 1.0 } else { -parity };
+        let (half_sum, half_difference) = (trig::atan2(x, w), trig::atan2(z, y));
+        let (small, large, share) = if sin < cos { (sin, cos, 1.0) } else { (cos, sin, -1.0) };
+        let alone = 2.0 * if sin < cos { half_sum } else { half_difference };
+        Self {
+            outer: half_sum + half_difference,
+            middle,
+            inner: sign * (half_sum - half_difference),
+            margin: 2.0 * trig::atan2(small, large),
+            nearest_lock: if share == sign { GimbalLock::OnlySum } else { GimbalLock::OnlyDifference },
+            outer_alone: alone,
+            inner_alone: share * sign * alone,
+        }
+    }
+}

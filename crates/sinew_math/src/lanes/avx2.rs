@@ -1,0 +1,153 @@
+//! Eight lanes in one register of AVX.
+//!
+//! A value of [`Avx2`] is made by [`dispatch`](crate::dispatch) alone, and only where the processor has AVX2; each
+//! `unsafe` below rests on that. The types are private to this crate, so that nothing else can call them into being.
+
+use super::{LaneMask, Lanes, Mask, Real, WIDTH};
+use core::arch::x86_64::{
+    __m256, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps,
+    _mm256_blendv_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps,
+    _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_ps, _mm256_sqrt_ps, _mm256_storeu_ps,
+    _mm256_sub_ps, _mm256_xor_ps,
+};
+use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+#[derive(Clone, Copy)]
+pub(crate) struct Avx2(__m256);
+
+#[derive(Clone, Copy)]
+pub(crate) struct Avx2Mask(__m256);
+
+/// The sign's bit alone.
+const SIGN: f32 = -0.0;
+
+/// All bits set: what comparisons give for true.
+const TRUE: f32 = f32::from_bits(u32::MAX);
+
+/// Intrinsics of AVX, called where there are values of [`Avx2`].
+macro_rules! avx {
+    ($call:expr) => {
+        // SAFETY: whoever holds, or makes, a value of `Avx2` was entered by `dispatch`, on a processor with AVX2.
+        unsafe { $call }
+    };
+}
+
+macro_rules! operators {
+    ($($operator:ident $method:ident $of:ident $intrinsic:ident),*) => {$(
+        impl $operator for $of {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(avx!($intrinsic(self.0, other.0)))
+            }
+        }
+    )*};
+}
+
+operators!(
+    Add add Avx2 _mm256_add_ps,
+    Sub sub Avx2 _mm256_sub_ps,
+    Mul mul Avx2 _mm256_mul_ps,
+    Div div Avx2 _mm256_div_ps,
+    BitAnd bitand Avx2Mask _mm256_and_ps,
+    BitOr bitor Avx2Mask _mm256_or_ps
+);
+
+impl Neg for Avx2 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(avx!(_mm256_xor_ps(self.0, Self::splat(SIGN).0)))
+    }
+}
+
+impl Not for Avx2Mask {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(avx!(_mm256_xor_ps(self.0, Avx2::splat(TRUE).0)))
+    }
+}
+
+impl Mask for Avx2Mask {}
+
+impl LaneMask for Avx2Mask {
+    #[inline(always)]
+    fn bits(self) -> u8 {
+        avx!(_mm256_movemask_ps(self.0)) as u8
+    }
+}
+
+impl Real for Avx2 {
+    type Mask = Avx2Mask;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self(avx!(_mm256_set1_ps(value)))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(avx!(_mm256_sqrt_ps(self.0)))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(avx!(_mm256_andnot_ps(Self::splat(SIGN).0, self.0)))
+    }
+
+    #[inline(always)]
+    fn lt(a: Self, b: Self) -> Avx2Mask {
+        Avx2Mask(avx!(_mm256_cmp_ps::<_CMP_LT_OQ>(a.0, b.0)))
+    }
+
+    #[inline(always)]
+    fn le(a: Self, b: Self) -> Avx2Mask {
+        Avx2Mask(avx!(_mm256_cmp_ps::<_CMP_LE_OQ>(a.0, b.0)))
+    }
+
+    #[inline(always)]
+    fn eq(a: Self, b: Self) -> Avx2Mask {
+        Avx2Mask(avx!(_mm256_cmp_ps::<_CMP_EQ_OQ>(a.0, b.0)))
+    }
+
+    #[inline(always)]
+    fn select(mask: Avx2Mask, a: Self, b: Self) -> Self {
+        Self(avx!(_mm256_blendv_ps(b.0, a.0, mask.0)))
+    }
+
+    #[inline(always)]
+    fn masked(self, mask: Avx2Mask) -> Self {
+        Self(avx!(_mm256_and_ps(mask.0, self.0)))
+    }
+
+    #[inline(always)]
+    fn nan_where(self, mask: Avx2Mask) -> Self {
+        Self(avx!(_mm256_or_ps(mask.0, self.0)))
+    }
+
+    // `vminps` and `vmaxps` are defined as these selections, down to NaN and −0.
+    #[inline(always)]
+    fn min(a: Self, b: Self) -> Self {
+        Self(avx!(_mm256_min_ps(a.0, b.0)))
+    }
+
+    #[inline(always)]
+    fn max(a: Self, b: Self) -> Self {
+        Self(avx!(_mm256_max_ps(a.0, b.0)))
+    }
+}
+
+impl Lanes for Avx2 {
+    #[inline(always)]
+    fn load(from: &[f32; WIDTH]) -> Self {
+        // SAFETY: as above; and the array has the eight floats that are read, at no alignment of their own.
+        Self(unsafe { _mm256_loadu_ps(from.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f32; WIDTH]) {
+        // SAFETY: as above; and the array has room for the eight floats that are written.
+        unsafe { _mm256_storeu_ps(to.as_mut_ptr(), self.0) }
+    }
+}

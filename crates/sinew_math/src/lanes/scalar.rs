@@ -1,0 +1,166 @@
+//! One number; and eight of them in an array, for processors of which nothing is known.
+
+use super::{LaneMask, Lanes, Mask, Real, WIDTH};
+use core::array;
+use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+impl Mask for bool {}
+
+/// One lane: what the others are defined by.
+impl Real for f32 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f32::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f32::abs(self)
+    }
+
+    #[inline(always)]
+    fn lt(a: Self, b: Self) -> bool {
+        a < b
+    }
+
+    #[inline(always)]
+    fn le(a: Self, b: Self) -> bool {
+        a <= b
+    }
+
+    #[inline(always)]
+    fn eq(a: Self, b: Self) -> bool {
+        a == b
+    }
+
+    #[inline(always)]
+    fn select(mask: bool, a: Self, b: Self) -> Self {
+        if mask { a } else { b }
+    }
+
+    #[inline(always)]
+    fn masked(self, mask: bool) -> Self {
+        if mask { self } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn nan_where(self, mask: bool) -> Self {
+        if mask { f32::NAN } else { self }
+    }
+}
+
+/// Eight `f32`, each treated as `f32` is.
+#[derive(Clone, Copy, Debug)]
+pub struct Scalar([f32; WIDTH]);
+
+/// Eight `bool`.
+#[derive(Clone, Copy, Debug)]
+pub struct Bools([bool; WIDTH]);
+
+macro_rules! lane_by_lane {
+    ($($operator:ident $method:ident $of:ident),*) => {$(
+        impl $operator for $of {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(array::from_fn(|k| $operator::$method(self.0[k], other.0[k])))
+            }
+        }
+    )*};
+}
+
+lane_by_lane!(Add add Scalar, Sub sub Scalar, Mul mul Scalar, Div div Scalar, BitAnd bitand Bools, BitOr bitor Bools);
+
+impl Neg for Scalar {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.map(f32::neg))
+    }
+}
+
+impl Not for Bools {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(self.0.map(bool::not))
+    }
+}
+
+impl Mask for Bools {}
+
+impl LaneMask for Bools {
+    #[inline(always)]
+    fn bits(self) -> u8 {
+        let bit = |(k, &lane): (usize, &bool)| u8::from(lane) << k;
+        self.0.iter().enumerate().map(bit).fold(0, BitOr::bitor)
+    }
+}
+
+impl Real for Scalar {
+    type Mask = Bools;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self([value; WIDTH])
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f32::sqrt))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f32::abs))
+    }
+
+    #[inline(always)]
+    fn lt(a: Self, b: Self) -> Bools {
+        Bools(array::from_fn(|k| a.0[k] < b.0[k]))
+    }
+
+    #[inline(always)]
+    fn le(a: Self, b: Self) -> Bools {
+        Bools(array::from_fn(|k| a.0[k] <= b.0[k]))
+    }
+
+    #[inline(always)]
+    fn eq(a: Self, b: Self) -> Bools {
+        Bools(array::from_fn(|k| a.0[k] == b.0[k]))
+    }
+
+    #[inline(always)]
+    fn select(mask: Bools, a: Self, b: Self) -> Self {
+        Self(array::from_fn(|k| f32::select(mask.0[k], a.0[k], b.0[k])))
+    }
+
+    #[inline(always)]
+    fn masked(self, mask: Bools) -> Self {
+        Self(array::from_fn(|k| self.0[k].masked(mask.0[k])))
+    }
+
+    #[inline(always)]
+    fn nan_where(self, mask: Bools) -> Self {
+        Self(array::from_fn(|k| self.0[k].nan_where(mask.0[k])))
+    }
+}
+
+impl Lanes for Scalar {
+    #[inline(always)]
+    fn load(from: &[f32; WIDTH]) -> Self {
+        Self(*from)
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f32; WIDTH]) {
+        *to = self.0;
+    }
+}

@@ -1,0 +1,211 @@
+//! The general quaternion: the quotient of two vectors.
+
+use crate::{Rotation, Vec3, abs3, direction, max, trig};
+use core::ops::{Add, Mul, Neg, Sub};
+
+/// A quaternion of any length: a number and a vector, `w + x i + y j + z k`.
+///
+/// Hamilton found it as what a vector has to be multiplied by to become another one. To take vector `a` into vector `b`,
+/// it must be turned and it must be stretched: a turn has two numbers for the plane in which it happens and one for its
+/// angle, the stretch is the fourth. So a quaternion is a **versor** (the turn) times a **tensor** (the stretch, a
+/// positive number; nothing to do with the tensors of today):
+///
+/// ```text
+/// b / a = b a⁻¹ = |b|/|a| · (cos θ + n sin θ)        θ from a to b about the unit vector n
+/// ```
+///
+/// ```
+/// use sinew_math::{Quaternion, Vec3};
+/// let (a, b) = (Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 3.0, 0.0));
+/// let q = Quaternion::quotient(b, a).expect("a is not zero");
+/// assert_eq!(q.norm(), 3.0);
+/// assert_eq!(q.axis(), Some(Vec3::Z));
+/// assert_eq!(q.angle(), core::f32::consts::FRAC_PI_2);
+/// assert_eq!(q.apply(a), b);
+/// assert_eq!(q * Quaternion::from(a), Quaternion::from(b));
+/// ```
+///
+/// **Whole and half angles.** There are two ways to let a quaternion act on a vector. Multiplied from the left,
+/// `q v` ([`apply`](Self::apply)), it turns by its own angle, but only vectors at right angles to its axis stay vectors.
+/// Multiplied from both sides, `q v q̄` ([`sandwich`](Self::sandwich)), it turns any vector, but by twice its angle. A
+/// [`Rotation`] acts in the second way, so its four numbers hold *half* the angle; [`to_rotation`](Self::to_rotation)
+/// goes from the first reading to the second.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Quaternion {
+    /// The number, Hamilton's *scalar part*.
+    pub scalar: f32,
+    /// The *vector part*.
+    pub vector: Vec3,
+}
+
+impl Quaternion {
+    /// Nothing: the quotient of the zero vector by any other.
+    pub const ZERO: Self = Self::new(0.0, Vec3::ZERO);
+    /// Neither turns nor stretches: the quotient of a vector by itself.
+    pub const ONE: Self = Self::new(1.0, Vec3::ZERO);
+
+    /// From its two parts.
+    pub const fn new(scalar: f32, vector: Vec3) -> Self {
+        Self { scalar, vector }
+    }
+
+    /// What turns and stretches `from` into `to`: `to from⁻¹ = (from·to + from×to) / |from|²`.
+    /// `None` if `from` is zero, or either is not finite. For opposite vectors: a negative number, which has no axis.
+    pub fn quotient(to: Vec3, from: Vec3) -> Option<Self> {
+        let unit = direction(from)?;
+        let length = from.dot(unit);
+        to.is_finite().then(|| Self::new(unit.dot(to) / length, unit.cross(to) * (1.0 / length)))
+    }
+
+    /// A versor times a scale: turns by `angle` (radians) about `axis` (length 1), stretches by `scale`.
+    pub fn from_scale_axis_angle(scale: f32, axis: Vec3, angle: f32) -> Self {
+        let (sin, cos) = trig::sin_cos(angle);
+        Self::new(scale * cos, axis * (scale * sin))
+    }
+
+    /// The length, Hamilton's *tensor*: by how much it stretches. Infinite above 1e19, 0 below 1e-23.
+    pub fn norm(self) -> f32 {
+        self.norm_squared().sqrt()
+    }
+
+    /// The square of the length.
+    pub fn norm_squared(self) -> f32 {
+        self.scalar * self.scalar + self.vector.length_squared()
+    }
+
+    /// By how much it turns, radians, 0..=π. 0 for zero.
+    pub fn angle(self) -> f32 {
+        trig::atan2(self.vector.length(), self.scalar)
+    }
+
+    /// The unit vector about which it turns. `None` for a number: a positive one does not turn, a negative one turns every
+    /// vector to its opposite.
+    pub fn axis(self) -> Option<Vec3> {
+        direction(self.vector)
+    }
+
+    /// The turn without the stretch: the quaternion at length 1. [`ONE`](Self::ONE) for zero, and for what is not finite.
+    pub fn versor(self) -> Self {
+        let v = abs3(self.vector);
+        let largest = max(max(v.x, v.y), max(v.z, self.scalar.abs()));
+        if largest == 0.0 || !self.is_finite() {
+            return Self::ONE;
+        }
+        // Divided by the largest first: the squares neither overflow nor vanish.
+        let scaled = Self::new(self.scalar / largest, self.vector / largest);
+        scaled * (1.0 / scaled.norm())
+    }
+
+    /// The turn as a [`Rotation`]: by [`angle`](Self::angle) about [`axis`](Self::axis), with half the angle inside. Identity
+    /// for zero; half a turn about x for a negative number, which does not say about what.
+    pub fn to_rotation(self) -> Rotation {
+        let q = self.versor();
+        let Some(axis) = q.axis() else {
+            return if q.scalar > 0.0 { Rotation::IDENTITY } else { Rotation::from_xyzw(1.0, 0.0, 0.0, 0.0) };
+        };
+        // tan(θ/2) = sin θ / (1 + cos θ) = (1 − cos θ) / sin θ: whichever does not cancel.
+        let sin = q.vector.length();
+        let (sin, cos) = if q.scalar > 0.0 { (sin, 1.0 + q.scalar) } else { (1.0 - q.scalar, sin) };
+        let half = axis * sin;
+        Rotation::from_xyzw(half.x, half.y, half.z, cos).normalize()
+    }
+
+    /// The same with the turn reversed: `w − v`.
+    pub fn conjugate(self) -> Self {
+        Self::new(self.scalar, -self.vector)
+    }
+
+    /// What undoes it: `q⁻¹ = q̄ / |q|²`, with `q q⁻¹ = q⁻¹ q = 1`. `None` for zero and for what is not finite.
+    pub fn inverse(self) -> Option<Self> {
+        let versor = self.versor();
+        let norm = versor.scalar * self.scalar + versor.vector.dot(self.vector);
+        (norm > 0.0 && norm < f32::INFINITY).then(|| versor.conjugate() * (1.0 / norm))
+    }
+
+    /// A part of it, or a multiple: `|q|ᵗ (cos tθ + n sin tθ)`, so `q.power(0.5) * q.power(0.5)` is `q`. Zero stays zero. The
+    /// part of a negative number, which does not say about what it turns, is taken about x.
+    pub fn power(self, t: f32) -> Self {
+        let norm = self.norm();
+        if norm == 0.0 {
+            return Self::ZERO;
+        }
+        Self::from_scale_axis_angle(trig::pow(norm, t), self.axis().unwrap_or(Vec3::X), self.angle() * t)
+    }
+
+    /// Turns `v` by [`angle`](Self::angle) about [`axis`](Self::axis) and stretches it by [`norm`](Self::norm). A number
+    /// multiplies; zero gives zero.
+    ///
+    /// For `v` at right angles to the axis it is the product `q v`, so `Quaternion::quotient(b, a)` takes `a` into `b`.
+    /// What of `v` lies along the axis is stretched only (Rodrigues): `w v + u × v + (|q| − w) u (u·v)/u²`. Close to half a
+    /// turn the axis hangs on the last digits of `u`, and so does what happens to that part.
+    pub fn apply(self, v: Vec3) -> Vec3 {
+        let along = self.axis().map_or(Vec3::ZERO, |axis| axis * axis.dot(v));
+        v * self.scalar + self.vector.cross(v) + along * (self.norm() - self.scalar)
+    }
+
+    /// `q v q̄`: turns `v` by twice [`angle`](Self::angle) and stretches it by the square of [`norm`](Self::norm).
+    /// Turns follow each other as products do: `(p q).sandwich(v) = p.sandwich(q.sandwich(v))`.
+    pub fn sandwich(self, v: Vec3) -> Vec3 {
+        let (w, u) = (self.scalar, self.vector);
+        v * (w * w - u.length_squared()) + u * (2.0 * u.dot(v)) + u.cross(v) * (2.0 * w)
+    }
+
+    /// True if all four numbers are finite.
+    pub fn is_finite(self) -> bool {
+        self.scalar.is_finite() && self.vector.is_finite()
+    }
+}
+
+/// A vector is a quaternion without a number; its square is minus the square of its length.
+impl From<Vec3> for Quaternion {
+    fn from(v: Vec3) -> Self {
+        Self::new(0.0, v)
+    }
+}
+
+/// The four numbers of a rotation, which hold half its angle: `Quaternion::from(r).sandwich(v)` is `r * v`.
+impl From<Rotation> for Quaternion {
+    fn from(r: Rotation) -> Self {
+        Self::new(r.w, r.vector())
+    }
+}
+
+impl Add for Quaternion {
+    type Output = Self;
+    fn add(self, b: Self) -> Self {
+        Self::new(self.scalar + b.scalar, self.vector + b.vector)
+    }
+}
+
+impl Sub for Quaternion {
+    type Output = Self;
+    fn sub(self, b: Self) -> Self {
+        Self::new(self.scalar - b.scalar, self.vector - b.vector)
+    }
+}
+
+impl Neg for Quaternion {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self::new(-self.scalar, -self.vector)
+    }
+}
+
+impl Mul<f32> for Quaternion {
+    type Output = Self;
+    fn mul(self, k: f32) -> Self {
+        Self::new(self.scalar * k, self.vector * k)
+    }
+}
+
+/// Hamilton's product, `ij = k = −ji`: numbers and lengths multiply, the order matters.
+impl Mul for Quaternion {
+    type Output = Self;
+    fn mul(self, b: Self) -> Self {
+        let a = self;
+        Self::new(
+            a.scalar * b.scalar - a.vector.dot(b.vector),
+            b.vector * a.scalar + a.vector * b.scalar + a.vector.cross(b.vector),
+        )
+    }
+}

@@ -1,0 +1,45 @@
+//! Boxes with any orientation.
+
+use sinew_math::{Rotation, Transform, Vec3};
+
+/// A box with any orientation (oriented bounding box).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Obb {
+    /// Its middle, metres.
+    pub center: Vec3,
+    /// From the box's axes to those of the space it stands in.
+    pub rotation: Rotation,
+    /// Half of its sides along its own axes, metres, ≥ 0.
+    pub half_extents: Vec3,
+}
+
+impl Obb {
+    /// From its parts.
+    ///
+    /// # Panics
+    /// If a number is not finite or a half extent is negative.
+    pub fn new(center: Vec3, rotation: Rotation, half_extents: Vec3) -> Self {
+        assert!(center.is_finite() && rotation.is_finite(), "a box stands somewhere");
+        super::expect_half_extents(half_extents);
+        Self { center, rotation, half_extents }
+    }
+
+    /// Around the origin of a frame, along its axes.
+    ///
+    /// # Panics
+    /// As [`new`](Self::new).
+    pub fn from_transform(frame: &Transform, half_extents: Vec3) -> Self {
+        Self::new(frame.translation, frame.rotation, half_extents)
+    }
+
+    /// The frame in which the box is axis-aligned around the origin: maps the box's coordinates to those of its space.
+    pub fn to_transform(&self) -> Transform {
+        Transform::new(self.center, self.rotation)
+    }
+}
+
+impl From<super::Aabb> for Obb {
+    fn from(aabb: super::Aabb) -> Self {
+        Self { center: aabb.center(), rotation: Rotation::IDENTITY, half_extents: aabb.half_extents() }
+    }
+}

@@ -1,0 +1,71 @@
+//! Fields that the user writes.
+
+use super::{Fields, Target};
+use crate::force::Wrench;
+use sinew_math::Vec3;
+
+/// How many numbers a user's function is called with.
+pub const PARAMETERS: usize = 8;
+
+/// What a user's field function sees: something that it acts on, and when.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldPoint {
+    /// Centre of mass of a body, or place of a particle, world, metres.
+    pub position: Vec3,
+    /// m/s.
+    pub velocity: Vec3,
+    /// rad/s; 0 of a particle.
+    pub angular_velocity: Vec3,
+    /// kg.
+    pub mass: f32,
+    /// Steps that the world took before this one.
+    pub step: u64,
+    /// Time at the beginning of the step, seconds.
+    pub time: f64,
+}
+
+/// Force and torque on something at a point, from the field's parameters: a pure function, so that a snapshot of the
+/// parameters holds all that decides. A plain function, not a closure: there is nothing that it could remember. For the
+/// same bits everywhere it must be made of `+ − × ÷ √` and `sinew_math`. What it returns for a particle is taken without
+/// the torque. A result that is not finite quarantines the body.
+pub type FieldFunction = fn(&FieldPoint, &[f32; PARAMETERS]) -> Wrench;
+
+/// Registered functions by number, ascending. No part of the snapshot: code cannot be saved.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Functions(Vec<(u32, FieldFunction)>);
+
+impl Functions {
+    pub fn set(&mut self, number: u32, function: FieldFunction) {
+        match self.0.binary_search_by_key(&number, |&(n, _)| n) {
+            Ok(place) => self.0[place].1 = function,
+            Err(place) => self.0.insert(place, (number, function)),
+        }
+    }
+
+    fn find(&self, number: u32) -> Option<FieldFunction> {
+        let place = self.0.binary_search_by_key(&number, |&(n, _)| n).ok()?;
+        Some(self.0[place].1)
+    }
+
+    pub fn has(&self, number: u32) -> bool {
+        self.find(number).is_some()
+    }
+
+    pub(super) fn call(
+        &self,
+        number: u32,
+        target: &Target<'_>,
+        fields: &Fields<'_>,
+        parameters: &[f32; PARAMETERS],
+    ) -> Wrench {
+        let point = FieldPoint {
+            position: target.center(),
+            velocity: target.velocity.linear,
+            angular_velocity: target.velocity.angular,
+            mass: target.mass,
+            step: fields.step,
+            time: fields.nanoseconds as f64 * 1e-9,
+        };
+        self.find(number).map_or(Wrench::default(), |function| function(&point, parameters))
+    }
+}

@@ -1,0 +1,89 @@
+//! What a field is made from.
+
+use super::custom::PARAMETERS;
+use super::{Buoyancy, Drag, MutualGravity, PointGravity, Region, UniformGravity, Wind};
+
+/// A field to be made: what it does, where, and to whom.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FieldDef {
+    /// What it does.
+    pub kind: FieldKind,
+    /// Where, by the centre of mass of a body and the place of a particle. Default everywhere.
+    pub region: Region,
+    /// Bits of the layers ([`Filter::layers`](crate::Filter)) that it acts on: a body is reached if one of its shapes is on
+    /// one of them, or if it has no shape. Default all.
+    pub layers: u32,
+}
+
+/// What a field does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FieldKind {
+    /// The same acceleration everywhere, beside the world's own.
+    Uniform(UniformGravity),
+    /// Toward a place.
+    Point(PointGravity),
+    /// Of bodies and particles to each other.
+    Mutual(MutualGravity),
+    /// Moving air, with drag and lift by exposed area; still air is a wind of no speed.
+    Wind(Wind),
+    /// Braking by a law in the velocity, whatever the shape.
+    Drag(Drag),
+    /// Water below a plane.
+    Buoyancy(Buoyancy),
+    /// A function of the user's, by the number under which it was registered
+    /// ([`World::register_field`](crate::World::register_field)), with parameters.
+    Custom {
+        /// Number of the function.
+        function: u32,
+        /// What it is called with.
+        parameters: [f32; PARAMETERS],
+    },
+}
+
+impl FieldDef {
+    /// Everywhere, on all layers.
+    pub fn new(kind: FieldKind) -> Self {
+        Self { kind, region: Region::Everywhere, layers: u32::MAX }
+    }
+
+    /// Whether its numbers make sense; the phrase says what is wrong.
+    ///
+    /// # Errors
+    /// What is wrong, in lower case.
+    pub fn check(&self) -> Result<(), &'static str> {
+        self.region.check()?;
+        match &self.kind {
+            FieldKind::Uniform(field) => field.check(),
+            FieldKind::Point(field) => field.check(),
+            FieldKind::Mutual(field) => field.check(),
+            FieldKind::Wind(field) => field.check(),
+            FieldKind::Drag(field) => field.check(),
+            FieldKind::Buoyancy(field) => field.check(),
+            FieldKind::Custom { parameters, .. } => {
+                let finite = parameters.iter().all(|x| x.is_finite());
+                if finite { Ok(()) } else { Err("a field's parameters must be finite") }
+            }
+        }
+    }
+}
+
+impl FieldKind {
+    /// What it does to something at rest is another thing at another time.
+    pub(crate) fn changes_by_itself(&self) -> bool {
+        match self {
+            Self::Wind(wind) => wind.gusts.is_some(),
+            Self::Custom { .. } => true,
+            Self::Uniform(_) | Self::Point(_) | Self::Mutual(_) | Self::Drag(_) | Self::Buoyancy(_) => false,
+        }
+    }
+}
+
+/// Finite and not negative; NaN is not.
+pub(super) fn not_negative(x: f32) -> bool {
+    (0.0..f32::INFINITY).contains(&x)
+}
+
+/// Finite and positive; NaN is not.
+pub(super) fn positive(x: f32) -> bool {
+    x > 0.0 && x < f32::INFINITY
+}

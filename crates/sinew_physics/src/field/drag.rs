@@ -1,0 +1,50 @@
+//! Braking by a law in the velocity.
+
+use super::def::not_negative;
+use super::{Load, Target};
+use sinew_math::Vec3;
+
+/// Resistance of a medium, the same for all that it reaches, whatever its shape: with `w` the velocity against the medium
+///
+/// ```text
+/// F = −(linear + quadratic |w|) w        τ = −angular ω
+/// ```
+///
+/// Linear: slow and small things (Stokes: `6π η r` for a ball in a viscous fluid). Quadratic: fast ones (Newton:
+/// `½ ρ C A`). A ball that falls comes to `v = (√(c² + 4 k m g) − c) / 2k`: `m g / c` without the quadratic part,
+/// `√(m g / k)` without the linear one. For drag by what a body's shapes expose, take [`Wind`](super::Wind). For a body that
+/// loses a share of its velocity per second, `BodyDef::linear_damping`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drag {
+    /// c, N·s/m, ≥ 0. Default 0.
+    pub linear: f32,
+    /// k, N·s²/m², ≥ 0. Default 0.
+    pub quadratic: f32,
+    /// N·m·s, ≥ 0. Default 0.
+    pub angular: f32,
+    /// Velocity of the medium, m/s. Default 0.
+    pub flow: Vec3,
+}
+
+impl Drag {
+    pub(super) fn check(&self) -> Result<(), &'static str> {
+        let valid = not_negative(self.linear) && not_negative(self.quadratic) && not_negative(self.angular);
+        if valid && self.flow.is_finite() {
+            Ok(())
+        } else {
+            Err("drag must not be negative, and its flow finite")
+        }
+    }
+
+    pub(super) fn act(&self, target: &Target<'_>, load: &mut Load) {
+        let against = target.velocity.linear - self.flow;
+        let speed = against.length();
+        load.push_at(
+            Vec3::ZERO,
+            -against * (self.linear + self.quadratic * speed),
+            self.linear + 2.0 * self.quadratic * speed,
+        );
+        load.wrench.torque -= target.velocity.angular * self.angular;
+        load.spin_resistance += self.angular;
+    }
+}

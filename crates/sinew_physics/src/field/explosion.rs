@@ -1,0 +1,120 @@
+//! A field that acts for an instant.
+
+use super::def::{not_negative, positive};
+use super::{Fade, Form, Target};
+use crate::def::BodyKind;
+use crate::id::BodyId;
+use crate::ray::Ray;
+use crate::shape::Shape;
+use crate::touch::wake;
+use crate::world::World;
+use sinew_math::{Transform, Vec3, max, normalize_or};
+
+/// A blast: pressure that is over before anything moves, so that all it leaves is an impulse.
+///
+/// Each shape gets `J = impulse × fade(1 − d/radius) × A` along the way from the centre of the blast to its own centre,
+/// and there: `d` is the distance from the blast to the shape's nearest point (0 inside), `A` its shadow seen from the blast
+/// (of a ball `π r²`; of a box the faces that look at it, each by the cosine of its angle; a particle is a ball). What is not
+/// dynamic gets nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Explosion {
+    /// World, metres.
+    pub center: Vec3,
+    /// Beyond it nothing is felt, metres, positive.
+    pub radius: f32,
+    /// Impulse per area at the centre, N·s/m² (Pa·s), ≥ 0.
+    pub impulse: f32,
+    /// How it falls off with distance.
+    pub fade: Fade,
+    /// What shelters.
+    pub occlusion: Occlusion,
+    /// Bits of the layers that it acts on.
+    pub layers: u32,
+}
+
+/// What shelters from a blast.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Occlusion {
+    /// Nothing. Default.
+    #[default]
+    None,
+    /// Static bodies: a shape is spared if one lies on the way from the blast to its centre.
+    Static,
+}
+
+impl Explosion {
+    /// Linear fall-off, on all layers, nothing shelters.
+    pub fn new(center: Vec3, radius: f32, impulse: f32) -> Self {
+        Self { center, radius, impulse, fade: Fade::Linear, occlusion: Occlusion::None, layers: u32::MAX }
+    }
+
+    /// Whether its numbers make sense; the phrase says what is wrong.
+    ///
+    /// # Errors
+    /// What is wrong, in lower case.
+    pub fn check(&self) -> Result<(), &'static str> {
+        let valid = self.center.is_finite() && positive(self.radius) && not_negative(self.impulse);
+        if valid { Ok(()) } else { Err("an explosion's place, radius and impulse must be finite") }
+    }
+
+    /// Impulse on a shape, N·s, and where it acts.
+    fn push(&self, shape: &Shape, at: &Transform) -> (Vec3, Vec3) {
+        let distance = max(shape.signed_distance(at, self.center).0, 0.0);
+        if distance >= self.radius {
+            return (Vec3::ZERO, at.translation);
+        }
+        let outward = normalize_or(at.translation - self.center, Vec3::Y);
+        let mut area = 0.0;
+        shape.exposed(at, outward, |panel| {
+            area += panel.area * panel.normal.map_or(1.0, |normal| max(-outward.dot(normal), 0.0));
+        });
+        let strength = self.impulse * self.fade.strength(1.0 - distance / self.radius);
+        (outward * (strength * area), at.translation)
+    }
+}
+
+impl World {
+    /// Sets off an explosion: what it reaches has its new velocity at once, and wakes.
+    ///
+    /// # Panics
+    /// If [`Explosion::check`] finds something wrong.
+    pub fn explode(&mut self, explosion: &Explosion) {
+        if let Err(what) = explosion.check() {
+            panic!("{what}");
+        }
+        let bodies: Vec<BodyId> = self.body_ids().filter(|&id| self.kind(id) == BodyKind::Dynamic).collect();
+        for id in bodies {
+            for shape in 0..self.expect(id).shapes.len() {
+                self.blast_shape(explosion, id, shape);
+            }
+        }
+        let groups: Vec<_> = self.group_ids().collect();
+        for id in groups {
+            for particle in 0..self.particles(id).positions().len() {
+                let target = Target::of_particle(self.particles(id), particle);
+                let Form::Particle { radius, layers } = target.form else { continue };
+                let (impulse, to) = explosion.push(&Shape::Sphere { radius }, &target.pose);
+                if layers & explosion.layers != 0 && !self.shelters(explosion, to) {
+                    self.particles_mut(id).apply_impulse(particle as u32, impulse);
+                }
+            }
+        }
+    }
+
+    fn blast_shape(&mut self, explosion: &Explosion, id: BodyId, shape: usize) {
+        let body = self.expect(id);
+        let s = &body.shapes[shape];
+        let (impulse, point) = explosion.push(&s.shape, &body.world_from_shape(shape));
+        let reached = s.filter.layers & explosion.layers != 0 && impulse != Vec3::ZERO;
+        if reached && !self.shelters(explosion, point) {
+            wake(&mut self.bodies, id.index);
+            self.apply_impulse(id, impulse, point);
+        }
+    }
+
+    fn shelters(&self, explosion: &Explosion, point: Vec3) -> bool {
+        let ray = Ray { origin: explosion.center, direction: point - explosion.center };
+        explosion.occlusion == Occlusion::Static
+            && self.cast_ray(&ray, |id| self.kind(id) == BodyKind::Static).is_some()
+    }
+}

@@ -1,0 +1,78 @@
+//! Gravity that nothing answers to: uniform, and toward a place.
+
+use super::Target;
+use super::def::not_negative;
+use sinew_math::Vec3;
+
+/// The same acceleration for all, beside the world's own gravity: `F = s m a`, with `s` the gravity scale of the body or
+/// group.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct UniformGravity {
+    /// m/s², world axes.
+    pub acceleration: Vec3,
+}
+
+impl UniformGravity {
+    pub(super) fn check(&self) -> Result<(), &'static str> {
+        if self.acceleration.is_finite() { Ok(()) } else { Err("an acceleration must be finite") }
+    }
+
+    pub(super) fn force(&self, target: &Target<'_>) -> Vec3 {
+        self.acceleration * (target.mass * target.gravity_scale)
+    }
+
+    pub(super) fn energy(&self, target: &Target<'_>) -> f32 {
+        -self.force(target).dot(target.center())
+    }
+}
+
+/// Attraction of a place, which is itself not moved: a planet that is far heavier than all that flies about it.
+///
+/// Newton's law with Plummer's softening: at `d` from the centre `a = μ d / (d² + ε²)^(3/2)` toward it, scaled by the
+/// gravity scale of the body or group. With ε = 0 what comes to the centre itself feels nothing there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointGravity {
+    /// World, metres.
+    pub center: Vec3,
+    /// `μ = G M`, m³/s². Negative: away from it. Default 0.
+    pub strength: f32,
+    /// ε, metres, ≥ 0: within it attraction grows no more. Default 0.
+    pub softening: f32,
+}
+
+impl Default for PointGravity {
+    fn default() -> Self {
+        Self { center: Vec3::ZERO, strength: 0.0, softening: 0.0 }
+    }
+}
+
+impl PointGravity {
+    pub(super) fn check(&self) -> Result<(), &'static str> {
+        let valid = self.center.is_finite() && self.strength.is_finite() && not_negative(self.softening);
+        if valid { Ok(()) } else { Err("a centre of gravity and its strength must be finite") }
+    }
+
+    pub(super) fn force(&self, target: &Target<'_>) -> Vec3 {
+        let pull = attraction(self.center - target.center(), self.strength, self.softening);
+        pull * (target.mass * target.gravity_scale)
+    }
+
+    /// `−μ m / √(d² + ε²)`
+    pub(super) fn energy(&self, target: &Target<'_>) -> f32 {
+        let depth = potential(self.center - target.center(), self.strength, self.softening);
+        depth * (target.mass * target.gravity_scale)
+    }
+}
+
+/// Acceleration toward what lies at `apart`, m/s². Divided by the distance one power after the other: none of them can
+/// overflow before the quotient is small.
+pub(super) fn attraction(apart: Vec3, strength: f32, softening: f32) -> Vec3 {
+    let distance = (apart.length_squared() + softening * softening).sqrt();
+    if distance > 0.0 { (apart / distance) * (strength / distance / distance) } else { Vec3::ZERO }
+}
+
+/// Energy by mass, m²/s²; 0 far away.
+pub(super) fn potential(apart: Vec3, strength: f32, softening: f32) -> f32 {
+    let distance = (apart.length_squared() + softening * softening).sqrt();
+    if distance > 0.0 { -strength / distance } else { 0.0 }
+}

@@ -1,0 +1,289 @@
+//! Fields: what pulls, blows, floats and brakes wherever it reaches.
+//!
+//! A field acts on dynamic bodies and on particles alike, in every substep, by where they are and how they move in it. It is
+//! plain data ([`FieldDef`]), part of the world's snapshot, and evaluated in `integrate_velocity`, before anything is
+//! solved. Forces of several fields add up. An [`Explosion`] is a field that acts for an instant: see
+//! [`World::explode`](crate::World::explode).
+//!
+//! **Stiffness.** Where a field brakes (wind, drag, water), its force `F` is taken at the velocity with which the substep
+//! begins: the load of wind on a body that something holds is then the right one, and so is every steady speed. That is
+//! stable while `h b < m`, with `b = −∂F/∂v`; where it is more (a leaf of silk in a storm), all force on the body is
+//! divided by `h b / m`, so that it comes near its steady speed within the substep and never passes it. Likewise torque.
+//!
+//! **Sleep.** A field acts on what is awake. Adding, changing and removing one wakes what it reaches or reached. What lies
+//! still in a field that does not change may fall asleep in it, as under gravity; in one that changes by itself (wind with
+//! gusts, a user's function) it does not. Bodies that attract each other sleep and wake together.
+//!
+//! A world without fields pays nothing for them.
+
+mod buoyancy;
+mod custom;
+mod def;
+mod drag;
+mod explosion;
+mod exposed;
+mod gravity;
+mod mutual;
+mod noise;
+mod region;
+mod snapshot;
+mod submerged;
+mod wind;
+mod world;
+
+pub use buoyancy::Buoyancy;
+pub use custom::{FieldFunction, FieldPoint, PARAMETERS};
+pub use def::{FieldDef, FieldKind};
+pub use drag::Drag;
+pub use explosion::{Explosion, Occlusion};
+pub use gravity::{PointGravity, UniformGravity};
+pub use mutual::MutualGravity;
+pub use region::{Fade, Region};
+pub use submerged::{Submerged, WaterPlane, submerged_hull};
+pub use wind::{Gusts, Wind};
+
+pub(crate) use custom::Functions;
+pub(crate) use mutual::Attractor;
+pub(crate) use world::attractor;
+
+use crate::arena::Arena;
+use crate::body::{Body, BodyShape, Velocity};
+use crate::def::WorldDef;
+use crate::force::Wrench;
+use crate::particles::ParticleGroup;
+use crate::shape::Shape;
+use sinew_math::{Transform, Vec3, min};
+
+/// The fields of a world, as a step sees them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Fields<'a> {
+    pub arena: &'a Arena<FieldDef>,
+    pub functions: &'a Functions,
+    /// The world's gravity, m/s².
+    pub gravity: Vec3,
+    /// Steps taken before this one.
+    pub step: u64,
+    /// Time at the beginning of the step.
+    pub nanoseconds: u64,
+}
+
+impl<'a> Fields<'a> {
+    pub fn new(arena: &'a Arena<FieldDef>, functions: &'a Functions, def: &WorldDef, step: u64) -> Self {
+        let nanoseconds = step.wrapping_mul(def.step_nanoseconds);
+        Self { arena, functions, gravity: def.gravity, step, nanoseconds }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.arena.iter().next().is_none()
+    }
+
+    /// Load of all fields that do not couple bodies.
+    pub fn load(&self, target: &Target<'_>) -> Load {
+        let mut load = Load::default();
+        for (_, field) in self.arena.iter() {
+            field.act(target, self, &mut load);
+        }
+        load
+    }
+
+    /// Those in which bodies attract each other.
+    pub fn mutual(&self) -> impl Iterator<Item = (&'a FieldDef, &'a MutualGravity)> {
+        self.arena.iter().filter_map(|(_, field)| match &field.kind {
+            FieldKind::Mutual(law) => Some((field, law)),
+            _ => None,
+        })
+    }
+
+    /// Whether a body lies in a field that changes by itself.
+    pub fn keep_awake(&self, body: &Body) -> bool {
+        let mut fields = self.arena.iter();
+        fields.any(|(_, field)| field.kind.changes_by_itself() && field.reaches(&Target::of_body(body)))
+    }
+
+    /// What attracts and is attracted wakes together. Gives a sleeper to be woken, as long as there is one.
+    pub fn next_to_wake(&self, bodies: &Arena<Body>) -> Option<u32> {
+        self.mutual().find_map(|(field, _)| {
+            let reached =
+                |body: &Body| body.mass > 0.0 && !body.quarantined && field.reaches(&Target::of_body(body));
+            let awake = bodies.iter().any(|(_, body)| body.is_active() && reached(body));
+            let mut sleepers = bodies.iter().filter(|(_, body)| !body.is_awake() && reached(body));
+            if awake { sleepers.next().map(|(index, _)| index) } else { None }
+        })
+    }
+}
+
+/// What a field finds in its reach: a body or a particle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Target<'a> {
+    /// Of the principal frame: the translation is the centre of mass.
+    pub pose: Transform,
+    pub velocity: Velocity,
+    pub mass: f32,
+    pub gravity_scale: f32,
+    pub form: Form<'a>,
+}
+
+/// What of it the air and the water meet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Form<'a> {
+    Body(&'a [BodyShape]),
+    /// Ball of a radius, on some layers.
+    Particle {
+        radius: f32,
+        layers: u32,
+    },
+}
+
+impl<'a> Target<'a> {
+    pub fn of_body(body: &'a Body) -> Self {
+        Self::at(body, body.world_from_principal, body.velocity)
+    }
+
+    /// A body within its step.
+    pub fn at(body: &'a Body, pose: Transform, velocity: Velocity) -> Self {
+        let form = Form::Body(&body.shapes);
+        Self { pose, velocity, mass: body.mass, gravity_scale: body.gravity_scale, form }
+    }
+
+    pub fn of_particle(group: &ParticleGroup, index: usize) -> Self {
+        Self {
+            pose: Transform::from_translation(group.positions()[index]),
+            velocity: Velocity { linear: group.velocities()[index], angular: Vec3::ZERO },
+            mass: group.masses()[index],
+            gravity_scale: group.gravity_scale(),
+            form: Form::Particle { radius: group.radii()[index], layers: group.filter().layers },
+        }
+    }
+
+    pub fn center(&self) -> Vec3 {
+        self.pose.translation
+    }
+
+    /// m/s, of a world point that moves along.
+    fn velocity_at(&self, point: Vec3) -> Vec3 {
+        self.velocity.at(point - self.center())
+    }
+
+    /// On any of these layers. What has no shape is on all.
+    fn is_on(&self, layers: u32) -> bool {
+        match self.form {
+            Form::Body(shapes) => shapes.is_empty() || shapes.iter().any(|s| s.filter.layers & layers != 0),
+            Form::Particle { layers: own, .. } => own & layers != 0,
+        }
+    }
+
+    /// Its shapes with their world poses. A particle is a ball, if it has a radius.
+    fn for_each_shape(&self, mut visit: impl FnMut(&Shape, &Transform)) {
+        match self.form {
+            Form::Body(shapes) => {
+                for s in shapes {
+                    visit(&s.shape, &(self.pose * s.principal_from_shape));
+                }
+            }
+            Form::Particle { radius, .. } if radius > 0.0 => visit(&Shape::Sphere { radius }, &self.pose),
+            Form::Particle { .. } => {}
+        }
+    }
+}
+
+/// What fields do to a body or particle.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Load {
+    pub wrench: Wrench,
+    /// How much less force comes of more velocity, `−∂F/∂v`, N·s/m: an upper bound over directions.
+    pub resistance: f32,
+    /// Likewise of torque and spin, N·m·s.
+    pub spin_resistance: f32,
+}
+
+impl Load {
+    fn push(&mut self, force: Vec3) {
+        self.wrench.force += force;
+    }
+
+    /// A force at `arm` from the centre of mass that brakes.
+    fn push_at(&mut self, arm: Vec3, force: Vec3, resistance: f32) {
+        self.wrench.force += force;
+        self.wrench.torque += arm.cross(force);
+        self.resistance += resistance;
+        self.spin_resistance += resistance * arm.length_squared();
+    }
+
+    /// `share` of another one.
+    fn add(&mut self, other: &Self, share: f32) {
+        self.wrench.force += other.wrench.force * share;
+        self.wrench.torque += other.wrench.torque * share;
+        self.resistance += other.resistance * share;
+        self.spin_resistance += other.spin_resistance * share;
+    }
+
+    /// On a particle that `weight` pulls besides: its own part of the sum, held back likewise.
+    pub fn beside(&self, weight: Vec3, mass: f32, h: f32) -> Vec3 {
+        let share = held_back(h * self.resistance, mass);
+        self.wrench.force * share + weight * (share - 1.0)
+    }
+
+    /// The load of this and of what else acts, held back so far that a substep cannot overshoot: see the module.
+    pub fn with(&self, other: Wrench, mass: f32, least_moment: f32, h: f32) -> Wrench {
+        Wrench {
+            force: (other.force + self.wrench.force) * held_back(h * self.resistance, mass),
+            torque: (other.torque + self.wrench.torque) * held_back(h * self.spin_resistance, least_moment),
+        }
+    }
+}
+
+/// Share of a force that is left when `braking` of the inertia would be braked away.
+fn held_back(braking: f32, inertia: f32) -> f32 {
+    if braking > inertia { inertia / braking } else { 1.0 }
+}
+
+impl FieldDef {
+    /// Whether it acts on something at all.
+    pub(crate) fn reaches(&self, target: &Target<'_>) -> bool {
+        target.is_on(self.layers) && self.region.weight(target.center()) > 0.0
+    }
+
+    /// Strength where something is: 0 outside of its region and on other layers, 1 where it is full.
+    pub(crate) fn weight(&self, target: &Target<'_>) -> f32 {
+        if target.is_on(self.layers) { self.region.weight(target.center()) } else { 0.0 }
+    }
+
+    /// Adds what it does to something, but for what couples bodies.
+    pub(crate) fn act(&self, target: &Target<'_>, fields: &Fields<'_>, sum: &mut Load) {
+        let weight = self.weight(target);
+        if weight <= 0.0 {
+            return;
+        }
+        let mut load = Load::default();
+        match &self.kind {
+            FieldKind::Uniform(field) => load.push(field.force(target)),
+            FieldKind::Point(field) => load.push(field.force(target)),
+            FieldKind::Mutual(_) => {}
+            FieldKind::Wind(field) => field.act(target, fields.nanoseconds, &mut load),
+            FieldKind::Drag(field) => field.act(target, &mut load),
+            FieldKind::Buoyancy(field) => field.act(target, fields.gravity, &mut load),
+            FieldKind::Custom { function, parameters } => {
+                load.wrench = fields.functions.call(*function, target, fields, parameters);
+            }
+        }
+        sum.add(&load, weight);
+    }
+
+    /// Energy that something has in it, J, as far as it has one.
+    pub(crate) fn energy(&self, target: &Target<'_>, gravity: Vec3) -> f32 {
+        if self.region != Region::Everywhere || !target.is_on(self.layers) {
+            return 0.0;
+        }
+        match &self.kind {
+            FieldKind::Uniform(field) => field.energy(target),
+            FieldKind::Point(field) => field.energy(target),
+            FieldKind::Buoyancy(field) => field.energy(target, gravity),
+            FieldKind::Mutual(_) | FieldKind::Wind(_) | FieldKind::Drag(_) | FieldKind::Custom { .. } => 0.0,
+        }
+    }
+}
+
+/// The least of three moments.
+pub(crate) fn least(moments: Vec3) -> f32 {
+    min(moments.x, min(moments.y, moments.z))
+}

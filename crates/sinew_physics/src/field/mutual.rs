@@ -1,0 +1,80 @@
+//! Bodies and particles attract each other.
+
+use super::def::not_negative;
+use super::gravity::{attraction, potential};
+use core::f32::consts::PI;
+use sinew_math::Vec3;
+
+/// Newton's gravitation between all that the field reaches: dynamic bodies, and particles.
+///
+/// Two masses at distance `d` pull each other with the **same** force `G m₁ m₂ d / (d² + ε²)^(3/2)`, one this way, one
+/// that way (Newton's third law); how far each moves depends on its own mass. It is computed as `m₁ ((G m₂) / d²)` with `m₂` the heavier, so that
+/// masses of stars in kilograms do not overflow; the moment of inertia of such a body would, so give it one, or count in
+/// other units: in astronomical units, solar masses and years `G` is [`ASTRONOMICAL`](Self::ASTRONOMICAL).
+///
+/// Bodies that attract each other are solved as one island, each substep from where they then are, and each pair's impulse
+/// is given to both: the sum of their momenta stays, up to rounding. Static and kinematic bodies have no mass here; for
+/// one that shall pull and not move there is [`PointGravity`](super::PointGravity). `gravity_scale` has no say: it would
+/// break the third law. In a region that fades, a pair pulls with the product of its strengths at both places. The work
+/// grows with the square of the number of bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MutualGravity {
+    /// `G`. Default 6.6743e-11 m³/(kg s²) (CODATA 2018).
+    pub constant: f32,
+    /// ε (Plummer 1911), metres, ≥ 0: keeps close encounters finite. Default 0.
+    pub softening: f32,
+}
+
+impl Default for MutualGravity {
+    fn default() -> Self {
+        Self { constant: 6.6743e-11, softening: 0.0 }
+    }
+}
+
+/// Something that takes part.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Attractor {
+    pub position: Vec3,
+    pub mass: f32,
+    /// Of the field where it is.
+    pub weight: f32,
+}
+
+impl MutualGravity {
+    /// `G = 4π²`, with lengths in astronomical units, masses in those of the Sun and times in years: Kepler's third law
+    /// for the Earth. A step is then 1/60 of a year.
+    pub const ASTRONOMICAL: f32 = 4.0 * PI * PI;
+
+    pub(super) fn check(&self) -> Result<(), &'static str> {
+        let valid = self.constant.is_finite() && not_negative(self.softening);
+        if valid {
+            Ok(())
+        } else {
+            Err("a constant of gravitation must be finite, its softening not negative")
+        }
+    }
+
+    /// On `a` by `b`, N; that on `b` is the opposite.
+    pub(crate) fn force(&self, a: &Attractor, b: &Attractor) -> Vec3 {
+        // The heavier first, so that both sides of a pair have the same bits.
+        let (heavy, light) = if a.mass > b.mass { (a.mass, b.mass) } else { (b.mass, a.mass) };
+        let pull = attraction(b.position - a.position, self.constant * heavy, self.softening);
+        pull * (light * (a.weight * b.weight))
+    }
+
+    /// Of a pair, J.
+    pub(crate) fn energy(&self, a: &Attractor, b: &Attractor) -> f32 {
+        potential(b.position - a.position, self.constant * b.mass, self.softening) * a.mass
+    }
+
+    /// Adds to `forces`, one for each, what each pair does.
+    pub(crate) fn attract(&self, attractors: &[Attractor], forces: &mut [Vec3]) {
+        for (i, a) in attractors.iter().enumerate() {
+            for (j, b) in attractors.iter().enumerate().skip(i + 1) {
+                let force = self.force(a, b);
+                forces[i] += force;
+                forces[j] -= force;
+            }
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Where a field acts, and how it fades toward its border.
+
+use crate::shape::Shape;
+use sinew_math::{Transform, Vec3};
+
+/// How the strength of a field falls from where it is full to its border, with `u` from 1 to 0 on the way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Fade {
+    /// Full up to the border. Default.
+    #[default]
+    None,
+    /// `u`.
+    Linear,
+    /// `u² (3 − 2u)`: without a kink at either end.
+    Smooth,
+    /// `u²`.
+    Square,
+}
+
+impl Fade {
+    /// Strength at `u`, 0..=1.
+    pub fn strength(self, u: f32) -> f32 {
+        match self {
+            Self::None => 1.0,
+            Self::Linear => u,
+            Self::Smooth => u * u * (3.0 - 2.0 * u),
+            Self::Square => u * u,
+        }
+    }
+}
+
+/// Where a field acts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Region {
+    /// In the whole world. Default.
+    #[default]
+    Everywhere,
+    /// Inside a shape: full where it is deeper than `margin` below the surface, fading to 0 at the surface.
+    Inside {
+        /// The shape; a half-space, too.
+        shape: Shape,
+        /// Its pose in the world.
+        world_from_shape: Transform,
+        /// Metres, ≥ 0. For a ball that fades from its centre outward, the ball's radius.
+        margin: f32,
+        /// How.
+        fade: Fade,
+    },
+}
+
+impl Region {
+    /// A ball, fading from its centre to its surface.
+    pub fn ball(center: Vec3, radius: f32, fade: Fade) -> Self {
+        Self::Inside {
+            shape: Shape::Sphere { radius },
+            world_from_shape: Transform::from_translation(center),
+            margin: radius,
+            fade,
+        }
+    }
+
+    /// Strength at a world point, 0..=1; 0 outside.
+    pub fn weight(&self, point: Vec3) -> f32 {
+        match self {
+            Self::Everywhere => 1.0,
+            Self::Inside { shape, world_from_shape, margin, fade } => {
+                let depth = -shape.signed_distance(world_from_shape, point).0;
+                if depth < 0.0 {
+                    0.0
+                } else if depth >= *margin {
+                    1.0
+                } else {
+                    fade.strength(depth / margin)
+                }
+            }
+        }
+    }
+
+    pub(super) fn check(&self) -> Result<(), &'static str> {
+        match self {
+            Self::Everywhere => Ok(()),
+            Self::Inside { shape, world_from_shape, margin, .. } => {
+                shape.check()?;
+                let valid = world_from_shape.is_finite() && super::def::not_negative(*margin);
+                if valid { Ok(()) } else { Err("a region's pose and margin must be finite") }
+            }
+        }
+    }
+}

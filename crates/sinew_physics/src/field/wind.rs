@@ -1,0 +1,105 @@
+//! Moving air.
+
+use super::def::{not_negative, positive};
+use super::exposed::stream_force;
+use super::noise::turbulence;
+use super::{Load, Target};
+use sinew_math::Vec3;
+
+/// Air that moves, with drag and lift by the area that shapes expose to it.
+///
+/// Each flat panel (the faces of a box, the strip of a capsule's cylinder) that faces the stream `w`, the air's velocity
+/// less the panel's own, with `ŵ = w/|w|`, outward normal `n`, area `A` and `c = −n·ŵ > 0`:
+///
+/// ```text
+/// drag  = ½ ρ C_d |w|² A c ŵ        lift = ½ ρ C_l |w|² A c (−n − c ŵ)
+/// ```
+///
+/// Round ones (a ball, the ends of a capsule, a particle) have drag alone, with `A c = π r²` (Keckeisen et al., "Wind
+/// Effects on Cloth", 2004; the projected areas `A c` of a convex body add up to its shadow, so drag is the engineer's
+/// `½ ρ C_d A |w|²`). Sheltered sides feel nothing, and bodies shelter no others. A force acts where its panel is, so
+/// a plate turns in the wind, and spin is braked. Steady speed of a ball that falls through still air: `√(2 m g / (ρ C_d π
+/// r²))`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wind {
+    /// Of the air, m/s, world. Default 0: still air.
+    pub velocity: Vec3,
+    /// ρ, kg/m³, ≥ 0. Default 1.225: air at sea level, 15 °C.
+    pub density: f32,
+    /// C_d, ≥ 0. Default 1: between a ball (0.47) and a plate (1.2).
+    pub drag: f32,
+    /// C_l, ≥ 0. Default 0.
+    pub lift: f32,
+    /// What comes and goes. Default none.
+    pub gusts: Option<Gusts>,
+}
+
+/// Gusts: a velocity that is added to the wind's, smooth in place and time, the same for the same seed on every machine.
+///
+/// Value noise: random vectors on a lattice of places and times, blended by `u² (3 − 2u)` along each of the four axes. Its
+/// mean is 0; each component is within ± `speed`, with a standard deviation of about a third of it (√(0.743⁴/3)). Time is that of the
+/// step's beginning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gusts {
+    /// Bound of each component, m/s, ≥ 0.
+    pub speed: f32,
+    /// Distance over which gusts differ, metres, positive.
+    pub length: f32,
+    /// Time over which they differ, seconds, at least a nanosecond.
+    pub time: f32,
+    /// Which of all gusts.
+    pub seed: u64,
+}
+
+impl Default for Wind {
+    fn default() -> Self {
+        Self { velocity: Vec3::ZERO, density: 1.225, drag: 1.0, lift: 0.0, gusts: None }
+    }
+}
+
+impl Wind {
+    pub(super) fn check(&self) -> Result<(), &'static str> {
+        if !self.velocity.is_finite() {
+            return Err("a wind's velocity must be finite");
+        }
+        if !(not_negative(self.density) && not_negative(self.drag) && not_negative(self.lift)) {
+            return Err("a wind's density, drag and lift must not be negative");
+        }
+        match &self.gusts {
+            Some(g)
+                if !(not_negative(g.speed) && positive(g.length) && g.time >= 1e-9 && positive(g.time)) =>
+            {
+                Err("gusts need a speed that is not negative, and a positive length and time")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Velocity of the air at a world point and time, m/s.
+    pub fn at(&self, point: Vec3, nanoseconds: u64) -> Vec3 {
+        match &self.gusts {
+            None => self.velocity,
+            Some(gusts) => self.velocity + gusts.at(point, nanoseconds),
+        }
+    }
+
+    pub(super) fn act(&self, target: &Target<'_>, nanoseconds: u64, load: &mut Load) {
+        target.for_each_shape(|shape, at| {
+            let air = self.at(at.translation, nanoseconds);
+            let stream = air - target.velocity_at(at.translation);
+            shape.exposed(at, stream, |panel| {
+                let stream = air - target.velocity_at(panel.point);
+                let (force, brake) = stream_force(&panel, stream, self.density, self.drag, self.lift);
+                load.push_at(panel.point - target.center(), force, brake);
+            });
+        });
+    }
+}
+
+impl Gusts {
+    fn at(&self, point: Vec3, nanoseconds: u64) -> Vec3 {
+        let period = u64::max((self.time * 1e9) as u64, 1);
+        let (cell, within) = (nanoseconds / period, (nanoseconds % period) as f32 / period as f32);
+        turbulence(point / self.length, (cell, within), self.seed) * self.speed
+    }
+}

@@ -1,0 +1,121 @@
+//! A step with objects: all islands go substep by substep, and between the parts the objects see the world as it is.
+
+use super::{Corrections, Forces, Objects, Substep};
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::id::{BodyId, GroupId};
+use crate::islands::Islands;
+use crate::solver::View;
+use crate::spatial::{Vec6, angular, linear};
+use crate::stage::{Stage, zone};
+use crate::step::{StepContext, solve};
+use crate::tasks::Phase;
+use crate::touch::wake;
+
+/// Where bodies and particle groups are in the course of a step, by their slots in the world.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Places {
+    /// Island and local index of what moves.
+    bodies: Vec<Option<(u32, u32)>>,
+    /// Position among the groups that were taken out of the world.
+    groups: Vec<u32>,
+}
+
+impl Places {
+    fn find(&mut self, islands: &mut Islands, bodies: &Arena<Body>) {
+        let (workspaces, taken) = islands.halted();
+        self.bodies.clear();
+        self.bodies.resize(bodies.slot_count(), None);
+        for (island, workspace) in workspaces.iter().enumerate() {
+            for (local, body) in workspace.solver.moving_bodies().iter().enumerate() {
+                self.bodies[body.index as usize] = Some((island as u32, local as u32));
+            }
+        }
+        let slots = taken.iter().map(|group| group.index as usize + 1).max().unwrap_or(0);
+        self.groups.clear();
+        self.groups.resize(slots, u32::MAX);
+        for (place, group) in taken.iter().enumerate() {
+            self.groups[group.index as usize] = place as u32;
+        }
+    }
+
+    /// Island and local index of a body that moves.
+    pub fn body(&self, id: BodyId) -> Option<(usize, usize)> {
+        self.bodies[id.index as usize].map(|(island, local)| (island as usize, local as usize))
+    }
+
+    /// Position of a group among those taken.
+    pub fn group(&self, id: GroupId) -> Option<usize> {
+        self.groups.get(id.index as usize).map(|&place| place as usize)
+    }
+}
+
+/// A sleeping body that was pushed: it wakes when the step is over, with what it was given.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Roused {
+    /// In the world.
+    pub index: u32,
+    /// Change of velocity.
+    pub change: Vec6,
+}
+
+/// All islands phase by phase. Objects act before the two phases of each substep.
+pub(crate) fn lockstep(
+    objects: &mut Objects,
+    islands: &mut Islands,
+    view: &View<'_>,
+    context: &StepContext<'_>,
+) {
+    for phase in Phase::of_step(context.substeps) {
+        match phase {
+            Phase::Prepare | Phase::Store => {}
+            Phase::Move(done) => zone(context.profiler, Stage::IntegrateVelocity, || {
+                objects.add_forces(islands, view, context, done);
+            }),
+            Phase::Relax(done) => zone(context.profiler, Stage::Project, || {
+                objects.satisfy_constraints(islands, view, context, done + 1);
+            }),
+        }
+        islands.run_part(context.runner, |task| solve(phase, task, view, context));
+        if phase == Phase::Prepare {
+            objects.places.find(islands, view.bodies);
+        }
+    }
+}
+
+impl Objects {
+    fn add_forces(&mut self, islands: &mut Islands, view: &View<'_>, context: &StepContext<'_>, moved: u32) {
+        for workspace in islands.halted().0 {
+            workspace.solver.renew_forces(view);
+        }
+        let Self { arena, places, roused, .. } = self;
+        let mut forces = Forces(Substep::new(islands, view, places, roused, context, moved));
+        for (_, object) in arena.iter_mut() {
+            object.add_forces(&mut forces);
+        }
+    }
+
+    fn satisfy_constraints(
+        &mut self,
+        islands: &mut Islands,
+        view: &View<'_>,
+        context: &StepContext<'_>,
+        moved: u32,
+    ) {
+        let Self { arena, places, roused, .. } = self;
+        let mut corrections = Corrections(Substep::new(islands, view, places, roused, context, moved));
+        for (_, object) in arena.iter_mut() {
+            object.satisfy_constraints(&mut corrections);
+        }
+    }
+
+    /// When the substeps are over: wakes what was pushed in its sleep.
+    pub fn rouse(&mut self, bodies: &mut Arena<Body>) {
+        for Roused { index, change } in self.roused.drain(..) {
+            wake(bodies, index);
+            let body = bodies.at_mut(index);
+            body.velocity.linear += linear(&change);
+            body.velocity.angular += angular(&change);
+        }
+    }
+}

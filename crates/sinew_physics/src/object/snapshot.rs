@@ -1,0 +1,92 @@
+//! Objects to bytes and back.
+
+use super::{Objects, PhysicsObject};
+use crate::arena::Arena;
+use sinew_math::{ReadError, Reader, Writer};
+
+/// An object in a snapshot.
+struct Saved<'a> {
+    kind: &'a str,
+    state: Reader<'a>,
+}
+
+impl Objects {
+    /// Writes ids, kinds and states.
+    pub fn save(&self, w: &mut Writer) {
+        self.arena.save(w, |w, object| {
+            w.text(object.kind());
+            w.block(|w| object.save(w));
+        });
+    }
+
+    /// Reads what [`save`](Self::save) wrote: into the objects that are still there, or else into new ones of registered
+    /// kinds. Objects that the snapshot does not have go.
+    ///
+    /// # Errors
+    /// If the bytes are not valid, an object does not take its state, or one is not there whose kind is not registered;
+    /// the objects are then as they were.
+    pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
+        let saved = Arena::load(r, |r| Ok(Saved { kind: r.text()?, state: r.block()? }))?;
+        let before = self.states();
+        let mut made = Vec::new();
+        for (index, generation, saved) in saved.entries() {
+            if let Err(error) = self.load_one(index, generation, saved, &mut made) {
+                self.take_back(&before);
+                return Err(error);
+            }
+        }
+        let mut made = made.into_iter();
+        let mut old = core::mem::take(&mut self.arena);
+        self.arena = saved.map(|index, generation, saved| {
+            let kept = old.remove(index, generation).filter(|object| object.kind() == saved.kind);
+            kept.or_else(|| made.next()).expect("it is there or was made")
+        });
+        Ok(())
+    }
+
+    fn load_one(
+        &mut self,
+        index: u32,
+        generation: u32,
+        saved: &Saved<'_>,
+        made: &mut Vec<Box<dyn PhysicsObject>>,
+    ) -> Result<(), ReadError> {
+        let state = saved.state.clone();
+        match self.arena.get_mut(index, generation).filter(|object| object.kind() == saved.kind) {
+            Some(object) => take_state(object.as_mut(), state),
+            None => {
+                let make = self.kinds.iter().find(|(kind, _)| *kind == saved.kind).map(|(_, make)| make);
+                let make =
+                    make.ok_or_else(|| state.error("an object that is not there, of no known kind"))?;
+                let mut object = make();
+                take_state(object.as_mut(), state)?;
+                made.push(object);
+                Ok(())
+            }
+        }
+    }
+
+    /// States of all, in the order of ids.
+    fn states(&self) -> Writer {
+        let mut w = Writer::new();
+        for (_, object) in self.arena.iter() {
+            w.block(|w| object.save(w));
+        }
+        w
+    }
+
+    /// # Panics
+    /// If an object does not take what it wrote itself.
+    fn take_back(&mut self, states: &Writer) {
+        let mut r = Reader::new(states.as_bytes());
+        for (_, object) in self.arena.iter_mut() {
+            let taken = r.block().and_then(|state| take_state(object.as_mut(), state));
+            taken.expect("an object takes the state that it wrote");
+        }
+    }
+}
+
+fn take_state(object: &mut dyn PhysicsObject, mut state: Reader<'_>) -> Result<(), ReadError> {
+    object.load(&mut state)?;
+    state.finish()
+}

@@ -1,0 +1,284 @@
+//! What an object sees of a substep, and what it may do.
+
+use super::lockstep::{Places, Roused};
+use crate::body::{Body, Velocity};
+use crate::def::BodyKind;
+use crate::id::{BodyId, GroupId};
+use crate::islands::Islands;
+use crate::particles::ParticleGroup;
+use crate::project::TakenGroup;
+use crate::shape::MassProperties;
+use crate::solver::{IslandSolver, View};
+use crate::spatial::{Vec6, ZERO6, angular, join, linear};
+use crate::step::StepContext;
+use crate::tasks::Workspace;
+use core::ops::{Deref, DerefMut};
+use sinew_math::{Transform, Vec3};
+
+/// The world in the course of a step: where bodies and particles are after the substeps so far.
+///
+/// # Panics
+/// Every method that takes an id panics if the id is stale or from another world, and every method that takes a number
+/// panics if it is not finite.
+pub struct Substep<'a> {
+    view: &'a View<'a>,
+    workspaces: &'a mut [Workspace],
+    taken: &'a mut [TakenGroup],
+    places: &'a Places,
+    roused: &'a mut Vec<Roused>,
+    /// When the step began, seconds.
+    start: f64,
+    /// Substeps after which things are where they are.
+    moved: u32,
+}
+
+impl<'a> Substep<'a> {
+    pub(super) fn new(
+        islands: &'a mut Islands,
+        view: &'a View<'a>,
+        places: &'a Places,
+        roused: &'a mut Vec<Roused>,
+        context: &StepContext<'_>,
+        moved: u32,
+    ) -> Self {
+        let (workspaces, taken) = islands.halted();
+        Self { view, workspaces, taken, places, roused, start: context.time, moved }
+    }
+
+    /// Length of a substep, seconds.
+    pub fn h(&self) -> f32 {
+        self.view.h
+    }
+
+    /// Simulated time at which things are where they are, seconds: the substep's beginning for forces, its end for
+    /// corrections.
+    pub fn time(&self) -> f64 {
+        self.start + f64::from(self.moved) * f64::from(self.view.h)
+    }
+
+    /// The world's gravity, m/s².
+    pub fn gravity(&self) -> Vec3 {
+        self.view.def.gravity
+    }
+
+    /// All bodies, by index.
+    pub fn body_ids(&self) -> impl Iterator<Item = BodyId> + use<'a> {
+        self.view.bodies.entries().map(|(index, generation, _)| BodyId { index, generation })
+    }
+
+    /// True if the id names a body that is there.
+    pub fn contains(&self, id: BodyId) -> bool {
+        self.view.bodies.get(id.index, id.generation).is_some()
+    }
+
+    /// Static, kinematic or dynamic.
+    pub fn kind(&self, id: BodyId) -> BodyKind {
+        self.expect(id).kind
+    }
+
+    /// Mass (0 unless dynamic), centre and inertia in the body's frame.
+    pub fn mass(&self, id: BodyId) -> MassProperties {
+        self.expect(id).mass_properties()
+    }
+
+    /// Pose of the body's frame.
+    pub fn transform(&self, id: BodyId) -> Transform {
+        self.principal_frame(id) * self.expect(id).principal_from_body
+    }
+
+    /// World position of the centre of mass.
+    pub fn center_of_mass(&self, id: BodyId) -> Vec3 {
+        self.principal_frame(id).translation
+    }
+
+    /// Velocity of the centre of mass and angular velocity; zero of a body that sleeps.
+    pub fn velocity(&self, id: BodyId) -> Velocity {
+        let body = self.expect(id);
+        match (self.moving(id), body.kind) {
+            (Some((solver, local)), _) => {
+                let v = &solver.velocities[local];
+                Velocity { linear: linear(v), angular: angular(v) }
+            }
+            (None, BodyKind::Kinematic) => body.velocity,
+            (None, _) => Velocity::default(),
+        }
+    }
+
+    /// How a body yields at a world point: the speed that the point gains in a direction (of length 1) per impulse in
+    /// it, 1/kg, with the joints that hold the body, but for those that close loops. 0 of what nothing moves: static,
+    /// kinematic and sleeping bodies.
+    ///
+    /// Costs a pass through all bodies that hang together with it.
+    pub fn response(&mut self, id: BodyId, point: Vec3, direction: Vec3) -> f32 {
+        let row = self.at(id, direction, point);
+        self.moving_mut(id).map_or(0.0, |(solver, local)| solver.response_along(local, &row))
+    }
+
+    /// A particle group.
+    pub fn particles(&self, id: GroupId) -> &ParticleGroup {
+        &self.taken[self.place(id)].group
+    }
+
+    /// A particle group, to be pushed.
+    pub fn particles_mut(&mut self, id: GroupId) -> &mut ParticleGroup {
+        let place = self.place(id);
+        &mut self.taken[place].group
+    }
+
+    fn place(&self, id: GroupId) -> usize {
+        self.places.group(id).filter(|&place| place < self.taken.len()).expect("the group is there")
+    }
+
+    fn expect(&self, id: BodyId) -> &'a Body {
+        self.view.bodies.get(id.index, id.generation).expect("the body is there")
+    }
+
+    fn principal_frame(&self, id: BodyId) -> Transform {
+        match self.moving(id) {
+            Some((solver, local)) => solver.bodies[local].pose,
+            None => match self.expect(id) {
+                body if body.kind == BodyKind::Kinematic => body.carried(self.view.h, self.moved),
+                body => body.world_from_principal,
+            },
+        }
+    }
+
+    /// Where a body is solved, if it moves.
+    fn moving(&self, id: BodyId) -> Option<(&IslandSolver, usize)> {
+        self.expect(id);
+        let (island, local) = self.places.body(id)?;
+        Some((&self.workspaces[island].solver, local))
+    }
+
+    fn moving_mut(&mut self, id: BodyId) -> Option<(&mut IslandSolver, usize)> {
+        self.expect(id);
+        let (island, local) = self.places.body(id)?;
+        Some((&mut self.workspaces[island].solver, local))
+    }
+
+    /// A force or an impulse at a world point, as one at the centre of mass.
+    fn at(&self, id: BodyId, force: Vec3, point: Vec3) -> Vec6 {
+        assert!(force.is_finite() && point.is_finite(), "what is applied to a body is finite");
+        join(force, (point - self.center_of_mass(id)).cross(force))
+    }
+
+    /// Gives an impulse to a body: by `give`, if it moves; if it sleeps, it wakes with it.
+    fn give(&mut self, id: BodyId, impulse: &Vec6, give: impl FnOnce(&mut IslandSolver, usize, &Vec6)) {
+        if let Some((solver, local)) = self.moving_mut(id) {
+            give(solver, local, impulse);
+        } else {
+            let body = self.expect(id);
+            let change =
+                join(linear(impulse) * body.inverse_mass(), body.inverse_inertia_mul(angular(impulse)));
+            self.rouse(id, impulse, &change);
+        }
+    }
+
+    /// A body that sleeps wakes when the step is over, unless nothing was applied to it.
+    fn rouse(&mut self, id: BodyId, applied: &Vec6, change: &Vec6) {
+        let body = self.expect(id);
+        if body.kind == BodyKind::Dynamic && !body.is_awake() && !body.quarantined && *applied != ZERO6 {
+            self.roused.push(Roused { index: id.index, change: *change });
+        }
+    }
+}
+
+/// A substep's beginning: nothing has moved in it.
+///
+/// What is applied to a body that sleeps wakes it when the step is over; an impulse goes with it, a force counts from the
+/// next step on, as gravity does for it. Zero wakes nothing. Static and kinematic bodies are not moved.
+pub struct Forces<'a>(pub(super) Substep<'a>);
+
+impl Forces<'_> {
+    /// Force (N) at a world point for this substep.
+    pub fn apply_force(&mut self, id: BodyId, force: Vec3, point: Vec3) {
+        let force = self.at(id, force, point);
+        self.add(id, &force);
+    }
+
+    /// Force (N) at the centre of mass for this substep.
+    pub fn apply_force_at_center(&mut self, id: BodyId, force: Vec3) {
+        self.apply_force(id, force, self.center_of_mass(id));
+    }
+
+    /// Torque (N·m) for this substep.
+    pub fn apply_torque(&mut self, id: BodyId, torque: Vec3) {
+        assert!(torque.is_finite(), "a torque is finite");
+        self.add(id, &join(Vec3::ZERO, torque));
+    }
+
+    /// Impulse (N·s) at a world point: changes the velocity at once. What joints make of it comes when the substep is
+    /// solved.
+    pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
+        let impulse = self.at(id, impulse, point);
+        self.give(id, &impulse, IslandSolver::push_loose);
+    }
+
+    fn add(&mut self, id: BodyId, force: &Vec6) {
+        if let Some((solver, local)) = self.moving_mut(id) {
+            solver.add_force(local, linear(force), angular(force));
+        } else {
+            self.rouse(id, force, &ZERO6);
+        }
+    }
+}
+
+/// A substep's end: everything has moved, and velocities are about to be relaxed.
+///
+/// What is applied goes through the joints at once; so each call costs a pass through all bodies that hang together. A
+/// body that sleeps wakes when the step is over.
+pub struct Corrections<'a>(pub(super) Substep<'a>);
+
+impl Corrections<'_> {
+    /// Impulse (N·s) at a world point: changes velocities.
+    pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
+        let impulse = self.at(id, impulse, point);
+        self.give(id, &impulse, IslandSolver::push_held);
+    }
+
+    /// Impulse (N·s) at a world point that changes velocities, and poses to what they would be if it had acted all through
+    /// the substep: by `h` times the change of velocity. So an impulse of `−C / (h w)` along the gradient of an error `C`
+    /// (m), with the [`response`](Substep::response) `w`, removes the error (Müller et al., "Detailed Rigid Body
+    /// Simulation with Extended Position Based Dynamics", SCA 2020).
+    ///
+    /// Poses should change by little: contacts and particles are looked for where bodies may come within a step.
+    pub fn correct(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
+        let impulse = self.at(id, impulse, point);
+        self.give(id, &impulse, IslandSolver::correct);
+    }
+
+    /// Moves a particle by `by` (m, world), with the velocity that takes it there within the substep.
+    ///
+    /// # Panics
+    /// If there is no such particle.
+    pub fn move_particle(&mut self, id: GroupId, particle: u32, by: Vec3) {
+        let h = self.h();
+        self.particles_mut(id).correct(particle, by, h);
+    }
+}
+
+impl<'a> Deref for Forces<'a> {
+    type Target = Substep<'a>;
+    fn deref(&self) -> &Substep<'a> {
+        &self.0
+    }
+}
+
+impl DerefMut for Forces<'_> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.0
+    }
+}
+
+impl<'a> Deref for Corrections<'a> {
+    type Target = Substep<'a>;
+    fn deref(&self) -> &Substep<'a> {
+        &self.0
+    }
+}
+
+impl DerefMut for Corrections<'_> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.0
+    }
+}

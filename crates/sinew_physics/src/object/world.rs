@@ -1,0 +1,65 @@
+//! The objects of a world: made, asked, taken out.
+
+use super::PhysicsObject;
+use crate::draw::DebugDraw;
+use crate::id::ObjectId;
+use crate::world::World;
+use core::any::Any;
+
+impl World {
+    /// Adds an object of the user's own: [`init`](PhysicsObject::init) is called at once, the rest from the next step on.
+    pub fn add_object(&mut self, mut object: Box<dyn PhysicsObject>) -> ObjectId {
+        object.init(self);
+        let (index, generation) = self.objects.arena.insert(object);
+        ObjectId { index, generation }
+    }
+
+    /// Takes an object out and gives it back; bodies that it made remain.
+    pub fn remove_object(&mut self, id: ObjectId) -> Box<dyn PhysicsObject> {
+        self.objects.arena.remove(id.index, id.generation).expect("the object is there")
+    }
+
+    /// An object.
+    ///
+    /// # Panics
+    /// If it is of another type.
+    pub fn object<T: PhysicsObject>(&self, id: ObjectId) -> &T {
+        let object = self.objects.arena.get(id.index, id.generation).expect("the object is there");
+        let object: &dyn Any = object.as_ref();
+        object.downcast_ref().expect("the object is of this type")
+    }
+
+    /// An object, to be changed.
+    ///
+    /// # Panics
+    /// If it is of another type.
+    pub fn object_mut<T: PhysicsObject>(&mut self, id: ObjectId) -> &mut T {
+        let object = self.objects.arena.get_mut(id.index, id.generation).expect("the object is there");
+        let object: &mut dyn Any = object.as_mut();
+        object.downcast_mut().expect("the object is of this type")
+    }
+
+    /// All objects, by index.
+    pub fn object_ids(&self) -> impl Iterator<Item = ObjectId> {
+        self.objects.arena.entries().map(|(index, generation, _)| ObjectId { index, generation })
+    }
+
+    /// True if the id names an object that is there.
+    pub fn contains_object(&self, id: ObjectId) -> bool {
+        self.objects.arena.get(id.index, id.generation).is_some()
+    }
+
+    pub(crate) fn draw_objects(&self, out: &mut dyn DebugDraw) {
+        for (_, object) in self.objects.arena.iter() {
+            object.draw(self, out);
+        }
+    }
+
+    /// Lets [`load`](Self::load) make objects of a kind that it finds in a snapshot and the world does not have: in a
+    /// new world, or when an object was taken out since. A kind that is told again replaces the one told before.
+    pub fn register_kind(&mut self, make: fn() -> Box<dyn PhysicsObject>) {
+        let kind = make().kind();
+        self.objects.kinds.retain(|&(known, _)| known != kind);
+        self.objects.kinds.push((kind, make));
+    }
+}

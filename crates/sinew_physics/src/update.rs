@@ -1,0 +1,79 @@
+//! Time: frames of any length become whole steps.
+
+use crate::world::World;
+use core::time::Duration;
+
+/// What an update did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Update {
+    /// Steps taken.
+    pub steps: u32,
+    /// Time that waits for the next step, as a share of a step, 0..1: for [`World::interpolated`].
+    pub alpha: f32,
+    /// Time for which no steps were taken, since there would have been more of them than
+    /// [`WorldDef::catch_up_steps`](crate::WorldDef::catch_up_steps): the world is late by so much for good. Zero as long as
+    /// the host keeps up.
+    pub dropped: Duration,
+}
+
+impl World {
+    /// Runs the whole steps that `time` more and what waited before hold, on the calling thread. Time is counted in whole
+    /// nanoseconds, so the state after step k is the same at any frame rate.
+    ///
+    /// A frame as floating-point seconds is `Duration::from_secs_f32(seconds)`, which panics if they are negative or not
+    /// finite.
+    ///
+    /// ```
+    /// use core::time::Duration;
+    /// use sinew_physics::{BodyDef, Shape, ShapeDef, World, WorldDef};
+    ///
+    /// let mut world = World::new(WorldDef::default());
+    /// let shapes = vec![ShapeDef::new(Shape::Sphere { radius: 0.1 })];
+    /// let ball = world.add_body(&BodyDef { shapes, ..BodyDef::default() });
+    /// let frame = world.update(Duration::from_secs_f32(0.040));
+    /// assert_eq!(frame.steps, 2); // of 1/60 s
+    /// let drawn = world.interpolated(ball, frame.alpha);
+    /// assert!(drawn.translation.y < 0.0);
+    /// ```
+    pub fn update(&mut self, time: Duration) -> Update {
+        self.update_with(time, World::step)
+    }
+
+    /// Likewise, with steps made by `step`: for threads and stage times ([`step_with`](Self::step_with)), for forces that
+    /// every step is to feel, not only a frame's first, and for the [`events`](Self::events) of every step, not only of its
+    /// last.
+    ///
+    /// ```
+    /// # use core::time::Duration;
+    /// # use sinew_physics::{World, WorldDef};
+    /// # let mut world = World::new(WorldDef::default());
+    /// let mut hits = 0;
+    /// world.update_with(Duration::from_millis(33), |world| {
+    ///     world.step();
+    ///     hits += world.events().begin.len();
+    /// });
+    /// ```
+    ///
+    /// # Panics
+    /// If a call of `step` does not take exactly one step.
+    pub fn update_with(&mut self, time: Duration, mut step: impl FnMut(&mut World)) -> Update {
+        let length = u128::from(self.def.step_nanoseconds);
+        let pending = u128::from(self.pending_nanoseconds) + time.as_nanos();
+        let due = pending / length;
+        let steps = u128::min(due, u128::from(self.def.catch_up_steps)) as u32;
+        self.pending_nanoseconds = (pending % length) as u64;
+        let expected = self.steps + u64::from(steps);
+        for _ in 0..steps {
+            step(self);
+        }
+        assert_eq!(self.steps, expected, "each call takes one step");
+        let alpha = self.pending_nanoseconds as f32 / self.def.step_nanoseconds as f32;
+        Update { steps, alpha, dropped: nanoseconds((due - u128::from(steps)) * length) }
+    }
+}
+
+/// A whole number of them; what no duration holds is its longest.
+fn nanoseconds(count: u128) -> Duration {
+    const SECOND: u128 = 1_000_000_000;
+    u64::try_from(count / SECOND).map_or(Duration::MAX, |s| Duration::new(s, (count % SECOND) as u32))
+}

@@ -1,0 +1,6 @@
+//! Fields and forces against closed forms.
+
+mod closed_forms;
+mod forces;
+mod state;
+mod submerged;

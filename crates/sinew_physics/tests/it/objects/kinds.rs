@@ -1,0 +1,150 @@
+//! Kinds of objects for tests: each does one thing.
+
+use sinew_math::{ReadError, Reader, Vec3, Writer, max};
+use sinew_physics::*;
+
+/// Does nothing, but counts how often it is asked.
+#[derive(Default)]
+pub struct Counter {
+    pub asked: u32,
+}
+
+impl PhysicsObject for Counter {
+    fn kind(&self) -> &'static str {
+        "counter"
+    }
+    fn add_forces(&mut self, _: &mut Forces<'_>) {
+        self.asked += 1;
+    }
+    fn satisfy_constraints(&mut self, _: &mut Corrections<'_>) {
+        self.asked += 1;
+    }
+    fn save(&self, w: &mut Writer) {
+        w.u32(self.asked);
+    }
+    fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
+        self.asked = r.u32()?;
+        Ok(())
+    }
+}
+
+/// A spring without length from a place in the world to the centre of a body.
+pub struct Spring {
+    pub body: BodyId,
+    pub place: Vec3,
+    /// N/m.
+    pub stiffness: f32,
+}
+
+impl PhysicsObject for Spring {
+    fn kind(&self) -> &'static str {
+        "spring"
+    }
+    fn add_forces(&mut self, forces: &mut Forces<'_>) {
+        let pull = (self.place - forces.center_of_mass(self.body)) * self.stiffness;
+        forces.apply_force_at_center(self.body, pull);
+    }
+    fn save(&self, w: &mut Writer) {
+        w.u64(self.body.to_bits());
+    }
+    fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
+        self.body = BodyId::from_bits(r.u64()?);
+        Ok(())
+    }
+}
+
+/// Keeps the centre of a body at a distance from a place.
+pub struct Leash {
+    pub body: BodyId,
+    pub place: Vec3,
+    /// Metres.
+    pub length: f32,
+}
+
+impl PhysicsObject for Leash {
+    fn kind(&self) -> &'static str {
+        "leash"
+    }
+    fn satisfy_constraints(&mut self, corrections: &mut Corrections<'_>) {
+        let at = corrections.center_of_mass(self.body);
+        let arm = at - self.place;
+        let (error, out) = (arm.length() - self.length, arm.normalize());
+        let response = corrections.response(self.body, at, out);
+        let impulse = -error / (corrections.h() * response);
+        corrections.correct(self.body, out * impulse, at);
+    }
+    fn save(&self, w: &mut Writer) {
+        w.f32(self.length);
+    }
+    fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
+        self.length = r.f32()?;
+        Ok(())
+    }
+}
+
+/// A ball that nothing but particles touch; they leave it where they came in, without friction.
+pub struct Bump {
+    pub center: Vec3,
+    pub radius: f32,
+    pub group: GroupId,
+}
+
+impl PhysicsObject for Bump {
+    fn kind(&self) -> &'static str {
+        "bump"
+    }
+    fn satisfy_constraints(&mut self, corrections: &mut Corrections<'_>) {
+        for i in 0..corrections.particles(self.group).positions().len() {
+            let group = corrections.particles(self.group);
+            let out = group.positions()[i] - self.center;
+            let depth = max(self.radius + group.radii()[i] - out.length(), 0.0);
+            if depth > 0.0 {
+                corrections.move_particle(self.group, i as u32, out.normalize() * depth);
+            }
+        }
+    }
+    fn save(&self, _: &mut Writer) {}
+    fn load(&mut self, _: &mut Reader<'_>) -> Result<(), ReadError> {
+        Ok(())
+    }
+}
+
+/// Does what a test says, once, in one of its two turns.
+pub struct Once<F> {
+    pub act: Option<F>,
+}
+
+impl<F: FnOnce(&mut Forces<'_>) + Send + Sync + 'static> PhysicsObject for Once<F> {
+    fn kind(&self) -> &'static str {
+        "once"
+    }
+    fn add_forces(&mut self, forces: &mut Forces<'_>) {
+        if let Some(act) = self.act.take() {
+            act(forces);
+        }
+    }
+    fn save(&self, _: &mut Writer) {}
+    fn load(&mut self, _: &mut Reader<'_>) -> Result<(), ReadError> {
+        Ok(())
+    }
+}
+
+/// Likewise, when everything has moved.
+pub struct OnceMoved<F> {
+    pub act: Option<F>,
+}
+
+impl<F: FnOnce(&mut Corrections<'_>) + Send + Sync + 'static> PhysicsObject for OnceMoved<F> {
+    fn kind(&self) -> &'static str {
+        "once moved"
+    }
+    fn satisfy_constraints(&mut self, corrections: &mut Corrections<'_>) {
+        if let Some(act) = self.act.take() {
+            act(corrections);
+        }
+    }
+    fn save(&self, _: &mut Writer) {}
+    fn load(&mut self, _: &mut Reader<'_>) -> Result<(), ReadError> {
+        Ok(())
+    }
+}

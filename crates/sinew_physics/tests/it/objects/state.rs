@@ -1,0 +1,184 @@
+//! Objects in snapshots: exact, and never more broken than the bytes.
+
+use super::kinds::{Bump, Counter, Leash, Spring};
+use super::{mixed, panics};
+use sinew_math::{ReadError, Reader, Vec3, Writer};
+use sinew_physics::stage::NoProfiler;
+use sinew_physics::*;
+
+/// The mixed world, with objects that push a box, hold a link and are in the rope's way.
+pub fn inhabited() -> World {
+    let mut world = mixed();
+    let bodies: Vec<BodyId> = world.body_ids().collect();
+    let group = world.group_ids().next().expect("there is a rope");
+    let place = Vec3::new(-0.5, 1.5, 0.0);
+    world.add_object(Box::new(Spring { body: bodies[3], place, stiffness: 300.0 }));
+    world.add_object(Box::new(Counter::default()));
+    let place = world.center_of_mass(bodies[13]) + Vec3::Y * 0.5;
+    world.add_object(Box::new(Leash { body: bodies[13], place, length: 0.5 }));
+    world.add_object(Box::new(Bump { center: Vec3::new(-1.5, 0.3, 0.0), radius: 0.4, group }));
+    world
+}
+
+fn run(world: &mut World, steps: usize) -> Vec<u64> {
+    let step = |_| {
+        world.step();
+        world.hash()
+    };
+    (0..steps).map(step).collect()
+}
+
+fn saved(world: &World) -> Vec<u8> {
+    let mut w = Writer::new();
+    world.save(&mut w);
+    w.into_bytes()
+}
+
+#[test]
+fn threads_do_not_matter() {
+    let mut alone = inhabited();
+    let hashes = run(&mut alone, 240);
+    for threads in [1, 2, 4] {
+        let mut world = inhabited();
+        for (step, hash) in hashes.iter().enumerate() {
+            world.step_with(&Threads::new(threads), &NoProfiler);
+            assert_eq!(world.hash(), *hash, "{threads} threads, step {step}");
+        }
+    }
+}
+
+#[test]
+fn a_restored_world_goes_on_as_the_saved_one() {
+    let mut world = inhabited();
+    run(&mut world, 50);
+    let bytes = saved(&world);
+    let then = run(&mut world, 100);
+    world.load(&mut Reader::new(&bytes)).expect("it was saved");
+    assert_eq!(saved(&world), bytes);
+    assert_eq!(run(&mut world, 100), then);
+}
+
+#[test]
+fn reset_is_exact() {
+    let mut world = inhabited();
+    run(&mut world, 30);
+    world.update(core::time::Duration::from_millis(7));
+    let removed = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
+    world.remove_body(removed);
+    world.mark();
+    let marked = saved(&world);
+    let add = |world: &mut World| {
+        let body = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
+        let object = world.add_object(Box::new(Counter::default()));
+        (body, object, run(world, 60))
+    };
+    let first = add(&mut world);
+    assert!(first.0 != removed);
+    for _ in 0..3 {
+        world.reset();
+        assert_eq!(saved(&world), marked, "time that waits for a step included");
+        assert_eq!(*world.events(), Events::default());
+        assert!(!world.contains(first.0) && !world.contains_object(first.1));
+        assert_eq!(add(&mut world), first, "ids and all that follows");
+    }
+}
+
+#[test]
+fn objects_come_and_go_with_the_snapshots() {
+    let mut world = mixed();
+    let [first, second] = [3, 5].map(|asked| world.add_object(Box::new(Counter { asked })));
+    let both = saved(&world);
+    world.remove_object(first);
+    let one = saved(&world);
+    let third = world.add_object(Box::new(Counter { asked: 7 }));
+    assert!(third != first, "the slot is used again, the id is not");
+    let other = saved(&world);
+
+    // Back to where the third was not, and on to where it is again, since its kind may be made.
+    let unknown = world.load(&mut Reader::new(&both)).expect_err("the first is gone");
+    assert_eq!(unknown.what, "an object that is not there, of no known kind");
+    assert_eq!(saved(&world), other, "nothing has changed");
+    world.load(&mut Reader::new(&one)).expect("the second is there");
+    assert_eq!(world.object_ids().collect::<Vec<_>>(), [second]);
+    world.register_kind(|| Box::new(Counter::default()));
+    world.load(&mut Reader::new(&other)).expect("the third is made");
+    assert_eq!(world.object::<Counter>(third).asked, 7);
+    world.load(&mut Reader::new(&both)).expect("the first is made");
+    assert!(!world.contains_object(third));
+    assert_eq!([first, second].map(|id| world.object::<Counter>(id).asked), [3, 5]);
+
+    let mut new = World::new(WorldDef::default());
+    new.register_kind(|| Box::new(Counter::default()));
+    new.load(&mut Reader::new(&both)).expect("a new world makes both");
+    assert_eq!(new.hash(), { world.hash() });
+}
+
+/// Reads one byte too few or too many of what it wrote.
+struct Careless {
+    reads: usize,
+}
+
+impl PhysicsObject for Careless {
+    fn kind(&self) -> &'static str {
+        "careless"
+    }
+    fn save(&self, w: &mut Writer) {
+        w.u32(7);
+    }
+    fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
+        r.raw(self.reads).map(|_| ())
+    }
+}
+
+#[test]
+fn a_wrong_load_is_an_error_and_changes_nothing() {
+    let mut world = mixed();
+    let counter = world.add_object(Box::new(Counter { asked: 3 }));
+    let careless = world.add_object(Box::new(Careless { reads: 4 }));
+    let bytes = saved(&world);
+    world.object_mut::<Counter>(counter).asked = 8;
+    let before = saved(&world);
+    // What the first object took by then is taken back, and so the second must be able to load its own.
+    for cut in (0..bytes.len()).step_by(41).chain(bytes.len() - 40..bytes.len()) {
+        assert!(world.load(&mut Reader::new(&bytes[..cut])).is_err());
+        assert_eq!(saved(&world), before, "cut at {cut}");
+    }
+    for reads in [3, 5] {
+        world.object_mut::<Careless>(careless).reads = reads;
+        assert!(panics(|| drop(world.load(&mut Reader::new(&bytes)))), "it does not take its own");
+    }
+}
+
+#[test]
+fn every_byte_may_be_wrong() {
+    let mut world = inhabited();
+    run(&mut world, 5);
+    let bytes = saved(&world);
+    let mut other = inhabited();
+    let objects = bytes.len() - 150;
+    for at in (0..objects).step_by(97).chain(objects..bytes.len()) {
+        for flip in [0x01, 0x80, 0xff] {
+            let mut wrong = bytes.clone();
+            wrong[at] ^= flip;
+            // Many wrong bytes are only other numbers.
+            drop(other.load(&mut Reader::new(&wrong)));
+        }
+    }
+}
+
+#[test]
+#[should_panic(expected = "the object is of this type")]
+fn an_object_of_another_type() {
+    let mut world = mixed();
+    let id = world.add_object(Box::new(Counter::default()));
+    world.object::<Bump>(id);
+}
+
+#[test]
+#[should_panic(expected = "the object is there")]
+fn an_object_that_was_taken_out() {
+    let mut world = mixed();
+    let id = world.add_object(Box::new(Counter::default()));
+    world.remove_object(id);
+    world.object::<Counter>(id);
+}

@@ -1,0 +1,212 @@
+//! A physics world as models and lines: what can move in colours, what stands in grey.
+
+use crate::draw::{self, Solid};
+use crate::scene::{Line, LineDepth, Material, Model, Scene};
+use sinew::math::{Transform, Vec3, max};
+use sinew::physics::boxes::Aabb;
+use sinew::physics::particles::{ParticleGroup, SpringDef};
+use sinew::physics::{BodyId, BodyKind, DebugDraw, DrawKind, JointDef, JointId, Shape, World};
+
+/// What a picture shows of a world: thin and small things are drawn as thick as it needs to see them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// The middle, world space, metres.
+    pub center: Vec3,
+    /// How far it reaches around the middle, metres, above 0.
+    pub radius: f32,
+}
+
+/// Linear, one body after the other.
+const COLORS: [[f32; 3]; 8] = [
+    [0.62, 0.10, 0.06],
+    [0.06, 0.22, 0.52],
+    [0.78, 0.42, 0.05],
+    [0.05, 0.35, 0.25],
+    [0.36, 0.10, 0.40],
+    [0.62, 0.55, 0.12],
+    [0.05, 0.38, 0.50],
+    [0.55, 0.20, 0.28],
+];
+const STANDING: [f32; 3] = [0.34, 0.35, 0.36];
+const KINEMATIC: [f32; 3] = [0.20, 0.24, 0.28];
+const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
+const PARTICLE: [f32; 3] = [0.70, 0.34, 0.05];
+const SPRING: [f32; 3] = [0.25, 0.22, 0.18];
+const JOINT: [f32; 3] = [0.10, 0.11, 0.12];
+/// What objects of a user's own draw.
+const OBJECT: [f32; 3] = [0.70, 0.05, 0.30];
+/// How much of the way to this colour a body goes when it falls asleep.
+const SLEEP: f32 = 0.3;
+const PALE: [f32; 3] = [0.75, 0.77, 0.80];
+
+/// Smallest radius at which a ball is seen, as a share of the frame's.
+const SMALLEST: f32 = 0.012;
+/// Radius of a spring's rod, as a share of the frame's.
+const ROD: f32 = 0.004;
+/// Balls and rods of this many particles and springs are drawn; of more, lines.
+const MOST_SOLID: usize = 1500;
+
+/// The colour (linear) of a world's body number `number` in the order of ids, awake.
+pub fn body_color(number: usize) -> [f32; 3] {
+    COLORS[number % COLORS.len()]
+}
+
+/// The box around all that a picture of the world is about: what can move, what joints hang on, what objects draw;
+/// where there is none of these, around all that stands and has an end. `None` in an empty world.
+pub fn subject(world: &World) -> Option<Aabb> {
+    let moving = world.body_ids().filter(|&id| world.kind(id) != BodyKind::Static);
+    let particles = world.group_ids().map(|id| world.particles(id)).filter(|g| !g.positions().is_empty());
+    let particles = particles.map(particle_bounds);
+    let mut lines = Lines::default();
+    world.draw(&mut lines);
+    let ends = lines.list.into_iter().flat_map(|line| [line.from, line.to]);
+    let joints = world.joint_ids().flat_map(|id| links(world, id)).flatten();
+    let points = ends.chain(joints).map(|point| Aabb { min: point, max: point });
+    let merge = |a: Aabb, b: Aabb| a.merge(&b);
+    let active = moving.map(|id| body_bounds(world, id)).chain(particles).chain(points).reduce(merge);
+    active.or_else(|| {
+        let ended = |id: &BodyId| world.shapes(*id).all(|(shape, _)| Solid::of(&shape).is_some());
+        world.body_ids().filter(ended).map(|id| body_bounds(world, id)).reduce(merge)
+    })
+}
+
+/// Around the centre of mass and all shapes that have an end.
+fn body_bounds(world: &World, id: BodyId) -> Aabb {
+    let center = world.center_of_mass(id);
+    let shapes = world.shapes(id).filter(|(shape, _)| Solid::of(shape).is_some());
+    shapes.fold(Aabb { min: center, max: center }, |all, (shape, place)| all.merge(&shape.aabb(&place)))
+}
+
+/// Around the particles of a group that has any.
+fn particle_bounds(group: &ParticleGroup) -> Aabb {
+    let ball = |i: usize| Aabb::around(group.positions()[i], Vec3::splat(group.radii()[i]));
+    (1..group.positions().len()).fold(ball(0), |all, i| all.merge(&ball(i)))
+}
+
+/// What a joint is drawn as: from the centre of each body that moves to its anchor, and from anchor to anchor.
+fn links(world: &World, id: JointId) -> [[Vec3; 2]; 3] {
+    let JointDef { body_a, body_b, frame_a, frame_b, .. } = world.joint(id);
+    let a = world.transform(body_a).point(frame_a.translation);
+    let b = world.transform(body_b).point(frame_b.translation);
+    let from = |body: BodyId, anchor: Vec3| match world.kind(body) {
+        BodyKind::Static => anchor,
+        BodyKind::Kinematic | BodyKind::Dynamic => world.center_of_mass(body),
+    };
+    [[from(body_a, a), a], [a, b], [b, from(body_b, b)]]
+}
+
+/// Adds the world's bodies, particles, springs, joints and what its objects draw to a scene.
+pub fn paint(world: &World, frame: &Frame, scene: &mut Scene) {
+    for (number, id) in world.body_ids().enumerate() {
+        paint_body(world, id, number, frame, &mut scene.models);
+    }
+    for id in world.group_ids() {
+        paint_group(world.particles(id), frame, scene);
+    }
+    let joints: Vec<_> = world.joint_ids().flat_map(|id| links(world, id)).collect();
+    thin(&joints, JOINT, frame, scene);
+    let mut lines = Lines::default();
+    world.draw(&mut lines);
+    scene.lines.append(&mut lines.list);
+}
+
+/// Rods, or lines where they are too many.
+fn thin(segments: &[[Vec3; 2]], color: [f32; 3], frame: &Frame, scene: &mut Scene) {
+    let long = segments.iter().filter(|[from, to]| (*to - *from).length() > ROD * frame.radius);
+    for &[from, to] in long {
+        if segments.len() <= MOST_SOLID {
+            scene.models.push(draw::rod(from, to, ROD * frame.radius, Material::new(color)));
+        } else {
+            scene.lines.push(Line { from, to, color, depth: LineDepth::Tested });
+        }
+    }
+}
+
+fn paint_body(world: &World, id: BodyId, number: usize, frame: &Frame, models: &mut Vec<Model>) {
+    let kind = world.kind(id);
+    let color = match kind {
+        BodyKind::Static => STANDING,
+        BodyKind::Kinematic => KINEMATIC,
+        BodyKind::Dynamic if world.is_awake(id) => body_color(number),
+        BodyKind::Dynamic => pale(body_color(number)),
+    };
+    let smallest = SMALLEST * frame.radius;
+    let mut seen = kind == BodyKind::Static;
+    for (shape, place) in world.shapes(id) {
+        let material = Material::new(color);
+        models.push(match (shape, Solid::of(&shape)) {
+            (Shape::Sphere { radius }, _) => draw::ball(radius, place, material),
+            (_, Some(solid)) => draw::solid(solid, place, material),
+            (_, None) => floor(&place, frame),
+        });
+        seen |= shape.bounding_radius() > smallest;
+    }
+    if !seen {
+        let place = Transform::new(world.center_of_mass(id), world.transform(id).rotation);
+        models.push(draw::ball(smallest, place, Material::new(color)));
+    }
+}
+
+fn pale(color: [f32; 3]) -> [f32; 3] {
+    core::array::from_fn(|i| color[i] + (PALE[i] - color[i]) * SLEEP)
+}
+
+/// The part of a half-space's plane below the frame, in squares that suit it.
+fn floor(place: &Transform, frame: &Frame) -> Model {
+    let up = place.rotation * Vec3::Y;
+    let below = frame.center - up * (frame.center - place.translation).dot(up);
+    let half_size = max(40.0, 12.0 * frame.radius);
+    draw::plane(Transform::new(below, place.rotation), half_size, round_length(0.4 * frame.radius), FLOOR)
+}
+
+/// The largest of 1, 2, 5, 10, 20 … metres (or 0.5, 0.2, 0.1 …) that is no more than `length`.
+fn round_length(length: f32) -> f32 {
+    let mut decade = 1.0;
+    while decade > length && decade > 1e-6 {
+        decade /= 10.0;
+    }
+    while decade * 10.0 <= length && decade < 1e6 {
+        decade *= 10.0;
+    }
+    [5.0, 2.0].map(|step| step * decade).into_iter().find(|&size| size <= length).unwrap_or(decade)
+}
+
+fn paint_group(group: &ParticleGroup, frame: &Frame, scene: &mut Scene) {
+    let positions = group.positions();
+    if positions.len() <= MOST_SOLID {
+        for (&position, &radius) in positions.iter().zip(group.radii()) {
+            let alone = group.springs().is_empty();
+            let radius = max(radius, SMALLEST * frame.radius * if alone { 1.0 } else { 0.5 });
+            let place = Transform::from_translation(position);
+            scene.models.push(draw::solid(Solid::Sphere { radius }, place, Material::new(PARTICLE)));
+        }
+    }
+    let ends = |spring: &SpringDef| [spring.a, spring.b].map(|i| positions[i as usize]);
+    let springs: Vec<_> = group.springs().iter().map(ends).collect();
+    thin(&springs, SPRING, frame, scene);
+}
+
+/// What of [`World::draw`] no surface shows.
+#[derive(Default)]
+struct Lines {
+    list: Vec<Line>,
+}
+
+/// What is drawn as surfaces; contacts are not drawn.
+const SURFACES: [DrawKind; 7] = [
+    DrawKind::Static,
+    DrawKind::Kinematic,
+    DrawKind::Awake,
+    DrawKind::Asleep,
+    DrawKind::Joint,
+    DrawKind::Spring,
+    DrawKind::Contact,
+];
+
+impl DebugDraw for Lines {
+    fn line(&mut self, from: Vec3, to: Vec3, kind: DrawKind) {
+        if !SURFACES.contains(&kind) {
+            self.list.push(Line { from, to, color: OBJECT, depth: LineDepth::Tested });
+        }
+    }
+}
