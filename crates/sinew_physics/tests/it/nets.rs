@@ -3,8 +3,8 @@
 use crate::build::{floor, sphere_body};
 use sinew_math::{Random, Sym3, Transform, Vec3, max, min};
 use sinew_physics::particles::{
-    BlobDef, ClothDef, GroupDef, Obstacle, ObstacleBody, ParticleDef, ParticleGroup, Resists, RopeDef,
-    SpringDef, StrandDef,
+    BlobDef, GroupDef, Obstacle, ObstacleBody, ParticleDef, ParticleGroup, Resists, RopeDef, SpringDef,
+    StrandDef,
 };
 use sinew_physics::*;
 
@@ -16,12 +16,6 @@ fn run(world: &mut World, steps: usize) {
     }
 }
 
-/// What the attachments of a group carry, N.
-fn carried(world: &World, id: GroupId) -> f32 {
-    let substep = world.def().dt() / world.def().substeps as f32;
-    world.particles(id).attachment_impulses().iter().map(|p| -p.y / substep).sum()
-}
-
 /// Each step may add no energy but a hundredth of what moves.
 fn run_without_gain(world: &mut World, steps: usize) {
     for step in 0..steps {
@@ -30,39 +24,6 @@ fn run_without_gain(world: &mut World, steps: usize) {
         let rise = world.energy().total() - before.total();
         assert!(rise < 0.01 * max(before.kinetic, 1.0), "step {step}: {rise} J");
     }
-}
-
-#[test]
-fn cloth_catches_a_ball_and_its_corners_carry_both() {
-    let mut world = World::new(WorldDef::default());
-    let mut cloth = ClothDef {
-        corner: Vec3::new(-0.5, 0.0, -0.5),
-        across: Vec3::X,
-        down: Vec3::Z,
-        columns: 10,
-        rows: 10,
-        mass: 0.3,
-        stretching: 2000.0,
-        shearing: 200.0,
-        bending: 1e-5,
-        damping_ratio: 0.1,
-        radius: 0.01,
-    }
-    .build();
-    let corners = cloth.corners();
-    cloth.hang(&corners);
-    cloth.group.linear_damping = 2.0;
-    // A ball is heavier than the threads that carry it: parts short enough that they are as stiff as they should be.
-    cloth.group.iterations = 12;
-    let mut ball = sphere_body(0.15, Vec3::Y * 0.4);
-    ball.shapes[0].density = 70.0;
-    let ball = world.add_body(&BodyDef { linear_damping: 0.5, ..ball });
-    let cloth = world.add_particles(&cloth.group);
-    run(&mut world, 480);
-    let weight = (0.3 + world.mass(ball).mass) * G;
-    let carried = carried(&world, cloth);
-    assert!((carried / weight - 1.0).abs() < 0.01, "{carried} N of {weight} N");
-    assert!(world.center_of_mass(ball).y > -0.2, "{}", world.center_of_mass(ball));
 }
 
 /// Clamped level, a strand sinks as a chain of elastic corners does: each turns by the moment of what hangs beyond it.
@@ -198,7 +159,7 @@ fn nothing_passes_through_what_moves_and_turns() {
         }
         let aim = random.in_cube() * 0.05;
         let particle =
-            ParticleDef { position: from + aim, velocity: linear - from * 100.0, mass: 0.1, radius };
+            ParticleDef { position: from * 2.0 + aim, velocity: linear - from * 100.0, mass: 0.1, radius };
         let mut group = ParticleGroup::new(&GroupDef { particles: vec![particle], ..GroupDef::default() });
         for step in 0..12 {
             let previous = frame;

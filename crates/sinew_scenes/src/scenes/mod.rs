@@ -141,7 +141,6 @@ const REGISTRY: &[Scene] = &[
     particles::PARTICLE,
     particles::FAST_PARTICLE,
     cloths::CLOTH,
-    cloths::CLOTH_BALL,
     blobs::BLOB,
     blobs::STEEL_VS_BASKETBALL,
     gimbal::GIMBAL,

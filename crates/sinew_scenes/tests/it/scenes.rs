@@ -123,7 +123,6 @@ scenes!(
         particle,
         fast_particle,
         cloth,
-        cloth_ball,
         blob,
         steel_vs_basketball,
         gimbal,
