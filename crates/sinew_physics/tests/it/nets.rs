@@ -1,6 +1,6 @@
 //! Strands, cloth and blobs, and what particles do at speed.
 
-use crate::build::{floor, sphere_body};
+use crate::build::floor;
 use sinew_math::{Random, Sym3, Transform, Vec3, max, min};
 use sinew_physics::particles::{
     BlobDef, GroupDef, Obstacle, ObstacleBody, ParticleDef, ParticleGroup, Resists, RopeDef, SpringDef,
