@@ -2,6 +2,7 @@
 
 mod counts;
 mod figures;
+mod kernels;
 mod machine;
 mod musts;
 mod needs;
@@ -57,6 +58,10 @@ pub struct Bench {
     /// Instead, count the instructions of the kernels and compare them with bench/counts/baseline.txt
     #[arg(long, conflicts_with_all = ["scenes", "quick", "check"])]
     counts: bool,
+    /// Instead, time the eight-lane kernels beside the limit of the machine's arithmetic; with --check, exit with 1 if one
+    /// has less than its share
+    #[arg(long, conflicts_with_all = ["scenes", "quick", "counts"])]
+    kernels: bool,
     /// Take the counts as the right ones and write them down
     #[arg(long, requires = "counts")]
     bless: bool,
@@ -69,6 +74,11 @@ impl Bench {
         if self.counts {
             let counted = if self.bless { counts::bless() } else { counts::check() };
             return counted.map(|()| ExitCode::SUCCESS);
+        }
+        if self.kernels {
+            let shortfalls = kernels::measure()?;
+            let fails = self.check && !shortfalls.is_empty();
+            return Ok(if fails { ExitCode::FAILURE } else { ExitCode::SUCCESS });
         }
         let engines = match needs::check().and_then(|()| peers::build()) {
             Ok(engines) => engines,

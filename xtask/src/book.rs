@@ -11,9 +11,32 @@ const PAGE: &str = "docs/book.md";
 /// Beside the page; its links start with the last part.
 const FOLDER: &str = "docs/book";
 /// Pixels of a picture.
-const SIZE: [&str; 2] = ["480", "270"];
+const SIZE: [&str; 2] = ["560", "315"];
 /// Bytes of all pictures: what a clone of the repository should not have to carry more than.
 const MOST_BYTES: u64 = 2_000_000;
+
+/// When scenes are shown whose end says little, seconds; taken where a link is made.
+const MOMENTS: &[(&str, &str)] = &[
+    ("aabb_vs_obb", "0.75"),
+    ("block_overhang", "2.2"),
+    ("bounce", "2"),
+    ("bouncing_balls", "1"),
+    ("dominoes", "1.6"),
+    ("double_pendulum", "8"),
+    ("elastic_pairs", "0.4"),
+    ("explosion", "0.5"),
+    ("float", "2"),
+    ("free_fall", "1.2"),
+    ("gimbal", "1.5"),
+    ("newtons_cradle", "1"),
+    ("pendulum", "3"),
+    ("rope_on_box", "1.5"),
+    ("stairs", "3"),
+    ("terminal_velocity", "3"),
+    ("triple_pendulum", "6"),
+    ("wind", "3"),
+    ("zero_gravity_pile", "1"),
+];
 
 /// `cargo xtask book`: draws them anew.
 ///
@@ -52,12 +75,18 @@ fn with_links(page: &str) -> String {
         paragraphs.push(paragraph.to_owned());
         for scene in run_in(paragraph) {
             if !shown.contains(&scene) {
-                paragraphs.push(format!("![{scene}](book/{scene}.png)"));
+                paragraphs.push(link_to(&scene));
                 shown.push(scene);
             }
         }
     }
     paragraphs.join("\n\n") + "\n"
+}
+
+fn link_to(scene: &str) -> String {
+    let moment = MOMENTS.iter().find(|(of, _)| *of == scene);
+    let title = moment.map_or(String::new(), |(_, at)| format!(" \"at {at} s\""));
+    format!("![{scene}](book/{scene}.png{title})")
 }
 
 /// Scenes that a paragraph tells to run, as inline code or in a block of commands.
@@ -134,17 +163,22 @@ mod tests {
 
     #[test]
     fn a_scene_that_is_run_gets_its_picture_once() {
-        let page = "# Book\n\nA ball falls: `sinew run free_fall`.\n\nAgain: `sinew run free_fall --steps 3`.\n\n\
-                    `sinew run kepler`\n\n![kepler](book/kepler.png \"at 2.5 s\")\n";
+        let page = "# Book\n\nA planet: `sinew run kepler`.\n\nAgain: `sinew run kepler --steps 3`.\n\n\
+                    `sinew run wind`\n\n![wind](book/wind.png \"at 2.5 s\")\n";
         let linked = with_links(page);
-        let expected = "# Book\n\nA ball falls: `sinew run free_fall`.\n\n![free_fall](book/free_fall.png)\n\n\
-                        Again: `sinew run free_fall --steps 3`.\n\n`sinew run kepler`\n\n\
-                        ![kepler](book/kepler.png \"at 2.5 s\")\n";
+        let expected = "# Book\n\nA planet: `sinew run kepler`.\n\n![kepler](book/kepler.png)\n\n\
+                        Again: `sinew run kepler --steps 3`.\n\n`sinew run wind`\n\n\
+                        ![wind](book/wind.png \"at 2.5 s\")\n";
         assert_eq!(linked, expected);
         assert_eq!(with_links(&linked), linked);
         let found = pictures(&linked).expect("each is shown once");
-        let expected = [("free_fall".to_owned(), None), ("kepler".to_owned(), Some("2.5".to_owned()))];
+        let expected = [("kepler".to_owned(), None), ("wind".to_owned(), Some("2.5".to_owned()))];
         assert_eq!(found, BTreeMap::from(expected));
+    }
+
+    #[test]
+    fn a_new_link_says_when_the_scene_is_worth_a_picture() {
+        assert!(with_links("`sinew run bounce`\n").ends_with("![bounce](book/bounce.png \"at 2 s\")\n"));
     }
 
     #[test]

@@ -2,15 +2,13 @@
 
 use crate::command::{self, Profile};
 use crate::golden::{self, Coverage};
-use crate::{bench, contract, tidy};
+use crate::{bench, contract, targets, tidy};
 use anyhow::{Context, Result, anyhow, bail};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
-
-const WASM: &str = "wasm32-unknown-unknown";
 
 /// `cargo xtask ci`.
 #[derive(clap::Args)]
@@ -45,7 +43,9 @@ impl Ci {
         check("docs", &documentation);
         check("golden", &|| golden::check(coverage));
         check("demo", &demo);
-        check("wasm", &wasm);
+        check("wasm", &targets::browser);
+        check("soup", &targets::soup);
+        check("arm", &targets::arm);
         if self.full {
             check("large scenes", &large_scenes);
             check("random worlds", &random_worlds);
@@ -61,7 +61,7 @@ impl Ci {
 }
 
 /// Workspaces beside the root's. They are compiled only where it is worth the time, but always well formatted.
-const OTHER_WORKSPACES: &[&str] = &["bench/peers", "bench/counts"];
+const OTHER_WORKSPACES: &[&str] = &["bench/peers", "bench/counts", "bench/kernels"];
 
 fn fmt() -> Result<()> {
     command::run(&mut command::cargo(&["fmt", "--all", "--check"]))?;
@@ -100,16 +100,6 @@ fn clippy() -> Result<()> {
 fn documentation() -> Result<()> {
     let mut doc = command::cargo(&["doc", "--workspace", "--no-deps"]);
     command::run(doc.env("RUSTDOCFLAGS", "-D warnings"))
-}
-
-/// The library users add compiles for the browser.
-fn wasm() -> Result<()> {
-    if let Err(error) = command::run(Command::new("rustup").args(["target", "add", WASM])) {
-        eprintln!("{error:#}");
-        eprintln!("SKIPPED: the target {WASM} cannot be added on this machine");
-        return Ok(());
-    }
-    command::run(&mut command::cargo(&["build", "--package", "sinew", "--target", WASM]))
 }
 
 /// What a figure of the demo's report must be (spec §4).

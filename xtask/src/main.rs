@@ -7,6 +7,7 @@ mod ci;
 mod command;
 mod contract;
 mod golden;
+mod targets;
 mod tidy;
 
 use clap::{Parser, Subcommand};

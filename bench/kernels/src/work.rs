@@ -5,7 +5,7 @@ use sinew_math::dispatch::{self, Level};
 use sinew_math::{Random, Vec3};
 use sinew_physics::boxes::Obb;
 use sinew_physics::boxes::batch::{
-    Axes, ContainsPoints, FindSeparations, Pairs, Points, Separations, SignedDistances,
+    Axes, ContainsPoints, FindOverlaps, FindSeparations, Pairs, Points, Separations, SignedDistances,
 };
 use std::hint::black_box;
 
@@ -25,6 +25,7 @@ pub struct Work {
 enum Kind {
     Contains { obb: Obb, points: Points, inside: Vec<u8> },
     Distances { obb: Obb, points: Points, distances: Vec<f32> },
+    Overlaps { pairs: Pairs, overlapping: Vec<u8> },
     Separations { axes: Axes, pairs: Pairs, found: Separations },
 }
 
@@ -43,6 +44,7 @@ pub fn all() -> Vec<Work> {
     vec![
         work("point_in_obb", Kind::Contains { obb, points: points.clone(), inside: vec![0; POINTS / 8] }),
         work("point_obb_distance", Kind::Distances { obb, points, distances: vec![0.0; POINTS] }),
+        work("obb_obb_overlap", Kind::Overlaps { pairs: pairs.clone(), overlapping: vec![0; PAIRS / 8] }),
         work("obb_obb_6_axes", separations(Axes::Faces)),
         work("obb_obb_15_axes", separations(Axes::Fifteen)),
     ]
@@ -60,7 +62,7 @@ impl Work {
     pub fn items(&self) -> usize {
         match &self.kind {
             Kind::Contains { points, .. } | Kind::Distances { points, .. } => points.len(),
-            Kind::Separations { pairs, .. } => pairs.len(),
+            Kind::Overlaps { pairs, .. } | Kind::Separations { pairs, .. } => pairs.len(),
         }
     }
 
@@ -74,6 +76,10 @@ impl Work {
             Kind::Distances { obb, points, distances } => {
                 dispatch::run_at(level, SignedDistances { obb: black_box(obb), points, distances });
                 black_box(distances);
+            }
+            Kind::Overlaps { pairs, overlapping } => {
+                dispatch::run_at(level, FindOverlaps { pairs, overlapping });
+                black_box(overlapping);
             }
             Kind::Separations { axes, pairs, found } => {
                 dispatch::run_at(level, FindSeparations { pairs, axes: *axes, found });
@@ -90,6 +96,9 @@ impl Work {
             }
             Kind::Distances { obb, points, distances } => {
                 counted::count(SignedDistances { obb, points, distances: &mut distances.clone() })
+            }
+            Kind::Overlaps { pairs, overlapping } => {
+                counted::count(FindOverlaps { pairs, overlapping: &mut overlapping.clone() })
             }
             Kind::Separations { axes, pairs, found } => {
                 counted::count(FindSeparations { pairs, axes: *axes, found: &mut found.clone() })

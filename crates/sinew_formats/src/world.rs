@@ -1,4 +1,5 @@
-//! World files, version 1: a level or a set-up of bodies, written by hand or by `sinew boxes`.
+//! World files, version 1: a level or a set-up of bodies, written by hand or by `sinew boxes`. `docs/world.md` is the
+//! reference.
 //!
 //! ```json
 //! {

@@ -116,10 +116,12 @@ impl Rotation {
 
     /// The shortest rotation that turns unit vector `from` onto unit vector `to`.
     /// For opposite vectors: half a turn about an axis at right angles to `from`, the same one always.
+    /// Lands within 7e-7 rad over the sine of the angle between the two where that is obtuse: 5e-4 at worst, a tenth of a
+    /// degree from opposite.
     /// For vectors of other lengths see [`Quaternion::quotient`](crate::Quaternion::quotient).
     pub fn from_arc(from: Vec3, to: Vec3) -> Self {
         let cos = from.dot(to);
-        if cos > -0.99 {
+        if cos >= -0.999_999 {
             return Self::from_vector(from.cross(to), 1.0 + cos).normalize();
         }
         // The same from numbers that have not lost their digits: from × to, and sin²/(1 − cos) for 1 + cos.

@@ -68,6 +68,11 @@ impl Sym3 {
         Mat3::from_cols(Vec3::new(d.x, o.z, o.y), Vec3::new(o.z, d.y, o.x), Vec3::new(o.y, o.x, d.z))
     }
 
+    /// True if every number is finite.
+    pub fn is_finite(self) -> bool {
+        self.diagonal.is_finite() && self.off.is_finite()
+    }
+
     /// Determinant.
     pub fn determinant(self) -> f32 {
         let (d, o) = (self.diagonal, self.off);

@@ -90,8 +90,18 @@ impl Body {
             def.linear_velocity.is_finite() && def.angular_velocity.is_finite(),
             "a body's velocity is finite"
         );
+        assert!(
+            def.linear_damping.is_finite()
+                && def.angular_damping.is_finite()
+                && def.gravity_scale.is_finite(),
+            "a body's damping and gravity scale are finite"
+        );
+        if let Some(MassProperties { mass, center, inertia }) = &def.mass {
+            let finite = mass.is_finite() && center.is_finite() && inertia.is_finite();
+            assert!(finite, "a body's mass, centre and inertia are finite");
+        }
         for shape in &def.shapes {
-            if let Err(what) = shape.shape.check() {
+            if let Err(what) = shape.check() {
                 panic!("a body's shape is valid: {what}");
             }
             assert!(

@@ -104,6 +104,9 @@ impl Islands {
         for lists in [&mut self.bodies, &mut self.joints, &mut self.contacts, &mut self.groups] {
             lists.sort(self.count, self.parent.len());
         }
+        for (_, group) in groups.iter_mut() {
+            group.begin_step();
+        }
         self.taken.extend(self.groups.numbers.iter().map(|&index| TakenGroup {
             index,
             group: core::mem::take(groups.at_mut(index)),

@@ -109,6 +109,22 @@ impl Default for Filter {
     }
 }
 
+impl Material {
+    /// Whether its numbers make sense; the phrase says what is wrong.
+    ///
+    /// # Errors
+    /// What is wrong, in lower case.
+    pub fn check(&self) -> Result<(), &'static str> {
+        // Written so that NaN fails.
+        let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
+        if not_negative(self.friction) && not_negative(self.rolling) && not_negative(self.restitution) {
+            Ok(())
+        } else {
+            Err("friction, restitution and rolling must not be negative, and finite")
+        }
+    }
+}
+
 impl Filter {
     /// Whether two shapes meet.
     pub fn meets(self, other: Self) -> bool {
@@ -147,6 +163,23 @@ pub enum Sensing {
 }
 
 impl ShapeDef {
+    /// Whether its numbers make sense; the phrase says what is wrong.
+    ///
+    /// # Errors
+    /// What is wrong, in lower case.
+    pub fn check(&self) -> Result<(), &'static str> {
+        self.shape.check()?;
+        self.material.check()?;
+        let placed = self.body_from_shape.is_finite();
+        // Written so that NaN fails.
+        let dense = (0.0..f32::INFINITY).contains(&self.density);
+        if placed && dense {
+            Ok(())
+        } else {
+            Err("a shape's pose and density must be finite, density not negative")
+        }
+    }
+
     /// At the body's origin, with defaults.
     pub fn new(shape: Shape) -> Self {
         Self {

@@ -8,7 +8,8 @@ use core::time::Duration;
 pub struct Update {
     /// Steps taken.
     pub steps: u32,
-    /// Time that waits for the next step, as a share of a step, 0..1: for [`World::interpolated`].
+    /// Time that waits for the next step, as a share of a step, 0..1: for [`World::interpolated`] and
+    /// [`ParticleGroup::interpolated`](crate::particles::ParticleGroup::interpolated).
     pub alpha: f32,
     /// Time for which no steps were taken, since there would have been more of them than
     /// [`WorldDef::catch_up_steps`](crate::WorldDef::catch_up_steps): the world is late by so much for good. Zero as long as

@@ -59,11 +59,10 @@ pub fn subject(world: &World) -> Option<Aabb> {
     let particles = particles.map(particle_bounds);
     let mut lines = Lines::default();
     world.draw(&mut lines);
-    let ends = lines.list.into_iter().flat_map(|line| [line.from, line.to]);
     let joints = world.joint_ids().flat_map(|id| links(world, id)).flatten();
-    let points = ends.chain(joints).map(|point| Aabb { min: point, max: point });
+    let anchors = joints.map(|point| Aabb { min: point, max: point }).chain(lines.bounds());
     let merge = |a: Aabb, b: Aabb| a.merge(&b);
-    let active = moving.map(|id| body_bounds(world, id)).chain(particles).chain(points).reduce(merge);
+    let active = moving.map(|id| body_bounds(world, id)).chain(particles).chain(anchors).reduce(merge);
     active.or_else(|| {
         let ended = |id: &BodyId| world.shapes(*id).all(|(shape, _)| Solid::of(&shape).is_some());
         world.body_ids().filter(ended).map(|id| body_bounds(world, id)).reduce(merge)
@@ -186,10 +185,19 @@ fn paint_group(group: &ParticleGroup, frame: &Frame, scene: &mut Scene) {
     thin(&springs, SPRING, frame, scene);
 }
 
-/// What of [`World::draw`] no surface shows.
-#[derive(Default)]
-struct Lines {
-    list: Vec<Line>,
+/// What of [`World::draw`], or of what else draws, no surface shows.
+#[derive(Clone, Debug, Default)]
+pub struct Lines {
+    /// In the order in which they were drawn.
+    pub list: Vec<Line>,
+}
+
+impl Lines {
+    /// Around all of them; `None` where there is none.
+    pub fn bounds(&self) -> Option<Aabb> {
+        let ends = self.list.iter().flat_map(|line| [line.from, line.to]);
+        ends.map(|point| Aabb { min: point, max: point }).reduce(|a, b| a.merge(&b))
+    }
 }
 
 /// What is drawn as surfaces; contacts are not drawn.

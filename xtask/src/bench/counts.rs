@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::env::consts::ARCH;
 use std::fmt::Write as _;
 use std::fs;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 /// Committed counts: a line that says of what compiler they are, then one line per kernel: name, instructions.
 const PATH: &str = "bench/counts/baseline.txt";
@@ -71,21 +71,15 @@ pub fn bless() -> Result<()> {
 
 /// Installs what counting needs, where it is not there.
 fn provide() -> Result<()> {
-    if !answers("valgrind") {
+    if !command::answers("valgrind") {
         command::run(Command::new("apt-get").args(["install", "--yes", "valgrind"]))
             .context("valgrind is missing (Debian's package `valgrind`)")?;
     }
-    if !answers("gungraun-runner") {
+    if !command::answers("gungraun-runner") {
         command::run(&mut command::cargo(&["install", "gungraun-runner", "--version", RUNNER_VERSION]))
             .context("gungraun-runner is missing")?;
     }
     Ok(())
-}
-
-/// Whether there is such a program.
-fn answers(program: &str) -> bool {
-    let mut command = Command::new(program);
-    command.arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
 }
 
 fn count() -> Result<Counts> {

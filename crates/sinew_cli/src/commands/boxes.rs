@@ -11,7 +11,7 @@ use serde_json::json;
 use sinew::formats::{TriangleMesh, load_mesh, write_world};
 use sinew::math::Vec3;
 use sinew::physics::BodyDef;
-use sinew::physics::cook::{self, Block, CookOptions, Cooked, cook};
+use sinew::physics::cook::{self, CookOptions, Cooked, cook};
 use sinew_picture::{
     Camera, Caption, Material, Model, Movie, PictureFormat, RenderSettings, Renderer, Scene, Sky, Sun,
 };
@@ -45,7 +45,7 @@ impl Boxes {
         let name = self.mesh.display().to_string();
         let mesh = load_mesh(&self.mesh)?;
         let cooked = self.cook(&name, &mesh)?;
-        let bodies: Vec<BodyDef> = cooked.boxes.iter().map(Block::to_body).collect();
+        let bodies = cooked.to_bodies();
         let mut outputs = Outputs::default();
         outputs.add(&self.output, write_world(&bodies).into_bytes());
         if let Some(picture) = &self.picture {

@@ -2,11 +2,16 @@
 
 use sinew_formats::{read_world, write_world};
 use sinew_math::{Random, Rotation, Sym3, Transform, Vec3};
-use sinew_physics::{BodyDef, BodyKind, Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
+use sinew_physics::{
+    BodyDef, BodyKind, Filter, MassProperties, Material, Sensing, Shape, ShapeDef, World, WorldDef,
+};
 
 /// The first block of JSON in a module's documentation.
 pub fn documented_example(source: &str) -> String {
-    let lines = source.lines().map(|line| line.strip_prefix("//!").unwrap_or_default());
+    first_json(source.lines().map(|line| line.strip_prefix("//!").unwrap_or_default()))
+}
+
+fn first_json<'a>(lines: impl Iterator<Item = &'a str>) -> String {
     lines.skip_while(|l| l.trim() != "```json").skip(1).take_while(|l| l.trim() != "```").collect()
 }
 
@@ -25,6 +30,63 @@ fn the_documented_example_is_read() {
     assert_eq!(bodies[2].shapes[0].density, 7800.0);
     assert_eq!(bodies[2].shapes[1].material.restitution, 0.4);
     assert_eq!(bodies[2].shapes[2].body_from_shape.translation, Vec3::new(0.0, -0.3, 0.0));
+}
+
+#[test]
+fn the_example_of_the_page_is_read_and_stands() {
+    let text = first_json(include_str!("../../../../docs/world.md").lines());
+    let bodies = read_world(text.as_bytes()).unwrap();
+    let kinds: Vec<BodyKind> = bodies.iter().map(|body| body.kind).collect();
+    use BodyKind::{Dynamic, Kinematic, Static};
+    assert_eq!(kinds, [Static, Static, Dynamic, Kinematic, Dynamic]);
+    assert_eq!(bodies[2].shapes[1].material, Material { friction: 0.9, restitution: 0.7, rolling: 0.002 });
+    assert_eq!((bodies[2].user_data, bodies[2].angular_damping), (7, 0.1));
+    let door = bodies[3].shapes[1];
+    assert_eq!((door.sensing, door.filter), (Sensing::Sensor, Filter { layers: 2, mask: 1, group: 0 }));
+    assert_eq!(bodies[4].mass.map(|mass| mass.mass), Some(0.01));
+    assert_eq!(read_world(write_world(&bodies).as_bytes()).unwrap(), bodies);
+
+    // A set-up that reads back equal is the same world, to the last bit, and stays so.
+    let [mut world, mut again] =
+        [bodies.clone(), read_world(write_world(&bodies).as_bytes()).unwrap()].map(|bodies| {
+            let mut world = World::new(WorldDef::default());
+            bodies.iter().for_each(|body| drop(world.add_body(body)));
+            world
+        });
+    for _ in 0..60 {
+        assert_eq!(world.hash(), again.hash());
+        world.step();
+        again.step();
+    }
+}
+
+/// Every key that the page lists is known, and every shape and kind that is known is on the page.
+#[test]
+fn the_page_lists_what_there_is() {
+    let page = include_str!("../../../../docs/world.md");
+    let complaint = |json: &str| read_world(json.as_bytes()).unwrap_err().what;
+    let body = complaint(r#"{"sinew":"world","version":1,"bodies":[{"?":0}]}"#);
+    let shape = complaint(r#"{"sinew":"world","version":1,"bodies":[{"shapes":[{"?":0}]}]}"#);
+    for complaint in [body, shape] {
+        let known = complaint.split("known are ").nth(1).expect("it lists what is known");
+        for key in known.split(", ") {
+            assert!(page.contains(&format!("`{key}`")), "{key} is not on the page");
+        }
+    }
+    for word in [
+        "box",
+        "sphere",
+        "capsule",
+        "half_space",
+        "static",
+        "kinematic",
+        "dynamic",
+        "friction",
+        "restitution",
+        "rolling",
+    ] {
+        assert!(page.contains(&format!("`{word}`")), "{word} is not on the page");
+    }
 }
 
 fn random_shape(random: &mut Random, kind: BodyKind) -> ShapeDef {

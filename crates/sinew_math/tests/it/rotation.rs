@@ -97,9 +97,12 @@ fn arc_between_directions() {
         let landed = off(arc * from, wide(to));
         // It is the shortest: its axis lies at right angles to both.
         let astray = f64::from(arc.vector().dot(from).abs());
-        largest([landed, astray])
+        // Less exact toward opposite directions, but not next to them.
+        let is_less_exact = (-0.999_999..0.0).contains(&from.dot(to));
+        let scale = if is_less_exact { norm(cross(wide(from), wide(to))) } else { 1.0 };
+        largest([landed, astray]) * scale
     });
-    assert!(error < 2.5e-6, "{error}");
+    assert!(error < 7e-7, "{error}");
 }
 
 #[test]

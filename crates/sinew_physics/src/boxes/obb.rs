@@ -1,5 +1,7 @@
 //! Boxes with any orientation.
 
+use super::Aabb;
+use crate::shape::Shape;
 use sinew_math::{Rotation, Transform, Vec3};
 
 /// A box with any orientation (oriented bounding box).
@@ -36,10 +38,16 @@ impl Obb {
     pub fn to_transform(&self) -> Transform {
         Transform::new(self.center, self.rotation)
     }
+
+    /// The smallest box along the axes that holds it, but for rounding: half extents `|R| h` (Arvo, "Transforming
+    /// axis-aligned bounding boxes", Graphics Gems 1990).
+    pub fn bounds(&self) -> Aabb {
+        Shape::Box { half_extents: self.half_extents }.aabb(&self.to_transform())
+    }
 }
 
-impl From<super::Aabb> for Obb {
-    fn from(aabb: super::Aabb) -> Self {
+impl From<Aabb> for Obb {
+    fn from(aabb: Aabb) -> Self {
         Self { center: aabb.center(), rotation: Rotation::IDENTITY, half_extents: aabb.half_extents() }
     }
 }

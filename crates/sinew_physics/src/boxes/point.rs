@@ -26,6 +26,7 @@ pub struct Penetration {
 }
 
 impl PlacedBox {
+    /// `|d·aₖ| ≤ hₖ` with `d = p − c`, each product summed as `(d.x a.x + d.y a.y) + d.z a.z`.
     pub(super) fn holds(&self, p: Vec3) -> bool {
         let q = self.local_point(p);
         q.x.abs() <= self.half.x && q.y.abs() <= self.half.y && q.z.abs() <= self.half.z

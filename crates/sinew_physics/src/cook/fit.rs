@@ -1,7 +1,8 @@
 //! Which way a box should be turned to lie close around a part of a mesh.
 
-use super::block::Block;
+use super::fitted::around;
 use super::mesh::SurfaceMesh;
+use crate::boxes::{Cuboid, Obb};
 use sinew_math::{Mat3, Rotation, Vec3, any_orthonormal, normalize_or};
 
 /// Normals within this cosine (10°) are one direction.
@@ -12,14 +13,14 @@ const LEVEL: f32 = 0.9995;
 const GAIN: f32 = 0.92;
 
 /// The smallest of the boxes along the world's axes, along the largest facets, and along those about the vertical.
-pub(super) fn fit(mesh: &SurfaceMesh, triangles: &[u32], least: f32) -> Block {
+pub(super) fn fit(mesh: &SurfaceMesh, triangles: &[u32], least: f32) -> Obb {
     let corners = || triangles.iter().flat_map(|&t| mesh.corners(t as usize));
-    let around = |rotation| Block::around(corners(), rotation, least);
-    let level = around(Rotation::IDENTITY);
+    let boxed = |rotation| around(corners(), rotation, least);
+    let level = boxed(Rotation::IDENTITY);
     let directions = facet_directions(mesh, triangles);
     let mut best = level;
     for rotation in orientations(&directions) {
-        let turned = around(rotation);
+        let turned = boxed(rotation);
         if turned.volume() < best.volume() * if best == level { GAIN } else { 1.0 } {
             best = turned;
         }

@@ -1,11 +1,10 @@
 //! How far boxes are from the mesh they stand for.
 
-use super::block::Block;
-use super::block_set::BlockSet;
+use super::box_set::BoxSet;
 use super::bvh::MeshBvh;
 use super::mesh::SurfaceMesh;
 use super::sample::sample;
-use crate::boxes::{Aabb, Overlap};
+use crate::boxes::{Aabb, Obb, Overlap};
 use sinew_math::{Random, Vec3, max};
 
 /// Points on either side.
@@ -24,10 +23,10 @@ pub struct Deviation {
 
 /// Measures boxes against their mesh by points uniform over either surface: points of the mesh to the nearest face of
 /// a box, and points of the boxes' outer surface (faces inside another box do not count) to the mesh.
-pub(super) fn measure(mesh: &SurfaceMesh, bvh: &MeshBvh, blocks: &[Block], random: &mut Random) -> Deviation {
+pub(super) fn measure(mesh: &SurfaceMesh, bvh: &MeshBvh, blocks: &[Obb], random: &mut Random) -> Deviation {
     let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
     let (points, _) = sample(mesh, &all, SAMPLES, random);
-    let tree = BlockSet::new(blocks);
+    let tree = BoxSet::new(blocks);
     let to_boxes = points.iter().map(|p| tree.distance_to_faces(p.position));
     let [p95_there, max_there] = quantiles(to_boxes.collect());
     let outer = tree.outer_surface(SAMPLES, random);

@@ -11,11 +11,11 @@
 //! 4. Steps that add least to the squared distance between the surfaces, dropping a box or merging two, follow until
 //!    no more are left than were asked for.
 
-mod block;
-mod block_set;
+mod box_set;
 mod bvh;
 mod cells;
 mod fit;
+mod fitted;
 mod measure;
 mod mesh;
 mod plates;
@@ -23,11 +23,13 @@ mod reduce;
 mod sample;
 mod solid;
 
-pub use block::Block;
 pub use bvh::{ClosestPoint, MeshBvh};
 pub use measure::Deviation;
 pub use mesh::{CookError, MAX_TRIANGLES, Repairs};
 
+use crate::boxes::Obb;
+use crate::def::{BodyDef, BodyKind};
+use crate::shape::ShapeDef;
 use mesh::SurfaceMesh;
 use reduce::Reduction;
 use sinew_math::{Random, Vec3, max};
@@ -52,13 +54,28 @@ impl Default for CookOptions {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cooked {
     /// The boxes, in the mesh's frame.
-    pub boxes: Vec<Block>,
+    pub boxes: Vec<Obb>,
     /// How far they are from it.
     pub deviation: Deviation,
     /// What was put right about the mesh.
     pub repairs: Repairs,
     /// Connected parts of the mesh.
     pub parts: usize,
+}
+
+impl Cooked {
+    /// A static body for each box. The broad phase takes shapes one by one, so a body each costs it nothing, and every
+    /// question about a body (overlap, neighbours, events) then concerns one box alone.
+    pub fn to_bodies(&self) -> Vec<BodyDef> {
+        let body = |obb: &Obb| BodyDef {
+            kind: BodyKind::Static,
+            position: obb.center,
+            rotation: obb.rotation,
+            shapes: vec![ShapeDef::new(fitted::shape(obb))],
+            ..BodyDef::default()
+        };
+        self.boxes.iter().map(body).collect()
+    }
 }
 
 /// How far the cooking has come: told as it goes, for whoever waits.
@@ -124,7 +141,7 @@ fn scale(mesh: &SurfaceMesh, options: &CookOptions) -> Scale {
         tolerance: options.tolerance * diagonal,
         // What the engine can hold apart at least: a box thinner than its slop is no obstacle.
         thinnest: max(5e-4 * diagonal, 1e-6),
-        thickness: options.tolerance * diagonal,
+        thickness: 0.5 * options.tolerance * diagonal,
         unseen: 0.15 * options.tolerance * diagonal,
     }
 }
@@ -136,7 +153,7 @@ fn first_boxes(
     scale: Scale,
     random: &mut Random,
     progress: &mut dyn FnMut(Progress),
-) -> Vec<Block> {
+) -> Vec<Obb> {
     let parts = mesh.triangles_by_part();
     let mut boxes = Vec::new();
     let mut done = 0;

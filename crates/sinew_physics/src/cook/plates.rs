@@ -1,10 +1,11 @@
 //! What no box is near: flat regions of the mesh become plates behind their faces.
 
 use super::Scale;
-use super::block::Block;
 use super::bvh::MeshBvh;
 use super::cells::Grid;
+use super::fitted::from_corners;
 use super::mesh::SurfaceMesh;
+use crate::boxes::{Cuboid, Obb};
 use sinew_math::{Mat3, Rotation, Vec3, any_orthonormal, max, min, normalize_or};
 
 /// Normals of one region are within this cosine (20°) of the first.
@@ -15,7 +16,8 @@ const CELLS: usize = 24;
 const MOST_BOXES: usize = 64;
 
 /// Triangles of which a corner region or the middle is farther from all boxes than the tolerance.
-pub(super) fn uncovered(mesh: &SurfaceMesh, triangles: &[u32], blocks: &[Block], scale: Scale) -> Vec<u32> {
+pub(super) fn uncovered(mesh: &SurfaceMesh, triangles: &[u32], blocks: &[Obb], scale: Scale) -> Vec<u32> {
+    let blocks: Vec<_> = blocks.iter().map(Cuboid::placed).collect();
     let near = |p: Vec3| blocks.iter().any(|block| block.signed_distance(p).abs() <= scale.tolerance);
     let is_bare = |&triangle: &u32| {
         let corners = mesh.corners(triangle as usize);
@@ -30,7 +32,7 @@ pub(super) fn uncovered(mesh: &SurfaceMesh, triangles: &[u32], blocks: &[Block],
 }
 
 /// Plates over the triangles, region by region.
-pub(super) fn plates(mesh: &SurfaceMesh, triangles: &[u32], scale: Scale) -> Vec<Block> {
+pub(super) fn plates(mesh: &SurfaceMesh, triangles: &[u32], scale: Scale) -> Vec<Obb> {
     flat_regions(mesh, triangles, scale)
         .iter()
         .flat_map(|region| plates_of_region(mesh, region, scale))
@@ -95,14 +97,14 @@ fn neighbors(mesh: &SurfaceMesh, triangles: &[u32]) -> Vec<[u32; 3]> {
     neighbors
 }
 
-fn plates_of_region(mesh: &SurfaceMesh, region: &[u32], scale: Scale) -> Vec<Block> {
+fn plates_of_region(mesh: &SurfaceMesh, region: &[u32], scale: Scale) -> Vec<Obb> {
     let (rotation, low, high) = smallest_rectangle(mesh, region);
     // Behind the face, so that what stands on it stands where it is seen.
     let low = low - Vec3::Y * scale.thickness;
     let area: f32 = region.iter().map(|&t| 0.5 * mesh.doubled_area(t as usize).length()).sum();
     let size = high - low;
     if area > 0.8 * size.x * size.z || max(size.x, size.z) < 4.0 * scale.tolerance {
-        return vec![Block::from_corners(low, high, rotation, scale.thinnest)];
+        return vec![from_corners(low, high, rotation, scale.thinnest)];
     }
     let corners: Vec<_> = region.iter().map(|&t| mesh.corners(t as usize)).collect();
     let bvh = MeshBvh::new(&corners);
@@ -122,7 +124,7 @@ fn plates_of_region(mesh: &SurfaceMesh, region: &[u32], scale: Scale) -> Vec<Blo
     let boxes = grid.cover(0.01, MOST_BOXES);
     let block = |cells| {
         let (low, high) = grid.corners(cells);
-        Block::from_corners(Vec3::from_array(low), Vec3::from_array(high), rotation, scale.thinnest)
+        from_corners(Vec3::from_array(low), Vec3::from_array(high), rotation, scale.thinnest)
     };
     boxes.iter().map(block).collect()
 }

@@ -1,25 +1,29 @@
 //! Fewer boxes: what costs least is dropped or merged, until no more are left than wanted.
 
 use super::Scale;
-use super::block::Block;
 use super::bvh::MeshBvh;
 use super::fit::{cluster, orientations};
-use super::sample::SurfacePoint;
-use crate::boxes::{Aabb, Overlap};
+use super::fitted::{around, bounds, sample_surface};
+use super::sample::MeshPoint;
+use crate::boxes::{Aabb, Cuboid, Obb, Overlap, PlacedBox};
 use sinew_math::{Random, Rotation, Vec3, max3, min};
 
 /// Points of a candidate's surface that are held against the mesh.
-const SURFACE: usize = 96;
+const SURFACE: usize = 64;
 /// Neighbours that a box may merge with.
-const NEIGHBORS: usize = 10;
+const NEIGHBORS: usize = 8;
 
 /// A box on its way.
 #[derive(Clone)]
 struct Entry {
-    block: Block,
+    block: Obb,
+    placed: PlacedBox,
     bounds: Aabb,
     /// Points of the mesh to which it is the closest.
     points: Vec<u32>,
+    /// Integral of squared distances of and to its surface, m⁴, and how many boxes were left when it was found.
+    cost: f32,
+    seen: usize,
     /// Neither dropped nor merged so far.
     alive: bool,
 }
@@ -30,7 +34,7 @@ enum Step {
     /// Leave out a box.
     Drop(usize),
     /// Put a box in the place of two.
-    Merge(usize, usize, Block),
+    Merge(usize, usize, Obb),
 }
 
 struct Candidate {
@@ -44,7 +48,7 @@ struct Candidate {
 /// Boxes, points of the mesh, and what may become of them.
 pub(super) struct Reduction<'a> {
     bvh: &'a MeshBvh,
-    points: &'a [SurfacePoint],
+    points: &'a [MeshPoint],
     /// Of the mesh that each point stands for, square metres.
     area: f32,
     scale: Scale,
@@ -55,13 +59,7 @@ pub(super) struct Reduction<'a> {
 
 impl<'a> Reduction<'a> {
     /// Of `blocks` that stand for a mesh of which `points` are known, each for `area` square metres.
-    pub fn new(
-        bvh: &'a MeshBvh,
-        points: &'a [SurfacePoint],
-        area: f32,
-        scale: Scale,
-        blocks: &[Block],
-    ) -> Self {
+    pub fn new(bvh: &'a MeshBvh, points: &'a [MeshPoint], area: f32, scale: Scale, blocks: &[Obb]) -> Self {
         let entries: Vec<Entry> = blocks.iter().map(|&block| Entry::new(block)).collect();
         let left = entries.len();
         let mut reduction = Self { bvh, points, area, scale, entries, candidates: Vec::new(), left };
@@ -77,7 +75,7 @@ impl<'a> Reduction<'a> {
 
     /// Boxes that are left when no more than `most` are, and none can go without being missed. `tick` is told how
     /// many are left after each step.
-    pub fn run(mut self, most: usize, tick: &mut dyn FnMut(usize)) -> Vec<Block> {
+    pub fn run(mut self, most: usize, tick: &mut dyn FnMut(usize)) -> Vec<Obb> {
         // Squared distance, times the area concerned, that nobody sees.
         let free = self.scale.unseen * self.scale.unseen;
         while self.left > 1 {
@@ -104,8 +102,10 @@ impl<'a> Reduction<'a> {
     /// The area that a step concerns, square metres.
     fn extent(&self, step: &Step) -> f32 {
         match *step {
-            Step::Drop(i) => self.entries[i].block.area(),
-            Step::Merge(a, b, _) => min(self.entries[a].block.area(), self.entries[b].block.area()),
+            Step::Drop(i) => self.entries[i].block.surface_area(),
+            Step::Merge(a, b, _) => {
+                min(self.entries[a].block.surface_area(), self.entries[b].block.surface_area())
+            }
         }
     }
 
@@ -136,42 +136,52 @@ impl<'a> Reduction<'a> {
     }
 
     fn propose(&mut self, step: Step) {
-        let cost = self.cost(&step);
-        self.candidates.push(Candidate { step, cost, seen: self.left });
+        let candidate = self.candidate(step);
+        self.candidates.push(candidate);
+    }
+
+    fn candidate(&mut self, step: Step) -> Candidate {
+        Candidate { step, cost: self.cost(&step), seen: self.left }
     }
 
     fn propose_merges(&mut self, i: usize, accept: impl Fn(usize) -> bool) {
         for j in self.neighbors(i) {
             if accept(j) {
-                self.propose(Step::Merge(i, j, self.merged(i, j)));
+                let candidates = self.merged(i, j).map(|block| self.candidate(Step::Merge(i, j, block)));
+                let cheapest = candidates.into_iter().reduce(|a, b| if b.cost < a.cost { b } else { a });
+                self.candidates.extend(cheapest);
             }
         }
     }
 
     /// What a step adds to the integral of squared distances, m⁴.
-    fn cost(&self, step: &Step) -> f32 {
+    fn cost(&mut self, step: &Step) -> f32 {
         match *step {
             Step::Drop(i) => {
                 let change = |&point: &u32| {
                     let p = self.points[point as usize].position;
-                    let now = self.entries[i].block.signed_distance(p);
+                    let now = self.entries[i].placed.signed_distance(p);
                     let then = self.nearest(p, i).1;
                     then * then - now * now
                 };
                 self.entries[i].points.iter().map(change).sum::<f32>() * self.area
             }
             Step::Merge(i, j, block) => {
-                let [a, b] = [&self.entries[i], &self.entries[j]];
-                let before = self.points_cost(&a.block, &a.points)
-                    + self.points_cost(&b.block, &b.points)
-                    + self.surface_cost(&a.block, [i, i])
-                    + self.surface_cost(&b.block, [j, j]);
-                self.points_cost(&block, &a.points)
-                    + self.points_cost(&block, &b.points)
-                    + self.surface_cost(&block, [i, j])
-                    - before
+                let before = self.cost_of(i) + self.cost_of(j);
+                let points = [i, j].map(|k| self.points_cost(&block, &self.entries[k].points));
+                points[0] + points[1] + self.surface_cost(&block, [i, j]) - before
             }
         }
+    }
+
+    /// What a box itself stands for, m⁴: looked up where nothing has changed since it was last asked.
+    fn cost_of(&mut self, i: usize) -> f32 {
+        if self.entries[i].seen != self.left {
+            let Entry { block, ref points, .. } = self.entries[i];
+            let cost = self.points_cost(&block, points) + self.surface_cost(&block, [i, i]);
+            (self.entries[i].cost, self.entries[i].seen) = (cost, self.left);
+        }
+        self.entries[i].cost
     }
 
     /// Gives a point of the mesh to the box whose surface is closest.
@@ -190,9 +200,9 @@ impl<'a> Reduction<'a> {
             if !entry.alive || i == without {
                 continue;
             }
-            let from_center = (p - entry.block.world_from_block.translation).length();
+            let from_center = (p - entry.placed.center).length();
             if from_center - entry.block.half_extents.length() < best.1 {
-                let distance = entry.block.signed_distance(p).abs();
+                let distance = entry.placed.signed_distance(p).abs();
                 if distance < best.1 {
                     best = (Some(i), distance);
                 }
@@ -217,23 +227,32 @@ impl<'a> Reduction<'a> {
         near.into_iter().take(NEIGHBORS).map(|(_, _, j)| j).collect()
     }
 
-    /// The smallest single box around two: along the axes of either, of the world, or of the mesh there.
-    fn merged(&self, i: usize, j: usize) -> Block {
+    /// Single boxes for two: the smallest around both, along the axes of either, of the world, or of the mesh there;
+    /// and the plate behind the faces that they stand for.
+    fn merged(&self, i: usize, j: usize) -> [Obb; 2] {
         let [a, b] = [&self.entries[i], &self.entries[j]];
         let corners = [a.block.corners(), b.block.corners()].concat();
-        let rotations = [a, b].map(|entry| entry.block.world_from_block.rotation);
-        let points = a.points.iter().chain(&b.points);
-        let facing = cluster(points.map(|&p| (self.points[p as usize].normal, 1.0)));
-        let tried = rotations.into_iter().chain([Rotation::IDENTITY]).chain(orientations(&facing).take(1));
-        let blocks =
-            tried.map(|rotation| Block::around(corners.iter().copied(), rotation, self.scale.thinnest));
-        blocks.reduce(|a, b| if b.volume() < 0.999 * a.volume() { b } else { a }).unwrap_or(a.block)
+        let rotations = [a, b].map(|entry| entry.block.rotation);
+        let points = || a.points.iter().chain(&b.points).map(|&p| &self.points[p as usize]);
+        let facing = cluster(points().map(|p| (p.normal, 1.0)));
+        let along_faces = orientations(&facing).next();
+        let tried = rotations.into_iter().chain([Rotation::IDENTITY]).chain(along_faces);
+        let blocks = tried.map(|rotation| around(corners.iter().copied(), rotation, self.scale.thinnest));
+        let around_both = blocks.reduce(|a, b| if b.volume() < 0.999 * a.volume() { b } else { a });
+        let around_both = around_both.unwrap_or(a.block);
+        let Some(rotation) = along_faces else { return [around_both; 2] };
+        let normal: Vec3 = points().map(|p| p.normal).sum();
+        // Behind the faces where they look one way, nowhere where they look all ways.
+        let behind = normal * (-self.scale.thickness / points().count() as f32);
+        let plate = points().flat_map(|p| [p.position, p.position + behind]);
+        [around_both, around(plate, rotation, self.scale.thinnest)]
     }
 
     /// Integral of squared distance from the points' area to a box, m⁴.
-    fn points_cost(&self, block: &Block, points: &[u32]) -> f32 {
+    fn points_cost(&self, block: &Obb, points: &[u32]) -> f32 {
+        let placed = block.placed();
         let square = |&point: &u32| {
-            let distance = block.signed_distance(self.points[point as usize].position);
+            let distance = placed.signed_distance(self.points[point as usize].position);
             distance * distance
         };
         points.iter().map(square).sum::<f32>() * self.area
@@ -241,16 +260,16 @@ impl<'a> Reduction<'a> {
 
     /// Integral of squared distance to the mesh over a box's surface outside all other boxes, m⁴. `own` are those that
     /// it stands for.
-    fn surface_cost(&self, block: &Block, own: [usize; 2]) -> f32 {
+    fn surface_cost(&self, block: &Obb, own: [usize; 2]) -> f32 {
         // The same points of the same box, so that costs can be compared.
         let mut points = Vec::with_capacity(SURFACE);
-        block.sample(SURFACE, &mut Random::new(0), &mut points);
+        sample_surface(block, SURFACE, &mut Random::new(0), &mut points);
         let square = |&p: &Vec3| {
             let distance = self.bvh.closest_point(p).distance;
             distance * distance
         };
         let outer = points.iter().filter(|&&p| !self.is_inside_another(p, own));
-        outer.map(square).sum::<f32>() * (block.area() / SURFACE as f32)
+        outer.map(square).sum::<f32>() * (block.surface_area() / SURFACE as f32)
     }
 
     fn is_inside_another(&self, p: Vec3, own: [usize; 2]) -> bool {
@@ -258,14 +277,22 @@ impl<'a> Reduction<'a> {
             entry.alive
                 && !own.contains(&i)
                 && entry.bounds.overlaps(&Aabb { min: p, max: p })
-                && entry.block.signed_distance(p) < -self.scale.thinnest
+                && entry.placed.signed_distance(p) < -self.scale.thinnest
         };
         self.entries.iter().enumerate().any(holds)
     }
 }
 
 impl Entry {
-    fn new(block: Block) -> Self {
-        Self { block, bounds: block.bounds(), points: Vec::new(), alive: true }
+    fn new(block: Obb) -> Self {
+        Self {
+            block,
+            placed: block.placed(),
+            bounds: bounds(&block),
+            points: Vec::new(),
+            cost: 0.0,
+            seen: usize::MAX,
+            alive: true,
+        }
     }
 }

@@ -5,7 +5,7 @@ use sinew_math::{Random, Vec3};
 
 /// A point of a mesh.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SurfacePoint {
+pub(crate) struct MeshPoint {
     pub position: Vec3,
     /// Of the triangle, unit.
     pub normal: Vec3,
@@ -17,7 +17,7 @@ pub(crate) fn sample(
     triangles: &[u32],
     count: usize,
     random: &mut Random,
-) -> (Vec<SurfacePoint>, f32) {
+) -> (Vec<MeshPoint>, f32) {
     // In f64: a million small areas.
     let area = |&t: &u32| f64::from(mesh.doubled_area(t as usize).length()) * 0.5;
     let total: f64 = triangles.iter().map(area).sum();
@@ -36,9 +36,9 @@ pub(crate) fn sample(
 }
 
 /// Uniform on a triangle (Osada et al. 2002, eq. 1).
-fn point_on(mesh: &SurfaceMesh, triangle: u32, random: &mut Random) -> SurfacePoint {
+fn point_on(mesh: &SurfaceMesh, triangle: u32, random: &mut Random) -> MeshPoint {
     let [a, b, c] = mesh.corners(triangle as usize);
     let (r, t) = (random.unit().sqrt(), random.unit());
     let position = a * (1.0 - r) + b * (r * (1.0 - t)) + c * (r * t);
-    SurfacePoint { position, normal: (b - a).cross(c - a).normalize() }
+    MeshPoint { position, normal: (b - a).cross(c - a).normalize() }
 }

@@ -1,14 +1,15 @@
 //! A connected part of a mesh as boxes: one where one is close enough, else boxes of cells.
 
 use super::Scale;
-use super::block::Block;
-use super::block_set::BlockSet;
+use super::box_set::BoxSet;
 use super::bvh::MeshBvh;
 use super::cells::Grid;
 use super::fit::{facet_directions, fit, orientations};
+use super::fitted::{around, from_corners, shape};
 use super::mesh::SurfaceMesh;
 use super::plates::{plates, uncovered};
-use super::sample::{SurfacePoint, sample};
+use super::sample::{MeshPoint, sample};
+use crate::boxes::Obb;
 use sinew_math::{Random, Rotation, Vec3, max};
 
 /// Normals within this cosine of an axis are along it (8°).
@@ -30,10 +31,10 @@ pub(super) fn blocks_of_part(
     triangles: &[u32],
     scale: Scale,
     random: &mut Random,
-) -> Vec<Block> {
+) -> Vec<Obb> {
     let (points, _) = sample(mesh, triangles, SAMPLES, random);
     let one = fit(mesh, triangles, scale.thinnest);
-    if one.shape().inner_radius() <= scale.thinnest {
+    if shape(&one).inner_radius() <= scale.thinnest {
         return plates(mesh, triangles, scale);
     }
     let [there, back] = rms_distances(bvh, &points, &[one], random);
@@ -45,7 +46,7 @@ pub(super) fn blocks_of_part(
     let mut filled = boxes_of_cells(mesh, bvh, triangles, rotation, scale);
     let bare = uncovered(mesh, triangles, &filled, scale);
     filled.extend(plates(mesh, &bare, scale));
-    let mut larger = |blocks: &[Block]| {
+    let mut larger = |blocks: &[Obb]| {
         let [there, back] = rms_distances(bvh, &points, blocks, random);
         max(there, back)
     };
@@ -64,8 +65,8 @@ const SAMPLES: usize = 400;
 const FILLED: f32 = 2.0;
 
 /// Root of the mean squared distance from points of a part to boxes, and from the boxes' outer surface to the mesh.
-fn rms_distances(bvh: &MeshBvh, points: &[SurfacePoint], blocks: &[Block], random: &mut Random) -> [f32; 2] {
-    let set = BlockSet::new(blocks);
+fn rms_distances(bvh: &MeshBvh, points: &[MeshPoint], blocks: &[Obb], random: &mut Random) -> [f32; 2] {
+    let set = BoxSet::new(blocks);
     let rms = |distances: Vec<f32>| {
         let squares: f32 = distances.iter().map(|d| d * d).sum();
         (squares / usize::max(distances.len(), 1) as f32).sqrt()
@@ -76,8 +77,8 @@ fn rms_distances(bvh: &MeshBvh, points: &[SurfacePoint], blocks: &[Block], rando
 }
 
 /// Whether the faces around the middle of a box look inward, as a room's.
-fn is_seen_from_inside(bvh: &MeshBvh, block: &Block) -> bool {
-    bvh.winding_number(block.world_from_block.translation) < -0.5
+fn is_seen_from_inside(bvh: &MeshBvh, block: &Obb) -> bool {
+    bvh.winding_number(block.center) < -0.5
 }
 
 fn is_inside(bvh: &MeshBvh, p: Vec3) -> bool {
@@ -90,7 +91,7 @@ fn boxes_of_cells(
     triangles: &[u32],
     rotation: Rotation,
     scale: Scale,
-) -> Vec<Block> {
+) -> Vec<Obb> {
     let planes = planes(mesh, triangles, rotation, scale);
     let grid = Grid::new(planes, |low, high| {
         // The middle of each eighth.
@@ -104,7 +105,7 @@ fn boxes_of_cells(
     let boxes = grid.cover(LEFT_OUT, MOST_BOXES);
     let block = |cells| {
         let (low, high) = grid.corners(cells);
-        Block::from_corners(Vec3::from_array(low), Vec3::from_array(high), rotation, scale.thinnest)
+        from_corners(Vec3::from_array(low), Vec3::from_array(high), rotation, scale.thinnest)
     };
     boxes.iter().map(block).collect()
 }
@@ -113,7 +114,7 @@ fn boxes_of_cells(
 fn planes(mesh: &SurfaceMesh, triangles: &[u32], rotation: Rotation, scale: Scale) -> [Vec<f32>; 3] {
     let mut facets: [Vec<(f32, f32)>; 3] = Default::default();
     let (mut slanted, mut area) = (0.0, 0.0);
-    let bounds = Block::around(triangles.iter().flat_map(|&t| mesh.corners(t as usize)), rotation, 0.0);
+    let bounds = around(triangles.iter().flat_map(|&t| mesh.corners(t as usize)), rotation, 0.0);
     for &triangle in triangles {
         let doubled = rotation.inverse() * mesh.doubled_area(triangle as usize);
         let [a, b, c] = mesh.corners(triangle as usize);
@@ -125,7 +126,7 @@ fn planes(mesh: &SurfaceMesh, triangles: &[u32], rotation: Rotation, scale: Scal
             None => slanted += size,
         }
     }
-    let center = rotation.inverse() * bounds.world_from_block.translation;
+    let center = rotation.inverse() * bounds.center;
     let h = bounds.half_extents;
     let longest = 2.0 * max(max(h.x, h.y), h.z);
     let step = if slanted > 0.05 * area { longest / CELLS } else { longest };

@@ -23,11 +23,13 @@ mod drag;
 mod explosion;
 mod exposed;
 mod gravity;
+mod load;
 mod mutual;
 mod noise;
 mod region;
 mod snapshot;
 mod submerged;
+mod target;
 mod wind;
 mod world;
 
@@ -43,16 +45,15 @@ pub use submerged::{Submerged, WaterPlane, submerged_hull};
 pub use wind::{Gusts, Wind};
 
 pub(crate) use custom::Functions;
+pub(crate) use load::{Load, least};
 pub(crate) use mutual::Attractor;
+pub(crate) use target::{Form, Target};
 pub(crate) use world::attractor;
 
 use crate::arena::Arena;
-use crate::body::{Body, BodyShape, Velocity};
+use crate::body::Body;
 use crate::def::WorldDef;
-use crate::force::Wrench;
-use crate::particles::ParticleGroup;
-use crate::shape::Shape;
-use sinew_math::{Transform, Vec3, min};
+use sinew_math::Vec3;
 
 /// The fields of a world, as a step sees them.
 #[derive(Clone, Copy, Debug)]
@@ -112,131 +113,6 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// What a field finds in its reach: a body or a particle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Target<'a> {
-    /// Of the principal frame: the translation is the centre of mass.
-    pub pose: Transform,
-    pub velocity: Velocity,
-    pub mass: f32,
-    pub gravity_scale: f32,
-    pub form: Form<'a>,
-}
-
-/// What of it the air and the water meet.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Form<'a> {
-    Body(&'a [BodyShape]),
-    /// Ball of a radius, on some layers.
-    Particle {
-        radius: f32,
-        layers: u32,
-    },
-}
-
-impl<'a> Target<'a> {
-    pub fn of_body(body: &'a Body) -> Self {
-        Self::at(body, body.world_from_principal, body.velocity)
-    }
-
-    /// A body within its step.
-    pub fn at(body: &'a Body, pose: Transform, velocity: Velocity) -> Self {
-        let form = Form::Body(&body.shapes);
-        Self { pose, velocity, mass: body.mass, gravity_scale: body.gravity_scale, form }
-    }
-
-    pub fn of_particle(group: &ParticleGroup, index: usize) -> Self {
-        Self {
-            pose: Transform::from_translation(group.positions()[index]),
-            velocity: Velocity { linear: group.velocities()[index], angular: Vec3::ZERO },
-            mass: group.masses()[index],
-            gravity_scale: group.gravity_scale(),
-            form: Form::Particle { radius: group.radii()[index], layers: group.filter().layers },
-        }
-    }
-
-    pub fn center(&self) -> Vec3 {
-        self.pose.translation
-    }
-
-    /// m/s, of a world point that moves along.
-    fn velocity_at(&self, point: Vec3) -> Vec3 {
-        self.velocity.at(point - self.center())
-    }
-
-    /// On any of these layers. What has no shape is on all.
-    fn is_on(&self, layers: u32) -> bool {
-        match self.form {
-            Form::Body(shapes) => shapes.is_empty() || shapes.iter().any(|s| s.filter.layers & layers != 0),
-            Form::Particle { layers: own, .. } => own & layers != 0,
-        }
-    }
-
-    /// Its shapes with their world poses. A particle is a ball, if it has a radius.
-    fn for_each_shape(&self, mut visit: impl FnMut(&Shape, &Transform)) {
-        match self.form {
-            Form::Body(shapes) => {
-                for s in shapes {
-                    visit(&s.shape, &(self.pose * s.principal_from_shape));
-                }
-            }
-            Form::Particle { radius, .. } if radius > 0.0 => visit(&Shape::Sphere { radius }, &self.pose),
-            Form::Particle { .. } => {}
-        }
-    }
-}
-
-/// What fields do to a body or particle.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Load {
-    pub wrench: Wrench,
-    /// How much less force comes of more velocity, `−∂F/∂v`, N·s/m: an upper bound over directions.
-    pub resistance: f32,
-    /// Likewise of torque and spin, N·m·s.
-    pub spin_resistance: f32,
-}
-
-impl Load {
-    fn push(&mut self, force: Vec3) {
-        self.wrench.force += force;
-    }
-
-    /// A force at `arm` from the centre of mass that brakes.
-    fn push_at(&mut self, arm: Vec3, force: Vec3, resistance: f32) {
-        self.wrench.force += force;
-        self.wrench.torque += arm.cross(force);
-        self.resistance += resistance;
-        self.spin_resistance += resistance * arm.length_squared();
-    }
-
-    /// `share` of another one.
-    fn add(&mut self, other: &Self, share: f32) {
-        self.wrench.force += other.wrench.force * share;
-        self.wrench.torque += other.wrench.torque * share;
-        self.resistance += other.resistance * share;
-        self.spin_resistance += other.spin_resistance * share;
-    }
-
-    /// On a particle that `weight` pulls besides: its own part of the sum, held back likewise.
-    pub fn beside(&self, weight: Vec3, mass: f32, h: f32) -> Vec3 {
-        let share = held_back(h * self.resistance, mass);
-        self.wrench.force * share + weight * (share - 1.0)
-    }
-
-    /// The load of this and of what else acts, held back so far that a substep cannot overshoot: see the module.
-    pub fn with(&self, other: Wrench, mass: f32, least_moment: f32, h: f32) -> Wrench {
-        Wrench {
-            force: (other.force + self.wrench.force) * held_back(h * self.resistance, mass),
-            torque: (other.torque + self.wrench.torque) * held_back(h * self.spin_resistance, least_moment),
-        }
-    }
-}
-
-/// Share of a force that is left when `braking` of the inertia would be braked away.
-fn held_back(braking: f32, inertia: f32) -> f32 {
-    if braking > inertia { inertia / braking } else { 1.0 }
-}
-
 impl FieldDef {
     /// Whether it acts on something at all.
     pub(crate) fn reaches(&self, target: &Target<'_>) -> bool {
@@ -281,9 +157,4 @@ impl FieldDef {
             FieldKind::Mutual(_) | FieldKind::Wind(_) | FieldKind::Drag(_) | FieldKind::Custom { .. } => 0.0,
         }
     }
-}
-
-/// The least of three moments.
-pub(crate) fn least(moments: Vec3) -> f32 {
-    min(moments.x, min(moments.y, moments.z))
 }

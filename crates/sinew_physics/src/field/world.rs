@@ -20,7 +20,7 @@ impl World {
         FieldId { index, generation }
     }
 
-    /// Gives a field another definition; what it reached and what it reaches now wakes. Cheap enough for every step.
+    /// Gives a field another definition; what it reached and what it reaches now wakes.
     ///
     /// # Panics
     /// If [`FieldDef::check`] finds something wrong, or a user's function is not registered.

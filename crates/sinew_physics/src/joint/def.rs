@@ -314,7 +314,10 @@ impl JointDef {
         for softness in [self.weld, self.limit_softness, zone, spring, motor].into_iter().flatten() {
             assert!(softness.is_valid(), "a spring's numbers are at least 0 and finite");
         }
-        assert!(self.soft_zone.is_none_or(|zone| zone.width >= 0.0), "a soft zone's width is at least 0");
+        assert!(
+            self.soft_zone.is_none_or(|zone| zone.width >= 0.0 && zone.width < f32::INFINITY),
+            "a soft zone's width is at least 0 and finite"
+        );
         assert!(self.spring.is_none_or(|spring| spring.rest.is_finite()), "a spring's rest pose is finite");
         assert!(self.motor.is_none_or(|motor| motor.is_valid()), "a motor's numbers are finite");
     }

@@ -41,6 +41,7 @@ impl GroupDef {
             must(finite, "the point of an attachment must be finite")?;
         }
         self.tethers.iter().try_for_each(|t| t.check(&held))?;
+        self.material.check()?;
         must(
             not_negative(self.linear_damping) && self.gravity_scale.is_finite(),
             "damping must not be negative, and the gravity scale finite",

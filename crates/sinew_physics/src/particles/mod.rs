@@ -66,6 +66,9 @@ pub struct ParticleGroup {
     /// Impulse of a surface on each particle in the last solve.
     contact_impulses: Vec<Vec3>,
 
+    /// Where each particle was before the last step, for drawing.
+    drawn_from: Vec<Vec3>,
+
     forest: Forest,
     system: System,
     /// Where each particle was before the iteration.
@@ -156,6 +159,7 @@ impl ParticleGroup {
         };
         self.system = System::new(count, self.springs.len());
         self.previous = self.positions.clone();
+        self.drawn_from = self.positions.clone();
         self.attachment_impulses = vec![Vec3::ZERO; self.attachments.len()];
         self.weights = vec![0.0; count];
         self.accelerations = vec![Vec3::ZERO; count];
@@ -175,6 +179,17 @@ impl ParticleGroup {
     /// World, metres.
     pub fn positions(&self) -> &[Vec3] {
         &self.positions
+    }
+
+    /// Positions between the last step (`alpha` 0) and this one (1), for drawing; see [`Update`](crate::Update).
+    pub fn interpolated(&self, alpha: f32) -> impl Iterator<Item = Vec3> {
+        let steps = self.drawn_from.iter().zip(&self.positions);
+        steps.map(move |(&from, &to)| from * (1.0 - alpha) + to * alpha)
+    }
+
+    /// Where particles are is from now on where they were before the step.
+    pub(crate) fn begin_step(&mut self) {
+        self.drawn_from.copy_from_slice(&self.positions);
     }
 
     /// m/s.
@@ -289,7 +304,7 @@ impl ParticleGroup {
     /// If there is no such particle, or a number is not finite.
     pub fn correct(&mut self, particle: u32, by: Vec3, h: f32) {
         let velocity = by / h;
-        assert!(velocity.is_finite(), "a particle's way is finite");
+        assert!(by.is_finite() && h.is_finite() && velocity.is_finite(), "a particle's way is finite");
         self.positions[particle as usize] += by;
         self.velocities[particle as usize] += velocity;
     }

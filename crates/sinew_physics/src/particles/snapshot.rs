@@ -9,8 +9,8 @@ use crate::id::BodyId;
 use crate::snapshot::{load_filter, load_material, save_filter, save_material};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
-/// Bytes of a particle: position, velocity, mass, radius, contact impulse, grip.
-const PARTICLE_BYTES: usize = 4 * (3 + 3 + 1 + 1 + 3) + 1;
+/// Bytes of a particle: position, velocity, mass, radius, contact impulse, grip, position before the step.
+const PARTICLE_BYTES: usize = 4 * (3 + 3 + 1 + 1 + 3 + 3) + 1;
 const SPRING_BYTES: usize = 4 * 5 + 1;
 const BEND_BYTES: usize = 4 * 5;
 const TETHER_BYTES: usize = 4 * 3;
@@ -43,6 +43,7 @@ impl ParticleGroup {
                 // A corner holds for an iteration.
                 Grip::Stick | Grip::Wedged => 2,
             });
+            out.vec3(self.drawn_from[i]);
         }
         out.count(self.springs.len());
         for s in &self.springs {
@@ -116,7 +117,7 @@ impl ParticleGroup {
             iterations,
             ..GroupDef::default()
         };
-        let (mut contact_impulses, mut grips) = (Vec::new(), Vec::new());
+        let (mut contact_impulses, mut grips, mut drawn_from) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..input.count(PARTICLE_BYTES)? {
             def.particles.push(read_particle(input)?);
             contact_impulses.push(input.vec3()?);
@@ -126,6 +127,7 @@ impl ParticleGroup {
                 2 => Grip::Stick,
                 _ => return Err(input.error("a grip is none of the three")),
             });
+            drawn_from.push(input.vec3()?);
         }
         for _ in 0..input.count(SPRING_BYTES)? {
             def.springs.push(read_spring(input)?);
@@ -135,10 +137,11 @@ impl ParticleGroup {
             def.attachments.push(read_attachment(input)?);
         }
         def.check().map_err(|what| input.error(what))?;
-        if !(contact_impulses.iter().all(|v: &Vec3| v.is_finite()) && span.is_finite()) {
-            return Err(input.error("an impulse or a time is not finite"));
+        let finite = contact_impulses.iter().chain(&drawn_from).all(|v: &Vec3| v.is_finite());
+        if !(finite && span.is_finite()) {
+            return Err(input.error("an impulse, a place or a time is not finite"));
         }
-        Ok(Self { span, contact_impulses, grips, ..Self::new(&def) })
+        Ok(Self { span, contact_impulses, grips, drawn_from, ..Self::new(&def) })
     }
 }
 

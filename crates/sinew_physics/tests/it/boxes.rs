@@ -4,10 +4,13 @@
 mod batch;
 mod build;
 mod cast;
+mod fit;
+mod frustum;
 mod oracle;
 mod overlap;
 mod point;
 mod random_pairs;
+mod world;
 
 /// Of `all` cases those that are run: a hundredth unless `SINEW_FULL` is set.
 fn cases(all: u32) -> u32 {

@@ -1,7 +1,9 @@
 //! From meshes to boxes: closed forms, brute force, bad input.
 
 use sinew_math::{Mat3, Random, Rotation, Vec3};
-use sinew_physics::cook::{Block, CookError, CookOptions, Cooked, MeshBvh, cook};
+use sinew_physics::boxes::Cuboid;
+use sinew_physics::cook::{CookError, CookOptions, Cooked, MeshBvh, cook};
+use sinew_physics::{Obb, Shape};
 
 /// Vertices and triangles, counter-clockwise from outside.
 #[derive(Clone, Default)]
@@ -94,8 +96,8 @@ fn stairs(steps: usize, rise: f32, run: f32, width: f32) -> Mesh {
     Mesh::prism(&outline, &pieces, width)
 }
 
-fn top(block: &Block) -> f32 {
-    block.world_from_block.translation.y + block.half_extents.y
+fn top(block: &Obb) -> f32 {
+    block.center.y + block.half_extents.y
 }
 
 #[test]
@@ -300,7 +302,8 @@ fn nonsense_does_no_harm() {
             Ok(cooked) => {
                 assert!((1..=20).contains(&cooked.boxes.len()));
                 for block in &cooked.boxes {
-                    assert!(block.shape().check().is_ok() && block.world_from_block.is_finite(), "{block:?}");
+                    let shape = Shape::Box { half_extents: block.half_extents };
+                    assert!(shape.check().is_ok() && block.to_transform().is_finite(), "{block:?}");
                 }
             }
             Err(error) => assert!(matches!(error, CookError::NoTriangles { .. }), "{error}"),

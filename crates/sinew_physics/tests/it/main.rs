@@ -8,6 +8,7 @@ mod closed_forms;
 mod collide;
 mod cook;
 mod fields;
+mod finite;
 mod humanoid;
 mod joints;
 mod nets;

@@ -3,6 +3,7 @@
 use crate::objects::inhabited;
 use core::time::Duration;
 use sinew_math::{Random, Vec3};
+use sinew_physics::particles::{GroupDef, ParticleDef};
 use sinew_physics::stage::NoProfiler;
 use sinew_physics::*;
 
@@ -105,6 +106,8 @@ fn what_is_drawn_lies_between_two_steps() {
     let shapes = vec![ShapeDef::new(Shape::Sphere { radius: 0.1 })];
     let def = BodyDef { linear_velocity: Vec3::X, shapes, ..BodyDef::default() };
     let body = world.add_body(&def);
+    let particle = ParticleDef { position: Vec3::Y, velocity: Vec3::X, mass: 1.0, radius: 0.1 };
+    let group = world.add_particles(&GroupDef { particles: vec![particle], ..GroupDef::default() });
     let mut time = 0.0;
     for _ in 0..50 {
         let frame = Duration::from_millis(7);
@@ -113,8 +116,10 @@ fn what_is_drawn_lies_between_two_steps() {
         if world.step_count() > 0 {
             // One step behind what has passed.
             let expected = time - world.def().dt();
-            let x = world.interpolated(body, alpha).translation.x;
-            assert!((x - expected).abs() < 1e-5, "{x} for {expected}");
+            let of_particle = world.particles(group).interpolated(alpha).next();
+            for x in [world.interpolated(body, alpha).translation.x, of_particle.map_or(0.0, |at| at.x)] {
+                assert!((x - expected).abs() < 1e-5, "{x} for {expected}");
+            }
         }
     }
 }

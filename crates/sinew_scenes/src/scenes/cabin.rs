@@ -210,7 +210,11 @@ impl Script for Rain {
             Metric::new("contacts", count, Expected::Anything),
             Metric::awaited("contact_error_mean_m", mean(gap_sum), Expected::Anything),
             Metric::new("contact_error_max_m", gap_max, Expected::AtMost(f64::from(corner))),
-            Metric::awaited("normal_error_mean_deg", mean(angle_sum).map(f32::to_degrees), Expected::Anything),
+            Metric::awaited(
+                "normal_error_mean_deg",
+                mean(angle_sum).map(f32::to_degrees),
+                Expected::Anything,
+            ),
             Metric::new("fallen_through", through as f32, Expected::AtMost(0.0)),
             Metric::new("mesh_triangles", self.mesh.len() as f32, Expected::Anything),
         ]

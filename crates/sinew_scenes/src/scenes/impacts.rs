@@ -44,12 +44,13 @@ fn elastic_pairs(_: &Setup<'_>) -> Instance {
         def.linear_velocity = Vec3::X * speed;
         world.add_body(&def)
     };
+    let mut beside = Vec3::ZERO;
     let pairs = PAIRS.map(|(mass, names)| {
-        let z = Vec3::Z * mass;
-        let ids = [moving(1.0, z, SPEEDS[0]), moving(mass, z + Vec3::X, SPEEDS[1])];
+        beside += Vec3::Y * 0.4;
+        let ids = [moving(1.0, beside, SPEEDS[0]), moving(mass, beside + Vec3::X, SPEEDS[1])];
         Pair { mass, names, ids }
     });
-    let place = |i: usize| Vec3::new(i as f32 * (2.0 * PAIR_RADIUS + ROW_GAP), 1.0, 0.0);
+    let place = |i: usize| Vec3::X * (i as f32 * (2.0 * PAIR_RADIUS + ROW_GAP));
     let mut row = vec![moving(1.0, place(0) - Vec3::X, SPEEDS[0])];
     row.extend((0..4).map(|i| moving(1.0, place(i), 0.0)));
     Instance::new(world, ElasticPairs { pairs, row })

@@ -5,7 +5,7 @@ use super::sight::Sight;
 use core::time::Duration;
 use sinew::math::max;
 use sinew::physics::stage::{NoProfiler, Profiler};
-use sinew::physics::{Energy, Serial, TaskRunner, Update, World};
+use sinew::physics::{DebugDraw, Energy, Serial, TaskRunner, Update, World};
 
 /// The part of a scene that goes along with its world.
 pub trait Script: Send {
@@ -26,6 +26,9 @@ pub trait Script: Send {
     fn sight(&self) -> Sight {
         Sight::default()
     }
+
+    /// What a picture shows beside the world, such as what it asks the world for.
+    fn draw(&self, _world: &World, _out: &mut dyn DebugDraw) {}
 }
 
 /// Nothing but the world itself.
@@ -58,6 +61,11 @@ impl Instance {
     /// How a picture looks at it.
     pub fn sight(&self) -> Sight {
         self.script.sight()
+    }
+
+    /// Draws what a picture shows beside the world.
+    pub fn draw(&self, out: &mut dyn DebugDraw) {
+        self.script.draw(&self.world, out);
     }
 
     /// Its world, for questions, drawing, snapshots.

@@ -23,6 +23,7 @@ mod ballistics;
 mod blasts;
 mod blobs;
 mod boxes;
+mod cabin;
 mod chains;
 mod cloths;
 mod crowds;
@@ -99,6 +100,55 @@ impl Scene {
 
 /// All scenes, closed forms first.
 pub fn registry() -> &'static [Scene] {
+    const {
+        &[
+            ballistics::FREE_FALL,
+            ballistics::PROJECTILE,
+            ballistics::BOUNCE,
+            pendulums::PENDULUM,
+            pendulums::DOUBLE_PENDULUM,
+            pendulums::TRIPLE_PENDULUM,
+            motors::ARM,
+            linkages::LINKAGE,
+            incline::HOLDS,
+            incline::SLIDES,
+            springs::SPRING,
+            springs::SPRING_CHAIN,
+            springs::SPRINGS_RATIO,
+            gimbal::GIMBAL,
+            orientation::MATRIX_DRIFT,
+            orientation::VERSOR,
+            orientation::HELPERS,
+            weightless::ZERO_GRAVITY_PILE,
+            weightless::SPIN_DOUBLE,
+            weightless::SPIN_TRIPLE,
+            weightless::SPIN_RAGDOLL,
+            cabin::CABIN,
+            piles::STACK,
+            piles::PYRAMID,
+            piles::DOMINOES,
+            springs::ROPE_ON_BOX,
+            ragdolls::DROP,
+            falls::POSES,
+            ragdolls::WALL,
+            ragdolls::WALL_FAST,
+            ragdolls::STAIRS,
+            chains::SWING_1000,
+            chains::SWING_100,
+            chains::HANG_1000,
+            chains::HANG_100,
+            chains::LINKS_100,
+            chains::HEAVY_ROPE,
+            chains::HANGING_ROPE,
+            nets::JOINT_GRID,
+            nets::NET,
+            crowds::PILE,
+            trees::HEAVY_FOOT,
+            trees::MASS_RATIO,
+            boxes::AABB_VS_OBB,
+            boxes::POINT_IN_OBB,
+        ]
+    }
     REGISTRY
 }
 

@@ -6,7 +6,7 @@ use sinew::math::{Vec3, clamp, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyId, BodyKind};
-use sinew_picture::world::{self, Frame};
+use sinew_picture::world::{self, Frame, Lines};
 use sinew_picture::{
     Camera, Caption, EncodeError, Image, Line, LineDepth, Movie, PictureFormat, RenderSettings, Renderer,
     Scene, Sky, Sun,
@@ -16,7 +16,7 @@ use sinew_scenes::scenes::{Expected, Instance, Metric, Sight, Trails};
 /// Pictures a second: a whole number of a GIF's hundredths of a second.
 const FPS: u32 = 20;
 /// Figures on a picture.
-const MOST_FIGURES: usize = 4;
+const MOST_FIGURES: usize = 3;
 /// Of more bodies no trails are drawn: nobody could tell them apart.
 const MOST_TRAILS: usize = 4;
 /// Steps that trails go back.
@@ -147,8 +147,16 @@ impl Take {
 
     /// Around all that a picture is about, now.
     fn now(&self) -> Aabb {
-        let seen = self.sight.bounds.or_else(|| world::subject(self.run.world()));
-        seen.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE))
+        let moving = world::subject(self.run.world()).into_iter();
+        let all = moving.chain(self.lines().bounds()).reduce(|a, b| a.merge(&b));
+        self.sight.bounds.or(all).unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE))
+    }
+
+    /// What the scene draws beside its world.
+    fn lines(&self) -> Lines {
+        let mut lines = Lines::default();
+        self.run.draw(&mut lines);
+        lines
     }
 
     /// As it stands now, in a frame for all of `whole`.
@@ -162,6 +170,7 @@ impl Take {
             ..Scene::default()
         };
         world::paint(self.run.world(), &frame, &mut scene);
+        scene.lines.extend(self.lines().list);
         scene.lines.extend(self.trails.iter().flat_map(Trail::lines));
         let size = renderer.settings();
         let aspect = size.width as f32 / size.height as f32;

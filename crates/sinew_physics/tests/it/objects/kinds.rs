@@ -53,6 +53,28 @@ impl PhysicsObject for Spring {
     }
 }
 
+/// Always the same force at the centre of a body, N.
+pub struct Thrust {
+    pub body: BodyId,
+    pub force: Vec3,
+}
+
+impl PhysicsObject for Thrust {
+    fn kind(&self) -> &'static str {
+        "thrust"
+    }
+    fn add_forces(&mut self, forces: &mut Forces<'_>) {
+        forces.apply_force_at_center(self.body, self.force);
+    }
+    fn save(&self, w: &mut Writer) {
+        w.vec3(self.force);
+    }
+    fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
+        self.force = r.vec3()?;
+        Ok(())
+    }
+}
+
 /// Keeps the centre of a body at a distance from a place.
 pub struct Leash {
     pub body: BodyId,

@@ -6,7 +6,7 @@ mod state;
 pub use state::inhabited;
 
 use crate::build::{ball, box_body, capsule_body, floor, sphere_body};
-use kinds::{Bump, Counter, Leash, Once, OnceMoved, Spring};
+use kinds::{Bump, Counter, Leash, Once, OnceMoved, Spring, Thrust};
 use sinew_math::{Transform, Vec3, max};
 use sinew_physics::particles::{GroupDef, ParticleDef, RopeDef};
 use sinew_physics::*;
@@ -88,6 +88,25 @@ fn a_force_acts_substep_by_substep() {
         let x = f64::from(world.transform(body).translation.x);
         assert!((x - expected).abs() < 2e-4, "step {step}: {x} for {expected}");
     }
+}
+
+/// What the object pushes adds to what the world does, once: gravity as a field, and a force that lasts.
+#[test]
+fn a_force_adds_to_fields_and_to_forces_that_last() {
+    let mut world = weightless();
+    let body = world.add_body(&sphere_body(0.1, Vec3::ZERO));
+    let weight = world.mass(body).mass * 9.81;
+    let gravity = UniformGravity { acceleration: Vec3::NEG_Y * 9.81 };
+    world.add_field(&FieldDef::new(FieldKind::Uniform(gravity)));
+    world.add_force(body, &ForceDef { force: Vec3::X * weight, ..ForceDef::default() });
+    world.add_object(Box::new(Thrust { body, force: Vec3::new(-weight, weight, 0.0) }));
+    world.add_object(Box::new(Thrust { body, force: Vec3::Z * weight }));
+    for _ in 0..60 {
+        world.step();
+    }
+    let time = world.time() as f32;
+    let moved = world.velocity(body).linear - Vec3::Z * (9.81 * time);
+    assert!(moved.length() < 1e-4, "{moved}");
 }
 
 #[test]

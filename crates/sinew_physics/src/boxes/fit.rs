@@ -1,0 +1,315 @@
+//! Boxes around points.
+
+use super::{Aabb, Cuboid, Obb};
+use sinew_math::{
+    Mat3, Rotation, Sym3, Vec2, Vec3, abs3, any_orthonormal, max, max3, min, min3, normalize_or,
+};
+
+impl Aabb {
+    /// The smallest one around points; `None` if there are none or a number is not finite.
+    pub fn from_points(points: &[Vec3]) -> Option<Self> {
+        if points.is_empty() || !points.iter().all(|p| p.is_finite()) {
+            return None;
+        }
+        let (min, max) =
+            points.iter().fold((points[0], points[0]), |(lo, hi), &p| (min3(lo, p), max3(hi, p)));
+        Some(Self { min, max })
+    }
+}
+
+impl Obb {
+    /// Around points, along the principal axes of their covariance (Gottschalk, Lin & Manocha 1996), longest spread first:
+    /// quick, and good for points that fill a volume evenly. Takes time in proportion to their number.
+    ///
+    /// Every point is in the box by [`Cuboid::contains_point`]. Of points that all are in one plane, on one line or in one
+    /// place, the other half extents are 0 but for rounding. `None` if there are none or a number is not finite.
+    pub fn from_points_pca(points: &[Vec3]) -> Option<Self> {
+        let cloud = Cloud::new(points)?;
+        Some(around(points, principal_axes(&cloud.points)))
+    }
+
+    /// Around points, with as little volume as a search finds; of flat points with as little area. For cooking, not for
+    /// every step: some milliseconds.
+    ///
+    /// The least box has two adjacent faces that each lie on an edge of the convex hull (O'Rourke 1985). Tried are all boxes
+    /// with an axis along the normal of a facet or across two edges, of the hull of up to 52 extreme points with up to 64
+    /// edges, each turned about this axis as fits best. The best eight, the box of
+    /// [`from_points_pca`](Self::from_points_pca) and the one along the axes are then turned about each of their axes in
+    /// turn while that helps. So it is the least box itself where that has a face on a facet or two opposite edges in two
+    /// opposite faces (boxes, prisms, a regular tetrahedron); it is never larger than the other two. Of 10,000
+    /// random clouds of 4 to 63 points it was 6 % above the least that random turns found at worst, and on average below it.
+    ///
+    /// What is guaranteed of points and of degenerate input is as for [`from_points_pca`](Self::from_points_pca).
+    pub fn from_points(points: &[Vec3]) -> Option<Self> {
+        let cloud = Cloud::new(points)?;
+        let extreme = cloud.extreme_points();
+        let mut tried: Vec<_> =
+            extreme.axes_of_hull().into_iter().map(|axis| extreme.best_about(axis)).collect();
+        tried.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let simple = [principal_axes(&cloud.points), [Vec3::X, Vec3::Y, Vec3::Z]];
+        let starts = tried.iter().take(MOST_STARTS).map(|found| found.axes).chain(simple);
+        let best = starts.map(|axes| cloud.improved(axes)).reduce(Candidate::cheaper)?;
+        Some(around(points, best.axes))
+    }
+
+    /// A box around two: with the least volume among those along the axes of either, or along the principal axes of their
+    /// corners, each turned about its axes while that helps. One that holds the other is the answer itself. Holds all
+    /// corners but for rounding.
+    #[must_use]
+    pub fn merge(&self, other: &Self) -> Self {
+        let corners: [Vec3; 16] = core::array::from_fn(|k| [self, other][k / 8].corners()[k % 8]);
+        for (outer, held) in [(self, &corners[8..]), (other, &corners[..8])] {
+            if held.iter().all(|&p| outer.contains_point(p)) {
+                return *outer;
+            }
+        }
+        let Some(cloud) = Cloud::new(&corners) else { return *self };
+        let starts = [self.placed().axes, other.placed().axes, principal_axes(&cloud.points)];
+        let best = starts.map(|axes| cloud.improved(axes)).into_iter().reduce(Candidate::cheaper);
+        around(&corners, best.map_or(starts[0], |best| best.axes))
+    }
+}
+
+/// Turns about each axis that [`Cloud::improved`] makes at most.
+const ROUNDS: usize = 12;
+/// Hulls of more points are searched by their extreme ones: the most that [`DIRECTIONS`] can find along two frames.
+const MOST_POINTS: usize = 52;
+/// The cheapest boxes of the search that are improved.
+const MOST_STARTS: usize = 8;
+/// The longest edges of a hull that are crossed with each other.
+const MOST_EDGES: usize = 64;
+/// Share of the cloud's size by which a point may be beyond the plane of a facet.
+const FLAT: f32 = 1e-5;
+
+/// Normals of the faces, edges and corners of a cube, one of each opposite two.
+const DIRECTIONS: [Vec3; 13] = [
+    Vec3::new(1.0, 0.0, 0.0),
+    Vec3::new(0.0, 1.0, 0.0),
+    Vec3::new(0.0, 0.0, 1.0),
+    Vec3::new(1.0, 1.0, 0.0),
+    Vec3::new(1.0, -1.0, 0.0),
+    Vec3::new(1.0, 0.0, 1.0),
+    Vec3::new(1.0, 0.0, -1.0),
+    Vec3::new(0.0, 1.0, 1.0),
+    Vec3::new(0.0, 1.0, -1.0),
+    Vec3::new(1.0, 1.0, 1.0),
+    Vec3::new(1.0, 1.0, -1.0),
+    Vec3::new(1.0, -1.0, 1.0),
+    Vec3::new(1.0, -1.0, -1.0),
+];
+
+/// Points relative to the middle of their bounds.
+struct Cloud {
+    points: Vec<Vec3>,
+    /// Diagonal of their bounds, metres.
+    size: f32,
+}
+
+/// An orientation and what a box with it costs.
+#[derive(Clone, Copy)]
+struct Candidate {
+    axes: [Vec3; 3],
+    cost: f32,
+}
+
+impl Candidate {
+    /// The first one if they cost the same.
+    fn cheaper(self, other: Self) -> Self {
+        if other.cost < self.cost { other } else { self }
+    }
+}
+
+impl Cloud {
+    fn new(points: &[Vec3]) -> Option<Self> {
+        let bounds = Aabb::from_points(points)?;
+        let middle = bounds.center();
+        let points = points.iter().map(|&p| p - middle).collect();
+        Some(Self { points, size: (bounds.max - bounds.min).length() })
+    }
+
+    /// Volume of the box of these sides. Each is lengthened a little, so that flat boxes are compared by their area and
+    /// thin ones by their length.
+    fn cost(&self, sides: [f32; 3]) -> f32 {
+        let [a, b, c] = sides.map(|side| side + FLAT * self.size);
+        a * b * c
+    }
+
+    /// The points that are furthest along [`DIRECTIONS`], in the axes at hand and along the principal ones; all of them if
+    /// they are few.
+    fn extreme_points(&self) -> Self {
+        if self.points.len() <= MOST_POINTS {
+            return Self { points: self.points.clone(), size: self.size };
+        }
+        let mut chosen = Vec::new();
+        for axes in [[Vec3::X, Vec3::Y, Vec3::Z], principal_axes(&self.points)] {
+            for d in DIRECTIONS {
+                let direction = axes[0] * d.x + axes[1] * d.y + axes[2] * d.z;
+                for direction in [direction, -direction] {
+                    let further = |best: usize, k: usize| {
+                        if self.points[k].dot(direction) > self.points[best].dot(direction) {
+                            k
+                        } else {
+                            best
+                        }
+                    };
+                    chosen.push((1..self.points.len()).fold(0, further));
+                }
+            }
+        }
+        chosen.sort_unstable();
+        chosen.dedup();
+        Self { points: chosen.into_iter().map(|k| self.points[k]).collect(), size: self.size }
+    }
+
+    /// Unit directions along which an axis of the least box may lie: normals of facets of the hull, and directions across
+    /// two of its edges. Of points on a line, one across it; of one point, none.
+    fn axes_of_hull(&self) -> Vec<Vec3> {
+        let (mut axes, mut edges) = (Vec::new(), Vec::new());
+        for i in 0..self.points.len() {
+            for j in i + 1..self.points.len() {
+                let before = axes.len();
+                let along = self.points[j] - self.points[i];
+                axes.extend((j + 1..self.points.len()).filter_map(|k| self.facet([i, j, k])));
+                // Facets count once, by their two lowest corners; that a pair is a side of one, any third corner shows.
+                let is_edge =
+                    axes.len() > before || (0..j).any(|k| k != i && self.facet([i, j, k]).is_some());
+                if is_edge {
+                    edges.push(along);
+                }
+            }
+        }
+        let spread = self.points.iter().map(|&p| p - self.points[0]);
+        let longest = spread.fold(Vec3::ZERO, |a, b| if b.length() > a.length() { b } else { a });
+        if edges.is_empty() && longest != Vec3::ZERO {
+            axes.push(any_orthonormal(longest.normalize()));
+        }
+        edges.sort_by(|a, b| b.length().total_cmp(&a.length()));
+        edges.truncate(MOST_EDGES);
+        for (k, a) in edges.iter().enumerate() {
+            for b in &edges[..k] {
+                let across = a.cross(*b);
+                if across.length() > 1e-3 * a.length() * b.length() {
+                    axes.push(across.normalize());
+                }
+            }
+        }
+        axes
+    }
+
+    /// The normal of the plane through three points if all points are on one side of it.
+    fn facet(&self, [i, j, k]: [usize; 3]) -> Option<Vec3> {
+        let origin = self.points[i];
+        let (u, v) = (self.points[j] - origin, self.points[k] - origin);
+        let across = u.cross(v);
+        if across.length() <= 1e-4 * u.length() * v.length() {
+            return None;
+        }
+        let normal = across.normalize();
+        let margin = FLAT * self.size;
+        let (mut above, mut below) = (false, false);
+        for p in &self.points {
+            let height = (*p - origin).dot(normal);
+            above |= height > margin;
+            below |= height < -margin;
+            if above && below {
+                return None;
+            }
+        }
+        Some(normal)
+    }
+
+    /// The cheapest box with an axis along the unit vector `axis`: the rectangle of least area around the points seen along
+    /// it has a side on an edge of their convex hull (Freeman & Shapira 1975).
+    fn best_about(&self, axis: Vec3) -> Candidate {
+        let u = any_orthonormal(axis);
+        let v = axis.cross(u);
+        let height = extent(self.points.iter().map(|p| p.dot(axis)));
+        let hull = flat_hull(self.points.iter().map(|p| Vec2::new(p.dot(u), p.dot(v))).collect());
+        let of_side = |k: usize| {
+            let side = hull[(k + 1) % hull.len()] - hull[k];
+            let length = side.length();
+            let d = if length > 0.0 { side / length } else { Vec2::X };
+            let across = Vec2::new(-d.y, d.x);
+            let [a, b] = [d, across].map(|n| extent(hull.iter().map(|p| p.dot(n))));
+            let (x, y) = (u * d.x + v * d.y, u * across.x + v * across.y);
+            Candidate { axes: [x, y, axis], cost: self.cost([a, b, height]) }
+        };
+        (1..hull.len()).map(of_side).fold(of_side(0), Candidate::cheaper)
+    }
+
+    /// Turned about each axis in turn while that makes the box cheaper.
+    fn improved(&self, axes: [Vec3; 3]) -> Candidate {
+        let sides = axes.map(|axis| extent(self.points.iter().map(|p| p.dot(axis))));
+        let mut best = Candidate { axes, cost: self.cost(sides) };
+        for _ in 0..ROUNDS {
+            let before = best.cost;
+            for k in 0..3 {
+                best = best.cheaper(self.best_about(best.axes[k]));
+            }
+            if best.cost >= before * (1.0 - 1e-6) {
+                break;
+            }
+        }
+        best
+    }
+}
+
+/// Length of the interval that numbers fill.
+fn extent(numbers: impl Iterator<Item = f32>) -> f32 {
+    let (lo, hi) = numbers.fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), x| (min(x, lo), max(x, hi)));
+    hi - lo
+}
+
+/// Corners of the convex hull in the plane, counter-clockwise (Andrew 1979). At least one point.
+fn flat_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let mut hull: Vec<Vec2> = Vec::new();
+    let backwards = points.iter().rev().skip(1);
+    let mut least = 1;
+    for (k, &p) in points.iter().chain(backwards).enumerate() {
+        while hull.len() > least && turn(hull[hull.len() - 2], hull[hull.len() - 1], p) <= 0.0 {
+            hull.pop();
+        }
+        hull.push(p);
+        if k + 1 == points.len() {
+            // The lower half is done: the way back does not take it apart.
+            least = hull.len();
+        }
+    }
+    hull.pop();
+    hull
+}
+
+/// Twice the area of a triangle, positive if counter-clockwise.
+fn turn(a: Vec2, b: Vec2, c: Vec2) -> f32 {
+    let (u, v) = (b - a, c - a);
+    u.x * v.y - u.y * v.x
+}
+
+/// Axes of the covariance, the longest spread first.
+fn principal_axes(points: &[Vec3]) -> [Vec3; 3] {
+    let share = 1.0 / points.len() as f32;
+    let mean = points.iter().fold(Vec3::ZERO, |sum, &p| sum + p * share);
+    let covariance = points.iter().fold(Sym3::ZERO, |sum, &p| sum + Sym3::outer(p - mean) * share);
+    let m = covariance.eigen().1.to_mat3();
+    [m.x_axis, m.y_axis, m.z_axis]
+}
+
+/// The box along three axes that holds points.
+fn around(points: &[Vec3], [x, y, _]: [Vec3; 3]) -> Obb {
+    let y = normalize_or(y - x * x.dot(y), any_orthonormal(x));
+    let rotation = Rotation::from_mat3(&Mat3::from_cols(x, y, x.cross(y)));
+    let mut placed = Obb { center: points[0], rotation, half_extents: Vec3::ZERO }.placed();
+    let (lo, hi) = points.iter().fold((Vec3::ZERO, Vec3::ZERO), |(lo, hi), &p| {
+        let q = placed.local_point(p);
+        (min3(lo, q), max3(hi, q))
+    });
+    placed.center = placed.point((lo + hi) * 0.5);
+    // Again from the centre as it was rounded, by the very formula that tells whether a point is inside.
+    let half_extents = points.iter().fold(Vec3::ZERO, |half, &p| max3(half, abs3(placed.local_point(p))));
+    Obb { center: placed.center, rotation, half_extents }
+}

@@ -1,0 +1,60 @@
+//! What a field does to what it acts on, and how much of it a substep can bear.
+
+use crate::force::Wrench;
+use sinew_math::{Vec3, min};
+
+/// What fields do to a body or particle.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Load {
+    pub wrench: Wrench,
+    /// How much less force comes of more velocity, `−∂F/∂v`, N·s/m: an upper bound over directions.
+    pub resistance: f32,
+    /// Likewise of torque and spin, N·m·s.
+    pub spin_resistance: f32,
+}
+
+impl Load {
+    pub(super) fn push(&mut self, force: Vec3) {
+        self.wrench.force += force;
+    }
+
+    /// A force at `arm` from the centre of mass that brakes.
+    pub(super) fn push_at(&mut self, arm: Vec3, force: Vec3, resistance: f32) {
+        self.wrench.force += force;
+        self.wrench.torque += arm.cross(force);
+        self.resistance += resistance;
+        self.spin_resistance += resistance * arm.length_squared();
+    }
+
+    /// `share` of another one.
+    pub(super) fn add(&mut self, other: &Self, share: f32) {
+        self.wrench.force += other.wrench.force * share;
+        self.wrench.torque += other.wrench.torque * share;
+        self.resistance += other.resistance * share;
+        self.spin_resistance += other.spin_resistance * share;
+    }
+
+    /// On a particle that `weight` pulls besides: its own part of the sum, held back likewise.
+    pub fn beside(&self, weight: Vec3, mass: f32, h: f32) -> Vec3 {
+        let share = held_back(h * self.resistance, mass);
+        self.wrench.force * share + weight * (share - 1.0)
+    }
+
+    /// The load of this and of what else acts, held back so far that a substep cannot overshoot: see the module.
+    pub fn with(&self, other: Wrench, mass: f32, least_moment: f32, h: f32) -> Wrench {
+        Wrench {
+            force: (other.force + self.wrench.force) * held_back(h * self.resistance, mass),
+            torque: (other.torque + self.wrench.torque) * held_back(h * self.spin_resistance, least_moment),
+        }
+    }
+}
+
+/// Share of a force that is left when `braking` of the inertia would be braked away.
+fn held_back(braking: f32, inertia: f32) -> f32 {
+    if braking > inertia { inertia / braking } else { 1.0 }
+}
+
+/// The least of three moments.
+pub(crate) fn least(moments: Vec3) -> f32 {
+    min(moments.x, min(moments.y, moments.z))
+}

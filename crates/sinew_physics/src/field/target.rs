@@ -1,0 +1,80 @@
+//! What a field acts on.
+
+use crate::body::{Body, BodyShape, Velocity};
+use crate::particles::ParticleGroup;
+use crate::shape::Shape;
+use sinew_math::{Transform, Vec3};
+
+/// What a field finds in its reach: a body or a particle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Target<'a> {
+    /// Of the principal frame: the translation is the centre of mass.
+    pub pose: Transform,
+    pub velocity: Velocity,
+    pub mass: f32,
+    pub gravity_scale: f32,
+    pub form: Form<'a>,
+}
+
+/// What of it the air and the water meet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Form<'a> {
+    Body(&'a [BodyShape]),
+    /// Ball of a radius, on some layers.
+    Particle {
+        radius: f32,
+        layers: u32,
+    },
+}
+
+impl<'a> Target<'a> {
+    pub fn of_body(body: &'a Body) -> Self {
+        Self::at(body, body.world_from_principal, body.velocity)
+    }
+
+    /// A body within its step.
+    pub fn at(body: &'a Body, pose: Transform, velocity: Velocity) -> Self {
+        let form = Form::Body(&body.shapes);
+        Self { pose, velocity, mass: body.mass, gravity_scale: body.gravity_scale, form }
+    }
+
+    pub fn of_particle(group: &ParticleGroup, index: usize) -> Self {
+        Self {
+            pose: Transform::from_translation(group.positions()[index]),
+            velocity: Velocity { linear: group.velocities()[index], angular: Vec3::ZERO },
+            mass: group.masses()[index],
+            gravity_scale: group.gravity_scale(),
+            form: Form::Particle { radius: group.radii()[index], layers: group.filter().layers },
+        }
+    }
+
+    pub fn center(&self) -> Vec3 {
+        self.pose.translation
+    }
+
+    /// m/s, of a world point that moves along.
+    pub(super) fn velocity_at(&self, point: Vec3) -> Vec3 {
+        self.velocity.at(point - self.center())
+    }
+
+    /// On any of these layers. What has no shape is on all.
+    pub(super) fn is_on(&self, layers: u32) -> bool {
+        match self.form {
+            Form::Body(shapes) => shapes.is_empty() || shapes.iter().any(|s| s.filter.layers & layers != 0),
+            Form::Particle { layers: own, .. } => own & layers != 0,
+        }
+    }
+
+    /// Its shapes with their world poses. A particle is a ball, if it has a radius.
+    pub(super) fn for_each_shape(&self, mut visit: impl FnMut(&Shape, &Transform)) {
+        match self.form {
+            Form::Body(shapes) => {
+                for s in shapes {
+                    visit(&s.shape, &(self.pose * s.principal_from_shape));
+                }
+            }
+            Form::Particle { radius, .. } if radius > 0.0 => visit(&Shape::Sphere { radius }, &self.pose),
+            Form::Particle { .. } => {}
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Other processors: that the code builds for them, and that WebAssembly computes what x86-64 does.
+
+use crate::command;
+use anyhow::{Context, Result};
+use std::process::Command;
+
+/// Of browsers.
+const BROWSER: &str = "wasm32-unknown-unknown";
+
+/// Of programs that print: Node runs them.
+const PROGRAM: &str = "wasm32-wasip1";
+
+/// Of phones and of some desks.
+const ARM: &str = "aarch64-unknown-linux-gnu";
+
+/// Runs such a program in Node.
+const RUNNER: &str = "xtask/src/wasi.mjs";
+
+/// Tests that hold the eight lanes, and the kernels on them, against hashes of all processors. Nothing else is run here.
+const SOUP: &str = "golden_soup";
+
+/// The library that users add compiles for the browser.
+///
+/// # Errors
+/// If it does not.
+pub fn browser() -> Result<()> {
+    build_for(BROWSER, &["build", "--package", "sinew"])
+}
+
+/// The registers of aarch64 compile; what they compute is not seen here.
+///
+/// # Errors
+/// If they do not.
+pub fn arm() -> Result<()> {
+    build_for(ARM, &["check", "--package", "sinew_math"])
+}
+
+fn build_for(target: &str, arguments: &[&str]) -> Result<()> {
+    if let Err(error) = add(target) {
+        eprintln!("{error:#}");
+        eprintln!("SKIPPED: the target {target} cannot be added on this machine");
+        return Ok(());
+    }
+    command::run(command::cargo(arguments).args(["--target", target]))
+}
+
+/// The golden soup has the same bits in Node, with vectors and without.
+///
+/// # Errors
+/// If it has not, or does not compile.
+pub fn soup() -> Result<()> {
+    if let Err(missing) = add(PROGRAM).and_then(|()| provide_node()) {
+        eprintln!("{missing:#}");
+        eprintln!("SKIPPED: WebAssembly cannot be run on this machine");
+        return Ok(());
+    }
+    for flags in ["", "-C target-feature=+simd128"] {
+        eprintln!("RUSTFLAGS={flags:?}");
+        soup_with(flags, &["--package", "sinew_math", "--lib"])?;
+        soup_with(flags, &["--package", "sinew_physics", "--test", "it"])?;
+    }
+    Ok(())
+}
+
+fn soup_with(flags: &str, tests: &[&str]) -> Result<()> {
+    // Node 20 may crash at the end of a program whose memory has grown, unless it has one thread.
+    let runner = format!("node --no-warnings --single-threaded {}", command::root().join(RUNNER).display());
+    let mut test = command::cargo(&["test", "--target", PROGRAM]);
+    test.args(tests).args(["--", SOUP]);
+    command::run(test.env("RUSTFLAGS", flags).env("CARGO_TARGET_WASM32_WASIP1_RUNNER", runner))
+}
+
+fn add(target: &str) -> Result<()> {
+    command::run(Command::new("rustup").args(["target", "add", target]))
+}
+
+fn provide_node() -> Result<()> {
+    if command::answers("node") {
+        return Ok(());
+    }
+    command::run(Command::new("apt-get").args(["install", "--yes", "nodejs"]))
+        .context("Node is missing (Debian's package `nodejs`)")
+}
