@@ -1,7 +1,7 @@
 //! `project`: the particle groups of an island, after its bodies have moved and before their contacts are relaxed.
 
 use crate::arena::Arena;
-use crate::body::Body;
+use crate::body::{Body, Velocity};
 use crate::boxes::Overlap;
 use crate::def::BodyKind;
 use crate::field::{Fields, Target};
@@ -40,6 +40,8 @@ pub(crate) struct Surroundings {
     anchors: Vec<Anchor>,
     bodies: Vec<ObstacleBody>,
     seen: Vec<Seen>,
+    /// Where the island's moving bodies were when the substep began.
+    starts: Vec<Transform>,
     /// Impulses on the bodies of the island, by local index.
     impulses: Vec<Vec6>,
 }
@@ -49,6 +51,8 @@ pub(crate) struct Surroundings {
 pub(crate) struct Neighbors {
     /// World body indices, ascending.
     pub bodies: Vec<u32>,
+    /// How many particles hang on each of them.
+    pub holds: Vec<u32>,
     /// Position in `bodies`, shape number.
     pub shapes: Vec<(u32, u32)>,
 }
@@ -57,15 +61,17 @@ impl Neighbors {
     /// Everything whose bounds the group may reach within `dt` seconds.
     pub fn find(&mut self, group: &ParticleGroup, bodies: &Arena<Body>, dt: f32) {
         self.bodies.clear();
+        self.holds.clear();
         self.shapes.clear();
         let fastest = group.velocities().iter().fold(0.0, |most, v| sinew_math::max(most, v.length()));
         let reach = 0.02 + (fastest + bodies.iter().fold(0.0, |most, (_, b)| fastest_point(most, b))) * dt;
         let bounds = group.bounds().expand(reach);
         for (index, body) in bodies.iter().filter(|(_, body)| !body.quarantined) {
-            let held = group.attachments().iter().any(|a| match a.target {
+            let held = group.attachments().iter().filter(|a| match a.target {
                 AttachmentTarget::Body { body, .. } => body.index == index,
                 AttachmentTarget::World(_) => false,
             });
+            let holds = held.count() as u32;
             let near = |shape: &usize| {
                 let s = &body.shapes[*shape];
                 s.filter.meets(group.filter())
@@ -74,8 +80,9 @@ impl Neighbors {
             let place = self.bodies.len() as u32;
             let known = self.shapes.len();
             self.shapes.extend((0..body.shapes.len()).filter(near).map(|shape| (place, shape as u32)));
-            if held || self.shapes.len() > known {
+            if holds > 0 || self.shapes.len() > known {
                 self.bodies.push(index);
+                self.holds.push(holds);
             }
         }
     }
@@ -88,6 +95,8 @@ fn fastest_point(most: f32, body: &Body) -> f32 {
 /// A body as particles see it: where it is now, and where to put what they do to it.
 #[derive(Clone, Debug)]
 struct Seen {
+    /// When the substep began.
+    start: Transform,
     pose: Transform,
     velocity: Vec6,
     /// Velocity that the forces of the coming substep will add.
@@ -99,10 +108,11 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(index: u32, solver: &IslandSolver, view: &View<'_>) -> Self {
+    fn new(index: u32, starts: &[Transform], solver: &IslandSolver, view: &View<'_>, substep: u32) -> Self {
         if let Some(local) = solver.moving_bodies().iter().position(|body| body.index == index) {
             let body = &solver.moving_bodies()[local];
             return Self {
+                start: starts[local],
                 pose: body.pose,
                 velocity: solver.velocities[local],
                 coming: body.force * (view.h / body.mass),
@@ -113,12 +123,18 @@ impl Seen {
         }
         let body = view.bodies.at(index);
         let velocity = match body.kind {
-            BodyKind::Kinematic => join(body.velocity.linear, body.velocity.angular),
-            BodyKind::Static | BodyKind::Dynamic => ZERO6,
+            BodyKind::Kinematic => body.velocity,
+            BodyKind::Static | BodyKind::Dynamic => Velocity::default(),
         };
+        // The world moves kinematic bodies when the step is done.
+        let mut start = body.world_from_principal;
+        for _ in 0..substep {
+            start = moved(&start, &velocity, view.h);
+        }
         Self {
-            pose: body.world_from_principal,
-            velocity,
+            start,
+            pose: moved(&start, &velocity, view.h),
+            velocity: join(velocity.linear, velocity.angular),
             coming: Vec3::ZERO,
             inverse_mass: 0.0,
             inverse_inertia: Sym3::ZERO,
@@ -127,19 +143,43 @@ impl Seen {
     }
 }
 
+fn moved(pose: &Transform, velocity: &Velocity, h: f32) -> Transform {
+    if *velocity == Velocity::default() {
+        return *pose;
+    }
+    Transform::new(pose.translation + velocity.linear * h, pose.rotation.integrate(velocity.angular, h))
+}
+
 impl Surroundings {
     /// What only islands with particles need, also for one that has none: memory goes on to the next, which may have some.
     pub fn make_room(&mut self, island: &Island<'_>) {
         self.impulses.clear();
         self.impulses.reserve(island.bodies.len());
+        self.starts.clear();
+        self.starts.reserve(island.bodies.len());
     }
 
     /// Moves the groups of an island by one substep. Bodies get what springs and contacts push them with through their
     /// trees.
-    pub fn project(&mut self, groups: &mut [TakenGroup], solver: &mut IslandSolver, view: &View<'_>) {
+    pub fn project(
+        &mut self,
+        groups: &mut [TakenGroup],
+        solver: &mut IslandSolver,
+        view: &View<'_>,
+        substep: u32,
+    ) {
+        if groups.is_empty() {
+            return;
+        }
+        self.starts.clear();
+        self.starts.extend(solver.moving_bodies().iter().zip(&solver.velocities).map(|(body, v)| {
+            let back = Velocity { linear: -linear(v), angular: -angular(v) };
+            moved(&body.pose, &back, view.h)
+        }));
         for taken in groups {
             self.seen.clear();
-            self.seen.extend(taken.near.bodies.iter().map(|&index| Seen::new(index, solver, view)));
+            let see = |&index: &u32| Seen::new(index, &self.starts, solver, view, substep);
+            self.seen.extend(taken.near.bodies.iter().map(see));
             self.place(taken, view);
             taken.group.substep(view.h, view.def.gravity, &self.anchors, &self.obstacles, &mut self.bodies);
             self.push_bodies(taken, solver);
@@ -162,6 +202,7 @@ impl Surroundings {
             let s = &view.bodies.at(near.bodies[place as usize]).shapes[shape as usize];
             self.obstacles.push(Obstacle {
                 shape: s.shape,
+                previous: seen[place as usize].start * s.principal_from_shape,
                 world_from_shape: seen[place as usize].pose * s.principal_from_shape,
                 body: place,
                 material: s.material,
@@ -174,7 +215,7 @@ impl Surroundings {
                 AttachmentTarget::Body { body, point } => {
                     let place = near.bodies.binary_search(&body.index).unwrap_or(0);
                     let principal_from_body = view.bodies.at(body.index).principal_from_body;
-                    anchor(&seen[place], principal_from_body.point(point))
+                    anchor(&seen[place], principal_from_body.point(point), near.holds[place])
                 }
             });
         }
@@ -204,18 +245,19 @@ impl Surroundings {
     }
 }
 
-/// A point of a body (principal frame) as an attachment sees it.
-fn anchor(body: &Seen, point: Vec3) -> Anchor {
+/// A point of a body (principal frame) as one of so many attachments to it sees it: each has its share of the inertia, so
+/// that what they give together is not too much.
+fn anchor(body: &Seen, point: Vec3, among: u32) -> Anchor {
     let position = body.pose.point(point);
     let arm = position - body.pose.translation;
     // Velocity gained at the point per impulse there: 1/m − [r]× I⁻¹ [r]×.
     let gained = |e: Vec3| e * body.inverse_mass + (body.inverse_inertia * arm.cross(e)).cross(arm);
     let columns = sinew_math::Mat3::from_cols(gained(Vec3::X), gained(Vec3::Y), gained(Vec3::Z));
+    let yields = Sym3::from_mat3(&columns) * among as f32;
     Anchor {
         position,
-        // The springs push for the interval to come, so they must know what else pulls in it, or a hung body would
-        // hang lower by g h².
-        velocity: linear(&body.velocity) + body.coming + angular(&body.velocity).cross(arm),
-        inverse_mass: if body.local.is_some() { Sym3::from_mat3(&columns) } else { Sym3::ZERO },
+        velocity: linear(&body.velocity) + angular(&body.velocity).cross(arm),
+        gained: body.coming,
+        inverse_mass: if body.local.is_some() { yields } else { Sym3::ZERO },
     }
 }

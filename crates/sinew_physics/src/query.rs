@@ -58,11 +58,7 @@ impl World {
             sum.kinetic += 0.5 * mass * group.velocities()[i].length_squared();
             sum.potential -= mass * group.gravity_scale() * self.def.gravity.dot(group.positions()[i]);
         }
-        for spring in group.springs() {
-            let [a, b] = [spring.a, spring.b].map(|i| group.positions()[i as usize]);
-            let stretch = (b - a).length() - spring.rest_length;
-            sum.potential += 0.5 * spring.stiffness * stretch * stretch;
-        }
+        sum.potential += group.elastic_energy();
         sum
     }
 

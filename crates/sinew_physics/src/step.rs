@@ -62,12 +62,12 @@ pub(crate) fn solve(phase: Phase, task: &mut Task<'_>, view: &View<'_>, context:
             solver.prepare(island, view);
             surroundings.make_room(island);
         }),
-        Phase::Move(_) => {
+        Phase::Move(substep) => {
             stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity(view, groups));
             stage(Stage::WarmStart, &mut || solver.warm_start());
             stage(Stage::Solve, &mut || solver.solve());
             stage(Stage::IntegratePosition, &mut || solver.integrate_position());
-            stage(Stage::Project, &mut || surroundings.project(groups, solver, view));
+            stage(Stage::Project, &mut || surroundings.project(groups, solver, view, substep));
         }
         Phase::Relax(_) => {
             stage(Stage::Relax, &mut || solver.relax());

@@ -1,23 +1,30 @@
-//! Contacts that a particle is in, or reaches slowly, as part of the spring solve.
+//! Contacts that a particle is in, or comes into within the iteration, as part of the spring solve.
 //!
 //! Without them the solve would let a particle on an edge fall freely, and a rope bent over the edge would hang with
-//! the wrong tension. Each particle that touches a surface sticks to it or slides on it: its velocity, or one
+//! the wrong tension; the end of a rope that strikes the floor would be put back onto it against its springs, which would
+//! come to hold energy that nobody paid. Each particle that touches a surface sticks to it or slides on it: its velocity, or one
 //! component of it, is given in the linear system, which stays exact and cannot diverge. Impulses read off the
 //! solution tell who must let go, slip or stick; grips are kept from substep to substep, so that at rest one solve is
 //! enough. On bodies that can move, the body's inertia at the point is added instead.
 
-use super::ParticleGroup;
 use super::forest::Freedom;
+use super::sweep::{Meeting, sweep_ball};
+use super::{Part, ParticleGroup};
+use crate::boxes::Aabb;
 use crate::contact::combine;
 use crate::shape::{Material, Shape};
-use sinew_math::{Mat3, Sym3, Transform, Vec3, max, min, normalize_or};
+use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
-/// Faster approaches are impacts, which may bounce, m/s.
-pub(super) const IMPACT_SPEED: f32 = 1.0;
 /// Slower than that, nothing moves, m/s.
 const NO_SPEED: f32 = 1e-6;
-/// Solves per substep until grips have to be right.
-const GRIP_ROUNDS: u32 = 4;
+/// Solves per iteration until grips and directions have to be right.
+const GRIP_ROUNDS: u32 = 8;
+/// Gap that a net may close by pressing, metres.
+const TOUCHING: f32 = 1e-4;
+/// What is less deep at the end of an iteration is left to impacts, metres.
+const FORESEEN_DEPTH: f32 = 1e-5;
+/// Where a way may lead is told from its length, and turned a little by what is still to push, by this factor.
+const DETOUR: f32 = 1.5;
 
 /// The motion of a body that particles may touch. Its velocity changes as they do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -63,12 +70,54 @@ impl ObstacleBody {
 pub struct Obstacle {
     /// Geometry.
     pub shape: Shape,
+    /// Its frame at the beginning of the substep.
+    pub previous: Transform,
     /// Its frame at the end of the substep.
     pub world_from_shape: Transform,
     /// Index of its body in the slice given with it.
     pub body: u32,
     /// Surface.
     pub material: Material,
+}
+
+/// An obstacle in one iteration.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed {
+    pub start: Transform,
+    pub end: Transform,
+    /// Around all the way from start to end.
+    bounds: Aabb,
+}
+
+impl Placed {
+    fn new(o: &Obstacle, [from, to]: [f32; 2], turn: f32) -> Self {
+        let at = |share: f32| match share {
+            0.0 => o.previous,
+            1.0 => o.world_from_shape,
+            _ => between(&o.previous, &o.world_from_shape, share),
+        };
+        let (start, end) = (at(from), at(to));
+        let bounds = o.shape.aabb(&start).merge(&o.shape.aabb(&end));
+        // What turns bulges out of the bounds of its ends by the height of the arc.
+        let bulge = if turn == 0.0 { 0.0 } else { (bounds.max - bounds.min).length() * turn * turn / 8.0 };
+        Self { start, end, bounds: bounds.expand(bulge) }
+    }
+
+    /// No more than the distance of the shape from a point.
+    fn distance_at_least(&self, point: Vec3) -> f32 {
+        let beyond = max3(self.bounds.min - point, point - self.bounds.max);
+        max(max(beyond.x, beyond.y), beyond.z)
+    }
+
+    /// Where a point goes that moves along with the shape.
+    fn carried(&self, point: Vec3) -> Vec3 {
+        self.end.point(self.start.inverse_point(point))
+    }
+}
+
+fn between(from: &Transform, to: &Transform, share: f32) -> Transform {
+    let translation = from.translation * (1.0 - share) + to.translation * share;
+    Transform::new(translation, from.rotation.nlerp(to.rotation, share))
 }
 
 /// What a particle did to a body.
@@ -89,7 +138,7 @@ pub(super) struct Touch {
     pub body: usize,
     /// Unit, out of the shape.
     pub normal: Vec3,
-    /// Gap, metres; negative inside.
+    /// Gap, metres; negative inside. Before the solve that at the iteration's beginning, after it that at its end.
     pub gap: f32,
     /// Where, on the surface.
     pub point: Vec3,
@@ -97,6 +146,9 @@ pub(super) struct Touch {
     pub material: Material,
     /// Slowest allowed velocity along the normal, m/s: negative while there is a gap to be closed.
     pub speed_min: f32,
+    /// How many times the body is lighter for this particle than it is: where those that touch it outweigh it, each has
+    /// its share of the body's inertia, or their sum would push it too far.
+    pub lightness: f32,
 }
 
 impl Touch {
@@ -128,28 +180,171 @@ pub(super) enum Grip {
     Slide,
     /// In all directions.
     Stick,
+    /// In the corner with another surface, until the iteration ends.
+    Wedged,
 }
 
 impl ParticleGroup {
-    /// The nearest surface within reach of each particle that approaches it slowly.
+    /// Obstacles at the ends of this iteration.
+    pub(super) fn place(&mut self, part: Part, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
+        let (h, shares) = (part.h(), part.shares());
+        self.placed.clear();
+        let turn = |o: &Obstacle| bodies[o.body as usize].angular_velocity.length() * h;
+        self.placed.extend(obstacles.iter().map(|o| Placed::new(o, shares, turn(o))));
+    }
+
+    /// The nearest surface that each particle is on already, or is about to sink to; and how far away all others are.
     pub(super) fn find_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         for i in 0..self.positions.len() {
             self.touches[i] = None;
             if self.attachment_of[i] == u32::MAX {
-                self.touches[i] = self.slow_contact(i, h, obstacles, bodies);
+                self.find_contact(i, h, obstacles, bodies);
             }
-        }
-        self.leave_light_bodies(bodies);
-        for i in 0..self.positions.len() {
-            if self.touches[i].is_none() {
-                self.grips[i] = Grip::Off;
-            }
+            self.grips[i] = match self.grips[i] {
+                _ if self.touches[i].is_none() => Grip::Off,
+                Grip::Wedged => Grip::Stick,
+                grip => grip,
+            };
         }
     }
 
-    /// Each particle is solved as if it alone pushed the body. Where those that touch it outweigh it, their sum would
-    /// push it too far: such contacts are left to the impacts, which come one after the other.
-    fn leave_light_bodies(&mut self, bodies: &[ObstacleBody]) {
+    fn find_contact(&mut self, i: usize, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
+        let (position, radius) = (self.positions[i], self.radii[i]);
+        let way = self.velocities[i].length() * h;
+        // Gravity included, and a share of the other forces.
+        let reach = 2.0 * h * h * self.accelerations[i].length() + 0.05 * radius;
+        let mut clearance = f32::INFINITY;
+        for (index, (o, placed)) in obstacles.iter().zip(&self.placed).enumerate() {
+            let at_least = placed.distance_at_least(position) - radius;
+            if at_least > reach + DETOUR * way {
+                clearance = min(clearance, at_least);
+                continue;
+            }
+            let local = placed.start.inverse_point(position);
+            let (distance, normal) = o.shape.local_distance(local);
+            let gap = distance - radius;
+            clearance = min(clearance, gap - (placed.carried(position) - position).length());
+            if gap <= reach && self.touches[i].is_none_or(|touch| gap < touch.gap) {
+                let meeting = Meeting { fraction: 0.0, at: local, normal, gap };
+                self.touches[i] = Some(self.touch(i, h, index, &meeting, obstacles, bodies));
+            }
+        }
+        self.clearances[i] = clearance;
+    }
+
+    /// The contact of a particle with the plane that it meets, so that it ends the iteration on it at the lowest.
+    pub(super) fn touch(
+        &self,
+        i: usize,
+        h: f32,
+        obstacle: usize,
+        meeting: &Meeting,
+        obstacles: &[Obstacle],
+        bodies: &[ObstacleBody],
+    ) -> Touch {
+        let (o, placed) = (&obstacles[obstacle], &self.placed[obstacle]);
+        let normal = placed.end.rotation * meeting.normal;
+        let gap = meeting.height(placed.start.inverse_point(self.positions[i]));
+        // Centre of the particle when it touches; inside, where it is.
+        let touching = placed.end.point(meeting.at - meeting.normal * max(meeting.gap, 0.0));
+        let point = touching - normal * (self.radii[i] + min(meeting.gap, 0.0));
+        let body = &bodies[o.body as usize];
+        let speed = (touching - self.positions[i]).dot(normal) / h;
+        Touch {
+            obstacle,
+            body: o.body as usize,
+            normal,
+            gap,
+            point,
+            material: combine(&self.material, &o.material),
+            speed_min: speed - body.velocity_at(point).dot(normal),
+            lightness: 1.0,
+        }
+    }
+
+    /// Whether a particle surely meets nothing on its way of this length.
+    pub(super) fn is_clear(&self, i: usize, way: f32) -> bool {
+        self.attachment_of[i] != u32::MAX || self.clearances[i] > DETOUR * way
+    }
+
+    /// The first obstacle on the way of a particle, given by where it begins and ends in the iteration, that it ends deeper
+    /// in than `depth`; `but` one.
+    pub(super) fn first_met(
+        &self,
+        i: usize,
+        (start, end): (Vec3, Vec3),
+        but: Option<usize>,
+        depth: f32,
+        obstacles: &[Obstacle],
+    ) -> Option<(usize, Meeting)> {
+        let mut first: Option<(usize, Meeting)> = None;
+        for (index, (o, placed)) in obstacles.iter().zip(&self.placed).enumerate() {
+            if but == Some(index) || placed.distance_at_least(start) > self.radii[i] + (end - start).length()
+            {
+                continue;
+            }
+            let (from, to) = (placed.start.inverse_point(start), placed.end.inverse_point(end));
+            if let Some(meeting) = sweep_ball(&o.shape, self.radii[i], from, to)
+                && meeting.height(to) < -depth
+                && first.is_none_or(|(_, best)| meeting.fraction < best.fraction)
+            {
+                first = Some((index, meeting));
+            }
+        }
+        first
+    }
+
+    /// Surfaces that particles would meet within the iteration with the velocities just found; whether there are any that
+    /// the solve does not know of.
+    fn foresee(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) -> bool {
+        let mut found = false;
+        for i in 0..self.positions.len() {
+            let way = self.velocities[i] * h;
+            if self.grips[i] == Grip::Wedged || self.is_clear(i, way.length()) {
+                continue;
+            }
+            let known = self.touches[i].map(|touch| touch.obstacle);
+            let ends = (self.positions[i], self.positions[i] + way);
+            let Some((obstacle, meeting)) = self.first_met(i, ends, known, FORESEEN_DEPTH, obstacles) else {
+                continue;
+            };
+            let touch = self.touch(i, h, obstacle, &meeting, obstacles, bodies);
+            let fixed = |body: usize| bodies[body].inverse_mass == 0.0;
+            match self.touches[i] {
+                Some(held) if self.grips[i] != Grip::Off => {
+                    // Against two walls nothing is left to move along but their edge. A body that yields is left to impacts.
+                    if fixed(held.body) && fixed(touch.body) {
+                        self.grips[i] = Grip::Wedged;
+                        self.wedges[i] = self.velocities[i] * meeting.fraction;
+                        found = true;
+                    }
+                }
+                _ => {
+                    self.grips[i] = self.first_grip(i, &touch, bodies);
+                    self.touches[i] = Some(touch);
+                    found = true;
+                }
+            }
+        }
+        found
+    }
+
+    /// What a surface does at first to a particle that comes to it with the velocity just found: if stopping it takes more
+    /// than friction may give, it slides, with the friction of what stops it along the normal.
+    fn first_grip(&mut self, i: usize, touch: &Touch, bodies: &[ObstacleBody]) -> Grip {
+        let relative = self.velocities[i] - bodies[touch.body].velocity_at(touch.point);
+        let normal = max(touch.speed_min - relative.dot(touch.normal), 0.0) * self.masses[i];
+        let slip = relative - touch.normal * relative.dot(touch.normal);
+        let limit = touch.material.friction * normal;
+        if slip.length() * self.masses[i] <= limit {
+            return Grip::Stick;
+        }
+        self.contact_impulses[i] = touch.normal * normal - normalize_or(slip, Vec3::ZERO) * limit;
+        Grip::Slide
+    }
+
+    /// Each particle is solved as if it alone pushed the body.
+    fn share_bodies(&mut self, bodies: &[ObstacleBody]) {
         self.loads.clear();
         self.loads.resize(bodies.len(), 0.0);
         for (touch, mass) in self.touches.iter().zip(&self.masses) {
@@ -157,17 +352,20 @@ impl ParticleGroup {
                 self.loads[touch.body] += mass;
             }
         }
-        for slot in &mut self.touches {
-            if slot.is_some_and(|touch| self.loads[touch.body] * bodies[touch.body].inverse_mass > 1.0) {
-                *slot = None;
+        for (slot, mass) in self.touches.iter_mut().zip(&self.masses) {
+            if let Some(touch) = slot {
+                let load = self.loads[touch.body];
+                touch.lightness =
+                    if load * bodies[touch.body].inverse_mass > 1.0 { load / mass } else { 1.0 };
             }
         }
     }
 
-    /// Solves for the velocities; repeats while contacts open, close, stick or slip.
-    pub(super) fn solve_with_contacts(&mut self, h: f32, bodies: &[ObstacleBody]) {
+    /// Solves for the velocities; repeats while contacts open, close, stick or slip, or are still to come.
+    pub(super) fn solve_with_contacts(&mut self, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         self.system.load_springs(&self.forest, &self.springs, &self.positions, h);
-        for _ in 0..GRIP_ROUNDS {
+        for round in 1..=GRIP_ROUNDS {
+            self.share_bodies(bodies);
             self.apply_grips(bodies);
             self.system.solve(&self.forest, &self.springs, h, &mut self.velocities);
             self.reactions.fill(Vec3::ZERO);
@@ -178,8 +376,43 @@ impl ParticleGroup {
                 &self.velocities,
                 &mut self.reactions,
             );
-            if !self.change_grips(bodies) {
+            if round == GRIP_ROUNDS {
+                self.keep_grips();
                 break;
+            }
+            let changed = self.change_grips(bodies);
+            let found = self.foresee(h, obstacles, bodies);
+            let ends = (self.positions.as_slice(), self.velocities.as_slice());
+            let bent = self.system.follow_springs(&self.forest, &self.springs, ends, h);
+            if !(changed || found || bent) {
+                break;
+            }
+        }
+    }
+
+    /// What lies behind each particle that is on a surface: its share of the body's inertia along the normal.
+    pub(super) fn back_contacts(&mut self, h: f32, bodies: &[ObstacleBody]) {
+        for i in 0..self.positions.len() {
+            (self.backings[i], self.presses[i]) = (0.0, Vec3::ZERO);
+            let Some(touch) = self.touches[i] else { continue };
+            let relative = self.velocities[i] - bodies[touch.body].velocity_at(touch.point);
+            if (relative.dot(touch.normal) - touch.speed_min) * h > TOUCHING {
+                continue;
+            }
+            let yielding = bodies[touch.body].yielding(touch.point, touch.normal);
+            self.press_normals[i] = touch.normal;
+            // M / (m + M), of M = m / (load · yielding).
+            self.backings[i] = 1.0 / (1.0 + self.loads[touch.body] * yielding);
+        }
+    }
+
+    /// Hands on to bodies what presses particles onto them.
+    pub(super) fn press_bodies(&mut self, bodies: &mut [ObstacleBody]) {
+        for i in 0..self.positions.len() {
+            if let Some(touch) = self.touches[i].filter(|_| self.backings[i] > 0.0) {
+                let impulse = self.presses[i];
+                bodies[touch.body].push(touch.point, impulse);
+                self.report(&touch, -impulse, bodies);
             }
         }
     }
@@ -198,7 +431,7 @@ impl ParticleGroup {
                 match self.grips[i] {
                     Grip::Off => {}
                     Grip::Slide if movable => {
-                        inertia = Sym3::outer(n) * (1.0 / body.yielding(touch.point, n));
+                        inertia = Sym3::outer(n) * (1.0 / (body.yielding(touch.point, n) * touch.lightness));
                         momentum = inertia * target + self.friction(i, n);
                     }
                     Grip::Slide => {
@@ -206,12 +439,16 @@ impl ParticleGroup {
                         momentum = self.friction(i, n);
                     }
                     Grip::Stick if movable => {
-                        inertia = body.inertia_at(touch.point);
+                        inertia = body.inertia_at(touch.point) * (1.0 / touch.lightness);
                         momentum = inertia * target;
                     }
                     Grip::Stick => {
                         freedom = Freedom::Fixed;
                         self.velocities[i] = target;
+                    }
+                    Grip::Wedged => {
+                        freedom = Freedom::Fixed;
+                        self.velocities[i] = self.wedges[i];
                     }
                 }
             }
@@ -227,6 +464,19 @@ impl ParticleGroup {
         impulse - normal * impulse.dot(normal)
     }
 
+    /// What the solve gave each particle that a surface holds.
+    fn contact_impulse(&self, i: usize) -> Vec3 {
+        self.velocities[i] * self.masses[i] - self.system.momentum[i] - self.reactions[i]
+    }
+
+    /// Reads off the contact impulses of the last solve as they are.
+    fn keep_grips(&mut self) {
+        for i in 0..self.positions.len() {
+            let held = self.touches[i].is_some() && self.grips[i] != Grip::Off;
+            self.contact_impulses[i] = if held { self.contact_impulse(i) } else { Vec3::ZERO };
+        }
+    }
+
     /// Reads off the contact impulses of the last solve and decides again who is held how; whether anyone's grip has
     /// changed.
     fn change_grips(&mut self, bodies: &[ObstacleBody]) -> bool {
@@ -238,13 +488,16 @@ impl ParticleGroup {
             };
             let n = touch.normal;
             let relative = self.velocities[i] - bodies[touch.body].velocity_at(touch.point);
-            let impulse = self.velocities[i] * self.masses[i] - self.system.momentum[i] - self.reactions[i];
+            let impulse = self.contact_impulse(i);
             let (normal, friction) = (impulse.dot(n), impulse - n * impulse.dot(n));
             let limit = touch.material.friction * normal;
             let slip = relative - n * relative.dot(n);
             let (grip, impulse) = match self.grips[i] {
-                Grip::Off if relative.dot(n) < touch.speed_min - NO_SPEED => (Grip::Stick, Vec3::ZERO),
+                Grip::Off if relative.dot(n) < touch.speed_min - NO_SPEED => {
+                    (self.first_grip(i, &touch, bodies), self.contact_impulses[i])
+                }
                 Grip::Off => (Grip::Off, Vec3::ZERO),
+                Grip::Wedged => (Grip::Wedged, impulse),
                 // A surface does not pull.
                 _ if normal <= 0.0 => (Grip::Off, Vec3::ZERO),
                 Grip::Stick if friction.length() > limit => {
@@ -259,40 +512,6 @@ impl ParticleGroup {
             (self.grips[i], self.contact_impulses[i]) = (grip, impulse);
         }
         changed
-    }
-
-    fn slow_contact(
-        &self,
-        i: usize,
-        h: f32,
-        obstacles: &[Obstacle],
-        bodies: &[ObstacleBody],
-    ) -> Option<Touch> {
-        let mut nearest: Option<Touch> = None;
-        for (index, o) in obstacles.iter().enumerate() {
-            let body = &bodies[o.body as usize];
-            // Obstacles have moved already: where the particle is, seen from there.
-            let drift = body.velocity_at(self.positions[i]);
-            let seen = self.positions[i] + drift * h;
-            let (distance, normal) = o.shape.signed_distance(&o.world_from_shape, seen);
-            let gap = distance - self.radii[i];
-            let approach = (self.velocities[i] - drift).dot(normal);
-            // Within reach in this substep, gravity, outer force and a share of the other forces included.
-            let reach =
-                h * (max(-approach, 0.0) + 2.0 * h * self.accelerations[i].length()) + 0.05 * self.radii[i];
-            if gap <= reach && approach > -IMPACT_SPEED && nearest.is_none_or(|touch| gap < touch.gap) {
-                nearest = Some(Touch {
-                    obstacle: index,
-                    body: o.body as usize,
-                    normal,
-                    gap,
-                    point: seen - normal * (self.radii[i] + gap),
-                    material: combine(&self.material, &o.material),
-                    speed_min: -max(gap, 0.0) / h,
-                });
-            }
-        }
-        nearest
     }
 
     /// Pushes bodies back by the impulses that the solve found.

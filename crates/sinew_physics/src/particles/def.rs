@@ -17,6 +17,16 @@ pub struct ParticleDef {
     pub radius: f32,
 }
 
+/// Which way a spring resists.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Resists {
+    /// Longer or shorter than at rest, it pulls or pushes. Default.
+    #[default]
+    Both,
+    /// It pulls; shorter than at rest it is slack, like a string.
+    Stretch,
+}
+
 /// A spring to be made. Force on A toward B: `stiffness × (length − rest_length) + damping × speed of lengthening`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringDef {
@@ -28,8 +38,78 @@ pub struct SpringDef {
     pub rest_length: f32,
     /// N/m, positive.
     pub stiffness: f32,
-    /// N·s/m, ≥ 0.
+    /// N·s/m, ≥ 0. Default 0; see [`damped`](Self::damped).
     pub damping: f32,
+    /// Which way it resists. Default both.
+    pub resists: Resists,
+}
+
+impl SpringDef {
+    /// Without damping.
+    pub fn new([a, b]: [u32; 2], rest_length: f32, stiffness: f32) -> Self {
+        Self { a, b, rest_length, stiffness, damping: 0.0, resists: Resists::Both }
+    }
+
+    /// Damped at a share `ratio` (≥ 0) of what is critical for two particles of these masses (kg, infinite for one that is
+    /// held) on this spring alone: `2 ratio √(k m)` with `m = m₁ m₂ / (m₁ + m₂)`. At 1 they come to rest without a swing.
+    ///
+    /// # Panics
+    /// If the ratio is negative or not finite, or a mass is not positive.
+    pub fn damped(self, ratio: f32, masses: [f32; 2]) -> Self {
+        assert!((0.0..f32::INFINITY).contains(&ratio), "a damping ratio is finite and not negative");
+        assert!(masses.iter().all(|m| *m > 0.0), "masses are positive");
+        let inverse = 1.0 / masses[0] + 1.0 / masses[1];
+        let damping = if inverse > 0.0 { 2.0 * ratio * (self.stiffness / inverse).sqrt() } else { 0.0 };
+        Self { damping, ..self }
+    }
+}
+
+/// What keeps three particles in a row straight, or as curved as they were: a force `stiffness × (c − rest)` along
+/// `x₁ − 2 x₂ + x₃`, whose length is `c`, on the outer two, and twice its opposite on the middle one. A beam of bending
+/// stiffness `B` (N·m²) with a particle each `L` metres has a stiffness of `B/L³`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BendDef {
+    /// Indices of the particles in their group, the middle one between the others.
+    pub particles: [u32; 3],
+    /// `|x₁ − 2 x₂ + x₃|` without force, metres, ≥ 0: 0 is straight.
+    pub rest: f32,
+    /// N/m, positive.
+    pub stiffness: f32,
+}
+
+/// What keeps a particle from going further from an attached one than cloth or hair allows: long-range attachment (Kim,
+/// Chentanez and Müller 2012). It never pushes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TetherDef {
+    /// Index of the particle in its group.
+    pub particle: u32,
+    /// Index of the attached one.
+    pub to: u32,
+    /// Metres, positive.
+    pub length: f32,
+}
+
+/// Air or water in a closed surface of triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VolumeDef {
+    /// Particles of each triangle, counterclockwise from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Volume without pressure, m³, positive.
+    pub rest_volume: f32,
+    /// Pressure for the volume to shrink by all of itself at the rate at which it begins to, Pa, positive: of a gas at
+    /// pressure `p` that keeps its heat, `1.4 p`.
+    pub bulk_modulus: f32,
+}
+
+/// How the springs of a group are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SpringScheme {
+    /// Those that form no loops in one implicit step, exactly; those that close one are projected. For ropes and strands.
+    /// Default.
+    #[default]
+    Implicit,
+    /// All projected, one after the other. For nets, cloth and blobs, where most springs close a loop.
+    Projected,
 }
 
 /// What a particle hangs on.
@@ -62,13 +142,24 @@ pub struct GroupDef {
     pub particles: Vec<ParticleDef>,
     /// The springs. Those that form no loops are solved exactly, see [`particles`](crate::particles).
     pub springs: Vec<SpringDef>,
+    /// What resists bending; projected after the springs.
+    pub bends: Vec<BendDef>,
+    /// How far particles may go from attached ones; projected before the springs.
+    pub tethers: Vec<TetherDef>,
+    /// Volumes that particles enclose; projected last.
+    pub volumes: Vec<VolumeDef>,
     /// Held particles; each at most once.
     pub attachments: Vec<AttachmentDef>,
+    /// How springs are solved. Default implicit.
+    pub scheme: SpringScheme,
+    /// Parts that a substep of the world is moved in, 1 to 64: projection is stiffer and loses less energy in shorter ones.
+    /// Default 1.
+    pub iterations: u32,
     /// Surface of the particles; `rolling` does not matter.
     pub material: Material,
-    /// 1/s: share of velocity lost per second. Default 0.
+    /// Drag in proportion to velocity, 1/s, ≥ 0: share of it lost per second. Default 0.
     pub linear_damping: f32,
-    /// Factor on the world's gravity. Default 1.
+    /// Factor on the world's gravity, finite. Default 1.
     pub gravity_scale: f32,
     /// Which shapes it meets.
     pub filter: Filter,
@@ -79,105 +170,16 @@ impl Default for GroupDef {
         Self {
             particles: Vec::new(),
             springs: Vec::new(),
+            bends: Vec::new(),
+            tethers: Vec::new(),
+            volumes: Vec::new(),
             attachments: Vec::new(),
+            scheme: SpringScheme::Implicit,
+            iterations: 1,
             material: Material::default(),
             linear_damping: 0.0,
             gravity_scale: 1.0,
             filter: Filter::default(),
         }
-    }
-}
-
-/// A rope to be made with [`GroupDef::rope`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RopeDef {
-    /// First particle, world, metres.
-    pub from: Vec3,
-    /// Last particle.
-    pub to: Vec3,
-    /// Number of springs, at least 1.
-    pub links: u32,
-    /// kg, of the whole rope.
-    pub mass: f32,
-    /// N/m, of the whole rope: `force / stretch` between its ends.
-    pub stiffness: f32,
-    /// Metres.
-    pub radius: f32,
-}
-
-impl GroupDef {
-    /// A straight rope at its rest length. Its end particles have half the mass of the others. Each spring is damped
-    /// at a tenth of its critical damping.
-    ///
-    /// # Panics
-    /// If `links` is 0.
-    pub fn rope(rope: &RopeDef) -> Self {
-        assert!(rope.links > 0, "a rope has at least one link");
-        let links = rope.links as f32;
-        let (link_mass, stiffness) = (rope.mass / links, rope.stiffness * links);
-        let particle = |k: u32| ParticleDef {
-            position: rope.from + (rope.to - rope.from) * (k as f32 / links),
-            velocity: Vec3::ZERO,
-            mass: if k == 0 || k == rope.links { 0.5 * link_mass } else { link_mass },
-            radius: rope.radius,
-        };
-        let spring = |k: u32| SpringDef {
-            a: k,
-            b: k + 1,
-            rest_length: (rope.to - rope.from).length() / links,
-            stiffness,
-            damping: 0.2 * (stiffness * link_mass).sqrt(),
-        };
-        Self {
-            particles: (0..=rope.links).map(particle).collect(),
-            springs: (0..rope.links).map(spring).collect(),
-            ..Self::default()
-        }
-    }
-
-    /// Whether its numbers make sense; the phrase says what is wrong.
-    ///
-    /// # Errors
-    /// What is wrong, in lower case.
-    pub fn check(&self) -> Result<(), &'static str> {
-        // Written so that NaN fails.
-        let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
-        let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
-        let count = self.particles.len();
-        let known = |index: u32| (index as usize) < count;
-        for p in &self.particles {
-            if !(p.position.is_finite() && p.velocity.is_finite()) {
-                return Err("a particle's position and velocity must be finite");
-            }
-            if !(positive(p.mass) && not_negative(p.radius)) {
-                return Err("a particle's mass must be positive and its radius not negative");
-            }
-        }
-        for s in &self.springs {
-            if !(known(s.a) && known(s.b)) || s.a == s.b {
-                return Err("a spring must join two different particles of its group");
-            }
-            if !(positive(s.stiffness) && not_negative(s.rest_length) && not_negative(s.damping)) {
-                return Err("a spring's stiffness must be positive, its length and damping not negative");
-            }
-        }
-        self.material.check()?;
-        let finite = |target| match target {
-            AttachmentTarget::World(place) => place.is_finite(),
-            AttachmentTarget::Body { point, .. } => point.is_finite(),
-        };
-        if !self.attachments.iter().all(|a| finite(a.target)) {
-            return Err("the point of an attachment must be finite");
-        }
-        let mut held = vec![false; count];
-        for a in &self.attachments {
-            if !known(a.particle) || core::mem::replace(&mut held[a.particle as usize], true) {
-                return Err("an attachment must hold a particle of its group that no other one holds");
-            }
-        }
-        if !(not_negative(self.linear_damping) && self.gravity_scale.is_finite()) {
-            return Err("damping must not be negative, and the gravity scale finite");
-        }
-        Ok(())
     }
 }

@@ -6,8 +6,11 @@
 //! leaves to the root fills nothing in and the solution is exact in linear time. At rest the right-hand side is
 //! zero, so that a chain hangs exactly where its forces balance, whatever the length of the step.
 
-use super::SpringDef;
+use super::{Resists, SpringDef};
 use sinew_math::{Sym3, Vec3, max};
+
+/// How much longer than foreseen a spring may be at the end of a step, as a share of its rest length.
+const LENGTH_TOLERANCE: f32 = 1e-3;
 
 /// The spring between a particle and the next one toward the root.
 #[derive(Clone, Copy, Debug)]
@@ -32,11 +35,22 @@ pub(super) struct Forest {
     links: Vec<Link>,
     roots: Vec<u32>,
     ties: Vec<Tie>,
-    /// Springs that would close a loop: projected, not solved.
+    /// Springs that are projected, not solved: those that would close a loop.
     loops: Vec<u32>,
 }
 
 impl Forest {
+    /// All springs projected, none solved: each particle is a tree of its own.
+    pub fn without_trees(springs: &[SpringDef], held_in_world: &[bool]) -> Self {
+        let held = |i: u32| held_in_world[i as usize];
+        let moves = |k: &u32| !(held(springs[*k as usize].a) && held(springs[*k as usize].b));
+        Self {
+            roots: (0..held_in_world.len() as u32).filter(|&i| !held(i)).collect(),
+            loops: (0..springs.len() as u32).filter(moves).collect(),
+            ..Self::default()
+        }
+    }
+
     /// A spanning forest in order of indices. Particles held in the world carry no motion, so trees end at them.
     pub fn new(particles: usize, springs: &[SpringDef], held_in_world: &[bool]) -> Self {
         let mut forest = Self::default();
@@ -84,12 +98,12 @@ impl Forest {
     }
 
     /// Springs of the linear system.
-    fn solved_springs(&self) -> impl Iterator<Item = u32> {
+    pub fn solved_springs(&self) -> impl Iterator<Item = u32> {
         let of_links = self.links.iter().map(|link| link.spring);
         of_links.chain(self.ties.iter().map(|tie| tie.spring))
     }
 
-    /// Springs that close a loop.
+    /// Springs that are projected.
     pub fn loops(&self) -> &[u32] {
         &self.loops
     }
@@ -98,23 +112,31 @@ impl Forest {
 /// A spring during one step.
 #[derive(Clone, Copy, Debug, Default)]
 struct Load {
-    /// Force on A, newtons.
+    /// Where B is from A where the spring is linearised, metres.
+    from_a: Vec3,
+    /// Force on A, newtons, extrapolated from there to where the step begins.
     force: Vec3,
     /// `h² K + h D`, kg.
     block: Sym3,
 }
 
 impl Load {
-    fn new(spring: &SpringDef, from_a: Vec3, h: f32) -> Self {
+    /// Linearised where B is at `from_a` from A, which velocities have brought about of which A's is `ahead` of B's.
+    fn new(spring: &SpringDef, from_a: Vec3, ahead: Vec3, h: f32) -> Self {
         let length = from_a.length();
         let direction = sinew_math::normalize_or(from_a, Vec3::Y);
+        let rest = Self { from_a, ..Self::default() };
         // A slack spring would have a negative geometric stiffness, with which the system may lose its solution.
         let taut = if length > 1e-9 { max(1.0 - spring.rest_length / length, 0.0) } else { 0.0 };
+        if spring.resists == Resists::Stretch && taut == 0.0 {
+            return rest;
+        }
         let across = if spring.rest_length == 0.0 { spring.stiffness } else { spring.stiffness * taut };
-        let axial = h * h * (spring.stiffness - across) + h * spring.damping;
+        let stiffness = Sym3::IDENTITY * across + Sym3::outer(direction) * (spring.stiffness - across);
         Self {
-            force: direction * (spring.stiffness * (length - spring.rest_length)),
-            block: Sym3::IDENTITY * (h * h * across) + Sym3::outer(direction) * axial,
+            force: direction * (spring.stiffness * (length - spring.rest_length)) + stiffness * ahead * h,
+            block: stiffness * (h * h) + Sym3::outer(direction) * (h * spring.damping),
+            ..rest
         }
     }
 
@@ -177,8 +199,40 @@ impl System {
     pub fn load_springs(&mut self, forest: &Forest, springs: &[SpringDef], positions: &[Vec3], h: f32) {
         for spring in forest.solved_springs() {
             let s = &springs[spring as usize];
-            self.loads[spring as usize] = Load::new(s, positions[s.b as usize] - positions[s.a as usize], h);
+            let from_a = positions[s.b as usize] - positions[s.a as usize];
+            self.loads[spring as usize] = Load::new(s, from_a, Vec3::ZERO, h);
         }
+    }
+
+    /// Linearises the springs anew where the velocities just found would bring them, if any would there be longer or shorter
+    /// than foreseen (Newton's method on the implicit step); whether there was one. A link of a whip that turns far within the
+    /// step would be stretched by that, and hold energy that nobody paid.
+    pub fn follow_springs(
+        &mut self,
+        forest: &Forest,
+        springs: &[SpringDef],
+        (positions, velocities): (&[Vec3], &[Vec3]),
+        h: f32,
+    ) -> bool {
+        let at_end = |s: &SpringDef| {
+            let [a, b] = [s.a as usize, s.b as usize];
+            let ahead = velocities[a] - velocities[b];
+            (positions[b] - positions[a] - ahead * h, ahead)
+        };
+        let bent = forest.solved_springs().any(|spring| {
+            let (s, foreseen) = (&springs[spring as usize], self.loads[spring as usize].from_a);
+            let (from_a, _) = at_end(s);
+            // Length at the end along the direction of the linearisation, and as it is.
+            let direction = sinew_math::normalize_or(foreseen, Vec3::Y);
+            from_a.length() - from_a.dot(direction) > LENGTH_TOLERANCE * s.rest_length
+        });
+        if bent {
+            for spring in forest.solved_springs() {
+                let (from_a, ahead) = at_end(&springs[spring as usize]);
+                self.loads[spring as usize] = Load::new(&springs[spring as usize], from_a, ahead, h);
+            }
+        }
+        bent
     }
 
     /// Velocities at the end of the step.
@@ -211,7 +265,7 @@ impl System {
     fn gather(&mut self, forest: &Forest, springs: &[SpringDef], h: f32, velocities: &[Vec3]) {
         for link in &forest.links {
             let (child, parent) = (link.child as usize, link.parent as usize);
-            let Load { force, block } = self.loads[link.spring as usize];
+            let Load { force, block, .. } = self.loads[link.spring as usize];
             let on_child = if springs[link.spring as usize].a == link.child { force * h } else { -force * h };
             self.gathered_momentum[child] += on_child;
             self.gathered_momentum[parent] -= on_child;

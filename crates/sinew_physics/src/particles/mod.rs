@@ -5,40 +5,41 @@
 //!
 //! Springs that form no loops (a mass on a spring, a rope, a strand of hair) are solved in one implicit step, see
 //! `forest.rs`: the stretch at rest is the exact one, `m g / k`, for a chain as for a single mass, whatever the
-//! substeps. A spring that closes a loop is projected once per substep instead, with compliance `1/k` and no
-//! accumulated multiplier: exact at rest for one mass on one spring, softer by `h² (w₁ + w₂)` per particle in a net.
+//! substeps. What forms loops (cloth, blobs) is projected, each spring once, see `net.rs`: exact at rest for one mass
+//! on one spring, softer by `h² (w₁ + w₂)` per spring in a net.
 //! Damping acts on the velocity at the start of the substep, before forces.
 //!
-//! Contacts that are there before the substep are part of the spring solve, or a rope bent over an edge would hang
-//! with the wrong tension (`contact.rs`). Impacts and what is left are dealt with after it (`impact.rs`).
+//! Contacts are part of the spring solve, or a rope bent over an edge would hang with the wrong tension, and one that
+//! strikes the floor would be compressed by what its end would have sunk in (`contact.rs`). Bounces, and what is left,
+//! are dealt with after it (`impact.rs`).
 
+mod attach;
+mod builders;
+mod check;
 mod contact;
 mod def;
+mod elastic;
 mod forest;
+mod geodesic;
 mod impact;
+mod net;
 mod snapshot;
+mod sweep;
 
+pub use attach::Anchor;
+pub use builders::{Blob, BlobDef, Cloth, ClothDef, Rope, RopeDef, StrandDef};
 pub use contact::{BodyImpulse, Obstacle, ObstacleBody};
-pub use def::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, RopeDef, SpringDef};
+pub use def::{
+    AttachmentDef, AttachmentTarget, BendDef, GroupDef, ParticleDef, Resists, SpringDef, SpringScheme,
+    TetherDef, VolumeDef,
+};
 
 use crate::boxes::Aabb;
 use crate::shape::{Filter, Material};
-use contact::{Grip, Touch};
+use contact::{Grip, Placed, Touch};
 use forest::{Forest, Freedom, System};
 use impact::MAX_TOUCHES;
 use sinew_math::{Sym3, Vec3};
-
-/// The point that holds an attached particle, in one substep.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Anchor {
-    /// World, metres.
-    pub position: Vec3,
-    /// m/s, at the start of the substep, forces on the body included.
-    pub velocity: Vec3,
-    /// How the point yields, 1/kg: velocity gained per impulse at the point, `I/m − [r]× J⁻¹ [r]×`. Zero if nothing
-    /// moves it.
-    pub inverse_mass: Sym3,
-}
 
 /// Particles and springs at run time. One array per quantity, by index of the particle.
 #[derive(Clone, Debug, Default)]
@@ -48,13 +49,20 @@ pub struct ParticleGroup {
     masses: Vec<f32>,
     radii: Vec<f32>,
     springs: Vec<SpringDef>,
+    bends: Vec<BendDef>,
+    tethers: Vec<TetherDef>,
+    volumes: Vec<VolumeDef>,
     attachments: Vec<AttachmentDef>,
+    scheme: SpringScheme,
+    iterations: u32,
     material: Material,
     linear_damping: f32,
     gravity_scale: f32,
     filter: Filter,
     /// How surfaces hold the particles.
     grips: Vec<Grip>,
+    /// Length of the last iteration, seconds; 0 before the first.
+    span: f32,
     /// Impulse of a surface on each particle in the last solve.
     contact_impulses: Vec<Vec3>,
 
@@ -63,16 +71,37 @@ pub struct ParticleGroup {
 
     forest: Forest,
     system: System,
-    /// Where each particle was before the substep.
+    /// Where each particle was before the iteration.
     previous: Vec<Vec3>,
+    /// How projections move each particle, 1/kg: 0 for those held by what cannot move.
+    weights: Vec<f32>,
+    /// Velocity of each particle when the iteration began, damped.
+    begun: Vec<Vec3>,
+    /// Of the points that hold particles, as the iterations so far have changed it.
+    anchor_velocities: Vec<Vec3>,
+    /// Directions in which each particle changes a volume, m².
+    gradients: Vec<Vec3>,
+    /// Shapes as the iteration finds them.
+    placed: Vec<Placed>,
     /// Attachment of each particle, or `u32::MAX`.
     attachment_of: Vec<u32>,
     attachment_impulses: Vec<Vec3>,
     body_impulses: Vec<BodyImpulse>,
-    /// Impulse of the springs on each particle in this substep.
+    /// Impulse of springs, bends, tethers and volumes on each particle in this iteration.
     reactions: Vec<Vec3>,
-    /// What each particle touches in this substep.
+    /// What each particle touches in this iteration.
     touches: Vec<Option<Touch>>,
+    /// Distance to any shape that each particle surely has when the iteration begins, less what the shape moves, metres.
+    clearances: Vec<f32>,
+    /// Share of an impulse against the surface that each particle touches that goes on to the body: its share of the body's
+    /// inertia over that and its own.
+    backings: Vec<f32>,
+    /// Of that surface, out of it.
+    press_normals: Vec<Vec3>,
+    /// What has gone on to the body in this iteration, N·s.
+    presses: Vec<Vec3>,
+    /// Velocities that bring particles into the corner of two surfaces.
+    wedges: Vec<Vec3>,
     /// Mass of the particles that touch each body.
     loads: Vec<f32>,
     /// Forces of fields on each particle in the substep to come, N; none without fields.
@@ -97,6 +126,11 @@ impl ParticleGroup {
             masses: def.particles.iter().map(|p| p.mass).collect(),
             radii: def.particles.iter().map(|p| p.radius).collect(),
             springs: def.springs.clone(),
+            bends: def.bends.clone(),
+            tethers: def.tethers.clone(),
+            volumes: def.volumes.clone(),
+            scheme: def.scheme,
+            iterations: def.iterations,
             attachments: def.attachments.clone(),
             material: def.material,
             linear_damping: def.linear_damping,
@@ -104,18 +138,7 @@ impl ParticleGroup {
             filter: def.filter,
             grips: vec![Grip::Off; count],
             contact_impulses: vec![Vec3::ZERO; count],
-            drawn_from: Vec::new(),
-            forest: Forest::default(),
-            system: System::default(),
-            previous: Vec::new(),
-            attachment_of: Vec::new(),
-            attachment_impulses: Vec::new(),
-            body_impulses: Vec::new(),
-            reactions: Vec::new(),
-            touches: Vec::new(),
-            loads: Vec::new(),
-            outer: Vec::new(),
-            accelerations: Vec::new(),
+            ..Self::default()
         };
         group.derive();
         group
@@ -130,13 +153,26 @@ impl ParticleGroup {
             self.attachment_of[a.particle as usize] = index as u32;
             held_in_world[a.particle as usize] = matches!(a.target, AttachmentTarget::World(_));
         }
-        self.forest = Forest::new(count, &self.springs, &held_in_world);
+        self.forest = match self.scheme {
+            SpringScheme::Implicit => Forest::new(count, &self.springs, &held_in_world),
+            SpringScheme::Projected => Forest::without_trees(&self.springs, &held_in_world),
+        };
         self.system = System::new(count, self.springs.len());
         self.previous = self.positions.clone();
         self.drawn_from = self.positions.clone();
         self.attachment_impulses = vec![Vec3::ZERO; self.attachments.len()];
+        self.weights = vec![0.0; count];
+        self.accelerations = vec![Vec3::ZERO; count];
+        self.begun = vec![Vec3::ZERO; count];
+        self.anchor_velocities = vec![Vec3::ZERO; self.attachments.len()];
+        self.gradients = vec![Vec3::ZERO; count];
         self.touches = vec![None; count];
-        self.body_impulses = Vec::with_capacity(MAX_TOUCHES * count);
+        self.clearances = vec![0.0; count];
+        self.backings = vec![0.0; count];
+        self.press_normals = vec![Vec3::ZERO; count];
+        self.presses = vec![Vec3::ZERO; count];
+        self.wedges = vec![Vec3::ZERO; count];
+        self.body_impulses = Vec::with_capacity(MAX_TOUCHES * count * self.iterations as usize);
         self.reactions = vec![Vec3::ZERO; count];
     }
 
@@ -174,6 +210,21 @@ impl ParticleGroup {
     /// As they were defined.
     pub fn springs(&self) -> &[SpringDef] {
         &self.springs
+    }
+
+    /// As they were defined.
+    pub fn bends(&self) -> &[BendDef] {
+        &self.bends
+    }
+
+    /// As they were defined.
+    pub fn tethers(&self) -> &[TetherDef] {
+        &self.tethers
+    }
+
+    /// As they were defined.
+    pub fn volumes(&self) -> &[VolumeDef] {
+        &self.volumes
     }
 
     /// As they were defined; [`substep`](Self::substep) takes one [`Anchor`] for each.
@@ -228,6 +279,25 @@ impl ParticleGroup {
         self.velocities[i] += impulse / self.masses[i];
     }
 
+    /// Sets the velocity of a particle, m/s, world. One that is attached takes that of what holds it.
+    ///
+    /// # Panics
+    /// If there is no such particle, or the velocity is not finite.
+    pub fn set_velocity(&mut self, particle: u32, velocity: Vec3) {
+        assert!(velocity.is_finite(), "a velocity is finite");
+        self.velocities[particle as usize] = velocity;
+    }
+
+    /// Puts a particle somewhere, world, metres, through whatever lies between.
+    ///
+    /// # Panics
+    /// If there is no such particle, or the position is not finite.
+    pub fn set_position(&mut self, particle: u32, position: Vec3) {
+        assert!(position.is_finite(), "a position is finite");
+        self.positions[particle as usize] = position;
+        self.previous[particle as usize] = position;
+    }
+
     /// Moves a particle by `by` (m, world), with the velocity that takes it there within `h` seconds.
     ///
     /// # Panics
@@ -242,8 +312,9 @@ impl ParticleGroup {
     /// Moves the group by `h` seconds under `gravity` (m/s²), its springs, its attachments and its contacts.
     ///
     /// `anchors[k]` holds attachment `k`. Anchors that are bodies yield to the springs within the same solve, so that
-    /// a stiff rope does not shake a light body; each such point is solved as if it were the body's only one. What
-    /// the body gains is in [`attachment_impulses`](Self::attachment_impulses), for the caller to apply.
+    /// a stiff rope does not shake a light body; each such point is solved as if it were the body's only one, so give
+    /// each its share of the body's inertia. What the body gains is in
+    /// [`attachment_impulses`](Self::attachment_impulses), for the caller to apply.
     ///
     /// `obstacles` and `bodies` are at the end of the substep; every particle is tried against every obstacle, so
     /// pass those that come near [`bounds`](Self::bounds). Bodies are pushed back: their velocities change at once,
@@ -268,34 +339,39 @@ impl ParticleGroup {
             *sum += force / *mass;
         }
         self.body_impulses.clear();
+        self.attachment_impulses.fill(Vec3::ZERO);
+        self.anchor_velocities.clear();
+        self.anchor_velocities.extend(anchors.iter().map(|anchor| anchor.velocity));
+        for number in 0..self.iterations {
+            self.iterate(Part { number, of: self.iterations, whole: h }, anchors, obstacles, bodies);
+        }
+    }
+
+    /// Moves the group by a part of the substep.
+    fn iterate(
+        &mut self,
+        part: Part,
+        anchors: &[Anchor],
+        obstacles: &[Obstacle],
+        bodies: &mut [ObstacleBody],
+    ) {
+        let h = part.h();
+        self.span = h;
+        self.place(part, obstacles, bodies);
         self.begin(h);
-        self.hold(h, anchors);
+        self.hold(part, anchors);
         self.find_contacts(h, obstacles, bodies);
-        self.solve_with_contacts(h, bodies);
+        self.solve_with_contacts(h, obstacles, bodies);
         self.push_bodies(bodies);
         for i in 0..self.positions.len() {
             self.positions[i] += self.velocities[i] * h;
         }
-        self.project_loops(h);
-        self.collect_attachment_impulses(h, anchors);
+        self.back_contacts(h, bodies);
+        self.project_net(h);
+        self.press_bodies(bodies);
+        self.let_go(part, anchors);
+        self.bounce(h, bodies);
         self.stop_impacts(h, obstacles, bodies);
-    }
-
-    /// Puts attached particles where their anchors are.
-    fn hold(&mut self, h: f32, anchors: &[Anchor]) {
-        for (a, anchor) in self.attachments.iter().zip(anchors) {
-            let i = a.particle as usize;
-            let mass = anchor.inverse_mass.inverse();
-            self.positions[i] = anchor.position;
-            self.previous[i] = anchor.position;
-            self.velocities[i] = anchor.velocity;
-            if mass == Sym3::ZERO {
-                self.system.freedom[i] = Freedom::Fixed;
-            }
-            self.system.inertia[i] += mass;
-            self.system.momentum[i] =
-                mass * anchor.velocity + (anchor.velocity + self.accelerations[i] * h) * self.masses[i];
-        }
     }
 
     /// Damping, and what each particle brings into the system.
@@ -305,49 +381,34 @@ impl ParticleGroup {
             let mass = self.masses[i];
             self.previous[i] = self.positions[i];
             self.velocities[i] *= damping;
+            self.begun[i] = self.velocities[i];
+            self.weights[i] = 1.0 / mass;
             self.system.freedom[i] = Freedom::Free;
             self.system.inertia[i] = Sym3::from_diagonal(Vec3::splat(mass));
             self.system.momentum[i] = (self.velocities[i] + self.accelerations[i] * h) * mass;
         }
     }
+}
 
-    /// Springs that close a loop, each once: `Δx = −C / (w₁ + w₂ + α/h²) ∇C` with `α = 1/k` (Macklin et al., "Small
-    /// Steps in Physics Simulation", SCA 2019, without its multiplier), then damping of the axial speed.
-    fn project_loops(&mut self, h: f32) {
-        for &index in self.forest.loops() {
-            let s = &self.springs[index as usize];
-            let (a, b) = (s.a as usize, s.b as usize);
-            let weight =
-                |i: usize| if self.system.freedom[i] == Freedom::Fixed { 0.0 } else { 1.0 / self.masses[i] };
-            let (wa, wb) = (weight(a), weight(b));
-            let (apart, sum) = (self.positions[b] - self.positions[a], wa + wb);
-            let length = apart.length();
-            if length <= 1e-9 || sum == 0.0 {
-                continue;
-            }
-            let direction = apart / length;
-            let compliance = 1.0 / (s.stiffness * h * h);
-            let mut impulse = (length - s.rest_length) / (sum + compliance) / h;
-            let speed = (self.velocities[b] - self.velocities[a]).dot(direction) - impulse * sum;
-            impulse += speed * h * s.damping / (1.0 + h * s.damping * sum);
-            let (to_a, to_b) = (direction * (impulse * wa), direction * (-impulse * wb));
-            self.velocities[a] += to_a;
-            self.velocities[b] += to_b;
-            self.positions[a] += to_a * h;
-            self.positions[b] += to_b * h;
-            self.reactions[a] += direction * impulse;
-            self.reactions[b] -= direction * impulse;
-        }
+/// An iteration: a part of a substep.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    /// From 0.
+    number: u32,
+    /// How many there are.
+    of: u32,
+    /// The substep, seconds.
+    whole: f32,
+}
+
+impl Part {
+    /// Its length, seconds.
+    fn h(self) -> f32 {
+        self.whole / self.of as f32
     }
 
-    fn collect_attachment_impulses(&mut self, h: f32, anchors: &[Anchor]) {
-        for (k, (a, anchor)) in self.attachments.iter().zip(anchors).enumerate() {
-            let i = a.particle as usize;
-            self.attachment_impulses[k] = if self.system.freedom[i] == Freedom::Fixed {
-                self.reactions[i] + self.accelerations[i] * (self.masses[i] * h)
-            } else {
-                anchor.inverse_mass.inverse() * (self.velocities[i] - anchor.velocity)
-            };
-        }
+    /// Shares of the substep that have passed when it begins and when it ends.
+    fn shares(self) -> [f32; 2] {
+        [self.number, self.number + 1].map(|k| k as f32 / self.of as f32)
     }
 }

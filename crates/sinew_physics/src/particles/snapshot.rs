@@ -1,14 +1,22 @@
 //! Particle groups to bytes and back.
 
 use super::contact::Grip;
-use super::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, ParticleGroup, SpringDef};
+use super::{
+    AttachmentDef, AttachmentTarget, BendDef, GroupDef, ParticleDef, ParticleGroup, Resists, SpringDef,
+    SpringScheme, TetherDef, VolumeDef,
+};
 use crate::id::BodyId;
 use crate::snapshot::{load_filter, load_material, save_filter, save_material};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
 /// Bytes of a particle: position, velocity, mass, radius, contact impulse, grip, position before the step.
 const PARTICLE_BYTES: usize = 4 * (3 + 3 + 1 + 1 + 3 + 3) + 1;
-const SPRING_BYTES: usize = 4 * 5;
+const SPRING_BYTES: usize = 4 * 5 + 1;
+const BEND_BYTES: usize = 4 * 5;
+const TETHER_BYTES: usize = 4 * 3;
+/// Of one without triangles.
+const VOLUME_BYTES: usize = 4 * 3;
+const TRIANGLE_BYTES: usize = 4 * 3;
 /// Of the shortest attachment.
 const ATTACHMENT_BYTES: usize = 4 + 1 + 12;
 
@@ -19,6 +27,9 @@ impl ParticleGroup {
         out.f32(self.linear_damping);
         out.f32(self.gravity_scale);
         save_filter(out, self.filter);
+        out.u8(u8::from(self.scheme == SpringScheme::Projected));
+        out.u32(self.iterations);
+        out.f32(self.span);
         out.count(self.positions.len());
         for i in 0..self.positions.len() {
             out.vec3(self.positions[i]);
@@ -29,7 +40,8 @@ impl ParticleGroup {
             out.u8(match self.grips[i] {
                 Grip::Off => 0,
                 Grip::Slide => 1,
-                Grip::Stick => 2,
+                // A corner holds for an iteration.
+                Grip::Stick | Grip::Wedged => 2,
             });
             out.vec3(self.drawn_from[i]);
         }
@@ -40,7 +52,9 @@ impl ParticleGroup {
             out.f32(s.rest_length);
             out.f32(s.stiffness);
             out.f32(s.damping);
+            out.u8(u8::from(s.resists == Resists::Stretch));
         }
+        self.save_net(out);
         out.count(self.attachments.len());
         for a in &self.attachments {
             out.u32(a.particle);
@@ -58,6 +72,28 @@ impl ParticleGroup {
         }
     }
 
+    fn save_net(&self, out: &mut Writer) {
+        out.count(self.bends.len());
+        for b in &self.bends {
+            b.particles.iter().for_each(|&i| out.u32(i));
+            out.f32(b.rest);
+            out.f32(b.stiffness);
+        }
+        out.count(self.tethers.len());
+        for t in &self.tethers {
+            out.u32(t.particle);
+            out.u32(t.to);
+            out.f32(t.length);
+        }
+        out.count(self.volumes.len());
+        for v in &self.volumes {
+            out.f32(v.rest_volume);
+            out.f32(v.bulk_modulus);
+            out.count(v.triangles.len());
+            v.triangles.iter().flatten().for_each(|&i| out.u32(i));
+        }
+    }
+
     /// Reads what [`save`](Self::save) wrote. Whether attached bodies exist is for the caller to check.
     ///
     /// # Errors
@@ -66,7 +102,21 @@ impl ParticleGroup {
         let material = load_material(input)?;
         let (linear_damping, gravity_scale) = (input.f32()?, input.f32()?);
         let filter = load_filter(input)?;
-        let mut def = GroupDef { material, linear_damping, gravity_scale, filter, ..GroupDef::default() };
+        let scheme = match input.u8()? {
+            0 => SpringScheme::Implicit,
+            1 => SpringScheme::Projected,
+            _ => return Err(input.error("a scheme is neither of the two")),
+        };
+        let (iterations, span) = (input.u32()?, input.f32()?);
+        let mut def = GroupDef {
+            material,
+            linear_damping,
+            gravity_scale,
+            filter,
+            scheme,
+            iterations,
+            ..GroupDef::default()
+        };
         let (mut contact_impulses, mut grips, mut drawn_from) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..input.count(PARTICLE_BYTES)? {
             def.particles.push(read_particle(input)?);
@@ -80,19 +130,55 @@ impl ParticleGroup {
             drawn_from.push(input.vec3()?);
         }
         for _ in 0..input.count(SPRING_BYTES)? {
-            let (a, b) = (input.u32()?, input.u32()?);
-            let (rest_length, stiffness, damping) = (input.f32()?, input.f32()?, input.f32()?);
-            def.springs.push(SpringDef { a, b, rest_length, stiffness, damping });
+            def.springs.push(read_spring(input)?);
         }
+        load_net(input, &mut def)?;
         for _ in 0..input.count(ATTACHMENT_BYTES)? {
             def.attachments.push(read_attachment(input)?);
         }
         def.check().map_err(|what| input.error(what))?;
-        if !contact_impulses.iter().chain(&drawn_from).all(|v: &Vec3| v.is_finite()) {
-            return Err(input.error("an impulse or a place is not finite"));
+        let finite = contact_impulses.iter().chain(&drawn_from).all(|v: &Vec3| v.is_finite());
+        if !(finite && span.is_finite()) {
+            return Err(input.error("an impulse, a place or a time is not finite"));
         }
-        Ok(Self { contact_impulses, grips, drawn_from, ..Self::new(&def) })
+        Ok(Self { span, contact_impulses, grips, drawn_from, ..Self::new(&def) })
     }
+}
+
+fn load_net(input: &mut Reader<'_>, def: &mut GroupDef) -> Result<(), ReadError> {
+    for _ in 0..input.count(BEND_BYTES)? {
+        let particles = read_triangle(input)?;
+        def.bends.push(BendDef { particles, rest: input.f32()?, stiffness: input.f32()? });
+    }
+    for _ in 0..input.count(TETHER_BYTES)? {
+        def.tethers.push(TetherDef { particle: input.u32()?, to: input.u32()?, length: input.f32()? });
+    }
+    for _ in 0..input.count(VOLUME_BYTES)? {
+        let (rest_volume, bulk_modulus) = (input.f32()?, input.f32()?);
+        let count = input.count(TRIANGLE_BYTES)?;
+        let triangles = (0..count).map(|_| read_triangle(input)).collect::<Result<_, _>>()?;
+        def.volumes.push(VolumeDef { triangles, rest_volume, bulk_modulus });
+    }
+    Ok(())
+}
+
+fn read_triangle(input: &mut Reader<'_>) -> Result<[u32; 3], ReadError> {
+    Ok([input.u32()?, input.u32()?, input.u32()?])
+}
+
+fn read_spring(input: &mut Reader<'_>) -> Result<SpringDef, ReadError> {
+    Ok(SpringDef {
+        a: input.u32()?,
+        b: input.u32()?,
+        rest_length: input.f32()?,
+        stiffness: input.f32()?,
+        damping: input.f32()?,
+        resists: match input.u8()? {
+            0 => Resists::Both,
+            1 => Resists::Stretch,
+            _ => return Err(input.error("a spring resists neither way")),
+        },
+    })
 }
 
 fn read_particle(input: &mut Reader<'_>) -> Result<ParticleDef, ReadError> {

@@ -7,7 +7,7 @@ use crate::humanoid::figure;
 use crate::objects::inhabited;
 use sinew_math::trig::{cos, sin};
 use sinew_math::{Transform, Vec3};
-use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, RopeDef};
+use sinew_physics::particles::{AttachmentDef, AttachmentTarget, RopeDef};
 use sinew_physics::*;
 
 /// Steps until the boxes are thrown back to where they began.
@@ -82,7 +82,7 @@ fn ring(world: &mut World, count: u32) {
 fn rope(world: &mut World) {
     let (from, to) = (Vec3::new(0.0, 2.5, 20.0), Vec3::new(0.0, 1.5, 21.0));
     let weight = world.add_body(&sphere_body(0.15, to));
-    let mut rope = GroupDef::rope(&RopeDef { from, to, links: 16, mass: 0.2, stiffness: 1e4, radius: 0.01 });
+    let mut rope = RopeDef { from, to, links: 16, mass: 0.2, stiffness: 1e4, radius: 0.01 }.build().group;
     rope.attachments = vec![
         AttachmentDef { particle: 0, target: AttachmentTarget::World(from) },
         AttachmentDef { particle: 16, target: AttachmentTarget::Body { body: weight, point: Vec3::ZERO } },

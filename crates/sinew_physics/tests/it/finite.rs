@@ -39,7 +39,7 @@ fn particles() -> GroupDef {
     let at = |x: f32| ParticleDef { position: Vec3::X * x, velocity: Vec3::ZERO, mass: 0.1, radius: 0.01 };
     GroupDef {
         particles: vec![at(3.0), at(4.0)],
-        springs: vec![SpringDef { a: 0, b: 1, rest_length: 1.0, stiffness: 100.0, damping: 1.0 }],
+        springs: vec![SpringDef { damping: 1.0, ..SpringDef::new([0, 1], 1.0, 100.0) }],
         attachments: vec![AttachmentDef { particle: 0, target: AttachmentTarget::World(Vec3::X * 3.0) }],
         ..GroupDef::default()
     }

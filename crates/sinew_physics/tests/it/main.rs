@@ -11,6 +11,7 @@ mod fields;
 mod finite;
 mod humanoid;
 mod joints;
+mod nets;
 mod objects;
 mod particles;
 mod random_worlds;

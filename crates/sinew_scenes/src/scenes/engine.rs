@@ -6,7 +6,7 @@ use super::{Instance, Scene, Script, Setup};
 use core::f64::consts::PI;
 use core::time::Duration;
 use sinew::math::{Random, ReadError, Reader, Vec3, Writer, max, min, trig};
-use sinew::physics::particles::{GroupDef, RopeDef};
+use sinew::physics::particles::RopeDef;
 use sinew::physics::{BodyId, Corrections, ObjectId, PhysicsObject, World};
 
 pub(super) const FRAME_RATES: Scene = Scene {
@@ -55,14 +55,9 @@ fn crowd(setup: &Setup<'_>) -> (World, BodyId) {
         last = rod;
     }
     let (from, to) = (Vec3::new(-1.2, 0.8, 0.0), Vec3::new(-0.5, 0.8, 0.1));
-    world.add_particles(&GroupDef::rope(&RopeDef {
-        from,
-        to,
-        links: 8,
-        mass: 0.2,
-        stiffness: 500.0,
-        radius: 0.02,
-    }));
+    world.add_particles(
+        &RopeDef { from, to, links: 8, mass: 0.2, stiffness: 500.0, radius: 0.02 }.build().group,
+    );
     string(&mut world, &[2.0], -2.0);
     let dropped = world.add_body(&ghost(ball(0.1, Vec3::Y * DROP)));
     (world, dropped)

@@ -21,9 +21,11 @@ mod sight;
 mod air;
 mod ballistics;
 mod blasts;
+mod blobs;
 mod boxes;
 mod cabin;
 mod chains;
+mod cloths;
 mod crowds;
 mod engine;
 mod falls;
@@ -38,11 +40,13 @@ mod nets;
 mod orbits;
 mod orientation;
 mod overhang;
+mod particles;
 mod pendulums;
 mod piles;
 mod ragdolls;
 mod rolling;
 mod springs;
+mod strings;
 mod support;
 mod tops;
 mod trees;
@@ -133,6 +137,13 @@ const REGISTRY: &[Scene] = &[
     springs::SPRING,
     springs::SPRING_CHAIN,
     springs::SPRINGS_RATIO,
+    strings::CATENARY,
+    strings::CHAIN_MODES,
+    particles::PARTICLE,
+    particles::FAST_PARTICLE,
+    cloths::CLOTH,
+    blobs::BLOB,
+    blobs::STEEL_VS_BASKETBALL,
     gimbal::GIMBAL,
     orientation::MATRIX_DRIFT,
     orientation::VERSOR,

@@ -5,7 +5,7 @@ use super::parts::{GRAVITY, cuboid, floor};
 use super::{Instance, Scene, Script, Setting, Setup};
 use sinew::math::{Vec3, max, min};
 use sinew::physics::particles::{
-    AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, ParticleGroup, RopeDef, SpringDef,
+    AttachmentDef, AttachmentTarget, GroupDef, ParticleDef, ParticleGroup, Resists, RopeDef, SpringDef,
 };
 use sinew::physics::{BodyId, GroupId, World};
 
@@ -62,6 +62,7 @@ fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: &[f32]) -> Instance {
         stiffness,
         // A fifth of what is critical for one mass on one spring.
         damping: 0.4 * (mass * stiffness).sqrt(),
+        resists: Resists::Both,
     };
     let springs: Vec<_> = stiffnesses.iter().enumerate().map(spring).collect();
     let group = world.add_particles(&GroupDef {
@@ -86,12 +87,9 @@ struct Hung {
 impl Script for Hung {
     fn metrics(&self, world: &World) -> Vec<Metric> {
         let group = world.particles(self.group);
-        let stretch = |spring: &SpringDef| {
-            let [a, b] = [spring.a, spring.b].map(|i| group.positions()[i as usize]);
-            (b - a).length() - spring.rest_length
-        };
-        let found: f32 = group.springs().iter().map(stretch).sum();
-        let gaps = group.springs().iter().zip(&self.stretches).map(|(spring, right)| stretch(spring) - right);
+        let springs = 0..group.springs().len();
+        let found: f32 = springs.clone().map(|i| group.stretch(i)).sum();
+        let gaps = springs.zip(&self.stretches).map(|(i, right)| group.stretch(i) - right);
         let worst = gaps.fold(0.0, |worst, gap| max(worst, gap.abs()));
         vec![
             Metric::new("stretch_m", found, Expected::near(self.stretches.iter().sum::<f32>(), 1e-3)),
@@ -133,14 +131,18 @@ fn rope_on_box(setup: &Setup<'_>) -> Instance {
     block.shapes[0].density = 40.0;
     let block = world.add_body(&block);
     let (length, middle) = (setup.number("length"), Vec3::new(0.0, HEIGHT, 0.02));
-    let rope = world.add_particles(&GroupDef::rope(&RopeDef {
-        from: middle - Vec3::X * (0.5 * length),
-        to: middle + Vec3::X * (0.5 * length),
-        links: setup.whole("links") as u32,
-        mass: setup.number("mass"),
-        stiffness: 2000.0,
-        radius: ROPE_RADIUS,
-    }));
+    let rope = world.add_particles(
+        &RopeDef {
+            from: middle - Vec3::X * (0.5 * length),
+            to: middle + Vec3::X * (0.5 * length),
+            links: setup.whole("links") as u32,
+            mass: setup.number("mass"),
+            stiffness: 2000.0,
+            radius: ROPE_RADIUS,
+        }
+        .build()
+        .group,
+    );
     Instance::new(world, Rope { block, rope, fall: None })
 }
 

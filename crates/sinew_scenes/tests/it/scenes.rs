@@ -10,6 +10,7 @@ const NOT_YET: &[(&str, &[&str])] = &[
 
 /// Scenes in which gravity has no part, or no figure that would notice is met.
 const BLIND_TO_GRAVITY: &[&str] = &[
+    "fast_particle",
     "gimbal",
     "matrix_drift",
     "versor",
@@ -121,6 +122,13 @@ scenes!(
         spring,
         spring_chain,
         springs_ratio,
+        catenary,
+        chain_modes,
+        particle,
+        fast_particle,
+        cloth,
+        blob,
+        steel_vs_basketball,
         gimbal,
         matrix_drift,
         versor,

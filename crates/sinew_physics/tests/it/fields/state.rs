@@ -3,7 +3,7 @@
 use super::closed_forms::{particle, point_mass, run, weightless};
 use crate::build::{box_body, capsule_body, floor, sphere_body};
 use sinew_math::{Random, ReadError, Reader, Transform, Vec3, Writer};
-use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, RopeDef};
+use sinew_physics::particles::{AttachmentDef, AttachmentTarget, RopeDef};
 use sinew_physics::*;
 
 fn swirl(at: &FieldPoint, parameters: &[f32; field::PARAMETERS]) -> Wrench {
@@ -32,14 +32,16 @@ fn crowded(spread: f32) -> World {
             world.add_force(id, &ForceDef { force: Vec3::Y * 3.0, ..ForceDef::default() });
         }
     }
-    let mut rope = GroupDef::rope(&RopeDef {
+    let mut rope = RopeDef {
         from: Vec3::new(0.0, 4.0, 0.0),
         to: Vec3::new(2.0, 4.0, 0.0),
         links: 12,
         mass: 0.3,
         stiffness: 2e3,
         radius: 0.02,
-    });
+    }
+    .build()
+    .group;
     let target = AttachmentTarget::World(Vec3::new(0.0, 4.0, 0.0));
     rope.attachments = vec![AttachmentDef { particle: 0, target }];
     world.add_particles(&rope);

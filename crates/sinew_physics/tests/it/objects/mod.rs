@@ -32,14 +32,9 @@ pub fn mixed() -> World {
         last = link;
     }
     let (from, to) = (Vec3::new(-2.0, 1.0, 0.0), Vec3::new(-1.0, 1.0, 0.0));
-    world.add_particles(&GroupDef::rope(&RopeDef {
-        from,
-        to,
-        links: 10,
-        mass: 0.2,
-        stiffness: 1e3,
-        radius: 0.02,
-    }));
+    world.add_particles(
+        &RopeDef { from, to, links: 10, mass: 0.2, stiffness: 1e3, radius: 0.02 }.build().group,
+    );
     world
 }
 

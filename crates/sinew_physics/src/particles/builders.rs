@@ -1,0 +1,386 @@
+//! Ropes, strands, cloth and blobs: definitions that make groups, and tell which particle is where.
+
+use super::{
+    AttachmentDef, AttachmentTarget, BendDef, GroupDef, ParticleDef, SpringDef, SpringScheme, TetherDef,
+    VolumeDef,
+};
+use sinew_math::Vec3;
+
+/// Share of critical damping that ropes and strands have.
+const ROPE_DAMPING: f32 = 0.1;
+
+impl GroupDef {
+    /// Holds a particle in place, or at a point of a body.
+    ///
+    /// # Panics
+    /// If there is no such particle.
+    pub fn hold(&mut self, particle: u32, target: AttachmentTarget) {
+        assert!((particle as usize) < self.particles.len(), "the particle is there");
+        self.attachments.push(AttachmentDef { particle, target });
+    }
+
+    /// Holds particles where they are in the world.
+    ///
+    /// # Panics
+    /// If there is no such particle.
+    pub fn hold_in_world(&mut self, particles: &[u32]) {
+        for &particle in particles {
+            let place = self.particles[particle as usize].position;
+            self.hold(particle, AttachmentTarget::World(place));
+        }
+    }
+
+    /// Makes each particle inside a row resist bending away from its present shape, as a beam of bending stiffness
+    /// `bending` (N·m²), `B/L³` with the mean length `L` of its two sides.
+    ///
+    /// # Panics
+    /// If there is no such particle.
+    pub fn stiffen(&mut self, row: &[u32], bending: f32) {
+        for three in row.windows(3) {
+            let [a, b, c] = [0, 1, 2].map(|k| self.particles[three[k] as usize].position);
+            let side = 0.5 * ((b - a).length() + (c - b).length());
+            self.bends.push(BendDef {
+                particles: [three[0], three[1], three[2]],
+                rest: (a - b * 2.0 + c).length(),
+                stiffness: bending / (side * side * side),
+            });
+        }
+    }
+
+    /// Damps every spring at a share of what is critical for its two particles alone, see [`SpringDef::damped`]; those
+    /// that are held now count as infinitely heavy.
+    ///
+    /// # Panics
+    /// If the ratio is negative or not finite.
+    pub fn damp(&mut self, ratio: f32) {
+        let mut masses: Vec<f32> = self.particles.iter().map(|p| p.mass).collect();
+        for a in &self.attachments {
+            masses[a.particle as usize] = f32::INFINITY;
+        }
+        for s in &mut self.springs {
+            *s = s.damped(ratio, [masses[s.a as usize], masses[s.b as usize]]);
+        }
+    }
+
+    /// Ties every particle that is not held to the nearest held one, at the distance that they have now: the way through
+    /// flat cloth or along straight hair. Without held particles there is nothing to tie to.
+    pub fn tether(&mut self) {
+        let place = |i: u32| self.particles[i as usize].position;
+        let held: Vec<u32> = self.attachments.iter().map(|a| a.particle).collect();
+        for particle in (0..self.particles.len() as u32).filter(|i| !held.contains(i)) {
+            let mut nearest: Option<TetherDef> = None;
+            for &to in &held {
+                let length = (place(to) - place(particle)).length();
+                if nearest.is_none_or(|tether| length < tether.length) {
+                    nearest = Some(TetherDef { particle, to, length });
+                }
+            }
+            self.tethers.extend(nearest.filter(|tether| tether.length > 0.0));
+        }
+    }
+}
+
+/// A rope to be made: a row of particles joined by springs that are solved exactly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RopeDef {
+    /// First particle, world, metres.
+    pub from: Vec3,
+    /// Last particle.
+    pub to: Vec3,
+    /// Number of springs, at least 1.
+    pub links: u32,
+    /// kg, of the whole rope.
+    pub mass: f32,
+    /// N/m, of the whole rope: `force / stretch` between its ends.
+    pub stiffness: f32,
+    /// Metres.
+    pub radius: f32,
+}
+
+/// A rope that is not in a world yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rope {
+    /// For [`World::add_particles`](crate::World::add_particles). Particles are in order, springs too.
+    pub group: GroupDef,
+    /// Index of the first particle.
+    pub first: u32,
+    /// Index of the last one.
+    pub last: u32,
+}
+
+impl RopeDef {
+    /// A straight rope at its rest length. Its end particles have half the mass of the others. Each spring is damped
+    /// at a tenth of its critical damping.
+    ///
+    /// # Panics
+    /// If `links` is 0.
+    pub fn build(&self) -> Rope {
+        assert!(self.links > 0, "a rope has at least one link");
+        let links = self.links as f32;
+        let (link_mass, stiffness) = (self.mass / links, self.stiffness * links);
+        let particle = |k: u32| ParticleDef {
+            position: self.from + (self.to - self.from) * (k as f32 / links),
+            velocity: Vec3::ZERO,
+            mass: if k == 0 || k == self.links { 0.5 * link_mass } else { link_mass },
+            radius: self.radius,
+        };
+        let rest_length = (self.to - self.from).length() / links;
+        let spring = |k: u32| SpringDef {
+            // Of two inner particles, `m/2` of which swings.
+            damping: 2.0 * ROPE_DAMPING * (0.5 * stiffness * link_mass).sqrt(),
+            ..SpringDef::new([k, k + 1], rest_length, stiffness)
+        };
+        let group = GroupDef {
+            particles: (0..=self.links).map(particle).collect(),
+            springs: (0..self.links).map(spring).collect(),
+            ..GroupDef::default()
+        };
+        Rope { group, first: 0, last: self.links }
+    }
+}
+
+/// A strand to be made, of hair or grass: a rope that resists bending, clamped at its root.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrandDef {
+    /// Where it grows from, and all that it has in common with a rope.
+    pub rope: RopeDef,
+    /// `B` = elastic modulus times the section's second moment of area, N·m², positive. A straight strand that is clamped
+    /// level sinks under its weight `w` per length by `w L⁴ / 8B` at its tip.
+    pub bending: f32,
+}
+
+impl StrandDef {
+    /// A straight strand. To clamp its root, hold its first **two** particles, [`Rope::first`] and the one after: they
+    /// give its direction.
+    ///
+    /// # Panics
+    /// If there are no links.
+    pub fn build(&self) -> Rope {
+        let mut strand = self.rope.build();
+        let row: Vec<u32> = (strand.first..=strand.last).collect();
+        strand.group.stiffen(&row, self.bending);
+        strand
+    }
+}
+
+/// A rectangle of cloth to be made: a grid of particles with springs along both threads, across them, and against
+/// bending.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClothDef {
+    /// The first corner, world, metres.
+    pub corner: Vec3,
+    /// From there along the first row, metres.
+    pub across: Vec3,
+    /// From there along the first column, metres; at right angles to `across`.
+    pub down: Vec3,
+    /// Springs in a row, at least 1.
+    pub columns: u32,
+    /// Springs in a column, at least 1.
+    pub rows: u32,
+    /// kg, of all of it.
+    pub mass: f32,
+    /// Stiffness of a square of it against being pulled along a thread, N/m: elastic modulus times thickness.
+    pub stretching: f32,
+    /// Likewise along a diagonal, N/m, ≥ 0; with 0 there are no springs across.
+    pub shearing: f32,
+    /// Bending stiffness per width, N·m, ≥ 0: `E t³/12` of a plate; with 0 nothing resists bending.
+    pub bending: f32,
+    /// Share of its critical damping that each spring has, ≥ 0.
+    pub damping_ratio: f32,
+    /// Of each particle, metres.
+    pub radius: f32,
+}
+
+/// Cloth that is not in a world yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cloth {
+    /// For [`World::add_particles`](crate::World::add_particles); projected in two iterations per substep.
+    pub group: GroupDef,
+    /// Springs in a row.
+    pub columns: u32,
+    /// Springs in a column.
+    pub rows: u32,
+}
+
+impl Cloth {
+    /// Index of a particle; columns and rows count from 0 to how many springs there are.
+    pub fn particle(&self, column: u32, row: u32) -> u32 {
+        row * (self.columns + 1) + column
+    }
+
+    /// Indices at the ends of the first row, then of the last one.
+    pub fn corners(&self) -> [u32; 4] {
+        let (columns, rows) = (self.columns, self.rows);
+        [(0, 0), (columns, 0), (0, rows), (columns, rows)].map(|(c, r)| self.particle(c, r))
+    }
+
+    /// Indices of a row, in order.
+    pub fn row(&self, row: u32) -> Vec<u32> {
+        (0..=self.columns).map(|column| self.particle(column, row)).collect()
+    }
+
+    /// Indices of a column, in order.
+    pub fn column(&self, column: u32) -> Vec<u32> {
+        (0..=self.rows).map(|row| self.particle(column, row)).collect()
+    }
+
+    /// Holds particles where they are, and ties all others to the nearest of them.
+    ///
+    /// # Panics
+    /// If there is no such particle.
+    pub fn hang(&mut self, particles: &[u32]) {
+        self.group.hold_in_world(particles);
+        self.group.tethers.clear();
+        self.group.tether();
+    }
+}
+
+impl ClothDef {
+    /// Flat, at its rest lengths. Particles at the edges have half the mass of the others, those in corners a quarter.
+    ///
+    /// # Panics
+    /// If there are no columns or rows.
+    pub fn build(&self) -> Cloth {
+        assert!(self.columns > 0 && self.rows > 0, "cloth has columns and rows");
+        let (columns, rows) = (self.columns, self.rows);
+        let mut cloth = Cloth { group: GroupDef::default(), columns, rows };
+        let cell_mass = self.mass / (columns * rows) as f32;
+        let share = |at: u32, last: u32| if at == 0 || at == last { 0.5 } else { 1.0 };
+        for row in 0..=rows {
+            for column in 0..=columns {
+                let (u, v) = (column as f32 / columns as f32, row as f32 / rows as f32);
+                cloth.group.particles.push(ParticleDef {
+                    position: self.corner + self.across * u + self.down * v,
+                    velocity: Vec3::ZERO,
+                    mass: cell_mass * share(column, columns) * share(row, rows),
+                    radius: self.radius,
+                });
+            }
+        }
+        let (wide, high) = (self.across.length() / columns as f32, self.down.length() / rows as f32);
+        for row in 0..=rows {
+            let stiffness = self.stretching * high * share(row, rows) / wide;
+            join_row(&mut cloth, [1, 0], (0..columns).map(|column| [column, row]), wide, stiffness);
+        }
+        for row in 0..rows {
+            for column in 0..=columns {
+                let stiffness = self.stretching * wide * share(column, columns) / high;
+                join_row(&mut cloth, [0, 1], [[column, row]], high, stiffness);
+            }
+        }
+        if self.shearing > 0.0 {
+            self.brace(&mut cloth, (wide * wide + high * high).sqrt());
+        }
+        if self.bending > 0.0 {
+            for row in 0..=rows {
+                cloth.group.stiffen(&cloth.row(row), self.bending * high * share(row, rows));
+            }
+            for column in 0..=columns {
+                cloth.group.stiffen(&cloth.column(column), self.bending * wide * share(column, columns));
+            }
+        }
+        cloth.group.damp(self.damping_ratio);
+        cloth.group.scheme = SpringScheme::Projected;
+        cloth.group.iterations = 2;
+        cloth
+    }
+
+    /// Both diagonals of each cell.
+    fn brace(&self, cloth: &mut Cloth, diagonal: f32) {
+        for row in 0..self.rows {
+            for column in 0..self.columns {
+                for [from, to] in [[[0, 0], [1, 1]], [[1, 0], [0, 1]]] {
+                    let ends = [from, to].map(|[c, r]| cloth.particle(column + c, row + r));
+                    cloth.group.springs.push(SpringDef::new(ends, diagonal, 0.5 * self.shearing));
+                }
+            }
+        }
+    }
+}
+
+/// Springs from the given grid places to their neighbours.
+fn join_row(
+    cloth: &mut Cloth,
+    [right, below]: [u32; 2],
+    places: impl IntoIterator<Item = [u32; 2]>,
+    rest_length: f32,
+    stiffness: f32,
+) {
+    for [column, row] in places {
+        let ends = [cloth.particle(column, row), cloth.particle(column + right, row + below)];
+        cloth.group.springs.push(SpringDef::new(ends, rest_length, stiffness));
+    }
+}
+
+/// A ball to be made of a skin with air in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BlobDef {
+    /// World, metres.
+    pub center: Vec3,
+    /// Metres, of the skin.
+    pub radius: f32,
+    /// How often the faces of an icosahedron are split in four, 0 to 5: 12, 42, 162, 642, 2,562 or 10,242 particles.
+    pub subdivisions: u32,
+    /// kg, of all of it.
+    pub mass: f32,
+    /// Of each spring of the skin, N/m.
+    pub stiffness: f32,
+    /// Share of its critical damping that each spring has, ≥ 0.
+    pub damping_ratio: f32,
+    /// Of what is inside, Pa, see [`VolumeDef`].
+    pub bulk_modulus: f32,
+    /// Of each particle, metres: how thick the skin is to what it touches.
+    pub skin: f32,
+}
+
+/// A blob that is not in a world yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Blob {
+    /// For [`World::add_particles`](crate::World::add_particles); projected in four iterations per substep. All particles
+    /// are of the skin, and `volumes[0]` is what it encloses.
+    pub group: GroupDef,
+    /// Index of the highest particle (+Y).
+    pub top: u32,
+    /// Index of the lowest one.
+    pub bottom: u32,
+}
+
+impl BlobDef {
+    /// A geodesic ball at rest.
+    ///
+    /// # Panics
+    /// If there are more than 5 subdivisions.
+    pub fn build(&self) -> Blob {
+        assert!(self.subdivisions <= 5, "a blob has at most five subdivisions");
+        let (directions, triangles) = super::geodesic::sphere(self.subdivisions);
+        let mass = self.mass / directions.len() as f32;
+        let particle = |d: &Vec3| ParticleDef {
+            position: self.center + *d * self.radius,
+            velocity: Vec3::ZERO,
+            mass,
+            radius: self.skin,
+        };
+        let particles: Vec<ParticleDef> = directions.iter().map(particle).collect();
+        let spring = |[a, b]: [u32; 2]| {
+            let length = (particles[b as usize].position - particles[a as usize].position).length();
+            SpringDef::new([a, b], length, self.stiffness).damped(self.damping_ratio, [mass, mass])
+        };
+        let springs = super::geodesic::edges(&triangles).into_iter().map(spring).collect();
+        let positions: Vec<Vec3> = particles.iter().map(|p| p.position).collect();
+        let rest_volume = super::net::enclosed_volume(&triangles, &positions, |_, _| ());
+        let extreme = |sign: f32| {
+            let mut best = 0;
+            for (i, d) in directions.iter().enumerate() {
+                if d.y * sign > directions[best].y * sign {
+                    best = i;
+                }
+            }
+            best as u32
+        };
+        let (top, bottom) = (extreme(1.0), extreme(-1.0));
+        let volumes = vec![VolumeDef { triangles, rest_volume, bulk_modulus: self.bulk_modulus }];
+        let scheme = SpringScheme::Projected;
+        let group = GroupDef { particles, springs, volumes, scheme, iterations: 4, ..GroupDef::default() };
+        Blob { group, top, bottom }
+    }
+}

@@ -1,0 +1,114 @@
+//! Whether a definition makes sense.
+
+use super::{BendDef, GroupDef, ParticleDef, SpringDef, TetherDef, VolumeDef};
+
+/// Parts that a substep may be moved in.
+const MAX_ITERATIONS: u32 = 64;
+
+// Written so that NaN fails.
+fn positive(x: f32) -> bool {
+    x > 0.0 && x < f32::INFINITY
+}
+
+fn not_negative(x: f32) -> bool {
+    (0.0..f32::INFINITY).contains(&x)
+}
+
+/// The phrase, unless it holds.
+fn must(holds: bool, what: &'static str) -> Result<(), &'static str> {
+    if holds { Ok(()) } else { Err(what) }
+}
+
+impl GroupDef {
+    /// Whether its numbers make sense; the phrase says what is wrong.
+    ///
+    /// # Errors
+    /// What is wrong, in lower case.
+    pub fn check(&self) -> Result<(), &'static str> {
+        let count = self.particles.len();
+        self.particles.iter().try_for_each(ParticleDef::check)?;
+        self.springs.iter().try_for_each(|s| s.check(count))?;
+        self.bends.iter().try_for_each(|b| b.check(count))?;
+        self.volumes.iter().try_for_each(|v| v.check(count))?;
+        let mut held = vec![false; count];
+        for a in &self.attachments {
+            let taken = held.get_mut(a.particle as usize).is_none_or(|held| core::mem::replace(held, true));
+            must(!taken, "an attachment must hold a particle of its group that no other one holds")?;
+            let finite = match a.target {
+                super::AttachmentTarget::World(place) => place.is_finite(),
+                super::AttachmentTarget::Body { point, .. } => point.is_finite(),
+            };
+            must(finite, "the point of an attachment must be finite")?;
+        }
+        self.tethers.iter().try_for_each(|t| t.check(&held))?;
+        self.material.check()?;
+        must(
+            not_negative(self.linear_damping) && self.gravity_scale.is_finite(),
+            "damping must not be negative, and the gravity scale finite",
+        )?;
+        must((1..=MAX_ITERATIONS).contains(&self.iterations), "there must be 1 to 64 iterations")
+    }
+}
+
+impl ParticleDef {
+    fn check(&self) -> Result<(), &'static str> {
+        must(
+            self.position.is_finite() && self.velocity.is_finite(),
+            "a particle's position and velocity must be finite",
+        )?;
+        must(
+            positive(self.mass) && not_negative(self.radius),
+            "a particle's mass must be positive and its radius not negative",
+        )
+    }
+}
+
+impl SpringDef {
+    fn check(&self, count: usize) -> Result<(), &'static str> {
+        let known = |index: u32| (index as usize) < count;
+        must(
+            known(self.a) && known(self.b) && self.a != self.b,
+            "a spring must join two different particles of its group",
+        )?;
+        must(
+            positive(self.stiffness) && not_negative(self.rest_length) && not_negative(self.damping),
+            "a spring's stiffness must be positive, its length and damping not negative",
+        )
+    }
+}
+
+impl BendDef {
+    fn check(&self, count: usize) -> Result<(), &'static str> {
+        let [a, b, c] = self.particles;
+        let known = self.particles.iter().all(|&i| (i as usize) < count);
+        must(
+            known && a != b && b != c && c != a,
+            "bending must be of three different particles of its group",
+        )?;
+        must(
+            positive(self.stiffness) && not_negative(self.rest),
+            "a bending stiffness must be positive, its rest not negative",
+        )
+    }
+}
+
+impl TetherDef {
+    fn check(&self, held: &[bool]) -> Result<(), &'static str> {
+        let (particle, to) = (self.particle as usize, self.to as usize);
+        let ends = held.get(particle).is_some() && particle != to && held.get(to) == Some(&true);
+        must(
+            ends && positive(self.length),
+            "a tether must lead from a particle to an attached one, over some length",
+        )
+    }
+}
+
+impl VolumeDef {
+    fn check(&self, count: usize) -> Result<(), &'static str> {
+        let known = self.triangles.iter().flatten().all(|&i| (i as usize) < count);
+        must(
+            known && positive(self.rest_volume) && positive(self.bulk_modulus),
+            "a volume must be of particles of its group, and it and its bulk modulus positive",
+        )
+    }
+}

@@ -1,0 +1,59 @@
+//! Energy of what is stretched, bent and compressed.
+
+use super::ParticleGroup;
+use super::net::{enclosed_volume, stretch};
+
+impl ParticleGroup {
+    /// Of its springs, `½ k s²` each, its bends likewise, and its volumes, `½ K (V − V₀)²/V₀`, J. Tethers hold without
+    /// energy. What is projected counts with the compliance that it has in a net, `1/k + h² Σ w`: it pulls no harder than
+    /// that.
+    pub fn elastic_energy(&self) -> f32 {
+        let solved = self.forest.solved_springs().map(|index| {
+            let s = &self.springs[index as usize];
+            energy(stretch(s, &self.positions), 1.0 / s.stiffness, 0.0)
+        });
+        let projected = self.forest.loops().iter().map(|&index| {
+            let s = &self.springs[index as usize];
+            let weights = self.weight(s.a) + self.weight(s.b);
+            energy(stretch(s, &self.positions), 1.0 / s.stiffness, self.span * self.span * weights)
+        });
+        let bends = self.bends.iter().map(|bend| {
+            let [a, b, c] = bend.particles.map(|i| self.positions[i as usize]);
+            let bow = (a - b * 2.0 + c).length() - bend.rest;
+            let [of_a, of_b, of_c] = bend.particles.map(|i| self.weight(i));
+            energy(bow, 1.0 / bend.stiffness, self.span * self.span * (of_a + 4.0 * of_b + of_c))
+        });
+        let volumes = (0..self.volumes.len()).map(|k| {
+            let volume = &self.volumes[k];
+            energy(self.volume(k) - volume.rest_volume, volume.rest_volume / volume.bulk_modulus, 0.0)
+        });
+        solved.chain(projected).chain(bends).chain(volumes).sum()
+    }
+
+    /// As projections move a particle, 1/kg; 0 if it is attached.
+    fn weight(&self, particle: u32) -> f32 {
+        let i = particle as usize;
+        if self.attachment_of[i] == u32::MAX { 1.0 / self.masses[i] } else { 0.0 }
+    }
+
+    /// Volume that the surface of `volumes()[index]` encloses, m³.
+    ///
+    /// # Panics
+    /// If there is no such volume.
+    pub fn volume(&self, index: usize) -> f32 {
+        enclosed_volume(&self.volumes[index].triangles, &self.positions, |_, _| ())
+    }
+
+    /// Of spring `index`: length less rest length, metres; 0 where it is slack.
+    ///
+    /// # Panics
+    /// If there is no such spring.
+    pub fn stretch(&self, index: usize) -> f32 {
+        stretch(&self.springs[index], &self.positions)
+    }
+}
+
+/// Of a row with error `c`, its own compliance, and what projection adds to it.
+fn energy(c: f32, compliance: f32, added: f32) -> f32 {
+    0.5 * c * c / (compliance + added)
+}

@@ -1,0 +1,160 @@
+//! What forms loops, each row once per iteration: `Δx = −C / (Σ w ∇C² + α/h²) w ∇C` with `α = 1/k` (Macklin et al.,
+//! "Small Steps in Physics Simulation", SCA 2019, without its multipliers). A row alone is a step of implicit Euler. Rows
+//! that share particles are solved one after the other, in the order of their definition, and those before do not hear of
+//! those after: each spring of a net yields by about `h² (w₁ + w₂)` more.
+//!
+//! What presses a particle onto a surface moves it with its share of the body's inertia, and is handed on to the body: a ball
+//! in a cloth would else be carried by the cloth's own few grams.
+
+use super::{BendDef, ParticleGroup, Resists, SpringDef, TetherDef, VolumeDef};
+use sinew_math::{Vec3, max};
+
+impl ParticleGroup {
+    /// Tethers, springs that the forest does not solve, bends, volumes: coarse first, so that what is fine has the last
+    /// word but on pressure.
+    pub(super) fn project_net(&mut self, h: f32) {
+        for k in 0..self.tethers.len() {
+            self.project_tether(self.tethers[k], h);
+        }
+        for k in 0..self.forest.loops().len() {
+            self.project_spring(self.springs[self.forest.loops()[k] as usize], h);
+        }
+        for k in 0..self.bends.len() {
+            self.project_bend(self.bends[k], h);
+        }
+        let volumes = core::mem::take(&mut self.volumes);
+        for volume in &volumes {
+            self.project_volume(volume, h);
+        }
+        self.volumes = volumes;
+    }
+
+    /// What a particle moves by along a force, per impulse: `∇Cᵀ W ∇C` if `force` is as long as the gradient, 1/kg.
+    fn mobility(&self, i: usize, force: Vec3) -> f32 {
+        let pressing = force.dot(self.press_normals[i]);
+        let backed = if pressing < 0.0 { self.backings[i] * pressing * pressing } else { 0.0 };
+        self.weights[i] * (force.length_squared() - backed)
+    }
+
+    /// An impulse that acts at the end of the iteration, as if it had from its beginning.
+    fn nudge(&mut self, i: usize, impulse: Vec3, h: f32) {
+        let pressing = impulse.dot(self.press_normals[i]);
+        let mut own = impulse;
+        if pressing < 0.0 {
+            let handed_on = self.press_normals[i] * (pressing * self.backings[i]);
+            own -= handed_on;
+            self.presses[i] += handed_on;
+        }
+        let change = own * self.weights[i];
+        self.velocities[i] += change;
+        self.positions[i] += change * h;
+        self.reactions[i] += impulse;
+    }
+
+    fn project_tether(&mut self, tether: TetherDef, h: f32) {
+        let (i, to) = (tether.particle as usize, tether.to as usize);
+        let apart = self.positions[to] - self.positions[i];
+        let length = apart.length();
+        if length <= tether.length {
+            return;
+        }
+        let direction = apart / length;
+        let sum = self.mobility(i, direction) + self.weights[to];
+        if sum > 0.0 {
+            let impulse = direction * ((length - tether.length) / (sum * h));
+            self.nudge(i, impulse, h);
+            self.nudge(to, -impulse, h);
+        }
+    }
+
+    fn project_spring(&mut self, s: SpringDef, h: f32) {
+        let (a, b) = (s.a as usize, s.b as usize);
+        let apart = self.positions[b] - self.positions[a];
+        let length = apart.length();
+        let stretch = length - s.rest_length;
+        if length <= 1e-9 || s.resists == Resists::Stretch && stretch <= 0.0 {
+            return;
+        }
+        let direction = apart / length;
+        let pull = if stretch < 0.0 { -direction } else { direction };
+        let sum = self.mobility(a, pull) + self.mobility(b, -pull);
+        if sum == 0.0 {
+            return;
+        }
+        let compliance = 1.0 / (s.stiffness * h * h);
+        let mut impulse = stretch / (sum + compliance) / h;
+        // Damping of the axial speed that this leaves.
+        let speed = (self.velocities[b] - self.velocities[a]).dot(direction) - impulse * sum;
+        impulse += speed * h * s.damping / (1.0 + h * s.damping * sum);
+        self.nudge(a, direction * impulse, h);
+        self.nudge(b, direction * -impulse, h);
+    }
+
+    fn project_bend(&mut self, bend: BendDef, h: f32) {
+        let [a, b, c] = bend.particles.map(|i| i as usize);
+        let bow = self.positions[a] - self.positions[b] * 2.0 + self.positions[c];
+        let length = bow.length();
+        if length <= 1e-9 {
+            return;
+        }
+        let back = bow * (if bend.rest < length { -1.0 } else { 1.0 } / length);
+        let sum = self.mobility(a, back) + self.mobility(b, back * -2.0) + self.mobility(c, back);
+        if sum == 0.0 {
+            return;
+        }
+        let compliance = 1.0 / (bend.stiffness * h * h);
+        let impulse = back * ((bend.rest - length).abs() / ((sum + compliance) * h));
+        self.nudge(a, impulse, h);
+        self.nudge(b, impulse * -2.0, h);
+        self.nudge(c, impulse, h);
+    }
+
+    /// A surface that encloses too little is pushed outward, each particle along the area that it carries.
+    fn project_volume(&mut self, volume: &VolumeDef, h: f32) {
+        self.gradients.fill(Vec3::ZERO);
+        let enclosed =
+            enclosed_volume(&volume.triangles, &self.positions, |i, area| self.gradients[i] += area);
+        let missing = volume.rest_volume - enclosed;
+        let sign = if missing < 0.0 { -1.0 } else { 1.0 };
+        let sum: f32 = (0..self.positions.len()).map(|i| self.mobility(i, self.gradients[i] * sign)).sum();
+        let compliance = volume.rest_volume / (volume.bulk_modulus * h * h);
+        let impulse = missing / (sum + compliance) / h;
+        for i in 0..self.positions.len() {
+            let along = self.gradients[i] * impulse;
+            if along != Vec3::ZERO {
+                self.nudge(i, along, h);
+            }
+        }
+    }
+}
+
+/// Volume inside a closed surface, m³: sixths of `a·(b × c)`, seen from a point of the surface. `gradient` is given each
+/// corner of each triangle with what the volume gains as it moves, m².
+pub(super) fn enclosed_volume(
+    triangles: &[[u32; 3]],
+    positions: &[Vec3],
+    mut gradient: impl FnMut(usize, Vec3),
+) -> f32 {
+    let Some(first) = triangles.first() else { return 0.0 };
+    let origin = positions[first[0] as usize];
+    let mut volume = 0.0;
+    for triangle in triangles {
+        let corners = triangle.map(|i| i as usize);
+        let [a, b, c] = corners.map(|i| positions[i] - origin);
+        let areas = [b.cross(c), c.cross(a), a.cross(b)];
+        volume += a.dot(areas[0]) / 6.0;
+        for (corner, area) in corners.into_iter().zip(areas) {
+            gradient(corner, area / 6.0);
+        }
+    }
+    volume
+}
+
+/// How far a spring is from its rest length, metres; 0 where it is slack.
+pub(super) fn stretch(s: &SpringDef, positions: &[Vec3]) -> f32 {
+    let stretch = (positions[s.b as usize] - positions[s.a as usize]).length() - s.rest_length;
+    match s.resists {
+        Resists::Both => stretch,
+        Resists::Stretch => max(stretch, 0.0),
+    }
+}
