@@ -178,7 +178,6 @@ const REGISTRY: &[Scene] = &[
     trees::MASS_RATIO,
     boxes::AABB_VS_OBB,
     boxes::POINT_IN_OBB,
-    cabin::CABIN,
 ];
 
 /// Scenes that need a file of the user's, and so are in no list.
