@@ -24,7 +24,7 @@ pub fn read_obj(bytes: &[u8]) -> Result<TriangleMesh> {
         let place = || format!("line {number}");
         match words.next() {
             Some("v") => {
-                mesh.positions.push(read_vertex(words).map_err(|what| Error::malformed(what, place()))?)
+                mesh.positions.push(read_vertex(words).map_err(|what| Error::malformed(what, place()))?);
             }
             Some("f") => {
                 let face =

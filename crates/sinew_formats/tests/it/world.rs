@@ -50,7 +50,9 @@ fn the_example_of_the_page_is_read_and_stands() {
     let [mut world, mut again] =
         [bodies.clone(), read_world(write_world(&bodies).as_bytes()).unwrap()].map(|bodies| {
             let mut world = World::new(WorldDef::default());
-            bodies.iter().for_each(|body| drop(world.add_body(body)));
+            for body in &bodies {
+                world.add_body(body);
+            }
             world
         });
     for _ in 0..60 {

@@ -102,7 +102,7 @@ impl Grid {
         for axis in 0..3 {
             for line in 0..self.full.len() {
                 // The first cell of each line along the axis.
-                if line / strides[axis] % counts[axis] != 0 {
+                if !(line / strides[axis]).is_multiple_of(counts[axis]) {
                     continue;
                 }
                 let cell = |i: usize| line + i * strides[axis];

@@ -134,7 +134,7 @@ fn planes(mesh: &SurfaceMesh, triangles: &[u32], rotation: Rotation, scale: Scal
     facets.map(|facets| {
         let ends = [center[axis] - h[axis], center[axis] + h[axis]];
         axis += 1;
-        subdivided(distinct(facets, ends, 0.5 * scale.tolerance), step)
+        subdivided(&distinct(facets, ends, 0.5 * scale.tolerance), step)
     })
 }
 
@@ -164,7 +164,7 @@ fn distinct(mut weighted: Vec<(f32, f32)>, ends: [f32; 2], apart: f32) -> Vec<f3
 }
 
 /// The planes with even ones between them, so that no two neighbours are farther apart than `step`.
-fn subdivided(planes: Vec<f32>, step: f32) -> Vec<f32> {
+fn subdivided(planes: &[f32], step: f32) -> Vec<f32> {
     let mut out = vec![planes[0]];
     for pair in planes.windows(2) {
         let pieces = usize::max(((pair[1] - pair[0]) / step).ceil() as usize, 1);

@@ -1,6 +1,6 @@
 //! From meshes to boxes: closed forms, brute force, bad input.
 
-use sinew_math::{Mat3, Random, Rotation, Vec3};
+use sinew_math::{Mat3, Random, Rotation, Vec3, trig};
 use sinew_physics::boxes::Cuboid;
 use sinew_physics::cook::{CookError, CookOptions, Cooked, MeshBvh, cook};
 use sinew_physics::{Obb, Shape};
@@ -54,7 +54,8 @@ impl Mesh {
                 core::f32::consts::PI * i as f32 / rings as f32,
                 core::f32::consts::PI * j as f32 / rings as f32,
             );
-            Vec3::new(u.sin() * v.cos(), u.cos(), -u.sin() * v.sin()) * radius
+            let ((su, cu), (sv, cv)) = (trig::sin_cos(u), trig::sin_cos(v));
+            Vec3::new(su * cv, cu, -su * sv) * radius
         };
         for i in 0..rings {
             for j in 0..around {

@@ -194,7 +194,7 @@ impl Script for Rain {
         if world.step_count() == FALLING {
             self.fall = Some(-world.particles(self.balls).velocities()[0].y / world.time() as f32);
         }
-        if world.step_count() % LOOK_EVERY == 0 {
+        if world.step_count().is_multiple_of(LOOK_EVERY) {
             self.look(world);
         }
     }
