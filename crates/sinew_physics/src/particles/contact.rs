@@ -405,7 +405,7 @@ impl ParticleGroup {
     /// What lies behind each particle that is on a surface: its share of the body's inertia along the normal.
     pub(super) fn back_contacts(&mut self, h: f32, bodies: &[ObstacleBody]) {
         for i in 0..self.positions.len() {
-            (self.backings[i], self.presses[i]) = (0.0, Vec3::ZERO);
+            (self.backings[i], self.press_normals[i], self.presses[i]) = (0.0, Vec3::ZERO, Vec3::ZERO);
             let Some(touch) = self.touches[i] else { continue };
             let relative = self.velocities[i] - bodies[touch.body].velocity_at(touch.point);
             if (relative.dot(touch.normal) - touch.speed_min) * h > TOUCHING {

@@ -247,14 +247,12 @@ impl ParticleGroup {
         self.filter
     }
 
-    /// Around all particles, with their radii, and where they were before the last substep. Empty, with infinite
-    /// corners the wrong way round, for a group without particles.
+    /// Around all particles, with their radii. Empty, with infinite corners the wrong way round, for a group without
+    /// particles.
     pub fn bounds(&self) -> Aabb {
         let mut bounds = Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
-        for i in 0..self.positions.len() {
-            for center in [self.positions[i], self.previous[i]] {
-                bounds = bounds.merge(&Aabb::reaching(center, Vec3::splat(self.radii[i])));
-            }
+        for (&center, &radius) in self.positions.iter().zip(&self.radii) {
+            bounds = bounds.merge(&Aabb::reaching(center, Vec3::splat(radius)));
         }
         bounds
     }
