@@ -24,7 +24,7 @@ const TOUCHING: f32 = 1e-4;
 /// What is less deep at the end of an iteration is left to impacts, metres.
 const FORESEEN_DEPTH: f32 = 1e-5;
 /// Where a way may lead is told from its length, and turned a little by what is still to push, by this factor.
-const DETOUR: f32 = 1.5;
+pub(super) const DETOUR: f32 = 1.5;
 
 /// The motion of a body that particles may touch. Its velocity changes as they do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -86,7 +86,7 @@ pub(super) struct Placed {
     pub start: Transform,
     pub end: Transform,
     /// Around all the way from start to end.
-    bounds: Aabb,
+    pub bounds: Aabb,
 }
 
 impl Placed {
@@ -103,16 +103,16 @@ impl Placed {
         Self { start, end, bounds: bounds.expand(bulge) }
     }
 
-    /// No more than the distance of the shape from a point.
-    fn distance_at_least(&self, point: Vec3) -> f32 {
-        let beyond = max3(self.bounds.min - point, point - self.bounds.max);
-        max(max(beyond.x, beyond.y), beyond.z)
-    }
-
     /// Where a point goes that moves along with the shape.
     fn carried(&self, point: Vec3) -> Vec3 {
         self.end.point(self.start.inverse_point(point))
     }
+}
+
+/// No more than the distance from a point of what lies in these bounds.
+pub(super) fn distance_at_least(bounds: &Aabb, point: Vec3) -> f32 {
+    let beyond = max3(bounds.min - point, point - bounds.max);
+    max(max(beyond.x, beyond.y), beyond.z)
 }
 
 fn between(from: &Transform, to: &Transform, share: f32) -> Transform {
@@ -208,15 +208,26 @@ impl ParticleGroup {
         }
     }
 
+    /// How far a particle looks round its surface for what it touches or may come to, metres.
+    pub(super) fn sight(&self, i: usize, h: f32) -> f32 {
+        self.contact_reach(i, h) + DETOUR * (self.velocities[i].length() * h)
+    }
+
+    /// Gap that a particle may close by sinking, metres.
+    fn contact_reach(&self, i: usize, h: f32) -> f32 {
+        // Gravity included, and a share of the other forces.
+        2.0 * h * h * self.accelerations[i].length() + 0.05 * self.radii[i]
+    }
+
     fn find_contact(&mut self, i: usize, h: f32, obstacles: &[Obstacle], bodies: &[ObstacleBody]) {
         let (position, radius) = (self.positions[i], self.radii[i]);
-        let way = self.velocities[i].length() * h;
-        // Gravity included, and a share of the other forces.
-        let reach = 2.0 * h * h * self.accelerations[i].length() + 0.05 * radius;
-        let mut clearance = f32::INFINITY;
-        for (index, (o, placed)) in obstacles.iter().zip(&self.placed).enumerate() {
-            let at_least = placed.distance_at_least(position) - radius;
-            if at_least > reach + DETOUR * way {
+        let (reach, sight) = (self.contact_reach(i, h), self.sight(i, h));
+        let mut clearance = self.near.left_out_from(i, sight);
+        let mut nearest: Option<Touch> = None;
+        for index in self.near.within(i, sight, obstacles.len()) {
+            let (o, placed) = (&obstacles[index], &self.placed[index]);
+            let at_least = distance_at_least(&placed.bounds, position) - radius;
+            if at_least > sight {
                 clearance = min(clearance, at_least);
                 continue;
             }
@@ -224,12 +235,12 @@ impl ParticleGroup {
             let (distance, normal) = o.shape.local_distance(local);
             let gap = distance - radius;
             clearance = min(clearance, gap - (placed.carried(position) - position).length());
-            if gap <= reach && self.touches[i].is_none_or(|touch| gap < touch.gap) {
+            if gap <= reach && nearest.is_none_or(|touch| gap < touch.gap) {
                 let meeting = Meeting { fraction: 0.0, at: local, normal, gap };
-                self.touches[i] = Some(self.touch(i, h, index, &meeting, obstacles, bodies));
+                nearest = Some(self.touch(i, h, index, &meeting, obstacles, bodies));
             }
         }
-        self.clearances[i] = clearance;
+        (self.touches[i], self.clearances[i]) = (nearest, clearance);
     }
 
     /// The contact of a particle with the plane that it meets, so that it ends the iteration on it at the lowest.
@@ -278,9 +289,10 @@ impl ParticleGroup {
         obstacles: &[Obstacle],
     ) -> Option<(usize, Meeting)> {
         let mut first: Option<(usize, Meeting)> = None;
-        for (index, (o, placed)) in obstacles.iter().zip(&self.placed).enumerate() {
-            if but == Some(index) || placed.distance_at_least(start) > self.radii[i] + (end - start).length()
-            {
+        let way = (end - start).length();
+        for index in self.near.within(i, DETOUR * way, obstacles.len()) {
+            let (o, placed) = (&obstacles[index], &self.placed[index]);
+            if but == Some(index) || distance_at_least(&placed.bounds, start) > self.radii[i] + way {
                 continue;
             }
             let (from, to) = (placed.start.inverse_point(start), placed.end.inverse_point(end));
@@ -393,7 +405,7 @@ impl ParticleGroup {
     /// What lies behind each particle that is on a surface: its share of the body's inertia along the normal.
     pub(super) fn back_contacts(&mut self, h: f32, bodies: &[ObstacleBody]) {
         for i in 0..self.positions.len() {
-            (self.backings[i], self.presses[i]) = (0.0, Vec3::ZERO);
+            (self.backings[i], self.press_normals[i], self.presses[i]) = (0.0, Vec3::ZERO, Vec3::ZERO);
             let Some(touch) = self.touches[i] else { continue };
             let relative = self.velocities[i] - bodies[touch.body].velocity_at(touch.point);
             if (relative.dot(touch.normal) - touch.speed_min) * h > TOUCHING {

@@ -2,7 +2,7 @@
 //! its end. Each particle answers with its own mass.
 
 use super::ParticleGroup;
-use super::contact::{Obstacle, ObstacleBody, Touch};
+use super::contact::{DETOUR, Obstacle, ObstacleBody, Touch};
 use super::sweep::Meeting;
 use sinew_math::{Vec3, max};
 
@@ -69,16 +69,23 @@ impl ParticleGroup {
         but: Option<usize>,
         obstacles: &[Obstacle],
     ) -> Option<(usize, Meeting)> {
-        self.first_met(i, ends, but, 0.0, obstacles).or_else(|| self.deepest(i, but, obstacles))
+        self.first_met(i, ends, but, 0.0, obstacles).or_else(|| self.deepest(i, ends, but, obstacles))
     }
 
-    fn deepest(&self, i: usize, but: Option<usize>, obstacles: &[Obstacle]) -> Option<(usize, Meeting)> {
+    fn deepest(
+        &self,
+        i: usize,
+        (start, end): (Vec3, Vec3),
+        but: Option<usize>,
+        obstacles: &[Obstacle],
+    ) -> Option<(usize, Meeting)> {
         let mut deepest: Option<(usize, Meeting)> = None;
-        for (index, (o, placed)) in obstacles.iter().zip(&self.placed).enumerate() {
+        for index in self.near.within(i, DETOUR * (end - start).length(), obstacles.len()) {
             if but == Some(index) {
                 continue;
             }
-            let at = placed.end.inverse_point(self.positions[i]);
+            let (o, placed) = (&obstacles[index], &self.placed[index]);
+            let at = placed.end.inverse_point(end);
             let (distance, normal) = o.shape.local_distance(at);
             let gap = distance - self.radii[i];
             if gap < 0.0 && deepest.is_none_or(|(_, best)| gap < best.gap) {

@@ -22,6 +22,7 @@ mod elastic;
 mod forest;
 mod geodesic;
 mod impact;
+mod near;
 mod net;
 mod snapshot;
 mod sweep;
@@ -39,6 +40,7 @@ use crate::shape::{Filter, Material};
 use contact::{Grip, Placed, Touch};
 use forest::{Forest, Freedom, System};
 use impact::MAX_TOUCHES;
+use near::Near;
 use sinew_math::{Sym3, Vec3};
 
 /// Particles and springs at run time. One array per quantity, by index of the particle.
@@ -83,6 +85,8 @@ pub struct ParticleGroup {
     gradients: Vec<Vec3>,
     /// Shapes as the iteration finds them.
     placed: Vec<Placed>,
+    /// Which of them each particle may come to.
+    near: Near,
     /// Attachment of each particle, or `u32::MAX`.
     attachment_of: Vec<u32>,
     attachment_impulses: Vec<Vec3>,
@@ -168,6 +172,7 @@ impl ParticleGroup {
         self.gradients = vec![Vec3::ZERO; count];
         self.touches = vec![None; count];
         self.clearances = vec![0.0; count];
+        self.near = Near::new(count);
         self.backings = vec![0.0; count];
         self.press_normals = vec![Vec3::ZERO; count];
         self.presses = vec![Vec3::ZERO; count];
@@ -242,14 +247,12 @@ impl ParticleGroup {
         self.filter
     }
 
-    /// Around all particles, with their radii, and where they were before the last substep. Empty, with infinite
-    /// corners the wrong way round, for a group without particles.
+    /// Around all particles, with their radii. Empty, with infinite corners the wrong way round, for a group without
+    /// particles.
     pub fn bounds(&self) -> Aabb {
         let mut bounds = Aabb { min: Vec3::splat(f32::INFINITY), max: Vec3::splat(f32::NEG_INFINITY) };
-        for i in 0..self.positions.len() {
-            for center in [self.positions[i], self.previous[i]] {
-                bounds = bounds.merge(&Aabb::reaching(center, Vec3::splat(self.radii[i])));
-            }
+        for (&center, &radius) in self.positions.iter().zip(&self.radii) {
+            bounds = bounds.merge(&Aabb::reaching(center, Vec3::splat(radius)));
         }
         bounds
     }
@@ -316,8 +319,9 @@ impl ParticleGroup {
     /// each its share of the body's inertia. What the body gains is in
     /// [`attachment_impulses`](Self::attachment_impulses), for the caller to apply.
     ///
-    /// `obstacles` and `bodies` are at the end of the substep; every particle is tried against every obstacle, so
-    /// pass those that come near [`bounds`](Self::bounds). Bodies are pushed back: their velocities change at once,
+    /// `obstacles` and `bodies` are at the end of the substep; pass those that come near [`bounds`](Self::bounds). Which of
+    /// them each particle may come to is kept from one substep to the next for as long as it holds, so pass them in the
+    /// same order. Bodies are pushed back: their velocities change at once,
     /// and [`body_impulses`](Self::body_impulses) lists how. Attached particles touch nothing.
     ///
     /// # Panics
@@ -360,6 +364,7 @@ impl ParticleGroup {
         self.place(part, obstacles, bodies);
         self.begin(h);
         self.hold(part, anchors);
+        self.find_near(h);
         self.find_contacts(h, obstacles, bodies);
         self.solve_with_contacts(h, obstacles, bodies);
         self.push_bodies(bodies);

@@ -1,0 +1,312 @@
+//! Which obstacles each particle may come to, so that it need not be tried against all of them.
+//!
+//! A list holds as long as its particle and all obstacles stay in the room that it was made for. A particle that leaves its
+//! room is tried against all obstacles; once many have, or an obstacle has left its own, all lists are made anew. What a
+//! list leaves out cannot be met: the results are the bits that trying all gives, so that lists are no part of the state.
+
+use super::ParticleGroup;
+use super::contact::{DETOUR, Placed, distance_at_least};
+use crate::boxes::Aabb;
+use sinew_math::Vec3;
+
+/// Iterations that particles and obstacles have room for at their present speed and acceleration.
+const LASTING: f32 = 8.0;
+/// Room of each at least, metres.
+const ROOM: f32 = 0.01;
+/// Indices that all lists together have room for, per particle.
+const SHARE: usize = 32;
+/// Lists are made anew when more than one in so many does not hold.
+const LOST_ONE_IN: usize = 16;
+
+/// The lists of all particles.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Near {
+    /// Around each obstacle, with room to move.
+    rooms: Vec<Aabb>,
+    /// Where each particle was.
+    origins: Vec<Vec3>,
+    /// How far from its surface there all that its list leaves out is, at least, metres; `None` if it has no list.
+    reaches: Vec<Option<f32>>,
+    /// The same from where each particle is now; 0 or less where its list does not hold.
+    beyond: Vec<f32>,
+    /// Indices of obstacles, the list of one particle after that of another, each ascending.
+    obstacles: Vec<u32>,
+    /// Where the list of each particle ends.
+    ends: Vec<usize>,
+    /// What `obstacles` has room for; once it is full, or for one that does not fit, no list is made.
+    most: usize,
+}
+
+impl Near {
+    /// Of so many particles: room for their lists, none made.
+    pub fn new(count: usize) -> Self {
+        Self {
+            origins: vec![Vec3::ZERO; count],
+            reaches: vec![None; count],
+            beyond: vec![0.0; count],
+            obstacles: Vec::with_capacity(SHARE * count),
+            ends: vec![0; count],
+            most: SHARE * count,
+            ..Self::default()
+        }
+    }
+
+    /// Obstacles, of `count`, that come within `distance` (m) of a particle's surface, and others; ascending.
+    pub fn within(&self, i: usize, distance: f32, count: usize) -> impl Iterator<Item = usize> {
+        let (list, all) = if self.beyond[i] > distance { (self.list(i), 0..0) } else { (&[][..], 0..count) };
+        list.iter().map(|&obstacle| obstacle as usize).chain(all)
+    }
+
+    /// How far from a particle's surface all that [`within`](Self::within) leaves out is, at least, metres.
+    pub fn left_out_from(&self, i: usize, distance: f32) -> f32 {
+        if self.beyond[i] > distance { self.beyond[i] } else { f32::INFINITY }
+    }
+
+    fn list(&self, i: usize) -> &[u32] {
+        let start = if i == 0 { 0 } else { self.ends[i - 1] };
+        &self.obstacles[start..self.ends[i]]
+    }
+
+    /// Whether each obstacle is in its room.
+    fn holds(&self, placed: &[Placed]) -> bool {
+        self.rooms.len() == placed.len()
+            && self.rooms.iter().zip(placed).all(|(room, placed)| room.contains(&placed.bounds))
+    }
+
+    fn make_rooms(&mut self, placed: &[Placed]) {
+        self.rooms.clear();
+        self.rooms.extend(placed.iter().map(|placed| {
+            let way = (placed.end.translation - placed.start.translation).length();
+            placed.bounds.expand(ROOM + LASTING * way)
+        }));
+    }
+
+    /// The list of the next particle, of all that comes within `reach` of the surface that it has in `radius` round `at`.
+    fn push(&mut self, i: usize, at: Vec3, radius: f32, reach: f32) {
+        let start = self.obstacles.len();
+        self.reaches[i] = (start < self.most).then_some(reach);
+        self.origins[i] = at;
+        for (index, room) in self.rooms.iter().enumerate() {
+            if distance_at_least(room, at) - radius > reach {
+                continue;
+            }
+            if self.obstacles.len() == self.most {
+                self.obstacles.truncate(start);
+                self.reaches[i] = None;
+                break;
+            }
+            self.obstacles.push(index as u32);
+        }
+        self.ends[i] = self.obstacles.len();
+    }
+
+    /// Finds how far what the list of a particle leaves out is from where it is now.
+    fn follow(&mut self, i: usize, at: Vec3) {
+        // Places are known to their rounding.
+        let rounding = 1e-5 + 1e-6 * at.length();
+        self.beyond[i] = match self.reaches[i] {
+            Some(reach) => reach - (at - self.origins[i]).length() - rounding,
+            None => 0.0,
+        };
+    }
+}
+
+impl ParticleGroup {
+    /// Sees to it that most particles have a list that holds for this iteration.
+    pub(super) fn find_near(&mut self, h: f32) {
+        if self.near.holds(&self.placed) {
+            let mut lost = 0;
+            for i in 0..self.positions.len() {
+                self.near.follow(i, self.positions[i]);
+                lost +=
+                    usize::from(self.near.reaches[i].is_some() && self.near.beyond[i] <= self.sight(i, h));
+            }
+            if lost * LOST_ONE_IN <= self.positions.len() {
+                return;
+            }
+        }
+        self.near.make_rooms(&self.placed);
+        self.near.obstacles.clear();
+        for i in 0..self.positions.len() {
+            let time = LASTING * h;
+            let speed = self.velocities[i].length() + self.accelerations[i].length() * time;
+            let room = ROOM + self.radii[i] + speed * (time + DETOUR * h);
+            let reach = self.sight(i, h) + room;
+            self.near.push(i, self.positions[i], self.radii[i], reach);
+            self.near.follow(i, self.positions[i]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::particles::{
+        Anchor, AttachmentDef, AttachmentTarget, GroupDef, Obstacle, ObstacleBody, ParticleDef, Resists,
+        SpringDef,
+    };
+    use crate::shape::{Material, Shape};
+    use sinew_math::{Random, Sym3, Transform, Writer};
+
+    const H: f32 = 1.0 / 240.0;
+    const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
+    const SUBSTEPS: usize = 600;
+    const FLOOR: u32 = 0;
+
+    /// Loose balls, and points of which the first is held; springs tie as many of them to it as there are `links`.
+    fn rain(random: &mut Random, links: u32, iterations: u32) -> GroupDef {
+        let mut ball = |radius: f32| ParticleDef {
+            position: Vec3::new(random.range(-3.0, 3.0), random.range(1.0, 4.0), random.range(-3.0, 3.0)),
+            velocity: random.in_cube() * 12.0,
+            mass: random.range(0.01, 0.2),
+            radius,
+        };
+        let mut particles: Vec<ParticleDef> = (0..40).map(|_| ball(0.05)).collect();
+        particles.extend((0..20).map(|_| ball(0.0)));
+        let string = |a: u32| SpringDef {
+            damping: 0.1,
+            resists: Resists::Stretch,
+            ..SpringDef::new([a, a + 1], 0.2, 200.0)
+        };
+        let target = AttachmentTarget::World(particles[40].position);
+        GroupDef {
+            particles,
+            springs: (40..40 + links).map(string).collect(),
+            attachments: vec![AttachmentDef { particle: 40, target }],
+            material: Material { friction: 0.5, restitution: 0.4, rolling: 0.0 },
+            iterations,
+            ..GroupDef::default()
+        }
+    }
+
+    /// A floor and boxes, balls and capsules, each of its own body; one in `moving_in` flies about and turns, and half of
+    /// these yield.
+    fn surroundings(random: &mut Random, moving_in: usize) -> (Vec<Obstacle>, Vec<ObstacleBody>) {
+        let (mut obstacles, mut bodies) = (Vec::new(), Vec::new());
+        for k in 0..80 {
+            let place = Vec3::new(random.range(-3.0, 3.0), random.range(0.0, 2.0), random.range(-3.0, 3.0));
+            let size = random.range(0.05, 0.4);
+            let (shape, frame) = match k % 4 {
+                _ if k == FLOOR as usize => (Shape::HalfSpace, Transform::IDENTITY),
+                0 => (Shape::Sphere { radius: size }, Transform::from_translation(place)),
+                1 => (
+                    Shape::Capsule { half_height: size, radius: 0.1 },
+                    Transform::new(place, random.rotation()),
+                ),
+                _ => {
+                    let half_extents = Vec3::new(size, 0.1, 0.3);
+                    (Shape::Box { half_extents }, Transform::new(place, random.rotation()))
+                }
+            };
+            let mut body = ObstacleBody { center: frame.translation, ..ObstacleBody::default() };
+            if k % moving_in == 1 {
+                body.linear_velocity = random.in_cube() * 4.0;
+                body.angular_velocity = random.in_cube() * 8.0;
+                body.inverse_mass = (k % 2) as f32;
+                body.inverse_inertia = Sym3::from_diagonal(Vec3::splat(20.0 * body.inverse_mass));
+            }
+            let material = Material { friction: 0.5, restitution: 0.4, rolling: 0.0 };
+            let world_from_shape = frame;
+            obstacles.push(Obstacle { shape, previous: frame, world_from_shape, body: k as u32, material });
+            bodies.push(body);
+        }
+        (obstacles, bodies)
+    }
+
+    fn fly(obstacles: &mut [Obstacle], bodies: &mut [ObstacleBody]) {
+        for (o, body) in obstacles.iter_mut().zip(bodies).filter(|(o, _)| o.body != FLOOR) {
+            let (from, turn) = (o.world_from_shape, body.angular_velocity);
+            o.previous = from;
+            if body.linear_velocity != Vec3::ZERO {
+                // To and fro among the balls.
+                let out = from.translation - Vec3::Y;
+                if out.length() > 2.5 && out.dot(body.linear_velocity) > 0.0 {
+                    body.linear_velocity = -body.linear_velocity;
+                }
+                let to = from.translation + body.linear_velocity * H;
+                o.world_from_shape = Transform::new(to, from.rotation.integrate(turn, H));
+                body.center = to;
+            }
+        }
+    }
+
+    fn bits(group: &ParticleGroup, bodies: &[ObstacleBody]) -> Vec<u8> {
+        let mut out = Writer::new();
+        group.save(&mut out);
+        for body in bodies {
+            out.vec3(body.linear_velocity);
+            out.vec3(body.angular_velocity);
+        }
+        for hit in group.body_impulses() {
+            out.u32(hit.body);
+            out.vec3(hit.impulse);
+            out.vec3(hit.point);
+        }
+        out.into_bytes()
+    }
+
+    #[test]
+    fn lists_give_the_bits_that_trying_all_gives() {
+        // Much moves all the time; only particles do; a few bodies go through what has come to rest.
+        for (seed, links, moving_in) in [(0, 19, 5), (1, 19, usize::MAX), (2, 0, 27)] {
+            let mut random = Random::new(seed);
+            let def = rain(&mut random, links, 1 + seed as u32);
+            let (mut obstacles, mut bodies) = surroundings(&mut random, moving_in);
+            let anchors = [Anchor { position: def.particles[40].position, ..Anchor::default() }];
+            let mut listed = ParticleGroup::new(&def);
+            let mut trying_all = listed.clone();
+            trying_all.near.most = 0;
+            let (mut tried, mut touching) = (0, 0);
+            for substep in 0..SUBSTEPS {
+                fly(&mut obstacles, &mut bodies);
+                let mut same_bodies = bodies.clone();
+                listed.substep(H, GRAVITY, &anchors, &obstacles, &mut bodies);
+                trying_all.substep(H, GRAVITY, &anchors, &obstacles, &mut same_bodies);
+                assert_eq!(
+                    bits(&listed, &bodies),
+                    bits(&trying_all, &same_bodies),
+                    "seed {seed}, substep {substep}"
+                );
+                assert_eq!(trying_all.near.within(3, 0.0, obstacles.len()).count(), obstacles.len());
+                let sight = |i| listed.near.within(i, listed.sight(i, H), obstacles.len());
+                tried += (0..def.particles.len()).map(|i| sight(i).count()).sum::<usize>();
+                touching += listed.touches.iter().flatten().count();
+            }
+            let pairs = SUBSTEPS * def.particles.len() * obstacles.len();
+            assert!(tried * 4 < pairs, "seed {seed}: {tried} of {pairs} pairs are tried");
+            assert!(touching > SUBSTEPS, "seed {seed}: {touching} touches say little");
+        }
+    }
+
+    #[test]
+    fn what_comes_from_afar_to_a_ball_at_rest_meets_it() {
+        let ball =
+            ParticleDef { position: Vec3::new(0.0, 0.1, 0.0), velocity: Vec3::ZERO, mass: 1.0, radius: 0.1 };
+        let mut group = ParticleGroup::new(&GroupDef { particles: vec![ball], ..GroupDef::default() });
+        let obstacle = |shape, frame, body| Obstacle {
+            shape,
+            previous: frame,
+            world_from_shape: frame,
+            body,
+            material: Material { friction: 0.0, ..Material::default() },
+        };
+        let mut obstacles = [
+            obstacle(Shape::HalfSpace, Transform::IDENTITY, FLOOR),
+            obstacle(
+                Shape::Box { half_extents: Vec3::splat(0.5) },
+                Transform::from_translation(Vec3::new(-5.0, 0.5, 0.0)),
+                1,
+            ),
+        ];
+        let moving = ObstacleBody { linear_velocity: Vec3::X * 4.0, ..ObstacleBody::default() };
+        let mut bodies = [ObstacleBody::default(), moving];
+        for _ in 0..480 {
+            fly(&mut obstacles, &mut bodies);
+            bodies[1].linear_velocity = Vec3::X * 4.0;
+            group.substep(H, GRAVITY, &[], &obstacles, &mut bodies);
+        }
+        // The box's front is at −4.5 m + 2 s × 4 m/s.
+        let ahead = group.positions()[0].x - 3.5;
+        assert!((ahead - 0.1).abs() < 1e-3, "the ball is {ahead} m ahead of the box");
+    }
+}
