@@ -170,6 +170,8 @@ impl Body {
     }
 
     pub fn set_world_from_body(&mut self, world_from_body: Transform) {
+        let Transform { translation, rotation } = world_from_body;
+        let world_from_body = Transform::new(translation, rotation.normalize());
         self.world_from_principal = world_from_body * self.principal_from_body.inverse();
         self.previous = self.world_from_principal;
     }

@@ -47,6 +47,10 @@ impl Default for WorldDef {
     }
 }
 
+/// Nanoseconds.
+const LONGEST_STEP: u64 = 1_000_000_000_000_000_000;
+const MOST_SUBSTEPS: u32 = 1024;
+
 impl WorldDef {
     /// Whether its numbers make sense; the phrase says what is wrong.
     ///
@@ -57,6 +61,9 @@ impl WorldDef {
         let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
         if self.step_nanoseconds == 0 || self.substeps == 0 {
             return Err("a step takes time and has substeps");
+        }
+        if self.step_nanoseconds > LONGEST_STEP || self.substeps > MOST_SUBSTEPS {
+            return Err("a step is no longer than 30 years and has at most 1,024 substeps");
         }
         if self.catch_up_steps == 0 {
             return Err("an update may take a step");

@@ -4,7 +4,7 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::Contact;
 use crate::def::BodyKind;
-use crate::id::JointId;
+use crate::id::{GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
 use crate::joint::def::JointState;
@@ -16,15 +16,23 @@ use crate::step::StepContext;
 use crate::touch::{Events, id};
 use sinew_math::Vec3;
 
-/// `store`: impulses and joint forces that the next step starts from; particle groups return to the world.
+/// `store`: impulses and joint forces that the next step starts from; particle groups return to the world, where what is not
+/// finite is rolled back.
 pub(crate) fn store(
     islands: &mut Islands,
     joints: &mut Arena<Joint>,
     contacts: &mut [Contact],
     groups: &mut Arena<ParticleGroup>,
+    events: &mut Events,
     dt: f32,
 ) {
     islands.release(groups);
+    events.rolled_back.clear();
+    for (index, generation, group) in groups.entries_mut() {
+        if group.roll_back() {
+            events.rolled_back.push(GroupId { index, generation });
+        }
+    }
     let solution = islands.solution();
     for solved in &solution.contacts {
         let contact = &mut contacts[solved.index as usize];

@@ -66,7 +66,7 @@ impl Neighbors {
         let fastest = group.velocities().iter().fold(0.0, |most, v| sinew_math::max(most, v.length()));
         let reach = 0.02 + (fastest + bodies.iter().fold(0.0, |most, (_, b)| fastest_point(most, b))) * dt;
         let bounds = group.bounds().expand(reach);
-        for (index, body) in bodies.iter().filter(|(_, body)| !body.quarantined) {
+        for (index, body) in bodies.iter() {
             let held = group.attachments().iter().filter(|a| match a.target {
                 AttachmentTarget::Body { body, .. } => body.index == index,
                 AttachmentTarget::World(_) => false,
@@ -74,7 +74,9 @@ impl Neighbors {
             let holds = held.count() as u32;
             let near = |shape: &usize| {
                 let s = &body.shapes[*shape];
-                s.filter.meets(group.filter())
+                // What is quarantined still holds what hangs on it, as a fixed point.
+                !body.quarantined
+                    && s.filter.meets(group.filter())
                     && s.shape.aabb(&body.world_from_shape(*shape)).overlaps(&bounds)
             };
             let place = self.bodies.len() as u32;

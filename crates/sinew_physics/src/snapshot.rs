@@ -14,10 +14,12 @@ use crate::particles::{AttachmentTarget, ParticleGroup};
 use crate::shape::{Filter, Material, Sensing, Shape};
 use crate::touch::Events;
 use crate::world::World;
-use sinew_math::{ReadError, Reader, Vec3, Writer};
+use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
 /// First bytes of a snapshot; the last is its version.
 const MAGIC: &[u8; 8] = b"sinew-w\x03";
+/// A thousand steps a second for 280,000 years.
+const MOST_STEPS: u64 = 1 << 53;
 
 impl World {
     /// Writes the state: what [`load`](Self::load) brings back, bit for bit.
@@ -61,6 +63,9 @@ impl World {
         }
         let def = load_def(r)?;
         let (steps, pending, sleepers) = (r.u64()?, r.u64()?, r.u32()?);
+        if steps > MOST_STEPS {
+            return Err(r.error("more steps than any world takes"));
+        }
         let bodies = Arena::load(r, load_body)?;
         let joints = Arena::load(r, |r| {
             let (a, b) = (body_index(r, &bodies)?, body_index(r, &bodies)?);
@@ -211,6 +216,14 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
         1 => Rest::Asleep { island: r.u32()? },
         _ => return Err(r.error("a body neither awake nor asleep")),
     };
+    let (place, quarantined, user_data) = (r.transform()?, r.bool()?, r.u64()?);
+    let finite =
+        [world_from_principal, previous, principal_from_body, place].into_iter().all(Transform::is_finite)
+            && [velocity.linear, velocity.angular, force, torque, inertia].into_iter().all(Vec3::is_finite)
+            && [mass, linear_damping, angular_damping, gravity_scale].into_iter().all(f32::is_finite);
+    if !finite {
+        return Err(r.error("a body whose state is not finite"));
+    }
     Ok(Body {
         kind,
         world_from_principal,
@@ -227,9 +240,9 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
         gravity_scale,
         shapes,
         rest,
-        place: r.transform()?,
-        quarantined: r.bool()?,
-        user_data: r.u64()?,
+        place,
+        quarantined,
+        user_data,
     })
 }
 
@@ -243,14 +256,18 @@ fn save_shape(w: &mut Writer, s: &BodyShape) {
 }
 
 fn load_shape(r: &mut Reader<'_>) -> Result<BodyShape, ReadError> {
-    Ok(BodyShape {
+    let shape = BodyShape {
         shape: load_geometry(r)?,
         principal_from_shape: r.transform()?,
         density: r.f32()?,
         material: load_material(r)?,
         filter: load_filter(r)?,
         sensing: if r.bool()? { Sensing::Sensor } else { Sensing::Solid },
-    })
+    };
+    if !(shape.principal_from_shape.is_finite() && shape.density.is_finite()) {
+        return Err(r.error("a shape's pose or density is not finite"));
+    }
+    Ok(shape)
 }
 
 pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {
@@ -291,7 +308,9 @@ pub(crate) fn save_material(w: &mut Writer, material: Material) {
 }
 
 pub(crate) fn load_material(r: &mut Reader<'_>) -> Result<Material, ReadError> {
-    Ok(Material { friction: r.f32()?, restitution: r.f32()?, rolling: r.f32()? })
+    let material = Material { friction: r.f32()?, restitution: r.f32()?, rolling: r.f32()? };
+    material.check().map_err(|what| r.error(what))?;
+    Ok(material)
 }
 
 pub(crate) fn save_filter(w: &mut Writer, filter: Filter) {

@@ -26,7 +26,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
     let World { def, bodies, joints, contacts, groups, objects, .. } = world;
     let World { events, broad, islands, parted, sleepers, .. } = world;
-    let fields = Fields::new(&world.fields, &world.functions, def, world.steps);
+    let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
 
     stage(Stage::Pairs, &mut || broad.update(bodies, parted.of(joints), contacts, context.dt));
     stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
@@ -44,7 +44,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     }
 
     stage(Stage::Store, &mut || {
-        finalize::store(islands, joints, contacts, groups, context.dt);
+        finalize::store(islands, joints, contacts, groups, events, context.dt);
         finalize::break_joints(joints, parted, events);
     });
     stage(Stage::Finalize, &mut || finalize::finalize(&islands.solution().bodies, bodies, events, context));

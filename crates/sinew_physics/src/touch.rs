@@ -6,7 +6,7 @@ use crate::collide::{Manifold, collide as narrow_phase};
 use crate::contact::{Contact, slop};
 use crate::def::BodyKind;
 use crate::field::Fields;
-use crate::id::{BodyId, JointId};
+use crate::id::{BodyId, GroupId, JointId};
 use crate::joint::Joint;
 use crate::shape::Sensing;
 use crate::slices::for_each_mut;
@@ -26,6 +26,8 @@ pub struct Events {
     pub sensor_end: Vec<(BodyId, BodyId)>,
     /// Bodies whose state became non-finite: rolled back to the step before, stopped and taken out of the simulation.
     pub quarantined: Vec<BodyId>,
+    /// Groups with particles whose state became non-finite: those stopped where they were before the step.
+    pub rolled_back: Vec<GroupId>,
     /// Joints that broke, in the order of joint indices. They are there, but disabled.
     pub broken: Vec<JointId>,
 }

@@ -173,7 +173,7 @@ impl World {
 
     /// Simulated time, seconds.
     pub fn time(&self) -> f64 {
-        (self.steps * self.def.step_nanoseconds) as f64 * 1e-9
+        self.steps as f64 * self.def.step_nanoseconds as f64 * 1e-9
     }
 
     /// What happened in the last step.

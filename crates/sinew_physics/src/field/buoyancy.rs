@@ -45,7 +45,7 @@ impl Default for Buoyancy {
 
 impl Buoyancy {
     pub(super) fn check(&self) -> Result<(), &'static str> {
-        if !(self.world_from_surface.is_finite() && self.flow.is_finite()) {
+        if !(super::def::is_pose(&self.world_from_surface) && self.flow.is_finite()) {
             return Err("a surface and its flow must be finite");
         }
         let valid = not_negative(self.density) && not_negative(self.damping) && not_negative(self.drag);

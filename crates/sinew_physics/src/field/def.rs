@@ -2,6 +2,7 @@
 
 use super::custom::PARAMETERS;
 use super::{Buoyancy, Drag, MutualGravity, PointGravity, Region, UniformGravity, Wind};
+use sinew_math::Transform;
 
 /// A field to be made: what it does, where, and to whom.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,6 +77,11 @@ impl FieldKind {
             Self::Uniform(_) | Self::Point(_) | Self::Mutual(_) | Self::Drag(_) | Self::Buoyancy(_) => false,
         }
     }
+}
+
+/// Finite, and its rotation a unit quaternion.
+pub(super) fn is_pose(pose: &Transform) -> bool {
+    pose.is_finite() && (pose.rotation.length() - 1.0).abs() < 1e-3
 }
 
 /// Finite and not negative; NaN is not.

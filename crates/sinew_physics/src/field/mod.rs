@@ -12,7 +12,8 @@
 //!
 //! **Sleep.** A field acts on what is awake. Adding, changing and removing one wakes what it reaches or reached. What lies
 //! still in a field that does not change may fall asleep in it, as under gravity; in one that changes by itself (wind with
-//! gusts, a user's function) it does not. Bodies that attract each other sleep and wake together.
+//! gusts, a user's function) it does not. Bodies that attract each other sleep and wake together, and not at all where there are
+//! particles, which do not sleep.
 //!
 //! A world without fields pays nothing for them.
 
@@ -53,6 +54,7 @@ pub(crate) use world::attractor;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::def::WorldDef;
+use crate::particles::ParticleGroup;
 use sinew_math::Vec3;
 
 /// The fields of a world, as a step sees them.
@@ -66,12 +68,19 @@ pub(crate) struct Fields<'a> {
     pub step: u64,
     /// Time at the beginning of the step.
     pub nanoseconds: u64,
+    /// There are particles, which never sleep.
+    particles: bool,
 }
 
 impl<'a> Fields<'a> {
     pub fn new(arena: &'a Arena<FieldDef>, functions: &'a Functions, def: &WorldDef, step: u64) -> Self {
         let nanoseconds = step.wrapping_mul(def.step_nanoseconds);
-        Self { arena, functions, gravity: def.gravity, step, nanoseconds }
+        Self { arena, functions, gravity: def.gravity, step, nanoseconds, particles: false }
+    }
+
+    /// With what is there beside the bodies.
+    pub fn among(self, groups: &Arena<ParticleGroup>) -> Self {
+        Self { particles: groups.iter().next().is_some(), ..self }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -95,10 +104,13 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// Whether a body lies in a field that changes by itself.
+    /// Whether a body lies in a field that changes by itself, or attracts particles.
     pub fn keep_awake(&self, body: &Body) -> bool {
         let mut fields = self.arena.iter();
-        fields.any(|(_, field)| field.kind.changes_by_itself() && field.reaches(&Target::of_body(body)))
+        fields.any(|(_, field)| {
+            let pulls_particles = self.particles && matches!(field.kind, FieldKind::Mutual(_));
+            (field.kind.changes_by_itself() || pulls_particles) && field.reaches(&Target::of_body(body))
+        })
     }
 
     /// What attracts and is attracted wakes together. Gives a sleeper to be woken, as long as there is one.
@@ -106,7 +118,7 @@ impl<'a> Fields<'a> {
         self.mutual().find_map(|(field, _)| {
             let reached =
                 |body: &Body| body.mass > 0.0 && !body.quarantined && field.reaches(&Target::of_body(body));
-            let awake = bodies.iter().any(|(_, body)| body.is_active() && reached(body));
+            let awake = self.particles || bodies.iter().any(|(_, body)| body.is_active() && reached(body));
             let mut sleepers = bodies.iter().filter(|(_, body)| !body.is_awake() && reached(body));
             if awake { sleepers.next().map(|(index, _)| index) } else { None }
         })

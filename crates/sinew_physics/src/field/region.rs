@@ -81,8 +81,8 @@ impl Region {
             Self::Everywhere => Ok(()),
             Self::Inside { shape, world_from_shape, margin, .. } => {
                 shape.check()?;
-                let valid = world_from_shape.is_finite() && super::def::not_negative(*margin);
-                if valid { Ok(()) } else { Err("a region's pose and margin must be finite") }
+                let valid = super::def::is_pose(world_from_shape) && super::def::not_negative(*margin);
+                if valid { Ok(()) } else { Err("a region's pose must be one, and its margin finite") }
             }
         }
     }

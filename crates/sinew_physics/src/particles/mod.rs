@@ -192,6 +192,20 @@ impl ParticleGroup {
         steps.map(move |(&from, &to)| from * (1.0 - alpha) + to * alpha)
     }
 
+    /// Particles whose state became non-finite in the step stop where they were before it. Says whether there were any.
+    pub(crate) fn roll_back(&mut self) -> bool {
+        let mut any = false;
+        for i in 0..self.positions.len() {
+            if !(self.positions[i].is_finite() && self.velocities[i].is_finite()) {
+                (self.positions[i], self.previous[i]) = (self.drawn_from[i], self.drawn_from[i]);
+                self.velocities[i] = Vec3::ZERO;
+                self.contact_impulses[i] = Vec3::ZERO;
+                any = true;
+            }
+        }
+        any
+    }
+
     /// Where particles are is from now on where they were before the step.
     pub(crate) fn begin_step(&mut self) {
         self.drawn_from.copy_from_slice(&self.positions);
@@ -275,11 +289,13 @@ impl ParticleGroup {
     /// Changes a particle's velocity by an impulse (N·s, world).
     ///
     /// # Panics
-    /// If there is no such particle, or the impulse is not finite.
+    /// If there is no such particle, or the impulse or what comes of it is not finite.
     pub fn apply_impulse(&mut self, particle: u32, impulse: Vec3) {
         assert!(impulse.is_finite(), "an impulse is finite");
         let i = particle as usize;
-        self.velocities[i] += impulse / self.masses[i];
+        let velocity = self.velocities[i] + impulse / self.masses[i];
+        assert!(velocity.is_finite(), "an impulse makes a finite velocity");
+        self.velocities[i] = velocity;
     }
 
     /// Sets the velocity of a particle, m/s, world. One that is attached takes that of what holds it.

@@ -16,8 +16,9 @@ const MAX_INNER_TURN: f32 = 1.0;
 /// rounding and the give and take of resting contacts are far below.
 const ENERGY_SLACK: f32 = 1e-3;
 
-/// No velocity is as fast, as a multiple of the speed limit, m/s or rad/s.
+/// No velocity is as fast, as a multiple of the speed limit; no spin, rad/s.
 const NONSENSE: f32 = 2.5;
+const NONSENSE_SPIN: f32 = 1e4;
 /// A joint that a substep leaves open by this much more than it was has not been solved, m or rad.
 const TORN: f32 = 0.1;
 
@@ -110,8 +111,9 @@ impl IslandSolver {
     /// of it.
     pub(super) fn drop_nonsense(&mut self, torn: f32) {
         let moving = self.links.len();
-        let most = NONSENSE * self.max_speed;
-        let sane = self.velocities[..moving].iter().flatten().all(|x| x.abs() < most);
+        let most = [NONSENSE * self.max_speed, NONSENSE_SPIN];
+        let sane = |v: &Vec6| v.iter().enumerate().all(|(k, x)| x.abs() < most[k / 3]);
+        let sane = self.velocities[..moving].iter().all(sane);
         if sane && torn < TORN {
             return;
         }

@@ -18,4 +18,5 @@ mod random_worlds;
 mod ray;
 mod rope;
 mod trees;
+mod trouble;
 mod update;

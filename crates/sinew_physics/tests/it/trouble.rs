@@ -1,0 +1,110 @@
+//! Numeric trouble: what is not finite is stopped and told of, and the rest goes on.
+
+use crate::build::{floor, sphere_body};
+use sinew_math::Vec3;
+use sinew_physics::field::PARAMETERS;
+use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef};
+use sinew_physics::*;
+
+/// On what is faster than 1 m/s.
+fn poison(point: &FieldPoint, _: &[f32; PARAMETERS]) -> Wrench {
+    let force = if point.velocity.length() > 1.0 { Vec3::splat(f32::NAN) } else { Vec3::ZERO };
+    Wrench { force, ..Wrench::default() }
+}
+
+fn poisoned() -> World {
+    let mut world = World::new(WorldDef::default());
+    world.register_field(1, poison);
+    world.add_field(&FieldDef::new(FieldKind::Custom { function: 1, parameters: [0.0; PARAMETERS] }));
+    world
+}
+
+fn particle(position: Vec3) -> GroupDef {
+    let particle = ParticleDef { position, velocity: Vec3::ZERO, mass: 0.1, radius: 0.05 };
+    GroupDef { particles: vec![particle], ..GroupDef::default() }
+}
+
+#[test]
+fn particles_that_are_not_finite_stop_where_they_were() {
+    let mut world = poisoned();
+    let group = world.add_particles(&particle(Vec3::Y));
+    world.mark();
+    let mut told = 0;
+    for _ in 0..30 {
+        world.step();
+        told += world.events().rolled_back.iter().filter(|&&id| id == group).count();
+        let group = world.particles(group);
+        assert!(group.positions()[0].is_finite() && group.velocities()[0].is_finite());
+    }
+    assert!(told > 0, "it fell faster than 1 m/s");
+    world.mark();
+    let hash = world.hash();
+    world.reset();
+    assert_eq!(world.hash(), hash, "what was saved is loaded");
+}
+
+#[test]
+fn what_hangs_on_a_quarantined_body_hangs_on_a_fixed_one() {
+    let mut world = poisoned();
+    let body = world.add_body(&sphere_body(0.1, Vec3::Y * 5.0));
+    let mut def = particle(Vec3::Y * 5.0);
+    def.filter.mask = 0;
+    def.attachments =
+        vec![AttachmentDef { particle: 0, target: AttachmentTarget::Body { body, point: Vec3::ZERO } }];
+    let group = world.add_particles(&def);
+    let mut quarantined = false;
+    for _ in 0..60 {
+        world.step();
+        quarantined |= world.events().quarantined.contains(&body);
+    }
+    assert!(quarantined, "it fell faster than 1 m/s");
+    let gap = world.particles(group).positions()[0] - world.transform(body).translation;
+    assert!(gap.length() < 0.01, "{gap}");
+}
+
+#[test]
+fn a_star_does_not_fall_asleep_under_its_satellite() {
+    let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+    world.add_field(&FieldDef::new(FieldKind::Mutual(MutualGravity {
+        constant: 1e-3,
+        ..MutualGravity::default()
+    })));
+    let mut star = sphere_body(0.05, Vec3::ZERO);
+    star.mass = Some(MassProperties {
+        mass: 1000.0,
+        inertia: sinew_math::Sym3::from_diagonal(Vec3::ONE),
+        ..Default::default()
+    });
+    world.add_body(&star);
+    let mut satellite = particle(Vec3::X);
+    satellite.particles[0].velocity = Vec3::Z;
+    satellite.particles[0].mass = 1e-3;
+    let group = world.add_particles(&satellite);
+    for _ in 0..600 {
+        world.step();
+        let radius = world.particles(group).positions()[0].length();
+        assert!((radius - 1.0).abs() < 0.02, "after {} s at {radius} m", world.time());
+    }
+}
+
+#[test]
+fn a_slow_world_lets_things_spin() {
+    let mut world = World::new(WorldDef { max_speed: 50.0, ..WorldDef::default() });
+    floor(&mut world);
+    let mut ball = sphere_body(0.1, Vec3::Y * 0.0999);
+    ball.angular_velocity = Vec3::Y * 200.0;
+    let ball = world.add_body(&ball);
+    for _ in 0..10 {
+        world.step();
+    }
+    assert!(world.velocity(ball).angular.y > 150.0, "{:?}", world.velocity(ball));
+}
+
+#[test]
+fn a_pose_is_turned_not_scaled() {
+    let mut world = World::new(WorldDef::default());
+    let ball = world.add_body(&sphere_body(0.1, Vec3::ZERO));
+    let long = sinew_math::Rotation::from_xyzw(0.0, 0.0, 0.0, 3.0);
+    world.set_transform(ball, sinew_math::Transform::new(Vec3::X, long));
+    assert_eq!(world.transform(ball).rotation.length(), 1.0);
+}
