@@ -338,9 +338,12 @@ impl ManifoldRows {
             let on_a = pose_a.point(self.core_a[i]) + n * self.shapes[0].round;
             let on_b = pose_b.point(self.core_b[i]) - n * self.shapes[1].round;
             self.separation[i] = (on_b - on_a).dot(n);
-            points[i] = match (self.a_moves, self.b_moves) {
+            points[i] = match (self.shapes[0].round > 0.0, self.shapes[1].round > 0.0) {
+                // Where a ball touches goes along with the ball, also on a table that moves away under it.
                 (true, false) => on_a,
                 (false, true) => on_b,
+                _ if !self.b_moves => on_a,
+                _ if !self.a_moves => on_b,
                 _ => (on_a + on_b) * 0.5,
             };
             center += points[i] * self.weight[i];
@@ -465,6 +468,16 @@ impl ManifoldRows {
     /// Takes the normal impulses as they are for the load of friction.
     pub fn weigh(&mut self) {
         self.load = self.impulse[..self.count].iter().fold(0.0, |sum, p| sum + max(*p, 0.0));
+    }
+
+    /// Likewise, but unless this is a hit the normal impulses that the last substep ended with: what few sweeps know of this
+    /// one's is off to one side, that sum is not, since it is what held the body up.
+    pub fn weigh_by_memory(&mut self) {
+        self.weigh();
+        let last = self.memory.points[..self.count].iter().fold(0.0, |sum, p| sum + p.now);
+        if self.load <= IMPACT_JUMP * last && last <= IMPACT_JUMP * self.load {
+            self.load = last;
+        }
     }
 
     fn add(&self, push: &mut Push, row: &Row, impulse: f32) {

@@ -106,7 +106,10 @@ impl IslandSolver {
             self.largest_change = 0.0;
             self.change_energy = 0.0;
             if pass == Pass::Relax && done <= WEIGHINGS {
-                self.manifolds.iter_mut().for_each(ManifoldRows::weigh);
+                // Islands with joints sweep until they know.
+                let weigh =
+                    if self.is_articulated() { ManifoldRows::weigh } else { ManifoldRows::weigh_by_memory };
+                self.manifolds.iter_mut().for_each(weigh);
             }
             if conjugates {
                 let (conjugate, rows) = self.rows_to_conjugate();
