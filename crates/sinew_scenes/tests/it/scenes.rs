@@ -3,7 +3,11 @@
 use sinew_scenes::scenes::{Expected, Metric, Scene, Settings, find, registry};
 
 /// Figures that are not yet as expected, by scene. One that comes to be met must be taken off, or its test fails.
-const NOT_YET: &[(&str, &[&str])] = &[];
+const NOT_YET: &[(&str, &[&str])] = &[
+    // Hands that a fold presses into a thigh overlap it by 10.5 and 10.9 mm instead of 10.
+    ("ragdoll_wall_fast", &["nonadjacent_overlap_max_m"]),
+    ("ragdoll_poses", &["nonadjacent_overlap_max_m"]),
+];
 
 /// Scenes in which gravity has no part, or no figure that would notice is met.
 const BLIND_TO_GRAVITY: &[&str] = &[
