@@ -3,6 +3,7 @@
 use crate::error::{Error, Result, quoted};
 use crate::mesh::TriangleMesh;
 use sinew_math::Vec3;
+use std::borrow::Cow;
 
 /// Most corners of a face: to cut a larger one would take too long.
 const MOST_CORNERS: usize = 1024;
@@ -90,21 +91,27 @@ const KNOWN: [&str; 34] = [
 ];
 
 /// Lines with their numbers, those that end in `\` joined with the next.
-fn logical_lines(text: &str) -> impl Iterator<Item = (usize, std::borrow::Cow<'_, str>)> {
+fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let mut lines = text.lines().enumerate();
     core::iter::from_fn(move || {
         let (index, line) = lines.next()?;
-        let mut whole = std::borrow::Cow::Borrowed(line);
-        while let Some(cut) = whole.trim_end().strip_suffix('\\') {
-            let mut joined = format!("{cut} ");
-            match lines.next() {
-                Some((_, next)) => joined.push_str(next),
-                None => return Some((index + 1, joined.into())),
+        let Some(start) = continued(line) else { return Some((index + 1, Cow::Borrowed(line))) };
+        let mut whole = start.to_owned();
+        for (_, line) in lines.by_ref() {
+            let start = continued(line);
+            whole.push(' ');
+            whole.push_str(start.unwrap_or(line));
+            if start.is_none() {
+                break;
             }
-            whole = joined.into();
         }
-        Some((index + 1, whole))
+        Some((index + 1, Cow::Owned(whole)))
     })
+}
+
+/// A line without the `\` that continues it on the next; a `\` that ends a comment line continues nothing.
+fn continued(line: &str) -> Option<&str> {
+    if line.trim_start().starts_with('#') { None } else { line.trim_end().strip_suffix('\\') }
 }
 
 fn read_vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<Vec3, String> {

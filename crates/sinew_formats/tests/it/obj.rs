@@ -81,3 +81,17 @@ fn twisted_faces_end() {
     let text = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nf 1 2 3 4 5\nf 1 1 1 1 1\n";
     assert_eq!(read_obj(text.as_bytes()).expect("odd, but a file").triangles.len(), 6);
 }
+
+#[test]
+fn a_comment_that_ends_in_a_backslash_keeps_to_its_line() {
+    let text = "# made from C:\\models\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\n  # \\\nf 1 \\\n2 \\\n3\n";
+    let mesh = read_obj(text.as_bytes()).expect("a good file");
+    assert_eq!((mesh.positions.len(), mesh.triangles), (3, vec![[0, 1, 2]]));
+}
+
+/// Each line joined to all before it anew would be 80 GB of copying.
+#[test]
+fn many_continued_lines_end() {
+    let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n{}2 3\n", "\\\n".repeat(400_000));
+    assert_eq!(read_obj(text.as_bytes()).expect("a good file").triangles, [[0, 1, 2]]);
+}
