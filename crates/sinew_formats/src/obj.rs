@@ -3,13 +3,18 @@
 use crate::error::{Error, Result, quoted};
 use crate::mesh::TriangleMesh;
 use sinew_math::Vec3;
+use std::borrow::Cow;
 
 /// Most corners of a face: to cut a larger one would take too long.
 const MOST_CORNERS: usize = 1024;
+/// Corners that may be looked at to cut a face, for each corner that it has: enough for any outline that is drawn, and
+/// few enough that a file made of bad ones ends.
+const WORK: usize = 256;
 /// What a surface looks like of which the file says nothing here.
 const GREY: [f32; 3] = [0.6; 3];
 
-/// The triangles of an OBJ file. Faces with more than three corners are cut, concave ones too.
+/// The triangles of an OBJ file. Faces with more than three corners are cut, concave ones too;
+/// of one so jagged or twisted that this would take too long, the rest is cut as a fan from one corner.
 ///
 /// # Errors
 /// Names the line: a number that is none or not finite, an index out of range, a face with fewer than three corners.
@@ -90,21 +95,27 @@ const KNOWN: [&str; 34] = [
 ];
 
 /// Lines with their numbers, those that end in `\` joined with the next.
-fn logical_lines(text: &str) -> impl Iterator<Item = (usize, std::borrow::Cow<'_, str>)> {
+fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let mut lines = text.lines().enumerate();
     core::iter::from_fn(move || {
         let (index, line) = lines.next()?;
-        let mut whole = std::borrow::Cow::Borrowed(line);
-        while let Some(cut) = whole.trim_end().strip_suffix('\\') {
-            let mut joined = format!("{cut} ");
-            match lines.next() {
-                Some((_, next)) => joined.push_str(next),
-                None => return Some((index + 1, joined.into())),
+        let Some(start) = continued(line) else { return Some((index + 1, Cow::Borrowed(line))) };
+        let mut whole = start.to_owned();
+        for (_, line) in lines.by_ref() {
+            let start = continued(line);
+            whole.push(' ');
+            whole.push_str(start.unwrap_or(line));
+            if start.is_none() {
+                break;
             }
-            whole = joined.into();
         }
-        Some((index + 1, whole))
+        Some((index + 1, Cow::Owned(whole)))
     })
+}
+
+/// A line without the `\` that continues it on the next; a `\` that ends a comment line continues nothing.
+fn continued(line: &str) -> Option<&str> {
+    if line.trim_start().starts_with('#') { None } else { line.trim_end().strip_suffix('\\') }
 }
 
 fn read_vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<Vec3, String> {
@@ -142,7 +153,8 @@ fn read_face<'a>(words: impl Iterator<Item = &'a str>, vertices: usize) -> Resul
 }
 
 /// Cuts a polygon into triangles, ear by ear (Meisters 1975): a corner that turns outward with no other corner in its
-/// triangle. Where a twisted polygon has none left, the next corner is taken all the same.
+/// triangle. Where a twisted polygon has none left, the next corner is taken all the same; what is left after [`WORK`]
+/// is cut as a fan.
 fn cut(positions: &[Vec3], mut face: Vec<u32>, triangles: &mut Vec<[u32; 3]>) {
     let at = |i: u32| positions[i as usize];
     // Newell's normal, from the first corner so that far-away polygons keep their digits.
@@ -150,20 +162,46 @@ fn cut(positions: &[Vec3], mut face: Vec<u32>, triangles: &mut Vec<[u32; 3]>) {
     let normal: Vec3 =
         (0..face.len()).map(|k| (at(face[k]) - origin).cross(at(face[(k + 1) % face.len()]) - origin)).sum();
     let is_left = |a: Vec3, b: Vec3, c: Vec3| (b - a).cross(c - a).dot(normal) > 0.0;
-    while face.len() > 3 {
+    let turns_inward = |face: &[u32], k: usize| {
+        let [a, b, c] = around(face, k).map(at);
+        !is_left(a, b, c)
+    };
+    // No other corners can keep a triangle from being an ear.
+    let mut inward: Vec<u32> = (0..face.len()).filter(|&k| turns_inward(&face, k)).map(|k| face[k]).collect();
+    let mut work = WORK * face.len();
+    let mut start = 0;
+    while face.len() > 3 && work > 0 {
         let n = face.len();
-        let ear = (0..n).find(|&k| {
-            let corners = [face[(k + n - 1) % n], face[k], face[(k + 1) % n]];
+        let mut is_ear = |k: usize| {
+            work = work.saturating_sub(1);
+            let corners = around(&face, k);
             let [a, b, c] = corners.map(at);
             is_left(a, b, c)
-                && face.iter().all(|other| {
+                && inward.iter().all(|other| {
+                    work = work.saturating_sub(1);
                     let p = at(*other);
                     corners.contains(other) || !(is_left(a, b, p) && is_left(b, c, p) && is_left(c, a, p))
                 })
-        });
-        let k = ear.unwrap_or(1);
-        triangles.push([face[(k + n - 1) % n], face[k], face[(k + 1) % n]]);
+        };
+        let k = (0..n).map(|i| (start + i) % n).find(|&k| is_ear(k)).unwrap_or(1);
+        triangles.push(around(&face, k));
+        for changed in [(k + n - 1) % n, k, (k + 1) % n] {
+            if turns_inward(&face, changed)
+                && let Some(i) = inward.iter().position(|&corner| corner == face[changed])
+            {
+                inward.swap_remove(i);
+            }
+        }
         face.remove(k);
+        let changed = [(k + n - 2) % (n - 1), k % (n - 1)];
+        inward.extend(changed.into_iter().filter(|&k| turns_inward(&face, k)).map(|k| face[k]));
+        start = k.saturating_sub(1);
     }
-    triangles.push([face[0], face[1], face[2]]);
+    triangles.extend((1..face.len() - 1).map(|k| [face[0], face[k], face[k + 1]]));
+}
+
+/// The corner before, a corner, and the one after it.
+fn around(face: &[u32], k: usize) -> [u32; 3] {
+    let n = face.len();
+    [face[(k + n - 1) % n], face[k], face[(k + 1) % n]]
 }

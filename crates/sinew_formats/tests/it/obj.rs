@@ -81,3 +81,50 @@ fn twisted_faces_end() {
     let text = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nf 1 2 3 4 5\nf 1 1 1 1 1\n";
     assert_eq!(read_obj(text.as_bytes()).expect("odd, but a file").triangles.len(), 6);
 }
+
+#[test]
+fn a_comment_that_ends_in_a_backslash_keeps_to_its_line() {
+    let text = "# made from C:\\models\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\n  # \\\nf 1 \\\n2 \\\n3\n";
+    let mesh = read_obj(text.as_bytes()).expect("a good file");
+    assert_eq!((mesh.positions.len(), mesh.triangles), (3, vec![[0, 1, 2]]));
+}
+
+/// Each line joined to all before it anew would be 80 GB of copying.
+#[test]
+fn many_continued_lines_end() {
+    let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n{}2 3\n", "\\\n".repeat(400_000));
+    assert_eq!(read_obj(text.as_bytes()).expect("a good file").triangles, [[0, 1, 2]]);
+}
+
+/// Spikes around a circle, every other corner turned inward: cut without loss.
+#[test]
+fn a_large_jagged_face_keeps_its_area() {
+    let corner = |k: usize| {
+        let (sin, cos) = sinew_math::trig::sin_cos(k as f32 * core::f32::consts::TAU / 256.0);
+        Vec3::new(cos, sin, 0.0) * if k.is_multiple_of(2) { 1.0 } else { 0.8 }
+    };
+    let mut text: String = (0..256).map(corner).map(|p| format!("v {} {} 0\n", p.x, p.y)).collect();
+    text += "f";
+    text.extend((1..=256).map(|k| format!(" {k}")));
+    let mesh = read_obj(text.as_bytes()).expect("a good file");
+    let areas = mesh.triangles.iter().map(|t| {
+        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+        (b - a).cross(c - a).z * 0.5
+    });
+    let expected = 128.0 * 0.8 * sinew_math::trig::sin_cos(core::f32::consts::TAU / 256.0).0;
+    assert_eq!(mesh.triangles.len(), 254);
+    assert!((areas.sum::<f32>() - expected).abs() < 1e-4);
+}
+
+/// A hundred faces of the most corners, twisted in every way: without a bound, the work of an hour.
+#[test]
+fn large_twisted_faces_end() {
+    let mut random = sinew_math::Random::new(3);
+    let point = |p: Vec3| format!("v {} {} {}\n", p.x, p.y, p.z);
+    let mut text: String = (0..1024).map(|_| point(random.in_cube())).collect();
+    let face: String = (1..=1024).map(|k| format!(" {k}")).collect();
+    for _ in 0..100 {
+        text += &format!("f{face}\n");
+    }
+    assert_eq!(read_obj(text.as_bytes()).expect("odd, but a file").triangles.len(), 100 * 1022);
+}

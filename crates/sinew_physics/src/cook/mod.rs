@@ -8,12 +8,15 @@
 //!    into cells (with even planes between where it is slanted or round), those inside the mesh by its winding
 //!    number are full, and the full ones are covered by boxes as large as they can be.
 //! 3. Flat regions that no box is near, as of a sheet without thickness, become plates behind their faces.
-//! 4. Steps that add least to the squared distance between the surfaces, dropping a box or merging two, follow until
+//! 4. Of more than a few hundred boxes the smallest are put together, cell by cell of a grid: searching all for what
+//!    to merge would take the square of the time.
+//! 5. Steps that add least to the squared distance between the surfaces, dropping a box or merging two, follow until
 //!    no more are left than were asked for.
 
 mod box_set;
 mod bvh;
 mod cells;
+mod coarse;
 mod fit;
 mod fitted;
 mod measure;
@@ -123,6 +126,8 @@ pub fn cook(
     let mut random = Random::new(mesh.triangles.len() as u64);
     let scale = scale(&mesh, options);
     let blocks = first_boxes(&mesh, &bvh, scale, &mut random, progress);
+    let blocks =
+        coarse::at_most(usize::max(MOST_FIRST, options.max_boxes.saturating_mul(2)), blocks, scale.thinnest);
     let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
     let (points, area) = sample::sample(&mesh, &all, POINTS, &mut random);
     let area = area / POINTS as f32;
@@ -134,6 +139,8 @@ pub fn cook(
 
 /// Points of the mesh by which boxes are judged.
 const POINTS: usize = 16_384;
+/// Boxes that the search for good merges begins with, at most, unless nearly as many are to remain.
+const MOST_FIRST: usize = 768;
 
 fn scale(mesh: &SurfaceMesh, options: &CookOptions) -> Scale {
     let diagonal = mesh.diagonal();

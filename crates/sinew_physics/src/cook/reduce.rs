@@ -168,9 +168,7 @@ impl<'a> Reduction<'a> {
                 self.entries[i].points.iter().map(change).sum::<f32>() * self.area
             }
             Step::Merge(i, j, block) => {
-                if is_seen_from_inside(self.bvh, &block)
-                    && !self.is_inside_another(block.center, [usize::MAX; 2])
-                {
+                if is_seen_from_inside(self.bvh, &block) && !self.is_inside_another(block.center) {
                     // The floor and the ceiling of a room are not one box.
                     return f32::INFINITY;
                 }
@@ -275,18 +273,19 @@ impl<'a> Reduction<'a> {
             let distance = self.bvh.closest_point(p).distance;
             distance * distance
         };
-        let outer = points.iter().filter(|&&p| !self.is_inside_another(p, own));
+        let own_bounds = bounds(block);
+        let near = |&(i, entry): &(usize, &Entry)| {
+            entry.alive && !own.contains(&i) && entry.bounds.overlaps(&own_bounds)
+        };
+        let others: Vec<&Entry> =
+            self.entries.iter().enumerate().filter(near).map(|(_, entry)| entry).collect();
+        let hidden = |p: Vec3| others.iter().any(|entry| entry.holds(p, self.scale.thinnest));
+        let outer = points.iter().filter(|&&p| !hidden(p));
         outer.map(square).sum::<f32>() * (block.surface_area() / SURFACE as f32)
     }
 
-    fn is_inside_another(&self, p: Vec3, own: [usize; 2]) -> bool {
-        let holds = |(i, entry): (usize, &Entry)| {
-            entry.alive
-                && !own.contains(&i)
-                && entry.bounds.overlaps(&Aabb { min: p, max: p })
-                && entry.placed.signed_distance(p) < -self.scale.thinnest
-        };
-        self.entries.iter().enumerate().any(holds)
+    fn is_inside_another(&self, p: Vec3) -> bool {
+        self.entries.iter().any(|entry| entry.alive && entry.holds(p, self.scale.thinnest))
     }
 }
 
@@ -301,5 +300,10 @@ impl Entry {
             seen: usize::MAX,
             alive: true,
         }
+    }
+
+    /// Whether a point is deeper inside than `least`.
+    fn holds(&self, p: Vec3, least: f32) -> bool {
+        self.bounds.overlaps(&Aabb { min: p, max: p }) && self.placed.signed_distance(p) < -least
     }
 }

@@ -226,6 +226,20 @@ fn the_budget_is_kept_at_least_cost() {
     assert_eq!(mesh.cook(1).boxes.len(), 1);
 }
 
+/// As many parts as would take minutes if each were held against each.
+#[test]
+fn thousands_of_parts_end() {
+    let mut mesh = Mesh::default();
+    for i in 0..4000 {
+        let center = Vec3::new((i % 20) as f32, (i / 20 % 10) as f32, (i / 200) as f32);
+        mesh.block(center, Vec3::splat(0.3), Rotation::IDENTITY, &[]);
+    }
+    let cooked = mesh.cook(150);
+    assert_eq!(cooked.parts, 4000);
+    let reached = |p: Vec3| cooked.boxes.iter().any(|block| block.signed_distance(p) < 0.01);
+    assert!([Vec3::ZERO, Vec3::new(19.0, 9.0, 19.0)].into_iter().all(reached), "{cooked:?}");
+}
+
 #[test]
 fn the_same_mesh_gives_the_same_boxes() {
     let mesh = Mesh::sphere(2.0, 20);

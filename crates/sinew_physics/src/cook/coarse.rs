@@ -1,0 +1,38 @@
+//! Small boxes put together before the search for good merges, the time of which grows with the square of their number.
+
+use super::fitted::around;
+use crate::boxes::{Cuboid, Obb};
+use sinew_math::max;
+
+/// No more than about `most` boxes: the larger half of them as they are, the others in one box per cell of a grid of
+/// cubes, the smallest that leaves few enough.
+pub(super) fn at_most(most: usize, mut blocks: Vec<Obb>, thinnest: f32) -> Vec<Obb> {
+    if blocks.len() <= most {
+        return blocks;
+    }
+    blocks.sort_by(|a, b| b.volume().total_cmp(&a.volume()));
+    let small = blocks.split_off(most / 2);
+    let farthest = small.iter().flat_map(|block| block.center.to_array()).map(f32::abs).fold(0.0, max);
+    let mut size = max(farthest / 1024.0, thinnest);
+    let mut cells = by_cell(&small, size);
+    // No more than the eight around the origin are left once cells are larger than `farthest`.
+    while cells.len() > usize::max(most - most / 2, 8) {
+        size *= 1.25;
+        cells = by_cell(&small, size);
+    }
+    blocks.extend(cells.iter().map(|cell| {
+        let corners = cell.iter().flat_map(|block| block.corners());
+        // Of the largest, which come first.
+        around(corners, cell[0].rotation, thinnest)
+    }));
+    blocks
+}
+
+/// Boxes by the cell of a grid that their middle is in, in the order of cells.
+fn by_cell(blocks: &[Obb], size: f32) -> Vec<Vec<&Obb>> {
+    let key = |block: &Obb| block.center.to_array().map(|x| (x / size).floor() as i64);
+    let mut keyed: Vec<_> = blocks.iter().map(|block| (key(block), block)).collect();
+    keyed.sort_by_key(|(key, _)| *key);
+    let cells = keyed.chunk_by(|a, b| a.0 == b.0);
+    cells.map(|cell| cell.iter().map(|(_, block)| *block).collect()).collect()
+}
