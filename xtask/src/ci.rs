@@ -14,8 +14,8 @@ use std::time::Instant;
 #[derive(clap::Args)]
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
-    /// large scenes; 10,000 random worlds (or the seeds of SINEW_WORLDS, as in 100..200); the peers
-    /// that need no C; instruction counts
+    /// large scenes; all random cases of boxes and files; 10,000 random worlds (or the seeds of
+    /// SINEW_WORLDS, as in 100..200); the peers that need no C; instruction counts
     #[arg(long)]
     full: bool,
 }
@@ -48,6 +48,7 @@ impl Ci {
         check("arm", &targets::arm);
         if self.full {
             check("large scenes", &large_scenes);
+            check("all cases", &all_cases);
             check("random worlds", &random_worlds);
             check("peers", &peers);
             check("counts", &bench::check_counts);
@@ -91,6 +92,14 @@ fn random_worlds() -> Result<()> {
     let test = ["test", "--release", "--package", "sinew_physics", "--test", "it"];
     let mut test = command::cargo(&test);
     command::run(test.args(["--", "--nocapture", "ten_thousand_random_worlds"]).env("SINEW_FULL", "1"))
+}
+
+/// Every random case of tests that otherwise run a hundredth: boxes against brute force, hostile files.
+fn all_cases() -> Result<()> {
+    let test =
+        ["test", "--release", "--package", "sinew_physics", "--package", "sinew_formats", "--test", "it"];
+    let mut test = command::cargo(&test);
+    command::run(test.args(["--", "boxes", "hostile", "mjcf"]).env("SINEW_FULL", "1"))
 }
 
 fn clippy() -> Result<()> {
