@@ -69,6 +69,19 @@ pub fn answers(program: &str) -> bool {
     command.arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
 }
 
+/// Installs Debian's `package` unless there is a `program` of its. A fresh machine has no list of packages yet.
+///
+/// # Errors
+/// If it cannot.
+pub fn provide(program: &str, package: &str) -> Result<()> {
+    if answers(program) {
+        return Ok(());
+    }
+    run(Command::new("apt-get").arg("update"))
+        .and_then(|()| run(Command::new("apt-get").args(["install", "--yes", package])))
+        .with_context(|| format!("`{program}` is missing (Debian's package `{package}`)"))
+}
+
 /// How the `sinew` binary is compiled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Profile {

@@ -1,7 +1,7 @@
 //! Other processors: that the code builds for them, and that WebAssembly computes what x86-64 does.
 
 use crate::command;
-use anyhow::{Context, Result};
+use anyhow::Result;
 use std::process::Command;
 
 /// Of browsers.
@@ -49,7 +49,7 @@ fn build_for(target: &str, arguments: &[&str]) -> Result<()> {
 /// # Errors
 /// If it has not, or does not compile.
 pub fn soup() -> Result<()> {
-    if let Err(missing) = add(PROGRAM).and_then(|()| provide_node()) {
+    if let Err(missing) = add(PROGRAM).and_then(|()| command::provide("node", "nodejs")) {
         eprintln!("{missing:#}");
         eprintln!("SKIPPED: WebAssembly cannot be run on this machine");
         return Ok(());
@@ -72,12 +72,4 @@ fn soup_with(flags: &str, tests: &[&str]) -> Result<()> {
 
 fn add(target: &str) -> Result<()> {
     command::run(Command::new("rustup").args(["target", "add", target]))
-}
-
-fn provide_node() -> Result<()> {
-    if command::answers("node") {
-        return Ok(());
-    }
-    command::run(Command::new("apt-get").args(["install", "--yes", "nodejs"]))
-        .context("Node is missing (Debian's package `nodejs`)")
 }

@@ -71,10 +71,7 @@ pub fn bless() -> Result<()> {
 
 /// Installs what counting needs, where it is not there.
 fn provide() -> Result<()> {
-    if !command::answers("valgrind") {
-        command::run(Command::new("apt-get").args(["install", "--yes", "valgrind"]))
-            .context("valgrind is missing (Debian's package `valgrind`)")?;
-    }
+    command::provide("valgrind", "valgrind")?;
     if !command::answers("gungraun-runner") {
         command::run(&mut command::cargo(&["install", "gungraun-runner", "--version", RUNNER_VERSION]))
             .context("gungraun-runner is missing")?;
