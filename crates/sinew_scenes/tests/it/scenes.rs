@@ -9,7 +9,7 @@ const NOT_YET: &[(&str, &[&str])] = &[
     ("ragdoll_poses", &["nonadjacent_overlap_max_m"]),
 ];
 
-/// Scenes in which gravity has no part, or no figure that would notice is met.
+/// Scenes in which gravity has no part, and one whose bound is about walls alone (`fast_particle`).
 const BLIND_TO_GRAVITY: &[&str] = &[
     "fast_particle",
     "gimbal",
