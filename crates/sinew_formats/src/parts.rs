@@ -100,9 +100,9 @@ fn read_half_extents(at: At<'_>) -> Result<Vec3> {
 }
 
 /// Writes what [`read_shape`] reads.
-pub(crate) fn write_shape(shape: Shape, object: &mut Map<String, Value>) {
+pub(crate) fn write_shape(shape: &Shape, object: &mut Map<String, Value>) {
     let mut put = |key: &str, value: Value| drop(object.insert(key.into(), value));
-    match shape {
+    match *shape {
         Shape::Box { half_extents } => {
             put("type", "box".into());
             put("half_extents", numbers(&half_extents.to_array()));

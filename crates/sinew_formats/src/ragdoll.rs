@@ -291,7 +291,7 @@ fn write_body(def: &RagdollDef, index: usize) -> Value {
     let body = &def.bodies[index];
     let mut object = Map::new();
     let mut shape = Map::new();
-    parts::write_shape(body.shape, &mut shape);
+    parts::write_shape(&body.shape, &mut shape);
     object.insert("bone".into(), body.bone.as_str().into());
     object.insert("role".into(), body.role.as_str().into());
     object.insert("confidence".into(), number(body.confidence));

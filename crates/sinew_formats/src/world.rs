@@ -223,8 +223,8 @@ fn write_body(body: &BodyDef) -> Value {
 
 fn write_shape(def: &ShapeDef) -> Value {
     let mut object = Map::new();
-    let default = ShapeDef::new(def.shape);
-    parts::write_shape(def.shape, &mut object);
+    let default = ShapeDef::new(def.shape.clone());
+    parts::write_shape(&def.shape, &mut object);
     parts::write_pose(def.body_from_shape, &mut object);
     put(&mut object, "density", def.density, default.density);
     if def.material != default.material {

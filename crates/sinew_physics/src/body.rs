@@ -36,7 +36,7 @@ pub(crate) enum Rest {
 }
 
 /// A shape of a body, in the body's principal frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct BodyShape {
     pub shape: Shape,
     pub principal_from_shape: Transform,
@@ -242,7 +242,7 @@ impl Body {
 
 fn body_shape(def: &ShapeDef, principal_from_body: Transform) -> BodyShape {
     BodyShape {
-        shape: def.shape,
+        shape: def.shape.clone(),
         principal_from_shape: principal_from_body * def.body_from_shape,
         density: def.density,
         material: def.material,

@@ -203,7 +203,7 @@ impl Surroundings {
         for &(place, shape) in &near.shapes {
             let s = &view.bodies.at(near.bodies[place as usize]).shapes[shape as usize];
             self.obstacles.push(Obstacle {
-                shape: s.shape,
+                shape: s.shape.clone(),
                 previous: seen[place as usize].start * s.principal_from_shape,
                 world_from_shape: seen[place as usize].pose * s.principal_from_shape,
                 body: place,

@@ -149,6 +149,6 @@ impl World {
     /// Shapes of a body with their world poses, for drawing.
     pub fn shapes(&self, id: BodyId) -> impl Iterator<Item = (crate::shape::Shape, sinew_math::Transform)> {
         let body = self.expect(id);
-        body.shapes.iter().enumerate().map(|(i, s)| (s.shape, body.world_from_shape(i)))
+        body.shapes.iter().enumerate().map(|(i, s)| (s.shape.clone(), body.world_from_shape(i)))
     }
 }

@@ -3,7 +3,7 @@
 use sinew_math::{Sym3, Transform, Vec3, min};
 
 /// A convex shape in its own frame. All sizes are metres and positive.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// Box around the origin.
     Box {
@@ -136,7 +136,7 @@ impl Filter {
 }
 
 /// A shape as part of a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ShapeDef {
     /// Geometry.
     pub shape: Shape,

@@ -133,8 +133,8 @@ fn paint_body(world: &World, id: BodyId, number: usize, frame: &Frame, models: &
     let mut seen = kind == BodyKind::Static;
     for (shape, place) in world.shapes(id) {
         let material = Material::new(color);
-        models.push(match (shape, Solid::of(&shape)) {
-            (Shape::Sphere { radius }, _) => draw::ball(radius, place, material),
+        models.push(match (&shape, Solid::of(&shape)) {
+            (Shape::Sphere { radius }, _) => draw::ball(*radius, place, material),
             (_, Some(solid)) => draw::solid(solid, place, material),
             (_, None) => floor(&place, frame),
         });

@@ -81,7 +81,7 @@ fn mirror_remedies(bones: &Bones, fits: &mut [Fit], report: &mut FilterReport) {
         let factor = report.scale[twin] / report.scale[body];
         if factor < 1.0 {
             report.scale[body] = report.scale[twin];
-            fits[body].shape = thinner(fits[body].shape, factor);
+            fits[body].shape = thinner(&fits[body].shape, factor);
         }
     }
     for index in 0..report.disabled.len() {
@@ -125,13 +125,13 @@ fn is_worth_shrinking(bones: &Bones, a: usize, b: usize) -> bool {
 /// Makes both shapes thinner until they no longer overlap by more than is tolerated; leaves them as they are and says
 /// so if the most that is allowed does not do it. A trunk is not made thinner: its neighbours need its size.
 fn shrink_apart(bones: &Bones, fits: &mut [Fit], scale: &mut [f32], (a, b): (usize, usize)) -> bool {
-    let before = (fits[a], fits[b], scale[a], scale[b]);
+    let before = (fits[a].clone(), fits[b].clone(), scale[a], scale[b]);
     loop {
         let mut any = false;
         for body in [a, b] {
             if !bones.list[body].part.is_trunk() && scale[body] * STEP >= LEAST_SCALE {
                 scale[body] *= STEP;
-                fits[body].shape = thinner(fits[body].shape, STEP);
+                fits[body].shape = thinner(&fits[body].shape, STEP);
                 any = true;
             }
         }
@@ -146,7 +146,7 @@ fn shrink_apart(bones: &Bones, fits: &mut [Fit], scale: &mut [f32], (a, b): (usi
 }
 
 /// The shape with its cross-section scaled; its length along y stays.
-fn thinner(shape: Shape, factor: f32) -> Shape {
+fn thinner(shape: &Shape, factor: f32) -> Shape {
     match shape {
         Shape::Box { half_extents: h } => {
             Shape::Box { half_extents: Vec3::new(h.x * factor, h.y, h.z * factor) }

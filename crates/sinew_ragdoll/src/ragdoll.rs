@@ -126,7 +126,8 @@ pub fn colliding_pairs(def: &RagdollDef) -> Vec<(usize, usize)> {
 }
 
 fn body_def(body: &RagdollBodyDef, state: &BodyState, flesh: &Flesh, index: usize) -> BodyDef {
-    let shape = ShapeDef { material: flesh.material, filter: flesh.filter, ..ShapeDef::new(body.shape) };
+    let shape =
+        ShapeDef { material: flesh.material, filter: flesh.filter, ..ShapeDef::new(body.shape.clone()) };
     BodyDef {
         position: state.world_from_body.translation,
         rotation: state.world_from_body.rotation,

@@ -361,7 +361,8 @@ fn classes_nest_and_the_nearest_holds() {
             <geom fromto='0 0 0 0 0 1'/><geom class='b'/><geom class='main'/>
             <body childclass='b'><geom pos='1 0 0'/></body></body></worldbody></mujoco>",
     );
-    let shapes: Vec<_> = model.bodies.iter().flat_map(|body| &body.def.shapes).map(|def| def.shape).collect();
+    let shapes: Vec<_> =
+        model.bodies.iter().flat_map(|body| &body.def.shapes).map(|def| def.shape.clone()).collect();
     let capsule = |radius| Shape::Capsule { radius, half_height: 0.5 };
     assert_eq!(shapes, [capsule(0.2), capsule(0.3), Shape::Sphere { radius: 0.1 }, capsule(0.3)]);
 }

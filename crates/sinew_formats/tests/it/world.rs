@@ -41,7 +41,7 @@ fn the_example_of_the_page_is_read_and_stands() {
     assert_eq!(kinds, [Static, Static, Dynamic, Kinematic, Dynamic]);
     assert_eq!(bodies[2].shapes[1].material, Material { friction: 0.9, restitution: 0.7, rolling: 0.002 });
     assert_eq!((bodies[2].user_data, bodies[2].angular_damping), (7, 0.1));
-    let door = bodies[3].shapes[1];
+    let door = bodies[3].shapes[1].clone();
     assert_eq!((door.sensing, door.filter), (Sensing::Sensor, Filter { layers: 2, mask: 1, group: 0 }));
     assert_eq!(bodies[4].mass.map(|mass| mass.mass), Some(0.01));
     assert_eq!(read_world(write_world(&bodies).as_bytes()).unwrap(), bodies);

@@ -119,38 +119,38 @@ fn collide_ranked(a: &Shape, wa: &Transform, b: &Shape, wb: &Transform, margin: 
     let origin = wb.translation;
     let (wa, wb) =
         (Transform::new(wa.translation - origin, wa.rotation), Transform::new(Vec3::ZERO, wb.rotation));
-    match (*a, *b) {
-        (Shape::HalfSpace, Shape::Box { half_extents }) => {
+    match (a, b) {
+        (&Shape::HalfSpace, &Shape::Box { half_extents }) => {
             half_space::against_box(&Plane::new(&wa), &PlacedBox::new(half_extents, &wb), margin, out);
         }
-        (Shape::HalfSpace, Shape::Capsule { half_height, radius }) => {
+        (&Shape::HalfSpace, &Shape::Capsule { half_height, radius }) => {
             half_space::against_capsule(&Plane::new(&wa), &Pill::new(half_height, radius, &wb), margin, out);
         }
-        (Shape::HalfSpace, Shape::Sphere { radius }) => {
+        (&Shape::HalfSpace, &Shape::Sphere { radius }) => {
             half_space::against_sphere(&Plane::new(&wa), &Ball::new(radius, &wb), margin, out);
         }
-        (Shape::Box { half_extents: half_a }, Shape::Box { half_extents: half_b }) => {
+        (&Shape::Box { half_extents: half_a }, &Shape::Box { half_extents: half_b }) => {
             box_box::collide(&PlacedBox::new(half_a, &wa), &PlacedBox::new(half_b, &wb), margin, out);
         }
-        (Shape::Box { half_extents }, Shape::Capsule { half_height, radius }) => {
+        (&Shape::Box { half_extents }, &Shape::Capsule { half_height, radius }) => {
             let pill = Pill::new(half_height, radius, &wb);
             box_capsule::collide(&PlacedBox::new(half_extents, &wa), &pill, margin, out);
         }
-        (Shape::Box { half_extents }, Shape::Sphere { radius }) => {
+        (&Shape::Box { half_extents }, &Shape::Sphere { radius }) => {
             box_sphere::collide(&PlacedBox::new(half_extents, &wa), &Ball::new(radius, &wb), margin, out);
         }
         (
-            Shape::Capsule { half_height: height_a, radius: radius_a },
-            Shape::Capsule { half_height: height_b, radius: radius_b },
+            &Shape::Capsule { half_height: height_a, radius: radius_a },
+            &Shape::Capsule { half_height: height_b, radius: radius_b },
         ) => {
             let (a, b) = (Pill::new(height_a, radius_a, &wa), Pill::new(height_b, radius_b, &wb));
             capsule_capsule::collide(&a, &b, margin, out);
         }
-        (Shape::Capsule { half_height, radius }, Shape::Sphere { radius: radius_b }) => {
+        (&Shape::Capsule { half_height, radius }, &Shape::Sphere { radius: radius_b }) => {
             let pill = Pill::new(half_height, radius, &wa);
             capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, out);
         }
-        (Shape::Sphere { radius }, Shape::Sphere { radius: radius_b }) => {
+        (&Shape::Sphere { radius }, &Shape::Sphere { radius: radius_b }) => {
             // A ball is a capsule without a middle.
             let pill = Pill::new(0.0, radius, &wa);
             capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, out);

@@ -30,7 +30,7 @@ impl Fade {
 }
 
 /// Where a field acts.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Region {
     /// In the whole world. Default.
     #[default]

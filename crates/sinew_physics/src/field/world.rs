@@ -98,7 +98,7 @@ impl World {
     /// region.
     pub fn field_energy(&self, id: FieldId) -> f32 {
         let field = self.field(id);
-        if let (FieldKind::Mutual(law), super::Region::Everywhere) = (&field.kind, field.region) {
+        if let (FieldKind::Mutual(law), super::Region::Everywhere) = (&field.kind, &field.region) {
             return self.energy_of_pairs(field, law);
         }
         self.targets().fold(0.0, |sum, target| sum + field.energy(&target, self.def.gravity))

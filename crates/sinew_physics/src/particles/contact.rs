@@ -66,7 +66,7 @@ impl ObstacleBody {
 }
 
 /// A shape that particles may touch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
     /// Geometry.
     pub shape: Shape,

@@ -351,7 +351,7 @@ impl IslandSolver {
                 memory: contact.memory,
                 material: combine(&shape_a.material, &shape_b.material),
                 slop: slop(extent),
-                shapes: [shape_a, shape_b].map(|s| PlacedShape::new(s.shape, s.principal_from_shape)),
+                shapes: [shape_a, shape_b].map(|s| PlacedShape::new(s.shape.clone(), s.principal_from_shape)),
                 h: view.h,
             };
             self.manifolds.push(ManifoldRows::new(&source, &self.bodies));

@@ -195,7 +195,7 @@ pub(crate) struct ManifoldRows {
 }
 
 /// One of the two shapes of a manifold.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct PlacedShape {
     pub shape: Shape,
     pub principal_from_shape: Transform,
@@ -237,7 +237,7 @@ impl ManifoldRows {
             a: source.a,
             b: source.b,
             manifold: *source.manifold,
-            shapes: source.shapes,
+            shapes: source.shapes.clone(),
             normal: n,
             count: source.manifold.count,
             core_a: [Vec3::ZERO; MAX_POINTS],
@@ -295,7 +295,7 @@ impl ManifoldRows {
         if turn(self.a) < REFIND_TURN && turn(self.b) < REFIND_TURN {
             return;
         }
-        let [a, b] = self.shapes;
+        let [a, b] = &self.shapes;
         let (pose_a, pose_b) = (bodies[self.a as usize].pose, bodies[self.b as usize].pose);
         let relative = linear(&velocities[self.b as usize]) - linear(&velocities[self.a as usize]);
         let reach = a.shape.bounding_radius() * turn(self.a) + b.shape.bounding_radius() * turn(self.b);

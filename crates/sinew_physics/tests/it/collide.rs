@@ -5,7 +5,7 @@ use sinew_physics::Shape;
 use sinew_physics::collide::{Manifold, ManifoldPoint, collide};
 
 /// One shape, placed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Placed {
     shape: Shape,
     frame: Transform,
@@ -397,13 +397,13 @@ fn degenerate_pairs_have_finite_contacts() {
     ];
     let mut random = Random::new(5);
     let rotations = [Rotation::IDENTITY, Rotation::IDENTITY, random.rotation()];
-    for sa in shapes {
-        for sb in shapes {
+    for sa in &shapes {
+        for sb in &shapes {
             for rotation in rotations {
-                let a = Placed { shape: sa, frame: Transform::IDENTITY };
-                let b = Placed { shape: sb, frame: Transform::new(Vec3::ZERO, rotation) };
+                let a = Placed { shape: sa.clone(), frame: Transform::IDENTITY };
+                let b = Placed { shape: sb.clone(), frame: Transform::new(Vec3::ZERO, rotation) };
                 let m = a.collide(&b, 0.01);
-                if sa == Shape::HalfSpace && sb == Shape::HalfSpace {
+                if *sa == Shape::HalfSpace && *sb == Shape::HalfSpace {
                     assert_eq!(m.count, 0);
                     continue;
                 }
@@ -425,16 +425,17 @@ fn nan_gives_no_contact() {
         Shape::Capsule { half_height: f32::NAN, radius: 1.0 },
         Shape::HalfSpace,
     ];
-    for sa in shapes {
-        for sb in shapes {
+    for sa in &shapes {
+        for sb in &shapes {
             for x in [f32::NAN, f32::INFINITY] {
-                let a = Placed { shape: sa, frame: Transform::IDENTITY };
-                let b = Placed { shape: sb, frame: Transform::from_translation(Vec3::new(0.0, x, 0.0)) };
+                let a = Placed { shape: sa.clone(), frame: Transform::IDENTITY };
+                let b =
+                    Placed { shape: sb.clone(), frame: Transform::from_translation(Vec3::new(0.0, x, 0.0)) };
                 assert_eq!(a.collide(&b, 0.01).count, 0);
                 assert_eq!(b.collide(&a, 0.01).count, 0);
             }
-            let a = Placed { shape: sa, frame: Transform::IDENTITY };
-            let b = Placed { shape: sb, frame: Transform::IDENTITY };
+            let a = Placed { shape: sa.clone(), frame: Transform::IDENTITY };
+            let b = Placed { shape: sb.clone(), frame: Transform::IDENTITY };
             let m = a.collide(&b, 0.01);
             assert!(m.normal.is_finite());
             assert!(m.points().iter().all(|p| p.separation.is_finite() && p.position.is_finite()));

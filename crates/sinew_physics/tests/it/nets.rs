@@ -171,8 +171,13 @@ fn nothing_passes_through_what_moves_and_turns() {
                 inverse_mass: 0.0,
                 inverse_inertia: Sym3::ZERO,
             };
-            let obstacle =
-                Obstacle { shape, previous, world_from_shape: frame, body: 0, material: Material::default() };
+            let obstacle = Obstacle {
+                shape: shape.clone(),
+                previous,
+                world_from_shape: frame,
+                body: 0,
+                material: Material::default(),
+            };
             let start = previous.inverse_point(group.positions()[0]);
             group.substep(h, Vec3::ZERO, &[], &[obstacle], &mut [body]);
             let end = frame.inverse_point(group.positions()[0]);

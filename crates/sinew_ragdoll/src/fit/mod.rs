@@ -44,7 +44,7 @@ pub enum ShapeChoice {
 }
 
 /// A fitted shape and how well it fits.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// Geometry, metres.
     pub shape: Shape,
@@ -68,9 +68,9 @@ pub fn fit_shapes(bones: &Bones, surface: &[Vec<Share>], choice: ShapeChoice) ->
 /// The shape of a bone, or the mirror image of its twin's where that is the better one: a sword that is skinned to a
 /// hand is no part of it, and a coarse mesh may give the two sides different shapes.
 fn reconciled(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
-    let own = fits[bone];
+    let own = fits[bone].clone();
     let Some(twin) = bones.twin(bone) else { return own };
-    let other = fits[twin];
+    let other = fits[twin].clone();
     let plane = bones.plane_of_symmetry();
     let image = |p: Vec3| Vec3::new(2.0 * plane - p.x, p.y, p.z);
     let mirrored_pivots = (image(bones.list[twin].head) - bones.list[bone].head).length();

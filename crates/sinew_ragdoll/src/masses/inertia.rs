@@ -7,7 +7,7 @@ use sinew_physics::Shape;
 const LARGEST_RATIO: f32 = 8.0;
 
 /// Principal moments of a homogeneous shape of this mass about its middle, in its own axes, kg·m².
-pub fn of_shape(shape: Shape, mass: f32) -> Vec3 {
+pub fn of_shape(shape: &Shape, mass: f32) -> Vec3 {
     let unit = shape.mass_properties(1.0);
     unit.inertia.diagonal * (mass / unit.mass)
 }
@@ -24,8 +24,8 @@ pub fn conditioned(principal: Vec3) -> Vec3 {
 }
 
 /// The point, moved to within nine tenths of the shape if it lies further out.
-pub fn inside(shape: Shape, p: Vec3) -> Vec3 {
-    let reach = match shape {
+pub fn inside(shape: &Shape, p: Vec3) -> Vec3 {
+    let reach = match *shape {
         Shape::Box { half_extents } => half_extents,
         Shape::Sphere { radius } => Vec3::splat(0.57 * radius),
         Shape::Capsule { half_height, radius } => {

@@ -46,7 +46,7 @@ pub fn default_mass(height: f32, sex: Sex) -> f32 {
 pub fn distribute(bones: &Bones, fits: &[Fit], options: MassOptions) -> Vec<MassProperties> {
     let shares = match bones.anatomy {
         Anatomy::Human => human_shares(bones, table(options.sex)),
-        Anatomy::Creature => fits.iter().map(|fit| flesh(fit.shape)).collect(),
+        Anatomy::Creature => fits.iter().map(|fit| flesh(&fit.shape)).collect(),
     };
     let sum: f32 = shares.iter().sum();
     let total = options.total.unwrap_or_else(|| match bones.anatomy {
@@ -63,7 +63,7 @@ pub fn distribute(bones: &Bones, fits: &[Fit], options: MassOptions) -> Vec<Mass
 }
 
 /// kg of flesh in a shape.
-fn flesh(shape: Shape) -> f32 {
+fn flesh(shape: &Shape) -> f32 {
     let fill = if matches!(shape, Shape::Box { .. }) { BOX_FILL } else { CAPSULE_FILL };
     DENSITY * fill * shape.volume()
 }
@@ -189,7 +189,7 @@ fn limb_segment(part: Part, table: &Table) -> Option<Segment> {
 
 /// Centre and inertia of one body, in its frame.
 fn properties(bones: &Bones, fit: &Fit, body: usize, mass: f32, sex: Sex) -> MassProperties {
-    let shape_inertia = of_shape(fit.shape, mass);
+    let shape_inertia = of_shape(&fit.shape, mass);
     let segment = match bones.anatomy {
         Anatomy::Human => limb_segment(bones.list[body].part, table(sex)).zip(bones.tail(body)),
         Anatomy::Creature => None,
@@ -214,7 +214,7 @@ fn properties(bones: &Bones, fit: &Fit, body: usize, mass: f32, sex: Sex) -> Mas
     let principal = conditioned(Vec3::new(across, max(longitudinal, 0.5 * shape_inertia.y), across));
     MassProperties {
         mass,
-        center: inside(fit.shape, center),
+        center: inside(&fit.shape, center),
         inertia: Sym3::from_rotated_diagonal(Rotation::from_arc(Vec3::Y, axis), principal),
     }
 }

@@ -119,7 +119,7 @@ fn pose(def: &BodyDef) -> Transform {
 
 /// The same, colliding with nothing and `mass` heavy, its inertia that of its one shape.
 fn weighed_ghost(mass: f32, def: BodyDef) -> BodyDef {
-    let ShapeDef { shape, density, .. } = def.shapes[0];
+    let ShapeDef { ref shape, density, .. } = def.shapes[0];
     BodyDef { mass: Some(shape.mass_properties(density).scaled_to(mass)), ..ghost(def) }
 }
 

@@ -130,7 +130,7 @@ const DISC_MOMENT: f32 = 0.5 * DISC_MASS * DISC_RADIUS * DISC_RADIUS;
 fn disc(center: Vec3, foot: Vec3) -> BodyDef {
     let plate = Shape::Box { half_extents: Vec3::new(0.7 * DISC_RADIUS, 0.006, 0.7 * DISC_RADIUS) };
     let pin = Shape::Capsule { half_height: 0.5 * foot.length(), radius: 0.004 };
-    let mut def = body(plate, center);
+    let mut def = body(plate.clone(), center);
     let mut other = ShapeDef::new(plate);
     other.body_from_shape.rotation = Rotation::from_axis_angle(Vec3::Y, core::f32::consts::FRAC_PI_4);
     let mut pin = ShapeDef::new(pin);

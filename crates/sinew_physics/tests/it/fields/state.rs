@@ -60,7 +60,7 @@ fn crowded(spread: f32) -> World {
         FieldKind::Point(PointGravity { center: Vec3::Y * 2.0, strength: 3.0, softening: 0.5 }),
         FieldKind::Custom { function: 1, parameters },
     ] {
-        let region = if matches!(kind, FieldKind::Point(_)) { inside } else { Region::Everywhere };
+        let region = if matches!(kind, FieldKind::Point(_)) { inside.clone() } else { Region::Everywhere };
         world.add_field(&FieldDef { region, ..FieldDef::new(kind) });
     }
     world

@@ -105,7 +105,7 @@ impl Change {
 
 impl BodyPlan {
     pub fn def(&self) -> BodyDef {
-        let mut shape = ShapeDef::new(self.shape);
+        let mut shape = ShapeDef::new(self.shape.clone());
         shape.material = self.material;
         if !self.collides {
             shape.filter = Filter { layers: 0, mask: 0, group: 0 };

@@ -83,7 +83,7 @@ const BODY_CUTS: &[PartCut] = &[
     |plan, i| core::mem::replace(&mut plan.bodies[i].mass, 1.0) != 1.0,
     |plan, i| {
         let ball = Shape::Sphere { radius: plan.bodies[i].shape.bounding_radius() };
-        core::mem::replace(&mut plan.bodies[i].shape, ball) != ball
+        core::mem::replace(&mut plan.bodies[i].shape, ball.clone()) != ball
     },
 ];
 
