@@ -128,7 +128,8 @@ fn first_static_hit(bodies: &Arena<Body>, mover: &Body, ray: &Ray) -> Option<f32
     let mut first: Option<f32> = None;
     for (_, body) in bodies.iter().filter(|(_, body)| body.kind == BodyKind::Static) {
         for (shape, s) in body.shapes.iter().enumerate() {
-            if !mover.shapes.iter().any(|own| own.filter.meets(s.filter)) {
+            let filter = body.surface(shape).filter;
+            if !mover.surfaces.as_slice().iter().any(|own| own.filter.meets(filter)) {
                 continue;
             }
             let hit = s.shape.cast_ray(&body.world_from_shape(shape), ray);

@@ -42,6 +42,7 @@ pub mod shape;
 mod slices;
 mod snapshot;
 mod spatial;
+mod surface;
 
 pub use body::Velocity;
 pub use boxes::{Aabb, Obb};

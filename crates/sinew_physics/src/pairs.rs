@@ -140,7 +140,7 @@ fn may_collide(bodies: &Arena<Body>, parted: &[(u32, u32)], p: &Proxy, q: &Proxy
     }
     let (a, b) = (bodies.at(p.body), bodies.at(q.body));
     (a.kind == BodyKind::Dynamic || b.kind == BodyKind::Dynamic)
-        && a.shapes[p.shape as usize].filter.meets(b.shapes[q.shape as usize].filter)
+        && a.surface(p.shape as usize).filter.meets(b.surface(q.shape as usize).filter)
         && !a.quarantined
         && !b.quarantined
         && parted.binary_search(&ordered(p.body, q.body)).is_err()

@@ -105,7 +105,7 @@ impl World {
         let body = self.expect(id);
         let s = &body.shapes[shape];
         let (impulse, point) = explosion.push(&s.shape, &body.world_from_shape(shape));
-        let reached = s.filter.layers & explosion.layers != 0 && impulse != Vec3::ZERO;
+        let reached = body.surface(shape).filter.layers & explosion.layers != 0 && impulse != Vec3::ZERO;
         if reached && !self.shelters(explosion, point) {
             wake(&mut self.bodies, id.index);
             self.apply_impulse(id, impulse, point);
@@ -120,6 +120,6 @@ impl World {
 
     /// Has a shape that does more than sense.
     fn is_solid(&self, id: BodyId) -> bool {
-        self.expect(id).shapes.iter().any(|shape| shape.sensing == Sensing::Solid)
+        self.expect(id).surfaces.as_slice().iter().any(|surface| surface.sensing == Sensing::Solid)
     }
 }
