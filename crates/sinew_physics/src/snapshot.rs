@@ -8,7 +8,6 @@ use crate::def::{BodyKind, Sleeping, WorldDef};
 use crate::field::FieldDef;
 use crate::force::BodyForces;
 use crate::joint::Joint;
-use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
 use crate::particles::{AttachmentTarget, ParticleGroup};
 use crate::shape::{Filter, Material, Sensing, Shape};
@@ -97,8 +96,7 @@ impl World {
         self.parted = PartedPairs::new(disabled);
         (self.groups, self.fields) = (groups, fields);
         self.events = Events::default();
-        self.broad = BroadPhase::default();
-        self.broad.invalidate();
+        self.broad.proxies.adopt(&self.bodies);
         Ok(())
     }
 

@@ -4,6 +4,7 @@ use super::def::{not_negative, positive};
 use super::{Fade, Form, Target};
 use crate::def::BodyKind;
 use crate::id::BodyId;
+use crate::proxies::Owner;
 use crate::ray::Ray;
 use crate::shape::{Sensing, Shape};
 use crate::touch::wake;
@@ -114,12 +115,10 @@ impl World {
 
     fn shelters(&self, explosion: &Explosion, point: Vec3) -> bool {
         let ray = Ray { origin: explosion.center, direction: point - explosion.center };
-        explosion.occlusion == Occlusion::Static
-            && self.cast_ray(&ray, |id| self.kind(id) == BodyKind::Static && self.is_solid(id)).is_some()
-    }
-
-    /// Has a shape that does more than sense.
-    fn is_solid(&self, id: BodyId) -> bool {
-        self.expect(id).surfaces.as_slice().iter().any(|surface| surface.sensing == Sensing::Solid)
+        let stands = |id: Owner| {
+            let body = self.bodies.at(id.body);
+            body.kind == BodyKind::Static && body.surface(id.shape as usize).sensing == Sensing::Solid
+        };
+        explosion.occlusion == Occlusion::Static && self.meets_any(&ray, stands)
     }
 }
