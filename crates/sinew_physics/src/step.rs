@@ -48,7 +48,10 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         finalize::break_joints(joints, parted, events);
     });
     stage(Stage::Finalize, &mut || finalize::finalize(&islands.solution().bodies, bodies, events, context));
-    stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands));
+    stage(Stage::Continuous, &mut || {
+        finalize::continuous(bodies, islands, &broad.proxies);
+        broad.proxies.follow(bodies, context.dt);
+    });
     stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, &fields, sleepers, def.sleeping, context.dt));
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, events));
 }

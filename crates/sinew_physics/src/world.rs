@@ -85,7 +85,7 @@ impl World {
     /// If a number is not finite, a shape is not valid, or a dynamic body has no mass.
     pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
         let (index, generation) = self.bodies.insert(Body::new(def));
-        self.broad.invalidate();
+        self.broad.proxies.add(index, self.bodies.at(index));
         BodyId { index, generation }
     }
 
@@ -107,7 +107,7 @@ impl World {
         self.contacts.retain(|contact| contact.key.a != id.index && contact.key.b != id.index);
         self.parted.forget(id.index);
         self.bodies.remove(id.index, id.generation);
-        self.broad.invalidate();
+        self.broad.proxies.remove(id.index);
     }
 
     /// Adds particles with their springs. They do not sleep; a body that sleeps is a wall to them.
@@ -212,7 +212,7 @@ impl World {
         assert!(world_from_body.is_finite(), "a body's pose is finite");
         self.expect_mut(id).set_world_from_body(world_from_body);
         self.wake_neighbors(id.index);
-        self.broad.invalidate();
+        self.broad.proxies.place(id.index, self.bodies.at(id.index));
     }
 
     /// World position of the centre of mass.
