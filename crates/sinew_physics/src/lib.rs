@@ -14,6 +14,7 @@ pub mod collide;
 pub mod cook;
 mod finalize;
 mod islands;
+mod library;
 mod pairs;
 mod parted;
 mod project;
@@ -64,6 +65,7 @@ pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
     Spring, Strength,
 };
+pub use library::{DataKind, LoadError};
 pub use object::{Corrections, Forces, PhysicsObject, Substep};
 pub use query::{BodyHit, Energy, Momentum};
 pub use runner::{Serial, TaskRunner, Threads};

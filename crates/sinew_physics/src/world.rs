@@ -8,6 +8,7 @@ use crate::field::{FieldDef, Functions};
 use crate::id::{BodyId, GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
+use crate::library::ShapeLibrary;
 use crate::object::Objects;
 use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
@@ -32,6 +33,7 @@ pub struct World {
     pub(crate) groups: Arena<ParticleGroup>,
     pub(crate) fields: Arena<FieldDef>,
     pub(crate) functions: Functions,
+    pub(crate) library: ShapeLibrary,
     pub(crate) objects: Objects,
     pub(crate) parted: PartedPairs,
     pub(crate) events: Events,
@@ -62,6 +64,7 @@ impl World {
             groups: Arena::default(),
             fields: Arena::default(),
             functions: Functions::default(),
+            library: ShapeLibrary::default(),
             objects: Objects::default(),
             parted: PartedPairs::default(),
             events: Events::default(),
@@ -85,6 +88,9 @@ impl World {
     /// If a number is not finite, a shape is not valid, or a dynamic body has no mass.
     pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
         let (index, generation) = self.bodies.insert(Body::new(def));
+        for shape in &def.shapes {
+            self.library.keep(&shape.shape);
+        }
         self.broad.proxies.add(index, self.bodies.at(index));
         BodyId { index, generation }
     }
