@@ -23,6 +23,7 @@ mod sleep;
 mod solver;
 mod tasks;
 mod touch;
+pub mod triangles;
 mod update;
 
 mod arena;
@@ -65,5 +66,6 @@ pub use query::{BodyHit, Energy, Momentum};
 pub use runner::{Serial, TaskRunner, Threads};
 pub use shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
 pub use touch::Events;
+pub use triangles::{HeightField, HeightFieldDef, HeightFieldError, Mesh, MeshError};
 pub use update::Update;
 pub use world::World;
