@@ -1,6 +1,7 @@
 //! Questions to the world about points and regions.
 
 use super::{Aabb, Capsule, Cuboid, Obb, Overlap, Penetration, PlacedBox, Sphere, SurfacePoint};
+use crate::convex;
 use crate::id::BodyId;
 use crate::shape::Shape;
 use crate::triangles::overlaps_box;
@@ -70,6 +71,9 @@ fn meets(region: &PlacedBox, shape: &Shape, world_from_shape: &Transform) -> boo
         Shape::Capsule { half_height, radius } => {
             let reach = rotation * Vec3::Y * half_height;
             region.overlaps(&Capsule { ends: [center - reach, center + reach], radius })
+        }
+        Shape::TaperedCapsule { .. } | Shape::Cylinder { .. } | Shape::Cone { .. } => {
+            convex::meets_box(shape, world_from_shape, region)
         }
         Shape::HalfSpace => {
             let normal = rotation * Vec3::Y;

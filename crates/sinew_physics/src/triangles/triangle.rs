@@ -1,7 +1,7 @@
 //! One triangle of a surface: what is closest on it, where a line comes through it.
 
 use crate::boxes::Aabb;
-use sinew_math::{Vec3, max3, min3, normalize_or};
+use sinew_math::{Vec3, abs3, max, max3, min, min3, normalize_or};
 
 /// A triangle that is solid from one side: the one from which its corners run counter-clockwise.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,6 +42,21 @@ impl Triangle {
     /// The vertices of an edge, the smaller name first.
     pub fn edge_vertices(&self, edge: usize) -> (u32, u32) {
         crate::contact::ordered(self.vertices[edge], self.vertices[(edge + 1) % 3])
+    }
+
+    /// The part that reaches furthest along a direction, to within `tolerance`, metres.
+    pub fn support(&self, direction: Vec3, tolerance: f32) -> Part {
+        let along = self.corners.map(|corner| corner.dot(direction));
+        let top = max(max(along[0], along[1]), along[2]);
+        match along.map(|x| x >= top - tolerance) {
+            [true, true, true] => Part::Face,
+            [true, true, false] => Part::Edge(0),
+            [false, true, true] => Part::Edge(1),
+            [true, false, true] => Part::Edge(2),
+            [true, ..] => Part::Corner(0),
+            [_, true, _] => Part::Corner(1),
+            _ => Part::Corner(2),
+        }
     }
 
     /// Seen from another frame, in which the origin of this one is `offset` away.
@@ -112,9 +127,9 @@ pub(crate) fn enter_triangle(corners: &[Vec3; 3], origin: Vec3, direction: Vec3)
 pub(crate) fn overlaps_box(half: Vec3, corners: &[Vec3; 3]) -> bool {
     let apart = |axis: Vec3| {
         let [a, b, c] = corners.map(|corner| corner.dot(axis));
-        let reach = half.dot(sinew_math::abs3(axis));
+        let reach = half.dot(abs3(axis));
         let (low, high) =
-            (sinew_math::min(sinew_math::min(a, b), c), sinew_math::max(sinew_math::max(a, b), c));
+            (min(min(a, b), c), max(max(a, b), c));
         low > reach || high < -reach
     };
     let axes = [Vec3::X, Vec3::Y, Vec3::Z];

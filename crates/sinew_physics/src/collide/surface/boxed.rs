@@ -101,28 +101,12 @@ fn best_axis(placed: &PlacedBox, teller: &Teller<'_>) -> Best {
     }
 }
 
-/// The part of a triangle that reaches furthest along a direction.
-fn support(teller: &Teller<'_>, direction: Vec3, tolerance: f32) -> Part {
-    let along = teller.triangle.corners.map(|corner| corner.dot(direction));
-    let top = max(max(along[0], along[1]), along[2]);
-    let reaches = along.map(|x| x >= top - tolerance);
-    match reaches {
-        [true, true, true] => Part::Face,
-        [true, true, false] => Part::Edge(0),
-        [false, true, true] => Part::Edge(1),
-        [true, false, true] => Part::Edge(2),
-        [true, ..] => Part::Corner(0),
-        [_, true, _] => Part::Corner(1),
-        _ => Part::Corner(2),
-    }
-}
-
 /// The triangle cut to the prism over a face of the box.
 fn box_face(placed: &PlacedBox, k: usize, axis: &Axis, teller: &mut Teller<'_>) -> Option<Part> {
     let outward = -axis.normal;
     let side = sign(placed.axes[k].dot(outward));
     let tolerance = teller.solid.tolerance();
-    let part = support(teller, axis.normal, tolerance);
+    let part = teller.triangle.support(axis.normal, tolerance);
     let mut corners = [Vec3::ZERO; 8];
     let mut count = 3;
     corners[..3].copy_from_slice(&teller.triangle.corners);

@@ -1,6 +1,6 @@
 //! A surface of triangles against a convex shape: several manifolds, none of which knows of the edges between triangles.
 //!
-//! Each triangle near the shape is met by itself ([`round`], [`boxed`]). What it gives is believed only where the triangle
+//! Each triangle near the shape is met by itself ([`round`], [`boxed`], [`other`]). What it gives is believed only where the triangle
 //! has a say: a face over which the shape is speaks first and claims its edges and corners; then edges at which the surface
 //! falls away, which claim their corners; then corners ([`claims`]). So nothing catches on an edge within a floor. What is
 //! left is merged by normal and reduced to four points each ([`patch`]).
@@ -8,6 +8,7 @@
 mod boxed;
 mod claims;
 mod name;
+mod other;
 mod outline;
 mod patch;
 mod round;
@@ -18,6 +19,7 @@ pub(crate) use patch::{MAX_PARTS, Patch};
 use super::ManifoldPoint;
 use super::feature::{self, pair};
 use crate::boxes::Aabb;
+use crate::convex::support::Core;
 use crate::shape::Shape;
 use crate::triangles::{Part, Surface, Triangle};
 use outline::Outline;
@@ -85,12 +87,15 @@ pub(crate) fn collide_surface(
     }
     let to_surface = world_from_surface.rotation.inverse();
     let center = world_from_surface.inverse_point(world_from_shape.translation);
-    let Some(solid) = Solid::new(shape, (to_surface * world_from_shape.rotation).normalize()) else { return };
+    let Some(core) = Core::of(shape) else { return };
+    let frame = Transform::new(Vec3::ZERO, (to_surface * world_from_shape.rotation).normalize());
+    let solid = Solid::new(shape, &core, &frame);
     let local = Motion { velocity: to_surface * motion.velocity, ..*motion };
     scratch.candidates.clear();
     scratch.points.clear();
-    let reach = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| solid.half_width(axis) + motion.margin);
-    surface.overlapping(&Aabb::reaching(center, Vec3::from_array(reach)), |triangle| {
+    let around = shape.aabb(&frame).expand(motion.margin);
+    let around = Aabb { min: around.min + center, max: around.max + center };
+    surface.overlapping(&around, |triangle| {
         // With the shape's centre for origin: what is near it is precise far from the surface's.
         meet(&triangle.moved(-center), &solid, &local, scratch);
     });
@@ -103,10 +108,10 @@ pub(crate) fn collide_surface(
 }
 
 /// What a triangle near the shape has to say.
-fn meet(triangle: &Triangle, solid: &Solid, motion: &Motion, scratch: &mut Scratch) {
+fn meet(triangle: &Triangle, solid: &Solid<'_>, motion: &Motion, scratch: &mut Scratch) {
     // The centre is in front: from behind a triangle is not there.
     let height = triangle.height(Vec3::ZERO);
-    let gap = height - solid.half_width(triangle.normal);
+    let gap = height - solid.depth(triangle.normal);
     if height <= 0.0 || gap > motion.margin {
         return;
     }
@@ -115,6 +120,7 @@ fn meet(triangle: &Triangle, solid: &Solid, motion: &Motion, scratch: &mut Scrat
         Solid::Ball(radius) => round::ball(*radius, &mut teller),
         Solid::Pill(pill) => round::pill(pill, &mut teller),
         Solid::Box(placed) => boxed::meet(placed, gap, &mut teller),
+        Solid::Other(posed) => other::other(posed, gap, &mut teller),
     };
     let closing = -motion.velocity.dot(triangle.normal);
     if part != Some(Part::Face) && closing > 0.0 && gap > 0.0 {
@@ -125,14 +131,14 @@ fn meet(triangle: &Triangle, solid: &Solid, motion: &Motion, scratch: &mut Scrat
 }
 
 /// A shape whose centre is behind the surface, by no more than it is thick, is pushed out where it is nearest.
-fn sunk(surface: &Surface<'_>, center: Vec3, shape: &Shape, solid: &Solid, scratch: &mut Scratch) {
+fn sunk(surface: &Surface<'_>, center: Vec3, shape: &Shape, solid: &Solid<'_>, scratch: &mut Scratch) {
     let Some(closest) = surface.closest(center, shape.inner_radius()) else { return };
     let (distance, _) = closest.signed(center);
     if distance >= 0.0 {
         return;
     }
     let triangle = closest.triangle.moved(-center);
-    let separation = distance - solid.half_width(triangle.normal);
+    let separation = distance - solid.depth(triangle.normal);
     let mut teller = Teller { triangle: &triangle, solid, margin: 0.0, scratch };
     let point = ManifoldPoint {
         position: triangle.normal * (0.5 * distance),
@@ -145,7 +151,7 @@ fn sunk(surface: &Surface<'_>, center: Vec3, shape: &Shape, solid: &Solid, scrat
 /// Writes down what a triangle has to say.
 struct Teller<'a> {
     triangle: &'a Triangle,
-    solid: &'a Solid,
+    solid: &'a Solid<'a>,
     margin: f32,
     scratch: &'a mut Scratch,
 }

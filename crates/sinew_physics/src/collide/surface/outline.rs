@@ -1,11 +1,12 @@
 //! The side of a shape that faces a triangle, cut to the prism over it.
 
 use super::name;
+use crate::convex::feature::MOST_CORNERS;
 use crate::triangles::Triangle;
 use sinew_math::Vec3;
 
-/// Corners of an outline: eight of a shape's side, and one more for each side of the triangle.
-pub(super) const MAX_CORNERS: usize = 16;
+/// Corners of an outline: those of a shape's side, and one more for each side of the triangle.
+pub(super) const MAX_CORNERS: usize = MOST_CORNERS + 3;
 
 /// A corner of an outline.
 #[derive(Clone, Copy, Default)]
@@ -31,12 +32,18 @@ pub(super) enum Side {
 }
 
 /// A point, a line, or a convex polygon that faces a triangle.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub(super) struct Outline {
     corners: [Corner; MAX_CORNERS],
     count: usize,
     /// Feature of the face of the shape that it is.
     pub face: u16,
+}
+
+impl Default for Outline {
+    fn default() -> Self {
+        Self { corners: [Corner::default(); MAX_CORNERS], count: 0, face: 0 }
+    }
 }
 
 impl Outline {
