@@ -121,7 +121,9 @@ impl RagdollReport<'_> {
                 put("radius_m", number(radius));
                 put("half_height_m", number(half_height));
             }
-            Shape::HalfSpace => unreachable!("no body of a ragdoll is a half-space"),
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => {
+                unreachable!("no body of a ragdoll is a half-space or a surface")
+            }
         }
         put("mass_kg", number(body.mass.mass));
         object.into()
@@ -238,6 +240,8 @@ fn shape_cell(shape: &Shape) -> String {
         }
         Shape::Cone { half_height, radius } => format!("cone {} × ⌀ {} cm", cm(half_height), cm(radius)),
         Shape::HalfSpace => "half-space".into(),
+        Shape::Mesh(_) => "mesh".into(),
+        Shape::HeightField(_) => "height field".into(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::error::{Result, quoted};
 use crate::json::{At, number, numbers};
+use crate::surface;
 use serde_json::{Map, Value};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{MassProperties, Shape};
@@ -55,8 +56,21 @@ pub(crate) fn write_pose(pose: Transform, object: &mut Map<String, Value>) {
 }
 
 /// Keys of a shape's geometry.
-pub(crate) const SHAPE_KEYS: [&str; 6] =
-    ["type", "half_extents", "radius", "half_height", "radius_bottom", "radius_top"];
+pub(crate) const SHAPE_KEYS: [&str; 13] = [
+    "type",
+    "half_extents",
+    "radius",
+    "half_height",
+    "radius_bottom",
+    "radius_top",
+    "vertices",
+    "triangles",
+    "columns",
+    "rows",
+    "spacing",
+    "heights",
+    "holes",
+];
 
 /// A shape by its `type` and sizes.
 pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
@@ -91,10 +105,15 @@ pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
             (shape, &["half_height", "radius"])
         }
         "half_space" => (Shape::HalfSpace, &[]),
+        "mesh" => (surface::read_mesh(at)?, &["vertices", "triangles"]),
+        "height_field" => {
+            (surface::read_height_field(at)?, &["columns", "rows", "spacing", "heights", "holes"])
+        }
         other => {
             let other = quoted(other);
             return Err(kind.malformed(format!(
-                "unknown shape {other}; known are box, sphere, capsule, tapered_capsule, cylinder, cone, half_space"
+                "unknown shape {other}; known are box, sphere, capsule, tapered_capsule, \
+                 cylinder, cone, half_space, mesh, height_field"
             )));
         }
     };
@@ -154,6 +173,8 @@ pub(crate) fn write_shape(shape: &Shape, object: &mut Map<String, Value>) {
             put("radius", number(radius));
         }
         Shape::HalfSpace => put("type", "half_space".into()),
+        Shape::Mesh(ref mesh) => surface::write_mesh(mesh, object),
+        Shape::HeightField(ref field) => surface::write_height_field(field, object),
     }
 }
 

@@ -25,6 +25,7 @@ mod solver;
 mod tasks;
 mod touch;
 mod tree;
+pub mod triangles;
 mod update;
 
 mod arena;
@@ -71,5 +72,6 @@ pub use query::{BodyHit, Energy, Momentum};
 pub use runner::{Serial, TaskRunner, Threads};
 pub use shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
 pub use touch::Events;
+pub use triangles::{HeightField, HeightFieldDef, HeightFieldError, Mesh, MeshError};
 pub use update::Update;
 pub use world::World;

@@ -4,9 +4,11 @@
 //! process gets the library itself by [`World::save_shapes`].
 
 use crate::shape::Shape;
+use crate::triangles::{HeightField, Mesh};
 use crate::world::World;
 use sinew_math::{ReadError, Reader, Writer};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// First bytes of a written library; the last is its version.
 const MAGIC: &[u8; 8] = b"sinew-s\x01";
@@ -139,23 +141,39 @@ impl World {
 /// What [`Shape::save_data`] wrote.
 fn load_data(kind: DataKind, data: &mut Reader<'_>) -> Result<Shape, ReadError> {
     match kind {
-        DataKind::Hull | DataKind::Mesh | DataKind::HeightField => Err(data.error("unknown kind of shape")),
+        DataKind::Hull => Err(data.error("unknown kind of shape")),
+        DataKind::Mesh => Ok(Shape::Mesh(Arc::new(Mesh::load(data)?))),
+        DataKind::HeightField => Ok(Shape::HeightField(Arc::new(HeightField::load(data)?))),
     }
 }
 
 impl Shape {
     /// Hash of the data of a shape that holds some, the same on every machine; `None` of those that are sizes only.
     pub fn content_hash(&self) -> Option<u64> {
-        None
+        match self {
+            Self::Mesh(mesh) => Some(mesh.content_hash()),
+            Self::HeightField(field) => Some(field.content_hash()),
+            _ => None,
+        }
     }
 
     /// What a shape with data is; `None` of those that are sizes only.
     pub fn data_kind(&self) -> Option<DataKind> {
-        None
+        match self {
+            Self::Mesh(_) => Some(DataKind::Mesh),
+            Self::HeightField(_) => Some(DataKind::HeightField),
+            _ => None,
+        }
     }
 
     /// Writes the data; nothing of a shape that is sizes only.
-    fn save_data(&self, _w: &mut Writer) {}
+    fn save_data(&self, w: &mut Writer) {
+        match self {
+            Self::Mesh(mesh) => mesh.save(w),
+            Self::HeightField(field) => field.save(w),
+            _ => {}
+        }
+    }
 
     /// What a snapshot names a shape with data by. False, and nothing written, of those that are sizes only.
     pub(crate) fn save_name(&self, w: &mut Writer) -> bool {

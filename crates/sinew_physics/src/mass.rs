@@ -6,7 +6,7 @@ use core::f32::consts::PI;
 use sinew_math::{Sym3, Transform, Vec3};
 
 impl Shape {
-    /// Cubic metres; 0 for a half-space, which has no end.
+    /// Cubic metres; 0 for a half-space, which has no end, and for meshes and height fields, which may be open.
     pub fn volume(&self) -> f32 {
         match *self {
             Shape::Box { half_extents: h } => 8.0 * h.x * h.y * h.z,
@@ -19,11 +19,11 @@ impl Shape {
             Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
                 revolved::volume(&Tapered::new(half_height, radius_bottom, radius_top).slices())
             }
-            Shape::HalfSpace => 0.0,
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => 0.0,
         }
     }
 
-    /// Mass properties in the shape's frame at `density` kg/m³, ≥ 0; zero for a half-space.
+    /// Mass properties in the shape's frame at `density` kg/m³, ≥ 0; zero for what has no volume.
     pub fn mass_properties(&self, density: f32) -> MassProperties {
         let mass = density * self.volume();
         let diagonal = match *self {
@@ -40,7 +40,7 @@ impl Shape {
             Shape::Cone { half_height, radius } => {
                 return revolved::mass_properties(&Frustum::cone(half_height, radius).slices(), density);
             }
-            Shape::HalfSpace => Vec3::ZERO,
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => Vec3::ZERO,
         };
         MassProperties { mass, center: Vec3::ZERO, inertia: Sym3::from_diagonal(diagonal) }
     }

@@ -336,6 +336,7 @@ pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {
             w.f32(half_height);
             w.f32(radius);
         }
+        Shape::Mesh(_) | Shape::HeightField(_) => unreachable!("shapes with data are saved by name"),
     }
 }
 
@@ -381,7 +382,8 @@ pub(crate) fn load_filter(r: &mut Reader<'_>) -> Result<Filter, ReadError> {
 }
 
 fn save_contact(w: &mut Writer, contact: &Contact) {
-    for x in [contact.key.a, contact.key.b, contact.key.shape_a, contact.key.shape_b] {
+    let ContactKey { a, b, shape_a, shape_b, part } = contact.key;
+    for x in [a, b, shape_a, shape_b, part] {
         w.u32(x);
     }
     w.bool(contact.touching);
@@ -403,7 +405,7 @@ fn save_contact(w: &mut Writer, contact: &Contact) {
 
 fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, ReadError> {
     let (a, b) = (body_index(r, bodies)?, body_index(r, bodies)?);
-    let key = ContactKey { a, b, shape_a: r.u32()?, shape_b: r.u32()? };
+    let key = ContactKey { a, b, shape_a: r.u32()?, shape_b: r.u32()?, part: r.u32()? };
     let shapes = |body: u32| bodies.at(body).shapes.len() as u32;
     if key.shape_a >= shapes(a) || key.shape_b >= shapes(b) {
         return Err(r.error("a contact names a shape that is not there"));

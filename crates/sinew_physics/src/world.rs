@@ -2,6 +2,7 @@
 
 use crate::arena::Arena;
 use crate::body::{Body, Velocity};
+use crate::collide::parts::Parts;
 use crate::contact::Contact;
 use crate::def::{BodyDef, BodyKind, WorldDef};
 use crate::field::{FieldDef, Functions};
@@ -38,6 +39,7 @@ pub struct World {
     pub(crate) parted: PartedPairs,
     pub(crate) events: Events,
     pub(crate) broad: BroadPhase,
+    pub(crate) parts: Parts,
     pub(crate) islands: Islands,
     /// Number of islands that fell asleep so far.
     pub(crate) sleepers: u32,
@@ -69,6 +71,7 @@ impl World {
             parted: PartedPairs::default(),
             events: Events::default(),
             broad: BroadPhase::default(),
+            parts: Parts::default(),
             islands: Islands::default(),
             sleepers: 0,
             steps: 0,

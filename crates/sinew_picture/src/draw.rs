@@ -50,7 +50,8 @@ pub enum Solid {
 }
 
 impl Solid {
-    /// The solid of a collision shape; none of a half-space, which has no end: see [`floor`].
+    /// The solid of a collision shape; none of a half-space, which has no end: see [`floor`]; none of surfaces: see
+    /// [`surface`].
     pub fn of(shape: &Shape) -> Option<Self> {
         match *shape {
             Shape::Box { half_extents } => Some(Self::Box { half_extents }),
@@ -61,7 +62,7 @@ impl Solid {
             }
             Shape::Cylinder { half_height, radius } => Some(Self::Cylinder { half_height, radius }),
             Shape::Cone { half_height, radius } => Some(Self::Cone { half_height, radius }),
-            Shape::HalfSpace => None,
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => None,
         }
     }
 }
@@ -90,6 +91,21 @@ pub fn solid(solid: Solid, world_from_solid: Transform, material: Material) -> M
         *normal = world_from_solid.rotation * *normal;
     }
     Model { material, ..model }
+}
+
+/// The triangles of a mesh or height field, each flat; none of other shapes.
+pub fn surface(shape: &Shape, world_from_shape: Transform, material: Material) -> Model {
+    let positions: Vec<Vec3> = match shape {
+        Shape::Mesh(mesh) => mesh.corners_of_all().flatten().collect(),
+        Shape::HeightField(field) => field.triangles().flatten().collect(),
+        _ => Vec::new(),
+    };
+    Model {
+        indices: (0..positions.len() as u32).collect(),
+        positions: positions.into_iter().map(|p| world_from_shape.point(p)).collect(),
+        material,
+        ..Model::default()
+    }
 }
 
 /// A ball of eight fields, every second one darker, so that it is seen to turn.

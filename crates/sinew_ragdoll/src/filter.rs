@@ -168,7 +168,7 @@ fn thinner(shape: &Shape, factor: f32) -> Shape {
         Shape::Cone { half_height, radius } => {
             Shape::Cone { half_height: *half_height, radius: radius * factor }
         }
-        Shape::HalfSpace => Shape::HalfSpace,
+        Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => shape.clone(),
     }
 }
 

@@ -57,7 +57,7 @@ impl Core {
             }
             Shape::Cylinder { half_height, radius } => Self::Frustum(Frustum::cylinder(half_height, radius)),
             Shape::Cone { half_height, radius } => Self::Frustum(Frustum::cone(half_height, radius)),
-            Shape::HalfSpace => return None,
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => return None,
         })
     }
 }

@@ -24,7 +24,8 @@ impl Shape {
     /// Calls `visit` with panels that together have the shape's projected area in every direction: the faces of a box,
     /// each at its 2×2 Gauss points, so that spin is braked as well; a ball's disk; a capsule's disk and the strip of its
     /// cylinder that faces `stream` (m/s, world); likewise of a tapered one; the ends of cylinder and cone, and the part of
-    /// their side that faces the stream. A half-space has none.
+    /// their side that faces the stream. Half-spaces, meshes
+    /// and height fields have none.
     pub(super) fn exposed(&self, at: &Transform, stream: Vec3, mut visit: impl FnMut(Panel)) {
         match *self {
             Self::Box { half_extents } => box_panels(half_extents, at, &mut visit),
@@ -50,7 +51,7 @@ impl Shape {
             Self::Cone { half_height, radius } => {
                 frustum_panels(&Frustum::cone(half_height, radius), at, stream, &mut visit);
             }
-            Self::HalfSpace => {}
+            Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_) => {}
         }
     }
 }

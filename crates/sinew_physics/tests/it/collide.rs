@@ -28,6 +28,7 @@ impl Placed {
             Shape::Capsule { half_height, radius } => {
                 center + f64::from(half_height) * along(m.y_axis).abs() + f64::from(radius)
             }
+            Shape::Mesh(_) | Shape::HeightField(_) => unreachable!("surfaces have no core"),
             Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
                 let reach = f64::from(half_height) * along(m.y_axis);
                 center + (reach + f64::from(radius_top)).max(f64::from(radius_bottom) - reach)

@@ -57,6 +57,7 @@ fn holds(shape: &Shape, p: Vec3) -> bool {
             p.y.abs() <= half_height && p.x.hypot(p.z) <= radius * (half_height - p.y) / (2.0 * half_height)
         }
         Shape::HalfSpace => p.y <= 0.0,
+        Shape::Mesh(_) | Shape::HeightField(_) => unreachable!("surfaces have no inside"),
     }
 }
 

@@ -40,7 +40,7 @@ pub fn inside(shape: &Shape, p: Vec3) -> Vec3 {
         Shape::Cone { half_height, radius } => {
             Vec3::new(0.35 * radius, 0.0, 0.35 * radius) + Vec3::Y * (0.5 * half_height)
         }
-        Shape::HalfSpace => Vec3::ZERO,
+        Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => Vec3::ZERO,
     } * 0.9;
     Vec3::new(clamp(p.x, -reach.x, reach.x), clamp(p.y, -reach.y, reach.y), clamp(p.z, -reach.z, reach.z))
 }
