@@ -1,5 +1,6 @@
 //! `store`, `finalize` and `continuous`: the world takes what the islands computed.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::Contact;
@@ -11,7 +12,7 @@ use crate::joint::def::JointState;
 use crate::parted::PartedPairs;
 use crate::particles::ParticleGroup;
 use crate::ray::Ray;
-use crate::solver::SolvedBody;
+use crate::solver::{SolvedBody, SolvedJoint};
 use crate::step::StepContext;
 use crate::touch::{Events, id};
 use sinew_math::Vec3;
@@ -51,15 +52,23 @@ pub(crate) fn store(
 }
 
 /// In `store`: joints that the step loaded beyond their strength break.
-pub(crate) fn break_joints(joints: &mut Arena<Joint>, parted: &mut PartedPairs, events: &mut Events) {
+pub(crate) fn break_joints(
+    islands: &Islands,
+    joints: &mut Arena<Joint>,
+    parted: &mut PartedPairs,
+    events: &mut Events,
+) {
     events.broken.clear();
-    for (index, generation, joint) in joints.entries_mut() {
-        if joint.is_enabled() && joint.is_overloaded() {
+    for &SolvedJoint { index, .. } in &islands.solution().joints {
+        let generation = joints.generation(index);
+        let joint = joints.at_mut(index);
+        if joint.is_overloaded() {
             joint.state = JointState::Disabled;
             events.broken.push(JointId { index, generation });
         }
     }
     if !events.broken.is_empty() {
+        events.broken.sort_unstable();
         parted.invalidate();
     }
 }
@@ -67,13 +76,14 @@ pub(crate) fn break_joints(joints: &mut Arena<Joint>, parted: &mut PartedPairs, 
 /// `finalize`: poses and velocities; a body whose state is not finite keeps its old pose, stops and is quarantined.
 /// Kinematic bodies move as their velocity says; forces of the step are used up.
 pub(crate) fn finalize(
-    solved: &[SolvedBody],
+    islands: &Islands,
     bodies: &mut Arena<Body>,
+    activity: &mut Activity,
     events: &mut Events,
     context: &StepContext<'_>,
 ) {
     events.quarantined.clear();
-    for SolvedBody { index, pose, velocity } in solved {
+    for SolvedBody { index, pose, velocity } in &islands.solution().bodies {
         let body = bodies.at_mut(*index);
         body.previous = body.world_from_principal;
         body.force = Vec3::ZERO;
@@ -84,11 +94,13 @@ pub(crate) fn finalize(
         } else {
             body.velocity = Default::default();
             body.quarantined = true;
+            activity.note(*index, body);
             let id = id(bodies, *index);
             events.quarantined.push(id);
         }
     }
-    for (_, body) in bodies.iter_mut().filter(|(_, body)| body.kind == BodyKind::Kinematic) {
+    for &index in activity.kinematic() {
+        let body = bodies.at_mut(index);
         body.previous = body.world_from_principal;
         body.world_from_principal = body.carried(context.h, context.substeps);
     }

@@ -24,6 +24,7 @@ mod tasks;
 mod touch;
 mod update;
 
+mod activity;
 mod arena;
 mod body;
 pub mod boxes;

@@ -1,5 +1,6 @@
 //! `pairs`: which shapes may meet. Sweep and prune along x over the bounds of all shapes.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::boxes::{Aabb, Overlap};
@@ -35,18 +36,21 @@ impl BroadPhase {
         self.stale = true;
     }
 
-    /// Brings `contacts` up to date: sorted by key, one for each pair that may meet.
+    /// Brings `contacts` up to date: sorted by key, one for each pair that may meet. Those to which nothing can happen are
+    /// put aside.
     pub fn update(
         &mut self,
         bodies: &Arena<Body>,
         parted: &[(u32, u32)],
         contacts: &mut Vec<Contact>,
+        activity: &mut Activity,
         dt: f32,
     ) {
+        activity.return_contacts(contacts);
         self.refresh(bodies, dt);
         self.sweep(bodies, parted);
         self.keys.sort_unstable();
-        self.merge(bodies, contacts);
+        self.merge(bodies, contacts, activity);
     }
 
     fn refresh(&mut self, bodies: &Arena<Body>, dt: f32) {
@@ -108,25 +112,26 @@ impl BroadPhase {
         }
     }
 
-    /// Merges the sorted keys with the sorted contacts: old ones keep their memory; contacts of sleepers stay.
-    fn merge(&mut self, bodies: &Arena<Body>, contacts: &mut Vec<Contact>) {
+    /// Merges the sorted keys with the sorted contacts: old ones keep their memory, and those that were not found go, or
+    /// are put aside where nothing about them can have changed.
+    fn merge(&mut self, bodies: &Arena<Body>, contacts: &mut Vec<Contact>, activity: &mut Activity) {
+        let mut part_with = |contact: Contact| {
+            if !bodies.at(contact.key.a).can_touch() && !bodies.at(contact.key.b).can_touch() {
+                activity.put_aside(contact);
+            }
+        };
         self.next.clear();
         let mut old = contacts.iter().copied().peekable();
         for &key in &self.keys {
             while let Some(contact) = old.next_if(|contact| contact.key < key) {
-                self.next.extend(stays(bodies, &contact).then_some(contact));
+                part_with(contact);
             }
             let known = old.next_if(|contact| contact.key == key);
             self.next.push(known.unwrap_or_else(|| Contact::new(key)));
         }
-        self.next.extend(old.filter(|contact| stays(bodies, contact)));
+        old.for_each(part_with);
         core::mem::swap(contacts, &mut self.next);
     }
-}
-
-/// A contact that was not found again stays only if nothing about it can have changed.
-fn stays(bodies: &Arena<Body>, contact: &Contact) -> bool {
-    !bodies.at(contact.key.a).can_touch() && !bodies.at(contact.key.b).can_touch()
 }
 
 fn key(p: &Proxy, q: &Proxy) -> ContactKey {

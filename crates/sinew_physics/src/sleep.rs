@@ -1,9 +1,10 @@
 //! `sleep`: an island in which every body has been slow, or has stayed in its place, for a while stops being simulated.
 //! Displacement counts as well as velocity: a body held between others may tremble and still sleep.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
-use crate::body::{Body, Rest, Velocity};
-use crate::def::Sleeping;
+use crate::body::{Body, Rest};
+use crate::def::{Sleeping, WorldDef};
 use crate::field::Fields;
 use crate::islands::Islands;
 
@@ -24,11 +25,12 @@ const TREMBLE_ANGULAR: f32 = 1.0;
 pub(crate) fn sleep(
     islands: &Islands,
     bodies: &mut Arena<Body>,
+    activity: &mut Activity,
     fields: &Fields<'_>,
     sleepers: &mut u32,
-    sleeping: Sleeping,
-    dt: f32,
+    def: &WorldDef,
 ) {
+    let dt = def.dt();
     for island in islands.iter() {
         let mut least = f32::INFINITY;
         for &index in island.bodies {
@@ -43,13 +45,8 @@ pub(crate) fn sleep(
                 least = sinew_math::min(*calm, least);
             }
         }
-        if sleeping == Sleeping::On && least >= TIME_TO_SLEEP && !island.bodies.is_empty() {
-            for &index in island.bodies {
-                let body = bodies.at_mut(index);
-                body.rest = Rest::Asleep { island: *sleepers };
-                body.velocity = Velocity::default();
-                body.previous = body.world_from_principal;
-            }
+        if def.sleeping == Sleeping::On && least >= TIME_TO_SLEEP && !island.bodies.is_empty() {
+            activity.sleep(bodies, island.bodies, *sleepers);
             *sleepers = sleepers.wrapping_add(1);
         }
     }

@@ -1,5 +1,6 @@
 //! Snapshots: everything that decides the future, and nothing else, in one order.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::{Body, BodyShape, Rest, Velocity};
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
@@ -31,10 +32,9 @@ impl World {
         w.u32(self.sleepers);
         self.bodies.save(w, save_body);
         self.joints.save(w, |w, joint| joint.save(w));
-        w.count(self.contacts.len());
-        for contact in &self.contacts {
-            save_contact(w, contact);
-        }
+        let contacts = self.contacts_in_order();
+        w.count(contacts.len());
+        contacts.into_iter().for_each(|contact| save_contact(w, contact));
         self.groups.save(w, |w, group| group.save(w));
         self.fields.save(w, |w, field| field.save(w));
         w.count(self.parted.disabled.len());
@@ -92,6 +92,7 @@ impl World {
         self.objects.load(r)?;
         self.def = def;
         (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
+        self.activity = Activity::new(&bodies, &joints);
         (self.bodies, self.joints, self.contacts) = (bodies, joints, contacts);
         self.parted = PartedPairs::new(disabled);
         (self.groups, self.fields) = (groups, fields);
