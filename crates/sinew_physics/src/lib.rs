@@ -46,7 +46,7 @@ mod spatial;
 
 pub use body::Velocity;
 pub use boxes::{Aabb, Obb};
-pub use def::{BodyDef, BodyKind, Sleeping, WorldDef};
+pub use def::{BodyDef, BodyKind, SleepThresholds, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
 pub use field::{
     Buoyancy, Drag, Explosion, Fade, FieldDef, FieldKind, FieldPoint, Gusts, MutualGravity, Occlusion,

@@ -96,11 +96,12 @@ pub(crate) fn touch(
     activity.return_contacts(contacts);
 }
 
-fn wake_touched(bodies: &mut Arena<Body>, activity: &mut Activity, mover: u32, sleeper: u32) {
+fn wake_touched(bodies: &mut Arena<Body>, activity: &mut Activity, mover: u32, touched: u32) {
     let body = bodies.at(mover);
-    let wakes = body.is_active() || (body.kind == BodyKind::Kinematic && body.can_touch());
-    if wakes {
-        activity.wake(bodies, sleeper);
+    match body.kind {
+        BodyKind::Dynamic if body.is_active() => activity.wake(bodies, touched),
+        BodyKind::Kinematic if body.can_touch() => activity.disturb(bodies, touched),
+        _ => {}
     }
 }
 
@@ -114,7 +115,7 @@ fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Act
         for at in 0..activity.joints_of.body(mover).len() {
             let joint = joints.at(activity.joints_of.body(mover)[at]);
             if joint.is_enabled() {
-                activity.wake(bodies, if joint.a == mover { joint.b } else { joint.a });
+                activity.disturb(bodies, if joint.a == mover { joint.b } else { joint.a });
             }
         }
     }

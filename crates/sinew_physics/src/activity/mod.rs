@@ -103,7 +103,7 @@ impl Activity {
         let mut member = index;
         loop {
             let body = bodies.at_mut(member);
-            body.rest = Rest::Awake { calm: 0.0 };
+            body.disturb();
             self.note(member, body);
             self.recall(member);
             member = core::mem::replace(&mut self.next[member as usize], member);
@@ -111,6 +111,12 @@ impl Activity {
                 return;
             }
         }
+    }
+
+    /// Wakes a body, or keeps it awake for as long as if it had just woken.
+    pub fn disturb(&mut self, bodies: &mut Arena<Body>, index: u32) {
+        self.wake(bodies, index);
+        bodies.at_mut(index).disturb();
     }
 
     /// Puts bodies to sleep that wake together from now on, under a number that no others have.

@@ -102,14 +102,17 @@ impl World {
         self.joint_changed(id);
     }
 
-    /// Gives a joint another motor, or none; both bodies wake. Cheap enough for every step.
+    /// Gives a joint another motor, or none; both bodies wake, unless it is the motor that it has. Cheap enough for every
+    /// step.
     ///
     /// # Panics
     /// If a number is not valid.
     pub fn set_motor(&mut self, id: JointId, motor: Option<Motor>) {
         assert!(motor.is_none_or(|motor| motor.is_valid()), "a motor's numbers are finite");
-        self.expect_joint_mut(id).set_motor(motor);
-        self.wake_joint(id);
+        if self.expect_joint(id).drive.motor != motor {
+            self.expect_joint_mut(id).set_motor(motor);
+            self.wake_joint(id);
+        }
     }
 
     /// Lets a joint act, or not; both bodies wake. One that broke acts again, with the gap that it has.
