@@ -74,7 +74,7 @@ impl Islands {
         let first_group = self.active.len() as u32;
         self.neighbors.resize(groups.slot_count(), Neighbors::default());
         for (index, group) in groups.iter() {
-            self.neighbors[index as usize].find(group, view.bodies, view.def.dt());
+            self.neighbors[index as usize].find(group, view);
             for i in 0..self.neighbors[index as usize].bodies.len() {
                 let body = self.neighbors[index as usize].bodies[i];
                 if let Some(place) = self.place(view, body) {

@@ -17,11 +17,13 @@ mod islands;
 mod pairs;
 mod parted;
 mod project;
+mod proxies;
 mod sensors;
 mod sleep;
 mod solver;
 mod tasks;
 mod touch;
+mod tree;
 mod update;
 
 mod activity;
@@ -38,11 +40,13 @@ pub mod object;
 pub mod particles;
 mod query;
 pub mod ray;
+mod rays;
 pub mod runner;
 pub mod shape;
 mod slices;
 mod snapshot;
 mod spatial;
+mod surface;
 
 pub use body::Velocity;
 pub use boxes::{Aabb, Obb};

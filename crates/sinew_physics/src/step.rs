@@ -28,10 +28,14 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let World { events, broad, activity, islands, parted, sleepers, .. } = world;
     let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
 
-    stage(Stage::Pairs, &mut || broad.update(bodies, parted.of(joints), contacts, activity, context.dt));
+    stage(Stage::Pairs, &mut || {
+        activity.wake_struck(bodies, groups, &broad.proxies, def);
+        broad.update(bodies, parted.of(joints), contacts, activity, context.dt);
+    });
     stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
     stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, events));
-    let view = View { bodies, activity, joints, contacts, def, fields, h: context.h };
+    let proxies = &broad.proxies;
+    let view = View { bodies, activity, proxies, joints, contacts, def, fields, h: context.h };
     stage(Stage::Islands, &mut || islands.find(&view, groups));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
 
@@ -43,12 +47,9 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         objects.rouse(bodies, activity);
     }
 
-    stage(Stage::Store, &mut || {
-        finalize::store(islands, joints, contacts, groups, events, context.dt);
-        finalize::break_joints(islands, joints, parted, events);
-    });
+    stage(Stage::Store, &mut || finalize::store(islands, joints, parted, contacts, groups, events, context));
     stage(Stage::Finalize, &mut || finalize::finalize(islands, bodies, activity, events, context));
-    stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands));
+    stage(Stage::Continuous, &mut || finalize::continuous(islands, bodies, activity, broad, context.dt));
     stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, activity, &fields, sleepers, def));
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, events));
 }

@@ -58,7 +58,7 @@ pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &
             margin,
             &mut manifold,
         );
-        contact.sensor = a.shapes[sa].sensing == Sensing::Sensor || b.shapes[sb].sensing == Sensing::Sensor;
+        contact.sensor = a.surface(sa).sensing == Sensing::Sensor || b.surface(sb).sensing == Sensing::Sensor;
         contact.memory = contact.memory.matched(&contact.manifold, &manifold);
         contact.manifold = manifold;
     });

@@ -90,7 +90,7 @@ impl World {
     pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
         let (index, generation) = self.bodies.insert(Body::new(def));
         self.activity.add(index, self.bodies.at(index));
-        self.broad.invalidate();
+        self.broad.proxies.add(index, self.bodies.at(index));
         BodyId { index, generation }
     }
 
@@ -113,7 +113,7 @@ impl World {
         self.activity.remove(id.index);
         self.parted.forget(id.index);
         self.bodies.remove(id.index, id.generation);
-        self.broad.invalidate();
+        self.broad.proxies.remove(id.index);
     }
 
     /// Adds particles with their springs. They do not sleep; a body that sleeps is a wall to them.
@@ -223,7 +223,7 @@ impl World {
         assert!(world_from_body.is_finite(), "a body's pose is finite");
         self.expect_mut(id).set_world_from_body(world_from_body);
         self.wake_around(id.index);
-        self.broad.invalidate();
+        self.broad.proxies.place(id.index, self.bodies.at(id.index));
     }
 
     /// World position of the centre of mass.

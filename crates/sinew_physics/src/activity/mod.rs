@@ -13,9 +13,13 @@ mod world;
 use crate::arena::Arena;
 use crate::body::{Body, Rest, Velocity};
 use crate::contact::Contact;
-use crate::def::BodyKind;
+use crate::def::{BodyKind, WorldDef};
 use crate::joint::{Incidence, Joint};
+use crate::particles::ParticleGroup;
+use crate::proxies::{Owner, Proxies};
+use crate::shape::Sensing;
 use aside::Aside;
+use core::ops::ControlFlow;
 use slot_set::SlotSet;
 
 /// Who is awake, what those who are not have put aside, and who holds whom.
@@ -30,6 +34,7 @@ pub(crate) struct Activity {
     aside: Aside,
     /// Contacts of what woke or set off, until the step goes through them.
     returned: Vec<Contact>,
+    struck: Vec<u32>,
 }
 
 impl Activity {
@@ -65,6 +70,11 @@ impl Activity {
     fn asleep_with(&self, index: u32) -> impl Iterator<Item = u32> {
         let next = move |&at: &u32| Some(self.next[at as usize]).filter(|&next| next != index);
         core::iter::successors(Some(index), next).skip(1)
+    }
+
+    /// All that may move: both of these, each once.
+    pub fn movers(&self) -> impl Iterator<Item = u32> {
+        self.active().chain(self.kinematic.iter().copied())
     }
 
     /// Takes note of a body that came.
@@ -117,6 +127,34 @@ impl Activity {
     pub fn disturb(&mut self, bodies: &mut Arena<Body>, index: u32) {
         self.wake(bodies, index);
         bodies.at_mut(index).disturb();
+    }
+
+    /// Wakes what particles strike: those that lie on a sleeper are too slow to.
+    pub fn wake_struck(
+        &mut self,
+        bodies: &mut Arena<Body>,
+        groups: &Arena<ParticleGroup>,
+        proxies: &Proxies,
+        def: &WorldDef,
+    ) {
+        let (speed, dt) = (def.sleep_thresholds.speed, def.dt());
+        for (_, group) in groups.iter().filter(|(_, group)| group.fastest() > speed) {
+            let bounds = group.bounds().expand(group.fastest() * dt);
+            let mut struck = core::mem::take(&mut self.struck);
+            let _ = proxies.overlapping(&bounds, |Owner { body: index, shape }| {
+                let (body, shape) = (bodies.at(index), shape as usize);
+                let surface = body.surface(shape);
+                let at = body.world_from_shape(shape);
+                let strikes = !body.is_awake()
+                    && surface.filter.meets(group.filter())
+                    && surface.sensing == Sensing::Solid
+                    && group.strikes(&body.shapes[shape].shape, &at, speed, dt);
+                struck.extend(strikes.then_some(index));
+                ControlFlow::<()>::Continue(())
+            });
+            struck.drain(..).for_each(|index| self.wake(bodies, index));
+            self.struck = struck;
+        }
     }
 
     /// Puts bodies to sleep that wake together from now on, under a number that no others have.

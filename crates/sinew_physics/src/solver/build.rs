@@ -13,6 +13,7 @@ use crate::def::WorldDef;
 use crate::field::Fields;
 use crate::islands::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
+use crate::proxies::Proxies;
 use crate::spatial::{ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
 
@@ -23,6 +24,7 @@ const MAX_TREE: usize = 1024;
 pub(crate) struct View<'a> {
     pub bodies: &'a Arena<Body>,
     pub activity: &'a Activity,
+    pub proxies: &'a Proxies,
     pub joints: &'a Arena<Joint>,
     pub contacts: &'a [Contact],
     pub def: &'a WorldDef,
@@ -342,6 +344,8 @@ impl IslandSolver {
             let (a, b) = (view.bodies.at(contact.key.a), view.bodies.at(contact.key.b));
             let shape_a = &a.shapes[contact.key.shape_a as usize];
             let shape_b = &b.shapes[contact.key.shape_b as usize];
+            let surface_a = a.surface(contact.key.shape_a as usize);
+            let surface_b = b.surface(contact.key.shape_b as usize);
             let extent = min(shape_a.shape.smallest_extent(), shape_b.shape.smallest_extent());
             let source = ManifoldSource {
                 contact: index,
@@ -351,7 +355,7 @@ impl IslandSolver {
                 b_moves: b.is_active(),
                 manifold: &contact.manifold,
                 memory: contact.memory,
-                material: combine(&shape_a.material, &shape_b.material),
+                material: combine(&surface_a.material, &surface_b.material),
                 slop: slop(extent),
                 shapes: [shape_a, shape_b].map(|s| PlacedShape::new(s.shape.clone(), s.principal_from_shape)),
                 h: view.h,

@@ -1,5 +1,6 @@
 //! What falls asleep and what does not; what wakes it.
 
+mod particles;
 mod rest;
 mod wake;
 
