@@ -23,6 +23,18 @@ impl ContactKey {
     }
 }
 
+impl ContactKey {
+    /// Whether a body is one of the two.
+    pub fn has(self, body: u32) -> bool {
+        self.a == body || self.b == body
+    }
+
+    /// The other body of a pair.
+    pub fn other(self, body: u32) -> u32 {
+        if self.a == body { self.b } else { self.a }
+    }
+}
+
 /// A pair of body indices, the smaller first.
 pub(crate) fn ordered(a: u32, b: u32) -> (u32, u32) {
     if a < b { (a, b) } else { (b, a) }

@@ -28,6 +28,7 @@ mod tree;
 pub mod triangles;
 mod update;
 
+mod activity;
 mod arena;
 mod body;
 pub mod boxes;
@@ -53,7 +54,7 @@ mod surface;
 
 pub use body::Velocity;
 pub use boxes::{Aabb, Obb};
-pub use def::{BodyDef, BodyKind, Sleeping, WorldDef};
+pub use def::{BodyDef, BodyKind, SleepThresholds, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
 pub use field::{
     Buoyancy, Drag, Explosion, Fade, FieldDef, FieldKind, FieldPoint, Gusts, MutualGravity, Occlusion,

@@ -1,5 +1,6 @@
 //! `pairs`: which shapes may meet, found by the trees over their bounds.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, ContactKey, ordered};
@@ -15,33 +16,42 @@ pub(crate) struct BroadPhase {
 }
 
 impl BroadPhase {
-    /// Brings `contacts` up to date: sorted by key, one for each pair that may meet.
+    /// Brings `contacts` up to date: sorted by key, one for each pair that may meet. Those to which nothing can happen are
+    /// put aside.
     pub fn update(
         &mut self,
         bodies: &Arena<Body>,
         parted: &[(u32, u32)],
         contacts: &mut Vec<Contact>,
+        activity: &mut Activity,
         dt: f32,
     ) {
-        self.proxies.follow(bodies, dt);
+        activity.return_contacts(contacts);
+        self.proxies.follow(bodies, activity, dt);
         self.keys.clear();
         let keys = &mut self.keys;
-        self.proxies.pairs(bodies, |p, q| {
+        self.proxies.pairs(bodies, activity, |p, q| {
             if may_collide(bodies, parted, p, q) {
                 keys.push(key(p, q));
             }
         });
         self.keys.sort_unstable();
-        self.merge(bodies, contacts);
+        self.merge(bodies, contacts, activity);
     }
 
-    /// Merges the sorted keys with the sorted contacts: old ones keep their memory; contacts of sleepers stay.
-    fn merge(&mut self, bodies: &Arena<Body>, contacts: &mut Vec<Contact>) {
+    /// Merges the sorted keys with the sorted contacts: old ones keep their memory, and those that were not found go, or
+    /// are put aside where nothing about them can have changed.
+    fn merge(&mut self, bodies: &Arena<Body>, contacts: &mut Vec<Contact>, activity: &mut Activity) {
+        let mut part_with = |contact: Contact| {
+            if !bodies.at(contact.key.a).can_touch() && !bodies.at(contact.key.b).can_touch() {
+                activity.put_aside(contact);
+            }
+        };
         self.next.clear();
         let mut old = contacts.iter().copied().peekable();
         for &key in &self.keys {
             while let Some(contact) = old.next_if(|contact| contact.key < key) {
-                self.next.extend(stays(bodies, &contact).then_some(contact));
+                part_with(contact);
             }
             let before = self.next.len();
             while let Some(contact) = old.next_if(|contact| contact.key.is_of_pair(key)) {
@@ -51,14 +61,9 @@ impl BroadPhase {
                 self.next.push(Contact::new(key));
             }
         }
-        self.next.extend(old.filter(|contact| stays(bodies, contact)));
+        old.for_each(part_with);
         core::mem::swap(contacts, &mut self.next);
     }
-}
-
-/// A contact that was not found again stays only if nothing about it can have changed.
-fn stays(bodies: &Arena<Body>, contact: &Contact) -> bool {
-    !bodies.at(contact.key.a).can_touch() && !bodies.at(contact.key.b).can_touch()
 }
 
 fn key(p: Owner, q: Owner) -> ContactKey {
@@ -177,7 +182,7 @@ mod tests {
     fn check(world: &mut World, case: usize) -> usize {
         let dt = world.def.dt();
         let parted = world.parted.of(&world.joints).to_vec();
-        world.broad.update(&world.bodies, &parted, &mut world.contacts, dt);
+        world.broad.update(&world.bodies, &parted, &mut world.contacts, &mut world.activity, dt);
         let tried = tried(world, &parted);
         assert_eq!(world.broad.keys, tried, "case {case}");
         tried.len()

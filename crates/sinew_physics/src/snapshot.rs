@@ -1,10 +1,11 @@
 //! Snapshots: everything that decides the future, and nothing else, in one order.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::{Body, BodyShape, Rest, Velocity};
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use crate::contact::{Contact, ContactKey, ContactMemory, PointImpulse};
-use crate::def::{BodyKind, Sleeping, WorldDef};
+use crate::def::{BodyKind, SleepThresholds, Sleeping, WorldDef};
 use crate::field::FieldDef;
 use crate::force::BodyForces;
 use crate::joint::Joint;
@@ -32,10 +33,9 @@ impl World {
         w.u32(self.sleepers);
         self.bodies.save(w, save_body);
         self.joints.save(w, |w, joint| joint.save(w));
-        w.count(self.contacts.len());
-        for contact in &self.contacts {
-            save_contact(w, contact);
-        }
+        let contacts = self.contacts_in_order();
+        w.count(contacts.len());
+        contacts.into_iter().for_each(|contact| save_contact(w, contact));
         self.groups.save(w, |w, group| group.save(w));
         self.fields.save(w, |w, field| field.save(w));
         w.count(self.parted.disabled.len());
@@ -94,6 +94,7 @@ impl World {
         self.objects.load(r)?;
         self.def = def;
         (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
+        self.activity = Activity::new(&bodies, &joints);
         (self.bodies, self.joints, self.contacts) = (bodies, joints, contacts);
         self.parted = PartedPairs::new(disabled);
         (self.groups, self.fields) = (groups, fields);
@@ -137,6 +138,8 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
     w.u32(def.substeps);
     w.u32(def.catch_up_steps);
     w.bool(def.sleeping == Sleeping::On);
+    let SleepThresholds { time, distance, angle, speed, spin } = def.sleep_thresholds;
+    [time, distance, angle, speed, spin].into_iter().for_each(|x| w.f32(x));
     w.f32(def.max_speed);
     w.f32(def.max_turn);
 }
@@ -144,11 +147,31 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
 fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
     let gravity = r.vec3()?;
     let (step_nanoseconds, substeps, catch_up_steps) = (r.u64()?, r.u32()?, r.u32()?);
-    let sleeping = if r.bool()? { Sleeping::On } else { Sleeping::Off };
+    let sleeping = load_sleeping(r)?;
+    let sleep_thresholds = SleepThresholds {
+        time: r.f32()?,
+        distance: r.f32()?,
+        angle: r.f32()?,
+        speed: r.f32()?,
+        spin: r.f32()?,
+    };
     let (max_speed, max_turn) = (r.f32()?, r.f32()?);
-    let def = WorldDef { gravity, step_nanoseconds, substeps, catch_up_steps, sleeping, max_speed, max_turn };
+    let def = WorldDef {
+        gravity,
+        step_nanoseconds,
+        substeps,
+        catch_up_steps,
+        sleeping,
+        sleep_thresholds,
+        max_speed,
+        max_turn,
+    };
     def.check().map_err(|what| r.error(what))?;
     Ok(def)
+}
+
+fn load_sleeping(r: &mut Reader<'_>) -> Result<Sleeping, ReadError> {
+    Ok(if r.bool()? { Sleeping::On } else { Sleeping::Off })
 }
 
 fn save_body(w: &mut Writer, body: &Body) {
@@ -188,6 +211,7 @@ fn save_body(w: &mut Writer, body: &Body) {
             w.u32(island);
         }
     }
+    w.bool(body.sleeping == Sleeping::On);
     w.transform(body.place);
     w.bool(body.quarantined);
     w.u64(body.user_data);
@@ -218,6 +242,7 @@ fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadErr
         1 => Rest::Asleep { island: r.u32()? },
         _ => return Err(r.error("a body neither awake nor asleep").into()),
     };
+    let sleeping = load_sleeping(r)?;
     let (place, quarantined, user_data) = (r.transform()?, r.bool()?, r.u64()?);
     let finite =
         [world_from_principal, previous, principal_from_body, place].into_iter().all(Transform::is_finite)
@@ -243,6 +268,7 @@ fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadErr
         shapes,
         surfaces: Surfaces::new(surfaces),
         rest,
+        sleeping,
         place,
         quarantined,
         user_data,

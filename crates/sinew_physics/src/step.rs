@@ -25,34 +25,32 @@ pub(crate) struct StepContext<'a> {
 pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
     let World { def, bodies, joints, contacts, groups, objects, .. } = world;
-    let World { events, broad, parts, islands, parted, sleepers, .. } = world;
+    let World { events, broad, parts, activity, islands, parted, sleepers, .. } = world;
     let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
 
-    stage(Stage::Pairs, &mut || broad.update(bodies, parted.of(joints), contacts, context.dt));
+    stage(Stage::Pairs, &mut || {
+        activity.wake_struck(bodies, groups, &broad.proxies, def);
+        broad.update(bodies, parted.of(joints), contacts, activity, context.dt);
+    });
     stage(Stage::Collide, &mut || touch::collide(bodies, contacts, parts, context));
-    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, &fields, events));
-    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, &fields, context.dt));
+    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, events));
+    let proxies = &broad.proxies;
+    let view = View { bodies, activity, proxies, joints, contacts, def, fields, h: context.h };
+    stage(Stage::Islands, &mut || islands.find(&view, groups));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
 
-    let view = View { bodies, joints, contacts, def, fields, h: context.h };
     if objects.is_empty() {
         let all = || Phase::of_step(context.substeps);
         islands.run(context.runner, |task| all().for_each(|phase| solve(phase, task, &view, context)));
     } else {
         lockstep(objects, islands, &view, context);
-        objects.rouse(bodies);
+        objects.rouse(bodies, activity);
     }
 
-    stage(Stage::Store, &mut || {
-        finalize::store(islands, joints, contacts, groups, events, context.dt);
-        finalize::break_joints(joints, parted, events);
-    });
-    stage(Stage::Finalize, &mut || finalize::finalize(&islands.solution().bodies, bodies, events, context));
-    stage(Stage::Continuous, &mut || {
-        finalize::continuous(bodies, islands, &broad.proxies);
-        broad.proxies.follow(bodies, context.dt);
-    });
-    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, &fields, sleepers, def.sleeping, context.dt));
+    stage(Stage::Store, &mut || finalize::store(islands, joints, parted, contacts, groups, events, context));
+    stage(Stage::Finalize, &mut || finalize::finalize(islands, bodies, activity, events, context));
+    stage(Stage::Continuous, &mut || finalize::continuous(islands, bodies, activity, broad, context.dt));
+    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, activity, &fields, sleepers, def));
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, events));
 }
 

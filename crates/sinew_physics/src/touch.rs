@@ -1,7 +1,8 @@
 //! `collide` and `touch`: manifolds of all near pairs, then who began and stopped touching, and who wakes.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
-use crate::body::{Body, Rest};
+use crate::body::Body;
 use crate::collide::parts::Parts;
 use crate::collide::{Manifold, Motion, collide as narrow_phase};
 use crate::contact::{Contact, ContactKey, pairs_of, slop};
@@ -97,11 +98,13 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Mo
     Some(Motion { velocity: speed(mover) - speed(ground), dt, margin: margin(a, b, key, dt) })
 }
 
-/// `touch`: events, and waking of what an awake body touches or attracts, or a moving kinematic one holds.
+/// `touch`: events, and waking of what an awake body touches or attracts, or a moving kinematic one holds. What wakes
+/// comes with its contacts.
 pub(crate) fn touch(
     bodies: &mut Arena<Body>,
     joints: &Arena<Joint>,
-    contacts: &mut [Contact],
+    contacts: &mut Vec<Contact>,
+    activity: &mut Activity,
     fields: &Fields<'_>,
     events: &mut Events,
 ) {
@@ -116,20 +119,39 @@ pub(crate) fn touch(
             note_change(bodies, pair, &mut events.begin, &mut events.end);
         }
         if pair.iter().any(Contact::pushes) {
-            wake_touched(bodies, a, b);
-            wake_touched(bodies, b, a);
+            wake_touched(bodies, activity, a, b);
+            wake_touched(bodies, activity, b, a);
         }
     }
-    for (_, joint) in joints.iter().filter(|(_, joint)| joint.is_enabled()) {
-        for (mover, held) in [(joint.a, joint.b), (joint.b, joint.a)] {
-            let body = bodies.at(mover);
-            if body.kind == BodyKind::Kinematic && !body.velocity.is_zero() {
-                wake(bodies, held);
+    wake_held(bodies, joints, activity);
+    while let Some(attracted) = fields.next_to_wake(bodies, activity) {
+        activity.wake(bodies, attracted);
+    }
+    activity.return_contacts(contacts);
+}
+
+fn wake_touched(bodies: &mut Arena<Body>, activity: &mut Activity, mover: u32, touched: u32) {
+    let body = bodies.at(mover);
+    match body.kind {
+        BodyKind::Dynamic if body.is_active() => activity.wake(bodies, touched),
+        BodyKind::Kinematic if body.can_touch() => activity.disturb(bodies, touched),
+        _ => {}
+    }
+}
+
+/// What joints hold to a kinematic body that moves.
+fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Activity) {
+    for at in 0..activity.kinematic().len() {
+        let mover = activity.kinematic()[at];
+        if bodies.at(mover).velocity.is_zero() {
+            continue;
+        }
+        for at in 0..activity.joints_of.body(mover).len() {
+            let joint = joints.at(activity.joints_of.body(mover)[at]);
+            if joint.is_enabled() {
+                activity.disturb(bodies, if joint.a == mover { joint.b } else { joint.a });
             }
         }
-    }
-    while let Some(attracted) = fields.next_to_wake(bodies) {
-        wake(bodies, attracted);
     }
 }
 
@@ -153,27 +175,4 @@ pub(crate) fn note_change(
 
 pub(crate) fn id(bodies: &Arena<Body>, index: u32) -> BodyId {
     BodyId { index, generation: bodies.generation(index) }
-}
-
-fn wake_touched(bodies: &mut Arena<Body>, mover: u32, sleeper: u32) {
-    let body = bodies.at(mover);
-    let wakes = body.is_active() || (body.kind == BodyKind::Kinematic && body.can_touch());
-    if wakes {
-        wake(bodies, sleeper);
-    }
-}
-
-/// Wakes a body and everything it fell asleep with.
-pub(crate) fn wake(bodies: &mut Arena<Body>, index: u32) {
-    let body = bodies.at_mut(index);
-    match body.rest {
-        Rest::Awake { .. } => {}
-        Rest::Asleep { island } => {
-            for (_, other) in bodies.iter_mut() {
-                if other.rest == (Rest::Asleep { island }) {
-                    other.rest = Rest::Awake { calm: 0.0 };
-                }
-            }
-        }
-    }
 }

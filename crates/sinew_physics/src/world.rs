@@ -1,5 +1,6 @@
 //! The world: owner of everything that is simulated.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::{Body, Velocity};
 use crate::collide::parts::Parts;
@@ -18,7 +19,7 @@ use crate::runner::{Serial, TaskRunner};
 use crate::shape::MassProperties;
 use crate::stage::{NoProfiler, Profiler};
 use crate::step::{StepContext, step};
-use crate::touch::{Events, wake};
+use crate::touch::Events;
 use sinew_math::{Transform, Vec3};
 
 /// Bodies and joints, stepped at a fixed rate.
@@ -30,7 +31,9 @@ pub struct World {
     pub(crate) def: WorldDef,
     pub(crate) bodies: Arena<Body>,
     pub(crate) joints: Arena<Joint>,
+    /// Those of what is awake or moves, in order of their keys; `activity` has the others.
     pub(crate) contacts: Vec<Contact>,
+    pub(crate) activity: Activity,
     pub(crate) groups: Arena<ParticleGroup>,
     pub(crate) fields: Arena<FieldDef>,
     pub(crate) functions: Functions,
@@ -63,6 +66,7 @@ impl World {
             bodies: Arena::default(),
             joints: Arena::default(),
             contacts: Vec::new(),
+            activity: Activity::default(),
             groups: Arena::default(),
             fields: Arena::default(),
             functions: Functions::default(),
@@ -94,6 +98,7 @@ impl World {
         for shape in &def.shapes {
             self.library.keep(&shape.shape);
         }
+        self.activity.add(index, self.bodies.at(index));
         self.broad.proxies.add(index, self.bodies.at(index));
         BodyId { index, generation }
     }
@@ -108,12 +113,13 @@ impl World {
         let attached =
             self.groups.iter().any(|(_, group)| group.attachments().iter().any(|a| held(a.target)));
         assert!(!attached, "no particles are attached to a body that is taken out");
-        self.wake_neighbors(id.index);
+        self.wake_around(id.index);
         let joints: Vec<JointId> = self.joints_of(id).collect();
         for joint in joints {
             self.remove_joint(joint);
         }
-        self.contacts.retain(|contact| contact.key.a != id.index && contact.key.b != id.index);
+        self.contacts.retain(|contact| !contact.key.has(id.index));
+        self.activity.remove(id.index);
         self.parted.forget(id.index);
         self.bodies.remove(id.index, id.generation);
         self.broad.proxies.remove(id.index);
@@ -127,7 +133,7 @@ impl World {
         for attachment in &def.attachments {
             if let AttachmentTarget::Body { body, .. } = attachment.target {
                 self.expect(body);
-                wake(&mut self.bodies, body.index);
+                self.wake_body(body.index);
             }
         }
         let (index, generation) = self.groups.insert(ParticleGroup::new(def));
@@ -154,10 +160,14 @@ impl World {
         self.groups.iter().map(|(index, _)| GroupId { index, generation: self.groups.generation(index) })
     }
 
-    /// From now on two bodies pass through each other.
+    /// From now on two bodies pass through each other; if they touch, both wake.
     pub fn disable_pair(&mut self, a: BodyId, b: BodyId) {
         self.expect(a);
         self.expect(b);
+        if self.contacts_of(a.index).any(|contact| contact.pushes() && contact.key.has(b.index)) {
+            self.wake_body(a.index);
+            self.wake_body(b.index);
+        }
         self.parted.disable(a.index, b.index);
     }
 
@@ -216,11 +226,12 @@ impl World {
         between * body.principal_from_body
     }
 
-    /// Puts a body somewhere; it wakes. It does not sweep what lies between.
+    /// Puts a body somewhere; it wakes, and so does what touched it there or hangs on it. It does not sweep what lies
+    /// between.
     pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
         assert!(world_from_body.is_finite(), "a body's pose is finite");
         self.expect_mut(id).set_world_from_body(world_from_body);
-        self.wake_neighbors(id.index);
+        self.wake_around(id.index);
         self.broad.proxies.place(id.index, self.bodies.at(id.index));
     }
 
@@ -237,8 +248,12 @@ impl World {
     /// Sets the velocity of a dynamic or kinematic body; it wakes.
     pub fn set_velocity(&mut self, id: BodyId, velocity: Velocity) {
         assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "a velocity is finite");
-        wake(&mut self.bodies, id.index);
-        self.expect_mut(id).velocity = velocity;
+        self.wake_body(id.index);
+        let body = self.expect_mut(id);
+        body.velocity = velocity;
+        if body.can_touch() {
+            self.activity.recall(id.index);
+        }
     }
 
     /// Static, kinematic or dynamic.
@@ -249,17 +264,6 @@ impl World {
     /// Mass (0 unless dynamic), centre and inertia in the body's frame.
     pub fn mass(&self, id: BodyId) -> MassProperties {
         self.expect(id).mass_properties()
-    }
-
-    /// False while it sleeps.
-    pub fn is_awake(&self, id: BodyId) -> bool {
-        self.expect(id).is_awake()
-    }
-
-    /// Wakes a body and its island.
-    pub fn wake(&mut self, id: BodyId) {
-        self.expect(id);
-        wake(&mut self.bodies, id.index);
     }
 
     /// The user's number on a body.
@@ -273,16 +277,5 @@ impl World {
 
     pub(crate) fn expect_mut(&mut self, id: BodyId) -> &mut Body {
         self.bodies.get_mut(id.index, id.generation).expect("the body is there")
-    }
-
-    /// Wakes a body and all that touch it.
-    fn wake_neighbors(&mut self, body: u32) {
-        wake(&mut self.bodies, body);
-        for contact in &self.contacts {
-            if contact.key.a == body || contact.key.b == body {
-                wake(&mut self.bodies, contact.key.a);
-                wake(&mut self.bodies, contact.key.b);
-            }
-        }
     }
 }

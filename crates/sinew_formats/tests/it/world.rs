@@ -3,7 +3,7 @@
 use sinew_formats::{read_world, write_world};
 use sinew_math::{Random, Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{
-    BodyDef, BodyKind, Filter, MassProperties, Material, Sensing, Shape, ShapeDef, World, WorldDef,
+    BodyDef, BodyKind, Filter, MassProperties, Material, Sensing, Shape, ShapeDef, Sleeping, World, WorldDef,
 };
 
 /// The first block of JSON in a module's documentation.
@@ -131,6 +131,7 @@ fn random_body(random: &mut Random) -> BodyDef {
             center: random.in_cube(),
             inertia: Sym3::from_rotated_diagonal(random.rotation(), principal),
         }),
+        sleeping: [Sleeping::On, Sleeping::Off][random.index(2)],
         user_data: random.bits(),
     }
 }
