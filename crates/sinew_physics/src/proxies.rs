@@ -123,6 +123,7 @@ impl Proxies {
             for shape in 0..home.count {
                 self.put(home, shape, body);
             }
+            self.refresh(home.moves);
         }
     }
 
@@ -179,13 +180,8 @@ impl Proxies {
 
     /// Works out where all that moves may be within a step of `dt` seconds, and lets the tree follow.
     pub fn follow(&mut self, bodies: &Arena<Body>, dt: f32) {
-        if self.fixed.tree.is_worn() {
-            self.fixed.tree.rebuild(&mut Vec::new());
-            self.fixed.owners.shrink_to_fit();
-        }
-        if self.moving.tree.is_worn() {
-            self.moving.tree.rebuild(&mut self.scratch);
-        }
+        self.refresh(false);
+        self.refresh(true);
         for at in 0..self.movers.len() {
             let index = self.movers[at];
             let body = bodies.at(index);
@@ -325,6 +321,15 @@ impl Proxies {
         let unbounded = (0..count).filter(|&shape| !is_bounded(body, shape));
         self.unbounded.extend(unbounded.map(|shape| Owner { body: index, shape }));
         home
+    }
+
+    /// Builds a tree anew if it is worn.
+    fn refresh(&mut self, moves: bool) {
+        if moves && self.moving.tree.is_worn() {
+            self.moving.tree.rebuild(&mut self.scratch);
+        } else if !moves && self.fixed.tree.is_worn() {
+            self.fixed.tree.rebuild(&mut Vec::new());
+        }
     }
 
     /// Whether a body's leaves are those that it would be given now, and hold it.

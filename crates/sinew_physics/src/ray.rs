@@ -1,7 +1,7 @@
 //! Rays against shapes, exact for every shape.
 
 use crate::shape::Shape;
-use sinew_math::{Transform, Vec3, max, min, normalize_or};
+use sinew_math::{Transform, Vec3, abs3, max, min, normalize_or};
 
 /// A stretch of a line, from `origin` to `origin + direction`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +59,12 @@ impl Shape {
 
     /// Fraction (≥ 0, may exceed 1) and normal where a line enters, in the shape's frame.
     pub(crate) fn cast_local(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+        if let Self::Box { half_extents } = *self
+            && (abs3(origin) - half_extents).cmpgt(Vec3::splat(CLEARLY_OUTSIDE)).any()
+        {
+            return enter_box(half_extents, origin, direction)
+                .filter(|(fraction, _)| *fraction < f32::INFINITY);
+        }
         let (distance, outward) = self.local_distance(origin);
         if distance <= 0.0 {
             return Some((0.0, normalize_or(-direction, outward)));
@@ -82,6 +88,10 @@ impl Shape {
         }
     }
 }
+
+/// Beyond a face by more than this, metres, a point needs no exact distance to be known as outside: rounding takes none of
+/// that for inside.
+const CLEARLY_OUTSIDE: f32 = 1e-6;
 
 /// Slabs (Kay & Kajiya 1986).
 fn enter_box(half: Vec3, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {

@@ -120,6 +120,10 @@ impl Waiting {
         let start = self.count;
         while mask != 0 {
             let slot = next_slot(&mut mask);
+            // Sums that overflow let a line meet what is empty.
+            if node.child(slot).is_none() {
+                continue;
+            }
             let mut at = self.count;
             while at > start && self.children[at - 1].0 < keys[slot] {
                 self.children[at] = self.children[at - 1];

@@ -16,6 +16,7 @@ mod objects;
 mod particles;
 mod random_worlds;
 mod ray;
+mod rays;
 mod rope;
 mod trees;
 mod trouble;
