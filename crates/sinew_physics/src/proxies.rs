@@ -9,7 +9,7 @@ use crate::def::BodyKind;
 use crate::shape::Shape;
 use crate::tree::{Item, PAD, Sweep, Tree};
 use core::ops::ControlFlow;
-use sinew_math::{Vec3, max, max3};
+use sinew_math::{Transform, Vec3, max, max3};
 use std::collections::BTreeMap;
 
 /// Distance within which contacts are looked for, beside the motion of the step, metres.
@@ -36,11 +36,20 @@ pub(crate) struct Proxies {
     unbounded: Vec<Owner>,
     /// Which leaves are a body's, by its index.
     homes: Vec<Option<Home>>,
+    /// Static bodies of a single shape, by index: rays meet many, and a body is spread over several lines of the cache.
+    lone: Vec<Option<Placed>>,
     /// Bodies that may move, by index.
     movers: Vec<u32>,
     /// Of each leaf of `moving`: where it may be within the coming step.
     reach: Vec<Aabb>,
     scratch: Vec<Item>,
+}
+
+/// A shape where it is.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed {
+    pub shape: Shape,
+    pub world_from_shape: Transform,
 }
 
 /// A tree, and whose its leaves are.
@@ -130,6 +139,7 @@ impl Proxies {
     /// A body has gone.
     pub fn remove(&mut self, index: u32) {
         let Some(home) = self.homes.get_mut(index as usize).and_then(Option::take) else { return };
+        self.lone[index as usize] = None;
         let layer = self.layer_mut(home.moves);
         for leaf in home.first..home.first + home.count {
             if layer.tree.contains(leaf) {
@@ -146,6 +156,7 @@ impl Proxies {
     /// A body has been put somewhere else.
     pub fn place(&mut self, index: u32, body: &Body) {
         let Some(home) = self.homes[index as usize] else { return };
+        self.lone[index as usize] = lone(body);
         for shape in (0..home.count).filter(|&shape| is_bounded(body, shape)) {
             self.cover(home, shape, &self.needed(home, body, shape), ROOM);
         }
@@ -288,6 +299,11 @@ impl Proxies {
         }
     }
 
+    /// The shape of a static body that has no other, where it is: what the body would say.
+    pub fn lone(&self, index: u32) -> Option<&Placed> {
+        self.lone[index as usize].as_ref()
+    }
+
     fn home(&self, index: u32) -> Option<Home> {
         self.homes.get(index as usize).copied().flatten()
     }
@@ -307,8 +323,10 @@ impl Proxies {
         let home = Home { first: self.layer_mut(moves).claim(index, count), count, moves };
         if self.homes.len() <= index as usize {
             self.homes.resize(index as usize + 1, None);
+            self.lone.resize(index as usize + 1, None);
         }
         self.homes[index as usize] = Some(home);
+        self.lone[index as usize] = lone(body);
         if moves {
             if let Err(place) = self.movers.binary_search(&index) {
                 self.movers.insert(place, index);
@@ -386,6 +404,16 @@ impl Proxies {
             let count = layer.owners.len();
             layer.tree.reserve(count);
         }
+    }
+}
+
+/// The shape of a static body that has one.
+fn lone(body: &Body) -> Option<Placed> {
+    match (body.kind, body.shapes.as_slice()) {
+        (BodyKind::Static, [only]) => {
+            Some(Placed { shape: only.shape.clone(), world_from_shape: body.world_from_shape(0) })
+        }
+        _ => None,
     }
 }
 
