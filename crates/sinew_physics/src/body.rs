@@ -193,8 +193,17 @@ impl Body {
         &self.surfaces.as_slice()[self.shapes[shape].surface as usize]
     }
 
+    /// Most bodies have one shape where they are themselves, and levels are bodies at the origin: then there is nothing to
+    /// multiply.
     pub fn world_from_shape(&self, shape: usize) -> Transform {
-        self.world_from_principal * self.shapes[shape].principal_from_shape
+        let principal_from_shape = self.shapes[shape].principal_from_shape;
+        if principal_from_shape == Transform::IDENTITY {
+            self.world_from_principal
+        } else if self.world_from_principal == Transform::IDENTITY {
+            principal_from_shape
+        } else {
+            self.world_from_principal * principal_from_shape
+        }
     }
 
     /// World position of the centre of mass.

@@ -10,7 +10,7 @@ use crate::def::BodyKind;
 use crate::shape::Shape;
 use crate::tree::{Item, PAD, Sweep, Tree};
 use core::ops::ControlFlow;
-use sinew_math::{Vec3, max, max3};
+use sinew_math::{Transform, Vec3, max, max3};
 use std::collections::BTreeMap;
 
 /// Distance within which contacts are looked for, beside the motion of the step, metres.
@@ -37,9 +37,18 @@ pub(crate) struct Proxies {
     unbounded: Vec<Owner>,
     /// Which leaves are a body's, by its index.
     homes: Vec<Option<Home>>,
+    /// Static bodies of a single shape, by index: rays meet many, and a body is spread over several lines of the cache.
+    lone: Vec<Option<Placed>>,
     /// Of each leaf of `moving`: where it may be within the coming step.
     reach: Vec<Aabb>,
     scratch: Vec<Item>,
+}
+
+/// A shape where it is.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed {
+    pub shape: Shape,
+    pub world_from_shape: Transform,
 }
 
 /// A tree, and whose its leaves are.
@@ -122,12 +131,14 @@ impl Proxies {
             for shape in 0..home.count {
                 self.put(home, shape, body);
             }
+            self.refresh(home.moves);
         }
     }
 
     /// A body has gone.
     pub fn remove(&mut self, index: u32) {
         let Some(home) = self.homes.get_mut(index as usize).and_then(Option::take) else { return };
+        self.lone[index as usize] = None;
         let layer = self.layer_mut(home.moves);
         for leaf in home.first..home.first + home.count {
             if layer.tree.contains(leaf) {
@@ -141,6 +152,7 @@ impl Proxies {
     /// A body has been put somewhere else.
     pub fn place(&mut self, index: u32, body: &Body) {
         let Some(home) = self.homes[index as usize] else { return };
+        self.lone[index as usize] = lone(body);
         for shape in (0..home.count).filter(|&shape| is_bounded(body, shape)) {
             self.cover(home, shape, &self.needed(home, body, shape), ROOM);
         }
@@ -175,13 +187,8 @@ impl Proxies {
 
     /// Works out where all that moves may be within a step of `dt` seconds, and lets the tree follow.
     pub fn follow(&mut self, bodies: &Arena<Body>, activity: &Activity, dt: f32) {
-        if self.fixed.tree.is_worn() {
-            self.fixed.tree.rebuild(&mut Vec::new());
-            self.fixed.owners.shrink_to_fit();
-        }
-        if self.moving.tree.is_worn() {
-            self.moving.tree.rebuild(&mut self.scratch);
-        }
+        self.refresh(false);
+        self.refresh(true);
         for index in activity.movers() {
             let body = bodies.at(index);
             if !body.can_touch() {
@@ -287,6 +294,11 @@ impl Proxies {
         }
     }
 
+    /// The shape of a static body that has no other, where it is: what the body would say.
+    pub fn lone(&self, index: u32) -> Option<&Placed> {
+        self.lone[index as usize].as_ref()
+    }
+
     fn home(&self, index: u32) -> Option<Home> {
         self.homes.get(index as usize).copied().flatten()
     }
@@ -306,8 +318,10 @@ impl Proxies {
         let home = Home { first: self.layer_mut(moves).claim(index, count), count, moves };
         if self.homes.len() <= index as usize {
             self.homes.resize(index as usize + 1, None);
+            self.lone.resize(index as usize + 1, None);
         }
         self.homes[index as usize] = Some(home);
+        self.lone[index as usize] = lone(body);
         if moves {
             let count = self.moving.owners.len();
             self.reach.resize(count, Aabb::default());
@@ -317,6 +331,15 @@ impl Proxies {
         let unbounded = (0..count).filter(|&shape| !is_bounded(body, shape));
         self.unbounded.extend(unbounded.map(|shape| Owner { body: index, shape }));
         home
+    }
+
+    /// Builds a tree anew if it is worn.
+    fn refresh(&mut self, moves: bool) {
+        if moves && self.moving.tree.is_worn() {
+            self.moving.tree.rebuild(&mut self.scratch);
+        } else if !moves && self.fixed.tree.is_worn() {
+            self.fixed.tree.rebuild(&mut Vec::new());
+        }
     }
 
     /// Whether a body's leaves are those that it would be given now, and hold it.
@@ -373,6 +396,16 @@ impl Proxies {
             let count = layer.owners.len();
             layer.tree.reserve(count);
         }
+    }
+}
+
+/// The shape of a static body that has one.
+fn lone(body: &Body) -> Option<Placed> {
+    match (body.kind, body.shapes.as_slice()) {
+        (BodyKind::Static, [only]) => {
+            Some(Placed { shape: only.shape.clone(), world_from_shape: body.world_from_shape(0) })
+        }
+        _ => None,
     }
 }
 

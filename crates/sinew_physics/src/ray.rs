@@ -2,7 +2,7 @@
 
 use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
-use sinew_math::{Transform, Vec3, max, min, normalize_or};
+use sinew_math::{Transform, Vec3, abs3, max, min, normalize_or};
 
 /// A stretch of a line, from `origin` to `origin + direction`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +66,12 @@ impl Shape {
         if let Some(surface) = self.surface() {
             return surface.enter(origin, direction);
         }
+        if let Self::Box { half_extents } = *self
+            && (abs3(origin) - half_extents).cmpgt(Vec3::splat(CLEARLY_OUTSIDE)).any()
+        {
+            return enter_box(half_extents, origin, direction)
+                .filter(|(fraction, _)| *fraction < f32::INFINITY);
+        }
         let (distance, outward) = self.local_distance(origin);
         if distance <= 0.0 {
             return Some((0.0, normalize_or(-direction, outward)));
@@ -100,6 +106,10 @@ impl Shape {
         }
     }
 }
+
+/// Beyond a face by more than this, metres, a point needs no exact distance to be known as outside: rounding takes none of
+/// that for inside.
+const CLEARLY_OUTSIDE: f32 = 1e-6;
 
 /// The surface of a union is entered where the first of its parts is.
 fn first_of(ends: [Option<(f32, Vec3)>; 2], side: Option<(f32, Vec3)>) -> Option<(f32, Vec3)> {

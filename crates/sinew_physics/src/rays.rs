@@ -3,7 +3,7 @@
 //! give. Of equal fractions the smaller body index counts, then the smaller shape number.
 
 use crate::id::BodyId;
-use crate::proxies::Owner;
+use crate::proxies::{Owner, Placed};
 use crate::query::BodyHit;
 use crate::ray::{Ray, RayHit};
 use crate::tree::Sweep;
@@ -82,9 +82,13 @@ impl World {
     }
 
     fn meet(&self, ray: &Ray, owner: Owner) -> Option<ShapeHit> {
-        let body = self.bodies.at(owner.body);
-        let shape = owner.shape as usize;
-        let hit = body.shapes[shape].shape.cast_ray(&body.world_from_shape(shape), ray)?;
+        let hit = match self.broad.proxies.lone(owner.body) {
+            Some(Placed { shape, world_from_shape }) => shape.cast_ray(world_from_shape, ray)?,
+            None => {
+                let (body, shape) = (self.bodies.at(owner.body), owner.shape as usize);
+                body.shapes[shape].shape.cast_ray(&body.world_from_shape(shape), ray)?
+            }
+        };
         Some(ShapeHit { owner, hit })
     }
 

@@ -5,7 +5,7 @@ use crate::scenes::{BoxPair, BoxPairs, PlacedBox, RayScene};
 use core::ops::Range;
 use sinew::physics::collide::{Manifold, collide};
 use sinew::physics::ray::Ray;
-use sinew::physics::{BodyDef, BodyId, BodyKind, Shape, ShapeDef, World, WorldDef};
+use sinew::physics::{BodyDef, BodyHit, BodyId, BodyKind, Shape, ShapeDef, World, WorldDef};
 use sinew_scenes::blueprint::Blueprint;
 
 /// This engine.
@@ -38,7 +38,7 @@ impl Engine for Sinew {
                 ..BodyDef::default()
             });
         }
-        Ok(Box::new(SinewRays { world, rays: scene.rays.clone() }))
+        Ok(Box::new(SinewRays { world, rays: scene.rays.clone(), hits: Vec::new() }))
     }
 
     fn build_boxes(&self, pairs: &BoxPairs) -> Result<Box<dyn OverlapTester>, Unsupported> {
@@ -73,15 +73,16 @@ impl Simulation for SinewWorld {
     }
 }
 
-/// `World::cast_ray` tries every box: it has no tree yet.
 struct SinewRays {
     world: World,
     rays: Vec<Ray>,
+    hits: Vec<Option<BodyHit>>,
 }
 
 impl RayCaster for SinewRays {
     fn count_hits(&mut self, range: Range<usize>) -> usize {
-        self.rays[range].iter().filter(|ray| self.world.cast_ray(ray, |_| true).is_some()).count()
+        self.world.cast_rays(&self.rays[range], |_| true, &mut self.hits);
+        self.hits.iter().flatten().count()
     }
 }
 

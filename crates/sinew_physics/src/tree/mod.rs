@@ -16,7 +16,8 @@ pub(crate) use build::Item;
 pub(crate) use node::PAD;
 use node::{Child, Node, half_area};
 pub(crate) use query::Sweep;
-use sinew_math::lanes::WIDTH;
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::{Lanes, WIDTH};
 
 /// Most levels of nodes: what the queries' stacks are made for. Full nodes hold 2³² leaves in 11.
 const MOST_LEVELS: usize = 14;
@@ -77,18 +78,13 @@ impl Tree {
         self.make_room(leaf);
         self.len += 1;
         self.inserted += 1;
-        let Some(mut node) = self.root else {
+        let Some(root) = self.root else {
             let root = self.new_node(Place::NOWHERE);
             (self.root, self.levels) = (Some(root), 1);
             self.put(root, 0, Child::leaf(leaf), bounds);
             return;
         };
-        for _ in 1..self.levels {
-            let slot = self.nodes[node as usize].least_growth(bounds);
-            let grown = self.nodes[node as usize].bounds(slot).merge(bounds);
-            self.nodes[node as usize].set_bounds(slot, &grown);
-            node = self.child_node(node, slot);
-        }
+        let node = dispatch::run(Descent { tree: self, root, bounds });
         self.add(node, Child::leaf(leaf), *bounds);
         if self.levels > MOST_LEVELS {
             self.rebuild(&mut Vec::new());
@@ -153,11 +149,6 @@ impl Tree {
         if self.places.len() <= leaf as usize {
             self.places.resize(leaf as usize + 1, Place::NOWHERE);
         }
-    }
-
-    fn child_node(&self, node: u32, slot: usize) -> u32 {
-        let child = self.nodes[node as usize].child(slot);
-        child.get().expect_err("nodes above the lowest hold nodes")
     }
 
     fn new_node(&mut self, parent: Place) -> u32 {
@@ -241,6 +232,31 @@ impl Tree {
             self.nodes[up as usize].set_bounds(slot, &total);
             node = up;
         }
+    }
+}
+
+/// From the root to the lowest node that has to grow least for new bounds.
+struct Descent<'a> {
+    tree: &'a mut Tree,
+    root: u32,
+    bounds: &'a Aabb,
+}
+
+impl Kernel for Descent<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u32 {
+        let Aabb { min, max } = *self.bounds;
+        let bounds = [min.x, min.y, min.z, max.x, max.y, max.z].map(L::splat);
+        let mut node = self.root;
+        for _ in 1..self.tree.levels {
+            let own = &mut self.tree.nodes[node as usize];
+            let slot = own.least_growth(&bounds);
+            own.set_bounds(slot, &own.bounds(slot).merge(self.bounds));
+            node = own.child(slot).get().expect_err("nodes above the lowest hold nodes");
+        }
+        node
     }
 }
 

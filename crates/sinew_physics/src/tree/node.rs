@@ -102,24 +102,32 @@ impl Node {
         self.children.iter().all(|child| child.is_none())
     }
 
-    /// Slots that hold something.
-    pub fn slots(&self) -> impl Iterator<Item = usize> {
-        (0..WIDTH).filter(|&slot| !self.children[slot].is_none())
-    }
-
     /// The slot whose box has to grow least to hold another, by its surface; of equals the one with the least surface.
-    pub fn least_growth(&self, bounds: &Aabb) -> usize {
-        let mut best = (f32::INFINITY, f32::INFINITY, 0);
-        for slot in self.slots() {
-            let own = self.bounds(slot);
-            let area = half_area(&own);
-            let cost = (half_area(&own.merge(bounds)) - area, area, slot);
-            // What is infinite or NaN never wins: then it is the first.
-            if (cost.0, cost.1) < (best.0, best.1) {
-                best = cost;
+    #[inline(always)]
+    pub fn least_growth<L: Lanes>(&self, other: &[L; 6]) -> usize {
+        let mut low = [L::splat(0.0); 3];
+        let mut sides = [L::splat(0.0); 3];
+        let mut grown = [L::splat(0.0); 3];
+        for axis in 0..3 {
+            let high = L::load(&self.rows[3 + axis]);
+            low[axis] = L::load(&self.rows[axis]);
+            sides[axis] = high - low[axis];
+            grown[axis] = L::max(high, other[3 + axis]) - L::min(low[axis], other[axis]);
+        }
+        let area = half_area_of(&sides);
+        let is_empty = L::lt(sides[0], L::splat(0.0));
+        let growth = L::select(is_empty, L::splat(f32::INFINITY), half_area_of(&grown) - area);
+        let (mut growths, mut areas) = ([0.0; WIDTH], [0.0; WIDTH]);
+        growth.store(&mut growths);
+        area.store(&mut areas);
+        let mut best = None;
+        for slot in 0..WIDTH {
+            let key = (growths[slot], areas[slot]);
+            if best.is_none_or(|(_, least)| key < least) && !self.children[slot].is_none() {
+                best = Some((slot, key));
             }
         }
-        if self.children[best.2].is_none() { self.slots().next().unwrap_or(0) } else { best.2 }
+        best.map_or(0, |(slot, _)| slot)
     }
 
     /// Which boxes overlap another one: bit `k` for slot `k`.
@@ -174,6 +182,12 @@ impl Node {
 pub(super) fn half_area(bounds: &Aabb) -> f32 {
     let Vec3 { x, y, z } = max3(bounds.max - bounds.min, Vec3::ZERO);
     x * y + y * z + z * x
+}
+
+/// [`half_area`] in each lane, of boxes with these sides.
+#[inline(always)]
+fn half_area_of<L: Lanes>([x, y, z]: &[L; 3]) -> L {
+    *x * *y + *y * *z + *z * *x
 }
 
 /// Share of the coordinates at hand by which boxes and lines are thicker than they are, so that what rounding does in an

@@ -9,8 +9,10 @@ use sinew_math::Vec3;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, WIDTH};
 
-/// Most children that wait: all of a node but the one that is gone into, on each level.
-const STACK: usize = (WIDTH - 1) * MOST_LEVELS + 1;
+/// Room for the most children that wait: all of a node but the one that is gone into, on each level. A power of two, so that
+/// a mask holds places inside.
+const STACK: usize = ((WIDTH - 1) * MOST_LEVELS + 1).next_power_of_two();
+const MASK: usize = STACK - 1;
 
 /// A stretch of a line along which a box moves; of a ray the box is a point.
 #[derive(Clone, Copy, Debug)]
@@ -78,13 +80,13 @@ impl<B, V: FnMut(u32) -> ControlFlow<B>> Kernel for Overlapping<'_, V> {
         let mut depth = 1;
         while depth > 0 {
             depth -= 1;
-            let node = &self.tree.nodes[stack[depth] as usize];
+            let node = &self.tree.nodes[stack[depth & MASK] as usize];
             let mut mask = node.overlapping(&query);
             while mask != 0 {
                 match node.child(next_slot(&mut mask)).get() {
                     Ok(leaf) => (self.visit)(leaf)?,
                     Err(child) => {
-                        stack[depth] = child;
+                        stack[depth & MASK] = child;
                         depth += 1;
                     }
                 }
@@ -111,7 +113,7 @@ impl Waiting {
     #[inline(always)]
     fn pop(&mut self) -> Option<(f32, Child)> {
         self.count = self.count.checked_sub(1)?;
-        Some(self.children[self.count])
+        Some(self.children[self.count & MASK])
     }
 
     /// Pushes slots of a node so that the one with the smallest key is the next.
@@ -120,12 +122,16 @@ impl Waiting {
         let start = self.count;
         while mask != 0 {
             let slot = next_slot(&mut mask);
+            // Sums that overflow let a line meet what is empty.
+            if node.child(slot).is_none() {
+                continue;
+            }
             let mut at = self.count;
-            while at > start && self.children[at - 1].0 < keys[slot] {
-                self.children[at] = self.children[at - 1];
+            while at > start && self.children[(at - 1) & MASK].0 < keys[slot] {
+                self.children[at & MASK] = self.children[(at - 1) & MASK];
                 at -= 1;
             }
-            self.children[at] = (keys[slot], node.child(slot));
+            self.children[at & MASK] = (keys[slot], node.child(slot));
             self.count += 1;
         }
     }

@@ -72,7 +72,8 @@ impl Pair {
     /// Leaves below a node, all of them on the same level, and each box that of what is below it.
     fn count(&self, node: u32, levels: usize) -> usize {
         let own = &self.tree.nodes[node as usize];
-        let below = own.slots().map(|slot| match own.child(slot).get() {
+        let slots = (0..WIDTH).filter(|&slot| !own.child(slot).is_none());
+        let below = slots.map(|slot| match own.child(slot).get() {
             Ok(leaf) => {
                 assert_eq!(levels, 1);
                 assert_eq!(self.tree.places[leaf as usize], Place::new(node, slot));

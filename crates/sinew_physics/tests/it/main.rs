@@ -17,6 +17,7 @@ mod objects;
 mod particles;
 mod random_worlds;
 mod ray;
+mod rays;
 mod rope;
 mod sleep;
 mod trees;
