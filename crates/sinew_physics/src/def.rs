@@ -138,3 +138,40 @@ impl Default for BodyDef {
         }
     }
 }
+
+/// Short ways to write down what most bodies are: `BodyDef::dynamic(shape).at(position)`. The rest are fields.
+impl BodyDef {
+    /// One that forces move, of one shape, at the world's origin.
+    pub fn dynamic(shape: impl Into<ShapeDef>) -> Self {
+        Self { shapes: vec![shape.into()], ..Self::default() }
+    }
+
+    /// One that moves as its velocity says, of one shape, at the world's origin.
+    pub fn kinematic(shape: impl Into<ShapeDef>) -> Self {
+        Self { kind: BodyKind::Kinematic, ..Self::dynamic(shape) }
+    }
+
+    /// A static one, of one shape, at the world's origin.
+    pub fn fixed(shape: impl Into<ShapeDef>) -> Self {
+        Self { kind: BodyKind::Static, ..Self::dynamic(shape) }
+    }
+
+    /// With its origin at a place (world, metres).
+    #[must_use]
+    pub fn at(self, position: Vec3) -> Self {
+        Self { position, ..self }
+    }
+
+    /// With its axes turned to where `rotation` brings those of the world.
+    #[must_use]
+    pub fn turned(self, rotation: Rotation) -> Self {
+        Self { rotation, ..self }
+    }
+
+    /// With one more shape.
+    #[must_use]
+    pub fn with(mut self, shape: impl Into<ShapeDef>) -> Self {
+        self.shapes.push(shape.into());
+        self
+    }
+}

@@ -35,7 +35,7 @@ pub mod joint;
 mod mass;
 pub mod object;
 pub mod particles;
-mod query;
+pub mod query;
 pub mod ray;
 pub mod runner;
 pub mod shape;
@@ -52,14 +52,17 @@ pub use field::{
     PointGravity, Region, UniformGravity, Wind,
 };
 pub use force::{ForceDef, ForceFrame, ForceId, Wrench};
-pub use id::{BodyId, FieldId, GroupId, JointId, ObjectId};
+pub use id::{BodyId, FieldId, GroupId, JointId, ObjectId, ShapeId};
 pub use joint::Reaction;
 pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
     Spring, Strength,
 };
 pub use object::{Corrections, Forces, PhysicsObject, Substep};
-pub use query::{BodyHit, Energy, Momentum};
+pub use query::{
+    BodyHit, BodyKinds, BodyPenetration, BodySurface, ContainsPoint, Energy, Momentum, NearestTo,
+    OverlapWith, PenetrationOf, Probe, Query, QueryFilter, Question, Sensors,
+};
 pub use runner::{Serial, TaskRunner, Threads};
 pub use shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
 pub use touch::Events;

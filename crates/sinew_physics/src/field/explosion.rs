@@ -4,8 +4,9 @@ use super::def::{not_negative, positive};
 use super::{Fade, Form, Target};
 use crate::def::BodyKind;
 use crate::id::BodyId;
+use crate::query::{BodyKinds, QueryFilter};
 use crate::ray::Ray;
-use crate::shape::{Sensing, Shape};
+use crate::shape::Shape;
 use crate::touch::wake;
 use crate::world::World;
 use sinew_math::{Transform, Vec3, max, normalize_or};
@@ -115,11 +116,6 @@ impl World {
     fn shelters(&self, explosion: &Explosion, point: Vec3) -> bool {
         let ray = Ray { origin: explosion.center, direction: point - explosion.center };
         explosion.occlusion == Occlusion::Static
-            && self.cast_ray(&ray, |id| self.kind(id) == BodyKind::Static && self.is_solid(id)).is_some()
-    }
-
-    /// Has a shape that does more than sense.
-    fn is_solid(&self, id: BodyId) -> bool {
-        self.expect(id).shapes.iter().any(|shape| shape.sensing == Sensing::Solid)
+            && self.query().filter(QueryFilter::of(BodyKinds::STATIC)).any(&ray)
     }
 }

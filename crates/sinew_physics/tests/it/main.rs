@@ -14,6 +14,7 @@ mod joints;
 mod nets;
 mod objects;
 mod particles;
+mod queries;
 mod random_worlds;
 mod ray;
 mod rope;

@@ -1,6 +1,6 @@
-//! Questions to the world about points and regions.
+//! Questions about one body: bounds, nearest surface, points inside.
 
-use super::{Aabb, Capsule, Cuboid, Obb, Overlap, Penetration, PlacedBox, Sphere, SurfacePoint};
+use crate::boxes::{Aabb, Penetration, SurfacePoint};
 use crate::id::BodyId;
 use crate::shape::Shape;
 use crate::world::World;
@@ -18,10 +18,7 @@ impl World {
     /// Where the surface of a body is closest to a point (world), over all its shapes; `None` of a body without shapes. A
     /// point that several shapes hold is measured in the one that holds it deepest.
     pub fn nearest_surface(&self, id: BodyId, point: Vec3) -> Option<SurfacePoint> {
-        let of_shape = |(shape, frame): (Shape, Transform)| {
-            let (distance, normal) = shape.signed_distance(&frame, point);
-            SurfacePoint { point: point - normal * distance, normal, distance }
-        };
+        let of_shape = |(shape, frame): (Shape, Transform)| shape.nearest_surface(&frame, point);
         self.shapes(id).map(of_shape).reduce(|a, b| if b.distance < a.distance { b } else { a })
     }
 
@@ -35,29 +32,5 @@ impl World {
     pub fn point_penetration(&self, id: BodyId, point: Vec3) -> Option<Penetration> {
         let SurfacePoint { distance, normal, .. } = self.nearest_surface(id, point)?;
         (distance <= 0.0).then_some(Penetration { depth: -distance, direction: normal })
-    }
-
-    /// Bodies with a shape that overlaps a region, by index; what touches overlaps.
-    pub fn bodies_in(&self, region: &impl Cuboid) -> impl Iterator<Item = BodyId> {
-        let region = region.placed();
-        self.body_ids()
-            .filter(move |&id| self.shapes(id).any(|(shape, frame)| meets(&region, &shape, &frame)))
-    }
-}
-
-/// Whether a placed shape and a region overlap.
-fn meets(region: &PlacedBox, shape: &Shape, world_from_shape: &Transform) -> bool {
-    let Transform { translation: center, rotation } = *world_from_shape;
-    match *shape {
-        Shape::Box { half_extents } => region.overlaps(&Obb { center, rotation, half_extents }.placed()),
-        Shape::Sphere { radius } => region.overlaps(&Sphere { center, radius }),
-        Shape::Capsule { half_height, radius } => {
-            let reach = rotation * Vec3::Y * half_height;
-            region.overlaps(&Capsule { ends: [center - reach, center + reach], radius })
-        }
-        Shape::HalfSpace => {
-            let normal = rotation * Vec3::Y;
-            normal.dot(region.center - center) <= region.half_width(normal)
-        }
     }
 }
