@@ -175,3 +175,28 @@ impl BodyDef {
         self
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Shape;
+
+    #[test]
+    fn short_ways_say_what_fields_say() {
+        let (ball, plank) = (Shape::Sphere { radius: 0.5 }, Shape::Box { half_extents: Vec3::ONE });
+        let rotation = Rotation::from_axis_angle(Vec3::Y, 1.0);
+        let heavy = ShapeDef { density: 7800.0, ..ShapeDef::new(plank.clone()) };
+        let long = BodyDef {
+            kind: BodyKind::Dynamic,
+            position: Vec3::X,
+            rotation,
+            shapes: vec![ShapeDef::new(ball.clone()), heavy.clone()],
+            ..BodyDef::default()
+        };
+        assert_eq!(BodyDef::dynamic(ball).with(heavy.clone()).at(Vec3::X).turned(rotation), long);
+        let of = |kind| BodyDef { kind, shapes: vec![heavy.clone()], ..BodyDef::default() };
+        assert_eq!(BodyDef::fixed(heavy.clone()), of(BodyKind::Static));
+        assert_eq!(BodyDef::kinematic(heavy.clone()), of(BodyKind::Kinematic));
+        assert_eq!(BodyDef::fixed(plank.clone()).shapes, [ShapeDef::new(plank)]);
+    }
+}

@@ -10,10 +10,12 @@ use crate::joint::Joint;
 use crate::joint::def::JointState;
 use crate::parted::PartedPairs;
 use crate::particles::ParticleGroup;
+use crate::proxies::{Owner, Proxies};
 use crate::ray::Ray;
 use crate::solver::SolvedBody;
 use crate::step::StepContext;
 use crate::touch::{Events, id};
+use crate::tree::Sweep;
 use sinew_math::Vec3;
 
 /// `store`: impulses and joint forces that the next step starts from; particle groups return to the world, where what is not
@@ -96,8 +98,9 @@ pub(crate) fn finalize(
 
 /// `continuous`: a body without joints whose centre passed through a static shape within the step is put back to where
 /// its core touches. Speculative contacts stop nearly everything before; this is for what they miss. Jointed bodies are
-/// left to the speculative contacts: moving one link would tear its joints.
-pub(crate) fn continuous(bodies: &mut Arena<Body>, islands: &Islands) {
+/// left to the speculative contacts: moving one link would tear its joints. With that all poses are final, and the trees
+/// follow.
+pub(crate) fn continuous(bodies: &mut Arena<Body>, islands: &Islands, proxies: &mut Proxies, dt: f32) {
     for island in islands.iter().filter(|island| island.joints.is_empty()) {
         for &index in island.bodies {
             let body = bodies.at(index);
@@ -107,13 +110,14 @@ pub(crate) fn continuous(bodies: &mut Arena<Body>, islands: &Islands) {
                 continue;
             }
             let ray = Ray { origin: body.previous.translation, direction: motion };
-            if let Some(fraction) = first_static_hit(bodies, body, &ray) {
+            if let Some(fraction) = first_static_hit(bodies, proxies, body, &ray) {
                 let back = sinew_math::max(fraction - core / motion.length(), 0.0);
                 let center = ray.at(back);
                 bodies.at_mut(index).world_from_principal.translation = center;
             }
         }
     }
+    proxies.follow(bodies, dt);
 }
 
 /// Radius of the largest ball about the centre of mass that surely lies inside a body of one shape; 0 if none.
@@ -124,20 +128,22 @@ fn core_radius(body: &Body) -> f32 {
     }
 }
 
-fn first_static_hit(bodies: &Arena<Body>, mover: &Body, ray: &Ray) -> Option<f32> {
+fn first_static_hit(bodies: &Arena<Body>, proxies: &Proxies, mover: &Body, ray: &Ray) -> Option<f32> {
     let mut first: Option<f32> = None;
-    for (_, body) in bodies.iter().filter(|(_, body)| body.kind == BodyKind::Static) {
-        for (shape, s) in body.shapes.iter().enumerate() {
-            if !mover.shapes.iter().any(|own| own.filter.meets(s.filter)) {
-                continue;
-            }
-            let hit = s.shape.cast_ray(&body.world_from_shape(shape), ray);
+    let sweep = Sweep { origin: ray.origin, direction: ray.direction, half_extents: Vec3::ZERO, limit: 1.0 };
+    proxies.along(&sweep, |Owner { body, shape }| {
+        let (body, shape) = (bodies.at(body), shape as usize);
+        let filter = body.surface(shape).filter;
+        if body.kind == BodyKind::Static
+            && mover.surfaces.as_slice().iter().any(|own| own.filter.meets(filter))
+            && let Some(hit) = body.shapes[shape].shape.cast_ray(&body.world_from_shape(shape), ray)
             // A start inside is an overlap that the contacts are working on.
-            if let Some(hit) = hit.filter(|hit| hit.fraction > 0.0 && first.is_none_or(|f| hit.fraction < f))
-            {
-                first = Some(hit.fraction);
-            }
+            && hit.fraction > 0.0
+            && first.is_none_or(|first| hit.fraction < first)
+        {
+            first = Some(hit.fraction);
         }
-    }
+        first.unwrap_or(1.0)
+    });
     first
 }

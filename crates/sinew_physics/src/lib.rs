@@ -14,20 +14,25 @@ pub mod collide;
 pub mod cook;
 mod finalize;
 mod islands;
+mod library;
 mod pairs;
 mod parted;
 mod project;
+mod proxies;
 mod sensors;
 mod sleep;
 mod solver;
 mod tasks;
 mod touch;
+mod tree;
+pub mod triangles;
 mod update;
 
 mod arena;
 mod body;
 pub mod boxes;
 mod contact;
+pub mod convex;
 mod distance;
 mod draw;
 pub mod id;
@@ -37,11 +42,13 @@ pub mod object;
 pub mod particles;
 pub mod query;
 pub mod ray;
+mod revolved;
 pub mod runner;
 pub mod shape;
 mod slices;
 mod snapshot;
 mod spatial;
+mod surface;
 
 pub use body::Velocity;
 pub use boxes::{Aabb, Obb};
@@ -58,13 +65,15 @@ pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
     Spring, Strength,
 };
+pub use library::{DataKind, LoadError};
 pub use object::{Corrections, Forces, PhysicsObject, Substep};
 pub use query::{
     BodyHit, BodyKinds, BodyPenetration, BodySurface, ContainsPoint, Energy, Momentum, NearestTo,
-    OverlapWith, PenetrationOf, Probe, Query, QueryFilter, Question, Sensors,
+    NearestToShape, OverlapWith, PenetrationOf, Probe, Query, QueryFilter, Question, Sensors, ShapeCast,
 };
 pub use runner::{Serial, TaskRunner, Threads};
 pub use shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
 pub use touch::Events;
+pub use triangles::{HeightField, HeightFieldDef, HeightFieldError, Mesh, MeshError};
 pub use update::Update;
 pub use world::World;

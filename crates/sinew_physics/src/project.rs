@@ -76,7 +76,7 @@ impl Neighbors {
                 let s = &body.shapes[*shape];
                 // What is quarantined still holds what hangs on it, as a fixed point.
                 !body.quarantined
-                    && s.filter.meets(group.filter())
+                    && body.surface(*shape).filter.meets(group.filter())
                     && s.shape.aabb(&body.world_from_shape(*shape)).overlaps(&bounds)
             };
             let place = self.bodies.len() as u32;
@@ -201,13 +201,14 @@ impl Surroundings {
         }));
         self.obstacles.clear();
         for &(place, shape) in &near.shapes {
-            let s = &view.bodies.at(near.bodies[place as usize]).shapes[shape as usize];
+            let body = view.bodies.at(near.bodies[place as usize]);
+            let s = &body.shapes[shape as usize];
             self.obstacles.push(Obstacle {
                 shape: s.shape.clone(),
                 previous: seen[place as usize].start * s.principal_from_shape,
                 world_from_shape: seen[place as usize].pose * s.principal_from_shape,
                 body: place,
-                material: s.material,
+                material: body.surface(shape as usize).material,
             });
         }
         self.anchors.clear();

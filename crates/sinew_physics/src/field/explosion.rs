@@ -106,7 +106,7 @@ impl World {
         let body = self.expect(id);
         let s = &body.shapes[shape];
         let (impulse, point) = explosion.push(&s.shape, &body.world_from_shape(shape));
-        let reached = s.filter.layers & explosion.layers != 0 && impulse != Vec3::ZERO;
+        let reached = body.surface(shape).filter.layers & explosion.layers != 0 && impulse != Vec3::ZERO;
         if reached && !self.shelters(explosion, point) {
             wake(&mut self.bodies, id.index);
             self.apply_impulse(id, impulse, point);

@@ -1,8 +1,8 @@
 //! Which shapes a question is about.
 
-use crate::body::{Body, BodyShape};
+use crate::body::Body;
 use crate::def::BodyKind;
-use crate::id::BodyId;
+use crate::id::{BodyId, ShapeId};
 use crate::shape::{Filter, Sensing};
 use core::ops::BitOr;
 
@@ -43,11 +43,12 @@ impl<'a> QueryFilter<'a> {
     }
 
     /// Whether a shape of a body passes.
-    pub(super) fn passes(&self, id: BodyId, body: &Body, shape: &BodyShape) -> bool {
+    pub(super) fn passes(&self, id: ShapeId, body: &Body) -> bool {
+        let surface = body.surface(id.shape as usize);
         self.kinds.contains(body.kind)
-            && (shape.sensing == Sensing::Solid || self.sensors == Sensors::Included)
-            && self.meets.meets(shape.filter)
-            && !self.except.contains(&id)
+            && (surface.sensing == Sensing::Solid || self.sensors == Sensors::Included)
+            && self.meets.meets(surface.filter)
+            && !self.except.contains(&id.body)
     }
 }
 

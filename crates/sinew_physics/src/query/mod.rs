@@ -14,7 +14,7 @@
 //!
 //! let down = Ray { origin: Vec3::Y * 5.0, direction: Vec3::Y * -10.0 };
 //! let hit = world.query().first(&down).expect("the ball is in the way");
-//! assert_eq!((hit.body, hit.shape, hit.point.y), (ball, 0, 2.5));
+//! assert!(hit.body == ball && hit.shape == 0 && (hit.point.y - 2.5).abs() < 1e-6);
 //!
 //! let level = world.query().filter(QueryFilter::of(BodyKinds::STATIC));
 //! assert_eq!(level.first(&down).map(|hit| hit.point.y), Some(0.0));
@@ -53,9 +53,14 @@
 //!
 //! A ray that leaves a shape does not hit it again; one without length hits what holds its start.
 //!
+//! Meshes and height fields are surfaces: nothing is inside of them but what touches one of their triangles. They are hit from
+//! the outside of their triangles alone, and no way out leads through a triangle's back; distances from them are never below 0
+//! but for shapes that go through a triangle.
+//!
 //! # What is not answered
 //!
-//! A number that is not finite, a size or distance below 0: no shape answers such a question. No answer holds NaN or infinity.
+//! A number that is not finite, a size or distance below 0: no shape answers such a question. Nor is anything found that is
+//! farther than 10¹⁸ m from the world's origin. No answer holds NaN or infinity.
 
 mod body;
 mod candidates;
@@ -66,22 +71,24 @@ mod pair;
 mod place;
 mod probe;
 mod question;
+mod surface;
 
-pub use cast::BodyHit;
+pub use cast::{BodyHit, ShapeCast};
 pub use filter::{BodyKinds, QueryFilter, Sensors};
 pub use metrics::{Energy, Momentum};
-pub use place::{BodyPenetration, BodySurface, ContainsPoint, NearestTo, OverlapWith, PenetrationOf};
+pub use place::{
+    BodyPenetration, BodySurface, ContainsPoint, NearestTo, NearestToShape, OverlapWith, PenetrationOf,
+};
 pub use probe::Probe;
 pub use question::Question;
 
 use crate::body::Body;
 use crate::id::{BodyId, ShapeId};
+use crate::proxies::Owner;
 use crate::world::World;
 use candidates::{Limit, candidates};
 use core::ops::ControlFlow;
-use sealed::Ask;
-
-use question::sealed;
+use question::sealed::Ask;
 
 /// Asks a world, about those of its shapes that pass a filter and a predicate.
 #[derive(Clone, Copy)]
@@ -129,8 +136,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
     pub fn any<Q: Question>(&self, question: &Q) -> bool {
         let mut any = false;
         self.shapes(question, |id, body| {
-            let shape = id.shape as usize;
-            any = question.is_met(id, &body.shapes[shape].shape, &body.world_from_shape(shape));
+            any = is_met(question, id, body);
             if any { ControlFlow::Break(()) } else { ControlFlow::Continue(f32::INFINITY) }
         });
         any
@@ -152,8 +158,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
     pub fn bodies<Q: Question>(&self, question: &Q, bodies: &mut Vec<BodyId>) {
         bodies.clear();
         self.shapes(question, |id, body| {
-            let shape = id.shape as usize;
-            if question.is_met(id, &body.shapes[shape].shape, &body.world_from_shape(shape)) {
+            if is_met(question, id, body) {
                 bodies.push(id.body);
             }
             ControlFlow::Continue(f32::INFINITY)
@@ -214,16 +219,21 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
     fn shapes<Q: Question>(&self, question: &Q, mut visit: impl FnMut(ShapeId, &Body) -> Limit) {
         let Some(reach) = question.reach() else { return };
         let mut limit = f32::INFINITY;
-        candidates(self.world, &reach, |index, body, shape| {
-            let id = BodyId { index, generation: self.world.bodies.generation(index) };
-            let passes =
-                self.filter.passes(id, body, &body.shapes[shape as usize]) && (self.accept)(id, shape);
-            if passes {
-                limit = visit(ShapeId { body: id, shape }, body)?;
+        candidates(self.world, &reach, |Owner { body: index, shape }| {
+            let generation = self.world.bodies.generation(index);
+            let (id, body) = (BodyId { index, generation }, self.world.bodies.at(index));
+            let id = ShapeId { body: id, shape };
+            if self.filter.passes(id, body) && (self.accept)(id.body, shape) {
+                limit = visit(id, body)?;
             }
             ControlFlow::Continue(limit)
         });
     }
+}
+
+fn is_met<Q: Ask>(question: &Q, id: ShapeId, body: &Body) -> bool {
+    let shape = id.shape as usize;
+    question.is_met(id, &body.shapes[shape].shape, &body.world_from_shape(shape))
 }
 
 /// What answers are sorted by.

@@ -6,6 +6,7 @@ use super::probe::Probe;
 use super::question::Question;
 use super::question::sealed::Ask;
 use crate::boxes::{Aabb, Penetration, SurfacePoint};
+use crate::convex::Gap;
 use crate::id::{BodyId, ShapeId};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3};
@@ -26,7 +27,7 @@ impl Ask for ContainsPoint {
     }
 
     fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<ShapeId> {
-        (shape.signed_distance(world_from_shape, self.0).0 <= 0.0).then_some(id)
+        (shape.nearest_surface(world_from_shape, self.0).distance <= 0.0).then_some(id)
     }
 
     fn shape_of(id: &ShapeId) -> ShapeId {
@@ -155,13 +156,49 @@ impl Ask for NearestTo {
     type Found = BodySurface;
 
     fn reach(&self) -> Option<Reach> {
-        let around = Aabb { min: self.point, max: self.point }.expand(self.within);
-        (self.point.is_finite() && self.within >= 0.0).then_some(Reach::Box(around))
+        (self.point.is_finite() && self.within >= 0.0).then_some(Reach::Near(self.point, self.within))
     }
 
     fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<BodySurface> {
         let surface = shape.nearest_surface(world_from_shape, self.point);
         BodySurface::new(id, surface, self.within)
+    }
+
+    fn shape_of(answer: &BodySurface) -> ShapeId {
+        ShapeId { body: answer.body, shape: answer.shape }
+    }
+
+    fn rank(answer: &BodySurface) -> f32 {
+        answer.distance
+    }
+}
+
+/// Which shapes have their surface within a distance of a probe's, or overlap it; the nearest first, and before it those
+/// that overlap, the deepest first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NearestToShape {
+    /// From where distances are measured.
+    pub probe: Probe,
+    /// Farthest surface that counts, metres, ≥ 0.
+    pub within: f32,
+}
+
+impl Question for NearestToShape {
+    type Answer = BodySurface;
+}
+
+impl Ask for NearestToShape {
+    type Found = BodySurface;
+
+    fn reach(&self) -> Option<Reach> {
+        let usable = self.within >= 0.0 && self.probe.is_valid();
+        usable.then(|| Reach::Box(self.probe.aabb().expand(self.within)))
+    }
+
+    fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<BodySurface> {
+        let Gap { distance, normal, on_a: point, .. } =
+            pair::gap_within(shape, world_from_shape, &self.probe, self.within)?;
+        BodySurface::new(id, SurfacePoint { point, normal, distance }, self.within)
     }
 
     fn shape_of(answer: &BodySurface) -> ShapeId {

@@ -1,6 +1,7 @@
 //! Shapes put somewhere to ask with.
 
 use crate::boxes::{Aabb, Capsule, Obb, Sphere};
+use crate::convex::support::Core;
 use crate::shape::Shape;
 use sinew_math::{Rotation, Transform, Vec3, normalize_or};
 
@@ -31,7 +32,7 @@ impl Probe {
     /// # Panics
     /// If the shape is not convex or not bounded: that is no matter of numbers.
     pub(super) fn is_valid(&self) -> bool {
-        assert!(self.shape != Shape::HalfSpace, "a probe is convex and bounded");
+        assert!(Core::of(&self.shape).is_some(), "a probe is convex and bounded");
         let reach = self.shape.bounding_radius();
         // Written so that NaN fails.
         self.world_from_shape.is_finite() && self.shape.inner_radius() >= 0.0 && reach < f32::INFINITY

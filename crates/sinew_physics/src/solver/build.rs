@@ -340,6 +340,8 @@ impl IslandSolver {
             let (a, b) = (view.bodies.at(contact.key.a), view.bodies.at(contact.key.b));
             let shape_a = &a.shapes[contact.key.shape_a as usize];
             let shape_b = &b.shapes[contact.key.shape_b as usize];
+            let surface_a = a.surface(contact.key.shape_a as usize);
+            let surface_b = b.surface(contact.key.shape_b as usize);
             let extent = min(shape_a.shape.smallest_extent(), shape_b.shape.smallest_extent());
             let source = ManifoldSource {
                 contact: index,
@@ -349,7 +351,7 @@ impl IslandSolver {
                 b_moves: b.is_active(),
                 manifold: &contact.manifold,
                 memory: contact.memory,
-                material: combine(&shape_a.material, &shape_b.material),
+                material: combine(&surface_a.material, &surface_b.material),
                 slop: slop(extent),
                 shapes: [shape_a, shape_b].map(|s| PlacedShape::new(s.shape.clone(), s.principal_from_shape)),
                 h: view.h,

@@ -4,11 +4,11 @@ use super::response::Response;
 use super::sweep::Pass;
 use super::tree::Link;
 use super::{REDUNDANCY, SolverBody, disk, free_response, lcp};
-use crate::collide::{MAX_POINTS, Manifold, collide};
+use crate::collide::{Half, MAX_POINTS, Manifold, collide, is_on_face, name_as_face};
 use crate::contact::{ContactMemory, PointImpulse};
 use crate::shape::{Material, Shape};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
-use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max, min};
+use sinew_math::{Mat3, Rotation, Transform, Vec3, any_orthonormal, max, min};
 
 /// Fastest speed with which overlap is pushed apart, m/s.
 const PUSH_SPEED: f32 = 3.0;
@@ -33,6 +33,9 @@ const RELAX_TURN: f32 = 0.15;
 const CONTACT_HERTZ: f32 = 30.0;
 const FIXED_HERTZ: f32 = 60.0;
 const CONTACT_DAMPING: f32 = 10.0;
+/// Contacts are soft to changes of their load, not to the load that lasts for longer than this, seconds: a pile would sag by
+/// all the weight it bears (30 rows of cubes by a quarter of a cube). Without any delay tall piles never come to rest.
+const LASTING: f32 = 1.0 / 60.0;
 
 /// Coefficients of a soft constraint (Catto, "Soft Constraints", GDC 2011).
 #[derive(Clone, Copy, Debug)]
@@ -137,6 +140,17 @@ impl Approach {
     }
 }
 
+/// What a manifold's normal rows are to reach: `K (x − old) + rate + soft x ≥ 0`, complementary to `x ≥ 0`.
+#[derive(Clone, Copy, Debug, Default)]
+struct NormalProblem {
+    /// Of the gap with what is added to it, m/s; negative if it closes too fast.
+    rate: [f32; MAX_POINTS],
+    /// Impulses so far, N·s.
+    old: [f32; MAX_POINTS],
+    /// m/s per N·s.
+    soft: [f32; MAX_POINTS],
+}
+
 /// Change of impulse of a manifold: on A and on B.
 pub(super) type Push = (Vec6, Vec6);
 
@@ -207,7 +221,14 @@ impl PlacedShape {
     pub fn new(shape: Shape, principal_from_shape: Transform) -> Self {
         let round = match shape {
             Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
-            Shape::Box { .. } | Shape::HalfSpace => 0.0,
+            // The thinner end's: what a core is rounded by all around.
+            Shape::TaperedCapsule { radius_bottom, radius_top, .. } => min(radius_bottom, radius_top),
+            Shape::Box { .. }
+            | Shape::Cylinder { .. }
+            | Shape::Cone { .. }
+            | Shape::HalfSpace
+            | Shape::Mesh(_)
+            | Shape::HeightField(_) => 0.0,
         };
         Self { shape, principal_from_shape, round }
     }
@@ -302,12 +323,8 @@ impl ManifoldRows {
         let turning = if reach < f32::INFINITY { reach } else { 0.0 };
         let far_corner = FAR_CORNER * min(a.shape.bounding_radius(), b.shape.bounding_radius());
         let margin = max(4.0 * self.slop + relative.length() * h + turning, far_corner);
-        let mut manifold = Manifold::default();
-        let (frame_a, frame_b) = (pose_a * a.principal_from_shape, pose_b * b.principal_from_shape);
-        collide(&a.shape, &frame_a, &b.shape, &frame_b, margin, &mut manifold);
-        if manifold.count == 0 {
-            return;
-        }
+        let frames = [pose_a * a.principal_from_shape, pose_b * b.principal_from_shape];
+        let Some(manifold) = self.found_anew(frames, [pose_a, pose_b], margin) else { return };
         let impulse = self.impulse.map(|now| PointImpulse { now, ..PointImpulse::default() });
         let of_substep = ContactMemory { points: impulse, ..self.memory }.matched(&self.manifold, &manifold);
         let memory = self.memory.matched(&self.manifold, &manifold);
@@ -322,6 +339,38 @@ impl ManifoldRows {
         self.weight = weights(&self.memory, manifold.count);
         self.manifold = manifold;
         self.take_manifold(bodies);
+    }
+
+    /// The contact at the present poses, if there is one. Of a surface the plane stands that the manifold lies on: the surface
+    /// itself would answer for all its manifolds at once. What lies on its edges stays as it was found.
+    fn found_anew(&self, frames: [Transform; 2], poses: [Transform; 2], margin: f32) -> Option<Manifold> {
+        static PLANE: Shape = Shape::HalfSpace;
+        let [a, b] = &self.shapes;
+        let plane = |origin: Vec3, normal: Vec3| Transform::new(origin, Rotation::from_arc(Vec3::Y, normal));
+        let mut manifold = Manifold::default();
+        let surface = match (a.shape.surface(), b.shape.surface()) {
+            (None, None) => {
+                collide(&a.shape, &frames[0], &b.shape, &frames[1], margin, &mut manifold);
+                return (manifold.count > 0).then_some(manifold);
+            }
+            (Some(_), _) => Half::OfA,
+            _ => Half::OfB,
+        };
+        if !is_on_face(&self.manifold, surface) {
+            return None;
+        }
+        match surface {
+            Half::OfA => {
+                let ground = plane(poses[0].point(self.core_a[0]), self.normal);
+                collide(&PLANE, &ground, &b.shape, &frames[1], margin, &mut manifold);
+            }
+            Half::OfB => {
+                let ground = plane(poses[1].point(self.core_b[0]), -self.normal);
+                collide(&a.shape, &frames[0], &PLANE, &ground, margin, &mut manifold);
+            }
+        }
+        name_as_face(&mut manifold, surface);
+        (manifold.count > 0).then_some(manifold)
     }
 
     fn pair(&self) -> Pair {
@@ -485,11 +534,18 @@ impl ManifoldRows {
         add_scaled(&mut push.1, &row.b, impulse);
     }
 
-    /// One visit of the normal rows as a block.
-    pub fn visit_normal(&mut self, velocities: &[Vec6], pass: Pass, h: f32) -> Push {
+    /// What the normal rows are to reach at the present velocities.
+    fn normal_problem(&self, velocities: &[Vec6], pass: Pass, h: f32) -> NormalProblem {
         let (pair, biased) = (self.pair(), pass == Pass::Solve);
-        let mut v = [0.0; MAX_POINTS];
         let mut mean = 0.0;
+        for row in &self.k[..self.count] {
+            for k in &row[..self.count] {
+                mean += k;
+            }
+        }
+        // The block's softness is taken at the manifold's centre; taken at each point a 1 kg foot under 69 kg sinks 7 mm.
+        let at_center = self.soft.impulse_scale / self.soft.mass_scale * mean / self.count as f32;
+        let mut problem = NormalProblem::default();
         for i in 0..self.count {
             let s = self.separation[i];
             let bias = if pass == Pass::Restitution && self.rebound[i] > 0.0 {
@@ -503,23 +559,23 @@ impl ManifoldRows {
             } else {
                 0.0
             };
-            v[i] = self.rows[i].rate(pair, velocities) + bias;
-            for j in 0..self.count {
-                mean += self.k[i][j];
-            }
+            let soft = if biased && s <= 0.0 { at_center } else { 0.0 };
+            problem.soft[i] = soft;
+            problem.old[i] = self.impulse[i] - self.floor[i];
+            let lasting = self.memory.points[i].lasting;
+            problem.rate[i] = self.rows[i].rate(pair, velocities) + bias - soft * lasting;
         }
-        // The block's softness is taken at the manifold's centre; taken at each point a 1 kg foot under 69 kg sinks 7 mm.
-        let at_center = self.soft.impulse_scale / self.soft.mass_scale * mean / self.count as f32;
-        let soft = self.separation.map(|s| if biased && s <= 0.0 { at_center } else { 0.0 });
-        let mut free = [0.0; MAX_POINTS];
-        for i in 0..self.count {
-            free[i] = self.impulse[i] - self.floor[i];
-        }
-        let new = lcp::solve(&self.k, &v, &free, &soft, self.count);
+        problem
+    }
+
+    /// One visit of the normal rows as a block.
+    pub fn visit_normal(&mut self, velocities: &[Vec6], pass: Pass, h: f32) -> Push {
+        let NormalProblem { rate, old, soft } = self.normal_problem(velocities, pass, h);
+        let new = lcp::solve(&self.k, &rate, &old, &soft, self.count);
         let mut push = (ZERO6, ZERO6);
         for i in 0..self.count {
             let row = self.rows[i];
-            self.add(&mut push, &row, new[i] - free[i]);
+            self.add(&mut push, &row, new[i] - old[i]);
             self.impulse[i] = new[i] + self.floor[i];
         }
         push
@@ -609,11 +665,12 @@ impl ManifoldRows {
     }
 
     /// Impulses of this substep become memory.
-    pub fn end_substep(&mut self) {
+    pub fn end_substep(&mut self, h: f32) {
         for i in 0..self.count {
             let point = &mut self.memory.points[i];
             point.before = point.now;
             point.now = max(self.impulse[i], 0.0);
+            point.lasting += (point.now - point.lasting) * (h / (h + LASTING));
         }
         self.memory.friction = self.friction;
         self.memory.twist = self.twist;

@@ -2,6 +2,7 @@
 //!
 //! Each question is asked 1,000 times, or 100,000 times when `SINEW_FULL` is set, as `cargo xtask ci --full` does.
 
+mod balls;
 mod filters;
 mod hostile;
 mod now;
@@ -9,4 +10,5 @@ mod oracle;
 mod random;
 mod rays;
 mod starts;
+mod surfaces;
 mod whole_world;

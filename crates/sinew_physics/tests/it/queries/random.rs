@@ -7,7 +7,7 @@ use sinew_physics::{
 };
 
 /// Number of kinds of bounded shapes.
-pub const KINDS: usize = 4;
+pub const KINDS: usize = 7;
 
 /// A bounded shape of a kind, around its origin, about a metre large.
 pub fn shape(kind: usize, random: &mut Random) -> Shape {
@@ -16,7 +16,12 @@ pub fn shape(kind: usize, random: &mut Random) -> Shape {
         0 => Shape::Box { half_extents: Vec3::new(size(), size(), size()) },
         1 => Shape::Sphere { radius: size() },
         2 => Shape::Capsule { half_height: size(), radius: 0.5 * size() },
-        _ => Shape::Capsule { half_height: 0.0, radius: size() },
+        3 => Shape::Capsule { half_height: 0.0, radius: size() },
+        4 => {
+            Shape::TaperedCapsule { half_height: 0.4, radius_bottom: 0.8 * size(), radius_top: 0.8 * size() }
+        }
+        5 => Shape::Cylinder { half_height: size(), radius: size() },
+        _ => Shape::Cone { half_height: size(), radius: size() },
     }
 }
 

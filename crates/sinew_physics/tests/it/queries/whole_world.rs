@@ -1,12 +1,14 @@
 //! Every question to a whole world, against every shape by itself.
 
-use super::random::{Populated, filter};
+use super::random::{KINDS, Populated, filter, frame, shape};
 use crate::boxes::cases;
 use sinew_math::{Random, Transform};
 use sinew_physics::boxes::{Penetration, SurfacePoint};
+use sinew_physics::convex::{cast_shape, gap};
 use sinew_physics::ray::Ray;
 use sinew_physics::{
-    BodyHit, BodyId, BodySurface, ContainsPoint, NearestTo, QueryFilter, Question, Shape, ShapeId,
+    BodyHit, BodyId, BodyPenetration, BodySurface, ContainsPoint, NearestTo, NearestToShape, OverlapWith,
+    PenetrationOf, Probe, QueryFilter, Question, Shape, ShapeCast, ShapeId,
 };
 
 /// What one shape answers, and where the answer stands.
@@ -84,6 +86,47 @@ fn points() {
             let SurfacePoint { point, normal, distance } = shape.nearest_surface(frame, point);
             let answer = BodySurface { body, shape: number, point, normal, distance };
             (distance <= near.within).then_some((distance, answer))
+        });
+    });
+}
+
+#[test]
+fn probes() {
+    in_random_worlds(403, |populated, filter, random| {
+        let probe = Probe::new(shape(random.index(KINDS), random), frame(3.5, random));
+        let way = |shape: &Shape, frame: &Transform| {
+            let gap = gap(shape, frame, &probe.shape, &probe.world_from_shape)?;
+            (gap.distance <= 0.0).then_some(gap)
+        };
+        check(populated, filter, &OverlapWith(probe.clone()), &|id, shape, frame| {
+            way(shape, frame).map(|_| (0.0, id))
+        });
+        check(
+            populated,
+            filter,
+            &PenetrationOf(probe.clone()),
+            &|ShapeId { body, shape: number }, shape, frame| {
+                let (depth, direction) = way(shape, frame).map(|gap| (-gap.distance, gap.normal))?;
+                Some((-depth, BodyPenetration { body, shape: number, depth, direction }))
+            },
+        );
+        let near = NearestToShape { probe: probe.clone(), within: random.range(0.0, 2.0) };
+        check(populated, filter, &near, &|ShapeId { body, shape: number }, shape, frame| {
+            let found = gap(shape, frame, &probe.shape, &probe.world_from_shape)?;
+            let (point, normal, distance) = (found.on_a, found.normal, found.distance);
+            let answer = BodySurface { body, shape: number, point, normal, distance };
+            (distance <= near.within).then_some((distance, answer))
+        });
+        let cast = ShapeCast { probe: probe.clone(), translation: random.in_cube() * 5.0 };
+        check(populated, filter, &cast, &|ShapeId { body, shape: number }, shape, frame| {
+            let (from, way) = (&probe.world_from_shape, cast.translation);
+            let hit = cast_shape(&probe.shape, from, way, shape, frame)?;
+            let found = gap(shape, frame, &probe.shape, from)?;
+            let start = (found.distance <= 0.0)
+                .then_some(Penetration { depth: -found.distance, direction: found.normal });
+            let normal = if start.is_some() { -way / way.length() } else { hit.normal };
+            let (fraction, point) = (hit.fraction, hit.point);
+            Some((fraction, BodyHit { body, shape: number, fraction, point, normal, start }))
         });
     });
 }
