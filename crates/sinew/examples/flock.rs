@@ -5,8 +5,7 @@
 //! flies as its neighbours fly, and stays with them; all of them are drawn to a place that the flock chooses anew now and
 //! then. And none of them leaves the aviary.
 
-use sinew::math::{Random, ReadError, Reader, Writer};
-use sinew::physics::{DebugDraw, DrawKind};
+use sinew::math::Random;
 use sinew::prelude::*;
 use std::time::Duration;
 
@@ -92,8 +91,7 @@ impl PhysicsObject for Flock {
                 position: random.direction() * (0.7 * AVIARY),
                 linear_velocity: random.direction() * SPEED,
                 gravity_scale: 0.0,
-                shapes: vec![ShapeDef { density, ..ShapeDef::new(Shape::Sphere { radius }) }],
-                ..BodyDef::default()
+                ..BodyDef::dynamic(ShapeDef { density, ..ShapeDef::new(Shape::Sphere { radius }) })
             })
         };
         self.birds = (0..BIRDS).map(&mut hatch).collect();
@@ -173,11 +171,7 @@ fn fly(world: &mut World, flock: ObjectId, seconds: u32) -> (f32, f32) {
 pub fn main() {
     let mut world = World::new(WorldDef::default());
     let tower = Shape::Capsule { half_height: AVIARY, radius: 0.5 };
-    world.add_body(&BodyDef {
-        kind: BodyKind::Static,
-        shapes: vec![ShapeDef::new(tower)],
-        ..BodyDef::default()
-    });
+    world.add_body(&BodyDef::fixed(tower));
     let flock = world.add_object(Box::new(Flock::new(7)));
     world.mark();
     let order = |world: &World| world.object::<Flock>(flock).order(world);

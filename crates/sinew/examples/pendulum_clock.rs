@@ -6,8 +6,7 @@
 //! would: by `T = 2π √(I/(m g l)) (1 + A²/16)` at an amplitude of `A` radians.
 
 use core::f32::consts::{PI, TAU};
-use sinew::math::{ReadError, Reader, Writer, trig};
-use sinew::physics::{DebugDraw, DrawKind, Sleeping};
+use sinew::math::trig;
 use sinew::prelude::*;
 use std::time::Duration;
 
@@ -112,10 +111,9 @@ fn clock() -> (World, ObjectId) {
     let length = 0.5 * (thread + (thread * thread - 1.6 * RADIUS * RADIUS).sqrt());
     let pendulum = world.add_body(&BodyDef {
         position: Vec3::new(trig::sin(AMPLITUDE), -trig::cos(AMPLITUDE), 0.0) * length,
-        shapes: vec![ShapeDef::new(Shape::Sphere { radius: RADIUS })],
         linear_damping: DRAG,
         angular_damping: DRAG,
-        ..BodyDef::default()
+        ..BodyDef::dynamic(Shape::Sphere { radius: RADIUS })
     });
     let at = Transform::new(Vec3::ZERO, Rotation::from_arc(Vec3::X, Vec3::Z));
     let hinge = JointKind::Hinge { limit: None };

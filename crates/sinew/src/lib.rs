@@ -50,3 +50,8 @@ pub fn all_threads() -> physics::Threads {
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 struct Readme;
+
+/// What is taught about worlds.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/world.md")]
+struct WorldPage;

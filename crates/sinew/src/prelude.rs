@@ -1,10 +1,14 @@
 //! The names that most programs need: `use sinew::prelude::*`.
 
 pub use sinew_anim::{Clip, Rig, analyze};
-pub use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3};
+pub use sinew_math::{Range, ReadError, Reader, Rotation, SwingTwistLimit, Transform, Vec3, Writer};
+pub use sinew_physics::ray::Ray;
 pub use sinew_physics::{
-    BodyDef, BodyId, BodyKind, Corrections, Forces, GroupId, JointDef, JointId, JointKind, Material,
-    ObjectId, PhysicsObject, Shape, ShapeDef, Velocity, World, WorldDef,
+    Aabb, BodyDef, BodyHit, BodyId, BodyKind, BodyKinds, BodyPenetration, BodySurface, ContainsPoint,
+    Corrections, DebugDraw, DrawKind, FieldDef, FieldKind, Filter, Forces, GroupId, JointDef, JointId,
+    JointKind, Material, NearestTo, NearestToShape, Obb, ObjectId, OverlapWith, PenetrationOf, PhysicsObject,
+    Probe, Query, QueryFilter, Question, Sensing, Sensors, Shape, ShapeCast, ShapeDef, ShapeId, Sleeping,
+    Update, Velocity, World, WorldDef,
 };
 #[cfg(feature = "ragdoll")]
 pub use sinew_ragdoll::{BuildOptions, Character, CharacterDef, Ragdoll, RagdollDef, build};

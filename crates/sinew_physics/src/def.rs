@@ -173,3 +173,65 @@ impl Default for BodyDef {
         }
     }
 }
+
+/// Short ways to write down what most bodies are: `BodyDef::dynamic(shape).at(position)`. The rest are fields.
+impl BodyDef {
+    /// One that forces move, of one shape, at the world's origin.
+    pub fn dynamic(shape: impl Into<ShapeDef>) -> Self {
+        Self { shapes: vec![shape.into()], ..Self::default() }
+    }
+
+    /// One that moves as its velocity says, of one shape, at the world's origin.
+    pub fn kinematic(shape: impl Into<ShapeDef>) -> Self {
+        Self { kind: BodyKind::Kinematic, ..Self::dynamic(shape) }
+    }
+
+    /// A static one, of one shape, at the world's origin.
+    pub fn fixed(shape: impl Into<ShapeDef>) -> Self {
+        Self { kind: BodyKind::Static, ..Self::dynamic(shape) }
+    }
+
+    /// With its origin at a place (world, metres).
+    #[must_use]
+    pub fn at(self, position: Vec3) -> Self {
+        Self { position, ..self }
+    }
+
+    /// With its axes turned to where `rotation` brings those of the world.
+    #[must_use]
+    pub fn turned(self, rotation: Rotation) -> Self {
+        Self { rotation, ..self }
+    }
+
+    /// With one more shape.
+    #[must_use]
+    pub fn with(mut self, shape: impl Into<ShapeDef>) -> Self {
+        self.shapes.push(shape.into());
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Shape;
+
+    #[test]
+    fn short_ways_say_what_fields_say() {
+        let (ball, plank) = (Shape::Sphere { radius: 0.5 }, Shape::Box { half_extents: Vec3::ONE });
+        let rotation = Rotation::from_axis_angle(Vec3::Y, 1.0);
+        let heavy = ShapeDef { density: 7800.0, ..ShapeDef::new(plank.clone()) };
+        let long = BodyDef {
+            kind: BodyKind::Dynamic,
+            position: Vec3::X,
+            rotation,
+            shapes: vec![ShapeDef::new(ball.clone()), heavy.clone()],
+            ..BodyDef::default()
+        };
+        assert_eq!(BodyDef::dynamic(ball).with(heavy.clone()).at(Vec3::X).turned(rotation), long);
+        let of = |kind| BodyDef { kind, shapes: vec![heavy.clone()], ..BodyDef::default() };
+        assert_eq!(BodyDef::fixed(heavy.clone()), of(BodyKind::Static));
+        assert_eq!(BodyDef::kinematic(heavy.clone()), of(BodyKind::Kinematic));
+        assert_eq!(BodyDef::fixed(plank.clone()).shapes, [ShapeDef::new(plank)]);
+    }
+}

@@ -1,5 +1,6 @@
 //! Signed distance from a point to a shape: what particles collide with, and what decides whether a point is inside.
 
+use crate::boxes::SurfacePoint;
 use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, abs3, clamp, max3, normalize_or};
@@ -12,6 +13,15 @@ impl Shape {
     pub fn signed_distance(&self, world_from_shape: &Transform, point: Vec3) -> (f32, Vec3) {
         let (distance, normal) = self.local_distance(world_from_shape.inverse_point(point));
         (distance, world_from_shape.rotation * normal)
+    }
+
+    /// Where the surface is closest to `point` (world), by [`signed_distance`](Self::signed_distance); but nothing is inside of
+    /// a mesh or a height field: from those the distance is 0 or more, and the normal points to where the point is.
+    pub fn nearest_surface(&self, world_from_shape: &Transform, point: Vec3) -> SurfacePoint {
+        let (distance, normal) = self.signed_distance(world_from_shape, point);
+        let behind = distance < 0.0 && self.surface().is_some();
+        let (distance, normal) = if behind { (-distance, -normal) } else { (distance, normal) };
+        SurfacePoint { point: point - normal * distance, normal, distance }
     }
 
     /// [`signed_distance`](Self::signed_distance) in the shape's own frame.

@@ -108,7 +108,8 @@ pub(crate) fn finalize(
 
 /// `continuous`: a body without joints whose centre passed through a static shape within the step is put back to where
 /// its core touches. Speculative contacts stop nearly everything before; this is for what they miss. Jointed bodies are
-/// left to the speculative contacts: moving one link would tear its joints. Then the trees of bounds follow.
+/// left to the speculative contacts: moving one link would tear its joints. With that all poses are
+/// final, and the trees of bounds follow.
 pub(crate) fn continuous(
     islands: &Islands,
     bodies: &mut Arena<Body>,

@@ -41,9 +41,8 @@ pub mod joint;
 mod mass;
 pub mod object;
 pub mod particles;
-mod query;
+pub mod query;
 pub mod ray;
-mod rays;
 mod revolved;
 pub mod runner;
 pub mod shape;
@@ -61,7 +60,7 @@ pub use field::{
     PointGravity, Region, UniformGravity, Wind,
 };
 pub use force::{ForceDef, ForceFrame, ForceId, Wrench};
-pub use id::{BodyId, FieldId, GroupId, JointId, ObjectId};
+pub use id::{BodyId, FieldId, GroupId, JointId, ObjectId, ShapeId};
 pub use joint::Reaction;
 pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
@@ -69,7 +68,10 @@ pub use joint::def::{
 };
 pub use library::{DataKind, LoadError};
 pub use object::{Corrections, Forces, PhysicsObject, Substep};
-pub use query::{BodyHit, Energy, Momentum};
+pub use query::{
+    BodyHit, BodyKinds, BodyPenetration, BodySurface, ContainsPoint, Energy, Momentum, NearestTo,
+    NearestToShape, OverlapWith, PenetrationOf, Probe, Query, QueryFilter, Question, Sensors, ShapeCast,
+};
 pub use runner::{Serial, TaskRunner, Threads};
 pub use shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
 pub use touch::Events;

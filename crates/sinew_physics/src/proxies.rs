@@ -279,7 +279,6 @@ impl Proxies {
         }
     }
 
-    #[allow(dead_code, reason = "for queries of points")]
     /// Every shape that may be within `distance` (m) of a point; see [`Tree::nearest`].
     pub fn nearest(&self, point: Vec3, mut distance: f32, mut visit: impl FnMut(Owner) -> f32) {
         for &owner in &self.unbounded {

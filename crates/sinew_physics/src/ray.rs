@@ -25,6 +25,11 @@ impl Ray {
     }
 }
 
+/// The square of what is longer may overflow.
+const LONG: f32 = 1e15;
+/// 2⁻⁹⁶: what longer rays are multiplied by, without rounding.
+const SHORTENED: f32 = f32::from_bits((127 - 96) << 23);
+
 /// Where a ray meets a shape first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
@@ -57,7 +62,10 @@ impl Shape {
         }
         let origin = world_from_shape.inverse_point(ray.origin);
         let direction = world_from_shape.rotation.inverse() * ray.direction;
-        let (fraction, normal) = self.cast_local(origin, direction)?;
+        let largest = max(max(direction.x.abs(), direction.y.abs()), direction.z.abs());
+        let scale = if largest > LONG { SHORTENED } else { 1.0 };
+        let (fraction, normal) = self.cast_local(origin, direction * scale)?;
+        let fraction = fraction * scale;
         Some(RayHit { fraction, point: ray.at(fraction), normal: world_from_shape.rotation * normal })
     }
 
@@ -150,11 +158,12 @@ fn enter_ball(center: Vec3, radius: f32, origin: Vec3, direction: Vec3) -> Optio
     let middle = -offset.dot(direction) / length_squared;
     let closest = offset + direction * middle;
     let depth = radius * radius - closest.dot(closest);
-    if depth < 0.0 || middle < 0.0 {
+    // Written so that NaN, of squares that overflow, fails.
+    if !(depth >= 0.0 && middle >= 0.0) {
         return None;
     }
     let fraction = max(middle - (depth / length_squared).sqrt(), 0.0);
-    Some((fraction, normalize_or(offset + direction * fraction, -direction)))
+    Some((fraction, normalize_or(offset + direction * fraction, normalize_or(-direction, Vec3::Y))))
 }
 
 /// The side of a cylinder along y, without its ends.

@@ -265,6 +265,13 @@ impl ShapeDef {
     }
 }
 
+/// [`ShapeDef::new`].
+impl From<Shape> for ShapeDef {
+    fn from(shape: Shape) -> Self {
+        Self::new(shape)
+    }
+}
+
 /// Mass, centre of mass and inertia.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MassProperties {

@@ -282,11 +282,8 @@ fn save_shape(w: &mut Writer, s: &BodyShape) {
 }
 
 fn load_shape(r: &mut Reader<'_>, library: &ShapeLibrary, surfaces: usize) -> Result<BodyShape, LoadError> {
-    let shape = BodyShape {
-        shape: load_geometry(r, library)?,
-        principal_from_shape: r.transform()?,
-        surface: r.u32()?,
-    };
+    let shape = load_geometry(r, library)?;
+    let shape = BodyShape { shape, principal_from_shape: r.transform()?, surface: r.u32()? };
     if !shape.principal_from_shape.is_finite() {
         return Err(r.error("a shape's pose is not finite").into());
     }

@@ -38,7 +38,7 @@ impl Engine for Sinew {
                 ..BodyDef::default()
             });
         }
-        Ok(Box::new(SinewRays { world, rays: scene.rays.clone(), hits: Vec::new() }))
+        Ok(Box::new(SinewRays { world, rays: scene.rays.clone(), hits: vec![None; scene.rays.len()] }))
     }
 
     fn build_boxes(&self, pairs: &BoxPairs) -> Result<Box<dyn OverlapTester>, Unsupported> {
@@ -81,8 +81,9 @@ struct SinewRays {
 
 impl RayCaster for SinewRays {
     fn count_hits(&mut self, range: Range<usize>) -> usize {
-        self.world.cast_rays(&self.rays[range], |_| true, &mut self.hits);
-        self.hits.iter().flatten().count()
+        let hits = &mut self.hits[range.clone()];
+        self.world.query().first_each(&self.rays[range], hits);
+        hits.iter().flatten().count()
     }
 }
 

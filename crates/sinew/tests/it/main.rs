@@ -4,6 +4,8 @@
 mod flock;
 #[path = "../../examples/pendulum_clock.rs"]
 mod pendulum_clock;
+#[path = "../../examples/probes.rs"]
+mod probes;
 
 #[test]
 fn the_flock_flies() {
@@ -13,4 +15,9 @@ fn the_flock_flies() {
 #[test]
 fn the_clock_keeps_time() {
     pendulum_clock::main();
+}
+
+#[test]
+fn the_questions_are_answered() {
+    probes::main();
 }

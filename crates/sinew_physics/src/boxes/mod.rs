@@ -17,7 +17,8 @@
 //!
 //! # Which file
 //! [`Cuboid`] is what either kind can be asked: points, rays, measures. [`Overlap`] is for pairs. `fit.rs` makes boxes around
-//! points, `frustum.rs` culls and picks, `world.rs` asks a [`World`](crate::World).
+//! points, `frustum.rs` culls and picks. What a
+//! [`World`](crate::World) can be asked is in [`query`](crate::query).
 //!
 //! # Formulas
 //! - A point `p` in a box with centre `c`, axes `aₖ` and half extents `hₖ`: `qₖ = (p − c)·aₖ`, inside where all `|qₖ| ≤ hₖ`;
@@ -50,7 +51,6 @@ pub(crate) mod placed;
 mod point;
 pub(crate) mod segment;
 pub(crate) mod separation;
-mod world;
 
 pub use aabb::{Aabb, HALF_SPACE_REACH};
 pub use cuboid::Cuboid;

@@ -27,5 +27,6 @@ mod pair;
 pub(crate) mod support;
 
 pub use cast::{ShapeHit, cast_shape};
+pub(crate) use cast::{advance, closeness};
 pub use pair::{Gap, gap, overlaps};
-pub(crate) use pair::{apart_along, meet, meets_box};
+pub(crate) use pair::{apart_along, meet};

@@ -3,7 +3,6 @@
 use super::epa;
 use super::gjk::{self, Bridge, Cores};
 use super::support::{Core, Posed, Support, narrow, wide};
-use crate::boxes::PlacedBox;
 use crate::shape::Shape;
 use sinew_math::{DVec3, Transform, Vec3};
 
@@ -48,16 +47,6 @@ pub fn gap(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &Transf
 pub fn overlaps(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &Transform) -> bool {
     (*a == Shape::HalfSpace && *b == Shape::HalfSpace)
         || gap(a, world_from_a, b, world_from_b).is_some_and(|gap| gap.distance <= 0.0)
-}
-
-/// Whether a placed shape and a box have a point in common; false of what is no convex solid.
-pub(crate) fn meets_box(shape: &Shape, world_from_shape: &Transform, region: &PlacedBox) -> bool {
-    let origin = world_from_shape.translation;
-    let of_box = Core::Box { half: region.half };
-    let region =
-        Posed { solid: &of_box, axes: region.axes.map(wide), center: wide(region.center) - wide(origin) };
-    Core::of(shape)
-        .is_some_and(|core| meet(&region, &Posed::new(&core, world_from_shape, origin)).distance <= 0.0)
 }
 
 /// A half-space and what is over it: along the plane's normal.
@@ -114,7 +103,8 @@ impl Gap {
         Self { normal: -self.normal, on_a: self.on_b, on_b: self.on_a, ..self }
     }
 
-    fn placed(self, origin: Vec3) -> Self {
+    /// In coordinates whose origin is `origin` of these.
+    pub(crate) fn placed(self, origin: Vec3) -> Self {
         Self { on_a: self.on_a + origin, on_b: self.on_b + origin, ..self }
     }
 

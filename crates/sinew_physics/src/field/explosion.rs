@@ -4,9 +4,9 @@ use super::def::{not_negative, positive};
 use super::{Fade, Form, Target};
 use crate::def::BodyKind;
 use crate::id::BodyId;
-use crate::proxies::Owner;
+use crate::query::{BodyKinds, QueryFilter};
 use crate::ray::Ray;
-use crate::shape::{Sensing, Shape};
+use crate::shape::Shape;
 use crate::world::World;
 use sinew_math::{Transform, Vec3, max, normalize_or};
 
@@ -113,10 +113,7 @@ impl World {
 
     fn shelters(&self, explosion: &Explosion, point: Vec3) -> bool {
         let ray = Ray { origin: explosion.center, direction: point - explosion.center };
-        let stands = |id: Owner| {
-            let body = self.bodies.at(id.body);
-            body.kind == BodyKind::Static && body.surface(id.shape as usize).sensing == Sensing::Solid
-        };
-        explosion.occlusion == Occlusion::Static && self.meets_any(&ray, stands)
+        explosion.occlusion == Occlusion::Static
+            && self.query().filter(QueryFilter::of(BodyKinds::STATIC)).any(&ray)
     }
 }

@@ -5,7 +5,7 @@ use crate::progress::Progress;
 use sinew::math::{Vec3, clamp, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
-use sinew::physics::{BodyId, BodyKind};
+use sinew::physics::{BodyId, BodyKind, BodyKinds, QueryFilter};
 use sinew_picture::world::{self, Frame, Lines};
 use sinew_picture::{
     Camera, Caption, EncodeError, Image, Line, LineDepth, Movie, PictureFormat, RenderSettings, Renderer,
@@ -141,10 +141,10 @@ impl Take {
         let world = self.run.world();
         let size = (self.whole.max - self.whole.min).length();
         let way = direction.normalize() * (2.0 * size);
-        let stands = |id: BodyId| world.kind(id) == BodyKind::Static;
-        let moving = world.body_ids().filter(|&id| !stands(id)).take(MOST_RAYS);
+        let stands = world.query().filter(QueryFilter::of(BodyKinds::STATIC));
+        let moving = world.body_ids().filter(|&id| world.kind(id) != BodyKind::Static).take(MOST_RAYS);
         let rays = moving.map(|id| Ray { origin: world.center_of_mass(id), direction: way });
-        rays.filter(|ray| world.cast_ray(ray, stands).is_some()).count()
+        rays.filter(|ray| stands.any(ray)).count()
     }
 
     /// Around all that a picture is about, now.

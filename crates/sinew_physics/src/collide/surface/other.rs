@@ -1,8 +1,8 @@
 //! Any convex shape against a triangle: direction and gap by GJK and EPA, the triangle being a thin solid.
 
 use super::{Teller, When, name};
-use crate::collide::features::manifold_of_features;
 use crate::collide::feature::pair;
+use crate::collide::features::manifold_of_features;
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use crate::convex::feature::{Corner, Feature};
 use crate::convex::meet;
@@ -68,9 +68,7 @@ impl Support for Thin<'_> {
         };
         let edge = |k: usize| Feature::new(&[corner(k), corner((k + 1) % 3)], 0, Vec3::ZERO);
         match self.0.support(direction, 1e-4 * self.reach()) {
-            Part::Face => {
-                Feature::new(&[corner(0), corner(1), corner(2)], name::FACE, self.0.normal)
-            }
+            Part::Face => Feature::new(&[corner(0), corner(1), corner(2)], name::FACE, self.0.normal),
             Part::Edge(k) => edge(k),
             Part::Corner(k) => Feature::new(&[corner(k)], 0, Vec3::ZERO),
         }

@@ -58,7 +58,7 @@ impl From<&PlacedBox> for WideBox {
 }
 
 /// Columns of the matrix of a rotation, normalised first.
-fn axes(r: Rotation) -> [Wide; 3] {
+pub fn axes(r: Rotation) -> [Wide; 3] {
     let q = [r.x, r.y, r.z, r.w].map(f64::from);
     let n = q.iter().map(|x| x * x).sum::<f64>().sqrt();
     let [x, y, z, w] = q.map(|x| x / n);

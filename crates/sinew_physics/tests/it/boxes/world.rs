@@ -4,7 +4,7 @@ use super::cases;
 use super::random_pairs::half_extents;
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::boxes::Cuboid;
-use sinew_physics::{Aabb, BodyDef, BodyId, BodyKind, Obb, Shape, ShapeDef, World, WorldDef};
+use sinew_physics::{Aabb, BodyDef, BodyId, BodyKind, Obb, OverlapWith, Shape, ShapeDef, World, WorldDef};
 
 fn body(shapes: Vec<ShapeDef>, position: Vec3, rotation: Rotation) -> BodyDef {
     BodyDef { kind: BodyKind::Static, position, rotation, shapes, ..BodyDef::default() }
@@ -60,7 +60,8 @@ fn regions_find_the_bodies_whose_points_they_hold() {
         let ground = Transform::new(Vec3::NEG_Y, Rotation::from_scaled_axis(random.in_cube() * 0.5));
         world.add_body(&body(vec![ShapeDef::new(Shape::HalfSpace)], ground.translation, ground.rotation));
         let region = Obb::new(random.in_cube() * 2.0, random.rotation(), half_extents(0.8, &mut random));
-        let found: Vec<BodyId> = world.bodies_in(&region).collect();
+        let mut found = Vec::new();
+        world.query().bodies(&OverlapWith(region.into()), &mut found);
         let frame = region.to_transform();
         let points: Vec<Vec3> =
             (0..400).map(|_| frame.point(region.half_extents * random.in_cube())).collect();
@@ -75,7 +76,8 @@ fn regions_find_the_bodies_whose_points_they_hold() {
             }
         }
         let all = Aabb::around(Vec3::ZERO, Vec3::splat(10.0));
-        assert_eq!(world.bodies_in(&all).count(), 7);
+        world.query().bodies(&OverlapWith(all.into()), &mut found);
+        assert_eq!(found.len(), 7);
         assert!(all.volume() > 0.0);
     }
 }

@@ -1,10 +1,9 @@
-//! Questions to the world: energies, momenta, joint gaps, overlaps, rays. Metrics of scenes come from here alone.
+//! What a scene measures: energies, momenta, overlaps of bodies.
 
 use crate::collide::collide_all;
 use crate::contact::ContactKey;
 use crate::def::BodyKind;
 use crate::id::{BodyId, GroupId};
-use crate::ray::RayHit;
 use crate::world::World;
 use sinew_math::{Vec3, max};
 
@@ -31,15 +30,6 @@ pub struct Momentum {
     pub linear: Vec3,
     /// About the world's origin, N·m·s.
     pub angular: Vec3,
-}
-
-/// A ray that met a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyHit {
-    /// The body.
-    pub body: BodyId,
-    /// Where on the ray and on the surface.
-    pub hit: RayHit,
 }
 
 impl World {

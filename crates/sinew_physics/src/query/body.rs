@@ -1,0 +1,36 @@
+//! Questions about one body: bounds, nearest surface, points inside.
+
+use crate::boxes::{Aabb, Penetration, SurfacePoint};
+use crate::id::BodyId;
+use crate::shape::Shape;
+use crate::world::World;
+use sinew_math::{Transform, Vec3};
+
+impl World {
+    /// Bounds of all shapes of a body at its present pose, sensors among them; of a body without shapes the point where its
+    /// frame is.
+    pub fn bounds(&self, id: BodyId) -> Aabb {
+        let place = self.transform(id).translation;
+        let bounds = self.shapes(id).map(|(shape, frame)| shape.aabb(&frame));
+        bounds.reduce(|a, b| a.merge(&b)).unwrap_or(Aabb { min: place, max: place })
+    }
+
+    /// Where the surface of a body is closest to a point (world), over all its shapes; `None` of a body without shapes. A
+    /// point that several shapes hold is measured in the one that holds it deepest.
+    pub fn nearest_surface(&self, id: BodyId, point: Vec3) -> Option<SurfacePoint> {
+        let of_shape = |(shape, frame): (Shape, Transform)| shape.nearest_surface(&frame, point);
+        self.shapes(id).map(of_shape).reduce(|a, b| if b.distance < a.distance { b } else { a })
+    }
+
+    /// Whether a point (world) is in a body or on its surface.
+    pub fn contains_point(&self, id: BodyId, point: Vec3) -> bool {
+        self.nearest_surface(id, point).is_some_and(|nearest| nearest.distance <= 0.0)
+    }
+
+    /// How deep a point (world) is in a body and in which direction the way out is shortest; `None` if it is outside. The
+    /// way leads out of the shape that holds the point deepest.
+    pub fn point_penetration(&self, id: BodyId, point: Vec3) -> Option<Penetration> {
+        let SurfacePoint { distance, normal, .. } = self.nearest_surface(id, point)?;
+        (distance <= 0.0).then_some(Penetration { depth: -distance, direction: normal })
+    }
+}

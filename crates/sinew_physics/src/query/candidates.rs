@@ -1,0 +1,77 @@
+//! Which shapes may have an answer: the one place where a question meets the trees.
+
+use crate::boxes::Aabb;
+use crate::proxies::{Owner, thick};
+use crate::tree::Sweep;
+use crate::world::World;
+use core::ops::ControlFlow;
+use sinew_math::{Vec3, abs3, max, max3, min, min3};
+
+/// Where the shapes are that may answer.
+#[derive(Clone, Copy, Debug)]
+pub enum Reach {
+    /// Their bounds meet a box.
+    Box(Aabb),
+    /// Their bounds meet a box while it is moved by a vector, metres.
+    Swept(Aabb, Vec3),
+    /// Their bounds are within a distance of a point, metres.
+    Near(Vec3, f32),
+}
+
+/// How far a question still looks: the rank beyond which no answer counts.
+pub(super) type Limit = ControlFlow<(), f32>;
+
+/// Farther than this from the origin nothing is looked for, metres: squares of larger numbers overflow, and the trees do not
+/// tell infinite boxes from empty ones.
+pub(super) const FARTHEST: f32 = 1e18;
+
+/// No way is cut off before this share of it.
+const SHORTEST: f32 = 1e-30;
+
+/// Shows every shape within reach, and maybe others, to `visit`, in any order, until it breaks.
+pub(super) fn candidates(world: &World, reach: &Reach, mut visit: impl FnMut(Owner) -> Limit) {
+    let proxies = &world.broad.proxies;
+    let mut broken = false;
+    // For searches along a line and around a point: what is left, below 0 once it is over.
+    let mut search = |owner: Owner| {
+        if !broken && let ControlFlow::Continue(limit) = visit(owner) {
+            return limit;
+        }
+        broken = true;
+        -1.0
+    };
+    match *reach {
+        Reach::Box(bounds) => {
+            let within = |v: Vec3| max3(min3(v, Vec3::splat(FARTHEST)), Vec3::splat(-FARTHEST));
+            let bounds = thick(&Aabb { min: within(bounds.min), max: within(bounds.max) });
+            let _ = proxies.overlapping(&bounds, |owner| visit(owner).map_continue(|_| ()));
+        }
+        Reach::Swept(bounds, direction) => {
+            let (origin, half_extents) = (bounds.center(), bounds.half_extents());
+            if largest(origin) > FARTHEST || largest(half_extents) > FARTHEST {
+                return;
+            }
+            let end = min(FARTHEST / largest(direction), 1.0);
+            let sweep = Sweep { origin, direction, half_extents, limit: end };
+            proxies.along(&sweep, |owner| {
+                let limit = search(owner);
+                // Of hits right at the start of a very long way the fractions vanish, those of their bounds may not.
+                if limit < 0.0 { limit } else { min(max(limit, SHORTEST), end) }
+            });
+        }
+        Reach::Near(point, within) => {
+            let within = min(within, FARTHEST);
+            if largest(point) > FARTHEST {
+                return;
+            }
+            // What holds the point is asked about depth, at distance 0.
+            proxies.nearest(point, within, |owner| max(min(search(owner), within), 0.0));
+        }
+    }
+}
+
+/// Of the components' magnitudes.
+fn largest(v: Vec3) -> f32 {
+    let Vec3 { x, y, z } = abs3(v);
+    max(x, max(y, z))
+}

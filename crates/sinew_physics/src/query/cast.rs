@@ -1,0 +1,121 @@
+//! What is on a way: rays, and shapes that are moved.
+
+use super::candidates::Reach;
+use super::pair;
+use super::probe::Probe;
+use super::question::Question;
+use super::question::sealed::Ask;
+use crate::boxes::{Aabb, Penetration};
+use crate::convex::{ShapeHit, closeness};
+use crate::id::{BodyId, ShapeId};
+use crate::ray::{Ray, RayHit};
+use crate::shape::Shape;
+use sinew_math::{Transform, Vec3, max, normalize_or};
+
+/// Where a ray or a moved shape meets a shape of a body first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyHit {
+    /// The body.
+    pub body: BodyId,
+    /// Which of its shapes.
+    pub shape: u32,
+    /// Share of the way before the hit, 0..=1; 0 of a start inside.
+    pub fraction: f32,
+    /// Where they meet, in the world, metres; of a start inside where the ray starts, or the middle of the overlap.
+    pub point: Vec3,
+    /// Unit, out of the shape that is met, in the world; of a start inside opposite to the way.
+    pub normal: Vec3,
+    /// Of a start inside how deep, and the shortest way out; else `None`.
+    pub start: Option<Penetration>,
+}
+
+impl BodyHit {
+    /// From what one shape says; `None` if a number is not finite.
+    fn new(id: ShapeId, hit: RayHit, start: Option<Penetration>) -> Option<Self> {
+        let RayHit { fraction, point, normal } = hit;
+        // −0 is no place on a way.
+        let fraction = max(fraction, 0.0);
+        let finite = fraction.is_finite() && point.is_finite() && normal.is_finite();
+        finite.then_some(Self { body: id.body, shape: id.shape, fraction, point, normal, start })
+    }
+}
+
+/// Which shapes the ray meets, from its start to its end; those that are met first come first.
+impl Question for Ray {
+    type Answer = BodyHit;
+}
+
+impl Ask for Ray {
+    type Found = BodyHit;
+
+    fn reach(&self) -> Option<Reach> {
+        let point = Aabb { min: self.origin, max: self.origin };
+        (self.origin.is_finite() && self.direction.is_finite()).then_some(Reach::Swept(point, self.direction))
+    }
+
+    fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<BodyHit> {
+        let hit = shape.cast_ray(world_from_shape, self)?;
+        let start = || {
+            let (distance, direction) = shape.signed_distance(world_from_shape, self.origin);
+            (distance <= 0.0).then_some(Penetration { depth: -distance, direction })
+        };
+        BodyHit::new(id, hit, if hit.fraction == 0.0 { start() } else { None })
+    }
+
+    fn is_met(&self, _: ShapeId, shape: &Shape, world_from_shape: &Transform) -> bool {
+        shape.cast_ray(world_from_shape, self).is_some()
+    }
+
+    fn shape_of(hit: &BodyHit) -> ShapeId {
+        ShapeId { body: hit.body, shape: hit.shape }
+    }
+
+    fn rank(hit: &BodyHit) -> f32 {
+        hit.fraction
+    }
+}
+
+/// Which shapes a probe meets that is moved without turning; those that are met first come first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeCast {
+    /// What is moved, where it starts.
+    pub probe: Probe,
+    /// Its way, metres.
+    pub translation: Vec3,
+}
+
+impl Question for ShapeCast {
+    type Answer = BodyHit;
+}
+
+impl Ask for ShapeCast {
+    type Found = BodyHit;
+
+    fn reach(&self) -> Option<Reach> {
+        let usable = self.translation.length() < f32::INFINITY && self.probe.is_valid();
+        usable.then(|| {
+            // It may stop as much before it touches.
+            let early = 2.0 * closeness(self.probe.shape.bounding_radius(), self.translation);
+            Reach::Swept(self.probe.aabb().expand(early), self.translation)
+        })
+    }
+
+    fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<BodyHit> {
+        let ShapeHit { fraction, point, normal } =
+            pair::cast(shape, world_from_shape, &self.probe, self.translation)?;
+        let hit = RayHit { fraction, point, normal };
+        let start =
+            if fraction == 0.0 { pair::penetration(shape, world_from_shape, &self.probe) } else { None };
+        let Some(start) = start else { return BodyHit::new(id, hit, None) };
+        let normal = normalize_or(-self.translation, start.direction);
+        BodyHit::new(id, RayHit { normal, ..hit }, Some(start))
+    }
+
+    fn shape_of(hit: &BodyHit) -> ShapeId {
+        ShapeId { body: hit.body, shape: hit.shape }
+    }
+
+    fn rank(hit: &BodyHit) -> f32 {
+        hit.fraction
+    }
+}

@@ -1,0 +1,101 @@
+//! Which shapes a question is about.
+
+use crate::body::Body;
+use crate::def::BodyKind;
+use crate::id::{BodyId, ShapeId};
+use crate::shape::{Filter, Sensing};
+use core::ops::BitOr;
+
+/// Which shapes of a world a [`Query`](super::Query) is about. Default: every shape that is no sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct QueryFilter<'a> {
+    /// As if the question were a shape with this filter: it meets those that [`Filter::meets`]. Default: on all layers,
+    /// with all layers in its mask, in no group; what has an empty mask is met by nobody, and not by this.
+    pub meets: Filter,
+    /// How their bodies move. Default: in any way.
+    pub kinds: BodyKinds,
+    /// What becomes of sensors. Default ignored.
+    pub sensors: Sensors,
+    /// Bodies that are left out: a few, since each shape looks through all of them. Default none.
+    pub except: &'a [BodyId],
+}
+
+impl Default for QueryFilter<'_> {
+    fn default() -> Self {
+        Self {
+            meets: Filter { layers: u32::MAX, ..Filter::default() },
+            kinds: BodyKinds::ALL,
+            sensors: Sensors::Ignored,
+            except: &[],
+        }
+    }
+}
+
+impl<'a> QueryFilter<'a> {
+    /// Bodies of some kinds alone.
+    pub fn of(kinds: BodyKinds) -> Self {
+        Self { kinds, ..Self::default() }
+    }
+
+    /// All but a few bodies.
+    pub fn without(except: &'a [BodyId]) -> Self {
+        Self { except, ..Self::default() }
+    }
+
+    /// Whether a shape of a body passes.
+    pub(super) fn passes(&self, id: ShapeId, body: &Body) -> bool {
+        let surface = body.surface(id.shape as usize);
+        self.kinds.contains(body.kind)
+            && (surface.sensing == Sensing::Solid || self.sensors == Sensors::Included)
+            && self.meets.meets(surface.filter)
+            && !self.except.contains(&id.body)
+    }
+}
+
+/// What becomes of sensors in a question.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sensors {
+    /// They are not there. Default.
+    #[default]
+    Ignored,
+    /// They answer as solid shapes do.
+    Included,
+}
+
+/// A set of [`BodyKind`]s: `BodyKinds::STATIC | BodyKinds::KINEMATIC`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct BodyKinds(u8);
+
+impl BodyKinds {
+    /// What never moves.
+    pub const STATIC: Self = Self(1);
+    /// What moves as its velocity says.
+    pub const KINEMATIC: Self = Self(2);
+    /// What forces move.
+    pub const DYNAMIC: Self = Self(4);
+    /// All three.
+    pub const ALL: Self = Self(7);
+
+    /// Whether a kind is in the set.
+    pub fn contains(self, kind: BodyKind) -> bool {
+        self.0 & Self::from(kind).0 != 0
+    }
+}
+
+impl From<BodyKind> for BodyKinds {
+    fn from(kind: BodyKind) -> Self {
+        match kind {
+            BodyKind::Static => Self::STATIC,
+            BodyKind::Kinematic => Self::KINEMATIC,
+            BodyKind::Dynamic => Self::DYNAMIC,
+        }
+    }
+}
+
+impl BitOr for BodyKinds {
+    type Output = Self;
+
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}

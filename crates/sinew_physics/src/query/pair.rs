@@ -1,0 +1,45 @@
+//! A probe against one shape of the world: the one place where questions meet pairs of shapes.
+
+use super::probe::Probe;
+use super::surface;
+use crate::boxes::Penetration;
+use crate::convex::{Gap, ShapeHit, cast_shape, gap};
+use crate::shape::Shape;
+use sinew_math::{Transform, Vec3};
+
+/// How the probe lies to the shape, from the shape to the probe; of a surface only if it is within a distance.
+pub(super) fn gap_within(
+    shape: &Shape,
+    world_from_shape: &Transform,
+    probe: &Probe,
+    within: f32,
+) -> Option<Gap> {
+    match shape.surface() {
+        Some(surface) => surface::gap_within(&surface, world_from_shape, probe, within),
+        None => gap(shape, world_from_shape, &probe.shape, &probe.world_from_shape),
+    }
+}
+
+/// Whether they have a point in common.
+pub(super) fn overlap(shape: &Shape, world_from_shape: &Transform, probe: &Probe) -> bool {
+    penetration(shape, world_from_shape, probe).is_some()
+}
+
+/// The shortest way by which the probe gets out of the shape, if they overlap.
+pub(super) fn penetration(shape: &Shape, world_from_shape: &Transform, probe: &Probe) -> Option<Penetration> {
+    let gap = gap_within(shape, world_from_shape, probe, 0.0)?;
+    (gap.distance <= 0.0).then_some(Penetration { depth: -gap.distance, direction: gap.normal })
+}
+
+/// Where the probe first touches the shape on its way.
+pub(super) fn cast(
+    shape: &Shape,
+    world_from_shape: &Transform,
+    probe: &Probe,
+    way: Vec3,
+) -> Option<ShapeHit> {
+    match shape.surface() {
+        Some(surface) => surface::cast(&surface, world_from_shape, probe, way),
+        None => cast_shape(&probe.shape, &probe.world_from_shape, way, shape, world_from_shape),
+    }
+}

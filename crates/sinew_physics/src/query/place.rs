@@ -1,0 +1,211 @@
+//! What is at a place: shapes that hold a point, that a probe overlaps, how deep, and what is nearest.
+
+use super::candidates::Reach;
+use super::pair;
+use super::probe::Probe;
+use super::question::Question;
+use super::question::sealed::Ask;
+use crate::boxes::{Aabb, Penetration, SurfacePoint};
+use crate::convex::Gap;
+use crate::id::{BodyId, ShapeId};
+use crate::shape::Shape;
+use sinew_math::{Transform, Vec3};
+
+/// Which shapes hold a point (world, metres), on their surfaces too; by body and shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContainsPoint(pub Vec3);
+
+impl Question for ContainsPoint {
+    type Answer = ShapeId;
+}
+
+impl Ask for ContainsPoint {
+    type Found = ShapeId;
+
+    fn reach(&self) -> Option<Reach> {
+        self.0.is_finite().then_some(Reach::Box(Aabb { min: self.0, max: self.0 }))
+    }
+
+    fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<ShapeId> {
+        (shape.nearest_surface(world_from_shape, self.0).distance <= 0.0).then_some(id)
+    }
+
+    fn shape_of(id: &ShapeId) -> ShapeId {
+        *id
+    }
+
+    fn rank(_: &ShapeId) -> f32 {
+        0.0
+    }
+}
+
+/// Which shapes a probe overlaps; what touches overlaps, and so does what is wholly inside. By body and shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OverlapWith(pub Probe);
+
+impl Question for OverlapWith {
+    type Answer = ShapeId;
+}
+
+impl Ask for OverlapWith {
+    type Found = ShapeId;
+
+    fn reach(&self) -> Option<Reach> {
+        self.0.is_valid().then(|| Reach::Box(self.0.aabb()))
+    }
+
+    fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<ShapeId> {
+        pair::overlap(shape, world_from_shape, &self.0).then_some(id)
+    }
+
+    fn shape_of(id: &ShapeId) -> ShapeId {
+        *id
+    }
+
+    fn rank(_: &ShapeId) -> f32 {
+        0.0
+    }
+}
+
+/// How deep a probe is in the shapes that it overlaps, each by itself; the deepest first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PenetrationOf(pub Probe);
+
+/// How deep a probe is in a shape of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyPenetration {
+    /// The body.
+    pub body: BodyId,
+    /// Which of its shapes.
+    pub shape: u32,
+    /// Metres, ≥ 0; 0 of what only touches.
+    pub depth: f32,
+    /// Unit, in the world: moved by `direction * depth`, the probe only touches the shape. The shortest such way, from
+    /// this shape alone: it may lead into another one.
+    pub direction: Vec3,
+}
+
+impl Question for PenetrationOf {
+    type Answer = BodyPenetration;
+}
+
+impl Ask for PenetrationOf {
+    type Found = BodyPenetration;
+
+    fn reach(&self) -> Option<Reach> {
+        self.0.is_valid().then(|| Reach::Box(self.0.aabb()))
+    }
+
+    fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<BodyPenetration> {
+        let Penetration { depth, direction } = pair::penetration(shape, world_from_shape, &self.0)?;
+        Some(BodyPenetration { body: id.body, shape: id.shape, depth, direction })
+    }
+
+    fn is_met(&self, _: ShapeId, shape: &Shape, world_from_shape: &Transform) -> bool {
+        pair::overlap(shape, world_from_shape, &self.0)
+    }
+
+    fn shape_of(answer: &BodyPenetration) -> ShapeId {
+        ShapeId { body: answer.body, shape: answer.shape }
+    }
+
+    fn rank(answer: &BodyPenetration) -> f32 {
+        -answer.depth
+    }
+}
+
+/// Which shapes have their surface within a distance of a point, or hold it; the nearest first, and before it those that
+/// hold the point, the deepest first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestTo {
+    /// In the world, metres.
+    pub point: Vec3,
+    /// Farthest surface that counts, metres, ≥ 0.
+    pub within: f32,
+}
+
+/// Where the surface of a shape of a body is nearest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodySurface {
+    /// The body.
+    pub body: BodyId,
+    /// Which of its shapes.
+    pub shape: u32,
+    /// On the surface, in the world, metres.
+    pub point: Vec3,
+    /// Unit, out of the shape.
+    pub normal: Vec3,
+    /// From the surface along the normal to what was asked with, metres; negative inside.
+    pub distance: f32,
+}
+
+impl BodySurface {
+    fn new(id: ShapeId, surface: SurfacePoint, within: f32) -> Option<Self> {
+        let SurfacePoint { point, normal, distance } = surface;
+        let finite = point.is_finite() && normal.is_finite();
+        let near = distance <= within && finite;
+        near.then_some(Self { body: id.body, shape: id.shape, point, normal, distance })
+    }
+}
+
+impl Question for NearestTo {
+    type Answer = BodySurface;
+}
+
+impl Ask for NearestTo {
+    type Found = BodySurface;
+
+    fn reach(&self) -> Option<Reach> {
+        (self.point.is_finite() && self.within >= 0.0).then_some(Reach::Near(self.point, self.within))
+    }
+
+    fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<BodySurface> {
+        let surface = shape.nearest_surface(world_from_shape, self.point);
+        BodySurface::new(id, surface, self.within)
+    }
+
+    fn shape_of(answer: &BodySurface) -> ShapeId {
+        ShapeId { body: answer.body, shape: answer.shape }
+    }
+
+    fn rank(answer: &BodySurface) -> f32 {
+        answer.distance
+    }
+}
+
+/// Which shapes have their surface within a distance of a probe's, or overlap it; the nearest first, and before it those
+/// that overlap, the deepest first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NearestToShape {
+    /// From where distances are measured.
+    pub probe: Probe,
+    /// Farthest surface that counts, metres, ≥ 0.
+    pub within: f32,
+}
+
+impl Question for NearestToShape {
+    type Answer = BodySurface;
+}
+
+impl Ask for NearestToShape {
+    type Found = BodySurface;
+
+    fn reach(&self) -> Option<Reach> {
+        let usable = self.within >= 0.0 && self.probe.is_valid();
+        usable.then(|| Reach::Box(self.probe.aabb().expand(self.within)))
+    }
+
+    fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<BodySurface> {
+        let Gap { distance, normal, on_a: point, .. } =
+            pair::gap_within(shape, world_from_shape, &self.probe, self.within)?;
+        BodySurface::new(id, SurfacePoint { point, normal, distance }, self.within)
+    }
+
+    fn shape_of(answer: &BodySurface) -> ShapeId {
+        ShapeId { body: answer.body, shape: answer.shape }
+    }
+
+    fn rank(answer: &BodySurface) -> f32 {
+        answer.distance
+    }
+}

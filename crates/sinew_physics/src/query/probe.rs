@@ -1,0 +1,72 @@
+//! Shapes put somewhere to ask with.
+
+use crate::boxes::{Aabb, Capsule, Obb, Sphere};
+use crate::convex::support::Core;
+use crate::shape::Shape;
+use sinew_math::{Rotation, Transform, Vec3, normalize_or};
+
+/// A shape that is put somewhere to ask a world with, without being in it.
+///
+/// It has to be convex and bounded. Its sizes may be 0: a box without a height is a rectangle, a ball without a radius a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    /// What is put there.
+    pub shape: Shape,
+    /// Where, with a rotation of length 1.
+    pub world_from_shape: Transform,
+}
+
+impl Probe {
+    /// A shape at a pose.
+    pub fn new(shape: Shape, world_from_shape: Transform) -> Self {
+        Self { shape, world_from_shape }
+    }
+
+    /// A shape at a place, not turned.
+    pub fn at(shape: Shape, position: Vec3) -> Self {
+        Self::new(shape, Transform::from_translation(position))
+    }
+
+    /// Whether its numbers can be asked with: finite, and no size negative.
+    ///
+    /// # Panics
+    /// If the shape is not convex or not bounded: that is no matter of numbers.
+    pub(super) fn is_valid(&self) -> bool {
+        assert!(Core::of(&self.shape).is_some(), "a probe is convex and bounded");
+        let reach = self.shape.bounding_radius();
+        // Written so that NaN fails.
+        self.world_from_shape.is_finite() && self.shape.inner_radius() >= 0.0 && reach < f32::INFINITY
+    }
+
+    /// Bounds.
+    pub(super) fn aabb(&self) -> Aabb {
+        self.shape.aabb(&self.world_from_shape)
+    }
+}
+
+impl From<Obb> for Probe {
+    fn from(obb: Obb) -> Self {
+        Self::new(Shape::Box { half_extents: obb.half_extents }, obb.to_transform())
+    }
+}
+
+impl From<Aabb> for Probe {
+    fn from(aabb: Aabb) -> Self {
+        Obb::from(aabb).into()
+    }
+}
+
+impl From<Sphere> for Probe {
+    fn from(sphere: Sphere) -> Self {
+        Self::at(Shape::Sphere { radius: sphere.radius }, sphere.center)
+    }
+}
+
+impl From<Capsule> for Probe {
+    fn from(Capsule { ends: [from, to], radius }: Capsule) -> Self {
+        let reach = (to - from) * 0.5;
+        let rotation = Rotation::from_arc(Vec3::Y, normalize_or(reach, Vec3::Y));
+        let shape = Shape::Capsule { half_height: reach.length(), radius };
+        Self::new(shape, Transform::new(from + reach, rotation))
+    }
+}

@@ -1,0 +1,39 @@
+//! What can be asked: a question finds out one shape's answer, and orders the answers of several.
+
+use super::candidates::Reach;
+use crate::id::ShapeId;
+use crate::shape::Shape;
+use sinew_math::Transform;
+
+/// What a [`Query`](super::Query) can be asked; [the module](super) lists all questions there are.
+pub trait Question: sealed::Ask<Found = <Self as Question>::Answer> {
+    /// What a shape answers.
+    type Answer;
+}
+
+/// What the questions have to know, kept from those who only ask them.
+pub(super) mod sealed {
+    use super::{Reach, Shape, ShapeId, Transform};
+
+    pub trait Ask {
+        /// [`Question::Answer`](super::Question::Answer).
+        type Found: Copy + core::fmt::Debug + PartialEq;
+
+        /// Where shapes that have an answer are, or `None` if no shape has one: a number is not finite.
+        fn reach(&self) -> Option<Reach>;
+
+        /// The answer of a placed shape, if it has one. No number in it is NaN or infinite.
+        fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<Self::Found>;
+
+        /// Whether it has one; where that is cheaper than the answer itself.
+        fn is_met(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> bool {
+            self.ask(id, shape, world_from_shape).is_some()
+        }
+
+        /// Which shape answered.
+        fn shape_of(answer: &Self::Found) -> ShapeId;
+
+        /// Where the answer stands among others: what is smaller comes first; equal ones go by body and shape.
+        fn rank(answer: &Self::Found) -> f32;
+    }
+}

@@ -1,0 +1,73 @@
+//! Balls as probes: what they meet follows from the distance of their centres alone, in `f64`.
+
+use super::oracle::WideShape;
+use super::random::{KINDS, frame, shape};
+use crate::boxes::cases;
+use crate::boxes::oracle::wide;
+use sinew_math::Random;
+use sinew_physics::*;
+
+/// Metres. Where round shapes overlap deeply, depths are right to 1e-6 of the sizes.
+const NEAR: f64 = 4e-6;
+
+#[test]
+fn balls_go_by_the_distance_of_their_centres() {
+    let mut random = Random::new(410);
+    let (mut overlaps, mut hits) = (0, 0);
+    for case in 0..cases(100_000) {
+        let shape = shape(case as usize % KINDS, &mut random);
+        let at = frame(2.0, &mut random);
+        let mut world = World::new(WorldDef::default());
+        world.add_body(&BodyDef::fixed(shape.clone()).at(at.translation).turned(at.rotation));
+        let query = world.query();
+        let wide_shape = WideShape::new(&shape, &at);
+        let radius = random.range(0.05, 0.6);
+        let center = at.point(random.in_cube() * 1.6);
+        let probe = Probe::at(Shape::Sphere { radius }, center);
+        let gap = wide_shape.signed_distance(wide(center)) - f64::from(radius);
+
+        let told = |what: &str| format!("case {case}: {what} of a ball of {radius} {gap} from {shape:?}");
+        let way = query.first(&PenetrationOf(probe.clone()));
+        assert_eq!(query.any(&OverlapWith(probe.clone())), way.is_some(), "{}", told("overlap"));
+        match way {
+            Some(way) => {
+                overlaps += 1;
+                assert!((gap + f64::from(way.depth)).abs() < NEAR, "{}: {way:?}", told("depth"));
+                let out = wide_shape.signed_distance(wide(center + way.direction * way.depth));
+                assert!((out - f64::from(radius)).abs() < NEAR, "{}: ends {out} off", told("way out"));
+            }
+            None => assert!(gap > -NEAR, "{}", told("no overlap")),
+        }
+
+        let near = query.first(&NearestToShape { probe: probe.clone(), within: 10.0 }).expect("within 10 m");
+        assert!((f64::from(near.distance) - gap).abs() < NEAR, "{}: {near:?}", told("distance"));
+        assert!(wide_shape.signed_distance(wide(near.point)).abs() < NEAR, "{}: {near:?}", told("surface"));
+
+        let translation = (at.point(random.in_cube() * 0.8) - center) * random.range(0.3, 1.5);
+        let along = |fraction: f64| {
+            let way = wide(translation).map(|x| x * fraction);
+            wide_shape.least_distance(wide(center), way) - f64::from(radius)
+        };
+        match query.first(&ShapeCast { probe, translation }) {
+            Some(hit) if hit.start.is_some() => {
+                assert!(gap < NEAR && hit.fraction == 0.0, "{}", told("start"));
+            }
+            Some(hit) => {
+                hits += 1;
+                let fraction = f64::from(hit.fraction);
+                // It may stop short by what counts as touching, 1e-5 of the smaller one and 1e-7 of the way.
+                let there =
+                    wide_shape.signed_distance(wide(center + translation * hit.fraction)) - f64::from(radius);
+                assert!(there.abs() < 1.5e-5, "{}: {hit:?}, {there} from touching", told("hit"));
+                assert!(along(fraction) > -NEAR, "{}: {hit:?} is late", told("hit"));
+                assert!(
+                    wide_shape.signed_distance(wide(hit.point)).abs() < 1.5e-5,
+                    "{}: {hit:?}",
+                    told("place")
+                );
+            }
+            None => assert!(along(1.0) > -NEAR, "{}: {translation} misses", told("cast")),
+        }
+    }
+    assert!(overlaps > cases(100_000) / 20 && hits > cases(100_000) / 5, "{overlaps} overlaps, {hits} hits");
+}

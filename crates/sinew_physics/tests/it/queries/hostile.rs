@@ -1,0 +1,203 @@
+//! Numbers that no question should be asked with, and worlds that nobody should make.
+
+use super::random::{KINDS, Populated, shape};
+use crate::boxes::cases;
+use sinew_math::{Random, Rotation, Transform, Vec3};
+use sinew_physics::ray::Ray;
+use sinew_physics::*;
+
+const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+
+/// Each place of a vector by turns.
+fn bad_vectors() -> impl Iterator<Item = Vec3> {
+    BAD.into_iter().flat_map(|x| [Vec3::new(x, 0.0, 0.0), Vec3::new(0.1, x, 0.0), Vec3::new(0.0, 0.2, x)])
+}
+
+fn silent<Q: Question>(world: &World, question: &Q)
+where
+    Q::Answer: Copy + PartialEq + core::fmt::Debug,
+{
+    let mut all = Vec::new();
+    world.query().all(question, &mut all);
+    assert_eq!(all, []);
+    assert_eq!(world.query().first(question), None);
+    assert!(!world.query().any(question));
+}
+
+#[test]
+fn what_is_not_finite_has_no_answer() {
+    let mut random = Random::new(408);
+    let world = Populated::new(30, 1.0, &mut random).world;
+    for bad in bad_vectors() {
+        silent(&world, &Ray { origin: bad, direction: Vec3::X });
+        silent(&world, &Ray { origin: Vec3::ZERO, direction: bad });
+        silent(&world, &ContainsPoint(bad));
+        silent(&world, &NearestTo { point: bad, within: 1.0 });
+        let ball = Shape::Sphere { radius: 1.0 };
+        silent(&world, &OverlapWith(Probe::at(ball.clone(), bad)));
+        silent(&world, &PenetrationOf(Probe::at(ball.clone(), bad)));
+        silent(&world, &NearestToShape { probe: Probe::at(ball.clone(), bad), within: 1.0 });
+        silent(&world, &ShapeCast { probe: Probe::at(ball.clone(), bad), translation: Vec3::X });
+        silent(&world, &ShapeCast { probe: Probe::at(ball, Vec3::ZERO), translation: bad });
+        silent(&world, &OverlapWith(Probe::at(Shape::Box { half_extents: bad }, Vec3::ZERO)));
+    }
+    silent(&world, &NearestTo { point: Vec3::ZERO, within: f32::NAN });
+    silent(&world, &NearestTo { point: Vec3::ZERO, within: -1.0 });
+    for radius in [f32::NAN, -1.0, f32::INFINITY] {
+        silent(&world, &OverlapWith(Probe::at(Shape::Sphere { radius }, Vec3::ZERO)));
+    }
+}
+
+#[test]
+#[should_panic(expected = "a probe is convex and bounded")]
+fn half_spaces_do_not_ask() {
+    let world = World::new(WorldDef::default());
+    world.query().any(&OverlapWith(Probe::at(Shape::HalfSpace, Vec3::ZERO)));
+}
+
+/// However long the ray, it meets what is on it.
+#[test]
+fn long_rays_hit() {
+    let mut world = World::new(WorldDef::default());
+    let half = Vec3::new(0.5, 1.0, 2.0);
+    for kind in 0..KINDS {
+        let shape = match kind {
+            0 => Shape::Box { half_extents: half },
+            1 => Shape::Sphere { radius: 0.5 },
+            2 | 3 => Shape::Capsule { half_height: 1.0, radius: 0.5 },
+            4 => Shape::TaperedCapsule { half_height: 1.0, radius_bottom: 0.5, radius_top: 0.5 },
+            5 => Shape::Cylinder { half_height: 1.0, radius: 0.5 },
+            // At this height it is as wide as the others.
+            _ => Shape::Cone { half_height: 1.0, radius: 10.0 / 9.0 },
+        };
+        let def =
+            BodyDef { kind: BodyKind::Static, shapes: vec![ShapeDef::new(shape)], ..BodyDef::default() };
+        let id = world.add_body(&def);
+        for length in [1e3f32, 1e7, 1e12, 1e17, 1e25, 1e37] {
+            let ray = Ray { origin: Vec3::new(-3.0, 0.1, 0.1), direction: Vec3::X * length };
+            let hit = world.query().first(&ray).expect("it is in the way");
+            let place = hit.fraction * length;
+            assert!((place - 2.5).abs() < 0.05, "{kind}: {hit:?} of {length}");
+        }
+        world.remove_body(id);
+    }
+}
+
+/// A number of any size, and now and then a special one.
+fn wild(random: &mut Random) -> f32 {
+    const SPECIAL: [f32; 10] = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        f32::MIN_POSITIVE,
+        1e-42,
+        f32::MAX,
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+    ];
+    match random.index(12) {
+        0 => SPECIAL[random.index(SPECIAL.len())],
+        1 => f32::from_bits(random.bits() as u32),
+        2..=4 => random.range(-1.0, 1.0) * 1e6,
+        _ => random.range(-3.0, 3.0),
+    }
+}
+
+fn wild3(random: &mut Random) -> Vec3 {
+    Vec3::new(wild(random), wild(random), wild(random))
+}
+
+/// Thin, small, large.
+fn extreme_shape(random: &mut Random) -> Shape {
+    let mut size = || [1e-4f32, 1e-2, 1.0, 1e2, 1e5][random.index(5)] * random.range(0.5, 1.0);
+    let (a, b, c) = (size(), size(), size());
+    match random.index(6) {
+        0 => Shape::Box { half_extents: Vec3::new(a, b, c) },
+        1 => Shape::Sphere { radius: a },
+        2 => Shape::Capsule { half_height: a, radius: b },
+        3 => Shape::Cylinder { half_height: a, radius: b },
+        4 => Shape::Cone { half_height: a, radius: b },
+        _ => shape(random.index(KINDS), random),
+    }
+}
+
+/// Many bodies in one place, tiny beside huge, far away.
+fn extreme_world(random: &mut Random) -> World {
+    let mut world = World::new(WorldDef::default());
+    let far = [0.0f32, 1.0, 1e3, 1e6][random.index(4)];
+    let place = random.in_cube() * far;
+    for _ in 0..random.index(12) {
+        let spread = [0.0f32, 1e-3, 1.0, 100.0][random.index(4)];
+        let shapes = (0..random.index(3)).map(|_| ShapeDef::new(extreme_shape(random))).collect();
+        let (position, rotation) = (place + random.in_cube() * spread, random.rotation());
+        world.add_body(&BodyDef { kind: BodyKind::Static, position, rotation, shapes, ..BodyDef::default() });
+    }
+    if random.index(2) == 0 {
+        let shapes = vec![ShapeDef::new(Shape::HalfSpace)];
+        world.add_body(&BodyDef {
+            kind: BodyKind::Static,
+            rotation: random.rotation(),
+            shapes,
+            ..BodyDef::default()
+        });
+    }
+    world
+}
+
+fn finite(v: Vec3) -> bool {
+    v.is_finite()
+}
+
+fn check_hits<Q: Question<Answer = BodyHit> + core::fmt::Debug>(world: &World, way: &Q) {
+    let mut hits = Vec::new();
+    world.query().all(way, &mut hits);
+    for hit in &hits {
+        assert!((0.0..=1.0).contains(&hit.fraction) && finite(hit.point), "{hit:?} of {way:?}");
+        assert!((hit.normal.length() - 1.0).abs() < 1e-3, "{hit:?} of {way:?}");
+        if let Some(start) = hit.start {
+            let sound = start.depth >= 0.0 && start.depth.is_finite() && finite(start.direction);
+            assert!(sound, "{hit:?} of {way:?}");
+        }
+    }
+    // At the rounding of extreme numbers a tie at the start may go to another shape: the fraction is the same.
+    let fraction = |hit: BodyHit| hit.fraction;
+    assert_eq!(world.query().first(way).map(fraction), hits.first().copied().map(fraction));
+    assert_eq!(world.query().any(way), !hits.is_empty());
+}
+
+fn check_near<Q: Question<Answer = BodySurface> + core::fmt::Debug>(world: &World, question: &Q) {
+    if let Some(near) = world.query().first(question) {
+        let sound = finite(near.point) && finite(near.normal) && near.distance.is_finite();
+        assert!(sound, "{near:?} of {question:?}");
+    }
+}
+
+#[test]
+fn hostile_worlds_and_questions() {
+    let mut random = Random::new(409);
+    for _ in 0..cases(10_000) {
+        let world = extreme_world(&mut random);
+        for _ in 0..10 {
+            check_hits(&world, &Ray { origin: wild3(&mut random), direction: wild3(&mut random) });
+            let aim = world.body_ids().next().map_or(Vec3::ZERO, |id| world.transform(id).translation);
+            check_hits(&world, &Ray::between(wild3(&mut random), aim));
+            let point = if random.index(2) == 0 { wild3(&mut random) } else { aim };
+            world.query().any(&ContainsPoint(point));
+            check_near(&world, &NearestTo { point, within: wild(&mut random) });
+            let rotation = if random.index(3) == 0 { Rotation::IDENTITY } else { random.rotation() };
+            let probe = Probe::new(extreme_shape(&mut random), Transform::new(point, rotation));
+            let way = world.query().first(&PenetrationOf(probe.clone()));
+            if let Some(way) = way {
+                assert!(
+                    way.depth >= 0.0 && way.depth.is_finite() && finite(way.direction),
+                    "{way:?} of {probe:?}"
+                );
+            }
+            assert_eq!(world.query().any(&OverlapWith(probe.clone())), way.is_some(), "{probe:?}");
+            check_near(&world, &NearestToShape { probe: probe.clone(), within: wild(&mut random) });
+            check_hits(&world, &ShapeCast { probe, translation: wild3(&mut random) });
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! What a start inside means, for every shape and every question alike.
+
+use super::random::{KINDS, shape};
+use sinew_math::{Random, Transform, Vec3};
+use sinew_physics::ray::Ray;
+use sinew_physics::*;
+
+/// One static body of each kind of shape, each in a world of its own, and its shape.
+fn each_shape() -> impl Iterator<Item = (World, Shape)> {
+    let mut random = Random::new(407);
+    let mut shapes: Vec<Shape> = (0..KINDS).map(|kind| shape(kind, &mut random)).collect();
+    shapes.push(Shape::HalfSpace);
+    shapes.into_iter().map(|shape| {
+        let mut world = World::new(WorldDef::default());
+        let def = ShapeDef::new(shape.clone());
+        world.add_body(&BodyDef { kind: BodyKind::Static, shapes: vec![def], ..BodyDef::default() });
+        (world, shape)
+    })
+}
+
+/// A point inside every shape, off all planes of symmetry.
+const INSIDE: Vec3 = Vec3::new(0.01, -0.03, 0.02);
+
+#[test]
+fn a_ray_that_starts_inside() {
+    for (world, shape) in each_shape() {
+        for way in [Vec3::X, Vec3::NEG_Y, Vec3::Y * 100.0, Vec3::new(1.0, 2.0, 3.0)] {
+            let hit = world.query().first(&Ray { origin: INSIDE, direction: way }).expect("it starts inside");
+            assert_eq!((hit.fraction, hit.point), (0.0, INSIDE), "{shape:?}");
+            assert!((hit.normal + way.normalize()).length() < 1e-6, "{shape:?}: {hit:?}");
+            let start = hit.start.expect("it starts inside");
+            let (distance, outward) = shape.signed_distance(&Transform::IDENTITY, INSIDE);
+            assert_eq!((start.depth, start.direction), (-distance, outward), "{shape:?}");
+        }
+    }
+}
+
+#[test]
+fn a_ray_that_starts_inside_and_goes_nowhere() {
+    for (world, shape) in each_shape() {
+        let hit =
+            world.query().first(&Ray { origin: INSIDE, direction: Vec3::ZERO }).expect("it starts inside");
+        let (_, outward) = shape.signed_distance(&Transform::IDENTITY, INSIDE);
+        assert_eq!((hit.fraction, hit.normal), (0.0, outward), "{shape:?}");
+        let outside = Ray { origin: Vec3::Y * 3.0, direction: Vec3::ZERO };
+        assert_eq!(world.query().first(&outside), None, "{shape:?}");
+    }
+}
+
+/// On the surface is inside, whichever way the ray goes.
+#[test]
+fn a_ray_that_starts_on_the_surface() {
+    for (world, shape) in each_shape() {
+        // The highest number at which it is not above the surface.
+        let above = |y: f32| shape.signed_distance(&Transform::IDENTITY, Vec3::Y * y).0 > 0.0;
+        let (mut top, mut outside) = (0.0, 4.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (top + outside);
+            if above(middle) { outside = middle } else { top = middle }
+        }
+        for way in [Vec3::Y, Vec3::NEG_Y, Vec3::X] {
+            let hit =
+                world.query().first(&Ray { origin: Vec3::Y * top, direction: way }).expect("it touches");
+            assert_eq!((hit.fraction, hit.normal), (0.0, -way), "{shape:?}");
+            let depth = hit.start.expect("what touches is inside").depth;
+            assert!(depth < 1e-6, "{shape:?}: {depth}");
+        }
+    }
+}
+
+#[test]
+fn places_inside() {
+    for (world, shape) in each_shape() {
+        assert!(world.query().any(&ContainsPoint(INSIDE)), "{shape:?}");
+        let nearest =
+            world.query().first(&NearestTo { point: INSIDE, within: 0.0 }).expect("it holds the point");
+        assert!(nearest.distance < 0.0, "{shape:?}: {nearest:?}");
+        let (distance, _) = shape.signed_distance(&Transform::IDENTITY, nearest.point);
+        assert!(distance.abs() < 1e-6, "{shape:?}: {distance}");
+        let speck = Probe::at(Shape::Sphere { radius: 0.005 }, INSIDE);
+        assert!(world.query().any(&OverlapWith(speck.clone())), "{shape:?}");
+        let way = world.query().first(&PenetrationOf(speck)).expect("wholly inside");
+        assert!((way.depth + nearest.distance - 0.005).abs() < 1e-6, "{shape:?}: {way:?}, {nearest:?}");
+    }
+}
+
+#[test]
+fn a_cast_that_starts_inside() {
+    for (world, shape) in each_shape() {
+        let probe = Probe::at(Shape::Box { half_extents: Vec3::splat(0.01) }, INSIDE);
+        let way = world.query().first(&PenetrationOf(probe.clone())).expect("it starts inside");
+        for translation in [Vec3::X, Vec3::NEG_Y, Vec3::Y * 100.0, Vec3::new(1.0, 2.0, 3.0)] {
+            let cast = ShapeCast { probe: probe.clone(), translation };
+            let hit = world.query().first(&cast).expect("it starts inside");
+            assert_eq!(hit.fraction, 0.0, "{shape:?}");
+            assert!((hit.normal + translation.normalize()).length() < 1e-6, "{shape:?}: {hit:?}");
+            let start = hit.start.expect("it starts inside");
+            assert_eq!((start.depth, start.direction), (way.depth, way.direction), "{shape:?}");
+        }
+        let still = ShapeCast { probe, translation: Vec3::ZERO };
+        let hit = world.query().first(&still).expect("it starts inside");
+        assert_eq!((hit.fraction, hit.normal), (0.0, way.direction), "{shape:?}");
+        let outside = Probe::at(Shape::Sphere { radius: 0.1 }, Vec3::Y * 3.0);
+        assert_eq!(world.query().first(&ShapeCast { probe: outside, translation: Vec3::ZERO }), None);
+    }
+}
+
+/// What rests on something touches it, and a cast from there hits wherever it leads; a hair above it may go its way.
+#[test]
+fn a_cast_that_starts_on_the_surface() {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+    let at = |y: f32, translation: Vec3| {
+        let probe = Probe::at(Shape::Sphere { radius: 0.5 }, Vec3::Y * y);
+        world.query().first(&ShapeCast { probe, translation }).map(|hit| (hit.fraction, hit.start.is_some()))
+    };
+    for way in [Vec3::X, Vec3::Y, Vec3::NEG_Y] {
+        assert_eq!(at(0.5, way), Some((0.0, true)), "{way}");
+    }
+    assert_eq!(at(0.500_001, Vec3::X), None);
+    assert_eq!(at(0.500_001, Vec3::Y), None);
+    assert_eq!(at(0.500_001, Vec3::NEG_Y), Some((0.0, false)));
+}

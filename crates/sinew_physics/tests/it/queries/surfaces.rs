@@ -1,0 +1,119 @@
+//! Questions to meshes and height fields, against trying every triangle.
+
+use super::random::{KINDS, frame, shape};
+use crate::boxes::cases;
+use sinew_math::{Random, Transform, Vec3};
+use sinew_physics::boxes::Cuboid;
+use sinew_physics::ray::Ray;
+use sinew_physics::*;
+use std::sync::Arc;
+
+/// Corners of a cube around the origin, and its triangles seen from outside.
+fn cube(half: Vec3) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let corners = Aabb::around(Vec3::ZERO, half).corners().to_vec();
+    let sides: [[u32; 4]; 6] =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    (corners, triangles)
+}
+
+fn world_of(shape: Shape, at: &Transform) -> World {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(shape).at(at.translation).turned(at.rotation));
+    world
+}
+
+/// A closed mesh answers what comes from outside as the box does whose surface it is; from inside it is not there for rays.
+#[test]
+fn a_closed_mesh_answers_as_a_box_does() {
+    let mut random = Random::new(411);
+    let (mut hits, mut casts) = (0, 0);
+    for case in 0..cases(20_000) {
+        let half = (random.in_cube() * 0.6).abs() + Vec3::splat(0.2);
+        let (corners, triangles) = cube(half);
+        let at = frame(2.0, &mut random);
+        let mesh = Mesh::new(&corners, &triangles).expect("a cube");
+        let meshed = world_of(Shape::Mesh(Arc::new(mesh)), &at);
+        let solid = world_of(Shape::Box { half_extents: half }, &at);
+        let (meshed, solid) = (meshed.query(), solid.query());
+
+        let origin = at.point(random.in_cube() * 2.0);
+        let ray =
+            Ray { origin, direction: (at.point(random.in_cube() * 0.5) - origin) * random.range(0.5, 2.0) };
+        match (meshed.first(&ray), solid.first(&ray)) {
+            (found, Some(hit)) if hit.start.is_some() => assert_eq!(found, None, "case {case}: from inside"),
+            (Some(a), Some(b)) => {
+                hits += 1;
+                assert!((a.point - b.point).length() < 1e-4, "case {case}: {a:?} {b:?}");
+                assert!(a.normal.dot(b.normal) > 0.999, "case {case}: {a:?} {b:?}");
+            }
+            (a, b) => assert_eq!(a.is_some(), b.is_some(), "case {case}: {ray:?} {a:?} {b:?}"),
+        }
+
+        let probe = Probe::new(shape(random.index(KINDS), &mut random), frame(2.0, &mut random));
+        let start = solid.first(&NearestToShape { probe: probe.clone(), within: 9.0 }).expect("near by");
+        if start.distance > 1e-5 {
+            let near = meshed.first(&NearestToShape { probe: probe.clone(), within: 9.0 }).expect("near by");
+            assert!((near.distance - start.distance).abs() < 1e-5, "case {case}: {near:?} {start:?}");
+            assert!(!meshed.any(&OverlapWith(probe.clone())), "case {case}");
+            let translation = at.point(random.in_cube() * 0.5) - probe.world_from_shape.translation;
+            let cast = ShapeCast { probe, translation };
+            // How fast the surfaces come together, as a share of the way: a place is as much less certain.
+            let closing = |hit: BodyHit| -hit.normal.dot(translation) / translation.length();
+            match (meshed.first(&cast), solid.first(&cast)) {
+                (Some(a), Some(b)) => {
+                    casts += 1;
+                    let apart = (a.fraction - b.fraction).abs() * translation.length();
+                    assert!(apart * closing(b) < 5e-5, "case {case}: {a:?} {b:?}");
+                }
+                (None, None) => {}
+                (a, b) => {
+                    let grazes = a.or(b).is_some_and(|hit| closing(hit) < 0.03);
+                    assert!(grazes, "case {case}: {cast:?} {a:?} {b:?}");
+                }
+            }
+        } else if start.distance < -1e-4 && !meshed.any(&OverlapWith(probe.clone())) {
+            // Wholly inside: no point of the surface is in the probe.
+            let middle = at.inverse_point(probe.world_from_shape.translation);
+            assert!(middle.abs().cmplt(half).all(), "case {case}: {start:?}");
+        }
+    }
+    assert!(hits > cases(20_000) / 3 && casts > cases(20_000) / 5, "{hits} hits, {casts} casts");
+}
+
+/// Terrain is met from above, pushes up, and holds nothing.
+#[test]
+fn height_fields_are_met_from_above() {
+    let (columns, rows, spacing) = (5, 5, [1.0, 1.0]);
+    let def = HeightFieldDef { columns, rows, spacing, heights: vec![1.0; 25], holes: Vec::new() };
+    let field = HeightField::new(def).expect("a flat field");
+    let middle = field.bounds().center();
+    let world = world_of(Shape::HeightField(Arc::new(field)), &Transform::IDENTITY);
+    let query = world.query();
+    let (above, below) = (middle + Vec3::Y * 2.0, middle - Vec3::Y * 2.0);
+    let hit = query.first(&Ray::between(above, below)).expect("from above");
+    assert!((hit.point - middle).length() < 1e-5 && (hit.normal - Vec3::Y).length() < 1e-5, "{hit:?}");
+    assert_eq!(query.first(&Ray::between(below, above)), None);
+    let ball = |y: f32| Probe::at(Shape::Sphere { radius: 0.25 }, middle + Vec3::Y * y);
+    for y in [0.2f32, 0.1, -0.2] {
+        let way = query.first(&PenetrationOf(ball(y))).expect("it goes through");
+        assert!(
+            (way.depth - (0.25 - y)).abs() < 1e-5 && (way.direction - Vec3::Y).length() < 1e-5,
+            "{y}: {way:?}"
+        );
+    }
+    assert!(!query.any(&OverlapWith(ball(0.26))) && !query.any(&OverlapWith(ball(-0.26))));
+    let fall = ShapeCast { probe: ball(1.25), translation: Vec3::Y * -4.0 };
+    let landing = query.first(&fall).expect("it falls on the ground");
+    assert!(
+        (landing.fraction - 0.25).abs() < 1e-5 && (landing.point - middle).length() < 1e-4,
+        "{landing:?}"
+    );
+    let rise = ShapeCast { probe: ball(-1.25), translation: Vec3::Y * 4.0 };
+    assert_eq!(query.first(&rise), None);
+    for point in [above, below] {
+        assert!(!query.any(&ContainsPoint(point)));
+        let near = query.first(&NearestTo { point, within: 3.0 }).expect("2 m away");
+        assert!((near.distance - 2.0).abs() < 1e-5 && near.normal.dot(point - middle) > 0.0, "{near:?}");
+    }
+}
