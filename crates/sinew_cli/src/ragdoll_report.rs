@@ -109,6 +109,10 @@ impl RagdollReport<'_> {
                 put("radius_m", number(radius));
                 put("half_height_m", number(half_height));
             }
+            Shape::Hull(ref hull) => {
+                put("shape", json!("hull"));
+                put("points", json!(hull.vertices().len()));
+            }
             Shape::HalfSpace => unreachable!("no body of a ragdoll is a half-space"),
         }
         put("mass_kg", number(body.mass.mass));
@@ -218,6 +222,7 @@ fn shape_cell(shape: &Shape) -> String {
             format!("capsule {} × ⌀ {} cm", cm(half_height + radius), cm(radius))
         }
         Shape::HalfSpace => "half-space".into(),
+        Shape::Hull(ref hull) => format!("hull of {} points", hull.vertices().len()),
     }
 }
 

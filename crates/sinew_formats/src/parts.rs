@@ -4,7 +4,8 @@ use crate::error::{Result, quoted};
 use crate::json::{At, number, numbers};
 use serde_json::{Map, Value};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
-use sinew_physics::{MassProperties, Shape};
+use sinew_physics::{Hull, MassProperties, Shape};
+use std::sync::Arc;
 
 /// Keys of a pose, to be listed among those of the object that has one.
 pub(crate) const POSE_KEYS: [&str; 2] = ["position", "rotation"];
@@ -55,7 +56,7 @@ pub(crate) fn write_pose(pose: Transform, object: &mut Map<String, Value>) {
 }
 
 /// Keys of a shape's geometry.
-pub(crate) const SHAPE_KEYS: [&str; 4] = ["type", "half_extents", "radius", "half_height"];
+pub(crate) const SHAPE_KEYS: [&str; 5] = ["type", "half_extents", "radius", "half_height", "points"];
 
 /// A shape by its `type` and sizes.
 pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
@@ -71,11 +72,11 @@ pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
             )
         }
         "half_space" => (Shape::HalfSpace, &[]),
+        "hull" => (Shape::Hull(Arc::new(read_hull(at)?)), &["points"]),
         other => {
             let other = quoted(other);
-            return Err(
-                kind.malformed(format!("unknown shape {other}; known are box, sphere, capsule, half_space"))
-            );
+            let known = "box, sphere, capsule, hull, half_space";
+            return Err(kind.malformed(format!("unknown shape {other}; known are {known}")));
         }
     };
     for size in &SHAPE_KEYS[1..] {
@@ -99,6 +100,14 @@ fn read_half_extents(at: At<'_>) -> Result<Vec3> {
     Ok(Vec3::from_array(sizes))
 }
 
+/// A hull by points that it is to hold.
+fn read_hull(at: At<'_>) -> Result<Hull> {
+    let at = at.need("points")?;
+    let points = at.items()?.into_iter().map(|item| item.numbers().map(Vec3::from_array));
+    let points: Vec<Vec3> = points.collect::<Result<_>>()?;
+    Hull::new(&points).map_err(|error| at.malformed(error.to_string()))
+}
+
 /// Writes what [`read_shape`] reads.
 pub(crate) fn write_shape(shape: &Shape, object: &mut Map<String, Value>) {
     let mut put = |key: &str, value: Value| drop(object.insert(key.into(), value));
@@ -117,6 +126,10 @@ pub(crate) fn write_shape(shape: &Shape, object: &mut Map<String, Value>) {
             put("radius", number(radius));
         }
         Shape::HalfSpace => put("type", "half_space".into()),
+        Shape::Hull(ref hull) => {
+            put("type", "hull".into());
+            put("points", hull.vertices().iter().map(|v| numbers(&v.to_array())).collect());
+        }
     }
 }
 

@@ -22,6 +22,7 @@ impl Shape {
                 (from_core.length() - radius, normalize_or(from_core, Vec3::X))
             }
             Shape::HalfSpace => (p.y, Vec3::Y),
+            Shape::Hull(ref hull) => hull.distance(p),
         }
     }
 }

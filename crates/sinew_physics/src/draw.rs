@@ -78,6 +78,11 @@ fn draw_shape(shape: &Shape, pose: &Transform, kind: DrawKind, out: &mut dyn Deb
         Shape::Box { half_extents } => draw_box(half_extents, &mut line),
         Shape::Sphere { radius } => draw_capsule(0.0, radius, &mut line),
         Shape::Capsule { half_height, radius } => draw_capsule(half_height, radius, &mut line),
+        Shape::Hull(ref hull) => {
+            for [from, to] in hull.edges() {
+                line(hull.vertices()[from], hull.vertices()[to]);
+            }
+        }
         Shape::HalfSpace => {
             let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
             let corner = |i: usize| Vec3::new(corners[i % 4].0, 0.0, corners[i % 4].1) * PLANE_SIZE;

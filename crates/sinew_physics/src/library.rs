@@ -3,10 +3,12 @@
 //! A snapshot names such a shape by kind and hash and finds it here again, so that it stays small and quick. Another
 //! process gets the library itself by [`World::save_shapes`].
 
+use crate::hull::Hull;
 use crate::shape::Shape;
 use crate::world::World;
 use sinew_math::{ReadError, Reader, Writer};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// First bytes of a written library; the last is its version.
 const MAGIC: &[u8; 8] = b"sinew-s\x01";
@@ -139,23 +141,35 @@ impl World {
 /// What [`Shape::save_data`] wrote.
 fn load_data(kind: DataKind, data: &mut Reader<'_>) -> Result<Shape, ReadError> {
     match kind {
-        DataKind::Hull | DataKind::Mesh | DataKind::HeightField => Err(data.error("unknown kind of shape")),
+        DataKind::Hull => Ok(Shape::Hull(Arc::new(Hull::load(data)?))),
+        DataKind::Mesh | DataKind::HeightField => Err(data.error("unknown kind of shape")),
     }
 }
 
 impl Shape {
     /// Hash of the data of a shape that holds some, the same on every machine; `None` of those that are sizes only.
     pub fn content_hash(&self) -> Option<u64> {
-        None
+        match self {
+            Self::Hull(hull) => Some(hull.content_hash()),
+            Self::Box { .. } | Self::Sphere { .. } | Self::Capsule { .. } | Self::HalfSpace => None,
+        }
     }
 
     /// What a shape with data is; `None` of those that are sizes only.
     pub fn data_kind(&self) -> Option<DataKind> {
-        None
+        match self {
+            Self::Hull(_) => Some(DataKind::Hull),
+            Self::Box { .. } | Self::Sphere { .. } | Self::Capsule { .. } | Self::HalfSpace => None,
+        }
     }
 
     /// Writes the data; nothing of a shape that is sizes only.
-    fn save_data(&self, _w: &mut Writer) {}
+    fn save_data(&self, w: &mut Writer) {
+        match self {
+            Self::Hull(hull) => hull.save(w),
+            Self::Box { .. } | Self::Sphere { .. } | Self::Capsule { .. } | Self::HalfSpace => {}
+        }
+    }
 
     /// What a snapshot names a shape with data by. False, and nothing written, of those that are sizes only.
     pub(crate) fn save_name(&self, w: &mut Writer) -> bool {

@@ -1,4 +1,4 @@
-//! Mass, centre of mass and inertia of shapes, in closed form.
+//! Mass, centre of mass and inertia of shapes, in closed form; of hulls as they were made.
 
 use crate::shape::{MassProperties, Shape};
 use core::f32::consts::PI;
@@ -14,6 +14,7 @@ impl Shape {
                 cylinder_volume(half_height, radius) + ball_volume(radius)
             }
             Shape::HalfSpace => 0.0,
+            Shape::Hull(ref hull) => hull.volume(),
         }
     }
 
@@ -25,6 +26,9 @@ impl Shape {
             Shape::Sphere { radius } => Vec3::splat(0.4 * mass * radius * radius),
             Shape::Capsule { half_height, radius } => capsule_inertia(half_height, radius, density),
             Shape::HalfSpace => Vec3::ZERO,
+            Shape::Hull(ref hull) => {
+                return MassProperties { mass, center: hull.center(), inertia: hull.inertia() * density };
+            }
         };
         MassProperties { mass, center: Vec3::ZERO, inertia: Sym3::from_diagonal(diagonal) }
     }

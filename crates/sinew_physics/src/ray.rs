@@ -78,6 +78,7 @@ impl Shape {
                 let caps = [-cap, cap].map(|center| enter_ball(center, radius, origin, direction));
                 caps.into_iter().chain([side]).flatten().reduce(|a, b| if b.0 < a.0 { b } else { a })
             }
+            Self::Hull(ref hull) => hull.enter(origin, direction),
             Self::HalfSpace => (direction.y < 0.0).then(|| (origin.y / -direction.y, Vec3::Y)),
         }
     }

@@ -1,6 +1,8 @@
 //! Collision shapes, what they are made of, and whom they meet.
 
+use crate::hull::Hull;
 use sinew_math::{Sym3, Transform, Vec3, min};
+use std::sync::Arc;
 
 /// A convex shape in its own frame. All sizes are metres and positive.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +26,8 @@ pub enum Shape {
     },
     /// Everything below the plane y = 0 of its frame. Static bodies only.
     HalfSpace,
+    /// Convex solid with flat faces; its origin need not be inside.
+    Hull(Arc<Hull>),
 }
 
 impl Shape {
@@ -48,13 +52,14 @@ impl Shape {
         }
     }
 
-    /// Radius of the largest ball inside, metres: half the width where the shape is thinnest. Infinite for a
-    /// half-space.
+    /// Radius of the largest ball around its middle that is inside, metres: half the width where the shape is thinnest.
+    /// Infinite for a half-space.
     pub fn inner_radius(&self) -> f32 {
         match *self {
             Self::Box { half_extents: h } => min(min(h.x, h.y), h.z),
             Self::Sphere { radius } | Self::Capsule { radius, .. } => radius,
             Self::HalfSpace => f32::INFINITY,
+            Self::Hull(ref hull) => hull.inner_radius(),
         }
     }
 
@@ -65,6 +70,7 @@ impl Shape {
             Self::Sphere { radius } => radius,
             Self::Capsule { half_height, radius } => half_height + radius,
             Self::HalfSpace => f32::INFINITY,
+            Self::Hull(ref hull) => hull.bounding_radius(),
         }
     }
 

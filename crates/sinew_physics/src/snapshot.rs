@@ -291,6 +291,7 @@ pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {
             w.f32(radius);
         }
         Shape::HalfSpace => w.u8(3),
+        Shape::Hull(_) => unreachable!("it has a name"),
     }
 }
 

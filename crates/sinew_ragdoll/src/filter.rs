@@ -156,7 +156,8 @@ fn thinner(shape: &Shape, factor: f32) -> Shape {
             Shape::Capsule { half_height: half_height + (radius - thin), radius: thin }
         }
         Shape::Sphere { radius } => Shape::Sphere { radius: radius * factor },
-        Shape::HalfSpace => Shape::HalfSpace,
+        // A fit is none of these.
+        Shape::HalfSpace | Shape::Hull(_) => shape.clone(),
     }
 }
 

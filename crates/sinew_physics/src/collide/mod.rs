@@ -4,6 +4,7 @@
 //! order and turns the result round if need be. Inside, positions are relative to one of the two shapes, so that
 //! a contact far from the world's origin is as precise as one near it.
 
+mod axes;
 mod box_box;
 mod box_capsule;
 mod box_sphere;
@@ -12,7 +13,10 @@ mod capsule_sphere;
 mod clip;
 mod feature;
 mod half_space;
+mod hull_pairs;
+mod hull_round;
 mod placed;
+pub(crate) mod polytope;
 mod reduce;
 
 use crate::shape::Shape;
@@ -107,9 +111,10 @@ pub fn collide(
 fn rank(shape: &Shape) -> u32 {
     match shape {
         Shape::HalfSpace => 0,
-        Shape::Box { .. } => 1,
-        Shape::Capsule { .. } => 2,
-        Shape::Sphere { .. } => 3,
+        Shape::Hull(_) => 1,
+        Shape::Box { .. } => 2,
+        Shape::Capsule { .. } => 3,
+        Shape::Sphere { .. } => 4,
     }
 }
 
@@ -129,6 +134,10 @@ fn collide_ranked(a: &Shape, wa: &Transform, b: &Shape, wb: &Transform, margin: 
         (&Shape::HalfSpace, &Shape::Sphere { radius }) => {
             half_space::against_sphere(&Plane::new(&wa), &Ball::new(radius, &wb), margin, out);
         }
+        (Shape::HalfSpace, Shape::Hull(hull)) => {
+            half_space::against_hull(&Plane::new(&wa), hull, &wb, margin, out);
+        }
+        (Shape::Hull(hull), _) => hull_pairs::collide(hull, &wa, b, &wb, margin, out),
         (&Shape::Box { half_extents: half_a }, &Shape::Box { half_extents: half_b }) => {
             box_box::collide(&PlacedBox::new(half_a, &wa), &PlacedBox::new(half_b, &wb), margin, out);
         }

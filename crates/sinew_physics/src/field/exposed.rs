@@ -1,5 +1,6 @@
 //! What a shape exposes to a stream: panels of its surface, each with an area and where it lies.
 
+use crate::hull::Hull;
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, normalize_or};
 
@@ -19,7 +20,8 @@ pub(super) struct Panel {
 
 impl Shape {
     /// Calls `visit` with panels that together have the shape's projected area in every direction: the faces of a box,
-    /// each at its 2×2 Gauss points, so that spin is braked as well; a ball's disk; a capsule's disk and the strip of its
+    /// each at its 2×2 Gauss points, so that spin is braked as well; those of a hull in triangles, each at three points; a
+    /// ball's disk; a capsule's disk and the strip of its
     /// cylinder that faces `stream` (m/s, world). A half-space has none.
     pub(super) fn exposed(&self, at: &Transform, stream: Vec3, mut visit: impl FnMut(Panel)) {
         match *self {
@@ -37,6 +39,7 @@ impl Shape {
                     });
                 }
             }
+            Self::Hull(ref hull) => hull_panels(hull, at, &mut visit),
             Self::HalfSpace => {}
         }
     }
@@ -44,6 +47,23 @@ impl Shape {
 
 fn disk(point: Vec3, radius: f32) -> Panel {
     Panel { point, area: core::f32::consts::PI * radius * radius, normal: None }
+}
+
+/// Each triangle at three points inside, which integrate squares exactly (Strang and Fix 1973).
+fn hull_panels(hull: &Hull, at: &Transform, visit: &mut impl FnMut(Panel)) {
+    for face in hull.faces() {
+        let normal = Some(at.rotation * face.normal());
+        let mut corners = face.corners().map(|corner| hull.vertices()[corner]);
+        let (Some(first), Some(mut last)) = (corners.next(), corners.next()) else { continue };
+        for corner in corners {
+            let area = (last - first).cross(corner - first).length() / 6.0;
+            let sum = first + last + corner;
+            for node in [first, last, corner] {
+                visit(Panel { point: at.point((sum + node * 3.0) / 6.0), area, normal });
+            }
+            last = corner;
+        }
+    }
 }
 
 fn box_panels(half: Vec3, at: &Transform, visit: &mut impl FnMut(Panel)) {

@@ -1,6 +1,6 @@
 //! How much of a shape is under water, and where the middle of that is: closed forms.
 
-use crate::shape::Shape;
+use crate::shape::{MassProperties, Shape};
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use sinew_math::trig::{acos, asin};
 use sinew_math::{Transform, Vec3, clamp, max, normalize_or};
@@ -60,7 +60,8 @@ impl Shape {
         let height = -plane.above(world_from_shape.translation);
         let reach = self.bounding_radius();
         let local = if height >= reach {
-            Submerged::new(self.volume(), Vec3::ZERO)
+            let MassProperties { mass: volume, center, .. } = self.mass_properties(1.0);
+            Submerged::new(volume, center)
         } else if height <= -reach {
             Submerged::default()
         } else {
@@ -71,6 +72,10 @@ impl Shape {
                     capsule_below(half_height / radius, normal, height / radius).placed(radius, Vec3::ZERO)
                 }
                 Self::HalfSpace => Submerged::default(),
+                Self::Hull(ref hull) => {
+                    let faces = hull.faces().map(|face| face.corners().map(|k| hull.vertices()[k]));
+                    submerged_hull(faces, &WaterPlane { normal, height })
+                }
             }
         };
         Submerged {
@@ -93,7 +98,10 @@ fn ball_below(s: f32, normal: Vec3) -> Submerged {
 ///
 /// Each face is clipped against the surface and joined to one point **of the surface** by tetrahedra; what the cut itself
 /// would add has no height over that point, so that it need not be built (divergence theorem).
-pub fn submerged_hull<'a>(faces: impl Iterator<Item = &'a [Vec3]>, plane: &WaterPlane) -> Submerged {
+pub fn submerged_hull<F>(faces: impl Iterator<Item = F>, plane: &WaterPlane) -> Submerged
+where
+    F: Iterator<Item = Vec3> + Clone,
+{
     let apex = plane.normal * plane.height;
     let mut sum = Submerged::default();
     for face in faces {
@@ -113,10 +121,10 @@ pub fn submerged_hull<'a>(faces: impl Iterator<Item = &'a [Vec3]>, plane: &Water
 }
 
 /// Corners of the part of a polygon that is under water, in order (Sutherland and Hodgman 1974).
-fn clip(face: &[Vec3], plane: &WaterPlane, mut corner: impl FnMut(Vec3)) {
-    let Some(&last) = face.last() else { return };
+fn clip(face: impl Iterator<Item = Vec3> + Clone, plane: &WaterPlane, mut corner: impl FnMut(Vec3)) {
+    let Some(last) = face.clone().last() else { return };
     let (mut from, mut above_from) = (last, plane.above(last));
-    for &to in face {
+    for to in face {
         let above_to = plane.above(to);
         if (above_from > 0.0) != (above_to > 0.0) {
             corner(from + (to - from) * (above_from / (above_from - above_to)));
@@ -140,7 +148,7 @@ fn box_below(half: Vec3, plane: &WaterPlane) -> Submerged {
             corner
         })
     });
-    submerged_hull(faces.iter().map(<[Vec3; 4]>::as_slice), plane)
+    submerged_hull(faces.into_iter().map(<[Vec3; 4]>::into_iter), plane)
 }
 
 /// Part with `n·x ≤ s` of a capsule of radius 1 along y: its cylinder and its two half balls.

@@ -199,7 +199,7 @@ pub(crate) struct ManifoldRows {
 pub(crate) struct PlacedShape {
     pub shape: Shape,
     pub principal_from_shape: Transform,
-    /// Radius of its rounding around its core; 0 for boxes and half-spaces.
+    /// Radius of its rounding around its core; 0 for what has flat faces.
     round: f32,
 }
 
@@ -207,7 +207,7 @@ impl PlacedShape {
     pub fn new(shape: Shape, principal_from_shape: Transform) -> Self {
         let round = match shape {
             Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
-            Shape::Box { .. } | Shape::HalfSpace => 0.0,
+            Shape::Box { .. } | Shape::HalfSpace | Shape::Hull(_) => 0.0,
         };
         Self { shape, principal_from_shape, round }
     }

@@ -1,5 +1,6 @@
 //! Narrow phase: every pair of shapes against the support functions of both, in `f64`.
 
+use crate::hull::pebble;
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::Shape;
 use sinew_physics::collide::{Manifold, ManifoldPoint, collide};
@@ -27,6 +28,10 @@ impl Placed {
             Shape::Sphere { radius } => center + f64::from(radius),
             Shape::Capsule { half_height, radius } => {
                 center + f64::from(half_height) * along(m.y_axis).abs() + f64::from(radius)
+            }
+            Shape::Hull(ref hull) => {
+                let reach = hull.vertices().iter().map(|&v| along(m * v));
+                center + reach.fold(f64::NEG_INFINITY, f64::max)
             }
             Shape::HalfSpace => {
                 if along(m.y_axis) > 0.999_9 {
@@ -114,18 +119,22 @@ enum Kind {
     Box,
     Sphere,
     Capsule,
+    Hull,
     HalfSpace,
 }
 
-const FINITE: [Kind; 3] = [Kind::Box, Kind::Sphere, Kind::Capsule];
+const FINITE: [Kind; 4] = [Kind::Box, Kind::Sphere, Kind::Capsule, Kind::Hull];
 
 fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
+    if kind == Kind::Hull {
+        return pebble(scale, random);
+    }
     let mut side = || scale * random.range(0.2, 1.0);
     match kind {
         Kind::Box => Shape::Box { half_extents: Vec3::new(side(), side(), side()) },
         Kind::Sphere => Shape::Sphere { radius: side() },
         Kind::Capsule => Shape::Capsule { half_height: side(), radius: 0.4 * side() },
-        Kind::HalfSpace => Shape::HalfSpace,
+        Kind::HalfSpace | Kind::Hull => Shape::HalfSpace,
     }
 }
 
@@ -191,7 +200,8 @@ fn matches_the_support_functions() {
             // off; for the rest it is the best direction.
             let thinnest = f64::from(a.shape.inner_radius().min(b.shape.inner_radius()));
             let preference = match (ka, kb) {
-                (Kind::Box, Kind::Box | Kind::Capsule) | (Kind::Capsule, Kind::Box) => {
+                (Kind::Box | Kind::Hull, Kind::Box | Kind::Hull | Kind::Capsule)
+                | (Kind::Capsule, Kind::Box | Kind::Hull) => {
                     0.06 * truth.abs() + 0.011 * thinnest + 5e-4 * size
                 }
                 _ => 0.0,

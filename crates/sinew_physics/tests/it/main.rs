@@ -9,6 +9,7 @@ mod collide;
 mod cook;
 mod fields;
 mod finite;
+mod hull;
 mod humanoid;
 mod joints;
 mod nets;

@@ -32,6 +32,8 @@ pub fn inside(shape: &Shape, p: Vec3) -> Vec3 {
             Vec3::new(0.6 * radius, half_height + 0.4 * radius, 0.6 * radius)
         }
         Shape::HalfSpace => Vec3::ZERO,
+        // The cube in the ball inside.
+        Shape::Hull(ref hull) => Vec3::splat(0.57 * hull.inner_radius()),
     } * 0.9;
     Vec3::new(clamp(p.x, -reach.x, reach.x), clamp(p.y, -reach.y, reach.y), clamp(p.z, -reach.z, reach.z))
 }
