@@ -56,7 +56,8 @@ pub(crate) fn write_pose(pose: Transform, object: &mut Map<String, Value>) {
 }
 
 /// Keys of a shape's geometry.
-pub(crate) const SHAPE_KEYS: [&str; 5] = ["type", "half_extents", "radius", "half_height", "points"];
+pub(crate) const SHAPE_KEYS: [&str; 7] =
+    ["type", "half_extents", "radius", "half_height", "radius_bottom", "radius_top", "points"];
 
 /// A shape by its `type` and sizes.
 pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
@@ -71,14 +72,34 @@ pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
                 &["half_height", "radius"],
             )
         }
+        "tapered_capsule" => {
+            let positive = |key: &str| at.need(key)?.positive();
+            let (half_height, radius_bottom, radius_top) =
+                (positive("half_height")?, positive("radius_bottom")?, positive("radius_top")?);
+            (
+                Shape::TaperedCapsule { half_height, radius_bottom, radius_top },
+                &["half_height", "radius_bottom", "radius_top"],
+            )
+        }
+        "cylinder" | "cone" => {
+            let half_height = at.need("half_height")?.positive()?;
+            let radius = at.need("radius")?.positive()?;
+            let shape = if kind.str()? == "cone" {
+                Shape::Cone { half_height, radius }
+            } else {
+                Shape::Cylinder { half_height, radius }
+            };
+            (shape, &["half_height", "radius"])
+        }
         "half_space" => (Shape::HalfSpace, &[]),
         "hull" => (Shape::Hull(Arc::new(read_hull(at)?)), &["points"]),
         other => {
             let other = quoted(other);
-            let known = "box, sphere, capsule, hull, half_space";
+            let known = "box, sphere, capsule, tapered_capsule, cylinder, cone, hull, half_space";
             return Err(kind.malformed(format!("unknown shape {other}; known are {known}")));
         }
     };
+    shape.check().map_err(|what| at.malformed(what))?;
     for size in &SHAPE_KEYS[1..] {
         if let Some(extra) = at.get(size)?
             && !needed.contains(size)
@@ -122,6 +143,22 @@ pub(crate) fn write_shape(shape: &Shape, object: &mut Map<String, Value>) {
         }
         Shape::Capsule { half_height, radius } => {
             put("type", "capsule".into());
+            put("half_height", number(half_height));
+            put("radius", number(radius));
+        }
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            put("type", "tapered_capsule".into());
+            put("half_height", number(half_height));
+            put("radius_bottom", number(radius_bottom));
+            put("radius_top", number(radius_top));
+        }
+        Shape::Cylinder { half_height, radius } => {
+            put("type", "cylinder".into());
+            put("half_height", number(half_height));
+            put("radius", number(radius));
+        }
+        Shape::Cone { half_height, radius } => {
+            put("type", "cone".into());
             put("half_height", number(half_height));
             put("radius", number(radius));
         }

@@ -1,5 +1,6 @@
 //! Signed distance from a point to a shape: what particles collide with, and what decides whether a point is inside.
 
+use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, abs3, clamp, max3, normalize_or};
 
@@ -21,6 +22,11 @@ impl Shape {
                 let from_core = p - Vec3::new(0.0, clamp(p.y, -half_height, half_height), 0.0);
                 (from_core.length() - radius, normalize_or(from_core, Vec3::X))
             }
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                Tapered::new(half_height, radius_bottom, radius_top).distance(p)
+            }
+            Shape::Cylinder { half_height, radius } => Frustum::cylinder(half_height, radius).distance(p),
+            Shape::Cone { half_height, radius } => Frustum::cone(half_height, radius).distance(p),
             Shape::HalfSpace => (p.y, Vec3::Y),
             Shape::Hull(ref hull) => hull.distance(p),
         }

@@ -151,7 +151,7 @@ impl Shape {
     pub fn content_hash(&self) -> Option<u64> {
         match self {
             Self::Hull(hull) => Some(hull.content_hash()),
-            Self::Box { .. } | Self::Sphere { .. } | Self::Capsule { .. } | Self::HalfSpace => None,
+            _ => None,
         }
     }
 
@@ -159,7 +159,7 @@ impl Shape {
     pub fn data_kind(&self) -> Option<DataKind> {
         match self {
             Self::Hull(_) => Some(DataKind::Hull),
-            Self::Box { .. } | Self::Sphere { .. } | Self::Capsule { .. } | Self::HalfSpace => None,
+            _ => None,
         }
     }
 
@@ -167,7 +167,7 @@ impl Shape {
     fn save_data(&self, w: &mut Writer) {
         match self {
             Self::Hull(hull) => hull.save(w),
-            Self::Box { .. } | Self::Sphere { .. } | Self::Capsule { .. } | Self::HalfSpace => {}
+            _ => {}
         }
     }
 

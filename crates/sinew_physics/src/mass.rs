@@ -1,5 +1,6 @@
 //! Mass, centre of mass and inertia of shapes, in closed form; of hulls as they were made.
 
+use crate::revolved::{self, Frustum, Tapered};
 use crate::shape::{MassProperties, Shape};
 use core::f32::consts::PI;
 use sinew_math::{Sym3, Transform, Vec3};
@@ -13,6 +14,11 @@ impl Shape {
             Shape::Capsule { half_height, radius } => {
                 cylinder_volume(half_height, radius) + ball_volume(radius)
             }
+            Shape::Cylinder { half_height, radius } => cylinder_volume(half_height, radius),
+            Shape::Cone { half_height, radius } => cylinder_volume(half_height, radius) / 3.0,
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                revolved::volume(&Tapered::new(half_height, radius_bottom, radius_top).slices())
+            }
             Shape::HalfSpace => 0.0,
             Shape::Hull(ref hull) => hull.volume(),
         }
@@ -25,6 +31,16 @@ impl Shape {
             Shape::Box { half_extents } => box_inertia(half_extents, mass),
             Shape::Sphere { radius } => Vec3::splat(0.4 * mass * radius * radius),
             Shape::Capsule { half_height, radius } => capsule_inertia(half_height, radius, density),
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                let slices = Tapered::new(half_height, radius_bottom, radius_top).slices();
+                return revolved::mass_properties(&slices, density);
+            }
+            Shape::Cylinder { half_height, radius } => {
+                return revolved::mass_properties(&Frustum::cylinder(half_height, radius).slices(), density);
+            }
+            Shape::Cone { half_height, radius } => {
+                return revolved::mass_properties(&Frustum::cone(half_height, radius).slices(), density);
+            }
             Shape::HalfSpace => Vec3::ZERO,
             Shape::Hull(ref hull) => {
                 return MassProperties { mass, center: hull.center(), inertia: hull.inertia() * density };

@@ -1,5 +1,6 @@
 //! Rays against shapes, exact for every shape.
 
+use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, max, min, normalize_or};
 
@@ -72,16 +73,31 @@ impl Shape {
             Self::Box { half_extents } => enter_box(half_extents, origin, direction),
             Self::Sphere { radius } => enter_ball(Vec3::ZERO, radius, origin, direction),
             Self::Capsule { half_height, radius } => {
-                // The surface of a union is entered where the first of its parts is.
                 let cap = Vec3::new(0.0, half_height, 0.0);
                 let side = enter_tube(half_height, radius, origin, direction);
                 let caps = [-cap, cap].map(|center| enter_ball(center, radius, origin, direction));
-                caps.into_iter().chain([side]).flatten().reduce(|a, b| if b.0 < a.0 { b } else { a })
+                first_of(caps, side)
             }
             Self::Hull(ref hull) => hull.enter(origin, direction),
+            Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                let tapered = Tapered::new(half_height, radius_bottom, radius_top);
+                let (side, middle) = tapered.side();
+                let side = side.enter(origin - Vec3::new(0.0, middle, 0.0), direction);
+                let ends = tapered.balls().map(|(center, r)| enter_ball(center, r, origin, direction));
+                first_of(ends, side)
+            }
+            Self::Cylinder { half_height, radius } => {
+                Frustum::cylinder(half_height, radius).enter(origin, direction)
+            }
+            Self::Cone { half_height, radius } => Frustum::cone(half_height, radius).enter(origin, direction),
             Self::HalfSpace => (direction.y < 0.0).then(|| (origin.y / -direction.y, Vec3::Y)),
         }
     }
+}
+
+/// The surface of a union is entered where the first of its parts is.
+fn first_of(ends: [Option<(f32, Vec3)>; 2], side: Option<(f32, Vec3)>) -> Option<(f32, Vec3)> {
+    ends.into_iter().chain([side]).flatten().reduce(|a, b| if b.0 < a.0 { b } else { a })
 }
 
 /// Slabs (Kay & Kajiya 1986).

@@ -1,7 +1,7 @@
 //! Collision shapes, what they are made of, and whom they meet.
 
 use crate::hull::Hull;
-use sinew_math::{Sym3, Transform, Vec3, min};
+use sinew_math::{Sym3, Transform, Vec3, max, min};
 use std::sync::Arc;
 
 /// A convex shape in its own frame. All sizes are metres and positive.
@@ -24,6 +24,30 @@ pub enum Shape {
         /// Radius.
         radius: f32,
     },
+    /// The hull of two balls on the y axis: one around −`half_height`, one around `half_height`. Neither may hold
+    /// the other: the radii differ by less than the distance of the centres.
+    TaperedCapsule {
+        /// Half the distance of the balls' centres.
+        half_height: f32,
+        /// Radius of the ball at −`half_height`.
+        radius_bottom: f32,
+        /// Radius of the ball at `half_height`.
+        radius_top: f32,
+    },
+    /// Flat-ended cylinder along y from −`half_height` to `half_height`.
+    Cylinder {
+        /// Half of its length.
+        half_height: f32,
+        /// Radius.
+        radius: f32,
+    },
+    /// Cone along y: its base at −`half_height`, its apex at `half_height`.
+    Cone {
+        /// Half the distance from base to apex.
+        half_height: f32,
+        /// Radius of the base.
+        radius: f32,
+    },
     /// Everything below the plane y = 0 of its frame. Static bodies only.
     HalfSpace,
     /// Convex solid with flat faces; its origin need not be inside.
@@ -31,7 +55,8 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Whether its sizes are finite and positive (a capsule's half height may be 0); the phrase says what is wrong.
+    /// Whether its sizes are finite and positive (a capsule's half height may be 0), and make a shape of its kind; the
+    /// phrase says what is wrong.
     ///
     /// # Errors
     /// What is wrong, in lower case.
@@ -48,16 +73,39 @@ impl Shape {
             Self::Capsule { half_height, .. } if !(half_height == 0.0 || positive(half_height)) => {
                 Err("half height of a capsule must not be negative, and finite")
             }
+            Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                if !(positive(half_height) && positive(radius_bottom) && positive(radius_top)) {
+                    Err("half height and radii of a tapered capsule must be positive and finite")
+                } else if !((radius_bottom - radius_top).abs() < 2.0 * half_height) {
+                    Err("one end of a tapered capsule must not hold the other")
+                } else {
+                    Ok(())
+                }
+            }
+            Self::Cylinder { half_height, radius } if !(positive(half_height) && positive(radius)) => {
+                Err("half height and radius of a cylinder must be positive and finite")
+            }
+            Self::Cone { half_height, radius } if !(positive(half_height) && positive(radius)) => {
+                Err("half height and radius of a cone must be positive and finite")
+            }
             _ => Ok(()),
         }
     }
 
-    /// Radius of the largest ball around its middle that is inside, metres: half the width where the shape is thinnest.
+    /// Radius of the largest ball inside, metres: half the width where the shape is thinnest. Of a cone somewhat less, of a
+    /// hull that around its centre.
     /// Infinite for a half-space.
     pub fn inner_radius(&self) -> f32 {
         match *self {
             Self::Box { half_extents: h } => min(min(h.x, h.y), h.z),
             Self::Sphere { radius } | Self::Capsule { radius, .. } => radius,
+            Self::TaperedCapsule { radius_bottom, radius_top, .. } => max(radius_bottom, radius_top),
+            Self::Cylinder { half_height, radius } => min(half_height, radius),
+            // Of the triangle that turns into the cone: twice its area over its girth.
+            Self::Cone { half_height, radius } => {
+                let slant = (radius * radius + 4.0 * half_height * half_height).sqrt();
+                2.0 * half_height * (radius / (radius + slant))
+            }
             Self::HalfSpace => f32::INFINITY,
             Self::Hull(ref hull) => hull.inner_radius(),
         }
@@ -69,6 +117,12 @@ impl Shape {
             Self::Box { half_extents } => half_extents.length(),
             Self::Sphere { radius } => radius,
             Self::Capsule { half_height, radius } => half_height + radius,
+            Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                half_height + max(radius_bottom, radius_top)
+            }
+            Self::Cylinder { half_height, radius } | Self::Cone { half_height, radius } => {
+                (half_height * half_height + radius * radius).sqrt()
+            }
             Self::HalfSpace => f32::INFINITY,
             Self::Hull(ref hull) => hull.bounding_radius(),
         }

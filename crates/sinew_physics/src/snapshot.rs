@@ -292,6 +292,22 @@ pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {
         }
         Shape::HalfSpace => w.u8(3),
         Shape::Hull(_) => unreachable!("it has a name"),
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            w.u8(4);
+            w.f32(half_height);
+            w.f32(radius_bottom);
+            w.f32(radius_top);
+        }
+        Shape::Cylinder { half_height, radius } => {
+            w.u8(5);
+            w.f32(half_height);
+            w.f32(radius);
+        }
+        Shape::Cone { half_height, radius } => {
+            w.u8(6);
+            w.f32(half_height);
+            w.f32(radius);
+        }
     }
 }
 
@@ -305,6 +321,9 @@ pub(crate) fn load_geometry(r: &mut Reader<'_>, library: &ShapeLibrary) -> Resul
         1 => Shape::Sphere { radius: r.f32()? },
         2 => Shape::Capsule { half_height: r.f32()?, radius: r.f32()? },
         3 => Shape::HalfSpace,
+        4 => Shape::TaperedCapsule { half_height: r.f32()?, radius_bottom: r.f32()?, radius_top: r.f32()? },
+        5 => Shape::Cylinder { half_height: r.f32()?, radius: r.f32()? },
+        6 => Shape::Cone { half_height: r.f32()?, radius: r.f32()? },
         _ => return Err(r.error("unknown shape").into()),
     };
     shape.check().map_err(|what| r.error(what))?;

@@ -2,7 +2,7 @@
 
 use super::expect_half_extents;
 use crate::shape::Shape;
-use sinew_math::{Transform, Vec3, abs3, max3, min3};
+use sinew_math::{Mat3, Transform, Vec3, abs3, max3, min3};
 
 /// Bounds of a half-space reach this far from the origin, metres: finite, so that sums and differences stay finite,
 /// and beyond any world.
@@ -103,6 +103,22 @@ impl Shape {
                 }
                 Aabb { min: center + low, max: center + high }
             }
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                let axis = rotation * Vec3::Y * half_height;
+                let [low, high] = [(-axis, radius_bottom), (axis, radius_top)]
+                    .map(|(end, radius)| Aabb::reaching(center + end, Vec3::splat(radius)));
+                low.merge(&high)
+            }
+            Shape::Cylinder { half_height, radius } => {
+                let m = rotation.to_mat3();
+                Aabb::reaching(center, abs3(m.y_axis) * half_height + disk_reach(&m) * radius)
+            }
+            Shape::Cone { half_height, radius } => {
+                let m = rotation.to_mat3();
+                let axis = m.y_axis * half_height;
+                let apex = Aabb::reaching(center + axis, Vec3::ZERO);
+                apex.merge(&Aabb::reaching(center - axis, disk_reach(&m) * radius))
+            }
             Shape::HalfSpace => {
                 let mut bounds = Aabb::reaching(Vec3::ZERO, Vec3::splat(HALF_SPACE_REACH));
                 if rotation * Vec3::Y == Vec3::Y {
@@ -112,4 +128,11 @@ impl Shape {
             }
         }
     }
+}
+
+/// How far the unit disk across y reaches along each axis. Of the sines themselves: from the cosine, near 1, half of
+/// their digits would be gone.
+fn disk_reach(m: &Mat3) -> Vec3 {
+    let reach = |x: f32, z: f32| (x * x + z * z).sqrt();
+    Vec3::new(reach(m.x_axis.x, m.z_axis.x), reach(m.x_axis.y, m.z_axis.y), reach(m.x_axis.z, m.z_axis.z))
 }

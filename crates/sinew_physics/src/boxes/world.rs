@@ -1,8 +1,7 @@
 //! Questions to the world about points and regions.
 
 use super::{Aabb, Capsule, Cuboid, Obb, Overlap, Penetration, PlacedBox, Sphere, SurfacePoint};
-use crate::collide::polytope;
-use crate::hull::BoxPolytope;
+use crate::convex;
 use crate::id::BodyId;
 use crate::shape::Shape;
 use crate::world::World;
@@ -57,12 +56,8 @@ fn meets(region: &PlacedBox, shape: &Shape, world_from_shape: &Transform) -> boo
             let reach = rotation * Vec3::Y * half_height;
             region.overlaps(&Capsule { ends: [center - reach, center + reach], radius })
         }
-        Shape::Hull(ref hull) => {
-            let Transform { translation, rotation } = world_from_shape.inverse();
-            let axes = region.axes.map(|axis| rotation * axis);
-            let center = rotation * region.center + translation;
-            let region = BoxPolytope::new(&PlacedBox { center, axes, half: region.half });
-            polytope::overlaps(&hull.polytope(), &region.polytope())
+        Shape::TaperedCapsule { .. } | Shape::Cylinder { .. } | Shape::Cone { .. } | Shape::Hull(_) => {
+            convex::meets_box(shape, world_from_shape, region)
         }
         Shape::HalfSpace => {
             let normal = rotation * Vec3::Y;

@@ -1,12 +1,13 @@
-//! Hull against hull, box, capsule and sphere, in the frame of the hull.
+//! Hull against everything that has an end, in the frame of the hull.
 
 use super::Manifold;
 use super::axes::TIE_DIRECTION;
 use super::placed::{Pill, PlacedBox};
-use super::{hull_round, polytope};
+use super::{features, hull_round, polytope};
+use crate::convex::support::{Core, Posed};
 use crate::hull::{BoxPolytope, Hull, Room};
 use crate::shape::Shape;
-use sinew_math::Transform;
+use sinew_math::{Transform, Vec3};
 
 /// A hull against a shape of the same or a later rank.
 pub(super) fn collide(
@@ -36,7 +37,13 @@ pub(super) fn collide(
         Shape::Sphere { radius } => {
             hull_round::against_sphere(&polytope, frame.translation, radius, margin, out);
         }
-        Shape::HalfSpace => unreachable!("a half-space comes first"),
+        Shape::TaperedCapsule { .. } | Shape::Cylinder { .. } | Shape::Cone { .. } | Shape::HalfSpace => {
+            let core = Core::Hull(hull);
+            let a = Posed::new(&core, &Transform::IDENTITY, Vec3::ZERO);
+            if let Some(core) = Core::of(other) {
+                features::collide(&a, &Posed::new(&core, &frame, Vec3::ZERO), margin, out);
+            }
+        }
     }
     out.normal = pair_from_hull.rotation * out.normal;
     for point in &mut out.points[..out.count] {

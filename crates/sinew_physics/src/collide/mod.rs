@@ -11,14 +11,18 @@ mod box_sphere;
 mod capsule_capsule;
 mod capsule_sphere;
 mod clip;
-mod feature;
+mod clip_features;
+pub(crate) mod feature;
+pub(crate) mod features;
 mod half_space;
 mod hull_pairs;
 mod hull_round;
-mod placed;
+pub(crate) mod placed;
 pub(crate) mod polytope;
 mod reduce;
+mod round_sphere;
 
+use crate::convex::support::{Core, Posed};
 use crate::shape::Shape;
 use placed::{Ball, Pill, PlacedBox, Plane};
 use sinew_math::{Transform, Vec3};
@@ -107,14 +111,17 @@ pub fn collide(
     }
 }
 
-/// Order of the shapes in a pair: the file names' order.
+/// Order of the shapes in a pair. Those of the pairs with files of their own are in the order of the files' names.
 fn rank(shape: &Shape) -> u32 {
     match shape {
         Shape::HalfSpace => 0,
         Shape::Hull(_) => 1,
         Shape::Box { .. } => 2,
         Shape::Capsule { .. } => 3,
-        Shape::Sphere { .. } => 4,
+        Shape::Cone { .. } => 4,
+        Shape::Cylinder { .. } => 5,
+        Shape::TaperedCapsule { .. } => 6,
+        Shape::Sphere { .. } => 7,
     }
 }
 
@@ -164,8 +171,21 @@ fn collide_ranked(a: &Shape, wa: &Transform, b: &Shape, wb: &Transform, margin: 
             let pill = Pill::new(0.0, radius, &wa);
             capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, out);
         }
+        (round, &Shape::Sphere { radius }) => {
+            round_sphere::collide(round, &wa, &Ball::new(radius, &wb), margin, out);
+        }
+        (Shape::HalfSpace, other) => {
+            if let Some(core) = Core::of(other) {
+                half_space::against_core(&Plane::new(&wa), &Posed::new(&core, &wb, Vec3::ZERO), margin, out);
+            }
+        }
         // The other half of the pairs is brought into this order by `collide`; two half-spaces never meet.
-        _ => {}
+        (a, b) => {
+            if let (Some(a), Some(b)) = (Core::of(a), Core::of(b)) {
+                let (a, b) = (Posed::new(&a, &wa, Vec3::ZERO), Posed::new(&b, &wb, Vec3::ZERO));
+                features::collide(&a, &b, margin, out);
+            }
+        }
     }
     out.finish(origin);
 }

@@ -49,13 +49,6 @@ pub(super) fn collide(a: &Polytope<'_>, b: &Polytope<'_>, margin: f32, tie: Vec3
     }
 }
 
-/// Whether two polytopes have a point in common; what touches does.
-pub(crate) fn overlaps(a: &Polytope<'_>, b: &Polytope<'_>) -> bool {
-    best_face(a, b, 0.0, AxisOf::FaceA).separation <= 0.0
-        && best_face(b, a, 0.0, AxisOf::FaceB).separation <= 0.0
-        && best_edges(a, b).is_none_or(|edges| edges.separation <= 0.0)
-}
-
 /// The face of `of` that separates best, with its outward normal, or the first one that separates by more than `enough`.
 fn best_face(of: &Polytope<'_>, other: &Polytope<'_>, enough: f32, name: fn(usize) -> AxisOf) -> Axis {
     let mut best = Axis { normal: Vec3::Y, separation: f32::NEG_INFINITY, of: name(0) };

@@ -1,6 +1,8 @@
 //! How much of a shape is under water, and where the middle of that is: closed forms.
 
-use crate::shape::{MassProperties, Shape};
+use super::below::revolved_below;
+use crate::revolved::{Frustum, Tapered};
+use crate::shape::Shape;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use sinew_math::trig::{acos, asin};
 use sinew_math::{Transform, Vec3, clamp, max, normalize_or};
@@ -31,6 +33,11 @@ pub struct Submerged {
 }
 
 impl Submerged {
+    /// From volume times centre.
+    pub(super) fn of_moment(volume: f32, moment: Vec3) -> Self {
+        Self { volume, moment }
+    }
+
     fn new(volume: f32, center: Vec3) -> Self {
         Self { volume, moment: center * volume }
     }
@@ -60,8 +67,8 @@ impl Shape {
         let height = -plane.above(world_from_shape.translation);
         let reach = self.bounding_radius();
         let local = if height >= reach {
-            let MassProperties { mass: volume, center, .. } = self.mass_properties(1.0);
-            Submerged::new(volume, center)
+            let whole = self.mass_properties(1.0);
+            Submerged::new(whole.mass, whole.center)
         } else if height <= -reach {
             Submerged::default()
         } else {
@@ -70,6 +77,17 @@ impl Shape {
                 Self::Sphere { radius } => ball_below(height / radius, normal).placed(radius, Vec3::ZERO),
                 Self::Capsule { half_height, radius } => {
                     capsule_below(half_height / radius, normal, height / radius).placed(radius, Vec3::ZERO)
+                }
+                Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                    let slices = Tapered::new(half_height, radius_bottom, radius_top).slices();
+                    revolved_below(&slices, &WaterPlane { normal, height })
+                }
+                Self::Cylinder { half_height, radius } => {
+                    cylinder_below(half_height / radius, normal, height / radius).placed(radius, Vec3::ZERO)
+                }
+                Self::Cone { half_height, radius } => {
+                    let slices = Frustum::cone(half_height, radius).slices();
+                    revolved_below(&slices, &WaterPlane { normal, height })
                 }
                 Self::HalfSpace => Submerged::default(),
                 Self::Hull(ref hull) => {
@@ -189,7 +207,7 @@ fn half_ball_below(a: Vec3, n: Vec3, s: f32) -> Submerged {
 }
 
 /// Area of the part with `x ≤ c` of the unit disk, −1 ≤ c ≤ 1.
-fn segment(c: f32) -> f32 {
+pub(super) fn segment(c: f32) -> f32 {
     FRAC_PI_2 + asin(c) + c * root(c)
 }
 

@@ -221,7 +221,13 @@ impl PlacedShape {
     pub fn new(shape: Shape, principal_from_shape: Transform) -> Self {
         let round = match shape {
             Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
-            Shape::Box { .. } | Shape::HalfSpace | Shape::Hull(_) => 0.0,
+            // The thinner end's: what a core is rounded by all around.
+            Shape::TaperedCapsule { radius_bottom, radius_top, .. } => min(radius_bottom, radius_top),
+            Shape::Box { .. }
+            | Shape::Cylinder { .. }
+            | Shape::Cone { .. }
+            | Shape::HalfSpace
+            | Shape::Hull(_) => 0.0,
         };
         Self { shape, principal_from_shape, round }
     }

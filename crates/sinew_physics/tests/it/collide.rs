@@ -33,6 +33,19 @@ impl Placed {
                 let reach = hull.vertices().iter().map(|&v| along(m * v));
                 center + reach.fold(f64::NEG_INFINITY, f64::max)
             }
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                let reach = f64::from(half_height) * along(m.y_axis);
+                center + (reach + f64::from(radius_top)).max(f64::from(radius_bottom) - reach)
+            }
+            Shape::Cylinder { half_height, radius } => {
+                let across = along(m.x_axis).hypot(along(m.z_axis));
+                center + f64::from(half_height) * along(m.y_axis).abs() + f64::from(radius) * across
+            }
+            Shape::Cone { half_height, radius } => {
+                let across = along(m.x_axis).hypot(along(m.z_axis));
+                let reach = f64::from(half_height) * along(m.y_axis);
+                center + reach.max(f64::from(radius) * across - reach)
+            }
             Shape::HalfSpace => {
                 if along(m.y_axis) > 0.999_9 {
                     center
@@ -119,11 +132,15 @@ enum Kind {
     Box,
     Sphere,
     Capsule,
+    TaperedCapsule,
+    Cylinder,
+    Cone,
     Hull,
     HalfSpace,
 }
 
-const FINITE: [Kind; 4] = [Kind::Box, Kind::Sphere, Kind::Capsule, Kind::Hull];
+const FINITE: [Kind; 7] =
+    [Kind::Box, Kind::Sphere, Kind::Capsule, Kind::TaperedCapsule, Kind::Cylinder, Kind::Cone, Kind::Hull];
 
 fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
     if kind == Kind::Hull {
@@ -134,6 +151,13 @@ fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
         Kind::Box => Shape::Box { half_extents: Vec3::new(side(), side(), side()) },
         Kind::Sphere => Shape::Sphere { radius: side() },
         Kind::Capsule => Shape::Capsule { half_height: side(), radius: 0.4 * side() },
+        Kind::TaperedCapsule => {
+            let radius_bottom = 0.4 * side();
+            // Neither ball holds the other.
+            Shape::TaperedCapsule { half_height: side(), radius_bottom, radius_top: 0.4 * side() }
+        }
+        Kind::Cylinder => Shape::Cylinder { half_height: side(), radius: 0.6 * side() },
+        Kind::Cone => Shape::Cone { half_height: side(), radius: side() },
         Kind::HalfSpace | Kind::Hull => Shape::HalfSpace,
     }
 }
