@@ -61,7 +61,7 @@ pub(crate) fn meets_box(shape: &Shape, world_from_shape: &Transform, region: &Pl
 }
 
 /// A half-space and what is over it: along the plane's normal.
-fn over_plane(world_from_plane: &Transform, core: &Core, world_from_core: &Transform) -> Option<Gap> {
+fn over_plane(world_from_plane: &Transform, core: &Core<'_>, world_from_core: &Transform) -> Option<Gap> {
     let origin = world_from_core.translation;
     let posed = Posed::new(core, world_from_core, origin);
     let normal = world_from_plane.rotation * Vec3::Y;

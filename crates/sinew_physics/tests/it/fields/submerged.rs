@@ -1,5 +1,6 @@
 //! Submerged volumes against brute force: every shape cut into thin disks or small cubes.
 
+use crate::hull::pebble;
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::Shape;
 use sinew_physics::field::{WaterPlane, submerged_hull};
@@ -33,6 +34,7 @@ fn they_agree_with_brute_force() {
         Shape::Box { half_extents: Vec3::new(0.2, 0.5, 0.3) },
         Shape::Capsule { half_height: 0.5, radius: 0.2 },
         Shape::Capsule { half_height: 0.05, radius: 0.4 },
+        pebble(0.4, &mut random),
     ];
     for shape in shapes {
         let whole = shape.volume();

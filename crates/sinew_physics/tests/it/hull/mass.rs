@@ -3,6 +3,7 @@
 use super::{box_hull, corners, hull_of, pebble};
 use sinew_math::{Random, Sym3, Transform, Vec3};
 use sinew_physics::Shape;
+use sinew_physics::field::WaterPlane;
 use sinew_physics::ray::Ray;
 
 #[test]
@@ -101,4 +102,33 @@ fn rays_and_distances_agree() {
         );
     }
     assert!(hits > 150, "{hits} hits");
+}
+
+/// Water, bounds and regions see a hull of a box's corners as the box.
+#[test]
+fn a_box_of_corners_is_a_box_to_all_questions() {
+    let mut random = Random::new(22);
+    let half = Vec3::new(0.3, 1.0, 0.7);
+    let shapes = [box_hull(half), Shape::Box { half_extents: half }];
+    for case in 0..300 {
+        let frame = Transform::new(random.in_cube() * 2.0, random.rotation());
+        let [hull, cuboid] = shapes.each_ref().map(|shape| shape.aabb(&frame));
+        assert!((hull.min - cuboid.min).length() < 1e-6 && (hull.max - cuboid.max).length() < 1e-6);
+        let plane = WaterPlane { normal: random.direction(), height: random.range(-1.0, 1.0) };
+        let [hull, cuboid] = shapes.each_ref().map(|shape| shape.submerged(&frame, &plane));
+        assert!((hull.volume - cuboid.volume).abs() < 1e-5, "case {case}: {hull:?} {cuboid:?}");
+        let apart = hull.center() * hull.volume - cuboid.center() * cuboid.volume;
+        assert!(apart.length() < 1e-5, "case {case}: {apart}");
+        let point = frame.point(random.in_cube() * 1.5);
+        let [hull, cuboid] = shapes.each_ref().map(|shape| shape.signed_distance(&frame, point));
+        assert!((hull.0 - cuboid.0).abs() < 1e-5, "case {case}: {hull:?} {cuboid:?}");
+        let ray = Ray::between(point, frame.point(random.in_cube() * 1.5));
+        match shapes.each_ref().map(|shape| shape.cast_ray(&frame, &ray)) {
+            [Some(hull), Some(cuboid)] => {
+                assert!((hull.fraction - cuboid.fraction).abs() < 1e-4, "case {case}")
+            }
+            [None, None] => {}
+            other => panic!("case {case}: {other:?}"),
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Hulls in worlds: stacks stand and sleep at every size, and a box made of corners is a box.
 
 use super::{box_hull, pebble};
-use crate::build::floor;
+use crate::build::{box_body, capsule_body, floor, sphere_body};
 use sinew_math::{Random, Vec3};
 use sinew_physics::*;
 
@@ -69,4 +69,28 @@ fn a_heap_comes_to_rest() {
         let center = world.center_of_mass(id);
         assert!(center.y > 0.03 && center.length() < 3.0, "{center}");
     }
+}
+
+/// Hulls against each other, against the floor and all other shapes: a warm step allocates nothing.
+#[test]
+fn a_warm_step_allocates_nothing() {
+    let mut world = World::new(WorldDef { sleeping: Sleeping::Off, ..WorldDef::default() });
+    floor(&mut world);
+    let mut random = Random::new(21);
+    for k in 0..12 {
+        let position = random.in_cube() * 0.1 + Vec3::Y * (0.2 + 0.25 * k as f32);
+        world.add_body(&match k % 6 {
+            0 => box_body(Vec3::splat(0.1), position),
+            1 => sphere_body(0.1, position),
+            2 => capsule_body(0.1, 0.07, position),
+            _ => BodyDef {
+                position,
+                shapes: vec![ShapeDef::new(pebble(0.12, &mut random))],
+                ..BodyDef::default()
+            },
+        });
+    }
+    (0..300).for_each(|_| world.step());
+    let seen = allocation_counter::measure(|| (0..30).for_each(|_| world.step()));
+    assert_eq!(seen.count_total, 0);
 }
