@@ -165,9 +165,8 @@ impl Shape {
 
     /// Writes the data; nothing of a shape that is sizes only.
     fn save_data(&self, w: &mut Writer) {
-        match self {
-            Self::Hull(hull) => hull.save(w),
-            _ => {}
+        if let Self::Hull(hull) = self {
+            hull.save(w);
         }
     }
 

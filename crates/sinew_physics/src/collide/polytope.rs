@@ -203,3 +203,57 @@ fn push_support(a: &Polytope<'_>, b: &Polytope<'_>, axis: &Axis, out: &mut Manif
     let feature = pair(feature::vertex(a.support(axis.normal)), feature::vertex(index));
     out.push(position, axis.separation, feature);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::placed::PlacedBox;
+    use super::*;
+    use crate::hull::{BoxPolytope, TrianglePolytope};
+    use sinew_math::{Random, Transform};
+
+    fn gap(a: &Polytope<'_>, b: &Polytope<'_>, n: Vec3) -> f32 {
+        -b.reach(-n) - a.reach(n)
+    }
+
+    /// Two faces and three edges are enough: the best of all face normals and crossed edges, both ways, is found.
+    #[test]
+    fn a_triangle_is_a_polytope() {
+        let mut random = Random::new(31);
+        let (mut touching, mut faces) = (0, 0);
+        for case in 0..3_000 {
+            let corners = [random.in_cube(), random.in_cube(), random.in_cube()];
+            let Some(normal) = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize()
+            else {
+                continue;
+            };
+            let triangle = TrianglePolytope::new(corners, normal);
+            let frame = Transform::new(random.in_cube(), random.rotation());
+            let cuboid = BoxPolytope::new(&PlacedBox::new(Vec3::new(0.2, 0.3, 0.5), &frame));
+            let (a, b) = (triangle.polytope(), cuboid.polytope());
+            let mut best = f32::NEG_INFINITY;
+            let edges_a = a.topology.edge_numbers().map(|i| a.edge(i));
+            for e in edges_a.map(|e| e.ends[1] - e.ends[0]) {
+                for f in b.topology.edge_numbers().map(|j| b.edge(j)).map(|e| e.ends[1] - e.ends[0]) {
+                    if let Some(n) = e.cross(f).try_normalize() {
+                        best =
+                            [n, -n].into_iter().fold(best, |best, n| sinew_math::max(gap(&a, &b, n), best));
+                    }
+                }
+            }
+            for n in a.planes.iter().map(|p| p.normal).chain(b.planes.iter().map(|p| -p.normal)) {
+                best = sinew_math::max(gap(&a, &b, n), best);
+            }
+            let mut out = Manifold::default();
+            collide(&a, &b, 0.0, Vec3::Y, &mut out);
+            assert_eq!(out.count > 0, best <= 0.0, "case {case}: {best}, {out:?}");
+            if out.count > 0 {
+                let along = gap(&a, &b, out.normal);
+                let slack = 1e-4 + 0.0011 + 0.06 * best.abs();
+                assert!(along > best - slack, "case {case}: {along} for {best}, {out:?}");
+                touching += 1;
+                faces += usize::from(out.count > 2);
+            }
+        }
+        assert!(touching > 500 && faces > 100, "{touching} touch, {faces} with three points or more");
+    }
+}

@@ -17,8 +17,10 @@ const TOLERANCES: [f64; 4] = [8.0, 2.0, 0.5, 0.0];
 const MOST_LOST: f32 = 4e-6;
 /// Share of the size that a hull must be thick.
 const THINNEST: f32 = 1e-4;
-/// Share of the size by which a corner may lie outside of a face: several roundings.
+/// Share of the size by which a corner may lie outside of a face.
 const CONVEX: f32 = 1e-5;
+/// Share of the distance from the origin that is lost to rounding in a height over a plane.
+const ROUNDING: f32 = 1e-6;
 
 pub(super) fn build(points: &[Vec3]) -> Result<Hull, HullError> {
     let grid = Grid::new(points)?;
@@ -53,7 +55,7 @@ fn with_budget(grid: &Grid, budget: usize) -> Result<Option<Hull>, HullError> {
         };
         let Some((vertices, loops)) = numbered(&places, &faces) else { return Ok(None) };
         let Ok(hull) = from_faces(vertices, &loops) else { continue };
-        let most = MOST_LOST * size(&hull.bounds);
+        let most = MOST_LOST * size(&hull.bounds) + ROUNDING * hull.bounding_radius;
         if exact || places.iter().all(|&p| hull.distance(p).0 <= most) {
             return Ok(Some(hull));
         }
@@ -97,13 +99,14 @@ pub(super) fn from_faces(vertices: Vec<Vec3>, loops: &[Vec<u8>]) -> Result<Hull,
     if !SIZES.contains(&f64::from(size)) {
         return Err("a hull is too small or too large");
     }
+    let bounding_radius = vertices.iter().map(|v| v.length()).fold(0.0, max);
     let (mut planes, mut areas) = (Vec::with_capacity(loops.len()), Vec::with_capacity(loops.len()));
     for ring in loops {
         let (normal, area) = newell(&vertices, ring).ok_or("a face of a hull has no area")?;
         let on_face = ring.iter().map(|&i| normal.dot(vertices[usize::from(i)])).fold(f32::INFINITY, min);
         // As far out as any corner, so that a face's plane holds the hull up to rounding.
         let offset = reach(&vertices, normal);
-        if offset - on_face > CONVEX * size {
+        if offset - on_face > CONVEX * size + ROUNDING * bounding_radius {
             return Err("a hull is not convex");
         }
         if offset + reach(&vertices, -normal) < THINNEST * size {
@@ -115,7 +118,6 @@ pub(super) fn from_faces(vertices: Vec<Vec3>, loops: &[Vec<u8>]) -> Result<Hull,
     let integrals = Integrals::new(&vertices, loops);
     let (volume, center, inertia) = integrals.solid().ok_or("a hull has no volume")?;
     let inner_radius = planes.iter().map(|plane| -plane.height(center)).fold(f32::INFINITY, min);
-    let bounding_radius = vertices.iter().map(|v| v.length()).fold(0.0, max);
     let content_hash = super::bytes::hash(&vertices, loops);
     Ok(Hull {
         vertices,

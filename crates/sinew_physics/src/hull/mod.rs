@@ -17,7 +17,7 @@ use crate::boxes::Aabb;
 pub(crate) use polytope::{Polytope, Room};
 use sinew_math::{Sym3, Vec3, max};
 pub(crate) use solids::BoxPolytope;
-#[allow(unused_imports, reason = "what meshes are made of")]
+#[cfg(test)]
 pub(crate) use solids::TrianglePolytope;
 use topology::Outline;
 pub(crate) use topology::{Plane, Topology};

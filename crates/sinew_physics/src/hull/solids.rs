@@ -11,7 +11,9 @@ const BOX_LOOPS: [[u8; 4]; 6] =
 static BOX: Table<6, 24> = table(BOX_LOOPS);
 
 /// Front and back.
+#[cfg(test)]
 const TRIANGLE_LOOPS: [[u8; 3]; 2] = [[0, 1, 2], [0, 2, 1]];
+#[cfg(test)]
 static TRIANGLE: Table<2, 6> = table(TRIANGLE_LOOPS);
 
 /// A topology of `F` faces and `H` half-edges.
@@ -61,7 +63,7 @@ impl BoxPolytope {
     pub fn new(of: &PlacedBox) -> Self {
         let plane = |face: usize| {
             let axis = of.axes[face / 2];
-            let normal = if face % 2 == 0 { -axis } else { axis };
+            let normal = if face % 2 == 1 { axis } else { -axis };
             Plane { normal, offset: normal.dot(of.center) + of.half[face / 2] }
         };
         Self {
@@ -84,11 +86,13 @@ impl BoxPolytope {
 }
 
 /// A triangle's corners and its two planes.
+#[cfg(test)]
 pub(crate) struct TrianglePolytope {
     vertices: [Vec3; 3],
     planes: [Plane; 2],
 }
 
+#[cfg(test)]
 impl TrianglePolytope {
     /// `normal` is the unit normal of the face from which the corners are counter-clockwise.
     pub fn new(vertices: [Vec3; 3], normal: Vec3) -> Self {
