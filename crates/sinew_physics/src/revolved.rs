@@ -116,11 +116,13 @@ impl Frustum {
         let a = dx * dx + dz * dz - growth * growth;
         let half_b = x * dx + z * dz - radius * growth;
         let root = half_b * half_b - a * c;
-        // Inwards: from outside, f falls until the line enters.
-        if half_b >= 0.0 || root < 0.0 {
+        // The first root after the start, in the form that does not subtract what is nearly equal; there is none where the
+        // line does not come closer to the side than it is.
+        let steep = root.sqrt() - half_b;
+        if root < 0.0 || steep <= 0.0 {
             return None;
         }
-        let t = c / (-half_b + root.sqrt());
+        let t = c / steep;
         let y_there = y + dy * t;
         if first + t > last || mean + slope * y_there < 0.0 {
             return None;

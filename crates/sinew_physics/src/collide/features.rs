@@ -2,7 +2,7 @@
 
 use super::clip_features::{Clipped, clip};
 use super::feature::{WHOLE, pair};
-use super::placed::Segment;
+use super::placed::{Segment, sign};
 use super::reduce::push_best;
 use super::{Manifold, ManifoldPoint};
 use crate::convex::feature::Feature;
@@ -62,7 +62,7 @@ pub(crate) fn manifold_of_features<A: Support, B: Support>(
     let slack = PREFERENCE * gap.distance.abs() + PREFERENCE_OF_SIZE * thinnest;
     let along = |normal: Vec3| apart_along(a, b, wide(normal)) as f32;
     let touched = match pairing.reference(slack, along) {
-        Some(of_a) => pairing.push_faces(of_a, out),
+        Some((of, apart)) => pairing.push_faces(of, apart, out),
         None => pairing.push_edges(out),
     };
     if !touched {
@@ -89,10 +89,17 @@ enum Of {
     B,
 }
 
+impl Of {
+    fn other(self) -> Self {
+        if self == Self::A { Self::B } else { Self::A }
+    }
+}
+
 impl Pairing<'_> {
-    /// The face to which the other feature is cut, if one of them is such a face: it looks along the normal, or nearly so and
-    /// the gap along its own normal is as good within `slack`.
-    fn reference(&self, slack: f32, apart_along: impl Fn(Vec3) -> f32) -> Option<Of> {
+    /// The face to which the other feature is cut, if one of them is such a face, and how far the solids are apart along its
+    /// normal: it looks along the direction, or nearly so, the other feature is no mere corner, and the gap along the face's
+    /// own normal is as good within `slack`.
+    fn reference(&self, slack: f32, apart_along: impl Fn(Vec3) -> f32) -> Option<(Of, f32)> {
         let score = |of: Of| {
             let feature = self.feature(of);
             let outward = self.outward(of);
@@ -104,6 +111,9 @@ impl Pairing<'_> {
             if lean <= FACE_SINE {
                 return Some(self.gap.distance);
             }
+            if self.feature(of.other()).corners().len() < 2 {
+                return None;
+            }
             let normal = if of == Of::A { feature.normal } else { -feature.normal };
             Some(apart_along(normal)).filter(|apart| *apart >= self.gap.distance - slack)
         };
@@ -111,10 +121,10 @@ impl Pairing<'_> {
             (Some(x), Some(y)) => {
                 let tied = (x - y).abs() <= self.tolerance;
                 let a_wins = if tied { self.feature(Of::A).normal.dot(TIE_DIRECTION) > 0.0 } else { x > y };
-                Some(if a_wins { Of::A } else { Of::B })
+                Some(if a_wins { (Of::A, x) } else { (Of::B, y) })
             }
-            (Some(_), None) => Some(Of::A),
-            (None, Some(_)) => Some(Of::B),
+            (Some(x), None) => Some((Of::A, x)),
+            (None, Some(y)) => Some((Of::B, y)),
             (None, None) => None,
         }
     }
@@ -128,10 +138,10 @@ impl Pairing<'_> {
         if of == Of::A { self.gap.normal } else { -self.gap.normal }
     }
 
-    /// The other feature cut to the face. False if that does not show how far the solids are apart: they pass each other beside
-    /// the face.
-    fn push_faces(&self, of: Of, out: &mut Manifold) -> bool {
-        let other = if of == Of::A { Of::B } else { Of::A };
+    /// The other feature cut to the face, along whose normal the solids are `apart`. False if that does not show how far they
+    /// are apart: they pass each other beside the face.
+    fn push_faces(&self, of: Of, apart: f32, out: &mut Manifold) -> bool {
+        let other = of.other();
         let (reference, incident) = (self.feature(of), self.feature(other));
         let (r_reference, r_incident) = (self.roundings[of as usize], self.roundings[other as usize]);
         let outward = reference.normal;
@@ -151,14 +161,13 @@ impl Pairing<'_> {
                 count += 1;
             }
         }
-        if nearest > self.gap.distance + self.tolerance {
-            if self.gap.distance > 0.0 {
+        if nearest > apart + self.tolerance {
+            if apart > 0.0 {
                 return false;
             }
             // The deepest point lies beside the corners of a round face.
             let position = (self.gap.on_a + self.gap.on_b) * 0.5;
-            points[count] =
-                ManifoldPoint { position, separation: self.gap.distance, feature: pair(WHOLE, WHOLE) };
+            points[count] = ManifoldPoint { position, separation: apart, feature: pair(WHOLE, WHOLE) };
             count += 1;
         }
         out.normal = if of == Of::A { outward } else { -outward };
@@ -171,7 +180,7 @@ impl Pairing<'_> {
         let [a, b] = self.features.each_ref().map(Feature::corners);
         let ([a0, a1], [b0, b1]) = (a, b) else { return false };
         let n = self.gap.normal;
-        let edge = Segment { ends: [a0.point, a1.point] };
+        let (edge, other) = (Segment { ends: [a0.point, a1.point] }, Segment { ends: [b0.point, b1.point] });
         let (along, along_b) = (a1.point - a0.point, b1.point - b0.point);
         let (length, length_b) = (along.length(), along_b.length());
         let parallel = along.cross(along_b).length() <= PARALLEL_SINE * length * length_b;
@@ -180,9 +189,11 @@ impl Pairing<'_> {
         if !(parallel && across) || length <= 0.0 || length_b <= 0.0 {
             return false;
         }
-        let place = |p: Vec3| (p - a0.point).dot(along) / (length * length);
+        // Along both, so that their order does not matter.
+        let common = along / length + along_b * (sign(along.dot(along_b)) / length_b);
+        let run = along.dot(common);
+        let place = |p: Vec3| (p - a0.point).dot(common) / run;
         let (t0, t1) = (place(b0.point), place(b1.point));
-        let other = Segment { ends: [b0.point, b1.point] };
         let mut ends = [(0.0, a0.name), (1.0, a1.name)].map(|(t, name)| (t, name, WHOLE));
         let ((low, low_name), (high, high_name)) =
             if t0 < t1 { ((t0, b0.name), (t1, b1.name)) } else { ((t1, b1.name), (t0, b0.name)) };

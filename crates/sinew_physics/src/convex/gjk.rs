@@ -9,6 +9,8 @@ use sinew_math::DVec3;
 const PRECISION: f64 = 1e-10;
 /// Cores closer than this share of their sizes touch: the direction between them would be rounding.
 pub(super) const TOUCH: f64 = 1e-10;
+/// A tetrahedron whose height is below this share of its edges is flat.
+const THIN: f64 = 1e-12;
 /// Far above what is needed: polytopes take as many steps as they have faces near by, round cores some 30.
 const MOST_STEPS: usize = 128;
 
@@ -195,19 +197,19 @@ fn on_triangle(p: &[DVec3; 4], at: [usize; 3]) -> Carriers {
     sides.into_iter().reduce(|x, y| nearer(p, x, y)).unwrap_or((at, [1.0, 0.0, 0.0]))
 }
 
-/// `None` if the origin is inside. A flat tetrahedron holds nothing.
+/// `None` if the origin is inside. A flat tetrahedron holds nothing; on which side of its faces the origin lies would be
+/// rounding, so that all of them are looked at.
 fn on_tetrahedron(p: &[DVec3; 4]) -> Option<Carriers> {
     const FACES: [[usize; 4]; 4] = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0]];
-    let mut best: Option<Carriers> = None;
-    for [i, j, k, opposite] in FACES {
+    let within = FACES.iter().all(|&[i, j, k, opposite]| {
         let normal = (p[j] - p[i]).cross(p[k] - p[i]);
-        let (of_origin, of_opposite) = (-p[i].dot(normal), (p[opposite] - p[i]).dot(normal));
-        // Strictly on the inner side, and the tetrahedron has a thickness.
-        if of_origin * of_opposite > 0.0 {
-            continue;
-        }
-        let face = on_triangle(p, [i, j, k]);
-        best = Some(best.map_or(face, |other| nearer(p, other, face)));
+        let (of_origin, across) = (-p[i].dot(normal), p[opposite] - p[i]);
+        let of_opposite = across.dot(normal);
+        let thick = of_opposite.abs() > THIN * normal.length() * across.length();
+        thick && of_origin * of_opposite > 0.0
+    });
+    if within {
+        return None;
     }
-    best
+    FACES.map(|[i, j, k, _]| on_triangle(p, [i, j, k])).into_iter().reduce(|x, y| nearer(p, x, y))
 }

@@ -13,6 +13,6 @@ mod random_pairs;
 mod world;
 
 /// Of `all` cases those that are run: a hundredth unless `SINEW_FULL` is set.
-fn cases(all: u32) -> u32 {
+pub fn cases(all: u32) -> u32 {
     if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
 }

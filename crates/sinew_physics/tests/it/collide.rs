@@ -7,9 +7,9 @@ use sinew_physics::collide::{Manifold, ManifoldPoint, collide};
 
 /// One shape, placed.
 #[derive(Clone, Debug)]
-struct Placed {
-    shape: Shape,
-    frame: Transform,
+pub struct Placed {
+    pub shape: Shape,
+    pub frame: Transform,
 }
 
 impl Placed {
@@ -56,28 +56,28 @@ impl Placed {
         }
     }
 
-    fn size(&self) -> f32 {
+    pub fn size(&self) -> f32 {
         if self.shape == Shape::HalfSpace { 0.0 } else { self.shape.bounding_radius() }
     }
 
-    fn collide(&self, other: &Self, margin: f32) -> Manifold {
+    pub fn collide(&self, other: &Self, margin: f32) -> Manifold {
         let mut out = Manifold::default();
         collide(&self.shape, &self.frame, &other.shape, &other.frame, margin, &mut out);
         out
     }
 }
 
-fn wide(v: Vec3) -> [f64; 3] {
+pub fn wide(v: Vec3) -> [f64; 3] {
     [f64::from(v.x), f64::from(v.y), f64::from(v.z)]
 }
 
-fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
+pub fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
     let l = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
     (l > 1e-9).then(|| v.map(|x| x / l))
 }
 
 /// Gap between two shapes along `n`, from `a` to `b`.
-fn gap(a: &Placed, b: &Placed, n: [f64; 3]) -> f64 {
+pub fn gap(a: &Placed, b: &Placed, n: [f64; 3]) -> f64 {
     -b.support(n.map(|x| -x)) - a.support(n)
 }
 
@@ -128,7 +128,7 @@ fn refine(a: &Placed, b: &Placed, mut best: f64, mut n: [f64; 3], random: &mut R
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
+pub enum Kind {
     Box,
     Sphere,
     Capsule,
@@ -139,10 +139,10 @@ enum Kind {
     HalfSpace,
 }
 
-const FINITE: [Kind; 7] =
+pub const FINITE: [Kind; 7] =
     [Kind::Box, Kind::Sphere, Kind::Capsule, Kind::TaperedCapsule, Kind::Cylinder, Kind::Cone, Kind::Hull];
 
-fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
+pub fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
     if kind == Kind::Hull {
         return pebble(scale, random);
     }
@@ -162,7 +162,7 @@ fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
     }
 }
 
-fn random_rotation(random: &mut Random) -> Rotation {
+pub fn random_rotation(random: &mut Random) -> Rotation {
     // A third of the cases are aligned, a third nearly so: that is where contacts live.
     match random.index(3) {
         0 => Rotation::IDENTITY,
@@ -191,7 +191,7 @@ fn random_pair(ka: Kind, kb: Kind, random: &mut Random) -> (Placed, Placed) {
     (a, b)
 }
 
-fn all_pairs() -> impl Iterator<Item = (Kind, Kind)> {
+pub fn all_pairs() -> impl Iterator<Item = (Kind, Kind)> {
     FINITE
         .into_iter()
         .flat_map(|a| FINITE.into_iter().map(move |b| (a, b)))
@@ -224,11 +224,9 @@ fn matches_the_support_functions() {
             // off; for the rest it is the best direction.
             let thinnest = f64::from(a.shape.inner_radius().min(b.shape.inner_radius()));
             let preference = match (ka, kb) {
-                (Kind::Box | Kind::Hull, Kind::Box | Kind::Hull | Kind::Capsule)
-                | (Kind::Capsule, Kind::Box | Kind::Hull) => {
-                    0.06 * truth.abs() + 0.011 * thinnest + 5e-4 * size
-                }
-                _ => 0.0,
+                (Kind::Sphere | Kind::HalfSpace, _) | (_, Kind::Sphere) => 0.0,
+                (Kind::Capsule, Kind::Capsule) => 0.0,
+                _ => 0.06 * truth.abs() + 0.011 * thinnest + 5e-4 * size,
             };
             assert!(along > truth - preference - rounding, "gap {along} along the normal: {}", context());
             let nearest = m.points().iter().map(|p| f64::from(p.separation)).fold(f64::INFINITY, f64::min);

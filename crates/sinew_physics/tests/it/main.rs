@@ -6,6 +6,7 @@ mod boxes;
 mod build;
 mod closed_forms;
 mod collide;
+mod convex;
 mod cook;
 mod fields;
 mod finite;

@@ -57,6 +57,7 @@ fn holds(shape: &Shape, p: Vec3) -> bool {
             p.y.abs() <= half_height && p.x.hypot(p.z) <= radius * (half_height - p.y) / (2.0 * half_height)
         }
         Shape::HalfSpace => p.y <= 0.0,
+        Shape::Hull(ref hull) => hull.faces().all(|face| face.normal().dot(p) <= face.offset()),
     }
 }
 

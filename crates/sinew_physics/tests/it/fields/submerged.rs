@@ -35,6 +35,9 @@ fn they_agree_with_brute_force() {
         Shape::Capsule { half_height: 0.5, radius: 0.2 },
         Shape::Capsule { half_height: 0.05, radius: 0.4 },
         pebble(0.4, &mut random),
+        Shape::Cylinder { half_height: 0.5, radius: 0.2 },
+        Shape::Cone { half_height: 0.3, radius: 0.4 },
+        Shape::TaperedCapsule { half_height: 0.3, radius_bottom: 0.1, radius_top: 0.3 },
     ];
     for shape in shapes {
         let whole = shape.volume();
@@ -65,10 +68,17 @@ fn they_agree_with_brute_force() {
 fn the_two_parts_make_the_whole() {
     let mut random = Random::new(4);
     for i in 0..2000 {
-        let shape = match i % 3 {
+        let shape = match i % 6 {
             0 => Shape::Sphere { radius: random.range(0.1, 2.0) },
             1 => Shape::Box { half_extents: (random.in_cube() + Vec3::splat(1.1)) * 0.5 },
-            _ => Shape::Capsule { half_height: random.range(0.0, 1.0), radius: random.range(0.05, 1.0) },
+            2 => Shape::Capsule { half_height: random.range(0.0, 1.0), radius: random.range(0.05, 1.0) },
+            3 => Shape::Cylinder { half_height: random.range(0.05, 1.0), radius: random.range(0.05, 1.0) },
+            4 => Shape::Cone { half_height: random.range(0.05, 1.0), radius: random.range(0.05, 1.0) },
+            _ => Shape::TaperedCapsule {
+                half_height: random.range(0.5, 1.0),
+                radius_bottom: random.range(0.05, 1.0),
+                radius_top: random.range(0.05, 1.0),
+            },
         };
         let at = Transform::new(random.in_cube() * 3.0, random.rotation());
         let normal = random.direction();
@@ -79,7 +89,8 @@ fn the_two_parts_make_the_whole() {
         assert!((below.volume + above.volume - whole).abs() < 2e-5 * whole, "{i} {shape:?}");
         assert!(below.volume >= 0.0 && below.volume < 1.00001 * whole);
         let middle = below.center() * below.volume + above.center() * above.volume;
-        let off = (middle / whole - at.translation).length() / shape.bounding_radius();
+        let center = at.point(shape.mass_properties(1.0).center);
+        let off = (middle / whole - center).length() / shape.bounding_radius();
         assert!(off < 2e-5, "{i} {shape:?}: the middle is off by {off}");
     }
 }
