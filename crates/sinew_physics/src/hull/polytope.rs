@@ -123,10 +123,12 @@ impl<'a> Polytope<'a> {
     /// The point of the surface closest to one outside, which lies on a face that looks at it; else the point itself.
     pub fn closest(&self, p: Vec3) -> Vec3 {
         let (mut best, mut closest) = (f32::INFINITY, p);
+        // A point on a face may seem to be just below it, and just above the next one, which is elsewhere.
+        let lowest = -1e-6 * ((p - self.center).length() + p.length());
         for (face, plane) in self.planes.iter().enumerate() {
             let height = plane.height(p);
             // The way to a face is at least as long as that to its plane.
-            if height <= 0.0 || height * height >= best {
+            if height <= lowest || height * height >= best {
                 continue;
             }
             let on_face = self.closest_on_face(face, p);
