@@ -109,6 +109,10 @@ impl RagdollReport<'_> {
                 put("radius_m", number(radius));
                 put("half_height_m", number(half_height));
             }
+            Shape::Hull(ref hull) => {
+                put("shape", json!("hull"));
+                put("points", json!(hull.vertices().len()));
+            }
             Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
                 put("shape", json!("tapered_capsule"));
                 put("radius_bottom_m", number(radius_bottom));
@@ -242,6 +246,7 @@ fn shape_cell(shape: &Shape) -> String {
         Shape::HalfSpace => "half-space".into(),
         Shape::Mesh(_) => "mesh".into(),
         Shape::HeightField(_) => "height field".into(),
+        Shape::Hull(ref hull) => format!("hull of {} points", hull.vertices().len()),
     }
 }
 

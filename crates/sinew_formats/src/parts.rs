@@ -5,7 +5,8 @@ use crate::json::{At, number, numbers};
 use crate::surface;
 use serde_json::{Map, Value};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
-use sinew_physics::{MassProperties, Shape};
+use sinew_physics::{Hull, MassProperties, Shape};
+use std::sync::Arc;
 
 /// Keys of a pose, to be listed among those of the object that has one.
 pub(crate) const POSE_KEYS: [&str; 2] = ["position", "rotation"];
@@ -56,13 +57,14 @@ pub(crate) fn write_pose(pose: Transform, object: &mut Map<String, Value>) {
 }
 
 /// Keys of a shape's geometry.
-pub(crate) const SHAPE_KEYS: [&str; 13] = [
+pub(crate) const SHAPE_KEYS: [&str; 14] = [
     "type",
     "half_extents",
     "radius",
     "half_height",
     "radius_bottom",
     "radius_top",
+    "points",
     "vertices",
     "triangles",
     "columns",
@@ -105,16 +107,15 @@ pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
             (shape, &["half_height", "radius"])
         }
         "half_space" => (Shape::HalfSpace, &[]),
+        "hull" => (Shape::Hull(Arc::new(read_hull(at)?)), &["points"]),
         "mesh" => (surface::read_mesh(at)?, &["vertices", "triangles"]),
         "height_field" => {
             (surface::read_height_field(at)?, &["columns", "rows", "spacing", "heights", "holes"])
         }
         other => {
             let other = quoted(other);
-            return Err(kind.malformed(format!(
-                "unknown shape {other}; known are box, sphere, capsule, tapered_capsule, \
-                 cylinder, cone, half_space, mesh, height_field"
-            )));
+            let known = "box, sphere, capsule, tapered_capsule, cylinder, cone, hull, half_space, mesh, height_field";
+            return Err(kind.malformed(format!("unknown shape {other}; known are {known}")));
         }
     };
     shape.check().map_err(|what| at.malformed(what))?;
@@ -137,6 +138,14 @@ fn read_half_extents(at: At<'_>) -> Result<Vec3> {
         }
     }
     Ok(Vec3::from_array(sizes))
+}
+
+/// A hull by points that it is to hold.
+fn read_hull(at: At<'_>) -> Result<Hull> {
+    let at = at.need("points")?;
+    let points = at.items()?.into_iter().map(|item| item.numbers().map(Vec3::from_array));
+    let points: Vec<Vec3> = points.collect::<Result<_>>()?;
+    Hull::new(&points).map_err(|error| at.malformed(error.to_string()))
 }
 
 /// Writes what [`read_shape`] reads.
@@ -175,6 +184,10 @@ pub(crate) fn write_shape(shape: &Shape, object: &mut Map<String, Value>) {
         Shape::HalfSpace => put("type", "half_space".into()),
         Shape::Mesh(ref mesh) => surface::write_mesh(mesh, object),
         Shape::HeightField(ref field) => surface::write_height_field(field, object),
+        Shape::Hull(ref hull) => {
+            put("type", "hull".into());
+            put("points", hull.vertices().iter().map(|v| numbers(&v.to_array())).collect());
+        }
     }
 }
 

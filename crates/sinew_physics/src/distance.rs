@@ -43,6 +43,7 @@ impl Shape {
                 let closest = self.surface().and_then(|surface| surface.closest(p, f32::MAX.sqrt()));
                 closest.map_or((f32::INFINITY, Vec3::Y), |closest| closest.signed(p))
             }
+            Shape::Hull(ref hull) => hull.distance(p),
         }
     }
 }

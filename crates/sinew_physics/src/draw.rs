@@ -82,6 +82,11 @@ fn draw_shape(shape: &Shape, pose: &Transform, kind: DrawKind, out: &mut dyn Deb
         Shape::Box { half_extents } => draw_box(half_extents, &mut line),
         Shape::Sphere { radius } => draw_capsule(0.0, radius, &mut line),
         Shape::Capsule { half_height, radius } => draw_capsule(half_height, radius, &mut line),
+        Shape::Hull(ref hull) => {
+            for [from, to] in hull.edges() {
+                line(hull.vertices()[from], hull.vertices()[to]);
+            }
+        }
         Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
             draw_tapered(&Tapered::new(half_height, radius_bottom, radius_top), &mut line);
         }

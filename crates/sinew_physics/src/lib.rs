@@ -13,6 +13,7 @@ mod world;
 pub mod collide;
 pub mod cook;
 mod finalize;
+pub mod hull;
 mod islands;
 mod library;
 mod pairs;
@@ -60,6 +61,7 @@ pub use field::{
     PointGravity, Region, UniformGravity, Wind,
 };
 pub use force::{ForceDef, ForceFrame, ForceId, Wrench};
+pub use hull::{Hull, HullError};
 pub use id::{BodyId, FieldId, GroupId, JointId, ObjectId, ShapeId};
 pub use joint::Reaction;
 pub use joint::def::{

@@ -3,6 +3,7 @@
 //! A snapshot names such a shape by kind and hash and finds it here again, so that it stays small and quick. Another
 //! process gets the library itself by [`World::save_shapes`].
 
+use crate::hull::Hull;
 use crate::shape::Shape;
 use crate::triangles::{HeightField, Mesh};
 use crate::world::World;
@@ -141,7 +142,7 @@ impl World {
 /// What [`Shape::save_data`] wrote.
 fn load_data(kind: DataKind, data: &mut Reader<'_>) -> Result<Shape, ReadError> {
     match kind {
-        DataKind::Hull => Err(data.error("unknown kind of shape")),
+        DataKind::Hull => Ok(Shape::Hull(Arc::new(Hull::load(data)?))),
         DataKind::Mesh => Ok(Shape::Mesh(Arc::new(Mesh::load(data)?))),
         DataKind::HeightField => Ok(Shape::HeightField(Arc::new(HeightField::load(data)?))),
     }
@@ -153,6 +154,7 @@ impl Shape {
         match self {
             Self::Mesh(mesh) => Some(mesh.content_hash()),
             Self::HeightField(field) => Some(field.content_hash()),
+            Self::Hull(hull) => Some(hull.content_hash()),
             _ => None,
         }
     }
@@ -160,6 +162,7 @@ impl Shape {
     /// What a shape with data is; `None` of those that are sizes only.
     pub fn data_kind(&self) -> Option<DataKind> {
         match self {
+            Self::Hull(_) => Some(DataKind::Hull),
             Self::Mesh(_) => Some(DataKind::Mesh),
             Self::HeightField(_) => Some(DataKind::HeightField),
             _ => None,
@@ -169,6 +172,7 @@ impl Shape {
     /// Writes the data; nothing of a shape that is sizes only.
     fn save_data(&self, w: &mut Writer) {
         match self {
+            Self::Hull(hull) => hull.save(w),
             Self::Mesh(mesh) => mesh.save(w),
             Self::HeightField(field) => field.save(w),
             _ => {}

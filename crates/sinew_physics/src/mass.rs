@@ -1,4 +1,4 @@
-//! Mass, centre of mass and inertia of shapes, in closed form.
+//! Mass, centre of mass and inertia of shapes, in closed form; of hulls as they were made.
 
 use crate::revolved::{self, Frustum, Tapered};
 use crate::shape::{MassProperties, Shape};
@@ -20,6 +20,7 @@ impl Shape {
                 revolved::volume(&Tapered::new(half_height, radius_bottom, radius_top).slices())
             }
             Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => 0.0,
+            Shape::Hull(ref hull) => hull.volume(),
         }
     }
 
@@ -41,6 +42,9 @@ impl Shape {
                 return revolved::mass_properties(&Frustum::cone(half_height, radius).slices(), density);
             }
             Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => Vec3::ZERO,
+            Shape::Hull(ref hull) => {
+                return MassProperties { mass, center: hull.center(), inertia: hull.inertia() * density };
+            }
         };
         MassProperties { mass, center: Vec3::ZERO, inertia: Sym3::from_diagonal(diagonal) }
     }

@@ -98,6 +98,7 @@ impl Shape {
                 let caps = [-cap, cap].map(|center| enter_ball(center, radius, origin, direction));
                 first_of(caps, side)
             }
+            Self::Hull(ref hull) => hull.enter(origin, direction),
             Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
                 let tapered = Tapered::new(half_height, radius_bottom, radius_top);
                 let (side, middle) = tapered.side();

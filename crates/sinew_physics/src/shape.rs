@@ -1,6 +1,7 @@
 //! Collision shapes, what they are made of, and whom they meet.
 
 use crate::boxes::Aabb;
+use crate::hull::Hull;
 use crate::triangles::{HeightField, Mesh};
 use sinew_math::{Sym3, Transform, Vec3, abs3, max, max3, min};
 use std::sync::Arc;
@@ -51,6 +52,8 @@ pub enum Shape {
     },
     /// Everything below the plane y = 0 of its frame. Static bodies only.
     HalfSpace,
+    /// Convex solid with flat faces; its origin need not be inside.
+    Hull(Arc<Hull>),
     /// A surface of one-sided triangles. It has no mass of its own: for static and kinematic bodies, or with a given mass.
     Mesh(Arc<Mesh>),
     /// Terrain over its x and z axes, solid from above. As for meshes.
@@ -95,8 +98,9 @@ impl Shape {
         }
     }
 
-    /// Radius of the largest ball inside, metres: half the width where the shape is thinnest (of a cone somewhat less).
-    /// Infinite for a half-space, a mesh and a height field: nothing is thin about what they keep out.
+    /// Radius of the largest ball inside, metres: half the width where the shape is thinnest. Of a cone somewhat less, of a
+    /// hull that around its centre. Infinite for a half-space, a mesh and a height field: nothing is thin about what they
+    /// keep out.
     pub fn inner_radius(&self) -> f32 {
         match *self {
             Self::Box { half_extents: h } => min(min(h.x, h.y), h.z),
@@ -109,6 +113,7 @@ impl Shape {
                 2.0 * half_height * (radius / (radius + slant))
             }
             Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_) => f32::INFINITY,
+            Self::Hull(ref hull) => hull.inner_radius(),
         }
     }
 
@@ -127,6 +132,7 @@ impl Shape {
             Self::HalfSpace => f32::INFINITY,
             Self::Mesh(ref mesh) => reach(&mesh.bounds()),
             Self::HeightField(ref field) => reach(&field.bounds()),
+            Self::Hull(ref hull) => hull.bounding_radius(),
         }
     }
 

@@ -343,6 +343,7 @@ pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {
             w.f32(radius);
         }
         Shape::HalfSpace => w.u8(3),
+        Shape::Hull(_) => unreachable!("it has a name"),
         Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
             w.u8(4);
             w.f32(half_height);

@@ -2,10 +2,11 @@
 
 use crate::scene::{Line, LineDepth, Material, Model, Pattern, ShadowCasting};
 use sinew::math::{Rotation, Transform, Vec3, normalize_or, trig};
-use sinew::physics::Shape;
+use sinew::physics::{Hull, Shape};
+use std::sync::Arc;
 
 /// A solid around the origin of its own frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Solid {
     /// Box.
     Box {
@@ -24,6 +25,8 @@ pub enum Solid {
         /// Metres.
         radius: f32,
     },
+    /// Convex solid with flat faces.
+    Hull(Arc<Hull>),
     /// The hull of two balls on the y axis.
     TaperedCapsule {
         /// Half the distance of the balls' centres, metres.
@@ -57,6 +60,7 @@ impl Solid {
             Shape::Box { half_extents } => Some(Self::Box { half_extents }),
             Shape::Sphere { radius } => Some(Self::Sphere { radius }),
             Shape::Capsule { half_height, radius } => Some(Self::Capsule { half_height, radius }),
+            Shape::Hull(ref hull) => Some(Self::Hull(Arc::clone(hull))),
             Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
                 Some(Self::TaperedCapsule { half_height, radius_bottom, radius_top })
             }
@@ -72,9 +76,10 @@ const AROUND: usize = 24;
 /// Segments from the equator to a pole.
 const TO_POLE: usize = 6;
 
-/// The surface of a solid. Boxes have flat faces, the others smooth normals.
+/// The surface of a solid. Boxes and hulls have flat faces, the others smooth normals.
 pub fn solid(solid: Solid, world_from_solid: Transform, material: Material) -> Model {
     let mut model = match solid {
+        Solid::Hull(ref hull) => hull_model(hull),
         Solid::Box { half_extents } => box_model(half_extents),
         Solid::Sphere { radius } => round_model(0.0, radius, radius),
         Solid::Capsule { half_height, radius } => round_model(half_height, radius, radius),
@@ -152,10 +157,13 @@ pub fn plane(world_from_plane: Transform, half_size: f32, tile: f32, colors: [[f
     }
 }
 
-/// The edges of a solid: all twelve of a box; for ball and capsule three great circles and the sides.
+/// The edges of a solid: all of a box or hull; for ball and capsule three great circles and the sides.
 pub fn wire(solid: Solid, world_from_solid: Transform, color: [f32; 3], depth: LineDepth) -> Vec<Line> {
     let mut segments = Vec::new();
     match solid {
+        Solid::Hull(ref hull) => {
+            segments.extend(hull.edges().map(|ends| ends.map(|corner| hull.vertices()[corner])));
+        }
         Solid::Box { half_extents } => box_edges(half_extents, &mut segments),
         Solid::Sphere { radius } => capsule_edges(0.0, radius, &mut segments),
         Solid::Capsule { half_height, radius } => capsule_edges(half_height, radius, &mut segments),
@@ -199,6 +207,15 @@ fn box_model(half: Vec3) -> Model {
         indices: BOX_FACES.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect(),
         ..Model::default()
     }
+}
+
+fn hull_model(hull: &Hull) -> Model {
+    let mut indices = Vec::new();
+    for face in hull.faces() {
+        let corners: Vec<u32> = face.corners().map(|corner| corner as u32).collect();
+        indices.extend(corners[1..].windows(2).flat_map(|side| [corners[0], side[0], side[1]]));
+    }
+    Model { positions: hull.vertices().to_vec(), indices, ..Model::default() }
 }
 
 fn box_edges(half: Vec3, segments: &mut Vec<[Vec3; 2]>) {
@@ -350,9 +367,11 @@ mod tests {
     fn solids_are_closed_and_face_outward() {
         let place = Transform::new(Vec3::new(1.0, -2.0, 0.5), Rotation::from_axis_angle(Vec3::X, 0.7));
         let half_extents = Vec3::new(0.5, 0.25, 1.0);
+        let tetrahedron = Hull::new(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]).expect("a solid");
         let pi = core::f32::consts::PI;
         for (shape, expected, tolerance) in [
             (Solid::Box { half_extents }, 1.0, 1e-4),
+            (Solid::Hull(Arc::new(tetrahedron)), 1.0 / 6.0, 1e-4),
             (Solid::Sphere { radius: 0.5 }, pi / 6.0, 0.02),
             (Solid::Capsule { half_height: 0.4, radius: 0.5 }, pi / 6.0 + pi * 0.2, 0.04),
             (
@@ -363,7 +382,7 @@ mod tests {
             (Solid::Cylinder { half_height: 0.5, radius: 0.5 }, pi * 0.25, 0.02),
             (Solid::Cone { half_height: 0.5, radius: 0.5 }, pi / 12.0, 0.02),
         ] {
-            let model = solid(shape, place, Material::default());
+            let model = solid(shape.clone(), place, Material::default());
             assert!((volume(&model) - expected).abs() < tolerance, "{shape:?}: {}", volume(&model));
             assert!(!wire(shape, place, [1.0; 3], LineDepth::Tested).is_empty());
         }

@@ -3,8 +3,10 @@
 use sinew_formats::{read_world, write_world};
 use sinew_math::{Random, Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{
-    BodyDef, BodyKind, Filter, MassProperties, Material, Sensing, Shape, ShapeDef, Sleeping, World, WorldDef,
+    BodyDef, BodyKind, Filter, Hull, MassProperties, Material, Sensing, Shape, ShapeDef, Sleeping, World,
+    WorldDef,
 };
+use std::sync::Arc;
 
 /// The first block of JSON in a module's documentation.
 pub fn documented_example(source: &str) -> String {
@@ -79,6 +81,10 @@ fn the_page_lists_what_there_is() {
         "box",
         "sphere",
         "capsule",
+        "tapered_capsule",
+        "cylinder",
+        "cone",
+        "hull",
         "half_space",
         "static",
         "kinematic",
@@ -93,10 +99,14 @@ fn the_page_lists_what_there_is() {
 
 fn random_shape(random: &mut Random, kind: BodyKind) -> ShapeDef {
     let radius = random.range(0.001, 3.0);
-    let shape = match random.index(if kind == BodyKind::Static { 4 } else { 3 }) {
+    let shape = match random.index(if kind == BodyKind::Static { 5 } else { 4 }) {
         0 => Shape::Box { half_extents: (random.in_cube() + Vec3::splat(1.1)) * 1e-3 },
         1 => Shape::Sphere { radius },
         2 => Shape::Capsule { half_height: random.unit(), radius },
+        3 => {
+            let points: Vec<Vec3> = (0..12).map(|_| random.in_cube() * radius).collect();
+            Shape::Hull(Arc::new(Hull::new(&points).expect("a solid")))
+        }
         _ => Shape::HalfSpace,
     };
     ShapeDef {
@@ -184,6 +194,19 @@ fn complaints_name_the_place() {
         (
             world(r#"{"shapes":[{"type":"sphere","radius":1,"half_height":1}]}"#),
             "a shape of this type has no `half_height` (bodies[0].shapes[0].half_height)",
+        ),
+        (world(r#"{"shapes":[{"type":"hull"}]}"#), "`points` is missing (bodies[0].shapes[0])"),
+        (
+            world(r#"{"shapes":[{"type":"hull","points":[[0,0,0],[1,0,0],[0,1]]}]}"#),
+            "must have 3 numbers, has 2 (bodies[0].shapes[0].points[2])",
+        ),
+        (
+            world(r#"{"shapes":[{"type":"hull","points":[[0,0,0],[1,0,0],[0,1,0]]}]}"#),
+            "a hull needs four different points (bodies[0].shapes[0].points)",
+        ),
+        (
+            world(r#"{"shapes":[{"type":"hull","points":[[0,0,0],[1,0,0],[0,1,0],[1,1,0]]}]}"#),
+            "all points lie in a plane (bodies[0].shapes[0].points)",
         ),
         (
             world(r#"{"kind":"dynamic","shapes":[{"type":"half_space"}]}"#),

@@ -102,6 +102,16 @@ impl Shape {
                 let core = abs3(rotation * Vec3::Y) * half_height;
                 Aabb::reaching(center, core + Vec3::splat(radius))
             }
+            Shape::Hull(ref hull) => {
+                // Of the corners as they lie from its origin, so that nothing is lost far from the world's.
+                let m = rotation.to_mat3();
+                let (mut low, mut high) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
+                for &vertex in hull.vertices() {
+                    let turned = m * vertex;
+                    (low, high) = (min3(turned, low), max3(turned, high));
+                }
+                Aabb { min: center + low, max: center + high }
+            }
             Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
                 let axis = rotation * Vec3::Y * half_height;
                 let [low, high] = [(-axis, radius_bottom), (axis, radius_top)]

@@ -1,20 +1,18 @@
-//! The face of one box cut to the prism over a face of another, with the names of the features that meet.
+//! A face cut to the prism over another, with the names of the features that meet.
 
 use super::feature;
 use super::placed::PlacedBox;
-use sinew_math::Vec3;
-
-/// A quadrilateral cut by four planes has at most eight corners.
-pub(super) const MAX_CORNERS: usize = 8;
+use crate::hull::Polytope;
+use sinew_math::{Vec3, any_orthonormal};
 
 /// A corner of the cut face.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Corner {
-    /// Along the reference face's first and second side and its normal, from its centre.
+    /// In the reference face's frame: its normal is z.
     pub local: Vec3,
-    /// Feature of the reference box.
+    /// Feature of the reference shape.
     pub reference: u16,
-    /// Feature of the incident box.
+    /// Feature of the incident shape.
     pub incident: u16,
     /// What the side from this corner to the next one lies on.
     side: Side,
@@ -30,124 +28,97 @@ enum Side {
     None,
 }
 
-/// A convex polygon.
-#[derive(Default)]
-pub(super) struct Polygon {
-    corners: [Corner; MAX_CORNERS],
+/// A convex polygon of at most `N` corners.
+pub(super) struct Polygon<const N: usize> {
+    corners: [Corner; N],
     count: usize,
 }
 
-impl Polygon {
+impl<const N: usize> Polygon<N> {
+    fn new() -> Self {
+        Self { corners: [Corner::default(); N], count: 0 }
+    }
+
     pub fn corners(&self) -> &[Corner] {
         &self.corners[..self.count]
     }
 
     fn push(&mut self, corner: Corner) {
-        // Rounding could make a ninth corner of a sliver; it adds nothing.
-        if self.count < MAX_CORNERS {
+        // Rounding could make one more corner of a sliver; it adds nothing.
+        if self.count < N {
             self.corners[self.count] = corner;
             self.count += 1;
         }
     }
 }
 
-/// A face of a box: its axis and side, the axes of its sides, its centre.
-pub(super) struct Face<'a> {
-    pub of: &'a PlacedBox,
-    pub axis: usize,
-    pub sign: f32,
-}
-
-impl Face<'_> {
+/// A convex face that another one is cut to. Sides are numbered in the order in which they cut.
+pub(super) trait Reference {
+    /// Name of the face.
+    fn feature(&self) -> u16;
     /// Unit, outward.
-    pub fn normal(&self) -> Vec3 {
-        self.of.axes[self.axis] * self.sign
-    }
-
-    pub fn feature(&self) -> u16 {
-        feature::face(self.axis, self.sign)
-    }
-
-    /// The axes along the face's sides.
-    fn sides(&self) -> [usize; 2] {
-        [(self.axis + 1) % 3, (self.axis + 2) % 3]
-    }
-
-    pub fn center(&self) -> Vec3 {
-        self.of.center + self.normal() * self.of.half[self.axis]
-    }
-
-    /// Index of the corner on the given sides of the two side axes.
-    fn corner(&self, positive: [bool; 2]) -> usize {
-        let [u, v] = self.sides();
-        usize::from(self.sign > 0.0) << self.axis
-            | usize::from(positive[0]) << u
-            | usize::from(positive[1]) << v
-    }
-
-    /// The four corners in turn.
-    fn corners(&self) -> [usize; 4] {
-        [[false, false], [true, false], [true, true], [false, true]].map(|p| self.corner(p))
-    }
-
-    /// Coordinates of a point along the sides and the normal.
-    fn local(&self, p: Vec3) -> Vec3 {
-        let (offset, [u, v]) = (p - self.center(), self.sides());
-        Vec3::new(offset.dot(self.of.axes[u]), offset.dot(self.of.axes[v]), offset.dot(self.normal()))
-    }
-
-    /// From the face's coordinates to the frame of the pair.
-    pub fn point(&self, local: Vec3) -> Vec3 {
-        let [u, v] = self.sides();
-        self.center() + self.of.axes[u] * local.x + self.of.axes[v] * local.y + self.normal() * local.z
-    }
-
-    /// Feature of the edge on side `number`: 0 and 1 are the negative and positive side of the first side axis.
-    fn edge(&self, number: usize) -> u16 {
-        let [u, v] = self.sides();
-        let positive = number % 2 == 1;
-        if number < 2 {
-            feature::edge(v, self.corner([positive, false]))
-        } else {
-            feature::edge(u, self.corner([false, positive]))
-        }
-    }
-
-    /// Feature of the corner where two of those sides meet.
-    fn vertex(&self, side_a: usize, side_b: usize) -> u16 {
-        let (first, second) = if side_a < 2 { (side_a, side_b) } else { (side_b, side_a) };
-        feature::vertex(self.corner([first % 2 == 1, second % 2 == 1]))
-    }
+    fn normal(&self) -> Vec3;
+    /// In the face's frame.
+    fn local(&self, p: Vec3) -> Vec3;
+    /// From the face's frame to the frame of the pair.
+    fn point(&self, local: Vec3) -> Vec3;
+    fn sides(&self) -> usize;
+    /// A side in the face's frame.
+    fn side(&self, number: usize) -> Line;
+    /// Name of the edge at a side.
+    fn edge(&self, side: usize) -> u16;
+    /// Name of the corner where two sides meet, the later second.
+    fn vertex(&self, earlier: usize, later: usize) -> u16;
 }
+
+/// A line in the plane of a face: `outward · x = offset`.
+#[derive(Clone, Copy)]
+pub(super) struct Line {
+    /// Unit, z is 0.
+    pub outward: Vec3,
+    pub offset: f32,
+}
+
+/// A corner of an incident face: where, its name, and the name of the edge from it to the next.
+pub(super) type Incident = (Vec3, u16, u16);
 
 /// The part of the incident face that lies over or under the reference face, widened by `tolerance` so that corners
 /// which lie on its sides keep their names under rounding (Sutherland & Hodgman 1974).
-pub(super) fn clip(reference: &Face<'_>, incident: &Face<'_>, tolerance: f32) -> Polygon {
-    let mut polygon = Polygon::default();
-    let corners = incident.corners();
-    let [u, v] = incident.sides();
-    for (k, index) in corners.into_iter().enumerate() {
+pub(super) fn clip<const N: usize>(
+    reference: &impl Reference,
+    face: u16,
+    corners: impl Iterator<Item = Incident>,
+    tolerance: f32,
+) -> Polygon<N> {
+    let mut polygon = Polygon::new();
+    for (corner, vertex, edge) in corners {
         polygon.push(Corner {
-            local: reference.local(incident.of.vertex(index)),
+            local: reference.local(corner),
             reference: reference.feature(),
-            incident: feature::vertex(index),
-            side: Side::Incident(feature::edge(if k % 2 == 0 { u } else { v }, index)),
+            incident: vertex,
+            side: Side::Incident(edge),
         });
     }
-    let half = reference.sides().map(|axis| reference.of.half[axis] + tolerance);
-    for number in 0..4 {
-        polygon = cut(&polygon, reference, incident, number, half[number / 2]);
+    for side in 0..reference.sides() {
+        cut(&mut polygon, reference, face, side, tolerance);
     }
     polygon
 }
 
 /// Cuts away what lies beyond one side of the reference face.
-fn cut(polygon: &Polygon, reference: &Face<'_>, incident: &Face<'_>, number: usize, half: f32) -> Polygon {
-    let beyond = |c: &Corner| {
-        let x = c.local[number / 2];
-        (if number % 2 == 1 { x } else { -x }) - half
-    };
-    let mut out = Polygon::default();
+fn cut<const N: usize>(
+    polygon: &mut Polygon<N>,
+    reference: &impl Reference,
+    face: u16,
+    side: usize,
+    tolerance: f32,
+) {
+    let Line { outward, offset } = reference.side(side);
+    let beyond = |c: &Corner| (c.local.x * outward.x + c.local.y * outward.y) - (offset + tolerance);
+    if polygon.corners().iter().all(|c| beyond(c) <= 0.0) {
+        return;
+    }
+    let mut out = Polygon::new();
     let corners = polygon.corners();
     for (k, from) in corners.iter().enumerate() {
         let to = &corners[(k + 1) % corners.len()];
@@ -159,19 +130,178 @@ fn cut(polygon: &Polygon, reference: &Face<'_>, incident: &Face<'_>, number: usi
             let mut corner =
                 Corner { local: from.local + (to.local - from.local) * (d0 / (d0 - d1)), ..*from };
             match from.side {
-                Side::Incident(edge) => (corner.reference, corner.incident) = (reference.edge(number), edge),
+                Side::Incident(edge) => (corner.reference, corner.incident) = (reference.edge(side), edge),
                 Side::Reference(other) => {
-                    (corner.reference, corner.incident) =
-                        (reference.vertex(other, number), incident.feature());
+                    (corner.reference, corner.incident) = (reference.vertex(other, side), face);
                 }
                 Side::None => {}
             }
             // Where the outline leaves, it goes on along this side of the reference face.
             if d0 <= 0.0 {
-                corner.side = Side::Reference(number);
+                corner.side = Side::Reference(side);
             }
             out.push(corner);
         }
     }
-    out
+    *polygon = out;
+}
+
+/// A quadrilateral cut by four planes has at most eight corners.
+pub(super) const BOX_CORNERS: usize = 8;
+
+/// A face of a box: its axis and side.
+pub(super) struct BoxFace<'a> {
+    pub of: &'a PlacedBox,
+    pub axis: usize,
+    pub sign: f32,
+}
+
+impl BoxFace<'_> {
+    /// The axes along the face's sides.
+    fn axes(&self) -> [usize; 2] {
+        [(self.axis + 1) % 3, (self.axis + 2) % 3]
+    }
+
+    fn center(&self) -> Vec3 {
+        self.of.center + self.normal() * self.of.half[self.axis]
+    }
+
+    /// Index of the corner on the given sides of the two side axes.
+    fn corner(&self, positive: [bool; 2]) -> usize {
+        let [u, v] = self.axes();
+        usize::from(self.sign > 0.0) << self.axis
+            | usize::from(positive[0]) << u
+            | usize::from(positive[1]) << v
+    }
+
+    /// The four corners in turn.
+    pub fn corners(&self) -> impl Iterator<Item = Incident> {
+        let [u, v] = self.axes();
+        let sides = [([false, false], u), ([true, false], v), ([true, true], u), ([false, true], v)];
+        sides.into_iter().map(move |(positive, along)| {
+            let index = self.corner(positive);
+            (self.of.vertex(index), feature::vertex(index), feature::edge(along, index))
+        })
+    }
+}
+
+/// Sides 0 and 1 are the negative and positive side of the first side axis, 2 and 3 those of the second.
+impl Reference for BoxFace<'_> {
+    fn feature(&self) -> u16 {
+        feature::face(self.axis, self.sign)
+    }
+
+    fn normal(&self) -> Vec3 {
+        self.of.axes[self.axis] * self.sign
+    }
+
+    fn local(&self, p: Vec3) -> Vec3 {
+        let (offset, [u, v]) = (p - self.center(), self.axes());
+        Vec3::new(offset.dot(self.of.axes[u]), offset.dot(self.of.axes[v]), offset.dot(self.normal()))
+    }
+
+    fn point(&self, local: Vec3) -> Vec3 {
+        let [u, v] = self.axes();
+        self.center() + self.of.axes[u] * local.x + self.of.axes[v] * local.y + self.normal() * local.z
+    }
+
+    fn sides(&self) -> usize {
+        4
+    }
+
+    fn side(&self, number: usize) -> Line {
+        let mut outward = Vec3::ZERO;
+        outward[number / 2] = if number % 2 == 1 { 1.0 } else { -1.0 };
+        Line { outward, offset: self.of.half[self.axes()[number / 2]] }
+    }
+
+    fn edge(&self, side: usize) -> u16 {
+        let [u, v] = self.axes();
+        let positive = side % 2 == 1;
+        if side < 2 {
+            feature::edge(v, self.corner([positive, false]))
+        } else {
+            feature::edge(u, self.corner([false, positive]))
+        }
+    }
+
+    fn vertex(&self, earlier: usize, later: usize) -> u16 {
+        feature::vertex(self.corner([earlier % 2 == 1, later % 2 == 1]))
+    }
+}
+
+/// A face of a polytope.
+pub(super) struct PolytopeFace<'a> {
+    of: &'a Polytope<'a>,
+    face: usize,
+    /// Of its frame: along it, along it, outward.
+    axes: [Vec3; 3],
+    origin: Vec3,
+}
+
+impl<'a> PolytopeFace<'a> {
+    pub fn new(of: &'a Polytope<'a>, face: usize) -> Self {
+        let normal = of.planes[face].normal;
+        let u = any_orthonormal(normal);
+        let height = of.planes[face].height(of.center);
+        Self { of, face, axes: [u, normal.cross(u), normal], origin: of.center - normal * height }
+    }
+
+    /// Its corners in turn.
+    pub fn corners(&self) -> impl Iterator<Item = Incident> {
+        let Polytope { vertices, topology, .. } = *self.of;
+        topology.sides(self.face).map(move |side| {
+            let corner = topology.ends(side)[0];
+            (vertices[corner], feature::vertex(corner), feature::half_edge(topology, side))
+        })
+    }
+
+    /// Number of the half-edge at a side.
+    fn half_edge(&self, side: usize) -> usize {
+        self.of.topology.sides(self.face).start + side
+    }
+}
+
+/// Sides in the order of the half-edges.
+impl Reference for PolytopeFace<'_> {
+    fn feature(&self) -> u16 {
+        feature::face_number(self.face)
+    }
+
+    fn normal(&self) -> Vec3 {
+        self.axes[2]
+    }
+
+    fn local(&self, p: Vec3) -> Vec3 {
+        let offset = p - self.origin;
+        Vec3::new(offset.dot(self.axes[0]), offset.dot(self.axes[1]), offset.dot(self.axes[2]))
+    }
+
+    fn point(&self, local: Vec3) -> Vec3 {
+        self.origin + self.axes[0] * local.x + self.axes[1] * local.y + self.axes[2] * local.z
+    }
+
+    fn sides(&self) -> usize {
+        self.of.topology.sides(self.face).len()
+    }
+
+    fn side(&self, number: usize) -> Line {
+        let [from, to] = self.of.edge(self.half_edge(number)).ends.map(|p| self.local(p));
+        let along = to - from;
+        // Counter-clockwise: outside is to the right.
+        let right = Vec3::new(along.y, -along.x, 0.0);
+        let outward = right / right.length();
+        Line { outward, offset: outward.x * from.x + outward.y * from.y }
+    }
+
+    fn edge(&self, side: usize) -> u16 {
+        feature::half_edge(self.of.topology, self.half_edge(side))
+    }
+
+    fn vertex(&self, earlier: usize, later: usize) -> u16 {
+        // The last side meets the first one where that starts.
+        let wraps = earlier == 0 && later + 1 == self.sides() && later > 1;
+        let side = self.half_edge(if wraps { 0 } else { later });
+        feature::vertex(self.of.topology.ends(side)[0])
+    }
 }

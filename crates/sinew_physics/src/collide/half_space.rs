@@ -1,12 +1,14 @@
 //! Half-space against everything: heights over the plane.
 
+use super::axes::tolerance;
 use super::feature::{self, WHOLE, end, pair};
 use super::placed::{Ball, Pill, PlacedBox, Plane};
 use super::reduce::push_best;
 use super::{Manifold, ManifoldPoint};
 use crate::convex::feature::MOST_CORNERS;
 use crate::convex::support::{Posed, Support};
-use sinew_math::{Vec3, min};
+use crate::hull::{Hull, MAX_VERTICES};
+use sinew_math::{Transform, Vec3, min};
 
 /// The four corners of the face that looks at the plane: the deepest corner is always one of them.
 pub(super) fn against_box(a: &Plane, b: &PlacedBox, margin: f32, out: &mut Manifold) {
@@ -18,6 +20,28 @@ pub(super) fn against_box(a: &Plane, b: &PlacedBox, margin: f32, out: &mut Manif
             push(a, b.vertex(index), 0.0, margin, feature::vertex(index), out);
         }
     }
+}
+
+/// The corners of the face that looks at the plane from the deepest corner.
+pub(super) fn against_hull(a: &Plane, b: &Hull, frame: &Transform, margin: f32, out: &mut Manifold) {
+    out.normal = a.normal;
+    let polytope = b.polytope();
+    let tolerance = tolerance(f32::INFINITY, b.inner_radius());
+    let down = frame.rotation.inverse() * -a.normal;
+    let face = polytope.face_at_support(down, tolerance);
+    let mut points = [ManifoldPoint::default(); MAX_VERTICES];
+    let mut count = 0;
+    for corner in polytope.topology.corners(face) {
+        let place = frame.point(b.vertices()[corner]);
+        let separation = a.height(place);
+        if separation <= margin {
+            let position = place - a.normal * (0.5 * separation);
+            let feature = pair(WHOLE, feature::vertex(corner));
+            points[count] = ManifoldPoint { position, separation, feature };
+            count += 1;
+        }
+    }
+    push_best(&points[..count], tolerance, out);
 }
 
 /// Both ends.

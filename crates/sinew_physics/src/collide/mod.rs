@@ -4,6 +4,7 @@
 //! order and turns the result round if need be. Inside, positions are relative to one of the two shapes, so that
 //! a contact far from the world's origin is as precise as one near it.
 
+mod axes;
 mod box_box;
 mod box_capsule;
 mod box_sphere;
@@ -14,8 +15,11 @@ mod clip_features;
 pub(crate) mod feature;
 pub(crate) mod features;
 mod half_space;
+mod hull_pairs;
+mod hull_round;
 pub(crate) mod parts;
 pub(crate) mod placed;
+pub(crate) mod polytope;
 mod reduce;
 mod round_sphere;
 mod surface;
@@ -159,13 +163,14 @@ pub(crate) fn collide_pair(
 fn rank(shape: &Shape) -> u32 {
     match shape {
         Shape::HalfSpace => 0,
-        Shape::Box { .. } => 1,
-        Shape::Capsule { .. } => 2,
-        Shape::Cone { .. } => 3,
-        Shape::Cylinder { .. } => 4,
-        Shape::TaperedCapsule { .. } => 5,
-        Shape::Sphere { .. } => 6,
-        Shape::Mesh(_) | Shape::HeightField(_) => 7,
+        Shape::Hull(_) => 1,
+        Shape::Box { .. } => 2,
+        Shape::Capsule { .. } => 3,
+        Shape::Cone { .. } => 4,
+        Shape::Cylinder { .. } => 5,
+        Shape::TaperedCapsule { .. } => 6,
+        Shape::Sphere { .. } => 7,
+        Shape::Mesh(_) | Shape::HeightField(_) => 8,
     }
 }
 
@@ -185,6 +190,10 @@ fn collide_ranked(a: &Shape, wa: &Transform, b: &Shape, wb: &Transform, margin: 
         (&Shape::HalfSpace, &Shape::Sphere { radius }) => {
             half_space::against_sphere(&Plane::new(&wa), &Ball::new(radius, &wb), margin, out);
         }
+        (Shape::HalfSpace, Shape::Hull(hull)) => {
+            half_space::against_hull(&Plane::new(&wa), hull, &wb, margin, out);
+        }
+        (Shape::Hull(hull), _) => hull_pairs::collide(hull, &wa, b, &wb, margin, out),
         (&Shape::Box { half_extents: half_a }, &Shape::Box { half_extents: half_b }) => {
             box_box::collide(&PlacedBox::new(half_a, &wa), &PlacedBox::new(half_b, &wb), margin, out);
         }

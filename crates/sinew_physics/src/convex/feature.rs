@@ -2,12 +2,16 @@
 
 use crate::collide::feature::{self, WHOLE};
 use crate::collide::placed::{largest_axis, sign};
+use crate::hull::Hull;
 use crate::revolved::Frustum;
 use core::f32::consts::FRAC_1_SQRT_2;
 use sinew_math::{Vec3, normalize_or};
 
 /// A face with more corners is described by this many of them.
 pub(crate) const MOST_CORNERS: usize = 32;
+
+/// A hull's face whose normal is within about 26° of a direction looks that way.
+const FACES: f32 = 0.9;
 
 /// A corner of a feature.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -95,6 +99,39 @@ impl Feature {
         let mut normal = Vec3::ZERO;
         normal[axis] = side;
         Self::new(&corners, feature::face(axis, side), normal)
+    }
+
+    /// Of the faces, edges and corners of a hull that reach furthest along `direction`: the face that looks that way or nearly
+    /// so, or else the edge across it, or else the corner.
+    pub fn of_hull(hull: &Hull, direction: Vec3) -> Self {
+        let (polytope, vertices) = (hull.polytope(), hull.vertices());
+        let topology = polytope.topology;
+        let tolerance = 0.01 * hull.inner_radius();
+        let face = polytope.face_at_support(direction, tolerance);
+        let normal = polytope.planes[face].normal;
+        if normal.dot(direction) >= FACES {
+            let sides = topology.sides(face);
+            let count = usize::min(sides.len(), MOST_CORNERS);
+            let mut corners = [Corner::default(); MOST_CORNERS];
+            for (k, corner) in corners[..count].iter_mut().enumerate() {
+                let side = sides.start + k * sides.len() / count;
+                let vertex = topology.ends(side)[0];
+                let (name, side) = (feature::vertex(vertex), feature::half_edge(topology, side));
+                *corner = Corner { point: vertices[vertex], name, side };
+            }
+            return Self::new(&corners[..count], feature::face_number(face), normal);
+        }
+        let reach = polytope.reach(direction) - tolerance;
+        let reaches = |corner: usize| vertices[corner].dot(direction) >= reach;
+        let corner = |k: usize| Corner { point: vertices[k], name: feature::vertex(k), side: WHOLE };
+        match topology
+            .edge_numbers()
+            .map(|side| topology.ends(side))
+            .find(|ends| ends.map(reaches) == [true; 2])
+        {
+            Some([from, to]) => Self::new(&[corner(from), corner(to)], WHOLE, Vec3::ZERO),
+            None => Self::new(&[corner(polytope.support(direction))], WHOLE, Vec3::ZERO),
+        }
     }
 
     /// The end of a cylinder or cone as an octagon, or the line along its side.

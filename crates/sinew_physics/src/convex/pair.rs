@@ -50,7 +50,7 @@ pub fn overlaps(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &T
 }
 
 /// A half-space and what is over it: along the plane's normal.
-fn over_plane(world_from_plane: &Transform, core: &Core, world_from_core: &Transform) -> Option<Gap> {
+fn over_plane(world_from_plane: &Transform, core: &Core<'_>, world_from_core: &Transform) -> Option<Gap> {
     let origin = world_from_core.translation;
     let posed = Posed::new(core, world_from_core, origin);
     let normal = world_from_plane.rotation * Vec3::Y;

@@ -2,6 +2,7 @@
 
 use super::feature::Feature;
 use crate::collide::placed::sign;
+use crate::hull::Hull;
 use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
 use sinew_math::{DVec3, Transform, Vec3, max, min};
@@ -29,7 +30,7 @@ pub(crate) trait Support {
 
 /// The core of a shape that is convex and has an end.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Core {
+pub(crate) enum Core<'a> {
     Point {
         radius: f32,
     },
@@ -43,11 +44,12 @@ pub(crate) enum Core {
     Frustum(Frustum),
     /// Rounded by the smaller radius: what is left is a ball and a point.
     Tapered(Tapered),
+    Hull(&'a Hull),
 }
 
-impl Core {
+impl<'a> Core<'a> {
     /// Of a shape; `None` of what is not convex or has no end.
-    pub fn of(shape: &Shape) -> Option<Self> {
+    pub fn of(shape: &'a Shape) -> Option<Self> {
         Some(match *shape {
             Shape::Box { half_extents: half } => Self::Box { half },
             Shape::Sphere { radius } => Self::Point { radius },
@@ -58,11 +60,12 @@ impl Core {
             Shape::Cylinder { half_height, radius } => Self::Frustum(Frustum::cylinder(half_height, radius)),
             Shape::Cone { half_height, radius } => Self::Frustum(Frustum::cone(half_height, radius)),
             Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => return None,
+            Shape::Hull(ref hull) => Self::Hull(hull),
         })
     }
 }
 
-impl Support for Core {
+impl Support for Core<'_> {
     fn support(&self, d: DVec3) -> DVec3 {
         let toward =
             |length: f32, along: f64| if along < 0.0 { -f64::from(length) } else { f64::from(length) };
@@ -72,13 +75,14 @@ impl Support for Core {
             Self::Box { half } => DVec3::new(toward(half.x, d.x), toward(half.y, d.y), toward(half.z, d.z)),
             Self::Frustum(frustum) => frustum_support(frustum, d),
             Self::Tapered(tapered) => tapered_support(tapered, d),
+            Self::Hull(hull) => hull_support(hull, d),
         }
     }
 
     fn rounding(&self) -> f32 {
         match self {
             Self::Point { radius } | Self::Segment { radius, .. } => *radius,
-            Self::Box { .. } | Self::Frustum(_) => 0.0,
+            Self::Box { .. } | Self::Frustum(_) | Self::Hull(_) => 0.0,
             Self::Tapered(tapered) => min(tapered.bottom, tapered.top),
         }
     }
@@ -93,6 +97,7 @@ impl Support for Core {
                 (f.half_height * f.half_height + radius * radius).sqrt()
             }
             Self::Tapered(t) => t.half_height + max(t.bottom, t.top),
+            Self::Hull(hull) => hull.bounding_radius(),
         }
     }
 
@@ -102,6 +107,7 @@ impl Support for Core {
             Self::Box { half } => min(min(half.x, half.y), half.z),
             Self::Frustum(f) => min(f.half_height, 0.5 * (f.bottom + f.top)),
             Self::Tapered(t) => max(t.bottom, t.top),
+            Self::Hull(hull) => hull.inner_radius(),
         }
     }
 
@@ -114,6 +120,7 @@ impl Support for Core {
             }
             Self::Box { half } => Feature::of_box(*half, direction),
             Self::Frustum(frustum) => Feature::of_frustum(frustum, direction),
+            Self::Hull(hull) => Feature::of_hull(hull, direction),
             Self::Tapered(tapered) => {
                 let rounding = self.rounding();
                 let ends = tapered.balls().map(|(center, radius)| center + direction * (radius - rounding));
@@ -143,6 +150,18 @@ fn frustum_support(frustum: &Frustum, d: DVec3) -> DVec3 {
         // Flat on an end: its middle is as far as its rim.
         DVec3::new(0.0, y, 0.0)
     }
+}
+
+/// The corner that reaches furthest, the first among equals.
+fn hull_support(hull: &Hull, d: DVec3) -> DVec3 {
+    let (mut best, mut reach) = (DVec3::ZERO, f64::NEG_INFINITY);
+    for vertex in hull.vertices().iter().copied().map(wide) {
+        let along = vertex.dot(d);
+        if along > reach {
+            (best, reach) = (vertex, along);
+        }
+    }
+    best
 }
 
 fn tapered_support(tapered: &Tapered, d: DVec3) -> DVec3 {

@@ -1,5 +1,6 @@
 //! What a shape exposes to a stream: panels of its surface, each with an area and where it lies.
 
+use crate::hull::Hull;
 use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
 use core::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
@@ -24,8 +25,8 @@ impl Shape {
     /// Calls `visit` with panels that together have the shape's projected area in every direction: the faces of a box,
     /// each at its 2×2 Gauss points, so that spin is braked as well; a ball's disk; a capsule's disk and the strip of its
     /// cylinder that faces `stream` (m/s, world); likewise of a tapered one; the ends of cylinder and cone, and the part of
-    /// their side that faces the stream. Half-spaces, meshes
-    /// and height fields have none.
+    /// their side that faces the stream; a hull's faces in triangles, each at three points. Half-spaces, meshes and height
+    /// fields have none.
     pub(super) fn exposed(&self, at: &Transform, stream: Vec3, mut visit: impl FnMut(Panel)) {
         match *self {
             Self::Box { half_extents } => box_panels(half_extents, at, &mut visit),
@@ -42,6 +43,7 @@ impl Shape {
                     });
                 }
             }
+            Self::Hull(ref hull) => hull_panels(hull, at, &mut visit),
             Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
                 tapered_panels(&Tapered::new(half_height, radius_bottom, radius_top), at, stream, &mut visit);
             }
@@ -128,6 +130,23 @@ fn frustum_panels(frustum: &Frustum, at: &Transform, stream: Vec3, visit: &mut i
 
 fn disk(point: Vec3, radius: f32) -> Panel {
     Panel { point, area: PI * radius * radius, normal: None }
+}
+
+/// Each triangle at three points inside, which integrate squares exactly (Strang and Fix 1973).
+fn hull_panels(hull: &Hull, at: &Transform, visit: &mut impl FnMut(Panel)) {
+    for face in hull.faces() {
+        let normal = Some(at.rotation * face.normal());
+        let mut corners = face.corners().map(|corner| hull.vertices()[corner]);
+        let (Some(first), Some(mut last)) = (corners.next(), corners.next()) else { continue };
+        for corner in corners {
+            let area = (last - first).cross(corner - first).length() / 6.0;
+            let sum = first + last + corner;
+            for node in [first, last, corner] {
+                visit(Panel { point: at.point((sum + node * 3.0) / 6.0), area, normal });
+            }
+            last = corner;
+        }
+    }
 }
 
 fn box_panels(half: Vec3, at: &Transform, visit: &mut impl FnMut(Panel)) {

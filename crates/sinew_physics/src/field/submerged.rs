@@ -91,6 +91,10 @@ impl Shape {
                     revolved_below(&slices, &WaterPlane { normal, height })
                 }
                 Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_) => Submerged::default(),
+                Self::Hull(ref hull) => {
+                    let faces = hull.faces().map(|face| face.corners().map(|k| hull.vertices()[k]));
+                    submerged_hull(faces, &WaterPlane { normal, height })
+                }
             }
         };
         Submerged {
@@ -113,7 +117,10 @@ fn ball_below(s: f32, normal: Vec3) -> Submerged {
 ///
 /// Each face is clipped against the surface and joined to one point **of the surface** by tetrahedra; what the cut itself
 /// would add has no height over that point, so that it need not be built (divergence theorem).
-pub fn submerged_hull<'a>(faces: impl Iterator<Item = &'a [Vec3]>, plane: &WaterPlane) -> Submerged {
+pub fn submerged_hull<F>(faces: impl Iterator<Item = F>, plane: &WaterPlane) -> Submerged
+where
+    F: Iterator<Item = Vec3> + Clone,
+{
     let apex = plane.normal * plane.height;
     let mut sum = Submerged::default();
     for face in faces {
@@ -133,10 +140,10 @@ pub fn submerged_hull<'a>(faces: impl Iterator<Item = &'a [Vec3]>, plane: &Water
 }
 
 /// Corners of the part of a polygon that is under water, in order (Sutherland and Hodgman 1974).
-fn clip(face: &[Vec3], plane: &WaterPlane, mut corner: impl FnMut(Vec3)) {
-    let Some(&last) = face.last() else { return };
+fn clip(face: impl Iterator<Item = Vec3> + Clone, plane: &WaterPlane, mut corner: impl FnMut(Vec3)) {
+    let Some(last) = face.clone().last() else { return };
     let (mut from, mut above_from) = (last, plane.above(last));
-    for &to in face {
+    for to in face {
         let above_to = plane.above(to);
         if (above_from > 0.0) != (above_to > 0.0) {
             corner(from + (to - from) * (above_from / (above_from - above_to)));
@@ -160,7 +167,7 @@ fn box_below(half: Vec3, plane: &WaterPlane) -> Submerged {
             corner
         })
     });
-    submerged_hull(faces.iter().map(<[Vec3; 4]>::as_slice), plane)
+    submerged_hull(faces.into_iter().map(<[Vec3; 4]>::into_iter), plane)
 }
 
 /// Part with `n·x ≤ s` of a capsule of radius 1 along y: its cylinder and its two half balls.

@@ -57,7 +57,7 @@ pub(super) fn cast(
 
 /// A probe, and the frame of a surface.
 struct Placed<'a> {
-    core: Core,
+    core: Core<'a>,
     probe: &'a Probe,
     world_from_surface: &'a Transform,
 }

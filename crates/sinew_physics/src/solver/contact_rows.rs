@@ -213,7 +213,7 @@ pub(crate) struct ManifoldRows {
 pub(crate) struct PlacedShape {
     pub shape: Shape,
     pub principal_from_shape: Transform,
-    /// Radius of its rounding around its core; 0 for boxes and half-spaces.
+    /// Radius of its rounding around its core; 0 for what has flat faces.
     round: f32,
 }
 
@@ -229,6 +229,7 @@ impl PlacedShape {
             | Shape::HalfSpace
             | Shape::Mesh(_)
             | Shape::HeightField(_) => 0.0,
+            | Shape::Hull(_) => 0.0,
         };
         Self { shape, principal_from_shape, round }
     }

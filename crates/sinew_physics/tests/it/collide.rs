@@ -1,5 +1,6 @@
 //! Narrow phase: every pair of shapes against the support functions of both, in `f64`.
 
+use crate::hull::pebble;
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::Shape;
 use sinew_physics::collide::{Manifold, ManifoldPoint, collide};
@@ -29,6 +30,10 @@ impl Placed {
                 center + f64::from(half_height) * along(m.y_axis).abs() + f64::from(radius)
             }
             Shape::Mesh(_) | Shape::HeightField(_) => unreachable!("surfaces have no core"),
+            Shape::Hull(ref hull) => {
+                let reach = hull.vertices().iter().map(|&v| along(m * v));
+                center + reach.fold(f64::NEG_INFINITY, f64::max)
+            }
             Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
                 let reach = f64::from(half_height) * along(m.y_axis);
                 center + (reach + f64::from(radius_top)).max(f64::from(radius_bottom) - reach)
@@ -131,13 +136,17 @@ pub enum Kind {
     TaperedCapsule,
     Cylinder,
     Cone,
+    Hull,
     HalfSpace,
 }
 
-pub const FINITE: [Kind; 6] =
-    [Kind::Box, Kind::Sphere, Kind::Capsule, Kind::TaperedCapsule, Kind::Cylinder, Kind::Cone];
+pub const FINITE: [Kind; 7] =
+    [Kind::Box, Kind::Sphere, Kind::Capsule, Kind::TaperedCapsule, Kind::Cylinder, Kind::Cone, Kind::Hull];
 
 pub fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
+    if kind == Kind::Hull {
+        return pebble(scale, random);
+    }
     let mut side = || scale * random.range(0.2, 1.0);
     match kind {
         Kind::Box => Shape::Box { half_extents: Vec3::new(side(), side(), side()) },
@@ -150,7 +159,7 @@ pub fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
         }
         Kind::Cylinder => Shape::Cylinder { half_height: side(), radius: 0.6 * side() },
         Kind::Cone => Shape::Cone { half_height: side(), radius: side() },
-        Kind::HalfSpace => Shape::HalfSpace,
+        Kind::HalfSpace | Kind::Hull => Shape::HalfSpace,
     }
 }
 

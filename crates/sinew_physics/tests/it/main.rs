@@ -10,6 +10,7 @@ mod convex;
 mod cook;
 mod fields;
 mod finite;
+mod hull;
 mod humanoid;
 mod joints;
 mod meshes;

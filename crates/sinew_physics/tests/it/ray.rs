@@ -58,6 +58,7 @@ fn holds(shape: &Shape, p: Vec3) -> bool {
         }
         Shape::HalfSpace => p.y <= 0.0,
         Shape::Mesh(_) | Shape::HeightField(_) => unreachable!("surfaces have no inside"),
+        Shape::Hull(ref hull) => hull.faces().all(|face| face.normal().dot(p) <= face.offset()),
     }
 }
 

@@ -41,6 +41,8 @@ pub fn inside(shape: &Shape, p: Vec3) -> Vec3 {
             Vec3::new(0.35 * radius, 0.0, 0.35 * radius) + Vec3::Y * (0.5 * half_height)
         }
         Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => Vec3::ZERO,
+        // The cube in the ball inside.
+        Shape::Hull(ref hull) => Vec3::splat(0.57 * hull.inner_radius()),
     } * 0.9;
     Vec3::new(clamp(p.x, -reach.x, reach.x), clamp(p.y, -reach.y, reach.y), clamp(p.z, -reach.z, reach.z))
 }

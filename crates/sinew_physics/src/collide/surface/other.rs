@@ -11,7 +11,7 @@ use crate::triangles::{Part, Triangle};
 use sinew_math::{DVec3, Transform, Vec3};
 
 /// `gap` is that along the triangle's normal, at most the margin.
-pub(super) fn other(posed: &Posed<'_, Core>, gap: f32, teller: &mut Teller<'_>) -> Option<Part> {
+pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'_>) -> Option<Part> {
     let thin = Thin(teller.triangle);
     let triangle = Posed::new(&thin, &Transform::IDENTITY, Vec3::ZERO);
     let between = meet(&triangle, posed);

@@ -14,11 +14,11 @@ pub(super) enum Solid<'a> {
     Ball(f32),
     Pill(Pill),
     Box(PlacedBox),
-    Other(Posed<'a, Core>),
+    Other(Posed<'a, Core<'a>>),
 }
 
 impl<'a> Solid<'a> {
-    pub fn new(shape: &Shape, core: &'a Core, frame: &Transform) -> Self {
+    pub fn new(shape: &Shape, core: &'a Core<'a>, frame: &Transform) -> Self {
         match *shape {
             Shape::Box { half_extents } => Self::Box(PlacedBox::new(half_extents, frame)),
             Shape::Sphere { radius } => Self::Ball(radius),
@@ -100,7 +100,7 @@ impl<'a> Solid<'a> {
 }
 
 /// An edge or corner that stands for a round side lies where the side reaches furthest.
-fn lowest(posed: &Posed<'_, Core>, normal: Vec3, outline: Outline) -> Outline {
+fn lowest(posed: &Posed<'_, Core<'_>>, normal: Vec3, outline: Outline) -> Outline {
     let support = narrow(posed.support(-wide(normal)));
     let named = outline.corners().iter().fold(f32::INFINITY, |y, c| min(c.at.dot(normal), y));
     if named <= support.dot(normal) + 1e-6 {

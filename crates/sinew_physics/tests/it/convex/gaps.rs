@@ -37,7 +37,7 @@ pub fn any_pair(ka: Kind, kb: Kind, random: &mut Random) -> (Placed, Placed) {
     let scale_a = SCALES[random.index(5)];
     let scale_b = if random.index(2) == 0 { scale_a } else { SCALES[random.index(5)] };
     let common = random.rotation();
-    let mut place = |kind: Kind, scale: f32, random: &mut Random| Placed {
+    let place = |kind: Kind, scale: f32, random: &mut Random| Placed {
         shape: stretched(random_shape(kind, scale, random), random),
         frame: Transform::new(random.in_cube() * scale, common * random_rotation(random)),
     };

@@ -1,5 +1,6 @@
 //! Submerged volumes against brute force: every shape cut into thin disks or small cubes.
 
+use crate::hull::pebble;
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::Shape;
 use sinew_physics::field::{WaterPlane, submerged_hull};
@@ -33,6 +34,7 @@ fn they_agree_with_brute_force() {
         Shape::Box { half_extents: Vec3::new(0.2, 0.5, 0.3) },
         Shape::Capsule { half_height: 0.5, radius: 0.2 },
         Shape::Capsule { half_height: 0.05, radius: 0.4 },
+        pebble(0.4, &mut random),
         Shape::Cylinder { half_height: 0.5, radius: 0.2 },
         Shape::Cone { half_height: 0.3, radius: 0.4 },
         Shape::TaperedCapsule { half_height: 0.3, radius_bottom: 0.1, radius_top: 0.3 },
@@ -96,15 +98,15 @@ fn the_two_parts_make_the_whole() {
 #[test]
 fn a_tetrahedron_is_cut_in_proportion_to_the_cube_of_its_height() {
     let [o, x, y, z] = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
-    let faces: [&[Vec3]; 4] = [&[o, y, x], &[o, z, y], &[o, x, z], &[x, y, z]];
+    let faces = [[o, y, x], [o, z, y], [o, x, z], [x, y, z]].map(<[Vec3; 3]>::into_iter);
     for height in [0.1f32, 0.5, 0.9] {
-        let below = submerged_hull(faces.into_iter(), &WaterPlane { normal: Vec3::Y, height });
+        let below = submerged_hull(faces.clone().into_iter(), &WaterPlane { normal: Vec3::Y, height });
         let top = 1.0 - height;
         let expected = (1.0 - top * top * top) / 6.0;
         assert!((below.volume - expected).abs() < 1e-6, "{} for {expected}", below.volume);
     }
-    let all = submerged_hull(faces.into_iter(), &WaterPlane { normal: Vec3::Y, height: 2.0 });
+    let all = submerged_hull(faces.clone().into_iter(), &WaterPlane { normal: Vec3::Y, height: 2.0 });
     assert!((all.center() - Vec3::splat(0.25)).length() < 1e-6);
-    let none = submerged_hull(faces.into_iter(), &WaterPlane { normal: Vec3::Y, height: -1.0 });
+    let none = submerged_hull(faces.clone().into_iter(), &WaterPlane { normal: Vec3::Y, height: -1.0 });
     assert_eq!((none.volume, none.center()), (0.0, Vec3::ZERO));
 }

@@ -63,7 +63,9 @@ impl<'a> WideShape<'a> {
                 }
             }
             Shape::HalfSpace => q[1],
-            Shape::Mesh(_) | Shape::HeightField(_) => panic!("surfaces have tests of their own"),
+            Shape::Hull(_) | Shape::Mesh(_) | Shape::HeightField(_) => {
+                panic!("hulls and surfaces have tests of their own")
+            },
         }
     }
 

@@ -225,7 +225,7 @@ fn what_nobody_feels_wakes_nobody() {
     });
     leaves_asleep("a question", |nap| {
         let ray = Ray { origin: Vec3::Y, direction: -Vec3::Y };
-        assert!(nap.world.cast_ray(&ray, |_| true).is_some());
+        assert!(nap.world.query().any(&ray));
         assert_eq!(nap.world.neighbors(nap.sleeper).collect::<Vec<_>>(), [nap.floor]);
         assert_eq!(nap.world.neighbors(nap.floor).collect::<Vec<_>>(), [nap.sleeper]);
         assert!(nap.world.penetration(nap.sleeper) < 1e-3 && nap.world.energy().kinetic == 0.0);

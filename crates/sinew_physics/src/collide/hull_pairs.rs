@@ -1,0 +1,52 @@
+//! Hull against everything that has an end, in the frame of the hull.
+
+use super::Manifold;
+use super::axes::TIE_DIRECTION;
+use super::placed::{Pill, PlacedBox};
+use super::{features, hull_round, polytope};
+use crate::convex::support::{Core, Posed};
+use crate::hull::{BoxPolytope, Hull, Room};
+use crate::shape::Shape;
+use sinew_math::{Transform, Vec3};
+
+/// A hull against a shape of the same or a later rank.
+pub(super) fn collide(
+    hull: &Hull,
+    pair_from_hull: &Transform,
+    other: &Shape,
+    pair_from_other: &Transform,
+    margin: f32,
+    out: &mut Manifold,
+) {
+    let frame = pair_from_hull.inverse() * *pair_from_other;
+    let tie = pair_from_hull.rotation.inverse() * TIE_DIRECTION;
+    let polytope = hull.polytope();
+    match *other {
+        Shape::Hull(ref other) => {
+            let mut room = Room::EMPTY;
+            polytope::collide(&polytope, &other.polytope().seen_from(&frame, &mut room), margin, tie, out);
+        }
+        Shape::Box { half_extents } => {
+            let other = BoxPolytope::new(&PlacedBox::new(half_extents, &frame));
+            polytope::collide(&polytope, &other.polytope(), margin, tie, out);
+        }
+        Shape::Capsule { half_height, radius } => {
+            let pill = Pill::new(half_height, radius, &frame);
+            hull_round::against_capsule(&polytope, &pill.core, radius, margin, out);
+        }
+        Shape::Sphere { radius } => {
+            hull_round::against_sphere(&polytope, frame.translation, radius, margin, out);
+        }
+        _ => {
+            let core = Core::Hull(hull);
+            let a = Posed::new(&core, &Transform::IDENTITY, Vec3::ZERO);
+            if let Some(core) = Core::of(other) {
+                features::collide(&a, &Posed::new(&core, &frame, Vec3::ZERO), margin, out);
+            }
+        }
+    }
+    out.normal = pair_from_hull.rotation * out.normal;
+    for point in &mut out.points[..out.count] {
+        point.position = pair_from_hull.point(point.position);
+    }
+}

@@ -1,0 +1,259 @@
+//! Polytope against polytope: hulls, boxes and triangles, by separating axes. Of the pairs of edges only those count whose
+//! arcs cross on the Gauss map, since only they are faces of the Minkowski difference (Gregorius, "The Separating Axis Test
+//! between Convex Polyhedra", GDC 2013). Then the two faces or the two edges that meet.
+
+use super::Manifold;
+use super::axes::{
+    Bridge, PARALLEL_SINE, choose, choose_face, push_bridges, push_faces as push_clipped, tolerance,
+};
+use super::clip::{PolytopeFace, Reference};
+use super::feature::{self, WHOLE, pair};
+use super::reduce::midway;
+use crate::boxes::separation::{Axis, AxisOf};
+use crate::hull::{MAX_VERTICES, Polytope};
+use sinew_math::Vec3;
+
+/// Two faces of hulls cut to each other have at most so many corners, but for slivers.
+const FACE_CORNERS: usize = MAX_VERTICES;
+/// Parallel edges and corners that are as close as the closest.
+const CLOSEST: usize = 16;
+
+/// `tie` settles ties between faces of A and B: a direction that stays when the shapes change places.
+pub(super) fn collide(a: &Polytope<'_>, b: &Polytope<'_>, margin: f32, tie: Vec3, out: &mut Manifold) {
+    let tolerance = tolerance(a.thickness, b.thickness);
+    let face_a = best_face(a, b, margin, AxisOf::FaceA);
+    if face_a.separation > margin {
+        return;
+    }
+    let face_b = best_face(b, a, margin, AxisOf::FaceB);
+    if face_b.separation > margin {
+        return;
+    }
+    let face_b = Axis { normal: -face_b.normal, ..face_b };
+    let edges = best_edges(a, b);
+    if edges.is_some_and(|edges| edges.separation > margin) {
+        return;
+    }
+    let axis = choose(choose_face(face_a, face_b, tolerance, tie), edges, tolerance);
+    let touched = match axis.of {
+        AxisOf::FaceA(k) => push_faces(a, k, b, &axis, margin, tolerance, out),
+        AxisOf::FaceB(k) => push_faces(b, k, a, &axis, margin, tolerance, out),
+        AxisOf::Edges(i, j) => push_edges(a, i, b, j, &axis, out),
+    };
+    if !touched {
+        if axis.separation > 0.0 {
+            push_closest(a, b, axis.normal, margin, tolerance, out);
+        } else {
+            push_support(a, b, &axis, out);
+        }
+    }
+}
+
+/// The face of `of` that separates best, with its outward normal, or the first one that separates by more than `enough`.
+fn best_face(of: &Polytope<'_>, other: &Polytope<'_>, enough: f32, name: fn(usize) -> AxisOf) -> Axis {
+    let mut best = Axis { normal: Vec3::Y, separation: f32::NEG_INFINITY, of: name(0) };
+    for (face, plane) in of.planes.iter().enumerate() {
+        let separation = -plane.offset - other.reach(-plane.normal);
+        if separation > best.separation {
+            best = Axis { normal: plane.normal, separation, of: name(face) };
+            if separation > enough {
+                break;
+            }
+        }
+    }
+    best
+}
+
+/// An edge with the normals of its faces.
+struct Arc {
+    from: Vec3,
+    along: Vec3,
+    normals: [Vec3; 2],
+}
+
+impl Arc {
+    fn new(of: &Polytope<'_>, side: usize) -> Self {
+        let [from, to] = of.edge(side).ends;
+        Self {
+            from,
+            along: to - from,
+            normals: of.topology.faces_of(side).map(|face| of.planes[face].normal),
+        }
+    }
+
+    /// The direction across both edges that points out of this one's polytope, not of unit length, if there the Minkowski
+    /// difference has a face: if this arc and the other's opposite cross. An edge of a triangle, between opposite normals, has
+    /// half a circle: its direction tells which half.
+    fn crossing(&self, other: &Self) -> Option<Vec3> {
+        let [c, d] = other.normals.map(|n| n.dot(self.along));
+        if c * d >= 0.0 {
+            return None;
+        }
+        let [a, b] = self.normals.map(|n| n.dot(other.along));
+        if a * b >= 0.0 || c * b >= 0.0 {
+            return None;
+        }
+        let across = self.along.cross(other.along);
+        Some(if c < 0.0 { -across } else { across })
+    }
+}
+
+/// The direction across an edge of each that separates best.
+fn best_edges(a: &Polytope<'_>, b: &Polytope<'_>) -> Option<Axis> {
+    let mut best: Option<Axis> = None;
+    for i in a.topology.edge_numbers() {
+        let arc = Arc::new(a, i);
+        for j in b.topology.edge_numbers() {
+            let other = Arc::new(b, j);
+            let Some(across) = arc.crossing(&other) else { continue };
+            let length = across.length();
+            if length <= PARALLEL_SINE * (arc.along.length() * other.along.length()) {
+                continue;
+            }
+            let normal = across / length;
+            let separation = normal.dot(other.from - arc.from);
+            if best.is_none_or(|axis| separation > axis.separation) {
+                best = Some(Axis { normal, separation, of: AxisOf::Edges(i, j) });
+            }
+        }
+    }
+    best
+}
+
+/// The face of `other` that looks at the reference face, cut to it.
+fn push_faces(
+    of: &Polytope<'_>,
+    face: usize,
+    other: &Polytope<'_>,
+    best: &Axis,
+    margin: f32,
+    tolerance: f32,
+    out: &mut Manifold,
+) -> bool {
+    let reference = PolytopeFace::new(of, face);
+    let incident = PolytopeFace::new(other, other.face_at_support(-reference.normal(), tolerance));
+    let corners = (incident.feature(), incident.corners());
+    push_clipped::<FACE_CORNERS>(&reference, corners, best, margin, tolerance, out)
+}
+
+/// The closest points of two edges. False, and nothing pushed, if the shapes are apart and these are not their closest
+/// points.
+fn push_edges(
+    a: &Polytope<'_>,
+    i: usize,
+    b: &Polytope<'_>,
+    j: usize,
+    axis: &Axis,
+    out: &mut Manifold,
+) -> bool {
+    let (edge_a, edge_b) = (a.edge(i), b.edge(j));
+    let (s, t) = edge_a.closest_to_segment(&edge_b);
+    let inside = |x: f32| x > 0.0 && x < 1.0;
+    if axis.separation > 0.0 && !(inside(s) && inside(t)) {
+        return false;
+    }
+    out.normal = axis.normal;
+    let feature = pair(feature::half_edge(a.topology, i), feature::half_edge(b.topology, j));
+    out.push((edge_a.at(s) + edge_b.at(t)) * 0.5, axis.separation, feature);
+    true
+}
+
+/// The closest points of two polytopes that are apart, by trying corners against faces and edges against edges: those that
+/// reach far enough along `normal`, which parts them, to be within `margin` of the other.
+fn push_closest(
+    a: &Polytope<'_>,
+    b: &Polytope<'_>,
+    normal: Vec3,
+    margin: f32,
+    tolerance: f32,
+    out: &mut Manifold,
+) {
+    let (lowest, highest) = (-b.reach(-normal) - margin, a.reach(normal) + margin);
+    let of_a = |p: Vec3| p.dot(normal) >= lowest;
+    let of_b = |p: Vec3| p.dot(normal) <= highest;
+    let from_a = a.vertices.iter().enumerate().filter(|(_, p)| of_a(**p)).map(|(k, &on_a)| {
+        let feature = pair(feature::vertex(k), WHOLE);
+        Bridge { on_a, on_b: b.closest(on_a), feature }
+    });
+    let from_b = b.vertices.iter().enumerate().filter(|(_, p)| of_b(**p)).map(|(k, &on_b)| {
+        let feature = pair(WHOLE, feature::vertex(k));
+        Bridge { on_a: a.closest(on_b), on_b, feature }
+    });
+    let corners = from_a.chain(from_b);
+    let edges_b =
+        || b.topology.edge_numbers().map(|j| (j, b.edge(j))).filter(|(_, e)| e.ends.into_iter().any(of_b));
+    let edges_a = a.topology.edge_numbers().map(|i| (i, a.edge(i)));
+    let edges = edges_a.filter(|(_, e)| e.ends.into_iter().any(of_a)).flat_map(|(i, edge_a)| {
+        edges_b().map(move |(j, edge_b)| {
+            let (s, t) = edge_a.closest_to_segment(&edge_b);
+            let feature = pair(feature::half_edge(a.topology, i), feature::half_edge(b.topology, j));
+            Bridge { on_a: edge_a.at(s), on_b: edge_b.at(t), feature }
+        })
+    });
+    let Some(best) = corners.clone().chain(edges).reduce(Bridge::shorter) else { return };
+    let size = (b.center - a.center).length();
+    push_bridges::<CLOSEST>(best, corners, (size, normal), margin, tolerance, out);
+}
+
+/// B's deepest corner, for overlaps that no face or edge describes.
+fn push_support(a: &Polytope<'_>, b: &Polytope<'_>, axis: &Axis, out: &mut Manifold) {
+    let index = b.support(-axis.normal);
+    out.normal = axis.normal;
+    let position = midway(b.vertices[index], axis.normal, axis.separation);
+    let feature = pair(feature::vertex(a.support(axis.normal)), feature::vertex(index));
+    out.push(position, axis.separation, feature);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::placed::PlacedBox;
+    use super::*;
+    use crate::hull::{BoxPolytope, TrianglePolytope};
+    use sinew_math::{Random, Transform};
+
+    fn gap(a: &Polytope<'_>, b: &Polytope<'_>, n: Vec3) -> f32 {
+        -b.reach(-n) - a.reach(n)
+    }
+
+    /// Two faces and three edges are enough: the best of all face normals and crossed edges, both ways, is found.
+    #[test]
+    fn a_triangle_is_a_polytope() {
+        let mut random = Random::new(31);
+        let (mut touching, mut faces) = (0, 0);
+        for case in 0..3_000 {
+            let corners = [random.in_cube(), random.in_cube(), random.in_cube()];
+            let Some(normal) = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize()
+            else {
+                continue;
+            };
+            let triangle = TrianglePolytope::new(corners, normal);
+            let frame = Transform::new(random.in_cube(), random.rotation());
+            let cuboid = BoxPolytope::new(&PlacedBox::new(Vec3::new(0.2, 0.3, 0.5), &frame));
+            let (a, b) = (triangle.polytope(), cuboid.polytope());
+            let mut best = f32::NEG_INFINITY;
+            let edges_a = a.topology.edge_numbers().map(|i| a.edge(i));
+            for e in edges_a.map(|e| e.ends[1] - e.ends[0]) {
+                for f in b.topology.edge_numbers().map(|j| b.edge(j)).map(|e| e.ends[1] - e.ends[0]) {
+                    if let Some(n) = e.cross(f).try_normalize() {
+                        best =
+                            [n, -n].into_iter().fold(best, |best, n| sinew_math::max(gap(&a, &b, n), best));
+                    }
+                }
+            }
+            for n in a.planes.iter().map(|p| p.normal).chain(b.planes.iter().map(|p| -p.normal)) {
+                best = sinew_math::max(gap(&a, &b, n), best);
+            }
+            let mut out = Manifold::default();
+            collide(&a, &b, 0.0, Vec3::Y, &mut out);
+            assert_eq!(out.count > 0, best <= 0.0, "case {case}: {best}, {out:?}");
+            if out.count > 0 {
+                let along = gap(&a, &b, out.normal);
+                let slack = 1e-4 + 0.0011 + 0.06 * best.abs();
+                assert!(along > best - slack, "case {case}: {along} for {best}, {out:?}");
+                touching += 1;
+                faces += usize::from(out.count > 2);
+            }
+        }
+        assert!(touching > 500 && faces > 100, "{touching} touch, {faces} with three points or more");
+    }
+}

@@ -1,0 +1,79 @@
+//! Points as whole numbers: what lies on which side of a plane is then exact, and no cloud is too flat or too regular.
+
+use super::HullError;
+use sinew_math::{Vec3, max3, min3};
+
+/// Steps along the longest side of a cloud's bounds, at most: the finest for which a multiple of the step is a `f32` again.
+const STEPS: f64 = 8_388_608.0;
+/// Longest sides that a hull may have, metres: beyond them its inertia leaves the range of `f32`.
+pub(super) const SIZES: core::ops::RangeInclusive<f64> = 1e-6..=1e6;
+
+/// A cloud's points on a grid whose step is a power of two, at most 2⁻²² of the longest side; sorted, each once, so that the
+/// order in which they were given decides nothing.
+pub(super) struct Grid {
+    /// In steps from the lowest corner, 0..=2²³.
+    pub points: Vec<[i64; 3]>,
+    lowest: [f64; 3],
+    step: f64,
+}
+
+impl Grid {
+    pub fn new(points: &[Vec3]) -> Result<Self, HullError> {
+        if !points.iter().all(|p| p.is_finite()) {
+            return Err(HullError::NotFinite);
+        }
+        let (Some(low), Some(high)) =
+            (points.iter().copied().reduce(min3), points.iter().copied().reduce(max3))
+        else {
+            return Err(HullError::TooFewPoints);
+        };
+        let [mut low, mut high] = [low, high].map(wide);
+        let mut step = step_for(low, high)?;
+        // Rounding the bounds may make them longer than the step is meant for.
+        loop {
+            [low, high] = [low, high].map(|corner| corner.map(|x| (x / step).round_ties_even() * step));
+            let again = step_for(low, high)?;
+            if again <= step {
+                break;
+            }
+            step = again;
+        }
+        let on_grid = |p: &Vec3| {
+            let p = wide(*p);
+            core::array::from_fn(|k| ((p[k] / step).round_ties_even() - low[k] / step) as i64)
+        };
+        let mut points: Vec<[i64; 3]> = points.iter().map(on_grid).collect();
+        points.sort_unstable();
+        points.dedup();
+        Ok(Self { points, lowest: low, step })
+    }
+
+    /// A point of the grid, exactly.
+    pub fn place(&self, index: usize) -> Vec3 {
+        let [x, y, z] = core::array::from_fn(|k| self.lowest[k] + self.points[index][k] as f64 * self.step);
+        Vec3::new(x as f32, y as f32, z as f32)
+    }
+}
+
+fn wide(p: Vec3) -> [f64; 3] {
+    p.to_array().map(f64::from)
+}
+
+/// The smallest power of two of which [`STEPS`] are as long as the bounds.
+fn step_for(low: [f64; 3], high: [f64; 3]) -> Result<f64, HullError> {
+    let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, |a: f64, b| if b > a { b } else { a });
+    if size == 0.0 {
+        return Err(HullError::TooFewPoints);
+    }
+    if !SIZES.contains(&size) {
+        return Err(HullError::Size);
+    }
+    let mut step = 1.0;
+    while step * STEPS < size {
+        step *= 2.0;
+    }
+    while step * 0.5 * STEPS >= size {
+        step *= 0.5;
+    }
+    Ok(step)
+}
