@@ -25,8 +25,9 @@ const MOST_STEPS: usize = 64;
 /// Moves `a` by `motion` (metres) and says where it first touches `b`, or `None` if it does not, or a number is not
 /// finite. `a` may not be a half-space or mesh.
 ///
-/// Shapes that overlap or touch at the start hit at fraction 0, wherever the motion leads; the normal is the direction in which
-/// A leaves B by the shortest way, and the point lies half-way through the overlap. So it is for every pair of shapes.
+/// Shapes that overlap or touch at the start hit at fraction 0: the normal is the direction in which A leaves B by the shortest way,
+/// and the point lies half-way through the overlap. So it is for every pair of shapes. Later hits count once the gap is less
+/// than 1e-5 of the smaller shape; where the gap does not close any further, there is none.
 pub fn cast_shape(
     a: &Shape,
     world_from_a: &Transform,
