@@ -59,7 +59,7 @@ use crate::json::{self, At, number, numbers};
 use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
 use serde_json::{Map, Value, json};
 use sinew_math::{Range, SwingTwistLimit, Transform, Vec3};
-use sinew_physics::{JointKind, Shape};
+use sinew_physics::JointKind;
 use sinew_ragdoll::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 
 const VERSION: usize = 1;

@@ -128,8 +128,7 @@ pub(crate) fn overlaps_box(half: Vec3, corners: &[Vec3; 3]) -> bool {
     let apart = |axis: Vec3| {
         let [a, b, c] = corners.map(|corner| corner.dot(axis));
         let reach = half.dot(abs3(axis));
-        let (low, high) =
-            (min(min(a, b), c), max(max(a, b), c));
+        let (low, high) = (min(min(a, b), c), max(max(a, b), c));
         low > reach || high < -reach
     };
     let axes = [Vec3::X, Vec3::Y, Vec3::Z];

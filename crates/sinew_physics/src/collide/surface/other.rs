@@ -1,14 +1,14 @@
 //! Any convex shape against a triangle: direction and gap by GJK and EPA, the triangle being a thin solid.
 
 use super::{Teller, When, name};
-use crate::collide::features::manifold_of_features;
 use crate::collide::feature::pair;
+use crate::collide::features::manifold_of_features;
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use crate::convex::feature::{Corner, Feature};
 use crate::convex::meet;
 use crate::convex::support::{Core, Posed, Support, wide};
 use crate::triangles::{Part, Triangle};
-use sinew_math::{DVec3, Transform, Vec3};
+use sinew_math::{DVec3, Transform, Vec3, max};
 
 /// `gap` is that along the triangle's normal, at most the margin.
 pub(super) fn other(posed: &Posed<'_, Core>, gap: f32, teller: &mut Teller<'_>) -> Option<Part> {
@@ -21,9 +21,15 @@ pub(super) fn other(posed: &Posed<'_, Core>, gap: f32, teller: &mut Teller<'_>) 
     let tolerance = teller.solid.tolerance();
     // The way out leads through the triangle, or its own face is as good: that holds best, and says what the surface is like.
     let outward = between.normal.dot(teller.triangle.normal);
-    if outward < 0.0 || between.distance <= gap + tolerance + 0.05 * gap.abs() {
+    if outward < 0.0 || between.distance <= gap + tolerance + 0.05 * max(-gap, 0.0) {
         let over = teller.over_face(Vec3::ZERO);
-        return teller.face_points(&over, When::Now).then_some(Part::Face);
+        if teller.face_points(&over, When::Now) {
+            return Some(Part::Face);
+        }
+        if between.distance < 0.0 {
+            teller.lift(gap, (between.on_a + between.on_b) * 0.5);
+            return None;
+        }
     }
     let part = teller.triangle.support(between.normal, tolerance);
     let mut manifold = Manifold::default();
@@ -52,7 +58,7 @@ impl Support for Thin<'_> {
     }
 
     fn reach(&self) -> f32 {
-        self.0.corners.iter().fold(0.0, |reach, corner| sinew_math::max(corner.length(), reach))
+        self.0.corners.iter().fold(0.0, |reach, corner| max(corner.length(), reach))
     }
 
     fn thinnest(&self) -> f32 {
@@ -68,9 +74,7 @@ impl Support for Thin<'_> {
         };
         let edge = |k: usize| Feature::new(&[corner(k), corner((k + 1) % 3)], 0, Vec3::ZERO);
         match self.0.support(direction, 1e-4 * self.reach()) {
-            Part::Face => {
-                Feature::new(&[corner(0), corner(1), corner(2)], name::FACE, self.0.normal)
-            }
+            Part::Face => Feature::new(&[corner(0), corner(1), corner(2)], name::FACE, self.0.normal),
             Part::Edge(k) => edge(k),
             Part::Corner(k) => Feature::new(&[corner(k)], 0, Vec3::ZERO),
         }

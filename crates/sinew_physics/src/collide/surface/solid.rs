@@ -103,5 +103,9 @@ impl<'a> Solid<'a> {
 fn lowest(posed: &Posed<'_, Core>, normal: Vec3, outline: Outline) -> Outline {
     let support = narrow(posed.support(-wide(normal)));
     let named = outline.corners().iter().fold(f32::INFINITY, |y, c| min(c.at.dot(normal), y));
-    if named <= support.dot(normal) + 1e-6 { outline } else { outline.moved(normal * (support.dot(normal) - named)) }
+    if named <= support.dot(normal) + 1e-6 {
+        outline
+    } else {
+        outline.moved(normal * (support.dot(normal) - named))
+    }
 }
