@@ -48,6 +48,20 @@ impl Shape {
     }
 }
 
+/// Behind a surface by more than its radius and this, a particle is on the other side of it, metres.
+const BEHIND: f32 = 0.01;
+
+impl Shape {
+    /// As [`local_distance`](Self::local_distance), for a ball of this radius: a surface is not there for what is well behind
+    /// it, and what is farther away than `reach` need only be told as being so.
+    pub(crate) fn ball_distance(&self, p: Vec3, radius: f32, reach: f32) -> (f32, Vec3) {
+        let Some(surface) = self.surface() else { return self.local_distance(p) };
+        let Some(closest) = surface.closest(p, reach) else { return (reach, Vec3::Y) };
+        let (distance, normal) = closest.signed(p);
+        if distance < -(radius + BEHIND) { (-distance, -normal) } else { (distance, normal) }
+    }
+}
+
 /// Signed distance to the box of the given half extents around the origin, and the outward normal.
 pub(crate) fn box_distance(half: Vec3, p: Vec3) -> (f32, Vec3) {
     distance_beyond(abs3(p) - half, p)

@@ -234,3 +234,37 @@ fn complaints_name_the_place() {
     let error = read_world(world(r#"{"shape":[]}"#).as_bytes()).unwrap_err();
     assert!(error.what.starts_with("unknown key `shape`; known are name, kind,"), "{error}");
 }
+
+#[test]
+fn surfaces_read_back_as_equal_shapes() {
+    let shapes = r#"{"type":"mesh","vertices":[[0,0,0],[0,0,1],[1,0,0],[1,0.5,1]],"triangles":[[0,1,2],[2,1,3]]},
+        {"type":"height_field","columns":3,"rows":2,"spacing":[1,2],"heights":[0,1,0,0,2,0],"holes":[1]}"#;
+    let text = format!(r#"{{"sinew":"world","version":1,"bodies":[{{"shapes":[{shapes}]}}]}}"#);
+    let bodies = read_world(text.as_bytes()).unwrap();
+    assert!(matches!(&bodies[0].shapes[0].shape, Shape::Mesh(mesh) if mesh.triangle_count() == 2));
+    assert!(
+        matches!(&bodies[0].shapes[1].shape, Shape::HeightField(field) if field.triangles().count() == 2)
+    );
+    assert_eq!(read_world(write_world(&bodies).as_bytes()).unwrap(), bodies);
+    let refused = |shape: &str| {
+        let text = format!(r#"{{"sinew":"world","version":1,"bodies":[{{"shapes":[{shape}]}}]}}"#);
+        read_world(text.as_bytes()).unwrap_err().to_string()
+    };
+    for (shape, expected) in [
+        (r#"{"type":"mesh","vertices":[[0,0,0]],"triangles":[[0,0,1]]}"#, "triangles[0][2]"),
+        (r#"{"type":"mesh","vertices":[[0,0,0]],"triangles":[[0,0]]}"#, "must have 3 indices, has 2"),
+        (r#"{"type":"mesh","vertices":[[0,0,0]],"triangles":[[0,0,0]]}"#, "no triangle has an area"),
+        (r#"{"type":"mesh","vertices":[],"triangles":[]}"#, "no triangle has an area"),
+        (r#"{"type":"mesh","radius":1,"vertices":[],"triangles":[]}"#, "radius"),
+        (
+            r#"{"type":"height_field","columns":4000000000,"rows":4000000000,"spacing":[1,1],"heights":[]}"#,
+            "at most 2²⁶ cells",
+        ),
+        (r#"{"type":"height_field","columns":3,"rows":3,"spacing":[1,1],"heights":[0]}"#, "1 heights"),
+    ] {
+        let said = refused(shape);
+        assert!(said.contains(expected), "{said}");
+    }
+    let dynamic = text.replace(r#"{"shapes""#, r#"{"kind":"dynamic","shapes""#);
+    assert!(read_world(dynamic.as_bytes()).unwrap_err().to_string().contains("needs a mass"));
+}

@@ -232,7 +232,7 @@ impl ParticleGroup {
                 continue;
             }
             let local = placed.start.inverse_point(position);
-            let (distance, normal) = o.shape.local_distance(local);
+            let (distance, normal) = o.shape.ball_distance(local, radius, sight + radius);
             let gap = distance - radius;
             clearance = min(clearance, gap - (placed.carried(position) - position).length());
             if gap <= reach && nearest.is_none_or(|touch| gap < touch.gap) {
@@ -517,7 +517,7 @@ impl ParticleGroup {
                 }
                 Grip::Stick => (Grip::Stick, impulse),
                 // Friction that drives the motion has stopped it on the way.
-                Grip::Slide if slip.dot(friction) > 0.0 => (Grip::Stick, impulse),
+                Grip::Slide if limit > 0.0 && slip.dot(friction) > 0.0 => (Grip::Stick, impulse),
                 Grip::Slide => (Grip::Slide, n * normal - normalize_or(slip, Vec3::ZERO) * limit),
             };
             changed |= grip != self.grips[i];

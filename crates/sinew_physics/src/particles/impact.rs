@@ -86,7 +86,7 @@ impl ParticleGroup {
             }
             let (o, placed) = (&obstacles[index], &self.placed[index]);
             let at = placed.end.inverse_point(end);
-            let (distance, normal) = o.shape.local_distance(at);
+            let (distance, normal) = o.shape.ball_distance(at, self.radii[i], self.radii[i]);
             let gap = distance - self.radii[i];
             if gap < 0.0 && deepest.is_none_or(|(_, best)| gap < best.gap) {
                 deepest = Some((index, Meeting { fraction: 0.0, at, normal, gap }));

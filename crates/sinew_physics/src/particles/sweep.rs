@@ -1,7 +1,9 @@
 //! A ball on a straight way against a shape.
 
+use crate::boxes::Aabb;
 use crate::shape::Shape;
-use sinew_math::{Vec3, max};
+use crate::triangles::{Part, Triangle, closest_on_triangle};
+use sinew_math::{Vec3, max, max3, min3};
 
 /// Where a ball on its way meets a shape, in the shape's frame.
 #[derive(Clone, Copy, Debug)]
@@ -27,10 +29,55 @@ impl Meeting {
 const ROUNDS: u32 = 32;
 
 /// The first place on the way from `from` to `to` (the shape's frame) where a ball of this radius touches the shape on
-/// approach, `None` if it passes. Works for every convex shape by its signed distance: all of the shape lies behind the
-/// plane at the closest point, so the ball can go on to that plane at least (Newton's method on the distance, from the
-/// side on which it never goes too far).
+/// approach, `None` if it passes. Of a surface the first of its triangles that it comes to from their outside.
 pub(super) fn sweep_ball(shape: &Shape, radius: f32, from: Vec3, to: Vec3) -> Option<Meeting> {
+    let Some(surface) = shape.surface() else {
+        return approach(|at| shape.local_distance(at), radius, from, to);
+    };
+    let mut first: Option<Meeting> = None;
+    let region = Aabb { min: min3(from, to), max: max3(from, to) }.expand(radius + SUNK);
+    surface.overlapping(&region, |triangle| {
+        if triangle.height(from) < -SUNK {
+            return;
+        }
+        let meeting = approach(|at| over_triangle(&triangle, at), radius, from, to);
+        if let Some(meeting) = meeting
+            && is_felt(&triangle, meeting.at)
+            && first.is_none_or(|best| meeting.fraction < best.fraction)
+        {
+            first = Some(meeting);
+        }
+    });
+    first
+}
+
+/// Whether what a point is nearest to can be met: an edge within the surface is left to the faces on both sides.
+fn is_felt(triangle: &Triangle, at: Vec3) -> bool {
+    match closest_on_triangle(&triangle.corners, at).1 {
+        Part::Face => true,
+        Part::Edge(edge) => triangle.is_active(edge),
+        Part::Corner(corner) => triangle.is_active(corner) || triangle.is_active((corner + 2) % 3),
+    }
+}
+
+/// A particle this deep behind a triangle rests on it, metres.
+const SUNK: f32 = 1e-4;
+
+/// Distance from a triangle, negative behind it, and the direction away from it.
+fn over_triangle(triangle: &Triangle, at: Vec3) -> (f32, Vec3) {
+    let (point, part) = closest_on_triangle(&triangle.corners, at);
+    let distance = (at - point).length();
+    match part {
+        Part::Face => (triangle.height(at), triangle.normal),
+        _ if distance <= SUNK => (distance, triangle.normal),
+        _ => (distance, (at - point) / distance),
+    }
+}
+
+/// [`sweep_ball`] by a convex solid's signed distance and outward normal: all of it lies behind the plane at the closest
+/// point, so the ball can go on to that plane at least (Newton's method on the distance, from the side on which it never goes
+/// too far).
+fn approach(distance: impl Fn(Vec3) -> (f32, Vec3), radius: f32, from: Vec3, to: Vec3) -> Option<Meeting> {
     let length = (to - from).length();
     if length < 1e-12 {
         return None;
@@ -41,8 +88,8 @@ pub(super) fn sweep_ball(shape: &Shape, radius: f32, from: Vec3, to: Vec3) -> Op
     let mut meeting = None;
     for _ in 0..ROUNDS {
         let at = from + along * travelled;
-        let (distance, normal) = shape.local_distance(at);
-        let (gap, closing) = (distance - radius, -along.dot(normal));
+        let (away, normal) = distance(at);
+        let (gap, closing) = (away - radius, -along.dot(normal));
         if closing <= 0.0 {
             return None;
         }

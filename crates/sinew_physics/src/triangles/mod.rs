@@ -38,11 +38,16 @@ impl Closest {
     /// Distance, negative behind the surface, and the unit outward direction.
     pub fn signed(&self, p: Vec3) -> (f32, Vec3) {
         let (away, distance) = (p - self.point, self.square.sqrt());
-        let sign = if self.triangle.height(p) < 0.0 { -1.0 } else { 1.0 };
-        // The direction between points that all but coincide is rounding.
+        let height = self.triangle.height(p);
+        let sign = if height < 0.0 { -1.0 } else { 1.0 };
+        // Over a face it has the face's own normal. The direction between points that all but coincide is rounding.
+        let over_face = height.abs() >= distance * (1.0 - 1e-6);
         let precise = distance > 1e-5 * (1.0 + p.length());
-        let normal = if precise { away * (sign / distance) } else { self.triangle.normal };
-        (sign * distance, normal)
+        match (over_face, precise) {
+            (true, _) => (height, self.triangle.normal),
+            (_, true) => (sign * distance, away * (sign / distance)),
+            _ => (sign * distance, self.triangle.normal),
+        }
     }
 
     /// Takes `other` instead if it is nearer. Of a point that several triangles share, the one whose plane `p` is

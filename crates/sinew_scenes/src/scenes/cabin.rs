@@ -1,13 +1,14 @@
 //! Balls rain on the cabin: on its boxes, or on its render mesh.
 
 use super::metric::{Expected, Metric};
-use super::parts::GRAVITY;
+use super::parts::{GRAVITY, body, fixed};
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::cabin::{Prop, Site};
-use sinew::math::{ReadError, Reader, Vec3, Writer, clamp, max, trig};
+use sinew::math::{Vec3, clamp, max, trig};
 use sinew::physics::cook::MeshBvh;
 use sinew::physics::particles::{GroupDef, ParticleDef};
-use sinew::physics::{Corrections, GroupId, PhysicsObject, Shape, World};
+use sinew::physics::{BodyDef, GroupId, Mesh, Shape, World};
+use std::sync::Arc;
 
 pub(super) const CABIN: Scene = Scene {
     name: "cabin",
@@ -34,21 +35,29 @@ const LOOK_EVERY: u64 = 10;
 
 fn cabin(setup: &Setup<'_>) -> Instance {
     let props = Site::CabinWithStairs.props();
-    let mesh = MeshBvh::new(&render_mesh(&props, setup.whole("detail")));
+    let triangles = render_mesh(&props, setup.whole("detail"));
+    let mesh = MeshBvh::new(&triangles);
     let mut world = setup.world();
     let with_mesh = setup.whole("mesh") == 1;
     for prop in props.iter().filter(|prop| !with_mesh || !is_box(prop)) {
         world.add_body(&prop.body);
     }
-    let balls = world.add_particles(&rain(setup.whole("balls")));
     if with_mesh {
-        world.add_object(Box::new(MeshObstacle { mesh: mesh.clone(), balls }));
+        world.add_body(&level(&triangles));
     }
+    let balls = world.add_particles(&rain(setup.whole("balls")));
     Instance::new(world, Rain { balls, mesh, fall: None, contacts: Contacts::default() })
 }
 
 fn is_box(prop: &Prop) -> bool {
     matches!(prop.body.shapes[0].shape, Shape::Box { .. })
+}
+
+/// The triangles as a shape.
+fn level(triangles: &[[Vec3; 3]]) -> BodyDef {
+    let indices: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|t| [0, 1, 2].map(|k| 3 * t + k)).collect();
+    let mesh = Mesh::new(triangles.as_flattened(), &indices).expect("the render mesh has triangles");
+    fixed(body(Shape::Mesh(Arc::new(mesh)), Vec3::ZERO))
 }
 
 /// Balls of 100 g in layers, in a pattern that repeats after none of its sides.
@@ -108,40 +117,6 @@ fn rounded_box(half: Vec3, bands: usize, mut out: impl FnMut([Vec3; 3])) {
                 halves.into_iter().for_each(&mut out);
             }
         }
-    }
-}
-
-/// A mesh that keeps balls out: what collision with every triangle takes.
-struct MeshObstacle {
-    mesh: MeshBvh,
-    balls: GroupId,
-}
-
-impl PhysicsObject for MeshObstacle {
-    fn kind(&self) -> &'static str {
-        "cabin mesh"
-    }
-
-    fn satisfy_constraints(&mut self, corrections: &mut Corrections<'_>) {
-        for ball in 0..corrections.particles(self.balls).positions().len() {
-            let p = corrections.particles(self.balls).positions()[ball];
-            if let Some(closest) = self.mesh.closest_point_within(p, RADIUS) {
-                let away = p - closest.point;
-                let outside = away.dot(closest.normal) >= 0.0;
-                let (depth, normal) = match outside && closest.distance > 0.0 {
-                    true => (RADIUS - closest.distance, away / closest.distance),
-                    false => (RADIUS + closest.distance, closest.normal),
-                };
-                corrections.move_particle(self.balls, ball as u32, normal * depth);
-            }
-        }
-    }
-
-    // Where the mesh is does not change.
-    fn save(&self, _: &mut Writer) {}
-
-    fn load(&mut self, _: &mut Reader<'_>) -> Result<(), ReadError> {
-        Ok(())
     }
 }
 

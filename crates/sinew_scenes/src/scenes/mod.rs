@@ -31,6 +31,7 @@ mod engine;
 mod falls;
 mod forces;
 mod gimbal;
+mod house;
 mod impacts;
 mod incline;
 mod linkages;
@@ -181,7 +182,7 @@ const REGISTRY: &[Scene] = &[
 ];
 
 /// Scenes that need a file of the user's, and so are in no list.
-const OF_FILES: &[Scene] = &[mjcf::DROP];
+const OF_FILES: &[Scene] = &[mjcf::DROP, house::HOUSE];
 
 /// The scene of that name; of those that need a file, too, which the registry does not list.
 pub fn find(name: &str) -> Option<&'static Scene> {

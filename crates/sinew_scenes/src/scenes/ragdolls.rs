@@ -6,7 +6,7 @@ use super::parts::{cuboid, fixed, floor};
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::cabin::{PORCH_HEIGHT, Site};
 use crate::mannequin::mannequin;
-use sinew::anim::analyze;
+use sinew::anim::{Rig, analyze};
 use sinew::math::{Rotation, Transform, Vec3, max, min};
 use sinew::physics::{BodyId, Velocity, World};
 use sinew::ragdoll::{BodyState, BuildOptions, Flesh, QualityMeter, Ragdoll, RagdollDef, build};
@@ -117,15 +117,15 @@ const FAST: Musts = Musts {
 };
 
 /// A limp mannequin and how it fares.
-struct Limp {
+pub(super) struct Limp {
     def: RagdollDef,
     ragdoll: Ragdoll,
     meter: QualityMeter,
     flight: Flight,
     /// On the chest, N·s, at [`PUSH_STEP`].
-    push: Vec3,
+    pub push: Vec3,
     /// Longest that it may take to fall asleep, seconds.
-    asleep_within: f64,
+    pub asleep_within: f64,
     musts: Musts,
     lowest: f32,
     /// Last time before the first contact, seconds, and the kinetic energy then, J.
@@ -143,7 +143,11 @@ impl Limp {
     /// The mannequin in its bind pose, turned about its soles and moving as one, its lowest point at the height of
     /// `place`.
     fn spawn(world: &mut World, turn: Rotation, place: Vec3, speed: Vec3) -> Self {
-        let def = ragdoll_of_mannequin();
+        Self::spawn_of(ragdoll_of_mannequin(), world, turn, place, speed)
+    }
+
+    /// Likewise of another character.
+    pub fn spawn_of(def: RagdollDef, world: &mut World, turn: Rotation, place: Vec3, speed: Vec3) -> Self {
         let pose: Vec<_> = def.bodies.iter().map(|body| body.character_from_body).collect();
         let ragdoll = spawn_at(world, &def, &pose, turn, place, speed);
         let mut meter = QualityMeter::new(&def, 10.0);
@@ -174,7 +178,8 @@ impl Limp {
 
     fn push(&mut self, world: &mut World) {
         let chest = self.def.bodies.iter().position(|body| body.role == "chest");
-        let chest = self.ragdoll.bodies[chest.expect("the mannequin has a chest")];
+        // What has no chest is pushed at its root.
+        let chest = self.ragdoll.bodies[chest.unwrap_or(0)];
         let before = world.body_energy(chest).kinetic;
         world.apply_impulse_at_center(chest, self.push);
         self.meter.pushed(world.body_energy(chest).kinetic - before);
@@ -204,9 +209,13 @@ pub(super) fn spawn_at(
 }
 
 pub(super) fn ragdoll_of_mannequin() -> RagdollDef {
-    let rig = mannequin().rig;
-    let analysis = analyze(&rig).expect("the mannequin has a skin");
-    build(&rig, &analysis, &BuildOptions::default()).expect("and bones").0
+    ragdoll_of(&mannequin().rig).expect("the mannequin has a skin and bones")
+}
+
+/// The ragdoll of a rig; `None` if it has no skin or no bones.
+pub(super) fn ragdoll_of(rig: &Rig) -> Option<RagdollDef> {
+    let analysis = analyze(rig).ok()?;
+    Some(build(rig, &analysis, &BuildOptions::default()).ok()?.0)
 }
 
 impl Script for Limp {

@@ -1,9 +1,11 @@
 //! What a user may change about a scene.
 
 use super::parts::GRAVITY;
-use sinew::formats::{MjcfModel, read_bytes, read_mjcf};
+use super::ragdolls::ragdoll_of;
+use sinew::formats::{MjcfModel, ReadOptions, TriangleMesh, load_gltf, load_mesh, read_bytes, read_mjcf};
 use sinew::math::Vec3;
 use sinew::physics::{Sleeping, World, WorldDef};
+use sinew::ragdoll::RagdollDef;
 
 /// What a setting takes: which numbers, ends included, or a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +16,10 @@ pub enum Domain {
     Whole(u16, u16),
     /// Path of a model in MJCF, which is read when it is set.
     Model,
+    /// Path of a level, a GLB or OBJ, likewise.
+    Level,
+    /// Path of a character, a GLB, likewise; need not be set.
+    Character,
 }
 
 /// A setting of a scene.
@@ -23,7 +29,7 @@ pub struct Setting {
     pub key: &'static str,
     /// What it is, with its unit.
     pub about: &'static str,
-    /// Value unless set; 0 for a model, which has to be set.
+    /// Value unless set; 0 for a file.
     pub default: f32,
     /// What it may be.
     pub domain: Domain,
@@ -52,7 +58,15 @@ impl Setting {
         Self { key, about, default: 0.0, domain: Domain::Model }
     }
 
-    /// The number that a text is; a model has none.
+    pub(super) const fn level(key: &'static str, about: &'static str) -> Self {
+        Self { key, about, default: 0.0, domain: Domain::Level }
+    }
+
+    pub(super) const fn character(key: &'static str, about: &'static str) -> Self {
+        Self { key, about, default: 0.0, domain: Domain::Character }
+    }
+
+    /// The number that a text is; a file has none.
     fn parse(&self, text: &str) -> Option<f32> {
         match self.domain {
             Domain::Number(lo, hi) => text.parse().ok().filter(|value| (lo..=hi).contains(value)),
@@ -60,7 +74,7 @@ impl Setting {
                 let whole: u16 = text.parse().ok()?;
                 (lo..=hi).contains(&whole).then(|| f32::from(whole))
             }
-            Domain::Model => None,
+            Domain::Model | Domain::Level | Domain::Character => None,
         }
     }
 }
@@ -112,6 +126,8 @@ impl core::fmt::Display for Domain {
             Self::Number(lo, hi) => write!(f, "a number from {lo} to {hi}"),
             Self::Whole(lo, hi) => write!(f, "a whole number from {lo} to {hi}"),
             Self::Model => write!(f, "the path of a model in MJCF"),
+            Self::Level => write!(f, "the path of a level, a GLB or OBJ"),
+            Self::Character => write!(f, "the path of a character, a GLB"),
         }
     }
 }
@@ -122,11 +138,14 @@ pub struct Settings {
     declared: &'static [Setting],
     values: Vec<f32>,
     model: Option<MjcfModel>,
+    level: Option<TriangleMesh>,
+    character: Option<RagdollDef>,
 }
 
 impl Settings {
     pub(super) fn new(declared: &'static [Setting]) -> Self {
-        Self { declared, values: declared.iter().map(|setting| setting.default).collect(), model: None }
+        let values = declared.iter().map(|setting| setting.default).collect();
+        Self { declared, values, model: None, level: None, character: None }
     }
 
     /// What there is to set.
@@ -146,9 +165,7 @@ impl Settings {
             return Err(SettingError::UnknownKey { key: key.to_owned(), known });
         };
         let Setting { key, domain, .. } = self.declared[place];
-        if domain == Domain::Model {
-            let bytes = read_bytes(value)?;
-            self.model = Some(read_mjcf(&bytes).map_err(|error| error.with_file(value))?);
+        if self.read(domain, value)? {
             return Ok(());
         }
         self.values[place] = self.declared[place].parse(value).ok_or_else(|| SettingError::Value {
@@ -159,17 +176,44 @@ impl Settings {
         Ok(())
     }
 
+    /// Reads the file that a setting names; false if it is no file.
+    fn read(&mut self, domain: Domain, path: &str) -> Result<bool, SettingError> {
+        let refused = |what: String| sinew::formats::Error::malformed(what, "").with_file(path);
+        match domain {
+            Domain::Number(..) | Domain::Whole(..) => return Ok(false),
+            Domain::Model => {
+                let bytes = read_bytes(path)?;
+                self.model = Some(read_mjcf(&bytes).map_err(|error| error.with_file(path))?);
+            }
+            Domain::Level => {
+                let level = load_mesh(path)?;
+                level.to_body().map_err(|error| error.with_file(path))?;
+                self.level = Some(level);
+            }
+            Domain::Character => {
+                let document = load_gltf(path, ReadOptions::default())?;
+                let def = ragdoll_of(&document.rig);
+                self.character = Some(def.ok_or_else(|| refused("no skinned character".into()))?);
+            }
+        }
+        Ok(true)
+    }
+
     /// Whether the scene can start.
     ///
     /// # Errors
-    /// A model that has to be set is not.
+    /// A file that has to be set is not.
     pub fn check(&self) -> Result<(), SettingError> {
-        let model = self.declared.iter().find(|setting| setting.domain == Domain::Model);
-        match (model, &self.model) {
-            (Some(Setting { key, domain, .. }), None) => {
+        let missing = |setting: &&Setting| match setting.domain {
+            Domain::Model => self.model.is_none(),
+            Domain::Level => self.level.is_none(),
+            Domain::Number(..) | Domain::Whole(..) | Domain::Character => false,
+        };
+        match self.declared.iter().find(missing) {
+            Some(Setting { key, domain, .. }) => {
                 Err(SettingError::Missing { key, domain: domain.to_string() })
             }
-            _ => Ok(()),
+            None => Ok(()),
         }
     }
 
@@ -203,6 +247,16 @@ impl Setup<'_> {
     /// If it is not set: see [`Settings::check`].
     pub fn model(&self) -> &MjcfModel {
         self.settings.model.as_ref().expect("the model is set")
+    }
+
+    /// # Panics
+    /// If it is not set: see [`Settings::check`].
+    pub fn level(&self) -> &TriangleMesh {
+        self.settings.level.as_ref().expect("the level is set")
+    }
+
+    pub fn character(&self) -> Option<&RagdollDef> {
+        self.settings.character.as_ref()
     }
 
     /// An empty world.

@@ -38,15 +38,22 @@ pub(super) fn meet(placed: &PlacedBox, gap: f32, teller: &mut Teller<'_>) -> Opt
     };
     let tolerance = teller.solid.tolerance();
     // The triangle's own face holds best, and says what the surface is like: another axis must be clearly better.
-    let other = axis.filter(|axis| axis.separation > gap + tolerance + 0.05 * gap.abs());
+    let other = axis.filter(|axis| axis.separation > gap + tolerance + 0.05 * max(-gap, 0.0));
     let Some(axis) = other else {
         let over = teller.over_face(Vec3::ZERO);
         let nearest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
         // Apart, the two may still pass each other beside the face.
-        if gap <= 0.0 || nearest <= gap + tolerance {
-            return teller.face_points(&over, When::Now).then_some(Part::Face);
+        if gap > 0.0 && nearest > gap + tolerance {
+            return closest(placed, teller);
         }
-        return closest(placed, teller);
+        if teller.face_points(&over, When::Now) {
+            return Some(Part::Face);
+        }
+        if gap <= 0.0 {
+            let middle = teller.triangle.corners.iter().sum::<Vec3>() / 3.0;
+            teller.lift(gap, closest_on_triangle(&teller.triangle.corners, placed.closest(middle)).0);
+        }
+        return None;
     };
     let told = match axis.of {
         AxisOf::Face(k) => box_face(placed, k, &axis, teller),

@@ -207,6 +207,14 @@ impl Teller<'_> {
         self.scratch.points.extend_from_slice(points);
     }
 
+    /// Tells of a shape that is deep in the rim of the triangle, so that nothing of the side which faces it is over the
+    /// triangle: the way out that leads to the outside. It speaks for this triangle alone.
+    fn lift(&mut self, gap: f32, position: Vec3) {
+        let feature = pair(name::FACE, feature::WHOLE);
+        let point = ManifoldPoint { position, separation: gap, feature };
+        self.tell(self.triangle.normal, Part::Face, When::Soon, &[point]);
+    }
+
     /// Tells of a single point between the shape and a part of the triangle.
     fn point(&mut self, normal: Vec3, part: Part, position: Vec3, separation: f32, of_shape: u16) {
         let feature = pair(name::part(self.triangle, part), of_shape);

@@ -8,7 +8,7 @@ use crate::convex::feature::{Corner, Feature};
 use crate::convex::meet;
 use crate::convex::support::{Core, Posed, Support, wide};
 use crate::triangles::{Part, Triangle};
-use sinew_math::{DVec3, Transform, Vec3};
+use sinew_math::{DVec3, Transform, Vec3, max};
 
 /// `gap` is that along the triangle's normal, at most the margin.
 pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'_>) -> Option<Part> {
@@ -21,9 +21,15 @@ pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'
     let tolerance = teller.solid.tolerance();
     // The way out leads through the triangle, or its own face is as good: that holds best, and says what the surface is like.
     let outward = between.normal.dot(teller.triangle.normal);
-    if outward < 0.0 || between.distance <= gap + tolerance + 0.05 * gap.abs() {
+    if outward < 0.0 || between.distance <= gap + tolerance + 0.05 * max(-gap, 0.0) {
         let over = teller.over_face(Vec3::ZERO);
-        return teller.face_points(&over, When::Now).then_some(Part::Face);
+        if teller.face_points(&over, When::Now) {
+            return Some(Part::Face);
+        }
+        if between.distance < 0.0 {
+            teller.lift(gap, (between.on_a + between.on_b) * 0.5);
+            return None;
+        }
     }
     let part = teller.triangle.support(between.normal, tolerance);
     let mut manifold = Manifold::default();
@@ -52,7 +58,7 @@ impl Support for Thin<'_> {
     }
 
     fn reach(&self) -> f32 {
-        self.0.corners.iter().fold(0.0, |reach, corner| sinew_math::max(corner.length(), reach))
+        self.0.corners.iter().fold(0.0, |reach, corner| max(corner.length(), reach))
     }
 
     fn thinnest(&self) -> f32 {

@@ -1,0 +1,254 @@
+//! A triangle against shapes, a mesh against rays and points: held against brute force.
+
+use super::cases;
+use sinew_math::{Random, Transform, Vec3};
+use sinew_physics::collide::{Manifold, collide_all};
+use sinew_physics::ray::Ray;
+use sinew_physics::*;
+use std::sync::Arc;
+
+const MARGIN: f32 = 0.3;
+
+fn triangle(random: &mut Random) -> [Vec3; 3] {
+    loop {
+        let corners = [random.in_cube(), random.in_cube(), random.in_cube()];
+        let [a, b, c] = corners;
+        if (b - a).cross(c - a).length() > 0.1 {
+            return corners;
+        }
+    }
+}
+
+fn mesh_of(corners: &[Vec3]) -> Shape {
+    let triangles: Vec<[u32; 3]> =
+        (0..corners.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    Shape::Mesh(Arc::new(Mesh::new(corners, &triangles).unwrap()))
+}
+
+fn shape(random: &mut Random) -> Shape {
+    let mut size = || random.range(0.05, 0.5);
+    let (a, b, c) = (size(), size(), size());
+    match random.index(6) {
+        0 => Shape::Sphere { radius: a },
+        1 => Shape::Capsule { half_height: a, radius: b },
+        2 => Shape::Cylinder { half_height: a, radius: b },
+        3 => Shape::Cone { half_height: a, radius: b },
+        4 => Shape::TaperedCapsule { half_height: 0.5, radius_bottom: a, radius_top: b },
+        _ => Shape::Box { half_extents: Vec3::new(a, b, c) },
+    }
+}
+
+/// Distance of a convex shape from a triangle, negative where the triangle enters it: its signed distance is a convex function
+/// over the triangle, whose least value two nested searches find.
+fn distance(shape: &Shape, frame: &Transform, &[a, b, c]: &[Vec3; 3]) -> f32 {
+    let least = |f: &dyn Fn(f32) -> f32| {
+        let (mut low, mut high) = (0.0_f32, 1.0_f32);
+        for _ in 0..24 {
+            let (left, right) = (low + (high - low) * 0.382, low + (high - low) * 0.618);
+            if f(left) < f(right) { high = right } else { low = left }
+        }
+        f(0.5 * (low + high))
+    };
+    let along = |s: f32| {
+        let (from, to) = (a + (b - a) * s, a + (c - a) * s);
+        least(&|t: f32| shape.signed_distance(frame, from + (to - from) * t).0)
+    };
+    least(&along)
+}
+
+fn contacts(a: &Shape, at: &Transform, b: &Shape, bt: &Transform) -> Vec<Manifold> {
+    let mut found = Vec::new();
+    collide_all(a, at, b, bt, MARGIN, |manifold| found.push(*manifold));
+    found
+}
+
+fn nearest(manifolds: &[Manifold]) -> f32 {
+    let points = manifolds.iter().flat_map(Manifold::points);
+    points.fold(f32::INFINITY, |least, point| least.min(point.separation))
+}
+
+/// 100,000 cases when `SINEW_FULL` is set, a hundredth of that otherwise.
+#[test]
+fn a_triangle_and_a_shape_are_as_far_apart_as_by_search() {
+    let mut random = Random::new(41);
+    let (mut apart, mut deep) = (0, 0);
+    for case in 0..cases(100_000) {
+        let corners = triangle(&mut random);
+        let (mesh, shape) = (mesh_of(&corners), shape(&mut random));
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).normalize();
+        let over = a + (b - a) * random.range(-0.2, 0.7) + (c - a) * random.range(-0.2, 0.7);
+        let frame = Transform::new(over + normal * random.range(0.02, 1.0), random.rotation());
+        let expected = distance(&shape, &frame, &corners);
+        let found = contacts(&mesh, &Transform::IDENTITY, &shape, &frame);
+        let separation = nearest(&found);
+        let place = format!("case {case}: {shape:?} at {frame:?} over {corners:?}: {expected}, {found:?}");
+        if expected > MARGIN + 1e-3 {
+            assert!(found.is_empty(), "{place}");
+        } else if expected > 1e-3 {
+            apart += 1;
+            assert!(found.len() == 1 && (separation - expected).abs() < 2e-3, "{place}");
+        } else if expected < -1e-3 {
+            deep += 1;
+            // Out along the normal, the shape is out.
+            assert!(found.len() == 1 && separation < 0.0, "{place}");
+            let moved = frame.translation - found[0].normal * (separation - 1e-3);
+            let left = distance(&shape, &Transform::new(moved, frame.rotation), &corners);
+            // A round end stands for an octagon.
+            let round = matches!(shape, Shape::Cylinder { .. } | Shape::Cone { .. });
+            let tolerance = 2e-3 + if round { 0.02 * shape.bounding_radius() } else { 0.0 };
+            assert!(left > -tolerance, "{place}, {left}");
+        }
+        for manifold in &found {
+            assert!((manifold.normal.length() - 1.0).abs() < 1e-5, "{place}");
+        }
+    }
+    assert!(apart * 5 > cases(100_000) && deep * 10 > cases(100_000), "{apart} apart, {deep} deep");
+}
+
+#[test]
+fn order_and_place_do_not_matter() {
+    let mut random = Random::new(42);
+    for case in 0..cases(100_000) {
+        let corners = triangle(&mut random);
+        let (mesh, shape) = (mesh_of(&corners), shape(&mut random));
+        let frame = Transform::new(random.in_cube() * 0.8, random.rotation());
+        let found = contacts(&mesh, &Transform::IDENTITY, &shape, &frame);
+        let swapped = contacts(&shape, &frame, &mesh, &Transform::IDENTITY);
+        assert_eq!(found.len(), swapped.len(), "case {case}");
+        for (one, other) in found.iter().zip(&swapped) {
+            assert_eq!(one.normal, -other.normal);
+            for (p, q) in one.points().iter().zip(other.points()) {
+                assert_eq!((p.position, p.separation), (q.position, q.separation));
+                assert_eq!(p.feature, q.feature.rotate_left(16));
+            }
+        }
+        let turn = Transform::new(random.in_cube() * 3.0, random.rotation());
+        let turned = contacts(&mesh, &turn, &shape, &(turn * frame));
+        let place = format!("case {case}: {shape:?} at {frame:?} over {corners:?}: {found:?} {turned:?}");
+        let (here, there) = (nearest(&found), nearest(&turned));
+        // At the margin, and where the centre is in the plane, rounding decides whether there is a contact.
+        if !found.is_empty() && !turned.is_empty() {
+            assert!((here - there).abs() < 5e-3, "{place}");
+        }
+    }
+}
+
+fn bumps(random: &mut Random, side: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let at = |i: usize, j: usize, y: f32| Vec3::new(i as f32 * 0.5, y, j as f32 * 0.5);
+    let mut vertices = Vec::new();
+    for j in 0..=side {
+        vertices.extend((0..=side).map(|i| at(i, j, random.range(0.0, 0.6))));
+    }
+    let mut triangles = Vec::new();
+    for j in 0..side {
+        for i in 0..side {
+            let index = |i: usize, j: usize| (i + j * (side + 1)) as u32;
+            let [a, b, c, d] = [index(i, j), index(i, j + 1), index(i + 1, j + 1), index(i + 1, j)];
+            triangles.extend([[a, b, d], [d, b, c]]);
+        }
+    }
+    (vertices, triangles)
+}
+
+/// The same terrain as a mesh and as a height field, and its triangles.
+fn terrain(random: &mut Random, side: usize) -> (Shape, Shape, Vec<[Vec3; 3]>) {
+    let (vertices, triangles) = bumps(random, side);
+    let def = HeightFieldDef {
+        columns: side + 1,
+        rows: side + 1,
+        spacing: [0.5; 2],
+        heights: vertices.iter().map(|v| v.y).collect(),
+        holes: Vec::new(),
+    };
+    let corners = triangles.iter().map(|t| t.map(|i| vertices[i as usize])).collect();
+    let mesh = Shape::Mesh(Arc::new(Mesh::new(&vertices, &triangles).unwrap()));
+    (mesh, Shape::HeightField(Arc::new(HeightField::new(def).unwrap())), corners)
+}
+
+/// Where a ray comes through a triangle from above, by its plane and barycentric coordinates in `f64`.
+fn pierced(&[a, b, c]: &[Vec3; 3], ray: &Ray) -> Option<f64> {
+    let wide = |v: Vec3| v.to_array().map(f64::from);
+    let sub = |p: [f64; 3], q: [f64; 3]| core::array::from_fn::<f64, 3, _>(|k| p[k] - q[k]);
+    let cross = |p: [f64; 3], q: [f64; 3]| {
+        [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+    };
+    let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    let (o, d) = (wide(ray.origin), wide(ray.direction));
+    let [a, b, c] = [a, b, c].map(wide);
+    let normal = cross(sub(b, a), sub(c, a));
+    let toward = dot(normal, d);
+    if toward >= 0.0 {
+        return None;
+    }
+    let t = dot(normal, sub(a, o)) / toward;
+    let p = [o[0] + d[0] * t, o[1] + d[1] * t, o[2] + d[2] * t];
+    let inside = [(a, b), (b, c), (c, a)]
+        .into_iter()
+        .all(|(p0, p1)| dot(cross(sub(p1, p0), sub(p, p0)), normal) >= 0.0);
+    (inside && (0.0..=1.0).contains(&t)).then_some(t)
+}
+
+#[test]
+fn rays_meet_terrain_as_they_meet_its_triangles() {
+    let mut random = Random::new(43);
+    let (mesh, field, corners) = terrain(&mut random, 20);
+    let mut hits = 0;
+    for case in 0..cases(100_000) {
+        let spread = |random: &mut Random| {
+            Vec3::new(random.range(-1.0, 11.0), random.range(-0.5, 2.0), random.range(-1.0, 11.0))
+        };
+        let ray = Ray::between(spread(&mut random), spread(&mut random));
+        let expected = corners.iter().filter_map(|c| pierced(c, &ray)).reduce(f64::min);
+        for shape in [&mesh, &field] {
+            let found = shape.cast_ray(&Transform::IDENTITY, &ray).map(|hit| hit.fraction);
+            match (expected, found) {
+                (Some(t), Some(found)) => {
+                    assert!((t - f64::from(found)).abs() < 1e-4, "case {case}: {t} {found}")
+                }
+                (None, None) => {}
+                // An end on the surface.
+                (t, found) => {
+                    let at = t.map(|t| t as f32).or(found).unwrap();
+                    assert!(!(1e-4..=1.0 - 1e-4).contains(&at), "case {case}: {t:?} {found:?}");
+                }
+            }
+            hits += u32::from(found.is_some());
+        }
+    }
+    assert!(hits * 4 > cases(100_000), "{hits} hits");
+    // Down through every edge and vertex: nothing slips through between two triangles.
+    for i in 1..40 {
+        for j in 1..40 {
+            let over = Vec3::new(0.25 * i as f32, 5.0, 0.25 * j as f32);
+            let ray = Ray { origin: over, direction: Vec3::NEG_Y * 10.0 };
+            for shape in [&mesh, &field] {
+                assert!(shape.cast_ray(&Transform::IDENTITY, &ray).is_some(), "{over}");
+                let up = Ray { origin: over - Vec3::Y * 6.0, direction: Vec3::Y * 10.0 };
+                assert!(shape.cast_ray(&Transform::IDENTITY, &up).is_none(), "{over} from below");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_closest_point_is_that_of_all_triangles() {
+    let mut random = Random::new(44);
+    let (mesh, field, corners) = terrain(&mut random, 12);
+    let alone: Vec<Shape> = corners.iter().map(|corners| mesh_of(corners)).collect();
+    for case in 0..cases(20_000) {
+        let p = Vec3::new(random.range(-2.0, 8.0), random.range(-1.0, 3.0), random.range(-2.0, 8.0));
+        let away = |alone: &Shape| alone.signed_distance(&Transform::IDENTITY, p).0.abs();
+        let expected = alone.iter().map(away).fold(f32::INFINITY, f32::min);
+        for shape in [&mesh, &field] {
+            let (found, normal) = shape.signed_distance(&Transform::IDENTITY, p);
+            assert!((found.abs() - expected).abs() < 1e-4, "case {case} at {p}: {found} {expected}");
+            let back = shape.signed_distance(&Transform::IDENTITY, p - normal * found).0;
+            assert!(back.abs() < 1e-4, "case {case} at {p}: {back}");
+            let over = (0.0..6.0).contains(&p.x) && (0.0..6.0).contains(&p.z);
+            if over && p.y > 0.6 && found < 0.0 {
+                panic!("case {case}: above all of it, {p} is not behind it");
+            }
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! A character falls limp down the steps of a house: on its triangles, or on the boxes that stand for it.
+
+use super::ragdolls::{Limp, ragdoll_of_mannequin};
+use super::{Instance, Scene, Setting, Setup};
+use sinew::formats::TriangleMesh;
+use sinew::math::{Rotation, Vec3};
+use sinew::physics::cook::{CookOptions, cook};
+use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
+
+/// Not listed: it is about files that are not ours.
+pub(super) const HOUSE: Scene = Scene {
+    name: "house",
+    about: "a character runs out of a house's door, limp, and falls down its steps",
+    steps: 720,
+    settings: &[
+        Setting::level("file", "the house, a GLB or OBJ; its door leads along +z"),
+        Setting::character("rig", "who falls: a GLB; without it the mannequin"),
+        Setting::whole("mesh", 1, (0, 1), "1: the house's triangles; 0: boxes that stand for them"),
+        Setting::number("scale", 3.0, (0.01, 100.0), "of the house, metres for each of the file's units"),
+        Setting::number("height", 0.185, (0.0, 100.0), "of the place where it starts, in the file's units"),
+        Setting::number("forward", 1.03, (-100.0, 100.0), "of that place along z, in the file's units"),
+        Setting::number("speed", 2.0, (0.0, 10.0), "with which it leaves the door, m/s"),
+        Setting::number("impulse", 60.0, (0.0, 500.0), "push forward on its chest as it falls, N·s"),
+    ],
+    build: house,
+};
+
+fn house(setup: &Setup<'_>) -> Instance {
+    let mut world = setup.world();
+    let scale = setup.number("scale");
+    let level = setup.level();
+    let positions = level.positions.iter().map(|&p| p * scale).collect();
+    let level = TriangleMesh { positions, ..level.clone() };
+    for body in bodies(&level, setup.whole("mesh") == 1) {
+        world.add_body(&body);
+    }
+    let ground = vec![ShapeDef::new(Shape::HalfSpace)];
+    world.add_body(&BodyDef { kind: BodyKind::Static, shapes: ground, ..BodyDef::default() });
+    let def = setup.character().cloned().unwrap_or_else(ragdoll_of_mannequin);
+    let place = Vec3::new(0.0, setup.number("height"), setup.number("forward")) * scale;
+    let speed = Vec3::Z * setup.number("speed");
+    let mut limp = Limp::spawn_of(def, &mut world, Rotation::IDENTITY, place, speed);
+    limp.push = Vec3::Z * setup.number("impulse");
+    limp.asleep_within = 10.0;
+    Instance::new(world, limp)
+}
+
+/// The level as triangles, or as boxes.
+fn bodies(level: &TriangleMesh, as_mesh: bool) -> Vec<BodyDef> {
+    if as_mesh {
+        return vec![level.to_body().expect("a level that was read has triangles")];
+    }
+    let cooked = cook(&level.positions, &level.triangles, &CookOptions::default(), &mut |_| {});
+    cooked.expect("a level that was read has triangles").to_bodies()
+}
