@@ -60,11 +60,11 @@ impl Shape {
         if !(ray.origin.is_finite() && ray.direction.is_finite() && world_from_shape.is_finite()) {
             return None;
         }
+        let way = abs3(ray.direction);
+        let scale = if max(max(way.x, way.y), way.z) > LONG { SHORTENED } else { 1.0 };
         let origin = world_from_shape.inverse_point(ray.origin);
-        let direction = world_from_shape.rotation.inverse() * ray.direction;
-        let largest = max(max(direction.x.abs(), direction.y.abs()), direction.z.abs());
-        let scale = if largest > LONG { SHORTENED } else { 1.0 };
-        let (fraction, normal) = self.cast_local(origin, direction * scale)?;
+        let direction = world_from_shape.rotation.inverse() * (ray.direction * scale);
+        let (fraction, normal) = self.cast_local(origin, direction)?;
         let fraction = fraction * scale;
         Some(RayHit { fraction, point: ray.at(fraction), normal: world_from_shape.rotation * normal })
     }
