@@ -116,7 +116,8 @@ impl World {
         self.broad.proxies.remove(id.index);
     }
 
-    /// Adds particles with their springs. They do not sleep; a body that sleeps is a wall to them.
+    /// Adds particles with their springs; bodies that they hang on wake. They do not sleep themselves. A body that sleeps is
+    /// a wall to them, unless one strikes it faster than [`SleepThresholds::speed`](crate::SleepThresholds): then it wakes.
     ///
     /// # Panics
     /// If the definition is not valid or names a body that is not there.
