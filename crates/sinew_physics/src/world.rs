@@ -104,7 +104,7 @@ impl World {
         let attached =
             self.groups.iter().any(|(_, group)| group.attachments().iter().any(|a| held(a.target)));
         assert!(!attached, "no particles are attached to a body that is taken out");
-        self.wake_around(id.index);
+        self.wake_neighbors(id.index);
         let joints: Vec<JointId> = self.joints_of(id).collect();
         for joint in joints {
             self.remove_joint(joint);
@@ -223,7 +223,7 @@ impl World {
     pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
         assert!(world_from_body.is_finite(), "a body's pose is finite");
         self.expect_mut(id).set_world_from_body(world_from_body);
-        self.wake_around(id.index);
+        self.wake_neighbors(id.index);
         self.broad.proxies.place(id.index, self.bodies.at(id.index));
     }
 
