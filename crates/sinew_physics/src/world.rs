@@ -122,13 +122,13 @@ impl World {
     /// # Panics
     /// If the definition is not valid or names a body that is not there.
     pub fn add_particles(&mut self, def: &GroupDef) -> GroupId {
-        for attachment in &def.attachments {
-            if let AttachmentTarget::Body { body, .. } = attachment.target {
-                self.expect(body);
-                self.wake_body(body.index);
-            }
-        }
+        let held = def.attachments.iter().filter_map(|attachment| match attachment.target {
+            AttachmentTarget::Body { body, .. } => Some(body),
+            AttachmentTarget::World(_) => None,
+        });
+        held.clone().for_each(|body| _ = self.expect(body));
         let (index, generation) = self.groups.insert(ParticleGroup::new(def));
+        held.for_each(|body| self.wake_body(body.index));
         GroupId { index, generation }
     }
 
