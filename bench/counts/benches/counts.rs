@@ -6,7 +6,7 @@
 use gungraun::prelude::*;
 use sinew::math::{Random, Rotation, Transform, Vec3};
 use sinew::physics::collide::{Manifold, collide};
-use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef, Sleeping, World, WorldDef};
+use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef, SleepThresholds, Sleeping, World, WorldDef};
 use sinew_scenes::blueprint;
 use sinew_scenes::scenes::{self, Instance};
 use std::hint::black_box;
@@ -64,9 +64,34 @@ fn lone_box() -> World {
     world
 }
 
+/// Balls in flight beside boxes that sleep on a floor, so many of each.
+fn beside_sleepers(awake: u32, asleep: u32) -> World {
+    // What rests sleeps at once.
+    let sleep_thresholds = SleepThresholds { time: 0.0, ..SleepThresholds::default() };
+    let mut world = World::new(WorldDef { sleep_thresholds, ..WorldDef::default() });
+    let body = |shape, position| BodyDef { position, shapes: vec![ShapeDef::new(shape)], ..BodyDef::default() };
+    world.add_body(&BodyDef { kind: BodyKind::Static, ..body(Shape::HalfSpace, Vec3::ZERO) });
+    let place = |i: u32, height: f32| Vec3::new((i % 100) as f32, height, (i / 100) as f32);
+    for i in 0..asleep {
+        world.add_body(&body(Shape::Box { half_extents: Vec3::splat(0.2) }, place(i, 0.2)));
+    }
+    for i in 0..awake {
+        let linear_velocity = Vec3::Y * 5.0;
+        world.add_body(&BodyDef { linear_velocity, ..body(Shape::Sphere { radius: 0.1 }, place(i, 20.0)) });
+    }
+    for _ in 0..10 {
+        world.step();
+    }
+    assert_eq!(world.body_ids().filter(|&id| !world.is_awake(id)).count(), asleep as usize);
+    world
+}
+
 #[library_benchmark]
 #[bench::chains_10_of_100_links(chains())]
 #[bench::manifold_of_one_box(lone_box())]
+#[bench::awake_100(beside_sleepers(100, 0))]
+#[bench::awake_100_asleep_10_000(beside_sleepers(100, 10_000))]
+#[bench::asleep_10_000(beside_sleepers(0, 10_000))]
 fn step(mut world: World) -> World {
     world.step();
     world

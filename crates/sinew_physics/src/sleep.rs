@@ -41,7 +41,7 @@ pub(crate) fn sleep(
     }
 }
 
-/// For how long a body has been calm, seconds.
+/// For how long a body has been calm, seconds; if it is not, less than any time.
 fn count(body: &mut Body, calm: bool, dt: f32) -> f32 {
     match &mut body.rest {
         Rest::Awake { calm: time } if calm => {
@@ -50,7 +50,7 @@ fn count(body: &mut Body, calm: bool, dt: f32) -> f32 {
         }
         _ => {
             body.disturb();
-            0.0
+            f32::NEG_INFINITY
         }
     }
 }

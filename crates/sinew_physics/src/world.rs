@@ -113,7 +113,7 @@ impl World {
         let attached =
             self.groups.iter().any(|(_, group)| group.attachments().iter().any(|a| held(a.target)));
         assert!(!attached, "no particles are attached to a body that is taken out");
-        self.wake_around(id.index);
+        self.wake_neighbors(id.index);
         let joints: Vec<JointId> = self.joints_of(id).collect();
         for joint in joints {
             self.remove_joint(joint);
@@ -125,18 +125,19 @@ impl World {
         self.broad.proxies.remove(id.index);
     }
 
-    /// Adds particles with their springs. They do not sleep; a body that sleeps is a wall to them.
+    /// Adds particles with their springs; bodies that they hang on wake. They do not sleep themselves. A body that sleeps is
+    /// a wall to them, unless one strikes it faster than [`SleepThresholds::speed`](crate::SleepThresholds): then it wakes.
     ///
     /// # Panics
     /// If the definition is not valid or names a body that is not there.
     pub fn add_particles(&mut self, def: &GroupDef) -> GroupId {
-        for attachment in &def.attachments {
-            if let AttachmentTarget::Body { body, .. } = attachment.target {
-                self.expect(body);
-                self.wake_body(body.index);
-            }
-        }
+        let held = def.attachments.iter().filter_map(|attachment| match attachment.target {
+            AttachmentTarget::Body { body, .. } => Some(body),
+            AttachmentTarget::World(_) => None,
+        });
+        held.clone().for_each(|body| _ = self.expect(body));
         let (index, generation) = self.groups.insert(ParticleGroup::new(def));
+        held.for_each(|body| self.wake_body(body.index));
         GroupId { index, generation }
     }
 
@@ -231,7 +232,7 @@ impl World {
     pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
         assert!(world_from_body.is_finite(), "a body's pose is finite");
         self.expect_mut(id).set_world_from_body(world_from_body);
-        self.wake_around(id.index);
+        self.wake_neighbors(id.index);
         self.broad.proxies.place(id.index, self.bodies.at(id.index));
     }
 

@@ -81,7 +81,7 @@ impl World {
     }
 
     /// Wakes a body and all that touches it, or hangs on it by a joint: something about it is to change that they may feel.
-    pub(crate) fn wake_around(&mut self, index: u32) {
+    pub(crate) fn wake_neighbors(&mut self, index: u32) {
         let touching = self.contacts_of(index).filter(|contact| contact.pushes());
         let mut others: Vec<u32> = touching.map(|contact| contact.key.other(index)).collect();
         for &joint in self.activity.joints_of.body(index) {

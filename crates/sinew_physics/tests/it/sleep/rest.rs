@@ -123,6 +123,8 @@ fn thresholds_are_settings() {
     let default = SleepThresholds::default();
     assert!(matches!(time(default), Some(29..=30)));
     assert!(matches!(time(SleepThresholds { time: 0.25, ..default }), Some(14..=15)));
+    assert_eq!(time(SleepThresholds { time: 0.0, ..default }), Some(0));
+    assert_eq!(time(SleepThresholds { time: 0.0, speed: 0.004, ..default }), None);
     assert_eq!(time(SleepThresholds { distance: 0.002, ..default }), None);
     assert_eq!(time(SleepThresholds { speed: 0.004, ..default }), None);
     for wrong in [

@@ -156,7 +156,8 @@ fn an_anchor_wakes_what_hangs_on_it_when_it_moves() {
 
 #[test]
 fn a_joint_wakes_its_bodies_when_it_changes() {
-    let changes: [(&str, fn(&mut JointDef)); 5] = [
+    type Change = fn(&mut JointDef);
+    let changes: [(&str, Change); 5] = [
         ("a limit", |def| def.kind = JointKind::Hinge { limit: Some(Range::new(0.1, 0.5)) }),
         ("a spring", |def| {
             let softness = Softness::Frequency { hertz: 2.0, damping_ratio: 1.0 };
