@@ -23,12 +23,16 @@ pub fn box_pyramid() -> Blueprint {
 
 /// A wall of 100 rows of unit cubes, one fewer in each row, as Box3D's `large_pyramid`.
 pub fn large_pyramid() -> Blueprint {
-    const ROWS: usize = 100;
+    large_pyramid_of(100)
+}
+
+/// The same with `rows` rows.
+pub fn large_pyramid_of(rows: usize) -> Blueprint {
     let mut scene = Blueprint::new("large_pyramid", Sleeping::Off, 200);
     scene.body(fixed(cuboid(Vec3::new(400.0, 1.0, 400.0), Vec3::NEG_Y)));
-    for row in 0..ROWS {
-        for i in 0..ROWS - row {
-            let x = i as f32 - 0.5 * (ROWS - row - 1) as f32;
+    for row in 0..rows {
+        for i in 0..rows - row {
+            let x = i as f32 - 0.5 * (rows - row - 1) as f32;
             scene.body(cuboid(Vec3::splat(0.5), Vec3::new(x, 0.5 + row as f32, 0.0)));
         }
     }

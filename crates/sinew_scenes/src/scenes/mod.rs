@@ -17,6 +17,7 @@ mod instance;
 mod metric;
 mod setting;
 mod sight;
+mod stand;
 
 mod air;
 mod ballistics;
@@ -46,6 +47,7 @@ mod piles;
 mod ragdolls;
 mod rolling;
 mod springs;
+mod stacks;
 mod strings;
 mod support;
 mod tops;
@@ -156,6 +158,11 @@ const REGISTRY: &[Scene] = &[
     piles::STACK,
     piles::PYRAMID,
     piles::DOMINOES,
+    stacks::MASS_RATIO,
+    stacks::SIZE_RATIO,
+    stacks::JENGA,
+    stacks::CARDS,
+    stacks::LARGE_PYRAMID,
     springs::ROPE_ON_BOX,
     ragdolls::DROP,
     falls::POSES,
