@@ -47,6 +47,7 @@ impl Engine for Box3d {
     fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported> {
         let mut world = World::new(scene.gravity);
         for def in &scene.bodies {
+            refuse_rolling_on(def)?;
             add_body(&mut world, def, scene.sleeping)?;
         }
         for def in &scene.joints {
@@ -88,8 +89,8 @@ fn add_body(world: &mut World, def: &BodyDef, sleeping: Sleeping) -> Result<(), 
         may_sleep: sleeping == Sleeping::On,
     });
     for part in &def.shapes {
-        if part.sensing == Sensing::Sensor || part.material.rolling != 0.0 {
-            return Err(Unsupported::new("sensors and rolling resistance that are not mapped yet"));
+        if part.sensing == Sensing::Sensor {
+            return Err(Unsupported::new("sensors that are not mapped yet"));
         }
         world.add_shape(body, &shape(part), &surface(part));
     }
@@ -100,6 +101,25 @@ fn add_body(world: &mut World, def: &BodyDef, sleeping: Sleeping) -> Result<(), 
         world.set_velocity(body, def.linear_velocity, def.angular_velocity);
     }
     Ok(())
+}
+
+/// Box3D multiplies the larger share of two shapes by the larger of their radii, of which only meshes have none: what rolls
+/// on a large box meets more resistance than it says.
+fn refuse_rolling_on(def: &BodyDef) -> Result<(), Unsupported> {
+    let rolls = def.shapes.iter().any(|part| part.material.rolling != 0.0);
+    if rolls && def.kind != BodyKind::Dynamic {
+        return Err(Unsupported::new("rolling resistance of what does not move"));
+    }
+    Ok(())
+}
+
+/// Radius that Box3D takes for the lever of rolling resistance, metres.
+fn rolling_radius(shape: &sinew::physics::Shape) -> f32 {
+    use sinew::physics::Shape as Ours;
+    match *shape {
+        Ours::Sphere { radius } | Ours::Capsule { radius, .. } => radius,
+        _ => 0.25 * shape.inner_radius(),
+    }
 }
 
 fn shape(def: &ShapeDef) -> Shape {
@@ -124,6 +144,7 @@ fn surface(def: &ShapeDef) -> Surface {
         density: def.density,
         friction: def.material.friction,
         restitution: def.material.restitution,
+        rolling: def.material.rolling / rolling_radius(&def.shape),
         layers: def.filter.layers,
         mask: def.filter.mask,
         group: def.filter.group,
@@ -131,13 +152,17 @@ fn surface(def: &ShapeDef) -> Surface {
 }
 
 fn joint(def: &BlueprintJoint) -> Result<Joint, Unsupported> {
+    let friction = def.friction_torque;
     Ok(match def.kind {
-        JointKind::Ball { limit: None } => Joint::Spherical { cone: None, twist: None },
+        JointKind::Ball { limit: None } => Joint::Spherical { cone: None, twist: None, friction },
         JointKind::Ball { limit: Some(limit) } => Joint::Spherical {
             cone: Some(circular_cone(&limit)?),
             twist: Some([limit.twist.lo, limit.twist.hi]),
+            friction,
         },
-        JointKind::Hinge { limit } => Joint::Revolute { limit: limit.map(|range| [range.lo, range.hi]) },
+        JointKind::Hinge { limit } => {
+            Joint::Revolute { limit: limit.map(|range| [range.lo, range.hi]), friction }
+        }
         JointKind::Fixed => Joint::Weld,
         _ => return Err(Unsupported::new("a kind of joint that is not mapped yet")),
     })
@@ -159,6 +184,10 @@ impl Simulation for Box3dWorld {
             let [linear_velocity, angular_velocity] = self.world.velocity(place);
             BodyState { world_from_body: self.world.pose(place), linear_velocity, angular_velocity }
         }));
+    }
+
+    fn is_awake(&self) -> bool {
+        self.world.awake_bodies() > 0
     }
 }
 

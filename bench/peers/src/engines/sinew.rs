@@ -71,6 +71,11 @@ impl Simulation for SinewWorld {
             }
         }));
     }
+
+    fn is_awake(&self) -> bool {
+        let moves = |id| self.world.kind(id) == BodyKind::Dynamic;
+        self.bodies.iter().any(|&id| moves(id) && self.world.is_awake(id))
+    }
 }
 
 /// `World::cast_ray` tries every box: it has no tree yet.

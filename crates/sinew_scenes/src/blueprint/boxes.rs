@@ -41,7 +41,11 @@ pub fn large_pyramid_of(rows: usize) -> Blueprint {
 
 /// 4,000 boxes of all sizes fall into a pit.
 pub fn box_rain() -> Blueprint {
-    const COUNT: usize = 4000;
+    box_rain_of(4000)
+}
+
+/// The same with `count` boxes.
+pub fn box_rain_of(count: usize) -> Blueprint {
     const SIDE: usize = 12;
     /// Half of the pit's width, metres.
     const HALF: f32 = 8.4;
@@ -54,7 +58,7 @@ pub fn box_rain() -> Blueprint {
         scene.body(fixed(cuboid(Vec3::new(outer, 10.0, 1.0), Vec3::new(0.0, 10.0, out))));
     }
     let mut random = Random::new(3);
-    for i in 0..COUNT {
+    for i in 0..count {
         let (layer, a, b) = (i / (SIDE * SIDE), i / SIDE % SIDE, i % SIDE);
         let place = |index: usize| (index as f32 - 5.5) * 1.4;
         let half_extents = in_box(&mut random, 0.1, 0.4);

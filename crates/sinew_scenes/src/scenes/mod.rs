@@ -46,6 +46,7 @@ mod pendulums;
 mod piles;
 mod ragdolls;
 mod rolling;
+mod settling;
 mod springs;
 mod stacks;
 mod strings;
@@ -179,6 +180,8 @@ const REGISTRY: &[Scene] = &[
     nets::JOINT_GRID,
     nets::NET,
     crowds::PILE,
+    settling::RAGDOLLS,
+    crowds::RAIN,
     engine::FRAME_RATES,
     engine::TAUTOCHRONE,
     trees::HEAVY_FOOT,

@@ -165,6 +165,8 @@ scenes!(
         jenga,
         cards,
         large_pyramid,
+        ragdolls,
+        box_rain,
         rope_on_box,
         ragdoll_drop,
         ragdoll_poses,
@@ -215,6 +217,16 @@ fn turns_with_other_settings() {
             assert_eq!(unmet(&metrics), [""; 0], "{name}, {assignment}: {metrics:#?}");
         }
     }
+}
+
+/// 10,000 boxes rain.
+#[test]
+#[ignore = "an hour in a debug build: cargo test --release --package sinew_scenes -- --ignored"]
+fn ten_thousand_boxes() {
+    let mut settings = scene("box_rain").settings();
+    settings.assign("boxes=10000").expect("it is in range");
+    let metrics = metrics_after(scene("box_rain"), &settings, 1.0);
+    assert_eq!(unmet(&metrics), [""; 0], "{metrics:#?}");
 }
 
 /// 5,050 cubes for 1,000 steps.
