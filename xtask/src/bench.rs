@@ -90,7 +90,8 @@ impl Bench {
         let names = peers::scenes(engines.first().context("`peers list` has no engine")?)?;
         self.refuse_unknown(&names)?;
         let results = self.measure(&engines, &names)?;
-        println!("{}\n{}\n{}", page::glance(&results), page::holds(&results), page::speeds(&results));
+        let [joints, stands] = [musts::HOLDS, musts::STANDS].map(|rows| page::holds(&results, rows));
+        println!("{}\n{joints}\n{stands}\n{}", page::glance(&results), page::speeds(&results));
         Ok(self.verdict(&results))
     }
 

@@ -46,8 +46,8 @@ impl Engine for Box3d {
 
     fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported> {
         let mut world = World::new(scene.gravity);
+        refuse_rolling_on_boxes(scene)?;
         for def in &scene.bodies {
-            refuse_rolling_on(def)?;
             add_body(&mut world, def, scene.sleeping)?;
         }
         for def in &scene.joints {
@@ -105,10 +105,13 @@ fn add_body(world: &mut World, def: &BodyDef, sleeping: Sleeping) -> Result<(), 
 
 /// Box3D multiplies the larger share of two shapes by the larger of their radii, of which only meshes have none: what rolls
 /// on a large box meets more resistance than it says.
-fn refuse_rolling_on(def: &BodyDef) -> Result<(), Unsupported> {
-    let rolls = def.shapes.iter().any(|part| part.material.rolling != 0.0);
-    if rolls && def.kind != BodyKind::Dynamic {
-        return Err(Unsupported::new("rolling resistance of what does not move"));
+fn refuse_rolling_on_boxes(scene: &Blueprint) -> Result<(), Unsupported> {
+    let mut shapes = scene.bodies.iter().flat_map(|def| def.shapes.iter().map(move |part| (def.kind, part)));
+    let rolls = shapes.clone().any(|(_, part)| part.material.rolling != 0.0);
+    if rolls
+        && shapes.any(|(kind, part)| kind != BodyKind::Dynamic && !matches!(shape(part), Shape::Mesh { .. }))
+    {
+        return Err(Unsupported::new("rolling resistance on what is no mesh and does not move"));
     }
     Ok(())
 }
