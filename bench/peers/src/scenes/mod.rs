@@ -60,6 +60,8 @@ pub const SCENES: &[Scene] = &[
     bodies!("jenga", "a tower of 18 levels of three blocks of 75 mm", blueprint::jenga(18)),
     bodies!("cards", "a house of 15 cards 2 mm thick", blueprint::cards(3)),
     bodies!("ragdolls", "8 ragdolls with friction in their joints fall asleep", blueprint::ragdolls()),
+    bodies!("wave_pile", "100 balls, capsules and boxes on waves fall asleep", blueprint::wave_pile()),
+    bodies!("mesh_drop", "400 sticks on waves fall asleep", blueprint::mesh_drop()),
     bodies!(
         "chain_swing_1000",
         "10 level links of 1 m, 1,000 kg at the end",

@@ -181,6 +181,8 @@ const REGISTRY: &[Scene] = &[
     nets::NET,
     crowds::PILE,
     settling::RAGDOLLS,
+    settling::WAVE_PILE,
+    settling::MESH_DROP,
     crowds::RAIN,
     engine::FRAME_RATES,
     engine::TAUTOCHRONE,

@@ -16,6 +16,22 @@ pub(super) const RAGDOLLS: Scene = Scene {
     build: |setup| settling(setup, &blueprint::ragdolls(), FIGURES, 307),
 };
 
+pub(super) const WAVE_PILE: Scene = Scene {
+    name: "wave_pile",
+    about: "100 balls, capsules and boxes fall onto waves, and sleep no later than in Box3D",
+    steps: 600,
+    settings: &[],
+    build: |setup| settling(setup, &blueprint::wave_pile(), 1, 500),
+};
+
+pub(super) const MESH_DROP: Scene = Scene {
+    name: "mesh_drop",
+    about: "400 sticks fall spinning onto waves, and sleep no later than in Box3D",
+    steps: 400,
+    settings: &[],
+    build: |setup| settling(setup, &blueprint::mesh_drop(), 1, 251),
+};
+
 /// Bodies of two figures, which touch from the start.
 const FIGURES: usize = 30;
 
