@@ -109,7 +109,9 @@ impl RagdollReport<'_> {
                 put("radius_m", number(radius));
                 put("half_height_m", number(half_height));
             }
-            Shape::HalfSpace => unreachable!("no body of a ragdoll is a half-space"),
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => {
+                unreachable!("no body of a ragdoll is a half-space or a surface")
+            }
         }
         put("mass_kg", number(body.mass.mass));
         object.into()
@@ -218,6 +220,8 @@ fn shape_cell(shape: &Shape) -> String {
             format!("capsule {} × ⌀ {} cm", cm(half_height + radius), cm(radius))
         }
         Shape::HalfSpace => "half-space".into(),
+        Shape::Mesh(_) => "mesh".into(),
+        Shape::HeightField(_) => "height field".into(),
     }
 }
 

@@ -4,7 +4,7 @@ use crate::collide::{MAX_POINTS, Manifold};
 use crate::shape::Material;
 use sinew_math::{Vec3, max};
 
-/// Which two shapes: body index and shape number of each, the smaller body index first. Sorting by it is the order
+/// Which two shapes: body index and shape number of each, the smaller body index first, and which part of their contact. Sorting by it is the order
 /// in which everything about contacts happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct ContactKey {
@@ -12,6 +12,15 @@ pub(crate) struct ContactKey {
     pub b: u32,
     pub shape_a: u32,
     pub shape_b: u32,
+    /// Which of several manifolds of the two, from 0; a pair of convex shapes has only one.
+    pub part: u32,
+}
+
+impl ContactKey {
+    /// Whether it is one of the manifolds of the same two shapes.
+    pub fn is_of_pair(&self, other: Self) -> bool {
+        Self { part: other.part, ..*self } == other
+    }
 }
 
 /// A pair of body indices, the smaller first.
@@ -99,6 +108,11 @@ impl Contact {
     pub fn pushes(&self) -> bool {
         self.manifold.count > 0 && !self.sensor
     }
+}
+
+/// The parts of one pair after those of another.
+pub(crate) fn pairs_of(contacts: &mut [Contact]) -> impl Iterator<Item = &mut [Contact]> {
+    contacts.chunk_by_mut(|one, other| one.key.is_of_pair(other.key))
 }
 
 /// Combined surface of two materials.

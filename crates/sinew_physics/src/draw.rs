@@ -74,7 +74,10 @@ impl World {
 
 fn draw_shape(shape: &Shape, pose: &Transform, kind: DrawKind, out: &mut dyn DebugDraw) {
     let mut line = |from: Vec3, to: Vec3| out.line(pose.point(from), pose.point(to), kind);
+    let mut triangle = |corners: [Vec3; 3]| (0..3).for_each(|k| line(corners[k], corners[(k + 1) % 3]));
     match *shape {
+        Shape::Mesh(ref mesh) => mesh.corners_of_all().for_each(&mut triangle),
+        Shape::HeightField(ref field) => field.triangles().for_each(&mut triangle),
         Shape::Box { half_extents } => draw_box(half_extents, &mut line),
         Shape::Sphere { radius } => draw_capsule(0.0, radius, &mut line),
         Shape::Capsule { half_height, radius } => draw_capsule(half_height, radius, &mut line),

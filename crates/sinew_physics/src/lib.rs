@@ -14,6 +14,7 @@ pub mod collide;
 pub mod cook;
 mod finalize;
 mod islands;
+mod library;
 mod pairs;
 mod parted;
 mod project;
@@ -22,6 +23,7 @@ mod sleep;
 mod solver;
 mod tasks;
 mod touch;
+pub mod triangles;
 mod update;
 
 mod arena;
@@ -58,10 +60,12 @@ pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
     Spring, Strength,
 };
+pub use library::{DataKind, LoadError};
 pub use object::{Corrections, Forces, PhysicsObject, Substep};
 pub use query::{BodyHit, Energy, Momentum};
 pub use runner::{Serial, TaskRunner, Threads};
 pub use shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
 pub use touch::Events;
+pub use triangles::{HeightField, HeightFieldDef, HeightFieldError, Mesh, MeshError};
 pub use update::Update;
 pub use world::World;

@@ -5,7 +5,7 @@ use core::f32::consts::PI;
 use sinew_math::{Sym3, Transform, Vec3};
 
 impl Shape {
-    /// Cubic metres; 0 for a half-space, which has no end.
+    /// Cubic metres; 0 for a half-space, which has no end, and for meshes and height fields, which may be open.
     pub fn volume(&self) -> f32 {
         match *self {
             Shape::Box { half_extents: h } => 8.0 * h.x * h.y * h.z,
@@ -13,18 +13,18 @@ impl Shape {
             Shape::Capsule { half_height, radius } => {
                 cylinder_volume(half_height, radius) + ball_volume(radius)
             }
-            Shape::HalfSpace => 0.0,
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => 0.0,
         }
     }
 
-    /// Mass properties in the shape's frame at `density` kg/m³, ≥ 0; zero for a half-space.
+    /// Mass properties in the shape's frame at `density` kg/m³, ≥ 0; zero for what has no volume.
     pub fn mass_properties(&self, density: f32) -> MassProperties {
         let mass = density * self.volume();
         let diagonal = match *self {
             Shape::Box { half_extents } => box_inertia(half_extents, mass),
             Shape::Sphere { radius } => Vec3::splat(0.4 * mass * radius * radius),
             Shape::Capsule { half_height, radius } => capsule_inertia(half_height, radius, density),
-            Shape::HalfSpace => Vec3::ZERO,
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => Vec3::ZERO,
         };
         MassProperties { mass, center: Vec3::ZERO, inertia: Sym3::from_diagonal(diagonal) }
     }

@@ -116,8 +116,13 @@ impl BroadPhase {
             while let Some(contact) = old.next_if(|contact| contact.key < key) {
                 self.next.extend(stays(bodies, &contact).then_some(contact));
             }
-            let known = old.next_if(|contact| contact.key == key);
-            self.next.push(known.unwrap_or_else(|| Contact::new(key)));
+            let before = self.next.len();
+            while let Some(contact) = old.next_if(|contact| contact.key.is_of_pair(key)) {
+                self.next.push(contact);
+            }
+            if self.next.len() == before {
+                self.next.push(Contact::new(key));
+            }
         }
         self.next.extend(old.filter(|contact| stays(bodies, contact)));
         core::mem::swap(contacts, &mut self.next);
@@ -131,7 +136,7 @@ fn stays(bodies: &Arena<Body>, contact: &Contact) -> bool {
 
 fn key(p: &Proxy, q: &Proxy) -> ContactKey {
     let (a, b) = if p.body < q.body { (p, q) } else { (q, p) };
-    ContactKey { a: a.body, b: b.body, shape_a: a.shape, shape_b: b.shape }
+    ContactKey { a: a.body, b: b.body, shape_a: a.shape, shape_b: b.shape, part: 0 }
 }
 
 fn may_collide(bodies: &Arena<Body>, parted: &[(u32, u32)], p: &Proxy, q: &Proxy) -> bool {

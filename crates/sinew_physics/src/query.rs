@@ -1,6 +1,6 @@
 //! Questions to the world: energies, momenta, joint gaps, overlaps, rays. Metrics of scenes come from here alone.
 
-use crate::collide::{Manifold, collide};
+use crate::collide::collide_all;
 use crate::def::BodyKind;
 use crate::id::{BodyId, GroupId};
 use crate::ray::{Ray, RayHit};
@@ -99,14 +99,14 @@ impl World {
     pub fn overlap(&self, a: BodyId, b: BodyId) -> f32 {
         let (body_a, body_b) = (self.expect(a), self.expect(b));
         let mut deepest = 0.0;
-        let mut manifold = Manifold::default();
         for (i, s) in body_a.shapes.iter().enumerate() {
             for (j, t) in body_b.shapes.iter().enumerate() {
                 let (from_s, from_t) = (body_a.world_from_shape(i), body_b.world_from_shape(j));
-                collide(&s.shape, &from_s, &t.shape, &from_t, 0.0, &mut manifold);
-                for point in manifold.points() {
-                    deepest = max(deepest, -point.separation);
-                }
+                collide_all(&s.shape, &from_s, &t.shape, &from_t, 0.0, |manifold| {
+                    for point in manifold.points() {
+                        deepest = max(deepest, -point.separation);
+                    }
+                });
             }
         }
         deepest
@@ -117,7 +117,7 @@ impl World {
         let other = move |a: u32, b: u32| if a == id.index { Some(b) } else { (b == id.index).then_some(a) };
         self.contacts
             .iter()
-            .filter(|contact| contact.pushes())
+            .filter(|contact| contact.key.part == 0 && contact.pushes())
             .filter_map(move |contact| other(contact.key.a, contact.key.b))
             .map(|index| BodyId { index, generation: self.bodies.generation(index) })
     }

@@ -41,6 +41,9 @@ impl Shape {
     /// A ray that starts inside (or on the surface) hits at fraction 0, with a normal opposite to its direction; if
     /// its direction is zero too, with the outward normal of the closest surface. So it is for every shape. A ray
     /// that leaves the shape from outside its surface never hits.
+    ///
+    /// Meshes and height fields are surfaces that may be open: nothing is inside of them. They are hit from the outside of
+    /// their triangles alone, with the triangle's normal, and let pass what comes from behind.
     pub fn cast_ray(&self, world_from_shape: &Transform, ray: &Ray) -> Option<RayHit> {
         self.cast_half_line(world_from_shape, ray).filter(|hit| hit.fraction <= 1.0)
     }
@@ -59,6 +62,9 @@ impl Shape {
 
     /// Fraction (≥ 0, may exceed 1) and normal where a line enters, in the shape's frame.
     pub(crate) fn cast_local(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+        if let Some(surface) = self.surface() {
+            return surface.enter(origin, direction);
+        }
         let (distance, outward) = self.local_distance(origin);
         if distance <= 0.0 {
             return Some((0.0, normalize_or(-direction, outward)));
@@ -79,6 +85,7 @@ impl Shape {
                 caps.into_iter().chain([side]).flatten().reduce(|a, b| if b.0 < a.0 { b } else { a })
             }
             Self::HalfSpace => (direction.y < 0.0).then(|| (origin.y / -direction.y, Vec3::Y)),
+            Self::Mesh(_) | Self::HeightField(_) => None,
         }
     }
 }

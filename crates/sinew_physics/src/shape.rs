@@ -1,8 +1,11 @@
 //! Collision shapes, what they are made of, and whom they meet.
 
-use sinew_math::{Sym3, Transform, Vec3, min};
+use crate::boxes::Aabb;
+use crate::triangles::{HeightField, Mesh};
+use sinew_math::{Sym3, Transform, Vec3, abs3, max3, min};
+use std::sync::Arc;
 
-/// A convex shape in its own frame. All sizes are metres and positive.
+/// A shape in its own frame. All sizes are metres and positive. Convex, but for meshes and height fields.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// Box around the origin.
@@ -24,6 +27,10 @@ pub enum Shape {
     },
     /// Everything below the plane y = 0 of its frame. Static bodies only.
     HalfSpace,
+    /// A surface of one-sided triangles. It has no mass of its own: for static and kinematic bodies, or with a given mass.
+    Mesh(Arc<Mesh>),
+    /// Terrain over its x and z axes, solid from above. As for meshes.
+    HeightField(Arc<HeightField>),
 }
 
 impl Shape {
@@ -49,12 +56,12 @@ impl Shape {
     }
 
     /// Radius of the largest ball inside, metres: half the width where the shape is thinnest. Infinite for a
-    /// half-space.
+    /// half-space, a mesh and a height field: nothing is thin about what they keep out.
     pub fn inner_radius(&self) -> f32 {
         match *self {
             Self::Box { half_extents: h } => min(min(h.x, h.y), h.z),
             Self::Sphere { radius } | Self::Capsule { radius, .. } => radius,
-            Self::HalfSpace => f32::INFINITY,
+            Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_) => f32::INFINITY,
         }
     }
 
@@ -65,14 +72,26 @@ impl Shape {
             Self::Sphere { radius } => radius,
             Self::Capsule { half_height, radius } => half_height + radius,
             Self::HalfSpace => f32::INFINITY,
+            Self::Mesh(ref mesh) => reach(&mesh.bounds()),
+            Self::HeightField(ref field) => reach(&field.bounds()),
         }
     }
 
+    /// Whether it has volume, and with it a mass by density.
+    pub fn is_solid(&self) -> bool {
+        !matches!(self, Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_))
+    }
+
     /// Width where the shape is thinnest, metres: what slop and speculative distance scale with. Infinite for a
-    /// half-space.
+    /// half-space, a mesh and a height field.
     pub fn smallest_extent(&self) -> f32 {
         2.0 * self.inner_radius()
     }
+}
+
+/// From the origin to the farthest corner, metres.
+fn reach(bounds: &Aabb) -> f32 {
+    max3(abs3(bounds.min), abs3(bounds.max)).length()
 }
 
 /// Surface: friction and bounce. Pairs combine: geometric mean of frictions, larger restitution, larger rolling.

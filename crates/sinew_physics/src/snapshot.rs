@@ -8,6 +8,7 @@ use crate::def::{BodyKind, Sleeping, WorldDef};
 use crate::field::FieldDef;
 use crate::force::BodyForces;
 use crate::joint::Joint;
+use crate::library::{DataKind, LoadError, ShapeLibrary};
 use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
 use crate::particles::{AttachmentTarget, ParticleGroup};
@@ -17,7 +18,7 @@ use crate::world::World;
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
 /// First bytes of a snapshot; the last is its version.
-const MAGIC: &[u8; 8] = b"sinew-w\x03";
+const MAGIC: &[u8; 8] = b"sinew-w\x04";
 /// A thousand steps a second for 280,000 years.
 const MOST_STEPS: u64 = 1 << 53;
 
@@ -52,21 +53,22 @@ impl World {
     /// since are dropped.
     ///
     /// # Errors
-    /// If the bytes are not a snapshot of this version, a field names a function that is not registered, or an object is not
-    /// there whose kind was not registered; the world is then as it was.
+    /// If the bytes are not a snapshot of this version, a shape with data is named that the world was never given, a field
+    /// names a function that is not registered, or an object is not there whose kind was not registered; the world is then
+    /// as it was.
     ///
     /// # Panics
     /// If an object does not take the state that it wrote itself.
-    pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
+    pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), LoadError> {
         if r.raw(MAGIC.len())? != MAGIC {
-            return Err(ReadError { at: 0, what: "is not a world snapshot of this version" });
+            return Err(ReadError { at: 0, what: "is not a world snapshot of this version" }.into());
         }
         let def = load_def(r)?;
         let (steps, pending, sleepers) = (r.u64()?, r.u64()?, r.u32()?);
         if steps > MOST_STEPS {
-            return Err(r.error("more steps than any world takes"));
+            return Err(r.error("more steps than any world takes").into());
         }
-        let bodies = Arena::load(r, load_body)?;
+        let bodies = Arena::load(r, |r| load_body(r, &self.library))?;
         let joints = Arena::load(r, |r| {
             let (a, b) = (body_index(r, &bodies)?, body_index(r, &bodies)?);
             Joint::load(r, a, b)
@@ -77,17 +79,17 @@ impl World {
             contacts.push(load_contact(r, &bodies)?);
         }
         if !contacts.is_sorted_by(|p: &Contact, q| p.key < q.key) {
-            return Err(r.error("contacts are out of order"));
+            return Err(r.error("contacts are out of order").into());
         }
         let groups = Arena::load(r, |r| load_group(r, &bodies))?;
-        let fields = Arena::load(r, |r| FieldDef::load(r, &self.functions))?;
+        let fields = Arena::load(r, |r| FieldDef::load(r, &self.functions, &self.library))?;
         let count = r.count(8)?;
         let mut disabled = Vec::with_capacity(count);
         for _ in 0..count {
             disabled.push((body_index(r, &bodies)?, body_index(r, &bodies)?));
         }
         if !disabled.is_sorted() {
-            return Err(r.error("disabled pairs are out of order"));
+            return Err(r.error("disabled pairs are out of order").into());
         }
         self.objects.load(r)?;
         self.def = def;
@@ -188,12 +190,12 @@ fn save_body(w: &mut Writer, body: &Body) {
     w.u64(body.user_data);
 }
 
-fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
+fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadError> {
     let kind = match r.u8()? {
         0 => BodyKind::Static,
         1 => BodyKind::Kinematic,
         2 => BodyKind::Dynamic,
-        _ => return Err(r.error("unknown kind of body")),
+        _ => return Err(r.error("unknown kind of body").into()),
     };
     let (world_from_principal, previous) = (r.transform()?, r.transform()?);
     let velocity = Velocity { linear: r.vec3()?, angular: r.vec3()? };
@@ -203,18 +205,18 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
     let (mass, inertia) = (r.f32()?, r.vec3()?);
     let solid = mass > 0.0 && inertia.x > 0.0 && inertia.y > 0.0 && inertia.z > 0.0;
     if kind == BodyKind::Dynamic && !solid {
-        return Err(r.error("a dynamic body has no mass"));
+        return Err(r.error("a dynamic body has no mass").into());
     }
     let (linear_damping, angular_damping, gravity_scale) = (r.f32()?, r.f32()?, r.f32()?);
     let count = r.count(40)?;
     let mut shapes = Vec::with_capacity(count);
     for _ in 0..count {
-        shapes.push(load_shape(r)?);
+        shapes.push(load_shape(r, library)?);
     }
     let rest = match r.u8()? {
         0 => Rest::Awake { calm: r.f32()? },
         1 => Rest::Asleep { island: r.u32()? },
-        _ => return Err(r.error("a body neither awake nor asleep")),
+        _ => return Err(r.error("a body neither awake nor asleep").into()),
     };
     let (place, quarantined, user_data) = (r.transform()?, r.bool()?, r.u64()?);
     let finite =
@@ -222,7 +224,7 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
             && [velocity.linear, velocity.angular, force, torque, inertia].into_iter().all(Vec3::is_finite)
             && [mass, linear_damping, angular_damping, gravity_scale].into_iter().all(f32::is_finite);
     if !finite {
-        return Err(r.error("a body whose state is not finite"));
+        return Err(r.error("a body whose state is not finite").into());
     }
     Ok(Body {
         kind,
@@ -255,9 +257,9 @@ fn save_shape(w: &mut Writer, s: &BodyShape) {
     w.bool(s.sensing == Sensing::Sensor);
 }
 
-fn load_shape(r: &mut Reader<'_>) -> Result<BodyShape, ReadError> {
+fn load_shape(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<BodyShape, LoadError> {
     let shape = BodyShape {
-        shape: load_geometry(r)?,
+        shape: load_geometry(r, library)?,
         principal_from_shape: r.transform()?,
         density: r.f32()?,
         material: load_material(r)?,
@@ -265,12 +267,15 @@ fn load_shape(r: &mut Reader<'_>) -> Result<BodyShape, ReadError> {
         sensing: if r.bool()? { Sensing::Sensor } else { Sensing::Solid },
     };
     if !(shape.principal_from_shape.is_finite() && shape.density.is_finite()) {
-        return Err(r.error("a shape's pose or density is not finite"));
+        return Err(r.error("a shape's pose or density is not finite").into());
     }
     Ok(shape)
 }
 
 pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {
+    if shape.save_name(w) {
+        return;
+    }
     match *shape {
         Shape::Box { half_extents } => {
             w.u8(0);
@@ -286,16 +291,21 @@ pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {
             w.f32(radius);
         }
         Shape::HalfSpace => w.u8(3),
+        Shape::Mesh(_) | Shape::HeightField(_) => unreachable!("shapes with data are saved by name"),
     }
 }
 
-pub(crate) fn load_geometry(r: &mut Reader<'_>) -> Result<Shape, ReadError> {
-    let shape = match r.u8()? {
+pub(crate) fn load_geometry(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Shape, LoadError> {
+    let tag = r.u8()?;
+    if let Some(kind) = DataKind::of_tag(tag) {
+        return library.find(r, kind);
+    }
+    let shape = match tag {
         0 => Shape::Box { half_extents: r.vec3()? },
         1 => Shape::Sphere { radius: r.f32()? },
         2 => Shape::Capsule { half_height: r.f32()?, radius: r.f32()? },
         3 => Shape::HalfSpace,
-        _ => return Err(r.error("unknown shape")),
+        _ => return Err(r.error("unknown shape").into()),
     };
     shape.check().map_err(|what| r.error(what))?;
     Ok(shape)
@@ -324,7 +334,8 @@ pub(crate) fn load_filter(r: &mut Reader<'_>) -> Result<Filter, ReadError> {
 }
 
 fn save_contact(w: &mut Writer, contact: &Contact) {
-    for x in [contact.key.a, contact.key.b, contact.key.shape_a, contact.key.shape_b] {
+    let ContactKey { a, b, shape_a, shape_b, part } = contact.key;
+    for x in [a, b, shape_a, shape_b, part] {
         w.u32(x);
     }
     w.bool(contact.touching);
@@ -345,7 +356,7 @@ fn save_contact(w: &mut Writer, contact: &Contact) {
 
 fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, ReadError> {
     let (a, b) = (body_index(r, bodies)?, body_index(r, bodies)?);
-    let key = ContactKey { a, b, shape_a: r.u32()?, shape_b: r.u32()? };
+    let key = ContactKey { a, b, shape_a: r.u32()?, shape_b: r.u32()?, part: r.u32()? };
     let shapes = |body: u32| bodies.at(body).shapes.len() as u32;
     if key.shape_a >= shapes(a) || key.shape_b >= shapes(b) {
         return Err(r.error("a contact names a shape that is not there"));

@@ -25,11 +25,11 @@ pub(crate) struct StepContext<'a> {
 pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
     let World { def, bodies, joints, contacts, groups, objects, .. } = world;
-    let World { events, broad, islands, parted, sleepers, .. } = world;
+    let World { events, broad, parts, islands, parted, sleepers, .. } = world;
     let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
 
     stage(Stage::Pairs, &mut || broad.update(bodies, parted.of(joints), contacts, context.dt));
-    stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
+    stage(Stage::Collide, &mut || touch::collide(bodies, contacts, parts, context));
     stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, &fields, events));
     stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, &fields, context.dt));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));

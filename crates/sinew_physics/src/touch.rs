@@ -2,8 +2,9 @@
 
 use crate::arena::Arena;
 use crate::body::{Body, Rest};
-use crate::collide::{Manifold, collide as narrow_phase};
-use crate::contact::{Contact, slop};
+use crate::collide::parts::Parts;
+use crate::collide::{Manifold, Motion, collide as narrow_phase};
+use crate::contact::{Contact, ContactKey, pairs_of, slop};
 use crate::def::BodyKind;
 use crate::field::Fields;
 use crate::id::{BodyId, GroupId, JointId};
@@ -33,7 +34,12 @@ pub struct Events {
 }
 
 /// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
-pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &StepContext<'_>) {
+pub(crate) fn collide(
+    bodies: &Arena<Body>,
+    contacts: &mut Vec<Contact>,
+    parts: &mut Parts,
+    context: &StepContext<'_>,
+) {
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
         if !a.can_touch() && !b.can_touch() {
@@ -41,13 +47,11 @@ pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &
         }
         let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
         let (shape_a, shape_b) = (&a.shapes[sa].shape, &b.shapes[sb].shape);
-        let extent = min(shape_a.smallest_extent(), shape_b.smallest_extent());
-        // Beside their approach: two that move together may not do so any more once one of them is hit.
-        let (va, vb) = (a.velocity.linear, b.velocity.linear);
-        let approach = max((va - vb).length(), max(va.length(), vb.length()))
-            + a.velocity.angular.length() * a.reach()
-            + b.velocity.angular.length() * b.reach();
-        let margin = max(4.0 * slop(extent), approach * context.dt);
+        contact.sensor = a.shapes[sa].sensing == Sensing::Sensor || b.shapes[sb].sensing == Sensing::Sensor;
+        if shape_a.surface().is_some() || shape_b.surface().is_some() {
+            return;
+        }
+        let margin = margin(a, b, contact.key, context.dt);
         let mut manifold = Manifold::default();
         narrow_phase(
             shape_a,
@@ -57,10 +61,40 @@ pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &
             margin,
             &mut manifold,
         );
-        contact.sensor = a.shapes[sa].sensing == Sensing::Sensor || b.shapes[sb].sensing == Sensing::Sensor;
         contact.memory = contact.memory.matched(&contact.manifold, &manifold);
         contact.manifold = manifold;
     });
+    parts.update(bodies, contacts, context, |contact| surface_motion(bodies, contact, context.dt));
+}
+
+/// How far apart points of two shapes are looked for, metres.
+fn margin(a: &Body, b: &Body, key: ContactKey, dt: f32) -> f32 {
+    let (shape_a, shape_b) = (&a.shapes[key.shape_a as usize].shape, &b.shapes[key.shape_b as usize].shape);
+    let extent = min(shape_a.smallest_extent(), shape_b.smallest_extent());
+    // Beside their approach: two that move together may not do so any more once one of them is hit.
+    let (va, vb) = (a.velocity.linear, b.velocity.linear);
+    let approach = max((va - vb).length(), max(va.length(), vb.length()))
+        + a.velocity.angular.length() * a.reach()
+        + b.velocity.angular.length() * b.reach();
+    max(4.0 * slop(extent), approach * dt)
+}
+
+/// How a pair moves of which one is a surface, the other toward the surface; `None` of other pairs, and of those at rest.
+fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Motion> {
+    let key = contact.key;
+    let (a, b) = (bodies.at(key.a), bodies.at(key.b));
+    if !a.can_touch() && !b.can_touch() {
+        return None;
+    }
+    let is_surface = |body: &Body, shape: u32| body.shapes[shape as usize].shape.surface().is_some();
+    let center = |body: &Body, shape: u32| body.world_from_shape(shape as usize).translation;
+    let (mover, ground, at) = match (is_surface(a, key.shape_a), is_surface(b, key.shape_b)) {
+        (true, _) => (b, a, center(b, key.shape_b)),
+        (_, true) => (a, b, center(a, key.shape_a)),
+        _ => return None,
+    };
+    let speed = |body: &Body| body.velocity.linear + body.velocity.angular.cross(at - body.center());
+    Some(Motion { velocity: speed(mover) - speed(ground), dt, margin: margin(a, b, key, dt) })
 }
 
 /// `touch`: events, and waking of what an awake body touches or attracts, or a moving kinematic one holds.
@@ -76,12 +110,12 @@ pub(crate) fn touch(
         // All of them: how many come at once differs from hit to hit.
         list.reserve(contacts.len());
     }
-    for contact in contacts.iter_mut() {
-        let (a, b) = (contact.key.a, contact.key.b);
-        if !contact.sensor {
-            note_change(bodies, contact, &mut events.begin, &mut events.end);
+    for pair in pairs_of(contacts) {
+        let (a, b) = (pair[0].key.a, pair[0].key.b);
+        if !pair[0].sensor {
+            note_change(bodies, pair, &mut events.begin, &mut events.end);
         }
-        if contact.pushes() {
+        if pair.iter().any(Contact::pushes) {
             wake_touched(bodies, a, b);
             wake_touched(bodies, b, a);
         }
@@ -99,18 +133,21 @@ pub(crate) fn touch(
     }
 }
 
-/// Puts the pair of a contact that began or ceased to touch since it was last looked at into one of the lists.
+/// Puts a pair, given by its parts, that began or ceased to touch since it was last looked at into one of the lists.
 pub(crate) fn note_change(
     bodies: &Arena<Body>,
-    contact: &mut Contact,
+    pair: &mut [Contact],
     begin: &mut Vec<(BodyId, BodyId)>,
     end: &mut Vec<(BodyId, BodyId)>,
 ) {
-    let touching = contact.manifold.points().iter().any(|point| point.separation <= 0.0);
-    if touching != contact.touching {
+    let mut points = pair.iter().flat_map(|part| part.manifold.points());
+    let touching = points.any(|point| point.separation <= 0.0);
+    if touching != pair[0].touching {
         let list = if touching { begin } else { end };
-        list.push((id(bodies, contact.key.a), id(bodies, contact.key.b)));
-        contact.touching = touching;
+        list.push((id(bodies, pair[0].key.a), id(bodies, pair[0].key.b)));
+    }
+    for part in pair {
+        part.touching = touching;
     }
 }
 

@@ -2,12 +2,14 @@
 
 use crate::arena::Arena;
 use crate::body::{Body, Velocity};
+use crate::collide::parts::Parts;
 use crate::contact::Contact;
 use crate::def::{BodyDef, BodyKind, WorldDef};
 use crate::field::{FieldDef, Functions};
 use crate::id::{BodyId, GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
+use crate::library::ShapeLibrary;
 use crate::object::Objects;
 use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
@@ -32,10 +34,12 @@ pub struct World {
     pub(crate) groups: Arena<ParticleGroup>,
     pub(crate) fields: Arena<FieldDef>,
     pub(crate) functions: Functions,
+    pub(crate) library: ShapeLibrary,
     pub(crate) objects: Objects,
     pub(crate) parted: PartedPairs,
     pub(crate) events: Events,
     pub(crate) broad: BroadPhase,
+    pub(crate) parts: Parts,
     pub(crate) islands: Islands,
     /// Number of islands that fell asleep so far.
     pub(crate) sleepers: u32,
@@ -62,10 +66,12 @@ impl World {
             groups: Arena::default(),
             fields: Arena::default(),
             functions: Functions::default(),
+            library: ShapeLibrary::default(),
             objects: Objects::default(),
             parted: PartedPairs::default(),
             events: Events::default(),
             broad: BroadPhase::default(),
+            parts: Parts::default(),
             islands: Islands::default(),
             sleepers: 0,
             steps: 0,
@@ -85,6 +91,9 @@ impl World {
     /// If a number is not finite, a shape is not valid, or a dynamic body has no mass.
     pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
         let (index, generation) = self.bodies.insert(Body::new(def));
+        for shape in &def.shapes {
+            self.library.keep(&shape.shape);
+        }
         self.broad.invalidate();
         BodyId { index, generation }
     }

@@ -27,13 +27,14 @@ pub enum Solid {
 }
 
 impl Solid {
-    /// The solid of a collision shape; none of a half-space, which has no end: see [`floor`].
+    /// The solid of a collision shape; none of a half-space, which has no end: see [`floor`]; none of surfaces: see
+    /// [`surface`].
     pub fn of(shape: &Shape) -> Option<Self> {
         match *shape {
             Shape::Box { half_extents } => Some(Self::Box { half_extents }),
             Shape::Sphere { radius } => Some(Self::Sphere { radius }),
             Shape::Capsule { half_height, radius } => Some(Self::Capsule { half_height, radius }),
-            Shape::HalfSpace => None,
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => None,
         }
     }
 }
@@ -57,6 +58,21 @@ pub fn solid(solid: Solid, world_from_solid: Transform, material: Material) -> M
         *normal = world_from_solid.rotation * *normal;
     }
     Model { material, ..model }
+}
+
+/// The triangles of a mesh or height field, each flat; none of other shapes.
+pub fn surface(shape: &Shape, world_from_shape: Transform, material: Material) -> Model {
+    let positions: Vec<Vec3> = match shape {
+        Shape::Mesh(mesh) => mesh.corners_of_all().flatten().collect(),
+        Shape::HeightField(field) => field.triangles().flatten().collect(),
+        _ => Vec::new(),
+    };
+    Model {
+        indices: (0..positions.len() as u32).collect(),
+        positions: positions.into_iter().map(|p| world_from_shape.point(p)).collect(),
+        material,
+        ..Model::default()
+    }
 }
 
 /// A ball of eight fields, every second one darker, so that it is seen to turn.

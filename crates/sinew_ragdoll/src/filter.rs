@@ -156,7 +156,7 @@ fn thinner(shape: &Shape, factor: f32) -> Shape {
             Shape::Capsule { half_height: half_height + (radius - thin), radius: thin }
         }
         Shape::Sphere { radius } => Shape::Sphere { radius: radius * factor },
-        Shape::HalfSpace => Shape::HalfSpace,
+        Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => shape.clone(),
     }
 }
 

@@ -75,9 +75,18 @@ impl Aabb {
     }
 }
 
+/// Around bounds in another frame.
+fn turned(bounds: &Aabb, world_from_frame: &Transform) -> Aabb {
+    let (m, half) = (world_from_frame.rotation.to_mat3(), bounds.half_extents());
+    let reach = abs3(m.x_axis) * half.x + abs3(m.y_axis) * half.y + abs3(m.z_axis) * half.z;
+    // The middle and half sides are rounded.
+    let rounding = 1e-6 * max3(abs3(bounds.min), abs3(bounds.max)).length();
+    Aabb::reaching(world_from_frame.point(bounds.center()), reach).expand(rounding)
+}
+
 impl Shape {
     /// Bounds of the placed shape, tight but for rounding. A half-space's reach to [`HALF_SPACE_REACH`] on every
-    /// side, except above a level one, whose top is its plane.
+    /// side, except above a level one, whose top is its plane. Those of a mesh or height field are its bounds, turned.
     pub fn aabb(&self, world_from_shape: &Transform) -> Aabb {
         let (center, rotation) = (world_from_shape.translation, world_from_shape.rotation);
         match *self {
@@ -100,6 +109,8 @@ impl Shape {
                 }
                 bounds
             }
+            Shape::Mesh(ref mesh) => turned(&mesh.bounds(), world_from_shape),
+            Shape::HeightField(ref field) => turned(&field.bounds(), world_from_shape),
         }
     }
 }

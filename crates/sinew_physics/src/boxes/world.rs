@@ -3,6 +3,7 @@
 use super::{Aabb, Capsule, Cuboid, Obb, Overlap, Penetration, PlacedBox, Sphere, SurfacePoint};
 use crate::id::BodyId;
 use crate::shape::Shape;
+use crate::triangles::overlaps_box;
 use crate::world::World;
 use sinew_math::{Transform, Vec3};
 
@@ -45,6 +46,21 @@ impl World {
     }
 }
 
+/// Whether a triangle of a surface and a region overlap.
+fn surface_meets(region: &PlacedBox, shape: &Shape, world_from_shape: &Transform) -> bool {
+    let reach = |axis: Vec3| region.half_width(world_from_shape.rotation * axis);
+    let half = Vec3::new(reach(Vec3::X), reach(Vec3::Y), reach(Vec3::Z));
+    let bounds = Aabb::reaching(world_from_shape.inverse_point(region.center), half);
+    let mut meets = false;
+    if let Some(surface) = shape.surface() {
+        surface.overlapping(&bounds, |triangle| {
+            let corners = triangle.corners.map(|corner| region.local_point(world_from_shape.point(corner)));
+            meets = meets || overlaps_box(region.half, &corners);
+        });
+    }
+    meets
+}
+
 /// Whether a placed shape and a region overlap.
 fn meets(region: &PlacedBox, shape: &Shape, world_from_shape: &Transform) -> bool {
     let Transform { translation: center, rotation } = *world_from_shape;
@@ -59,5 +75,6 @@ fn meets(region: &PlacedBox, shape: &Shape, world_from_shape: &Transform) -> boo
             let normal = rotation * Vec3::Y;
             normal.dot(region.center - center) <= region.half_width(normal)
         }
+        Shape::Mesh(_) | Shape::HeightField(_) => surface_meets(region, shape, world_from_shape),
     }
 }

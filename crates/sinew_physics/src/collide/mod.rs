@@ -12,12 +12,17 @@ mod capsule_sphere;
 mod clip;
 mod feature;
 mod half_space;
+pub(crate) mod parts;
 mod placed;
 mod reduce;
+mod surface;
 
 use crate::shape::Shape;
 use placed::{Ball, Pill, PlacedBox, Plane};
 use sinew_math::{Transform, Vec3};
+pub(crate) use surface::{
+    Half, MAX_PARTS, Motion, Patch, Scratch, collide_surface, is_on_face, name_as_face,
+};
 
 /// At most this many points describe the contact of two shapes.
 pub const MAX_POINTS: usize = 4;
@@ -79,7 +84,7 @@ impl Manifold {
 
 /// Fills `out` with the contact of two placed shapes: the normal points from `a` to `b`, every point has a
 /// separation of at most `margin` (metres, ≥ 0). No points if the shapes are further apart than that, if both are
-/// half-spaces, or if a number is not finite. What `out` held before does not matter.
+/// half-spaces, one is a mesh or height field (see [`collide_all`]), or if a number is not finite. What `out` held before does not matter.
 ///
 /// The order of the shapes does not matter but for rounding: the other one gives the opposite normal, the same
 /// points, and features with their halves exchanged.
@@ -103,6 +108,49 @@ pub fn collide(
     }
 }
 
+/// Calls `visit` with the contacts of two placed shapes, as [`collide`] gives them: of a mesh or height field and a convex
+/// shape there may be several, each with a normal of its own. Two surfaces, and a surface and a half-space, never meet.
+pub fn collide_all(
+    a: &Shape,
+    world_from_a: &Transform,
+    b: &Shape,
+    world_from_b: &Transform,
+    margin: f32,
+    visit: impl FnMut(&Manifold),
+) {
+    if a.surface().is_none() && b.surface().is_none() {
+        let mut manifold = Manifold::default();
+        collide(a, world_from_a, b, world_from_b, margin, &mut manifold);
+        let found = (manifold.count > 0).then_some(manifold);
+        found.iter().for_each(visit);
+        return;
+    }
+    let mut patch = Patch::default();
+    let still = Motion { margin, ..Motion::default() };
+    collide_pair((a, world_from_a), (b, world_from_b), &still, &mut Scratch::default(), &mut patch);
+    patch.manifolds().iter().for_each(visit);
+}
+
+/// The contacts of two placed shapes of which one is a surface: normals point from `a` to `b`.
+pub(crate) fn collide_pair(
+    (a, world_from_a): (&Shape, &Transform),
+    (b, world_from_b): (&Shape, &Transform),
+    motion: &Motion,
+    scratch: &mut Scratch,
+    out: &mut Patch,
+) {
+    match (a.surface(), b.surface()) {
+        (Some(surface), None) => {
+            collide_surface(&surface, world_from_a, b, world_from_b, motion, scratch, out);
+        }
+        (None, Some(surface)) => {
+            collide_surface(&surface, world_from_b, a, world_from_a, motion, scratch, out);
+            out.flip();
+        }
+        _ => out.clear(),
+    }
+}
+
 /// Order of the shapes in a pair: the file names' order.
 fn rank(shape: &Shape) -> u32 {
     match shape {
@@ -110,6 +158,7 @@ fn rank(shape: &Shape) -> u32 {
         Shape::Box { .. } => 1,
         Shape::Capsule { .. } => 2,
         Shape::Sphere { .. } => 3,
+        Shape::Mesh(_) | Shape::HeightField(_) => 4,
     }
 }
 

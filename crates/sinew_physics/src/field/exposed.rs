@@ -20,7 +20,8 @@ pub(super) struct Panel {
 impl Shape {
     /// Calls `visit` with panels that together have the shape's projected area in every direction: the faces of a box,
     /// each at its 2×2 Gauss points, so that spin is braked as well; a ball's disk; a capsule's disk and the strip of its
-    /// cylinder that faces `stream` (m/s, world). A half-space has none.
+    /// cylinder that faces `stream` (m/s, world). A half-space has none, nor have meshes
+    /// and height fields.
     pub(super) fn exposed(&self, at: &Transform, stream: Vec3, mut visit: impl FnMut(Panel)) {
         match *self {
             Self::Box { half_extents } => box_panels(half_extents, at, &mut visit),
@@ -37,7 +38,7 @@ impl Shape {
                     });
                 }
             }
-            Self::HalfSpace => {}
+            Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_) => {}
         }
     }
 }

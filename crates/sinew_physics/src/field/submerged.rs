@@ -53,7 +53,8 @@ impl Submerged {
 
 impl Shape {
     /// The part of the shape below the surface: volume, and its centre in the world. Exact for every shape up to rounding
-    /// (about 1e-5 of the volume); nothing of a half-space, which has no end.
+    /// (about 1e-5 of the volume); nothing of a half-space, which has no end, or of a mesh or
+    /// height field.
     pub fn submerged(&self, world_from_shape: &Transform, plane: &WaterPlane) -> Submerged {
         // In the shape's frame, where nothing is far away.
         let normal = world_from_shape.rotation.inverse() * plane.normal;
@@ -70,7 +71,7 @@ impl Shape {
                 Self::Capsule { half_height, radius } => {
                     capsule_below(half_height / radius, normal, height / radius).placed(radius, Vec3::ZERO)
                 }
-                Self::HalfSpace => Submerged::default(),
+                Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_) => Submerged::default(),
             }
         };
         Submerged {

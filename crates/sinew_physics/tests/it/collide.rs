@@ -28,6 +28,7 @@ impl Placed {
             Shape::Capsule { half_height, radius } => {
                 center + f64::from(half_height) * along(m.y_axis).abs() + f64::from(radius)
             }
+            Shape::Mesh(_) | Shape::HeightField(_) => unreachable!("surfaces have no core"),
             Shape::HalfSpace => {
                 if along(m.y_axis) > 0.999_9 {
                     center

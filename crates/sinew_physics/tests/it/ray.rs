@@ -22,6 +22,7 @@ fn holds(shape: &Shape, p: Vec3) -> bool {
             (p.x * p.x + p.z * p.z + beyond * beyond).sqrt() <= radius
         }
         Shape::HalfSpace => p.y <= 0.0,
+        Shape::Mesh(_) | Shape::HeightField(_) => unreachable!("surfaces have no inside"),
     }
 }
 

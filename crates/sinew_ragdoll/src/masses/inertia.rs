@@ -31,7 +31,7 @@ pub fn inside(shape: &Shape, p: Vec3) -> Vec3 {
         Shape::Capsule { half_height, radius } => {
             Vec3::new(0.6 * radius, half_height + 0.4 * radius, 0.6 * radius)
         }
-        Shape::HalfSpace => Vec3::ZERO,
+        Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => Vec3::ZERO,
     } * 0.9;
     Vec3::new(clamp(p.x, -reach.x, reach.x), clamp(p.y, -reach.y, reach.y), clamp(p.z, -reach.z, reach.z))
 }
