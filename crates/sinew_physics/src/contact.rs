@@ -34,6 +34,8 @@ pub(crate) struct PointImpulse {
     /// Of the last substep and the one before: an impact must not be repeated, so warm starting looks at both.
     pub now: f32,
     pub before: f32,
+    /// Mean over some substeps: the load at rest.
+    pub lasting: f32,
 }
 
 /// What a contact carries from step to step.
@@ -68,6 +70,7 @@ impl ContactMemory {
                 None => {
                     lost.now += impulse.now;
                     lost.before += impulse.before;
+                    lost.lasting += impulse.lasting;
                 }
             }
         }
@@ -77,6 +80,7 @@ impl ContactMemory {
         for (point, _) in memory.points.iter_mut().zip(fresh).filter(|(_, fresh)| all || **fresh) {
             point.now += lost.now / heirs as f32;
             point.before += lost.before / heirs as f32;
+            point.lasting += lost.lasting / heirs as f32;
         }
         memory
     }

@@ -348,6 +348,7 @@ fn save_contact(w: &mut Writer, contact: &Contact) {
         w.u32(point.feature);
         w.f32(impulse.now);
         w.f32(impulse.before);
+        w.f32(impulse.lasting);
     }
     w.vec3(contact.memory.friction);
     w.f32(contact.memory.twist);
@@ -370,7 +371,7 @@ fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, Rea
     let mut memory = ContactMemory::default();
     for i in 0..manifold.count {
         manifold.points[i] = ManifoldPoint { position: r.vec3()?, separation: r.f32()?, feature: r.u32()? };
-        memory.points[i] = PointImpulse { now: r.f32()?, before: r.f32()? };
+        memory.points[i] = PointImpulse { now: r.f32()?, before: r.f32()?, lasting: r.f32()? };
     }
     let friction: Vec3 = r.vec3()?;
     memory.friction = friction;

@@ -368,7 +368,7 @@ impl IslandSolver {
         self.drop_nonsense(0.0);
         self.govern_energy();
         for rows in &mut self.manifolds {
-            rows.end_substep();
+            rows.end_substep(self.h);
         }
         self.end_limits();
         self.end_loops();
