@@ -2,6 +2,7 @@
 
 use crate::error::{Result, quoted};
 use crate::json::{At, number, numbers};
+use crate::surface;
 use serde_json::{Map, Value};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{MassProperties, Shape};
@@ -55,7 +56,19 @@ pub(crate) fn write_pose(pose: Transform, object: &mut Map<String, Value>) {
 }
 
 /// Keys of a shape's geometry.
-pub(crate) const SHAPE_KEYS: [&str; 4] = ["type", "half_extents", "radius", "half_height"];
+pub(crate) const SHAPE_KEYS: [&str; 11] = [
+    "type",
+    "half_extents",
+    "radius",
+    "half_height",
+    "vertices",
+    "triangles",
+    "columns",
+    "rows",
+    "spacing",
+    "heights",
+    "holes",
+];
 
 /// A shape by its `type` and sizes.
 pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
@@ -71,11 +84,15 @@ pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
             )
         }
         "half_space" => (Shape::HalfSpace, &[]),
+        "mesh" => (surface::read_mesh(at)?, &["vertices", "triangles"]),
+        "height_field" => {
+            (surface::read_height_field(at)?, &["columns", "rows", "spacing", "heights", "holes"])
+        }
         other => {
             let other = quoted(other);
-            return Err(
-                kind.malformed(format!("unknown shape {other}; known are box, sphere, capsule, half_space"))
-            );
+            return Err(kind.malformed(format!(
+                "unknown shape {other}; known are box, sphere, capsule, half_space, mesh, height_field"
+            )));
         }
     };
     for size in &SHAPE_KEYS[1..] {
@@ -117,6 +134,8 @@ pub(crate) fn write_shape(shape: &Shape, object: &mut Map<String, Value>) {
             put("radius", number(radius));
         }
         Shape::HalfSpace => put("type", "half_space".into()),
+        Shape::Mesh(ref mesh) => surface::write_mesh(mesh, object),
+        Shape::HeightField(ref field) => surface::write_height_field(field, object),
     }
 }
 
