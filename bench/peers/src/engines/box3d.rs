@@ -8,6 +8,7 @@ use crate::engine::{
     joint_frames,
 };
 use crate::ffi::box3d::{Body, BoxPair, Joint, Motion, Shape, Surface, World, version};
+use crate::parry::triangles;
 use crate::scenes::{BoxPairs, DT, RayScene};
 use core::ops::Range;
 use sinew::math::{Rotation, Transform, Vec3};
@@ -138,6 +139,11 @@ fn shape(def: &ShapeDef) -> Shape {
         Ours::HalfSpace => {
             let below = Transform::from_translation(Vec3::NEG_Y * HALF_SPACE.y);
             Shape::Box { half_extents: HALF_SPACE, body_from_box: body_from_shape * below }
+        }
+        Ours::Mesh(_) | Ours::HeightField(_) => {
+            let (mut vertices, triangles) = triangles(&def.shape).expect("it has triangles");
+            vertices.iter_mut().for_each(|vertex| *vertex = body_from_shape.point(*vertex));
+            Shape::Mesh { vertices, triangles }
         }
     }
 }
