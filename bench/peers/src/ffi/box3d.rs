@@ -63,7 +63,6 @@ pub enum Shape {
     Box { half_extents: Vec3, body_from_box: Transform },
     Sphere { center: Vec3, radius: f32 },
     Capsule { ends: [Vec3; 2], radius: f32 },
-    Hull { corners: Vec<Vec3> },
     Mesh { vertices: Vec<Vec3>, triangles: Vec<[u32; 3]> },
 }
 
@@ -73,7 +72,7 @@ pub struct Surface {
     pub density: f32,
     pub friction: f32,
     pub restitution: f32,
-    /// Share of the shape's radius, which of boxes and hulls is a quarter of that of the largest ball inside.
+    /// Share of the shape's radius, which of a box is a quarter of that of the largest ball inside.
     pub rolling: f32,
     pub layers: u32,
     pub mask: u32,
@@ -124,7 +123,7 @@ impl World {
     /// Adds a shape to a body, whose mass and inertia grow by those of the shape.
     ///
     /// # Panics
-    /// If there is no such body, or Box3D takes no such hull or mesh.
+    /// If there is no such body, or Box3D takes no such mesh.
     pub fn add_shape(&mut self, body: usize, shape: &Shape, surface: &Surface) {
         let body = self.bodies[body];
         // SAFETY: takes nothing, returns a value.
@@ -157,18 +156,6 @@ impl World {
                 let capsule = b3Capsule { center1: vector(a), center2: vector(b), radius };
                 // SAFETY: as for spheres.
                 unsafe { b3CreateCapsuleShape(body, def, &raw const capsule) };
-            }
-            Shape::Hull { corners } => {
-                let points: Vec<_> = corners.iter().map(|&corner| vector(corner)).collect();
-                let count = i32::try_from(points.len()).expect("a hull has few corners");
-                // SAFETY: there are as many points as it is told, and they live through the call; the hull, which is not
-                // null, is copied and destroyed once.
-                unsafe {
-                    let hull = b3CreateHull(points.as_ptr(), count, count);
-                    assert!(!hull.is_null(), "Box3D takes the hull");
-                    b3CreateHullShape(body, def, hull);
-                    b3DestroyHull(hull);
-                }
             }
             Shape::Mesh { vertices, triangles } => {
                 let mesh = mesh(vertices, triangles);

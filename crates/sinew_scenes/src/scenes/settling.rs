@@ -21,7 +21,7 @@ pub(super) const WAVE_PILE: Scene = Scene {
     about: "100 balls, capsules and boxes fall onto waves, and sleep no later than in Box3D",
     steps: 600,
     settings: &[],
-    build: |setup| settling(setup, &blueprint::wave_pile(), 1, 500),
+    build: |setup| settling(setup, &blueprint::wave_pile(), 1, 361),
 };
 
 pub(super) const MESH_DROP: Scene = Scene {
@@ -29,7 +29,7 @@ pub(super) const MESH_DROP: Scene = Scene {
     about: "400 sticks fall spinning onto waves, and sleep no later than in Box3D",
     steps: 400,
     settings: &[],
-    build: |setup| settling(setup, &blueprint::mesh_drop(), 1, 251),
+    build: |setup| settling(setup, &blueprint::mesh_drop(), 1, 213),
 };
 
 /// Bodies of two figures, which touch from the start.
