@@ -43,7 +43,7 @@ impl Stand {
         let placed: Vec<_> = bodies.iter().map(|&id| (id, center(world, id))).collect();
         let centers = placed.iter().map(|(_, at)| Aabb::around(at.translation, Vec3::ZERO));
         let bounds = centers.reduce(|a, b| a.merge(&b)).expect("something stands");
-        let bounds = bounds.expand(0.2 * bounds.half_extents().max_element());
+        let bounds = bounds.expand(0.1 * bounds.half_extents().length());
         Self { placed, flight, bars, bounds, asleep: None }
     }
 
