@@ -49,6 +49,15 @@ pub struct Bench {
     /// Only this scene, of those that `peers list` names, or `bake`; others keep the figures that they have
     #[arg(long = "scene", value_name = "NAME")]
     scenes: Vec<String>,
+    /// Only this engine, of those that `peers list` names; of the scenes that run, the figures of others are forgotten
+    #[arg(long = "engine", value_name = "NAME")]
+    engines: Vec<String>,
+    /// How often the engines take turns
+    #[arg(long, default_value_t = ROUNDS, value_parser = clap::value_parser!(u32).range(1..))]
+    rounds: u32,
+    /// Instead of as many steps as a scene says; the page tells how many there were
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    steps: Option<u32>,
     /// One short round, printed and not written down
     #[arg(long)]
     quick: bool,
@@ -56,11 +65,11 @@ pub struct Bench {
     #[arg(long)]
     check: bool,
     /// Instead, count the instructions of the kernels and compare them with bench/counts/baseline.txt
-    #[arg(long, conflicts_with_all = ["scenes", "quick", "check"])]
+    #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "check"])]
     counts: bool,
     /// Instead, time the eight-lane kernels beside the limit of the machine's arithmetic; with --check, exit with 1 if one
     /// has less than its share
-    #[arg(long, conflicts_with_all = ["scenes", "quick", "counts"])]
+    #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "counts"])]
     kernels: bool,
     /// Take the counts as the right ones and write them down
     #[arg(long, requires = "counts")]
@@ -80,7 +89,8 @@ impl Bench {
             let fails = self.check && !shortfalls.is_empty();
             return Ok(if fails { ExitCode::FAILURE } else { ExitCode::SUCCESS });
         }
-        let engines = match needs::check().and_then(|()| peers::build()) {
+        let wanted = |name: &str| self.is_wanted_engine(name);
+        let engines = match needs::check().and_then(|()| peers::build(&wanted)) {
             Ok(engines) => engines,
             Err(error) => {
                 eprintln!("error: {error:#}");
@@ -88,13 +98,18 @@ impl Bench {
             }
         };
         let names = peers::scenes(engines.first().context("`peers list` has no engine")?)?;
-        self.refuse_unknown(&names)?;
+        self.refuse_unknown(&names, &engines)?;
         let results = self.measure(&engines, &names)?;
-        println!("{}\n{}\n{}", page::glance(&results), page::holds(&results), page::speeds(&results));
+        let [joints, stands] = [musts::HOLDS, musts::STANDS].map(|rows| page::holds(&results, rows));
+        println!("{}\n{joints}\n{stands}\n{}", page::glance(&results), page::speeds(&results));
         Ok(self.verdict(&results))
     }
 
-    fn refuse_unknown(&self, names: &[(String, String)]) -> Result<()> {
+    fn refuse_unknown(&self, names: &[(String, String)], engines: &[Engine]) -> Result<()> {
+        let is_there = |name: &&String| engines.iter().any(|engine| engine.name == **name);
+        if let Some(name) = self.engines.iter().find(|name| !is_there(name)) {
+            bail!("no engine `{name}`");
+        }
         let is_known = |scene: &String| scene == BAKE || names.iter().any(|(name, _)| name == scene);
         match self.scenes.iter().find(|scene| !is_known(scene)) {
             Some(scene) => {
@@ -107,6 +122,10 @@ impl Bench {
 
     fn is_wanted(&self, scene: &str) -> bool {
         self.scenes.is_empty() || self.scenes.iter().any(|name| name == scene)
+    }
+
+    fn is_wanted_engine(&self, name: &str) -> bool {
+        self.engines.is_empty() || self.engines.iter().any(|engine| engine == name)
     }
 
     fn measure(&self, engines: &[Engine], names: &[(String, String)]) -> Result<Results> {
@@ -134,7 +153,7 @@ impl Bench {
     fn race(&self, engines: &[Engine], scene: &str) -> Result<Vec<EngineResult>> {
         let result = |engine: &Engine| EngineResult { name: engine.name.clone(), reports: Vec::new() };
         let mut results: Vec<_> = engines.iter().map(result).collect();
-        let (rounds, steps) = if self.quick { (1, Some(QUICK_STEPS)) } else { (ROUNDS, None) };
+        let (rounds, steps) = if self.quick { (1, Some(QUICK_STEPS)) } else { (self.rounds, self.steps) };
         for round in 1..=rounds {
             for (engine, result) in engines.iter().zip(&mut results) {
                 if result.why_not().is_some() {

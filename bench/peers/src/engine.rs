@@ -52,6 +52,9 @@ pub trait Simulation {
 
     /// Replaces `out` by the state of every body, static ones too, in the blueprint's order.
     fn states(&self, out: &mut Vec<BodyState>);
+
+    /// Whether a dynamic body is awake.
+    fn is_awake(&self) -> bool;
 }
 
 /// A cloth and its obstacles.

@@ -31,6 +31,29 @@ pub fn from_pose(pose: &Pose) -> Transform {
     Transform::new(from_vector(pose.translation), Rotation::from_xyzw(q.x, q.y, q.z, q.w))
 }
 
+/// Vertices and triangles of a shape that is made of them.
+pub fn triangles(shape: &Shape) -> Option<(Vec<Vec3>, Vec<[u32; 3]>)> {
+    match shape {
+        Shape::Mesh(mesh) => Some((mesh.vertices().to_vec(), mesh.triangles().collect())),
+        Shape::HeightField(field) => {
+            // Corners by their places on the grid, so that triangles share them.
+            let def = field.def();
+            let [dx, dz] = def.spacing;
+            let at = |i: usize| {
+                let (column, row) = (i % def.columns, i / def.columns);
+                Vec3::new(column as f32 * dx, def.heights[i], row as f32 * dz)
+            };
+            let index = |corner: Vec3| {
+                let [column, row] = [corner.x / dx, corner.z / dz].map(|lines| lines.round() as u32);
+                row * def.columns as u32 + column
+            };
+            let vertices = (0..def.heights.len()).map(at).collect();
+            Some((vertices, field.triangles().map(|corners| corners.map(index)).collect()))
+        }
+        _ => None,
+    }
+}
+
 /// The same shape.
 pub fn shape(shape: &Shape) -> SharedShape {
     match *shape {
@@ -38,5 +61,10 @@ pub fn shape(shape: &Shape) -> SharedShape {
         Shape::Sphere { radius } => SharedShape::ball(radius),
         Shape::Capsule { half_height, radius } => SharedShape::capsule_y(half_height, radius),
         Shape::HalfSpace => SharedShape::halfspace(Vector::Y),
+        Shape::Mesh(_) | Shape::HeightField(_) => {
+            let (vertices, triangles) = triangles(shape).expect("it has triangles");
+            let vertices = vertices.into_iter().map(vector).collect();
+            SharedShape::trimesh(vertices, triangles).expect("Parry takes the mesh")
+        }
     }
 }

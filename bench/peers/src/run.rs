@@ -73,12 +73,18 @@ fn judge_bodies(engine: &dyn Engine, scene: &Blueprint, steps: usize) -> Result<
     let mut simulation = engine.build(scene)?;
     let mut meter = QualityMeter::new(scene, PENETRATION_EVERY);
     let mut states: Vec<BodyState> = Vec::new();
-    for _ in 0..steps {
+    let mut asleep_step = None;
+    for step in 1..=steps {
         simulation.step();
         simulation.states(&mut states);
         meter.observe(&states);
+        if asleep_step.is_none() && !simulation.is_awake() {
+            asleep_step = Some(step);
+        }
     }
-    Ok(meter.finish(&states).to_json())
+    let mut quality = meter.finish(&states).to_json();
+    quality["asleep_step"] = json!(asleep_step);
+    Ok(quality)
 }
 
 fn run_cloth(

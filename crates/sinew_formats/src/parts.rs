@@ -114,7 +114,8 @@ pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
         }
         other => {
             let other = quoted(other);
-            let known = "box, sphere, capsule, tapered_capsule, cylinder, cone, hull, half_space, mesh, height_field";
+            let known =
+                "box, sphere, capsule, tapered_capsule, cylinder, cone, hull, half_space, mesh, height_field";
             return Err(kind.malformed(format!("unknown shape {other}; known are {known}")));
         }
     };

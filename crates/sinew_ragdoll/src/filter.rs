@@ -168,9 +168,8 @@ fn thinner(shape: &Shape, factor: f32) -> Shape {
         Shape::Cone { half_height, radius } => {
             Shape::Cone { half_height: *half_height, radius: radius * factor }
         }
-        Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => shape.clone(),
         // A fit is none of these.
-        Shape::HalfSpace | Shape::Hull(_) => shape.clone(),
+        Shape::HalfSpace | Shape::Hull(_) | Shape::Mesh(_) | Shape::HeightField(_) => shape.clone(),
     }
 }
 

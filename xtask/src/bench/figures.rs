@@ -51,6 +51,9 @@ pub const DEPTH: Figure =
 /// How far from its place a body is that should stay.
 pub const SHIFT: Figure =
     Figure { heading: "shift", unit: Unit::Length, of: |e| number(e, "displacement_max_m") };
+/// The step after which everything sleeps; none if something never does.
+pub const ASLEEP: Figure =
+    Figure { heading: "asleep at step", unit: Unit::Count, of: |e| number(e, "asleep_step") };
 /// Mean stretch of a cloth's edges.
 pub const CLOTH: Figure =
     Figure { heading: "mean stretch", unit: Unit::Share, of: |e| number(e, "stretch_mean") };
@@ -70,6 +73,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { heading: "depth at the end", unit: Unit::Length, of: |e| number(e, "penetration_end_max_m") },
     Figure { heading: "its p99", unit: Unit::Length, of: |e| number(e, "penetration_end_p99_m") },
     SHIFT,
+    ASLEEP,
     CLOTH,
     Figure { heading: "largest stretch", unit: Unit::Share, of: |e| number(e, "stretch_max") },
     Figure { heading: "motion at the end", unit: Unit::Energy, of: |e| number(e, "kinetic_energy_end_j") },
@@ -83,6 +87,8 @@ pub const FIGURES: &[Figure] = &[
 pub fn headline(scene: &str) -> &'static Figure {
     match scene {
         "box_pyramid" | "large_pyramid" => &SHIFT,
+        "stack_mass_ratio" | "stack_ratio" | "jenga" | "cards" | "arch" => &SHIFT,
+        "ragdolls" | "wave_pile" | "mesh_drop" => &ASLEEP,
         "box_rain" => &DEPTH,
         "chain_100_links" => &STRETCH,
         "heavy_rope" | "hanging_rope" => &GAP_PER_LINK,

@@ -1,6 +1,8 @@
 //! What Sinew must reach, and whether it does.
 
-use super::figures::{CLOTH, Figure, GAP, GAP_PER_LINK, LIMITS, STRETCH, STRETCH_END, rounded};
+use super::figures::{
+    ASLEEP, CLOTH, DEPTH, Figure, GAP, GAP_PER_LINK, LIMITS, SHIFT, STRETCH, STRETCH_END, rounded,
+};
 use super::results::{EngineResult, Results, SceneResult};
 
 /// Whether a must is reached.
@@ -116,7 +118,7 @@ fn speed_of_quality(scene: &SceneResult, figure: &Figure) -> Option<f64> {
     if fair.peers().next().is_none() { Some(f64::INFINITY) } else { fair.speed() }
 }
 
-/// A row of the table of joints that must hold.
+/// A row of a table of what must hold.
 pub struct Hold {
     /// The scene.
     pub scene: &'static str,
@@ -139,6 +141,10 @@ const fn hold(scene: &'static str, figure: &'static Figure, most: f64) -> Hold {
     Hold { scene, figure, most: Most::Value(most) }
 }
 
+const fn as_peers(scene: &'static str, figure: &'static Figure) -> Hold {
+    Hold { scene, figure, most: Most::BestPeer }
+}
+
 /// Joints that do not stretch.
 pub const HOLDS: &[Hold] = &[
     hold("chain_swing_1000", &GAP, 1e-3),
@@ -151,10 +157,25 @@ pub const HOLDS: &[Hold] = &[
     hold("chain_100_links", &STRETCH_END, 1e-3),
     hold("heavy_rope", &GAP_PER_LINK, 5e-3),
     hold("hanging_rope", &GAP_PER_LINK, 5e-3),
-    Hold { scene: "joint_grid", figure: &GAP, most: Most::BestPeer },
-    Hold { scene: "net", figure: &GAP, most: Most::BestPeer },
+    as_peers("joint_grid", &GAP),
+    as_peers("net", &GAP),
     hold("ragdoll_pile", &GAP, 2e-3),
     hold("ragdoll_pile", &LIMITS, 0.0),
+];
+
+/// Stacks that stand and heaps that fall asleep.
+pub const STANDS: &[Hold] = &[
+    as_peers("box_pyramid", &SHIFT),
+    as_peers("large_pyramid", &SHIFT),
+    as_peers("box_rain", &DEPTH),
+    as_peers("stack_mass_ratio", &SHIFT),
+    as_peers("stack_ratio", &SHIFT),
+    as_peers("jenga", &SHIFT),
+    as_peers("cards", &SHIFT),
+    as_peers("arch", &SHIFT),
+    as_peers("ragdolls", &ASLEEP),
+    as_peers("wave_pile", &ASLEEP),
+    as_peers("mesh_drop", &ASLEEP),
 ];
 
 impl Hold {
@@ -282,6 +303,19 @@ mod tests {
             speed("cloth, against those that stretch no more").judge(&of("cloth", ours, stiffer)).1,
             Verdict::Missed
         );
+    }
+
+    #[test]
+    fn what_never_sleeps_falls_short() {
+        let asleep = |step: Option<u32>| json!({ "asleep_step": step });
+        let ragdolls = STANDS.iter().find(|hold| hold.scene == "ragdolls").expect("the table has it");
+        let judge = |ours| {
+            let peer = engine("box3d", &[1.0], &asleep(Some(307)));
+            ragdolls.judge(&of("ragdolls", engine("sinew", &[1.0], &asleep(ours)), peer))
+        };
+        assert_eq!(judge(Some(307)), Verdict::Met);
+        assert_eq!(judge(Some(308)), Verdict::Missed);
+        assert_eq!(judge(None), Verdict::Missed);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::figures::{Figure, came_apart, headline, rounded, telling};
 use super::machine::Machine;
-use super::musts::{HOLDS, SPEEDS, Verdict};
+use super::musts::{HOLDS, Hold, SPEEDS, STANDS, Verdict};
 use super::results::{EngineResult, Results, SceneResult};
 use super::table::Table;
 use std::fmt::Write as _;
@@ -17,7 +17,8 @@ pub fn page(results: &Results, missing: &[&str], machine: &Machine) -> String {
         write!(page, "\n## {heading}\n\n{text}").expect("a string takes everything");
     };
     add("At a glance", &format!("{GLANCE}\n{}\n{LEGEND}{}", glance(results), gaps(missing)));
-    add("Joints that hold", &format!("{HOLD}\n{}", holds(results)));
+    add("Joints that hold", &format!("{HOLD}\n{}", holds(results, HOLDS)));
+    add("Stacks that stand, heaps that sleep", &format!("{STAND}\n{}", holds(results, STANDS)));
     add("Against the specification", &format!("{SPECIFICATION}\n{}", speeds(results)));
     add("Scene by scene", SCENES);
     for scene in &results.scenes {
@@ -49,12 +50,17 @@ Written by `cargo xtask bench`; do not edit.
 const GLANCE: &str = "Processor time of the median step in milliseconds, then the figure that tells whether it is the time of the same work.\n";
 
 const LEGEND: &str = "*gap*: largest distance between the two anchors of a joint after any step · *stretch*: all gaps of a chain over its length ·
-*depth*: deepest overlap of two bodies · *shift*: how far a body of a stack at rest has moved · *speed*: the fastest peer's
+*depth*: deepest overlap of two bodies · *shift*: how far a body of a stack at rest has moved ·
+*asleep at step*: the one after which nothing moves any more, – if something always does · *speed*: the fastest peer's
 time over Sinew's, above 1 is faster · † the joints came apart: the time is that of another scene.
 ";
 
 const HOLD: &str = "What must hold with default settings, and what others do with theirs: the worst after any step of the run.
 **Bold** where Sinew holds it.
+";
+
+const STAND: &str = "The farthest that a body of a stack has moved at the end, the deepest overlap in a heap after any step that was looked at,
+the step after which a heap sleeps. **Bold** where Sinew is no worse than the best peer.
 ";
 
 const SPECIFICATION: &str = "Factors against the fastest peer of this run.\n";
@@ -122,10 +128,10 @@ fn absence(engine: &EngineResult) -> String {
 }
 
 /// What must hold, and what does.
-pub fn holds(results: &Results) -> Table {
+pub fn holds(results: &Results, rows: &[Hold]) -> Table {
     let engines = columns(results);
     let mut table = heading(&["scene", "figure", "must"], &engines, &[]);
-    for hold in HOLDS {
+    for hold in rows {
         let verdict = hold.judge(results);
         if verdict == Verdict::NotRun {
             continue;
@@ -244,7 +250,7 @@ mod tests {
 
     #[test]
     fn what_holds_is_bold() {
-        let holds = holds(&results()).to_string();
+        let holds = holds(&results(), HOLDS).to_string();
         let row = holds.lines().nth(2).expect("a row");
         assert!(row.contains("≤ 1 mm") && row.contains("**0.100 mm**"), "{row}");
     }

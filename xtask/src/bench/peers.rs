@@ -11,6 +11,9 @@ use std::time::{Duration, Instant};
 
 const MANIFEST: &str = "bench/peers/Cargo.toml";
 
+/// Rapier with eight lanes.
+const WIDE: &str = "rapier_simd8";
+
 /// How often a running process is looked at.
 const POLL: Duration = Duration::from_millis(20);
 
@@ -32,22 +35,23 @@ pub enum Judging {
 }
 
 /// Builds the peers as most users have them, and Rapier once more for wide registers where this machine has them: the
-/// two cannot be in one binary. Sinew comes first.
+/// two cannot be in one binary. Those that are `wanted`, Sinew first.
 ///
 /// # Errors
 /// If one does not compile.
-pub fn build() -> Result<Vec<Engine>> {
+pub fn build(wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Engine>> {
     let plain = build_with("peers", "rapier,box3d,jolt", None)?;
     let mut engines = engines(&plain)?;
-    if has_wide_registers() {
+    if wanted(WIDE) && has_wide_registers() {
         let wide = build_with("peers-x86-64-v3", "simd8", Some("-C target-cpu=x86-64-v3"))?;
         let rapier = self::engines(&wide)?.into_iter().filter(|engine| engine.name.starts_with("rapier"));
         let place =
             engines.iter().position(|engine| engine.name == "rapier").map_or(engines.len(), |at| at + 1);
         engines.splice(place..place, rapier);
-    } else {
-        eprintln!("SKIPPED: rapier_simd8, whose eight lanes this machine does not have");
+    } else if wanted(WIDE) {
+        eprintln!("SKIPPED: {WIDE}, whose eight lanes this machine does not have");
     }
+    engines.retain(|engine| wanted(&engine.name));
     Ok(engines)
 }
 

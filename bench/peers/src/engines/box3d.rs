@@ -8,6 +8,7 @@ use crate::engine::{
     joint_frames,
 };
 use crate::ffi::box3d::{Body, BoxPair, Joint, Motion, Shape, Surface, World, version};
+use crate::parry::triangles;
 use crate::scenes::{BoxPairs, DT, RayScene};
 use core::ops::Range;
 use sinew::math::{Rotation, Transform, Vec3};
@@ -46,6 +47,7 @@ impl Engine for Box3d {
 
     fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported> {
         let mut world = World::new(scene.gravity);
+        refuse_rolling_on_boxes(scene)?;
         for def in &scene.bodies {
             add_body(&mut world, def, scene.sleeping)?;
         }
@@ -88,8 +90,8 @@ fn add_body(world: &mut World, def: &BodyDef, sleeping: Sleeping) -> Result<(), 
         may_sleep: sleeping == Sleeping::On,
     });
     for part in &def.shapes {
-        if part.sensing == Sensing::Sensor || part.material.rolling != 0.0 {
-            return Err(Unsupported::new("sensors and rolling resistance that are not mapped yet"));
+        if part.sensing == Sensing::Sensor {
+            return Err(Unsupported::new("sensors that are not mapped yet"));
         }
         world.add_shape(body, &shape(part), &surface(part));
     }
@@ -100,6 +102,28 @@ fn add_body(world: &mut World, def: &BodyDef, sleeping: Sleeping) -> Result<(), 
         world.set_velocity(body, def.linear_velocity, def.angular_velocity);
     }
     Ok(())
+}
+
+/// Box3D multiplies the larger share of two shapes by the larger of their radii, of which only meshes have none: what rolls
+/// on a large box meets more resistance than it says.
+fn refuse_rolling_on_boxes(scene: &Blueprint) -> Result<(), Unsupported> {
+    let mut shapes = scene.bodies.iter().flat_map(|def| def.shapes.iter().map(move |part| (def.kind, part)));
+    let rolls = shapes.clone().any(|(_, part)| part.material.rolling != 0.0);
+    if rolls
+        && shapes.any(|(kind, part)| kind != BodyKind::Dynamic && !matches!(shape(part), Shape::Mesh { .. }))
+    {
+        return Err(Unsupported::new("rolling resistance on what is no mesh and does not move"));
+    }
+    Ok(())
+}
+
+/// Radius that Box3D takes for the lever of rolling resistance, metres.
+fn rolling_radius(shape: &sinew::physics::Shape) -> f32 {
+    use sinew::physics::Shape as Ours;
+    match *shape {
+        Ours::Sphere { radius } | Ours::Capsule { radius, .. } => radius,
+        _ => 0.25 * shape.inner_radius(),
+    }
 }
 
 fn shape(def: &ShapeDef) -> Shape {
@@ -116,6 +140,11 @@ fn shape(def: &ShapeDef) -> Shape {
             let below = Transform::from_translation(Vec3::NEG_Y * HALF_SPACE.y);
             Shape::Box { half_extents: HALF_SPACE, body_from_box: body_from_shape * below }
         }
+        Ours::Mesh(_) | Ours::HeightField(_) => {
+            let (mut vertices, triangles) = triangles(&def.shape).expect("it has triangles");
+            vertices.iter_mut().for_each(|vertex| *vertex = body_from_shape.point(*vertex));
+            Shape::Mesh { vertices, triangles }
+        }
     }
 }
 
@@ -124,6 +153,7 @@ fn surface(def: &ShapeDef) -> Surface {
         density: def.density,
         friction: def.material.friction,
         restitution: def.material.restitution,
+        rolling: def.material.rolling / rolling_radius(&def.shape),
         layers: def.filter.layers,
         mask: def.filter.mask,
         group: def.filter.group,
@@ -131,13 +161,17 @@ fn surface(def: &ShapeDef) -> Surface {
 }
 
 fn joint(def: &BlueprintJoint) -> Result<Joint, Unsupported> {
+    let friction = def.friction_torque;
     Ok(match def.kind {
-        JointKind::Ball { limit: None } => Joint::Spherical { cone: None, twist: None },
+        JointKind::Ball { limit: None } => Joint::Spherical { cone: None, twist: None, friction },
         JointKind::Ball { limit: Some(limit) } => Joint::Spherical {
             cone: Some(circular_cone(&limit)?),
             twist: Some([limit.twist.lo, limit.twist.hi]),
+            friction,
         },
-        JointKind::Hinge { limit } => Joint::Revolute { limit: limit.map(|range| [range.lo, range.hi]) },
+        JointKind::Hinge { limit } => {
+            Joint::Revolute { limit: limit.map(|range| [range.lo, range.hi]), friction }
+        }
         JointKind::Fixed => Joint::Weld,
         _ => return Err(Unsupported::new("a kind of joint that is not mapped yet")),
     })
@@ -159,6 +193,10 @@ impl Simulation for Box3dWorld {
             let [linear_velocity, angular_velocity] = self.world.velocity(place);
             BodyState { world_from_body: self.world.pose(place), linear_velocity, angular_velocity }
         }));
+    }
+
+    fn is_awake(&self) -> bool {
+        self.world.awake_bodies() > 0
     }
 }
 

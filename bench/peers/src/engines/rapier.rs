@@ -137,6 +137,9 @@ fn collider(def: &ShapeDef, body: &BodyDef) -> Result<ColliderBuilder, Unsupport
     if def.filter.group != 0 {
         return Err(Unsupported::new("collision groups"));
     }
+    if def.material.rolling != 0.0 {
+        return Err(Unsupported::new("rolling resistance"));
+    }
     let [layers, mask] = [def.filter.layers, def.filter.mask].map(Group::from_bits_retain);
     // A mass that is given replaces that of the shapes.
     let density = if body.mass.is_some() { 0.0 } else { def.density };
@@ -149,6 +152,9 @@ fn collider(def: &ShapeDef, body: &BodyDef) -> Result<ColliderBuilder, Unsupport
 }
 
 fn joint(def: &BlueprintJoint, scene: &Blueprint) -> Result<GenericJointBuilder, Unsupported> {
+    if def.friction_torque != 0.0 {
+        return Err(Unsupported::new("friction of joints, which is not mapped yet"));
+    }
     let free_rotation = JointAxesMask::LIN_AXES;
     let cone = JointAxesMask::ANG_Y | JointAxesMask::ANG_Z;
     let builder = match def.kind {
@@ -194,6 +200,11 @@ impl Simulation for RapierWorld {
                 angular_velocity: from_vector(body.angvel()),
             }
         }));
+    }
+
+    fn is_awake(&self) -> bool {
+        let bodies = self.bodies.iter().map(|&handle| &self.world.bodies[handle]);
+        bodies.filter(|body| body.is_dynamic()).any(|body| !body.is_sleeping())
     }
 }
 

@@ -3,7 +3,9 @@
 use crate::engine::{BodyState, Description, Engine, OverlapTester, RayCaster, Simulation, Unsupported};
 use crate::scenes::{BoxPair, BoxPairs, PlacedBox, RayScene};
 use core::ops::Range;
-use sinew::physics::collide::{Manifold, collide};
+use sinew::math::Transform;
+use sinew::physics::boxes::Obb;
+use sinew::physics::boxes::batch::Pairs;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyHit, BodyId, BodyKind, Shape, ShapeDef, World, WorldDef};
 use sinew_scenes::blueprint::Blueprint;
@@ -42,7 +44,7 @@ impl Engine for Sinew {
     }
 
     fn build_boxes(&self, pairs: &BoxPairs) -> Result<Box<dyn OverlapTester>, Unsupported> {
-        Ok(Box::new(SinewBoxes { pairs: pairs.pairs.clone(), manifold: Manifold::default() }))
+        Ok(Box::new(SinewBoxes::new(pairs)))
     }
 }
 
@@ -71,6 +73,11 @@ impl Simulation for SinewWorld {
             }
         }));
     }
+
+    fn is_awake(&self) -> bool {
+        let moves = |id| self.world.kind(id) == BodyKind::Dynamic;
+        self.bodies.iter().any(|&id| moves(id) && self.world.is_awake(id))
+    }
 }
 
 struct SinewRays {
@@ -87,20 +94,32 @@ impl RayCaster for SinewRays {
     }
 }
 
-/// The contact of two boxes: there is no test yet that only says whether they overlap.
+/// Eight pairs at a time, stored as its users would: the pairs of each step together.
 struct SinewBoxes {
-    pairs: Vec<BoxPair>,
-    manifold: Manifold,
+    steps: Vec<Pairs>,
+    overlapping: Vec<u8>,
+}
+
+impl SinewBoxes {
+    fn new(scene: &BoxPairs) -> Self {
+        let obb = |place: &PlacedBox| {
+            let Transform { translation, rotation } = place.world_from_box;
+            Obb::new(translation, rotation, place.half_extents)
+        };
+        let together = |step: &[BoxPair]| {
+            let mut pairs = Pairs::new();
+            step.iter().for_each(|BoxPair { a, b }| pairs.push(&obb(a), &obb(b)));
+            pairs
+        };
+        let steps = scene.pairs.chunks(scene.per_step).map(together).collect();
+        Self { steps, overlapping: vec![0; scene.per_step.div_ceil(8)] }
+    }
 }
 
 impl OverlapTester for SinewBoxes {
     fn count_overlaps(&mut self, range: Range<usize>) -> usize {
-        let manifold = &mut self.manifold;
-        let overlap = |pair: &&BoxPair| {
-            let BoxPair { a, b } = pair;
-            collide(&box_shape(a), &a.world_from_box, &box_shape(b), &b.world_from_box, 0.0, manifold);
-            manifold.count > 0
-        };
-        self.pairs[range].iter().filter(overlap).count()
+        let pairs = &self.steps[range.start / range.len()];
+        pairs.overlaps(&mut self.overlapping);
+        self.overlapping.iter().map(|eight| eight.count_ones() as usize).sum()
     }
 }

@@ -31,6 +31,8 @@ pub fn version() -> String {
 pub struct World {
     id: b3WorldId,
     bodies: Vec<b3BodyId>,
+    /// Which the shapes of the world refer to.
+    meshes: Vec<*mut b3MeshData>,
     /// Queries of one world from several threads are nowhere promised to be safe.
     not_shared: PhantomData<*const ()>,
 }
@@ -56,11 +58,12 @@ pub struct Body {
 }
 
 /// A shape in its body's frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Shape {
     Box { half_extents: Vec3, body_from_box: Transform },
     Sphere { center: Vec3, radius: f32 },
     Capsule { ends: [Vec3; 2], radius: f32 },
+    Mesh { vertices: Vec<Vec3>, triangles: Vec<[u32; 3]> },
 }
 
 /// What a shape is made of and whom it meets.
@@ -69,16 +72,19 @@ pub struct Surface {
     pub density: f32,
     pub friction: f32,
     pub restitution: f32,
+    /// Share of the shape's radius, which of a box is a quarter of that of the largest ball inside.
+    pub rolling: f32,
     pub layers: u32,
     pub mask: u32,
     pub group: i32,
 }
 
-/// What a joint leaves free. Hinges, cones and twists are about **z** of the joint's frames.
+/// What a joint leaves free, and how much torque resists it. Hinges, cones and twists are about **z** of the joint's
+/// frames.
 #[derive(Clone, Copy, Debug)]
 pub enum Joint {
-    Revolute { limit: Option<[f32; 2]> },
-    Spherical { cone: Option<f32>, twist: Option<[f32; 2]> },
+    Revolute { limit: Option<[f32; 2]>, friction: f32 },
+    Spherical { cone: Option<f32>, twist: Option<[f32; 2]>, friction: f32 },
     Weld,
 }
 
@@ -95,7 +101,7 @@ impl World {
         // SAFETY: `def` comes from the default and lives through the call; no other world comes or goes meanwhile.
         let id = unsafe { b3CreateWorld(&raw const def) };
         assert!(id.index1 != 0, "Box3D has room for another world");
-        Self { id, bodies: Vec::new(), not_shared: PhantomData }
+        Self { id, bodies: Vec::new(), meshes: Vec::new(), not_shared: PhantomData }
     }
 
     /// Adds a body without shapes; gives its place.
@@ -117,7 +123,7 @@ impl World {
     /// Adds a shape to a body, whose mass and inertia grow by those of the shape.
     ///
     /// # Panics
-    /// If there is no such body.
+    /// If there is no such body, or Box3D takes no such mesh.
     pub fn add_shape(&mut self, body: usize, shape: &Shape, surface: &Surface) {
         let body = self.bodies[body];
         // SAFETY: takes nothing, returns a value.
@@ -125,14 +131,15 @@ impl World {
         def.density = surface.density;
         def.baseMaterial.friction = surface.friction;
         def.baseMaterial.restitution = surface.restitution;
+        def.baseMaterial.rollingResistance = surface.rolling;
         def.filter = b3Filter {
             categoryBits: surface.layers.into(),
             maskBits: surface.mask.into(),
             groupIndex: surface.group,
         };
         let def = &raw const def;
-        match *shape {
-            Shape::Box { half_extents: h, body_from_box } => {
+        match shape {
+            &Shape::Box { half_extents: h, body_from_box } => {
                 // SAFETY: takes and returns values. Its pointer covers the whole box, into whose arrays the hull at
                 // its start reaches by offsets; the library copies it.
                 unsafe {
@@ -140,15 +147,22 @@ impl World {
                     b3CreateHullShape(body, def, (&raw const hull).cast::<b3HullData>());
                 }
             }
-            Shape::Sphere { center, radius } => {
+            &Shape::Sphere { center, radius } => {
                 let sphere = b3Sphere { center: vector(center), radius };
                 // SAFETY: the body lives as long as the world; `def` and `sphere` are copied.
                 unsafe { b3CreateSphereShape(body, def, &raw const sphere) };
             }
-            Shape::Capsule { ends: [a, b], radius } => {
+            &Shape::Capsule { ends: [a, b], radius } => {
                 let capsule = b3Capsule { center1: vector(a), center2: vector(b), radius };
                 // SAFETY: as for spheres.
                 unsafe { b3CreateCapsuleShape(body, def, &raw const capsule) };
+            }
+            Shape::Mesh { vertices, triangles } => {
+                let mesh = mesh(vertices, triangles);
+                self.meshes.push(mesh);
+                let scale = b3Vec3 { x: 1.0, y: 1.0, z: 1.0 };
+                // SAFETY: the body lives as long as the world, the mesh longer: see `drop`.
+                unsafe { b3CreateMeshShape(body, def, mesh, scale) };
             }
         }
     }
@@ -193,18 +207,21 @@ impl World {
         // the defaults and are copied.
         unsafe {
             match joint {
-                Joint::Revolute { limit } => {
+                Joint::Revolute { limit, friction } => {
                     let mut def = b3DefaultRevoluteJointDef();
                     attach(&mut def.base);
+                    // A motor that wants to stand still is friction.
+                    (def.enableMotor, def.maxMotorTorque) = (friction > 0.0, friction);
                     if let Some([lower, upper]) = limit {
                         def.enableLimit = true;
                         (def.lowerAngle, def.upperAngle) = (lower, upper);
                     }
                     b3CreateRevoluteJoint(self.id, &raw const def);
                 }
-                Joint::Spherical { cone, twist } => {
+                Joint::Spherical { cone, twist, friction } => {
                     let mut def = b3DefaultSphericalJointDef();
                     attach(&mut def.base);
+                    (def.enableMotor, def.maxMotorTorque) = (friction > 0.0, friction);
                     if let Some(half_angle) = cone {
                         def.enableConeLimit = true;
                         def.coneAngle = half_angle;
@@ -250,6 +267,13 @@ impl World {
         unsafe { [b3Body_GetLinearVelocity(id), b3Body_GetAngularVelocity(id)].map(from_vector) }
     }
 
+    /// How many bodies do not sleep, of those that can move.
+    pub fn awake_bodies(&self) -> usize {
+        // SAFETY: the world lives as long as `self`; returns a value.
+        let count = unsafe { b3World_GetAwakeBodyCount(self.id) };
+        usize::try_from(count).expect("a count is not negative")
+    }
+
     /// Whether a ray meets a shape; the closest is found. One that starts inside a shape does not see it.
     pub fn meets_ray(&self, ray: &Ray) -> bool {
         // SAFETY: the world lives as long as `self`, which is on one thread; no callback runs; returns values.
@@ -265,7 +289,37 @@ impl Drop for World {
         let _held = lock_worlds();
         // SAFETY: the world is destroyed here, once; no other world comes or goes meanwhile.
         unsafe { b3DestroyWorld(self.id) }
+        for &mesh in &self.meshes {
+            // SAFETY: made by `mesh`, destroyed here, once, and nothing refers to it any more.
+            unsafe { b3DestroyMesh(mesh) }
+        }
     }
+}
+
+/// A mesh of one-sided triangles, counter-clockwise seen from outside, to be destroyed by its owner.
+///
+/// # Panics
+/// If Box3D takes no such mesh.
+fn mesh(vertices: &[Vec3], triangles: &[[u32; 3]]) -> *mut b3MeshData {
+    let count = |len: usize| i32::try_from(len).expect("a mesh of a test scene is small");
+    let mut points: Vec<_> = vertices.iter().map(|&vertex| vector(vertex)).collect();
+    let mut indices: Vec<i32> = triangles.iter().flatten().map(|&index| index.cast_signed()).collect();
+    let def = b3MeshDef {
+        vertices: points.as_mut_ptr(),
+        indices: indices.as_mut_ptr(),
+        materialIndices: ptr::null_mut(),
+        weldTolerance: 0.0,
+        vertexCount: count(points.len()),
+        triangleCount: count(triangles.len()),
+        weldVertices: false,
+        useMedianSplit: false,
+        identifyEdges: true,
+    };
+    // SAFETY: there are as many vertices and indices as it is told, and they live through the call, which copies them;
+    // null and 0 ask for no list of triangles without area.
+    let mesh = unsafe { b3CreateMesh(&raw const def, ptr::null_mut(), 0) };
+    assert!(!mesh.is_null(), "Box3D takes the mesh");
+    mesh
 }
 
 /// Two boxes as point clouds, the second in the frame of the first.

@@ -52,6 +52,17 @@ pub const SCENES: &[Scene] = &[
     bodies!("large_pyramid", "a wall of 5,050 unit cubes in 100 rows", blueprint::large_pyramid()),
     bodies!("rain", "300 ragdolls fall on the ground", blueprint::rain()),
     bodies!(
+        "stack_mass_ratio",
+        "10 boxes, each 10 times as heavy as the one below",
+        blueprint::stack_mass_ratio(10, 10.0)
+    ),
+    bodies!("stack_ratio", "6 boxes, each twice as large as the one below", blueprint::stack_ratio(6)),
+    bodies!("jenga", "a tower of 18 levels of three blocks of 75 mm", blueprint::jenga(18)),
+    bodies!("cards", "a house of 15 cards 2 mm thick", blueprint::cards(3)),
+    bodies!("ragdolls", "8 ragdolls with friction in their joints fall asleep", blueprint::ragdolls()),
+    bodies!("wave_pile", "100 balls, capsules and boxes on waves fall asleep", blueprint::wave_pile()),
+    bodies!("mesh_drop", "400 sticks on waves fall asleep", blueprint::mesh_drop()),
+    bodies!(
         "chain_swing_1000",
         "10 level links of 1 m, 1,000 kg at the end",
         blueprint::chain_swing(1e3, 1.0)

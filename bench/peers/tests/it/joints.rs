@@ -52,7 +52,7 @@ fn hung(arm: Vec3, axes: Rotation, kind: JointKind) -> Blueprint {
     let world_from_joint = Transform::new(Vec3::ZERO, axes);
     scene(
         vec![hook, cuboid(Vec3::new(0.3, 0.1, 0.1), arm)],
-        vec![BlueprintJoint { a: 0, b: 1, world_from_joint, kind }],
+        vec![BlueprintJoint { a: 0, b: 1, world_from_joint, kind, friction_torque: 0.0 }],
     )
 }
 
@@ -115,6 +115,7 @@ fn jointed_bodies_overlap_and_others_do_not() {
         b: 2,
         world_from_joint: Transform::from_translation(Vec3::new(0.25, 0.5, 0.0)),
         kind: JointKind::Fixed,
+        friction_torque: 0.0,
     };
     let floor = fixed(cuboid(Vec3::new(10.0, 0.5, 10.0), Vec3::NEG_Y * 0.5));
     let boxes = [Vec3::new(0.0, 0.5, 0.0), Vec3::new(0.5, 0.5, 0.0), Vec3::new(0.25, 1.6, 0.0)];
@@ -140,7 +141,7 @@ fn mass_and_inertia_are_those_given() {
         ..cuboid(Vec3::splat(0.1), Vec3::X * x)
     };
     let world_from_joint = Transform::from_translation(Vec3::X);
-    let joint = BlueprintJoint { a: 0, b: 1, world_from_joint, kind: JointKind::Fixed };
+    let joint = BlueprintJoint { a: 0, b: 1, world_from_joint, kind: JointKind::Fixed, friction_torque: 0.0 };
     let scene = scene(vec![spinning(9.0, 0.0), spinning(1.0, 1.0)], vec![joint]);
     for engine in engines() {
         let states = run(engine, &scene, 60);

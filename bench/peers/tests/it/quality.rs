@@ -26,7 +26,7 @@ fn floor() -> BodyDef {
 }
 
 fn joint(a: usize, b: usize, at: Vec3, kind: JointKind) -> BlueprintJoint {
-    BlueprintJoint { a, b, world_from_joint: Transform::from_translation(at), kind }
+    BlueprintJoint { a, b, world_from_joint: Transform::from_translation(at), kind, friction_torque: 0.0 }
 }
 
 fn start(scene: &Blueprint) -> Vec<BodyState> {

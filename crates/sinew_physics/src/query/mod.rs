@@ -216,11 +216,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
     }
 
     /// Every shape that may have an answer and passes, in any order, until `visit` breaks.
-    fn shapes<Q: Question>(
-        &self,
-        question: &Q,
-        mut visit: impl FnMut(ShapeId, &Shape, &Transform) -> Limit,
-    ) {
+    fn shapes<Q: Question>(&self, question: &Q, mut visit: impl FnMut(ShapeId, &Shape, &Transform) -> Limit) {
         let Some(reach) = question.reach() else { return };
         let mut limit = f32::INFINITY;
         candidates(self.world, &reach, |Owner { body: index, shape }| {

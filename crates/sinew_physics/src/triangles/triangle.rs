@@ -122,18 +122,3 @@ pub(crate) fn enter_triangle(corners: &[Vec3; 3], origin: Vec3, direction: Vec3)
     let (toward, away) = (direction.dot(normal), a.dot(normal));
     (toward < 0.0 && away <= 0.0).then(|| away / toward)
 }
-
-/// Whether a triangle and the box of these half extents around the origin overlap, by separating axes (Akenine-Möller 2001).
-pub(crate) fn overlaps_box(half: Vec3, corners: &[Vec3; 3]) -> bool {
-    let apart = |axis: Vec3| {
-        let [a, b, c] = corners.map(|corner| corner.dot(axis));
-        let reach = half.dot(abs3(axis));
-        let (low, high) = (min(min(a, b), c), max(max(a, b), c));
-        low > reach || high < -reach
-    };
-    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
-    let [a, b, c] = *corners;
-    let sides = [b - a, c - b, a - c];
-    let across = sides.into_iter().flat_map(|side| axes.map(|axis| axis.cross(side)));
-    !axes.into_iter().chain([sides[0].cross(sides[1])]).chain(across).any(apart)
-}

@@ -23,12 +23,16 @@ pub fn box_pyramid() -> Blueprint {
 
 /// A wall of 100 rows of unit cubes, one fewer in each row, as Box3D's `large_pyramid`.
 pub fn large_pyramid() -> Blueprint {
-    const ROWS: usize = 100;
+    large_pyramid_of(100)
+}
+
+/// The same with `rows` rows.
+pub fn large_pyramid_of(rows: usize) -> Blueprint {
     let mut scene = Blueprint::new("large_pyramid", Sleeping::Off, 200);
     scene.body(fixed(cuboid(Vec3::new(400.0, 1.0, 400.0), Vec3::NEG_Y)));
-    for row in 0..ROWS {
-        for i in 0..ROWS - row {
-            let x = i as f32 - 0.5 * (ROWS - row - 1) as f32;
+    for row in 0..rows {
+        for i in 0..rows - row {
+            let x = i as f32 - 0.5 * (rows - row - 1) as f32;
             scene.body(cuboid(Vec3::splat(0.5), Vec3::new(x, 0.5 + row as f32, 0.0)));
         }
     }
@@ -37,7 +41,11 @@ pub fn large_pyramid() -> Blueprint {
 
 /// 4,000 boxes of all sizes fall into a pit.
 pub fn box_rain() -> Blueprint {
-    const COUNT: usize = 4000;
+    box_rain_of(4000)
+}
+
+/// The same with `count` boxes.
+pub fn box_rain_of(count: usize) -> Blueprint {
     const SIDE: usize = 12;
     /// Half of the pit's width, metres.
     const HALF: f32 = 8.4;
@@ -50,7 +58,7 @@ pub fn box_rain() -> Blueprint {
         scene.body(fixed(cuboid(Vec3::new(outer, 10.0, 1.0), Vec3::new(0.0, 10.0, out))));
     }
     let mut random = Random::new(3);
-    for i in 0..COUNT {
+    for i in 0..count {
         let (layer, a, b) = (i / (SIDE * SIDE), i / SIDE % SIDE, i % SIDE);
         let place = |index: usize| (index as f32 - 5.5) * 1.4;
         let half_extents = in_box(&mut random, 0.1, 0.4);

@@ -56,6 +56,33 @@ pub fn rain() -> Blueprint {
     scene
 }
 
+/// 8 figures whose joints have friction fall from 15 m on two by two places of 15 m, each with a tilted box in the middle.
+///
+/// After Box3D's falling ragdolls, which show by the step at which they all sleep that a run can be repeated; those fall
+/// on meshes, and have springs in their joints.
+pub fn ragdolls() -> Blueprint {
+    const CELL: f32 = 15.0;
+    /// Torque that a joint resists a turn with, N·m.
+    const FRICTION: f32 = 5.0;
+    let mut scene = Blueprint::new("ragdolls", Sleeping::On, 600);
+    scene.body(fixed(cuboid(Vec3::new(CELL, 0.5, CELL), Vec3::NEG_Y * 0.5)));
+    let cells =
+        [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)].map(|(x, z)| Vec3::new(x, 0.0, z) * CELL);
+    for cell in cells {
+        let obstacle = cuboid(Vec3::new(2.0, 0.5, 2.0), cell + Vec3::Y * 0.5);
+        scene.body(fixed(BodyDef { rotation: tilt(10.0), ..obstacle }));
+    }
+    let mut random = Random::new(1);
+    for (cell, i) in cells.into_iter().flat_map(|cell| [0.0, 1.0].map(|i| (cell, i))) {
+        let base = cell + Vec3::new(0.75 * (i - 0.5), 14.0, 0.0);
+        figure(&mut scene, base, random.range(0.0, core::f32::consts::TAU));
+    }
+    for joint in &mut scene.joints {
+        joint.friction_torque = FRICTION;
+    }
+    scene
+}
+
 /// Along the body's x instead of its y, either way.
 fn across() -> Rotation {
     tilt(90.0)
@@ -132,6 +159,7 @@ impl Figure<'_> {
 
     fn joint(&mut self, a: usize, b: usize, at: [f32; 3], axis: Vec3, kind: JointKind) {
         let frame = Transform::new(Vec3::from(at), Rotation::from_arc(Vec3::X, axis));
-        self.scene.joints.push(BlueprintJoint { a, b, world_from_joint: self.stand * frame, kind });
+        let world_from_joint = self.stand * frame;
+        self.scene.joints.push(BlueprintJoint { a, b, world_from_joint, kind, friction_torque: 0.0 });
     }
 }

@@ -7,11 +7,15 @@ mod boxes;
 mod chains;
 mod figure;
 mod grids;
+mod stands;
+mod waves;
 
-pub use boxes::{box_pyramid, box_rain, large_pyramid};
+pub use boxes::{box_pyramid, box_rain, box_rain_of, large_pyramid, large_pyramid_of};
 pub use chains::{chain_100_links, chain_hang, chain_swing, hanging_rope, heavy_rope};
-pub use figure::{ragdoll_pile, rain};
+pub use figure::{ragdoll_pile, ragdolls, rain};
 pub use grids::{joint_grid, joint_grid_of, net};
+pub use stands::{cards, jenga, stack_mass_ratio, stack_ratio};
+pub use waves::{mesh_drop, wave_pile};
 
 use crate::parts::{GRAVITY, ghost};
 use sinew::math::{Random, Rotation, Transform, Vec3, trig};
@@ -47,6 +51,8 @@ pub struct BlueprintJoint {
     pub world_from_joint: Transform,
     /// What is free.
     pub kind: JointKind,
+    /// Torque that resists what is free, N·m.
+    pub friction_torque: f32,
 }
 
 /// What a [`Blueprint`] has become in a world: ids in its order.
@@ -78,7 +84,8 @@ impl Blueprint {
         let bodies: Vec<_> = self.bodies.iter().map(|def| world.add_body(def)).collect();
         let joint = |joint: &BlueprintJoint| {
             let [a, b] = [joint.a, joint.b].map(|place| (bodies[place], pose(&self.bodies[place])));
-            world.add_joint(&JointDef::new(a.0, b.0, a.1, b.1, joint.world_from_joint, joint.kind))
+            let def = JointDef::new(a.0, b.0, a.1, b.1, joint.world_from_joint, joint.kind);
+            world.add_joint(&JointDef { friction_torque: joint.friction_torque, ..def })
         };
         let joints = self.joints.iter().map(joint).collect();
         Built { bodies, joints }
@@ -109,7 +116,8 @@ impl Blueprint {
     /// Adds an unlimited ball joint.
     fn ball(&mut self, a: usize, b: usize, anchor: Vec3) {
         let world_from_joint = Transform::from_translation(anchor);
-        self.joints.push(BlueprintJoint { a, b, world_from_joint, kind: JointKind::Ball { limit: None } });
+        let kind = JointKind::Ball { limit: None };
+        self.joints.push(BlueprintJoint { a, b, world_from_joint, kind, friction_torque: 0.0 });
     }
 }
 

@@ -2,8 +2,9 @@
 
 use super::flight::Flight;
 use super::metric::{Expected, Metric};
-use super::{Instance, Scene, Script, Setup};
-use crate::blueprint::ragdoll_pile;
+use super::stand::deepest;
+use super::{Instance, Scene, Script, Setting, Setup};
+use crate::blueprint::{box_rain_of, ragdoll_pile};
 use sinew::math::max;
 use sinew::physics::{BodyId, BodyKind, JointId, World};
 
@@ -14,6 +15,47 @@ pub(super) const PILE: Scene = Scene {
     settings: &[],
     build: pile,
 };
+
+pub(super) const RAIN: Scene = Scene {
+    name: "box_rain",
+    about: "boxes of all sizes fall into a pit: none is lost, none ends deep in another",
+    steps: 400,
+    settings: &[Setting::whole("boxes", 60, (1, 10_000), "number of boxes")],
+    build: |setup| {
+        let mut world = setup.world();
+        let plan = box_rain_of(setup.whole("boxes"));
+        let built = plan.build_into(&mut world);
+        let bodies: Vec<_> = plan.dynamic().map(|place| built.bodies[place]).collect();
+        let damping = plan.bodies[plan.bodies.len() - 1].linear_damping;
+        let flight = Flight::damped(&world, bodies[..1].to_vec(), damping);
+        Instance::new(world, Rain { bodies, flight })
+    },
+};
+
+/// Boxes that fall.
+struct Rain {
+    bodies: Vec<BodyId>,
+    /// Of the first.
+    flight: Flight,
+}
+
+impl Script for Rain {
+    fn after_step(&mut self, world: &mut World) {
+        self.flight.after_step(world);
+    }
+
+    fn metrics(&self, world: &World) -> Vec<Metric> {
+        // Half of the smallest box's height is above this.
+        let lost = self.bodies.iter().filter(|&&id| world.center_of_mass(id).y < 0.05).count();
+        let depth = deepest(world, self.bodies.iter().copied());
+        vec![
+            self.flight.metric(),
+            Metric::new("lost", lost as u32, Expected::AtMost(0.0)),
+            Metric::new("depth_end_m", depth, Expected::AtMost(0.02)),
+            Metric::new("kinetic_end_j", world.energy().kinetic, Expected::Anything),
+        ]
+    }
+}
 
 fn pile(setup: &Setup<'_>) -> Instance {
     let mut world = setup.sleepless_world();

@@ -17,6 +17,7 @@ mod instance;
 mod metric;
 mod setting;
 mod sight;
+mod stand;
 
 mod air;
 mod ballistics;
@@ -46,7 +47,9 @@ mod pendulums;
 mod piles;
 mod ragdolls;
 mod rolling;
+mod settling;
 mod springs;
+mod stacks;
 mod strings;
 mod support;
 mod tops;
@@ -157,6 +160,11 @@ const REGISTRY: &[Scene] = &[
     piles::STACK,
     piles::PYRAMID,
     piles::DOMINOES,
+    stacks::MASS_RATIO,
+    stacks::SIZE_RATIO,
+    stacks::JENGA,
+    stacks::CARDS,
+    stacks::LARGE_PYRAMID,
     springs::ROPE_ON_BOX,
     ragdolls::DROP,
     falls::POSES,
@@ -173,6 +181,10 @@ const REGISTRY: &[Scene] = &[
     nets::JOINT_GRID,
     nets::NET,
     crowds::PILE,
+    settling::RAGDOLLS,
+    settling::WAVE_PILE,
+    settling::MESH_DROP,
+    crowds::RAIN,
     engine::FRAME_RATES,
     engine::TAUTOCHRONE,
     trees::HEAVY_FOOT,

@@ -24,9 +24,17 @@ fn check(scene: &Blueprint, bodies: usize, dynamic: usize, joints: usize) {
 fn they_are_as_large_as_described() {
     check(&blueprint::ragdoll_pile(), 1551, 1500, 1400);
     check(&blueprint::rain(), 1 + 100 + 300 * 15, 300 * 15, 300 * 14);
+    check(&blueprint::ragdolls(), 1 + 4 + 8 * 15, 8 * 15, 8 * 14);
+    check(&blueprint::wave_pile(), 101, 100, 0);
+    check(&blueprint::mesh_drop(), 401, 400, 0);
     check(&blueprint::box_pyramid(), 1241, 1240, 0);
     check(&blueprint::box_rain(), 4005, 4000, 0);
     check(&blueprint::large_pyramid(), 5051, 5050, 0);
+    check(&blueprint::stack_mass_ratio(10, 10.0), 11, 10, 0);
+    check(&blueprint::stack_ratio(6), 7, 6, 0);
+    check(&blueprint::jenga(18), 55, 54, 0);
+    check(&blueprint::cards(3), 1 + 15, 15, 0);
+    check(&blueprint::cards(5), 1 + 40, 40, 0);
     check(&blueprint::chain_100_links(), 10 * 102, 10 * 101, 10 * 101);
     check(&blueprint::chain_swing(1000.0, 0.25), 12, 11, 11);
     check(&blueprint::chain_hang(100.0), 12, 11, 11);
@@ -46,6 +54,8 @@ fn mass_ratio(scene: &Blueprint) -> f32 {
 
 #[test]
 fn weights_are_as_heavy_as_described() {
+    assert_eq!(mass_ratio(&blueprint::stack_mass_ratio(4, 10.0)), 1000.0);
+    assert_eq!(mass_ratio(&blueprint::stack_ratio(6)), 32768.0);
     assert_eq!(mass_ratio(&blueprint::heavy_rope()), 1800.0);
     assert_eq!(mass_ratio(&blueprint::hanging_rope()), 200.0);
     assert_eq!(mass_ratio(&blueprint::chain_swing(1000.0, 0.5)), 1000.0);

@@ -137,6 +137,9 @@ fn body(def: &BodyDef, sleeping: Sleeping) -> Result<BodySettings, Unsupported> 
 }
 
 fn add_joint(world: &mut PhysicsWorld, [a, b]: [BodyId; 2], def: &BlueprintJoint) -> Result<(), Unsupported> {
+    if def.friction_torque != 0.0 {
+        return Err(Unsupported::new("friction of joints, which is not mapped yet"));
+    }
     let Transform { translation, rotation } = def.world_from_joint;
     let at = point(translation);
     // oxijolt takes no axis that is off 1 by more than 2.5e-7.
@@ -197,6 +200,10 @@ impl Simulation for JoltWorld {
                 angular_velocity: from_vector(body.angular_velocity()),
             }
         }));
+    }
+
+    fn is_awake(&self) -> bool {
+        self.bodies.iter().any(|&id| self.world.body(id).is_ok_and(|body| body.is_active()))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{quaternion, refused, vector};
 use crate::engine::Unsupported;
+use crate::parry::triangles;
 use oxijolt::{BodySettings, CompoundChild, Inertia};
 use sinew::math::{Transform, Vec3, min};
 use sinew::physics::{BodyDef, BodyKind, MassProperties, Shape, ShapeDef};
@@ -74,6 +75,11 @@ fn shape_alone(shape: &Shape) -> Result<oxijolt::Shape, Unsupported> {
         Shape::Sphere { radius } => oxijolt::Shape::new_sphere(radius),
         Shape::Capsule { half_height, radius } => oxijolt::Shape::new_capsule(half_height, radius),
         Shape::HalfSpace => rounded_box(HALF_SPACE),
+        Shape::Mesh(_) | Shape::HeightField(_) => {
+            let (vertices, triangles) = triangles(shape).expect("it has triangles");
+            let vertices: Vec<_> = vertices.into_iter().map(vector).collect();
+            oxijolt::Shape::new_mesh(&vertices, &triangles).map(|(mesh, _)| mesh)
+        }
     }
     .map_err(refused)
 }

@@ -65,7 +65,7 @@ impl<'a> WideShape<'a> {
             Shape::HalfSpace => q[1],
             Shape::Hull(_) | Shape::Mesh(_) | Shape::HeightField(_) => {
                 panic!("hulls and surfaces have tests of their own")
-            },
+            }
         }
     }
 
