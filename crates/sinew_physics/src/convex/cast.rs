@@ -25,8 +25,9 @@ const MOST_STEPS: usize = 64;
 /// Moves `a` by `motion` (metres) and says where it first touches `b`, or `None` if it does not, or a number is not
 /// finite. `a` may not be a half-space or mesh.
 ///
-/// Shapes that overlap or touch at the start hit at fraction 0 — but for those that only touch, and part; the normal is the direction in which A leaves B by the
-/// shortest way, and the point lies half-way through the overlap. So it is for every pair of shapes.
+/// Shapes that overlap at the start hit at fraction 0: the normal is the direction in which A leaves B by the shortest way,
+/// and the point lies half-way through the overlap. So it is for every pair of shapes. Later hits count once the gap is less
+/// than 1e-5 of the smaller shape; where the gap does not close any further, there is none.
 pub fn cast_shape(
     a: &Shape,
     world_from_a: &Transform,
@@ -49,13 +50,13 @@ pub fn cast_shape(
     let close = CLOSE * min(a.bounding_radius(), b.bounding_radius()) + CLOSE_STEP * motion.length();
     let (mut now, mut fraction) = (start, 0.0);
     for _ in 0..MOST_STEPS {
-        if now.distance <= close {
-            return Some(hit_of(now, fraction));
-        }
         // Nothing of B lies before the plane across the gap.
         let approach = motion.dot(now.normal);
         if approach <= 0.0 {
             return None;
+        }
+        if now.distance <= close {
+            return Some(hit_of(now, fraction));
         }
         fraction += now.distance / approach;
         if fraction > 1.0 {

@@ -18,6 +18,11 @@ const MOST_SIDES: usize = 64;
 /// Times that a round core's direction is made better after the polytope is full.
 const MOST_REFINEMENTS: usize = 32;
 
+/// Directions are turned by steps from the first of these angles (radians) to the last.
+const FIRST_TURN: f64 = 0.1;
+const LAST_TURN: f64 = 1e-8;
+const MOST_TURNS: usize = 200;
+
 #[derive(Clone, Copy, Default)]
 struct Face {
     corners: [usize; 3],
@@ -56,15 +61,49 @@ pub(super) fn deepest<A: Support, B: Support>(
         let vertex = support(a, b, face.normal);
         let height = vertex.difference.dot(face.normal);
         bound = if face.distance > bound { face.distance } else { bound };
-        if best.is_none_or(|best| height < -best.distance) {
+        let closed = height - face.distance <= PRECISION * size;
+        if closed || best.is_none_or(|best| height < -best.distance) {
             best = Some(polytope.bridge(&face, height));
         }
-        if height - face.distance <= PRECISION * size || !polytope.grow(vertex) {
+        if closed || !polytope.grow(vertex) {
             break;
         }
     }
     let best = best.unwrap_or_else(|| touching(simplex, DVec3::Y));
-    if -best.distance - bound > PRECISION * size { refined(a, b, best, size) } else { best }
+    if simplex.count < 4 && best.distance > -2.0 * gjk::TOUCH * size {
+        // They touch: the points by which that was found are as close as can be.
+        let [on_a, on_b] = simplex.ends();
+        return Bridge { on_a, on_b, ..best };
+    }
+    if -best.distance - bound > PRECISION * size { refined(a, b, slid(a, b, best), size) } else { best }
+}
+
+/// The best direction of a full polytope, turned to where the way out is shorter, by steps along the steepest descent on the
+/// sphere of directions: cores that are round and nearly concentric are nearly as deep in all of them.
+fn slid<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>, best: Bridge) -> Bridge {
+    let depth = |normal: DVec3| {
+        let vertex = support(a, b, normal);
+        (vertex.difference.dot(normal), vertex)
+    };
+    let mut normal = best.normal;
+    let (mut height, mut vertex) = depth(normal);
+    let mut angle = FIRST_TURN;
+    for _ in 0..MOST_TURNS {
+        let aside = vertex.difference - normal * height;
+        let slope = aside.length();
+        if slope <= 0.0 || angle < LAST_TURN {
+            break;
+        }
+        let next = (normal - aside * (angle / slope)).normalize();
+        let (next_height, next_vertex) = depth(next);
+        if next_height < height {
+            (normal, height, vertex) = (next, next_height, next_vertex);
+            angle *= 2.0;
+        } else {
+            angle *= 0.25;
+        }
+    }
+    Bridge { on_a: vertex.on_a, on_b: vertex.on_b, distance: -height, normal }
 }
 
 /// The best direction of a full polytope, made better where the cores are round: B is moved out along it, and if that leaves
@@ -188,19 +227,28 @@ impl Polytope {
         self.faces[..self.face_count].iter().copied().reduce(nearer).unwrap_or_default()
     }
 
-    /// The way out along a face's normal, with the origin's image on the face as witness.
+    /// The way out along a face's normal, with the origin's image in its plane as witness: in a face that lies in the plane
+    /// and holds the image, or comes closest to that.
     fn bridge(&self, face: &Face, height: f64) -> Bridge {
-        let [a, b, c] = face.corners.map(|index| self.vertices[index]);
-        let p = face.normal * face.distance;
-        let area = |u: DVec3, v: DVec3| (u - p).cross(v - p).dot(face.normal);
-        let weights = [
-            area(b.difference, c.difference),
-            area(c.difference, a.difference),
-            area(a.difference, b.difference),
-        ];
+        let image = face.normal * face.distance;
+        let plane = |other: &&Face| {
+            (other.distance - face.distance).abs() <= PRECISION * self.size
+                && other.normal.dot(face.normal) > 1.0 - PRECISION
+        };
+        let least = |weights: &[f64; 3]| {
+            let lesser = |x: f64, y: f64| if y < x { y } else { x };
+            weights.iter().copied().fold(f64::INFINITY, lesser)
+        };
+        let in_plane = self.faces[..self.face_count].iter().filter(plane);
+        let weighted = in_plane.map(|other| (other, self.weights(other, image)));
+        let holder = weighted.reduce(|x, y| if least(&y.1) > least(&x.1) { y } else { x });
+        let (carrier, weights) = holder.unwrap_or((face, [1.0, 0.0, 0.0]));
+        // Of an image beside all of them, the nearest that the corners make.
+        let weights = weights.map(|weight| if weight > 0.0 { weight } else { 0.0 });
         let sum = weights[0] + weights[1] + weights[2];
         let mixed = |of: fn(&Vertex) -> DVec3| {
-            (of(&a) * weights[0] + of(&b) * weights[1] + of(&c) * weights[2]) / sum
+            let terms = carrier.corners.iter().zip(weights);
+            terms.fold(DVec3::ZERO, |at, (&index, weight)| at + of(&self.vertices[index]) * (weight / sum))
         };
         Bridge {
             on_a: mixed(|vertex| vertex.on_a),
@@ -208,6 +256,14 @@ impl Polytope {
             distance: -height,
             normal: face.normal,
         }
+    }
+
+    /// Shares of a face's corners in a point of its plane; negative where the point is beyond the side across from a corner.
+    fn weights(&self, face: &Face, point: DVec3) -> [f64; 3] {
+        let [a, b, c] = face.corners.map(|index| self.vertices[index].difference - point);
+        let areas = [b.cross(c), c.cross(a), a.cross(b)].map(|area| area.dot(face.normal));
+        let sum = areas[0] + areas[1] + areas[2];
+        areas.map(|area| area / sum)
     }
 
     /// Takes a vertex in: the faces that it sees make way for those that join it to their outline. False, and the polytope is

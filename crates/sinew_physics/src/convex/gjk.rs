@@ -7,8 +7,8 @@ use sinew_math::DVec3;
 
 /// Distance and its lower bound agree to this share of the distance: directions are then right to its root, 1e-5.
 const PRECISION: f64 = 1e-10;
-/// Cores closer than this share of their sizes touch: the direction between them would be rounding.
-pub(super) const TOUCH: f64 = 1e-10;
+/// Cores closer than this share of their sizes touch: that is less than their places in `f32` say.
+pub(super) const TOUCH: f64 = 3e-8;
 /// A tetrahedron whose height is below this share of its edges is flat.
 const THIN: f64 = 1e-12;
 /// Far above what is needed: polytopes take as many steps as they have faces near by, round cores some 30.
@@ -125,7 +125,7 @@ impl Simplex {
     }
 
     /// That point's ends on A and B.
-    fn ends(&self) -> [DVec3; 2] {
+    pub fn ends(&self) -> [DVec3; 2] {
         [self.weighted(|vertex| vertex.on_a), self.weighted(|vertex| vertex.on_b)]
     }
 

@@ -164,6 +164,8 @@ pub(crate) struct ManifoldRows {
     /// As last found: at the step's beginning, or since, if a body turned fast.
     pub manifold: Manifold,
     shapes: [PlacedShape; 2],
+    /// Radii of the shapes' roundings around their cores, where they meet.
+    rounds: [f32; 2],
     normal: Vec3,
     count: usize,
     /// Cores of the surfaces at each point, in the principal frames, and their distances from the surfaces: a ball's
@@ -213,23 +215,28 @@ pub(crate) struct ManifoldRows {
 pub(crate) struct PlacedShape {
     pub shape: Shape,
     pub principal_from_shape: Transform,
-    /// Radius of its rounding around its core; 0 for what has flat faces.
-    round: f32,
 }
+
+/// A cylinder whose axis leans by less than this sine against the plane across the normal lies on its side.
+const LYING_SINE: f32 = 0.1;
 
 impl PlacedShape {
     pub fn new(shape: Shape, principal_from_shape: Transform) -> Self {
-        let round = match shape {
+        Self { shape, principal_from_shape }
+    }
+
+    /// Radius of the rounding around its core where it meets a normal (in the principal frame); 0 of what has corners.
+    fn round(&self, normal: Vec3) -> f32 {
+        match self.shape {
             Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
             // The thinner end's: what a core is rounded by all around.
             Shape::TaperedCapsule { radius_bottom, radius_top, .. } => min(radius_bottom, radius_top),
-            Shape::Box { .. }
-            | Shape::Cylinder { .. }
-            | Shape::Cone { .. }
-            | Shape::HalfSpace
-            | Shape::Hull(_) => 0.0,
-        };
-        Self { shape, principal_from_shape, round }
+            Shape::Cylinder { radius, .. } => {
+                let axis = self.principal_from_shape.rotation * Vec3::Y;
+                if axis.dot(normal).abs() < LYING_SINE { radius } else { 0.0 }
+            }
+            Shape::Box { .. } | Shape::Cone { .. } | Shape::HalfSpace | Shape::Hull(_) => 0.0,
+        }
     }
 }
 
@@ -258,6 +265,7 @@ impl ManifoldRows {
             b: source.b,
             manifold: *source.manifold,
             shapes: source.shapes.clone(),
+            rounds: [0.0; 2],
             normal: n,
             count: source.manifold.count,
             core_a: [Vec3::ZERO; MAX_POINTS],
@@ -301,10 +309,14 @@ impl ManifoldRows {
         self.count = self.manifold.count;
         self.spin = Row::about(self.normal);
         let n = self.normal;
+        let [a, b] = &self.shapes;
+        let [in_a, in_b] = [pose_a, pose_b].map(|pose| pose.rotation.inverse() * n);
+        let [round_a, round_b] = [a.round(in_a), b.round(in_b)];
+        self.rounds = [round_a, round_b];
         for (i, point) in self.manifold.points().iter().enumerate() {
             let half = n * (0.5 * point.separation);
-            self.core_a[i] = pose_a.inverse_point(point.position - half - n * self.shapes[0].round);
-            self.core_b[i] = pose_b.inverse_point(point.position + half + n * self.shapes[1].round);
+            self.core_a[i] = pose_a.inverse_point(point.position - half - n * round_a);
+            self.core_b[i] = pose_b.inverse_point(point.position + half + n * round_b);
         }
     }
 
@@ -355,10 +367,10 @@ impl ManifoldRows {
         let mut points = [Vec3::ZERO; MAX_POINTS];
         let mut center = Vec3::ZERO;
         for i in 0..self.count {
-            let on_a = pose_a.point(self.core_a[i]) + n * self.shapes[0].round;
-            let on_b = pose_b.point(self.core_b[i]) - n * self.shapes[1].round;
+            let on_a = pose_a.point(self.core_a[i]) + n * self.rounds[0];
+            let on_b = pose_b.point(self.core_b[i]) - n * self.rounds[1];
             self.separation[i] = (on_b - on_a).dot(n);
-            points[i] = match (self.shapes[0].round > 0.0, self.shapes[1].round > 0.0) {
+            points[i] = match self.rounds.map(|round| round > 0.0).into() {
                 // Where a ball touches goes along with the ball, also on a table that moves away under it.
                 (true, false) => on_a,
                 (false, true) => on_b,
