@@ -171,7 +171,7 @@ fn looks(rig: &Rig) -> Vec<Material> {
 /// A shaft and a head that end at `tip`, along the unit vector `along`.
 fn arrow(tip: Vec3, along: Vec3) -> [Model; 2] {
     let turn = Rotation::from_arc(Vec3::Y, along);
-    let part = |behind: f32, solid: Solid| {
+    let part = |behind: f32, solid: Solid<'_>| {
         draw::solid(solid, Transform::new(tip - along * behind, turn), Material::new(ARROW_COLOR))
     };
     [

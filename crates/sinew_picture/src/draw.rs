@@ -3,11 +3,10 @@
 use crate::scene::{Line, LineDepth, Material, Model, Pattern, ShadowCasting};
 use sinew::math::{Rotation, Transform, Vec3, normalize_or, trig};
 use sinew::physics::{Hull, Shape};
-use std::sync::Arc;
 
 /// A solid around the origin of its own frame.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Solid {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Solid<'a> {
     /// Box.
     Box {
         /// Half of each side, metres.
@@ -26,7 +25,7 @@ pub enum Solid {
         radius: f32,
     },
     /// Convex solid with flat faces.
-    Hull(Arc<Hull>),
+    Hull(&'a Hull),
     /// The hull of two balls on the y axis.
     TaperedCapsule {
         /// Half the distance of the balls' centres, metres.
@@ -52,15 +51,15 @@ pub enum Solid {
     },
 }
 
-impl Solid {
+impl<'a> Solid<'a> {
     /// The solid of a collision shape; none of a half-space, which has no end: see [`floor`]; none of surfaces: see
     /// [`surface`].
-    pub fn of(shape: &Shape) -> Option<Self> {
+    pub fn of(shape: &'a Shape) -> Option<Self> {
         match *shape {
             Shape::Box { half_extents } => Some(Self::Box { half_extents }),
             Shape::Sphere { radius } => Some(Self::Sphere { radius }),
             Shape::Capsule { half_height, radius } => Some(Self::Capsule { half_height, radius }),
-            Shape::Hull(ref hull) => Some(Self::Hull(Arc::clone(hull))),
+            Shape::Hull(ref hull) => Some(Self::Hull(hull)),
             Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
                 Some(Self::TaperedCapsule { half_height, radius_bottom, radius_top })
             }
@@ -77,9 +76,9 @@ const AROUND: usize = 24;
 const TO_POLE: usize = 6;
 
 /// The surface of a solid. Boxes and hulls have flat faces, the others smooth normals.
-pub fn solid(solid: Solid, world_from_solid: Transform, material: Material) -> Model {
+pub fn solid(solid: Solid<'_>, world_from_solid: Transform, material: Material) -> Model {
     let mut model = match solid {
-        Solid::Hull(ref hull) => hull_model(hull),
+        Solid::Hull(hull) => hull_model(hull),
         Solid::Box { half_extents } => box_model(half_extents),
         Solid::Sphere { radius } => round_model(0.0, radius, radius),
         Solid::Capsule { half_height, radius } => round_model(half_height, radius, radius),
@@ -158,10 +157,10 @@ pub fn plane(world_from_plane: Transform, half_size: f32, tile: f32, colors: [[f
 }
 
 /// The edges of a solid: all of a box or hull; for ball and capsule three great circles and the sides.
-pub fn wire(solid: Solid, world_from_solid: Transform, color: [f32; 3], depth: LineDepth) -> Vec<Line> {
+pub fn wire(solid: Solid<'_>, world_from_solid: Transform, color: [f32; 3], depth: LineDepth) -> Vec<Line> {
     let mut segments = Vec::new();
     match solid {
-        Solid::Hull(ref hull) => {
+        Solid::Hull(hull) => {
             segments.extend(hull.edges().map(|ends| ends.map(|corner| hull.vertices()[corner])));
         }
         Solid::Box { half_extents } => box_edges(half_extents, &mut segments),
@@ -371,7 +370,7 @@ mod tests {
         let pi = core::f32::consts::PI;
         for (shape, expected, tolerance) in [
             (Solid::Box { half_extents }, 1.0, 1e-4),
-            (Solid::Hull(Arc::new(tetrahedron)), 1.0 / 6.0, 1e-4),
+            (Solid::Hull(&tetrahedron), 1.0 / 6.0, 1e-4),
             (Solid::Sphere { radius: 0.5 }, pi / 6.0, 0.02),
             (Solid::Capsule { half_height: 0.4, radius: 0.5 }, pi / 6.0 + pi * 0.2, 0.04),
             (
@@ -382,7 +381,7 @@ mod tests {
             (Solid::Cylinder { half_height: 0.5, radius: 0.5 }, pi * 0.25, 0.02),
             (Solid::Cone { half_height: 0.5, radius: 0.5 }, pi / 12.0, 0.02),
         ] {
-            let model = solid(shape.clone(), place, Material::default());
+            let model = solid(shape, place, Material::default());
             assert!((volume(&model) - expected).abs() < tolerance, "{shape:?}: {}", volume(&model));
             assert!(!wire(shape, place, [1.0; 3], LineDepth::Tested).is_empty());
         }

@@ -140,8 +140,8 @@ pub enum Kind {
     HalfSpace,
 }
 
-pub const FINITE: [Kind; 7] =
-    [Kind::Box, Kind::Sphere, Kind::Capsule, Kind::TaperedCapsule, Kind::Cylinder, Kind::Cone, Kind::Hull];
+pub const FINITE: [Kind; 6] =
+    [Kind::Box, Kind::Sphere, Kind::Capsule, Kind::TaperedCapsule, Kind::Cylinder, Kind::Cone];
 
 pub fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
     if kind == Kind::Hull {
@@ -199,12 +199,18 @@ pub fn all_pairs() -> impl Iterator<Item = (Kind, Kind)> {
         .chain(FINITE.into_iter().map(|b| (Kind::HalfSpace, b)))
 }
 
+/// Those, then hulls with each of them.
+fn with_hulls() -> impl Iterator<Item = (Kind, Kind)> {
+    let hulls = FINITE.into_iter().flat_map(|kind| [(Kind::Hull, kind), (kind, Kind::Hull)]);
+    all_pairs().chain(hulls).chain([(Kind::Hull, Kind::Hull), (Kind::HalfSpace, Kind::Hull)])
+}
+
 /// The normal is the best direction, the separation the gap along it, and there is a manifold exactly when the
 /// shapes are within the margin.
 #[test]
 fn matches_the_support_functions() {
     let mut random = Random::new(1);
-    for (ka, kb) in all_pairs() {
+    for (ka, kb) in with_hulls() {
         for case in 0..200 {
             let (a, b) = random_pair(ka, kb, &mut random);
             let size = f64::from(a.size() + b.size());
@@ -245,7 +251,7 @@ fn points_lie_between_the_surfaces() {
     let mut random = Random::new(2);
     let mut off = 0;
     let mut points = 0;
-    for (ka, kb) in all_pairs() {
+    for (ka, kb) in with_hulls() {
         for _ in 0..200 {
             let (a, b) = random_pair(ka, kb, &mut random);
             let size = a.size().max(b.size());
@@ -269,7 +275,8 @@ fn points_lie_between_the_surfaces() {
 #[test]
 fn the_order_of_the_shapes_does_not_matter() {
     let mut random = Random::new(3);
-    for (ka, kb) in all_pairs() {
+    // Of two hulls, whose faces have many corners, other four may be kept: see `hull::pairs`.
+    for (ka, kb) in with_hulls().filter(|pair| *pair != (Kind::Hull, Kind::Hull)) {
         for case in 0..150 {
             let (a, b) = random_pair(ka, kb, &mut random);
             let size = a.size().max(b.size());

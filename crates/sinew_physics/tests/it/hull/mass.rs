@@ -53,7 +53,7 @@ fn voxels_agree() {
                 volume += v;
                 first += p * v;
                 let r = p - exact.center;
-                second = second + (Sym3::IDENTITY * r.dot(r) - Sym3::outer(r)) * v;
+                second += (Sym3::IDENTITY * r.dot(r) - Sym3::outer(r)) * v;
             }
         }
         assert!((volume - exact.mass).abs() < 0.02 * exact.mass, "{volume} {}", exact.mass);
@@ -125,7 +125,7 @@ fn a_box_of_corners_is_a_box_to_all_questions() {
         let ray = Ray::between(point, frame.point(random.in_cube() * 1.5));
         match shapes.each_ref().map(|shape| shape.cast_ray(&frame, &ray)) {
             [Some(hull), Some(cuboid)] => {
-                assert!((hull.fraction - cuboid.fraction).abs() < 1e-4, "case {case}")
+                assert!((hull.fraction - cuboid.fraction).abs() < 1e-4, "case {case}");
             }
             [None, None] => {}
             other => panic!("case {case}: {other:?}"),
