@@ -18,6 +18,9 @@ const MOST_SIDES: usize = 64;
 /// Times that a round core's direction is made better after the polytope is full.
 const MOST_REFINEMENTS: usize = 32;
 
+/// Directions from which the shortest way is sought where a polytope is full, further than 25° from each other.
+const MOST_STARTS: usize = 8;
+const SAME_START: f64 = 0.9;
 /// Share of the sizes by which cores are moved apart to find a better direction: then what is between them is not rounding.
 const BEYOND: f64 = 0.05;
 /// Up to this many times each of these turns is doubled.
@@ -75,7 +78,22 @@ pub(super) fn deepest<A: Support, B: Support>(
         let [on_a, on_b] = simplex.ends();
         return Bridge { on_a, on_b, ..best };
     }
-    if -best.distance - bound > PRECISION * size { refined(a, b, best, size) } else { best }
+    if -best.distance - bound <= PRECISION * size {
+        return best;
+    }
+    // Round cores have filled the polytope: it still says which other ways might be shorter.
+    let mut best = refined(a, b, best, size);
+    let mut tried = [best.normal; MOST_STARTS];
+    for count in 1..MOST_STARTS {
+        let Some(face) = polytope.untried(&tried[..count], -best.distance) else { break };
+        tried[count] = face.normal;
+        let height = support(a, b, face.normal).difference.dot(face.normal);
+        let other = refined(a, b, polytope.bridge(&face, height), size);
+        if other.distance > best.distance {
+            best = other;
+        }
+    }
+    best
 }
 
 /// The best direction of a full polytope, made better where the cores are round: B is moved out along it and further, and if
@@ -208,6 +226,13 @@ impl Polytope {
     fn nearest_face(&self) -> Face {
         let nearer = |x: Face, y: Face| if y.distance < x.distance { y } else { x };
         self.faces[..self.face_count].iter().copied().reduce(nearer).unwrap_or_default()
+    }
+
+    /// The nearest face whose plane is closer than `distance`, in another direction than those tried.
+    fn untried(&self, tried: &[DVec3], distance: f64) -> Option<Face> {
+        let new = |face: &&Face| tried.iter().all(|other| other.dot(face.normal) < SAME_START);
+        let faces = self.faces[..self.face_count].iter().filter(|face| face.distance < distance);
+        faces.filter(new).copied().reduce(|x, y| if y.distance < x.distance { y } else { x })
     }
 
     /// The way out along a face's normal, with the origin's image in its plane as witness: in a face that lies in the plane
