@@ -18,10 +18,13 @@ const MOST_SIDES: usize = 64;
 /// Times that a round core's direction is made better after the polytope is full.
 const MOST_REFINEMENTS: usize = 32;
 
-/// Directions are turned by steps from the first of these angles (radians) to the last.
-const FIRST_TURN: f64 = 0.1;
-const LAST_TURN: f64 = 1e-8;
-const MOST_TURNS: usize = 200;
+/// Directions from which the shortest way is sought where a polytope is full, further than 25° from each other.
+const MOST_STARTS: usize = 8;
+const SAME_START: f64 = 0.9;
+/// Share of the sizes by which cores are moved apart to find a better direction: then what is between them is not rounding.
+const BEYOND: f64 = 0.05;
+/// Up to this many times each of these turns is doubled.
+const MOST_DOUBLINGS: u32 = 24;
 
 #[derive(Clone, Copy, Default)]
 struct Face {
@@ -75,55 +78,53 @@ pub(super) fn deepest<A: Support, B: Support>(
         let [on_a, on_b] = simplex.ends();
         return Bridge { on_a, on_b, ..best };
     }
-    if -best.distance - bound > PRECISION * size { refined(a, b, slid(a, b, best), size) } else { best }
-}
-
-/// The best direction of a full polytope, turned to where the way out is shorter, by steps along the steepest descent on the
-/// sphere of directions: cores that are round and nearly concentric are nearly as deep in all of them.
-fn slid<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>, best: Bridge) -> Bridge {
-    let depth = |normal: DVec3| {
-        let vertex = support(a, b, normal);
-        (vertex.difference.dot(normal), vertex)
-    };
-    let mut normal = best.normal;
-    let (mut height, mut vertex) = depth(normal);
-    let mut angle = FIRST_TURN;
-    for _ in 0..MOST_TURNS {
-        let aside = vertex.difference - normal * height;
-        let slope = aside.length();
-        if slope <= 0.0 || angle < LAST_TURN {
-            break;
-        }
-        let next = (normal - aside * (angle / slope)).normalize();
-        let (next_height, next_vertex) = depth(next);
-        if next_height < height {
-            (normal, height, vertex) = (next, next_height, next_vertex);
-            angle *= 2.0;
-        } else {
-            angle *= 0.25;
+    if -best.distance - bound <= PRECISION * size {
+        return best;
+    }
+    // Round cores have filled the polytope: it still says which other ways might be shorter.
+    let mut best = refined(a, b, best, size);
+    let mut tried = [best.normal; MOST_STARTS];
+    for count in 1..MOST_STARTS {
+        let Some(face) = polytope.untried(&tried[..count], -best.distance) else { break };
+        tried[count] = face.normal;
+        let height = support(a, b, face.normal).difference.dot(face.normal);
+        let other = refined(a, b, polytope.bridge(&face, height), size);
+        if other.distance > best.distance {
+            best = other;
         }
     }
-    Bridge { on_a: vertex.on_a, on_b: vertex.on_b, distance: -height, normal }
+    best
 }
 
-/// The best direction of a full polytope, made better where the cores are round: B is moved out along it, and if that leaves
-/// a gap, the direction across the gap is a shorter way.
+/// The best direction of a full polytope, made better where the cores are round: B is moved out along it and further, and if
+/// the shortest way back is another, that is also a shorter way out. Round cores that are nearly concentric are nearly as deep in all
+/// directions and turn it by little: the turn is doubled while that makes the way shorter.
 fn refined<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
     mut best: Bridge,
     size: f64,
 ) -> Bridge {
+    let depth = |normal: DVec3| support(a, b, normal).difference.dot(normal);
     for _ in 0..MOST_REFINEMENTS {
-        let way = best.normal * -best.distance;
+        let way = best.normal * (BEYOND * size - best.distance);
         let moved = Posed { solid: b.solid, axes: b.axes, center: b.center + way };
         let Cores::Apart(gap) = gjk::closest(a, &moved) else { break };
-        let height = support(a, b, gap.normal).difference.dot(gap.normal);
+        let (mut normal, mut height) = (gap.normal, depth(gap.normal));
+        let aside = normal - best.normal * normal.dot(best.normal);
+        for doubling in 1..MOST_DOUBLINGS {
+            let further = (best.normal + aside * f64::from(1u32 << doubling)).normalize();
+            let its_height = depth(further);
+            if its_height >= height {
+                break;
+            }
+            (normal, height) = (further, its_height);
+        }
         let gained = -best.distance - height;
         if gained <= 0.0 {
             break;
         }
-        best = Bridge { on_a: gap.on_a, on_b: gap.on_b - way, distance: -height, normal: gap.normal };
+        best = Bridge { on_a: gap.on_a, on_b: gap.on_b - way, distance: -height, normal };
         if gained <= PRECISION * size {
             break;
         }
@@ -225,6 +226,13 @@ impl Polytope {
     fn nearest_face(&self) -> Face {
         let nearer = |x: Face, y: Face| if y.distance < x.distance { y } else { x };
         self.faces[..self.face_count].iter().copied().reduce(nearer).unwrap_or_default()
+    }
+
+    /// The nearest face whose plane is closer than `distance`, in another direction than those tried.
+    fn untried(&self, tried: &[DVec3], distance: f64) -> Option<Face> {
+        let new = |face: &&Face| tried.iter().all(|other| other.dot(face.normal) < SAME_START);
+        let faces = self.faces[..self.face_count].iter().filter(|face| face.distance < distance);
+        faces.filter(new).copied().reduce(|x, y| if y.distance < x.distance { y } else { x })
     }
 
     /// The way out along a face's normal, with the origin's image in its plane as witness: in a face that lies in the plane

