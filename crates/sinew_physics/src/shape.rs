@@ -82,7 +82,7 @@ impl Shape {
             Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
                 if !(positive(half_height) && positive(radius_bottom) && positive(radius_top)) {
                     Err("half height and radii of a tapered capsule must be positive and finite")
-                } else if !((radius_bottom - radius_top).abs() < 2.0 * half_height) {
+                } else if (radius_bottom - radius_top).abs() >= 2.0 * half_height {
                     Err("one end of a tapered capsule must not hold the other")
                 } else {
                     Ok(())

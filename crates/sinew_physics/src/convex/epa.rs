@@ -73,9 +73,9 @@ pub(super) fn deepest<A: Support, B: Support>(
         }
     }
     let best = best.unwrap_or_else(|| touching(simplex, DVec3::Y));
-    if simplex.count < 4 && best.distance > -2.0 * gjk::TOUCH * size {
+    if best.distance > -2.0 * gjk::TOUCH * size {
         // They touch: the points by which that was found are as close as can be.
-        let [on_a, on_b] = simplex.ends();
+        let [on_a, on_b] = simplex.touching_ends();
         return Bridge { on_a, on_b, ..best };
     }
     if -best.distance - bound <= PRECISION * size {

@@ -55,6 +55,7 @@ const MOST_STALLS: u32 = 12;
 
 /// What two cores are to each other.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "it lives on the stack, for one pair")]
 pub(super) enum Cores {
     Apart(Bridge),
     /// The simplex holds the origin, or touches it.
@@ -143,8 +144,17 @@ impl Simplex {
     }
 
     /// That point's ends on A and B.
-    pub fn ends(&self) -> [DVec3; 2] {
+    fn ends(&self) -> [DVec3; 2] {
         [self.weighted(|vertex| vertex.on_a), self.weighted(|vertex| vertex.on_b)]
+    }
+
+    /// Ends on A and B of the point of the simplex's surface that is closest to the origin: as close to each other as cores
+    /// that touch are deep.
+    pub fn touching_ends(mut self) -> [DVec3; 2] {
+        if self.count == 4 {
+            self.reduce(Known::Apart);
+        }
+        self.ends()
     }
 
     /// Leaves the vertices that carry the point closest to the origin, with their weights. True, and nothing left out, if
@@ -187,14 +197,13 @@ fn on_segment([p, q]: [DVec3; 2], [i, j]: [usize; 2]) -> Carriers {
     let along = q - p;
     let squared = along.dot(along);
     let t = if squared > 0.0 { -p.dot(along) / squared } else { 0.0 };
-    let t = if t <= 0.0 {
-        0.0
+    if t <= 0.0 {
+        ([i, j, j], [1.0, 0.0, 0.0])
     } else if t >= 1.0 {
-        1.0
+        ([j, i, i], [1.0, 0.0, 0.0])
     } else {
-        t
-    };
-    ([i, j, j], [1.0 - t, t, 0.0])
+        ([i, j, j], [1.0 - t, t, 0.0])
+    }
 }
 
 /// By the areas that the origin's projection spans with the sides: where one of them is not positive, that side or another

@@ -37,7 +37,7 @@ pub fn gap(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &Transf
         }
         (None, Some(core)) if *a == Shape::HalfSpace => over_plane(world_from_a, &core, world_from_b),
         (Some(core), None) if *b == Shape::HalfSpace => {
-            over_plane(world_from_b, &core, world_from_a).map(|gap| gap.flipped())
+            over_plane(world_from_b, &core, world_from_a).map(Gap::flipped)
         }
         _ => None,
     }

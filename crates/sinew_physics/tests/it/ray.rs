@@ -23,6 +23,10 @@ fn solids() -> &'static [Shape] {
     SHAPES.split_last().expect("there are shapes").1
 }
 
+fn from_axis(p: Vec3) -> f32 {
+    (p.x * p.x + p.z * p.z).sqrt()
+}
+
 /// Whether a point is in the shape, written down once more.
 fn holds(shape: &Shape, p: Vec3) -> bool {
     match *shape {
@@ -52,9 +56,9 @@ fn holds(shape: &Shape, p: Vec3) -> bool {
             }
             beyond(0.0).min(beyond(1.0)).min(beyond(0.5 * (low + high))) <= 0.0
         }
-        Shape::Cylinder { half_height, radius } => p.y.abs() <= half_height && p.x.hypot(p.z) <= radius,
+        Shape::Cylinder { half_height, radius } => p.y.abs() <= half_height && from_axis(p) <= radius,
         Shape::Cone { half_height, radius } => {
-            p.y.abs() <= half_height && p.x.hypot(p.z) <= radius * (half_height - p.y) / (2.0 * half_height)
+            p.y.abs() <= half_height && from_axis(p) <= radius * (half_height - p.y) / (2.0 * half_height)
         }
         Shape::HalfSpace => p.y <= 0.0,
         Shape::Mesh(_) | Shape::HeightField(_) => unreachable!("surfaces have no inside"),
