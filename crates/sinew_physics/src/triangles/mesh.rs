@@ -175,7 +175,7 @@ impl PartialEq for Mesh {
 fn hash(vertices: &[Vec3], triangles: &[[u32; 3]], numbers: &[u32]) -> u64 {
     let mut hasher = StableHasher::default();
     hasher.write(&(vertices.len() as u64).to_le_bytes());
-    for x in vertices.iter().flat_map(|v| v.to_array()) {
+    for x in vertices.iter().flat_map(Vec3::to_array) {
         hasher.write(&x.to_bits().to_le_bytes());
     }
     for index in triangles.iter().flatten().chain(numbers) {

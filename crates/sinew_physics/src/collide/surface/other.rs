@@ -21,7 +21,8 @@ pub(super) fn other(posed: &Posed<'_, Core>, gap: f32, teller: &mut Teller<'_>) 
     let tolerance = teller.solid.tolerance();
     // The way out leads through the triangle, or its own face is as good: that holds best, and says what the surface is like.
     let outward = between.normal.dot(teller.triangle.normal);
-    if outward < 0.0 || between.distance <= gap + tolerance + 0.05 * max(-gap, 0.0) {
+    let backward = outward < 0.0 && between.distance <= 0.0;
+    if backward || between.distance <= gap + tolerance + 0.05 * max(-gap, 0.0) {
         let over = teller.over_face(Vec3::ZERO);
         if teller.face_points(&over, When::Now) {
             return Some(Part::Face);
