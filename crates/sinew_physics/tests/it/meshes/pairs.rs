@@ -98,7 +98,9 @@ fn a_triangle_and_a_shape_are_as_far_apart_as_by_search() {
             assert!(found.len() == 1 && separation < 0.0, "{place}");
             let moved = frame.translation - found[0].normal * (separation - 1e-3);
             let left = distance(&shape, &Transform::new(moved, frame.rotation), &corners);
-            assert!(left > -tolerance, "{place}, {left}");
+            // Deeper than half its thickness, a shape is measured over the triangle alone.
+            let shallow = expected > -0.5 * shape.inner_radius();
+            assert!(!shallow || left > -tolerance, "{place}, {left}");
         }
         for manifold in &found {
             assert!((manifold.normal.length() - 1.0).abs() < 1e-5, "{place}");
