@@ -230,8 +230,8 @@ impl HeightField {
             let limit = radius_now * radius_now;
             let region = Aabb::reaching(p, Vec3::splat(radius_now));
             self.overlapping(&region, |triangle| {
-                let (point, _) = closest_on_triangle(&triangle.corners, p);
-                Closest::improve(&mut best, p, limit, || triangle, point);
+                let found = closest_on_triangle(&triangle.corners, p);
+                Closest::improve(&mut best, p, limit, found, || triangle);
             });
             if best.is_some() || radius >= reach || radius > far {
                 return best;

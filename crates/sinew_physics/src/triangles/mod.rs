@@ -31,6 +31,8 @@ pub(crate) enum Surface<'a> {
 pub(crate) struct Closest {
     pub square: f32,
     pub point: Vec3,
+    /// Which part of the triangle it lies on.
+    part: Part,
     pub triangle: Triangle,
 }
 
@@ -41,11 +43,10 @@ impl Closest {
         let height = self.triangle.height(p);
         let sign = if height < 0.0 { -1.0 } else { 1.0 };
         // Over a face it has the face's own normal. The direction between points that all but coincide is rounding.
-        let over_face = height.abs() >= distance * (1.0 - 1e-6);
         let precise = distance > 1e-5 * (1.0 + p.length());
-        match (over_face, precise) {
-            (true, _) => (height, self.triangle.normal),
-            (_, true) => (sign * distance, away * (sign / distance)),
+        match self.part {
+            Part::Face => (height, self.triangle.normal),
+            _ if precise => (sign * distance, away * (sign / distance)),
             _ => (sign * distance, self.triangle.normal),
         }
     }
@@ -56,8 +57,8 @@ impl Closest {
         best: &mut Option<Self>,
         p: Vec3,
         limit: f32,
+        (point, part): (Vec3, Part),
         triangle: impl FnOnce() -> Triangle,
-        point: Vec3,
     ) {
         const TIED: f32 = 1e-5;
         let square = (point - p).length_squared();
@@ -65,7 +66,7 @@ impl Closest {
         if square > least * (1.0 + TIED) || square > limit {
             return;
         }
-        let new = Self { square, point, triangle: triangle() };
+        let new = Self { square, point, part, triangle: triangle() };
         let steeper = |best: &Self| new.triangle.height(p).abs() > best.triangle.height(p).abs();
         match best {
             Some(old) if square >= old.square * (1.0 - TIED) => {
@@ -101,8 +102,8 @@ impl Surface<'_> {
                 let mut best: Option<Closest> = None;
                 mesh.tree().nearest(p, limit, |places| {
                     for place in places {
-                        let (point, _) = closest_on_triangle(&mesh.corners(place), p);
-                        Closest::improve(&mut best, p, limit, || mesh.triangle(place), point);
+                        let found = closest_on_triangle(&mesh.corners(place), p);
+                        Closest::improve(&mut best, p, limit, found, || mesh.triangle(place));
                     }
                     best.map_or(limit, |best| best.square * 1.0001)
                 });

@@ -31,57 +31,62 @@ enum AxisOf {
 
 /// `gap` is that along the triangle's normal, at most the margin.
 pub(super) fn meet(placed: &PlacedBox, gap: f32, teller: &mut Teller<'_>) -> Option<Part> {
-    let axis = match best_axis(placed, teller) {
-        Best::Apart => return None,
-        Best::Axis(axis) => Some(axis),
-        Best::None => None,
-    };
+    let Axes { widest, best } = axes(placed, teller);
+    if widest > teller.margin {
+        return None;
+    }
     let tolerance = teller.solid.tolerance();
     // The triangle's own face holds best, and says what the surface is like: another axis must be clearly better.
-    let other = axis.filter(|axis| axis.separation > gap + tolerance + 0.05 * max(-gap, 0.0));
-    let Some(axis) = other else {
-        let over = teller.over_face(Vec3::ZERO);
-        let nearest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
-        // Apart, the two may still pass each other beside the face.
-        if gap > 0.0 && nearest > gap + tolerance {
-            return closest(placed, teller);
-        }
-        if teller.face_points(&over, When::Now) {
-            return Some(Part::Face);
-        }
-        if gap <= 0.0 {
-            let middle = teller.triangle.corners.iter().sum::<Vec3>() / 3.0;
-            teller.lift(gap, closest_on_triangle(&teller.triangle.corners, placed.closest(middle)).0);
-        }
-        return None;
+    let told = match best.filter(|best| best.separation > gap + tolerance + 0.05 * max(-gap, 0.0)) {
+        None => face(gap, widest, teller),
+        // Apart along a direction that leads through the triangle: they pass each other beside its rim.
+        Some(axis) if axis.separation <= 0.0 && widest > 0.0 => None,
+        Some(axis) => match axis.of {
+            AxisOf::Face(k) => box_face(placed, k, &axis, teller),
+            AxisOf::Edges(i, j) => edges(placed, i, j, &axis, teller),
+        },
     };
-    let told = match axis.of {
-        AxisOf::Face(k) => box_face(placed, k, &axis, teller),
-        AxisOf::Edges(i, j) => edges(placed, i, j, &axis, teller),
-    };
-    told.or_else(|| if axis.separation > 0.0 { closest(placed, teller) } else { None })
+    if told.is_some() {
+        return told;
+    }
+    if max(widest, gap) > 0.0 {
+        return closest(placed, teller);
+    }
+    if best.is_none_or(|best| best.separation <= gap) {
+        let middle = teller.triangle.corners.iter().sum::<Vec3>() / 3.0;
+        teller.lift(gap, closest_on_triangle(&teller.triangle.corners, placed.closest(middle)).0);
+    }
+    None
 }
 
-enum Best {
-    /// Farther apart than the margin.
-    Apart,
-    Axis(Axis),
-    None,
+/// What of the box is over the triangle. `None`, and nothing told, if that does not show how far they are apart: they pass each
+/// other beside the face.
+fn face(gap: f32, widest: f32, teller: &mut Teller<'_>) -> Option<Part> {
+    let over = teller.over_face(Vec3::ZERO);
+    let nearest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
+    let beside = max(gap, widest) > 0.0 && nearest > gap + teller.solid.tolerance();
+    (!beside && teller.face_points(&over, When::Now)).then_some(Part::Face)
 }
 
-/// The axis, beside the triangle's own, along which box and triangle are farthest apart.
-fn best_axis(placed: &PlacedBox, teller: &Teller<'_>) -> Best {
+/// What the separating axes beside the triangle's own say.
+struct Axes {
+    /// The largest gap along any of them.
+    widest: f32,
+    /// The one with the largest gap of those that lead out of the surface.
+    best: Option<Axis>,
+}
+
+fn axes(placed: &PlacedBox, teller: &Teller<'_>) -> Axes {
     let triangle = teller.triangle;
-    let mut best: Option<Axis> = None;
-    let mut apart = false;
+    let mut axes = Axes { widest: f32::NEG_INFINITY, best: None };
     let mut consider = |direction: Vec3, half: f32, of: AxisOf| {
         let [a, b, c] = triangle.corners.map(|corner| corner.dot(direction));
         let (low, high) = (min(min(a, b), c), max(max(a, b), c));
         for (normal, separation) in [(direction, -half - high), (-direction, low - half)] {
-            apart |= separation > teller.margin;
+            axes.widest = max(separation, axes.widest);
             let leads_out = normal.dot(triangle.normal) >= LEAST_COSINE;
-            if leads_out && best.is_none_or(|best| separation > best.separation) {
-                best = Some(Axis { normal, separation, of });
+            if leads_out && axes.best.is_none_or(|best| separation > best.separation) {
+                axes.best = Some(Axis { normal, separation, of });
             }
         }
     };
@@ -101,11 +106,7 @@ fn best_axis(placed: &PlacedBox, teller: &Teller<'_>) -> Best {
             }
         }
     }
-    match best {
-        _ if apart => Best::Apart,
-        Some(axis) => Best::Axis(axis),
-        None => Best::None,
-    }
+    axes
 }
 
 /// The triangle cut to the prism over a face of the box.
@@ -175,7 +176,10 @@ fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Telle
     let of_box = Segment { ends: [placed.vertex(index), placed.vertex(index | 1 << j)] };
     let (s, t) = of_box.closest_to_segment(&edge);
     let inside = |x: f32| x > 0.0 && x < 1.0;
-    if axis.separation > 0.0 && !(inside(s) && inside(t)) {
+    // The triangle may reach further beside this edge: then the axis is not that of the closest points.
+    let across = (of_box.at(s) - edge.at(t)).dot(axis.normal) - axis.separation;
+    let bound = across.abs() <= teller.solid.tolerance();
+    if axis.separation > 0.0 && !(inside(s) && inside(t) && bound) {
         return None;
     }
     let part = match t {

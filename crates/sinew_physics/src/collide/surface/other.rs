@@ -1,14 +1,14 @@
 //! Any convex shape against a triangle: direction and gap by GJK and EPA, the triangle being a thin solid.
 
 use super::{Teller, When, name};
-use crate::collide::feature::pair;
+use crate::collide::feature::{WHOLE, pair};
 use crate::collide::features::manifold_of_features;
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use crate::convex::feature::{Corner, Feature};
 use crate::convex::meet;
 use crate::convex::support::{Core, Posed, Support, wide};
 use crate::triangles::{Part, Triangle};
-use sinew_math::{DVec3, Transform, Vec3, max};
+use sinew_math::{DVec3, Transform, Vec3, max, min};
 
 /// `gap` is that along the triangle's normal, at most the margin.
 pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'_>) -> Option<Part> {
@@ -21,7 +21,8 @@ pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'
     let tolerance = teller.solid.tolerance();
     // The way out leads through the triangle, or its own face is as good: that holds best, and says what the surface is like.
     let outward = between.normal.dot(teller.triangle.normal);
-    if outward < 0.0 || between.distance <= gap + tolerance + 0.05 * max(-gap, 0.0) {
+    let backward = outward < 0.0 && between.distance <= 0.0;
+    if backward || between.distance <= gap + tolerance + 0.05 * max(-gap, 0.0) {
         let over = teller.over_face(Vec3::ZERO);
         if teller.face_points(&over, When::Now) {
             return Some(Part::Face);
@@ -38,6 +39,14 @@ pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'
     for (named, point) in points.iter_mut().zip(manifold.points()) {
         let of_surface = name::part(teller.triangle, part) ^ (point.feature as u16 & 0xf) << 10;
         *named = ManifoldPoint { feature: pair(of_surface, (point.feature >> 16) as u16), ..*point };
+    }
+    let nearest = manifold.points().iter().fold(f32::INFINITY, |least, p| min(p.separation, least));
+    if nearest > between.distance + tolerance {
+        // Round sides reach further than the corners and lines that stand for them.
+        let feature = pair(name::part(teller.triangle, part), WHOLE);
+        let position = (between.on_a + between.on_b) * 0.5;
+        manifold.count = usize::min(manifold.count, MAX_POINTS - 1) + 1;
+        points[manifold.count - 1] = ManifoldPoint { position, separation: between.distance, feature };
     }
     teller.tell(manifold.normal, part, When::Now, &points[..manifold.count]);
     Some(part)
