@@ -74,7 +74,8 @@ fn what_rests_on_a_mesh_stays() {
 #[test]
 fn a_ramp_lifts_what_slides_onto_it() {
     for (degrees, speed) in [(10.0_f32, 5.0), (30.0, 5.0), (10.0, 20.0), (30.0, 20.0), (60.0, 10.0)] {
-        let slope = degrees.to_radians().tan();
+        let (sine, cosine) = (trig::sin(degrees.to_radians()), trig::cos(degrees.to_radians()));
+        let slope = sine / cosine;
         let level = grid(40, 1.0, |x, _| if x > 0.0 { x * slope } else { 0.0 });
         for slider in [Shape::Box { half_extents: Vec3::new(0.2, 0.1, 0.2) }, Shape::Sphere { radius: 0.1 }] {
             let mut world = sleepless();
@@ -90,7 +91,7 @@ fn a_ramp_lifts_what_slides_onto_it() {
                 if p.x > 18.0 {
                     break;
                 }
-                let over_ramp = (p.y - p.x * slope) * degrees.to_radians().cos();
+                let over_ramp = (p.y - p.x * slope) * cosine;
                 lowest = lowest.min(if p.x > 0.0 { over_ramp } else { p.y });
                 energy = energy.max(world.body_energy(id).total() / start);
             }
