@@ -35,15 +35,14 @@ pub enum Sleeping {
     Off,
 }
 
-/// What counts as rest: an island sleeps when each of its bodies has been in its place for a time. A body that creeps
-/// further than the distance or the angle within the time does not sleep, however slow it is; one that trembles less far
-/// may.
+/// What counts as rest: an island sleeps when each of its bodies has been in its place for a time. A body that creeps by
+/// more than twice the distance or by the angle within the time does not sleep; one that trembles less far may.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SleepThresholds {
     /// Seconds, not negative. Default 0.5.
     pub time: f32,
     /// From where the time began, metres, positive. Default 0.003: with the time, nothing sleeps that creeps faster than
-    /// 6 mm/s.
+    /// 12 mm/s.
     pub distance: f32,
     /// Likewise, radians, positive. Default 0.025: 0.05 rad/s.
     pub angle: f32,

@@ -1,5 +1,5 @@
 //! `sleep`: an island in which every body has stayed in its place for a while stops being simulated. It is displacement
-//! that counts: a body held between others may tremble and still sleep, one that creeps may not.
+//! that counts: a body held between others may tremble and still sleep, one that creeps on may not.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
@@ -8,6 +8,9 @@ use crate::def::{SleepThresholds, Sleeping, WorldDef};
 use crate::field::Fields;
 use crate::islands::Islands;
 
+/// What creeps is calm wherever it gets to while it is slower than this many times the distance in the time, and than the angle
+/// in the time: limp limbs sag for seconds.
+const CREEP: f32 = 2.0;
 /// What hangs on particles swings about its place, and must come to rest before it may sleep: below both of these, m/s and
 /// rad/s.
 const SLOW_LINEAR: f32 = 0.02;
@@ -27,9 +30,18 @@ pub(crate) fn sleep(
         let mut least = f32::INFINITY;
         for &index in island.bodies {
             let body = bodies.at_mut(index);
+            let creeps_little = is_slower(
+                body,
+                CREEP * thresholds.distance / thresholds.time,
+                thresholds.angle / thresholds.time,
+            );
+            if creeps_little {
+                body.place = body.world_from_principal;
+            }
             let calm = body.sleeping == Sleeping::On
-                && stays(body, thresholds)
-                && (island.groups.is_empty() || is_slow(body))
+                && is_slower(body, thresholds.speed, thresholds.spin)
+                && (creeps_little || stays(body, thresholds))
+                && (island.groups.is_empty() || is_slower(body, SLOW_LINEAR, SLOW_ANGULAR))
                 && !fields.keep_awake(body);
             least = sinew_math::min(least, count(body, calm, def.dt()));
         }
@@ -59,10 +71,8 @@ fn stays(body: &Body, thresholds: &SleepThresholds) -> bool {
     let (was, is) = (body.place, body.world_from_principal);
     (is.translation - was.translation).length() < thresholds.distance
         && is.rotation.angle_to(was.rotation) < thresholds.angle
-        && body.velocity.linear.length() < thresholds.speed
-        && body.velocity.angular.length() < thresholds.spin
 }
 
-fn is_slow(body: &Body) -> bool {
-    body.velocity.linear.length() < SLOW_LINEAR && body.velocity.angular.length() < SLOW_ANGULAR
+fn is_slower(body: &Body, speed: f32, spin: f32) -> bool {
+    body.velocity.linear.length() < speed && body.velocity.angular.length() < spin
 }

@@ -255,7 +255,10 @@ fn surfaces_read_back_as_equal_shapes() {
         (r#"{"type":"mesh","vertices":[[0,0,0]],"triangles":[[0,0]]}"#, "must have 3 indices, has 2"),
         (r#"{"type":"mesh","vertices":[[0,0,0]],"triangles":[[0,0,0]]}"#, "no triangle has an area"),
         (r#"{"type":"mesh","vertices":[],"triangles":[]}"#, "no triangle has an area"),
-        (r#"{"type":"mesh","radius":1,"vertices":[],"triangles":[]}"#, "radius"),
+        (
+            r#"{"type":"mesh","radius":1,"vertices":[[0,0,0],[1,0,0],[0,0,1]],"triangles":[[0,1,2]]}"#,
+            "radius",
+        ),
         (
             r#"{"type":"height_field","columns":4000000000,"rows":4000000000,"spacing":[1,1],"heights":[]}"#,
             "at most 2²⁶ cells",

@@ -4,13 +4,20 @@ use sinew_scenes::scenes::{Expected, Metric, Scene, Settings, find, registry};
 
 /// Figures that are not yet as expected, by scene. One that comes to be met must be taken off, or its test fails.
 const NOT_YET: &[(&str, &[&str])] = &[
-    // Hands that a fold presses into a thigh overlap it by 10.5 and 10.9 mm instead of 10.
-    ("ragdoll_wall_fast", &["nonadjacent_overlap_max_m"]),
-    ("ragdoll_poses", &["nonadjacent_overlap_max_m"]),
+    // The ends still swing by 7 cm/s after ten seconds, instead of 2.
+    ("rope_on_box", &["fastest_m_s"]),
     // The lowest boxes are squeezed out, up to 190 m far.
     (
         "stack_mass_ratio",
-        &["shift_max_m", "top_drift_m", "sink_max_m", "turn_max_deg", "asleep_s", "energy_gain_max"],
+        &[
+            "shift_max_m",
+            "top_drift_m",
+            "sink_max_m",
+            "turn_max_deg",
+            "depth_max_m",
+            "asleep_s",
+            "energy_gain_max",
+        ],
     ),
     // The lowest box is squeezed out.
     (
@@ -23,8 +30,6 @@ const NOT_YET: &[(&str, &[&str])] = &[
     ("cards", &["depth_max_m"]),
     // At step 334 instead of 307.
     ("ragdolls", &["asleep_steps"]),
-    // At step 435 instead of 361; 6 mm deep instead of 5.
-    ("wave_pile", &["asleep_steps", "depth_end_m"]),
     // Not within 400 steps, instead of at 213; 9 mm deep instead of 5.
     ("mesh_drop", &["asleep_steps", "depth_end_m"]),
 ];

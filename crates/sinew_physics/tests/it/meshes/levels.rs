@@ -74,7 +74,7 @@ fn what_rests_on_a_mesh_stays() {
 #[test]
 fn a_ramp_lifts_what_slides_onto_it() {
     for (degrees, speed) in [(10.0_f32, 5.0), (30.0, 5.0), (10.0, 20.0), (30.0, 20.0), (60.0, 10.0)] {
-        let (sine, cosine) = (trig::sin(degrees.to_radians()), trig::cos(degrees.to_radians()));
+        let (sine, cosine) = (sin(degrees.to_radians()), cos(degrees.to_radians()));
         let slope = sine / cosine;
         let level = grid(40, 1.0, |x, _| if x > 0.0 { x * slope } else { 0.0 });
         for slider in [Shape::Box { half_extents: Vec3::new(0.2, 0.1, 0.2) }, Shape::Sphere { radius: 0.1 }] {

@@ -30,8 +30,8 @@ fn what_stays_for_half_a_second_sleeps() {
 
 #[test]
 fn what_creeps_does_not_sleep() {
-    // In half a second 3.5 mm, or 0.03 rad.
-    for velocity in [linear(Vec3::X * 0.007), Velocity { angular: Vec3::Y * 0.06, ..Velocity::default() }] {
+    // In half a second 7 mm, or 0.03 rad.
+    for velocity in [linear(Vec3::X * 0.014), Velocity { angular: Vec3::Y * 0.06, ..Velocity::default() }] {
         let (mut world, id) = adrift(velocity);
         run(&mut world, 10 * SECOND);
         assert!(world.is_awake(id) && world.velocity(id) == velocity);
@@ -125,7 +125,7 @@ fn thresholds_are_settings() {
     assert!(matches!(time(SleepThresholds { time: 0.25, ..default }), Some(14..=15)));
     assert_eq!(time(SleepThresholds { time: 0.0, ..default }), Some(0));
     assert_eq!(time(SleepThresholds { time: 0.0, speed: 0.004, ..default }), None);
-    assert_eq!(time(SleepThresholds { distance: 0.002, ..default }), None);
+    assert_eq!(time(SleepThresholds { distance: 0.001, ..default }), None);
     assert_eq!(time(SleepThresholds { speed: 0.004, ..default }), None);
     for wrong in [
         SleepThresholds { time: -1.0, ..default },
