@@ -86,9 +86,11 @@ pub(crate) fn collide_surface(
         return;
     }
     let to_surface = world_from_surface.rotation.inverse();
-    let center = world_from_surface.inverse_point(world_from_shape.translation);
+    let middle = middle(shape);
+    let center = world_from_surface.inverse_point(world_from_shape.point(middle));
     let Some(core) = Core::of(shape) else { return };
-    let frame = Transform::new(Vec3::ZERO, (to_surface * world_from_shape.rotation).normalize());
+    let rotation = (to_surface * world_from_shape.rotation).normalize();
+    let frame = Transform::new(-(rotation * middle), rotation);
     let solid = Solid::new(shape, &core, &frame);
     let local = Motion { velocity: to_surface * motion.velocity, ..*motion };
     scratch.candidates.clear();
@@ -105,6 +107,15 @@ pub(crate) fn collide_surface(
     scratch.claims.settle(&mut scratch.candidates);
     patch::merge(&scratch.candidates, &scratch.points, solid.tolerance(), &mut scratch.merging, out);
     out.finish(world_from_surface, center);
+}
+
+/// Well inside of a shape: where a triangle in front of which this is faces it.
+fn middle(shape: &Shape) -> Vec3 {
+    match *shape {
+        Shape::Hull(ref hull) => hull.center(),
+        Shape::Cone { half_height, .. } => Vec3::new(0.0, -0.5 * half_height, 0.0),
+        _ => Vec3::ZERO,
+    }
 }
 
 /// What a triangle near the shape has to say.

@@ -5,8 +5,8 @@ use crate::collide::feature::{WHOLE, pair};
 use crate::collide::features::manifold_of_features;
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use crate::convex::feature::{Corner, Feature};
-use crate::convex::meet;
 use crate::convex::support::{Core, Posed, Support, wide};
+use crate::convex::{apart_along, meet};
 use crate::triangles::{Part, Triangle};
 use sinew_math::{DVec3, Transform, Vec3, max, min};
 
@@ -14,7 +14,11 @@ use sinew_math::{DVec3, Transform, Vec3, max, min};
 pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'_>) -> Option<Part> {
     let thin = Thin(teller.triangle);
     let triangle = Posed::new(&thin, &Transform::IDENTITY, Vec3::ZERO);
-    let between = meet(&triangle, posed);
+    let mut between = meet(&triangle, posed);
+    if between.distance < 0.0 {
+        // Of a solid without thickness the way out is found less well than it is measured.
+        between.distance = apart_along(&triangle, posed, wide(between.normal)) as f32;
+    }
     if between.distance > teller.margin {
         return None;
     }
@@ -24,10 +28,14 @@ pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'
     let backward = outward < 0.0 && between.distance <= 0.0;
     if backward || between.distance <= gap + tolerance + 0.05 * max(-gap, 0.0) {
         let over = teller.over_face(Vec3::ZERO);
-        if teller.face_points(&over, When::Now) {
+        let lowest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
+        // Apart, the two may pass each other beside the face; of two that overlap the round side may be over the triangle
+        // where the line that stands for it is not.
+        let shows = lowest - teller.solid.radius() <= max(between.distance + tolerance, 0.0);
+        if shows && teller.face_points(&over, When::Now) {
             return Some(Part::Face);
         }
-        if between.distance < 0.0 {
+        if between.distance <= 0.0 {
             teller.lift(gap, (between.on_a + between.on_b) * 0.5);
             return None;
         }
@@ -45,6 +53,9 @@ pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'
         // Round sides reach further than the corners and lines that stand for them.
         let feature = pair(name::part(teller.triangle, part), WHOLE);
         let position = (between.on_a + between.on_b) * 0.5;
+        if manifold.count == 0 {
+            manifold.normal = between.normal;
+        }
         manifold.count = usize::min(manifold.count, MAX_POINTS - 1) + 1;
         points[manifold.count - 1] = ManifoldPoint { position, separation: between.distance, feature };
     }

@@ -31,7 +31,9 @@ pub(super) fn pill(pill: &Pill, teller: &mut Teller<'_>) -> Option<Part> {
     let over = teller.over_face(Vec3::ZERO);
     let lowest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
     let nearest = nearest_rim(pill, teller);
-    if lowest <= nearest.distance + teller.solid.tolerance() {
+    // A core that comes round the rim is behind the triangle and not in it.
+    let in_front = lowest >= 0.0 || nearest.distance <= teller.solid.tolerance() || pierces(pill, teller);
+    if in_front && lowest <= nearest.distance + teller.solid.tolerance() {
         return teller.face_points(&over, When::Now).then_some(Part::Face);
     }
     let separation = nearest.distance - pill.radius;
@@ -44,6 +46,16 @@ pub(super) fn pill(pill: &Pill, teller: &mut Teller<'_>) -> Option<Part> {
     let position = nearest.on_core - normal * (pill.radius + 0.5 * separation);
     teller.point(normal, nearest.part, position, separation, WHOLE);
     Some(nearest.part)
+}
+
+/// Whether the core goes through the triangle.
+fn pierces(pill: &Pill, teller: &Teller<'_>) -> bool {
+    let [from, to] = pill.core.ends.map(|end| teller.triangle.height(end));
+    if from * to > 0.0 {
+        return false;
+    }
+    let at = pill.core.at(from / (from - to));
+    closest_on_triangle(&teller.triangle.corners, at).1 == Part::Face
 }
 
 /// Closest points of a core and the rim of a triangle.

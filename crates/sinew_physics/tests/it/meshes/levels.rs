@@ -74,8 +74,8 @@ fn what_rests_on_a_mesh_stays() {
 #[test]
 fn a_ramp_lifts_what_slides_onto_it() {
     for (degrees, speed) in [(10.0_f32, 5.0), (30.0, 5.0), (10.0, 20.0), (30.0, 20.0), (60.0, 10.0)] {
-        let (sine, cosine) = (sin(degrees.to_radians()), cos(degrees.to_radians()));
-        let slope = sine / cosine;
+        let angle = degrees.to_radians();
+        let slope = sin(angle) / cos(angle);
         let level = grid(40, 1.0, |x, _| if x > 0.0 { x * slope } else { 0.0 });
         for slider in [Shape::Box { half_extents: Vec3::new(0.2, 0.1, 0.2) }, Shape::Sphere { radius: 0.1 }] {
             let mut world = sleepless();
@@ -91,7 +91,7 @@ fn a_ramp_lifts_what_slides_onto_it() {
                 if p.x > 18.0 {
                     break;
                 }
-                let over_ramp = (p.y - p.x * slope) * cosine;
+                let over_ramp = (p.y - p.x * slope) * cos(angle);
                 lowest = lowest.min(if p.x > 0.0 { over_ramp } else { p.y });
                 energy = energy.max(world.body_energy(id).total() / start);
             }
@@ -103,6 +103,8 @@ fn a_ramp_lifts_what_slides_onto_it() {
     }
 }
 
+const OCTAHEDRON: [Vec3; 6] = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+
 #[test]
 fn fast_bodies_do_not_pass() {
     let floor = floor_shape(Floor::Shuffled);
@@ -113,6 +115,7 @@ fn fast_bodies_do_not_pass() {
         Shape::Capsule { half_height: size, radius: size },
         Shape::Cylinder { half_height: size, radius: size },
         Shape::Cone { half_height: size, radius: size },
+        Shape::Hull(Arc::new(Hull::new(&OCTAHEDRON.map(|p| p * 2.0 * size)).unwrap())),
     ];
     let mut world = sleepless();
     ground(&mut world, floor, FRICTION);
