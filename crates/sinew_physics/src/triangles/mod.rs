@@ -1,6 +1,6 @@
 //! Surfaces of one-sided triangles: meshes and height fields.
 //!
-//! Both answer the same questions ([`Surface`]): which triangles are near, which point is closest, where a line enters. What
+//! Both answer the same questions (`Surface`): which triangles are near, which point is closest, where a line enters. What
 //! a body touches of them is found in `collide/surface`.
 
 mod build;
