@@ -69,7 +69,8 @@ fn beside_sleepers(awake: u32, asleep: u32) -> World {
     // What rests sleeps at once.
     let sleep_thresholds = SleepThresholds { time: 0.0, ..SleepThresholds::default() };
     let mut world = World::new(WorldDef { sleep_thresholds, ..WorldDef::default() });
-    let body = |shape, position| BodyDef { position, shapes: vec![ShapeDef::new(shape)], ..BodyDef::default() };
+    let body =
+        |shape, position| BodyDef { position, shapes: vec![ShapeDef::new(shape)], ..BodyDef::default() };
     world.add_body(&BodyDef { kind: BodyKind::Static, ..body(Shape::HalfSpace, Vec3::ZERO) });
     let place = |i: u32, height: f32| Vec3::new((i % 100) as f32, height, (i / 100) as f32);
     for i in 0..asleep {
