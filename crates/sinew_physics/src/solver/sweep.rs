@@ -5,10 +5,7 @@
 use super::conjugate::{Conjugate, Rows};
 use super::contact_rows::{ManifoldRows, Push};
 use super::tree::Link;
-use super::{
-    IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_BOUNCE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED,
-    WEIGHINGS,
-};
+use super::{IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED, WEIGHINGS};
 use crate::spatial::{ZERO6, add_scaled, linear};
 use sinew_math::max;
 
@@ -96,9 +93,8 @@ impl IslandSolver {
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
         let sweeps = match (self.is_articulated(), pass) {
             (true, _) => SWEEPS_JOINTED,
-            (_, Pass::Solve) => SWEEPS_FREE,
             (_, Pass::Relax) => SWEEPS_FREE_RELAX,
-            (_, Pass::Restitution) => SWEEPS_FREE_BOUNCE,
+            (_, Pass::Solve | Pass::Restitution) => SWEEPS_FREE,
         };
         let conjugates = self.is_articulated() && pass != Pass::Restitution;
         self.conjugate.start();
@@ -145,7 +141,7 @@ impl IslandSolver {
     fn visit_contacts(&mut self, pass: Pass) {
         for i in 0..self.manifolds.len() {
             let now = self.unrest.of(&self.links, self.manifolds[i].a, self.manifolds[i].b);
-            if self.is_articulated() && !self.unrest.wakes_manifold(i, now) {
+            if !self.unrest.wakes_manifold(i, now) {
                 continue;
             }
             if pass == Pass::Relax {
