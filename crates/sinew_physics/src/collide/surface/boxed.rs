@@ -13,6 +13,9 @@ const PARALLEL_SINE: f32 = 0.005;
 /// Of ways out those are not taken that lead through the triangle: below this cosine to its normal.
 const LEAST_COSINE: f32 = -0.02;
 
+/// Cosine of the angle between a normal and a face of the box from which on the face lies on what gives the normal.
+const LIES_COSINE: f32 = 0.9;
+
 /// A direction from the triangle to the box and the gap along it.
 #[derive(Clone, Copy)]
 struct Axis {
@@ -187,9 +190,64 @@ fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Telle
         t if t >= 1.0 => Part::Corner((i + 1) % 3),
         _ => Part::Edge(i),
     };
-    let position = (of_box.at(s) + edge.at(t)) * 0.5;
-    teller.point(axis.normal, part, position, axis.separation, feature::edge(j, index));
+    let (points, count) = under_face(placed, &edge, axis.normal, super::name::part(teller.triangle, part));
+    let points = &points[..count];
+    if points.iter().any(|point| point.separation <= axis.separation + teller.solid.tolerance()) {
+        teller.tell(axis.normal, part, When::Now, points);
+    } else {
+        let position = (of_box.at(s) + edge.at(t)) * 0.5;
+        teller.point(axis.normal, part, position, axis.separation, feature::edge(j, index));
+    }
     Some(part)
+}
+
+/// Both ends of what a face of the box has of an edge of the triangle, if the face lies on it and does not stand up from it: with
+/// the one point alone where the edges cross the box rocks from one side to the other for ever.
+fn under_face(
+    placed: &PlacedBox,
+    edge: &Segment,
+    normal: Vec3,
+    of_surface: u16,
+) -> ([ManifoldPoint; 2], usize) {
+    let mut points = [ManifoldPoint::default(); 2];
+    let (k, side) = placed.facing(-normal);
+    let outward = placed.axes[k] * side;
+    let slope = -outward.dot(normal);
+    if slope < LIES_COSINE {
+        return (points, 0);
+    }
+    let base = usize::from(side > 0.0) << k;
+    // Shares of the edge, and the box's feature above each.
+    let mut ends = [(0.0, feature::face(k, side)), (1.0, feature::face(k, side))];
+    for u in [(k + 1) % 3, (k + 2) % 3] {
+        let along = 3 - k - u;
+        let [from, to] = edge.ends.map(|end| end.dot(placed.axes[u]));
+        for (low, limit) in [(true, -placed.half[u]), (false, placed.half[u])] {
+            // Of the side that the edge comes in by, or goes out by.
+            let (comes, steps) = ((from < to) == low, to - from);
+            if steps.abs() <= f32::MIN_POSITIVE {
+                continue;
+            }
+            let share = (limit - from) / steps;
+            let end = &mut ends[usize::from(!comes)];
+            if (share > end.0) == comes {
+                *end = (share, feature::edge(along, base | usize::from(!low) << u));
+            }
+        }
+    }
+    if ends[0].0 >= ends[1].0 {
+        return (points, 0);
+    }
+    for (told, (share, of_box)) in points.iter_mut().zip(ends) {
+        let at = edge.at(share);
+        let separation = (at.dot(outward) - placed.half[k]) / slope;
+        *told = ManifoldPoint {
+            position: at + normal * (0.5 * separation),
+            separation,
+            feature: pair(of_surface, of_box),
+        };
+    }
+    (points, 2)
 }
 
 /// The closest points of a box and a triangle that are apart, by trying corners and edges.
