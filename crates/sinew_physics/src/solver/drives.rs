@@ -9,7 +9,7 @@ use sinew_math::{clamp, max, trig};
 
 /// Joint friction is a viscosity that gives the full torque at the joint's present rate, but never more than this slow
 /// rate would ask, rad/s or m/s: a joint that should stick creeps below it, and sleep ends the creep.
-const STICK_RATE: f32 = 0.02;
+const STICK_RATE: f32 = 0.004;
 /// A velocity motor is a viscosity that would bring what it moves to its speed within this share of a substep.
 const MOTOR_SHARE: f32 = 1e-3;
 /// Fastest that a joint which is open closes, m/s or rad/s: one attached anew at a distance does not jump.
