@@ -138,6 +138,7 @@ impl IslandSolver {
         self.refresh_inertia();
         self.factor_joints();
         self.copy_contacts(island, view);
+        self.choose_effort();
         self.limits.clear();
         self.choose_limits();
         self.refresh_response();

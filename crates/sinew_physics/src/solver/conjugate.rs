@@ -2,7 +2,6 @@
 //! (nonsmooth nonlinear conjugate gradients: Silcowitz, Niebe and Erleben 2010). For a hand between the floor and the
 //! chest that lies on it, 12 sweeps do what took 30 (ADR 0011).
 
-use super::SWEEP_TOLERANCE;
 use super::contact_rows::{Given, ManifoldRows};
 use super::limit_rows::LimitRow;
 use super::sweep::Unrest;
@@ -107,16 +106,12 @@ impl State {
     fn go_on(&mut self, rows: &mut Rows<'_>, change: &Self, share: f32) {
         for (i, row) in rows.manifolds.iter_mut().enumerate() {
             let d = &mut self.manifolds[i];
-            if row.give(d, share) >= SWEEP_TOLERANCE {
-                rows.unrest.wake_manifold(i);
-            }
+            rows.unrest.stir_manifold(i, row.give(d, share));
             *d = change.manifolds[i].plus(d, share);
         }
         for (i, row) in rows.limits.iter_mut().enumerate() {
             let d = &mut self.limits[i];
-            if row.give(*d * share) >= SWEEP_TOLERANCE {
-                rows.unrest.wake_limit(i);
-            }
+            rows.unrest.stir_limit(i, row.give(*d * share));
             *d = change.limits[i] + *d * share;
         }
         for (i, link) in rows.links.iter().enumerate() {

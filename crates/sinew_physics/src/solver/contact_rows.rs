@@ -177,6 +177,8 @@ pub(crate) struct ManifoldRows {
     material: Material,
     slop: f32,
     soft: Softness,
+    /// Share of that softness, but for the bias.
+    softness: f32,
     /// Of the present pose.
     separation: [f32; MAX_POINTS],
     rows: [Row; MAX_POINTS],
@@ -280,6 +282,7 @@ impl ManifoldRows {
             material: source.material,
             slop: source.slop,
             soft: Softness::new(min(hertz, 0.25 / source.h), CONTACT_DAMPING, source.h),
+            softness: 1.0,
             separation: [0.0; MAX_POINTS],
             rows: [Row::ZERO; MAX_POINTS],
             tangents: [Row::ZERO; 2],
@@ -305,6 +308,11 @@ impl ManifoldRows {
         rows.take_manifold(bodies);
         rows.place(bodies);
         rows
+    }
+
+    /// Has it give by so much of what its frequency says.
+    pub fn soften(&mut self, share: f32) {
+        self.softness = share;
     }
 
     /// Cores of the manifold's points at the present poses.
@@ -560,7 +568,8 @@ impl ManifoldRows {
             }
         }
         // The block's softness is taken at the manifold's centre; taken at each point a 1 kg foot under 69 kg sinks 7 mm.
-        let at_center = self.soft.impulse_scale / self.soft.mass_scale * mean / self.count as f32;
+        let at_center =
+            self.softness * self.soft.impulse_scale / self.soft.mass_scale * mean / self.count as f32;
         let mut problem = NormalProblem::default();
         for i in 0..self.count {
             let s = self.separation[i];

@@ -9,6 +9,7 @@ mod conjugate;
 mod contact_rows;
 mod disk;
 mod drives;
+mod effort;
 mod energy;
 mod fields;
 pub(crate) mod lcp;
@@ -31,6 +32,7 @@ pub(crate) use build::View;
 use conjugate::Conjugate;
 use contact_rows::ManifoldRows;
 use drives::SoftRow;
+use effort::Effort;
 use energy::Momentum;
 use fields::Attraction;
 use limit_rows::LimitRow;
@@ -41,16 +43,6 @@ pub(crate) use solution::{IslandSolution, Solution, SolvedBody, SolvedJoint, spl
 use sweep::{Pass, Unrest};
 use tree::Link;
 
-/// Most visits of all contact and limit rows per pass in an island with joints. A heavy body on a jointed light one
-/// needs them; most passes end sooner, once a sweep changes no velocity by more than the tolerance (m/s or rad/s).
-const SWEEPS_JOINTED: usize = 24;
-const SWEEP_TOLERANCE: f32 = 2e-3;
-/// Likewise in one without. Most need one, since loads last: only a pile whose loads are new, or change, goes on. A tower of
-/// 18 levels sank by a level and a half before one sweep had found its loads, and fell.
-const SWEEPS_FREE: usize = 8;
-/// In its `relax` two, since friction of the first knows only the soft impulses of `solve` (1.5 % too little). With more,
-/// normals and friction chase each other through the pile, and it creeps apart.
-const SWEEPS_FREE_RELAX: usize = 2;
 /// Sweeps of `relax` before which friction learns its loads anew: the impulses of `solve` first, then those that really
 /// press. From then on loads stay, or friction and normals may chase each other for ever.
 const WEIGHINGS: usize = 2;
@@ -188,6 +180,7 @@ pub(crate) struct IslandSolver {
     forces_vary: bool,
     attraction: Attraction,
     scratch: Scratch,
+    effort: Effort,
     unrest: Unrest,
     conjugate: Conjugate,
     /// Energy that the changes of the sweep in progress have one by one, J.

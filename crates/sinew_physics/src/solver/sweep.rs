@@ -5,7 +5,7 @@
 use super::conjugate::{Conjugate, Rows};
 use super::contact_rows::{ManifoldRows, Push};
 use super::tree::Link;
-use super::{IslandSolver, SWEEP_TOLERANCE, SWEEPS_FREE, SWEEPS_FREE_RELAX, SWEEPS_JOINTED, WEIGHINGS};
+use super::{IslandSolver, WEIGHINGS};
 use crate::spatial::{ZERO6, add_scaled, linear};
 use sinew_math::max;
 
@@ -24,6 +24,8 @@ pub(crate) enum Pass {
 /// heap most of them do after a few sweeps. m/s or rad/s, summed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Unrest {
+    /// A change below it is none.
+    tolerance: f32,
     trees: Vec<f32>,
     /// Per manifold and per limit row: the sum of its trees when it was last visited.
     manifolds: Vec<f32>,
@@ -31,7 +33,8 @@ pub(super) struct Unrest {
 }
 
 impl Unrest {
-    fn start(&mut self, trees: usize, manifolds: usize, limits: usize) {
+    fn start(&mut self, tolerance: f32, trees: usize, manifolds: usize, limits: usize) {
+        self.tolerance = tolerance;
         for (list, count, start) in [
             (&mut self.trees, trees, 0.0),
             (&mut self.manifolds, manifolds, f32::NEG_INFINITY),
@@ -53,27 +56,31 @@ impl Unrest {
         self.trees[tree as usize] += change;
     }
 
-    /// A row needs a visit whatever its trees do.
-    pub fn wake_manifold(&mut self, i: usize) {
-        self.manifolds[i] = f32::NEG_INFINITY;
+    /// A row whose impulses have changed what they make of a velocity by this needs a visit, whatever its trees do.
+    pub fn stir_manifold(&mut self, i: usize, change: f32) {
+        if change >= self.tolerance {
+            self.manifolds[i] = f32::NEG_INFINITY;
+        }
     }
 
-    pub fn wake_limit(&mut self, i: usize) {
-        self.limits[i] = f32::NEG_INFINITY;
+    pub fn stir_limit(&mut self, i: usize, change: f32) {
+        if change >= self.tolerance {
+            self.limits[i] = f32::NEG_INFINITY;
+        }
     }
 
     fn wakes_manifold(&mut self, i: usize, now: f32) -> bool {
-        wakes(&mut self.manifolds[i], now)
+        wakes(&mut self.manifolds[i], now, self.tolerance)
     }
 
     pub fn wakes_limit(&mut self, i: usize, now: f32) -> bool {
-        wakes(&mut self.limits[i], now)
+        wakes(&mut self.limits[i], now, self.tolerance)
     }
 }
 
 /// Whether enough has happened since the last visit; then this is the last one.
-fn wakes(seen: &mut f32, now: f32) -> bool {
-    let wakes = now - *seen >= SWEEP_TOLERANCE;
+fn wakes(seen: &mut f32, now: f32, tolerance: f32) -> bool {
+    let wakes = now - *seen >= tolerance;
     if wakes {
         *seen = now;
     }
@@ -87,16 +94,12 @@ impl IslandSolver {
             return;
         }
         self.reset_impulses();
-        self.unrest.start(self.tree_count, self.manifolds.len(), self.limits.len());
+        self.unrest.start(self.effort.tolerance, self.tree_count, self.manifolds.len(), self.limits.len());
         let moving = self.links.len();
         self.scratch.before.clear();
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
-        let sweeps = match (self.is_articulated(), pass) {
-            (true, _) => SWEEPS_JOINTED,
-            (_, Pass::Relax) => SWEEPS_FREE_RELAX,
-            (_, Pass::Solve | Pass::Restitution) => SWEEPS_FREE,
-        };
-        let conjugates = self.is_articulated() && pass != Pass::Restitution;
+        let sweeps = self.effort.sweeps(pass);
+        let conjugates = pass != Pass::Restitution;
         self.conjugate.start();
         for done in 1..=sweeps {
             self.largest_change = 0.0;
@@ -113,7 +116,7 @@ impl IslandSolver {
             }
             self.visit_contacts(pass);
             self.visit_limits(pass);
-            if done == sweeps || (done > 1 && self.largest_change < SWEEP_TOLERANCE) {
+            if done == sweeps || (done > 1 && self.largest_change < self.effort.tolerance) {
                 break;
             }
             if conjugates {
