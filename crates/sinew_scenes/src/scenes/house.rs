@@ -5,7 +5,7 @@ use super::{Instance, Scene, Setting, Setup};
 use sinew::formats::TriangleMesh;
 use sinew::math::{Rotation, Vec3};
 use sinew::physics::cook::{CookOptions, cook};
-use sinew::physics::{BodyDef, BodyKind, OverlapWith, Probe, Shape, ShapeDef, World};
+use sinew::physics::{BodyDef, BodyKind, NearestToShape, Probe, Shape, ShapeDef, World};
 use sinew::ragdoll::RagdollDef;
 
 /// Not listed: it is about files that are not ours.
@@ -52,19 +52,22 @@ fn house(setup: &Setup<'_>) -> Instance {
     Instance::new(world, limp)
 }
 
-/// The first place from `place` on along +z where a character in its bind pose touches nothing: wide ones would start with
+/// The first place from `place` on along +z where a character in its bind pose has room about it: wide ones would start with
 /// their arms in the jambs. If there is none within 2 m, `place` itself.
 fn out_of_the_door(world: &World, def: &RagdollDef, place: Vec3) -> Vec3 {
+    const ROOM: f32 = 0.03;
     const STRIDE: f32 = 0.05;
     const STRIDES: usize = 40;
     let pose = bind_pose(def);
-    let touches = |place: &Vec3| {
-        let bodies = def.bodies.iter().zip(placed(def, &pose, Rotation::IDENTITY, *place));
-        let mut probes = bodies.map(|(body, at)| OverlapWith(Probe::new(body.shape.clone(), at)));
-        probes.any(|probe| world.query().any(&probe))
+    let has_room = |place: &Vec3| {
+        let mut bodies = def.bodies.iter().zip(placed(def, &pose, Rotation::IDENTITY, *place));
+        bodies.all(|(body, at)| {
+            let probe = Probe::new(body.shape.clone(), at);
+            !world.query().any(&NearestToShape { probe, within: ROOM })
+        })
     };
     let mut places = (0..STRIDES).map(|i| place + Vec3::Z * (STRIDE * i as f32));
-    places.find(|place| !touches(place)).unwrap_or(place)
+    places.find(has_room).unwrap_or(place)
 }
 
 /// The level as triangles, or as boxes.
