@@ -3,19 +3,21 @@
 //! Metres, kilograms, y up, gravity 9.81 m/s² down, steps of 1/60 s. Unless a scene says otherwise: friction 0.6,
 //! restitution 0, density 1000 kg/m³.
 
+pub(crate) mod arch;
 mod boxes;
 mod chains;
 mod figure;
 mod grids;
 mod stands;
-mod waves;
+pub(crate) mod waves;
 
+pub use arch::arch;
 pub use boxes::{box_pyramid, box_rain, box_rain_of, large_pyramid, large_pyramid_of};
 pub use chains::{chain_100_links, chain_hang, chain_swing, hanging_rope, heavy_rope};
 pub use figure::{ragdoll_pile, ragdolls, rain};
 pub use grids::{joint_grid, joint_grid_of, net};
 pub use stands::{cards, jenga, stack_mass_ratio, stack_ratio};
-pub use waves::{mesh_drop, wave_pile};
+pub use waves::{mesh_drop, rocks, wave_pile};
 
 use crate::parts::{GRAVITY, ghost};
 use sinew::math::{Random, Rotation, Transform, Vec3, trig};

@@ -5,7 +5,7 @@ use super::{Blueprint, in_box, rotation};
 use crate::parts::{ball, body, cuboid, fixed, made_of};
 use core::f32::consts::TAU;
 use sinew::math::{Random, Vec3, trig};
-use sinew::physics::{BodyDef, Filter, HeightField, HeightFieldDef, Material, Mesh, Shape, Sleeping};
+use sinew::physics::{BodyDef, Filter, HeightField, HeightFieldDef, Hull, Material, Mesh, Shape, Sleeping};
 use std::sync::Arc;
 
 /// 100 balls, capsules and boxes fall onto waves, five by five in four layers.
@@ -53,6 +53,34 @@ pub fn mesh_drop() -> Blueprint {
     scene
 }
 
+/// 64 rocks, no two alike, pour onto waves, four by four in four layers.
+pub fn rocks() -> Blueprint {
+    const SIDE: usize = 4;
+    const LAYERS: usize = 4;
+    const SPACING: f32 = 1.2;
+    let mut scene = Blueprint::new("rocks", Sleeping::On, 600);
+    scene.body(Waves { cells: 20, height: 0.6, frequencies: [0.06, 0.08] }.field());
+    let mut random = Random::new(11);
+    for i in 0..SIDE * SIDE * LAYERS {
+        let (layer, row, column) = (i / (SIDE * SIDE), i / SIDE % SIDE, i % SIDE);
+        let place = |index: usize| (index as f32 - 0.5 * (SIDE - 1) as f32) * SPACING;
+        let at = Vec3::new(place(row), 1.6 + SPACING * layer as f32, place(column));
+        let rock = rock(&mut random);
+        let surface = rolling(0.25 * rock.inner_radius());
+        let def = made_of(body(Shape::Hull(Arc::new(rock)), at), surface);
+        scene.body(BodyDef { rotation: rotation(&mut random), ..def });
+    }
+    scene
+}
+
+/// The hull of points drawn from the surface of an ellipsoid.
+fn rock(random: &mut Random) -> Hull {
+    const CORNERS: usize = 14;
+    let half_axes = in_box(random, 0.25, 0.5);
+    let corners: Vec<Vec3> = (0..CORNERS).map(|_| half_axes * (rotation(random) * Vec3::Y)).collect();
+    Hull::new(&corners).expect("so many points are a solid")
+}
+
 /// Rolling resistance over the radius of what rolls; a quarter of that of the largest ball inside where nothing is round.
 const ROLLING: f32 = 0.3;
 
@@ -61,13 +89,13 @@ fn rolling(radius: f32) -> Material {
 }
 
 /// Ground whose height is a product of two sines.
-struct Waves {
+pub(crate) struct Waves {
     /// Of 1 m along each side.
-    cells: usize,
+    pub cells: usize,
     /// From the middle to the crests, metres.
-    height: f32,
+    pub height: f32,
     /// Along x and z, 1/m.
-    frequencies: [f32; 2],
+    pub frequencies: [f32; 2],
 }
 
 impl Waves {
@@ -88,7 +116,7 @@ impl Waves {
         Vec3::new(-0.5, 0.0, -0.5) * self.cells as f32
     }
 
-    fn field(&self) -> BodyDef {
+    pub fn field(&self) -> BodyDef {
         let side = self.cells + 1;
         let def = HeightFieldDef {
             columns: side,
@@ -101,7 +129,7 @@ impl Waves {
         fixed(body(Shape::HeightField(Arc::new(field)), self.corner()))
     }
 
-    fn mesh(&self) -> BodyDef {
+    pub fn mesh(&self) -> BodyDef {
         let side = self.cells as u32 + 1;
         let place = |i: usize| Vec3::new((i % side as usize) as f32, 0.0, (i / side as usize) as f32);
         let vertices: Vec<Vec3> = self.heights().enumerate().map(|(i, y)| place(i) + Vec3::Y * y).collect();

@@ -20,6 +20,7 @@ mod sight;
 mod stand;
 
 mod air;
+mod arch;
 mod ballistics;
 mod blasts;
 mod blobs;
@@ -27,6 +28,7 @@ mod boxes;
 mod cabin;
 mod chains;
 mod cloths;
+mod coin;
 mod crowds;
 mod engine;
 mod falls;
@@ -48,6 +50,7 @@ mod piles;
 mod ragdolls;
 mod rolling;
 mod settling;
+mod showroom;
 mod springs;
 mod stacks;
 mod strings;
@@ -131,6 +134,7 @@ const REGISTRY: &[Scene] = &[
     incline::ROLLS,
     rolling::SLIDE_TO_ROLL,
     rolling::ROLLING_BALLS,
+    coin::COIN,
     impacts::ELASTIC_PAIRS,
     impacts::NEWTONS_CRADLE,
     impacts::BOUNCING_BALLS,
@@ -157,6 +161,7 @@ const REGISTRY: &[Scene] = &[
     weightless::SPIN_TRIPLE,
     weightless::SPIN_RAGDOLL,
     cabin::CABIN,
+    showroom::SHOWROOM,
     piles::STACK,
     piles::PYRAMID,
     piles::DOMINOES,
@@ -164,6 +169,7 @@ const REGISTRY: &[Scene] = &[
     stacks::SIZE_RATIO,
     stacks::JENGA,
     stacks::CARDS,
+    arch::ARCH,
     stacks::LARGE_PYRAMID,
     springs::ROPE_ON_BOX,
     ragdolls::DROP,
@@ -184,6 +190,7 @@ const REGISTRY: &[Scene] = &[
     settling::RAGDOLLS,
     settling::WAVE_PILE,
     settling::MESH_DROP,
+    settling::ROCKS,
     crowds::RAIN,
     engine::FRAME_RATES,
     engine::TAUTOCHRONE,

@@ -148,8 +148,7 @@ impl Limp {
 
     /// Likewise of another character.
     pub fn spawn_of(def: RagdollDef, world: &mut World, turn: Rotation, place: Vec3, speed: Vec3) -> Self {
-        let pose: Vec<_> = def.bodies.iter().map(|body| body.character_from_body).collect();
-        let ragdoll = spawn_at(world, &def, &pose, turn, place, speed);
+        let ragdoll = spawn_at(world, &def, &bind_pose(&def), turn, place, speed);
         let mut meter = QualityMeter::new(&def, 10.0);
         meter.before_step(world);
         let flight = Flight::new(world, ragdoll.bodies.clone());
@@ -186,7 +185,7 @@ impl Limp {
     }
 }
 
-/// A mannequin in a pose, turned and moving as one, its lowest point at the height of `place`.
+/// A character in a pose, turned and moving as one, its lowest point at the height of `place`.
 pub(super) fn spawn_at(
     world: &mut World,
     def: &RagdollDef,
@@ -195,6 +194,19 @@ pub(super) fn spawn_at(
     place: Vec3,
     speed: Vec3,
 ) -> Ragdoll {
+    let velocity = Velocity { linear: speed, angular: Vec3::ZERO };
+    let state = |world_from_body| BodyState { world_from_body, velocity };
+    let states: Vec<_> = placed(def, pose, turn, place).map(state).collect();
+    Ragdoll::spawn(world, def, &states, &Flesh::default())
+}
+
+/// Where the bodies of a pose are that is turned, its lowest point at the height of `place`.
+pub(super) fn placed(
+    def: &RagdollDef,
+    pose: &[Transform],
+    turn: Rotation,
+    place: Vec3,
+) -> impl Iterator<Item = Transform> {
     let turned = Transform::new(Vec3::ZERO, turn);
     let lowest = def
         .bodies
@@ -202,10 +214,12 @@ pub(super) fn spawn_at(
         .zip(pose)
         .fold(f32::INFINITY, |lowest, (body, &at)| min(lowest, body.shape.aabb(&(turned * at)).min.y));
     let placed = Transform::new(place - Vec3::Y * lowest, turn);
-    let velocity = Velocity { linear: speed, angular: Vec3::ZERO };
-    let state = |&at: &Transform| BodyState { world_from_body: placed * at, velocity };
-    let states: Vec<_> = pose.iter().map(state).collect();
-    Ragdoll::spawn(world, def, &states, &Flesh::default())
+    pose.iter().map(move |&at| placed * at)
+}
+
+/// The pose in which a rig was bound to its skin.
+pub(super) fn bind_pose(def: &RagdollDef) -> Vec<Transform> {
+    def.bodies.iter().map(|body| body.character_from_body).collect()
 }
 
 pub(super) fn ragdoll_of_mannequin() -> RagdollDef {

@@ -143,7 +143,7 @@ fn disc(center: Vec3, foot: Vec3) -> BodyDef {
 
 /// Counts how far an angle has gone that moves by less than half a turn a step.
 #[derive(Clone, Copy, Debug, Default)]
-struct Turn {
+pub(super) struct Turn {
     last: Option<f32>,
     /// Radians.
     sum: f64,
@@ -152,7 +152,7 @@ struct Turn {
 }
 
 impl Turn {
-    fn after_step(&mut self, angle: f32, dt: f32) {
+    pub fn after_step(&mut self, angle: f32, dt: f32) {
         use core::f32::consts::{PI, TAU};
         if let Some(last) = self.last {
             let way = angle - last;
@@ -170,7 +170,7 @@ impl Turn {
     }
 
     /// rad/s.
-    fn rate(&self) -> Option<f32> {
+    pub fn rate(&self) -> Option<f32> {
         (self.time > 0.0).then(|| (self.sum / self.time) as f32)
     }
 }

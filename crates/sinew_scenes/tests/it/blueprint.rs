@@ -27,6 +27,8 @@ fn they_are_as_large_as_described() {
     check(&blueprint::ragdolls(), 1 + 4 + 8 * 15, 8 * 15, 8 * 14);
     check(&blueprint::wave_pile(), 101, 100, 0);
     check(&blueprint::mesh_drop(), 401, 400, 0);
+    check(&blueprint::rocks(), 65, 64, 0);
+    check(&blueprint::arch(15, 4), 2 + 15 + 4, 15 + 4, 0);
     check(&blueprint::box_pyramid(), 1241, 1240, 0);
     check(&blueprint::box_rain(), 4005, 4000, 0);
     check(&blueprint::large_pyramid(), 5051, 5050, 0);
