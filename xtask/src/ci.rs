@@ -14,7 +14,7 @@ use std::time::Instant;
 #[derive(clap::Args)]
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
-    /// large scenes; all random cases of boxes and files; 10,000 random worlds (or the seeds of
+    /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
     /// SINEW_WORLDS, as in 100..200); the peers that need no C; instruction counts
     #[arg(long)]
     full: bool,
@@ -94,12 +94,13 @@ fn random_worlds() -> Result<()> {
     command::run(test.args(["--", "--nocapture", "ten_thousand_random_worlds"]).env("SINEW_FULL", "1"))
 }
 
-/// Every random case of tests that otherwise run a hundredth: boxes against brute force, hostile files.
+/// Every random case of tests that otherwise run a hundredth: boxes, every pair of shapes, trees and questions against brute
+/// force, hostile files.
 fn all_cases() -> Result<()> {
-    let test =
-        ["test", "--release", "--package", "sinew_physics", "--package", "sinew_formats", "--test", "it"];
+    let test = ["test", "--release", "--package", "sinew_physics", "--package", "sinew_formats"];
     let mut test = command::cargo(&test);
-    command::run(test.args(["--", "boxes", "hostile", "mjcf"]).env("SINEW_FULL", "1"))
+    test.args(["--lib", "--test", "it", "--", "boxes", "collide", "convex", "hull", "meshes", "queries"]);
+    command::run(test.args(["tree", "pairs", "hostile", "mjcf"]).env("SINEW_FULL", "1"))
 }
 
 fn clippy() -> Result<()> {

@@ -6,7 +6,7 @@ use crate::story;
 use sinew::anim::{Primitive, Rig, Wrap, local_to_model, sample, skin_vertices};
 use sinew::math::{Affine, Rotation, Transform, Vec2, Vec3};
 use sinew::physics::{BodyDef, Shape};
-use sinew_picture::draw::{self, Solid};
+use sinew_picture::draw;
 use sinew_picture::{
     Caption, EncodeError, FollowCamera, Image, Material, Model, Movie, PictureFormat, RenderSettings,
     Renderer, Scene, Sun, Texture,
@@ -171,12 +171,12 @@ fn looks(rig: &Rig) -> Vec<Material> {
 /// A shaft and a head that end at `tip`, along the unit vector `along`.
 fn arrow(tip: Vec3, along: Vec3) -> [Model; 2] {
     let turn = Rotation::from_arc(Vec3::Y, along);
-    let part = |behind: f32, solid: Solid<'_>| {
-        draw::solid(solid, Transform::new(tip - along * behind, turn), Material::new(ARROW_COLOR))
+    let part = |behind: f32, shape: Shape| {
+        draw::shape(&shape, Transform::new(tip - along * behind, turn), Material::new(ARROW_COLOR))
     };
     [
-        part(0.55, Solid::Capsule { half_height: 0.3, radius: 0.025 }),
-        part(0.22, Solid::Capsule { half_height: 0.02, radius: 0.07 }),
+        part(0.55, Shape::Capsule { half_height: 0.3, radius: 0.025 }),
+        part(0.22, Shape::Capsule { half_height: 0.02, radius: 0.07 }),
     ]
 }
 
@@ -189,12 +189,9 @@ pub fn body_models(body: &BodyDef, half_size: f32, color: [f32; 3], other: [f32;
     let world_from_body = Transform::new(body.position, body.rotation);
     let model = |shape: &sinew::physics::ShapeDef| {
         let place = world_from_body * shape.body_from_shape;
-        match Solid::of(&shape.shape) {
-            Some(solid) => draw::solid(solid, place, Material::new(color)),
-            None if shape.shape != Shape::HalfSpace => {
-                draw::surface(&shape.shape, place, Material::new(color))
-            }
-            None => draw::plane(place, half_size, 1.0, [color, other]),
+        match &shape.shape {
+            Shape::HalfSpace => draw::plane(place, half_size, 1.0, [color, other]),
+            shape => draw::shape(shape, place, Material::new(color)),
         }
     };
     body.shapes.iter().map(model).collect()

@@ -111,7 +111,7 @@ fn read_body(at: At<'_>, materials: Option<At<'_>>) -> Result<BodyDef> {
         && mass.is_none()
         && !shapes.iter().any(|s| s.density > 0.0 && s.shape.is_solid())
     {
-        return Err(at.malformed("a dynamic body needs a mass, or a shape with a density above 0"));
+        return Err(at.malformed("a dynamic body needs a mass, or a solid shape with a density above 0"));
     }
     let pose = parts::read_pose(at)?;
     Ok(BodyDef {

@@ -70,6 +70,10 @@ impl Frustum {
         }
         let along = high - low;
         let t = clamp((q - low).dot(along) / along.dot(along), 0.0, 1.0);
+        if beyond_side > 0.0 && t > 0.0 && t < 1.0 {
+            // Right beside the side its own normal is exact, however near the point is.
+            return (beyond_side, from_profile(side, p));
+        }
         let candidates =
             [Vec2::new(min(q.x, low.x), -h), Vec2::new(min(q.x, high.x), h), low + along * t].map(|c| q - c);
         let nearer = |a: Vec2, b: Vec2| if b.dot(b) < a.dot(a) { b } else { a };

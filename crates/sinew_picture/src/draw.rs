@@ -4,117 +4,40 @@ use crate::scene::{Line, LineDepth, Material, Model, Pattern, ShadowCasting};
 use sinew::math::{Rotation, Transform, Vec3, normalize_or, trig};
 use sinew::physics::{Hull, Shape};
 
-/// A solid around the origin of its own frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Solid<'a> {
-    /// Box.
-    Box {
-        /// Half of each side, metres.
-        half_extents: Vec3,
-    },
-    /// Ball.
-    Sphere {
-        /// Metres.
-        radius: f32,
-    },
-    /// Segment along y from −`half_height` to `half_height`, with a radius.
-    Capsule {
-        /// Half the length of the segment, without the caps, metres.
-        half_height: f32,
-        /// Metres.
-        radius: f32,
-    },
-    /// Convex solid with flat faces.
-    Hull(&'a Hull),
-    /// The hull of two balls on the y axis.
-    TaperedCapsule {
-        /// Half the distance of the balls' centres, metres.
-        half_height: f32,
-        /// Of the ball at −`half_height`, metres.
-        radius_bottom: f32,
-        /// Of the ball at `half_height`, metres.
-        radius_top: f32,
-    },
-    /// Cylinder along y with flat ends.
-    Cylinder {
-        /// Half of its length, metres.
-        half_height: f32,
-        /// Metres.
-        radius: f32,
-    },
-    /// Cone along y, its apex above.
-    Cone {
-        /// Half of its height, metres.
-        half_height: f32,
-        /// Of the base, metres.
-        radius: f32,
-    },
-}
-
-impl<'a> Solid<'a> {
-    /// The solid of a collision shape; none of a half-space, which has no end: see [`floor`]; none of surfaces: see
-    /// [`surface`].
-    pub fn of(shape: &'a Shape) -> Option<Self> {
-        match *shape {
-            Shape::Box { half_extents } => Some(Self::Box { half_extents }),
-            Shape::Sphere { radius } => Some(Self::Sphere { radius }),
-            Shape::Capsule { half_height, radius } => Some(Self::Capsule { half_height, radius }),
-            Shape::Hull(ref hull) => Some(Self::Hull(hull)),
-            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
-                Some(Self::TaperedCapsule { half_height, radius_bottom, radius_top })
-            }
-            Shape::Cylinder { half_height, radius } => Some(Self::Cylinder { half_height, radius }),
-            Shape::Cone { half_height, radius } => Some(Self::Cone { half_height, radius }),
-            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => None,
-        }
-    }
-}
-
 /// Segments around a ball or capsule: 15° each looks round at the sizes that pictures show.
 const AROUND: usize = 24;
 /// Segments from the equator to a pole.
 const TO_POLE: usize = 6;
 
-/// The surface of a solid. Boxes and hulls have flat faces, the others smooth normals.
-pub fn solid(solid: Solid<'_>, world_from_solid: Transform, material: Material) -> Model {
-    let mut model = match solid {
-        Solid::Hull(hull) => hull_model(hull),
-        Solid::Box { half_extents } => box_model(half_extents),
-        Solid::Sphere { radius } => round_model(0.0, radius, radius),
-        Solid::Capsule { half_height, radius } => round_model(half_height, radius, radius),
-        Solid::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+/// The surface of a shape. Boxes, hulls, meshes and height fields have flat faces, the others smooth normals. Nothing of a
+/// half-space, which has no end: see [`plane`].
+pub fn shape(shape: &Shape, world_from_shape: Transform, material: Material) -> Model {
+    let mut model = match *shape {
+        Shape::Box { half_extents } => box_model(half_extents),
+        Shape::Sphere { radius } => round_model(0.0, radius, radius),
+        Shape::Capsule { half_height, radius } => round_model(half_height, radius, radius),
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
             round_model(half_height, radius_bottom, radius_top)
         }
-        Solid::Cylinder { half_height, radius } => frustum_model(half_height, radius, radius),
-        Solid::Cone { half_height, radius } => frustum_model(half_height, radius, 0.0),
+        Shape::Cylinder { half_height, radius } => frustum_model(half_height, radius, radius),
+        Shape::Cone { half_height, radius } => frustum_model(half_height, radius, 0.0),
+        Shape::Hull(ref hull) => hull_model(hull),
+        Shape::Mesh(ref mesh) => triangle_model(mesh.corners_of_all()),
+        Shape::HeightField(ref field) => triangle_model(field.triangles()),
+        Shape::HalfSpace => Model::default(),
     };
     for position in &mut model.positions {
-        *position = world_from_solid.point(*position);
+        *position = world_from_shape.point(*position);
     }
     for normal in &mut model.normals {
-        *normal = world_from_solid.rotation * *normal;
+        *normal = world_from_shape.rotation * *normal;
     }
     Model { material, ..model }
 }
 
-/// The triangles of a mesh or height field, each flat; none of other shapes.
-pub fn surface(shape: &Shape, world_from_shape: Transform, material: Material) -> Model {
-    let positions: Vec<Vec3> = match shape {
-        Shape::Mesh(mesh) => mesh.corners_of_all().flatten().collect(),
-        Shape::HeightField(field) => field.triangles().flatten().collect(),
-        _ => Vec::new(),
-    };
-    Model {
-        indices: (0..positions.len() as u32).collect(),
-        positions: positions.into_iter().map(|p| world_from_shape.point(p)).collect(),
-        material,
-        ..Model::default()
-    }
-}
-
 /// A ball of eight fields, every second one darker, so that it is seen to turn.
 pub fn ball(radius: f32, world_from_ball: Transform, material: Material) -> Model {
-    let mut model = solid(Solid::Sphere { radius }, world_from_ball, material);
+    let mut model = shape(&Shape::Sphere { radius }, world_from_ball, material);
     let shade = |vertex: usize| {
         let (ring, around) = (vertex / AROUND, vertex % AROUND);
         let quarter = around / (AROUND / 4);
@@ -130,7 +53,7 @@ pub fn rod(from: Vec3, to: Vec3, radius: f32, material: Material) -> Model {
     let along = to - from;
     let turn = Rotation::from_arc(Vec3::Y, normalize_or(along, Vec3::Y));
     let place = Transform::new((from + to) * 0.5, turn);
-    solid(Solid::Capsule { half_height: 0.5 * along.length(), radius }, place, material)
+    shape(&Shape::Capsule { half_height: 0.5 * along.length(), radius }, place, material)
 }
 
 /// A level floor of two colours (linear), `half_size` metres to each side of `center`, in squares of 1 m. It throws
@@ -156,29 +79,33 @@ pub fn plane(world_from_plane: Transform, half_size: f32, tile: f32, colors: [[f
     }
 }
 
-/// The edges of a solid: all of a box or hull; for ball and capsule three great circles and the sides.
-pub fn wire(solid: Solid<'_>, world_from_solid: Transform, color: [f32; 3], depth: LineDepth) -> Vec<Line> {
+/// The edges of a shape: all of a box or hull, and of the triangles of a surface; for ball and capsule three great circles and
+/// the sides; nothing of a half-space.
+pub fn wire(shape: &Shape, world_from_shape: Transform, color: [f32; 3], depth: LineDepth) -> Vec<Line> {
     let mut segments = Vec::new();
-    match solid {
-        Solid::Hull(hull) => {
+    match *shape {
+        Shape::Hull(ref hull) => {
             segments.extend(hull.edges().map(|ends| ends.map(|corner| hull.vertices()[corner])));
         }
-        Solid::Box { half_extents } => box_edges(half_extents, &mut segments),
-        Solid::Sphere { radius } => capsule_edges(0.0, radius, &mut segments),
-        Solid::Capsule { half_height, radius } => capsule_edges(half_height, radius, &mut segments),
-        Solid::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+        Shape::Box { half_extents } => box_edges(half_extents, &mut segments),
+        Shape::Sphere { radius } => capsule_edges(0.0, radius, &mut segments),
+        Shape::Capsule { half_height, radius } => capsule_edges(half_height, radius, &mut segments),
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
             tapered_edges(half_height, radius_bottom, radius_top, &mut segments);
         }
-        Solid::Cylinder { half_height, radius } => {
+        Shape::Cylinder { half_height, radius } => {
             frustum_edges([(-half_height, radius), (half_height, radius)], &mut segments);
         }
-        Solid::Cone { half_height, radius } => {
+        Shape::Cone { half_height, radius } => {
             frustum_edges([(-half_height, radius), (half_height, 0.0)], &mut segments);
         }
+        Shape::Mesh(ref mesh) => triangle_edges(mesh.corners_of_all(), &mut segments),
+        Shape::HeightField(ref field) => triangle_edges(field.triangles(), &mut segments),
+        Shape::HalfSpace => {}
     }
     let line = |[from, to]: [Vec3; 2]| Line {
-        from: world_from_solid.point(from),
-        to: world_from_solid.point(to),
+        from: world_from_shape.point(from),
+        to: world_from_shape.point(to),
         color,
         depth,
     };
@@ -215,6 +142,15 @@ fn hull_model(hull: &Hull) -> Model {
         indices.extend(corners[1..].windows(2).flat_map(|side| [corners[0], side[0], side[1]]));
     }
     Model { positions: hull.vertices().to_vec(), indices, ..Model::default() }
+}
+
+fn triangle_model(triangles: impl Iterator<Item = [Vec3; 3]>) -> Model {
+    let positions: Vec<Vec3> = triangles.flatten().collect();
+    Model { indices: (0..positions.len() as u32).collect(), positions, ..Model::default() }
+}
+
+fn triangle_edges(triangles: impl Iterator<Item = [Vec3; 3]>, segments: &mut Vec<[Vec3; 2]>) {
+    segments.extend(triangles.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]));
 }
 
 fn box_edges(half: Vec3, segments: &mut Vec<[Vec3; 2]>) {
@@ -354,6 +290,7 @@ fn tapered_edges(half_height: f32, bottom: f32, top: f32, segments: &mut Vec<[Ve
 mod tests {
     use super::*;
     use sinew::math::Rotation;
+    use std::sync::Arc;
 
     /// Six times the volume inside, by the divergence theorem: positive where all faces look outward.
     fn volume(model: &Model) -> f32 {
@@ -369,21 +306,21 @@ mod tests {
         let tetrahedron = Hull::new(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]).expect("a solid");
         let pi = core::f32::consts::PI;
         for (shape, expected, tolerance) in [
-            (Solid::Box { half_extents }, 1.0, 1e-4),
-            (Solid::Hull(&tetrahedron), 1.0 / 6.0, 1e-4),
-            (Solid::Sphere { radius: 0.5 }, pi / 6.0, 0.02),
-            (Solid::Capsule { half_height: 0.4, radius: 0.5 }, pi / 6.0 + pi * 0.2, 0.04),
+            (Shape::Box { half_extents }, 1.0, 1e-4),
+            (Shape::Hull(Arc::new(tetrahedron)), 1.0 / 6.0, 1e-4),
+            (Shape::Sphere { radius: 0.5 }, pi / 6.0, 0.02),
+            (Shape::Capsule { half_height: 0.4, radius: 0.5 }, pi / 6.0 + pi * 0.2, 0.04),
             (
-                Solid::TaperedCapsule { half_height: 0.4, radius_bottom: 0.5, radius_top: 0.5 },
+                Shape::TaperedCapsule { half_height: 0.4, radius_bottom: 0.5, radius_top: 0.5 },
                 pi / 6.0 + pi * 0.2,
                 0.04,
             ),
-            (Solid::Cylinder { half_height: 0.5, radius: 0.5 }, pi * 0.25, 0.02),
-            (Solid::Cone { half_height: 0.5, radius: 0.5 }, pi / 12.0, 0.02),
+            (Shape::Cylinder { half_height: 0.5, radius: 0.5 }, pi * 0.25, 0.02),
+            (Shape::Cone { half_height: 0.5, radius: 0.5 }, pi / 12.0, 0.02),
         ] {
-            let model = solid(shape, place, Material::default());
+            let model = super::shape(&shape, place, Material::default());
             assert!((volume(&model) - expected).abs() < tolerance, "{shape:?}: {}", volume(&model));
-            assert!(!wire(shape, place, [1.0; 3], LineDepth::Tested).is_empty());
+            assert!(!wire(&shape, place, [1.0; 3], LineDepth::Tested).is_empty());
         }
     }
 }

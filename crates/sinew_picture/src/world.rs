@@ -1,6 +1,6 @@
 //! A physics world as models and lines: what can move in colours, what stands in grey.
 
-use crate::draw::{self, Solid};
+use crate::draw;
 use crate::scene::{Line, LineDepth, Material, Model, Scene};
 use sinew::math::{Transform, Vec3, max};
 use sinew::physics::boxes::Aabb;
@@ -64,15 +64,20 @@ pub fn subject(world: &World) -> Option<Aabb> {
     let merge = |a: Aabb, b: Aabb| a.merge(&b);
     let active = moving.map(|id| body_bounds(world, id)).chain(particles).chain(anchors).reduce(merge);
     active.or_else(|| {
-        let ended = |id: &BodyId| world.shapes(*id).all(|(shape, _)| Solid::of(&shape).is_some());
+        let ended = |id: &BodyId| world.shapes(*id).all(|(shape, _)| is_solid(&shape));
         world.body_ids().filter(ended).map(|id| body_bounds(world, id)).reduce(merge)
     })
 }
 
-/// Around the centre of mass and all shapes that have an end.
+/// Whether a picture is about it: floors and levels go on beyond what is of interest.
+fn is_solid(shape: &Shape) -> bool {
+    !matches!(shape, Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_))
+}
+
+/// Around the centre of mass and all solid shapes.
 fn body_bounds(world: &World, id: BodyId) -> Aabb {
     let center = world.center_of_mass(id);
-    let shapes = world.shapes(id).filter(|(shape, _)| Solid::of(shape).is_some());
+    let shapes = world.shapes(id).filter(|(shape, _)| is_solid(shape));
     shapes.fold(Aabb { min: center, max: center }, |all, (shape, place)| all.merge(&shape.aabb(&place)))
 }
 
@@ -133,11 +138,10 @@ fn paint_body(world: &World, id: BodyId, number: usize, frame: &Frame, models: &
     let mut seen = kind == BodyKind::Static;
     for (shape, place) in world.shapes(id) {
         let material = Material::new(color);
-        models.push(match (&shape, Solid::of(&shape)) {
-            (Shape::Sphere { radius }, _) => draw::ball(*radius, place, material),
-            (_, Some(solid)) => draw::solid(solid, place, material),
-            (Shape::Mesh(_) | Shape::HeightField(_), _) => draw::surface(&shape, place, material),
-            (_, None) => floor(&place, frame),
+        models.push(match shape {
+            Shape::Sphere { radius } => draw::ball(radius, place, material),
+            Shape::HalfSpace => floor(&place, frame),
+            _ => draw::shape(&shape, place, material),
         });
         seen |= shape.bounding_radius() > smallest;
     }
@@ -178,7 +182,7 @@ fn paint_group(group: &ParticleGroup, frame: &Frame, scene: &mut Scene) {
             let alone = group.springs().is_empty();
             let radius = max(radius, SMALLEST * frame.radius * if alone { 1.0 } else { 0.5 });
             let place = Transform::from_translation(position);
-            scene.models.push(draw::solid(Solid::Sphere { radius }, place, Material::new(PARTICLE)));
+            scene.models.push(draw::shape(&Shape::Sphere { radius }, place, Material::new(PARTICLE)));
         }
     }
     let ends = |spring: &SpringDef| [spring.a, spring.b].map(|i| positions[i as usize]);

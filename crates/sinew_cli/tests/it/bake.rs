@@ -87,6 +87,17 @@ fn a_world_file_is_fallen_into() {
 }
 
 #[test]
+fn triangles_that_a_level_has_for_nothing_are_counted() {
+    let folder = Folder::new("left_out");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let triangles = "v -9 0 -9\nv -9 0 9\nv 9 0 9\nf 1 2 3\nf 1 2 3\nf 1 1 2\nf 1 2 2\n";
+    let level = folder.file("level.obj", triangles);
+    let run = sinew(&["bake", &file, "--world", &level, "--limp-at", "0", "--seconds", "0.1", "-o", &out]);
+    let line = "  left out of the world: 2 triangles without area, 1 that are there twice\n";
+    assert!(run.stdout.contains(line), "{run:?}");
+}
+
+#[test]
 fn what_does_not_exist_is_told_with_what_does() {
     let folder = Folder::new("names");
     let (file, out) = (folder.mannequin(), folder.path("out.glb"));

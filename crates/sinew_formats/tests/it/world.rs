@@ -214,7 +214,7 @@ fn complaints_name_the_place() {
         ),
         (
             world(r#"{"kind":"dynamic","shapes":[]}"#),
-            "a dynamic body needs a mass, or a shape with a density above 0 (bodies[0])",
+            "a dynamic body needs a mass, or a solid shape with a density above 0 (bodies[0])",
         ),
         (
             world(r#"{"rotation":[0,0,0,2],"shapes":[]}"#),
@@ -254,7 +254,7 @@ fn surfaces_read_back_as_equal_shapes() {
         (r#"{"type":"mesh","vertices":[[0,0,0]],"triangles":[[0,0,1]]}"#, "triangles[0][2]"),
         (r#"{"type":"mesh","vertices":[[0,0,0]],"triangles":[[0,0]]}"#, "must have 3 indices, has 2"),
         (r#"{"type":"mesh","vertices":[[0,0,0]],"triangles":[[0,0,0]]}"#, "no triangle has an area"),
-        (r#"{"type":"mesh","vertices":[],"triangles":[]}"#, "no triangle has an area"),
+        (r#"{"type":"mesh","vertices":[],"triangles":[]}"#, "there are no triangles"),
         (
             r#"{"type":"mesh","radius":1,"vertices":[[0,0,0],[1,0,0],[0,0,1]],"triangles":[[0,1,2]]}"#,
             "radius",

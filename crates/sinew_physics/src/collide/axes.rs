@@ -1,7 +1,8 @@
-//! What boxes and polytopes have in common: which of the separating axes a contact takes, and its points if that is a face's.
+//! What boxes and polytopes have in common: which of the separating axes a contact takes, and its points.
 
 use super::clip::{Incident, Reference, clip};
-use super::feature::pair;
+use super::feature::{self, pair};
+use super::placed::Segment;
 use super::reduce::{midway, push_best};
 use super::{Manifold, ManifoldPoint};
 use crate::boxes::separation::{Axis, AxisOf};
@@ -31,6 +32,74 @@ pub(super) fn choose_face(a: Axis, b: Axis, tolerance: f32, tie: Vec3) -> Axis {
 pub(super) fn choose(face: Axis, edges: Option<Axis>, tolerance: f32) -> Axis {
     let least = face.separation + tolerance + 0.05 * face.separation.abs();
     edges.filter(|edges| edges.separation > least).unwrap_or(face)
+}
+
+/// A solid with flat faces.
+pub(super) trait Faceted {
+    /// The corner furthest along a direction: its number and place.
+    fn corner(&self, direction: Vec3) -> (usize, Vec3);
+
+    /// The edge that an axis names, of several the one furthest along a direction; and its feature.
+    fn edge_named(&self, number: usize, direction: Vec3) -> (Segment, u16);
+
+    /// The face of `other` that looks at a face of this one, cut to it: [`push_faces`].
+    fn push_faces(
+        &self,
+        face: usize,
+        other: &Self,
+        best: &Axis,
+        margin: f32,
+        tolerance: f32,
+        out: &mut Manifold,
+    ) -> bool;
+
+    /// The closest points of this solid and another that is apart, by trying corners and edges: slow and sure, for the rare
+    /// pairs that pass each other corner by corner or edge by edge. `normal` parts them.
+    fn push_closest(&self, other: &Self, normal: Vec3, margin: f32, tolerance: f32, out: &mut Manifold);
+}
+
+/// The points of a contact along the axis that was chosen.
+pub(super) fn push<S: Faceted>(a: &S, b: &S, axis: &Axis, margin: f32, tolerance: f32, out: &mut Manifold) {
+    let touched = match axis.of {
+        AxisOf::FaceA(k) => a.push_faces(k, b, axis, margin, tolerance, out),
+        AxisOf::FaceB(k) => b.push_faces(k, a, axis, margin, tolerance, out),
+        AxisOf::Edges(i, j) => {
+            push_edges(a.edge_named(i, axis.normal), b.edge_named(j, -axis.normal), axis, out)
+        }
+    };
+    if !touched {
+        if axis.separation > 0.0 {
+            a.push_closest(b, axis.normal, margin, tolerance, out);
+        } else {
+            push_support(a, b, axis, out);
+        }
+    }
+}
+
+/// The closest points of two edges. False, and nothing pushed, if the solids are apart and these are not their closest
+/// points.
+fn push_edges(
+    (edge_a, feature_a): (Segment, u16),
+    (edge_b, feature_b): (Segment, u16),
+    axis: &Axis,
+    out: &mut Manifold,
+) -> bool {
+    let (s, t) = edge_a.closest_to_segment(&edge_b);
+    let inside = |x: f32| x > 0.0 && x < 1.0;
+    if axis.separation > 0.0 && !(inside(s) && inside(t)) {
+        return false;
+    }
+    out.normal = axis.normal;
+    out.push((edge_a.at(s) + edge_b.at(t)) * 0.5, axis.separation, pair(feature_a, feature_b));
+    true
+}
+
+/// B's deepest corner, for overlaps that no face or edge describes.
+fn push_support<S: Faceted>(a: &S, b: &S, axis: &Axis, out: &mut Manifold) {
+    let ((of_a, _), (of_b, corner)) = (a.corner(axis.normal), b.corner(-axis.normal));
+    out.normal = axis.normal;
+    let position = midway(corner, axis.normal, axis.separation);
+    out.push(position, axis.separation, pair(feature::vertex(of_a), feature::vertex(of_b)));
 }
 
 /// The other shape's face cut to the reference face. False, and nothing pushed, if that does not show how far the

@@ -2,7 +2,8 @@
 //! has entered the box. Everything happens in the box's frame.
 
 use super::Manifold;
-use super::feature::{self, WHOLE, end, pair};
+use super::feature::{self, WHOLE, pair};
+use super::line::Line;
 use super::placed::{Pill, PlacedBox, Segment, largest_axis, sign};
 use crate::boxes::segment::{Gap, Meeting, best_edge, best_face, cut, gap};
 use sinew_math::{Vec3, min};
@@ -54,7 +55,7 @@ fn pierced(half: Vec3, core: &Segment, radius: f32) -> Meeting {
 }
 
 /// The two ends of the stretch of the core that lies over the face or along the edge it meets. False, and nothing
-/// pushed, if it meets a corner, crosses an edge, or the stretch is too short to tell two points apart.
+/// pushed, if it meets a corner, crosses an edge, or the stretch is too short.
 fn push_line(
     half: Vec3,
     core: &Segment,
@@ -88,18 +89,8 @@ fn push_line(
     } else {
         return false;
     }
-    if (stretch.1 - stretch.0) * length < 0.1 * radius {
-        return false;
-    }
-    out.normal = normal;
-    for (index, t) in [stretch.0, stretch.1].into_iter().enumerate() {
-        let p = core.at(t);
-        let separation = (p - meeting.on_box).dot(normal) - radius;
-        if separation <= margin {
-            out.push(p - normal * (radius + 0.5 * separation), separation, pair(name, end(index)));
-        }
-    }
-    out.count > 0
+    let line = Line { core, radius, stretch, normal, name };
+    line.push_ends(|p| (p - meeting.on_box).dot(normal), margin, out)
 }
 
 /// Of the corner in the octant of `p`.

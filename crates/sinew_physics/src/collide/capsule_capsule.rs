@@ -2,7 +2,7 @@
 
 use super::Manifold;
 use super::feature::{WHOLE, end, pair};
-use super::placed::{Pill, direction_or};
+use super::placed::{Pill, direction_or, sign};
 use sinew_math::{Vec3, any_orthonormal, min, normalize_or};
 
 /// Cores that run side by side touch along a line; its two ends are used while the cores lie within this share of
@@ -28,13 +28,10 @@ pub(super) fn collide(a: &Pill, b: &Pill, margin: f32, out: &mut Manifold) {
 
 /// The two ends of the stretch along which the cores run side by side; false, and nothing pushed, if they don't.
 fn push_side_by_side(a: &Pill, b: &Pill, margin: f32, out: &mut Manifold) -> bool {
-    let along = a.core.ends[1] - a.core.ends[0];
-    let length_squared = along.dot(along);
-    if length_squared <= f32::MIN_POSITIVE {
-        return false;
-    }
-    let parameter = |i: usize| (b.core.ends[i] - a.core.ends[0]).dot(along) / length_squared;
-    let (t0, t1) = (parameter(0), parameter(1));
+    // Along both, so that their order does not matter.
+    let common = a.axis + b.axis * sign(a.axis.dot(b.axis));
+    let place = |p: Vec3| (p - a.core.ends[0]).dot(common);
+    let (end_of_a, [t0, t1]) = (place(a.core.ends[1]), b.core.ends.map(place));
     let (first, last) = if t0 < t1 { ((t0, 0), (t1, 1)) } else { ((t1, 1), (t0, 0)) };
     // Each end of the stretch is an end of one core, beside the other one.
     let beside_a =
@@ -43,7 +40,7 @@ fn push_side_by_side(a: &Pill, b: &Pill, margin: f32, out: &mut Manifold) -> boo
         |i: usize| (a.core.ends[i], b.core.at(b.core.closest(a.core.ends[i])), pair(end(i), WHOLE));
     let ends = [
         if first.0 > 0.0 { beside_a(first.1) } else { beside_b(0) },
-        if last.0 < 1.0 { beside_a(last.1) } else { beside_b(1) },
+        if last.0 < end_of_a { beside_a(last.1) } else { beside_b(1) },
     ];
     // Shorter than a tenth of the radius, the stretch is a point.
     let thinner = min(a.radius, b.radius);

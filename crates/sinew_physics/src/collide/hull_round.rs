@@ -3,7 +3,8 @@
 
 use super::Manifold;
 use super::axes::{PARALLEL_SINE, choose};
-use super::feature::{self, WHOLE, end, pair};
+use super::feature::{self, WHOLE, pair};
+use super::line::Line;
 use super::placed::Segment;
 use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{Plane, Polytope};
@@ -142,7 +143,7 @@ fn best_edge(hull: &Polytope<'_>, core: &Segment) -> Option<Axis> {
 }
 
 /// The two ends of the stretch of the core that lies over the face or along the edge it meets. False, and nothing
-/// pushed, if it meets a corner, crosses an edge, or the stretch is too short to tell two points apart.
+/// pushed, if it meets a corner, crosses an edge, or the stretch is too short.
 fn push_line(
     hull: &Polytope<'_>,
     core: &Segment,
@@ -152,7 +153,6 @@ fn push_line(
     out: &mut Manifold,
 ) -> bool {
     let along = core.ends[1] - core.ends[0];
-    let length = along.length();
     let face = hull.facing(meeting.normal);
     let flat = (meeting.normal - hull.planes[face].normal).length() <= FACE_SINE;
     let mut stretch = (0.0, 1.0);
@@ -176,18 +176,8 @@ fn push_line(
     } else {
         return false;
     }
-    if (stretch.1 - stretch.0) * length < 0.1 * radius {
-        return false;
-    }
-    out.normal = normal;
-    for (index, t) in [stretch.0, stretch.1].into_iter().enumerate() {
-        let p = core.at(t);
-        let separation = p.dot(normal) - height - radius;
-        if separation <= margin {
-            out.push(p - normal * (radius + 0.5 * separation), separation, pair(name, end(index)));
-        }
-    }
-    out.count > 0
+    let line = Line { core, radius, stretch, normal, name };
+    line.push_ends(|p| p.dot(normal) - height, margin, out)
 }
 
 fn runs_along(edge: &Segment, along: Vec3) -> bool {

@@ -17,6 +17,7 @@ pub(crate) mod features;
 mod half_space;
 mod hull_pairs;
 mod hull_round;
+mod line;
 pub(crate) mod parts;
 pub(crate) mod placed;
 pub(crate) mod polytope;

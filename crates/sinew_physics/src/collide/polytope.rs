@@ -4,11 +4,11 @@
 
 use super::Manifold;
 use super::axes::{
-    Bridge, PARALLEL_SINE, choose, choose_face, push_bridges, push_faces as push_clipped, tolerance,
+    Bridge, Faceted, PARALLEL_SINE, choose, choose_face, push, push_bridges, push_faces, tolerance,
 };
 use super::clip::{PolytopeFace, Reference};
 use super::feature::{self, WHOLE, pair};
-use super::reduce::midway;
+use super::placed::Segment;
 use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{MAX_VERTICES, Polytope};
 use sinew_math::Vec3;
@@ -35,18 +35,7 @@ pub(super) fn collide(a: &Polytope<'_>, b: &Polytope<'_>, margin: f32, tie: Vec3
         return;
     }
     let axis = choose(choose_face(face_a, face_b, tolerance, tie), edges, tolerance);
-    let touched = match axis.of {
-        AxisOf::FaceA(k) => push_faces(a, k, b, &axis, margin, tolerance, out),
-        AxisOf::FaceB(k) => push_faces(b, k, a, &axis, margin, tolerance, out),
-        AxisOf::Edges(i, j) => push_edges(a, i, b, j, &axis, out),
-    };
-    if !touched {
-        if axis.separation > 0.0 {
-            push_closest(a, b, axis.normal, margin, tolerance, out);
-        } else {
-            push_support(a, b, &axis, out);
-        }
-    }
+    push(a, b, &axis, margin, tolerance, out);
 }
 
 /// The face of `of` that separates best, with its outward normal, or the first one that separates by more than `enough`.
@@ -120,88 +109,61 @@ fn best_edges(a: &Polytope<'_>, b: &Polytope<'_>) -> Option<Axis> {
     best
 }
 
-/// The face of `other` that looks at the reference face, cut to it.
-fn push_faces(
-    of: &Polytope<'_>,
-    face: usize,
-    other: &Polytope<'_>,
-    best: &Axis,
-    margin: f32,
-    tolerance: f32,
-    out: &mut Manifold,
-) -> bool {
-    let reference = PolytopeFace::new(of, face);
-    let incident = PolytopeFace::new(other, other.face_at_support(-reference.normal(), tolerance));
-    let corners = (incident.feature(), incident.corners());
-    push_clipped::<FACE_CORNERS>(&reference, corners, best, margin, tolerance, out)
-}
-
-/// The closest points of two edges. False, and nothing pushed, if the shapes are apart and these are not their closest
-/// points.
-fn push_edges(
-    a: &Polytope<'_>,
-    i: usize,
-    b: &Polytope<'_>,
-    j: usize,
-    axis: &Axis,
-    out: &mut Manifold,
-) -> bool {
-    let (edge_a, edge_b) = (a.edge(i), b.edge(j));
-    let (s, t) = edge_a.closest_to_segment(&edge_b);
-    let inside = |x: f32| x > 0.0 && x < 1.0;
-    if axis.separation > 0.0 && !(inside(s) && inside(t)) {
-        return false;
+impl Faceted for Polytope<'_> {
+    fn corner(&self, direction: Vec3) -> (usize, Vec3) {
+        let index = self.support(direction);
+        (index, self.vertices[index])
     }
-    out.normal = axis.normal;
-    let feature = pair(feature::half_edge(a.topology, i), feature::half_edge(b.topology, j));
-    out.push((edge_a.at(s) + edge_b.at(t)) * 0.5, axis.separation, feature);
-    true
-}
 
-/// The closest points of two polytopes that are apart, by trying corners against faces and edges against edges: those that
-/// reach far enough along `normal`, which parts them, to be within `margin` of the other.
-fn push_closest(
-    a: &Polytope<'_>,
-    b: &Polytope<'_>,
-    normal: Vec3,
-    margin: f32,
-    tolerance: f32,
-    out: &mut Manifold,
-) {
-    let (lowest, highest) = (-b.reach(-normal) - margin, a.reach(normal) + margin);
-    let of_a = |p: Vec3| p.dot(normal) >= lowest;
-    let of_b = |p: Vec3| p.dot(normal) <= highest;
-    let from_a = a.vertices.iter().enumerate().filter(|(_, p)| of_a(**p)).map(|(k, &on_a)| {
-        let feature = pair(feature::vertex(k), WHOLE);
-        Bridge { on_a, on_b: b.closest(on_a), feature }
-    });
-    let from_b = b.vertices.iter().enumerate().filter(|(_, p)| of_b(**p)).map(|(k, &on_b)| {
-        let feature = pair(WHOLE, feature::vertex(k));
-        Bridge { on_a: a.closest(on_b), on_b, feature }
-    });
-    let corners = from_a.chain(from_b);
-    let edges_b =
-        || b.topology.edge_numbers().map(|j| (j, b.edge(j))).filter(|(_, e)| e.ends.into_iter().any(of_b));
-    let edges_a = a.topology.edge_numbers().map(|i| (i, a.edge(i)));
-    let edges = edges_a.filter(|(_, e)| e.ends.into_iter().any(of_a)).flat_map(|(i, edge_a)| {
-        edges_b().map(move |(j, edge_b)| {
-            let (s, t) = edge_a.closest_to_segment(&edge_b);
-            let feature = pair(feature::half_edge(a.topology, i), feature::half_edge(b.topology, j));
-            Bridge { on_a: edge_a.at(s), on_b: edge_b.at(t), feature }
-        })
-    });
-    let Some(best) = corners.clone().chain(edges).reduce(Bridge::shorter) else { return };
-    let size = (b.center - a.center).length();
-    push_bridges::<CLOSEST>(best, corners, (size, normal), margin, tolerance, out);
-}
+    fn edge_named(&self, side: usize, _: Vec3) -> (Segment, u16) {
+        (self.edge(side), feature::half_edge(self.topology, side))
+    }
 
-/// B's deepest corner, for overlaps that no face or edge describes.
-fn push_support(a: &Polytope<'_>, b: &Polytope<'_>, axis: &Axis, out: &mut Manifold) {
-    let index = b.support(-axis.normal);
-    out.normal = axis.normal;
-    let position = midway(b.vertices[index], axis.normal, axis.separation);
-    let feature = pair(feature::vertex(a.support(axis.normal)), feature::vertex(index));
-    out.push(position, axis.separation, feature);
+    fn push_faces(
+        &self,
+        face: usize,
+        other: &Self,
+        best: &Axis,
+        margin: f32,
+        tolerance: f32,
+        out: &mut Manifold,
+    ) -> bool {
+        let reference = PolytopeFace::new(self, face);
+        let incident = PolytopeFace::new(other, other.face_at_support(-reference.normal(), tolerance));
+        let corners = (incident.feature(), incident.corners());
+        push_faces::<FACE_CORNERS>(&reference, corners, best, margin, tolerance, out)
+    }
+
+    /// Of corners and edges those are tried that reach far enough along `normal` to be within `margin` of the other solid.
+    fn push_closest(&self, b: &Self, normal: Vec3, margin: f32, tolerance: f32, out: &mut Manifold) {
+        let a = self;
+        let (lowest, highest) = (-b.reach(-normal) - margin, a.reach(normal) + margin);
+        let of_a = |p: Vec3| p.dot(normal) >= lowest;
+        let of_b = |p: Vec3| p.dot(normal) <= highest;
+        let from_a = a.vertices.iter().enumerate().filter(|(_, p)| of_a(**p)).map(|(k, &on_a)| {
+            let feature = pair(feature::vertex(k), WHOLE);
+            Bridge { on_a, on_b: b.closest(on_a), feature }
+        });
+        let from_b = b.vertices.iter().enumerate().filter(|(_, p)| of_b(**p)).map(|(k, &on_b)| {
+            let feature = pair(WHOLE, feature::vertex(k));
+            Bridge { on_a: a.closest(on_b), on_b, feature }
+        });
+        let corners = from_a.chain(from_b);
+        let edges_b = || {
+            b.topology.edge_numbers().map(|j| (j, b.edge(j))).filter(|(_, e)| e.ends.into_iter().any(of_b))
+        };
+        let edges_a = a.topology.edge_numbers().map(|i| (i, a.edge(i)));
+        let edges = edges_a.filter(|(_, e)| e.ends.into_iter().any(of_a)).flat_map(|(i, edge_a)| {
+            edges_b().map(move |(j, edge_b)| {
+                let (s, t) = edge_a.closest_to_segment(&edge_b);
+                let feature = pair(feature::half_edge(a.topology, i), feature::half_edge(b.topology, j));
+                Bridge { on_a: edge_a.at(s), on_b: edge_b.at(t), feature }
+            })
+        });
+        let Some(best) = corners.clone().chain(edges).reduce(Bridge::shorter) else { return };
+        let size = (b.center - a.center).length();
+        push_bridges::<CLOSEST>(best, corners, (size, normal), margin, tolerance, out);
+    }
 }
 
 #[cfg(test)]

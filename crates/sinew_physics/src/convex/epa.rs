@@ -59,8 +59,7 @@ pub(super) fn deepest<A: Support, B: Support>(
     let mut polytope = Polytope::new(corners, size);
     let mut best: Option<Bridge> = None;
     let mut bound = 0.0;
-    loop {
-        let face = polytope.nearest_face();
+    while let Some(face) = polytope.nearest_face() {
         let vertex = support(a, b, face.normal);
         let height = vertex.difference.dot(face.normal);
         bound = if face.distance > bound { face.distance } else { bound };
@@ -149,27 +148,28 @@ fn tetrahedron<A: Support, B: Support>(
     let flat = FLAT * size;
     let p0 = simplex.vertices[0];
     let known = &simplex.vertices[..simplex.count];
-    let furthest = |directions: &[DVec3], distance: &dyn Fn(DVec3) -> f64| {
+    let furthest = |directions: &[DVec3], least: f64, distance: &dyn Fn(DVec3) -> f64| {
         let asked = directions.iter().flat_map(|d| [*d, -*d]).map(|d| support(a, b, d));
         let all = known.iter().copied().chain(asked);
         let far = |x: Vertex, y: Vertex| {
             if distance(y.difference) > distance(x.difference) { y } else { x }
         };
-        all.reduce(far).filter(|vertex| distance(vertex.difference) > flat)
+        all.reduce(far).filter(|vertex| distance(vertex.difference) > least)
     };
     let from_point = |p: DVec3| (p - p0.difference).length();
-    let Some(p1) = furthest(&[DVec3::X, DVec3::Y, DVec3::Z], &from_point) else {
+    let Some(p1) = furthest(&[DVec3::X, DVec3::Y, DVec3::Z], flat, &from_point) else {
         return Err(touching(simplex, DVec3::Y));
     };
     let along = (p1.difference - p0.difference).normalize();
     let (u, v) = across(along);
     let from_line = |p: DVec3| (p - p0.difference).cross(along).length();
-    let Some(p2) = furthest(&[u, v, u + v, u - v], &from_line) else {
+    // So far from the line that the triangle's sides, of which no other is twice as long as the first, span an area.
+    let Some(p2) = furthest(&[u, v, u + v, u - v], 4.0 * flat, &from_line) else {
         return Err(touching(simplex, u));
     };
     let normal = along.cross(p2.difference - p0.difference).normalize();
     let from_plane = |p: DVec3| (p - p0.difference).dot(normal).abs();
-    let Some(p3) = furthest(&[normal], &from_plane) else {
+    let Some(p3) = furthest(&[normal], flat, &from_plane) else {
         return Err(touching(simplex, normal));
     };
     Ok([p0, p1, p2, p3])
@@ -222,10 +222,12 @@ impl Polytope {
         self.face_count += 1;
     }
 
-    /// The face whose plane is closest to the origin, or furthest outside of which the origin is; the first among equals.
-    fn nearest_face(&self) -> Face {
+    /// The face whose plane is closest to the origin, or furthest outside of which the origin is; the first among equals. `None`
+    /// if no face has an area.
+    fn nearest_face(&self) -> Option<Face> {
         let nearer = |x: Face, y: Face| if y.distance < x.distance { y } else { x };
-        self.faces[..self.face_count].iter().copied().reduce(nearer).unwrap_or_default()
+        let faces = self.faces[..self.face_count].iter().copied();
+        faces.reduce(nearer).filter(|face| face.distance < f64::INFINITY)
     }
 
     /// The nearest face whose plane is closer than `distance`, in another direction than those tried.

@@ -167,8 +167,8 @@ impl<'a> Polytope<'a> {
         }
         let span = p - self.closest(p);
         let distance = span.length();
-        // Closer than rounding can tell, the direction between the points is noise.
-        let noise = 1e-6 * (p - self.center).length();
+        // Where the points are close the direction between them is rounding, which far corners turn into millimetres.
+        let noise = 1e-4 * (p - self.center).length();
         if distance > noise { (distance, span / distance) } else { (distance, normal) }
     }
 

@@ -21,8 +21,7 @@ pub enum Reach {
 /// How far a question still looks: the rank beyond which no answer counts.
 pub(super) type Limit = ControlFlow<(), f32>;
 
-/// Farther than this from the origin nothing is looked for, metres: squares of larger numbers overflow, and the trees do not
-/// tell infinite boxes from empty ones.
+/// Farther than this from the origin nothing is looked for, metres: squares of larger numbers overflow.
 pub(super) const FARTHEST: f32 = 1e18;
 
 /// No way is cut off before this share of it.

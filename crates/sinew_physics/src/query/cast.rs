@@ -4,7 +4,7 @@ use super::candidates::Reach;
 use super::pair;
 use super::probe::Probe;
 use super::question::Question;
-use super::question::sealed::Ask;
+use super::question::sealed::{Ask, Reply};
 use crate::boxes::{Aabb, Penetration};
 use crate::convex::{ShapeHit, closeness};
 use crate::id::{BodyId, ShapeId};
@@ -40,6 +40,16 @@ impl BodyHit {
     }
 }
 
+impl Reply for BodyHit {
+    fn shape(&self) -> ShapeId {
+        ShapeId { body: self.body, shape: self.shape }
+    }
+
+    fn rank(&self) -> f32 {
+        self.fraction
+    }
+}
+
 /// Which shapes the ray meets, from its start to its end; those that are met first come first.
 impl Question for Ray {
     type Answer = BodyHit;
@@ -64,14 +74,6 @@ impl Ask for Ray {
 
     fn is_met(&self, _: ShapeId, shape: &Shape, world_from_shape: &Transform) -> bool {
         shape.cast_ray(world_from_shape, self).is_some()
-    }
-
-    fn shape_of(hit: &BodyHit) -> ShapeId {
-        ShapeId { body: hit.body, shape: hit.shape }
-    }
-
-    fn rank(hit: &BodyHit) -> f32 {
-        hit.fraction
     }
 }
 
@@ -109,13 +111,5 @@ impl Ask for ShapeCast {
         let Some(start) = start else { return BodyHit::new(id, hit, None) };
         let normal = normalize_or(-self.translation, start.direction);
         BodyHit::new(id, RayHit { normal, ..hit }, Some(start))
-    }
-
-    fn shape_of(hit: &BodyHit) -> ShapeId {
-        ShapeId { body: hit.body, shape: hit.shape }
-    }
-
-    fn rank(hit: &BodyHit) -> f32 {
-        hit.fraction
     }
 }

@@ -88,7 +88,7 @@ use crate::shape::Shape;
 use crate::world::World;
 use candidates::{Limit, candidates};
 use core::ops::ControlFlow;
-use question::sealed::Ask;
+use question::sealed::Reply;
 use sinew_math::Transform;
 
 /// Asks a world, about those of its shapes that pass a filter and a predicate.
@@ -125,10 +125,10 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
     pub fn first<Q: Question>(&self, question: &Q) -> Option<Q::Answer> {
         let mut best = None;
         self.answers(question, |answer| {
-            if best.as_ref().is_none_or(|best| key::<Q>(&answer) < key::<Q>(best)) {
+            if best.as_ref().is_none_or(|best| key(&answer) < key(best)) {
                 best = Some(answer);
             }
-            ControlFlow::Continue(best.as_ref().map_or(f32::INFINITY, Q::rank))
+            ControlFlow::Continue(best.as_ref().map_or(f32::INFINITY, Reply::rank))
         });
         best
     }
@@ -152,7 +152,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
             ControlFlow::Continue(f32::INFINITY)
         });
         // DETERMINISM: no two keys are equal, so that the order in which shapes were found does not matter.
-        answers.sort_unstable_by(|a, b| key::<Q>(a).partial_cmp(&key::<Q>(b)).expect("no rank is NaN"));
+        answers.sort_unstable_by(|a, b| key(a).partial_cmp(&key(b)).expect("no rank is NaN"));
     }
 
     /// The bodies that have an answer, each once, by index. `bodies` is emptied first, and allocates only to grow.
@@ -238,7 +238,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
 }
 
 /// What answers are sorted by.
-fn key<Q: Ask>(answer: &Q::Found) -> (f32, u32, u32) {
-    let ShapeId { body, shape } = Q::shape_of(answer);
-    (Q::rank(answer), body.index, shape)
+fn key(answer: &impl Reply) -> (f32, u32, u32) {
+    let ShapeId { body, shape } = answer.shape();
+    (answer.rank(), body.index, shape)
 }

@@ -4,7 +4,7 @@ use super::candidates::Reach;
 use super::pair;
 use super::probe::Probe;
 use super::question::Question;
-use super::question::sealed::Ask;
+use super::question::sealed::{Ask, Reply};
 use crate::boxes::{Aabb, Penetration, SurfacePoint};
 use crate::convex::Gap;
 use crate::id::{BodyId, ShapeId};
@@ -29,12 +29,14 @@ impl Ask for ContainsPoint {
     fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<ShapeId> {
         (shape.nearest_surface(world_from_shape, self.0).distance <= 0.0).then_some(id)
     }
+}
 
-    fn shape_of(id: &ShapeId) -> ShapeId {
-        *id
+impl Reply for ShapeId {
+    fn shape(&self) -> ShapeId {
+        *self
     }
 
-    fn rank(_: &ShapeId) -> f32 {
+    fn rank(&self) -> f32 {
         0.0
     }
 }
@@ -57,14 +59,6 @@ impl Ask for OverlapWith {
     fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<ShapeId> {
         pair::overlap(shape, world_from_shape, &self.0).then_some(id)
     }
-
-    fn shape_of(id: &ShapeId) -> ShapeId {
-        *id
-    }
-
-    fn rank(_: &ShapeId) -> f32 {
-        0.0
-    }
 }
 
 /// How deep a probe is in the shapes that it overlaps, each by itself; the deepest first.
@@ -85,6 +79,16 @@ pub struct BodyPenetration {
     pub direction: Vec3,
 }
 
+impl Reply for BodyPenetration {
+    fn shape(&self) -> ShapeId {
+        ShapeId { body: self.body, shape: self.shape }
+    }
+
+    fn rank(&self) -> f32 {
+        -self.depth
+    }
+}
+
 impl Question for PenetrationOf {
     type Answer = BodyPenetration;
 }
@@ -103,14 +107,6 @@ impl Ask for PenetrationOf {
 
     fn is_met(&self, _: ShapeId, shape: &Shape, world_from_shape: &Transform) -> bool {
         pair::overlap(shape, world_from_shape, &self.0)
-    }
-
-    fn shape_of(answer: &BodyPenetration) -> ShapeId {
-        ShapeId { body: answer.body, shape: answer.shape }
-    }
-
-    fn rank(answer: &BodyPenetration) -> f32 {
-        -answer.depth
     }
 }
 
@@ -148,6 +144,16 @@ impl BodySurface {
     }
 }
 
+impl Reply for BodySurface {
+    fn shape(&self) -> ShapeId {
+        ShapeId { body: self.body, shape: self.shape }
+    }
+
+    fn rank(&self) -> f32 {
+        self.distance
+    }
+}
+
 impl Question for NearestTo {
     type Answer = BodySurface;
 }
@@ -162,14 +168,6 @@ impl Ask for NearestTo {
     fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<BodySurface> {
         let surface = shape.nearest_surface(world_from_shape, self.point);
         BodySurface::new(id, surface, self.within)
-    }
-
-    fn shape_of(answer: &BodySurface) -> ShapeId {
-        ShapeId { body: answer.body, shape: answer.shape }
-    }
-
-    fn rank(answer: &BodySurface) -> f32 {
-        answer.distance
     }
 }
 
@@ -199,13 +197,5 @@ impl Ask for NearestToShape {
         let Gap { distance, normal, on_a: point, .. } =
             pair::gap_within(shape, world_from_shape, &self.probe, self.within)?;
         BodySurface::new(id, SurfacePoint { point, normal, distance }, self.within)
-    }
-
-    fn shape_of(answer: &BodySurface) -> ShapeId {
-        ShapeId { body: answer.body, shape: answer.shape }
-    }
-
-    fn rank(answer: &BodySurface) -> f32 {
-        answer.distance
     }
 }

@@ -8,7 +8,7 @@ use sinew_math::Transform;
 /// What a [`Query`](super::Query) can be asked; [the module](super) lists all questions there are.
 pub trait Question: sealed::Ask<Found = <Self as Question>::Answer> {
     /// What a shape answers.
-    type Answer;
+    type Answer: sealed::Reply;
 }
 
 /// What the questions have to know, kept from those who only ask them.
@@ -17,7 +17,7 @@ pub(super) mod sealed {
 
     pub trait Ask {
         /// [`Question::Answer`](super::Question::Answer).
-        type Found: Copy + core::fmt::Debug + PartialEq;
+        type Found: Reply;
 
         /// Where shapes that have an answer are, or `None` if no shape has one: a number is not finite.
         fn reach(&self) -> Option<Reach>;
@@ -29,11 +29,14 @@ pub(super) mod sealed {
         fn is_met(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> bool {
             self.ask(id, shape, world_from_shape).is_some()
         }
+    }
 
+    /// What a shape answers.
+    pub trait Reply: Copy + core::fmt::Debug + PartialEq {
         /// Which shape answered.
-        fn shape_of(answer: &Self::Found) -> ShapeId;
+        fn shape(&self) -> ShapeId;
 
         /// Where the answer stands among others: what is smaller comes first; equal ones go by body and shape.
-        fn rank(answer: &Self::Found) -> f32;
+        fn rank(&self) -> f32;
     }
 }

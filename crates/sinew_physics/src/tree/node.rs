@@ -130,7 +130,20 @@ impl Node {
         best.map_or(0, |(slot, _)| slot)
     }
 
-    /// Which boxes overlap another one: bit `k` for slot `k`.
+    /// What is in the slots of a mask, lowest first. Bounds without end and sums that overflow meet empty slots, too: these are
+    /// left out.
+    #[inline(always)]
+    pub fn held(&self, mut mask: u8) -> impl Iterator<Item = (usize, Child)> {
+        let next_slot = move || {
+            let slot = mask.trailing_zeros() as usize;
+            mask &= mask.wrapping_sub(1);
+            (slot < WIDTH).then_some(slot)
+        };
+        let children = core::iter::from_fn(next_slot).map(|slot| (slot, self.children[slot]));
+        children.filter(|(_, child)| !child.is_none())
+    }
+
+    /// Which boxes overlap another one: bit `k` for slot `k`. Of empty slots the bit says nothing: see [`held`](Self::held).
     #[inline(always)]
     pub fn overlapping<L: Lanes>(&self, other: &[L; 6]) -> u8 {
         let [x, y, z, u, v, w] = &self.rows;
@@ -143,7 +156,7 @@ impl Node {
         mask.bits()
     }
 
-    /// Which boxes a line meets before `limit`, and where it enters each.
+    /// Which boxes a line meets before `limit`, and where it enters each; as in [`overlapping`](Self::overlapping).
     #[inline(always)]
     pub fn entered<L: Lanes>(&self, line: &Line<L>, limit: f32, enter: &mut [f32; WIDTH]) -> u8 {
         let mut first = L::splat(0.0);
@@ -161,7 +174,7 @@ impl Node {
     }
 
     /// Squares of the distances from a point to the boxes, as they are at least; bit `k` of the mask tells whether slot `k` is
-    /// not farther than `limit`.
+    /// not farther than `limit`, as in [`overlapping`](Self::overlapping).
     #[inline(always)]
     pub fn distances<L: Lanes>(&self, point: &[L; 3], pad: L, limit: f32, squares: &mut [f32; WIDTH]) -> u8 {
         let zero = L::splat(0.0);
@@ -173,8 +186,7 @@ impl Node {
             sum = sum + outside * outside;
         }
         sum.store(squares);
-        // Beyond any limit: what is empty.
-        (L::le(sum, L::splat(limit)) & L::lt(sum, L::splat(f32::INFINITY))).bits()
+        L::le(sum, L::splat(limit)).bits()
     }
 }
 

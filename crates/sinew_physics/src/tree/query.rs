@@ -53,14 +53,6 @@ impl Tree {
     }
 }
 
-/// Slots of a mask, lowest first.
-#[inline(always)]
-fn next_slot(mask: &mut u8) -> usize {
-    let slot = mask.trailing_zeros() as usize;
-    *mask &= *mask - 1;
-    slot
-}
-
 struct Overlapping<'a, V> {
     tree: &'a Tree,
     root: u32,
@@ -81,9 +73,8 @@ impl<B, V: FnMut(u32) -> ControlFlow<B>> Kernel for Overlapping<'_, V> {
         while depth > 0 {
             depth -= 1;
             let node = &self.tree.nodes[stack[depth & MASK] as usize];
-            let mut mask = node.overlapping(&query);
-            while mask != 0 {
-                match node.child(next_slot(&mut mask)).get() {
+            for (_, child) in node.held(node.overlapping(&query)) {
+                match child.get() {
                     Ok(leaf) => (self.visit)(leaf)?,
                     Err(child) => {
                         stack[depth & MASK] = child;
@@ -118,20 +109,15 @@ impl Waiting {
 
     /// Pushes slots of a node so that the one with the smallest key is the next.
     #[inline(always)]
-    fn push(&mut self, node: &Node, mut mask: u8, keys: &[f32; WIDTH]) {
+    fn push(&mut self, node: &Node, mask: u8, keys: &[f32; WIDTH]) {
         let start = self.count;
-        while mask != 0 {
-            let slot = next_slot(&mut mask);
-            // Sums that overflow let a line meet what is empty.
-            if node.child(slot).is_none() {
-                continue;
-            }
+        for (slot, child) in node.held(mask) {
             let mut at = self.count;
             while at > start && self.children[(at - 1) & MASK].0 < keys[slot] {
                 self.children[at & MASK] = self.children[(at - 1) & MASK];
                 at -= 1;
             }
-            self.children[at & MASK] = (keys[slot], node.child(slot));
+            self.children[at & MASK] = (keys[slot], child);
             self.count += 1;
         }
     }

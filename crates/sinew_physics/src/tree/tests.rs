@@ -232,3 +232,34 @@ fn boxes_without_end_hurt_nothing() {
     pair.check();
     pair.ask(&mut random, 10.0);
 }
+
+/// However far a query reaches, it finds what is there, and no slot that is empty.
+#[test]
+fn queries_without_end_find_every_leaf_once() {
+    let mut random = Random::new(4);
+    for count in [1, 3, 8, 9, 61] {
+        let mut tree = Tree::default();
+        for leaf in 0..count {
+            tree.insert(leaf, &some_box(&mut random, [1.0, 1e30][leaf as usize % 2]));
+        }
+        let everywhere = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+        let (mut overlapping, mut near, mut met) = (Vec::new(), Vec::new(), Vec::new());
+        let _ = tree.overlapping(&everywhere, |leaf| {
+            overlapping.push(leaf);
+            ControlFlow::<()>::Continue(())
+        });
+        tree.nearest(Vec3::ONE, f32::INFINITY, |leaf| {
+            near.push(leaf);
+            f32::INFINITY
+        });
+        let half_extents = Vec3::INFINITY;
+        tree.along(&Sweep { origin: Vec3::ONE, direction: Vec3::X, half_extents, limit: 1.0 }, |leaf| {
+            met.push(leaf);
+            1.0
+        });
+        for mut found in [overlapping, near, met] {
+            found.sort_unstable();
+            assert!(found.iter().copied().eq(0..count), "{found:?} of {count}");
+        }
+    }
+}

@@ -15,7 +15,7 @@ pub const MAX_COORDINATE: f32 = 1e6;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MeshError {
     /// Nothing is left: no triangle, or none with an area.
-    #[error("no triangle has an area ({degenerate} have none)")]
+    #[error("{}", if *.degenerate > 0 { "no triangle has an area" } else { "there are no triangles" })]
     NoTriangles {
         /// How many there were without area.
         degenerate: usize,

@@ -13,6 +13,7 @@ mod triangle;
 pub use build::Dropped;
 pub use height_field::{HeightField, HeightFieldDef, HeightFieldError};
 pub use mesh::{MAX_COORDINATE, MAX_TRIANGLES, Mesh, MeshError};
+pub(crate) use tree::{Branch, DEPTH, Tree};
 pub(crate) use triangle::{Part, Triangle, closest_on_triangle, normal};
 
 use crate::boxes::{Aabb, Overlap};

@@ -8,7 +8,7 @@ use sinew_math::{Vec3, max, max3, min};
 /// Triangles in a leaf.
 const LEAF: usize = 4;
 /// More levels than a balanced tree of 2³² leaves has.
-const DEPTH: usize = 40;
+pub(crate) const DEPTH: usize = 40;
 
 /// Bounds of triangles in a binary tree. Leaves hold ranges of places: the triangles' order after [`Tree::new`].
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +25,14 @@ struct Node {
     count: u32,
 }
 
+/// What hangs on a node.
+pub(crate) enum Branch {
+    /// Two nodes, by number.
+    Nodes([u32; 2]),
+    /// Triangles, by place.
+    Leaf(Range<u32>),
+}
+
 impl Tree {
     /// Over the triangles of those numbers, at least one, which it brings into the order of its leaves.
     pub fn new(numbers: &mut [u32], corners: &impl Fn(u32) -> [Vec3; 3]) -> Self {
@@ -36,12 +44,30 @@ impl Tree {
 
     /// Around all of them.
     pub fn bounds(&self) -> Aabb {
-        self.nodes[0].bounds
+        self.bounds_below(0)
     }
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.nodes.as_slice())
+    }
+
+    /// Number of nodes. The first is the root, and none has a number below its parent's.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Around the triangles below a node.
+    pub fn bounds_below(&self, node: u32) -> Aabb {
+        self.nodes[node as usize].bounds
+    }
+
+    /// What a node holds.
+    pub fn branch(&self, node: u32) -> Branch {
+        match self.nodes[node as usize] {
+            Node { next, count: 0, .. } => Branch::Nodes([node + 1, next]),
+            Node { next, count, .. } => Branch::Leaf(next..next + count),
+        }
     }
 
     /// Calls `visit` with the leaves whose bounds overlap `region`, always in the same order.
@@ -80,12 +106,13 @@ impl Tree {
             if !(least <= limit && least < f32::INFINITY) {
                 continue;
             }
-            let node = &self.nodes[index as usize];
-            if node.count > 0 {
-                limit = visit(node.next..node.next + node.count);
-                continue;
-            }
-            let (first, second) = (key(index + 1), key(node.next));
+            let (first, second) = match self.branch(index) {
+                Branch::Nodes([first, second]) => (key(first), key(second)),
+                Branch::Leaf(places) => {
+                    limit = visit(places);
+                    continue;
+                }
+            };
             let (near, far) = if second.1 < first.1 { (second, first) } else { (first, second) };
             open[count] = far;
             open[count + 1] = near;

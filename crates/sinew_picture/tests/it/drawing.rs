@@ -1,7 +1,8 @@
 //! What is seen, against rays shot one by one and against what must not be seen.
 
 use sinew::math::{Random, Transform, Vec2, Vec3};
-use sinew_picture::draw::{self, Solid};
+use sinew::physics::Shape;
+use sinew_picture::draw;
 use sinew_picture::{
     Antialiasing, Camera, Caption, Faces, Image, Line, LineDepth, Material, Model, RenderSettings, Renderer,
     Scene, ShadowCasting, Sky, Sun, Texture,
@@ -248,7 +249,7 @@ fn textures_lie_the_right_way_up() {
 fn lines_hide_behind_surfaces_unless_on_top() {
     let half_extents = Vec3::splat(0.5);
     let place = Transform::from_translation(Vec3::new(0.0, 0.0, -3.0));
-    let cube = draw::solid(Solid::Box { half_extents }, place, Material::new([0.5; 3]));
+    let cube = draw::shape(&Shape::Box { half_extents }, place, Material::new([0.5; 3]));
     let middle = |line_z: f32, depth: LineDepth| {
         let mut scene = plain(vec![cube.clone()]);
         let (from, to) = (Vec3::new(-1.0, 0.01, line_z), Vec3::new(1.0, 0.01, line_z));

@@ -46,7 +46,8 @@ impl Motion {
             }
             None => target.copy_from_slice(def.rest()),
         }
-        if time < self.fade {
+        // Before the start there is a pose, too: that of a hit right at the start asks how it got there.
+        if self.fade > 0.0 && time < self.fade {
             // Aligned to the target's hemisphere: the rest pose's may lie between two that are turned far from it.
             crossfade(target, &self.from, target, smoothstep(time / self.fade), pose);
         } else {

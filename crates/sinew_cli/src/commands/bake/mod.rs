@@ -133,9 +133,26 @@ impl Bake {
 
     fn report(&self, file: &CharacterFile, fall: &Fall<'_>) -> Report {
         let outputs = self.outputs();
-        let text = format!("{}\n{}", shown(&file.name), fall.to_text(&outputs));
+        let left_out = left_out(fall.input.bodies).map_or(String::new(), |what| format!("\n{what}"));
+        let text = format!("{}{left_out}\n{}", shown(&file.name), fall.to_text(&outputs));
         Report { json: fall.to_json(&outputs), text }
     }
+}
+
+/// Triangles of the world that nothing collides with, if there are any.
+fn left_out(bodies: &[BodyDef]) -> Option<String> {
+    let shapes = bodies.iter().flat_map(|body| &body.shapes);
+    let dropped = shapes.filter_map(|shape| match &shape.shape {
+        Shape::Mesh(mesh) => Some(mesh.dropped()),
+        _ => None,
+    });
+    let (degenerate, repeated) =
+        dropped.fold((0, 0), |(flat, twice), one| (flat + one.degenerate, twice + one.repeated));
+    (degenerate + repeated > 0).then(|| {
+        format!(
+            "  left out of the world: {degenerate} triangles without area, {repeated} that are there twice"
+        )
+    })
 }
 
 /// A static half-space with its surface at y = 0.
