@@ -6,7 +6,7 @@ use sinew_scenes::scenes::{Expected, Metric, Scene, Settings, find, registry};
 const NOT_YET: &[(&str, &[&str])] = &[
     // The ends still swing by 7 cm/s after ten seconds, instead of 2.
     ("rope_on_box", &["fastest_m_s"]),
-    // The lowest boxes are squeezed out, up to 190 m far.
+    // The lowest boxes are squeezed out: a load of 1e9 times their weight is too much for 32 bits (ADR 0015).
     (
         "stack_mass_ratio",
         &[
@@ -19,19 +19,8 @@ const NOT_YET: &[(&str, &[&str])] = &[
             "energy_gain_max",
         ],
     ),
-    // The lowest box is squeezed out.
-    (
-        "stack_ratio",
-        &["shift_max_m", "sink_max_m", "turn_max_deg", "depth_max_m", "asleep_s", "energy_gain_max"],
-    ),
-    // 23 mm down in the first six steps, before its contacts have found their loads; then it falls over.
-    ("jenga", &["shift_max_m", "top_drift_m", "sink_max_m", "turn_max_deg"]),
-    // 0.4 mm instead of 0.2, where edges stand on faces.
-    ("cards", &["depth_max_m"]),
-    // At step 334 instead of 307.
-    ("ragdolls", &["asleep_steps"]),
-    // Not within 400 steps, instead of at 213; 9 mm deep instead of 5.
-    ("mesh_drop", &["asleep_steps", "depth_end_m"]),
+    // At step 220 instead of 213: one stick slides for 8 steps more.
+    ("mesh_drop", &["asleep_steps"]),
 ];
 
 /// Scenes in which gravity has no part, and one whose bound is about walls alone (`fast_particle`).
