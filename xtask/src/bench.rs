@@ -71,6 +71,9 @@ pub struct Bench {
     /// has less than its share
     #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "counts"])]
     kernels: bool,
+    /// Instead, write the page anew from the figures that there are
+    #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "check", "counts", "kernels"])]
+    page: bool,
     /// Take the counts as the right ones and write them down
     #[arg(long, requires = "counts")]
     bless: bool,
@@ -88,6 +91,9 @@ impl Bench {
             let shortfalls = kernels::measure()?;
             let fails = self.check && !shortfalls.is_empty();
             return Ok(if fails { ExitCode::FAILURE } else { ExitCode::SUCCESS });
+        }
+        if self.page {
+            return write_page(&kept(), &[]).map(|()| ExitCode::SUCCESS);
         }
         let wanted = |name: &str| self.is_wanted_engine(name);
         let engines = match needs::check().and_then(|()| peers::build(&wanted)) {
@@ -207,15 +213,29 @@ fn bake() -> Result<f64> {
     report?["realtime_factor"].as_f64().context("`sinew demo --json`: no `realtime_factor`")
 }
 
-/// Adds the figures to those of earlier runs, and writes the page; but never over one with more scenes.
+/// Where the figures of earlier runs are.
+fn file() -> PathBuf {
+    command::target().join("bench/benchmarks.json")
+}
+
+/// The figures of earlier runs; none if there are none that can be read.
+fn kept() -> Results {
+    let earlier = fs::read_to_string(file()).ok().and_then(|text| serde_json::from_str(&text).ok());
+    Results::from_json(&earlier.unwrap_or(Value::Null))
+}
+
+/// Adds the figures to those of earlier runs, and writes the page.
 fn write(results: Results, names: &[(String, String)]) -> Result<()> {
-    let path: PathBuf = command::target().join("bench/benchmarks.json");
-    let earlier = fs::read_to_string(&path).ok().and_then(|text| serde_json::from_str(&text).ok());
-    let mut all = Results::from_json(&earlier.unwrap_or(Value::Null));
+    let mut all = kept();
     all.update(results, names);
-    fs::write(&path, format!("{:#}\n", all.to_json())).with_context(|| path.display().to_string())?;
-    let names = names.iter().map(|(name, _)| name.as_str()).chain([BAKE]);
-    let missing: Vec<&str> = names.filter(|name| !all.has(name)).collect();
+    fs::write(file(), format!("{:#}\n", all.to_json())).with_context(|| file().display().to_string())?;
+    let names: Vec<&str> = names.iter().map(|(name, _)| name.as_str()).chain([BAKE]).collect();
+    write_page(&all, &names)
+}
+
+/// Writes the page of all figures, and which of `names` have none; but never over one with more scenes.
+fn write_page(all: &Results, names: &[&str]) -> Result<()> {
+    let missing: Vec<&str> = names.iter().copied().filter(|name| !all.has(name)).collect();
     let page = command::root().join(PAGE);
     if page::scene_count(&fs::read_to_string(&page).unwrap_or_default()) > all.scenes.len() {
         eprintln!(
@@ -224,5 +244,5 @@ fn write(results: Results, names: &[(String, String)]) -> Result<()> {
         );
         return Ok(());
     }
-    fs::write(&page, page::page(&all, &missing, &Machine::this())).context(PAGE)
+    fs::write(&page, page::page(all, &missing, &Machine::this())).context(PAGE)
 }

@@ -15,25 +15,13 @@ impl StepTimes {
     ///
     /// # Panics
     /// If `steps` is 0.
-    pub fn measure(steps: usize, step: impl FnMut(usize)) -> Self {
-        Self::measure_until(steps, f64::INFINITY, step)
-    }
-
-    /// The same, but begins no step after `enough` milliseconds.
-    ///
-    /// # Panics
-    /// If `steps` is 0.
-    pub fn measure_until(steps: usize, enough: f64, mut step: impl FnMut(usize)) -> Self {
+    pub fn measure(steps: usize, mut step: impl FnMut(usize)) -> Self {
         assert!(steps > 0, "at least one step is measured");
         let mut milliseconds = Vec::with_capacity(steps);
-        let begin = ProcessTime::now();
         for number in 0..steps {
             let start = ProcessTime::now();
             step(number);
             milliseconds.push(start.elapsed().as_secs_f64() * 1e3);
-            if begin.elapsed().as_secs_f64() * 1e3 > enough {
-                break;
-            }
         }
         Self { milliseconds }
     }

@@ -1,5 +1,6 @@
 //! Shapes and poses as Parry wants them: Rapier collides with it, and for every engine it judges penetration.
 
+use crate::engine::Unsupported;
 use parry3d::math::{Pose, Rotation as ParryRotation, Vector};
 use parry3d::shape::SharedShape;
 use sinew::math::{Rotation, Transform, Vec3};
@@ -55,16 +56,26 @@ pub fn triangles(shape: &Shape) -> Option<(Vec<Vec3>, Vec<[u32; 3]>)> {
 }
 
 /// The same shape.
-pub fn shape(shape: &Shape) -> SharedShape {
-    match *shape {
+///
+/// # Errors
+/// If Parry has none of its kind.
+pub fn shape(shape: &Shape) -> Result<SharedShape, Unsupported> {
+    Ok(match *shape {
         Shape::Box { half_extents: h } => SharedShape::cuboid(h.x, h.y, h.z),
         Shape::Sphere { radius } => SharedShape::ball(radius),
         Shape::Capsule { half_height, radius } => SharedShape::capsule_y(half_height, radius),
+        Shape::TaperedCapsule { .. } => return Err(Unsupported::new("no tapered capsules")),
+        Shape::Cylinder { half_height, radius } => SharedShape::cylinder(half_height, radius),
+        Shape::Cone { half_height, radius } => SharedShape::cone(half_height, radius),
+        Shape::Hull(ref hull) => {
+            let corners: Vec<_> = hull.vertices().iter().copied().map(vector).collect();
+            SharedShape::convex_hull(&corners).ok_or_else(|| Unsupported::new("a hull that Parry refuses"))?
+        }
         Shape::HalfSpace => SharedShape::halfspace(Vector::Y),
         Shape::Mesh(_) | Shape::HeightField(_) => {
             let (vertices, triangles) = triangles(shape).expect("it has triangles");
             let vertices = vertices.into_iter().map(vector).collect();
             SharedShape::trimesh(vertices, triangles).expect("Parry takes the mesh")
         }
-    }
+    })
 }

@@ -47,7 +47,10 @@ impl fmt::Display for Machine {
 /// The commit in the working tree.
 pub fn revision() -> String {
     let commit = printed("git", &["show", "--no-patch", "--format=%h of %cs", "HEAD"]);
-    let changes = printed("git", &["status", "--porcelain", "--untracked-files=no"]);
+    // The page that is being written is no change of what is measured.
+    let but_the_page = format!(":(exclude){}", super::PAGE);
+    let changes =
+        printed("git", &["status", "--porcelain", "--untracked-files=no", "--", ".", &but_the_page]);
     if changes.is_empty() { commit } else { format!("{commit} with changes") }
 }
 

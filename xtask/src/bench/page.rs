@@ -47,7 +47,10 @@ measured by one tool for all engines from the poses after each step.
 Written by `cargo xtask bench`; do not edit.
 ";
 
-const GLANCE: &str = "Processor time of the median step in milliseconds, then the figure that tells whether it is the time of the same work.\n";
+const GLANCE: &str =
+    "Processor time of the median step of so many in milliseconds, then the figure that tells whether it is the time of the
+same work.
+";
 
 const LEGEND: &str = "*gap*: largest distance between the two anchors of a joint after any step · *stretch*: all gaps of a chain over its length ·
 *depth*: deepest overlap of two bodies · *shift*: how far a body of a stack at rest has moved ·
@@ -107,7 +110,7 @@ fn of<'a>(scene: &'a SceneResult, engine: &str) -> Option<&'a EngineResult> {
 /// One line per scene: time and figure of each engine.
 pub fn glance(results: &Results) -> Table {
     let engines = columns(results);
-    let mut table = heading(&["scene", "figure"], &engines, &["speed"]);
+    let mut table = heading(&["scene", "figure", "steps"], &engines, &["speed"]);
     for scene in &results.scenes {
         let figure = headline(&scene.name);
         let time = |name: &String| {
@@ -116,7 +119,8 @@ pub fn glance(results: &Results) -> Table {
             format!("{} · {}{}", rounded(times.median), cell(figure, engine), mark(engine))
         };
         let speed = scene.speed().map_or(NONE.to_owned(), |speed| format!("{}×", rounded(speed)));
-        let before = [scene.name.clone(), figure.heading.to_owned()];
+        let steps = scene.size("steps").map_or(NONE.to_owned(), |steps| steps.to_string());
+        let before = [scene.name.clone(), figure.heading.to_owned(), steps];
         table.row(before.into_iter().chain(engines.iter().map(time)).chain([speed]));
     }
     table
@@ -243,8 +247,8 @@ mod tests {
         let glance = glance(&results()).to_string();
         let row: Vec<&str> = glance.lines().nth(2).expect("a row").split('|').map(str::trim).collect();
         assert_eq!(
-            row[1..7],
-            ["chain_swing_1000", "gap", "2.00 · 0.100 mm", "1.00 · 11.0 m †", "–", "0.500×"]
+            row[1..8],
+            ["chain_swing_1000", "gap", "100", "2.00 · 0.100 mm", "1.00 · 11.0 m †", "–", "0.500×"]
         );
     }
 

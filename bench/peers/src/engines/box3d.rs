@@ -11,7 +11,7 @@ use crate::ffi::box3d::{Body, BoxPair, Joint, Motion, Shape, Surface, World, ver
 use crate::parry::triangles;
 use crate::scenes::{BoxPairs, DT, RayScene};
 use core::ops::Range;
-use sinew::math::{Rotation, Transform, Vec3};
+use sinew::math::{Rotation, Transform, Vec3, trig};
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyKind, JointKind, Sensing, ShapeDef, Sleeping};
 use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
@@ -24,6 +24,9 @@ const OVERLAP_SLOP: f32 = 5e-4;
 
 /// Half sizes of the box that stands for a half-space, metres; its upper face is the plane.
 const HALF_SPACE: Vec3 = Vec3::new(1000.0, 10.0, 1000.0);
+
+/// Sides of the hull that stands for a cylinder or a cone.
+const SIDES: usize = 24;
 
 /// x of our joint frames becomes z of Box3D's, in which hinges, cones and twists are about z.
 const Z_TO_X: Rotation = Rotation { x: 0.5, y: 0.5, z: 0.5, w: 0.5 };
@@ -93,7 +96,7 @@ fn add_body(world: &mut World, def: &BodyDef, sleeping: Sleeping) -> Result<(), 
         if part.sensing == Sensing::Sensor {
             return Err(Unsupported::new("sensors that are not mapped yet"));
         }
-        world.add_shape(body, &shape(part), &surface(part));
+        world.add_shape(body, &shape(part)?, &surface(part))?;
     }
     if let (BodyKind::Dynamic, Some(mass)) = (def.kind, &def.mass) {
         world.set_mass(body, mass);
@@ -109,9 +112,8 @@ fn add_body(world: &mut World, def: &BodyDef, sleeping: Sleeping) -> Result<(), 
 fn refuse_rolling_on_boxes(scene: &Blueprint) -> Result<(), Unsupported> {
     let mut shapes = scene.bodies.iter().flat_map(|def| def.shapes.iter().map(move |part| (def.kind, part)));
     let rolls = shapes.clone().any(|(_, part)| part.material.rolling != 0.0);
-    if rolls
-        && shapes.any(|(kind, part)| kind != BodyKind::Dynamic && !matches!(shape(part), Shape::Mesh { .. }))
-    {
+    let has_no_radius = |part: &ShapeDef| triangles(&part.shape).is_some();
+    if rolls && shapes.any(|(kind, part)| kind != BodyKind::Dynamic && !has_no_radius(part)) {
         return Err(Unsupported::new("rolling resistance on what is no mesh and does not move"));
     }
     Ok(())
@@ -126,16 +128,27 @@ fn rolling_radius(shape: &sinew::physics::Shape) -> f32 {
     }
 }
 
-fn shape(def: &ShapeDef) -> Shape {
+fn shape(def: &ShapeDef) -> Result<Shape, Unsupported> {
     use sinew::physics::Shape as Ours;
     let body_from_shape = def.body_from_shape;
-    match def.shape {
+    let hull = |points: &[Vec3]| Shape::Hull {
+        points: points.iter().map(|point| body_from_shape.point(*point)).collect(),
+    };
+    Ok(match def.shape {
         Ours::Box { half_extents } => Shape::Box { half_extents, body_from_box: body_from_shape },
         Ours::Sphere { radius } => Shape::Sphere { center: body_from_shape.translation, radius },
         Ours::Capsule { half_height, radius } => {
             let ends = [-half_height, half_height].map(|y| body_from_shape.point(Vec3::Y * y));
             Shape::Capsule { ends, radius }
         }
+        Ours::TaperedCapsule { .. } => return Err(Unsupported::new("no tapered capsules")),
+        Ours::Cylinder { half_height, radius } => {
+            hull(&[ring(-half_height, radius), ring(half_height, radius)].concat())
+        }
+        Ours::Cone { half_height, radius } => {
+            hull(&[ring(-half_height, radius).as_slice(), &[Vec3::Y * half_height]].concat())
+        }
+        Ours::Hull(ref of) => hull(of.vertices()),
         Ours::HalfSpace => {
             let below = Transform::from_translation(Vec3::NEG_Y * HALF_SPACE.y);
             Shape::Box { half_extents: HALF_SPACE, body_from_box: body_from_shape * below }
@@ -145,7 +158,15 @@ fn shape(def: &ShapeDef) -> Shape {
             vertices.iter_mut().for_each(|vertex| *vertex = body_from_shape.point(*vertex));
             Shape::Mesh { vertices, triangles }
         }
-    }
+    })
+}
+
+/// Corners of what stands for a circle about y: Box3D has round things as hulls only.
+fn ring(y: f32, radius: f32) -> [Vec3; SIDES] {
+    core::array::from_fn(|side| {
+        let (sin, cos) = trig::sin_cos(core::f32::consts::TAU * side as f32 / SIDES as f32);
+        Vec3::new(radius * cos, y, radius * sin)
+    })
 }
 
 fn surface(def: &ShapeDef) -> Surface {

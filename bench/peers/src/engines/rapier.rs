@@ -143,7 +143,7 @@ fn collider(def: &ShapeDef, body: &BodyDef) -> Result<ColliderBuilder, Unsupport
     let [layers, mask] = [def.filter.layers, def.filter.mask].map(Group::from_bits_retain);
     // A mass that is given replaces that of the shapes.
     let density = if body.mass.is_some() { 0.0 } else { def.density };
-    Ok(ColliderBuilder::new(shape(&def.shape))
+    Ok(ColliderBuilder::new(shape(&def.shape)?)
         .position(pose(def.body_from_shape))
         .density(density)
         .friction(def.material.friction)

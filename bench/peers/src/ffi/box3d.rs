@@ -5,6 +5,7 @@
 
 #![allow(unsafe_code)]
 
+use crate::engine::Unsupported;
 use box3d_sys::*;
 use core::marker::PhantomData;
 use core::ptr;
@@ -15,6 +16,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Held while worlds come and go: Box3D's table of worlds has no lock of its own.
 static WORLDS: Mutex<()> = Mutex::new(());
+
+/// Corners that a hull may have (`B3_MAX_HULL_VERTICES`).
+const MOST_HULL_CORNERS: i32 = 128;
 
 fn lock_worlds() -> MutexGuard<'static, ()> {
     WORLDS.lock().unwrap_or_else(PoisonError::into_inner)
@@ -63,6 +67,7 @@ pub enum Shape {
     Box { half_extents: Vec3, body_from_box: Transform },
     Sphere { center: Vec3, radius: f32 },
     Capsule { ends: [Vec3; 2], radius: f32 },
+    Hull { points: Vec<Vec3> },
     Mesh { vertices: Vec<Vec3>, triangles: Vec<[u32; 3]> },
 }
 
@@ -122,9 +127,12 @@ impl World {
 
     /// Adds a shape to a body, whose mass and inertia grow by those of the shape.
     ///
+    /// # Errors
+    /// If Box3D takes no such hull: it has at most 128 corners in all.
+    ///
     /// # Panics
     /// If there is no such body, or Box3D takes no such mesh.
-    pub fn add_shape(&mut self, body: usize, shape: &Shape, surface: &Surface) {
+    pub fn add_shape(&mut self, body: usize, shape: &Shape, surface: &Surface) -> Result<(), Unsupported> {
         let body = self.bodies[body];
         // SAFETY: takes nothing, returns a value.
         let mut def = unsafe { b3DefaultShapeDef() };
@@ -157,6 +165,15 @@ impl World {
                 // SAFETY: as for spheres.
                 unsafe { b3CreateCapsuleShape(body, def, &raw const capsule) };
             }
+            Shape::Hull { points } => {
+                let hull = hull(points)?;
+                // SAFETY: the body lives as long as the world; `def` and the hull are copied, so that the hull is
+                // destroyed here, once.
+                unsafe {
+                    b3CreateHullShape(body, def, hull);
+                    b3DestroyHull(hull);
+                }
+            }
             Shape::Mesh { vertices, triangles } => {
                 let mesh = mesh(vertices, triangles);
                 self.meshes.push(mesh);
@@ -165,6 +182,7 @@ impl World {
                 unsafe { b3CreateMeshShape(body, def, mesh, scale) };
             }
         }
+        Ok(())
     }
 
     /// Replaces mass, centre and inertia that a body has from its shapes.
@@ -294,6 +312,17 @@ impl Drop for World {
             unsafe { b3DestroyMesh(mesh) }
         }
     }
+}
+
+/// The hull of points, to be destroyed by its owner.
+fn hull(points: &[Vec3]) -> Result<*mut b3HullData, Unsupported> {
+    let points: Vec<_> = points.iter().map(|&point| vector(point)).collect();
+    // Box3D would make a simpler hull of more: another scene.
+    let count = i32::try_from(points.len()).ok().filter(|&count| count <= MOST_HULL_CORNERS);
+    let count = count.ok_or_else(|| Unsupported::new("no hulls of more than 128 corners"))?;
+    // SAFETY: there are as many points as it is told, and they live through the call.
+    let hull = unsafe { b3CreateHull(points.as_ptr(), count, count) };
+    if hull.is_null() { Err(Unsupported::new("a hull that Box3D refuses")) } else { Ok(hull) }
 }
 
 /// A mesh of one-sided triangles, counter-clockwise seen from outside, to be destroyed by its owner.

@@ -1,7 +1,7 @@
 //! How deep shapes are inside each other.
 
 use super::collides;
-use crate::engine::BodyState;
+use crate::engine::{BodyState, Unsupported};
 use crate::parry;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::Pose;
@@ -43,19 +43,27 @@ struct Solid {
 
 impl PenetrationMeter {
     pub fn new(scene: &Blueprint, every: usize) -> Self {
-        let mut shapes = Vec::new();
-        for (body, def) in scene.bodies.iter().enumerate() {
-            shapes.extend(def.shapes.iter().filter(|s| collides(s)).map(|s| Solid {
-                body,
-                is_dynamic: def.kind == BodyKind::Dynamic,
-                filter: s.filter,
-                body_from_shape: s.body_from_shape,
-                shape: parry::shape(&s.shape),
-            }));
-        }
+        // Depths of some shapes are not those of the scene: one that Parry does not have, and nothing is judged.
+        let shapes = Self::solids(scene).unwrap_or_default();
         let mut jointed: Vec<_> = scene.joints.iter().map(|joint| ordered(joint.a, joint.b)).collect();
         jointed.sort_unstable();
         Self { shapes, jointed, every, run_max: 0.0 }
+    }
+
+    fn solids(scene: &Blueprint) -> Result<Vec<Solid>, Unsupported> {
+        let mut solids = Vec::new();
+        for (body, def) in scene.bodies.iter().enumerate() {
+            for part in def.shapes.iter().filter(|part| collides(part)) {
+                solids.push(Solid {
+                    body,
+                    is_dynamic: def.kind == BodyKind::Dynamic,
+                    filter: part.filter,
+                    body_from_shape: part.body_from_shape,
+                    shape: parry::shape(&part.shape)?,
+                });
+            }
+        }
+        Ok(solids)
     }
 
     pub fn observe(&mut self, step: usize, states: &[BodyState]) {

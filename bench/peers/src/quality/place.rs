@@ -3,7 +3,6 @@
 use super::{collides, worse};
 use crate::engine::BodyState;
 use crate::parry;
-use parry3d::bounding_volume::Aabb;
 use sinew::math::{Transform, Vec3};
 use sinew::physics::{BodyKind, Shape};
 use sinew_scenes::blueprint::Blueprint;
@@ -70,6 +69,9 @@ fn bottom(shape: &Shape, world_from_shape: Transform) -> f32 {
     if *shape == Shape::HalfSpace {
         return world_from_shape.translation.y;
     }
-    let Aabb { mins, .. } = parry::shape(shape).compute_aabb(&parry::pose(world_from_shape));
-    mins.y
+    match parry::shape(shape) {
+        Ok(shape) => shape.compute_aabb(&parry::pose(world_from_shape)).mins.y,
+        // Further down than it reaches, if anything.
+        Err(_) => world_from_shape.translation.y - shape.bounding_radius(),
+    }
 }

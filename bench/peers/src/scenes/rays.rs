@@ -5,7 +5,7 @@ use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew_scenes::blueprint::{in_box, rotation};
 
-/// Rays that share one measured step: long enough for the clock, short enough for an engine that tries every box.
+/// Rays that share one measured step: long enough for the clock.
 const RAYS_PER_STEP: usize = 1_000;
 
 /// A box in space.

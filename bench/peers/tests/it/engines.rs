@@ -1,7 +1,7 @@
 //! Every engine of this build as the quality tool sees it, against closed forms.
 
-use sinew::math::{Rotation, Vec3, trig};
-use sinew::physics::{BodyDef, BodyKind, Filter, Shape, ShapeDef, Sleeping};
+use sinew::math::{Rotation, Transform, Vec3, trig};
+use sinew::physics::{BodyDef, BodyKind, Filter, Hull, MassProperties, Shape, ShapeDef, Sleeping};
 use sinew_peers::engine::{BodyState, Engine};
 use sinew_peers::engines::ENGINES;
 use sinew_peers::quality::{Quality, QualityMeter};
@@ -73,6 +73,65 @@ fn what_falls_falls_and_spins_on() {
         assert!((speed - 2.0 * trig::exp(-0.05)).abs() < 5e-3, "{name}: {speed}");
         let spin = states[2].angular_velocity.y;
         assert!((spin - 1.5 * trig::exp(-0.05)).abs() < 5e-3, "{name}: {spin}");
+    }
+}
+
+/// What only some engines have rests at its own height, too, or is refused.
+#[test]
+fn round_shapes_and_hulls_have_their_sizes_or_are_refused() {
+    let corners = [Vec3::new(0.3, -0.2, 0.3), Vec3::new(-0.3, -0.2, 0.3), Vec3::new(0.0, -0.2, -0.3)];
+    let top = corners.map(|corner| corner + Vec3::Y * 0.5);
+    let wedge = Hull::new(&[corners, top].concat()).expect("a prism is convex");
+    let kinds = [
+        (
+            "cylinder",
+            Shape::Cylinder { half_height: 0.3, radius: 0.2 },
+            0.3,
+            &["sinew", "rapier", "box3d", "jolt"][..],
+        ),
+        ("cone", Shape::Cone { half_height: 0.3, radius: 0.3 }, 0.3, &["sinew", "rapier", "box3d"]),
+        ("hull", Shape::Hull(wedge.into()), 0.2, &["sinew", "rapier", "box3d", "jolt"]),
+        (
+            "tapered capsule",
+            Shape::TaperedCapsule { half_height: 0.2, radius_bottom: 0.3, radius_top: 0.1 },
+            0.5,
+            &["sinew", "jolt"],
+        ),
+    ];
+    for engine in engines() {
+        let name = engine.describe().name;
+        for (kind, shape, height, have) in &kinds {
+            let scene =
+                scene(vec![floor(), body(BodyKind::Dynamic, shape.clone(), Vec3::Y * (height + 0.02))]);
+            assert_eq!(engine.build(&scene).is_ok(), have.contains(&name), "{name}: {kind}");
+            if have.contains(&name) {
+                let (states, _) = after(engine, &scene, 60);
+                let y = states[1].world_from_body.translation.y;
+                assert!((y - height).abs() < 0.025, "{name}: {kind} at {y} for {height}");
+            }
+        }
+    }
+}
+
+/// A body of two shapes spins about its centre of mass, which half a turn takes to the other side of its origin.
+#[test]
+fn bodies_spin_about_their_centres_of_mass() {
+    let capsule = Shape::TaperedCapsule { half_height: 0.2, radius_bottom: 0.1, radius_top: 0.2 };
+    for other in [Shape::Sphere { radius: 0.2 }, Shape::Cylinder { half_height: 0.1, radius: 0.3 }, capsule] {
+        let mut def = body(BodyKind::Dynamic, brick(), Vec3::ZERO);
+        let aside = Transform::new(Vec3::X, Rotation::from_axis_angle(Vec3::Z, 1.0));
+        def.shapes.push(ShapeDef { body_from_shape: aside, ..ShapeDef::new(other) });
+        let center = def.shapes.iter().fold(MassProperties::default(), |sum, part| {
+            sum.combine(&part.shape.mass_properties(part.density).transformed(&part.body_from_shape))
+        });
+        def.angular_velocity = Vec3::Z * core::f32::consts::PI;
+        let scene = Blueprint { gravity: Vec3::ZERO, ..scene(vec![def]) };
+        for engine in engines().filter(|engine| engine.build(&scene).is_ok()) {
+            let (states, _) = after(engine, &scene, 60);
+            let origin = states[0].world_from_body.translation;
+            let off = origin - 2.0 * center.center;
+            assert!(off.length() < 0.05, "{}: {origin} for {}", engine.describe().name, 2.0 * center.center);
+        }
     }
 }
 

@@ -13,15 +13,32 @@ pub const CONVEX_RADIUS: f32 = 0.05;
 /// Half sizes of the box that stands for a half-space, metres; its upper face is the plane.
 const HALF_SPACE: Vec3 = Vec3::new(900.0, 10.0, 900.0);
 
-/// As given, or that of the shapes with their densities.
-fn mass(def: &BodyDef) -> MassProperties {
-    def.mass.unwrap_or_else(|| mass_of_shapes(&def.shapes, |shape| shape.density))
+/// Rounding of the edges of a shape that holds a ball of this radius.
+fn edge_radius(inner_radius: f32) -> f32 {
+    min(CONVEX_RADIUS, 0.5 * inner_radius)
 }
 
-fn mass_of_shapes(shapes: &[ShapeDef], density: impl Fn(&ShapeDef) -> f32) -> MassProperties {
+/// As given, or that of the shapes with their densities.
+fn mass(def: &BodyDef) -> MassProperties {
+    def.mass.unwrap_or_else(|| sum(&def.shapes, |part| part.shape.mass_properties(part.density)))
+}
+
+/// Mass of shapes together, in their body's frame.
+fn sum(shapes: &[ShapeDef], mass: impl Fn(&ShapeDef) -> MassProperties) -> MassProperties {
     shapes.iter().fold(MassProperties::default(), |sum, part| {
-        sum.combine(&part.shape.mass_properties(density(part)).transformed(&part.body_from_shape))
+        sum.combine(&mass(part).transformed(&part.body_from_shape))
     })
+}
+
+/// Mass of a shape as Jolt has it: all have the same density, and a tapered capsule is a box of its mean width.
+fn mass_in_jolt(part: &ShapeDef) -> MassProperties {
+    let Shape::TaperedCapsule { half_height, radius_bottom, radius_top } = part.shape else {
+        return part.shape.mass_properties(1.0);
+    };
+    let radius = 0.5 * (radius_bottom + radius_top);
+    let half_extents = Vec3::new(radius, half_height + radius, radius);
+    let middle = Transform::from_translation(Vec3::Y * (0.5 * (radius_top - radius_bottom)));
+    Shape::Box { half_extents }.mass_properties(1.0).transformed(&middle)
 }
 
 /// Gives a dynamic body its mass: ours, for Jolt's shapes have no density of their own here.
@@ -44,8 +61,7 @@ pub fn shape(def: &BodyDef) -> Result<oxijolt::Shape, Unsupported> {
     if def.kind == BodyKind::Static {
         return Ok(shape);
     }
-    // Jolt's shapes all have the same density.
-    let offset = mass(def).center - mass_of_shapes(&def.shapes, |_| 1.0).center;
+    let offset = mass(def).center - sum(&def.shapes, mass_in_jolt).center;
     if offset.length() < 1e-6 {
         return Ok(shape);
     }
@@ -67,13 +83,24 @@ fn compound(parts: &[(oxijolt::Shape, Transform)]) -> Result<oxijolt::Shape, Uns
 
 fn shape_alone(shape: &Shape) -> Result<oxijolt::Shape, Unsupported> {
     let rounded_box = |half: Vec3| {
-        let radius = min(CONVEX_RADIUS, 0.5 * half.min_element());
-        oxijolt::Shape::new_box_with_convex_radius(vector(half), radius)
+        oxijolt::Shape::new_box_with_convex_radius(vector(half), edge_radius(half.min_element()))
     };
     match *shape {
         Shape::Box { half_extents } => rounded_box(half_extents),
         Shape::Sphere { radius } => oxijolt::Shape::new_sphere(radius),
         Shape::Capsule { half_height, radius } => oxijolt::Shape::new_capsule(half_height, radius),
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            oxijolt::Shape::new_tapered_capsule(half_height, radius_top, radius_bottom)
+        }
+        Shape::Cylinder { half_height, radius } => {
+            let rounding = edge_radius(min(half_height, radius));
+            oxijolt::Shape::new_cylinder_with_convex_radius(half_height, radius, rounding)
+        }
+        Shape::Cone { .. } => return Err(Unsupported::new("no cones")),
+        Shape::Hull(ref hull) => {
+            let corners: Vec<_> = hull.vertices().iter().copied().map(vector).collect();
+            oxijolt::Shape::new_convex_hull_with_convex_radius(&corners, edge_radius(hull.inner_radius()))
+        }
         Shape::HalfSpace => rounded_box(HALF_SPACE),
         Shape::Mesh(_) | Shape::HeightField(_) => {
             let (vertices, triangles) = triangles(shape).expect("it has triangles");
