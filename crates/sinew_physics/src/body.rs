@@ -1,8 +1,10 @@
 //! A body as the world keeps it.
 
+use crate::contact_rule::ContactRule;
 use crate::def::{BodyDef, BodyKind};
 use crate::force::BodyForces;
-use crate::shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
+use crate::material::Material;
+use crate::shape::{Filter, MassProperties, Sensing, Shape, ShapeDef};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
 
 /// Linear velocity of the centre of mass and angular velocity, world axes.
@@ -44,6 +46,7 @@ pub(crate) struct BodyShape {
     pub material: Material,
     pub filter: Filter,
     pub sensing: Sensing,
+    pub rule: ContactRule,
 }
 
 /// The pose is that of the **principal frame**: origin at the centre of mass, axes along the principal axes of
@@ -74,6 +77,8 @@ pub(crate) struct Body {
     pub place: Transform,
     /// Set when its state became non-finite: it was rolled back and takes no further part.
     pub quarantined: bool,
+    /// The user changed it since the last step.
+    pub stirred: bool,
     pub user_data: u64,
 }
 
@@ -139,6 +144,7 @@ impl Body {
             rest: Rest::Awake { calm: 0.0 },
             place: world_from_body * body_from_principal,
             quarantined: false,
+            stirred: false,
             user_data: def.user_data,
         }
     }
@@ -180,6 +186,14 @@ impl Body {
         self.world_from_principal * self.shapes[shape].principal_from_shape
     }
 
+    /// How the surface of a shape moves along the body at a world point, world axes.
+    pub fn surface_velocity(&self, shape: usize, point: Vec3) -> Velocity {
+        let (frame, material) = (self.world_from_shape(shape), &self.shapes[shape].material);
+        let angular = frame.rotation * material.surface_spin;
+        let linear = frame.rotation * material.surface_velocity + angular.cross(point - frame.translation);
+        Velocity { linear, angular }
+    }
+
     /// World position of the centre of mass.
     pub fn center(&self) -> Vec3 {
         self.world_from_principal.translation
@@ -194,8 +208,11 @@ impl Body {
         self.kind == BodyKind::Dynamic && self.is_awake() && !self.quarantined
     }
 
-    /// May start a contact: it moves.
+    /// May start or end a contact: it moves, or was changed.
     pub fn can_touch(&self) -> bool {
+        if self.stirred {
+            return true;
+        }
         match self.kind {
             BodyKind::Dynamic => self.is_active(),
             BodyKind::Kinematic => self.velocity != Velocity::default(),
@@ -248,6 +265,7 @@ fn body_shape(def: &ShapeDef, principal_from_body: Transform) -> BodyShape {
         material: def.material,
         filter: def.filter,
         sensing: def.sensing,
+        rule: def.rule,
     }
 }
 

@@ -1,8 +1,10 @@
 //! Contacts: pairs of shapes that are near each other, with what the solver remembers of them.
 
+use crate::arena::Arena;
+use crate::body::Body;
 use crate::collide::{MAX_POINTS, Manifold};
-use crate::shape::Material;
-use sinew_math::{Vec3, max};
+use crate::material::ContactMaterial;
+use sinew_math::Vec3;
 
 /// Which two shapes: body index and shape number of each, the smaller body index first. Sorting by it is the order
 /// in which everything about contacts happens.
@@ -14,17 +16,32 @@ pub(crate) struct ContactKey {
     pub shape_b: u32,
 }
 
+impl ContactKey {
+    /// Of two shapes, each given by body and number, in whatever order.
+    pub fn new(p: (u32, u32), q: (u32, u32)) -> Self {
+        let (a, b) = if p.0 < q.0 { (p, q) } else { (q, p) };
+        Self { a: a.0, b: b.0, shape_a: a.1, shape_b: b.1 }
+    }
+
+    /// Of the same two shapes.
+    pub fn is_same_pair(&self, other: &Self) -> bool {
+        (self.a, self.b, self.shape_a, self.shape_b) == (other.a, other.b, other.shape_a, other.shape_b)
+    }
+}
+
 /// A pair of body indices, the smaller first.
 pub(crate) fn ordered(a: u32, b: u32) -> (u32, u32) {
     if a < b { (a, b) } else { (b, a) }
 }
 
-/// Impulses of one manifold point over a substep, N·s.
+/// Impulses of one manifold point, N·s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PointImpulse {
     /// Of the last substep and the one before: an impact must not be repeated, so warm starting looks at both.
     pub now: f32,
     pub before: f32,
+    /// Of all substeps of the step.
+    pub total: f32,
 }
 
 /// What a contact carries from step to step.
@@ -37,9 +54,17 @@ pub(crate) struct ContactMemory {
     pub twist: f32,
     /// Rolling resistance, world vector, N·m·s.
     pub rolling: Vec3,
+    /// Friction of all substeps of the step, world vector, N·s.
+    pub total_friction: Vec3,
 }
 
 impl ContactMemory {
+    /// With nothing given yet.
+    pub fn of_new_step(&self) -> Self {
+        let points = self.points.map(|point| PointImpulse { total: 0.0, ..point });
+        Self { points, total_friction: Vec3::ZERO, ..*self }
+    }
+
     /// What a new manifold of the same shapes starts with. Points keep their impulses by feature; those of points that
     /// are gone go to the new ones in equal parts, since the load stays when the shapes tip from one corner to another.
     /// Nothing is kept if the normal turned by more than about 25°.
@@ -59,6 +84,7 @@ impl ContactMemory {
                 None => {
                     lost.now += impulse.now;
                     lost.before += impulse.before;
+                    lost.total += impulse.total;
                 }
             }
         }
@@ -68,9 +94,22 @@ impl ContactMemory {
         for (point, _) in memory.points.iter_mut().zip(fresh).filter(|(_, fresh)| all || **fresh) {
             point.now += lost.now / heirs as f32;
             point.before += lost.before / heirs as f32;
+            point.total += lost.total / heirs as f32;
         }
         memory
     }
+}
+
+/// What a contact does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Effect {
+    /// It pushes.
+    #[default]
+    Push,
+    /// One of the shapes only senses.
+    Sense,
+    /// The shapes pass through each other.
+    Pass,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -78,10 +117,11 @@ pub(crate) struct Contact {
     pub key: ContactKey,
     pub manifold: Manifold,
     pub memory: ContactMemory,
-    /// Surfaces overlap or touch.
-    pub touching: bool,
-    /// One of the shapes only senses.
-    pub sensor: bool,
+    pub effect: Effect,
+    /// One of the shapes is solid from one side: what is decided stays while they touch.
+    pub one_way: bool,
+    /// How fast its points came in when the step began, m/s.
+    pub approach: f32,
 }
 
 impl Contact {
@@ -90,23 +130,41 @@ impl Contact {
             key,
             manifold: Manifold::default(),
             memory: ContactMemory::default(),
-            touching: false,
-            sensor: false,
+            effect: Effect::Push,
+            one_way: false,
+            approach: 0.0,
         }
     }
 
     /// Whether the solver has to do with it.
     pub fn pushes(&self) -> bool {
-        self.manifold.count > 0 && !self.sensor
+        self.manifold.count > 0 && self.effect == Effect::Push
     }
-}
 
-/// Combined surface of two materials.
-pub(crate) fn combine(a: &Material, b: &Material) -> Material {
-    Material {
-        friction: (a.friction * b.friction).sqrt(),
-        restitution: max(a.restitution, b.restitution),
-        rolling: max(a.rolling, b.rolling),
+    /// Surfaces overlap or touch.
+    pub fn touches(&self) -> bool {
+        self.manifold.points().iter().any(|point| point.separation <= 0.0)
+    }
+
+    /// Where its points are, and all that they got along the normal in the last step, N·s.
+    pub fn impulses(&self) -> impl Iterator<Item = (Vec3, f32)> {
+        let points = self.manifold.points().iter().zip(&self.memory.points);
+        points.map(|(point, impulse)| (point.position, impulse.total))
+    }
+
+    /// What its two surfaces are to each other, as the bodies lie now.
+    pub fn material(&self, bodies: &Arena<Body>) -> ContactMaterial {
+        let sides = [(self.key.a, self.key.shape_a), (self.key.b, self.key.shape_b)];
+        let sides = sides.map(|(body, shape)| (bodies.at(body), shape as usize));
+        let [a, b] = sides.map(|(body, shape)| &body.shapes[shape].material);
+        let mut material = ContactMaterial::of(a, b);
+        if a.runs() || b.runs() {
+            let center = self.manifold.center();
+            let [a, b] = sides.map(|(body, shape)| body.surface_velocity(shape, center));
+            material.velocity = b.linear - a.linear;
+            material.spin = b.angular - a.angular;
+        }
+        material
     }
 }
 

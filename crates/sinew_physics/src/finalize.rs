@@ -1,9 +1,12 @@
 //! `store`, `finalize` and `continuous`: the world takes what the islands computed.
 
 use crate::arena::Arena;
-use crate::body::Body;
-use crate::contact::Contact;
+use crate::body::{Body, BodyShape};
+use crate::contact::{Contact, ContactKey};
+use crate::contact_rule::ContactRule;
 use crate::def::BodyKind;
+use crate::events::Events;
+use crate::filter::PairFilter;
 use crate::id::{GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
@@ -11,16 +14,18 @@ use crate::joint::def::JointState;
 use crate::parted::PartedPairs;
 use crate::particles::ParticleGroup;
 use crate::ray::Ray;
+use crate::shape::Sensing;
 use crate::solver::SolvedBody;
 use crate::step::StepContext;
-use crate::touch::{Events, id};
-use sinew_math::Vec3;
+use crate::touch::id;
+use sinew_math::{Transform, Vec3, normalize_or};
 
 /// `store`: impulses and joint forces that the next step starts from; particle groups return to the world, where what is not
-/// finite is rolled back.
+/// finite is rolled back; joints that were loaded too much break.
 pub(crate) fn store(
     islands: &mut Islands,
     joints: &mut Arena<Joint>,
+    parted: &mut PartedPairs,
     contacts: &mut [Contact],
     groups: &mut Arena<ParticleGroup>,
     events: &mut Events,
@@ -48,10 +53,11 @@ pub(crate) fn store(
         joint.mass = solved.mass;
         joint.reaction = solved.reaction.map(|impulse| impulse / dt);
     }
+    break_joints(joints, parted, events);
 }
 
-/// In `store`: joints that the step loaded beyond their strength break.
-pub(crate) fn break_joints(joints: &mut Arena<Joint>, parted: &mut PartedPairs, events: &mut Events) {
+/// Joints that the step loaded beyond their strength break.
+fn break_joints(joints: &mut Arena<Joint>, parted: &mut PartedPairs, events: &mut Events) {
     events.broken.clear();
     for (index, generation, joint) in joints.entries_mut() {
         if joint.is_enabled() && joint.is_overloaded() {
@@ -97,7 +103,7 @@ pub(crate) fn finalize(
 /// `continuous`: a body without joints whose centre passed through a static shape within the step is put back to where
 /// its core touches. Speculative contacts stop nearly everything before; this is for what they miss. Jointed bodies are
 /// left to the speculative contacts: moving one link would tear its joints.
-pub(crate) fn continuous(bodies: &mut Arena<Body>, islands: &Islands) {
+pub(crate) fn continuous(bodies: &mut Arena<Body>, islands: &Islands, filter: PairFilter<'_>) {
     for island in islands.iter().filter(|island| island.joints.is_empty()) {
         for &index in island.bodies {
             let body = bodies.at(index);
@@ -107,7 +113,7 @@ pub(crate) fn continuous(bodies: &mut Arena<Body>, islands: &Islands) {
                 continue;
             }
             let ray = Ray { origin: body.previous.translation, direction: motion };
-            if let Some(fraction) = first_static_hit(bodies, body, &ray) {
+            if let Some(fraction) = first_static_hit(bodies, filter, index, &ray) {
                 let back = sinew_math::max(fraction - core / motion.length(), 0.0);
                 let center = ray.at(back);
                 bodies.at_mut(index).world_from_principal.translation = center;
@@ -124,14 +130,20 @@ fn core_radius(body: &Body) -> f32 {
     }
 }
 
-fn first_static_hit(bodies: &Arena<Body>, mover: &Body, ray: &Ray) -> Option<f32> {
+fn first_static_hit(bodies: &Arena<Body>, filter: PairFilter<'_>, mover: u32, ray: &Ray) -> Option<f32> {
     let mut first: Option<f32> = None;
-    for (_, body) in bodies.iter().filter(|(_, body)| body.kind == BodyKind::Static) {
+    let own = bodies.at(mover).shapes.len() as u32;
+    let fixed = bodies.iter().filter(|(_, body)| body.kind == BodyKind::Static);
+    for (index, body) in fixed {
         for (shape, s) in body.shapes.iter().enumerate() {
-            if !mover.shapes.iter().any(|own| own.filter.meets(s.filter)) {
+            let frame = body.world_from_shape(shape);
+            if !stops(s, &frame, ray)
+                || !(0..own)
+                    .any(|i| filter.lets_meet(bodies, ContactKey::new((mover, i), (index, shape as u32))))
+            {
                 continue;
             }
-            let hit = s.shape.cast_ray(&body.world_from_shape(shape), ray);
+            let hit = s.shape.cast_ray(&frame, ray);
             // A start inside is an overlap that the contacts are working on.
             if let Some(hit) = hit.filter(|hit| hit.fraction > 0.0 && first.is_none_or(|f| hit.fraction < f))
             {
@@ -140,4 +152,17 @@ fn first_static_hit(bodies: &Arena<Body>, mover: &Body, ray: &Ray) -> Option<f32
         }
     }
     first
+}
+
+/// Whether a shape surely stops what comes along a ray. One that a modifier may open is left to the speculative contacts.
+fn stops(s: &BodyShape, frame: &Transform, ray: &Ray) -> bool {
+    let solid = s.sensing == Sensing::Solid;
+    solid
+        && match s.rule {
+            ContactRule::Push => true,
+            ContactRule::Ghost | ContactRule::Modified { .. } => false,
+            ContactRule::OneWay(one_way) => {
+                one_way.holds(normalize_or(frame.rotation.inverse() * -ray.direction, Vec3::Y))
+            }
+        }
 }

@@ -42,3 +42,12 @@ id! {
     /// An object of the user's own kind in a [`World`](crate::World).
     ObjectId
 }
+
+/// A shape of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ShapeId {
+    /// The body.
+    pub body: BodyId,
+    /// Which of its shapes, counted from 0 as in [`BodyDef::shapes`](crate::BodyDef::shapes).
+    pub shape: u32,
+}

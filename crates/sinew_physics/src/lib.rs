@@ -12,8 +12,13 @@ mod world;
 
 pub mod collide;
 pub mod cook;
+mod events;
+mod filter;
 mod finalize;
+mod hits;
 mod islands;
+mod meetings;
+mod modifiers;
 mod pairs;
 mod parted;
 mod project;
@@ -28,40 +33,50 @@ mod arena;
 mod body;
 pub mod boxes;
 mod contact;
+mod contact_rule;
 mod distance;
 mod draw;
 pub mod id;
 pub mod joint;
 mod mass;
+mod material;
 pub mod object;
 pub mod particles;
 mod query;
 pub mod ray;
+mod registered;
 pub mod runner;
 pub mod shape;
 mod slices;
 mod snapshot;
 mod spatial;
+mod surfaces;
 
 pub use body::Velocity;
 pub use boxes::{Aabb, Obb};
+pub use contact::Effect;
+pub use contact_rule::{ContactModifier, ContactRule, ContactSide, FoundContact, OneWay};
 pub use def::{BodyDef, BodyKind, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
+pub use events::Events;
 pub use field::{
     Buoyancy, Drag, Explosion, Fade, FieldDef, FieldKind, FieldPoint, Gusts, MutualGravity, Occlusion,
     PointGravity, Region, UniformGravity, Wind,
 };
+pub use filter::{PairFunction, PairSide};
 pub use force::{ForceDef, ForceFrame, ForceId, Wrench};
-pub use id::{BodyId, FieldId, GroupId, JointId, ObjectId};
+pub use hits::Hit;
+pub use id::{BodyId, FieldId, GroupId, JointId, ObjectId, ShapeId};
 pub use joint::Reaction;
 pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
     Spring, Strength,
 };
+pub use material::{Combine, CombineRules, ContactMaterial, Material};
 pub use object::{Corrections, Forces, PhysicsObject, Substep};
 pub use query::{BodyHit, Energy, Momentum};
 pub use runner::{Serial, TaskRunner, Threads};
-pub use shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
-pub use touch::Events;
+pub use shape::{Filter, MassProperties, Sensing, Shape, ShapeDef};
+pub use surfaces::{BodyContact, ContactPoint};
 pub use update::Update;
 pub use world::World;

@@ -3,8 +3,9 @@
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::boxes::{Aabb, Overlap};
-use crate::contact::{Contact, ContactKey, ordered};
+use crate::contact::{Contact, ContactKey};
 use crate::def::BodyKind;
+use crate::filter::PairFilter;
 use sinew_math::Vec3;
 
 /// Bounds of one shape, grown by how far it may move within the step.
@@ -39,12 +40,12 @@ impl BroadPhase {
     pub fn update(
         &mut self,
         bodies: &Arena<Body>,
-        parted: &[(u32, u32)],
+        filter: PairFilter<'_>,
         contacts: &mut Vec<Contact>,
         dt: f32,
     ) {
         self.refresh(bodies, dt);
-        self.sweep(bodies, parted);
+        self.sweep(bodies, filter);
         self.keys.sort_unstable();
         self.merge(bodies, contacts);
     }
@@ -89,7 +90,7 @@ impl BroadPhase {
         }
     }
 
-    fn sweep(&mut self, bodies: &Arena<Body>, parted: &[(u32, u32)]) {
+    fn sweep(&mut self, bodies: &Arena<Body>, filter: PairFilter<'_>) {
         self.keys.clear();
         self.open.clear();
         for (i, proxy) in self.proxies.iter().enumerate() {
@@ -99,7 +100,7 @@ impl BroadPhase {
                 let other = &proxies[j as usize];
                 if (proxy.can_touch || other.can_touch)
                     && proxy.bounds.overlaps(&other.bounds)
-                    && may_collide(bodies, parted, proxy, other)
+                    && filter.lets_meet(bodies, key(proxy, other))
                 {
                     self.keys.push(key(proxy, other));
                 }
@@ -126,22 +127,12 @@ impl BroadPhase {
 
 /// A contact that was not found again stays only if nothing about it can have changed.
 fn stays(bodies: &Arena<Body>, contact: &Contact) -> bool {
-    !bodies.at(contact.key.a).can_touch() && !bodies.at(contact.key.b).can_touch()
+    [contact.key.a, contact.key.b].into_iter().all(|index| {
+        let body = bodies.at(index);
+        !body.can_touch() && !body.quarantined
+    })
 }
 
 fn key(p: &Proxy, q: &Proxy) -> ContactKey {
-    let (a, b) = if p.body < q.body { (p, q) } else { (q, p) };
-    ContactKey { a: a.body, b: b.body, shape_a: a.shape, shape_b: b.shape }
-}
-
-fn may_collide(bodies: &Arena<Body>, parted: &[(u32, u32)], p: &Proxy, q: &Proxy) -> bool {
-    if p.body == q.body {
-        return false;
-    }
-    let (a, b) = (bodies.at(p.body), bodies.at(q.body));
-    (a.kind == BodyKind::Dynamic || b.kind == BodyKind::Dynamic)
-        && a.shapes[p.shape as usize].filter.meets(b.shapes[q.shape as usize].filter)
-        && !a.quarantined
-        && !b.quarantined
-        && parted.binary_search(&ordered(p.body, q.body)).is_err()
+    ContactKey::new((p.body, p.shape), (q.body, q.shape))
 }

@@ -3,10 +3,12 @@
 use crate::arena::Arena;
 use crate::body::{Body, Velocity};
 use crate::boxes::Overlap;
+use crate::contact_rule::ContactRule;
 use crate::def::BodyKind;
 use crate::field::{Fields, Target};
 use crate::islands::Island;
 use crate::particles::{Anchor, AttachmentTarget, Obstacle, ObstacleBody, ParticleGroup};
+use crate::shape::Sensing;
 use crate::solver::{IslandSolver, View};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
 use sinew_math::{Sym3, Transform, Vec3};
@@ -76,6 +78,8 @@ impl Neighbors {
                 let s = &body.shapes[*shape];
                 // What is quarantined still holds what hangs on it, as a fixed point.
                 !body.quarantined
+                    && s.sensing == Sensing::Solid
+                    && s.rule != ContactRule::Ghost
                     && s.filter.meets(group.filter())
                     && s.shape.aabb(&body.world_from_shape(*shape)).overlaps(&bounds)
             };

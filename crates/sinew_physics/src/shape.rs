@@ -1,5 +1,7 @@
-//! Collision shapes, what they are made of, and whom they meet.
+//! Collision shapes, and whom they meet.
 
+use crate::contact_rule::ContactRule;
+use crate::material::Material;
 use sinew_math::{Sym3, Transform, Vec3, min};
 
 /// A convex shape in its own frame. All sizes are metres and positive.
@@ -75,23 +77,6 @@ impl Shape {
     }
 }
 
-/// Surface: friction and bounce. Pairs combine: geometric mean of frictions, larger restitution, larger rolling.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material {
-    /// Coulomb coefficient, ≥ 0. Default 0.6.
-    pub friction: f32,
-    /// Share of the approach speed given back, 0..=1. Default 0.
-    pub restitution: f32,
-    /// Rolling resistance: lever of the resisting torque, metres. Default 0.
-    pub rolling: f32,
-}
-
-impl Default for Material {
-    fn default() -> Self {
-        Self { friction: 0.6, restitution: 0.0, rolling: 0.0 }
-    }
-}
-
 /// Two shapes meet if each one's mask holds the other's layer, and they are not in the same negative group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Filter {
@@ -106,22 +91,6 @@ pub struct Filter {
 impl Default for Filter {
     fn default() -> Self {
         Self { layers: 1, mask: u32::MAX, group: 0 }
-    }
-}
-
-impl Material {
-    /// Whether its numbers make sense; the phrase says what is wrong.
-    ///
-    /// # Errors
-    /// What is wrong, in lower case.
-    pub fn check(&self) -> Result<(), &'static str> {
-        // Written so that NaN fails.
-        let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
-        if not_negative(self.friction) && not_negative(self.rolling) && not_negative(self.restitution) {
-            Ok(())
-        } else {
-            Err("friction, restitution and rolling must not be negative, and finite")
-        }
     }
 }
 
@@ -150,6 +119,8 @@ pub struct ShapeDef {
     pub filter: Filter,
     /// Whether it pushes.
     pub sensing: Sensing,
+    /// What becomes of its contacts. Default: as they are.
+    pub rule: ContactRule,
 }
 
 /// What a shape does to those it meets.
@@ -170,6 +141,7 @@ impl ShapeDef {
     pub fn check(&self) -> Result<(), &'static str> {
         self.shape.check()?;
         self.material.check()?;
+        self.rule.check()?;
         let placed = self.body_from_shape.is_finite();
         // Written so that NaN fails.
         let dense = (0.0..f32::INFINITY).contains(&self.density);
@@ -189,6 +161,7 @@ impl ShapeDef {
             material: Material::default(),
             filter: Filter::default(),
             sensing: Sensing::Solid,
+            rule: ContactRule::Push,
         }
     }
 }

@@ -25,16 +25,16 @@ pub(crate) struct StepContext<'a> {
 pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
     let World { def, bodies, joints, contacts, groups, objects, .. } = world;
-    let World { events, broad, islands, parted, sleepers, .. } = world;
+    let World { events, broad, islands, parted, sleepers, meetings, .. } = world;
     let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
 
-    stage(Stage::Pairs, &mut || broad.update(bodies, parted.of(joints), contacts, context.dt));
+    stage(Stage::Pairs, &mut || broad.update(bodies, parted.filter(joints), contacts, context.dt));
     stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
-    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, &fields, events));
+    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, &fields, meetings, events));
     stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, &fields, context.dt));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
 
-    let view = View { bodies, joints, contacts, def, fields, h: context.h };
+    let view = View { bodies, joints, contacts, modifiers: &meetings.modifiers, def, fields, h: context.h };
     if objects.is_empty() {
         let all = || Phase::of_step(context.substeps);
         islands.run(context.runner, |task| all().for_each(|phase| solve(phase, task, &view, context)));
@@ -43,14 +43,15 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         objects.rouse(bodies);
     }
 
-    stage(Stage::Store, &mut || {
-        finalize::store(islands, joints, contacts, groups, events, context.dt);
-        finalize::break_joints(joints, parted, events);
+    let dt = context.dt;
+    stage(Stage::Store, &mut || finalize::store(islands, joints, parted, contacts, groups, events, dt));
+    stage(Stage::Finalize, &mut || {
+        finalize::finalize(&islands.solution().bodies, bodies, events, context);
+        meetings.hits.tell(bodies, contacts, def.hit_speed, &mut events.hits);
     });
-    stage(Stage::Finalize, &mut || finalize::finalize(&islands.solution().bodies, bodies, events, context));
-    stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands));
+    stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands, parted.filter(joints)));
     stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, &fields, sleepers, def.sleeping, context.dt));
-    stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, events));
+    stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, events));
 }
 
 /// A part of an island's step, which goes on where the part before ended.

@@ -1,42 +1,27 @@
-//! `collide` and `touch`: manifolds of all near pairs, then who began and stopped touching, and who wakes.
+//! `collide` and `touch`: manifolds of all near pairs, then what they do, who began and stopped touching, and who wakes.
 
 use crate::arena::Arena;
 use crate::body::{Body, Rest};
 use crate::collide::{Manifold, collide as narrow_phase};
-use crate::contact::{Contact, slop};
+use crate::contact::{Contact, Effect, slop};
+use crate::contact_rule::ContactRule;
 use crate::def::BodyKind;
+use crate::events::Events;
 use crate::field::Fields;
-use crate::id::{BodyId, GroupId, JointId};
+use crate::id::BodyId;
 use crate::joint::Joint;
+use crate::meetings::{Meetings, Told, Touches, shape_ids};
 use crate::shape::Sensing;
 use crate::slices::for_each_mut;
 use crate::step::StepContext;
 use sinew_math::{max, min};
-
-/// What happened in the last step, in the order of body indices.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Events {
-    /// Pairs of bodies that began to touch.
-    pub begin: Vec<(BodyId, BodyId)>,
-    /// Pairs of bodies that stopped.
-    pub end: Vec<(BodyId, BodyId)>,
-    /// Pairs of bodies of which one began to be inside a sensor of the other.
-    pub sensor_begin: Vec<(BodyId, BodyId)>,
-    /// Likewise, ended.
-    pub sensor_end: Vec<(BodyId, BodyId)>,
-    /// Bodies whose state became non-finite: rolled back to the step before, stopped and taken out of the simulation.
-    pub quarantined: Vec<BodyId>,
-    /// Groups with particles whose state became non-finite: those stopped where they were before the step.
-    pub rolled_back: Vec<GroupId>,
-    /// Joints that broke, in the order of joint indices. They are there, but disabled.
-    pub broken: Vec<JointId>,
-}
 
 /// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
 pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &StepContext<'_>) {
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
         if !a.can_touch() && !b.can_touch() {
+            contact.approach = 0.0;
             return;
         }
         let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
@@ -57,35 +42,73 @@ pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &
             margin,
             &mut manifold,
         );
-        contact.sensor = a.shapes[sa].sensing == Sensing::Sensor || b.shapes[sb].sensing == Sensing::Sensor;
         contact.memory = contact.memory.matched(&contact.manifold, &manifold);
         contact.manifold = manifold;
+        contact.approach = approach_of(a, b, &manifold);
+        rule(contact, a, b);
     });
 }
 
-/// `touch`: events, and waking of what an awake body touches or attracts, or a moving kinematic one holds.
+/// How fast the points come in, m/s; the fastest counts.
+fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
+    manifold.points().iter().fold(0.0, |fastest, point| {
+        let p = point.position;
+        let relative = b.velocity.at(p - b.center()) - a.velocity.at(p - a.center());
+        max(fastest, -relative.dot(manifold.normal))
+    })
+}
+
+/// What the contact does, as far as its shapes say.
+fn rule(contact: &mut Contact, a: &Body, b: &Body) {
+    let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
+    contact.effect = Effect::Push;
+    contact.one_way = false;
+    let normal = contact.manifold.normal;
+    for (body, shape, away) in [(a, sa, normal), (b, sb, -normal)] {
+        let s = &body.shapes[shape];
+        match s.rule {
+            ContactRule::Push | ContactRule::Modified { .. } => {}
+            ContactRule::Ghost => contact.effect = Effect::Pass,
+            ContactRule::OneWay(one_way) => {
+                contact.one_way = true;
+                let away = body.world_from_shape(shape).rotation.inverse() * away;
+                if contact.manifold.count > 0 && !one_way.holds(away) {
+                    contact.effect = Effect::Pass;
+                }
+            }
+        }
+    }
+    if [&a.shapes[sa], &b.shapes[sb]].into_iter().any(|s| s.sensing == Sensing::Sensor) {
+        contact.effect = Effect::Sense;
+    }
+}
+
+/// `touch`: what contacts do, events, and waking of what an awake body touches or attracts, or a moving kinematic one holds.
 pub(crate) fn touch(
     bodies: &mut Arena<Body>,
     joints: &Arena<Joint>,
     contacts: &mut [Contact],
     fields: &Fields<'_>,
+    meetings: &mut Meetings,
     events: &mut Events,
 ) {
-    for list in [&mut events.begin, &mut events.end] {
-        list.clear();
-        // All of them: how many come at once differs from hit to hit.
-        list.reserve(contacts.len());
-    }
-    for contact in contacts.iter_mut() {
-        let (a, b) = (contact.key.a, contact.key.b);
-        if !contact.sensor {
-            note_change(bodies, contact, &mut events.begin, &mut events.end);
+    let touching = &mut meetings.touching;
+    touching.start(contacts.len());
+    for pair in contacts.chunk_by_mut(|p, q| p.key.is_same_pair(&q.key)) {
+        agree(bodies, pair, touching);
+        if pair[0].effect != Effect::Sense {
+            touching.note(bodies, pair);
         }
-        if contact.pushes() {
-            wake_touched(bodies, a, b);
-            wake_touched(bodies, b, a);
+        if pair.iter().any(Contact::pushes) {
+            let key = pair[0].key;
+            wake_touched(bodies, key.a, key.b);
+            wake_touched(bodies, key.b, key.a);
         }
     }
+    touching.tell(
+        Told { bodies: &mut events.begin, shapes: &mut events.shapes_begin },
+        Told { bodies: &mut events.end, shapes: &mut events.shapes_end },
+    );
     for (_, joint) in joints.iter().filter(|(_, joint)| joint.is_enabled()) {
         for (mover, held) in [(joint.a, joint.b), (joint.b, joint.a)] {
             let body = bodies.at(mover);
@@ -97,20 +120,20 @@ pub(crate) fn touch(
     while let Some(attracted) = fields.next_to_wake(bodies) {
         wake(bodies, attracted);
     }
+    meetings.modifiers.change(bodies, contacts, fields.step);
 }
 
-/// Puts the pair of a contact that began or ceased to touch since it was last looked at into one of the lists.
-pub(crate) fn note_change(
-    bodies: &Arena<Body>,
-    contact: &mut Contact,
-    begin: &mut Vec<(BodyId, BodyId)>,
-    end: &mut Vec<(BodyId, BodyId)>,
-) {
-    let touching = contact.manifold.points().iter().any(|point| point.separation <= 0.0);
-    if touching != contact.touching {
-        let list = if touching { begin } else { end };
-        list.push((id(bodies, contact.key.a), id(bodies, contact.key.b)));
-        contact.touching = touching;
+/// All parts of a pair of shapes do the same: what touched a one-way shape goes on as it did, anything else passes if any
+/// part of it comes from another side.
+fn agree(bodies: &Arena<Body>, pair: &mut [Contact], touching: &Touches) {
+    if !pair[0].one_way || pair[0].effect == Effect::Sense {
+        return;
+    }
+    let (a, b) = shape_ids(bodies, &pair[0]);
+    let new = || pair.iter().any(|contact| contact.effect == Effect::Pass);
+    let effect = if touching.passed(a, b).unwrap_or_else(new) { Effect::Pass } else { Effect::Push };
+    for contact in pair {
+        contact.effect = effect;
     }
 }
 
@@ -120,7 +143,7 @@ pub(crate) fn id(bodies: &Arena<Body>, index: u32) -> BodyId {
 
 fn wake_touched(bodies: &mut Arena<Body>, mover: u32, sleeper: u32) {
     let body = bodies.at(mover);
-    let wakes = body.is_active() || (body.kind == BodyKind::Kinematic && body.can_touch());
+    let wakes = body.is_active() || (body.kind != BodyKind::Dynamic && body.can_touch());
     if wakes {
         wake(bodies, sleeper);
     }

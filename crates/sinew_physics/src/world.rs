@@ -4,19 +4,21 @@ use crate::arena::Arena;
 use crate::body::{Body, Velocity};
 use crate::contact::Contact;
 use crate::def::{BodyDef, BodyKind, WorldDef};
+use crate::events::Events;
 use crate::field::{FieldDef, Functions};
 use crate::id::{BodyId, GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
+use crate::meetings::Meetings;
 use crate::object::Objects;
 use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
 use crate::particles::{AttachmentTarget, GroupDef, ParticleGroup};
 use crate::runner::{Serial, TaskRunner};
-use crate::shape::MassProperties;
+use crate::shape::{MassProperties, Sensing};
 use crate::stage::{NoProfiler, Profiler};
 use crate::step::{StepContext, step};
-use crate::touch::{Events, wake};
+use crate::touch::wake;
 use sinew_math::{Transform, Vec3};
 
 /// Bodies and joints, stepped at a fixed rate.
@@ -34,6 +36,7 @@ pub struct World {
     pub(crate) functions: Functions,
     pub(crate) objects: Objects,
     pub(crate) parted: PartedPairs,
+    pub(crate) meetings: Meetings,
     pub(crate) events: Events,
     pub(crate) broad: BroadPhase,
     pub(crate) islands: Islands,
@@ -64,6 +67,7 @@ impl World {
             functions: Functions::default(),
             objects: Objects::default(),
             parted: PartedPairs::default(),
+            meetings: Meetings::default(),
             events: Events::default(),
             broad: BroadPhase::default(),
             islands: Islands::default(),
@@ -82,11 +86,19 @@ impl World {
     /// Adds a body.
     ///
     /// # Panics
-    /// If a number is not finite, a shape is not valid, or a dynamic body has no mass.
+    /// If a number is not finite, a shape is not valid or names a modifier that is not registered, or a dynamic body has no
+    /// mass.
     pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
+        def.shapes.iter().for_each(|shape| self.expect_modifier(shape.rule));
         let (index, generation) = self.bodies.insert(Body::new(def));
         self.broad.invalidate();
-        BodyId { index, generation }
+        let id = BodyId { index, generation };
+        let senses = def.shapes.iter().any(|shape| shape.sensing == Sensing::Sensor);
+        if senses || def.kind == BodyKind::Kinematic || self.sleepers > 0 {
+            // It may be around what does not move by itself.
+            self.stir(id);
+        }
+        id
     }
 
     /// Takes a body out, with its joints; what it touched wakes.
@@ -104,6 +116,7 @@ impl World {
         for joint in joints {
             self.remove_joint(joint);
         }
+        self.meetings.stirred.retain(|&index| index != id.index);
         self.contacts.retain(|contact| contact.key.a != id.index && contact.key.b != id.index);
         self.parted.forget(id.index);
         self.bodies.remove(id.index, id.generation);
@@ -143,13 +156,6 @@ impl World {
     /// All particle groups, by index.
     pub fn group_ids(&self) -> impl Iterator<Item = GroupId> {
         self.groups.iter().map(|(index, _)| GroupId { index, generation: self.groups.generation(index) })
-    }
-
-    /// From now on two bodies pass through each other.
-    pub fn disable_pair(&mut self, a: BodyId, b: BodyId) {
-        self.expect(a);
-        self.expect(b);
-        self.parted.disable(a.index, b.index);
     }
 
     /// One step on the calling thread.
@@ -211,7 +217,7 @@ impl World {
     pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
         assert!(world_from_body.is_finite(), "a body's pose is finite");
         self.expect_mut(id).set_world_from_body(world_from_body);
-        self.wake_neighbors(id.index);
+        self.stir(id);
         self.broad.invalidate();
     }
 
@@ -228,8 +234,14 @@ impl World {
     /// Sets the velocity of a dynamic or kinematic body; it wakes.
     pub fn set_velocity(&mut self, id: BodyId, velocity: Velocity) {
         assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "a velocity is finite");
-        wake(&mut self.bodies, id.index);
-        self.expect_mut(id).velocity = velocity;
+        let body = self.expect_mut(id);
+        let stops = velocity.is_zero() && !body.velocity.is_zero();
+        body.velocity = velocity;
+        match body.kind {
+            // Where it has come to nothing has looked yet.
+            BodyKind::Kinematic if stops => self.stir(id),
+            _ => wake(&mut self.bodies, id.index),
+        }
     }
 
     /// Static, kinematic or dynamic.
@@ -267,7 +279,7 @@ impl World {
     }
 
     /// Wakes a body and all that touch it.
-    fn wake_neighbors(&mut self, body: u32) {
+    pub(crate) fn wake_neighbors(&mut self, body: u32) {
         wake(&mut self.bodies, body);
         for contact in &self.contacts {
             if contact.key.a == body || contact.key.b == body {

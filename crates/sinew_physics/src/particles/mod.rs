@@ -36,7 +36,8 @@ pub use def::{
 };
 
 use crate::boxes::Aabb;
-use crate::shape::{Filter, Material};
+use crate::material::Material;
+use crate::shape::Filter;
 use contact::{Grip, Placed, Touch};
 use forest::{Forest, Freedom, System};
 use impact::MAX_TOUCHES;
