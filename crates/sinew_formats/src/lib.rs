@@ -16,6 +16,7 @@ pub mod mjcf;
 pub mod obj;
 mod parts;
 pub mod ragdoll;
+mod surface;
 mod uri;
 pub mod world;
 

@@ -120,6 +120,11 @@ pub(crate) struct Contact {
     pub effect: Effect,
     /// One of the shapes is solid from one side: what is decided stays while they touch.
     pub one_way: bool,
+    /// Its pair was told of as touching, or as one with a sensor: goes along with what is put aside.
+    pub touching: bool,
+    pub sensed: bool,
+    /// A shape that is solid from one side let the other pass when it was last decided.
+    pub passes: bool,
     /// How fast its points came in when the step began, m/s.
     pub approach: f32,
 }
@@ -132,6 +137,9 @@ impl Contact {
             memory: ContactMemory::default(),
             effect: Effect::Push,
             one_way: false,
+            touching: false,
+            sensed: false,
+            passes: false,
             approach: 0.0,
         }
     }

@@ -3,6 +3,7 @@
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, Effect};
+use crate::def::BodyKind;
 use crate::id::ShapeId;
 use crate::material::Material;
 use crate::meetings::{load_shape_id, save_shape_id, shape_ids};
@@ -15,7 +16,7 @@ pub struct Hit {
     pub a: ShapeId,
     /// The other.
     pub b: ShapeId,
-    /// Where, world, metres: the middle of what pushed, weighed by how much.
+    /// Where, world, metres: the middle of what pushed, weighed by how much; on the surface that stands still, if one does.
     pub point: Vec3,
     /// From A to B, unit length, world axes.
     pub normal: Vec3,
@@ -122,7 +123,15 @@ fn hit_of(
     }
     for contact in pair {
         approach = max(approach, contact.approach);
-        for (place, given) in contact.impulses() {
+        // The points lie half way between the surfaces: of one that forces move and one that they do not, that one's counts.
+        let on = match [a, b].map(|id| bodies.at(id.body.index).kind == BodyKind::Dynamic) {
+            [true, false] => 0.5,
+            [false, true] => -0.5,
+            _ => 0.0,
+        };
+        for (place, given) in contact.manifold.points().iter().zip(&contact.memory.points) {
+            let (place, given) =
+                (place.position + contact.manifold.normal * (on * place.separation), given.total);
             impulse += given;
             greatest = max(greatest, given);
             point += place * given;

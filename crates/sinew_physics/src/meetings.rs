@@ -2,7 +2,7 @@
 
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::contact::{Contact, Effect};
+use crate::contact::Contact;
 use crate::hits::OpenHits;
 use crate::id::{BodyId, ShapeId};
 use crate::modifiers::Modifiers;
@@ -60,8 +60,6 @@ impl Meetings {
 pub(crate) struct Touch {
     pub a: ShapeId,
     pub b: ShapeId,
-    /// They pass through each other.
-    pub passes: bool,
 }
 
 impl Touch {
@@ -84,12 +82,27 @@ pub(crate) fn shape_ids(bodies: &Arena<Body>, contact: &Contact) -> (ShapeId, Sh
     )
 }
 
-/// Pairs that touch, in order.
+/// The shapes of a contact.
+pub(crate) fn touch_of(bodies: &Arena<Body>, contact: &Contact) -> Touch {
+    let (a, b) = shape_ids(bodies, contact);
+    Touch { a, b }
+}
+
+/// Whether nothing about the contacts of two shapes can have changed: they were not looked at.
+pub(crate) fn lie_still(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
+    !bodies.at(pair[0].key.a).can_touch() && !bodies.at(pair[0].key.b).can_touch()
+}
+
+/// Pairs that touch, in order; those to which nothing can happen may be missing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Touches {
     list: Vec<Touch>,
     /// Of this step.
     next: Vec<Touch>,
+    /// How far the notes of this step have come in the list.
+    seen: usize,
+    /// Not in the list, but known to touch.
+    returned: Vec<Touch>,
 }
 
 /// Lists of what began, or of what ended.
@@ -103,42 +116,59 @@ impl Touches {
     pub fn start(&mut self, contacts: usize) {
         self.next.clear();
         self.next.reserve(contacts);
+        self.returned.clear();
+        self.returned.reserve(contacts);
+        self.seen = 0;
     }
 
-    /// Notes the contacts of one pair of shapes, pairs in order.
-    pub fn note(&mut self, bodies: &Arena<Body>, pair: &[Contact]) {
-        if pair.iter().any(Contact::touches) {
-            let (a, b) = shape_ids(bodies, &pair[0]);
-            self.next.push(Touch { a, b, passes: pair.iter().all(|contact| contact.effect == Effect::Pass) });
+    /// Notes a pair of shapes, pairs in order: whether it was told of in some step before, and whether it touches now.
+    pub fn note(&mut self, touch: Touch, was: bool, is: bool) {
+        let behind =
+            self.list[self.seen..].iter().take_while(|other| other.shapes() < touch.shapes()).count();
+        self.seen += behind;
+        let listed = self.list.get(self.seen).is_some_and(|other| other.shapes() == touch.shapes());
+        if was && !listed {
+            self.returned.push(touch);
+        }
+        if is {
+            self.next.push(touch);
         }
     }
 
-    /// Whether a pair that touched in the last step passed through each other; `None` if it did not touch.
-    pub fn passed(&self, a: ShapeId, b: ShapeId) -> Option<bool> {
-        let asked = Touch { a, b, passes: false };
-        let place = self.list.binary_search_by_key(&asked.shapes(), Touch::shapes).ok()?;
-        Some(self.list[place].passes)
-    }
-
-    /// Tells what is not as it was in the last step.
-    pub fn tell<'a>(&mut self, mut begin: Told<'a>, mut end: Told<'a>) {
+    /// Tells what is not as it was in the last step. What is gone, but lies still, goes on touching.
+    pub fn tell<'a>(&mut self, bodies: &Arena<Body>, mut begin: Told<'a>, mut end: Told<'a>) {
+        let most = usize::max(self.list.len() + self.returned.len(), self.next.capacity());
         for told in [&mut begin, &mut end] {
             told.bodies.clear();
             told.shapes.clear();
             // All of them: how many come at once differs from hit to hit.
-            let most = usize::max(self.list.len(), self.next.capacity());
             told.bodies.reserve(most);
             told.shapes.reserve(most);
         }
+        if !self.returned.is_empty() {
+            self.list.extend_from_slice(&self.returned);
+            self.list.sort_unstable_by_key(Touch::shapes);
+        }
         let (was, is) = (&self.list, &self.next);
-        compare(was, is, Touch::bodies, |pair| begin.bodies.push(pair), |pair| end.bodies.push(pair));
+        let ended = |a, b| !(lies_still(bodies, a) && lies_still(bodies, b));
+        compare(
+            was,
+            is,
+            Touch::bodies,
+            |pair| begin.bodies.push(pair),
+            |(a, b)| {
+                end.bodies.extend(ended(a, b).then_some((a, b)));
+            },
+        );
         let ids = |(a, b, i, j)| (ShapeId { body: a, shape: i }, ShapeId { body: b, shape: j });
         compare(
             was,
             is,
             Touch::shapes,
             |pair| begin.shapes.push(ids(pair)),
-            |pair| end.shapes.push(ids(pair)),
+            |pair| {
+                end.shapes.extend(ended(pair.0, pair.1).then_some(ids(pair)));
+            },
         );
         core::mem::swap(&mut self.list, &mut self.next);
     }
@@ -148,20 +178,24 @@ impl Touches {
         for touch in &self.list {
             save_shape_id(w, touch.a);
             save_shape_id(w, touch.b);
-            w.bool(touch.passes);
         }
     }
 
     fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
         let mut list = Vec::new();
-        for _ in 0..r.count(25)? {
-            list.push(Touch { a: load_shape_id(r)?, b: load_shape_id(r)?, passes: r.bool()? });
+        for _ in 0..r.count(24)? {
+            list.push(Touch { a: load_shape_id(r)?, b: load_shape_id(r)? });
         }
         if !list.is_sorted_by(|p: &Touch, q| p.shapes() < q.shapes()) {
             return Err(r.error("touching pairs are out of order"));
         }
-        Ok(Self { list, next: Vec::new() })
+        Ok(Self { list, ..Self::default() })
     }
+}
+
+/// Whether nothing about what a body touches can have changed.
+fn lies_still(bodies: &Arena<Body>, id: BodyId) -> bool {
+    bodies.get(id.index, id.generation).is_some_and(|body| !body.can_touch() && !body.quarantined)
 }
 
 /// Walks two ordered lists side by side: what only the new one has began, what only the old one has ended.

@@ -4,23 +4,29 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, Effect};
 use crate::events::Events;
-use crate::meetings::{Meetings, Told};
+use crate::meetings::{Meetings, Told, lie_still, touch_of};
 
 /// Compares the sensor pairs with those of the step before. All that the user changed since has been looked at now.
 pub(crate) fn sensors(
     bodies: &mut Arena<Body>,
-    contacts: &[Contact],
+    contacts: &mut [Contact],
     meetings: &mut Meetings,
     events: &mut Events,
 ) {
     let sensed = &mut meetings.sensed;
     sensed.start(contacts.len());
-    for pair in contacts.chunk_by(|p, q| p.key.is_same_pair(&q.key)) {
-        if pair[0].effect == Effect::Sense {
-            sensed.note(bodies, pair);
+    for pair in contacts.chunk_by_mut(|p, q| p.key.is_same_pair(&q.key)) {
+        let was = pair.iter().any(|contact| contact.sensed);
+        let senses = pair[0].effect == Effect::Sense;
+        let is =
+            if senses && lie_still(bodies, pair) { was } else { senses && pair.iter().any(Contact::touches) };
+        if is || was {
+            sensed.note(touch_of(bodies, &pair[0]), was, is);
         }
+        pair.iter_mut().for_each(|contact| contact.sensed = is);
     }
     sensed.tell(
+        bodies,
         Told { bodies: &mut events.sensor_begin, shapes: &mut events.sensor_shapes_begin },
         Told { bodies: &mut events.sensor_end, shapes: &mut events.sensor_shapes_end },
     );

@@ -440,6 +440,9 @@ fn save_contact(w: &mut Writer, contact: &Contact) {
         w.u32(x);
     }
     w.u8(contact.effect as u8);
+    w.bool(contact.touching);
+    w.bool(contact.sensed);
+    w.bool(contact.passes);
     w.vec3(contact.manifold.normal);
     w.count(contact.manifold.count);
     for (point, impulse) in contact.manifold.points().iter().zip(&contact.memory.points) {
@@ -469,6 +472,7 @@ fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, Rea
         2 => Effect::Pass,
         _ => return Err(r.error("unknown effect of a contact")),
     };
+    let (touching, sensed, passes) = (r.bool()?, r.bool()?, r.bool()?);
     let mut manifold = Manifold { normal: r.vec3()?, ..Manifold::default() };
     manifold.count = r.count(24)?;
     if manifold.count > MAX_POINTS {
@@ -484,7 +488,7 @@ fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, Rea
     memory.twist = r.f32()?;
     memory.rolling = r.vec3()?;
     memory.total_friction = r.vec3()?;
-    Ok(Contact { manifold, memory, effect, ..Contact::new(key) })
+    Ok(Contact { manifold, memory, effect, touching, sensed, passes, ..Contact::new(key) })
 }
 
 fn load_group(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<ParticleGroup, ReadError> {

@@ -10,7 +10,7 @@ use crate::events::Events;
 use crate::field::Fields;
 use crate::id::BodyId;
 use crate::joint::Joint;
-use crate::meetings::{Meetings, Told, Touches, shape_ids};
+use crate::meetings::{Meetings, Told, Touches, lie_still, touch_of};
 use crate::shape::Sensing;
 use crate::slices::for_each_mut;
 use crate::step::StepContext;
@@ -95,10 +95,8 @@ pub(crate) fn touch(
     let touching = &mut meetings.touching;
     touching.start(contacts.len());
     for pair in contacts.chunk_by_mut(|p, q| p.key.is_same_pair(&q.key)) {
-        agree(bodies, pair, touching);
-        if pair[0].effect != Effect::Sense {
-            touching.note(bodies, pair);
-        }
+        agree(pair);
+        note(bodies, pair, touching);
         if pair.iter().any(Contact::pushes) {
             let key = pair[0].key;
             wake_touched(bodies, key.a, key.b);
@@ -106,6 +104,7 @@ pub(crate) fn touch(
         }
     }
     touching.tell(
+        bodies,
         Told { bodies: &mut events.begin, shapes: &mut events.shapes_begin },
         Told { bodies: &mut events.end, shapes: &mut events.shapes_end },
     );
@@ -123,17 +122,31 @@ pub(crate) fn touch(
     meetings.modifiers.change(bodies, contacts, fields.step);
 }
 
+/// Has a pair of shapes told of if it begins or ceases to touch.
+fn note(bodies: &Arena<Body>, pair: &mut [Contact], touching: &mut Touches) {
+    let was = pair.iter().any(|contact| contact.touching);
+    let solid = pair[0].effect != Effect::Sense;
+    let is = if solid && lie_still(bodies, pair) { was } else { solid && pair.iter().any(Contact::touches) };
+    if is || was {
+        touching.note(touch_of(bodies, &pair[0]), was, is);
+    }
+    pair.iter_mut().for_each(|contact| contact.touching = is);
+}
+
 /// All parts of a pair of shapes do the same: what touched a one-way shape goes on as it did, anything else passes if any
 /// part of it comes from another side.
-fn agree(bodies: &Arena<Body>, pair: &mut [Contact], touching: &Touches) {
+fn agree(pair: &mut [Contact]) {
     if !pair[0].one_way || pair[0].effect == Effect::Sense {
         return;
     }
-    let (a, b) = shape_ids(bodies, &pair[0]);
-    let new = || pair.iter().any(|contact| contact.effect == Effect::Pass);
-    let effect = if touching.passed(a, b).unwrap_or_else(new) { Effect::Pass } else { Effect::Push };
+    let passes = if pair.iter().any(|contact| contact.touching) {
+        pair.iter().any(|contact| contact.touching && contact.passes)
+    } else {
+        pair.iter().any(|contact| contact.effect == Effect::Pass)
+    };
     for contact in pair {
-        contact.effect = effect;
+        contact.passes = passes;
+        contact.effect = if passes { Effect::Pass } else { Effect::Push };
     }
 }
 

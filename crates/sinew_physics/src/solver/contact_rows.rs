@@ -15,6 +15,9 @@ use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max, min};
 const PUSH_SPEED: f32 = 3.0;
 /// Approach below which nothing bounces, m/s.
 const BOUNCE_SPEED: f32 = 1.0;
+/// What static friction leaves of the speed of two surfaces along each other, m/s, if they slide: more than loads that have
+/// not converged make of it in a substep.
+const SLIP_SPEED: f32 = 0.005;
 /// Distance over time of a point that no substep brings to touch, m/s.
 const NEVER: f32 = 1e6;
 /// An impulse that grew by more than this factor since the substep before is an impact.
@@ -542,7 +545,8 @@ impl ManifoldRows {
         let ContactMaterial { friction, static_friction, .. } = self.material;
         let mut new = disk::least_energy(k, b, static_friction * self.load);
         let mut grip = static_friction;
-        if static_friction > friction && at_rim(new, static_friction * self.load) {
+        let slip = [0, 1].map(|i| k[i][0] * new[0] + k[i][1] * new[1] - b[i]);
+        if static_friction > friction && slip[0] * slip[0] + slip[1] * slip[1] > SLIP_SPEED * SLIP_SPEED {
             new = disk::least_energy(k, b, friction * self.load);
             grip = friction;
         }
@@ -560,8 +564,9 @@ impl ManifoldRows {
                 + k0 * (new[0] - old[0])
                 + k1 * (new[1] - old[1]);
             let wanted = self.twist - rate / self.k_spin;
-            let grip = if wanted.abs() > grip * self.lever * self.load { friction } else { grip };
             let most = grip * self.lever * self.load;
+            let slip = max(wanted.abs() - most, 0.0) * self.k_spin * self.lever;
+            let most = if slip > SLIP_SPEED { friction * self.lever * self.load } else { most };
             let new = sinew_math::clamp(wanted, -most, most);
             self.add(&mut push, &self.spin, new - self.twist);
             self.twist = new;
@@ -645,11 +650,6 @@ impl ManifoldRows {
         self.memory.twist = self.twist;
         self.memory.rolling = self.rolling;
     }
-}
-
-/// An impulse of friction that takes all there is, or nearly.
-fn at_rim([x, y]: [f32; 2], most: f32) -> bool {
-    x * x + y * y >= 0.999 * most * most
 }
 
 /// Shares of the load by point, smoothed so that a point which is about to bear some has a say.

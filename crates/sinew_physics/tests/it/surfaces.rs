@@ -412,7 +412,7 @@ fn a_hit_tells_how_fast_and_what_it_took_once() {
             let expected = mass * speed * (1.0 + restitution);
             let slack = tolerance * expected + weight;
             assert!((hit.impulse - expected).abs() < slack, "from {height} m: {hit:?} for {expected}");
-            assert!(hit.point.length() < 0.02 && hit.greatest == hit.impulse, "{hit:?}");
+            assert!(hit.point.length() < 1e-3 && hit.greatest == hit.impulse, "{hit:?}");
         }
     }
 }
@@ -460,8 +460,13 @@ fn sensors_see_what_stands_moves_sleeps_and_goes() {
     // The floor is static as the gate is: they do not see each other.
     assert_eq!(world.events().sensor_begin, [(gate, sleeper)]);
     assert!(!world.events().sensor_begin.iter().any(|pair| pair.0 == ground));
-    run(&mut world, 29);
-    assert_eq!(world.events().sensor_begin, [(gate, door)]);
+    // 0.9 m at 2 m/s are 27 steps.
+    let seen = (1..40).find(|_| {
+        world.step();
+        world.events().sensor_begin == [(gate, door)]
+    });
+    assert!((26..30).contains(&seen.expect("it comes to the gate")), "{seen:?}");
+    run(&mut world, 10);
     world.set_velocity(door, Velocity::default());
     for _ in 0..90 {
         world.step();

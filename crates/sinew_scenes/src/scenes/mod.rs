@@ -48,6 +48,7 @@ mod rolling;
 mod springs;
 mod strings;
 mod support;
+mod surfaces;
 mod tops;
 mod trees;
 mod water;
@@ -127,6 +128,10 @@ const REGISTRY: &[Scene] = &[
     incline::ROLLS,
     rolling::SLIDE_TO_ROLL,
     rolling::ROLLING_BALLS,
+    surfaces::STATIC_FRICTION,
+    surfaces::CONVEYOR,
+    surfaces::ONE_WAY,
+    surfaces::SENSORS,
     impacts::ELASTIC_PAIRS,
     impacts::NEWTONS_CRADLE,
     impacts::BOUNCING_BALLS,
