@@ -57,6 +57,11 @@ impl<T> Arena<T> {
         self.slots[index as usize].item.as_ref().expect("the index is in use")
     }
 
+    /// The item at an index, if there is one.
+    pub fn try_at(&self, index: u32) -> Option<&T> {
+        self.slots.get(index as usize)?.item.as_ref()
+    }
+
     /// Likewise, mutable.
     pub fn at_mut(&mut self, index: u32) -> &mut T {
         self.slots[index as usize].item.as_mut().expect("the index is in use")

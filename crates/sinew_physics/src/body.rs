@@ -1,10 +1,9 @@
 //! A body as the world keeps it.
 
-use crate::contact_rule::ContactRule;
 use crate::def::{BodyDef, BodyKind};
 use crate::force::BodyForces;
-use crate::material::Material;
-use crate::shape::{Filter, MassProperties, Sensing, Shape, ShapeDef};
+use crate::shape::{MassProperties, Shape, ShapeDef};
+use crate::surface::{Surface, Surfaces};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
 
 /// Linear velocity of the centre of mass and angular velocity, world axes.
@@ -37,16 +36,13 @@ pub(crate) enum Rest {
     Asleep { island: u32 },
 }
 
-/// A shape of a body, in the body's principal frame.
+/// A shape of a body, in the body's principal frame. A body may have a million of them.
 #[derive(Clone, Debug)]
 pub(crate) struct BodyShape {
     pub shape: Shape,
     pub principal_from_shape: Transform,
-    pub density: f32,
-    pub material: Material,
-    pub filter: Filter,
-    pub sensing: Sensing,
-    pub rule: ContactRule,
+    /// Number among the body's surfaces.
+    pub surface: u32,
 }
 
 /// The pose is that of the **principal frame**: origin at the centre of mass, axes along the principal axes of
@@ -72,6 +68,7 @@ pub(crate) struct Body {
     pub angular_damping: f32,
     pub gravity_scale: f32,
     pub shapes: Vec<BodyShape>,
+    pub surfaces: Surfaces,
     pub rest: Rest,
     /// Where it was when the time it has been calm began.
     pub place: Transform,
@@ -126,6 +123,14 @@ impl Body {
             let solid = mass > 0.0 && mass < f32::INFINITY && moments.z > 0.0 && moments.is_finite();
             assert!(solid, "a dynamic body has positive, finite mass and inertia");
         }
+        let mut surfaces = Surfaces::default();
+        let body_shape = |def: &ShapeDef| BodyShape {
+            shape: def.shape.clone(),
+            principal_from_shape: principal_from_body * def.body_from_shape,
+            surface: surfaces.intern(&Surface::of(def)),
+        };
+        let shapes = def.shapes.iter().map(body_shape).collect();
+        surfaces.shrink();
         Self {
             kind: def.kind,
             world_from_principal: world_from_body * body_from_principal,
@@ -140,7 +145,8 @@ impl Body {
             linear_damping: def.linear_damping,
             angular_damping: def.angular_damping,
             gravity_scale: def.gravity_scale,
-            shapes: def.shapes.iter().map(|shape| body_shape(shape, principal_from_body)).collect(),
+            shapes,
+            surfaces,
             rest: Rest::Awake { calm: 0.0 },
             place: world_from_body * body_from_principal,
             quarantined: false,
@@ -182,13 +188,18 @@ impl Body {
         self.previous = self.world_from_principal;
     }
 
+    /// What a shape is besides geometry.
+    pub fn surface(&self, shape: usize) -> &Surface {
+        &self.surfaces.as_slice()[self.shapes[shape].surface as usize]
+    }
+
     pub fn world_from_shape(&self, shape: usize) -> Transform {
         self.world_from_principal * self.shapes[shape].principal_from_shape
     }
 
     /// How the surface of a shape moves along the body at a world point, world axes.
     pub fn surface_velocity(&self, shape: usize, point: Vec3) -> Velocity {
-        let (frame, material) = (self.world_from_shape(shape), &self.shapes[shape].material);
+        let (frame, material) = (self.world_from_shape(shape), &self.surface(shape).material);
         let angular = frame.rotation * material.surface_spin;
         let linear = frame.rotation * material.surface_velocity + angular.cross(point - frame.translation);
         Velocity { linear, angular }
@@ -254,18 +265,6 @@ impl Body {
             reach = sinew_math::max(reach, r);
         }
         reach
-    }
-}
-
-fn body_shape(def: &ShapeDef, principal_from_body: Transform) -> BodyShape {
-    BodyShape {
-        shape: def.shape.clone(),
-        principal_from_shape: principal_from_body * def.body_from_shape,
-        density: def.density,
-        material: def.material,
-        filter: def.filter,
-        sensing: def.sensing,
-        rule: def.rule,
     }
 }
 

@@ -164,7 +164,7 @@ impl Contact {
     pub fn material(&self, bodies: &Arena<Body>) -> ContactMaterial {
         let sides = [(self.key.a, self.key.shape_a), (self.key.b, self.key.shape_b)];
         let sides = sides.map(|(body, shape)| (bodies.at(body), shape as usize));
-        let [a, b] = sides.map(|(body, shape)| &body.shapes[shape].material);
+        let [a, b] = sides.map(|(body, shape)| &body.surface(shape).material);
         let mut material = ContactMaterial::of(a, b);
         if a.runs() || b.runs() {
             let center = self.manifold.center();

@@ -45,7 +45,7 @@ impl PairFilter<'_> {
             return false;
         }
         let (a, b) = (bodies.at(key.a), bodies.at(key.b));
-        let (s, t) = (&a.shapes[key.shape_a as usize], &b.shapes[key.shape_b as usize]);
+        let (s, t) = (a.surface(key.shape_a as usize), b.surface(key.shape_b as usize));
         kinds_meet([(a.kind, s.sensing), (b.kind, t.sensing)])
             && s.filter.meets(t.filter)
             && !a.quarantined
@@ -59,7 +59,7 @@ impl PairFilter<'_> {
 
 fn side(bodies: &Arena<Body>, index: u32, shape: u32) -> PairSide {
     let body = bodies.at(index);
-    let s = &body.shapes[shape as usize];
+    let s = body.surface(shape as usize);
     PairSide {
         shape: ShapeId { body: id(bodies, index), shape },
         kind: body.kind,

@@ -1,7 +1,7 @@
 //! `store`, `finalize` and `continuous`: the world takes what the islands computed.
 
 use crate::arena::Arena;
-use crate::body::{Body, BodyShape};
+use crate::body::Body;
 use crate::contact::{Contact, ContactKey};
 use crate::contact_rule::ContactRule;
 use crate::def::BodyKind;
@@ -13,11 +13,14 @@ use crate::joint::Joint;
 use crate::joint::def::JointState;
 use crate::parted::PartedPairs;
 use crate::particles::ParticleGroup;
+use crate::proxies::{Owner, Proxies};
 use crate::ray::Ray;
 use crate::shape::Sensing;
 use crate::solver::SolvedBody;
 use crate::step::StepContext;
+use crate::surface::Surface;
 use crate::touch::id;
+use crate::tree::Sweep;
 use sinew_math::{Transform, Vec3, normalize_or};
 
 /// `store`: impulses and joint forces that the next step starts from; particle groups return to the world, where what is not
@@ -103,7 +106,12 @@ pub(crate) fn finalize(
 /// `continuous`: a body without joints whose centre passed through a static shape within the step is put back to where
 /// its core touches. Speculative contacts stop nearly everything before; this is for what they miss. Jointed bodies are
 /// left to the speculative contacts: moving one link would tear its joints.
-pub(crate) fn continuous(bodies: &mut Arena<Body>, islands: &Islands, filter: PairFilter<'_>) {
+pub(crate) fn continuous(
+    bodies: &mut Arena<Body>,
+    islands: &Islands,
+    proxies: &Proxies,
+    filter: PairFilter<'_>,
+) {
     for island in islands.iter().filter(|island| island.joints.is_empty()) {
         for &index in island.bodies {
             let body = bodies.at(index);
@@ -113,7 +121,7 @@ pub(crate) fn continuous(bodies: &mut Arena<Body>, islands: &Islands, filter: Pa
                 continue;
             }
             let ray = Ray { origin: body.previous.translation, direction: motion };
-            if let Some(fraction) = first_static_hit(bodies, filter, index, &ray) {
+            if let Some(fraction) = first_static_hit(bodies, proxies, filter, index, &ray) {
                 let back = sinew_math::max(fraction - core / motion.length(), 0.0);
                 let center = ray.at(back);
                 bodies.at_mut(index).world_from_principal.translation = center;
@@ -130,32 +138,37 @@ fn core_radius(body: &Body) -> f32 {
     }
 }
 
-fn first_static_hit(bodies: &Arena<Body>, filter: PairFilter<'_>, mover: u32, ray: &Ray) -> Option<f32> {
+fn first_static_hit(
+    bodies: &Arena<Body>,
+    proxies: &Proxies,
+    filter: PairFilter<'_>,
+    mover: u32,
+    ray: &Ray,
+) -> Option<f32> {
     let mut first: Option<f32> = None;
     let own = bodies.at(mover).shapes.len() as u32;
-    let fixed = bodies.iter().filter(|(_, body)| body.kind == BodyKind::Static);
-    for (index, body) in fixed {
-        for (shape, s) in body.shapes.iter().enumerate() {
-            let frame = body.world_from_shape(shape);
-            if !stops(s, &frame, ray)
-                || !(0..own)
-                    .any(|i| filter.lets_meet(bodies, ContactKey::new((mover, i), (index, shape as u32))))
-            {
-                continue;
-            }
-            let hit = s.shape.cast_ray(&frame, ray);
+    let sweep = Sweep { origin: ray.origin, direction: ray.direction, half_extents: Vec3::ZERO, limit: 1.0 };
+    proxies.along(&sweep, |Owner { body: index, shape }| {
+        let body = bodies.at(index);
+        let frame = body.world_from_shape(shape as usize);
+        let meets = |i| filter.lets_meet(bodies, ContactKey::new((mover, i), (index, shape)));
+        if body.kind == BodyKind::Static
+            && stops(body.surface(shape as usize), &frame, ray)
+            && (0..own).any(meets)
+            && let Some(hit) = body.shapes[shape as usize].shape.cast_ray(&frame, ray)
             // A start inside is an overlap that the contacts are working on.
-            if let Some(hit) = hit.filter(|hit| hit.fraction > 0.0 && first.is_none_or(|f| hit.fraction < f))
-            {
-                first = Some(hit.fraction);
-            }
+            && hit.fraction > 0.0
+            && first.is_none_or(|first| hit.fraction < first)
+        {
+            first = Some(hit.fraction);
         }
-    }
+        first.unwrap_or(1.0)
+    });
     first
 }
 
 /// Whether a shape surely stops what comes along a ray. One that a modifier may open is left to the speculative contacts.
-fn stops(s: &BodyShape, frame: &Transform, ray: &Ray) -> bool {
+fn stops(s: &Surface, frame: &Transform, ray: &Ray) -> bool {
     let solid = s.sensing == Sensing::Solid;
     solid
         && match s.rule {

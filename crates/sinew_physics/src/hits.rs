@@ -138,7 +138,7 @@ fn hit_of(
             normal += contact.manifold.normal * given;
         }
     }
-    let material = |id: ShapeId| bodies.at(id.body.index).shapes[id.shape as usize].material;
+    let material = |id: ShapeId| bodies.at(id.body.index).surface(id.shape as usize).material;
     Hit {
         a,
         b,

@@ -22,11 +22,13 @@ mod modifiers;
 mod pairs;
 mod parted;
 mod project;
+mod proxies;
 mod sensors;
 mod sleep;
 mod solver;
 mod tasks;
 mod touch;
+mod tree;
 mod update;
 
 mod arena;
@@ -44,12 +46,14 @@ pub mod object;
 pub mod particles;
 mod query;
 pub mod ray;
+mod rays;
 mod registered;
 pub mod runner;
 pub mod shape;
 mod slices;
 mod snapshot;
 mod spatial;
+mod surface;
 mod surfaces;
 
 pub use body::Velocity;

@@ -27,7 +27,7 @@ impl Modifiers {
         self.changed.reserve(contacts.len());
         for (place, contact) in contacts.iter_mut().enumerate().filter(|(_, contact)| contact.pushes()) {
             let sides = [(contact.key.a, contact.key.shape_a), (contact.key.b, contact.key.shape_b)];
-            let rules = sides.map(|(body, shape)| bodies.at(body).shapes[shape as usize].rule);
+            let rules = sides.map(|(body, shape)| bodies.at(body).surface(shape as usize).rule);
             let mut material = None;
             for rule in rules {
                 let ContactRule::Modified { modifier } = rule else { continue };
@@ -67,7 +67,7 @@ fn side(bodies: &Arena<Body>, index: u32, shape: u32) -> ContactSide {
     ContactSide {
         shape: ShapeId { body: id(bodies, index), shape },
         user_data: body.user_data,
-        material: body.shapes[shape as usize].material,
+        material: body.surface(shape as usize).material,
         velocity: body.velocity,
         center: body.center(),
     }

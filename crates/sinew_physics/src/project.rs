@@ -3,12 +3,10 @@
 use crate::arena::Arena;
 use crate::body::{Body, Velocity};
 use crate::boxes::Overlap;
-use crate::contact_rule::ContactRule;
 use crate::def::BodyKind;
 use crate::field::{Fields, Target};
 use crate::islands::Island;
 use crate::particles::{Anchor, AttachmentTarget, Obstacle, ObstacleBody, ParticleGroup};
-use crate::shape::Sensing;
 use crate::solver::{IslandSolver, View};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
 use sinew_math::{Sym3, Transform, Vec3};
@@ -78,9 +76,7 @@ impl Neighbors {
                 let s = &body.shapes[*shape];
                 // What is quarantined still holds what hangs on it, as a fixed point.
                 !body.quarantined
-                    && s.sensing == Sensing::Solid
-                    && s.rule != ContactRule::Ghost
-                    && s.filter.meets(group.filter())
+                    && body.surface(*shape).is_wall_to(group.filter())
                     && s.shape.aabb(&body.world_from_shape(*shape)).overlaps(&bounds)
             };
             let place = self.bodies.len() as u32;
@@ -205,13 +201,14 @@ impl Surroundings {
         }));
         self.obstacles.clear();
         for &(place, shape) in &near.shapes {
-            let s = &view.bodies.at(near.bodies[place as usize]).shapes[shape as usize];
+            let body = view.bodies.at(near.bodies[place as usize]);
+            let s = &body.shapes[shape as usize];
             self.obstacles.push(Obstacle {
                 shape: s.shape.clone(),
                 previous: seen[place as usize].start * s.principal_from_shape,
                 world_from_shape: seen[place as usize].pose * s.principal_from_shape,
                 body: place,
-                material: s.material,
+                material: body.surface(shape as usize).material,
             });
         }
         self.anchors.clear();

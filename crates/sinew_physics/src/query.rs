@@ -3,7 +3,7 @@
 use crate::collide::{Manifold, collide};
 use crate::def::BodyKind;
 use crate::id::{BodyId, GroupId};
-use crate::ray::{Ray, RayHit};
+use crate::ray::RayHit;
 use crate::world::World;
 use sinew_math::{Vec3, max};
 
@@ -128,22 +128,6 @@ impl World {
         self.neighbors(id)
             .filter(|&other| self.kind(other) == BodyKind::Static)
             .fold(0.0, |deepest, other| max(deepest, self.overlap(id, other)))
-    }
-
-    /// The first shape on the ray whose body passes `accept`; the smaller body wins a tie.
-    pub fn cast_ray(&self, ray: &Ray, mut accept: impl FnMut(BodyId) -> bool) -> Option<BodyHit> {
-        let mut first: Option<BodyHit> = None;
-        for id in self.body_ids().filter(|&id| accept(id)) {
-            let body = self.expect(id);
-            for (i, s) in body.shapes.iter().enumerate() {
-                if let Some(hit) = s.shape.cast_ray(&body.world_from_shape(i), ray)
-                    && first.is_none_or(|best| hit.fraction < best.hit.fraction)
-                {
-                    first = Some(BodyHit { body: id, hit });
-                }
-            }
-        }
-        first
     }
 
     /// Shapes of a body with their world poses, for drawing.

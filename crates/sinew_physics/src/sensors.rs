@@ -1,4 +1,4 @@
-//! `sensors`: who is inside whom, as events.
+//! `sensors`: who is inside whom, and who was hit, as events.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -6,11 +6,12 @@ use crate::contact::{Contact, Effect};
 use crate::events::Events;
 use crate::meetings::{Meetings, Told, lie_still, touch_of};
 
-/// Compares the sensor pairs with those of the step before. All that the user changed since has been looked at now.
+/// Compares the sensor pairs with those of the step before, and tells of hits faster than `hit_speed` (m/s). All that the user changed since has been looked at now.
 pub(crate) fn sensors(
     bodies: &mut Arena<Body>,
     contacts: &mut [Contact],
     meetings: &mut Meetings,
+    hit_speed: f32,
     events: &mut Events,
 ) {
     let sensed = &mut meetings.sensed;
@@ -30,5 +31,6 @@ pub(crate) fn sensors(
         Told { bodies: &mut events.sensor_begin, shapes: &mut events.sensor_shapes_begin },
         Told { bodies: &mut events.sensor_end, shapes: &mut events.sensor_shapes_end },
     );
+    meetings.hits.tell(bodies, contacts, hit_speed, &mut events.hits);
     meetings.settle(bodies);
 }

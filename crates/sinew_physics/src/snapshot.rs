@@ -12,9 +12,9 @@ use crate::force::BodyForces;
 use crate::joint::Joint;
 use crate::material::{Combine, CombineRules, Material};
 use crate::meetings::Meetings;
-use crate::pairs::BroadPhase;
 use crate::particles::{AttachmentTarget, ParticleGroup};
 use crate::shape::{Filter, Sensing, Shape};
+use crate::surface::{Surface, Surfaces};
 use crate::world::World;
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
@@ -108,14 +108,13 @@ impl World {
         self.meetings = Meetings { modifiers, ..meetings };
         (self.groups, self.fields) = (groups, fields);
         self.events = Events::default();
-        self.broad = BroadPhase::default();
-        self.broad.invalidate();
+        self.broad.proxies.adopt(&self.bodies);
         Ok(())
     }
 
     fn check_rules(&self, r: &Reader<'_>, bodies: &Arena<Body>) -> Result<(), ReadError> {
-        let mut shapes = bodies.iter().flat_map(|(_, body)| &body.shapes);
-        if shapes.all(|shape| self.knows_rule(shape.rule)) {
+        let mut surfaces = bodies.iter().flat_map(|(_, body)| body.surfaces.as_slice());
+        if surfaces.all(|surface| self.knows_rule(surface.rule)) {
             return Ok(());
         }
         Err(r.error("names a modifier that is not registered"))
@@ -199,6 +198,10 @@ fn save_body(w: &mut Writer, body: &Body) {
     w.f32(body.linear_damping);
     w.f32(body.angular_damping);
     w.f32(body.gravity_scale);
+    w.count(body.surfaces.as_slice().len());
+    for surface in body.surfaces.as_slice() {
+        save_surface(w, surface);
+    }
     w.count(body.shapes.len());
     for shape in &body.shapes {
         save_shape(w, shape);
@@ -236,11 +239,8 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
         return Err(r.error("a dynamic body has no mass"));
     }
     let (linear_damping, angular_damping, gravity_scale) = (r.f32()?, r.f32()?, r.f32()?);
-    let count = r.count(40)?;
-    let mut shapes = Vec::with_capacity(count);
-    for _ in 0..count {
-        shapes.push(load_shape(r)?);
-    }
+    let surfaces = load_list(r, 29, load_surface)?;
+    let shapes = load_list(r, 33, |r| load_shape(r, surfaces.len()))?;
     let rest = match r.u8()? {
         0 => Rest::Awake { calm: r.f32()? },
         1 => Rest::Asleep { island: r.u32()? },
@@ -269,6 +269,7 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
         angular_damping,
         gravity_scale,
         shapes,
+        surfaces: Surfaces::new(surfaces),
         rest,
         place,
         quarantined,
@@ -280,27 +281,52 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
 fn save_shape(w: &mut Writer, s: &BodyShape) {
     save_geometry(w, &s.shape);
     w.transform(s.principal_from_shape);
-    w.f32(s.density);
-    save_material(w, s.material);
-    save_filter(w, s.filter);
-    w.bool(s.sensing == Sensing::Sensor);
-    save_rule(w, s.rule);
+    w.u32(s.surface);
 }
 
-fn load_shape(r: &mut Reader<'_>) -> Result<BodyShape, ReadError> {
-    let shape = BodyShape {
-        shape: load_geometry(r)?,
-        principal_from_shape: r.transform()?,
+fn load_shape(r: &mut Reader<'_>, surfaces: usize) -> Result<BodyShape, ReadError> {
+    let shape =
+        BodyShape { shape: load_geometry(r)?, principal_from_shape: r.transform()?, surface: r.u32()? };
+    if !shape.principal_from_shape.is_finite() {
+        return Err(r.error("a shape's pose is not finite"));
+    }
+    if shape.surface as usize >= surfaces {
+        return Err(r.error("a shape names a surface that is not there"));
+    }
+    Ok(shape)
+}
+
+fn save_surface(w: &mut Writer, surface: &Surface) {
+    w.f32(surface.density);
+    save_material(w, surface.material);
+    save_filter(w, surface.filter);
+    w.bool(surface.sensing == Sensing::Sensor);
+    save_rule(w, surface.rule);
+}
+
+fn load_surface(r: &mut Reader<'_>) -> Result<Surface, ReadError> {
+    let surface = Surface {
         density: r.f32()?,
         material: load_material(r)?,
         filter: load_filter(r)?,
         sensing: if r.bool()? { Sensing::Sensor } else { Sensing::Solid },
         rule: load_rule(r)?,
     };
-    if !(shape.principal_from_shape.is_finite() && shape.density.is_finite()) {
-        return Err(r.error("a shape's pose or density is not finite"));
+    if surface.density.is_finite() { Ok(surface) } else { Err(r.error("a density is not finite")) }
+}
+
+/// Of items that take at least `least` bytes each.
+fn load_list<'a, T>(
+    r: &mut Reader<'a>,
+    least: usize,
+    mut item: impl FnMut(&mut Reader<'a>) -> Result<T, ReadError>,
+) -> Result<Vec<T>, ReadError> {
+    let count = r.count(least)?;
+    let mut list = Vec::with_capacity(count);
+    for _ in 0..count {
+        list.push(item(r)?);
     }
-    Ok(shape)
+    Ok(list)
 }
 
 pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {

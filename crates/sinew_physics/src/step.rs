@@ -28,10 +28,11 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let World { events, broad, islands, parted, sleepers, meetings, .. } = world;
     let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
 
-    stage(Stage::Pairs, &mut || broad.update(bodies, parted.filter(joints), contacts, context.dt));
+    let dt = context.dt;
+    stage(Stage::Pairs, &mut || broad.update(bodies, parted.filter(joints), &meetings.stirred, contacts, dt));
     stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
     stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, &fields, meetings, events));
-    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, &fields, context.dt));
+    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, &fields, dt));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
 
     let view = View { bodies, joints, contacts, modifiers: &meetings.modifiers, def, fields, h: context.h };
@@ -43,15 +44,14 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         objects.rouse(bodies);
     }
 
-    let dt = context.dt;
     stage(Stage::Store, &mut || finalize::store(islands, joints, parted, contacts, groups, events, dt));
-    stage(Stage::Finalize, &mut || {
-        finalize::finalize(&islands.solution().bodies, bodies, events, context);
-        meetings.hits.tell(bodies, contacts, def.hit_speed, &mut events.hits);
+    stage(Stage::Finalize, &mut || finalize::finalize(&islands.solution().bodies, bodies, events, context));
+    stage(Stage::Continuous, &mut || {
+        finalize::continuous(bodies, islands, &broad.proxies, parted.filter(joints));
+        broad.proxies.follow(bodies, dt);
     });
-    stage(Stage::Continuous, &mut || finalize::continuous(bodies, islands, parted.filter(joints)));
-    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, &fields, sleepers, def.sleeping, context.dt));
-    stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, events));
+    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, &fields, sleepers, def.sleeping, dt));
+    stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, def.hit_speed, events));
 }
 
 /// A part of an island's step, which goes on where the part before ended.

@@ -7,6 +7,7 @@ use crate::id::{BodyId, ShapeId};
 use crate::material::{ContactMaterial, Material};
 use crate::meetings::shape_ids;
 use crate::shape::{Filter, Sensing};
+use crate::surface::Surface;
 use crate::world::World;
 use sinew_math::Vec3;
 
@@ -93,22 +94,22 @@ impl World {
 
     /// What a shape is made of.
     pub fn material(&self, id: ShapeId) -> Material {
-        self.expect(id.body).shapes[id.shape as usize].material
+        self.expect(id.body).surface(id.shape as usize).material
     }
 
     /// Whom a shape meets.
     pub fn filter(&self, id: ShapeId) -> Filter {
-        self.expect(id.body).shapes[id.shape as usize].filter
+        self.expect(id.body).surface(id.shape as usize).filter
     }
 
     /// Whether a shape pushes.
     pub fn sensing(&self, id: ShapeId) -> Sensing {
-        self.expect(id.body).shapes[id.shape as usize].sensing
+        self.expect(id.body).surface(id.shape as usize).sensing
     }
 
     /// What becomes of a shape's contacts.
     pub fn contact_rule(&self, id: ShapeId) -> ContactRule {
-        self.expect(id.body).shapes[id.shape as usize].rule
+        self.expect(id.body).surface(id.shape as usize).rule
     }
 
     /// Makes a shape of something else, from the next step on. Its body and what it touches wake; its mass stays.
@@ -119,22 +120,19 @@ impl World {
         if let Err(what) = material.check() {
             panic!("{what}");
         }
-        self.stir(id.body);
-        self.expect_mut(id.body).shapes[id.shape as usize].material = material;
+        self.change_surface(id, |surface| surface.material = material);
     }
 
     /// Lets a shape meet others than before, from the next step on, which also tells of what it no longer touches. Its body
     /// and what it touches wake.
     pub fn set_filter(&mut self, id: ShapeId, filter: Filter) {
-        self.stir(id.body);
-        self.expect_mut(id.body).shapes[id.shape as usize].filter = filter;
+        self.change_surface(id, |surface| surface.filter = filter);
     }
 
     /// Lets a shape push or only sense, from the next step on; what touches it ends and begins anew as the other kind of
     /// event. Its body and what it touches wake.
     pub fn set_sensing(&mut self, id: ShapeId, sensing: Sensing) {
-        self.stir(id.body);
-        self.expect_mut(id.body).shapes[id.shape as usize].sensing = sensing;
+        self.change_surface(id, |surface| surface.sensing = sensing);
     }
 
     /// Changes what becomes of a shape's contacts, from the next step on. Its body and what it touches wake.
@@ -146,8 +144,20 @@ impl World {
             panic!("{what}");
         }
         self.expect_modifier(rule);
+        self.change_surface(id, |surface| surface.rule = rule);
+    }
+
+    fn change_surface(&mut self, id: ShapeId, change: impl FnOnce(&mut Surface)) {
         self.stir(id.body);
-        self.expect_mut(id.body).shapes[id.shape as usize].rule = rule;
+        let body = self.expect_mut(id.body);
+        let mut surface = *body.surface(id.shape as usize);
+        change(&mut surface);
+        let number = body.shapes[id.shape as usize].surface;
+        if body.shapes.iter().filter(|shape| shape.surface == number).count() == 1 {
+            body.surfaces.set(number, surface);
+        } else {
+            body.shapes[id.shape as usize].surface = body.surfaces.intern(&surface);
+        }
     }
 
     /// Has the next step look anew at what a body touches, whatever moves; it and its neighbours wake.

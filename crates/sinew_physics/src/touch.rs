@@ -65,8 +65,7 @@ fn rule(contact: &mut Contact, a: &Body, b: &Body) {
     contact.one_way = false;
     let normal = contact.manifold.normal;
     for (body, shape, away) in [(a, sa, normal), (b, sb, -normal)] {
-        let s = &body.shapes[shape];
-        match s.rule {
+        match body.surface(shape).rule {
             ContactRule::Push | ContactRule::Modified { .. } => {}
             ContactRule::Ghost => contact.effect = Effect::Pass,
             ContactRule::OneWay(one_way) => {
@@ -78,7 +77,7 @@ fn rule(contact: &mut Contact, a: &Body, b: &Body) {
             }
         }
     }
-    if [&a.shapes[sa], &b.shapes[sb]].into_iter().any(|s| s.sensing == Sensing::Sensor) {
+    if [a.surface(sa), b.surface(sb)].into_iter().any(|s| s.sensing == Sensing::Sensor) {
         contact.effect = Effect::Sense;
     }
 }

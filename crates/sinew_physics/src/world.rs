@@ -91,7 +91,7 @@ impl World {
     pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
         def.shapes.iter().for_each(|shape| self.expect_modifier(shape.rule));
         let (index, generation) = self.bodies.insert(Body::new(def));
-        self.broad.invalidate();
+        self.broad.proxies.add(index, self.bodies.at(index));
         let id = BodyId { index, generation };
         let senses = def.shapes.iter().any(|shape| shape.sensing == Sensing::Sensor);
         if senses || def.kind == BodyKind::Kinematic || self.sleepers > 0 {
@@ -120,7 +120,7 @@ impl World {
         self.contacts.retain(|contact| contact.key.a != id.index && contact.key.b != id.index);
         self.parted.forget(id.index);
         self.bodies.remove(id.index, id.generation);
-        self.broad.invalidate();
+        self.broad.proxies.remove(id.index);
     }
 
     /// Adds particles with their springs. They do not sleep; a body that sleeps is a wall to them.
@@ -218,7 +218,7 @@ impl World {
         assert!(world_from_body.is_finite(), "a body's pose is finite");
         self.expect_mut(id).set_world_from_body(world_from_body);
         self.stir(id);
-        self.broad.invalidate();
+        self.broad.proxies.place(id.index, self.bodies.at(id.index));
     }
 
     /// World position of the centre of mass.

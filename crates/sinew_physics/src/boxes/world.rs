@@ -2,8 +2,10 @@
 
 use super::{Aabb, Capsule, Cuboid, Obb, Overlap, Penetration, PlacedBox, Sphere, SurfacePoint};
 use crate::id::BodyId;
+use crate::proxies::{Owner, thick};
 use crate::shape::Shape;
 use crate::world::World;
+use core::ops::ControlFlow;
 use sinew_math::{Transform, Vec3};
 
 impl World {
@@ -40,8 +42,19 @@ impl World {
     /// Bodies with a shape that overlaps a region, by index; what touches overlaps.
     pub fn bodies_in(&self, region: &impl Cuboid) -> impl Iterator<Item = BodyId> {
         let region = region.placed();
-        self.body_ids()
-            .filter(move |&id| self.shapes(id).any(|(shape, frame)| meets(&region, &shape, &frame)))
+        let reach = Vec3::from_array([Vec3::X, Vec3::Y, Vec3::Z].map(|axis| region.half_width(axis)));
+        let bounds = thick(&Aabb::reaching(region.center, reach));
+        let mut found = Vec::new();
+        let _ = self.broad.proxies.overlapping(&bounds, |Owner { body, shape }| {
+            let (at, shape) = (self.bodies.at(body), shape as usize);
+            if meets(&region, &at.shapes[shape].shape, &at.world_from_shape(shape)) {
+                found.push(body);
+            }
+            ControlFlow::<()>::Continue(())
+        });
+        found.sort_unstable();
+        found.dedup();
+        found.into_iter().map(|index| self.id_at(index))
     }
 }
 

@@ -4,6 +4,7 @@ use super::def::{not_negative, positive};
 use super::{Fade, Form, Target};
 use crate::def::BodyKind;
 use crate::id::BodyId;
+use crate::proxies::Owner;
 use crate::ray::Ray;
 use crate::shape::{Sensing, Shape};
 use crate::touch::wake;
@@ -105,7 +106,7 @@ impl World {
         let body = self.expect(id);
         let s = &body.shapes[shape];
         let (impulse, point) = explosion.push(&s.shape, &body.world_from_shape(shape));
-        let reached = s.filter.layers & explosion.layers != 0 && impulse != Vec3::ZERO;
+        let reached = body.surface(shape).filter.layers & explosion.layers != 0 && impulse != Vec3::ZERO;
         if reached && !self.shelters(explosion, point) {
             wake(&mut self.bodies, id.index);
             self.apply_impulse(id, impulse, point);
@@ -114,12 +115,10 @@ impl World {
 
     fn shelters(&self, explosion: &Explosion, point: Vec3) -> bool {
         let ray = Ray { origin: explosion.center, direction: point - explosion.center };
-        explosion.occlusion == Occlusion::Static
-            && self.cast_ray(&ray, |id| self.kind(id) == BodyKind::Static && self.is_solid(id)).is_some()
-    }
-
-    /// Has a shape that does more than sense.
-    fn is_solid(&self, id: BodyId) -> bool {
-        self.expect(id).shapes.iter().any(|shape| shape.sensing == Sensing::Solid)
+        let stands = |id: Owner| {
+            let body = self.bodies.at(id.body);
+            body.kind == BodyKind::Static && body.surface(id.shape as usize).sensing == Sensing::Solid
+        };
+        explosion.occlusion == Occlusion::Static && self.meets_any(&ray, stands)
     }
 }

@@ -1,6 +1,6 @@
 //! What a field acts on.
 
-use crate::body::{Body, BodyShape, Velocity};
+use crate::body::{Body, Velocity};
 use crate::particles::ParticleGroup;
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3};
@@ -19,7 +19,7 @@ pub(crate) struct Target<'a> {
 /// What of it the air and the water meet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Form<'a> {
-    Body(&'a [BodyShape]),
+    Body(&'a Body),
     /// Ball of a radius, on some layers.
     Particle {
         radius: f32,
@@ -34,7 +34,7 @@ impl<'a> Target<'a> {
 
     /// A body within its step.
     pub fn at(body: &'a Body, pose: Transform, velocity: Velocity) -> Self {
-        let form = Form::Body(&body.shapes);
+        let form = Form::Body(body);
         Self { pose, velocity, mass: body.mass, gravity_scale: body.gravity_scale, form }
     }
 
@@ -60,7 +60,10 @@ impl<'a> Target<'a> {
     /// On any of these layers. What has no shape is on all.
     pub(super) fn is_on(&self, layers: u32) -> bool {
         match self.form {
-            Form::Body(shapes) => shapes.is_empty() || shapes.iter().any(|s| s.filter.layers & layers != 0),
+            Form::Body(body) => {
+                let mut surfaces = body.surfaces.as_slice().iter();
+                body.shapes.is_empty() || surfaces.any(|surface| surface.filter.layers & layers != 0)
+            }
             Form::Particle { layers: own, .. } => own & layers != 0,
         }
     }
@@ -68,8 +71,8 @@ impl<'a> Target<'a> {
     /// Its shapes with their world poses. A particle is a ball, if it has a radius.
     pub(super) fn for_each_shape(&self, mut visit: impl FnMut(&Shape, &Transform)) {
         match self.form {
-            Form::Body(shapes) => {
-                for s in shapes {
+            Form::Body(body) => {
+                for s in &body.shapes {
                     visit(&s.shape, &(self.pose * s.principal_from_shape));
                 }
             }
