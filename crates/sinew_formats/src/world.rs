@@ -33,7 +33,7 @@
 //! - `kind`: `static` (default), `kinematic` or `dynamic`; `name` is for people and not kept.
 //! - `position` (default the origin), `rotation`: a unit quaternion `[x, y, z, w]` or `{ "axis", "degrees" }`.
 //! - `linear_velocity` (m/s), `angular_velocity` (rad/s), `linear_damping`, `angular_damping` (1/s), all 0 by default;
-//!   `gravity_scale`, default 1; `user_data`, a whole number.
+//!   `gravity_scale`, default 1; `sleeping`, whether it may, default true; `user_data`, a whole number.
 //! - `mass`: `{ "kg", "center", "inertia": [xx, yy, zz, yz, xz, xy] }`; without it from the shapes' densities.
 //!
 //! A **shape** has a `type`: `box` with `half_extents`, `sphere` with `radius`, `capsule` with `half_height` (of the
@@ -55,11 +55,11 @@ use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
 use crate::surface::{read_filter, read_material, read_rule, write_material, write_rule};
 use serde_json::{Map, Value, json};
 use sinew_math::{Transform, Vec3};
-use sinew_physics::{BodyDef, BodyKind, Filter, Sensing, Shape, ShapeDef};
+use sinew_physics::{BodyDef, BodyKind, Filter, Sensing, Shape, ShapeDef, Sleeping};
 
 const VERSION: usize = 1;
 
-const BODY_KEYS: [&str; 11] = [
+const BODY_KEYS: [&str; 12] = [
     "name",
     "kind",
     "linear_velocity",
@@ -67,6 +67,7 @@ const BODY_KEYS: [&str; 11] = [
     "linear_damping",
     "angular_damping",
     "gravity_scale",
+    "sleeping",
     "user_data",
     "mass",
     "shapes",
@@ -124,6 +125,10 @@ fn read_body(at: At<'_>, materials: Option<At<'_>>) -> Result<BodyDef> {
         gravity_scale: at.get("gravity_scale")?.map_or(Ok(1.0), At::f32)?,
         shapes,
         mass,
+        sleeping: match at.get("sleeping")?.map(At::bool).transpose()? {
+            Some(false) => Sleeping::Off,
+            Some(true) | None => Sleeping::On,
+        },
         user_data: at.get("user_data")?.map_or(Ok(0), At::u64)?,
     })
 }
@@ -176,6 +181,9 @@ fn write_body(body: &BodyDef) -> Value {
     put(&mut object, "linear_damping", body.linear_damping, 0.0);
     put(&mut object, "angular_damping", body.angular_damping, 0.0);
     put(&mut object, "gravity_scale", body.gravity_scale, 1.0);
+    if body.sleeping == Sleeping::Off {
+        object.insert("sleeping".into(), false.into());
+    }
     if body.user_data != 0 {
         object.insert("user_data".into(), body.user_data.into());
     }

@@ -1,6 +1,6 @@
 //! A body as the world keeps it.
 
-use crate::def::{BodyDef, BodyKind};
+use crate::def::{BodyDef, BodyKind, Sleeping};
 use crate::force::BodyForces;
 use crate::shape::{MassProperties, Shape, ShapeDef};
 use crate::surface::{Surface, Surfaces};
@@ -30,7 +30,7 @@ impl Velocity {
 /// Awake, or asleep with the island it fell asleep with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rest {
-    /// Seconds for which it has been slow or in its place.
+    /// Seconds for which it has been in its place.
     Awake { calm: f32 },
     /// All bodies with the same number wake together.
     Asleep { island: u32 },
@@ -70,6 +70,8 @@ pub(crate) struct Body {
     pub shapes: Vec<BodyShape>,
     pub surfaces: Surfaces,
     pub rest: Rest,
+    /// Whether it may fall asleep by itself.
+    pub sleeping: Sleeping,
     /// Where it was when the time it has been calm began.
     pub place: Transform,
     /// Set when its state became non-finite: it was rolled back and takes no further part.
@@ -148,6 +150,7 @@ impl Body {
             shapes,
             surfaces,
             rest: Rest::Awake { calm: 0.0 },
+            sleeping: def.sleeping,
             place: world_from_body * body_from_principal,
             quarantined: false,
             stirred: false,
@@ -212,6 +215,12 @@ impl Body {
 
     pub fn is_awake(&self) -> bool {
         matches!(self.rest, Rest::Awake { .. })
+    }
+
+    /// It is awake, and the time for which it has been calm begins anew.
+    pub fn disturb(&mut self) {
+        self.rest = Rest::Awake { calm: 0.0 };
+        self.place = self.world_from_principal;
     }
 
     /// Takes part in the step as something that forces move.

@@ -27,6 +27,16 @@ impl ContactKey {
     pub fn is_same_pair(&self, other: &Self) -> bool {
         (self.a, self.b, self.shape_a, self.shape_b) == (other.a, other.b, other.shape_a, other.shape_b)
     }
+
+    /// Whether a body is one of the two.
+    pub fn has(self, body: u32) -> bool {
+        self.a == body || self.b == body
+    }
+
+    /// The other body of a pair.
+    pub fn other(self, body: u32) -> u32 {
+        if self.a == body { self.b } else { self.a }
+    }
 }
 
 /// A pair of body indices, the smaller first.
@@ -42,6 +52,8 @@ pub(crate) struct PointImpulse {
     pub before: f32,
     /// Of all substeps of the step.
     pub total: f32,
+    /// Mean over some substeps: the load at rest.
+    pub lasting: f32,
 }
 
 /// What a contact carries from step to step.
@@ -85,6 +97,7 @@ impl ContactMemory {
                     lost.now += impulse.now;
                     lost.before += impulse.before;
                     lost.total += impulse.total;
+                    lost.lasting += impulse.lasting;
                 }
             }
         }
@@ -95,6 +108,7 @@ impl ContactMemory {
             point.now += lost.now / heirs as f32;
             point.before += lost.before / heirs as f32;
             point.total += lost.total / heirs as f32;
+            point.lasting += lost.lasting / heirs as f32;
         }
         memory
     }

@@ -15,8 +15,10 @@ pub struct WorldDef {
     /// Most steps that one [`World::update`](crate::World::update) takes, at least 1: a host that was held up, or steps that
     /// take longer than they last, must not end in ever longer frames. Default 15, a quarter of a second of default steps.
     pub catch_up_steps: u32,
-    /// Bodies may fall asleep. Default yes.
+    /// Bodies may fall asleep by themselves. Default yes.
     pub sleeping: Sleeping,
+    /// What counts as rest.
+    pub sleep_thresholds: SleepThresholds,
     /// Most that a body moves, m/s: it is held to it when forces act, before joints and contacts. Default 4,000.
     pub max_speed: f32,
     /// Most that a body turns within a substep, radians, likewise. Beyond a quarter of a turn (the default, 377 rad/s at
@@ -27,13 +29,37 @@ pub struct WorldDef {
     pub hit_speed: f32,
 }
 
-/// Whether islands at rest are put to sleep.
+/// Whether what is at rest is put to sleep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sleeping {
-    /// They are.
+    /// It is.
     On,
-    /// They go on being simulated.
+    /// It goes on being simulated.
     Off,
+}
+
+/// What counts as rest: an island sleeps when each of its bodies has been in its place for a time. A body that creeps
+/// further than the distance or the angle within the time does not sleep, however slow it is; one that trembles less far
+/// may.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SleepThresholds {
+    /// Seconds, not negative. Default 0.5.
+    pub time: f32,
+    /// From where the time began, metres, positive. Default 0.003: with the time, nothing sleeps that creeps faster than
+    /// 6 mm/s.
+    pub distance: f32,
+    /// Likewise, radians, positive. Default 0.025: 0.05 rad/s.
+    pub angle: f32,
+    /// What is faster is not at rest even in its place, m/s, positive. Default 0.2.
+    pub speed: f32,
+    /// Likewise, rad/s, positive. Default 1.
+    pub spin: f32,
+}
+
+impl Default for SleepThresholds {
+    fn default() -> Self {
+        Self { time: 0.5, distance: 0.003, angle: 0.025, speed: 0.2, spin: 1.0 }
+    }
 }
 
 impl Default for WorldDef {
@@ -44,6 +70,7 @@ impl Default for WorldDef {
             substeps: 4,
             catch_up_steps: 15,
             sleeping: Sleeping::On,
+            sleep_thresholds: SleepThresholds::default(),
             max_speed: 4000.0,
             max_turn: core::f32::consts::FRAC_PI_2,
             hit_speed: 1.0,
@@ -80,6 +107,11 @@ impl WorldDef {
         }
         if !(0.0..f32::INFINITY).contains(&self.hit_speed) {
             return Err("the speed of a hit is not negative, and finite");
+        }
+        let SleepThresholds { time, distance, angle, speed, spin } = self.sleep_thresholds;
+        if !((0.0..f32::INFINITY).contains(&time) && [distance, angle, speed, spin].into_iter().all(positive))
+        {
+            return Err("what counts as rest takes no negative time and is positive and finite");
         }
         Ok(())
     }
@@ -124,6 +156,8 @@ pub struct BodyDef {
     pub shapes: Vec<ShapeDef>,
     /// Mass, centre and inertia in the body's frame; `None`: from the shapes' densities.
     pub mass: Option<MassProperties>,
+    /// Whether it may fall asleep by itself, and with it what it touches and is joined to. Default yes.
+    pub sleeping: Sleeping,
     /// For the user.
     pub user_data: u64,
 }
@@ -141,6 +175,7 @@ impl Default for BodyDef {
             gravity_scale: 1.0,
             shapes: Vec::new(),
             mass: None,
+            sleeping: Sleeping::On,
             user_data: 0,
         }
     }

@@ -1,5 +1,6 @@
 //! `store`, `finalize` and `continuous`: the world takes what the islands computed.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, ContactKey};
@@ -11,12 +12,13 @@ use crate::id::{GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
 use crate::joint::def::JointState;
+use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
 use crate::particles::ParticleGroup;
 use crate::proxies::{Owner, Proxies};
 use crate::ray::Ray;
 use crate::shape::Sensing;
-use crate::solver::SolvedBody;
+use crate::solver::{SolvedBody, SolvedJoint};
 use crate::step::StepContext;
 use crate::surface::Surface;
 use crate::touch::id;
@@ -32,7 +34,7 @@ pub(crate) fn store(
     contacts: &mut [Contact],
     groups: &mut Arena<ParticleGroup>,
     events: &mut Events,
-    dt: f32,
+    context: &StepContext<'_>,
 ) {
     islands.release(groups);
     events.rolled_back.clear();
@@ -54,21 +56,24 @@ pub(crate) fn store(
         joint.warm_impulse = solved.warm_impulse;
         joint.saturated = solved.saturated;
         joint.mass = solved.mass;
-        joint.reaction = solved.reaction.map(|impulse| impulse / dt);
+        joint.reaction = solved.reaction.map(|impulse| impulse / context.dt);
     }
-    break_joints(joints, parted, events);
+    break_joints(islands, joints, parted, events);
 }
 
 /// Joints that the step loaded beyond their strength break.
-fn break_joints(joints: &mut Arena<Joint>, parted: &mut PartedPairs, events: &mut Events) {
+fn break_joints(islands: &Islands, joints: &mut Arena<Joint>, parted: &mut PartedPairs, events: &mut Events) {
     events.broken.clear();
-    for (index, generation, joint) in joints.entries_mut() {
-        if joint.is_enabled() && joint.is_overloaded() {
+    for &SolvedJoint { index, .. } in &islands.solution().joints {
+        let generation = joints.generation(index);
+        let joint = joints.at_mut(index);
+        if joint.is_overloaded() {
             joint.state = JointState::Disabled;
             events.broken.push(JointId { index, generation });
         }
     }
     if !events.broken.is_empty() {
+        events.broken.sort_unstable();
         parted.invalidate();
     }
 }
@@ -76,13 +81,14 @@ fn break_joints(joints: &mut Arena<Joint>, parted: &mut PartedPairs, events: &mu
 /// `finalize`: poses and velocities; a body whose state is not finite keeps its old pose, stops and is quarantined.
 /// Kinematic bodies move as their velocity says; forces of the step are used up.
 pub(crate) fn finalize(
-    solved: &[SolvedBody],
+    islands: &Islands,
     bodies: &mut Arena<Body>,
+    activity: &mut Activity,
     events: &mut Events,
     context: &StepContext<'_>,
 ) {
     events.quarantined.clear();
-    for SolvedBody { index, pose, velocity } in solved {
+    for SolvedBody { index, pose, velocity } in &islands.solution().bodies {
         let body = bodies.at_mut(*index);
         body.previous = body.world_from_principal;
         body.force = Vec3::ZERO;
@@ -93,11 +99,13 @@ pub(crate) fn finalize(
         } else {
             body.velocity = Default::default();
             body.quarantined = true;
+            activity.note(*index, body);
             let id = id(bodies, *index);
             events.quarantined.push(id);
         }
     }
-    for (_, body) in bodies.iter_mut().filter(|(_, body)| body.kind == BodyKind::Kinematic) {
+    for &index in activity.kinematic() {
+        let body = bodies.at_mut(index);
         body.previous = body.world_from_principal;
         body.world_from_principal = body.carried(context.h, context.substeps);
     }
@@ -105,12 +113,14 @@ pub(crate) fn finalize(
 
 /// `continuous`: a body without joints whose centre passed through a static shape within the step is put back to where
 /// its core touches. Speculative contacts stop nearly everything before; this is for what they miss. Jointed bodies are
-/// left to the speculative contacts: moving one link would tear its joints.
+/// left to the speculative contacts: moving one link would tear its joints. Then the trees of bounds follow.
 pub(crate) fn continuous(
-    bodies: &mut Arena<Body>,
     islands: &Islands,
-    proxies: &Proxies,
+    bodies: &mut Arena<Body>,
+    activity: &Activity,
+    broad: &mut BroadPhase,
     filter: PairFilter<'_>,
+    context: &StepContext<'_>,
 ) {
     for island in islands.iter().filter(|island| island.joints.is_empty()) {
         for &index in island.bodies {
@@ -121,13 +131,14 @@ pub(crate) fn continuous(
                 continue;
             }
             let ray = Ray { origin: body.previous.translation, direction: motion };
-            if let Some(fraction) = first_static_hit(bodies, proxies, filter, index, &ray) {
+            if let Some(fraction) = first_static_hit(bodies, &broad.proxies, filter, index, &ray) {
                 let back = sinew_math::max(fraction - core / motion.length(), 0.0);
                 let center = ray.at(back);
                 bodies.at_mut(index).world_from_principal.translation = center;
             }
         }
     }
+    broad.proxies.follow(bodies, activity, context.dt);
 }
 
 /// Radius of the largest ball about the centre of mass that surely lies inside a body of one shape; 0 if none.

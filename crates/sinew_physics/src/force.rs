@@ -7,7 +7,6 @@
 use crate::body::Body;
 use crate::def::BodyKind;
 use crate::id::BodyId;
-use crate::touch::wake;
 use crate::world::World;
 use sinew_math::{Mat3, ReadError, Reader, Sym3, Transform, Vec3, Writer, skew};
 
@@ -136,7 +135,7 @@ impl World {
     /// static and kinematic bodies.
     pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
         assert!(impulse.is_finite() && point.is_finite(), "an impulse is finite");
-        wake(&mut self.bodies, id.index);
+        self.wake_body(id.index);
         let body = self.expect_mut(id);
         let turn = body.inverse_inertia_mul((point - body.center()).cross(impulse));
         body.velocity.linear += impulse * body.inverse_mass();
@@ -151,7 +150,7 @@ impl World {
     /// Angular impulse (N·m·s): `Δω = I⁻¹ L`.
     pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Vec3) {
         assert!(impulse.is_finite(), "an impulse is finite");
-        wake(&mut self.bodies, id.index);
+        self.wake_body(id.index);
         let body = self.expect_mut(id);
         body.velocity.angular += body.inverse_inertia_mul(impulse);
     }
@@ -177,7 +176,7 @@ impl World {
     }
 
     fn apply_wrench(&mut self, id: BodyId, Wrench { force, torque }: Wrench) {
-        wake(&mut self.bodies, id.index);
+        self.wake_body(id.index);
         let body = self.expect_mut(id);
         if body.kind == BodyKind::Dynamic {
             body.force += force;
@@ -192,7 +191,7 @@ impl World {
     /// If a number is not finite.
     pub fn add_force(&mut self, body: BodyId, def: &ForceDef) -> ForceId {
         assert!(def.is_finite(), "a force is finite");
-        wake(&mut self.bodies, body.index);
+        self.wake_body(body.index);
         let forces = &mut self.expect_mut(body).forces;
         let number = forces.next;
         forces.next += 1;
@@ -206,7 +205,7 @@ impl World {
     /// If a number is not finite, or the force is not there.
     pub fn set_force(&mut self, id: ForceId, def: &ForceDef) {
         assert!(def.is_finite(), "a force is finite");
-        wake(&mut self.bodies, id.body.index);
+        self.wake_body(id.body.index);
         let forces = &mut self.expect_mut(id.body).forces;
         let place = forces.place(id);
         forces.list[place].1 = *def;
@@ -217,7 +216,7 @@ impl World {
     /// # Panics
     /// If the force is not there.
     pub fn remove_force(&mut self, id: ForceId) {
-        wake(&mut self.bodies, id.body.index);
+        self.wake_body(id.body.index);
         let forces = &mut self.expect_mut(id.body).forces;
         let place = forces.place(id);
         forces.list.remove(place);

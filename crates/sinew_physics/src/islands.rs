@@ -3,12 +3,11 @@
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::Contact;
-use crate::field::{Fields, Target};
-use crate::joint::Joint;
+use crate::field::Target;
 use crate::particles::ParticleGroup;
 use crate::project::{Neighbors, TakenGroup};
 use crate::runner::TaskRunner;
-use crate::solver::Solution;
+use crate::solver::{Solution, View};
 use crate::tasks::{Queue, Task, Workspace, Workspaces};
 
 /// Members of one island, by index, each list ascending.
@@ -22,10 +21,16 @@ pub(crate) struct Island<'a> {
     pub groups: &'a [u32],
 }
 
-/// Union-find over the slots of bodies, then of particle groups. Everything of one kind lies in one list for all islands:
-/// memory that belonged to an island would have to grow whenever another takes its place.
+/// Union-find over the active bodies, then over the slots of particle groups. Everything of one kind lies in one list for
+/// all islands: memory that belonged to an island would have to grow whenever another takes its place.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Islands {
+    /// Active bodies, ascending: their places in it are their numbers here.
+    active: Vec<u32>,
+    /// By slot: the number of each active body.
+    places: Vec<u32>,
+    /// Enabled joints of active bodies, ascending.
+    holding: Vec<u32>,
     parent: Vec<u32>,
     island_of_root: Vec<u32>,
     count: usize,
@@ -63,40 +68,22 @@ impl Islands {
     }
 
     /// Finds the islands and takes the particle groups into them for the length of the step.
-    pub fn find(
-        &mut self,
-        bodies: &Arena<Body>,
-        joints: &Arena<Joint>,
-        contacts: &[Contact],
-        groups: &mut Arena<ParticleGroup>,
-        fields: &Fields<'_>,
-        dt: f32,
-    ) {
-        let first_group = bodies.slot_count() as u32;
-        self.parent.clear();
-        self.parent.extend(0..first_group + groups.slot_count() as u32);
-        let active = |index: u32| bodies.at(index).is_active();
-        for contact in contacts.iter().filter(|contact| contact.pushes()) {
-            if active(contact.key.a) && active(contact.key.b) {
-                self.join(contact.key.a, contact.key.b);
-            }
-        }
-        let joins = |joint: &Joint| joint.is_enabled() && active(joint.a) && active(joint.b);
-        for (_, joint) in joints.iter().filter(|(_, joint)| joins(joint)) {
-            self.join(joint.a, joint.b);
-        }
+    pub fn find(&mut self, view: &View<'_>, groups: &mut Arena<ParticleGroup>) {
+        self.number(view, groups.slot_count());
+        self.join_touching_and_held(view);
+        let first_group = self.active.len() as u32;
         self.neighbors.resize(groups.slot_count(), Neighbors::default());
         for (index, group) in groups.iter() {
-            self.neighbors[index as usize].find(group, bodies, dt);
+            self.neighbors[index as usize].find(group, view);
             for i in 0..self.neighbors[index as usize].bodies.len() {
                 let body = self.neighbors[index as usize].bodies[i];
-                if active(body) {
-                    self.join(first_group + index, body);
+                if let Some(place) = self.place(view, body) {
+                    self.join(first_group + index, place);
                 }
             }
         }
-        self.join_attracted(bodies, groups, fields);
-        self.collect(bodies, joints, contacts);
+        self.join_attracted(view, groups);
+        self.collect(view);
         for (index, _) in groups.iter() {
             let island = self.island_of(first_group + index);
             self.groups.push(island, index);
@@ -114,19 +101,61 @@ impl Islands {
         }));
     }
 
+    /// Lists what is active: bodies get the numbers by which they and the groups are joined, in order of their indices.
+    fn number(&mut self, view: &View<'_>, groups: usize) {
+        let View { bodies, joints, activity, .. } = view;
+        self.active.clear();
+        self.active.extend(activity.active());
+        self.places.resize(bodies.slot_count(), 0);
+        self.holding.clear();
+        for (place, &body) in self.active.iter().enumerate() {
+            self.places[body as usize] = place as u32;
+            self.holding.extend_from_slice(activity.joints_of.body(body));
+        }
+        self.holding.retain(|&joint| joints.at(joint).is_enabled());
+        self.holding.sort_unstable();
+        self.holding.dedup();
+        self.parent.clear();
+        self.parent.extend(0..(self.active.len() + groups) as u32);
+    }
+
+    /// Number of a body, if it is active.
+    fn place(&self, view: &View<'_>, body: u32) -> Option<u32> {
+        view.bodies.at(body).is_active().then(|| self.places[body as usize])
+    }
+
+    fn join_touching_and_held(&mut self, view: &View<'_>) {
+        for contact in view.contacts.iter().filter(|contact| contact.pushes()) {
+            self.join_bodies(view, contact.key.a, contact.key.b);
+        }
+        for i in 0..self.holding.len() {
+            let joint = view.joints.at(self.holding[i]);
+            self.join_bodies(view, joint.a, joint.b);
+        }
+    }
+
+    fn join_bodies(&mut self, view: &View<'_>, a: u32, b: u32) {
+        if let (Some(a), Some(b)) = (self.place(view, a), self.place(view, b)) {
+            self.join(a, b);
+        }
+    }
+
     /// All that a field lets attract each other.
-    fn join_attracted(&mut self, bodies: &Arena<Body>, groups: &Arena<ParticleGroup>, fields: &Fields<'_>) {
-        let first_group = bodies.slot_count() as u32;
-        for (field, _) in fields.mutual() {
-            let reached = |body: &Body| body.is_active() && field.reaches(&Target::of_body(body));
-            let bodies = bodies.iter().filter(|(_, body)| reached(body)).map(|(index, _)| index);
-            let reached = |group: &ParticleGroup| {
-                (0..group.positions().len()).any(|i| field.reaches(&Target::of_particle(group, i)))
-            };
-            let groups = groups.iter().filter(|(_, group)| reached(group)).map(|(i, _)| first_group + i);
+    fn join_attracted(&mut self, view: &View<'_>, groups: &Arena<ParticleGroup>) {
+        for (field, _) in view.fields.mutual() {
             let mut first = None;
-            for slot in bodies.chain(groups) {
-                self.join(*first.get_or_insert(slot), slot);
+            for place in 0..self.active.len() {
+                let body = view.bodies.at(self.active[place]);
+                if field.reaches(&Target::of_body(body)) {
+                    self.join(*first.get_or_insert(place as u32), place as u32);
+                }
+            }
+            for (index, group) in groups.iter() {
+                let mut particles = 0..group.positions().len();
+                if particles.any(|i| field.reaches(&Target::of_particle(group, i))) {
+                    let place = self.active.len() as u32 + index;
+                    self.join(*first.get_or_insert(place), place);
+                }
             }
         }
     }
@@ -153,9 +182,9 @@ impl Islands {
         self.parent[u32::max(a, b) as usize] = u32::min(a, b);
     }
 
-    /// Number of the island of a slot; a new one if it is the first of its island.
-    fn island_of(&mut self, slot: u32) -> u32 {
-        let root = self.root(slot) as usize;
+    /// Number of the island of a body or group, by its own number; a new one if it is the first of its island.
+    fn island_of(&mut self, place: u32) -> u32 {
+        let root = self.root(place) as usize;
         if self.island_of_root[root] == NONE {
             self.island_of_root[root] = self.count as u32;
             self.count += 1;
@@ -163,27 +192,31 @@ impl Islands {
         self.island_of_root[root]
     }
 
-    fn collect(&mut self, bodies: &Arena<Body>, joints: &Arena<Joint>, contacts: &[Contact]) {
+    /// The island in which either of two bodies is active.
+    fn island_of_either(&mut self, view: &View<'_>, a: u32, b: u32) -> Option<u32> {
+        let place = self.place(view, a).or_else(|| self.place(view, b))?;
+        Some(self.island_of(place))
+    }
+
+    fn collect(&mut self, view: &View<'_>) {
         self.count = 0;
         for lists in [&mut self.bodies, &mut self.joints, &mut self.contacts, &mut self.groups] {
             lists.clear();
         }
         self.island_of_root.clear();
         self.island_of_root.resize(self.parent.len(), NONE);
-        for (index, _) in bodies.iter().filter(|(_, body)| body.is_active()) {
-            let island = self.island_of(index);
-            self.bodies.push(island, index);
+        for place in 0..self.active.len() {
+            let island = self.island_of(place as u32);
+            self.bodies.push(island, self.active[place]);
         }
-        let active = |index: &u32| bodies.at(*index).is_active();
-        for (index, joint) in joints.iter().filter(|(_, joint)| joint.is_enabled()) {
-            if let Some(body) = [joint.a, joint.b].into_iter().find(active) {
-                let island = self.island_of(body);
-                self.joints.push(island, index);
+        for i in 0..self.holding.len() {
+            let joint = view.joints.at(self.holding[i]);
+            if let Some(island) = self.island_of_either(view, joint.a, joint.b) {
+                self.joints.push(island, self.holding[i]);
             }
         }
-        for (index, contact) in contacts.iter().enumerate().filter(|(_, contact)| contact.pushes()) {
-            if let Some(body) = [contact.key.a, contact.key.b].into_iter().find(active) {
-                let island = self.island_of(body);
+        for (index, contact) in view.contacts.iter().enumerate().filter(|(_, contact)| contact.pushes()) {
+            if let Some(island) = self.island_of_either(view, contact.key.a, contact.key.b) {
                 self.contacts.push(island, index as u32);
             }
         }

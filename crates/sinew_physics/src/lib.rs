@@ -31,6 +31,7 @@ mod touch;
 mod tree;
 mod update;
 
+mod activity;
 mod arena;
 mod body;
 pub mod boxes;
@@ -60,7 +61,7 @@ pub use body::Velocity;
 pub use boxes::{Aabb, Obb};
 pub use contact::Effect;
 pub use contact_rule::{ContactModifier, ContactRule, ContactSide, FoundContact, OneWay};
-pub use def::{BodyDef, BodyKind, Sleeping, WorldDef};
+pub use def::{BodyDef, BodyKind, SleepThresholds, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
 pub use events::Events;
 pub use field::{

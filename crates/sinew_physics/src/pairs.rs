@@ -1,5 +1,6 @@
 //! `pairs`: which shapes may meet, found by the trees over their bounds.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, ContactKey};
@@ -15,16 +16,19 @@ pub(crate) struct BroadPhase {
 }
 
 impl BroadPhase {
-    /// Brings `contacts` up to date: sorted by key, one for each pair that may meet. `stirred` are bodies that were changed.
+    /// Brings `contacts` up to date: sorted by key, one for each pair that may meet. Those to which nothing can happen are
+    /// put aside. `stirred` are bodies that were changed.
     pub fn update(
         &mut self,
         bodies: &Arena<Body>,
         filter: PairFilter<'_>,
         stirred: &[u32],
         contacts: &mut Vec<Contact>,
+        activity: &mut Activity,
         dt: f32,
     ) {
-        self.proxies.follow(bodies, dt);
+        activity.return_contacts(contacts);
+        self.proxies.follow(bodies, activity, dt);
         self.keys.clear();
         let keys = &mut self.keys;
         let mut visit = |p, q| {
@@ -33,34 +37,33 @@ impl BroadPhase {
                 keys.push(key);
             }
         };
-        self.proxies.pairs(bodies, &mut visit);
+        self.proxies.pairs(bodies, activity, &mut visit);
         self.proxies.pairs_of_changed(bodies, stirred, &mut visit);
         self.keys.sort_unstable();
-        self.merge(bodies, contacts);
+        self.merge(bodies, contacts, activity);
     }
 
-    /// Merges the sorted keys with the sorted contacts: old ones keep their memory; contacts of sleepers stay.
-    fn merge(&mut self, bodies: &Arena<Body>, contacts: &mut Vec<Contact>) {
+    /// Merges the sorted keys with the sorted contacts: old ones keep their memory, and those that were not found go, or
+    /// are put aside where nothing about them can have changed.
+    fn merge(&mut self, bodies: &Arena<Body>, contacts: &mut Vec<Contact>, activity: &mut Activity) {
+        let mut part_with = |contact: Contact| {
+            if !bodies.at(contact.key.a).can_touch() && !bodies.at(contact.key.b).can_touch() {
+                // What it came in with was not of the step in which it comes back.
+                activity.put_aside(Contact { approach: 0.0, ..contact });
+            }
+        };
         self.next.clear();
         let mut old = contacts.iter().copied().peekable();
         for &key in &self.keys {
             while let Some(contact) = old.next_if(|contact| contact.key < key) {
-                self.next.extend(stays(bodies, &contact).then_some(contact));
+                part_with(contact);
             }
             let known = old.next_if(|contact| contact.key == key);
             self.next.push(known.unwrap_or_else(|| Contact::new(key)));
         }
-        self.next.extend(old.filter(|contact| stays(bodies, contact)));
+        old.for_each(part_with);
         core::mem::swap(contacts, &mut self.next);
     }
-}
-
-/// A contact that was not found again stays only if nothing about it can have changed.
-fn stays(bodies: &Arena<Body>, contact: &Contact) -> bool {
-    [contact.key.a, contact.key.b].into_iter().all(|index| {
-        let body = bodies.at(index);
-        !body.can_touch() && !body.quarantined
-    })
 }
 
 fn key(p: Owner, q: Owner) -> ContactKey {
@@ -167,7 +170,8 @@ mod tests {
         let dt = world.def.dt();
         let parted = world.parted.filter(&world.joints).parted.to_vec();
         let filter = PairFilter { parted: &parted, function: None };
-        world.broad.update(&world.bodies, filter, &world.meetings.stirred, &mut world.contacts, dt);
+        let (stirred, activity) = (&world.meetings.stirred, &mut world.activity);
+        world.broad.update(&world.bodies, filter, stirred, &mut world.contacts, activity, dt);
         let tried = tried(world, filter);
         assert_eq!(world.broad.keys, tried, "case {case}");
         tried.len()

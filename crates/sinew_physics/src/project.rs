@@ -1,14 +1,15 @@
 //! `project`: the particle groups of an island, after its bodies have moved and before their contacts are relaxed.
 
-use crate::arena::Arena;
 use crate::body::{Body, Velocity};
 use crate::boxes::Overlap;
 use crate::def::BodyKind;
 use crate::field::{Fields, Target};
 use crate::islands::Island;
 use crate::particles::{Anchor, AttachmentTarget, Obstacle, ObstacleBody, ParticleGroup};
+use crate::proxies::Owner;
 use crate::solver::{IslandSolver, View};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
+use core::ops::ControlFlow;
 use sinew_math::{Sym3, Transform, Vec3};
 
 /// A particle group, taken out of the world until `store`.
@@ -55,36 +56,51 @@ pub(crate) struct Neighbors {
     pub holds: Vec<u32>,
     /// Position in `bodies`, shape number.
     pub shapes: Vec<(u32, u32)>,
+    /// Body and shape of what is near, body and nothing for each particle that hangs on it.
+    found: Vec<(u32, Option<u32>)>,
 }
 
 impl Neighbors {
-    /// Everything whose bounds the group may reach within `dt` seconds.
-    pub fn find(&mut self, group: &ParticleGroup, bodies: &Arena<Body>, dt: f32) {
+    /// Everything whose bounds the group may reach within the step.
+    pub fn find(&mut self, group: &ParticleGroup, view: &View<'_>) {
+        let movers = view.activity.movers().map(|index| view.bodies.at(index));
+        let reach = 0.02 + (group.fastest() + movers.fold(0.0, fastest_point)) * view.def.dt();
+        let bounds = group.bounds().expand(reach);
+        self.found.clear();
+        let near = |Owner { body, shape }| {
+            let body = view.bodies.at(body);
+            let frame = body.world_from_shape(shape as usize);
+            // What is quarantined still holds what hangs on it, as a fixed point.
+            !body.quarantined
+                && body.surface(shape as usize).is_wall_to(group.filter())
+                && body.shapes[shape as usize].shape.aabb(&frame).overlaps(&bounds)
+        };
+        let _ = view.proxies.overlapping(&bounds, |owner| {
+            self.found.extend(near(owner).then_some((owner.body, Some(owner.shape))));
+            ControlFlow::<()>::Continue(())
+        });
+        self.found.extend(group.attachments().iter().filter_map(|a| match a.target {
+            AttachmentTarget::Body { body, .. } => Some((body.index, None)),
+            AttachmentTarget::World(_) => None,
+        }));
+        self.found.sort_unstable();
+        self.list();
+    }
+
+    /// From what was found, in order, to the lists.
+    fn list(&mut self) {
         self.bodies.clear();
         self.holds.clear();
         self.shapes.clear();
-        let fastest = group.velocities().iter().fold(0.0, |most, v| sinew_math::max(most, v.length()));
-        let reach = 0.02 + (fastest + bodies.iter().fold(0.0, |most, (_, b)| fastest_point(most, b))) * dt;
-        let bounds = group.bounds().expand(reach);
-        for (index, body) in bodies.iter() {
-            let held = group.attachments().iter().filter(|a| match a.target {
-                AttachmentTarget::Body { body, .. } => body.index == index,
-                AttachmentTarget::World(_) => false,
-            });
-            let holds = held.count() as u32;
-            let near = |shape: &usize| {
-                let s = &body.shapes[*shape];
-                // What is quarantined still holds what hangs on it, as a fixed point.
-                !body.quarantined
-                    && body.surface(*shape).is_wall_to(group.filter())
-                    && s.shape.aabb(&body.world_from_shape(*shape)).overlaps(&bounds)
-            };
-            let place = self.bodies.len() as u32;
-            let known = self.shapes.len();
-            self.shapes.extend((0..body.shapes.len()).filter(near).map(|shape| (place, shape as u32)));
-            if holds > 0 || self.shapes.len() > known {
-                self.bodies.push(index);
-                self.holds.push(holds);
+        for &(body, shape) in &self.found {
+            if self.bodies.last() != Some(&body) {
+                self.bodies.push(body);
+                self.holds.push(0);
+            }
+            let place = self.bodies.len() - 1;
+            match shape {
+                Some(shape) => self.shapes.push((place as u32, shape)),
+                None => self.holds[place] += 1,
             }
         }
     }

@@ -2,6 +2,7 @@
 //! what moves have room to move in, so that the tree need not change in every step. The trees hold at any time, within a
 //! step and between steps, and what they answer does not depend on how they came to be: they are no part of the state.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::boxes::Aabb;
@@ -36,8 +37,6 @@ pub(crate) struct Proxies {
     unbounded: Vec<Owner>,
     /// Which leaves are a body's, by its index.
     homes: Vec<Option<Home>>,
-    /// Bodies that may move, by index.
-    movers: Vec<u32>,
     /// Of each leaf of `moving`: where it may be within the coming step.
     reach: Vec<Aabb>,
     scratch: Vec<Item>,
@@ -137,9 +136,6 @@ impl Proxies {
         }
         layer.gaps.entry(home.count).or_default().push(home.first);
         self.unbounded.retain(|owner| owner.body != index);
-        if let Ok(place) = self.movers.binary_search(&index) {
-            self.movers.remove(place);
-        }
     }
 
     /// A body has been put somewhere else.
@@ -178,7 +174,7 @@ impl Proxies {
     }
 
     /// Works out where all that moves may be within a step of `dt` seconds, and lets the tree follow.
-    pub fn follow(&mut self, bodies: &Arena<Body>, dt: f32) {
+    pub fn follow(&mut self, bodies: &Arena<Body>, activity: &Activity, dt: f32) {
         if self.fixed.tree.is_worn() {
             self.fixed.tree.rebuild(&mut Vec::new());
             self.fixed.owners.shrink_to_fit();
@@ -186,8 +182,7 @@ impl Proxies {
         if self.moving.tree.is_worn() {
             self.moving.tree.rebuild(&mut self.scratch);
         }
-        for at in 0..self.movers.len() {
-            let index = self.movers[at];
+        for index in activity.movers() {
             let body = bodies.at(index);
             if !body.can_touch() {
                 continue;
@@ -204,8 +199,8 @@ impl Proxies {
 
     /// Pairs of shapes whose bounds, grown by their motion in the coming step and a margin, overlap, and of which the first
     /// can start a contact: each once, in no order. [`follow`](Self::follow) comes before.
-    pub fn pairs(&self, bodies: &Arena<Body>, mut visit: impl FnMut(Owner, Owner)) {
-        for &index in &self.movers {
+    pub fn pairs(&self, bodies: &Arena<Body>, activity: &Activity, mut visit: impl FnMut(Owner, Owner)) {
+        for index in activity.movers() {
             let Some(home) = self.homes[index as usize].filter(|_| bodies.at(index).can_touch()) else {
                 continue;
             };
@@ -337,9 +332,6 @@ impl Proxies {
         }
         self.homes[index as usize] = Some(home);
         if moves {
-            if let Err(place) = self.movers.binary_search(&index) {
-                self.movers.insert(place, index);
-            }
             let count = self.moving.owners.len();
             self.reach.resize(count, Aabb::default());
             self.moving.tree.reserve(count);

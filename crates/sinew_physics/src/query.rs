@@ -1,6 +1,7 @@
 //! Questions to the world: energies, momenta, joint gaps, overlaps, rays. Metrics of scenes come from here alone.
 
 use crate::collide::{Manifold, collide};
+use crate::contact::ContactKey;
 use crate::def::BodyKind;
 use crate::id::{BodyId, GroupId};
 use crate::ray::RayHit;
@@ -114,12 +115,12 @@ impl World {
 
     /// Bodies that `id` touches or nearly touches, in the order of contacts.
     pub fn neighbors(&self, id: BodyId) -> impl Iterator<Item = BodyId> {
-        let other = move |a: u32, b: u32| if a == id.index { Some(b) } else { (b == id.index).then_some(a) };
-        self.contacts
-            .iter()
-            .filter(|contact| contact.pushes())
-            .filter_map(move |contact| other(contact.key.a, contact.key.b))
-            .map(|index| BodyId { index, generation: self.bodies.generation(index) })
+        self.expect(id);
+        let pushing = self.contacts_at(id.index).filter(|contact| contact.pushes());
+        let mut keys: Vec<ContactKey> = pushing.map(|contact| contact.key).collect();
+        keys.sort_unstable();
+        let other = move |key: ContactKey| key.other(id.index);
+        keys.into_iter().map(other).map(|index| BodyId { index, generation: self.bodies.generation(index) })
     }
 
     /// Deepest overlap of a body with static ones, metres, at its present pose.

@@ -1,69 +1,68 @@
-//! `sleep`: an island in which every body has been slow, or has stayed in its place, for a while stops being simulated.
-//! Displacement counts as well as velocity: a body held between others may tremble and still sleep.
+//! `sleep`: an island in which every body has stayed in its place for a while stops being simulated. It is displacement
+//! that counts: a body held between others may tremble and still sleep, one that creeps may not.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
-use crate::body::{Body, Rest, Velocity};
-use crate::def::Sleeping;
+use crate::body::{Body, Rest};
+use crate::def::{SleepThresholds, Sleeping, WorldDef};
 use crate::field::Fields;
 use crate::islands::Islands;
 
-/// Seconds of being slow or in place until sleep.
-const TIME_TO_SLEEP: f32 = 0.5;
-/// Slow: below both of these, m/s and rad/s.
+/// What hangs on particles swings about its place, and must come to rest before it may sleep: below both of these, m/s and
+/// rad/s.
 const SLOW_LINEAR: f32 = 0.02;
 const SLOW_ANGULAR: f32 = 0.05;
-/// In place: within both of these of where it was when it was last slow, m and rad. What sets off from rest leaves them
-/// before it may sleep; a body that trembles between others does not.
-const PLACE_LINEAR: f32 = 0.003;
-const PLACE_ANGULAR: f32 = 0.025;
-/// Faster than either of these is no trembling, m/s and rad/s.
-const TREMBLE_LINEAR: f32 = 0.2;
-const TREMBLE_ANGULAR: f32 = 1.0;
 
 /// Counts the calm time of every body and puts islands to sleep. `sleepers` numbers them.
 pub(crate) fn sleep(
     islands: &Islands,
     bodies: &mut Arena<Body>,
+    activity: &mut Activity,
     fields: &Fields<'_>,
     sleepers: &mut u32,
-    sleeping: Sleeping,
-    dt: f32,
+    def: &WorldDef,
 ) {
+    let thresholds = &def.sleep_thresholds;
     for island in islands.iter() {
         let mut least = f32::INFINITY;
         for &index in island.bodies {
             let body = bodies.at_mut(index);
-            let slow = is_slow(body);
-            let in_place = (slow || (stays(body) && island.groups.is_empty())) && !fields.keep_awake(body);
-            if slow || !in_place {
-                body.place = body.world_from_principal;
-            }
-            if let Rest::Awake { calm } = &mut body.rest {
-                *calm = if in_place { *calm + dt } else { 0.0 };
-                least = sinew_math::min(*calm, least);
-            }
+            let calm = body.sleeping == Sleeping::On
+                && stays(body, thresholds)
+                && (island.groups.is_empty() || is_slow(body))
+                && !fields.keep_awake(body);
+            least = sinew_math::min(least, count(body, calm, def.dt()));
         }
-        if sleeping == Sleeping::On && least >= TIME_TO_SLEEP && !island.bodies.is_empty() {
-            for &index in island.bodies {
-                let body = bodies.at_mut(index);
-                body.rest = Rest::Asleep { island: *sleepers };
-                body.velocity = Velocity::default();
-                body.previous = body.world_from_principal;
-            }
+        let rests = least >= thresholds.time && !island.bodies.is_empty();
+        if rests && def.sleeping == Sleeping::On {
+            activity.sleep(bodies, island.bodies, *sleepers);
             *sleepers = sleepers.wrapping_add(1);
         }
     }
 }
 
-fn is_slow(body: &Body) -> bool {
-    body.velocity.linear.length() < SLOW_LINEAR && body.velocity.angular.length() < SLOW_ANGULAR
+/// For how long a body has been calm, seconds.
+fn count(body: &mut Body, calm: bool, dt: f32) -> f32 {
+    match &mut body.rest {
+        Rest::Awake { calm: time } if calm => {
+            *time += dt;
+            *time
+        }
+        _ => {
+            body.disturb();
+            0.0
+        }
+    }
 }
 
-/// Trembles about its place. Bodies on springs swing about it, and must come to rest before they may sleep.
-fn stays(body: &Body) -> bool {
+fn stays(body: &Body, thresholds: &SleepThresholds) -> bool {
     let (was, is) = (body.place, body.world_from_principal);
-    (is.translation - was.translation).length() < PLACE_LINEAR
-        && is.rotation.angle_to(was.rotation) < PLACE_ANGULAR
-        && body.velocity.linear.length() < TREMBLE_LINEAR
-        && body.velocity.angular.length() < TREMBLE_ANGULAR
+    (is.translation - was.translation).length() < thresholds.distance
+        && is.rotation.angle_to(was.rotation) < thresholds.angle
+        && body.velocity.linear.length() < thresholds.speed
+        && body.velocity.angular.length() < thresholds.spin
+}
+
+fn is_slow(body: &Body) -> bool {
+    body.velocity.linear.length() < SLOW_LINEAR && body.velocity.angular.length() < SLOW_ANGULAR
 }

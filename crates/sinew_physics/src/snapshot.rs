@@ -1,11 +1,12 @@
 //! Snapshots: everything that decides the future, and nothing else, in one order.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::{Body, BodyShape, Rest, Velocity};
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use crate::contact::{Contact, ContactKey, ContactMemory, Effect, PointImpulse};
 use crate::contact_rule::{ContactRule, OneWay};
-use crate::def::{BodyKind, Sleeping, WorldDef};
+use crate::def::{BodyKind, SleepThresholds, Sleeping, WorldDef};
 use crate::events::Events;
 use crate::field::FieldDef;
 use crate::force::BodyForces;
@@ -33,10 +34,9 @@ impl World {
         w.u32(self.sleepers);
         self.bodies.save(w, save_body);
         self.joints.save(w, |w, joint| joint.save(w));
-        w.count(self.contacts.len());
-        for contact in &self.contacts {
-            save_contact(w, contact);
-        }
+        let contacts = self.contacts_in_order();
+        w.count(contacts.len());
+        contacts.into_iter().for_each(|contact| save_contact(w, contact));
         self.groups.save(w, |w, group| group.save(w));
         self.fields.save(w, |w, field| field.save(w));
         w.count(self.parted.disabled.len());
@@ -102,6 +102,7 @@ impl World {
         self.objects.load(r)?;
         self.def = def;
         (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
+        self.activity = Activity::new(&bodies, &joints);
         (self.bodies, self.joints, self.contacts) = (bodies, joints, contacts);
         self.parted.restore(disabled, pair_function);
         let modifiers = core::mem::take(&mut self.meetings.modifiers);
@@ -155,6 +156,8 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
     w.u32(def.substeps);
     w.u32(def.catch_up_steps);
     w.bool(def.sleeping == Sleeping::On);
+    let SleepThresholds { time, distance, angle, speed, spin } = def.sleep_thresholds;
+    [time, distance, angle, speed, spin].into_iter().for_each(|x| w.f32(x));
     w.f32(def.max_speed);
     w.f32(def.max_turn);
     w.f32(def.hit_speed);
@@ -163,7 +166,14 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
 fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
     let gravity = r.vec3()?;
     let (step_nanoseconds, substeps, catch_up_steps) = (r.u64()?, r.u32()?, r.u32()?);
-    let sleeping = if r.bool()? { Sleeping::On } else { Sleeping::Off };
+    let sleeping = load_sleeping(r)?;
+    let sleep_thresholds = SleepThresholds {
+        time: r.f32()?,
+        distance: r.f32()?,
+        angle: r.f32()?,
+        speed: r.f32()?,
+        spin: r.f32()?,
+    };
     let (max_speed, max_turn, hit_speed) = (r.f32()?, r.f32()?, r.f32()?);
     let def = WorldDef {
         gravity,
@@ -171,12 +181,17 @@ fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
         substeps,
         catch_up_steps,
         sleeping,
+        sleep_thresholds,
         max_speed,
         max_turn,
         hit_speed,
     };
     def.check().map_err(|what| r.error(what))?;
     Ok(def)
+}
+
+fn load_sleeping(r: &mut Reader<'_>) -> Result<Sleeping, ReadError> {
+    Ok(if r.bool()? { Sleeping::On } else { Sleeping::Off })
 }
 
 fn save_body(w: &mut Writer, body: &Body) {
@@ -216,6 +231,7 @@ fn save_body(w: &mut Writer, body: &Body) {
             w.u32(island);
         }
     }
+    w.bool(body.sleeping == Sleeping::On);
     w.transform(body.place);
     w.bool(body.quarantined);
     w.u64(body.user_data);
@@ -246,6 +262,7 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
         1 => Rest::Asleep { island: r.u32()? },
         _ => return Err(r.error("a body neither awake nor asleep")),
     };
+    let sleeping = load_sleeping(r)?;
     let (place, quarantined, user_data) = (r.transform()?, r.bool()?, r.u64()?);
     let finite =
         [world_from_principal, previous, principal_from_body, place].into_iter().all(Transform::is_finite)
@@ -271,6 +288,7 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
         shapes,
         surfaces: Surfaces::new(surfaces),
         rest,
+        sleeping,
         place,
         quarantined,
         stirred: false,
@@ -477,6 +495,7 @@ fn save_contact(w: &mut Writer, contact: &Contact) {
         w.u32(point.feature);
         w.f32(impulse.now);
         w.f32(impulse.before);
+        w.f32(impulse.lasting);
         w.f32(impulse.total);
     }
     w.vec3(contact.memory.friction);
@@ -507,7 +526,8 @@ fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, Rea
     let mut memory = ContactMemory::default();
     for i in 0..manifold.count {
         manifold.points[i] = ManifoldPoint { position: r.vec3()?, separation: r.f32()?, feature: r.u32()? };
-        memory.points[i] = PointImpulse { now: r.f32()?, before: r.f32()?, total: r.f32()? };
+        let (now, before, lasting, total) = (r.f32()?, r.f32()?, r.f32()?, r.f32()?);
+        memory.points[i] = PointImpulse { now, before, lasting, total };
     }
     let friction: Vec3 = r.vec3()?;
     memory.friction = friction;

@@ -25,32 +25,32 @@ pub(crate) struct StepContext<'a> {
 pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
     let World { def, bodies, joints, contacts, groups, objects, .. } = world;
-    let World { events, broad, islands, parted, sleepers, meetings, .. } = world;
+    let World { events, broad, activity, islands, parted, sleepers, meetings, .. } = world;
     let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
 
-    let dt = context.dt;
-    stage(Stage::Pairs, &mut || broad.update(bodies, parted.filter(joints), &meetings.stirred, contacts, dt));
+    stage(Stage::Pairs, &mut || {
+        activity.wake_struck(bodies, groups, &broad.proxies, def);
+        broad.update(bodies, parted.filter(joints), &meetings.stirred, contacts, activity, context.dt);
+    });
     stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
-    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, &fields, meetings, events));
-    stage(Stage::Islands, &mut || islands.find(bodies, joints, contacts, groups, &fields, dt));
+    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, meetings, events));
+    let (proxies, modifiers) = (&broad.proxies, &meetings.modifiers);
+    let view = View { bodies, activity, proxies, joints, contacts, modifiers, def, fields, h: context.h };
+    stage(Stage::Islands, &mut || islands.find(&view, groups));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
-
-    let view = View { bodies, joints, contacts, modifiers: &meetings.modifiers, def, fields, h: context.h };
     if objects.is_empty() {
         let all = || Phase::of_step(context.substeps);
         islands.run(context.runner, |task| all().for_each(|phase| solve(phase, task, &view, context)));
     } else {
         lockstep(objects, islands, &view, context);
-        objects.rouse(bodies);
+        objects.rouse(bodies, activity);
     }
 
-    stage(Stage::Store, &mut || finalize::store(islands, joints, parted, contacts, groups, events, dt));
-    stage(Stage::Finalize, &mut || finalize::finalize(&islands.solution().bodies, bodies, events, context));
-    stage(Stage::Continuous, &mut || {
-        finalize::continuous(bodies, islands, &broad.proxies, parted.filter(joints));
-        broad.proxies.follow(bodies, dt);
-    });
-    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, &fields, sleepers, def.sleeping, dt));
+    stage(Stage::Store, &mut || finalize::store(islands, joints, parted, contacts, groups, events, context));
+    stage(Stage::Finalize, &mut || finalize::finalize(islands, bodies, activity, events, context));
+    let filter = parted.filter(joints);
+    stage(Stage::Continuous, &mut || finalize::continuous(islands, bodies, activity, broad, filter, context));
+    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, activity, &fields, sleepers, def));
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, def.hit_speed, events));
 }
 

@@ -62,10 +62,8 @@ impl World {
 
     /// All contacts, near ones that do not touch among them, in the order of pairs.
     pub fn contacts(&self) -> impl Iterator<Item = BodyContact> {
-        self.contacts
-            .iter()
-            .filter(|contact| contact.manifold.count > 0)
-            .map(|contact| self.body_contact(contact))
+        let near = |contact: &&Contact| contact.manifold.count > 0;
+        self.contacts_in_order().into_iter().filter(near).map(|contact| self.body_contact(contact))
     }
 
     fn body_contact(&self, contact: &Contact) -> BodyContact {
@@ -166,6 +164,7 @@ impl World {
         if !core::mem::replace(&mut body.stirred, true) {
             self.meetings.stirred.push(id.index);
         }
-        self.wake_neighbors(id.index);
+        self.activity.recall(id.index);
+        self.wake_around(id.index);
     }
 }

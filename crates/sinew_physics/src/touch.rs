@@ -1,7 +1,8 @@
 //! `collide` and `touch`: manifolds of all near pairs, then what they do, who began and stopped touching, and who wakes.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
-use crate::body::{Body, Rest};
+use crate::body::Body;
 use crate::collide::{Manifold, collide as narrow_phase};
 use crate::contact::{Contact, Effect, slop};
 use crate::contact_rule::ContactRule;
@@ -83,10 +84,12 @@ fn rule(contact: &mut Contact, a: &Body, b: &Body) {
 }
 
 /// `touch`: what contacts do, events, and waking of what an awake body touches or attracts, or a moving kinematic one holds.
+/// What wakes comes with its contacts.
 pub(crate) fn touch(
     bodies: &mut Arena<Body>,
     joints: &Arena<Joint>,
-    contacts: &mut [Contact],
+    contacts: &mut Vec<Contact>,
+    activity: &mut Activity,
     fields: &Fields<'_>,
     meetings: &mut Meetings,
     events: &mut Events,
@@ -98,8 +101,8 @@ pub(crate) fn touch(
         note(bodies, pair, touching);
         if pair.iter().any(Contact::pushes) {
             let key = pair[0].key;
-            wake_touched(bodies, key.a, key.b);
-            wake_touched(bodies, key.b, key.a);
+            wake_touched(bodies, activity, key.a, key.b);
+            wake_touched(bodies, activity, key.b, key.a);
         }
     }
     touching.tell(
@@ -107,18 +110,37 @@ pub(crate) fn touch(
         Told { bodies: &mut events.begin, shapes: &mut events.shapes_begin },
         Told { bodies: &mut events.end, shapes: &mut events.shapes_end },
     );
-    for (_, joint) in joints.iter().filter(|(_, joint)| joint.is_enabled()) {
-        for (mover, held) in [(joint.a, joint.b), (joint.b, joint.a)] {
-            let body = bodies.at(mover);
-            if body.kind == BodyKind::Kinematic && !body.velocity.is_zero() {
-                wake(bodies, held);
+    wake_held(bodies, joints, activity);
+    while let Some(attracted) = fields.next_to_wake(bodies, activity) {
+        activity.wake(bodies, attracted);
+    }
+    activity.return_contacts(contacts);
+    meetings.modifiers.change(bodies, contacts, fields.step);
+}
+
+fn wake_touched(bodies: &mut Arena<Body>, activity: &mut Activity, mover: u32, touched: u32) {
+    let body = bodies.at(mover);
+    match body.kind {
+        BodyKind::Dynamic if body.is_active() => activity.wake(bodies, touched),
+        BodyKind::Static | BodyKind::Kinematic if body.can_touch() => activity.disturb(bodies, touched),
+        _ => {}
+    }
+}
+
+/// What joints hold to a kinematic body that moves.
+fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Activity) {
+    for at in 0..activity.kinematic().len() {
+        let mover = activity.kinematic()[at];
+        if bodies.at(mover).velocity.is_zero() {
+            continue;
+        }
+        for at in 0..activity.joints_of.body(mover).len() {
+            let joint = joints.at(activity.joints_of.body(mover)[at]);
+            if joint.is_enabled() {
+                activity.disturb(bodies, if joint.a == mover { joint.b } else { joint.a });
             }
         }
     }
-    while let Some(attracted) = fields.next_to_wake(bodies) {
-        wake(bodies, attracted);
-    }
-    meetings.modifiers.change(bodies, contacts, fields.step);
 }
 
 /// Has a pair of shapes told of if it begins or ceases to touch.
@@ -151,27 +173,4 @@ fn agree(pair: &mut [Contact]) {
 
 pub(crate) fn id(bodies: &Arena<Body>, index: u32) -> BodyId {
     BodyId { index, generation: bodies.generation(index) }
-}
-
-fn wake_touched(bodies: &mut Arena<Body>, mover: u32, sleeper: u32) {
-    let body = bodies.at(mover);
-    let wakes = body.is_active() || (body.kind != BodyKind::Dynamic && body.can_touch());
-    if wakes {
-        wake(bodies, sleeper);
-    }
-}
-
-/// Wakes a body and everything it fell asleep with.
-pub(crate) fn wake(bodies: &mut Arena<Body>, index: u32) {
-    let body = bodies.at_mut(index);
-    match body.rest {
-        Rest::Awake { .. } => {}
-        Rest::Asleep { island } => {
-            for (_, other) in bodies.iter_mut() {
-                if other.rest == (Rest::Asleep { island }) {
-                    other.rest = Rest::Awake { calm: 0.0 };
-                }
-            }
-        }
-    }
 }

@@ -1,5 +1,6 @@
 //! The world: owner of everything that is simulated.
 
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::{Body, Velocity};
 use crate::contact::Contact;
@@ -18,7 +19,6 @@ use crate::runner::{Serial, TaskRunner};
 use crate::shape::{MassProperties, Sensing};
 use crate::stage::{NoProfiler, Profiler};
 use crate::step::{StepContext, step};
-use crate::touch::wake;
 use sinew_math::{Transform, Vec3};
 
 /// Bodies and joints, stepped at a fixed rate.
@@ -30,7 +30,9 @@ pub struct World {
     pub(crate) def: WorldDef,
     pub(crate) bodies: Arena<Body>,
     pub(crate) joints: Arena<Joint>,
+    /// Those of what is awake or moves, in order of their keys; `activity` has the others.
     pub(crate) contacts: Vec<Contact>,
+    pub(crate) activity: Activity,
     pub(crate) groups: Arena<ParticleGroup>,
     pub(crate) fields: Arena<FieldDef>,
     pub(crate) functions: Functions,
@@ -62,6 +64,7 @@ impl World {
             bodies: Arena::default(),
             joints: Arena::default(),
             contacts: Vec::new(),
+            activity: Activity::default(),
             groups: Arena::default(),
             fields: Arena::default(),
             functions: Functions::default(),
@@ -91,6 +94,7 @@ impl World {
     pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
         def.shapes.iter().for_each(|shape| self.expect_modifier(shape.rule));
         let (index, generation) = self.bodies.insert(Body::new(def));
+        self.activity.add(index, self.bodies.at(index));
         self.broad.proxies.add(index, self.bodies.at(index));
         let id = BodyId { index, generation };
         let senses = def.shapes.iter().any(|shape| shape.sensing == Sensing::Sensor);
@@ -111,13 +115,14 @@ impl World {
         let attached =
             self.groups.iter().any(|(_, group)| group.attachments().iter().any(|a| held(a.target)));
         assert!(!attached, "no particles are attached to a body that is taken out");
-        self.wake_neighbors(id.index);
+        self.wake_around(id.index);
         let joints: Vec<JointId> = self.joints_of(id).collect();
         for joint in joints {
             self.remove_joint(joint);
         }
         self.meetings.stirred.retain(|&index| index != id.index);
-        self.contacts.retain(|contact| contact.key.a != id.index && contact.key.b != id.index);
+        self.contacts.retain(|contact| !contact.key.has(id.index));
+        self.activity.remove(id.index);
         self.parted.forget(id.index);
         self.bodies.remove(id.index, id.generation);
         self.broad.proxies.remove(id.index);
@@ -131,7 +136,7 @@ impl World {
         for attachment in &def.attachments {
             if let AttachmentTarget::Body { body, .. } = attachment.target {
                 self.expect(body);
-                wake(&mut self.bodies, body.index);
+                self.wake_body(body.index);
             }
         }
         let (index, generation) = self.groups.insert(ParticleGroup::new(def));
@@ -213,7 +218,8 @@ impl World {
         between * body.principal_from_body
     }
 
-    /// Puts a body somewhere; it wakes. It does not sweep what lies between.
+    /// Puts a body somewhere; it wakes, and so does what touched it there or hangs on it. It does not sweep what lies
+    /// between.
     pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
         assert!(world_from_body.is_finite(), "a body's pose is finite");
         self.expect_mut(id).set_world_from_body(world_from_body);
@@ -240,7 +246,10 @@ impl World {
         match body.kind {
             // Where it has come to nothing has looked yet.
             BodyKind::Kinematic if stops => self.stir(id),
-            _ => wake(&mut self.bodies, id.index),
+            _ => self.wake_body(id.index),
+        }
+        if self.bodies.at(id.index).can_touch() {
+            self.activity.recall(id.index);
         }
     }
 
@@ -254,17 +263,6 @@ impl World {
         self.expect(id).mass_properties()
     }
 
-    /// False while it sleeps.
-    pub fn is_awake(&self, id: BodyId) -> bool {
-        self.expect(id).is_awake()
-    }
-
-    /// Wakes a body and its island.
-    pub fn wake(&mut self, id: BodyId) {
-        self.expect(id);
-        wake(&mut self.bodies, id.index);
-    }
-
     /// The user's number on a body.
     pub fn user_data(&self, id: BodyId) -> u64 {
         self.expect(id).user_data
@@ -276,16 +274,5 @@ impl World {
 
     pub(crate) fn expect_mut(&mut self, id: BodyId) -> &mut Body {
         self.bodies.get_mut(id.index, id.generation).expect("the body is there")
-    }
-
-    /// Wakes a body and all that touch it.
-    pub(crate) fn wake_neighbors(&mut self, body: u32) {
-        wake(&mut self.bodies, body);
-        for contact in &self.contacts {
-            if contact.key.a == body || contact.key.b == body {
-                wake(&mut self.bodies, contact.key.a);
-                wake(&mut self.bodies, contact.key.b);
-            }
-        }
     }
 }

@@ -4,7 +4,7 @@ use sinew_formats::{read_world, write_world};
 use sinew_math::{Random, Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{
     BodyDef, BodyKind, Combine, CombineRules, ContactRule, Filter, MassProperties, Material, OneWay, Sensing,
-    Shape, ShapeDef, World, WorldDef,
+    Shape, ShapeDef, Sleeping, World, WorldDef,
 };
 
 /// The first block of JSON in a module's documentation.
@@ -179,6 +179,7 @@ fn random_body(random: &mut Random) -> BodyDef {
             center: random.in_cube(),
             inertia: Sym3::from_rotated_diagonal(random.rotation(), principal),
         }),
+        sleeping: [Sleeping::On, Sleeping::Off][random.index(2)],
         user_data: random.bits(),
     }
 }

@@ -7,7 +7,6 @@ use crate::id::BodyId;
 use crate::proxies::Owner;
 use crate::ray::Ray;
 use crate::shape::{Sensing, Shape};
-use crate::touch::wake;
 use crate::world::World;
 use sinew_math::{Transform, Vec3, max, normalize_or};
 
@@ -108,7 +107,6 @@ impl World {
         let (impulse, point) = explosion.push(&s.shape, &body.world_from_shape(shape));
         let reached = body.surface(shape).filter.layers & explosion.layers != 0 && impulse != Vec3::ZERO;
         if reached && !self.shelters(explosion, point) {
-            wake(&mut self.bodies, id.index);
             self.apply_impulse(id, impulse, point);
         }
     }

@@ -51,6 +51,7 @@ pub(crate) use mutual::Attractor;
 pub(crate) use target::{Form, Target};
 pub(crate) use world::attractor;
 
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::def::WorldDef;
@@ -114,11 +115,11 @@ impl<'a> Fields<'a> {
     }
 
     /// What attracts and is attracted wakes together. Gives a sleeper to be woken, as long as there is one.
-    pub fn next_to_wake(&self, bodies: &Arena<Body>) -> Option<u32> {
+    pub fn next_to_wake(&self, bodies: &Arena<Body>, activity: &Activity) -> Option<u32> {
         self.mutual().find_map(|(field, _)| {
             let reached =
                 |body: &Body| body.mass > 0.0 && !body.quarantined && field.reaches(&Target::of_body(body));
-            let awake = self.particles || bodies.iter().any(|(_, body)| body.is_active() && reached(body));
+            let awake = self.particles || activity.active().any(|index| reached(bodies.at(index)));
             let mut sleepers = bodies.iter().filter(|(_, body)| !body.is_awake() && reached(body));
             if awake { sleepers.next().map(|(index, _)| index) } else { None }
         })

@@ -4,7 +4,6 @@ use super::{Attractor, FieldDef, FieldFunction, FieldKind, Fields, Load, MutualG
 use crate::def::BodyKind;
 use crate::force::Wrench;
 use crate::id::{BodyId, FieldId, GroupId};
-use crate::touch::wake;
 use crate::world::World;
 use sinew_math::Vec3;
 
@@ -152,7 +151,7 @@ impl World {
             let generation = self.bodies.generation(index);
             let asleep = |body: &&crate::body::Body| !body.is_awake() && def.reaches(&Target::of_body(body));
             if self.bodies.get(index, generation).filter(asleep).is_some() {
-                wake(&mut self.bodies, index);
+                self.wake_body(index);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! A joint as the world keeps it: its definition and what it remembers.
 
 pub mod def;
+mod incidence;
 mod rows;
 mod snapshot;
 mod world;
@@ -9,6 +10,7 @@ use crate::spatial::{Vec6, ZERO6};
 use def::{
     Gains, JointCollision, JointDef, JointKind, JointState, Motor, SoftZone, Softness, Spring, Strength,
 };
+pub(crate) use incidence::Incidence;
 use rows::locked_count;
 pub(crate) use rows::{
     DIRECTIONS, JointGeometry, JointPose, JointRows, MAX_LIMITS, Row, Stop, TWIST, anchor_gap, displacement,

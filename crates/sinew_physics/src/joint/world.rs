@@ -5,7 +5,6 @@ use super::{Joint, JointPose, anchor_gap, overshoot};
 use crate::def::BodyKind;
 use crate::id::{BodyId, JointId};
 use crate::spatial::{angular, linear};
-use crate::touch::wake;
 use crate::world::World;
 use sinew_math::{Transform, Vec3};
 
@@ -31,6 +30,7 @@ impl World {
         let (ia, ib) = (def.body_a.index, def.body_b.index);
         let joint = Joint::new(def, ia, ib, a.principal_from_body, b.principal_from_body);
         let (index, generation) = self.joints.insert(joint);
+        self.activity.joints_of.insert(index, self.joints.at(index));
         let id = JointId { index, generation };
         self.joint_changed(id);
         id
@@ -39,7 +39,8 @@ impl World {
     /// Takes a joint out; both bodies wake.
     pub fn remove_joint(&mut self, id: JointId) {
         self.joint_changed(id);
-        self.joints.remove(id.index, id.generation);
+        let joint = self.joints.remove(id.index, id.generation).expect("the joint is there");
+        self.activity.joints_of.remove(id.index, &joint);
     }
 
     /// All joints, by index.
@@ -50,11 +51,8 @@ impl World {
     /// The joints of a body, by index.
     pub fn joints_of(&self, body: BodyId) -> impl Iterator<Item = JointId> {
         self.expect(body);
-        let touches = move |joint: &Joint| joint.a == body.index || joint.b == body.index;
-        self.joints
-            .iter()
-            .filter(move |(_, joint)| touches(joint))
-            .map(|(index, _)| JointId { index, generation: self.joints.generation(index) })
+        let id = |&index: &u32| JointId { index, generation: self.joints.generation(index) };
+        self.activity.joints_of.body(body.index).iter().map(id)
     }
 
     /// True if the id names a joint that is there.
@@ -104,14 +102,17 @@ impl World {
         self.joint_changed(id);
     }
 
-    /// Gives a joint another motor, or none; both bodies wake. Cheap enough for every step.
+    /// Gives a joint another motor, or none; both bodies wake, unless it is the motor that it has. Cheap enough for every
+    /// step.
     ///
     /// # Panics
     /// If a number is not valid.
     pub fn set_motor(&mut self, id: JointId, motor: Option<Motor>) {
         assert!(motor.is_none_or(|motor| motor.is_valid()), "a motor's numbers are finite");
-        self.expect_joint_mut(id).set_motor(motor);
-        self.wake_joint(id);
+        if self.expect_joint(id).drive.motor != motor {
+            self.expect_joint_mut(id).set_motor(motor);
+            self.wake_joint(id);
+        }
     }
 
     /// Lets a joint act, or not; both bodies wake. One that broke acts again, with the gap that it has.
@@ -165,8 +166,8 @@ impl World {
 
     fn wake_joint(&mut self, id: JointId) {
         let &Joint { a, b, .. } = self.expect_joint(id);
-        wake(&mut self.bodies, a);
-        wake(&mut self.bodies, b);
+        self.wake_body(a);
+        self.wake_body(b);
     }
 
     fn joint_changed(&mut self, id: JointId) {

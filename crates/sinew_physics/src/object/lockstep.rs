@@ -1,6 +1,7 @@
 //! A step with objects: all islands go substep by substep, and between the parts the objects see the world as it is.
 
 use super::{Corrections, Forces, Objects, Substep};
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::id::{BodyId, GroupId};
@@ -10,7 +11,6 @@ use crate::spatial::{Vec6, angular, linear};
 use crate::stage::{Stage, zone};
 use crate::step::{StepContext, solve};
 use crate::tasks::Phase;
-use crate::touch::wake;
 
 /// Where bodies and particle groups are in the course of a step, by their slots in the world.
 #[derive(Clone, Debug, Default)]
@@ -110,9 +110,9 @@ impl Objects {
     }
 
     /// When the substeps are over: wakes what was pushed in its sleep.
-    pub fn rouse(&mut self, bodies: &mut Arena<Body>) {
+    pub fn rouse(&mut self, bodies: &mut Arena<Body>, activity: &mut Activity) {
         for Roused { index, change } in self.roused.drain(..) {
-            wake(bodies, index);
+            activity.wake(bodies, index);
             let body = bodies.at_mut(index);
             body.velocity.linear += linear(&change);
             body.velocity.angular += angular(&change);

@@ -5,6 +5,7 @@ use super::drives::SoftRow;
 use super::loops::MAX_EXACT_ROWS;
 use super::tree::{Link, NONE};
 use super::{IslandSolver, SolverBody, SolverJoint};
+use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, slop};
@@ -13,15 +14,18 @@ use crate::field::Fields;
 use crate::islands::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
 use crate::modifiers::Modifiers;
+use crate::proxies::Proxies;
 use crate::spatial::{ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
 
 /// At most this many bodies are solved as one tree; joints beyond become loop rows.
 const MAX_TREE: usize = 1024;
 
-/// What an island's solver reads of the world.
+/// What islands and their solvers read of the world.
 pub(crate) struct View<'a> {
     pub bodies: &'a Arena<Body>,
+    pub activity: &'a Activity,
+    pub proxies: &'a Proxies,
     pub joints: &'a Arena<Joint>,
     pub contacts: &'a [Contact],
     pub modifiers: &'a Modifiers,

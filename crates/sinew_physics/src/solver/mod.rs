@@ -37,7 +37,7 @@ use limit_rows::LimitRow;
 use loops::Loops;
 use response::Response;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, min, normalize_or, skew, trig};
-pub(crate) use solution::{IslandSolution, Solution, SolvedBody, split_off};
+pub(crate) use solution::{IslandSolution, Solution, SolvedBody, SolvedJoint, split_off};
 use sweep::{Pass, Unrest};
 use tree::Link;
 
@@ -370,7 +370,7 @@ impl IslandSolver {
         self.drop_nonsense(0.0);
         self.govern_energy();
         for rows in &mut self.manifolds {
-            rows.end_substep();
+            rows.end_substep(self.h);
         }
         self.end_limits();
         self.end_loops();

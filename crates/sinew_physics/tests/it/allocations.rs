@@ -188,3 +188,25 @@ fn the_counter_sees_one_push() {
     list.clear();
     assert_eq!(allocation_counter::measure(|| list.push(1)).count_total, 0, "it kept its room");
 }
+
+#[test]
+fn falling_asleep_and_waking_allocate_nothing() {
+    let mut world = World::new(WorldDef::default());
+    floor(&mut world);
+    let boxes = pile(&mut world, 20);
+    let mut last = Seen::default();
+    for cycle in 0..8 {
+        last = Seen::default();
+        for &(id, pose) in &boxes {
+            world.set_transform(id, pose);
+            world.set_velocity(id, Velocity::default());
+        }
+        run(&mut world, 600, &mut last);
+        assert!(boxes.iter().all(|&(id, _)| !world.is_awake(id)), "all sleep in cycle {cycle}");
+        for &(id, _) in &boxes {
+            world.apply_impulse_at_center(id, Vec3::Y);
+            run(&mut world, 5, &mut last);
+        }
+    }
+    assert_eq!(last.allocations, 0, "{last:?}");
+}

@@ -18,6 +18,7 @@ mod particles;
 mod random_worlds;
 mod ray;
 mod rope;
+mod sleep;
 mod surfaces;
 mod trees;
 mod trouble;

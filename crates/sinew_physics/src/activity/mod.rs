@@ -1,0 +1,213 @@
+//! What is awake, what sleeps, and what falls asleep and wakes together: so that a step goes through what is awake
+//! alone.
+//!
+//! All of it follows from the bodies and the contacts, and is no part of the state: a world whose bookkeeping is made anew
+//! has the same future.
+
+mod aside;
+#[cfg(test)]
+mod check;
+mod slot_set;
+mod world;
+
+use crate::arena::Arena;
+use crate::body::{Body, Rest, Velocity};
+use crate::contact::Contact;
+use crate::def::{BodyKind, WorldDef};
+use crate::joint::{Incidence, Joint};
+use crate::particles::ParticleGroup;
+use crate::proxies::{Owner, Proxies};
+use aside::Aside;
+use core::ops::ControlFlow;
+use slot_set::SlotSet;
+
+/// Who is awake, what those who are not have put aside, and who holds whom.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Activity {
+    pub joints_of: Incidence,
+    active: SlotSet,
+    /// Ascending.
+    kinematic: Vec<u32>,
+    /// By slot: the next body of the same sleeping island, in a ring.
+    next: Vec<u32>,
+    aside: Aside,
+    /// Contacts of what woke or set off, until the step goes through them.
+    returned: Vec<Contact>,
+    struck: Vec<u32>,
+}
+
+impl Activity {
+    /// Of a world whose contacts all lie in its own list.
+    pub fn new(bodies: &Arena<Body>, joints: &Arena<Joint>) -> Self {
+        let mut activity = Self { joints_of: Incidence::new(joints), ..Self::default() };
+        let mut sleepers = Vec::new();
+        for (index, body) in bodies.iter() {
+            activity.add(index, body);
+            if let Rest::Asleep { island } = body.rest {
+                sleepers.push((island, index));
+            }
+        }
+        sleepers.sort_unstable();
+        for members in sleepers.chunk_by(|p, q| p.0 == q.0) {
+            activity.tie(members.iter().map(|&(_, index)| index));
+        }
+        activity
+    }
+
+    /// Bodies that forces move, ascending.
+    pub fn active(&self) -> impl Iterator<Item = u32> {
+        self.active.iter()
+    }
+
+    /// Kinematic bodies, ascending.
+    pub fn kinematic(&self) -> &[u32] {
+        &self.kinematic
+    }
+
+    /// The other bodies that fell asleep with a sleeping one.
+    #[cfg(test)]
+    fn asleep_with(&self, index: u32) -> impl Iterator<Item = u32> {
+        let next = move |&at: &u32| Some(self.next[at as usize]).filter(|&next| next != index);
+        core::iter::successors(Some(index), next).skip(1)
+    }
+
+    /// All that may move: both of these, each once.
+    pub fn movers(&self) -> impl Iterator<Item = u32> {
+        self.active().chain(self.kinematic.iter().copied())
+    }
+
+    /// Takes note of a body that came.
+    pub fn add(&mut self, index: u32, body: &Body) {
+        let slots = index as usize + 1;
+        self.active.reserve(slots);
+        self.aside.reserve(slots);
+        if self.next.len() < slots {
+            self.next.resize(slots, 0);
+        }
+        self.next[index as usize] = index;
+        if let (BodyKind::Kinematic, Err(place)) = (body.kind, self.kinematic.binary_search(&index)) {
+            self.kinematic.insert(place, index);
+        }
+        self.note(index, body);
+    }
+
+    /// Takes note of whether a body is active.
+    pub fn note(&mut self, index: u32, body: &Body) {
+        self.active.set(index, body.is_active());
+    }
+
+    /// Forgets a body that is taken out, and its contacts.
+    pub fn remove(&mut self, index: u32) {
+        self.active.set(index, false);
+        self.kinematic.retain(|&other| other != index);
+        self.aside.take(index, |_| {});
+        self.returned.retain(|contact| !contact.key.has(index));
+    }
+
+    /// Wakes a body that sleeps, and everything it fell asleep with.
+    pub fn wake(&mut self, bodies: &mut Arena<Body>, index: u32) {
+        if bodies.at(index).is_awake() {
+            return;
+        }
+        let mut member = index;
+        loop {
+            let body = bodies.at_mut(member);
+            body.disturb();
+            self.note(member, body);
+            self.recall(member);
+            member = core::mem::replace(&mut self.next[member as usize], member);
+            if member == index {
+                return;
+            }
+        }
+    }
+
+    /// Wakes a body, or keeps it awake for as long as if it had just woken.
+    pub fn disturb(&mut self, bodies: &mut Arena<Body>, index: u32) {
+        self.wake(bodies, index);
+        bodies.at_mut(index).disturb();
+    }
+
+    /// Wakes what particles strike: those that lie on a sleeper are too slow to.
+    pub fn wake_struck(
+        &mut self,
+        bodies: &mut Arena<Body>,
+        groups: &Arena<ParticleGroup>,
+        proxies: &Proxies,
+        def: &WorldDef,
+    ) {
+        let (speed, dt) = (def.sleep_thresholds.speed, def.dt());
+        for (_, group) in groups.iter().filter(|(_, group)| group.fastest() > speed) {
+            let bounds = group.bounds().expand(group.fastest() * dt);
+            let mut struck = core::mem::take(&mut self.struck);
+            let _ = proxies.overlapping(&bounds, |Owner { body: index, shape }| {
+                let (body, shape) = (bodies.at(index), shape as usize);
+                let at = body.world_from_shape(shape);
+                let strikes = !body.is_awake()
+                    && body.surface(shape).is_wall_to(group.filter())
+                    && group.strikes(&body.shapes[shape].shape, &at, speed, dt);
+                struck.extend(strikes.then_some(index));
+                ControlFlow::<()>::Continue(())
+            });
+            struck.drain(..).for_each(|index| self.wake(bodies, index));
+            self.struck = struck;
+        }
+    }
+
+    /// Puts bodies to sleep that wake together from now on, under a number that no others have.
+    pub fn sleep(&mut self, bodies: &mut Arena<Body>, members: &[u32], island: u32) {
+        for &index in members {
+            let body = bodies.at_mut(index);
+            body.rest = Rest::Asleep { island };
+            body.velocity = Velocity::default();
+            body.previous = body.world_from_principal;
+            self.note(index, body);
+        }
+        self.tie(members.iter().copied());
+    }
+
+    fn tie(&mut self, members: impl Iterator<Item = u32> + Clone) {
+        let following = members.clone().skip(1).chain(members.clone().take(1));
+        for (index, next) in members.zip(following) {
+            self.next[index as usize] = next;
+        }
+    }
+
+    /// A contact that nothing can happen to until one of its bodies wakes or sets off.
+    pub fn put_aside(&mut self, contact: Contact) {
+        self.aside.put(contact);
+    }
+
+    /// A body may touch something again: its contacts take part in the next step.
+    pub fn recall(&mut self, index: u32) {
+        self.aside.take(index, |contact| self.returned.push(contact));
+    }
+
+    /// Merges contacts that were recalled with those of the step, which are in order of their keys.
+    pub fn return_contacts(&mut self, contacts: &mut Vec<Contact>) {
+        self.returned.sort_unstable_by_key(|contact| contact.key);
+        let mut left = contacts.len();
+        contacts.extend_from_slice(&self.returned);
+        let mut end = contacts.len();
+        // From the back, where there is room.
+        while let Some(contact) = self.returned.pop() {
+            while left > 0 && contacts[left - 1].key > contact.key {
+                (left, end) = (left - 1, end - 1);
+                contacts.swap(left, end);
+            }
+            end -= 1;
+            contacts[end] = contact;
+        }
+    }
+
+    /// The contacts of a body that are not in the world's list, in no order that means anything.
+    pub fn contacts_of(&self, body: u32) -> impl Iterator<Item = &Contact> {
+        let returned = self.returned.iter().filter(move |contact| contact.key.has(body));
+        self.aside.of(body).chain(returned)
+    }
+
+    /// All contacts that are not in the world's list, likewise.
+    pub fn contacts(&self) -> impl Iterator<Item = &Contact> {
+        self.aside.iter().chain(&self.returned)
+    }
+}
