@@ -566,7 +566,7 @@ fn springs_and_slides_are_those_of_the_file() {
 fn geoms_rub_roll_and_bounce_as_the_file_says() {
     let material = |attributes: &str| {
         let model = one_body("", "", &format!("<geom size='.1' {attributes}/>"));
-        model.bodies[0].def.shapes[0].material
+        model.bodies.iter().flat_map(|body| &body.def.shapes).next().expect("it has a geom").material
     };
     assert_eq!(material("").friction, 1.0);
     let rubber = material("friction='.8 .01 .002' condim='6' solref='.02 .2'");
