@@ -11,12 +11,13 @@ pub mod fs;
 mod glb;
 pub mod gltf;
 mod json;
+mod material;
 pub mod mesh;
 pub mod mjcf;
 pub mod obj;
 mod parts;
 pub mod ragdoll;
-mod surface;
+
 mod uri;
 pub mod world;
 

@@ -51,8 +51,8 @@
 
 use crate::error::Result;
 use crate::json::{self, At, number, numbers};
+use crate::material::{read_filter, read_material, read_rule, write_material, write_rule};
 use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
-use crate::surface::{read_filter, read_material, read_rule, write_material, write_rule};
 use serde_json::{Map, Value, json};
 use sinew_math::{Transform, Vec3};
 use sinew_physics::{BodyDef, BodyKind, Filter, Sensing, Shape, ShapeDef, Sleeping};
