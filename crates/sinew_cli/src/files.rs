@@ -2,8 +2,7 @@
 
 use crate::failure::{Failure, Result};
 use sinew::anim::{RigAnalysis, analyze};
-use sinew::formats::{Document, ReadOptions, Textures, load_gltf, read_bytes, read_world, write_all_atomic};
-use sinew::physics::BodyDef;
+use sinew::formats::{Document, ReadOptions, Textures, load_gltf, write_all_atomic};
 use std::path::{Path, PathBuf};
 
 /// A character file: what it holds, and what its joints are.
@@ -44,10 +43,4 @@ impl Outputs {
     pub fn write(&self) -> Result<()> {
         Ok(write_all_atomic(&self.files)?)
     }
-}
-
-/// The bodies of a world file.
-pub fn read_world_file(path: &Path) -> Result<Vec<BodyDef>> {
-    let bytes = read_bytes(path)?;
-    Ok(read_world(&bytes).map_err(|error| error.with_file(path.display().to_string()))?)
 }

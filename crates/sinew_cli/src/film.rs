@@ -5,7 +5,7 @@ use crate::progress::Progress;
 use crate::story;
 use sinew::anim::{Primitive, Rig, Wrap, local_to_model, sample, skin_vertices};
 use sinew::math::{Affine, Rotation, Transform, Vec2, Vec3};
-use sinew::physics::BodyDef;
+use sinew::physics::{BodyDef, Shape};
 use sinew_picture::draw::{self, Solid};
 use sinew_picture::{
     Caption, EncodeError, FollowCamera, Image, Material, Model, Movie, PictureFormat, RenderSettings,
@@ -191,6 +191,9 @@ pub fn body_models(body: &BodyDef, half_size: f32, color: [f32; 3], other: [f32;
         let place = world_from_body * shape.body_from_shape;
         match Solid::of(&shape.shape) {
             Some(solid) => draw::solid(solid, place, Material::new(color)),
+            None if shape.shape != Shape::HalfSpace => {
+                draw::surface(&shape.shape, place, Material::new(color))
+            }
             None => draw::plane(place, half_size, 1.0, [color, other]),
         }
     };

@@ -109,7 +109,21 @@ impl RagdollReport<'_> {
                 put("radius_m", number(radius));
                 put("half_height_m", number(half_height));
             }
-            Shape::HalfSpace => unreachable!("no body of a ragdoll is a half-space"),
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                put("shape", json!("tapered_capsule"));
+                put("radius_bottom_m", number(radius_bottom));
+                put("radius_top_m", number(radius_top));
+                put("half_height_m", number(half_height));
+            }
+            Shape::Cylinder { half_height, radius } | Shape::Cone { half_height, radius } => {
+                let is_cone = matches!(body.shape, Shape::Cone { .. });
+                put("shape", json!(if is_cone { "cone" } else { "cylinder" }));
+                put("radius_m", number(radius));
+                put("half_height_m", number(half_height));
+            }
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => {
+                unreachable!("no body of a ragdoll is a half-space or a surface")
+            }
         }
         put("mass_kg", number(body.mass.mass));
         object.into()
@@ -217,7 +231,17 @@ fn shape_cell(shape: &Shape) -> String {
         Shape::Capsule { half_height, radius } => {
             format!("capsule {} × ⌀ {} cm", cm(half_height + radius), cm(radius))
         }
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            let height = half_height + 0.5 * (radius_bottom + radius_top);
+            format!("tapered capsule {} × ⌀ {}–{} cm", cm(height), cm(radius_bottom), cm(radius_top))
+        }
+        Shape::Cylinder { half_height, radius } => {
+            format!("cylinder {} × ⌀ {} cm", cm(half_height), cm(radius))
+        }
+        Shape::Cone { half_height, radius } => format!("cone {} × ⌀ {} cm", cm(half_height), cm(radius)),
         Shape::HalfSpace => "half-space".into(),
+        Shape::Mesh(_) => "mesh".into(),
+        Shape::HeightField(_) => "height field".into(),
     }
 }
 

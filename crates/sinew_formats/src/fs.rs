@@ -4,6 +4,8 @@ use crate::error::{Error, Result, quoted};
 use crate::gltf::{Document, ReadOptions, read_gltf};
 use crate::mesh::TriangleMesh;
 use crate::obj::read_obj;
+use crate::world::read_world;
+use sinew_physics::BodyDef;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -115,6 +117,22 @@ pub fn load_mesh(path: impl AsRef<Path>) -> Result<TriangleMesh> {
         return read_obj(&read_bytes(path)?).map_err(|e| e.with_file(name));
     }
     TriangleMesh::from_document(&load_gltf(path, ReadOptions::default())?).map_err(|e| e.with_file(name))
+}
+
+/// Reads the bodies of a level: a world file, or a mesh file (GLB, glTF, VRM or OBJ), which becomes one static body.
+///
+/// # Errors
+/// As [`read_world`] and [`load_mesh`], naming the file.
+pub fn load_world(path: impl AsRef<Path>) -> Result<Vec<BodyDef>> {
+    let path = path.as_ref();
+    let name = || path.display().to_string();
+    let is_mesh = path.extension().is_some_and(|extension| {
+        ["glb", "gltf", "vrm", "obj"].iter().any(|known| extension.eq_ignore_ascii_case(known))
+    });
+    if is_mesh {
+        return Ok(vec![load_mesh(path)?.to_body().map_err(|e| e.with_file(name()))?]);
+    }
+    read_world(&read_bytes(path)?).map_err(|e| e.with_file(name()))
 }
 
 /// Reads `relative` inside `folder`, refusing links that lead out of it.

@@ -17,13 +17,13 @@ pub mod mjcf;
 pub mod obj;
 mod parts;
 pub mod ragdoll;
-
+mod surface;
 mod uri;
 pub mod world;
 
 pub use error::{Error, ErrorKind, Result};
 #[cfg(feature = "fs")]
-pub use fs::{load_gltf, load_mesh, read_bytes, write_all_atomic, write_atomic};
+pub use fs::{load_gltf, load_mesh, load_world, read_bytes, write_all_atomic, write_atomic};
 pub use gltf::{
     Container, Document, ReadOptions, Resolver, Textures, append_clip, no_files, read_gltf, write_gltf,
 };

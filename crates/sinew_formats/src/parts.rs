@@ -2,6 +2,7 @@
 
 use crate::error::{Result, quoted};
 use crate::json::{At, number, numbers};
+use crate::surface;
 use serde_json::{Map, Value};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{MassProperties, Shape};
@@ -55,7 +56,21 @@ pub(crate) fn write_pose(pose: Transform, object: &mut Map<String, Value>) {
 }
 
 /// Keys of a shape's geometry.
-pub(crate) const SHAPE_KEYS: [&str; 4] = ["type", "half_extents", "radius", "half_height"];
+pub(crate) const SHAPE_KEYS: [&str; 13] = [
+    "type",
+    "half_extents",
+    "radius",
+    "half_height",
+    "radius_bottom",
+    "radius_top",
+    "vertices",
+    "triangles",
+    "columns",
+    "rows",
+    "spacing",
+    "heights",
+    "holes",
+];
 
 /// A shape by its `type` and sizes.
 pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
@@ -70,14 +85,39 @@ pub(crate) fn read_shape(at: At<'_>) -> Result<Shape> {
                 &["half_height", "radius"],
             )
         }
+        "tapered_capsule" => {
+            let positive = |key: &str| at.need(key)?.positive();
+            let (half_height, radius_bottom, radius_top) =
+                (positive("half_height")?, positive("radius_bottom")?, positive("radius_top")?);
+            (
+                Shape::TaperedCapsule { half_height, radius_bottom, radius_top },
+                &["half_height", "radius_bottom", "radius_top"],
+            )
+        }
+        "cylinder" | "cone" => {
+            let half_height = at.need("half_height")?.positive()?;
+            let radius = at.need("radius")?.positive()?;
+            let shape = if kind.str()? == "cone" {
+                Shape::Cone { half_height, radius }
+            } else {
+                Shape::Cylinder { half_height, radius }
+            };
+            (shape, &["half_height", "radius"])
+        }
         "half_space" => (Shape::HalfSpace, &[]),
+        "mesh" => (surface::read_mesh(at)?, &["vertices", "triangles"]),
+        "height_field" => {
+            (surface::read_height_field(at)?, &["columns", "rows", "spacing", "heights", "holes"])
+        }
         other => {
             let other = quoted(other);
-            return Err(
-                kind.malformed(format!("unknown shape {other}; known are box, sphere, capsule, half_space"))
-            );
+            return Err(kind.malformed(format!(
+                "unknown shape {other}; known are box, sphere, capsule, tapered_capsule, \
+                 cylinder, cone, half_space, mesh, height_field"
+            )));
         }
     };
+    shape.check().map_err(|what| at.malformed(what))?;
     for size in &SHAPE_KEYS[1..] {
         if let Some(extra) = at.get(size)?
             && !needed.contains(size)
@@ -116,7 +156,25 @@ pub(crate) fn write_shape(shape: &Shape, object: &mut Map<String, Value>) {
             put("half_height", number(half_height));
             put("radius", number(radius));
         }
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            put("type", "tapered_capsule".into());
+            put("half_height", number(half_height));
+            put("radius_bottom", number(radius_bottom));
+            put("radius_top", number(radius_top));
+        }
+        Shape::Cylinder { half_height, radius } => {
+            put("type", "cylinder".into());
+            put("half_height", number(half_height));
+            put("radius", number(radius));
+        }
+        Shape::Cone { half_height, radius } => {
+            put("type", "cone".into());
+            put("half_height", number(half_height));
+            put("radius", number(radius));
+        }
         Shape::HalfSpace => put("type", "half_space".into()),
+        Shape::Mesh(ref mesh) => surface::write_mesh(mesh, object),
+        Shape::HeightField(ref field) => surface::write_height_field(field, object),
     }
 }
 

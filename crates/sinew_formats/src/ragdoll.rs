@@ -151,8 +151,9 @@ fn read_body(at: At<'_>) -> Result<RagdollBodyDef> {
     let shape_at = at.need("shape")?;
     shape_at.only(&SHAPE_KEYS)?;
     let shape = parts::read_shape(shape_at)?;
-    if shape == Shape::HalfSpace {
-        return Err(shape_at.malformed("a body of a ragdoll cannot be a half_space"));
+    if !shape.is_solid() {
+        let name = shape_at.need("type")?.str()?;
+        return Err(shape_at.malformed(format!("a body of a ragdoll cannot be a {name}")));
     }
     let merged = at.list("merged_rig_joints")?.into_iter().map(At::usize);
     let confidence = at.need("confidence")?;

@@ -37,7 +37,10 @@
 //! - `mass`: `{ "kg", "center", "inertia": [xx, yy, zz, yz, xz, xy] }`; without it from the shapes' densities.
 //!
 //! A **shape** has a `type`: `box` with `half_extents`, `sphere` with `radius`, `capsule` with `half_height` (of the
-//! segment along y, without the caps) and `radius`, or `half_space`, everything below y = 0, for static bodies. Also a
+//! segment along y, without the caps) and `radius`, or `half_space`, everything below y = 0, for static bodies. A `mesh` has
+//! `vertices` (a list of `[x, y, z]`) and `triangles` (a list of three indices each, counter-clockwise seen from outside); a
+//! `height_field` has `columns` and `rows` of vertices, `spacing` `[x, z]`, `heights`, row after row, and `holes`, cells by
+//! `column + row × (columns − 1)`. Both are surfaces without a mass of their own. Also a
 //! `position` and `rotation` in the body's frame, a `density` (kg/m³, default 1000), a `material` and a `filter`
 //! `{ "layers", "mask", "group" }`. With `"sensor": true` it reports whom it meets and does not push. `contacts` is `"push"`
 //! (default), `"ghost"`, or `{ "one_way": { "direction", "tolerance" } }`.
@@ -110,7 +113,10 @@ fn read_body(at: At<'_>, materials: Option<At<'_>>) -> Result<BodyDef> {
         shapes.push(shape);
     }
     let mass = at.get("mass")?.map(parts::read_mass).transpose()?;
-    if kind == BodyKind::Dynamic && mass.is_none() && !shapes.iter().any(|s| s.density > 0.0) {
+    if kind == BodyKind::Dynamic
+        && mass.is_none()
+        && !shapes.iter().any(|s| s.density > 0.0 && s.shape.is_solid())
+    {
         return Err(at.malformed("a dynamic body needs a mass, or a shape with a density above 0"));
     }
     let pose = parts::read_pose(at)?;

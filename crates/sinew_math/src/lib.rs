@@ -36,7 +36,7 @@ pub mod trig;
 
 pub use bytes::{ReadError, Reader, Writer};
 pub use euler::{EulerAngles, EulerAxes, EulerConvention, EulerOrder, GimbalLock};
-pub use glam::{Mat3, Vec2, Vec3};
+pub use glam::{DVec3, Mat3, Vec2, Vec3};
 pub use hash::StableHasher;
 pub use limits::{Range, SwingTwistLimit};
 pub use orthonormal::{MatrixDrift, Orthonormalization, Orthonormalized, Uniqueness, orthonormalize};

@@ -130,10 +130,10 @@ impl<T> Arena<T> {
     }
 
     /// Reads what [`save`](Self::save) wrote.
-    pub fn load<'a>(
+    pub fn load<'a, E: From<ReadError>>(
         r: &mut Reader<'a>,
-        mut item: impl FnMut(&mut Reader<'a>) -> Result<T, ReadError>,
-    ) -> Result<Self, ReadError> {
+        mut item: impl FnMut(&mut Reader<'a>) -> Result<T, E>,
+    ) -> Result<Self, E> {
         let count = r.count(5)?;
         let mut slots = Vec::with_capacity(count);
         for _ in 0..count {
@@ -150,12 +150,12 @@ impl<T> Arena<T> {
                 .get(index as usize)
                 .ok_or_else(|| r.error("free list names a slot that is not there"))?;
             if slot.item.is_some() || core::mem::replace(&mut listed[index as usize], true) {
-                return Err(r.error("free list names a slot that is in use"));
+                return Err(r.error("free list names a slot that is in use").into());
             }
             free.push(index);
         }
         if slots.iter().filter(|slot| slot.item.is_none()).count() != free.len() {
-            return Err(r.error("free list misses an empty slot"));
+            return Err(r.error("free list misses an empty slot").into());
         }
         Ok(Self { slots, free })
     }

@@ -6,26 +6,28 @@ use crate::collide::{MAX_POINTS, Manifold};
 use crate::material::ContactMaterial;
 use sinew_math::Vec3;
 
-/// Which two shapes: body index and shape number of each, the smaller body index first. Sorting by it is the order
-/// in which everything about contacts happens.
+/// Which two shapes: body index and shape number of each, the smaller body index first, and which part of their contact.
+/// Sorting by it is the order in which everything about contacts happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct ContactKey {
     pub a: u32,
     pub b: u32,
     pub shape_a: u32,
     pub shape_b: u32,
+    /// Which of several manifolds of the two, from 0; a pair of convex shapes has only one.
+    pub part: u32,
 }
 
 impl ContactKey {
     /// Of two shapes, each given by body and number, in whatever order.
     pub fn new(p: (u32, u32), q: (u32, u32)) -> Self {
         let (a, b) = if p.0 < q.0 { (p, q) } else { (q, p) };
-        Self { a: a.0, b: b.0, shape_a: a.1, shape_b: b.1 }
+        Self { a: a.0, b: b.0, shape_a: a.1, shape_b: b.1, part: 0 }
     }
 
-    /// Of the same two shapes.
-    pub fn is_same_pair(&self, other: &Self) -> bool {
-        (self.a, self.b, self.shape_a, self.shape_b) == (other.a, other.b, other.shape_a, other.shape_b)
+    /// Whether it is one of the manifolds of the same two shapes.
+    pub fn is_of_pair(&self, other: Self) -> bool {
+        Self { part: other.part, ..*self } == other
     }
 
     /// Whether a body is one of the two.
@@ -188,6 +190,11 @@ impl Contact {
         }
         material
     }
+}
+
+/// The parts of one pair after those of another.
+pub(crate) fn pairs_of(contacts: &mut [Contact]) -> impl Iterator<Item = &mut [Contact]> {
+    contacts.chunk_by_mut(|one, other| one.key.is_of_pair(other.key))
 }
 
 /// Length that contacts are scaled by: 5 mm, or 2 % of the smallest extent of either shape, so that small props are as

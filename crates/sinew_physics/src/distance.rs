@@ -1,11 +1,13 @@
 //! Signed distance from a point to a shape: what particles collide with, and what decides whether a point is inside.
 
+use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, abs3, clamp, max3, normalize_or};
 
 impl Shape {
     /// Distance from `point` (world) to the surface, metres, negative inside, and the unit outward normal (world)
-    /// at the closest point of the surface. Exact for every shape. Where several points are closest (the middle of
+    /// at the closest point of the surface. Exact for every shape. Meshes and height fields are surfaces, which may be
+    /// open: negative is behind the triangle that is closest, however far. Where several points are closest (the middle of
     /// a box, the axis of a capsule), one of them, always the same.
     pub fn signed_distance(&self, world_from_shape: &Transform, point: Vec3) -> (f32, Vec3) {
         let (distance, normal) = self.local_distance(world_from_shape.inverse_point(point));
@@ -21,7 +23,16 @@ impl Shape {
                 let from_core = p - Vec3::new(0.0, clamp(p.y, -half_height, half_height), 0.0);
                 (from_core.length() - radius, normalize_or(from_core, Vec3::X))
             }
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                Tapered::new(half_height, radius_bottom, radius_top).distance(p)
+            }
+            Shape::Cylinder { half_height, radius } => Frustum::cylinder(half_height, radius).distance(p),
+            Shape::Cone { half_height, radius } => Frustum::cone(half_height, radius).distance(p),
             Shape::HalfSpace => (p.y, Vec3::Y),
+            Shape::Mesh(_) | Shape::HeightField(_) => {
+                let closest = self.surface().and_then(|surface| surface.closest(p, f32::MAX.sqrt()));
+                closest.map_or((f32::INFINITY, Vec3::Y), |closest| closest.signed(p))
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Debug drawing: the world as lines, for any renderer.
 
 use crate::def::BodyKind;
+use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
 use crate::world::World;
 use sinew_math::{Transform, Vec3, trig};
@@ -74,10 +75,22 @@ impl World {
 
 fn draw_shape(shape: &Shape, pose: &Transform, kind: DrawKind, out: &mut dyn DebugDraw) {
     let mut line = |from: Vec3, to: Vec3| out.line(pose.point(from), pose.point(to), kind);
+    let mut triangle = |corners: [Vec3; 3]| (0..3).for_each(|k| line(corners[k], corners[(k + 1) % 3]));
     match *shape {
+        Shape::Mesh(ref mesh) => mesh.corners_of_all().for_each(&mut triangle),
+        Shape::HeightField(ref field) => field.triangles().for_each(&mut triangle),
         Shape::Box { half_extents } => draw_box(half_extents, &mut line),
         Shape::Sphere { radius } => draw_capsule(0.0, radius, &mut line),
         Shape::Capsule { half_height, radius } => draw_capsule(half_height, radius, &mut line),
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            draw_tapered(&Tapered::new(half_height, radius_bottom, radius_top), &mut line);
+        }
+        Shape::Cylinder { half_height, radius } => {
+            draw_frustum(&Frustum::cylinder(half_height, radius), 0.0, &mut line);
+        }
+        Shape::Cone { half_height, radius } => {
+            draw_frustum(&Frustum::cone(half_height, radius), 0.0, &mut line);
+        }
         Shape::HalfSpace => {
             let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
             let corner = |i: usize| Vec3::new(corners[i % 4].0, 0.0, corners[i % 4].1) * PLANE_SIZE;
@@ -105,7 +118,7 @@ fn draw_box(h: Vec3, line: &mut dyn FnMut(Vec3, Vec3)) {
 /// Rings at both ends, and the outline in two planes through the axis.
 fn draw_capsule(half_height: f32, radius: f32, line: &mut dyn FnMut(Vec3, Vec3)) {
     let at = |i: usize| {
-        let (sin, cos) = trig::sin_cos(i as f32 * (2.0 * core::f32::consts::PI / SEGMENTS as f32));
+        let (sin, cos) = on_circle(i);
         (sin * radius, cos * radius)
     };
     for i in 0..SEGMENTS {
@@ -121,5 +134,48 @@ fn draw_capsule(half_height: f32, radius: f32, line: &mut dyn FnMut(Vec3, Vec3))
     for side in [-radius, radius] {
         line(Vec3::new(side, -half_height, 0.0), Vec3::new(side, half_height, 0.0));
         line(Vec3::new(0.0, -half_height, side), Vec3::new(0.0, half_height, side));
+    }
+}
+
+/// Sine and cosine of corner `i` of a full circle.
+fn on_circle(i: usize) -> (f32, f32) {
+    trig::sin_cos(i as f32 * (2.0 * core::f32::consts::PI / SEGMENTS as f32))
+}
+
+/// Rings at both ends and four lines between them; `middle` is the height of its middle.
+fn draw_frustum(frustum: &Frustum, middle: f32, line: &mut dyn FnMut(Vec3, Vec3)) {
+    let ends = [(middle - frustum.half_height, frustum.bottom), (middle + frustum.half_height, frustum.top)];
+    let corner = |(y, radius): (f32, f32), i: usize| {
+        let (sin, cos) = on_circle(i);
+        Vec3::new(cos * radius, y, sin * radius)
+    };
+    for i in 0..SEGMENTS {
+        for end in ends.into_iter().filter(|(_, radius)| *radius > 0.0) {
+            line(corner(end, i), corner(end, i + 1));
+        }
+        if i % (SEGMENTS / 4) == 0 {
+            line(corner(ends[0], i), corner(ends[1], i));
+        }
+    }
+}
+
+/// The side, and arcs of the two balls beyond it in two planes through the axis.
+fn draw_tapered(tapered: &Tapered, line: &mut dyn FnMut(Vec3, Vec3)) {
+    let (side, middle) = tapered.side();
+    draw_frustum(&side, middle, line);
+    let lean = trig::asin(tapered.side_normal().y);
+    let quarter = core::f32::consts::FRAC_PI_2;
+    for ((center, radius), pole) in tapered.balls().into_iter().zip([-quarter, quarter]) {
+        let at = |i: usize| {
+            let (sin, cos) = trig::sin_cos(lean + (pole - lean) * (i as f32 / (SEGMENTS / 4) as f32));
+            (sin * radius + center.y, cos * radius)
+        };
+        for i in 0..SEGMENTS / 4 {
+            let ((y0, r0), (y1, r1)) = (at(i), at(i + 1));
+            for side in [-1.0, 1.0] {
+                line(Vec3::new(side * r0, y0, 0.0), Vec3::new(side * r1, y1, 0.0));
+                line(Vec3::new(0.0, y0, side * r0), Vec3::new(0.0, y1, side * r1));
+            }
+        }
     }
 }

@@ -59,7 +59,7 @@ impl OpenHits {
         hits.reserve(contacts.len());
         self.next.clear();
         self.next.reserve(contacts.len());
-        for pair in contacts.chunk_by(|p, q| p.key.is_same_pair(&q.key)) {
+        for pair in contacts.chunk_by(|p, q| p.key.is_of_pair(q.key)) {
             let fast = pair.iter().any(|contact| contact.approach >= threshold);
             if !fast && self.list.is_empty() || pair[0].effect != Effect::Push {
                 continue;

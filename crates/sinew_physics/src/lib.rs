@@ -17,6 +17,7 @@ mod filter;
 mod finalize;
 mod hits;
 mod islands;
+mod library;
 mod meetings;
 mod modifiers;
 mod pairs;
@@ -29,6 +30,7 @@ mod solver;
 mod tasks;
 mod touch;
 mod tree;
+pub mod triangles;
 mod update;
 
 mod activity;
@@ -37,6 +39,7 @@ mod body;
 pub mod boxes;
 mod contact;
 mod contact_rule;
+pub mod convex;
 mod distance;
 mod draw;
 pub mod id;
@@ -49,6 +52,7 @@ mod query;
 pub mod ray;
 mod rays;
 mod registered;
+mod revolved;
 pub mod runner;
 pub mod shape;
 mod slices;
@@ -77,11 +81,13 @@ pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
     Spring, Strength,
 };
+pub use library::{DataKind, LoadError};
 pub use material::{Combine, CombineRules, ContactMaterial, Material};
 pub use object::{Corrections, Forces, PhysicsObject, Substep};
 pub use query::{BodyHit, Energy, Momentum};
 pub use runner::{Serial, TaskRunner, Threads};
 pub use shape::{Filter, MassProperties, Sensing, Shape, ShapeDef};
 pub use surfaces::{BodyContact, ContactPoint};
+pub use triangles::{HeightField, HeightFieldDef, HeightFieldError, Mesh, MeshError};
 pub use update::Update;
 pub use world::World;

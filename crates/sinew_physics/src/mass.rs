@@ -1,11 +1,12 @@
 //! Mass, centre of mass and inertia of shapes, in closed form.
 
+use crate::revolved::{self, Frustum, Tapered};
 use crate::shape::{MassProperties, Shape};
 use core::f32::consts::PI;
 use sinew_math::{Sym3, Transform, Vec3};
 
 impl Shape {
-    /// Cubic metres; 0 for a half-space, which has no end.
+    /// Cubic metres; 0 for a half-space, which has no end, and for meshes and height fields, which may be open.
     pub fn volume(&self) -> f32 {
         match *self {
             Shape::Box { half_extents: h } => 8.0 * h.x * h.y * h.z,
@@ -13,18 +14,33 @@ impl Shape {
             Shape::Capsule { half_height, radius } => {
                 cylinder_volume(half_height, radius) + ball_volume(radius)
             }
-            Shape::HalfSpace => 0.0,
+            Shape::Cylinder { half_height, radius } => cylinder_volume(half_height, radius),
+            Shape::Cone { half_height, radius } => cylinder_volume(half_height, radius) / 3.0,
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                revolved::volume(&Tapered::new(half_height, radius_bottom, radius_top).slices())
+            }
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => 0.0,
         }
     }
 
-    /// Mass properties in the shape's frame at `density` kg/m³, ≥ 0; zero for a half-space.
+    /// Mass properties in the shape's frame at `density` kg/m³, ≥ 0; zero for what has no volume.
     pub fn mass_properties(&self, density: f32) -> MassProperties {
         let mass = density * self.volume();
         let diagonal = match *self {
             Shape::Box { half_extents } => box_inertia(half_extents, mass),
             Shape::Sphere { radius } => Vec3::splat(0.4 * mass * radius * radius),
             Shape::Capsule { half_height, radius } => capsule_inertia(half_height, radius, density),
-            Shape::HalfSpace => Vec3::ZERO,
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                let slices = Tapered::new(half_height, radius_bottom, radius_top).slices();
+                return revolved::mass_properties(&slices, density);
+            }
+            Shape::Cylinder { half_height, radius } => {
+                return revolved::mass_properties(&Frustum::cylinder(half_height, radius).slices(), density);
+            }
+            Shape::Cone { half_height, radius } => {
+                return revolved::mass_properties(&Frustum::cone(half_height, radius).slices(), density);
+            }
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => Vec3::ZERO,
         };
         MassProperties { mass, center: Vec3::ZERO, inertia: Sym3::from_diagonal(diagonal) }
     }

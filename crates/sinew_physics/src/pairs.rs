@@ -58,8 +58,13 @@ impl BroadPhase {
             while let Some(contact) = old.next_if(|contact| contact.key < key) {
                 part_with(contact);
             }
-            let known = old.next_if(|contact| contact.key == key);
-            self.next.push(known.unwrap_or_else(|| Contact::new(key)));
+            let before = self.next.len();
+            while let Some(contact) = old.next_if(|contact| contact.key.is_of_pair(key)) {
+                self.next.push(contact);
+            }
+            if self.next.len() == before {
+                self.next.push(Contact::new(key));
+            }
         }
         old.for_each(part_with);
         core::mem::swap(contacts, &mut self.next);

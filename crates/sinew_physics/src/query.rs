@@ -1,6 +1,6 @@
 //! Questions to the world: energies, momenta, joint gaps, overlaps, rays. Metrics of scenes come from here alone.
 
-use crate::collide::{Manifold, collide};
+use crate::collide::collide_all;
 use crate::contact::ContactKey;
 use crate::def::BodyKind;
 use crate::id::{BodyId, GroupId};
@@ -100,14 +100,14 @@ impl World {
     pub fn overlap(&self, a: BodyId, b: BodyId) -> f32 {
         let (body_a, body_b) = (self.expect(a), self.expect(b));
         let mut deepest = 0.0;
-        let mut manifold = Manifold::default();
         for (i, s) in body_a.shapes.iter().enumerate() {
             for (j, t) in body_b.shapes.iter().enumerate() {
                 let (from_s, from_t) = (body_a.world_from_shape(i), body_b.world_from_shape(j));
-                collide(&s.shape, &from_s, &t.shape, &from_t, 0.0, &mut manifold);
-                for point in manifold.points() {
-                    deepest = max(deepest, -point.separation);
-                }
+                collide_all(&s.shape, &from_s, &t.shape, &from_t, 0.0, |manifold| {
+                    for point in manifold.points() {
+                        deepest = max(deepest, -point.separation);
+                    }
+                });
             }
         }
         deepest
@@ -117,8 +117,10 @@ impl World {
     pub fn neighbors(&self, id: BodyId) -> impl Iterator<Item = BodyId> {
         self.expect(id);
         let pushing = self.contacts_at(id.index).filter(|contact| contact.pushes());
-        let mut keys: Vec<ContactKey> = pushing.map(|contact| contact.key).collect();
+        let mut keys: Vec<ContactKey> =
+            pushing.map(|contact| ContactKey { part: 0, ..contact.key }).collect();
         keys.sort_unstable();
+        keys.dedup();
         let other = move |key: ContactKey| key.other(id.index);
         keys.into_iter().map(other).map(|index| BodyId { index, generation: self.bodies.generation(index) })
     }

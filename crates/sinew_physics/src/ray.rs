@@ -1,5 +1,6 @@
 //! Rays against shapes, exact for every shape.
 
+use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, max, min, normalize_or};
 
@@ -41,6 +42,9 @@ impl Shape {
     /// A ray that starts inside (or on the surface) hits at fraction 0, with a normal opposite to its direction; if
     /// its direction is zero too, with the outward normal of the closest surface. So it is for every shape. A ray
     /// that leaves the shape from outside its surface never hits.
+    ///
+    /// Meshes and height fields are surfaces that may be open: nothing is inside of them. They are hit from the outside of
+    /// their triangles alone, with the triangle's normal, and let pass what comes from behind.
     pub fn cast_ray(&self, world_from_shape: &Transform, ray: &Ray) -> Option<RayHit> {
         self.cast_half_line(world_from_shape, ray).filter(|hit| hit.fraction <= 1.0)
     }
@@ -59,6 +63,9 @@ impl Shape {
 
     /// Fraction (≥ 0, may exceed 1) and normal where a line enters, in the shape's frame.
     pub(crate) fn cast_local(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+        if let Some(surface) = self.surface() {
+            return surface.enter(origin, direction);
+        }
         let (distance, outward) = self.local_distance(origin);
         if distance <= 0.0 {
             return Some((0.0, normalize_or(-direction, outward)));
@@ -72,15 +79,31 @@ impl Shape {
             Self::Box { half_extents } => enter_box(half_extents, origin, direction),
             Self::Sphere { radius } => enter_ball(Vec3::ZERO, radius, origin, direction),
             Self::Capsule { half_height, radius } => {
-                // The surface of a union is entered where the first of its parts is.
                 let cap = Vec3::new(0.0, half_height, 0.0);
                 let side = enter_tube(half_height, radius, origin, direction);
                 let caps = [-cap, cap].map(|center| enter_ball(center, radius, origin, direction));
-                caps.into_iter().chain([side]).flatten().reduce(|a, b| if b.0 < a.0 { b } else { a })
+                first_of(caps, side)
             }
+            Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                let tapered = Tapered::new(half_height, radius_bottom, radius_top);
+                let (side, middle) = tapered.side();
+                let side = side.enter(origin - Vec3::new(0.0, middle, 0.0), direction);
+                let ends = tapered.balls().map(|(center, r)| enter_ball(center, r, origin, direction));
+                first_of(ends, side)
+            }
+            Self::Cylinder { half_height, radius } => {
+                Frustum::cylinder(half_height, radius).enter(origin, direction)
+            }
+            Self::Cone { half_height, radius } => Frustum::cone(half_height, radius).enter(origin, direction),
             Self::HalfSpace => (direction.y < 0.0).then(|| (origin.y / -direction.y, Vec3::Y)),
+            Self::Mesh(_) | Self::HeightField(_) => None,
         }
     }
+}
+
+/// The surface of a union is entered where the first of its parts is.
+fn first_of(ends: [Option<(f32, Vec3)>; 2], side: Option<(f32, Vec3)>) -> Option<(f32, Vec3)> {
+    ends.into_iter().chain([side]).flatten().reduce(|a, b| if b.0 < a.0 { b } else { a })
 }
 
 /// Slabs (Kay & Kajiya 1986).

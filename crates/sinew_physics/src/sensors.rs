@@ -2,7 +2,7 @@
 
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::contact::{Contact, Effect};
+use crate::contact::{Contact, Effect, pairs_of};
 use crate::events::Events;
 use crate::meetings::{Meetings, Told, lie_still, touch_of};
 
@@ -16,7 +16,7 @@ pub(crate) fn sensors(
 ) {
     let sensed = &mut meetings.sensed;
     sensed.start(contacts.len());
-    for pair in contacts.chunk_by_mut(|p, q| p.key.is_same_pair(&q.key)) {
+    for pair in pairs_of(contacts) {
         let was = pair.iter().any(|contact| contact.sensed);
         let senses = pair[0].effect == Effect::Sense;
         let is =

@@ -11,6 +11,7 @@ use crate::events::Events;
 use crate::field::FieldDef;
 use crate::force::BodyForces;
 use crate::joint::Joint;
+use crate::library::{DataKind, LoadError, ShapeLibrary};
 use crate::material::{Combine, CombineRules, Material};
 use crate::meetings::Meetings;
 use crate::particles::{AttachmentTarget, ParticleGroup};
@@ -56,21 +57,22 @@ impl World {
     /// since are dropped.
     ///
     /// # Errors
-    /// If the bytes are not a snapshot of this version, a field, a shape or the world names a function that is not registered,
-    /// or an object is not there whose kind was not registered; the world is then as it was.
+    /// If the bytes are not a snapshot of this version, a shape with data is named that the world was never given, a field, a
+    /// shape or the world names a function that is not registered, or an object is not there whose kind was not registered;
+    /// the world is then as it was.
     ///
     /// # Panics
     /// If an object does not take the state that it wrote itself.
-    pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
+    pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), LoadError> {
         if r.raw(MAGIC.len())? != MAGIC {
-            return Err(ReadError { at: 0, what: "is not a world snapshot of this version" });
+            return Err(ReadError { at: 0, what: "is not a world snapshot of this version" }.into());
         }
         let def = load_def(r)?;
         let (steps, pending, sleepers) = (r.u64()?, r.u64()?, r.u32()?);
         if steps > MOST_STEPS {
-            return Err(r.error("more steps than any world takes"));
+            return Err(r.error("more steps than any world takes").into());
         }
-        let mut bodies = Arena::load(r, load_body)?;
+        let mut bodies = Arena::load(r, |r| load_body(r, &self.library))?;
         self.check_rules(r, &bodies)?;
         let joints = Arena::load(r, |r| {
             let (a, b) = (body_index(r, &bodies)?, body_index(r, &bodies)?);
@@ -82,22 +84,22 @@ impl World {
             contacts.push(load_contact(r, &bodies)?);
         }
         if !contacts.is_sorted_by(|p: &Contact, q| p.key < q.key) {
-            return Err(r.error("contacts are out of order"));
+            return Err(r.error("contacts are out of order").into());
         }
         let groups = Arena::load(r, |r| load_group(r, &bodies))?;
-        let fields = Arena::load(r, |r| FieldDef::load(r, &self.functions))?;
+        let fields = Arena::load(r, |r| FieldDef::load(r, &self.functions, &self.library))?;
         let count = r.count(8)?;
         let mut disabled = Vec::with_capacity(count);
         for _ in 0..count {
             disabled.push((body_index(r, &bodies)?, body_index(r, &bodies)?));
         }
         if !disabled.is_sorted() {
-            return Err(r.error("disabled pairs are out of order"));
+            return Err(r.error("disabled pairs are out of order").into());
         }
         let meetings = Meetings::load(r, &mut bodies)?;
         let pair_function = load_option(r, Reader::u32)?;
         if !pair_function.is_none_or(|number| self.parted.functions.registered.has(number)) {
-            return Err(r.error("names a pair function that is not registered"));
+            return Err(r.error("names a pair function that is not registered").into());
         }
         self.objects.load(r)?;
         self.def = def;
@@ -237,12 +239,12 @@ fn save_body(w: &mut Writer, body: &Body) {
     w.u64(body.user_data);
 }
 
-fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
+fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadError> {
     let kind = match r.u8()? {
         0 => BodyKind::Static,
         1 => BodyKind::Kinematic,
         2 => BodyKind::Dynamic,
-        _ => return Err(r.error("unknown kind of body")),
+        _ => return Err(r.error("unknown kind of body").into()),
     };
     let (world_from_principal, previous) = (r.transform()?, r.transform()?);
     let velocity = Velocity { linear: r.vec3()?, angular: r.vec3()? };
@@ -252,15 +254,15 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
     let (mass, inertia) = (r.f32()?, r.vec3()?);
     let solid = mass > 0.0 && inertia.x > 0.0 && inertia.y > 0.0 && inertia.z > 0.0;
     if kind == BodyKind::Dynamic && !solid {
-        return Err(r.error("a dynamic body has no mass"));
+        return Err(r.error("a dynamic body has no mass").into());
     }
     let (linear_damping, angular_damping, gravity_scale) = (r.f32()?, r.f32()?, r.f32()?);
     let surfaces = load_list(r, 29, load_surface)?;
-    let shapes = load_list(r, 33, |r| load_shape(r, surfaces.len()))?;
+    let shapes = load_list(r, 33, |r| load_shape(r, library, surfaces.len()))?;
     let rest = match r.u8()? {
         0 => Rest::Awake { calm: r.f32()? },
         1 => Rest::Asleep { island: r.u32()? },
-        _ => return Err(r.error("a body neither awake nor asleep")),
+        _ => return Err(r.error("a body neither awake nor asleep").into()),
     };
     let sleeping = load_sleeping(r)?;
     let (place, quarantined, user_data) = (r.transform()?, r.bool()?, r.u64()?);
@@ -269,7 +271,7 @@ fn load_body(r: &mut Reader<'_>) -> Result<Body, ReadError> {
             && [velocity.linear, velocity.angular, force, torque, inertia].into_iter().all(Vec3::is_finite)
             && [mass, linear_damping, angular_damping, gravity_scale].into_iter().all(f32::is_finite);
     if !finite {
-        return Err(r.error("a body whose state is not finite"));
+        return Err(r.error("a body whose state is not finite").into());
     }
     Ok(Body {
         kind,
@@ -302,14 +304,17 @@ fn save_shape(w: &mut Writer, s: &BodyShape) {
     w.u32(s.surface);
 }
 
-fn load_shape(r: &mut Reader<'_>, surfaces: usize) -> Result<BodyShape, ReadError> {
-    let shape =
-        BodyShape { shape: load_geometry(r)?, principal_from_shape: r.transform()?, surface: r.u32()? };
+fn load_shape(r: &mut Reader<'_>, library: &ShapeLibrary, surfaces: usize) -> Result<BodyShape, LoadError> {
+    let shape = BodyShape {
+        shape: load_geometry(r, library)?,
+        principal_from_shape: r.transform()?,
+        surface: r.u32()?,
+    };
     if !shape.principal_from_shape.is_finite() {
-        return Err(r.error("a shape's pose is not finite"));
+        return Err(r.error("a shape's pose is not finite").into());
     }
     if shape.surface as usize >= surfaces {
-        return Err(r.error("a shape names a surface that is not there"));
+        return Err(r.error("a shape names a surface that is not there").into());
     }
     Ok(shape)
 }
@@ -334,11 +339,11 @@ fn load_surface(r: &mut Reader<'_>) -> Result<Surface, ReadError> {
 }
 
 /// Of items that take at least `least` bytes each.
-fn load_list<'a, T>(
+fn load_list<'a, T, E: From<ReadError>>(
     r: &mut Reader<'a>,
     least: usize,
-    mut item: impl FnMut(&mut Reader<'a>) -> Result<T, ReadError>,
-) -> Result<Vec<T>, ReadError> {
+    mut item: impl FnMut(&mut Reader<'a>) -> Result<T, E>,
+) -> Result<Vec<T>, E> {
     let count = r.count(least)?;
     let mut list = Vec::with_capacity(count);
     for _ in 0..count {
@@ -348,6 +353,9 @@ fn load_list<'a, T>(
 }
 
 pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {
+    if shape.save_name(w) {
+        return;
+    }
     match *shape {
         Shape::Box { half_extents } => {
             w.u8(0);
@@ -363,16 +371,40 @@ pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {
             w.f32(radius);
         }
         Shape::HalfSpace => w.u8(3),
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            w.u8(4);
+            w.f32(half_height);
+            w.f32(radius_bottom);
+            w.f32(radius_top);
+        }
+        Shape::Cylinder { half_height, radius } => {
+            w.u8(5);
+            w.f32(half_height);
+            w.f32(radius);
+        }
+        Shape::Cone { half_height, radius } => {
+            w.u8(6);
+            w.f32(half_height);
+            w.f32(radius);
+        }
+        Shape::Mesh(_) | Shape::HeightField(_) => unreachable!("shapes with data are saved by name"),
     }
 }
 
-pub(crate) fn load_geometry(r: &mut Reader<'_>) -> Result<Shape, ReadError> {
-    let shape = match r.u8()? {
+pub(crate) fn load_geometry(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Shape, LoadError> {
+    let tag = r.u8()?;
+    if let Some(kind) = DataKind::of_tag(tag) {
+        return library.find(r, kind);
+    }
+    let shape = match tag {
         0 => Shape::Box { half_extents: r.vec3()? },
         1 => Shape::Sphere { radius: r.f32()? },
         2 => Shape::Capsule { half_height: r.f32()?, radius: r.f32()? },
         3 => Shape::HalfSpace,
-        _ => return Err(r.error("unknown shape")),
+        4 => Shape::TaperedCapsule { half_height: r.f32()?, radius_bottom: r.f32()?, radius_top: r.f32()? },
+        5 => Shape::Cylinder { half_height: r.f32()?, radius: r.f32()? },
+        6 => Shape::Cone { half_height: r.f32()?, radius: r.f32()? },
+        _ => return Err(r.error("unknown shape").into()),
     };
     shape.check().map_err(|what| r.error(what))?;
     Ok(shape)
@@ -480,7 +512,8 @@ pub(crate) fn load_filter(r: &mut Reader<'_>) -> Result<Filter, ReadError> {
 }
 
 fn save_contact(w: &mut Writer, contact: &Contact) {
-    for x in [contact.key.a, contact.key.b, contact.key.shape_a, contact.key.shape_b] {
+    let ContactKey { a, b, shape_a, shape_b, part } = contact.key;
+    for x in [a, b, shape_a, shape_b, part] {
         w.u32(x);
     }
     w.u8(contact.effect as u8);
@@ -506,7 +539,7 @@ fn save_contact(w: &mut Writer, contact: &Contact) {
 
 fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, ReadError> {
     let (a, b) = (body_index(r, bodies)?, body_index(r, bodies)?);
-    let key = ContactKey { a, b, shape_a: r.u32()?, shape_b: r.u32()? };
+    let key = ContactKey { a, b, shape_a: r.u32()?, shape_b: r.u32()?, part: r.u32()? };
     let shapes = |body: u32| bodies.at(body).shapes.len() as u32;
     if key.shape_a >= shapes(a) || key.shape_b >= shapes(b) {
         return Err(r.error("a contact names a shape that is not there"));

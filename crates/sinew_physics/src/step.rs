@@ -25,14 +25,14 @@ pub(crate) struct StepContext<'a> {
 pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
     let World { def, bodies, joints, contacts, groups, objects, .. } = world;
-    let World { events, broad, activity, islands, parted, sleepers, meetings, .. } = world;
+    let World { events, broad, parts, activity, islands, parted, sleepers, meetings, .. } = world;
     let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
 
     stage(Stage::Pairs, &mut || {
         activity.wake_struck(bodies, groups, &broad.proxies, def);
         broad.update(bodies, parted.filter(joints), &meetings.stirred, contacts, activity, context.dt);
     });
-    stage(Stage::Collide, &mut || touch::collide(bodies, contacts, context));
+    stage(Stage::Collide, &mut || touch::collide(bodies, contacts, parts, context));
     stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, meetings, events));
     let (proxies, modifiers) = (&broad.proxies, &meetings.modifiers);
     let view = View { bodies, activity, proxies, joints, contacts, modifiers, def, fields, h: context.h };

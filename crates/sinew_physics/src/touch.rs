@@ -3,8 +3,9 @@
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::collide::{Manifold, collide as narrow_phase};
-use crate::contact::{Contact, Effect, slop};
+use crate::collide::parts::Parts;
+use crate::collide::{Manifold, Motion, collide as narrow_phase};
+use crate::contact::{Contact, ContactKey, Effect, pairs_of, slop};
 use crate::contact_rule::ContactRule;
 use crate::def::BodyKind;
 use crate::events::Events;
@@ -18,22 +19,23 @@ use crate::step::StepContext;
 use sinew_math::{max, min};
 
 /// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
-pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &StepContext<'_>) {
+pub(crate) fn collide(
+    bodies: &Arena<Body>,
+    contacts: &mut Vec<Contact>,
+    parts: &mut Parts,
+    context: &StepContext<'_>,
+) {
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
         if !a.can_touch() && !b.can_touch() {
-            contact.approach = 0.0;
             return;
         }
         let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
         let (shape_a, shape_b) = (&a.shapes[sa].shape, &b.shapes[sb].shape);
-        let extent = min(shape_a.smallest_extent(), shape_b.smallest_extent());
-        // Beside their approach: two that move together may not do so any more once one of them is hit.
-        let (va, vb) = (a.velocity.linear, b.velocity.linear);
-        let approach = max((va - vb).length(), max(va.length(), vb.length()))
-            + a.velocity.angular.length() * a.reach()
-            + b.velocity.angular.length() * b.reach();
-        let margin = max(4.0 * slop(extent), approach * context.dt);
+        if shape_a.surface().is_some() || shape_b.surface().is_some() {
+            return;
+        }
+        let margin = margin(a, b, contact.key, context.dt);
         let mut manifold = Manifold::default();
         narrow_phase(
             shape_a,
@@ -45,9 +47,46 @@ pub(crate) fn collide(bodies: &Arena<Body>, contacts: &mut [Contact], context: &
         );
         contact.memory = contact.memory.matched(&contact.manifold, &manifold);
         contact.manifold = manifold;
-        contact.approach = approach_of(a, b, &manifold);
-        rule(contact, a, b);
     });
+    parts.update(bodies, contacts, context, |contact| surface_motion(bodies, contact, context.dt));
+    for_each_mut(context.runner, contacts, |contact| {
+        let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
+        contact.approach = 0.0;
+        if a.can_touch() || b.can_touch() {
+            contact.approach = approach_of(a, b, &contact.manifold);
+            rule(contact, a, b);
+        }
+    });
+}
+
+/// How far apart points of two shapes are looked for, metres.
+fn margin(a: &Body, b: &Body, key: ContactKey, dt: f32) -> f32 {
+    let (shape_a, shape_b) = (&a.shapes[key.shape_a as usize].shape, &b.shapes[key.shape_b as usize].shape);
+    let extent = min(shape_a.smallest_extent(), shape_b.smallest_extent());
+    // Beside their approach: two that move together may not do so any more once one of them is hit.
+    let (va, vb) = (a.velocity.linear, b.velocity.linear);
+    let approach = max((va - vb).length(), max(va.length(), vb.length()))
+        + a.velocity.angular.length() * a.reach()
+        + b.velocity.angular.length() * b.reach();
+    max(4.0 * slop(extent), approach * dt)
+}
+
+/// How a pair moves of which one is a surface, the other toward the surface; `None` of other pairs, and of those at rest.
+fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Motion> {
+    let key = contact.key;
+    let (a, b) = (bodies.at(key.a), bodies.at(key.b));
+    if !a.can_touch() && !b.can_touch() {
+        return None;
+    }
+    let is_surface = |body: &Body, shape: u32| body.shapes[shape as usize].shape.surface().is_some();
+    let center = |body: &Body, shape: u32| body.world_from_shape(shape as usize).translation;
+    let (mover, ground, at) = match (is_surface(a, key.shape_a), is_surface(b, key.shape_b)) {
+        (true, _) => (b, a, center(b, key.shape_b)),
+        (_, true) => (a, b, center(a, key.shape_a)),
+        _ => return None,
+    };
+    let speed = |body: &Body| body.velocity.linear + body.velocity.angular.cross(at - body.center());
+    Some(Motion { velocity: speed(mover) - speed(ground), dt, margin: margin(a, b, key, dt) })
 }
 
 /// How fast the points come in, m/s; the fastest counts.
@@ -96,7 +135,7 @@ pub(crate) fn touch(
 ) {
     let touching = &mut meetings.touching;
     touching.start(contacts.len());
-    for pair in contacts.chunk_by_mut(|p, q| p.key.is_same_pair(&q.key)) {
+    for pair in pairs_of(contacts) {
         agree(pair);
         note(bodies, pair, touching);
         if pair.iter().any(Contact::pushes) {

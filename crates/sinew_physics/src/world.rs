@@ -3,6 +3,7 @@
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::{Body, Velocity};
+use crate::collide::parts::Parts;
 use crate::contact::Contact;
 use crate::def::{BodyDef, BodyKind, WorldDef};
 use crate::events::Events;
@@ -10,6 +11,7 @@ use crate::field::{FieldDef, Functions};
 use crate::id::{BodyId, GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
+use crate::library::ShapeLibrary;
 use crate::meetings::Meetings;
 use crate::object::Objects;
 use crate::pairs::BroadPhase;
@@ -36,11 +38,13 @@ pub struct World {
     pub(crate) groups: Arena<ParticleGroup>,
     pub(crate) fields: Arena<FieldDef>,
     pub(crate) functions: Functions,
+    pub(crate) library: ShapeLibrary,
     pub(crate) objects: Objects,
     pub(crate) parted: PartedPairs,
     pub(crate) meetings: Meetings,
     pub(crate) events: Events,
     pub(crate) broad: BroadPhase,
+    pub(crate) parts: Parts,
     pub(crate) islands: Islands,
     /// Number of islands that fell asleep so far.
     pub(crate) sleepers: u32,
@@ -68,11 +72,13 @@ impl World {
             groups: Arena::default(),
             fields: Arena::default(),
             functions: Functions::default(),
+            library: ShapeLibrary::default(),
             objects: Objects::default(),
             parted: PartedPairs::default(),
             meetings: Meetings::default(),
             events: Events::default(),
             broad: BroadPhase::default(),
+            parts: Parts::default(),
             islands: Islands::default(),
             sleepers: 0,
             steps: 0,
@@ -94,6 +100,9 @@ impl World {
     pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
         def.shapes.iter().for_each(|shape| self.expect_modifier(shape.rule));
         let (index, generation) = self.bodies.insert(Body::new(def));
+        for shape in &def.shapes {
+            self.library.keep(&shape.shape);
+        }
         self.activity.add(index, self.bodies.at(index));
         self.broad.proxies.add(index, self.bodies.at(index));
         let id = BodyId { index, generation };

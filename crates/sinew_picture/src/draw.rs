@@ -24,16 +24,45 @@ pub enum Solid {
         /// Metres.
         radius: f32,
     },
+    /// The hull of two balls on the y axis.
+    TaperedCapsule {
+        /// Half the distance of the balls' centres, metres.
+        half_height: f32,
+        /// Of the ball at −`half_height`, metres.
+        radius_bottom: f32,
+        /// Of the ball at `half_height`, metres.
+        radius_top: f32,
+    },
+    /// Cylinder along y with flat ends.
+    Cylinder {
+        /// Half of its length, metres.
+        half_height: f32,
+        /// Metres.
+        radius: f32,
+    },
+    /// Cone along y, its apex above.
+    Cone {
+        /// Half of its height, metres.
+        half_height: f32,
+        /// Of the base, metres.
+        radius: f32,
+    },
 }
 
 impl Solid {
-    /// The solid of a collision shape; none of a half-space, which has no end: see [`floor`].
+    /// The solid of a collision shape; none of a half-space, which has no end: see [`floor`]; none of surfaces: see
+    /// [`surface`].
     pub fn of(shape: &Shape) -> Option<Self> {
         match *shape {
             Shape::Box { half_extents } => Some(Self::Box { half_extents }),
             Shape::Sphere { radius } => Some(Self::Sphere { radius }),
             Shape::Capsule { half_height, radius } => Some(Self::Capsule { half_height, radius }),
-            Shape::HalfSpace => None,
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                Some(Self::TaperedCapsule { half_height, radius_bottom, radius_top })
+            }
+            Shape::Cylinder { half_height, radius } => Some(Self::Cylinder { half_height, radius }),
+            Shape::Cone { half_height, radius } => Some(Self::Cone { half_height, radius }),
+            Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => None,
         }
     }
 }
@@ -47,8 +76,13 @@ const TO_POLE: usize = 6;
 pub fn solid(solid: Solid, world_from_solid: Transform, material: Material) -> Model {
     let mut model = match solid {
         Solid::Box { half_extents } => box_model(half_extents),
-        Solid::Sphere { radius } => round_model(0.0, radius),
-        Solid::Capsule { half_height, radius } => round_model(half_height, radius),
+        Solid::Sphere { radius } => round_model(0.0, radius, radius),
+        Solid::Capsule { half_height, radius } => round_model(half_height, radius, radius),
+        Solid::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            round_model(half_height, radius_bottom, radius_top)
+        }
+        Solid::Cylinder { half_height, radius } => frustum_model(half_height, radius, radius),
+        Solid::Cone { half_height, radius } => frustum_model(half_height, radius, 0.0),
     };
     for position in &mut model.positions {
         *position = world_from_solid.point(*position);
@@ -57,6 +91,21 @@ pub fn solid(solid: Solid, world_from_solid: Transform, material: Material) -> M
         *normal = world_from_solid.rotation * *normal;
     }
     Model { material, ..model }
+}
+
+/// The triangles of a mesh or height field, each flat; none of other shapes.
+pub fn surface(shape: &Shape, world_from_shape: Transform, material: Material) -> Model {
+    let positions: Vec<Vec3> = match shape {
+        Shape::Mesh(mesh) => mesh.corners_of_all().flatten().collect(),
+        Shape::HeightField(field) => field.triangles().flatten().collect(),
+        _ => Vec::new(),
+    };
+    Model {
+        indices: (0..positions.len() as u32).collect(),
+        positions: positions.into_iter().map(|p| world_from_shape.point(p)).collect(),
+        material,
+        ..Model::default()
+    }
 }
 
 /// A ball of eight fields, every second one darker, so that it is seen to turn.
@@ -110,6 +159,15 @@ pub fn wire(solid: Solid, world_from_solid: Transform, color: [f32; 3], depth: L
         Solid::Box { half_extents } => box_edges(half_extents, &mut segments),
         Solid::Sphere { radius } => capsule_edges(0.0, radius, &mut segments),
         Solid::Capsule { half_height, radius } => capsule_edges(half_height, radius, &mut segments),
+        Solid::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            tapered_edges(half_height, radius_bottom, radius_top, &mut segments);
+        }
+        Solid::Cylinder { half_height, radius } => {
+            frustum_edges([(-half_height, radius), (half_height, radius)], &mut segments);
+        }
+        Solid::Cone { half_height, radius } => {
+            frustum_edges([(-half_height, radius), (half_height, 0.0)], &mut segments);
+        }
     }
     let line = |[from, to]: [Vec3; 2]| Line {
         from: world_from_solid.point(from),
@@ -151,23 +209,64 @@ fn box_edges(half: Vec3, segments: &mut Vec<[Vec3; 2]>) {
     }
 }
 
-/// A capsule as rings from the lower to the upper pole; the equator is there twice, `half_height` below and above.
-fn round_model(half_height: f32, radius: f32) -> Model {
+/// A ring of a solid of revolution: its radius and height, and the latitude of the normal there.
+struct Ring {
+    radius: f32,
+    y: f32,
+    latitude: f32,
+}
+
+/// Capsules and balls as rings from the lower to the upper pole; the circles where the side begins and ends are there once
+/// for each ball.
+fn round_model(half_height: f32, bottom: f32, top: f32) -> Model {
+    let lean = side_latitude(half_height, bottom, top);
+    let pole = core::f32::consts::FRAC_PI_2;
+    let arc = |center: f32, radius: f32, from: f32, to: f32| {
+        (0..=TO_POLE).map(move |i| {
+            let latitude = from + (to - from) * (i as f32 / TO_POLE as f32);
+            let (sin, cos) = trig::sin_cos(latitude);
+            Ring { radius: radius * cos, y: center + radius * sin, latitude }
+        })
+    };
+    lathe(arc(-half_height, bottom, -pole, lean).chain(arc(half_height, top, lean, pole)))
+}
+
+/// Of the normals on the straight side of a tapered capsule.
+fn side_latitude(half_height: f32, bottom: f32, top: f32) -> f32 {
+    if half_height > 0.0 { trig::asin((bottom - top) / (2.0 * half_height)) } else { 0.0 }
+}
+
+/// Cylinders and cones: flat ends, and a side whose rings have normals of their own.
+fn frustum_model(half_height: f32, bottom: f32, top: f32) -> Model {
+    let pole = core::f32::consts::FRAC_PI_2;
+    let lean = trig::atan2(bottom - top, 2.0 * half_height);
+    let ring = |radius: f32, y: f32, latitude: f32| Ring { radius, y, latitude };
+    let (low, high) = (-half_height, half_height);
+    lathe(
+        [
+            ring(0.0, low, -pole),
+            ring(bottom, low, -pole),
+            ring(bottom, low, lean),
+            ring(top, high, lean),
+            ring(top, high, pole),
+            ring(0.0, high, pole),
+        ]
+        .into_iter(),
+    )
+}
+
+/// The surface through rings around y, from the lowest to the highest.
+fn lathe(rings: impl Iterator<Item = Ring>) -> Model {
     let mut model = Model::default();
-    let quarter = core::f32::consts::FRAC_PI_2 / TO_POLE as f32;
-    let lower = (0..=TO_POLE).map(|i| (i as f32 * quarter - core::f32::consts::FRAC_PI_2, -half_height));
-    let upper = (0..=TO_POLE).map(|i| (i as f32 * quarter, half_height));
-    for (latitude, shift) in lower.chain(upper) {
+    for Ring { radius, y, latitude } in rings {
         let (sin, cos) = trig::sin_cos(latitude);
         for i in 0..AROUND {
             let [x, z] = circle(i);
-            let normal = Vec3::new(x * cos, sin, z * cos);
-            model.positions.push(normal * radius + Vec3::Y * shift);
-            model.normals.push(normal);
+            model.positions.push(Vec3::new(x * radius, y, z * radius));
+            model.normals.push(Vec3::new(x * cos, sin, z * cos));
         }
     }
-    let rings = 2 * (TO_POLE + 1);
-    for ring in 0..rings - 1 {
+    for ring in 0..model.positions.len() / AROUND - 1 {
         for i in 0..AROUND {
             let next = (i + 1) % AROUND;
             let [a, b] = [ring * AROUND + i, ring * AROUND + next].map(|v| v as u32);
@@ -204,6 +303,37 @@ fn capsule_edges(half_height: f32, radius: f32, segments: &mut Vec<[Vec3; 2]>) {
     }
 }
 
+/// Rings of the given heights and radii, and four lines between them.
+fn frustum_edges(ends: [(f32, f32); 2], segments: &mut Vec<[Vec3; 2]>) {
+    let at = |(y, radius): (f32, f32), i: usize| {
+        let [x, z] = circle(i);
+        Vec3::new(x * radius, y, z * radius)
+    };
+    for end in ends.into_iter().filter(|(_, radius)| *radius > 0.0) {
+        segments.extend((0..AROUND).map(|i| [at(end, i), at(end, i + 1)]));
+    }
+    segments.extend((0..AROUND).step_by(AROUND / 4).map(|i| ends.map(|end| at(end, i))));
+}
+
+/// Its side, and the arcs of the balls beyond it in two planes.
+fn tapered_edges(half_height: f32, bottom: f32, top: f32, segments: &mut Vec<[Vec3; 2]>) {
+    let lean = side_latitude(half_height, bottom, top);
+    let at = |center: f32, radius: f32, latitude: f32| {
+        let (sin, cos) = trig::sin_cos(latitude);
+        (center + radius * sin, radius * cos)
+    };
+    frustum_edges([at(-half_height, bottom, lean), at(half_height, top, lean)], segments);
+    let pole = core::f32::consts::FRAC_PI_2;
+    for (center, radius, pole) in [(-half_height, bottom, -pole), (half_height, top, pole)] {
+        let step = |i: usize| at(center, radius, lean + (pole - lean) * (i as f32 / TO_POLE as f32));
+        for i in 0..TO_POLE {
+            for side in [Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z] {
+                segments.push([step(i), step(i + 1)].map(|(y, r)| side * r + Vec3::Y * y));
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -225,6 +355,13 @@ mod tests {
             (Solid::Box { half_extents }, 1.0, 1e-4),
             (Solid::Sphere { radius: 0.5 }, pi / 6.0, 0.02),
             (Solid::Capsule { half_height: 0.4, radius: 0.5 }, pi / 6.0 + pi * 0.2, 0.04),
+            (
+                Solid::TaperedCapsule { half_height: 0.4, radius_bottom: 0.5, radius_top: 0.5 },
+                pi / 6.0 + pi * 0.2,
+                0.04,
+            ),
+            (Solid::Cylinder { half_height: 0.5, radius: 0.5 }, pi * 0.25, 0.02),
+            (Solid::Cone { half_height: 0.5, radius: 0.5 }, pi / 12.0, 0.02),
         ] {
             let model = solid(shape, place, Material::default());
             assert!((volume(&model) - expected).abs() < tolerance, "{shape:?}: {}", volume(&model));

@@ -136,6 +136,7 @@ fn paint_body(world: &World, id: BodyId, number: usize, frame: &Frame, models: &
         models.push(match (&shape, Solid::of(&shape)) {
             (Shape::Sphere { radius }, _) => draw::ball(*radius, place, material),
             (_, Some(solid)) => draw::solid(solid, place, material),
+            (Shape::Mesh(_) | Shape::HeightField(_), _) => draw::surface(&shape, place, material),
             (_, None) => floor(&place, frame),
         });
         seen |= shape.bounding_radius() > smallest;

@@ -156,7 +156,19 @@ fn thinner(shape: &Shape, factor: f32) -> Shape {
             Shape::Capsule { half_height: half_height + (radius - thin), radius: thin }
         }
         Shape::Sphere { radius } => Shape::Sphere { radius: radius * factor },
-        Shape::HalfSpace => Shape::HalfSpace,
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            let [low, high] = [radius_bottom * factor, radius_top * factor];
+            // Both ends stay where they are.
+            let half_height = half_height + 0.5 * (radius_bottom - low + radius_top - high);
+            Shape::TaperedCapsule { half_height, radius_bottom: low, radius_top: high }
+        }
+        Shape::Cylinder { half_height, radius } => {
+            Shape::Cylinder { half_height: *half_height, radius: radius * factor }
+        }
+        Shape::Cone { half_height, radius } => {
+            Shape::Cone { half_height: *half_height, radius: radius * factor }
+        }
+        Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => shape.clone(),
     }
 }
 

@@ -38,7 +38,7 @@ impl Geom {
         }
         let kind = geom.get("type").map_or("sphere", Value::text);
         let filter = read_filter(geom)?;
-        if !matches!(kind, "plane" | "sphere" | "capsule" | "box") {
+        if !matches!(kind, "plane" | "sphere" | "capsule" | "cylinder" | "box") {
             let at = |value: Value<'_>| value.unsupported(format!("{} is not read", quoted(kind)));
             if filter.layers != 0 {
                 return Err(geom.get("type").map_or_else(|| malformed(geom.element, "no type"), at));
@@ -97,6 +97,7 @@ fn read_shape(geom: &Merged<'_, '_>, kind: &str, segment: Option<&Segment>) -> R
     let shape = match kind {
         "sphere" => Shape::Sphere { radius: number(0)? },
         "capsule" => Shape::Capsule { radius: number(0)?, half_height: along(1)? },
+        "cylinder" => Shape::Cylinder { radius: number(0)?, half_height: along(1)? },
         // The file's z is our y. Along a segment a box is square.
         _ if segment.is_some() => Shape::Box { half_extents: Vec3::new(number(0)?, along(2)?, number(0)?) },
         _ => Shape::Box { half_extents: Vec3::new(number(0)?, number(2)?, number(1)?) },

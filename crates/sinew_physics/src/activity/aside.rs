@@ -122,7 +122,7 @@ mod tests {
     fn key(random: &mut Random) -> ContactKey {
         let a = random.index(BODIES as usize - 1) as u32;
         let b = a + 1 + random.index((BODIES - 1 - a) as usize) as u32;
-        ContactKey { a, b, shape_a: random.index(3) as u32, shape_b: random.index(3) as u32 }
+        ContactKey { a, b, shape_a: random.index(3) as u32, shape_b: random.index(3) as u32, part: 0 }
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! Questions to the world about points and regions.
 
 use super::{Aabb, Capsule, Cuboid, Obb, Overlap, Penetration, PlacedBox, Sphere, SurfacePoint};
+use crate::convex;
 use crate::id::BodyId;
 use crate::proxies::{Owner, thick};
 use crate::shape::Shape;
+use crate::triangles::overlaps_box;
 use crate::world::World;
 use core::ops::ControlFlow;
 use sinew_math::{Transform, Vec3};
@@ -58,6 +60,21 @@ impl World {
     }
 }
 
+/// Whether a triangle of a surface and a region overlap.
+fn surface_meets(region: &PlacedBox, shape: &Shape, world_from_shape: &Transform) -> bool {
+    let reach = |axis: Vec3| region.half_width(world_from_shape.rotation * axis);
+    let half = Vec3::new(reach(Vec3::X), reach(Vec3::Y), reach(Vec3::Z));
+    let bounds = Aabb::reaching(world_from_shape.inverse_point(region.center), half);
+    let mut meets = false;
+    if let Some(surface) = shape.surface() {
+        surface.overlapping(&bounds, |triangle| {
+            let corners = triangle.corners.map(|corner| region.local_point(world_from_shape.point(corner)));
+            meets = meets || overlaps_box(region.half, &corners);
+        });
+    }
+    meets
+}
+
 /// Whether a placed shape and a region overlap.
 fn meets(region: &PlacedBox, shape: &Shape, world_from_shape: &Transform) -> bool {
     let Transform { translation: center, rotation } = *world_from_shape;
@@ -68,9 +85,13 @@ fn meets(region: &PlacedBox, shape: &Shape, world_from_shape: &Transform) -> boo
             let reach = rotation * Vec3::Y * half_height;
             region.overlaps(&Capsule { ends: [center - reach, center + reach], radius })
         }
+        Shape::TaperedCapsule { .. } | Shape::Cylinder { .. } | Shape::Cone { .. } => {
+            convex::meets_box(shape, world_from_shape, region)
+        }
         Shape::HalfSpace => {
             let normal = rotation * Vec3::Y;
             normal.dot(region.center - center) <= region.half_width(normal)
         }
+        Shape::Mesh(_) | Shape::HeightField(_) => surface_meets(region, shape, world_from_shape),
     }
 }

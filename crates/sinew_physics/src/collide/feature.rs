@@ -1,34 +1,34 @@
 //! Names of the corners, edges and faces of shapes, for the ids of contact points.
 
 /// A whole shape, or the only feature of its kind.
-pub(super) const WHOLE: u16 = 0;
+pub(crate) const WHOLE: u16 = 0;
 
 const VERTEX: u16 = 0x100;
 const EDGE: u16 = 0x200;
 const FACE: u16 = 0x300;
 
 /// Corner of a box: bit k is set on the positive side of axis k.
-pub(super) fn vertex(index: usize) -> u16 {
+pub(crate) fn vertex(index: usize) -> u16 {
     VERTEX | index as u16
 }
 
 /// Edge of a box along `axis`, through corner `index`.
-pub(super) fn edge(axis: usize, index: usize) -> u16 {
+pub(crate) fn edge(axis: usize, index: usize) -> u16 {
     let low = index & !(1 << axis);
     EDGE | (axis << 3 | low) as u16
 }
 
 /// Face of a box on the positive or negative side of `axis`.
-pub(super) fn face(axis: usize, sign: f32) -> u16 {
+pub(crate) fn face(axis: usize, sign: f32) -> u16 {
     FACE | (axis << 1 | usize::from(sign > 0.0)) as u16
 }
 
 /// End of a capsule, 0 or 1.
-pub(super) fn end(index: usize) -> u16 {
+pub(crate) fn end(index: usize) -> u16 {
     VERTEX | index as u16
 }
 
 /// Id of a contact point from the features of A and B.
-pub(super) fn pair(a: u16, b: u16) -> u32 {
+pub(crate) fn pair(a: u16, b: u16) -> u32 {
     u32::from(a) | u32::from(b) << 16
 }

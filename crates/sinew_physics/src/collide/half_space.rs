@@ -1,9 +1,12 @@
-//! Half-space against box, capsule and sphere: heights over the plane.
+//! Half-space against everything: heights over the plane.
 
-use super::Manifold;
 use super::feature::{self, WHOLE, end, pair};
 use super::placed::{Ball, Pill, PlacedBox, Plane};
-use sinew_math::Vec3;
+use super::reduce::push_best;
+use super::{Manifold, ManifoldPoint};
+use crate::convex::feature::MOST_CORNERS;
+use crate::convex::support::{Posed, Support};
+use sinew_math::{Vec3, min};
 
 /// The four corners of the face that looks at the plane: the deepest corner is always one of them.
 pub(super) fn against_box(a: &Plane, b: &PlacedBox, margin: f32, out: &mut Manifold) {
@@ -32,6 +35,22 @@ pub(super) fn against_capsule(a: &Plane, b: &Pill, margin: f32, out: &mut Manifo
 pub(super) fn against_sphere(a: &Plane, b: &Ball, margin: f32, out: &mut Manifold) {
     out.normal = a.normal;
     push(a, b.center, b.radius, margin, WHOLE, out);
+}
+
+/// What looks at the plane, the deepest four points of it.
+pub(super) fn against_core<S: Support>(a: &Plane, b: &Posed<'_, S>, margin: f32, out: &mut Manifold) {
+    let feature = b.feature(-a.normal);
+    let (radius, mut points, mut count) = (b.solid.rounding(), [ManifoldPoint::default(); MOST_CORNERS], 0);
+    for corner in feature.corners() {
+        let separation = a.height(corner.point) - radius;
+        if separation <= margin {
+            let position = corner.point - a.normal * (radius + 0.5 * separation);
+            points[count] = ManifoldPoint { position, separation, feature: pair(WHOLE, corner.name) };
+            count += 1;
+        }
+    }
+    out.normal = a.normal;
+    push_best(&points[..count], min(0.0005, 0.01 * b.solid.thinnest()), out);
 }
 
 fn push(a: &Plane, center: Vec3, radius: f32, margin: f32, feature: u16, out: &mut Manifold) {

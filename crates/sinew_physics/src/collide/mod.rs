@@ -10,14 +10,23 @@ mod box_sphere;
 mod capsule_capsule;
 mod capsule_sphere;
 mod clip;
-mod feature;
+mod clip_features;
+pub(crate) mod feature;
+pub(crate) mod features;
 mod half_space;
-mod placed;
+pub(crate) mod parts;
+pub(crate) mod placed;
 mod reduce;
+mod round_sphere;
+mod surface;
 
+use crate::convex::support::{Core, Posed};
 use crate::shape::Shape;
 use placed::{Ball, Pill, PlacedBox, Plane};
 use sinew_math::{Transform, Vec3};
+pub(crate) use surface::{
+    Half, MAX_PARTS, Motion, Patch, Scratch, collide_surface, is_on_face, name_as_face,
+};
 
 /// At most this many points describe the contact of two shapes.
 pub const MAX_POINTS: usize = 4;
@@ -85,7 +94,7 @@ impl Manifold {
 
 /// Fills `out` with the contact of two placed shapes: the normal points from `a` to `b`, every point has a
 /// separation of at most `margin` (metres, ≥ 0). No points if the shapes are further apart than that, if both are
-/// half-spaces, or if a number is not finite. What `out` held before does not matter.
+/// half-spaces, one is a mesh or height field (see [`collide_all`]), or if a number is not finite. What `out` held before does not matter.
 ///
 /// The order of the shapes does not matter but for rounding: the other one gives the opposite normal, the same
 /// points, and features with their halves exchanged.
@@ -109,13 +118,60 @@ pub fn collide(
     }
 }
 
-/// Order of the shapes in a pair: the file names' order.
+/// Calls `visit` with the contacts of two placed shapes, as [`collide`] gives them: of a mesh or height field and a convex
+/// shape there may be several, each with a normal of its own. Two surfaces, and a surface and a half-space, never meet.
+pub fn collide_all(
+    a: &Shape,
+    world_from_a: &Transform,
+    b: &Shape,
+    world_from_b: &Transform,
+    margin: f32,
+    visit: impl FnMut(&Manifold),
+) {
+    if a.surface().is_none() && b.surface().is_none() {
+        let mut manifold = Manifold::default();
+        collide(a, world_from_a, b, world_from_b, margin, &mut manifold);
+        let found = (manifold.count > 0).then_some(manifold);
+        found.iter().for_each(visit);
+        return;
+    }
+    let mut patch = Patch::default();
+    let still = Motion { margin, ..Motion::default() };
+    collide_pair((a, world_from_a), (b, world_from_b), &still, &mut Scratch::default(), &mut patch);
+    patch.manifolds().iter().for_each(visit);
+}
+
+/// The contacts of two placed shapes of which one is a surface: normals point from `a` to `b`.
+pub(crate) fn collide_pair(
+    (a, world_from_a): (&Shape, &Transform),
+    (b, world_from_b): (&Shape, &Transform),
+    motion: &Motion,
+    scratch: &mut Scratch,
+    out: &mut Patch,
+) {
+    match (a.surface(), b.surface()) {
+        (Some(surface), None) => {
+            collide_surface(&surface, world_from_a, b, world_from_b, motion, scratch, out);
+        }
+        (None, Some(surface)) => {
+            collide_surface(&surface, world_from_b, a, world_from_a, motion, scratch, out);
+            out.flip();
+        }
+        _ => out.clear(),
+    }
+}
+
+/// Order of the shapes in a pair. Those of the pairs with files of their own are in the order of the files' names.
 fn rank(shape: &Shape) -> u32 {
     match shape {
         Shape::HalfSpace => 0,
         Shape::Box { .. } => 1,
         Shape::Capsule { .. } => 2,
-        Shape::Sphere { .. } => 3,
+        Shape::Cone { .. } => 3,
+        Shape::Cylinder { .. } => 4,
+        Shape::TaperedCapsule { .. } => 5,
+        Shape::Sphere { .. } => 6,
+        Shape::Mesh(_) | Shape::HeightField(_) => 7,
     }
 }
 
@@ -161,8 +217,21 @@ fn collide_ranked(a: &Shape, wa: &Transform, b: &Shape, wb: &Transform, margin: 
             let pill = Pill::new(0.0, radius, &wa);
             capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, out);
         }
+        (round, &Shape::Sphere { radius }) => {
+            round_sphere::collide(round, &wa, &Ball::new(radius, &wb), margin, out);
+        }
+        (Shape::HalfSpace, other) => {
+            if let Some(core) = Core::of(other) {
+                half_space::against_core(&Plane::new(&wa), &Posed::new(&core, &wb, Vec3::ZERO), margin, out);
+            }
+        }
         // The other half of the pairs is brought into this order by `collide`; two half-spaces never meet.
-        _ => {}
+        (a, b) => {
+            if let (Some(a), Some(b)) = (Core::of(a), Core::of(b)) {
+                let (a, b) = (Posed::new(&a, &wa, Vec3::ZERO), Posed::new(&b, &wb, Vec3::ZERO));
+                features::collide(&a, &b, margin, out);
+            }
+        }
     }
     out.finish(origin);
 }

@@ -1,11 +1,11 @@
 //! Shapes placed in the frame in which a pair is examined, and the distances that the pairs share.
 
-pub(super) use crate::boxes::placed::{PlacedBox, largest_axis, sign};
-pub(super) use crate::boxes::segment::Segment;
+pub(crate) use crate::boxes::placed::{PlacedBox, largest_axis, sign};
+pub(crate) use crate::boxes::segment::Segment;
 use sinew_math::{Transform, Vec3};
 
 /// Plane with solid matter below it.
-pub(super) struct Plane {
+pub(crate) struct Plane {
     /// Unit, out of the matter.
     pub normal: Vec3,
     /// Of the plane along the normal.
@@ -25,7 +25,7 @@ impl Plane {
 }
 
 /// Ball.
-pub(super) struct Ball {
+pub(crate) struct Ball {
     pub center: Vec3,
     pub radius: f32,
 }
@@ -37,7 +37,7 @@ impl Ball {
 }
 
 /// Capsule: a core segment and a radius.
-pub(super) struct Pill {
+pub(crate) struct Pill {
     pub core: Segment,
     /// Unit direction of the core, also where the core is a point.
     pub axis: Vec3,
@@ -55,7 +55,7 @@ impl Pill {
 
 /// Unit direction of the offset between two cores whose radii add up to `radii`, or `fallback` if the cores touch:
 /// then the offset is rounding.
-pub(super) fn direction_or(offset: Vec3, radii: f32, fallback: Vec3) -> Vec3 {
+pub(crate) fn direction_or(offset: Vec3, radii: f32, fallback: Vec3) -> Vec3 {
     let length = offset.length();
     if length > 1e-3 * radii { offset / length } else { fallback }
 }

@@ -1,7 +1,10 @@
 //! What a shape exposes to a stream: panels of its surface, each with an area and where it lies.
 
+use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
-use sinew_math::{Transform, Vec3, normalize_or};
+use core::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
+use sinew_math::trig::{acos, asin, sin};
+use sinew_math::{Transform, Vec3, clamp, max, normalize_or};
 
 /// Nodes of the two-point Gauss rule on −1..1.
 const GAUSS: [f32; 2] = [-0.577_350_26, 0.577_350_26];
@@ -20,7 +23,9 @@ pub(super) struct Panel {
 impl Shape {
     /// Calls `visit` with panels that together have the shape's projected area in every direction: the faces of a box,
     /// each at its 2×2 Gauss points, so that spin is braked as well; a ball's disk; a capsule's disk and the strip of its
-    /// cylinder that faces `stream` (m/s, world). A half-space has none.
+    /// cylinder that faces `stream` (m/s, world); likewise of a tapered one; the ends of cylinder and cone, and the part of
+    /// their side that faces the stream. Half-spaces, meshes
+    /// and height fields have none.
     pub(super) fn exposed(&self, at: &Transform, stream: Vec3, mut visit: impl FnMut(Panel)) {
         match *self {
             Self::Box { half_extents } => box_panels(half_extents, at, &mut visit),
@@ -37,13 +42,92 @@ impl Shape {
                     });
                 }
             }
-            Self::HalfSpace => {}
+            Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                tapered_panels(&Tapered::new(half_height, radius_bottom, radius_top), at, stream, &mut visit);
+            }
+            Self::Cylinder { half_height, radius } => {
+                frustum_panels(&Frustum::cylinder(half_height, radius), at, stream, &mut visit);
+            }
+            Self::Cone { half_height, radius } => {
+                frustum_panels(&Frustum::cone(half_height, radius), at, stream, &mut visit);
+            }
+            Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_) => {}
         }
     }
 }
 
+/// The outline seen along the stream is that of two disks and their common tangents: a sector of each disk, and between them
+/// two right trapezoids.
+fn tapered_panels(tapered: &Tapered, at: &Transform, stream: Vec3, visit: &mut impl FnMut(Panel)) {
+    let axis = at.rotation * Vec3::Y;
+    let along = normalize_or(stream, Vec3::ZERO);
+    let sine = along.cross(axis).length();
+    let [(low, bottom), (high, top)] = tapered.balls().map(|(center, radius)| (at.point(center), radius));
+    let (apart, differ) = (2.0 * tapered.half_height * sine, bottom - top);
+    if apart <= differ.abs() {
+        let (center, radius) = if bottom > top { (low, bottom) } else { (high, top) };
+        visit(disk(center, radius));
+        return;
+    }
+    let lean = asin(clamp(differ / apart, -1.0, 1.0));
+    for (point, radius, half_angle) in [(low, bottom, FRAC_PI_2 + lean), (high, top, FRAC_PI_2 - lean)] {
+        visit(Panel { point, area: radius * radius * half_angle, normal: None });
+    }
+    let tangent = max(apart * apart - differ * differ, 0.0).sqrt();
+    let across = normalize_or(axis * along.dot(axis) - along, Vec3::ZERO);
+    for node in GAUSS {
+        visit(Panel {
+            point: at.translation + axis * (node * tapered.half_height),
+            area: 0.5 * (bottom + top) * tangent / sine,
+            normal: Some(across),
+        });
+    }
+}
+
+/// The ends, each at four points that integrate squares exactly; and the vector area of that part of the side whose normals
+/// look against the stream.
+fn frustum_panels(frustum: &Frustum, at: &Transform, stream: Vec3, visit: &mut impl FnMut(Panel)) {
+    let (up, side_x, side_z) = (at.rotation * Vec3::Y, at.rotation * Vec3::X, at.rotation * Vec3::Z);
+    for (radius, end) in [(frustum.bottom, -1.0), (frustum.top, 1.0)] {
+        let center = at.translation + up * (end * frustum.half_height);
+        for way in [side_x, -side_x, side_z, -side_z] {
+            let point = center + way * (radius * FRAC_1_SQRT_2);
+            visit(Panel { point, area: 0.25 * PI * radius * radius, normal: Some(up * end) });
+        }
+    }
+    let side = frustum.side_normal();
+    let against = -normalize_or(stream, Vec3::ZERO);
+    let along_axis = against.dot(up);
+    let flat = against - up * along_axis;
+    let facing = flat.length();
+    let out = normalize_or(flat, side_x);
+    // The normal at the angle φ from `out` looks against the stream where `cos φ > −(tan of the slope) × (along / across)`.
+    let half_angle = if facing > 1e-6 {
+        acos(clamp(-(side.y * along_axis) / (side.x * facing), -1.0, 1.0))
+    } else if side.y * along_axis > 0.0 {
+        PI
+    } else {
+        0.0
+    };
+    let vector_area = out * (2.0 * side.x * sin(half_angle)) + up * (2.0 * side.y * half_angle);
+    let length = vector_area.length();
+    if length <= 0.0 {
+        return;
+    }
+    // A ring's area per radian is its radius by the slant.
+    let slant = 2.0 * frustum.half_height / side.x;
+    for node in GAUSS {
+        let y = node * frustum.half_height;
+        visit(Panel {
+            point: at.translation + up * y,
+            area: 0.5 * slant * frustum.radius_at(y) * length,
+            normal: Some(vector_area / length),
+        });
+    }
+}
+
 fn disk(point: Vec3, radius: f32) -> Panel {
-    Panel { point, area: core::f32::consts::PI * radius * radius, normal: None }
+    Panel { point, area: PI * radius * radius, normal: None }
 }
 
 fn box_panels(half: Vec3, at: &Transform, visit: &mut impl FnMut(Panel)) {

@@ -17,6 +17,7 @@
 //!
 //! A world without fields pays nothing for them.
 
+mod below;
 mod buoyancy;
 mod custom;
 mod def;

@@ -76,6 +76,14 @@ impl Region {
         }
     }
 
+    /// What it is the inside of.
+    pub(crate) fn shape(&self) -> Option<&Shape> {
+        match self {
+            Self::Everywhere => None,
+            Self::Inside { shape, .. } => Some(shape),
+        }
+    }
+
     pub(super) fn check(&self) -> Result<(), &'static str> {
         match self {
             Self::Everywhere => Ok(()),

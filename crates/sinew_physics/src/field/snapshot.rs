@@ -4,6 +4,7 @@ use super::{
     Buoyancy, Drag, Fade, FieldDef, FieldKind, Functions, Gusts, MutualGravity, PARAMETERS, PointGravity,
     Region, UniformGravity, Wind,
 };
+use crate::library::{LoadError, ShapeLibrary};
 use crate::snapshot::{load_geometry, save_geometry};
 use sinew_math::{ReadError, Reader, Writer};
 
@@ -18,15 +19,20 @@ impl FieldDef {
     /// Reads what [`save`](Self::save) wrote.
     ///
     /// # Errors
-    /// If the bytes end too early, [`check`](Self::check) finds something wrong, or a user's function is not registered.
-    pub(crate) fn load(r: &mut Reader<'_>, functions: &Functions) -> Result<Self, ReadError> {
+    /// If the bytes end too early, [`check`](Self::check) finds something wrong, a user's function is not registered, or
+    /// the region's shape is not in the library.
+    pub(crate) fn load(
+        r: &mut Reader<'_>,
+        functions: &Functions,
+        library: &ShapeLibrary,
+    ) -> Result<Self, LoadError> {
         let layers = r.u32()?;
-        let region = load_region(r)?;
+        let region = load_region(r, library)?;
         let field = Self { kind: load_kind(r)?, region, layers };
         field.check().map_err(|what| r.error(what))?;
         match field.kind {
             FieldKind::Custom { function, .. } if !functions.has(function) => {
-                Err(r.error("names a field function that is not registered"))
+                Err(r.error("names a field function that is not registered").into())
             }
             _ => Ok(field),
         }
@@ -51,17 +57,17 @@ fn save_region(w: &mut Writer, region: &Region) {
     }
 }
 
-fn load_region(r: &mut Reader<'_>) -> Result<Region, ReadError> {
+fn load_region(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Region, LoadError> {
     if !r.bool()? {
         return Ok(Region::Everywhere);
     }
-    let (shape, world_from_shape, margin) = (load_geometry(r)?, r.transform()?, r.f32()?);
+    let (shape, world_from_shape, margin) = (load_geometry(r, library)?, r.transform()?, r.f32()?);
     let fade = match r.u8()? {
         0 => Fade::None,
         1 => Fade::Linear,
         2 => Fade::Smooth,
         3 => Fade::Square,
-        _ => return Err(r.error("a field that fades in an unknown way")),
+        _ => return Err(r.error("a field that fades in an unknown way").into()),
     };
     Ok(Region::Inside { shape, world_from_shape, margin, fade })
 }

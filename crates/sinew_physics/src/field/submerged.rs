@@ -1,5 +1,7 @@
 //! How much of a shape is under water, and where the middle of that is: closed forms.
 
+use super::below::revolved_below;
+use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use sinew_math::trig::{acos, asin};
@@ -31,6 +33,11 @@ pub struct Submerged {
 }
 
 impl Submerged {
+    /// From volume times centre.
+    pub(super) fn of_moment(volume: f32, moment: Vec3) -> Self {
+        Self { volume, moment }
+    }
+
     fn new(volume: f32, center: Vec3) -> Self {
         Self { volume, moment: center * volume }
     }
@@ -53,14 +60,16 @@ impl Submerged {
 
 impl Shape {
     /// The part of the shape below the surface: volume, and its centre in the world. Exact for every shape up to rounding
-    /// (about 1e-5 of the volume); nothing of a half-space, which has no end.
+    /// (about 1e-5 of the volume); nothing of a half-space, which has no end, or of a mesh or
+    /// height field.
     pub fn submerged(&self, world_from_shape: &Transform, plane: &WaterPlane) -> Submerged {
         // In the shape's frame, where nothing is far away.
         let normal = world_from_shape.rotation.inverse() * plane.normal;
         let height = -plane.above(world_from_shape.translation);
         let reach = self.bounding_radius();
         let local = if height >= reach {
-            Submerged::new(self.volume(), Vec3::ZERO)
+            let whole = self.mass_properties(1.0);
+            Submerged::new(whole.mass, whole.center)
         } else if height <= -reach {
             Submerged::default()
         } else {
@@ -70,7 +79,18 @@ impl Shape {
                 Self::Capsule { half_height, radius } => {
                     capsule_below(half_height / radius, normal, height / radius).placed(radius, Vec3::ZERO)
                 }
-                Self::HalfSpace => Submerged::default(),
+                Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                    let slices = Tapered::new(half_height, radius_bottom, radius_top).slices();
+                    revolved_below(&slices, &WaterPlane { normal, height })
+                }
+                Self::Cylinder { half_height, radius } => {
+                    cylinder_below(half_height / radius, normal, height / radius).placed(radius, Vec3::ZERO)
+                }
+                Self::Cone { half_height, radius } => {
+                    let slices = Frustum::cone(half_height, radius).slices();
+                    revolved_below(&slices, &WaterPlane { normal, height })
+                }
+                Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_) => Submerged::default(),
             }
         };
         Submerged {
@@ -181,7 +201,7 @@ fn half_ball_below(a: Vec3, n: Vec3, s: f32) -> Submerged {
 }
 
 /// Area of the part with `x ≤ c` of the unit disk, −1 ≤ c ≤ 1.
-fn segment(c: f32) -> f32 {
+pub(super) fn segment(c: f32) -> f32 {
     FRAC_PI_2 + asin(c) + c * root(c)
 }
 

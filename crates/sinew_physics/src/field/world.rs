@@ -14,6 +14,7 @@ impl World {
     /// If [`FieldDef::check`] finds something wrong, or a user's function is not registered.
     pub fn add_field(&mut self, def: &FieldDef) -> FieldId {
         self.check_field(def);
+        self.keep_region(def);
         self.wake_reached(def);
         let (index, generation) = self.fields.insert(def.clone());
         FieldId { index, generation }
@@ -25,6 +26,7 @@ impl World {
     /// If [`FieldDef::check`] finds something wrong, or a user's function is not registered.
     pub fn set_field(&mut self, id: FieldId, def: &FieldDef) {
         self.check_field(def);
+        self.keep_region(def);
         let before = self.field(id).clone();
         self.wake_reached(&before);
         self.wake_reached(def);
@@ -143,6 +145,12 @@ impl World {
         }
         if let FieldKind::Custom { function, .. } = def.kind {
             assert!(self.functions.has(function), "field function {function} is registered");
+        }
+    }
+
+    fn keep_region(&mut self, def: &FieldDef) {
+        if let Some(shape) = def.region.shape() {
+            self.library.keep(shape);
         }
     }
 

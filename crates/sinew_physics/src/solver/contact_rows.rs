@@ -4,12 +4,12 @@ use super::response::Response;
 use super::sweep::Pass;
 use super::tree::Link;
 use super::{REDUNDANCY, SolverBody, disk, free_response, lcp};
-use crate::collide::{MAX_POINTS, Manifold, collide};
+use crate::collide::{Half, MAX_POINTS, Manifold, collide, is_on_face, name_as_face};
 use crate::contact::{ContactMemory, PointImpulse};
 use crate::material::ContactMaterial;
 use crate::shape::Shape;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
-use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max, min};
+use sinew_math::{Mat3, Rotation, Transform, Vec3, any_orthonormal, max, min};
 
 /// Fastest speed with which overlap is pushed apart, m/s.
 const PUSH_SPEED: f32 = 3.0;
@@ -225,7 +225,14 @@ impl PlacedShape {
     pub fn new(shape: Shape, principal_from_shape: Transform) -> Self {
         let round = match shape {
             Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
-            Shape::Box { .. } | Shape::HalfSpace => 0.0,
+            // The thinner end's: what a core is rounded by all around.
+            Shape::TaperedCapsule { radius_bottom, radius_top, .. } => min(radius_bottom, radius_top),
+            Shape::Box { .. }
+            | Shape::Cylinder { .. }
+            | Shape::Cone { .. }
+            | Shape::HalfSpace
+            | Shape::Mesh(_)
+            | Shape::HeightField(_) => 0.0,
         };
         Self { shape, principal_from_shape, round }
     }
@@ -320,12 +327,8 @@ impl ManifoldRows {
         let turning = if reach < f32::INFINITY { reach } else { 0.0 };
         let far_corner = FAR_CORNER * min(a.shape.bounding_radius(), b.shape.bounding_radius());
         let margin = max(4.0 * self.slop + relative.length() * h + turning, far_corner);
-        let mut manifold = Manifold::default();
-        let (frame_a, frame_b) = (pose_a * a.principal_from_shape, pose_b * b.principal_from_shape);
-        collide(&a.shape, &frame_a, &b.shape, &frame_b, margin, &mut manifold);
-        if manifold.count == 0 {
-            return;
-        }
+        let frames = [pose_a * a.principal_from_shape, pose_b * b.principal_from_shape];
+        let Some(manifold) = self.found_anew(frames, [pose_a, pose_b], margin) else { return };
         let impulse = self.impulse.map(|now| PointImpulse { now, ..PointImpulse::default() });
         let of_substep = ContactMemory { points: impulse, ..self.memory }.matched(&self.manifold, &manifold);
         let memory = self.memory.matched(&self.manifold, &manifold);
@@ -340,6 +343,38 @@ impl ManifoldRows {
         self.weight = weights(&self.memory, manifold.count);
         self.manifold = manifold;
         self.take_manifold(bodies);
+    }
+
+    /// The contact at the present poses, if there is one. Of a surface the plane stands that the manifold lies on: the surface
+    /// itself would answer for all its manifolds at once. What lies on its edges stays as it was found.
+    fn found_anew(&self, frames: [Transform; 2], poses: [Transform; 2], margin: f32) -> Option<Manifold> {
+        static PLANE: Shape = Shape::HalfSpace;
+        let [a, b] = &self.shapes;
+        let plane = |origin: Vec3, normal: Vec3| Transform::new(origin, Rotation::from_arc(Vec3::Y, normal));
+        let mut manifold = Manifold::default();
+        let surface = match (a.shape.surface(), b.shape.surface()) {
+            (None, None) => {
+                collide(&a.shape, &frames[0], &b.shape, &frames[1], margin, &mut manifold);
+                return (manifold.count > 0).then_some(manifold);
+            }
+            (Some(_), _) => Half::OfA,
+            _ => Half::OfB,
+        };
+        if !is_on_face(&self.manifold, surface) {
+            return None;
+        }
+        match surface {
+            Half::OfA => {
+                let ground = plane(poses[0].point(self.core_a[0]), self.normal);
+                collide(&PLANE, &ground, &b.shape, &frames[1], margin, &mut manifold);
+            }
+            Half::OfB => {
+                let ground = plane(poses[1].point(self.core_b[0]), -self.normal);
+                collide(&a.shape, &frames[0], &PLANE, &ground, margin, &mut manifold);
+            }
+        }
+        name_as_face(&mut manifold, surface);
+        (manifold.count > 0).then_some(manifold)
     }
 
     fn pair(&self) -> Pair {

@@ -28,6 +28,20 @@ impl Placed {
             Shape::Capsule { half_height, radius } => {
                 center + f64::from(half_height) * along(m.y_axis).abs() + f64::from(radius)
             }
+            Shape::Mesh(_) | Shape::HeightField(_) => unreachable!("surfaces have no core"),
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                let reach = f64::from(half_height) * along(m.y_axis);
+                center + (reach + f64::from(radius_top)).max(f64::from(radius_bottom) - reach)
+            }
+            Shape::Cylinder { half_height, radius } => {
+                let across = along(m.x_axis).hypot(along(m.z_axis));
+                center + f64::from(half_height) * along(m.y_axis).abs() + f64::from(radius) * across
+            }
+            Shape::Cone { half_height, radius } => {
+                let across = along(m.x_axis).hypot(along(m.z_axis));
+                let reach = f64::from(half_height) * along(m.y_axis);
+                center + reach.max(f64::from(radius) * across - reach)
+            }
             Shape::HalfSpace => {
                 if along(m.y_axis) > 0.999_9 {
                     center
@@ -114,10 +128,14 @@ enum Kind {
     Box,
     Sphere,
     Capsule,
+    TaperedCapsule,
+    Cylinder,
+    Cone,
     HalfSpace,
 }
 
-const FINITE: [Kind; 3] = [Kind::Box, Kind::Sphere, Kind::Capsule];
+const FINITE: [Kind; 6] =
+    [Kind::Box, Kind::Sphere, Kind::Capsule, Kind::TaperedCapsule, Kind::Cylinder, Kind::Cone];
 
 fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
     let mut side = || scale * random.range(0.2, 1.0);
@@ -125,6 +143,13 @@ fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
         Kind::Box => Shape::Box { half_extents: Vec3::new(side(), side(), side()) },
         Kind::Sphere => Shape::Sphere { radius: side() },
         Kind::Capsule => Shape::Capsule { half_height: side(), radius: 0.4 * side() },
+        Kind::TaperedCapsule => {
+            let radius_bottom = 0.4 * side();
+            // Neither ball holds the other.
+            Shape::TaperedCapsule { half_height: side(), radius_bottom, radius_top: 0.4 * side() }
+        }
+        Kind::Cylinder => Shape::Cylinder { half_height: side(), radius: 0.6 * side() },
+        Kind::Cone => Shape::Cone { half_height: side(), radius: side() },
         Kind::HalfSpace => Shape::HalfSpace,
     }
 }

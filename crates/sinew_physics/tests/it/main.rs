@@ -12,6 +12,7 @@ mod fields;
 mod finite;
 mod humanoid;
 mod joints;
+mod meshes;
 mod nets;
 mod objects;
 mod particles;

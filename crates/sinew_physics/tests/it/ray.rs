@@ -4,13 +4,24 @@ use sinew_math::{Random, Rotation, Sym3, Transform, Vec3};
 use sinew_physics::ray::Ray;
 use sinew_physics::{MassProperties, Shape};
 
-const SHAPES: [Shape; 5] = [
+const SHAPES: [Shape; 11] = [
     Shape::Box { half_extents: Vec3::new(0.3, 0.8, 0.5) },
     Shape::Sphere { radius: 0.7 },
     Shape::Capsule { half_height: 0.6, radius: 0.25 },
     Shape::Capsule { half_height: 0.0, radius: 0.5 },
+    Shape::TaperedCapsule { half_height: 0.4, radius_bottom: 0.5, radius_top: 0.2 },
+    Shape::TaperedCapsule { half_height: 0.1, radius_bottom: 0.4, radius_top: 0.55 },
+    Shape::Cylinder { half_height: 0.7, radius: 0.3 },
+    Shape::Cylinder { half_height: 0.1, radius: 0.8 },
+    Shape::Cone { half_height: 0.6, radius: 0.7 },
+    Shape::Cone { half_height: 0.1, radius: 0.8 },
     Shape::HalfSpace,
 ];
+
+/// Those with an end.
+fn solids() -> &'static [Shape] {
+    SHAPES.split_last().expect("there are shapes").1
+}
 
 /// Whether a point is in the shape, written down once more.
 fn holds(shape: &Shape, p: Vec3) -> bool {
@@ -21,7 +32,32 @@ fn holds(shape: &Shape, p: Vec3) -> bool {
             let beyond = (p.y.abs() - half_height).max(0.0);
             (p.x * p.x + p.z * p.z + beyond * beyond).sqrt() <= radius
         }
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            // In one of the balls between the two: ρ² + (y − c)² ≤ r², where c and r are linear in the share of the way.
+            let (rho, y) = (f64::from(p.x).hypot(f64::from(p.z)), f64::from(p.y));
+            let beyond = |t: f64| {
+                let center = f64::from(half_height) * (2.0 * t - 1.0);
+                let radius = f64::from(radius_bottom) * (1.0 - t) + f64::from(radius_top) * t;
+                rho.hypot(y - center) - radius
+            };
+            // It has one minimum: golden section.
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..30 {
+                let (u, v) = (low + 0.382 * (high - low), high - 0.382 * (high - low));
+                if beyond(u) < beyond(v) {
+                    high = v;
+                } else {
+                    low = u;
+                }
+            }
+            beyond(0.0).min(beyond(1.0)).min(beyond(0.5 * (low + high))) <= 0.0
+        }
+        Shape::Cylinder { half_height, radius } => p.y.abs() <= half_height && p.x.hypot(p.z) <= radius,
+        Shape::Cone { half_height, radius } => {
+            p.y.abs() <= half_height && p.x.hypot(p.z) <= radius * (half_height - p.y) / (2.0 * half_height)
+        }
         Shape::HalfSpace => p.y <= 0.0,
+        Shape::Mesh(_) | Shape::HeightField(_) => unreachable!("surfaces have no inside"),
     }
 }
 
@@ -35,6 +71,7 @@ fn rays_enter_where_marching_does() {
     const STEPS: u32 = 4000;
     let mut random = Random::new(1);
     for shape in SHAPES {
+        let surface: Vec<Vec3> = (0..500).filter_map(|_| surface_point(&shape, &mut random)).collect();
         let mut hits = 0;
         for case in 0..200 {
             let frame = frames(&mut random);
@@ -58,8 +95,10 @@ fn rays_enter_where_marching_does() {
                     }
                     if hit.fraction > 0.0 {
                         assert!(hit.normal.dot(ray.direction) <= 1e-5, "{shape:?} case {case}");
-                        let slack = if matches!(shape, Shape::Box { .. }) { 0.7 } else { 0.999 };
-                        assert!(hit.normal.dot(outward) > slack, "{shape:?} case {case}: {outward} {hit:?}");
+                        // The whole shape lies behind the plane through the hit.
+                        let behind =
+                            surface.iter().all(|p| (frame.point(*p) - hit.point).dot(hit.normal) < 2e-4);
+                        assert!(behind, "{shape:?} case {case}: {outward} {hit:?}");
                     } else {
                         let back = -ray.direction / ray.direction.length();
                         assert!((hit.normal - back).length() < 1e-5, "{shape:?} case {case}");
@@ -145,14 +184,17 @@ fn mass_properties_match_integration() {
     const CELLS: i32 = 80;
     const CELL: f32 = 2.0 / CELLS as f32;
     let density = 700.0;
-    for shape in &SHAPES[..4] {
-        let (mut mass, mut inertia) = (0.0f64, [0.0f64; 3]);
+    let mut random = Random::new(4);
+    for shape in solids() {
+        let (mut mass, mut moment, mut inertia) = (0.0f64, 0.0f64, [0.0f64; 3]);
         for k in 0..CELLS * CELLS * CELLS {
-            let at = |i: i32| (i as f32 + 0.5) * CELL - 1.0;
+            // Anywhere in its cell, or whole layers of cells would be in or out.
+            let mut at = |i: i32| (i as f32 + random.unit()) * CELL - 1.0;
             let p = Vec3::new(at(k % CELLS), at(k / CELLS % CELLS), at(k / CELLS / CELLS));
             if holds(shape, p) {
                 let m = f64::from(density * CELL * CELL * CELL);
                 mass += m;
+                moment += m * f64::from(p.y);
                 for (axis, sum) in inertia.iter_mut().enumerate() {
                     *sum += m * f64::from(p.dot(p) - p[axis] * p[axis]);
                 }
@@ -160,8 +202,11 @@ fn mass_properties_match_integration() {
         }
         let exact = shape.mass_properties(density);
         assert!((f64::from(exact.mass) / mass - 1.0).abs() < 0.01, "{shape:?}: {exact:?}, {mass}");
+        let center = moment / mass;
+        assert!((f64::from(exact.center.y) - center).abs() < 0.005, "{shape:?}: {exact:?}, {center}");
         for axis in 0..3 {
-            let ratio = f64::from(exact.inertia.diagonal[axis]) / inertia[axis];
+            let about_center = inertia[axis] - if axis == 1 { 0.0 } else { mass * center * center };
+            let ratio = f64::from(exact.inertia.diagonal[axis]) / about_center;
             assert!((ratio - 1.0).abs() < 0.015, "{shape:?}: {exact:?}, {inertia:?}");
         }
     }
@@ -191,7 +236,7 @@ fn halves_of_a_box_weigh_as_the_whole() {
 #[test]
 fn bounds_are_tight() {
     let mut random = Random::new(3);
-    for shape in &SHAPES[..4] {
+    for shape in solids() {
         for _ in 0..20 {
             let frame = frames(&mut random);
             let bounds = shape.aabb(&frame);
@@ -224,6 +269,18 @@ fn sizes_that_are_none_are_named() {
         assert!(Shape::Box { half_extents: Vec3::new(1.0, bad, 1.0) }.check().is_err());
         assert!(Shape::Capsule { half_height: 1.0, radius: bad }.check().is_err());
     }
+    for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        for (half_height, radius) in [(bad, 1.0), (1.0, bad)] {
+            assert!(Shape::Cylinder { half_height, radius }.check().is_err());
+            assert!(Shape::Cone { half_height, radius }.check().is_err());
+            for (radius_bottom, radius_top) in [(radius, 1.0), (1.0, radius)] {
+                let tapered = Shape::TaperedCapsule { half_height, radius_bottom, radius_top };
+                assert!(tapered.check().is_err());
+            }
+        }
+    }
+    let swallowed = Shape::TaperedCapsule { half_height: 0.5, radius_bottom: 1.5, radius_top: 0.5 };
+    assert_eq!(swallowed.check(), Err("one end of a tapered capsule must not hold the other"));
     for bad in [-1.0, f32::NAN, f32::INFINITY] {
         assert!(Shape::Capsule { half_height: bad, radius: 1.0 }.check().is_err());
     }

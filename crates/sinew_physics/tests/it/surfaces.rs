@@ -302,7 +302,7 @@ fn a_modifier_drops_contacts_and_throws() {
     let mut other = World::new(WorldDef::default());
     let before = other.hash();
     let error = other.load(&mut Reader::new(w.as_bytes())).expect_err("the modifier is not registered");
-    assert!(error.what.contains("modifier"), "{error:?}");
+    assert!(format!("{error:?}").contains("modifier"), "{error:?}");
     assert_eq!(other.hash(), before);
     other.register_modifier(3, bouncer);
     other.load(&mut Reader::new(w.as_bytes())).expect("it is registered");

@@ -1,6 +1,6 @@
 //! Inertias that a solver can live with.
 
-use sinew_math::{Vec3, clamp, max, max3};
+use sinew_math::{Vec3, clamp, max, max3, min};
 use sinew_physics::Shape;
 
 /// Largest ratio of principal moments: beyond it a body spins up about its long axis faster than a substep resolves.
@@ -31,7 +31,16 @@ pub fn inside(shape: &Shape, p: Vec3) -> Vec3 {
         Shape::Capsule { half_height, radius } => {
             Vec3::new(0.6 * radius, half_height + 0.4 * radius, 0.6 * radius)
         }
-        Shape::HalfSpace => Vec3::ZERO,
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            let radius = min(radius_bottom, radius_top);
+            Vec3::new(0.6 * radius, half_height + 0.4 * radius, 0.6 * radius)
+        }
+        Shape::Cylinder { half_height, radius } => Vec3::new(0.7 * radius, half_height, 0.7 * radius),
+        // The box between the base and half of the height, and its mirror image.
+        Shape::Cone { half_height, radius } => {
+            Vec3::new(0.35 * radius, 0.0, 0.35 * radius) + Vec3::Y * (0.5 * half_height)
+        }
+        Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => Vec3::ZERO,
     } * 0.9;
     Vec3::new(clamp(p.x, -reach.x, reach.x), clamp(p.y, -reach.y, reach.y), clamp(p.z, -reach.z, reach.z))
 }

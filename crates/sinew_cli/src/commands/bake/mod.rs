@@ -5,14 +5,14 @@ mod hit;
 
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
-use crate::files::{CharacterFile, Outputs, read_world_file};
+use crate::files::{CharacterFile, Outputs};
 use crate::film::{FLOOR_HALF_SIZE, Film, body_models};
 use crate::picture_file::{PictureFile, length, seconds};
 use crate::report::Report;
 use crate::table::shown;
 use clips::Motions;
 use hit::HitArg;
-use sinew::formats::{Textures, append_clip};
+use sinew::formats::{Textures, append_clip, load_world};
 use sinew::math::Vec3;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::{
@@ -44,7 +44,7 @@ pub struct Bake {
     /// Further files with clips for the same skeleton (joints are found by name)
     #[arg(long, value_name = "FILE", num_args = 1..)]
     clips: Vec<PathBuf>,
-    /// A world file (JSON) to fall in; without it a floor at y = 0. The character stands at the origin
+    /// A world file (JSON) or a mesh (GLB, OBJ) to fall in; without it a floor at y = 0. The character stands at the origin
     #[arg(long, value_name = "FILE")]
     world: Option<PathBuf>,
     /// Push a bone: joint name or role, impulse in N·s along the world's axes (+Y up), time in seconds; repeatable
@@ -75,7 +75,7 @@ impl Bake {
         let file = CharacterFile::load(&self.character, textures)?;
         let motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
         let bodies = match &self.world {
-            Some(path) => read_world_file(path)?,
+            Some(path) => load_world(path)?,
             None => vec![floor()],
         };
         let character = Arc::new(character(&file, motions)?);

@@ -3,12 +3,13 @@
 mod reel;
 
 use crate::failure::{Failure, Result};
-use crate::files::{Outputs, read_world_file};
+use crate::files::Outputs;
 use crate::picture_file::{PictureFile, length, seconds};
 use crate::report::{Report, number};
 use crate::scene_choice::choose;
 use reel::Reel;
 use serde_json::json;
+use sinew::formats::load_world;
 use sinew::physics::{BodyDef, World, WorldDef};
 use sinew_picture::{EncodeError, RenderSettings};
 use sinew_scenes::scenes::{Instance, Scene, Settings, find};
@@ -112,7 +113,7 @@ impl<'a> Subject<'a> {
         if find(name).is_none() {
             match Path::new(name).extension().and_then(|extension| extension.to_str()) {
                 Some("json") if assignments.is_empty() => {
-                    return Ok(Self::World(name, read_world_file(Path::new(name))?));
+                    return Ok(Self::World(name, load_world(name)?));
                 }
                 Some("json") => {
                     return Err(Failure::Usage("--set is for scenes; a world file has none".into()));

@@ -89,7 +89,7 @@ fn a_restored_world_goes_on_as_the_saved_one() {
         assert!(copy.load(&mut Reader::new(&bytes[..end])).is_err());
     }
     let error = World::new(WorldDef::default()).load(&mut Reader::new(&bytes)).expect_err("no function");
-    assert!(error.what.contains("not registered"), "{error}");
+    assert!(error.to_string().contains("not registered"), "{error}");
 }
 
 #[test]

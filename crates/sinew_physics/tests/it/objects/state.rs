@@ -96,7 +96,7 @@ fn objects_come_and_go_with_the_snapshots() {
 
     // Back to where the third was not, and on to where it is again, since its kind may be made.
     let unknown = world.load(&mut Reader::new(&both)).expect_err("the first is gone");
-    assert_eq!(unknown.what, "an object that is not there, of no known kind");
+    assert!(unknown.to_string().starts_with("an object that is not there, of no known kind"), "{unknown}");
     assert_eq!(saved(&world), other, "nothing has changed");
     world.load(&mut Reader::new(&one)).expect("the second is there");
     assert_eq!(world.object_ids().collect::<Vec<_>>(), [second]);

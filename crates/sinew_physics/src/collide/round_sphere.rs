@@ -1,0 +1,18 @@
+//! Cone, cylinder and tapered capsule against sphere: the closest point of the surface to the centre.
+
+use super::Manifold;
+use super::feature::{WHOLE, pair};
+use super::placed::Ball;
+use crate::shape::Shape;
+use sinew_math::Transform;
+
+pub(super) fn collide(a: &Shape, frame: &Transform, b: &Ball, margin: f32, out: &mut Manifold) {
+    let (distance, normal) = a.signed_distance(frame, b.center);
+    let separation = distance - b.radius;
+    if separation > margin {
+        return;
+    }
+    out.normal = normal;
+    // One id for all features: the contact of a ball that rolls over a rim is still the same one.
+    out.push(b.center - normal * (b.radius + 0.5 * separation), separation, pair(WHOLE, WHOLE));
+}

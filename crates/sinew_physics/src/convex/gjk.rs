@@ -1,0 +1,213 @@
+//! How far two cores are apart: the point of their Minkowski difference that is closest to the origin
+//! (Gilbert, Johnson & Keerthi, "A fast procedure for computing the distance between complex objects in
+//! three-dimensional space", IEEE J. Robotics and Automation 4(2), 1988).
+
+use super::support::{Posed, Support};
+use sinew_math::DVec3;
+
+/// Distance and its lower bound agree to this share of the distance: directions are then right to its root, 1e-5.
+const PRECISION: f64 = 1e-10;
+/// Cores closer than this share of their sizes touch: the direction between them would be rounding.
+pub(super) const TOUCH: f64 = 1e-10;
+/// Far above what is needed: polytopes take as many steps as they have faces near by, round cores some 30.
+const MOST_STEPS: usize = 128;
+
+/// A point of the Minkowski difference A − B, and where it comes from.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Vertex {
+    pub difference: DVec3,
+    pub on_a: DVec3,
+    pub on_b: DVec3,
+}
+
+/// The point of A − B that is furthest along `direction`.
+pub(super) fn support<A: Support, B: Support>(
+    a: &Posed<'_, A>,
+    b: &Posed<'_, B>,
+    direction: DVec3,
+) -> Vertex {
+    let (on_a, on_b) = (a.support(direction), b.support(-direction));
+    Vertex { difference: on_a - on_b, on_a, on_b }
+}
+
+/// Up to four points of A − B, and the weights that make the point of their hull that is closest to the origin.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Simplex {
+    pub vertices: [Vertex; 4],
+    weights: [f64; 4],
+    pub count: usize,
+}
+
+/// The closest points of two cores that are apart.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bridge {
+    pub on_a: DVec3,
+    pub on_b: DVec3,
+    pub distance: f64,
+    /// Unit, from A to B.
+    pub normal: DVec3,
+}
+
+/// What two cores are to each other.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Cores {
+    Apart(Bridge),
+    /// The simplex holds the origin, or touches it.
+    Overlapping(Simplex),
+}
+
+/// The closest points of two cores, unless they touch or overlap.
+pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>) -> Cores {
+    let size = f64::from(a.solid.reach()) + f64::from(b.solid.reach());
+    let offset = b.center - a.center;
+    let start = if offset.length() > TOUCH * size { offset } else { DVec3::X };
+    let mut simplex = Simplex::of(support(a, b, start));
+    let mut nearest = simplex.nearest();
+    for _ in 0..MOST_STEPS {
+        let squared = nearest.dot(nearest);
+        let length = squared.sqrt();
+        if length <= TOUCH * size {
+            return Cores::Overlapping(simplex);
+        }
+        let vertex = support(a, b, -nearest);
+        // No point of the difference is below this along the way to the nearest one.
+        let bound = vertex.difference.dot(nearest);
+        if squared - bound <= PRECISION * squared || simplex.holds(vertex.difference) {
+            break;
+        }
+        let mut next = simplex;
+        next.push(vertex);
+        if next.reduce() {
+            return Cores::Overlapping(next);
+        }
+        let next_nearest = next.nearest();
+        // Rounding is all that is left.
+        if next_nearest.dot(next_nearest) >= squared {
+            break;
+        }
+        (simplex, nearest) = (next, next_nearest);
+    }
+    let distance = nearest.length();
+    if distance <= TOUCH * size {
+        return Cores::Overlapping(simplex);
+    }
+    let [on_a, on_b] = simplex.ends();
+    Cores::Apart(Bridge { on_a, on_b, distance, normal: -nearest / distance })
+}
+
+impl Simplex {
+    fn of(vertex: Vertex) -> Self {
+        let mut simplex = Self { count: 1, ..Self::default() };
+        simplex.vertices[0] = vertex;
+        simplex.weights[0] = 1.0;
+        simplex
+    }
+
+    fn push(&mut self, vertex: Vertex) {
+        self.vertices[self.count] = vertex;
+        self.count += 1;
+    }
+
+    fn holds(&self, difference: DVec3) -> bool {
+        self.vertices[..self.count].iter().any(|vertex| vertex.difference == difference)
+    }
+
+    fn weighted(&self, of: impl Fn(&Vertex) -> DVec3) -> DVec3 {
+        let terms = self.vertices[..self.count].iter().zip(self.weights);
+        terms.fold(DVec3::ZERO, |sum, (vertex, weight)| sum + of(vertex) * weight)
+    }
+
+    /// The point closest to the origin, once reduced.
+    fn nearest(&self) -> DVec3 {
+        self.weighted(|vertex| vertex.difference)
+    }
+
+    /// That point's ends on A and B.
+    fn ends(&self) -> [DVec3; 2] {
+        [self.weighted(|vertex| vertex.on_a), self.weighted(|vertex| vertex.on_b)]
+    }
+
+    /// Leaves the vertices that carry the point closest to the origin, with their weights. True, and nothing left out, if
+    /// the simplex holds the origin.
+    fn reduce(&mut self) -> bool {
+        let p: [DVec3; 4] = self.vertices.map(|vertex| vertex.difference);
+        let (carriers, weights) = match self.count {
+            1 => ([0, 0, 0], [1.0, 0.0, 0.0]),
+            2 => on_segment([p[0], p[1]], [0, 1]),
+            3 => on_triangle(&p, [0, 1, 2]),
+            _ => match on_tetrahedron(&p) {
+                Some(face) => face,
+                None => return true,
+            },
+        };
+        let kept = *self;
+        self.count = 0;
+        for (index, weight) in carriers.into_iter().zip(weights) {
+            if weight > 0.0 {
+                self.weights[self.count] = weight;
+                self.push(kept.vertices[index]);
+            }
+        }
+        false
+    }
+}
+
+/// Three vertices by number, and the weight of each; 0 for those that do not count.
+type Carriers = ([usize; 3], [f64; 3]);
+
+fn point_of(p: &[DVec3; 4], (carriers, weights): &Carriers) -> DVec3 {
+    let terms = carriers.iter().zip(weights);
+    terms.fold(DVec3::ZERO, |sum, (&index, &weight)| sum + p[index] * weight)
+}
+
+fn nearer(p: &[DVec3; 4], x: Carriers, y: Carriers) -> Carriers {
+    let squared = |c: &Carriers| point_of(p, c).dot(point_of(p, c));
+    if squared(&y) < squared(&x) { y } else { x }
+}
+
+fn on_segment([p, q]: [DVec3; 2], [i, j]: [usize; 2]) -> Carriers {
+    let along = q - p;
+    let squared = along.dot(along);
+    let t = if squared > 0.0 { -p.dot(along) / squared } else { 0.0 };
+    let t = if t <= 0.0 {
+        0.0
+    } else if t >= 1.0 {
+        1.0
+    } else {
+        t
+    };
+    ([i, j, j], [1.0 - t, t, 0.0])
+}
+
+/// By the areas that the origin's projection spans with the sides: where one of them is not positive, that side or another
+/// carries the closest point.
+fn on_triangle(p: &[DVec3; 4], at: [usize; 3]) -> Carriers {
+    let [i, j, k] = at;
+    let [a, b, c] = at.map(|index| p[index]);
+    let normal = (b - a).cross(c - a);
+    let squared = normal.dot(normal);
+    let areas = [b.cross(c).dot(normal), c.cross(a).dot(normal), a.cross(b).dot(normal)];
+    if squared > 0.0 && areas.iter().all(|area| *area > 0.0) {
+        let sum = areas[0] + areas[1] + areas[2];
+        return (at, areas.map(|area| area / sum));
+    }
+    let sides = [on_segment([a, b], [i, j]), on_segment([b, c], [j, k]), on_segment([c, a], [k, i])];
+    sides.into_iter().reduce(|x, y| nearer(p, x, y)).unwrap_or((at, [1.0, 0.0, 0.0]))
+}
+
+/// `None` if the origin is inside. A flat tetrahedron holds nothing.
+fn on_tetrahedron(p: &[DVec3; 4]) -> Option<Carriers> {
+    const FACES: [[usize; 4]; 4] = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0]];
+    let mut best: Option<Carriers> = None;
+    for [i, j, k, opposite] in FACES {
+        let normal = (p[j] - p[i]).cross(p[k] - p[i]);
+        let (of_origin, of_opposite) = (-p[i].dot(normal), (p[opposite] - p[i]).dot(normal));
+        // Strictly on the inner side, and the tetrahedron has a thickness.
+        if of_origin * of_opposite > 0.0 {
+            continue;
+        }
+        let face = on_triangle(p, [i, j, k]);
+        best = Some(best.map_or(face, |other| nearer(p, other, face)));
+    }
+    best
+}

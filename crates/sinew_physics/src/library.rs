@@ -1,0 +1,185 @@
+//! The library: every shape with data that the world was ever given, by the hash of its content (ADR 0014).
+//!
+//! A snapshot names such a shape by kind and hash and finds it here again, so that it stays small and quick. Another
+//! process gets the library itself by [`World::save_shapes`].
+
+use crate::shape::Shape;
+use crate::triangles::{HeightField, Mesh};
+use crate::world::World;
+use sinew_math::{ReadError, Reader, Writer};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// First bytes of a written library; the last is its version.
+const MAGIC: &[u8; 8] = b"sinew-s\x01";
+/// Bytes of the smallest entry: its kind and the length of its data.
+const ENTRY_BYTES: usize = 5;
+
+/// What a shape with data is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DataKind {
+    /// Convex hull of points.
+    Hull,
+    /// Triangle mesh.
+    Mesh,
+    /// Height field.
+    HeightField,
+}
+
+/// In the order of their tags in bytes, the first of which is [`FIRST_TAG`].
+const KINDS: [DataKind; 3] = [DataKind::Hull, DataKind::Mesh, DataKind::HeightField];
+/// Lower tags are those of shapes that are sizes only.
+const FIRST_TAG: u8 = 16;
+
+impl DataKind {
+    fn tag(self) -> u8 {
+        FIRST_TAG + self as u8
+    }
+
+    /// The kind of a tag, if it is that of a shape with data.
+    pub(crate) fn of_tag(tag: u8) -> Option<Self> {
+        KINDS.into_iter().find(|kind| kind.tag() == tag)
+    }
+}
+
+impl core::fmt::Display for DataKind {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Hull => "hull",
+            Self::Mesh => "mesh",
+            Self::HeightField => "height field",
+        })
+    }
+}
+
+/// Why a snapshot could not be loaded.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LoadError {
+    /// The bytes are not a snapshot of this version.
+    #[error(transparent)]
+    Bytes(#[from] ReadError),
+    /// The snapshot names a shape with data that the world was never given: see [`World::load_shapes`].
+    #[error("names a {kind} of hash {hash:016x} that the world does not have (at byte {at})")]
+    UnknownShape {
+        /// Offset of the hash.
+        at: usize,
+        /// What it should be.
+        kind: DataKind,
+        /// Hash of its content.
+        hash: u64,
+    },
+}
+
+/// Shapes with data by their content hash. It only grows: a state that is loaded later may name any of them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ShapeLibrary {
+    shapes: BTreeMap<u64, Shape>,
+}
+
+impl ShapeLibrary {
+    /// Takes a shape in, if it has data.
+    ///
+    /// # Panics
+    /// If another shape has the same hash.
+    pub fn keep(&mut self, shape: &Shape) {
+        if let Some(hash) = shape.content_hash() {
+            let kept = self.shapes.entry(hash).or_insert_with(|| shape.clone());
+            assert!(kept == shape, "no two shapes have the same hash ({hash:016x})");
+        }
+    }
+
+    /// The shape whose hash comes next.
+    ///
+    /// # Errors
+    /// If the world was never given it.
+    pub fn find(&self, r: &mut Reader<'_>, kind: DataKind) -> Result<Shape, LoadError> {
+        let (at, hash) = (r.position(), r.u64()?);
+        let found = self.shapes.get(&hash).filter(|shape| shape.data_kind() == Some(kind));
+        found.cloned().ok_or(LoadError::UnknownShape { at, kind, hash })
+    }
+}
+
+impl World {
+    /// Writes every shape with data that this world was ever given: what another process loads before a snapshot.
+    pub fn save_shapes(&self, w: &mut Writer) {
+        w.raw(MAGIC);
+        w.count(self.library.shapes.len());
+        for shape in self.library.shapes.values() {
+            let kind = shape.data_kind().expect("only shapes with data are kept");
+            w.u8(kind.tag());
+            w.block(|w| shape.save_data(w));
+        }
+    }
+
+    /// Takes in what [`save_shapes`](Self::save_shapes) wrote, beside the shapes that are there.
+    ///
+    /// # Errors
+    /// If the bytes are not a library of this version or one of its shapes is not valid; the world is then as it was.
+    pub fn load_shapes(&mut self, r: &mut Reader<'_>) -> Result<(), ReadError> {
+        if r.raw(MAGIC.len())? != MAGIC {
+            return Err(ReadError { at: 0, what: "is not a library of shapes of this version" });
+        }
+        let count = r.count(ENTRY_BYTES)?;
+        let mut library = self.library.clone();
+        for _ in 0..count {
+            let tag = r.u8()?;
+            let kind = DataKind::of_tag(tag).ok_or_else(|| r.error("unknown kind of shape"))?;
+            let mut data = r.block()?;
+            let shape = load_data(kind, &mut data)?;
+            data.finish()?;
+            let known = shape.content_hash().and_then(|hash| library.shapes.get(&hash));
+            if known.is_some_and(|known| *known != shape) {
+                return Err(r.error("another shape has the same hash"));
+            }
+            library.keep(&shape);
+        }
+        self.library = library;
+        Ok(())
+    }
+}
+
+/// What [`Shape::save_data`] wrote.
+fn load_data(kind: DataKind, data: &mut Reader<'_>) -> Result<Shape, ReadError> {
+    match kind {
+        DataKind::Hull => Err(data.error("unknown kind of shape")),
+        DataKind::Mesh => Ok(Shape::Mesh(Arc::new(Mesh::load(data)?))),
+        DataKind::HeightField => Ok(Shape::HeightField(Arc::new(HeightField::load(data)?))),
+    }
+}
+
+impl Shape {
+    /// Hash of the data of a shape that holds some, the same on every machine; `None` of those that are sizes only.
+    pub fn content_hash(&self) -> Option<u64> {
+        match self {
+            Self::Mesh(mesh) => Some(mesh.content_hash()),
+            Self::HeightField(field) => Some(field.content_hash()),
+            _ => None,
+        }
+    }
+
+    /// What a shape with data is; `None` of those that are sizes only.
+    pub fn data_kind(&self) -> Option<DataKind> {
+        match self {
+            Self::Mesh(_) => Some(DataKind::Mesh),
+            Self::HeightField(_) => Some(DataKind::HeightField),
+            _ => None,
+        }
+    }
+
+    /// Writes the data; nothing of a shape that is sizes only.
+    fn save_data(&self, w: &mut Writer) {
+        match self {
+            Self::Mesh(mesh) => mesh.save(w),
+            Self::HeightField(field) => field.save(w),
+            _ => {}
+        }
+    }
+
+    /// What a snapshot names a shape with data by. False, and nothing written, of those that are sizes only.
+    pub(crate) fn save_name(&self, w: &mut Writer) -> bool {
+        let Some((kind, hash)) = self.data_kind().zip(self.content_hash()) else { return false };
+        w.u8(kind.tag());
+        w.u64(hash);
+        true
+    }
+}
