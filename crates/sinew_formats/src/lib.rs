@@ -17,7 +17,6 @@ pub mod mjcf;
 pub mod obj;
 mod parts;
 pub mod ragdoll;
-
 mod uri;
 pub mod world;
 
