@@ -17,7 +17,10 @@ pub mod mjcf;
 pub mod obj;
 mod parts;
 pub mod ragdoll;
+<<<<<<< HEAD
 mod surface;
+=======
+>>>>>>> surfaces-merge2
 mod uri;
 pub mod world;
 

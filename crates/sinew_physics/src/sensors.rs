@@ -6,7 +6,8 @@ use crate::contact::{Contact, Effect, pairs_of};
 use crate::events::Events;
 use crate::meetings::{Meetings, Told, lie_still, touch_of};
 
-/// Compares the sensor pairs with those of the step before, and tells of hits faster than `hit_speed` (m/s). All that the user changed since has been looked at now.
+/// Compares the sensor pairs with those of the step before, and tells of hits faster than `hit_speed` (m/s). All that the
+/// user changed since has been looked at now.
 pub(crate) fn sensors(
     bodies: &mut Arena<Body>,
     contacts: &mut [Contact],
