@@ -17,10 +17,7 @@ pub mod mjcf;
 pub mod obj;
 mod parts;
 pub mod ragdoll;
-<<<<<<< HEAD
 mod surface;
-=======
->>>>>>> surfaces-merge2
 mod uri;
 pub mod world;
 
