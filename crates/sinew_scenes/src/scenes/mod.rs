@@ -52,6 +52,7 @@ mod springs;
 mod stacks;
 mod strings;
 mod support;
+mod surfaces;
 mod tops;
 mod trees;
 mod water;
@@ -131,6 +132,10 @@ const REGISTRY: &[Scene] = &[
     incline::ROLLS,
     rolling::SLIDE_TO_ROLL,
     rolling::ROLLING_BALLS,
+    surfaces::STATIC_FRICTION,
+    surfaces::CONVEYOR,
+    surfaces::ONE_WAY,
+    surfaces::SENSORS,
     impacts::ELASTIC_PAIRS,
     impacts::NEWTONS_CRADLE,
     impacts::BOUNCING_BALLS,
