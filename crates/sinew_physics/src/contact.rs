@@ -136,7 +136,7 @@ pub(crate) struct Contact {
     pub effect: Effect,
     /// One of the shapes is solid from one side: what is decided stays while they touch.
     pub one_way: bool,
-    /// Its pair pushed in the last step.
+    /// It pushed in the last step, or the parts before it did.
     pub pushed: bool,
     /// Its pair was told of as touching, or as one with a sensor.
     pub touching: bool,

@@ -116,7 +116,8 @@ impl World {
         self.parted.functions.chosen = number;
         let ids: Vec<BodyId> = self.body_ids().collect();
         for id in ids {
-            self.stir(id);
+            self.look_anew(id);
+            self.wake_body(id.index);
         }
     }
 
@@ -131,17 +132,25 @@ impl World {
         self.expect(b);
         let met = |contact: &Contact| contact.pushes() || contact.touching || contact.sensed;
         if self.contacts_at(a.index).any(|contact| contact.key.has(b.index) && met(contact)) {
-            self.look_anew(a);
-            self.wake_body(a.index);
-            self.wake_body(b.index);
+            self.wake_pair(a, b);
         }
         self.parted.disable(a.index, b.index);
     }
 
     /// Undoes [`disable_pair`](Self::disable_pair); they wake. Joints between them may still keep them from colliding.
     pub fn enable_pair(&mut self, a: BodyId, b: BodyId) {
-        self.stir(a);
-        self.stir(b);
+        self.expect(a);
+        self.expect(b);
+        self.wake_pair(a, b);
         self.parted.enable(a.index, b.index);
+    }
+
+    /// Has the next step look anew at a pair: by what wakes of it, or else by one of them.
+    fn wake_pair(&mut self, a: BodyId, b: BodyId) {
+        self.wake_body(a.index);
+        self.wake_body(b.index);
+        if !self.bodies.at(a.index).is_active() && !self.bodies.at(b.index).is_active() {
+            self.look_anew(a);
+        }
     }
 }

@@ -21,7 +21,7 @@ use crate::world::World;
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
 /// First bytes of a snapshot; the last is its version.
-const MAGIC: &[u8; 8] = b"sinew-w\x05";
+const MAGIC: &[u8; 8] = b"sinew-w\x06";
 /// A thousand steps a second for 280,000 years.
 const MOST_STEPS: u64 = 1 << 53;
 

@@ -28,15 +28,12 @@ pub(crate) fn collide(
     parts: &mut Parts,
     context: &StepContext<'_>,
 ) {
-    for pair in pairs_of(contacts) {
-        let pushed = pair.iter().any(Contact::has_pushed);
-        pair.iter_mut().for_each(|contact| contact.pushed = pushed);
-    }
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
         if !a.can_touch() && !b.can_touch() {
             return;
         }
+        contact.pushed = contact.has_pushed();
         let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
         let (shape_a, shape_b) = (&a.shapes[sa].shape, &b.shapes[sb].shape);
         if shape_a.surface().is_some() || shape_b.surface().is_some() {
@@ -212,11 +209,11 @@ fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Act
 /// thousandth of a millimetre away, and what bounced has met although it is gone by now. What touched goes on touching until
 /// there is a gap that is none by rounding.
 fn touches(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
-    let Contact { key, pushed, touching, .. } = pair[0];
+    let Contact { key, touching, .. } = pair[0];
     let slop = slop(smallest_extent(bodies.at(key.a), bodies.at(key.b), key));
     let most = if touching { LINGER * slop } else { 0.0 };
-    let mut gaps = points_of(pair).map(|point| point.separation).peekable();
-    pushed && gaps.peek().is_some() || gaps.any(|gap| gap <= most)
+    let pushed = pair.iter().any(|contact| contact.pushed);
+    points_of(pair).any(|point| pushed || point.separation <= most)
 }
 
 fn points_of(pair: &[Contact]) -> impl Iterator<Item = &ManifoldPoint> {
