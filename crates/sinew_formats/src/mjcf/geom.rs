@@ -23,9 +23,18 @@ struct Segment {
 }
 
 const UNREAD: [&str; 5] = ["solimp", "margin", "gap", "priority", "solmix"];
-/// `condim` with which the third number of `friction` counts, and the one with which only the first does.
-const ROLLING: f32 = 6.0;
-const SLIDING: f32 = 3.0;
+
+/// What `condim` lets friction resist, as far as it is read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Resists {
+    Sliding,
+    /// The third number of `friction` counts too.
+    Rolling,
+    Other,
+}
+
+const CONDIM: [(&str, Resists); 4] =
+    [("1", Resists::Other), ("3", Resists::Sliding), ("4", Resists::Other), ("6", Resists::Rolling)];
 
 impl Geom {
     /// From an element and the defaults of its class.
@@ -121,11 +130,14 @@ fn read_material(geom: &Merged<'_, '_>, notes: &mut Notes) -> Result<Material> {
     if friction.iter().any(|&coefficient| coefficient < 0.0) {
         return Err(malformed(geom.element, "friction must not be negative"));
     }
-    let directions = geom.get("condim").map_or(Ok(SLIDING), Value::number)?;
-    if directions != SLIDING && directions != ROLLING {
+    let resists = geom.get("condim").map_or(Ok(Resists::Sliding), |value| value.word(&CONDIM))?;
+    if resists == Resists::Other {
         notes.left_out("condim");
     }
-    let rolling = if directions == ROLLING { friction.get(2).copied().unwrap_or(1e-4) } else { 0.0 };
+    let rolling = match resists {
+        Resists::Rolling => friction.get(2).copied().unwrap_or(1e-4),
+        Resists::Sliding | Resists::Other => 0.0,
+    };
     Ok(Material {
         friction: friction.first().copied().unwrap_or(1.0),
         restitution: geom.get("solref").map_or(Ok(0.0), read_restitution)?,
