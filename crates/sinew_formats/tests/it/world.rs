@@ -268,31 +268,6 @@ fn complaints_name_the_place() {
             "quaternion must have length 1 (bodies[0].rotation)",
         ),
         (
-            world(r#"{"shapes":[{"type":"sphere","radius":1,"material":"ice"}]}"#),
-            "there is no material `ice` (bodies[0].shapes[0].material)",
-        ),
-        (
-            world(
-                r#"{"shapes":[{"type":"sphere","radius":1,"material":{"friction":0.5,"static_friction":0.4}}]}"#,
-            ),
-            "must not be less than `friction` (bodies[0].shapes[0].material.static_friction)",
-        ),
-        (
-            world(r#"{"shapes":[{"type":"sphere","radius":1,"material":{"combine":{"rolling":"sum"}}}]}"#),
-            "unknown rule `sum`; known are average, geometric_mean, minimum, multiply, maximum \
-             (bodies[0].shapes[0].material.combine.rolling)",
-        ),
-        (
-            world(
-                r#"{"shapes":[{"type":"sphere","radius":1,"contacts":{"one_way":{"direction":[0,0,0]}}}]}"#,
-            ),
-            "the direction of a one-way shape must be finite and not 0 (bodies[0].shapes[0].contacts.one_way)",
-        ),
-        (
-            world(r#"{"shapes":[{"type":"sphere","radius":1,"contacts":"spirit"}]}"#),
-            "must be push, ghost, or an object with `one_way` (bodies[0].shapes[0].contacts)",
-        ),
-        (
             world(r#"{"mass":{"kg":1,"inertia":[1,1,-1,0,0,0]},"shapes":[]}"#),
             "must be positive definite (bodies[0].mass.inertia)",
         ),
@@ -301,6 +276,34 @@ fn complaints_name_the_place() {
     }
     let error = read_world(world(r#"{"shape":[]}"#).as_bytes()).unwrap_err();
     assert!(error.what.starts_with("unknown key `shape`; known are name, kind,"), "{error}");
+}
+
+#[test]
+fn complaints_about_materials_and_contacts_name_the_place() {
+    for (surface, expected) in [
+        (r#""material":"ice""#, "there is no material `ice` (bodies[0].shapes[0].material)"),
+        (
+            r#""material":{"friction":0.5,"static_friction":0.4}"#,
+            "must not be less than `friction` (bodies[0].shapes[0].material.static_friction)",
+        ),
+        (
+            r#""material":{"combine":{"rolling":"sum"}}"#,
+            "unknown rule `sum`; known are average, geometric_mean, minimum, multiply, maximum \
+             (bodies[0].shapes[0].material.combine.rolling)",
+        ),
+        (
+            r#""contacts":{"one_way":{"direction":[0,0,0]}}"#,
+            "the direction of a one-way shape must be finite and not 0 (bodies[0].shapes[0].contacts.one_way)",
+        ),
+        (
+            r#""contacts":"spirit""#,
+            "must be push, ghost, or an object with `one_way` (bodies[0].shapes[0].contacts)",
+        ),
+    ] {
+        let shape = format!(r#"{{"type":"sphere","radius":1,{surface}}}"#);
+        let json = format!(r#"{{"sinew":"world","version":1,"bodies":[{{"shapes":[{shape}]}}]}}"#);
+        assert_eq!(read_world(json.as_bytes()).unwrap_err().to_string(), expected);
+    }
 }
 
 #[test]
