@@ -300,7 +300,7 @@ fn check(seed: u64) -> usize {
         }
         let mut expected = Vec::new();
         look(&ways[0].world, &parted, &touching.shapes, |pair, touches, senses| {
-            expected.push((pair, touches, senses))
+            expected.push((pair, touches, senses));
         });
         ways.iter_mut().for_each(|way| way.step(step));
         let [first, others @ ..] = &ways;
