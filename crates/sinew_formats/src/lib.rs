@@ -11,6 +11,7 @@ pub mod fs;
 mod glb;
 pub mod gltf;
 mod json;
+mod material;
 pub mod mesh;
 pub mod mjcf;
 pub mod obj;

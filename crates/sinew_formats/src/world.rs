@@ -42,19 +42,23 @@
 //! `height_field` has `columns` and `rows` of vertices, `spacing` `[x, z]`, `heights`, row after row, and `holes`, cells by
 //! `column + row × (columns − 1)`. Both are surfaces without a mass of their own. Also a
 //! `position` and `rotation` in the body's frame, a `density` (kg/m³, default 1000), a `material` and a `filter`
-//! `{ "layers", "mask", "group" }`. With `"sensor": true` it reports whom it meets and does not push.
+//! `{ "layers", "mask", "group" }`. With `"sensor": true` it reports whom it meets and does not push. `contacts` is `"push"`
+//! (default), `"ghost"`, or `{ "one_way": { "direction", "tolerance" } }`.
 //!
 //! A **material** is the name of an entry of `materials`, or such an entry itself: `friction` (default 0.6),
-//! `restitution` (0..=1, default 0), `rolling` (metres, default 0).
+//! `static_friction` (default the same), `restitution` (0..=1, default 0), `rolling` (metres, default 0), `surface_velocity`
+//! (m/s) and `surface_spin` (rad/s) in the shape's frame, `tag`, a whole number, and `combine`, the rules for
+//! `friction`, `restitution` and `rolling`: `average`, `geometric_mean`, `minimum`, `multiply`, `maximum`.
 //!
 //! A key that is not listed here is an error, so that a typing error does not pass in silence.
 
-use crate::error::{Result, quoted};
+use crate::error::Result;
 use crate::json::{self, At, number, numbers};
+use crate::material::{read_filter, read_material, read_rule, write_material, write_rule};
 use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
 use serde_json::{Map, Value, json};
 use sinew_math::{Transform, Vec3};
-use sinew_physics::{BodyDef, BodyKind, Filter, Material, Sensing, Shape, ShapeDef, Sleeping};
+use sinew_physics::{BodyDef, BodyKind, Filter, Sensing, Shape, ShapeDef, Sleeping};
 
 const VERSION: usize = 1;
 
@@ -72,6 +76,8 @@ const BODY_KEYS: [&str; 12] = [
     "shapes",
     "comment",
 ];
+
+const SURFACE_KEYS: [&str; 6] = ["density", "material", "filter", "sensor", "contacts", "comment"];
 
 /// The bodies of a world file, in file order.
 ///
@@ -134,9 +140,7 @@ fn read_body(at: At<'_>, materials: Option<At<'_>>) -> Result<BodyDef> {
 }
 
 fn read_shape(at: At<'_>, materials: Option<At<'_>>) -> Result<ShapeDef> {
-    at.only(
-        &[&SHAPE_KEYS[..], &POSE_KEYS, &["density", "material", "filter", "sensor", "comment"]].concat(),
-    )?;
+    at.only(&[&SHAPE_KEYS[..], &POSE_KEYS, &SURFACE_KEYS].concat())?;
     let default = ShapeDef::new(parts::read_shape(at)?);
     Ok(ShapeDef {
         body_from_shape: parts::read_pose(at)?,
@@ -150,54 +154,15 @@ fn read_shape(at: At<'_>, materials: Option<At<'_>>) -> Result<ShapeDef> {
             true => Sensing::Sensor,
             false => Sensing::Solid,
         },
+        rule: at.get("contacts")?.map_or(Ok(default.rule), read_rule)?,
         ..default
     })
-}
-
-/// A material itself, or the name of one.
-fn read_material(at: At<'_>, materials: Option<At<'_>>) -> Result<Material> {
-    let at = match at.value().as_str() {
-        None => at,
-        Some(name) => {
-            let named = materials.map(|m| m.get(name)).transpose()?.flatten();
-            named.ok_or_else(|| at.malformed(format!("there is no material {}", quoted(name))))?
-        }
-    };
-    at.only(&["friction", "restitution", "rolling", "comment"])?;
-    let default = Material::default();
-    let restitution = at.get("restitution")?;
-    let material = Material {
-        friction: at.get("friction")?.map_or(Ok(default.friction), At::not_negative)?,
-        restitution: restitution.map_or(Ok(default.restitution), At::not_negative)?,
-        rolling: at.get("rolling")?.map_or(Ok(default.rolling), At::not_negative)?,
-    };
-    match restitution {
-        Some(at) if material.restitution > 1.0 => Err(at.malformed("must not be more than 1")),
-        _ => Ok(material),
-    }
-}
-
-fn read_filter(at: At<'_>) -> Result<Filter> {
-    at.only(&["layers", "mask", "group"])?;
-    let default = Filter::default();
-    let bits = |key: &str, default: u32| -> Result<u32> {
-        let Some(at) = at.get(key)? else { return Ok(default) };
-        u32::try_from(at.usize()?).map_err(|_| at.malformed("must fit 32 bits"))
-    };
-    let group = match at.get("group")? {
-        None => default.group,
-        Some(at) => {
-            let whole = at.value().as_i64().and_then(|n| i32::try_from(n).ok());
-            whole.ok_or_else(|| at.malformed("must be a whole number of 32 bits"))?
-        }
-    };
-    Ok(Filter { layers: bits("layers", default.layers)?, mask: bits("mask", default.mask)?, group })
 }
 
 /// The text of a world file with these bodies; what is default is left out. Reads back as equal bodies.
 ///
 /// # Panics
-/// If a number is not finite.
+/// If a number is not finite, or a shape has a modifier: a file cannot bring functions.
 pub fn write_world(bodies: &[BodyDef]) -> String {
     let bodies: Vec<Value> = bodies.iter().map(write_body).collect();
     json::to_text(&json!({"sinew": "world", "version": VERSION, "bodies": bodies}))
@@ -242,11 +207,7 @@ fn write_shape(def: &ShapeDef) -> Value {
     parts::write_pose(def.body_from_shape, &mut object);
     put(&mut object, "density", def.density, default.density);
     if def.material != default.material {
-        let mut material = Map::new();
-        put(&mut material, "friction", def.material.friction, default.material.friction);
-        put(&mut material, "restitution", def.material.restitution, default.material.restitution);
-        put(&mut material, "rolling", def.material.rolling, default.material.rolling);
-        object.insert("material".into(), material.into());
+        object.insert("material".into(), write_material(&def.material));
     }
     if def.filter != default.filter {
         let Filter { layers, mask, group } = def.filter;
@@ -254,6 +215,9 @@ fn write_shape(def: &ShapeDef) -> Value {
     }
     if def.sensing == Sensing::Sensor {
         object.insert("sensor".into(), true.into());
+    }
+    if let Some(rule) = write_rule(def.rule) {
+        object.insert("contacts".into(), rule);
     }
     object.into()
 }

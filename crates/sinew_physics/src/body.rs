@@ -76,6 +76,8 @@ pub(crate) struct Body {
     pub place: Transform,
     /// Set when its state became non-finite: it was rolled back and takes no further part.
     pub quarantined: bool,
+    /// The user changed it since the last step.
+    pub stirred: bool,
     pub user_data: u64,
 }
 
@@ -151,6 +153,7 @@ impl Body {
             sleeping: def.sleeping,
             place: world_from_body * body_from_principal,
             quarantined: false,
+            stirred: false,
             user_data: def.user_data,
         }
     }
@@ -206,6 +209,14 @@ impl Body {
         }
     }
 
+    /// How the surface of a shape moves along the body at a world point, world axes.
+    pub fn surface_velocity(&self, shape: usize, point: Vec3) -> Velocity {
+        let (frame, material) = (self.world_from_shape(shape), &self.surface(shape).material);
+        let angular = frame.rotation * material.surface_spin;
+        let linear = frame.rotation * material.surface_velocity + angular.cross(point - frame.translation);
+        Velocity { linear, angular }
+    }
+
     /// World position of the centre of mass.
     pub fn center(&self) -> Vec3 {
         self.world_from_principal.translation
@@ -226,8 +237,11 @@ impl Body {
         self.kind == BodyKind::Dynamic && self.is_awake() && !self.quarantined
     }
 
-    /// May start a contact: it moves.
+    /// May start or end a contact: it moves, or was changed.
     pub fn can_touch(&self) -> bool {
+        if self.stirred {
+            return true;
+        }
         match self.kind {
             BodyKind::Dynamic => self.is_active(),
             BodyKind::Kinematic => self.velocity != Velocity::default(),

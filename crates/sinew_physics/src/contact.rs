@@ -1,11 +1,13 @@
 //! Contacts: pairs of shapes that are near each other, with what the solver remembers of them.
 
+use crate::arena::Arena;
+use crate::body::Body;
 use crate::collide::{MAX_POINTS, Manifold};
-use crate::shape::Material;
-use sinew_math::{Vec3, max};
+use crate::material::ContactMaterial;
+use sinew_math::Vec3;
 
-/// Which two shapes: body index and shape number of each, the smaller body index first, and which part of their contact. Sorting by it is the order
-/// in which everything about contacts happens.
+/// Which two shapes: body index and shape number of each, the smaller body index first, and which part of their contact.
+/// Sorting by it is the order in which everything about contacts happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct ContactKey {
     pub a: u32,
@@ -17,13 +19,17 @@ pub(crate) struct ContactKey {
 }
 
 impl ContactKey {
+    /// Of two shapes, each given by body and number, in whatever order.
+    pub fn new(p: (u32, u32), q: (u32, u32)) -> Self {
+        let (a, b) = if p.0 < q.0 { (p, q) } else { (q, p) };
+        Self { a: a.0, b: b.0, shape_a: a.1, shape_b: b.1, part: 0 }
+    }
+
     /// Whether it is one of the manifolds of the same two shapes.
     pub fn is_of_pair(&self, other: Self) -> bool {
         Self { part: other.part, ..*self } == other
     }
-}
 
-impl ContactKey {
     /// Whether a body is one of the two.
     pub fn has(self, body: u32) -> bool {
         self.a == body || self.b == body
@@ -40,12 +46,14 @@ pub(crate) fn ordered(a: u32, b: u32) -> (u32, u32) {
     if a < b { (a, b) } else { (b, a) }
 }
 
-/// Impulses of one manifold point over a substep, N·s.
+/// Impulses of one manifold point, N·s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PointImpulse {
     /// Of the last substep and the one before: an impact must not be repeated, so warm starting looks at both.
     pub now: f32,
     pub before: f32,
+    /// Of all substeps of the step.
+    pub total: f32,
     /// Mean over some substeps: the load at rest.
     pub lasting: f32,
 }
@@ -60,9 +68,17 @@ pub(crate) struct ContactMemory {
     pub twist: f32,
     /// Rolling resistance, world vector, N·m·s.
     pub rolling: Vec3,
+    /// Friction of all substeps of the step, world vector, N·s.
+    pub total_friction: Vec3,
 }
 
 impl ContactMemory {
+    /// With nothing given yet.
+    pub fn of_new_step(&self) -> Self {
+        let points = self.points.map(|point| PointImpulse { total: 0.0, ..point });
+        Self { points, total_friction: Vec3::ZERO, ..*self }
+    }
+
     /// What a new manifold of the same shapes starts with. Points keep their impulses by feature; those of points that
     /// are gone go to the new ones in equal parts, since the load stays when the shapes tip from one corner to another.
     /// Nothing is kept if the normal turned by more than about 25°.
@@ -82,6 +98,7 @@ impl ContactMemory {
                 None => {
                     lost.now += impulse.now;
                     lost.before += impulse.before;
+                    lost.total += impulse.total;
                     lost.lasting += impulse.lasting;
                 }
             }
@@ -92,10 +109,23 @@ impl ContactMemory {
         for (point, _) in memory.points.iter_mut().zip(fresh).filter(|(_, fresh)| all || **fresh) {
             point.now += lost.now / heirs as f32;
             point.before += lost.before / heirs as f32;
+            point.total += lost.total / heirs as f32;
             point.lasting += lost.lasting / heirs as f32;
         }
         memory
     }
+}
+
+/// What a contact does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Effect {
+    /// It pushes.
+    #[default]
+    Push,
+    /// One of the shapes only senses.
+    Sense,
+    /// The shapes pass through each other.
+    Pass,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -103,10 +133,18 @@ pub(crate) struct Contact {
     pub key: ContactKey,
     pub manifold: Manifold,
     pub memory: ContactMemory,
-    /// Surfaces overlap or touch.
+    pub effect: Effect,
+    /// One of the shapes is solid from one side: what is decided stays while they touch.
+    pub one_way: bool,
+    /// It pushed in the last step, or the parts before it did.
+    pub pushed: bool,
+    /// Its pair was told of as touching, or as one with a sensor.
     pub touching: bool,
-    /// One of the shapes only senses.
-    pub sensor: bool,
+    pub sensed: bool,
+    /// A shape that is solid from one side let the other pass when it was last decided.
+    pub passes: bool,
+    /// How fast its points came in when the step began, m/s.
+    pub approach: f32,
 }
 
 impl Contact {
@@ -115,29 +153,56 @@ impl Contact {
             key,
             manifold: Manifold::default(),
             memory: ContactMemory::default(),
+            effect: Effect::Push,
+            one_way: false,
+            pushed: false,
             touching: false,
-            sensor: false,
+            sensed: false,
+            passes: false,
+            approach: 0.0,
         }
     }
 
     /// Whether the solver has to do with it.
     pub fn pushes(&self) -> bool {
-        self.manifold.count > 0 && !self.sensor
+        self.manifold.count > 0 && self.effect == Effect::Push
+    }
+
+    /// Surfaces overlap or touch, to rounding.
+    pub fn overlaps(&self) -> bool {
+        self.manifold.points().iter().any(|point| point.separation <= 0.0)
+    }
+
+    /// It pushed in the last step in which it was looked at.
+    pub fn has_pushed(&self) -> bool {
+        self.impulses().any(|(_, impulse)| impulse > 0.0)
+    }
+
+    /// Where its points are, and all that they got along the normal in the last step, N·s.
+    pub fn impulses(&self) -> impl Iterator<Item = (Vec3, f32)> {
+        let points = self.manifold.points().iter().zip(&self.memory.points);
+        points.map(|(point, impulse)| (point.position, impulse.total))
+    }
+
+    /// What its two surfaces are to each other, as the bodies lie now.
+    pub fn material(&self, bodies: &Arena<Body>) -> ContactMaterial {
+        let sides = [(self.key.a, self.key.shape_a), (self.key.b, self.key.shape_b)];
+        let sides = sides.map(|(body, shape)| (bodies.at(body), shape as usize));
+        let [a, b] = sides.map(|(body, shape)| &body.surface(shape).material);
+        let mut material = ContactMaterial::of(a, b);
+        if a.runs() || b.runs() {
+            let center = self.manifold.center();
+            let [a, b] = sides.map(|(body, shape)| body.surface_velocity(shape, center));
+            material.velocity = b.linear - a.linear;
+            material.spin = b.angular - a.angular;
+        }
+        material
     }
 }
 
 /// The parts of one pair after those of another.
 pub(crate) fn pairs_of(contacts: &mut [Contact]) -> impl Iterator<Item = &mut [Contact]> {
     contacts.chunk_by_mut(|one, other| one.key.is_of_pair(other.key))
-}
-
-/// Combined surface of two materials.
-pub(crate) fn combine(a: &Material, b: &Material) -> Material {
-    Material {
-        friction: (a.friction * b.friction).sqrt(),
-        restitution: max(a.restitution, b.restitution),
-        rolling: max(a.rolling, b.rolling),
-    }
 }
 
 /// Length that contacts are scaled by: 5 mm, or 2 % of the smallest extent of either shape, so that small props are as

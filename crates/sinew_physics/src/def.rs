@@ -24,6 +24,9 @@ pub struct WorldDef {
     /// Most that a body turns within a substep, radians, likewise. Beyond a quarter of a turn (the default, 377 rad/s at
     /// 1/60 s and 4 substeps) rows that are linearised at the substep's start mean little; a top may spin faster.
     pub max_turn: f32,
+    /// How fast two shapes come in along their contact's normal for [a hit](crate::Hit) to be told of, m/s, ≥ 0. Default 1:
+    /// what lies or rolls about tells of none.
+    pub hit_speed: f32,
 }
 
 /// Whether what is at rest is put to sleep.
@@ -69,6 +72,7 @@ impl Default for WorldDef {
             sleep_thresholds: SleepThresholds::default(),
             max_speed: 4000.0,
             max_turn: core::f32::consts::FRAC_PI_2,
+            hit_speed: 1.0,
         }
     }
 }
@@ -99,6 +103,9 @@ impl WorldDef {
         }
         if !(positive(self.max_speed) && positive(self.max_turn)) {
             return Err("the speed limits are positive and finite");
+        }
+        if !(0.0..f32::INFINITY).contains(&self.hit_speed) {
+            return Err("the speed of a hit is not negative, and finite");
         }
         let SleepThresholds { time, distance, angle, speed, spin } = self.sleep_thresholds;
         if !((0.0..f32::INFINITY).contains(&time) && [distance, angle, speed, spin].into_iter().all(positive))

@@ -3,8 +3,11 @@
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::contact::Contact;
+use crate::contact::{Contact, ContactKey};
+use crate::contact_rule::ContactRule;
 use crate::def::BodyKind;
+use crate::events::Events;
+use crate::filter::PairFilter;
 use crate::id::{GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
@@ -14,14 +17,16 @@ use crate::parted::PartedPairs;
 use crate::particles::ParticleGroup;
 use crate::proxies::{Owner, Proxies};
 use crate::ray::Ray;
+use crate::shape::Sensing;
 use crate::solver::{SolvedBody, SolvedJoint};
 use crate::step::StepContext;
-use crate::touch::{Events, id};
+use crate::surface::Surface;
+use crate::touch::id;
 use crate::tree::Sweep;
-use sinew_math::Vec3;
+use sinew_math::{Transform, Vec3, normalize_or};
 
 /// `store`: impulses and joint forces that the next step starts from; particle groups return to the world, where what is not
-/// finite is rolled back.
+/// finite is rolled back; joints that were loaded too much break.
 pub(crate) fn store(
     islands: &mut Islands,
     joints: &mut Arena<Joint>,
@@ -115,7 +120,8 @@ pub(crate) fn continuous(
     bodies: &mut Arena<Body>,
     activity: &Activity,
     broad: &mut BroadPhase,
-    dt: f32,
+    filter: PairFilter<'_>,
+    context: &StepContext<'_>,
 ) {
     for island in islands.iter().filter(|island| island.joints.is_empty()) {
         for &index in island.bodies {
@@ -126,14 +132,14 @@ pub(crate) fn continuous(
                 continue;
             }
             let ray = Ray { origin: body.previous.translation, direction: motion };
-            if let Some(fraction) = first_static_hit(bodies, &broad.proxies, body, &ray) {
+            if let Some(fraction) = first_static_hit(bodies, &broad.proxies, filter, index, &ray) {
                 let back = sinew_math::max(fraction - core / motion.length(), 0.0);
                 let center = ray.at(back);
                 bodies.at_mut(index).world_from_principal.translation = center;
             }
         }
     }
-    broad.proxies.follow(bodies, activity, dt);
+    broad.proxies.follow(bodies, activity, context.dt);
 }
 
 /// Radius of the largest ball about the centre of mass that surely lies inside a body of one shape; 0 if none.
@@ -144,15 +150,24 @@ fn core_radius(body: &Body) -> f32 {
     }
 }
 
-fn first_static_hit(bodies: &Arena<Body>, proxies: &Proxies, mover: &Body, ray: &Ray) -> Option<f32> {
+fn first_static_hit(
+    bodies: &Arena<Body>,
+    proxies: &Proxies,
+    filter: PairFilter<'_>,
+    mover: u32,
+    ray: &Ray,
+) -> Option<f32> {
     let mut first: Option<f32> = None;
+    let own = bodies.at(mover).shapes.len() as u32;
     let sweep = Sweep { origin: ray.origin, direction: ray.direction, half_extents: Vec3::ZERO, limit: 1.0 };
-    proxies.along(&sweep, |Owner { body, shape }| {
-        let (body, shape) = (bodies.at(body), shape as usize);
-        let filter = body.surface(shape).filter;
+    proxies.along(&sweep, |Owner { body: index, shape }| {
+        let body = bodies.at(index);
+        let frame = body.world_from_shape(shape as usize);
+        let meets = |i| filter.lets_meet(bodies, ContactKey::new((mover, i), (index, shape)));
         if body.kind == BodyKind::Static
-            && mover.surfaces.as_slice().iter().any(|own| own.filter.meets(filter))
-            && let Some(hit) = body.shapes[shape].shape.cast_ray(&body.world_from_shape(shape), ray)
+            && stops(body.surface(shape as usize), &frame, ray)
+            && (0..own).any(meets)
+            && let Some(hit) = body.shapes[shape as usize].shape.cast_ray(&frame, ray)
             // A start inside is an overlap that the contacts are working on.
             && hit.fraction > 0.0
             && first.is_none_or(|first| hit.fraction < first)
@@ -162,4 +177,17 @@ fn first_static_hit(bodies: &Arena<Body>, proxies: &Proxies, mover: &Body, ray: 
         first.unwrap_or(1.0)
     });
     first
+}
+
+/// Whether a shape surely stops what comes along a ray. One that a modifier may open is left to the speculative contacts.
+fn stops(s: &Surface, frame: &Transform, ray: &Ray) -> bool {
+    let solid = s.sensing == Sensing::Solid;
+    solid
+        && match s.rule {
+            ContactRule::Push => true,
+            ContactRule::Ghost | ContactRule::Modified { .. } => false,
+            ContactRule::OneWay(one_way) => {
+                one_way.holds(normalize_or(frame.rotation.inverse() * -ray.direction, Vec3::Y))
+            }
+        }
 }

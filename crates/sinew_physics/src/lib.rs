@@ -12,10 +12,15 @@ mod world;
 
 pub mod collide;
 pub mod cook;
+mod events;
+mod filter;
 mod finalize;
+mod hits;
 pub mod hull;
 mod islands;
 mod library;
+mod meetings;
+mod modifiers;
 mod pairs;
 mod parted;
 mod project;
@@ -34,16 +39,19 @@ mod arena;
 mod body;
 pub mod boxes;
 mod contact;
+mod contact_rule;
 pub mod convex;
 mod distance;
 mod draw;
 pub mod id;
 pub mod joint;
 mod mass;
+mod material;
 pub mod object;
 pub mod particles;
 pub mod query;
 pub mod ray;
+mod registered;
 mod revolved;
 pub mod runner;
 pub mod shape;
@@ -51,16 +59,22 @@ mod slices;
 mod snapshot;
 mod spatial;
 mod surface;
+mod surfaces;
 
 pub use body::Velocity;
 pub use boxes::{Aabb, Obb};
+pub use contact::Effect;
+pub use contact_rule::{ContactModifier, ContactRule, ContactSide, FoundContact, OneWay};
 pub use def::{BodyDef, BodyKind, SleepThresholds, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
+pub use events::Events;
 pub use field::{
     Buoyancy, Drag, Explosion, Fade, FieldDef, FieldKind, FieldPoint, Gusts, MutualGravity, Occlusion,
     PointGravity, Region, UniformGravity, Wind,
 };
+pub use filter::{PairFunction, PairSide};
 pub use force::{ForceDef, ForceFrame, ForceId, Wrench};
+pub use hits::Hit;
 pub use hull::{Hull, HullError};
 pub use id::{BodyId, FieldId, GroupId, JointId, ObjectId, ShapeId};
 pub use joint::Reaction;
@@ -69,14 +83,15 @@ pub use joint::def::{
     Spring, Strength,
 };
 pub use library::{DataKind, LoadError};
+pub use material::{Combine, CombineRules, ContactMaterial, Material};
 pub use object::{Corrections, Forces, PhysicsObject, Substep};
 pub use query::{
     BodyHit, BodyKinds, BodyPenetration, BodySurface, ContainsPoint, Energy, Momentum, NearestTo,
     NearestToShape, OverlapWith, PenetrationOf, Probe, Query, QueryFilter, Question, Sensors, ShapeCast,
 };
 pub use runner::{Serial, TaskRunner, Threads};
-pub use shape::{Filter, MassProperties, Material, Sensing, Shape, ShapeDef};
-pub use touch::Events;
+pub use shape::{Filter, MassProperties, Sensing, Shape, ShapeDef};
+pub use surfaces::{BodyContact, ContactPoint};
 pub use triangles::{HeightField, HeightFieldDef, HeightFieldError, Mesh, MeshError};
 pub use update::Update;
 pub use world::World;

@@ -3,8 +3,9 @@
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::contact::{Contact, ContactKey, ordered};
-use crate::def::BodyKind;
+use crate::contact::{Contact, ContactKey};
+use crate::filter::PairFilter;
+use crate::meetings::Meetings;
 use crate::proxies::{Owner, Proxies};
 
 /// The trees, and what pairs are found with.
@@ -17,11 +18,12 @@ pub(crate) struct BroadPhase {
 
 impl BroadPhase {
     /// Brings `contacts` up to date: sorted by key, one for each pair that may meet. Those to which nothing can happen are
-    /// put aside.
+    /// put aside; what touched and is dropped, `meetings` tell of.
     pub fn update(
         &mut self,
         bodies: &Arena<Body>,
-        parted: &[(u32, u32)],
+        filter: PairFilter<'_>,
+        meetings: &mut Meetings,
         contacts: &mut Vec<Contact>,
         activity: &mut Activity,
         dt: f32,
@@ -30,21 +32,34 @@ impl BroadPhase {
         self.proxies.follow(bodies, activity, dt);
         self.keys.clear();
         let keys = &mut self.keys;
-        self.proxies.pairs(bodies, activity, |p, q| {
-            if may_collide(bodies, parted, p, q) {
-                keys.push(key(p, q));
+        let mut visit = |p, q| {
+            let key = key(p, q);
+            if filter.lets_meet(bodies, key) {
+                keys.push(key);
             }
-        });
+        };
+        self.proxies.pairs(bodies, activity, &mut visit);
+        self.proxies.pairs_of_changed(bodies, &meetings.stirred, &mut visit);
         self.keys.sort_unstable();
-        self.merge(bodies, contacts, activity);
+        self.merge(bodies, meetings, contacts, activity);
     }
 
     /// Merges the sorted keys with the sorted contacts: old ones keep their memory, and those that were not found go, or
     /// are put aside where nothing about them can have changed.
-    fn merge(&mut self, bodies: &Arena<Body>, contacts: &mut Vec<Contact>, activity: &mut Activity) {
+    fn merge(
+        &mut self,
+        bodies: &Arena<Body>,
+        meetings: &mut Meetings,
+        contacts: &mut Vec<Contact>,
+        activity: &mut Activity,
+    ) {
+        let lies_still = |index: u32| !bodies.at(index).can_touch() && !bodies.at(index).quarantined;
         let mut part_with = |contact: Contact| {
-            if !bodies.at(contact.key.a).can_touch() && !bodies.at(contact.key.b).can_touch() {
-                activity.put_aside(contact);
+            if lies_still(contact.key.a) && lies_still(contact.key.b) {
+                // What it came in with was not of the step in which it comes back.
+                activity.put_aside(Contact { approach: 0.0, ..contact });
+            } else {
+                meetings.part(bodies, &contact);
             }
         };
         self.next.clear();
@@ -67,20 +82,7 @@ impl BroadPhase {
 }
 
 fn key(p: Owner, q: Owner) -> ContactKey {
-    let (a, b) = if p.body < q.body { (p, q) } else { (q, p) };
-    ContactKey { a: a.body, b: b.body, shape_a: a.shape, shape_b: b.shape, part: 0 }
-}
-
-fn may_collide(bodies: &Arena<Body>, parted: &[(u32, u32)], p: Owner, q: Owner) -> bool {
-    if p.body == q.body {
-        return false;
-    }
-    let (a, b) = (bodies.at(p.body), bodies.at(q.body));
-    (a.kind == BodyKind::Dynamic || b.kind == BodyKind::Dynamic)
-        && a.surface(p.shape as usize).filter.meets(b.surface(q.shape as usize).filter)
-        && !a.quarantined
-        && !b.quarantined
-        && parted.binary_search(&ordered(p.body, q.body)).is_err()
+    ContactKey::new((p.body, p.shape), (q.body, q.shape))
 }
 
 #[cfg(test)]
@@ -89,7 +91,7 @@ mod tests {
 
     use super::*;
     use crate::boxes::{Aabb, Overlap};
-    use crate::def::{BodyDef, WorldDef};
+    use crate::def::{BodyDef, BodyKind, WorldDef};
     use crate::id::BodyId;
     use crate::proxies::MARGIN;
     use crate::shape::{Filter, Shape, ShapeDef};
@@ -108,7 +110,7 @@ mod tests {
         body.shapes[shape].shape.aabb(&body.world_from_shape(shape)).expand(MARGIN + motion)
     }
 
-    fn tried(world: &World, parted: &[(u32, u32)]) -> Vec<ContactKey> {
+    fn tried(world: &World, filter: PairFilter<'_>) -> Vec<ContactKey> {
         let mut keys = Vec::new();
         let dt = world.def.dt();
         for (a, p) in world.bodies.iter() {
@@ -121,7 +123,7 @@ mod tests {
                         (Owner { body: a, shape: shape_a as u32 }, Owner { body: b, shape: shape_b as u32 });
                     if touches
                         && grown(p, shape_a, dt).overlaps(&grown(q, shape_b, dt))
-                        && may_collide(&world.bodies, parted, owner_a, owner_b)
+                        && filter.lets_meet(&world.bodies, key(owner_a, owner_b))
                     {
                         keys.push(key(owner_a, owner_b));
                     }
@@ -181,9 +183,11 @@ mod tests {
     /// What the next step will find, and whether it is what there is to find.
     fn check(world: &mut World, case: usize) -> usize {
         let dt = world.def.dt();
-        let parted = world.parted.of(&world.joints).to_vec();
-        world.broad.update(&world.bodies, &parted, &mut world.contacts, &mut world.activity, dt);
-        let tried = tried(world, &parted);
+        let parted = world.parted.filter(&world.joints).parted.to_vec();
+        let filter = PairFilter { parted: &parted, function: None };
+        let World { bodies, broad, meetings, contacts, activity, .. } = &mut *world;
+        broad.update(bodies, filter, meetings, contacts, activity, dt);
+        let tried = tried(world, filter);
         assert_eq!(world.broad.keys, tried, "case {case}");
         tried.len()
     }

@@ -2,6 +2,7 @@
 
 use crate::arena::Arena;
 use crate::contact::ordered;
+use crate::filter::{PairFilter, PairFunctions};
 use crate::joint::Joint;
 
 /// Those that the user named, and those of joints whose bodies do not collide.
@@ -13,11 +14,14 @@ pub(crate) struct PartedPairs {
     all: Vec<(u32, u32)>,
     /// `all` misses something.
     stale: bool,
+    /// The user's, that part more.
+    pub functions: PairFunctions,
 }
 
 impl PartedPairs {
-    pub fn new(disabled: Vec<(u32, u32)>) -> Self {
-        Self { disabled, all: Vec::new(), stale: true }
+    /// Takes over what a snapshot holds.
+    pub fn restore(&mut self, disabled: Vec<(u32, u32)>, function: Option<u32>) {
+        (self.disabled, self.functions.chosen, self.stale) = (disabled, function, true);
     }
 
     /// Joints came, went, or changed.
@@ -33,14 +37,21 @@ impl PartedPairs {
         self.stale = true;
     }
 
+    pub fn enable(&mut self, a: u32, b: u32) {
+        if let Ok(place) = self.disabled.binary_search(&ordered(a, b)) {
+            self.disabled.remove(place);
+        }
+        self.stale = true;
+    }
+
     /// Forgets a body that is taken out.
     pub fn forget(&mut self, body: u32) {
         self.disabled.retain(|&(a, b)| a != body && b != body);
         self.stale = true;
     }
 
-    /// All of them, ascending.
-    pub fn of(&mut self, joints: &Arena<Joint>) -> &[(u32, u32)] {
+    /// What keeps shapes from meeting.
+    pub fn filter(&mut self, joints: &Arena<Joint>) -> PairFilter<'_> {
         if core::mem::take(&mut self.stale) {
             let jointed = joints.iter().filter(|(_, joint)| joint.parts_bodies());
             self.all.clear();
@@ -49,6 +60,6 @@ impl PartedPairs {
             self.all.sort_unstable();
             self.all.dedup();
         }
-        &self.all
+        PairFilter { parted: &self.all, function: self.functions.function() }
     }
 }

@@ -69,11 +69,10 @@ impl Neighbors {
         self.found.clear();
         let near = |Owner { body, shape }| {
             let body = view.bodies.at(body);
-            let filter = body.surface(shape as usize).filter;
             let frame = body.world_from_shape(shape as usize);
             // What is quarantined still holds what hangs on it, as a fixed point.
             !body.quarantined
-                && filter.meets(group.filter())
+                && body.surface(shape as usize).is_wall_to(group.filter())
                 && body.shapes[shape as usize].shape.aabb(&frame).overlaps(&bounds)
         };
         let _ = view.proxies.overlapping(&bounds, |owner| {

@@ -219,6 +219,29 @@ impl Proxies {
         }
     }
 
+    /// Likewise, pairs of fixed bodies that were changed with what cannot start a contact itself.
+    pub fn pairs_of_changed(
+        &self,
+        bodies: &Arena<Body>,
+        changed: &[u32],
+        mut visit: impl FnMut(Owner, Owner),
+    ) {
+        for &index in changed {
+            let Some(home) = self.home(index).filter(|home| !home.moves) else { continue };
+            for shape in 0..home.count {
+                let reach = grown(bodies.at(index), shape, 0.0);
+                let _ = self.moving.tree.overlapping(&reach, |leaf| {
+                    let other = self.moving.owners[leaf as usize];
+                    let body = bodies.at(other.body);
+                    if !body.can_touch() && overlap(&reach, &grown(body, other.shape, 0.0)) {
+                        visit(Owner { body: index, shape }, other);
+                    }
+                    ControlFlow::<()>::Continue(())
+                });
+            }
+        }
+    }
+
     /// What the bounds of a shape of a body meet, but for what finds this one.
     fn meeting(&self, bodies: &Arena<Body>, index: u32, reach: &Aabb, mut visit: impl FnMut(Owner)) {
         let mut visit_if = |other: Owner, its: &Aabb| {

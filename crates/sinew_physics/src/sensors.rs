@@ -1,15 +1,32 @@
-//! `sensors`: who is inside whom, as events.
+//! `sensors`: who is inside whom, and who was hit, as events.
 
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::contact::{Contact, pairs_of};
-use crate::touch::{Events, note_change};
+use crate::contact::{Contact, Effect, pairs_of};
+use crate::events::Events;
+use crate::meetings::{Meetings, Told, touch_of};
 
-/// Compares each sensor pair with the step before.
-pub(crate) fn sensors(bodies: &Arena<Body>, contacts: &mut [Contact], events: &mut Events) {
-    events.sensor_begin.clear();
-    events.sensor_end.clear();
-    for pair in pairs_of(contacts).filter(|pair| pair[0].sensor) {
-        note_change(bodies, pair, &mut events.sensor_begin, &mut events.sensor_end);
+/// Compares the sensor pairs with those of the step before, and tells of hits faster than `hit_speed` (m/s). All that the
+/// user changed since has been looked at now.
+pub(crate) fn sensors(
+    bodies: &mut Arena<Body>,
+    contacts: &mut [Contact],
+    meetings: &mut Meetings,
+    hit_speed: f32,
+    events: &mut Events,
+) {
+    let sensed = &mut meetings.sensed;
+    sensed.start(contacts.len());
+    for pair in pairs_of(contacts) {
+        let was = pair.iter().any(|contact| contact.sensed);
+        let is = pair[0].effect == Effect::Sense && pair.iter().any(Contact::overlaps);
+        sensed.note(touch_of(bodies, &pair[0]), was, is);
+        pair.iter_mut().for_each(|contact| contact.sensed = is);
     }
+    sensed.tell(
+        Told { bodies: &mut events.sensor_begin, shapes: &mut events.sensor_shapes_begin },
+        Told { bodies: &mut events.sensor_end, shapes: &mut events.sensor_shapes_end },
+    );
+    meetings.hits.tell(bodies, contacts, hit_speed, &mut events.hits);
+    meetings.settle(bodies);
 }

@@ -1,7 +1,9 @@
-//! Collision shapes, what they are made of, and whom they meet.
+//! Collision shapes, and whom they meet.
 
 use crate::boxes::Aabb;
+use crate::contact_rule::ContactRule;
 use crate::hull::Hull;
+use crate::material::Material;
 use crate::triangles::{HeightField, Mesh};
 use sinew_math::{Sym3, Transform, Vec3, abs3, max, max3, min};
 use std::sync::Arc;
@@ -153,23 +155,6 @@ fn reach(bounds: &Aabb) -> f32 {
     max3(abs3(bounds.min), abs3(bounds.max)).length()
 }
 
-/// Surface: friction and bounce. Pairs combine: geometric mean of frictions, larger restitution, larger rolling.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material {
-    /// Coulomb coefficient, ≥ 0. Default 0.6.
-    pub friction: f32,
-    /// Share of the approach speed given back, 0..=1. Default 0.
-    pub restitution: f32,
-    /// Rolling resistance: lever of the resisting torque, metres. Default 0.
-    pub rolling: f32,
-}
-
-impl Default for Material {
-    fn default() -> Self {
-        Self { friction: 0.6, restitution: 0.0, rolling: 0.0 }
-    }
-}
-
 /// Two shapes meet if each one's mask holds the other's layer, and they are not in the same negative group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Filter {
@@ -184,22 +169,6 @@ pub struct Filter {
 impl Default for Filter {
     fn default() -> Self {
         Self { layers: 1, mask: u32::MAX, group: 0 }
-    }
-}
-
-impl Material {
-    /// Whether its numbers make sense; the phrase says what is wrong.
-    ///
-    /// # Errors
-    /// What is wrong, in lower case.
-    pub fn check(&self) -> Result<(), &'static str> {
-        // Written so that NaN fails.
-        let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
-        if not_negative(self.friction) && not_negative(self.rolling) && not_negative(self.restitution) {
-            Ok(())
-        } else {
-            Err("friction, restitution and rolling must not be negative, and finite")
-        }
     }
 }
 
@@ -228,6 +197,8 @@ pub struct ShapeDef {
     pub filter: Filter,
     /// Whether it pushes.
     pub sensing: Sensing,
+    /// What becomes of its contacts. Default: as they are.
+    pub rule: ContactRule,
 }
 
 /// What a shape does to those it meets.
@@ -248,6 +219,7 @@ impl ShapeDef {
     pub fn check(&self) -> Result<(), &'static str> {
         self.shape.check()?;
         self.material.check()?;
+        self.rule.check()?;
         let placed = self.body_from_shape.is_finite();
         // Written so that NaN fails.
         let dense = (0.0..f32::INFINITY).contains(&self.density);
@@ -267,6 +239,7 @@ impl ShapeDef {
             material: Material::default(),
             filter: Filter::default(),
             sensing: Sensing::Solid,
+            rule: ContactRule::Push,
         }
     }
 }

@@ -4,22 +4,24 @@ use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::{Body, BodyShape, Rest, Velocity};
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
-use crate::contact::{Contact, ContactKey, ContactMemory, PointImpulse};
+use crate::contact::{Contact, ContactKey, ContactMemory, Effect, PointImpulse};
+use crate::contact_rule::{ContactRule, OneWay};
 use crate::def::{BodyKind, SleepThresholds, Sleeping, WorldDef};
+use crate::events::Events;
 use crate::field::FieldDef;
 use crate::force::BodyForces;
 use crate::joint::Joint;
 use crate::library::{DataKind, LoadError, ShapeLibrary};
-use crate::parted::PartedPairs;
+use crate::material::{Combine, CombineRules, Material};
+use crate::meetings::Meetings;
 use crate::particles::{AttachmentTarget, ParticleGroup};
-use crate::shape::{Filter, Material, Sensing, Shape};
+use crate::shape::{Filter, Sensing, Shape};
 use crate::surface::{Surface, Surfaces};
-use crate::touch::Events;
 use crate::world::World;
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
 /// First bytes of a snapshot; the last is its version.
-const MAGIC: &[u8; 8] = b"sinew-w\x05";
+const MAGIC: &[u8; 8] = b"sinew-w\x06";
 /// A thousand steps a second for 280,000 years.
 const MOST_STEPS: u64 = 1 << 53;
 
@@ -43,6 +45,8 @@ impl World {
             w.u32(a);
             w.u32(b);
         }
+        self.meetings.save(w);
+        save_option(w, self.parted.functions.chosen, Writer::u32);
         self.objects.save(w);
     }
 
@@ -53,9 +57,9 @@ impl World {
     /// since are dropped.
     ///
     /// # Errors
-    /// If the bytes are not a snapshot of this version, a shape with data is named that the world was never given, a field
-    /// names a function that is not registered, or an object is not there whose kind was not registered; the world is then
-    /// as it was.
+    /// If the bytes are not a snapshot of this version, a shape with data is named that the world was never given, a field, a
+    /// shape or the world names a function that is not registered, or an object is not there whose kind was not registered;
+    /// the world is then as it was.
     ///
     /// # Panics
     /// If an object does not take the state that it wrote itself.
@@ -68,7 +72,8 @@ impl World {
         if steps > MOST_STEPS {
             return Err(r.error("more steps than any world takes").into());
         }
-        let bodies = Arena::load(r, |r| load_body(r, &self.library))?;
+        let mut bodies = Arena::load(r, |r| load_body(r, &self.library))?;
+        self.check_rules(r, &bodies)?;
         let joints = Arena::load(r, |r| {
             let (a, b) = (body_index(r, &bodies)?, body_index(r, &bodies)?);
             Joint::load(r, a, b)
@@ -91,16 +96,31 @@ impl World {
         if !disabled.is_sorted() {
             return Err(r.error("disabled pairs are out of order").into());
         }
+        let meetings = Meetings::load(r, &mut bodies)?;
+        let pair_function = load_option(r, Reader::u32)?;
+        if !pair_function.is_none_or(|number| self.parted.functions.registered.has(number)) {
+            return Err(r.error("names a pair function that is not registered").into());
+        }
         self.objects.load(r)?;
         self.def = def;
         (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
         self.activity = Activity::new(&bodies, &joints);
         (self.bodies, self.joints, self.contacts) = (bodies, joints, contacts);
-        self.parted = PartedPairs::new(disabled);
+        self.parted.restore(disabled, pair_function);
+        let modifiers = core::mem::take(&mut self.meetings.modifiers);
+        self.meetings = Meetings { modifiers, ..meetings };
         (self.groups, self.fields) = (groups, fields);
         self.events = Events::default();
         self.broad.proxies.adopt(&self.bodies);
         Ok(())
+    }
+
+    fn check_rules(&self, r: &Reader<'_>, bodies: &Arena<Body>) -> Result<(), ReadError> {
+        let mut surfaces = bodies.iter().flat_map(|(_, body)| body.surfaces.as_slice());
+        if surfaces.all(|surface| self.knows_rule(surface.rule)) {
+            return Ok(());
+        }
+        Err(r.error("names a modifier that is not registered"))
     }
 
     /// Hash of the snapshot's bytes.
@@ -142,6 +162,7 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
     [time, distance, angle, speed, spin].into_iter().for_each(|x| w.f32(x));
     w.f32(def.max_speed);
     w.f32(def.max_turn);
+    w.f32(def.hit_speed);
 }
 
 fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
@@ -155,7 +176,7 @@ fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
         speed: r.f32()?,
         spin: r.f32()?,
     };
-    let (max_speed, max_turn) = (r.f32()?, r.f32()?);
+    let (max_speed, max_turn, hit_speed) = (r.f32()?, r.f32()?, r.f32()?);
     let def = WorldDef {
         gravity,
         step_nanoseconds,
@@ -165,6 +186,7 @@ fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
         sleep_thresholds,
         max_speed,
         max_turn,
+        hit_speed,
     };
     def.check().map_err(|what| r.error(what))?;
     Ok(def)
@@ -271,6 +293,7 @@ fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadErr
         sleeping,
         place,
         quarantined,
+        stirred: false,
         user_data,
     })
 }
@@ -298,6 +321,7 @@ fn save_surface(w: &mut Writer, surface: &Surface) {
     save_material(w, surface.material);
     save_filter(w, surface.filter);
     w.bool(surface.sensing == Sensing::Sensor);
+    save_rule(w, surface.rule);
 }
 
 fn load_surface(r: &mut Reader<'_>) -> Result<Surface, ReadError> {
@@ -306,6 +330,7 @@ fn load_surface(r: &mut Reader<'_>) -> Result<Surface, ReadError> {
         material: load_material(r)?,
         filter: load_filter(r)?,
         sensing: if r.bool()? { Sensing::Sensor } else { Sensing::Solid },
+        rule: load_rule(r)?,
     };
     if surface.density.is_finite() { Ok(surface) } else { Err(r.error("a density is not finite")) }
 }
@@ -383,14 +408,93 @@ pub(crate) fn load_geometry(r: &mut Reader<'_>, library: &ShapeLibrary) -> Resul
     Ok(shape)
 }
 
+fn save_rule(w: &mut Writer, rule: ContactRule) {
+    match rule {
+        ContactRule::Push => w.u8(0),
+        ContactRule::Ghost => w.u8(1),
+        ContactRule::OneWay(OneWay { direction, tolerance }) => {
+            w.u8(2);
+            w.vec3(direction);
+            w.f32(tolerance);
+        }
+        ContactRule::Modified { modifier } => {
+            w.u8(3);
+            w.u32(modifier);
+        }
+    }
+}
+
+fn load_rule(r: &mut Reader<'_>) -> Result<ContactRule, ReadError> {
+    let rule = match r.u8()? {
+        0 => ContactRule::Push,
+        1 => ContactRule::Ghost,
+        2 => ContactRule::OneWay(OneWay { direction: r.vec3()?, tolerance: r.f32()? }),
+        3 => ContactRule::Modified { modifier: r.u32()? },
+        _ => return Err(r.error("unknown contact rule")),
+    };
+    rule.check().map_err(|what| r.error(what))?;
+    Ok(rule)
+}
+
+fn save_option<T>(w: &mut Writer, value: Option<T>, save: impl FnOnce(&mut Writer, T)) {
+    w.bool(value.is_some());
+    if let Some(value) = value {
+        save(w, value);
+    }
+}
+
+fn load_option<'a, T>(
+    r: &mut Reader<'a>,
+    load: impl FnOnce(&mut Reader<'a>) -> Result<T, ReadError>,
+) -> Result<Option<T>, ReadError> {
+    if r.bool()? { load(r).map(Some) } else { Ok(None) }
+}
+
+fn load_combine(r: &mut Reader<'_>) -> Result<Combine, ReadError> {
+    match r.u8()? {
+        0 => Ok(Combine::Average),
+        1 => Ok(Combine::GeometricMean),
+        2 => Ok(Combine::Minimum),
+        3 => Ok(Combine::Multiply),
+        4 => Ok(Combine::Maximum),
+        _ => Err(r.error("unknown combine rule")),
+    }
+}
+
 pub(crate) fn save_material(w: &mut Writer, material: Material) {
     w.f32(material.friction);
     w.f32(material.restitution);
     w.f32(material.rolling);
+    save_option(w, material.static_friction, Writer::f32);
+    w.bool(material.runs());
+    if material.runs() {
+        w.vec3(material.surface_velocity);
+        w.vec3(material.surface_spin);
+    }
+    let CombineRules { friction, restitution, rolling } = material.combine;
+    for rule in [friction, restitution, rolling] {
+        save_option(w, rule, |w, rule| w.u8(rule as u8));
+    }
+    w.u32(material.tag);
 }
 
 pub(crate) fn load_material(r: &mut Reader<'_>) -> Result<Material, ReadError> {
-    let material = Material { friction: r.f32()?, restitution: r.f32()?, rolling: r.f32()? };
+    let (friction, restitution, rolling) = (r.f32()?, r.f32()?, r.f32()?);
+    let static_friction = load_option(r, Reader::f32)?;
+    let (surface_velocity, surface_spin) =
+        if r.bool()? { (r.vec3()?, r.vec3()?) } else { Default::default() };
+    let mut rule = || load_option(r, load_combine);
+    let combine = CombineRules { friction: rule()?, restitution: rule()?, rolling: rule()? };
+    let material = Material {
+        friction,
+        static_friction,
+        restitution,
+        rolling,
+        surface_velocity,
+        surface_spin,
+        combine,
+        tag: r.u32()?,
+    };
     material.check().map_err(|what| r.error(what))?;
     Ok(material)
 }
@@ -410,8 +514,10 @@ fn save_contact(w: &mut Writer, contact: &Contact) {
     for x in [a, b, shape_a, shape_b, part] {
         w.u32(x);
     }
+    w.u8(contact.effect as u8);
     w.bool(contact.touching);
-    w.bool(contact.sensor);
+    w.bool(contact.sensed);
+    w.bool(contact.passes);
     w.vec3(contact.manifold.normal);
     w.count(contact.manifold.count);
     for (point, impulse) in contact.manifold.points().iter().zip(&contact.memory.points) {
@@ -421,10 +527,12 @@ fn save_contact(w: &mut Writer, contact: &Contact) {
         w.f32(impulse.now);
         w.f32(impulse.before);
         w.f32(impulse.lasting);
+        w.f32(impulse.total);
     }
     w.vec3(contact.memory.friction);
     w.f32(contact.memory.twist);
     w.vec3(contact.memory.rolling);
+    w.vec3(contact.memory.total_friction);
 }
 
 fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, ReadError> {
@@ -434,7 +542,13 @@ fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, Rea
     if key.shape_a >= shapes(a) || key.shape_b >= shapes(b) {
         return Err(r.error("a contact names a shape that is not there"));
     }
-    let (touching, sensor) = (r.bool()?, r.bool()?);
+    let effect = match r.u8()? {
+        0 => Effect::Push,
+        1 => Effect::Sense,
+        2 => Effect::Pass,
+        _ => return Err(r.error("unknown effect of a contact")),
+    };
+    let (touching, sensed, passes) = (r.bool()?, r.bool()?, r.bool()?);
     let mut manifold = Manifold { normal: r.vec3()?, ..Manifold::default() };
     manifold.count = r.count(24)?;
     if manifold.count > MAX_POINTS {
@@ -443,13 +557,15 @@ fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, Rea
     let mut memory = ContactMemory::default();
     for i in 0..manifold.count {
         manifold.points[i] = ManifoldPoint { position: r.vec3()?, separation: r.f32()?, feature: r.u32()? };
-        memory.points[i] = PointImpulse { now: r.f32()?, before: r.f32()?, lasting: r.f32()? };
+        let (now, before, lasting, total) = (r.f32()?, r.f32()?, r.f32()?, r.f32()?);
+        memory.points[i] = PointImpulse { now, before, lasting, total };
     }
     let friction: Vec3 = r.vec3()?;
     memory.friction = friction;
     memory.twist = r.f32()?;
     memory.rolling = r.vec3()?;
-    Ok(Contact { key, manifold, memory, touching, sensor })
+    memory.total_friction = r.vec3()?;
+    Ok(Contact { manifold, memory, effect, touching, sensed, passes, ..Contact::new(key) })
 }
 
 fn load_group(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<ParticleGroup, ReadError> {
@@ -465,7 +581,7 @@ fn load_group(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<ParticleGroup,
     }
 }
 
-fn body_index(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<u32, ReadError> {
+pub(crate) fn body_index(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<u32, ReadError> {
     let index = r.u32()?;
     let there =
         (index as usize) < bodies.slot_count() && bodies.get(index, bodies.generation(index)).is_some();

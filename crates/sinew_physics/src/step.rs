@@ -25,20 +25,19 @@ pub(crate) struct StepContext<'a> {
 pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
     let World { def, bodies, joints, contacts, groups, objects, .. } = world;
-    let World { events, broad, parts, activity, islands, parted, sleepers, .. } = world;
+    let World { events, broad, parts, activity, islands, parted, sleepers, meetings, .. } = world;
     let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
 
     stage(Stage::Pairs, &mut || {
         activity.wake_struck(bodies, groups, &broad.proxies, def);
-        broad.update(bodies, parted.of(joints), contacts, activity, context.dt);
+        broad.update(bodies, parted.filter(joints), meetings, contacts, activity, context.dt);
     });
     stage(Stage::Collide, &mut || touch::collide(bodies, contacts, parts, context));
-    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, events));
-    let proxies = &broad.proxies;
-    let view = View { bodies, activity, proxies, joints, contacts, def, fields, h: context.h };
+    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, meetings, events));
+    let (proxies, modifiers) = (&broad.proxies, &meetings.modifiers);
+    let view = View { bodies, activity, proxies, joints, contacts, modifiers, def, fields, h: context.h };
     stage(Stage::Islands, &mut || islands.find(&view, groups));
     stage(Stage::Color, &mut || islands.color(bodies, contacts));
-
     if objects.is_empty() {
         let all = || Phase::of_step(context.substeps);
         islands.run(context.runner, |task| all().for_each(|phase| solve(phase, task, &view, context)));
@@ -49,9 +48,10 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
 
     stage(Stage::Store, &mut || finalize::store(islands, joints, parted, contacts, groups, events, context));
     stage(Stage::Finalize, &mut || finalize::finalize(islands, bodies, activity, events, context));
-    stage(Stage::Continuous, &mut || finalize::continuous(islands, bodies, activity, broad, context.dt));
+    let filter = parted.filter(joints);
+    stage(Stage::Continuous, &mut || finalize::continuous(islands, bodies, activity, broad, filter, context));
     stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, activity, &fields, sleepers, def));
-    stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, events));
+    stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, def.hit_speed, events));
 }
 
 /// A part of an island's step, which goes on where the part before ended.

@@ -1,6 +1,8 @@
 //! What the shapes of a body are besides geometry. Most share it with others of their body, so that it is kept once.
 
-use crate::shape::{Filter, Material, Sensing, ShapeDef};
+use crate::contact_rule::ContactRule;
+use crate::material::Material;
+use crate::shape::{Filter, Sensing, ShapeDef};
 
 /// Everything about a shape but its geometry and place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,6 +12,7 @@ pub(crate) struct Surface {
     pub material: Material,
     pub filter: Filter,
     pub sensing: Sensing,
+    pub rule: ContactRule,
 }
 
 /// The different surfaces of a body's shapes, in the order in which they came.
@@ -22,7 +25,13 @@ const LOOK_BACK: usize = 16;
 
 impl Surface {
     pub fn of(def: &ShapeDef) -> Self {
-        Self { density: def.density, material: def.material, filter: def.filter, sensing: def.sensing }
+        let &ShapeDef { density, material, filter, sensing, rule, .. } = def;
+        Self { density, material, filter, sensing, rule }
+    }
+
+    /// Whether particles with a filter cannot get through: a one-way shape and one with a modifier are walls to them.
+    pub fn is_wall_to(&self, filter: Filter) -> bool {
+        self.sensing == Sensing::Solid && self.rule != ContactRule::Ghost && self.filter.meets(filter)
     }
 }
 
@@ -45,6 +54,11 @@ impl Surfaces {
     /// No more memory than they need.
     pub fn shrink(&mut self) {
         self.0.shrink_to_fit();
+    }
+
+    /// Changes one that no other shape has.
+    pub fn set(&mut self, number: u32, surface: Surface) {
+        self.0[number as usize] = surface;
     }
 
     pub fn as_slice(&self) -> &[Surface] {

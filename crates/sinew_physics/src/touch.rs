@@ -1,38 +1,25 @@
-//! `collide` and `touch`: manifolds of all near pairs, then who began and stopped touching, and who wakes.
+//! `collide` and `touch`: manifolds of all near pairs, then what they do, who began and stopped touching, and who wakes.
 
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::collide::parts::Parts;
-use crate::collide::{Manifold, Motion, collide as narrow_phase};
-use crate::contact::{Contact, ContactKey, pairs_of, slop};
+use crate::collide::{Manifold, ManifoldPoint, Motion, collide as narrow_phase};
+use crate::contact::{Contact, ContactKey, ContactMemory, Effect, pairs_of, slop};
+use crate::contact_rule::ContactRule;
 use crate::def::BodyKind;
+use crate::events::Events;
 use crate::field::Fields;
-use crate::id::{BodyId, GroupId, JointId};
+use crate::id::BodyId;
 use crate::joint::Joint;
+use crate::meetings::{Meetings, Told, touch_of};
 use crate::shape::Sensing;
 use crate::slices::for_each_mut;
 use crate::step::StepContext;
 use sinew_math::{max, min};
 
-/// What happened in the last step, in the order of body indices.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Events {
-    /// Pairs of bodies that began to touch.
-    pub begin: Vec<(BodyId, BodyId)>,
-    /// Pairs of bodies that stopped.
-    pub end: Vec<(BodyId, BodyId)>,
-    /// Pairs of bodies of which one began to be inside a sensor of the other.
-    pub sensor_begin: Vec<(BodyId, BodyId)>,
-    /// Likewise, ended.
-    pub sensor_end: Vec<(BodyId, BodyId)>,
-    /// Bodies whose state became non-finite: rolled back to the step before, stopped and taken out of the simulation.
-    pub quarantined: Vec<BodyId>,
-    /// Groups with particles whose state became non-finite: those stopped where they were before the step.
-    pub rolled_back: Vec<GroupId>,
-    /// Joints that broke, in the order of joint indices. They are there, but disabled.
-    pub broken: Vec<JointId>,
-}
+/// Gap within which two shapes that touched go on touching, as a share of their slop.
+const LINGER: f32 = 0.1;
 
 /// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
 pub(crate) fn collide(
@@ -46,9 +33,9 @@ pub(crate) fn collide(
         if !a.can_touch() && !b.can_touch() {
             return;
         }
+        contact.pushed = contact.has_pushed();
         let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
         let (shape_a, shape_b) = (&a.shapes[sa].shape, &b.shapes[sb].shape);
-        contact.sensor = a.surface(sa).sensing == Sensing::Sensor || b.surface(sb).sensing == Sensing::Sensor;
         if shape_a.surface().is_some() || shape_b.surface().is_some() {
             return;
         }
@@ -66,18 +53,30 @@ pub(crate) fn collide(
         contact.manifold = manifold;
     });
     parts.update(bodies, contacts, context, |contact| surface_motion(bodies, contact, context.dt));
+    for_each_mut(context.runner, contacts, |contact| {
+        let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
+        contact.approach = 0.0;
+        if a.can_touch() || b.can_touch() {
+            contact.approach = approach_of(a, b, &contact.manifold);
+            rule(contact, a, b);
+        }
+    });
 }
 
 /// How far apart points of two shapes are looked for, metres.
 fn margin(a: &Body, b: &Body, key: ContactKey, dt: f32) -> f32 {
-    let (shape_a, shape_b) = (&a.shapes[key.shape_a as usize].shape, &b.shapes[key.shape_b as usize].shape);
-    let extent = min(shape_a.smallest_extent(), shape_b.smallest_extent());
     // Beside their approach: two that move together may not do so any more once one of them is hit.
     let (va, vb) = (a.velocity.linear, b.velocity.linear);
     let approach = max((va - vb).length(), max(va.length(), vb.length()))
         + a.velocity.angular.length() * a.reach()
         + b.velocity.angular.length() * b.reach();
-    max(4.0 * slop(extent), approach * dt)
+    max(4.0 * slop(smallest_extent(a, b, key)), approach * dt)
+}
+
+/// Of the two shapes, metres.
+fn smallest_extent(a: &Body, b: &Body, key: ContactKey) -> f32 {
+    let (shape_a, shape_b) = (&a.shapes[key.shape_a as usize].shape, &b.shapes[key.shape_b as usize].shape);
+    min(shape_a.smallest_extent(), shape_b.smallest_extent())
 }
 
 /// How a pair moves of which one is a surface, the other toward the surface; `None` of other pairs, and of those at rest.
@@ -98,45 +97,96 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Mo
     Some(Motion { velocity: speed(mover) - speed(ground), dt, margin: margin(a, b, key, dt) })
 }
 
-/// `touch`: events, and waking of what an awake body touches or attracts, or a moving kinematic one holds. What wakes
-/// comes with its contacts.
+/// How fast the points come in, m/s; the fastest counts.
+fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
+    manifold.points().iter().fold(0.0, |fastest, point| {
+        let p = point.position;
+        let relative = b.velocity.at(p - b.center()) - a.velocity.at(p - a.center());
+        max(fastest, -relative.dot(manifold.normal))
+    })
+}
+
+/// What the contact does, as far as its shapes say.
+fn rule(contact: &mut Contact, a: &Body, b: &Body) {
+    let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
+    contact.effect = Effect::Push;
+    contact.one_way = false;
+    let normal = contact.manifold.normal;
+    for (body, shape, away) in [(a, sa, normal), (b, sb, -normal)] {
+        match body.surface(shape).rule {
+            ContactRule::Push | ContactRule::Modified { .. } => {}
+            ContactRule::Ghost => contact.effect = Effect::Pass,
+            ContactRule::OneWay(one_way) => {
+                contact.one_way = true;
+                let away = body.world_from_shape(shape).rotation.inverse() * away;
+                if contact.manifold.count > 0 && !one_way.holds(away) {
+                    contact.effect = Effect::Pass;
+                }
+            }
+        }
+    }
+    if [a.surface(sa), b.surface(sb)].into_iter().any(|s| s.sensing == Sensing::Sensor) {
+        contact.effect = Effect::Sense;
+    }
+}
+
+/// `touch`: what contacts do, events, and waking of what an awake body touches or attracts, or a moving kinematic one holds.
+/// What wakes comes with its contacts.
 pub(crate) fn touch(
     bodies: &mut Arena<Body>,
     joints: &Arena<Joint>,
     contacts: &mut Vec<Contact>,
     activity: &mut Activity,
     fields: &Fields<'_>,
+    meetings: &mut Meetings,
     events: &mut Events,
 ) {
-    for list in [&mut events.begin, &mut events.end] {
-        list.clear();
-        // All of them: how many come at once differs from hit to hit.
-        list.reserve(contacts.len());
-    }
+    let touching = &mut meetings.touching;
+    touching.start(contacts.len());
     for pair in pairs_of(contacts) {
-        let (a, b) = (pair[0].key.a, pair[0].key.b);
-        if !pair[0].sensor {
-            note_change(bodies, pair, &mut events.begin, &mut events.end);
-        }
+        agree(pair);
+        let was = pair[0].touching;
+        let is = pair[0].effect != Effect::Sense && touches(bodies, pair);
+        touching.note(touch_of(bodies, &pair[0]), was, is);
+        pair.iter_mut().for_each(|contact| contact.touching = is);
         if pair.iter().any(Contact::pushes) {
-            wake_touched(bodies, activity, a, b);
-            wake_touched(bodies, activity, b, a);
+            wake_touched(bodies, activity, pair);
+        } else {
+            pair.iter_mut().for_each(|contact| contact.memory = ContactMemory::default());
         }
     }
+    touching.tell(
+        Told { bodies: &mut events.begin, shapes: &mut events.shapes_begin },
+        Told { bodies: &mut events.end, shapes: &mut events.shapes_end },
+    );
     wake_held(bodies, joints, activity);
     while let Some(attracted) = fields.next_to_wake(bodies, activity) {
         activity.wake(bodies, attracted);
     }
     activity.return_contacts(contacts);
+    meetings.modifiers.change(bodies, contacts, fields.step);
 }
 
-fn wake_touched(bodies: &mut Arena<Body>, activity: &mut Activity, mover: u32, touched: u32) {
-    let body = bodies.at(mover);
-    match body.kind {
-        BodyKind::Dynamic if body.is_active() => activity.wake(bodies, touched),
-        BodyKind::Kinematic if body.can_touch() => activity.disturb(bodies, touched),
-        _ => {}
+fn wake_touched(bodies: &mut Arena<Body>, activity: &mut Activity, pair: &[Contact]) {
+    let key = pair[0].key;
+    for (mover, touched) in [(key.a, key.b), (key.b, key.a)] {
+        let body = bodies.at(mover);
+        match body.kind {
+            BodyKind::Dynamic if body.is_active() => activity.wake(bodies, touched),
+            BodyKind::Kinematic if !body.velocity.is_zero() => activity.disturb(bodies, touched),
+            BodyKind::Static | BodyKind::Kinematic if body.stirred && is_deep(bodies, pair) => {
+                activity.wake(bodies, touched);
+            }
+            _ => {}
+        }
     }
+}
+
+/// Whether two shapes lie deeper in each other than what rests does.
+fn is_deep(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
+    let key = pair[0].key;
+    let deep = -slop(smallest_extent(bodies.at(key.a), bodies.at(key.b), key));
+    points_of(pair).any(|point| point.separation < deep)
 }
 
 /// What joints hold to a kinematic body that moves.
@@ -155,21 +205,35 @@ fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Act
     }
 }
 
-/// Puts a pair, given by its parts, that began or ceased to touch since it was last looked at into one of the lists.
-pub(crate) fn note_change(
-    bodies: &Arena<Body>,
-    pair: &mut [Contact],
-    begin: &mut Vec<(BodyId, BodyId)>,
-    end: &mut Vec<(BodyId, BodyId)>,
-) {
-    let mut points = pair.iter().flat_map(|part| part.manifold.points());
-    let touching = points.any(|point| point.separation <= 0.0);
-    if touching != pair[0].touching {
-        let list = if touching { begin } else { end };
-        list.push((id(bodies, pair[0].key.a), id(bodies, pair[0].key.b)));
+/// Whether two shapes overlap, or pushed each other in the last step and are still near: what bears a load may do so from a
+/// thousandth of a millimetre away, and what bounced has met although it is gone by now. What touched goes on touching until
+/// there is a gap that is none by rounding.
+fn touches(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
+    let Contact { key, touching, .. } = pair[0];
+    let slop = slop(smallest_extent(bodies.at(key.a), bodies.at(key.b), key));
+    let most = if touching { LINGER * slop } else { 0.0 };
+    let pushed = pair.iter().any(|contact| contact.pushed);
+    points_of(pair).any(|point| pushed || point.separation <= most)
+}
+
+fn points_of(pair: &[Contact]) -> impl Iterator<Item = &ManifoldPoint> {
+    pair.iter().flat_map(|contact| contact.manifold.points())
+}
+
+/// All parts of a pair of shapes do the same: what touched a one-way shape goes on as it did, anything else passes if any
+/// part of it comes from another side.
+fn agree(pair: &mut [Contact]) {
+    if !pair[0].one_way || pair[0].effect == Effect::Sense {
+        return;
     }
-    for part in pair {
-        part.touching = touching;
+    let passes = if pair.iter().any(|contact| contact.touching) {
+        pair.iter().any(|contact| contact.touching && contact.passes)
+    } else {
+        pair.iter().any(|contact| contact.effect == Effect::Pass)
+    };
+    for contact in pair {
+        contact.passes = passes;
+        contact.effect = if passes { Effect::Pass } else { Effect::Push };
     }
 }
 

@@ -6,20 +6,21 @@ use crate::body::{Body, Velocity};
 use crate::collide::parts::Parts;
 use crate::contact::Contact;
 use crate::def::{BodyDef, BodyKind, WorldDef};
+use crate::events::Events;
 use crate::field::{FieldDef, Functions};
 use crate::id::{BodyId, GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
 use crate::library::ShapeLibrary;
+use crate::meetings::Meetings;
 use crate::object::Objects;
 use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
 use crate::particles::{AttachmentTarget, GroupDef, ParticleGroup};
 use crate::runner::{Serial, TaskRunner};
-use crate::shape::MassProperties;
+use crate::shape::{MassProperties, Sensing};
 use crate::stage::{NoProfiler, Profiler};
 use crate::step::{StepContext, step};
-use crate::touch::Events;
 use sinew_math::{Transform, Vec3};
 
 /// Bodies and joints, stepped at a fixed rate.
@@ -40,6 +41,7 @@ pub struct World {
     pub(crate) library: ShapeLibrary,
     pub(crate) objects: Objects,
     pub(crate) parted: PartedPairs,
+    pub(crate) meetings: Meetings,
     pub(crate) events: Events,
     pub(crate) broad: BroadPhase,
     pub(crate) parts: Parts,
@@ -73,6 +75,7 @@ impl World {
             library: ShapeLibrary::default(),
             objects: Objects::default(),
             parted: PartedPairs::default(),
+            meetings: Meetings::default(),
             events: Events::default(),
             broad: BroadPhase::default(),
             parts: Parts::default(),
@@ -92,15 +95,23 @@ impl World {
     /// Adds a body.
     ///
     /// # Panics
-    /// If a number is not finite, a shape is not valid, or a dynamic body has no mass.
+    /// If a number is not finite, a shape is not valid or names a modifier that is not registered, or a dynamic body has no
+    /// mass.
     pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
+        def.shapes.iter().for_each(|shape| self.expect_modifier(shape.rule));
         let (index, generation) = self.bodies.insert(Body::new(def));
         for shape in &def.shapes {
             self.library.keep(&shape.shape);
         }
         self.activity.add(index, self.bodies.at(index));
         self.broad.proxies.add(index, self.bodies.at(index));
-        BodyId { index, generation }
+        let id = BodyId { index, generation };
+        let senses = def.shapes.iter().any(|shape| shape.sensing == Sensing::Sensor);
+        if senses || def.kind == BodyKind::Kinematic || self.sleepers > 0 {
+            // It may be around what does not move by itself.
+            self.look_anew(id);
+        }
+        id
     }
 
     /// Takes a body out, with its joints; what it touched wakes.
@@ -118,8 +129,11 @@ impl World {
         for joint in joints {
             self.remove_joint(joint);
         }
-        self.contacts.retain(|contact| !contact.key.has(id.index));
-        self.activity.remove(id.index);
+        self.meetings.stirred.retain(|&index| index != id.index);
+        for contact in self.contacts.extract_if(.., |contact| contact.key.has(id.index)) {
+            self.meetings.part(&self.bodies, &contact);
+        }
+        self.activity.remove(id.index, |contact| self.meetings.part(&self.bodies, &contact));
         self.parted.forget(id.index);
         self.bodies.remove(id.index, id.generation);
         self.broad.proxies.remove(id.index);
@@ -159,17 +173,6 @@ impl World {
     /// All particle groups, by index.
     pub fn group_ids(&self) -> impl Iterator<Item = GroupId> {
         self.groups.iter().map(|(index, _)| GroupId { index, generation: self.groups.generation(index) })
-    }
-
-    /// From now on two bodies pass through each other; if they touch, both wake.
-    pub fn disable_pair(&mut self, a: BodyId, b: BodyId) {
-        self.expect(a);
-        self.expect(b);
-        if self.contacts_of(a.index).any(|contact| contact.pushes() && contact.key.has(b.index)) {
-            self.wake_body(a.index);
-            self.wake_body(b.index);
-        }
-        self.parted.disable(a.index, b.index);
     }
 
     /// One step on the calling thread.
@@ -232,7 +235,12 @@ impl World {
     pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
         assert!(world_from_body.is_finite(), "a body's pose is finite");
         self.expect_mut(id).set_world_from_body(world_from_body);
-        self.wake_neighbors(id.index);
+        self.stir(id);
+        // What it bore where it was says nothing of where it is.
+        let returned = self.activity.returned_mut();
+        for contact in self.contacts.iter_mut().chain(returned).filter(|contact| contact.key.has(id.index)) {
+            contact.memory = contact.memory.of_new_step();
+        }
         self.broad.proxies.place(id.index, self.bodies.at(id.index));
     }
 
@@ -249,10 +257,15 @@ impl World {
     /// Sets the velocity of a dynamic or kinematic body; it wakes.
     pub fn set_velocity(&mut self, id: BodyId, velocity: Velocity) {
         assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "a velocity is finite");
-        self.wake_body(id.index);
         let body = self.expect_mut(id);
+        let stops = velocity.is_zero() && !body.velocity.is_zero();
         body.velocity = velocity;
-        if body.can_touch() {
+        match body.kind {
+            // Where it has come to nothing has looked yet.
+            BodyKind::Kinematic if stops => self.stir(id),
+            _ => self.wake_body(id.index),
+        }
+        if self.bodies.at(id.index).can_touch() {
             self.activity.recall(id.index);
         }
     }

@@ -32,7 +32,7 @@ pub struct Flesh {
 impl Default for Flesh {
     fn default() -> Self {
         Self {
-            material: Material { friction: 0.7, restitution: 0.0, rolling: 0.02 },
+            material: Material { friction: 0.7, rolling: 0.02, ..Material::DEFAULT },
             filter: Filter::default(),
             angular_damping: 0.05,
         }

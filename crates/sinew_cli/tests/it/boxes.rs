@@ -102,11 +102,12 @@ fn bounce_down(house: &[BodyDef]) {
     let mut met: Vec<BodyId> = Vec::new();
     for _ in 0..240 {
         world.step();
-        let center = world.center_of_mass(ball);
-        // By distance: what rolls gently onto a step need not overlap it, and begins no touch then.
-        for other in ids.iter().copied().chain([ground]).filter(|&id| id != ball) {
-            let gap = world.nearest_surface(other, center).map(|nearest| nearest.distance - BALL);
-            if gap.is_some_and(|gap| gap < 1e-4) && !met.contains(&other) {
+        let of_ball = |&(a, b): &(BodyId, BodyId)| match ball {
+            id if id == a => Some(b),
+            id => (id == b).then_some(a),
+        };
+        for other in world.events().begin.iter().filter_map(of_ball) {
+            if !met.contains(&other) {
                 met.push(other);
             }
         }

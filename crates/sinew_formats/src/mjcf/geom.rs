@@ -22,7 +22,19 @@ struct Segment {
     half_length: f32,
 }
 
-const UNREAD: [&str; 7] = ["solref", "solimp", "condim", "margin", "gap", "priority", "solmix"];
+const UNREAD: [&str; 5] = ["solimp", "margin", "gap", "priority", "solmix"];
+
+/// What `condim` lets friction resist, as far as it is read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Resists {
+    Sliding,
+    /// The third number of `friction` counts too.
+    Rolling,
+    Other,
+}
+
+const CONDIM: [(&str, Resists); 4] =
+    [("1", Resists::Other), ("3", Resists::Sliding), ("4", Resists::Other), ("6", Resists::Rolling)];
 
 impl Geom {
     /// From an element and the defaults of its class.
@@ -53,7 +65,7 @@ impl Geom {
             None => read_pose(geom, compiler)?,
         };
         let density = read_density(geom, &shape)?;
-        let material = read_material(geom)?;
+        let material = read_material(geom, notes)?;
         let mass = shape.mass_properties(density).transformed(&body_from_shape);
         let def = ShapeDef { body_from_shape, density, material, filter, ..ShapeDef::new(shape) };
         Ok(Self { shape: Some(def), mass: Some(mass) })
@@ -112,13 +124,44 @@ fn read_density(geom: &Merged<'_, '_>, shape: &Shape) -> Result<f32> {
     }
 }
 
-fn read_material(geom: &Merged<'_, '_>) -> Result<Material> {
+/// Friction of sliding and, if the file asks for it, of rolling; bounce as `solref` has it.
+fn read_material(geom: &Merged<'_, '_>, notes: &mut Notes) -> Result<Material> {
     let friction = geom.get("friction").map_or(Ok(vec![1.0]), Value::list)?;
-    let friction = friction.first().copied().unwrap_or(1.0);
-    if friction < 0.0 {
+    if friction.iter().any(|&coefficient| coefficient < 0.0) {
         return Err(malformed(geom.element, "friction must not be negative"));
     }
-    Ok(Material { friction, ..Material::default() })
+    let resists = geom.get("condim").map_or(Ok(Resists::Sliding), |value| value.word(&CONDIM))?;
+    if resists == Resists::Other {
+        notes.left_out("condim");
+    }
+    let rolling = match resists {
+        Resists::Rolling => friction.get(2).copied().unwrap_or(1e-4),
+        Resists::Sliding | Resists::Other => 0.0,
+    };
+    Ok(Material {
+        friction: friction.first().copied().unwrap_or(1.0),
+        restitution: geom.get("solref").map_or(Ok(0.0), read_restitution)?,
+        rolling,
+        ..Material::default()
+    })
+}
+
+/// Half a period of the damped spring that `solref` makes of a contact: a point that came in with 1 m/s leaves with
+/// `exp(−πζ/√(1 − ζ²))`, nothing if the damping ratio ζ is 1 or more. Two positive numbers are time constant and ζ, two negative
+/// ones stiffness `k` and damping `b` per mass, with `ζ = b/(2√k)`.
+fn read_restitution(solref: Value<'_>) -> Result<f32> {
+    let (first, second) = match solref.list()?[..] {
+        [] => return Ok(0.0),
+        [first] => (first, 1.0),
+        [first, second, ..] => (first, second),
+    };
+    let damping = if first > 0.0 { second } else { -second / (2.0 * (-first).sqrt()) };
+    // Written so that NaN is no bounce.
+    if !(0.0..1.0).contains(&damping) {
+        return Ok(0.0);
+    }
+    let share = damping / (1.0 - damping * damping).sqrt();
+    Ok(sinew_math::trig::exp(-core::f32::consts::PI * share))
 }
 
 /// Two geoms meet if either's `contype` has a bit of the other's `conaffinity`; our two filters must both agree. So each

@@ -1,8 +1,8 @@
 //! Robot and body models in MuJoCo's format MJCF: the part of it that rigid bodies and joints need.
 //!
 //! What is read: bodies with their poses (`pos`, and `quat`, `axisangle`, `euler`, `xyaxes` or `zaxis`), geoms of type
-//! plane, sphere, capsule and box (`size`, `fromto`, `density`, `mass`, sliding friction, `contype`, `conaffinity`),
-//! `<inertial>`, hinges, slides and ball joints (`range`, `ref`, `stiffness`, `springref`, `damping`, `frictionloss`),
+//! plane, sphere, capsule and box (`size`, `fromto`, `density`, `mass`, `friction` of sliding and, with `condim` 6, of rolling,
+//! bounce by the damping ratio of `solref`, `contype`, `conaffinity`), `<inertial>`, hinges, slides and ball joints (`range`, `ref`, `stiffness`, `springref`, `damping`, `frictionloss`),
 //! free joints, `childclass` and default classes, `<exclude>`, keyframes, and of `<compiler>`: `angle`, `eulerseq`,
 //! `autolimits`, `inertiafromgeom`. Metres, kilograms; the file's z up becomes our y up, its x stays x.
 //!

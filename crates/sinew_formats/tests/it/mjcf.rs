@@ -560,3 +560,20 @@ fn springs_and_slides_are_those_of_the_file() {
     let quarter = Rotation::from_axis_angle(Vec3::X, core::f32::consts::FRAC_PI_2);
     assert!(rest.rotation.angle_to(quarter) < 1e-3, "{rest:?}");
 }
+
+/// ζ = 0.2 gives back `exp(−0.2π/√0.96)`, whichever way it is written.
+#[test]
+fn geoms_rub_roll_and_bounce_as_the_file_says() {
+    let material = |attributes: &str| {
+        let model = one_body("", "", &format!("<geom size='.1' {attributes}/>"));
+        model.bodies.iter().flat_map(|body| &body.def.shapes).next().expect("it has a geom").material
+    };
+    assert_eq!(material("").friction, 1.0);
+    let rubber = material("friction='.8 .01 .002' condim='6' solref='.02 .2'");
+    assert_eq!((rubber.friction, rubber.rolling), (0.8, 0.002));
+    assert!((rubber.restitution - 0.526_62).abs() < 1e-4, "{rubber:?}");
+    assert!((material("solref='-400 -8'").restitution - 0.526_62).abs() < 1e-4);
+    assert_eq!(material("friction='.8 .01 .002'").rolling, 0.0);
+    assert_eq!(material("solref='.02 1'").restitution, 0.0);
+    assert_eq!(material("solref='0 0'").restitution, 0.0);
+}

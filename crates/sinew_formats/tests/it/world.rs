@@ -3,8 +3,8 @@
 use sinew_formats::{read_world, write_world};
 use sinew_math::{Random, Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{
-    BodyDef, BodyKind, Filter, Hull, MassProperties, Material, Sensing, Shape, ShapeDef, Sleeping, World,
-    WorldDef,
+    BodyDef, BodyKind, Combine, CombineRules, ContactRule, Filter, Hull, MassProperties, Material, OneWay,
+    Sensing, Shape, ShapeDef, Sleeping, World, WorldDef,
 };
 use std::sync::Arc;
 
@@ -34,6 +34,8 @@ fn the_documented_example_is_read() {
     assert_eq!(bodies[2].shapes[2].body_from_shape.translation, Vec3::new(0.0, -0.3, 0.0));
 }
 
+const RUBBER: Material = Material { friction: 0.9, restitution: 0.7, rolling: 0.002, ..Material::DEFAULT };
+
 #[test]
 fn the_example_of_the_page_is_read_and_stands() {
     let text = first_json(include_str!("../../../../docs/world.md").lines());
@@ -41,7 +43,7 @@ fn the_example_of_the_page_is_read_and_stands() {
     let kinds: Vec<BodyKind> = bodies.iter().map(|body| body.kind).collect();
     use BodyKind::{Dynamic, Kinematic, Static};
     assert_eq!(kinds, [Static, Static, Dynamic, Kinematic, Dynamic]);
-    assert_eq!(bodies[2].shapes[1].material, Material { friction: 0.9, restitution: 0.7, rolling: 0.002 });
+    assert_eq!(bodies[2].shapes[1].material, RUBBER);
     assert_eq!((bodies[2].user_data, bodies[2].angular_damping), (7, 0.1));
     let door = bodies[3].shapes[1].clone();
     assert_eq!((door.sensing, door.filter), (Sensing::Sensor, Filter { layers: 2, mask: 1, group: 0 }));
@@ -92,6 +94,21 @@ fn the_page_lists_what_there_is() {
         "friction",
         "restitution",
         "rolling",
+        "static_friction",
+        "surface_velocity",
+        "surface_spin",
+        "combine",
+        "tag",
+        "average",
+        "geometric_mean",
+        "minimum",
+        "multiply",
+        "maximum",
+        "push",
+        "ghost",
+        "one_way",
+        "direction",
+        "tolerance",
     ] {
         assert!(page.contains(&format!("`{word}`")), "{word} is not on the page");
     }
@@ -113,13 +130,43 @@ fn random_shape(random: &mut Random, kind: BodyKind) -> ShapeDef {
         shape,
         body_from_shape: Transform::new(random.in_cube(), random.rotation()),
         density: random.range(0.1, 1e4),
-        material: Material { friction: random.unit(), restitution: random.unit(), rolling: random.unit() },
+        material: random_material(random),
         filter: Filter {
             layers: random.bits() as u32,
             mask: random.bits() as u32,
             group: random.bits() as i32,
         },
         sensing: [Sensing::Solid, Sensing::Sensor][random.index(2)],
+        rule: match random.index(3) {
+            0 => ContactRule::Push,
+            1 => ContactRule::Ghost,
+            _ => ContactRule::OneWay(OneWay { direction: random.direction(), tolerance: random.unit() }),
+        },
+    }
+}
+
+fn random_material(random: &mut Random) -> Material {
+    let rules = [
+        None,
+        Some(Combine::Average),
+        Some(Combine::GeometricMean),
+        Some(Combine::Minimum),
+        Some(Combine::Multiply),
+        Some(Combine::Maximum),
+    ];
+    let friction = random.unit();
+    let mut rule = || rules[random.index(rules.len())];
+    let combine = CombineRules { friction: rule(), restitution: rule(), rolling: rule() };
+    let moves = if random.index(2) == 0 { Vec3::ZERO } else { random.in_cube() };
+    Material {
+        friction,
+        static_friction: (random.index(2) == 0).then(|| friction + random.unit()),
+        restitution: random.unit(),
+        rolling: random.unit(),
+        surface_velocity: moves,
+        surface_spin: -moves,
+        combine,
+        tag: random.bits() as u32,
     }
 }
 
@@ -221,10 +268,6 @@ fn complaints_name_the_place() {
             "quaternion must have length 1 (bodies[0].rotation)",
         ),
         (
-            world(r#"{"shapes":[{"type":"sphere","radius":1,"material":"ice"}]}"#),
-            "there is no material `ice` (bodies[0].shapes[0].material)",
-        ),
-        (
             world(r#"{"mass":{"kg":1,"inertia":[1,1,-1,0,0,0]},"shapes":[]}"#),
             "must be positive definite (bodies[0].mass.inertia)",
         ),
@@ -233,6 +276,34 @@ fn complaints_name_the_place() {
     }
     let error = read_world(world(r#"{"shape":[]}"#).as_bytes()).unwrap_err();
     assert!(error.what.starts_with("unknown key `shape`; known are name, kind,"), "{error}");
+}
+
+#[test]
+fn complaints_about_materials_and_contacts_name_the_place() {
+    for (surface, expected) in [
+        (r#""material":"ice""#, "there is no material `ice` (bodies[0].shapes[0].material)"),
+        (
+            r#""material":{"friction":0.5,"static_friction":0.4}"#,
+            "must not be less than `friction` (bodies[0].shapes[0].material.static_friction)",
+        ),
+        (
+            r#""material":{"combine":{"rolling":"sum"}}"#,
+            "unknown rule `sum`; known are average, geometric_mean, minimum, multiply, maximum \
+             (bodies[0].shapes[0].material.combine.rolling)",
+        ),
+        (
+            r#""contacts":{"one_way":{"direction":[0,0,0]}}"#,
+            "the direction of a one-way shape must be finite and not 0 (bodies[0].shapes[0].contacts.one_way)",
+        ),
+        (
+            r#""contacts":"spirit""#,
+            "must be push, ghost, or an object with `one_way` (bodies[0].shapes[0].contacts)",
+        ),
+    ] {
+        let shape = format!(r#"{{"type":"sphere","radius":1,{surface}}}"#);
+        let json = format!(r#"{{"sinew":"world","version":1,"bodies":[{{"shapes":[{shape}]}}]}}"#);
+        assert_eq!(read_world(json.as_bytes()).unwrap_err().to_string(), expected);
+    }
 }
 
 #[test]

@@ -17,7 +17,6 @@ use crate::def::{BodyKind, WorldDef};
 use crate::joint::{Incidence, Joint};
 use crate::particles::ParticleGroup;
 use crate::proxies::{Owner, Proxies};
-use crate::shape::Sensing;
 use aside::Aside;
 use core::ops::ControlFlow;
 use slot_set::SlotSet;
@@ -97,12 +96,12 @@ impl Activity {
         self.active.set(index, body.is_active());
     }
 
-    /// Forgets a body that is taken out, and its contacts.
-    pub fn remove(&mut self, index: u32) {
+    /// Forgets a body that is taken out; hands over its contacts, in no order that means anything.
+    pub fn remove(&mut self, index: u32, mut part_with: impl FnMut(Contact)) {
         self.active.set(index, false);
         self.kinematic.retain(|&other| other != index);
-        self.aside.take(index, |_| {});
-        self.returned.retain(|contact| !contact.key.has(index));
+        self.aside.take(index, &mut part_with);
+        self.returned.extract_if(.., |contact| contact.key.has(index)).for_each(part_with);
     }
 
     /// Wakes a body that sleeps, and everything it fell asleep with.
@@ -143,11 +142,9 @@ impl Activity {
             let mut struck = core::mem::take(&mut self.struck);
             let _ = proxies.overlapping(&bounds, |Owner { body: index, shape }| {
                 let (body, shape) = (bodies.at(index), shape as usize);
-                let surface = body.surface(shape);
                 let at = body.world_from_shape(shape);
                 let strikes = !body.is_awake()
-                    && surface.filter.meets(group.filter())
-                    && surface.sensing == Sensing::Solid
+                    && body.surface(shape).is_wall_to(group.filter())
                     && group.strikes(&body.shapes[shape].shape, &at, speed, dt);
                 struck.extend(strikes.then_some(index));
                 ControlFlow::<()>::Continue(())
@@ -184,6 +181,11 @@ impl Activity {
     /// A body may touch something again: its contacts take part in the next step.
     pub fn recall(&mut self, index: u32) {
         self.aside.take(index, |contact| self.returned.push(contact));
+    }
+
+    /// Contacts that were recalled since the last step.
+    pub fn returned_mut(&mut self) -> impl Iterator<Item = &mut Contact> {
+        self.returned.iter_mut()
     }
 
     /// Merges contacts that were recalled with those of the step, which are in order of their keys.

@@ -82,7 +82,7 @@ impl World {
 
     /// Wakes a body and all that touches it, or hangs on it by a joint: something about it is to change that they may feel.
     pub(crate) fn wake_neighbors(&mut self, index: u32) {
-        let touching = self.contacts_of(index).filter(|contact| contact.pushes());
+        let touching = self.contacts_at(index).filter(|contact| contact.pushes());
         let mut others: Vec<u32> = touching.map(|contact| contact.key.other(index)).collect();
         for &joint in self.activity.joints_of.body(index) {
             let joint = self.joints.at(joint);
@@ -93,7 +93,7 @@ impl World {
     }
 
     /// The contacts of a body, in no order that means anything.
-    pub(crate) fn contacts_of(&self, index: u32) -> impl Iterator<Item = &Contact> {
+    pub(crate) fn contacts_at(&self, index: u32) -> impl Iterator<Item = &Contact> {
         let own = self.contacts.iter().filter(move |contact| contact.key.has(index));
         own.chain(self.activity.contacts_of(index))
     }

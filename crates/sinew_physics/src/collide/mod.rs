@@ -65,6 +65,12 @@ impl Manifold {
         &self.points[..self.count]
     }
 
+    /// Middle of its points, metres; the origin if there are none.
+    pub fn center(&self) -> Vec3 {
+        let sum = self.points().iter().fold(Vec3::ZERO, |sum, point| sum + point.position);
+        if self.count > 0 { sum / self.count as f32 } else { sum }
+    }
+
     /// Appends a point that lies on one of the surfaces' midplane.
     fn push(&mut self, position: Vec3, separation: f32, feature: u32) {
         self.points[self.count] = ManifoldPoint { position, separation, feature };

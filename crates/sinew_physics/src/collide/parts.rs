@@ -94,9 +94,10 @@ fn find(bodies: &Arena<Body>, contact: &Contact, pair: &mut Pair, scratch: &mut 
 /// be empty: it knows whether the pair touches.
 fn push_parts(old: &[Contact], new: &[Manifold], out: &mut Vec<Contact>) {
     let mut taken = [false; super::MAX_PARTS];
+    let pushed = old.iter().any(|contact| contact.pushed);
     let mut part = 0;
     let mut push = |manifold: Manifold, memory: ContactMemory| {
-        let mut contact = Contact { manifold, memory, ..old[0] };
+        let mut contact = Contact { manifold, memory, pushed, ..old[0] };
         contact.key.part = part;
         part += 1;
         out.push(contact);

@@ -2,6 +2,7 @@
 
 use super::{Fields, Target};
 use crate::force::Wrench;
+use crate::registered::Registered;
 use sinew_math::Vec3;
 
 /// How many numbers a user's function is called with.
@@ -30,27 +31,10 @@ pub struct FieldPoint {
 /// the torque. A result that is not finite quarantines the body.
 pub type FieldFunction = fn(&FieldPoint, &[f32; PARAMETERS]) -> Wrench;
 
-/// Registered functions by number, ascending. No part of the snapshot: code cannot be saved.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Functions(Vec<(u32, FieldFunction)>);
+/// Those of a world.
+pub(crate) type Functions = Registered<FieldFunction>;
 
 impl Functions {
-    pub fn set(&mut self, number: u32, function: FieldFunction) {
-        match self.0.binary_search_by_key(&number, |&(n, _)| n) {
-            Ok(place) => self.0[place].1 = function,
-            Err(place) => self.0.insert(place, (number, function)),
-        }
-    }
-
-    fn find(&self, number: u32) -> Option<FieldFunction> {
-        let place = self.0.binary_search_by_key(&number, |&(n, _)| n).ok()?;
-        Some(self.0[place].1)
-    }
-
-    pub fn has(&self, number: u32) -> bool {
-        self.find(number).is_some()
-    }
-
     pub(super) fn call(
         &self,
         number: u32,

@@ -11,8 +11,8 @@ use super::forest::Freedom;
 use super::sweep::{Meeting, sweep_ball};
 use super::{Part, ParticleGroup};
 use crate::boxes::Aabb;
-use crate::contact::combine;
-use crate::shape::{Material, Shape};
+use crate::material::{ContactMaterial, Material};
+use crate::shape::Shape;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
 /// Slower than that, nothing moves, m/s.
@@ -143,7 +143,7 @@ pub(super) struct Touch {
     /// Where, on the surface.
     pub point: Vec3,
     /// Of the pair of surfaces.
-    pub material: Material,
+    pub material: ContactMaterial,
     /// Slowest allowed velocity along the normal, m/s: negative while there is a gap to be closed.
     pub speed_min: f32,
     /// How many times the body is lighter for this particle than it is: where those that touch it outweigh it, each has
@@ -160,13 +160,19 @@ impl Touch {
         let normal = max(-approach / (response + body.yielding(self.point, n)), 0.0);
         body.push(self.point, n * -normal);
 
-        let relative = velocity + n * (normal * response) - body.velocity_at(self.point);
+        let relative = velocity + n * (normal * response) - self.surface_velocity(body);
         let slip = relative - n * relative.dot(n);
         let along = normalize_or(slip, Vec3::ZERO);
         let stick = slip.length() / (response + body.yielding(self.point, along));
-        let friction = along * -min(stick, self.material.friction * normal);
+        let holds = stick <= self.material.static_friction * normal;
+        let friction = along * -if holds { stick } else { self.material.friction * normal };
         body.push(self.point, -friction);
         n * normal + friction
+    }
+
+    /// Of the body's surface where it is touched, m/s.
+    pub fn surface_velocity(&self, body: &ObstacleBody) -> Vec3 {
+        body.velocity_at(self.point) + self.material.velocity
     }
 }
 
@@ -260,6 +266,13 @@ impl ParticleGroup {
         let touching = placed.end.point(meeting.at - meeting.normal * max(meeting.gap, 0.0));
         let point = touching - normal * (self.radii[i] + min(meeting.gap, 0.0));
         let body = &bodies[o.body as usize];
+        let mut material = ContactMaterial::of(&self.material, &o.material);
+        if o.material.runs() {
+            let spin = placed.end.rotation * o.material.surface_spin;
+            let along = placed.end.rotation * o.material.surface_velocity
+                + spin.cross(point - placed.end.translation);
+            material.velocity = along - normal * along.dot(normal);
+        }
         let speed = (touching - self.positions[i]).dot(normal) / h;
         Touch {
             obstacle,
@@ -267,7 +280,7 @@ impl ParticleGroup {
             normal,
             gap,
             point,
-            material: combine(&self.material, &o.material),
+            material,
             speed_min: speed - body.velocity_at(point).dot(normal),
             lightness: 1.0,
         }
@@ -344,13 +357,13 @@ impl ParticleGroup {
     /// What a surface does at first to a particle that comes to it with the velocity just found: if stopping it takes more
     /// than friction may give, it slides, with the friction of what stops it along the normal.
     fn first_grip(&mut self, i: usize, touch: &Touch, bodies: &[ObstacleBody]) -> Grip {
-        let relative = self.velocities[i] - bodies[touch.body].velocity_at(touch.point);
+        let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
         let normal = max(touch.speed_min - relative.dot(touch.normal), 0.0) * self.masses[i];
         let slip = relative - touch.normal * relative.dot(touch.normal);
-        let limit = touch.material.friction * normal;
-        if slip.length() * self.masses[i] <= limit {
+        if slip.length() * self.masses[i] <= touch.material.static_friction * normal {
             return Grip::Stick;
         }
+        let limit = touch.material.friction * normal;
         self.contact_impulses[i] = touch.normal * normal - normalize_or(slip, Vec3::ZERO) * limit;
         Grip::Slide
     }
@@ -407,7 +420,7 @@ impl ParticleGroup {
         for i in 0..self.positions.len() {
             (self.backings[i], self.press_normals[i], self.presses[i]) = (0.0, Vec3::ZERO, Vec3::ZERO);
             let Some(touch) = self.touches[i] else { continue };
-            let relative = self.velocities[i] - bodies[touch.body].velocity_at(touch.point);
+            let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
             if (relative.dot(touch.normal) - touch.speed_min) * h > TOUCHING {
                 continue;
             }
@@ -438,7 +451,7 @@ impl ParticleGroup {
             let (mut freedom, mut inertia, mut momentum) = (Freedom::Free, Sym3::ZERO, Vec3::ZERO);
             if let Some(touch) = &self.touches[i] {
                 let (n, body) = (touch.normal, &bodies[touch.body]);
-                let target = body.velocity_at(touch.point) + n * touch.speed_min;
+                let target = touch.surface_velocity(body) + n * touch.speed_min;
                 let movable = body.inverse_mass > 0.0;
                 match self.grips[i] {
                     Grip::Off => {}
@@ -499,7 +512,7 @@ impl ParticleGroup {
                 continue;
             };
             let n = touch.normal;
-            let relative = self.velocities[i] - bodies[touch.body].velocity_at(touch.point);
+            let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
             let impulse = self.contact_impulse(i);
             let (normal, friction) = (impulse.dot(n), impulse - n * impulse.dot(n));
             let limit = touch.material.friction * normal;
@@ -512,7 +525,7 @@ impl ParticleGroup {
                 Grip::Wedged => (Grip::Wedged, impulse),
                 // A surface does not pull.
                 _ if normal <= 0.0 => (Grip::Off, Vec3::ZERO),
-                Grip::Stick if friction.length() > limit => {
+                Grip::Stick if friction.length() > touch.material.static_friction * normal => {
                     (Grip::Slide, n * normal + friction * (limit / friction.length()))
                 }
                 Grip::Stick => (Grip::Stick, impulse),

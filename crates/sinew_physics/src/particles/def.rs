@@ -1,7 +1,8 @@
 //! Definitions: plain data that particle groups are made from.
 
 use crate::id::BodyId;
-use crate::shape::{Filter, Material};
+use crate::material::Material;
+use crate::shape::Filter;
 use sinew_math::Vec3;
 
 /// A particle to be made.

@@ -23,7 +23,7 @@ impl ParticleGroup {
             if touch.material.restitution == 0.0 || self.contact_impulses[i].dot(touch.normal) <= 0.0 {
                 continue;
             }
-            let approach = (self.begun[i] - bodies[touch.body].velocity_at(touch.point)).dot(touch.normal);
+            let approach = (self.begun[i] - touch.surface_velocity(&bodies[touch.body])).dot(touch.normal);
             touch.speed_min = self.rebound(i, approach, h, &touch);
             if touch.speed_min > 0.0 {
                 self.push_off(i, &touch, bodies);
@@ -48,7 +48,7 @@ impl ParticleGroup {
                 if round == ROUNDS {
                     // The corner of three surfaces.
                     self.positions[i] = placed.end.point(meeting.at);
-                    self.velocities[i] = bodies[touch.body].velocity_at(touch.point);
+                    self.velocities[i] = touch.surface_velocity(&bodies[touch.body]);
                     break;
                 }
                 // The solve has brought it there as it should.
@@ -97,7 +97,7 @@ impl ParticleGroup {
 
     /// Takes a particle out of a surface that it met when `left` seconds were left.
     fn respond(&mut self, i: usize, h: f32, mut touch: Touch, left: f32, bodies: &mut [ObstacleBody]) {
-        let approach = (self.velocities[i] - bodies[touch.body].velocity_at(touch.point)).dot(touch.normal);
+        let approach = (self.velocities[i] - touch.surface_velocity(&bodies[touch.body])).dot(touch.normal);
         touch.speed_min = self.rebound(i, approach, h, &touch);
         let change = self.push_off(i, &touch, bodies);
         // What friction took from the velocity, the position must not have gained.

@@ -36,7 +36,8 @@ pub use def::{
 };
 
 use crate::boxes::Aabb;
-use crate::shape::{Filter, Material, Shape};
+use crate::material::Material;
+use crate::shape::{Filter, Shape};
 use contact::{Grip, Placed, Touch};
 use forest::{Forest, Freedom, System};
 use impact::MAX_TOUCHES;

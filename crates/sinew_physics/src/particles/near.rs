@@ -141,11 +141,12 @@ impl ParticleGroup {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::Material;
     use crate::particles::{
         Anchor, AttachmentDef, AttachmentTarget, GroupDef, Obstacle, ObstacleBody, ParticleDef, Resists,
         SpringDef,
     };
-    use crate::shape::{Material, Shape};
+    use crate::shape::Shape;
     use sinew_math::{Random, Sym3, Transform, Writer};
 
     const H: f32 = 1.0 / 240.0;
@@ -173,7 +174,7 @@ mod tests {
             particles,
             springs: (40..40 + links).map(string).collect(),
             attachments: vec![AttachmentDef { particle: 40, target }],
-            material: Material { friction: 0.5, restitution: 0.4, rolling: 0.0 },
+            material: Material { friction: 0.5, restitution: 0.4, ..Material::DEFAULT },
             iterations,
             ..GroupDef::default()
         }
@@ -205,7 +206,7 @@ mod tests {
                 body.inverse_mass = (k % 2) as f32;
                 body.inverse_inertia = Sym3::from_diagonal(Vec3::splat(20.0 * body.inverse_mass));
             }
-            let material = Material { friction: 0.5, restitution: 0.4, rolling: 0.0 };
+            let material = Material { friction: 0.5, restitution: 0.4, ..Material::DEFAULT };
             let world_from_shape = frame;
             obstacles.push(Obstacle { shape, previous: frame, world_from_shape, body: k as u32, material });
             bodies.push(body);

@@ -106,9 +106,11 @@ impl World {
     /// Bodies that `id` touches or nearly touches, in the order of contacts.
     pub fn neighbors(&self, id: BodyId) -> impl Iterator<Item = BodyId> {
         self.expect(id);
-        let pushing = self.contacts_of(id.index).filter(|contact| contact.key.part == 0 && contact.pushes());
-        let mut keys: Vec<ContactKey> = pushing.map(|contact| contact.key).collect();
+        let pushing = self.contacts_at(id.index).filter(|contact| contact.pushes());
+        let mut keys: Vec<ContactKey> =
+            pushing.map(|contact| ContactKey { part: 0, ..contact.key }).collect();
         keys.sort_unstable();
+        keys.dedup();
         let other = move |key: ContactKey| key.other(id.index);
         keys.into_iter().map(other).map(|index| BodyId { index, generation: self.bodies.generation(index) })
     }

@@ -8,11 +8,12 @@ use super::{IslandSolver, SolverBody, SolverJoint};
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::contact::{Contact, combine, slop};
+use crate::contact::{Contact, slop};
 use crate::def::WorldDef;
 use crate::field::Fields;
 use crate::islands::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
+use crate::modifiers::Modifiers;
 use crate::proxies::Proxies;
 use crate::spatial::{ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
@@ -27,6 +28,7 @@ pub(crate) struct View<'a> {
     pub proxies: &'a Proxies,
     pub joints: &'a Arena<Joint>,
     pub contacts: &'a [Contact],
+    pub modifiers: &'a Modifiers,
     pub def: &'a WorldDef,
     pub fields: Fields<'a>,
     /// Substep, seconds.
@@ -340,13 +342,12 @@ impl IslandSolver {
 
     fn copy_contacts(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.manifolds.clear();
+        self.driven = false;
         for &index in island.contacts {
             let contact = &view.contacts[index as usize];
             let (a, b) = (view.bodies.at(contact.key.a), view.bodies.at(contact.key.b));
             let shape_a = &a.shapes[contact.key.shape_a as usize];
             let shape_b = &b.shapes[contact.key.shape_b as usize];
-            let surface_a = a.surface(contact.key.shape_a as usize);
-            let surface_b = b.surface(contact.key.shape_b as usize);
             let extent = min(shape_a.shape.smallest_extent(), shape_b.shape.smallest_extent());
             let source = ManifoldSource {
                 contact: index,
@@ -356,11 +357,12 @@ impl IslandSolver {
                 b_moves: b.is_active(),
                 manifold: &contact.manifold,
                 memory: contact.memory,
-                material: combine(&surface_a.material, &surface_b.material),
+                material: view.modifiers.material(view.bodies, view.contacts, index),
                 slop: slop(extent),
                 shapes: [shape_a, shape_b].map(|s| PlacedShape::new(s.shape.clone(), s.principal_from_shape)),
                 h: view.h,
             };
+            self.driven |= source.material.drives();
             self.manifolds.push(ManifoldRows::new(&source, &self.bodies));
         }
     }

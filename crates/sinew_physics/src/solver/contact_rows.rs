@@ -6,7 +6,8 @@ use super::tree::Link;
 use super::{REDUNDANCY, SolverBody, disk, free_response, lcp};
 use crate::collide::{Half, MAX_POINTS, Manifold, collide, is_on_face, name_as_face};
 use crate::contact::{ContactMemory, PointImpulse};
-use crate::shape::{Material, Shape};
+use crate::material::ContactMaterial;
+use crate::shape::Shape;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
 use sinew_math::{Mat3, Rotation, Transform, Vec3, any_orthonormal, max, min};
 
@@ -14,6 +15,9 @@ use sinew_math::{Mat3, Rotation, Transform, Vec3, any_orthonormal, max, min};
 const PUSH_SPEED: f32 = 3.0;
 /// Approach below which nothing bounces, m/s.
 const BOUNCE_SPEED: f32 = 1.0;
+/// What static friction leaves of the speed of two surfaces along each other, m/s, if they slide: more than loads that have
+/// not converged make of it in a substep.
+const SLIP_SPEED: f32 = 0.005;
 /// Distance over time of a point that no substep brings to touch, m/s.
 const NEVER: f32 = 1e6;
 /// An impulse that grew by more than this factor since the substep before is an impact.
@@ -174,7 +178,7 @@ pub(crate) struct ManifoldRows {
     core_b: [Vec3; MAX_POINTS],
     a_moves: bool,
     b_moves: bool,
-    material: Material,
+    material: ContactMaterial,
     slop: f32,
     soft: Softness,
     /// Share of that softness, but for the bias.
@@ -256,7 +260,7 @@ pub(crate) struct ManifoldSource<'a> {
     pub b_moves: bool,
     pub manifold: &'a Manifold,
     pub memory: ContactMemory,
-    pub material: Material,
+    pub material: ContactMaterial,
     pub slop: f32,
     pub shapes: [PlacedShape; 2],
     pub h: f32,
@@ -303,7 +307,7 @@ impl ManifoldRows {
             friction: source.memory.friction,
             twist: source.memory.twist,
             rolling: source.memory.rolling,
-            memory: source.memory,
+            memory: source.memory.of_new_step(),
         };
         rows.take_manifold(bodies);
         rows.place(bodies);
@@ -580,9 +584,10 @@ impl ManifoldRows {
             } else if s > 0.0 {
                 s / h
             } else if biased {
-                max(self.soft.bias_rate * min(s + DEAD_ZONE * self.slop, 0.0), -PUSH_SPEED)
+                let push = max(self.soft.bias_rate * min(s + DEAD_ZONE * self.slop, 0.0), -PUSH_SPEED);
+                min(push, -self.material.launch)
             } else {
-                0.0
+                -self.material.launch
             };
             let soft = if biased && s <= 0.0 { at_center } else { 0.0 };
             problem.soft[i] = soft;
@@ -607,15 +612,25 @@ impl ManifoldRows {
     }
 
     /// One visit of friction, limited by the load that was weighed last: a 2×2 row limited to the circle, twist about the
-    /// normal.
+    /// normal. What static friction does not hold slides.
     pub fn visit_friction(&mut self, velocities: &[Vec6]) -> Push {
         let pair = self.pair();
         let mut push = (ZERO6, ZERO6);
         let k = &self.k_tangent;
         let old = self.tangent_axes.map(|axis| self.friction.dot(axis));
-        let rates = self.tangents.map(|row| row.rate(pair, velocities));
+        let slip = |i: usize| {
+            self.tangents[i].rate(pair, velocities) + self.material.velocity.dot(self.tangent_axes[i])
+        };
+        let rates = [slip(0), slip(1)];
         let b = [0, 1].map(|i| k[i][0] * old[0] + k[i][1] * old[1] - rates[i]);
-        let new = disk::least_energy(k, b, self.material.friction * self.load);
+        let ContactMaterial { friction, static_friction, .. } = self.material;
+        let mut new = disk::least_energy(k, b, static_friction * self.load);
+        let mut grip = static_friction;
+        let slip = [0, 1].map(|i| k[i][0] * new[0] + k[i][1] * new[1] - b[i]);
+        if static_friction > friction && slip[0] * slip[0] + slip[1] * slip[1] > SLIP_SPEED * SLIP_SPEED {
+            new = disk::least_energy(k, b, friction * self.load);
+            grip = friction;
+        }
         for i in 0..2 {
             let row = self.tangents[i];
             self.add(&mut push, &row, new[i] - old[i]);
@@ -625,9 +640,15 @@ impl ManifoldRows {
             // After the tangents: a light hand turns far about a contact beside its centre, and to answer both at once
             // overshoots, sweep by sweep more.
             let [k0, k1] = self.k_spin_tangent;
-            let rate = self.spin.rate(pair, velocities) + k0 * (new[0] - old[0]) + k1 * (new[1] - old[1]);
-            let most = self.material.friction * self.lever * self.load;
-            let new = sinew_math::clamp(self.twist - rate / self.k_spin, -most, most);
+            let rate = self.spin.rate(pair, velocities)
+                + self.material.spin.dot(self.normal)
+                + k0 * (new[0] - old[0])
+                + k1 * (new[1] - old[1]);
+            let wanted = self.twist - rate / self.k_spin;
+            let most = grip * self.lever * self.load;
+            let slip = max(wanted.abs() - most, 0.0) * self.k_spin * self.lever;
+            let most = if slip > SLIP_SPEED { friction * self.lever * self.load } else { most };
+            let new = sinew_math::clamp(wanted, -most, most);
             self.add(&mut push, &self.spin, new - self.twist);
             self.twist = new;
         }
@@ -689,15 +710,25 @@ impl ManifoldRows {
         (0..self.bouncy_count()).any(|i| self.rebound[i] > 0.0)
     }
 
+    /// What the bounce of this substep added to its impulses.
+    pub fn add_bounce(&mut self) {
+        for i in 0..self.count {
+            let point = &mut self.memory.points[i];
+            point.total += max(self.impulse[i], 0.0) - point.now;
+        }
+    }
+
     /// Impulses of this substep become memory.
     pub fn end_substep(&mut self, h: f32) {
         for i in 0..self.count {
             let point = &mut self.memory.points[i];
             point.before = point.now;
             point.now = max(self.impulse[i], 0.0);
+            point.total += point.now;
             point.lasting += (point.now - point.lasting) * (h / (h + LASTING));
         }
         self.memory.friction = self.friction;
+        self.memory.total_friction += self.friction;
         self.memory.twist = self.twist;
         self.memory.rolling = self.rolling;
     }

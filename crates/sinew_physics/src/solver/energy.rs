@@ -245,7 +245,7 @@ impl IslandSolver {
 
     /// Nothing that rows push against moves by itself.
     pub(super) fn is_passive(&self) -> bool {
-        self.velocities[self.links.len()..].iter().all(|v| *v == ZERO6)
+        !self.driven && self.velocities[self.links.len()..].iter().all(|v| *v == ZERO6)
     }
 
     /// `relax` cannot give energy, but impulses taken back at another pose than they were given at can, in violent

@@ -197,6 +197,8 @@ pub(crate) struct IslandSolver {
     drive_work: f32,
     /// Particles or objects pushed in this substep.
     pushed_from_outside: bool,
+    /// A surface moves along its body, or throws off what touches it.
+    driven: bool,
     /// Poses changed since all that depends on them was computed.
     displaced: bool,
     /// How fast a hit may make a joint turn, rad/s: limits within reach of it get rows.
@@ -375,6 +377,9 @@ impl IslandSolver {
         if self.manifolds.iter().any(ManifoldRows::bounces) {
             self.sweep(Pass::Restitution);
             self.drop_nonsense(0.0);
+            for rows in &mut self.manifolds {
+                rows.add_bounce();
+            }
         }
     }
 

@@ -36,7 +36,7 @@ fn obstacle(shape: Shape, world_from_shape: Transform, friction: f32, restitutio
         previous,
         world_from_shape,
         body: 0,
-        material: Material { friction, restitution, rolling: 0.0 },
+        material: Material { friction, restitution, ..Material::DEFAULT },
     }
 }
 
@@ -512,7 +512,7 @@ fn a_particle_that_has_struck_a_wall_goes_on_alike_in_a_loaded_world() {
         world.add_body(&BodyDef { linear_velocity: Vec3::Y * 0.03, ..trembling });
         let position = Vec3::X * (-1.0 - 0.03 * delay as f32);
         let shot = ParticleDef { velocity: Vec3::X * 30.0, ..particle(position, 0.1, 0.01) };
-        let material = Material { friction: 0.0, restitution: 0.05, rolling: 0.0 };
+        let material = Material { friction: 0.0, restitution: 0.05, ..Material::DEFAULT };
         let def = GroupDef { particles: vec![shot], material, ..GroupDef::default() };
         let group = world.add_particles(&def);
         for step in 0..8 {

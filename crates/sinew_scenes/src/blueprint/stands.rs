@@ -54,7 +54,7 @@ pub fn jenga(levels: usize) -> Blueprint {
 /// A house of cards 0.4 m long, 0.2 m wide and 2 mm thick, with so many pairs that lean against each other below, one
 /// fewer in each storey; friction 0.7.
 pub fn cards(pairs: usize) -> Blueprint {
-    const SURFACE: Material = Material { friction: 0.7, restitution: 0.0, rolling: 0.0 };
+    const SURFACE: Material = Material { friction: 0.7, ..Material::DEFAULT };
     let mut scene = Blueprint::new("cards", Sleeping::On, 600);
     scene.body(made_of(floor(), SURFACE));
     for Transform { translation, rotation } in house_of_cards(pairs) {

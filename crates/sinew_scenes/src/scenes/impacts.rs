@@ -8,7 +8,7 @@ use super::{Instance, Scene, Script, Setting, Setup};
 use sinew::math::{Vec3, max};
 use sinew::physics::{BodyDef, BodyId, Material, Sleeping, World, WorldDef};
 
-const ELASTIC: Material = Material { friction: 0.0, restitution: 1.0, rolling: 0.0 };
+const ELASTIC: Material = Material { friction: 0.0, restitution: 1.0, ..Material::DEFAULT };
 
 /// A ball of a mass in kg that loses nothing in a hit.
 fn elastic_ball(mass: f32, radius: f32, position: Vec3) -> BodyDef {

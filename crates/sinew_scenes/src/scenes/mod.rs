@@ -55,6 +55,7 @@ mod springs;
 mod stacks;
 mod strings;
 mod support;
+mod surfaces;
 mod tops;
 mod trees;
 mod water;
@@ -135,6 +136,10 @@ const REGISTRY: &[Scene] = &[
     rolling::SLIDE_TO_ROLL,
     rolling::ROLLING_BALLS,
     coin::COIN,
+    surfaces::STATIC_FRICTION,
+    surfaces::CONVEYOR,
+    surfaces::ONE_WAY,
+    surfaces::SENSORS,
     impacts::ELASTIC_PAIRS,
     impacts::NEWTONS_CRADLE,
     impacts::BOUNCING_BALLS,

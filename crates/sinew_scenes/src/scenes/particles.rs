@@ -149,7 +149,7 @@ fn fast_particle(setup: &Setup<'_>) -> Instance {
     };
     let shots = world.add_particles(&GroupDef {
         particles: (0..count).map(particle).collect(),
-        material: Material { friction: 0.1, restitution: 0.9, rolling: 0.0 },
+        material: Material { friction: 0.1, restitution: 0.9, ..Material::DEFAULT },
         ..GroupDef::default()
     });
     Instance::new(world, Room { shots, speed, furthest: 0.0 })

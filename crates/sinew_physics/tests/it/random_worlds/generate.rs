@@ -80,7 +80,7 @@ impl Spread {
         BodyPlan {
             kind: BodyKind::Dynamic,
             shape: shape(r, size),
-            material: Material { friction: r.range(0.0, 1.0), restitution, rolling: 0.0 },
+            material: Material { friction: r.range(0.0, 1.0), restitution, ..Material::DEFAULT },
             mass: decades(r, self.mass[0], self.mass[1]),
             pose,
             velocity: velocity(r, speed),

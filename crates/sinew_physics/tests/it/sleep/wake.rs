@@ -210,10 +210,31 @@ fn a_joint_that_breaks_lets_go_of_both_sides() {
     assert!(world.is_awake(bob) && world.center_of_mass(bob).y < -1.5, "it falls");
 }
 
+fn wall(x: f32) -> BodyDef {
+    BodyDef { kind: BodyKind::Static, ..box_body(Vec3::splat(0.2), Vec3::new(x, 0.2, 0.0)) }
+}
+
+#[test]
+fn what_is_put_into_it_wakes_it() {
+    wakes("a static body that comes", |nap| {
+        nap.world.add_body(&wall(0.35));
+    });
+    wakes("a static body that is put there", |nap| {
+        let id = nap.world.add_body(&wall(5.0));
+        nap.world.set_transform(id, Transform::from_translation(Vec3::new(0.35, 0.2, 0.0)));
+    });
+    wakes("a ghost that becomes solid", |nap| {
+        let mut ghost = wall(0.35);
+        ghost.shapes[0].rule = ContactRule::Ghost;
+        let body = nap.world.add_body(&ghost);
+        nap.world.step();
+        assert!(!nap.world.is_awake(nap.sleeper) && nap.world.events().begin == [(nap.sleeper, body)]);
+        nap.world.set_contact_rule(ShapeId { body, shape: 0 }, ContactRule::Push);
+    });
+}
+
 #[test]
 fn what_nobody_feels_wakes_nobody() {
-    let wall =
-        |x: f32| BodyDef { kind: BodyKind::Static, ..box_body(Vec3::splat(0.2), Vec3::new(x, 0.2, 0.0)) };
     leaves_asleep("a static body that comes", |nap| {
         nap.world.add_body(&wall(0.4));
     });
@@ -223,6 +244,10 @@ fn what_nobody_feels_wakes_nobody() {
     });
     leaves_asleep("a kinematic body that rests against it", |nap| {
         nap.world.add_body(&slab(0.2, Vec3::new(0.4, 0.2, 0.0)));
+    });
+    leaves_asleep("a pair with another that is disabled", |nap| {
+        let other = nap.world.add_body(&wall(0.43));
+        nap.world.disable_pair(nap.sleeper, other);
     });
     leaves_asleep("a question", |nap| {
         let ray = Ray { origin: Vec3::Y, direction: -Vec3::Y };
