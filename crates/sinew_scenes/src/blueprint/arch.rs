@@ -15,7 +15,7 @@ const HALF_WIDTH: f32 = 0.25;
 /// Of a pier and of a block on top, metres.
 const PIER_HALF: Vec3 = Vec3::new(0.6, 0.25, 0.5);
 const BLOCK_HALF: Vec3 = Vec3::new(0.3, 0.15, 0.25);
-const MASONRY: Material = Material { friction: 0.6, restitution: 0.0, rolling: 0.0 };
+const MASONRY: Material = Material { friction: 0.6, restitution: 0.0, rolling: 0.0, ..Material::DEFAULT };
 
 /// A catenary of so many stones, an odd number, without mortar on two level piers, and blocks on top of the keystone: the
 /// piers, the stones from −x to +x, the blocks.

@@ -28,7 +28,7 @@ const NEXT_BODY: f32 = 1.5;
 /// From a floor up to the next one, metres.
 const STAIR: f32 = 0.5;
 /// What rolls stops: where it does is no closed form.
-const SURFACE: Material = Material { friction: 0.6, restitution: 0.0, rolling: 0.05 };
+const SURFACE: Material = Material { friction: 0.6, restitution: 0.0, rolling: 0.05, ..Material::DEFAULT };
 
 fn build(setup: &Setup<'_>) -> Instance {
     let mut world = setup.world();

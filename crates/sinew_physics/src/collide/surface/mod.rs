@@ -104,7 +104,7 @@ pub(crate) fn collide_surface(
     if scratch.candidates.is_empty() {
         sunk(surface, center, shape, &solid, scratch);
     }
-    scratch.claims.settle(&mut scratch.candidates);
+    scratch.claims.settle(&mut scratch.candidates, solid.tolerance());
     patch::merge(&scratch.candidates, &scratch.points, solid.tolerance(), &mut scratch.merging, out);
     out.finish(world_from_surface, center);
 }
