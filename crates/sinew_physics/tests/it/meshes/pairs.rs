@@ -233,10 +233,9 @@ fn terrain_is_as_far_away_as_its_nearest_triangle() {
                 }
             }
         }
-        // A face far away may claim an edge that the shape is deep in, on slopes as steep as these.
         println!("kind {kind}: {off} of {apart} apart are off, of {deep} deep {lost} are not felt");
         assert!(apart * 10 > cases(100_000) && deep * 10 > cases(100_000), "{apart} apart, {deep} deep");
-        assert!(off * 200 <= apart && lost * 20 <= deep, "kind {kind}: {off} of {apart}, {lost} of {deep}");
+        assert!(off * 200 <= apart && lost * 1000 <= deep, "kind {kind}: {off} of {apart}, {lost} of {deep}");
     }
 }
 
