@@ -15,18 +15,32 @@ pub(super) struct Effort {
     pub tolerance: f32,
     /// Softness of contacts as a share of what their frequency says.
     pub softness: f32,
+    pub order: Order,
+}
+
+/// Of the contacts in a pass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Order {
+    /// What cannot move has the last word in each sweep.
+    #[default]
+    Forward,
+    /// Backward in every other sweep, the first among them. If all went one way, tall walls would lean that way.
+    ToAndFro,
 }
 
 /// Of a heavy body on a jointed light one. What stands on the edge of a foot must sink in a little, or it never comes to rest.
-const JOINTED: Effort = Effort { solve: 24, relax: 24, tolerance: 2e-3, softness: 1.0 };
+const JOINTED: Effort =
+    Effort { solve: 24, relax: 24, tolerance: 2e-3, softness: 1.0, order: Order::Forward };
 /// Of a pile of bodies that weigh about the same. Nearly hard, which one sweep could not do: a tower of 18 levels fell before its
 /// loads were found, and what is soft sinks by a load that its own mass says nothing of. In `relax` two sweeps, since friction of
 /// the first knows only the impulses of `solve` (1.5 % too little).
-const PILE: Effort = Effort { solve: 24, relax: 2, tolerance: 2e-3, softness: 1e-3 };
+const PILE: Effort = Effort { solve: 24, relax: 2, tolerance: 2e-3, softness: 1e-3, order: Order::ToAndFro };
 /// The most for unequal ones.
 const MOST_SOLVE: f32 = 256.0;
 const MOST_RELAX: f32 = 128.0;
 const LEAST_TOLERANCE: f32 = 1e-6;
+/// Beyond this ratio of masses the light ones are squeezed out if what cannot move does not have the last word.
+const EVEN: f32 = 4.0;
 
 impl Effort {
     /// For a pile with a heaviest body so many times as heavy as the lightest.
@@ -39,6 +53,7 @@ impl Effort {
             solve: min(PILE.solve as f32 * root.sqrt(), MOST_SOLVE) as usize,
             relax: min(PILE.relax as f32 * root, MOST_RELAX) as usize,
             tolerance: max(PILE.tolerance / ratio, LEAST_TOLERANCE),
+            order: if ratio <= EVEN { PILE.order } else { Order::Forward },
             ..PILE
         }
     }

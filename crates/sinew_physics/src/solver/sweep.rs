@@ -4,6 +4,7 @@
 
 use super::conjugate::{Conjugate, Rows};
 use super::contact_rows::{ManifoldRows, Push};
+use super::effort::Order;
 use super::tree::Link;
 use super::{IslandSolver, WEIGHINGS};
 use crate::spatial::{ZERO6, add_scaled, linear};
@@ -114,7 +115,7 @@ impl IslandSolver {
                 let (conjugate, rows) = self.rows_to_conjugate();
                 conjugate.before(&rows);
             }
-            self.visit_contacts(pass);
+            self.visit_contacts(pass, done);
             self.visit_limits(pass);
             if done == sweeps || (done > 1 && self.largest_change < self.effort.tolerance) {
                 break;
@@ -141,8 +142,12 @@ impl IslandSolver {
         (&mut self.conjugate, rows)
     }
 
-    fn visit_contacts(&mut self, pass: Pass) {
-        for i in 0..self.manifolds.len() {
+    /// `sweep` counts from 1.
+    fn visit_contacts(&mut self, pass: Pass, sweep: usize) {
+        let count = self.manifolds.len();
+        let backward = self.effort.order == Order::ToAndFro && !sweep.is_multiple_of(2);
+        for turn in 0..count {
+            let i = if backward { count - 1 - turn } else { turn };
             let now = self.unrest.of(&self.links, self.manifolds[i].a, self.manifolds[i].b);
             if !self.unrest.wakes_manifold(i, now) {
                 continue;
