@@ -59,7 +59,6 @@ mod slices;
 mod snapshot;
 mod spatial;
 mod surface;
-mod surfaces;
 
 pub use body::Velocity;
 pub use boxes::{Aabb, Obb};
@@ -91,7 +90,7 @@ pub use query::{
 };
 pub use runner::{Serial, TaskRunner, Threads};
 pub use shape::{Filter, MassProperties, Sensing, Shape, ShapeDef};
-pub use surfaces::{BodyContact, ContactPoint};
+pub use surface::{BodyContact, ContactPoint};
 pub use triangles::{HeightField, HeightFieldDef, HeightFieldError, Mesh, MeshError};
 pub use update::Update;
 pub use world::World;

@@ -190,10 +190,10 @@ fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Telle
         t if t >= 1.0 => Part::Corner((i + 1) % 3),
         _ => Part::Edge(i),
     };
-    let (points, count) = under_face(placed, &edge, axis.normal, super::name::part(teller.triangle, part));
-    let points = &points[..count];
-    if points.iter().any(|point| point.separation <= axis.separation + teller.solid.tolerance()) {
-        teller.tell(axis.normal, part, When::Now, points);
+    let near = |point: &ManifoldPoint| point.separation <= axis.separation + teller.solid.tolerance();
+    let under = under_face(placed, &edge, axis.normal, super::name::part(teller.triangle, part));
+    if let Some(points) = under.filter(|points| points.iter().any(near)) {
+        teller.tell(axis.normal, part, When::Now, &points);
     } else {
         let position = (of_box.at(s) + edge.at(t)) * 0.5;
         teller.point(axis.normal, part, position, axis.separation, feature::edge(j, index));
@@ -208,13 +208,12 @@ fn under_face(
     edge: &Segment,
     normal: Vec3,
     of_surface: u16,
-) -> ([ManifoldPoint; 2], usize) {
-    let mut points = [ManifoldPoint::default(); 2];
+) -> Option<[ManifoldPoint; 2]> {
     let (k, side) = placed.facing(-normal);
     let outward = placed.axes[k] * side;
     let slope = -outward.dot(normal);
     if slope < LIES_COSINE {
-        return (points, 0);
+        return None;
     }
     let base = usize::from(side > 0.0) << k;
     // Shares of the edge, and the box's feature above each.
@@ -236,18 +235,14 @@ fn under_face(
         }
     }
     if ends[0].0 >= ends[1].0 {
-        return (points, 0);
+        return None;
     }
-    for (told, (share, of_box)) in points.iter_mut().zip(ends) {
+    Some(ends.map(|(share, of_box)| {
         let at = edge.at(share);
         let separation = (at.dot(outward) - placed.half[k]) / slope;
-        *told = ManifoldPoint {
-            position: at + normal * (0.5 * separation),
-            separation,
-            feature: pair(of_surface, of_box),
-        };
-    }
-    (points, 2)
+        let position = at + normal * (0.5 * separation);
+        ManifoldPoint { position, separation, feature: pair(of_surface, of_box) }
+    }))
 }
 
 /// The closest points of a box and a triangle that are apart, by trying corners and edges.

@@ -1,8 +1,11 @@
 //! What the shapes of a body are besides geometry. Most share it with others of their body, so that it is kept once.
 
+mod world;
+
 use crate::contact_rule::ContactRule;
 use crate::material::Material;
 use crate::shape::{Filter, Sensing, ShapeDef};
+pub use world::{BodyContact, ContactPoint};
 
 /// Everything about a shape but its geometry and place.
 #[derive(Clone, Copy, Debug, PartialEq)]

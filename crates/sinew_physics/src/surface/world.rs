@@ -1,5 +1,6 @@
 //! What a world's shapes are besides geometry, asked and changed while it runs, and what touches what.
 
+use super::Surface;
 use crate::collide::MAX_POINTS;
 use crate::contact::{Contact, Effect};
 use crate::contact_rule::ContactRule;
@@ -7,7 +8,6 @@ use crate::id::{BodyId, ShapeId};
 use crate::material::{ContactMaterial, Material};
 use crate::meetings::shape_ids;
 use crate::shape::{Filter, Sensing};
-use crate::surface::Surface;
 use crate::world::World;
 use sinew_math::Vec3;
 
