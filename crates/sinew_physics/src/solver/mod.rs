@@ -221,6 +221,8 @@ struct Scratch {
     before: Vec<Vec6>,
     /// Velocities that the joints of the substep are solved from.
     started: Vec<Vec6>,
+    /// Of a pile, per moving body.
+    levels: Vec<u32>,
     pieces: Vec<composite::Piece>,
     build: build::Scratch,
 }
