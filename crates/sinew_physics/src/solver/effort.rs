@@ -1,8 +1,7 @@
 //! How hard the sweeps of an island try, and how hard its contacts are.
 
-use super::contact_rows::ManifoldRows;
+use super::IslandSolver;
 use super::sweep::Pass;
-use super::{IslandSolver, Scratch, SolverBody};
 use sinew_math::{max, min};
 
 /// Visits of all rows per pass, most of which end sooner.
@@ -76,51 +75,24 @@ impl IslandSolver {
         self.effort = if self.is_articulated() {
             JOINTED
         } else {
-            let ratio = mass_ratio(&self.bodies[..self.links.len()], &self.manifolds);
-            Effort::of_pile(self.count_levels(), ratio)
+            Effort::of_pile(self.levels.highest(), self.mass_ratio())
         };
         for rows in &mut self.manifolds {
             rows.soften(self.effort.softness);
         }
     }
 
-    /// Most bodies on the shortest way of touch from a body down to what cannot move; 0 if nothing stands on that.
-    fn count_levels(&mut self) -> u32 {
-        let Self { manifolds, links, scratch: Scratch { levels, .. }, .. } = self;
-        levels.clear();
-        levels.resize(links.len(), UNSUPPORTED);
-        // To and fro, since bodies are numbered from the bottom up or from the top down more often than at random.
-        while climb(manifolds.iter(), levels) && climb(manifolds.iter().rev(), levels) {}
-        levels.iter().copied().filter(|&level| level != UNSUPPORTED).fold(0, u32::max)
-    }
-}
-
-/// The level of a body of which no way to what cannot move is known.
-const UNSUPPORTED: u32 = u32::MAX;
-
-/// Lowers each body to one level above what it touches; false if all were there already.
-fn climb<'a>(manifolds: impl Iterator<Item = &'a ManifoldRows>, levels: &mut [u32]) -> bool {
-    let mut lowered = false;
-    for rows in manifolds {
-        for (below, body) in [(rows.a, rows.b), (rows.b, rows.a)] {
-            let above = levels.get(below as usize).map_or(1, |level| level.saturating_add(1));
-            match levels.get_mut(body as usize) {
-                Some(level) if above < *level => (*level, lowered) = (above, true),
-                _ => {}
+    /// Of the heaviest to the lightest of those that touch each other, as they answer to impulses.
+    pub(super) fn mass_ratio(&self) -> f32 {
+        let moving = &self.bodies[..self.links.len()];
+        let (mut lightest, mut heaviest) = (f32::INFINITY, 0.0);
+        for rows in &self.manifolds {
+            if let (Some(a), Some(b)) = (moving.get(rows.a as usize), moving.get(rows.b as usize)) {
+                let [a, b] = [a, b].map(|body| body.mass * body.ballast);
+                lightest = min(lightest, min(a, b));
+                heaviest = max(heaviest, max(a, b));
             }
         }
+        if heaviest > lightest { heaviest / lightest } else { 1.0 }
     }
-    lowered
-}
-
-/// Of the heaviest to the lightest of those that touch each other.
-fn mass_ratio(moving: &[SolverBody], manifolds: &[ManifoldRows]) -> f32 {
-    let (mut lightest, mut heaviest) = (f32::INFINITY, 0.0);
-    for rows in manifolds {
-        if let (Some(a), Some(b)) = (moving.get(rows.a as usize), moving.get(rows.b as usize)) {
-            lightest = min(lightest, min(a.mass, b.mass));
-            heaviest = max(heaviest, max(a.mass, b.mass));
-        }
-    }
-    if heaviest > lightest { heaviest / lightest } else { 1.0 }
 }

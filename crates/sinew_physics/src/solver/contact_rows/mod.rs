@@ -311,6 +311,23 @@ impl ManifoldRows {
         self.separation[..self.count].iter().any(|s| *s < -DEEP * self.slop)
     }
 
+    /// It touches, and does not know its load yet.
+    pub fn touches_anew(&self) -> bool {
+        let points = 0..self.count;
+        points.clone().all(|i| self.memory.points[i].now == 0.0)
+            && points.into_iter().any(|i| self.separation[i] < self.slop)
+    }
+
+    /// What its normal rows put on each body in this substep, or in the last before there is anything in this one.
+    pub fn normal_push(&self) -> Vec3 {
+        let (mut now, mut last) = (0.0, 0.0);
+        for i in 0..self.count {
+            now += self.impulse[i];
+            last += self.memory.points[i].now;
+        }
+        self.normal * if now > 0.0 { now } else { last }
+    }
+
     /// What all rows put on the bodies in this substep.
     pub fn total_push(&self) -> Push {
         let mut push = (ZERO6, ZERO6);
