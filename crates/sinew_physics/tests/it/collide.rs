@@ -4,7 +4,7 @@ mod brute;
 mod placed;
 
 pub use placed::{FINITE, Kind, Placed, all_pairs, gap, random_rotation, random_shape, unit, wide};
-use sinew_math::{Random, Rotation, Transform, Vec3};
+use sinew_math::{Random, Rotation, Transform, Vec3, trig};
 use sinew_physics::collide::collide_all;
 use sinew_physics::{Hull, Mesh, Shape};
 use std::sync::Arc;
@@ -133,11 +133,12 @@ fn a_standing_capsule_touches_at_one_point() {
     for (half_height, radius) in [(0.4, 0.1), (0.01, 0.3)] {
         for (ground, frame) in grounds() {
             for (turn, tilt, count) in [(0.0, 0.0, 1), (0.6, 0.001, 1), (0.6, 1.0, 2), (0.6, 1.57, 2)] {
-                let lateral = 2.0 * half_height * f32::sin(tilt);
+                let (sin, cos) = trig::sin_cos(tilt);
+                let lateral = 2.0 * half_height * sin;
                 let count = if lateral < 0.1 * radius { 1 } else { count };
                 let rotation =
                     Rotation::from_axis_angle(Vec3::Y, turn) * Rotation::from_axis_angle(Vec3::Z, tilt);
-                let height = half_height * f32::cos(tilt) + radius - 0.001;
+                let height = half_height * cos + radius - 0.001;
                 let capsule = Shape::Capsule { half_height, radius };
                 let placed = Transform::new(Vec3::Y * height, rotation);
                 let mut found = Vec::new();
