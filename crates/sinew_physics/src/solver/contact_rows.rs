@@ -28,6 +28,8 @@ const DEEP: f32 = 2.0;
 const DEAD_ZONE: f32 = 0.2;
 /// A body that turns by more than this within a substep has its contacts looked for anew, radians.
 const REFIND_TURN: f32 = 0.03;
+/// Likewise where a rim rolls: however slowly, what pushes from where the rim was turns the body as much as it gyrates.
+const ROLL_TURN: f32 = 1e-4;
 /// Then points this far apart count, as a share of the smaller bounding radius: a hand between thigh and floor that spins
 /// off one corner meets the other within the substep.
 const FAR_CORNER: f32 = 0.4;
@@ -170,6 +172,8 @@ pub(crate) struct ManifoldRows {
     shapes: [PlacedShape; 2],
     /// Radii of the shapes' roundings around their cores, where they meet.
     rounds: [f32; 2],
+    /// Bodies turn by less than this in a substep or the contact is looked for anew, radians.
+    most_turn: f32,
     normal: Vec3,
     count: usize,
     /// Cores of the surfaces at each point, in the principal frames, and their distances from the surfaces: a ball's
@@ -225,6 +229,8 @@ pub(crate) struct PlacedShape {
 
 /// A cylinder whose axis leans by less than this sine against the plane across the normal lies on its side.
 const LYING_SINE: f32 = 0.1;
+/// One whose end leans by less than this sine stands on it.
+const FLAT_SINE: f32 = 0.01;
 
 impl PlacedShape {
     pub fn new(shape: Shape, principal_from_shape: Transform) -> Self {
@@ -247,6 +253,18 @@ impl PlacedShape {
             | Shape::HalfSpace
             | Shape::Mesh(_)
             | Shape::HeightField(_) => 0.0,
+        }
+    }
+
+    /// Whether it meets a normal (in the principal frame) with what is curved but not by [`Self::round`]: as it rolls, other
+    /// points come down.
+    fn has_rim(&self, normal: Vec3) -> bool {
+        let axis = || self.principal_from_shape.rotation * Vec3::Y;
+        match self.shape {
+            Shape::Cylinder { .. } => self.round(normal) == 0.0 && axis().cross(normal).length() > FLAT_SINE,
+            Shape::Cone { .. } => axis().cross(normal).length() > FLAT_SINE,
+            Shape::TaperedCapsule { radius_bottom, radius_top, .. } => radius_bottom != radius_top,
+            _ => false,
         }
     }
 }
@@ -277,6 +295,7 @@ impl ManifoldRows {
             manifold: *source.manifold,
             shapes: source.shapes.clone(),
             rounds: [0.0; 2],
+            most_turn: REFIND_TURN,
             normal: n,
             count: source.manifold.count,
             core_a: [Vec3::ZERO; MAX_POINTS],
@@ -292,7 +311,7 @@ impl ManifoldRows {
             tangents: [Row::ZERO; 2],
             tangent_axes: [Vec3::ZERO; 2],
             spin: Row::about(n),
-            weight: weights(&source.memory, source.manifold.count),
+            weight: [0.0; MAX_POINTS],
             lever: 0.0,
             k: [[0.0; MAX_POINTS]; MAX_POINTS],
             k_tangent: [[0.0; 2]; 2],
@@ -330,6 +349,13 @@ impl ManifoldRows {
         let [in_a, in_b] = [pose_a, pose_b].map(|pose| pose.rotation.inverse() * n);
         let [round_a, round_b] = [a.round(in_a), b.round(in_b)];
         self.rounds = [round_a, round_b];
+        // Of a rim, the points beside the one that it rolls on bear nothing.
+        let (most_turn, bearing) = match a.has_rim(in_a) || b.has_rim(in_b) {
+            true => (ROLL_TURN, self.slop),
+            false => (REFIND_TURN, f32::INFINITY),
+        };
+        self.most_turn = most_turn;
+        self.weight = weights(&self.memory, &self.manifold, bearing);
         for (i, point) in self.manifold.points().iter().enumerate() {
             let half = n * (0.5 * point.separation);
             self.core_a[i] = pose_a.inverse_point(point.position - half - n * round_a);
@@ -341,7 +367,7 @@ impl ManifoldRows {
     /// of the corner that swings in. Impulses go on by feature. A pair that has come apart keeps its rows.
     pub fn refind(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) {
         let turn = |body: u32| angular(&velocities[body as usize]).length() * h;
-        if turn(self.a) < REFIND_TURN && turn(self.b) < REFIND_TURN {
+        if turn(self.a) < self.most_turn && turn(self.b) < self.most_turn {
             return;
         }
         let [a, b] = &self.shapes;
@@ -364,7 +390,6 @@ impl ManifoldRows {
             self.impulse[i] = of_substep.points[i].now;
         }
         self.memory = memory;
-        self.weight = weights(&self.memory, manifold.count);
         self.manifold = manifold;
         self.take_manifold(bodies);
     }
@@ -734,15 +759,20 @@ impl ManifoldRows {
     }
 }
 
-/// Shares of the load by point, smoothed so that a point which is about to bear some has a say.
-fn weights(memory: &ContactMemory, count: usize) -> [f32; MAX_POINTS] {
-    let mut total = 0.0;
-    for point in &memory.points[..count] {
-        total += point.now;
-    }
+/// Shares of the load by point, smoothed so that a point which is about to bear some has a say: one whose separation is at
+/// most `bearing`, if there is any.
+fn weights(memory: &ContactMemory, manifold: &Manifold, bearing: f32) -> [f32; MAX_POINTS] {
+    let points = manifold.points();
+    let total: f32 = memory.points[..points.len()].iter().map(|point| point.now).sum();
+    let bears = |separation: f32| separation <= bearing;
+    let heirs = points.iter().filter(|point| bears(point.separation)).count();
     let mut weights = [0.0; MAX_POINTS];
-    for i in 0..count {
-        let even = 1.0 / count as f32;
+    for (i, point) in points.iter().enumerate() {
+        let even = match heirs {
+            0 => 1.0 / points.len() as f32,
+            _ if bears(point.separation) => 1.0 / heirs as f32,
+            _ => 0.0,
+        };
         let share = if total > 0.0 { memory.points[i].now / total } else { even };
         weights[i] = 0.8 * share + 0.2 * even;
     }
