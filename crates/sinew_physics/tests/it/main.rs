@@ -21,6 +21,7 @@ mod particles;
 mod queries;
 mod random_worlds;
 mod ray;
+mod rims;
 mod rope;
 mod sleep;
 mod stacks;

@@ -14,6 +14,7 @@ use crate::material::ContactMaterial;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
 use bounce::Approach;
 pub(crate) use refind::PlacedShape;
+use refind::{REFIND_TURN, ROLL_TURN};
 use row::{Pair, Row, Softness};
 use sinew_math::{Mat3, Vec3, any_orthonormal, max, min};
 
@@ -67,6 +68,8 @@ pub(crate) struct ManifoldRows {
     shapes: [PlacedShape; 2],
     /// Radii of the shapes' roundings around their cores, where they meet.
     rounds: [f32; 2],
+    /// Bodies turn by less than this in a substep or the contact is looked for anew, radians.
+    most_turn: f32,
     normal: Vec3,
     count: usize,
     /// Cores of the surfaces at each point, in the principal frames, and their distances from the surfaces: a ball's
@@ -139,6 +142,7 @@ impl ManifoldRows {
             manifold: *source.manifold,
             shapes: source.shapes.clone(),
             rounds: [0.0; 2],
+            most_turn: REFIND_TURN,
             normal: n,
             count: source.manifold.count,
             core_a: [Vec3::ZERO; MAX_POINTS],
@@ -154,7 +158,7 @@ impl ManifoldRows {
             tangents: [Row::ZERO; 2],
             tangent_axes: [Vec3::ZERO; 2],
             spin: Row::about(n),
-            weight: weights(&source.memory, source.manifold.count),
+            weight: [0.0; MAX_POINTS],
             lever: 0.0,
             k: [[0.0; MAX_POINTS]; MAX_POINTS],
             k_tangent: [[0.0; 2]; 2],
@@ -192,6 +196,13 @@ impl ManifoldRows {
         let [in_a, in_b] = [pose_a, pose_b].map(|pose| pose.rotation.inverse() * n);
         let [round_a, round_b] = [a.round(in_a), b.round(in_b)];
         self.rounds = [round_a, round_b];
+        // Of a rim, the points beside the one that it rolls on bear nothing.
+        let (most_turn, bearing) = match a.has_rim(in_a) || b.has_rim(in_b) {
+            true => (ROLL_TURN, self.slop),
+            false => (REFIND_TURN, f32::INFINITY),
+        };
+        self.most_turn = most_turn;
+        self.weight = weights(&self.memory, &self.manifold, bearing);
         for (i, point) in self.manifold.points().iter().enumerate() {
             let half = n * (0.5 * point.separation);
             self.core_a[i] = pose_a.inverse_point(point.position - half - n * round_a);
@@ -378,15 +389,20 @@ impl ManifoldRows {
     }
 }
 
-/// Shares of the load by point, smoothed so that a point which is about to bear some has a say.
-fn weights(memory: &ContactMemory, count: usize) -> [f32; MAX_POINTS] {
-    let mut total = 0.0;
-    for point in &memory.points[..count] {
-        total += point.now;
-    }
+/// Shares of the load by point, smoothed so that a point which is about to bear some has a say: one whose separation is at
+/// most `bearing`, if there is any.
+fn weights(memory: &ContactMemory, manifold: &Manifold, bearing: f32) -> [f32; MAX_POINTS] {
+    let points = manifold.points();
+    let total: f32 = memory.points[..points.len()].iter().map(|point| point.now).sum();
+    let bears = |separation: f32| separation <= bearing;
+    let heirs = points.iter().filter(|point| bears(point.separation)).count();
     let mut weights = [0.0; MAX_POINTS];
-    for i in 0..count {
-        let even = 1.0 / count as f32;
+    for (i, point) in points.iter().enumerate() {
+        let even = match heirs {
+            0 => 1.0 / points.len() as f32,
+            _ if bears(point.separation) => 1.0 / heirs as f32,
+            _ => 0.0,
+        };
         let share = if total > 0.0 { memory.points[i].now / total } else { even };
         weights[i] = 0.8 * share + 0.2 * even;
     }

@@ -1,6 +1,6 @@
 //! The contact of two bodies that turn fast is looked for again within the step.
 
-use super::{ManifoldRows, weights};
+use super::ManifoldRows;
 use crate::collide::{Half, Manifold, collide, is_on_face, name_as_face};
 use crate::contact::{ContactMemory, PointImpulse};
 use crate::shape::Shape;
@@ -9,7 +9,9 @@ use crate::spatial::{Vec6, angular, linear};
 use sinew_math::{Rotation, Transform, Vec3, max, min};
 
 /// A body that turns by more than this within a substep has its contacts looked for anew, radians.
-const REFIND_TURN: f32 = 0.03;
+pub(super) const REFIND_TURN: f32 = 0.03;
+/// Likewise where a rim rolls: however slowly, what pushes from where the rim was turns the body as much as it gyrates.
+pub(super) const ROLL_TURN: f32 = 1e-4;
 /// Then points this far apart count, as a share of the smaller bounding radius: a hand between thigh and floor that spins
 /// off one corner meets the other within the substep.
 const FAR_CORNER: f32 = 0.4;
@@ -23,6 +25,9 @@ pub(crate) struct PlacedShape {
 
 /// A cylinder whose axis leans by less than this sine against the plane across the normal lies on its side.
 const LYING_SINE: f32 = 0.1;
+
+/// One whose end leans by less than this sine stands on it.
+const FLAT_SINE: f32 = 0.01;
 
 impl PlacedShape {
     pub fn new(shape: Shape, principal_from_shape: Transform) -> Self {
@@ -47,6 +52,18 @@ impl PlacedShape {
             | Shape::HeightField(_) => 0.0,
         }
     }
+
+    /// Whether it meets a normal (in the principal frame) with what is curved but not by [`Self::round`]: as it rolls, other
+    /// points come down.
+    pub(super) fn has_rim(&self, normal: Vec3) -> bool {
+        let axis = || self.principal_from_shape.rotation * Vec3::Y;
+        match self.shape {
+            Shape::Cylinder { .. } => self.round(normal) == 0.0 && axis().cross(normal).length() > FLAT_SINE,
+            Shape::Cone { .. } => axis().cross(normal).length() > FLAT_SINE,
+            Shape::TaperedCapsule { radius_bottom, radius_top, .. } => radius_bottom != radius_top,
+            _ => false,
+        }
+    }
 }
 
 impl ManifoldRows {
@@ -54,7 +71,7 @@ impl ManifoldRows {
     /// of the corner that swings in. Impulses go on by feature. A pair that has come apart keeps its rows.
     pub fn refind(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) {
         let turn = |body: u32| angular(&velocities[body as usize]).length() * h;
-        if turn(self.a) < REFIND_TURN && turn(self.b) < REFIND_TURN {
+        if turn(self.a) < self.most_turn && turn(self.b) < self.most_turn {
             return;
         }
         let [a, b] = &self.shapes;
@@ -77,7 +94,6 @@ impl ManifoldRows {
             self.impulse[i] = of_substep.points[i].now;
         }
         self.memory = memory;
-        self.weight = weights(&self.memory, manifold.count);
         self.manifold = manifold;
         self.take_manifold(bodies);
     }
