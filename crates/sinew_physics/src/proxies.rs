@@ -7,7 +7,8 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::boxes::Aabb;
 use crate::def::BodyKind;
-use crate::shape::Shape;
+use crate::shape::{Filter, Sensing, Shape};
+use crate::surface::Surface;
 use crate::tree::{Item, PAD, Sweep, Tree};
 use core::ops::ControlFlow;
 use sinew_math::{Transform, Vec3, max, max3};
@@ -44,11 +45,13 @@ pub(crate) struct Proxies {
     scratch: Vec<Item>,
 }
 
-/// A shape where it is.
+/// A shape where it is, and who asks for it.
 #[derive(Clone, Debug)]
 pub(crate) struct Placed {
     pub shape: Shape,
     pub world_from_shape: Transform,
+    pub filter: Filter,
+    pub sensing: Sensing,
 }
 
 /// A tree, and whose its leaves are.
@@ -425,7 +428,9 @@ impl Proxies {
 fn lone(body: &Body) -> Option<Placed> {
     match (body.kind, body.shapes.as_slice()) {
         (BodyKind::Static, [only]) => {
-            Some(Placed { shape: only.shape.clone(), world_from_shape: body.world_from_shape(0) })
+            let &Surface { filter, sensing, .. } = body.surface(0);
+            let (shape, world_from_shape) = (only.shape.clone(), body.world_from_shape(0));
+            Some(Placed { shape, world_from_shape, filter, sensing })
         }
         _ => None,
     }

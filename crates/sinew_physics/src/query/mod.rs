@@ -82,9 +82,10 @@ pub use place::{
 pub use probe::Probe;
 pub use question::Question;
 
+use crate::def::BodyKind;
 use crate::id::{BodyId, ShapeId};
 use crate::proxies::{Owner, Placed};
-use crate::shape::Shape;
+use crate::shape::{Filter, Sensing, Shape};
 use crate::world::World;
 use candidates::{Limit, candidates};
 use core::ops::ControlFlow;
@@ -215,22 +216,30 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         });
     }
 
+    fn passes(&self, id: ShapeId, kind: BodyKind, filter: Filter, sensing: Sensing) -> bool {
+        self.filter.passes(id, kind, filter, sensing) && (self.accept)(id.body, id.shape)
+    }
+
     /// Every shape that may have an answer and passes, in any order, until `visit` breaks.
     fn shapes<Q: Question>(&self, question: &Q, mut visit: impl FnMut(ShapeId, &Shape, &Transform) -> Limit) {
         let Some(reach) = question.reach() else { return };
         let mut limit = f32::INFINITY;
         candidates(self.world, &reach, |Owner { body: index, shape }| {
             let generation = self.world.bodies.generation(index);
-            let (id, body) = (BodyId { index, generation }, self.world.bodies.at(index));
-            let id = ShapeId { body: id, shape };
-            if self.filter.passes(id, body) && (self.accept)(id.body, shape) {
-                limit = match self.world.broad.proxies.lone(index) {
-                    Some(Placed { shape, world_from_shape }) => visit(id, shape, world_from_shape)?,
-                    None => {
-                        let shape = shape as usize;
-                        visit(id, &body.shapes[shape].shape, &body.world_from_shape(shape))?
-                    }
-                };
+            let id = ShapeId { body: BodyId { index, generation }, shape };
+            // A body is spread over lines of the cache that a ray would wait for: what stands alone is asked without it.
+            if let Some(Placed { shape, world_from_shape, filter, sensing }) =
+                self.world.broad.proxies.lone(index)
+            {
+                if self.passes(id, BodyKind::Static, *filter, *sensing) {
+                    limit = visit(id, shape, world_from_shape)?;
+                }
+            } else {
+                let body = self.world.bodies.at(index);
+                let (place, surface) = (shape as usize, body.surface(shape as usize));
+                if self.passes(id, body.kind, surface.filter, surface.sensing) {
+                    limit = visit(id, &body.shapes[place].shape, &body.world_from_shape(place))?;
+                }
             }
             ControlFlow::Continue(limit)
         });
