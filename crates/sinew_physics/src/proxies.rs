@@ -134,7 +134,7 @@ impl Proxies {
             for shape in 0..home.count {
                 self.put(home, shape, body);
             }
-            self.refresh(home.moves);
+            self.mend(home.moves);
         }
     }
 
@@ -155,10 +155,15 @@ impl Proxies {
     /// A body has been put somewhere else.
     pub fn place(&mut self, index: u32, body: &Body) {
         let Some(home) = self.homes[index as usize] else { return };
-        self.lone[index as usize] = lone(body);
+        self.refresh(index, body);
         for shape in (0..home.count).filter(|&shape| is_bounded(body, shape)) {
             self.cover(home, shape, &self.needed(home, body, shape), ROOM);
         }
+    }
+
+    /// A body has other surfaces than before.
+    pub fn refresh(&mut self, index: u32, body: &Body) {
+        self.lone[index as usize] = lone(body);
     }
 
     /// All bodies may be others than before: keeps what fits.
@@ -190,8 +195,8 @@ impl Proxies {
 
     /// Works out where all that moves may be within a step of `dt` seconds, and lets the tree follow.
     pub fn follow(&mut self, bodies: &Arena<Body>, activity: &Activity, dt: f32) {
-        self.refresh(false);
-        self.refresh(true);
+        self.mend(false);
+        self.mend(true);
         for index in activity.movers() {
             let body = bodies.at(index);
             if !body.can_touch() {
@@ -359,7 +364,7 @@ impl Proxies {
     }
 
     /// Builds a tree anew if it is worn.
-    fn refresh(&mut self, moves: bool) {
+    fn mend(&mut self, moves: bool) {
         if moves && self.moving.tree.is_worn() {
             self.moving.tree.rebuild(&mut self.scratch);
         } else if !moves && self.fixed.tree.is_worn() {
