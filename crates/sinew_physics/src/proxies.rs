@@ -294,6 +294,17 @@ impl Proxies {
         ControlFlow::Continue(())
     }
 
+    /// Half-spaces.
+    pub fn unbounded(&self) -> &[Owner] {
+        &self.unbounded
+    }
+
+    /// All other shapes: trees that are not empty, each with whose its leaves are.
+    pub fn trees(&self) -> impl Iterator<Item = (&Tree, &[Owner])> {
+        let layers = [&self.fixed, &self.moving].into_iter().filter(|layer| layer.tree.len() > 0);
+        layers.map(|layer| (&layer.tree, layer.owners.as_slice()))
+    }
+
     /// Every shape that may be met along a line; see [`Tree::along`].
     pub fn along(&self, sweep: &Sweep, mut visit: impl FnMut(Owner) -> f32) {
         let mut sweep = *sweep;
