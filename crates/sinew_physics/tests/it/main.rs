@@ -23,6 +23,7 @@ mod random_worlds;
 mod ray;
 mod rope;
 mod sleep;
+mod stacks;
 mod surfaces;
 mod touches;
 mod trees;
