@@ -3,9 +3,6 @@
 use super::placed::sign;
 use sinew_math::{Vec3, clamp, max, max3, min, min3};
 
-/// Share of the radius around a segment within which points beside each other are one.
-const ONE_POINT: f32 = 0.1;
-
 /// Line segment; its ends may coincide.
 #[derive(Clone, Copy)]
 pub(crate) struct Segment {
@@ -16,11 +13,6 @@ impl Segment {
     /// Point at parameter `t`, 0..=1.
     pub fn at(&self, t: f32) -> Vec3 {
         self.ends[0] + (self.ends[1] - self.ends[0]) * t
-    }
-
-    /// Whether it stands along the unit vector `normal`: with a radius around it, what it stands on is touched in one point.
-    pub fn stands(&self, normal: Vec3, radius: f32) -> bool {
-        (self.ends[1] - self.ends[0]).cross(normal).length() < ONE_POINT * radius
     }
 
     /// Parameter of the point closest to `p`, 0..=1.

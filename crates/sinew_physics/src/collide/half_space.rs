@@ -44,15 +44,15 @@ pub(super) fn against_hull(a: &Plane, b: &Hull, frame: &Transform, margin: f32, 
     push_best(&points[..count], tolerance, out);
 }
 
-/// Both ends; the lower one alone if it stands, so that it is not pushed twice.
+/// Both ends.
 pub(super) fn against_capsule(a: &Plane, b: &Pill, margin: f32, out: &mut Manifold) {
     out.normal = a.normal;
-    let stands = b.core.stands(a.normal, b.radius);
-    let lower = usize::from(a.height(b.core.ends[1]) < a.height(b.core.ends[0]));
     for (index, point) in b.core.ends.into_iter().enumerate() {
-        if !stands || index == lower {
-            push(a, point, b.radius, margin, end(index), out);
-        }
+        push(a, point, b.radius, margin, end(index), out);
+    }
+    // A capsule without a middle is a ball: one point, so that it is not pushed twice.
+    if out.count == 2 && b.core.ends[0] == b.core.ends[1] {
+        out.count = 1;
     }
 }
 

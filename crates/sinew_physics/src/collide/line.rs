@@ -22,12 +22,13 @@ impl Line<'_> {
     /// nothing pushed, if the stretch is too short to tell two points apart, or neither end is within the margin.
     pub fn push_ends(&self, height: impl Fn(Vec3) -> f32, margin: f32, out: &mut Manifold) -> bool {
         let &Self { core, radius, stretch: (from, to), normal, name } = self;
-        let part = Segment { ends: [core.at(from), core.at(to)] };
-        if part.stands(normal, radius) {
+        let length = (core.ends[1] - core.ends[0]).length();
+        if (to - from) * length < 0.1 * radius {
             return false;
         }
         out.normal = normal;
-        for (index, p) in part.ends.into_iter().enumerate() {
+        for (index, t) in [from, to].into_iter().enumerate() {
+            let p = core.at(t);
             let separation = height(p) - radius;
             if separation <= margin {
                 out.push(p - normal * (radius + 0.5 * separation), separation, pair(name, end(index)));

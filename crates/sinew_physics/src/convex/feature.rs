@@ -59,11 +59,6 @@ impl Feature {
         &self.corners[..self.count]
     }
 
-    /// One of its corners alone.
-    pub fn corner(&self, index: usize) -> Self {
-        Self::new(&[Corner { side: WHOLE, ..self.corners[index] }], WHOLE, Vec3::ZERO)
-    }
-
     /// Whether it is a polygon, with a normal.
     pub fn is_face(&self) -> bool {
         self.count > 2

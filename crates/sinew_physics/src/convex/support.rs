@@ -1,7 +1,7 @@
 //! Convex cores by their support functions.
 
 use super::feature::Feature;
-use crate::collide::placed::{Segment, sign};
+use crate::collide::placed::sign;
 use crate::hull::Hull;
 use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
@@ -114,14 +114,9 @@ impl Support for Core<'_> {
     fn feature(&self, direction: Vec3) -> Feature {
         match self {
             Self::Point { .. } => Feature::of_point(Vec3::ZERO),
-            Self::Segment { half_height, radius } => {
+            Self::Segment { half_height, .. } => {
                 let up = Vec3::new(0.0, *half_height, 0.0);
-                let edge = Feature::of_edge([-up, up]);
-                if (Segment { ends: [-up, up] }).stands(direction, *radius) {
-                    edge.corner(usize::from(direction.y > 0.0))
-                } else {
-                    edge
-                }
+                Feature::of_edge([-up, up])
             }
             Self::Box { half } => Feature::of_box(*half, direction),
             Self::Frustum(frustum) => Feature::of_frustum(frustum, direction),

@@ -4,10 +4,8 @@ mod brute;
 mod placed;
 
 pub use placed::{FINITE, Kind, Placed, all_pairs, gap, random_rotation, random_shape, unit, wide};
-use sinew_math::{Random, Rotation, Transform, Vec3, trig};
-use sinew_physics::collide::collide_all;
-use sinew_physics::{Hull, Mesh, Shape};
-use std::sync::Arc;
+use sinew_math::{Random, Rotation, Transform, Vec3};
+use sinew_physics::Shape;
 
 fn unit_box(center: Vec3, rotation: Rotation) -> Placed {
     Placed { shape: Shape::Box { half_extents: Vec3::splat(0.5) }, frame: Transform::new(center, rotation) }
@@ -109,47 +107,6 @@ fn capsule_on_box_touches_along_a_line() {
     x.sort_by(f32::total_cmp);
     assert!((x[0] + 0.1).abs() < 1e-5 && (x[1] - 0.5).abs() < 1e-5, "{x:?}");
     assert!(m.points().iter().all(|p| (p.separation + 0.001).abs() < 1e-5));
-}
-
-/// Everything flat whose top is the plane y = 0.
-fn grounds() -> Vec<(Shape, Transform)> {
-    let sunk = |depth: f32| Transform::from_translation(Vec3::Y * -depth);
-    let corners = [-1.0, 1.0].map(|x| [-1.0, 1.0].map(|y| [-1.0, 1.0].map(|z| Vec3::new(x, y, z))));
-    let hull = Hull::new(&corners.as_flattened().concat()).expect("a cube");
-    let floor = [(-9.0, -9.0), (0.0, 9.0), (9.0, -9.0)].map(|(x, z)| Vec3::new(x, 0.0, z));
-    vec![
-        (Shape::HalfSpace, Transform::IDENTITY),
-        (Shape::Box { half_extents: Vec3::ONE }, sunk(1.0)),
-        (Shape::Hull(Arc::new(hull)), sunk(1.0)),
-        (Shape::Cylinder { half_height: 1.0, radius: 2.0 }, sunk(1.0)),
-        (Shape::Mesh(Arc::new(Mesh::new(&floor, &[[0, 1, 2]]).expect("a triangle"))), Transform::IDENTITY),
-    ]
-}
-
-/// A capsule that stands has one end to stand on, however short it is and however far points are looked for; one that lies or
-/// leans has two.
-#[test]
-fn a_standing_capsule_touches_at_one_point() {
-    for (half_height, radius) in [(0.4, 0.1), (0.01, 0.3)] {
-        for (ground, frame) in grounds() {
-            for (turn, tilt, count) in [(0.0, 0.0, 1), (0.6, 0.001, 1), (0.6, 1.0, 2), (0.6, 1.57, 2)] {
-                let (sin, cos) = trig::sin_cos(tilt);
-                let lateral = 2.0 * half_height * sin;
-                let count = if lateral < 0.1 * radius { 1 } else { count };
-                let rotation =
-                    Rotation::from_axis_angle(Vec3::Y, turn) * Rotation::from_axis_angle(Vec3::Z, tilt);
-                let height = half_height * cos + radius - 0.001;
-                let capsule = Shape::Capsule { half_height, radius };
-                let placed = Transform::new(Vec3::Y * height, rotation);
-                let mut found = Vec::new();
-                collide_all(&ground, &frame, &capsule, &placed, 1.0, |m| found.push(*m));
-                assert_eq!(found.len(), 1, "{ground:?}: {found:?}");
-                assert_eq!(found[0].count, count, "{capsule:?} tilted by {tilt} on {ground:?}: {found:?}");
-                let least = found[0].points().iter().fold(1.0, |least: f32, p| least.min(p.separation));
-                assert!((least + 0.001).abs() < 1e-5, "{ground:?}: {found:?}");
-            }
-        }
-    }
 }
 
 /// Features keep their names while a box rocks and slides by less than a millimetre.

@@ -67,10 +67,7 @@ impl<'a> Solid<'a> {
         match self {
             Self::Ball(_) => push(Vec3::ZERO, WHOLE, Side::None),
             Self::Pill(pill) => {
-                let ends = pill.core.ends;
-                let lower = usize::from(ends[1].dot(normal) < ends[0].dot(normal));
-                let stands = pill.core.stands(normal, pill.radius);
-                for (index, at) in ends.into_iter().enumerate().filter(|(k, _)| !stands || *k == lower) {
+                for (index, at) in pill.core.ends.into_iter().enumerate() {
                     push(at, feature::end(index), Side::Shape(WHOLE));
                 }
             }
