@@ -1,9 +1,12 @@
 //! The bind pose: where joints and skin were when the skin was made.
 
 use crate::pose::{local_to_model, rest_pose};
-use crate::rig::{Mesh, Rig};
+use crate::rig::{LocalTransform, Mesh, Rig};
 use crate::skinning::skin_vertices;
 use sinew_math::{Affine, Vec3, max3, min3};
+
+/// Joints nearer to each other than this share of the body's size are in one place.
+const COINCIDENT: f32 = 1e-3;
 
 /// Geometry of a rig in its bind pose, model space, file units.
 pub(super) struct Bound {
@@ -36,6 +39,44 @@ impl Bound {
             }
         }
         (bound.area.iter().any(|&a| a > 0.0)).then_some(bound)
+    }
+
+    /// The same of a skeleton without skin: bones weigh by their length, and joints stand in for vertices. `None` when
+    /// no bone has a finite length.
+    pub fn of_bones(rig: &Rig, pose: &[LocalTransform]) -> Option<Self> {
+        let mut model = Vec::new();
+        local_to_model(rig, pose, &Affine::IDENTITY, &mut model);
+        let mut is_end = vec![true; rig.joints.len()];
+        rig.joints.iter().filter_map(|joint| joint.parent).for_each(|parent| is_end[parent] = false);
+        let mut bound = Self {
+            area: vec![0.0; rig.joints.len()],
+            vertices: model.iter().map(|joint| joint.translation).filter(|at| at.is_finite()).collect(),
+            lo: Vec3::splat(f32::INFINITY),
+            hi: Vec3::splat(f32::NEG_INFINITY),
+            model,
+        };
+        for &at in &bound.vertices {
+            (bound.lo, bound.hi) = (min3(bound.lo, at), max3(bound.hi, at));
+        }
+        // A joint right on its parent (the lab of CMU has eleven) is no place of its own, and would have no mirror image.
+        let mut place: Vec<usize> = (0..rig.joints.len()).collect();
+        for (i, joint) in rig.joints.iter().enumerate() {
+            let Some(parent) = joint.parent.map(|parent| place[parent]) else { continue };
+            let bone = (bound.model[i].translation - bound.model[parent].translation).length();
+            if bone < COINCIDENT * bound.size() {
+                place[i] = parent;
+            } else if bone.is_finite() {
+                bound.area[parent] += bone;
+            }
+        }
+        let has_bones = bound.area.iter().any(|&a| a > 0.0);
+        for i in
+            (0..rig.joints.len()).filter(|&i| is_end[i] && place[i] == i && !rig.joints[i].name.is_empty())
+        {
+            // A hand or a head of which the file does not say how long it is.
+            bound.area[i] = 0.06 * bound.size();
+        }
+        has_bones.then_some(bound)
     }
 
     /// The longest side of the skin's box.

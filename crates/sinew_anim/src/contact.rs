@@ -1,0 +1,203 @@
+//! Which foot stands when, and how much it slides while it does.
+
+use crate::ik::TwoBone;
+use crate::pose::local_to_model;
+use crate::rig::{JointIdx, Rig};
+use crate::roles::{RigAnalysis, Role, Side};
+use crate::take::Take;
+use sinew_math::{Affine, Vec3, max, min};
+
+/// A foot on the ground for a while.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FootContact {
+    /// Whose.
+    pub foot: Side,
+    /// Seconds from the start of the take: the footfall.
+    pub start: f32,
+    /// Seconds: when it leaves the ground again.
+    pub end: f32,
+}
+
+/// A leg and the two points of the sole that it stands on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foot {
+    /// Whose.
+    pub side: Side,
+    /// Hip, knee and ankle.
+    pub leg: TwoBone,
+    /// Under the ankle, and under the ball (where the toes begin): from the ankle in the axes of its joint without scale,
+    /// metres.
+    pub sole: [Vec3; 2],
+    /// From hip to knee to ankle to the floor, metres.
+    pub length: f32,
+}
+
+/// Place of the ball in front of an ankle whose rig has no toes, in lengths of the leg.
+const BALL: f32 = 0.14;
+
+impl Foot {
+    /// Both feet of a humanoid, left first, as they stand in its bind pose; `None` if one has no thigh, shank or foot.
+    pub fn both(analysis: &RigAnalysis) -> Option<[Self; 2]> {
+        Some([Self::of(analysis, Side::Left)?, Self::of(analysis, Side::Right)?])
+    }
+
+    fn of(analysis: &RigAnalysis, side: Side) -> Option<Self> {
+        let joint = |role: Role| analysis.joint_with(role);
+        let leg = TwoBone {
+            upper: joint(Role::UpperLeg(side))?,
+            lower: joint(Role::LowerLeg(side))?,
+            end: joint(Role::Foot(side))?,
+        };
+        let character = analysis.character_from_file();
+        let stands = |joint: JointIdx| (character * analysis.bind_model[joint]).to_rigid();
+        let (hip, knee, ankle) = (stands(leg.upper), stands(leg.lower), stands(leg.end));
+        let bones =
+            (knee.translation - hip.translation).length() + (ankle.translation - knee.translation).length();
+        let at = ankle.translation;
+        let ball =
+            joint(Role::Toes(side)).map_or(at + Vec3::Z * (BALL * bones), |toes| stands(toes).translation);
+        let on_floor = |p: Vec3| Vec3::new(p.x, analysis.floor, p.z) - at;
+        Some(Self {
+            side,
+            leg,
+            sole: [at, ball].map(|p| ankle.rotation.inverse() * on_floor(p)),
+            length: bones + (at.y - analysis.floor),
+        })
+    }
+
+    /// Heel and ball in a pose, in the space of `model`, whose unit is the metre.
+    pub fn points(&self, model: &[Affine]) -> [Vec3; 2] {
+        let ankle = model[self.leg.end].to_rigid();
+        self.sole.map(|point| ankle.translation + ankle.rotation * point)
+    }
+}
+
+/// Heels and balls of both feet, frame by frame, in the space that `root` maps the rig's to.
+pub fn sole_points(rig: &Rig, root: &Affine, feet: &[Foot; 2], take: &Take) -> Vec<[[Vec3; 2]; 2]> {
+    let mut model = Vec::new();
+    let points = |frame| {
+        local_to_model(rig, take.pose(frame), root, &mut model);
+        feet.each_ref().map(|foot| foot.points(&model))
+    };
+    (0..take.frames()).map(points).collect()
+}
+
+/// Height of the floor under a motion: that which the lowest point of both feet is at or above in nine frames of ten.
+/// A jump does not fool it, nor a few frames of noise.
+pub fn floor_under(points: &[[[Vec3; 2]; 2]]) -> f32 {
+    let mut lows: Vec<f32> = points.iter().map(lowest).collect();
+    lows.sort_by(f32::total_cmp);
+    lows.get(lows.len() / 10).copied().unwrap_or(0.0)
+}
+
+/// Height of the lowest point of both feet.
+pub fn lowest(points: &[[Vec3; 2]; 2]) -> f32 {
+    points.as_flattened().iter().map(|point| point.y).fold(f32::INFINITY, min)
+}
+
+/// When a foot stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSettings {
+    /// Least and most speed of the ball of a foot, m/s: it lands below the first and leaves above the second.
+    pub speed: [f32; 2],
+    /// Highest that it is above the floor, metres.
+    pub height: f32,
+    /// Shortest time on the ground, and shortest off it, seconds: shorter ones are noise.
+    pub shortest: f32,
+}
+
+impl ContactSettings {
+    /// For a body with legs so long (metres, hip to floor): those of an adult, by Froude's law of like motions.
+    pub fn for_leg(length: f32) -> Self {
+        let size = length / 0.9;
+        let time = size.sqrt();
+        Self { speed: [0.3 * time, 0.45 * time], height: 0.05 * size, shortest: 0.07 * time }
+    }
+}
+
+/// When each foot stands, told by height and speed of its ball. `points` are those of [`sole_points`], `floor` the height
+/// of the ground. In order of start; left before right.
+pub fn contacts(
+    take: &Take,
+    feet: &[Foot; 2],
+    points: &[[[Vec3; 2]; 2]],
+    floor: f32,
+    settings: &ContactSettings,
+) -> Vec<FootContact> {
+    let mut found = Vec::new();
+    for (k, foot) in feet.iter().enumerate() {
+        let balls: Vec<Vec3> = points.iter().map(|frame| frame[k][1]).collect();
+        for [first, last] in standing(take, &balls, floor, settings) {
+            found.push(FootContact { foot: foot.side, start: take.time(first), end: take.time(last) });
+        }
+    }
+    found.sort_by(|a, b| a.start.total_cmp(&b.start).then(a.foot.cmp(&b.foot)));
+    found
+}
+
+/// First and last frame of every time on the ground.
+fn standing(take: &Take, balls: &[Vec3], floor: f32, settings: &ContactSettings) -> Vec<[usize; 2]> {
+    let shortest = take.frames_in(settings.shortest).max(1);
+    let mut spans: Vec<[usize; 2]> = Vec::new();
+    let mut stands = false;
+    for frame in 0..balls.len() {
+        let most = settings.speed[usize::from(stands)];
+        let low = balls[frame].y - floor < settings.height;
+        let stood = core::mem::replace(&mut stands, low && speed(take, balls, frame) < most);
+        match (stands, spans.last_mut()) {
+            (true, Some(span)) if stood || frame - span[1] <= shortest => span[1] = frame,
+            (true, _) => spans.push([frame, frame]),
+            (false, _) => {}
+        }
+    }
+    spans.retain(|span| span[1] - span[0] >= shortest);
+    spans
+}
+
+/// Speed over the ground, by a difference over 33 ms: captured points tremble.
+fn speed(take: &Take, points: &[Vec3], frame: usize) -> f32 {
+    let reach = take.frames_in(0.016).max(1);
+    let (from, to) = (frame.saturating_sub(reach), (frame + reach).min(points.len() - 1));
+    let way = points[to] - points[from];
+    let time = take.time(to) - take.time(from);
+    if time > 0.0 { way.length() / time } else { 0.0 }
+}
+
+/// How feet slide while they stand.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FootSlide {
+    /// Mean speed over the ground, m/s: way slid over time stood.
+    pub mean: f32,
+    /// Farthest that a foot gets in one contact from where it landed, metres.
+    pub farthest: f32,
+    /// Time stood, both feet, seconds.
+    pub time: f32,
+}
+
+/// How far the balls of the feet get over the ground (x and z) during `contacts`.
+pub fn foot_slide(
+    take: &Take,
+    feet: &[Foot; 2],
+    points: &[[[Vec3; 2]; 2]],
+    contacts: &[FootContact],
+) -> FootSlide {
+    let (mut way, mut slide) = (0.0, FootSlide::default());
+    let flat = |v: Vec3| Vec3::new(v.x, 0.0, v.z).length();
+    for contact in contacts {
+        let Some(k) = feet.iter().position(|foot| foot.side == contact.foot) else { continue };
+        let [first, last] = frames_of(take, contact, points.len());
+        for frame in first..last {
+            way += flat(points[frame + 1][k][1] - points[frame][k][1]);
+            slide.farthest = max(slide.farthest, flat(points[frame + 1][k][1] - points[first][k][1]));
+        }
+        slide.time += (last - first) as f32 * take.frame_time as f32;
+    }
+    slide.mean = if slide.time > 0.0 { way / slide.time } else { 0.0 };
+    slide
+}
+
+/// First and last frame of a contact, inside a take of so many frames.
+pub(crate) fn frames_of(take: &Take, contact: &FootContact, frames: usize) -> [usize; 2] {
+    let last = frames.saturating_sub(1);
+    [contact.start, contact.end].map(|time| take.frames_in(max(time, 0.0)).min(last))
+}

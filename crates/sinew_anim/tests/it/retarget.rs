@@ -1,0 +1,291 @@
+//! A captured walk on bodies of other sizes and builds.
+
+use crate::mocap::{Actor, actor, character};
+use sinew_anim::contact::{ContactSettings, Foot, contacts, floor_under, foot_slide, lowest, sole_points};
+use sinew_anim::retarget::{
+    Body, Feet, Pace, Reference, RetargetError, RetargetOptions, Retargeted, retarget,
+};
+use sinew_anim::{Clip, FootContact, Rig, RigAnalysis, Role, Side, Take, local_to_model};
+use sinew_math::{Affine, Vec3, direction};
+
+const WALK: &str = "cmu_12_01_walk.bvh";
+
+fn onto(actor: &Actor, rig: &Rig, analysis: &RigAnalysis, options: &RetargetOptions) -> Retargeted {
+    let body = Body { rig: &actor.rig, analysis: &actor.analysis };
+    retarget(body, &actor.clip, Body { rig, analysis }, options).unwrap()
+}
+
+/// The same character so many times as large.
+fn scaled(rig: &Rig, analysis: &RigAnalysis, times: f32) -> (Rig, RigAnalysis) {
+    let mut rig = rig.clone();
+    for joint in rig.joints.iter_mut().filter(|joint| joint.parent.is_none()) {
+        joint.rest.translation *= times;
+        joint.rest.scale *= times;
+    }
+    for skin in &mut rig.skins {
+        for (&joint, inverse) in skin.joints.iter().zip(&mut skin.inverse_bind) {
+            let bind = analysis.bind_model[joint];
+            let grown = Affine { linear: bind.linear * times, translation: bind.translation * times };
+            // Vertices are as they were: the skin is what grows.
+            let before = bind * *inverse;
+            *inverse = grown.inverse()
+                * Affine { linear: before.linear * times, translation: before.translation * times };
+        }
+    }
+    let found = sinew_anim::analyze(&rig).unwrap().with_unit_scale(analysis.unit_scale);
+    (rig, found)
+}
+
+/// Angle between where a bone points in two bodies' own axes, frame by frame, at most; degrees.
+fn bone_error(
+    actor: &Actor,
+    from: &Take,
+    rig: &Rig,
+    analysis: &RigAnalysis,
+    to: &Take,
+    [a, b]: [Role; 2],
+) -> f32 {
+    let way = |rig: &Rig, analysis: &RigAnalysis, take: &Take, frame: usize| {
+        let mut model = Vec::new();
+        local_to_model(rig, take.pose(frame), &analysis.character_from_file(), &mut model);
+        let place = |role: Role| model[analysis.joint_with(role).unwrap()].translation;
+        direction(place(b) - place(a)).unwrap()
+    };
+    let angle = |frame: usize| {
+        let cos = way(&actor.rig, &actor.analysis, from, frame).dot(way(rig, analysis, to, frame));
+        sinew_math::trig::acos(sinew_math::clamp(cos, -1.0, 1.0)).to_degrees()
+    };
+    (0..to.frames()).map(angle).fold(0.0, sinew_math::max)
+}
+
+#[test]
+fn a_captured_walk_is_understood() {
+    let Some(walk) = actor(WALK) else { return };
+    assert_eq!(walk.reference, Reference::Stated);
+    let name = |role: Role| walk.analysis.joint_with(role).map(|joint| walk.rig.joints[joint].name.as_str());
+    for (role, expected) in [
+        (Role::Hips, "Hips"),
+        (Role::UpperLeg(Side::Left), "LeftUpLeg"),
+        (Role::LowerLeg(Side::Right), "RightLeg"),
+        (Role::Foot(Side::Left), "LeftFoot"),
+        (Role::Toes(Side::Left), "LeftToeBase"),
+        (Role::UpperArm(Side::Left), "LeftArm"),
+        (Role::LowerArm(Side::Right), "RightForeArm"),
+        (Role::Hand(Side::Right), "RightHand"),
+        (Role::Head, "Head"),
+    ] {
+        assert_eq!(name(role), Some(expected), "{role:?}: {:?}", walk.analysis.notes);
+    }
+    assert!((walk.analysis.height - 1.6).abs() < 0.2, "{}", walk.analysis.height);
+    let take = Take::of(&walk.rig, &walk.clip, 1.0 / 60.0);
+    let feet = Foot::both(&walk.analysis).unwrap();
+    let points = sole_points(&walk.rig, &walk.analysis.character_from_file(), &feet, &take);
+    let floor = floor_under(&points);
+    let found = contacts(&take, &feet, &points, floor, &ContactSettings::for_leg(feet[0].length));
+    println!("floor {floor}, {found:?}");
+    // Feet take turns, and a walking foot is on the ground for about six tenths of the time.
+    let inner = &found[1..found.len() - 1];
+    assert!(found.len() >= 6, "{found:?}");
+    assert!(inner.windows(2).all(|pair| pair[0].foot != pair[1].foot), "{found:?}");
+    assert!(inner.iter().all(|contact| (0.3..0.95).contains(&(contact.end - contact.start))), "{found:?}");
+    assert!(foot_slide(&take, &feet, &points, &found).mean < 0.25);
+}
+
+#[test]
+fn every_capture_finds_its_body() {
+    for (name, reference) in
+        [("cmu_01_01_jumps.bvh", Some(Reference::Stated)), ("cmu_02_03_run_iclone.bvh", None)]
+    {
+        let Some(found) = actor(name) else { return };
+        assert!(found.analysis.humanoid, "{name}: {:?}", found.analysis.notes);
+        assert!(
+            reference.is_none_or(|expected| found.reference == expected),
+            "{name}: {:?}",
+            found.reference
+        );
+        assert!(Foot::both(&found.analysis).is_some(), "{name}");
+    }
+}
+
+#[test]
+fn a_walk_fits_every_body() {
+    let (Some(walk), Some(man), Some(mannequin)) =
+        (actor(WALK), character("CesiumMan.glb"), character("mannequiny.glb"))
+    else {
+        return;
+    };
+    let child = scaled(&mannequin.0, &mannequin.1, 0.8 / mannequin.1.height);
+    let giant = scaled(&mannequin.0, &mannequin.1, 14.0 / mannequin.1.height);
+    assert!((giant.1.height - 14.0).abs() < 0.01 && (child.1.height - 0.8).abs() < 0.001);
+    for (name, (rig, analysis)) in
+        [("CesiumMan", &man), ("mannequiny", &mannequin), ("child", &child), ("giant", &giant)]
+    {
+        let options = RetargetOptions { pace: Pace::Froude, ..RetargetOptions::default() };
+        let found = onto(&walk, rig, analysis, &options);
+        let slide = found.feet.slide.map(|slide| 100.0 * slide.mean / analysis.height);
+        println!(
+            "{name}: legs × {:.2}, slide {:.2} → {:.3} cm/s per m, farthest {:.1} mm, shifted {:.1} cm, lowered {:.1} cm, \
+             miss {:.2} mm, {} contacts",
+            found.scale,
+            slide[0],
+            slide[1],
+            1e3 * found.feet.slide[1].farthest,
+            1e2 * found.feet.shifted,
+            1e2 * found.feet.lowered,
+            1e3 * found.feet.miss,
+            found.contacts.len()
+        );
+        assert!(slide[1] < 1.0, "{name}: {slide:?} cm/s per metre of height");
+        assert!(found.feet.miss < 0.002 * analysis.height, "{name}: {}", found.feet.miss);
+        assert!(found.feet.shifted < 0.06 * analysis.height, "{name}: {}", found.feet.shifted);
+        assert!((f64::from(found.pace) - f64::from(found.scale).sqrt()).abs() < 1e-5);
+        assert!(
+            found.take.poses.iter().all(|local| local.rotation.is_finite() && local.translation.is_finite())
+        );
+        // Soles are on or over the floor, and one of them always near it.
+        let feet = Foot::both(analysis).unwrap();
+        let points = sole_points(rig, &analysis.character_from_file(), &feet, &found.take);
+        let heights: Vec<f32> =
+            points.iter().map(|frame| (lowest(frame) - analysis.floor) / analysis.height).collect();
+        assert!(heights.iter().all(|&h| h > -1e-3 && h < 0.02), "{name}: {heights:?}");
+    }
+}
+
+/// Where nothing is mended at the ground, bones point where the actor's point.
+#[test]
+fn bones_point_where_the_actors_do() {
+    let (Some(walk), Some(man), Some(mannequin)) =
+        (actor(WALK), character("CesiumMan.glb"), character("mannequiny.glb"))
+    else {
+        return;
+    };
+    let source = Take::of(&walk.rig, &walk.clip, 1.0 / 60.0);
+    for (rig, analysis) in [&man, &mannequin] {
+        let free = RetargetOptions { feet: Feet::Free, ..RetargetOptions::default() };
+        let found = onto(&walk, rig, analysis, &free);
+        for side in [Side::Left, Side::Right] {
+            use Role::{Foot, Hand, LowerArm, LowerLeg, UpperArm, UpperLeg};
+            for bone in [
+                [UpperLeg(side), LowerLeg(side)],
+                [LowerLeg(side), Foot(side)],
+                [UpperArm(side), LowerArm(side)],
+                [LowerArm(side), Hand(side)],
+            ] {
+                let off = bone_error(&walk, &source, rig, analysis, &found.take, bone);
+                assert!(off < 0.2, "{bone:?}: {off}°");
+            }
+        }
+    }
+}
+
+/// Knees bend forward and elbows too, whichever way a rig's joints are turned.
+#[test]
+fn knees_bend_forward() {
+    let (Some(walk), Some(man), Some(mannequin)) =
+        (actor(WALK), character("CesiumMan.glb"), character("mannequiny.glb"))
+    else {
+        return;
+    };
+    for (rig, analysis) in [&man, &mannequin] {
+        let found = onto(&walk, rig, analysis, &RetargetOptions::default());
+        let joint = |role: Role| analysis.joint_with(role).unwrap();
+        let mut model = Vec::new();
+        for frame in 0..found.take.frames() {
+            local_to_model(rig, found.take.pose(frame), &analysis.character_from_file(), &mut model);
+            let place = |role: Role| model[joint(role)].translation;
+            let left = place(Role::UpperLeg(Side::Left)) - place(Role::UpperLeg(Side::Right));
+            let forward = direction(left.cross(Vec3::Y)).unwrap();
+            for side in [Side::Left, Side::Right] {
+                let (hip, knee, ankle) =
+                    (place(Role::UpperLeg(side)), place(Role::LowerLeg(side)), place(Role::Foot(side)));
+                let bulge = (knee - (hip + ankle) * 0.5).dot(forward);
+                assert!(bulge > -0.03 * analysis.height, "frame {frame}, {side:?}: {bulge}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_body_on_itself_is_itself() {
+    let Some(walk) = actor(WALK) else { return };
+    let free = RetargetOptions { feet: Feet::Free, ..RetargetOptions::default() };
+    let found = onto(&walk, &walk.rig, &walk.analysis, &free);
+    assert!((found.scale - 1.0).abs() < 1e-6 && found.unmatched.is_empty());
+    let source = Take::of(&walk.rig, &walk.clip, 1.0 / 60.0);
+    for &(role, joint, same) in &found.pairs {
+        assert_eq!(joint, same);
+        let worst = source
+            .of_joint(joint)
+            .zip(found.take.of_joint(joint))
+            .map(|(a, b)| a.rotation.angle_to(b.rotation));
+        // A joint over one that has no role takes over that one's turn.
+        let above = walk.rig.joints[joint].parent;
+        if above.is_none_or(|above| found.pairs.iter().any(|pair| pair.1 == above)) {
+            let worst = worst.fold(0.0, sinew_math::max);
+            assert!(worst < 2e-3, "{role:?}: {worst}");
+        }
+    }
+}
+
+#[test]
+fn the_clip_is_the_take() {
+    let (Some(walk), Some((rig, analysis))) = (actor(WALK), character("mannequiny.glb")) else { return };
+    let found = onto(
+        &walk,
+        &rig,
+        &analysis,
+        &RetargetOptions { pace: Pace::Times(2.0), ..RetargetOptions::default() },
+    );
+    assert!((f64::from(walk.clip.duration) * 2.0 - found.take.duration()).abs() < 0.02);
+    let clip: Clip = found.clip(&rig, "walk");
+    let again = Take::of(&rig, &clip, found.take.frame_time);
+    assert_eq!(again.frames(), found.take.frames());
+    let off = |(a, b): (&sinew_anim::LocalTransform, &sinew_anim::LocalTransform)| {
+        sinew_math::max(a.rotation.angle_to(b.rotation), (a.translation - b.translation).length())
+    };
+    assert!(again.poses.iter().zip(&found.take.poses).map(off).fold(0.0, sinew_math::max) < 2e-3);
+    let first: &FootContact = &found.contacts[0];
+    assert!(first.start >= 0.0 && first.end > first.start);
+}
+
+#[test]
+fn what_has_no_roles_is_refused() {
+    let (Some(walk), Some((rig, analysis))) = (actor(WALK), character("Fox.glb")) else { return };
+    let body = Body { rig: &walk.rig, analysis: &walk.analysis };
+    let fox = Body { rig: &rig, analysis: &analysis };
+    let refused = |a, b, options| retarget(a, &walk.clip, b, &options).unwrap_err();
+    let plain = RetargetOptions::default();
+    assert_eq!(refused(body, fox, plain), RetargetError::NotHumanoid("character"));
+    assert_eq!(refused(fox, body, plain), RetargetError::NotHumanoid("actor"));
+    let still = RetargetOptions { pace: Pace::Times(0.0), ..plain };
+    assert_eq!(refused(body, body, still).to_string(), "the pace must be above 0 and finite");
+    let frozen = RetargetOptions { frame_time: f64::NAN, ..plain };
+    assert_eq!(refused(body, body, frozen).to_string(), "the frame time must be above 0 and finite");
+}
+
+/// Slide of two feet made by hand: the one stands, the other is dragged at 0.3 m/s for a second.
+#[test]
+fn slide_is_what_it_says() {
+    let Some(walk) = actor(WALK) else { return };
+    let feet = Foot::both(&walk.analysis).unwrap();
+    let take = Take { frame_time: 0.1, joints: 1, poses: vec![sinew_anim::LocalTransform::default(); 21] };
+    let point = |frame: usize| {
+        let dragged = Vec3::new(0.6 * 0.05 * frame as f32, 0.0, 0.8 * -0.0375 * frame as f32);
+        [[Vec3::ZERO; 2], [dragged, dragged]]
+    };
+    let points: Vec<_> = (0..21).map(point).collect();
+    let stood = |foot: Side, start: f32, end: f32| FootContact { foot, start, end };
+    let left = foot_slide(&take, &feet, &points, &[stood(Side::Left, 0.0, 2.0)]);
+    assert_eq!((left.mean, left.farthest), (0.0, 0.0));
+    let speed = (0.3_f32 * 0.3 + 0.3 * 0.3).sqrt();
+    let right = foot_slide(&take, &feet, &points, &[stood(Side::Right, 0.5, 1.5)]);
+    assert!(
+        (right.mean - speed).abs() < 1e-4
+            && (right.farthest - speed).abs() < 1e-4
+            && (right.time - 1.0).abs() < 1e-6
+    );
+    let both =
+        foot_slide(&take, &feet, &points, &[stood(Side::Left, 0.5, 1.5), stood(Side::Right, 0.5, 1.5)]);
+    assert!((both.mean - 0.5 * speed).abs() < 1e-4);
+    assert_eq!(foot_slide(&take, &feet, &points, &[]).mean, 0.0);
+}
