@@ -5,7 +5,7 @@ use crate::pose::local_to_model;
 use crate::rig::{JointIdx, Rig};
 use crate::roles::{RigAnalysis, Role, Side};
 use crate::take::Take;
-use sinew_math::{Affine, Vec3, max, min};
+use sinew_math::{Affine, Rotation, Vec3, clamp, max, min, trig};
 
 /// A foot on the ground for a while.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +30,8 @@ pub struct Foot {
     pub sole: [Vec3; 2],
     /// From hip to knee to ankle to the floor, metres.
     pub length: f32,
+    /// From the axes of the ankle's joint to the body's own, as it stands.
+    pub stance: Rotation,
 }
 
 /// Place of the ball in front of an ankle whose rig has no toes, in lengths of the leg.
@@ -62,6 +64,7 @@ impl Foot {
             leg,
             sole: [at, ball].map(|p| ankle.rotation.inverse() * on_floor(p)),
             length: bones + (at.y - analysis.floor),
+            stance: ankle.rotation,
         })
     }
 
@@ -85,9 +88,38 @@ pub fn sole_points(rig: &Rig, root: &Affine, feet: &[Foot; 2], take: &Take) -> V
 /// Height of the floor under a motion: that which the lowest point of both feet is at or above in nine frames of ten.
 /// A jump does not fool it, nor a few frames of noise.
 pub fn floor_under(points: &[[[Vec3; 2]; 2]]) -> f32 {
-    let mut lows: Vec<f32> = points.iter().map(lowest).collect();
-    lows.sort_by(f32::total_cmp);
-    lows.get(lows.len() / 10).copied().unwrap_or(0.0)
+    tenth(points.iter().map(lowest).collect())
+}
+
+/// How far each sole is tilted while it stands, radians, positive for toes up, and the feet with soles that lie flat then.
+///
+/// A reference pose hardly says how a shoe was worn: the heights that heel and ball keep to while they are on the ground
+/// do. Tilts over 0.2 rad are those of a body that stands on its toes, and left.
+pub fn flatten_soles(feet: &[Foot; 2], points: &[[[Vec3; 2]; 2]]) -> ([f32; 2], [Foot; 2]) {
+    let (mut tilts, mut flat) = ([0.0; 2], *feet);
+    for k in 0..2 {
+        let low = [0, 1].map(|point| tenth(points.iter().map(|frame| frame[k][point].y).collect()));
+        let sole = flat[k].sole;
+        let length = (sole[1] - sole[0]).length();
+        let tilt = trig::asin(clamp((low[1] - low[0]) / max(length, 1e-6), -1.0, 1.0));
+        if tilt.abs() < 0.2 {
+            tilts[k] = tilt;
+            flat[k].sole =
+                sole.map(|point| flat[k].stance.inverse() * (toes_up(-tilt) * (flat[k].stance * point)));
+        }
+    }
+    (tilts, flat)
+}
+
+/// A turn of the toes up, in a body's own axes.
+pub(crate) fn toes_up(angle: f32) -> Rotation {
+    Rotation::from_axis_angle(Vec3::NEG_X, angle)
+}
+
+/// The number that nine of ten are not below.
+fn tenth(mut numbers: Vec<f32>) -> f32 {
+    numbers.sort_by(f32::total_cmp);
+    numbers.get(numbers.len() / 10).copied().unwrap_or(0.0)
 }
 
 /// Height of the lowest point of both feet.

@@ -48,7 +48,7 @@ pub fn remove_foot_slide(
     let points = sole_points(rig, root, feet, take);
     let before = foot_slide(take, feet, &points, contacts);
     let forward = knees_forward(rig, root, feet);
-    let shifts = [0, 1].map(|k| shifts_of(take, feet[k].side, k, contacts, &points, floor));
+    let shifts = [0, 1].map(|k| shifts_of(take, &feet[k], k, contacts, &points, floor));
     let mut model = Vec::new();
     let mut needed = Vec::new();
     for frame in 0..take.frames() {
@@ -86,7 +86,7 @@ fn knees_forward(rig: &Rig, root: &Affine, feet: &[Foot; 2]) -> [Vec3; 2] {
 /// How far a foot has to go, frame by frame.
 fn shifts_of(
     take: &Take,
-    side: crate::roles::Side,
+    foot: &Foot,
     k: usize,
     contacts: &[FootContact],
     points: &[[[Vec3; 2]; 2]],
@@ -94,12 +94,12 @@ fn shifts_of(
 ) -> Vec<Vec3> {
     let mut shifts = vec![Vec3::ZERO; points.len()];
     let mut free_from = None;
-    for contact in contacts.iter().filter(|contact| contact.foot == side) {
+    for contact in contacts.iter().filter(|contact| contact.foot == foot.side) {
         let [first, last] = frames_of(take, contact, points.len());
         let spot = (first..=last).map(|frame| points[frame][k][1]).sum::<Vec3>() / (last + 1 - first) as f32;
-        let spot = Vec3::new(spot.x, floor, spot.z);
         for frame in first..=last {
-            shifts[frame] = spot - points[frame][k][1];
+            let ball = points[frame][k][1];
+            shifts[frame] = Vec3::new(spot.x - ball.x, down_to(floor - ball.y, foot.length), spot.z - ball.z);
         }
         blend_over(&mut shifts, free_from, first);
         free_from = Some(last);
@@ -113,6 +113,13 @@ fn shifts_of(
         shift.y += max(floor - low, 0.0);
     }
     shifts
+}
+
+/// How far a ball that is `below` the floor (negative: over it) goes to get there: all the way from up to a sixtieth of
+/// the leg, nothing at three times as much. A foot that is about to leave is not pressed down again.
+fn down_to(below: f32, leg: f32) -> f32 {
+    let near = leg / 60.0;
+    below * (1.0 - smoothstep((-below - near) / (2.0 * near)))
 }
 
 /// Fills in between the end of one contact and the start of the next; before the first one, its start holds.

@@ -66,8 +66,8 @@ impl<'a> Stance<'a> {
 
 /// Reference poses that differ by less (radians, here its cosine) are both taken to stand upright: 30°.
 const UPRIGHT: f32 = 0.866;
-/// Feet whose pitch differs by less (sine) are both taken to be flat on the floor: 35°.
-const FLAT: f32 = 0.574;
+/// Legs whose bones are nearer to the vertical (cosine of 25°) stand, and their feet are flat on the floor.
+const STANDS: f32 = 0.906;
 
 impl Alignment {
     pub fn of(actor: &RigAnalysis, character: &RigAnalysis) -> Self {
@@ -140,17 +140,21 @@ fn chain_turns(
     [(upper, first), (lower, second), (end, second)]
 }
 
-/// The same for a leg; feet that are flat in both reference poses stay flat, and only their headings are matched.
+/// The same for a leg; feet that stand in both reference poses stay flat, and only their headings are matched.
 fn leg_turns(from: &Stance<'_>, to: &Stance<'_>, trunk: Rotation, roles: [Role; 4]) -> Vec<(Role, Rotation)> {
     let [upper, lower, foot, toes] = roles;
     let [thigh, shank, (_, along)] = chain_turns(from, to, trunk, [upper, lower, foot]);
     let turn = match from.way(foot, toes).zip(to.way(foot, toes)) {
         None => trunk,
         Some((old, new)) => {
-            let old_flat = trunk * old;
             let heading = |v: Vec3| direction(Vec3::new(v.x, 0.0, v.z));
-            match heading(old_flat).zip(heading(new)) {
-                Some((a, b)) if (old_flat.y - new.y).abs() < FLAT => Rotation::from_arc(a, b) * trunk,
+            let stands = |body: &Stance<'_>| {
+                [[lower, upper], [foot, lower]]
+                    .iter()
+                    .all(|&[a, b]| body.way(a, b).is_some_and(|way| way.y > STANDS))
+            };
+            match heading(trunk * old).zip(heading(new)) {
+                Some((a, b)) if stands(from) && stands(to) => Rotation::from_arc(a, b) * trunk,
                 _ => Rotation::from_arc(along * old, new) * along,
             }
         }

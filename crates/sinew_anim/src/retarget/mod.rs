@@ -13,7 +13,8 @@ pub use reference::{Reference, stand};
 use crate::cleanup::{FootSlideReport, remove_foot_slide};
 use crate::clip::Clip;
 use crate::contact::{
-    ContactSettings, Foot, FootContact, FootSlide, contacts, floor_under, foot_slide, lowest, sole_points,
+    ContactSettings, Foot, FootContact, FootSlide, contacts, flatten_soles, floor_under, foot_slide,
+    frames_of, lowest, sole_points, toes_up,
 };
 use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, Rig};
@@ -46,10 +47,10 @@ pub enum Pace {
 /// What happens at the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Feet {
-    /// They are held where the actor's stand.
+    /// They are held where the actor's stand, and lie flat on the floor while those do.
     #[default]
     Locked,
-    /// They go where the rotations carry them.
+    /// They go where the rotations carry them, and are tilted as the actor's.
     Free,
 }
 
@@ -131,7 +132,7 @@ pub fn retarget(
     character: Body<'_>,
     options: &RetargetOptions,
 ) -> Result<Retargeted, RetargetError> {
-    let transfer = Transfer::new(actor, character)?;
+    let mut transfer = Transfer::new(actor, character)?;
     let scale = transfer.scale;
     let pace = match options.pace {
         Pace::Actor => 1.0,
@@ -142,11 +143,19 @@ pub fn retarget(
     check(pace, "the pace")?;
     check(options.frame_time as f32, "the frame time")?;
     let source = Take::of(actor.rig, clip, options.frame_time / f64::from(pace));
+    if options.feet == Feet::Locked {
+        transfer.flatten_soles(&source);
+    }
     let points = sole_points(actor.rig, &transfer.actor_root, &transfer.actor_feet, &source);
     let floor = options.floor.unwrap_or_else(|| floor_under(&points));
     let settings = ContactSettings::for_leg(transfer.actor_feet[0].length);
     let stood = contacts(&source, &transfer.actor_feet, &points, floor, &settings);
-    let mut take = transfer.carry(&source, &points, floor, options.frame_time);
+    let mut heights: Vec<f32> = points.iter().map(|frame| max(lowest(frame) - floor, 0.0) * scale).collect();
+    for contact in &stood {
+        let [first, last] = frames_of(&source, contact, heights.len());
+        heights[first..=last].fill(0.0);
+    }
+    let mut take = transfer.carry(&source, &heights, floor, options.frame_time);
     let at_pace = |contact: &FootContact| FootContact {
         start: contact.start * pace,
         end: contact.end * pace,
@@ -240,9 +249,22 @@ impl<'a> Transfer<'a> {
         })
     }
 
+    /// Takes the actor's feet to be flat as they stand in the motion, and the character's with them.
+    fn flatten_soles(&mut self, source: &Take) {
+        let points = sole_points(self.actor.rig, &self.actor_root, &self.actor_feet, source);
+        let (tilts, flat) = flatten_soles(&self.actor_feet, &points);
+        self.actor_feet = flat;
+        for pair in &mut self.alignment.pairs {
+            let (Role::Foot(side) | Role::Toes(side)) = pair.role else { continue };
+            let tilt = tilts[usize::from(side == Side::Right)];
+            let stands = (self.actor_root * self.actor.analysis.bind_model[pair.from]).to_rigid().rotation;
+            pair.correction = (stands.inverse() * toes_up(-tilt) * stands * pair.correction).normalize();
+        }
+    }
+
     /// Rotations and the way of the pelvis, then the height of the whole body so that its lowest sole is as high over its
-    /// floor as the actor's.
-    fn carry(&self, source: &Take, points: &[[[Vec3; 2]; 2]], floor: f32, frame_time: f64) -> Take {
+    /// floor as `heights` say, frame by frame.
+    fn carry(&self, source: &Take, heights: &[f32], floor: f32, frame_time: f64) -> Take {
         let rig = self.character.rig;
         let mut take = Take { frame_time, joints: rig.joints.len(), poses: Vec::new() };
         let (mut from, mut to) = (Vec::new(), Vec::new());
@@ -254,8 +276,7 @@ impl<'a> Transfer<'a> {
             let target = self.hips_target(&from, &to, floor);
             crate::ik::shift(rig, self.hips, target - to[self.hips].translation, &mut pose, &mut to);
             let low = lowest(&self.character_feet.each_ref().map(|foot| foot.points(&to)));
-            let wanted = self.scale * max(lowest(&points[frame]) - floor, 0.0);
-            errors.push(wanted - (low - self.character.analysis.floor));
+            errors.push(heights[frame] - (low - self.character.analysis.floor));
             take.poses.extend(pose);
         }
         let reach = take.frames_in(SETTLE * self.scale.sqrt());
