@@ -1,9 +1,9 @@
 //! Which foot stands when, and how much it slides while it does.
 
-use crate::ik::TwoBone;
+use crate::legs::Foot;
 use crate::pose::local_to_model;
-use crate::rig::{JointIdx, Rig};
-use crate::roles::{RigAnalysis, Role, Side};
+use crate::rig::Rig;
+use crate::roles::Side;
 use crate::take::Take;
 use sinew_math::{Affine, Rotation, Vec3, clamp, max, min, trig};
 
@@ -16,63 +16,6 @@ pub struct FootContact {
     pub start: f32,
     /// Seconds: when it leaves the ground again.
     pub end: f32,
-}
-
-/// A leg and the two points of the sole that it stands on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foot {
-    /// Whose.
-    pub side: Side,
-    /// Hip, knee and ankle.
-    pub leg: TwoBone,
-    /// Under the ankle, and under the ball (where the toes begin): from the ankle in the axes of its joint without scale,
-    /// metres.
-    pub sole: [Vec3; 2],
-    /// From hip to knee to ankle to the floor, metres.
-    pub length: f32,
-    /// From the axes of the ankle's joint to the body's own, as it stands.
-    pub stance: Rotation,
-}
-
-/// Place of the ball in front of an ankle whose rig has no toes, in lengths of the leg.
-const BALL: f32 = 0.14;
-
-impl Foot {
-    /// Both feet of a humanoid, left first, as they stand in its bind pose; `None` if one has no thigh, shank or foot.
-    pub fn both(analysis: &RigAnalysis) -> Option<[Self; 2]> {
-        Some([Self::of(analysis, Side::Left)?, Self::of(analysis, Side::Right)?])
-    }
-
-    fn of(analysis: &RigAnalysis, side: Side) -> Option<Self> {
-        let joint = |role: Role| analysis.joint_with(role);
-        let leg = TwoBone {
-            upper: joint(Role::UpperLeg(side))?,
-            lower: joint(Role::LowerLeg(side))?,
-            end: joint(Role::Foot(side))?,
-        };
-        let character = analysis.character_from_file();
-        let stands = |joint: JointIdx| (character * analysis.bind_model[joint]).to_rigid();
-        let (hip, knee, ankle) = (stands(leg.upper), stands(leg.lower), stands(leg.end));
-        let bones =
-            (knee.translation - hip.translation).length() + (ankle.translation - knee.translation).length();
-        let at = ankle.translation;
-        let ball =
-            joint(Role::Toes(side)).map_or(at + Vec3::Z * (BALL * bones), |toes| stands(toes).translation);
-        let on_floor = |p: Vec3| Vec3::new(p.x, analysis.floor, p.z) - at;
-        Some(Self {
-            side,
-            leg,
-            sole: [at, ball].map(|p| ankle.rotation.inverse() * on_floor(p)),
-            length: bones + (at.y - analysis.floor),
-            stance: ankle.rotation,
-        })
-    }
-
-    /// Heel and ball in a pose, in the space of `model`, whose unit is the metre.
-    pub fn points(&self, model: &[Affine]) -> [Vec3; 2] {
-        let ankle = model[self.leg.end].to_rigid();
-        self.sole.map(|point| ankle.translation + ankle.rotation * point)
-    }
 }
 
 /// Heels and balls of both feet, frame by frame, in the space that `root` maps the rig's to.

@@ -9,6 +9,7 @@ pub mod clip;
 pub mod contact;
 pub mod ik;
 pub mod learned_limits;
+pub mod legs;
 pub mod pose;
 pub mod retarget;
 pub mod rig;

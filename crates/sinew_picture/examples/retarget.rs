@@ -3,13 +3,13 @@
 //! `OUT_front.png`, eight moments each.
 
 use sinew::anim::retarget::{Body, RetargetOptions, Retargeted, retarget, stand};
-use sinew::anim::{RigAnalysis, Role, Side, Take, analyze, local_to_model, skin_vertices};
+use sinew::anim::{RigAnalysis, Role, Take, analyze, local_to_model, skin_vertices};
 use sinew::formats::bvh::{BvhOptions, read_bvh};
 use sinew::formats::{ReadOptions, load_gltf};
 use sinew::math::{Affine, Vec3};
 use sinew::physics::boxes::Aabb;
 use sinew_picture::{
-    Camera, Line, LineDepth, Material, Model, PictureFormat, RenderSettings, Renderer, Scene, draw, encode,
+    Camera, Line, LineDepth, Model, PictureFormat, RenderSettings, Renderer, Scene, draw, encode,
 };
 use std::error::Error;
 
@@ -36,13 +36,11 @@ impl Actor<'_> {
     }
 
     fn bones(&self, model: &[Affine], scene: &mut Scene) {
-        for (joint, parent) in self.rig.joints.iter().enumerate().filter_map(|(i, joint)| Some((i, joint.parent?))) {
-            let right = [Side::Right].iter().any(|&side| {
-                [Role::UpperLeg(side), Role::LowerLeg(side), Role::LowerArm(side)]
-                    .iter()
-                    .any(|&role| self.analysis.joint_with(role) == Some(parent))
-            });
-            let color = if right { [0.9, 0.2, 0.1] } else { [0.05, 0.2, 0.8] };
+        for (joint, parent) in
+            self.rig.joints.iter().enumerate().filter_map(|(i, joint)| Some((i, joint.parent?)))
+        {
+            let role = self.analysis.roles[parent].map(|guess| guess.role);
+            let color = if role.is_some_and(Role::is_right) { [0.9, 0.2, 0.1] } else { [0.05, 0.2, 0.8] };
             let (from, to) = (model[parent].translation, model[joint].translation);
             scene.lines.push(Line { from, to, color, depth: LineDepth::OnTop });
         }
@@ -87,11 +85,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let middle = along * (0.5 * step * (MOMENTS - 1) as f32);
         scene.models.push(draw::floor(middle, 40.0, [0.4; 3], [0.5; 3]));
-        scene.models.iter_mut().for_each(|model| model.material.faces = Material::default().faces);
         let reach = along * (0.5 * step * MOMENTS as f32) + Vec3::ONE * (0.1 * analysis.height);
         let bounds = Aabb { min: middle - reach, max: middle + reach + Vec3::Y * (2.2 * analysis.height) };
         let settings = RenderSettings { width: 1600, height: 700, threads: 2, ..RenderSettings::default() };
-        let image = Renderer::new(settings).render(&scene, &Camera::framing_box(&bounds, toward, 1600.0 / 700.0));
+        let image =
+            Renderer::new(settings).render(&scene, &Camera::framing_box(&bounds, toward, 1600.0 / 700.0));
         std::fs::write(format!("{out}_{name}.png"), encode::encode(PictureFormat::Png, &[image], 1)?)?;
     }
     Ok(())

@@ -1,10 +1,11 @@
 //! Feet held where they stand.
 
 use super::smooth_above;
-use crate::contact::{Foot, FootContact, FootSlide, foot_slide, frames_of, sole_points};
-use crate::ik::{Pole, TwoBoneGoal, set_rotation, shift, two_bone_ik};
-use crate::pose::{local_to_model, rest_pose, smoothstep};
-use crate::rig::{JointIdx, Rig};
+use crate::contact::{FootContact, FootSlide, foot_slide, frames_of, sole_points};
+use crate::ik::{Pole, TwoBoneGoal, two_bone_ik};
+use crate::legs::{Foot, Legs};
+use crate::pose::{local_to_model, smoothstep};
+use crate::rig::Rig;
 use crate::take::Take;
 use sinew_math::{Affine, Vec3, max, min};
 
@@ -39,15 +40,14 @@ const BLEND: f32 = 0.1;
 pub fn remove_foot_slide(
     rig: &Rig,
     root: &Affine,
-    pelvis: JointIdx,
-    feet: &[Foot; 2],
+    legs: &Legs,
     contacts: &[FootContact],
     floor: f32,
     take: &mut Take,
 ) -> FootSlideReport {
+    let feet = &legs.feet;
     let points = sole_points(rig, root, feet, take);
     let before = foot_slide(take, feet, &points, contacts);
-    let forward = knees_forward(rig, root, feet);
     let shifts = [0, 1].map(|k| shifts_of(take, &feet[k], k, contacts, &points, floor));
     let mut model = Vec::new();
     let mut needed = Vec::new();
@@ -61,12 +61,12 @@ pub fn remove_foot_slide(
     for frame in 0..take.frames() {
         local_to_model(rig, take.pose(frame), root, &mut model);
         let ankles = [0, 1].map(|k| model[feet[k].leg.end].to_rigid());
-        shift(rig, pelvis, Vec3::Y * -lowered[frame], take.pose_mut(frame), &mut model);
+        legs.carry(rig, Vec3::Y * -lowered[frame], take.pose_mut(frame), &mut model);
         for (k, foot) in feet.iter().enumerate() {
-            let side = model[foot.leg.upper].to_rigid().rotation * forward[k];
+            let side = model[foot.leg.upper].to_rigid().rotation * foot.forward;
             let goal = TwoBoneGoal::at(ankles[k].translation + shifts[k][frame], Pole::Keep(side));
             let solved = two_bone_ik(rig, foot.leg, &goal, take.pose_mut(frame), &mut model);
-            set_rotation(rig, foot.leg.end, ankles[k].rotation, take.pose_mut(frame), &mut model);
+            legs.plant(rig, foot, ankles[k].rotation, take.pose_mut(frame), &mut model);
             report.miss = max(report.miss, solved.miss);
             report.shifted = max(report.shifted, shifts[k][frame].length());
         }
@@ -74,13 +74,6 @@ pub fn remove_foot_slide(
     report.lowered = lowered.into_iter().fold(0.0, max);
     report.slide = [before, foot_slide(take, feet, &sole_points(rig, root, feet, take), contacts)];
     report
-}
-
-/// Forward (the character's +z) in the axes of each thigh: where a straight knee bends to.
-fn knees_forward(rig: &Rig, root: &Affine, feet: &[Foot; 2]) -> [Vec3; 2] {
-    let mut model = Vec::new();
-    local_to_model(rig, &rest_pose(rig), root, &mut model);
-    feet.each_ref().map(|foot| model[foot.leg.upper].to_rigid().rotation.inverse() * Vec3::Z)
 }
 
 /// How far a foot has to go, frame by frame.

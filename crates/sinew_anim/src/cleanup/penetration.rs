@@ -1,8 +1,8 @@
 //! Bodies lifted out of the floor.
 
 use super::smooth_above;
-use crate::contact::{Foot, lowest};
-use crate::ik::shift;
+use crate::contact::lowest;
+use crate::legs::Legs;
 use crate::pose::local_to_model;
 use crate::rig::{JointIdx, Rig};
 use crate::take::Take;
@@ -19,7 +19,7 @@ pub struct PenetrationReport {
     pub raised: f32,
 }
 
-/// Raises the whole body, by its joint `pelvis`, where a sole or a joint is below `floor` (metres, in the space that
+/// Raises the whole body where a sole, or a joint that hangs on the pelvis, is below `floor` (metres, in the space that
 /// `root` maps the rig's to, y up), smoothly over `blend` seconds before and after.
 ///
 /// # Panics
@@ -27,28 +27,38 @@ pub struct PenetrationReport {
 pub fn remove_penetration(
     rig: &Rig,
     root: &Affine,
-    pelvis: JointIdx,
-    feet: &[Foot; 2],
+    legs: &Legs,
     floor: f32,
     blend: f32,
     take: &mut Take,
 ) -> PenetrationReport {
+    let body = below(rig, legs.pelvis);
     let mut model = Vec::new();
     let mut depth = Vec::new();
     for frame in 0..take.frames() {
         local_to_model(rig, take.pose(frame), root, &mut model);
-        let soles = lowest(&feet.each_ref().map(|foot| foot.points(&model)));
-        let low = model[pelvis..].iter().map(|joint| joint.translation.y).fold(soles, min);
+        let soles = lowest(&legs.feet.each_ref().map(|foot| foot.points(&model)));
+        let low = body.iter().map(|&joint| model[joint].translation.y).fold(soles, min);
         depth.push(max(floor - low, 0.0));
     }
     let lift = smooth_above(&depth, take.frames_in(blend));
     for (frame, &lift) in lift.iter().enumerate().filter(|(_, lift)| **lift > 0.0) {
         local_to_model(rig, take.pose(frame), root, &mut model);
-        shift(rig, pelvis, Vec3::Y * lift, take.pose_mut(frame), &mut model);
+        legs.carry(rig, Vec3::Y * lift, take.pose_mut(frame), &mut model);
     }
     PenetrationReport {
         frames: depth.iter().filter(|&&depth| depth > 1e-5).count(),
         deepest: depth.into_iter().fold(0.0, max),
         raised: lift.into_iter().fold(0.0, max),
     }
+}
+
+/// A joint and all that hang on it.
+fn below(rig: &Rig, top: JointIdx) -> Vec<JointIdx> {
+    let mut hangs = vec![false; rig.joints.len()];
+    hangs[top] = true;
+    for (i, joint) in rig.joints.iter().enumerate() {
+        hangs[i] |= joint.parent.is_some_and(|parent| hangs[parent]);
+    }
+    (0..hangs.len()).filter(|&i| hangs[i]).collect()
 }

@@ -13,9 +13,10 @@ pub use reference::{Reference, stand};
 use crate::cleanup::{FootSlideReport, remove_foot_slide};
 use crate::clip::Clip;
 use crate::contact::{
-    ContactSettings, Foot, FootContact, FootSlide, contacts, flatten_soles, floor_under, foot_slide,
-    frames_of, lowest, sole_points, toes_up,
+    ContactSettings, FootContact, FootSlide, contacts, flatten_soles, floor_under, foot_slide, frames_of,
+    lowest, sole_points, toes_up,
 };
+use crate::legs::{Foot, Legs};
 use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::{HUMANOID_ROLES, RigAnalysis, Role, Side};
@@ -63,8 +64,8 @@ pub struct RetargetOptions {
     pub pace: Pace,
     /// Default: locked.
     pub feet: Feet,
-    /// Height of the floor the actor stands on, metres in the actor's model space along its up axis. Default: found from
-    /// the feet.
+    /// Height of the floor the actor stands on, metres along its up axis from the origin of its file. Default: found
+    /// from the feet.
     pub floor: Option<f32>,
 }
 
@@ -166,16 +167,14 @@ pub fn retarget(
         Feet::Locked => remove_foot_slide(
             character.rig,
             &transfer.character_root,
-            transfer.hips,
-            &transfer.character_feet,
+            &transfer.legs,
             &held,
             character.analysis.floor,
             &mut take,
         ),
         Feet::Free => {
-            let points =
-                sole_points(character.rig, &transfer.character_root, &transfer.character_feet, &take);
-            let slide = foot_slide(&take, &transfer.character_feet, &points, &held);
+            let points = sole_points(character.rig, &transfer.character_root, &transfer.legs.feet, &take);
+            let slide = foot_slide(&take, &transfer.legs.feet, &points, &held);
             FootSlideReport { slide: [slide; 2], ..FootSlideReport::default() }
         }
     };
@@ -204,9 +203,8 @@ struct Transfer<'a> {
     actor_root: Affine,
     character_root: Affine,
     actor_feet: [Foot; 2],
-    character_feet: [Foot; 2],
-    /// The character's pelvis.
-    hips: JointIdx,
+    /// The character's.
+    legs: Legs,
     /// From there to the middle of its hip joints, in the pelvis' own axes without scale, metres.
     hips_to_legs: Vec3,
     /// Character's legs over actor's.
@@ -224,16 +222,13 @@ impl<'a> Transfer<'a> {
             }
         }
         let alignment = Alignment::of(actor.analysis, character.analysis);
-        let hips = |body: Body<'_>, name| {
-            body.analysis.joint_with(Role::Hips).ok_or(RetargetError::RoleMissing(name))
-        };
-        let feet = |body: Body<'_>, name| Foot::both(body.analysis).ok_or(RetargetError::RoleMissing(name));
-        let (hips, _) = (hips(character, "character")?, hips(actor, "actor")?);
-        let (actor_feet, character_feet) = (feet(actor, "actor")?, feet(character, "character")?);
+        let legs =
+            |body: Body<'_>, name| Legs::of(body.rig, body.analysis).ok_or(RetargetError::RoleMissing(name));
+        let (actor_feet, legs) = (legs(actor, "actor")?.feet, legs(character, "character")?);
         let root = character.analysis.character_from_file();
         let stands = |joint: JointIdx| (root * character.analysis.bind_model[joint]).to_rigid();
-        let legs = character_feet.map(|foot| stands(foot.leg.upper).translation);
-        let pelvis = stands(hips);
+        let hip_joints = legs.feet.map(|foot| stands(foot.leg.upper).translation);
+        let pelvis = stands(legs.pelvis);
         let length = |feet: &[Foot; 2]| 0.5 * (feet[0].length + feet[1].length);
         Ok(Self {
             actor,
@@ -241,11 +236,11 @@ impl<'a> Transfer<'a> {
             alignment,
             actor_root: actor.analysis.character_from_file(),
             character_root: root,
-            scale: length(&character_feet) / length(&actor_feet),
+            scale: length(&legs.feet) / length(&actor_feet),
             actor_feet,
-            character_feet,
-            hips,
-            hips_to_legs: pelvis.rotation.inverse() * ((legs[0] + legs[1]) * 0.5 - pelvis.translation),
+            hips_to_legs: pelvis.rotation.inverse()
+                * ((hip_joints[0] + hip_joints[1]) * 0.5 - pelvis.translation),
+            legs,
         })
     }
 
@@ -274,15 +269,15 @@ impl<'a> Transfer<'a> {
             let mut pose = rest_pose(rig);
             self.turn_joints(&from, &mut pose, &mut to);
             let target = self.hips_target(&from, &to, floor);
-            crate::ik::shift(rig, self.hips, target - to[self.hips].translation, &mut pose, &mut to);
-            let low = lowest(&self.character_feet.each_ref().map(|foot| foot.points(&to)));
+            self.legs.carry(rig, target - to[self.legs.pelvis].translation, &mut pose, &mut to);
+            let low = lowest(&self.legs.feet.each_ref().map(|foot| foot.points(&to)));
             errors.push(heights[frame] - (low - self.character.analysis.floor));
             take.poses.extend(pose);
         }
         let reach = take.frames_in(SETTLE * self.scale.sqrt());
         for (frame, lift) in moving_mean(&errors, reach).into_iter().enumerate() {
             local_to_model(rig, take.pose(frame), &self.character_root, &mut to);
-            crate::ik::shift(rig, self.hips, Vec3::Y * lift, take.pose_mut(frame), &mut to);
+            self.legs.carry(rig, Vec3::Y * lift, take.pose_mut(frame), &mut to);
         }
         take
     }
@@ -306,7 +301,7 @@ impl<'a> Transfer<'a> {
         let [left, right] = self.actor_feet.map(|foot| from[foot.leg.upper].translation);
         let middle = (left + right) * 0.5 - Vec3::Y * floor;
         let legs = middle * self.scale + Vec3::Y * self.character.analysis.floor;
-        let rotation: Rotation = to[self.hips].to_rigid().rotation;
+        let rotation: Rotation = to[self.legs.pelvis].to_rigid().rotation;
         legs - rotation * self.hips_to_legs
     }
 }

@@ -1,5 +1,6 @@
 //! The bind pose: where joints and skin were when the skin was made.
 
+use super::names::read_names;
 use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{LocalTransform, Mesh, Rig};
 use crate::skinning::skin_vertices;
@@ -58,14 +59,18 @@ impl Bound {
         for &at in &bound.vertices {
             (bound.lo, bound.hi) = (min3(bound.lo, at), max3(bound.hi, at));
         }
-        // A joint right on its parent (the lab of CMU has eleven) is no place of its own, and would have no mirror image.
+        // A joint right on its parent (the lab of CMU has eleven) is no place of its own, and two that grow out of one spot
+        // (clavicles, hips) would each be its own mirror image: what they carry grows out of the parent.
+        let near = COINCIDENT * bound.size();
+        let twins = twins(rig, &bound.model, near);
         let mut place: Vec<usize> = (0..rig.joints.len()).collect();
         for (i, joint) in rig.joints.iter().enumerate() {
             let Some(parent) = joint.parent.map(|parent| place[parent]) else { continue };
             let bone = (bound.model[i].translation - bound.model[parent].translation).length();
-            if bone < COINCIDENT * bound.size() {
+            if bone < near || twins[i] {
                 place[i] = parent;
-            } else if bone.is_finite() {
+            }
+            if bone.is_finite() {
                 bound.area[parent] += bone;
             }
         }
@@ -108,6 +113,28 @@ impl Bound {
             }
         }
     }
+}
+
+/// Which joints have a sibling of the other side, or both none by name, in their place.
+fn twins(rig: &Rig, model: &[Affine], tolerance: f32) -> Vec<bool> {
+    let readings = read_names(rig.joints.iter().map(|joint| joint.name.as_str()));
+    let mirrored = |a: usize, b: usize| match (readings[a].side, readings[b].side) {
+        (Some(a), Some(b)) => a != b,
+        _ => rig.joints[a].name.is_empty() && rig.joints[b].name.is_empty(),
+    };
+    let mut found = vec![false; rig.joints.len()];
+    let mut children: Vec<Vec<usize>> = vec![Vec::new(); rig.joints.len()];
+    for (i, joint) in rig.joints.iter().enumerate() {
+        let Some(parent) = joint.parent else { continue };
+        for &other in &children[parent] {
+            let apart = (model[other].translation - model[i].translation).length();
+            if apart < tolerance && mirrored(i, other) {
+                (found[i], found[other]) = (true, true);
+            }
+        }
+        children[parent].push(i);
+    }
+    found
 }
 
 /// A third of the area of every triangle around a vertex; equal shares where there is no area at all.

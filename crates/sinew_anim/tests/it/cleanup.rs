@@ -3,10 +3,11 @@
 use crate::mocap::{actor, character};
 use crate::toy;
 use sinew_anim::cleanup::{SpikeSettings, despike, project_limits, remove_penetration, smooth};
-use sinew_anim::contact::{Foot, lowest, sole_points};
+use sinew_anim::contact::{lowest, sole_points};
 use sinew_anim::learned_limits::learn_limits;
+use sinew_anim::legs::Legs;
 use sinew_anim::retarget::{Body, RetargetOptions, retarget};
-use sinew_anim::{LocalTransform, Role, Take};
+use sinew_anim::{LocalTransform, Take};
 use sinew_math::{Random, Rotation, Vec3, trig};
 
 const FRAME: f64 = 1.0 / 120.0;
@@ -133,17 +134,17 @@ fn a_body_is_lifted_out_of_the_floor() {
     let (actor, body) =
         (Body { rig: &walk.rig, analysis: &walk.analysis }, Body { rig: &rig, analysis: &analysis });
     let mut take = retarget(actor, &walk.clip, body, &RetargetOptions::default()).unwrap().take;
-    let (root, feet) = (analysis.character_from_file(), Foot::both(&analysis).unwrap());
-    let hips = analysis.joint_with(Role::Hips).unwrap();
+    let (root, legs) = (analysis.character_from_file(), Legs::of(&rig, &analysis).unwrap());
     let floor = analysis.floor - 1e-3;
     let clean = take.clone();
-    let report = remove_penetration(&rig, &root, hips, &feet, floor, 0.1, &mut take);
+    let report = remove_penetration(&rig, &root, &legs, floor, 0.1, &mut take);
     assert_eq!((report.frames, report.raised), (0, 0.0));
     assert_eq!(take, clean);
-    let report = remove_penetration(&rig, &root, hips, &feet, floor + 0.05, 0.1, &mut take);
+    let report = remove_penetration(&rig, &root, &legs, floor + 0.05, 0.1, &mut take);
     assert!(report.frames > 200 && (0.045..0.06).contains(&report.deepest), "{report:?}");
     assert!(report.raised >= report.deepest);
-    let low =
-        |take: &Take| sole_points(&rig, &root, &feet, take).iter().map(lowest).fold(9.0, sinew_math::min);
+    let low = |take: &Take| {
+        sole_points(&rig, &root, &legs.feet, take).iter().map(lowest).fold(9.0, sinew_math::min)
+    };
     assert!(low(&take) > floor + 0.05 - 1e-4, "{}", low(&take) - floor);
 }

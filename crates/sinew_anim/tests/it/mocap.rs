@@ -3,6 +3,7 @@
 use sinew_anim::retarget::{Reference, stand};
 use sinew_anim::{Clip, Rig, RigAnalysis, analyze};
 use sinew_formats::bvh::{BvhDocument, BvhOptions, read_bvh};
+use sinew_formats::{read_deepmimic, read_deepmimic_character};
 
 /// A captured actor: rig, clip, what is known of the body.
 pub struct Actor {
@@ -19,6 +20,14 @@ pub fn actor(name: &str) -> Option<Actor> {
     let BvhDocument { rig, clip, rest_pose, .. } = document;
     let (analysis, reference) = stand(&rig, &clip, rest_pose.as_deref()).expect("bones");
     Some(Actor { rig, clip, analysis, reference })
+}
+
+/// A DeepMimic clip under ../shared/data/mocap; `None` where the data is absent.
+pub fn imitation(name: &str) -> Option<Actor> {
+    let skeleton = read_deepmimic_character(&crate::rigs::bytes("mocap/deepmimic_humanoid3d.txt")?).unwrap();
+    let clip = read_deepmimic(&crate::rigs::bytes(&format!("mocap/{name}"))?, &skeleton).unwrap().clip;
+    let (analysis, reference) = stand(&skeleton.rig, &clip, None).expect("bones");
+    Some(Actor { rig: skeleton.rig, clip, analysis, reference })
 }
 
 /// A character under ../shared/data/rigs; `None` where the data is absent.

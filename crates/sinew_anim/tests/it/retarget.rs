@@ -1,7 +1,8 @@
 //! A captured walk on bodies of other sizes and builds.
 
-use crate::mocap::{Actor, actor, character};
-use sinew_anim::contact::{ContactSettings, Foot, contacts, floor_under, foot_slide, lowest, sole_points};
+use crate::mocap::{Actor, actor, character, imitation};
+use sinew_anim::contact::{ContactSettings, contacts, floor_under, foot_slide, lowest, sole_points};
+use sinew_anim::legs::Legs;
 use sinew_anim::retarget::{
     Body, Feet, Pace, Reference, RetargetError, RetargetOptions, Retargeted, retarget,
 };
@@ -78,7 +79,7 @@ fn a_captured_walk_is_understood() {
     }
     assert!((walk.analysis.height - 1.6).abs() < 0.2, "{}", walk.analysis.height);
     let take = Take::of(&walk.rig, &walk.clip, 1.0 / 60.0);
-    let feet = Foot::both(&walk.analysis).unwrap();
+    let feet = Legs::of(&walk.rig, &walk.analysis).unwrap().feet;
     let points = sole_points(&walk.rig, &walk.analysis.character_from_file(), &feet, &take);
     let floor = floor_under(&points);
     let found = contacts(&take, &feet, &points, floor, &ContactSettings::for_leg(feet[0].length));
@@ -103,7 +104,7 @@ fn every_capture_finds_its_body() {
             "{name}: {:?}",
             found.reference
         );
-        assert!(Foot::both(&found.analysis).is_some(), "{name}");
+        assert!(Legs::of(&found.rig, &found.analysis).is_some(), "{name}");
     }
 }
 
@@ -143,11 +144,95 @@ fn a_walk_fits_every_body() {
             found.take.poses.iter().all(|local| local.rotation.is_finite() && local.translation.is_finite())
         );
         // Soles are on or over the floor, and one of them always near it.
-        let feet = Foot::both(analysis).unwrap();
+        let feet = Legs::of(rig, analysis).unwrap().feet;
         let points = sole_points(rig, &analysis.character_from_file(), &feet, &found.take);
         let heights: Vec<f32> =
             points.iter().map(|frame| (lowest(frame) - analysis.floor) / analysis.height).collect();
         assert!(heights.iter().all(|&h| h > -1e-3 && h < 0.02), "{name}: {heights:?}");
+    }
+}
+
+/// Every humanoid of the data takes the walk, feet that the rig hangs beside the body included.
+#[test]
+fn every_humanoid_walks() {
+    let Some(walk) = actor(WALK) else { return };
+    for name in [
+        "RiggedFigure.glb",
+        "kaykit_Knight.glb",
+        "mesh2motion_human_rigify.glb",
+        "quaternius_cyberpunk_Character.glb",
+        "CoolLoops_mixamorig_vrm0.vrm",
+    ] {
+        let (rig, analysis) = character(name).unwrap();
+        let found = onto(&walk, &rig, &analysis, &RetargetOptions::default());
+        let slide = 100.0 * found.feet.slide[1].mean / analysis.height;
+        println!(
+            "{name}: legs × {:.2}, slide {slide:.3} cm/s per m, miss {:.4} m",
+            found.scale, found.feet.miss
+        );
+        assert!(slide < 1.0, "{name}: {slide} cm/s per metre of height");
+        // Bones keep their lengths, whatever the rig hangs where.
+        let (mut model, place) = (Vec::new(), |role: Role| analysis.joint_with(role).unwrap());
+        let length = |model: &[Affine], side: Side| {
+            let at = |role: Role| model[place(role)].translation;
+            [
+                (at(Role::LowerLeg(side)) - at(Role::UpperLeg(side))).length(),
+                (at(Role::Foot(side)) - at(Role::LowerLeg(side))).length(),
+                (at(Role::UpperLeg(side)) - at(Role::Hips)).length(),
+            ]
+        };
+        for frame in (0..found.take.frames()).step_by(7) {
+            local_to_model(&rig, found.take.pose(frame), &Affine::IDENTITY, &mut model);
+            for side in [Side::Left, Side::Right] {
+                for (now, bind) in length(&model, side).into_iter().zip(length(&analysis.bind_model, side)) {
+                    assert!(
+                        (now / bind - 1.0).abs() < 0.02,
+                        "{name}, frame {frame}, {side:?}: {now} for {bind}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Hops, a run whose skeleton rests in no pose at all, motion imitation's run and get-up: all of them fit.
+#[test]
+fn every_captured_body_moves_a_character() {
+    let (Some((rig, analysis)), Some(hops), Some(run), Some(mixed)) = (
+        character("mannequiny.glb"),
+        actor("cmu_01_01_jumps.bvh"),
+        actor("cmu_02_03_run_iclone.bvh"),
+        actor("mixed_rotation_orders.bvh"),
+    ) else {
+        return;
+    };
+    let imitated = ["deepmimic_run.txt", "deepmimic_getup_faceup.txt"].map(|name| imitation(name).unwrap());
+    let all = [
+        ("hops", &hops),
+        ("run", &run),
+        ("mixed", &mixed),
+        ("imitated run", &imitated[0]),
+        ("get-up", &imitated[1]),
+    ];
+    for (name, actor) in all {
+        let found = onto(actor, &rig, &analysis, &RetargetOptions::default());
+        let slide = 100.0 * found.feet.slide[1].mean / analysis.height;
+        println!(
+            "{name}: {:?}, legs × {:.2}, {} contacts, slide {slide:.3} cm/s per m, lowered {:.1} cm, unmatched {:?}",
+            actor.reference,
+            found.scale,
+            found.contacts.len(),
+            100.0 * found.feet.lowered,
+            found.unmatched
+        );
+        assert!(
+            slide < 1.0 && found.take.poses.iter().all(|local| local.rotation.is_finite()),
+            "{name}: {slide}"
+        );
+        // The head is where the actor's is, over the hips or beside them.
+        let source = Take::of(&actor.rig, &actor.clip, 1.0 / 60.0);
+        let off = bone_error(actor, &source, &rig, &analysis, &found.take, [Role::Hips, Role::Head]);
+        assert!(off < 30.0, "{name}: {off}°");
     }
 }
 
@@ -267,7 +352,7 @@ fn what_has_no_roles_is_refused() {
 #[test]
 fn slide_is_what_it_says() {
     let Some(walk) = actor(WALK) else { return };
-    let feet = Foot::both(&walk.analysis).unwrap();
+    let feet = Legs::of(&walk.rig, &walk.analysis).unwrap().feet;
     let take = Take { frame_time: 0.1, joints: 1, poses: vec![sinew_anim::LocalTransform::default(); 21] };
     let point = |frame: usize| {
         let dragged = Vec3::new(0.6 * 0.05 * frame as f32, 0.0, 0.8 * -0.0375 * frame as f32);
