@@ -17,16 +17,21 @@ pub struct Take {
 }
 
 impl Take {
+    /// Most frames of a take: hours. What a file claims to last is not to be believed beyond it.
+    pub const MOST_FRAMES: usize = 1 << 20;
+
     /// A clip sampled every `frame_time` seconds, from its start to its end: the last frame is the whole one nearest to
     /// the end.
     ///
     /// # Panics
-    /// If `frame_time` is not above 0, the rig has no joints, and as [`sample`](crate::sample()).
+    /// If `frame_time` is not above 0, the rig has no joints, the take would have more than
+    /// [`MOST_FRAMES`](Self::MOST_FRAMES), and as [`sample`](crate::sample()).
     pub fn of(rig: &Rig, clip: &Clip, frame_time: f64) -> Self {
         assert!(frame_time > 0.0, "frames are some time apart, not {frame_time} s");
         assert!(!rig.joints.is_empty(), "a rig without joints does not move");
         let joints = rig.joints.len();
-        let frames = (f64::from(clip.duration) / frame_time).round() as usize + 1;
+        let frames = frames_of(clip.duration, frame_time);
+        assert!(frames <= Self::MOST_FRAMES, "{frames} frames are more than a take may have");
         let mut poses = vec![LocalTransform::default(); frames * joints];
         let mut cache = SampleCache::default();
         for (frame, pose) in poses.chunks_exact_mut(joints).enumerate() {
@@ -108,6 +113,11 @@ impl Take {
         }
         Clip { name: name.to_owned(), duration: self.duration() as f32, channels }
     }
+}
+
+/// Frames in a clip's duration (seconds), the first and the last included.
+pub(crate) fn frames_of(duration: f32, frame_time: f64) -> usize {
+    (f64::from(duration) / frame_time).round() as usize + 1
 }
 
 fn numbers(local: LocalTransform, property: Property) -> Vec<f32> {

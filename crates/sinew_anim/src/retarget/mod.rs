@@ -87,6 +87,9 @@ pub enum RetargetError {
     /// The frame time, the pace or a length is of no use.
     #[error("{0} must be above 0 and finite")]
     NotPositive(&'static str),
+    /// The clip lasts longer than [`Take::MOST_FRAMES`] frames.
+    #[error("the clip lasts {0} frames, which is more than can be")]
+    TooLong(usize),
 }
 
 /// A motion on its new body, and how it fits.
@@ -123,7 +126,8 @@ impl Retargeted {
 /// Carries `clip`, a motion of `actor`, over to `character`.
 ///
 /// # Errors
-/// A body without the roles of a humanoid, without hips or with less than two whole legs; numbers that are not above 0.
+/// A body without the roles of a humanoid, without hips or with less than two whole legs; numbers that are not above 0; a
+/// clip that is too long.
 ///
 /// # Panics
 /// As [`sample`](crate::sample()).
@@ -143,7 +147,12 @@ pub fn retarget(
     check(scale, "the ratio of leg lengths")?;
     check(pace, "the pace")?;
     check(options.frame_time as f32, "the frame time")?;
-    let source = Take::of(actor.rig, clip, options.frame_time / f64::from(pace));
+    let step = options.frame_time / f64::from(pace);
+    let frames = crate::take::frames_of(clip.duration, step);
+    if frames > Take::MOST_FRAMES {
+        return Err(RetargetError::TooLong(frames));
+    }
+    let source = Take::of(actor.rig, clip, step);
     if options.feet == Feet::Locked {
         transfer.flatten_soles(&source);
     }

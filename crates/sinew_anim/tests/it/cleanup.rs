@@ -2,6 +2,7 @@
 
 use crate::mocap::{actor, character};
 use crate::toy;
+use core::f32::consts::TAU;
 use sinew_anim::cleanup::{SpikeSettings, despike, project_limits, remove_penetration, smooth};
 use sinew_anim::contact::{lowest, sole_points};
 use sinew_anim::learned_limits::learn_limits;
@@ -16,7 +17,7 @@ const FRAME: f64 = 1.0 / 120.0;
 fn swinging() -> Take {
     let pose = |frame: usize| {
         let t = frame as f32 / 120.0;
-        let turn = |axis: Vec3, hz: f32| Rotation::from_axis_angle(axis, 0.6 * trig::sin(6.283 * hz * t));
+        let turn = |axis: Vec3, hz: f32| Rotation::from_axis_angle(axis, 0.6 * trig::sin(TAU * hz * t));
         let local = |translation: Vec3, rotation: Rotation| LocalTransform {
             translation,
             rotation,
@@ -84,7 +85,7 @@ fn places_jump_too_and_cuts_stay() {
 #[test]
 fn smoothing_damps_as_its_formula_says() {
     for (hz, sigma) in [(2.0_f32, 0.03_f32), (8.0, 0.02), (20.0, 0.02)] {
-        let angle = |frame: usize| 0.1 * trig::sin(6.283_185 * hz * frame as f32 / 120.0);
+        let angle = |frame: usize| 0.1 * trig::sin(TAU * hz * frame as f32 / 120.0);
         let local = |frame: usize| LocalTransform {
             rotation: Rotation::from_axis_angle(Vec3::X, angle(frame)),
             ..LocalTransform::default()

@@ -10,4 +10,5 @@ mod rigs;
 mod roles;
 mod sample;
 mod skinning;
+mod take;
 mod toy;

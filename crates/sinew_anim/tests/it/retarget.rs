@@ -4,10 +4,11 @@ use crate::mocap::{Actor, actor, character, imitation};
 use sinew_anim::contact::{ContactSettings, contacts, floor_under, foot_slide, lowest, sole_points};
 use sinew_anim::legs::Legs;
 use sinew_anim::retarget::{
-    Body, Feet, Pace, Reference, RetargetError, RetargetOptions, Retargeted, retarget,
+    Body, Feet, Pace, Reference, RetargetError, RetargetOptions, Retargeted, retarget, stand,
 };
 use sinew_anim::{Clip, FootContact, Rig, RigAnalysis, Role, Side, Take, local_to_model};
-use sinew_math::{Affine, Vec3, direction};
+use sinew_formats::bvh::{BvhOptions, BvhRows, read_bvh};
+use sinew_math::{Affine, Random, Vec3, direction};
 
 const WALK: &str = "cmu_12_01_walk.bvh";
 
@@ -290,6 +291,32 @@ fn knees_bend_forward() {
     }
 }
 
+/// Holding the feet makes no joint jerk: the largest change of any leg joint's speed from frame to frame stays near what it
+/// is when the feet are free.
+#[test]
+fn held_legs_do_not_pop() {
+    let (Some(walk), Some((rig, analysis))) = (actor(WALK), character("mannequiny.glb")) else { return };
+    let jerk = |feet: Feet| {
+        let found = onto(&walk, &rig, &analysis, &RetargetOptions { feet, ..RetargetOptions::default() });
+        let legs = Legs::of(&rig, &analysis)
+            .unwrap()
+            .feet
+            .map(|foot| [foot.leg.upper, foot.leg.lower, foot.leg.end]);
+        let of_joint = |&joint: &usize| {
+            let turns: Vec<_> = found.take.of_joint(joint).map(|local| local.rotation).collect();
+            let step = |three: &[sinew_math::Rotation]| {
+                let speed = |k: usize| three[k].angular_velocity_to(three[k + 1], 1.0);
+                (speed(1) - speed(0)).length().to_degrees()
+            };
+            turns.windows(3).map(step).fold(0.0, sinew_math::max)
+        };
+        legs.as_flattened().iter().map(of_joint).fold(0.0, sinew_math::max)
+    };
+    let (free, held) = (jerk(Feet::Free), jerk(Feet::Locked));
+    println!("largest change of a leg joint's step: {free:.2}° free, {held:.2}° held");
+    assert!(held < 1.5 * free + 1.0, "{held}° per frame², {free}° with free feet");
+}
+
 #[test]
 fn a_body_on_itself_is_itself() {
     let Some(walk) = actor(WALK) else { return };
@@ -346,6 +373,46 @@ fn what_has_no_roles_is_refused() {
     assert_eq!(refused(body, body, still).to_string(), "the pace must be above 0 and finite");
     let frozen = RetargetOptions { frame_time: f64::NAN, ..plain };
     assert_eq!(refused(body, body, frozen).to_string(), "the frame time must be above 0 and finite");
+}
+
+/// Files with random bytes changed: whatever can be read can be looked at and carried over, or is refused.
+#[test]
+fn captures_made_to_be_bad_do_no_harm() {
+    let (Some(whole), Some((rig, analysis))) =
+        (crate::rigs::bytes("mocap/cmu_12_01_walk.bvh"), character("mannequiny.glb"))
+    else {
+        return;
+    };
+    // The skeleton and forty rows.
+    let rows: Vec<&[u8]> = whole.split_inclusive(|&byte| byte == b'\n').take(227).collect();
+    let whole = rows.concat();
+    let options = BvhOptions { rows: BvhRows::AsPresent, ..BvhOptions::default() };
+    let cases = if std::env::var_os("SINEW_FULL").is_some() { 2000 } else { 150 };
+    let (mut random, mut carried) = (Random::new(31), 0);
+    for _ in 0..cases {
+        let mut bytes = whole.clone();
+        for _ in 0..=random.index(12) {
+            // Half of the changes where the skeleton is.
+            let within = [5000, bytes.len()][random.index(2)];
+            let at = random.index(within);
+            bytes[at] = *b"0123456789eE.- {}X\n".get(random.index(40)).unwrap_or(&bytes[at]);
+        }
+        let Ok(document) = read_bvh(&bytes, options) else { continue };
+        let Ok((found, _)) = stand(&document.rig, &document.clip, document.rest_pose.as_deref()) else {
+            continue;
+        };
+        let actor = Body { rig: &document.rig, analysis: &found };
+        let plain = RetargetOptions::default();
+        carried += usize::from(
+            retarget(actor, &document.clip, Body { rig: &rig, analysis: &analysis }, &plain).is_ok(),
+        );
+    }
+    println!("{carried} of {cases} carried over");
+    assert!(carried > cases / 10);
+    let endless = Clip { duration: 1e12, ..Clip::default() };
+    let body = Body { rig: &rig, analysis: &analysis };
+    let refused = retarget(body, &endless, body, &RetargetOptions::default()).unwrap_err();
+    assert!(matches!(refused, RetargetError::TooLong(_)), "{refused}");
 }
 
 /// Slide of two feet made by hand: the one stands, the other is dragged at 0.3 m/s for a second.

@@ -4,7 +4,7 @@ use super::channel::BvhChannel;
 use super::motion::{along_positions, is_added};
 use crate::error::{Error, Result};
 use sinew_anim::{
-    Clip, JointIdx, LocalTransform, Property, Rig, SampleCache, Wrap, local_to_model, rest_pose,
+    Clip, JointIdx, LocalTransform, Property, Rig, SampleCache, Take, Wrap, local_to_model, rest_pose,
     sample_cached,
 };
 use sinew_math::{Affine, EulerOrder, Rotation, Vec3, limits::wrap};
@@ -50,7 +50,7 @@ const MOST_TABS: usize = 40;
 ///
 /// # Errors
 /// A rig without joints, a frame time or unit that is not above 0, an order that names an axis twice, channels that
-/// are not as many as the joints, more than 2³¹ frames.
+/// are not as many as the joints, more frames than [`Take::MOST_FRAMES`].
 ///
 /// # Panics
 /// As [`sinew_anim::sample`].
@@ -58,7 +58,7 @@ pub fn write_bvh(rig: &Rig, clip: &Clip, options: &BvhWriteOptions<'_>) -> Resul
     check(rig, options)?;
     let mut writer = Writer::new(rig, clip, options);
     let frames = (f64::from(clip.duration) / options.frame_time).round();
-    if frames >= f64::from(i32::MAX) {
+    if frames >= Take::MOST_FRAMES as f64 {
         return Err(Error::malformed(format!("{frames} frames are too many"), "frame time"));
     }
     let rows = writer.rows(clip, frames as usize + 1);
