@@ -174,5 +174,5 @@ pub fn foot_slide(
 /// First and last frame of a contact, inside a take of so many frames.
 pub(crate) fn frames_of(take: &Take, contact: &FootContact, frames: usize) -> [usize; 2] {
     let last = frames.saturating_sub(1);
-    [contact.start, contact.end].map(|time| take.frames_in(max(time, 0.0)).min(last))
+    [contact.start, contact.end].map(|time| usize::min(take.frames_in(max(time, 0.0)), last))
 }

@@ -24,7 +24,7 @@ pub fn smooth(take: &mut Take, sigma: f32) -> SmoothReport {
     if frames.is_nan() || frames < 0.2 || take.frames() < 2 {
         return report;
     }
-    let reach = (3.0 * frames).ceil().min(take.frames() as f64) as usize;
+    let reach = usize::min((3.0 * frames).ceil() as usize, take.frames());
     let weight = |k: usize| {
         let x = (k as f64 / frames) as f32;
         trig::exp(-0.5 * x * x)

@@ -1,8 +1,7 @@
 //! How two bodies differ in their reference poses, role by role.
 
-use super::{limb_roles, roles};
 use crate::rig::JointIdx;
-use crate::roles::{RigAnalysis, Role, Side};
+use crate::roles::{HUMANOID_ROLES, RigAnalysis, Role, Side};
 use sinew_math::{Mat3, Rotation, Transform, Vec3, direction};
 
 /// Joints of one role.
@@ -90,7 +89,7 @@ impl Alignment {
             correction: (from.joints[a].rotation.inverse() * turn_of(role).inverse() * to.joints[b].rotation)
                 .normalize(),
         };
-        for role in roles().filter(|&role| !in_spine(role)) {
+        for role in HUMANOID_ROLES.into_iter().filter(|&role| !in_spine(role)) {
             match (from.joint(role), to.joint(role)) {
                 (Some(a), Some(b)) => found.pairs.push(pair(role, a, b)),
                 (None, Some(_)) => found.unmatched.push(role),
@@ -160,4 +159,13 @@ fn leg_turns(from: &Stance<'_>, to: &Stance<'_>, trunk: Rotation, roles: [Role; 
         }
     };
     vec![thigh, shank, (foot, turn), (toes, turn)]
+}
+
+/// The roles of a side's leg and of its arm, from the trunk outward.
+fn limb_roles(side: Side) -> [[Role; 4]; 2] {
+    use Role::{Foot, Hand, LowerArm, LowerLeg, Shoulder, Toes, UpperArm, UpperLeg};
+    [
+        [UpperLeg(side), LowerLeg(side), Foot(side), Toes(side)],
+        [Shoulder(side), UpperArm(side), LowerArm(side), Hand(side)],
+    ]
 }

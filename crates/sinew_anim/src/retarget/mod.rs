@@ -19,7 +19,7 @@ use crate::contact::{
 use crate::legs::{Foot, Legs};
 use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, Rig};
-use crate::roles::{HUMANOID_ROLES, RigAnalysis, Role, Side};
+use crate::roles::{RigAnalysis, Role, Side};
 use crate::take::Take;
 use align::Alignment;
 use sinew_math::{Affine, Rotation, Vec3, max};
@@ -321,18 +321,4 @@ fn moving_mean(values: &[f32], reach: usize) -> Vec<f32> {
         near.iter().sum::<f32>() / near.len() as f32
     };
     (0..values.len()).map(mean).collect()
-}
-
-/// The roles of a side's leg and of its arm, from the trunk outward.
-fn limb_roles(side: Side) -> [[Role; 4]; 2] {
-    use Role::{Foot, Hand, LowerArm, LowerLeg, Shoulder, Toes, UpperArm, UpperLeg};
-    [
-        [UpperLeg(side), LowerLeg(side), Foot(side), Toes(side)],
-        [Shoulder(side), UpperArm(side), LowerArm(side), Hand(side)],
-    ]
-}
-
-/// All roles that a body may have and a motion may move.
-fn roles() -> impl Iterator<Item = Role> {
-    HUMANOID_ROLES.into_iter()
 }

@@ -149,3 +149,19 @@ fn a_body_is_lifted_out_of_the_floor() {
     };
     assert!(low(&take) > floor + 0.05 - 1e-4, "{}", low(&take) - floor);
 }
+
+/// Real captures: what is cut off is little, and after that there is nothing more to do.
+#[test]
+fn captures_are_cleaned_once_and_for_all() {
+    for name in ["cmu_12_01_walk.bvh", "cmu_01_01_jumps.bvh", "cmu_02_03_run_iclone.bvh"] {
+        let Some(found) = actor(name) else { return };
+        let clean = Take::of(&found.rig, &found.clip, FRAME);
+        let mut take = clean.clone();
+        let spikes = despike(&mut take, &SpikeSettings::default());
+        println!("{name}: {} spikes in {} joint frames: {spikes:.2?}", spikes.len(), take.poses.len());
+        assert!(spikes.len() * 2000 < take.poses.len(), "{name}: {spikes:?}");
+        assert_eq!(despike(&mut take, &SpikeSettings::default()), [], "{name}");
+        let report = smooth(&mut take, 0.01);
+        assert!(report.mean_turn < 0.01 && report.largest_turn < 0.6, "{name}: {report:?}");
+    }
+}

@@ -53,7 +53,7 @@ const MOST_TABS: usize = 40;
 /// are not as many as the joints, more frames than [`Take::MOST_FRAMES`].
 ///
 /// # Panics
-/// As [`sinew_anim::sample`].
+/// As [`sinew_anim::sample()`].
 pub fn write_bvh(rig: &Rig, clip: &Clip, options: &BvhWriteOptions<'_>) -> Result<BvhText> {
     check(rig, options)?;
     let mut writer = Writer::new(rig, clip, options);
