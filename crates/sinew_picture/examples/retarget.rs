@@ -1,23 +1,26 @@
 //! Draws a captured motion on a character, the actor's bones beside it:
-//! `cargo run --release -p sinew_picture --example retarget -- CAPTURE.bvh CHARACTER.glb OUT` writes `OUT_side.png` and
-//! `OUT_front.png`, eight moments each.
+//! `cargo run --release -p sinew_picture --example retarget -- CAPTURE CHARACTER.glb OUT` writes `OUT_side.png` and
+//! `OUT_front.png`, eight moments each. CAPTURE is a BVH file, or a DeepMimic clip with its character beside it.
 
 use sinew::anim::retarget::{Body, RetargetOptions, Retargeted, retarget, stand};
-use sinew::anim::{RigAnalysis, Role, Take, analyze, local_to_model, skin_vertices};
-use sinew::formats::bvh::{BvhOptions, read_bvh};
-use sinew::formats::{ReadOptions, load_gltf};
+use sinew::anim::{
+    Clip, LocalTransform, Rig, RigAnalysis, Role, Take, analyze, local_to_model, skin_vertices,
+};
+use sinew::formats::bvh::{BvhDocument, BvhOptions, read_bvh};
+use sinew::formats::{ReadOptions, load_gltf, read_deepmimic, read_deepmimic_character};
 use sinew::math::{Affine, Vec3};
 use sinew::physics::boxes::Aabb;
 use sinew_picture::{
     Camera, Line, LineDepth, Model, PictureFormat, RenderSettings, Renderer, Scene, draw, encode,
 };
 use std::error::Error;
+use std::path::Path;
 
 const MOMENTS: usize = 8;
 
 /// A motion on its body.
 struct Actor<'a> {
-    rig: &'a sinew::anim::Rig,
+    rig: &'a Rig,
     analysis: &'a RigAnalysis,
     take: &'a Take,
 }
@@ -58,12 +61,34 @@ impl Actor<'_> {
     }
 }
 
+/// What a capture file holds.
+struct Captured {
+    rig: Rig,
+    clip: Clip,
+    rest_pose: Option<Vec<LocalTransform>>,
+}
+
+impl Captured {
+    fn read(path: &Path) -> Result<Self, Box<dyn Error>> {
+        let bytes = std::fs::read(path)?;
+        if path.extension().is_some_and(|extension| extension == "bvh") {
+            let BvhDocument { rig, clip, rest_pose, notes, .. } = read_bvh(&bytes, BvhOptions::default())?;
+            notes.iter().for_each(|note| println!("{note}"));
+            return Ok(Self { rig, clip, rest_pose });
+        }
+        let beside = path.with_file_name("deepmimic_humanoid3d.txt");
+        let character = read_deepmimic_character(&std::fs::read(beside)?)?;
+        let clip = read_deepmimic(&bytes, &character)?.clip;
+        Ok(Self { rig: character.rig, clip, rest_pose: None })
+    }
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [capture, character, out] = arguments.as_slice() else {
-        return Err("give a BVH file, a character and the start of the pictures' names".into());
+        return Err("give a capture, a character and the start of the pictures' names".into());
     };
-    let captured = read_bvh(&std::fs::read(capture)?, BvhOptions::default())?;
+    let captured = Captured::read(Path::new(capture))?;
     let (actor, reference) = stand(&captured.rig, &captured.clip, captured.rest_pose.as_deref())?;
     let document = load_gltf(character, ReadOptions::default())?;
     let analysis = analyze(&document.rig)?;
@@ -71,7 +96,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let onto = Body { rig: &document.rig, analysis: &analysis };
     let found = retarget(body, &captured.clip, onto, &RetargetOptions::default())?;
     println!("reference {reference:?}; {}", said(&found, &analysis));
-    let source = Take::of(&captured.rig, &captured.clip, captured.frame_time);
+    let source = Take::of(&captured.rig, &captured.clip, 1.0 / 60.0);
     let from = Actor { rig: &captured.rig, analysis: &actor, take: &source };
     let to = Actor { rig: &document.rig, analysis: &analysis, take: &found.take };
     for (name, along, toward) in [("side", Vec3::Z, Vec3::X), ("front", Vec3::X, Vec3::Z)] {

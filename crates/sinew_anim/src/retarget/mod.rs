@@ -17,7 +17,7 @@ use crate::contact::{
     lowest, sole_points, toes_up,
 };
 use crate::legs::{Foot, Legs};
-use crate::pose::{local_to_model, rest_pose};
+use crate::pose::{local_to_model, rest_pose, smoothstep};
 use crate::rig::{JointIdx, Rig};
 use crate::roles::{RigAnalysis, Role, Side};
 use crate::take::Take;
@@ -167,8 +167,8 @@ pub fn retarget(
     }
     let mut take = transfer.carry(&source, &heights, floor, options.frame_time);
     let at_pace = |contact: &FootContact| FootContact {
-        start: contact.start * pace,
-        end: contact.end * pace,
+        start: max((contact.start - HOLD) * pace, 0.0),
+        end: (contact.end + HOLD) * pace,
         ..*contact
     };
     let held: Vec<FootContact> = stood.iter().map(at_pace).collect();
@@ -220,6 +220,8 @@ struct Transfer<'a> {
     scale: f32,
 }
 
+/// How much longer than the actor's a foot is held at either end, seconds: a foot on its way down hardly moves on.
+const HOLD: f32 = 0.02;
 /// Time over which the height of the body is matched to the floor, seconds.
 const SETTLE: f32 = 0.12;
 
@@ -266,8 +268,8 @@ impl<'a> Transfer<'a> {
         }
     }
 
-    /// Rotations and the way of the pelvis, then the height of the whole body so that its lowest sole is as high over its
-    /// floor as `heights` say, frame by frame.
+    /// Rotations and the way of the pelvis, then the height of the whole body so that its lowest sole, while near the floor,
+    /// is as high over it as `heights` say, frame by frame.
     fn carry(&self, source: &Take, heights: &[f32], floor: f32, frame_time: f64) -> Take {
         let rig = self.character.rig;
         let mut take = Take { frame_time, joints: rig.joints.len(), poses: Vec::new() };
@@ -280,7 +282,10 @@ impl<'a> Transfer<'a> {
             let target = self.hips_target(&from, &to, floor);
             self.legs.carry(rig, target - to[self.legs.pelvis].translation, &mut pose, &mut to);
             let low = lowest(&self.legs.feet.each_ref().map(|foot| foot.points(&to)));
-            errors.push(heights[frame] - (low - self.character.analysis.floor));
+            // A body that lies or leaps with its feet up is where its pelvis is.
+            let leg = self.legs.feet[0].length;
+            let near = 1.0 - smoothstep((heights[frame] - 0.1 * leg) / (0.2 * leg));
+            errors.push((heights[frame] - (low - self.character.analysis.floor)) * near);
             take.poses.extend(pose);
         }
         let reach = take.frames_in(SETTLE * self.scale.sqrt());

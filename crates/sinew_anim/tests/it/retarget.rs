@@ -144,9 +144,16 @@ fn a_walk_fits_every_body() {
         assert!(
             found.take.poses.iter().all(|local| local.rotation.is_finite() && local.translation.is_finite())
         );
+        // The same holds of the contacts that the new motion itself shows, which no one told it of.
+        let legs = Legs::of(rig, analysis).unwrap();
+        let points = sole_points(rig, &analysis.character_from_file(), &legs.feet, &found.take);
+        let settings = ContactSettings::for_leg(legs.feet[0].length);
+        let seen = contacts(&found.take, &legs.feet, &points, analysis.floor, &settings);
+        let own = foot_slide(&found.take, &legs.feet, &points, &seen);
+        let own = 100.0 * own.mean / analysis.height;
+        println!("{name}: {own:.2} cm/s per m in {} contacts of its own", seen.len());
+        assert!(own < 1.0 && seen.len() == found.contacts.len(), "{name}: {own} cm/s per metre of height");
         // Soles are on or over the floor, and one of them always near it.
-        let feet = Legs::of(rig, analysis).unwrap().feet;
-        let points = sole_points(rig, &analysis.character_from_file(), &feet, &found.take);
         let heights: Vec<f32> =
             points.iter().map(|frame| (lowest(frame) - analysis.floor) / analysis.height).collect();
         assert!(heights.iter().all(|&h| h > -1e-3 && h < 0.02), "{name}: {heights:?}");
