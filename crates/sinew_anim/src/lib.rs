@@ -1,4 +1,4 @@
-//! Animation as plain data and stateless jobs: rig, clips, poses, roles.
+//! Animation as plain data and stateless jobs: rig, clips, poses, roles, captured motion.
 //!
 //! Nothing here knows physics, files or a renderer. Rotations are [`sinew_math::Rotation`], times are seconds, lengths
 //! are **file units** until [`roles`] has told how many metres one is.

@@ -125,6 +125,20 @@ impl Retargeted {
 
 /// Carries `clip`, a motion of `actor`, over to `character`.
 ///
+/// ```
+/// use sinew_anim::retarget::{Body, RetargetOptions, retarget, stand};
+/// use sinew_anim::{Clip, Rig, analyze};
+///
+/// fn walk_like(actor: &Rig, clip: &Clip, character: &Rig) -> Result<Clip, Box<dyn std::error::Error>> {
+///     let (skeleton, _) = stand(actor, clip, None)?;
+///     let skin = analyze(character)?;
+///     let from = Body { rig: actor, analysis: &skeleton };
+///     let to = Body { rig: character, analysis: &skin };
+///     let walk = retarget(from, clip, to, &RetargetOptions::default())?;
+///     Ok(walk.clip(character, "walk"))
+/// }
+/// ```
+///
 /// # Errors
 /// A body without the roles of a humanoid, without hips or with less than two whole legs; numbers that are not above 0; a
 /// clip that is too long.

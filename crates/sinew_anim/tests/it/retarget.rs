@@ -244,6 +244,31 @@ fn every_captured_body_moves_a_character() {
     }
 }
 
+/// Clips that were drawn for one character move another; a file of clips without a skin does too.
+#[test]
+fn drawn_clips_move_other_characters() {
+    let Some((man, man_analysis)) = character("CesiumMan.glb") else { return };
+    let to = Body { rig: &man, analysis: &man_analysis };
+    for name in ["mannequiny.glb", "kaykit_mannequin/Med_Simulation.glb"] {
+        let (rig, clips) = crate::rigs::load(&format!("rigs/{name}")).unwrap();
+        for clip in &clips {
+            let analysis =
+                sinew_anim::analyze(&rig).or_else(|_| stand(&rig, clip, None).map(|found| found.0)).unwrap();
+            assert!(analysis.humanoid, "{name}, {}: {:?}", clip.name, analysis.notes);
+            let found =
+                retarget(Body { rig: &rig, analysis: &analysis }, clip, to, &RetargetOptions::default())
+                    .unwrap();
+            let slide = 100.0 * found.feet.slide[1].mean / man_analysis.height;
+            println!("{name}, {}: {} contacts, slide {slide:.3} cm/s per m", clip.name, found.contacts.len());
+            assert!(
+                slide < 1.0 && found.take.poses.iter().all(|local| local.rotation.is_finite()),
+                "{name}, {}",
+                clip.name
+            );
+        }
+    }
+}
+
 /// Where nothing is mended at the ground, bones point where the actor's point.
 #[test]
 fn bones_point_where_the_actors_do() {

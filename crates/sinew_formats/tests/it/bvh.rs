@@ -436,6 +436,10 @@ fn a_file_cut_anywhere_is_refused() {
         for _ in 0..20 {
             let length = random.index(last_row);
             assert!(read_and_check(&whole[..length]).is_some(), "{}: {length}", path.display());
+            let mut flipped = whole.to_vec();
+            let at = random.index(flipped.len());
+            flipped[at] ^= 1 << random.index(8);
+            read_and_check(&flipped);
         }
     }
 }
