@@ -34,6 +34,52 @@ pub fn floor_under(points: &[[[Vec3; 2]; 2]]) -> f32 {
     tenth(points.iter().map(lowest).collect())
 }
 
+/// What a motion stands on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ground {
+    /// Metres.
+    pub height: f32,
+    /// How it moves under a body that walks on the spot, m/s; zero under one that gets on. Its y is 0.
+    pub velocity: Vec3,
+}
+
+impl Ground {
+    /// The ground under a motion, told by its feet. It moves if both feet take turns at being low for much of the time, and
+    /// then mostly move at one speed.
+    pub fn under(take: &Take, points: &[[[Vec3; 2]; 2]], settings: &ContactSettings) -> Self {
+        let height = floor_under(points);
+        let lower_step = |frame: usize| {
+            let k = usize::from(points[frame][1][1].y < points[frame][0][1].y);
+            let [from, to] = [points[frame][k][1], points[frame + 1][k][1]];
+            let step = (to - from) / take.frame_time as f32;
+            (from.y - height < settings.height).then_some((k, Vec3::new(step.x, 0.0, step.z)))
+        };
+        let steps: Vec<(usize, Vec3)> = (0..points.len().saturating_sub(1)).filter_map(lower_step).collect();
+        let median = |axis: usize| {
+            let mut numbers: Vec<f32> = steps.iter().map(|(_, step)| step[axis]).collect();
+            numbers.sort_by(f32::total_cmp);
+            numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
+        };
+        let velocity = Vec3::new(median(0), 0.0, median(2));
+        let alike = |step: Vec3| (step - velocity).length() < 0.3 * velocity.length();
+        let of_foot = |foot: usize| steps.iter().filter(|&&(k, step)| k == foot && alike(step)).count();
+        let (left, right) = (of_foot(0), of_foot(1));
+        let mostly = 2 * (left + right) > steps.len() && 3 * steps.len() > points.len();
+        let take_turns = 4 * usize::min(left, right) > left + right;
+        let moves = velocity.length() > settings.speed[1] && mostly && take_turns;
+        Self { height, velocity: if moves { velocity } else { Vec3::ZERO } }
+    }
+
+    /// Points as seen from the ground: on it, a foot that stands is at rest.
+    pub fn seen_from(&self, take: &Take, mut points: Vec<[[Vec3; 2]; 2]>) -> Vec<[[Vec3; 2]; 2]> {
+        for (frame, feet) in points.iter_mut().enumerate() {
+            let way = self.velocity * take.time(frame);
+            feet.as_flattened_mut().iter_mut().for_each(|point| *point -= way);
+        }
+        points
+    }
+}
+
 /// How far each sole is tilted while it stands, radians, positive for toes up, and the feet with soles that lie flat then.
 ///
 /// A reference pose hardly says how a shoe was worn: the heights that heel and ball keep to while they are on the ground
@@ -90,8 +136,8 @@ impl ContactSettings {
     }
 }
 
-/// When each foot stands, told by height and speed of its ball. `points` are those of [`sole_points`], `floor` the height
-/// of the ground. In order of start; left before right.
+/// When each foot stands, told by height and speed of its ball. `points` are those of [`sole_points`], as
+/// [seen from the ground](Ground::seen_from) where that moves; `floor` is its height. In order of start; left before right.
 pub fn contacts(
     take: &Take,
     feet: &[Foot; 2],

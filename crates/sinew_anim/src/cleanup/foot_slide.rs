@@ -1,7 +1,7 @@
 //! Feet held where they stand.
 
 use super::smooth_above;
-use crate::contact::{FootContact, FootSlide, foot_slide, frames_of, sole_points};
+use crate::contact::{FootContact, FootSlide, Ground, foot_slide, frames_of, sole_points};
 use crate::ik::{Pole, TwoBoneGoal, two_bone_ik};
 use crate::legs::{Foot, Legs};
 use crate::pose::{local_to_model, smoothstep};
@@ -33,7 +33,7 @@ const BLEND: f32 = 0.1;
 /// between contacts the correction blends over. Feet keep their rotations, no sole goes below the floor, and the pelvis is
 /// lowered where a leg is too short.
 ///
-/// Lengths are metres in the space that `root` maps the rig's to, y up, `floor` the height of the ground there.
+/// Lengths are metres in the space that `root` maps the rig's to, y up, `ground` is what there is to stand on there.
 ///
 /// # Panics
 /// If the take is not one of the rig's.
@@ -42,13 +42,14 @@ pub fn remove_foot_slide(
     root: &Affine,
     legs: &Legs,
     contacts: &[FootContact],
-    floor: f32,
+    ground: &Ground,
     take: &mut Take,
 ) -> FootSlideReport {
     let feet = &legs.feet;
-    let points = sole_points(rig, root, feet, take);
+    let seen = |take: &Take| ground.seen_from(take, sole_points(rig, root, feet, take));
+    let points = seen(take);
     let before = foot_slide(take, feet, &points, contacts);
-    let shifts = [0, 1].map(|k| shifts_of(take, &feet[k], k, contacts, &points, floor));
+    let shifts = [0, 1].map(|k| shifts_of(take, &feet[k], k, contacts, &points, ground.height));
     let mut model = Vec::new();
     let mut needed = Vec::new();
     for frame in 0..take.frames() {
@@ -72,7 +73,7 @@ pub fn remove_foot_slide(
         }
     }
     report.lowered = lowered.into_iter().fold(0.0, max);
-    report.slide = [before, foot_slide(take, feet, &sole_points(rig, root, feet, take), contacts)];
+    report.slide = [before, foot_slide(take, feet, &seen(take), contacts)];
     report
 }
 

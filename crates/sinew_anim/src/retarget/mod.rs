@@ -13,8 +13,8 @@ pub use reference::{Reference, stand};
 use crate::cleanup::{FootSlideReport, remove_foot_slide};
 use crate::clip::Clip;
 use crate::contact::{
-    ContactSettings, FootContact, FootSlide, contacts, flatten_soles, floor_under, foot_slide, frames_of,
-    lowest, sole_points, toes_up,
+    ContactSettings, FootContact, FootSlide, Ground, contacts, flatten_soles, foot_slide, frames_of, lowest,
+    sole_points, toes_up,
 };
 use crate::legs::{Foot, Legs};
 use crate::pose::{local_to_model, rest_pose, smoothstep};
@@ -107,6 +107,8 @@ pub struct Retargeted {
     pub scale: f32,
     /// Duration over that of the actor's motion.
     pub pace: f32,
+    /// What the character stands on, in its own axes, metres: moving under a motion on the spot.
+    pub ground: Ground,
     /// Foot slide of the actor, over the same contacts, for comparison.
     pub actor_slide: FootSlide,
     /// Foot slide of the character before and after its feet were held; without holding, both as they are.
@@ -170,46 +172,26 @@ pub fn retarget(
     if options.feet == Feet::Locked {
         transfer.flatten_soles(&source);
     }
-    let points = sole_points(actor.rig, &transfer.actor_root, &transfer.actor_feet, &source);
-    let floor = options.floor.unwrap_or_else(|| floor_under(&points));
-    let settings = ContactSettings::for_leg(transfer.actor_feet[0].length);
-    let stood = contacts(&source, &transfer.actor_feet, &points, floor, &settings);
-    let mut heights: Vec<f32> = points.iter().map(|frame| max(lowest(frame) - floor, 0.0) * scale).collect();
-    for contact in &stood {
-        let [first, last] = frames_of(&source, contact, heights.len());
-        heights[first..=last].fill(0.0);
-    }
-    let mut take = transfer.carry(&source, &heights, floor, options.frame_time);
+    let steps = transfer.watch(&source, options.floor);
+    let mut take = transfer.carry(&source, &steps, options.frame_time);
     let at_pace = |contact: &FootContact| FootContact {
         start: max((contact.start - HOLD) * pace, 0.0),
         end: (contact.end + HOLD) * pace,
         ..*contact
     };
-    let held: Vec<FootContact> = stood.iter().map(at_pace).collect();
-    let feet = match options.feet {
-        Feet::Locked => remove_foot_slide(
-            character.rig,
-            &transfer.character_root,
-            &transfer.legs,
-            &held,
-            character.analysis.floor,
-            &mut take,
-        ),
-        Feet::Free => {
-            let points = sole_points(character.rig, &transfer.character_root, &transfer.legs.feet, &take);
-            let slide = foot_slide(&take, &transfer.legs.feet, &points, &held);
-            FootSlideReport { slide: [slide; 2], ..FootSlideReport::default() }
-        }
-    };
+    let contacts: Vec<FootContact> = steps.contacts.iter().map(at_pace).collect();
+    let ground =
+        Ground { height: character.analysis.floor, velocity: steps.ground.velocity * (scale / pace) };
     Ok(Retargeted {
+        feet: transfer.stand(options.feet, &contacts, &ground, &mut take),
         take,
-        contacts: held,
+        contacts,
         pairs: transfer.alignment.pairs.iter().map(|pair| (pair.role, pair.from, pair.to)).collect(),
         unmatched: transfer.alignment.unmatched,
         scale,
         pace,
-        actor_slide: foot_slide(&source, &transfer.actor_feet, &points, &stood),
-        feet,
+        ground,
+        actor_slide: steps.slide,
     })
 }
 
@@ -232,6 +214,15 @@ struct Transfer<'a> {
     hips_to_legs: Vec3,
     /// Character's legs over actor's.
     scale: f32,
+}
+
+/// What the actor's feet do.
+struct Steps {
+    ground: Ground,
+    contacts: Vec<FootContact>,
+    /// Frame by frame the height of the lowest sole over the ground, metres; 0 while a foot stands.
+    heights: Vec<f32>,
+    slide: FootSlide,
 }
 
 /// How much longer than the actor's a foot is held at either end, seconds: a foot on its way down hardly moves on.
@@ -282,9 +273,44 @@ impl<'a> Transfer<'a> {
         }
     }
 
+    /// Finds out what the actor stands on, and when.
+    fn watch(&self, source: &Take, floor: Option<f32>) -> Steps {
+        let feet = &self.actor_feet;
+        let points = sole_points(self.actor.rig, &self.actor_root, feet, source);
+        let settings = ContactSettings::for_leg(feet[0].length);
+        let mut ground = Ground::under(source, &points, &settings);
+        ground.height = floor.unwrap_or(ground.height);
+        let points = ground.seen_from(source, points);
+        let contacts = contacts(source, feet, &points, ground.height, &settings);
+        let mut heights: Vec<f32> =
+            points.iter().map(|frame| max(lowest(frame) - ground.height, 0.0)).collect();
+        for contact in &contacts {
+            let [first, last] = frames_of(source, contact, heights.len());
+            heights[first..=last].fill(0.0);
+        }
+        Steps { ground, slide: foot_slide(source, feet, &points, &contacts), contacts, heights }
+    }
+
+    /// Holds the character's feet in its contacts, or only tells how they slide.
+    fn stand(
+        &self,
+        feet: Feet,
+        contacts: &[FootContact],
+        ground: &Ground,
+        take: &mut Take,
+    ) -> FootSlideReport {
+        let (rig, root) = (self.character.rig, &self.character_root);
+        if feet == Feet::Locked {
+            return remove_foot_slide(rig, root, &self.legs, contacts, ground, take);
+        }
+        let points = ground.seen_from(take, sole_points(rig, root, &self.legs.feet, take));
+        let slide = foot_slide(take, &self.legs.feet, &points, contacts);
+        FootSlideReport { slide: [slide; 2], ..FootSlideReport::default() }
+    }
+
     /// Rotations and the way of the pelvis, then the height of the whole body so that its lowest sole, while near the floor,
-    /// is as high over it as `heights` say, frame by frame.
-    fn carry(&self, source: &Take, heights: &[f32], floor: f32, frame_time: f64) -> Take {
+    /// is as high over it as the actor's.
+    fn carry(&self, source: &Take, steps: &Steps, frame_time: f64) -> Take {
         let rig = self.character.rig;
         let mut take = Take { frame_time, joints: rig.joints.len(), poses: Vec::new() };
         let (mut from, mut to) = (Vec::new(), Vec::new());
@@ -293,13 +319,14 @@ impl<'a> Transfer<'a> {
             local_to_model(self.actor.rig, source.pose(frame), &self.actor_root, &mut from);
             let mut pose = rest_pose(rig);
             self.turn_joints(&from, &mut pose, &mut to);
-            let target = self.hips_target(&from, &to, floor);
+            let target = self.hips_target(&from, &to, steps.ground.height);
             self.legs.carry(rig, target - to[self.legs.pelvis].translation, &mut pose, &mut to);
             let low = lowest(&self.legs.feet.each_ref().map(|foot| foot.points(&to)));
             // A body that lies or leaps with its feet up is where its pelvis is.
             let leg = self.legs.feet[0].length;
-            let near = 1.0 - smoothstep((heights[frame] - 0.1 * leg) / (0.2 * leg));
-            errors.push((heights[frame] - (low - self.character.analysis.floor)) * near);
+            let height = self.scale * steps.heights[frame];
+            let near = 1.0 - smoothstep((height - 0.1 * leg) / (0.2 * leg));
+            errors.push((height - (low - self.character.analysis.floor)) * near);
             take.poses.extend(pose);
         }
         let reach = take.frames_in(SETTLE * self.scale.sqrt());

@@ -6,7 +6,7 @@ use sinew_anim::legs::Legs;
 use sinew_anim::retarget::{
     Body, Feet, Pace, Reference, RetargetError, RetargetOptions, Retargeted, retarget, stand,
 };
-use sinew_anim::{Clip, FootContact, Rig, RigAnalysis, Role, Side, Take, local_to_model};
+use sinew_anim::{Clip, FootContact, Property, Rig, RigAnalysis, Role, Side, Take, local_to_model};
 use sinew_formats::bvh::{BvhOptions, BvhRows, read_bvh};
 use sinew_math::{Affine, Random, Vec3, direction};
 
@@ -244,6 +244,36 @@ fn every_captured_body_moves_a_character() {
     }
 }
 
+/// The walk with its way taken out: the ground is found to move, and the feet stand as long as they did.
+#[test]
+fn a_walk_on_the_spot_is_a_walk() {
+    let (Some(walk), Some((rig, analysis))) = (actor(WALK), character("mannequiny.glb")) else { return };
+    let mut on_the_spot = Actor { clip: walk.clip.clone(), rig: walk.rig.clone(), ..walk };
+    let shifts = on_the_spot.clip.channels.iter_mut().find(|c| c.property == Property::Translation).unwrap();
+    let last = shifts.times.len() - 1;
+    let place = |values: &[f32], key: usize| Vec3::from_slice(&values[3 * key..]);
+    let way = place(&shifts.values, last) - place(&shifts.values, 0);
+    let speed = Vec3::new(way.x, 0.0, way.z) / shifts.times[last];
+    for (key, &time) in shifts.times.iter().enumerate() {
+        let at = place(&shifts.values, key) - speed * time;
+        shifts.values[3 * key..3 * key + 3].copy_from_slice(&at.to_array());
+    }
+    let walk = actor(WALK).unwrap();
+    let far = onto(&walk, &rig, &analysis, &RetargetOptions::default());
+    let near = onto(&on_the_spot, &rig, &analysis, &RetargetOptions::default());
+    assert_eq!(far.ground.velocity, Vec3::ZERO);
+    let off = (near.ground.velocity + speed * near.scale).length();
+    assert!(off < 0.1 * speed.length() * near.scale, "{} for {}", near.ground.velocity, speed * near.scale);
+    assert_eq!(far.contacts.len(), near.contacts.len());
+    for (a, b) in far.contacts.iter().zip(&near.contacts) {
+        assert!(
+            a.foot == b.foot && (a.start - b.start).abs() < 0.06 && (a.end - b.end).abs() < 0.06,
+            "{a:?} {b:?}"
+        );
+    }
+    assert!(100.0 * near.feet.slide[1].mean < analysis.height);
+}
+
 /// Clips that were drawn for one character move another; a file of clips without a skin does too.
 #[test]
 fn drawn_clips_move_other_characters() {
@@ -259,7 +289,12 @@ fn drawn_clips_move_other_characters() {
                 retarget(Body { rig: &rig, analysis: &analysis }, clip, to, &RetargetOptions::default())
                     .unwrap();
             let slide = 100.0 * found.feet.slide[1].mean / man_analysis.height;
-            println!("{name}, {}: {} contacts, slide {slide:.3} cm/s per m", clip.name, found.contacts.len());
+            println!(
+                "{name}, {}: {} contacts, slide {slide:.3} cm/s per m, ground {}",
+                clip.name,
+                found.contacts.len(),
+                found.ground.velocity
+            );
             assert!(
                 slide < 1.0 && found.take.poses.iter().all(|local| local.rotation.is_finite()),
                 "{name}, {}",
