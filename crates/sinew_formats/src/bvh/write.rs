@@ -108,6 +108,12 @@ struct Line {
     angles: [f64; 3],
 }
 
+#[derive(Clone, Copy, PartialEq)]
+enum Brace {
+    Open,
+    Close,
+}
+
 struct Writer<'a> {
     rig: &'a Rig,
     options: &'a BvhWriteOptions<'a>,
@@ -150,27 +156,29 @@ impl<'a> Writer<'a> {
         Self { rig, options, lines, children, notes }
     }
 
-    /// Joints depth first, as the format nests them, with their depth. Negative indices close a joint.
-    fn visit(&self, mut open: impl FnMut(JointIdx, usize), mut close: impl FnMut(usize)) {
-        let mut stack: Vec<(JointIdx, usize, bool)> = Vec::new();
+    /// Joints depth first, as the format nests them, each opened and, after all below it, closed; with their depth.
+    fn walk(&self) -> Vec<(Brace, JointIdx, usize)> {
+        let mut stack: Vec<(Brace, JointIdx, usize)> = Vec::new();
         let roots = (0..self.rig.joints.len()).filter(|&i| self.rig.joints[i].parent.is_none());
-        stack.extend(roots.rev().map(|i| (i, 0, true)));
-        while let Some((i, depth, opens)) = stack.pop() {
-            if !opens {
-                close(depth);
-                continue;
-            }
-            open(i, depth);
-            stack.push((i, depth, false));
-            stack.extend(self.children[i].iter().rev().map(|&child| (child, depth + 1, true)));
+        stack.extend(roots.rev().map(|i| (Brace::Open, i, 0)));
+        let mut walked = Vec::with_capacity(2 * self.rig.joints.len());
+        while let Some(step) = stack.pop() {
+            walked.push(step);
+            let (Brace::Open, i, depth) = step else { continue };
+            stack.push((Brace::Close, i, depth));
+            stack.extend(self.children[i].iter().rev().map(|&child| (Brace::Open, child, depth + 1)));
         }
+        walked
     }
 
     fn hierarchy(&self) -> String {
-        let text = core::cell::RefCell::new(String::from("HIERARCHY\n"));
-        let tabs = |depth: usize| "\t".repeat(depth.min(MOST_TABS));
-        let open = |i: JointIdx, depth: usize| {
-            let (mut text, line, tabs) = (text.borrow_mut(), &self.lines[i], tabs(depth));
+        let mut text = String::from("HIERARCHY\n");
+        for (brace, i, depth) in self.walk() {
+            let (line, tabs) = (&self.lines[i], "\t".repeat(depth.min(MOST_TABS)));
+            if brace == Brace::Close {
+                let _ = writeln!(text, "{tabs}}}");
+                continue;
+            }
             let _ = match (line.is_end, depth) {
                 (true, _) => writeln!(text, "{tabs}End Site"),
                 (false, 0) => writeln!(text, "{tabs}ROOT {}", word(&self.rig.joints[i].name, i)),
@@ -182,16 +190,13 @@ impl<'a> Writer<'a> {
                 let names: Vec<&str> = line.channels.iter().map(|channel| channel.name()).collect();
                 let _ = writeln!(text, "{tabs}\tCHANNELS {} {}", names.len(), names.join(" "));
             }
-        };
-        self.visit(open, |depth| {
-            let _ = writeln!(text.borrow_mut(), "{}}}", tabs(depth));
-        });
-        text.into_inner()
+        }
+        text
     }
 
     fn rows(&mut self, clip: &Clip, frames: usize) -> String {
-        let mut order = Vec::new();
-        self.visit(|i, _| order.push(i), |_| {});
+        let opened = |&(brace, i, _): &(Brace, JointIdx, usize)| (brace == Brace::Open).then_some(i);
+        let order: Vec<JointIdx> = self.walk().iter().filter_map(opened).collect();
         let (mut text, mut cache) = (String::new(), SampleCache::default());
         let mut pose = rest_pose(self.rig);
         for frame in 0..frames {
