@@ -1,8 +1,24 @@
 //! Tests of the animation library against closed forms and known files.
 
+mod allocations;
+mod animators;
+mod blending;
+mod built;
+mod playheads;
 mod pose;
+mod precise;
 mod rigs;
 mod roles;
+mod root_motion;
 mod sample;
+mod saving;
 mod skinning;
+mod spaces;
+mod stage;
 mod toy;
+mod transitions;
+
+/// How many of `all` random cases to try: a hundredth, but all with `SINEW_FULL` set.
+fn cases(all: u32) -> u32 {
+    if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
+}

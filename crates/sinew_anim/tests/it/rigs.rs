@@ -6,6 +6,24 @@ use std::path::Path;
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/");
 
+/// All files of ../shared/data/rigs that hold clips.
+pub const WITH_CLIPS: [&str; 14] = [
+    "CesiumMan.glb",
+    "Fox.glb",
+    "RecursiveSkeletons.glb",
+    "RiggedFigure.glb",
+    "RiggedSimple.glb",
+    "SimpleSkin.gltf",
+    "kaykit_Knight.glb",
+    "kaykit_mannequin/Med_MovementBasic.glb",
+    "kaykit_mannequin/Med_Simulation.glb",
+    "mannequiny.glb",
+    "mesh2motion_human_rigify.glb",
+    "quaternius_MandarinFish.glb",
+    "quaternius_Robot.glb",
+    "quaternius_Spider.glb",
+];
+
 /// Rig and clips of a file under ../shared/data; `None`, with a line that says so, where the data is absent.
 pub fn load(path: &str) -> Option<(Rig, Vec<Clip>)> {
     if !Path::new(DATA).is_dir() {
