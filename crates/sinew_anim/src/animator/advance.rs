@@ -3,6 +3,7 @@
 use super::{Animator, EndAction, Slot, Track};
 use crate::event::{FiredBy, FiredEvent};
 use crate::playhead::{Crossing, LoopMode, Passage, Place};
+use crate::root_motion::MotionTrack;
 use crate::set::{AnimatedClip, AnimationSet};
 use crate::sync::match_place;
 use sinew_math::Transform;
@@ -36,7 +37,7 @@ impl Animator {
                 _ if track.is_paused => {}
                 None => advance_alone(set, &mut self.slots[i], i, seconds, &mut self.room.crossings),
                 Some(group) if leader(&self.slots, group) == Some(i) => {
-                    self.advance_group(set, group, i, seconds)
+                    self.advance_group(set, group, i, seconds);
                 }
                 Some(_) => {}
             }
@@ -53,7 +54,7 @@ impl Animator {
         let of_group = |slot: &&Slot| slot.track.def.sync_group == Some(group) && !slot.track.is_paused;
         let rate = |track: &Track| f64::from(track.def.speed) / track.playhead.length();
         let stride =
-            |track: &Track| set.clip(track.def.clip).motion.as_ref().map_or(0.0, |motion| motion.stride());
+            |track: &Track| set.clip(track.def.clip).motion.as_ref().map_or(0.0, MotionTrack::stride);
         let all_stride = self.slots.iter().filter(of_group).all(|slot| stride(&slot.track) > 0.0);
         let (mut sum, mut total) = (0.0, 0.0);
         for slot in self.slots.iter().filter(of_group) {

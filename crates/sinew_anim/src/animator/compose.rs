@@ -26,7 +26,7 @@ impl WeightedMotion {
 
 /// An empty list with the memory of another: nothing is in it whose life would matter.
 fn recycled<'a>(layers: Vec<BlendLayer<'_>>) -> Vec<BlendLayer<'a>> {
-    layers.into_iter().filter_map(|_| None).collect()
+    layers.into_iter().map_while(|_| None).collect()
 }
 
 impl Animator {

@@ -20,7 +20,9 @@ use track::{Ramp, check_weight};
 /// How one motion becomes another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transition {
-    /// Both play for a while, one becoming lighter, the other heavier.
+    /// Both play for a while, one becoming lighter, the other heavier. Where two poses of a joint are nearly opposite, there is
+    /// no mean to go through, and it swings round; and one that passes half a turn from the rest pose jumps. That is up to
+    /// the clips: an inertial transition does neither.
     Crossfade {
         /// How long, 0 or above.
         seconds: f32,

@@ -144,7 +144,7 @@ impl BuiltClip {
             } else {
                 curves.push((channel.joint, channel.property, curve));
             }
-            bound = bound.max(bound_of(channel, options));
+            bound = bound.merged(bound_of(channel, options));
         }
         let times = all_times(&curves)?;
         let mut built = Self {

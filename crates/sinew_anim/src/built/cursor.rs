@@ -241,3 +241,42 @@ impl<const N: usize> Span<N> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::{Channel, Clip, Interpolation, Property};
+    use crate::rig::{Joint, LocalTransform, Rig};
+    use sinew_math::Random;
+    use sinew_math::dispatch::{Level, run_at};
+
+    #[test]
+    fn samples_have_the_same_bits_on_all_registers() {
+        let mut random = Random::new(1);
+        let joint =
+            |source| Joint { name: String::new(), parent: None, rest: LocalTransform::default(), source };
+        let rig = Rig { joints: (0..19).map(joint).collect(), ..Rig::default() };
+        let mut clip = Clip { name: String::new(), duration: 1.0, channels: Vec::new() };
+        for joint in 0..19 {
+            for property in [Property::Rotation, Property::Translation, Property::Scale] {
+                let values = (0..3 * property.width()).map(|_| random.range(0.1, 1.0)).collect();
+                let (interpolation, times) =
+                    (Interpolation::Linear, vec![0.0, 0.3 + 0.3 * random.unit(), 1.0]);
+                clip.channels.push(Channel { joint, property, interpolation, times, values });
+            }
+        }
+        let clip =
+            BuiltClip::build(&clip, &rig, &crate::built::BuildOptions::default()).expect("a good clip");
+        for time in [0.0, 0.2, 0.45, 0.9, 1.0] {
+            let on = |level| {
+                let (mut cursor, mut out) = (Cursor::new(), Pose::new(19));
+                cursor.fit(&clip);
+                run_at(level, Sample { clip: &clip, time, cursor: &mut cursor, out: out.blocks_mut() });
+                out
+            };
+            for level in Level::available() {
+                assert_eq!(on(level), on(Level::Scalar), "{level:?} at {time}");
+            }
+        }
+    }
+}

@@ -31,7 +31,7 @@ impl Curve {
                 }
                 Interpolation::Linear => times.push(pair[1]),
                 Interpolation::CubicSpline => {
-                    split_cubic(channel, pair[0], pair[1], tolerance, 0, &mut times)
+                    split_cubic(channel, pair[0], pair[1], tolerance, 0, &mut times);
                 }
             }
         }

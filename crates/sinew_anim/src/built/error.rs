@@ -18,7 +18,7 @@ pub struct ClipError {
 
 impl ClipError {
     /// The larger of each.
-    pub fn max(self, other: Self) -> Self {
+    pub fn merged(self, other: Self) -> Self {
         Self {
             rotation: max(self.rotation, other.rotation),
             translation: max(self.translation, other.translation),
@@ -65,7 +65,7 @@ impl BuiltClip {
                 sample_cached(raw, rig, time, Wrap::Clamp, &mut cache, &mut expected);
                 self.sample(time, &mut cursor, &mut pose);
                 for (a, b) in expected.iter().zip(pose.iter()) {
-                    worst = worst.max(ClipError::between(a, &b));
+                    worst = worst.merged(ClipError::between(a, &b));
                 }
             }
         }

@@ -1,7 +1,9 @@
 //! Any number of poses into one, in an order of their own.
 
+use super::add::Add;
+use super::parts::Parts;
 use super::quaternions::Quaternions;
-use super::soa::{Pose, ROWS, SCALE, TRANSLATION};
+use super::soa::{Pose, ROWS};
 use super::symmetric4::Symmetric4;
 use core::cmp::Ordering;
 use sinew_math::dispatch::{self, Kernel};
@@ -85,7 +87,7 @@ impl<'a> BlendLayer<'a> {
 
     /// Of a block's joints.
     #[inline(always)]
-    fn weight<L: Lanes>(&self, index: usize) -> L {
+    pub(super) fn weight<L: Lanes>(&self, index: usize) -> L {
         match self.mask {
             None => L::splat(self.weight),
             Some(mask) => L::splat(self.weight) * L::load(&mask.blocks[index].0[0]),
@@ -200,52 +202,13 @@ impl Blender {
     }
 }
 
-struct Add<'a, 'b> {
-    layers: &'a [BlendLayer<'b>],
-    order: &'a [usize],
-    pose: &'a mut [Block<ROWS>],
-}
-
-impl Kernel for Add<'_, '_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self) {
-        let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let identity = Quaternions { v: Vector3::new(zero, zero, zero), w: one };
-        let ones = Vector3::new(one, one, one);
-        for index in 0..self.pose.len() {
-            let mut sum = Parts { translation: identity.v, rotation: identity, scale: ones };
-            for &layer in self.order {
-                let weight = self.layers[layer].weight::<L>(index);
-                let difference = Parts::<L>::load(&self.layers[layer].pose.blocks()[index]);
-                let turn = difference.rotation.toward(identity).minus(identity);
-                sum.translation = sum.translation + difference.translation * weight;
-                sum.rotation = sum.rotation.plus(turn.times(weight));
-                sum.scale = sum.scale + (difference.scale - ones) * weight;
-            }
-            let square = sum.rotation.dot(sum.rotation);
-            let turn =
-                Quaternions::select(L::gt(square, L::splat(1e-8)), sum.rotation.unit(square), identity);
-            let pose = Parts::<L>::load(&self.pose[index]);
-            let scale = Vector3::new(
-                pose.scale.x * sum.scale.x,
-                pose.scale.y * sum.scale.y,
-                pose.scale.z * sum.scale.z,
-            );
-            let translation = pose.translation + sum.translation;
-            Parts { translation, rotation: pose.rotation.after(turn), scale }.store(&mut self.pose[index]);
-        }
-    }
-}
-
-struct Blend<'a, 'b> {
-    rest: &'a [Block<ROWS>],
-    layers: &'a [BlendLayer<'b>],
-    order: &'a [usize],
-    fill_below: f32,
-    mean: RotationMean,
-    out: &'a mut [Block<ROWS>],
+pub(super) struct Blend<'a, 'b> {
+    pub rest: &'a [Block<ROWS>],
+    pub layers: &'a [BlendLayer<'b>],
+    pub order: &'a [usize],
+    pub fill_below: f32,
+    pub mean: RotationMean,
+    pub out: &'a mut [Block<ROWS>],
 }
 
 impl Kernel for Blend<'_, '_> {
@@ -325,37 +288,6 @@ struct Mean<L: Lanes> {
     rotation: Quaternions<L>,
     /// Where no rotation differs from the heaviest.
     unanimous: L::Mask,
-}
-
-#[derive(Clone, Copy)]
-struct Parts<L> {
-    translation: Vector3<L>,
-    rotation: Quaternions<L>,
-    scale: Vector3<L>,
-}
-
-impl<L: Lanes> Parts<L> {
-    #[inline(always)]
-    fn load(block: &Block<ROWS>) -> Self {
-        let rows = &block.0;
-        Self {
-            translation: Vector3::load(&rows[TRANSLATION], &rows[TRANSLATION + 1], &rows[TRANSLATION + 2]),
-            rotation: Quaternions::load(block),
-            scale: Vector3::load(&rows[SCALE], &rows[SCALE + 1], &rows[SCALE + 2]),
-        }
-    }
-
-    #[inline(always)]
-    fn store(self, block: &mut Block<ROWS>) {
-        self.rotation.store(block);
-        let (t, s, rows) = (self.translation, self.scale, &mut block.0);
-        t.x.store(&mut rows[TRANSLATION]);
-        t.y.store(&mut rows[TRANSLATION + 1]);
-        t.z.store(&mut rows[TRANSLATION + 2]);
-        s.x.store(&mut rows[SCALE]);
-        s.y.store(&mut rows[SCALE + 1]);
-        s.z.store(&mut rows[SCALE + 2]);
-    }
 }
 
 impl<L: Lanes> Mean<L> {

@@ -3,8 +3,12 @@
 //! A pose is one [`LocalTransform`] per joint of a rig, a model pose one [`Affine`] per joint. The jobs here own
 //! nothing: buffers belong to the caller and keep their memory from frame to frame.
 
+mod add;
 mod blend;
+#[cfg(test)]
+mod levels;
 mod model;
+mod parts;
 mod quaternions;
 mod soa;
 mod symmetric4;

@@ -7,7 +7,7 @@ use sinew_math::lanes::{Block, Lanes, WIDTH};
 use sinew_math::{Affine, Mat3, Vec3};
 
 /// Columns of a 4×4 matrix whose last row is 0 0 0 1.
-type Columns = [[f32; 4]; 4];
+pub(super) type Columns = [[f32; 4]; 4];
 
 /// What the runtime needs of a [`Rig`]: who hangs on whom, and the rest pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,10 +112,10 @@ fn columns(affine: &Affine) -> Columns {
     [column(m.x_axis, 0.0), column(m.y_axis, 0.0), column(m.z_axis, 0.0), column(affine.translation, 1.0)]
 }
 
-struct ToModel<'a> {
-    parents: &'a [u32],
-    local: &'a [Block<ROWS>],
-    model: &'a mut [Columns],
+pub(super) struct ToModel<'a> {
+    pub parents: &'a [u32],
+    pub local: &'a [Block<ROWS>],
+    pub model: &'a mut [Columns],
 }
 
 impl Kernel for ToModel<'_> {
