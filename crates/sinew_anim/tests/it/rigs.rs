@@ -7,7 +7,7 @@ use std::path::Path;
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/");
 
 /// All files of ../shared/data/rigs that hold clips.
-pub const WITH_CLIPS: [&str; 14] = [
+pub const WITH_CLIPS: [&str; 16] = [
     "CesiumMan.glb",
     "Fox.glb",
     "RecursiveSkeletons.glb",
@@ -22,6 +22,8 @@ pub const WITH_CLIPS: [&str; 14] = [
     "quaternius_MandarinFish.glb",
     "quaternius_Robot.glb",
     "quaternius_Spider.glb",
+    "quaternius_cyberpunk_Character.glb",
+    "vrma_test.vrma",
 ];
 
 /// Rig and clips of a file under ../shared/data; `None`, with a line that says so, where the data is absent.
