@@ -1,6 +1,7 @@
 //! Keyframed motion as the file holds it.
 
-use crate::rig::JointIdx;
+use crate::rig::{JointIdx, LocalTransform};
+use sinew_math::Rotation;
 
 /// How values between two keys come about (glTF 2.0 §3.11).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,4 +56,44 @@ pub struct Clip {
     pub duration: f32,
     /// Channels; joints without one keep their rest pose.
     pub channels: Vec<Channel>,
+}
+
+impl Clip {
+    /// The clip as differences from `reference`, for additive layers: rotations become `reference⁻¹ · key`, translations
+    /// `key − reference`, scales `key ÷ reference`, each by the reference of its joint, parent's axes. Interpolations and
+    /// tangents keep their meaning. Build it with [`Fill::Identity`](crate::Fill): joints without a channel do not change.
+    ///
+    /// # Panics
+    /// If a channel's joint is not in `reference`, or a scale of the reference is 0 where a channel scales.
+    pub fn difference_from(&self, reference: &[LocalTransform]) -> Self {
+        let mut clip = self.clone();
+        for channel in &mut clip.channels {
+            let from = &reference[channel.joint];
+            let width = channel.property.width();
+            let is_cubic = channel.interpolation == Interpolation::CubicSpline;
+            for (i, number) in channel.values.chunks_exact_mut(width).enumerate() {
+                // Tangents are differences already: what is subtracted from all values is not in them.
+                let is_tangent = is_cubic && i % 3 != 1;
+                match (channel.property, number) {
+                    (Property::Rotation, [x, y, z, w]) => {
+                        let q = from.rotation.inverse() * Rotation::from_xyzw(*x, *y, *z, *w);
+                        (*x, *y, *z, *w) = (q.x, q.y, q.z, q.w);
+                    }
+                    (Property::Translation, [x, y, z]) if !is_tangent => {
+                        (*x, *y, *z) =
+                            (*x - from.translation.x, *y - from.translation.y, *z - from.translation.z);
+                    }
+                    (Property::Scale, [x, y, z]) => {
+                        assert!(
+                            from.scale.cmpne(sinew_math::Vec3::ZERO).all(),
+                            "a reference's scale is not 0"
+                        );
+                        (*x, *y, *z) = (*x / from.scale.x, *y / from.scale.y, *z / from.scale.z);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        clip
+    }
 }

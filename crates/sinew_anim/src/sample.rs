@@ -94,6 +94,12 @@ fn write_property(target: &mut LocalTransform, property: Property, [x, y, z, w]:
     }
 }
 
+/// Value of a channel at `time`, seconds, as the file's interpolation has it. The fourth number is 0 but for rotations,
+/// and those are of length 1 only where keys and interpolation leave them so.
+pub(crate) fn channel_at(channel: &Channel, time: f32) -> [f32; 4] {
+    channel_value(channel, last_key_at(&channel.times, time, 0), time)
+}
+
 /// Value of a channel at `time`, `key` the last key not after it. The fourth number is 0 but for rotations.
 fn channel_value(channel: &Channel, key: usize, time: f32) -> [f32; 4] {
     let next = key + 1;

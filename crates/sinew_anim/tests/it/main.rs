@@ -1,14 +1,30 @@
 //! Tests of the animation library against closed forms and known files.
 
+mod allocations;
+mod animators;
+mod blending;
+mod built;
 mod cleanup;
 mod ik;
 mod learned_limits;
 mod mocap;
+mod playheads;
 mod pose;
+mod precise;
 mod retarget;
 mod rigs;
 mod roles;
+mod root_motion;
 mod sample;
+mod saving;
 mod skinning;
+mod spaces;
+mod stage;
 mod take;
 mod toy;
+mod transitions;
+
+/// How many of `all` random cases to try: a hundredth, but all with `SINEW_FULL` set.
+fn cases(all: u32) -> u32 {
+    if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
+}

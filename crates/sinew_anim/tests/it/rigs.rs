@@ -6,6 +6,26 @@ use std::path::Path;
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/");
 
+/// All files of ../shared/data/rigs that hold clips.
+pub const WITH_CLIPS: [&str; 16] = [
+    "CesiumMan.glb",
+    "Fox.glb",
+    "RecursiveSkeletons.glb",
+    "RiggedFigure.glb",
+    "RiggedSimple.glb",
+    "SimpleSkin.gltf",
+    "kaykit_Knight.glb",
+    "kaykit_mannequin/Med_MovementBasic.glb",
+    "kaykit_mannequin/Med_Simulation.glb",
+    "mannequiny.glb",
+    "mesh2motion_human_rigify.glb",
+    "quaternius_MandarinFish.glb",
+    "quaternius_Robot.glb",
+    "quaternius_Spider.glb",
+    "quaternius_cyberpunk_Character.glb",
+    "vrma_test.vrma",
+];
+
 /// The bytes of a file under ../shared/data; `None`, with a line that says so, where the data is absent.
 pub fn bytes(path: &str) -> Option<Vec<u8>> {
     if !Path::new(DATA).is_dir() {

@@ -3,6 +3,22 @@
 //! A pose is one [`LocalTransform`] per joint of a rig, a model pose one [`Affine`] per joint. The jobs here own
 //! nothing: buffers belong to the caller and keep their memory from frame to frame.
 
+mod add;
+mod blend;
+#[cfg(test)]
+mod levels;
+mod model;
+mod parts;
+mod quaternions;
+mod soa;
+mod symmetric4;
+
+pub use blend::{BlendLayer, BlendOptions, Blender, Mask, RotationMean};
+pub use model::{ModelPose, Skeleton};
+pub(crate) use quaternions::Quaternions;
+pub use soa::Pose;
+pub(crate) use soa::{ROTATION, ROWS, SCALE, TRANSLATION};
+
 use crate::rig::{LocalTransform, Rig};
 use sinew_math::{Affine, Rotation, Vec3, clamp};
 

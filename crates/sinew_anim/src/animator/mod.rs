@@ -1,0 +1,327 @@
+//! What a character plays: tracks, their weights and times, transitions, events, root motion.
+
+mod advance;
+mod compose;
+mod save;
+mod track;
+
+pub use track::{Easing, EndAction, Track, TrackDef, TrackId};
+
+use crate::built::Cursor;
+use crate::event::{Event, FiredEvent};
+use crate::inertial::Inertia;
+use crate::playhead::Playhead;
+use crate::pose::{BlendLayer, BlendOptions, Blender, Pose};
+use crate::set::AnimationSet;
+use crate::sync;
+use sinew_math::Transform;
+use track::{Ramp, check_weight};
+
+/// How one motion becomes another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Transition {
+    /// Both play for a while, one becoming lighter, the other heavier. Where two poses of a joint are nearly opposite, there is
+    /// no mean to go through, and it swings round; and one that passes half a turn from the rest pose jumps. That is up to
+    /// the clips: an inertial transition does neither.
+    Crossfade {
+        /// How long, 0 or above.
+        seconds: f32,
+        /// How weights go.
+        easing: Easing,
+    },
+    /// The new one plays alone at once; what the old one was beyond it dies away (see [`Inertia`]).
+    Inertial {
+        /// How long at most, 0 or above; joints that come toward the new motion by themselves take less.
+        seconds: f32,
+    },
+}
+
+/// Plays clips of an [`AnimationSet`] on one character.
+///
+/// An animator is plain data: which tracks there are, where they are, and the last two poses. It is given the set with
+/// each call, the same one always. `update` takes time forward; pose, events and root motion are read afterwards. It
+/// allocates nothing once it has had as many tracks and events.
+#[derive(Clone, Debug)]
+pub struct Animator {
+    slots: Vec<Slot>,
+    next_id: u64,
+    /// Events of tracks that were stopped between updates.
+    interrupted: Vec<FiredEvent>,
+    /// Seconds of an inertial transition that begins with the next update.
+    awaits_transition: Option<f32>,
+    inertia: Inertia,
+    pose: Pose,
+    /// The pose of the update before, and how long ago that was; 0 if there was none.
+    previous: Pose,
+    previous_seconds: f32,
+    has_pose: bool,
+    events: Vec<FiredEvent>,
+    root_motion: Transform,
+    room: Room,
+}
+
+/// A track, and what it is sampled with.
+#[derive(Clone, Debug)]
+struct Slot {
+    track: Track,
+    cursor: Cursor,
+    pose: Pose,
+    /// What its root has done in this update.
+    motion: Transform,
+}
+
+/// Memory that is kept from update to update, and holds nothing in between.
+#[derive(Clone, Debug)]
+struct Room {
+    blender: Blender,
+    cover: Blender,
+    layers: Vec<BlendLayer<'static>>,
+    /// The layers below the one that is blended.
+    below: Pose,
+    /// Where the motion that a transition leads to was before the update.
+    start: Pose,
+    now: Pose,
+    crossings: Vec<advance::TrackCrossing>,
+    ended: Vec<(usize, f64)>,
+    motions: Vec<compose::WeightedMotion>,
+    spare: Vec<(Cursor, Pose)>,
+}
+
+/// Sum of weights in layer 0 below which the rest pose makes up for what is missing (see [`BlendOptions`]).
+const FILL_BELOW: f32 = 0.1;
+
+impl Animator {
+    /// Plays nothing, in the rest pose.
+    pub fn new(set: &AnimationSet) -> Self {
+        let rest = set.skeleton().rest();
+        let covering = BlendOptions { fill_below: 1.0, ..BlendOptions::default() };
+        let room = Room {
+            blender: Blender::new(BlendOptions { fill_below: FILL_BELOW, ..BlendOptions::default() }),
+            cover: Blender::new(covering),
+            layers: Vec::new(),
+            below: rest.clone(),
+            start: rest.clone(),
+            now: rest.clone(),
+            crossings: Vec::new(),
+            ended: Vec::new(),
+            motions: Vec::new(),
+            spare: Vec::new(),
+        };
+        Self {
+            slots: Vec::new(),
+            next_id: 0,
+            interrupted: Vec::new(),
+            awaits_transition: None,
+            inertia: Inertia::default(),
+            pose: rest.clone(),
+            previous: rest.clone(),
+            previous_seconds: 0.0,
+            has_pose: false,
+            events: Vec::new(),
+            root_motion: Transform::IDENTITY,
+            room,
+        }
+    }
+
+    /// Local transforms of all joints after the last update.
+    pub fn pose(&self) -> &Pose {
+        &self.pose
+    }
+
+    /// What came by in the last update, by time; at one time in the order of the tracks.
+    pub fn events(&self) -> &[FiredEvent] {
+        &self.events
+    }
+
+    /// How the root went in the last update, seen from where it was before: the mean of the tracks of layer 0 with the
+    /// weights that they have after it; model space, file units. Tracks without motion count as standing.
+    pub fn root_motion(&self) -> Transform {
+        self.root_motion
+    }
+
+    /// All tracks, in the order in which they were started.
+    pub fn tracks(&self) -> impl ExactSizeIterator<Item = &Track> {
+        self.slots.iter().map(|slot| &slot.track)
+    }
+
+    /// A track; `None` once it has been removed.
+    pub fn track(&self, id: TrackId) -> Option<&Track> {
+        self.tracks().find(|track| track.id == id)
+    }
+
+    /// Starts a track.
+    ///
+    /// # Panics
+    /// If a number of `def` is not finite, the weight is negative, a sync group is joined without looping, or clip or mask
+    /// are not of the set.
+    pub fn play(&mut self, set: &AnimationSet, def: &TrackDef) -> TrackId {
+        def.check();
+        assert!(def.mask.is_none_or(|mask| set.has_mask(mask.0).is_some()), "a mask of the set");
+        let clip = set.clip(def.clip);
+        let mut playhead = Playhead::new(def.loop_mode, clip.clip.duration(), f64::from(def.start));
+        if let Some(leader) = def.sync_group.and_then(|group| advance::leader(&self.slots, group)) {
+            let leader = &self.slots[leader].track;
+            let markers = &set.clip(leader.def.clip).markers;
+            let place = sync::follow(&leader.playhead, markers, &playhead, &clip.markers);
+            playhead =
+                Playhead::restored(def.loop_mode, clip.clip.duration(), place, true).unwrap_or(playhead);
+        }
+        let id = TrackId(self.next_id);
+        self.next_id += 1;
+        let track = Track { id, def: *def, playhead, ramp: None, is_paused: false };
+        let joints = set.skeleton().len();
+        let (cursor, pose) = self.room.spare.pop().unwrap_or_else(|| (Cursor::new(), Pose::new(joints)));
+        self.slots.push(Slot { track, cursor, pose, motion: Transform::IDENTITY });
+        id
+    }
+
+    /// Starts a track in the place of all others of its layer that are blended, not added.
+    ///
+    /// # Panics
+    /// As [`play`](Self::play), and if the transition's time is negative or not finite.
+    pub fn transition(&mut self, set: &AnimationSet, def: &TrackDef, transition: Transition) -> TrackId {
+        let (Transition::Crossfade { seconds, .. } | Transition::Inertial { seconds }) = transition;
+        assert!(seconds >= 0.0 && seconds.is_finite(), "a transition takes 0 s or longer, not {seconds}");
+        let is_replaced =
+            |slot: &Slot| slot.track.def.layer == def.layer && !set.clip(slot.track.def.clip).is_difference();
+        match transition {
+            Transition::Crossfade { seconds, easing } => {
+                for slot in self.slots.iter_mut().filter(|slot| is_replaced(slot)) {
+                    slot.track.fade(0.0, seconds, easing, EndAction::Stop);
+                }
+                let id = self.play(set, &TrackDef { weight: 0.0, ..*def });
+                self.fade(id, def.weight, seconds, easing, EndAction::Hold);
+                id
+            }
+            Transition::Inertial { seconds } => {
+                let id = self.play(set, def);
+                let stopped = |slot: &Slot| slot.track.id != id && is_replaced(slot);
+                while let Some(i) = self.slots.iter().position(stopped) {
+                    self.remove(set, i);
+                }
+                self.awaits_transition = Some(seconds);
+                id
+            }
+        }
+    }
+
+    /// Removes a track at once. Its events with [`on_interrupt`](crate::EventPolicy::on_interrupt) that were still to come
+    /// in its lap are fired by the next update. Without effect once it has been removed.
+    pub fn stop(&mut self, set: &AnimationSet, id: TrackId) {
+        if let Some(i) = self.slots.iter().position(|slot| slot.track.id == id) {
+            self.remove(set, i);
+        }
+    }
+
+    fn remove(&mut self, set: &AnimationSet, i: usize) {
+        let slot = self.slots.remove(i);
+        advance::interrupt(set, &slot.track, 0.0, &mut self.interrupted);
+        self.room.spare.push((slot.cursor, slot.pose));
+    }
+
+    /// Takes a track's weight to another one in `seconds`, and does `then` at its end: the book's timed transition. Takes the
+    /// place of a ramp that is under way. Without effect once the track has been removed.
+    ///
+    /// # Panics
+    /// If `weight` or `seconds` is negative or not finite.
+    pub fn fade(&mut self, id: TrackId, weight: f32, seconds: f32, easing: Easing, then: EndAction) {
+        if let Some(track) = self.track_mut(id) {
+            track.fade(weight, seconds, easing, then);
+        }
+    }
+
+    /// Gives a track another weight at once, and ends its ramp. Without effect once it has been removed.
+    ///
+    /// # Panics
+    /// If `weight` is negative or not finite.
+    pub fn set_weight(&mut self, id: TrackId, weight: f32) {
+        check_weight(weight);
+        if let Some(track) = self.track_mut(id) {
+            (track.def.weight, track.ramp) = (weight, None);
+        }
+    }
+
+    /// Gives a track another speed, clip seconds per second. Without effect once it has been removed.
+    ///
+    /// # Panics
+    /// If `speed` is not finite.
+    pub fn set_speed(&mut self, id: TrackId, speed: f32) {
+        assert!(speed.is_finite(), "a speed is finite, not {speed}");
+        if let Some(track) = self.track_mut(id) {
+            track.def.speed = speed;
+        }
+    }
+
+    /// Lets a track's time stand still, or go on. Without effect once it has been removed.
+    pub fn set_paused(&mut self, id: TrackId, is_paused: bool) {
+        if let Some(track) = self.track_mut(id) {
+            track.is_paused = is_paused;
+        }
+    }
+
+    /// Puts a track at `time`, clip seconds; no events are fired for what lies between, and one exactly there is still to
+    /// come. Of a sync group the others follow if it leads. Without effect once it has been removed.
+    ///
+    /// # Panics
+    /// If `time` is not finite.
+    pub fn seek(&mut self, id: TrackId, time: f32) {
+        if let Some(track) = self.track_mut(id) {
+            track.playhead.seek(f64::from(time));
+        }
+    }
+
+    fn track_mut(&mut self, id: TrackId) -> Option<&mut Track> {
+        self.slots.iter_mut().map(|slot| &mut slot.track).find(|track| track.id == id)
+    }
+
+    /// Takes time forward by `seconds`, 0 or above.
+    ///
+    /// Everything of the tracks is as it would be after any number of shorter updates: what ends within this one ends in
+    /// its midst, and an event's weight is that of its own moment. Only who leads a sync group, and at what speed that goes,
+    /// is decided once an update.
+    ///
+    /// # Panics
+    /// If `seconds` is negative or not finite.
+    pub fn update(&mut self, set: &AnimationSet, seconds: f32) {
+        assert!(seconds >= 0.0 && seconds.is_finite(), "an update takes 0 s or longer, not {seconds}");
+        self.events.clear();
+        self.events.append(&mut self.interrupted);
+        if seconds == 0.0 && self.awaits_transition.is_some() {
+            // Neither motion has gone on: the pose stays until one does.
+            self.root_motion = Transform::IDENTITY;
+            return;
+        }
+        let begins = self.awaits_transition.take().filter(|_| self.has_pose);
+        if begins.is_some() {
+            let mut start = core::mem::take(&mut self.room.start);
+            self.compose(set, &mut start);
+            self.room.start = start;
+        }
+        self.advance(set, f64::from(seconds));
+        self.blend_motions();
+        self.finish_pose(set, seconds, begins);
+    }
+
+    /// [`update`](Self::update), and then `on_event` for each event, in order.
+    ///
+    /// # Panics
+    /// As [`update`](Self::update), and where `on_event` does.
+    pub fn update_with(
+        &mut self,
+        set: &AnimationSet,
+        seconds: f32,
+        mut on_event: impl FnMut(&FiredEvent, &Event),
+    ) {
+        self.update(set, seconds);
+        self.events.iter().for_each(|fired| on_event(fired, set.event(fired)));
+    }
+}
+
+impl Track {
+    fn fade(&mut self, to: f32, seconds: f32, easing: Easing, then: EndAction) {
+        check_weight(to);
+        assert!(seconds >= 0.0 && seconds.is_finite(), "a ramp takes 0 s or longer, not {seconds}");
+        let (from, seconds) = (self.def.weight, f64::from(seconds));
+        self.ramp = Some(Ramp { from, to, seconds, elapsed: 0.0, easing, then });
+    }
+}

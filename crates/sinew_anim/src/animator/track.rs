@@ -1,0 +1,167 @@
+use crate::playhead::{LoopMode, Playhead};
+use crate::pose::smoothstep;
+use crate::set::{ClipId, MaskId};
+use sinew_math::clamp;
+
+/// A track of an [`Animator`](super::Animator); none has the id of one before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct TrackId(pub(crate) u64);
+
+/// What becomes of a track at the end of a ramp, or of a clip that plays once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EndAction {
+    /// It goes on: with its new weight, or holding its last pose.
+    #[default]
+    Hold,
+    /// It is removed.
+    Stop,
+    /// Its time stands still.
+    Pause,
+    /// It begins again at [`TrackDef::start`]. A track of a sync group has the group's time and goes on with it.
+    Restart,
+}
+
+/// How a weight goes from one value to another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Easing {
+    /// At constant speed.
+    Linear,
+    /// `3x² − 2x³`: without a jump of speed at either end.
+    #[default]
+    Smooth,
+    /// `x²`: slow at first.
+    In,
+    /// `x (2 − x)`: slow at last.
+    Out,
+}
+
+impl Easing {
+    /// Share of the way at share `x` of the time; both 0 to 1.
+    pub fn at(self, x: f32) -> f32 {
+        let x = clamp(x, 0.0, 1.0);
+        match self {
+            Self::Linear => x,
+            Self::Smooth => smoothstep(x),
+            Self::In => x * x,
+            Self::Out => x * (2.0 - x),
+        }
+    }
+}
+
+/// How a clip is played.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrackDef {
+    /// What is played.
+    pub clip: ClipId,
+    /// Share in the blend, ≥ 0; shares of a layer need not add up to 1.
+    pub weight: f32,
+    /// Clip seconds per second; backward if negative.
+    pub speed: f32,
+    /// Clip seconds at which it starts; in a sync group that plays already, the group's phase counts instead.
+    pub start: f32,
+    /// What comes after the clip's end.
+    pub loop_mode: LoopMode,
+    /// What it does at the end of a clip that plays once.
+    pub at_end: EndAction,
+    /// Layer 0 is blended with the rest pose; the tracks of each further one cover those below as far as their weights,
+    /// times their masks, add up to 1.
+    pub layer: u8,
+    /// Which joints it moves; all of them by default.
+    pub mask: Option<MaskId>,
+    /// Tracks of one group are kept in phase by the markers of their clips: they loop.
+    pub sync_group: Option<u8>,
+}
+
+impl TrackDef {
+    /// Looped from its start, at its own speed, on the whole body, alone.
+    pub fn new(clip: ClipId) -> Self {
+        Self {
+            clip,
+            weight: 1.0,
+            speed: 1.0,
+            start: 0.0,
+            loop_mode: LoopMode::Loop,
+            at_end: EndAction::Hold,
+            layer: 0,
+            mask: None,
+            sync_group: None,
+        }
+    }
+
+    pub(super) fn check(&self) {
+        check_weight(self.weight);
+        assert!(self.speed.is_finite() && self.start.is_finite(), "speed and start of a track are finite");
+        let loops = self.loop_mode == LoopMode::Loop;
+        assert!(loops || self.sync_group.is_none(), "a track of a sync group loops");
+    }
+}
+
+pub(super) fn check_weight(weight: f32) {
+    assert!(weight >= 0.0 && weight.is_finite(), "a weight is 0 or above, not {weight}");
+}
+
+/// A weight on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ramp {
+    pub from: f32,
+    pub to: f32,
+    pub seconds: f64,
+    pub elapsed: f64,
+    pub easing: Easing,
+    pub then: EndAction,
+}
+
+impl Ramp {
+    pub fn at(&self, elapsed: f64) -> f32 {
+        if elapsed >= self.seconds {
+            return self.to;
+        }
+        self.from + (self.to - self.from) * self.easing.at((elapsed / self.seconds) as f32)
+    }
+
+    pub fn left(&self) -> f64 {
+        self.seconds - self.elapsed
+    }
+}
+
+/// A track as it is now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Track {
+    pub(super) id: TrackId,
+    pub(super) def: TrackDef,
+    pub(super) playhead: Playhead,
+    pub(super) ramp: Option<Ramp>,
+    pub(super) is_paused: bool,
+}
+
+impl Track {
+    /// Its id.
+    pub fn id(&self) -> TrackId {
+        self.id
+    }
+
+    /// How it is played: weight and speed as they are now.
+    pub fn def(&self) -> &TrackDef {
+        &self.def
+    }
+
+    /// Where it is.
+    pub fn playhead(&self) -> &Playhead {
+        &self.playhead
+    }
+
+    /// Whether its time stands still.
+    pub fn is_paused(&self) -> bool {
+        self.is_paused
+    }
+
+    /// Whether its weight is on its way to another.
+    pub fn is_ramping(&self) -> bool {
+        self.ramp.is_some()
+    }
+
+    /// Weight `seconds` later than now.
+    pub(super) fn weight_in(&self, seconds: f64) -> f32 {
+        self.ramp.map_or(self.def.weight, |ramp| ramp.at(ramp.elapsed + seconds))
+    }
+}

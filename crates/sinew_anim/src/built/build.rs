@@ -1,0 +1,324 @@
+//! From a raw clip to a built one.
+
+use super::code::{Bounds, Key, ROTATION_BOUND, SmallestThree};
+use super::curve::Curve;
+use super::{BuiltClip, ClipError, Track, TrackBlock, Tracks};
+use crate::clip::{Channel, Clip, Interpolation, Property};
+use crate::pose::{Pose, ROTATION, SCALE, TRANSLATION};
+use crate::rig::{JointIdx, Rig};
+use sinew_math::lanes::WIDTH;
+use sinew_math::{StableHasher, Vec3, max};
+use thiserror::Error;
+
+/// What stands where a clip has no channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Fill {
+    /// The rig's rest pose: for clips that are shown or blended.
+    #[default]
+    Rest,
+    /// No change: for differences, see [`Clip::difference_from`].
+    Identity,
+}
+
+/// How a clip is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BuildOptions {
+    /// What stands where the clip has no channel.
+    pub fill: Fill,
+    /// By how much straight lines may be off arcs and splines, radians; more keys are put where they would be by more.
+    pub rotation_tolerance: f32,
+    /// The same for translations and scales, as a share of the diagonal of the box that a channel moves in.
+    pub relative_tolerance: f32,
+}
+
+impl Default for BuildOptions {
+    fn default() -> Self {
+        Self { fill: Fill::Rest, rotation_tolerance: 1e-4, relative_tolerance: 1e-4 }
+    }
+}
+
+/// Why a clip cannot be built. Channels and keys are counted from 0, as in [`Clip::channels`].
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum BuildError {
+    /// The rig has no joints.
+    #[error("the rig has no joints")]
+    NoJoints,
+    /// The clip's length is negative or not finite. A length of 0 is that of a pose.
+    #[error("the clip lasts {duration} s; it has to last 0 or longer")]
+    Duration {
+        /// As the clip has it, seconds.
+        duration: f32,
+    },
+    /// A channel moves a joint that the rig does not have.
+    #[error("channel {channel} moves joint {joint} of {joints}")]
+    UnknownJoint {
+        /// Which channel.
+        channel: usize,
+        /// What it moves.
+        joint: JointIdx,
+        /// How many the rig has.
+        joints: usize,
+    },
+    /// A channel without keys.
+    #[error("channel {channel} has no keys")]
+    NoKeys {
+        /// Which channel.
+        channel: usize,
+    },
+    /// A channel whose values do not fit its keys.
+    #[error("channel {channel} has {values} numbers where its keys take {needed}")]
+    ValueCount {
+        /// Which channel.
+        channel: usize,
+        /// How many numbers there are.
+        values: usize,
+        /// How many there should be.
+        needed: usize,
+    },
+    /// A key's time is negative, not finite, or not after that of the key before.
+    #[error(
+        "channel {channel}, key {key}: its time, {time} s, is not after the one before it, or not a time"
+    )]
+    Time {
+        /// Which channel.
+        channel: usize,
+        /// Which key.
+        key: usize,
+        /// As the clip has it, seconds.
+        time: f32,
+    },
+    /// A key's value, or tangent, is not finite, or so large that differences overflow (above 1e18).
+    #[error("channel {channel}, key {key}: its value is not finite, or above 1e18")]
+    Value {
+        /// Which channel.
+        channel: usize,
+        /// Which key.
+        key: usize,
+    },
+    /// A key's rotation is the zero quaternion.
+    #[error("channel {channel}, key {key}: its rotation is zero")]
+    ZeroRotation {
+        /// Which channel.
+        channel: usize,
+        /// Which key.
+        key: usize,
+    },
+    /// More than 65,536 different times.
+    #[error("the keys are at {times} different times; a built clip has room for 65,536")]
+    TooManyTimes {
+        /// How many there are.
+        times: usize,
+    },
+}
+
+impl BuiltClip {
+    /// Quantises a clip for a rig.
+    ///
+    /// Rotations keep 47 bits (the three smallest numbers of the quaternion), translations and scales 48, in the bounds of
+    /// their own channel. Splines and wide arcs get keys between those of the clip; a step becomes two keys at neighbouring
+    /// times, so that it is as sharp as in the clip. Of two channels that move the same, the later counts, as in
+    /// [`sample`](crate::sample()). A channel that moves nothing takes no keys.
+    ///
+    /// # Errors
+    /// Where the clip breaks what [`Clip`] promises, with the channel and the key; see [`BuildError`].
+    pub fn build(clip: &Clip, rig: &Rig, options: &BuildOptions) -> Result<Self, BuildError> {
+        check(clip, rig)?;
+        let mut base = match options.fill {
+            Fill::Rest => Pose::rest(rig),
+            Fill::Identity => Pose::new(rig.joints.len()),
+        };
+        let mut bound = ClipError::default();
+        let mut curves: Vec<(JointIdx, Property, Curve)> = Vec::new();
+        for (i, channel) in clip.channels.iter().enumerate() {
+            let moves = |c: &Channel| (c.joint, c.property) == (channel.joint, channel.property);
+            if clip.channels[i + 1..].iter().any(moves) {
+                continue;
+            }
+            let curve = Curve::of(channel, options);
+            if curve.is_constant() {
+                let row = first_row(channel.property);
+                let rows = &mut base.blocks_mut()[channel.joint / WIDTH].0[row..][..channel.property.width()];
+                for (row, value) in rows.iter_mut().zip(curve.values[0]) {
+                    row[channel.joint % WIDTH] = value;
+                }
+            } else {
+                curves.push((channel.joint, channel.property, curve));
+            }
+            bound = bound.merged(bound_of(channel, options));
+        }
+        let times = all_times(&curves)?;
+        let mut built = Self {
+            name: clip.name.clone(),
+            duration: clip.duration,
+            base,
+            rotations: Tracks::default(),
+            translations: Tracks::default(),
+            scales: Tracks::default(),
+            fill: options.fill,
+            bound,
+            times,
+            fingerprint: 0,
+        };
+        curves.sort_by_key(|&(joint, ..)| joint);
+        for (joint, property, curve) in &curves {
+            built.add(*joint, *property, curve);
+        }
+        built.fingerprint = built.hash();
+        Ok(built)
+    }
+
+    fn add(&mut self, joint: JointIdx, property: Property, curve: &Curve) {
+        let vectors = |tracks: &mut Tracks<Bounds>| {
+            let values = curve.vectors();
+            let bounds = Bounds::around(&values);
+            add_track(tracks, &self.times, joint, bounds, curve, |i| bounds.encode(values[i]));
+        };
+        match property {
+            Property::Rotation => {
+                let packed = |i: usize| {
+                    let [x, y, z, w] = curve.values[i];
+                    SmallestThree::encode(sinew_math::Rotation::from_xyzw(x, y, z, w))
+                };
+                add_track(&mut self.rotations, &self.times, joint, SmallestThree, curve, packed);
+            }
+            Property::Translation => vectors(&mut self.translations),
+            Property::Scale => vectors(&mut self.scales),
+        }
+    }
+
+    fn hash(&self) -> u64 {
+        let mut hasher = StableHasher::default();
+        let mut number = |x: f32| hasher.write(&x.to_bits().to_le_bytes());
+        number(self.duration);
+        number(if self.fill == Fill::Identity { 1.0 } else { 0.0 });
+        self.times.iter().for_each(|&time| number(time));
+        self.base.blocks().iter().for_each(|block| block.0.as_flattened().iter().for_each(|&x| number(x)));
+        self.rotations.hash(&mut hasher, |_| [0.0; 6]);
+        let bounds = |b: &Bounds| [b.low[0], b.low[1], b.low[2], b.step[0], b.step[1], b.step[2]];
+        self.translations.hash(&mut hasher, bounds);
+        self.scales.hash(&mut hasher, bounds);
+        // 0 is the cursor's that has seen no clip.
+        hasher.finish() | 1
+    }
+}
+
+impl<C> Tracks<C> {
+    fn hash(&self, hasher: &mut StableHasher, code: impl Fn(&C) -> [f32; 6]) {
+        for block in &self.blocks {
+            hasher.write(&(block.block as u64).to_le_bytes());
+            for track in &block.tracks {
+                hasher.write(&track.count.to_le_bytes());
+                code(&track.code).iter().for_each(|x| hasher.write(&x.to_bits().to_le_bytes()));
+            }
+        }
+        for key in &self.keys {
+            hasher.write(&key.time.to_le_bytes());
+            key.packed.iter().for_each(|field| hasher.write(&field.to_le_bytes()));
+        }
+    }
+}
+
+fn add_track<C: Copy + Default>(
+    tracks: &mut Tracks<C>,
+    times: &[f32],
+    joint: JointIdx,
+    code: C,
+    curve: &Curve,
+    packed: impl Fn(usize) -> [u16; 3],
+) {
+    let (block, lane) = (joint / WIDTH, joint % WIDTH);
+    if tracks.blocks.last().is_none_or(|last| last.block != block) {
+        tracks.blocks.push(TrackBlock { block, tracks: [Track::default(); WIDTH] });
+    }
+    let last = tracks.blocks.len() - 1;
+    let count = |n: usize| u32::try_from(n).expect("65,536 keys of 2^16 joints at most");
+    tracks.blocks[last].tracks[lane] =
+        Track { first: count(tracks.keys.len()), count: count(curve.times.len()), code };
+    let key = |(i, &time): (usize, &f32)| {
+        let index = times.partition_point(|&t| t < time);
+        Key { time: u16::try_from(index).expect("all times were counted"), packed: packed(i) }
+    };
+    tracks.keys.extend(curve.times.iter().enumerate().map(key));
+}
+
+fn first_row(property: Property) -> usize {
+    match property {
+        Property::Translation => TRANSLATION,
+        Property::Rotation => ROTATION,
+        Property::Scale => SCALE,
+    }
+}
+
+fn all_times(curves: &[(JointIdx, Property, Curve)]) -> Result<Vec<f32>, BuildError> {
+    let mut times: Vec<f32> = curves.iter().flat_map(|(.., curve)| curve.times.iter().copied()).collect();
+    times.sort_by(f32::total_cmp);
+    times.dedup();
+    if times.len() > 1 << 16 {
+        return Err(BuildError::TooManyTimes { times: times.len() });
+    }
+    Ok(times)
+}
+
+/// What quantisation, straight lines and rounding can do to a channel at most.
+fn bound_of(channel: &Channel, options: &BuildOptions) -> ClipError {
+    if channel.property == Property::Rotation {
+        return ClipError { rotation: ROTATION_BOUND + options.rotation_tolerance, ..ClipError::default() };
+    }
+    let curve = Curve::of(channel, options);
+    let values = curve.vectors();
+    let bounds = Bounds::around(&values);
+    let size = values.iter().map(|&v| Vec3::from_array(v).length()).fold(0.0, max);
+    let diagonal = 65_535.0 * Vec3::from_array(bounds.step).length();
+    let curved = channel.interpolation == Interpolation::CubicSpline;
+    let lines = if curved { options.relative_tolerance * diagonal } else { 0.0 };
+    // Half a step on each axis, and a few roundings of numbers of the value's size.
+    let error = 0.5 * Vec3::from_array(bounds.step).length() + lines + 1e-6 * size;
+    match channel.property {
+        Property::Translation => ClipError { translation: error, ..ClipError::default() },
+        Property::Scale | Property::Rotation => ClipError { scale: error, ..ClipError::default() },
+    }
+}
+
+/// Whether the clip keeps what [`Clip`] and [`Channel`] promise.
+fn check(clip: &Clip, rig: &Rig) -> Result<(), BuildError> {
+    let joints = rig.joints.len();
+    if joints == 0 {
+        return Err(BuildError::NoJoints);
+    }
+    let duration = clip.duration;
+    if !(duration >= 0.0 && duration.is_finite()) {
+        return Err(BuildError::Duration { duration });
+    }
+    clip.channels.iter().enumerate().try_for_each(|(i, channel)| check_channel(i, channel, joints))
+}
+
+fn check_channel(index: usize, channel: &Channel, joints: usize) -> Result<(), BuildError> {
+    let (joint, times, values) = (channel.joint, &channel.times, &channel.values);
+    if joint >= joints {
+        return Err(BuildError::UnknownJoint { channel: index, joint, joints });
+    }
+    if times.is_empty() {
+        return Err(BuildError::NoKeys { channel: index });
+    }
+    let width = channel.property.width();
+    let per_key = if channel.interpolation == Interpolation::CubicSpline { 3 * width } else { width };
+    let needed = times.len().saturating_mul(per_key);
+    if values.len() != needed {
+        return Err(BuildError::ValueCount { channel: index, values: values.len(), needed });
+    }
+    for (key, (&time, value)) in times.iter().zip(values.chunks(per_key)).enumerate() {
+        let is_late = key == 0 || times[key - 1] < time;
+        if !(time >= 0.0 && time.is_finite() && is_late) {
+            return Err(BuildError::Time { channel: index, key, time });
+        }
+        if !value.iter().all(|x| x.abs() < 1e18) {
+            return Err(BuildError::Value { channel: index, key });
+        }
+        // Of a spline's three, the value is in the middle.
+        let value = if per_key == width { value } else { &value[width..2 * width] };
+        if channel.property == Property::Rotation && value.iter().all(|x| x.abs() < 1e-6) {
+            return Err(BuildError::ZeroRotation { channel: index, key });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,74 @@
+use super::{BuiltClip, Cursor};
+use crate::clip::Clip;
+use crate::pose::Pose;
+use crate::rig::{LocalTransform, Rig};
+use crate::sample::{SampleCache, Wrap, sample_cached};
+use sinew_math::{Rotation, max};
+
+/// How far poses are apart, over all joints and times.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ClipError {
+    /// Angle between rotations, radians.
+    pub rotation: f32,
+    /// Distance of a joint from where it should be in its parent's space, file units.
+    pub translation: f32,
+    /// Length of the difference between scales.
+    pub scale: f32,
+}
+
+impl ClipError {
+    /// The larger of each.
+    pub fn merged(self, other: Self) -> Self {
+        Self {
+            rotation: max(self.rotation, other.rotation),
+            translation: max(self.translation, other.translation),
+            scale: max(self.scale, other.scale),
+        }
+    }
+
+    /// Whether each is no larger than in `bound`.
+    pub fn is_within(self, bound: Self) -> bool {
+        self.rotation <= bound.rotation && self.translation <= bound.translation && self.scale <= bound.scale
+    }
+
+    fn between(a: &LocalTransform, b: &LocalTransform) -> Self {
+        Self {
+            rotation: angle_between(a.rotation, b.rotation),
+            translation: (a.translation - b.translation).length(),
+            scale: (a.scale - b.scale).length(),
+        }
+    }
+}
+
+/// Angle between two rotations, radians; unlike `Rotation::angle_to` exact for small ones, which here are all.
+pub(super) fn angle_between(a: Rotation, b: Rotation) -> f32 {
+    let difference = a.inverse() * b;
+    let (sin, cos) = (difference.vector().length(), difference.w.abs());
+    2.0 * sinew_math::trig::atan2(sin, cos)
+}
+
+impl BuiltClip {
+    /// How far poses are from those of the clip that this one was built from, measured at each time of a key and at
+    /// `between` times between each two. `rig` is the one that it was built with; for a clip that fills with identities its
+    /// rest pose is that.
+    ///
+    /// # Panics
+    /// If the rig has another number of joints, or `raw` is not fit to be sampled (see [`sample`](crate::sample())).
+    pub fn measure_error(&self, raw: &Clip, rig: &Rig, between: usize) -> ClipError {
+        let (mut cache, mut cursor) = (SampleCache::default(), Cursor::new());
+        let mut pose = Pose::new(self.joints());
+        let mut expected = vec![LocalTransform::default(); rig.joints.len()];
+        let mut worst = ClipError::default();
+        for pair in self.times.windows(2) {
+            for i in 0..=between {
+                let time = pair[0] + (pair[1] - pair[0]) * (i as f32 / (between + 1) as f32);
+                sample_cached(raw, rig, time, Wrap::Clamp, &mut cache, &mut expected);
+                self.sample(time, &mut cursor, &mut pose);
+                for (a, b) in expected.iter().zip(pose.iter()) {
+                    worst = worst.merged(ClipError::between(a, &b));
+                }
+            }
+        }
+        worst
+    }
+}

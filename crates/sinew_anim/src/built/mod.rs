@@ -1,0 +1,98 @@
+//! Clips as they are played: quantised, and read with a cursor.
+//!
+//! A key has 8 bytes: an index into the clip's table of times, and a value of 48 bits. What does not move has no key. A
+//! [`BuiltClip`] is made once, by [`BuiltClip::build`], and then only read; each character that plays it has a
+//! [`Cursor`] of its own. Why it is laid out like that: `docs/adr/0016-built-clips.md`.
+
+mod build;
+mod code;
+mod cursor;
+mod curve;
+mod error;
+
+pub use build::{BuildError, BuildOptions, Fill};
+pub use cursor::Cursor;
+pub use error::ClipError;
+
+use crate::pose::Pose;
+use code::{Bounds, Key, SmallestThree};
+use sinew_math::lanes::WIDTH;
+
+/// A motion of one rig, ready to be sampled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BuiltClip {
+    name: String,
+    duration: f32,
+    /// All times of keys, seconds, increasing.
+    times: Vec<f32>,
+    /// What is not animated: constant tracks, and the rest pose where there is no track.
+    base: Pose,
+    rotations: Tracks<SmallestThree>,
+    translations: Tracks<Bounds>,
+    scales: Tracks<Bounds>,
+    fill: Fill,
+    bound: ClipError,
+    /// Of all that decides a pose, so that a cursor knows its clip.
+    fingerprint: u64,
+}
+
+/// The animated tracks of one property.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Tracks<C> {
+    /// Track after track, each in order of time.
+    keys: Vec<Key>,
+    /// Those blocks of the pose in which at least one joint is animated.
+    blocks: Vec<TrackBlock<C>>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct TrackBlock<C> {
+    /// Index of the block in the pose.
+    block: usize,
+    tracks: [Track<C>; WIDTH],
+}
+
+/// Keys of one property of one joint; no keys where it is not animated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Track<C> {
+    first: u32,
+    count: u32,
+    code: C,
+}
+
+impl BuiltClip {
+    /// Name in the file, or `""`.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Length, seconds; 0 is a pose.
+    pub fn duration(&self) -> f32 {
+        self.duration
+    }
+
+    /// Number of joints of the rig that it was built for.
+    pub fn joints(&self) -> usize {
+        self.base.len()
+    }
+
+    /// Number of keys; each has 8 bytes.
+    pub fn keys(&self) -> usize {
+        self.rotations.keys.len() + self.translations.keys.len() + self.scales.keys.len()
+    }
+
+    /// How far a sampled pose is from the raw clip's at most.
+    pub fn error_bound(&self) -> ClipError {
+        self.bound
+    }
+
+    /// What stands where the clip had no channel: whether it is shown, or added.
+    pub fn fill(&self) -> Fill {
+        self.fill
+    }
+
+    /// A number that clips with other poses do not share, but for chance.
+    pub fn fingerprint(&self) -> u64 {
+        self.fingerprint
+    }
+}

@@ -1,0 +1,192 @@
+//! Local to model space, eight conversions to a matrix at a time, then one product per joint.
+
+use super::soa::{Pose, ROTATION, ROWS, SCALE, TRANSLATION};
+use crate::rig::Rig;
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::{Block, Lanes, WIDTH};
+use sinew_math::{Affine, Mat3, Vec3};
+
+/// Columns of a 4×4 matrix whose last row is 0 0 0 1.
+pub(super) type Columns = [[f32; 4]; 4];
+
+/// What the runtime needs of a [`Rig`]: who hangs on whom, and the rest pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skeleton {
+    /// Parent + 1, 0 for a root.
+    parents: Vec<u32>,
+    rest: Pose,
+}
+
+impl Skeleton {
+    /// Of a rig.
+    ///
+    /// # Panics
+    /// If a joint's parent does not come before it, against what [`Rig`] promises.
+    pub fn new(rig: &Rig) -> Self {
+        let parent = |(joint, parent): (usize, Option<usize>)| {
+            assert!(parent.is_none_or(|parent| parent < joint), "joint {joint} comes before its parent");
+            parent.map_or(0, |parent| u32::try_from(parent + 1).expect("fewer than 2^32 joints"))
+        };
+        let parents = rig.joints.iter().map(|joint| joint.parent).enumerate().map(parent).collect();
+        Self { parents, rest: Pose::rest(rig) }
+    }
+
+    /// Number of joints.
+    pub fn len(&self) -> usize {
+        self.parents.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.parents.is_empty()
+    }
+
+    /// Rest pose of the file.
+    pub fn rest(&self) -> &Pose {
+        &self.rest
+    }
+
+    /// Parent of `joint`, `None` for a root.
+    ///
+    /// # Panics
+    /// If there are not so many joints.
+    pub fn parent(&self, joint: usize) -> Option<usize> {
+        (self.parents[joint] as usize).checked_sub(1)
+    }
+
+    /// Model-space transform of every joint: `root` times the chain of local transforms down to the joint, with the
+    /// bits of [`local_to_model`](super::local_to_model). `root` maps the file's scene to wherever the caller wants it.
+    /// `model` is made as long as the skeleton; it allocates the first time only.
+    ///
+    /// # Panics
+    /// If `local` is not as long as the skeleton.
+    pub fn to_model(&self, local: &Pose, root: &Affine, model: &mut ModelPose) {
+        assert_eq!(local.len(), self.len(), "a pose has one local transform per joint");
+        model.joints.resize(self.len() + 1, columns(&Affine::IDENTITY));
+        model.joints[0] = columns(root);
+        dispatch::run(ToModel { parents: &self.parents, local: local.blocks(), model: &mut model.joints });
+    }
+}
+
+/// A transform per joint from its own space to model space, as columns of 4×4 matrices.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ModelPose {
+    /// The root's own transform, then one per joint.
+    joints: Vec<Columns>,
+}
+
+impl ModelPose {
+    /// Number of joints.
+    pub fn len(&self) -> usize {
+        self.joints.len().saturating_sub(1)
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Transform of `joint`: file units.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    pub fn get(&self, joint: usize) -> Affine {
+        let [x, y, z, w] = self.joints[joint + 1].map(|[x, y, z, _]| Vec3::new(x, y, z));
+        Affine { linear: Mat3::from_cols(x, y, z), translation: w }
+    }
+
+    /// The matrices, one per joint, column after column, as graphics processors take them: the last row is 0 0 0 1.
+    pub fn matrices(&self) -> &[[[f32; 4]; 4]] {
+        self.joints.get(1..).unwrap_or_default()
+    }
+
+    /// The joints one after the other.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Affine> {
+        (0..self.len()).map(|joint| self.get(joint))
+    }
+}
+
+fn columns(affine: &Affine) -> Columns {
+    let column = |v: Vec3, w| [v.x, v.y, v.z, w];
+    let m = &affine.linear;
+    [column(m.x_axis, 0.0), column(m.y_axis, 0.0), column(m.z_axis, 0.0), column(affine.translation, 1.0)]
+}
+
+pub(super) struct ToModel<'a> {
+    pub parents: &'a [u32],
+    pub local: &'a [Block<ROWS>],
+    pub model: &'a mut [Columns],
+}
+
+impl Kernel for ToModel<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let mut rows = [[0.0; WIDTH]; 9];
+        for (index, (parents, block)) in self.parents.chunks(WIDTH).zip(self.local).enumerate() {
+            linear_rows::<L>(block, &mut rows);
+            for (lane, &parent) in parents.iter().enumerate() {
+                let own = own_columns(&rows, block, lane);
+                self.model[index * WIDTH + lane + 1] = product(&self.model[parent as usize], &own);
+            }
+        }
+    }
+}
+
+/// Scaled rotation matrices of a block's joints, column after column, by the formulas of `Rotation::to_mat3`.
+#[inline(always)]
+fn linear_rows<L: Lanes>(block: &Block<ROWS>, rows: &mut [[f32; WIDTH]; 9]) {
+    let [one, two] = [L::splat(1.0), L::splat(2.0)];
+    let x = L::load(&block.0[ROTATION]);
+    let y = L::load(&block.0[ROTATION + 1]);
+    let z = L::load(&block.0[ROTATION + 2]);
+    let w = L::load(&block.0[ROTATION + 3]);
+    let sx = L::load(&block.0[SCALE]);
+    let sy = L::load(&block.0[SCALE + 1]);
+    let sz = L::load(&block.0[SCALE + 2]);
+    ((one - two * (y * y + z * z)) * sx).store(&mut rows[0]);
+    (two * (x * y + w * z) * sx).store(&mut rows[1]);
+    (two * (x * z - w * y) * sx).store(&mut rows[2]);
+    (two * (x * y - w * z) * sy).store(&mut rows[3]);
+    ((one - two * (x * x + z * z)) * sy).store(&mut rows[4]);
+    (two * (y * z + w * x) * sy).store(&mut rows[5]);
+    (two * (x * z + w * y) * sz).store(&mut rows[6]);
+    (two * (y * z - w * x) * sz).store(&mut rows[7]);
+    ((one - two * (x * x + y * y)) * sz).store(&mut rows[8]);
+}
+
+/// Columns of the local transform in `lane`.
+#[inline(always)]
+fn own_columns(rows: &[[f32; WIDTH]; 9], block: &Block<ROWS>, lane: usize) -> [[f32; 3]; 4] {
+    let place = &block.0;
+    [
+        [rows[0][lane], rows[1][lane], rows[2][lane]],
+        [rows[3][lane], rows[4][lane], rows[5][lane]],
+        [rows[6][lane], rows[7][lane], rows[8][lane]],
+        [place[TRANSLATION][lane], place[TRANSLATION + 1][lane], place[TRANSLATION + 2][lane]],
+    ]
+}
+
+/// Parent times own, in the order in which `Affine` adds.
+#[inline(always)]
+fn product(parent: &Columns, own: &[[f32; 3]; 4]) -> Columns {
+    let (at, origin) = (image(parent, &own[3]), &parent[3]);
+    [
+        image(parent, &own[0]),
+        image(parent, &own[1]),
+        image(parent, &own[2]),
+        [at[0] + origin[0], at[1] + origin[1], at[2] + origin[2], at[3] + origin[3]],
+    ]
+}
+
+/// Four numbers at once, the last of them 0: so that the compiler takes one register for a column.
+#[inline(always)]
+fn image([x, y, z, _]: &Columns, v: &[f32; 3]) -> [f32; 4] {
+    [
+        x[0] * v[0] + y[0] * v[1] + z[0] * v[2],
+        x[1] * v[0] + y[1] * v[1] + z[1] * v[2],
+        x[2] * v[0] + y[2] * v[1] + z[2] * v[2],
+        x[3] * v[0] + y[3] * v[1] + z[3] * v[2],
+    ]
+}

@@ -1,0 +1,139 @@
+//! What the characters of one rig share: clips with what belongs to them, and masks.
+
+use crate::built::{BuiltClip, Fill};
+use crate::event::{Event, FiredEvent};
+use crate::pose::{Mask, Skeleton};
+use crate::root_motion::MotionTrack;
+use crate::sync::Markers;
+use sinew_math::StableHasher;
+
+/// A clip of an [`AnimationSet`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ClipId(pub(crate) u32);
+
+/// A mask of an [`AnimationSet`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct MaskId(pub(crate) u32);
+
+/// A clip and what belongs to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AnimatedClip {
+    /// The poses. One that was built with [`Fill::Identity`] is added to others, with [`Fill::Rest`] blended with them.
+    pub clip: BuiltClip,
+    /// What happens in it, in any order.
+    pub events: Vec<Event>,
+    /// What is in phase with other clips.
+    pub markers: Markers,
+    /// Where it carries its character, if that was taken out of the poses.
+    pub motion: Option<MotionTrack>,
+}
+
+impl From<BuiltClip> for AnimatedClip {
+    fn from(clip: BuiltClip) -> Self {
+        Self { clip, events: Vec::new(), markers: Markers::default(), motion: None }
+    }
+}
+
+impl AnimatedClip {
+    pub(crate) fn is_difference(&self) -> bool {
+        self.clip.fill() == Fill::Identity
+    }
+}
+
+/// Clips and masks of one rig. Animators refer to them by id; nothing is ever removed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AnimationSet {
+    skeleton: Skeleton,
+    clips: Vec<AnimatedClip>,
+    masks: Vec<Mask>,
+}
+
+impl AnimationSet {
+    /// Without clips.
+    pub fn new(skeleton: Skeleton) -> Self {
+        Self { skeleton, clips: Vec::new(), masks: Vec::new() }
+    }
+
+    /// The joints.
+    pub fn skeleton(&self) -> &Skeleton {
+        &self.skeleton
+    }
+
+    /// Adds a clip.
+    ///
+    /// # Panics
+    /// If it has another number of joints than the skeleton, an event or marker outside of its length, or an event's least
+    /// weight is not in 0..=1.
+    pub fn add_clip(&mut self, clip: AnimatedClip) -> ClipId {
+        assert_eq!(clip.clip.joints(), self.skeleton.len(), "a clip of the same rig");
+        let duration = clip.clip.duration();
+        for event in &clip.events {
+            assert!((0.0..=duration).contains(&event.time), "{:?} is outside of its clip", event.name);
+            let weight = event.policy.min_weight;
+            assert!((0.0..=1.0).contains(&weight), "{:?}: a least weight is in 0..=1", event.name);
+        }
+        let last = clip.markers.times()[clip.markers.times().len() - 1];
+        assert!(last < duration || last == 0.0, "a marker at {last} s is outside of its clip");
+        self.clips.push(clip);
+        ClipId(u32::try_from(self.clips.len() - 1).expect("fewer than 2^32 clips"))
+    }
+
+    /// Adds a mask.
+    ///
+    /// # Panics
+    /// If it has another number of joints than the skeleton.
+    pub fn add_mask(&mut self, mask: Mask) -> MaskId {
+        assert_eq!(mask.len(), self.skeleton.len(), "a mask of the same rig");
+        self.masks.push(mask);
+        MaskId(u32::try_from(self.masks.len() - 1).expect("fewer than 2^32 masks"))
+    }
+
+    /// A clip.
+    ///
+    /// # Panics
+    /// If the id is from another set and this one has fewer clips.
+    pub fn clip(&self, id: ClipId) -> &AnimatedClip {
+        &self.clips[id.0 as usize]
+    }
+
+    /// A mask.
+    ///
+    /// # Panics
+    /// If the id is from another set and this one has fewer masks.
+    pub fn mask(&self, id: MaskId) -> &Mask {
+        &self.masks[id.0 as usize]
+    }
+
+    /// Ids of all clips, in the order in which they were added.
+    pub fn clips(&self) -> impl ExactSizeIterator<Item = ClipId> {
+        (0..self.clips.len() as u32).map(ClipId)
+    }
+
+    /// Name, payload and policy of what an animator of this set has fired.
+    ///
+    /// # Panics
+    /// If it was fired by an animator of another set, and is not in this one.
+    pub fn event(&self, fired: &FiredEvent) -> &Event {
+        &self.clip(fired.clip).events[fired.event]
+    }
+
+    pub(crate) fn has_clip(&self, id: u32) -> Option<ClipId> {
+        ((id as usize) < self.clips.len()).then_some(ClipId(id))
+    }
+
+    pub(crate) fn has_mask(&self, id: u32) -> Option<MaskId> {
+        ((id as usize) < self.masks.len()).then_some(MaskId(id))
+    }
+
+    /// Tells sets apart that animators cannot be moved between.
+    pub(crate) fn fingerprint(&self) -> u64 {
+        let mut hasher = StableHasher::default();
+        for number in [self.skeleton.len(), self.masks.len(), self.clips.len()] {
+            hasher.write(&(number as u64).to_le_bytes());
+        }
+        for clip in &self.clips {
+            hasher.write(&clip.clip.fingerprint().to_le_bytes());
+        }
+        hasher.finish()
+    }
+}

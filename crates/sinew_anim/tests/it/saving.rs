@@ -1,0 +1,115 @@
+//! State as bytes: exact, and whatever else the bytes are, an error.
+
+use crate::stage;
+use sinew_anim::{
+    AnimatedClip, AnimationSet, Animator, Easing, EndAction, Event, EventPolicy, LoopMode, Mask, Skeleton,
+    TrackDef, Transition,
+};
+use sinew_math::{Random, Reader, Writer};
+
+fn set() -> AnimationSet {
+    let mut set = AnimationSet::new(Skeleton::new(&stage::rig()));
+    let mut random = Random::new(1);
+    for duration in [1.0, 0.7, 1.3] {
+        let clip = stage::build(&stage::swaying(&mut random, duration), sinew_anim::Fill::Rest);
+        let policy = EventPolicy { on_interrupt: true, ..EventPolicy::default() };
+        let events = vec![Event { policy, ..Event::new(0.5, "middle") }, Event::new(0.0, "start")];
+        set.add_clip(AnimatedClip { events, ..clip });
+    }
+    set.add_mask(Mask::splat(stage::JOINTS, 0.5));
+    set
+}
+
+/// One of everything that an animator can be in the midst of.
+fn busy(set: &AnimationSet, random: &mut Random) -> Animator {
+    let clips: Vec<_> = set.clips().collect();
+    let mut animator = Animator::new(set);
+    for i in 0..4 {
+        let id = animator.play(
+            set,
+            &TrackDef {
+                weight: random.unit(),
+                speed: random.range(-2.0, 2.0),
+                start: random.unit(),
+                loop_mode: [LoopMode::Loop, LoopMode::PingPong, LoopMode::Once, LoopMode::Loop][i],
+                layer: (i / 3) as u8,
+                sync_group: (i % 3 == 0).then_some(2),
+                ..TrackDef::new(clips[i % 3])
+            },
+        );
+        animator.fade(id, random.unit(), random.range(0.1, 2.0), Easing::In, EndAction::Pause);
+    }
+    for _ in 0..random.index(9) {
+        animator.update(set, random.range(0.0, 0.1));
+    }
+    animator.transition(set, &TrackDef::new(clips[random.index(3)]), Transition::Inertial { seconds: 0.4 });
+    for _ in 0..random.index(3) {
+        animator.update(set, random.range(0.0, 0.1));
+    }
+    if random.index(2) == 0 {
+        let id = animator.tracks().next().expect("one at least").id();
+        animator.stop(set, id);
+    }
+    animator
+}
+
+fn saved(animator: &Animator, set: &AnimationSet) -> Vec<u8> {
+    let mut out = Writer::new();
+    animator.save(set, &mut out);
+    out.into_bytes()
+}
+
+#[test]
+fn what_is_loaded_goes_on_with_the_same_bits() {
+    let (set, mut random) = (set(), Random::new(2));
+    for round in 0..40 {
+        let mut animator = busy(&set, &mut random);
+        let bytes = saved(&animator, &set);
+        let mut reader = Reader::new(&bytes);
+        let mut loaded =
+            Animator::load(&set, &mut reader).unwrap_or_else(|error| panic!("round {round}: {error}"));
+        assert_eq!(reader.remaining(), 0);
+        assert_eq!(saved(&loaded, &set), bytes);
+        assert_eq!(loaded.pose(), animator.pose());
+        for step in 0..30 {
+            let dt = random.range(0.0, 0.1);
+            animator.update(&set, dt);
+            loaded.update(&set, dt);
+            assert_eq!(loaded.pose(), animator.pose(), "round {round}, step {step}");
+            assert_eq!(loaded.events(), animator.events());
+            assert_eq!(loaded.root_motion(), animator.root_motion());
+        }
+        let next = TrackDef::new(set.clips().next().expect("a clip"));
+        assert_eq!(loaded.play(&set, &next), animator.play(&set, &next));
+    }
+}
+
+#[test]
+fn bytes_that_lie_are_errors_or_states_that_run() {
+    let (set, mut random) = (set(), Random::new(3));
+    let bytes = saved(&busy(&set, &mut random), &set);
+    for end in 0..bytes.len() {
+        assert!(Animator::load(&set, &mut Reader::new(&bytes[..end])).is_err(), "cut at {end}");
+    }
+    let mut refused = 0;
+    for _ in 0..4_000 {
+        let mut changed = bytes.clone();
+        for _ in 0..1 + random.index(3) {
+            let at = random.index(changed.len());
+            changed[at] = [0, 0xFF, 0x7F, 0x80, random.index(256) as u8][random.index(5)];
+        }
+        match Animator::load(&set, &mut Reader::new(&changed)) {
+            Err(_) => refused += 1,
+            Ok(mut animator) => animator.update(&set, 0.0),
+        }
+    }
+    assert!(refused > 400, "{refused}");
+}
+
+#[test]
+fn the_state_of_another_set_is_refused() {
+    let (set, other) = (set(), stage::set(9));
+    let bytes = saved(&Animator::new(&set), &set);
+    let error = Animator::load(&other, &mut Reader::new(&bytes)).expect_err("another set");
+    assert_eq!(error.to_string(), "the state belongs to another set of clips (at byte 16)");
+}
