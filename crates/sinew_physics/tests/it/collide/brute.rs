@@ -93,15 +93,13 @@ fn preference(ka: Kind, kb: Kind, a: &Placed, b: &Placed, truth: f64) -> f64 {
         (Kind::HalfSpace, _) | (Kind::Box | Kind::Sphere, Kind::Sphere) | (Kind::Sphere, Kind::Capsule) => {
             0.0
         }
-        // Where cores nearly cross, or a centre is close to a surface, the direction between them is rounding.
+        // Rounding turns the direction between two cores the further, the nearer they are, and the gap is taken where they meet.
         (Kind::Capsule, Kind::Capsule) => {
-            let apart = truth + f64::from(a.shape.inner_radius() + b.shape.inner_radius());
-            if apart < 2e-3 * f64::from(a.size() + b.size()) {
-                1e-3 * f64::from(a.size() + b.size())
-            } else {
-                0.0
-            }
+            let cores = truth + f64::from(a.shape.inner_radius() + b.shape.inner_radius());
+            let size = f64::from(a.size() + b.size());
+            (2e-7 * size * size / cores.max(1e-9 * size)).min(1e-3 * size)
         }
+        // Where a centre is close to a surface, the direction between them is rounding.
         (Kind::Sphere, _) | (_, Kind::Sphere) => 1e-3 * f64::from(a.size() + b.size()),
         _ => 0.06 * truth.abs() + 0.011 * thinnest + 2e-3 * f64::from(a.size() + b.size()),
     }
@@ -154,7 +152,7 @@ fn matches_the_support_functions() {
         let context = |what: &str| format!("{what}: true gap {truth}, {along} along the normal, {m:?}");
         let rounding = 2e-5 * size;
         if m.count == 0 {
-            return hold(truth > f64::from(margin) - rounding, || context("missed"));
+            return hold(truth > f64::from(margin) - rounding - hysteresis(ka, b), || context("missed"));
         }
         hold(truth <= f64::from(margin) + rounding, || context("invented"))?;
         hold((m.normal.length() - 1.0).abs() < 1e-4, || context("not unit"))?;
