@@ -1,10 +1,12 @@
-//! Bytes to plain data and back: glTF, worlds, ragdolls, MJCF.
+//! Bytes to plain data and back: glTF, worlds, ragdolls, motion capture, MJCF.
 //!
 //! Everything takes bytes, and a closure for the files beside them; only the feature `fs` (on by default) touches the
 //! file system. Bytes are not trusted: whatever they hold, the answer is a value or an [`Error`] with a place, within
 //! memory in proportion to their number, never a panic.
 #![forbid(unsafe_code)]
 
+pub mod bvh;
+pub mod deepmimic;
 mod error;
 #[cfg(feature = "fs")]
 pub mod fs;
@@ -21,6 +23,8 @@ mod surface;
 mod uri;
 pub mod world;
 
+pub use bvh::{BvhDocument, BvhOptions, BvhText, BvhWriteOptions, read_bvh, write_bvh};
+pub use deepmimic::{DeepMimicCharacter, DeepMimicClip, read_deepmimic, read_deepmimic_character};
 pub use error::{Error, ErrorKind, Result};
 #[cfg(feature = "fs")]
 pub use fs::{load_gltf, load_mesh, load_world, read_bytes, write_all_atomic, write_atomic};

@@ -2,6 +2,7 @@
 
 use crate::arena::Arena;
 use crate::body::Body;
+use crate::boxes::separation::AxisOf;
 use crate::collide::{MAX_POINTS, Manifold};
 use crate::material::ContactMaterial;
 use sinew_math::Vec3;
@@ -145,6 +146,9 @@ pub(crate) struct Contact {
     pub passes: bool,
     /// How fast its points came in when the step began, m/s.
     pub approach: f32,
+    /// What parted the shapes when they were last looked at. Not part of the state: it decides nothing but how soon that is
+    /// found again.
+    pub apart: Option<AxisOf>,
 }
 
 impl Contact {
@@ -160,6 +164,7 @@ impl Contact {
             sensed: false,
             passes: false,
             approach: 0.0,
+            apart: None,
         }
     }
 

@@ -55,6 +55,7 @@ mod registered;
 mod revolved;
 pub mod runner;
 pub mod shape;
+mod slabs;
 mod slices;
 mod snapshot;
 mod spatial;

@@ -7,7 +7,8 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::boxes::Aabb;
 use crate::def::BodyKind;
-use crate::shape::Shape;
+use crate::shape::{Filter, Sensing, Shape};
+use crate::surface::Surface;
 use crate::tree::{Item, PAD, Sweep, Tree};
 use core::ops::ControlFlow;
 use sinew_math::{Transform, Vec3, max, max3};
@@ -44,11 +45,13 @@ pub(crate) struct Proxies {
     scratch: Vec<Item>,
 }
 
-/// A shape where it is.
+/// A shape where it is, and who asks for it.
 #[derive(Clone, Debug)]
 pub(crate) struct Placed {
     pub shape: Shape,
     pub world_from_shape: Transform,
+    pub filter: Filter,
+    pub sensing: Sensing,
 }
 
 /// A tree, and whose its leaves are.
@@ -131,7 +134,7 @@ impl Proxies {
             for shape in 0..home.count {
                 self.put(home, shape, body);
             }
-            self.refresh(home.moves);
+            self.mend(home.moves);
         }
     }
 
@@ -152,10 +155,15 @@ impl Proxies {
     /// A body has been put somewhere else.
     pub fn place(&mut self, index: u32, body: &Body) {
         let Some(home) = self.homes[index as usize] else { return };
-        self.lone[index as usize] = lone(body);
+        self.refresh(index, body);
         for shape in (0..home.count).filter(|&shape| is_bounded(body, shape)) {
             self.cover(home, shape, &self.needed(home, body, shape), ROOM);
         }
+    }
+
+    /// A body has other surfaces than before.
+    pub fn refresh(&mut self, index: u32, body: &Body) {
+        self.lone[index as usize] = lone(body);
     }
 
     /// All bodies may be others than before: keeps what fits.
@@ -187,8 +195,8 @@ impl Proxies {
 
     /// Works out where all that moves may be within a step of `dt` seconds, and lets the tree follow.
     pub fn follow(&mut self, bodies: &Arena<Body>, activity: &Activity, dt: f32) {
-        self.refresh(false);
-        self.refresh(true);
+        self.mend(false);
+        self.mend(true);
         for index in activity.movers() {
             let body = bodies.at(index);
             if !body.can_touch() {
@@ -286,6 +294,17 @@ impl Proxies {
         ControlFlow::Continue(())
     }
 
+    /// Half-spaces.
+    pub fn unbounded(&self) -> &[Owner] {
+        &self.unbounded
+    }
+
+    /// All other shapes: trees that are not empty, each with whose its leaves are.
+    pub fn trees(&self) -> impl Iterator<Item = (&Tree, &[Owner])> {
+        let layers = [&self.fixed, &self.moving].into_iter().filter(|layer| layer.tree.len() > 0);
+        layers.map(|layer| (&layer.tree, layer.owners.as_slice()))
+    }
+
     /// Every shape that may be met along a line; see [`Tree::along`].
     pub fn along(&self, sweep: &Sweep, mut visit: impl FnMut(Owner) -> f32) {
         let mut sweep = *sweep;
@@ -356,7 +375,7 @@ impl Proxies {
     }
 
     /// Builds a tree anew if it is worn.
-    fn refresh(&mut self, moves: bool) {
+    fn mend(&mut self, moves: bool) {
         if moves && self.moving.tree.is_worn() {
             self.moving.tree.rebuild(&mut self.scratch);
         } else if !moves && self.fixed.tree.is_worn() {
@@ -425,7 +444,9 @@ impl Proxies {
 fn lone(body: &Body) -> Option<Placed> {
     match (body.kind, body.shapes.as_slice()) {
         (BodyKind::Static, [only]) => {
-            Some(Placed { shape: only.shape.clone(), world_from_shape: body.world_from_shape(0) })
+            let &Surface { filter, sensing, .. } = body.surface(0);
+            let (shape, world_from_shape) = (only.shape.clone(), body.world_from_shape(0));
+            Some(Placed { shape, world_from_shape, filter, sensing })
         }
         _ => None,
     }

@@ -2,7 +2,8 @@
 
 use crate::revolved::{Frustum, Tapered};
 use crate::shape::Shape;
-use sinew_math::{Transform, Vec3, abs3, max, min, normalize_or};
+use crate::slabs::Slabs;
+use sinew_math::{Transform, Vec3, abs3, max, normalize_or};
 
 /// A stretch of a line, from `origin` to `origin + direction`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +23,12 @@ impl Ray {
     /// Point at `fraction`, 0..=1.
     pub fn at(&self, fraction: f32) -> Vec3 {
         self.origin + self.direction * fraction
+    }
+
+    /// Whether squares of its length may overflow.
+    pub(crate) fn is_long(&self) -> bool {
+        let way = abs3(self.direction);
+        max(max(way.x, way.y), way.z) > LONG
     }
 }
 
@@ -60,8 +67,7 @@ impl Shape {
         if !(ray.origin.is_finite() && ray.direction.is_finite() && world_from_shape.is_finite()) {
             return None;
         }
-        let way = abs3(ray.direction);
-        let scale = if max(max(way.x, way.y), way.z) > LONG { SHORTENED } else { 1.0 };
+        let scale = if ray.is_long() { SHORTENED } else { 1.0 };
         let origin = world_from_shape.inverse_point(ray.origin);
         let direction = world_from_shape.rotation.inverse() * (ray.direction * scale);
         let (fraction, normal) = self.cast_local(origin, direction)?;
@@ -118,34 +124,16 @@ impl Shape {
 
 /// Beyond a face by more than this, metres, a point needs no exact distance to be known as outside: rounding takes none of
 /// that for inside.
-const CLEARLY_OUTSIDE: f32 = 1e-6;
+pub(crate) const CLEARLY_OUTSIDE: f32 = 1e-6;
 
 /// The surface of a union is entered where the first of its parts is.
 fn first_of(ends: [Option<(f32, Vec3)>; 2], side: Option<(f32, Vec3)>) -> Option<(f32, Vec3)> {
     ends.into_iter().chain([side]).flatten().reduce(|a, b| if b.0 < a.0 { b } else { a })
 }
 
-/// Slabs (Kay & Kajiya 1986).
 fn enter_box(half: Vec3, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
-    let (mut first, mut last) = (f32::NEG_INFINITY, f32::INFINITY);
-    let mut normal = Vec3::ZERO;
-    for k in 0..3 {
-        if direction[k] == 0.0 {
-            if origin[k].abs() > half[k] {
-                return None;
-            }
-            continue;
-        }
-        let side = if direction[k] > 0.0 { -1.0 } else { 1.0 };
-        let enter = (side * half[k] - origin[k]) / direction[k];
-        if enter > first {
-            first = enter;
-            normal = Vec3::ZERO;
-            normal[k] = side;
-        }
-        last = min((-side * half[k] - origin[k]) / direction[k], last);
-    }
-    (first <= last && first >= 0.0).then_some((first, normal))
+    let slabs = Slabs::<f32>::new(half.into(), origin.into(), direction.into());
+    slabs.is_entered().then(|| (slabs.enter, Vec3::from_array(slabs.normal().to_array())))
 }
 
 /// By the line's closest point to the centre: the usual quadratic loses the ball's radius beside a long way

@@ -4,7 +4,7 @@ use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::collide::parts::Parts;
-use crate::collide::{Manifold, ManifoldPoint, Motion, collide as narrow_phase};
+use crate::collide::{Manifold, ManifoldPoint, Motion, collide_again};
 use crate::contact::{Contact, ContactKey, ContactMemory, Effect, pairs_of, slop};
 use crate::contact_rule::ContactRule;
 use crate::def::BodyKind;
@@ -41,14 +41,8 @@ pub(crate) fn collide(
         }
         let margin = margin(a, b, contact.key, context.dt);
         let mut manifold = Manifold::default();
-        narrow_phase(
-            shape_a,
-            &a.world_from_shape(sa),
-            shape_b,
-            &b.world_from_shape(sb),
-            margin,
-            &mut manifold,
-        );
+        let (from_a, from_b) = (a.world_from_shape(sa), b.world_from_shape(sb));
+        collide_again((shape_a, &from_a), (shape_b, &from_b), margin, &mut contact.apart, &mut manifold);
         contact.memory = contact.memory.matched(&contact.manifold, &manifold);
         contact.manifold = manifold;
     });

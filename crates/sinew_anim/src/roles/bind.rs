@@ -1,9 +1,13 @@
 //! The bind pose: where joints and skin were when the skin was made.
 
+use super::names::read_names;
 use crate::pose::{local_to_model, rest_pose};
-use crate::rig::{Mesh, Rig};
+use crate::rig::{LocalTransform, Mesh, Rig};
 use crate::skinning::skin_vertices;
 use sinew_math::{Affine, Vec3, max3, min3};
+
+/// Joints nearer to each other than this share of the body's size are in one place.
+const COINCIDENT: f32 = 1e-3;
 
 /// Geometry of a rig in its bind pose, model space, file units.
 pub(super) struct Bound {
@@ -38,6 +42,48 @@ impl Bound {
         (bound.area.iter().any(|&a| a > 0.0)).then_some(bound)
     }
 
+    /// The same of a skeleton without skin: bones weigh by their length, and joints stand in for vertices. `None` when
+    /// no bone has a finite length.
+    pub fn of_bones(rig: &Rig, pose: &[LocalTransform]) -> Option<Self> {
+        let mut model = Vec::new();
+        local_to_model(rig, pose, &Affine::IDENTITY, &mut model);
+        let mut is_end = vec![true; rig.joints.len()];
+        rig.joints.iter().filter_map(|joint| joint.parent).for_each(|parent| is_end[parent] = false);
+        let mut bound = Self {
+            area: vec![0.0; rig.joints.len()],
+            vertices: model.iter().map(|joint| joint.translation).filter(|at| at.is_finite()).collect(),
+            lo: Vec3::splat(f32::INFINITY),
+            hi: Vec3::splat(f32::NEG_INFINITY),
+            model,
+        };
+        for &at in &bound.vertices {
+            (bound.lo, bound.hi) = (min3(bound.lo, at), max3(bound.hi, at));
+        }
+        // A joint right on its parent (the lab of CMU has eleven) is no place of its own, and two that grow out of one spot
+        // (clavicles, hips) would each be its own mirror image: what they carry grows out of the parent.
+        let near = COINCIDENT * bound.size();
+        let twins = twins(rig, &bound.model, near);
+        let mut place: Vec<usize> = (0..rig.joints.len()).collect();
+        for (i, joint) in rig.joints.iter().enumerate() {
+            let Some(parent) = joint.parent.map(|parent| place[parent]) else { continue };
+            let bone = (bound.model[i].translation - bound.model[parent].translation).length();
+            if bone < near || twins[i] {
+                place[i] = parent;
+            }
+            if bone.is_finite() {
+                bound.area[parent] += bone;
+            }
+        }
+        let has_bones = bound.area.iter().any(|&a| a > 0.0);
+        for i in
+            (0..rig.joints.len()).filter(|&i| is_end[i] && place[i] == i && !rig.joints[i].name.is_empty())
+        {
+            // A hand or a head of which the file does not say how long it is.
+            bound.area[i] = 0.06 * bound.size();
+        }
+        has_bones.then_some(bound)
+    }
+
     /// The longest side of the skin's box.
     pub fn size(&self) -> f32 {
         let d = self.hi - self.lo;
@@ -67,6 +113,28 @@ impl Bound {
             }
         }
     }
+}
+
+/// Which joints have a sibling of the other side, or both none by name, in their place.
+fn twins(rig: &Rig, model: &[Affine], tolerance: f32) -> Vec<bool> {
+    let readings = read_names(rig.joints.iter().map(|joint| joint.name.as_str()));
+    let mirrored = |a: usize, b: usize| match (readings[a].side, readings[b].side) {
+        (Some(a), Some(b)) => a != b,
+        _ => rig.joints[a].name.is_empty() && rig.joints[b].name.is_empty(),
+    };
+    let mut found = vec![false; rig.joints.len()];
+    let mut children: Vec<Vec<usize>> = vec![Vec::new(); rig.joints.len()];
+    for (i, joint) in rig.joints.iter().enumerate() {
+        let Some(parent) = joint.parent else { continue };
+        for &other in &children[parent] {
+            let apart = (model[other].translation - model[i].translation).length();
+            if apart < tolerance && mirrored(i, other) {
+                (found[i], found[other]) = (true, true);
+            }
+        }
+        children[parent].push(i);
+    }
+    found
 }
 
 /// A third of the area of every triangle around a vertex; equal shares where there is no area at all.

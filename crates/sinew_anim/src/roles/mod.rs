@@ -17,7 +17,7 @@ mod symmetry;
 
 pub use role::{HUMANOID_ROLES, Role, Side};
 
-use crate::rig::{JointIdx, Rig};
+use crate::rig::{JointIdx, LocalTransform, Rig};
 use anatomy::Anatomy;
 use bind::Bound;
 use humanoid::Stance;
@@ -101,6 +101,19 @@ impl RigAnalysis {
     }
 }
 
+impl RigAnalysis {
+    /// The same analysis with another length of the file's unit: of a giant, say, whom no unit makes a human.
+    ///
+    /// # Panics
+    /// If `unit_scale` (metres) is not above 0 and finite.
+    #[must_use]
+    pub fn with_unit_scale(self, unit_scale: f32) -> Self {
+        assert!(unit_scale > 0.0 && unit_scale.is_finite(), "a unit has a length, not {unit_scale}");
+        let factor = unit_scale / self.unit_scale;
+        Self { unit_scale, floor: self.floor * factor, height: self.height * factor, ..self }
+    }
+}
+
 /// The rig has no skin, so there is no body to understand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no skin: nothing to build a ragdoll from")]
@@ -114,7 +127,23 @@ pub struct NoSkin;
 /// # Panics
 /// If the rig's indices (parents, skin joints, vertex slots) are out of range.
 pub fn analyze(rig: &Rig) -> Result<RigAnalysis, NoSkin> {
-    let bound = Bound::of(rig).ok_or(NoSkin)?;
+    analyze_bound(rig, Bound::of(rig).ok_or(NoSkin)?)
+}
+
+/// Roles, axes and unit of a skeleton without skin, as motion capture files have it, standing in `pose`: best with straight
+/// legs and the arms away from the body. Joints at the ends of chains that have no name only tell where a bone ends.
+/// The "bind pose" of the result is `pose`, heights are those of the joints, and bodies are measured by bones' lengths.
+///
+/// # Errors
+/// [`NoSkin`] if no bone has a length.
+///
+/// # Panics
+/// If `pose` is not as long as the rig has joints.
+pub fn analyze_skeleton(rig: &Rig, pose: &[LocalTransform]) -> Result<RigAnalysis, NoSkin> {
+    analyze_bound(rig, Bound::of_bones(rig, pose).ok_or(NoSkin)?)
+}
+
+fn analyze_bound(rig: &Rig, bound: Bound) -> Result<RigAnalysis, NoSkin> {
     let Anatomy { graph, roles, humanoid, up, left, mut notes } = Anatomy::of(rig, &bound).ok_or(NoSkin)?;
     let stance = Stance::new(&bound, up);
     let (unit_scale, unit_note) = axes::unit_scale(stance.height, bound.size(), humanoid);

@@ -179,7 +179,7 @@ impl Role {
     }
 
     /// The roles that may carry this one, nearest first: anatomy, whatever the rig's own hierarchy says.
-    pub(super) fn anatomical_parents(self) -> &'static [Role] {
+    pub(crate) fn anatomical_parents(self) -> &'static [Role] {
         use Role::{Chest, Hips, Neck, Spine, UpperChest};
         const TRUNK: &[Role] = &[UpperChest, Chest, Spine, Hips];
         macro_rules! sided {

@@ -26,14 +26,20 @@ pub const WITH_CLIPS: [&str; 16] = [
     "vrma_test.vrma",
 ];
 
-/// Rig and clips of a file under ../shared/data; `None`, with a line that says so, where the data is absent.
-pub fn load(path: &str) -> Option<(Rig, Vec<Clip>)> {
+/// The bytes of a file under ../shared/data; `None`, with a line that says so, where the data is absent.
+pub fn bytes(path: &str) -> Option<Vec<u8>> {
     if !Path::new(DATA).is_dir() {
         // Not println, which the harness swallows where a test passes.
         let test = std::thread::current().name().unwrap_or("a test").to_owned();
         let _ = writeln!(std::io::stderr(), "{test} skipped: no ../shared/data");
         return None;
     }
+    Some(std::fs::read(format!("{DATA}{path}")).unwrap_or_else(|error| panic!("{path}: {error}")))
+}
+
+/// Rig and clips of a file under ../shared/data; `None`, with a line that says so, where the data is absent.
+pub fn load(path: &str) -> Option<(Rig, Vec<Clip>)> {
+    bytes(path)?;
     let document = sinew_formats::load_gltf(format!("{DATA}{path}"), sinew_formats::ReadOptions::default());
     let document = document.unwrap_or_else(|error| panic!("{path}: {error}"));
     Some((document.rig, document.clips))

@@ -19,7 +19,7 @@ pub(crate) struct Axis {
 }
 
 /// Where it comes from: the face of A or of B with that number, or an edge of each.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum AxisOf {
     FaceA(usize),
     FaceB(usize),
@@ -28,18 +28,9 @@ pub(crate) enum AxisOf {
 
 /// The face of `of` that separates best; `toward_b` is −1 if `of` is B.
 pub(crate) fn best_face(of: &PlacedBox, other: &PlacedBox, toward_b: f32, name: fn(usize) -> AxisOf) -> Axis {
-    let offset = other.center - of.center;
-    let candidate = |k: usize| {
-        let along = offset.dot(of.axes[k]);
-        Axis {
-            normal: of.axes[k] * (sign(along) * toward_b),
-            separation: along.abs() - of.half[k] - other.half_width(of.axes[k]),
-            of: name(k),
-        }
-    };
-    let mut best = candidate(0);
+    let mut best = face(of, other, toward_b, name, 0);
     for k in 1..3 {
-        let axis = candidate(k);
+        let axis = face(of, other, toward_b, name, k);
         if axis.separation > best.separation {
             best = axis;
         }
@@ -47,27 +38,51 @@ pub(crate) fn best_face(of: &PlacedBox, other: &PlacedBox, toward_b: f32, name: 
     best
 }
 
+fn face(of: &PlacedBox, other: &PlacedBox, toward_b: f32, name: fn(usize) -> AxisOf, k: usize) -> Axis {
+    let along = (other.center - of.center).dot(of.axes[k]);
+    Axis {
+        normal: of.axes[k] * (sign(along) * toward_b),
+        separation: along.abs() - of.half[k] - other.half_width(of.axes[k]),
+        of: name(k),
+    }
+}
+
 /// The direction across an edge of each that separates best; `None` if all edges are parallel, that is at a sine below
 /// `parallel_sine`.
 pub(crate) fn best_edges(a: &PlacedBox, b: &PlacedBox, parallel_sine: f32) -> Option<Axis> {
-    let offset = b.center - a.center;
     let mut best: Option<Axis> = None;
     for i in 0..3 {
         for j in 0..3 {
-            let cross = a.axes[i].cross(b.axes[j]);
-            let sine = cross.length();
-            if sine < parallel_sine {
-                continue;
-            }
-            let across = cross / sine;
-            let normal = across * sign(across.dot(offset));
-            let separation = normal.dot(offset) - a.half_width(normal) - b.half_width(normal);
-            if best.is_none_or(|axis| separation > axis.separation) {
-                best = Some(Axis { normal, separation, of: AxisOf::Edges(i, j) });
+            let Some(axis) = edges(a, b, (i, j), parallel_sine) else { continue };
+            if best.is_none_or(|best| axis.separation > best.separation) {
+                best = Some(axis);
             }
         }
     }
     best
+}
+
+fn edges(a: &PlacedBox, b: &PlacedBox, (i, j): (usize, usize), parallel_sine: f32) -> Option<Axis> {
+    let offset = b.center - a.center;
+    let cross = a.axes[i].cross(b.axes[j]);
+    let sine = cross.length();
+    if sine < parallel_sine {
+        return None;
+    }
+    let across = cross / sine;
+    let normal = across * sign(across.dot(offset));
+    let separation = normal.dot(offset) - a.half_width(normal) - b.half_width(normal);
+    Some(Axis { normal, separation, of: AxisOf::Edges(i, j) })
+}
+
+/// The axis of that name, with the bits that [`best_face`] and [`best_edges`] give it; `None` if they have none of it.
+pub(crate) fn axis(a: &PlacedBox, b: &PlacedBox, of: AxisOf, parallel_sine: f32) -> Option<Axis> {
+    match of {
+        AxisOf::FaceA(k) => (k < 3).then(|| face(a, b, 1.0, AxisOf::FaceA, k)),
+        AxisOf::FaceB(k) => (k < 3).then(|| face(b, a, -1.0, AxisOf::FaceB, k)),
+        AxisOf::Edges(i, j) if i < 3 && j < 3 => edges(a, b, (i, j), parallel_sine),
+        AxisOf::Edges(..) => None,
+    }
 }
 
 /// Whether two boxes overlap, without square roots and divisions (Ericson, "Real-Time Collision Detection", 2005, §4.4.1):

@@ -8,22 +8,34 @@ use super::axes::{
 use super::clip::{BOX_CORNERS, BoxFace, Reference};
 use super::feature::{self, WHOLE, pair};
 use super::placed::{PlacedBox, Segment, sign};
-use crate::boxes::separation::{Axis, AxisOf, best_edges, best_face};
+use crate::boxes::separation::{Axis, AxisOf, axis, best_edges, best_face};
 use sinew_math::Vec3;
 
-pub(super) fn collide(a: &PlacedBox, b: &PlacedBox, margin: f32, out: &mut Manifold) {
-    let tolerance = tolerance(a.thinnest(), b.thinnest());
+/// `apart` is as in [`super::collide_again`].
+pub(super) fn collide(
+    a: &PlacedBox,
+    b: &PlacedBox,
+    margin: f32,
+    apart: &mut Option<AxisOf>,
+    out: &mut Manifold,
+) {
+    let parts = |axis: &Axis| axis.separation > margin;
+    if apart.and_then(|of| axis(a, b, of, PARALLEL_SINE)).is_some_and(|axis| parts(&axis)) {
+        return;
+    }
     let (face_a, face_b) = (best_face(a, b, 1.0, AxisOf::FaceA), best_face(b, a, -1.0, AxisOf::FaceB));
-    let face = choose_face(face_a, face_b, tolerance, TIE_DIRECTION);
-    if face_a.separation > margin || face_b.separation > margin {
+    *apart = [face_a, face_b].into_iter().find(parts).map(|axis| axis.of);
+    if apart.is_some() {
         return;
     }
     let edges = best_edges(a, b, PARALLEL_SINE);
-    if edges.is_some_and(|edges| edges.separation > margin) {
+    *apart = edges.filter(parts).map(|axis| axis.of);
+    if apart.is_some() {
         return;
     }
-    let axis = choose(face, edges, tolerance);
-    push(a, b, &axis, margin, tolerance, out);
+    let tolerance = tolerance(a.thinnest(), b.thinnest());
+    let face = choose_face(face_a, face_b, tolerance, TIE_DIRECTION);
+    push(a, b, &choose(face, edges, tolerance), margin, tolerance, out);
 }
 
 impl Faceted for PlacedBox {

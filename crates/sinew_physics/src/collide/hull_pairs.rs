@@ -4,18 +4,20 @@ use super::Manifold;
 use super::axes::TIE_DIRECTION;
 use super::placed::{Pill, PlacedBox};
 use super::{features, hull_round, polytope};
+use crate::boxes::separation::AxisOf;
 use crate::convex::support::{Core, Posed};
 use crate::hull::{BoxPolytope, Hull, Room};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3};
 
-/// A hull against a shape of the same or a later rank.
+/// A hull against a shape of the same or a later rank. `apart` is as in [`super::collide_again`].
 pub(super) fn collide(
     hull: &Hull,
     pair_from_hull: &Transform,
     other: &Shape,
     pair_from_other: &Transform,
     margin: f32,
+    apart: &mut Option<AxisOf>,
     out: &mut Manifold,
 ) {
     let frame = pair_from_hull.inverse() * *pair_from_other;
@@ -24,11 +26,12 @@ pub(super) fn collide(
     match *other {
         Shape::Hull(ref other) => {
             let mut room = Room::EMPTY;
-            polytope::collide(&polytope, &other.polytope().seen_from(&frame, &mut room), margin, tie, out);
+            let other = other.polytope().seen_from(&frame, &mut room);
+            polytope::collide(&polytope, &other, margin, tie, apart, out);
         }
         Shape::Box { half_extents } => {
             let other = BoxPolytope::new(&PlacedBox::new(half_extents, &frame));
-            polytope::collide(&polytope, &other.polytope(), margin, tie, out);
+            polytope::collide(&polytope, &other.polytope(), margin, tie, apart, out);
         }
         Shape::Capsule { half_height, radius } => {
             let pill = Pill::new(half_height, radius, &frame);

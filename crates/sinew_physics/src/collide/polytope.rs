@@ -10,7 +10,7 @@ use super::clip::{PolytopeFace, Reference};
 use super::feature::{self, WHOLE, pair};
 use super::placed::Segment;
 use crate::boxes::separation::{Axis, AxisOf};
-use crate::hull::{MAX_VERTICES, Polytope};
+use crate::hull::{MAX_VERTICES, Plane, Polytope};
 use sinew_math::Vec3;
 
 /// Two faces of hulls cut to each other have at most so many corners, but for slivers.
@@ -18,34 +18,65 @@ const FACE_CORNERS: usize = MAX_VERTICES;
 /// Parallel edges and corners that are as close as the closest.
 const CLOSEST: usize = 16;
 
-/// `tie` settles ties between faces of A and B: a direction that stays when the shapes change places.
-pub(super) fn collide(a: &Polytope<'_>, b: &Polytope<'_>, margin: f32, tie: Vec3, out: &mut Manifold) {
-    let tolerance = tolerance(a.thickness, b.thickness);
+/// `tie` settles ties between faces of A and B: a direction that stays when the shapes change places. `apart` is as in
+/// [`super::collide_again`].
+pub(super) fn collide(
+    a: &Polytope<'_>,
+    b: &Polytope<'_>,
+    margin: f32,
+    tie: Vec3,
+    apart: &mut Option<AxisOf>,
+    out: &mut Manifold,
+) {
+    let parts = |axis: &Axis| axis.separation > margin;
+    if apart.and_then(|of| axis(a, b, of)).is_some_and(|axis| parts(&axis)) {
+        return;
+    }
     let face_a = best_face(a, b, margin, AxisOf::FaceA);
-    if face_a.separation > margin {
+    *apart = parts(&face_a).then_some(face_a.of);
+    if apart.is_some() {
         return;
     }
     let face_b = best_face(b, a, margin, AxisOf::FaceB);
-    if face_b.separation > margin {
+    *apart = parts(&face_b).then_some(face_b.of);
+    if apart.is_some() {
         return;
     }
-    let face_b = Axis { normal: -face_b.normal, ..face_b };
     let edges = best_edges(a, b);
-    if edges.is_some_and(|edges| edges.separation > margin) {
+    *apart = edges.filter(parts).map(|axis| axis.of);
+    if apart.is_some() {
         return;
     }
-    let axis = choose(choose_face(face_a, face_b, tolerance, tie), edges, tolerance);
-    push(a, b, &axis, margin, tolerance, out);
+    let tolerance = tolerance(a.thickness, b.thickness);
+    let face_b = Axis { normal: -face_b.normal, ..face_b };
+    let face = choose_face(face_a, face_b, tolerance, tie);
+    push(a, b, &choose(face, edges, tolerance), margin, tolerance, out);
+}
+
+/// The axis of that name, with the bits that [`best_face`] and [`best_edges`] give it; `None` if they have none of it.
+fn axis(a: &Polytope<'_>, b: &Polytope<'_>, of: AxisOf) -> Option<Axis> {
+    match of {
+        AxisOf::FaceA(k) => a.planes.get(k).map(|plane| face(plane, b, of)),
+        AxisOf::FaceB(k) => b.planes.get(k).map(|plane| face(plane, a, of)),
+        AxisOf::Edges(i, j) => {
+            let there = a.topology.has_edge(i) && b.topology.has_edge(j);
+            if there { edges(&Arc::new(a, i), &Arc::new(b, j), of) } else { None }
+        }
+    }
+}
+
+fn face(plane: &Plane, other: &Polytope<'_>, of: AxisOf) -> Axis {
+    Axis { normal: plane.normal, separation: -plane.offset - other.reach(-plane.normal), of }
 }
 
 /// The face of `of` that separates best, with its outward normal, or the first one that separates by more than `enough`.
 fn best_face(of: &Polytope<'_>, other: &Polytope<'_>, enough: f32, name: fn(usize) -> AxisOf) -> Axis {
     let mut best = Axis { normal: Vec3::Y, separation: f32::NEG_INFINITY, of: name(0) };
-    for (face, plane) in of.planes.iter().enumerate() {
-        let separation = -plane.offset - other.reach(-plane.normal);
-        if separation > best.separation {
-            best = Axis { normal: plane.normal, separation, of: name(face) };
-            if separation > enough {
+    for (number, plane) in of.planes.iter().enumerate() {
+        let axis = face(plane, other, name(number));
+        if axis.separation > best.separation {
+            best = axis;
+            if axis.separation > enough {
                 break;
             }
         }
@@ -93,20 +124,24 @@ fn best_edges(a: &Polytope<'_>, b: &Polytope<'_>) -> Option<Axis> {
     for i in a.topology.edge_numbers() {
         let arc = Arc::new(a, i);
         for j in b.topology.edge_numbers() {
-            let other = Arc::new(b, j);
-            let Some(across) = arc.crossing(&other) else { continue };
-            let length = across.length();
-            if length <= PARALLEL_SINE * (arc.along.length() * other.along.length()) {
-                continue;
-            }
-            let normal = across / length;
-            let separation = normal.dot(other.from - arc.from);
-            if best.is_none_or(|axis| separation > axis.separation) {
-                best = Some(Axis { normal, separation, of: AxisOf::Edges(i, j) });
+            let Some(axis) = edges(&arc, &Arc::new(b, j), AxisOf::Edges(i, j)) else { continue };
+            if best.is_none_or(|best| axis.separation > best.separation) {
+                best = Some(axis);
             }
         }
     }
     best
+}
+
+/// The direction across two edges; `None` if the Minkowski difference has no face there, or they are parallel.
+fn edges(arc: &Arc, other: &Arc, of: AxisOf) -> Option<Axis> {
+    let across = arc.crossing(other)?;
+    let length = across.length();
+    if length <= PARALLEL_SINE * (arc.along.length() * other.along.length()) {
+        return None;
+    }
+    let normal = across / length;
+    Some(Axis { normal, separation: normal.dot(other.from - arc.from), of })
 }
 
 impl Faceted for Polytope<'_> {
@@ -206,7 +241,7 @@ mod tests {
                 best = sinew_math::max(gap(&a, &b, n), best);
             }
             let mut out = Manifold::default();
-            collide(&a, &b, 0.0, Vec3::Y, &mut out);
+            collide(&a, &b, 0.0, Vec3::Y, &mut None, &mut out);
             assert_eq!(out.count > 0, best <= 0.0, "case {case}: {best}, {out:?}");
             if out.count > 0 {
                 let along = gap(&a, &b, out.normal);

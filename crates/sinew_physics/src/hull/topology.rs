@@ -59,6 +59,11 @@ impl<'a> Topology<'a> {
         (0..self.half_edges.len()).filter(move |&side| self.is_first(side))
     }
 
+    /// Whether a half-edge of that number is there and stands for its edge.
+    pub fn has_edge(self, side: usize) -> bool {
+        side < self.half_edges.len() && self.is_first(side)
+    }
+
     /// Whether a half-edge is the one of two that stands for its edge.
     pub fn is_first(self, side: usize) -> bool {
         side < usize::from(self.half_edges[side].twin)

@@ -46,16 +46,10 @@ pub(super) fn candidates(world: &World, reach: &Reach, mut visit: impl FnMut(Own
             let _ = proxies.overlapping(&bounds, |owner| visit(owner).map_continue(|_| ()));
         }
         Reach::Swept(bounds, direction) => {
-            let (origin, half_extents) = (bounds.center(), bounds.half_extents());
-            if largest(origin) > FARTHEST || largest(half_extents) > FARTHEST {
-                return;
-            }
-            let end = min(FARTHEST / largest(direction), 1.0);
-            let sweep = Sweep { origin, direction, half_extents, limit: end };
+            let Some(sweep) = sweep(&bounds, direction) else { return };
             proxies.along(&sweep, |owner| {
                 let limit = search(owner);
-                // Of hits right at the start of a very long way the fractions vanish, those of their bounds may not.
-                if limit < 0.0 { limit } else { min(max(limit, SHORTEST), end) }
+                if limit < 0.0 { limit } else { what_is_left(&sweep, limit) }
             });
         }
         Reach::Near(point, within) => {
@@ -67,6 +61,20 @@ pub(super) fn candidates(world: &World, reach: &Reach, mut visit: impl FnMut(Own
             proxies.nearest(point, within, |owner| max(min(search(owner), within), 0.0));
         }
     }
+}
+
+/// How the trees see a box that is moved; `None` where nothing is looked for.
+pub(super) fn sweep(bounds: &Aabb, direction: Vec3) -> Option<Sweep> {
+    let (origin, half_extents) = (bounds.center(), bounds.half_extents());
+    let limit = min(FARTHEST / largest(direction), 1.0);
+    let is_near = largest(origin) <= FARTHEST && largest(half_extents) <= FARTHEST;
+    is_near.then_some(Sweep { origin, direction, half_extents, limit })
+}
+
+/// Fraction beyond which a tree needs not be looked through, if answers beyond `limit` do not count.
+pub(super) fn what_is_left(sweep: &Sweep, limit: f32) -> f32 {
+    // Of hits right at the start of a very long way the fractions vanish, those of their bounds may not.
+    min(max(limit, SHORTEST), sweep.limit)
 }
 
 /// Of the components' magnitudes.

@@ -1,10 +1,12 @@
 //! What is on a way: rays, and shapes that are moved.
 
+use super::Query;
 use super::candidates::Reach;
 use super::pair;
 use super::probe::Probe;
 use super::question::Question;
 use super::question::sealed::{Ask, Reply};
+use super::rays;
 use crate::boxes::{Aabb, Penetration};
 use crate::convex::{ShapeHit, closeness};
 use crate::id::{BodyId, ShapeId};
@@ -70,6 +72,14 @@ impl Ask for Ray {
             (distance <= 0.0).then_some(Penetration { depth: -distance, direction })
         };
         BodyHit::new(id, hit, if hit.fraction == 0.0 { start() } else { None })
+    }
+
+    fn first_each<P: Fn(BodyId, u32) -> bool>(
+        query: &Query<'_, P>,
+        rays: &[Self],
+        hits: &mut [Option<BodyHit>],
+    ) {
+        rays::first_each(query, rays, hits);
     }
 
     fn is_met(&self, _: ShapeId, shape: &Shape, world_from_shape: &Transform) -> bool {

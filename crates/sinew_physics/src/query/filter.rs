@@ -1,6 +1,5 @@
 //! Which shapes a question is about.
 
-use crate::body::Body;
 use crate::def::BodyKind;
 use crate::id::{BodyId, ShapeId};
 use crate::shape::{Filter, Sensing};
@@ -42,12 +41,11 @@ impl<'a> QueryFilter<'a> {
         Self { except, ..Self::default() }
     }
 
-    /// Whether a shape of a body passes.
-    pub(super) fn passes(&self, id: ShapeId, body: &Body) -> bool {
-        let surface = body.surface(id.shape as usize);
-        self.kinds.contains(body.kind)
-            && (surface.sensing == Sensing::Solid || self.sensors == Sensors::Included)
-            && self.meets.meets(surface.filter)
+    /// Whether a shape of a body of some kind passes.
+    pub(super) fn passes(&self, id: ShapeId, kind: BodyKind, filter: Filter, sensing: Sensing) -> bool {
+        self.kinds.contains(kind)
+            && (sensing == Sensing::Solid || self.sensors == Sensors::Included)
+            && self.meets.meets(filter)
             && !self.except.contains(&id.body)
     }
 }

@@ -1,7 +1,8 @@
 //! What can be asked: a question finds out one shape's answer, and orders the answers of several.
 
+use super::Query;
 use super::candidates::Reach;
-use crate::id::ShapeId;
+use crate::id::{BodyId, ShapeId};
 use crate::shape::Shape;
 use sinew_math::Transform;
 
@@ -13,7 +14,7 @@ pub trait Question: sealed::Ask<Found = <Self as Question>::Answer> {
 
 /// What the questions have to know, kept from those who only ask them.
 pub(super) mod sealed {
-    use super::{Reach, Shape, ShapeId, Transform};
+    use super::{BodyId, Query, Reach, Shape, ShapeId, Transform};
 
     pub trait Ask {
         /// [`Question::Answer`](super::Question::Answer).
@@ -24,6 +25,19 @@ pub(super) mod sealed {
 
         /// The answer of a placed shape, if it has one. No number in it is NaN or infinite.
         fn ask(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> Option<Self::Found>;
+
+        /// The first answer to each of several, for questions that have a quicker way than one after the other.
+        fn first_each<P: Fn(BodyId, u32) -> bool>(
+            query: &Query<'_, P>,
+            questions: &[Self],
+            answers: &mut [Option<Self::Found>],
+        ) where
+            Self: Sized,
+        {
+            for (question, answer) in questions.iter().zip(answers) {
+                *answer = query.best(question);
+            }
+        }
 
         /// Whether it has one; where that is cheaper than the answer itself.
         fn is_met(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> bool {

@@ -137,9 +137,14 @@ impl IslandSolver {
         self.copy_joints(island, view);
         self.weigh_joints();
         self.refresh_joints();
+        self.copy_contacts(island, view);
+        if !self.is_articulated() {
+            self.levels.count(self.links.len(), &self.manifolds);
+            self.guess_loads();
+            self.add_ballast();
+        }
         self.refresh_inertia();
         self.factor_joints();
-        self.copy_contacts(island, view);
         self.choose_effort();
         self.limits.clear();
         self.choose_limits();
@@ -155,6 +160,8 @@ impl IslandSolver {
         }
         s.pieces.clear();
         s.pieces.reserve(island.bodies.len());
+        s.shares.clear();
+        s.shares.reserve(island.bodies.len());
         self.conjugate.make_room(island.bodies.len(), island.contacts.len());
     }
 
@@ -270,6 +277,7 @@ impl IslandSolver {
                 mass: body.mass,
                 inertia: body.inertia,
                 excess: Vec3::ZERO,
+                ballast: 1.0,
                 inverse_inertia: Sym3::ZERO,
                 force,
                 torque,

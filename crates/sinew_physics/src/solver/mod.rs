@@ -13,12 +13,14 @@ mod effort;
 mod energy;
 mod fields;
 pub(crate) mod lcp;
+mod levels;
 mod limit_rows;
 mod loops;
 mod outside;
 mod reaction;
 mod response;
 mod solution;
+mod squeeze;
 mod sweep;
 mod tree;
 mod tree_joints;
@@ -35,11 +37,13 @@ use drives::SoftRow;
 use effort::Effort;
 use energy::Momentum;
 use fields::Attraction;
+use levels::Levels;
 use limit_rows::LimitRow;
 use loops::Loops;
 use response::Response;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, min, normalize_or, skew, trig};
 pub(crate) use solution::{IslandSolution, Solution, SolvedBody, SolvedJoint, split_off};
+use squeeze::Pressing;
 use sweep::{Pass, Unrest};
 use tree::Link;
 
@@ -63,7 +67,9 @@ pub(crate) struct SolverBody {
     pub inertia: Vec3,
     /// What stability adds to the moments: geometric stiffness beyond what the inertia can carry.
     pub excess: Vec3,
-    /// Inverse of inertia and excess, world axes.
+    /// How many times as heavy as it is it answers to forces and impulses: 1, but of what is squeezed.
+    pub ballast: f32,
+    /// Inverse of inertia and excess with ballast, world axes.
     pub inverse_inertia: Sym3,
     /// Gravity's, the user's and those of fields, N and N·m.
     pub force: Vec3,
@@ -88,12 +94,13 @@ fn free_response(bodies: &[SolverBody], moving: usize, ends: [(u32, &Vec6); 2]) 
 }
 
 impl SolverBody {
-    /// Mass and inertia at the centre of mass, world axes, geometric stiffness included.
+    /// Mass and inertia at the centre of mass, world axes, geometric stiffness and ballast included.
     fn mass_matrix(&self) -> Mat6 {
         let mut m = [ZERO6; 6];
-        let angular = Sym3::from_rotated_diagonal(self.pose.rotation, self.inertia + self.excess).to_mat3();
+        let inertia = (self.inertia + self.excess) * self.ballast;
+        let angular = Sym3::from_rotated_diagonal(self.pose.rotation, inertia).to_mat3();
         for k in 0..3 {
-            m[k][k] = self.mass;
+            m[k][k] = self.mass * self.ballast;
             let row = angular.row(k);
             m[3 + k][3..].copy_from_slice(&[row.x, row.y, row.z]);
         }
@@ -107,7 +114,7 @@ impl SolverBody {
 
     /// Answer to an impulse if no joint held it.
     fn velocity_change(&self, p: &Vec6) -> Vec6 {
-        join(linear(p) / self.mass, self.inverse_inertia * angular(p))
+        join(linear(p) / (self.mass * self.ballast), self.inverse_inertia * angular(p))
     }
 }
 
@@ -180,6 +187,9 @@ pub(crate) struct IslandSolver {
     forces_vary: bool,
     attraction: Attraction,
     scratch: Scratch,
+    levels: Levels,
+    /// Per moving body.
+    pressing: Vec<Pressing>,
     effort: Effort,
     unrest: Unrest,
     conjugate: Conjugate,
@@ -221,6 +231,8 @@ struct Scratch {
     before: Vec<Vec6>,
     /// Velocities that the joints of the substep are solved from.
     started: Vec<Vec6>,
+    /// Bodies that each moving body stands on.
+    shares: Vec<f32>,
     pieces: Vec<composite::Piece>,
     build: build::Scratch,
 }
@@ -240,7 +252,7 @@ impl IslandSolver {
         self.kinetic_before = self.kinetic_energy(&self.velocities[..self.links.len()]);
         self.push_saturated();
         for (body, v) in self.bodies.iter_mut().zip(&mut self.velocities).take(self.links.len()) {
-            let inverse_mass = 1.0 / body.mass;
+            let inverse_mass = 1.0 / (body.mass * body.ballast);
             let lin = linear(v) / (1.0 + h * body.linear_damping) + body.force * (inverse_mass * h);
             let mut ang = angular(v) / (1.0 + h * body.angular_damping);
             ang += body.inverse_inertia * (body.torque * h);
@@ -386,6 +398,9 @@ impl IslandSolver {
     /// Rows, inertias, factor and response at the present pose.
     fn refresh(&mut self) {
         self.refresh_joints();
+        if !self.is_articulated() {
+            self.add_ballast();
+        }
         self.refresh_inertia();
         self.factor_joints();
         for rows in &mut self.manifolds {
@@ -425,7 +440,7 @@ impl IslandSolver {
         }
         for body in &mut self.bodies[..self.links.len()] {
             body.excess = max3(body.excess - body.inertia, Vec3::ZERO);
-            let total = body.inertia + body.excess;
+            let total = (body.inertia + body.excess) * body.ballast;
             body.inverse_inertia = Sym3::from_rotated_diagonal(body.pose.rotation, Vec3::ONE / total);
         }
     }

@@ -156,6 +156,7 @@ impl World {
         } else {
             body.shapes[id.shape as usize].surface = body.surfaces.intern(&surface);
         }
+        self.broad.proxies.refresh(id.body.index, self.bodies.at(id.body.index));
     }
 
     /// Has the next step look anew at what a body touches, whatever moves; it and its neighbours wake.

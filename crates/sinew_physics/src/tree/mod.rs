@@ -6,13 +6,16 @@
 //! searching", SIGMOD 1984). What a query finds never depends on the tree's shape, only in which order.
 
 mod build;
+mod flight;
 mod node;
 mod query;
 #[cfg(test)]
 mod tests;
+mod waiting;
 
 use crate::boxes::Aabb;
 pub(crate) use build::Item;
+pub(crate) use flight::{Flight, Stop};
 pub(crate) use node::PAD;
 use node::{Child, Node, half_area};
 pub(crate) use query::Sweep;

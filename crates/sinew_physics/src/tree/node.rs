@@ -26,6 +26,18 @@ impl Child {
         Self(leaf | LEAF)
     }
 
+    /// As one number, for [`from_bits`](Self::from_bits).
+    #[inline(always)]
+    pub fn bits(self) -> u32 {
+        self.0
+    }
+
+    #[inline(always)]
+    pub fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
+    #[inline(always)]
     pub fn is_none(self) -> bool {
         self == Self::NONE
     }
@@ -158,19 +170,24 @@ impl Node {
 
     /// Which boxes a line meets before `limit`, and where it enters each; as in [`overlapping`](Self::overlapping).
     #[inline(always)]
-    pub fn entered<L: Lanes>(&self, line: &Line<L>, limit: f32, enter: &mut [f32; WIDTH]) -> u8 {
+    pub fn entered<L: Lanes>(&self, line: &Line, limit: f32, enter: &mut [f32; WIDTH]) -> u8 {
+        let slack = L::splat(1.0 + PAD);
         let mut first = L::splat(0.0);
         let mut last = L::splat(f32::INFINITY);
         for axis in 0..3 {
-            let near =
-                (L::load(&self.rows[line.near_row[axis]]) - line.near_origin[axis]) * line.inverse[axis];
-            let far = (L::load(&self.rows[line.far_row[axis]]) - line.far_origin[axis]) * line.inverse[axis];
+            let inverse = L::splat(line.inverse[axis]);
             // NaN, where a line runs in a face, leaves what is there.
-            first = L::max(near, first);
-            last = L::min(far, last);
+            first = L::max(self.beyond::<L>(&line.near, axis) * inverse, first);
+            last = L::min(self.beyond::<L>(&line.far, axis) * inverse, last);
         }
         first.store(enter);
-        (L::le(first, last * line.slack) & L::le(first, L::splat(limit) * line.slack)).bits()
+        (L::le(first, last * slack) & L::le(first, L::splat(limit) * slack)).bits()
+    }
+
+    /// How far faces are beyond the start of a line, along an axis.
+    #[inline(always)]
+    fn beyond<L: Lanes>(&self, faces: &Faces, axis: usize) -> L {
+        L::load(&self.rows[faces.row[axis]]) - L::splat(faces.origin[axis])
     }
 
     /// Squares of the distances from a point to the boxes, as they are at least; bit `k` of the mask tells whether slot `k` is
@@ -207,44 +224,40 @@ fn half_area_of<L: Lanes>([x, y, z]: &[L; 3]) -> L {
 /// whose error is that of the places, not of the boxes).
 pub(crate) const PAD: f32 = 4e-6;
 
-/// A stretch of a line, prepared: slabs (Kay & Kajiya 1986) of which the near and the far one are known beforehand.
-pub(super) struct Line<L> {
-    near_row: [usize; 3],
-    far_row: [usize; 3],
-    near_origin: [L; 3],
-    far_origin: [L; 3],
-    inverse: [L; 3],
-    slack: L,
+/// A stretch of a line, prepared: slabs (Kay & Kajiya 1986) of which the near and the far face are known beforehand.
+pub(super) struct Line {
+    near: Faces,
+    far: Faces,
+    inverse: [f32; 3],
 }
 
-impl<L: Lanes> Line<L> {
+/// The faces of boxes that a line comes to first, or last, along each axis.
+struct Faces {
+    /// Which row of a node they are.
+    row: [usize; 3],
+    /// Where the line starts, moved aside by what is swept along it and by what rounding may do.
+    origin: [f32; 3],
+}
+
+impl Line {
     /// Of a box with these half extents that goes from `origin` along `direction`, at most `limit` times.
     #[inline(always)]
     pub fn new(origin: Vec3, direction: Vec3, half_extents: Vec3, limit: f32) -> Self {
-        let far = origin.abs() + direction.abs() * limit + half_extents;
-        let pad = PAD * sinew_math::max(far.x, sinew_math::max(far.y, far.z));
-        let mut line = Self {
-            near_row: [0, 1, 2],
-            far_row: [3, 4, 5],
-            near_origin: [L::splat(0.0); 3],
-            far_origin: [L::splat(0.0); 3],
-            inverse: [L::splat(f32::INFINITY); 3],
-            slack: L::splat(1.0 + PAD),
-        };
+        let end = origin.abs() + direction.abs() * limit + half_extents;
+        let pad = PAD * sinew_math::max(end.x, sinew_math::max(end.y, end.z));
+        let reach = half_extents + Vec3::splat(pad);
+        let mut near = Faces { row: [0, 1, 2], origin: (origin + reach).to_array() };
+        let mut far = Faces { row: [3, 4, 5], origin: (origin - reach).to_array() };
+        let mut inverse = [f32::INFINITY; 3];
         for axis in 0..3 {
-            let reach = half_extents[axis] + pad;
-            let (low, high) = (origin[axis] - reach, origin[axis] + reach);
-            let (mut near, mut far) = (high, low);
             if direction[axis] < 0.0 {
-                (near, far) = (low, high);
-                (line.near_row[axis], line.far_row[axis]) = (3 + axis, axis);
+                core::mem::swap(&mut near.row[axis], &mut far.row[axis]);
+                core::mem::swap(&mut near.origin[axis], &mut far.origin[axis]);
             }
-            line.near_origin[axis] = L::splat(near);
-            line.far_origin[axis] = L::splat(far);
             if direction[axis] != 0.0 {
-                line.inverse[axis] = L::splat(1.0 / direction[axis]);
+                inverse[axis] = 1.0 / direction[axis];
             }
         }
-        line
+        Self { near, far, inverse }
     }
 }

@@ -1,18 +1,14 @@
 //! Questions to a tree. Each goes through the nodes with a stack of its own size, allocates nothing, and calls the closure
 //! that it is given with every leaf whose bounds are in question; the closure makes the exact test.
 
-use super::node::{Child, Line, Node};
-use super::{MOST_LEVELS, Tree};
+use super::Tree;
+use super::node::Line;
+use super::waiting::{MASK, STACK, Waiting};
 use crate::boxes::Aabb;
 use core::ops::ControlFlow;
 use sinew_math::Vec3;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, WIDTH};
-
-/// Room for the most children that wait: all of a node but the one that is gone into, on each level. A power of two, so that
-/// a mask holds places inside.
-const STACK: usize = ((WIDTH - 1) * MOST_LEVELS + 1).next_power_of_two();
-const MASK: usize = STACK - 1;
 
 /// A stretch of a line along which a box moves; of a ray the box is a point.
 #[derive(Clone, Copy, Debug)]
@@ -87,42 +83,6 @@ impl<B, V: FnMut(u32) -> ControlFlow<B>> Kernel for Overlapping<'_, V> {
     }
 }
 
-/// Children that wait, each with what it is sorted by; the last is the next.
-struct Waiting {
-    children: [(f32, Child); STACK],
-    count: usize,
-}
-
-impl Waiting {
-    #[inline(always)]
-    fn new(root: u32) -> Self {
-        let mut children = [(0.0, Child::NONE); STACK];
-        children[0].1 = Child::node(root);
-        Self { children, count: 1 }
-    }
-
-    #[inline(always)]
-    fn pop(&mut self) -> Option<(f32, Child)> {
-        self.count = self.count.checked_sub(1)?;
-        Some(self.children[self.count & MASK])
-    }
-
-    /// Pushes slots of a node so that the one with the smallest key is the next.
-    #[inline(always)]
-    fn push(&mut self, node: &Node, mask: u8, keys: &[f32; WIDTH]) {
-        let start = self.count;
-        for (slot, child) in node.held(mask) {
-            let mut at = self.count;
-            while at > start && self.children[(at - 1) & MASK].0 < keys[slot] {
-                self.children[at & MASK] = self.children[(at - 1) & MASK];
-                at -= 1;
-            }
-            self.children[at & MASK] = (keys[slot], child);
-            self.count += 1;
-        }
-    }
-}
-
 struct Along<'a, V> {
     tree: &'a Tree,
     root: u32,
@@ -136,7 +96,7 @@ impl<V: FnMut(u32) -> f32> Kernel for Along<'_, V> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
         let Sweep { origin, direction, half_extents, mut limit } = *self.sweep;
-        let line = Line::<L>::new(origin, direction, half_extents, limit);
+        let line = Line::new(origin, direction, half_extents, limit);
         let mut waiting = Waiting::new(self.root);
         let mut enter = [0.0; WIDTH];
         while let Some((key, child)) = waiting.pop() {
@@ -148,7 +108,7 @@ impl<V: FnMut(u32) -> f32> Kernel for Along<'_, V> {
                 Ok(leaf) => limit = (self.visit)(leaf),
                 Err(index) => {
                     let node = &self.tree.nodes[index as usize];
-                    let mask = node.entered(&line, limit, &mut enter);
+                    let mask = node.entered::<L>(&line, limit, &mut enter);
                     waiting.push(node, mask, &enter);
                 }
             }

@@ -8,6 +8,7 @@ use crate::objects::inhabited;
 use sinew_math::trig::{cos, sin};
 use sinew_math::{Transform, Vec3};
 use sinew_physics::particles::{AttachmentDef, AttachmentTarget, RopeDef};
+use sinew_physics::ray::Ray;
 use sinew_physics::*;
 
 /// Steps until the boxes are thrown back to where they began.
@@ -209,4 +210,16 @@ fn falling_asleep_and_waking_allocate_nothing() {
         }
     }
     assert_eq!(last.allocations, 0, "{last:?}");
+}
+
+#[test]
+fn a_batch_of_rays_allocates_nothing() {
+    let (world, _) = crowded();
+    let rays: Vec<Ray> = (0..100)
+        .map(|k| Ray { origin: Vec3::new(0.03 * k as f32, 4.0, 0.0), direction: Vec3::Y * -5.0 })
+        .collect();
+    let mut hits = vec![None; rays.len()];
+    let seen = allocation_counter::measure(|| world.query().first_each(&rays, &mut hits));
+    assert_eq!(seen.count_total, 0);
+    assert!(hits.iter().all(Option::is_some), "the floor is below");
 }

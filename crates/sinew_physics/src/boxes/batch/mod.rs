@@ -7,7 +7,7 @@
 mod overlap;
 mod pairs;
 mod points;
-mod record;
+pub(crate) mod record;
 mod separation;
 
 pub use pairs::{Axes, FindOverlaps, FindSeparations, Pairs, Separations};

@@ -4,11 +4,11 @@ use crate::boxes::Obb;
 use sinew_math::lanes::{Lanes, Real, Vector3, WIDTH};
 
 /// How many numbers a box is.
-pub(super) const NUMBERS: usize = 10;
+pub(crate) const NUMBERS: usize = 10;
 
 /// A box, or one in each lane.
 #[derive(Clone, Copy)]
-pub(super) struct Record<R> {
+pub(crate) struct Record<R> {
     pub center: Vector3<R>,
     /// Coefficients of i, j and k.
     pub vector: Vector3<R>,
@@ -48,6 +48,20 @@ impl<L: Lanes> Record<L> {
 }
 
 impl<R: Real> Record<R> {
+    /// A direction as the box's frame has it, with the bits of `Rotation`.
+    #[inline(always)]
+    pub fn inverse_vector(&self, direction: Vector3<R>) -> Vector3<R> {
+        let back = -self.vector;
+        let t = back.cross(direction) * R::splat(2.0);
+        direction + t * self.w + back.cross(t)
+    }
+
+    /// A point as the box's frame has it, with the bits of `Transform::inverse_point`.
+    #[inline(always)]
+    pub fn inverse_point(&self, point: Vector3<R>) -> Vector3<R> {
+        self.inverse_vector(point - self.center)
+    }
+
     /// Unit directions of its sides.
     #[inline(always)]
     pub fn axes(&self) -> [Vector3<R>; 3] {

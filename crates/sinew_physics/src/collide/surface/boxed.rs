@@ -190,15 +190,26 @@ fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Telle
         t if t >= 1.0 => Part::Corner((i + 1) % 3),
         _ => Part::Edge(i),
     };
-    let near = |point: &ManifoldPoint| point.separation <= axis.separation + teller.solid.tolerance();
     let under = under_face(placed, &edge, axis.normal, super::name::part(teller.triangle, part));
-    if let Some(points) = under.filter(|points| points.iter().any(near)) {
-        teller.tell(axis.normal, part, When::Now, &points);
+    let under = under.as_ref().map_or(&[][..], |points| within(points, teller.margin));
+    let near = |point: &ManifoldPoint| point.separation <= axis.separation + teller.solid.tolerance();
+    if under.iter().any(near) {
+        teller.tell(axis.normal, part, When::Now, under);
     } else {
         let position = (of_box.at(s) + edge.at(t)) * 0.5;
         teller.point(axis.normal, part, position, axis.separation, feature::edge(j, index));
     }
     Some(part)
+}
+
+/// Those of two points that are no further apart than the margin.
+fn within(points: &[ManifoldPoint; 2], margin: f32) -> &[ManifoldPoint] {
+    match points.each_ref().map(|point| point.separation <= margin) {
+        [true, true] => points,
+        [true, false] => &points[..1],
+        [false, true] => &points[1..],
+        [false, false] => &[],
+    }
 }
 
 /// Both ends of what a face of the box has of an edge of the triangle, if the face lies on it and does not stand up from it: with
@@ -225,6 +236,10 @@ fn under_face(
             // Of the side that the edge comes in by, or goes out by.
             let (comes, steps) = ((from < to) == low, to - from);
             if steps.abs() <= f32::MIN_POSITIVE {
+                // Along the side: all of it is beyond, or nothing.
+                if from.abs() > placed.half[u] {
+                    return None;
+                }
                 continue;
             }
             let share = (limit - from) / steps;
@@ -280,4 +295,37 @@ fn closest(placed: &PlacedBox, teller: &mut Teller<'_>) -> Option<Part> {
     let normal = (on_box - on_triangle) / separation;
     teller.point(normal, part, (on_box + on_triangle) * 0.5, separation, feature);
     Some(part)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_math::Transform;
+
+    /// An edge along a side of the face under which it lies is under it as a whole, or not at all; one across it by what of it
+    /// is between the sides.
+    #[test]
+    fn an_edge_is_under_a_face_between_its_sides() {
+        let placed = PlacedBox::new(Vec3::new(2.0, 0.5, 1.0), &Transform::IDENTITY);
+        let under = |from: Vec3, to: Vec3| {
+            let points = under_face(&placed, &Segment { ends: [from, to] }, Vec3::Y, 0)?;
+            Some(points.map(|point| point.position))
+        };
+        let at = |x: f32, z: f32| Vec3::new(x, -0.5, z);
+        assert_eq!(under(at(-3.0, 0.9), at(1.0, 0.9)), Some([at(-2.0, 0.9), at(1.0, 0.9)]));
+        assert_eq!(under(at(-3.0, -1.5), at(1.0, 2.5)), Some([at(-2.0, -0.5), at(-0.5, 1.0)]));
+        for beside in [1.1, -1.1] {
+            assert_eq!(under(at(-3.0, beside), at(1.0, beside)), None);
+            assert_eq!(under(at(-3.0, beside), at(1.0, beside * 1.001)), None);
+        }
+    }
+
+    #[test]
+    fn what_is_beyond_the_margin_is_left_out() {
+        let [near, far] = [0.01, 0.5].map(|separation| ManifoldPoint { separation, ..Default::default() });
+        assert_eq!(within(&[near, near], 0.1), &[near, near]);
+        assert_eq!(within(&[near, far], 0.1), &[near]);
+        assert_eq!(within(&[far, near], 0.1), &[near]);
+        assert_eq!(within(&[far, far], 0.1), &[]);
+    }
 }

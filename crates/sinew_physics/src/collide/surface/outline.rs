@@ -59,27 +59,31 @@ impl Outline {
         }
     }
 
-    pub fn moved(&self, by: Vec3) -> Self {
-        let mut moved = *self;
-        for corner in &mut moved.corners[..moved.count] {
+    pub fn moved(mut self, by: Vec3) -> Self {
+        for corner in &mut self.corners[..self.count] {
             corner.at += by;
         }
-        moved
+        self
     }
 
     /// What lies over or under the triangle, widened by `tolerance` so that corners which lie on its edges keep their names
     /// under rounding (Sutherland & Hodgman 1974).
-    pub fn cut(&self, triangle: &Triangle, tolerance: f32) -> Self {
-        let mut outline = *self;
+    pub fn cut(mut self, triangle: &Triangle, tolerance: f32) -> Self {
         for edge in 0..3 {
             let (from, to) = (triangle.corners[edge], triangle.corners[(edge + 1) % 3]);
             let outward = sinew_math::normalize_or((to - from).cross(triangle.normal), Vec3::ZERO);
-            outline = outline.cut_by(triangle, edge, |p| (p - from).dot(outward) - tolerance);
-            if outline.count == 0 {
+            let beyond = |p: Vec3| (p - from).dot(outward) - tolerance;
+            // Outlines are long, and most edges have all of one on the same side.
+            let kept = self.corners().iter().filter(|corner| beyond(corner.at) <= 0.0).count();
+            if kept == 0 {
+                self.count = 0;
                 break;
             }
+            if kept < self.count {
+                self = self.cut_by(triangle, edge, beyond);
+            }
         }
-        outline
+        self
     }
 
     /// Cuts away what lies beyond an edge of the triangle.

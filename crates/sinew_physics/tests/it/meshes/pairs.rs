@@ -121,6 +121,7 @@ fn near_a_triangle(kind: usize, random: &mut Random) {
         }
         for manifold in &found {
             assert!((manifold.normal.length() - 1.0).abs() < 1e-5, "{place}");
+            assert!(manifold.points().iter().all(|point| point.separation <= MARGIN), "{place}");
         }
     }
     assert!(apart * 5 > cases(100_000) && deep * 10 > cases(100_000), "{apart} apart, {deep} deep");

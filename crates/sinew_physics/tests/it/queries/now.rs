@@ -1,16 +1,19 @@
 //! Questions see bodies where they are now, whatever brought them there.
 
-use super::random::{Populated, body, frame};
+use super::random::{Populated, body, filter, frame};
 use crate::boxes::cases;
 use crate::build::{box_body, floor};
-use sinew_math::{Random, Transform, Vec3};
+use sinew_math::{Random, Reader, Transform, Vec3, Writer};
 use sinew_physics::ray::Ray;
-use sinew_physics::{BodyId, ContainsPoint, NearestTo, QueryFilter, Velocity, World, WorldDef};
+use sinew_physics::{
+    BodyDef, BodyId, BodyKind, ContainsPoint, Filter, NearestTo, OverlapWith, Probe, QueryFilter, Sensing,
+    Sensors, Shape, ShapeDef, ShapeId, Velocity, World, WorldDef,
+};
 
 /// First hit, holders of a point and nearest surface, by asking every shape.
 fn agrees(populated: &Populated, random: &mut Random) {
-    let filter = QueryFilter::default();
-    let query = populated.world.query();
+    let filter = filter(&[], random);
+    let query = populated.world.query().filter(filter);
     let ray = Ray { origin: random.in_cube() * 4.0, direction: random.in_cube() * 8.0 };
     let fractions = populated.shapes(&filter).filter_map(|(_, shape, frame)| shape.cast_ray(&frame, &ray));
     let least = fractions.map(|hit| hit.fraction).reduce(f32::min);
@@ -35,9 +38,12 @@ fn after_every_kind_of_change() {
     for case in 0..cases(20_000).div_ceil(40) {
         let mut populated = Populated::new(20, 3.0, &mut random);
         for _ in 0..40 {
-            let (id, def) = &populated.bodies[random.index(populated.bodies.len())];
-            let is_ground = def.shapes[0].shape == sinew_physics::Shape::HalfSpace;
-            match random.index(5) {
+            let (id, def) = {
+                let number = random.index(populated.bodies.len());
+                &mut populated.bodies[number]
+            };
+            let is_ground = def.shapes[0].shape == Shape::HalfSpace;
+            match random.index(7) {
                 0 => populated.world.set_transform(*id, frame(3.0, &mut random)),
                 1 if !is_ground => {
                     let velocity =
@@ -47,6 +53,16 @@ fn after_every_kind_of_change() {
                 }
                 2 => populated.world.step(),
                 3 => populated.remove(&mut random),
+                4 => {
+                    let filter = Filter { mask: random.bits() as u32 & 7, ..def.shapes[0].filter };
+                    def.shapes[0].filter = filter;
+                    populated.world.set_filter(ShapeId { body: *id, shape: 0 }, filter);
+                }
+                5 => {
+                    let sensing = [Sensing::Solid, Sensing::Sensor][random.index(2)];
+                    def.shapes[0].sensing = sensing;
+                    populated.world.set_sensing(ShapeId { body: *id, shape: 0 }, sensing);
+                }
                 _ => {
                     populated.add(body(3.0, &mut random));
                 }
@@ -99,4 +115,53 @@ fn after_a_step_the_new_pose() {
         assert_eq!(bodies, [id]);
         assert!(!world.query().any(&ContainsPoint(at - Vec3::X * 1.0)));
     }
+}
+
+/// Whether a ray from above, a box around it, and a ball that lies on it meet a body, each by itself.
+fn met(world: &mut World, id: BodyId, filter: QueryFilter<'_>) -> [bool; 3] {
+    let query = world.query().filter(filter).accept(|body, _| body == id);
+    let around = OverlapWith(Probe::at(Shape::Box { half_extents: Vec3::splat(2.0) }, Vec3::ZERO));
+    let down = Ray { origin: Vec3::Y * 3.0, direction: Vec3::Y * -3.0 };
+    let seen = [query.any(&down), query.any(&around)];
+    let ball = ShapeDef {
+        filter: Filter { layers: filter.meets.layers, ..Filter::default() },
+        ..ShapeDef::new(Shape::Sphere { radius: 0.1 })
+    };
+    let position = Vec3::Y * 0.55;
+    let ball = world.add_body(&BodyDef { position, shapes: vec![ball], ..BodyDef::default() });
+    world.step();
+    let touches = world.contacts_of(ball).next().is_some();
+    world.remove_body(ball);
+    [seen[0], seen[1], touches]
+}
+
+/// Of a static body of a single shape, too, of which copies are kept beside the tree.
+#[test]
+fn after_a_shape_was_changed_whom_it_meets() {
+    let mut world = World::new(WorldDef::default());
+    let mut def = box_body(Vec3::splat(0.5), Vec3::ZERO);
+    def.kind = BodyKind::Static;
+    let id = world.add_body(&def);
+    let shape = ShapeId { body: id, shape: 0 };
+    let of_layer =
+        |layers| QueryFilter { meets: Filter { layers, ..Filter::default() }, ..QueryFilter::default() };
+    assert_eq!([1, 2].map(|layer| met(&mut world, id, of_layer(layer))), [[true; 3]; 2]);
+    world.mark();
+    world.set_filter(shape, Filter { mask: 2, ..Filter::default() });
+    let mut saved = Writer::new();
+    world.save(&mut saved);
+    let only_second = [[false; 3], [true; 3]];
+    assert_eq!([1, 2].map(|layer| met(&mut world, id, of_layer(layer))), only_second);
+    world.set_filter(shape, Filter::default());
+    assert_eq!([1, 2].map(|layer| met(&mut world, id, of_layer(layer))), [[true; 3]; 2]);
+    world.load(&mut Reader::new(saved.as_bytes())).expect("it is a snapshot");
+    assert_eq!([1, 2].map(|layer| met(&mut world, id, of_layer(layer))), only_second);
+    world.reset();
+    assert_eq!([1, 2].map(|layer| met(&mut world, id, of_layer(layer))), [[true; 3]; 2]);
+    world.set_sensing(shape, Sensing::Sensor);
+    assert_eq!(met(&mut world, id, QueryFilter::default())[..2], [false; 2]);
+    let sensors = QueryFilter { sensors: Sensors::Included, ..QueryFilter::default() };
+    assert_eq!(met(&mut world, id, sensors)[..2], [true; 2]);
+    world.set_sensing(shape, Sensing::Solid);
+    assert_eq!(met(&mut world, id, QueryFilter::default()), [true; 3]);
 }

@@ -117,6 +117,35 @@ fn batches_answer_as_single_questions_do() {
     }
 }
 
+/// Whatever is in the world, whatever is asked, and wherever the rays start and end.
+#[test]
+fn many_rays_hit_what_each_by_itself_hits() {
+    let mut random = Random::new(410);
+    let (mut asked, mut inside) = (0, 0);
+    while asked < cases(100_000) as usize {
+        let bodies = 1 + random.index(200);
+        let mut populated = super::random::Populated::new(bodies, 4.0, &mut random);
+        if random.index(2) == 0 {
+            populated.world.step();
+        }
+        let except: Vec<_> = populated.bodies.iter().take(3).map(|(id, _)| *id).collect();
+        let query = populated.world.query().filter(super::random::filter(&except, &mut random));
+        let rays: Vec<Ray> = (0..random.index(300))
+            .map(|_| {
+                let length = [0.0, 1e-6, 1.0, 9.0, 1e5][random.index(5)];
+                Ray { origin: random.in_cube() * 5.0, direction: random.in_cube() * length }
+            })
+            .collect();
+        let mut hits = vec![None; rays.len()];
+        query.first_each(&rays, &mut hits);
+        let single: Vec<_> = rays.iter().map(|ray| query.first(ray)).collect();
+        assert_eq!(hits, single);
+        asked += rays.len();
+        inside += hits.iter().flatten().filter(|hit| hit.start.is_some()).count();
+    }
+    assert!(inside > asked / 100, "{inside} of {asked} start inside");
+}
+
 #[test]
 #[should_panic(expected = "one answer for each question")]
 fn a_batch_has_as_many_answers_as_questions() {

@@ -1,0 +1,43 @@
+//! Joints brought back into their limits.
+
+use crate::learned_limits::LearnedLimit;
+use crate::rig::JointIdx;
+use crate::take::Take;
+use sinew_math::max;
+
+/// How a joint was beyond its limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointExcess {
+    /// Which joint.
+    pub joint: JointIdx,
+    /// In how many frames.
+    pub frames: usize,
+    /// By how much at most, radians.
+    pub largest: f32,
+}
+
+/// Turns every joint that is beyond its limit to the nearest rotation within. Joints that never were are not in the report.
+///
+/// # Panics
+/// If a limit is of a joint that the take has not.
+pub fn project_limits(take: &mut Take, limits: &[LearnedLimit]) -> Vec<JointExcess> {
+    let mut report = Vec::new();
+    for limit in limits {
+        assert!(limit.joint < take.joints, "limits of this rig");
+        let mut excess = JointExcess { joint: limit.joint, frames: 0, largest: 0.0 };
+        for frame in 0..take.frames() {
+            let local = &mut take.pose_mut(frame)[limit.joint];
+            let within = limit.project(local.rotation);
+            let turn = within.angle_to(local.rotation);
+            if turn > 1e-4 {
+                excess.frames += 1;
+                excess.largest = max(excess.largest, turn);
+                local.rotation = within;
+            }
+        }
+        if excess.frames > 0 {
+            report.push(excess);
+        }
+    }
+    report
+}

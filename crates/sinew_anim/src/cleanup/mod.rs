@@ -1,0 +1,29 @@
+//! Mending what capture got wrong. Every job works on a [`Take`](crate::Take) and tells what it did; none has a memory.
+//!
+//! In good order: [`despike`], [`smooth`], [`project_limits`], [`remove_penetration`], [`remove_foot_slide`].
+
+mod foot_slide;
+mod limits;
+mod penetration;
+mod smooth;
+mod spikes;
+
+pub use foot_slide::{FootSlideReport, remove_foot_slide};
+pub use limits::{JointExcess, project_limits};
+pub use penetration::{PenetrationReport, remove_penetration};
+pub use smooth::{SmoothReport, smooth};
+pub use spikes::{Spike, SpikeSettings, despike};
+
+use sinew_math::max;
+
+/// A curve nowhere below `least` and without its corners: the greatest value within `reach` frames, averaged over as many.
+fn smooth_above(least: &[f32], reach: usize) -> Vec<f32> {
+    let around = |i: usize, of: &[f32]| i.saturating_sub(reach)..(i + reach + 1).min(of.len());
+    let tops: Vec<f32> =
+        (0..least.len()).map(|i| least[around(i, least)].iter().copied().fold(least[i], max)).collect();
+    let mean = |i: usize| {
+        let near = &tops[around(i, &tops)];
+        near.iter().sum::<f32>() / near.len() as f32
+    };
+    (0..tops.len()).map(mean).collect()
+}

@@ -1,0 +1,64 @@
+//! Bodies lifted out of the floor.
+
+use super::smooth_above;
+use crate::contact::lowest;
+use crate::legs::Legs;
+use crate::pose::local_to_model;
+use crate::rig::{JointIdx, Rig};
+use crate::take::Take;
+use sinew_math::{Affine, Vec3, max, min};
+
+/// What was in the floor.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PenetrationReport {
+    /// In how many frames.
+    pub frames: usize,
+    /// How deep at most, metres.
+    pub deepest: f32,
+    /// Most that the body was raised, metres: no less than `deepest`.
+    pub raised: f32,
+}
+
+/// Raises the whole body where a sole, or a joint that hangs on the pelvis, is below `floor` (metres, in the space that
+/// `root` maps the rig's to, y up), smoothly over `blend` seconds before and after.
+///
+/// # Panics
+/// If the take is not one of the rig's.
+pub fn remove_penetration(
+    rig: &Rig,
+    root: &Affine,
+    legs: &Legs,
+    floor: f32,
+    blend: f32,
+    take: &mut Take,
+) -> PenetrationReport {
+    let body = below(rig, legs.pelvis);
+    let mut model = Vec::new();
+    let mut depth = Vec::new();
+    for frame in 0..take.frames() {
+        local_to_model(rig, take.pose(frame), root, &mut model);
+        let soles = lowest(&legs.feet.each_ref().map(|foot| foot.points(&model)));
+        let low = body.iter().map(|&joint| model[joint].translation.y).fold(soles, min);
+        depth.push(max(floor - low, 0.0));
+    }
+    let lift = smooth_above(&depth, take.frames_in(blend));
+    for (frame, &lift) in lift.iter().enumerate().filter(|(_, lift)| **lift > 0.0) {
+        local_to_model(rig, take.pose(frame), root, &mut model);
+        legs.carry(rig, Vec3::Y * lift, take.pose_mut(frame), &mut model);
+    }
+    PenetrationReport {
+        frames: depth.iter().filter(|&&depth| depth > 1e-5).count(),
+        deepest: depth.into_iter().fold(0.0, max),
+        raised: lift.into_iter().fold(0.0, max),
+    }
+}
+
+/// A joint and all that hang on it.
+fn below(rig: &Rig, top: JointIdx) -> Vec<JointIdx> {
+    let mut hangs = vec![false; rig.joints.len()];
+    hangs[top] = true;
+    for (i, joint) in rig.joints.iter().enumerate() {
+        hangs[i] |= joint.parent.is_some_and(|parent| hangs[parent]);
+    }
+    (0..hangs.len()).filter(|&i| hangs[i]).collect()
+}

@@ -1,0 +1,114 @@
+//! Frames in which a joint jumps away and back.
+
+use crate::rig::{JointIdx, LocalTransform};
+use crate::take::Take;
+use sinew_math::max;
+
+/// What counts as a spike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpikeSettings {
+    /// Least turn away and back, radians.
+    pub least_turn: f32,
+    /// Least shift away and back, units of the rig.
+    pub least_shift: f32,
+    /// How many times the usual step of the frames around it a spike is at least.
+    pub times_usual: f32,
+    /// Longest spike, seconds.
+    pub longest: f32,
+}
+
+impl Default for SpikeSettings {
+    /// From 5° or 2 cm (of a rig in metres) on, 6 times the usual step, up to 50 ms.
+    fn default() -> Self {
+        Self { least_turn: 0.0873, least_shift: 0.02, times_usual: 6.0, longest: 0.05 }
+    }
+}
+
+/// A spike that was cut off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spike {
+    /// Whose.
+    pub joint: JointIdx,
+    /// First frame of it.
+    pub frame: usize,
+    /// How many frames.
+    pub frames: usize,
+    /// How far the joint turned away, radians.
+    pub turn: f32,
+    /// How far it was shifted away, units of the rig.
+    pub shift: f32,
+}
+
+/// Cuts off spikes: where a joint leaves its path by a step far larger than those around, and comes back within a few
+/// frames, these are filled in evenly. Spikes at the very first or last frame have no other side, and stay.
+pub fn despike(take: &mut Take, settings: &SpikeSettings) -> Vec<Spike> {
+    let mut found = Vec::new();
+    let longest = take.frames_in(settings.longest).max(1);
+    for joint in 0..take.joints {
+        let mut track: Vec<LocalTransform> = take.of_joint(joint).collect();
+        let usual = usual_steps(&track);
+        let mut frame = 1;
+        while frame + 1 < track.len() {
+            let ends = (frame + 1)..(frame + 1 + longest).min(track.len());
+            let spike =
+                ends.into_iter().find_map(|end| spike_between(&track, frame - 1, end, usual, settings));
+            if let Some((turn, shift, end)) = spike {
+                bridge(&mut track, frame - 1, end);
+                found.push(Spike { joint, frame, frames: end - frame, turn, shift });
+                frame = end;
+            }
+            frame += 1;
+        }
+        for (frame, local) in track.into_iter().enumerate() {
+            take.pose_mut(frame)[joint] = local;
+        }
+    }
+    found
+}
+
+/// Turn and shift from one transform to another.
+fn step(a: LocalTransform, b: LocalTransform) -> [f32; 2] {
+    [a.rotation.angle_to(b.rotation), (a.translation - b.translation).length()]
+}
+
+/// Upper quartile of the steps, turn and shift: what the joint does when it is not jumping.
+fn usual_steps(track: &[LocalTransform]) -> [f32; 2] {
+    [0, 1].map(|which| {
+        let mut steps: Vec<f32> = track.windows(2).map(|pair| step(pair[0], pair[1])[which]).collect();
+        steps.sort_by(f32::total_cmp);
+        steps.get(steps.len() * 3 / 4).copied().unwrap_or(0.0)
+    })
+}
+
+/// How far the joint is away between frames `before` and `after`, if both ways are jumps and there is little between the two
+/// ends.
+fn spike_between(
+    track: &[LocalTransform],
+    before: usize,
+    after: usize,
+    usual: [f32; 2],
+    settings: &SpikeSettings,
+) -> Option<(f32, f32, usize)> {
+    let away = step(track[before], track[before + 1]);
+    let back = step(track[after - 1], track[after]);
+    let across = step(track[before], track[after]);
+    let least = [settings.least_turn, settings.least_shift];
+    let is_spike = |k: usize| {
+        let jump = max(least[k], settings.times_usual * usual[k]);
+        away[k] > jump && back[k] > jump && across[k] < 0.3 * away[k] && across[k] < 0.3 * back[k]
+    };
+    (is_spike(0) || is_spike(1)).then_some((away[0], away[1], after))
+}
+
+/// Fills in evenly between two frames.
+fn bridge(track: &mut [LocalTransform], before: usize, after: usize) {
+    let (a, b) = (track[before], track[after]);
+    for frame in before + 1..after {
+        let t = (frame - before) as f32 / (after - before) as f32;
+        track[frame] = LocalTransform {
+            translation: a.translation + (b.translation - a.translation) * t,
+            rotation: a.rotation.slerp(b.rotation, t),
+            scale: track[frame].scale,
+        };
+    }
+}

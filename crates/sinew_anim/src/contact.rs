@@ -1,0 +1,224 @@
+//! Which foot stands when, and how much it slides while it does.
+
+use crate::legs::Foot;
+use crate::pose::local_to_model;
+use crate::rig::Rig;
+use crate::roles::Side;
+use crate::take::Take;
+use sinew_math::{Affine, Rotation, Vec3, clamp, max, min, trig};
+
+/// A foot on the ground for a while.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FootContact {
+    /// Whose.
+    pub foot: Side,
+    /// Seconds from the start of the take: the footfall.
+    pub start: f32,
+    /// Seconds: when it leaves the ground again.
+    pub end: f32,
+}
+
+/// Heels and balls of both feet, frame by frame, in the space that `root` maps the rig's to.
+pub fn sole_points(rig: &Rig, root: &Affine, feet: &[Foot; 2], take: &Take) -> Vec<[[Vec3; 2]; 2]> {
+    let mut model = Vec::new();
+    let points = |frame| {
+        local_to_model(rig, take.pose(frame), root, &mut model);
+        feet.each_ref().map(|foot| foot.points(&model))
+    };
+    (0..take.frames()).map(points).collect()
+}
+
+/// Height of the floor under a motion: that which the lowest point of both feet is at or above in nine frames of ten.
+/// A jump does not fool it, nor a few frames of noise.
+pub fn floor_under(points: &[[[Vec3; 2]; 2]]) -> f32 {
+    tenth(points.iter().map(lowest).collect())
+}
+
+/// What a motion stands on.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ground {
+    /// Metres.
+    pub height: f32,
+    /// How it moves under a body that walks on the spot, m/s; zero under one that gets on. Its y is 0.
+    pub velocity: Vec3,
+}
+
+impl Ground {
+    /// The ground under a motion, told by its feet. It moves if both feet take turns at being low for much of the time, and
+    /// then mostly move at one speed.
+    pub fn under(take: &Take, points: &[[[Vec3; 2]; 2]], settings: &ContactSettings) -> Self {
+        let height = floor_under(points);
+        let lower_step = |frame: usize| {
+            let k = usize::from(points[frame][1][1].y < points[frame][0][1].y);
+            let [from, to] = [points[frame][k][1], points[frame + 1][k][1]];
+            let step = (to - from) / take.frame_time as f32;
+            (from.y - height < settings.height).then_some((k, Vec3::new(step.x, 0.0, step.z)))
+        };
+        let steps: Vec<(usize, Vec3)> = (0..points.len().saturating_sub(1)).filter_map(lower_step).collect();
+        let median = |axis: usize| {
+            let mut numbers: Vec<f32> = steps.iter().map(|(_, step)| step[axis]).collect();
+            numbers.sort_by(f32::total_cmp);
+            numbers.get(numbers.len() / 2).copied().unwrap_or(0.0)
+        };
+        let velocity = Vec3::new(median(0), 0.0, median(2));
+        let alike = |step: Vec3| (step - velocity).length() < 0.3 * velocity.length();
+        let of_foot = |foot: usize| steps.iter().filter(|&&(k, step)| k == foot && alike(step)).count();
+        let (left, right) = (of_foot(0), of_foot(1));
+        let mostly = 2 * (left + right) > steps.len() && 3 * steps.len() > points.len();
+        let take_turns = 4 * usize::min(left, right) > left + right;
+        let moves = velocity.length() > settings.speed[1] && mostly && take_turns;
+        Self { height, velocity: if moves { velocity } else { Vec3::ZERO } }
+    }
+
+    /// Points as seen from the ground: on it, a foot that stands is at rest.
+    pub fn seen_from(&self, take: &Take, mut points: Vec<[[Vec3; 2]; 2]>) -> Vec<[[Vec3; 2]; 2]> {
+        for (frame, feet) in points.iter_mut().enumerate() {
+            let way = self.velocity * take.time(frame);
+            feet.as_flattened_mut().iter_mut().for_each(|point| *point -= way);
+        }
+        points
+    }
+}
+
+/// How far each sole is tilted while it stands, radians, positive for toes up, and the feet with soles that lie flat then.
+///
+/// A reference pose hardly says how a shoe was worn: the heights that heel and ball keep to while they are on the ground
+/// do. Tilts over 0.2 rad are those of a body that stands on its toes, and left.
+pub fn flatten_soles(feet: &[Foot; 2], points: &[[[Vec3; 2]; 2]]) -> ([f32; 2], [Foot; 2]) {
+    let (mut tilts, mut flat) = ([0.0; 2], *feet);
+    for k in 0..2 {
+        let low = [0, 1].map(|point| tenth(points.iter().map(|frame| frame[k][point].y).collect()));
+        let sole = flat[k].sole;
+        let length = (sole[1] - sole[0]).length();
+        let tilt = trig::asin(clamp((low[1] - low[0]) / max(length, 1e-6), -1.0, 1.0));
+        if tilt.abs() < 0.2 {
+            tilts[k] = tilt;
+            flat[k].sole =
+                sole.map(|point| flat[k].stance.inverse() * (toes_up(-tilt) * (flat[k].stance * point)));
+        }
+    }
+    (tilts, flat)
+}
+
+/// A turn of the toes up, in a body's own axes.
+pub(crate) fn toes_up(angle: f32) -> Rotation {
+    Rotation::from_axis_angle(Vec3::NEG_X, angle)
+}
+
+/// The number that nine of ten are not below.
+fn tenth(mut numbers: Vec<f32>) -> f32 {
+    numbers.sort_by(f32::total_cmp);
+    numbers.get(numbers.len() / 10).copied().unwrap_or(0.0)
+}
+
+/// Height of the lowest point of both feet.
+pub fn lowest(points: &[[Vec3; 2]; 2]) -> f32 {
+    points.as_flattened().iter().map(|point| point.y).fold(f32::INFINITY, min)
+}
+
+/// When a foot stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSettings {
+    /// Least and most speed of the ball of a foot, m/s: it lands below the first and leaves above the second.
+    pub speed: [f32; 2],
+    /// Highest that it is above the floor, metres.
+    pub height: f32,
+    /// Shortest time on the ground, and shortest off it, seconds: shorter ones are noise.
+    pub shortest: f32,
+}
+
+impl ContactSettings {
+    /// For a body with legs so long (metres, hip to floor): those of an adult, by Froude's law of like motions.
+    pub fn for_leg(length: f32) -> Self {
+        let size = length / 0.9;
+        let time = size.sqrt();
+        Self { speed: [0.3 * time, 0.45 * time], height: 0.05 * size, shortest: 0.07 * time }
+    }
+}
+
+/// When each foot stands, told by height and speed of its ball. `points` are those of [`sole_points`], as
+/// [seen from the ground](Ground::seen_from) where that moves; `floor` is its height. In order of start; left before right.
+pub fn contacts(
+    take: &Take,
+    feet: &[Foot; 2],
+    points: &[[[Vec3; 2]; 2]],
+    floor: f32,
+    settings: &ContactSettings,
+) -> Vec<FootContact> {
+    let mut found = Vec::new();
+    for (k, foot) in feet.iter().enumerate() {
+        let balls: Vec<Vec3> = points.iter().map(|frame| frame[k][1]).collect();
+        for [first, last] in standing(take, &balls, floor, settings) {
+            found.push(FootContact { foot: foot.side, start: take.time(first), end: take.time(last) });
+        }
+    }
+    found.sort_by(|a, b| a.start.total_cmp(&b.start).then(a.foot.cmp(&b.foot)));
+    found
+}
+
+/// First and last frame of every time on the ground.
+fn standing(take: &Take, balls: &[Vec3], floor: f32, settings: &ContactSettings) -> Vec<[usize; 2]> {
+    let shortest = take.frames_in(settings.shortest).max(1);
+    let mut spans: Vec<[usize; 2]> = Vec::new();
+    let mut stands = false;
+    for frame in 0..balls.len() {
+        let most = settings.speed[usize::from(stands)];
+        let low = balls[frame].y - floor < settings.height;
+        let stood = core::mem::replace(&mut stands, low && speed(take, balls, frame) < most);
+        match (stands, spans.last_mut()) {
+            (true, Some(span)) if stood || frame - span[1] <= shortest => span[1] = frame,
+            (true, _) => spans.push([frame, frame]),
+            (false, _) => {}
+        }
+    }
+    spans.retain(|span| span[1] - span[0] >= shortest);
+    spans
+}
+
+/// Speed over the ground, by a difference over 33 ms: captured points tremble.
+fn speed(take: &Take, points: &[Vec3], frame: usize) -> f32 {
+    let reach = take.frames_in(0.016).max(1);
+    let (from, to) = (frame.saturating_sub(reach), (frame + reach).min(points.len() - 1));
+    let way = points[to] - points[from];
+    let time = take.time(to) - take.time(from);
+    if time > 0.0 { way.length() / time } else { 0.0 }
+}
+
+/// How feet slide while they stand.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FootSlide {
+    /// Mean speed over the ground, m/s: way slid over time stood.
+    pub mean: f32,
+    /// Farthest that a foot gets in one contact from where it landed, metres.
+    pub farthest: f32,
+    /// Time stood, both feet, seconds.
+    pub time: f32,
+}
+
+/// How far the balls of the feet get over the ground (x and z) during `contacts`.
+pub fn foot_slide(
+    take: &Take,
+    feet: &[Foot; 2],
+    points: &[[[Vec3; 2]; 2]],
+    contacts: &[FootContact],
+) -> FootSlide {
+    let (mut way, mut slide) = (0.0, FootSlide::default());
+    let flat = |v: Vec3| Vec3::new(v.x, 0.0, v.z).length();
+    for contact in contacts {
+        let Some(k) = feet.iter().position(|foot| foot.side == contact.foot) else { continue };
+        let [first, last] = frames_of(take, contact, points.len());
+        for frame in first..last {
+            way += flat(points[frame + 1][k][1] - points[frame][k][1]);
+            slide.farthest = max(slide.farthest, flat(points[frame + 1][k][1] - points[first][k][1]));
+        }
+        slide.time += (last - first) as f32 * take.frame_time as f32;
+    }
+    slide.mean = if slide.time > 0.0 { way / slide.time } else { 0.0 };
+    slide
+}
+
+/// First and last frame of a contact, inside a take of so many frames.
+pub(crate) fn frames_of(take: &Take, contact: &FootContact, frames: usize) -> [usize; 2] {
+    let last = frames.saturating_sub(1);
+    [contact.start, contact.end].map(|time| usize::min(take.frames_in(max(time, 0.0)), last))
+}

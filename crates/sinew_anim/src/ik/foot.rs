@@ -1,0 +1,139 @@
+//! Feet on ground that is not the flat floor an animation was made for.
+
+use super::two_bone::{Pole, TwoBone, TwoBoneGoal, two_bone_ik};
+use super::{set_rotation, shift};
+use crate::pose::smoothstep;
+use crate::rig::{JointIdx, LocalTransform, Rig};
+use sinew_math::{Affine, Rotation, Vec3, clamp, direction, max, min};
+
+/// Ground below a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FootGround {
+    /// Along up, from the origin of the space.
+    pub height: f32,
+    /// Unit.
+    pub normal: Vec3,
+}
+
+/// How feet are placed. Lengths in units of the pose, angles in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FootPlacement {
+    /// Unit, away from the ground.
+    pub up: Vec3,
+    /// Where the body faces, any length: the side to which a straight knee bends.
+    pub forward: Vec3,
+    /// Height of the floor that the animation was made for.
+    pub floor: f32,
+    /// Height of the ankles above that floor when a foot is flat on it.
+    pub ankle_height: f32,
+    /// Height above that at which a foot is free of the ground and keeps its tilt, above 0.
+    pub free_height: f32,
+    /// Most that a foot goes up or down, and the pelvis down.
+    pub max_step: f32,
+    /// Most that a foot tilts to lie on the ground.
+    pub max_tilt: f32,
+}
+
+/// What became of a foot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlacedFoot {
+    /// How far it was raised, negative for lowered.
+    pub raised: f32,
+    /// How far it was tilted.
+    pub tilted: f32,
+    /// How far its ankle stays from where it should be.
+    pub miss: f32,
+}
+
+/// What became of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlacedFeet {
+    /// How far the pelvis was raised, negative for lowered.
+    pub pelvis: f32,
+    /// Foot by foot, in the order given.
+    pub feet: [PlacedFoot; 2],
+}
+
+/// Puts both feet on the ground: raises or lowers the pelvis with the lower of the two, bends the knees, and tilts the
+/// feet that stand. `ground` tells what is below an ankle; `None` where there is nothing to stand on: that foot stays.
+///
+/// # Panics
+/// If the slices are not as long as the rig has joints, or a joint is not in it.
+pub fn place_feet(
+    rig: &Rig,
+    pelvis: JointIdx,
+    legs: &[TwoBone; 2],
+    settings: &FootPlacement,
+    mut ground: impl FnMut(Vec3) -> Option<FootGround>,
+    local: &mut [LocalTransform],
+    model: &mut [Affine],
+) -> PlacedFeet {
+    assert_eq!((local.len(), model.len()), (rig.joints.len(), rig.joints.len()), "two poses of one rig");
+    let steps = legs.map(|leg| Step::of(model, leg, settings, ground(model[leg.end].translation)));
+    let mut lift =
+        steps.iter().filter_map(|step| step.as_ref()).map(|step| step.raise).reduce(min).unwrap_or(0.0);
+    for (leg, step) in legs.iter().zip(&steps) {
+        lift = step.as_ref().map_or(lift, |step| min(lift, step.highest_pelvis(model, leg, settings)));
+    }
+    let lift = clamp(lift, -settings.max_step, settings.max_step);
+    shift(rig, pelvis, settings.up * lift, local, model);
+    let mut placed = PlacedFeet { pelvis: lift, ..PlacedFeet::default() };
+    for ((leg, step), foot) in legs.iter().zip(&steps).zip(&mut placed.feet) {
+        let Some(step) = step else { continue };
+        let goal = TwoBoneGoal::at(step.target, Pole::Keep(settings.forward));
+        let miss = two_bone_ik(rig, *leg, &goal, local, model).miss;
+        set_rotation(rig, leg.end, step.tilt * step.rotation, local, model);
+        *foot = PlacedFoot { raised: step.raise, tilted: step.tilt.to_scaled_axis().length(), miss };
+    }
+    placed
+}
+
+/// Where a foot goes.
+struct Step {
+    raise: f32,
+    target: Vec3,
+    /// Of the foot before.
+    rotation: Rotation,
+    tilt: Rotation,
+}
+
+impl Step {
+    fn of(
+        model: &[Affine],
+        leg: TwoBone,
+        settings: &FootPlacement,
+        ground: Option<FootGround>,
+    ) -> Option<Self> {
+        let up = settings.up;
+        let ankle = model[leg.end].to_rigid();
+        let ground = ground?;
+        let normal = direction(ground.normal).filter(|normal| normal.dot(up) > 0.1)?;
+        let height = ankle.translation.dot(up) - settings.floor;
+        let stands = 1.0 - smoothstep((height - settings.ankle_height) / max(settings.free_height, 1e-6));
+        // An ankle as high over a slope as over the floor is farther from it along up.
+        let slope = (1.0 / normal.dot(up) - 1.0) * settings.ankle_height * stands;
+        let raise = clamp(ground.height - settings.floor + slope, -settings.max_step, settings.max_step);
+        let whole = Rotation::from_arc(up, normal).to_scaled_axis() * stands;
+        let angle = whole.length();
+        let tilt = if angle > settings.max_tilt { whole * (settings.max_tilt / angle) } else { whole };
+        Some(Self {
+            raise,
+            target: ankle.translation + up * raise,
+            rotation: ankle.rotation,
+            tilt: Rotation::from_scaled_axis(tilt),
+        })
+    }
+
+    /// How far the pelvis may go up before the leg is too short.
+    fn highest_pelvis(&self, model: &[Affine], leg: &TwoBone, settings: &FootPlacement) -> f32 {
+        let place = |joint: JointIdx| model[joint].translation;
+        let long =
+            (place(leg.lower) - place(leg.upper)).length() + (place(leg.end) - place(leg.lower)).length();
+        let way = self.target - place(leg.upper);
+        let down = way.dot(settings.up);
+        let aside = (way - settings.up * down).length();
+        let full = 0.999 * long;
+        // Out of reach sideways: no height helps.
+        if aside >= full { f32::INFINITY } else { down + (full * full - aside * aside).sqrt() }
+    }
+}

@@ -1,0 +1,56 @@
+//! A head or an eye turned toward what it looks at, as far as a neck goes.
+
+use super::turn;
+use crate::rig::{JointIdx, LocalTransform, Rig};
+use sinew_math::{Affine, Rotation, Vec3, any_orthonormal, clamp, direction, max};
+
+/// What looks where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LookAt {
+    /// The joint that turns, about its origin.
+    pub joint: JointIdx,
+    /// Where it looks, in the joint's own axes, any length.
+    pub forward: Vec3,
+    /// Up, in the axes of the space, any length: what yaw turns about.
+    pub up: Vec3,
+    /// What it looks at.
+    pub target: Vec3,
+    /// Farthest yaw from the pose, radians, 0..=π.
+    pub max_yaw: f32,
+    /// Farthest pitch from the pose, radians, 0..=π. Together with yaw: an ellipse.
+    pub max_pitch: f32,
+    /// How much of the way it goes, 0..=1. Several joints (chest, neck, head) share a look by weights of their own.
+    pub weight: f32,
+}
+
+/// What became of a look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// How far the joint turned, radians.
+    pub turned: f32,
+    /// How far it still looks past the target, radians.
+    pub left: f32,
+}
+
+/// Turns a joint toward a target. One at the joint itself or not finite, and a `forward` of no length, turn nothing.
+///
+/// # Panics
+/// If the slices are not as long as the rig has joints, or the joint is not in it.
+pub fn look_at(rig: &Rig, look: &LookAt, local: &mut [LocalTransform], model: &mut [Affine]) -> Look {
+    assert_eq!((local.len(), model.len()), (rig.joints.len(), rig.joints.len()), "two poses of one rig");
+    let place = &model[look.joint];
+    let (forward, wanted) =
+        (direction(place.vector(look.forward)), direction(look.target - place.translation));
+    let Some((forward, wanted)) = forward.zip(wanted) else { return Look { turned: 0.0, left: 0.0 } };
+    let whole = Rotation::from_arc(forward, wanted).to_scaled_axis();
+    let side = direction(look.up.cross(forward)).unwrap_or_else(|| any_orthonormal(forward));
+    let share = |angle: f32, most: f32| if angle.abs() > 0.0 { angle.abs() / max(most, 1e-6) } else { 0.0 };
+    let (yaw, pitch) =
+        (share(whole.dot(forward.cross(side)), look.max_yaw), share(whole.dot(side), look.max_pitch));
+    let allowed = whole / max((yaw * yaw + pitch * pitch).sqrt(), 1.0);
+    let taken = allowed * clamp(look.weight, 0.0, 1.0);
+    let turned = Rotation::from_scaled_axis(taken);
+    turn(rig, look.joint, turned, local, model);
+    let left = Rotation::from_arc(turned * forward, wanted).to_scaled_axis().length();
+    Look { turned: taken.length(), left }
+}

@@ -1,0 +1,67 @@
+//! Inverse kinematics: joints turned so that a hand, a foot or the eyes get where they should.
+//!
+//! The jobs work on two slices of one pose, **local** and **model**, which have to belong together
+//! ([`local_to_model`](crate::local_to_model)) and still do afterwards. Targets, directions and heights are in the space of
+//! the model slice: the file's, or the character's where that was its root. Nothing is allocated.
+
+mod foot;
+mod look_at;
+mod two_bone;
+
+pub use foot::{FootGround, FootPlacement, PlacedFeet, PlacedFoot, place_feet};
+pub use look_at::{Look, LookAt, look_at};
+pub use two_bone::{Pole, TwoBone, TwoBoneGoal, TwoBoneSolution, solve_two_bone, two_bone_ik};
+
+use crate::rig::{JointIdx, LocalTransform, Rig};
+use sinew_math::{Affine, Rotation, Vec3};
+
+/// The map that the local transform of a joint is relative to.
+fn parent_model(rig: &Rig, joint: JointIdx, local: &[LocalTransform], model: &[Affine]) -> Affine {
+    // A root's parent is the space itself, which is what its own two transforms differ by.
+    rig.joints[joint].parent.map_or_else(|| model[joint] * local[joint].to_affine().inverse(), |p| model[p])
+}
+
+/// Brings the model pose up to date from `joint` on. Parents come first, so one pass will do.
+fn update_from(rig: &Rig, joint: JointIdx, parent: &Affine, local: &[LocalTransform], model: &mut [Affine]) {
+    model[joint] = *parent * local[joint].to_affine();
+    for i in joint + 1..model.len() {
+        if let Some(p) = rig.joints[i].parent {
+            model[i] = model[p] * local[i].to_affine();
+        }
+    }
+}
+
+/// Gives a joint the rotation `wanted` in model space; what hangs on it goes along.
+pub(crate) fn set_rotation(
+    rig: &Rig,
+    joint: JointIdx,
+    wanted: Rotation,
+    local: &mut [LocalTransform],
+    model: &mut [Affine],
+) {
+    let parent = parent_model(rig, joint, local, model);
+    local[joint].rotation = (parent.to_rigid().rotation.inverse() * wanted).normalize();
+    update_from(rig, joint, &parent, local, model);
+}
+
+/// Turns a joint about its origin, model axes; what hangs on it goes along.
+fn turn(rig: &Rig, joint: JointIdx, turn: Rotation, local: &mut [LocalTransform], model: &mut [Affine]) {
+    let rotation = model[joint].to_rigid().rotation;
+    set_rotation(rig, joint, turn * rotation, local, model);
+}
+
+/// Shifts a joint, model axes; what hangs on it goes along.
+pub(crate) fn shift(
+    rig: &Rig,
+    joint: JointIdx,
+    by: Vec3,
+    local: &mut [LocalTransform],
+    model: &mut [Affine],
+) {
+    let parent = parent_model(rig, joint, local, model);
+    let step = parent.linear.inverse() * by;
+    if step.is_finite() {
+        local[joint].translation += step;
+        update_from(rig, joint, &parent, local, model);
+    }
+}

@@ -1,0 +1,221 @@
+//! What joints may do, learned from what they do: centre, ellipse of swing, range of twist, and which joints are hinges.
+
+use crate::rig::{JointIdx, LocalTransform, Rig};
+use crate::take::Take;
+use sinew_math::{
+    Mat3, Range, Rotation, SwingTwistLimit, Sym3, Vec3, any_orthonormal, clamp, direction, max, min, trig,
+};
+
+/// A joint that turns about one axis alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LearnedHinge {
+    /// Unit, in the joint's own axes.
+    pub axis: Vec3,
+    /// Angle about it, radians from [`LearnedLimit::center`].
+    pub range: Range,
+    /// How far the joint turns about other axes all the same, radians.
+    pub off_axis: f32,
+}
+
+/// What a joint did in all takes but for a few frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LearnedLimit {
+    /// Which joint.
+    pub joint: JointIdx,
+    /// The joint's local rotation in the middle of its range.
+    pub center: Rotation,
+    /// From the axes of the limit to the joint's own: x along the bone, y and z along the axes of the swing's ellipse.
+    pub frame: Rotation,
+    /// Half-angles of the ellipse: swing about y, swing about z, radians.
+    pub swing: [f32; 2],
+    /// Turn about the bone, radians from the centre.
+    pub twist: Range,
+    /// Set for joints that turn about one axis.
+    pub hinge: Option<LearnedHinge>,
+    /// Frames learned from.
+    pub samples: usize,
+}
+
+/// Share of the frames that the limits take in.
+pub const COVERAGE: f32 = 0.995;
+/// A joint that turns less, radians, shows too little to be called a hinge.
+const LEAST_HINGE: f32 = 0.2;
+/// Turn about other axes than its own that a hinge may have, as a share of its range.
+const HINGE_PLAY: f32 = 0.1;
+
+impl LearnedLimit {
+    /// The rotation away from the centre, in the axes of the limit.
+    fn away(&self, local: Rotation) -> Rotation {
+        let own = self.center.inverse() * local;
+        (self.frame.inverse() * own * self.frame).normalize()
+    }
+
+    /// The nearest local rotation within the limit: swing drawn in toward the centre, twist cut off. For a hinge, the turn
+    /// about its axis alone.
+    pub fn project(&self, local: Rotation) -> Rotation {
+        if let Some(hinge) = self.hinge {
+            let angle = (self.center.inverse() * local).twist_angle(hinge.axis);
+            let angle = clamp(angle, hinge.range.lo, hinge.range.hi);
+            return (self.center * Rotation::from_axis_angle(hinge.axis, angle)).normalize();
+        }
+        let (swing, twist) = SwingTwistLimit::angles(self.away(local));
+        let (y, z) = (swing.y / max(self.swing[0], 1e-6), swing.z / max(self.swing[1], 1e-6));
+        let over = max((y * y + z * z).sqrt(), 1.0);
+        let kept_twist = clamp(twist, self.twist.lo, self.twist.hi);
+        if over <= 1.0 && kept_twist == twist {
+            return local;
+        }
+        let kept = Rotation::from_scaled_axis(swing / over) * Rotation::from_axis_angle(Vec3::X, kept_twist);
+        (self.center * self.frame * kept * self.frame.inverse()).normalize()
+    }
+
+    /// The same limit for a joint whose frames are `center * frame` on the parent and `frame` on the joint itself.
+    pub fn swing_twist(&self) -> SwingTwistLimit {
+        let [y, z] = self.swing.map(Range::symmetric);
+        SwingTwistLimit { swing_y: y, swing_z: z, twist: self.twist }
+    }
+}
+
+/// Limits of every joint of a rig that turns at all, from what it does in `takes`; one frame in two hundred may be beyond.
+///
+/// # Panics
+/// If a take is not one of the rig's.
+pub fn learn_limits(rig: &Rig, takes: &[&Take]) -> Vec<LearnedLimit> {
+    assert!(takes.iter().all(|take| take.joints == rig.joints.len()), "takes of this rig");
+    let learn = |joint: JointIdx| {
+        let of_take = |take: &&Take| {
+            take.of_joint(joint).map(|local: LocalTransform| local.rotation).collect::<Vec<_>>()
+        };
+        let turns: Vec<Rotation> = takes.iter().flat_map(of_take).filter(|turn| turn.is_finite()).collect();
+        learn_joint(joint, bone(rig, joint), &turns)
+    };
+    (0..rig.joints.len()).filter_map(learn).collect()
+}
+
+/// Direction of a joint's bone in its own axes: to the child that is farthest; x if there is none.
+fn bone(rig: &Rig, joint: JointIdx) -> Vec3 {
+    let children = rig.joints.iter().filter(|child| child.parent == Some(joint));
+    let farthest = children
+        .map(|child| child.rest.translation)
+        .reduce(|a, b| if b.length_squared() > a.length_squared() { b } else { a });
+    farthest.and_then(direction).unwrap_or(Vec3::X)
+}
+
+fn learn_joint(joint: JointIdx, bone: Vec3, turns: &[Rotation]) -> Option<LearnedLimit> {
+    let mean = mean(turns)?;
+    let across = any_orthonormal(bone);
+    let frame = Rotation::from_mat3(&Mat3::from_cols(bone, across, bone.cross(across)));
+    let whole = Range::new(0.0, 0.0);
+    let mut limit = LearnedLimit {
+        joint,
+        center: mean,
+        frame,
+        swing: [0.0; 2],
+        twist: whole,
+        hinge: None,
+        samples: turns.len(),
+    };
+    // The mean is where the joint is most of the time; the middle of its range is found from there.
+    limit.hinge = hinge(turns, mean);
+    if let Some(hinge) = &mut limit.hinge {
+        let middle = hinge.range.center();
+        limit.center = (mean * Rotation::from_axis_angle(hinge.axis, middle)).normalize();
+        hinge.range = Range::new(hinge.range.lo - middle, hinge.range.hi - middle);
+    } else {
+        limit.find_center(turns);
+    }
+    limit.turn_to_main_axes(turns);
+    limit.measure(turns);
+    let most = max(max(limit.swing[0], limit.swing[1]), limit.twist.hi - limit.twist.lo);
+    (most > 1e-3).then_some(limit)
+}
+
+impl LearnedLimit {
+    /// Twist about x, swing about y and z of every rotation, radians from the centre.
+    fn angles(&self, turns: &[Rotation]) -> Vec<[f32; 3]> {
+        let angles = |&turn: &Rotation| {
+            let (swing, twist) = SwingTwistLimit::angles(self.away(turn));
+            [twist, swing.y, swing.z]
+        };
+        turns.iter().map(angles).collect()
+    }
+
+    /// Puts the centre in the middle of the ranges of twist and swing.
+    fn find_center(&mut self, turns: &[Rotation]) {
+        for _ in 0..3 {
+            let angles = self.angles(turns);
+            let middle = [0, 1, 2].map(|k| covered(angles.iter().map(|angle| angle[k]).collect()).center());
+            let step = self.frame * Vec3::from_array(middle);
+            self.center = (self.center * Rotation::from_scaled_axis(step)).normalize();
+        }
+    }
+
+    /// Turns the frame about the bone so that y and z are the main axes of the swing.
+    fn turn_to_main_axes(&mut self, turns: &[Rotation]) {
+        let (mut yy, mut zz, mut yz) = (0.0, 0.0, 0.0);
+        for [_, y, z] in self.angles(turns) {
+            (yy, zz, yz) = (yy + y * y, zz + z * z, yz + y * z);
+        }
+        let angle = 0.5 * trig::atan2(2.0 * yz, yy - zz);
+        self.frame = (self.frame * Rotation::from_axis_angle(Vec3::X, angle)).normalize();
+    }
+
+    /// Half-axes of an ellipse with the proportions of the swing's spread, and the range of the twist.
+    fn measure(&mut self, turns: &[Rotation]) {
+        let angles = self.angles(turns);
+        let reach = [1, 2].map(|k| {
+            let range = covered(angles.iter().map(|angle| angle[k]).collect());
+            max(max(range.hi, -range.lo), 1e-5)
+        });
+        let radius = |angle: &[f32; 3]| {
+            let (y, z) = (angle[1] / reach[0], angle[2] / reach[1]);
+            (y * y + z * z).sqrt()
+        };
+        let mut radii: Vec<f32> = angles.iter().map(radius).collect();
+        radii.sort_by(f32::total_cmp);
+        let most = radii[at_share(radii.len(), COVERAGE)];
+        self.swing = reach.map(|reach| min(reach * most, core::f32::consts::PI));
+        self.twist = covered(angles.iter().map(|angle| angle[0]).collect());
+    }
+}
+
+/// The range that holds all numbers but for the lowest and highest of them.
+fn covered(mut numbers: Vec<f32>) -> Range {
+    numbers.sort_by(f32::total_cmp);
+    let tail = 0.5 * (1.0 - COVERAGE);
+    Range::new(numbers[at_share(numbers.len(), tail)], numbers[at_share(numbers.len(), 1.0 - tail)])
+}
+
+fn at_share(count: usize, share: f32) -> usize {
+    ((count - 1) as f32 * share).round() as usize
+}
+
+/// The rotation in the midst of others: that from which the turns to all of them add up to nothing (Karcher mean).
+fn mean(turns: &[Rotation]) -> Option<Rotation> {
+    let mut mean = *turns.first()?;
+    for _ in 0..8 {
+        let sum: Vec3 = turns.iter().map(|&turn| (mean.inverse() * turn).to_scaled_axis()).sum();
+        mean = (mean * Rotation::from_scaled_axis(sum / turns.len() as f32)).normalize();
+    }
+    Some(mean)
+}
+
+/// The one axis that a joint turns about, if there is one: the main axis of its turns from their mean. The range is from
+/// there.
+fn hinge(turns: &[Rotation], mean: Rotation) -> Option<LearnedHinge> {
+    let own: Vec<Rotation> = turns.iter().map(|&turn| (mean.inverse() * turn).normalize()).collect();
+    let mut spread = Sym3::from_diagonal(Vec3::ZERO);
+    for turn in &own {
+        let outer = Sym3::outer(turn.to_scaled_axis());
+        spread = Sym3 { diagonal: spread.diagonal + outer.diagonal, off: spread.off + outer.off };
+    }
+    let (_, axes) = spread.eigen();
+    let axis = axes * Vec3::X;
+    let range = covered(own.iter().map(|turn| turn.twist_angle(axis)).collect());
+    let mut beside: Vec<f32> =
+        own.iter().map(|turn| turn.swing_twist(axis).0.to_scaled_axis().length()).collect();
+    beside.sort_by(f32::total_cmp);
+    let off_axis = beside[at_share(beside.len(), COVERAGE)];
+    let width = range.hi - range.lo;
+    (width > LEAST_HINGE && off_axis < HINGE_PLAY * width).then_some(LearnedHinge { axis, range, off_axis })
+}

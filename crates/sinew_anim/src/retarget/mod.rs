@@ -1,0 +1,370 @@
+//! An actor's motion on a character of another size and build.
+//!
+//! Joints are matched by [roles](crate::roles). Each takes the actor's rotation, corrected by how the two bodies differ in
+//! their reference poses, so that thighs and arms point where the actor's point; the pelvis moves as much as the legs are
+//! longer; the feet are held where the actor's stand. All of it happens in the two bodies' own axes and in metres, so files
+//! may differ in up, facing and unit.
+
+mod align;
+mod reference;
+
+pub use reference::{Reference, stand};
+
+use crate::cleanup::{FootSlideReport, remove_foot_slide};
+use crate::clip::Clip;
+use crate::contact::{
+    ContactSettings, FootContact, FootSlide, Ground, contacts, flatten_soles, foot_slide, frames_of, lowest,
+    sole_points, toes_up,
+};
+use crate::legs::{Foot, Legs};
+use crate::pose::{local_to_model, rest_pose, smoothstep};
+use crate::rig::{JointIdx, Rig};
+use crate::roles::{RigAnalysis, Role, Side};
+use crate::take::Take;
+use align::Alignment;
+use sinew_math::{Affine, Rotation, Vec3, max};
+
+/// A body: what it is made of and what that means.
+#[derive(Clone, Copy, Debug)]
+pub struct Body<'a> {
+    /// Joints.
+    pub rig: &'a Rig,
+    /// Their roles; its bind pose is the reference pose of the body. See [`stand`] for a skeleton without skin.
+    pub analysis: &'a RigAnalysis,
+}
+
+/// How long the motion of a larger body takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Pace {
+    /// As long as the actor's.
+    #[default]
+    Actor,
+    /// Longer by the square root of the ratio of leg lengths (Froude: like walks at equal v²/(g l)): giants seem large.
+    Froude,
+    /// That many times longer, above 0.
+    Times(f32),
+}
+
+/// What happens at the ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Feet {
+    /// They are held where the actor's stand, and lie flat on the floor while those do.
+    #[default]
+    Locked,
+    /// They go where the rotations carry them, and are tilted as the actor's.
+    Free,
+}
+
+/// How to retarget.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RetargetOptions {
+    /// Seconds from frame to frame of the result, above 0. Default 1/60.
+    pub frame_time: f64,
+    /// Default: as long as the actor's.
+    pub pace: Pace,
+    /// Default: locked.
+    pub feet: Feet,
+    /// Height of the floor the actor stands on, metres along its up axis from the origin of its file. Default: found
+    /// from the feet.
+    pub floor: Option<f32>,
+}
+
+impl Default for RetargetOptions {
+    fn default() -> Self {
+        Self { frame_time: 1.0 / 60.0, pace: Pace::default(), feet: Feet::default(), floor: None }
+    }
+}
+
+/// Why a motion cannot be carried over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RetargetError {
+    /// Roles could only be guessed as those of some creature.
+    #[error("the {0} is no humanoid: its joints have no roles to match")]
+    NotHumanoid(&'static str),
+    /// A joint that the method needs has no counterpart.
+    #[error("the {0} has no joint for a role that is needed (hips, or a thigh, shank or foot)")]
+    RoleMissing(&'static str),
+    /// The frame time, the pace or a length is of no use.
+    #[error("{0} must be above 0 and finite")]
+    NotPositive(&'static str),
+    /// The clip lasts longer than [`Take::MOST_FRAMES`] frames.
+    #[error("the clip lasts {0} frames, which is more than can be")]
+    TooLong(usize),
+}
+
+/// A motion on its new body, and how it fits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Retargeted {
+    /// One pose a frame.
+    pub take: Take,
+    /// When the feet stand, seconds of the new motion.
+    pub contacts: Vec<FootContact>,
+    /// Roles that both bodies have: actor's joint, character's joint.
+    pub pairs: Vec<(Role, JointIdx, JointIdx)>,
+    /// Roles of the character that the actor has not: these joints go along with their parents.
+    pub unmatched: Vec<Role>,
+    /// Length of the character's legs over that of the actor's.
+    pub scale: f32,
+    /// Duration over that of the actor's motion.
+    pub pace: f32,
+    /// What the character stands on, in its own axes, metres: moving under a motion on the spot.
+    pub ground: Ground,
+    /// Foot slide of the actor, over the same contacts, for comparison.
+    pub actor_slide: FootSlide,
+    /// Foot slide of the character before and after its feet were held; without holding, both as they are.
+    pub feet: FootSlideReport,
+}
+
+impl Retargeted {
+    /// The motion as a clip of the character's rig.
+    ///
+    /// # Panics
+    /// If `rig` is not the character's.
+    pub fn clip(&self, rig: &Rig, name: &str) -> Clip {
+        self.take.to_clip(rig, name)
+    }
+}
+
+/// Carries `clip`, a motion of `actor`, over to `character`.
+///
+/// ```
+/// use sinew_anim::retarget::{Body, RetargetOptions, retarget, stand};
+/// use sinew_anim::{Clip, Rig, analyze};
+///
+/// fn walk_like(actor: &Rig, clip: &Clip, character: &Rig) -> Result<Clip, Box<dyn std::error::Error>> {
+///     let (skeleton, _) = stand(actor, clip, None)?;
+///     let skin = analyze(character)?;
+///     let from = Body { rig: actor, analysis: &skeleton };
+///     let to = Body { rig: character, analysis: &skin };
+///     let walk = retarget(from, clip, to, &RetargetOptions::default())?;
+///     Ok(walk.clip(character, "walk"))
+/// }
+/// ```
+///
+/// # Errors
+/// A body without the roles of a humanoid, without hips or with less than two whole legs; numbers that are not above 0; a
+/// clip that is too long.
+///
+/// # Panics
+/// As [`sample`](crate::sample()).
+pub fn retarget(
+    actor: Body<'_>,
+    clip: &Clip,
+    character: Body<'_>,
+    options: &RetargetOptions,
+) -> Result<Retargeted, RetargetError> {
+    let mut transfer = Transfer::new(actor, character)?;
+    let scale = transfer.scale;
+    let pace = match options.pace {
+        Pace::Actor => 1.0,
+        Pace::Froude => scale.sqrt(),
+        Pace::Times(times) => times,
+    };
+    check(scale, "the ratio of leg lengths")?;
+    check(pace, "the pace")?;
+    check(options.frame_time as f32, "the frame time")?;
+    let step = options.frame_time / f64::from(pace);
+    let frames = crate::take::frames_of(clip.duration, step);
+    if frames > Take::MOST_FRAMES {
+        return Err(RetargetError::TooLong(frames));
+    }
+    let source = Take::of(actor.rig, clip, step);
+    if options.feet == Feet::Locked {
+        transfer.flatten_soles(&source);
+    }
+    let steps = transfer.watch(&source, options.floor);
+    let mut take = transfer.carry(&source, &steps, options.frame_time);
+    let at_pace = |contact: &FootContact| FootContact {
+        start: max((contact.start - HOLD) * pace, 0.0),
+        end: (contact.end + HOLD) * pace,
+        ..*contact
+    };
+    let contacts: Vec<FootContact> = steps.contacts.iter().map(at_pace).collect();
+    let ground =
+        Ground { height: character.analysis.floor, velocity: steps.ground.velocity * (scale / pace) };
+    Ok(Retargeted {
+        feet: transfer.stand(options.feet, &contacts, &ground, &mut take),
+        take,
+        contacts,
+        pairs: transfer.alignment.pairs.iter().map(|pair| (pair.role, pair.from, pair.to)).collect(),
+        unmatched: transfer.alignment.unmatched,
+        scale,
+        pace,
+        ground,
+        actor_slide: steps.slide,
+    })
+}
+
+fn check(number: f32, what: &'static str) -> Result<(), RetargetError> {
+    if number > 0.0 && number.is_finite() { Ok(()) } else { Err(RetargetError::NotPositive(what)) }
+}
+
+/// All that does not change from frame to frame.
+struct Transfer<'a> {
+    actor: Body<'a>,
+    character: Body<'a>,
+    alignment: Alignment,
+    /// From the files' spaces to the bodies' own.
+    actor_root: Affine,
+    character_root: Affine,
+    actor_feet: [Foot; 2],
+    /// The character's.
+    legs: Legs,
+    /// From there to the middle of its hip joints, in the pelvis' own axes without scale, metres.
+    hips_to_legs: Vec3,
+    /// Character's legs over actor's.
+    scale: f32,
+}
+
+/// What the actor's feet do.
+struct Steps {
+    ground: Ground,
+    contacts: Vec<FootContact>,
+    /// Frame by frame the height of the lowest sole over the ground, metres; 0 while a foot stands.
+    heights: Vec<f32>,
+    slide: FootSlide,
+}
+
+/// How much longer than the actor's a foot is held at either end, seconds: a foot on its way down hardly moves on.
+const HOLD: f32 = 0.02;
+/// Time over which the height of the body is matched to the floor, seconds.
+const SETTLE: f32 = 0.12;
+
+impl<'a> Transfer<'a> {
+    fn new(actor: Body<'a>, character: Body<'a>) -> Result<Self, RetargetError> {
+        for (body, name) in [(actor, "actor"), (character, "character")] {
+            if !body.analysis.humanoid {
+                return Err(RetargetError::NotHumanoid(name));
+            }
+        }
+        let alignment = Alignment::of(actor.analysis, character.analysis);
+        let legs =
+            |body: Body<'_>, name| Legs::of(body.rig, body.analysis).ok_or(RetargetError::RoleMissing(name));
+        let (actor_feet, legs) = (legs(actor, "actor")?.feet, legs(character, "character")?);
+        let root = character.analysis.character_from_file();
+        let stands = |joint: JointIdx| (root * character.analysis.bind_model[joint]).to_rigid();
+        let hip_joints = legs.feet.map(|foot| stands(foot.leg.upper).translation);
+        let pelvis = stands(legs.pelvis);
+        let length = |feet: &[Foot; 2]| 0.5 * (feet[0].length + feet[1].length);
+        Ok(Self {
+            actor,
+            character,
+            alignment,
+            actor_root: actor.analysis.character_from_file(),
+            character_root: root,
+            scale: length(&legs.feet) / length(&actor_feet),
+            actor_feet,
+            hips_to_legs: pelvis.rotation.inverse()
+                * ((hip_joints[0] + hip_joints[1]) * 0.5 - pelvis.translation),
+            legs,
+        })
+    }
+
+    /// Takes the actor's feet to be flat as they stand in the motion, and the character's with them.
+    fn flatten_soles(&mut self, source: &Take) {
+        let points = sole_points(self.actor.rig, &self.actor_root, &self.actor_feet, source);
+        let (tilts, flat) = flatten_soles(&self.actor_feet, &points);
+        self.actor_feet = flat;
+        for pair in &mut self.alignment.pairs {
+            let (Role::Foot(side) | Role::Toes(side)) = pair.role else { continue };
+            let tilt = tilts[usize::from(side == Side::Right)];
+            let stands = (self.actor_root * self.actor.analysis.bind_model[pair.from]).to_rigid().rotation;
+            pair.correction = (stands.inverse() * toes_up(-tilt) * stands * pair.correction).normalize();
+        }
+    }
+
+    /// Finds out what the actor stands on, and when.
+    fn watch(&self, source: &Take, floor: Option<f32>) -> Steps {
+        let feet = &self.actor_feet;
+        let points = sole_points(self.actor.rig, &self.actor_root, feet, source);
+        let settings = ContactSettings::for_leg(feet[0].length);
+        let mut ground = Ground::under(source, &points, &settings);
+        ground.height = floor.unwrap_or(ground.height);
+        let points = ground.seen_from(source, points);
+        let contacts = contacts(source, feet, &points, ground.height, &settings);
+        let mut heights: Vec<f32> =
+            points.iter().map(|frame| max(lowest(frame) - ground.height, 0.0)).collect();
+        for contact in &contacts {
+            let [first, last] = frames_of(source, contact, heights.len());
+            heights[first..=last].fill(0.0);
+        }
+        Steps { ground, slide: foot_slide(source, feet, &points, &contacts), contacts, heights }
+    }
+
+    /// Holds the character's feet in its contacts, or only tells how they slide.
+    fn stand(
+        &self,
+        feet: Feet,
+        contacts: &[FootContact],
+        ground: &Ground,
+        take: &mut Take,
+    ) -> FootSlideReport {
+        let (rig, root) = (self.character.rig, &self.character_root);
+        if feet == Feet::Locked {
+            return remove_foot_slide(rig, root, &self.legs, contacts, ground, take);
+        }
+        let points = ground.seen_from(take, sole_points(rig, root, &self.legs.feet, take));
+        let slide = foot_slide(take, &self.legs.feet, &points, contacts);
+        FootSlideReport { slide: [slide; 2], ..FootSlideReport::default() }
+    }
+
+    /// Rotations and the way of the pelvis, then the height of the whole body so that its lowest sole, while near the floor,
+    /// is as high over it as the actor's.
+    fn carry(&self, source: &Take, steps: &Steps, frame_time: f64) -> Take {
+        let rig = self.character.rig;
+        let mut take = Take { frame_time, joints: rig.joints.len(), poses: Vec::new() };
+        let (mut from, mut to) = (Vec::new(), Vec::new());
+        let mut errors = Vec::new();
+        for frame in 0..source.frames() {
+            local_to_model(self.actor.rig, source.pose(frame), &self.actor_root, &mut from);
+            let mut pose = rest_pose(rig);
+            self.turn_joints(&from, &mut pose, &mut to);
+            let target = self.hips_target(&from, &to, steps.ground.height);
+            self.legs.carry(rig, target - to[self.legs.pelvis].translation, &mut pose, &mut to);
+            let low = lowest(&self.legs.feet.each_ref().map(|foot| foot.points(&to)));
+            // A body that lies or leaps with its feet up is where its pelvis is.
+            let leg = self.legs.feet[0].length;
+            let height = self.scale * steps.heights[frame];
+            let near = 1.0 - smoothstep((height - 0.1 * leg) / (0.2 * leg));
+            errors.push((height - (low - self.character.analysis.floor)) * near);
+            take.poses.extend(pose);
+        }
+        let reach = take.frames_in(SETTLE * self.scale.sqrt());
+        for (frame, lift) in moving_mean(&errors, reach).into_iter().enumerate() {
+            local_to_model(rig, take.pose(frame), &self.character_root, &mut to);
+            self.legs.carry(rig, Vec3::Y * lift, take.pose_mut(frame), &mut to);
+        }
+        take
+    }
+
+    /// Every matched joint gets its counterpart's rotation, corrected; the others go along.
+    fn turn_joints(&self, from: &[Affine], pose: &mut [crate::rig::LocalTransform], to: &mut Vec<Affine>) {
+        to.clear();
+        let mut pairs = self.alignment.pairs.iter().peekable();
+        for (joint, local) in pose.iter_mut().enumerate() {
+            let parent = self.character.rig.joints[joint].parent.map_or(self.character_root, |p| to[p]);
+            if let Some(pair) = pairs.next_if(|pair| pair.to == joint) {
+                let wanted = from[pair.from].to_rigid().rotation * pair.correction;
+                local.rotation = (parent.to_rigid().rotation.inverse() * wanted).normalize();
+            }
+            to.push(parent * local.to_affine());
+        }
+    }
+
+    /// Where the character's pelvis goes: its hip joints as far and as high as the actor's, by the length of the legs.
+    fn hips_target(&self, from: &[Affine], to: &[Affine], floor: f32) -> Vec3 {
+        let [left, right] = self.actor_feet.map(|foot| from[foot.leg.upper].translation);
+        let middle = (left + right) * 0.5 - Vec3::Y * floor;
+        let legs = middle * self.scale + Vec3::Y * self.character.analysis.floor;
+        let rotation: Rotation = to[self.legs.pelvis].to_rigid().rotation;
+        legs - rotation * self.hips_to_legs
+    }
+}
+
+fn moving_mean(values: &[f32], reach: usize) -> Vec<f32> {
+    let mean = |i: usize| {
+        let near = &values[i.saturating_sub(reach)..(i + reach + 1).min(values.len())];
+        near.iter().sum::<f32>() / near.len() as f32
+    };
+    (0..values.len()).map(mean).collect()
+}

@@ -1,0 +1,38 @@
+//! Captured motions of ../shared/data, for the tests of what is made of them.
+
+use sinew_anim::retarget::{Reference, stand};
+use sinew_anim::{Clip, Rig, RigAnalysis, analyze};
+use sinew_formats::bvh::{BvhDocument, BvhOptions, read_bvh};
+use sinew_formats::{read_deepmimic, read_deepmimic_character};
+
+/// A captured actor: rig, clip, what is known of the body.
+pub struct Actor {
+    pub rig: Rig,
+    pub clip: Clip,
+    pub analysis: RigAnalysis,
+    pub reference: Reference,
+}
+
+/// A BVH file under ../shared/data/mocap; `None` where the data is absent.
+pub fn actor(name: &str) -> Option<Actor> {
+    let bytes = crate::rigs::bytes(&format!("mocap/{name}"))?;
+    let document = read_bvh(&bytes, BvhOptions::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let BvhDocument { rig, clip, rest_pose, .. } = document;
+    let (analysis, reference) = stand(&rig, &clip, rest_pose.as_deref()).expect("bones");
+    Some(Actor { rig, clip, analysis, reference })
+}
+
+/// A DeepMimic clip under ../shared/data/mocap; `None` where the data is absent.
+pub fn imitation(name: &str) -> Option<Actor> {
+    let skeleton = read_deepmimic_character(&crate::rigs::bytes("mocap/deepmimic_humanoid3d.txt")?).unwrap();
+    let clip = read_deepmimic(&crate::rigs::bytes(&format!("mocap/{name}"))?, &skeleton).unwrap().clip;
+    let (analysis, reference) = stand(&skeleton.rig, &clip, None).expect("bones");
+    Some(Actor { rig: skeleton.rig, clip, analysis, reference })
+}
+
+/// A character under ../shared/data/rigs; `None` where the data is absent.
+pub fn character(name: &str) -> Option<(Rig, RigAnalysis)> {
+    let (rig, _) = crate::rigs::load(&format!("rigs/{name}"))?;
+    let analysis = analyze(&rig).expect("a skin");
+    Some((rig, analysis))
+}

@@ -1,0 +1,151 @@
+//! Takes, and bodies told from bones alone; no file is needed.
+
+use crate::toy;
+use core::f32::consts::TAU;
+use sinew_anim::legs::Legs;
+use sinew_anim::retarget::{Body, Feet, Reference, RetargetOptions, retarget, stand};
+use sinew_anim::{
+    Channel, Clip, Interpolation, LocalTransform, Property, Rig, Role, Side, Take, analyze_skeleton,
+    local_to_model, rest_pose,
+};
+use sinew_math::{Affine, Random, Rotation, Vec3, trig};
+
+/// The toy body without its skin.
+fn skeleton(name: impl Fn(Role) -> String) -> Rig {
+    Rig { joints: toy::body(name).joints, ..Rig::default() }
+}
+
+#[test]
+fn a_take_and_its_clip_are_the_same_motion() {
+    let mut random = Random::new(8);
+    let rig = toy::chain(4, Vec3::Y);
+    let rest = rest_pose(&rig);
+    let mut poses = Vec::new();
+    for frame in 0..30 {
+        let mut pose = toy::random_pose(&mut random, 4);
+        // One joint rests, another stays elsewhere.
+        pose[1] = rest[1];
+        pose[2] = if frame == 0 { pose[2] } else { poses[2] };
+        poses.extend(pose);
+    }
+    let take = Take { frame_time: 0.05, joints: 4, poses };
+    let clip = take.to_clip(&rig, "wild");
+    assert!((clip.duration - 29.0 * 0.05).abs() < 1e-6 && clip.name == "wild");
+    assert!(clip.channels.iter().all(|channel| channel.joint != 1));
+    assert!(
+        clip.channels.iter().filter(|channel| channel.joint == 2).all(|channel| channel.times.len() == 1)
+    );
+    assert!(
+        clip.channels.iter().filter(|channel| channel.joint == 3).all(|channel| channel.times.len() == 30)
+    );
+    let again = Take::of(&rig, &clip, 0.05);
+    assert_eq!(again.frames(), 30);
+    for (a, b) in take.poses.iter().zip(&again.poses) {
+        assert!(a.rotation.angle_to(b.rotation) < 1e-3 && (a.translation - b.translation).length() < 1e-5);
+    }
+    let still = Take::of(&rig, &Clip::default(), 0.05);
+    assert_eq!((still.frames(), still.pose(0)), (1, &rest[..]));
+}
+
+#[test]
+fn bones_alone_tell_the_roles() {
+    let rig = skeleton(Role::name);
+    let found = analyze_skeleton(&rig, &rest_pose(&rig)).unwrap();
+    assert!(found.humanoid, "{:?}", found.notes);
+    for (i, (role, ..)) in toy::BODY.iter().enumerate() {
+        let expected = Role::from_name(role);
+        // Of three joints of the spine, which is which is a matter of taste.
+        let found = found.roles[i].map(|guess| guess.role);
+        let in_trunk = matches!(expected, Some(Role::Spine | Role::Chest | Role::UpperChest));
+        assert!(found == expected || in_trunk, "{role}: {found:?}");
+    }
+    assert!((found.unit_scale - 1.0).abs() < 1e-6 && (found.height - 1.5).abs() < 0.01);
+    let bare = Rig { joints: rig.joints[..1].to_vec(), ..Rig::default() };
+    assert!(analyze_skeleton(&bare, &rest_pose(&bare)).is_err());
+}
+
+/// A clip of that body that walks on the spot: thighs and knees swing.
+fn stepping(rig: &Rig) -> Clip {
+    let joint = |name: &str| rig.joints.iter().position(|joint| joint.name == name).unwrap();
+    let times: Vec<f32> = (0..61).map(|i| i as f32 / 60.0).collect();
+    let swing = |joint: usize, middle: f32, wide: f32, phase: f32| {
+        let angle = |&t: &f32| middle + wide * trig::sin(TAU * t + phase);
+        let turn = |t: &f32| {
+            let q = rig.joints[joint].rest.rotation * Rotation::from_axis_angle(Vec3::X, angle(t));
+            [q.x, q.y, q.z, q.w]
+        };
+        let values = times.iter().flat_map(turn).collect();
+        Channel {
+            joint,
+            property: Property::Rotation,
+            interpolation: Interpolation::Linear,
+            times: times.clone(),
+            values,
+        }
+    };
+    let half = core::f32::consts::PI;
+    let channels = vec![
+        swing(joint("leftUpperLeg"), 0.0, -0.4, 0.0),
+        swing(joint("rightUpperLeg"), 0.0, -0.4, half),
+        swing(joint("leftLowerLeg"), 0.4, 0.3, 1.0),
+        swing(joint("rightLowerLeg"), 0.4, 0.3, 1.0 + half),
+    ];
+    Clip { name: "step".into(), duration: 1.0, channels }
+}
+
+/// Scaled, turned, and with joints whose axes point anywhere: the motion of the bones is the same.
+#[test]
+fn a_motion_fits_a_body_drawn_otherwise() {
+    let actor = skeleton(Role::name);
+    let clip = stepping(&actor);
+    let (analysis, reference) = stand(&actor, &clip, None).unwrap();
+    assert_eq!(reference, Reference::Rest);
+    let mut random = Random::new(21);
+    let mut other = actor.clone();
+    let turns: Vec<Rotation> = (0..other.joints.len()).map(|_| random.rotation()).collect();
+    let scale = 3.0;
+    for i in 0..other.joints.len() {
+        let above = other.joints[i].parent.map_or(Rotation::IDENTITY, |parent| turns[parent]);
+        let rest = &mut other.joints[i].rest;
+        rest.translation = above.inverse() * (rest.translation * scale);
+        rest.rotation = (above.inverse() * turns[i]).normalize();
+    }
+    let found = analyze_skeleton(&other, &rest_pose(&other)).unwrap().with_unit_scale(1.0);
+    let (from, to) = (Body { rig: &actor, analysis: &analysis }, Body { rig: &other, analysis: &found });
+    let options = RetargetOptions { feet: Feet::Free, ..RetargetOptions::default() };
+    let moved = retarget(from, &clip, to, &options).unwrap();
+    assert!((moved.scale - scale).abs() < 1e-3);
+    let source = Take::of(&actor, &clip, options.frame_time);
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    for frame in 0..source.frames() {
+        local_to_model(&actor, source.pose(frame), &Affine::IDENTITY, &mut a);
+        local_to_model(&other, moved.take.pose(frame), &Affine::IDENTITY, &mut b);
+        for i in 1..a.len() {
+            let bone =
+                |model: &[Affine]| model[i].translation - model[actor.joints[i].parent.unwrap()].translation;
+            assert!((bone(&a) * scale - bone(&b)).length() < 1e-3, "frame {frame}, {}", actor.joints[i].name);
+        }
+    }
+}
+
+/// A foot that the rig hangs on the root is carried by the shank all the same.
+#[test]
+fn a_stray_foot_goes_along() {
+    let mut rig = skeleton(Role::name);
+    let joint = |rig: &Rig, name: &str| rig.joints.iter().position(|joint| joint.name == name).unwrap();
+    let (shank, foot) = (joint(&rig, "leftLowerLeg"), joint(&rig, "leftFoot"));
+    let analysis = analyze_skeleton(&rig, &rest_pose(&rig)).unwrap();
+    let mut model = Vec::new();
+    local_to_model(&rig, &rest_pose(&rig), &Affine::IDENTITY, &mut model);
+    rig.joints[foot].parent = Some(0);
+    rig.joints[foot].rest.translation = model[foot].translation - model[0].translation;
+    let legs = Legs::of(&rig, &analysis).unwrap();
+    assert_eq!(legs.feet[0].side, Side::Left);
+    let mut pose: Vec<LocalTransform> = rest_pose(&rig);
+    pose[shank].rotation = Rotation::from_axis_angle(Vec3::X, 1.0);
+    local_to_model(&rig, &pose, &Affine::IDENTITY, &mut model);
+    legs.gather(&rig, &mut pose, &mut model);
+    let bone = model[foot].translation - model[shank].translation;
+    let hanging = Vec3::new(0.0, -0.4 * trig::cos(1.0), -0.4 * trig::sin(1.0));
+    assert!((bone - hanging).length() < 1e-5, "{bone}");
+}

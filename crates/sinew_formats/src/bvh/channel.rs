@@ -1,0 +1,75 @@
+//! What one number of a row moves.
+
+use sinew_math::Vec3;
+
+/// One of the six ways in which a joint of a BVH file moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum BvhChannel {
+    /// Along x.
+    Xposition,
+    /// Along y.
+    Yposition,
+    /// Along z.
+    Zposition,
+    /// About x, degrees.
+    Xrotation,
+    /// About y, degrees.
+    Yrotation,
+    /// About z, degrees.
+    Zrotation,
+}
+
+impl BvhChannel {
+    /// All six.
+    pub const ALL: [Self; 6] = [
+        Self::Xposition,
+        Self::Yposition,
+        Self::Zposition,
+        Self::Xrotation,
+        Self::Yrotation,
+        Self::Zrotation,
+    ];
+
+    /// The three positions.
+    pub const POSITIONS: [Self; 3] = [Self::Xposition, Self::Yposition, Self::Zposition];
+
+    /// The rotation about axis 0, 1 or 2.
+    ///
+    /// # Panics
+    /// If there is no such axis.
+    pub fn rotation(axis: usize) -> Self {
+        Self::ALL[3 + axis]
+    }
+
+    /// The word that stands for it in a file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Xposition => "Xposition",
+            Self::Yposition => "Yposition",
+            Self::Zposition => "Zposition",
+            Self::Xrotation => "Xrotation",
+            Self::Yrotation => "Yrotation",
+            Self::Zrotation => "Zrotation",
+        }
+    }
+
+    /// The channel of that name, in any case.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|channel| channel.name().eq_ignore_ascii_case(name))
+    }
+
+    /// Whether it turns the joint, and does not shift it.
+    pub fn is_rotation(self) -> bool {
+        self >= Self::Xrotation
+    }
+
+    /// 0, 1, 2 for x, y, z.
+    pub fn axis(self) -> usize {
+        self as usize % 3
+    }
+
+    /// The unit vector that it moves along or about.
+    pub fn direction(self) -> Vec3 {
+        Vec3::AXES[self.axis()]
+    }
+}

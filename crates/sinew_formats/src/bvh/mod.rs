@@ -1,0 +1,97 @@
+//! Biovision Hierarchy (BVH): a skeleton and its motion as text, the format of most free motion capture.
+//!
+//! The format was never written down by its makers, so files differ in all that can differ. What this reader takes:
+//! rotation channels in any order and number, per joint; positions at any joint; joints of no length; missing End
+//! Sites; any line ends and any white space. What it assumes and mends stands in [`BvhDocument::notes`].
+
+mod channel;
+mod hierarchy;
+mod motion;
+mod rest_frame;
+mod timing;
+mod unit;
+mod words;
+mod write;
+
+pub use channel::BvhChannel;
+pub use rest_frame::RestFrame;
+pub use unit::BvhUnit;
+pub use write::{BvhText, BvhWriteOptions, write_bvh};
+
+use crate::error::Result;
+use hierarchy::Hierarchy;
+use motion::Motion;
+use sinew_anim::{Clip, LocalTransform, Rig};
+use words::Words;
+
+/// What to do when a file has more or fewer rows than its `Frames:` says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BvhRows {
+    /// Refuse it: it may have been cut.
+    #[default]
+    AsDeclared,
+    /// Take the whole rows that are there, and say so in the notes.
+    AsPresent,
+}
+
+/// How to read a BVH file.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BvhOptions {
+    /// Length of the file's unit. Default: inferred.
+    pub unit: BvhUnit,
+    /// What becomes of a rest pose put before the motion. Default: left out of the clip.
+    pub rest_frame: RestFrame,
+    /// Default: refuse a file whose rows are not those it declares.
+    pub rows: BvhRows,
+}
+
+/// A BVH file as plain data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BvhDocument {
+    /// Joints in file order, metres. Rest pose: the offsets, no rotation. An End Site is a joint without a name.
+    pub rig: Rig,
+    /// One linear channel for every joint's rotations, and one for the translations of each joint with positions.
+    pub clip: Clip,
+    /// Seconds from frame to frame, as mended; see [`notes`](Self::notes).
+    pub frame_time: f64,
+    /// Frames in the clip, at least 1.
+    pub frames: usize,
+    /// Metres per unit of the file.
+    pub metres_per_unit: f32,
+    /// Channels of each joint in file order, for [`BvhWriteOptions::channels`].
+    pub channels: Vec<Vec<BvhChannel>>,
+    /// The rest pose that stands as the first frame, where one does: better to tell the body by than the offsets.
+    pub rest_pose: Option<Vec<LocalTransform>>,
+    /// What was assumed, mended or left out, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Reads a BVH file. Memory stays in proportion to its bytes, whatever its numbers claim, and so does the call depth.
+///
+/// # Errors
+/// Names the line, and the joint where there is one: words out of place, braces that do not match, a channel that is
+/// unknown or named twice, a number that is none or not finite, a row that is too long or too short, other rows than
+/// declared (see [`BvhRows`]), no joint, no channel, no frame, a frame time that is not above 0.
+pub fn read_bvh(bytes: &[u8], options: BvhOptions) -> Result<BvhDocument> {
+    let text = String::from_utf8_lossy(bytes);
+    let mut words = Words::new(text.strip_prefix('\u{feff}').unwrap_or(&text));
+    let mut notes = Vec::new();
+    let hierarchy = Hierarchy::read(&mut words)?;
+    let motion = Motion::read(&mut words, &hierarchy, options.rows, &mut notes)?;
+    let unit = options.unit.resolve(&hierarchy, &mut notes);
+    let rest = rest_frame::find(&hierarchy, &motion, options.rest_frame, &mut notes);
+    let rig = hierarchy.rig(unit);
+    let frames = motion::frames(&hierarchy, &motion, unit, &mut notes);
+    let skipped = usize::from(rest && options.rest_frame == RestFrame::Skip);
+    let clip = frames.clip(&rig, skipped, motion.frame_time)?;
+    Ok(BvhDocument {
+        rest_pose: rest.then(|| frames.pose(&rig, 0)),
+        rig,
+        clip,
+        frame_time: motion.frame_time,
+        frames: motion.rows.len() / hierarchy.width - skipped,
+        metres_per_unit: unit,
+        channels: hierarchy.joints.into_iter().map(|joint| joint.channels).collect(),
+        notes,
+    })
+}

@@ -1,0 +1,48 @@
+//! A rest pose put before the motion.
+
+use super::hierarchy::Hierarchy;
+use super::motion::Motion;
+
+/// What becomes of a rest pose that stands as the first frame. The BVH files of the CMU library have one: arms out,
+/// legs straight, so that programs can tell what the body looks like at rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RestFrame {
+    /// It is not part of the clip. It stays in [`rest_pose`](super::BvhDocument::rest_pose).
+    #[default]
+    Skip,
+    /// It is the first frame of the clip, as in the file.
+    Keep,
+}
+
+/// Whether the first frame is a rest pose: set by hand, in whole degrees, where the motion after it was measured.
+pub(super) fn find(
+    hierarchy: &Hierarchy,
+    motion: &Motion,
+    wanted: RestFrame,
+    notes: &mut Vec<String>,
+) -> bool {
+    let mut rows = motion.rows.chunks_exact(hierarchy.width);
+    let (Some(first), Some(second), Some(_)) = (rows.next(), rows.next(), rows.next()) else { return false };
+    let columns: Vec<usize> = hierarchy
+        .joints
+        .iter()
+        .flat_map(|joint| joint.channels.iter().zip(joint.column..))
+        .filter(|(channel, _)| channel.is_rotation())
+        .map(|(_, column)| column)
+        .collect();
+    let whole = |row: &[f32]| columns.iter().filter(|&&column| row[column].fract() == 0.0).count();
+    let step =
+        columns.iter().map(|&column| (second[column] - first[column]).abs()).fold(0.0, sinew_math::max);
+    let found =
+        columns.len() >= 6 && whole(first) * 10 >= columns.len() * 9 && whole(second) * 2 < columns.len();
+    if found && step > 5.0 {
+        let fate = if wanted == RestFrame::Skip { "left out of the clip" } else { "kept" };
+        notes.push(format!(
+            "frame 0 is a rest pose: {} of {} angles are whole degrees, and the motion starts {step:.0}° away; {fate}",
+            whole(first),
+            columns.len()
+        ));
+        return true;
+    }
+    false
+}

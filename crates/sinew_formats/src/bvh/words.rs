@@ -1,0 +1,87 @@
+//! Words of a text with the lines they stand on.
+
+use crate::error::{Error, Result, quoted};
+
+/// Reads a text word by word; braces are words of their own wherever they stand.
+pub(super) struct Words<'a> {
+    lines: core::str::Split<'a, char>,
+    rest: &'a str,
+    line: usize,
+}
+
+impl<'a> Words<'a> {
+    /// Old files end their lines in a carriage return alone.
+    pub fn new(text: &'a str) -> Self {
+        let end = if text.contains('\n') { '\n' } else { '\r' };
+        Self { lines: text.strip_suffix(end).unwrap_or(text).split(end), rest: "", line: 0 }
+    }
+
+    /// Line of the last word, from 1.
+    pub fn place(&self) -> String {
+        format!("line {}", self.line)
+    }
+
+    /// The next line that has a word on it, and its number. Skips what is left of this one.
+    pub fn next_line(&mut self) -> Option<(usize, &'a str)> {
+        loop {
+            let line = self.lines.next()?.trim();
+            self.line += 1;
+            self.rest = "";
+            if !line.is_empty() {
+                return Some((self.line, line));
+            }
+        }
+    }
+
+    /// The next word, on whatever line; `None` at the end.
+    pub fn next(&mut self) -> Option<&'a str> {
+        while self.rest.is_empty() {
+            let (_, line) = self.next_line()?;
+            self.rest = line;
+        }
+        let end = match self.rest.as_bytes()[0] {
+            b'{' | b'}' => 1,
+            _ => self
+                .rest
+                .find(|c: char| c.is_whitespace() || matches!(c, '{' | '}'))
+                .unwrap_or(self.rest.len()),
+        };
+        let (word, rest) = self.rest.split_at(end);
+        self.rest = rest.trim_start();
+        Some(word)
+    }
+
+    /// What is left of the line, up to a brace: names may have blanks in them.
+    pub fn rest_of_line(&mut self) -> &'a str {
+        let end = self.rest.find(['{', '}']).unwrap_or(self.rest.len());
+        let (name, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        name.trim()
+    }
+
+    /// The next word, which has to be there.
+    pub fn need(&mut self, expected: &str) -> Result<&'a str> {
+        self.next().ok_or_else(|| Error::malformed(format!("ends where {expected} is due"), self.place()))
+    }
+
+    /// The next word, which has to be this one in any case.
+    pub fn expect(&mut self, expected: &str) -> Result<()> {
+        let word = self.need(&format!("`{expected}`"))?;
+        if word.eq_ignore_ascii_case(expected) {
+            return Ok(());
+        }
+        Err(Error::malformed(format!("{} stands where `{expected}` is due", quoted(word)), self.place()))
+    }
+
+    /// The next word as a finite number. `what` it is, for the complaint.
+    pub fn number(&mut self, what: &str) -> Result<f64> {
+        let word = self.need(what)?;
+        parse_number(word).map_err(|wrong| Error::malformed(format!("{what}: {wrong}"), self.place()))
+    }
+}
+
+/// A number that is finite as `f32`, or what is wrong with it.
+pub(super) fn parse_number(word: &str) -> Result<f64, String> {
+    let number: f64 = word.parse().map_err(|_| format!("{} is not a number", quoted(word)))?;
+    if (number as f32).is_finite() { Ok(number) } else { Err(format!("{} is not finite", quoted(word))) }
+}

@@ -1,0 +1,334 @@
+//! The first hits of many rays. They go through the trees by turns, so that none of them waits alone for memory, and where
+//! they come to boxes eight of them are tested at a time. What such a test lets through the shape itself is asked, so that
+//! the answers are those of single rays.
+
+use super::candidates::{Reach, sweep, what_is_left};
+use super::question::sealed::{Ask, Reply};
+use super::{BodyHit, Query, keep_first};
+use crate::boxes::Obb;
+use crate::boxes::batch::record::{NUMBERS, Record};
+use crate::id::BodyId;
+use crate::proxies::Owner;
+use crate::ray::{CLEARLY_OUTSIDE, Ray};
+use crate::shape::Shape;
+use crate::slabs::Slabs;
+use crate::tree::{Flight, Stop, Sweep, Tree};
+use sinew_math::dispatch::{self, Kernel, Level};
+use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
+use sinew_math::{Transform, Vec3};
+
+/// How many are under way at once: when eight of them have come to boxes, as many still go on.
+const UNDER_WAY: usize = 2 * WIDTH;
+
+/// [`first`](Query::first) of each ray. Fewer than eight go one after the other.
+pub(super) fn first_each<P: Fn(BodyId, u32) -> bool>(
+    query: &Query<'_, P>,
+    rays: &[Ray],
+    hits: &mut [Option<BodyHit>],
+) {
+    if rays.len() < WIDTH {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = query.best(ray);
+        }
+    } else {
+        first_each_at(Level::best(), query, rays, hits);
+    }
+}
+
+/// Likewise, all together, on the registers of a level.
+fn first_each_at<P: Fn(BodyId, u32) -> bool>(
+    level: Level,
+    query: &Query<'_, P>,
+    rays: &[Ray],
+    hits: &mut [Option<BodyHit>],
+) {
+    let proxies = &query.world.broad.proxies;
+    hits.fill(None);
+    for (ray, hit) in rays.iter().zip(&mut *hits).filter(|(ray, _)| way(ray).is_some()) {
+        for &owner in proxies.unbounded() {
+            ask(query, owner, ray, hit);
+        }
+    }
+    for (tree, owners) in proxies.trees() {
+        dispatch::run_at(level, Stream { query, tree, owners, rays, hits, begun: 0 });
+    }
+}
+
+/// Where a ray goes, if it is one that has answers.
+fn way(ray: &Ray) -> Option<Sweep> {
+    match ray.reach()? {
+        Reach::Swept(start, direction) => sweep(&start, direction),
+        Reach::Box(_) | Reach::Near(..) => None,
+    }
+}
+
+/// Lets a shape replace the hit of a ray.
+fn ask<P: Fn(BodyId, u32) -> bool>(query: &Query<'_, P>, owner: Owner, ray: &Ray, hit: &mut Option<BodyHit>) {
+    let answer = query.meet(owner, |id, shape, frame| ray.ask(id, shape, frame));
+    if let Some(answer) = answer.flatten() {
+        keep_first(hit, answer);
+    }
+}
+
+/// Rays that go through one tree, and the best of what they have met so far.
+struct Stream<'a, 'w, P> {
+    query: &'a Query<'w, P>,
+    tree: &'a Tree,
+    owners: &'a [Owner],
+    rays: &'a [Ray],
+    hits: &'a mut [Option<BodyHit>],
+    /// How many have set out.
+    begun: usize,
+}
+
+/// A ray under way.
+struct Rider {
+    ray: usize,
+    sweep: Sweep,
+    flight: Flight,
+}
+
+impl Rider {
+    fn idle() -> Self {
+        let [origin, direction, half_extents] = Default::default();
+        let sweep = Sweep { origin, direction, half_extents, limit: 0.0 };
+        Self { ray: 0, sweep, flight: Flight::ended() }
+    }
+}
+
+impl<P: Fn(BodyId, u32) -> bool> Kernel for Stream<'_, '_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self) {
+        let mut riders: [Rider; UNDER_WAY] = core::array::from_fn(|_| Rider::idle());
+        // Of the riders, first come those that go on.
+        let mut order: [usize; UNDER_WAY] = core::array::from_fn(|number| number);
+        let mut going = UNDER_WAY;
+        let mut nodes = [0; UNDER_WAY];
+        let mut meetings = Meetings::NONE;
+        loop {
+            let mut place = 0;
+            while place < going && meetings.count < WIDTH {
+                let number = order[place];
+                let rider = &mut riders[number];
+                let goes_on = match rider.flight.next() {
+                    Stop::Node(node) => {
+                        nodes[place] = node;
+                        place += 1;
+                        true
+                    }
+                    Stop::Leaf(leaf) => !self.arrive(rider, number, leaf, &mut meetings),
+                    Stop::End => self.begin(rider),
+                };
+                if !goes_on {
+                    going -= 1;
+                    order[place] = order[going];
+                }
+            }
+            for (&number, &node) in order.iter().zip(&nodes).take(place) {
+                riders[number].flight.enter::<L>(self.tree, node);
+            }
+            if meetings.count == WIDTH || going == 0 {
+                if meetings.count == 0 {
+                    return;
+                }
+                self.decide(&mut riders, meetings.possible::<L>(), &meetings);
+                for &(number, _) in meetings.who() {
+                    order[going] = number;
+                    going += 1;
+                }
+                meetings.count = 0;
+            }
+        }
+    }
+}
+
+impl<P: Fn(BodyId, u32) -> bool> Stream<'_, '_, P> {
+    /// Has the next ray set out, if there is one.
+    #[inline(always)]
+    fn begin(&mut self, rider: &mut Rider) -> bool {
+        while let Some(ray) = self.rays.get(self.begun) {
+            let number = self.begun;
+            self.begun += 1;
+            if let Some(sweep) = way(ray) {
+                (rider.ray, rider.sweep) = (number, sweep);
+                rider.flight.start(self.tree, &sweep);
+                self.shorten(rider);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Whether a ray that has come to a leaf has to wait until it is tested with others; else it goes on.
+    #[inline(always)]
+    fn arrive(&mut self, rider: &mut Rider, number: usize, leaf: u32, meetings: &mut Meetings) -> bool {
+        let (owner, ray) = (self.owners[leaf as usize], &self.rays[rider.ray]);
+        let limit = rider.flight.limit;
+        let waits = self.query.meet(owner, |_, shape, frame| match *shape {
+            Shape::Box { half_extents } if !ray.is_long() => {
+                meetings.add((number, owner), ray, &placed(half_extents, frame), limit);
+                true
+            }
+            _ => false,
+        });
+        if waits == Some(false) {
+            ask(self.query, owner, ray, &mut self.hits[rider.ray]);
+            self.shorten(rider);
+        }
+        waits == Some(true)
+    }
+
+    /// Asks the boxes that rays may meet, by the bits of a mask.
+    fn decide(&mut self, riders: &mut [Rider; UNDER_WAY], possible: u8, meetings: &Meetings) {
+        for (place, &(number, owner)) in meetings.who().iter().enumerate() {
+            if possible & (1 << place) != 0 {
+                let rider = &mut riders[number];
+                ask(self.query, owner, &self.rays[rider.ray], &mut self.hits[rider.ray]);
+                self.shorten(rider);
+            }
+        }
+    }
+
+    /// Lets a ray end where it hits.
+    #[inline(always)]
+    fn shorten(&self, rider: &mut Rider) {
+        if let Some(hit) = &self.hits[rider.ray] {
+            rider.flight.limit = what_is_left(&rider.sweep, hit.rank());
+        }
+    }
+}
+
+fn placed(half_extents: Vec3, frame: &Transform) -> Obb {
+    Obb { center: frame.translation, rotation: frame.rotation, half_extents }
+}
+
+/// Rays that have come to boxes, side by side.
+struct Meetings {
+    boxes: [[f32; WIDTH]; NUMBERS],
+    origins: [[f32; WIDTH]; 3],
+    directions: [[f32; WIDTH]; 3],
+    limits: [f32; WIDTH],
+    /// Which rider, and whose the box is.
+    who: [(usize, Owner); WIDTH],
+    count: usize,
+}
+
+impl Meetings {
+    const NONE: Self = Self {
+        boxes: [[0.0; WIDTH]; NUMBERS],
+        origins: [[0.0; WIDTH]; 3],
+        directions: [[0.0; WIDTH]; 3],
+        limits: [0.0; WIDTH],
+        who: [(0, Owner { body: 0, shape: 0 }); WIDTH],
+        count: 0,
+    };
+
+    #[inline(always)]
+    fn who(&self) -> &[(usize, Owner)] {
+        &self.who[..self.count]
+    }
+
+    /// Adds one to fewer than eight.
+    #[inline(always)]
+    fn add(&mut self, who: (usize, Owner), ray: &Ray, obb: &Obb, limit: f32) {
+        let place = self.count % WIDTH;
+        for (row, number) in self.boxes.iter_mut().zip(Record::of(obb).to_array()) {
+            row[place] = number;
+        }
+        for axis in 0..3 {
+            self.origins[axis][place] = ray.origin[axis];
+            self.directions[axis][place] = ray.direction[axis];
+        }
+        (self.limits[place], self.who[place]) = (limit, who);
+        self.count += 1;
+    }
+
+    /// Which of the rays may meet their box before their limit, bit by bit: those that do, and those that start so near to it
+    /// that it takes a closer look.
+    #[inline(always)]
+    fn possible<L: Lanes>(&self) -> u8 {
+        let [[x, y, z], [u, v, w]] = [&self.origins, &self.directions];
+        let obb = Record::<L>::load(self.boxes.each_ref());
+        let origin = obb.inverse_point(Vector3::load(x, y, z));
+        let slabs = Slabs::new(obb.half, origin, obb.inverse_vector(Vector3::load(u, v, w)));
+        let beyond = origin.abs() - obb.half;
+        let clearly = L::splat(CLEARLY_OUTSIDE);
+        let outside = L::gt(beyond.x, clearly) | L::gt(beyond.y, clearly) | L::gt(beyond.z, clearly);
+        let in_time = L::le(slabs.enter, L::load(&self.limits));
+        ((slabs.is_entered() & in_time) | !outside).bits()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BodyDef, BodyKind, Filter, QueryFilter, ShapeDef, World, WorldDef};
+    use sinew_math::Random;
+
+    /// Mostly boxes, static and moving, alone and several to a body, some of which a filter leaves out.
+    fn world(random: &mut Random) -> World {
+        let mut world = World::new(WorldDef::default());
+        let size = |random: &mut Random| random.range(0.1, 0.8);
+        for _ in 0..random.index(120) {
+            let count = 1 + random.index(2);
+            let shapes = (0..count).map(|_| {
+                let shape = match random.index(6) {
+                    0 => Shape::Sphere { radius: size(random) },
+                    1 => Shape::Capsule { half_height: size(random), radius: size(random) },
+                    _ => Shape::Box { half_extents: Vec3::new(size(random), size(random), size(random)) },
+                };
+                let filter = Filter { layers: 1 << random.index(3), ..Filter::default() };
+                let body_from_shape = Transform::new(random.in_cube(), random.rotation());
+                ShapeDef { filter, body_from_shape, ..ShapeDef::new(shape) }
+            });
+            let shapes = shapes.collect();
+            let kind = [BodyKind::Static, BodyKind::Static, BodyKind::Dynamic][random.index(3)];
+            world.add_body(&BodyDef { kind, position: random.in_cube() * 4.0, shapes, ..BodyDef::default() });
+        }
+        if random.index(3) == 0 {
+            world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+        }
+        world
+    }
+
+    /// From everywhere to everywhere, along axes too; of no length, of great length, and of numbers that are none.
+    fn ray(random: &mut Random) -> Ray {
+        let (origin, mut direction) = (random.in_cube() * 5.0, random.in_cube() * 9.0);
+        match random.index(12) {
+            0 => direction = Vec3::ZERO,
+            1 => direction[random.index(3)] = 0.0,
+            2 => direction = Vec3::Y * -direction.x,
+            3 => direction *= [1e-20, 1e6, 1e16, 1e30][random.index(4)],
+            4 => direction.y = [f32::NAN, f32::INFINITY][random.index(2)],
+            5 => return Ray { origin: Vec3::X * [f32::NAN, 1e20][random.index(2)], direction },
+            _ => {}
+        }
+        Ray { origin, direction }
+    }
+
+    #[test]
+    fn on_all_registers_they_are_those_of_single_rays() {
+        let mut random = Random::new(409);
+        let (mut hits, mut inside) = (0, 0);
+        for _ in 0..80 {
+            let world = world(&mut random);
+            let rays: Vec<Ray> = (0..random.index(200)).map(|_| ray(&mut random)).collect();
+            let meets = Filter { mask: 1 + random.index(7) as u32, ..Filter::default() };
+            let query = world.query().filter(QueryFilter { meets, ..QueryFilter::default() });
+            let query = query.accept(|body, shape| (body.index + shape) % 5 != 0);
+            let single: Vec<_> = rays.iter().map(|ray| query.first(ray)).collect();
+            for level in Level::available() {
+                let mut each = vec![None; rays.len()];
+                first_each_at(level, &query, &rays, &mut each);
+                for ((ray, each), single) in rays.iter().zip(each).zip(&single) {
+                    assert_eq!(each, *single, "{level:?}: {ray:?}");
+                }
+            }
+            hits += single.iter().flatten().count();
+            inside += single.iter().flatten().filter(|hit| hit.start.is_some()).count();
+        }
+        assert!(hits > 1000 && inside > 50, "{hits} hits, {inside} from inside");
+    }
+}

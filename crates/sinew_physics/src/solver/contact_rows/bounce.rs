@@ -1,0 +1,81 @@
+//! How a manifold's points come in, and with what speed they leave.
+
+use super::ManifoldRows;
+use crate::collide::MAX_POINTS;
+use crate::spatial::Vec6;
+use sinew_math::max;
+
+/// Approach below which nothing bounces, m/s.
+const BOUNCE_SPEED: f32 = 1.0;
+
+/// Motion of a point along its normal, in a substep.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Approach {
+    /// At its beginning, m/s; negative if it comes nearer.
+    rate: f32,
+    /// Likewise, metres; 0 if it overlaps.
+    gap: f32,
+    /// What forces and joints add in the substep before contacts, toward the surface, m/s; not negative.
+    pull: f32,
+}
+
+impl Approach {
+    /// Speed at the surface, m/s. A velocity of symplectic Euler is that of half a substep ago, and what pulls goes on between
+    /// here and the surface.
+    fn speed_at_surface(&self, h: f32) -> f32 {
+        let now = self.rate - 0.5 * self.pull;
+        if now < 0.0 { (now * now + 2.0 * (self.pull / h) * self.gap).sqrt() } else { 0.0 }
+    }
+}
+
+impl ManifoldRows {
+    /// How its points come in, when the substep begins.
+    pub fn begin_approach(&mut self, velocities: &[Vec6]) {
+        for i in 0..self.bouncy_count() {
+            let rate = self.rows[i].rate(self.pair(), velocities);
+            self.approach[i] = Approach { rate, gap: max(self.separation[i], 0.0), pull: 0.0 };
+        }
+    }
+
+    /// What the forces and the joints have added to that.
+    pub fn pull_approach(&mut self, velocities: &[Vec6]) {
+        for i in 0..self.bouncy_count() {
+            let rate = self.rows[i].rate(self.pair(), velocities);
+            self.approach[i].pull = max(self.approach[i].rate - rate, 0.0);
+        }
+    }
+
+    /// Points that came in fast and were hit will bounce, to the height that their speed at the surface is good for.
+    pub fn end_approach(&mut self, h: f32) {
+        self.rebound = [0.0; MAX_POINTS];
+        for i in 0..self.bouncy_count() {
+            let speed = self.approach[i].speed_at_surface(h);
+            if self.impulse[i] > 0.0 && speed > BOUNCE_SPEED {
+                self.rebound[i] = self.material.restitution * speed + 0.5 * self.approach[i].pull;
+            }
+        }
+    }
+
+    /// A point that will bounce, but has not touched yet: `relax` must not brake it on its way.
+    pub(super) fn comes_to_bounce(&self, i: usize) -> bool {
+        self.material.restitution > 0.0 && self.impulse[i] == 0.0
+    }
+
+    /// Points that may bounce.
+    fn bouncy_count(&self) -> usize {
+        if self.material.restitution > 0.0 { self.count } else { 0 }
+    }
+
+    /// Whether a point leaves what it hit.
+    pub fn bounces(&self) -> bool {
+        (0..self.bouncy_count()).any(|i| self.rebound[i] > 0.0)
+    }
+
+    /// What the bounce of this substep added to its impulses.
+    pub fn add_bounce(&mut self) {
+        for i in 0..self.count {
+            let point = &mut self.memory.points[i];
+            point.total += max(self.impulse[i], 0.0) - point.now;
+        }
+    }
+}

@@ -1,0 +1,410 @@
+//! Contact rows of one manifold: up to four normal rows solved as a block, friction at the centre, twist, rolling.
+
+mod bounce;
+mod refind;
+mod row;
+mod visit;
+
+use super::response::Response;
+use super::tree::Link;
+use super::{REDUNDANCY, SolverBody, free_response};
+use crate::collide::{MAX_POINTS, Manifold};
+use crate::contact::ContactMemory;
+use crate::material::ContactMaterial;
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
+use bounce::Approach;
+pub(crate) use refind::PlacedShape;
+use refind::{REFIND_TURN, ROLL_TURN};
+use row::{Pair, Row, Softness};
+use sinew_math::{Mat3, Vec3, any_orthonormal, max, min};
+
+/// An impulse that grew by more than this factor since the substep before is an impact.
+pub(super) const IMPACT_JUMP: f32 = 2.0;
+/// Overlap beyond this many slops is deep.
+const DEEP: f32 = 2.0;
+/// A body that turns by less than this within a substep counts as being where it was, radians.
+const RELAX_TURN: f32 = 0.15;
+/// Contact stiffness as a frequency, Hz, against moving and against fixed bodies, and damping ratio.
+const CONTACT_HERTZ: f32 = 30.0;
+const FIXED_HERTZ: f32 = 60.0;
+const CONTACT_DAMPING: f32 = 10.0;
+/// Contacts are soft to changes of their load, not to the load that lasts for longer than this, seconds: a pile would sag by
+/// all the weight it bears (30 rows of cubes by a quarter of a cube). Without any delay tall piles never come to rest.
+const LASTING: f32 = 1.0 / 60.0;
+
+/// Impulses of a manifold's rows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Given {
+    normal: [f32; MAX_POINTS],
+    friction: Vec3,
+    twist: f32,
+    rolling: Vec3,
+}
+
+impl Given {
+    /// With `share` of another.
+    pub fn plus(&self, other: &Self, share: f32) -> Self {
+        Self {
+            normal: core::array::from_fn(|i| self.normal[i] + other.normal[i] * share),
+            friction: self.friction + other.friction * share,
+            twist: self.twist + other.twist * share,
+            rolling: self.rolling + other.rolling * share,
+        }
+    }
+}
+
+/// Change of impulse of a manifold: on A and on B.
+pub(super) type Push = (Vec6, Vec6);
+
+#[derive(Clone, Debug)]
+pub(crate) struct ManifoldRows {
+    /// Place in the world's contact array.
+    pub contact: u32,
+    /// Local bodies.
+    pub a: u32,
+    pub b: u32,
+    /// As last found: at the step's beginning, or since, if a body turned fast.
+    pub manifold: Manifold,
+    shapes: [PlacedShape; 2],
+    /// Radii of the shapes' roundings around their cores, where they meet.
+    rounds: [f32; 2],
+    /// Bodies turn by less than this in a substep or the contact is looked for anew, radians.
+    most_turn: f32,
+    normal: Vec3,
+    count: usize,
+    /// Cores of the surfaces at each point, in the principal frames, and their distances from the surfaces: a ball's
+    /// contact does not turn with it, a box's corner does.
+    core_a: [Vec3; MAX_POINTS],
+    core_b: [Vec3; MAX_POINTS],
+    a_moves: bool,
+    b_moves: bool,
+    material: ContactMaterial,
+    slop: f32,
+    soft: Softness,
+    /// Share of that softness, but for the bias.
+    softness: f32,
+    /// Of the present pose.
+    separation: [f32; MAX_POINTS],
+    rows: [Row; MAX_POINTS],
+    tangents: [Row; 2],
+    tangent_axes: [Vec3; 2],
+    spin: Row,
+    /// Share of the load that each point had when the step began: friction acts at the centre of pressure.
+    weight: [f32; MAX_POINTS],
+    /// Weighted distance of the points from that centre: lever of the twist friction.
+    lever: f32,
+    /// Responses.
+    k: [[f32; MAX_POINTS]; MAX_POINTS],
+    k_tangent: [[f32; 2]; 2],
+    k_spin: f32,
+    /// Of the twist to the tangents.
+    k_spin_tangent: [f32; 2],
+    k_roll: Mat3,
+    /// How each point comes in, in this substep.
+    approach: [Approach; MAX_POINTS],
+    /// Normal speed with which each point leaves what it hit in this substep, m/s; 0 if it does not bounce.
+    rebound: [f32; MAX_POINTS],
+    /// Impulses of this substep.
+    impulse: [f32; MAX_POINTS],
+    /// Sum of the normal impulses that friction is limited by.
+    load: f32,
+    /// What `relax` may not go below.
+    floor: [f32; MAX_POINTS],
+    friction: Vec3,
+    twist: f32,
+    rolling: Vec3,
+    pub memory: ContactMemory,
+}
+
+/// What a manifold's rows are made from.
+pub(crate) struct ManifoldSource<'a> {
+    pub contact: u32,
+    pub a: u32,
+    pub b: u32,
+    pub a_moves: bool,
+    pub b_moves: bool,
+    pub manifold: &'a Manifold,
+    pub memory: ContactMemory,
+    pub material: ContactMaterial,
+    pub slop: f32,
+    pub shapes: [PlacedShape; 2],
+    pub h: f32,
+}
+
+impl ManifoldRows {
+    pub fn new(source: &ManifoldSource<'_>, bodies: &[SolverBody]) -> Self {
+        let n = source.manifold.normal;
+        let hertz = if source.a_moves && source.b_moves { CONTACT_HERTZ } else { FIXED_HERTZ };
+        let mut rows = Self {
+            contact: source.contact,
+            a: source.a,
+            b: source.b,
+            manifold: *source.manifold,
+            shapes: source.shapes.clone(),
+            rounds: [0.0; 2],
+            most_turn: REFIND_TURN,
+            normal: n,
+            count: source.manifold.count,
+            core_a: [Vec3::ZERO; MAX_POINTS],
+            core_b: [Vec3::ZERO; MAX_POINTS],
+            a_moves: source.a_moves,
+            b_moves: source.b_moves,
+            material: source.material,
+            slop: source.slop,
+            soft: Softness::new(min(hertz, 0.25 / source.h), CONTACT_DAMPING, source.h),
+            softness: 1.0,
+            separation: [0.0; MAX_POINTS],
+            rows: [Row::ZERO; MAX_POINTS],
+            tangents: [Row::ZERO; 2],
+            tangent_axes: [Vec3::ZERO; 2],
+            spin: Row::about(n),
+            weight: [0.0; MAX_POINTS],
+            lever: 0.0,
+            k: [[0.0; MAX_POINTS]; MAX_POINTS],
+            k_tangent: [[0.0; 2]; 2],
+            k_spin: 0.0,
+            k_spin_tangent: [0.0; 2],
+            k_roll: Mat3::ZERO,
+            approach: [Approach::default(); MAX_POINTS],
+            rebound: [0.0; MAX_POINTS],
+            impulse: [0.0; MAX_POINTS],
+            load: 0.0,
+            floor: [0.0; MAX_POINTS],
+            friction: source.memory.friction,
+            twist: source.memory.twist,
+            rolling: source.memory.rolling,
+            memory: source.memory.of_new_step(),
+        };
+        rows.take_manifold(bodies);
+        rows.place(bodies);
+        rows
+    }
+
+    /// Has it give by so much of what its frequency says.
+    pub fn soften(&mut self, share: f32) {
+        self.softness = share;
+    }
+
+    /// Cores of the manifold's points at the present poses.
+    fn take_manifold(&mut self, bodies: &[SolverBody]) {
+        let (pose_a, pose_b) = (bodies[self.a as usize].pose, bodies[self.b as usize].pose);
+        self.normal = self.manifold.normal;
+        self.count = self.manifold.count;
+        self.spin = Row::about(self.normal);
+        let n = self.normal;
+        let [a, b] = &self.shapes;
+        let [in_a, in_b] = [pose_a, pose_b].map(|pose| pose.rotation.inverse() * n);
+        let [round_a, round_b] = [a.round(in_a), b.round(in_b)];
+        self.rounds = [round_a, round_b];
+        // Of a rim, the points beside the one that it rolls on bear nothing.
+        let (most_turn, bearing) = match a.has_rim(in_a) || b.has_rim(in_b) {
+            true => (ROLL_TURN, self.slop),
+            false => (REFIND_TURN, f32::INFINITY),
+        };
+        self.most_turn = most_turn;
+        self.weight = weights(&self.memory, &self.manifold, bearing);
+        for (i, point) in self.manifold.points().iter().enumerate() {
+            let half = n * (0.5 * point.separation);
+            self.core_a[i] = pose_a.inverse_point(point.position - half - n * round_a);
+            self.core_b[i] = pose_b.inverse_point(point.position + half + n * round_b);
+        }
+    }
+
+    fn pair(&self) -> Pair {
+        Pair { a: self.a, b: self.b }
+    }
+
+    /// Separations and Jacobians at the present pose.
+    pub fn place(&mut self, bodies: &[SolverBody]) {
+        let (pose_a, pose_b) = (bodies[self.a as usize].pose, bodies[self.b as usize].pose);
+        let n = self.normal;
+        let mut points = [Vec3::ZERO; MAX_POINTS];
+        let mut center = Vec3::ZERO;
+        for i in 0..self.count {
+            let on_a = pose_a.point(self.core_a[i]) + n * self.rounds[0];
+            let on_b = pose_b.point(self.core_b[i]) - n * self.rounds[1];
+            self.separation[i] = (on_b - on_a).dot(n);
+            points[i] = match self.rounds.map(|round| round > 0.0).into() {
+                // Where a ball touches goes along with the ball, also on a table that moves away under it.
+                (true, false) => on_a,
+                (false, true) => on_b,
+                _ if !self.b_moves => on_a,
+                _ if !self.a_moves => on_b,
+                _ => (on_a + on_b) * 0.5,
+            };
+            center += points[i] * self.weight[i];
+        }
+        self.lever = 0.0;
+        for i in 0..self.count {
+            self.rows[i] = Row::at(n, points[i] - pose_a.translation, points[i] - pose_b.translation);
+            self.lever += (points[i] - center).length() * self.weight[i];
+        }
+        let t1 = any_orthonormal(n);
+        self.tangent_axes = [t1, n.cross(t1)];
+        let (arm_a, arm_b) = (center - pose_a.translation, center - pose_b.translation);
+        self.tangents = self.tangent_axes.map(|axis| Row::at(axis, arm_a, arm_b));
+    }
+
+    /// Effective masses from the response of the bodies.
+    pub fn respond(&mut self, bodies: &[SolverBody], links: &[Link], response: &Response) {
+        let pair = self.pair();
+        let least =
+            |row: &Row| REDUNDANCY * free_response(bodies, links.len(), [(pair.a, &row.a), (pair.b, &row.b)]);
+        let mut answers = [Row::ZERO; MAX_POINTS];
+        for i in 0..self.count {
+            answers[i] = self.rows[i].response(pair, links, response);
+        }
+        for i in 0..self.count {
+            for j in 0..self.count {
+                self.k[i][j] = self.rows[i].dot(&answers[j]);
+            }
+            self.k[i][i] += least(&self.rows[i]);
+        }
+        let across = self.tangents.map(|row| row.response(pair, links, response));
+        for i in 0..2 {
+            for j in 0..2 {
+                self.k_tangent[i][j] = self.tangents[i].dot(&across[j]);
+            }
+            self.k_tangent[i][i] += least(&self.tangents[i]);
+        }
+        self.k_spin_tangent = across.map(|answer| self.spin.dot(&answer));
+        self.k_spin = self.spin.dot(&self.spin.response(pair, links, response)) + least(&self.spin);
+        if self.material.rolling > 0.0 {
+            let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
+                let answer = Row::about(axis).response(pair, links, response);
+                angular(&answer.b) - angular(&answer.a) + axis * least(&Row::about(axis))
+            });
+            self.k_roll = Mat3::from_cols(columns[0], columns[1], columns[2]);
+        }
+    }
+
+    /// Puts the starting impulses on the bodies: those of the last substep, unless they jumped up from the one before:
+    /// an impact must not be repeated. Judged for the manifold as a whole, since at rest the load wanders between points.
+    pub fn warm_start(&mut self, impulses: &mut [Vec6]) {
+        let (mut now, mut before) = (0.0, 0.0);
+        for point in &self.memory.points[..self.count] {
+            now += point.now;
+            before += point.before;
+        }
+        let share = if now > IMPACT_JUMP * before { before / now } else { 1.0 };
+        for i in 0..self.count {
+            self.impulse[i] = self.memory.points[i].now * share;
+        }
+        self.friction = (self.memory.friction - self.normal * self.normal.dot(self.memory.friction)) * share;
+        self.floor = [0.0; MAX_POINTS];
+        self.twist = self.memory.twist * share;
+        self.rolling = self.memory.rolling * share;
+        let push = self.total_push();
+        super::limit_rows::add_row(impulses, self.a, &push.0, 1.0);
+        super::limit_rows::add_row(impulses, self.b, &push.1, 1.0);
+    }
+
+    /// Impulses of this substep.
+    pub(super) fn given(&self) -> Given {
+        Given { normal: self.impulse, friction: self.friction, twist: self.twist, rolling: self.rolling }
+    }
+
+    /// Adds a share of impulses to those of this substep; the caller puts them on the bodies. Gives the largest speed that
+    /// one of them makes by itself, m/s or rad/s.
+    pub(super) fn give(&mut self, more: &Given, share: f32) -> f32 {
+        let Given { normal, friction, twist, rolling } = self.given().plus(more, share);
+        (self.impulse, self.friction, self.twist, self.rolling) = (normal, friction, twist, rolling);
+        let k = self.k_tangent[0][0] + self.k_tangent[1][1];
+        let mut most = max(more.friction.length() * k, more.twist.abs() * self.k_spin);
+        for i in 0..self.count {
+            most = max(most, more.normal[i].abs() * self.k[i][i]);
+        }
+        most * share
+    }
+
+    /// Overlaps by much more than contacts at rest do.
+    pub fn is_deep(&self) -> bool {
+        self.separation[..self.count].iter().any(|s| *s < -DEEP * self.slop)
+    }
+
+    /// It touches, and does not know its load yet.
+    pub fn touches_anew(&self) -> bool {
+        let points = 0..self.count;
+        points.clone().all(|i| self.memory.points[i].now == 0.0)
+            && points.into_iter().any(|i| self.separation[i] < self.slop)
+    }
+
+    /// What its normal rows put on each body in this substep, or in the last before there is anything in this one.
+    pub fn normal_push(&self) -> Vec3 {
+        let (mut now, mut last) = (0.0, 0.0);
+        for i in 0..self.count {
+            now += self.impulse[i];
+            last += self.memory.points[i].now;
+        }
+        self.normal * if now > 0.0 { now } else { last }
+    }
+
+    /// What all rows put on the bodies in this substep.
+    pub fn total_push(&self) -> Push {
+        let mut push = (ZERO6, ZERO6);
+        for i in 0..self.count {
+            self.add(&mut push, &self.rows[i], self.impulse[i]);
+        }
+        for (row, axis) in self.tangents.iter().zip(self.tangent_axes) {
+            self.add(&mut push, row, self.friction.dot(axis));
+        }
+        self.add(&mut push, &Row::about(self.normal * self.twist + self.rolling), 1.0);
+        push
+    }
+
+    /// Starts from nothing.
+    pub fn forget(&mut self) {
+        self.impulse = [0.0; MAX_POINTS];
+        self.friction = Vec3::ZERO;
+        self.twist = 0.0;
+        self.rolling = Vec3::ZERO;
+    }
+
+    /// `relax` may take back what `solve` gave too much, but not from bodies that turned by more than a little since: an
+    /// impulse taken back at another pose than it was given at puts energy in (a hand went from 70 to 2,700 rad/s).
+    pub fn begin_relax(&mut self, velocities: &[Vec6], h: f32) {
+        let turn = |body: u32| angular(&velocities[body as usize]).length() * h;
+        let still = turn(self.a) < RELAX_TURN && turn(self.b) < RELAX_TURN;
+        self.floor = if still { [0.0; MAX_POINTS] } else { self.impulse };
+    }
+
+    fn add(&self, push: &mut Push, row: &Row, impulse: f32) {
+        add_scaled(&mut push.0, &row.a, impulse);
+        add_scaled(&mut push.1, &row.b, impulse);
+    }
+
+    /// Impulses of this substep become memory.
+    pub fn end_substep(&mut self, h: f32) {
+        for i in 0..self.count {
+            let point = &mut self.memory.points[i];
+            point.before = point.now;
+            point.now = max(self.impulse[i], 0.0);
+            point.total += point.now;
+            point.lasting += (point.now - point.lasting) * (h / (h + LASTING));
+        }
+        self.memory.friction = self.friction;
+        self.memory.total_friction += self.friction;
+        self.memory.twist = self.twist;
+        self.memory.rolling = self.rolling;
+    }
+}
+
+/// Shares of the load by point, smoothed so that a point which is about to bear some has a say: one whose separation is at
+/// most `bearing`, if there is any.
+fn weights(memory: &ContactMemory, manifold: &Manifold, bearing: f32) -> [f32; MAX_POINTS] {
+    let points = manifold.points();
+    let total: f32 = memory.points[..points.len()].iter().map(|point| point.now).sum();
+    let bears = |separation: f32| separation <= bearing;
+    let heirs = points.iter().filter(|point| bears(point.separation)).count();
+    let mut weights = [0.0; MAX_POINTS];
+    for (i, point) in points.iter().enumerate() {
+        let even = match heirs {
+            0 => 1.0 / points.len() as f32,
+            _ if bears(point.separation) => 1.0 / heirs as f32,
+            _ => 0.0,
+        };
+        let share = if total > 0.0 { memory.points[i].now / total } else { even };
+        weights[i] = 0.8 * share + 0.2 * even;
+    }
+    weights
+}

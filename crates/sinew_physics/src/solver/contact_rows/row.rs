@@ -1,0 +1,68 @@
+//! A row of two bodies, and how softly it gives.
+
+use crate::solver::response::Response;
+use crate::solver::tree::Link;
+use crate::spatial::{Vec6, ZERO6, add_scaled, dot, join};
+use sinew_math::Vec3;
+
+/// Coefficients of a soft constraint (Catto, "Soft Constraints", GDC 2011).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Softness {
+    /// 1/s.
+    pub bias_rate: f32,
+    pub mass_scale: f32,
+    pub impulse_scale: f32,
+}
+
+impl Softness {
+    pub fn new(hertz: f32, damping_ratio: f32, h: f32) -> Self {
+        let omega = 2.0 * core::f32::consts::PI * hertz;
+        let a1 = 2.0 * damping_ratio + h * omega;
+        let a2 = h * omega * a1;
+        let a3 = 1.0 / (1.0 + a2);
+        Self { bias_rate: omega / a1, mass_scale: a2 * a3, impulse_scale: a3 }
+    }
+}
+
+/// The two bodies that a row acts on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub a: u32,
+    pub b: u32,
+}
+
+/// A row's Jacobian on both bodies.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub a: Vec6,
+    pub b: Vec6,
+}
+
+impl Row {
+    pub const ZERO: Self = Self { a: ZERO6, b: ZERO6 };
+
+    pub fn at(direction: Vec3, arm_a: Vec3, arm_b: Vec3) -> Self {
+        Self { a: join(-direction, -arm_a.cross(direction)), b: join(direction, arm_b.cross(direction)) }
+    }
+
+    pub fn about(axis: Vec3) -> Self {
+        Self { a: join(Vec3::ZERO, -axis), b: join(Vec3::ZERO, axis) }
+    }
+
+    pub fn rate(&self, pair: Pair, velocities: &[Vec6]) -> f32 {
+        dot(&self.a, &velocities[pair.a as usize]) + dot(&self.b, &velocities[pair.b as usize])
+    }
+
+    /// Velocity changes of both bodies per unit impulse of this row, as a row.
+    pub fn response(&self, pair: Pair, links: &[Link], response: &Response) -> Self {
+        let (a, b) = (pair.a as usize, pair.b as usize);
+        let mut out = Self { a: response.at(links, a, a, &self.a), b: response.at(links, b, b, &self.b) };
+        add_scaled(&mut out.a, &response.at(links, a, b, &self.b), 1.0);
+        add_scaled(&mut out.b, &response.at(links, b, a, &self.a), 1.0);
+        out
+    }
+
+    pub fn dot(&self, other: &Self) -> f32 {
+        dot(&self.a, &other.a) + dot(&self.b, &other.b)
+    }
+}

@@ -1,0 +1,154 @@
+//! Visits of a manifold's rows in a sweep.
+
+use super::row::Row;
+use super::{IMPACT_JUMP, ManifoldRows, Push};
+use crate::collide::MAX_POINTS;
+use crate::material::ContactMaterial;
+use crate::solver::sweep::Pass;
+use crate::solver::{disk, lcp};
+use crate::spatial::{Vec6, ZERO6, angular};
+use sinew_math::{clamp, max, min};
+
+/// Fastest speed with which overlap is pushed apart, m/s.
+const PUSH_SPEED: f32 = 3.0;
+/// What static friction leaves of the speed of two surfaces along each other, m/s, if they slide: more than loads that have
+/// not converged make of it in a substep.
+const SLIP_SPEED: f32 = 0.005;
+/// Distance over time of a point that no substep brings to touch, m/s.
+const NEVER: f32 = 1e6;
+/// Share of the slop that is left overlapping.
+const DEAD_ZONE: f32 = 0.2;
+
+/// What a manifold's normal rows are to reach: `K (x − old) + rate + soft x ≥ 0`, complementary to `x ≥ 0`.
+#[derive(Clone, Copy, Debug, Default)]
+struct NormalProblem {
+    /// Of the gap with what is added to it, m/s; negative if it closes too fast.
+    rate: [f32; MAX_POINTS],
+    /// Impulses so far, N·s.
+    old: [f32; MAX_POINTS],
+    /// m/s per N·s.
+    soft: [f32; MAX_POINTS],
+}
+
+impl ManifoldRows {
+    /// Takes the normal impulses as they are for the load of friction.
+    pub fn weigh(&mut self) {
+        self.load = self.impulse[..self.count].iter().fold(0.0, |sum, p| sum + max(*p, 0.0));
+    }
+
+    /// Likewise, but unless this is a hit the normal impulses that the last substep ended with: what few sweeps know of this
+    /// one's is off to one side, that sum is not, since it is what held the body up.
+    pub fn weigh_by_memory(&mut self) {
+        self.weigh();
+        let last = self.memory.points[..self.count].iter().fold(0.0, |sum, p| sum + p.now);
+        if self.load <= IMPACT_JUMP * last && last <= IMPACT_JUMP * self.load {
+            self.load = last;
+        }
+    }
+
+    /// What the normal rows are to reach at the present velocities.
+    fn normal_problem(&self, velocities: &[Vec6], pass: Pass, h: f32) -> NormalProblem {
+        let (pair, biased) = (self.pair(), pass == Pass::Solve);
+        let mut mean = 0.0;
+        for row in &self.k[..self.count] {
+            for k in &row[..self.count] {
+                mean += k;
+            }
+        }
+        // The block's softness is taken at the manifold's centre; taken at each point a 1 kg foot under 69 kg sinks 7 mm.
+        let at_center =
+            self.softness * self.soft.impulse_scale / self.soft.mass_scale * mean / self.count as f32;
+        let mut problem = NormalProblem::default();
+        for i in 0..self.count {
+            let s = self.separation[i];
+            let bias = if pass == Pass::Restitution && self.rebound[i] > 0.0 {
+                -self.rebound[i]
+            } else if s > 0.0 && self.comes_to_bounce(i) && !biased {
+                NEVER
+            } else if s > 0.0 {
+                s / h
+            } else if biased {
+                let push = max(self.soft.bias_rate * min(s + DEAD_ZONE * self.slop, 0.0), -PUSH_SPEED);
+                min(push, -self.material.launch)
+            } else {
+                -self.material.launch
+            };
+            let soft = if biased && s <= 0.0 { at_center } else { 0.0 };
+            problem.soft[i] = soft;
+            problem.old[i] = self.impulse[i] - self.floor[i];
+            let lasting = self.memory.points[i].lasting;
+            problem.rate[i] = self.rows[i].rate(pair, velocities) + bias - soft * lasting;
+        }
+        problem
+    }
+
+    /// One visit of the normal rows as a block.
+    pub fn visit_normal(&mut self, velocities: &[Vec6], pass: Pass, h: f32) -> Push {
+        let NormalProblem { rate, old, soft } = self.normal_problem(velocities, pass, h);
+        let new = lcp::solve(&self.k, &rate, &old, &soft, self.count);
+        let mut push = (ZERO6, ZERO6);
+        for i in 0..self.count {
+            let row = self.rows[i];
+            self.add(&mut push, &row, new[i] - old[i]);
+            self.impulse[i] = new[i] + self.floor[i];
+        }
+        push
+    }
+
+    /// One visit of friction, limited by the load that was weighed last: a 2×2 row limited to the circle, twist about the
+    /// normal. What static friction does not hold slides.
+    pub fn visit_friction(&mut self, velocities: &[Vec6]) -> Push {
+        let pair = self.pair();
+        let mut push = (ZERO6, ZERO6);
+        let k = &self.k_tangent;
+        let old = self.tangent_axes.map(|axis| self.friction.dot(axis));
+        let slip = |i: usize| {
+            self.tangents[i].rate(pair, velocities) + self.material.velocity.dot(self.tangent_axes[i])
+        };
+        let rates = [slip(0), slip(1)];
+        let b = [0, 1].map(|i| k[i][0] * old[0] + k[i][1] * old[1] - rates[i]);
+        let ContactMaterial { friction, static_friction, .. } = self.material;
+        let mut new = disk::least_energy(k, b, static_friction * self.load);
+        let mut grip = static_friction;
+        let slip = [0, 1].map(|i| k[i][0] * new[0] + k[i][1] * new[1] - b[i]);
+        if static_friction > friction && slip[0] * slip[0] + slip[1] * slip[1] > SLIP_SPEED * SLIP_SPEED {
+            new = disk::least_energy(k, b, friction * self.load);
+            grip = friction;
+        }
+        for i in 0..2 {
+            let row = self.tangents[i];
+            self.add(&mut push, &row, new[i] - old[i]);
+        }
+        self.friction = self.tangent_axes[0] * new[0] + self.tangent_axes[1] * new[1];
+        if self.k_spin > 1e-12 {
+            // After the tangents: a light hand turns far about a contact beside its centre, and to answer both at once
+            // overshoots, sweep by sweep more.
+            let [k0, k1] = self.k_spin_tangent;
+            let rate = self.spin.rate(pair, velocities)
+                + self.material.spin.dot(self.normal)
+                + k0 * (new[0] - old[0])
+                + k1 * (new[1] - old[1]);
+            let wanted = self.twist - rate / self.k_spin;
+            let most = grip * self.lever * self.load;
+            let slip = max(wanted.abs() - most, 0.0) * self.k_spin * self.lever;
+            let most = if slip > SLIP_SPEED { friction * self.lever * self.load } else { most };
+            let new = clamp(wanted, -most, most);
+            self.add(&mut push, &self.spin, new - self.twist);
+            self.twist = new;
+        }
+        push
+    }
+
+    /// One visit of the rolling resistance: a torque against the relative rotation, at most `rolling × load`.
+    pub fn visit_rolling(&mut self, velocities: &[Vec6]) -> Option<Push> {
+        if self.material.rolling <= 0.0 {
+            return None;
+        }
+        let w = angular(&velocities[self.b as usize]) - angular(&velocities[self.a as usize]);
+        let new = disk::step_in_ball(&self.k_roll, self.rolling, w, self.material.rolling * self.load);
+        let mut push = (ZERO6, ZERO6);
+        self.add(&mut push, &Row::about(new - self.rolling), 1.0);
+        self.rolling = new;
+        Some(push)
+    }
+}

@@ -1,0 +1,96 @@
+//! Bodies between others that press on them with far more than they weigh.
+//!
+//! In 32 bits an ulp of the impulses on such a body, over its mass, may be more than any speed that it could have: under a
+//! tower of ten cubes, each ten times as heavy as the one that it stands on, 4 m/s. What presses from both sides gives it
+//! ballast: it answers to forces and impulses as if it were heavier, for as long as they press. That changes neither its weight
+//! nor what hits it from one side alone.
+
+use super::IslandSolver;
+use super::contact_rows::ManifoldRows;
+use sinew_math::{Vec3, max};
+
+/// Least mass of a body per impulse that cancels itself on it in a substep, kg/(N·s): what bears less than 4,000 times its
+/// weight has no ballast, and an ulp of that impulse is worth 1e-5 m/s.
+const BALLAST: f32 = 6e-3;
+/// Before contacts know their loads, they are guessed where masses differ by more than this: less gives nobody ballast.
+const GUESSED: f32 = 1e3;
+
+/// What presses on a body in a substep, N·s.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pressing {
+    sum: Vec3,
+    size: f32,
+    /// What stands on it, as long as contacts do not know.
+    guess: f32,
+}
+
+impl Pressing {
+    fn add(&mut self, push: Vec3) {
+        self.sum += push;
+        self.size += push.length();
+    }
+
+    /// The part that cancels itself.
+    fn squeeze(&self) -> f32 {
+        max(0.5 * (self.size - self.sum.length()), self.guess)
+    }
+}
+
+impl IslandSolver {
+    /// When a step begins.
+    pub(super) fn guess_loads(&mut self) {
+        self.pressing.clear();
+        self.pressing.resize(self.links.len(), Pressing::default());
+        let unknown = self.manifolds.iter().any(ManifoldRows::touches_anew);
+        if !unknown || self.mass_ratio() < GUESSED {
+            return;
+        }
+        for (pressing, body) in self.pressing.iter_mut().zip(&self.bodies) {
+            pressing.guess = body.force.length() * self.h;
+        }
+        for level in (2..=self.levels.highest()).rev() {
+            self.hand_down(level);
+        }
+        // Their own weight squeezes nobody.
+        for (pressing, body) in self.pressing.iter_mut().zip(&self.bodies) {
+            pressing.guess -= body.force.length() * self.h;
+        }
+    }
+
+    /// Bodies of a level share what they bear, and themselves, among those that they stand on.
+    fn hand_down(&mut self, level: u32) {
+        let Self { manifolds, pressing, levels, scratch, .. } = self;
+        let supports = |rows: &ManifoldRows| {
+            [(rows.a, rows.b), (rows.b, rows.a)]
+                .into_iter()
+                .find(|&(below, above)| levels.of(above) == level && levels.of(below) == level - 1)
+        };
+        let shares = &mut scratch.shares;
+        shares.clear();
+        shares.resize(pressing.len(), 0.0);
+        for (_, above) in manifolds.iter().filter_map(supports) {
+            shares[above as usize] += 1.0;
+        }
+        for (below, above) in manifolds.iter().filter_map(supports) {
+            pressing[below as usize].guess += pressing[above as usize].guess / shares[above as usize];
+        }
+    }
+
+    /// Gives ballast to what is squeezed in this substep.
+    pub(super) fn add_ballast(&mut self) {
+        for pressing in &mut self.pressing {
+            *pressing = Pressing { guess: pressing.guess, ..Pressing::default() };
+        }
+        for rows in &self.manifolds {
+            let push = rows.normal_push();
+            for (body, push) in [(rows.a, -push), (rows.b, push)] {
+                if let Some(pressing) = self.pressing.get_mut(body as usize) {
+                    pressing.add(push);
+                }
+            }
+        }
+        for (body, pressing) in self.bodies.iter_mut().zip(&self.pressing) {
+            body.ballast = max(1.0, BALLAST * pressing.squeeze() / body.mass);
+        }
+    }
+}
