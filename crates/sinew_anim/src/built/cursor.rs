@@ -7,9 +7,9 @@ use sinew_math::clamp;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Block, LaneMask, Lanes, Vector3, WIDTH};
 
-/// No key yet: none follows it.
-const UNSET: u32 = u32::MAX - 1;
-/// The left key is before the first one: the first one follows.
+/// No key yet: what would follow it is beyond all keys.
+const UNSET: u32 = u32::MAX / 2;
+/// The left key is the one before the first, so that the first follows it.
 const BEFORE: u32 = u32::MAX;
 
 /// Earlier than any time, or later with the other sign; finite, so that a share of it can be taken.
@@ -168,7 +168,7 @@ fn store_between<L: Lanes>(span: &Span<3>, share: L, row: usize, block: &mut Blo
     z.store(&mut block.0[row + 2]);
 }
 
-/// Puts the keys around `time` into one lane.
+/// Puts the keys around `time` into one lane: most often the one on the right goes to the left, and the next one follows.
 fn refill<C: Code<N>, const N: usize>(
     clip: &BuiltClip,
     all: &Tracks<C>,
@@ -178,39 +178,56 @@ fn refill<C: Code<N>, const N: usize>(
     span: &mut Span<N>,
     lane: usize,
 ) {
+    // So that the compiler knows.
+    let lane = lane % WIDTH;
     let track = &tracks.tracks[lane];
-    if track.count == 0 {
+    let keys = &all.keys[track.first as usize..][..track.count as usize];
+    if let Some(next) = keys.get(span.key[lane].wrapping_add(2) as usize) {
+        let end = clip.times[usize::from(next.time)];
+        if span.end[lane] <= time && time < end {
+            span.key[lane] = span.key[lane].wrapping_add(1);
+            span.start[lane] = span.end[lane];
+            span.end[lane] = end;
+            for i in 0..N {
+                span.left[i][lane] = span.right[i][lane];
+            }
+            span.set_right(lane, track.code.decode(next.packed));
+            return;
+        }
+    }
+    search(clip, keys, (tracks, row), time, span, lane);
+}
+
+/// Finds the keys around `time`, wherever the lane was.
+#[cold]
+fn search<C: Code<N>, const N: usize>(
+    clip: &BuiltClip,
+    keys: &[Key],
+    (tracks, row): (&TrackBlock<C>, usize),
+    time: f32,
+    span: &mut Span<N>,
+    lane: usize,
+) {
+    let Some(first) = keys.first() else {
         let base = &clip.base.blocks()[tracks.block].0;
         span.hold(lane, core::array::from_fn(|i| base[row + i][lane]), -FOREVER, FOREVER);
         return;
-    }
-    let keys = &all.keys[track.first as usize..][..track.count as usize];
+    };
     let time_of = |key: &Key| clip.times[usize::from(key.time)];
-    let value_of = |key: &Key| track.code.decode(key.packed);
-    let first = time_of(&keys[0]);
-    if time < first {
+    let value_of = |key: &Key| tracks.tracks[lane].code.decode(key.packed);
+    if time < time_of(first) {
         span.key[lane] = BEFORE;
-        span.hold(lane, value_of(&keys[0]), -FOREVER, first);
+        span.hold(lane, value_of(first), -FOREVER, time_of(first));
         return;
     }
-    let old = span.key[lane];
-    // The next key forward is the one that is on the right already.
-    let follows = old.wrapping_add(2);
-    let near = follows < track.count && span.end[lane] <= time && time < time_of(&keys[follows as usize]);
-    let left = if near { old.wrapping_add(1) } else { last_not_after(keys, time, time_of) };
+    let left = last_not_after(keys, time, time_of);
     span.key[lane] = left;
     let (left, right) = (&keys[left as usize], keys.get(left as usize + 1));
     let Some(right) = right else {
         span.hold(lane, value_of(left), time_of(left), FOREVER);
         return;
     };
-    if near {
-        for i in 0..N {
-            span.left[i][lane] = span.right[i][lane];
-        }
-    } else {
-        span.set_left(lane, value_of(left));
-    }
+    span.set_left(lane, value_of(left));
     span.set_right(lane, value_of(right));
     (span.start[lane], span.end[lane]) = (time_of(left), time_of(right));
 }
