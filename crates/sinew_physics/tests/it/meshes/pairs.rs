@@ -113,10 +113,10 @@ fn near_a_triangle(kind: usize, random: &mut Random) {
             // Out along the normal, the shape is out.
             assert!(found.len() == 1 && separation < 0.0, "{place}");
             let left = distance(&shape, &moved_out(&frame, &found[0]), &corners);
-            // Deeper than half its thickness, a shape is measured over the triangle alone; a round side by the line that
-            // stands for it.
-            let shallow = expected > -0.5 * shape.inner_radius() && !round;
-            assert!(!shallow || left > -tolerance, "{place}, {left}");
+            // What is as deep within a twentieth counts as deepest. A capsule deeper than half its thickness is measured over the
+            // triangle alone.
+            let measured = expected > -0.5 * shape.inner_radius() || !matches!(shape, Shape::Capsule { .. });
+            assert!(!measured || left > -2e-3 + 0.05 * separation, "{place}, {left}");
         }
         for manifold in &found {
             assert!((manifold.normal.length() - 1.0).abs() < 1e-5, "{place}");
@@ -142,11 +142,11 @@ fn what_reaches_deepest_beside_the_lowest_face_counts() {
         Vec3::new(-0.465, 0.308, 0.152),
         Vec3::new(-0.451, -0.137, 0.201),
         Vec3::new(-0.349, 0.460, 0.118),
-        Vec3::new(-0.318, -0.426, -0.443),
+        Vec3::new(-0.319, -0.426, -0.443),
         Vec3::new(-0.059, 0.111, 0.409),
         Vec3::new(-0.005, 0.359, 0.030),
         Vec3::new(0.191, -0.458, -0.289),
-        Vec3::new(0.283, 0.318, -0.174),
+        Vec3::new(0.283, 0.317, -0.174),
         Vec3::new(0.395, -0.486, -0.044),
     ];
     let hull = Shape::Hull(Arc::new(Hull::new(&points).unwrap()));
@@ -348,7 +348,7 @@ fn the_closest_point_is_that_of_all_triangles() {
     let mut random = Random::new(44);
     let (mesh, field, corners) = terrain(&mut random, 12);
     let alone: Vec<Shape> = corners.iter().map(|corners| mesh_of(corners)).collect();
-    for case in 0..cases(20_000) {
+    for case in 0..cases(100_000) {
         let p = Vec3::new(random.range(-2.0, 8.0), random.range(-1.0, 3.0), random.range(-2.0, 8.0));
         let away = |alone: &Shape| alone.signed_distance(&Transform::IDENTITY, p).0.abs();
         let expected = alone.iter().map(away).fold(f32::INFINITY, f32::min);
