@@ -6,7 +6,7 @@ use super::placed::{Ball, Pill, PlacedBox, Plane};
 use super::reduce::push_best;
 use super::{Manifold, ManifoldPoint};
 use crate::convex::feature::MOST_CORNERS;
-use crate::convex::support::{Posed, Support};
+use crate::convex::support::{Posed, Support, narrow, wide};
 use crate::hull::{Hull, MAX_VERTICES};
 use sinew_math::{Transform, Vec3, min};
 
@@ -22,26 +22,15 @@ pub(super) fn against_box(a: &Plane, b: &PlacedBox, margin: f32, out: &mut Manif
     }
 }
 
-/// The corners of the face that looks at the plane from the deepest corner.
+/// The corners of the face that looks at the plane from the deepest corner, or from one that is nearly as deep.
 pub(super) fn against_hull(a: &Plane, b: &Hull, frame: &Transform, margin: f32, out: &mut Manifold) {
-    out.normal = a.normal;
     let polytope = b.polytope();
-    let tolerance = tolerance(f32::INFINITY, b.inner_radius());
     let down = frame.rotation.inverse() * -a.normal;
-    let face = polytope.face_at_support(down, tolerance);
-    let mut points = [ManifoldPoint::default(); MAX_VERTICES];
-    let mut count = 0;
-    for corner in polytope.topology.corners(face) {
-        let place = frame.point(b.vertices()[corner]);
-        let separation = a.height(place);
-        if separation <= margin {
-            let position = place - a.normal * (0.5 * separation);
-            let feature = pair(WHOLE, feature::vertex(corner));
-            points[count] = ManifoldPoint { position, separation, feature };
-            count += 1;
-        }
-    }
-    push_best(&points[..count], tolerance, out);
+    let face = polytope.face_at_support(down, tolerance(f32::INFINITY, b.inner_radius()));
+    let point = |corner: usize| under(a, frame.point(b.vertices()[corner]), 0.0, feature::vertex(corner));
+    let (corners, lowest) = (polytope.topology.corners(face).map(point), point(polytope.support(down)));
+    out.normal = a.normal;
+    push_deepest::<MAX_VERTICES>(corners, lowest, ROUNDING * b.bounding_radius(), margin, out);
 }
 
 /// Both ends.
@@ -61,25 +50,57 @@ pub(super) fn against_sphere(a: &Plane, b: &Ball, margin: f32, out: &mut Manifol
     push(a, b.center, b.radius, margin, WHOLE, out);
 }
 
-/// What looks at the plane, the deepest four points of it.
+/// The corners of what looks at the plane.
 pub(super) fn against_core<S: Support>(a: &Plane, b: &Posed<'_, S>, margin: f32, out: &mut Manifold) {
-    let feature = b.feature(-a.normal);
-    let (radius, mut points, mut count) = (b.solid.rounding(), [ManifoldPoint::default(); MOST_CORNERS], 0);
-    for corner in feature.corners() {
-        let separation = a.height(corner.point) - radius;
-        if separation <= margin {
-            let position = corner.point - a.normal * (radius + 0.5 * separation);
-            points[count] = ManifoldPoint { position, separation, feature: pair(WHOLE, corner.name) };
+    const POINTS: usize = MOST_CORNERS + 1;
+    let (feature, radius) = (b.feature(-a.normal), b.solid.rounding());
+    let corners = feature.corners().iter().map(|corner| under(a, corner.point, radius, corner.name));
+    let lowest = under(a, narrow(b.support(-wide(a.normal))), radius, WHOLE);
+    out.normal = a.normal;
+    push_deepest::<POINTS>(corners, lowest, ROUNDING * b.solid.reach(), margin, out);
+}
+
+/// Heights over a plane are equal if they differ by less than this share of a solid's reach. They are rounded by a few 6e-8 of
+/// it; what rests is never quite still, and is to keep the points that were chosen.
+const ROUNDING: f32 = 1e-5;
+
+/// Four of some corners, or fewer, that are within the margin. Of what leans a little, or is round, the `lowest` point need not
+/// be among the corners that stand for what looks at the plane: then it joins them, `N` at most.
+fn push_deepest<const N: usize>(
+    corners: impl Iterator<Item = ManifoldPoint>,
+    lowest: ManifoldPoint,
+    tolerance: f32,
+    margin: f32,
+    out: &mut Manifold,
+) {
+    let mut points = [ManifoldPoint::default(); N];
+    let (mut count, mut nearest) = (0, f32::INFINITY);
+    let mut keep = |point: ManifoldPoint| {
+        if point.separation <= margin {
+            points[count] = point;
             count += 1;
         }
+    };
+    for point in corners {
+        nearest = min(point.separation, nearest);
+        keep(point);
     }
-    out.normal = a.normal;
-    push_best(&points[..count], min(0.0005, 0.01 * b.solid.thinnest()), out);
+    if lowest.separation < nearest - tolerance {
+        keep(lowest);
+    }
+    push_best(&points[..count], tolerance, out);
+}
+
+/// The point between the plane and a ball, which may be a corner.
+fn under(a: &Plane, center: Vec3, radius: f32, feature: u16) -> ManifoldPoint {
+    let separation = a.height(center) - radius;
+    let position = center - a.normal * (radius + 0.5 * separation);
+    ManifoldPoint { position, separation, feature: pair(WHOLE, feature) }
 }
 
 fn push(a: &Plane, center: Vec3, radius: f32, margin: f32, feature: u16, out: &mut Manifold) {
-    let separation = a.height(center) - radius;
-    if separation <= margin {
-        out.push(center - a.normal * (radius + 0.5 * separation), separation, pair(WHOLE, feature));
+    let point = under(a, center, radius, feature);
+    if point.separation <= margin {
+        out.push(point.position, point.separation, point.feature);
     }
 }

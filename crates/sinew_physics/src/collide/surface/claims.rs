@@ -2,12 +2,20 @@
 //! nearest to the shape there: over whose face the shape lies, to that it touches none of its edges (the idea of voided
 //! features: Box2D's ghost vertices, Bullet's internal edges).
 
+use super::patch::{MAX_PARTS, SAME_NORMAL};
 use super::{Candidate, When};
 use crate::triangles::Part;
+use sinew_math::Vec3;
 
 /// Cosine of the angle between a normal and its triangle's up to which an edge that cannot be felt may give it: a little more
 /// than the 5° by which the surface may turn there.
 const WITHIN_FACE: f32 = 0.995;
+
+/// Cosine of the angle between a normal and its triangle's from which on the shape lies on the triangle.
+const FACES: f32 = 0.9;
+
+/// Cosine of the angle between two normals up to which they keep a shape out from the same side.
+const SAME_SIDE: f32 = 0.5;
 
 /// Features of one surface that are not what a triangle which has them is touched at.
 #[derive(Clone, Debug, Default)]
@@ -43,6 +51,7 @@ impl Claims {
                 candidates[best].holds = true;
             }
         }
+        hear_what_faces(candidates, &overlaps);
     }
 
     /// What a triangle is not touched at. Corners are denied by edges that end there, and not the other way round: between
@@ -74,6 +83,22 @@ impl Claims {
                 let denied = self.vertices.binary_search(&triangle.vertices[corner]).is_ok();
                 !denied && is_felt(candidate, [corner, (corner + 2) % 3])
             }
+        }
+    }
+}
+
+/// An overlap that faces its triangle is not left unfelt for want of anything that holds it from that side: of two walls of a
+/// valley along whose ridges a shape lies, each denies the other's corners at the bottom.
+fn hear_what_faces(candidates: &mut [Candidate], overlaps: &impl Fn(&Candidate) -> bool) {
+    let facing = |c: &Candidate| c.normal.dot(c.triangle.normal);
+    for _ in 0..MAX_PARTS {
+        let felt = |normal: Vec3| candidates.iter().any(|c| c.holds && c.normal.dot(normal) > SAME_SIDE);
+        let unheard = candidates.iter().filter(|c| !c.holds && overlaps(c) && facing(c) > FACES);
+        let unfelt = unheard.filter(|c| !felt(c.normal));
+        let Some(best) = unfelt.reduce(|a, b| if facing(b) > facing(a) { b } else { a }) else { return };
+        let normal = best.normal;
+        for candidate in candidates.iter_mut() {
+            candidate.holds |= overlaps(candidate) && candidate.normal.dot(normal) > SAME_NORMAL;
         }
     }
 }

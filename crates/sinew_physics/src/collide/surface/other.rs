@@ -6,7 +6,7 @@ use crate::collide::features::manifold_of_features;
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use crate::convex::feature::{Corner, Feature};
 use crate::convex::support::{Core, Posed, Support, wide};
-use crate::convex::{apart_along, meet};
+use crate::convex::{advance, apart_along, closeness, meet};
 use crate::triangles::{Part, Triangle};
 use sinew_math::{DVec3, Transform, Vec3, max, min};
 
@@ -26,13 +26,18 @@ pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'
     // The way out leads through the triangle, or its own face is as good: that holds best, and says what the surface is like.
     let outward = between.normal.dot(teller.triangle.normal);
     let backward = outward < 0.0 && between.distance <= 0.0;
-    if backward || between.distance <= gap + tolerance + 0.05 * max(-gap, 0.0) {
+    let as_good = gap + tolerance + 0.05 * max(-gap, 0.0);
+    if backward || between.distance <= as_good {
         let over = teller.over_face(Vec3::ZERO);
         let lowest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
+        let told = lowest - teller.solid.radius();
         // Apart, the two may pass each other beside the face; of two that overlap the round side may be over the triangle
         // where the line that stands for it is not.
-        let shows = lowest - teller.solid.radius() <= max(between.distance + tolerance, 0.0);
+        let shows = told <= max(between.distance + tolerance, 0.0);
         if shows && teller.face_points(&over, When::Now) {
+            if between.distance <= 0.0 && told > as_good {
+                deepest(&triangle, posed, gap, told, teller);
+            }
             return Some(Part::Face);
         }
         if between.distance <= 0.0 {
@@ -61,6 +66,30 @@ pub(super) fn other(posed: &Posed<'_, Core<'_>>, gap: f32, teller: &mut Teller<'
     }
     teller.tell(manifold.normal, part, When::Now, &points[..manifold.count]);
     Some(part)
+}
+
+/// Tells of the deepest point of the shape under the triangle, if it is below `told`: it need not be on the side that faces the
+/// triangle where that reaches down beside it. Taken out along the normal and let down again, it is what meets the triangle first.
+fn deepest(
+    triangle: &Posed<'_, Thin<'_>>,
+    posed: &Posed<'_, Core<'_>>,
+    gap: f32,
+    told: f32,
+    teller: &mut Teller<'_>,
+) {
+    let (normal, tolerance) = (teller.triangle.normal, teller.solid.tolerance());
+    let out = normal * (tolerance - gap);
+    let hit = advance(-out, closeness(posed.solid.thinnest(), out), |way| {
+        let moved = Posed { solid: posed.solid, axes: posed.axes, center: posed.center + wide(out + way) };
+        Some(meet(&moved, triangle))
+    });
+    let Some(hit) = hit else { return };
+    let separation = (hit.fraction - 1.0) * out.length();
+    if separation < told - tolerance {
+        let feature = pair(name::FACE, WHOLE);
+        let position = hit.point + normal * (0.5 * separation);
+        teller.tell(normal, Part::Face, When::Now, &[ManifoldPoint { position, separation, feature }]);
+    }
 }
 
 /// A triangle as a solid without thickness.

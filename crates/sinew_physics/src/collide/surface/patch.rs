@@ -8,7 +8,7 @@ use sinew_math::{Transform, Vec3};
 /// Most manifolds of a shape and a surface: what points in more directions than that joins those it is nearest to.
 pub(crate) const MAX_PARTS: usize = 8;
 /// Cosine of the angle, 5°, up to which contacts have one normal.
-const SAME_NORMAL: f32 = 0.996;
+pub(super) const SAME_NORMAL: f32 = 0.996;
 
 /// The manifolds of a surface and a shape.
 #[derive(Clone, Copy, Debug, Default)]
