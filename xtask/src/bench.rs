@@ -14,7 +14,7 @@ mod table;
 use crate::command::{self, Profile};
 use anyhow::{Context, Result, bail};
 use machine::Machine;
-use peers::{Engine, Judging};
+use peers::{Engine, Judging, Scene};
 use results::{EngineResult, Results, SceneResult};
 use serde_json::Value;
 use std::fs;
@@ -103,23 +103,24 @@ impl Bench {
                 return Ok(ExitCode::from(2));
             }
         };
-        let names = peers::scenes(engines.first().context("`peers list` has no engine")?)?;
-        self.refuse_unknown(&names, &engines)?;
-        let results = self.measure(&engines, &names)?;
+        let scenes = peers::scenes(engines.first().context("`peers list` has no engine")?)?;
+        self.refuse_unknown(&scenes, &engines)?;
+        let results = self.measure(&engines, &scenes)?;
         let [joints, stands] = [musts::HOLDS, musts::STANDS].map(|rows| page::holds(&results, rows));
-        println!("{}\n{joints}\n{stands}\n{}", page::glance(&results), page::speeds(&results));
+        let [physics, animation] = [page::glance(&results), page::animation(&results)];
+        println!("{physics}\n{joints}\n{stands}\n{animation}\n{}", page::speeds(&results));
         Ok(self.verdict(&results))
     }
 
-    fn refuse_unknown(&self, names: &[(String, String)], engines: &[Engine]) -> Result<()> {
+    fn refuse_unknown(&self, scenes: &[Scene], engines: &[Engine]) -> Result<()> {
         let is_there = |name: &&String| engines.iter().any(|engine| engine.name == **name);
         if let Some(name) = self.engines.iter().find(|name| !is_there(name)) {
             bail!("no engine `{name}`");
         }
-        let is_known = |scene: &String| scene == BAKE || names.iter().any(|(name, _)| name == scene);
+        let is_known = |scene: &String| scene == BAKE || scenes.iter().any(|known| known.name == *scene);
         match self.scenes.iter().find(|scene| !is_known(scene)) {
             Some(scene) => {
-                let names: Vec<&str> = names.iter().map(|(name, _)| name.as_str()).collect();
+                let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
                 bail!("no scene `{scene}`; there are {}, {BAKE}", names.join(", "))
             }
             None => Ok(()),
@@ -134,41 +135,42 @@ impl Bench {
         self.engines.is_empty() || self.engines.iter().any(|engine| engine == name)
     }
 
-    fn measure(&self, engines: &[Engine], names: &[(String, String)]) -> Result<Results> {
+    fn measure(&self, engines: &[Engine], scenes: &[Scene]) -> Result<Results> {
         let revision = machine::revision();
         let mut results = Results::default();
-        for (name, about) in names.iter().filter(|(name, _)| self.is_wanted(name)) {
-            let engines = self.race(engines, name)?;
-            let (name, about) = (name.clone(), about.clone());
+        for scene in scenes.iter().filter(|scene| self.is_wanted(&scene.name)) {
+            let engines = self.race(engines, scene)?;
+            let (name, about) = (scene.name.clone(), scene.about.clone());
             results.scenes.push(SceneResult { name, about, revision: revision.clone(), engines });
-            self.keep(&results, names)?;
+            self.keep(&results, scenes)?;
         }
         if self.is_wanted(BAKE) && !self.quick {
             results.bake = Some(bake()?);
-            self.keep(&results, names)?;
+            self.keep(&results, scenes)?;
         }
         Ok(results)
     }
 
     /// Writes down what there is so far: whoever stops a long run loses one scene only.
-    fn keep(&self, results: &Results, names: &[(String, String)]) -> Result<()> {
-        if self.quick { Ok(()) } else { write(results.clone(), names) }
+    fn keep(&self, results: &Results, scenes: &[Scene]) -> Result<()> {
+        if self.quick { Ok(()) } else { write(results.clone(), scenes) }
     }
 
-    /// A scene on all engines, which take turns, so that a neighbour's load hits all alike.
-    fn race(&self, engines: &[Engine], scene: &str) -> Result<Vec<EngineResult>> {
+    /// A scene on all engines that are made for it, which take turns, so that a neighbour's load hits all alike.
+    fn race(&self, engines: &[Engine], scene: &Scene) -> Result<Vec<EngineResult>> {
         let result = |engine: &Engine| EngineResult { name: engine.name.clone(), reports: Vec::new() };
-        let mut results: Vec<_> = engines.iter().map(result).collect();
+        let engines: Vec<&Engine> = engines.iter().filter(|engine| engine.is_for(scene)).collect();
+        let mut results: Vec<_> = engines.iter().copied().map(result).collect();
         let (rounds, steps) = if self.quick { (1, Some(QUICK_STEPS)) } else { (self.rounds, self.steps) };
         for round in 1..=rounds {
             for (engine, result) in engines.iter().zip(&mut results) {
                 if result.why_not().is_some() {
                     continue;
                 }
-                eprint!("{scene:<26} round {round} of {rounds}  {:<14}", engine.name);
+                eprint!("{:<26} round {round} of {rounds}  {:<14}", scene.name, engine.name);
                 std::io::stderr().flush()?;
                 let judging = if round == 1 { Judging::On } else { Judging::Off };
-                let report = engine.run(scene, steps, judging, LIMIT)?;
+                let report = engine.run(&scene.name, steps, judging, LIMIT)?;
                 eprintln!("{}", in_a_word(&report));
                 result.reports.push(report);
             }
@@ -225,12 +227,12 @@ fn kept() -> Results {
 }
 
 /// Adds the figures to those of earlier runs, and writes the page.
-fn write(results: Results, names: &[(String, String)]) -> Result<()> {
+fn write(results: Results, scenes: &[Scene]) -> Result<()> {
+    let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
     let mut all = kept();
-    all.update(results, names);
+    all.update(results, &names);
     fs::write(file(), format!("{:#}\n", all.to_json())).with_context(|| file().display().to_string())?;
-    let names: Vec<&str> = names.iter().map(|(name, _)| name.as_str()).chain([BAKE]).collect();
-    write_page(&all, &names)
+    write_page(&all, &[&names[..], &[BAKE]].concat())
 }
 
 /// Writes the page of all figures, and which of `names` have none; but never over one with more scenes.

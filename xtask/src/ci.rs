@@ -62,7 +62,7 @@ impl Ci {
 }
 
 /// Workspaces beside the root's. They are compiled only where it is worth the time, but always well formatted.
-const OTHER_WORKSPACES: &[&str] = &["bench/peers", "bench/counts", "bench/kernels"];
+const OTHER_WORKSPACES: &[&str] = &["bench/peers", "bench/counts", "bench/kernels", "fuzz"];
 
 fn fmt() -> Result<()> {
     command::run(&mut command::cargo(&["fmt", "--all", "--check"]))?;

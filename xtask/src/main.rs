@@ -1,4 +1,4 @@
-//! All automation of this repository: `cargo xtask ci | tidy | golden | book | bench`.
+//! All automation of this repository: `cargo xtask ci | tidy | golden | book | bench | fuzz`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -6,6 +6,7 @@ mod book;
 mod ci;
 mod command;
 mod contract;
+mod fuzz;
 mod golden;
 mod targets;
 mod tidy;
@@ -32,6 +33,8 @@ enum Task {
     Book(book::Book),
     /// Time and quality beside other engines, into docs/benchmarks.md; or instructions of the kernels
     Bench(bench::Bench),
+    /// Bytes from nowhere against the readers, and clips against the runtime
+    Fuzz(fuzz::Fuzz),
 }
 
 fn main() -> anyhow::Result<ExitCode> {
@@ -40,6 +43,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Task::Tidy(tidy) => tidy.run()?,
         Task::Golden(golden) => golden.run()?,
         Task::Book(book) => book.run()?,
+        Task::Fuzz(fuzz) => fuzz.run()?,
         Task::Bench(bench) => return bench.run(),
     }
     Ok(ExitCode::SUCCESS)

@@ -8,6 +8,7 @@ use sinew::math::{Random, Rotation, Transform, Vec3};
 use sinew::physics::collide::{Manifold, collide};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef, SleepThresholds, Sleeping, World, WorldDef};
 use sinew_scenes::blueprint;
+use sinew_scenes::crowd::{Crowd, CrowdScene};
 use sinew_scenes::scenes::{self, Instance};
 use std::hint::black_box;
 
@@ -142,5 +143,24 @@ fn collide_64(pairs: Vec<(Placed, Placed)>) -> usize {
     points
 }
 
-library_benchmark_group!(name = kernels, benchmarks = [ragdoll_step, step, collide_64]);
+/// Steps after which nothing is searched or allocated any more.
+const WARM: usize = 4;
+
+/// A hundred characters that each blend two clips of 50 joints, warm.
+fn crowd() -> Crowd {
+    let mut crowd = Crowd::new(CrowdScene::new(100));
+    for step in 0..WARM {
+        crowd.step(step);
+    }
+    crowd
+}
+
+#[library_benchmark]
+#[bench::characters_100(crowd())]
+fn blend_two_clips(mut crowd: Crowd) -> Crowd {
+    crowd.step(WARM);
+    crowd
+}
+
+library_benchmark_group!(name = kernels, benchmarks = [ragdoll_step, step, collide_64, blend_two_clips]);
 main!(library_benchmark_groups = kernels);

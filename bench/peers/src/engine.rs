@@ -5,7 +5,8 @@ use sinew::math::{Rotation, SwingTwistLimit, Transform, Vec3};
 use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
 use thiserror::Error;
 
-use crate::scenes::{BoxPairs, ClothScene, RayScene};
+use crate::scenes::{BoxPairs, ClothScene, Field, RayScene};
+use sinew_scenes::crowd::CrowdScene;
 
 /// An engine under measurement, with the settings it comes with.
 ///
@@ -13,6 +14,11 @@ use crate::scenes::{BoxPairs, ClothScene, RayScene};
 pub trait Engine: Sync {
     /// What is measured.
     fn describe(&self) -> Description;
+
+    /// What it is made for. Scenes of other fields are not for it.
+    fn fields(&self) -> &'static [Field] {
+        &[Field::Physics]
+    }
 
     /// A world with everything the blueprint says, before its first step.
     ///
@@ -42,6 +48,14 @@ pub trait Engine: Sync {
     /// What the engine lacks.
     fn build_boxes(&self, _pairs: &BoxPairs) -> Result<Box<dyn OverlapTester>, Unsupported> {
         Err(Unsupported::new("no public test of two boxes for overlap"))
+    }
+
+    /// Characters, each with a memory of its own, before the first pose.
+    ///
+    /// # Errors
+    /// What the engine lacks.
+    fn build_crowd<'a>(&self, _crowd: &'a CrowdScene) -> Result<Box<dyn Crowd + 'a>, Unsupported> {
+        Err(Unsupported::new("no animation"))
     }
 }
 
@@ -76,6 +90,24 @@ pub trait RayCaster {
 pub trait OverlapTester {
     /// How many of the pairs in `range` overlap.
     fn count_overlaps(&mut self, range: core::ops::Range<usize>) -> usize;
+}
+
+/// Characters that play clips.
+pub trait Crowd {
+    /// Samples both clips for every character at its times of this step, blends them, and brings them to model space.
+    fn step(&mut self, step: usize);
+
+    /// What a character came to in the last step, which was `step`.
+    fn pose(&mut self, character: usize, step: usize) -> CharacterPose;
+}
+
+/// What became of a character's joints.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CharacterPose {
+    /// For each clip, the sampled rotation of every joint relative to its parent.
+    pub sampled: [Vec<Rotation>; 2],
+    /// Origin of every joint of the blended pose, model space, metres.
+    pub places: Vec<Vec3>,
 }
 
 /// Where a body is and how it moves.

@@ -67,8 +67,13 @@ fn main() -> ExitCode {
 }
 
 fn list() -> Value {
-    let engine = |entry: &Entry| json!({ "name": entry.name, "built": entry.engine.is_some() });
-    let scene = |scene: &Scene| json!({ "name": scene.name, "about": scene.about });
+    let engine = |entry: &Entry| {
+        let fields = entry.engine.map_or(&[][..], |engine| engine.fields());
+        let fields: Vec<&str> = fields.iter().map(|field| field.name()).collect();
+        json!({ "name": entry.name, "built": entry.engine.is_some(), "fields": fields })
+    };
+    let scene =
+        |scene: &Scene| json!({ "name": scene.name, "about": scene.about, "field": scene.field.name() });
     json!({
         "engines": ENGINES.iter().map(engine).collect::<Vec<_>>(),
         "scenes": SCENES.iter().map(scene).collect::<Vec<_>>(),

@@ -2,13 +2,17 @@
 
 use crate::engine::{BodyState, Engine, Unsupported};
 use crate::measure::{Memory, StepTimes};
-use crate::quality::{ClothMeter, QualityMeter};
+use crate::quality::{ClothMeter, CrowdMeter, QualityMeter};
 use crate::scenes::{BoxPairs, ClothScene, RayScene, Scene, Work};
 use serde_json::{Value, json};
 use sinew_scenes::blueprint::Blueprint;
+use sinew_scenes::crowd::CrowdScene;
 
 /// Depths are looked at after every one of so many steps.
 const PENETRATION_EVERY: usize = 10;
+
+/// Of a crowd, one of so many characters is looked at, another one after each step.
+const CHARACTERS_EVERY: usize = 37;
 
 /// Whether the run is repeated to look at its quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +37,7 @@ pub fn run(engine: &dyn Engine, scene: &Scene, steps: Option<usize>, judging: Ju
         Work::Cloth(cloth) => run_cloth(engine, cloth, steps, judging),
         Work::Rays(rays) => run_rays(engine, rays, steps),
         Work::Boxes(pairs) => run_boxes(engine, pairs, steps),
+        Work::Crowd(crowd) => run_crowd(engine, crowd, steps, judging),
     };
     match figures {
         Ok(Value::Object(figures)) => {
@@ -145,4 +150,32 @@ fn run_boxes(engine: &dyn Engine, scene: &BoxPairs, steps: usize) -> Result<Valu
         "per_step": pairs / times.count(),
         "hit_share": overlaps as f64 / pairs as f64,
     }))
+}
+
+fn run_crowd(
+    engine: &dyn Engine,
+    scene: &CrowdScene,
+    steps: usize,
+    judging: Judging,
+) -> Result<Value, Unsupported> {
+    let memory = Memory::now();
+    let mut crowd = engine.build_crowd(scene)?;
+    let times = StepTimes::measure(steps, |step| crowd.step(step));
+    let mut figures = json!({
+        "characters": scene.characters.len(),
+        "joints": scene.rig.joints.len(),
+        "cpu_ms": times.to_json(),
+        "peak_rss_mib": memory.peak_above_mib(),
+    });
+    if judging == Judging::On {
+        let mut meter = CrowdMeter::new(scene);
+        for step in steps..2 * steps {
+            crowd.step(step);
+            for character in (step % CHARACTERS_EVERY..scene.characters.len()).step_by(CHARACTERS_EVERY) {
+                meter.observe(character, step, &crowd.pose(character, step));
+            }
+        }
+        figures["quality"] = meter.finish().to_json();
+    }
+    Ok(figures)
 }

@@ -3,6 +3,7 @@
 
 pub mod blueprint;
 pub mod cabin;
+pub mod crowd;
 pub mod demo;
 pub mod mannequin;
 mod parts;

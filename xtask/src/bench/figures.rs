@@ -57,6 +57,9 @@ pub const ASLEEP: Figure =
 /// Mean stretch of a cloth's edges.
 pub const CLOTH: Figure =
     Figure { heading: "mean stretch", unit: Unit::Share, of: |e| number(e, "stretch_mean") };
+/// Largest distance of a joint from where its clips say, in model space.
+pub const POSE: Figure =
+    Figure { heading: "pose error", unit: Unit::Length, of: |e| number(e, "model_error_max_m") };
 /// Share of rays or pairs that hit.
 pub const HITS: Figure = Figure { heading: "hits", unit: Unit::Share, of: |e| e.number("hit_share") };
 
@@ -80,6 +83,8 @@ pub const FIGURES: &[Figure] = &[
     Figure { heading: "energy gained", unit: Unit::Energy, of: energy_gained },
     Figure { heading: "energy lost", unit: Unit::Energy, of: energy_lost },
     Figure { heading: "lost bodies", unit: Unit::Count, of: |e| number(e, "lost_bodies") },
+    POSE,
+    Figure { heading: "rotation error", unit: Unit::Angle, of: |e| number(e, "rotation_error_max_rad") },
     HITS,
 ];
 
@@ -93,6 +98,7 @@ pub fn headline(scene: &str) -> &'static Figure {
         "chain_100_links" => &STRETCH,
         "heavy_rope" | "hanging_rope" => &GAP_PER_LINK,
         "cloth" => &CLOTH,
+        "crowd" => &POSE,
         "rays" | "obb_tests" | "obb_tests_streamed" => &HITS,
         _ => &GAP,
     }

@@ -19,6 +19,7 @@ pub fn page(results: &Results, missing: &[&str], machine: &Machine) -> String {
     add("At a glance", &format!("{GLANCE}\n{}\n{LEGEND}{}", glance(results), gaps(missing)));
     add("Joints that hold", &format!("{HOLD}\n{}", holds(results, HOLDS)));
     add("Stacks that stand, heaps that sleep", &format!("{STAND}\n{}", holds(results, STANDS)));
+    add("Characters that blend clips", &format!("{ANIMATION}\n{}", animation(results)));
     add("Against the specification", &format!("{SPECIFICATION}\n{}", speeds(results)));
     add("Scene by scene", SCENES);
     for scene in &results.scenes {
@@ -66,6 +67,12 @@ const STAND: &str = "The farthest that a body of a stack has moved at the end, t
 the step after which a heap sleeps. **Bold** where Sinew is no worse than the best peer.
 ";
 
+const ANIMATION: &str = "Sampling two clips, blending them and bringing the pose to model space, of 1,000 characters, each at its own times, a step of
+1/60 s: milliseconds for all of them, then how far a joint was from its place at most, by the raw clips sampled and blended
+in plain numbers. Keys stand each 1/30 s for every joint's rotation and the root's place, the same keys on both sides.
+ozz-animation-rs reads the bytes of its own format.
+";
+
 const SPECIFICATION: &str = "Factors against the fastest peer of this run.\n";
 
 const SCENES: &str = "Times in milliseconds per step: the median step (in brackets: of the best round), the 99th percentile, the median of the
@@ -75,10 +82,20 @@ step. *energy gained* is the most the world ever had above its start, *energy lo
 are 0 for all are left out.
 ";
 
+/// Whether a scene is one of clips, whose engines have no part in the others.
+fn is_animation(scene: &SceneResult) -> bool {
+    scene.name == "crowd"
+}
+
+/// Scenes of bodies, cloth and shapes.
+fn physics(results: &Results) -> Vec<&SceneResult> {
+    results.scenes.iter().filter(|scene| !is_animation(scene)).collect()
+}
+
 /// Engines in the order of the columns.
-fn columns(results: &Results) -> Vec<String> {
+fn columns(scenes: &[&SceneResult]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for engine in results.scenes.iter().flat_map(|scene| &scene.engines) {
+    for engine in scenes.iter().flat_map(|scene| &scene.engines) {
         if !names.contains(&engine.name) {
             names.push(engine.name.clone());
         }
@@ -94,6 +111,7 @@ fn title(engine: &str) -> &str {
         "rapier_simd8" => "Rapier, 8 lanes",
         "box3d" => "Box3D",
         "jolt" => "Jolt",
+        "ozz" => "ozz-animation-rs",
         other => other,
     }
 }
@@ -109,9 +127,18 @@ fn of<'a>(scene: &'a SceneResult, engine: &str) -> Option<&'a EngineResult> {
 
 /// One line per scene: time and figure of each engine.
 pub fn glance(results: &Results) -> Table {
-    let engines = columns(results);
+    times_and_figures(&physics(results))
+}
+
+/// The same of scenes of clips.
+pub fn animation(results: &Results) -> Table {
+    times_and_figures(&results.scenes.iter().filter(|scene| is_animation(scene)).collect::<Vec<_>>())
+}
+
+fn times_and_figures(scenes: &[&SceneResult]) -> Table {
+    let engines = columns(scenes);
     let mut table = heading(&["scene", "figure", "steps"], &engines, &["speed"]);
-    for scene in &results.scenes {
+    for scene in scenes {
         let figure = headline(&scene.name);
         let time = |name: &String| {
             let Some(engine) = of(scene, name) else { return NONE.to_owned() };
@@ -133,7 +160,7 @@ fn absence(engine: &EngineResult) -> String {
 
 /// What must hold, and what does.
 pub fn holds(results: &Results, rows: &[Hold]) -> Table {
-    let engines = columns(results);
+    let engines = columns(&physics(results));
     let mut table = heading(&["scene", "figure", "must"], &engines, &[]);
     for hold in rows {
         let verdict = hold.judge(results);
@@ -176,7 +203,7 @@ pub fn speeds(results: &Results) -> Table {
 
 /// Everything about one scene.
 fn details(scene: &SceneResult) -> String {
-    let sizes = ["bodies", "particles", "joints", "steps"].into_iter();
+    let sizes = ["bodies", "particles", "characters", "joints", "steps"].into_iter();
     let sizes = sizes.filter_map(|key| Some((scene.size(key).filter(|&size| size > 0)?, key)));
     let sizes: Vec<String> = sizes.map(|(size, key)| format!("{size} {key}")).collect();
     let figures = telling(scene);
@@ -217,7 +244,7 @@ fn mark(engine: &EngineResult) -> &'static str {
 /// What was measured, and how it was compiled.
 fn engines(results: &Results) -> Table {
     let mut table = Table::new(4, ["engine", "version", "compiled", "settings"]);
-    for name in columns(results) {
+    for name in columns(&results.scenes.iter().collect::<Vec<_>>()) {
         let found = results.scenes.iter().filter_map(|scene| of(scene, &name));
         let Some(engine) = found.into_iter().find(|engine| engine.text("version").is_some()) else {
             continue;

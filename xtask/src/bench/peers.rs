@@ -1,4 +1,4 @@
-//! The binary of `bench/peers`: built twice, and run engine by engine, scene by scene.
+//! The binary of `bench/peers`: built up to three times, and run engine by engine, scene by scene.
 
 use crate::command;
 use anyhow::{Context, Result, bail};
@@ -14,6 +14,15 @@ const MANIFEST: &str = "bench/peers/Cargo.toml";
 /// Rapier with eight lanes.
 const WIDE: &str = "rapier_simd8";
 
+/// Animation.
+const OZZ: &str = "ozz";
+
+/// It calls functions of `std::simd` that have other names from Rust 1.95 on.
+const OZZ_TOOLCHAIN: &str = "1.94.0";
+
+/// Flags for the registers of this machine, where it has them.
+const WIDE_FLAGS: &str = "-C target-cpu=x86-64-v3";
+
 /// How often a running process is looked at.
 const POLL: Duration = Duration::from_millis(20);
 
@@ -23,6 +32,19 @@ pub struct Engine {
     /// As the binary and the reports name it.
     pub name: String,
     binary: PathBuf,
+    /// What it is made for.
+    fields: Vec<String>,
+}
+
+/// A scene of the peers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Scene {
+    /// As the binary names it.
+    pub name: String,
+    /// In one line.
+    pub about: String,
+    /// What engine it is for.
+    field: String,
 }
 
 /// Whether a run is followed by one that is looked at instead of timed.
@@ -35,21 +57,27 @@ pub enum Judging {
 }
 
 /// Builds the peers as most users have them, and Rapier once more for wide registers where this machine has them: the
-/// two cannot be in one binary. Those that are `wanted`, Sinew first.
+/// two cannot be in one binary. ozz-animation-rs comes from a compiler of its own. Those that are `wanted`, Sinew first.
 ///
 /// # Errors
 /// If one does not compile.
 pub fn build(wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Engine>> {
-    let plain = build_with("peers", "rapier,box3d,jolt", None)?;
+    let plain = build_with("peers", &mut cargo_build("rapier,box3d,jolt"))?;
     let mut engines = engines(&plain)?;
     if wanted(WIDE) && has_wide_registers() {
-        let wide = build_with("peers-x86-64-v3", "simd8", Some("-C target-cpu=x86-64-v3"))?;
+        let wide = build_with("peers-x86-64-v3", cargo_build("simd8").env("RUSTFLAGS", WIDE_FLAGS))?;
         let rapier = self::engines(&wide)?.into_iter().filter(|engine| engine.name.starts_with("rapier"));
         let place =
             engines.iter().position(|engine| engine.name == "rapier").map_or(engines.len(), |at| at + 1);
         engines.splice(place..place, rapier);
     } else if wanted(WIDE) {
         eprintln!("SKIPPED: {WIDE}, whose eight lanes this machine does not have");
+    }
+    if wanted(OZZ) && has_toolchain(OZZ_TOOLCHAIN) {
+        let ozz = self::engines(&build_with("peers-ozz", &mut ozz_build())?)?;
+        engines.extend(ozz.into_iter().filter(|engine| engine.name == OZZ));
+    } else if wanted(OZZ) {
+        eprintln!("SKIPPED: {OZZ}, which needs `rustup toolchain install {OZZ_TOOLCHAIN} --profile minimal`");
     }
     engines.retain(|engine| wanted(&engine.name));
     Ok(engines)
@@ -65,14 +93,33 @@ fn has_wide_registers() -> bool {
     false
 }
 
-fn build_with(folder: &str, features: &str, rust_flags: Option<&str>) -> Result<PathBuf> {
-    let folder = command::target().join("bench").join(folder);
-    let mut build = command::cargo(&["build", "--release", "--locked", "--manifest-path", MANIFEST]);
-    build.args(["--features", features, "--target-dir"]).arg(folder);
-    if let Some(flags) = rust_flags {
-        build.env("RUSTFLAGS", flags);
+const BUILD: &[&str] = &["build", "--release", "--locked", "--manifest-path", MANIFEST, "--features"];
+
+fn cargo_build(features: &str) -> Command {
+    let mut build = command::cargo(BUILD);
+    build.arg(features);
+    build
+}
+
+/// With nothing that the older compiler has no part in, as fast as the machine can.
+fn ozz_build() -> Command {
+    let mut build = Command::new("rustup");
+    build.current_dir(command::root()).args(["run", OZZ_TOOLCHAIN, "cargo"]).args(BUILD);
+    build.args([OZZ, "--no-default-features", "--ignore-rust-version"]).env("RUSTC_BOOTSTRAP", "1");
+    if has_wide_registers() {
+        build.env("RUSTFLAGS", WIDE_FLAGS);
     }
-    command::build(&mut build, "peers")
+    build
+}
+
+fn has_toolchain(name: &str) -> bool {
+    let version = Command::new("rustup").args(["run", name, "rustc", "--version"]).output();
+    version.is_ok_and(|output| output.status.success())
+}
+
+fn build_with(folder: &str, build: &mut Command) -> Result<PathBuf> {
+    let folder = command::target().join("bench").join(folder);
+    command::build(build.arg("--target-dir").arg(folder), "peers")
 }
 
 /// The engines of a binary.
@@ -80,23 +127,36 @@ fn engines(binary: &Path) -> Result<Vec<Engine>> {
     let list = command::output_json(Command::new(binary).arg("list"))?;
     let engines = list["engines"].as_array().context("`peers list` names no engines")?;
     let built = engines.iter().filter(|engine| engine["built"] == true);
-    let names = built.map(|engine| engine["name"].as_str().context("an engine without a name"));
-    names.map(|name| Ok(Engine { name: name?.to_owned(), binary: binary.to_owned() })).collect()
+    built
+        .map(|engine| {
+            let name = engine["name"].as_str().context("an engine without a name")?.to_owned();
+            let fields = engine["fields"].as_array().into_iter().flatten();
+            let fields = fields.filter_map(Value::as_str).map(str::to_owned).collect();
+            Ok(Engine { name, binary: binary.to_owned(), fields })
+        })
+        .collect()
 }
 
-/// Names of all scenes, each with a line about it.
+/// All scenes.
 ///
 /// # Errors
 /// If the binary does not say.
-pub fn scenes(engine: &Engine) -> Result<Vec<(String, String)>> {
+pub fn scenes(engine: &Engine) -> Result<Vec<Scene>> {
     let list = command::output_json(Command::new(&engine.binary).arg("list"))?;
     let scenes = list["scenes"].as_array().context("`peers list` names no scenes")?;
     let text = |scene: &Value, key: &str| scene[key].as_str().map(str::to_owned);
-    let scene = |scene| Some((text(scene, "name")?, text(scene, "about")?));
+    let scene = |scene| {
+        Some(Scene { name: text(scene, "name")?, about: text(scene, "about")?, field: text(scene, "field")? })
+    };
     scenes.iter().map(|value| scene(value).context("a scene without a name")).collect()
 }
 
 impl Engine {
+    /// Whether it is made for such scenes.
+    pub fn is_for(&self, scene: &Scene) -> bool {
+        self.fields.contains(&scene.field)
+    }
+
     /// Runs a scene; gives what the process printed, or an object with `failed` if it died or took too long: that is
     /// a result, too.
     ///

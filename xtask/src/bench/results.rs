@@ -58,11 +58,11 @@ impl Results {
     }
 
     /// Takes what is newer, keeps the rest, in the order of `names`; forgets other scenes.
-    pub fn update(&mut self, newer: Self, names: &[(String, String)]) {
+    pub fn update(&mut self, newer: Self, names: &[&str]) {
         let older = std::mem::replace(self, newer);
         self.bake = self.bake.or(older.bake);
         let mut found: Vec<SceneResult> = self.scenes.drain(..).chain(older.scenes).collect();
-        for (name, _) in names {
+        for name in names {
             if let Some(at) = found.iter().position(|scene| scene.name == *name) {
                 self.scenes.push(found.remove(at));
             }
@@ -227,12 +227,11 @@ pub mod tests {
 
     #[test]
     fn newer_figures_replace_older_ones_and_keep_the_order() {
-        let names = ["a", "b", "c"].map(|name| (name.to_owned(), String::new()));
         let of = |name: &str, time| scene(name, vec![engine("sinew", &[time], &Value::Null)]);
         let mut results =
             Results { scenes: vec![of("c", 1.0), of("gone", 1.0), of("a", 1.0)], bake: Some(5.0) };
         let newer = Results { scenes: vec![of("b", 2.0), of("a", 2.0)], bake: None };
-        results.update(newer, &names);
+        results.update(newer, &["a", "b", "c"]);
         assert_eq!(results.scenes, [of("a", 2.0), of("b", 2.0), of("c", 1.0)]);
         assert_eq!(results.bake, Some(5.0));
         assert_eq!(Results::from_json(&results.to_json()), results);

@@ -4,6 +4,8 @@
 mod box3d;
 #[cfg(feature = "jolt")]
 mod jolt;
+#[cfg(feature = "ozz")]
+mod ozz;
 #[cfg(feature = "rapier")]
 mod rapier;
 mod sinew;
@@ -34,6 +36,10 @@ pub const ENGINES: &[Entry] = &[
     Entry { name: "jolt", engine: Some(&jolt::Jolt) },
     #[cfg(not(feature = "jolt"))]
     Entry { name: "jolt", engine: None },
+    #[cfg(feature = "ozz")]
+    Entry { name: "ozz", engine: Some(&ozz::Ozz) },
+    #[cfg(not(feature = "ozz"))]
+    Entry { name: "ozz", engine: None },
 ];
 
 /// The engine of that name.

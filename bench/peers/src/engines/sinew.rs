@@ -1,14 +1,18 @@
 //! Sinew, as it is in this repository.
 
-use crate::engine::{BodyState, Description, Engine, OverlapTester, RayCaster, Simulation, Unsupported};
-use crate::scenes::{BoxPair, BoxPairs, PlacedBox, RayScene};
+use crate::engine::{
+    BodyState, CharacterPose, Crowd, Description, Engine, OverlapTester, RayCaster, Simulation, Unsupported,
+};
+use crate::scenes::{BoxPair, BoxPairs, Field, PlacedBox, RayScene};
 use core::ops::Range;
+use sinew::anim::Pose;
 use sinew::math::Transform;
 use sinew::physics::boxes::Obb;
 use sinew::physics::boxes::batch::Pairs;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyDef, BodyHit, BodyId, BodyKind, Shape, ShapeDef, World, WorldDef};
 use sinew_scenes::blueprint::Blueprint;
+use sinew_scenes::crowd::CrowdScene;
 
 /// This engine.
 pub struct Sinew;
@@ -22,6 +26,10 @@ impl Engine for Sinew {
             flags: env!("PEERS_FLAGS").into(),
             settings: format!("defaults: {} substeps", def.substeps),
         }
+    }
+
+    fn fields(&self) -> &'static [Field] {
+        &[Field::Physics, Field::Animation]
     }
 
     fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported> {
@@ -45,6 +53,10 @@ impl Engine for Sinew {
 
     fn build_boxes(&self, pairs: &BoxPairs) -> Result<Box<dyn OverlapTester>, Unsupported> {
         Ok(Box::new(SinewBoxes::new(pairs)))
+    }
+
+    fn build_crowd<'a>(&self, scene: &'a CrowdScene) -> Result<Box<dyn Crowd + 'a>, Unsupported> {
+        Ok(Box::new(SinewCrowd(sinew_scenes::crowd::Crowd::new(scene.clone()))))
     }
 }
 
@@ -121,5 +133,21 @@ impl OverlapTester for SinewBoxes {
         let pairs = &self.steps[range.start / range.len()];
         pairs.overlaps(&mut self.overlapping);
         self.overlapping.iter().map(|eight| eight.count_ones() as usize).sum()
+    }
+}
+
+struct SinewCrowd(sinew_scenes::crowd::Crowd);
+
+impl Crowd for SinewCrowd {
+    fn step(&mut self, step: usize) {
+        self.0.step(step);
+    }
+
+    fn pose(&mut self, character: usize, step: usize) -> CharacterPose {
+        let rotations = |pose: &Pose| pose.iter().map(|local| local.rotation).collect();
+        CharacterPose {
+            sampled: self.0.sample(character, step).each_ref().map(rotations),
+            places: self.0.model(character).iter().map(|joint| joint.translation).collect(),
+        }
     }
 }

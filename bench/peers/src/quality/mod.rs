@@ -2,6 +2,7 @@
 
 mod chains;
 mod cloth;
+mod crowd;
 mod energy;
 mod joints;
 mod limits;
@@ -9,6 +10,7 @@ mod penetration;
 mod place;
 
 pub use cloth::{ClothMeter, ClothQuality};
+pub use crowd::{CrowdMeter, CrowdQuality};
 pub use energy::EnergyQuality;
 pub use joints::JointQuality;
 pub use limits::{LimitQuality, LimitTally};

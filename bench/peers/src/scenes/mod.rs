@@ -9,6 +9,7 @@ pub use cloth::ClothScene;
 pub use rays::{PlacedBox, RayScene};
 
 use sinew_scenes::blueprint::{self, Blueprint};
+use sinew_scenes::crowd::CrowdScene;
 
 /// Step length of every scene, seconds.
 pub const DT: f32 = 1.0 / 60.0;
@@ -20,8 +21,29 @@ pub struct Scene {
     pub name: &'static str,
     /// In one line.
     pub about: &'static str,
+    /// Whom it is for.
+    pub field: Field,
     /// What an engine is given to do.
     pub work: fn() -> Work,
+}
+
+/// What an engine may be made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Field {
+    /// Bodies, joints, cloth, questions about shapes.
+    Physics,
+    /// Clips and poses.
+    Animation,
+}
+
+impl Field {
+    /// In reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Physics => "physics",
+            Self::Animation => "animation",
+        }
+    }
 }
 
 /// What an engine is given to do.
@@ -34,11 +56,13 @@ pub enum Work {
     Rays(RayScene),
     /// Boxes against boxes.
     Boxes(BoxPairs),
+    /// Characters that play clips.
+    Crowd(CrowdScene),
 }
 
 macro_rules! bodies {
     ($name:literal, $about:literal, $blueprint:expr) => {
-        Scene { name: $name, about: $about, work: || Work::Bodies($blueprint) }
+        Scene { name: $name, about: $about, field: Field::Physics, work: || Work::Bodies($blueprint) }
     };
 }
 
@@ -78,22 +102,32 @@ pub const SCENES: &[Scene] = &[
     Scene {
         name: "cloth",
         about: "100 × 100 particles fall over a ball and a box",
+        field: Field::Physics,
         work: || Work::Cloth(ClothScene::new()),
     },
     Scene {
         name: "rays",
         about: "rays of 100 m against 10,000 boxes, 1,000 rays a step",
+        field: Field::Physics,
         work: || Work::Rays(RayScene::new()),
     },
     Scene {
         name: "obb_tests",
         about: "do two boxes overlap: 4,096 pairs that stay in the cache, all in a step",
+        field: Field::Physics,
         work: || Work::Boxes(BoxPairs::new(4_096, 4_096)),
     },
     Scene {
         name: "obb_tests_streamed",
         about: "do two boxes overlap: a million pairs from memory, 10,000 a step",
+        field: Field::Physics,
         work: || Work::Boxes(BoxPairs::new(1_000_000, 10_000)),
+    },
+    Scene {
+        name: "crowd",
+        about: "1,000 characters of 50 joints each blend two clips into model space",
+        field: Field::Animation,
+        work: || Work::Crowd(CrowdScene::new(1_000)),
     },
 ];
 
@@ -110,6 +144,7 @@ impl Work {
             Self::Cloth(_) => 300,
             Self::Rays(_) => 100,
             Self::Boxes(_) => 100,
+            Self::Crowd(_) => 240,
         }
     }
 }

@@ -5,11 +5,17 @@ use sinew::physics::{BodyDef, BodyKind, Filter, Hull, MassProperties, Shape, Sha
 use sinew_peers::engine::{BodyState, Engine};
 use sinew_peers::engines::ENGINES;
 use sinew_peers::quality::{Quality, QualityMeter};
+use sinew_peers::scenes::Field;
 use sinew_scenes::blueprint::Blueprint;
 
-/// All of this build.
+/// All of this build that have bodies.
 pub fn engines() -> impl Iterator<Item = &'static dyn Engine> {
-    ENGINES.iter().filter_map(|entry| entry.engine)
+    engines_of(Field::Physics)
+}
+
+/// All of this build that are made for a field.
+pub fn engines_of(field: Field) -> impl Iterator<Item = &'static dyn Engine> {
+    ENGINES.iter().filter_map(|entry| entry.engine).filter(move |engine| engine.fields().contains(&field))
 }
 
 fn scene(bodies: Vec<BodyDef>) -> Blueprint {

@@ -1,6 +1,7 @@
 //! The tests: the quality tool against states made by hand, the scenes against their known sizes, and every
 //! engine of this build against closed forms.
 
+mod crowd;
 mod engines;
 mod joints;
 mod quality;

@@ -1,0 +1,82 @@
+//! Bytes from nowhere against the readers: every target of `fuzz/`, one after the other.
+
+use crate::command;
+use anyhow::{Result, bail};
+
+const FOLDER: &str = "fuzz";
+
+/// `cargo xtask fuzz`: looks for bytes that break something, each target for a while.
+///
+/// What it finds lies in fuzz/artifacts; what it learns, in fuzz/corpus, from which the next run goes on. Files in
+/// `../shared/data` are where it begins, if they are there.
+#[derive(clap::Args)]
+#[command(after_help = "Example: cargo xtask fuzz --target bvh --seconds 600")]
+pub struct Fuzz {
+    /// Only this target
+    #[arg(long = "target", value_name = "NAME")]
+    targets: Vec<String>,
+    /// How long each target runs
+    #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..))]
+    seconds: u32,
+}
+
+/// A target, where its first inputs lie, and how many bytes an input has at most.
+struct Target {
+    name: &'static str,
+    seeds: &'static str,
+    longest: u32,
+}
+
+const TARGETS: &[Target] = &[
+    Target { name: "animator", seeds: "", longest: 4_096 },
+    Target { name: "bvh", seeds: "../shared/data/mocap", longest: 16_384 },
+    Target { name: "clip", seeds: "", longest: 4_096 },
+    Target { name: "deepmimic", seeds: "../shared/data/mocap", longest: 16_384 },
+    Target { name: "gltf", seeds: "../shared/data/rigs", longest: 65_536 },
+];
+
+impl Fuzz {
+    /// # Errors
+    /// If a target breaks, with its name; or if there is no such target, or no `cargo fuzz`.
+    pub fn run(&self) -> Result<()> {
+        if let Some(name) =
+            self.targets.iter().find(|name| TARGETS.iter().all(|target| target.name != **name))
+        {
+            let names: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
+            bail!("no target `{name}`; there are {}", names.join(", "));
+        }
+        if command::output(&mut command::cargo(&["fuzz", "--version"])).is_err() {
+            bail!("`cargo fuzz` is missing: `cargo install cargo-fuzz`");
+        }
+        let wanted =
+            |target: &&Target| self.targets.is_empty() || self.targets.iter().any(|name| name == target.name);
+        let broken: Vec<&str> = TARGETS
+            .iter()
+            .filter(wanted)
+            .filter(|target| self.fuzz(target).is_err())
+            .map(|target| target.name)
+            .collect();
+        if !broken.is_empty() {
+            bail!("broken: {}; see {FOLDER}/artifacts", broken.join(", "));
+        }
+        Ok(())
+    }
+
+    fn fuzz(&self, target: &Target) -> Result<()> {
+        let corpus = format!("{FOLDER}/corpus/{}", target.name);
+        std::fs::create_dir_all(command::root().join(&corpus))?;
+        // The fuzzer itself asks for flags that are unstable.
+        let mut fuzz = command::cargo(&["fuzz", "run", "--fuzz-dir", FOLDER, "--target-dir"]);
+        fuzz.arg(command::target().join("fuzz")).args([target.name, &corpus]);
+        if !target.seeds.is_empty() && command::root().join(target.seeds).is_dir() {
+            fuzz.arg(target.seeds);
+        }
+        fuzz.args(["--", &format!("-max_total_time={}", self.seconds)]);
+        fuzz.args([
+            format!("-max_len={}", target.longest),
+            "-timeout=10".into(),
+            "-rss_limit_mb=1024".into(),
+        ]);
+        command::run(fuzz.env("RUSTC_BOOTSTRAP", "1"))
+    }
+}
