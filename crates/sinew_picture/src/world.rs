@@ -14,6 +14,8 @@ pub struct Frame {
     pub center: Vec3,
     /// How far it reaches around the middle, metres, above 0.
     pub radius: f32,
+    /// Of kinematic bodies, 0..=1: less than 1 where what they follow is drawn as well.
+    pub kinematic_opacity: f32,
 }
 
 /// Linear, one body after the other.
@@ -134,20 +136,21 @@ fn paint_body(world: &World, id: BodyId, number: usize, frame: &Frame, models: &
         BodyKind::Dynamic if world.is_awake(id) => body_color(number),
         BodyKind::Dynamic => pale(body_color(number)),
     };
+    let opacity = if kind == BodyKind::Kinematic { frame.kinematic_opacity } else { 1.0 };
+    let look = || Material { opacity, ..Material::new(color) };
     let smallest = SMALLEST * frame.radius;
     let mut seen = kind == BodyKind::Static;
     for (shape, place) in world.shapes(id) {
-        let material = Material::new(color);
         models.push(match shape {
-            Shape::Sphere { radius } => draw::ball(radius, place, material),
+            Shape::Sphere { radius } => draw::ball(radius, place, look()),
             Shape::HalfSpace => floor(&place, frame),
-            _ => draw::shape(&shape, place, material),
+            _ => draw::shape(&shape, place, look()),
         });
         seen |= shape.bounding_radius() > smallest;
     }
     if !seen {
         let place = Transform::new(world.center_of_mass(id), world.transform(id).rotation);
-        models.push(draw::ball(smallest, place, Material::new(color)));
+        models.push(draw::ball(smallest, place, look()));
     }
 }
 
