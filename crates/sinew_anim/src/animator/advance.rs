@@ -175,7 +175,7 @@ impl Animator {
         while let Some((i, moment)) = self.room.ended.pop() {
             let slot = self.slots.remove(i);
             interrupt(set, &slot.track, moment, &mut self.events);
-            self.room.spare.push((slot.cursor, slot.pose));
+            self.room.spare.push(slot.emptied());
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::stage;
 use sinew_anim::{
-    AnimatedClip, AnimationSet, Animator, Event, Mask, ModelPose, Skeleton, TrackDef, Transition,
+    AnimatedClip, AnimationSet, Animator, Easing, Event, Mask, ModelPose, Skeleton, TrackDef, Transition,
 };
 use sinew_math::{Affine, Random};
 
@@ -26,7 +26,12 @@ fn a_warm_update_allocates_nothing() {
         for i in 0..100 {
             if i % 25 == 0 {
                 let to = TrackDef::new(clips[i / 25 % 3]);
-                animator.transition(&set, &to, Transition::Inertial { seconds: 0.2 });
+                let seconds = 0.2;
+                let transition = match i / 25 % 2 {
+                    0 => Transition::Inertial { seconds },
+                    _ => Transition::Crossfade { seconds, easing: Easing::Smooth },
+                };
+                animator.transition(&set, &to, transition);
             }
             animator.update(&set, 1.0 / 60.0);
             set.skeleton().to_model(animator.pose(), &Affine::IDENTITY, &mut model);
