@@ -3,6 +3,7 @@
 mod advance;
 mod compose;
 mod crossfade;
+mod fire;
 mod root_inertia;
 mod save;
 mod track;
@@ -17,6 +18,7 @@ use crate::pose::{BlendLayer, BlendOptions, Blender, Pose};
 use crate::set::AnimationSet;
 use crate::sync;
 use crossfade::{Crossfade, Weights};
+use fire::{LastFired, TrackCrossing};
 use root_inertia::{RootInertia, RootVelocity};
 use sinew_math::Transform;
 use track::{Ramp, check_weight};
@@ -51,6 +53,8 @@ pub struct Animator {
     next_id: u64,
     /// Events of tracks that were stopped between updates.
     interrupted: Vec<FiredEvent>,
+    /// Of each sync group and name of an event.
+    last_fired: Vec<LastFired>,
     /// Seconds of an inertial transition that begins with the next update.
     awaits_transition: Option<f32>,
     inertia: Inertia,
@@ -95,7 +99,7 @@ struct Room {
     /// Where the motion that a transition leads to was before the update.
     start: Pose,
     now: Pose,
-    crossings: Vec<advance::TrackCrossing>,
+    crossings: Vec<TrackCrossing>,
     ended: Vec<(usize, f64)>,
     motions: Vec<compose::WeightedMotion>,
     spare: Vec<Slot>,
@@ -127,6 +131,7 @@ impl Animator {
             slots: Vec::new(),
             next_id: 0,
             interrupted: Vec::new(),
+            last_fired: Vec::new(),
             awaits_transition: None,
             inertia: Inertia::default(),
             root_inertia: RootInertia::default(),
@@ -178,7 +183,7 @@ impl Animator {
         assert!(def.mask.is_none_or(|mask| set.has_mask(mask.0).is_some()), "a mask of the set");
         let clip = set.clip(def.clip);
         let mut playhead = Playhead::new(def.loop_mode, clip.clip.duration(), f64::from(def.start));
-        if let Some(leader) = def.sync_group.and_then(|group| advance::leader(&self.slots, group)) {
+        if let Some(leader) = def.sync_group.and_then(|group| fire::leader(&self.slots, group)) {
             let leader = &self.slots[leader].track;
             let markers = &set.clip(leader.def.clip).markers;
             let place = sync::follow(&leader.playhead, markers, &playhead, &clip.markers);
@@ -288,8 +293,10 @@ impl Animator {
     /// # Panics
     /// If `time` is not finite.
     pub fn seek(&mut self, id: TrackId, time: f32) {
-        if let Some(track) = self.track_mut(id) {
-            track.playhead.seek(f64::from(time));
+        let Some(track) = self.track_mut(id) else { return };
+        track.playhead.seek(f64::from(time));
+        if let Some(group) = track.def.sync_group {
+            self.last_fired.retain(|last| last.group != group);
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::{Animator, Easing, EndAction, Slot, Track, TrackDef, TrackId};
 use crate::animator::crossfade::Crossfade;
+use crate::animator::fire::LastFired;
 use crate::animator::root_inertia::{RootInertia, RootVelocity};
 use crate::animator::track::Ramp;
 use crate::event::FiredEvent;
@@ -29,6 +30,8 @@ impl Animator {
         }
         out.count(self.interrupted.len());
         self.interrupted.iter().for_each(|event| write_event(event, out));
+        out.count(self.last_fired.len());
+        self.last_fired.iter().for_each(|last| write_last_fired(last, out));
         write_option(self.awaits_transition, out, |&seconds, out| out.f32(seconds));
         self.inertia.save(out);
         self.root_inertia.save(out);
@@ -65,6 +68,9 @@ impl Animator {
         }
         for _ in 0..bytes.count(37)? {
             animator.interrupted.push(read_event(set, bytes)?);
+        }
+        for _ in 0..bytes.count(18)? {
+            animator.last_fired.push(read_last_fired(set, bytes)?);
         }
         animator.awaits_transition = read_option(bytes, |bytes| at_least_zero(bytes, Reader::f32))?;
         animator.inertia = Inertia::load(bytes, set.skeleton().len())?;
@@ -156,13 +162,30 @@ fn write_event(event: &FiredEvent, out: &mut Writer) {
 fn read_event(set: &AnimationSet, bytes: &mut Reader<'_>) -> Result<FiredEvent, ReadError> {
     let seconds = at_least_zero(bytes, read_f64)?;
     let clip = read_clip(set, bytes)?;
-    let event = bytes.u32()? as usize;
-    if event >= set.clip(clip).events.len() {
-        return Err(bytes.error("an event that its clip does not have"));
-    }
+    let event = read_event_of(set, clip, bytes)?;
     let (track, weight) = (TrackId(bytes.u64()?), at_least_zero(bytes, Reader::f32)?);
     let (lap, is_interrupted) = (bytes.u64()? as i64, bytes.bool()?);
     Ok(FiredEvent { seconds, clip, event, track, weight, lap, is_interrupted })
+}
+
+fn write_last_fired(last: &LastFired, out: &mut Writer) {
+    out.u8(last.group);
+    out.u32(last.clip.0);
+    out.count(last.event);
+    out.u64(last.marker as u64);
+    out.bool(last.is_backward);
+}
+
+fn read_last_fired(set: &AnimationSet, bytes: &mut Reader<'_>) -> Result<LastFired, ReadError> {
+    let (group, clip) = (bytes.u8()?, read_clip(set, bytes)?);
+    let event = read_event_of(set, clip, bytes)?;
+    Ok(LastFired { group, clip, event, marker: bytes.u64()? as i64, is_backward: bytes.bool()? })
+}
+
+fn read_event_of(set: &AnimationSet, clip: ClipId, bytes: &mut Reader<'_>) -> Result<usize, ReadError> {
+    let event = bytes.u32()? as usize;
+    let is_there = event < set.clip(clip).events.len();
+    if is_there { Ok(event) } else { Err(bytes.error("an event that its clip does not have")) }
 }
 
 fn write_pose(pose: &Pose, out: &mut Writer) {
