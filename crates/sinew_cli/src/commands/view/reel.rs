@@ -7,7 +7,7 @@ use sinew::math::{Vec3, clamp, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyId, BodyKind, BodyKinds, QueryFilter};
-use sinew_picture::world::{self, Frame, Lines};
+use sinew_picture::world::{self, Frame, Kinematic, Lines};
 use sinew_picture::{
     Camera, Caption, EncodeError, Image, Line, LineDepth, Movie, PictureFormat, RenderSettings, Renderer,
     Scene, Sky, Sun,
@@ -26,8 +26,6 @@ const TRAIL_STEPS: usize = 600;
 const MOST_RAYS: usize = 64;
 /// How many radii of the largest thing that moves a picture reaches around it at most.
 const WIDEST: f32 = 120.0;
-/// Opacity of bodies that are led by hand, where characters are shown with their skins: those hide in them.
-const VEIL: f32 = 0.2;
 /// How far a skin reaches over its joints, as a share of what these extend over.
 const FLESH: f32 = 0.08;
 /// Around what is shown, as a share of its size.
@@ -174,7 +172,7 @@ impl Take {
         let frame = Frame {
             center: shown.center(),
             radius: 0.5 * (shown.max - shown.min).length(),
-            kinematic_opacity: if figures.is_empty() { 1.0 } else { VEIL },
+            kinematic: if figures.is_empty() { Kinematic::Solid } else { Kinematic::Wire },
         };
         let mut scene = Scene {
             sun: Sun { shadow_radius: 1.3 * frame.radius, ..Sun::default() },
