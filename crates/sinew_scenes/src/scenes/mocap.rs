@@ -4,10 +4,13 @@ use super::actors::{Actor, Cast, Figure, Gone};
 use super::metric::{Expected, Metric};
 use super::parts::floor;
 use super::sight::{Sight, Trails};
-use super::{Instance, Scene, Script, Setup};
+use super::{Instance, Scene, Script, Setting, Setup};
 use crate::mannequin::{WALK_SPEED, mannequin};
-use sinew::anim::retarget::{Body, Pace, RetargetOptions, Retargeted, retarget};
-use sinew::anim::{Rig, TrackDef, analyze_skeleton, local_to_model, rest_pose, skin_vertices};
+use sinew::anim::retarget::{Body, Pace, RetargetError, RetargetOptions, Retargeted, retarget, stand};
+use sinew::anim::{
+    Clip, LoopMode, Rig, RigAnalysis, TrackDef, analyze_skeleton, local_to_model, rest_pose, skin_vertices,
+};
+use sinew::formats::BvhDocument;
 use sinew::math::{Affine, Transform, Vec3, max};
 use sinew::physics::World;
 use std::sync::Arc;
@@ -18,6 +21,15 @@ pub(super) const RETARGET: Scene = Scene {
     steps: 240,
     settings: &[],
     build: retargeted,
+};
+
+/// Needs a file of the user's.
+pub(super) const MOCAP: Scene = Scene {
+    name: "mocap",
+    about: "a captured motion on the mannequin, a child of 0.8 m and a giant of 14 m",
+    steps: 300,
+    settings: &[Setting::motion("motion", "of a human actor")],
+    build: captured,
 };
 
 /// What a character is beside the mannequin.
@@ -33,6 +45,7 @@ struct Build {
 }
 
 const CHILD: Build = Build { height: 0.8, legs: 0.72, arms: 0.8, head: 1.5, place: Vec3::new(1.4, 0.0, 1.0) };
+const HUMAN: Build = Build { height: 1.75, legs: 1.0, arms: 1.0, head: 1.0, place: Vec3::ZERO };
 /// Long legs and hardly any arms: what a human actor would drive as a T-rex.
 const GIANT: Build =
     Build { height: 14.0, legs: 1.15, arms: 0.45, head: 1.6, place: Vec3::new(-4.5, 0.0, -3.0) };
@@ -103,32 +116,74 @@ fn bind(rig: &Rig) -> Vec<Affine> {
     model
 }
 
+/// An actor's motion.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Performance {
+    rig: Rig,
+    clip: Clip,
+    analysis: RigAnalysis,
+}
+
+/// Longest motion that is taken, seconds.
+const LONGEST: f32 = 600.0;
+
+impl Performance {
+    /// Of a file, or why it cannot be carried over.
+    pub fn of(document: BvhDocument) -> Result<Self, String> {
+        let BvhDocument { rig, clip, rest_pose, .. } = document;
+        if clip.duration > LONGEST {
+            return Err(format!("a motion of {:.0} s; a scene takes up to {LONGEST} s", clip.duration));
+        }
+        let (analysis, _) = stand(&rig, &clip, rest_pose.as_deref()).map_err(|error| error.to_string())?;
+        let performance = Self { rig, clip, analysis };
+        performance.fitted(&mannequin().rig).map_err(|error| error.to_string())?;
+        Ok(performance)
+    }
+
+    /// The mannequin's walk.
+    fn walk() -> Self {
+        let mut actor = mannequin();
+        let analysis = analyze_skeleton(&actor.rig, &rest_pose(&actor.rig)).expect("the mannequin has bones");
+        Self { rig: actor.rig, clip: actor.clips.swap_remove(actor.motions.walk), analysis }
+    }
+
+    fn fitted(&self, rig: &Rig) -> Result<Retargeted, RetargetError> {
+        let analysis =
+            analyze_skeleton(rig, &rest_pose(rig)).expect("what is made of the mannequin has bones");
+        // A giant is not taken for a human in other units.
+        let analysis = analysis.with_unit_scale(1.0);
+        let (from, to) =
+            (Body { rig: &self.rig, analysis: &self.analysis }, Body { rig, analysis: &analysis });
+        let options =
+            RetargetOptions { frame_time: 1.0 / 30.0, pace: Pace::Froude, ..RetargetOptions::default() };
+        retarget(from, &self.clip, to, &options)
+    }
+}
+
 fn retargeted(setup: &Setup<'_>) -> Instance {
     let mut world = setup.world();
     world.add_body(&floor());
-    let actor = mannequin();
-    let walk = &actor.clips[actor.motions.walk];
-    let analysis = analyze_skeleton(&actor.rig, &rest_pose(&actor.rig)).expect("the mannequin has bones");
-    let from = Body { rig: &actor.rig, analysis: &analysis };
-    let mut character = |build: &Build| {
-        let rig = build.rig(&actor.rig);
-        let analysis = analyze_skeleton(&rig, &rest_pose(&rig)).expect("so has what is made of it");
-        // A giant is not taken for a human in other units.
-        let analysis = analysis.with_unit_scale(1.0);
-        let options =
-            RetargetOptions { frame_time: 1.0 / 30.0, pace: Pace::Froude, ..RetargetOptions::default() };
-        let fitted = retarget(from, walk, Body { rig: &rig, analysis: &analysis }, &options);
-        let fitted = fitted.expect("both are humanoids");
-        let clip = fitted.clip(&rig, "walk");
-        Character::new(&mut world, rig, &clip, fitted, build)
-    };
-    let characters = [character(&CHILD), character(&GIANT)];
-    let mut cast = Cast::of(actor.rig.clone());
-    let clip = cast.add(walk, Vec::new());
+    let performance = Performance::walk();
+    let rigs = [&CHILD, &GIANT].map(|build| build.rig(&performance.rig));
+    let mut character =
+        |rig: &Rig, build: &Build| Character::new(&mut world, &performance, rig, build, LoopMode::Loop);
+    let characters = [character(&rigs[0], &CHILD), character(&rigs[1], &GIANT)];
+    let mut cast = Cast::of(performance.rig);
+    let clip = cast.add(&performance.clip, Vec::new());
     let mut human = Actor::new(&Arc::new(cast), Transform::IDENTITY);
     human.animator.play(&human.cast.set, &TrackDef::new(clip));
     human.mark(&mut world);
     Instance::new(world, Retarget { human, characters, gone: Gone::default() })
+}
+
+fn captured(setup: &Setup<'_>) -> Instance {
+    let mut world = setup.world();
+    world.add_body(&floor());
+    let rig = mannequin().rig;
+    let character =
+        |build: &Build| Character::new(&mut world, setup.motion(), &build.rig(&rig), build, LoopMode::Once);
+    let characters = [&CHILD, &HUMAN, &GIANT].map(character);
+    Instance::new(world, Captured { characters, gone: Gone::default() })
 }
 
 /// A character and how its motion fits.
@@ -143,11 +198,13 @@ struct Character {
 }
 
 impl Character {
-    fn new(world: &mut World, rig: Rig, clip: &sinew::anim::Clip, fitted: Retargeted, build: &Build) -> Self {
-        let mut cast = Cast::of(rig);
-        let clip = cast.add(clip, Vec::new());
+    /// Plays a performance that can be carried over.
+    fn new(world: &mut World, of: &Performance, rig: &Rig, build: &Build, loop_mode: LoopMode) -> Self {
+        let fitted = of.fitted(rig).expect("both are humanoids");
+        let mut cast = Cast::of(rig.clone());
+        let clip = cast.add(&fitted.clip(rig, "motion"), Vec::new());
         let mut actor = Actor::new(&Arc::new(cast), Transform::from_translation(build.place));
-        actor.animator.play(&actor.cast.set, &TrackDef::new(clip));
+        actor.animator.play(&actor.cast.set, &TrackDef { loop_mode, ..TrackDef::new(clip) });
         actor.mark(world);
         Self { actor, fitted, height: build.height, way: 0.0, sunk: 0.0 }
     }
@@ -224,5 +281,49 @@ impl Script for Retarget {
             .chain(self.characters.iter().map(|character| &character.actor))
             .map(Actor::figure)
             .collect()
+    }
+}
+
+struct Captured {
+    /// Child, human, giant.
+    characters: [Character; 3],
+    gone: Gone,
+}
+
+impl Script for Captured {
+    fn before_step(&mut self, world: &mut World) {
+        let dt = world.def().dt();
+        for _ in self.gone.due(world) {
+            self.characters.iter_mut().for_each(|character| character.update(dt));
+        }
+        self.characters.iter().for_each(|character| character.actor.lead_marks(world));
+    }
+
+    fn metrics(&self, _: &World) -> Vec<Metric> {
+        let [child, human, giant] = &self.characters;
+        let slide = |name, character: &Character| Metric::new(name, character.slide(), Expected::AtMost(1.0));
+        let sunk = |name, character: &Character| {
+            Metric::new(name, character.sunk, Expected::AtMost(0.02 * f64::from(character.height)))
+        };
+        let actor = 100.0 * human.fitted.actor_slide.mean;
+        vec![
+            Metric::new("actor_slide_cm_s", actor, Expected::Anything),
+            slide("child_slide_cm_s_per_m", child),
+            slide("human_slide_cm_s_per_m", human),
+            slide("giant_slide_cm_s_per_m", giant),
+            Metric::new("child_pace", child.fitted.pace, child.pace()),
+            Metric::new("giant_pace", giant.fitted.pace, giant.pace()),
+            sunk("child_sunk_m", child),
+            sunk("human_sunk_m", human),
+            sunk("giant_sunk_m", giant),
+        ]
+    }
+
+    fn sight(&self) -> Sight {
+        Sight { direction: Vec3::new(0.9, 0.12, 1.0), trails: Trails::None, ..Sight::default() }
+    }
+
+    fn figures(&self) -> Vec<Figure<'_>> {
+        self.characters.iter().map(|character| character.actor.figure()).collect()
     }
 }

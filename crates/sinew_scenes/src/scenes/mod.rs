@@ -221,7 +221,7 @@ const REGISTRY: &[Scene] = &[
 ];
 
 /// Scenes that need a file of the user's, and so are in no list.
-const OF_FILES: &[Scene] = &[mjcf::DROP, house::HOUSE];
+const OF_FILES: &[Scene] = &[mjcf::DROP, house::HOUSE, mocap::MOCAP];
 
 /// The scene of that name; of those that need a file, too, which the registry does not list.
 pub fn find(name: &str) -> Option<&'static Scene> {
