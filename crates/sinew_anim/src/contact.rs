@@ -18,7 +18,11 @@ pub struct FootContact {
     pub end: f32,
 }
 
-/// Heels and balls of both feet, frame by frame, in the space that `root` maps the rig's to.
+/// Heels and balls of both feet, frame by frame, in the space that `root` maps the rig's to, metres: left then right foot,
+/// heel then ball; one entry per frame of the take.
+///
+/// # Panics
+/// If the take is not one of the rig's.
 pub fn sole_points(rig: &Rig, root: &Affine, feet: &[Foot; 2], take: &Take) -> Vec<[[Vec3; 2]; 2]> {
     let mut model = Vec::new();
     let points = |frame| {
@@ -29,7 +33,7 @@ pub fn sole_points(rig: &Rig, root: &Affine, feet: &[Foot; 2], take: &Take) -> V
 }
 
 /// Height of the floor under a motion: that which the lowest point of both feet is at or above in nine frames of ten.
-/// A jump does not fool it, nor a few frames of noise.
+/// A jump does not fool it, nor a few frames of noise. `points` are those of [`sole_points`], metres, y up; 0 of none.
 pub fn floor_under(points: &[[[Vec3; 2]; 2]]) -> f32 {
     tenth(points.iter().map(lowest).collect())
 }
@@ -45,7 +49,7 @@ pub struct Ground {
 
 impl Ground {
     /// The ground under a motion, told by its feet. It moves if both feet take turns at being low for much of the time, and
-    /// then mostly move at one speed.
+    /// then mostly move at one speed. `points` are those of [`sole_points`] of the take, y up, one entry per frame.
     pub fn under(take: &Take, points: &[[[Vec3; 2]; 2]], settings: &ContactSettings) -> Self {
         let height = floor_under(points);
         let lower_step = |frame: usize| {
@@ -70,7 +74,8 @@ impl Ground {
         Self { height, velocity: if moves { velocity } else { Vec3::ZERO } }
     }
 
-    /// Points as seen from the ground: on it, a foot that stands is at rest.
+    /// Points as seen from the ground, metres: on it, a foot that stands is at rest. `points` are those of [`sole_points`],
+    /// one entry per frame.
     pub fn seen_from(&self, take: &Take, mut points: Vec<[[Vec3; 2]; 2]>) -> Vec<[[Vec3; 2]; 2]> {
         for (frame, feet) in points.iter_mut().enumerate() {
             let way = self.velocity * take.time(frame);
@@ -111,7 +116,7 @@ fn tenth(mut numbers: Vec<f32>) -> f32 {
     numbers.get(numbers.len() / 10).copied().unwrap_or(0.0)
 }
 
-/// Height of the lowest point of both feet.
+/// Height of the lowest point of both feet, metres, y up.
 pub fn lowest(points: &[[Vec3; 2]; 2]) -> f32 {
     points.as_flattened().iter().map(|point| point.y).fold(f32::INFINITY, min)
 }
@@ -137,7 +142,8 @@ impl ContactSettings {
 }
 
 /// When each foot stands, told by height and speed of its ball. `points` are those of [`sole_points`], as
-/// [seen from the ground](Ground::seen_from) where that moves; `floor` is its height. In order of start; left before right.
+/// [seen from the ground](Ground::seen_from) where that moves, one entry per frame; `floor` is its height, metres. Times are
+/// seconds from the start of the take. In order of start; left before right.
 pub fn contacts(
     take: &Take,
     feet: &[Foot; 2],
@@ -195,7 +201,8 @@ pub struct FootSlide {
     pub time: f32,
 }
 
-/// How far the balls of the feet get over the ground (x and z) during `contacts`.
+/// How far the balls of the feet get over the ground (x and z, metres) during `contacts` (seconds of the take). `points` are
+/// those of [`sole_points`], as [seen from the ground](Ground::seen_from) where that moves, one entry per frame.
 pub fn foot_slide(
     take: &Take,
     feet: &[Foot; 2],

@@ -234,7 +234,7 @@ fn turn(from: (Rotation, Rotation, f32), to: (Rotation, Rotation, f32)) -> Decay
 
 /// Axis times angle, up to a whole turn: two rotations whose quaternions are close have close logarithms, at half a turn
 /// too, where [`Rotation::to_scaled_axis`] jumps.
-fn logarithm(q: Rotation) -> Vec3 {
+pub(crate) fn logarithm(q: Rotation) -> Vec3 {
     let v = q.vector();
     let sin = v.length();
     if sin < 1e-6 { v * 2.0 } else { v * (2.0 * trig::atan2(sin, q.w) / sin) }

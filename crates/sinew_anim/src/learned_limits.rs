@@ -76,7 +76,8 @@ impl LearnedLimit {
     }
 }
 
-/// Limits of every joint of a rig that turns at all, from what it does in `takes`; one frame in two hundred may be beyond.
+/// Limits of every joint of a rig that turns at all, from what it does in `takes`, any number of frames each; one frame in two
+/// hundred may be beyond. Angles are radians, of local rotations; in the order of the joints, those without a limit left out.
 ///
 /// # Panics
 /// If a take is not one of the rig's.

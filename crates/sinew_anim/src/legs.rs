@@ -53,7 +53,7 @@ impl Foot {
         })
     }
 
-    /// Heel and ball in a pose, in the space of `model`, whose unit is the metre.
+    /// Heel and ball in a pose, in the space of `model` (one transform per joint), whose unit is the metre.
     pub fn points(&self, model: &[Affine]) -> [Vec3; 2] {
         let ankle = model[self.leg.end].to_rigid();
         self.sole.map(|point| ankle.translation + ankle.rotation * point)

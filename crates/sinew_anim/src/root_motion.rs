@@ -57,7 +57,8 @@ const SAMPLING: f32 = 1.0 / 60.0;
 /// together they are the clip again: `motion · pose` in model space, to within the rounding and what lies between two
 /// samples 1/60 s apart. The clip that stays ends where it starts wherever the motion took all or the straight part.
 ///
-/// The joint's channels of translation and rotation are replaced. `clip` and `rig` are such as
+/// Model space is that of the file, its unit too; times are seconds. The joint's channels of translation and rotation are
+/// replaced. `clip` and `rig` are such as
 /// [`BuiltClip::build`](crate::BuiltClip::build) takes.
 ///
 /// # Panics

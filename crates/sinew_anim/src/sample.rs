@@ -39,7 +39,8 @@ pub struct SampleCache {
     keys: Vec<usize>,
 }
 
-/// The pose of `clip` at `time` (seconds, any value, see [`Wrap`]). Joints and properties without a channel take the
+/// The pose of `clip` at `time` (seconds, any value, see [`Wrap`]): one local transform per joint of the rig into `out`, file
+/// units. Joints and properties without a channel take the
 /// rig's rest pose, and so does a value that is not finite. A time before a channel's first key takes that key.
 ///
 /// # Panics

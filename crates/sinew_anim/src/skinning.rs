@@ -3,7 +3,8 @@
 use crate::rig::{JointIdx, Primitive, Rig, Skin};
 use sinew_math::{Affine, Mat3, Vec3, normalize_or};
 
-/// Matrix per skin slot from mesh space (bind pose) to model space: joint × inverse bind. `palette` is cleared first.
+/// Matrix per skin slot from mesh space (bind pose, file units) to the space of `model`: joint × inverse bind. `model` has one
+/// transform per joint of the rig. `palette` is cleared and gets one entry per joint of the skin; warm it does not allocate.
 ///
 /// # Panics
 /// If a joint of the skin is not in `model`.
@@ -14,8 +15,9 @@ pub fn skin_palette(skin: &Skin, model: &[Affine], palette: &mut Vec<Affine>) {
 }
 
 /// Positions and normals of one primitive in model space under the model pose `model`: linear blend skinning, or
-/// rigidly with its joint where the mesh has no skin or the primitive no weights. Both buffers are cleared first;
-/// `normals` stays empty where the primitive has none.
+/// rigidly with its joint where the mesh has no skin or the primitive no weights. `model` has one transform per joint of the
+/// rig; both buffers are cleared and get one entry per vertex, in the space and unit of `model`, normals of length 1;
+/// `normals` stays empty where the primitive has none. Allocates a palette.
 ///
 /// # Panics
 /// If `mesh` or `primitive` is out of range, `model` is shorter than the rig, or a vertex names a slot that its skin

@@ -2,16 +2,16 @@
 
 use crate::fall::Fall;
 use crate::progress::Progress;
+use crate::skin;
 use crate::story;
-use sinew::anim::{Primitive, Rig, Wrap, local_to_model, sample, skin_vertices};
-use sinew::math::{Affine, Rotation, Transform, Vec2, Vec3};
+use sinew::anim::{Wrap, local_to_model, sample};
+use sinew::math::{Affine, Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, Shape};
 use sinew_picture::draw;
 use sinew_picture::{
     Caption, EncodeError, FollowCamera, Image, Material, Model, Movie, PictureFormat, RenderSettings,
-    Renderer, Scene, Sun, Texture,
+    Renderer, Scene, Sun,
 };
-use std::sync::Arc;
 
 /// Pictures a second: a whole number of a GIF's hundredths of a second, and enough to follow a fall.
 const FPS: u32 = 20;
@@ -74,7 +74,7 @@ impl<'a> Shots<'a> {
             fall,
             standing: set.len(),
             scene: Scene { models: set, sun, ..Scene::default() },
-            looks: looks(rig),
+            looks: skin::looks(rig),
             phases: story::phases(&fall.input.character, &fall.baked.events),
             camera: None,
             direction,
@@ -118,16 +118,7 @@ impl<'a> Shots<'a> {
     }
 
     fn add_character(&mut self) {
-        let rig = &self.fall.input.character.rig;
-        let mut looks = self.looks.iter();
-        for (mesh_index, mesh) in rig.meshes.iter().enumerate() {
-            for (part_index, part) in mesh.primitives.iter().enumerate() {
-                let (mut positions, mut normals) = (Vec::new(), Vec::new());
-                skin_vertices(rig, mesh_index, part_index, &self.model, &mut positions, &mut normals);
-                let material = looks.next().cloned().unwrap_or_default();
-                self.scene.models.push(surface(part, positions, normals, material));
-            }
-        }
+        self.scene.models.extend(skin::models(&self.fall.input.character.rig, &self.model, &self.looks));
     }
 
     /// An arrow for each hit that has just happened, its tip where it struck.
@@ -140,32 +131,6 @@ impl<'a> Shots<'a> {
             }
         }
     }
-}
-
-fn surface(part: &Primitive, positions: Vec<Vec3>, normals: Vec<Vec3>, material: Material) -> Model {
-    Model {
-        positions,
-        normals,
-        uvs: part.uvs.iter().map(|uv| Vec2::new(uv.x, uv.y)).collect(),
-        colors: part.colors.iter().map(|&[r, g, b, _]| [r, g, b]).collect(),
-        indices: part.indices.clone(),
-        material,
-    }
-}
-
-/// One material per primitive, in the order of the meshes.
-fn looks(rig: &Rig) -> Vec<Material> {
-    // A picture that is none leaves its surface in its plain colour.
-    let picture = |texture: &sinew::anim::Texture| {
-        Texture::new(texture.width, texture.height, texture.rgba.clone()).ok().map(Arc::new)
-    };
-    let textures: Vec<Option<Arc<Texture>>> = rig.textures.iter().map(picture).collect();
-    let look = |part: &Primitive| {
-        let [r, g, b, _] = part.base_color;
-        let texture = part.texture.and_then(|index| textures.get(index).cloned().flatten());
-        Material { texture, ..Material::new([r, g, b]) }
-    };
-    rig.meshes.iter().flat_map(|mesh| mesh.primitives.iter().map(look)).collect()
 }
 
 /// A shaft and a head that end at `tip`, along the unit vector `along`.

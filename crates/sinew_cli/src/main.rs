@@ -13,6 +13,7 @@ mod quality_report;
 mod ragdoll_report;
 mod report;
 mod scene_choice;
+mod skin;
 mod story;
 mod table;
 

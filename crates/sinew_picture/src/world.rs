@@ -14,6 +14,17 @@ pub struct Frame {
     pub center: Vec3,
     /// How far it reaches around the middle, metres, above 0.
     pub radius: f32,
+    /// How kinematic bodies are drawn.
+    pub kinematic: Kinematic,
+}
+
+/// How kinematic bodies are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kinematic {
+    /// As others are.
+    Solid,
+    /// By their edges: where what leads them is drawn as well, and they would hide it.
+    Wire,
 }
 
 /// Linear, one body after the other.
@@ -102,7 +113,14 @@ fn links(world: &World, id: JointId) -> [[Vec3; 2]; 3] {
 /// Adds the world's bodies, particles, springs, joints and what its objects draw to a scene.
 pub fn paint(world: &World, frame: &Frame, scene: &mut Scene) {
     for (number, id) in world.body_ids().enumerate() {
-        paint_body(world, id, number, frame, &mut scene.models);
+        if world.kind(id) == BodyKind::Kinematic && frame.kinematic == Kinematic::Wire {
+            let wires = world
+                .shapes(id)
+                .flat_map(|(shape, place)| draw::wire(&shape, place, KINEMATIC, LineDepth::Tested));
+            scene.lines.extend(wires);
+        } else {
+            paint_body(world, id, number, frame, &mut scene.models);
+        }
     }
     for id in world.group_ids() {
         paint_group(world.particles(id), frame, scene);
@@ -137,11 +155,10 @@ fn paint_body(world: &World, id: BodyId, number: usize, frame: &Frame, models: &
     let smallest = SMALLEST * frame.radius;
     let mut seen = kind == BodyKind::Static;
     for (shape, place) in world.shapes(id) {
-        let material = Material::new(color);
         models.push(match shape {
-            Shape::Sphere { radius } => draw::ball(radius, place, material),
+            Shape::Sphere { radius } => draw::ball(radius, place, Material::new(color)),
             Shape::HalfSpace => floor(&place, frame),
-            _ => draw::shape(&shape, place, material),
+            _ => draw::shape(&shape, place, Material::new(color)),
         });
         seen |= shape.bounding_radius() > smallest;
     }

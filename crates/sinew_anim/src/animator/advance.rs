@@ -1,21 +1,13 @@
 //! Time of tracks, and what they pass.
 
+use super::fire::{TrackCrossing, leader};
 use super::{Animator, EndAction, Slot, Track};
-use crate::event::{FiredBy, FiredEvent};
+use crate::event::FiredEvent;
 use crate::playhead::{Crossing, LoopMode, Passage, Place};
 use crate::root_motion::MotionTrack;
 use crate::set::{AnimatedClip, AnimationSet};
 use crate::sync::match_place;
 use sinew_math::Transform;
-
-/// A track has passed an event; whether it is fired depends on the others.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct TrackCrossing {
-    slot: usize,
-    event: usize,
-    lap: i64,
-    seconds: f64,
-}
 
 /// Part of an update in which a track goes on without a break.
 #[derive(Clone, Copy)]
@@ -105,40 +97,10 @@ impl Animator {
             for (event, crossing) in crossings(own, passage) {
                 let moment = moment(crossing.place);
                 if moment <= ends {
-                    self.room.crossings.push(TrackCrossing {
-                        slot: i,
-                        event,
-                        lap: crossing.place.lap,
-                        seconds: moment,
-                    });
+                    let (place, seconds) = (crossing.place, moment);
+                    let is_backward = speed < 0.0;
+                    self.room.crossings.push(TrackCrossing { slot: i, event, place, seconds, is_backward });
                 }
-            }
-        }
-    }
-
-    /// Turns what was passed into events, by their policies.
-    fn fire(&mut self, set: &AnimationSet) {
-        for crossing in &self.room.crossings {
-            let slots = &self.slots;
-            let track = &slots[crossing.slot].track;
-            let event = &set.clip(track.def.clip).events[crossing.event];
-            let weight = track.weight_in(crossing.seconds);
-            let fired_by = |counts: &dyn Fn(&Track) -> bool| {
-                track.def.sync_group.is_none_or(|group| {
-                    heaviest(slots, group, crossing.seconds, counts) == Some(crossing.slot)
-                })
-            };
-            let has_one =
-                |other: &Track| set.clip(other.def.clip).events.iter().any(|own| own.name == event.name);
-            let is_its = match event.policy.fired_by {
-                FiredBy::Every => true,
-                FiredBy::Leader => fired_by(&|_| true),
-                FiredBy::OnePerGroup => fired_by(&has_one),
-            };
-            if is_its && weight >= event.policy.min_weight {
-                let (clip, track, seconds) = (track.def.clip, track.id, crossing.seconds);
-                let (event, lap, is_interrupted) = (crossing.event, crossing.lap, false);
-                self.events.push(FiredEvent { seconds, clip, event, track, weight, lap, is_interrupted });
             }
         }
     }
@@ -175,29 +137,9 @@ impl Animator {
         while let Some((i, moment)) = self.room.ended.pop() {
             let slot = self.slots.remove(i);
             interrupt(set, &slot.track, moment, &mut self.events);
-            self.room.spare.push((slot.cursor, slot.pose));
+            self.room.spare.push(slot.emptied());
         }
     }
-}
-
-/// The heaviest of a sync group's tracks now, the first one of several.
-pub(super) fn leader(slots: &[Slot], group: u8) -> Option<usize> {
-    heaviest(slots, group, 0.0, |_| true)
-}
-
-/// The heaviest of those tracks of a sync group that count, `seconds` from now.
-fn heaviest(slots: &[Slot], group: u8, seconds: f64, counts: impl Fn(&Track) -> bool) -> Option<usize> {
-    let mut best: Option<(usize, f32)> = None;
-    for (i, slot) in slots.iter().enumerate() {
-        let track = &slot.track;
-        if track.def.sync_group == Some(group) && !track.is_paused && counts(track) {
-            let weight = track.weight_in(seconds);
-            if best.is_none_or(|(_, heaviest)| weight > heaviest) {
-                best = Some((i, weight));
-            }
-        }
-    }
-    best.map(|(i, _)| i)
 }
 
 /// Seconds until a track's time stands still for good.
@@ -263,7 +205,8 @@ fn run(set: &AnimationSet, slot: &mut Slot, i: usize, stretch: Stretch, out: &mu
     slot.motion = slot.motion * motion;
     for (event, crossing) in crossings(clip, passage) {
         let moment = if speed == 0.0 { 0.0 } else { within(crossing.distance / speed, stretch.seconds) };
-        out.push(TrackCrossing { slot: i, event, lap: crossing.place.lap, seconds: stretch.start + moment });
+        let (place, seconds) = (crossing.place, stretch.start + moment);
+        out.push(TrackCrossing { slot: i, event, place, seconds, is_backward: speed < 0.0 });
     }
 }
 

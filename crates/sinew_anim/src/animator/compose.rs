@@ -1,6 +1,7 @@
 //! From tracks to one pose and one step of the root.
 
-use super::Animator;
+use super::root_inertia::{RootInertia, RootVelocity};
+use super::{Animator, FILL_BELOW, Slot, crossfade};
 use crate::inertial::Motion;
 use crate::pose::{BlendLayer, Pose};
 use crate::set::AnimationSet;
@@ -29,6 +30,28 @@ fn recycled<'a>(layers: Vec<BlendLayer<'_>>) -> Vec<BlendLayer<'a>> {
     layers.into_iter().map_while(|_| None).collect()
 }
 
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Pose,
+    Difference,
+}
+
+/// Tracks of a layer that are blended with each other.
+fn layers_of<'a>(
+    slots: &'a [Slot],
+    set: &'a AnimationSet,
+    layer: u8,
+    kind: Kind,
+) -> impl Iterator<Item = BlendLayer<'a>> {
+    slots.iter().filter_map(move |slot| {
+        let def = &slot.track.def;
+        let is_of_kind = set.clip(def.clip).is_difference() == (kind == Kind::Difference);
+        let mask = def.mask.map(|mask| set.mask(mask));
+        let counts = def.layer == layer && is_of_kind && !slot.is_crossfaded;
+        counts.then_some(BlendLayer { pose: &slot.pose, weight: def.weight, mask })
+    })
+}
+
 impl Animator {
     /// The pose of all tracks as they are, without what transitions leave.
     pub(super) fn compose(&mut self, set: &AnimationSet, pose: &mut Pose) {
@@ -45,27 +68,65 @@ impl Animator {
     }
 
     fn compose_layer(&mut self, set: &AnimationSet, layer: u8, pose: &mut Pose) {
+        if self.slots.iter().any(|slot| slot.is_crossfaded && slot.track.def.layer == layer) {
+            self.crossfade_layer(set, layer, pose);
+        } else {
+            self.blend_layer(set, layer, pose);
+        }
+        let mut layers = recycled(core::mem::take(&mut self.room.layers));
+        layers.extend(layers_of(&self.slots, set, layer, Kind::Difference));
+        self.room.blender.add(&layers, pose);
+        self.room.layers = recycled(layers);
+    }
+
+    fn blend_layer(&mut self, set: &AnimationSet, layer: u8, pose: &mut Pose) {
         let room = &mut self.room;
         let mut layers = recycled(core::mem::take(&mut room.layers));
-        let of_kind = |is_difference: bool| {
-            self.slots.iter().filter_map(move |slot| {
-                let def = &slot.track.def;
-                let counts = def.layer == layer && set.clip(def.clip).is_difference() == is_difference;
-                let mask = def.mask.map(|mask| set.mask(mask));
-                counts.then_some(BlendLayer { pose: &slot.pose, weight: def.weight, mask })
-            })
-        };
-        layers.extend(of_kind(false));
+        layers.extend(layers_of(&self.slots, set, layer, Kind::Pose));
         if layer == 0 {
             room.blender.blend(set.skeleton().rest(), &layers, pose);
         } else if !layers.is_empty() {
             room.below.copy_from(pose);
             room.cover.blend(&room.below, &layers, pose);
         }
-        layers.clear();
-        layers.extend(of_kind(true));
-        room.blender.add(&layers, pose);
         room.layers = recycled(layers);
+    }
+
+    /// What a crossfade leads away from, and then each that leads on, in the order in which they began.
+    fn crossfade_layer(&mut self, set: &AnimationSet, layer: u8, pose: &mut Pose) {
+        let room = &mut self.room;
+        room.below.copy_from(if layer == 0 { set.skeleton().rest() } else { pose });
+        let mut layers = recycled(core::mem::take(&mut room.layers));
+        layers.extend(layers_of(&self.slots, set, layer, Kind::Pose));
+        room.pure.blend(&room.below, &layers, pose);
+        room.weights.clear(pose.len());
+        layers.iter().for_each(|layer| room.weights.add(layer.weight, layer.mask));
+        room.layers = recycled(layers);
+        for slot in self.slots.iter_mut().filter(|slot| slot.is_crossfaded && slot.track.def.layer == layer) {
+            let def = &slot.track.def;
+            // A pose that has no weight yet has not been sampled.
+            if def.weight > 0.0 {
+                let mask = def.mask.map(|mask| set.mask(mask));
+                slot.crossfade.mix(&slot.pose, def.weight, mask, &mut room.weights, pose);
+            }
+        }
+        crossfade::fill(&room.below, if layer == 0 { FILL_BELOW } else { 1.0 }, &room.weights, pose);
+    }
+
+    /// Where all that a crossfade led away from is gone, its track is one like others.
+    pub(super) fn settle_crossfades(&mut self, set: &AnimationSet) {
+        for i in 0..self.slots.len() {
+            let layer = self.slots[i].track.def.layer;
+            let is_below = |(j, slot): (usize, &Slot)| {
+                let of_layer =
+                    slot.track.def.layer == layer && !set.clip(slot.track.def.clip).is_difference();
+                of_layer && j != i && (!slot.is_crossfaded || j < i)
+            };
+            if self.slots[i].is_crossfaded && !self.slots.iter().enumerate().any(is_below) {
+                self.slots[i].is_crossfaded = false;
+                self.slots[i].crossfade.clear();
+            }
+        }
     }
 
     /// The pose after an update of `seconds`. `begins` is the time of a transition that begins with it: then `room.start`
@@ -87,8 +148,25 @@ impl Animator {
         self.room.now = now;
     }
 
-    /// The mean step of the root.
-    pub(super) fn blend_motions(&mut self) {
+    /// The mean step of the root in an update of `seconds`, and what a transition leaves of the old one's speed; one that
+    /// begins with the update has a time of its own.
+    pub(super) fn move_root(&mut self, seconds: f32, begins: Option<f32>) {
+        let (mut way, mut turn) = self.mean_motion();
+        if seconds > 0.0 {
+            if let Some(time) = begins {
+                let to = RootVelocity { linear: way / seconds, angular: turn / seconds };
+                self.root_inertia = RootInertia::new(self.root_velocity, to, time);
+            }
+            let (left_way, left_turn) = self.root_inertia.advance(seconds);
+            way += left_way;
+            turn += left_turn;
+            self.root_velocity = RootVelocity { linear: way / seconds, angular: turn / seconds };
+        }
+        self.root_motion = Transform::new(way, Rotation::from_scaled_axis(turn));
+    }
+
+    /// Way and turn (scaled axis) of the tracks of layer 0.
+    fn mean_motion(&mut self) -> (Vec3, Vec3) {
         let motions = &mut self.room.motions;
         motions.clear();
         motions.extend(self.slots.iter().filter(|slot| slot.track.def.layer == 0).map(|slot| {
@@ -105,7 +183,7 @@ impl Animator {
             turn += motion.turn * motion.weight;
             total += motion.weight;
         }
-        let share = 1.0 / sinew_math::max(total, super::FILL_BELOW);
-        self.root_motion = Transform::new(way * share, Rotation::from_scaled_axis(turn * share));
+        let share = 1.0 / sinew_math::max(total, FILL_BELOW);
+        (way * share, turn * share)
     }
 }

@@ -2,6 +2,9 @@
 
 mod advance;
 mod compose;
+mod crossfade;
+mod fire;
+mod root_inertia;
 mod save;
 mod track;
 
@@ -14,15 +17,18 @@ use crate::playhead::Playhead;
 use crate::pose::{BlendLayer, BlendOptions, Blender, Pose};
 use crate::set::AnimationSet;
 use crate::sync;
+use crossfade::{Crossfade, Weights};
+use fire::{LastFired, TrackCrossing};
+use root_inertia::{RootInertia, RootVelocity};
 use sinew_math::Transform;
 use track::{Ramp, check_weight};
 
 /// How one motion becomes another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transition {
-    /// Both play for a while, one becoming lighter, the other heavier. Where two poses of a joint are nearly opposite, there is
-    /// no mean to go through, and it swings round; and one that passes half a turn from the rest pose jumps. That is up to
-    /// the clips: an inertial transition does neither.
+    /// Both play for a while, one becoming lighter, the other heavier. Each joint turns from the old pose to the new one about
+    /// one axis by the share of their weights, the way round that is shorter where the crossfade begins, and the same way
+    /// for as long as it lasts, wherever the two go.
     Crossfade {
         /// How long, 0 or above.
         seconds: f32,
@@ -47,9 +53,14 @@ pub struct Animator {
     next_id: u64,
     /// Events of tracks that were stopped between updates.
     interrupted: Vec<FiredEvent>,
+    /// Of each sync group and name of an event.
+    last_fired: Vec<LastFired>,
     /// Seconds of an inertial transition that begins with the next update.
     awaits_transition: Option<f32>,
     inertia: Inertia,
+    root_inertia: RootInertia,
+    /// Of the last update that took time.
+    root_velocity: RootVelocity,
     pose: Pose,
     /// The pose of the update before, and how long ago that was; 0 if there was none.
     previous: Pose,
@@ -68,6 +79,10 @@ struct Slot {
     pose: Pose,
     /// What its root has done in this update.
     motion: Transform,
+    /// Whether it came by a crossfade and what it takes the place of is still there: then it is not blended with the others
+    /// of its layer, but follows them.
+    is_crossfaded: bool,
+    crossfade: Crossfade,
 }
 
 /// Memory that is kept from update to update, and holds nothing in between.
@@ -75,16 +90,19 @@ struct Slot {
 struct Room {
     blender: Blender,
     cover: Blender,
+    /// Leaves nothing to other poses: for what a crossfade leads away from.
+    pure: Blender,
+    weights: Weights,
     layers: Vec<BlendLayer<'static>>,
     /// The layers below the one that is blended.
     below: Pose,
     /// Where the motion that a transition leads to was before the update.
     start: Pose,
     now: Pose,
-    crossings: Vec<advance::TrackCrossing>,
+    crossings: Vec<TrackCrossing>,
     ended: Vec<(usize, f64)>,
     motions: Vec<compose::WeightedMotion>,
-    spare: Vec<(Cursor, Pose)>,
+    spare: Vec<Slot>,
 }
 
 /// Sum of weights in layer 0 below which the rest pose makes up for what is missing (see [`BlendOptions`]).
@@ -98,6 +116,8 @@ impl Animator {
         let room = Room {
             blender: Blender::new(BlendOptions { fill_below: FILL_BELOW, ..BlendOptions::default() }),
             cover: Blender::new(covering),
+            pure: Blender::new(BlendOptions::default()),
+            weights: Weights::default(),
             layers: Vec::new(),
             below: rest.clone(),
             start: rest.clone(),
@@ -111,8 +131,11 @@ impl Animator {
             slots: Vec::new(),
             next_id: 0,
             interrupted: Vec::new(),
+            last_fired: Vec::new(),
             awaits_transition: None,
             inertia: Inertia::default(),
+            root_inertia: RootInertia::default(),
+            root_velocity: RootVelocity::default(),
             pose: rest.clone(),
             previous: rest.clone(),
             previous_seconds: 0.0,
@@ -134,7 +157,8 @@ impl Animator {
     }
 
     /// How the root went in the last update, seen from where it was before: the mean of the tracks of layer 0 with the
-    /// weights that they have after it; model space, file units. Tracks without motion count as standing.
+    /// weights that they have after it; model space, file units. Tracks without motion count as standing. Through an inertial
+    /// transition its speed changes as smoothly as the joints' do.
     pub fn root_motion(&self) -> Transform {
         self.root_motion
     }
@@ -159,7 +183,7 @@ impl Animator {
         assert!(def.mask.is_none_or(|mask| set.has_mask(mask.0).is_some()), "a mask of the set");
         let clip = set.clip(def.clip);
         let mut playhead = Playhead::new(def.loop_mode, clip.clip.duration(), f64::from(def.start));
-        if let Some(leader) = def.sync_group.and_then(|group| advance::leader(&self.slots, group)) {
+        if let Some(leader) = def.sync_group.and_then(|group| fire::leader(&self.slots, group)) {
             let leader = &self.slots[leader].track;
             let markers = &set.clip(leader.def.clip).markers;
             let place = sync::follow(&leader.playhead, markers, &playhead, &clip.markers);
@@ -169,9 +193,8 @@ impl Animator {
         let id = TrackId(self.next_id);
         self.next_id += 1;
         let track = Track { id, def: *def, playhead, ramp: None, is_paused: false };
-        let joints = set.skeleton().len();
-        let (cursor, pose) = self.room.spare.pop().unwrap_or_else(|| (Cursor::new(), Pose::new(joints)));
-        self.slots.push(Slot { track, cursor, pose, motion: Transform::IDENTITY });
+        let slot = self.room.spare.pop().unwrap_or_else(|| Slot::new(track, set.skeleton().len()));
+        self.slots.push(Slot { track, ..slot });
         id
     }
 
@@ -186,11 +209,16 @@ impl Animator {
             |slot: &Slot| slot.track.def.layer == def.layer && !set.clip(slot.track.def.clip).is_difference();
         match transition {
             Transition::Crossfade { seconds, easing } => {
+                let mut is_crossfaded = false;
                 for slot in self.slots.iter_mut().filter(|slot| is_replaced(slot)) {
                     slot.track.fade(0.0, seconds, easing, EndAction::Stop);
+                    is_crossfaded = true;
                 }
                 let id = self.play(set, &TrackDef { weight: 0.0, ..*def });
                 self.fade(id, def.weight, seconds, easing, EndAction::Hold);
+                if let Some(slot) = self.slots.last_mut() {
+                    slot.is_crossfaded = is_crossfaded && !set.clip(def.clip).is_difference();
+                }
                 id
             }
             Transition::Inertial { seconds } => {
@@ -216,7 +244,7 @@ impl Animator {
     fn remove(&mut self, set: &AnimationSet, i: usize) {
         let slot = self.slots.remove(i);
         advance::interrupt(set, &slot.track, 0.0, &mut self.interrupted);
-        self.room.spare.push((slot.cursor, slot.pose));
+        self.room.spare.push(slot.emptied());
     }
 
     /// Takes a track's weight to another one in `seconds`, and does `then` at its end: the book's timed transition. Takes the
@@ -265,8 +293,10 @@ impl Animator {
     /// # Panics
     /// If `time` is not finite.
     pub fn seek(&mut self, id: TrackId, time: f32) {
-        if let Some(track) = self.track_mut(id) {
-            track.playhead.seek(f64::from(time));
+        let Some(track) = self.track_mut(id) else { return };
+        track.playhead.seek(f64::from(time));
+        if let Some(group) = track.def.sync_group {
+            self.last_fired.retain(|last| last.group != group);
         }
     }
 
@@ -298,7 +328,8 @@ impl Animator {
             self.room.start = start;
         }
         self.advance(set, f64::from(seconds));
-        self.blend_motions();
+        self.settle_crossfades(set);
+        self.move_root(seconds, begins);
         self.finish_pose(set, seconds, begins);
     }
 
@@ -314,6 +345,25 @@ impl Animator {
     ) {
         self.update(set, seconds);
         self.events.iter().for_each(|fired| on_event(fired, set.event(fired)));
+    }
+}
+
+impl Slot {
+    fn new(track: Track, joints: usize) -> Self {
+        Self {
+            track,
+            cursor: Cursor::new(),
+            pose: Pose::new(joints),
+            motion: Transform::IDENTITY,
+            is_crossfaded: false,
+            crossfade: Crossfade::default(),
+        }
+    }
+
+    /// For another track: its memory alone.
+    fn emptied(mut self) -> Self {
+        self.crossfade.clear();
+        Self { motion: Transform::IDENTITY, is_crossfaded: false, ..self }
     }
 }
 

@@ -1,18 +1,20 @@
 //! The state of an animator as bytes, and back: exactly.
 
 use super::{Animator, Easing, EndAction, Slot, Track, TrackDef, TrackId};
+use crate::animator::crossfade::Crossfade;
+use crate::animator::fire::LastFired;
+use crate::animator::root_inertia::{RootInertia, RootVelocity};
 use crate::animator::track::Ramp;
-use crate::built::Cursor;
 use crate::event::FiredEvent;
 use crate::inertial::Inertia;
 use crate::playhead::{LoopMode, Place, Playhead};
 use crate::pose::Pose;
 use crate::rig::LocalTransform;
 use crate::set::{AnimationSet, ClipId};
-use sinew_math::{ReadError, Reader, Transform, Writer};
+use sinew_math::{ReadError, Reader, Writer};
 
 /// First bytes: what it is, and the version of what follows.
-const HEADER: &[u8; 8] = b"SNWANIM\x01";
+const HEADER: &[u8; 8] = b"SNWANIM\x02";
 
 impl Animator {
     /// Writes all that decides the future. What the last update fired, and its root motion, are not part of that.
@@ -21,11 +23,19 @@ impl Animator {
         out.u64(set.fingerprint());
         out.u64(self.next_id);
         out.count(self.slots.len());
-        self.slots.iter().for_each(|slot| write_track(&slot.track, out));
+        for slot in &self.slots {
+            write_track(&slot.track, out);
+            out.bool(slot.is_crossfaded);
+            slot.crossfade.save(out);
+        }
         out.count(self.interrupted.len());
         self.interrupted.iter().for_each(|event| write_event(event, out));
+        out.count(self.last_fired.len());
+        self.last_fired.iter().for_each(|last| write_last_fired(last, out));
         write_option(self.awaits_transition, out, |&seconds, out| out.f32(seconds));
         self.inertia.save(out);
+        self.root_inertia.save(out);
+        self.root_velocity.save(out);
         out.bool(self.has_pose);
         out.f32(self.previous_seconds);
         write_pose(&self.pose, out);
@@ -46,20 +56,26 @@ impl Animator {
         let mut animator = Self::new(set);
         animator.next_id = bytes.u64()?;
         let mut last = None;
-        for _ in 0..bytes.count(48)? {
+        for _ in 0..bytes.count(53)? {
             let track = read_track(set, bytes)?;
             if track.id.0 >= animator.next_id || last.is_some_and(|last| track.id <= last) {
                 return Err(bytes.error("a track's id is out of order"));
             }
             last = Some(track.id);
-            let pose = Pose::new(set.skeleton().len());
-            animator.slots.push(Slot { track, cursor: Cursor::new(), pose, motion: Transform::IDENTITY });
+            let joints = set.skeleton().len();
+            let (is_crossfaded, crossfade) = (bytes.bool()?, Crossfade::load(bytes, joints)?);
+            animator.slots.push(Slot { is_crossfaded, crossfade, ..Slot::new(track, joints) });
         }
         for _ in 0..bytes.count(37)? {
             animator.interrupted.push(read_event(set, bytes)?);
         }
+        for _ in 0..bytes.count(18)? {
+            animator.last_fired.push(read_last_fired(set, bytes)?);
+        }
         animator.awaits_transition = read_option(bytes, |bytes| at_least_zero(bytes, Reader::f32))?;
         animator.inertia = Inertia::load(bytes, set.skeleton().len())?;
+        animator.root_inertia = RootInertia::load(bytes)?;
+        animator.root_velocity = RootVelocity::load(bytes)?;
         animator.has_pose = bytes.bool()?;
         animator.previous_seconds = at_least_zero(bytes, Reader::f32)?;
         read_pose(&mut animator.pose, bytes)?;
@@ -146,13 +162,30 @@ fn write_event(event: &FiredEvent, out: &mut Writer) {
 fn read_event(set: &AnimationSet, bytes: &mut Reader<'_>) -> Result<FiredEvent, ReadError> {
     let seconds = at_least_zero(bytes, read_f64)?;
     let clip = read_clip(set, bytes)?;
-    let event = bytes.u32()? as usize;
-    if event >= set.clip(clip).events.len() {
-        return Err(bytes.error("an event that its clip does not have"));
-    }
+    let event = read_event_of(set, clip, bytes)?;
     let (track, weight) = (TrackId(bytes.u64()?), at_least_zero(bytes, Reader::f32)?);
     let (lap, is_interrupted) = (bytes.u64()? as i64, bytes.bool()?);
     Ok(FiredEvent { seconds, clip, event, track, weight, lap, is_interrupted })
+}
+
+fn write_last_fired(last: &LastFired, out: &mut Writer) {
+    out.u8(last.group);
+    out.u32(last.clip.0);
+    out.count(last.event);
+    out.u64(last.marker as u64);
+    out.bool(last.is_backward);
+}
+
+fn read_last_fired(set: &AnimationSet, bytes: &mut Reader<'_>) -> Result<LastFired, ReadError> {
+    let (group, clip) = (bytes.u8()?, read_clip(set, bytes)?);
+    let event = read_event_of(set, clip, bytes)?;
+    Ok(LastFired { group, clip, event, marker: bytes.u64()? as i64, is_backward: bytes.bool()? })
+}
+
+fn read_event_of(set: &AnimationSet, clip: ClipId, bytes: &mut Reader<'_>) -> Result<usize, ReadError> {
+    let event = bytes.u32()? as usize;
+    let is_there = event < set.clip(clip).events.len();
+    if is_there { Ok(event) } else { Err(bytes.error("an event that its clip does not have")) }
 }
 
 fn write_pose(pose: &Pose, out: &mut Writer) {

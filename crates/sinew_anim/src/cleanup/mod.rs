@@ -1,4 +1,6 @@
-//! Mending what capture got wrong. Every job works on a [`Take`](crate::Take) and tells what it did; none has a memory.
+//! Mending what capture got wrong. Every job works on a [`Take`](crate::Take), in place, all frames and joints of it, and tells
+//! what it did; none has a memory. Rotations are local, radians; lengths of joints are in the unit of the rig, those of feet
+//! and floors in metres of the space that a `root` maps the rig's to, y up.
 //!
 //! In good order: [`despike`], [`smooth`], [`project_limits`], [`remove_penetration`], [`remove_foot_slide`].
 

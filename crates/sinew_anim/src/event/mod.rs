@@ -15,7 +15,9 @@ pub enum FiredBy {
     Every,
     /// The heaviest track of its sync group, and any track that has none.
     Leader,
-    /// The heaviest track of its sync group whose clip has an event of that name: one footstep for walk and run together.
+    /// Once for all tracks of its sync group whose clips have an event of that name beside the same marker: one footstep for
+    /// walk and run together. The heaviest of them fires it, at its own moment; another one where that had passed it before
+    /// it became the heaviest.
     OnePerGroup,
 }
 

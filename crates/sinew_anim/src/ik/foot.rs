@@ -55,7 +55,9 @@ pub struct PlacedFeet {
 }
 
 /// Puts both feet on the ground: raises or lowers the pelvis with the lower of the two, bends the knees, and tilts the
-/// feet that stand. `ground` tells what is below an ankle; `None` where there is nothing to stand on: that foot stays.
+/// feet that stand. `ground` is asked once for each leg, with the place of its ankle in the space of `model`, and tells what is
+/// below; `None` where there is nothing to stand on: that foot stays. `local` and `model` have one entry per joint and are both
+/// brought up to date. Nothing is kept from frame to frame: on ground with edges, smooth the heights that `ground` tells.
 ///
 /// # Panics
 /// If the slices are not as long as the rig has joints, or a joint is not in it.

@@ -13,7 +13,7 @@ pub struct LookAt {
     pub forward: Vec3,
     /// Up, in the axes of the space, any length: what yaw turns about.
     pub up: Vec3,
-    /// What it looks at.
+    /// What it looks at: a place in the space, its unit.
     pub target: Vec3,
     /// Farthest yaw from the pose, radians, 0..=π.
     pub max_yaw: f32,
@@ -32,7 +32,7 @@ pub struct Look {
     pub left: f32,
 }
 
-/// Turns a joint toward a target. One at the joint itself or not finite, and a `forward` of no length, turn nothing.
+/// Turns a joint toward a target. `local` and `model` have one entry per joint and are both brought up to date. A target at the joint itself or not finite, and a `forward` of no length, turn nothing.
 ///
 /// # Panics
 /// If the slices are not as long as the rig has joints, or the joint is not in it.

@@ -1,8 +1,10 @@
 //! Inverse kinematics: joints turned so that a hand, a foot or the eyes get where they should.
 //!
-//! The jobs work on two slices of one pose, **local** and **model**, which have to belong together
+//! The jobs work on two slices of one pose, **local** (each joint relative to its parent, file units) and **model** (each
+//! joint to the space), as long as the rig has joints, which have to belong together
 //! ([`local_to_model`](crate::local_to_model)) and still do afterwards. Targets, directions and heights are in the space of
-//! the model slice: the file's, or the character's where that was its root. Nothing is allocated.
+//! the model slice and its unit: the file's, or the character's where that was its root. Angles are radians. Nothing is
+//! allocated.
 
 mod foot;
 mod look_at;

@@ -27,7 +27,7 @@ pub enum Pole {
     Toward(Vec3),
 }
 
-/// Where the end of a limb should be.
+/// Where the end of a limb should be: lengths in the unit of the model pose, directions in its space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoBoneGoal {
     /// Place of the end joint.
@@ -68,7 +68,7 @@ impl TwoBoneSolution {
         Self { upper: Rotation::IDENTITY, lower: Rotation::IDENTITY, stretch: 1.0, miss: f32::INFINITY };
 }
 
-/// Bends a limb, given by the places of its three joints, so that its end reaches the goal; one that is too far or too
+/// Bends a limb, given by the places of its three joints in any one space and unit, so that its end reaches the goal; one that is too far or too
 /// near is reached for in its direction. Bones of no length and targets that are not finite turn nothing they need not.
 ///
 /// With bones a and b and the distance d, the middle joint is `(a² − b² + d²) / 2d` along the way and as far to the side
@@ -154,7 +154,9 @@ fn planes(root: Vec3, middle: Vec3, end: Vec3, along: Vec3, pole: Pole) -> (Vec3
     (from, to)
 }
 
-/// Brings the end of a limb to a goal. The joint at the end keeps its rotation relative to the second bone.
+/// Brings the end of a limb to a goal. The joint at the end keeps its rotation relative to the second bone. `local` and
+/// `model` have one entry per joint and are both brought up to date; the goal is in the space of `model`. What is returned is
+/// the turn at full weight, whatever the goal's.
 ///
 /// # Panics
 /// If the slices are not as long as the rig has joints, or a joint is not in it.

@@ -46,14 +46,15 @@ pub fn local_to_model(rig: &Rig, local: &[LocalTransform], root: &Affine, model:
 /// Motion of a joint's frame, model axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointVelocity {
-    /// Of the joint's origin, units of the pose per second.
+    /// Of the joint's origin, the pose's unit of length per second.
     pub linear: Vec3,
     /// Radians per second.
     pub angular: Vec3,
 }
 
 /// Mean velocity of every joint's rigid frame between two model poses `dt` seconds apart; zero where `dt` is not
-/// positive. Exact for motion at constant velocity that turns less than half a turn in `dt`.
+/// positive. Exact for motion at constant velocity that turns less than half a turn in `dt`. Both poses have one entry per
+/// joint, in one space and unit; `out` is cleared and filled with as many.
 ///
 /// # Panics
 /// If the poses differ in length.
@@ -81,7 +82,9 @@ pub struct WeightedPose<'a> {
     pub weight: f32,
 }
 
-/// Weighted mean of any number of poses; the order of the layers does not matter beyond rounding.
+/// Weighted mean of any number of poses; the order of the layers does not matter beyond rounding. All poses, `rest` and
+/// `out` have one local transform per joint of one rig, file units; what `out` held before has no part in it. [`Blender`]
+/// does the same on eight joints at once, in an order of its own, to the bit.
 ///
 /// Rotations are summed on the hemisphere of the **rest pose** and normalised once: pairwise spherical blends would
 /// depend on the order, and alignment to the first layer on which layer is first. Where the weights add up to zero,
@@ -115,7 +118,9 @@ pub fn blend(rest: &[LocalTransform], layers: &[WeightedPose<'_>], out: &mut [Lo
     }
 }
 
-/// Blend of two poses: `from` at `t` = 0, `to` at `t` = 1, `t` limited to 0..=1. See [`blend`].
+/// Blend of two poses: `from` at `t` = 0, `to` at `t` = 1, `t` limited to 0..=1. See [`blend`], also for the lengths of the
+/// slices: with [`smoothstep`] of the time for `t` it suits poses less than about 120° apart; for any others
+/// [`Transition::Crossfade`](crate::Transition::Crossfade) remembers which way round it goes.
 ///
 /// # Panics
 /// If the slices differ in length.

@@ -125,7 +125,9 @@ impl Retargeted {
     }
 }
 
-/// Carries `clip`, a motion of `actor`, over to `character`.
+/// Carries `clip`, a motion of `actor`, over to `character`: one pose of the character's rig every
+/// [`frame_time`](RetargetOptions::frame_time) seconds, local transforms in its file's units; lengths that are told of are
+/// metres by the unit scales of the two analyses. A job to be done once for a clip, not each frame: it allocates.
 ///
 /// ```
 /// use sinew_anim::retarget::{Body, RetargetOptions, retarget, stand};

@@ -1,10 +1,14 @@
 //! Once warm, playing a character allocates nothing.
 
-use crate::stage;
-use sinew_anim::{
-    AnimatedClip, AnimationSet, Animator, Event, Mask, ModelPose, Skeleton, TrackDef, Transition,
+use crate::{stage, toy};
+use sinew_anim::ik::{
+    FootGround, FootPlacement, LookAt, Pole, TwoBone, TwoBoneGoal, look_at, place_feet, two_bone_ik,
 };
-use sinew_math::{Affine, Random};
+use sinew_anim::{
+    AnimatedClip, AnimationSet, Animator, Easing, Event, JointIdx, Mask, ModelPose, Role, Skeleton, TrackDef,
+    Transition, local_to_model, rest_pose,
+};
+use sinew_math::{Affine, Random, Vec3};
 
 #[test]
 fn a_warm_update_allocates_nothing() {
@@ -26,7 +30,12 @@ fn a_warm_update_allocates_nothing() {
         for i in 0..100 {
             if i % 25 == 0 {
                 let to = TrackDef::new(clips[i / 25 % 3]);
-                animator.transition(&set, &to, Transition::Inertial { seconds: 0.2 });
+                let seconds = 0.2;
+                let transition = match i / 25 % 2 {
+                    0 => Transition::Inertial { seconds },
+                    _ => Transition::Crossfade { seconds, easing: Easing::Smooth },
+                };
+                animator.transition(&set, &to, transition);
             }
             animator.update(&set, 1.0 / 60.0);
             set.skeleton().to_model(animator.pose(), &Affine::IDENTITY, &mut model);
@@ -35,5 +44,57 @@ fn a_warm_update_allocates_nothing() {
     cycle(&mut animator);
     cycle(&mut animator);
     let counted = allocation_counter::measure(|| cycle(&mut animator));
+    assert_eq!(counted.count_total, 0);
+}
+
+#[test]
+fn inverse_kinematics_allocates_nothing() {
+    let rig = toy::body(Role::name);
+    let joint =
+        |name: &str| rig.joints.iter().position(|joint| joint.name == name).expect("a joint of that name");
+    let limb = |side: &str, parts: [&str; 3]| -> TwoBone {
+        let [upper, lower, end]: [JointIdx; 3] = parts.map(|part| joint(&format!("{side}{part}")));
+        TwoBone { upper, lower, end }
+    };
+    let legs = ["left", "right"].map(|side| limb(side, ["UpperLeg", "LowerLeg", "Foot"]));
+    let arm = limb("left", ["UpperArm", "LowerArm", "Hand"]);
+    let settings = FootPlacement {
+        up: Vec3::Y,
+        forward: Vec3::Z,
+        floor: 0.0,
+        ankle_height: 0.1,
+        free_height: 0.1,
+        max_step: 0.4,
+        max_tilt: 0.5,
+    };
+    let look = LookAt {
+        joint: joint("head"),
+        forward: Vec3::Z,
+        up: Vec3::Y,
+        target: Vec3::new(1.0, 1.5, 2.0),
+        max_yaw: 1.0,
+        max_pitch: 0.5,
+        weight: 1.0,
+    };
+    let hand = TwoBoneGoal {
+        stretch: 1.1,
+        softness: 0.1,
+        ..TwoBoneGoal::at(Vec3::new(0.4, 1.2, 0.4), Pole::Toward(Vec3::NEG_Y))
+    };
+    let rest = rest_pose(&rig);
+    let (mut local, mut model) = (rest.clone(), Vec::new());
+    local_to_model(&rig, &local, &Affine::IDENTITY, &mut model);
+    let ground = |p: Vec3| Some(FootGround { height: 0.3 * p.x, normal: Vec3::new(-0.3, 1.0, 0.0) });
+    let hips = joint("hips");
+    let counted = allocation_counter::measure(|| {
+        for _ in 0..50 {
+            local.copy_from_slice(&rest);
+            local_to_model(&rig, &local, &Affine::IDENTITY, &mut model);
+            place_feet(&rig, hips, &legs, &settings, ground, &mut local, &mut model);
+            two_bone_ik(&rig, arm, &hand, &mut local, &mut model);
+            look_at(&rig, &look, &mut local, &mut model);
+        }
+    });
+    assert_ne!(local, rest);
     assert_eq!(counted.count_total, 0);
 }

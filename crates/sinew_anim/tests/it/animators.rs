@@ -2,10 +2,10 @@
 
 use crate::{cases, stage};
 use sinew_anim::{
-    AnimatedClip, AnimationSet, Animator, ClipId, Easing, EndAction, Event, EventPolicy, Fill, FiredBy,
-    LoopMode, Markers, Mask, Pose, Skeleton, TrackDef, Transition,
+    AnimatedClip, AnimationSet, Animator, Channel, Clip, ClipId, Easing, EndAction, Event, EventPolicy, Fill,
+    FiredBy, Interpolation, LoopMode, Markers, Mask, Pose, Property, Skeleton, TrackDef, Transition,
 };
-use sinew_math::{Random, Rotation};
+use sinew_math::{Random, Rotation, Vec3};
 
 fn ids(set: &AnimationSet) -> Vec<ClipId> {
     set.clips().collect()
@@ -370,6 +370,43 @@ fn differences_are_added_in_the_joints_own_axes() {
     }
 }
 
+/// Walk and run whose footfalls are on either side of their markers, and who leads changes all the time.
+#[test]
+fn a_footfall_is_one_whoever_leads_when() {
+    let policy = EventPolicy { min_weight: 0.0, fired_by: FiredBy::OnePerGroup, ..EventPolicy::default() };
+    let mut set = AnimationSet::new(Skeleton::new(&stage::rig()));
+    for (duration, left, right, late) in [(1.0, 0.02, 0.5, 0.03), (0.6, 0.04, 0.3, -0.03)] {
+        let clip = stage::build(&stage::swaying(&mut Random::new(8), duration), Fill::Rest);
+        let event =
+            |time, number| Event { policy, name: "footstep".to_owned(), ..numbered(time + late, number) };
+        let events = vec![event(left, 0), event(right, 1)];
+        set.add_clip(AnimatedClip { events, markers: Markers::new(vec![left, right]), ..clip });
+    }
+    let mut random = Random::new(3);
+    for run in 0..200 {
+        let mut animator = Animator::new(&set);
+        // Between two footfalls.
+        let backward = if run % 2 == 0 { 1.0 } else { -1.0 };
+        let tracks = [0, 1].map(|i| {
+            let def =
+                TrackDef { sync_group: Some(0), speed: backward, start: 0.25, ..TrackDef::new(ids(&set)[i]) };
+            animator.play(&set, &def)
+        });
+        let mut steps = Vec::new();
+        for _ in 0..60 {
+            animator.set_weight(tracks[0], random.range(0.01, 1.0));
+            animator.set_weight(tracks[1], random.range(0.01, 1.0));
+            let seconds = random.range(0.0, 0.04);
+            animator.update_with(&set, seconds, |_, event| steps.push(event.payload.clone()));
+        }
+        assert!(steps.windows(2).all(|pair| pair[0] != pair[1]), "left and right by turns: {steps:?}");
+        // Markers passed, give or take one that is just being passed.
+        let place = animator.track(tracks[0]).expect("it plays").playhead();
+        let laps = place.lap() as f32 + place.clip_time() - 0.25;
+        assert!((steps.len() as f32 - 2.0 * laps.abs()).abs() < 1.2, "{} steps in {laps} laps", steps.len());
+    }
+}
+
 #[test]
 fn a_crossfade_ends_with_one_track() {
     let set = stage::set(12);
@@ -385,6 +422,62 @@ fn a_crossfade_ends_with_one_track() {
         animator.tracks().map(|track| (track.id(), track.def().weight)).collect::<Vec<_>>(),
         [(to, 1.0)]
     );
+}
+
+/// Joints that hold still, as a clip of 1 s.
+fn held(rotation: impl Fn(usize) -> Rotation) -> AnimatedClip {
+    let channel = |joint: usize| {
+        let Rotation { x, y, z, w } = rotation(joint);
+        let (property, interpolation) = (Property::Rotation, Interpolation::Linear);
+        Channel { joint, property, interpolation, times: vec![0.0], values: vec![x, y, z, w] }
+    };
+    let channels = (0..stage::JOINTS).map(channel).collect();
+    stage::build(&Clip { name: "held".to_owned(), duration: 1.0, channels }, Fill::Rest)
+}
+
+#[test]
+fn a_crossfade_turns_about_one_axis_at_the_speed_of_its_easing() {
+    // Up to 175° apart, on either side of half a turn from the rest pose.
+    let axis = Vec3::new(1.0, 2.0, 2.0) / 3.0;
+    let apart = |joint: usize| 0.3 * joint as f32;
+    let around = |angle: f32| Rotation::from_axis_angle(axis, angle);
+    let mut set = AnimationSet::new(Skeleton::new(&stage::rig()));
+    let from = set.add_clip(held(|joint| around(3.0 - 0.5 * apart(joint))));
+    let to = set.add_clip(held(|joint| around(3.0 + 0.5 * apart(joint))));
+    let mut animator = Animator::new(&set);
+    animator.play(&set, &TrackDef::new(from));
+    animator.update(&set, 0.1);
+    let fade = Transition::Crossfade { seconds: 1.0, easing: Easing::Smooth };
+    animator.transition(&set, &TrackDef::new(to), fade);
+    for step in 1..=20 {
+        animator.update(&set, 0.05);
+        let share = Easing::Smooth.at(0.05 * step as f32);
+        for joint in 0..stage::JOINTS {
+            let expected = around(3.0 + (share - 0.5) * apart(joint));
+            let found = animator.pose().get(joint).rotation;
+            assert!(found.angle_to(expected) < 2e-3, "joint {joint}, {share}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn crossfades_within_crossfades_do_not_jump() {
+    let set = stage::set(21);
+    let mut animator = Animator::new(&set);
+    animator.play(&set, &TrackDef::new(ids(&set)[0]));
+    animator.update(&set, 0.01);
+    let mut last = animator.pose().clone();
+    for i in 0..120 {
+        if i % 5 == 3 {
+            let fade = Transition::Crossfade { seconds: 0.3, easing: Easing::Smooth };
+            animator.transition(&set, &TrackDef::new(ids(&set)[i % 3]), fade);
+        }
+        animator.update(&set, 0.001);
+        for (joint, (a, b)) in last.iter().zip(animator.pose().iter()).enumerate() {
+            assert!(a.rotation.angle_to(b.rotation) < 0.03, "joint {joint}, update {i}");
+        }
+        last.copy_from(animator.pose());
+    }
 }
 
 #[test]

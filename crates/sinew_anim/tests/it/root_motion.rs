@@ -3,7 +3,7 @@
 use crate::stage;
 use sinew_anim::{
     AnimatedClip, AnimationSet, Animator, AxisMotion, BuildOptions, BuiltClip, Channel, Clip, Interpolation,
-    LocalTransform, LoopMode, Property, Rig, RootMotionOptions, Skeleton, TrackDef, Wrap,
+    LocalTransform, LoopMode, Property, Rig, RootMotionOptions, Skeleton, TrackDef, Transition, Wrap,
     extract_root_motion, local_to_model, sample,
 };
 use sinew_math::{Affine, Rotation, Transform, Vec3, trig};
@@ -138,4 +138,31 @@ fn two_speeds_blend_as_deltas() {
     let step = animator.root_motion().translation.length();
     let pace = 1.5 * core::f32::consts::FRAC_PI_2 / 2.0;
     assert!((step - 0.01 * pace * 1.25).abs() < 1e-4, "{step}");
+}
+
+#[test]
+fn a_root_that_sets_out_by_an_inertial_transition_gains_speed_smoothly() {
+    const DT: f32 = 1.0 / 120.0;
+    const TIME: f32 = 0.5;
+    let (rig, clip) = circling(2.0, 1.5, 0.25);
+    let (still, motion) = extract_root_motion(&clip, &rig, &RootMotionOptions::on_ground(1));
+    let built = BuiltClip::build(&still, &rig, &BuildOptions::default()).expect("a good clip");
+    let mut set = AnimationSet::new(Skeleton::new(&rig));
+    let standing = set.add_clip(AnimatedClip::from(built.clone()));
+    let going = set.add_clip(AnimatedClip { motion: Some(motion), ..AnimatedClip::from(built) });
+    let mut animator = Animator::new(&set);
+    animator.play(&set, &TrackDef::new(standing));
+    animator.update(&set, DT);
+    animator.transition(&set, &TrackDef::new(going), Transition::Inertial { seconds: TIME });
+    let (mut speed, mut way, mut steepest) = (0.0, 0.0, 0.0_f32);
+    for _ in 0..60 {
+        animator.update(&set, DT);
+        let step = animator.root_motion().translation.length();
+        steepest = sinew_math::max(steepest, (step / DT - speed) / DT);
+        (speed, way) = (step / DT, way + step);
+    }
+    let pace = 1.5 * core::f32::consts::FRAC_PI_2 / 2.0;
+    // The quintic's steepest slope is 15/8 of the mean, and it goes half of the way.
+    assert!(steepest < 1.02 * 1.875 * pace / TIME, "{steepest}");
+    assert!((speed - pace).abs() < 1e-3 && (way - 0.5 * pace * TIME).abs() < 5e-3, "{speed} m/s, {way} m");
 }

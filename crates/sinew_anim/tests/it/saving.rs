@@ -42,7 +42,11 @@ fn busy(set: &AnimationSet, random: &mut Random) -> Animator {
     for _ in 0..random.index(9) {
         animator.update(set, random.range(0.0, 0.1));
     }
-    animator.transition(set, &TrackDef::new(clips[random.index(3)]), Transition::Inertial { seconds: 0.4 });
+    let transition = match random.index(2) {
+        0 => Transition::Inertial { seconds: 0.4 },
+        _ => Transition::Crossfade { seconds: 0.4, easing: Easing::Smooth },
+    };
+    animator.transition(set, &TrackDef::new(clips[random.index(3)]), transition);
     for _ in 0..random.index(3) {
         animator.update(set, random.range(0.0, 0.1));
     }

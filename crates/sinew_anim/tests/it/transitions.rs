@@ -150,7 +150,7 @@ fn worst_of_pair(
             .into_iter()
             .fold([0.0; 2], |worst, a| [0, 1].map(|i| sinew_math::max(worst[i], a[i])));
         let own = [a.peak(joint, first), b.peak(joint, 0)];
-        let budget = budget(set.skeleton().rest().get(joint).rotation, [a, b], joint, first, transition);
+        let budget = budget([a, b], joint, first, transition);
         for kind in 0..2 {
             let p99 = sinew_math::max(a.p99[joint][kind], b.p99[joint][kind]);
             let clips = sinew_math::max(1.2 * p99, sinew_math::max(own[0][kind], own[1][kind]));
@@ -164,22 +164,9 @@ fn worst_of_pair(
     (worst, where_)
 }
 
-/// Farthest apart, radians, that two poses of a joint may be while they are crossfaded: between opposite rotations there is
-/// no mean, and near them it swings round. An inertial transition knows no such limit.
-const APART: f32 = 2.0;
-
-/// Farthest, radians, that a pose may be from the rest pose while it is blended: at half a turn it changes hemispheres.
-const FROM_REST: f32 = 2.8;
-
 /// `6 |x₀|/t₁² + 4 |v₀|/t₁`, of turning and of moving: of the offset where the transition begins, and for a crossfade, whose
 /// clips go on apart from each other, of the largest while it lasts.
-fn budget(
-    rest: Rotation,
-    [a, b]: [&Alone; 2],
-    joint: usize,
-    first: usize,
-    transition: Transition,
-) -> [f32; 2] {
+fn budget([a, b]: [&Alone; 2], joint: usize, first: usize, transition: Transition) -> [f32; 2] {
     let is_inertial = matches!(transition, Transition::Inertial { .. });
     let lasting = if is_inertial { 1 } else { WINDOW };
     let mut most = [0.0_f32; 2];
@@ -190,10 +177,6 @@ fn budget(
         let (old, new) = (velocity(&before, &from[0]), velocity(&to[0], &to[1]));
         let offsets = [turn(to[0].rotation, from[0].rotation), from[0].translation - to[0].translation];
         let velocities = [old.turn - new.turn, old.way - new.way];
-        let from_rest = [from[0], to[0]].map(|local| rest.angle_to(local.rotation));
-        if !is_inertial && (offsets[0].length() > APART || from_rest.iter().any(|&angle| angle > FROM_REST)) {
-            most[0] = f32::INFINITY;
-        }
         for kind in 0..2 {
             let decay = Decay { offset: offsets[kind], velocity: velocities[kind] };
             let time = if is_inertial { decay.shortened(BLEND) } else { BLEND };

@@ -1,9 +1,12 @@
 //! The embedded character: a wooden mannequin of 1.75 m with its motions, made by code.
 //!
 //! `skeleton` says where the joints are, `loft` and `body` put a surface round them; `posture` poses them by hand and
-//! foot goals, `keys` turns postures into clips, `walk` and `get_up` hold the motions themselves.
+//! foot goals, `gait` plants and swings the feet, `keys` turns postures into clips, `walk` and `get_up` hold the motions
+//! themselves, and [`drills`] those that only experiments need.
 
 mod body;
+pub mod drills;
+mod gait;
 mod get_up;
 mod keys;
 mod loft;
@@ -13,7 +16,8 @@ mod walk;
 
 use sinew::anim::{Clip, Rig};
 
-pub use walk::WALK_SPEED;
+pub use gait::Path;
+pub use walk::{RUN_SPEED, WALK_SPEED};
 
 /// The mannequin: rig with skinned mesh, and its clips.
 ///

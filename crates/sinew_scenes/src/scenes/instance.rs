@@ -1,5 +1,6 @@
 //! A scene that runs.
 
+use super::actors::Figure;
 use super::metric::{Expected, Metric};
 use super::sight::Sight;
 use core::time::Duration;
@@ -9,6 +10,10 @@ use sinew::physics::{DebugDraw, Energy, Serial, TaskRunner, Update, World};
 
 /// The part of a scene that goes along with its world.
 pub trait Script: Send {
+    /// Before each step: moves what is led by hand, such as bodies that follow an animation. As with
+    /// [`after_step`](Self::after_step), what it does depends on the world alone.
+    fn before_step(&mut self, _world: &mut World) {}
+
     /// After each step: watches, and pushes what the next step is to feel. What it pushes depends on the world alone,
     /// so that a restored world goes on as the saved one did.
     fn after_step(&mut self, _world: &mut World) {}
@@ -29,6 +34,11 @@ pub trait Script: Send {
 
     /// What a picture shows beside the world, such as what it asks the world for.
     fn draw(&self, _world: &World, _out: &mut dyn DebugDraw) {}
+
+    /// Characters that a picture shows by their skins.
+    fn figures(&self) -> Vec<Figure<'_>> {
+        Vec::new()
+    }
 }
 
 /// Nothing but the world itself.
@@ -66,6 +76,11 @@ impl Instance {
     /// Draws what a picture shows beside the world.
     pub fn draw(&self, out: &mut dyn DebugDraw) {
         self.script.draw(&self.world, out);
+    }
+
+    /// Characters that a picture shows by their skins.
+    pub fn figures(&self) -> Vec<Figure<'_>> {
+        self.script.figures()
     }
 
     /// Its world, for questions, drawing, snapshots.
@@ -108,6 +123,7 @@ impl Instance {
 
 /// One step, and what goes along with it.
 fn step(world: &mut World, script: &mut dyn Script, health: &mut Health, step: &dyn Fn(&mut World)) {
+    script.before_step(world);
     let before = world.energy();
     step(world);
     // What the script pushes is no work of this step.
@@ -138,7 +154,9 @@ impl Health {
         let rise = (after.kinetic - before.kinetic) + (after.potential - before.potential)
             - (work_in - self.work_in);
         self.work_in = work_in;
-        self.energy_gain_max = max(self.energy_gain_max, rise / max(before.kinetic, self.mass));
+        let most = max(before.kinetic, self.mass);
+        // Where nothing has a mass, nothing has energy.
+        self.energy_gain_max = max(self.energy_gain_max, if most > 0.0 { rise / most } else { 0.0 });
         self.quarantined += world.events().quarantined.len() as u32;
     }
 

@@ -12,6 +12,7 @@
 //! # Ok::<(), sinew_scenes::scenes::SettingError>(())
 //! ```
 
+mod actors;
 mod flight;
 mod instance;
 mod metric;
@@ -23,9 +24,11 @@ mod air;
 mod arch;
 mod ballistics;
 mod blasts;
+mod blending;
 mod blobs;
 mod boxes;
 mod cabin;
+mod callbacks;
 mod chains;
 mod cloths;
 mod coin;
@@ -39,6 +42,7 @@ mod impacts;
 mod incline;
 mod linkages;
 mod mjcf;
+mod mocap;
 mod motors;
 mod nets;
 mod orbits;
@@ -57,10 +61,13 @@ mod strings;
 mod support;
 mod surfaces;
 mod tops;
+mod transitions;
 mod trees;
+mod walking;
 mod water;
 mod weightless;
 
+pub use actors::Figure;
 pub use instance::{Instance, Script};
 pub use metric::{Expected, Metric};
 pub use setting::{Domain, Setting, SettingError, Settings};
@@ -203,10 +210,18 @@ const REGISTRY: &[Scene] = &[
     trees::MASS_RATIO,
     boxes::AABB_VS_OBB,
     boxes::POINT_IN_OBB,
+    blending::TWO_TRACKS,
+    blending::WALK_RUN,
+    transitions::TRANSITION,
+    callbacks::FOOTSTEPS,
+    callbacks::PUNCH,
+    walking::ROOT_WALK,
+    walking::UNEVEN_GROUND,
+    mocap::RETARGET,
 ];
 
 /// Scenes that need a file of the user's, and so are in no list.
-const OF_FILES: &[Scene] = &[mjcf::DROP, house::HOUSE];
+const OF_FILES: &[Scene] = &[mjcf::DROP, house::HOUSE, mocap::MOCAP];
 
 /// The scene of that name; of those that need a file, too, which the registry does not list.
 pub fn find(name: &str) -> Option<&'static Scene> {

@@ -1,8 +1,11 @@
 //! What a user may change about a scene.
 
+use super::mocap::Performance;
 use super::parts::GRAVITY;
 use super::ragdolls::ragdoll_of;
-use sinew::formats::{MjcfModel, ReadOptions, TriangleMesh, load_gltf, load_mesh, read_bytes, read_mjcf};
+use sinew::formats::{
+    BvhOptions, MjcfModel, ReadOptions, TriangleMesh, load_gltf, load_mesh, read_bvh, read_bytes, read_mjcf,
+};
 use sinew::math::Vec3;
 use sinew::physics::{Sleeping, World, WorldDef};
 use sinew::ragdoll::RagdollDef;
@@ -20,6 +23,8 @@ pub enum Domain {
     Level,
     /// Path of a character, a GLB, likewise; need not be set.
     Character,
+    /// Path of a captured motion, a BVH, likewise.
+    Motion,
 }
 
 /// A setting of a scene.
@@ -66,6 +71,10 @@ impl Setting {
         Self { key, about, default: 0.0, domain: Domain::Character }
     }
 
+    pub(super) const fn motion(key: &'static str, about: &'static str) -> Self {
+        Self { key, about, default: 0.0, domain: Domain::Motion }
+    }
+
     /// The number that a text is; a file has none.
     fn parse(&self, text: &str) -> Option<f32> {
         match self.domain {
@@ -74,7 +83,7 @@ impl Setting {
                 let whole: u16 = text.parse().ok()?;
                 (lo..=hi).contains(&whole).then(|| f32::from(whole))
             }
-            Domain::Model | Domain::Level | Domain::Character => None,
+            Domain::Model | Domain::Level | Domain::Character | Domain::Motion => None,
         }
     }
 }
@@ -128,6 +137,7 @@ impl core::fmt::Display for Domain {
             Self::Model => write!(f, "the path of a model in MJCF"),
             Self::Level => write!(f, "the path of a level, a GLB or OBJ"),
             Self::Character => write!(f, "the path of a character, a GLB"),
+            Self::Motion => write!(f, "the path of a captured motion, a BVH"),
         }
     }
 }
@@ -140,12 +150,13 @@ pub struct Settings {
     model: Option<MjcfModel>,
     level: Option<TriangleMesh>,
     character: Option<RagdollDef>,
+    motion: Option<Performance>,
 }
 
 impl Settings {
     pub(super) fn new(declared: &'static [Setting]) -> Self {
         let values = declared.iter().map(|setting| setting.default).collect();
-        Self { declared, values, model: None, level: None, character: None }
+        Self { declared, values, model: None, level: None, character: None, motion: None }
     }
 
     /// What there is to set.
@@ -195,6 +206,11 @@ impl Settings {
                 let def = ragdoll_of(&document.rig);
                 self.character = Some(def.ok_or_else(|| refused("no skinned character".into()))?);
             }
+            Domain::Motion => {
+                let document = read_bvh(&read_bytes(path)?, BvhOptions::default());
+                let document = document.map_err(|error| error.with_file(path))?;
+                self.motion = Some(Performance::of(document).map_err(refused)?);
+            }
         }
         Ok(true)
     }
@@ -207,6 +223,7 @@ impl Settings {
         let missing = |setting: &&Setting| match setting.domain {
             Domain::Model => self.model.is_none(),
             Domain::Level => self.level.is_none(),
+            Domain::Motion => self.motion.is_none(),
             Domain::Number(..) | Domain::Whole(..) | Domain::Character => false,
         };
         match self.declared.iter().find(missing) {
@@ -253,6 +270,12 @@ impl Setup<'_> {
     /// If it is not set: see [`Settings::check`].
     pub fn level(&self) -> &TriangleMesh {
         self.settings.level.as_ref().expect("the level is set")
+    }
+
+    /// # Panics
+    /// If it is not set: see [`Settings::check`].
+    pub fn motion(&self) -> &Performance {
+        self.settings.motion.as_ref().expect("the motion is set")
     }
 
     pub fn character(&self) -> Option<&RagdollDef> {

@@ -4,6 +4,7 @@ mod blueprint;
 mod cabin;
 mod mannequin;
 mod mjcf;
+mod mocap;
 mod motions;
 mod scenes;
 mod scenes_repeat;

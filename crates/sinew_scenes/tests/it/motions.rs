@@ -2,7 +2,8 @@
 
 use sinew::anim::{Clip, Wrap, local_to_model, rest_pose, sample, skin_vertices};
 use sinew::math::{Affine, Rotation, Vec3};
-use sinew_scenes::mannequin::{Mannequin, WALK_SPEED, mannequin};
+use sinew_scenes::mannequin::drills::{punch, running, walking};
+use sinew_scenes::mannequin::{Mannequin, Path, WALK_SPEED, mannequin};
 
 /// Samples per second: between the keys as well as on them.
 const RATE: f32 = 120.0;
@@ -111,7 +112,8 @@ fn knees_and_elbows_bend_one_way_only() {
         let along = direction(&format!("{side}UpperArm"), &format!("{side}LowerArm"));
         hinges.push((format!("{side}LowerArm"), along.cross(Vec3::Z).normalize(), 8.0));
     }
-    for clip in &character.clips {
+    let drills = [walking(Path::Circle(2.0)).clip, running().clip, punch()];
+    for clip in character.clips.iter().chain(&drills) {
         for (name, axis, bind_bend) in &hinges {
             for time in times(clip) {
                 let (bend, off_axis) = hinge(&character, clip, time, name, *axis);
@@ -131,6 +133,40 @@ fn skin_stays_above_the_floor_and_touches_it() {
             let skin = skin_at(&character, clip, time);
             let lowest = skin.iter().flatten().fold(f32::MAX, |low, v| low.min(v.y));
             assert!((-0.02..0.02).contains(&lowest), "{} at {time} s: lowest {lowest} m", clip.name);
+        }
+    }
+}
+
+#[test]
+fn runners_and_boxers_are_on_the_floor_or_above_it() {
+    let character = mannequin();
+    // A run leaves it.
+    for (clip, highest) in [(walking(Path::Circle(2.0)).clip, 0.02), (running().clip, 0.08), (punch(), 0.02)]
+    {
+        for time in times(&clip).step_by(4) {
+            let skin = skin_at(&character, &clip, time);
+            let lowest = skin.iter().flatten().fold(f32::MAX, |low, v| low.min(v.y));
+            assert!((-0.02..highest).contains(&lowest), "{} at {time} s: lowest {lowest} m", clip.name);
+        }
+    }
+}
+
+#[test]
+fn balls_of_feet_stay_where_they_are_put_down() {
+    let character = mannequin();
+    for cycle in [walking(Path::Straight), walking(Path::Circle(2.0)), running()] {
+        for (name, offset) in [("leftToes", 0.0), ("rightToes", 0.5)] {
+            let ball = joint(&character, name);
+            let [start, end] = cycle.ball_down;
+            let at = |k: usize| {
+                let phase = start + (end - start) * k as f32 / 40.0 + offset;
+                let laps = phase.floor();
+                let model = model_at(&character, &cycle.clip, (phase - laps) * cycle.clip.duration);
+                let gone = cycle.path.at(cycle.speed * cycle.clip.duration * laps);
+                gone.point(model[ball].translation)
+            };
+            let slide = (1..=40).fold(0.0, |worst: f32, k| worst.max((at(k) - at(0)).length()));
+            assert!(slide < 0.012, "{}, {name}: {slide} m", cycle.clip.name);
         }
     }
 }

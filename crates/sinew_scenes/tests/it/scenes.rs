@@ -27,6 +27,13 @@ const BLIND_TO_GRAVITY: &[&str] = &[
     "symmetric_top",
     "aabb_vs_obb",
     "push_centre_off_centre",
+    "two_tracks",
+    "walk_run",
+    "transition",
+    "footsteps",
+    "root_walk",
+    "uneven_ground",
+    "retarget",
 ];
 
 fn after(scene: &Scene, settings: &Settings, gravity_factor: f32) -> Instance {
@@ -198,6 +205,14 @@ scenes!(
         tautochrone,
         aabb_vs_obb,
         point_in_obb,
+        two_tracks,
+        walk_run,
+        transition,
+        footsteps,
+        punch,
+        root_walk,
+        uneven_ground,
+        retarget,
     ],
     large: [chain_100_links, joint_grid, net, ragdoll_pile],
 );

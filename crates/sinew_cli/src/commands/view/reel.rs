@@ -2,16 +2,17 @@
 
 use super::Subject;
 use crate::progress::Progress;
+use crate::skin;
 use sinew::math::{Vec3, clamp, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyId, BodyKind, BodyKinds, QueryFilter};
-use sinew_picture::world::{self, Frame, Lines};
+use sinew_picture::world::{self, Frame, Kinematic, Lines};
 use sinew_picture::{
     Camera, Caption, EncodeError, Image, Line, LineDepth, Movie, PictureFormat, RenderSettings, Renderer,
     Scene, Sky, Sun,
 };
-use sinew_scenes::scenes::{Expected, Instance, Metric, Sight, Trails};
+use sinew_scenes::scenes::{Expected, Figure, Instance, Metric, Sight, Trails};
 
 /// Pictures a second: a whole number of a GIF's hundredths of a second.
 const FPS: u32 = 20;
@@ -25,6 +26,8 @@ const TRAIL_STEPS: usize = 600;
 const MOST_RAYS: usize = 64;
 /// How many radii of the largest thing that moves a picture reaches around it at most.
 const WIDEST: f32 = 120.0;
+/// How far a skin reaches over its joints, as a share of what these extend over.
+const FLESH: f32 = 0.08;
 /// Around what is shown, as a share of its size.
 const MARGIN: f32 = 0.1;
 
@@ -150,7 +153,8 @@ impl Take {
     /// Around all that a picture is about, now.
     fn now(&self) -> Aabb {
         let moving = world::subject(self.run.world()).into_iter();
-        let all = moving.chain(self.lines().bounds()).reduce(|a, b| a.merge(&b));
+        let figures = self.run.figures().into_iter().filter_map(|figure| around(&figure));
+        let all = moving.chain(self.lines().bounds()).chain(figures).reduce(|a, b| a.merge(&b));
         self.sight.bounds.or(all).unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE))
     }
 
@@ -164,7 +168,12 @@ impl Take {
     /// As it stands now, in a frame for all of `whole`.
     fn draw(&self, reel: &Reel<'_>, whole: &Aabb, renderer: &mut Renderer) -> Image {
         let shown = self.shown(whole);
-        let frame = Frame { center: shown.center(), radius: 0.5 * (shown.max - shown.min).length() };
+        let figures = self.run.figures();
+        let frame = Frame {
+            center: shown.center(),
+            radius: 0.5 * (shown.max - shown.min).length(),
+            kinematic: if figures.is_empty() { Kinematic::Solid } else { Kinematic::Wire },
+        };
         let mut scene = Scene {
             sun: Sun { shadow_radius: 1.3 * frame.radius, ..Sun::default() },
             sky: Sky { haze_distance: max(45.0, 15.0 * frame.radius), ..Sky::default() },
@@ -172,6 +181,10 @@ impl Take {
             ..Scene::default()
         };
         world::paint(self.run.world(), &frame, &mut scene);
+        for figure in figures {
+            let looks = skin::looks(figure.rig);
+            scene.models.extend(skin::models(figure.rig, figure.world_from_joint, &looks));
+        }
         scene.lines.extend(self.lines().list);
         scene.lines.extend(self.trails.iter().flat_map(Trail::lines));
         let size = renderer.settings();
@@ -218,6 +231,13 @@ impl Take {
         };
         std::iter::once(head).chain(lines.into_iter().enumerate().map(place)).collect()
     }
+}
+
+/// Around a character's joints and, as far as can be told from them, its skin.
+fn around(figure: &Figure<'_>) -> Option<Aabb> {
+    let joints = figure.world_from_joint.iter().map(|joint| joint.translation);
+    let bones = joints.map(|at| Aabb { min: at, max: at }).reduce(|a, b| a.merge(&b))?;
+    Some(bones.expand(FLESH * (bones.max - bones.min).max_element()))
 }
 
 fn trails(run: &Instance, sight: &Sight) -> Vec<Trail> {

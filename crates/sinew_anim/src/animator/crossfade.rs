@@ -1,0 +1,123 @@
+//! From one motion to another while both play, without a swing where their poses are far apart.
+//!
+//! A mean of two rotations is undone where they are opposite, and no choice of hemispheres keeps it from jumping there. What
+//! a crossfade has and a blend has not is time: which way round the new pose is from the old one is settled where it
+//! begins, by the shorter way, and from then on it is followed wherever the two go. The joint turns about one axis at the
+//! speed of the easing (Shoemake, "Animating rotation with quaternion curves", 1985), so that its acceleration is at most
+//! `6 |x₀|/t₁²` by the distance and `3 |v₀|/t₁` by the speed at which the two part.
+
+use crate::inertial::logarithm;
+use crate::pose::{Mask, Pose};
+use crate::rig::LocalTransform;
+use sinew_math::{ReadError, Reader, Rotation, Vec3, Writer};
+
+/// Which way round a track's pose is from what played before it, joint by joint.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Crossfade {
+    /// From the track's pose to the other one, each as close to that of the update before as its sign allows; none before
+    /// both have been seen.
+    turns: Vec<Rotation>,
+}
+
+/// Weights of what is shown so far, joint by joint.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Weights(Vec<f32>);
+
+impl Weights {
+    pub fn clear(&mut self, joints: usize) {
+        self.0.clear();
+        self.0.resize(joints, 0.0);
+    }
+
+    pub fn add(&mut self, weight: f32, mask: Option<&Mask>) {
+        for (joint, sum) in self.0.iter_mut().enumerate() {
+            *sum += weight * mask.map_or(1.0, |mask| mask.get(joint));
+        }
+    }
+
+    /// What lacks to a sum, as a share of it.
+    fn missing(&self, joint: usize, full: f32) -> f32 {
+        let sum = self.0[joint];
+        if sum < full { 1.0 - sum / full } else { 0.0 }
+    }
+}
+
+impl Crossfade {
+    /// For a track that is used again.
+    pub fn clear(&mut self) {
+        self.turns.clear();
+    }
+
+    /// Takes `shown`, of these weights, toward a track's pose by the share that its own weight has in the sum.
+    pub fn mix(
+        &mut self,
+        to: &Pose,
+        weight: f32,
+        mask: Option<&Mask>,
+        weights: &mut Weights,
+        shown: &mut Pose,
+    ) {
+        let is_first = self.turns.is_empty();
+        if is_first {
+            self.turns.resize(to.len(), Rotation::IDENTITY);
+        }
+        for (joint, turn) in self.turns.iter_mut().enumerate() {
+            let (a, b) = (shown.get(joint), to.get(joint));
+            let between = a.rotation * b.rotation.inverse();
+            *turn = if is_first { between.positive() } else { between.toward(*turn) };
+            let own = weight * mask.map_or(1.0, |mask| mask.get(joint));
+            let sum = weights.0[joint] + own;
+            if own > 0.0 {
+                shown.set(joint, &toward(&a, &b, *turn, own / sum));
+            }
+            weights.0[joint] = sum;
+        }
+    }
+
+    pub fn save(&self, out: &mut Writer) {
+        out.count(self.turns.len());
+        self.turns.iter().for_each(|&turn| out.rotation(turn));
+    }
+
+    /// Reads what [`save`](Self::save) wrote, for a rig of `joints`.
+    pub fn load(bytes: &mut Reader<'_>, joints: usize) -> Result<Self, ReadError> {
+        let count = bytes.count(16)?;
+        if count != 0 && count != joints {
+            return Err(bytes.error("a crossfade is of another number of joints"));
+        }
+        let turn = |_| {
+            let turn = bytes.rotation()?;
+            let length = turn.length();
+            if length > 0.99 && length < 1.01 { Ok(turn) } else { Err(bytes.error("no rotation")) }
+        };
+        Ok(Self { turns: (0..count).map(turn).collect::<Result<_, _>>()? })
+    }
+}
+
+/// From `a` to `b` by a share, to the bit at its ends; `turn` leads from `b` to `a`.
+fn toward(a: &LocalTransform, b: &LocalTransform, turn: Rotation, share: f32) -> LocalTransform {
+    if share >= 1.0 || a == b {
+        return *b;
+    }
+    let line = |a: Vec3, b: Vec3| a + (b - a) * share;
+    let left = Rotation::from_scaled_axis(logarithm(turn) * (1.0 - share));
+    LocalTransform {
+        translation: line(a.translation, b.translation),
+        rotation: (left * b.rotation).normalize(),
+        scale: line(a.scale, b.scale),
+    }
+}
+
+/// Lets another pose show through where the sum of weights is less than `full`, on its hemisphere, as blends do.
+pub(super) fn fill(from: &Pose, full: f32, weights: &Weights, shown: &mut Pose) {
+    for joint in 0..shown.len() {
+        let missing = weights.missing(joint, full);
+        if missing > 0.0 {
+            let (a, b) = (shown.get(joint), from.get(joint));
+            let rotation = a.rotation.nlerp(b.rotation, missing);
+            let line = |a: Vec3, b: Vec3| a + (b - a) * missing;
+            let (translation, scale) = (line(a.translation, b.translation), line(a.scale, b.scale));
+            shown.set(joint, &LocalTransform { translation, rotation, scale });
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! The speed of the root through an inertial transition.
+
+use sinew_math::{ReadError, Reader, Vec3, Writer};
+
+/// A velocity of the root: model axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct RootVelocity {
+    /// File units per second.
+    pub linear: Vec3,
+    /// Radians per second.
+    pub angular: Vec3,
+}
+
+/// What the old root was faster than the new one, which dies away as the pose's offsets do: `x₀ (1 − 10 τ³ + 15 τ⁴ − 6 τ⁵)`,
+/// the quintic of [`Decay`](crate::Decay) without a velocity of its own. It goes half as far as if it lasted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct RootInertia {
+    offset: RootVelocity,
+    seconds: f32,
+    elapsed: f32,
+}
+
+impl RootInertia {
+    pub fn new(from: RootVelocity, to: RootVelocity, seconds: f32) -> Self {
+        let offset = RootVelocity { linear: from.linear - to.linear, angular: from.angular - to.angular };
+        Self { offset, seconds, elapsed: 0.0 }
+    }
+
+    /// Lets time pass, and gives the way and the turn (scaled axis) that the offset makes in it.
+    pub fn advance(&mut self, seconds: f32) -> (Vec3, Vec3) {
+        let before = self.lasted();
+        self.elapsed += seconds;
+        let time = self.lasted() - before;
+        (self.offset.linear * time, self.offset.angular * time)
+    }
+
+    /// Seconds for which the whole offset would have to last to go as far: its integral.
+    fn lasted(&self) -> f32 {
+        if self.seconds <= 0.0 {
+            return 0.0;
+        }
+        let t = if self.elapsed < self.seconds { self.elapsed / self.seconds } else { 1.0 };
+        self.seconds * t * (1.0 - t * t * t * (2.5 - t * (3.0 - t)))
+    }
+
+    pub fn save(&self, out: &mut Writer) {
+        self.offset.save(out);
+        out.f32(self.seconds);
+        out.f32(self.elapsed);
+    }
+
+    pub fn load(bytes: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let (offset, seconds, elapsed) = (RootVelocity::load(bytes)?, bytes.f32()?, bytes.f32()?);
+        if !(seconds >= 0.0 && seconds.is_finite() && elapsed >= 0.0 && elapsed.is_finite()) {
+            return Err(bytes.error("a transition's time is negative or not finite"));
+        }
+        Ok(Self { offset, seconds, elapsed })
+    }
+}
+
+impl RootVelocity {
+    pub fn save(&self, out: &mut Writer) {
+        out.vec3(self.linear);
+        out.vec3(self.angular);
+    }
+
+    pub fn load(bytes: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let velocity = Self { linear: bytes.vec3()?, angular: bytes.vec3()? };
+        if velocity.linear.is_finite() && velocity.angular.is_finite() {
+            return Ok(velocity);
+        }
+        Err(bytes.error("a root's velocity is not finite"))
+    }
+}

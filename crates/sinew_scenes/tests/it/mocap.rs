@@ -1,0 +1,42 @@
+//! A captured walk, where its file is present.
+
+use sinew_scenes::scenes::{SettingError, find};
+use std::io::Write as _;
+use std::path::Path;
+
+const WALK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/mocap/cmu_12_01_walk.bvh");
+
+#[test]
+fn a_captured_walk_fits_three_bodies() {
+    if !Path::new(WALK).is_file() {
+        // Not println, which the harness swallows where a test passes.
+        let _ = writeln!(std::io::stderr(), "captured walk skipped: no ../shared/data");
+        return;
+    }
+    let scene = find("mocap").expect("it can be found");
+    let mut settings = scene.settings();
+    settings.assign(&format!("motion={WALK}")).expect("the walk can be read");
+    assert_eq!(settings.check(), Ok(()));
+    let mut run = scene.start(&settings);
+    for _ in 0..60 {
+        run.step();
+    }
+    assert_eq!(run.figures().len(), 3);
+    for metric in run.metrics() {
+        println!("{} = {:?}, {:?}", metric.name, metric.value, metric.expected);
+        assert!(metric.is_met(), "{metric:?}");
+    }
+}
+
+#[test]
+fn what_is_no_motion_is_refused() {
+    let scene = find("mocap").expect("it can be found");
+    let mut settings = scene.settings();
+    let missing = settings.check().expect_err("it has no file yet");
+    assert_eq!(missing.to_string(), "`motion` is not set: it takes the path of a captured motion, a BVH");
+    let absent = settings.assign("motion=no/such.bvh").expect_err("there is no such file");
+    assert!(matches!(absent, SettingError::File(_)) && absent.to_string() == "no/such.bvh: no such file");
+    let other = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+    let refused = settings.assign(&format!("motion={other}")).expect_err("it is no BVH").to_string();
+    assert!(refused.starts_with(other), "{refused}");
+}
