@@ -6,6 +6,7 @@
 //! |---|---|---|
 //! | `ragdoll` | `ragdoll`: from rig to ragdoll, animated to limp and back | yes |
 //! | `formats` | `formats`: files in and out, `load`; needs `ragdoll` | yes |
+//! | `fbx` | FBX files among those; compiles C | no |
 //! | `parallel` | `all_threads`: a world stepped by every core of the machine | yes |
 #![forbid(unsafe_code)]
 

@@ -2,7 +2,10 @@
 
 use crate::failure::{Failure, Result};
 use sinew::anim::{RigAnalysis, analyze};
-use sinew::formats::{Document, ReadOptions, Textures, load_gltf, write_all_atomic};
+use sinew::formats::{
+    Document, MotionFormat, MotionOptions, ReadOptions, Textures, load_gltf, load_motion, no_files,
+    read_bytes, read_gltf, write_all_atomic, write_motion,
+};
 use std::path::{Path, PathBuf};
 
 /// A character file: what it holds, and what its joints are.
@@ -16,15 +19,28 @@ pub struct CharacterFile {
 }
 
 impl CharacterFile {
-    /// Reads a file that has to hold a skinned character.
+    /// Reads a file that has to hold a skinned character. An FBX becomes a glTF first, to which clips can be added.
     pub fn load(path: &Path, textures: Textures) -> Result<Self> {
-        let document = load_gltf(path, ReadOptions { textures })?;
         let name = path.display().to_string();
+        let options = ReadOptions { textures };
+        let document = if is_fbx(path)? {
+            let file = load_motion(path, &MotionOptions::default())?;
+            let bytes = write_motion(&file.rig, &file.clips, &file.events);
+            let read = |bytes: Vec<u8>| read_gltf(&bytes, options, &mut no_files);
+            bytes.and_then(read).map_err(|error| error.with_file(&name))?
+        } else {
+            load_gltf(path, options)?
+        };
         match analyze(&document.rig) {
             Ok(analysis) => Ok(Self { name, document, analysis }),
             Err(no_skin) => Err(Failure::of_file(name, no_skin)),
         }
     }
+}
+
+fn is_fbx(path: &Path) -> Result<bool> {
+    let bytes = read_bytes(path)?;
+    Ok(matches!(MotionFormat::of(&bytes), Ok(MotionFormat::Fbx)))
 }
 
 /// Files that are written together: all of them, or none.
@@ -37,6 +53,11 @@ impl Outputs {
     /// One more file, of these bytes.
     pub fn add(&mut self, path: &Path, bytes: Vec<u8>) {
         self.files.push((path.to_path_buf(), bytes));
+    }
+
+    /// Where they go.
+    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.files.iter().map(|(path, _)| path.as_path())
     }
 
     /// Writes them. Each is there as a whole or not at all; none appears before all are on the disk.

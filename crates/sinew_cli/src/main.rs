@@ -1,18 +1,23 @@
 //! The `sinew` command line: arguments in, report out. Each command is a struct in a file of its own.
 #![forbid(unsafe_code)]
 
+mod bones;
 mod commands;
 mod cpu_clock;
 mod failure;
 mod fall;
 mod files;
 mod film;
+mod footsteps;
+mod motion;
+mod onto;
 mod picture_file;
 mod progress;
 mod quality_report;
 mod ragdoll_report;
 mod report;
 mod scene_choice;
+mod skeleton;
 mod skin;
 mod story;
 mod table;
@@ -35,8 +40,9 @@ Start here:
   sinew inspect character.glb                 what is in your file
   sinew bake character.glb -o fall.glb        let your character fall; written back as a clip
   sinew boxes house.glb -o house.json         a world to fall in, from a mesh
+  sinew convert walk.bvh --onto character.glb -o walking.glb   captured motion on your character
 
-Later releases bring: convert, events, ragdoll doctor, ragdoll export, record, replay.";
+Later releases bring: ragdoll doctor, ragdoll export, record, replay.";
 
 /// Physics for characters: give it a rigged file, and it falls, collides, is hit, gets up and walks on.
 #[derive(Parser)]

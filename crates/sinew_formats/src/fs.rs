@@ -1,8 +1,11 @@
 //! The only file IO of the libraries: read, atomic write, and files beside a file that stay beside it.
 
+use crate::deepmimic::{DeepMimicCharacter, read_deepmimic_character};
 use crate::error::{Error, Result, quoted};
+use crate::events::read_events;
 use crate::gltf::{Document, ReadOptions, read_gltf};
 use crate::mesh::TriangleMesh;
+use crate::motion::{MotionFile, MotionFormat, MotionOptions, read_motion};
 use crate::obj::read_obj;
 use crate::world::read_world;
 use sinew_physics::BodyDef;
@@ -104,6 +107,76 @@ pub fn load_gltf(path: impl AsRef<Path>, options: ReadOptions) -> Result<Documen
     let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
     let mut resolve = |relative: &str| read_beside(&folder, relative);
     read_gltf(&bytes, options, &mut resolve).map_err(|e| e.with_file(path.display().to_string()))
+}
+
+/// Reads any file with clips, and the events file `NAME.events.json` beside it, which counts for the clips it names.
+/// Clips of formats that name none are called like the file.
+///
+/// A DeepMimic clip without a character in `options` takes the first one by name in the folder that it fits.
+///
+/// # Errors
+/// As [`read_motion`] and [`read_events`], naming the file.
+pub fn load_motion(path: impl AsRef<Path>, options: &MotionOptions<'_>) -> Result<MotionFile> {
+    let path = path.as_ref();
+    let mut file = read_any(path, options).map_err(|e| e.with_file(path.display().to_string()))?;
+    if let ([clip], Some(stem)) = (&mut file.clips[..], path.file_stem())
+        && clip.name.is_empty()
+        && !matches!(file.format, MotionFormat::Glb | MotionFormat::Gltf)
+    {
+        clip.name = stem.to_string_lossy().into_owned();
+    }
+    let beside = events_path(path);
+    if beside.is_file() {
+        let found = read_bytes(&beside)
+            .and_then(|bytes| read_events(&bytes, &file.clips))
+            .map_err(|e| e.with_file(beside.display().to_string()))?;
+        for (events, found) in file.events.iter_mut().zip(found) {
+            *events = found.unwrap_or(core::mem::take(events));
+        }
+    }
+    Ok(file)
+}
+
+/// Where the events of a clip file are: `walk.events.json` for `walk.bvh`.
+pub fn events_path(clip_file: impl AsRef<Path>) -> PathBuf {
+    clip_file.as_ref().with_extension("events.json")
+}
+
+fn read_any(path: &Path, options: &MotionOptions<'_>) -> Result<MotionFile> {
+    let bytes = read_bytes(path)?;
+    let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
+    let mut resolve = |relative: &str| read_beside(&folder, relative);
+    if options.deepmimic.is_some() || MotionFormat::of(&bytes)? != MotionFormat::DeepMimic {
+        return read_motion(&bytes, options, &mut resolve);
+    }
+    for (name, character) in characters_beside(path) {
+        let options = MotionOptions { deepmimic: Some(&character), ..*options };
+        if let Ok(mut file) = read_motion(&bytes, &options, &mut resolve) {
+            file.notes.push(format!("the joints are those of {name}, which is beside it"));
+            return Ok(file);
+        }
+    }
+    read_motion(&bytes, options, &mut resolve)
+}
+
+/// DeepMimic characters in the folder of a clip, by name.
+fn characters_beside(path: &Path) -> Vec<(String, DeepMimicCharacter)> {
+    // A character is a page or two of text; a folder may hold anything.
+    const LARGEST: u64 = 1 << 20;
+    const MOST_FILES: usize = 1000;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let of_kind = |other: &PathBuf| {
+        let is_small = fs::metadata(other).is_ok_and(|data| data.is_file() && data.len() <= LARGEST);
+        other.extension() == path.extension() && other != path && is_small
+    };
+    let mut files: Vec<PathBuf> = entries.take(MOST_FILES).filter(of_kind).collect();
+    files.sort();
+    let read = |file: PathBuf| {
+        let character = read_deepmimic_character(&fs::read(&file).ok()?).ok()?;
+        Some((file.file_name()?.to_string_lossy().into_owned(), character))
+    };
+    files.into_iter().filter_map(read).collect()
 }
 
 /// Reads the triangles of a mesh file: an OBJ by its name, else what [`load_gltf`] reads.

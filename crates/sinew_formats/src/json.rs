@@ -279,6 +279,11 @@ pub(crate) fn check_header(root: At<'_>, kind: &str, version: usize) -> Result<(
     if found != kind {
         return Err(kind_at.malformed(format!("this is a {} file, not a `{kind}`", quoted(found))));
     }
+    check_version(root, version)
+}
+
+/// Checks the `version` of something of ours.
+pub(crate) fn check_version(root: At<'_>, version: usize) -> Result<()> {
     let version_at = root.need("version")?;
     match version_at.usize()? {
         0 => Err(version_at.malformed("versions count from 1")),

@@ -8,6 +8,9 @@
 pub mod bvh;
 pub mod deepmimic;
 mod error;
+pub mod events;
+#[cfg(feature = "fbx")]
+pub mod fbx;
 #[cfg(feature = "fs")]
 pub mod fs;
 mod glb;
@@ -16,6 +19,7 @@ mod json;
 mod material;
 pub mod mesh;
 pub mod mjcf;
+pub mod motion;
 pub mod obj;
 mod parts;
 pub mod ragdoll;
@@ -23,16 +27,23 @@ mod surface;
 mod uri;
 pub mod world;
 
-pub use bvh::{BvhDocument, BvhOptions, BvhText, BvhWriteOptions, read_bvh, write_bvh};
+pub use bvh::{BvhDocument, BvhEnds, BvhOptions, BvhText, BvhWriteOptions, read_bvh, write_bvh};
 pub use deepmimic::{DeepMimicCharacter, DeepMimicClip, read_deepmimic, read_deepmimic_character};
 pub use error::{Error, ErrorKind, Result};
+pub use events::{events_extras, read_events, write_events};
+#[cfg(feature = "fbx")]
+pub use fbx::read_fbx;
 #[cfg(feature = "fs")]
-pub use fs::{load_gltf, load_mesh, load_world, read_bytes, write_all_atomic, write_atomic};
+pub use fs::{
+    events_path, load_gltf, load_mesh, load_motion, load_world, read_bytes, write_all_atomic, write_atomic,
+};
 pub use gltf::{
-    Container, Document, ReadOptions, Resolver, Textures, append_clip, no_files, read_gltf, write_gltf,
+    Container, Document, NewClip, ReadOptions, Resolver, Textures, append_clip, append_clips, no_files,
+    read_gltf, write_gltf, write_motion,
 };
 pub use mesh::TriangleMesh;
 pub use mjcf::{MjcfModel, read_mjcf};
+pub use motion::{MotionFile, MotionFormat, MotionOptions, read_motion};
 pub use obj::read_obj;
 pub use ragdoll::{read_ragdoll, write_ragdoll};
 pub use world::{read_world, write_world};

@@ -81,6 +81,14 @@ impl BuiltClip {
         self.rotations.keys.len() + self.translations.keys.len() + self.scales.keys.len()
     }
 
+    /// Bytes of keys, times, the pose of what rests, and what says which keys are whose.
+    pub fn bytes(&self) -> usize {
+        let tables = self.rotations.blocks.len() * size_of::<TrackBlock<SmallestThree>>()
+            + (self.translations.blocks.len() + self.scales.blocks.len()) * size_of::<TrackBlock<Bounds>>();
+        let base = self.base.len().div_ceil(WIDTH) * WIDTH * 10 * size_of::<f32>();
+        self.keys() * size_of::<Key>() + self.times.len() * size_of::<f32>() + tables + base
+    }
+
     /// How far a sampled pose is from the raw clip's at most.
     pub fn error_bound(&self) -> ClipError {
         self.bound

@@ -2,7 +2,10 @@
 
 mod bake;
 mod boxes;
+mod clip_choice;
+mod convert;
 mod demo;
+mod events;
 mod inspect;
 mod later;
 mod ragdoll_build;
@@ -28,14 +31,14 @@ pub enum Command {
     Run(run::Run),
     Scenes(scenes::Scenes),
     View(view::View),
-    #[command(hide = true, disable_help_flag = true)]
-    Events(Later),
+    Convert(convert::Convert),
+    /// Work on events of clips: propose footsteps
+    #[command(subcommand)]
+    Events(events::Events),
     #[command(hide = true, disable_help_flag = true)]
     Record(Later),
     #[command(hide = true, disable_help_flag = true)]
     Replay(Later),
-    #[command(hide = true, disable_help_flag = true)]
-    Convert(Later),
 }
 
 /// What `sinew ragdoll` can do.
@@ -62,10 +65,10 @@ impl Command {
             Self::Run(command) => command.run(),
             Self::Scenes(command) => command.run(),
             Self::View(command) => command.run(),
-            Self::Events(_) => later::refuse("sinew events"),
+            Self::Convert(command) => command.run(),
+            Self::Events(command) => command.run(),
             Self::Record(_) => later::refuse("sinew record"),
             Self::Replay(_) => later::refuse("sinew replay"),
-            Self::Convert(_) => later::refuse("sinew convert"),
         }
     }
 }

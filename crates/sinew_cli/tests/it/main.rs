@@ -3,6 +3,7 @@
 mod bake;
 mod boxes;
 mod contract;
+mod convert;
 mod demo;
 mod refusals;
 mod scenes;

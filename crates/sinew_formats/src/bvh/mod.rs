@@ -16,7 +16,7 @@ mod write;
 pub use channel::BvhChannel;
 pub use rest_frame::RestFrame;
 pub use unit::BvhUnit;
-pub use write::{BvhText, BvhWriteOptions, write_bvh};
+pub use write::{BvhEnds, BvhText, BvhWriteOptions, write_bvh};
 
 use crate::error::Result;
 use hierarchy::Hierarchy;

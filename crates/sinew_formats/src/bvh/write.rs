@@ -10,6 +10,17 @@ use sinew_anim::{
 use sinew_math::{Affine, EulerOrder, Rotation, Vec3, limits::wrap};
 use std::fmt::Write as _;
 
+/// Which ends of chains are written with an End Site.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BvhEnds {
+    /// Joints without a name that end a chain and do not move become End Sites; nothing is added.
+    #[default]
+    AsInRig,
+    /// Also each joint with a name that ends a chain gets one, half its own bone further on: Blender and others give a joint
+    /// no length without it.
+    EveryChain,
+}
+
 /// How to write a BVH file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhWriteOptions<'a> {
@@ -22,12 +33,15 @@ pub struct BvhWriteOptions<'a> {
     /// Channels joint by joint, as [`BvhDocument::channels`](super::BvhDocument::channels); `None` for
     /// positions where the clip moves a joint, and rotations in `rotation_order`.
     pub channels: Option<&'a [Vec<BvhChannel>]>,
+    /// Default: as in the rig.
+    pub ends: BvhEnds,
 }
 
 impl Default for BvhWriteOptions<'_> {
     fn default() -> Self {
         let (frame_time, metres_per_unit) = (1.0 / 60.0, 0.01);
-        Self { frame_time, metres_per_unit, rotation_order: EulerOrder::Zyx, channels: None }
+        let ends = BvhEnds::default();
+        Self { frame_time, metres_per_unit, rotation_order: EulerOrder::Zyx, channels: None, ends }
     }
 }
 
@@ -46,7 +60,7 @@ const MOST_TABS: usize = 40;
 /// Writes the motion of a rig whose lengths are metres. The file's joints have the axes of the rig's model space, so
 /// that the rest pose is the one without rotations; a rig that came from a BVH file gets back its own numbers.
 ///
-/// Joints without a name that end a chain and do not move become End Sites. Skins and scales are not part of the format.
+/// Joints without a name that end a chain and do not move become End Sites; see [`BvhEnds`]. Skins and scales are not part of the format.
 ///
 /// # Errors
 /// A rig without joints, a frame time or unit that is not above 0, an order that names an axis twice, channels that
@@ -184,14 +198,22 @@ impl<'a> Writer<'a> {
                 (false, 0) => writeln!(text, "{tabs}ROOT {}", word(&self.rig.joints[i].name, i)),
                 (false, _) => writeln!(text, "{tabs}JOINT {}", word(&self.rig.joints[i].name, i)),
             };
-            let offset = (line.offset / self.options.metres_per_unit).to_array().map(|x| format!("{x:.6}"));
-            let _ = writeln!(text, "{tabs}{{\n{tabs}\tOFFSET {}", offset.join(" "));
+            let _ = writeln!(text, "{tabs}{{\n{tabs}\tOFFSET {}", self.numbers(line.offset));
             if !line.is_end {
                 let names: Vec<&str> = line.channels.iter().map(|channel| channel.name()).collect();
                 let _ = writeln!(text, "{tabs}\tCHANNELS {} {}", names.len(), names.join(" "));
             }
+            if !line.is_end && self.children[i].is_empty() && self.options.ends == BvhEnds::EveryChain {
+                let end = self.numbers(line.offset * 0.5);
+                let _ = writeln!(text, "{tabs}\tEnd Site\n{tabs}\t{{\n{tabs}\t\tOFFSET {end}\n{tabs}\t}}");
+            }
         }
         text
+    }
+
+    /// An offset in units of the file.
+    fn numbers(&self, offset: Vec3) -> String {
+        (offset / self.options.metres_per_unit).to_array().map(|x| format!("{x:.6}")).join(" ")
     }
 
     fn rows(&mut self, clip: &Clip, frames: usize) -> String {

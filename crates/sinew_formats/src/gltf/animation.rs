@@ -2,11 +2,20 @@
 
 use super::source::Source;
 use crate::error::Result;
+use crate::events;
 use crate::json::At;
-use sinew_anim::{Channel, Clip, Interpolation, JointIdx, Property};
+use sinew_anim::{Channel, Clip, Event, Interpolation, JointIdx, Property};
 
-pub(super) fn read_all(source: &Source<'_>, joint_of_node: &[Option<JointIdx>]) -> Result<Vec<Clip>> {
-    source.root.list("animations")?.into_iter().map(|at| read_clip(source, at, joint_of_node)).collect()
+type Clips = (Vec<Clip>, Vec<Vec<Event>>);
+
+/// All animations, and what happens in each.
+pub(super) fn read_all(source: &Source<'_>, joint_of_node: &[Option<JointIdx>]) -> Result<Clips> {
+    let read = |at| {
+        let clip = read_clip(source, at, joint_of_node)?;
+        let events = events::read_extras(at, clip.duration)?;
+        Ok((clip, events))
+    };
+    source.root.list("animations")?.into_iter().map(read).collect()
 }
 
 fn read_clip<'a>(source: &Source<'a>, animation: At<'a>, joint_of_node: &[Option<JointIdx>]) -> Result<Clip> {

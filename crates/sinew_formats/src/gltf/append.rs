@@ -10,11 +10,33 @@ use std::collections::BTreeMap;
 
 const FLOAT: u32 = 5126;
 
-/// The user's own file with one more animation, as a GLB.
+/// A clip on its way into a file.
+#[derive(Clone, Debug)]
+pub struct NewClip<'a> {
+    /// Its keys.
+    pub clip: &'a Clip,
+    /// What the animation is called; `""` for nothing.
+    pub name: &'a str,
+    /// The animation's `extras`, such as those of [`events_extras`](crate::events_extras).
+    pub extras: Option<Value>,
+}
+
+/// The user's own file with one more animation, as a GLB: [`append_clips`] with one.
+///
+/// # Errors
+/// As [`append_clips`].
+///
+/// # Panics
+/// As [`append_clips`].
+pub fn append_clip(document: &Document, clip: &Clip, name: &str, extras: Option<Value>) -> Result<Vec<u8>> {
+    append_clips(document, &[NewClip { clip, name, extras }])
+}
+
+/// The user's own file with more animations, as a GLB.
 ///
 /// Everything that was in the JSON stays as it was, in its order, unknown extensions included, and the old binary chunk
-/// is a prefix of the new one. New are one buffer view, the accessors of the keys and the animation, each at the end of
-/// its list. Channels point at the nodes that the joints came from. `extras` becomes the animation's `extras`.
+/// is a prefix of the new one. New are, for each clip, one buffer view, the accessors of the keys and the animation, each at
+/// the end of its list. Channels point at the nodes that the joints came from.
 ///
 /// What has to change in old entries, and nothing else does:
 /// - `buffers[0].byteLength` grows.
@@ -28,29 +50,16 @@ const FLOAT: u32 = 5126;
 /// the node has a `matrix`, which so can stay, or it carries a skinned mesh, whose own transform does not count.
 ///
 /// # Errors
-/// Nothing to write (no channel is left), the first buffer is a placeholder without bytes, or the result is over 4 GiB.
+/// Nothing to write (no channel of a clip is left), the first buffer is a placeholder without bytes, or the result is over 4 GiB.
 ///
 /// # Panics
 /// If a channel names a joint that the document's rig does not have, or breaks the rules of [`Channel`].
-pub fn append_clip(document: &Document, clip: &Clip, name: &str, extras: Option<Value>) -> Result<Vec<u8>> {
+pub fn append_clips(document: &Document, clips: &[NewClip<'_>]) -> Result<Vec<u8>> {
     let mut editor = Editor::open(document)?;
     editor.embed_external(document)?;
-    let joints = &document.rig.joints;
-    let moved = moved_nodes(clip, joints);
-    editor.free_matrices(&moved)?;
-    let channels = clip.channels.iter().filter(|c| {
-        let node = joints[c.joint].source;
-        moved.contains_key(&node) || !better_left_alone(&document.json["nodes"][node])
-    });
-    let mut animation = Map::new();
-    if !name.is_empty() {
-        animation.insert("name".into(), name.into());
+    for clip in clips {
+        editor.append(document, clip)?;
     }
-    editor.write_channels(channels, joints, &mut animation)?;
-    if let Some(extras) = extras {
-        animation.insert("extras".into(), extras);
-    }
-    editor.push("animations", animation.into())?;
     editor.finish(&document.other_chunks)
 }
 
@@ -102,6 +111,26 @@ impl Editor {
         }
         editor.entry("buffers", 0)?.shift_remove("uri");
         Ok(editor)
+    }
+
+    fn append(&mut self, document: &Document, NewClip { clip, name, extras }: &NewClip<'_>) -> Result<()> {
+        let joints = &document.rig.joints;
+        let moved = moved_nodes(clip, joints);
+        self.free_matrices(&moved)?;
+        let channels = clip.channels.iter().filter(|c| {
+            let node = joints[c.joint].source;
+            moved.contains_key(&node) || !better_left_alone(&document.json["nodes"][node])
+        });
+        let mut animation = Map::new();
+        if !name.is_empty() {
+            animation.insert("name".into(), (*name).into());
+        }
+        self.write_channels(channels, joints, &mut animation)?;
+        if let Some(extras) = extras {
+            animation.insert("extras".into(), extras.clone());
+        }
+        self.push("animations", animation.into())?;
+        Ok(())
     }
 
     /// Takes what lies in files of its own into this one.

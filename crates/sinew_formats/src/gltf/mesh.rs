@@ -3,6 +3,7 @@
 use super::material::Materials;
 use super::scene::Scene;
 use super::source::Source;
+use super::{DRACO, draco};
 use crate::error::Result;
 use crate::json::At;
 use sinew_anim::{Mesh, Primitive};
@@ -81,10 +82,8 @@ fn read_primitive<'a>(
 fn refuse_compressed<'a>(source: &Source<'a>, primitive: At<'a>, position: At<'a>) -> Result<()> {
     let accessor = source.accessors[position.index(source.accessors.len(), "accessors")?];
     let plain = accessor.get("bufferView")?.is_some() || accessor.get("sparse")?.is_some();
-    if !plain && primitive.value()["extensions"].get("KHR_draco_mesh_compression").is_some() {
-        return Err(
-            primitive.unsupported("needs the extension `KHR_draco_mesh_compression`, which is not supported")
-        );
+    if !plain && primitive.value()["extensions"].get(DRACO).is_some() {
+        return Err(primitive.unsupported(draco()));
     }
     Ok(())
 }
@@ -150,7 +149,7 @@ fn read_weights<'a>(source: &Source<'a>, attributes: At<'a>, count: usize, slots
 
 /// Keeps the four largest weights, in order of size beyond four only, and brings their sum to 1. A vertex without any
 /// weight follows the first slot it names.
-fn strongest_four(mut influences: Vec<(u16, f32)>) -> ([u16; 4], [f32; 4]) {
+pub(crate) fn strongest_four(mut influences: Vec<(u16, f32)>) -> ([u16; 4], [f32; 4]) {
     if influences.len() > 4 {
         // Stable, so equal weights keep the file's order.
         influences.sort_by(|a, b| b.1.total_cmp(&a.1));

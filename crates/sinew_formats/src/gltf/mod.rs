@@ -8,19 +8,22 @@ mod animation;
 mod append;
 mod material;
 mod mesh;
+mod meshopt;
 mod scene;
 mod source;
 mod vrm;
 mod write;
 
-pub use append::append_clip;
-pub use write::write_gltf;
+pub use append::{NewClip, append_clip, append_clips};
+#[cfg(feature = "fbx")]
+pub(crate) use mesh::strongest_four;
+pub use write::{write_gltf, write_motion};
 
 use crate::error::{Error, Result, quoted};
 use crate::json::{self, At};
 use crate::{glb, uri};
 use serde_json::Value;
-use sinew_anim::{Clip, Rig};
+use sinew_anim::{Clip, Event, Rig};
 use source::{Buffer, Source};
 use std::collections::BTreeMap;
 
@@ -57,6 +60,8 @@ pub struct Document {
     pub rig: Rig,
     /// Animations in file order.
     pub clips: Vec<Clip>,
+    /// Events of each clip (`extras.sinew_events`), by time.
+    pub events: Vec<Vec<Event>>,
     /// The file's JSON, keys in order, numbers as they were.
     pub json: Value,
     /// The file's binary chunk.
@@ -104,7 +109,8 @@ pub fn no_files(path: &str) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// Bytes that are no glTF 2.0, an index or range outside its list, numbers that are not finite, a node that is its own
-/// ancestor, a required extension that is not understood (Draco, meshopt), a missing external buffer.
+/// ancestor, a required extension that is not understood (Draco), a compressed view whose stream is broken, a missing
+/// external buffer.
 pub fn read_gltf(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<'_>) -> Result<Document> {
     let (container, json_bytes, bin, other_chunks) = unwrap_container(bytes)?;
     let json = json::parse(json_bytes)?;
@@ -114,17 +120,20 @@ pub fn read_gltf(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<'_>)
     let buffers = load_buffers(root, bin, resolve)?;
     let mut warnings = Vec::new();
     let external_images = load_images(root, resolve, &mut warnings)?;
-    let source = Source::new(root, &buffers, bin, bytes.len())?;
+    let mut budget = source::budget(&buffers, bytes.len());
+    let decompressed = meshopt::decode_views(root, &buffers, bin, &mut budget)?;
+    let source = Source::new(root, &buffers, bin, &decompressed, budget)?;
     let mut materials = material::Materials::new(&source, &external_images, options.textures)?;
     let mut scene = scene::read(&source)?;
     scene.rig.meshes = mesh::read_all(&source, &scene, &mut materials)?;
     scene.rig.textures = materials.textures;
     warnings.append(&mut materials.warnings);
     scene.rig.stated_roles = vrm::stated_roles(root, &scene.joint_of_node);
-    let clips = animation::read_all(&source, &scene.joint_of_node)?;
+    let (clips, events) = animation::read_all(&source, &scene.joint_of_node)?;
     Ok(Document {
         rig: scene.rig,
         clips,
+        events,
         bin: bin.map(<[u8]>::to_vec),
         container,
         warnings,
@@ -182,10 +191,24 @@ const HARMLESS: [&str; 10] = [
     "KHR_physics_",
 ];
 
+/// Meshes in bit streams of their own.
+const DRACO: &str = "KHR_draco_mesh_compression";
+
+/// Why a file with such meshes is refused, and what to do about it.
+fn draco() -> String {
+    format!(
+        "needs the extension `{DRACO}`, which is not supported: export without compression, or run \
+         `gltf-transform copy IN OUT`, which decodes it"
+    )
+}
+
 fn check_extensions(root: At<'_>) -> Result<()> {
     for required in root.list("extensionsRequired")? {
         let name = required.str()?;
-        if !HARMLESS.iter().any(|prefix| name.starts_with(prefix)) {
+        if name == DRACO {
+            return Err(required.unsupported(draco()));
+        }
+        if !HARMLESS.iter().any(|prefix| name.starts_with(prefix)) && !meshopt::is_known(name) {
             let name = quoted(name);
             return Err(required.unsupported(format!("needs the extension {name}, which is not supported")));
         }

@@ -36,8 +36,39 @@ pub(super) struct Source<'a> {
     buffers: &'a [Buffer],
     buffer_entries: Vec<At<'a>>,
     bin: Option<&'a [u8]>,
+    /// Buffer views that were compressed.
+    decompressed: &'a [Option<Vec<u8>>],
     /// Bytes that may still be decoded.
     budget: Cell<usize>,
+}
+
+/// Bytes that may be decoded from a file of that size with these buffers.
+pub(super) fn budget(buffers: &[Buffer], file_size: usize) -> usize {
+    let outside: usize =
+        buffers.iter().map(|b| if let Buffer::External(bytes) = b { bytes.len() } else { 0 }).sum();
+    file_size.saturating_add(outside).saturating_mul(64).saturating_add(16 << 20)
+}
+
+/// The bytes that `holder` names by `buffer`, `byteOffset` and `byteLength`.
+pub(super) fn buffer_bytes<'a>(
+    buffers: &'a [Buffer],
+    entries: &[At<'_>],
+    bin: Option<&'a [u8]>,
+    holder: At<'_>,
+) -> Result<&'a [u8]> {
+    let buffer_index = holder.need("buffer")?.index(buffers.len(), "buffers")?;
+    let size = entries[buffer_index].need("byteLength")?.usize()?;
+    let buffer = buffers[buffer_index].bytes(bin).and_then(|bytes| bytes.get(..size));
+    let Some(buffer) = buffer else {
+        return Err(holder.malformed(format!("buffer {buffer_index} has no bytes")));
+    };
+    let offset = holder.get("byteOffset")?.map_or(Ok(0), At::usize)?;
+    let length = holder.need("byteLength")?.usize()?;
+    let bytes = offset.checked_add(length).and_then(|end| buffer.get(offset..end));
+    bytes.ok_or_else(|| {
+        let there = buffer.len();
+        holder.malformed(format!("{length} bytes from {offset} on are outside a buffer of {there} bytes"))
+    })
 }
 
 impl<'a> Source<'a> {
@@ -45,11 +76,9 @@ impl<'a> Source<'a> {
         root: At<'a>,
         buffers: &'a [Buffer],
         bin: Option<&'a [u8]>,
-        file_size: usize,
+        decompressed: &'a [Option<Vec<u8>>],
+        budget: usize,
     ) -> Result<Self> {
-        let outside: usize =
-            buffers.iter().map(|b| if let Buffer::External(bytes) = b { bytes.len() } else { 0 }).sum();
-        let present = file_size.saturating_add(outside);
         Ok(Self {
             root,
             nodes: root.list("nodes")?,
@@ -58,7 +87,8 @@ impl<'a> Source<'a> {
             buffers,
             buffer_entries: root.list("buffers")?,
             bin,
-            budget: Cell::new(present.saturating_mul(64).saturating_add(16 << 20)),
+            decompressed,
+            budget: Cell::new(budget),
         })
     }
 
@@ -76,20 +106,12 @@ impl<'a> Source<'a> {
 
     /// The bytes of the buffer view that `at` is the index of, and the view itself.
     pub(super) fn view(&self, at: At<'a>) -> Result<(&'a [u8], At<'a>)> {
-        let view = self.views[at.index(self.views.len(), "buffer views")?];
-        let buffer_index = view.need("buffer")?.index(self.buffers.len(), "buffers")?;
-        let size = self.buffer_entries[buffer_index].need("byteLength")?.usize()?;
-        let buffer = self.buffers[buffer_index].bytes(self.bin).and_then(|bytes| bytes.get(..size));
-        let Some(buffer) = buffer else {
-            return Err(view.malformed(format!("buffer {buffer_index} has no bytes")));
+        let index = at.index(self.views.len(), "buffer views")?;
+        let view = self.views[index];
+        let bytes = match &self.decompressed[index] {
+            Some(bytes) => &bytes[..view.need("byteLength")?.usize()?],
+            None => buffer_bytes(self.buffers, &self.buffer_entries, self.bin, view)?,
         };
-        let offset = view.get("byteOffset")?.map_or(Ok(0), At::usize)?;
-        let length = view.need("byteLength")?.usize()?;
-        let bytes = offset.checked_add(length).and_then(|end| buffer.get(offset..end));
-        let bytes = bytes.ok_or_else(|| {
-            let there = buffer.len();
-            view.malformed(format!("{length} bytes from {offset} on are outside a buffer of {there} bytes"))
-        })?;
         Ok((bytes, view))
     }
 }

@@ -1,10 +1,11 @@
 //! A rig that came from no file, as a new GLB.
 
-use super::{Document, ReadOptions, append_clip, no_files, read_gltf};
+use super::{Document, NewClip, ReadOptions, append_clips, no_files, read_gltf};
 use crate::error::Result;
+use crate::events::events_extras;
 use crate::glb;
 use serde_json::{Map, Value, json};
-use sinew_anim::{Clip, Mesh, Primitive, Rig, Skin};
+use sinew_anim::{Clip, Event, Mesh, Primitive, Rig, Skin};
 use sinew_math::{Affine, Vec2, Vec3, max, min};
 
 const UNSIGNED_SHORT: u32 = 5123;
@@ -13,7 +14,7 @@ const FLOAT: u32 = 5126;
 
 /// A rig made by code, with its clips, as a GLB of its own. Joint `i` becomes node `i`; each mesh gets a node behind
 /// them, a skinned one at the top of the scene, where its own transform cannot be taken to count. For a rig that was
-/// read from a file there is [`append_clip`], which keeps everything else of that file.
+/// read from a file there is [`append_clips`](super::append_clips), which keeps everything else of that file.
 ///
 /// Pictures are not written: a textured surface keeps its base colour.
 ///
@@ -23,12 +24,27 @@ const FLOAT: u32 = 5126;
 /// # Panics
 /// If an index of the rig or of a clip is out of range, or a number is not finite.
 pub fn write_gltf(rig: &Rig, clips: &[Clip]) -> Result<Vec<u8>> {
-    let mut bytes = write_rig(rig)?;
-    for clip in clips {
-        let document = read_gltf(&bytes, ReadOptions::default(), &mut no_files)?;
-        bytes = append_clip(&document, &renumbered(clip, &document), &clip.name, None)?;
+    write_motion(rig, clips, &vec![Vec::new(); clips.len()])
+}
+
+/// [`write_gltf`] with the events of each clip, by clip.
+///
+/// # Errors
+/// As [`write_gltf`].
+///
+/// # Panics
+/// As [`write_gltf`], and if there are not as many lists of events as clips.
+pub fn write_motion(rig: &Rig, clips: &[Clip], events: &[Vec<Event>]) -> Result<Vec<u8>> {
+    assert_eq!(clips.len(), events.len(), "a list of events for each clip");
+    let bytes = write_rig(rig)?;
+    if clips.is_empty() {
+        return Ok(bytes);
     }
-    Ok(bytes)
+    let document = read_gltf(&bytes, ReadOptions::default(), &mut no_files)?;
+    let clips: Vec<Clip> = clips.iter().map(|clip| renumbered(clip, &document)).collect();
+    let new = clips.iter().zip(events);
+    let new = new.map(|(clip, events)| NewClip { clip, name: &clip.name, extras: events_extras(events) });
+    append_clips(&document, &new.collect::<Vec<_>>())
 }
 
 /// The clip with the joints as the document numbers them, which may have nodes of meshes between them.

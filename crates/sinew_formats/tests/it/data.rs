@@ -1,5 +1,7 @@
 //! Files that are not part of the repository, where they are present.
 
+use sinew_anim::{Channel, Clip, Interpolation, Joint, LocalTransform, Property, Rig};
+use sinew_math::{Rotation, Vec3};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -35,3 +37,25 @@ pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
 
 /// Extensions of glTF and its relatives.
 pub const GLTF: [&str; 4] = ["glb", "gltf", "vrm", "vrma"];
+
+/// Three joints in a row, metres apart, the middle one of which turns by a right angle in half a second.
+pub fn bar() -> (Rig, Clip) {
+    let joint = |name: &str, parent: Option<usize>, source| {
+        let translation = if source == 0 { Vec3::ZERO } else { Vec3::Y };
+        let rest = LocalTransform { translation, ..LocalTransform::default() };
+        Joint { name: name.into(), parent, rest, source }
+    };
+    let joints = vec![joint("root", None, 0), joint("middle", Some(0), 1), joint("tip", Some(1), 2)];
+    let turn = |angle: f32| {
+        let r = Rotation::from_axis_angle(Vec3::X, angle.to_radians());
+        [r.x, r.y, r.z, r.w]
+    };
+    let channel = Channel {
+        joint: 1,
+        property: Property::Rotation,
+        interpolation: Interpolation::Linear,
+        times: vec![0.0, 0.25, 0.5],
+        values: [turn(0.0), turn(45.0), turn(90.0)].concat(),
+    };
+    (Rig { joints, ..Rig::default() }, Clip { name: "bend".into(), duration: 0.5, channels: vec![channel] })
+}

@@ -4,13 +4,19 @@ mod append;
 mod bvh;
 mod data;
 mod deepmimic;
+mod events;
+#[cfg(feature = "fbx")]
+mod fbx;
 #[cfg(feature = "fs")]
 mod formats_table;
 #[cfg(feature = "fs")]
 mod fs;
 mod geometry;
 mod hostile;
+mod meshopt;
+mod meshopt_encoder;
 mod mjcf;
+mod motion;
 mod obj;
 mod ragdoll;
 mod rigs;

@@ -41,7 +41,8 @@ pub struct Bake {
     /// else its idle, else its first clip; in a file without clips the rest pose
     #[arg(long, value_name = "NAME")]
     clip: Option<String>,
-    /// Further files with clips for the same skeleton (joints are found by name)
+    /// Further files with clips (GLB, VRMA, BVH, FBX, DeepMimic): for the same skeleton by the names of joints, else for a
+    /// human of any size by what the joints are
     #[arg(long, value_name = "FILE", num_args = 1..)]
     clips: Vec<PathBuf>,
     /// A world file (JSON) or a mesh (GLB, OBJ) to fall in; without it a floor at y = 0. The character stands at the origin

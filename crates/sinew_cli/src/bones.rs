@@ -1,0 +1,64 @@
+//! A body for a skeleton that has none, so that it can be seen: an octahedron for each bone.
+
+use sinew::anim::{JointIdx, Mesh, Primitive, Rig, RigAnalysis, Skin, local_to_model, rest_pose};
+use sinew::math::{Affine, Vec3};
+
+/// Half the width of a bone, as a share of its length.
+const WIDTH: f32 = 0.08;
+/// Where a bone is widest, as a share of its length.
+const WAIST: f32 = 0.2;
+/// Linear RGBA.
+const COLOR: [f32; 4] = [0.60, 0.55, 0.45, 1.0];
+
+/// Adds a skin over all joints, and a mesh of bones from each joint to those that hang on it, bound in the pose in which
+/// the body stands: many captures have a rest pose that is none.
+pub fn flesh_out(rig: &mut Rig, analysis: Option<&RigAnalysis>) {
+    let mut model = Vec::new();
+    match analysis {
+        Some(analysis) => model.clone_from(&analysis.bind_model),
+        None => local_to_model(rig, &rest_pose(rig), &Affine::IDENTITY, &mut model),
+    }
+    let mut bones = Primitive { base_color: COLOR, ..Primitive::default() };
+    for (joint, at) in rig.joints.iter().enumerate() {
+        if let Some(parent) = at.parent
+            && let Ok(slot) = u16::try_from(parent)
+        {
+            add_bone(&mut bones, slot, model[parent].translation, model[joint].translation);
+        }
+    }
+    if bones.indices.is_empty() {
+        return;
+    }
+    let joints: Vec<JointIdx> = (0..rig.joints.len()).collect();
+    let inverse_bind = model.iter().map(Affine::inverse).collect();
+    rig.skins.push(Skin { name: "bones".into(), joints, inverse_bind });
+    let skin = Some(rig.skins.len() - 1);
+    rig.meshes.push(Mesh { name: "bones".into(), joint: 0, skin, primitives: vec![bones] });
+}
+
+/// Eight triangles, each with corners of its own so that it looks flat.
+fn add_bone(bones: &mut Primitive, slot: u16, from: Vec3, to: Vec3) {
+    let way = to - from;
+    let length = way.length();
+    if !(length > 1e-6 && length.is_finite()) {
+        return;
+    }
+    let along = way / length;
+    let side = along.any_orthonormal_vector() * (WIDTH * length);
+    let other = along.cross(side);
+    let middle = from + way * WAIST;
+    let ring = [middle + side, middle + other, middle - side, middle - other];
+    for k in 0..4 {
+        let (a, b) = (ring[k], ring[(k + 1) % 4]);
+        for corners in [[from, b, a], [to, a, b]] {
+            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+            for corner in corners {
+                bones.indices.push(bones.positions.len() as u32);
+                bones.positions.push(corner);
+                bones.normals.push(normal);
+                bones.joints.push([slot, 0, 0, 0]);
+                bones.weights.push([1.0, 0.0, 0.0, 0.0]);
+            }
+        }
+    }
+}

@@ -1,0 +1,399 @@
+//! `sinew convert`: clips from one format into another, or from one character onto another.
+
+use crate::bones::flesh_out;
+use crate::commands::clip_choice::choose_clips;
+use crate::failure::{Failure, Result};
+use crate::files::{CharacterFile, Outputs};
+use crate::motion::Motion;
+use crate::onto::{Carried, carry};
+use crate::report::Report;
+use crate::skeleton::{bones_only, frame_rate, transform};
+use crate::table::{counted, shown};
+use clap::ValueEnum;
+use serde_json::json;
+use sinew::anim::retarget::{Feet, Pace, RetargetOptions};
+use sinew::anim::{Clip, Event, Rig, RigAnalysis, Take, rest_pose};
+use sinew::formats::bvh::{BvhRows, BvhUnit, RestFrame};
+use sinew::formats::{
+    BvhEnds, BvhOptions, BvhWriteOptions, MotionFormat, MotionOptions, NewClip, ReadOptions, Textures,
+    append_clips, events_extras, events_path, load_gltf, write_bvh, write_events, write_motion,
+};
+use sinew::math::{EulerOrder, Rotation, Vec3};
+use std::path::{Path, PathBuf};
+
+/// Convert clips between BVH, FBX and GLB, or put them on another character
+#[derive(clap::Args)]
+#[command(after_help = "\
+Example:
+  sinew convert walk.bvh walk.glb
+  sinew convert character.glb --clip Walk walk.bvh
+  sinew convert character.fbx character.glb
+  sinew convert walk.bvh --onto character.glb walking.glb
+
+Reads glTF, GLB, VRM, VRMA, BVH, DeepMimic and FBX; writes GLB and BVH, by the name of OUT. What the new format cannot hold
+is told in a line each.")]
+pub struct Convert {
+    /// The file to read
+    input: PathBuf,
+    /// The file to write: .glb or .bvh
+    #[arg(value_name = "OUT", required_unless_present = "output_option", conflicts_with = "output_option")]
+    output: Option<PathBuf>,
+    /// The same as OUT
+    #[arg(short = 'o', long = "output", value_name = "OUT")]
+    output_option: Option<PathBuf>,
+    /// Only this clip, by name, or by number from 0 if it has none; repeatable. A BVH holds one
+    #[arg(long = "clip", value_name = "NAME")]
+    clips: Vec<String>,
+    /// Put the clips on this character (GLB, glTF, VRM or FBX): by the names of joints where the skeletons are the same,
+    /// else by what the joints are, with feet that do not slide
+    #[arg(long, value_name = "CHARACTER")]
+    onto: Option<PathBuf>,
+    /// Frames per second of what is sampled anew; by default those of the file
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=240))]
+    fps: Option<u16>,
+    /// Metres per unit of a BVH that is written
+    #[arg(long, value_name = "METRES", default_value = "0.01", value_parser = metres)]
+    unit: f32,
+    /// Metres per unit of a BVH that is read; by default told from the skeleton's size
+    #[arg(long, value_name = "METRES", value_parser = metres)]
+    unit_in: Option<f32>,
+    /// Which axis of a BVH that is written points up
+    #[arg(long, value_name = "AXIS", default_value = "y")]
+    up: UpAxis,
+    /// Order of the rotations in a BVH that is written
+    #[arg(long, value_name = "ORDER", default_value = "zyx")]
+    order: Order,
+    /// Begin a BVH that is written with a frame of the rest pose, as tools for retargeting like it
+    #[arg(long)]
+    rest_frame: bool,
+    /// Keep the rest pose that some captures begin with as a frame of the clip
+    #[arg(long)]
+    keep_rest_frame: bool,
+    /// Take the rows of a BVH that are there, even if it declares others
+    #[arg(long)]
+    any_rows: bool,
+    /// Do not draw bones for a skeleton that has no mesh
+    #[arg(long)]
+    bare: bool,
+    /// With --onto: how long the motion of a larger body takes
+    #[arg(long, value_name = "PACE", default_value = "same")]
+    pace: PaceArg,
+    /// With --onto: leave the feet where the rotations carry them
+    #[arg(long)]
+    free_feet: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum UpAxis {
+    Y,
+    Z,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Order {
+    Xyz,
+    Xzy,
+    Yxz,
+    Yzx,
+    Zxy,
+    Zyx,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum PaceArg {
+    /// As long as in the file
+    Same,
+    /// Longer by the root of the ratio of leg lengths, as giants walk
+    Froude,
+}
+
+/// A length above 0.
+fn metres(text: &str) -> Result<f32, String> {
+    let number: f32 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
+    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be above 0".to_owned()) }
+}
+
+/// What OUT is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Target {
+    Glb,
+    Bvh,
+}
+
+/// What goes into the new file.
+struct Cargo {
+    rig: Rig,
+    clips: Vec<Clip>,
+    events: Vec<Vec<Event>>,
+    /// Frames a second, where the source has some.
+    rate: Option<f64>,
+    /// What is lost or assumed, a sentence each.
+    notes: Vec<String>,
+}
+
+impl Convert {
+    /// Reads, converts, writes.
+    pub fn run(&self) -> Result<Report> {
+        let target = self.target()?;
+        self.check_paths()?;
+        let mut motion = Motion::load(&self.input, &self.motion_options())?;
+        let chosen = choose_clips(&motion, &self.clips)?;
+        let source = &mut motion.file;
+        source.clips = chosen.iter().map(|&index| source.clips[index].clone()).collect();
+        source.events = chosen.iter().map(|&index| source.events[index].clone()).collect();
+        if target == Target::Bvh && source.clips.len() != 1 {
+            return Err(self.not_one_clip(&motion));
+        }
+        let mut outputs = Outputs::default();
+        let (clips, notes) = match (&self.onto, target) {
+            (Some(character), _) => self.onto(&motion, character, target, &mut outputs)?,
+            (None, Target::Glb) => self.to_glb(motion, &mut outputs)?,
+            (None, Target::Bvh) => {
+                let Motion { name, file, analysis } = motion;
+                let rate = file.frame_time.map(|frame_time| 1.0 / frame_time);
+                let cargo =
+                    Cargo { rig: file.rig, clips: file.clips, events: file.events, rate, notes: file.notes };
+                self.to_bvh(&name, cargo, analysis.as_ref(), &mut outputs)?
+            }
+        };
+        outputs.write()?;
+        Ok(self.report(&clips, &notes, &outputs))
+    }
+
+    fn output(&self) -> &Path {
+        let given = self.output.as_ref().or(self.output_option.as_ref());
+        given.map_or(Path::new(""), PathBuf::as_path)
+    }
+
+    fn target(&self) -> Result<Target> {
+        let extension =
+            self.output().extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+        match extension.to_ascii_lowercase().as_str() {
+            "glb" => Ok(Target::Glb),
+            "bvh" => Ok(Target::Bvh),
+            _ => Err(Failure::Usage(format!("'{}' must end in .glb or .bvh", self.output().display()))),
+        }
+    }
+
+    /// The user's own files are never the output.
+    fn check_paths(&self) -> Result<()> {
+        let real = |path: &Path| std::fs::canonicalize(path).ok();
+        let output = real(self.output());
+        let mut inputs = std::iter::once(&self.input).chain(&self.onto);
+        if output.is_some() && inputs.any(|input| real(input) == output) {
+            let what = format!("{} is an input: write to another file", self.output().display());
+            return Err(Failure::Usage(what));
+        }
+        Ok(())
+    }
+
+    fn motion_options(&self) -> MotionOptions<'static> {
+        let bvh = BvhOptions {
+            unit: self.unit_in.map_or(BvhUnit::default(), BvhUnit::Metres),
+            rest_frame: if self.keep_rest_frame { RestFrame::Keep } else { RestFrame::default() },
+            rows: if self.any_rows { BvhRows::AsPresent } else { BvhRows::default() },
+        };
+        MotionOptions { bvh, ..MotionOptions::default() }
+    }
+
+    fn not_one_clip(&self, motion: &Motion) -> Failure {
+        let count = motion.file.clips.len();
+        let what = match count {
+            0 => "there is no clip to write".to_owned(),
+            _ => format!("there are {count} clips, of which a BVH holds one: choose it with --clip NAME"),
+        };
+        Failure::at(&motion.name, what, "--clip")
+    }
+
+    /// The clips on another character: into a copy of its file, or its skeleton as a BVH.
+    fn onto(&self, motion: &Motion, character: &Path, target: Target, outputs: &mut Outputs) -> Result<Told> {
+        let CharacterFile { name, document, analysis } = CharacterFile::load(character, Textures::Skip)?;
+        let rate = self.fps.map_or_else(
+            || motion.file.frame_time.map_or(60.0, |frame_time| (1.0 / frame_time).min(60.0)),
+            f64::from,
+        );
+        let options = RetargetOptions {
+            frame_time: 1.0 / rate,
+            pace: if self.pace == PaceArg::Froude { Pace::Froude } else { Pace::Actor },
+            feet: if self.free_feet { Feet::Free } else { Feet::Locked },
+            floor: None,
+        };
+        let carried = carry(motion, &document.rig, Some(&analysis), &options)?;
+        if carried.is_empty() {
+            return Err(Failure::of_file(&motion.name, "there is no clip to carry over"));
+        }
+        let lines: Vec<String> = carried.iter().map(Carried::to_text).collect();
+        let mut notes = motion.file.notes.clone();
+        notes.extend(document.warnings.iter().cloned());
+        let clips = carried.iter().map(|one| one.clip.clone()).collect();
+        let events: Vec<Vec<Event>> = carried.into_iter().map(|one| one.events).collect();
+        if target == Target::Bvh {
+            let cargo = Cargo { rig: document.rig, clips, events, rate: Some(rate), notes };
+            let (_, notes) = self.to_bvh(&name, cargo, Some(&analysis), outputs)?;
+            return Ok((lines, notes));
+        }
+        let new = clips.iter().zip(&events);
+        let new = new.map(|(clip, events)| NewClip { clip, name: &clip.name, extras: events_extras(events) });
+        let bytes =
+            append_clips(&document, &new.collect::<Vec<_>>()).map_err(|error| error.with_file(&name))?;
+        outputs.add(self.output(), bytes);
+        Ok((lines, notes))
+    }
+
+    fn to_glb(&self, motion: Motion, outputs: &mut Outputs) -> Result<Told> {
+        let Motion { name, mut file, analysis } = motion;
+        let lines = file.clips.iter().map(line_of).collect();
+        if matches!(file.format, MotionFormat::Glb | MotionFormat::Gltf) {
+            if !self.clips.is_empty() {
+                let what = "--clip does not apply from glTF to GLB: all of the file is kept as it is";
+                return Err(Failure::Usage(what.into()));
+            }
+            let document = load_gltf(&self.input, ReadOptions::default())?;
+            outputs.add(self.output(), append_clips(&document, &[]).map_err(|error| error.with_file(name))?);
+            return Ok((lines, file.notes));
+        }
+        let still: Vec<String> =
+            file.clips.iter().filter(|clip| clip.channels.is_empty()).map(|clip| shown(&clip.name)).collect();
+        if !still.is_empty() {
+            file.notes.push(format!("left out: {}, in which nothing moves", still.join(", ")));
+        }
+        if let Some(fps) = self.fps {
+            let resample = |clip: &Clip| sampled(&file.rig, clip, f64::from(fps), &name);
+            file.clips = file.clips.iter().map(resample).collect::<Result<_>>()?;
+        }
+        let moving =
+            |(clip, events): (Clip, Vec<Event>)| (!clip.channels.is_empty()).then_some((clip, events));
+        let (clips, events): (Vec<_>, Vec<_>) =
+            file.clips.into_iter().zip(file.events).filter_map(moving).unzip();
+        if !self.bare && file.rig.meshes.is_empty() {
+            flesh_out(&mut file.rig, analysis.as_ref());
+            file.notes.push("there is no mesh: bones are drawn (--bare leaves them out)".into());
+        }
+        let bytes = write_motion(&file.rig, &clips, &events).map_err(|error| error.with_file(&name))?;
+        outputs.add(self.output(), bytes);
+        Ok((lines, file.notes))
+    }
+
+    fn to_bvh(
+        &self,
+        name: &str,
+        cargo: Cargo,
+        analysis: Option<&RigAnalysis>,
+        outputs: &mut Outputs,
+    ) -> Result<Told> {
+        let Cargo { rig, clips, events, rate, mut notes } = cargo;
+        let (mut bones, mut clip, dropped) = bones_only(&rig, &clips[0]);
+        lost_meshes(&rig, &dropped, &mut notes);
+        let up = if self.up == UpAxis::Z {
+            Rotation::about(Vec3::X, core::f32::consts::FRAC_PI_2)
+        } else {
+            Rotation::IDENTITY
+        };
+        transform(&mut bones, &mut clip, up, analysis.map_or(1.0, |analysis| analysis.unit_scale));
+        let rate = self.fps.map_or_else(|| rate.unwrap_or_else(|| frame_rate(&clip)), f64::from);
+        if self.rest_frame {
+            clip = with_rest_frame(&bones, &clip, rate, name)?;
+        }
+        let options = BvhWriteOptions {
+            frame_time: 1.0 / rate,
+            metres_per_unit: self.unit,
+            rotation_order: self.order.euler(),
+            ends: BvhEnds::EveryChain,
+            channels: None,
+        };
+        let written = write_bvh(&bones, &clip, &options).map_err(|error| error.with_file(name))?;
+        notes.extend(written.notes);
+        outputs.add(self.output(), written.text.into_bytes());
+        if !events[0].is_empty() {
+            let shift = if self.rest_frame { (1.0 / rate) as f32 } else { 0.0 };
+            let later = |event: &Event| Event { time: event.time + shift, ..event.clone() };
+            let stem = self.output().file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let text = write_events(
+                &[Clip { name: stem, ..clip.clone() }],
+                &[events[0].iter().map(later).collect()],
+            );
+            outputs.add(&events_path(self.output()), text.into_bytes());
+        }
+        Ok((vec![line_of(&clip)], notes))
+    }
+
+    fn report(&self, clips: &[String], notes: &[String], outputs: &Outputs) -> Report {
+        let paths: Vec<String> = outputs.paths().map(|path| path.display().to_string()).collect();
+        let json = json!({
+            "file": self.input.display().to_string(),
+            "clips": clips,
+            "notes": notes,
+            "outputs": paths,
+        });
+        let mut text = format!("{}\n", shown(&self.input.display().to_string()));
+        for line in clips {
+            text += &format!("  {line}\n");
+        }
+        for note in notes {
+            text += &format!("note: {}\n", shown(note));
+        }
+        for path in &paths {
+            text += &format!("wrote {path}\n");
+        }
+        Report { json, text }
+    }
+}
+
+/// A line for each clip, and the notes.
+type Told = (Vec<String>, Vec<String>);
+
+fn line_of(clip: &Clip) -> String {
+    format!("{}: {:.2} s", shown(&clip.name), clip.duration)
+}
+
+fn lost_meshes(rig: &Rig, dropped: &[String], notes: &mut Vec<String>) {
+    if !rig.meshes.is_empty() {
+        let (meshes, skins) =
+            (counted(rig.meshes.len(), "mesh", "meshes"), counted(rig.skins.len(), "skin", "skins"));
+        notes.push(format!("left out: {meshes} and {skins}, which the format has not"));
+    }
+    if !dropped.is_empty() {
+        let names: Vec<String> = dropped.iter().take(8).map(|name| shown(name)).collect();
+        let more = if dropped.len() > names.len() { ", …" } else { "" };
+        notes.push(format!(
+            "left out: {} nodes that are no bones ({}{more})",
+            dropped.len(),
+            names.join(", ")
+        ));
+    }
+}
+
+/// A clip as one pose a frame.
+fn take(rig: &Rig, clip: &Clip, rate: f64, file: &str) -> Result<Take> {
+    if rig.joints.is_empty() {
+        return Err(Failure::of_file(file, "there are no joints"));
+    }
+    if f64::from(clip.duration) * rate >= Take::MOST_FRAMES as f64 {
+        return Err(Failure::of_file(file, format!("the clip lasts {} s, which is too long", clip.duration)));
+    }
+    Ok(Take::of(rig, clip, 1.0 / rate))
+}
+
+fn sampled(rig: &Rig, clip: &Clip, rate: f64, file: &str) -> Result<Clip> {
+    Ok(take(rig, clip, rate, file)?.to_clip(rig, &clip.name))
+}
+
+/// The clip behind a frame of the rest pose.
+fn with_rest_frame(rig: &Rig, clip: &Clip, rate: f64, file: &str) -> Result<Clip> {
+    let mut take = take(rig, clip, rate, file)?;
+    take.poses.splice(0..0, rest_pose(rig));
+    Ok(take.to_clip(rig, &clip.name))
+}
+
+impl Order {
+    fn euler(self) -> EulerOrder {
+        match self {
+            Self::Xyz => EulerOrder::Xyz,
+            Self::Xzy => EulerOrder::Xzy,
+            Self::Yxz => EulerOrder::Yxz,
+            Self::Yzx => EulerOrder::Yzx,
+            Self::Zxy => EulerOrder::Zxy,
+            Self::Zyx => EulerOrder::Zyx,
+        }
+    }
+}

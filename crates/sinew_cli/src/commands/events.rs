@@ -1,0 +1,131 @@
+//! `sinew events`: what happens in clips.
+
+use crate::commands::clip_choice::choose_clips;
+use crate::failure::{Failure, Result};
+use crate::files::Outputs;
+use crate::footsteps::footsteps;
+use crate::motion::Motion;
+use crate::report::{Report, number};
+use crate::table::{Table, counted, shown};
+use clap::Subcommand;
+use serde_json::{Value, json};
+use sinew::anim::Event;
+use sinew::formats::{MotionOptions, write_events};
+use std::path::PathBuf;
+
+/// What `sinew events` can do.
+#[derive(Subcommand)]
+pub enum Events {
+    Detect(Detect),
+}
+
+impl Events {
+    /// Does it.
+    pub fn run(&self) -> Result<Report> {
+        match self {
+            Self::Detect(command) => command.run(),
+        }
+    }
+}
+
+/// Propose footstep events: when a foot comes to stand, told by its height and speed
+#[derive(clap::Args)]
+#[command(after_help = "\
+Example:
+  sinew events detect walk.bvh
+  sinew events detect walk.bvh -o walk.events.json
+  sinew events detect character.glb --clip Walk --json
+
+Events live in NAME.events.json beside the clip, where every command finds them, or in the glTF animation's
+extras.sinew_events, where 'sinew convert' puts them. Those that are there already stay.")]
+pub struct Detect {
+    /// A file with clips: glTF, GLB, VRM, VRMA, BVH, FBX or DeepMimic
+    file: PathBuf,
+    /// Only this clip, by name, or by number from 0 if it has none; repeatable
+    #[arg(long = "clip", value_name = "NAME")]
+    clips: Vec<String>,
+    /// Where to write the events file; NAME.events.json beside NAME.glb is read with it
+    #[arg(short, long, value_name = "OUT.events.json")]
+    output: Option<PathBuf>,
+}
+
+/// What an event of a footstep is called.
+const FOOTSTEP: &str = "footstep";
+/// Footsteps of one foot that are nearer to each other than this are one, seconds.
+const SAME_STEP: f64 = 0.15;
+
+impl Detect {
+    /// Reads, looks, writes.
+    pub fn run(&self) -> Result<Report> {
+        let motion = Motion::load(&self.file, &MotionOptions::default())?;
+        let Some(analysis) = motion.analysis.as_ref().filter(|analysis| analysis.humanoid) else {
+            return Err(Failure::of_file(&motion.name, "no human legs to look at: footsteps cannot be told"));
+        };
+        let rig = &motion.file.rig;
+        let chosen = choose_clips(&motion, &self.clips)?;
+        let mut found = Vec::new();
+        for &index in &chosen {
+            let Some(steps) = footsteps(rig, analysis, &motion.file.clips[index]) else {
+                let what = "a leg lacks a joint, or a clip is too long: footsteps cannot be told";
+                return Err(Failure::of_file(&motion.name, what));
+            };
+            found.push(new_steps(&motion.file.events[index], steps));
+        }
+        let mut outputs = Outputs::default();
+        if let Some(path) = &self.output {
+            let mut events = motion.file.events.clone();
+            for (&index, steps) in chosen.iter().zip(&found) {
+                events[index].extend(steps.iter().cloned());
+                events[index].sort_by(|a, b| a.time.total_cmp(&b.time));
+            }
+            outputs.add(path, write_events(&motion.file.clips, &events).into_bytes());
+        }
+        outputs.write()?;
+        Ok(self.report(&motion, &chosen, &found, &outputs))
+    }
+
+    fn report(&self, motion: &Motion, chosen: &[usize], found: &[Vec<Event>], outputs: &Outputs) -> Report {
+        let paths: Vec<String> = outputs.paths().map(|path| path.display().to_string()).collect();
+        let names = chosen.iter().map(|&index| &motion.file.clips[index].name);
+        let mut table = Table::titled(&["clip", "seconds", "event", "payload"]);
+        let mut clips: Vec<Value> = Vec::new();
+        for (name, events) in names.zip(found) {
+            for event in events {
+                let time = format!("{:.3}", event.time);
+                table.row([shown(name), time, event.name.clone(), event.payload.clone()]);
+            }
+            let json = |e: &Event| json!({"time_s": number(e.time), "name": e.name, "payload": e.payload});
+            clips.push(json!({"name": name, "events": events.iter().map(json).collect::<Vec<_>>()}));
+        }
+        let steps: usize = found.iter().map(Vec::len).sum();
+        let mut text = format!(
+            "{}: {} in {}\n",
+            shown(&motion.name),
+            counted(steps, "footstep", "footsteps"),
+            counted(chosen.len(), "clip", "clips")
+        );
+        if steps > 0 {
+            text += &table.to_text();
+        }
+        for path in &paths {
+            text += &format!("wrote {path}\n");
+        }
+        Report { json: json!({"file": motion.name, "clips": clips, "outputs": paths}), text }
+    }
+}
+
+/// The steps that the clip does not have as events yet.
+fn new_steps(there: &[Event], steps: Vec<Event>) -> Vec<Event> {
+    let foot = |event: &Event| u32::from(event.payload == "right");
+    let known: Vec<(u32, f64)> = there
+        .iter()
+        .filter(|event| event.name == FOOTSTEP)
+        .map(|event| (foot(event), f64::from(event.time)))
+        .collect();
+    let is_new = |step: &Event| {
+        known
+            .iter()
+            .all(|&(foot_of, time)| foot_of != foot(step) || (time - f64::from(step.time)).abs() > SAME_STEP)
+    };
+    steps.into_iter().filter(is_new).collect()
+}

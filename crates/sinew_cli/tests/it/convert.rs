@@ -1,0 +1,163 @@
+//! Clips between formats and characters, and footsteps in them.
+
+use crate::contract::check_keys;
+use crate::sinew::{Folder, shared_data, sinew};
+use sinew::anim::{Wrap, rest_pose, sample};
+use sinew::formats::{MotionFile, MotionOptions, ReadOptions, load_gltf, load_motion};
+
+fn load(path: &str) -> MotionFile {
+    load_motion(path, &MotionOptions::default()).expect("what was written can be read")
+}
+
+/// Largest difference of the poses of joints with the same names, radians and metres, at times of the first.
+fn difference(a: &MotionFile, b: &MotionFile) -> (f32, f32) {
+    let (mut from, mut to) = (rest_pose(&a.rig), rest_pose(&b.rig));
+    let (mut turn, mut shift) = (0.0_f32, 0.0_f32);
+    for k in 0..=20 {
+        let time = a.clips[0].duration * k as f32 / 20.0;
+        sample(&a.clips[0], &a.rig, time, Wrap::Clamp, &mut from);
+        sample(&b.clips[0], &b.rig, time, Wrap::Clamp, &mut to);
+        for (i, joint) in a.rig.joints.iter().enumerate().filter(|(_, joint)| !joint.name.is_empty()) {
+            let own =
+                b.rig.joints.iter().position(|own| own.name == joint.name).expect("all joints are there");
+            turn = turn.max(from[i].rotation.angle_to(to[own].rotation));
+            shift = shift.max((from[i].translation - to[own].translation).length());
+        }
+    }
+    (turn, shift)
+}
+
+const BVH: &str = "HIERARCHY\nROOT hips\n{\n OFFSET 0 90 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation\n \
+    JOINT leg\n {\n  OFFSET 10 0 0\n  CHANNELS 3 Zrotation Yrotation Xrotation\n  End Site\n  {\n   OFFSET 0 -45 0\n  }\n }\n}\n\
+    MOTION\nFrames: 3\nFrame Time: 0.05\n0 90 0 0 0 0 0 0 0\n1 91 5 10 0 0 0 20 30\n2 90 10 20 0 0 0 40 60\n";
+
+#[test]
+fn bvh_to_glb_and_back() {
+    let folder = Folder::new("convert-bvh");
+    let bvh = folder.file("kick.bvh", BVH);
+    folder.file(
+        "kick.events.json",
+        r#"{"sinew":"events","version":1,"clips":[{"clip":"kick","events":[{"time":0.05,"name":"kick"}]}]}"#,
+    );
+    let (glb, again) = (folder.path("kick.glb"), folder.path("again.bvh"));
+    let object = sinew(&["convert", &bvh, &glb, "--json"]).json();
+    check_keys("convert", &object);
+    assert_eq!(object["outputs"], serde_json::json!([glb]));
+    let (before, between) = (load(&bvh), load(&glb));
+    assert_eq!(between.events, before.events);
+    assert_eq!((between.rig.skins.len(), between.clips[0].name.as_str()), (1, "kick"));
+    let (turn, shift) = difference(&before, &between);
+    assert!(turn < 1e-6 && shift < 1e-6, "{turn} rad, {shift} m");
+    let object = sinew(&["convert", &glb, "-o", &again, "--json"]).json();
+    assert_eq!(object["outputs"][1], folder.path("again.events.json"));
+    let after = load(&again);
+    assert_eq!((after.rig.joints.len(), after.frame_time.map(f64::round)), (3, Some(0.0)));
+    assert_eq!(after.events[0][0].name, "kick");
+    let (turn, shift) = difference(&before, &after);
+    assert!(turn < 1e-4 && shift < 1e-4, "{turn} rad, {shift} m");
+    assert!((after.clips[0].duration - 0.1).abs() < 1e-6);
+}
+
+#[test]
+fn options_of_a_bvh() {
+    let folder = Folder::new("convert-options");
+    let bvh = folder.file("kick.bvh", BVH);
+    let out = folder.path("out.bvh");
+    let run = sinew(&[
+        "convert",
+        &bvh,
+        &out,
+        "--unit-in",
+        "0.01",
+        "--unit",
+        "1",
+        "--up",
+        "z",
+        "--order",
+        "xyz",
+        "--fps",
+        "40",
+        "--rest-frame",
+    ]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let text = std::fs::read_to_string(&out).expect("it is written");
+    assert!(text.contains("Frame Time: 0.025000000") && text.contains("Frames: 6\n"), "{text}");
+    assert!(text.contains("Xrotation Yrotation Zrotation") && text.contains("End Site"), "{text}");
+    let row = text.lines().nth_back(4).expect("the first frame of the motion");
+    // 90 cm above the ground, which is along z now, in metres.
+    assert!(
+        row.starts_with("0.000000 -0.000000 0.900000") || row.starts_with("0.000000 0.000000 0.900000"),
+        "{row}"
+    );
+}
+
+#[test]
+fn clips_go_onto_another_body() {
+    let folder = Folder::new("convert-onto");
+    let mannequin = folder.mannequin();
+    let (bvh, out) = (folder.path("walk.bvh"), folder.path("out.glb"));
+    assert_eq!(sinew(&["convert", &mannequin, &bvh]).code, Some(0));
+    // A giant of the same build.
+    let run = sinew(&["convert", &bvh, "--unit-in", "0.02", "--onto", &mannequin, &out]);
+    assert!(run.code == Some(0) && run.stdout.contains("matched by role"), "{run:?}");
+    assert!(run.stdout.contains("legs 0.50 times as long"), "{run:?}");
+    let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+    let names: Vec<&str> = document.clips.iter().map(|clip| clip.name.as_str()).collect();
+    assert_eq!(names, ["Walk", "walk"]);
+    // The same skeleton takes the keys as they are.
+    let same = sinew(&["convert", &out, "--clip", "Walk", "--onto", &mannequin, &folder.path("same.glb")]);
+    assert!(same.stdout.contains("taken as it is"), "{same:?}");
+}
+
+#[test]
+fn what_cannot_be_converted() {
+    let folder = Folder::new("convert-refused");
+    let mannequin = folder.mannequin();
+    let bvh = folder.file("kick.bvh", BVH);
+    let refused = |arguments: &[&str], code: i32, what: &str| {
+        let before = folder.names();
+        let run = sinew(arguments);
+        assert!(run.refusal(code).contains(what), "{run:?}");
+        assert_eq!(folder.names(), before);
+    };
+    let out = folder.path("out.bvh");
+    refused(&["convert", &bvh, &bvh], 2, "is an input");
+    refused(&["convert", &mannequin, &out, "--clip", "Fly"], 1, "no clip 'Fly'; there are Walk");
+    refused(
+        &["convert", &bvh, "--onto", &mannequin, &folder.path("out.glb")],
+        1,
+        "neither those of the character",
+    );
+    let cut = folder.file("cut.bvh", &BVH[..BVH.len() - 9]);
+    refused(&["convert", &cut, &folder.path("out.glb")], 1, "(line");
+    refused(&["events", "detect", &bvh], 1, "no human legs");
+}
+
+#[test]
+fn footsteps_of_the_mannequin() {
+    let folder = Folder::new("events");
+    let (mannequin, out) = (folder.mannequin(), folder.path("mannequin.events.json"));
+    let object = sinew(&["events", "detect", &mannequin, "-o", &out, "--json"]).json();
+    check_keys("events detect", &object);
+    let events = object["clips"][0]["events"].as_array().expect("events");
+    let of = |side: &str| events.iter().filter(|event| event["payload"] == side).count();
+    assert!(of("left") >= 1 && of("left").abs_diff(of("right")) <= 1, "{object:#}");
+    // They are found beside the file from now on, and not proposed again.
+    let inspected = sinew(&["inspect", &mannequin, "--json"]).json();
+    assert_eq!(inspected["clips"][0]["events"].as_array().map(Vec::len), Some(events.len()));
+    let again = sinew(&["events", "detect", &mannequin, "--json"]).json();
+    assert_eq!(again["clips"][0]["events"], serde_json::json!([]));
+}
+
+#[test]
+fn every_captured_file_becomes_a_glb() {
+    let Some(data) = shared_data() else { return };
+    let folder = Folder::new("convert-mocap");
+    for entry in std::fs::read_dir(data.join("mocap")).expect("the folder is there") {
+        let path = entry.expect("an entry").path().display().to_string();
+        let out = folder.path("out.glb");
+        let run = sinew(&["convert", &path, &out]);
+        assert!(run.code == Some(0) && run.stderr.is_empty(), "{path}: {run:?}");
+        load(&out);
+    }
+}

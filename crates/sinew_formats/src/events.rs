@@ -1,0 +1,170 @@
+//! Events of clips in files: `NAME.events.json` beside `NAME.bvh` (or `.glb`, …), and `extras.sinew_events` of a glTF
+//! animation. Both hold the same events:
+//!
+//! ```json
+//! {"sinew": "events", "version": 1, "clips": [
+//!   {"clip": "Walk", "events": [
+//!     {"time": 0.25, "name": "footstep", "payload": "left"},
+//!     {"time": 0.5, "name": "hit", "min_weight": 0.9, "fired_by": "leader", "on_interrupt": true}]}]}
+//! ```
+//!
+//! `clip` is a name, or a number from 0 where clips have none; times are seconds. In `extras` there is no list of clips:
+//! `"sinew_events": {"version": 1, "events": […]}`, or the bare list.
+
+use crate::error::{Result, quoted};
+use crate::json::{self, At, number};
+use serde_json::{Map, Value, json};
+use sinew_anim::{Clip, Event, EventPolicy, FiredBy};
+
+/// Version of both forms.
+const VERSION: usize = 1;
+
+/// Key of an animation's `extras` under which its events are.
+const EXTRAS_KEY: &str = "sinew_events";
+
+const FIRED_BY: [(&str, FiredBy); 3] =
+    [("every", FiredBy::Every), ("leader", FiredBy::Leader), ("one_per_group", FiredBy::OnePerGroup)];
+
+/// Reads an events file: for each of `clips` its events by time, `None` for one that the file does not mention.
+///
+/// # Errors
+/// Names the place: no JSON, another kind of file or a newer version, an unknown key, a clip that is not there, is there
+/// more than once or is listed twice, an event without a name or outside of its clip, a weight outside of 0..=1.
+pub fn read_events(bytes: &[u8], clips: &[Clip]) -> Result<Vec<Option<Vec<Event>>>> {
+    let json = json::parse(bytes)?;
+    let root = At::root(&json);
+    json::check_header(root, "events", VERSION)?;
+    root.only(&["sinew", "version", "clips"])?;
+    let mut found = vec![None; clips.len()];
+    for entry in root.need("clips")?.items()? {
+        entry.only(&["clip", "events"])?;
+        let clip_at = entry.need("clip")?;
+        let clip = find_clip(clip_at, clips)?;
+        let events = read_list(entry.need("events")?, clips[clip].duration)?;
+        if found[clip].replace(events).is_some() {
+            return Err(clip_at.malformed("the clip is listed twice"));
+        }
+    }
+    Ok(found)
+}
+
+/// The clip that is called so; a number counts them.
+fn find_clip(at: At<'_>, clips: &[Clip]) -> Result<usize> {
+    let Some(name) = at.value().as_str() else { return at.index(clips.len(), "clips") };
+    let mut called = (0..clips.len()).filter(|&index| clips[index].name == name);
+    match (called.next(), called.next()) {
+        (Some(index), None) => Ok(index),
+        (None, _) => Err(at.malformed(format!("no clip is called {}", quoted(name)))),
+        (Some(_), Some(_)) => {
+            Err(at.malformed(format!("several clips are called {}: use their numbers", quoted(name))))
+        }
+    }
+}
+
+/// Writes what [`read_events`] reads; clips without events are left out.
+///
+/// # Panics
+/// If there are not as many lists of events as clips, or a number is not finite.
+pub fn write_events(clips: &[Clip], events: &[Vec<Event>]) -> String {
+    assert_eq!(clips.len(), events.len(), "a list of events for each clip");
+    let is_unique = |name: &str| clips.iter().filter(|clip| clip.name == name).count() == 1;
+    let entry = |(index, (clip, events)): (usize, (&Clip, &Vec<Event>))| {
+        let is_named = !clip.name.is_empty() && is_unique(&clip.name);
+        let called = if is_named { Value::from(clip.name.as_str()) } else { index.into() };
+        (!events.is_empty()).then(|| json!({"clip": called, "events": write_list(events)}))
+    };
+    let entries: Vec<Value> = clips.iter().zip(events).enumerate().filter_map(entry).collect();
+    json::to_text(&json!({"sinew": "events", "version": VERSION, "clips": entries}))
+}
+
+/// The `extras` of a glTF animation with these events, for [`append_clip`](crate::append_clip); `None` without any.
+///
+/// # Panics
+/// If a number is not finite.
+pub fn events_extras(events: &[Event]) -> Option<Value> {
+    let list = || json!({EXTRAS_KEY: {"version": VERSION, "events": write_list(events)}});
+    (!events.is_empty()).then(list)
+}
+
+/// Events of a glTF animation that lasts `duration` seconds. `extras` may be anything; what is under our key is ours.
+pub(crate) fn read_extras(animation: At<'_>, duration: f32) -> Result<Vec<Event>> {
+    let Some(extras) = animation.get("extras")?.filter(|extras| extras.value().is_object()) else {
+        return Ok(Vec::new());
+    };
+    let Some(at) = extras.get(EXTRAS_KEY)? else { return Ok(Vec::new()) };
+    if at.value().is_array() {
+        return read_list(at, duration);
+    }
+    at.only(&["version", "events"])?;
+    json::check_version(at, VERSION)?;
+    read_list(at.need("events")?, duration)
+}
+
+fn read_list(list: At<'_>, duration: f32) -> Result<Vec<Event>> {
+    let mut events =
+        list.items()?.into_iter().map(|at| read_event(at, duration)).collect::<Result<Vec<Event>>>()?;
+    // Stable: what happens at one time stays in the file's order.
+    events.sort_by(|a, b| a.time.total_cmp(&b.time));
+    Ok(events)
+}
+
+fn read_event(at: At<'_>, duration: f32) -> Result<Event> {
+    at.only(&["time", "name", "payload", "min_weight", "fired_by", "on_interrupt"])?;
+    let time_at = at.need("time")?;
+    let time = time_at.not_negative()?;
+    if time > duration {
+        return Err(time_at.malformed(format!("{time} s is after the end of the clip, {duration} s")));
+    }
+    let name_at = at.need("name")?;
+    let name = name_at.str()?.to_owned();
+    if name.is_empty() {
+        return Err(name_at.malformed("an event needs a name"));
+    }
+    let payload = at.get("payload")?.map_or(Ok(""), At::str)?.to_owned();
+    Ok(Event { time, name, payload, policy: read_policy(at)? })
+}
+
+fn read_policy(at: At<'_>) -> Result<EventPolicy> {
+    let mut policy = EventPolicy::default();
+    if let Some(weight_at) = at.get("min_weight")? {
+        policy.min_weight = weight_at.f32()?;
+        if !(0.0..=1.0).contains(&policy.min_weight) {
+            return Err(weight_at.malformed("a weight is between 0 and 1"));
+        }
+    }
+    if let Some(by_at) = at.get("fired_by")? {
+        let text = by_at.str()?;
+        let known = FIRED_BY.iter().find(|(name, _)| *name == text);
+        let unknown = || format!("{} is none of every, leader, one_per_group", quoted(text));
+        policy.fired_by = known.ok_or_else(|| by_at.malformed(unknown()))?.1;
+    }
+    policy.on_interrupt = at.get("on_interrupt")?.map_or(Ok(false), At::bool)?;
+    Ok(policy)
+}
+
+/// What is as usual is left out.
+fn write_list(events: &[Event]) -> Value {
+    let usual = EventPolicy::default();
+    let write = |event: &Event| {
+        let mut object = Map::new();
+        object.insert("time".into(), number(event.time));
+        object.insert("name".into(), event.name.as_str().into());
+        if !event.payload.is_empty() {
+            object.insert("payload".into(), event.payload.as_str().into());
+        }
+        let policy = event.policy;
+        if policy.min_weight.to_bits() != usual.min_weight.to_bits() {
+            object.insert("min_weight".into(), number(policy.min_weight));
+        }
+        if let Some((name, by)) = FIRED_BY.iter().find(|(_, by)| *by == policy.fired_by)
+            && *by != usual.fired_by
+        {
+            object.insert("fired_by".into(), (*name).into());
+        }
+        if policy.on_interrupt {
+            object.insert("on_interrupt".into(), true.into());
+        }
+        Value::from(object)
+    };
+    events.iter().map(write).collect()
+}

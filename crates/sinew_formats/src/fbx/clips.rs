@@ -1,0 +1,94 @@
+//! Animation stacks: curves to keys.
+
+use super::{explain, index, limited, not_finite};
+use crate::error::Result;
+use sinew_anim::{Channel, Clip, Interpolation, JointIdx, Property};
+use sinew_math::Rotation;
+use ufbx::{BakeOpts, BakedNode, Scene};
+
+/// Frames a second where the file does not say.
+const RATE: f64 = 30.0;
+
+/// One clip for each stack that moves something, and a note for each that does not.
+pub(super) fn read_all(scene: &Scene, size: usize) -> Result<(Vec<Clip>, Vec<String>)> {
+    let (mut clips, mut notes) = (Vec::new(), Vec::new());
+    let rate = scene.settings.frames_per_second;
+    for stack in &scene.anim_stacks {
+        let options = BakeOpts {
+            temp_allocator: limited(size),
+            result_allocator: limited(size),
+            trim_start_time: true,
+            resample_rate: if rate > 0.0 { rate } else { RATE },
+            key_reduction_enabled: true,
+            key_reduction_rotation: true,
+            ..BakeOpts::default()
+        };
+        let name = stack.element.name.to_string();
+        let baked = ufbx::bake_anim(scene, &stack.anim, options).map_err(|error| explain(&error, size))?;
+        let mut channels = Vec::new();
+        for node in &baked.nodes {
+            // The scene's own root is no joint.
+            if let Some(joint) = scene.nodes.get(node.typed_id as usize).and_then(|node| index(node)) {
+                channels.extend(read_node(node, joint, &name)?);
+            }
+        }
+        if channels.is_empty() {
+            notes.push(format!("left out: the clip {name:?}, which moves nothing"));
+            continue;
+        }
+        let last = channels.iter().map(|channel: &Channel| channel.times[channel.times.len() - 1]);
+        clips.push(Clip { duration: last.fold(0.0, sinew_math::max), name, channels });
+    }
+    Ok((clips, notes))
+}
+
+/// Channels of a node. What stays as it is has one key, even where that is the rest pose: clips are blended.
+fn read_node(node: &BakedNode, joint: JointIdx, clip: &str) -> Result<Vec<Channel>> {
+    let vector =
+        |key: &ufbx::BakedVec3| (key.time, [key.value.x, key.value.y, key.value.z].map(|x| x as f32));
+    let mut last = Rotation::IDENTITY;
+    let turn = |key: &ufbx::BakedQuat| {
+        let q = &key.value;
+        last = Rotation::from_xyzw(q.x as f32, q.y as f32, q.z as f32, q.w as f32).toward(last);
+        (key.time, [last.x, last.y, last.z, last.w])
+    };
+    let kept = |is_constant: bool| if is_constant { 1 } else { usize::MAX };
+    let translations = node.translation_keys.iter().take(kept(node.constant_translation));
+    let rotations = node.rotation_keys.iter().take(kept(node.constant_rotation));
+    let scales = node.scale_keys.iter().take(kept(node.constant_scale));
+    let channels = [
+        channel(joint, Property::Translation, translations.map(vector)),
+        channel(joint, Property::Rotation, rotations.map(turn)),
+        channel(joint, Property::Scale, scales.map(vector)),
+    ];
+    let channels: Vec<Channel> = channels.into_iter().flatten().collect();
+    if channels.iter().any(|channel| channel.values.iter().chain(&channel.times).any(|x| !x.is_finite())) {
+        return Err(not_finite(format!("clip {clip:?}, node {joint}")));
+    }
+    Ok(channels)
+}
+
+/// Keys as a channel; of keys at one time, as `f32` has it, the last stays.
+fn channel<const N: usize>(
+    joint: JointIdx,
+    property: Property,
+    keys: impl Iterator<Item = (f64, [f32; N])>,
+) -> Option<Channel> {
+    let (mut times, mut values): (Vec<f32>, Vec<f32>) = (Vec::new(), Vec::new());
+    for (time, value) in keys {
+        let time = time as f32;
+        if times.last().is_some_and(|&last| time <= last) {
+            times.pop();
+            values.truncate(values.len() - N);
+        }
+        times.push(time);
+        values.extend(value);
+    }
+    (!times.is_empty()).then_some(Channel {
+        joint,
+        property,
+        interpolation: Interpolation::Linear,
+        times,
+        values,
+    })
+}

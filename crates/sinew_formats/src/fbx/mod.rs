@@ -1,0 +1,155 @@
+//! FBX, text and binary, through the C library ufbx (feature `fbx`).
+//!
+//! What becomes of the format's many ways: axes are turned to +Y up and lengths into metres in joints, meshes and keys, so
+//! that no root carries a scale; pivots, orders of rotations and scale that is not inherited are resolved into plain
+//! translation, rotation and scale; curves are sampled at the file's frame rate where they are not straight, then reduced to
+//! the keys that are needed. Pictures, morph targets, constraints, cameras and lights are left out.
+
+mod clips;
+mod mesh;
+
+use crate::error::{Error, Result};
+use crate::motion::{MotionFile, MotionFormat};
+use sinew_anim::{Joint, JointIdx, LocalTransform, Rig};
+use sinew_math::{Affine, Mat3, Rotation, Vec3};
+use ufbx::{
+    AllocatorOpts, GeometryTransformHandling, InheritModeHandling, LoadOpts, Node, Scene, SpaceConversion,
+};
+
+/// Deepest nesting of nodes: far beyond any skeleton.
+const DEEPEST: u32 = 512;
+
+/// Reads an FBX file: every node as a joint, meshes with their skins, one clip for each animation stack.
+///
+/// Joints rest as the file's nodes stand; skins hold where they were bound. Memory stays within 64 times the bytes plus
+/// 64 MiB, for arrays in the file may be compressed.
+///
+/// # Errors
+/// Bytes that are no FBX, are cut off, of a version before 3.0, more than that memory, numbers that are not finite.
+pub fn read_fbx(bytes: &[u8]) -> Result<MotionFile> {
+    let scene =
+        ufbx::load_memory(bytes, options(bytes.len())).map_err(|error| explain(&error, bytes.len()))?;
+    let joints =
+        scene.nodes.iter().filter(|node| !node.is_root).map(|node| joint(node)).collect::<Result<_>>()?;
+    let mut rig = Rig { joints, ..Rig::default() };
+    mesh::read_all(&scene, &mut rig)?;
+    let (clips, mut notes) = clips::read_all(&scene, bytes.len())?;
+    notes.extend(left_out(&scene));
+    notes.extend(scene.metadata.warnings.iter().map(|warning| warning.description.to_string()));
+    let rate = scene.settings.frames_per_second;
+    Ok(MotionFile {
+        format: MotionFormat::Fbx,
+        generator: scene.metadata.creator.to_string(),
+        extensions: Vec::new(),
+        rig,
+        events: vec![Vec::new(); clips.len()],
+        clips,
+        frame_time: (rate > 0.0).then_some(1.0 / rate),
+        metres_per_unit: None,
+        rest_pose: None,
+        notes,
+    })
+}
+
+fn options(size: usize) -> LoadOpts<'static> {
+    LoadOpts {
+        temp_allocator: limited(size),
+        result_allocator: limited(size),
+        ignore_embedded: true,
+        clean_skin_weights: true,
+        normalize_normals: true,
+        node_depth_limit: DEEPEST,
+        geometry_transform_handling: GeometryTransformHandling::ModifyGeometry,
+        inherit_mode_handling: InheritModeHandling::Compensate,
+        space_conversion: SpaceConversion::ModifyGeometry,
+        target_axes: ufbx::axes_right_handed_y_up(),
+        target_unit_meters: 1.0,
+        ..LoadOpts::default()
+    }
+}
+
+/// No more memory than so many bytes of a file justify.
+fn limited(size: usize) -> AllocatorOpts {
+    let memory_limit = size.saturating_mul(64).saturating_add(64 << 20);
+    AllocatorOpts { memory_limit, ..AllocatorOpts::default() }
+}
+
+/// Places are all that the library tells: how far the file goes, or what it was about.
+fn explain(error: &ufbx::Error, size: usize) -> Error {
+    use ufbx::ErrorType as Kind;
+    let detail = error.info().trim();
+    let place = if detail.is_empty() { "FBX".to_owned() } else { format!("FBX: {detail}") };
+    match error.type_ {
+        Kind::TruncatedFile | Kind::EmptyFile => Error::malformed("truncated", format!("byte {size}")),
+        Kind::MemoryLimit | Kind::AllocationLimit | Kind::OutOfMemory => {
+            Error::malformed("needs more memory than its size justifies", place)
+        }
+        Kind::NodeDepthLimit => {
+            Error::unsupported(format!("nodes are nested deeper than {DEEPEST} levels"), place)
+        }
+        Kind::UnsupportedVersion => Error::unsupported("of a version that is not supported", place),
+        _ => {
+            let what = error.description.lines().next().unwrap_or_default().to_owned();
+            Error::malformed(format!("broken FBX: {what}"), place)
+        }
+    }
+}
+
+/// Joint of a node: nodes are in order of depth, the root of the scene first, which is no joint.
+fn index(node: &Node) -> Option<JointIdx> {
+    (node.element.typed_id as usize).checked_sub(1)
+}
+
+fn joint(node: &Node) -> Result<Joint> {
+    let local = &node.local_transform;
+    let place = || format!("node {:?}", &*node.element.name);
+    Ok(Joint {
+        name: node.element.name.to_string(),
+        parent: node.parent.as_ref().and_then(|parent| index(parent)),
+        rest: LocalTransform {
+            translation: vector(local.translation, place)?,
+            rotation: rotation(local.rotation, place)?,
+            scale: vector(local.scale, place)?,
+        },
+        source: index(node).unwrap_or_default(),
+    })
+}
+
+fn vector(v: ufbx::Vec3, place: impl Fn() -> String) -> Result<Vec3> {
+    let v = Vec3::new(v.x as f32, v.y as f32, v.z as f32);
+    if v.is_finite() { Ok(v) } else { Err(not_finite(place())) }
+}
+
+fn rotation(q: ufbx::Quat, place: impl Fn() -> String) -> Result<Rotation> {
+    let q = Rotation::from_xyzw(q.x as f32, q.y as f32, q.z as f32, q.w as f32);
+    let square = q.dot(q);
+    if square > 0.5 && square.is_finite() { Ok(q.normalize()) } else { Err(not_finite(place())) }
+}
+
+fn affine(m: &ufbx::Matrix, place: impl Fn() -> String) -> Result<Affine> {
+    let column = |x: f64, y: f64, z: f64| vector(ufbx::Vec3 { x, y, z }, &place);
+    Ok(Affine {
+        linear: Mat3::from_cols(
+            column(m.m00, m.m10, m.m20)?,
+            column(m.m01, m.m11, m.m21)?,
+            column(m.m02, m.m12, m.m22)?,
+        ),
+        translation: column(m.m03, m.m13, m.m23)?,
+    })
+}
+
+fn not_finite(place: String) -> Error {
+    Error::malformed("a number is not finite", place)
+}
+
+/// What of the scene does not become part of a rig, a sentence each.
+fn left_out(scene: &Scene) -> Vec<String> {
+    let counted = [
+        (scene.textures.len(), "textures"),
+        (scene.blend_channels.len(), "morph targets"),
+        (scene.constraints.len(), "constraints"),
+        (scene.nurbs_surfaces.len() + scene.nurbs_curves.len() + scene.line_curves.len(), "curves and NURBS"),
+    ];
+    let note = |&(count, what): &(usize, &str)| (count > 0).then(|| format!("left out: {count} {what}"));
+    counted.iter().filter_map(note).collect()
+}

@@ -1,0 +1,183 @@
+//! Streams of indices: triangles by the edges and vertices seen last (extension, appendix A, mode 1), and sequences as
+//! differences to the last two (mode 2).
+
+use super::{Reader, unzigzag};
+
+type Indices = Result<Vec<u32>, &'static str>;
+
+/// The last 16 of something.
+struct Recent<T> {
+    items: [T; 16],
+    next: usize,
+}
+
+impl<T: Copy> Recent<T> {
+    fn new(item: T) -> Self {
+        Self { items: [item; 16], next: 0 }
+    }
+
+    fn push(&mut self, item: T) {
+        self.items[self.next & 15] = item;
+        self.next = self.next.wrapping_add(1);
+    }
+
+    /// The one that was pushed so many before the next: 1 is the last.
+    fn back(&self, by: usize) -> T {
+        self.items[self.next.wrapping_sub(by) & 15]
+    }
+}
+
+struct Triangles<'a> {
+    data: Reader<'a>,
+    edges: Recent<[u32; 2]>,
+    vertices: Recent<u32>,
+    /// The lowest index that was not there yet.
+    next: u32,
+    /// The last one written out.
+    last: u32,
+    out: Vec<u32>,
+}
+
+/// Decodes `count` indices, three a triangle.
+pub(super) fn decode_triangles(bytes: &[u8], count: usize) -> Indices {
+    if !count.is_multiple_of(3) {
+        return Err("triangles have three corners");
+    }
+    let version = match bytes.first() {
+        Some(0xE0) => 0,
+        Some(0xE1) => 1,
+        _ => return Err("it does not begin like triangles"),
+    };
+    let mut reader = Reader { rest: &bytes[1..] };
+    let codes = reader.take(count / 3)?;
+    let length = reader.rest.len().checked_sub(16).ok_or("it is cut off")?;
+    let (data, table) = reader.rest.split_at(length);
+    let mut state = Triangles {
+        data: Reader { rest: data },
+        edges: Recent::new([u32::MAX; 2]),
+        vertices: Recent::new(u32::MAX),
+        next: 0,
+        last: 0,
+        out: Vec::with_capacity(count),
+    };
+    let fifo_codes = if version == 1 { 13 } else { 15 };
+    for &code in codes {
+        match code {
+            0..0xF0 => state.by_edge(code, fifo_codes)?,
+            0xF0..0xFE => state.by_table(table[usize::from(code & 15)]),
+            _ => state.free(code)?,
+        }
+    }
+    if state.data.rest.is_empty() { Ok(state.out) } else { Err("bytes are left over") }
+}
+
+impl Triangles<'_> {
+    fn fresh(&mut self) -> u32 {
+        let index = self.next;
+        self.next = self.next.wrapping_add(1);
+        index
+    }
+
+    /// An index as its difference to the last.
+    fn explicit(&mut self) -> Result<u32, &'static str> {
+        self.last = self.last.wrapping_add(unzigzag(self.data.varint()?));
+        Ok(self.last)
+    }
+
+    fn push(&mut self, [a, b, c]: [u32; 3], edges: &[[u32; 2]]) {
+        self.out.extend([a, b, c]);
+        edges.iter().for_each(|&edge| self.edges.push(edge));
+    }
+
+    /// A triangle at an edge that was seen.
+    fn by_edge(&mut self, code: u8, fifo_codes: u8) -> Result<(), &'static str> {
+        let [a, b] = self.edges.back(1 + usize::from(code >> 4));
+        let third = code & 15;
+        let c = match third {
+            0 => self.fresh(),
+            _ if third < fifo_codes => self.vertices.back(1 + usize::from(third)),
+            15 => self.explicit()?,
+            // 13 and 14 are one before the last and one behind it.
+            _ => {
+                self.last = if third == 13 { self.last.wrapping_sub(1) } else { self.last.wrapping_add(1) };
+                self.last
+            }
+        };
+        if third == 0 || third >= fifo_codes {
+            self.vertices.push(c);
+        }
+        self.push([a, b, c], &[[c, b], [a, c]]);
+        Ok(())
+    }
+
+    /// A triangle that begins with a new vertex; the others by a code from the table.
+    fn by_table(&mut self, code: u8) {
+        let a = self.fresh();
+        let corner = |state: &mut Self, code: u8| match code {
+            0 => state.fresh(),
+            _ => state.vertices.back(usize::from(code)),
+        };
+        let b = corner(self, code >> 4);
+        let c = corner(self, code & 15);
+        self.vertices.push(a);
+        self.new_vertices([(code >> 4, b), (code & 15, c)]);
+        self.push([a, b, c], &[[b, a], [c, b], [a, c]]);
+    }
+
+    /// A triangle of any three vertices.
+    fn free(&mut self, code: u8) -> Result<(), &'static str> {
+        let others = self.data.byte()?;
+        if others == 0 {
+            self.next = 0;
+        }
+        let first = if code == 0xFE { 0 } else { 15 };
+        let codes = [first, others >> 4, others & 15];
+        let mut corners = [0; 3];
+        for (corner, code) in corners.iter_mut().zip(codes) {
+            *corner = match code {
+                0 => self.fresh(),
+                15 => 0,
+                _ => self.vertices.back(usize::from(code)),
+            };
+        }
+        for (corner, code) in corners.iter_mut().zip(codes) {
+            if code == 15 {
+                *corner = self.explicit()?;
+            }
+        }
+        let [a, b, c] = corners;
+        self.vertices.push(a);
+        self.new_vertices([(codes[1], b), (codes[2], c)]);
+        self.push(corners, &[[b, a], [c, b], [a, c]]);
+        Ok(())
+    }
+
+    /// Remembers those that were new, or written out.
+    fn new_vertices(&mut self, corners: [(u8, u32); 2]) {
+        for (code, index) in corners {
+            if code == 0 || code == 15 {
+                self.vertices.push(index);
+            }
+        }
+    }
+}
+
+/// Decodes `count` indices in any order.
+pub(super) fn decode_sequence(bytes: &[u8], count: usize) -> Indices {
+    match bytes.first() {
+        Some(0xD0 | 0xD1) => {}
+        _ => return Err("it does not begin like indices"),
+    }
+    // Four bytes at the end are there so that decoders may read ahead.
+    let length = bytes.len().checked_sub(5).ok_or("it is cut off")?;
+    let mut reader = Reader { rest: &bytes[1..1 + length] };
+    let mut last = [0_u32; 2];
+    let mut out = Vec::with_capacity(count.min(length));
+    for _ in 0..count {
+        let code = reader.varint()?;
+        let last = &mut last[(code & 1) as usize];
+        *last = last.wrapping_add(unzigzag(code >> 1));
+        out.push(*last);
+    }
+    if reader.rest.is_empty() { Ok(out) } else { Err("bytes are left over") }
+}

@@ -1,0 +1,70 @@
+//! What a file is, told by its bytes.
+
+use crate::error::{Error, Result};
+use crate::{glb, json};
+
+/// What a file with clips is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MotionFormat {
+    /// glTF in its binary container; also VRM and VRMA.
+    Glb,
+    /// glTF as JSON text.
+    Gltf,
+    /// Biovision Hierarchy.
+    Bvh,
+    /// A clip of DeepMimic.
+    DeepMimic,
+    /// A character of DeepMimic: joints without clips.
+    DeepMimicCharacter,
+    /// FBX, text or binary.
+    Fbx,
+}
+
+impl MotionFormat {
+    /// The format of some bytes.
+    ///
+    /// # Errors
+    /// They begin like none.
+    pub fn of(bytes: &[u8]) -> Result<Self> {
+        if glb::is_glb(bytes) {
+            return Ok(Self::Glb);
+        }
+        let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
+        let begins = |word: &[u8]| text.get(..word.len()).is_some_and(|b| b.eq_ignore_ascii_case(word));
+        match text.first() {
+            None => Err(Error::malformed("file is empty", "byte 0")),
+            Some(b'{') => Self::of_json(bytes),
+            _ if begins(b"HIERARCHY") => Ok(Self::Bvh),
+            _ if begins(b"Kaydara FBX Binary") || begins(b"; FBX ") || begins(b"FBXHeaderExtension") => {
+                Ok(Self::Fbx)
+            }
+            _ => Err(Error::malformed(
+                "not a glTF file, nor BVH, FBX or DeepMimic: begins like none",
+                "byte 0",
+            )),
+        }
+    }
+
+    /// The two formats in JSON have no key in common.
+    fn of_json(bytes: &[u8]) -> Result<Self> {
+        let root = json::parse(bytes)?;
+        Ok(if root.get("Frames").is_some() {
+            Self::DeepMimic
+        } else if root.get("Skeleton").is_some() {
+            Self::DeepMimicCharacter
+        } else {
+            Self::Gltf
+        })
+    }
+
+    /// As a word: `glb`, `gltf`, `bvh`, `deepmimic`, `fbx`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Glb => "glb",
+            Self::Gltf => "gltf",
+            Self::Bvh => "bvh",
+            Self::DeepMimic | Self::DeepMimicCharacter => "deepmimic",
+            Self::Fbx => "fbx",
+        }
+    }
+}

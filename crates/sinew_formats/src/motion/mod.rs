@@ -1,0 +1,140 @@
+//! Any file with clips by one function: glTF, GLB, VRM and VRMA, BVH, DeepMimic, FBX.
+
+mod format;
+
+pub use format::MotionFormat;
+
+use crate::bvh::{BvhOptions, read_bvh};
+use crate::deepmimic::{DeepMimicCharacter, read_deepmimic, read_deepmimic_character};
+use crate::error::{Error, Result};
+use crate::gltf::{ReadOptions, Resolver, read_gltf};
+use sinew_anim::{Clip, Event, LocalTransform, Rig};
+
+/// How to read a file with clips.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MotionOptions<'a> {
+    /// For a BVH file.
+    pub bvh: BvhOptions,
+    /// Whose clip a DeepMimic clip is: it does not say so itself.
+    pub deepmimic: Option<&'a DeepMimicCharacter>,
+    /// For a glTF or FBX file.
+    pub gltf: ReadOptions,
+}
+
+/// A rig and its clips, whatever the file was.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionFile {
+    /// What the bytes were.
+    pub format: MotionFormat,
+    /// The program that wrote it, or `""`.
+    pub generator: String,
+    /// Names of the extensions that a glTF uses.
+    pub extensions: Vec<String>,
+    /// Joints, with skins and meshes where the format has them.
+    pub rig: Rig,
+    /// Clips in file order.
+    pub clips: Vec<Clip>,
+    /// Events of each clip, by time: those of the file itself, and of the events file where one is beside it.
+    pub events: Vec<Vec<Event>>,
+    /// Seconds from frame to frame, where the file was captured or baked at a rate.
+    pub frame_time: Option<f64>,
+    /// Metres per unit of the rig, where the file says so or it is inferred; `None` leaves it to the rig's analysis.
+    pub metres_per_unit: Option<f32>,
+    /// A pose to tell the body by, where the file has one that is not the rig's rest pose: see
+    /// [`stand`](sinew_anim::retarget::stand).
+    pub rest_pose: Option<Vec<LocalTransform>>,
+    /// What was assumed, mended or left out, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Reads any file with clips; the kind is told by the bytes. `resolve` gives the files beside a glTF.
+///
+/// Formats without names of clips leave them empty. A DeepMimic character is a rig without clips.
+///
+/// # Errors
+/// Bytes of no known kind, and as the readers: [`read_gltf`], [`read_bvh`], [`read_deepmimic`]; a DeepMimic clip without
+/// its character; an FBX file where the feature `fbx` is off.
+pub fn read_motion(
+    bytes: &[u8],
+    options: &MotionOptions<'_>,
+    resolve: &mut Resolver<'_>,
+) -> Result<MotionFile> {
+    let format = MotionFormat::of(bytes)?;
+    match format {
+        MotionFormat::Glb | MotionFormat::Gltf => of_gltf(format, bytes, options.gltf, resolve),
+        MotionFormat::Bvh => of_bvh(bytes, options.bvh),
+        MotionFormat::DeepMimicCharacter => Ok(MotionFile {
+            metres_per_unit: Some(1.0),
+            ..bare(format, read_deepmimic_character(bytes)?.rig)
+        }),
+        MotionFormat::DeepMimic => of_deepmimic(bytes, options.deepmimic),
+        #[cfg(feature = "fbx")]
+        MotionFormat::Fbx => crate::fbx::read_fbx(bytes),
+        #[cfg(not(feature = "fbx"))]
+        MotionFormat::Fbx => {
+            let what = "an FBX file: this build has no reader for it (feature `fbx`)";
+            Err(Error::unsupported(what, "byte 0"))
+        }
+    }
+}
+
+/// A rig without anything else.
+fn bare(format: MotionFormat, rig: Rig) -> MotionFile {
+    MotionFile {
+        format,
+        generator: String::new(),
+        extensions: Vec::new(),
+        rig,
+        clips: Vec::new(),
+        events: Vec::new(),
+        frame_time: None,
+        metres_per_unit: None,
+        rest_pose: None,
+        notes: Vec::new(),
+    }
+}
+
+fn of_gltf(
+    format: MotionFormat,
+    bytes: &[u8],
+    options: ReadOptions,
+    resolve: &mut Resolver<'_>,
+) -> Result<MotionFile> {
+    let document = read_gltf(bytes, options, resolve)?;
+    Ok(MotionFile {
+        generator: document.generator().to_owned(),
+        extensions: document.extensions().into_iter().map(str::to_owned).collect(),
+        clips: document.clips,
+        events: document.events,
+        notes: document.warnings,
+        ..bare(format, document.rig)
+    })
+}
+
+fn of_bvh(bytes: &[u8], options: BvhOptions) -> Result<MotionFile> {
+    let document = read_bvh(bytes, options)?;
+    Ok(MotionFile {
+        clips: vec![document.clip],
+        events: vec![Vec::new()],
+        frame_time: Some(document.frame_time),
+        // The reader has turned the file's units into metres.
+        metres_per_unit: Some(1.0),
+        rest_pose: document.rest_pose,
+        notes: document.notes,
+        ..bare(MotionFormat::Bvh, document.rig)
+    })
+}
+
+fn of_deepmimic(bytes: &[u8], character: Option<&DeepMimicCharacter>) -> Result<MotionFile> {
+    let Some(character) = character else {
+        let what = "a DeepMimic clip does not say whose joints it moves: its character's file is needed";
+        return Err(Error::unsupported(what, "top level"));
+    };
+    let clip = read_deepmimic(bytes, character)?.clip;
+    Ok(MotionFile {
+        clips: vec![clip],
+        events: vec![Vec::new()],
+        metres_per_unit: Some(1.0),
+        ..bare(MotionFormat::DeepMimic, character.rig.clone())
+    })
+}
