@@ -8,7 +8,7 @@ use super::{Instance, Scene, Script, Setting, Setup};
 use crate::mannequin::Path;
 use crate::mannequin::drills::{PUNCH_ARRIVES, punch, walking};
 use sinew::anim::{Event, TrackDef, TrackId};
-use sinew::math::{Transform, Vec3};
+use sinew::math::{Transform, Vec3, max};
 use sinew::physics::{BodyId, DebugDraw, DrawKind, Material, World};
 use std::sync::Arc;
 
@@ -154,13 +154,13 @@ impl Script for Footsteps {
         let count = |foot: usize| Expected::Near { value: expected[foot].len() as f64, tolerance: 0.0 };
         let error = |foot: usize| {
             let pairs = self.times(foot).zip(&expected[foot]);
-            pairs.map(|(heard, expected)| (heard - expected).abs()).fold(0.0, f64::max)
+            pairs.map(|(heard, expected)| (heard - expected).abs() as f32).fold(0.0, max)
         };
         let first_two = self.heard.get(..2).map(|two| (two[1].place.z - two[0].place.z).abs());
         vec![
             Metric::new("left_steps", self.times(0).count() as u32, count(0)),
             Metric::new("right_steps", self.times(1).count() as u32, count(1)),
-            Metric::new("time_error_max_s", f64::max(error(0), error(1)), Expected::AtMost(1e-6)),
+            Metric::new("time_error_max_s", max(error(0), error(1)), Expected::AtMost(1e-6)),
             Metric::awaited("step_length_m", first_two, Expected::near(self.step_length, 0.02)),
         ]
     }

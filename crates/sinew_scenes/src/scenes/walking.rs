@@ -340,7 +340,7 @@ impl Script for Uneven {
     }
 
     fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(1.0, 0.3, 0.35), trails: Trails::None, ..Sight::default() }
+        Sight { direction: Vec3::new(0.8, 0.32, 1.0), trails: Trails::None, ..Sight::default() }
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {
