@@ -1,6 +1,6 @@
 //! Events on a clip's timeline.
 
-use super::actors::{Actor, Cast, Figure, Gone};
+use super::actors::{Actor, Cast, Figure, Gone, mark_floor};
 use super::metric::{Expected, Metric};
 use super::parts::{GRAVITY, ball, cuboid, fixed, floor, made_of};
 use super::sight::{Sight, Trails};
@@ -9,7 +9,7 @@ use crate::mannequin::Path;
 use crate::mannequin::drills::{PUNCH_ARRIVES, punch, walking};
 use sinew::anim::{Event, TrackDef, TrackId};
 use sinew::math::{Transform, Vec3, max};
-use sinew::physics::{BodyId, DebugDraw, DrawKind, Material, World};
+use sinew::physics::{BodyId, DebugDraw, Material, World};
 use std::sync::Arc;
 
 pub(super) const FOOTSTEPS: Scene = Scene {
@@ -171,19 +171,12 @@ impl Script for Footsteps {
 
     fn draw(&self, _: &World, out: &mut dyn DebugDraw) {
         for heard in &self.heard {
-            cross(Vec3::new(heard.place.x, 0.01, heard.place.z), out);
+            mark_floor(heard.place, 0.09, out);
         }
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {
         vec![self.actor.figure()]
-    }
-}
-
-/// A mark on the floor.
-fn cross(at: Vec3, out: &mut dyn DebugDraw) {
-    for arm in [Vec3::X, Vec3::Z, Vec3::new(0.7, 0.0, 0.7), Vec3::new(0.7, 0.0, -0.7)] {
-        out.line(at - arm * 0.09, at + arm * 0.09, DrawKind::Object);
     }
 }
 
