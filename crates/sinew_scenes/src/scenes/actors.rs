@@ -8,8 +8,8 @@ use sinew::anim::{
     AnimatedClip, AnimationSet, Animator, BuildOptions, BuiltClip, Clip, ClipId, Event, LocalTransform,
     Markers, Rig, RootMotionOptions, Skeleton, extract_root_motion, local_to_model,
 };
-use sinew::math::{Affine, Transform};
-use sinew::physics::{BodyDef, BodyId, BodyKind, Shape, Velocity, World};
+use sinew::math::{Affine, Transform, Vec3};
+use sinew::physics::{BodyDef, BodyId, BodyKind, DebugDraw, DrawKind, Shape, Velocity, World};
 use std::sync::Arc;
 
 /// A character as a picture shows it: by its skin.
@@ -137,5 +137,13 @@ impl Gone {
     pub fn due(&mut self, world: &World) -> Range<u64> {
         let next = u64::max(self.0, world.step_count() + 1);
         core::mem::replace(&mut self.0, next)..next
+    }
+}
+
+/// Draws a mark of that size (metres) on a floor at y = 0.
+pub(super) fn mark_floor(at: Vec3, size: f32, out: &mut dyn DebugDraw) {
+    let at = Vec3::new(at.x, 0.01, at.z);
+    for arm in [Vec3::X, Vec3::Z, Vec3::new(0.7, 0.0, 0.7), Vec3::new(0.7, 0.0, -0.7)] {
+        out.line(at - arm * size, at + arm * size, DrawKind::Object);
     }
 }

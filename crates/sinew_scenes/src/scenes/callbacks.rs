@@ -1,6 +1,6 @@
 //! Events on a clip's timeline.
 
-use super::actors::{Actor, Cast, Figure, Gone};
+use super::actors::{Actor, Cast, Figure, Gone, mark_floor};
 use super::metric::{Expected, Metric};
 use super::parts::{GRAVITY, ball, cuboid, fixed, floor, made_of};
 use super::sight::{Sight, Trails};
@@ -8,8 +8,8 @@ use super::{Instance, Scene, Script, Setting, Setup};
 use crate::mannequin::Path;
 use crate::mannequin::drills::{PUNCH_ARRIVES, punch, walking};
 use sinew::anim::{Event, TrackDef, TrackId};
-use sinew::math::{Transform, Vec3};
-use sinew::physics::{BodyId, DebugDraw, DrawKind, Material, World};
+use sinew::math::{Transform, Vec3, max};
+use sinew::physics::{BodyId, DebugDraw, Material, World};
 use std::sync::Arc;
 
 pub(super) const FOOTSTEPS: Scene = Scene {
@@ -154,13 +154,13 @@ impl Script for Footsteps {
         let count = |foot: usize| Expected::Near { value: expected[foot].len() as f64, tolerance: 0.0 };
         let error = |foot: usize| {
             let pairs = self.times(foot).zip(&expected[foot]);
-            pairs.map(|(heard, expected)| (heard - expected).abs()).fold(0.0, f64::max)
+            pairs.map(|(heard, expected)| (heard - expected).abs() as f32).fold(0.0, max)
         };
         let first_two = self.heard.get(..2).map(|two| (two[1].place.z - two[0].place.z).abs());
         vec![
             Metric::new("left_steps", self.times(0).count() as u32, count(0)),
             Metric::new("right_steps", self.times(1).count() as u32, count(1)),
-            Metric::new("time_error_max_s", f64::max(error(0), error(1)), Expected::AtMost(1e-6)),
+            Metric::new("time_error_max_s", max(error(0), error(1)), Expected::AtMost(1e-6)),
             Metric::awaited("step_length_m", first_two, Expected::near(self.step_length, 0.02)),
         ]
     }
@@ -171,19 +171,12 @@ impl Script for Footsteps {
 
     fn draw(&self, _: &World, out: &mut dyn DebugDraw) {
         for heard in &self.heard {
-            cross(Vec3::new(heard.place.x, 0.01, heard.place.z), out);
+            mark_floor(heard.place, 0.09, out);
         }
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {
         vec![self.actor.figure()]
-    }
-}
-
-/// A mark on the floor.
-fn cross(at: Vec3, out: &mut dyn DebugDraw) {
-    for arm in [Vec3::X, Vec3::Z, Vec3::new(0.7, 0.0, 0.7), Vec3::new(0.7, 0.0, -0.7)] {
-        out.line(at - arm * 0.09, at + arm * 0.09, DrawKind::Object);
     }
 }
 

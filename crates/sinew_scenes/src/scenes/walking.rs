@@ -1,6 +1,6 @@
 //! Characters that walk through a world.
 
-use super::actors::{Actor, Cast, Figure, Gone};
+use super::actors::{Actor, Cast, Figure, Gone, mark_floor};
 use super::metric::{Expected, Metric};
 use super::parts::{body, fixed, floor, ghost};
 use super::sight::{Sight, Trails};
@@ -13,8 +13,8 @@ use sinew::anim::{TrackDef, Wrap, local_to_model, rest_pose, sample};
 use sinew::math::{Affine, Transform, Vec3, max, trig};
 use sinew::physics::ray::Ray;
 use sinew::physics::{
-    BodyDef, BodyId, BodyKind, BodyKinds, DebugDraw, DrawKind, HeightField, HeightFieldDef, QueryFilter,
-    Shape, Velocity, World,
+    BodyDef, BodyId, BodyKind, BodyKinds, DebugDraw, HeightField, HeightFieldDef, QueryFilter, Shape,
+    Velocity, World,
 };
 use std::sync::Arc;
 
@@ -132,6 +132,14 @@ fn share_of_lap(actor: &Actor, cycle: &Cycle) -> f32 {
     actor.animator.tracks().next().map_or(0.0, |track| track.playhead().clip_time() / cycle.clip.duration)
 }
 
+/// Where a foot is in its own cycle: the right one half a cycle behind the left.
+fn phase_of(foot: usize, lap: f32) -> f32 {
+    match foot {
+        0 => lap,
+        _ => lap + 0.5 - (lap + 0.5).floor(),
+    }
+}
+
 impl Script for RootWalk {
     fn before_step(&mut self, world: &mut World) {
         let dt = world.def().dt();
@@ -155,7 +163,7 @@ impl Script for RootWalk {
         self.play_alone();
         let lap = self.share_of_lap();
         for i in 0..2 {
-            let phase = if i == 0 { lap } else { lap + 0.5 - (lap + 0.5).floor() };
+            let phase = phase_of(i, lap);
             let [from, to] = self.cycle.ball_down;
             let ball = &mut self.balls[i];
             let places = [&self.actor.model, &self.alone].map(|model| model[ball.joint].translation);
@@ -188,11 +196,8 @@ impl Script for RootWalk {
     }
 
     fn draw(&self, _: &World, out: &mut dyn DebugDraw) {
-        for print in self.balls.iter().flat_map(|ball| &ball.prints) {
-            let at = Vec3::new(print.x, 0.01, print.z);
-            for arm in [Vec3::X, Vec3::Z, Vec3::new(0.7, 0.0, 0.7), Vec3::new(0.7, 0.0, -0.7)] {
-                out.line(at - arm * 0.06, at + arm * 0.06, DrawKind::Object);
-            }
+        for &print in self.balls.iter().flat_map(|ball| &ball.prints) {
+            mark_floor(print, 0.06, out);
         }
     }
 
@@ -300,7 +305,7 @@ impl Uneven {
         let lap = share_of_lap(&self.placed.actor, &self.cycle);
         let [from, to] = self.cycle.sole_down;
         for (i, leg) in self.legs.iter().enumerate() {
-            let phase = if i == 0 { lap } else { lap + 0.5 - (lap + 0.5).floor() };
+            let phase = phase_of(i, lap);
             if (from..to).contains(&phase) {
                 self.plain.watch(world, leg.end);
                 self.placed.watch(world, leg.end);
@@ -340,7 +345,7 @@ impl Script for Uneven {
     }
 
     fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(1.0, 0.3, 0.35), trails: Trails::None, ..Sight::default() }
+        Sight { direction: Vec3::new(0.8, 0.32, 1.0), trails: Trails::None, ..Sight::default() }
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {
