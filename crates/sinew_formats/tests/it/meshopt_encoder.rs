@@ -57,7 +57,7 @@ pub fn attributes(bytes: &[u8], stride: usize, version: u8) -> Vec<u8> {
     let mut out = vec![0xA0 | version];
     let mut last = bytes[..stride].to_vec();
     let channels: Vec<u8> = (0..stride / 4).map(|k| [2 | 5 << 4, 0, 1][k % 3]).collect();
-    let block = (8192 / stride & !15).min(256);
+    let block = ((8192 / stride) & !15).min(256);
     for (number, elements) in bytes.chunks(block * stride).enumerate() {
         let (mut control, mut data) = (Vec::new(), Vec::new());
         for k in (0..stride).step_by(4) {
@@ -116,7 +116,8 @@ pub fn attributes(bytes: &[u8], stride: usize, version: u8) -> Vec<u8> {
 }
 
 /// What follows codes 0xF0 to 0xFD: which of the other two corners is new (0), or how many vertices back.
-const TABLE: [u8; 16] = [0x00, 0x12, 0x10, 0x01, 0x11, 0x21, 0x20, 0x02, 0x13, 0x31, 0x30, 0x03, 0x22, 0x33, 0, 0];
+const TABLE: [u8; 16] =
+    [0x00, 0x12, 0x10, 0x01, 0x11, 0x21, 0x20, 0x02, 0x13, 0x31, 0x30, 0x03, 0x22, 0x33, 0, 0];
 
 /// A stream of version 1, and the triangles as it gives them back: with the same corners, some begin with another.
 pub fn triangles(indices: &[u32]) -> (Vec<u8>, Vec<u32>) {
@@ -137,7 +138,8 @@ pub fn triangles(indices: &[u32]) -> (Vec<u8>, Vec<u32>) {
             } else if let Some(k) = seen {
                 k as u8
             } else {
-                let code = [(last.wrapping_sub(1), 13), (last + 1, 14)].into_iter().find(|&(near, _)| near == c);
+                let code =
+                    [(last.wrapping_sub(1), 13), (last + 1, 14)].into_iter().find(|&(near, _)| near == c);
                 if code.is_none() {
                     varint(zigzag(c.wrapping_sub(last)), &mut data);
                 }
