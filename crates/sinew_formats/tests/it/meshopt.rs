@@ -307,13 +307,13 @@ fn broken_streams_are_refused() {
     let mut random = Random::new(11);
     let start = whole.len() - bin.len();
     let mut refused = 0;
-    for _ in 0..1500 {
+    for _ in 0..300 {
         let mut bytes = whole.clone();
         let at = start + random.index(bin.len());
         bytes[at] = random.index(256) as u8;
         refused += usize::from(read(&bytes).is_err());
     }
-    assert!(refused > 100, "{refused}");
+    assert!(refused > 20, "{refused}");
     for view in 0..root["bufferViews"].as_array().unwrap().len() {
         let claimed = root["bufferViews"][view]["extensions"]["EXT_meshopt_compression"]["byteLength"]
             .as_u64()
