@@ -104,6 +104,11 @@ fn clips_go_onto_another_body() {
     let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
     let names: Vec<&str> = document.clips.iter().map(|clip| clip.name.as_str()).collect();
     assert_eq!(names, ["Walk", "walk"]);
+    // Other commands take clips in the same way.
+    let baked = folder.path("baked.glb");
+    let run =
+        sinew(&["bake", &mannequin, "--clips", &bvh, "--clip", "walk", "--seconds", "0.1", "-o", &baked]);
+    assert!(run.code == Some(0) && run.stdout.contains("plays clip walk"), "{run:?}");
     // The same skeleton takes the keys as they are.
     let same = sinew(&["convert", &out, "--clip", "Walk", "--onto", &mannequin, &folder.path("same.glb")]);
     assert!(same.stdout.contains("taken as it is"), "{same:?}");
