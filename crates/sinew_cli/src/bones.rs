@@ -4,9 +4,11 @@ use sinew::anim::{JointIdx, Mesh, Primitive, Rig, RigAnalysis, Skin, local_to_mo
 use sinew::math::{Affine, Vec3};
 
 /// Half the width of a bone, as a share of its length.
-const WIDTH: f32 = 0.08;
+const WIDTH: f32 = 0.11;
 /// Where a bone is widest, as a share of its length.
 const WAIST: f32 = 0.2;
+/// Joints nearer to each other than this are in one place, as a share of the farthest joint's distance from the root.
+const COINCIDENT: f32 = 0.005;
 /// Linear RGBA.
 const COLOR: [f32; 4] = [0.60, 0.55, 0.45, 1.0];
 
@@ -19,9 +21,10 @@ pub fn flesh_out(rig: &mut Rig, analysis: Option<&RigAnalysis>) {
         None => local_to_model(rig, &rest_pose(rig), &Affine::IDENTITY, &mut model),
     }
     let mut bones = Primitive { base_color: COLOR, ..Primitive::default() };
+    let carriers = carriers(rig, &model);
     for (joint, at) in rig.joints.iter().enumerate() {
         if let Some(parent) = at.parent
-            && let Ok(slot) = u16::try_from(parent)
+            && let Ok(slot) = u16::try_from(carriers[parent])
         {
             add_bone(&mut bones, slot, model[parent].translation, model[joint].translation);
         }
@@ -34,6 +37,21 @@ pub fn flesh_out(rig: &mut Rig, analysis: Option<&RigAnalysis>) {
     rig.skins.push(Skin { name: "bones".into(), joints, inverse_bind });
     let skin = Some(rig.skins.len() - 1);
     rig.meshes.push(Mesh { name: "bones".into(), joint: 0, skin, primitives: vec![bones] });
+}
+
+/// For each joint the one that carries its bones: joints right on their parents (the lab of CMU has eleven) leave that to
+/// these, and look like none of their own.
+fn carriers(rig: &Rig, model: &[Affine]) -> Vec<JointIdx> {
+    let reach =
+        |from: Vec3| model.iter().map(|joint| (joint.translation - from).length()).fold(0.0, f32::max);
+    let near = COINCIDENT * model.first().map_or(0.0, |root| reach(root.translation));
+    let mut carriers: Vec<JointIdx> = Vec::with_capacity(model.len());
+    for (joint, at) in rig.joints.iter().enumerate() {
+        let apart = |above: JointIdx| (model[joint].translation - model[above].translation).length();
+        let above = at.parent.map(|parent| carriers[parent]).filter(|&above| apart(above) < near);
+        carriers.push(above.unwrap_or(joint));
+    }
+    carriers
 }
 
 /// Eight triangles, each with corners of its own so that it looks flat.

@@ -355,11 +355,8 @@ fn lost_meshes(rig: &Rig, dropped: &[String], notes: &mut Vec<String>) {
     if !dropped.is_empty() {
         let names: Vec<String> = dropped.iter().take(8).map(|name| shown(name)).collect();
         let more = if dropped.len() > names.len() { ", …" } else { "" };
-        notes.push(format!(
-            "left out: {} nodes that are no bones ({}{more})",
-            dropped.len(),
-            names.join(", ")
-        ));
+        let nodes = counted(dropped.len(), "node", "nodes");
+        notes.push(format!("left out: {nodes} that carry no bone ({}{more})", names.join(", ")));
     }
 }
 

@@ -52,7 +52,7 @@ pub struct Detect {
 /// What an event of a footstep is called.
 const FOOTSTEP: &str = "footstep";
 /// Footsteps of one foot that are nearer to each other than this are one, seconds.
-const SAME_STEP: f64 = 0.15;
+const SAME_STEP: f32 = 0.15;
 
 impl Detect {
     /// Reads, looks, writes.
@@ -114,18 +114,19 @@ impl Detect {
     }
 }
 
-/// The steps that the clip does not have as events yet.
+/// The steps that the clip does not have as events yet, each once.
 fn new_steps(there: &[Event], steps: Vec<Event>) -> Vec<Event> {
-    let foot = |event: &Event| u32::from(event.payload == "right");
-    let known: Vec<(u32, f64)> = there
+    let mut known: Vec<(String, f32)> = there
         .iter()
         .filter(|event| event.name == FOOTSTEP)
-        .map(|event| (foot(event), f64::from(event.time)))
+        .map(|event| (event.payload.clone(), event.time))
         .collect();
-    let is_new = |step: &Event| {
-        known
-            .iter()
-            .all(|&(foot_of, time)| foot_of != foot(step) || (time - f64::from(step.time)).abs() > SAME_STEP)
+    let mut is_new = |step: &Event| {
+        let same =
+            |(foot, time): &(String, f32)| *foot == step.payload && (time - step.time).abs() < SAME_STEP;
+        let is_new = !known.iter().any(same);
+        known.push((step.payload.clone(), step.time));
+        is_new
     };
-    steps.into_iter().filter(is_new).collect()
+    steps.into_iter().filter(|step| is_new(step)).collect()
 }

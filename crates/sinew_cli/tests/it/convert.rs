@@ -104,9 +104,62 @@ fn clips_go_onto_another_body() {
     let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
     let names: Vec<&str> = document.clips.iter().map(|clip| clip.name.as_str()).collect();
     assert_eq!(names, ["Walk", "walk"]);
+    // Other commands take clips in the same way.
+    let baked = folder.path("baked.glb");
+    let run =
+        sinew(&["bake", &mannequin, "--clips", &bvh, "--clip", "walk", "--seconds", "0.1", "-o", &baked]);
+    assert!(run.code == Some(0) && run.stdout.contains("plays clip walk"), "{run:?}");
     // The same skeleton takes the keys as they are.
     let same = sinew(&["convert", &out, "--clip", "Walk", "--onto", &mannequin, &folder.path("same.glb")]);
     assert!(same.stdout.contains("taken as it is"), "{same:?}");
+}
+
+#[test]
+fn fbx_to_glb() {
+    let folder = Folder::new("convert-fbx");
+    let fbx = folder.file("leg.fbx", crate::fbx_file::leg());
+    let inspected = sinew(&["inspect", &fbx, "--json"]).json();
+    check_keys("inspect", &inspected);
+    assert_eq!((&inspected["container"], &inspected["clips"][0]["name"]), (&"fbx".into(), &"bend".into()));
+    let out = folder.path("leg.glb");
+    let run = sinew(&["convert", &fbx, &out]);
+    assert!(run.code == Some(0) && !run.stdout.contains("bones are drawn"), "{run:?}");
+    let (before, after) = (load(&fbx), load(&out));
+    assert_eq!((after.rig.meshes.len(), after.rig.skins.len()), (1, 1));
+    assert_eq!(after.rig.meshes[0].primitives[0].indices, before.rig.meshes[0].primitives[0].indices);
+    let (turn, shift) = difference(&before, &after);
+    assert!(turn < 1e-6 && shift < 1e-6, "{turn} rad, {shift} m");
+    // A rigged FBX is a character like any other.
+    assert_eq!(sinew(&["bake", &fbx, "-o", &folder.path("fall.glb"), "--seconds", "0.1"]).code, Some(0));
+    let cut = folder.file("cut.fbx", &crate::fbx_file::leg()[..900]);
+    assert!(sinew(&["inspect", &cut]).refusal(1).starts_with(&format!("error: {cut}: ")));
+}
+
+#[test]
+fn a_vrm_animation_moves_what_it_says() {
+    let Some(data) = shared_data() else { return };
+    let folder = Folder::new("convert-vrma");
+    let file = |name: &str| data.join("rigs").join(name).display().to_string();
+    let out = folder.path("out.glb");
+    let run =
+        sinew(&["convert", &file("vrma_test.vrma"), "--onto", &file("CoolLoops_mixamorig_vrm0.vrm"), &out]);
+    assert!(run.code == Some(0) && run.stdout.contains("left out of a VRM animation"), "{run:?}");
+    let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+    let clip = document.clips.last().expect("the clip is there");
+    let span = |role: &str| {
+        let joint = document.rig.stated_roles.iter().find(|(name, _)| name == role).expect("a bone").1;
+        let mut pose = rest_pose(&document.rig);
+        let mut at = |time: f32| {
+            sample(clip, &document.rig, time, Wrap::Clamp, &mut pose);
+            pose[joint].rotation
+        };
+        let start = at(0.0);
+        (1..=30).map(|k| at(k as f32 / 10.0).angle_to(start)).fold(0.0, f32::max)
+    };
+    assert!(span("rightUpperArm") > 0.3, "{}", span("rightUpperArm"));
+    for still in ["leftUpperArm", "leftLowerLeg", "rightUpperLeg", "spine", "head"] {
+        assert!(span(still) < 2e-3, "{still}: {}", span(still));
+    }
 }
 
 #[test]

@@ -15,3 +15,8 @@ mod view;
 #[path = "../../../../xtask/src/contract.rs"]
 #[allow(dead_code)] // xtask's tidy rule uses the rest of it
 mod contract_table;
+
+/// A small FBX file.
+#[path = "../../../sinew_formats/tests/it/fbx_file.rs"]
+#[allow(dead_code)] // the tests of formats use the rest of it
+mod fbx_file;

@@ -101,12 +101,17 @@ fn of_gltf(
     resolve: &mut Resolver<'_>,
 ) -> Result<MotionFile> {
     let document = read_gltf(bytes, options, resolve)?;
+    let animation = &document.json["extensions"]["VRMC_vrm_animation"];
+    let unread = [("expressions", "expressions of the face"), ("lookAt", "where it looks")];
+    let unread = unread.iter().filter(|(key, _)| animation.get(key).is_some());
+    let mut notes = document.warnings.clone();
+    notes.extend(unread.map(|(_, what)| format!("left out of a VRM animation: {what}")));
     Ok(MotionFile {
         generator: document.generator().to_owned(),
         extensions: document.extensions().into_iter().map(str::to_owned).collect(),
         clips: document.clips,
         events: document.events,
-        notes: document.warnings,
+        notes,
         ..bare(format, document.rig)
     })
 }

@@ -5,7 +5,8 @@ use sinew_anim::{
     Channel, Clip, Interpolation, Joint, LocalTransform, Property, Rig, Wrap, local_to_model, sample,
 };
 use sinew_formats::bvh::{
-    BvhChannel, BvhDocument, BvhOptions, BvhRows, BvhUnit, BvhWriteOptions, RestFrame, read_bvh, write_bvh,
+    BvhChannel, BvhDocument, BvhEnds, BvhOptions, BvhRows, BvhUnit, BvhWriteOptions, RestFrame, read_bvh,
+    write_bvh,
 };
 use sinew_math::{Affine, EulerOrder, Random, Rotation, Vec3};
 
@@ -470,4 +471,21 @@ fn mutated_files_do_no_harm() {
         }
         read_and_check(&bytes);
     }
+}
+
+#[test]
+fn chains_get_their_ends_where_asked() {
+    let (rig, clip) = crate::data::bar();
+    let options = BvhWriteOptions { metres_per_unit: 1.0, ..BvhWriteOptions::default() };
+    let unit = BvhUnit::Metres(1.0);
+    let read = |ends| {
+        let text = write_bvh(&rig, &clip, &BvhWriteOptions { ends, ..options }).unwrap().text;
+        read_bvh(text.as_bytes(), BvhOptions { unit, ..BvhOptions::default() }).unwrap().rig
+    };
+    let plain = read(BvhEnds::AsInRig);
+    assert_eq!(plain.joints, rig.joints);
+    let ended = read(BvhEnds::EveryChain);
+    assert_eq!(ended.joints[..3], rig.joints);
+    let [end] = &ended.joints[3..] else { panic!("one end more") };
+    assert_eq!((end.name.as_str(), end.parent, end.rest.translation), ("", Some(2), Vec3::Y * 0.5));
 }

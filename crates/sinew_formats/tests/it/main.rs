@@ -7,6 +7,8 @@ mod deepmimic;
 mod events;
 #[cfg(feature = "fbx")]
 mod fbx;
+#[cfg(feature = "fbx")]
+mod fbx_file;
 #[cfg(feature = "fs")]
 mod formats_table;
 #[cfg(feature = "fs")]

