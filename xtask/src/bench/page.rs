@@ -287,6 +287,18 @@ mod tests {
     }
 
     #[test]
+    fn clips_have_a_table_of_their_own() {
+        let error = |metres: f64| json!({ "model_error_max_m": metres });
+        let engines = vec![engine("sinew", &[2.0], &error(2e-4)), engine("ozz", &[6.0], &error(5e-4))];
+        let mut results = results();
+        results.scenes.push(scene("crowd", engines));
+        let row = animation(&results).to_string().lines().nth(2).expect("a row").to_owned();
+        assert!(row.contains("2.00 · 0.200 mm") && row.contains("3.00×"), "{row}");
+        let heading = glance(&results).to_string().lines().next().expect("a heading").to_owned();
+        assert!(heading.contains("Jolt") && !heading.contains("ozz"), "{heading}");
+    }
+
+    #[test]
     fn the_page_has_all_parts() {
         let page = page(&results(), &["net", "bake"], &Machine::this());
         for part in ["At a glance", "### chain_swing_1000", "Box3D: no balls.", "yet: net, bake.", "-O3"] {
