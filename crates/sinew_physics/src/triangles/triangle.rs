@@ -25,6 +25,17 @@ pub(crate) enum Part {
     Corner(usize),
 }
 
+impl Part {
+    /// What is at a share of an edge: its ends are corners, which the edge itself must not claim.
+    pub fn on_edge(edge: usize, share: f32) -> Self {
+        match share {
+            t if t <= 0.0 => Self::Corner(edge),
+            t if t >= 1.0 => Self::Corner((edge + 1) % 3),
+            _ => Self::Edge(edge),
+        }
+    }
+}
+
 impl Triangle {
     pub fn new(corners: [Vec3; 3], vertices: [u32; 3], active: u8) -> Self {
         Self { corners, normal: normal(&corners), vertices, active }

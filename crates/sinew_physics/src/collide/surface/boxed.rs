@@ -185,11 +185,7 @@ fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Telle
     if axis.separation > 0.0 && !(inside(s) && inside(t) && bound) {
         return None;
     }
-    let part = match t {
-        t if t <= 0.0 => Part::Corner(i),
-        t if t >= 1.0 => Part::Corner((i + 1) % 3),
-        _ => Part::Edge(i),
-    };
+    let part = Part::on_edge(i, t);
     let under = under_face(placed, &edge, axis.normal, super::name::part(teller.triangle, part));
     let under = under.as_ref().map_or(&[][..], |points| within(points, teller.margin));
     let near = |point: &ManifoldPoint| point.separation <= axis.separation + teller.solid.tolerance();
@@ -282,7 +278,7 @@ fn closest(placed: &PlacedBox, teller: &mut Teller<'_>) -> Option<Part> {
             for index in (0..8).filter(|index| index >> axis & 1 == 0) {
                 let of_box = Segment { ends: [placed.vertex(index), placed.vertex(index | 1 << axis)] };
                 let (s, t) = of_box.closest_to_segment(&edge);
-                consider(of_box.at(s), edge.at(t), Part::Edge(k), feature::edge(axis, index));
+                consider(of_box.at(s), edge.at(t), Part::on_edge(k, t), feature::edge(axis, index));
             }
         }
     }

@@ -76,12 +76,7 @@ fn nearest_rim(pill: &Pill, teller: &Teller<'_>) -> Nearest {
         let (on_core, on_rim) = (pill.core.at(s), edge.at(t));
         let distance = (on_core - on_rim).length();
         if distance < best.distance {
-            let part = match t {
-                t if t <= 0.0 => Part::Corner(k),
-                t if t >= 1.0 => Part::Corner((k + 1) % 3),
-                _ => Part::Edge(k),
-            };
-            best = Nearest { distance, on_core, on_rim, part };
+            best = Nearest { distance, on_core, on_rim, part: Part::on_edge(k, t) };
         }
     }
     best
