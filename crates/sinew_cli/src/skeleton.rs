@@ -1,6 +1,6 @@
 //! A rig as other programs want its skeleton: in metres, with the axis up that they have, without what is no bone.
 
-use sinew::anim::{Clip, Interpolation, Joint, JointIdx, Property, Rig};
+use sinew::anim::{Channel, Clip, Interpolation, Joint, JointIdx, Property, Rig};
 use sinew::math::{Rotation, Vec3};
 
 /// The joints that a skin or the clip names, and those above and below them, without meshes; the clip on these; and the
@@ -36,9 +36,19 @@ pub fn bones_only(rig: &Rig, clip: &Clip) -> (Rig, Clip, Vec<String>) {
         }
     }
     let mut clip = clip.clone();
+    clip.channels.retain(|channel| !keeps_its_size(channel, rig));
     clip.channels.retain_mut(|channel| new[channel.joint].map(|joint| channel.joint = joint).is_some());
     let dropped = (0..kept.len()).filter(|&joint| !kept[joint]).map(|joint| rig.joints[joint].name.clone());
     (bones, clip, dropped.collect())
+}
+
+/// Whether a channel of scales only repeats the rest pose, as exporters like to.
+fn keeps_its_size(channel: &Channel, rig: &Rig) -> bool {
+    let rest = rig.joints[channel.joint].rest.scale;
+    let near = |value: &[f32]| (Vec3::from_slice(value) - rest).length() < 1e-4 * rest.length();
+    channel.property == Property::Scale
+        && channel.interpolation != Interpolation::CubicSpline
+        && channel.values.chunks_exact(3).all(near)
 }
 
 /// Turns and scales a whole rig and its clip about the origin.

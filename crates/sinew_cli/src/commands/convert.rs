@@ -356,7 +356,7 @@ fn lost_meshes(rig: &Rig, dropped: &[String], notes: &mut Vec<String>) {
         let names: Vec<String> = dropped.iter().take(8).map(|name| shown(name)).collect();
         let more = if dropped.len() > names.len() { ", …" } else { "" };
         let nodes = counted(dropped.len(), "node", "nodes");
-        notes.push(format!("left out: {nodes} that carry no bone ({}{more})", names.join(", ")));
+        notes.push(format!("left out: {nodes} without a bone ({}{more})", names.join(", ")));
     }
 }
 

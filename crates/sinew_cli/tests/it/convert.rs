@@ -129,6 +129,9 @@ fn fbx_to_glb() {
     assert_eq!(after.rig.meshes[0].primitives[0].indices, before.rig.meshes[0].primitives[0].indices);
     let (turn, shift) = difference(&before, &after);
     assert!(turn < 1e-6 && shift < 1e-6, "{turn} rad, {shift} m");
+    let run = sinew(&["convert", &fbx, &folder.path("leg.bvh")]);
+    assert!(run.code == Some(0) && run.stdout.contains("1 mesh and 1 skin"), "{run:?}");
+    assert!(!run.stdout.contains("scale channels"), "no scale changes: {run:?}");
     // A rigged FBX is a character like any other.
     assert_eq!(sinew(&["bake", &fbx, "-o", &folder.path("fall.glb"), "--seconds", "0.1"]).code, Some(0));
     let cut = folder.file("cut.fbx", &crate::fbx_file::leg()[..900]);
