@@ -5,7 +5,7 @@ mod compose;
 mod save;
 mod track;
 
-pub use track::{Easing, EndAction, Track, TrackDef, TrackId};
+pub use track::{Easing, EndAction, MAX_SPEED, Track, TrackDef, TrackId};
 
 use crate::built::Cursor;
 use crate::event::{Event, FiredEvent};
@@ -15,7 +15,7 @@ use crate::pose::{BlendLayer, BlendOptions, Blender, Pose};
 use crate::set::AnimationSet;
 use crate::sync;
 use sinew_math::Transform;
-use track::{Ramp, check_weight};
+use track::{Ramp, check_speed, check_weight};
 
 /// How one motion becomes another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -244,9 +244,9 @@ impl Animator {
     /// Gives a track another speed, clip seconds per second. Without effect once it has been removed.
     ///
     /// # Panics
-    /// If `speed` is not finite.
+    /// If `speed` is not finite, or beyond [`MAX_SPEED`].
     pub fn set_speed(&mut self, id: TrackId, speed: f32) {
-        assert!(speed.is_finite(), "a speed is finite, not {speed}");
+        check_speed(speed);
         if let Some(track) = self.track_mut(id) {
             track.def.speed = speed;
         }

@@ -1,7 +1,7 @@
 //! The state of an animator as bytes, and back: exactly.
 
 use super::{Animator, Easing, EndAction, Slot, Track, TrackDef, TrackId};
-use crate::animator::track::Ramp;
+use crate::animator::track::{Ramp, is_speed};
 use crate::built::Cursor;
 use crate::event::FiredEvent;
 use crate::inertial::Inertia;
@@ -13,6 +13,10 @@ use sinew_math::{ReadError, Reader, Transform, Writer};
 
 /// First bytes: what it is, and the version of what follows.
 const HEADER: &[u8; 8] = b"SNWANIM\x01";
+
+/// Farthest that tracks of a sync group are apart, laps: one that was paused catches up in one update, and fires what it
+/// passes.
+const FARTHEST: u64 = 10_000;
 
 impl Animator {
     /// Writes all that decides the future. What the last update fired, and its root motion, are not part of that.
@@ -58,6 +62,9 @@ impl Animator {
         for _ in 0..bytes.count(37)? {
             animator.interrupted.push(read_event(set, bytes)?);
         }
+        if !are_together(&animator.slots) {
+            return Err(bytes.error("a track is far from its sync group"));
+        }
         animator.awaits_transition = read_option(bytes, |bytes| at_least_zero(bytes, Reader::f32))?;
         animator.inertia = Inertia::load(bytes, set.skeleton().len())?;
         animator.has_pose = bytes.bool()?;
@@ -66,6 +73,17 @@ impl Animator {
         read_pose(&mut animator.previous, bytes)?;
         Ok(animator)
     }
+}
+
+/// Whether the tracks of each sync group are near each other.
+fn are_together(slots: &[Slot]) -> bool {
+    slots.iter().enumerate().all(|(i, a)| {
+        slots[..i].iter().all(|b| {
+            let laps = [a, b].map(|slot| slot.track.playhead.lap());
+            let is_one_group = a.track.def.sync_group == b.track.def.sync_group;
+            a.track.def.sync_group.is_none() || !is_one_group || laps[0].abs_diff(laps[1]) <= FARTHEST
+        })
+    })
 }
 
 fn write_track(track: &Track, out: &mut Writer) {
@@ -100,6 +118,9 @@ fn read_track(set: &AnimationSet, bytes: &mut Reader<'_>) -> Result<Track, ReadE
     let clip = read_clip(set, bytes)?;
     let weight = at_least_zero(bytes, Reader::f32)?;
     let (speed, start) = (finite(bytes)?, finite(bytes)?);
+    if !is_speed(speed) {
+        return Err(bytes.error("a track is too fast"));
+    }
     let loop_mode = one_of(bytes, [LoopMode::Loop, LoopMode::PingPong, LoopMode::Once])?;
     let at_end = one_of(bytes, END_ACTIONS)?;
     let layer = bytes.u8()?;
