@@ -27,7 +27,7 @@ pub mod skinning;
 pub mod sync;
 pub mod take;
 
-pub use animator::{Animator, Easing, EndAction, Track, TrackDef, TrackId, Transition};
+pub use animator::{Animator, Easing, EndAction, MAX_SPEED, Track, TrackDef, TrackId, Transition};
 pub use blend_space::{weights_on_line, weights_on_plane};
 pub use built::{BuildError, BuildOptions, BuiltClip, ClipError, Cursor, Fill};
 pub use clip::{Channel, Clip, Interpolation, Property};

@@ -1,5 +1,8 @@
 //! Where in a clip a track is, and what it passes on its way.
 
+/// Laps from time 0, either way, from which a saved playhead may go on: beyond, seconds would have lost their digits.
+const MOST_LAPS: u64 = 1 << 53;
+
 /// What comes after the end of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LoopMode {
@@ -80,7 +83,9 @@ impl Playhead {
         let length = f64::from(length);
         let is_inside = match mode {
             LoopMode::Once => at.lap == 0 && at.time >= 0.0 && at.time <= length,
-            LoopMode::Loop | LoopMode::PingPong => at.time >= 0.0 && at.time < length,
+            LoopMode::Loop | LoopMode::PingPong => {
+                at.time >= 0.0 && at.time < length && at.lap.unsigned_abs() <= MOST_LAPS
+            }
         };
         is_inside.then_some(Self { mode, length, at, is_fresh })
     }

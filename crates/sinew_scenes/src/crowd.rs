@@ -125,7 +125,7 @@ impl Crowd {
 fn joint(index: usize, random: &mut Random) -> Joint {
     let parent = match index {
         0 => None,
-        _ if index % ROW == 0 => Some(4),
+        _ if index.is_multiple_of(ROW) => Some(4),
         _ => Some(index - 1),
     };
     let rest = LocalTransform {

@@ -9,6 +9,9 @@ use crate::set::{AnimatedClip, AnimationSet};
 use crate::sync::match_place;
 use sinew_math::Transform;
 
+/// What is played again and again stands still where it is shorter than this, seconds: else an update would have no end.
+const SHORTEST: f64 = 1e-4;
+
 /// Part of an update in which a track goes on without a break.
 #[derive(Clone, Copy)]
 struct Stretch {
@@ -180,7 +183,7 @@ fn go_on(
         run(set, slot, i, Stretch { seconds: left, ..stretch }, crossings);
         slot.track.playhead.seek(f64::from(slot.track.def.start));
         stretch = Stretch { start: stretch.start + left, seconds: stretch.seconds - left };
-        if to_end(&slot.track).is_none_or(|left| left <= 0.0) || speed == 0.0 {
+        if to_end(&slot.track).is_none_or(|left| left < SHORTEST) || speed == 0.0 {
             break;
         }
     }

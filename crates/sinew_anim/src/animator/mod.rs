@@ -8,7 +8,7 @@ mod root_inertia;
 mod save;
 mod track;
 
-pub use track::{Easing, EndAction, Track, TrackDef, TrackId};
+pub use track::{Easing, EndAction, MAX_SPEED, Track, TrackDef, TrackId};
 
 use crate::built::Cursor;
 use crate::event::{Event, FiredEvent};
@@ -21,7 +21,7 @@ use crossfade::{Crossfade, Weights};
 use fire::{LastFired, TrackCrossing};
 use root_inertia::{RootInertia, RootVelocity};
 use sinew_math::Transform;
-use track::{Ramp, check_weight};
+use track::{Ramp, check_speed, check_weight};
 
 /// How one motion becomes another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -272,9 +272,9 @@ impl Animator {
     /// Gives a track another speed, clip seconds per second. Without effect once it has been removed.
     ///
     /// # Panics
-    /// If `speed` is not finite.
+    /// If `speed` is not finite, or beyond [`MAX_SPEED`].
     pub fn set_speed(&mut self, id: TrackId, speed: f32) {
-        assert!(speed.is_finite(), "a speed is finite, not {speed}");
+        check_speed(speed);
         if let Some(track) = self.track_mut(id) {
             track.def.speed = speed;
         }

@@ -4,7 +4,7 @@ use super::{Animator, Easing, EndAction, Slot, Track, TrackDef, TrackId};
 use crate::animator::crossfade::Crossfade;
 use crate::animator::fire::LastFired;
 use crate::animator::root_inertia::{RootInertia, RootVelocity};
-use crate::animator::track::Ramp;
+use crate::animator::track::{Ramp, is_speed};
 use crate::event::FiredEvent;
 use crate::inertial::Inertia;
 use crate::playhead::{LoopMode, Place, Playhead};
@@ -15,6 +15,10 @@ use sinew_math::{ReadError, Reader, Writer};
 
 /// First bytes: what it is, and the version of what follows.
 const HEADER: &[u8; 8] = b"SNWANIM\x02";
+
+/// Farthest that tracks of a sync group are apart, laps: one that was paused catches up in one update, and fires what it
+/// passes.
+const FARTHEST: u64 = 10_000;
 
 impl Animator {
     /// Writes all that decides the future. What the last update fired, and its root motion, are not part of that.
@@ -69,6 +73,9 @@ impl Animator {
         for _ in 0..bytes.count(37)? {
             animator.interrupted.push(read_event(set, bytes)?);
         }
+        if !are_together(&animator.slots) {
+            return Err(bytes.error("a track is far from its sync group"));
+        }
         for _ in 0..bytes.count(18)? {
             animator.last_fired.push(read_last_fired(set, bytes)?);
         }
@@ -82,6 +89,17 @@ impl Animator {
         read_pose(&mut animator.previous, bytes)?;
         Ok(animator)
     }
+}
+
+/// Whether the tracks of each sync group are near each other.
+fn are_together(slots: &[Slot]) -> bool {
+    slots.iter().enumerate().all(|(i, a)| {
+        slots[..i].iter().all(|b| {
+            let laps = [a, b].map(|slot| slot.track.playhead.lap());
+            let is_one_group = a.track.def.sync_group == b.track.def.sync_group;
+            a.track.def.sync_group.is_none() || !is_one_group || laps[0].abs_diff(laps[1]) <= FARTHEST
+        })
+    })
 }
 
 fn write_track(track: &Track, out: &mut Writer) {
@@ -116,6 +134,9 @@ fn read_track(set: &AnimationSet, bytes: &mut Reader<'_>) -> Result<Track, ReadE
     let clip = read_clip(set, bytes)?;
     let weight = at_least_zero(bytes, Reader::f32)?;
     let (speed, start) = (finite(bytes)?, finite(bytes)?);
+    if !is_speed(speed) {
+        return Err(bytes.error("a track is too fast"));
+    }
     let loop_mode = one_of(bytes, [LoopMode::Loop, LoopMode::PingPong, LoopMode::Once])?;
     let at_end = one_of(bytes, END_ACTIONS)?;
     let layer = bytes.u8()?;

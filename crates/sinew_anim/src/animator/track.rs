@@ -48,6 +48,10 @@ impl Easing {
     }
 }
 
+/// Fastest that a track goes, forward or backward, clip seconds per second: an update passes as many laps, and fires as many
+/// events, as that makes.
+pub const MAX_SPEED: f32 = 1_000.0;
+
 /// How a clip is played.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackDef {
@@ -55,7 +59,7 @@ pub struct TrackDef {
     pub clip: ClipId,
     /// Share in the blend, ≥ 0; shares of a layer need not add up to 1.
     pub weight: f32,
-    /// Clip seconds per second; backward if negative.
+    /// Clip seconds per second, at most [`MAX_SPEED`]; backward if negative.
     pub speed: f32,
     /// Clip seconds at which it starts; in a sync group that plays already, the group's phase counts instead.
     pub start: f32,
@@ -90,10 +94,19 @@ impl TrackDef {
 
     pub(super) fn check(&self) {
         check_weight(self.weight);
-        assert!(self.speed.is_finite() && self.start.is_finite(), "speed and start of a track are finite");
+        check_speed(self.speed);
+        assert!(self.start.is_finite(), "the start of a track is finite, not {}", self.start);
         let loops = self.loop_mode == LoopMode::Loop;
         assert!(loops || self.sync_group.is_none(), "a track of a sync group loops");
     }
+}
+
+pub(super) fn check_speed(speed: f32) {
+    assert!(is_speed(speed), "a speed is finite and at most {MAX_SPEED}, not {speed}");
+}
+
+pub(super) fn is_speed(speed: f32) -> bool {
+    speed.abs() <= MAX_SPEED
 }
 
 pub(super) fn check_weight(weight: f32) {

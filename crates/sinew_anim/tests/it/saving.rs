@@ -104,7 +104,10 @@ fn bytes_that_lie_are_errors_or_states_that_run() {
         }
         match Animator::load(&set, &mut Reader::new(&changed)) {
             Err(_) => refused += 1,
-            Ok(mut animator) => animator.update(&set, 0.0),
+            Ok(mut animator) => {
+                animator.update(&set, 0.0);
+                animator.update(&set, 0.1);
+            }
         }
     }
     assert!(refused > 400, "{refused}");
@@ -116,4 +119,44 @@ fn the_state_of_another_set_is_refused() {
     let bytes = saved(&Animator::new(&set), &set);
     let error = Animator::load(&other, &mut Reader::new(&bytes)).expect_err("another set");
     assert_eq!(error.to_string(), "the state belongs to another set of clips (at byte 16)");
+}
+
+#[test]
+fn a_state_that_would_pass_endless_laps_is_refused() {
+    let (set, clip) = (set(), 0);
+    let clip = set.clips().nth(clip).expect("a clip");
+    let load = |change: &dyn Fn(&mut Vec<u8>, &[u8]), def: &TrackDef| {
+        let mut animator = Animator::new(&set);
+        animator.play(&set, def);
+        animator.play(&set, &TrackDef { speed: 1.25, ..*def });
+        let mut bytes = saved(&animator, &set);
+        change(&mut bytes, &1.25_f32.to_le_bytes());
+        Animator::load(&set, &mut Reader::new(&bytes)).map(|_| ()).map_err(|error| error.to_string())
+    };
+    let place_of = |bytes: &[u8], what: &[u8]| {
+        bytes.windows(what.len()).position(|window| window == what).expect("it was saved")
+    };
+    let alone = TrackDef::new(clip);
+    assert_eq!(load(&|_, _| {}, &alone), Ok(()));
+    let faster = |bytes: &mut Vec<u8>, speed: &[u8]| {
+        let place = place_of(bytes, speed);
+        bytes[place..place + 4].copy_from_slice(&1e30_f32.to_le_bytes());
+    };
+    assert!(load(&faster, &alone).is_err_and(|error| error.contains("a track is too fast")));
+    // Behind the speed: start, three kinds, no mask, a group, and then the laps.
+    let farther = |bytes: &mut Vec<u8>, speed: &[u8]| {
+        let place = place_of(bytes, speed) + 4 + 4 + 3 + 1 + 2;
+        bytes[place + 4] = 1;
+    };
+    let together = TrackDef { sync_group: Some(1), ..alone };
+    assert_eq!(load(&|_, _| {}, &together), Ok(()));
+    assert!(load(&farther, &together).is_err_and(|error| error.contains("far from its sync group")));
+}
+
+#[test]
+#[should_panic(expected = "a speed is finite and at most 1000")]
+fn a_track_that_is_too_fast_is_refused() {
+    let set = set();
+    let clip = set.clips().next().expect("a clip");
+    Animator::new(&set).play(&set, &TrackDef { speed: 2e3, ..TrackDef::new(clip) });
 }
