@@ -201,30 +201,52 @@ struct Tally {
     far: u32,
 }
 
-/// The other order of the shapes gives the opposite normal, the same points, and features with exchanged halves.
+/// Whether two answers to one question are as good: normals along which the shapes are equally far apart, and separations
+/// that say so. Which of them is told is then up to rounding, and so is the place along what is level.
+fn is_tie(a: &Placed, b: &Placed, ab: &Manifold, ba: &Manifold) -> bool {
+    let rounding = 2e-5 * f64::from(a.size().max(b.size()));
+    let along = [ab.normal, -ba.normal].map(|normal| gap(a, b, wide(normal)));
+    (along[0] - along[1]).abs() < rounding && (nearest(ab) - nearest(ba)).abs() < rounding
+}
+
+/// The other order of the shapes gives the opposite normal, the same points, and features with exchanged halves. Two of one
+/// kind, whose order nothing tells, may have another answer where that is as good, which is rare.
 #[test]
 fn the_order_of_the_shapes_does_not_matter() {
+    let mut ties: BTreeMap<(Kind, Kind), u32> = BTreeMap::new();
     judge(3, |ka, kb, a, b, _| {
         let size = a.size().max(b.size());
         let (ab, ba) = (a.collide(b, 0.05 * size), b.collide(a, 0.05 * size));
-        let context = |what: &str| format!("{what}\n{ab:?}\n{ba:?}");
-        hold((ab.count == 0) == (ba.count == 0), || context("one is missing"))?;
-        hold((ab.normal + ba.normal).length() < 1e-3, || context("another normal"))?;
-        // Of two hulls, whose faces have many corners, other four may be kept: see `hull::pairs`.
-        if (ka, kb) == (Kind::Hull, Kind::Hull) {
+        hold((ab.count == 0) == (ba.count == 0), || format!("one is missing\n{ab:?}\n{ba:?}"))?;
+        let exchanged = is_exchanged(ka, kb, size, &ab, &ba);
+        if exchanged.is_err() && ka == kb && is_tie(a, b, &ab, &ba) {
+            *ties.entry((ka, kb)).or_default() += 1;
             return Ok(());
         }
-        hold(ab.count == ba.count, || context("another number of points"))?;
-        for p in ab.points() {
-            let far = |q: &ManifoldPoint| (q.position - p.position).length();
-            let twin = ba.points().iter().min_by(|q, r| far(q).total_cmp(&far(r))).expect("equal counts");
-            hold(far(twin) < 2e-3 * size, || context("another point"))?;
-            hold((p.separation - twin.separation).abs() < 1e-3 * size, || context("another separation"))?;
-            let same = ka == kb || p.feature == twin.feature.rotate_left(16);
-            hold(same, || context("another feature"))?;
-        }
-        Ok(())
+        exchanged
     });
+    println!("as good, and exchanged for another: {ties:?}");
+    assert!(ties.values().all(|&ties| ties <= 2 + cases(100_000) / 1_000), "{ties:?}");
+}
+
+/// Whether one manifold is the other one of the exchanged shapes.
+fn is_exchanged(ka: Kind, kb: Kind, size: f32, ab: &Manifold, ba: &Manifold) -> Verdict {
+    let context = |what: &str| format!("{what}\n{ab:?}\n{ba:?}");
+    hold((ab.normal + ba.normal).length() < 1e-3, || context("another normal"))?;
+    // Of two hulls, whose faces have many corners, other four may be kept: see `hull::pairs`.
+    if (ka, kb) == (Kind::Hull, Kind::Hull) {
+        return Ok(());
+    }
+    hold(ab.count == ba.count, || context("another number of points"))?;
+    for p in ab.points() {
+        let far = |q: &ManifoldPoint| (q.position - p.position).length();
+        let twin = ba.points().iter().min_by(|q, r| far(q).total_cmp(&far(r))).expect("equal counts");
+        hold(far(twin) < 2e-3 * size, || context("another point"))?;
+        hold((p.separation - twin.separation).abs() < 1e-3 * size, || context("another separation"))?;
+        let same = ka == kb || p.feature == twin.feature.rotate_left(16);
+        hold(same, || context("another feature"))?;
+    }
+    Ok(())
 }
 
 /// A pair that is turned and moved as one has its contact there.

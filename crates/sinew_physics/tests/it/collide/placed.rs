@@ -82,7 +82,7 @@ pub fn gap(a: &Placed, b: &Placed, n: [f64; 3]) -> f64 {
     -b.support(n.map(|x| -x)) - a.support(n)
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     Box,
     Sphere,
