@@ -78,6 +78,18 @@ impl Manifold {
         self.count += 1;
     }
 
+    /// Appends a point, or puts it in the place of the one that is least deep where there is no room.
+    fn push_or_replace_shallowest(&mut self, position: Vec3, separation: f32, feature: u32) {
+        if self.count < MAX_POINTS {
+            self.push(position, separation, feature);
+        } else {
+            let deeper =
+                |a: &usize, b: &usize| self.points[*a].separation.total_cmp(&self.points[*b].separation);
+            let shallowest = (0..MAX_POINTS).max_by(deeper).unwrap_or(0);
+            self.points[shallowest] = ManifoldPoint { position, separation, feature };
+        }
+    }
+
     /// Turns the result of (B, A) into that of (A, B).
     fn flip(&mut self) {
         self.normal = -self.normal;

@@ -11,7 +11,7 @@ use super::feature::{self, WHOLE, pair};
 use super::placed::Segment;
 use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{MAX_VERTICES, Plane, Polytope};
-use sinew_math::Vec3;
+use sinew_math::{Vec3, min};
 
 /// Two faces of hulls cut to each other have at most so many corners, but for slivers.
 const FACE_CORNERS: usize = MAX_VERTICES;
@@ -50,7 +50,35 @@ pub(super) fn collide(
     let tolerance = tolerance(a.thickness, b.thickness);
     let face_b = Axis { normal: -face_b.normal, ..face_b };
     let face = choose_face(face_a, face_b, tolerance, tie);
-    push(a, b, &choose(face, edges, tolerance), margin, tolerance, out);
+    let best = choose(face, edges, tolerance);
+    push(a, b, &best, margin, tolerance, out);
+    if let Some(edges) = edges.filter(|edges| edges.of != best.of && edges.separation > best.separation) {
+        push_crossing((a, b), &best, &edges, tolerance, out);
+    }
+}
+
+/// Where two edges part better than the face that was preferred to them, they may cross beside that face, deeper than all
+/// that is over it: then their points are told, too.
+fn push_crossing(
+    (a, b): (&Polytope<'_>, &Polytope<'_>),
+    face: &Axis,
+    edges: &Axis,
+    tolerance: f32,
+    out: &mut Manifold,
+) {
+    let AxisOf::Edges(i, j) = edges.of else { return };
+    let told = out.points().iter().fold(f32::INFINITY, |least, point| min(point.separation, least));
+    if face.separation > 0.0 || told <= face.separation + tolerance + 0.05 * face.separation.abs() {
+        return;
+    }
+    let (edge_a, edge_b) = (a.edge(i), b.edge(j));
+    let (s, t) = edge_a.closest_to_segment(&edge_b);
+    let (on_a, on_b) = (edge_a.at(s), edge_b.at(t));
+    let separation = (on_b - on_a).dot(out.normal);
+    if separation < told - tolerance {
+        let feature = pair(feature::half_edge(a.topology, i), feature::half_edge(b.topology, j));
+        out.push_or_replace_shallowest((on_a + on_b) * 0.5, separation, feature);
+    }
 }
 
 /// The axis of that name, with the bits that [`best_face`] and [`best_edges`] give it; `None` if they have none of it.
