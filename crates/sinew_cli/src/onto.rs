@@ -100,6 +100,7 @@ fn by_name(clip: &Clip, events: &[Event], same: &[Option<JointIdx>]) -> Option<C
     let renamed = |channel: &Channel| same[channel.joint].map(|joint| Channel { joint, ..channel.clone() });
     let channels: Vec<Channel> = clip.channels.iter().filter_map(renamed).collect();
     let mut joints: Vec<JointIdx> = channels.iter().map(|channel| channel.joint).collect();
+    joints.sort_unstable();
     joints.dedup();
     let by = By::Name { matched: joints.len() };
     (!channels.is_empty()).then(|| Carried {

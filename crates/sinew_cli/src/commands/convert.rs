@@ -121,7 +121,7 @@ enum Target {
 }
 
 /// What goes into the new file.
-struct Cargo {
+struct Content {
     rig: Rig,
     clips: Vec<Clip>,
     events: Vec<Vec<Event>>,
@@ -151,9 +151,14 @@ impl Convert {
             (None, Target::Bvh) => {
                 let Motion { name, file, analysis } = motion;
                 let rate = file.frame_time.map(|frame_time| 1.0 / frame_time);
-                let cargo =
-                    Cargo { rig: file.rig, clips: file.clips, events: file.events, rate, notes: file.notes };
-                self.to_bvh(&name, cargo, analysis.as_ref(), &mut outputs)?
+                let content = Content {
+                    rig: file.rig,
+                    clips: file.clips,
+                    events: file.events,
+                    rate,
+                    notes: file.notes,
+                };
+                self.to_bvh(&name, content, analysis.as_ref(), &mut outputs)?
             }
         };
         outputs.write()?;
@@ -228,8 +233,8 @@ impl Convert {
         let clips = carried.iter().map(|one| one.clip.clone()).collect();
         let events: Vec<Vec<Event>> = carried.into_iter().map(|one| one.events).collect();
         if target == Target::Bvh {
-            let cargo = Cargo { rig: document.rig, clips, events, rate: Some(rate), notes };
-            let (_, notes) = self.to_bvh(&name, cargo, Some(&analysis), outputs)?;
+            let content = Content { rig: document.rig, clips, events, rate: Some(rate), notes };
+            let (_, notes) = self.to_bvh(&name, content, Some(&analysis), outputs)?;
             return Ok((lines, notes));
         }
         let new = clips.iter().zip(&events);
@@ -277,11 +282,11 @@ impl Convert {
     fn to_bvh(
         &self,
         name: &str,
-        cargo: Cargo,
+        content: Content,
         analysis: Option<&RigAnalysis>,
         outputs: &mut Outputs,
     ) -> Result<Told> {
-        let Cargo { rig, clips, events, rate, mut notes } = cargo;
+        let Content { rig, clips, events, rate, mut notes } = content;
         let (mut bones, mut clip, dropped) = bones_only(&rig, &clips[0]);
         lost_meshes(&rig, &dropped, &mut notes);
         let up = if self.up == UpAxis::Z {

@@ -9,17 +9,31 @@ use sinew_math::{Vec3, any_orthonormal, min, normalize_or};
 /// the smaller radius of each other's plane through the normal.
 const SIDEWAYS_SHARE: f32 = 0.25;
 
+/// Sine of the angle from which on cores count as crossing: about half a degree.
+const LEAST_SINE: f32 = 0.01;
+
 pub(super) fn collide(a: &Pill, b: &Pill, margin: f32, out: &mut Manifold) {
     let (s, t) = a.core.closest_to_segment(&b.core);
     let (pa, pb) = (a.core.at(s), b.core.at(t));
-    let separation = (pb - pa).length() - a.radius - b.radius;
+    let cross = a.axis.cross(b.axis);
+    let sine = cross.length();
+    let inside =
+        |share: f32, pill: &Pill| 0.0 < share && share < 1.0 && pill.core.ends[0] != pill.core.ends[1];
+    // Of cores that cross, the common perpendicular is exact however near they are; the direction between the two points
+    // is rounding then.
+    let (normal, separation) = if inside(s, a) && inside(t, b) && sine > LEAST_SINE {
+        let gap = (pb - pa).dot(cross) / sine;
+        (cross * (sign(gap) / sine), gap.abs() - a.radius - b.radius)
+    } else {
+        let across = normalize_or(cross, any_orthonormal(a.axis));
+        let apart = if across.dot(b.core.at(0.5) - a.core.at(0.5)) < 0.0 { -across } else { across };
+        let normal = direction_or(pb - pa, a.radius + b.radius, apart);
+        (normal, (pb - pa).length() - a.radius - b.radius)
+    };
     if separation > margin {
         return;
     }
-    // Crossing cores part along their common perpendicular; cores on one line across it.
-    let across = normalize_or(a.axis.cross(b.axis), any_orthonormal(a.axis));
-    let apart = if across.dot(b.core.at(0.5) - a.core.at(0.5)) < 0.0 { -across } else { across };
-    out.normal = direction_or(pb - pa, a.radius + b.radius, apart);
+    out.normal = normal;
     if !push_side_by_side(a, b, margin, out) {
         let position = pa + out.normal * (a.radius + 0.5 * separation);
         out.push(position, separation, pair(WHOLE, WHOLE));

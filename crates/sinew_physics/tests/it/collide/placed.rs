@@ -109,10 +109,13 @@ pub fn random_shape(kind: Kind, scale: f32, random: &mut Random) -> Shape {
     if kind == Kind::Hull {
         return pebble(scale, random);
     }
+    // A ball is a capsule, too: what is fitted to heads is one without length.
+    let is_ball = kind == Kind::Capsule && random.index(10) == 0;
     let mut side = || scale * random.range(0.2, 1.0);
     match kind {
         Kind::Box => Shape::Box { half_extents: Vec3::new(side(), side(), side()) },
         Kind::Sphere => Shape::Sphere { radius: side() },
+        Kind::Capsule if is_ball => Shape::Capsule { half_height: 0.0, radius: 0.6 * side() },
         Kind::Capsule => Shape::Capsule { half_height: side(), radius: 0.4 * side() },
         Kind::TaperedCapsule => {
             let radius_bottom = 0.4 * side();
