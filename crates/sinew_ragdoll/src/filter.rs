@@ -5,7 +5,7 @@
 
 use crate::build::bones::Bones;
 use crate::build::part::Part;
-use crate::fit::Fit;
+use crate::fit::{Fit, stretched};
 use sinew_math::{Vec3, max};
 use sinew_physics::Shape;
 use sinew_physics::collide::{Manifold, collide};
@@ -168,8 +168,9 @@ fn thinner(shape: &Shape, factor: f32) -> Shape {
         Shape::Cone { half_height, radius } => {
             Shape::Cone { half_height: *half_height, radius: radius * factor }
         }
+        Shape::Hull(hull) => stretched(hull, Vec3::new(factor, 1.0, factor)).unwrap_or_else(|| shape.clone()),
         // A fit is none of these.
-        Shape::HalfSpace | Shape::Hull(_) | Shape::Mesh(_) | Shape::HeightField(_) => shape.clone(),
+        Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => shape.clone(),
     }
 }
 

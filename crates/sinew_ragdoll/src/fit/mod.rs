@@ -1,4 +1,5 @@
-//! Shapes from skin: one box or capsule per bone, along the flesh and not along the bone's own axes.
+//! Shapes from skin: one per bone, along the flesh and not along the bone's own axes; of the kinds that come into question the
+//! one nearest to the skin.
 //!
 //! Bone-aligned boxes are 3 to 4 times as large as they need be (measured on CesiumMan's arms); the axes of the
 //! area-weighted covariance are what the surface itself says.
@@ -6,15 +7,17 @@
 pub mod frame;
 pub mod patch;
 pub mod rectangle;
+mod round;
+mod solid;
 pub mod surface;
 
 use crate::build::bones::Bones;
 use crate::build::part::Part;
 use core::mem::discriminant;
-use frame::{box_frame, long_axis, with_y};
-use patch::{Patch, Selection, Symmetry, quantiles_of};
-use sinew_math::{Mat3, Rotation, Transform, Vec3, clamp, max, max3, min};
-use sinew_physics::Shape;
+use patch::{Patch, Selection, Symmetry};
+use sinew_math::{Mat3, Rotation, Transform, Vec3, clamp, max, min};
+use sinew_physics::{Hull, Shape};
+use std::sync::Arc;
 use surface::Share;
 
 /// No half side or radius is smaller, metres.
@@ -28,8 +31,13 @@ const PAST_JOINT: f32 = 0.125;
 const BURDENED: f32 = 1.6;
 /// Twins whose volumes differ by more than this factor get the shape of the one that fits better.
 const UNLIKE: f32 = 1.3;
-/// Another kind of shape than the part's own is taken when its error is below this share of it.
-const CLEARLY_BETTER: f32 = 0.6;
+/// What a shape's error counts for in the choice between kinds, if it is not of the kind that suits the part: another must be
+/// clearly nearer to the skin.
+const UNUSUAL: f32 = 1.0 / 0.6;
+/// Likewise of a tapered capsule for a limb, which is as easy to live with.
+const TAPERED: f32 = 1.0 / 0.9;
+/// Likewise of a hull: it costs several times a box's collisions.
+const INTRICATE: f32 = 2.0;
 
 /// Which shapes a ragdoll is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -87,30 +95,51 @@ fn reconciled(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
     let frame = other.character_from_body;
     let axes = frame.rotation.to_mat3();
     let turned = |v: Vec3| Vec3::new(-v.x, v.y, v.z);
-    // A mirror image of three axes is left-handed; shapes are even in x, so x may be turned round.
+    // A mirror image of three axes is left-handed, so x is turned round; all shapes but hulls are even in x.
     let axes = Mat3::from_cols(-turned(axes.x_axis), turned(axes.y_axis), turned(axes.z_axis));
     let character_from_body = Transform::new(image(frame.translation), Rotation::from_mat3(&axes));
-    Fit { character_from_body, selection: Selection::Twin, ..other }
+    let Some(shape) = with_x_turned(&other.shape) else { return own };
+    Fit { shape, character_from_body, selection: Selection::Twin, ..other }
+}
+
+/// The image of a shape in the plane x = 0 of its own axes.
+fn with_x_turned(shape: &Shape) -> Option<Shape> {
+    match shape {
+        Shape::Hull(hull) => stretched(hull, Vec3::new(-1.0, 1.0, 1.0)),
+        even => Some(even.clone()),
+    }
+}
+
+/// The hull of a hull's corners, each coordinate times a factor; `None` if rounding leaves none.
+pub(crate) fn stretched(hull: &Hull, factors: Vec3) -> Option<Shape> {
+    let corners: Vec<Vec3> = hull.vertices().iter().map(|&corner| corner * factors).collect();
+    Hull::new(&corners).ok().map(|hull| Shape::Hull(Arc::new(hull)))
 }
 
 fn fit_bone(bones: &Bones, bone: usize, shares: &[Share], choice: ShapeChoice) -> Fit {
     let symmetry =
         if bones.is_central(bone) { Symmetry::Mirrored(bones.plane_of_symmetry()) } else { Symmetry::AsIs };
     let Some(patch) = Patch::select(shares, symmetry) else { return stand_in(bones, bone) };
-    let capsule = || fit_capsule(bones, bone, &patch);
-    let cuboid = || fit_box(bones, bone, &patch);
     match choice {
-        ShapeChoice::Box => cuboid(),
-        ShapeChoice::Capsule => capsule(),
-        ShapeChoice::Auto => {
-            let (own, other) = if prefers_box(bones.list[bone].part) {
-                (cuboid(), capsule())
-            } else {
-                (capsule(), cuboid())
-            };
-            if other.error < CLEARLY_BETTER * own.error { other } else { own }
-        }
+        ShapeChoice::Box => solid::fit_box(bones, bone, &patch),
+        ShapeChoice::Capsule => round::fit_capsule(bones, bone, &patch),
+        ShapeChoice::Auto => nearest(bones, bone, &patch),
     }
+}
+
+/// Of all kinds, the shape whose error, weighed by how well its kind suits the part, is least.
+fn nearest(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
+    let is_square = prefers_box(bones.list[bone].part);
+    let [flat, round] = if is_square { [1.0, UNUSUAL] } else { [UNUSUAL, 1.0] };
+    let capsule = round::fit_capsule(bones, bone, patch);
+    let tapered = round::taper(&capsule, patch).map(|fit| (fit, round * TAPERED));
+    let hull = solid::fit_hull(bones, bone, patch).map(|fit| (fit, INTRICATE));
+    let cuboid = (solid::fit_box(bones, bone, patch), flat);
+    let first = (round::rounded(capsule), round);
+    let least = [Some(cuboid), tapered, hull].into_iter().flatten().fold(first, |best, other| {
+        if other.0.error * other.1 < best.0.error * best.1 { other } else { best }
+    });
+    least.0
 }
 
 fn prefers_box(part: Part) -> bool {
@@ -132,65 +161,6 @@ fn stand_in(bones: &Bones, bone: usize) -> Fit {
         area: 0.0,
         selection: Selection::Nothing,
     }
-}
-
-/// Of the axes that come into question, the capsule nearest to the skin.
-fn fit_capsule(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
-    let axis = long_axis(bones, bone, patch);
-    let along = capsule_along(bones, bone, patch, axis);
-    if bones.list[bone].part != Part::Head {
-        return along;
-    }
-    // A head may be longer from chin to crown or from nose to nape, and neither is where its bone points.
-    [Vec3::Y, Vec3::Z].into_iter().map(|axis| capsule_along(bones, bone, patch, axis)).fold(along, nearer)
-}
-
-fn nearer(a: Fit, b: Fit) -> Fit {
-    if b.error < a.error { b } else { a }
-}
-
-fn capsule_along(bones: &Bones, bone: usize, patch: &Patch, axis: Vec3) -> Fit {
-    let height_of = |p: Vec3| (p - patch.center).dot(axis);
-    let [lo, hi] = patch.quantiles([0.01, 0.99], height_of);
-    let (lo, hi) = clip_at_joints(bones, bone, patch.center, axis, lo, hi);
-    let middle = patch.center + axis * (0.5 * (lo + hi));
-    let half = 0.5 * (hi - lo);
-    // The ends are left out: they reach around joints, where the surface is wider than the limb.
-    let mut radial: Vec<_> = patch
-        .samples
-        .iter()
-        .filter(|s| (s.point - middle).dot(axis).abs() < 0.8 * half)
-        .map(|s| (((s.point - middle) - axis * (s.point - middle).dot(axis)).length(), s.area))
-        .collect();
-    if radial.is_empty() {
-        radial.push((half, 1.0));
-    }
-    let frame = Transform::new(middle, Rotation::from_arc(Vec3::Y, axis));
-    // The 80 % quantile of the radial distance suits a cylinder; on a tapered limb it is fat and a lower one is nearer.
-    let [thick, thin] = quantiles_of(&mut radial, [0.8, 0.65]).map(|radius| {
-        let radius = max(min(radius * SHRINK, half), LEAST_HALF);
-        measured(Shape::Capsule { half_height: max(half - radius, 0.0), radius }, frame, patch)
-    });
-    if thin.error < 0.95 * thick.error { thin } else { thick }
-}
-
-fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
-    let mut direction = bones.direction(bone, Some(patch.center));
-    if bones.list[bone].part == Part::Foot {
-        // A foot is long from heel to toes, although its bone slopes down to them.
-        direction.y = 0.0;
-    }
-    let axes = with_y(box_frame(bones, bone, patch), direction);
-    let extent = |axis: Vec3| patch.quantiles([0.01, 0.99], |p| (p - patch.center).dot(axis));
-    let ([x_lo, x_hi], [z_lo, z_hi]) = (extent(axes.x_axis), extent(axes.z_axis));
-    let [y_lo, y_hi] = extent(axes.y_axis);
-    let (y_lo, y_hi) = clip_at_joints(bones, bone, patch.center, axes.y_axis, y_lo, y_hi);
-    let lo = Vec3::new(x_lo, y_lo, z_lo);
-    let hi = Vec3::new(x_hi, y_hi, z_hi);
-    let half_extents = max3((hi - lo) * (0.5 * SHRINK), Vec3::splat(LEAST_HALF));
-    let middle = patch.center + axes * ((lo + hi) * 0.5);
-    let frame = Transform::new(middle, Rotation::from_mat3(&axes));
-    measured(Shape::Box { half_extents }, frame, patch)
 }
 
 /// The extent `lo..hi` of a shape along `axis` from `origin`: cut where it passes the bone's own joint and that of its

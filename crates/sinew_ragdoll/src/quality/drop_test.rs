@@ -42,7 +42,8 @@ pub fn drop_test(def: &RagdollDef) -> DropReport {
 }
 
 /// Orientations and angular velocities (rad/s) of the eight drops: standing, on the face, on the back, on each side, on
-/// the head, and two that tumble.
+/// the head, and two that tumble. That on the head is a little askew: upright, a symmetric body with a large head balances on it
+/// for seconds, which says nothing of how it comes to rest.
 fn releases() -> [(Rotation, Vec3); 8] {
     let turned = |axis, degrees: f32| Rotation::from_axis_angle(axis, degrees.to_radians());
     let askew = turned(Vec3::Z, 40.0) * turned(Vec3::X, 25.0);
@@ -52,7 +53,7 @@ fn releases() -> [(Rotation, Vec3); 8] {
         (turned(Vec3::X, -90.0), Vec3::ZERO),
         (turned(Vec3::Z, 90.0), Vec3::ZERO),
         (turned(Vec3::Z, -90.0), Vec3::ZERO),
-        (turned(Vec3::X, 180.0), Vec3::ZERO),
+        (turned(Vec3::Z, 8.0) * turned(Vec3::X, 180.0), Vec3::ZERO),
         (askew, Vec3::new(3.0, 1.0, -2.0)),
         (askew.inverse(), Vec3::new(-4.0, 2.0, 3.0)),
     ]

@@ -5,6 +5,7 @@ mod refind;
 mod row;
 mod visit;
 
+use super::effort::Firmness;
 use super::response::Response;
 use super::tree::Link;
 use super::{REDUNDANCY, SolverBody, free_response};
@@ -81,8 +82,8 @@ pub(crate) struct ManifoldRows {
     material: ContactMaterial,
     slop: f32,
     soft: Softness,
-    /// Share of that softness, but for the bias.
-    softness: f32,
+    /// Its share of that softness is not for the bias.
+    firmness: Firmness,
     /// Of the present pose.
     separation: [f32; MAX_POINTS],
     rows: [Row; MAX_POINTS],
@@ -152,7 +153,7 @@ impl ManifoldRows {
             material: source.material,
             slop: source.slop,
             soft: Softness::new(min(hertz, 0.25 / source.h), CONTACT_DAMPING, source.h),
-            softness: 1.0,
+            firmness: Firmness::default(),
             separation: [0.0; MAX_POINTS],
             rows: [Row::ZERO; MAX_POINTS],
             tangents: [Row::ZERO; 2],
@@ -180,9 +181,9 @@ impl ManifoldRows {
         rows
     }
 
-    /// Has it give by so much of what its frequency says.
-    pub fn soften(&mut self, share: f32) {
-        self.softness = share;
+    /// Says how hard it is.
+    pub fn set_firmness(&mut self, firmness: Firmness) {
+        self.firmness = firmness;
     }
 
     /// Cores of the manifold's points at the present poses.

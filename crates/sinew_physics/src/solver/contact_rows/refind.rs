@@ -9,7 +9,7 @@ use crate::spatial::{Vec6, angular, linear};
 use sinew_math::{Rotation, Transform, Vec3, max, min};
 
 /// A body that turns by more than this within a substep has its contacts looked for anew, radians.
-pub(super) const REFIND_TURN: f32 = 0.03;
+pub(super) const REFIND_TURN: f32 = 0.01;
 /// Likewise where a rim rolls: however slowly, what pushes from where the rim was turns the body as much as it gyrates.
 pub(super) const ROLL_TURN: f32 = 1e-4;
 /// Then points this far apart count, as a share of the smaller bounding radius: a hand between thigh and floor that spins

@@ -9,8 +9,6 @@ use crate::solver::{disk, lcp};
 use crate::spatial::{Vec6, ZERO6, angular};
 use sinew_math::{clamp, max, min};
 
-/// Fastest speed with which overlap is pushed apart, m/s.
-const PUSH_SPEED: f32 = 3.0;
 /// What static friction leaves of the speed of two surfaces along each other, m/s, if they slide: more than loads that have
 /// not converged make of it in a substep.
 const SLIP_SPEED: f32 = 0.005;
@@ -56,8 +54,8 @@ impl ManifoldRows {
             }
         }
         // The block's softness is taken at the manifold's centre; taken at each point a 1 kg foot under 69 kg sinks 7 mm.
-        let at_center =
-            self.softness * self.soft.impulse_scale / self.soft.mass_scale * mean / self.count as f32;
+        let at_center = self.firmness.softness * self.soft.impulse_scale / self.soft.mass_scale * mean
+            / self.count as f32;
         let mut problem = NormalProblem::default();
         for i in 0..self.count {
             let s = self.separation[i];
@@ -68,7 +66,8 @@ impl ManifoldRows {
             } else if s > 0.0 {
                 s / h
             } else if biased {
-                let push = max(self.soft.bias_rate * min(s + DEAD_ZONE * self.slop, 0.0), -PUSH_SPEED);
+                let apart = self.soft.bias_rate * min(s + DEAD_ZONE * self.slop, 0.0);
+                let push = max(apart, -self.firmness.push_speed);
                 min(push, -self.material.launch)
             } else {
                 -self.material.launch

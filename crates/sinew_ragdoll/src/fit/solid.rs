@@ -1,0 +1,54 @@
+//! Boxes and hulls around skin.
+
+use super::patch::Patch;
+use super::{Fit, LEAST_HALF, SHRINK, clip_at_joints, measured};
+use crate::build::bones::Bones;
+use crate::build::part::Part;
+use crate::fit::frame::{box_frame, with_y};
+use sinew_math::{Rotation, Transform, Vec3, max3, min3};
+use sinew_physics::{Hull, Shape};
+use std::sync::Arc;
+
+pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
+    let mut direction = bones.direction(bone, Some(patch.center));
+    if bones.list[bone].part == Part::Foot {
+        // A foot is long from heel to toes, although its bone slopes down to them.
+        direction.y = 0.0;
+    }
+    let axes = with_y(box_frame(bones, bone, patch), direction);
+    let extent = |axis: Vec3| patch.quantiles([0.01, 0.99], |p| (p - patch.center).dot(axis));
+    let ([x_lo, x_hi], [z_lo, z_hi]) = (extent(axes.x_axis), extent(axes.z_axis));
+    let [y_lo, y_hi] = extent(axes.y_axis);
+    let (y_lo, y_hi) = clip_at_joints(bones, bone, patch.center, axes.y_axis, y_lo, y_hi);
+    let lo = Vec3::new(x_lo, y_lo, z_lo);
+    let hi = Vec3::new(x_hi, y_hi, z_hi);
+    let half_extents = max3((hi - lo) * (0.5 * SHRINK), Vec3::splat(LEAST_HALF));
+    let middle = patch.center + axes * ((lo + hi) * 0.5);
+    let frame = Transform::new(middle, Rotation::from_mat3(&axes));
+    measured(Shape::Box { half_extents }, frame, patch)
+}
+
+/// The hull of the outermost points along 26 directions: the faces, edges and corners of the part's box. `None` where they
+/// have none.
+pub(super) fn fit_hull(bones: &Bones, bone: usize, patch: &Patch) -> Option<Fit> {
+    let cuboid = fit_box(bones, bone, patch);
+    let Shape::Box { half_extents: half } = cuboid.shape else { return None };
+    let frame = cuboid.character_from_body;
+    // Within the box, so that it ends at the joints where that does.
+    let local: Vec<_> =
+        patch.samples.iter().map(|s| max3(min3(frame.inverse_point(s.point), half), -half)).collect();
+    let mut points = Vec::with_capacity(26);
+    for direction in directions() {
+        let along = direction / half;
+        let outermost = local.iter().copied().reduce(|a, b| if b.dot(along) > a.dot(along) { b } else { a });
+        points.extend(outermost.map(|p| p * SHRINK));
+    }
+    let hull = Hull::new(&points).ok()?;
+    Some(measured(Shape::Hull(Arc::new(hull)), frame, patch))
+}
+
+/// Toward the faces, edges and corners of a cube.
+fn directions() -> impl Iterator<Item = Vec3> {
+    let side = |k: i32| (k - 1) as f32;
+    (0..27).map(move |k| Vec3::new(side(k % 3), side(k / 3 % 3), side(k / 9))).filter(|d| *d != Vec3::ZERO)
+}
