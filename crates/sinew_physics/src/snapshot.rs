@@ -246,6 +246,12 @@ fn save_body(w: &mut Writer, body: &Body) {
     w.u64(body.user_data);
 }
 
+/// Whether a body of such mass and moments may be dynamic.
+fn solid(mass: f32, inertia: Vec3) -> bool {
+    let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
+    [mass, inertia.x, inertia.y, inertia.z].into_iter().all(positive)
+}
+
 fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadError> {
     let number = r.u8()?;
     let kind = match number {
@@ -254,14 +260,6 @@ fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadErr
         2 => BodyKind::Dynamic,
         3 => BodyKind::Kinematic,
         _ => return Err(r.error("unknown kind of body").into()),
-    };
-    let solid = |mass: f32, inertia: Vec3| {
-        mass > 0.0
-            && inertia.x > 0.0
-            && inertia.y > 0.0
-            && inertia.z > 0.0
-            && mass.is_finite()
-            && inertia.is_finite()
     };
     let laid_by = if number == 3 { Some((r.f32()?, r.vec3()?)) } else { None };
     if laid_by.is_some_and(|(mass, inertia)| !solid(mass, inertia)) {

@@ -47,7 +47,6 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     }
 
     stage(Stage::Store, &mut || finalize::store(islands, joints, parted, contacts, groups, events, context));
-    world.work = islands.work();
     stage(Stage::Finalize, &mut || finalize::finalize(islands, bodies, activity, events, context));
     let filter = parted.filter(joints);
     stage(Stage::Continuous, &mut || finalize::continuous(islands, bodies, activity, broad, filter, context));
@@ -74,7 +73,6 @@ pub(crate) fn solve(phase: Phase, task: &mut Task<'_>, view: &View<'_>, context:
         Phase::Relax(_) => {
             stage(Stage::Relax, &mut || solver.relax());
             stage(Stage::Restitution, &mut || solver.restitution());
-            solver.end_substep();
             solver.drop_fields(view);
         }
         Phase::Store => stage(Stage::Store, &mut || solver.store(solution)),

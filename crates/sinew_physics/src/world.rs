@@ -190,6 +190,7 @@ impl World {
         let h = dt / substeps as f32;
         let context = StepContext { dt, h, substeps, time: self.time(), runner, profiler };
         step(self, &context);
+        self.work = self.islands.work();
         self.steps += 1;
     }
 

@@ -328,7 +328,7 @@ impl IslandSolver {
     }
 
     /// On the way that the bodies are about to go, J: force times way. Kinetic and potential energy together rise by no more.
-    fn work_of_motors(&self) -> f32 {
+    pub(super) fn work_of_motors(&self) -> f32 {
         let mut sum = 0.0;
         for joint in self.joints.iter().filter(|joint| joint.drive.motor.is_some()) {
             let rate = joint.rate(&self.velocities);

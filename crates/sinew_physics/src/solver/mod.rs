@@ -395,12 +395,7 @@ impl IslandSolver {
         self.add_relax_reactions();
     }
 
-    /// What motors and bodies that move by themselves have done in the substep.
-    pub fn end_substep(&mut self) {
-        self.add_kinematic_work();
-    }
-
-    /// Bounce of what was hit in this substep.
+    /// Bounce of what was hit in this substep, the last of it: the work of bodies that move by themselves is counted.
     pub fn restitution(&mut self) {
         if self.manifolds.iter().any(ManifoldRows::bounces) {
             self.sweep(Pass::Restitution);
@@ -409,6 +404,7 @@ impl IslandSolver {
                 rows.add_bounce();
             }
         }
+        self.add_kinematic_work();
     }
 
     /// Rows, inertias, factor and response at the present pose.
