@@ -17,7 +17,7 @@ pub enum DrawKind {
     Awake,
     /// Outline of a sleeping one.
     Asleep,
-    /// From a body's centre to a joint's anchor.
+    /// From a body's centre to a joint's anchor; of a joint that leaves all free, from the anchor to where it is pulled.
     Joint,
     /// A spring between two particles.
     Spring,
@@ -53,6 +53,14 @@ impl World {
             }
         }
         for (_, joint) in self.joints.iter() {
+            if joint.leaves_all_free() {
+                let end = |body: u32, frame: Transform| self.bodies.at(body).world_from_principal * frame;
+                let wanted = joint.drive.motor.map(|motor| motor.target);
+                let wanted = wanted.or(joint.drive.spring.map(|spring| spring.rest)).unwrap_or_default();
+                let goal = end(joint.a, joint.frame_a).point(wanted.translation);
+                out.line(end(joint.b, joint.frame_b).translation, goal, DrawKind::Joint);
+                continue;
+            }
             for (body, frame) in [(joint.a, joint.frame_a), (joint.b, joint.frame_b)] {
                 let pose = self.bodies.at(body).world_from_principal;
                 out.line(pose.translation, pose.point(frame.translation), DrawKind::Joint);

@@ -335,7 +335,7 @@ fn a_hit_weakens_by_half_from_joint_to_joint() {
     let mut drives = Drives::new(&def);
     let index = |role: &str| def.bodies.iter().position(|body| body.role == role).expect("it has it");
     let mass: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
-    drives.hit(&def, index("leftHand"), 0.2 * mass);
+    drives.hit(&def, index("leftHand"), 0.1 * mass);
     for (role, share) in [("leftHand", 0.5), ("leftLowerArm", 0.75), ("leftUpperArm", 0.875)] {
         assert!((drives.vigour(index(role)) - share).abs() < 1e-5, "{role}: {}", drives.vigour(index(role)));
     }

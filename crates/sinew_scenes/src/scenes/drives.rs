@@ -27,7 +27,7 @@ pub(super) const HIT_REACTION: Scene = Scene {
     name: "hit_reaction",
     about: "the mannequin walks on the spot, led by pins and muscles, and is hit on a hand: the arm gives way and returns",
     steps: 480,
-    settings: &[Setting::number("impulse", 12.0, (0.0, 60.0), "on the hand, N·s")],
+    settings: &[Setting::number("impulse", 20.0, (0.0, 60.0), "on the hand, N·s")],
     build: hit_reaction,
 };
 
@@ -146,7 +146,7 @@ fn hit_reaction(setup: &Setup<'_>) -> Instance {
     let states = walk.states(0, dt);
     let ragdoll = Ragdoll::spawn(&mut world, &walk.def.ragdoll, &states, &Flesh::default());
     let mut drives = Drives::new(&walk.def.ragdoll);
-    drives.set_all(DriveMode::Pinned(Muscle::ALIVE, Pin { hertz: 8.0, ..Pin::FIRM }), 0.0);
+    drives.set_all(DriveMode::Pinned(Muscle::ALIVE, Pin { hertz: 4.0, ..Pin::FIRM }), 0.0);
     let start = vertical_momentum(&world, &ragdoll);
     let mut led = Led {
         hand: body(&walk.def.ragdoll, "leftLowerArm"),
