@@ -17,7 +17,7 @@ pub enum DrawKind {
     Awake,
     /// Outline of a sleeping one.
     Asleep,
-    /// From a body's centre to a joint's anchor; of a joint that leaves all free, from the anchor to where it is pulled.
+    /// From a body's centre to a joint's anchor; of a pin, from the anchor to where it is pulled.
     Joint,
     /// A spring between two particles.
     Spring,
@@ -53,11 +53,10 @@ impl World {
             }
         }
         for (_, joint) in self.joints.iter() {
-            if joint.leaves_all_free() {
+            if joint.leaves_all_free() && self.bodies.at(joint.a).kind != BodyKind::Dynamic {
                 let end = |body: u32, frame: Transform| self.bodies.at(body).world_from_principal * frame;
-                let wanted = joint.drive.motor.map(|motor| motor.target);
-                let wanted = wanted.or(joint.drive.spring.map(|spring| spring.rest)).unwrap_or_default();
-                let goal = end(joint.a, joint.frame_a).point(wanted.translation);
+                let wanted = joint.drive.motor.map_or(Vec3::ZERO, |motor| motor.target.translation);
+                let goal = end(joint.a, joint.frame_a).point(wanted);
                 out.line(end(joint.b, joint.frame_b).translation, goal, DrawKind::Joint);
                 continue;
             }
