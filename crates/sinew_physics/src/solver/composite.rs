@@ -2,7 +2,7 @@
 
 use super::tree::{Link, NONE};
 use super::{IslandSolver, SolverBody, SolverJoint};
-use crate::joint::{DIRECTIONS, JointRows};
+use crate::joint::{DIRECTIONS, JointRows, TWIST};
 use crate::spatial::{Vec6, ZERO6, ZERO66, angular, linear, spd_inverse};
 use sinew_math::{Sym3, Vec3, max};
 
@@ -18,13 +18,13 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    fn of(body: &SolverBody, reference: Vec3) -> Self {
+    pub(super) fn of(body: &SolverBody, reference: Vec3) -> Self {
         let arm = body.pose.translation - reference;
         let own = Sym3::from_rotated_diagonal(body.pose.rotation, body.inertia);
         Self { mass: body.mass, moment: arm * body.mass, inertia: own + parallel_axis(arm) * body.mass }
     }
 
-    fn plus(self, other: &Self) -> Self {
+    pub(super) fn plus(self, other: &Self) -> Self {
         Self {
             mass: self.mass + other.mass,
             moment: self.moment + other.moment,
@@ -72,6 +72,7 @@ impl IslandSolver {
             return;
         }
         self.sum_pieces();
+        self.share_out();
         let pieces = &self.scratch.pieces;
         for j in 0..self.joints.len() {
             if !self.joints[j].drive.needs_mass() {
@@ -84,7 +85,9 @@ impl IslandSolver {
                 let Some(link) = self.links.get(side as usize) else { continue };
                 let center = self.bodies[side as usize].pose.translation;
                 // Below this joint the subtree, above it the rest of the tree, unless a fixed body holds that.
-                let (piece, reference) = if link.joint as usize == j {
+                let (piece, reference) = if let Some(piece) = self.pins.piece(j) {
+                    (Some(piece), self.reference(link.tree))
+                } else if link.joint as usize == j {
                     (Some(pieces[side as usize]), self.reference(link.tree))
                 } else if self.is_tree_joint(j) {
                     let child = if side == joint.a { joint.b } else { joint.a };
@@ -128,27 +131,36 @@ impl IslandSolver {
         self.links.partition_point(|link| link.tree < tree)
     }
 
-    fn reference(&self, tree: u32) -> Vec3 {
+    pub(super) fn reference(&self, tree: u32) -> Vec3 {
         self.bodies[self.root(tree)].pose.translation
     }
 }
 
-/// By direction: the mass that answers an impulse along each row while the rigid rows hold.
+/// By direction: the mass that answers an impulse along each row while the rigid rows hold. Open rotations are driven all
+/// together, and each counts while the others hold: the axes of a shoulder do not lie along the arm, and a row that the arm
+/// could give way to by spinning about itself would weigh next to nothing.
 fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS]) -> Vec6 {
     let rigid = if joint.drive.weld.is_some() { 0 } else { rows.locked };
+    let turns = |row: usize| row >= rows.locked && rows.direction[row] >= TWIST;
     let mut out = ZERO6;
     for row in rigid..rows.count {
+        let is_held = |k: usize| k < rigid || (turns(row) && turns(k) && k != row);
+        let mut list = [0; DIRECTIONS];
+        let mut count = 0;
+        for k in (0..rows.count).filter(|&k| is_held(k)).chain([row]) {
+            list[count] = k;
+            count += 1;
+        }
         let mut held = ZERO66;
-        let place = |k: usize| if k == rigid { row } else { k };
-        for i in 0..=rigid {
-            for k in 0..=rigid {
-                held[i][k] = response[place(i)][place(k)];
+        for i in 0..count {
+            for k in 0..count {
+                held[i][k] = response[list[i]][list[k]];
             }
         }
-        let inverse = spd_inverse(&held, rigid + 1);
+        let inverse = spd_inverse(&held, count);
         let alone = response[row][row];
         // Rows that depend on each other (a gimbal's end) leave the row by itself.
-        let mass = inverse.map_or(if alone > 0.0 { 1.0 / alone } else { 0.0 }, |m| m[rigid][rigid]);
+        let mass = inverse.map_or(if alone > 0.0 { 1.0 / alone } else { 0.0 }, |m| m[count - 1][count - 1]);
         out[rows.direction[row]] = max(mass, LEAST_MASS);
     }
     out
