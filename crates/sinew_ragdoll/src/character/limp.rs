@@ -1,12 +1,14 @@
 //! Going limp at the speed of the animation, and lying still.
 
 use super::{AfterSettling, Character, Event, State};
+use crate::def::RagdollBodyDef;
 use crate::hand_over::body_velocity;
 use crate::ragdoll::{BodyState, Ragdoll};
+use sinew_math::Transform;
 use sinew_physics::{BodyId, World};
 
-/// Half the time between the two poses that the hand-over takes velocities from, seconds: short against any motion,
-/// long against rounding.
+/// Seconds ahead of now of the pose that the hand-over takes velocities from: short against any motion, long against
+/// rounding.
 const HAND_OVER: f32 = 1.0 / 240.0;
 
 /// A body below both speeds lies still, m/s and rad/s.
@@ -30,38 +32,49 @@ impl Character {
     /// Lets the bodies take over, at the pose and the speed that the animation has now. Nothing happens if they did
     /// already.
     pub fn go_limp(&mut self, world: &mut World) {
-        if self.state == State::Limp {
-            return;
+        if self.ragdoll.is_some() {
+            return self.fall_again();
         }
-        let (mut before, mut after) =
-            (core::mem::take(&mut self.scratch.before), core::mem::take(&mut self.scratch.after));
-        self.animated_bodies(-HAND_OVER, &mut before);
-        self.animated_bodies(HAND_OVER, &mut after);
-        let velocities: Vec<_> = before
-            .iter()
-            .zip(&after)
-            .zip(&self.def.ragdoll.bodies)
-            .map(|((&before, &after), body)| {
-                body_velocity(before, after, body.mass.center, 2.0 * HAND_OVER, self.def.speed_bound)
-            })
-            .collect();
-        self.animate();
-        self.bodies_of_pose(self.world_from_character, &mut after);
-        let states: Vec<_> = after
-            .iter()
-            .zip(velocities)
-            .map(|(&world_from_body, velocity)| BodyState { world_from_body, velocity })
-            .collect();
+        let states = self.carried();
         self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
         self.ragdoll = Some(Ragdoll::spawn(world, &self.def.ragdoll, &states, &self.def.flesh));
         self.state = State::Limp;
         self.stillness = Stillness::default();
         self.events.push(Event::WentLimp);
-        (self.scratch.before, self.scratch.after) = (before, after);
     }
 
-    /// Takes the pose from the bodies and waits until they lie still.
-    pub(super) fn follow_bodies(&mut self, world: &mut World) {
+    /// A body that was about to get up is limp again.
+    fn fall_again(&mut self) {
+        if self.state == State::Preparing {
+            self.state = State::Limp;
+            self.stillness = Stillness { touched: true, ..Stillness::default() };
+            self.events.push(Event::WentLimp);
+        }
+    }
+
+    /// Where the bodies are and how fast they move as the animation carries them, whatever it is made of: by where it will
+    /// have them in a moment, for tracks, weights and transitions may all have changed since the last pose.
+    fn carried(&mut self) -> Vec<BodyState> {
+        let (mut now, mut ahead) =
+            (core::mem::take(&mut self.scratch.before), core::mem::take(&mut self.scratch.after));
+        self.bodies_ahead(HAND_OVER, &mut ahead);
+        let pose = core::mem::take(&mut self.pose);
+        self.bodies_of(&pose, self.world_from_character, &mut now);
+        self.pose = pose;
+        let state = |((&now, &ahead), body): ((&Transform, &Transform), &RagdollBodyDef)| BodyState {
+            world_from_body: now,
+            velocity: body_velocity(now, ahead, body.mass.center, HAND_OVER, self.def.speed_bound),
+        };
+        let states = now.iter().zip(&ahead).zip(&self.def.ragdoll.bodies).map(state).collect();
+        (self.scratch.before, self.scratch.after) = (now, ahead);
+        states
+    }
+
+    /// Takes the pose from the bodies, but for what they do not move.
+    pub(super) fn follow_bodies(&mut self, world: &World) {
+        let dt = world.def().dt();
+        self.keep_earlier();
+        self.animator.update(self.def.set(), dt);
         let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
         ragdoll.poses(world, &mut self.scratch.after);
         self.physical.pose(
@@ -71,7 +84,16 @@ impl Character {
             &self.scratch.after,
             &mut self.pose,
         );
+        for &joint in self.def.mapping().free() {
+            self.pose[joint] = self.animator.pose().get(joint);
+        }
+    }
+
+    /// Waits until the bodies lie still.
+    pub(super) fn lie(&mut self, world: &mut World) {
+        self.follow_bodies(world);
         let dt = world.def().dt();
+        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
         let still = &mut self.stillness;
         still.steps += 1;
         if !still.touched && touches_world(world, &ragdoll.bodies) {
@@ -89,7 +111,7 @@ impl Character {
             if impatient {
                 self.events.push(Event::NeverSettled);
             }
-            self.get_up(world);
+            self.prepare(world);
         }
     }
 }

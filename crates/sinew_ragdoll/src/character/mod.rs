@@ -6,18 +6,24 @@ mod animate;
 mod def;
 mod get_up;
 mod ground;
+mod likeness;
 mod limp;
+mod mirror;
+mod moves;
+mod prepare;
 mod save;
 
 pub(crate) use limp::{STILL_TIME, is_still, touches_world};
 
-pub use def::{AfterSettling, CharacterDef, Locomotion};
+pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet};
+pub use moves::MotionError;
 
 use crate::mapping::Physical;
 use crate::ragdoll::Ragdoll;
-use animate::Motion;
+use get_up::Rising;
 use limp::Stillness;
-use sinew_anim::LocalTransform;
+use prepare::Preparation;
+use sinew_anim::{Animator, LocalTransform};
 use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::World;
 use std::sync::Arc;
@@ -27,9 +33,11 @@ use std::sync::Arc;
 pub enum State {
     /// A clip; the character has no bodies in the world.
     Animated,
-    /// Its bodies.
+    /// Its bodies: it falls, or lies.
     Limp,
-    /// A get-up clip, faded in from where the bodies lay.
+    /// Its bodies, which are brought to where a get-up clip begins.
+    Preparing,
+    /// A get-up clip, in which the pose and the motion of the bodies die away.
     GettingUp,
 }
 
@@ -52,6 +60,11 @@ pub enum Event {
     },
     /// It did not come to rest in the time it was given.
     NeverSettled,
+    /// It lies otherwise than its get-up clips begin, and is brought to where the nearest does.
+    Preparing {
+        /// Whether it has to be rolled over.
+        rolls: bool,
+    },
     /// It began to get up.
     GettingUp {
         /// Index of the clip; `None`: it has none that fits, and fades to standing.
@@ -66,16 +79,26 @@ pub enum Event {
 pub struct Character {
     def: Arc<CharacterDef>,
     state: State,
-    motion: Motion,
+    animator: Animator,
+    rising: Rising,
     world_from_character: Transform,
-    /// Velocity of the character's origin, m/s: what the ground and the locomotion did to it in the last step.
-    root_velocity: Vec3,
+    /// How fast the ground took the character's origin up in the last step, m/s.
+    climbing: f32,
     pose: Vec<LocalTransform>,
+    earlier: Earlier,
     ragdoll: Option<Ragdoll>,
     stillness: Stillness,
+    preparation: Preparation,
     events: Vec<Event>,
     physical: Physical,
     scratch: Scratch,
+}
+
+/// The pose a step ago, and where it was.
+#[derive(Clone, Debug)]
+struct Earlier {
+    pose: Vec<LocalTransform>,
+    world_from_character: Transform,
 }
 
 /// Buffers that are kept to be used again; they hold nothing from one call to the next.
@@ -90,23 +113,28 @@ struct Scratch {
 impl Character {
     /// An animated character that stands at `world_from_character` (metres, its +Y up, +Z the way it faces), `phase`
     /// seconds into its looped clip.
+    ///
+    /// # Panics
+    /// If `phase` is not finite.
     pub fn new(def: Arc<CharacterDef>, world_from_character: Transform, phase: f32) -> Self {
-        let rest = def.rest().to_vec();
-        let mut character = Self {
+        let animator = animate::looping(&def, phase);
+        let pose: Vec<LocalTransform> = animator.pose().iter().collect();
+        Self {
             state: State::Animated,
-            motion: Motion::looping(&def, phase),
+            animator,
+            rising: Rising::Without(0.0),
+            climbing: 0.0,
+            earlier: Earlier { pose: pose.clone(), world_from_character },
             world_from_character,
-            root_velocity: animate::locomotion(&def, world_from_character.rotation),
-            scratch: Scratch { pose: rest.clone(), ..Scratch::default() },
-            pose: rest,
+            pose,
             ragdoll: None,
             stillness: Stillness::default(),
+            preparation: Preparation::default(),
             events: Vec::new(),
             physical: Physical::default(),
+            scratch: Scratch::default(),
             def,
-        };
-        character.animate();
-        character
+        }
     }
 
     /// What it shares with its kind.
@@ -119,7 +147,7 @@ impl Character {
         self.state
     }
 
-    /// Its bodies, while it is limp.
+    /// Its bodies, while it has any: limp, or preparing to get up.
     pub fn ragdoll(&self) -> Option<&Ragdoll> {
         self.ragdoll.as_ref()
     }
@@ -139,6 +167,18 @@ impl Character {
         self.def.mapping().world_from_model(self.world_from_character)
     }
 
+    /// What plays its clips: those of [`CharacterDef::set`].
+    pub fn animator(&self) -> &Animator {
+        &self.animator
+    }
+
+    /// What plays its clips, to be given others: tracks, crossfades, layers. To begin with it plays the looped clip, and again
+    /// after getting up; getting up stops all other tracks of layer 0. While the character is limp, what plays still moves
+    /// the joints that no body does ([`Mapping::free`](crate::Mapping::free)), and events go on.
+    pub fn animator_mut(&mut self) -> &mut Animator {
+        &mut self.animator
+    }
+
     /// What happened since the last [`update`](Self::update) began, in order.
     pub fn events(&self) -> &[Event] {
         &self.events
@@ -151,19 +191,12 @@ impl Character {
     pub fn update(&mut self, world: &mut World) {
         self.events.clear();
         match self.state {
-            State::Limp => self.follow_bodies(world),
-            State::Animated => {
-                self.motion.time += world.def().dt();
-                self.walk(world);
-                self.animate();
-            }
+            State::Limp => self.lie(world),
+            State::Preparing => self.go_on_preparing(world),
+            State::Animated => self.animate(world),
             State::GettingUp => {
-                self.motion.time += world.def().dt();
-                self.root_velocity = Vec3::ZERO;
-                self.animate();
-                if self.motion.time >= self.motion.ends {
-                    self.stand(world);
-                }
+                self.animate(world);
+                self.rise(world);
             }
         }
     }

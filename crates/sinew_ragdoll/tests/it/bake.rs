@@ -83,12 +83,13 @@ fn starts_where_the_files_character_stands() {
     let def = shared(walker());
     let first = &baked(&def, PUSH, 30.0).frames[0];
     let mut walking = rest_pose(&def.rig);
-    sample(&def.clips[0], &def.rig, 0.0, Wrap::Loop, &mut walking);
+    sample(&def.motions().clips[0], &def.rig, 0.0, Wrap::Loop, &mut walking);
     let (mut expected, mut model) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, &walking, &Affine::IDENTITY, &mut expected);
     local_to_model(&def.rig, &first.pose, &Affine::IDENTITY, &mut model);
     for (a, b) in expected.iter().zip(&model) {
-        assert!((a.translation - b.translation).length() < 1e-5);
+        // Within what built clips keep: 47 bits of a rotation.
+        assert!((a.translation - b.translation).length() < 1e-4);
     }
 }
 

@@ -11,7 +11,7 @@ use sinew_scenes::mannequin::WALK_SPEED;
 /// World poses of the bodies as the walk has them at a time, without a `Character`.
 fn carried_bodies(def: &CharacterDef, at: Transform, time: f32) -> Vec<Transform> {
     let mut pose = def.rest().to_vec();
-    sample(&def.clips[0], &def.rig, time, Wrap::Loop, &mut pose);
+    sample(&def.motions().clips[0], &def.rig, time, Wrap::Loop, &mut pose);
     let walked = at * Transform::from_translation(Vec3::Z * WALK_SPEED * time);
     let mut model = Vec::new();
     local_to_model(&def.rig, &pose, &Affine::IDENTITY, &mut model);

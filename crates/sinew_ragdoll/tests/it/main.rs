@@ -2,7 +2,12 @@
 
 mod actor;
 mod bake;
+mod build;
+mod build_limits;
 mod character;
+mod data;
+mod falls;
 mod hand_over;
 mod mapping;
+mod pops;
 mod quality;
