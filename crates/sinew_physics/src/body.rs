@@ -64,6 +64,8 @@ pub(crate) struct Body {
     pub mass: f32,
     /// Principal moments, kg·m².
     pub inertia: Vec3,
+    /// Mass and moments that it gets back when it is dynamic again; only of a body that was.
+    pub laid_by: Option<(f32, Vec3)>,
     pub linear_damping: f32,
     pub angular_damping: f32,
     pub gravity_scale: f32,
@@ -144,6 +146,7 @@ impl Body {
             principal_from_body,
             mass,
             inertia: moments,
+            laid_by: None,
             linear_damping: def.linear_damping,
             angular_damping: def.angular_damping,
             gravity_scale: def.gravity_scale,

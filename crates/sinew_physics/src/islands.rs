@@ -9,6 +9,7 @@ use crate::project::{Neighbors, TakenGroup};
 use crate::runner::TaskRunner;
 use crate::solver::{Solution, View};
 use crate::tasks::{Queue, Task, Workspace, Workspaces};
+use crate::work::Work;
 
 /// Members of one island, by index, each list ascending.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +61,11 @@ impl Islands {
             contacts: self.contacts.of(i),
             groups: self.groups.of(i),
         })
+    }
+
+    /// Of drives and of bodies that move by themselves, island after island.
+    pub fn work(&self) -> Work {
+        self.solution.work[..self.count].iter().fold(Work::default(), |sum, work| sum + *work)
     }
 
     /// What came of them.
@@ -259,7 +265,12 @@ impl Islands {
     ) {
         let mut solution = core::mem::take(&mut self.solution);
         let mut taken = core::mem::take(&mut self.taken);
-        solution.resize(self.bodies.numbers.len(), self.joints.numbers.len(), self.contacts.numbers.len());
+        solution.resize(
+            self.count,
+            self.bodies.numbers.len(),
+            self.joints.numbers.len(),
+            self.contacts.numbers.len(),
+        );
         Queue::new(self.iter(), &mut taken, &mut solution, workspaces).run(runner, self.count, work);
         (self.solution, self.taken) = (solution, taken);
     }

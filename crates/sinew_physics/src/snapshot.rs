@@ -17,6 +17,7 @@ use crate::meetings::Meetings;
 use crate::particles::{AttachmentTarget, ParticleGroup};
 use crate::shape::{Filter, Sensing, Shape};
 use crate::surface::{Surface, Surfaces};
+use crate::work::Work;
 use crate::world::World;
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
@@ -111,6 +112,7 @@ impl World {
         self.meetings = Meetings { modifiers, ..meetings };
         (self.groups, self.fields) = (groups, fields);
         self.events = Events::default();
+        self.work = Work::default();
         self.broad.proxies.adopt(&self.bodies);
         Ok(())
     }
@@ -197,11 +199,16 @@ fn load_sleeping(r: &mut Reader<'_>) -> Result<Sleeping, ReadError> {
 }
 
 fn save_body(w: &mut Writer, body: &Body) {
-    w.u8(match body.kind {
-        BodyKind::Static => 0,
-        BodyKind::Kinematic => 1,
-        BodyKind::Dynamic => 2,
+    w.u8(match (body.kind, body.laid_by) {
+        (BodyKind::Static, _) => 0,
+        (BodyKind::Kinematic, None) => 1,
+        (BodyKind::Dynamic, _) => 2,
+        (BodyKind::Kinematic, Some(_)) => 3,
     });
+    if let Some((mass, inertia)) = body.laid_by {
+        w.f32(mass);
+        w.vec3(inertia);
+    }
     w.transform(body.world_from_principal);
     w.transform(body.previous);
     w.vec3(body.velocity.linear);
@@ -239,21 +246,32 @@ fn save_body(w: &mut Writer, body: &Body) {
     w.u64(body.user_data);
 }
 
+/// Whether a body of such mass and moments may be dynamic.
+fn solid(mass: f32, inertia: Vec3) -> bool {
+    let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
+    [mass, inertia.x, inertia.y, inertia.z].into_iter().all(positive)
+}
+
 fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadError> {
-    let kind = match r.u8()? {
+    let number = r.u8()?;
+    let kind = match number {
         0 => BodyKind::Static,
         1 => BodyKind::Kinematic,
         2 => BodyKind::Dynamic,
+        3 => BodyKind::Kinematic,
         _ => return Err(r.error("unknown kind of body").into()),
     };
+    let laid_by = if number == 3 { Some((r.f32()?, r.vec3()?)) } else { None };
+    if laid_by.is_some_and(|(mass, inertia)| !solid(mass, inertia)) {
+        return Err(r.error("a body that was dynamic has no mass").into());
+    }
     let (world_from_principal, previous) = (r.transform()?, r.transform()?);
     let velocity = Velocity { linear: r.vec3()?, angular: r.vec3()? };
     let (force, torque) = (r.vec3()?, r.vec3()?);
     let forces = BodyForces::load(r)?;
     let principal_from_body = r.transform()?;
     let (mass, inertia) = (r.f32()?, r.vec3()?);
-    let solid = mass > 0.0 && inertia.x > 0.0 && inertia.y > 0.0 && inertia.z > 0.0;
-    if kind == BodyKind::Dynamic && !solid {
+    if kind == BodyKind::Dynamic && !solid(mass, inertia) {
         return Err(r.error("a dynamic body has no mass").into());
     }
     let (linear_damping, angular_damping, gravity_scale) = (r.f32()?, r.f32()?, r.f32()?);
@@ -284,6 +302,7 @@ fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadErr
         principal_from_body,
         mass,
         inertia,
+        laid_by,
         linear_damping,
         angular_damping,
         gravity_scale,

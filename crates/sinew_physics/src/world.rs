@@ -21,6 +21,7 @@ use crate::runner::{Serial, TaskRunner};
 use crate::shape::{MassProperties, Sensing};
 use crate::stage::{NoProfiler, Profiler};
 use crate::step::{StepContext, step};
+use crate::work::Work;
 use sinew_math::{Transform, Vec3};
 
 /// Bodies and joints, stepped at a fixed rate.
@@ -51,6 +52,8 @@ pub struct World {
     pub(crate) steps: u64,
     /// Time that `update` was given and no step has used yet, nanoseconds.
     pub(crate) pending_nanoseconds: u64,
+    /// Of the last step; no part of the state.
+    pub(crate) work: Work,
     pub(crate) marked: Vec<u8>,
 }
 
@@ -83,6 +86,7 @@ impl World {
             sleepers: 0,
             steps: 0,
             pending_nanoseconds: 0,
+            work: Work::default(),
             marked: Vec::new(),
         }
     }
@@ -186,6 +190,7 @@ impl World {
         let h = dt / substeps as f32;
         let context = StepContext { dt, h, substeps, time: self.time(), runner, profiler };
         step(self, &context);
+        self.work = self.islands.work();
         self.steps += 1;
     }
 

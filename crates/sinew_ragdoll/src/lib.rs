@@ -5,6 +5,7 @@ pub mod bake;
 pub mod build;
 pub mod character;
 pub mod def;
+pub mod drive;
 pub mod filter;
 pub mod fit;
 pub mod hand_over;
@@ -20,6 +21,7 @@ pub use character::{
     AfterSettling, Character, CharacterDef, Event, GettingReady, Locomotion, MotionError, MotionSet, State,
 };
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
+pub use drive::{DriveMode, Drives, Muscle, Pin, torque_caps};
 pub use fit::ShapeChoice;
 pub use mapping::Mapping;
 pub use masses::de_leva::Sex;

@@ -155,7 +155,7 @@ impl Yard {
     fn meddle(&mut self) {
         let id = self.any();
         let up = Vec3::Y * self.random.range(0.0, 1.0);
-        match self.random.index(10) {
+        match self.random.index(11) {
             0 => self.world.wake(id),
             1 => self.world.apply_impulse_at_center(id, up),
             2 => {
@@ -175,6 +175,10 @@ impl Yard {
                 self.world.set_transform(self.floor, floor);
             }
             8 => self.world.set_velocity(self.lift, Velocity::default()),
+            9 => {
+                let led = self.world.kind(id) == BodyKind::Kinematic;
+                self.world.set_kind(id, if led { BodyKind::Dynamic } else { BodyKind::Kinematic });
+            }
             _ => {
                 let linear = Vec3::Y * self.random.range(-0.1, 0.2);
                 self.world.set_velocity(self.lift, Velocity { linear, ..Velocity::default() });
@@ -193,7 +197,8 @@ impl Yard {
 
     fn join(&mut self, id: BodyId) {
         let other = if self.random.index(3) == 0 { self.lift } else { self.any() };
-        if other != id {
+        let pushed = [id, other].iter().any(|&id| self.world.kind(id) == BodyKind::Dynamic);
+        if other != id && pushed {
             let (a, b) = (self.world.transform(id), self.world.transform(other));
             let between = Transform::from_translation((a.translation + b.translation) * 0.5);
             let def = JointDef::new(id, other, a, b, between, JointKind::Ball { limit: None });

@@ -91,6 +91,12 @@ impl Activity {
         self.note(index, body);
     }
 
+    /// Takes note of an awake body that forces move, or no longer.
+    pub fn change_kind(&mut self, index: u32, body: &Body) {
+        self.kinematic.retain(|&other| other != index);
+        self.add(index, body);
+    }
+
     /// Takes note of whether a body is active.
     pub fn note(&mut self, index: u32, body: &Body) {
         self.active.set(index, body.is_active());

@@ -54,7 +54,8 @@ pub struct SixDof {
 }
 
 impl SixDof {
-    /// Everything free: for motors that pull.
+    /// Everything free: for motors and springs that pull. To a static or kinematic body it is a pin: as stable as any
+    /// spring, however many a tree of bodies has, and it closes no loop.
     pub const FREE: Self = Self {
         linear: [AxisMotion::Free; 3],
         twist: AxisMotion::Free,
@@ -86,7 +87,8 @@ pub enum Softness {
     },
     /// Whatever hangs on the joint: it swings as a damped oscillator whose mass is that of the two sides of the joint,
     /// each taken as one rigid piece in the pose of the step's beginning; of a joint that closes a loop, that of its two
-    /// bodies. For limits and soft zones it is what answers to their row while the joints hold.
+    /// bodies. A pin ([`SixDof::FREE`] to a body that no force moves) has that of all bodies that are fewer joints away
+    /// from it than from other pins and from what holds the tree. For limits and soft zones it is what answers to their row while the joints hold.
     Frequency {
         /// Natural frequency, Hz.
         hertz: f32,

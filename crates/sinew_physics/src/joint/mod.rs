@@ -8,7 +8,8 @@ mod world;
 
 use crate::spatial::{Vec6, ZERO6};
 use def::{
-    Gains, JointCollision, JointDef, JointKind, JointState, Motor, SoftZone, Softness, Spring, Strength,
+    Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness, Spring,
+    Strength,
 };
 pub(crate) use incidence::Incidence;
 use rows::locked_count;
@@ -182,6 +183,11 @@ impl Joint {
         let drive = &self.drive;
         let driven = drive.spring.is_some() || drive.motor.is_some() || drive.friction > 0.0;
         locked_count(&self.kind) + if driven { open_directions(self.kind).count() } else { 0 }
+    }
+
+    /// True if nothing of it holds or stops: all that it has is springs, motors and friction in all six directions.
+    pub fn leaves_all_free(&self) -> bool {
+        self.kind == JointKind::SixDof(SixDof::FREE)
     }
 
     /// True if the pair of bodies is kept from colliding.

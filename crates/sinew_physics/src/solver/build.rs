@@ -16,6 +16,7 @@ use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
 use crate::modifiers::Modifiers;
 use crate::proxies::Proxies;
 use crate::spatial::{ZERO6, join};
+use crate::work::Work;
 use sinew_math::{Sym3, Vec3, min};
 
 /// At most this many bodies are solved as one tree; joints beyond become loop rows.
@@ -129,6 +130,7 @@ impl IslandSolver {
     pub fn prepare(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.h = view.h;
         self.displaced = false;
+        self.work = Work::default();
         (self.max_speed, self.max_turn) = (view.def.max_speed, view.def.max_turn);
         self.order_trees(island, view);
         self.make_room(island);
@@ -160,6 +162,7 @@ impl IslandSolver {
         }
         s.pieces.clear();
         s.pieces.reserve(island.bodies.len());
+        self.pins.make_room(island.bodies.len(), island.joints.len());
         s.shares.clear();
         s.shares.reserve(island.bodies.len());
         self.conjugate.make_room(island.bodies.len(), island.contacts.len());
@@ -196,6 +199,7 @@ impl IslandSolver {
         for (j, &index) in island.joints.iter().enumerate() {
             if let [Some(root), None] | [None, Some(root)] = ends(index)
                 && s.local[root as usize] == NONE
+                && !view.joints.at(index).leaves_all_free()
             {
                 s.plant(root, j as u32);
                 if roots == Roots::InTurn {
@@ -226,6 +230,7 @@ impl IslandSolver {
             let joint = view.joints.at(index);
             let tree = match (tree(joint.a), tree(joint.b)) {
                 (Some(a), Some(b)) if a != b => return true,
+                (Some(_), None) | (None, Some(_)) if joint.leaves_all_free() => continue,
                 (a, b) => a.or(b).unwrap_or(0),
             };
             s.loop_rows[tree] += joint.most_rows();
@@ -248,7 +253,6 @@ impl IslandSolver {
             self.links.push(Link::new(parent, seed.joint, seed.tree));
         }
         self.tree_count = s.sizes.len();
-        self.articulated = self.links.iter().any(|link| link.joint != NONE);
     }
 
     fn copy_bodies(&mut self, island: &Island<'_>, view: &View<'_>) {
@@ -303,6 +307,7 @@ impl IslandSolver {
     fn copy_joints(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.joints.clear();
         self.loops.clear();
+        self.pins.clear();
         for (place, &index) in island.joints.iter().enumerate() {
             let joint = view.joints.at(index);
             let (a, b) = (self.local(island, joint.a), self.local(island, joint.b));
@@ -321,6 +326,7 @@ impl IslandSolver {
                 left_open: ZERO6,
                 most_rows: joint.most_rows(),
                 soft: [SoftRow::default(); DIRECTIONS],
+                driven: [SoftRow::default(); DIRECTIONS],
                 bent: ZERO6,
                 bent_before: ZERO6,
                 mass: ZERO6,
@@ -332,11 +338,16 @@ impl IslandSolver {
                 impulse: ZERO6,
                 warm_impulse: joint.warm_impulse,
                 reaction: ZERO6,
+                accounted: ZERO6,
             });
-            if !self.scratch.build.used[place] {
+            let moving = self.links.len() as u32;
+            if joint.leaves_all_free() && (a < moving) != (b < moving) {
+                self.pins.joints.push(place as u32);
+            } else if !self.scratch.build.used[place] {
                 self.loops.joints.push(place as u32);
             }
         }
+        self.articulated = !self.pins.joints.is_empty() || self.links.iter().any(|link| link.joint != NONE);
         self.loops.group(&self.joints, &self.links);
         // A grounded root's parent is the fixed body of its joint.
         for i in 0..self.links.len() {

@@ -18,13 +18,13 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    fn of(body: &SolverBody, reference: Vec3) -> Self {
+    pub(super) fn of(body: &SolverBody, reference: Vec3) -> Self {
         let arm = body.pose.translation - reference;
         let own = Sym3::from_rotated_diagonal(body.pose.rotation, body.inertia);
         Self { mass: body.mass, moment: arm * body.mass, inertia: own + parallel_axis(arm) * body.mass }
     }
 
-    fn plus(self, other: &Self) -> Self {
+    pub(super) fn plus(self, other: &Self) -> Self {
         Self {
             mass: self.mass + other.mass,
             moment: self.moment + other.moment,
@@ -72,6 +72,7 @@ impl IslandSolver {
             return;
         }
         self.sum_pieces();
+        self.share_out();
         let pieces = &self.scratch.pieces;
         for j in 0..self.joints.len() {
             if !self.joints[j].drive.needs_mass() {
@@ -84,7 +85,9 @@ impl IslandSolver {
                 let Some(link) = self.links.get(side as usize) else { continue };
                 let center = self.bodies[side as usize].pose.translation;
                 // Below this joint the subtree, above it the rest of the tree, unless a fixed body holds that.
-                let (piece, reference) = if link.joint as usize == j {
+                let (piece, reference) = if let Some(piece) = self.pins.piece(j) {
+                    (Some(piece), self.reference(link.tree))
+                } else if link.joint as usize == j {
                     (Some(pieces[side as usize]), self.reference(link.tree))
                 } else if self.is_tree_joint(j) {
                     let child = if side == joint.a { joint.b } else { joint.a };
@@ -128,7 +131,7 @@ impl IslandSolver {
         self.links.partition_point(|link| link.tree < tree)
     }
 
-    fn reference(&self, tree: u32) -> Vec3 {
+    pub(super) fn reference(&self, tree: u32) -> Vec3 {
         self.bodies[self.root(tree)].pose.translation
     }
 }

@@ -63,7 +63,7 @@ impl SoftRow {
         0.5 * self.impulse(before, after) * (before + after)
     }
 
-    fn impulse(&self, before: f32, after: f32) -> f32 {
+    pub(super) fn impulse(&self, before: f32, after: f32) -> f32 {
         -(self.gain * after + self.carry * before + self.push)
     }
 
@@ -117,9 +117,14 @@ impl SolverJoint {
         self.rigid = if self.drive.weld.is_some() { 0 } else { self.rows.locked };
         self.left_open = self.rows.error.map(|error| error - clamp(error, -CLOSING * h, CLOSING * h));
         self.soft = [SoftRow::default(); DIRECTIONS];
+        self.driven = [SoftRow::default(); DIRECTIONS];
         if self.rigid < self.rows.count {
             let rates = self.anchor_rates(velocities);
             for row in self.rigid..self.rows.count {
+                let direction = self.rows.direction[row];
+                if self.drive.motor.is_some() && row >= self.rows.locked && self.saturated[direction] == 0 {
+                    self.driven[row] = self.motor_row(direction, h);
+                }
                 self.soft[row] = self.soft_row(row, rates, h);
             }
         }
@@ -141,9 +146,7 @@ impl SolverJoint {
             let rate = rates[usize::from(direction >= TWIST)];
             soft.add_viscosity(h * self.drive.friction / max(rate, STICK_RATE), 0.0);
         }
-        if self.saturated[direction] == 0 {
-            soft.add(&self.motor_row(direction, h));
-        }
+        soft.add(&self.driven[row]);
         // A spring of no stiffness and no damping would be a row of infinite compliance.
         soft.gain = max(soft.gain, 1e-12);
         soft
@@ -174,7 +177,7 @@ impl SolverJoint {
     }
 
     /// Rate of an open direction.
-    fn open_rate(&self, direction: usize, velocities: &[Vec6]) -> f32 {
+    pub(super) fn open_rate(&self, direction: usize, velocities: &[Vec6]) -> f32 {
         let row = open_row(&self.geometry.kind, &self.pose, direction);
         dot(&row.a, &velocities[self.a as usize]) + dot(&row.b, &velocities[self.b as usize])
     }
@@ -321,6 +324,24 @@ impl IslandSolver {
             given += row.soft_work(&self.joints[row.joint as usize], &self.velocities);
         }
         self.drive_work += max(by_motors, 0.0) + given;
+        self.work.drives += self.work_of_motors();
+    }
+
+    /// On the way that the bodies are about to go, J: force times way. Kinetic and potential energy together rise by no more.
+    pub(super) fn work_of_motors(&self) -> f32 {
+        let mut sum = 0.0;
+        for joint in self.joints.iter().filter(|joint| joint.drive.motor.is_some()) {
+            let rate = joint.rate(&self.velocities);
+            for row in joint.rows.locked..joint.rows.count {
+                let before = joint.start_rate[joint.rows.direction[row]];
+                sum += joint.driven[row].impulse(before, rate[row]) * rate[row];
+            }
+            for i in joint.motor_directions().filter(|&i| joint.saturated[i] != 0) {
+                let impulse = f32::from(joint.saturated[i]) * joint.motor_cap(i, self.h);
+                sum += impulse * joint.open_rate(i, &self.velocities);
+            }
+        }
+        sum
     }
 
     /// What springs take, J, at `s` times the present velocities: the coefficients of `s²` and `s`.

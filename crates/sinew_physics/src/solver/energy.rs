@@ -197,7 +197,7 @@ impl IslandSolver {
     }
 
     /// Stops that were passed push back, joints that rounding has opened close, and springs may resist: what is wound up
-    /// by that must be there as kinetic energy. Where it is not, the whole motion beside that of the island as one piece is
+    /// by that must be there as kinetic energy, or motors pay for it. Where it is not, the whole motion beside that of the island as one piece is
     /// slowed, and the rest is done later. Joints that are open by more are closed at any price.
     pub(super) fn pay_for_positions(&mut self) {
         if self.pushed_from_outside || !self.is_passive() || !self.is_articulated() {
@@ -208,7 +208,7 @@ impl IslandSolver {
         let mut there = self.kinetic_start;
         if held {
             linear -= self.work_of_forces();
-            there = self.kinetic_before;
+            there = self.kinetic_before + max(self.work_of_motors(), 0.0);
         }
         let slack = ENERGY_SLACK * max(there, self.mass());
         if square + linear <= slack || !(self.stops_push_back() || self.joints_close_in_time()) {

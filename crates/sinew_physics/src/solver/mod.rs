@@ -17,6 +17,7 @@ mod levels;
 mod limit_rows;
 mod loops;
 mod outside;
+mod pins;
 mod reaction;
 mod response;
 mod solution;
@@ -30,6 +31,7 @@ use crate::joint::{
 };
 use crate::project::TakenGroup;
 use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, angular, dot, join, linear};
+use crate::work::Work;
 pub(crate) use build::View;
 use conjugate::Conjugate;
 use contact_rows::ManifoldRows;
@@ -40,6 +42,7 @@ use fields::Attraction;
 use levels::Levels;
 use limit_rows::LimitRow;
 use loops::Loops;
+use pins::Pins;
 use response::Response;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, min, normalize_or, skew, trig};
 pub(crate) use solution::{IslandSolution, Solution, SolvedBody, SolvedJoint, split_off};
@@ -138,6 +141,8 @@ pub(crate) struct SolverJoint {
     most_rows: usize,
     /// The others, row by row.
     soft: [SoftRow; DIRECTIONS],
+    /// Of these, what the motor does.
+    driven: [SoftRow; DIRECTIONS],
     /// How much further than along its rows a weld that gives goes in this substep, m or rad, and before the last correction.
     bent: Vec6,
     bent_before: Vec6,
@@ -156,6 +161,8 @@ pub(crate) struct SolverJoint {
     pub warm_impulse: Vec6,
     /// Impulses of the substeps so far on B, torque about its anchor.
     pub reaction: Vec6,
+    /// As much of them as has been counted as work of a body that moves by itself.
+    accounted: Vec6,
 }
 
 /// The solver of one island. Its memory is kept for the next one, but nothing in it.
@@ -171,6 +178,7 @@ pub(crate) struct IslandSolver {
     tree_count: usize,
     articulated: bool,
     loops: Loops,
+    pins: Pins,
     limits: Vec<LimitRow>,
     response: Response,
     /// Impulses of contacts and limits that the sweeps in progress have put on each moving body.
@@ -205,6 +213,8 @@ pub(crate) struct IslandSolver {
     /// Work in this substep of the forces, and of springs and motors, J.
     force_work: f32,
     drive_work: f32,
+    /// In the step so far.
+    pub work: Work,
     /// Particles or objects pushed in this substep.
     pushed_from_outside: bool,
     /// A surface moves along its body, or throws off what touches it.
@@ -330,6 +340,7 @@ impl IslandSolver {
     /// Velocities to poses; joint forces of the substep; then everything that depends on the pose, once, for `relax`
     /// and the next substep's `solve`.
     pub fn integrate_position(&mut self) {
+        self.read_pins();
         self.store_joint_forces();
         self.add_solve_reactions();
         self.force_work = self.work_of_forces();
@@ -384,7 +395,7 @@ impl IslandSolver {
         self.add_relax_reactions();
     }
 
-    /// Bounce of what was hit in this substep.
+    /// Bounce of what was hit in this substep, the last of it: the work of bodies that move by themselves is counted.
     pub fn restitution(&mut self) {
         if self.manifolds.iter().any(ManifoldRows::bounces) {
             self.sweep(Pass::Restitution);
@@ -393,6 +404,7 @@ impl IslandSolver {
                 rows.add_bounce();
             }
         }
+        self.add_kinematic_work();
     }
 
     /// Rows, inertias, factor and response at the present pose.

@@ -50,6 +50,7 @@ impl IslandSolver {
         if !self.is_articulated() {
             return;
         }
+        self.settle_pins();
         self.sum_gains(Since::Motion);
         self.take_pushes();
         for (gained, accounted) in self.scratch.impulses.iter_mut().zip(&self.accounted) {
@@ -74,7 +75,7 @@ impl IslandSolver {
         self.scratch.impulses.extend(moved.map(gained));
     }
 
-    /// Takes off what contacts and loops have given in this substep.
+    /// Takes off what contacts, loops and pins have given in this substep.
     fn take_pushes(&mut self) {
         let sums = &mut self.scratch.impulses;
         for rows in &self.manifolds {
@@ -82,7 +83,7 @@ impl IslandSolver {
             add_row(sums, rows.a, &push.0, -1.0);
             add_row(sums, rows.b, &push.1, -1.0);
         }
-        for &joint in &self.loops.joints {
+        for &joint in self.loops.joints.iter().chain(&self.pins.joints) {
             let joint = &self.joints[joint as usize];
             for row in 0..joint.rows.count {
                 add_row(sums, joint.a, &joint.rows.a[row], -joint.impulse[row]);
@@ -91,9 +92,9 @@ impl IslandSolver {
         }
     }
 
-    /// The impulses of the joints that close loops, times `sign`.
+    /// The impulses of the joints that close loops and of pins, times `sign`.
     fn add_loop_reactions(&mut self, sign: f32) {
-        for &joint in &self.loops.joints {
+        for &joint in self.loops.joints.iter().chain(&self.pins.joints) {
             let joint = &mut self.joints[joint as usize];
             let mut on_b = ZERO6;
             for row in 0..joint.rows.count {

@@ -7,6 +7,7 @@ use crate::contact::ContactMemory;
 use crate::islands::Island;
 use crate::joint::{LimitImpulse, MAX_LIMITS, Saturation};
 use crate::spatial::{Vec6, angular, linear};
+use crate::work::Work;
 use sinew_math::{Transform, Vec3};
 
 /// A moving body after the step.
@@ -47,11 +48,14 @@ pub(crate) struct Solution {
     pub bodies: Vec<SolvedBody>,
     pub joints: Vec<SolvedJoint>,
     pub contacts: Vec<SolvedContact>,
+    /// One for each island.
+    pub work: Vec<Work>,
 }
 
 impl Solution {
     /// Makes room for so many of each.
-    pub fn resize(&mut self, bodies: usize, joints: usize, contacts: usize) {
+    pub fn resize(&mut self, islands: usize, bodies: usize, joints: usize, contacts: usize) {
+        self.work.resize(islands, Work::default());
         self.bodies.resize(bodies, SolvedBody::default());
         self.joints.resize(joints, SolvedJoint::default());
         self.contacts.resize(contacts, SolvedContact::default());
@@ -59,7 +63,12 @@ impl Solution {
 
     /// The room of all islands, to be split among them.
     pub fn as_mut(&mut self) -> IslandSolution<'_> {
-        IslandSolution { bodies: &mut self.bodies, joints: &mut self.joints, contacts: &mut self.contacts }
+        IslandSolution {
+            bodies: &mut self.bodies,
+            joints: &mut self.joints,
+            contacts: &mut self.contacts,
+            work: &mut self.work,
+        }
     }
 }
 
@@ -68,6 +77,7 @@ pub(crate) struct IslandSolution<'a> {
     bodies: &'a mut [SolvedBody],
     joints: &'a mut [SolvedJoint],
     contacts: &'a mut [SolvedContact],
+    work: &'a mut [Work],
 }
 
 impl<'a> IslandSolution<'a> {
@@ -77,6 +87,7 @@ impl<'a> IslandSolution<'a> {
             bodies: split_off(&mut self.bodies, island.bodies.len()),
             joints: split_off(&mut self.joints, island.joints.len()),
             contacts: split_off(&mut self.contacts, island.contacts.len()),
+            work: split_off(&mut self.work, 1),
         }
     }
 }
@@ -104,6 +115,7 @@ impl IslandSolver {
                 reaction: joint.reaction,
             };
         }
+        solution.work.fill(self.work);
         for (solved, rows) in solution.contacts.iter_mut().zip(&self.manifolds) {
             *solved = SolvedContact { index: rows.contact, manifold: rows.manifold, memory: rows.memory };
         }

@@ -43,6 +43,9 @@ impl IslandSolver {
                 link.take_rows(joint, joint.b as usize == i);
             }
         }
+        for &pin in &self.pins.joints {
+            self.joints[pin as usize].stiffen(inertia);
+        }
         tree::factor(&mut self.links, inertia);
     }
 
@@ -72,6 +75,9 @@ impl IslandSolver {
         }
         self.scratch.impulses.clear();
         self.scratch.impulses.resize(self.links.len(), ZERO6);
+        if solve {
+            self.pull_pins();
+        }
         self.solve_trees();
     }
 
@@ -224,7 +230,7 @@ impl IslandSolver {
             let gained = linear(&self.velocities[i]) - linear(&self.unconstrained[i]);
             push[i] = gained * self.bodies[i].mass - push[i];
         }
-        for &joint in &self.loops.joints {
+        for &joint in self.loops.joints.iter().chain(&self.pins.joints) {
             let joint = &mut self.joints[joint as usize];
             let mut on_b = ZERO6;
             for row in 0..joint.rows.count {

@@ -18,6 +18,7 @@ mod meshes;
 mod nets;
 mod objects;
 mod particles;
+mod pins;
 mod queries;
 mod random_worlds;
 mod ray;

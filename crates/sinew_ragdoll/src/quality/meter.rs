@@ -85,7 +85,9 @@ impl QualityMeter {
     fn measure_energy(&mut self, world: &World) {
         let after = world.energy();
         // Differences of each kind by itself: their sums are large and lose digits.
-        let rise = (after.kinetic - self.before.kinetic) + (after.potential - self.before.potential);
+        let work = world.work().total();
+        self.quality.work_in_j += work;
+        let rise = (after.kinetic - self.before.kinetic) + (after.potential - self.before.potential) - work;
         let gain = rise / max(self.before.kinetic, self.total_mass);
         self.quality.energy_gain_max = max(self.quality.energy_gain_max, gain);
     }

@@ -14,9 +14,9 @@ pub use verdict::{Verdict, judge};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quality {
     /// Largest rise of kinetic and potential energy of all dynamic bodies within one step (pushes come between steps
-    /// and do not count), as a share of the kinetic energy before it, or of 1 J per kg of the character if that is more.
+    /// and do not count), less the work of motors, pins and kinematic bodies in it, as a share of the kinetic energy before it, or of 1 J per kg of the character if that is more.
     pub energy_gain_max: f32,
-    /// Work of the pushes, J.
+    /// Work of the pushes, of motors, pins and kinematic bodies, J.
     pub work_in_j: f32,
     /// Largest distance between the two anchors of a joint, metres.
     pub joint_gap_max_m: f32,

@@ -7,6 +7,7 @@ mod build_limits;
 mod character;
 mod data;
 mod falls;
+mod drive;
 mod hand_over;
 mod mapping;
 mod pops;

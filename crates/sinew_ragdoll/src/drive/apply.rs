@@ -1,0 +1,198 @@
+//! Drives in a world: motors of joints, pins, bodies that become kinematic.
+
+use super::{Drive, Drives, NOTHING, target};
+use crate::def::RagdollDef;
+use crate::ragdoll::Ragdoll;
+use sinew_math::{Rotation, Transform, Vec3};
+use sinew_physics::{
+    BodyDef, BodyId, BodyKind, Gains, JointCollision, JointDef, JointId, JointKind, Motor, Reaction, SixDof,
+    Softness, Velocity, World,
+};
+
+impl Drives {
+    /// Before a step: lets the time of one step pass, and sets the motors, pins and velocities with which the bodies go
+    /// where they are wanted.
+    ///
+    /// `targets`: world pose of each body (its frame) at the end of the coming step; `velocities`: of its centre of mass and
+    /// its spin on the way there, world axes. A target beyond a joint's limit counts as at the limit.
+    ///
+    /// # Panics
+    /// If there is not one finite target and velocity for each body, or the ragdoll is not one of `def` in `world`.
+    pub fn apply(
+        &mut self,
+        world: &mut World,
+        def: &RagdollDef,
+        ragdoll: &Ragdoll,
+        targets: &[Transform],
+        velocities: &[Velocity],
+    ) {
+        let count = self.drives.len();
+        let all = [def.bodies.len(), ragdoll.bodies.len(), targets.len(), velocities.len()];
+        assert_eq!(all, [count; 4], "each body has a target and a velocity");
+        let (dt, recovery) = (world.def().dt(), self.recovery);
+        for body in 0..count {
+            let drive = &mut self.drives[body];
+            let keyed = drive.pass(dt, recovery);
+            let id = ragdoll.bodies[body];
+            if keyed != drive.keyed {
+                drive.keyed = keyed;
+                world.set_kind(id, if keyed { BodyKind::Kinematic } else { BodyKind::Dynamic });
+            }
+            if keyed {
+                lead(world, id, def.bodies[body].mass.center, targets[body], dt);
+            }
+            self.pin(world, id, body, def.bodies[body].mass.center, targets[body], velocities[body]);
+        }
+        for (joint, &id) in def.joints.iter().zip(&ragdoll.joints) {
+            let ends = [joint.parent, joint.child];
+            let drive = &self.drives[joint.child];
+            let torque = self.torques[joint.child];
+            let motor =
+                muscle(world, id, drive, torque, ends.map(|b| targets[b]), ends.map(|b| velocities[b]));
+            world.set_motor(id, motor);
+        }
+    }
+
+    /// Takes pins and motors out of the world and gives keyed bodies back to it, as fast as they were led. What is to be
+    /// done before the ragdoll is taken out; the modes stay as they are.
+    pub fn release(&mut self, world: &mut World, ragdoll: &Ragdoll) {
+        for (drive, &body) in self.drives.iter_mut().zip(&ragdoll.bodies) {
+            if let Some(pin) = drive.pin.take().filter(|&pin| world.contains_joint(pin)) {
+                world.remove_joint(pin);
+            }
+            if core::mem::take(&mut drive.keyed) && world.contains(body) {
+                world.set_kind(body, BodyKind::Dynamic);
+            }
+        }
+        for &joint in &ragdoll.joints {
+            if world.contains_joint(joint) {
+                world.set_motor(joint, None);
+            }
+        }
+        if let Some(ground) = self.ground.take().filter(|&ground| world.contains(ground)) {
+            world.remove_body(ground);
+        }
+    }
+
+    /// What the pin of a body really gave in the last step, as a mean over its time: N at its centre of mass and N·m about
+    /// it, world axes. Nothing where there is none.
+    pub fn pin_force(&self, world: &World, body: usize) -> Reaction {
+        let pin = self.drives[body].pin.filter(|&pin| world.contains_joint(pin));
+        pin.map_or(Reaction::default(), |pin| world.reaction(pin))
+    }
+
+    /// The hand of god: the sizes of the forces (N) and of the torques (N·m) of all pins in the last step, summed.
+    pub fn pin_effort(&self, world: &World) -> (f32, f32) {
+        (0..self.drives.len()).fold((0.0, 0.0), |(force, torque), body| {
+            let reaction = self.pin_force(world, body);
+            (force + reaction.force.length(), torque + reaction.torque.length())
+        })
+    }
+
+    /// Makes, moves or takes away the pin of a body. `center`: of its mass, in its frame.
+    fn pin(
+        &mut self,
+        world: &mut World,
+        id: BodyId,
+        body: usize,
+        center: Vec3,
+        wanted: Transform,
+        velocity: Velocity,
+    ) {
+        let drive = &self.drives[body];
+        let vigour = 1.0 - drive.weakness;
+        let softness = drive.level.pin.softness(vigour).filter(|_| !drive.keyed);
+        let old = drive.pin.filter(|&pin| world.contains_joint(pin));
+        let Some(softness) = softness.filter(|_| drive.level.force + drive.level.torque > NOTHING) else {
+            if let Some(pin) = old {
+                world.remove_joint(pin);
+            }
+            self.drives[body].pin = None;
+            return;
+        };
+        let back = Lag::of(world).back(wanted.rotation, velocity.angular);
+        let place = wanted.point(center) - velocity.linear * Lag::of(world).seconds;
+        let motor = Motor {
+            gains: Gains::Position(softness),
+            target: Transform::new(place, back),
+            velocity,
+            max_force: drive.level.force * vigour,
+            max_torque: drive.level.torque * vigour,
+        };
+        match old {
+            Some(pin) => world.set_motor(pin, Some(motor)),
+            None => {
+                let ground = self.ground(world);
+                let frame_b = Transform::from_translation(center);
+                let kind = JointKind::SixDof(SixDof::FREE);
+                let def = JointDef {
+                    motor: Some(motor),
+                    collision: JointCollision::Enabled,
+                    ..JointDef::between(ground, id, Transform::IDENTITY, frame_b, kind)
+                };
+                self.drives[body].pin = Some(world.add_joint(&def));
+            }
+        }
+    }
+
+    /// A static body without shape, at the origin.
+    fn ground(&mut self, world: &mut World) -> BodyId {
+        if let Some(ground) = self.ground.filter(|&ground| world.contains(ground)) {
+            return ground;
+        }
+        let ground = world.add_body(&BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
+        self.ground = Some(ground);
+        ground
+    }
+}
+
+/// Takes a kinematic body to where it is wanted, exactly within the step.
+fn lead(world: &mut World, id: BodyId, center: Vec3, wanted: Transform, dt: f32) {
+    let angular = world.transform(id).rotation.angular_velocity_to(wanted.rotation, dt);
+    let linear = (wanted.point(center) - world.center_of_mass(id)) / dt;
+    world.set_velocity(id, Velocity { linear, angular });
+}
+
+/// The motor of a joint; `None` while it has no strength, or nothing to move.
+fn muscle(
+    world: &World,
+    joint: JointId,
+    drive: &Drive,
+    torque: f32,
+    targets: [Transform; 2],
+    velocities: [Velocity; 2],
+) -> Option<Motor> {
+    let vigour = 1.0 - drive.weakness;
+    let softness: Softness = drive.level.muscle.softness(vigour)?;
+    let max_torque = torque * drive.level.strength * vigour;
+    if max_torque <= 0.0 {
+        return None;
+    }
+    let (held, rate) = target::of_joint(&world.joint(joint), targets, velocities);
+    Some(Motor {
+        gains: Gains::Position(softness),
+        target: Transform::new(Vec3::ZERO, Lag::of(world).back(held, rate)),
+        velocity: Velocity { linear: Vec3::ZERO, angular: rate },
+        max_force: 0.0,
+        max_torque,
+    })
+}
+
+/// A motor's target stands still within a step while what it stands for goes on: it is put to where that is on the average of
+/// the substeps' beginnings, when motors look at it.
+struct Lag {
+    /// Before the step's end.
+    seconds: f32,
+}
+
+impl Lag {
+    fn of(world: &World) -> Self {
+        let substeps = world.def().substeps as f32;
+        Self { seconds: world.def().dt() * (substeps + 1.0) / (2.0 * substeps) }
+    }
+
+    /// Where what turns at `rate` (axes that stand still) and will be at `end` was.
+    fn back(&self, end: Rotation, rate: Vec3) -> Rotation {
+        (Rotation::from_scaled_axis(rate * -self.seconds) * end).normalize()
+    }
+}

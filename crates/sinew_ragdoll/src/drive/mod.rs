@@ -1,0 +1,235 @@
+//! What moves the bodies of a ragdoll beside gravity and contacts: nothing, muscles, pins to a pose in the world, or the
+//! animation itself. Body by body, blended over time, as strong as a person is.
+//!
+//! | mode | what acts | what it can do |
+//! |---|---|---|
+//! | limp | friction of the joint | fall |
+//! | powered | a motor in the joint, toward the pose and at its speed, no stronger than the muscles there | hold a pose, not a place |
+//! | pinned | the same, and a spring from the world to the body | hold a place; the force that this took is told |
+//! | keyed | nothing: the body goes where the animation has it | push what is in its way, carry what hangs on it |
+//!
+//! Changes are exponential with a half-life, so they do not depend on the length of a step: `x += (goal − x)(1 − 2^(−dt/T))`
+//! for each number of a spring (stiffness, damping, cap).
+
+mod apply;
+mod level;
+mod save;
+mod target;
+mod torque;
+
+use crate::def::RagdollDef;
+use level::Level;
+use sinew_math::{clamp, max};
+use sinew_physics::{BodyId, JointId};
+pub use torque::torque_caps;
+
+/// The motor of a joint, as a muscle: toward the angle that the pose has there, and at the speed at which it changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Muscle {
+    /// Natural frequency of what hangs on the joint, Hz, at least 0.
+    pub hertz: f32,
+    /// 1 is critical.
+    pub damping_ratio: f32,
+    /// Share of the largest torque of the joint ([`torque_caps`]) that it may use, 0..=1.
+    pub strength: f32,
+}
+
+impl Muscle {
+    /// Follows late and gives way: 2 Hz, critically damped.
+    pub const RELAXED: Self = Self { hertz: 2.0, damping_ratio: 1.0, strength: 1.0 };
+    /// Follows as a person does who expects nothing: 5 Hz, critically damped. Default.
+    pub const ALIVE: Self = Self { hertz: 5.0, damping_ratio: 1.0, strength: 1.0 };
+    /// Hardly gives way: 20 Hz, overdamped.
+    pub const STIFF: Self = Self { hertz: 20.0, damping_ratio: 2.0, strength: 1.0 };
+}
+
+impl Default for Muscle {
+    fn default() -> Self {
+        Self::ALIVE
+    }
+}
+
+/// Springs from the world to a body: to its place (at its centre of mass) and to its turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pin {
+    /// Natural frequency of all that is nearer to this pin than to others, Hz, at least 0.
+    pub hertz: f32,
+    /// 1 is critical.
+    pub damping_ratio: f32,
+    /// Most force along each axis, N, finite.
+    pub max_force: f32,
+    /// Most torque about each axis, N·m, finite.
+    pub max_torque: f32,
+}
+
+impl Pin {
+    /// Keeps a body near: 3 Hz, no more than 400 N and 100 N·m.
+    pub const SOFT: Self = Self { hertz: 3.0, damping_ratio: 1.0, max_force: 400.0, max_torque: 100.0 };
+    /// Keeps it in its place: 20 Hz, 10 kN and 2 kN·m.
+    pub const FIRM: Self = Self { hertz: 20.0, damping_ratio: 1.0, max_force: 1e4, max_torque: 2e3 };
+}
+
+/// What moves a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum DriveMode {
+    /// Joint friction only. Default.
+    #[default]
+    Limp,
+    /// The joint to its parent has a muscle. The first body has no such joint, and is limp.
+    Powered(Muscle),
+    /// A muscle, and the world pulls.
+    Pinned(Muscle, Pin),
+    /// As the animation has it, whatever is in the way.
+    Keyed,
+}
+
+/// How a body is driven, and how it comes to be.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Drive {
+    mode: DriveMode,
+    /// Seconds.
+    half_life: f32,
+    /// Seconds since the mode was set.
+    since: f32,
+    level: Level,
+    /// Share of its strength that a hit took, 0..=1.
+    weakness: f32,
+    /// It is kinematic.
+    keyed: bool,
+    /// The joint that pins it.
+    pin: Option<JointId>,
+}
+
+/// The drives of one ragdoll. Plain data; [`apply`](Self::apply) brings it into a world, [`release`](Self::release) takes it
+/// out again.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drives {
+    /// One for each body.
+    drives: Vec<Drive>,
+    /// Per body: most torque of the joint to its parent, N·m.
+    torques: Vec<f32>,
+    /// What pins hang on.
+    ground: Option<BodyId>,
+    /// Seconds in which the weakness after a hit falls to `1/e`. Default 0.45.
+    pub recovery: f32,
+}
+
+/// Speed that a hit must give the whole ragdoll to take all strength from the muscles where it struck, m/s.
+const NUMBING: f32 = 0.4;
+/// Share of the weakness that one joint hands on to the next.
+const FALLOFF: f32 = 0.5;
+/// What is below this share is nothing.
+const NOTHING: f32 = 1e-3;
+
+impl Drives {
+    /// All limp, with the torques of [`torque_caps`].
+    pub fn new(def: &RagdollDef) -> Self {
+        Self::with_torques(def, torque_caps(def))
+    }
+
+    /// All limp. `torques`: most that the muscles of the joint between a body and its parent can do, N·m, body by body; that
+    /// of the first means nothing.
+    ///
+    /// # Panics
+    /// If there is not one for each body, or one is negative or not finite.
+    pub fn with_torques(def: &RagdollDef, torques: Vec<f32>) -> Self {
+        assert_eq!(torques.len(), def.bodies.len(), "each body has a torque");
+        assert!(
+            torques.iter().all(|t| (0.0..f32::INFINITY).contains(t)),
+            "torques are not negative, and finite"
+        );
+        Self { drives: vec![Drive::default(); def.bodies.len()], torques, ground: None, recovery: 0.45 }
+    }
+
+    /// How a body is to be driven.
+    pub fn mode(&self, body: usize) -> DriveMode {
+        self.drives[body].mode
+    }
+
+    /// Share of its strength that a body's muscle has, 0..=1: less than 1 after a hit.
+    pub fn vigour(&self, body: usize) -> f32 {
+        1.0 - self.drives[body].weakness
+    }
+
+    /// Drives a body in another way from now on: half of the change is made within `half_life` seconds, all of it at once if
+    /// that is 0. What is to be keyed is pinned ever firmer until then.
+    ///
+    /// # Panics
+    /// If there is no such body, or a number is negative or not finite, or a strength above 1.
+    pub fn set(&mut self, body: usize, mode: DriveMode, half_life: f32) {
+        let sound = |x: f32| (0.0..f32::INFINITY).contains(&x);
+        assert!(sound(half_life), "a half-life is not negative, and finite");
+        let (muscle, pin) = match mode {
+            DriveMode::Limp | DriveMode::Keyed => (None, None),
+            DriveMode::Powered(muscle) => (Some(muscle), None),
+            DriveMode::Pinned(muscle, pin) => (Some(muscle), Some(pin)),
+        };
+        assert!(
+            muscle.is_none_or(|m| sound(m.hertz)
+                && sound(m.damping_ratio)
+                && (0.0..=1.0).contains(&m.strength)),
+            "a muscle's numbers are not negative, and finite"
+        );
+        assert!(
+            pin.is_none_or(|p| [p.hertz, p.damping_ratio, p.max_force, p.max_torque].into_iter().all(sound)),
+            "a pin's numbers are not negative, and finite"
+        );
+        let drive = &mut self.drives[body];
+        if drive.mode != mode {
+            (drive.mode, drive.since) = (mode, 0.0);
+        }
+        drive.half_life = half_life;
+    }
+
+    /// [`set`](Self::set) for all bodies.
+    pub fn set_all(&mut self, mode: DriveMode, half_life: f32) {
+        for body in 0..self.drives.len() {
+            self.set(body, mode, half_life);
+        }
+    }
+
+    /// [`set`](Self::set) for a body and all that hangs on it: an arm, or all above the waist.
+    pub fn set_from(&mut self, def: &RagdollDef, body: usize, mode: DriveMode, half_life: f32) {
+        for other in (body..self.drives.len()).filter(|&other| hangs_on(def, other, body)) {
+            self.set(other, mode, half_life);
+        }
+    }
+
+    /// Muscles and pins weaken where an impulse of `impulse` N·s struck, and half as much one joint on, and so on. An impulse
+    /// that would move the whole ragdoll at 0.4 m/s takes all strength there. The push itself is the caller's.
+    pub fn hit(&mut self, def: &RagdollDef, body: usize, impulse: f32) {
+        let mass: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
+        let weakness = clamp(impulse.abs() / (NUMBING * mass), 0.0, 1.0);
+        for (other, drive) in self.drives.iter_mut().enumerate() {
+            let mut here = weakness;
+            for _ in 0..joints_between(def, body, other) {
+                here *= FALLOFF;
+            }
+            if here > NOTHING {
+                drive.weakness = max(drive.weakness, here);
+            }
+        }
+    }
+}
+
+/// The parent of a body; `None` of the first.
+fn parent(def: &RagdollDef, body: usize) -> Option<usize> {
+    body.checked_sub(1).map(|joint| def.joints[joint].parent)
+}
+
+/// Whether a body is `ancestor` or below it.
+fn hangs_on(def: &RagdollDef, body: usize, ancestor: usize) -> bool {
+    core::iter::successors(Some(body), |&at| parent(def, at)).any(|at| at == ancestor)
+}
+
+/// Number of joints on the way from one body to another.
+fn joints_between(def: &RagdollDef, mut a: usize, mut b: usize) -> usize {
+    let mut count = 0;
+    // Parents come before their children: the later of two cannot be above the other.
+    while a != b {
+        let later = if a > b { &mut a } else { &mut b };
+        *later = parent(def, *later).expect("only the first body has no parent");
+        count += 1;
+    }
+    count
+}

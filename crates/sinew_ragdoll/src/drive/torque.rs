@@ -1,0 +1,72 @@
+//! How strong the joints of a body are.
+
+use super::{hangs_on, parent};
+use crate::def::RagdollDef;
+use sinew_math::{Vec3, max};
+
+/// Largest torques of the muscles about a joint of 75 kg at 1.75 m, N·m, by the role of the body below it: the humanoid
+/// of Peng et al. 2018 ("DeepMimic"), between the clinical figures and those of dm_control's CMU humanoid.
+const HUMAN: [(&str, f32); 12] = [
+    ("Shoulder", 100.0),
+    ("UpperArm", 100.0),
+    ("LowerArm", 60.0),
+    ("Hand", 20.0),
+    ("UpperLeg", 200.0),
+    ("LowerLeg", 150.0),
+    ("Foot", 90.0),
+    ("Toes", 20.0),
+    ("spine", 200.0),
+    ("chest", 200.0),
+    ("upperChest", 200.0),
+    ("neck", 50.0),
+];
+const HEAD: f32 = 50.0;
+/// The body that the figures are of, kg m.
+const REFERENCE: f32 = 75.0 * 1.75;
+/// A creature's joint holds so many times what hangs on it.
+const HOLDS: f32 = 3.0;
+/// m/s².
+const GRAVITY: f32 = 9.81;
+
+/// Most that the muscles of each body's joint to its parent can do, N·m; 0 for the first body. Of roles that a person has,
+/// from a table, in proportion to mass and height. Of others from the weight that they carry: three times what holds all that
+/// hangs on the joint out level, and of limbs no less than bears the weight of the whole at the middle of their bone.
+pub fn torque_caps(def: &RagdollDef) -> Vec<f32> {
+    let total: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
+    let strength = total * def.height / REFERENCE;
+    (0..def.bodies.len())
+        .map(|body| match parent(def, body) {
+            None => 0.0,
+            Some(_) => match of_human(&def.bodies[body].role) {
+                Some(torque) if strength > 0.0 => torque * strength,
+                _ => of_creature(def, body, total),
+            },
+        })
+        .collect()
+}
+
+fn of_human(role: &str) -> Option<f32> {
+    if role == "head" {
+        return Some(HEAD);
+    }
+    let part = role.strip_prefix("left").or_else(|| role.strip_prefix("right")).unwrap_or(role);
+    HUMAN.iter().find(|(name, _)| *name == part).map(|(_, torque)| *torque)
+}
+
+fn of_creature(def: &RagdollDef, body: usize, total: f32) -> f32 {
+    let joint = &def.joints[body - 1];
+    let pivot = (def.bodies[body].character_from_body * joint.frame_child).translation;
+    let center = |body: usize| def.bodies[body].character_from_body.point(def.bodies[body].mass.center);
+    let (mut mass, mut moment) = (0.0, Vec3::ZERO);
+    for below in (body..def.bodies.len()).filter(|&below| hangs_on(def, below, body)) {
+        mass += def.bodies[below].mass.mass;
+        moment += (center(below) - pivot) * def.bodies[below].mass.mass;
+    }
+    let holds = HOLDS * GRAVITY * moment.length();
+    let bears = if def.bodies[body].role.starts_with("limb") || mass > 0.1 * total {
+        GRAVITY * total * (center(body) - pivot).length()
+    } else {
+        0.0
+    };
+    max(holds, bears)
+}
