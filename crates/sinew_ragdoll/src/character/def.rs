@@ -2,6 +2,7 @@
 
 use super::moves::{MotionError, Moves};
 use crate::def::RagdollDef;
+use crate::drive::DriveMode;
 use crate::hand_over::SpeedBound;
 use crate::mapping::Mapping;
 use crate::ragdoll::Flesh;
@@ -67,8 +68,10 @@ pub struct CharacterDef {
     pub ragdoll: RagdollDef,
     /// Default get up.
     pub after_settling: AfterSettling,
-    /// Default at once.
+    /// Default roll over.
     pub getting_ready: GettingReady,
+    /// How its bodies are driven while it falls: powered, toward the pose that its clips go on with. Default limp.
+    pub falling: DriveMode,
     /// Seconds for which a limp character may go on moving before it gets up all the same. Default 6.
     pub patience: f32,
     /// Surface and filter of its bodies.
@@ -101,7 +104,8 @@ impl CharacterDef {
             rig,
             ragdoll,
             after_settling: AfterSettling::GetUp,
-            getting_ready: GettingReady::AtOnce,
+            getting_ready: GettingReady::RollOver,
+            falling: DriveMode::Limp,
             patience: 6.0,
             flesh: Flesh::default(),
             speed_bound: SpeedBound::default(),

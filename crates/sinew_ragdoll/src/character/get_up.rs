@@ -55,6 +55,7 @@ impl Character {
     /// Gives the pose back to the clips, by the moment of a get-up clip that is most like it.
     pub(super) fn get_up(&mut self, world: &mut World) {
         let lies = self.stance();
+        self.let_go(world);
         if let Some(ragdoll) = self.ragdoll.take() {
             ragdoll.despawn(world);
         }

@@ -2,6 +2,7 @@
 
 use super::{AfterSettling, Character, Event, State};
 use crate::def::RagdollBodyDef;
+use crate::drive::DriveMode;
 use crate::hand_over::body_velocity;
 use crate::ragdoll::{BodyState, Ragdoll};
 use sinew_math::Transform;
@@ -33,23 +34,33 @@ impl Character {
     /// already.
     pub fn go_limp(&mut self, world: &mut World) {
         if self.ragdoll.is_some() {
-            return self.fall_again();
+            return self.fall_again(world);
         }
         let states = self.carried();
         self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
         self.ragdoll = Some(Ragdoll::spawn(world, &self.def.ragdoll, &states, &self.def.flesh));
+        self.drives.set_all(self.def.falling, 0.0);
         self.state = State::Limp;
         self.stillness = Stillness::default();
         self.events.push(Event::WentLimp);
     }
 
     /// A body that was about to get up is limp again.
-    fn fall_again(&mut self) {
+    fn fall_again(&mut self, world: &mut World) {
         if self.state == State::Preparing {
+            self.let_go(world);
             self.state = State::Limp;
             self.stillness = Stillness { touched: true, ..Stillness::default() };
             self.events.push(Event::WentLimp);
         }
+    }
+
+    /// Takes all drives off the bodies but those of a fall.
+    pub(super) fn let_go(&mut self, world: &mut World) {
+        if let Some(ragdoll) = &self.ragdoll {
+            self.drives.release(world, ragdoll);
+        }
+        self.drives.set_all(self.def.falling, 0.0);
     }
 
     /// Where the bodies are and how fast they move as the animation carries them, whatever it is made of: by where it will
@@ -89,9 +100,31 @@ impl Character {
         }
     }
 
+    /// Powers the joints of a falling body, for the next step, toward the pose of its clips.
+    fn brace(&mut self, world: &mut World) {
+        if self.def.falling == DriveMode::Limp {
+            return;
+        }
+        let mut targets = core::mem::take(&mut self.scratch.after);
+        let mut before = core::mem::take(&mut self.scratch.before);
+        self.bodies_ahead(0.0, &mut before);
+        let dt = world.def().dt();
+        self.bodies_ahead(dt, &mut targets);
+        let velocity = |((&now, &ahead), body): ((&Transform, &Transform), &RagdollBodyDef)| {
+            body_velocity(now, ahead, body.mass.center, dt, self.def.speed_bound)
+        };
+        let velocities = before.iter().zip(&targets).zip(&self.def.ragdoll.bodies).map(velocity);
+        self.scratch.velocities.clear();
+        self.scratch.velocities.extend(velocities);
+        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
+        self.drives.apply(world, &self.def.ragdoll, ragdoll, &targets, &self.scratch.velocities);
+        (self.scratch.before, self.scratch.after) = (before, targets);
+    }
+
     /// Waits until the bodies lie still.
     pub(super) fn lie(&mut self, world: &mut World) {
         self.follow_bodies(world);
+        self.brace(world);
         let dt = world.def().dt();
         let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
         let still = &mut self.stillness;

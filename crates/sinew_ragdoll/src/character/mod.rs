@@ -18,6 +18,7 @@ pub(crate) use limp::{STILL_TIME, is_still, touches_world};
 pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet};
 pub use moves::MotionError;
 
+use crate::drive::Drives;
 use crate::mapping::Physical;
 use crate::ragdoll::Ragdoll;
 use get_up::Rising;
@@ -25,7 +26,7 @@ use limp::Stillness;
 use prepare::Preparation;
 use sinew_anim::{Animator, LocalTransform};
 use sinew_math::{Affine, Transform, Vec3};
-use sinew_physics::World;
+use sinew_physics::{Velocity, World};
 use std::sync::Arc;
 
 /// What decides the character's pose.
@@ -87,6 +88,7 @@ pub struct Character {
     pose: Vec<LocalTransform>,
     earlier: Earlier,
     ragdoll: Option<Ragdoll>,
+    drives: Drives,
     stillness: Stillness,
     preparation: Preparation,
     events: Vec<Event>,
@@ -108,6 +110,7 @@ struct Scratch {
     model: Vec<Affine>,
     before: Vec<Transform>,
     after: Vec<Transform>,
+    velocities: Vec<Velocity>,
 }
 
 impl Character {
@@ -128,6 +131,7 @@ impl Character {
             world_from_character,
             pose,
             ragdoll: None,
+            drives: Drives::new(&def.ragdoll),
             stillness: Stillness::default(),
             preparation: Preparation::default(),
             events: Vec::new(),
@@ -150,6 +154,11 @@ impl Character {
     /// Its bodies, while it has any: limp, or preparing to get up.
     pub fn ragdoll(&self) -> Option<&Ragdoll> {
         self.ragdoll.as_ref()
+    }
+
+    /// What drives its bodies, while it has any.
+    pub fn drives(&self) -> &Drives {
+        &self.drives
     }
 
     /// Local transform of every joint of the rig; nodes above the pelvis are at rest (see [`crate::mapping`]).
@@ -210,6 +219,7 @@ impl Character {
         self.go_limp(world);
         self.events.push(Event::Hit { body });
         let id = self.ragdoll.as_ref().expect("a limp character has bodies").bodies[body];
+        self.drives.hit(&self.def.ragdoll, body, impulse.length());
         let before = world.body_energy(id).kinetic;
         world.apply_impulse_at_center(id, impulse);
         world.body_energy(id).kinetic - before

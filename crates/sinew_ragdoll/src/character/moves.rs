@@ -52,6 +52,8 @@ pub(super) struct Start {
     pub time: f32,
     /// Character space.
     pub stance: Stance,
+    /// Character from body, one for each.
+    pub bodies: Vec<Transform>,
 }
 
 /// Share of a get-up clip in which it may begin.
@@ -137,9 +139,12 @@ fn starts(def: &CharacterDef, landmarks: &Landmarks, take: &Take) -> Vec<Start> 
     let apart = usize::max(take.frames_in(STARTS_APART), 1);
     (0..=last as usize)
         .step_by(apart)
-        .map(|frame| Start {
-            time: take.time(frame),
-            stance: stance(&def.rig, def.mapping(), landmarks, take.pose(frame)),
+        .map(|frame| {
+            let (mut model, mut bodies) = (Vec::new(), Vec::new());
+            local_to_model(&def.rig, take.pose(frame), &Affine::IDENTITY, &mut model);
+            def.mapping().bodies_from_model(&model, Transform::IDENTITY, &mut bodies);
+            let stance = landmarks.stance(def.mapping(), &model, Transform::IDENTITY);
+            Start { time: take.time(frame), stance, bodies }
         })
         .collect()
 }

@@ -1,24 +1,29 @@
-//! Between lying still and getting up: a body that lies like no clip begins is rolled over to the nearest that does.
+//! Between lying still and getting up: a body that lies like no clip begins is brought to where the nearest one does.
 //!
-//! What rolls it is a torque on its trunk from nowhere, as no limp body has: it is bounded, and so is its time.
+//! Its muscles draw its limbs there. What rolls its trunk over is a torque from nowhere, as no limp body has: a pin that only
+//! turns, bounded in torque and time, so that [`Drives::pin_effort`](crate::Drives::pin_effort) tells how much that was.
 
 use super::get_up::{Choice, choose};
 use super::{Character, Event, GettingReady, State};
-use sinew_math::{Rotation, Vec3};
-use sinew_physics::{BodyId, World};
+use crate::drive::{DriveMode, Muscle, Pin};
+use sinew_math::Rotation;
+use sinew_physics::{Velocity, World};
 
-/// A body may differ so much from where its clip begins, the trunk by turn (radians), and the whole by the mean distance of
-/// its joints over its height.
-const LIKE_ENOUGH: (f32, f32) = (0.6, 0.13);
-/// Seconds in which the body is brought to where the clip begins: where its trunk has to turn, and where it has not.
+/// A trunk may be turned so much from how its clip begins, radians.
+const TRUNK_OFF: f32 = 0.6;
+/// The joints may be so far on the mean from where they are then, share of the body's height.
+const JOINTS_OFF: f32 = 0.11;
+/// Seconds in which the body is brought there: where its trunk has to be turned, and where it has not.
 const TIME_TO_ROLL: f32 = 1.5;
 const TIME_TO_PULL: f32 = 0.5;
-/// A trunk is turned like a spring of this many hertz, damped critically.
-const HERTZ: f32 = 1.2;
-/// Of the whole body about its length: radius of gyration over height.
-const GYRATION: f32 = 0.12;
-/// Largest torque over weight times height: 130 N·m of a man.
-const STRENGTH: f32 = 0.1;
+/// Seconds in which half of the strength is there.
+const HALF_LIFE: f32 = 0.1;
+/// What draws the limbs.
+const PULL: Muscle = Muscle { hertz: 2.0, damping_ratio: 1.0, strength: 0.6 };
+/// How fast a trunk is turned, Hz.
+const ROLL: f32 = 1.2;
+/// Largest torque of what rolls a body over, on each part of the trunk, over its weight times its height: 65 N·m of a man.
+const STRENGTH: f32 = 0.05;
 
 /// A body on its way to where a clip begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -36,22 +41,29 @@ impl Character {
         let lies = self.stance();
         let def = self.def.clone();
         let moves = def.moves();
-        let Some(choice) = choose(&moves.get_ups, &moves.landmarks, &lies) else {
-            return self.get_up(world);
-        };
-        if self.def.getting_ready == GettingReady::AtOnce || self.is_like(&choice, lies.pelvis) {
-            return self.get_up(world);
-        }
-        let turns = trunk_error(&choice, lies.pelvis).length() > LIKE_ENOUGH.0;
+        let choice = choose(&moves.get_ups, &moves.landmarks, &lies).filter(|choice| {
+            def.getting_ready == GettingReady::RollOver && !self.is_like(choice, lies.pelvis)
+        });
+        let Some(choice) = choice else { return self.get_up(world) };
+        let rolls = trunk_off(&choice, lies.pelvis) > TRUNK_OFF;
         let index = |at: Option<usize>| at.unwrap_or_default() as u32;
         self.preparation = Preparation {
             get_up: index(moves.get_ups.iter().position(|get_up| core::ptr::eq(get_up, choice.get_up))),
             start: index(choice.get_up.starts.iter().position(|start| core::ptr::eq(start, choice.start))),
-            seconds: if turns { TIME_TO_ROLL } else { TIME_TO_PULL },
+            seconds: if rolls { TIME_TO_ROLL } else { TIME_TO_PULL },
         };
         self.state = State::Preparing;
-        self.events.push(Event::Preparing { rolls: turns });
-        self.roll(world, trunk_error(&choice, lies.pelvis));
+        self.events.push(Event::Preparing { rolls });
+        self.drives.set_all(DriveMode::Powered(PULL), HALF_LIFE);
+        if rolls {
+            let gravity = world.def().gravity.length();
+            let max_torque = STRENGTH * def.ragdoll.total_mass * gravity * def.ragdoll.height;
+            let pin = Pin { hertz: ROLL, damping_ratio: 1.0, max_force: 0.0, max_torque };
+            for body in moves.landmarks.trunk_bodies() {
+                self.drives.set(body, DriveMode::Pinned(PULL, pin), HALF_LIFE);
+            }
+        }
+        self.draw(world, &choice);
     }
 
     /// Goes on with that for a step; gets up where the body lies as the clip begins, or time is up.
@@ -67,35 +79,27 @@ impl Character {
         if self.preparation.seconds <= 0.0 || self.is_like(&choice, lies.pelvis) {
             return self.get_up(world);
         }
-        self.roll(world, trunk_error(&choice, lies.pelvis));
+        self.draw(world, &choice);
     }
 
     fn is_like(&self, choice: &Choice<'_>, pelvis: Rotation) -> bool {
-        trunk_error(choice, pelvis).length() < LIKE_ENOUGH.0
-            && choice.likeness.distance < LIKE_ENOUGH.1 * self.def.ragdoll.height
+        let joints_off = choice.likeness.distance / self.def.ragdoll.height;
+        trunk_off(choice, pelvis) < TRUNK_OFF && joints_off < JOINTS_OFF
     }
 
-    /// Turns the trunk by a bounded torque, for the next step. `error` is what it has to turn, scaled axis, world axes.
-    fn roll(&mut self, world: &mut World, error: Vec3) {
-        let def = &self.def.ragdoll;
+    /// Drives the bodies toward the moment of the clip, where they lie, for the next step.
+    fn draw(&mut self, world: &mut World, choice: &Choice<'_>) {
         let ragdoll = self.ragdoll.as_ref().expect("a body that is rolled over has bodies");
-        let trunk = self.def.moves().landmarks.trunk_bodies();
-        let speed = 2.0 * core::f32::consts::PI * HERTZ;
-        let inertia = def.total_mass * (GYRATION * def.height) * (GYRATION * def.height);
-        let gravity = world.def().gravity.length();
-        let most = STRENGTH * def.total_mass * gravity * def.height;
-        let spin = world.velocity(ragdoll.bodies[0]).angular;
-        let wanted = (error * speed - spin * 2.0) * (speed * inertia);
-        let size = wanted.length();
-        let torque = if size > most { wanted * (most / size) } else { wanted };
-        let bodies: Vec<BodyId> = trunk.map(|body| ragdoll.bodies[body]).collect();
-        let share = 1.0 / bodies.len() as f32;
-        bodies.into_iter().for_each(|body| world.apply_torque(body, torque * share));
+        let targets = &mut self.scratch.before;
+        targets.clear();
+        targets.extend(choice.start.bodies.iter().map(|&body| choice.likeness.motion * body));
+        self.scratch.velocities.clear();
+        self.scratch.velocities.resize(targets.len(), Velocity::default());
+        self.drives.apply(world, &self.def.ragdoll, ragdoll, targets, &self.scratch.velocities);
     }
 }
 
-/// What the pelvis has to turn to be as the clip has it: scaled axis, world axes.
-fn trunk_error(choice: &Choice<'_>, pelvis: Rotation) -> Vec3 {
-    let wanted = choice.likeness.motion.rotation * choice.start.stance.pelvis;
-    (wanted * pelvis.inverse()).to_scaled_axis()
+/// By how much the pelvis is turned from how the clip has it, radians.
+fn trunk_off(choice: &Choice<'_>, pelvis: Rotation) -> f32 {
+    (choice.likeness.motion.rotation * choice.start.stance.pelvis).angle_to(pelvis)
 }

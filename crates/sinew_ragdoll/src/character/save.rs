@@ -4,6 +4,7 @@ use super::get_up::Rising;
 use super::limp::Stillness;
 use super::prepare::Preparation;
 use super::{Character, Earlier, State};
+use crate::drive::Drives;
 use crate::ragdoll::Ragdoll;
 use sinew_anim::{Animator, LocalTransform, TrackId};
 use sinew_math::{ReadError, Reader, Writer};
@@ -36,6 +37,7 @@ impl Character {
         w.u32(self.stillness.calm_steps);
         w.bool(self.stillness.settled);
         w.bool(self.stillness.touched);
+        self.drives.save(w);
         w.u32(self.preparation.get_up);
         w.u32(self.preparation.start);
         w.f32(self.preparation.seconds);
@@ -76,6 +78,8 @@ impl Character {
         let base = load_pose(r, joints)?;
         let stillness =
             Stillness { steps: r.u32()?, calm_steps: r.u32()?, settled: r.bool()?, touched: r.bool()? };
+        let mut drives = Drives::new(&self.def.ragdoll);
+        drives.load(r)?;
         let preparation = self.load_preparation(r)?;
         let ragdoll = if r.bool()? { Some(self.load_ragdoll(r)?) } else { None };
         let fits = pose.len() == joints
@@ -87,7 +91,7 @@ impl Character {
             return Err(r.error("is of another character"));
         }
         (self.state, self.animator, self.rising, self.stillness) = (state, animator, rising, stillness);
-        self.preparation = preparation;
+        (self.drives, self.preparation) = (drives, preparation);
         (self.world_from_character, self.climbing) = (world_from_character, climbing);
         (self.pose, self.earlier, self.ragdoll) = (pose, earlier, ragdoll);
         if !base.is_empty() {

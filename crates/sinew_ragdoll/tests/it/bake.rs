@@ -42,7 +42,9 @@ fn the_clip_shows_what_happened() {
         let def = shared(def);
         let baked = baked(&def, PUSH, 25.0);
         assert_eq!(baked.frames.len(), 226);
-        let mut states: Vec<_> = baked.frames.iter().map(|frame| frame.state).collect();
+        // Whether it has to be rolled over first is its own affair.
+        let needed = baked.frames.iter().filter(|frame| frame.state != State::Preparing);
+        let mut states: Vec<_> = needed.map(|frame| frame.state).collect();
         states.dedup();
         assert_eq!(states, [State::Animated, State::Limp, State::GettingUp, State::Animated]);
         let hips = def.ragdoll.bodies[0].joint;

@@ -67,7 +67,8 @@ fn falls_lies_still_gets_up_and_walks_on() {
     assert_eq!(character.state(), State::Limp);
     assert_eq!(world.body_ids().count(), 1 + def.ragdoll.bodies.len());
     let events = run_until(&mut world, &mut character, 12.0, |c| c.state() == State::Animated);
-    let kinds: Vec<_> = events.iter().map(|(_, event)| core::mem::discriminant(event)).collect();
+    let needed = events.iter().filter(|(_, event)| !matches!(event, Event::Preparing { .. }));
+    let kinds: Vec<_> = needed.map(|(_, event)| core::mem::discriminant(event)).collect();
     let expected =
         [Event::Touched, Event::Settled { since: 0.0 }, Event::GettingUp { clip: None }, Event::Up];
     assert_eq!(kinds, expected.map(|event| core::mem::discriminant(&event)), "{events:?}");
@@ -88,7 +89,7 @@ fn picks_the_clip_by_the_side_it_lies_on() {
     for impulse in [-90.0, 90.0, 40.0, -40.0] {
         let push = somewhere().rotation * Vec3::Z * impulse;
         let (mut world, mut character) = knocked_over(&def, push);
-        run_until(&mut world, &mut character, 10.0, |c| c.state() != State::Limp);
+        run_until(&mut world, &mut character, 10.0, |c| c.state() == State::GettingUp);
         assert_eq!(character.state(), State::GettingUp);
         let Some(&Event::GettingUp { clip: Some(clip) }) =
             character.events().iter().find(|event| matches!(event, Event::GettingUp { .. }))
