@@ -62,7 +62,7 @@ impl Demo {
 }
 
 /// The character, and how fast it walks, m/s.
-fn walking_mannequin() -> (CharacterDef, f32) {
+pub(crate) fn walking_mannequin() -> (CharacterDef, f32) {
     let Mannequin { rig, clips, motions } = mannequin();
     let analysis = analyze(&rig).expect("the mannequin has a skin");
     let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");

@@ -59,11 +59,11 @@ impl Character {
         self.pose.clone_from(&self.earlier.pose);
     }
 
-    /// World poses of the bodies as the animation will have them in `seconds`.
+    /// Poses of the bodies as the animation will have them in `seconds`, seen from where the character stands now.
     pub(super) fn bodies_ahead(&mut self, seconds: f32, out: &mut Vec<Transform>) {
         let mut ahead = self.animator.clone();
         ahead.update(self.def.set(), seconds);
-        let mut place = self.world_from_character * self.step_of(&ahead);
+        let mut place = self.step_of(&ahead);
         place.translation += Vec3::Y * (self.climbing * seconds);
         let mut pose = core::mem::take(&mut self.scratch.pose);
         pose.clear();

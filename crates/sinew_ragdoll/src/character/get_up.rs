@@ -3,8 +3,8 @@
 use super::likeness::{Likeness, Stance};
 use super::moves::{GetUp, Start};
 use super::{Character, Event, State, animate, ground};
-use sinew_anim::{Animator, LoopMode, Pose, Track, TrackDef, TrackId, local_to_model};
-use sinew_math::{Affine, Transform};
+use sinew_anim::{Animator, LoopMode, Pose, Track, TrackDef, TrackId, local_to_model, smoothstep};
+use sinew_math::{Affine, Rotation, Transform, Vec3};
 use sinew_physics::World;
 
 /// Seconds in which the bodies' pose dies away in a get-up clip.
@@ -13,6 +13,8 @@ const INTO_GET_UP: f32 = 0.35;
 const INTO_STANDING: f32 = 0.8;
 /// Seconds in which the end of the get-up clip dies away in the looped one.
 const INTO_LOOP: f32 = 0.3;
+/// Share of a get-up clip, to its end, in which a body that lay on a slope stands upright.
+const STRAIGHTENS: f32 = 0.6;
 /// How far above the pelvis the ground is sought, metres.
 const ABOVE_PELVIS: f32 = 0.3;
 
@@ -55,6 +57,7 @@ impl Character {
     /// Gives the pose back to the clips, by the moment of a get-up clip that is most like it.
     pub(super) fn get_up(&mut self, world: &mut World) {
         let lies = self.stance();
+        self.lean = ground::slope(world, &lies.points);
         self.let_go(world);
         if let Some(ragdoll) = self.ragdoll.take() {
             ragdoll.despawn(world);
@@ -77,6 +80,29 @@ impl Character {
             }
         }
         self.state = State::GettingUp;
+    }
+
+    /// On a slope the clip, made for a level floor, lies as the slope does and comes to stand upright.
+    pub(super) fn straighten(&mut self) {
+        if self.lean == Vec3::ZERO {
+            return;
+        }
+        let left = match self.rising {
+            Rising::ByClip(id) => {
+                let time =
+                    self.animator.track(id).map(|track| (track.playhead().clip_time(), track.def().clip));
+                time.map_or(0.0, |(time, clip)| {
+                    let duration = self.def.set().clip(clip).clip.duration();
+                    (duration - time) / (STRAIGHTENS * duration)
+                })
+            }
+            Rising::Without(seconds) => seconds / INTO_STANDING,
+        };
+        let before = self.world_from_character.rotation;
+        // What is left of the lean after the last step is in the rotation: the heading is what it had without.
+        let heading = Rotation::from_axis_angle(Vec3::Y, before.twist_angle(Vec3::Y));
+        self.world_from_character.rotation =
+            Rotation::from_scaled_axis(self.lean * smoothstep(left)) * heading;
     }
 
     /// Goes on with a get-up, and ends it.
@@ -104,6 +130,7 @@ impl Character {
         let def = self.def.clone();
         let moves = def.moves();
         let stands = self.stance();
+        self.lean = Vec3::ZERO;
         self.settle_into(world, moves.landmarks.compare(&moves.upright, &stands).motion, INTO_LOOP);
         animate::play_looped(&def, &mut self.animator, 0.0);
         self.be_up();
@@ -124,8 +151,12 @@ impl Character {
         });
         let height =
             ground::below(world, pelvis, ABOVE_PELVIS).unwrap_or(self.world_from_character.translation.y);
-        let mut to = place;
-        to.translation.y = height;
+        let mut to =
+            Transform::new(place.translation, Rotation::from_scaled_axis(self.lean) * place.rotation);
+        // As high as the ground where the pelvis is, on the slope that it lies on.
+        let normal = Rotation::from_scaled_axis(self.lean) * Vec3::Y;
+        let away = to.translation - pelvis;
+        to.translation.y = height - (normal.x * away.x + normal.z * away.z) / normal.y;
         mapping.reframe(&mut self.pose, self.world_from_character, to);
         mapping.reframe(&mut self.earlier.pose, self.earlier.world_from_character, to);
         self.world_from_character = to;

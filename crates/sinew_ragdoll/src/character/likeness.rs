@@ -24,7 +24,7 @@ pub(super) struct Landmarks {
 /// A body's pose by its landmarks.
 #[derive(Clone, Debug)]
 pub(super) struct Stance {
-    points: Vec<Vec3>,
+    pub points: Vec<Vec3>,
     /// How the pelvis is turned, from its bind pose.
     pub pelvis: Rotation,
 }

@@ -6,11 +6,11 @@ use crate::drive::DriveMode;
 use crate::hand_over::body_velocity;
 use crate::ragdoll::{BodyState, Ragdoll};
 use sinew_math::Transform;
-use sinew_physics::{BodyId, World};
+use sinew_physics::{BodyId, Velocity, World};
 
 /// Seconds ahead of now of the pose that the hand-over takes velocities from: short against any motion, long against
 /// rounding.
-const HAND_OVER: f32 = 1.0 / 240.0;
+const HAND_OVER: f32 = 1.0 / 500.0;
 
 /// A body below both speeds lies still, m/s and rad/s.
 pub(crate) const STILL_LINEAR: f32 = 0.02;
@@ -68,13 +68,17 @@ impl Character {
     fn carried(&mut self) -> Vec<BodyState> {
         let (mut now, mut ahead) =
             (core::mem::take(&mut self.scratch.before), core::mem::take(&mut self.scratch.after));
+        // Seen by the character: far from the world's origin small ways drown in rounding.
         self.bodies_ahead(HAND_OVER, &mut ahead);
         let pose = core::mem::take(&mut self.pose);
-        self.bodies_of(&pose, self.world_from_character, &mut now);
+        self.bodies_of(&pose, Transform::IDENTITY, &mut now);
         self.pose = pose;
-        let state = |((&now, &ahead), body): ((&Transform, &Transform), &RagdollBodyDef)| BodyState {
-            world_from_body: now,
-            velocity: body_velocity(now, ahead, body.mass.center, HAND_OVER, self.def.speed_bound),
+        let place = self.world_from_character;
+        let state = |((&now, &ahead), body): ((&Transform, &Transform), &RagdollBodyDef)| {
+            let Velocity { linear, angular } =
+                body_velocity(now, ahead, body.mass.center, HAND_OVER, self.def.speed_bound);
+            let velocity = Velocity { linear: place.rotation * linear, angular: place.rotation * angular };
+            BodyState { world_from_body: place * now, velocity }
         };
         let states = now.iter().zip(&ahead).zip(&self.def.ragdoll.bodies).map(state).collect();
         (self.scratch.before, self.scratch.after) = (now, ahead);
@@ -110,6 +114,10 @@ impl Character {
         self.bodies_ahead(0.0, &mut before);
         let dt = world.def().dt();
         self.bodies_ahead(dt, &mut targets);
+        let place = self.world_from_character;
+        for pose in before.iter_mut().chain(&mut targets) {
+            *pose = place * *pose;
+        }
         let velocity = |((&now, &ahead), body): ((&Transform, &Transform), &RagdollBodyDef)| {
             body_velocity(now, ahead, body.mass.center, dt, self.def.speed_bound)
         };

@@ -82,6 +82,8 @@ pub struct Character {
     state: State,
     animator: Animator,
     rising: Rising,
+    /// How the ground slopes on which it gets up, as a turn from the vertical: scaled axis, world axes.
+    lean: Vec3,
     world_from_character: Transform,
     /// How fast the ground took the character's origin up in the last step, m/s.
     climbing: f32,
@@ -126,6 +128,7 @@ impl Character {
             state: State::Animated,
             animator,
             rising: Rising::Without(0.0),
+            lean: Vec3::ZERO,
             climbing: 0.0,
             earlier: Earlier { pose: pose.clone(), world_from_character },
             world_from_character,
@@ -205,6 +208,7 @@ impl Character {
             State::Animated => self.animate(world),
             State::GettingUp => {
                 self.animate(world);
+                self.straighten();
                 self.rise(world);
             }
         }

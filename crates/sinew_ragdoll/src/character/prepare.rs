@@ -9,10 +9,11 @@ use crate::drive::{DriveMode, Muscle, Pin};
 use sinew_math::Rotation;
 use sinew_physics::{Velocity, World};
 
-/// A trunk may be turned so much from how its clip begins, radians.
-const TRUNK_OFF: f32 = 0.6;
-/// The joints may be so far on the mean from where they are then, share of the body's height.
-const JOINTS_OFF: f32 = 0.11;
+/// By so much a trunk is turned from how its clip begins, radians, and so far are the joints on the mean from where they are
+/// then, share of the body's height: where a body may get up at once, and when one that is brought there has come near
+/// enough.
+const AT_ONCE: [f32; 2] = [0.85, 0.16];
+const NEAR_ENOUGH: [f32; 2] = [0.7, 0.14];
 /// Seconds in which the body is brought there: where its trunk has to be turned, and where it has not.
 const TIME_TO_ROLL: f32 = 1.5;
 const TIME_TO_PULL: f32 = 0.5;
@@ -21,9 +22,9 @@ const HALF_LIFE: f32 = 0.1;
 /// What draws the limbs.
 const PULL: Muscle = Muscle { hertz: 2.0, damping_ratio: 1.0, strength: 0.6 };
 /// How fast a trunk is turned, Hz.
-const ROLL: f32 = 1.2;
-/// Largest torque of what rolls a body over, on each part of the trunk, over its weight times its height: 65 N·m of a man.
-const STRENGTH: f32 = 0.05;
+const ROLL: f32 = 2.0;
+/// Largest torque of what rolls a body over, on each part of the trunk, over its weight times its height: 90 N·m of a man.
+const STRENGTH: f32 = 0.07;
 
 /// A body on its way to where a clip begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -42,10 +43,10 @@ impl Character {
         let def = self.def.clone();
         let moves = def.moves();
         let choice = choose(&moves.get_ups, &moves.landmarks, &lies).filter(|choice| {
-            def.getting_ready == GettingReady::RollOver && !self.is_like(choice, lies.pelvis)
+            def.getting_ready == GettingReady::RollOver && !self.is_like(choice, lies.pelvis, AT_ONCE)
         });
         let Some(choice) = choice else { return self.get_up(world) };
-        let rolls = trunk_off(&choice, lies.pelvis) > TRUNK_OFF;
+        let rolls = trunk_off(&choice, lies.pelvis) > AT_ONCE[0];
         let index = |at: Option<usize>| at.unwrap_or_default() as u32;
         self.preparation = Preparation {
             get_up: index(moves.get_ups.iter().position(|get_up| core::ptr::eq(get_up, choice.get_up))),
@@ -76,15 +77,15 @@ impl Character {
         let get_up = &moves.get_ups[self.preparation.get_up as usize];
         let start = &get_up.starts[self.preparation.start as usize];
         let choice = Choice { get_up, start, likeness: moves.landmarks.compare(&start.stance, &lies) };
-        if self.preparation.seconds <= 0.0 || self.is_like(&choice, lies.pelvis) {
+        if self.preparation.seconds <= 0.0 || self.is_like(&choice, lies.pelvis, NEAR_ENOUGH) {
             return self.get_up(world);
         }
         self.draw(world, &choice);
     }
 
-    fn is_like(&self, choice: &Choice<'_>, pelvis: Rotation) -> bool {
+    fn is_like(&self, choice: &Choice<'_>, pelvis: Rotation, [trunk, joints]: [f32; 2]) -> bool {
         let joints_off = choice.likeness.distance / self.def.ragdoll.height;
-        trunk_off(choice, pelvis) < TRUNK_OFF && joints_off < JOINTS_OFF
+        trunk_off(choice, pelvis) < trunk && joints_off < joints
     }
 
     /// Drives the bodies toward the moment of the clip, where they lie, for the next step.

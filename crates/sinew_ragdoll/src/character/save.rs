@@ -27,6 +27,7 @@ impl Character {
         });
         w.transform(self.world_from_character);
         w.f32(self.climbing);
+        w.vec3(self.lean);
         self.animator.save(self.def.set(), w);
         save_rising(w, self.rising);
         save_pose(w, &self.pose);
@@ -69,7 +70,7 @@ impl Character {
             3 => State::Preparing,
             _ => return Err(r.error("unknown state of a character")),
         };
-        let (world_from_character, climbing) = (r.transform()?, r.f32()?);
+        let (world_from_character, climbing, lean) = (r.transform()?, r.f32()?, r.vec3()?);
         let animator = Animator::load(self.def.set(), r)?;
         let rising = load_rising(r)?;
         let joints = self.def.rig.joints.len();
@@ -91,7 +92,7 @@ impl Character {
             return Err(r.error("is of another character"));
         }
         (self.state, self.animator, self.rising, self.stillness) = (state, animator, rising, stillness);
-        (self.drives, self.preparation) = (drives, preparation);
+        (self.drives, self.preparation, self.lean) = (drives, preparation, lean);
         (self.world_from_character, self.climbing) = (world_from_character, climbing);
         (self.pose, self.earlier, self.ragdoll) = (pose, earlier, ragdoll);
         if !base.is_empty() {

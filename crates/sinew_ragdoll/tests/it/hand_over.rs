@@ -1,8 +1,8 @@
 //! Momentum of the animated pose and of the ragdoll that takes over.
 
 use crate::actor::{floor, shared, somewhere, walker};
-use sinew_anim::{Wrap, local_to_model, sample};
-use sinew_math::{Affine, Rotation, Transform, Vec3};
+use sinew_anim::{Easing, TrackDef, Transition, Wrap, local_to_model, sample};
+use sinew_math::{Affine, Random, Rotation, Transform, Vec3, max};
 use sinew_physics::{Velocity, World, WorldDef};
 use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
 use sinew_ragdoll::{Character, CharacterDef};
@@ -32,14 +32,25 @@ struct Carried {
 /// By central differences over `dt` on either side.
 fn carried_momentum(def: &CharacterDef, at: Transform, time: f32, dt: f32) -> Carried {
     let [before, now, after] = [time - dt, time, time + dt].map(|time| carried_bodies(def, at, time));
+    momentum_between(def, &before, &now, &after, 2.0 * dt)
+}
+
+/// Of bodies that move from `before` to `after` in `seconds`, where they are `now`.
+fn momentum_between(
+    def: &CharacterDef,
+    before: &[Transform],
+    now: &[Transform],
+    after: &[Transform],
+    seconds: f32,
+) -> Carried {
     let bodies = &def.ragdoll.bodies;
     let total: f32 = bodies.iter().map(|body| body.mass.mass).sum();
     let center = |body: usize, pose: &[Transform]| pose[body].point(bodies[body].mass.center);
     let common = (0..bodies.len())
-        .fold(Vec3::ZERO, |sum, body| sum + center(body, &now) * (bodies[body].mass.mass / total));
+        .fold(Vec3::ZERO, |sum, body| sum + center(body, now) * (bodies[body].mass.mass / total));
     let mut sum = Carried { linear: Vec3::ZERO, angular: Vec3::ZERO, swing: 0.0 };
     for (body, def) in bodies.iter().enumerate() {
-        let p = (center(body, &after) - center(body, &before)) * (def.mass.mass / (2.0 * dt));
+        let p = (center(body, after) - center(body, before)) * (def.mass.mass / seconds);
         // The turn's matrix minus its transpose holds the axis: no logarithm, unlike the code under test.
         let turn = (after[body].rotation * before[body].rotation.inverse()).to_mat3();
         let axis = Vec3::new(
@@ -47,10 +58,10 @@ fn carried_momentum(def: &CharacterDef, at: Transform, time: f32, dt: f32) -> Ca
             turn.z_axis.x - turn.x_axis.z,
             turn.x_axis.y - turn.y_axis.x,
         );
-        let spin = axis * 0.5 / (2.0 * dt);
+        let spin = axis * 0.5 / seconds;
         sum.linear += p;
         let r = now[body].rotation;
-        let share = (center(body, &now) - common).cross(p) + r * (def.mass.inertia * (r.inverse() * spin));
+        let share = (center(body, now) - common).cross(p) + r * (def.mass.inertia * (r.inverse() * spin));
         sum.angular += share;
         sum.swing += share.length();
     }
@@ -111,4 +122,68 @@ fn speeds_are_bounded() {
     let velocity = body_velocity(Transform::IDENTITY, after, Vec3::ZERO, 0.01, bound);
     assert!((velocity.linear - Vec3::X * 2.0).length() < 1e-5);
     assert!((velocity.angular - Vec3::Y * 3.0).length() < 1e-5);
+}
+
+/// Poses of the bodies in `seconds`, as an animator that is sent ahead by itself has them.
+fn bodies_in(character: &Character, seconds: f32) -> Vec<Transform> {
+    let def = character.def();
+    let mut animator = character.animator().clone();
+    animator.update(def.set(), seconds);
+    let pose: Vec<_> = animator.pose().iter().collect();
+    let mut model = Vec::new();
+    local_to_model(&def.rig, &pose, &Affine::IDENTITY, &mut model);
+    let mut bodies = Vec::new();
+    // The mannequin's model space is its character space.
+    def.mapping().bodies_from_model(
+        &model,
+        character.world_from_character() * animator.root_motion(),
+        &mut bodies,
+    );
+    bodies
+}
+
+#[test]
+fn momentum_is_that_of_any_mixture_of_clips_and_transitions() {
+    let def = shared(walker());
+    let mut random = Random::new(3);
+    let mut worst = [0.0_f32; 2];
+    for _ in 0..60 {
+        let mut world = World::new(WorldDef::default());
+        let mut character = Character::new(def.clone(), somewhere(), random.range(0.0, 1.0));
+        for step in 0..40 {
+            if step % 9 == 3 {
+                let clip = TrackDef {
+                    start: random.range(0.0, 1.0),
+                    speed: random.range(0.3, 1.5),
+                    ..TrackDef::new(def.clip(random.index(4)))
+                };
+                let seconds = random.range(0.1, 0.5);
+                let transition = match random.index(2) {
+                    0 => Transition::Inertial { seconds },
+                    _ => Transition::Crossfade { seconds, easing: Easing::Smooth },
+                };
+                character.animator_mut().transition(def.set(), &clip, transition);
+            }
+            world.step();
+            character.update(&mut world);
+        }
+        const H: f32 = 5e-4;
+        let [now, ahead] = [0.0, H].map(|seconds| bodies_in(&character, seconds));
+        let carried = momentum_between(&def, &now, &now, &ahead, H);
+        character.go_limp(&mut world);
+        let momentum = world.momentum();
+        let ragdoll = character.ragdoll().expect("it is limp");
+        let (mut mass, mut moment) = (0.0, Vec3::ZERO);
+        for &body in &ragdoll.bodies {
+            mass += world.mass(body).mass;
+            moment += world.center_of_mass(body) * world.mass(body).mass;
+        }
+        let about_center = momentum.angular - (moment / mass).cross(momentum.linear);
+        // A body that hardly moves as a whole still has limbs that do.
+        let linear = (momentum.linear - carried.linear).length() / max(carried.linear.length(), 0.3 * mass);
+        let angular = (about_center - carried.angular).length() / max(carried.swing, 0.5);
+        worst = [max(worst[0], linear), max(worst[1], angular)];
+    }
+    println!("worst of 60 mixtures: linear {:.4}, angular {:.4}", worst[0], worst[1]);
+    assert!(worst.iter().all(|&error| error < 0.01), "{worst:?}");
 }

@@ -12,3 +12,4 @@ mod hand_over;
 mod mapping;
 mod pops;
 mod quality;
+mod slopes;
