@@ -59,16 +59,22 @@ impl Character {
         self.pose.clone_from(&self.earlier.pose);
     }
 
-    /// Poses of the bodies as the animation will have them in `seconds`, seen from where the character stands now.
-    pub(super) fn bodies_ahead(&mut self, seconds: f32, out: &mut Vec<Transform>) {
-        let mut ahead = self.animator.clone();
+    /// Poses of the bodies as an animator that is sent ahead has them after `seconds` more, seen from where the character
+    /// stands now. `place` is where the animator has brought it until then.
+    pub(super) fn bodies_ahead(
+        &mut self,
+        ahead: &mut Animator,
+        place: &mut Transform,
+        seconds: f32,
+        out: &mut Vec<Transform>,
+    ) {
         ahead.update(self.def.set(), seconds);
-        let mut place = self.step_of(&ahead);
+        *place = *place * self.step_of(ahead);
         place.translation += Vec3::Y * (self.climbing * seconds);
         let mut pose = core::mem::take(&mut self.scratch.pose);
         pose.clear();
         pose.extend(ahead.pose().iter());
-        self.bodies_of(&pose, place, out);
+        self.bodies_of(&pose, *place, out);
         self.scratch.pose = pose;
     }
 

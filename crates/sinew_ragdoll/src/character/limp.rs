@@ -5,12 +5,12 @@ use crate::def::RagdollBodyDef;
 use crate::drive::DriveMode;
 use crate::hand_over::body_velocity;
 use crate::ragdoll::{BodyState, Ragdoll};
-use sinew_math::Transform;
+use sinew_math::{Transform, Vec3};
 use sinew_physics::{BodyId, Velocity, World};
 
-/// Seconds ahead of now of the pose that the hand-over takes velocities from: short against any motion, long against
+/// Seconds between the poses ahead of now that the hand-over takes velocities from: short against any motion, long against
 /// rounding.
-const HAND_OVER: f32 = 1.0 / 500.0;
+const HAND_OVER: f32 = 1.0 / 1000.0;
 
 /// A body below both speeds lies still, m/s and rad/s.
 pub(crate) const STILL_LINEAR: f32 = 0.02;
@@ -69,18 +69,29 @@ impl Character {
         let (mut now, mut ahead) =
             (core::mem::take(&mut self.scratch.before), core::mem::take(&mut self.scratch.after));
         // Seen by the character: far from the world's origin small ways drown in rounding.
-        self.bodies_ahead(HAND_OVER, &mut ahead);
         let pose = core::mem::take(&mut self.pose);
         self.bodies_of(&pose, Transform::IDENTITY, &mut now);
         self.pose = pose;
+        let (mut animator, mut way) = (self.animator.clone(), Transform::IDENTITY);
+        self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut ahead);
+        let mut further = Vec::new();
+        self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut further);
         let place = self.world_from_character;
-        let state = |((&now, &ahead), body): ((&Transform, &Transform), &RagdollBodyDef)| {
-            let Velocity { linear, angular } =
-                body_velocity(now, ahead, body.mass.center, HAND_OVER, self.def.speed_bound);
-            let velocity = Velocity { linear: place.rotation * linear, angular: place.rotation * angular };
+        let state = |(((&now, &ahead), &further), body): (
+            ((&Transform, &Transform), &Transform),
+            &RagdollBodyDef,
+        )| {
+            let between = |a, b| body_velocity(a, b, body.mass.center, HAND_OVER, self.def.speed_bound);
+            let (soon, later) = (between(now, ahead), between(ahead, further));
+            // Means of two spans, brought to the start of the first: a transition may well change speeds by a tenth in one.
+            let start = |soon: Vec3, later: Vec3| place.rotation * (soon + (soon - later) * 0.5);
+            let velocity = Velocity {
+                linear: start(soon.linear, later.linear),
+                angular: start(soon.angular, later.angular),
+            };
             BodyState { world_from_body: place * now, velocity }
         };
-        let states = now.iter().zip(&ahead).zip(&self.def.ragdoll.bodies).map(state).collect();
+        let states = now.iter().zip(&ahead).zip(&further).zip(&self.def.ragdoll.bodies).map(state).collect();
         (self.scratch.before, self.scratch.after) = (now, ahead);
         states
     }
@@ -111,9 +122,10 @@ impl Character {
         }
         let mut targets = core::mem::take(&mut self.scratch.after);
         let mut before = core::mem::take(&mut self.scratch.before);
-        self.bodies_ahead(0.0, &mut before);
+        let (mut animator, mut way) = (self.animator.clone(), Transform::IDENTITY);
+        self.bodies_ahead(&mut animator, &mut way, 0.0, &mut before);
         let dt = world.def().dt();
-        self.bodies_ahead(dt, &mut targets);
+        self.bodies_ahead(&mut animator, &mut way, dt, &mut targets);
         let place = self.world_from_character;
         for pose in before.iter_mut().chain(&mut targets) {
             *pose = place * *pose;
