@@ -6,7 +6,7 @@ use super::sight::Sight;
 use core::time::Duration;
 use sinew::math::{ReadError, Reader, Writer, max};
 use sinew::physics::stage::{NoProfiler, Profiler};
-use sinew::physics::{DebugDraw, Energy, LoadError, Serial, TaskRunner, Update, World};
+use sinew::physics::{BodyId, DebugDraw, Energy, LoadError, Serial, TaskRunner, Update, World};
 
 /// The part of a scene that goes along with its world.
 pub trait Script: Send {
@@ -54,6 +54,11 @@ pub trait Script: Send {
 
     /// Characters that a picture shows by their skins.
     fn figures(&self) -> Vec<Figure<'_>> {
+        Vec::new()
+    }
+
+    /// Bodies that those skins show.
+    fn bodies_of_figures(&self) -> Vec<BodyId> {
         Vec::new()
     }
 }
@@ -107,6 +112,11 @@ impl Instance {
     /// Characters that a picture shows by their skins.
     pub fn figures(&self) -> Vec<Figure<'_>> {
         self.script.figures()
+    }
+
+    /// Bodies that those skins show.
+    pub fn bodies_of_figures(&self) -> Vec<BodyId> {
+        self.script.bodies_of_figures()
     }
 
     /// Its world, for questions, drawing, snapshots.

@@ -9,7 +9,7 @@ use super::{Instance, Scene, Script, Setting, Setup};
 use crate::demo::walking_mannequin;
 use sinew::anim::local_to_model;
 use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer, max, trig};
-use sinew::physics::World;
+use sinew::physics::{BodyId, World};
 use sinew::ragdoll::{Character, CharacterDef, State};
 use std::sync::Arc;
 
@@ -215,5 +215,10 @@ impl Script for Throng {
     fn figures(&self) -> Vec<Figure<'_>> {
         let figure = |member| Self::figure(&self.def, member);
         self.members.iter().map(figure).collect()
+    }
+
+    fn bodies_of_figures(&self) -> Vec<BodyId> {
+        let ragdolls = self.members.iter().filter_map(|member| member.character.ragdoll());
+        ragdolls.flat_map(|ragdoll| ragdoll.bodies.iter().copied()).collect()
     }
 }
