@@ -11,6 +11,7 @@ mod limp;
 mod mirror;
 mod moves;
 mod prepare;
+mod recognise;
 mod save;
 
 pub(crate) use limp::{STILL_TIME, is_still, touches_world};

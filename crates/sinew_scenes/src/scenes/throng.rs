@@ -8,7 +8,7 @@ use super::sight::{Sight, Trails};
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::demo::walking_mannequin;
 use sinew::anim::local_to_model;
-use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer, max, trig};
+use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer, max};
 use sinew::physics::{BodyId, World};
 use sinew::ragdoll::{Character, CharacterDef, State};
 use std::sync::Arc;
@@ -41,7 +41,7 @@ const STATES: [(State, &str); 4] = [
     (State::GettingUp, "getting_up"),
 ];
 
-/// A row of places, and in it as many characters as there are: they walk to the middle.
+/// Rows of characters that all walk about the same way, each pushed forward or back, and a little aside.
 fn crowd(setup: &Setup<'_>) -> Instance {
     let mut world = setup.world();
     world.add_body(&floor());
@@ -56,7 +56,7 @@ fn crowd(setup: &Setup<'_>) -> Instance {
         let jitter = random.in_cube() * (0.3 * SPACING);
         let spot = Vec3::new(column as f32, 0.0, row as f32) * SPACING;
         let place = spot - Vec3::new(extent - jitter.x, 0.0, extent - jitter.z);
-        let heading = trig::atan2(-place.x, -place.z) + random.range(-0.4, 0.4);
+        let heading = random.range(-0.4, 0.4);
         let stands = Transform::new(place, Rotation::from_axis_angle(Vec3::Y, heading));
         let way = Rotation::from_axis_angle(Vec3::Y, random.range(-0.8, 0.8)) * stands.rotation * Vec3::Z;
         let back_or_front = if random.unit() < 0.5 { -1.0 } else { 1.0 };

@@ -167,15 +167,12 @@ fn character(file: &CharacterFile, motions: Motions) -> Result<CharacterDef> {
     let (ragdoll, _) = build(&document.rig, analysis, &BuildOptions::default())
         .map_err(|error| Failure::of_file(name, error))?;
     let mut def = CharacterDef::new(document.rig.clone(), ragdoll, &analysis.bind_model);
+    let mut get_ups = def.get_ups_among(&motions.clips);
+    get_ups.retain(|&clip| Some(clip) != motions.looped);
     // A body that lies down and has no motion to get up by would float to its feet.
-    def.after_settling =
-        if motions.get_ups.is_empty() { AfterSettling::StayDown } else { AfterSettling::GetUp };
-    let motions = MotionSet {
-        clips: motions.clips,
-        looped: motions.looped,
-        get_ups: motions.get_ups,
-        ..MotionSet::default()
-    };
+    def.after_settling = if get_ups.is_empty() { AfterSettling::StayDown } else { AfterSettling::GetUp };
+    let Motions { clips, looped } = motions;
+    let motions = MotionSet { clips, looped, get_ups, ..MotionSet::default() };
     def.set_motions(motions).map_err(|error| Failure::of_file(name, error))?;
     Ok(def)
 }
