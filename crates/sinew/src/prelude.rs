@@ -11,4 +11,4 @@ pub use sinew_physics::{
     Update, Velocity, World, WorldDef,
 };
 #[cfg(feature = "ragdoll")]
-pub use sinew_ragdoll::{BuildOptions, Character, CharacterDef, Ragdoll, RagdollDef, build};
+pub use sinew_ragdoll::{BuildOptions, Character, CharacterDef, MotionSet, Ragdoll, RagdollDef, build};

@@ -128,6 +128,20 @@ fn chain_poses(clip: &Clip, rig: &Rig, joint: JointIdx, times: &[f32]) -> Vec<Ch
 }
 
 impl MotionTrack {
+    /// Straight on for `duration` seconds: what carries a clip that was made on the spot. `velocity` is in file units per
+    /// second, model space, `up` a unit vector there.
+    ///
+    /// # Panics
+    /// If `duration` is negative or not finite.
+    pub fn straight(velocity: Vec3, duration: f32, up: Vec3) -> Self {
+        assert!(duration >= 0.0 && duration.is_finite(), "a motion takes 0 s or longer, not {duration}");
+        if duration == 0.0 {
+            return Self { times: vec![0.0], positions: vec![Vec3::ZERO], turns: vec![0.0], up };
+        }
+        let positions = vec![Vec3::ZERO, velocity * duration];
+        Self { times: vec![0.0, duration], positions, turns: vec![0.0; 2], up }
+    }
+
     fn from_poses(times: &[f32], poses: &[ChainPose], options: &RootMotionOptions) -> Self {
         let rotation = |pose: &ChainPose| pose.parent.to_rigid().rotation * pose.local.rotation;
         let first = rotation(&poses[0]);

@@ -21,7 +21,8 @@ pub fn phases(def: &CharacterDef, events: &[(f32, Event)]) -> Vec<Phase> {
             }
             Event::WentLimp => add(time, "falls"),
             Event::Settled { since } => add(since, "lies still"),
-            Event::GettingUp { .. } => add(time, "gets up"),
+            Event::Preparing { rolls: true } => add(time, "rolls over"),
+            Event::Preparing { rolls: false } | Event::GettingUp { .. } => add(time, "gets up"),
             Event::Up => add(time, &upright(def)),
             Event::Touched | Event::NeverSettled => {}
         }
@@ -32,7 +33,8 @@ pub fn phases(def: &CharacterDef, events: &[(f32, Event)]) -> Vec<Phase> {
 }
 
 fn upright(def: &CharacterDef) -> String {
-    match (def.looped.map(|clip| def.clips[clip].name.as_str()), def.locomotion) {
+    match (def.motions().looped.map(|clip| def.motions().clips[clip].name.as_str()), def.motions().locomotion)
+    {
         (Some(_), Locomotion::Forward { .. }) => "walks".to_owned(),
         (Some(""), Locomotion::InPlace) => "plays a clip without a name".to_owned(),
         (Some(clip), Locomotion::InPlace) => format!("plays clip {}", shown(clip)),
@@ -56,8 +58,10 @@ pub fn told(input: &BakeInput<'_>, events: &[(f32, Event)]) -> Vec<(f32, String)
                 continue;
             }
             Event::NeverSettled => "does not come to rest".to_owned(),
+            Event::Preparing { rolls: true } => "rolls over".to_owned(),
+            Event::Preparing { rolls: false } => "gathers its limbs".to_owned(),
             Event::GettingUp { clip: Some(clip) } => {
-                format!("gets up by clip {}", shown(&def.clips[clip].name))
+                format!("gets up by clip {}", shown(&def.motions().clips[clip].name))
             }
             Event::GettingUp { clip: None } => "gets up".to_owned(),
             Event::Up => format!("{} again", upright(def)),

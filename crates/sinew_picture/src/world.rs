@@ -117,7 +117,15 @@ fn links(world: &World, id: JointId) -> [[Vec3; 2]; 3] {
 
 /// Adds the world's bodies, particles, springs, joints and what its objects draw to a scene.
 pub fn paint(world: &World, frame: &Frame, scene: &mut Scene) {
+    paint_all_but(world, &[], frame, scene);
+}
+
+/// Likewise, without bodies that something else shows: those of a character that is drawn by its skin.
+pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, scene: &mut Scene) {
     for (number, id) in world.body_ids().enumerate() {
+        if shown.contains(&id) {
+            continue;
+        }
         if world.kind(id) == BodyKind::Kinematic && frame.kinematic == Kinematic::Wire {
             let wires = world
                 .shapes(id)

@@ -17,7 +17,9 @@ pub mod ragdoll;
 
 pub use bake::{BakeInput, Baked, Hit, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
-pub use character::{AfterSettling, Character, CharacterDef, Event, Locomotion, State};
+pub use character::{
+    AfterSettling, Character, CharacterDef, Event, GettingReady, Locomotion, MotionError, MotionSet, State,
+};
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 pub use drive::{DriveMode, Drives, Muscle, Pin, torque_caps};
 pub use fit::ShapeChoice;

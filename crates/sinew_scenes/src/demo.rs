@@ -6,7 +6,7 @@ use crate::mannequin::{Mannequin, mannequin};
 use sinew::anim::analyze;
 use sinew::math::{Transform, Vec3};
 use sinew::physics::BodyDef;
-use sinew::ragdoll::{BakeInput, BuildOptions, CharacterDef, Hit, Locomotion, build};
+use sinew::ragdoll::{BakeInput, BuildOptions, CharacterDef, Hit, Locomotion, MotionSet, build};
 use std::sync::Arc;
 
 /// Length: the walk, the fall, getting up, and a few steps; seconds.
@@ -62,14 +62,18 @@ impl Demo {
 }
 
 /// The character, and how fast it walks, m/s.
-fn walking_mannequin() -> (CharacterDef, f32) {
+pub(crate) fn walking_mannequin() -> (CharacterDef, f32) {
     let Mannequin { rig, clips, motions } = mannequin();
     let analysis = analyze(&rig).expect("the mannequin has a skin");
     let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
     let mut character = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
-    character.clips = clips;
-    character.looped = Some(motions.walk);
-    character.get_ups = vec![motions.get_up_supine, motions.get_up_prone];
-    character.locomotion = Locomotion::Forward { speed: motions.walk_speed };
-    (character, motions.walk_speed)
+    let speed = motions.walk_speed;
+    let motions = MotionSet {
+        clips,
+        looped: Some(motions.walk),
+        get_ups: vec![motions.get_up_supine, motions.get_up_prone],
+        locomotion: Locomotion::Forward { speed },
+    };
+    character.set_motions(motions).expect("clips made by code can be played");
+    (character, speed)
 }

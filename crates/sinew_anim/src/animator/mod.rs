@@ -304,6 +304,26 @@ impl Animator {
         self.slots.iter_mut().map(|slot| &mut slot.track).find(|track| track.id == id)
     }
 
+    /// Takes two poses of a motion that was not its own, such as that of bodies, as the last that it had; what that motion is
+    /// beyond the tracks then dies away within `transition` seconds from the next update on (see [`Inertia`]). The poses are
+    /// of the set's rig, `earlier` is `seconds` before `now`; 0: there is none, and the motion counts as standing. The root
+    /// counts as standing, too.
+    ///
+    /// # Panics
+    /// If a pose is of another rig, or a time is negative or not finite.
+    pub fn take_over(&mut self, earlier: &Pose, now: &Pose, seconds: f32, transition: f32) {
+        for time in [seconds, transition] {
+            assert!(time >= 0.0 && time.is_finite(), "a transition takes 0 s or longer, not {time}");
+        }
+        self.previous.copy_from(earlier);
+        self.pose.copy_from(now);
+        self.previous_seconds = seconds;
+        self.has_pose = true;
+        self.inertia.clear();
+        (self.root_inertia, self.root_velocity) = (RootInertia::default(), RootVelocity::default());
+        self.awaits_transition = Some(transition);
+    }
+
     /// Takes time forward by `seconds`, 0 or above.
     ///
     /// Everything of the tracks is as it would be after any number of shorter updates: what ends within this one ends in

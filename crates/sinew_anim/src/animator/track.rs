@@ -7,6 +7,18 @@ use sinew_math::clamp;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TrackId(pub(crate) u64);
 
+impl TrackId {
+    /// As a number, for who saves an animator and what refers to it.
+    pub fn to_bits(self) -> u64 {
+        self.0
+    }
+
+    /// From that number; of an animator that has no such track, it is the id of none.
+    pub fn from_bits(bits: u64) -> Self {
+        Self(bits)
+    }
+}
+
 /// What becomes of a track at the end of a ramp, or of a clip that plays once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EndAction {

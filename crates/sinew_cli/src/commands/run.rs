@@ -8,7 +8,7 @@ use crate::table::Table;
 use serde_json::{Map, Value, json};
 use sinew::physics::stage::NoProfiler;
 use sinew::physics::{Serial, TaskRunner, Threads};
-use sinew_scenes::scenes::{Expected, Instance, Metric, Scene};
+use sinew_scenes::scenes::{Expected, Instance, Metric, Part, Scene};
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -66,22 +66,49 @@ impl Run {
 struct StepTimes {
     median: f64,
     p99: f64,
+    costs: Vec<Cost>,
+}
+
+/// What a part of the work cost over all steps.
+struct Cost {
+    name: &'static str,
+    seconds: f64,
+    /// Of how many in how many steps.
+    count: u64,
+}
+
+/// Adds to the cost of a part.
+fn spend(costs: &mut Vec<Cost>, part: Part, seconds: f64) {
+    let count = u64::from(part.count);
+    match costs.iter_mut().find(|cost| cost.name == part.name) {
+        Some(cost) => {
+            cost.seconds += seconds;
+            cost.count += count;
+        }
+        None => costs.push(Cost { name: part.name, seconds, count }),
+    }
 }
 
 impl StepTimes {
     fn measure(instance: &mut Instance, steps: u32, runner: &dyn TaskRunner) -> Self {
         let progress = Progress::new("running", steps as usize);
+        let mut costs = Vec::new();
         let mut times: Vec<f64> = (0..steps)
             .map(|_| {
                 let start = Instant::now();
-                instance.step_with(runner, &NoProfiler);
+                let mut last = start;
+                instance.step_in_parts(runner, &NoProfiler, &mut |part| {
+                    let now = Instant::now();
+                    spend(&mut costs, part, (now - last).as_secs_f64());
+                    last = now;
+                });
                 progress.step();
                 start.elapsed().as_secs_f64() * 1e3
             })
             .collect();
         times.sort_unstable_by(f64::total_cmp);
         let rank = |percent: usize| times[(times.len() * percent).div_ceil(100) - 1];
-        Self { median: rank(50), p99: rank(99) }
+        Self { median: rank(50), p99: rank(99), costs }
     }
 }
 
@@ -105,9 +132,17 @@ impl Outcome<'_> {
             "threads": self.threads,
             "ms_per_step_median": self.times.median,
             "ms_per_step_p99": self.times.p99,
+            "cost_us": self.costs(),
             "hash": format!("{:016x}", self.hash),
             "metrics": metrics,
         })
+    }
+
+    /// Microseconds a step for one of each kind, in scenes whose work has parts.
+    fn costs(&self) -> Map<String, Value> {
+        let parts = self.times.costs.iter().filter(|cost| cost.count > 0);
+        let of = |cost: &Cost| (cost.name.to_owned(), json!(cost.seconds * 1e6 / cost.count as f64));
+        if self.times.costs.len() > 1 { parts.map(of).collect() } else { Map::new() }
     }
 
     fn to_text(&self) -> String {
@@ -122,6 +157,14 @@ impl Outcome<'_> {
             table.row([metric.name.to_owned(), value, expectation(metric.expected) + mark]);
         }
         text += &table.to_text();
+        if !self.costs().is_empty() {
+            let mut table = Table::titled(&["cost a step of one", "µs", "counted"]);
+            for cost in self.times.costs.iter().filter(|cost| cost.count > 0) {
+                let each = cost.seconds * 1e6 / cost.count as f64;
+                table.row([part_name(cost.name), format!("{each:.3}"), cost.count.to_string()]);
+            }
+            let _ = write!(text, "\n{}", table.to_text());
+        }
         let _ = writeln!(
             text,
             "\n{steps} steps on {threads} {}: median {:.3} ms, 99 % below {:.3} ms; state {hash:016x}",
@@ -130,6 +173,15 @@ impl Outcome<'_> {
             times.p99,
         );
         text
+    }
+}
+
+/// What a part is called in a table.
+fn part_name(name: &str) -> String {
+    if name == Instance::WORLD {
+        "body, in the world".to_owned()
+    } else {
+        format!("{}, beside it", name.replace('_', " "))
     }
 }
 

@@ -181,8 +181,10 @@ impl Run {
     fn step(&mut self) {
         self.meter.before_step(&self.world);
         self.world.step();
-        if let Some(ragdoll) = self.character.ragdoll() {
-            self.meter.after_step(&self.world, ragdoll);
+        match (self.character.ragdoll(), self.character.state()) {
+            (Some(ragdoll), State::Limp) => self.meter.after_step(&self.world, ragdoll),
+            (Some(ragdoll), _) => self.meter.after_driven_step(&self.world, ragdoll),
+            (None, _) => {}
         }
         self.character.update(&mut self.world);
         self.note_events(0);
@@ -197,7 +199,7 @@ impl Run {
         while let Some(&(time, push)) = self.pending.last().filter(|(time, _)| *time <= now) {
             debug_assert!(time <= now);
             self.pending.pop();
-            let was_limp = self.character.state() == State::Limp;
+            let was_limp = self.character.ragdoll().is_some();
             match push {
                 Push::Limp => self.character.go_limp(&mut self.world),
                 Push::Hit { body, impulse } => {

@@ -1,114 +1,92 @@
 //! The pose while clips decide it.
 
-use super::{Character, CharacterDef, Locomotion, State, ground};
-use sinew_anim::{LocalTransform, SampleCache, Wrap, crossfade, sample_cached, smoothstep};
-use sinew_math::{Rotation, Transform, Vec3, clamp};
+use super::{Character, CharacterDef, ground};
+use sinew_anim::{Animator, TrackDef, TrackId};
+use sinew_math::{Affine, Transform, Vec3, clamp};
 use sinew_physics::World;
-
-/// A clip that plays, and the pose that it is faded in from.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Motion {
-    /// `None`: the rest pose.
-    pub clip: Option<usize>,
-    pub wrap: Wrap,
-    /// Clip time at `time` 0, seconds.
-    pub phase: f32,
-    /// Seconds since it began.
-    pub time: f32,
-    /// Flat pose at `time` 0; not used when `fade` is 0.
-    pub from: Vec<LocalTransform>,
-    /// Seconds of the fade.
-    pub fade: f32,
-    /// `time` at which it is over; a looped clip never is.
-    pub ends: f32,
-    pub cache: SampleCache,
-}
-
-impl Motion {
-    /// The looped clip of a character, at once.
-    pub fn looping(def: &CharacterDef, phase: f32) -> Self {
-        Self { clip: def.looped, wrap: Wrap::Loop, phase, ends: f32::INFINITY, ..Self::default() }
-    }
-
-    /// The flat pose at `time`, a pure function of it.
-    pub fn pose_at(
-        &mut self,
-        def: &CharacterDef,
-        time: f32,
-        target: &mut [LocalTransform],
-        pose: &mut [LocalTransform],
-    ) {
-        match self.clip {
-            Some(clip) => {
-                let at = self.phase + time;
-                sample_cached(&def.clips[clip], &def.rig, at, self.wrap, &mut self.cache, target);
-                def.mapping().flatten(&def.rig, target);
-            }
-            None => target.copy_from_slice(def.rest()),
-        }
-        // Before the start there is a pose, too: that of a hit right at the start asks how it got there.
-        if self.fade > 0.0 && time < self.fade {
-            // Aligned to the target's hemisphere: the rest pose's may lie between two that are turned far from it.
-            crossfade(target, &self.from, target, smoothstep(time / self.fade), pose);
-        } else {
-            pose.copy_from_slice(target);
-        }
-    }
-}
-
-/// Velocity of a walking character, m/s, world axes.
-pub(super) fn locomotion(def: &CharacterDef, world_from_character: Rotation) -> Vec3 {
-    match def.locomotion {
-        Locomotion::Forward { speed } if def.looped.is_some() => world_from_character * Vec3::Z * speed,
-        Locomotion::Forward { .. } | Locomotion::InPlace => Vec3::ZERO,
-    }
-}
 
 /// How fast the height of the character's origin follows the ground, m/s: a step of a stair takes a few frames.
 const CLIMB_SPEED: f32 = 1.2;
 
+/// The animator of a new character, with its looped clip.
+pub(super) fn looping(def: &CharacterDef, phase: f32) -> Animator {
+    let mut animator = Animator::new(def.set());
+    play_looped(def, &mut animator, phase);
+    animator.update(def.set(), 0.0);
+    animator
+}
+
+/// Starts the looped clip, if there is one.
+pub(super) fn play_looped(def: &CharacterDef, animator: &mut Animator, phase: f32) -> Option<TrackId> {
+    let clip = def.clip(def.motions().looped?);
+    Some(animator.play(def.set(), &TrackDef { start: phase, ..TrackDef::new(clip) }))
+}
+
 impl Character {
-    /// Evaluates the clip's pose now.
-    pub(super) fn animate(&mut self) {
-        let time = self.motion.time;
-        self.motion.pose_at(&self.def, time, &mut self.scratch.pose, &mut self.pose);
-    }
-
-    /// Moves the origin over the ground by one step.
-    pub(super) fn walk(&mut self, world: &World) {
+    /// Takes the clips forward by a step, and the character over the ground with them.
+    pub(super) fn animate(&mut self, world: &World) {
         let dt = world.def().dt();
-        let from = self.world_from_character.translation;
-        let mut to = from + locomotion(&self.def, self.world_from_character.rotation) * dt;
-        if let Some(height) = ground::below(world, to, ground::HIGHEST_STEP) {
-            to.y += clamp(height - to.y, -CLIMB_SPEED * dt, CLIMB_SPEED * dt);
+        self.animator.update(self.def.set(), dt);
+        self.keep_earlier();
+        self.take_pose();
+        let from = self.world_from_character;
+        let mut to = from * self.step_of(&self.animator);
+        if let Some(height) = ground::below(world, to.translation, ground::HIGHEST_STEP) {
+            to.translation.y += clamp(height - to.translation.y, -CLIMB_SPEED * dt, CLIMB_SPEED * dt);
         }
-        self.world_from_character.translation = to;
-        self.root_velocity = (to - from) / dt;
+        self.world_from_character = to;
+        self.climbing = (to.translation.y - from.translation.y) / dt;
     }
 
-    /// World poses of the bodies as the animation has them `offset` seconds from now.
-    pub(super) fn animated_bodies(&mut self, offset: f32, out: &mut Vec<Transform>) {
-        debug_assert!(self.state != State::Limp, "a limp character has bodies of its own");
-        let time = self.motion.time + offset;
+    /// How the character went in the last update of an animator: in its own space.
+    fn step_of(&self, animator: &Animator) -> Transform {
+        let root = self.def.mapping().character_from_model();
+        let turn = root.to_rigid().rotation;
+        let step = animator.root_motion();
+        Transform::new(root.vector(step.translation), turn * step.rotation * turn.inverse())
+    }
+
+    /// The animator's pose becomes the character's.
+    pub(super) fn take_pose(&mut self) {
+        self.pose.clear();
+        self.pose.extend(self.animator.pose().iter());
+    }
+
+    /// Remembers the present pose as the one before the next.
+    pub(super) fn keep_earlier(&mut self) {
+        core::mem::swap(&mut self.earlier.pose, &mut self.pose);
+        self.earlier.world_from_character = self.world_from_character;
+        self.pose.clone_from(&self.earlier.pose);
+    }
+
+    /// Poses of the bodies as an animator that is sent ahead has them after `seconds` more, seen from where the character
+    /// stands now. `place` is where the animator has brought it until then.
+    pub(super) fn bodies_ahead(
+        &mut self,
+        ahead: &mut Animator,
+        place: &mut Transform,
+        seconds: f32,
+        out: &mut Vec<Transform>,
+    ) {
+        ahead.update(self.def.set(), seconds);
+        *place = *place * self.step_of(ahead);
+        place.translation += Vec3::Y * (self.climbing * seconds);
         let mut pose = core::mem::take(&mut self.scratch.pose);
-        // The present pose is evaluated again afterwards, so its buffer can hold this one.
-        self.motion.pose_at(&self.def, time, &mut pose, &mut self.pose);
+        pose.clear();
+        pose.extend(ahead.pose().iter());
+        self.bodies_of(&pose, *place, out);
         self.scratch.pose = pose;
-        let place = Transform::new(
-            self.world_from_character.translation + self.root_velocity * offset,
-            self.world_from_character.rotation,
-        );
-        self.bodies_of_pose(place, out);
     }
 
-    /// World poses of the bodies for the pose that the character holds.
-    pub(super) fn bodies_of_pose(&mut self, world_from_character: Transform, out: &mut Vec<Transform>) {
-        sinew_anim::local_to_model(
-            &self.def.rig,
-            &self.pose,
-            &sinew_math::Affine::IDENTITY,
-            &mut self.scratch.model,
-        );
-        self.def.mapping().bodies_from_model(&self.scratch.model, world_from_character, out);
+    /// World poses of the bodies for a pose of a character at `place`.
+    pub(super) fn bodies_of(
+        &mut self,
+        pose: &[sinew_anim::LocalTransform],
+        place: Transform,
+        out: &mut Vec<Transform>,
+    ) {
+        let model = &mut self.scratch.model;
+        sinew_anim::local_to_model(&self.def.rig, pose, &Affine::IDENTITY, model);
+        self.def.mapping().bodies_from_model(model, place, out);
     }
 }

@@ -1,11 +1,14 @@
 //! What characters of one kind share.
 
+use super::moves::{MotionError, Moves};
 use crate::def::RagdollDef;
+use crate::drive::DriveMode;
 use crate::hand_over::SpeedBound;
 use crate::mapping::Mapping;
 use crate::ragdoll::Flesh;
-use sinew_anim::{Clip, LocalTransform, Rig, rest_pose};
+use sinew_anim::{AnimationSet, Clip, ClipId, LocalTransform, Rig, rest_pose};
 use sinew_math::Affine;
+use std::sync::Arc;
 
 /// How a character moves over the ground while its looped clip plays.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +31,34 @@ pub enum AfterSettling {
     StayDown,
 }
 
+/// What a character that lies otherwise than any of its get-up clips begins does first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GettingReady {
+    /// Nothing: the difference dies away in the clip.
+    AtOnce,
+    /// It is rolled over and its limbs are drawn to where the nearest clip begins, within bounds of force and time.
+    RollOver,
+}
+
+/// What a kind of character can do. Default: nothing, it stands in its rest pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionSet {
+    /// All motions, for the indices below.
+    pub clips: Vec<Clip>,
+    /// The clip that loops while the character is animated; `None`: it stands in its rest pose. Default none.
+    pub looped: Option<usize>,
+    /// Clips that start lying and end standing. Each is used as a mirror shows it, too. Default none.
+    pub get_ups: Vec<usize>,
+    /// Default in place.
+    pub locomotion: Locomotion,
+}
+
+impl Default for MotionSet {
+    fn default() -> Self {
+        Self { clips: Vec::new(), looped: None, get_ups: Vec::new(), locomotion: Locomotion::InPlace }
+    }
+}
+
 /// Rig, ragdoll and motions of a kind of character. Immutable once shared.
 #[derive(Clone, Debug)]
 pub struct CharacterDef {
@@ -35,16 +66,12 @@ pub struct CharacterDef {
     pub rig: Rig,
     /// Its bodies and joints; other bodies need another definition, for the mapping was made from these.
     pub ragdoll: RagdollDef,
-    /// All motions, for the indices below.
-    pub clips: Vec<Clip>,
-    /// The clip that loops while the character is animated; `None`: it stands in its rest pose. Default none.
-    pub looped: Option<usize>,
-    /// Clips that start lying and end standing. Default none.
-    pub get_ups: Vec<usize>,
-    /// Default in place.
-    pub locomotion: Locomotion,
     /// Default get up.
     pub after_settling: AfterSettling,
+    /// Default roll over.
+    pub getting_ready: GettingReady,
+    /// How its bodies are driven while it falls: powered, toward the pose that its clips go on with. Default limp.
+    pub falling: DriveMode,
     /// Seconds for which a limp character may go on moving before it gets up all the same. Default 6.
     pub patience: f32,
     /// Surface and filter of its bodies.
@@ -53,6 +80,11 @@ pub struct CharacterDef {
     pub speed_bound: SpeedBound,
     mapping: Mapping,
     rest: Vec<LocalTransform>,
+    /// Bind pose in character space, metres.
+    bind: Vec<Affine>,
+    motions: MotionSet,
+    /// What the motions come to.
+    moves: Arc<Moves>,
 }
 
 impl CharacterDef {
@@ -61,16 +93,19 @@ impl CharacterDef {
     /// # Panics
     /// As [`Mapping::new`].
     pub fn new(rig: Rig, ragdoll: RagdollDef, bind_model: &[Affine]) -> Self {
+        let mapping = Mapping::new(&rig, &ragdoll, bind_model);
+        let root = mapping.character_from_model();
         Self {
-            mapping: Mapping::new(&rig, &ragdoll, bind_model),
+            moves: Arc::new(Moves::none(&rig, &ragdoll, &mapping)),
+            mapping,
+            bind: bind_model.iter().map(|&bind| root * bind).collect(),
+            motions: MotionSet::default(),
             rest: rest_pose(&rig),
             rig,
             ragdoll,
-            clips: Vec::new(),
-            looped: None,
-            get_ups: Vec::new(),
-            locomotion: Locomotion::InPlace,
             after_settling: AfterSettling::GetUp,
+            getting_ready: GettingReady::RollOver,
+            falling: DriveMode::Limp,
             patience: 6.0,
             flesh: Flesh::default(),
             speed_bound: SpeedBound::default(),
@@ -80,6 +115,46 @@ impl CharacterDef {
     /// The fixed relations between rig and bodies.
     pub fn mapping(&self) -> &Mapping {
         &self.mapping
+    }
+
+    /// Gives it motions: builds all clips, and the mirror images of those to get up by.
+    ///
+    /// # Errors
+    /// A clip that cannot be played; the motions are then as they were.
+    ///
+    /// # Panics
+    /// If `looped` or `get_ups` names a clip that is not there, or a channel moves a joint that the rig does not have.
+    pub fn set_motions(&mut self, motions: MotionSet) -> Result<(), MotionError> {
+        self.moves = Arc::new(Moves::new(self, &motions)?);
+        self.motions = motions;
+        Ok(())
+    }
+
+    /// What it can do.
+    pub fn motions(&self) -> &MotionSet {
+        &self.motions
+    }
+
+    /// What its characters' animators play: the clips of [`motions`](Self::motions), and what was made of them.
+    pub fn set(&self) -> &AnimationSet {
+        &self.moves.set
+    }
+
+    /// The clip of that index in [`MotionSet::clips`], for an [`Animator`](sinew_anim::Animator).
+    ///
+    /// # Panics
+    /// If there is no such clip.
+    pub fn clip(&self, index: usize) -> ClipId {
+        self.moves.clips[index]
+    }
+
+    pub(super) fn moves(&self) -> &Moves {
+        &self.moves
+    }
+
+    /// Bind pose of every joint in character space, metres.
+    pub(super) fn bind(&self) -> &[Affine] {
+        &self.bind
     }
 
     /// Rest pose of the file.

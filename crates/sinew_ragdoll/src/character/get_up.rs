@@ -1,127 +1,173 @@
-//! From lying to standing: which clip, where, and which way round.
+//! From lying to standing: which clip, from which moment, where, and which way round.
 
-use super::animate::Motion;
-use super::{Character, CharacterDef, Event, State, ground};
-use sinew_anim::{LocalTransform, SampleCache, Wrap, local_to_model, sample};
-use sinew_math::{Affine, Rotation, Transform, Vec3, max, min, trig};
+use super::likeness::{Likeness, Stance};
+use super::moves::{GetUp, Start};
+use super::{Character, Event, State, animate, ground};
+use sinew_anim::{Animator, LoopMode, Pose, Track, TrackDef, TrackId, local_to_model, smoothstep};
+use sinew_math::{Affine, Rotation, Transform, Vec3};
 use sinew_physics::World;
 
-/// Seconds of the fade from the bodies' pose into a get-up clip.
-const FADE_TO_GET_UP: f32 = 0.4;
-/// Seconds of the fade from lying to standing, without a clip.
-const FADE_TO_STAND: f32 = 0.8;
-/// Seconds of the fade from the end of the get-up clip into the looped one.
-const FADE_TO_LOOP: f32 = 0.3;
+/// Seconds in which the bodies' pose dies away in a get-up clip.
+const INTO_GET_UP: f32 = 0.35;
+/// Seconds in which it dies away in the looped clip, without one to get up by.
+const INTO_STANDING: f32 = 0.8;
+/// Seconds in which the end of the get-up clip dies away in the looped one.
+const INTO_LOOP: f32 = 0.3;
+/// Share of a get-up clip, to its end, in which a body that lay on a slope stands upright.
+const STRAIGHTENS: f32 = 0.6;
 /// How far above the pelvis the ground is sought, metres.
 const ABOVE_PELVIS: f32 = 0.3;
 
-/// Where the pelvis is and which way its own up, forward and left point.
+/// A character on its way up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Rising {
+    /// By this track.
+    ByClip(TrackId),
+    /// By the looped clip alone, for so many seconds more.
+    Without(f32),
+}
+
+/// A get-up clip, the moment of it that is most like the present pose, and how much that is.
 #[derive(Clone, Copy, Debug)]
-struct Pelvis {
-    position: Vec3,
-    axes: [Vec3; 3],
+pub(super) struct Choice<'a> {
+    pub get_up: &'a GetUp,
+    pub start: &'a Start,
+    pub likeness: Likeness,
 }
 
-impl Pelvis {
-    fn new(def: &CharacterDef, world_from_body: Transform) -> Self {
-        let body = &def.ragdoll.bodies[0];
-        let turn = world_from_body.rotation * body.character_from_body.rotation.inverse();
-        Self {
-            position: world_from_body.translation,
-            axes: [Vec3::Y, Vec3::Z, Vec3::X].map(|axis| turn * axis),
-        }
-    }
-
-    /// Of a pose, in character space.
-    fn of_pose(def: &CharacterDef, pose: &[LocalTransform]) -> Self {
-        let mut model = Vec::new();
-        local_to_model(&def.rig, pose, &Affine::IDENTITY, &mut model);
-        let mut bodies = Vec::new();
-        def.mapping().bodies_from_model(&model, Transform::IDENTITY, &mut bodies);
-        Self::new(def, bodies[0])
-    }
-
-    /// 1 lying on the back, −1 on the face, 0 on a side or upright.
-    fn supine(&self) -> f32 {
-        self.axes[1].y
-    }
-
-    /// Where a character must stand for this pelvis, of its pose, to be above or below `other` in the world and to
-    /// point the same way. The heading is compared by the axis that is most level in both.
-    fn placed_at(&self, other: &Self, height: f32) -> Transform {
-        let level = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
-        let common = |k: usize| min(level(self.axes[k]).length(), level(other.axes[k]).length());
-        let axis =
-            [0, 1, 2].into_iter().reduce(|a, b| if common(b) > common(a) { b } else { a }).unwrap_or(0);
-        let heading = |v: Vec3| trig::atan2(v.x, v.z);
-        let yaw = heading(other.axes[axis]) - heading(self.axes[axis]);
-        let turn = Rotation::from_axis_angle(Vec3::Y, yaw);
-        let place = other.position - turn * self.position;
-        Transform::new(Vec3::new(place.x, height, place.z), turn)
-    }
-}
-
-/// The flat pose at the start of a clip, or the rest pose.
-fn first_pose(def: &CharacterDef, clip: Option<usize>) -> Vec<LocalTransform> {
-    let mut pose = def.rest().to_vec();
-    if let Some(clip) = clip {
-        sample(&def.clips[clip], &def.rig, 0.0, Wrap::Clamp, &mut pose);
-        def.mapping().flatten(&def.rig, &mut pose);
-    }
-    pose
+/// The best of all clips and moments for a body that lies like that in the world.
+pub(super) fn choose<'a>(
+    get_ups: &'a [GetUp],
+    landmarks: &super::likeness::Landmarks,
+    lies: &Stance,
+) -> Option<Choice<'a>> {
+    let all = get_ups.iter().flat_map(|get_up| get_up.starts.iter().map(move |start| (get_up, start)));
+    all.map(|(get_up, start)| Choice { get_up, start, likeness: landmarks.compare(&start.stance, lies) })
+        .reduce(|a, b| if b.likeness.distance < a.likeness.distance { b } else { a })
 }
 
 impl Character {
-    /// Gives the pose back to the clips, by the get-up clip whose start lies most like the body does.
+    /// The present pose in the world.
+    pub(super) fn stance(&mut self) -> Stance {
+        let model = &mut self.scratch.model;
+        local_to_model(&self.def.rig, &self.pose, &Affine::IDENTITY, model);
+        self.def.moves().landmarks.stance(self.def.mapping(), model, self.world_from_character)
+    }
+
+    /// Gives the pose back to the clips, by the moment of a get-up clip that is most like it.
     pub(super) fn get_up(&mut self, world: &mut World) {
-        let pelvis = Pelvis::new(&self.def, self.scratch.after[0]);
-        let candidates = self.def.get_ups.iter().map(|&clip| {
-            let starts = Pelvis::of_pose(&self.def, &first_pose(&self.def, Some(clip)));
-            ((starts.supine() - pelvis.supine()).abs(), clip)
-        });
-        let clip = candidates.reduce(|a, b| if b.0 < a.0 { b } else { a }).map(|(_, clip)| clip);
+        let lies = self.stance();
+        self.lean = ground::slope(world, &lies.points);
+        self.let_go(world);
         if let Some(ragdoll) = self.ragdoll.take() {
             ragdoll.despawn(world);
         }
-        self.events.push(Event::GettingUp { clip });
-        match clip {
-            Some(index) => {
-                self.play(world, pelvis, clip, Wrap::Clamp, FADE_TO_GET_UP);
-                self.motion.ends = max(self.def.clips[index].duration, FADE_TO_GET_UP);
+        let def = self.def.clone();
+        let moves = def.moves();
+        match choose(&moves.get_ups, &moves.landmarks, &lies) {
+            Some(Choice { get_up, start, likeness }) => {
+                self.settle_into(world, likeness.motion, INTO_GET_UP);
+                let once =
+                    TrackDef { start: start.time, loop_mode: LoopMode::Once, ..TrackDef::new(get_up.id) };
+                self.rising = Rising::ByClip(self.animator.play(def.set(), &once));
+                self.events.push(Event::GettingUp { clip: Some(get_up.clip) });
             }
             None => {
-                self.play(world, pelvis, self.def.looped, Wrap::Loop, FADE_TO_STAND);
-                self.motion.ends = FADE_TO_STAND;
+                self.settle_into(world, moves.landmarks.compare(&moves.upright, &lies).motion, INTO_STANDING);
+                animate::play_looped(&def, &mut self.animator, 0.0);
+                self.rising = Rising::Without(INTO_STANDING);
+                self.events.push(Event::GettingUp { clip: None });
             }
         }
         self.state = State::GettingUp;
     }
 
+    /// On a slope the clip, made for a level floor, lies as the slope does and comes to stand upright.
+    pub(super) fn straighten(&mut self) {
+        if self.lean == Vec3::ZERO {
+            return;
+        }
+        let left = match self.rising {
+            Rising::ByClip(id) => {
+                let time =
+                    self.animator.track(id).map(|track| (track.playhead().clip_time(), track.def().clip));
+                time.map_or(0.0, |(time, clip)| {
+                    let duration = self.def.set().clip(clip).clip.duration();
+                    (duration - time) / (STRAIGHTENS * duration)
+                })
+            }
+            Rising::Without(seconds) => seconds / INTO_STANDING,
+        };
+        let before = self.world_from_character.rotation;
+        // What is left of the lean after the last step is in the rotation: the heading is what it had without.
+        let heading = Rotation::from_axis_angle(Vec3::Y, before.twist_angle(Vec3::Y));
+        self.world_from_character.rotation =
+            Rotation::from_scaled_axis(self.lean * smoothstep(left)) * heading;
+    }
+
+    /// Goes on with a get-up, and ends it.
+    pub(super) fn rise(&mut self, world: &World) {
+        match &mut self.rising {
+            Rising::ByClip(track) => {
+                let is_over = |animator: &Animator, id| {
+                    animator.track(id).is_none_or(|track| track.playhead().is_at_end(1.0))
+                };
+                if is_over(&self.animator, *track) {
+                    self.stand(world);
+                }
+            }
+            Rising::Without(left) => {
+                *left -= world.def().dt();
+                if *left <= 0.0 {
+                    self.be_up();
+                }
+            }
+        }
+    }
+
     /// Back to the looped clip.
-    pub(super) fn stand(&mut self, world: &World) {
-        let mut bodies = core::mem::take(&mut self.scratch.after);
-        self.bodies_of_pose(self.world_from_character, &mut bodies);
-        let pelvis = Pelvis::new(&self.def, bodies[0]);
-        self.scratch.after = bodies;
-        self.play(world, pelvis, self.def.looped, Wrap::Loop, FADE_TO_LOOP);
+    fn stand(&mut self, world: &World) {
+        let def = self.def.clone();
+        let moves = def.moves();
+        let stands = self.stance();
+        self.lean = Vec3::ZERO;
+        self.settle_into(world, moves.landmarks.compare(&moves.upright, &stands).motion, INTO_LOOP);
+        animate::play_looped(&def, &mut self.animator, 0.0);
+        self.be_up();
+    }
+
+    fn be_up(&mut self) {
         self.state = State::Animated;
         self.events.push(Event::Up);
     }
 
-    /// Starts a clip where the pelvis is, faded in from the present pose.
-    fn play(&mut self, world: &World, pelvis: Pelvis, clip: Option<usize>, wrap: Wrap, fade: f32) {
-        let height = ground::below(world, pelvis.position, ABOVE_PELVIS)
-            .unwrap_or(self.world_from_character.translation.y);
-        let from = self.world_from_character;
-        let to = Pelvis::of_pose(&self.def, &first_pose(&self.def, clip)).placed_at(&pelvis, height);
-        self.def.mapping().reframe(&mut self.pose, from, to);
+    /// Stands on the ground at `place`, stops what plays on the whole body, and lets the present pose and its motion die
+    /// away within `seconds` in what will be played. Nothing moves in the world yet.
+    fn settle_into(&mut self, world: &World, place: Transform, seconds: f32) {
+        let mapping = self.def.mapping();
+        let pelvis = mapping.world_from_model(self.world_from_character).point({
+            let joint = self.def.ragdoll.bodies[0].joint;
+            self.scratch.model[joint].translation
+        });
+        let height =
+            ground::below(world, pelvis, ABOVE_PELVIS).unwrap_or(self.world_from_character.translation.y);
+        let mut to =
+            Transform::new(place.translation, Rotation::from_scaled_axis(self.lean) * place.rotation);
+        // As high as the ground where the pelvis is, on the slope that it lies on.
+        let normal = Rotation::from_scaled_axis(self.lean) * Vec3::Y;
+        let away = to.translation - pelvis;
+        to.translation.y = height - (normal.x * away.x + normal.z * away.z) / normal.y;
+        mapping.reframe(&mut self.pose, self.world_from_character, to);
+        mapping.reframe(&mut self.earlier.pose, self.earlier.world_from_character, to);
         self.world_from_character = to;
-        self.root_velocity = Vec3::ZERO;
-        let mut faded = core::mem::take(&mut self.motion.from);
-        faded.clear();
-        faded.extend_from_slice(&self.pose);
-        let cache = SampleCache::default();
-        let ends = f32::INFINITY;
-        self.motion = Motion { clip, wrap, phase: 0.0, time: 0.0, from: faded, fade, ends, cache };
+        self.earlier.world_from_character = to;
+        self.climbing = 0.0;
+        let (earlier, now): (Pose, Pose) =
+            (self.earlier.pose.iter().copied().collect(), self.pose.iter().copied().collect());
+        self.animator.take_over(&earlier, &now, world.def().dt(), seconds);
+        let set = self.def.set();
+        let stopped: Vec<TrackId> =
+            self.animator.tracks().filter(|track| track.def().layer == 0).map(Track::id).collect();
+        stopped.into_iter().for_each(|track| self.animator.stop(set, track));
     }
 }

@@ -1,6 +1,6 @@
 //! What a character stands on.
 
-use sinew_math::Vec3;
+use sinew_math::{Rotation, Vec3, max, min, trig};
 use sinew_physics::ray::Ray;
 use sinew_physics::{BodyKinds, QueryFilter, World};
 
@@ -15,4 +15,40 @@ pub(super) fn below(world: &World, point: Vec3, above: f32) -> Option<f32> {
     let hit = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&ray)?;
     // A ray that starts inside says nothing about the height.
     hit.start.is_none().then_some(hit.point.y)
+}
+
+/// How far above a point of a body that lies the ground is sought, metres.
+const ABOVE: f32 = 0.3;
+/// Ground that is steeper counts as if it were not, radians.
+const STEEPEST: f32 = 0.6;
+/// What is less steep counts as level, radians.
+const LEVEL: f32 = 0.02;
+
+/// The ground that a body lies on, as a plane through its heights under these points: the turn that brings the vertical to
+/// the plane's normal, scaled axis. Stairs are the slope on which they lie.
+pub(super) fn slope(world: &World, points: &[Vec3]) -> Vec3 {
+    let under = |&point: &Vec3| below(world, point, ABOVE).map(|y| Vec3::new(point.x, y, point.z));
+    let places: Vec<Vec3> = points.iter().filter_map(under).collect();
+    if places.len() < 3 {
+        return Vec3::ZERO;
+    }
+    let middle = places.iter().fold(Vec3::ZERO, |sum, &place| sum + place) / places.len() as f32;
+    // Least squares: y = a x + b z.
+    let (mut xx, mut xz, mut zz, mut xy, mut zy) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for d in places.iter().map(|&place| place - middle) {
+        (xx, xz, zz) = (xx + d.x * d.x, xz + d.x * d.z, zz + d.z * d.z);
+        (xy, zy) = (xy + d.x * d.y, zy + d.z * d.y);
+    }
+    // Points in a row say nothing of the slope across it: there it is level.
+    let ridge = 0.01 * (xx + zz) + 1e-6;
+    let (xx, zz) = (xx + ridge, zz + ridge);
+    let det = xx * zz - xz * xz;
+    let (a, b) = ((xy * zz - zy * xz) / det, (zy * xx - xy * xz) / det);
+    let steep = trig::atan2((a * a + b * b).sqrt(), 1.0);
+    if steep < LEVEL {
+        return Vec3::ZERO;
+    }
+    let normal = Vec3::new(-a, 1.0, -b).normalize();
+    let turn = Rotation::from_arc(Vec3::Y, normal).to_scaled_axis();
+    turn * (max(min(steep, STEEPEST), 0.0) / steep)
 }

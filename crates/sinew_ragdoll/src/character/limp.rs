@@ -1,13 +1,16 @@
 //! Going limp at the speed of the animation, and lying still.
 
 use super::{AfterSettling, Character, Event, State};
+use crate::def::RagdollBodyDef;
+use crate::drive::DriveMode;
 use crate::hand_over::body_velocity;
 use crate::ragdoll::{BodyState, Ragdoll};
-use sinew_physics::{BodyId, World};
+use sinew_math::{Transform, Vec3};
+use sinew_physics::{BodyId, Velocity, World};
 
-/// Half the time between the two poses that the hand-over takes velocities from, seconds: short against any motion,
-/// long against rounding.
-const HAND_OVER: f32 = 1.0 / 240.0;
+/// Seconds between the poses ahead of now that the hand-over takes velocities from: short against any motion, long against
+/// rounding.
+const HAND_OVER: f32 = 1.0 / 1000.0;
 
 /// A body below both speeds lies still, m/s and rad/s.
 pub(crate) const STILL_LINEAR: f32 = 0.02;
@@ -30,38 +33,74 @@ impl Character {
     /// Lets the bodies take over, at the pose and the speed that the animation has now. Nothing happens if they did
     /// already.
     pub fn go_limp(&mut self, world: &mut World) {
-        if self.state == State::Limp {
-            return;
+        if self.ragdoll.is_some() {
+            return self.fall_again(world);
         }
-        let (mut before, mut after) =
-            (core::mem::take(&mut self.scratch.before), core::mem::take(&mut self.scratch.after));
-        self.animated_bodies(-HAND_OVER, &mut before);
-        self.animated_bodies(HAND_OVER, &mut after);
-        let velocities: Vec<_> = before
-            .iter()
-            .zip(&after)
-            .zip(&self.def.ragdoll.bodies)
-            .map(|((&before, &after), body)| {
-                body_velocity(before, after, body.mass.center, 2.0 * HAND_OVER, self.def.speed_bound)
-            })
-            .collect();
-        self.animate();
-        self.bodies_of_pose(self.world_from_character, &mut after);
-        let states: Vec<_> = after
-            .iter()
-            .zip(velocities)
-            .map(|(&world_from_body, velocity)| BodyState { world_from_body, velocity })
-            .collect();
+        let states = self.carried();
         self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
         self.ragdoll = Some(Ragdoll::spawn(world, &self.def.ragdoll, &states, &self.def.flesh));
+        self.drives.set_all(self.def.falling, 0.0);
         self.state = State::Limp;
         self.stillness = Stillness::default();
         self.events.push(Event::WentLimp);
-        (self.scratch.before, self.scratch.after) = (before, after);
     }
 
-    /// Takes the pose from the bodies and waits until they lie still.
-    pub(super) fn follow_bodies(&mut self, world: &mut World) {
+    /// A body that was about to get up is limp again.
+    fn fall_again(&mut self, world: &mut World) {
+        if self.state == State::Preparing {
+            self.let_go(world);
+            self.state = State::Limp;
+            self.stillness = Stillness { touched: true, ..Stillness::default() };
+            self.events.push(Event::WentLimp);
+        }
+    }
+
+    /// Takes all drives off the bodies but those of a fall.
+    pub(super) fn let_go(&mut self, world: &mut World) {
+        if let Some(ragdoll) = &self.ragdoll {
+            self.drives.release(world, ragdoll);
+        }
+        self.drives.set_all(self.def.falling, 0.0);
+    }
+
+    /// Where the bodies are and how fast they move as the animation carries them, whatever it is made of: by where it will
+    /// have them in a moment, for tracks, weights and transitions may all have changed since the last pose.
+    fn carried(&mut self) -> Vec<BodyState> {
+        let (mut now, mut ahead) =
+            (core::mem::take(&mut self.scratch.before), core::mem::take(&mut self.scratch.after));
+        // Seen by the character: far from the world's origin small ways drown in rounding.
+        let pose = core::mem::take(&mut self.pose);
+        self.bodies_of(&pose, Transform::IDENTITY, &mut now);
+        self.pose = pose;
+        let (mut animator, mut way) = (self.animator.clone(), Transform::IDENTITY);
+        self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut ahead);
+        let mut further = Vec::new();
+        self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut further);
+        let place = self.world_from_character;
+        let state = |(((&now, &ahead), &further), body): (
+            ((&Transform, &Transform), &Transform),
+            &RagdollBodyDef,
+        )| {
+            let between = |a, b| body_velocity(a, b, body.mass.center, HAND_OVER, self.def.speed_bound);
+            let (soon, later) = (between(now, ahead), between(ahead, further));
+            // Means of two spans, brought to the start of the first: a transition may well change speeds by a tenth in one.
+            let start = |soon: Vec3, later: Vec3| place.rotation * (soon + (soon - later) * 0.5);
+            let velocity = Velocity {
+                linear: start(soon.linear, later.linear),
+                angular: start(soon.angular, later.angular),
+            };
+            BodyState { world_from_body: place * now, velocity }
+        };
+        let states = now.iter().zip(&ahead).zip(&further).zip(&self.def.ragdoll.bodies).map(state).collect();
+        (self.scratch.before, self.scratch.after) = (now, ahead);
+        states
+    }
+
+    /// Takes the pose from the bodies, but for what they do not move.
+    pub(super) fn follow_bodies(&mut self, world: &World) {
+        let dt = world.def().dt();
+        self.keep_earlier();
+        self.animator.update(self.def.set(), dt);
         let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
         ragdoll.poses(world, &mut self.scratch.after);
         self.physical.pose(
@@ -71,7 +110,43 @@ impl Character {
             &self.scratch.after,
             &mut self.pose,
         );
+        for &joint in self.def.mapping().free() {
+            self.pose[joint] = self.animator.pose().get(joint);
+        }
+    }
+
+    /// Powers the joints of a falling body, for the next step, toward the pose of its clips.
+    fn brace(&mut self, world: &mut World) {
+        if self.def.falling == DriveMode::Limp {
+            return;
+        }
+        let mut targets = core::mem::take(&mut self.scratch.after);
+        let mut before = core::mem::take(&mut self.scratch.before);
+        let (mut animator, mut way) = (self.animator.clone(), Transform::IDENTITY);
+        self.bodies_ahead(&mut animator, &mut way, 0.0, &mut before);
         let dt = world.def().dt();
+        self.bodies_ahead(&mut animator, &mut way, dt, &mut targets);
+        let place = self.world_from_character;
+        for pose in before.iter_mut().chain(&mut targets) {
+            *pose = place * *pose;
+        }
+        let velocity = |((&now, &ahead), body): ((&Transform, &Transform), &RagdollBodyDef)| {
+            body_velocity(now, ahead, body.mass.center, dt, self.def.speed_bound)
+        };
+        let velocities = before.iter().zip(&targets).zip(&self.def.ragdoll.bodies).map(velocity);
+        self.scratch.velocities.clear();
+        self.scratch.velocities.extend(velocities);
+        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
+        self.drives.apply(world, &self.def.ragdoll, ragdoll, &targets, &self.scratch.velocities);
+        (self.scratch.before, self.scratch.after) = (before, targets);
+    }
+
+    /// Waits until the bodies lie still.
+    pub(super) fn lie(&mut self, world: &mut World) {
+        self.follow_bodies(world);
+        self.brace(world);
+        let dt = world.def().dt();
+        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
         let still = &mut self.stillness;
         still.steps += 1;
         if !still.touched && touches_world(world, &ragdoll.bodies) {
@@ -89,7 +164,7 @@ impl Character {
             if impatient {
                 self.events.push(Event::NeverSettled);
             }
-            self.get_up(world);
+            self.prepare(world);
         }
     }
 }

@@ -6,20 +6,28 @@ mod animate;
 mod def;
 mod get_up;
 mod ground;
+mod likeness;
 mod limp;
+mod mirror;
+mod moves;
+mod prepare;
+mod recognise;
 mod save;
 
 pub(crate) use limp::{STILL_TIME, is_still, touches_world};
 
-pub use def::{AfterSettling, CharacterDef, Locomotion};
+pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet};
+pub use moves::MotionError;
 
+use crate::drive::Drives;
 use crate::mapping::Physical;
 use crate::ragdoll::Ragdoll;
-use animate::Motion;
+use get_up::Rising;
 use limp::Stillness;
-use sinew_anim::LocalTransform;
+use prepare::Preparation;
+use sinew_anim::{Animator, LocalTransform};
 use sinew_math::{Affine, Transform, Vec3};
-use sinew_physics::World;
+use sinew_physics::{Velocity, World};
 use std::sync::Arc;
 
 /// What decides the character's pose.
@@ -27,9 +35,11 @@ use std::sync::Arc;
 pub enum State {
     /// A clip; the character has no bodies in the world.
     Animated,
-    /// Its bodies.
+    /// Its bodies: it falls, or lies.
     Limp,
-    /// A get-up clip, faded in from where the bodies lay.
+    /// Its bodies, which are brought to where a get-up clip begins.
+    Preparing,
+    /// A get-up clip, in which the pose and the motion of the bodies die away.
     GettingUp,
 }
 
@@ -52,6 +62,11 @@ pub enum Event {
     },
     /// It did not come to rest in the time it was given.
     NeverSettled,
+    /// It lies otherwise than its get-up clips begin, and is brought to where the nearest does.
+    Preparing {
+        /// Whether it has to be rolled over.
+        rolls: bool,
+    },
     /// It began to get up.
     GettingUp {
         /// Index of the clip; `None`: it has none that fits, and fades to standing.
@@ -66,16 +81,29 @@ pub enum Event {
 pub struct Character {
     def: Arc<CharacterDef>,
     state: State,
-    motion: Motion,
+    animator: Animator,
+    rising: Rising,
+    /// How the ground slopes on which it gets up, as a turn from the vertical: scaled axis, world axes.
+    lean: Vec3,
     world_from_character: Transform,
-    /// Velocity of the character's origin, m/s: what the ground and the locomotion did to it in the last step.
-    root_velocity: Vec3,
+    /// How fast the ground took the character's origin up in the last step, m/s.
+    climbing: f32,
     pose: Vec<LocalTransform>,
+    earlier: Earlier,
     ragdoll: Option<Ragdoll>,
+    drives: Drives,
     stillness: Stillness,
+    preparation: Preparation,
     events: Vec<Event>,
     physical: Physical,
     scratch: Scratch,
+}
+
+/// The pose a step ago, and where it was.
+#[derive(Clone, Debug)]
+struct Earlier {
+    pose: Vec<LocalTransform>,
+    world_from_character: Transform,
 }
 
 /// Buffers that are kept to be used again; they hold nothing from one call to the next.
@@ -85,28 +113,36 @@ struct Scratch {
     model: Vec<Affine>,
     before: Vec<Transform>,
     after: Vec<Transform>,
+    velocities: Vec<Velocity>,
 }
 
 impl Character {
     /// An animated character that stands at `world_from_character` (metres, its +Y up, +Z the way it faces), `phase`
     /// seconds into its looped clip.
+    ///
+    /// # Panics
+    /// If `phase` is not finite.
     pub fn new(def: Arc<CharacterDef>, world_from_character: Transform, phase: f32) -> Self {
-        let rest = def.rest().to_vec();
-        let mut character = Self {
+        let animator = animate::looping(&def, phase);
+        let pose: Vec<LocalTransform> = animator.pose().iter().collect();
+        Self {
             state: State::Animated,
-            motion: Motion::looping(&def, phase),
+            animator,
+            rising: Rising::Without(0.0),
+            lean: Vec3::ZERO,
+            climbing: 0.0,
+            earlier: Earlier { pose: pose.clone(), world_from_character },
             world_from_character,
-            root_velocity: animate::locomotion(&def, world_from_character.rotation),
-            scratch: Scratch { pose: rest.clone(), ..Scratch::default() },
-            pose: rest,
+            pose,
             ragdoll: None,
+            drives: Drives::new(&def.ragdoll),
             stillness: Stillness::default(),
+            preparation: Preparation::default(),
             events: Vec::new(),
             physical: Physical::default(),
+            scratch: Scratch::default(),
             def,
-        };
-        character.animate();
-        character
+        }
     }
 
     /// What it shares with its kind.
@@ -119,9 +155,14 @@ impl Character {
         self.state
     }
 
-    /// Its bodies, while it is limp.
+    /// Its bodies, while it has any: limp, or preparing to get up.
     pub fn ragdoll(&self) -> Option<&Ragdoll> {
         self.ragdoll.as_ref()
+    }
+
+    /// What drives its bodies, while it has any.
+    pub fn drives(&self) -> &Drives {
+        &self.drives
     }
 
     /// Local transform of every joint of the rig; nodes above the pelvis are at rest (see [`crate::mapping`]).
@@ -139,6 +180,18 @@ impl Character {
         self.def.mapping().world_from_model(self.world_from_character)
     }
 
+    /// What plays its clips: those of [`CharacterDef::set`].
+    pub fn animator(&self) -> &Animator {
+        &self.animator
+    }
+
+    /// What plays its clips, to be given others: tracks, crossfades, layers. To begin with it plays the looped clip, and again
+    /// after getting up; getting up stops all other tracks of layer 0. While the character is limp, what plays still moves
+    /// the joints that no body does ([`Mapping::free`](crate::Mapping::free)), and events go on.
+    pub fn animator_mut(&mut self) -> &mut Animator {
+        &mut self.animator
+    }
+
     /// What happened since the last [`update`](Self::update) began, in order.
     pub fn events(&self) -> &[Event] {
         &self.events
@@ -151,19 +204,13 @@ impl Character {
     pub fn update(&mut self, world: &mut World) {
         self.events.clear();
         match self.state {
-            State::Limp => self.follow_bodies(world),
-            State::Animated => {
-                self.motion.time += world.def().dt();
-                self.walk(world);
-                self.animate();
-            }
+            State::Limp => self.lie(world),
+            State::Preparing => self.go_on_preparing(world),
+            State::Animated => self.animate(world),
             State::GettingUp => {
-                self.motion.time += world.def().dt();
-                self.root_velocity = Vec3::ZERO;
-                self.animate();
-                if self.motion.time >= self.motion.ends {
-                    self.stand(world);
-                }
+                self.animate(world);
+                self.straighten();
+                self.rise(world);
             }
         }
     }
@@ -177,6 +224,7 @@ impl Character {
         self.go_limp(world);
         self.events.push(Event::Hit { body });
         let id = self.ragdoll.as_ref().expect("a limp character has bodies").bodies[body];
+        self.drives.hit(&self.def.ragdoll, body, impulse.length());
         let before = world.body_energy(id).kinetic;
         world.apply_impulse_at_center(id, impulse);
         world.body_energy(id).kinetic - before

@@ -1,15 +1,17 @@
 //! A character's own state, beside the world's snapshot.
 
-use super::animate::Motion;
+use super::get_up::Rising;
 use super::limp::Stillness;
-use super::{Character, State};
+use super::prepare::Preparation;
+use super::{Character, Earlier, State};
+use crate::drive::Drives;
 use crate::ragdoll::Ragdoll;
-use sinew_anim::{LocalTransform, SampleCache, Wrap};
+use sinew_anim::{Animator, LocalTransform, TrackId};
 use sinew_math::{ReadError, Reader, Writer};
 use sinew_physics::{BodyId, JointId};
 
 /// First bytes; the last is the version.
-const MAGIC: &[u8; 8] = b"sinew-c\x01";
+const MAGIC: &[u8; 8] = b"sinew-c\x02";
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
 
@@ -21,16 +23,25 @@ impl Character {
             State::Animated => 0,
             State::Limp => 1,
             State::GettingUp => 2,
+            State::Preparing => 3,
         });
         w.transform(self.world_from_character);
-        w.vec3(self.root_velocity);
-        save_motion(w, &self.motion);
+        w.f32(self.climbing);
+        w.vec3(self.lean);
+        self.animator.save(self.def.set(), w);
+        save_rising(w, self.rising);
         save_pose(w, &self.pose);
+        w.transform(self.earlier.world_from_character);
+        save_pose(w, &self.earlier.pose);
         save_pose(w, self.physical.base());
         w.u32(self.stillness.steps);
         w.u32(self.stillness.calm_steps);
         w.bool(self.stillness.settled);
         w.bool(self.stillness.touched);
+        self.drives.save(w);
+        w.u32(self.preparation.get_up);
+        w.u32(self.preparation.start);
+        w.f32(self.preparation.seconds);
         w.bool(self.ragdoll.is_some());
         if let Some(ragdoll) = &self.ragdoll {
             ragdoll.bodies.iter().for_each(|body| w.u64(body.to_bits()));
@@ -56,26 +67,34 @@ impl Character {
             0 => State::Animated,
             1 => State::Limp,
             2 => State::GettingUp,
+            3 => State::Preparing,
             _ => return Err(r.error("unknown state of a character")),
         };
-        let (world_from_character, root_velocity) = (r.transform()?, r.vec3()?);
-        let motion = self.load_motion(r)?;
+        let (world_from_character, climbing, lean) = (r.transform()?, r.f32()?, r.vec3()?);
+        let animator = Animator::load(self.def.set(), r)?;
+        let rising = load_rising(r)?;
         let joints = self.def.rig.joints.len();
         let pose = load_pose(r, joints)?;
+        let earlier = Earlier { world_from_character: r.transform()?, pose: load_pose(r, joints)? };
         let base = load_pose(r, joints)?;
         let stillness =
             Stillness { steps: r.u32()?, calm_steps: r.u32()?, settled: r.bool()?, touched: r.bool()? };
+        let mut drives = Drives::new(&self.def.ragdoll);
+        drives.load(r)?;
+        let preparation = self.load_preparation(r)?;
         let ragdoll = if r.bool()? { Some(self.load_ragdoll(r)?) } else { None };
         let fits = pose.len() == joints
-            && (state == State::Limp) == ragdoll.is_some()
-            && (state != State::Limp || base.len() == joints)
-            && (motion.fade == 0.0 || motion.from.len() == joints);
+            && earlier.pose.len() == joints
+            && matches!(state, State::Limp | State::Preparing) == ragdoll.is_some()
+            && (state != State::Preparing || !self.def.moves().get_ups.is_empty())
+            && (ragdoll.is_none() || base.len() == joints);
         if !fits {
             return Err(r.error("is of another character"));
         }
-        (self.state, self.motion, self.stillness) = (state, motion, stillness);
-        (self.world_from_character, self.root_velocity) = (world_from_character, root_velocity);
-        (self.pose, self.ragdoll) = (pose, ragdoll);
+        (self.state, self.animator, self.rising, self.stillness) = (state, animator, rising, stillness);
+        (self.drives, self.preparation, self.lean) = (drives, preparation, lean);
+        (self.world_from_character, self.climbing) = (world_from_character, climbing);
+        (self.pose, self.earlier, self.ragdoll) = (pose, earlier, ragdoll);
         if !base.is_empty() {
             self.physical.rebase(self.def.mapping(), &self.def.rig, &base);
         }
@@ -83,16 +102,14 @@ impl Character {
         Ok(())
     }
 
-    fn load_motion(&self, r: &mut Reader<'_>) -> Result<Motion, ReadError> {
-        let clip = match r.u32()? {
-            u32::MAX => None,
-            clip if (clip as usize) < self.def.clips.len() => Some(clip as usize),
-            _ => return Err(r.error("plays a clip that is not there")),
-        };
-        let wrap = if r.bool()? { Wrap::Loop } else { Wrap::Clamp };
-        let (phase, time, fade, ends) = (r.f32()?, r.f32()?, r.f32()?, r.f32()?);
-        let from = load_pose(r, self.def.rig.joints.len())?;
-        Ok(Motion { clip, wrap, phase, time, from, fade, ends, cache: SampleCache::default() })
+    fn load_preparation(&self, r: &mut Reader<'_>) -> Result<Preparation, ReadError> {
+        let preparation = Preparation { get_up: r.u32()?, start: r.u32()?, seconds: r.f32()? };
+        let get_up = self.def.moves().get_ups.get(preparation.get_up as usize);
+        let is_there = get_up.is_some_and(|get_up| (preparation.start as usize) < get_up.starts.len());
+        if is_there || preparation == Preparation::default() {
+            return Ok(preparation);
+        }
+        Err(r.error("prepares for a clip that is not there"))
     }
 
     fn load_ragdoll(&self, r: &mut Reader<'_>) -> Result<Ragdoll, ReadError> {
@@ -111,14 +128,25 @@ impl Character {
     }
 }
 
-fn save_motion(w: &mut Writer, motion: &Motion) {
-    w.u32(motion.clip.map_or(u32::MAX, |clip| clip as u32));
-    w.bool(motion.wrap == Wrap::Loop);
-    w.f32(motion.phase);
-    w.f32(motion.time);
-    w.f32(motion.fade);
-    w.f32(motion.ends);
-    save_pose(w, &motion.from);
+fn save_rising(w: &mut Writer, rising: Rising) {
+    match rising {
+        Rising::ByClip(track) => {
+            w.u8(0);
+            w.u64(track.to_bits());
+        }
+        Rising::Without(seconds) => {
+            w.u8(1);
+            w.f32(seconds);
+        }
+    }
+}
+
+fn load_rising(r: &mut Reader<'_>) -> Result<Rising, ReadError> {
+    match r.u8()? {
+        0 => Ok(Rising::ByClip(TrackId::from_bits(r.u64()?))),
+        1 => Ok(Rising::Without(r.f32()?)),
+        _ => Err(r.error("unknown way of getting up")),
+    }
 }
 
 fn save_pose(w: &mut Writer, pose: &[LocalTransform]) {

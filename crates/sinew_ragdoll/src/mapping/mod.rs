@@ -47,6 +47,8 @@ pub struct Mapping {
     heads: Vec<Head>,
     /// Nodes above the heads, ascending.
     carriers: Vec<JointIdx>,
+    /// Joints that no body moves and that move none themselves.
+    free: Vec<JointIdx>,
 }
 
 impl Mapping {
@@ -64,12 +66,15 @@ impl Mapping {
             (body.joint, bone.inverse() * body.character_from_body)
         });
         let heads = heads::find(rig, def);
+        let (driven, carriers) = (driven(rig, def), heads::carriers(rig, &heads));
+        let keeps = |joint: JointIdx| carriers.contains(&joint) || heads.iter().any(|h| h.joint == joint);
         Self {
+            free: free(rig, def, &driven, keeps),
             character_from_model,
             model_from_character: character_from_model.inverse(),
             bones: bones.collect(),
-            driven: driven(rig, def),
-            carriers: heads::carriers(rig, &heads),
+            driven,
+            carriers,
             heads,
         }
     }
@@ -87,6 +92,17 @@ impl Mapping {
     /// The joints that carry root motion, the pelvis first.
     pub fn heads(&self) -> impl Iterator<Item = JointIdx> {
         self.heads.iter().map(|head| head.joint)
+    }
+
+    /// Joints that no body moves and that move no body: fingers, face, helpers at the ends of limbs. A limp character's go on
+    /// as its clips have them; toes do not, for what a walk does with them makes no sense lying down.
+    pub fn free(&self) -> &[JointIdx] {
+        &self.free
+    }
+
+    /// Whether the joint is above the pelvis: in a flat pose it is at rest.
+    pub fn carries(&self, joint: JointIdx) -> bool {
+        self.carriers.binary_search(&joint).is_ok()
     }
 
     /// World pose of every body for a model pose: `bodies` is cleared and filled.
@@ -167,4 +183,33 @@ fn driven(rig: &Rig, def: &RagdollDef) -> Vec<Option<Driven>> {
         }
     }
     driven
+}
+
+/// Joints that no body moves and that no driven joint hangs on, but for those of feet, and but for what `keeps` says.
+fn free(
+    rig: &Rig,
+    def: &RagdollDef,
+    driven: &[Option<Driven>],
+    keeps: impl Fn(JointIdx) -> bool,
+) -> Vec<JointIdx> {
+    let is_foot = |body: usize| {
+        let role = &def.bodies[body].role;
+        role.ends_with("Foot") || role.ends_with("Toes")
+    };
+    let mut carries_body = vec![false; rig.joints.len()];
+    for joint in (0..rig.joints.len()).rev() {
+        carries_body[joint] |= driven[joint].is_some();
+        if let Some(parent) = rig.joints[joint].parent.filter(|_| carries_body[joint]) {
+            carries_body[parent] = true;
+        }
+    }
+    let mut on: Vec<Option<usize>> = Vec::with_capacity(rig.joints.len());
+    for (joint, node) in rig.joints.iter().enumerate() {
+        let own = driven[joint].map(|driven| driven.body);
+        on.push(own.or_else(|| node.parent.and_then(|parent| on[parent])));
+    }
+    let is_free = |&joint: &JointIdx| {
+        !carries_body[joint] && !keeps(joint) && on[joint].is_some_and(|body| !is_foot(body))
+    };
+    (0..rig.joints.len()).filter(is_free).collect()
 }

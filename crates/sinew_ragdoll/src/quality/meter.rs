@@ -63,6 +63,17 @@ impl QualityMeter {
 
     /// After a step, with the bodies still there.
     pub fn after_step(&mut self, world: &World, ragdoll: &Ragdoll) {
+        let penetration = self.measure_joints(world, ragdoll);
+        self.measure_rest(world, ragdoll, penetration, world.time() as f32);
+    }
+
+    /// After a step of bodies that were driven, and so are not at rest: all but that is measured.
+    pub fn after_driven_step(&mut self, world: &World, ragdoll: &Ragdoll) {
+        self.measure_joints(world, ragdoll);
+    }
+
+    /// Gives how deep the bodies are in the world.
+    fn measure_joints(&mut self, world: &World, ragdoll: &Ragdoll) -> f32 {
         self.measure_energy(world);
         let q = &mut self.quality;
         for &joint in &ragdoll.joints {
@@ -75,11 +86,10 @@ impl QualityMeter {
             q.nonadjacent_overlap_max_m = max(q.nonadjacent_overlap_max_m, world.overlap(a, b));
         }
         q.nan += world.events().quarantined.len() as u32;
-        let now = world.time() as f32;
         if q.first_contact_s.is_none() && touches_world(world, &ragdoll.bodies) {
-            q.first_contact_s = Some(now);
+            q.first_contact_s = Some(world.time() as f32);
         }
-        self.measure_rest(world, ragdoll, penetration, now);
+        penetration
     }
 
     fn measure_energy(&mut self, world: &World) {

@@ -1,9 +1,11 @@
 //! The mannequin as a character, for tests.
 
-use sinew_anim::{Clip, Joint, LocalTransform, Rig, analyze};
+use crate::data;
+use sinew_anim::retarget::{Body, RetargetOptions, retarget};
+use sinew_anim::{Channel, Clip, Joint, LocalTransform, Rig, RigAnalysis, analyze};
 use sinew_math::{Rotation, Transform, Vec3};
 use sinew_physics::{BodyDef, BodyKind, Shape, ShapeDef};
-use sinew_ragdoll::{BuildOptions, CharacterDef, Locomotion, build};
+use sinew_ragdoll::{BuildOptions, CharacterDef, Locomotion, MotionSet, build};
 use sinew_scenes::mannequin::{Mannequin, Motions, mannequin};
 use std::sync::Arc;
 
@@ -17,10 +19,13 @@ fn character(rig: Rig, clips: Vec<Clip>, motions: Motions) -> CharacterDef {
     let analysis = analyze(&rig).expect("the mannequin has a skin");
     let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("it has bones");
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
-    def.clips = clips;
-    def.looped = Some(motions.walk);
-    def.get_ups = vec![motions.get_up_supine, motions.get_up_prone];
-    def.locomotion = Locomotion::Forward { speed: motions.walk_speed };
+    let motions = MotionSet {
+        clips,
+        looped: Some(motions.walk),
+        get_ups: vec![motions.get_up_supine, motions.get_up_prone],
+        locomotion: Locomotion::Forward { speed: motions.walk_speed },
+    };
+    def.set_motions(motions).expect("the mannequin's clips can be played");
     def
 }
 
@@ -54,4 +59,43 @@ pub fn in_centimetres_and_z_up() -> CharacterDef {
     rig.meshes.iter_mut().for_each(|mesh| mesh.joint += 1);
     clips.iter_mut().flat_map(|clip| &mut clip.channels).for_each(|channel| channel.joint += 1);
     character(rig, clips, motions)
+}
+
+/// The KayKit mannequin of the shared data: its walk, its way to stand up from its back, and the mannequin's from its face
+/// on its body. `None` where the data are not there.
+pub fn kaykit() -> Option<CharacterDef> {
+    let of = |name: &str| data::document(&format!("kaykit_mannequin/{name}"));
+    let rig = of("manny_med_mod.gltf")?.rig;
+    let analysis = analyze(&rig).expect("it has a skin");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("it has bones");
+    let own = |file: &str, clip: &str| {
+        let document = of(file).expect("it is beside the other");
+        let clip = document.clips.iter().find(|own| own.name.ends_with(clip)).expect("it has that clip");
+        let renamed = |channel: &Channel| {
+            let name = &document.rig.joints[channel.joint].name;
+            let joint = rig.joints.iter().position(|joint| joint.name == *name)?;
+            Some(Channel { joint, ..channel.clone() })
+        };
+        Clip { channels: clip.channels.iter().filter_map(renamed).collect(), ..clip.clone() }
+    };
+    let clips = vec![
+        own("Med_MovementBasic.glb", "Walking_A"),
+        own("Med_Simulation.glb", "Lie_StandUp"),
+        from_face_on(&rig, &analysis),
+    ];
+    let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    let locomotion = Locomotion::Forward { speed: 1.2 };
+    let motions = MotionSet { clips, looped: Some(0), get_ups: vec![1, 2], locomotion };
+    def.set_motions(motions).expect("clips of a file that was read can be played");
+    Some(def)
+}
+
+/// How the mannequin gets up from its face, on another body.
+fn from_face_on(rig: &Rig, analysis: &RigAnalysis) -> Clip {
+    let Mannequin { rig: actor, clips, motions } = mannequin();
+    let own = analyze(&actor).expect("the mannequin has a skin");
+    let (from, to) = (Body { rig: &actor, analysis: &own }, Body { rig, analysis });
+    let clip = &clips[motions.get_up_prone];
+    let fitted = retarget(from, clip, to, &RetargetOptions::default()).expect("both are humans");
+    fitted.clip(rig, "get_up_prone")
 }

@@ -42,7 +42,9 @@ fn the_clip_shows_what_happened() {
         let def = shared(def);
         let baked = baked(&def, PUSH, 25.0);
         assert_eq!(baked.frames.len(), 226);
-        let mut states: Vec<_> = baked.frames.iter().map(|frame| frame.state).collect();
+        // Whether it has to be rolled over first is its own affair.
+        let needed = baked.frames.iter().filter(|frame| frame.state != State::Preparing);
+        let mut states: Vec<_> = needed.map(|frame| frame.state).collect();
         states.dedup();
         assert_eq!(states, [State::Animated, State::Limp, State::GettingUp, State::Animated]);
         let hips = def.ragdoll.bodies[0].joint;
@@ -83,12 +85,13 @@ fn starts_where_the_files_character_stands() {
     let def = shared(walker());
     let first = &baked(&def, PUSH, 30.0).frames[0];
     let mut walking = rest_pose(&def.rig);
-    sample(&def.clips[0], &def.rig, 0.0, Wrap::Loop, &mut walking);
+    sample(&def.motions().clips[0], &def.rig, 0.0, Wrap::Loop, &mut walking);
     let (mut expected, mut model) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, &walking, &Affine::IDENTITY, &mut expected);
     local_to_model(&def.rig, &first.pose, &Affine::IDENTITY, &mut model);
     for (a, b) in expected.iter().zip(&model) {
-        assert!((a.translation - b.translation).length() < 1e-5);
+        // Within what built clips keep: 47 bits of a rotation.
+        assert!((a.translation - b.translation).length() < 1e-4);
     }
 }
 

@@ -1,9 +1,10 @@
 //! The state machine.
 
 use crate::actor::{floor, shared, somewhere, walker};
-use sinew_math::{Reader, Transform, Vec3, Writer};
+use sinew_anim::{Channel, Interpolation, Joint, LocalTransform, Property};
+use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, trig};
 use sinew_physics::{BodyDef, BodyKind, Shape, ShapeDef, World, WorldDef};
-use sinew_ragdoll::{AfterSettling, Character, CharacterDef, Event, State};
+use sinew_ragdoll::{AfterSettling, BuildOptions, Character, CharacterDef, Event, MotionSet, State, build};
 use std::sync::Arc;
 
 fn world() -> World {
@@ -67,12 +68,15 @@ fn falls_lies_still_gets_up_and_walks_on() {
     assert_eq!(character.state(), State::Limp);
     assert_eq!(world.body_ids().count(), 1 + def.ragdoll.bodies.len());
     let events = run_until(&mut world, &mut character, 12.0, |c| c.state() == State::Animated);
-    let kinds: Vec<_> = events.iter().map(|(_, event)| core::mem::discriminant(event)).collect();
+    let needed = events.iter().filter(|(_, event)| !matches!(event, Event::Preparing { .. }));
+    let kinds: Vec<_> = needed.map(|(_, event)| core::mem::discriminant(event)).collect();
     let expected =
         [Event::Touched, Event::Settled { since: 0.0 }, Event::GettingUp { clip: None }, Event::Up];
     assert_eq!(kinds, expected.map(|event| core::mem::discriminant(&event)), "{events:?}");
     assert_eq!(world.body_ids().count(), 1, "its bodies are gone");
     assert!(place_of(&character, "head").y > 1.3);
+    // It takes a moment to get going: no one starts to walk at full speed.
+    run_until(&mut world, &mut character, 0.35, |_| false);
     let before = character.world_from_character().translation;
     run_until(&mut world, &mut character, 1.0, |_| false);
     let way = (character.world_from_character().translation - before).length();
@@ -82,20 +86,26 @@ fn falls_lies_still_gets_up_and_walks_on() {
 #[test]
 fn picks_the_clip_by_the_side_it_lies_on() {
     let def = shared(walker());
+    let mut clear = [0, 0];
     for impulse in [-90.0, 90.0, 40.0, -40.0] {
         let push = somewhere().rotation * Vec3::Z * impulse;
         let (mut world, mut character) = knocked_over(&def, push);
-        run_until(&mut world, &mut character, 10.0, |c| c.state() != State::Limp);
+        run_until(&mut world, &mut character, 10.0, |c| c.state() == State::GettingUp);
         assert_eq!(character.state(), State::GettingUp);
         let Some(&Event::GettingUp { clip: Some(clip) }) =
             character.events().iter().find(|event| matches!(event, Event::GettingUp { .. }))
         else {
             panic!("it gets up by a clip: {:?}", character.events());
         };
-        let name = &def.clips[clip].name;
-        let lies_on_back = pelvis_forward(&character).y > 0.0;
-        assert_eq!(name.contains("supine"), lies_on_back, "{name}");
+        let name = &def.motions().clips[clip].name;
+        let up = pelvis_forward(&character).y;
+        // Between the two the limbs decide.
+        if up.abs() > 0.3 {
+            assert_eq!(name.contains("supine"), up > 0.0, "{name}, lying {up}");
+            clear[usize::from(up > 0.0)] += 1;
+        }
     }
+    assert!(clear.iter().all(|&falls| falls > 0), "it falls on its back and on its face: {clear:?}");
 }
 
 /// The direction in which the pelvis looks.
@@ -142,7 +152,8 @@ fn stays_down_if_told_to() {
 #[test]
 fn stands_up_without_a_clip() {
     let mut def = walker();
-    def.get_ups.clear();
+    let motions = MotionSet { get_ups: Vec::new(), ..def.motions().clone() };
+    def.set_motions(motions).expect("they could be played before");
     let def = shared(def);
     let (mut world, mut character) = knocked_over(&def, Vec3::Z * 60.0);
     let events = run_until(&mut world, &mut character, 10.0, |c| c.state() == State::Animated);
@@ -196,5 +207,96 @@ fn a_restored_character_goes_on_as_the_original() {
             let whole = other_world.load(&mut reader).is_ok() && other.load(&mut reader).is_ok();
             assert!(!whole, "{length} of {} bytes", bytes.len());
         }
+    }
+}
+
+#[test]
+fn clips_that_get_it_up_are_told_by_what_they_do() {
+    let def = walker();
+    let mut clips = def.motions().clips.clone();
+    let expected = def.motions().get_ups.clone();
+    assert_eq!(def.get_ups_among(&clips), expected, "by their names");
+    for (index, clip) in clips.iter_mut().enumerate() {
+        clip.name = format!("take {index}");
+    }
+    assert_eq!(def.get_ups_among(&clips), expected, "by what they do");
+    clips[0].name = "Rig|Stand-Up".into();
+    assert_eq!(def.get_ups_among(&clips), [0, expected[0], expected[1]], "the user knows best");
+}
+
+#[test]
+fn what_no_body_moves_goes_on_living() {
+    // A finger on a hand and a face on the head, which wave; and a toe, which does not.
+    let def = waving();
+    let mut world = world();
+    let mut character = Character::new(def.clone(), somewhere(), 0.0);
+    run_until(&mut world, &mut character, 0.4, |_| false);
+    let joint = |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("a joint");
+    let (finger, toes) = (joint("finger"), joint("leftToes"));
+    assert!(def.mapping().free().contains(&finger) && !def.mapping().free().contains(&toes));
+    let before = character.pose()[finger].rotation;
+    character.go_limp(&mut world);
+    let frozen = character.pose()[toes];
+    let (mut last, mut way, mut step) = (before, 0.0, 0.0);
+    while character.ragdoll().is_some() {
+        world.step();
+        character.update(&mut world);
+        let now = character.pose()[finger].rotation;
+        step = sinew_math::max(step, last.angle_to(now));
+        way += last.angle_to(now);
+        last = now;
+        if character.state() == State::Limp {
+            assert_eq!(character.pose()[toes].rotation, frozen.rotation, "toes do not walk lying down");
+        }
+    }
+    // It sways by 0.5 rad either way once a lap of about a second: 2 rad a lap, and never much faster than π rad/s.
+    assert!(way > 1.0, "the finger went {way} rad");
+    assert!(step < 1.1 * core::f32::consts::PI / 60.0, "it jumped by {step} rad");
+}
+
+/// The walker with a finger that sways in all of its clips.
+fn waving() -> Arc<CharacterDef> {
+    let plain = walker();
+    let mut rig = plain.rig.clone();
+    let hand = rig.joints.iter().position(|joint| joint.name == "leftHand").expect("it has a hand");
+    let rest = LocalTransform { translation: Vec3::new(0.05, -0.05, 0.0), ..LocalTransform::default() };
+    rig.joints.push(Joint { name: "finger".into(), parent: Some(hand), rest, source: rig.joints.len() });
+    let finger = rig.joints.len() - 1;
+    let mut motions = plain.motions().clone();
+    for clip in &mut motions.clips {
+        let times: Vec<f32> = (0..=30_u8).map(|key| clip.duration * f32::from(key) / 30.0).collect();
+        let phase = |time: f32| core::f32::consts::TAU * time / clip.duration;
+        let sway = |time: f32| Rotation::from_axis_angle(Vec3::Z, 0.5 * trig::sin(phase(time)));
+        let values = times.iter().map(|&time| sway(time)).flat_map(|q| [q.x, q.y, q.z, q.w]).collect();
+        let (property, interpolation) = (Property::Rotation, Interpolation::Linear);
+        clip.channels.push(Channel { joint: finger, property, interpolation, times, values });
+    }
+    let analysis = sinew_anim::analyze(&rig).expect("it has a skin");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("it has bones");
+    let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    def.set_motions(motions).expect("clips that can be played");
+    shared(def)
+}
+
+#[test]
+fn a_hit_on_the_way_up_knocks_it_over_again() {
+    let def = shared(walker());
+    for wanted in [State::Preparing, State::GettingUp] {
+        // Onto its side.
+        let side = somewhere().rotation * Vec3::X;
+        let (mut world, mut character) = knocked_over(&def, side * 90.0);
+        run_until(&mut world, &mut character, 9.0, |c| c.state() == wanted);
+        if character.state() != wanted {
+            // It fell so that it need not be rolled over.
+            assert_eq!(wanted, State::Preparing);
+            continue;
+        }
+        let bodies = world.body_ids().count();
+        character.hit(&mut world, 0, Vec3::new(20.0, 30.0, 0.0));
+        assert_eq!(character.state(), State::Limp);
+        assert!(character.events().contains(&Event::WentLimp), "{:?}", character.events());
+        let events = run_until(&mut world, &mut character, 12.0, |c| c.state() == State::Animated);
+        assert!(events.iter().any(|(_, event)| *event == Event::Up), "{events:?}, {bodies} bodies");
+        assert_eq!(world.body_ids().count(), 1, "its bodies are gone, and what drove them");
     }
 }

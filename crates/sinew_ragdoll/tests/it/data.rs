@@ -1,12 +1,17 @@
 //! Files that lie beside the repository.
 
 use sinew_anim::Rig;
-use sinew_formats::{ReadOptions, load_gltf};
+use sinew_formats::{Document, ReadOptions, load_gltf};
 use std::io::Write as _;
 use std::path::PathBuf;
 
 /// A rig of the shared data; `None`, with a line that says so, where the data are not there.
 pub fn rig(name: &str) -> Option<Rig> {
+    document(name).map(|document| document.rig)
+}
+
+/// A file of the shared rigs, likewise.
+pub fn document(name: &str) -> Option<Document> {
     let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/rigs"));
     if !folder.is_dir() {
         // Not println, which the harness swallows where a test passes.
@@ -15,5 +20,5 @@ pub fn rig(name: &str) -> Option<Rig> {
         return None;
     }
     let document = load_gltf(folder.join(name), ReadOptions::default());
-    Some(document.unwrap_or_else(|error| panic!("{name}: {error}")).rig)
+    Some(document.unwrap_or_else(|error| panic!("{name}: {error}")))
 }

@@ -2,8 +2,14 @@
 
 mod actor;
 mod bake;
+mod build;
+mod build_limits;
 mod character;
+mod data;
 mod drive;
+mod falls;
 mod hand_over;
 mod mapping;
+mod pops;
 mod quality;
+mod slopes;

@@ -14,7 +14,7 @@ fn model_of(def: &CharacterDef, pose: &[LocalTransform]) -> Vec<Affine> {
 
 fn walking(def: &CharacterDef, time: f32) -> Vec<LocalTransform> {
     let mut pose = def.rest().to_vec();
-    sample(&def.clips[0], &def.rig, time, Wrap::Loop, &mut pose);
+    sample(&def.motions().clips[0], &def.rig, time, Wrap::Loop, &mut pose);
     pose
 }
 

@@ -4,9 +4,9 @@ use super::actors::Figure;
 use super::metric::{Expected, Metric};
 use super::sight::Sight;
 use core::time::Duration;
-use sinew::math::max;
+use sinew::math::{ReadError, Reader, Writer, max};
 use sinew::physics::stage::{NoProfiler, Profiler};
-use sinew::physics::{DebugDraw, Energy, Serial, TaskRunner, Update, World};
+use sinew::physics::{BodyId, DebugDraw, Energy, LoadError, Serial, TaskRunner, Update, World};
 
 /// The part of a scene that goes along with its world.
 pub trait Script: Send {
@@ -17,6 +17,23 @@ pub trait Script: Send {
     /// After each step: watches, and pushes what the next step is to feel. What it pushes depends on the world alone,
     /// so that a restored world goes on as the saved one did.
     fn after_step(&mut self, _world: &mut World) {}
+
+    /// [`after_step`](Self::after_step) for a host that reads a clock: `done` is told of each part of the work as soon as it is
+    /// done. The same work in the same order.
+    fn after_step_in_parts(&mut self, world: &mut World, _done: &mut dyn FnMut(Part)) {
+        self.after_step(world);
+    }
+
+    /// Writes what the script itself knows and the future depends on, if there is anything beside the world.
+    fn save(&self, _out: &mut Writer) {}
+
+    /// Reads what [`save`](Self::save) wrote.
+    ///
+    /// # Errors
+    /// If the bytes are not those of the same scene with the same settings.
+    fn load(&mut self, _bytes: &mut Reader<'_>) -> Result<(), ReadError> {
+        Ok(())
+    }
 
     /// Energy that drives have given the world since the start, less what they took, J; asked after
     /// [`after_step`](Self::after_step).
@@ -39,6 +56,20 @@ pub trait Script: Send {
     fn figures(&self) -> Vec<Figure<'_>> {
         Vec::new()
     }
+
+    /// Bodies that those skins show.
+    fn bodies_of_figures(&self) -> Vec<BodyId> {
+        Vec::new()
+    }
+}
+
+/// A part of the work that goes along with a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// For whom, such as characters in a state; always in the same order.
+    pub name: &'static str,
+    /// How many of them.
+    pub count: u32,
 }
 
 /// Nothing but the world itself.
@@ -83,6 +114,11 @@ impl Instance {
         self.script.figures()
     }
 
+    /// Bodies that those skins show.
+    pub fn bodies_of_figures(&self) -> Vec<BodyId> {
+        self.script.bodies_of_figures()
+    }
+
     /// Its world, for questions, drawing, snapshots.
     pub fn world(&self) -> &World {
         &self.world
@@ -100,14 +136,43 @@ impl Instance {
 
     /// One step with the host's threads and stage times.
     pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
+        self.step_in_parts(runner, profiler, &mut |_| {});
+    }
+
+    /// Likewise; `done` is told when the world has taken its step (a part named [`WORLD`](Self::WORLD), for all its bodies),
+    /// and then of each part of what goes along with it, so that a host with a clock knows what took how long.
+    pub fn step_in_parts(
+        &mut self,
+        runner: &dyn TaskRunner,
+        profiler: &dyn Profiler,
+        done: &mut dyn FnMut(Part),
+    ) {
         let Self { world, script, health } = self;
-        step(world, script.as_mut(), health, &|world| world.step_with(runner, profiler));
+        step(world, script.as_mut(), health, &|world| world.step_with(runner, profiler), done);
+    }
+
+    /// Name of the part that is the world's step.
+    pub const WORLD: &'static str = "world";
+
+    /// Writes the world and what the script knows beside it.
+    pub fn save(&self, out: &mut Writer) {
+        self.world.save(out);
+        self.script.save(out);
+    }
+
+    /// Reads what [`save`](Self::save) wrote.
+    ///
+    /// # Errors
+    /// If the bytes are not those of the same scene with the same settings.
+    pub fn load(&mut self, bytes: &mut Reader<'_>) -> Result<(), LoadError> {
+        self.world.load(bytes)?;
+        Ok(self.script.load(bytes)?)
     }
 
     /// Runs the whole steps that `time` more holds, as [`World::update`] does; the script sees each.
     pub fn update(&mut self, time: Duration) -> Update {
         let Self { world, script, health } = self;
-        world.update_with(time, |world| step(world, script.as_mut(), health, &World::step))
+        world.update_with(time, |world| step(world, script.as_mut(), health, &World::step, &mut |_| {}))
     }
 
     /// How many figures every scene has, at the end of its own.
@@ -122,19 +187,35 @@ impl Instance {
 }
 
 /// One step, and what goes along with it.
-fn step(world: &mut World, script: &mut dyn Script, health: &mut Health, step: &dyn Fn(&mut World)) {
+fn step(
+    world: &mut World,
+    script: &mut dyn Script,
+    health: &mut Health,
+    step: &dyn Fn(&mut World),
+    done: &mut dyn FnMut(Part),
+) {
     script.before_step(world);
     let before = world.energy();
     step(world);
     // What the script pushes is no work of this step.
     let after = world.energy();
-    script.after_step(world);
+    done(Part { name: Instance::WORLD, count: health.bodies });
+    script.after_step_in_parts(world, done);
     health.after_step(world, [before, after], script.work_in(world));
+}
+
+/// Of all that moves, kg.
+fn mass_of(world: &World) -> f32 {
+    let of_bodies: f32 = world.body_ids().map(|id| world.mass(id).mass).sum();
+    let of_particles: f32 = world.group_ids().flat_map(|id| world.particles(id).masses()).sum();
+    of_bodies + of_particles
 }
 
 /// What no scene may show, however long it runs.
 struct Health {
     mass: f32,
+    /// That the mass is of.
+    bodies: u32,
     /// That drives have put in, J.
     work_in: f32,
     energy_gain_max: f32,
@@ -143,10 +224,8 @@ struct Health {
 
 impl Health {
     fn new(world: &World) -> Self {
-        let of_bodies: f32 = world.body_ids().map(|id| world.mass(id).mass).sum();
-        let of_particles: f32 = world.group_ids().flat_map(|id| world.particles(id).masses()).sum();
-        let mass = of_bodies + of_particles;
-        Self { mass, work_in: 0.0, energy_gain_max: 0.0, quarantined: 0 }
+        let (mass, bodies) = (mass_of(world), world.body_ids().count() as u32);
+        Self { mass, bodies, work_in: 0.0, energy_gain_max: 0.0, quarantined: 0 }
     }
 
     fn after_step(&mut self, world: &World, [before, after]: [Energy; 2], work_in: f32) {
@@ -158,6 +237,10 @@ impl Health {
         // Where nothing has a mass, nothing has energy.
         self.energy_gain_max = max(self.energy_gain_max, if most > 0.0 { rise / most } else { 0.0 });
         self.quarantined += world.events().quarantined.len() as u32;
+        let bodies = world.body_ids().count() as u32;
+        if bodies != self.bodies {
+            (self.mass, self.bodies) = (mass_of(world), bodies);
+        }
     }
 
     fn metrics(&self) -> [Metric; Instance::METRICS_OF_EVERY_SCENE] {

@@ -61,6 +61,7 @@ mod stacks;
 mod strings;
 mod support;
 mod surfaces;
+mod throng;
 mod tops;
 mod transitions;
 mod trees;
@@ -69,7 +70,7 @@ mod water;
 mod weightless;
 
 pub use actors::Figure;
-pub use instance::{Instance, Script};
+pub use instance::{Instance, Part, Script};
 pub use metric::{Expected, Metric};
 pub use setting::{Domain, Setting, SettingError, Settings};
 pub use sight::{Sight, Trails};
@@ -202,6 +203,7 @@ const REGISTRY: &[Scene] = &[
     nets::JOINT_GRID,
     nets::NET,
     crowds::PILE,
+    throng::CROWD,
     settling::RAGDOLLS,
     settling::WAVE_PILE,
     settling::MESH_DROP,

@@ -2,6 +2,7 @@
 
 mod blueprint;
 mod cabin;
+mod crowd;
 mod mannequin;
 mod mjcf;
 mod mocap;

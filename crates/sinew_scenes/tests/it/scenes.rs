@@ -34,6 +34,7 @@ const BLIND_TO_GRAVITY: &[&str] = &[
     "root_walk",
     "uneven_ground",
     "retarget",
+    "crowd",
 ];
 
 fn after(scene: &Scene, settings: &Settings, gravity_factor: f32) -> Instance {
@@ -213,6 +214,7 @@ scenes!(
         root_walk,
         uneven_ground,
         retarget,
+        crowd,
     ],
     large: [chain_100_links, joint_grid, net, ragdoll_pile],
 );

@@ -77,9 +77,9 @@ fn restored_in_the_middle() {
             run.step();
         }
         let mut saved = Writer::new();
-        run.world().save(&mut saved);
+        run.save(&mut saved);
         let mut restored = started(scene);
-        restored.world_mut().load(&mut Reader::new(saved.as_bytes())).expect("it was just saved");
+        restored.load(&mut Reader::new(saved.as_bytes())).expect("it was just saved");
         for step in middle..end {
             run.step();
             restored.step();

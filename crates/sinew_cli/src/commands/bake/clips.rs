@@ -16,11 +16,9 @@ pub struct Motions {
     pub clips: Vec<Clip>,
     /// The clip that plays until the fall.
     pub looped: Option<usize>,
-    /// Clips that get it up.
-    pub get_ups: Vec<usize>,
 }
 
-/// What a clip that gets a body up is called, without case, blanks, `-` and `_`.
+/// What a clip that gets a body up is called, without case, blanks, `-` and `_`: none to play until the fall.
 const GET_UP_NAMES: [&str; 3] = ["getup", "standup", "gettingup"];
 
 impl Motions {
@@ -32,7 +30,6 @@ impl Motions {
         }
         let plain: Vec<String> = clips.iter().map(|clip| plain(&clip.name)).collect();
         let is_get_up = |index: &usize| GET_UP_NAMES.iter().any(|name| plain[*index].contains(name));
-        let get_ups: Vec<usize> = (0..clips.len()).filter(is_get_up).collect();
         let looped = match wanted {
             Some(name) => {
                 Some(find_clip(&clips, name).map_err(|what| Failure::at(&file.name, what, "--clip"))?)
@@ -43,7 +40,7 @@ impl Motions {
                 called("walk").or_else(|| called("idle")).or(first)
             }
         };
-        Ok(Self { clips, looped, get_ups })
+        Ok(Self { clips, looped })
     }
 }
 

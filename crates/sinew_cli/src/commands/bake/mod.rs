@@ -16,7 +16,7 @@ use sinew::formats::{Textures, append_clip, load_world};
 use sinew::math::Vec3;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::{
-    AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, RagdollBodyDef, RagdollDef, build,
+    AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, MotionSet, RagdollBodyDef, RagdollDef, build,
 };
 use sinew_picture::Sun;
 use std::path::{Path, PathBuf};
@@ -167,12 +167,13 @@ fn character(file: &CharacterFile, motions: Motions) -> Result<CharacterDef> {
     let (ragdoll, _) = build(&document.rig, analysis, &BuildOptions::default())
         .map_err(|error| Failure::of_file(name, error))?;
     let mut def = CharacterDef::new(document.rig.clone(), ragdoll, &analysis.bind_model);
-    def.clips = motions.clips;
-    def.looped = motions.looped;
+    let mut get_ups = def.get_ups_among(&motions.clips);
+    get_ups.retain(|&clip| Some(clip) != motions.looped);
     // A body that lies down and has no motion to get up by would float to its feet.
-    def.after_settling =
-        if motions.get_ups.is_empty() { AfterSettling::StayDown } else { AfterSettling::GetUp };
-    def.get_ups = motions.get_ups;
+    def.after_settling = if get_ups.is_empty() { AfterSettling::StayDown } else { AfterSettling::GetUp };
+    let Motions { clips, looped } = motions;
+    let motions = MotionSet { clips, looped, get_ups, ..MotionSet::default() };
+    def.set_motions(motions).map_err(|error| Failure::of_file(name, error))?;
     Ok(def)
 }
 

@@ -180,7 +180,7 @@ impl Take {
             captions: self.captions(reel),
             ..Scene::default()
         };
-        world::paint(self.run.world(), &frame, &mut scene);
+        world::paint_all_but(self.run.world(), &self.run.bodies_of_figures(), &frame, &mut scene);
         for figure in figures {
             let looks = skin::looks(figure.rig);
             scene.models.extend(skin::models(figure.rig, figure.world_from_joint, &looks));

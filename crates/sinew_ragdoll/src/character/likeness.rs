@@ -1,0 +1,120 @@
+//! How alike two poses are, wherever they are and whichever way they face.
+//!
+//! As in motion graphs (Kovar, Gleicher, Pighin, SIGGRAPH 2002, §3.1): one pose is turned about the vertical and moved so
+//! that points of the body come as near to those of the other as they can; what distance is left tells them apart.
+
+use crate::def::{RagdollBodyDef, RagdollDef};
+use crate::mapping::Mapping;
+use sinew_anim::JointIdx;
+use sinew_math::{Affine, Rotation, Transform, Vec3, min, trig};
+
+/// Which points of a body count, and how much.
+#[derive(Clone, Debug)]
+pub(super) struct Landmarks {
+    /// Joints of the bodies, in their order.
+    joints: Vec<JointIdx>,
+    /// Bodies whose turning counts, besides: by the ends of two short sticks, forward and up. The pelvis is the first.
+    trunk: Vec<(usize, Rotation)>,
+    /// One for each joint and each stick; they add up to 1.
+    weights: Vec<f32>,
+    /// Of the sticks, metres.
+    stick: f32,
+}
+
+/// A body's pose by its landmarks.
+#[derive(Clone, Debug)]
+pub(super) struct Stance {
+    pub points: Vec<Vec3>,
+    /// How the pelvis is turned, from its bind pose.
+    pub pelvis: Rotation,
+}
+
+/// How one stance is brought to another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Likeness {
+    /// A turn about the vertical, then a move.
+    pub motion: Transform,
+    /// What is left then: root of the weighted mean of squared distances, metres.
+    pub distance: f32,
+}
+
+/// Share of a body's joint, by its role.
+fn weight(body: &RagdollBodyDef) -> f32 {
+    let has = |part: &str| body.role.ends_with(part);
+    if has("Foot") || has("LowerLeg") || body.role == "hips" || body.role == "head" {
+        1.0
+    } else if has("Hand") || has("LowerArm") {
+        0.5
+    } else {
+        0.25
+    }
+}
+
+/// Share of a stick's end.
+const OF_A_STICK: f32 = 1.5;
+/// Length of a stick over that of the body.
+const STICK: f32 = 0.2;
+
+impl Landmarks {
+    pub fn new(def: &RagdollDef) -> Self {
+        let bind = |body: usize| (body, def.bodies[body].character_from_body.rotation.inverse());
+        let chest = ["upperChest", "chest"]
+            .iter()
+            .find_map(|role| def.bodies.iter().position(|body| body.role == *role));
+        let trunk: Vec<_> = core::iter::once(0).chain(chest.filter(|&body| body > 0)).map(bind).collect();
+        let sticks = core::iter::repeat_n(OF_A_STICK, 2 * trunk.len());
+        let shares: Vec<f32> = def.bodies.iter().map(weight).chain(sticks).collect();
+        let total: f32 = shares.iter().sum();
+        Self {
+            joints: def.bodies.iter().map(|body| body.joint).collect(),
+            trunk,
+            weights: shares.iter().map(|share| share / total).collect(),
+            stick: STICK * def.height,
+        }
+    }
+
+    /// The stance of a pose in model space; `world_from_character` says where that is.
+    pub fn stance(&self, mapping: &Mapping, model: &[Affine], world_from_character: Transform) -> Stance {
+        let world = mapping.world_from_model(world_from_character);
+        let mut points: Vec<Vec3> =
+            self.joints.iter().map(|&joint| world.point(model[joint].translation)).collect();
+        let mut bodies = Vec::new();
+        mapping.bodies_from_model(model, world_from_character, &mut bodies);
+        let mut pelvis = Rotation::IDENTITY;
+        for (index, &(body, body_from_bind)) in self.trunk.iter().enumerate() {
+            let turn = bodies[body].rotation * body_from_bind;
+            points.extend([Vec3::Z, Vec3::Y].map(|axis| points[body] + turn * axis * self.stick));
+            if index == 0 {
+                pelvis = turn;
+            }
+        }
+        Stance { points, pelvis }
+    }
+
+    /// Bodies whose turning counts, the pelvis first.
+    pub fn trunk_bodies(&self) -> impl Iterator<Item = usize> {
+        self.trunk.iter().map(|&(body, _)| body)
+    }
+
+    /// Brings `from` to `to`, which lies on the ground as `from` does: their lowest points come to one height.
+    pub fn compare(&self, from: &Stance, to: &Stance) -> Likeness {
+        let middle = |stance: &Stance| {
+            let mean =
+                self.weights.iter().zip(&stance.points).fold(Vec3::ZERO, |sum, (&w, &point)| sum + point * w);
+            let lowest = stance.points.iter().map(|point| point.y).fold(mean.y, min);
+            Vec3::new(mean.x, lowest, mean.z)
+        };
+        let (from_middle, to_middle) = (middle(from), middle(to));
+        let pairs = || {
+            let both = from.points.iter().zip(&to.points);
+            self.weights.iter().zip(both).map(|(&w, (&a, &b))| (w, a - from_middle, b - to_middle))
+        };
+        let (cos, sin) = pairs().fold((0.0, 0.0), |(cos, sin), (w, a, b)| {
+            (cos + w * (a.x * b.x + a.z * b.z), sin + w * (a.z * b.x - a.x * b.z))
+        });
+        let turn = Rotation::from_axis_angle(Vec3::Y, trig::atan2(sin, cos));
+        let squares = pairs().fold(0.0, |sum, (w, a, b)| sum + w * (turn * a - b).length_squared());
+        let motion = Transform::new(to_middle - turn * from_middle, turn);
+        Likeness { motion, distance: squares.sqrt() }
+    }
+}

@@ -1,0 +1,96 @@
+//! A motion as a mirror shows it: left becomes right, for any rig.
+//!
+//! What turns is not a local rotation, whose axes differ from rig to rig, but what a joint has turned since the bind pose,
+//! in the character's own axes.
+
+use super::CharacterDef;
+use sinew_anim::{JointIdx, LocalTransform, Rig, local_to_model};
+use sinew_math::{Affine, Rotation, Transform, Vec3};
+
+/// Which joint is on the other side of which.
+#[derive(Clone, Debug)]
+pub(super) struct Mirror {
+    /// A joint of the midline, or one that has no counterpart, is its own.
+    twins: Vec<JointIdx>,
+    /// Character space.
+    bind: Vec<Rotation>,
+}
+
+/// How far off the mirror image of its counterpart a joint may be in the bind pose, share of the body's height.
+const TOLERANCE: f32 = 0.03;
+
+impl Mirror {
+    pub fn new(def: &CharacterDef) -> Self {
+        let bind: Vec<Transform> = def.bind().iter().map(Affine::to_rigid).collect();
+        let mut twins = by_places(&def.rig, &bind, TOLERANCE * def.ragdoll.height);
+        by_roles(def, &mut twins);
+        // Whoever is not seen by the one that it sees is alone.
+        let seen = twins.clone();
+        for (joint, twin) in twins.iter_mut().enumerate() {
+            if seen[*twin] != joint {
+                *twin = joint;
+            }
+        }
+        Self { twins, bind: bind.iter().map(|bind| bind.rotation).collect() }
+    }
+
+    /// The mirror image of a flat pose. Translations change for the joints alone that carry root motion.
+    pub fn pose(&self, def: &CharacterDef, pose: &[LocalTransform]) -> Vec<LocalTransform> {
+        let (rig, mapping) = (&def.rig, def.mapping());
+        let root = mapping.character_from_model();
+        let mut shown = Vec::new();
+        local_to_model(rig, pose, &root, &mut shown);
+        let mut image = pose.to_vec();
+        let mut made: Vec<Affine> = Vec::with_capacity(pose.len());
+        for (joint, node) in rig.joints.iter().enumerate() {
+            let parent = node.parent.map_or(root, |parent| made[parent]);
+            let twin = self.twins[joint];
+            if !mapping.carries(joint) {
+                let turned = shown[twin].to_rigid().rotation * self.bind[twin].inverse();
+                let wanted = reflected(turned) * self.bind[joint];
+                image[joint].rotation = (parent.to_rigid().rotation.inverse() * wanted).normalize();
+            }
+            if mapping.heads().any(|head| head == joint) {
+                let place = across(shown[twin].translation);
+                image[joint].translation = parent.inverse().point(place);
+            }
+            made.push(parent * image[joint].to_affine());
+        }
+        image
+    }
+}
+
+fn across(v: Vec3) -> Vec3 {
+    Vec3::new(-v.x, v.y, v.z)
+}
+
+/// The same turn seen in a mirror across x.
+fn reflected(q: Rotation) -> Rotation {
+    Rotation::from_xyzw(q.x, -q.y, -q.z, q.w)
+}
+
+/// Counterparts by where joints are in the bind pose: below counterparts, the nearest to the mirror image.
+fn by_places(rig: &Rig, bind: &[Transform], tolerance: f32) -> Vec<JointIdx> {
+    let mut twins: Vec<JointIdx> = Vec::with_capacity(bind.len());
+    for (joint, node) in rig.joints.iter().enumerate() {
+        let below = node.parent.map(|parent| twins[parent]);
+        let image = across(bind[joint].translation);
+        let distance = |other: JointIdx| (bind[other].translation - image).length();
+        let nearest = (0..bind.len())
+            .filter(|&other| rig.joints[other].parent == below)
+            .reduce(|a, b| if distance(b) < distance(a) { b } else { a });
+        twins.push(nearest.filter(|&other| distance(other) <= tolerance).unwrap_or(joint));
+    }
+    twins
+}
+
+/// Counterparts by the roles of the bodies, which know more than places do.
+fn by_roles(def: &CharacterDef, twins: &mut [JointIdx]) {
+    for body in &def.ragdoll.bodies {
+        let Some(part) = body.role.strip_prefix("left") else { continue };
+        let other = def.ragdoll.bodies.iter().find(|other| other.role.strip_prefix("right") == Some(part));
+        if let Some(other) = other {
+            (twins[body.joint], twins[other.joint]) = (other.joint, body.joint);
+        }
+    }
+}

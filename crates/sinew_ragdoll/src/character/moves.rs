@@ -1,0 +1,166 @@
+//! A character's clips, ready to be played: made once for all characters of a kind.
+
+use super::likeness::{Landmarks, Stance};
+use super::mirror::Mirror;
+use super::{CharacterDef, Locomotion, MotionSet};
+use crate::def::RagdollDef;
+use crate::mapping::Mapping;
+use sinew_anim::take::Take;
+use sinew_anim::{
+    AnimatedClip, AnimationSet, BuildError, BuildOptions, BuiltClip, Clip, ClipId, LocalTransform,
+    MotionTrack, Rig, Skeleton, Wrap, local_to_model, rest_pose, sample,
+};
+use sinew_math::{Affine, Transform, Vec3};
+
+/// A clip of a character that cannot be played.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("clip '{name}': {error}")]
+pub struct MotionError {
+    /// What the clip is called.
+    pub name: String,
+    /// What is wrong with it.
+    pub error: BuildError,
+}
+
+/// What [`CharacterDef`] makes of its clips.
+#[derive(Clone, Debug)]
+pub(super) struct Moves {
+    pub set: AnimationSet,
+    /// In the order of [`MotionSet::clips`].
+    pub clips: Vec<ClipId>,
+    /// Each with its mirror image after it.
+    pub get_ups: Vec<GetUp>,
+    pub landmarks: Landmarks,
+    /// How the looped clip starts, or the rest pose, in character space.
+    pub upright: Stance,
+}
+
+/// A way to get up.
+#[derive(Clone, Debug)]
+pub(super) struct GetUp {
+    /// Index into [`MotionSet::clips`].
+    pub clip: usize,
+    pub id: ClipId,
+    /// Where it may begin.
+    pub starts: Vec<Start>,
+}
+
+/// A moment of a get-up clip.
+#[derive(Clone, Debug)]
+pub(super) struct Start {
+    /// Clip seconds.
+    pub time: f32,
+    /// Character space.
+    pub stance: Stance,
+    /// Character from body, one for each.
+    pub bodies: Vec<Transform>,
+}
+
+/// Share of a get-up clip in which it may begin.
+const MAY_BEGIN: f32 = 0.4;
+/// Seconds between the moments at which it may.
+const STARTS_APART: f32 = 1.0 / 15.0;
+/// Seconds between the poses of a clip that is mirrored, or whose root motion is moved to the pelvis.
+const FRAME: f64 = 1.0 / 60.0;
+
+impl Moves {
+    /// Of a character that has no motions.
+    pub fn none(rig: &Rig, ragdoll: &RagdollDef, mapping: &Mapping) -> Self {
+        let (landmarks, set) = (Landmarks::new(ragdoll), AnimationSet::new(Skeleton::new(rig)));
+        let upright = stance(rig, mapping, &landmarks, &rest_pose(rig));
+        Self { set, clips: Vec::new(), get_ups: Vec::new(), landmarks, upright }
+    }
+
+    pub fn new(def: &CharacterDef, motions: &MotionSet) -> Result<Self, MotionError> {
+        let mut set = AnimationSet::new(Skeleton::new(&def.rig));
+        let mut clips = Vec::new();
+        for (index, clip) in motions.clips.iter().enumerate() {
+            let mut played = built(def, &flat(def, clip))?;
+            if motions.looped == Some(index) {
+                played.motion = way(def, motions.locomotion, played.clip.duration());
+            }
+            clips.push(set.add_clip(played));
+        }
+        let landmarks = Landmarks::new(&def.ragdoll);
+        let mirror = Mirror::new(def);
+        let mut get_ups = Vec::new();
+        for &clip in &motions.get_ups {
+            let take = flat_take(def, &motions.clips[clip]);
+            let starts = starts(def, &landmarks, &take);
+            get_ups.push(GetUp { clip, id: clips[clip], starts });
+            let image = mirrored(def, &mirror, &take);
+            let starts = self::starts(def, &landmarks, &image);
+            let id = set.add_clip(built(def, &image.to_clip(&def.rig, &motions.clips[clip].name))?);
+            get_ups.push(GetUp { clip, id, starts });
+        }
+        let upright = stance(&def.rig, def.mapping(), &landmarks, &first_pose(def, motions));
+        Ok(Self { set, clips, get_ups, landmarks, upright })
+    }
+}
+
+fn built(def: &CharacterDef, clip: &Clip) -> Result<AnimatedClip, MotionError> {
+    BuiltClip::build(clip, &def.rig, &BuildOptions::default())
+        .map(AnimatedClip::from)
+        .map_err(|error| MotionError { name: clip.name.clone(), error })
+}
+
+/// The clip with all its root motion in the pelvis: see [`Mapping`](crate::Mapping).
+fn flat(def: &CharacterDef, clip: &Clip) -> Clip {
+    let moves_carriers = clip.channels.iter().any(|channel| def.mapping().carries(channel.joint));
+    if moves_carriers { flat_take(def, clip).to_clip(&def.rig, &clip.name) } else { clip.clone() }
+}
+
+fn flat_take(def: &CharacterDef, clip: &Clip) -> Take {
+    // No step of time is short enough for a clip that claims to last for years.
+    let shortest = f64::from(clip.duration) / (Take::MOST_FRAMES - 1) as f64;
+    let frame_time = if shortest > FRAME { shortest } else { FRAME };
+    let mut take = Take::of(&def.rig, clip, frame_time);
+    for frame in 0..take.frames() {
+        def.mapping().flatten(&def.rig, take.pose_mut(frame));
+    }
+    take
+}
+
+fn mirrored(def: &CharacterDef, mirror: &Mirror, take: &Take) -> Take {
+    let poses = (0..take.frames()).flat_map(|frame| mirror.pose(def, take.pose(frame))).collect();
+    Take { poses, ..*take }
+}
+
+/// What the locomotion of the character adds to its looped clip: model space.
+fn way(def: &CharacterDef, locomotion: Locomotion, duration: f32) -> Option<MotionTrack> {
+    let Locomotion::Forward { speed } = locomotion else { return None };
+    let model = def.mapping().character_from_model().inverse();
+    let up = model.to_rigid().rotation * Vec3::Y;
+    Some(MotionTrack::straight(model.vector(Vec3::Z * speed), duration, up))
+}
+
+fn starts(def: &CharacterDef, landmarks: &Landmarks, take: &Take) -> Vec<Start> {
+    let last = (take.frames() - 1) as f32 * MAY_BEGIN;
+    let apart = usize::max(take.frames_in(STARTS_APART), 1);
+    (0..=last as usize)
+        .step_by(apart)
+        .map(|frame| {
+            let (mut model, mut bodies) = (Vec::new(), Vec::new());
+            local_to_model(&def.rig, take.pose(frame), &Affine::IDENTITY, &mut model);
+            def.mapping().bodies_from_model(&model, Transform::IDENTITY, &mut bodies);
+            let stance = landmarks.stance(def.mapping(), &model, Transform::IDENTITY);
+            Start { time: take.time(frame), stance, bodies }
+        })
+        .collect()
+}
+
+fn stance(rig: &Rig, mapping: &Mapping, landmarks: &Landmarks, pose: &[LocalTransform]) -> Stance {
+    let mut model = Vec::new();
+    local_to_model(rig, pose, &Affine::IDENTITY, &mut model);
+    landmarks.stance(mapping, &model, Transform::IDENTITY)
+}
+
+/// The flat pose at the start of the looped clip, or the rest pose.
+fn first_pose(def: &CharacterDef, motions: &MotionSet) -> Vec<LocalTransform> {
+    let mut pose = def.rest().to_vec();
+    if let Some(clip) = motions.looped {
+        sample(&motions.clips[clip], &def.rig, 0.0, Wrap::Clamp, &mut pose);
+        def.mapping().flatten(&def.rig, &mut pose);
+    }
+    pose
+}

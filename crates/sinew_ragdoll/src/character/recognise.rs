@@ -1,0 +1,50 @@
+//! Which clips get a body up: by what they are called, or by what they do.
+
+use super::CharacterDef;
+use sinew_anim::{Clip, LocalTransform, Wrap, local_to_model, sample};
+use sinew_math::{Affine, Transform, Vec3};
+
+/// What such clips are called, without case, blanks, `-` and `_`.
+const NAMES: [&str; 3] = ["getup", "standup", "gettingup"];
+/// Lying, the pelvis' own up rises by no more than this over its length, and its height is no more than this share of that
+/// in the bind pose.
+const LYING: [f32; 2] = [0.6, 0.4];
+/// Standing, no less.
+const STANDING: [f32; 2] = [0.8, 0.8];
+
+impl CharacterDef {
+    /// Indices of the clips that get this character up: those that are called so (`get_up`, `StandUp`, …), and those that start
+    /// lying and end standing, whatever they are called.
+    ///
+    /// # Panics
+    /// As [`sample`](sinew_anim::sample()).
+    pub fn get_ups_among(&self, clips: &[Clip]) -> Vec<usize> {
+        (0..clips.len())
+            .filter(|&index| is_called_so(&clips[index].name) || self.rises(&clips[index]))
+            .collect()
+    }
+
+    fn rises(&self, clip: &Clip) -> bool {
+        let [start, end] = [0.0, clip.duration].map(|time| self.posture(clip, time));
+        start.iter().zip(LYING).all(|(value, most)| *value < most)
+            && end.iter().zip(STANDING).all(|(value, least)| *value > least)
+    }
+
+    /// How upright the pelvis is, and how high over the height of the bind pose, at a time.
+    fn posture(&self, clip: &Clip, time: f32) -> [f32; 2] {
+        let mut pose: Vec<LocalTransform> = self.rest().to_vec();
+        sample(clip, &self.rig, time, Wrap::Clamp, &mut pose);
+        let (mut model, mut bodies) = (Vec::new(), Vec::new());
+        local_to_model(&self.rig, &pose, &Affine::IDENTITY, &mut model);
+        self.mapping().bodies_from_model(&model, Transform::IDENTITY, &mut bodies);
+        let bind = self.ragdoll.bodies[0].character_from_body;
+        let up = bodies[0].rotation * (bind.rotation.inverse() * Vec3::Y);
+        [up.y, bodies[0].translation.y / bind.translation.y]
+    }
+}
+
+fn is_called_so(name: &str) -> bool {
+    let plain: String =
+        name.chars().filter(|c| !matches!(c, ' ' | '_' | '-')).flat_map(char::to_lowercase).collect();
+    NAMES.iter().any(|name| plain.contains(name))
+}

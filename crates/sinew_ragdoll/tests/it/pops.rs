@@ -1,0 +1,166 @@
+//! How far from popping a character is where its bodies take over or give back: accelerations of its joints over what offset
+//! and time ask for, as transitions between clips are measured.
+
+use core::fmt;
+use sinew_anim::{Cursor, Decay, LocalTransform, Pose, local_to_model};
+use sinew_math::{Rotation, Transform, Vec3, max};
+use sinew_ragdoll::{Character, CharacterDef, Event};
+use std::sync::Arc;
+
+const DT: f32 = 1.0 / 60.0;
+/// Steps after a hand-over that are watched.
+const WINDOW: usize = 24;
+/// Into a get-up clip, and into the looped one, seconds.
+const INTO: [f32; 2] = [0.35, 0.3];
+
+/// Angular and linear.
+type Rates = [Vec3; 2];
+
+/// Joints as they are seen: the pelvis in the world, the others from their parents.
+fn seen(character: &Character) -> Vec<Transform> {
+    let def = character.def();
+    let mut model = Vec::new();
+    local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
+    let mut seen: Vec<Transform> =
+        character.pose().iter().map(|local| Transform::new(local.translation, local.rotation)).collect();
+    for head in def.mapping().heads() {
+        seen[head] = model[head].to_rigid();
+    }
+    seen
+}
+
+fn turn(from: Rotation, to: Rotation) -> Vec3 {
+    (to * from.inverse()).to_scaled_axis()
+}
+
+fn rates(a: Transform, b: Transform) -> Rates {
+    [turn(a.rotation, b.rotation) / DT, (b.translation - a.translation) / DT]
+}
+
+/// What a joint may do in a window.
+#[derive(Clone, Copy, Default)]
+struct Budget([f32; 2]);
+
+/// A window that is open.
+struct Window {
+    kind: usize,
+    left: usize,
+    budgets: Vec<Budget>,
+}
+
+pub struct Pops {
+    def: Arc<CharacterDef>,
+    last: Vec<Vec<Transform>>,
+    window: Option<Window>,
+    worst: [(f32, String); 2],
+    count: [u32; 2],
+}
+
+impl Pops {
+    pub fn new(def: &Arc<CharacterDef>) -> Self {
+        Self { def: def.clone(), last: Vec::new(), window: None, worst: Default::default(), count: [0; 2] }
+    }
+
+    /// Another character.
+    pub fn begin(&mut self, character: &Character) {
+        self.last = vec![seen(character)];
+        self.window = None;
+    }
+
+    /// After an update.
+    pub fn watch(&mut self, character: &Character) {
+        let now = seen(character);
+        if let (Some(window), [.., before, last]) = (&mut self.window, &self.last[..]) {
+            for joint in 0..now.len() {
+                let (old, new) = (rates(before[joint], last[joint]), rates(last[joint], now[joint]));
+                for i in 0..2 {
+                    let ratio = (new[i] - old[i]).length() / DT / window.budgets[joint].0[i];
+                    if ratio > self.worst[window.kind].0 {
+                        let name = &self.def.rig.joints[joint].name;
+                        let at = WINDOW - window.left;
+                        self.worst[window.kind] =
+                            (ratio, format!("{name}, {}, step {at}", ["turn", "way"][i]));
+                    }
+                }
+            }
+            window.left -= 1;
+            if window.left == 0 {
+                self.window = None;
+            }
+        }
+        for event in character.events() {
+            let kind = match event {
+                Event::GettingUp { clip: Some(_) } => 0,
+                Event::Up => 1,
+                _ => continue,
+            };
+            self.count[kind] += 1;
+            let budgets = self.budgets(character, &now, kind);
+            self.window = Some(Window { kind, left: WINDOW, budgets });
+        }
+        if self.last.len() == 2 {
+            self.last.remove(0);
+        }
+        self.last.push(now);
+    }
+
+    /// `6 |x₀|/t₁² + 4 |v₀|/t₁` and what the clip itself does.
+    fn budgets(&self, character: &Character, now: &[Transform], kind: usize) -> Vec<Budget> {
+        let animator = character.animator();
+        let track = animator.tracks().last().expect("it plays a clip");
+        let clip = &self.def.set().clip(track.def().clip).clip;
+        let start = track.playhead().clip_time();
+        let mut cursor = Cursor::new();
+        let mut to = |step: usize| {
+            let mut pose = Pose::new(clip.joints());
+            let time = start + step as f32 * DT;
+            let loops = kind == 1 && time > clip.duration();
+            clip.sample(if loops { time - clip.duration() } else { time }, &mut cursor, &mut pose);
+            pose
+        };
+        let poses: Vec<Pose> = (0..WINDOW + 2).map(&mut to).collect();
+        let before = self.last.last().expect("there was a step before");
+        let heads: Vec<usize> = self.def.mapping().heads().collect();
+        let plain = |local: LocalTransform| Transform::new(local.translation, local.rotation);
+        let of = |joint: usize| {
+            let rate: Vec<Rates> = poses
+                .windows(2)
+                .map(|pair| rates(plain(pair[0].get(joint)), plain(pair[1].get(joint))))
+                .collect();
+            let own =
+                |i: usize| rate.windows(2).map(|pair| (pair[1][i] - pair[0][i]).length() / DT).fold(0.0, max);
+            let (from, target) = (plain(character.pose()[joint]), plain(poses[0].get(joint)));
+            let offsets = [turn(target.rotation, from.rotation), from.translation - target.translation];
+            let old = rates(before[joint], now[joint]);
+            Budget([0, 1].map(|i| {
+                let velocity = if heads.contains(&joint) {
+                    // Seen from elsewhere: at most as fast as both together.
+                    Vec3::X * (old[i].length() + rate[0][i].length())
+                } else {
+                    old[i] - rate[0][i]
+                };
+                let decay = Decay { offset: offsets[i], velocity };
+                let time = if heads.contains(&joint) { INTO[kind] } else { decay.shortened(INTO[kind]) };
+                let asked = 6.0 * decay.offset.length() / (time * time) + 4.0 * velocity.length() / time;
+                asked + 1.2 * own(i) + [0.5, 0.05][i]
+            }))
+        };
+        (0..now.len()).map(of).collect()
+    }
+
+    /// Above 1 there is a pop.
+    pub fn worst(&self) -> f32 {
+        max(self.worst[0].0, self.worst[1].0)
+    }
+}
+
+impl fmt::Display for Pops {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (kind, name) in ["bodies to get-up", "get-up to loop"].iter().enumerate() {
+            let (ratio, place) = &self.worst[kind];
+            let count = self.count[kind];
+            writeln!(f, "  {name}: {count} times, worst {ratio:.3} of what is allowed ({place})")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,60 @@
+//! The crowd: saved at any moment it goes on as it was, and costs no memory while it walks.
+
+use sinew::math::{Reader, Writer};
+use sinew_scenes::scenes::{Instance, find};
+
+fn started(assignments: &[&str]) -> Instance {
+    let scene = find("crowd").expect("the registry has it");
+    let mut settings = scene.settings();
+    assignments.iter().for_each(|assignment| settings.assign(assignment).expect("a setting of it"));
+    scene.start(&settings)
+}
+
+fn bytes(run: &Instance) -> Vec<u8> {
+    let mut saved = Writer::new();
+    run.save(&mut saved);
+    saved.into_bytes()
+}
+
+fn figure(run: &Instance, name: &str) -> f64 {
+    let metrics = run.metrics();
+    let metric = metrics.iter().find(|metric| metric.name == name).expect("it has that figure");
+    metric.value.expect("it is known")
+}
+
+#[test]
+fn goes_on_from_any_moment() {
+    let mut run = started(&["n=6", "waves=2"]);
+    let mut seen = [0.0; 4];
+    for moment in [20, 60, 130, 190, 240, 300, 330, 400, 460] {
+        while run.world().step_count() < moment {
+            run.step();
+            for (most, state) in seen.iter_mut().zip(["animated", "limp", "preparing", "getting_up"]) {
+                *most = f64::max(*most, figure(&run, state));
+            }
+        }
+        let saved = bytes(&run);
+        let mut other = started(&["n=6", "waves=2"]);
+        other.load(&mut Reader::new(&saved)).expect("it was just saved");
+        assert_eq!(bytes(&other), saved, "at step {moment}");
+        for _ in 0..90 {
+            run.step();
+            other.step();
+        }
+        assert_eq!(bytes(&other), bytes(&run), "from step {moment}");
+        run.load(&mut Reader::new(&saved)).expect("it was just saved");
+        for length in (0..saved.len()).step_by(1_009) {
+            assert!(other.load(&mut Reader::new(&saved[..length])).is_err(), "{length} bytes");
+        }
+    }
+    assert!(seen.iter().all(|&most| most > 0.0), "someone is in every state: {seen:?}");
+}
+
+#[test]
+fn walks_without_a_byte_of_memory() {
+    // Before the first of them is hit.
+    let mut run = started(&["n=5"]);
+    (0..14).for_each(|_| run.step());
+    let counted = allocation_counter::measure(|| (0..30).for_each(|_| run.step()));
+    assert_eq!(counted.count_total, 0, "{counted:?}");
+}
