@@ -42,7 +42,7 @@ pub use gltf::{
     read_gltf, write_gltf, write_motion,
 };
 pub use mesh::TriangleMesh;
-pub use mjcf::{MjcfModel, read_mjcf};
+pub use mjcf::{MjcfModel, MjcfRagdoll, read_mjcf};
 pub use motion::{MotionFile, MotionFormat, MotionOptions, read_motion};
 pub use obj::read_obj;
 pub use ragdoll::{read_ragdoll, write_ragdoll};

@@ -9,6 +9,7 @@ mod events;
 mod inspect;
 mod later;
 mod ragdoll_build;
+mod ragdoll_doctor;
 mod run;
 mod scenes;
 mod view;
@@ -23,7 +24,7 @@ use later::Later;
 pub enum Command {
     Demo(demo::Demo),
     Bake(bake::Bake),
-    /// Work on ragdolls: build one from a rigged file
+    /// Work on ragdolls: build one from a rigged file, find out what is wrong with one
     #[command(subcommand)]
     Ragdoll(Ragdoll),
     Boxes(boxes::Boxes),
@@ -45,8 +46,7 @@ pub enum Command {
 #[derive(Subcommand)]
 pub enum Ragdoll {
     Build(ragdoll_build::RagdollBuild),
-    #[command(hide = true, disable_help_flag = true)]
-    Doctor(Later),
+    Doctor(ragdoll_doctor::RagdollDoctor),
     #[command(hide = true, disable_help_flag = true)]
     Export(Later),
 }
@@ -58,7 +58,7 @@ impl Command {
             Self::Demo(command) => command.run(),
             Self::Bake(command) => command.run(),
             Self::Ragdoll(Ragdoll::Build(command)) => command.run(),
-            Self::Ragdoll(Ragdoll::Doctor(_)) => later::refuse("sinew ragdoll doctor"),
+            Self::Ragdoll(Ragdoll::Doctor(command)) => command.run(),
             Self::Ragdoll(Ragdoll::Export(_)) => later::refuse("sinew ragdoll export"),
             Self::Boxes(command) => command.run(),
             Self::Inspect(command) => command.run(),

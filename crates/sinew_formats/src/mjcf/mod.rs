@@ -27,7 +27,10 @@ mod geom;
 mod joint;
 mod keyframe;
 mod notes;
+mod ragdoll;
 mod xml;
+
+pub use ragdoll::MjcfRagdoll;
 
 use crate::error::{Result, quoted};
 use bodies::{Reading, Tree};

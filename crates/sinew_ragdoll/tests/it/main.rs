@@ -3,6 +3,7 @@
 mod actor;
 mod bake;
 mod character;
+mod doctor;
 mod hand_over;
 mod mapping;
 mod quality;

@@ -1,0 +1,75 @@
+//! Any file that a ragdoll comes from: a rigged character, a definition of ours, an MJCF model.
+
+use crate::failure::{Failure, Result};
+use crate::files::CharacterFile;
+use sinew::formats::{Textures, read_bytes, read_mjcf, read_ragdoll};
+use sinew::ragdoll::{BuildOptions, Patient, RagdollDef, build};
+use std::path::Path;
+
+/// A ragdoll and what is known of it.
+pub struct RagdollFile {
+    /// As the user named it.
+    pub name: String,
+    /// The ragdoll, its springs, and what its rig says of it.
+    pub patient: Patient,
+    /// What reading and building want a person to know, a sentence each.
+    pub notes: Vec<String>,
+}
+
+impl RagdollFile {
+    /// Reads a file of any of the three kinds; of a character the ragdoll is built.
+    pub fn load(path: &Path, textures: Textures, options: &BuildOptions) -> Result<Self> {
+        let name = path.display().to_string();
+        let bytes = read_bytes(path)?;
+        match kind_of(&bytes) {
+            Kind::Definition => Ok(Self {
+                patient: Patient::new(read_ragdoll(&bytes).map_err(|error| error.with_file(&name))?),
+                name,
+                notes: Vec::new(),
+            }),
+            Kind::Mjcf => {
+                let model = read_mjcf(&bytes).and_then(|model| Ok((model.to_ragdoll()?, model.notes)));
+                let (ragdoll, mut notes) = model.map_err(|error| error.with_file(&name))?;
+                notes.extend(ragdoll.notes);
+                let patient = Patient { springs: ragdoll.springs, ..Patient::new(ragdoll.def) };
+                Ok(Self { patient, name, notes })
+            }
+            Kind::Character => {
+                drop(bytes);
+                let character = CharacterFile::load(path, textures)?;
+                let (def, notes) = built(&character, options)?;
+                let patient = Patient { reference: Some(def.clone()), ..Patient::new(def) };
+                Ok(Self { patient, name, notes })
+            }
+        }
+    }
+}
+
+/// The ragdoll of a character, and the build's notes.
+pub fn built(character: &CharacterFile, options: &BuildOptions) -> Result<(RagdollDef, Vec<String>)> {
+    let CharacterFile { name, document, analysis } = character;
+    let (def, report) =
+        build(&document.rig, analysis, options).map_err(|error| Failure::of_file(name, error))?;
+    Ok((def, report.notes))
+}
+
+enum Kind {
+    Definition,
+    Mjcf,
+    Character,
+}
+
+/// By the first bytes: a glTF is JSON too, but says nothing of us at its top.
+fn kind_of(bytes: &[u8]) -> Kind {
+    let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
+    match text.first() {
+        Some(b'<') => Kind::Mjcf,
+        Some(b'{') if is_ours(text) => Kind::Definition,
+        _ => Kind::Character,
+    }
+}
+
+/// Whether the first key of the object is `"sinew"`.
+fn is_ours(text: &[u8]) -> bool {
+    text[1..].trim_ascii_start().starts_with(b"\"sinew\"")
+}
