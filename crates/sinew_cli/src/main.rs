@@ -18,6 +18,7 @@ mod ragdoll_file;
 mod ragdoll_report;
 mod report;
 mod scene_choice;
+mod settings_arg;
 mod skeleton;
 mod skin;
 mod story;

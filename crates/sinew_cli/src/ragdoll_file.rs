@@ -1,9 +1,10 @@
 //! Any file that a ragdoll comes from: a rigged character, a definition of ours, an MJCF model.
 
-use crate::failure::{Failure, Result};
+use crate::failure::Result;
 use crate::files::CharacterFile;
+use crate::settings_arg::SettingsArg;
 use sinew::formats::{Textures, read_bytes, read_mjcf, read_ragdoll};
-use sinew::ragdoll::{BuildOptions, Patient, RagdollDef, build};
+use sinew::ragdoll::{BuildOptions, Patient};
 use std::path::Path;
 
 /// A ragdoll and what is known of it.
@@ -18,7 +19,7 @@ pub struct RagdollFile {
 
 impl RagdollFile {
     /// Reads a file of any of the three kinds; of a character the ragdoll is built.
-    pub fn load(path: &Path, textures: Textures, options: &BuildOptions) -> Result<Self> {
+    pub fn load(path: &Path, textures: Textures, settings: &SettingsArg) -> Result<Self> {
         let name = path.display().to_string();
         let bytes = read_bytes(path)?;
         match kind_of(&bytes) {
@@ -37,20 +38,12 @@ impl RagdollFile {
             Kind::Character => {
                 drop(bytes);
                 let character = CharacterFile::load(path, textures)?;
-                let (def, notes) = built(&character, options)?;
+                let (def, notes) = settings.load(path)?.build(&character, &BuildOptions::default())?;
                 let patient = Patient { reference: Some(def.clone()), ..Patient::new(def) };
                 Ok(Self { patient, name, notes })
             }
         }
     }
-}
-
-/// The ragdoll of a character, and the build's notes.
-pub fn built(character: &CharacterFile, options: &BuildOptions) -> Result<(RagdollDef, Vec<String>)> {
-    let CharacterFile { name, document, analysis } = character;
-    let (def, report) =
-        build(&document.rig, analysis, options).map_err(|error| Failure::of_file(name, error))?;
-    Ok((def, report.notes))
 }
 
 enum Kind {

@@ -35,7 +35,8 @@ pub use events::{events_extras, read_events, write_events};
 pub use fbx::read_fbx;
 #[cfg(feature = "fs")]
 pub use fs::{
-    events_path, load_gltf, load_mesh, load_motion, load_world, read_bytes, write_all_atomic, write_atomic,
+    events_path, load_gltf, load_mesh, load_motion, load_world, read_bytes, settings_path, write_all_atomic,
+    write_atomic,
 };
 pub use gltf::{
     Container, Document, NewClip, ReadOptions, Resolver, Textures, append_clip, append_clips, no_files,
@@ -45,5 +46,6 @@ pub use mesh::TriangleMesh;
 pub use mjcf::{MjcfModel, MjcfRagdoll, read_mjcf};
 pub use motion::{MotionFile, MotionFormat, MotionOptions, read_motion};
 pub use obj::read_obj;
+pub use ragdoll::settings::read_ragdoll_settings;
 pub use ragdoll::{read_ragdoll, write_ragdoll};
 pub use world::{read_world, write_world};

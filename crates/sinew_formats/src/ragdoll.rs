@@ -54,6 +54,8 @@
 //! A body is referred to by its `bone`, or by its number from 0 where two have the same bone name. Shapes, poses and
 //! masses are as in [world files](crate::world). A key that is not listed here is an error.
 
+pub mod settings;
+
 use crate::error::{Result, quoted};
 use crate::json::{self, At, number, numbers};
 use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
@@ -356,9 +358,9 @@ fn write_degrees(radians: f32) -> Value {
     let mut unit = 1.0;
     for _ in 0..9 {
         let rounded = (exact * unit).round() / unit;
-        // Adding zero turns −0 into 0.
-        if rounded.to_radians() as f32 == radians {
-            return Value::from(rounded + 0.0);
+        // Bits are compared, for a −0 that a mirrored limit has is part of what a snapshot holds.
+        if (rounded.to_radians() as f32).to_bits() == radians.to_bits() {
+            return Value::from(rounded);
         }
         unit *= 10.0;
     }

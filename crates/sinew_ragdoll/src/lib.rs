@@ -14,6 +14,8 @@ pub mod mapping;
 pub mod masses;
 pub mod quality;
 pub mod ragdoll;
+pub mod rig_match;
+pub mod settings;
 
 pub use bake::{BakeInput, Baked, Hit, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
@@ -25,3 +27,5 @@ pub use mapping::Mapping;
 pub use masses::de_leva::Sex;
 pub use quality::{DropReport, Quality, QualityMeter, Verdict, drop_test, gate};
 pub use ragdoll::{BodyState, Flesh, Ragdoll};
+pub use rig_match::RigMismatch;
+pub use settings::{Settings, SettingsError, build_with};

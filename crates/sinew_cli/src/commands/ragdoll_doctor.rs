@@ -2,8 +2,9 @@
 
 use crate::failure::{Failure, Result};
 use crate::files::{CharacterFile, Outputs};
-use crate::ragdoll_file::{RagdollFile, built};
+use crate::ragdoll_file::RagdollFile;
 use crate::report::Report;
+use crate::settings_arg::SettingsArg;
 use crate::table::{Table, counted, shown};
 use serde_json::{Value, json};
 use sinew::formats::{Textures, write_ragdoll};
@@ -34,18 +35,20 @@ pub struct RagdollDoctor {
     /// The character that a definition belongs to: knows where bones begin, and which have no body
     #[arg(long, value_name = "CHARACTER")]
     rig: Option<PathBuf>,
+    #[command(flatten)]
+    settings: SettingsArg,
 }
 
 impl RagdollDoctor {
     /// Reads, examines, mends, writes.
     pub fn run(&self) -> Result<Report> {
         self.check_output()?;
-        let options = BuildOptions::default();
-        let RagdollFile { name, mut patient, notes, .. } =
-            RagdollFile::load(&self.file, Textures::Skip, &options)?;
+        let RagdollFile { name, mut patient, notes } =
+            RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
         if let Some(rig) = &self.rig {
             let character = CharacterFile::load(rig, Textures::Skip)?;
-            patient.reference = Some(built(&character, &options)?.0);
+            let settings = self.settings.load(rig)?;
+            patient.reference = Some(settings.build(&character, &BuildOptions::default())?.0);
         }
         let findings = match &self.output {
             None => doctor(&patient),
@@ -62,8 +65,8 @@ impl RagdollDoctor {
 
     fn check_output(&self) -> Result<()> {
         let real = |path: &Path| std::fs::canonicalize(path).ok();
-        let inputs = [Some(&self.file), self.rig.as_ref()].into_iter().flatten();
-        let inputs: Vec<_> = inputs.filter_map(|path| real(path)).collect();
+        let inputs = [Some(self.file.as_path()), self.rig.as_deref(), self.settings.path()];
+        let inputs: Vec<_> = inputs.into_iter().flatten().filter_map(real).collect();
         match &self.output {
             Some(output) if real(output).is_some_and(|output| inputs.contains(&output)) => {
                 let output = output.display();

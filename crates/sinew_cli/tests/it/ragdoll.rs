@@ -123,3 +123,51 @@ fn files_that_are_no_ragdoll_are_refused_in_a_line() {
         assert!(line.starts_with(&format!("error: {file}: ")) && line.contains(reason), "{line}");
     }
 }
+
+#[test]
+fn settings_beside_the_character_are_heeded() {
+    let folder = Folder::new("settings");
+    let file = folder.mannequin();
+    let build = |more: &[&str]| sinew(&[&["ragdoll", "build", &file, "--json"], more].concat());
+    let mass = |object: &Value| object["total_mass_kg"].as_f64().expect("a mass");
+    let plain = build(&[]).json();
+    let text = r#"{"sinew":"ragdoll-settings","version":1,"mass":90,"bones":{"head":{"shape":"sphere"}}}"#;
+    folder.file("mannequin.ragdoll.json", text);
+    let settled = build(&[]).json();
+    assert!((mass(&settled) - 90.0).abs() < 1e-3 && (mass(&plain) - 90.0).abs() > 1.0);
+    let bodies = settled["bodies"].as_array().expect("bodies");
+    let head = bodies.iter().find(|body| body["role"] == "head").expect("a head");
+    assert_eq!(head["shape"], "sphere");
+    assert!(settled["notes"][0].as_str().is_some_and(|note| note.starts_with("with the settings of ")));
+    // The command line has the last word.
+    assert!((mass(&build(&["--mass", "50"]).json()) - 50.0).abs() < 1e-3);
+    let wrong = folder.file("wrong.json", text.replace("head", "haed"));
+    let run = build(&["--settings", &wrong]);
+    let line = run.refusal(1);
+    assert!(
+        line.ends_with("wrong.json: no bone or role `haed`; did you mean `head`? (bones.haed)"),
+        "{line}"
+    );
+}
+
+#[test]
+fn an_edited_definition_is_what_falls() {
+    let folder = Folder::new("edited");
+    let (path, mut def) = built(&folder);
+    let (rig, out) = (folder.path("mannequin.glb"), folder.path("fall.glb"));
+    let bake =
+        |ragdoll: &str| sinew(&["bake", &rig, "--ragdoll", ragdoll, "--seconds", "2", "-o", &out, "--json"]);
+    let hash = |run: crate::sinew::Run| run.json()["hash"].clone();
+    let unedited = hash(bake(&path));
+    assert_eq!(unedited, hash(sinew(&["bake", &rig, "--seconds", "2", "-o", &out, "--json"])));
+    for joint in &mut def.joints {
+        joint.kind = JointKind::Fixed;
+    }
+    let stiff = folder.file("stiff.sinew.json", write_ragdoll(&def));
+    assert_ne!(unedited, hash(bake(&stiff)));
+    def.bodies[3].bone = "elsewhere".into();
+    let other = folder.file("other.sinew.json", write_ragdoll(&def));
+    let run = bake(&other);
+    let line = run.refusal(1);
+    assert!(line.contains("bone `elsewhere` is not in this rig") && line.ends_with("(bodies[3])"), "{line}");
+}

@@ -31,7 +31,7 @@ pub(super) fn depth(exam: &Exam<'_>, a: usize, b: usize) -> f32 {
 }
 
 /// The shape, larger by `factor`. Surfaces, which no body of a ragdoll is, stay as they are.
-pub(super) fn scaled(shape: &Shape, factor: f32) -> Shape {
+pub(crate) fn scaled(shape: &Shape, factor: f32) -> Shape {
     match *shape {
         Shape::Box { half_extents } => Shape::Box { half_extents: half_extents * factor },
         Shape::Sphere { radius } => Shape::Sphere { radius: radius * factor },

@@ -7,3 +7,4 @@ mod doctor;
 mod hand_over;
 mod mapping;
 mod quality;
+mod settings;
