@@ -45,7 +45,7 @@ Start here:
   sinew boxes house.glb -o house.json         a world to fall in, from a mesh
   sinew convert walk.bvh --onto character.glb -o walking.glb   captured motion on your character
 
-Later releases bring: ragdoll export, record, replay.";
+Later releases bring: record, replay.";
 
 /// Physics for characters: give it a rigged file, and it falls, collides, is hit, gets up and walks on.
 #[derive(Parser)]

@@ -1,10 +1,10 @@
 //! Any file that a ragdoll comes from: a rigged character, a definition of ours, an MJCF model.
 
-use crate::failure::Result;
+use crate::failure::{Failure, Result};
 use crate::files::CharacterFile;
 use crate::settings_arg::SettingsArg;
 use sinew::formats::{Textures, read_bytes, read_mjcf, read_ragdoll};
-use sinew::ragdoll::{BuildOptions, Patient};
+use sinew::ragdoll::{BuildOptions, Patient, RagdollDef};
 use std::path::Path;
 
 /// A ragdoll and what is known of it.
@@ -44,6 +44,22 @@ impl RagdollFile {
             }
         }
     }
+}
+
+/// Whether these are the bytes of a character, and not of a definition or a model.
+pub fn is_character(bytes: &[u8]) -> bool {
+    matches!(kind_of(bytes), Kind::Character)
+}
+
+/// A definition for a character, whose joints it finds by their names.
+pub fn read_definition(path: &Path, character: &CharacterFile) -> Result<RagdollDef> {
+    let name = path.display().to_string();
+    let def = read_bytes(path).and_then(|bytes| read_ragdoll(&bytes));
+    let def = def.map_err(|error| error.with_file(&name))?;
+    def.for_rig(&character.document.rig).map_err(|error| {
+        let place = format!("bodies[{}]", error.body());
+        Failure::at(&name, format!("{error} ({})", character.name), place)
+    })
 }
 
 enum Kind {

@@ -39,11 +39,11 @@ pub use fs::{
     write_atomic,
 };
 pub use gltf::{
-    Container, Document, NewClip, ReadOptions, Resolver, Textures, append_clip, append_clips, no_files,
-    read_gltf, write_gltf, write_motion,
+    Container, Document, KhrFile, NewClip, ReadOptions, Resolver, Textures, append_clip, append_clips,
+    no_files, read_gltf, write_gltf, write_khr, write_motion,
 };
 pub use mesh::TriangleMesh;
-pub use mjcf::{MjcfModel, MjcfRagdoll, read_mjcf};
+pub use mjcf::{MjcfModel, MjcfRagdoll, MjcfText, read_mjcf, write_mjcf};
 pub use motion::{MotionFile, MotionFormat, MotionOptions, read_motion};
 pub use obj::read_obj;
 pub use ragdoll::settings::read_ragdoll_settings;

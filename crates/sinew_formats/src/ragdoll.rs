@@ -312,27 +312,35 @@ fn write_body(def: &RagdollDef, index: usize) -> Value {
 }
 
 fn write_joint(def: &RagdollDef, joint: &RagdollJointDef) -> Value {
-    let cone = |limit: SwingTwistLimit| {
-        let [y, z, twist] = [limit.swing_y, limit.swing_z, limit.twist].map(write_range);
-        json!({"swing_y": y, "swing_z": z, "twist": twist})
-    };
-    let (kind, limits) = match joint.kind {
-        JointKind::Ball { limit } => ("ball", limit.map(cone)),
-        JointKind::Universal { limit } => ("universal", limit.map(cone)),
-        JointKind::Hinge { limit } => ("hinge", limit.map(|range| json!({"twist": write_range(range)}))),
-        JointKind::Fixed => ("fixed", None),
+    let kind = match joint.kind {
+        JointKind::Ball { .. } => "ball",
+        JointKind::Universal { .. } => "universal",
+        JointKind::Hinge { .. } => "hinge",
+        JointKind::Fixed => "fixed",
         kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
     };
     let mut object = Map::new();
     object.insert("parent".into(), write_reference(def, joint.parent));
     object.insert("type".into(), kind.into());
-    if let Some(limits) = limits {
+    if let Some(limits) = write_limits(&joint.kind) {
         object.insert("limits_deg".into(), limits);
     }
     object.insert("friction_torque".into(), number(joint.friction_torque));
     object.insert("frame_in_parent".into(), write_frame(joint.frame_parent));
     object.insert("frame_in_child".into(), write_frame(joint.frame_child));
     object.into()
+}
+
+/// What stands as `limits_deg`; `None` for a joint without limits.
+pub(crate) fn write_limits(kind: &JointKind) -> Option<Value> {
+    match kind {
+        JointKind::Ball { limit } | JointKind::Universal { limit } => limit.map(|limit| {
+            let [y, z, twist] = [limit.swing_y, limit.swing_z, limit.twist].map(write_range);
+            json!({"swing_y": y, "swing_z": z, "twist": twist})
+        }),
+        JointKind::Hinge { limit } => limit.map(|range| json!({"twist": write_range(range)})),
+        _ => None,
+    }
 }
 
 fn write_frame(frame: Transform) -> Value {

@@ -10,6 +10,7 @@ mod inspect;
 mod later;
 mod ragdoll_build;
 mod ragdoll_doctor;
+mod ragdoll_export;
 mod run;
 mod scenes;
 mod view;
@@ -24,7 +25,7 @@ use later::Later;
 pub enum Command {
     Demo(demo::Demo),
     Bake(bake::Bake),
-    /// Work on ragdolls: build one from a rigged file, find out what is wrong with one
+    /// Work on ragdolls: build one from a rigged file, find out what is wrong with one, write it for other engines
     #[command(subcommand)]
     Ragdoll(Ragdoll),
     Boxes(boxes::Boxes),
@@ -47,8 +48,7 @@ pub enum Command {
 pub enum Ragdoll {
     Build(ragdoll_build::RagdollBuild),
     Doctor(ragdoll_doctor::RagdollDoctor),
-    #[command(hide = true, disable_help_flag = true)]
-    Export(Later),
+    Export(ragdoll_export::RagdollExport),
 }
 
 impl Command {
@@ -59,7 +59,7 @@ impl Command {
             Self::Bake(command) => command.run(),
             Self::Ragdoll(Ragdoll::Build(command)) => command.run(),
             Self::Ragdoll(Ragdoll::Doctor(command)) => command.run(),
-            Self::Ragdoll(Ragdoll::Export(_)) => later::refuse("sinew ragdoll export"),
+            Self::Ragdoll(Ragdoll::Export(command)) => command.run(),
             Self::Boxes(command) => command.run(),
             Self::Inspect(command) => command.run(),
             Self::Run(command) => command.run(),

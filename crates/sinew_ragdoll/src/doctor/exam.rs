@@ -135,6 +135,34 @@ pub(super) fn swing_excess(limit: &SwingTwistLimit, seen: Rotation) -> f32 {
     max(0.0, -limit.swing_state(seen).room)
 }
 
+/// How far the child of a joint can turn about an axis of its own joint frame from `bind`, the joint's rotation there,
+/// before it meets a limit: radians, at most π. A universal joint's twist is let be: it shows in a swing that goes round.
+pub fn limit_reach(kind: &JointKind, bind: Rotation, axis: Vec3) -> f32 {
+    const STEP: f32 = 0.02;
+    let is_free = |angle: f32| {
+        let seen = bind * Rotation::from_axis_angle(axis, angle);
+        beyond(kind, seen).limit <= 1e-5
+    };
+    let mut inside = 0.0;
+    while inside < core::f32::consts::PI {
+        if !is_free(inside + STEP) {
+            // The stop lies within the step.
+            let (mut low, mut high) = (inside, inside + STEP);
+            for _ in 0..16 {
+                let middle = 0.5 * (low + high);
+                if is_free(middle) {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            return low;
+        }
+        inside += STEP;
+    }
+    core::f32::consts::PI
+}
+
 /// The bodies of a definition as bones.
 pub(super) fn bones_of(def: &RagdollDef) -> Bones {
     let list: Vec<Bone> = def

@@ -16,6 +16,7 @@ mod motion;
 mod shapes;
 
 pub use code::{Code, Severity};
+pub use exam::limit_reach;
 pub(crate) use geometry::scaled;
 
 use crate::def::RagdollDef;

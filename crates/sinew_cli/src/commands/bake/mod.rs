@@ -8,12 +8,13 @@ use crate::fall::Fall;
 use crate::files::{CharacterFile, Outputs};
 use crate::film::{FLOOR_HALF_SIZE, Film, body_models};
 use crate::picture_file::{PictureFile, length, seconds};
+use crate::ragdoll_file::read_definition;
 use crate::report::Report;
 use crate::settings_arg::SettingsArg;
 use crate::table::shown;
 use clips::Motions;
 use hit::HitArg;
-use sinew::formats::{Textures, append_clip, load_world, read_bytes, read_ragdoll};
+use sinew::formats::{Textures, append_clip, load_world};
 use sinew::math::Vec3;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::{AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, RagdollBodyDef, RagdollDef};
@@ -107,13 +108,7 @@ impl Bake {
             let settings = self.settings.load(&self.character)?;
             return Ok(settings.build(file, &BuildOptions::default())?.0);
         };
-        let name = path.display().to_string();
-        let def = read_bytes(path).and_then(|bytes| read_ragdoll(&bytes));
-        let def = def.map_err(|error| error.with_file(&name))?;
-        def.for_rig(&file.document.rig).map_err(|error| {
-            let place = format!("bodies[{}]", error.body());
-            Failure::at(&name, format!("{error} ({})", file.name), place)
-        })
+        read_definition(path, file)
     }
 
     /// The user's own file is never the output.
