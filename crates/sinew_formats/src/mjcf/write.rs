@@ -1,10 +1,10 @@
 //! A ragdoll as an MJCF model: bodies in a tree, hinges in ranges.
 
 use core::fmt::Write as _;
-use sinew_math::{Rotation, Transform, Vec3};
+use sinew_math::{Rotation, Sym3, Transform, Vec3, min};
 use sinew_physics::{JointKind, MassProperties, Shape};
-use sinew_ragdoll::RagdollDef;
 use sinew_ragdoll::doctor::limit_reach;
+use sinew_ragdoll::{RagdollBodyDef, RagdollDef};
 
 /// A model's text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -111,7 +111,7 @@ impl Writer<'_> {
                 let parent = self.def.bodies[joint.parent].character_from_body;
                 parent.inverse() * body.character_from_body
             }
-            None => facing_x() * body.character_from_body,
+            None => self.lifted() * facing_x() * body.character_from_body,
         };
         self.line(indent, &format!("<body name=\"{}\"{}>", self.names[index], pose(place)));
         if joint.is_some() {
@@ -128,6 +128,12 @@ impl Writer<'_> {
             }
         }
         self.line(indent, "</body>");
+    }
+
+    /// Up, until nothing is in the floor: shapes may reach below the soles of the skin.
+    fn lifted(&self) -> Transform {
+        let lowest = |body: &RagdollBodyDef| body.shape.aabb(&body.character_from_body).min.y;
+        Transform::from_translation(Vec3::Y * -self.def.bodies.iter().map(lowest).fold(0.0, min))
     }
 
     fn joint(&mut self, index: usize, indent: usize) {
@@ -224,9 +230,21 @@ fn pose(at: Transform) -> String {
     format!(" pos=\"{place}\" quat=\"{}\"", numbers(&[r.w, r.x, -r.z, r.y]))
 }
 
+/// The inertia, with its smaller moments a little larger if rounding has made their sum less than the largest, which MuJoCo
+/// refuses.
+fn solid(inertia: Sym3) -> Sym3 {
+    let (moments, axes) = inertia.eigen();
+    let missing = 1.0005 * moments.x - (moments.y + moments.z);
+    if missing <= 0.0 {
+        return inertia;
+    }
+    Sym3::from_rotated_diagonal(axes, moments + Vec3::new(0.0, 0.5 * missing, 0.5 * missing))
+}
+
 /// The inertia in the file's axes: their z is our y, their y our −z.
 fn inertial(mass: &MassProperties) -> String {
-    let (d, o) = (mass.inertia.diagonal, mass.inertia.off);
+    let inertia = solid(mass.inertia);
+    let (d, o) = (inertia.diagonal, inertia.off);
     // fullinertia is xx, yy, zz, xy, xz, yz.
     let full = [d.x, d.z, d.y, -o.y, o.z, -o.x];
     let center = numbers(&file_axes(mass.center).to_array());
