@@ -160,8 +160,23 @@ fn check_khr(def: &RagdollDef, document: &Document, bind_model: &[Affine], bytes
         }
         let shape =
             &shapes[extension(collider)["collider"]["geometry"]["shape"].as_u64().expect("a shape") as usize];
-        if let (Shape::Sphere { radius }, Some(written)) = (&body.shape, shape["sphere"]["radius"].as_f64()) {
-            assert!(written > 0.0 && *radius > 0.0, "{what}");
+        let metre = def.unit_scale * bind_model[body.joint].linear.x_axis.length();
+        let size = |of: &Value| of.as_f64().map(|size| size as f32 * metre);
+        let written = match body.shape {
+            Shape::Sphere { radius } => Some((size(&shape["sphere"]["radius"]), radius)),
+            Shape::Capsule { radius, half_height } if half_height > 0.0 => {
+                let height = size(&shape["capsule"]["height"]);
+                assert!(
+                    height.is_some_and(|height| (height - 2.0 * half_height).abs() < 1e-3),
+                    "{what}: {shape}"
+                );
+                Some((size(&shape["capsule"]["radiusTop"]), radius))
+            }
+            Shape::Box { half_extents } => Some((size(&shape["box"]["size"][2]), 2.0 * half_extents.z)),
+            _ => None,
+        };
+        if let Some((written, meant)) = written {
+            assert!(written.is_some_and(|size| (size - meant).abs() < 1e-3), "{what}: {shape} for {meant} m");
         }
         assert!(shape[shape["type"].as_str().expect("a type")].is_object(), "{what}: {shape}");
     }

@@ -78,3 +78,14 @@ fn bytes_changed_at_random_do_no_harm() {
         let _ = read_ragdoll_settings(&bytes);
     }
 }
+
+/// What is taught is what is read.
+#[test]
+fn the_examples_of_the_page_are_read() {
+    let page = include_str!("../../../../docs/ragdoll.md");
+    let examples: Vec<&str> =
+        page.split("```json\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    let [definition, settings] = examples[..] else { panic!("the page has {} examples", examples.len()) };
+    assert!(sinew_formats::read_ragdoll(definition.as_bytes()).is_ok());
+    assert_eq!(read_ragdoll_settings(settings.as_bytes()), read_ragdoll_settings(example().as_bytes()));
+}

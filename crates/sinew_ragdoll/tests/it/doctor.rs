@@ -380,3 +380,14 @@ fn codes_have_names_of_their_own() {
     names.dedup();
     assert_eq!(names.len(), Code::ALL.len());
 }
+
+/// The page that teaches the codes has each of them, as it is here.
+#[test]
+fn the_page_lists_every_code() {
+    let page = include_str!("../../../../docs/ragdoll.md");
+    for code in Code::ALL {
+        let (name, severity) = (code.name(), code.severity().name());
+        let row = format!("| `{name}` | {severity} | {} | {} |\n", code.cause(), code.fix());
+        assert!(page.contains(&row), "docs/ragdoll.md lacks\n{row}");
+    }
+}
