@@ -21,8 +21,8 @@ Example:
   sinew ragdoll doctor character.sinew.json --rig character.glb --fix -o mended.sinew.json
   sinew ragdoll doctor humanoid.xml --json
 
-Severities: an error jitters, explodes or falls apart; a warning behaves, but not as a body does. The file that is
-examined is never changed. docs/ragdoll.md lists every code.")]
+An error jitters, explodes or falls apart; a warning behaves, but not as a body does.
+The file that is examined is never changed. docs/ragdoll.md lists every code.")]
 pub struct RagdollDoctor {
     /// A character (GLB, glTF, VRM, FBX), a definition (.sinew.json) or an MJCF model (.xml)
     file: PathBuf,
@@ -107,9 +107,9 @@ impl RagdollDoctor {
         );
         for finding in findings {
             let fixed = match (self.fix, finding.fixed) {
-                (false, _) => "",
                 (true, true) => "  [fixed]",
-                (true, false) => "  [not fixed]",
+                (true, false) if finding.severity != Severity::Note => "  [not fixed]",
+                _ => "",
             };
             text += &format!("\n{}: {}{fixed}\n", finding.severity.name(), finding.code.name());
             let mut table = Table::default();
@@ -118,7 +118,7 @@ impl RagdollDoctor {
             table.row(["fix".into(), finding.fix.clone()]);
             text += &table.to_text();
         }
-        if findings.is_empty() {
+        if findings.iter().all(|finding| finding.severity == Severity::Note) {
             text += "nothing is wrong with it\n";
         }
         for note in notes {

@@ -213,3 +213,28 @@ fn expected(exam: &Exam<'_>) -> Vec<(Role, Option<usize>)> {
     }
     missing
 }
+
+/// A role below this confidence is told of.
+const UNCERTAIN: f32 = 0.4;
+
+/// What was inferred of the rig, and may be wrong.
+pub(super) fn inferred(exam: &Exam<'_>) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let unit = exam.def.unit_scale;
+    if !(0.98..1.02).contains(&unit) {
+        let evidence = format!(
+            "{:.3} m high with a unit of {unit:.4} m: {:.1} units in the file",
+            exam.size,
+            exam.size / unit
+        );
+        findings.push(exam.finding(Code::UnitInferred, &[0], evidence));
+    }
+    for (index, body) in exam.def.bodies.iter().enumerate() {
+        let is_human = exam.bones.anatomy == Anatomy::Human;
+        if is_human && body.confidence < UNCERTAIN {
+            let evidence = format!("{} with a confidence of {:.2}", exam.who(index), body.confidence);
+            findings.push(exam.finding(Code::RoleUncertain, &[index], evidence));
+        }
+    }
+    findings
+}

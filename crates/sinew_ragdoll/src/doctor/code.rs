@@ -166,4 +166,12 @@ codes! {
     StiffnessAboveNyquist "stiffness-above-nyquist" Warning
         "a spring that swings faster than twice per two substeps cannot be followed"
         "Lower it to half of what the substep can follow, or take more substeps.";
+    /// The rig's unit was not a metre.
+    UnitInferred "unit-inferred" Note
+        "the file's unit is not a metre, so that its length was inferred from the size of the body"
+        "Give `unit_scale` or `height` in settings if it is another.";
+    /// A bone's role is little more than a guess.
+    RoleUncertain "role-uncertain" Note
+        "name and shape of the rig do not tell for sure which part of the body a bone is"
+        "Look whether the role is right, and edit the definition if it is not.";
 }

@@ -18,7 +18,8 @@ pub(super) fn mend(patient: &mut Patient, finding: &Finding) -> bool {
     let Some(&body) = finding.bodies.first() else { return false };
     let other = finding.bodies.get(1).copied().unwrap_or(body);
     match finding.code {
-        Code::NotFinite => false,
+        // Numbers that are none are lost, and whether a guess is right only a person can say.
+        Code::NotFinite | Code::UnitInferred | Code::RoleUncertain => false,
         Code::WrongUnit => {
             *patient = anatomy::patient_in_metres(patient);
             true
@@ -86,6 +87,8 @@ fn remedied(exam: &Exam<'_>, finding: &Finding, body: usize, other: usize) -> Op
             def.bodies[body].mass = sinew_physics::MassProperties { center, ..mass };
         }
         Code::NotFinite
+        | Code::UnitInferred
+        | Code::RoleUncertain
         | Code::WrongUnit
         | Code::HeadWithoutBody
         | Code::LimbWithoutBody

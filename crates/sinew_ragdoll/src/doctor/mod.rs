@@ -97,6 +97,7 @@ fn in_proportion(exam: &Exam<'_>) -> Vec<Finding> {
     let mut findings = masses::findings(exam);
     findings.extend(anatomy::missing_bodies(exam));
     findings.extend(shapes::findings(exam));
+    findings.extend(anatomy::inferred(exam));
     limits::findings(exam, &mut findings);
     mirror::findings(exam, &mut findings);
     // Places where it moves are an effect; where the cause is known, they show what that does.

@@ -4,12 +4,22 @@ use crate::actor::walker;
 use sinew_math::{Range, SwingTwistLimit, Sym3, Transform, Vec3};
 use sinew_physics::{JointKind, MassProperties, Shape, Softness};
 use sinew_ragdoll::doctor::{Code, Finding, Severity};
-use sinew_ragdoll::{Patient, RagdollBodyDef, RagdollDef, RagdollJointDef, cure, doctor, drop_test};
+use sinew_ragdoll::{
+    BuildOptions, Patient, RagdollBodyDef, RagdollDef, RagdollJointDef, build, cure, doctor, drop_test,
+};
 
 /// A healthy ragdoll whose rig is at hand.
 fn healthy() -> Patient {
     let def = walker().ragdoll;
     Patient { reference: Some(def.clone()), ..Patient::new(def) }
+}
+
+/// The healthy ragdoll of a rig that others made, if it is there.
+fn healthy_stranger() -> Option<Patient> {
+    let rig = crate::data::rig("mannequiny.glb")?;
+    let analysis = sinew_anim::analyze(&rig).expect("a skin");
+    let (def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
+    Some(Patient { reference: Some(def.clone()), ..Patient::new(def) })
 }
 
 fn body(def: &RagdollDef, role: &str) -> usize {
@@ -240,6 +250,25 @@ fn every_failing_is_named_and_nothing_else() {
             let of_all = matches!(code, Code::MassImplausible | Code::LimitsAllAlike);
             assert!(is_told || of_all, "{what}: {}", finding.evidence);
             assert!(!finding.fixed && !finding.bones.is_empty(), "{what}");
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The same in a body of other proportions, in another pose, with collar bones.
+#[test]
+fn strangers_are_read_as_well() {
+    let Some(stranger) = healthy_stranger() else { return };
+    assert_eq!(doctor(&stranger), []);
+    let mut wrong = Vec::new();
+    for (what, code, plant) in FAILINGS {
+        let mut patient = stranger.clone();
+        plant(&mut patient);
+        let findings = doctor(&patient);
+        let (cured, told) = cure(&patient);
+        let left = doctor(&cured);
+        if codes(&findings) != [code] || !left.is_empty() || told.iter().any(|finding| !finding.fixed) {
+            wrong.push(format!("{what}: {findings:#?} left: {left:#?}"));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

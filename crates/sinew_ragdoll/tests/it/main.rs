@@ -2,7 +2,10 @@
 
 mod actor;
 mod bake;
+mod build;
+mod build_limits;
 mod character;
+mod data;
 mod doctor;
 mod hand_over;
 mod mapping;
