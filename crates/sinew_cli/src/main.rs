@@ -14,9 +14,11 @@ mod onto;
 mod picture_file;
 mod progress;
 mod quality_report;
+mod ragdoll_file;
 mod ragdoll_report;
 mod report;
 mod scene_choice;
+mod settings_arg;
 mod skeleton;
 mod skin;
 mod story;
@@ -39,10 +41,11 @@ Start here:
   sinew demo                                  a mannequin walks, is hit, falls down stairs, gets up
   sinew inspect character.glb                 what is in your file
   sinew bake character.glb -o fall.glb        let your character fall; written back as a clip
+  sinew ragdoll doctor character.glb          what is wrong with its ragdoll, and what mends it
   sinew boxes house.glb -o house.json         a world to fall in, from a mesh
   sinew convert walk.bvh --onto character.glb -o walking.glb   captured motion on your character
 
-Later releases bring: ragdoll doctor, ragdoll export, record, replay.";
+Later releases bring: record, replay.";
 
 /// Physics for characters: give it a rigged file, and it falls, collides, is hit, gets up and walks on.
 #[derive(Parser)]

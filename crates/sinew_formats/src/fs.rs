@@ -142,6 +142,11 @@ pub fn events_path(clip_file: impl AsRef<Path>) -> PathBuf {
     clip_file.as_ref().with_extension("events.json")
 }
 
+/// Where the settings of a character's ragdoll are: `hero.ragdoll.json` for `hero.glb`.
+pub fn settings_path(character_file: impl AsRef<Path>) -> PathBuf {
+    character_file.as_ref().with_extension("ragdoll.json")
+}
+
 fn read_any(path: &Path, options: &MotionOptions<'_>) -> Result<MotionFile> {
     let bytes = read_bytes(path)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();

@@ -36,16 +36,18 @@ pub use events::{events_extras, read_events, write_events};
 pub use fbx::read_fbx;
 #[cfg(feature = "fs")]
 pub use fs::{
-    events_path, load_gltf, load_mesh, load_motion, load_world, read_bytes, write_all_atomic, write_atomic,
+    events_path, load_gltf, load_mesh, load_motion, load_world, read_bytes, settings_path, write_all_atomic,
+    write_atomic,
 };
 pub use gltf::{
-    Container, Document, NewClip, ReadOptions, Resolver, Textures, append_clip, append_clips, no_files,
-    read_gltf, write_gltf, write_motion,
+    Container, Document, KhrFile, NewClip, ReadOptions, Resolver, Textures, append_clip, append_clips,
+    no_files, read_gltf, write_gltf, write_khr, write_motion,
 };
 pub use jolt::{JoltMotor, JoltRagdoll, read_jolt_animation, read_jolt_ragdoll};
 pub use mesh::TriangleMesh;
-pub use mjcf::{MjcfModel, read_mjcf};
+pub use mjcf::{MjcfModel, MjcfRagdoll, MjcfText, read_mjcf, write_mjcf};
 pub use motion::{MotionFile, MotionFormat, MotionOptions, read_motion};
 pub use obj::read_obj;
+pub use ragdoll::settings::read_ragdoll_settings;
 pub use ragdoll::{read_ragdoll, write_ragdoll};
 pub use world::{read_world, write_world};

@@ -48,11 +48,14 @@ fn read_rotation(at: At<'_>) -> Result<Rotation> {
 /// Writes what [`read_pose`] reads, the identity as nothing.
 pub(crate) fn write_pose(pose: Transform, object: &mut Map<String, Value>) {
     let r = pose.rotation;
-    if pose.translation != Vec3::ZERO {
-        object.insert("position".into(), numbers(&pose.translation.to_array()));
+    // Bit by bit: −0 is not 0 in a snapshot.
+    let bits = |numbers: &[f32]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    let (position, rotation) = (pose.translation.to_array(), [r.x, r.y, r.z, r.w]);
+    if bits(&position) != bits(&[0.0; 3]) {
+        object.insert("position".into(), numbers(&position));
     }
-    if r != Rotation::IDENTITY {
-        object.insert("rotation".into(), numbers(&[r.x, r.y, r.z, r.w]));
+    if bits(&rotation) != bits(&[0.0, 0.0, 0.0, 1.0]) {
+        object.insert("rotation".into(), numbers(&rotation));
     }
 }
 

@@ -54,6 +54,8 @@
 //! A body is referred to by its `bone`, or by its number from 0 where two have the same bone name. Shapes, poses and
 //! masses are as in [world files](crate::world). A key that is not listed here is an error.
 
+pub mod settings;
+
 use crate::error::{Result, quoted};
 use crate::json::{self, At, number, numbers};
 use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
@@ -310,27 +312,35 @@ fn write_body(def: &RagdollDef, index: usize) -> Value {
 }
 
 fn write_joint(def: &RagdollDef, joint: &RagdollJointDef) -> Value {
-    let cone = |limit: SwingTwistLimit| {
-        let [y, z, twist] = [limit.swing_y, limit.swing_z, limit.twist].map(write_range);
-        json!({"swing_y": y, "swing_z": z, "twist": twist})
-    };
-    let (kind, limits) = match joint.kind {
-        JointKind::Ball { limit } => ("ball", limit.map(cone)),
-        JointKind::Universal { limit } => ("universal", limit.map(cone)),
-        JointKind::Hinge { limit } => ("hinge", limit.map(|range| json!({"twist": write_range(range)}))),
-        JointKind::Fixed => ("fixed", None),
+    let kind = match joint.kind {
+        JointKind::Ball { .. } => "ball",
+        JointKind::Universal { .. } => "universal",
+        JointKind::Hinge { .. } => "hinge",
+        JointKind::Fixed => "fixed",
         kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
     };
     let mut object = Map::new();
     object.insert("parent".into(), write_reference(def, joint.parent));
     object.insert("type".into(), kind.into());
-    if let Some(limits) = limits {
+    if let Some(limits) = write_limits(&joint.kind) {
         object.insert("limits_deg".into(), limits);
     }
     object.insert("friction_torque".into(), number(joint.friction_torque));
     object.insert("frame_in_parent".into(), write_frame(joint.frame_parent));
     object.insert("frame_in_child".into(), write_frame(joint.frame_child));
     object.into()
+}
+
+/// What stands as `limits_deg`; `None` for a joint without limits.
+pub(crate) fn write_limits(kind: &JointKind) -> Option<Value> {
+    match kind {
+        JointKind::Ball { limit } | JointKind::Universal { limit } => limit.map(|limit| {
+            let [y, z, twist] = [limit.swing_y, limit.swing_z, limit.twist].map(write_range);
+            json!({"swing_y": y, "swing_z": z, "twist": twist})
+        }),
+        JointKind::Hinge { limit } => limit.map(|range| json!({"twist": write_range(range)})),
+        _ => None,
+    }
 }
 
 fn write_frame(frame: Transform) -> Value {
@@ -356,9 +366,9 @@ fn write_degrees(radians: f32) -> Value {
     let mut unit = 1.0;
     for _ in 0..9 {
         let rounded = (exact * unit).round() / unit;
-        // Adding zero turns −0 into 0.
-        if rounded.to_radians() as f32 == radians {
-            return Value::from(rounded + 0.0);
+        // Bits are compared, for a −0 that a mirrored limit has is part of what a snapshot holds.
+        if (rounded.to_radians() as f32).to_bits() == radians.to_bits() {
+            return Value::from(rounded);
         }
         unit *= 10.0;
     }

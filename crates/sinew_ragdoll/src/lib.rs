@@ -5,6 +5,7 @@ pub mod bake;
 pub mod build;
 pub mod character;
 pub mod def;
+pub mod doctor;
 pub mod drive;
 pub mod filter;
 pub mod fit;
@@ -14,6 +15,8 @@ pub mod mapping;
 pub mod masses;
 pub mod quality;
 pub mod ragdoll;
+pub mod rig_match;
+pub mod settings;
 
 pub use bake::{BakeInput, Baked, Hit, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
@@ -21,9 +24,12 @@ pub use character::{
     AfterSettling, Character, CharacterDef, Event, GettingReady, Locomotion, MotionError, MotionSet, State,
 };
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
+pub use doctor::{Patient, cure, doctor};
 pub use drive::{DriveMode, Drives, Muscle, Pin, torque_caps};
 pub use fit::ShapeChoice;
 pub use mapping::Mapping;
 pub use masses::de_leva::Sex;
 pub use quality::{DropReport, Quality, QualityMeter, Verdict, drop_test, gate};
 pub use ragdoll::{BodyState, Flesh, Ragdoll};
+pub use rig_match::RigMismatch;
+pub use settings::{Settings, SettingsError, build_with};

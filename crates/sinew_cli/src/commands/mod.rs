@@ -9,6 +9,8 @@ mod events;
 mod inspect;
 mod later;
 mod ragdoll_build;
+mod ragdoll_doctor;
+mod ragdoll_export;
 mod run;
 mod scenes;
 mod view;
@@ -23,7 +25,7 @@ use later::Later;
 pub enum Command {
     Demo(demo::Demo),
     Bake(bake::Bake),
-    /// Work on ragdolls: build one from a rigged file
+    /// Work on ragdolls: build one from a rigged file, find out what is wrong with one, write it for other engines
     #[command(subcommand)]
     Ragdoll(Ragdoll),
     Boxes(boxes::Boxes),
@@ -45,10 +47,8 @@ pub enum Command {
 #[derive(Subcommand)]
 pub enum Ragdoll {
     Build(ragdoll_build::RagdollBuild),
-    #[command(hide = true, disable_help_flag = true)]
-    Doctor(Later),
-    #[command(hide = true, disable_help_flag = true)]
-    Export(Later),
+    Doctor(ragdoll_doctor::RagdollDoctor),
+    Export(ragdoll_export::RagdollExport),
 }
 
 impl Command {
@@ -58,8 +58,8 @@ impl Command {
             Self::Demo(command) => command.run(),
             Self::Bake(command) => command.run(),
             Self::Ragdoll(Ragdoll::Build(command)) => command.run(),
-            Self::Ragdoll(Ragdoll::Doctor(_)) => later::refuse("sinew ragdoll doctor"),
-            Self::Ragdoll(Ragdoll::Export(_)) => later::refuse("sinew ragdoll export"),
+            Self::Ragdoll(Ragdoll::Doctor(command)) => command.run(),
+            Self::Ragdoll(Ragdoll::Export(command)) => command.run(),
             Self::Boxes(command) => command.run(),
             Self::Inspect(command) => command.run(),
             Self::Run(command) => command.run(),

@@ -5,6 +5,8 @@ mod boxes;
 mod contract;
 mod convert;
 mod demo;
+mod export;
+mod ragdoll;
 mod refusals;
 mod scenes;
 mod sinew;

@@ -86,14 +86,14 @@ fn repeats_rest(channel: &Channel, rest: &LocalTransform) -> bool {
 }
 
 /// A file in the making.
-struct Editor {
+pub(super) struct Editor {
     root: Map<String, Value>,
     bin: Vec<u8>,
 }
 
 impl Editor {
     /// Starts from the document, with its first buffer as the binary chunk.
-    fn open(document: &Document) -> Result<Self> {
+    pub(super) fn open(document: &Document) -> Result<Self> {
         let Value::Object(root) = document.json.clone() else {
             return Err(Error::malformed("must be an object", "top level"));
         };
@@ -134,7 +134,7 @@ impl Editor {
     }
 
     /// Takes what lies in files of its own into this one.
-    fn embed_external(&mut self, document: &Document) -> Result<()> {
+    pub(super) fn embed_external(&mut self, document: &Document) -> Result<()> {
         for (i, buffer) in document.buffers.iter().enumerate().skip(1) {
             if let Buffer::External(bytes) = buffer {
                 self.entry("buffers", i)?.insert("uri".into(), uri::encode_data(bytes).into());
@@ -255,18 +255,31 @@ impl Editor {
         list.as_array_mut().ok_or_else(|| Error::malformed("must be an array", name))
     }
 
-    fn push(&mut self, list: &str, value: Value) -> Result<usize> {
+    pub(super) fn push(&mut self, list: &str, value: Value) -> Result<usize> {
         let list = self.list(list)?;
         list.push(value);
         Ok(list.len() - 1)
     }
 
-    fn entry(&mut self, list: &str, index: usize) -> Result<&mut Map<String, Value>> {
+    pub(super) fn entry(&mut self, list: &str, index: usize) -> Result<&mut Map<String, Value>> {
         let entry = self.list(list)?.get_mut(index).and_then(Value::as_object_mut);
         entry.ok_or_else(|| Error::malformed("must be an object", format!("{list}[{index}]")))
     }
 
-    fn finish(mut self, other_chunks: &[u8]) -> Result<Vec<u8>> {
+    /// Adds an extension to the top of the file, and to those that it uses.
+    pub(super) fn extension(&mut self, name: &str, value: Value) -> Result<()> {
+        let extensions = self.root.entry("extensions").or_insert_with(|| json!({}));
+        let extensions =
+            extensions.as_object_mut().ok_or_else(|| Error::malformed("must be an object", "extensions"))?;
+        extensions.insert(name.into(), value);
+        let used = self.list("extensionsUsed")?;
+        if !used.iter().any(|known| known == name) {
+            used.push(name.into());
+        }
+        Ok(())
+    }
+
+    pub(super) fn finish(mut self, other_chunks: &[u8]) -> Result<Vec<u8>> {
         let length = self.bin.len();
         self.entry("buffers", 0)?.insert("byteLength".into(), length.into());
         let text = Value::Object(self.root).to_string();

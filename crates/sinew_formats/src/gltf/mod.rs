@@ -6,6 +6,7 @@
 mod accessor;
 mod animation;
 mod append;
+mod khr;
 mod material;
 mod mesh;
 mod meshopt;
@@ -15,6 +16,7 @@ mod vrm;
 mod write;
 
 pub use append::{NewClip, append_clip, append_clips};
+pub use khr::{KhrFile, write_khr};
 #[cfg(feature = "fbx")]
 pub(crate) use mesh::strongest_four;
 pub use write::{write_gltf, write_motion};

@@ -27,7 +27,12 @@ mod geom;
 mod joint;
 mod keyframe;
 mod notes;
+mod ragdoll;
+mod write;
 mod xml;
+
+pub use ragdoll::MjcfRagdoll;
+pub use write::{MjcfText, write_mjcf};
 
 use crate::error::{Result, quoted};
 use bodies::{Reading, Tree};

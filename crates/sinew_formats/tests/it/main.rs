@@ -22,6 +22,7 @@ mod mjcf;
 mod motion;
 mod obj;
 mod ragdoll;
+mod ragdoll_settings;
 mod rigs;
 mod world;
 mod write;

@@ -84,7 +84,25 @@ fn what_is_written_reads_back_equal() {
             friction_torque: random.unit(),
         });
     }
-    assert_eq!(read_ragdoll(write_ragdoll(&def).as_bytes()).unwrap(), def);
+    let back = read_ragdoll(write_ragdoll(&def).as_bytes()).unwrap();
+    assert_eq!(back, def);
+    // Equality takes −0 for 0; a snapshot does not.
+    assert_eq!(format!("{back:?}"), format!("{def:?}"));
+}
+
+#[test]
+fn zeros_keep_their_sign() {
+    let mut def = read_ragdoll(example().as_bytes()).unwrap();
+    let limit = SwingTwistLimit {
+        swing_y: Range::new(-0.0, 0.0),
+        swing_z: Range::new(-1.0, -0.0),
+        twist: Range::new(-0.0, -0.0),
+    };
+    def.joints[0].kind = JointKind::Universal { limit: Some(limit) };
+    def.joints[0].frame_child = Transform::from_translation(Vec3::new(-0.0, 0.0, -0.0));
+    def.bodies[1].character_from_body.translation = Vec3::new(0.5, -0.0, 0.0);
+    let back = read_ragdoll(write_ragdoll(&def).as_bytes()).unwrap();
+    assert_eq!(format!("{back:?}"), format!("{def:?}"));
 }
 
 #[test]

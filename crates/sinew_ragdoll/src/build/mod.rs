@@ -59,6 +59,44 @@ pub fn build(
     analysis: &RigAnalysis,
     options: &BuildOptions,
 ) -> Result<(RagdollDef, BuildReport), BuildError> {
+    build_overridden(rig, analysis, options, &Overrides::none())
+}
+
+/// A body's index, its fit, and a way to fit a shape of another kind, to the fit that is wanted.
+type Refit<'a> = dyn Fn(usize, Fit, &dyn Fn(ShapeChoice) -> Fit) -> Fit + 'a;
+
+/// What settings change within the build.
+pub(crate) struct Overrides<'a> {
+    /// Another shape of a body.
+    pub shape: &'a Refit<'a>,
+    /// Pairs of bodies that shall not collide, the smaller index first.
+    pub disable: Vec<(usize, usize)>,
+    /// Pairs of bodies that shall.
+    pub enable: Vec<(usize, usize)>,
+}
+
+impl Overrides<'_> {
+    fn none() -> Self {
+        Overrides { shape: &|_, fit, _| fit, disable: Vec::new(), enable: Vec::new() }
+    }
+
+    /// The pairs that do not collide after all.
+    fn pairs(&self, disabled: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
+        let mut pairs: Vec<_> = disabled.into_iter().filter(|pair| !self.enable.contains(pair)).collect();
+        pairs.extend(&self.disable);
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+}
+
+/// [`build`] with changes between its stages.
+pub(crate) fn build_overridden(
+    rig: &Rig,
+    analysis: &RigAnalysis,
+    options: &BuildOptions,
+    overrides: &Overrides<'_>,
+) -> Result<(RagdollDef, BuildReport), BuildError> {
     if rig.skins.is_empty() {
         return Err(BuildError::NoSkin);
     }
@@ -71,7 +109,14 @@ pub fn build(
     let bind =
         BindPose { model: &analysis.bind_model, unit_scale: analysis.unit_scale, character_from_model };
     let bones = kept_bones(analysis, bind)?;
-    let mut fits = fit_shapes(&bones, &share_surface(rig, &bones, bind), options.shapes);
+    let surface = share_surface(rig, &bones, bind);
+    let mut fits = fit_shapes(&bones, &surface, options.shapes);
+    fits = (0..fits.len())
+        .map(|body| {
+            let other = |kind| fit_shapes(&bones, &surface, kind)[body].clone();
+            (overrides.shape)(body, fits[body].clone(), &other)
+        })
+        .collect();
     let filter = filter_pairs(&bones, &mut fits);
     let masses = distribute(&bones, &fits, MassOptions { total: options.mass, sex: options.sex });
     let total_mass = masses.iter().map(|mass| mass.mass).sum();
@@ -92,7 +137,7 @@ pub fn build(
     let def = RagdollDef {
         bodies: bodies.collect(),
         joints: plans.iter().map(|plan| plan.def).collect(),
-        disabled_pairs: filter.disabled,
+        disabled_pairs: overrides.pairs(filter.disabled),
         dropped_bones: dropped.map(|&joint| name(joint)).collect(),
         total_mass,
         height: analysis.height,

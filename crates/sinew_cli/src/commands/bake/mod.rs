@@ -8,7 +8,9 @@ use crate::fall::Fall;
 use crate::files::{CharacterFile, Outputs};
 use crate::film::{FLOOR_HALF_SIZE, Film, body_models};
 use crate::picture_file::{PictureFile, length, seconds};
+use crate::ragdoll_file::read_definition;
 use crate::report::Report;
+use crate::settings_arg::SettingsArg;
 use crate::table::shown;
 use clips::Motions;
 use hit::HitArg;
@@ -16,7 +18,7 @@ use sinew::formats::{Textures, append_clip, load_world};
 use sinew::math::Vec3;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::{
-    AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, MotionSet, RagdollBodyDef, RagdollDef, build,
+    AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, MotionSet, RagdollBodyDef, RagdollDef,
 };
 use sinew_picture::Sun;
 use std::path::{Path, PathBuf};
@@ -33,7 +35,8 @@ const OBSTACLES: [[f32; 3]; 3] = [[0.45, 0.33, 0.22], [0.40, 0.36, 0.30], [0.33,
 Example:
   sinew bake character.glb -o fall.glb
   sinew bake character.glb --clip Walk --hit chest=0,0,-60@1.0 -o fall.glb --picture fall.gif
-  sinew bake character.glb --world house.json --limp-at 1.2 --seconds 6 -o fall.glb --json")]
+  sinew bake character.glb --world house.json --limp-at 1.2 --seconds 6 -o fall.glb --json
+  sinew bake character.glb --ragdoll edited.sinew.json -o fall.glb")]
 pub struct Bake {
     /// A glTF, GLB or VRM file with a skinned character
     character: PathBuf,
@@ -48,6 +51,11 @@ pub struct Bake {
     /// A world file (JSON) or a mesh (GLB, OBJ) to fall in; without it a floor at y = 0. The character stands at the origin
     #[arg(long, value_name = "FILE")]
     world: Option<PathBuf>,
+    /// A ragdoll of this character from `ragdoll build`, as it is or edited; without it one is built
+    #[arg(long, value_name = "FILE.sinew.json", conflicts_with = "settings")]
+    ragdoll: Option<PathBuf>,
+    #[command(flatten)]
+    settings: SettingsArg,
     /// Push a bone: joint name or role, impulse in N·s along the world's axes (+Y up), time in seconds; repeatable
     #[arg(long = "hit", value_name = "BONE=IX,IY,IZ@T", allow_hyphen_values = true)]
     hits: Vec<HitArg>,
@@ -79,7 +87,7 @@ impl Bake {
             Some(path) => load_world(path)?,
             None => vec![floor()],
         };
-        let character = Arc::new(character(&file, motions)?);
+        let character = Arc::new(character(&file, self.ragdoll(&file)?, motions)?);
         let hits =
             self.hits.iter().map(|hit| aim(hit, &character, &file.name)).collect::<Result<Vec<_>>>()?;
         let limp_at = self.limp_at.or(if hits.is_empty() { Some(LIMP_AT) } else { None });
@@ -96,15 +104,27 @@ impl Bake {
         Ok(self.report(&file, &fall))
     }
 
+    /// The definition that was given, or what a build gives.
+    fn ragdoll(&self, file: &CharacterFile) -> Result<RagdollDef> {
+        let Some(path) = &self.ragdoll else {
+            let settings = self.settings.load(&self.character)?;
+            return Ok(settings.build(file, &BuildOptions::default())?.0);
+        };
+        read_definition(path, file)
+    }
+
     /// The user's own file is never the output.
     fn check_outputs(&self) -> Result<()> {
         let real = |path: &Path| std::fs::canonicalize(path).ok();
         let inputs: Vec<_> = self
             .clips
             .iter()
-            .chain(&self.world)
-            .chain([&self.character])
-            .filter_map(|path| real(path))
+            .map(PathBuf::as_path)
+            .chain(self.world.as_deref())
+            .chain(self.ragdoll.as_deref())
+            .chain(self.settings.path())
+            .chain([self.character.as_path()])
+            .filter_map(real)
             .collect();
         for output in self.outputs() {
             if real(output).is_some_and(|output| inputs.contains(&output)) {
@@ -162,10 +182,8 @@ fn floor() -> BodyDef {
 }
 
 /// The ragdoll and the motions of the user's character.
-fn character(file: &CharacterFile, motions: Motions) -> Result<CharacterDef> {
+fn character(file: &CharacterFile, ragdoll: RagdollDef, motions: Motions) -> Result<CharacterDef> {
     let CharacterFile { name, document, analysis } = file;
-    let (ragdoll, _) = build(&document.rig, analysis, &BuildOptions::default())
-        .map_err(|error| Failure::of_file(name, error))?;
     let mut def = CharacterDef::new(document.rig.clone(), ragdoll, &analysis.bind_model);
     let mut get_ups = def.get_ups_among(&motions.clips);
     get_ups.retain(|&clip| Some(clip) != motions.looped);

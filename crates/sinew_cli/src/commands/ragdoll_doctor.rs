@@ -1,0 +1,132 @@
+//! `sinew ragdoll doctor`: what is wrong with a ragdoll, and what mends it.
+
+use crate::failure::{Failure, Result};
+use crate::files::{CharacterFile, Outputs};
+use crate::ragdoll_file::RagdollFile;
+use crate::report::Report;
+use crate::settings_arg::SettingsArg;
+use crate::table::{Table, counted, shown};
+use serde_json::{Value, json};
+use sinew::formats::{Textures, write_ragdoll};
+use sinew::ragdoll::doctor::{Finding, Severity};
+use sinew::ragdoll::{BuildOptions, cure, doctor};
+use std::path::{Path, PathBuf};
+
+/// Say why a ragdoll jitters, explodes or looks wrong, with what was measured, and mend it
+#[derive(clap::Args)]
+#[command(after_help = "\
+Example:
+  sinew ragdoll doctor character.glb
+  sinew ragdoll doctor character.sinew.json --fix -o mended.sinew.json
+  sinew ragdoll doctor character.sinew.json --rig character.glb --fix -o mended.sinew.json
+  sinew ragdoll doctor humanoid.xml --json
+
+An error jitters, explodes or falls apart; a warning behaves, but not as a body does.
+The file that is examined is never changed. docs/ragdoll.md lists every code.")]
+pub struct RagdollDoctor {
+    /// A character (GLB, glTF, VRM, FBX), a definition (.sinew.json) or an MJCF model (.xml)
+    file: PathBuf,
+    /// Mend what can be mended, and write the definition that comes of it
+    #[arg(long, requires = "output")]
+    fix: bool,
+    /// Where to write the mended definition
+    #[arg(short, long, value_name = "OUT.sinew.json", requires = "fix")]
+    output: Option<PathBuf>,
+    /// The character that a definition belongs to: knows where bones begin, and which have no body
+    #[arg(long, value_name = "CHARACTER")]
+    rig: Option<PathBuf>,
+    #[command(flatten)]
+    settings: SettingsArg,
+}
+
+impl RagdollDoctor {
+    /// Reads, examines, mends, writes.
+    pub fn run(&self) -> Result<Report> {
+        self.check_output()?;
+        let RagdollFile { name, mut patient, notes } =
+            RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
+        if let Some(rig) = &self.rig {
+            let character = CharacterFile::load(rig, Textures::Skip)?;
+            let settings = self.settings.load(rig)?;
+            patient.reference = Some(settings.build(&character, &BuildOptions::default())?.0);
+        }
+        let findings = match &self.output {
+            None => doctor(&patient),
+            Some(output) => {
+                let (cured, findings) = cure(&patient);
+                let mut outputs = Outputs::default();
+                outputs.add(output, write_ragdoll(&cured.def).into_bytes());
+                outputs.write()?;
+                findings
+            }
+        };
+        Ok(Report { json: self.to_json(&findings, &notes), text: self.to_text(&name, &findings, &notes) })
+    }
+
+    fn check_output(&self) -> Result<()> {
+        let real = |path: &Path| std::fs::canonicalize(path).ok();
+        let inputs = [Some(self.file.as_path()), self.rig.as_deref(), self.settings.path()];
+        let inputs: Vec<_> = inputs.into_iter().flatten().filter_map(real).collect();
+        match &self.output {
+            Some(output) if real(output).is_some_and(|output| inputs.contains(&output)) => {
+                let output = output.display();
+                Err(Failure::Usage(format!("{output} is an input: write to another file")))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn to_json(&self, findings: &[Finding], notes: &[String]) -> Value {
+        let finding = |finding: &Finding| {
+            json!({
+                "code": finding.code.name(),
+                "severity": finding.severity.name(),
+                "bone": finding.bones.first().map_or("", String::as_str),
+                "bones": finding.bones,
+                "cause": finding.code.cause(),
+                "evidence": finding.evidence,
+                "fix": finding.fix,
+                "fixed": finding.fixed,
+            })
+        };
+        let outputs: Vec<String> = self.output.iter().map(|path| path.display().to_string()).collect();
+        json!({
+            "findings": findings.iter().map(finding).collect::<Vec<_>>(),
+            "notes": notes,
+            "outputs": outputs,
+        })
+    }
+
+    fn to_text(&self, name: &str, findings: &[Finding], notes: &[String]) -> String {
+        let count = |severity| findings.iter().filter(|finding| finding.severity == severity).count();
+        let mut text = format!(
+            "{}: {}, {}\n",
+            shown(name),
+            counted(count(Severity::Error), "error", "errors"),
+            counted(count(Severity::Warning), "warning", "warnings")
+        );
+        for finding in findings {
+            let fixed = match (self.fix, finding.fixed) {
+                (true, true) => "  [fixed]",
+                (true, false) if finding.severity != Severity::Note => "  [not fixed]",
+                _ => "",
+            };
+            text += &format!("\n{}: {}{fixed}\n", finding.severity.name(), finding.code.name());
+            let mut table = Table::default();
+            table.row(["found".into(), shown(&finding.evidence)]);
+            table.row(["cause".into(), finding.code.cause().into()]);
+            table.row(["fix".into(), finding.fix.clone()]);
+            text += &table.to_text();
+        }
+        if findings.iter().all(|finding| finding.severity == Severity::Note) {
+            text += "nothing is wrong with it\n";
+        }
+        for note in notes {
+            text += &format!("note: {}\n", shown(note));
+        }
+        if let Some(output) = &self.output {
+            text += &format!("\nwritten: {}\n", output.display());
+        }
+        text
+    }
+}

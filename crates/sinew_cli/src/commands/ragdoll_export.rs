@@ -1,0 +1,128 @@
+//! `sinew ragdoll export`: the definition for other engines.
+
+use crate::failure::{Failure, Result};
+use crate::files::{CharacterFile, Outputs};
+use crate::ragdoll_file::{RagdollFile, is_character, read_definition};
+use crate::report::Report;
+use crate::settings_arg::SettingsArg;
+use crate::table::{counted, shown};
+use clap::ValueEnum;
+use serde_json::json;
+use sinew::formats::{KhrFile, MjcfText, Textures, read_bytes, write_khr, write_mjcf};
+use sinew::ragdoll::{BuildOptions, RagdollDef};
+use std::path::{Path, PathBuf};
+
+/// Write a ragdoll for other engines: as physics in a copy of the character's own file, or as a MuJoCo model
+#[derive(clap::Args)]
+#[command(after_help = "\
+Example:
+  sinew ragdoll export character.glb --as khr -o character.physics.glb
+  sinew ragdoll export character.glb --ragdoll edited.sinew.json --as khr
+  sinew ragdoll export character.sinew.json --as mjcf -o character.xml")]
+pub struct RagdollExport {
+    /// A character (GLB, glTF, VRM, FBX); for mjcf also a definition (.sinew.json) or another MJCF model
+    file: PathBuf,
+    /// khr: glTF with KHR_physics_rigid_bodies and KHR_implicit_shapes (drafts); mjcf: a MuJoCo model
+    #[arg(long = "as", value_enum, value_name = "FORMAT")]
+    format: Format,
+    /// Where to write it; by default NAME.khr.glb or NAME.mjcf.xml beside the file
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// A ragdoll of this character from `ragdoll build`, as it is or edited; without it one is built
+    #[arg(long, value_name = "FILE.sinew.json", conflicts_with = "settings")]
+    ragdoll: Option<PathBuf>,
+    #[command(flatten)]
+    settings: SettingsArg,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    Khr,
+    Mjcf,
+}
+
+impl RagdollExport {
+    /// Reads, converts, writes.
+    pub fn run(&self) -> Result<Report> {
+        let output = self.output();
+        self.check_output(&output)?;
+        let (def, bytes, notes) = match self.format {
+            Format::Khr => self.khr()?,
+            Format::Mjcf => self.mjcf()?,
+        };
+        let mut outputs = Outputs::default();
+        outputs.add(&output, bytes);
+        outputs.write()?;
+        let json = json!({
+            "bodies": def.bodies.len(),
+            "joints": def.joints.len(),
+            "notes": notes,
+            "outputs": [output.display().to_string()],
+        });
+        let mut text = format!(
+            "{}: {}, {}\n",
+            shown(&self.file.display().to_string()),
+            counted(def.bodies.len(), "body", "bodies"),
+            counted(def.joints.len(), "joint", "joints")
+        );
+        for note in &notes {
+            text += &format!("note: {}\n", shown(note));
+        }
+        text += &format!("written: {}\n", output.display());
+        Ok(Report { json, text })
+    }
+
+    fn khr(&self) -> Result<(RagdollDef, Vec<u8>, Vec<String>)> {
+        if !is_character(&read_bytes(&self.file)?) {
+            let what =
+                "khr puts physics into the character's own file: name that, and this one with --ragdoll";
+            return Err(Failure::of_file(self.file.display().to_string(), what));
+        }
+        let character = CharacterFile::load(&self.file, Textures::Skip)?;
+        let def = self.ragdoll_of(&character)?;
+        let CharacterFile { name, document, analysis } = &character;
+        let KhrFile { bytes, notes } =
+            write_khr(document, &analysis.bind_model, &def).map_err(|error| error.with_file(name))?;
+        Ok((def, bytes, notes))
+    }
+
+    fn mjcf(&self) -> Result<(RagdollDef, Vec<u8>, Vec<String>)> {
+        let (def, mut notes) = match &self.ragdoll {
+            Some(_) => (self.ragdoll_of(&CharacterFile::load(&self.file, Textures::Skip)?)?, Vec::new()),
+            None => {
+                let file = RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
+                (file.patient.def, file.notes)
+            }
+        };
+        let name = self.file.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
+        let MjcfText { text, notes: lost } = write_mjcf(&def, &name);
+        notes.extend(lost);
+        Ok((def, text.into_bytes(), notes))
+    }
+
+    fn ragdoll_of(&self, character: &CharacterFile) -> Result<RagdollDef> {
+        match &self.ragdoll {
+            Some(path) => read_definition(path, character),
+            None => Ok(self.settings.load(&self.file)?.build(character, &BuildOptions::default())?.0),
+        }
+    }
+
+    fn output(&self) -> PathBuf {
+        let extension = match self.format {
+            Format::Khr => "khr.glb",
+            Format::Mjcf => "mjcf.xml",
+        };
+        self.output.clone().unwrap_or_else(|| self.file.with_extension(extension))
+    }
+
+    fn check_output(&self, output: &Path) -> Result<()> {
+        let real = |path: &Path| std::fs::canonicalize(path).ok();
+        let inputs = [Some(self.file.as_path()), self.ragdoll.as_deref(), self.settings.path()];
+        let mut inputs = inputs.into_iter().flatten().filter_map(real);
+        if real(output).is_some_and(|output| inputs.any(|input| input == output)) {
+            let output = output.display();
+            return Err(Failure::Usage(format!("{output} is an input: write to another file")));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,84 @@
+//! Any file that a ragdoll comes from: a rigged character, a definition of ours, an MJCF model.
+
+use crate::failure::{Failure, Result};
+use crate::files::CharacterFile;
+use crate::settings_arg::SettingsArg;
+use sinew::formats::{Textures, read_bytes, read_mjcf, read_ragdoll};
+use sinew::ragdoll::{BuildOptions, Patient, RagdollDef};
+use std::path::Path;
+
+/// A ragdoll and what is known of it.
+pub struct RagdollFile {
+    /// As the user named it.
+    pub name: String,
+    /// The ragdoll, its springs, and what its rig says of it.
+    pub patient: Patient,
+    /// What reading and building want a person to know, a sentence each.
+    pub notes: Vec<String>,
+}
+
+impl RagdollFile {
+    /// Reads a file of any of the three kinds; of a character the ragdoll is built.
+    pub fn load(path: &Path, textures: Textures, settings: &SettingsArg) -> Result<Self> {
+        let name = path.display().to_string();
+        let bytes = read_bytes(path)?;
+        match kind_of(&bytes) {
+            Kind::Definition => Ok(Self {
+                patient: Patient::new(read_ragdoll(&bytes).map_err(|error| error.with_file(&name))?),
+                name,
+                notes: Vec::new(),
+            }),
+            Kind::Mjcf => {
+                let model = read_mjcf(&bytes).and_then(|model| Ok((model.to_ragdoll()?, model.notes)));
+                let (ragdoll, mut notes) = model.map_err(|error| error.with_file(&name))?;
+                notes.extend(ragdoll.notes);
+                let patient = Patient { springs: ragdoll.springs, ..Patient::new(ragdoll.def) };
+                Ok(Self { patient, name, notes })
+            }
+            Kind::Character => {
+                drop(bytes);
+                let character = CharacterFile::load(path, textures)?;
+                let (def, notes) = settings.load(path)?.build(&character, &BuildOptions::default())?;
+                let patient = Patient { reference: Some(def.clone()), ..Patient::new(def) };
+                Ok(Self { patient, name, notes })
+            }
+        }
+    }
+}
+
+/// Whether these are the bytes of a character, and not of a definition or a model.
+pub fn is_character(bytes: &[u8]) -> bool {
+    matches!(kind_of(bytes), Kind::Character)
+}
+
+/// A definition for a character, whose joints it finds by their names.
+pub fn read_definition(path: &Path, character: &CharacterFile) -> Result<RagdollDef> {
+    let name = path.display().to_string();
+    let def = read_bytes(path).and_then(|bytes| read_ragdoll(&bytes));
+    let def = def.map_err(|error| error.with_file(&name))?;
+    def.for_rig(&character.document.rig).map_err(|error| {
+        let place = format!("bodies[{}]", error.body());
+        Failure::at(&name, format!("{error} ({})", character.name), place)
+    })
+}
+
+enum Kind {
+    Definition,
+    Mjcf,
+    Character,
+}
+
+/// By the first bytes: a glTF is JSON too, but says nothing of us at its top.
+fn kind_of(bytes: &[u8]) -> Kind {
+    let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
+    match text.first() {
+        Some(b'<') => Kind::Mjcf,
+        Some(b'{') if is_ours(text) => Kind::Definition,
+        _ => Kind::Character,
+    }
+}
+
+/// Whether the first key of the object is `"sinew"`.
+fn is_ours(text: &[u8]) -> bool {
+    text[1..].trim_ascii_start().starts_with(b"\"sinew\"")
+}

@@ -1,0 +1,240 @@
+//! `sinew ragdoll export`: what other engines read back is what was there.
+
+use crate::contract::check_keys;
+use crate::sinew::{Folder, gltf_files, shared_data, sinew};
+use serde_json::Value;
+use sinew::anim::{Rig, analyze};
+use sinew::formats::{Document, ReadOptions, load_gltf, no_files, read_gltf, read_mjcf, write_mjcf};
+use sinew::math::limits::hinge_angle;
+use sinew::math::{Affine, Rotation, Transform, Vec3};
+use sinew::physics::{JointKind, Shape};
+use sinew::ragdoll::mapping::character_from_model;
+use sinew::ragdoll::{BuildOptions, RagdollDef, build};
+
+fn built(rig: &Rig) -> RagdollDef {
+    let analysis = analyze(rig).expect("a skin");
+    build(rig, &analysis, &BuildOptions::default()).expect("bones").0
+}
+
+/// Two places are the same within 0.1 mm and 1e-4 rad.
+fn assert_same(a: Transform, b: Transform, what: &str) {
+    let (off, turned) = ((a.translation - b.translation).length(), a.rotation.angle_to(b.rotation));
+    assert!(off < 1e-4 && turned < 1e-3, "{what}: {off} m, {turned} rad");
+}
+
+/// How the definition comes back from our own reader of MuJoCo models.
+fn check_mjcf(def: &RagdollDef, text: &str, what: &str) {
+    let model = read_mjcf(text.as_bytes()).unwrap_or_else(|error| panic!("{what}: {error}"));
+    let back = model.to_ragdoll().unwrap_or_else(|error| panic!("{what}: {error}")).def;
+    assert_eq!(back.bodies.len(), def.bodies.len(), "{what}");
+    let own = |name: &str| def.bodies.iter().position(|body| body.bone == name).expect("a bone of ours");
+    // It may stand higher, where shapes reach below the soles.
+    let lift = back.bodies[0].character_from_body.translation.y
+        - def.bodies[own(&back.bodies[0].bone)].character_from_body.translation.y;
+    let lift = Transform::from_translation(Vec3::Y * lift);
+    for body in &back.bodies {
+        let was = &def.bodies[own(&body.bone)];
+        let what = format!("{what} {}", was.role);
+        assert!((body.mass.mass / was.mass.mass - 1.0).abs() < 1e-4, "{what}: {} kg", body.mass.mass);
+        let (moments, before) = (body.mass.inertia.eigen().0, was.mass.inertia.eigen().0);
+        assert!((moments - before).length() < 1e-3 * before.length(), "{what}: {moments} of {before}");
+        assert_same(lift * was.character_from_body, body.character_from_body, &what);
+        assert!(
+            (body.shape.volume() / was.shape.volume() - 1.0).abs() < 1e-3 || is_changed(&was.shape),
+            "{what}"
+        );
+    }
+    for joint in &back.joints {
+        let child = own(&back.bodies[joint.child].bone);
+        let was = def.joints[child - 1];
+        assert_eq!(back.bodies[joint.parent].bone, def.bodies[was.parent].bone, "{what}");
+        let at = |def: &RagdollDef, body: usize, frame: Transform| {
+            def.bodies[body].character_from_body.point(frame.translation)
+        };
+        let off = at(&back, joint.child, joint.frame_child) - lift.point(at(def, child, was.frame_child));
+        assert!(off.length() < 1e-4, "{what}: a pivot is {off} off");
+        assert_eq!(joint.friction_torque, was.friction_torque);
+        if let (JointKind::Hinge { limit: Some(a) }, JointKind::Hinge { limit: Some(b) }) =
+            (joint.kind, was.kind)
+        {
+            // The reader takes the pose of the file for the zero.
+            let turn = |body: usize| def.bodies[body].character_from_body.rotation;
+            let parent = turn(was.parent) * was.frame_parent.rotation;
+            let bind = hinge_angle(parent.inverse() * (turn(child) * was.frame_child.rotation));
+            assert!((a.lo + bind - b.lo).abs() + (a.hi + bind - b.hi).abs() < 1e-4, "{what}: {a:?} of {b:?}");
+        }
+    }
+    let names = |def: &RagdollDef| {
+        let mut pairs: Vec<[String; 2]> = def
+            .disabled_pairs
+            .iter()
+            .map(|&(a, b)| {
+                let mut pair = [def.bodies[a].bone.clone(), def.bodies[b].bone.clone()];
+                pair.sort();
+                pair
+            })
+            .collect();
+        pairs.sort();
+        pairs
+    };
+    let (kept, had) = (names(&back), names(def));
+    assert!(had.iter().all(|pair| kept.contains(pair)), "{what}");
+}
+
+/// Shapes that the format does not have.
+fn is_changed(shape: &Shape) -> bool {
+    matches!(shape, Shape::TaperedCapsule { .. } | Shape::Cone { .. } | Shape::Hull(_))
+}
+
+#[test]
+fn a_mujoco_model_reads_back() {
+    let folder = Folder::new("mjcf");
+    let (file, out) = (folder.mannequin(), folder.path("mannequin.xml"));
+    let object = sinew(&["ragdoll", "export", &file, "--as", "mjcf", "-o", &out, "--json"]).json();
+    check_keys("ragdoll export", &object);
+    let def = built(&load_gltf(&file, ReadOptions::default()).expect("a character").rig);
+    let text = std::fs::read_to_string(&out).expect("written");
+    check_mjcf(&def, &text, "mannequin");
+    assert_eq!(object["bodies"], def.bodies.len());
+}
+
+#[test]
+fn rigs_of_others_read_back_from_mujoco_models() {
+    let Some(data) = shared_data() else { return };
+    for file in gltf_files(&data.join("rigs")) {
+        let document = load_gltf(&file, ReadOptions::default()).expect("a file of the collection");
+        let Ok(analysis) = analyze(&document.rig) else { continue };
+        let (def, _) = build(&document.rig, &analysis, &BuildOptions::default()).expect("bones");
+        let names: std::collections::BTreeSet<&str> =
+            def.bodies.iter().map(|body| body.bone.as_str()).collect();
+        if names.len() == def.bodies.len() {
+            check_mjcf(&def, &write_mjcf(&def, "x").text, &file);
+        }
+    }
+}
+
+/// A transform from the `translation` and `rotation` of a node.
+fn local(node: &Value) -> Transform {
+    let list = |key: &str, default: &[f64]| -> Vec<f32> {
+        let given = node[key].as_array();
+        let given = given.map(|list| list.iter().filter_map(Value::as_f64).collect::<Vec<_>>());
+        given.unwrap_or_else(|| default.to_vec()).into_iter().map(|x| x as f32).collect()
+    };
+    let (t, r) = (list("translation", &[0.0; 3]), list("rotation", &[0.0, 0.0, 0.0, 1.0]));
+    Transform::new(Vec3::from_slice(&t), Rotation::from_xyzw(r[0], r[1], r[2], r[3]))
+}
+
+/// What the file says, against the definition.
+fn check_khr(def: &RagdollDef, document: &Document, bind_model: &[Affine], bytes: &[u8], what: &str) {
+    let back = read_gltf(bytes, ReadOptions::default(), &mut no_files)
+        .unwrap_or_else(|error| panic!("{what}: {error}"));
+    for name in ["KHR_physics_rigid_bodies", "KHR_implicit_shapes"] {
+        assert!(back.extensions().contains(&name), "{what}");
+    }
+    assert_eq!(back.clips.len(), document.clips.len(), "{what}");
+    let json = &back.json;
+    let physics = &json["extensions"]["KHR_physics_rigid_bodies"];
+    let shapes = &json["extensions"]["KHR_implicit_shapes"]["shapes"];
+    let nodes = json["nodes"].as_array().expect("nodes");
+    let extension = |node: usize| &nodes[node]["extensions"]["KHR_physics_rigid_bodies"];
+    let to_character = character_from_model(def);
+    let children = |node: usize| -> Vec<usize> {
+        let list = nodes[node]["children"].as_array();
+        list.into_iter().flatten().filter_map(Value::as_u64).map(|child| child as usize).collect()
+    };
+    // A frame under a bone, in character space.
+    let place = |body: usize, node: usize| {
+        (to_character * bind_model[def.bodies[body].joint] * Affine::from(local(&nodes[node]))).to_rigid()
+    };
+    let node_of = |body: usize| document.rig.joints[def.bodies[body].joint].source;
+    for (index, body) in def.bodies.iter().enumerate() {
+        let what = format!("{what} {}", body.role);
+        let motion = &extension(node_of(index))["motion"];
+        let mass = motion["mass"].as_f64().expect("a mass") as f32;
+        assert_eq!(mass, body.mass.mass, "{what}");
+        let collider =
+            children(node_of(index)).into_iter().find(|&node| extension(node).get("collider").is_some());
+        let collider = collider.unwrap_or_else(|| panic!("{what} has no collider"));
+        if !is_changed(&body.shape) {
+            assert_same(place(index, collider), body.character_from_body, &what);
+        }
+        let shape =
+            &shapes[extension(collider)["collider"]["geometry"]["shape"].as_u64().expect("a shape") as usize];
+        let metre = def.unit_scale * bind_model[body.joint].linear.x_axis.length();
+        let size = |of: &Value| of.as_f64().map(|size| size as f32 * metre);
+        let written = match body.shape {
+            Shape::Sphere { radius } => Some((size(&shape["sphere"]["radius"]), radius)),
+            Shape::Capsule { radius, half_height } if half_height > 0.0 => {
+                let height = size(&shape["capsule"]["height"]);
+                assert!(
+                    height.is_some_and(|height| (height - 2.0 * half_height).abs() < 1e-3),
+                    "{what}: {shape}"
+                );
+                Some((size(&shape["capsule"]["radiusTop"]), radius))
+            }
+            Shape::Box { half_extents } => Some((size(&shape["box"]["size"][2]), 2.0 * half_extents.z)),
+            _ => None,
+        };
+        if let Some((written, meant)) = written {
+            assert!(written.is_some_and(|size| (size - meant).abs() < 1e-3), "{what}: {shape} for {meant} m");
+        }
+        assert!(shape[shape["type"].as_str().expect("a type")].is_object(), "{what}: {shape}");
+    }
+    for (index, joint) in def.joints.iter().enumerate() {
+        let link = children(node_of(joint.parent))
+            .into_iter()
+            .find(|&node| extension(node)["joint"]["joint"] == index);
+        let link = link.unwrap_or_else(|| panic!("{what}: no node of joint {index}"));
+        let pivot = extension(link)["joint"]["connectedNode"].as_u64().expect("a node") as usize;
+        assert!(children(node_of(joint.child)).contains(&pivot), "{what}");
+        let frame = |body: usize, frame: Transform| def.bodies[body].character_from_body * frame;
+        assert_same(place(joint.parent, link), frame(joint.parent, joint.frame_parent), what);
+        assert_same(place(joint.child, pivot), frame(joint.child, joint.frame_child), what);
+        let described = &physics["physicsJoints"][index];
+        assert!(described["limits"].as_array().is_some_and(|limits| limits.len() >= 2), "{what}");
+        assert_eq!(
+            described["extras"]["sinew"]["friction_torque"].as_f64().map(|t| t as f32),
+            Some(joint.friction_torque)
+        );
+    }
+    for &(a, b) in &def.disabled_pairs {
+        let others = physics["collisionFilters"][a]["notCollideWithSystems"].as_array().expect("a list");
+        assert!(others.contains(&physics["collisionFilters"][b]["collisionSystems"][0]), "{what}");
+    }
+}
+
+#[test]
+fn physics_in_the_users_own_file_reads_back() {
+    let folder = Folder::new("khr");
+    let (file, out) = (folder.mannequin(), folder.path("mannequin.khr.glb"));
+    let object = sinew(&["ragdoll", "export", &file, "--as", "khr", "--json"]).json();
+    check_keys("ragdoll export", &object);
+    assert_eq!(object["outputs"][0], out.as_str());
+    let document = load_gltf(&file, ReadOptions::default()).expect("a character");
+    let analysis = analyze(&document.rig).expect("a skin");
+    let bytes = std::fs::read(&out).expect("written");
+    check_khr(&built(&document.rig), &document, &analysis.bind_model, &bytes, "mannequin");
+    // Twice is once too much.
+    let again = sinew(&["ragdoll", "export", &out, "--as", "khr", "-o", &folder.path("twice.glb")]);
+    assert!(again.refusal(1).contains("the file has physics of its own"), "{again:?}");
+    let definition = folder.path("m.sinew.json");
+    assert_eq!(sinew(&["ragdoll", "build", &file, "-o", &definition]).code, Some(0));
+    let run = sinew(&["ragdoll", "export", &definition, "--as", "khr"]);
+    assert!(run.refusal(1).contains("name that, and this one with --ragdoll"), "{run:?}");
+    let run = sinew(&["ragdoll", "export", &file, "--ragdoll", &definition, "--as", "khr", "-o", &out]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!(std::fs::read(&out).expect("written"), bytes);
+}
+
+#[test]
+fn rigs_of_others_read_back_with_physics() {
+    let Some(data) = shared_data() else { return };
+    for file in gltf_files(&data.join("rigs")) {
+        let document = load_gltf(&file, ReadOptions::default()).expect("a file of the collection");
+        let Ok(analysis) = analyze(&document.rig) else { continue };
+        let (def, _) = build(&document.rig, &analysis, &BuildOptions::default()).expect("bones");
+        let written = sinew::formats::write_khr(&document, &analysis.bind_model, &def);
+        let written = written.unwrap_or_else(|error| panic!("{file}: {error}"));
+        check_khr(&def, &document, &analysis.bind_model, &written.bytes, &file);
+    }
+}

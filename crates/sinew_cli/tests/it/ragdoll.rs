@@ -1,0 +1,173 @@
+//! `sinew ragdoll doctor`, and what definitions of ragdolls go through.
+
+use crate::contract::check_keys;
+use crate::sinew::{Folder, gltf_files, shared_data, sinew};
+use serde_json::Value;
+use sinew::formats::{read_ragdoll, write_ragdoll};
+use sinew::physics::JointKind;
+use sinew::ragdoll::RagdollDef;
+
+/// The mannequin's definition, as `ragdoll build` writes it.
+fn built(folder: &Folder) -> (String, RagdollDef) {
+    let (file, out) = (folder.mannequin(), folder.path("mannequin.sinew.json"));
+    let run = sinew(&["ragdoll", "build", &file, "-o", &out]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let def = read_ragdoll(&std::fs::read(&out).expect("a definition")).expect("ours");
+    (out, def)
+}
+
+fn codes(object: &Value) -> Vec<&str> {
+    let findings = object["findings"].as_array().expect("findings");
+    findings.iter().map(|finding| finding["code"].as_str().expect("a code")).collect()
+}
+
+#[test]
+fn the_doctor_finds_mends_and_leaves_the_file_alone() {
+    let folder = Folder::new("doctor");
+    let (healthy, mut def) = built(&folder);
+    let object = sinew(&["ragdoll", "doctor", &healthy, "--json"]).json();
+    assert_eq!(codes(&object), [""; 0], "{object:#}");
+    let neck = def.bodies.iter().position(|body| body.role == "neck").expect("a neck");
+    def.joints[neck - 1].kind = JointKind::Ball { limit: None };
+    let ill = folder.file("ill.sinew.json", write_ragdoll(&def));
+    let before = std::fs::read(&ill).expect("the file");
+    let object = sinew(&["ragdoll", "doctor", &ill, "--json"]).json();
+    check_keys("ragdoll doctor", &object);
+    assert_eq!(codes(&object), ["limits-missing"]);
+    assert_eq!(object["findings"][0]["bone"], "neck");
+    let mended = folder.path("mended.sinew.json");
+    let object = sinew(&["ragdoll", "doctor", &ill, "--fix", "-o", &mended, "--json"]).json();
+    assert_eq!(
+        (&object["findings"][0]["fixed"], &object["outputs"][0]),
+        (&true.into(), &mended.as_str().into())
+    );
+    assert_eq!(codes(&sinew(&["ragdoll", "doctor", &mended, "--json"]).json()), [""; 0]);
+    assert_eq!(std::fs::read(&ill).expect("the file"), before);
+    let line = sinew(&["ragdoll", "doctor", &ill, "--fix", "-o", &ill]).refusal(2).to_owned();
+    assert!(line.ends_with("is an input: write to another file"), "{line}");
+}
+
+#[test]
+fn a_head_that_the_rig_has_is_given_back() {
+    let folder = Folder::new("head");
+    let (_, mut def) = built(&folder);
+    let head = def.bodies.iter().position(|body| body.role == "head").expect("a head");
+    // Every body behind moves up by one.
+    def.bodies.remove(head);
+    def.joints.remove(head - 1);
+    for joint in &mut def.joints {
+        joint.parent -= usize::from(joint.parent > head);
+        joint.child -= usize::from(joint.child > head);
+    }
+    def.disabled_pairs.retain(|&(a, b)| a != head && b != head);
+    for (a, b) in &mut def.disabled_pairs {
+        *a -= usize::from(*a > head);
+        *b -= usize::from(*b > head);
+    }
+    let ill = folder.file("headless.sinew.json", write_ragdoll(&def));
+    let (rig, mended) = (folder.path("mannequin.glb"), folder.path("mended.sinew.json"));
+    let run = sinew(&["ragdoll", "doctor", &ill, "--rig", &rig, "--fix", "-o", &mended, "--json"]);
+    let object = run.json();
+    assert_eq!(codes(&object), ["head-without-body"]);
+    assert_eq!(object["findings"][0]["fixed"], true);
+    let mended = read_ragdoll(&std::fs::read(&mended).expect("written")).expect("ours");
+    assert!(mended.bodies.iter().any(|body| body.role == "head"));
+}
+
+/// No false alarm: what a build gives from a sound rig has no errors.
+#[test]
+fn rigs_of_others_have_no_errors() {
+    let Some(data) = shared_data() else { return };
+    for file in gltf_files(&data.join("rigs")) {
+        let run = sinew(&["ragdoll", "doctor", &file, "--json"]);
+        if run.code == Some(1) {
+            assert!(run.refusal(1).ends_with("no skin: nothing to build a ragdoll from"), "{file}: {run:?}");
+            continue;
+        }
+        let object = run.json();
+        let findings = object["findings"].as_array().expect("findings");
+        assert!(findings.iter().all(|finding| finding["severity"] != "error"), "{file}: {object:#}");
+    }
+}
+
+#[test]
+fn models_of_others_are_examined() {
+    let Some(data) = shared_data() else { return };
+    let file = data.join("robots/mujoco_humanoid.xml").display().to_string();
+    let object = sinew(&["ragdoll", "doctor", &file, "--json"]).json();
+    assert!(
+        object["findings"].as_array().expect("findings").iter().all(|f| f["severity"] != "error"),
+        "{object:#}"
+    );
+    let wrong = data.join("robots/bullet_humanoid.urdf").display().to_string();
+    assert!(sinew(&["ragdoll", "doctor", &wrong]).refusal(1).contains("not"));
+}
+
+#[test]
+fn files_that_are_no_ragdoll_are_refused_in_a_line() {
+    let folder = Folder::new("doctor-refusals");
+    for (name, text, reason) in [
+        (
+            "world.json",
+            r#"{"sinew":"world","version":1,"bodies":[]}"#,
+            "this is a `world` file, not a `ragdoll`",
+        ),
+        ("later.json", r#"{"sinew":"ragdoll","version":9}"#, "version 9 is newer than 1"),
+        ("half.json", r#"{"sinew":"ragdoll","version":1,"bod"#, "not JSON"),
+        ("other.xml", "<robot/>", "not an MJCF file"),
+        ("still.xml", "<mujoco><worldbody/></mujoco>", "no body moves"),
+    ] {
+        let file = folder.file(name, text);
+        let run = sinew(&["ragdoll", "doctor", &file]);
+        let line = run.refusal(1);
+        assert!(line.starts_with(&format!("error: {file}: ")) && line.contains(reason), "{line}");
+    }
+}
+
+#[test]
+fn settings_beside_the_character_are_heeded() {
+    let folder = Folder::new("settings");
+    let file = folder.mannequin();
+    let build = |more: &[&str]| sinew(&[&["ragdoll", "build", &file, "--json"], more].concat());
+    let mass = |object: &Value| object["total_mass_kg"].as_f64().expect("a mass");
+    let plain = build(&[]).json();
+    let text = r#"{"sinew":"ragdoll-settings","version":1,"mass":90,"bones":{"head":{"shape":"sphere"}}}"#;
+    folder.file("mannequin.ragdoll.json", text);
+    let settled = build(&[]).json();
+    assert!((mass(&settled) - 90.0).abs() < 1e-3 && (mass(&plain) - 90.0).abs() > 1.0);
+    let bodies = settled["bodies"].as_array().expect("bodies");
+    let head = bodies.iter().find(|body| body["role"] == "head").expect("a head");
+    assert_eq!(head["shape"], "sphere");
+    assert!(settled["notes"][0].as_str().is_some_and(|note| note.starts_with("with the settings of ")));
+    // The command line has the last word.
+    assert!((mass(&build(&["--mass", "50"]).json()) - 50.0).abs() < 1e-3);
+    let wrong = folder.file("wrong.json", text.replace("head", "haed"));
+    let run = build(&["--settings", &wrong]);
+    let line = run.refusal(1);
+    assert!(
+        line.ends_with("wrong.json: no bone or role `haed`; did you mean `head`? (bones.haed)"),
+        "{line}"
+    );
+}
+
+#[test]
+fn an_edited_definition_is_what_falls() {
+    let folder = Folder::new("edited");
+    let (path, mut def) = built(&folder);
+    let (rig, out) = (folder.path("mannequin.glb"), folder.path("fall.glb"));
+    let bake =
+        |ragdoll: &str| sinew(&["bake", &rig, "--ragdoll", ragdoll, "--seconds", "2", "-o", &out, "--json"]);
+    let hash = |run: crate::sinew::Run| run.json()["hash"].clone();
+    let unedited = hash(bake(&path));
+    assert_eq!(unedited, hash(sinew(&["bake", &rig, "--seconds", "2", "-o", &out, "--json"])));
+    for joint in &mut def.joints {
+        joint.kind = JointKind::Fixed;
+    }
+    let stiff = folder.file("stiff.sinew.json", write_ragdoll(&def));
+    assert_ne!(unedited, hash(bake(&stiff)));
+    def.bodies[3].bone = "elsewhere".into();
+    let other = folder.file("other.sinew.json", write_ragdoll(&def));
+    let run = bake(&other);
+    let line = run.refusal(1);
+    assert!(line.contains("bone `elsewhere` is not in this rig") && line.ends_with("(bodies[3])"), "{line}");
+}

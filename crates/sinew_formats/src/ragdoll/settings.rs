@@ -1,0 +1,164 @@
+//! Settings of a ragdoll, version 1 (`NAME.ragdoll.json` beside `NAME.glb`): what the build shall do otherwise.
+//!
+//! ```json
+//! {
+//!   "sinew": "ragdoll-settings",
+//!   "version": 1,
+//!   "shapes": "auto",
+//!   "mass": 82,
+//!   "sex": "m",
+//!   "height": 1.83,
+//!   "bones": {
+//!     "head": { "shape": "sphere", "scale": 0.95 },
+//!     "upperArm": { "limits_deg": { "swing_y": [-80, 80], "swing_z": [-70, 70], "twist": [-60, 60] } },
+//!     "lowerLeg": { "type": "hinge", "limits_deg": { "twist": [-2, 130] }, "friction_torque": 2 },
+//!     "leftHand": { "mass": 1.5 },
+//!     "Cape_01": { "body": "drop" }
+//!   },
+//!   "disable_pairs": [["leftHand", "leftUpperLeg"]],
+//!   "enable_pairs": [["leftUpperLeg", "rightUpperLeg"]]
+//! }
+//! ```
+//!
+//! Every key but the first two may be absent. `shapes` is `box`, `capsule` or `auto`; `mass` kg of the whole; `sex` `m`
+//! or `f`; the unit of the rigged file is given by `unit_scale` (metres) or by the `height` that the character shall have;
+//! `up_axis` (`[0, 0, 1]`) is the file's axis that points up. A bone is named by its role, by its role without the side (both
+//! sides; ranges are the left one's, mirrored on the right) or by the name of the rig's joint. Of a bone: `body` (`keep` or
+//! `drop`), `shape` (`box`, `capsule`, `sphere`), `scale` of it, `mass` in kg, `type` and `limits_deg` of the joint to its
+//! parent as in [ragdoll files](super), each range by itself, and `friction_torque` in N·m.
+
+use super::{read_range, read_up_axis};
+use crate::error::{Error, Result, quoted};
+use crate::json::{self, At};
+use sinew_math::Range;
+use sinew_ragdoll::settings::{BodyWish, BoneSettings, JointWish, Settings, ShapeWish, Unit, nearest};
+use sinew_ragdoll::{Sex, ShapeChoice};
+
+const VERSION: usize = 1;
+
+const ROOT_KEYS: [&str; 12] = [
+    "sinew",
+    "version",
+    "comment",
+    "shapes",
+    "mass",
+    "sex",
+    "height",
+    "unit_scale",
+    "up_axis",
+    "bones",
+    "disable_pairs",
+    "enable_pairs",
+];
+
+const BONE_KEYS: [&str; 8] =
+    ["comment", "body", "shape", "scale", "mass", "type", "limits_deg", "friction_torque"];
+
+/// The settings of a settings file. Bones are looked for when they are applied to a rig.
+///
+/// # Errors
+/// Names the place: unknown keys, with the nearest known one; values out of range; both a height and a unit.
+pub fn read_ragdoll_settings(bytes: &[u8]) -> Result<Settings> {
+    let value = json::parse(bytes)?;
+    let root = At::root(&value);
+    json::check_header(root, "ragdoll-settings", VERSION)?;
+    only(root, &ROOT_KEYS)?;
+    let unit = match (root.get("unit_scale")?, root.get("height")?) {
+        (Some(_), Some(height)) => {
+            return Err(height.malformed("`unit_scale` says it already: give one of the two"));
+        }
+        (Some(scale), None) => Some(Unit::Scale(scale.positive()?)),
+        (None, Some(height)) => Some(Unit::Height(height.positive()?)),
+        (None, None) => None,
+    };
+    let mut settings = Settings {
+        shapes: word(root, "shapes", &SHAPES)?,
+        mass: root.get("mass")?.map(At::positive).transpose()?,
+        sex: word(root, "sex", &[("m", Sex::Male), ("f", Sex::Female)])?,
+        unit,
+        up_axis: root.get("up_axis")?.map(read_up_axis).transpose()?,
+        bones: Vec::new(),
+        disable: read_pairs(root, "disable_pairs")?,
+        enable: read_pairs(root, "enable_pairs")?,
+    };
+    if let Some(bones) = root.get("bones")? {
+        let object = bones.value().as_object().ok_or_else(|| bones.malformed("must be an object"))?;
+        for name in object.keys() {
+            settings.bones.push((name.clone(), read_bone(bones.need(name)?)?));
+        }
+    }
+    Ok(settings)
+}
+
+const SHAPES: [(&str, ShapeChoice); 3] =
+    [("auto", ShapeChoice::Auto), ("box", ShapeChoice::Box), ("capsule", ShapeChoice::Capsule)];
+
+fn read_bone(at: At<'_>) -> Result<BoneSettings> {
+    only(at, &BONE_KEYS)?;
+    let bodies = [("keep", BodyWish::Keep), ("drop", BodyWish::Drop)];
+    let shapes = [("box", ShapeWish::Box), ("capsule", ShapeWish::Capsule), ("sphere", ShapeWish::Sphere)];
+    let joints = [
+        ("ball", JointWish::Ball),
+        ("hinge", JointWish::Hinge),
+        ("universal", JointWish::Universal),
+        ("fixed", JointWish::Fixed),
+    ];
+    let mut bone = BoneSettings {
+        body: word(at, "body", &bodies)?,
+        shape: word(at, "shape", &shapes)?,
+        scale: at.get("scale")?.map(At::positive).transpose()?,
+        mass: at.get("mass")?.map(At::positive).transpose()?,
+        joint: word(at, "type", &joints)?,
+        friction_torque: at.get("friction_torque")?.map(At::not_negative).transpose()?,
+        ..BoneSettings::default()
+    };
+    if let Some(limits) = at.get("limits_deg")? {
+        only(limits, &["swing_y", "swing_z", "twist"])?;
+        let swing = |key: &str| -> Result<Option<Range>> {
+            let Some(at) = limits.get(key)? else { return Ok(None) };
+            let range = read_range(at)?;
+            if range.lo > 0.0 || range.hi < 0.0 {
+                return Err(at.malformed("zero has to lie inside a swing's range"));
+            }
+            Ok(Some(range))
+        };
+        bone.swing_y = swing("swing_y")?;
+        bone.swing_z = swing("swing_z")?;
+        bone.twist = limits.get("twist")?.map(read_range).transpose()?;
+    }
+    Ok(bone)
+}
+
+fn read_pairs(root: At<'_>, key: &str) -> Result<Vec<[String; 2]>> {
+    let read = |pair: At<'_>| {
+        let [a, b] = pair.items()?[..] else { return Err(pair.malformed("must name two bones")) };
+        Ok([a.str()?.to_owned(), b.str()?.to_owned()])
+    };
+    root.list(key)?.into_iter().map(read).collect()
+}
+
+/// What a word of a list means; `None` where the key is absent.
+fn word<T: Copy>(at: At<'_>, key: &str, words: &[(&str, T)]) -> Result<Option<T>> {
+    let Some(at) = at.get(key)? else { return Ok(None) };
+    let said = at.str()?;
+    let found = words.iter().find(|(word, _)| *word == said).map(|&(_, meaning)| meaning);
+    found.map(Some).ok_or_else(|| {
+        let known: Vec<&str> = words.iter().map(|&(word, _)| word).collect();
+        unknown(at, "word", said, &known)
+    })
+}
+
+/// Refuses keys that are not among `known`, with the nearest of them.
+fn only(at: At<'_>, known: &[&str]) -> Result<()> {
+    let object = at.value().as_object().ok_or_else(|| at.malformed("must be an object"))?;
+    match object.keys().find(|key| !known.contains(&key.as_str())) {
+        Some(key) => Err(unknown(at, "key", key, known)),
+        None => Ok(()),
+    }
+}
+
+fn unknown(at: At<'_>, what: &str, said: &str, known: &[&str]) -> Error {
+    let hint = nearest(said, known.iter().copied())
+        .map_or_else(|| format!("known are {}", known.join(", ")), |near| format!("did you mean `{near}`?"));
+    at.malformed(format!("unknown {what} {}; {hint}", quoted(said)))
+}

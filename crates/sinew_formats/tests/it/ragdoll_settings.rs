@@ -1,0 +1,91 @@
+//! Settings files: the example of the documentation, complaints.
+
+use crate::world::documented_example;
+use sinew_formats::read_ragdoll_settings;
+use sinew_math::{Random, Range};
+use sinew_ragdoll::settings::{BodyWish, JointWish, ShapeWish, Unit};
+use sinew_ragdoll::{Sex, ShapeChoice};
+
+fn example() -> String {
+    documented_example(include_str!("../../src/ragdoll/settings.rs"))
+}
+
+#[test]
+fn the_documented_example_is_read() {
+    let settings = read_ragdoll_settings(example().as_bytes()).unwrap();
+    assert_eq!((settings.shapes, settings.mass), (Some(ShapeChoice::Auto), Some(82.0)));
+    assert_eq!((settings.sex, settings.unit), (Some(Sex::Male), Some(Unit::Height(1.83))));
+    let bone = |name: &str| settings.bones.iter().find(|(own, _)| own == name).expect(name).1;
+    assert_eq!((bone("head").shape, bone("head").scale), (Some(ShapeWish::Sphere), Some(0.95)));
+    assert_eq!(bone("upperArm").swing_z, Some(Range::degrees(-70.0, 70.0)));
+    assert_eq!(
+        (bone("lowerLeg").joint, bone("lowerLeg").friction_torque),
+        (Some(JointWish::Hinge), Some(2.0))
+    );
+    assert_eq!(bone("Cape_01").body, Some(BodyWish::Drop));
+    assert_eq!(settings.disable, [["leftHand".to_owned(), "leftUpperLeg".to_owned()]]);
+    assert_eq!(settings.enable.len(), 1);
+}
+
+#[test]
+fn complaints_name_the_place_and_the_nearest_key() {
+    let text = example();
+    for (from, to, expected) in [
+        (r#""shapes""#, r#""shape""#, "unknown key `shape`; did you mean `shapes`? (top level)"),
+        (r#""scale""#, r#""scael""#, "unknown key `scael`; did you mean `scale`? (bones.head)"),
+        (
+            r#""friction_torque": 2"#,
+            r#""wobble": 2"#,
+            "unknown key `wobble`; known are comment, body, shape, scale, mass, type, limits_deg, friction_torque (bones.lowerLeg)",
+        ),
+        (r#""sphere""#, r#""spere""#, "unknown word `spere`; did you mean `sphere`? (bones.head.shape)"),
+        (r#""mass": 82"#, r#""mass": -1"#, "must be more than 0 (mass)"),
+        (
+            r#""mass": 82"#,
+            r#""unit_scale": 0.01"#,
+            "`unit_scale` says it already: give one of the two (height)",
+        ),
+        (
+            "[-80, 80]",
+            "[10, 80]",
+            "zero has to lie inside a swing's range (bones.upperArm.limits_deg.swing_y)",
+        ),
+        ("[-2, 130]", "[130, -2]", "the lower end comes first (bones.lowerLeg.limits_deg.twist)"),
+        (r#"["leftHand", "leftUpperLeg"]"#, r#"["leftHand"]"#, "must name two bones (disable_pairs[0])"),
+        (r#""version": 1"#, r#""version": 2"#, "version 2 is newer than 1, the last one known (version)"),
+        (
+            r#""ragdoll-settings""#,
+            r#""ragdoll""#,
+            "this is a `ragdoll` file, not a `ragdoll-settings` (sinew)",
+        ),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let error = read_ragdoll_settings(text.replacen(from, to, 1).as_bytes()).unwrap_err();
+        assert_eq!(error.to_string(), expected);
+    }
+}
+
+#[test]
+fn bytes_changed_at_random_do_no_harm() {
+    let whole = example().into_bytes();
+    let mut random = Random::new(7);
+    for _ in 0..2000 {
+        let mut bytes = whole.clone();
+        for _ in 0..=random.index(4) {
+            let at = random.index(bytes.len());
+            bytes[at] = random.index(256) as u8;
+        }
+        let _ = read_ragdoll_settings(&bytes);
+    }
+}
+
+/// What is taught is what is read.
+#[test]
+fn the_examples_of_the_page_are_read() {
+    let page = include_str!("../../../../docs/ragdoll.md");
+    let examples: Vec<&str> =
+        page.split("```json\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    let [definition, settings] = examples[..] else { panic!("the page has {} examples", examples.len()) };
+    assert!(sinew_formats::read_ragdoll(definition.as_bytes()).is_ok());
+    assert_eq!(read_ragdoll_settings(settings.as_bytes()), read_ragdoll_settings(example().as_bytes()));
+}

@@ -1,0 +1,177 @@
+//! Kinds of trouble.
+
+/// How bad a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// It jitters, explodes or falls apart.
+    Error,
+    /// It behaves, but not as a body does.
+    Warning,
+    /// Worth knowing.
+    Note,
+}
+
+impl Severity {
+    /// `error`, `warning` or `note`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+            Self::Note => "note",
+        }
+    }
+}
+
+macro_rules! codes {
+    ($($(#[$doc:meta])* $variant:ident $name:literal $severity:ident $cause:literal $fix:literal;)*) => {
+        /// Kind of trouble.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum Code {
+            $($(#[$doc])* $variant,)*
+        }
+
+        impl Code {
+            /// Every code.
+            pub const ALL: &'static [Self] = &[$(Self::$variant,)*];
+
+            /// Its name in reports.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)*
+                }
+            }
+
+            /// How bad it is, as a rule.
+            pub fn severity(self) -> Severity {
+                match self {
+                    $(Self::$variant => Severity::$severity,)*
+                }
+            }
+
+            /// What causes it and what comes of it, a phrase.
+            pub fn cause(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $cause,)*
+                }
+            }
+
+            /// What to do, a sentence.
+            pub fn fix(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $fix,)*
+                }
+            }
+        }
+    };
+}
+
+codes! {
+    /// A size, pose or limit that is not a number.
+    NotFinite "not-finite" Error
+        "a number is not finite, so that nothing can be computed from it"
+        "Build the definition anew from its rig.";
+    /// A mass or inertia that no body has.
+    MassNotPositive "mass-not-positive" Error
+        "a body without mass cannot be moved by any force, or moves without end"
+        "Give it the mass that its part has in a body of this weight.";
+    /// The character is a giant or a dwarf because its unit was mistaken.
+    WrongUnit "wrong-unit" Error
+        "a length in the wrong unit makes gravity look slow or fast, and breaks every tolerance"
+        "Scale all lengths to metres.";
+    /// Joint frames were left at their default.
+    IdentityFrames "identity-frames" Error
+        "the zero of the joint is not the bind pose, so that its limits are broken at the start"
+        "Turn the frames so that they agree in the bind pose and meet at the bone's head.";
+    /// The two anchors of a joint are not in one place.
+    AnchorsApart "anchors-apart" Error
+        "the joint is torn open at the start and snaps shut"
+        "Move the anchor of the parent to that of the child.";
+    /// The pivot is not where the bone begins.
+    PivotOffBone "pivot-off-bone" Error
+        "the bone swings about a point outside itself, as a hip that hangs on the middle of the pelvis"
+        "Move the pivot to the head of the bone.";
+    /// The bind pose is beyond a limit.
+    LimitViolatedAtBind "limit-violated-at-bind" Error
+        "the limit pushes from the first step on"
+        "Widen the limit until it holds the bind pose with 2° to spare.";
+    /// Two bodies that collide start inside each other.
+    OverlapAtStart "overlap-at-start" Error
+        "contacts push the bodies apart at the first step: the ragdoll explodes"
+        "Leave out contacts between the two.";
+    /// It moves though nothing pushes.
+    MovesByItself "moves-by-itself" Error
+        "something in it pushes without end"
+        "Leave out contacts between the two bodies that are nearest to each other there.";
+    /// A joint that turns without end.
+    LimitsMissing "limits-missing" Warning
+        "without limits elbows bend backwards and heads turn round"
+        "Give it the range that the joint has in a body.";
+    /// One limit for every joint.
+    LimitsAllAlike "limits-all-alike" Warning
+        "a default limit on every joint lets knees bend sideways and holds hips back"
+        "Give each joint the range that it has in a body.";
+    /// A limit narrower than a solver can hold quietly.
+    LimitTooNarrow "limit-too-narrow" Warning
+        "a range of a few degrees has both stops at work at once: it jitters, and is meant to be locked"
+        "Lock that direction.";
+    /// A knee or elbow that bends backwards.
+    BendsBothWays "bends-both-ways" Warning
+        "the range of a knee or elbow lies on both sides of straight"
+        "Let it bend one way only.";
+    /// Left and right have different ranges.
+    LimitsNotMirrored "limits-not-mirrored" Warning
+        "the two sides do not have the same range, as when signs were copied and not mirrored"
+        "Take the mirror image of the other side's range.";
+    /// A pair whose contact keeps a joint from its range.
+    CollisionFightsLimit "collision-fights-limit" Warning
+        "the joint allows what the contact forbids, so that the two push against each other"
+        "Leave out contacts between the two.";
+    /// No contact between limbs and trunk.
+    NoSelfCollision "no-self-collision" Warning
+        "limbs sink into the trunk, because all pairs of them are left out"
+        "Let the pairs collide that do not overlap in the bind pose.";
+    /// A shape too small to be felt.
+    TinyShape "tiny-shape" Warning
+        "so thin a shape sinks into everything and falls through meshes"
+        "Give it a thickness in proportion to the character.";
+    /// A shape larger than a body part can be.
+    HugeShape "huge-shape" Warning
+        "the shape holds more than its body part, and collides with everything"
+        "Fit it to the length of its bone.";
+    /// Left and right have different shapes.
+    SidesDiffer "sides-differ" Warning
+        "the two sides have shapes of different sizes, so that the body limps"
+        "Take the mirror image of the other side's shape.";
+    /// The head has no body.
+    HeadWithoutBody "head-without-body" Warning
+        "the last bone of a chain got no body, so that the head falls through floors"
+        "Give the head a body; with the rig at hand it is done here.";
+    /// A limb, or the end of one, has no body.
+    LimbWithoutBody "limb-without-body" Warning
+        "a limb got no body, as when only the first child of a bone is looked at"
+        "Give the limb its bodies; with the rig at hand it is done here.";
+    /// Neighbours of very different masses.
+    MassRatio "mass-ratio" Warning
+        "a light body beside a heavy one is thrown about by it in most solvers"
+        "Make the lighter one heavier, the total kept.";
+    /// Too light or too heavy for its size.
+    MassImplausible "mass-implausible" Warning
+        "a character of this size does not have this mass, so that everything hits it too hard or too softly"
+        "Scale all masses to those of a body of this size.";
+    /// Inertia that does not belong to the shape and mass.
+    InertiaOutOfProportion "inertia-out-of-proportion" Warning
+        "the body turns too easily or too slowly for its mass and size"
+        "Take the inertia of its shape at its mass.";
+    /// A spring faster than the step.
+    StiffnessAboveNyquist "stiffness-above-nyquist" Warning
+        "a spring that swings faster than twice per two substeps cannot be followed"
+        "Lower it to half of what the substep can follow, or take more substeps.";
+    /// The rig's unit was not a metre.
+    UnitInferred "unit-inferred" Note
+        "the file's unit is not a metre, so that its length was inferred from the size of the body"
+        "Give `unit_scale` or `height` in settings if it is another.";
+    /// A bone's role is little more than a guess.
+    RoleUncertain "role-uncertain" Note
+        "name and shape of the rig do not tell for sure which part of the body a bone is"
+        "Look whether the role is right, and edit the definition if it is not.";
+}

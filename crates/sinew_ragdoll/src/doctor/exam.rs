@@ -1,0 +1,187 @@
+//! What all examinations look at.
+
+use super::{Code, Finding, Patient};
+use crate::build::bones::{Anatomy, Bone, Bones};
+use crate::build::part::Part;
+use crate::def::{RagdollDef, RagdollJointDef};
+use crate::fit::Fit;
+use crate::fit::patch::Selection;
+use crate::limits::{JointPlan, joints};
+use sinew_anim::roles::Role;
+use sinew_math::limits::hinge_angle;
+use sinew_math::{Rotation, SwingTwistLimit, Transform, Vec3, max};
+use sinew_physics::JointKind;
+
+/// A ragdoll with what follows from it.
+pub(super) struct Exam<'a> {
+    pub patient: &'a Patient,
+    pub def: &'a RagdollDef,
+    /// The bodies as the build's stages know them; heads are the pivots of the definition.
+    pub bones: Bones,
+    pub fits: Vec<Fit>,
+    /// Height, metres.
+    pub size: f32,
+}
+
+/// How far a joint is beyond what it leaves free, radians.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Beyond {
+    /// Beyond its limits.
+    pub limit: f32,
+    /// Turned where it does not turn.
+    pub locked: f32,
+}
+
+impl<'a> Exam<'a> {
+    pub fn new(patient: &'a Patient) -> Self {
+        let def = &patient.def;
+        let bones = bones_of(def);
+        let fits = def.bodies.iter().map(|body| Fit {
+            shape: body.shape.clone(),
+            character_from_body: body.character_from_body,
+            error: 0.0,
+            area: 0.0,
+            selection: Selection::Nothing,
+        });
+        Self { patient, def, bones, fits: fits.collect(), size: def.height }
+    }
+
+    /// A finding about these bodies.
+    pub fn finding(&self, code: Code, bodies: &[usize], evidence: String) -> Finding {
+        Finding {
+            code,
+            severity: code.severity(),
+            bodies: bodies.to_vec(),
+            bones: bodies.iter().map(|&body| self.def.bodies[body].bone.clone()).collect(),
+            evidence,
+            fix: code.fix().to_owned(),
+            fixed: false,
+        }
+    }
+
+    /// Role and bone of a body, the latter where it says something else.
+    pub fn who(&self, body: usize) -> String {
+        let body = &self.def.bodies[body];
+        if body.role == body.bone { body.role.clone() } else { format!("{} ({})", body.role, body.bone) }
+    }
+
+    /// Both bodies of a joint, the parent first.
+    pub fn between(&self, joint: usize) -> String {
+        let joint = &self.def.joints[joint];
+        format!("{} and {}", self.who(joint.parent), self.who(joint.child))
+    }
+
+    /// The joint's rotation in the bind pose, its child turned by `turn` (character axes) from there.
+    pub fn turned(&self, joint: usize, turn: Rotation) -> Rotation {
+        let joint = &self.def.joints[joint];
+        let rotation = |body: usize| self.def.bodies[body].character_from_body.rotation;
+        let parent = rotation(joint.parent) * joint.frame_parent.rotation;
+        parent.inverse() * (turn * rotation(joint.child) * joint.frame_child.rotation)
+    }
+
+    /// Where parent and child have the joint in the bind pose, character space.
+    pub fn anchors(&self, joint: usize) -> [Vec3; 2] {
+        anchors(self.def, &self.def.joints[joint])
+    }
+
+    /// Axes of the joint as the parent carries it, character axes.
+    pub fn axes(&self, joint: usize) -> Rotation {
+        let joint = &self.def.joints[joint];
+        self.def.bodies[joint.parent].character_from_body.rotation * joint.frame_parent.rotation
+    }
+
+    /// Unit vector along a bone.
+    pub fn direction(&self, body: usize) -> Vec3 {
+        self.bones.direction(body, Some(self.def.bodies[body].character_from_body.translation))
+    }
+
+    pub fn part(&self, body: usize) -> Part {
+        self.bones.list[body].part
+    }
+
+    /// The joint that anatomy has here: same pivot, axes and range from the table.
+    pub fn anatomical(&self, joint: usize) -> JointPlan {
+        joints(&self.bones, &self.fits, self.def.total_mass)[joint]
+    }
+}
+
+/// Where parent and child have a joint in the bind pose, character space.
+pub(super) fn anchors(def: &RagdollDef, joint: &RagdollJointDef) -> [Vec3; 2] {
+    let point = |body: usize, frame: Transform| def.bodies[body].character_from_body.point(frame.translation);
+    [point(joint.parent, joint.frame_parent), point(joint.child, joint.frame_child)]
+}
+
+/// How far the joint rotation `frame_a⁻¹ frame_b` is beyond what the joint leaves free.
+pub(super) fn beyond(kind: &JointKind, seen: Rotation) -> Beyond {
+    let (swing, twist) = seen.swing_twist(Vec3::X);
+    let swung = swing.to_scaled_axis().length();
+    match kind {
+        JointKind::Ball { limit } => {
+            Beyond { limit: limit.map_or(0.0, |limit| limit.overshoot(seen)), locked: 0.0 }
+        }
+        JointKind::Universal { limit } => Beyond {
+            limit: limit.map_or(0.0, |limit| swing_excess(&limit, seen)),
+            locked: twist.twist_angle(Vec3::X).abs(),
+        },
+        JointKind::Hinge { limit } => {
+            Beyond { limit: limit.map_or(0.0, |range| range.excess(hinge_angle(twist))), locked: swung }
+        }
+        _ => Beyond { limit: 0.0, locked: seen.angle_to(Rotation::IDENTITY) },
+    }
+}
+
+/// How far the swing alone is outside the cone, radians.
+pub(super) fn swing_excess(limit: &SwingTwistLimit, seen: Rotation) -> f32 {
+    max(0.0, -limit.swing_state(seen).room)
+}
+
+/// How far the child of a joint can turn about an axis of its own joint frame from `bind`, the joint's rotation there,
+/// before it meets a limit: radians, at most π. A universal joint's twist is let be: it shows in a swing that goes round.
+pub fn limit_reach(kind: &JointKind, bind: Rotation, axis: Vec3) -> f32 {
+    const STEP: f32 = 0.02;
+    let is_free = |angle: f32| {
+        let seen = bind * Rotation::from_axis_angle(axis, angle);
+        beyond(kind, seen).limit <= 1e-5
+    };
+    let mut inside = 0.0;
+    while inside < core::f32::consts::PI {
+        if !is_free(inside + STEP) {
+            // The stop lies within the step.
+            let (mut low, mut high) = (inside, inside + STEP);
+            for _ in 0..16 {
+                let middle = 0.5 * (low + high);
+                if is_free(middle) {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            return low;
+        }
+        inside += STEP;
+    }
+    core::f32::consts::PI
+}
+
+/// The bodies of a definition as bones.
+pub(super) fn bones_of(def: &RagdollDef) -> Bones {
+    let list: Vec<Bone> = def
+        .bodies
+        .iter()
+        .enumerate()
+        .map(|(index, body)| {
+            // A role that we do not know is a limb of its own.
+            let unknown = Role::LimbSegment { limb: u16::MAX, segment: index as u16 };
+            let role = Role::from_name(&body.role).unwrap_or(unknown);
+            let joint = index.checked_sub(1).map(|joint| &def.joints[joint]);
+            let head = joint.map_or(body.character_from_body.translation, |joint| anchors(def, joint)[1]);
+            let bone = Bone::new(body.joint, role, joint.map(|joint| joint.parent), head);
+            Bone { merged: body.merged.clone(), confidence: body.confidence, ..bone }
+        })
+        .collect();
+    let has = |part: Part| list.iter().any(|bone| bone.part == part);
+    let limbs = [Part::UpperArm, Part::Forearm, Part::Thigh, Part::Shank];
+    let is_human = has(Part::Pelvis) && limbs.into_iter().any(has);
+    let anatomy = if is_human { Anatomy::Human } else { Anatomy::Creature };
+    Bones::new(list, anatomy, def.height)
+}

@@ -1,0 +1,58 @@
+//! Sizes of shapes and depths of overlaps.
+
+use super::exam::Exam;
+use sinew_math::{Transform, Vec3, max};
+use sinew_physics::Shape;
+use sinew_physics::collide::{Manifold, collide};
+
+/// Full sizes of the box around a shape, in its own axes, metres.
+pub(super) fn full_size(shape: &Shape) -> Vec3 {
+    let aabb = shape.aabb(&Transform::IDENTITY);
+    aabb.max - aabb.min
+}
+
+/// The longest of them.
+pub(super) fn longest(shape: &Shape) -> f32 {
+    let size = full_size(shape);
+    max(size.x, max(size.y, size.z))
+}
+
+/// How deep body `a` overlaps body `b` with `a` elsewhere, metres; 0 if they do not.
+pub(super) fn depth_at(exam: &Exam<'_>, (a, place): (usize, Transform), b: usize) -> f32 {
+    let (one, other) = (&exam.def.bodies[a], &exam.def.bodies[b]);
+    let mut manifold = Manifold::default();
+    collide(&one.shape, &place, &other.shape, &other.character_from_body, 0.0, &mut manifold);
+    manifold.points().iter().fold(0.0, |deepest, point| max(deepest, -point.separation))
+}
+
+/// How deep two bodies overlap in the bind pose, metres.
+pub(super) fn depth(exam: &Exam<'_>, a: usize, b: usize) -> f32 {
+    depth_at(exam, (a, exam.def.bodies[a].character_from_body), b)
+}
+
+/// The shape, larger by `factor`. Surfaces, which no body of a ragdoll is, stay as they are.
+pub(crate) fn scaled(shape: &Shape, factor: f32) -> Shape {
+    match *shape {
+        Shape::Box { half_extents } => Shape::Box { half_extents: half_extents * factor },
+        Shape::Sphere { radius } => Shape::Sphere { radius: radius * factor },
+        Shape::Capsule { half_height, radius } => {
+            Shape::Capsule { half_height: half_height * factor, radius: radius * factor }
+        }
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => Shape::TaperedCapsule {
+            half_height: half_height * factor,
+            radius_bottom: radius_bottom * factor,
+            radius_top: radius_top * factor,
+        },
+        Shape::Cylinder { half_height, radius } => {
+            Shape::Cylinder { half_height: half_height * factor, radius: radius * factor }
+        }
+        Shape::Cone { half_height, radius } => {
+            Shape::Cone { half_height: half_height * factor, radius: radius * factor }
+        }
+        Shape::Hull(ref hull) => {
+            let points: Vec<Vec3> = hull.vertices().iter().map(|&v| v * factor).collect();
+            sinew_physics::Hull::new(&points).map_or_else(|_| shape.clone(), |hull| Shape::Hull(hull.into()))
+        }
+        Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => shape.clone(),
+    }
+}

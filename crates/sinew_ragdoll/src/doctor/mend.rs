@@ -1,0 +1,382 @@
+//! One remedy for each finding.
+
+use super::exam::{Exam, anchors, beyond};
+use super::geometry::{depth, full_size, longest, scaled};
+use super::limits::{head_of_rig, is_narrow, turning_inertia};
+use super::{Code, Finding, Patient, anatomy, graft, masses, mirror, shapes};
+use crate::def::{RagdollDef, RagdollJointDef};
+use crate::ragdoll::fitted;
+use core::f32::consts::PI;
+use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min};
+use sinew_physics::{JointKind, Shape, Softness};
+
+/// Room that the bind pose gets to a limit that it had passed, radians (2°).
+const ROOM: f32 = 0.034_907;
+
+/// Mends what a finding tells of; false if nothing could be done.
+pub(super) fn mend(patient: &mut Patient, finding: &Finding) -> bool {
+    let Some(&body) = finding.bodies.first() else { return false };
+    let other = finding.bodies.get(1).copied().unwrap_or(body);
+    match finding.code {
+        // Numbers that are none are lost, and whether a guess is right only a person can say.
+        Code::NotFinite | Code::UnitInferred | Code::RoleUncertain => false,
+        Code::WrongUnit => {
+            *patient = anatomy::patient_in_metres(patient);
+            true
+        }
+        Code::HeadWithoutBody | Code::LimbWithoutBody => graft::missing(patient, &finding.bones[0]),
+        Code::StiffnessAboveNyquist => soften(patient, body - 1),
+        _ => {
+            let changed = remedied(&Exam::new(patient), finding, body, other);
+            let is_new = changed.as_ref().is_some_and(|def| *def != patient.def);
+            if let Some(def) = changed {
+                patient.def = def;
+            }
+            is_new
+        }
+    }
+}
+
+/// The definition with one finding mended.
+fn remedied(exam: &Exam<'_>, finding: &Finding, body: usize, other: usize) -> Option<RagdollDef> {
+    let mut def = exam.def.clone();
+    let joint = body.checked_sub(1);
+    match finding.code {
+        Code::MassNotPositive => {
+            def.bodies[body].mass = natural(exam, body);
+            def.total_mass = def.bodies.iter().map(|body| body.mass.mass).sum();
+        }
+        Code::IdentityFrames | Code::AnchorsApart | Code::PivotOffBone => {
+            def.joints[joint?] = moved(exam, joint?, finding.code);
+        }
+        Code::LimitViolatedAtBind => def.joints[joint?] = holding_bind(exam, joint?),
+        Code::LimitsMissing | Code::BendsBothWays => {
+            def.joints[joint?] = exam.anatomical(joint?).def;
+        }
+        Code::LimitsAllAlike => {
+            for &body in &finding.bodies {
+                def.joints[body - 1] = exam.anatomical(body - 1).def;
+            }
+        }
+        Code::LimitTooNarrow => def.joints[joint?] = locked(exam, joint?),
+        Code::LimitsNotMirrored => mirror_joint(exam, &mut def, body, other),
+        Code::SidesDiffer => mirror_shape(exam, &mut def, body, other),
+        Code::OverlapAtStart | Code::CollisionFightsLimit => disable(&mut def, body, other),
+        Code::MovesByItself => {
+            let near = nearest_pair(exam, body)?;
+            disable(&mut def, near.0, near.1);
+        }
+        Code::NoSelfCollision => {
+            let clear = shapes::limbs_and_trunk(exam);
+            let is_clear = |&(a, b): &(usize, usize)| clear.contains(&(a, b)) || clear.contains(&(b, a));
+            def.disabled_pairs.retain(|pair| !is_clear(pair));
+        }
+        Code::TinyShape | Code::HugeShape => resize(exam, &mut def, body),
+        Code::MassRatio => {
+            let is_neighbour = exam.bones.list[body].parent == Some(other);
+            let most = if is_neighbour { masses::NEIGHBOUR_RATIO } else { masses::CHAIN_RATIO };
+            masses::relieve(&mut def, [body, other], 0.9 * most);
+        }
+        Code::MassImplausible => {
+            let sum: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
+            masses::scale_all(&mut def, masses::natural_mass(exam) / sum);
+        }
+        Code::InertiaOutOfProportion => {
+            let center = def.bodies[body].mass.center;
+            let mass = masses::of_shape(&def.bodies[body].shape, def.bodies[body].mass.mass);
+            def.bodies[body].mass = sinew_physics::MassProperties { center, ..mass };
+        }
+        Code::NotFinite
+        | Code::UnitInferred
+        | Code::RoleUncertain
+        | Code::WrongUnit
+        | Code::HeadWithoutBody
+        | Code::LimbWithoutBody
+        | Code::StiffnessAboveNyquist => return None,
+    }
+    Some(def)
+}
+
+/// Mass and inertia by the body's share of the volume of all.
+fn natural(exam: &Exam<'_>, body: usize) -> sinew_physics::MassProperties {
+    let volume = |body: &crate::def::RagdollBodyDef| body.shape.volume();
+    let all: f32 = exam.def.bodies.iter().map(volume).sum();
+    let shape = &exam.def.bodies[body].shape;
+    masses::of_shape(shape, masses::natural_mass(exam) * shape.volume() / all)
+}
+
+/// The joint with both frames at one pivot; with `IdentityFrames` also with the axes and range of anatomy.
+fn moved(exam: &Exam<'_>, index: usize, code: Code) -> RagdollJointDef {
+    let joint = exam.def.joints[index];
+    let [on_parent, on_child] = exam.anchors(index);
+    let end = near_end(exam, index);
+    let pivot = head_of_rig(exam, joint.child).unwrap_or_else(|| match code {
+        // Whichever of the two anchors is nearer to where the child begins.
+        Code::AnchorsApart if (on_parent - end).length() < (on_child - end).length() => on_parent,
+        Code::AnchorsApart => on_child,
+        Code::IdentityFrames if (on_parent - on_child).length() < 0.003 * exam.size => on_child,
+        _ => end,
+    });
+    let place = |body: usize, rotation: Rotation| {
+        exam.def.bodies[body].character_from_body.inverse() * Transform::new(pivot, rotation)
+    };
+    let world =
+        |body: usize, frame: Transform| exam.def.bodies[body].character_from_body.rotation * frame.rotation;
+    let mut new = joint;
+    new.frame_parent = place(joint.parent, world(joint.parent, joint.frame_parent));
+    new.frame_child = place(joint.child, world(joint.child, joint.frame_child));
+    if code == Code::IdentityFrames {
+        let mut def = exam.def.clone();
+        def.joints[index] = new;
+        let patient = Patient { def, ..exam.patient.clone() };
+        new = Exam::new(&patient).anatomical(index).def;
+    }
+    new
+}
+
+/// The end of the child's shape that is nearer to the parent, character space: where the bone must begin.
+fn near_end(exam: &Exam<'_>, index: usize) -> Vec3 {
+    let joint = &exam.def.joints[index];
+    let child = &exam.def.bodies[joint.child];
+    let half = full_size(&child.shape) * 0.5;
+    // A little inside, where a bone's head lies.
+    let along = if half.y >= half.x && half.y >= half.z {
+        Vec3::Y * (0.9 * half.y)
+    } else if half.x >= half.z {
+        Vec3::X * (0.9 * half.x)
+    } else {
+        Vec3::Z * (0.9 * half.z)
+    };
+    let ends = [along, -along].map(|end| child.character_from_body.point(end));
+    let parent = &exam.def.bodies[joint.parent];
+    let [a, b] = ends.map(|end| parent.shape.signed_distance(&parent.character_from_body, end).0);
+    if a < b { ends[0] } else { ends[1] }
+}
+
+/// The joint with limits that hold the bind pose, and frames that agree in it where the joint does not turn.
+fn holding_bind(exam: &Exam<'_>, index: usize) -> RagdollJointDef {
+    let joint = exam.def.joints[index];
+    let pose = |body: usize| exam.def.bodies[body].character_from_body;
+    let mut new = fitted(&joint, pose(joint.parent), pose(joint.child));
+    let wider = |range: Range| Range::new(max(range.lo - ROOM, -PI), min(range.hi + ROOM, PI));
+    let cone = |limit: SwingTwistLimit, old: SwingTwistLimit| {
+        let side = |new: Range, old: Range| if new == old { new } else { wider(new) };
+        SwingTwistLimit {
+            swing_y: side(limit.swing_y, old.swing_y),
+            swing_z: side(limit.swing_z, old.swing_z),
+            twist: side(limit.twist, old.twist),
+        }
+    };
+    new.kind = match (new.kind, joint.kind) {
+        (JointKind::Ball { limit: Some(l) }, JointKind::Ball { limit: Some(old) }) => {
+            JointKind::Ball { limit: Some(cone(l, old)) }
+        }
+        (JointKind::Universal { limit: Some(l) }, JointKind::Universal { limit: Some(old) }) => {
+            JointKind::Universal { limit: Some(cone(l, old)) }
+        }
+        (JointKind::Hinge { limit: Some(r) }, JointKind::Hinge { limit: Some(old) }) if r != old => {
+            JointKind::Hinge { limit: Some(wider(r)) }
+        }
+        (kind, _) => kind,
+    };
+    debug_assert!(anchors(exam.def, &new)[1].is_finite());
+    new
+}
+
+/// The joint with its narrow directions locked: a ball becomes a hinge, a universal joint or a weld.
+fn locked(exam: &Exam<'_>, index: usize) -> RagdollJointDef {
+    let joint = exam.def.joints[index];
+    let turned_x_to = |axis: Vec3| {
+        let (y, z) = if axis == Vec3::Y { (Vec3::Z, Vec3::X) } else { (Vec3::X, Vec3::Y) };
+        Rotation::from_mat3(&Mat3::from_cols(axis, y, z))
+    };
+    let shut = Range::new(0.0, 0.0);
+    let open = |range: Range| !is_narrow(range) && range.hi - range.lo > 0.01;
+    let kind = match joint.kind {
+        JointKind::Ball { limit: Some(l) } => match [l.swing_y, l.swing_z, l.twist].map(open) {
+            [false, false, false] => JointKind::Fixed,
+            [false, false, true] => JointKind::Hinge { limit: Some(l.twist) },
+            [true, true, _] => JointKind::Universal { limit: Some(SwingTwistLimit { twist: shut, ..l }) },
+            [true, false, false] => return hinge_about(exam, index, turned_x_to(Vec3::Y), l.swing_y),
+            [false, true, false] => return hinge_about(exam, index, turned_x_to(Vec3::Z), l.swing_z),
+            // No joint of ours swings about one axis and twists: the narrow swing is widened until it is quiet.
+            [true, false, true] => {
+                JointKind::Ball { limit: Some(SwingTwistLimit { swing_z: quiet(l.swing_z), ..l }) }
+            }
+            [false, true, true] => {
+                JointKind::Ball { limit: Some(SwingTwistLimit { swing_y: quiet(l.swing_y), ..l }) }
+            }
+        },
+        JointKind::Universal { limit: Some(l) } => match [l.swing_y, l.swing_z].map(open) {
+            [false, false] => JointKind::Fixed,
+            [true, false] => return hinge_about(exam, index, turned_x_to(Vec3::Y), l.swing_y),
+            [false, true] => return hinge_about(exam, index, turned_x_to(Vec3::Z), l.swing_z),
+            [true, true] => joint.kind,
+        },
+        JointKind::Hinge { .. } => JointKind::Fixed,
+        kind => kind,
+    };
+    at_bind(exam, RagdollJointDef { kind, ..joint })
+}
+
+/// A narrow range, made wide enough to be quiet (±5°).
+fn quiet(range: Range) -> Range {
+    Range::new(min(range.lo, -0.09), max(range.hi, 0.09))
+}
+
+/// The joint as a hinge about another of its axes.
+fn hinge_about(exam: &Exam<'_>, index: usize, axes: Rotation, range: Range) -> RagdollJointDef {
+    let joint = exam.def.joints[index];
+    let turned = |frame: Transform| Transform { rotation: frame.rotation * axes, ..frame };
+    at_bind(
+        exam,
+        RagdollJointDef {
+            frame_parent: turned(joint.frame_parent),
+            frame_child: turned(joint.frame_child),
+            kind: JointKind::Hinge { limit: Some(range) },
+            ..joint
+        },
+    )
+}
+
+/// The joint fitted to the bind pose, so that what was locked is locked there.
+fn at_bind(exam: &Exam<'_>, joint: RagdollJointDef) -> RagdollJointDef {
+    let pose = |body: usize| exam.def.bodies[body].character_from_body;
+    fitted(&joint, pose(joint.parent), pose(joint.child))
+}
+
+/// Gives one of two sides the other's range: that which is farther from anatomy.
+fn mirror_joint(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
+    let strangeness = |body: usize| {
+        let anatomical = exam.anatomical(body - 1).def.kind;
+        span(&exam.def.joints[body - 1].kind, &anatomical)
+    };
+    let (wrong, right) = if strangeness(a) >= strangeness(b) { (a, b) } else { (b, a) };
+    let joint = mirror::mirrored_joint(exam, wrong, right);
+    let pose = |body: usize| exam.def.bodies[body].character_from_body;
+    // Where the two sides are not bound alike the mirror image must still hold the bind pose.
+    let seen = {
+        let parent = pose(joint.parent).rotation * joint.frame_parent.rotation;
+        parent.inverse() * (pose(joint.child).rotation * joint.frame_child.rotation)
+    };
+    let out = beyond(&joint.kind, seen);
+    def.joints[wrong - 1] = if max(out.limit, out.locked) > 0.01 { at_bind(exam, joint) } else { joint };
+}
+
+/// How far the ends of two limits lie apart in all, radians; a lot for different kinds.
+fn span(a: &JointKind, b: &JointKind) -> f32 {
+    let apart = |a: Range, b: Range| (a.lo - b.lo).abs() + (a.hi - b.hi).abs();
+    match (a, b) {
+        (JointKind::Ball { limit: Some(a) }, JointKind::Ball { limit: Some(b) })
+        | (JointKind::Universal { limit: Some(a) }, JointKind::Universal { limit: Some(b) }) => {
+            apart(a.swing_y, b.swing_y) + apart(a.swing_z, b.swing_z) + apart(a.twist, b.twist)
+        }
+        (JointKind::Hinge { limit: Some(a) }, JointKind::Hinge { limit: Some(b) }) => apart(*a, *b),
+        _ => 10.0,
+    }
+}
+
+/// Gives one of two sides the mirror image of the other's shape: that whose length is nearer to its bone's.
+fn mirror_shape(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
+    let misfit = |body: usize| {
+        let long = longest(&exam.def.bodies[body].shape);
+        (long / exam.bones.length(body).unwrap_or(0.12 * exam.size) - 1.0).abs()
+    };
+    let (wrong, right) = if misfit(a) > misfit(b) { (a, b) } else { (b, a) };
+    let plane = exam.bones.plane_of_symmetry();
+    let source = &exam.def.bodies[right];
+    reshape(exam, def, wrong, source.shape.clone(), mirror::mirrored(source.character_from_body, plane));
+}
+
+/// Gives a body another shape in another place; its joints stay where they are in the character.
+fn reshape(exam: &Exam<'_>, def: &mut RagdollDef, body: usize, shape: Shape, place: Transform) {
+    let old = exam.def.bodies[body].character_from_body;
+    let new_from_old = place.inverse() * old;
+    for joint in &mut def.joints {
+        if joint.parent == body {
+            joint.frame_parent = new_from_old * joint.frame_parent;
+        }
+        if joint.child == body {
+            joint.frame_child = new_from_old * joint.frame_child;
+        }
+    }
+    let mass = def.bodies[body].mass.mass;
+    def.bodies[body].mass = masses::of_shape(&shape, mass);
+    def.bodies[body].shape = shape;
+    def.bodies[body].character_from_body = place;
+}
+
+fn disable(def: &mut RagdollDef, a: usize, b: usize) {
+    let pair = (min_of(a, b), a + b - min_of(a, b));
+    if !def.disabled_pairs.contains(&pair) {
+        def.disabled_pairs.push(pair);
+        def.disabled_pairs.sort_unstable();
+    }
+}
+
+fn min_of(a: usize, b: usize) -> usize {
+    if a < b { a } else { b }
+}
+
+/// The pair that collides and touches, and has this body or a neighbour of it in it.
+fn nearest_pair(exam: &Exam<'_>, body: usize) -> Option<(usize, usize)> {
+    let pairs = crate::ragdoll::colliding_pairs(exam.def).into_iter();
+    let near =
+        |&(a, b): &(usize, usize)| exam.bones.distance(a, body) <= 1 || exam.bones.distance(b, body) <= 1;
+    let deepest = pairs.filter(near).map(|(a, b)| (depth(exam, a, b), (a, b)));
+    let best = deepest.fold(
+        (0.0, None),
+        |best, (depth, pair)| {
+            if depth > best.0 { (depth, Some(pair)) } else { best }
+        },
+    );
+    best.1
+}
+
+/// A shape of the size that the rig, the other side or the bone says.
+fn resize(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) {
+    let own = &exam.def.bodies[body];
+    let rig = exam.patient.reference.as_ref();
+    if let Some(found) = rig.and_then(|rig| rig.bodies.iter().find(|other| other.bone == own.bone)) {
+        return reshape(exam, def, body, found.shape.clone(), found.character_from_body);
+    }
+    let wanted = exam.bones.length(body).unwrap_or(0.12 * exam.size);
+    let plane = exam.bones.plane_of_symmetry();
+    let twin = exam.bones.twin(body).map(|twin| &exam.def.bodies[twin]);
+    if let Some(twin) = twin.filter(|twin| (0.5..2.0).contains(&(longest(&twin.shape) / wanted))) {
+        return reshape(
+            exam,
+            def,
+            body,
+            twin.shape.clone(),
+            mirror::mirrored(twin.character_from_body, plane),
+        );
+    }
+    let long = longest(&own.shape);
+    let factor = if long > wanted { wanted / long } else { max(wanted / long, 1.0) };
+    let shape = scaled(&own.shape, factor);
+    let shape = if shape.smallest_extent() < shapes::THIN * exam.size {
+        // A thread along its bone stays thin when it is made longer: it becomes a capsule.
+        let radius = max(0.1 * wanted, 2.0 * shapes::THIN * exam.size);
+        Shape::Capsule { half_height: max(0.5 * wanted - radius, 0.0), radius }
+    } else {
+        shape
+    };
+    reshape(exam, def, body, shape, own.character_from_body);
+}
+
+/// Half of what the substep can follow.
+fn soften(patient: &mut Patient, index: usize) -> bool {
+    let nyquist = 0.5 / patient.substep;
+    let wanted = 0.5 * nyquist;
+    let inertia = turning_inertia(&Exam::new(patient), index);
+    let Some(Some(softness)) = patient.springs.get_mut(index) else { return false };
+    *softness = match *softness {
+        Softness::Frequency { damping_ratio, .. } => Softness::Frequency { hertz: wanted, damping_ratio },
+        Softness::Stiffness { damping, .. } => {
+            let speed = 2.0 * PI * wanted;
+            Softness::Stiffness { stiffness: inertia * speed * speed, damping }
+        }
+    };
+    true
+}

@@ -1,0 +1,145 @@
+//! Why a ragdoll jitters, explodes or looks wrong: each cause with what was measured, and what mends it.
+//!
+//! The causes are those that other tools leave their users alone with: limits that are all alike, joints without
+//! limits, heads without bodies, frames whose zero is not the bind pose, bodies that start inside each other.
+
+mod anatomy;
+mod code;
+mod exam;
+mod geometry;
+mod graft;
+mod limits;
+mod masses;
+mod mend;
+mod mirror;
+mod motion;
+mod shapes;
+
+pub use code::{Code, Severity};
+pub use exam::limit_reach;
+pub(crate) use geometry::scaled;
+
+use crate::def::RagdollDef;
+use exam::Exam;
+use sinew_physics::{Softness, WorldDef};
+
+/// A ragdoll to be examined.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Patient {
+    /// The ragdoll.
+    pub def: RagdollDef,
+    /// Spring or motor of each joint, in the order of the joints; `None` for a limp one. May be shorter than the joints.
+    pub springs: Vec<Option<Softness>>,
+    /// What a build from the patient's rig gives, if the rig is at hand: it knows what the definition leaves out.
+    pub reference: Option<RagdollDef>,
+    /// Length of a substep, seconds. Default: that of a default world, 1/240.
+    pub substep: f32,
+}
+
+impl Patient {
+    /// A limp ragdoll whose rig is not at hand.
+    pub fn new(def: RagdollDef) -> Self {
+        let world = WorldDef::default();
+        Self { def, springs: Vec::new(), reference: None, substep: world.dt() / world.substeps as f32 }
+    }
+}
+
+/// Something that is wrong with a ragdoll.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// Kind of trouble.
+    pub code: Code,
+    /// How bad it is.
+    pub severity: Severity,
+    /// Indices of the bodies that it is about, the one to look at first.
+    pub bodies: Vec<usize>,
+    /// Names of their bones; of a body that is missing, its role.
+    pub bones: Vec<String>,
+    /// What was measured, a sentence with both bodies' names.
+    pub evidence: String,
+    /// What to do, a sentence.
+    pub fix: String,
+    /// Whether [`cure`] did it; false from [`doctor`].
+    pub fixed: bool,
+}
+
+/// Everything that is wrong with a ragdoll, the worst first.
+///
+/// # Panics
+/// If the definition has no bodies, or its joints are not in the order of the bodies (`joints[i].child == i + 1`, each
+/// parent before its child).
+pub fn doctor(patient: &Patient) -> Vec<Finding> {
+    let def = &patient.def;
+    assert!(
+        def.joints.len() + 1 == def.bodies.len()
+            && def.joints.iter().enumerate().all(|(i, joint)| joint.child == i + 1 && joint.parent <= i),
+        "every body but the first has one joint, to a body before it"
+    );
+    let mut findings = anatomy::not_finite(def);
+    if findings.is_empty() {
+        findings = anatomy::wrong_unit(def);
+        // What else is wrong shows in the right size only.
+        let sized;
+        let patient = if findings.is_empty() {
+            patient
+        } else {
+            sized = anatomy::patient_in_metres(patient);
+            &sized
+        };
+        findings.extend(in_proportion(&Exam::new(patient)));
+    }
+    findings.sort_by_key(|finding| (finding.severity, finding.code));
+    findings
+}
+
+/// Findings on a ragdoll of sound numbers and a sensible size.
+fn in_proportion(exam: &Exam<'_>) -> Vec<Finding> {
+    let mut findings = masses::findings(exam);
+    findings.extend(anatomy::missing_bodies(exam));
+    findings.extend(shapes::findings(exam));
+    findings.extend(anatomy::inferred(exam));
+    limits::findings(exam, &mut findings);
+    mirror::findings(exam, &mut findings);
+    // Places where it moves are an effect; where the cause is known, they show what that does.
+    let unrest = motion::Unrest::of(exam);
+    if let Some(evidence) = unrest.is_notable(exam) {
+        let cause = findings.iter_mut().find(|f| f.severity == Severity::Error || f.code == Code::HugeShape);
+        match cause {
+            Some(cause) => cause.evidence = format!("{}; {evidence}", cause.evidence),
+            None => findings.push(unrest.finding(exam, evidence)),
+        }
+    }
+    findings
+}
+
+/// The most rounds of mending: what one fix uncovers, the next round mends.
+const ROUNDS: usize = 6;
+
+/// The ragdoll with everything mended that can be, and what was wrong with the one that came in; `fixed` tells of each
+/// finding whether it is gone.
+///
+/// # Panics
+/// As [`doctor`].
+pub fn cure(patient: &Patient) -> (Patient, Vec<Finding>) {
+    let mut findings = doctor(patient);
+    let mut cured = patient.clone();
+    let mut open = findings.clone();
+    for _ in 0..ROUNDS {
+        let mut changed = false;
+        for finding in &open {
+            changed |= mend::mend(&mut cured, finding);
+        }
+        open = doctor(&cured);
+        if !changed || open.is_empty() {
+            break;
+        }
+    }
+    for finding in &mut findings {
+        finding.fixed = !open.iter().any(|left| left.code == finding.code && left.bones == finding.bones);
+    }
+    // What a remedy brought with it and none could take away is told too.
+    let known = |left: &Finding| findings.iter().any(|f| f.code == left.code && f.bones == left.bones);
+    let new: Vec<Finding> = open.into_iter().filter(|left| !known(left)).collect();
+    findings.extend(new);
+    (cured, findings)
+}

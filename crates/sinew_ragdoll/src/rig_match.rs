@@ -1,0 +1,84 @@
+//! Whether a definition belongs to a rig.
+
+use crate::build::joint_name;
+use crate::def::RagdollDef;
+use sinew_anim::{JointIdx, Rig};
+
+/// A body whose bone the rig does not have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RigMismatch {
+    /// The rig has no joint of this name, or several and none in the old place.
+    #[error("the ragdoll's bone `{bone}` is not in this rig")]
+    NoBone {
+        /// Its name in the definition.
+        bone: String,
+        /// Index of the body.
+        body: usize,
+    },
+    /// Two bodies name one joint.
+    #[error("two bodies of the ragdoll have the bone `{bone}`")]
+    Twice {
+        /// Its name.
+        bone: String,
+        /// Index of the later body.
+        body: usize,
+    },
+    /// A joint that moves with a body is not in the rig.
+    #[error("the rig has no joint {joint}, which is to move with `{bone}`")]
+    NoJoint {
+        /// Index of the joint in the definition.
+        joint: usize,
+        /// Name of the body's bone.
+        bone: String,
+        /// Index of the body.
+        body: usize,
+    },
+}
+
+impl RigMismatch {
+    /// Index of the body that it is about.
+    pub fn body(&self) -> usize {
+        match *self {
+            Self::NoBone { body, .. } | Self::Twice { body, .. } | Self::NoJoint { body, .. } => body,
+        }
+    }
+}
+
+impl RagdollDef {
+    /// The definition with the joint indices of `rig`, by the names of bones: a file that was exported anew may have its
+    /// joints in another order. Where a bone is no longer in its place, joints that moved with it are those below it.
+    ///
+    /// # Errors
+    /// See [`RigMismatch`].
+    pub fn for_rig(mut self, rig: &Rig) -> Result<Self, RigMismatch> {
+        let mut taken: Vec<JointIdx> = Vec::new();
+        let mut moved = Vec::new();
+        for (index, body) in self.bodies.iter_mut().enumerate() {
+            let is_here = |joint: JointIdx| joint < rig.joints.len() && joint_name(rig, joint) == body.bone;
+            if !is_here(body.joint) {
+                let mut named = (0..rig.joints.len()).filter(|&joint| is_here(joint));
+                let (Some(joint), None) = (named.next(), named.next()) else {
+                    return Err(RigMismatch::NoBone { bone: body.bone.clone(), body: index });
+                };
+                body.joint = joint;
+                moved.push(index);
+            }
+            if taken.contains(&body.joint) {
+                return Err(RigMismatch::Twice { bone: body.bone.clone(), body: index });
+            }
+            taken.push(body.joint);
+        }
+        for index in 0..self.bodies.len() {
+            if moved.is_empty() {
+                let body = &self.bodies[index];
+                if let Some(&joint) = body.merged.iter().find(|&&joint| joint >= rig.joints.len()) {
+                    return Err(RigMismatch::NoJoint { joint, bone: body.bone.clone(), body: index });
+                }
+            } else {
+                // Indices of a rig in another order mean nothing; what hangs below rides along by itself.
+                self.bodies[index].merged.clear();
+            }
+        }
+        Ok(self)
+    }
+}

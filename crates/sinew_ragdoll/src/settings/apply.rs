@@ -1,0 +1,212 @@
+//! Settings that change what the stages of the build give: shapes, masses, limits, pairs.
+
+use super::bodies::{named, no_bone};
+use super::{BoneSettings, JointWish, Settings, SettingsError, ShapeWish};
+use crate::build::{BuildOptions, BuildReport, Overrides, build_overridden};
+use crate::def::{RagdollDef, RagdollJointDef};
+use crate::doctor::scaled;
+use crate::fit::{Fit, ShapeChoice};
+use crate::masses::de_leva::Sex;
+use core::f32::consts::PI;
+use sinew_anim::Rig;
+use sinew_anim::roles::RigAnalysis;
+use sinew_math::{Range, SwingTwistLimit};
+use sinew_physics::{JointKind, Shape};
+
+/// Builds with what is wanted otherwise; the analysis has been settled.
+pub(super) fn build(
+    rig: &Rig,
+    analysis: &RigAnalysis,
+    options: &BuildOptions,
+    settings: &Settings,
+) -> Result<(RagdollDef, BuildReport), SettingsError> {
+    let options = BuildOptions {
+        shapes: settings.shapes.filter(|_| options.shapes == ShapeChoice::Auto).unwrap_or(options.shapes),
+        mass: options.mass.or(settings.mass),
+        sex: settings.sex.filter(|_| options.sex == Sex::Male).unwrap_or(options.sex),
+    };
+    let names: Vec<[String; 2]> = analysis
+        .kept
+        .iter()
+        .map(|bone| [bone.role.name(), crate::build::joint_name(rig, bone.joint)])
+        .collect();
+    let wishes = Wishes::of(settings, &names)?;
+    let overrides = Overrides {
+        shape: &|body, fit, other| wishes.shape(body, fit, other),
+        disable: wishes.pairs(&settings.disable, "disable_pairs")?,
+        enable: wishes.pairs(&settings.enable, "enable_pairs")?,
+    };
+    let (mut def, report) = build_overridden(rig, analysis, &options, &overrides)?;
+    wishes.check_enabled(&def, settings)?;
+    wishes.weigh(&mut def, options.mass);
+    for joint in &mut def.joints {
+        *joint = wishes.joint(joint);
+    }
+    Ok((def, report))
+}
+
+/// The settings by body.
+struct Wishes<'a> {
+    /// Role and bone of each body.
+    names: &'a [[String; 2]],
+    bodies: Vec<BoneSettings>,
+}
+
+impl<'a> Wishes<'a> {
+    fn of(settings: &Settings, names: &'a [[String; 2]]) -> Result<Self, SettingsError> {
+        let mut wishes = Self { names, bodies: vec![BoneSettings::default(); names.len()] };
+        for (name, bone) in &settings.bones {
+            let place = format!("bones.{name}");
+            // A bone without a body has nothing more to be said about.
+            if bone.body == Some(super::BodyWish::Drop) {
+                continue;
+            }
+            for body in wishes.named(name, &place)? {
+                let is_both = names[body][0] != *name && names[body][1] != *name;
+                let mirror = is_both && names[body][0].starts_with("right");
+                wishes.bodies[body] = merged(wishes.bodies[body], bone, mirror);
+            }
+        }
+        Ok(wishes)
+    }
+
+    /// Bodies of that name.
+    fn named(&self, name: &str, place: &str) -> Result<Vec<usize>, SettingsError> {
+        let is = |body: &usize| named(name, &self.names[*body][0], &self.names[*body][1]);
+        let found: Vec<usize> = (0..self.names.len()).filter(is).collect();
+        if found.is_empty() {
+            let known: Vec<String> = self.names.iter().flatten().cloned().collect();
+            return Err(no_bone(name, &known, place));
+        }
+        Ok(found)
+    }
+
+    /// Pairs of bodies, the smaller index first.
+    fn pairs(&self, pairs: &[[String; 2]], key: &str) -> Result<Vec<(usize, usize)>, SettingsError> {
+        let mut out = Vec::new();
+        for (index, [a, b]) in pairs.iter().enumerate() {
+            let place = format!("{key}[{index}]");
+            for &a in &self.named(a, &place)? {
+                for &b in &self.named(b, &place)? {
+                    if a != b {
+                        out.push((usize::min(a, b), usize::max(a, b)));
+                    }
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    fn check_enabled(&self, def: &RagdollDef, settings: &Settings) -> Result<(), SettingsError> {
+        for (index, pair) in settings.enable.iter().enumerate() {
+            let place = format!("enable_pairs[{index}]");
+            for (a, b) in self.pairs(core::slice::from_ref(pair), "enable_pairs")? {
+                if def.joints.iter().any(|joint| (joint.parent, joint.child) == (a, b)) {
+                    let what = format!("`{}` and `{}` are joined: they never collide", pair[0], pair[1]);
+                    return Err(SettingsError::at(place, what));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The shape of a body: `fit` is that of the build, `other` gives that of another kind.
+    fn shape(&self, body: usize, fit: Fit, other: &dyn Fn(ShapeChoice) -> Fit) -> Fit {
+        let wish = &self.bodies[body];
+        let mut fit = match wish.shape {
+            None => fit,
+            Some(ShapeWish::Box) => other(ShapeChoice::Box),
+            Some(ShapeWish::Capsule) => other(ShapeChoice::Capsule),
+            Some(ShapeWish::Sphere) => {
+                let cuboid = other(ShapeChoice::Box);
+                let volume = cuboid.shape.volume();
+                let radius = sinew_math::trig::cbrt(0.75 * volume / PI);
+                Fit { shape: Shape::Sphere { radius }, ..cuboid }
+            }
+        };
+        if let Some(scale) = wish.scale {
+            fit.shape = scaled(&fit.shape, scale);
+        }
+        fit
+    }
+
+    /// Masses as they are wanted; with a total the others make up for it.
+    fn weigh(&self, def: &mut RagdollDef, total: Option<f32>) {
+        let wanted = |body: usize| self.bodies[body].mass;
+        let given: f32 = (0..def.bodies.len()).filter_map(wanted).sum();
+        let free: f32 =
+            (0..def.bodies.len()).filter(|&b| wanted(b).is_none()).map(|b| def.bodies[b].mass.mass).sum();
+        // Bodies that are given more than the whole leave the others what they have.
+        let rest = total.map(|total| (total - given) / free).filter(|rest| *rest > 0.0).unwrap_or(1.0);
+        let rest = if given > 0.0 { rest } else { 1.0 };
+        for body in 0..def.bodies.len() {
+            let mass = &mut def.bodies[body].mass;
+            let factor = wanted(body).map_or(rest, |wanted| wanted / mass.mass);
+            mass.mass *= factor;
+            mass.inertia = mass.inertia * factor;
+        }
+        def.total_mass = def.bodies.iter().map(|body| body.mass.mass).sum();
+    }
+
+    fn joint(&self, joint: &RagdollJointDef) -> RagdollJointDef {
+        let wish = &self.bodies[joint.child];
+        RagdollJointDef {
+            kind: kind(joint.kind, wish),
+            friction_torque: wish.friction_torque.unwrap_or(joint.friction_torque),
+            ..*joint
+        }
+    }
+}
+
+/// The kind of joint with the ranges that are wanted.
+fn kind(kind: JointKind, wish: &BoneSettings) -> JointKind {
+    const SHUT: Range = Range::new(0.0, 0.0);
+    const OPEN: Range = Range::new(-PI, PI);
+    let open = SwingTwistLimit { swing_y: OPEN, swing_z: OPEN, twist: OPEN };
+    let (own, limit) = match kind {
+        JointKind::Ball { limit } => (JointWish::Ball, limit.unwrap_or(open)),
+        JointKind::Universal { limit } => {
+            (JointWish::Universal, SwingTwistLimit { twist: SHUT, ..limit.unwrap_or(open) })
+        }
+        JointKind::Hinge { limit } => {
+            let twist = limit.unwrap_or(OPEN);
+            (JointWish::Hinge, SwingTwistLimit { swing_y: SHUT, swing_z: SHUT, twist })
+        }
+        _ => (JointWish::Fixed, SwingTwistLimit { swing_y: SHUT, swing_z: SHUT, twist: SHUT }),
+    };
+    let is_wanted = [wish.swing_y, wish.swing_z, wish.twist].iter().any(Option::is_some);
+    if !is_wanted && wish.joint.is_none_or(|joint| joint == own) {
+        return kind;
+    }
+    let limit = SwingTwistLimit {
+        swing_y: wish.swing_y.unwrap_or(limit.swing_y),
+        swing_z: wish.swing_z.unwrap_or(limit.swing_z),
+        twist: wish.twist.unwrap_or(limit.twist),
+    };
+    match wish.joint.unwrap_or(own) {
+        JointWish::Ball => JointKind::Ball { limit: Some(limit) },
+        JointWish::Universal => JointKind::Universal { limit: Some(limit) },
+        JointWish::Hinge => JointKind::Hinge { limit: Some(limit.twist) },
+        JointWish::Fixed => JointKind::Fixed,
+    }
+}
+
+/// What is said later wins. With `mirror` ranges are those of the left, seen from the right: swing about z and twist
+/// have the other sign there.
+fn merged(old: BoneSettings, new: &BoneSettings, mirror: bool) -> BoneSettings {
+    let turned = |range: Range| if mirror { Range::new(-range.hi, -range.lo) } else { range };
+    // A hinge bends the same way on both sides.
+    let bends = new.joint == Some(JointWish::Hinge) || new.swing_y.is_none() && new.swing_z.is_none();
+    let twist = if bends { new.twist } else { new.twist.map(turned) };
+    BoneSettings {
+        body: new.body.or(old.body),
+        shape: new.shape.or(old.shape),
+        scale: new.scale.or(old.scale),
+        mass: new.mass.or(old.mass),
+        joint: new.joint.or(old.joint),
+        swing_y: new.swing_y.or(old.swing_y),
+        swing_z: new.swing_z.map(turned).or(old.swing_z),
+        twist: twist.or(old.twist),
+        friction_torque: new.friction_torque.or(old.friction_torque),
+    }
+}

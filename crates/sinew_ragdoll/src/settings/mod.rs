@@ -1,0 +1,162 @@
+//! What a user wants otherwise than the build does it, kept beside the rig, so that it survives when the rig is exported
+//! anew: by role or by bone, never by index.
+
+mod apply;
+mod bodies;
+
+use crate::build::{BuildError, BuildOptions, BuildReport};
+use crate::def::RagdollDef;
+use crate::fit::ShapeChoice;
+use crate::masses::de_leva::Sex;
+use sinew_anim::Rig;
+use sinew_anim::roles::RigAnalysis;
+use sinew_math::{Range, Vec3};
+
+/// What is wanted otherwise. The default changes nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// Kind of all shapes; `None`: that of the options.
+    pub shapes: Option<ShapeChoice>,
+    /// Mass of the whole, kg; `None`: that of the options.
+    pub mass: Option<f32>,
+    /// Whose distribution of mass; `None`: that of the options.
+    pub sex: Option<Sex>,
+    /// Length of the file's unit.
+    pub unit: Option<Unit>,
+    /// The file's axis that points up: unit, along an axis.
+    pub up_axis: Option<Vec3>,
+    /// Bones, by role, by role without its side (both sides), or by the name of the rig's joint; later ones win.
+    pub bones: Vec<(String, BoneSettings)>,
+    /// Pairs of bones that shall not collide.
+    pub disable: Vec<[String; 2]>,
+    /// Pairs of bones that shall collide, whatever the build thinks.
+    pub enable: Vec<[String; 2]>,
+}
+
+/// How long the file's unit is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Unit {
+    /// Metres.
+    Scale(f32),
+    /// So that the character has this height in its bind pose, metres.
+    Height(f32),
+}
+
+/// What is wanted otherwise of one bone.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BoneSettings {
+    /// Whether it gets a body.
+    pub body: Option<BodyWish>,
+    /// Kind of its shape.
+    pub shape: Option<ShapeWish>,
+    /// Factor on the fitted shape.
+    pub scale: Option<f32>,
+    /// kg. Where the mass of the whole is given too, the other bodies make up for it.
+    pub mass: Option<f32>,
+    /// Kind of its joint to the parent.
+    pub joint: Option<JointWish>,
+    /// Swing about y, radians, zero inside.
+    pub swing_y: Option<Range>,
+    /// Swing about z, radians, zero inside.
+    pub swing_z: Option<Range>,
+    /// Twist, or the angle of a hinge, radians.
+    pub twist: Option<Range>,
+    /// N·m.
+    pub friction_torque: Option<f32>,
+}
+
+/// Whether a bone gets a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyWish {
+    /// It gets one, though the build would merge it into another.
+    Keep,
+    /// It moves with its parent's body.
+    Drop,
+}
+
+/// Kind of one shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShapeWish {
+    /// A box.
+    Box,
+    /// A capsule.
+    Capsule,
+    /// A ball of the box's volume.
+    Sphere,
+}
+
+/// Kind of one joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointWish {
+    /// Swings and twists.
+    Ball,
+    /// Turns about one axis.
+    Hinge,
+    /// Swings.
+    Universal,
+    /// Does not turn.
+    Fixed,
+}
+
+/// Why settings cannot be followed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SettingsError {
+    /// The rig cannot be built at all.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// A setting that this rig does not allow.
+    #[error("{what}")]
+    Setting {
+        /// What is wrong, one line.
+        what: String,
+        /// The key that says it, such as `bones.leftHand`.
+        place: String,
+    },
+}
+
+impl SettingsError {
+    fn at(place: impl Into<String>, what: impl Into<String>) -> Self {
+        Self::Setting { what: what.into(), place: place.into() }
+    }
+}
+
+/// [`build`](crate::build()) with settings. What both say, the options' `None` leaves to the settings.
+///
+/// # Errors
+/// What `build` refuses; names that are no bone of this rig, with the nearest one; a pelvis that shall be dropped; pairs
+/// that shall collide though a joint ties them.
+pub fn build_with(
+    rig: &Rig,
+    analysis: &RigAnalysis,
+    options: &BuildOptions,
+    settings: &Settings,
+) -> Result<(RagdollDef, BuildReport), SettingsError> {
+    if *settings == Settings::default() {
+        return Ok(crate::build::build(rig, analysis, options)?);
+    }
+    let analysis = bodies::settled(rig, analysis, settings)?;
+    apply::build(rig, &analysis, options, settings)
+}
+
+/// The name among `known` that is nearest to `name`, if it is near: at most a third of its letters differ.
+pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let close = |&(distance, _): &(usize, &str)| distance <= name.chars().count().div_ceil(3);
+    known.map(|other| (distance(name, other), other)).filter(close).min_by_key(|&(d, _)| d).map(|(_, n)| n)
+}
+
+/// Levenshtein's distance, letters without case.
+fn distance(a: &str, b: &str) -> usize {
+    let lower = |text: &str| -> Vec<char> { text.chars().flat_map(char::to_lowercase).take(64).collect() };
+    let (a, b) = (lower(a), lower(b));
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.iter().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}

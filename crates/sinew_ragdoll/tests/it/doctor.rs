@@ -1,0 +1,422 @@
+//! What ragdolls of other tools suffer from, planted into a healthy one: the doctor names exactly that, and mends it.
+
+use crate::actor::walker;
+use sinew_math::{Range, SwingTwistLimit, Sym3, Transform, Vec3};
+use sinew_physics::{JointKind, MassProperties, Shape, Softness};
+use sinew_ragdoll::doctor::{Code, Finding, Severity};
+use sinew_ragdoll::{
+    BuildOptions, Patient, RagdollBodyDef, RagdollDef, RagdollJointDef, build, cure, doctor, drop_test,
+};
+
+/// A healthy ragdoll whose rig is at hand.
+fn healthy() -> Patient {
+    let def = walker().ragdoll;
+    Patient { reference: Some(def.clone()), ..Patient::new(def) }
+}
+
+/// The healthy ragdoll of a rig that others made, if it is there.
+fn healthy_stranger() -> Option<Patient> {
+    let rig = crate::data::rig("mannequiny.glb")?;
+    let analysis = sinew_anim::analyze(&rig).expect("a skin");
+    let (def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
+    Some(Patient { reference: Some(def.clone()), ..Patient::new(def) })
+}
+
+fn body(def: &RagdollDef, role: &str) -> usize {
+    def.bodies.iter().position(|body| body.role == role).unwrap_or_else(|| panic!("no {role}"))
+}
+
+fn joint<'a>(patient: &'a mut Patient, role: &str) -> &'a mut RagdollJointDef {
+    let body = body(&patient.def, role);
+    &mut patient.def.joints[body - 1]
+}
+
+fn cone(y: f32, z: f32, twist: [f32; 2]) -> JointKind {
+    let half = |degrees: f32| Range::degrees(-degrees, degrees);
+    let limit =
+        SwingTwistLimit { swing_y: half(y), swing_z: half(z), twist: Range::degrees(twist[0], twist[1]) };
+    JointKind::Ball { limit: Some(limit) }
+}
+
+/// The joint as other tools set it up: the bind pose is its zero.
+fn zeroed(patient: &mut Patient, role: &str, kind: JointKind) {
+    let def = &patient.def;
+    let joint = def.joints[body(def, role) - 1];
+    let turn = |body: usize| def.bodies[body].character_from_body.rotation;
+    let axes = turn(joint.child) * joint.frame_child.rotation;
+    let rotation = turn(joint.parent).inverse() * axes;
+    let frame_parent = Transform { rotation, ..joint.frame_parent };
+    *self::joint(patient, role) = RagdollJointDef { frame_parent, kind, ..joint };
+}
+
+fn every_joint(patient: &mut Patient, kind: JointKind) {
+    for child in 1..patient.def.bodies.len() {
+        let role = patient.def.bodies[child].role.clone();
+        zeroed(patient, &role, kind);
+    }
+}
+
+/// Without these bodies, and what hangs on them.
+fn without(patient: &mut Patient, roles: &[&str]) {
+    let def = &mut patient.def;
+    for role in roles {
+        let gone = body(def, role);
+        assert!(def.joints.iter().all(|joint| joint.parent != gone), "{role} carries another");
+        def.bodies.remove(gone);
+        def.joints.remove(gone - 1);
+        let moved = |body: &mut usize| *body -= usize::from(*body > gone);
+        def.joints.iter_mut().for_each(|joint| {
+            moved(&mut joint.parent);
+            moved(&mut joint.child);
+        });
+        def.disabled_pairs.retain(|&(a, b)| a != gone && b != gone);
+        def.disabled_pairs.iter_mut().for_each(|(a, b)| {
+            moved(a);
+            moved(b);
+        });
+    }
+}
+
+fn thicker(patient: &mut Patient, role: &str, factor: f32) {
+    let body = body(&patient.def, role);
+    let shape = &mut patient.def.bodies[body].shape;
+    *shape = match *shape {
+        Shape::Capsule { half_height, radius } => Shape::Capsule { half_height, radius: factor * radius },
+        Shape::Box { half_extents } => Shape::Box { half_extents: half_extents * factor },
+        ref other => panic!("{role} is a {other:?}"),
+    };
+}
+
+type Plant = (&'static str, Code, fn(&mut Patient));
+
+/// Each failing of a tool, its code, and how it looks in a definition.
+const FAILINGS: [Plant; 28] = [
+    ("UE: every generated limit is 45°", Code::LimitsAllAlike, |p| {
+        every_joint(p, cone(45.0, 45.0, [-45.0, 45.0]));
+    }),
+    ("Unity: a limit below 5°", Code::LimitTooNarrow, |p| {
+        zeroed(p, "neck", cone(2.0, 2.0, [-30.0, 30.0]));
+    }),
+    ("Unity: 20 kg in all", Code::MassImplausible, |p| scale_mass(p, 20.0 / p.def.total_mass)),
+    ("Unity: masses that ask for massScale", Code::MassRatio, |p| {
+        let hand = body(&p.def, "leftHand");
+        p.def.bodies[hand].mass.mass *= 0.02;
+        p.def.bodies[hand].mass.inertia = p.def.bodies[hand].mass.inertia * 0.02;
+    }),
+    ("Jolt: a knee that bends both ways", Code::BendsBothWays, |p| {
+        joint(p, "leftLowerLeg").kind = JointKind::Hinge { limit: Some(Range::degrees(-60.0, 60.0)) };
+    }),
+    ("Jolt: its cone for a knee", Code::BendsBothWays, |p| {
+        zeroed(p, "rightLowerLeg", cone(60.0, 15.0, [-10.0, 10.0]));
+    }),
+    ("Box3D: thighs whose twists are no mirror images", Code::LimitsNotMirrored, |p| {
+        zeroed(p, "leftUpperLeg", cone(50.0, 40.0, [-60.0, 40.0]));
+        zeroed(p, "rightUpperLeg", cone(50.0, 40.0, [-30.0, 60.0]));
+    }),
+    ("Godot: joints without limits", Code::LimitsMissing, |p| {
+        every_joint(p, JointKind::Ball { limit: None });
+    }),
+    ("SMPL: ±180° everywhere", Code::LimitsMissing, |p| {
+        every_joint(p, cone(180.0, 180.0, [-180.0, 180.0]));
+    }),
+    ("Godot: the head is a leaf, and has no body", Code::HeadWithoutBody, |p| without(p, &["head"])),
+    ("Godot: only the first child gets a body", Code::LimbWithoutBody, |p| {
+        without(p, &["rightHand", "rightLowerArm", "rightUpperArm"]);
+    }),
+    ("Godot: a forearm without its hand", Code::LimbWithoutBody, |p| without(p, &["rightHand"])),
+    ("shock2quest: bodies overlap at spawn", Code::OverlapAtStart, |p| {
+        thicker(p, "leftUpperLeg", 1.9);
+        thicker(p, "rightUpperLeg", 1.9);
+    }),
+    ("shock2quest: no self-collision", Code::NoSelfCollision, |p| {
+        let count = p.def.bodies.len();
+        p.def.disabled_pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))).collect();
+    }),
+    ("shock2quest: frames without rotation", Code::IdentityFrames, |p| {
+        for role in ["leftFoot", "rightFoot"] {
+            let joint = joint(p, role);
+            joint.frame_parent = Transform::from_translation(joint.frame_parent.translation);
+            joint.frame_child = Transform::from_translation(joint.frame_child.translation);
+        }
+    }),
+    ("frames at the origins of both bodies", Code::IdentityFrames, |p| {
+        let joint = joint(p, "leftLowerLeg");
+        (joint.frame_parent, joint.frame_child) = (Transform::IDENTITY, Transform::IDENTITY);
+    }),
+    ("shock2quest: the hip is anchored at the pelvis's origin", Code::AnchorsApart, |p| {
+        joint(p, "leftUpperLeg").frame_parent.translation = Vec3::ZERO;
+    }),
+    ("the thigh swings about the pelvis's origin", Code::PivotOffBone, |p| {
+        let (pelvis, thigh) = (p.def.bodies[0].character_from_body, body(&p.def, "leftUpperLeg"));
+        let thigh = p.def.bodies[thigh].character_from_body;
+        let joint = joint(p, "leftUpperLeg");
+        joint.frame_parent.translation = Vec3::ZERO;
+        joint.frame_child.translation = thigh.inverse_point(pelvis.translation);
+    }),
+    ("stretch: an elbow torn open by 5 cm", Code::AnchorsApart, |p| {
+        joint(p, "leftLowerArm").frame_child.translation += Vec3::Y * 0.05;
+    }),
+    ("an elbow whose range leaves out the bind pose", Code::LimitViolatedAtBind, |p| {
+        joint(p, "leftLowerArm").kind = JointKind::Hinge { limit: Some(Range::degrees(60.0, 140.0)) };
+    }),
+    ("a file in centimetres", Code::WrongUnit, |p| enlarge(p, 100.0)),
+    ("a file in inches taken as metres", Code::WrongUnit, |p| enlarge(p, 39.37)),
+    ("a forearm like a wire", Code::TinyShape, |p| {
+        let forearm = body(&p.def, "leftLowerArm");
+        p.def.bodies[forearm].shape = Shape::Capsule { half_height: 0.1, radius: 0.0005 };
+    }),
+    ("a hand of 3 m", Code::HugeShape, |p| {
+        let hand = body(&p.def, "leftHand");
+        p.def.bodies[hand].shape = Shape::Box { half_extents: Vec3::new(0.02, 1.5, 0.04) };
+        let mass = &mut p.def.bodies[hand].mass;
+        mass.inertia = Sym3::from_diagonal(Vec3::new(0.1, 0.1, 0.1));
+    }),
+    ("a shank half as thick again as the other", Code::SidesDiffer, |p| {
+        thicker(p, "leftLowerLeg", 1.45);
+    }),
+    ("an inertia of another body", Code::InertiaOutOfProportion, |p| {
+        let thigh = body(&p.def, "leftUpperLeg");
+        p.def.bodies[thigh].mass.inertia = p.def.bodies[thigh].mass.inertia * 60.0;
+    }),
+    ("a motor of 400 Hz", Code::StiffnessAboveNyquist, |p| {
+        p.springs = vec![None; p.def.joints.len()];
+        p.springs[2] = Some(Softness::Frequency { hertz: 400.0, damping_ratio: 1.0 });
+    }),
+    ("a foot without mass", Code::MassNotPositive, |p| {
+        let foot = body(&p.def, "leftFoot");
+        p.def.bodies[foot].mass = MassProperties { mass: 0.0, ..MassProperties::default() };
+    }),
+];
+
+fn scale_mass(patient: &mut Patient, factor: f32) {
+    for body in &mut patient.def.bodies {
+        body.mass.mass *= factor;
+        body.mass.inertia = body.mass.inertia * factor;
+    }
+    patient.def.total_mass *= factor;
+}
+
+fn enlarge(patient: &mut Patient, factor: f32) {
+    let def = &mut patient.def;
+    let place = |at: &mut Transform| at.translation *= factor;
+    for body in &mut def.bodies {
+        place(&mut body.character_from_body);
+        body.shape = match body.shape {
+            Shape::Box { half_extents } => Shape::Box { half_extents: half_extents * factor },
+            Shape::Capsule { half_height, radius } => {
+                Shape::Capsule { half_height: half_height * factor, radius: radius * factor }
+            }
+            Shape::Sphere { radius } => Shape::Sphere { radius: radius * factor },
+            ref other => panic!("{other:?}"),
+        };
+        body.mass.center *= factor;
+        body.mass.inertia = body.mass.inertia * (factor * factor);
+    }
+    for joint in &mut def.joints {
+        place(&mut joint.frame_parent);
+        place(&mut joint.frame_child);
+    }
+    def.height *= factor;
+    def.unit_scale *= factor;
+}
+
+fn codes(findings: &[Finding]) -> Vec<Code> {
+    let mut codes: Vec<Code> = findings.iter().map(|finding| finding.code).collect();
+    codes.sort_unstable();
+    codes.dedup();
+    codes
+}
+
+#[test]
+fn nothing_is_wrong_with_a_healthy_ragdoll() {
+    assert_eq!(doctor(&healthy()), []);
+    assert_eq!(doctor(&Patient::new(walker().ragdoll)), []);
+}
+
+#[test]
+fn every_failing_is_named_and_nothing_else() {
+    let mut wrong = Vec::new();
+    for (what, code, plant) in FAILINGS {
+        let mut patient = healthy();
+        plant(&mut patient);
+        let findings = doctor(&patient);
+        if codes(&findings) != [code] {
+            wrong.push(format!("{what}: {findings:#?}"));
+        }
+        for finding in &findings {
+            // Who it is about is named, but where it is the whole body.
+            let named = finding.bodies.first().map(|&body| patient.def.bodies[body].role.as_str());
+            let is_told = named.is_none_or(|role| finding.evidence.contains(role));
+            let of_all = matches!(code, Code::MassImplausible | Code::LimitsAllAlike);
+            assert!(is_told || of_all, "{what}: {}", finding.evidence);
+            assert!(!finding.fixed && !finding.bones.is_empty(), "{what}");
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The same in a body of other proportions, in another pose, with collar bones.
+#[test]
+fn strangers_are_read_as_well() {
+    let Some(stranger) = healthy_stranger() else { return };
+    assert_eq!(doctor(&stranger), []);
+    let mut wrong = Vec::new();
+    for (what, code, plant) in FAILINGS {
+        let mut patient = stranger.clone();
+        plant(&mut patient);
+        let findings = doctor(&patient);
+        let (cured, told) = cure(&patient);
+        let left = doctor(&cured);
+        if codes(&findings) != [code] || !left.is_empty() || told.iter().any(|finding| !finding.fixed) {
+            wrong.push(format!("{what}: {findings:#?} left: {left:#?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn failings_are_mended_and_the_ragdoll_falls_well() {
+    let mut wrong = Vec::new();
+    for (what, code, plant) in FAILINGS {
+        let mut patient = healthy();
+        plant(&mut patient);
+        let (cured, findings) = cure(&patient);
+        let left = doctor(&cured);
+        if !findings.iter().all(|finding| finding.fixed) || !left.is_empty() {
+            wrong.push(format!("{what} ({}): {findings:#?} left: {left:#?}", code.name()));
+            continue;
+        }
+        let report = drop_test(&cured.def);
+        assert_eq!(report.drop.nan + report.wall.nan, 0, "{what}");
+        let gap = sinew_math::max(report.drop.joint_gap_max_m, report.wall.joint_gap_max_m);
+        assert!(gap < 5e-3 && report.drop.asleep_s.is_some(), "{what}: {:?}", report.reasons);
+        let gain = sinew_math::max(report.drop.energy_gain_max, report.wall.energy_gain_max);
+        assert!(gain < 0.02, "{what}: energy gain {gain}");
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// What the doctor calls an error must do harm: it shows in motion, and that is told.
+#[test]
+fn errors_show_in_motion() {
+    let mut wrong = Vec::new();
+    for (what, code, plant) in FAILINGS {
+        if !matches!(code, Code::OverlapAtStart | Code::AnchorsApart | Code::LimitViolatedAtBind) {
+            continue;
+        }
+        let mut patient = healthy();
+        plant(&mut patient);
+        let findings = doctor(&patient);
+        assert_eq!(findings[0].severity, Severity::Error, "{what}");
+        if !findings[0].evidence.contains("left alone without gravity") {
+            wrong.push(format!("{what}: {findings:#?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Three upright pieces, the last folded back to 120° about the middle one; its hinge turns on by `range`.
+fn folding(range: Range) -> RagdollDef {
+    let piece = |role: &str, x: f32, z: f32| {
+        let shape = Shape::Capsule { half_height: 0.12, radius: 0.05 };
+        RagdollBodyDef {
+            bone: role.into(),
+            joint: 0,
+            merged: Vec::new(),
+            role: role.into(),
+            confidence: 1.0,
+            mass: shape.mass_properties(1000.0),
+            shape,
+            character_from_body: Transform::from_translation(Vec3::new(x, 0.2, z)),
+        }
+    };
+    let (sin, cos) = sinew_math::trig::sin_cos(120.0_f32.to_radians());
+    // On a circle of 14 cm about x = 10 cm: at 180° it would be 4 cm behind the first piece's middle.
+    let (x, z) = (0.1 + 0.14 * cos, -0.14 * sin);
+    let bodies = vec![piece("limb_0_0", 0.0, 0.0), piece("limb_0_1", 0.12, 0.0), piece("limb_0_2", x, z)];
+    // A hinge about y, at these points of both bodies.
+    let upright = sinew_math::Rotation::from_arc(Vec3::X, Vec3::Y);
+    let hinge = |parent: usize, at: Vec3, range: Range| {
+        let frame = |body: usize| Transform::new(bodies[body].character_from_body.inverse_point(at), upright);
+        RagdollJointDef {
+            parent,
+            child: parent + 1,
+            frame_parent: frame(parent),
+            frame_child: frame(parent + 1),
+            kind: JointKind::Hinge { limit: Some(range) },
+            friction_torque: 0.1,
+        }
+    };
+    let joints = vec![
+        hinge(0, Vec3::new(0.06, 0.2, 0.0), Range::degrees(-20.0, 20.0)),
+        hinge(1, Vec3::new(0.1, 0.2, 0.0), range),
+    ];
+    let total_mass = bodies.iter().map(|body| body.mass.mass).sum();
+    let height = 0.4;
+    RagdollDef {
+        bodies,
+        joints,
+        total_mass,
+        height,
+        unit_scale: 1.0,
+        up_axis: Vec3::Y,
+        ..RagdollDef::default()
+    }
+}
+
+#[test]
+fn a_contact_that_fights_a_limit() {
+    let free = Patient::new(folding(Range::degrees(-60.0, 10.0)));
+    assert_eq!(doctor(&free), []);
+    let folded = Patient::new(folding(Range::degrees(-2.0, 60.0)));
+    let findings = doctor(&folded);
+    assert_eq!(codes(&findings), [Code::CollisionFightsLimit], "{findings:#?}");
+    let (cured, _) = cure(&folded);
+    assert_eq!(doctor(&cured), []);
+    assert_eq!(cured.def.disabled_pairs, [(0, 2)]);
+}
+
+#[test]
+fn numbers_that_are_none_are_named_and_nothing_panics() {
+    let mut patient = healthy();
+    patient.def.bodies[3].character_from_body.translation.x = f32::NAN;
+    let findings = doctor(&patient);
+    assert_eq!(codes(&findings), [Code::NotFinite]);
+    let (cured, findings) = cure(&patient);
+    assert!(!findings[0].fixed && cured.def.bodies.len() == patient.def.bodies.len());
+    let mut heavy = healthy();
+    heavy.def.bodies[3].mass.mass = f32::INFINITY;
+    assert_eq!(codes(&doctor(&heavy)), [Code::MassNotPositive]);
+}
+
+/// Without the rig a head cannot be grown; that is said.
+#[test]
+fn what_cannot_be_mended_is_said() {
+    let mut patient = healthy();
+    patient.reference = None;
+    without(&mut patient, &["head"]);
+    let (_, findings) = cure(&patient);
+    assert_eq!(codes(&findings), [Code::HeadWithoutBody]);
+    assert!(!findings[0].fixed);
+}
+
+#[test]
+fn codes_have_names_of_their_own() {
+    let mut names: Vec<&str> = Code::ALL.iter().map(|code| code.name()).collect();
+    let kebab = |name: &str| name.chars().all(|c| c.is_ascii_lowercase() || c == '-');
+    assert!(names.iter().all(|name| kebab(name)), "{names:?}");
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), Code::ALL.len());
+}
+
+/// The page that teaches the codes has each of them, as it is here.
+#[test]
+fn the_page_lists_every_code() {
+    let page = include_str!("../../../../docs/ragdoll.md");
+    for code in Code::ALL {
+        let (name, severity) = (code.name(), code.severity().name());
+        let row = format!("| `{name}` | {severity} | {} | {} |\n", code.cause(), code.fix());
+        assert!(page.contains(&row), "docs/ragdoll.md lacks\n{row}");
+    }
+}

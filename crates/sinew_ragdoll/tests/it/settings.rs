@@ -1,0 +1,166 @@
+//! Settings: each does what it says, and nothing else.
+
+use sinew_anim::analyze;
+use sinew_math::{Range, Vec3};
+use sinew_physics::{JointKind, Shape};
+use sinew_ragdoll::settings::{BodyWish, BoneSettings, JointWish, ShapeWish, Unit};
+use sinew_ragdoll::{
+    BuildOptions, Mapping, RagdollDef, Settings, SettingsError, Sex, ShapeChoice, build, build_with,
+};
+use sinew_scenes::mannequin::mannequin;
+
+fn with(settings: &Settings) -> Result<RagdollDef, SettingsError> {
+    let rig = mannequin().rig;
+    let analysis = analyze(&rig).expect("a skin");
+    build_with(&rig, &analysis, &BuildOptions::default(), settings).map(|(def, _)| def)
+}
+
+fn of_bone(name: &str, bone: BoneSettings) -> Settings {
+    Settings { bones: vec![(name.into(), bone)], ..Settings::default() }
+}
+
+fn plain() -> RagdollDef {
+    let rig = mannequin().rig;
+    let analysis = analyze(&rig).expect("a skin");
+    build(&rig, &analysis, &BuildOptions::default()).expect("bones").0
+}
+
+fn body(def: &RagdollDef, role: &str) -> usize {
+    def.bodies.iter().position(|body| body.role == role).unwrap_or_else(|| panic!("no {role}"))
+}
+
+#[test]
+fn none_change_nothing() {
+    assert_eq!(with(&Settings::default()), Ok(plain()));
+    // Nor do such as say what the build does by itself.
+    let settings = Settings { shapes: Some(ShapeChoice::Auto), sex: Some(Sex::Male), ..Settings::default() };
+    assert_eq!(with(&settings), Ok(plain()));
+}
+
+#[test]
+fn shapes_and_their_size() {
+    let sphere = BoneSettings { shape: Some(ShapeWish::Sphere), scale: Some(1.5), ..BoneSettings::default() };
+    let box_ = BoneSettings { shape: Some(ShapeWish::Box), ..BoneSettings::default() };
+    let mut settings = of_bone("head", sphere);
+    settings.bones.push(("lowerArm".into(), box_));
+    let (def, before) = (with(&settings).expect("fits"), plain());
+    let shape = |def: &RagdollDef, role: &str| def.bodies[body(def, role)].shape.clone();
+    assert!(matches!(shape(&def, "head"), Shape::Sphere { .. }), "{:?}", shape(&def, "head"));
+    for role in ["leftLowerArm", "rightLowerArm"] {
+        assert!(matches!(shape(&def, role), Shape::Box { .. }), "{role}");
+    }
+    assert_eq!(shape(&def, "leftFoot"), shape(&before, "leftFoot"));
+    let smaller = with(&of_bone("head", BoneSettings { scale: None, ..sphere })).expect("fits");
+    let (large, small) = (shape(&def, "head"), shape(&smaller, "head"));
+    assert!((large.volume() / small.volume() - 3.375).abs() < 0.01, "{large:?} {small:?}");
+}
+
+#[test]
+fn masses() {
+    let heavy = BoneSettings { mass: Some(3.0), ..BoneSettings::default() };
+    let (def, before) = (with(&of_bone("leftHand", heavy)).expect("weighs"), plain());
+    let hand = body(&def, "leftHand");
+    let gained = 3.0 - before.bodies[hand].mass.mass;
+    assert!((def.bodies[hand].mass.mass - 3.0).abs() < 1e-5);
+    assert!((def.total_mass - before.total_mass - gained).abs() < 1e-3);
+    let settings = Settings { mass: Some(60.0), ..of_bone("leftHand", heavy) };
+    let def = with(&settings).expect("weighs");
+    assert!((def.total_mass - 60.0).abs() < 1e-3 && (def.bodies[hand].mass.mass - 3.0).abs() < 1e-5);
+    let woman = with(&Settings { sex: Some(Sex::Female), ..Settings::default() }).expect("weighs");
+    let thigh = |def: &RagdollDef| def.bodies[body(def, "leftUpperLeg")].mass.mass / def.total_mass;
+    assert!((thigh(&woman) - 0.1478).abs() < 2e-3, "{}", thigh(&woman));
+}
+
+#[test]
+fn joints_of_both_sides_are_mirrored() {
+    let twist = Some(Range::degrees(-50.0, 20.0));
+    let swing_z = Some(Range::degrees(-30.0, 70.0));
+    let bone = BoneSettings { twist, swing_z, friction_torque: Some(7.0), ..BoneSettings::default() };
+    let (def, before) = (with(&of_bone("upperArm", bone)).expect("joins"), plain());
+    let limit = |def: &RagdollDef, role: &str| match def.joints[body(def, role) - 1].kind {
+        JointKind::Ball { limit: Some(limit) } => limit,
+        kind => panic!("{kind:?}"),
+    };
+    let (left, right) = (limit(&def, "leftUpperArm"), limit(&def, "rightUpperArm"));
+    assert_eq!((Some(left.twist), Some(left.swing_z)), (twist, swing_z));
+    assert_eq!(right.twist, Range::new(-left.twist.hi, -left.twist.lo));
+    assert_eq!(right.swing_z, Range::new(-left.swing_z.hi, -left.swing_z.lo));
+    assert_eq!(left.swing_y, limit(&before, "leftUpperArm").swing_y);
+    assert_eq!(def.joints[body(&def, "rightUpperArm") - 1].friction_torque, 7.0);
+    let stiff = BoneSettings { joint: Some(JointWish::Fixed), ..BoneSettings::default() };
+    let def = with(&of_bone("neck", stiff)).expect("joins");
+    assert_eq!(def.joints[body(&def, "neck") - 1].kind, JointKind::Fixed);
+}
+
+#[test]
+fn bones_are_dropped_and_kept() {
+    let rig = mannequin().rig;
+    let analysis = analyze(&rig).expect("a skin");
+    let before = plain();
+    let drop = BoneSettings { body: Some(BodyWish::Drop), ..BoneSettings::default() };
+    let def = with(&of_bone("leftLowerArm", drop)).expect("goes");
+    assert_eq!(def.bodies.len() + 1, before.bodies.len());
+    // The forearm moves with the upper arm, and the hand hangs on that.
+    let (arm, hand) = (body(&def, "leftUpperArm"), body(&def, "leftHand"));
+    assert_eq!(def.joints[hand - 1].parent, arm);
+    assert!(def.bodies[arm].merged.contains(&before.bodies[body(&before, "leftLowerArm")].joint));
+    assert!((def.total_mass - before.total_mass).abs() < 1e-3);
+    // It can be mapped to the rig, as any ragdoll can.
+    let _ = Mapping::new(&rig, &def, &analysis.bind_model);
+    // What the build merged is kept when asked for.
+    let merged = before.bodies.iter().flat_map(|body| &body.merged).next().copied();
+    let Some(joint) = merged else { return };
+    let keep = BoneSettings { body: Some(BodyWish::Keep), ..BoneSettings::default() };
+    let def = with(&of_bone(&rig.joints[joint].name, keep)).expect("stays");
+    assert_eq!(def.bodies.len(), before.bodies.len() + 1);
+    assert!(def.bodies.iter().any(|body| body.joint == joint));
+}
+
+#[test]
+fn pairs() {
+    let both = |a: &str, b: &str| vec![[a.to_owned(), b.to_owned()]];
+    let settings = Settings { disable: both("leftHand", "upperLeg"), ..Settings::default() };
+    let (def, before) = (with(&settings).expect("parts"), plain());
+    let hand = body(&def, "leftHand");
+    for thigh in ["leftUpperLeg", "rightUpperLeg"] {
+        let thigh = body(&def, thigh);
+        assert!(def.disabled_pairs.contains(&(usize::min(hand, thigh), usize::max(hand, thigh))));
+    }
+    let Some(&(a, b)) = before.disabled_pairs.first() else { return };
+    let (one, other) = (&before.bodies[a].role, &before.bodies[b].role);
+    let def = with(&Settings { enable: both(one, other), ..Settings::default() }).expect("meet");
+    assert_eq!(def.disabled_pairs.len() + 1, before.disabled_pairs.len());
+}
+
+#[test]
+fn unit_height_and_up() {
+    let before = plain();
+    let tall = with(&Settings { unit: Some(Unit::Height(3.0)), ..Settings::default() }).expect("grows");
+    assert!((tall.height - 3.0).abs() < 1e-4, "{}", tall.height);
+    let scaled = Settings { unit: Some(Unit::Scale(2.0 * before.unit_scale)), ..Settings::default() };
+    let scaled = with(&scaled).expect("grows");
+    assert!((scaled.height - 2.0 * before.height).abs() < 1e-4);
+    let lying = with(&Settings { up_axis: Some(Vec3::Z), ..Settings::default() }).expect("lies");
+    // On its back, it is as high as it was deep.
+    assert!(lying.height < 0.5 * before.height, "{}", lying.height);
+    let lowest = lying.bodies.iter().map(|body| body.shape.aabb(&body.character_from_body).min.y);
+    assert!(lowest.fold(f32::INFINITY, sinew_math::min).abs() < 0.06, "it lies on the floor");
+}
+
+#[test]
+fn what_a_rig_does_not_allow_is_told_with_its_place() {
+    let place = |settings: &Settings| match with(settings) {
+        Err(SettingsError::Setting { what, place }) => format!("{what} ({place})"),
+        other => panic!("{other:?}"),
+    };
+    let scale = BoneSettings { scale: Some(2.0), ..BoneSettings::default() };
+    assert_eq!(
+        place(&of_bone("leftUperArm", scale)),
+        "no bone or role `leftUperArm`; did you mean `leftUpperArm`? (bones.leftUperArm)"
+    );
+    let drop = BoneSettings { body: Some(BodyWish::Drop), ..BoneSettings::default() };
+    assert!(place(&of_bone("hips", drop)).ends_with("it cannot be dropped (bones.hips)"));
+    let joined = vec![["hips".to_owned(), "leftUpperLeg".to_owned()]];
+    let settings = Settings { enable: joined, ..Settings::default() };
+    assert!(place(&settings).ends_with("they never collide (enable_pairs[0])"));
+}
