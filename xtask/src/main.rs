@@ -1,4 +1,4 @@
-//! All automation of this repository: `cargo xtask ci | tidy | golden | book | bench | fuzz`.
+//! All automation of this repository: `cargo xtask ci | tidy | golden | book | ragdolls | bench | fuzz`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -8,6 +8,7 @@ mod command;
 mod contract;
 mod fuzz;
 mod golden;
+mod ragdolls;
 mod targets;
 mod tidy;
 
@@ -31,6 +32,8 @@ enum Task {
     Golden(golden::Golden),
     /// The pictures of docs/book.md, drawn anew
     Book(book::Book),
+    /// The quality of the ragdolls of many rigs, into docs/ragdoll-quality.md
+    Ragdolls(ragdolls::Ragdolls),
     /// Time and quality beside other engines, into docs/benchmarks.md; or instructions of the kernels
     Bench(bench::Bench),
     /// Bytes from nowhere against the readers, and clips against the runtime
@@ -43,6 +46,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Task::Tidy(tidy) => tidy.run()?,
         Task::Golden(golden) => golden.run()?,
         Task::Book(book) => book.run()?,
+        Task::Ragdolls(ragdolls) => ragdolls.run()?,
         Task::Fuzz(fuzz) => fuzz.run()?,
         Task::Bench(bench) => return bench.run(),
     }

@@ -18,6 +18,8 @@ pub struct RagdollReport<'a> {
     pub def: &'a RagdollDef,
     /// What the build wants a person to know.
     pub notes: &'a [String],
+    /// Processor time from the file to the definition, milliseconds.
+    pub build_ms: f64,
     /// Eight drops and a wall hit.
     pub tested: &'a DropReport,
     /// Random falls, if they were asked for.
@@ -44,6 +46,7 @@ impl RagdollReport<'_> {
             "dropped_bones": def.dropped_bones,
             "disabled_pairs": pairs,
             "notes": self.notes,
+            "build_ms": self.build_ms,
             "quality": self.quality_json(),
         })
     }

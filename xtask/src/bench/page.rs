@@ -266,7 +266,7 @@ mod tests {
         let lacks =
             EngineResult { name: "box3d".into(), reports: vec![json!({ "unsupported": "no balls" })] };
         let engines = vec![engine("sinew", &[2.0], &gap(0.0001)), engine("jolt", &[1.0], &gap(11.0)), lacks];
-        Results { scenes: vec![scene("chain_swing_1000", engines)], bake: None }
+        Results { scenes: vec![scene("chain_swing_1000", engines)], bake: None, build: None }
     }
 
     #[test]

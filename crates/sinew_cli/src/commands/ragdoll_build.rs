@@ -1,5 +1,6 @@
 //! `sinew ragdoll build`: a rigged file becomes a ragdoll, with a report on its quality.
 
+use crate::cpu_clock::timed;
 use crate::failure::Result;
 use crate::files::{CharacterFile, Outputs};
 use crate::ragdoll_report::RagdollReport;
@@ -7,7 +8,7 @@ use crate::report::Report;
 use crate::settings_arg::{LoadedSettings, SettingsArg};
 use clap::ValueEnum;
 use sinew::formats::{Textures, write_ragdoll};
-use sinew::ragdoll::{BuildOptions, Sex, ShapeChoice, drop_test, gate};
+use sinew::ragdoll::{BuildOptions, RagdollDef, Sex, ShapeChoice, drop_test, gate};
 use std::path::PathBuf;
 
 /// Build a ragdoll from a rigged file: shapes, masses, limits, collision filter, and a quality report
@@ -59,14 +60,15 @@ enum SexArg {
 impl RagdollBuild {
     /// Builds, drops it, reports, writes.
     pub fn run(&self) -> Result<Report> {
-        let character = CharacterFile::load(&self.file, Textures::Skip)?;
-        let (def, notes) = self.settings()?.build(&character, &BuildOptions::default())?;
+        let (built, seconds) = timed(|| self.build());
+        let (character, def, notes) = built?;
         let tested = drop_test(&def);
         let gated = self.gate.map(|spawns| gate(&def, spawns as usize));
         let report = RagdollReport {
             file: &character.name,
             def: &def,
             notes: &notes,
+            build_ms: 1000.0 * seconds,
             tested: &tested,
             gated: gated.as_ref(),
         };
@@ -76,6 +78,13 @@ impl RagdollBuild {
         }
         outputs.write()?;
         Ok(report.finish())
+    }
+
+    /// From the file to the definition, with what a person should know.
+    fn build(&self) -> Result<(CharacterFile, RagdollDef, Vec<String>)> {
+        let character = CharacterFile::load(&self.file, Textures::Skip)?;
+        let (def, notes) = self.settings()?.build(&character, &BuildOptions::default())?;
+        Ok((character, def, notes))
     }
 
     /// Settings of the file, and over them what the command line says.
