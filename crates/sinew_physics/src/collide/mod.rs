@@ -140,6 +140,8 @@ pub(crate) fn collide_again(
     if !(world_from_a.is_finite() && world_from_b.is_finite()) {
         return;
     }
+    let balls = [a, b].map(as_ball);
+    let (a, b) = (balls[0].as_ref().unwrap_or(a), balls[1].as_ref().unwrap_or(b));
     if rank(a) <= rank(b) {
         collide_ranked((a, world_from_a), (b, world_from_b), margin, apart, out);
     } else {
@@ -188,6 +190,14 @@ pub(crate) fn collide_pair(
             out.flip();
         }
         _ => out.clear(),
+    }
+}
+
+/// A capsule without length is a ball: it touches at one point.
+fn as_ball(shape: &Shape) -> Option<Shape> {
+    match *shape {
+        Shape::Capsule { half_height: 0.0, radius } => Some(Shape::Sphere { radius }),
+        _ => None,
     }
 }
 

@@ -43,7 +43,11 @@ pub(super) fn fit_hull(bones: &Bones, bone: usize, patch: &Patch) -> Option<Fit>
         let outermost = local.iter().copied().reduce(|a, b| if b.dot(along) > a.dot(along) { b } else { a });
         points.extend(outermost.map(|p| p * SHRINK));
     }
+    // The body's origin is the middle of its shape.
+    let center = Hull::new(&points).ok()?.center();
+    points.iter_mut().for_each(|point| *point -= center);
     let hull = Hull::new(&points).ok()?;
+    let frame = Transform::new(frame.point(center), frame.rotation);
     Some(measured(Shape::Hull(Arc::new(hull)), frame, patch))
 }
 

@@ -2,7 +2,7 @@
 
 use crate::actor::walker;
 use sinew_math::{Range, SwingTwistLimit, Sym3, Transform, Vec3};
-use sinew_physics::{JointKind, MassProperties, Shape, Softness};
+use sinew_physics::{Hull, JointKind, MassProperties, Shape, Softness};
 use sinew_ragdoll::doctor::{Code, Finding, Severity};
 use sinew_ragdoll::{
     BuildOptions, Patient, RagdollBodyDef, RagdollDef, RagdollJointDef, build, cure, doctor, drop_test,
@@ -82,6 +82,11 @@ fn thicker(patient: &mut Patient, role: &str, factor: f32) {
     let shape = &mut patient.def.bodies[body].shape;
     *shape = match *shape {
         Shape::Capsule { half_height, radius } => Shape::Capsule { half_height, radius: factor * radius },
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => Shape::TaperedCapsule {
+            half_height,
+            radius_bottom: factor * radius_bottom,
+            radius_top: factor * radius_top,
+        },
         Shape::Box { half_extents } => Shape::Box { half_extents: half_extents * factor },
         ref other => panic!("{role} is a {other:?}"),
     };
@@ -206,7 +211,16 @@ fn enlarge(patient: &mut Patient, factor: f32) {
             Shape::Capsule { half_height, radius } => {
                 Shape::Capsule { half_height: half_height * factor, radius: radius * factor }
             }
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => Shape::TaperedCapsule {
+                half_height: half_height * factor,
+                radius_bottom: radius_bottom * factor,
+                radius_top: radius_top * factor,
+            },
             Shape::Sphere { radius } => Shape::Sphere { radius: radius * factor },
+            Shape::Hull(ref hull) => {
+                let corners: Vec<Vec3> = hull.vertices().iter().map(|&corner| corner * factor).collect();
+                Shape::Hull(Hull::new(&corners).expect("as good as it was").into())
+            }
             ref other => panic!("{other:?}"),
         };
         body.mass.center *= factor;

@@ -326,7 +326,7 @@ fn particles_rest_on_a_mesh_and_slide_down_it() {
 fn warm_steps_on_terrain_allocate_nothing() {
     let mut world = sleepless();
     crowd(&mut world);
-    for _ in 0..300 {
+    for _ in 0..500 {
         world.step();
     }
     let allocations: u64 = (0..120).map(|_| allocation_counter::measure(|| world.step()).count_total).sum();
