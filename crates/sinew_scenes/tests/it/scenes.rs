@@ -118,6 +118,8 @@ macro_rules! scenes {
 
 scenes!(
     always: [
+        powered,
+        hit_reaction,
         free_fall,
         projectile,
         bounce,
