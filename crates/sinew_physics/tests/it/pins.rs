@@ -144,7 +144,7 @@ fn pins_allocate_nothing_once_warm() {
     world.set_kind(bodies[3], BodyKind::Kinematic);
     run(&mut world, 0.5);
     let motor = world.joint(pins[0]).motor.expect("it has one");
-    let counted = allocation_counter::measure(|| {
+    let mut cycle = || {
         for i in 0..60 {
             let target = Transform::from_translation(Vec3::Y * (1.0 + 0.01 * i as f32));
             world.set_motor(pins[0], Some(Motor { target, ..motor }));
@@ -152,8 +152,9 @@ fn pins_allocate_nothing_once_warm() {
             world.set_kind(bodies[3], kind);
             world.step();
         }
-    });
-    assert_eq!(counted.count_total, 0);
+    };
+    cycle();
+    assert_eq!(allocation_counter::measure(cycle).count_total, 0);
 }
 
 #[test]
