@@ -1,11 +1,12 @@
 //! Drives of a ragdoll: against closed forms, balances of force, momentum and energy, and themselves at other rates.
 
 use crate::actor::{floor, walker};
-use sinew_math::{Reader, Rotation, Sym3, Transform, Vec3, Writer, max};
+use sinew_math::{Random, Reader, Rotation, Sym3, Transform, Vec3, Writer, max};
 use sinew_physics::{BodyDef, JointKind, MassProperties, Shape, Sleeping, Velocity, World, WorldDef};
+use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
 use sinew_ragdoll::{
-    BodyState, DriveMode, Drives, Flesh, Muscle, Pin, QualityMeter, Ragdoll, RagdollBodyDef, RagdollDef,
-    RagdollJointDef,
+    BodyState, DriveMode, Drives, Flesh, Muscle, Pin, Quality, QualityMeter, Ragdoll, RagdollBodyDef,
+    RagdollDef, RagdollJointDef,
 };
 
 const G: f32 = 9.81;
@@ -487,4 +488,90 @@ fn a_weak_motor_that_lifts_is_not_slowed_by_long_steps() {
     };
     let [slow, fast] = [30, 240].map(lifted);
     assert!(fast > 0.3 && (slow - fast).abs() < 0.02 * fast, "{slow} and {fast}");
+}
+
+/// Any mode that a pose which jumps is fit for, or any; any gains.
+fn some_mode(random: &mut Random, modes: usize) -> DriveMode {
+    let muscle = Muscle {
+        hertz: random.range(0.5, 30.0),
+        damping_ratio: random.range(0.2, 3.0),
+        strength: random.range(0.0, 1.0),
+    };
+    let pin = Pin { hertz: random.range(0.5, 30.0), damping_ratio: random.range(0.2, 2.0), ..Pin::FIRM };
+    match random.index(modes) {
+        0 => DriveMode::Limp,
+        1 | 2 => DriveMode::Powered(muscle),
+        3..6 => DriveMode::Pinned(muscle, pin),
+        _ => DriveMode::Keyed,
+    }
+}
+
+/// Modes change at random, bodies are hit; the pose sways if `jumps` is `None`, or else goes elsewhere from one step to the
+/// next, by as much.
+fn torment(seed: u64, jumps: Option<f32>) -> Quality {
+    let mut random = Random::new(seed);
+    let mut driven = Driven::mannequin();
+    driven.world.add_body(&floor());
+    let mut meter = QualityMeter::new(&driven.def, 5.0);
+    let starts = driven.targets.clone();
+    let mut velocities = vec![Velocity::default(); starts.len()];
+    for step in 1..=300 {
+        if step % 15 == 1 {
+            let mode = some_mode(&mut random, if jumps.is_some() { 6 } else { 7 });
+            let (body, half_life) = (random.index(starts.len()), random.range(0.0, 0.3));
+            match random.index(3) {
+                0 => driven.drives.set_all(mode, half_life),
+                1 => driven.drives.set_from(&driven.def.clone(), body, mode, half_life),
+                _ => driven.drives.set(body, mode, half_life),
+            }
+        }
+        if step % 40 == 20 {
+            let body = random.index(starts.len());
+            let impulse = random.in_cube() * (5.0 * driven.def.bodies[body].mass.mass);
+            driven.drives.hit(&driven.def, body, impulse.length());
+            driven.world.apply_impulse_at_center(driven.ragdoll.bodies[body], impulse);
+        }
+        let sway = sinew_math::trig::sin(0.05 * step as f32);
+        let about = match jumps {
+            Some(far) if step % 40 == 20 => Some(Transform::new(
+                random.in_cube() * far,
+                Rotation::from_scaled_axis(random.in_cube() * (3.0 * far)),
+            )),
+            Some(_) => None,
+            None => {
+                Some(Transform::new(Vec3::splat(0.2 * sway), Rotation::from_axis_angle(Vec3::Y, 0.6 * sway)))
+            }
+        };
+        if let Some(about) = about {
+            for (body, start) in starts.iter().enumerate() {
+                let (before, after) = (driven.targets[body], about * *start);
+                driven.targets[body] = after;
+                if jumps.is_none() {
+                    let center = driven.def.bodies[body].mass.center;
+                    velocities[body] =
+                        body_velocity(before, after, center, 1.0 / 60.0, SpeedBound::default());
+                }
+            }
+        }
+        let Driven { world, def, ragdoll, drives, targets } = &mut driven;
+        drives.apply(world, def, ragdoll, targets, &velocities);
+        meter.before_step(world);
+        world.step();
+        meter.after_step(world, ragdoll);
+    }
+    meter.quality()
+}
+
+#[test]
+fn whatever_is_asked_of_drives_nothing_explodes() {
+    for seed in 0..8 {
+        for jumps in [None, Some(0.05)] {
+            let q = torment(seed, jumps);
+            println!(
+                "{seed} {jumps:?}: gain {} gap {} p99 {}",
+                q.energy_gain_max, q.joint_gap_max_m, q.joint_gap_p99_m
+            );
+            assert_eq!(q.nan, 0);
+        }
+    }
 }
