@@ -330,6 +330,7 @@ impl IslandSolver {
                 bent: ZERO6,
                 bent_before: ZERO6,
                 mass: ZERO6,
+                least_mass: ZERO6,
                 start_rate: ZERO6,
                 saturated: joint.saturated,
                 limits: joint.limits,

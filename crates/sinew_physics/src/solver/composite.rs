@@ -80,7 +80,7 @@ impl IslandSolver {
             }
             let joint = &self.joints[j];
             let rows = JointRows::new(&joint.geometry, &joint.pose, [true; DIRECTIONS]);
-            let mut response = ZERO66;
+            let (mut response, mut alone) = (ZERO66, ZERO66);
             for (side, rows) in [(joint.a, &rows.a), (joint.b, &rows.b)] {
                 let Some(link) = self.links.get(side as usize) else { continue };
                 let center = self.bodies[side as usize].pose.translation;
@@ -101,8 +101,17 @@ impl IslandSolver {
                 if let Some(piece) = piece {
                     piece.add_response(&rows[..], center - reference, &mut response);
                 }
+                if joint.drive.motor.is_some() {
+                    let own = Piece::of(&self.bodies[side as usize], center);
+                    own.add_response(&rows[..], Vec3::ZERO, &mut alone);
+                }
             }
-            self.joints[j].mass = masses(&self.joints[j], &rows, &response);
+            let joint = &mut self.joints[j];
+            joint.mass = masses(joint, &rows, &response, Together::Rotations);
+            joint.least_mass = joint.mass;
+            if joint.drive.motor.is_some() {
+                joint.least_mass = masses(joint, &rows, &alone, Together::Nothing);
+            }
         }
     }
 
@@ -136,12 +145,21 @@ impl IslandSolver {
     }
 }
 
+/// Which open rows hold while one is asked.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Together {
+    Nothing,
+    /// If it is a rotation, the other ones.
+    Rotations,
+}
+
 /// By direction: the mass that answers an impulse along each row while the rigid rows hold. Open rotations are driven all
 /// together, and each counts while the others hold: the axes of a shoulder do not lie along the arm, and a row that the arm
 /// could give way to by spinning about itself would weigh next to nothing.
-fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS]) -> Vec6 {
+fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS], together: Together) -> Vec6 {
     let rigid = if joint.drive.weld.is_some() { 0 } else { rows.locked };
-    let turns = |row: usize| row >= rows.locked && rows.direction[row] >= TWIST;
+    let turns =
+        |row: usize| together == Together::Rotations && row >= rows.locked && rows.direction[row] >= TWIST;
     let mut out = ZERO6;
     for row in rigid..rows.count {
         let is_held = |k: usize| k < rigid || (turns(row) && turns(k) && k != row);

@@ -18,6 +18,8 @@ const CLOSING: f32 = 4.0;
 const MOST_BENT: f32 = 0.1;
 /// `(ωh)²` of the fastest spring whose oscillation is kept.
 const FASTEST: f32 = 1.0;
+/// Times the least damping with which springs of too little mass are stable.
+const MARGIN: f32 = 1.1;
 /// Rounds in which motors that ask for more than their caps are saturated within a substep.
 const SATURATION_ROUNDS: usize = 4;
 
@@ -35,13 +37,20 @@ impl SoftRow {
     /// and its static stiffness are those of the differential equation, whatever the substep: with poles
     /// `e^(−ζωh ± iω_d h)` and `x⁺ = x + h v⁺`, the update `(1 + α) v⁺ = (1 − γ) v − h ω² x` has determinant
     /// `(1 − γ)/(1 + α)` and `(1 + α)(1 + det − trace) = (ωh)²`. Implicit Euler would add a damping ratio of ωh/2.
-    fn add_spring(&mut self, softness: Softness, mass: f32, x: f32, rate: f32, h: f32) {
+    /// `least`: what may move by itself while the rest gives way.
+    fn add_spring(&mut self, softness: Softness, [mass, least]: [f32; 2], x: f32, rate: f32, h: f32) {
         let (stiffness, damping) = softness.of_mass(mass);
         let omega2 = stiffness / mass * h * h;
         let a = 0.5 * damping / mass * h;
         // Faster oscillations than a substep can show, and none at all, are left to implicit Euler.
         let shown = omega2 > 0.0 && omega2 < FASTEST;
-        let (alpha, gamma) = if shown { exact_oscillator(omega2, a) } else { (2.0 * a + omega2, 0.0) };
+        let implicit = (2.0 * a + omega2, 0.0);
+        let (mut alpha, mut gamma) = if shown { exact_oscillator(omega2, a) } else { implicit };
+        // With a share `r` of the mass the update is stable as long as `4r + 2(α − γ) > (ωh)²`: what carries a figure by its hand
+        // must not shake when that is all that moves. Implicit Euler is for any.
+        if 4.0 * least + 2.0 * mass * (alpha - gamma) < MARGIN * mass * omega2 {
+            (alpha, gamma) = implicit;
+        }
         self.gain += mass * alpha;
         self.carry += mass * gamma;
         self.push += h * stiffness * x - mass * (alpha + gamma) * rate;
@@ -135,11 +144,11 @@ impl SolverJoint {
         let mut soft = SoftRow::default();
         if row < self.rows.locked {
             if let Some(weld) = self.drive.weld {
-                soft.add_spring(weld, self.mass[direction], self.rows.error[row], 0.0, h);
+                soft.add_spring(weld, [self.mass[direction]; 2], self.rows.error[row], 0.0, h);
             }
         } else if let Some(spring) = self.drive.spring {
             let x = displacement(&self.geometry.kind, &self.pose, direction, &spring.rest);
-            soft.add_spring(spring.softness, self.mass[direction], x, 0.0, h);
+            soft.add_spring(spring.softness, [self.mass[direction]; 2], x, 0.0, h);
         }
         if self.drive.friction > 0.0 {
             // Dry friction as the viscosity τ/|ω| of the present rate, implicit, so it cannot overshoot.
@@ -161,7 +170,7 @@ impl SolverJoint {
             Gains::Velocity => row.add_viscosity(mass / MOTOR_SHARE, rate),
             Gains::Position(softness) => {
                 let x = displacement(&self.geometry.kind, &self.pose, direction, &motor.target);
-                row.add_spring(softness, mass, x, rate, h);
+                row.add_spring(softness, [mass, self.least_mass[direction]], x, rate, h);
             }
         }
         row

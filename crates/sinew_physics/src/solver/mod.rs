@@ -148,6 +148,8 @@ pub(crate) struct SolverJoint {
     bent_before: Vec6,
     /// What springs and motors move, direction by direction, kg or kg·m².
     pub mass: Vec6,
+    /// Likewise what they move at least, whatever else gives way: the joint's two bodies. Of motors; else the same.
+    least_mass: Vec6,
     /// Rates of driven directions when the substep began.
     start_rate: Vec6,
     pub saturated: Saturation,

@@ -135,6 +135,47 @@ fn a_weak_pin_gives_what_it_has() {
 }
 
 #[test]
+fn an_underdamped_pin_on_a_light_end_does_not_shake() {
+    let mut world = world();
+    let ground = ground(&mut world);
+    let (bodies, _) = chain(&mut world, 6);
+    let end = lump(&mut world, Vec3::new(2.75, 1.0, 0.0), 0.01);
+    let def = ball(&world, bodies[5], end, Vec3::new(2.7, 1.0, 0.0));
+    world.add_joint(&def);
+    // It is to carry 12 kg, and turns a ten-thousandth of their inertia.
+    pin(&mut world, ground, end, frequency(15.0, 0.3));
+    run(&mut world, 0.2);
+    for _ in 0..120 {
+        world.step();
+        let spin = world.velocity(end).angular.length();
+        assert!(spin < 5.0, "{spin} rad/s");
+    }
+}
+
+#[test]
+fn pins_allocate_nothing_once_warm() {
+    let mut world = world();
+    let ground = ground(&mut world);
+    let (bodies, _) = chain(&mut world, 8);
+    let pins: Vec<_> =
+        bodies.iter().map(|&body| pin(&mut world, ground, body, frequency(6.0, 0.5))).collect();
+    world.set_kind(bodies[3], BodyKind::Kinematic);
+    run(&mut world, 0.5);
+    let motor = world.joint(pins[0]).motor.expect("it has one");
+    let mut cycle = || {
+        for i in 0..60 {
+            let target = Transform::from_translation(Vec3::Y * (1.0 + 0.01 * i as f32));
+            world.set_motor(pins[0], Some(Motor { target, ..motor }));
+            let kind = if i % 20 < 10 { BodyKind::Kinematic } else { BodyKind::Dynamic };
+            world.set_kind(bodies[3], kind);
+            world.step();
+        }
+    };
+    cycle();
+    assert_eq!(allocation_counter::measure(cycle).count_total, 0);
+}
+
+#[test]
 fn energy_rises_by_the_work_of_pins_at_most() {
     let mut world = world();
     let ground = ground(&mut world);

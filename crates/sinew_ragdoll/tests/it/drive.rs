@@ -1,11 +1,12 @@
 //! Drives of a ragdoll: against closed forms, balances of force, momentum and energy, and themselves at other rates.
 
 use crate::actor::{floor, walker};
-use sinew_math::{Reader, Rotation, Sym3, Transform, Vec3, Writer, max};
+use sinew_math::{Random, Reader, Rotation, Sym3, Transform, Vec3, Writer, max};
 use sinew_physics::{BodyDef, JointKind, MassProperties, Shape, Sleeping, Velocity, World, WorldDef};
+use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
 use sinew_ragdoll::{
-    BodyState, DriveMode, Drives, Flesh, Muscle, Pin, QualityMeter, Ragdoll, RagdollBodyDef, RagdollDef,
-    RagdollJointDef,
+    BodyState, DriveMode, Drives, Flesh, Muscle, Pin, Quality, QualityMeter, Ragdoll, RagdollBodyDef,
+    RagdollDef, RagdollJointDef,
 };
 
 const G: f32 = 9.81;
@@ -372,6 +373,65 @@ fn saved_amid_a_blend_it_goes_on_with_the_same_bits() {
 }
 
 #[test]
+fn drives_allocate_nothing_once_warm() {
+    let mut driven = Driven::mannequin();
+    driven.drives.set_all(DriveMode::Pinned(Muscle::ALIVE, Pin::FIRM), 0.1);
+    driven.drives.set(0, DriveMode::Keyed, 0.0);
+    let still = vec![Velocity::default(); driven.targets.len()];
+    let (mut of_drives, mut of_steps) = (0, 0);
+    for i in 0..120 {
+        driven.targets[2].translation.x += if i % 20 < 10 { 2e-3 } else { -2e-3 };
+        driven.drives.hit(&driven.def, 2, 5.0);
+        let Driven { world, def, ragdoll, drives, targets } = &mut driven;
+        let counted = allocation_counter::measure(|| drives.apply(world, def, ragdoll, targets, &still));
+        let stepped = allocation_counter::measure(|| world.step());
+        if i >= 60 {
+            of_drives += counted.count_total;
+            of_steps += stepped.count_total;
+        }
+    }
+    assert_eq!((of_drives, of_steps), (0, 0));
+}
+
+/// A body held by its first part, and a tail of so many more, each half as heavy as the one before.
+fn tail(count: usize) -> RagdollDef {
+    let mut def = RagdollDef { bodies: vec![body("hips", Vec3::ZERO, 20.0)], ..RagdollDef::default() };
+    for i in 1..=count {
+        let mass = 4.0 * 0.5f32.powi(i as i32);
+        def.bodies.push(body(&format!("tail_{i}"), Vec3::Z * (0.3 * i as f32), mass));
+        def.joints.push(RagdollJointDef {
+            parent: i - 1,
+            child: i,
+            frame_parent: Transform::from_translation(Vec3::Z * 0.15),
+            frame_child: Transform::from_translation(Vec3::Z * -0.15),
+            kind: JointKind::Ball { limit: None },
+            friction_torque: 0.0,
+        });
+    }
+    def.total_mass = def.bodies.iter().map(|body| body.mass.mass).sum();
+    def
+}
+
+#[test]
+fn a_creature_is_as_strong_as_what_hangs_on_its_joints() {
+    let def = tail(3);
+    let caps = sinew_ragdoll::torque_caps(&def);
+    assert_eq!(caps[0], 0.0);
+    // The last part: three times 0.5 kg at 0.15 m.
+    assert!((caps[3] - 3.0 * G * 0.5 * 0.15).abs() < 1e-4, "{caps:?}");
+    // The first: 2, 1 and 0.5 kg at 0.15, 0.45 and 0.75 m.
+    assert!((caps[1] - 3.0 * G * (2.0 * 0.15 + 0.45 + 0.5 * 0.75)).abs() < 1e-3, "{caps:?}");
+    let mut driven = Driven::new(def, Transform::IDENTITY, 60);
+    driven.drives.set(0, DriveMode::Keyed, 0.0);
+    for part in 1..4 {
+        driven.drives.set(part, DriveMode::Powered(Muscle::STIFF), 0.0);
+    }
+    driven.run(3.0);
+    let end = driven.world.transform(driven.ragdoll.bodies[3]).translation;
+    assert!((end - Vec3::Z * 0.9).length() < 0.03, "it holds itself level: {end}");
+}
+
+#[test]
 fn released_drives_leave_nothing_behind() {
     let mut driven = Driven::mannequin();
     let (bodies, joints) = (driven.world.body_ids().count(), driven.world.joint_ids().count());
@@ -428,4 +488,91 @@ fn a_weak_motor_that_lifts_is_not_slowed_by_long_steps() {
     };
     let [slow, fast] = [30, 240].map(lifted);
     assert!(fast > 0.3 && (slow - fast).abs() < 0.02 * fast, "{slow} and {fast}");
+}
+
+/// Any mode that a pose which jumps is fit for, or any; any gains.
+fn some_mode(random: &mut Random, modes: usize) -> DriveMode {
+    let muscle = Muscle {
+        hertz: random.range(0.5, 30.0),
+        damping_ratio: random.range(0.2, 3.0),
+        strength: random.range(0.0, 1.0),
+    };
+    let pin = Pin { hertz: random.range(0.5, 30.0), damping_ratio: random.range(0.2, 2.0), ..Pin::FIRM };
+    match random.index(modes) {
+        0 => DriveMode::Limp,
+        1 | 2 => DriveMode::Powered(muscle),
+        3..6 => DriveMode::Pinned(muscle, pin),
+        _ => DriveMode::Keyed,
+    }
+}
+
+/// Modes change at random, bodies are hit; the pose sways if `jumps` is `None`, or else goes elsewhere from one step to the
+/// next, by as much.
+fn torment(seed: u64, jumps: Option<f32>) -> Quality {
+    let mut random = Random::new(seed);
+    let mut driven = Driven::mannequin();
+    driven.world.add_body(&floor());
+    let mut meter = QualityMeter::new(&driven.def, 5.0);
+    let starts = driven.targets.clone();
+    let mut velocities = vec![Velocity::default(); starts.len()];
+    for step in 1..=300 {
+        if step % 15 == 1 {
+            let mode = some_mode(&mut random, if jumps.is_some() { 6 } else { 7 });
+            let (body, half_life) = (random.index(starts.len()), random.range(0.0, 0.3));
+            match random.index(3) {
+                0 => driven.drives.set_all(mode, half_life),
+                1 => driven.drives.set_from(&driven.def.clone(), body, mode, half_life),
+                _ => driven.drives.set(body, mode, half_life),
+            }
+        }
+        if step % 40 == 20 {
+            let body = random.index(starts.len());
+            let impulse = random.in_cube() * (5.0 * driven.def.bodies[body].mass.mass);
+            driven.drives.hit(&driven.def, body, impulse.length());
+            driven.world.apply_impulse_at_center(driven.ragdoll.bodies[body], impulse);
+        }
+        let sway = sinew_math::trig::sin(0.05 * step as f32);
+        let about = match jumps {
+            Some(far) if step % 40 == 20 => Some(Transform::new(
+                random.in_cube() * far,
+                Rotation::from_scaled_axis(random.in_cube() * (3.0 * far)),
+            )),
+            Some(_) => None,
+            None => {
+                Some(Transform::new(Vec3::splat(0.2 * sway), Rotation::from_axis_angle(Vec3::Y, 0.6 * sway)))
+            }
+        };
+        if let Some(about) = about {
+            for (body, start) in starts.iter().enumerate() {
+                let (before, after) = (driven.targets[body], about * *start);
+                driven.targets[body] = after;
+                if jumps.is_none() {
+                    let center = driven.def.bodies[body].mass.center;
+                    velocities[body] =
+                        body_velocity(before, after, center, 1.0 / 60.0, SpeedBound::default());
+                }
+            }
+        }
+        let Driven { world, def, ragdoll, drives, targets } = &mut driven;
+        drives.apply(world, def, ragdoll, targets, &velocities);
+        meter.before_step(world);
+        world.step();
+        meter.after_step(world, ragdoll);
+    }
+    meter.quality()
+}
+
+#[test]
+fn whatever_is_asked_of_drives_nothing_explodes() {
+    for seed in 0..8 {
+        for jumps in [None, Some(0.05)] {
+            let q = torment(seed, jumps);
+            assert_eq!(q.nan, 0);
+            assert!(q.joint_gap_p99_m < 1e-4, "{seed}, {jumps:?}: {}", q.joint_gap_p99_m);
+            // Pins that are to jump within a step strike as hard as a wall, and their work is counted to some tens of per cent.
+            let (gap, gain) = if jumps.is_some() { (0.03, 2.0) } else { (5e-3, 0.01) };
+            assert!(q.joint_gap_max_m < gap, "{seed}, {jumps:?}: {}", q.joint_gap_max_m);
+            assert!(q.energy_gain_max < gain, "{seed}, {jumps:?}: {}", q.energy_gain_max);
+        }
+    }
 }
