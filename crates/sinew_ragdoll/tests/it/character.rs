@@ -238,8 +238,8 @@ fn what_no_body_moves_goes_on_living() {
     assert!(def.mapping().free().contains(&finger) && !def.mapping().free().contains(&toes));
     let before = character.pose()[finger].rotation;
     character.go_limp(&mut world);
-    let frozen = character.pose()[toes];
-    let (mut last, mut way, mut step) = (before, 0.0, 0.0);
+    let mut frozen = None;
+    let (mut last, mut way, mut step, mut steps) = (before, 0.0, 0.0, 0);
     while character.ragdoll().is_some() {
         world.step();
         character.update(&mut world);
@@ -247,8 +247,11 @@ fn what_no_body_moves_goes_on_living() {
         step = sinew_math::max(step, last.angle_to(now));
         way += last.angle_to(now);
         last = now;
-        if character.state() == State::Limp {
-            assert_eq!(character.pose()[toes].rotation, frozen.rotation, "toes do not walk lying down");
+        steps += 1;
+        // What they did last has died away then.
+        if character.state() == State::Limp && steps > 20 {
+            let now = character.pose()[toes].rotation;
+            assert_eq!(*frozen.get_or_insert(now), now, "toes do not walk lying down");
         }
     }
     // It sways by 0.5 rad either way once a lap of about a second: 2 rad a lap, and never much faster than π rad/s.

@@ -3,7 +3,8 @@
 
 use core::fmt;
 use sinew_anim::{Cursor, Decay, LocalTransform, Pose, local_to_model};
-use sinew_math::{Rotation, Transform, Vec3, max};
+use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, max};
+use sinew_physics::{World, WorldDef};
 use sinew_ragdoll::{Character, CharacterDef, Event};
 use std::sync::Arc;
 
@@ -37,6 +38,15 @@ fn rates(a: Transform, b: Transform) -> Rates {
     [turn(a.rotation, b.rotation) / DT, (b.translation - a.translation) / DT]
 }
 
+/// The same world again.
+fn copy(world: &World) -> World {
+    let mut bytes = Writer::new();
+    world.save(&mut bytes);
+    let mut copy = World::new(WorldDef::default());
+    copy.load(&mut Reader::new(bytes.as_bytes())).expect("it was just saved");
+    copy
+}
+
 /// What a joint may do in a window.
 #[derive(Clone, Copy, Default)]
 struct Budget([f32; 2]);
@@ -52,19 +62,53 @@ pub struct Pops {
     def: Arc<CharacterDef>,
     last: Vec<Vec<Transform>>,
     window: Option<Window>,
-    worst: [(f32, String); 2],
-    count: [u32; 2],
+    worst: [(f32, String); 3],
+    count: [u32; 3],
 }
 
 impl Pops {
     pub fn new(def: &Arc<CharacterDef>) -> Self {
-        Self { def: def.clone(), last: Vec::new(), window: None, worst: Default::default(), count: [0; 2] }
+        Self { def: def.clone(), last: Vec::new(), window: None, worst: Default::default(), count: [0; 3] }
     }
 
     /// Another character.
     pub fn begin(&mut self, character: &Character) {
         self.last = vec![seen(character)];
         self.window = None;
+    }
+
+    /// As the character is now, without a push: what its joints do in the step after its bodies took over, over the most that
+    /// they do while clips move them and in the next steps of the fall. Others than the world's bodies it does not meet.
+    pub fn go_limp(&mut self, character: &Character, world: &World) {
+        let mut world = copy(world);
+        let mut character = character.clone();
+        let mut poses = Vec::new();
+        for step in 0..WINDOW {
+            // A few steps of the clip, for what it does by itself; then the fall.
+            if step == 8 {
+                character.go_limp(&mut world);
+            }
+            poses.push(seen(&character));
+            world.step();
+            character.update(&mut world);
+        }
+        self.count[2] += 1;
+        for joint in 0..poses[0].len() {
+            let rate: Vec<Rates> = poses.windows(2).map(|w| rates(w[0][joint], w[1][joint])).collect();
+            let jumps: Vec<[f32; 2]> =
+                rate.windows(2).map(|w| [0, 1].map(|i| (w[1][i] - w[0][i]).length() / DT)).collect();
+            for i in 0..2 {
+                // Between the last step of the clip and the first of the bodies.
+                let at = jumps[7][i];
+                let others =
+                    jumps.iter().enumerate().filter(|(k, _)| *k != 7).map(|(_, jump)| jump[i]).fold(0.0, max);
+                let ratio = at / (1.2 * others + [5.0, 0.5][i]);
+                if ratio > self.worst[2].0 {
+                    self.worst[2] =
+                        (ratio, format!("{}, {}", self.def.rig.joints[joint].name, ["turn", "way"][i]));
+                }
+            }
+        }
     }
 
     /// After an update.
@@ -150,13 +194,13 @@ impl Pops {
 
     /// Above 1 there is a pop.
     pub fn worst(&self) -> f32 {
-        max(self.worst[0].0, self.worst[1].0)
+        self.worst.iter().fold(0.0, |worst, (ratio, _)| max(worst, *ratio))
     }
 }
 
 impl fmt::Display for Pops {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (kind, name) in ["bodies to get-up", "get-up to loop"].iter().enumerate() {
+        for (kind, name) in ["bodies to get-up", "get-up to loop", "clip to bodies"].iter().enumerate() {
             let (ratio, place) = &self.worst[kind];
             let count = self.count[kind];
             writeln!(f, "  {name}: {count} times, worst {ratio:.3} of what is allowed ({place})")?;
