@@ -3,14 +3,17 @@
 
 use core::fmt;
 use sinew_anim::{Cursor, Decay, LocalTransform, Pose, local_to_model};
-use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, max};
+use sinew_math::{Affine, Rotation, Transform, Vec3, max};
 use sinew_physics::{World, WorldDef};
-use sinew_ragdoll::{Character, CharacterDef, Event};
+use sinew_ragdoll::{Character, CharacterDef, Event, RagdollBodyDef};
 use std::sync::Arc;
 
 const DT: f32 = 1.0 / 60.0;
 /// Steps after a hand-over that are watched.
 const WINDOW: usize = 24;
+/// Steps of clips before the bodies take over, and in all: a lap of a walk.
+const BEFORE: usize = 12;
+const LAP: usize = 72;
 /// Into a get-up clip, and into the looped one, seconds.
 const INTO: [f32; 2] = [0.35, 0.3];
 
@@ -38,13 +41,16 @@ fn rates(a: Transform, b: Transform) -> Rates {
     [turn(a.rotation, b.rotation) / DT, (b.translation - a.translation) / DT]
 }
 
-/// The same world again.
-fn copy(world: &World) -> World {
-    let mut bytes = Writer::new();
-    world.save(&mut bytes);
-    let mut copy = World::new(WorldDef::default());
-    copy.load(&mut Reader::new(bytes.as_bytes())).expect("it was just saved");
-    copy
+/// Centres of mass of the bodies as the clips carry them, turned as they are.
+fn centers(character: &Character) -> Vec<Transform> {
+    let def = character.def();
+    let (mut model, mut bodies) = (Vec::new(), Vec::new());
+    local_to_model(&def.rig, character.pose(), &Affine::IDENTITY, &mut model);
+    def.mapping().bodies_from_model(&model, character.world_from_character(), &mut bodies);
+    let at_center = |(body, def): (&Transform, &RagdollBodyDef)| {
+        Transform::new(body.point(def.mass.center), body.rotation)
+    };
+    bodies.iter().zip(&def.ragdoll.bodies).map(at_center).collect()
 }
 
 /// What a joint may do in a window.
@@ -77,35 +83,35 @@ impl Pops {
         self.window = None;
     }
 
-    /// As the character is now, without a push: what its joints do in the step after its bodies took over, over the most that
-    /// they do while clips move them and in the next steps of the fall. Others than the world's bodies it does not meet.
-    pub fn go_limp(&mut self, character: &Character, world: &World) {
-        let mut world = copy(world);
-        let mut character = character.clone();
-        let mut poses = Vec::new();
-        for step in 0..WINDOW {
-            // A few steps of the clip, for what it does by itself; then the fall.
-            if step == 8 {
-                character.go_limp(&mut world);
+    /// As the character is now, without a push: how much its bodies' speeds, as they are handed over, differ from those of the
+    /// last step of the clips, over what they change by from step to step while clips move them. What joint friction, limits
+    /// and the floor then do to them is physics.
+    pub fn go_limp(&mut self, character: &Character) {
+        let mut world = World::new(WorldDef::default());
+        let mut animated = character.clone();
+        let mut places = vec![centers(&animated)];
+        let mut given: Vec<Rates> = Vec::new();
+        for step in 1..LAP {
+            animated.update(&mut world);
+            places.push(centers(&animated));
+            if step == BEFORE {
+                let mut limp = animated.clone();
+                limp.go_limp(&mut world);
+                let bodies = &limp.ragdoll().expect("it is limp").bodies;
+                let velocity = |&body| [world.velocity(body).angular, world.velocity(body).linear];
+                given = bodies.iter().map(velocity).collect();
             }
-            poses.push(seen(&character));
-            world.step();
-            character.update(&mut world);
         }
         self.count[2] += 1;
-        for joint in 0..poses[0].len() {
-            let rate: Vec<Rates> = poses.windows(2).map(|w| rates(w[0][joint], w[1][joint])).collect();
-            let jumps: Vec<[f32; 2]> =
-                rate.windows(2).map(|w| [0, 1].map(|i| (w[1][i] - w[0][i]).length() / DT)).collect();
+        for (body, given) in given.iter().enumerate() {
+            let rate: Vec<Rates> = places.windows(2).map(|w| rates(w[0][body], w[1][body])).collect();
             for i in 0..2 {
-                // Between the last step of the clip and the first of the bodies.
-                let at = jumps[7][i];
-                let others =
-                    jumps.iter().enumerate().filter(|(k, _)| *k != 7).map(|(_, jump)| jump[i]).fold(0.0, max);
-                let ratio = at / (1.2 * others + [5.0, 0.5][i]);
+                let own = rate.windows(2).map(|w| (w[1][i] - w[0][i]).length() / DT).fold(0.0, max);
+                let jump = (given[i] - rate[BEFORE - 1][i]).length() / DT;
+                let ratio = jump / (1.2 * own + [0.5, 0.05][i]);
                 if ratio > self.worst[2].0 {
-                    self.worst[2] =
-                        (ratio, format!("{}, {}", self.def.rig.joints[joint].name, ["turn", "way"][i]));
+                    let role = &self.def.ragdoll.bodies[body].role;
+                    self.worst[2] = (ratio, format!("{role}, {}", ["turn", "way"][i]));
                 }
             }
         }
