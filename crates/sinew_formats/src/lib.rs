@@ -1,4 +1,4 @@
-//! Bytes to plain data and back: glTF, worlds, ragdolls, motion capture, MJCF.
+//! Bytes to plain data and back: glTF, worlds, ragdolls, motion capture, MJCF, ragdolls of Jolt.
 //!
 //! Everything takes bytes, and a closure for the files beside them; only the feature `fs` (on by default) touches the
 //! file system. Bytes are not trusted: whatever they hold, the answer is a value or an [`Error`] with a place, within
@@ -15,6 +15,7 @@ pub mod fbx;
 pub mod fs;
 mod glb;
 pub mod gltf;
+pub mod jolt;
 mod json;
 mod material;
 pub mod mesh;
@@ -41,6 +42,7 @@ pub use gltf::{
     Container, Document, NewClip, ReadOptions, Resolver, Textures, append_clip, append_clips, no_files,
     read_gltf, write_gltf, write_motion,
 };
+pub use jolt::{JoltMotor, JoltRagdoll, read_jolt_animation, read_jolt_ragdoll};
 pub use mesh::TriangleMesh;
 pub use mjcf::{MjcfModel, read_mjcf};
 pub use motion::{MotionFile, MotionFormat, MotionOptions, read_motion};

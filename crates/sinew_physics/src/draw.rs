@@ -17,7 +17,7 @@ pub enum DrawKind {
     Awake,
     /// Outline of a sleeping one.
     Asleep,
-    /// From a body's centre to a joint's anchor.
+    /// From a body's centre to a joint's anchor; of a pin, from the anchor to where it is pulled.
     Joint,
     /// A spring between two particles.
     Spring,
@@ -53,6 +53,13 @@ impl World {
             }
         }
         for (_, joint) in self.joints.iter() {
+            if joint.leaves_all_free() && self.bodies.at(joint.a).kind != BodyKind::Dynamic {
+                let end = |body: u32, frame: Transform| self.bodies.at(body).world_from_principal * frame;
+                let wanted = joint.drive.motor.map_or(Vec3::ZERO, |motor| motor.target.translation);
+                let goal = end(joint.a, joint.frame_a).point(wanted);
+                out.line(end(joint.b, joint.frame_b).translation, goal, DrawKind::Joint);
+                continue;
+            }
             for (body, frame) in [(joint.a, joint.frame_a), (joint.b, joint.frame_b)] {
                 let pose = self.bodies.at(body).world_from_principal;
                 out.line(pose.translation, pose.point(frame.translation), DrawKind::Joint);

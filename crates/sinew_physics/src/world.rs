@@ -54,6 +54,8 @@ pub struct World {
     pub(crate) pending_nanoseconds: u64,
     /// Of the last step; no part of the state.
     pub(crate) work: Work,
+    /// Memory of `wake_neighbors`; it holds nothing from one call to the next.
+    pub(crate) around: Vec<u32>,
     pub(crate) marked: Vec<u8>,
 }
 
@@ -87,6 +89,7 @@ impl World {
             steps: 0,
             pending_nanoseconds: 0,
             work: Work::default(),
+            around: Vec::new(),
             marked: Vec::new(),
         }
     }

@@ -5,7 +5,9 @@ use crate::scene::{Line, LineDepth, Material, Model, Scene};
 use sinew::math::{Transform, Vec3, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::particles::{ParticleGroup, SpringDef};
-use sinew::physics::{BodyId, BodyKind, DebugDraw, DrawKind, JointDef, JointId, Shape, World};
+use sinew::physics::{
+    BodyId, BodyKind, DebugDraw, DrawKind, JointDef, JointId, JointKind, Shape, SixDof, World,
+};
 
 /// What a picture shows of a world: thin and small things are drawn as thick as it needs to see them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,8 +102,11 @@ fn particle_bounds(group: &ParticleGroup) -> Aabb {
 
 /// What a joint is drawn as: from the centre of each body that moves to its anchor, and from anchor to anchor.
 fn links(world: &World, id: JointId) -> [[Vec3; 2]; 3] {
-    let JointDef { body_a, body_b, frame_a, frame_b, .. } = world.joint(id);
-    let a = world.transform(body_a).point(frame_a.translation);
+    let JointDef { body_a, body_b, frame_a, frame_b, kind, motor, .. } = world.joint(id);
+    // A pin hangs where it pulls to: its anchor may be anywhere.
+    let is_pin = kind == JointKind::SixDof(SixDof::FREE) && world.kind(body_a) != BodyKind::Dynamic;
+    let goal = motor.filter(|_| is_pin).map_or(Vec3::ZERO, |motor| motor.target.translation);
+    let a = (world.transform(body_a) * frame_a).point(goal);
     let b = world.transform(body_b).point(frame_b.translation);
     let from = |body: BodyId, anchor: Vec3| match world.kind(body) {
         BodyKind::Static => anchor,

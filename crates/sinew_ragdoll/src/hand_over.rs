@@ -1,5 +1,6 @@
 //! From animated to physical at the speed of the animation.
 
+use crate::def::RagdollDef;
 use sinew_math::{Transform, Vec3};
 use sinew_physics::Velocity;
 
@@ -35,6 +36,28 @@ pub fn body_velocity(
         linear: shortened((after.point(center) - before.point(center)) / dt, bound.linear),
         angular: shortened(before.rotation.angular_velocity_to(after.rotation, dt), bound.angular),
     }
+}
+
+/// [`body_velocity`] of all bodies of a ragdoll: `velocities` is cleared and filled. Whatever came between the two poses
+/// (clips, blends, transitions), bodies that are handed over with them have the momentum of the animated pose: linear, and
+/// angular about any point.
+///
+/// # Panics
+/// If `dt` is not positive, or there is not one pose for each body.
+pub fn body_velocities(
+    def: &RagdollDef,
+    before: &[Transform],
+    after: &[Transform],
+    dt: f32,
+    bound: SpeedBound,
+    velocities: &mut Vec<Velocity>,
+) {
+    assert_eq!([before.len(), after.len()], [def.bodies.len(); 2], "each body has two poses");
+    velocities.clear();
+    let poses = before.iter().zip(after).zip(&def.bodies);
+    velocities.extend(
+        poses.map(|((&before, &after), body)| body_velocity(before, after, body.mass.center, dt, bound)),
+    );
 }
 
 /// `v`, at most `longest` long; zero if it is not finite.

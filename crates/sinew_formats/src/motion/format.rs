@@ -18,6 +18,8 @@ pub enum MotionFormat {
     DeepMimicCharacter,
     /// FBX, text or binary.
     Fbx,
+    /// A ragdoll or an animation of Jolt Physics as text.
+    Jolt,
 }
 
 impl MotionFormat {
@@ -34,12 +36,13 @@ impl MotionFormat {
         match text.first() {
             None => Err(Error::malformed("file is empty", "byte 0")),
             Some(b'{') => Self::of_json(bytes),
+            _ if crate::jolt::is_jolt(text) => Ok(Self::Jolt),
             _ if begins(b"HIERARCHY") => Ok(Self::Bvh),
             _ if begins(b"Kaydara FBX Binary") || begins(b"; FBX ") || begins(b"FBXHeaderExtension") => {
                 Ok(Self::Fbx)
             }
             _ => Err(Error::malformed(
-                "not a glTF file, nor BVH, FBX or DeepMimic: begins like none",
+                "not a glTF file, nor BVH, FBX, DeepMimic or Jolt: begins like none",
                 "byte 0",
             )),
         }
@@ -57,7 +60,7 @@ impl MotionFormat {
         })
     }
 
-    /// As a word: `glb`, `gltf`, `bvh`, `deepmimic`, `fbx`.
+    /// As a word: `glb`, `gltf`, `bvh`, `deepmimic`, `fbx`, `tof`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Glb => "glb",
@@ -65,6 +68,7 @@ impl MotionFormat {
             Self::Bvh => "bvh",
             Self::DeepMimic | Self::DeepMimicCharacter => "deepmimic",
             Self::Fbx => "fbx",
+            Self::Jolt => "tof",
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Any file with clips by one function: glTF, GLB, VRM and VRMA, BVH, DeepMimic, FBX.
+//! Any file with clips by one function: glTF, GLB, VRM and VRMA, BVH, DeepMimic, FBX, and the skeleton of a Jolt ragdoll.
 
 mod format;
 
@@ -8,6 +8,7 @@ use crate::bvh::{BvhOptions, read_bvh};
 use crate::deepmimic::{DeepMimicCharacter, read_deepmimic, read_deepmimic_character};
 use crate::error::{Error, Result};
 use crate::gltf::{ReadOptions, Resolver, read_gltf};
+use crate::jolt::read_jolt_ragdoll;
 use sinew_anim::{Clip, Event, LocalTransform, Rig};
 
 /// How to read a file with clips.
@@ -49,7 +50,8 @@ pub struct MotionFile {
 
 /// Reads any file with clips; the kind is told by the bytes. `resolve` gives the files beside a glTF.
 ///
-/// Formats without names of clips leave them empty. A DeepMimic character is a rig without clips.
+/// Formats without names of clips leave them empty. A DeepMimic character is a rig without clips, and so is a ragdoll of
+/// Jolt: [`read_jolt_animation`](crate::read_jolt_animation) reads its clips.
 ///
 /// # Errors
 /// Bytes of no known kind, and as the readers: [`read_gltf`], [`read_bvh`], [`read_deepmimic`]; a DeepMimic clip without
@@ -68,6 +70,9 @@ pub fn read_motion(
             ..bare(format, read_deepmimic_character(bytes)?.rig)
         }),
         MotionFormat::DeepMimic => of_deepmimic(bytes, options.deepmimic),
+        MotionFormat::Jolt => {
+            Ok(MotionFile { metres_per_unit: Some(1.0), ..bare(format, read_jolt_ragdoll(bytes)?.rig) })
+        }
         #[cfg(feature = "fbx")]
         MotionFormat::Fbx => crate::fbx::read_fbx(bytes),
         #[cfg(not(feature = "fbx"))]

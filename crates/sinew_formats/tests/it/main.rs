@@ -15,6 +15,7 @@ mod formats_table;
 mod fs;
 mod geometry;
 mod hostile;
+mod jolt;
 mod meshopt;
 mod meshopt_encoder;
 mod mjcf;

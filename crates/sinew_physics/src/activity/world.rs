@@ -82,14 +82,17 @@ impl World {
 
     /// Wakes a body and all that touches it, or hangs on it by a joint: something about it is to change that they may feel.
     pub(crate) fn wake_neighbors(&mut self, index: u32) {
+        let mut others = core::mem::take(&mut self.around);
+        others.clear();
         let touching = self.contacts_at(index).filter(|contact| contact.pushes());
-        let mut others: Vec<u32> = touching.map(|contact| contact.key.other(index)).collect();
+        others.extend(touching.map(|contact| contact.key.other(index)));
         for &joint in self.activity.joints_of.body(index) {
             let joint = self.joints.at(joint);
             others.extend([joint.a, joint.b]);
         }
         self.wake_body(index);
-        others.into_iter().for_each(|other| self.wake_body(other));
+        others.iter().for_each(|&other| self.wake_body(other));
+        self.around = others;
     }
 
     /// The contacts of a body, in no order that means anything.

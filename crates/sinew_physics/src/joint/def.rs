@@ -86,7 +86,8 @@ pub enum Softness {
         damping: f32,
     },
     /// Whatever hangs on the joint: it swings as a damped oscillator whose mass is that of the two sides of the joint,
-    /// each taken as one rigid piece in the pose of the step's beginning; of a joint that closes a loop, that of its two
+    /// each taken as one rigid piece in the pose of the step's beginning, which turns about one axis of the joint while it
+    /// does not about the others; of a joint that closes a loop, that of its two
     /// bodies. A pin ([`SixDof::FREE`] to a body that no force moves) has that of all bodies that are fewer joints away
     /// from it than from other pins and from what holds the tree. For limits and soft zones it is what answers to their row while the joints hold.
     Frequency {

@@ -2,7 +2,7 @@
 
 use super::tree::{Link, NONE};
 use super::{IslandSolver, SolverBody, SolverJoint};
-use crate::joint::{DIRECTIONS, JointRows};
+use crate::joint::{DIRECTIONS, JointRows, TWIST};
 use crate::spatial::{Vec6, ZERO6, ZERO66, angular, linear, spd_inverse};
 use sinew_math::{Sym3, Vec3, max};
 
@@ -136,22 +136,31 @@ impl IslandSolver {
     }
 }
 
-/// By direction: the mass that answers an impulse along each row while the rigid rows hold.
+/// By direction: the mass that answers an impulse along each row while the rigid rows hold. Open rotations are driven all
+/// together, and each counts while the others hold: the axes of a shoulder do not lie along the arm, and a row that the arm
+/// could give way to by spinning about itself would weigh next to nothing.
 fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS]) -> Vec6 {
     let rigid = if joint.drive.weld.is_some() { 0 } else { rows.locked };
+    let turns = |row: usize| row >= rows.locked && rows.direction[row] >= TWIST;
     let mut out = ZERO6;
     for row in rigid..rows.count {
+        let is_held = |k: usize| k < rigid || (turns(row) && turns(k) && k != row);
+        let mut list = [0; DIRECTIONS];
+        let mut count = 0;
+        for k in (0..rows.count).filter(|&k| is_held(k)).chain([row]) {
+            list[count] = k;
+            count += 1;
+        }
         let mut held = ZERO66;
-        let place = |k: usize| if k == rigid { row } else { k };
-        for i in 0..=rigid {
-            for k in 0..=rigid {
-                held[i][k] = response[place(i)][place(k)];
+        for i in 0..count {
+            for k in 0..count {
+                held[i][k] = response[list[i]][list[k]];
             }
         }
-        let inverse = spd_inverse(&held, rigid + 1);
+        let inverse = spd_inverse(&held, count);
         let alone = response[row][row];
         // Rows that depend on each other (a gimbal's end) leave the row by itself.
-        let mass = inverse.map_or(if alone > 0.0 { 1.0 / alone } else { 0.0 }, |m| m[rigid][rigid]);
+        let mass = inverse.map_or(if alone > 0.0 { 1.0 / alone } else { 0.0 }, |m| m[count - 1][count - 1]);
         out[rows.direction[row]] = max(mass, LEAST_MASS);
     }
     out

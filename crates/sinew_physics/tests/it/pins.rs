@@ -135,6 +135,29 @@ fn a_weak_pin_gives_what_it_has() {
 }
 
 #[test]
+fn pins_allocate_nothing_once_warm() {
+    let mut world = world();
+    let ground = ground(&mut world);
+    let (bodies, _) = chain(&mut world, 8);
+    let pins: Vec<_> =
+        bodies.iter().map(|&body| pin(&mut world, ground, body, frequency(6.0, 0.5))).collect();
+    world.set_kind(bodies[3], BodyKind::Kinematic);
+    run(&mut world, 0.5);
+    let motor = world.joint(pins[0]).motor.expect("it has one");
+    let mut cycle = || {
+        for i in 0..60 {
+            let target = Transform::from_translation(Vec3::Y * (1.0 + 0.01 * i as f32));
+            world.set_motor(pins[0], Some(Motor { target, ..motor }));
+            let kind = if i % 20 < 10 { BodyKind::Kinematic } else { BodyKind::Dynamic };
+            world.set_kind(bodies[3], kind);
+            world.step();
+        }
+    };
+    cycle();
+    assert_eq!(allocation_counter::measure(cycle).count_total, 0);
+}
+
+#[test]
 fn energy_rises_by_the_work_of_pins_at_most() {
     let mut world = world();
     let ground = ground(&mut world);

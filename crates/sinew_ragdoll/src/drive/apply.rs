@@ -53,6 +53,14 @@ impl Drives {
         }
     }
 
+    /// Lets time pass without a world: blends go on, and weakness falls. For drives that are made anew beside a world that
+    /// has gone on: as many times a step's length as steps were taken.
+    pub fn skip(&mut self, seconds: f32) {
+        for drive in &mut self.drives {
+            drive.pass(seconds, self.recovery);
+        }
+    }
+
     /// Takes pins and motors out of the world and gives keyed bodies back to it, as fast as they were led. What is to be
     /// done before the ragdoll is taken out; the modes stay as they are.
     pub fn release(&mut self, world: &mut World, ragdoll: &Ragdoll) {

@@ -115,7 +115,7 @@ pub struct Drives {
 }
 
 /// Speed that a hit must give the whole ragdoll to take all strength from the muscles where it struck, m/s.
-const NUMBING: f32 = 0.4;
+const NUMBING: f32 = 0.2;
 /// Share of the weakness that one joint hands on to the next.
 const FALLOFF: f32 = 0.5;
 /// What is below this share is nothing.
@@ -196,7 +196,7 @@ impl Drives {
     }
 
     /// Muscles and pins weaken where an impulse of `impulse` N·s struck, and half as much one joint on, and so on. An impulse
-    /// that would move the whole ragdoll at 0.4 m/s takes all strength there. The push itself is the caller's.
+    /// that would move the whole ragdoll at 0.2 m/s takes all strength there. The push itself is the caller's.
     pub fn hit(&mut self, def: &RagdollDef, body: usize, impulse: f32) {
         let mass: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
         let weakness = clamp(impulse.abs() / (NUMBING * mass), 0.0, 1.0);

@@ -57,13 +57,12 @@ fn of_creature(def: &RagdollDef, body: usize, total: f32) -> f32 {
     let joint = &def.joints[body - 1];
     let pivot = (def.bodies[body].character_from_body * joint.frame_child).translation;
     let center = |body: usize| def.bodies[body].character_from_body.point(def.bodies[body].mass.center);
-    let (mut mass, mut moment) = (0.0, Vec3::ZERO);
+    let mut moment = Vec3::ZERO;
     for below in (body..def.bodies.len()).filter(|&below| hangs_on(def, below, body)) {
-        mass += def.bodies[below].mass.mass;
         moment += (center(below) - pivot) * def.bodies[below].mass.mass;
     }
     let holds = HOLDS * GRAVITY * moment.length();
-    let bears = if def.bodies[body].role.starts_with("limb") || mass > 0.1 * total {
+    let bears = if def.bodies[body].role.starts_with("limb") {
         GRAVITY * total * (center(body) - pivot).length()
     } else {
         0.0

@@ -335,7 +335,7 @@ fn a_hit_weakens_by_half_from_joint_to_joint() {
     let mut drives = Drives::new(&def);
     let index = |role: &str| def.bodies.iter().position(|body| body.role == role).expect("it has it");
     let mass: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
-    drives.hit(&def, index("leftHand"), 0.2 * mass);
+    drives.hit(&def, index("leftHand"), 0.1 * mass);
     for (role, share) in [("leftHand", 0.5), ("leftLowerArm", 0.75), ("leftUpperArm", 0.875)] {
         assert!((drives.vigour(index(role)) - share).abs() < 1e-5, "{role}: {}", drives.vigour(index(role)));
     }
@@ -369,6 +369,65 @@ fn saved_amid_a_blend_it_goes_on_with_the_same_bits() {
         assert!(other.load(&mut Reader::new(&drives.as_bytes()[..cut])).is_err(), "{cut} bytes");
         assert_eq!(other, before);
     }
+}
+
+#[test]
+fn drives_allocate_nothing_once_warm() {
+    let mut driven = Driven::mannequin();
+    driven.drives.set_all(DriveMode::Pinned(Muscle::ALIVE, Pin::FIRM), 0.1);
+    driven.drives.set(0, DriveMode::Keyed, 0.0);
+    let still = vec![Velocity::default(); driven.targets.len()];
+    let (mut of_drives, mut of_steps) = (0, 0);
+    for i in 0..120 {
+        driven.targets[2].translation.x += if i % 20 < 10 { 2e-3 } else { -2e-3 };
+        driven.drives.hit(&driven.def, 2, 5.0);
+        let Driven { world, def, ragdoll, drives, targets } = &mut driven;
+        let counted = allocation_counter::measure(|| drives.apply(world, def, ragdoll, targets, &still));
+        let stepped = allocation_counter::measure(|| world.step());
+        if i >= 60 {
+            of_drives += counted.count_total;
+            of_steps += stepped.count_total;
+        }
+    }
+    assert_eq!((of_drives, of_steps), (0, 0));
+}
+
+/// A body held by its first part, and a tail of so many more, each half as heavy as the one before.
+fn tail(count: usize) -> RagdollDef {
+    let mut def = RagdollDef { bodies: vec![body("hips", Vec3::ZERO, 20.0)], ..RagdollDef::default() };
+    for i in 1..=count {
+        let mass = 4.0 * 0.5f32.powi(i as i32);
+        def.bodies.push(body(&format!("tail_{i}"), Vec3::Z * (0.3 * i as f32), mass));
+        def.joints.push(RagdollJointDef {
+            parent: i - 1,
+            child: i,
+            frame_parent: Transform::from_translation(Vec3::Z * 0.15),
+            frame_child: Transform::from_translation(Vec3::Z * -0.15),
+            kind: JointKind::Ball { limit: None },
+            friction_torque: 0.0,
+        });
+    }
+    def.total_mass = def.bodies.iter().map(|body| body.mass.mass).sum();
+    def
+}
+
+#[test]
+fn a_creature_is_as_strong_as_what_hangs_on_its_joints() {
+    let def = tail(3);
+    let caps = sinew_ragdoll::torque_caps(&def);
+    assert_eq!(caps[0], 0.0);
+    // The last part: three times 0.5 kg at 0.15 m.
+    assert!((caps[3] - 3.0 * G * 0.5 * 0.15).abs() < 1e-4, "{caps:?}");
+    // The first: 2, 1 and 0.5 kg at 0.15, 0.45 and 0.75 m.
+    assert!((caps[1] - 3.0 * G * (2.0 * 0.15 + 0.45 + 0.5 * 0.75)).abs() < 1e-3, "{caps:?}");
+    let mut driven = Driven::new(def, Transform::IDENTITY, 60);
+    driven.drives.set(0, DriveMode::Keyed, 0.0);
+    for part in 1..4 {
+        driven.drives.set(part, DriveMode::Powered(Muscle::STIFF), 0.0);
+    }
+    driven.run(3.0);
+    let end = driven.world.transform(driven.ragdoll.bodies[3]).translation;
+    assert!((end - Vec3::Z * 0.9).length() < 0.03, "it holds itself level: {end}");
 }
 
 #[test]

@@ -33,6 +33,7 @@ mod chains;
 mod cloths;
 mod coin;
 mod crowds;
+mod drives;
 mod engine;
 mod falls;
 mod forces;
@@ -187,6 +188,8 @@ const REGISTRY: &[Scene] = &[
     springs::ROPE_ON_BOX,
     ragdolls::DROP,
     falls::POSES,
+    drives::POWERED,
+    drives::HIT_REACTION,
     ragdolls::WALL,
     ragdolls::WALL_FAST,
     ragdolls::STAIRS,

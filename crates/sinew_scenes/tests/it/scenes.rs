@@ -119,6 +119,8 @@ macro_rules! scenes {
 
 scenes!(
     always: [
+        powered,
+        hit_reaction,
         free_fall,
         projectile,
         bounce,

@@ -1,0 +1,14 @@
+//! Ragdolls and skeletal animations of Jolt Physics in its text object format (`.tof`): metres, +Y up.
+
+mod clip;
+mod objects;
+mod ragdoll;
+mod shape;
+
+pub use clip::read_jolt_animation;
+pub use ragdoll::{JoltMotor, JoltRagdoll, read_jolt_ragdoll};
+
+/// Whether bytes begin like a text object file.
+pub(crate) fn is_jolt(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"TOS ")
+}
