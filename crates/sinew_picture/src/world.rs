@@ -120,7 +120,7 @@ pub fn paint(world: &World, frame: &Frame, scene: &mut Scene) {
     paint_all_but(world, &[], frame, scene);
 }
 
-/// Likewise, without bodies that something else shows: those of a character that is drawn by its skin.
+/// Likewise, without bodies that something else shows, and their joints: those of a character that is drawn by its skin.
 pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, scene: &mut Scene) {
     for (number, id) in world.body_ids().enumerate() {
         if shown.contains(&id) {
@@ -138,7 +138,12 @@ pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, scene: &mut
     for id in world.group_ids() {
         paint_group(world.particles(id), frame, scene);
     }
-    let joints: Vec<_> = world.joint_ids().flat_map(|id| links(world, id)).collect();
+    let is_shown = |id: &JointId| {
+        let (a, b) = world.joint_bodies(*id);
+        shown.contains(&a) || shown.contains(&b)
+    };
+    let joints: Vec<_> =
+        world.joint_ids().filter(|id| !is_shown(id)).flat_map(|id| links(world, id)).collect();
     thin(&joints, JOINT, frame, scene);
     let mut lines = Lines::default();
     world.draw(&mut lines);

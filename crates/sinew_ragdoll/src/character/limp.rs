@@ -5,12 +5,16 @@ use crate::def::RagdollBodyDef;
 use crate::drive::DriveMode;
 use crate::hand_over::body_velocity;
 use crate::ragdoll::{BodyState, Ragdoll};
+use sinew_anim::{Motion, Pose};
 use sinew_math::{Transform, Vec3};
 use sinew_physics::{BodyId, Velocity, World};
 
 /// Seconds between the poses ahead of now that the hand-over takes velocities from: short against any motion, long against
 /// rounding.
 const HAND_OVER: f32 = 1.0 / 1000.0;
+
+/// Seconds in which what no body moves comes to rest.
+const LINGERS: f32 = 0.25;
 
 /// A body below both speeds lies still, m/s and rad/s.
 pub(crate) const STILL_LINEAR: f32 = 0.02;
@@ -37,12 +41,40 @@ impl Character {
             return self.fall_again(world);
         }
         let states = self.carried();
+        self.let_linger(world);
         self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
         self.ragdoll = Some(Ragdoll::spawn(world, &self.def.ragdoll, &states, &self.def.flesh));
         self.drives.set_all(self.def.falling, 0.0);
         self.state = State::Limp;
         self.stillness = Stillness::default();
         self.events.push(Event::WentLimp);
+    }
+
+    /// What no body moves does not stop at once: toes, helpers, and where joints sit that a clip moved along.
+    fn let_linger(&mut self, world: &World) {
+        let now: Pose = self.pose.iter().copied().collect();
+        let earlier: Pose = self.earlier.pose.iter().copied().collect();
+        let seconds = world.def().dt();
+        let from = Motion { now: &now, other: &earlier, seconds };
+        self.lingering.start(from, Motion { now: &now, other: &now, seconds }, LINGERS);
+        self.scratch.resting = now;
+    }
+
+    /// The base pose, and what lingers of its motion a step later.
+    fn come_to_rest(&mut self, seconds: f32) {
+        let base = self.physical.base();
+        self.scratch.pose.clear();
+        if self.lingering.is_over() {
+            self.scratch.pose.extend_from_slice(base);
+            return;
+        }
+        let resting = &mut self.scratch.resting;
+        if resting.len() != base.len() {
+            *resting = Pose::new(base.len());
+        }
+        base.iter().enumerate().for_each(|(joint, local)| resting.set(joint, local));
+        self.lingering.apply(seconds, resting);
+        self.scratch.pose.extend(resting.iter());
     }
 
     /// A body that was about to get up is limp again.
@@ -101,11 +133,13 @@ impl Character {
         let dt = world.def().dt();
         self.keep_earlier();
         self.animator.update(self.def.set(), dt);
+        self.come_to_rest(dt);
         let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
         ragdoll.poses(world, &mut self.scratch.after);
-        self.physical.pose(
+        self.physical.pose_over(
             self.def.mapping(),
             &self.def.rig,
+            &self.scratch.pose,
             self.world_from_character,
             &self.scratch.after,
             &mut self.pose,

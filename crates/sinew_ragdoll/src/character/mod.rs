@@ -25,7 +25,7 @@ use crate::ragdoll::Ragdoll;
 use get_up::Rising;
 use limp::Stillness;
 use prepare::Preparation;
-use sinew_anim::{Animator, LocalTransform};
+use sinew_anim::{Animator, Inertia, LocalTransform, Pose};
 use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::{Velocity, World};
 use std::sync::Arc;
@@ -96,6 +96,8 @@ pub struct Character {
     preparation: Preparation,
     events: Vec<Event>,
     physical: Physical,
+    /// How what neither bodies nor clips move came to rest when the bodies took over.
+    lingering: Inertia,
     scratch: Scratch,
 }
 
@@ -110,6 +112,7 @@ struct Earlier {
 #[derive(Clone, Debug, Default)]
 struct Scratch {
     pose: Vec<LocalTransform>,
+    resting: Pose,
     model: Vec<Affine>,
     before: Vec<Transform>,
     after: Vec<Transform>,
@@ -140,6 +143,7 @@ impl Character {
             preparation: Preparation::default(),
             events: Vec::new(),
             physical: Physical::default(),
+            lingering: Inertia::default(),
             scratch: Scratch::default(),
             def,
         }

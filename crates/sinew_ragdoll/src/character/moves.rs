@@ -60,8 +60,10 @@ pub(super) struct Start {
 const MAY_BEGIN: f32 = 0.4;
 /// Seconds between the moments at which it may.
 const STARTS_APART: f32 = 1.0 / 15.0;
-/// Seconds between the poses of a clip that is mirrored, or whose root motion is moved to the pelvis.
+/// Seconds between the poses of a clip whose root motion is moved to the pelvis.
 const FRAME: f64 = 1.0 / 60.0;
+/// And of one that is mirrored: getting up is slow.
+const MIRRORED_FRAME: f64 = 1.0 / 30.0;
 
 impl Moves {
     /// Of a character that has no motions.
@@ -85,7 +87,7 @@ impl Moves {
         let mirror = Mirror::new(def);
         let mut get_ups = Vec::new();
         for &clip in &motions.get_ups {
-            let take = flat_take(def, &motions.clips[clip]);
+            let take = flat_take(def, &motions.clips[clip], MIRRORED_FRAME);
             let starts = starts(def, &landmarks, &take);
             get_ups.push(GetUp { clip, id: clips[clip], starts });
             let image = mirrored(def, &mirror, &take);
@@ -107,14 +109,13 @@ fn built(def: &CharacterDef, clip: &Clip) -> Result<AnimatedClip, MotionError> {
 /// The clip with all its root motion in the pelvis: see [`Mapping`](crate::Mapping).
 fn flat(def: &CharacterDef, clip: &Clip) -> Clip {
     let moves_carriers = clip.channels.iter().any(|channel| def.mapping().carries(channel.joint));
-    if moves_carriers { flat_take(def, clip).to_clip(&def.rig, &clip.name) } else { clip.clone() }
+    if moves_carriers { flat_take(def, clip, FRAME).to_clip(&def.rig, &clip.name) } else { clip.clone() }
 }
 
-fn flat_take(def: &CharacterDef, clip: &Clip) -> Take {
+fn flat_take(def: &CharacterDef, clip: &Clip, frame_time: f64) -> Take {
     // No step of time is short enough for a clip that claims to last for years.
     let shortest = f64::from(clip.duration) / (Take::MOST_FRAMES - 1) as f64;
-    let frame_time = if shortest > FRAME { shortest } else { FRAME };
-    let mut take = Take::of(&def.rig, clip, frame_time);
+    let mut take = Take::of(&def.rig, clip, if shortest > frame_time { shortest } else { frame_time });
     for frame in 0..take.frames() {
         def.mapping().flatten(&def.rig, take.pose_mut(frame));
     }

@@ -6,7 +6,7 @@ use super::prepare::Preparation;
 use super::{Character, Earlier, State};
 use crate::drive::Drives;
 use crate::ragdoll::Ragdoll;
-use sinew_anim::{Animator, LocalTransform, TrackId};
+use sinew_anim::{Animator, Inertia, LocalTransform, TrackId};
 use sinew_math::{ReadError, Reader, Writer};
 use sinew_physics::{BodyId, JointId};
 
@@ -34,6 +34,7 @@ impl Character {
         w.transform(self.earlier.world_from_character);
         save_pose(w, &self.earlier.pose);
         save_pose(w, self.physical.base());
+        self.lingering.save(w);
         w.u32(self.stillness.steps);
         w.u32(self.stillness.calm_steps);
         w.bool(self.stillness.settled);
@@ -77,6 +78,7 @@ impl Character {
         let pose = load_pose(r, joints)?;
         let earlier = Earlier { world_from_character: r.transform()?, pose: load_pose(r, joints)? };
         let base = load_pose(r, joints)?;
+        let lingering = Inertia::load(r, joints)?;
         let stillness =
             Stillness { steps: r.u32()?, calm_steps: r.u32()?, settled: r.bool()?, touched: r.bool()? };
         let mut drives = Drives::new(&self.def.ragdoll);
@@ -92,6 +94,7 @@ impl Character {
             return Err(r.error("is of another character"));
         }
         (self.state, self.animator, self.rising, self.stillness) = (state, animator, rising, stillness);
+        self.lingering = lingering;
         (self.drives, self.preparation, self.lean) = (drives, preparation, lean);
         (self.world_from_character, self.climbing) = (world_from_character, climbing);
         (self.pose, self.earlier, self.ragdoll) = (pose, earlier, ragdoll);

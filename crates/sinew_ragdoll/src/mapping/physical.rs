@@ -49,7 +49,27 @@ impl Physical {
         world_from_body: &[Transform],
         pose: &mut [LocalTransform],
     ) -> f32 {
-        assert_eq!(self.base.len(), rig.joints.len(), "a base pose was given");
+        let base = core::mem::take(&mut self.base);
+        let stretch = self.pose_over(mapping, rig, &base, world_from_character, world_from_body, pose);
+        self.base = base;
+        stretch
+    }
+
+    /// [`pose`](Self::pose), with what the bodies do not give taken from `resting` in the place of the base pose: one that has
+    /// gone on a little since, whose bones are still as long.
+    ///
+    /// # Panics
+    /// As [`pose`](Self::pose), and if `resting` is not as long.
+    pub fn pose_over(
+        &mut self,
+        mapping: &Mapping,
+        rig: &Rig,
+        resting: &[LocalTransform],
+        world_from_character: Transform,
+        world_from_body: &[Transform],
+        pose: &mut [LocalTransform],
+    ) -> f32 {
+        assert_eq!(resting.len(), rig.joints.len(), "a base pose was given");
         assert_eq!(world_from_body.len(), mapping.bones.len(), "every body has a pose");
         let character_from_world = world_from_character.inverse();
         self.moved.clear();
@@ -63,10 +83,10 @@ impl Physical {
         let mut stretch = 0.0;
         for (joint, node) in rig.joints.iter().enumerate() {
             let parent = node.parent.map_or(Affine::IDENTITY, |parent| self.model[parent]);
-            pose[joint] = self.base[joint];
+            pose[joint] = resting[joint];
             if let Some(driven) = mapping.driven[joint] {
                 let wanted = self.moved[driven.body] * self.base_model[joint];
-                let followed = with_scale_of(&self.base[joint], &(parent.inverse() * wanted));
+                let followed = with_scale_of(&resting[joint], &(parent.inverse() * wanted));
                 pose[joint].rotation = followed.rotation;
                 match driven.follow {
                     Follow::Move => pose[joint].translation = followed.translation,

@@ -68,6 +68,7 @@ fn fall(def: &Arc<CharacterDef>, random: &mut Random, pops: &mut Pops) -> Fall {
     let body = def.body_named(body).unwrap_or(0);
     let way = random.direction();
     let push = Vec3::new(way.x, 0.3 * way.y, way.z) * (def.ragdoll.total_mass * random.range(0.3, 1.6));
+    pops.go_limp(&character);
     pops.begin(&character);
     character.hit(&mut world, body, push);
     let mut fall = Fall { lying: None, up: None };

@@ -1,11 +1,14 @@
 //! Momentum of the animated pose and of the ragdoll that takes over.
 
 use crate::actor::{floor, shared, somewhere, walker};
-use sinew_anim::{Easing, LoopMode, TrackDef, Transition, Wrap, local_to_model, sample};
+use sinew_anim::{
+    AnimatedClip, AnimationSet, Animator, BuiltClip, ClipId, Easing, LocalTransform, LoopMode, Skeleton,
+    TrackDef, Transition, Wrap, local_to_model, sample,
+};
 use sinew_math::{Affine, Random, Rotation, Transform, Vec3, max};
 use sinew_physics::{Velocity, World, WorldDef};
-use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
-use sinew_ragdoll::{Character, CharacterDef};
+use sinew_ragdoll::hand_over::{SpeedBound, body_velocities, body_velocity};
+use sinew_ragdoll::{BodyState, Character, CharacterDef, Flesh, Ragdoll};
 use sinew_scenes::mannequin::WALK_SPEED;
 
 /// World poses of the bodies as the walk has them at a time, without a `Character`.
@@ -32,16 +35,16 @@ struct Carried {
 /// By central differences over `dt` on either side.
 fn carried_momentum(def: &CharacterDef, at: Transform, time: f32, dt: f32) -> Carried {
     let [before, now, after] = [time - dt, time, time + dt].map(|time| carried_bodies(def, at, time));
-    momentum_between(def, &before, &now, &after, 2.0 * dt)
+    momentum_of_motion(def, &before, &now, &after, 2.0 * dt)
 }
 
-/// Of bodies that move from `before` to `after` in `seconds`, where they are `now`.
-fn momentum_between(
+/// Of bodies at `now` that go from `before` to `after` within `dt`.
+fn momentum_of_motion(
     def: &CharacterDef,
     before: &[Transform],
     now: &[Transform],
     after: &[Transform],
-    seconds: f32,
+    dt: f32,
 ) -> Carried {
     let bodies = &def.ragdoll.bodies;
     let total: f32 = bodies.iter().map(|body| body.mass.mass).sum();
@@ -50,7 +53,7 @@ fn momentum_between(
         .fold(Vec3::ZERO, |sum, body| sum + center(body, now) * (bodies[body].mass.mass / total));
     let mut sum = Carried { linear: Vec3::ZERO, angular: Vec3::ZERO, swing: 0.0 };
     for (body, def) in bodies.iter().enumerate() {
-        let p = (center(body, after) - center(body, before)) * (def.mass.mass / seconds);
+        let p = (center(body, after) - center(body, before)) * (def.mass.mass / dt);
         // The turn's matrix minus its transpose holds the axis: no logarithm, unlike the code under test.
         let turn = (after[body].rotation * before[body].rotation.inverse()).to_mat3();
         let axis = Vec3::new(
@@ -58,7 +61,7 @@ fn momentum_between(
             turn.z_axis.x - turn.x_axis.z,
             turn.x_axis.y - turn.y_axis.x,
         );
-        let spin = axis * 0.5 / seconds;
+        let spin = axis * 0.5 / dt;
         sum.linear += p;
         let r = now[body].rotation;
         let share = (center(body, now) - common).cross(p) + r * (def.mass.inertia * (r.inverse() * spin));
@@ -175,8 +178,8 @@ fn momentum_is_that_of_any_mixture_of_clips_and_transitions() {
         // points twice as far apart tell another.
         let start = |h: f32| {
             let [now, ahead, further] = [0.0, h, 2.0 * h].map(|seconds| bodies_in(&character, seconds));
-            let soon = momentum_between(&def, &now, &now, &ahead, h);
-            let both = momentum_between(&def, &now, &now, &further, 2.0 * h);
+            let soon = momentum_of_motion(&def, &now, &now, &ahead, h);
+            let both = momentum_of_motion(&def, &now, &now, &further, 2.0 * h);
             Carried {
                 linear: soon.linear * 2.0 - both.linear,
                 angular: soon.angular * 2.0 - both.angular,
@@ -206,4 +209,111 @@ fn momentum_is_that_of_any_mixture_of_clips_and_transitions() {
     assert!(checked > 40, "{checked} of 60 were not at a key");
     println!("worst of {checked} mixtures: linear {:.4}, angular {:.4}", worst[0], worst[1]);
     assert!(worst.iter().all(|&error| error < 0.01), "{worst:?}");
+}
+
+/// The walker's clips in an animator that mixes them at random, seen as bodies.
+struct Mixer {
+    def: CharacterDef,
+    set: AnimationSet,
+    clips: Vec<ClipId>,
+    animator: Animator,
+    place: Transform,
+}
+
+impl Mixer {
+    fn new(random: &mut Random) -> Self {
+        let def = walker();
+        let mut set = AnimationSet::new(Skeleton::new(&def.rig));
+        let clips = def.motions().clips.iter().map(|clip| {
+            let built =
+                BuiltClip::build(clip, &def.rig, &Default::default()).expect("the walker's clips are good");
+            set.add_clip(AnimatedClip::from(built))
+        });
+        let clips = clips.collect();
+        let place = Transform::new(random.in_cube() * 3.0, random.rotation());
+        Self { animator: Animator::new(&set), def, set, clips, place }
+    }
+
+    /// Starts a track beside the others, or goes over to it.
+    fn change(&mut self, random: &mut Random) {
+        let track = TrackDef {
+            weight: random.range(0.2, 1.0),
+            speed: random.range(0.5, 1.5),
+            start: random.range(0.0, 1.5),
+            ..TrackDef::new(self.clips[random.index(self.clips.len())])
+        };
+        let seconds = random.range(0.1, 0.6);
+        match random.index(3) {
+            0 => _ = self.animator.play(&self.set, &track),
+            1 => {
+                let way = Transition::Crossfade { seconds, easing: Easing::Smooth };
+                self.animator.transition(&self.set, &track, way);
+            }
+            _ => _ = self.animator.transition(&self.set, &track, Transition::Inertial { seconds }),
+        }
+    }
+
+    fn step(&mut self, dt: f32, out: &mut Vec<Transform>) {
+        self.animator.update(&self.set, dt);
+        // Whoever carries the character moves and turns it besides.
+        let turn = Rotation::from_scaled_axis(Vec3::Y * 0.9 * dt);
+        self.place = Transform::new(
+            self.place.translation + Vec3::new(1.0, 0.2, 0.5) * dt,
+            turn * self.place.rotation,
+        );
+        let mut pose: Vec<LocalTransform> = self.animator.pose().iter().collect();
+        self.def.mapping().flatten(&self.def.rig, &mut pose);
+        let mut model = Vec::new();
+        local_to_model(&self.def.rig, &pose, &Affine::IDENTITY, &mut model);
+        self.def.mapping().bodies_from_model(&model, self.place, out);
+    }
+}
+
+/// The world's, about the common centre of mass of a ragdoll.
+fn momentum_of_ragdoll(world: &World, ragdoll: &Ragdoll) -> (Vec3, Vec3) {
+    let momentum = world.momentum();
+    let (mut mass, mut moment) = (0.0, Vec3::ZERO);
+    for &body in &ragdoll.bodies {
+        mass += world.mass(body).mass;
+        moment += world.center_of_mass(body) * world.mass(body).mass;
+    }
+    (momentum.linear, momentum.angular - (moment / mass).cross(momentum.linear))
+}
+
+#[test]
+fn ragdoll_has_the_momentum_of_any_blend() {
+    let mut random = Random::new(21);
+    let dt = 1.0 / 60.0;
+    let mut least = f32::INFINITY;
+    for case in 0..60 {
+        let mut mixer = Mixer::new(&mut random);
+        let (mut before, mut now) = (Vec::new(), Vec::new());
+        for frame in 0..5 + random.index(60) {
+            if frame % 8 == 0 {
+                mixer.change(&mut random);
+            }
+            core::mem::swap(&mut before, &mut now);
+            mixer.step(dt, &mut now);
+        }
+        let def = &mixer.def;
+        let mut velocities = Vec::new();
+        body_velocities(&def.ragdoll, &before, &now, dt, SpeedBound::default(), &mut velocities);
+        let poses = now.iter().zip(&velocities);
+        let states: Vec<BodyState> =
+            poses.map(|(&world_from_body, &velocity)| BodyState { world_from_body, velocity }).collect();
+        let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+        let flesh = Flesh { angular_damping: 0.0, ..Flesh::default() };
+        let ragdoll = Ragdoll::spawn(&mut world, &def.ragdoll, &states, &flesh);
+        let animated = momentum_of_motion(def, &before, &now, &now, dt);
+        least = sinew_math::min(least, animated.linear.length());
+        for step in 0..3 {
+            let (linear, angular) = momentum_of_ragdoll(&world, &ragdoll);
+            let error = (linear - animated.linear).length() / max(animated.linear.length(), 10.0);
+            assert!(error < 0.01, "case {case}, step {step}: linear {linear} for {}", animated.linear);
+            let error = (angular - animated.angular).length() / max(animated.swing, 1.0);
+            assert!(error < 0.01, "case {case}, step {step}: angular {angular} for {}", animated.angular);
+            world.step();
+        }
+    }
+    assert!(least > 10.0, "they move");
 }

@@ -3,13 +3,17 @@
 
 use core::fmt;
 use sinew_anim::{Cursor, Decay, LocalTransform, Pose, local_to_model};
-use sinew_math::{Rotation, Transform, Vec3, max};
-use sinew_ragdoll::{Character, CharacterDef, Event};
+use sinew_math::{Affine, Rotation, Transform, Vec3, max};
+use sinew_physics::{World, WorldDef};
+use sinew_ragdoll::{Character, CharacterDef, Event, RagdollBodyDef};
 use std::sync::Arc;
 
 const DT: f32 = 1.0 / 60.0;
 /// Steps after a hand-over that are watched.
 const WINDOW: usize = 24;
+/// Steps of clips before the bodies take over, and in all: a lap of a walk.
+const BEFORE: usize = 12;
+const LAP: usize = 72;
 /// Into a get-up clip, and into the looped one, seconds.
 const INTO: [f32; 2] = [0.35, 0.3];
 
@@ -37,6 +41,18 @@ fn rates(a: Transform, b: Transform) -> Rates {
     [turn(a.rotation, b.rotation) / DT, (b.translation - a.translation) / DT]
 }
 
+/// Centres of mass of the bodies as the clips carry them, turned as they are.
+fn centers(character: &Character) -> Vec<Transform> {
+    let def = character.def();
+    let (mut model, mut bodies) = (Vec::new(), Vec::new());
+    local_to_model(&def.rig, character.pose(), &Affine::IDENTITY, &mut model);
+    def.mapping().bodies_from_model(&model, character.world_from_character(), &mut bodies);
+    let at_center = |(body, def): (&Transform, &RagdollBodyDef)| {
+        Transform::new(body.point(def.mass.center), body.rotation)
+    };
+    bodies.iter().zip(&def.ragdoll.bodies).map(at_center).collect()
+}
+
 /// What a joint may do in a window.
 #[derive(Clone, Copy, Default)]
 struct Budget([f32; 2]);
@@ -52,19 +68,53 @@ pub struct Pops {
     def: Arc<CharacterDef>,
     last: Vec<Vec<Transform>>,
     window: Option<Window>,
-    worst: [(f32, String); 2],
-    count: [u32; 2],
+    worst: [(f32, String); 3],
+    count: [u32; 3],
 }
 
 impl Pops {
     pub fn new(def: &Arc<CharacterDef>) -> Self {
-        Self { def: def.clone(), last: Vec::new(), window: None, worst: Default::default(), count: [0; 2] }
+        Self { def: def.clone(), last: Vec::new(), window: None, worst: Default::default(), count: [0; 3] }
     }
 
     /// Another character.
     pub fn begin(&mut self, character: &Character) {
         self.last = vec![seen(character)];
         self.window = None;
+    }
+
+    /// As the character is now, without a push: how much its bodies' speeds, as they are handed over, differ from those of the
+    /// last step of the clips, over what they change by from step to step while clips move them. What joint friction, limits
+    /// and the floor then do to them is physics.
+    pub fn go_limp(&mut self, character: &Character) {
+        let mut world = World::new(WorldDef::default());
+        let mut animated = character.clone();
+        let mut places = vec![centers(&animated)];
+        let mut given: Vec<Rates> = Vec::new();
+        for step in 1..LAP {
+            animated.update(&mut world);
+            places.push(centers(&animated));
+            if step == BEFORE {
+                let mut limp = animated.clone();
+                limp.go_limp(&mut world);
+                let bodies = &limp.ragdoll().expect("it is limp").bodies;
+                let velocity = |&body| [world.velocity(body).angular, world.velocity(body).linear];
+                given = bodies.iter().map(velocity).collect();
+            }
+        }
+        self.count[2] += 1;
+        for (body, given) in given.iter().enumerate() {
+            let rate: Vec<Rates> = places.windows(2).map(|w| rates(w[0][body], w[1][body])).collect();
+            for i in 0..2 {
+                let own = rate.windows(2).map(|w| (w[1][i] - w[0][i]).length() / DT).fold(0.0, max);
+                let jump = (given[i] - rate[BEFORE - 1][i]).length() / DT;
+                let ratio = jump / (1.2 * own + [0.5, 0.05][i]);
+                if ratio > self.worst[2].0 {
+                    let role = &self.def.ragdoll.bodies[body].role;
+                    self.worst[2] = (ratio, format!("{role}, {}", ["turn", "way"][i]));
+                }
+            }
+        }
     }
 
     /// After an update.
@@ -150,13 +200,13 @@ impl Pops {
 
     /// Above 1 there is a pop.
     pub fn worst(&self) -> f32 {
-        max(self.worst[0].0, self.worst[1].0)
+        self.worst.iter().fold(0.0, |worst, (ratio, _)| max(worst, *ratio))
     }
 }
 
 impl fmt::Display for Pops {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (kind, name) in ["bodies to get-up", "get-up to loop"].iter().enumerate() {
+        for (kind, name) in ["bodies to get-up", "get-up to loop", "clip to bodies"].iter().enumerate() {
             let (ratio, place) = &self.worst[kind];
             let count = self.count[kind];
             writeln!(f, "  {name}: {count} times, worst {ratio:.3} of what is allowed ({place})")?;
