@@ -124,6 +124,40 @@ fn local(node: &Value) -> Transform {
     Transform::new(Vec3::from_slice(&t), Rotation::from_xyzw(r[0], r[1], r[2], r[3]))
 }
 
+/// What the draft says of a joint: it holds together, and turns as far as the joint does about each axis.
+fn check_limits(kind: &JointKind, limits: &[Value], what: &str) {
+    let of = |key: &str, axes: &[u64]| {
+        let is = |limit: &&Value| {
+            limit[key]
+                .as_array()
+                .is_some_and(|list| list.iter().filter_map(Value::as_u64).eq(axes.iter().copied()))
+        };
+        let limit = limits.iter().find(is)?;
+        Some([limit["min"].as_f64()? as f32, limit["max"].as_f64()? as f32])
+    };
+    assert_eq!(of("linearAxes", &[0, 1, 2]), Some([0.0, 0.0]), "{what}");
+    let range = |range: sinew::math::Range| Some([range.lo, range.hi]);
+    match kind {
+        JointKind::Ball { limit: Some(l) } => {
+            let axes = [of("angularAxes", &[0]), of("angularAxes", &[1]), of("angularAxes", &[2])];
+            assert_eq!(axes, [range(l.twist), range(l.swing_y), range(l.swing_z)], "{what}");
+            let ends = [-l.swing_y.lo, l.swing_y.hi, -l.swing_z.lo, l.swing_z.hi];
+            let widest = ends.into_iter().fold(0.0, sinew::math::max);
+            assert_eq!(of("angularAxes", &[1, 2]), Some([0.0, widest]), "{what}");
+        }
+        JointKind::Universal { limit: Some(l) } => {
+            assert_eq!(of("angularAxes", &[0]), Some([0.0, 0.0]), "{what}");
+            assert_eq!(of("angularAxes", &[1]), range(l.swing_y), "{what}");
+        }
+        JointKind::Hinge { limit: Some(angle) } => {
+            assert_eq!(of("angularAxes", &[0]), range(*angle), "{what}");
+            assert_eq!(of("angularAxes", &[1, 2]), Some([0.0, 0.0]), "{what}");
+        }
+        JointKind::Fixed => assert_eq!(of("angularAxes", &[0, 1, 2]), Some([0.0, 0.0]), "{what}"),
+        _ => {}
+    }
+}
+
 /// What the file says, against the definition.
 fn check_khr(def: &RagdollDef, document: &Document, bind_model: &[Affine], bytes: &[u8], what: &str) {
     let back = read_gltf(bytes, ReadOptions::default(), &mut no_files)
@@ -191,7 +225,7 @@ fn check_khr(def: &RagdollDef, document: &Document, bind_model: &[Affine], bytes
         assert_same(place(joint.parent, link), frame(joint.parent, joint.frame_parent), what);
         assert_same(place(joint.child, pivot), frame(joint.child, joint.frame_child), what);
         let described = &physics["physicsJoints"][index];
-        assert!(described["limits"].as_array().is_some_and(|limits| limits.len() >= 2), "{what}");
+        check_limits(&joint.kind, described["limits"].as_array().expect("limits"), what);
         assert_eq!(
             described["extras"]["sinew"]["friction_torque"].as_f64().map(|t| t as f32),
             Some(joint.friction_torque)
@@ -214,6 +248,13 @@ fn physics_in_the_users_own_file_reads_back() {
     let analysis = analyze(&document.rig).expect("a skin");
     let bytes = std::fs::read(&out).expect("written");
     check_khr(&built(&document.rig), &document, &analysis.bind_model, &bytes, "mannequin");
+    // The new nodes are nobody's bones.
+    let with_physics = load_gltf(&out, ReadOptions::default()).expect("a character still");
+    let (before, after) = (built(&document.rig), built(&with_physics.rig));
+    let sizes = |def: &RagdollDef| {
+        def.bodies.iter().map(|body| (body.bone.clone(), body.shape.clone())).collect::<Vec<_>>()
+    };
+    assert_eq!(sizes(&before), sizes(&after));
     // Twice is once too much.
     let again = sinew(&["ragdoll", "export", &out, "--as", "khr", "-o", &folder.path("twice.glb")]);
     assert!(again.refusal(1).contains("the file has physics of its own"), "{again:?}");

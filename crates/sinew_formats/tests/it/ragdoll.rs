@@ -144,6 +144,18 @@ fn complaints_name_the_place() {
             "must lie between -180 and 180 degrees (bodies[1].joint.limits_deg.twist[1])",
         ),
         (r#""kg": 40"#, r#""kg": 0"#, "must be more than 0 (bodies[0].mass.kg)"),
+        (r#""kg": 40"#, r#""kg": 1e30"#, "a mass or moment that no solver can work with (bodies[0].mass)"),
+        (
+            r#""position": [0, 0.95, 0]"#,
+            r#""position": [0, 3e38, 0]"#,
+            "lies more than 1,000 km away (bodies[0].position)",
+        ),
+        (
+            r#""radius": 0.07"#,
+            r#""radius": 1e-20"#,
+            "is smaller than a micrometre or larger than 1,000 km (bodies[1].shape)",
+        ),
+        (r#""height": 1.7"#, r#""height": 1e30"#, "must lie between a millionth and a million (height)"),
         (
             r#""up_axis": [0, 1, 0]"#,
             r#""up_axis": [0, 1, 1]"#,
