@@ -66,6 +66,8 @@ use sinew_ragdoll::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 
 const VERSION: usize = 1;
 
+/// Most bodies: those of the largest joint tree. Pairs of bodies grow with the square.
+const MOST_BODIES: usize = 1024;
 /// Farthest place and largest size, metres.
 const FARTHEST: f32 = 1e6;
 /// Smallest size, metres.
@@ -108,6 +110,9 @@ pub fn read_ragdoll(bytes: &[u8]) -> Result<RagdollDef> {
     let body_list = bodies_at.items()?;
     if body_list.is_empty() {
         return Err(bodies_at.malformed("a ragdoll needs at least one body"));
+    }
+    if body_list.len() > MOST_BODIES {
+        return Err(bodies_at.unsupported(format!("more than {MOST_BODIES} bodies")));
     }
     let mut def = RagdollDef {
         total_mass: root.need("total_mass")?.positive()?,

@@ -43,7 +43,7 @@ impl RagdollDoctor {
     /// Reads, examines, mends, writes.
     pub fn run(&self) -> Result<Report> {
         self.check_output()?;
-        let RagdollFile { name, mut patient, notes } =
+        let RagdollFile { name, mut patient, mut notes } =
             RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
         if let Some(rig) = &self.rig {
             let character = CharacterFile::load(rig, Textures::Skip)?;
@@ -54,6 +54,9 @@ impl RagdollDoctor {
             None => doctor(&patient),
             Some(output) => {
                 let (cured, findings) = cure(&patient);
+                if patient.springs.iter().any(Option::is_some) {
+                    notes.push("springs of joints are no part of a definition: they are not written".into());
+                }
                 let mut outputs = Outputs::default();
                 outputs.add(output, write_ragdoll(&cured.def).into_bytes());
                 outputs.write()?;

@@ -387,6 +387,45 @@ fn a_contact_that_fights_a_limit() {
     assert_eq!(cured.def.disabled_pairs, [(0, 2)]);
 }
 
+/// A tail of hinges that each are 0.9° beyond their limit: too little to be told of one by one.
+fn strained() -> RagdollDef {
+    let link = |index: u8| {
+        let shape = Shape::Capsule { half_height: 0.03, radius: 0.02 };
+        RagdollBodyDef {
+            bone: format!("tail {index}"),
+            joint: index.into(),
+            merged: Vec::new(),
+            role: format!("tail_{index}"),
+            confidence: 1.0,
+            mass: shape.mass_properties(1000.0),
+            shape,
+            character_from_body: Transform::from_translation(Vec3::Y * (0.05 + 0.1 * f32::from(index))),
+        }
+    };
+    let bodies: Vec<RagdollBodyDef> = (0..12).map(link).collect();
+    let hinge = |parent: usize| RagdollJointDef {
+        parent,
+        child: parent + 1,
+        frame_parent: Transform::from_translation(Vec3::Y * 0.05),
+        frame_child: Transform::from_translation(Vec3::Y * -0.05),
+        kind: JointKind::Hinge { limit: Some(Range::degrees(0.9, 30.0)) },
+        friction_torque: 0.0,
+    };
+    let joints = (0..11).map(hinge).collect();
+    let total_mass = bodies.iter().map(|body| body.mass.mass).sum();
+    let (height, up_axis) = (1.2, Vec3::Y);
+    RagdollDef { bodies, joints, total_mass, height, unit_scale: 1.0, up_axis, ..RagdollDef::default() }
+}
+
+#[test]
+fn what_moves_by_itself_is_seen_by_moving() {
+    let patient = Patient::new(strained());
+    let findings = doctor(&patient);
+    assert_eq!(codes(&findings), [Code::MovesByItself], "{findings:#?}");
+    let (cured, told) = cure(&patient);
+    assert!(told[0].fixed && doctor(&cured).is_empty(), "{told:#?}");
+}
+
 #[test]
 fn numbers_that_are_none_are_named_and_nothing_panics() {
     let mut patient = healthy();
