@@ -43,8 +43,11 @@ impl RagdollDoctor {
     /// Reads, examines, mends, writes.
     pub fn run(&self) -> Result<Report> {
         self.check_output()?;
-        let RagdollFile { name, mut patient, mut notes } =
-            RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
+        let file = RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
+        if self.rig.is_none() {
+            file.check_settings(&self.settings)?;
+        }
+        let RagdollFile { name, mut patient, mut notes } = file;
         if let Some(rig) = &self.rig {
             let character = CharacterFile::load(rig, Textures::Skip)?;
             let settings = self.settings.load(rig)?;

@@ -173,6 +173,10 @@ fn settings_beside_the_character_are_heeded() {
     assert!(settled["notes"][0].as_str().is_some_and(|note| note.starts_with("with the settings of ")));
     // The command line has the last word.
     assert!((mass(&build(&["--mass", "50"]).json()) - 50.0).abs() < 1e-3);
+    let (settings, _) = (folder.path("mannequin.ragdoll.json"), built(&folder));
+    let definition = folder.path("mannequin.sinew.json");
+    let run = sinew(&["ragdoll", "doctor", &definition, "--settings", &settings]);
+    assert!(run.refusal(2).ends_with("name a character, not a definition or a model"), "{run:?}");
     let wrong = folder.file("wrong.json", text.replace("head", "haed"));
     let run = build(&["--settings", &wrong]);
     let line = run.refusal(1);
