@@ -18,6 +18,16 @@ pub struct RagdollFile {
 }
 
 impl RagdollFile {
+    /// Settings change a build: of what is built already there is nothing to change.
+    pub fn check_settings(&self, settings: &SettingsArg) -> Result<()> {
+        if self.patient.reference.is_none() && settings.path().is_some() {
+            let what =
+                "--settings change how a ragdoll is built: name a character, not a definition or a model";
+            return Err(Failure::Usage(what.to_owned()));
+        }
+        Ok(())
+    }
+
     /// Reads a file of any of the three kinds; of a character the ragdoll is built.
     pub fn load(path: &Path, textures: Textures, settings: &SettingsArg) -> Result<Self> {
         let name = path.display().to_string();

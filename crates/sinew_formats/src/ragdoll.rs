@@ -61,10 +61,20 @@ use crate::json::{self, At, number, numbers};
 use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
 use serde_json::{Map, Value, json};
 use sinew_math::{Range, SwingTwistLimit, Transform, Vec3};
-use sinew_physics::JointKind;
+use sinew_physics::{JointKind, MassProperties, Shape};
 use sinew_ragdoll::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 
 const VERSION: usize = 1;
+
+/// Most bodies: those of the largest joint tree. Pairs of bodies grow with the square.
+const MOST_BODIES: usize = 1024;
+/// Farthest place and largest size, metres.
+const FARTHEST: f32 = 1e6;
+/// Smallest size, metres.
+const SMALLEST: f32 = 1e-6;
+/// Masses, kg; moments from the square of the one to the other, kg·m².
+const LIGHTEST: f32 = 1e-9;
+const HEAVIEST: f32 = 1e12;
 
 const ROOT_KEYS: [&str; 11] = [
     "sinew",
@@ -101,10 +111,13 @@ pub fn read_ragdoll(bytes: &[u8]) -> Result<RagdollDef> {
     if body_list.is_empty() {
         return Err(bodies_at.malformed("a ragdoll needs at least one body"));
     }
+    if body_list.len() > MOST_BODIES {
+        return Err(bodies_at.unsupported(format!("more than {MOST_BODIES} bodies")));
+    }
     let mut def = RagdollDef {
         total_mass: root.need("total_mass")?.positive()?,
-        height: root.need("height")?.positive()?,
-        unit_scale: root.need("unit_scale")?.positive()?,
+        height: read_scale(root.need("height")?)?,
+        unit_scale: read_scale(root.need("unit_scale")?)?,
         up_axis: read_up_axis(root.need("up_axis")?)?,
         character_from_model: root
             .get("character_from_model")?
@@ -145,18 +158,57 @@ fn read_up_axis(at: At<'_>) -> Result<Vec3> {
 
 fn read_frame(at: At<'_>) -> Result<Transform> {
     at.only(&POSE_KEYS)?;
-    parts::read_pose(at)
+    read_pose(at)
+}
+
+/// A pose within [`FARTHEST`]: sums and squares of what a file says must stay finite.
+fn read_pose(at: At<'_>) -> Result<Transform> {
+    let pose = parts::read_pose(at)?;
+    if sinew_math::abs3(pose.translation).max_element() > FARTHEST {
+        let at = at.get("position")?.unwrap_or(at);
+        return Err(at.malformed("lies more than 1,000 km away"));
+    }
+    Ok(pose)
+}
+
+fn read_shape(at: At<'_>) -> Result<Shape> {
+    at.only(&SHAPE_KEYS)?;
+    let shape = parts::read_shape(at)?;
+    if !shape.is_solid() {
+        let name = at.need("type")?.str()?;
+        return Err(at.malformed(format!("a body of a ragdoll cannot be a {name}")));
+    }
+    // Written so that NaN is refused.
+    if !(shape.smallest_extent() >= SMALLEST && shape.bounding_radius() <= FARTHEST) {
+        return Err(at.malformed("is smaller than a micrometre or larger than 1,000 km"));
+    }
+    Ok(shape)
+}
+
+fn read_mass(at: At<'_>) -> Result<MassProperties> {
+    let mass = parts::read_mass(at)?;
+    let moments = mass.inertia.eigen().0;
+    let light = (LIGHTEST..=HEAVIEST).contains(&mass.mass);
+    if !(light && moments.z >= LIGHTEST * LIGHTEST && moments.x <= HEAVIEST) {
+        return Err(at.malformed("a mass or moment that no solver can work with"));
+    }
+    if sinew_math::abs3(mass.center).max_element() > FARTHEST {
+        return Err(at.malformed("its centre lies more than 1,000 km away"));
+    }
+    Ok(mass)
+}
+
+/// A length that is taken for a number of the character, so that its square is one too.
+fn read_scale(at: At<'_>) -> Result<f32> {
+    let scale = at.positive()?;
+    if !(SMALLEST..=FARTHEST).contains(&scale) {
+        return Err(at.malformed("must lie between a millionth and a million"));
+    }
+    Ok(scale)
 }
 
 fn read_body(at: At<'_>) -> Result<RagdollBodyDef> {
     at.only(&[&BODY_KEYS[..], &POSE_KEYS].concat())?;
-    let shape_at = at.need("shape")?;
-    shape_at.only(&SHAPE_KEYS)?;
-    let shape = parts::read_shape(shape_at)?;
-    if !shape.is_solid() {
-        let name = shape_at.need("type")?.str()?;
-        return Err(shape_at.malformed(format!("a body of a ragdoll cannot be a {name}")));
-    }
     let merged = at.list("merged_rig_joints")?.into_iter().map(At::usize);
     let confidence = at.need("confidence")?;
     if !(0.0..=1.0).contains(&confidence.f32()?) {
@@ -168,9 +220,9 @@ fn read_body(at: At<'_>) -> Result<RagdollBodyDef> {
         merged: merged.collect::<Result<_>>()?,
         role: at.need("role")?.str()?.to_owned(),
         confidence: confidence.f32()?,
-        shape,
-        character_from_body: parts::read_pose(at)?,
-        mass: parts::read_mass(at.need("mass")?)?,
+        shape: read_shape(at.need("shape")?)?,
+        character_from_body: read_pose(at)?,
+        mass: read_mass(at.need("mass")?)?,
     })
 }
 
@@ -189,8 +241,16 @@ fn read_joint(at: At<'_>, child: usize, bodies: &[RagdollBodyDef]) -> Result<Rag
         frame_parent: frame("frame_in_parent")?,
         frame_child: frame("frame_in_child")?,
         kind: read_kind(at)?,
-        friction_torque: at.get("friction_torque")?.map_or(Ok(0.0), At::not_negative)?,
+        friction_torque: at.get("friction_torque")?.map_or(Ok(0.0), read_torque)?,
     })
+}
+
+fn read_torque(at: At<'_>) -> Result<f32> {
+    let torque = at.not_negative()?;
+    if torque > HEAVIEST {
+        return Err(at.malformed("a torque that no solver can work with"));
+    }
+    Ok(torque)
 }
 
 /// A body by the name of its bone, or by its number.

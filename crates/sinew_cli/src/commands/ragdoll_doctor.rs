@@ -43,8 +43,11 @@ impl RagdollDoctor {
     /// Reads, examines, mends, writes.
     pub fn run(&self) -> Result<Report> {
         self.check_output()?;
-        let RagdollFile { name, mut patient, notes } =
-            RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
+        let file = RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
+        if self.rig.is_none() {
+            file.check_settings(&self.settings)?;
+        }
+        let RagdollFile { name, mut patient, mut notes } = file;
         if let Some(rig) = &self.rig {
             let character = CharacterFile::load(rig, Textures::Skip)?;
             let settings = self.settings.load(rig)?;
@@ -54,6 +57,9 @@ impl RagdollDoctor {
             None => doctor(&patient),
             Some(output) => {
                 let (cured, findings) = cure(&patient);
+                if patient.springs.iter().any(Option::is_some) {
+                    notes.push("springs of joints are no part of a definition: they are not written".into());
+                }
                 let mut outputs = Outputs::default();
                 outputs.add(output, write_ragdoll(&cured.def).into_bytes());
                 outputs.write()?;

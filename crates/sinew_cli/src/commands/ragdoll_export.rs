@@ -91,6 +91,7 @@ impl RagdollExport {
             Some(_) => (self.ragdoll_of(&CharacterFile::load(&self.file, Textures::Skip)?)?, Vec::new()),
             None => {
                 let file = RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
+                file.check_settings(&self.settings)?;
                 (file.patient.def, file.notes)
             }
         };

@@ -124,6 +124,121 @@ fn local(node: &Value) -> Transform {
     Transform::new(Vec3::from_slice(&t), Rotation::from_xyzw(r[0], r[1], r[2], r[3]))
 }
 
+/// What the draft says of a joint: it holds together, and turns as far as the joint does about each axis.
+fn check_limits(kind: &JointKind, limits: &[Value], what: &str) {
+    let of = |key: &str, axes: &[u64]| {
+        let is = |limit: &&Value| {
+            limit[key]
+                .as_array()
+                .is_some_and(|list| list.iter().filter_map(Value::as_u64).eq(axes.iter().copied()))
+        };
+        let limit = limits.iter().find(is)?;
+        Some([limit["min"].as_f64()? as f32, limit["max"].as_f64()? as f32])
+    };
+    assert_eq!(of("linearAxes", &[0, 1, 2]), Some([0.0, 0.0]), "{what}");
+    let range = |range: sinew::math::Range| Some([range.lo, range.hi]);
+    match kind {
+        JointKind::Ball { limit: Some(l) } => {
+            let axes = [of("angularAxes", &[0]), of("angularAxes", &[1]), of("angularAxes", &[2])];
+            assert_eq!(axes, [range(l.twist), range(l.swing_y), range(l.swing_z)], "{what}");
+            let ends = [-l.swing_y.lo, l.swing_y.hi, -l.swing_z.lo, l.swing_z.hi];
+            let widest = ends.into_iter().fold(0.0, sinew::math::max);
+            assert_eq!(of("angularAxes", &[1, 2]), Some([0.0, widest]), "{what}");
+        }
+        JointKind::Universal { limit: Some(l) } => {
+            assert_eq!(of("angularAxes", &[0]), Some([0.0, 0.0]), "{what}");
+            assert_eq!(of("angularAxes", &[1]), range(l.swing_y), "{what}");
+        }
+        JointKind::Hinge { limit: Some(angle) } => {
+            assert_eq!(of("angularAxes", &[0]), range(*angle), "{what}");
+            assert_eq!(of("angularAxes", &[1, 2]), Some([0.0, 0.0]), "{what}");
+        }
+        JointKind::Fixed => assert_eq!(of("angularAxes", &[0, 1, 2]), Some([0.0, 0.0]), "{what}"),
+        _ => {}
+    }
+}
+
+/// A file with physics, beside what it was made of.
+struct Written<'a> {
+    def: &'a RagdollDef,
+    document: &'a Document,
+    bind_model: &'a [Affine],
+    json: Value,
+    what: &'a str,
+}
+
+impl Written<'_> {
+    fn extension(&self, node: usize) -> &Value {
+        &self.json["nodes"][node]["extensions"]["KHR_physics_rigid_bodies"]
+    }
+
+    fn physics(&self) -> &Value {
+        &self.json["extensions"]["KHR_physics_rigid_bodies"]
+    }
+
+    fn children(&self, node: usize) -> Vec<usize> {
+        let list = self.json["nodes"][node]["children"].as_array();
+        list.into_iter().flatten().filter_map(Value::as_u64).map(|child| child as usize).collect()
+    }
+
+    fn node_of(&self, body: usize) -> usize {
+        self.document.rig.joints[self.def.bodies[body].joint].source
+    }
+
+    /// A node under a body's bone, in character space.
+    fn place(&self, body: usize, node: usize) -> Transform {
+        let bone = self.bind_model[self.def.bodies[body].joint];
+        let node = Affine::from(local(&self.json["nodes"][node]));
+        (character_from_model(self.def) * bone * node).to_rigid()
+    }
+
+    fn check_body(&self, index: usize) {
+        let body = &self.def.bodies[index];
+        let what = format!("{} {}", self.what, body.role);
+        let mass = self.extension(self.node_of(index))["motion"]["mass"].as_f64();
+        assert_eq!(mass.map(|mass| mass as f32), Some(body.mass.mass), "{what}");
+        let has_collider = |node: &usize| self.extension(*node).get("collider").is_some();
+        let collider = self.children(self.node_of(index)).into_iter().find(has_collider);
+        let collider = collider.unwrap_or_else(|| panic!("{what} has no collider"));
+        if !is_changed(&body.shape) {
+            assert_same(self.place(index, collider), body.character_from_body, &what);
+        }
+        let number = self.extension(collider)["collider"]["geometry"]["shape"].as_u64().expect("a shape");
+        let shape = &self.json["extensions"]["KHR_implicit_shapes"]["shapes"][number as usize];
+        let metre = self.def.unit_scale * self.bind_model[body.joint].linear.x_axis.length();
+        let size = |of: &Value| of.as_f64().map(|size| size as f32 * metre);
+        let sizes = match body.shape {
+            Shape::Sphere { radius } => vec![(size(&shape["sphere"]["radius"]), radius)],
+            Shape::Capsule { radius, half_height } if half_height > 0.0 => vec![
+                (size(&shape["capsule"]["height"]), 2.0 * half_height),
+                (size(&shape["capsule"]["radiusTop"]), radius),
+            ],
+            Shape::Box { half_extents } => vec![(size(&shape["box"]["size"][2]), 2.0 * half_extents.z)],
+            _ => Vec::new(),
+        };
+        for (written, meant) in sizes {
+            assert!(written.is_some_and(|size| (size - meant).abs() < 1e-3), "{what}: {shape} for {meant} m");
+        }
+        assert!(shape[shape["type"].as_str().expect("a type")].is_object(), "{what}: {shape}");
+    }
+
+    fn check_joint(&self, index: usize) {
+        let (joint, what) = (&self.def.joints[index], self.what);
+        let is_link = |node: &usize| self.extension(*node)["joint"]["joint"] == index;
+        let link = self.children(self.node_of(joint.parent)).into_iter().find(is_link);
+        let link = link.unwrap_or_else(|| panic!("{what}: no node of joint {index}"));
+        let pivot = self.extension(link)["joint"]["connectedNode"].as_u64().expect("a node") as usize;
+        assert!(self.children(self.node_of(joint.child)).contains(&pivot), "{what}");
+        let frame = |body: usize, frame: Transform| self.def.bodies[body].character_from_body * frame;
+        assert_same(self.place(joint.parent, link), frame(joint.parent, joint.frame_parent), what);
+        assert_same(self.place(joint.child, pivot), frame(joint.child, joint.frame_child), what);
+        let described = &self.physics()["physicsJoints"][index];
+        check_limits(&joint.kind, described["limits"].as_array().expect("limits"), what);
+        let friction = described["extras"]["sinew"]["friction_torque"].as_f64();
+        assert_eq!(friction.map(|torque| torque as f32), Some(joint.friction_torque), "{what}");
+    }
+}
+
 /// What the file says, against the definition.
 fn check_khr(def: &RagdollDef, document: &Document, bind_model: &[Affine], bytes: &[u8], what: &str) {
     let back = read_gltf(bytes, ReadOptions::default(), &mut no_files)
@@ -132,74 +247,13 @@ fn check_khr(def: &RagdollDef, document: &Document, bind_model: &[Affine], bytes
         assert!(back.extensions().contains(&name), "{what}");
     }
     assert_eq!(back.clips.len(), document.clips.len(), "{what}");
-    let json = &back.json;
-    let physics = &json["extensions"]["KHR_physics_rigid_bodies"];
-    let shapes = &json["extensions"]["KHR_implicit_shapes"]["shapes"];
-    let nodes = json["nodes"].as_array().expect("nodes");
-    let extension = |node: usize| &nodes[node]["extensions"]["KHR_physics_rigid_bodies"];
-    let to_character = character_from_model(def);
-    let children = |node: usize| -> Vec<usize> {
-        let list = nodes[node]["children"].as_array();
-        list.into_iter().flatten().filter_map(Value::as_u64).map(|child| child as usize).collect()
-    };
-    // A frame under a bone, in character space.
-    let place = |body: usize, node: usize| {
-        (to_character * bind_model[def.bodies[body].joint] * Affine::from(local(&nodes[node]))).to_rigid()
-    };
-    let node_of = |body: usize| document.rig.joints[def.bodies[body].joint].source;
-    for (index, body) in def.bodies.iter().enumerate() {
-        let what = format!("{what} {}", body.role);
-        let motion = &extension(node_of(index))["motion"];
-        let mass = motion["mass"].as_f64().expect("a mass") as f32;
-        assert_eq!(mass, body.mass.mass, "{what}");
-        let collider =
-            children(node_of(index)).into_iter().find(|&node| extension(node).get("collider").is_some());
-        let collider = collider.unwrap_or_else(|| panic!("{what} has no collider"));
-        if !is_changed(&body.shape) {
-            assert_same(place(index, collider), body.character_from_body, &what);
-        }
-        let shape =
-            &shapes[extension(collider)["collider"]["geometry"]["shape"].as_u64().expect("a shape") as usize];
-        let metre = def.unit_scale * bind_model[body.joint].linear.x_axis.length();
-        let size = |of: &Value| of.as_f64().map(|size| size as f32 * metre);
-        let written = match body.shape {
-            Shape::Sphere { radius } => Some((size(&shape["sphere"]["radius"]), radius)),
-            Shape::Capsule { radius, half_height } if half_height > 0.0 => {
-                let height = size(&shape["capsule"]["height"]);
-                assert!(
-                    height.is_some_and(|height| (height - 2.0 * half_height).abs() < 1e-3),
-                    "{what}: {shape}"
-                );
-                Some((size(&shape["capsule"]["radiusTop"]), radius))
-            }
-            Shape::Box { half_extents } => Some((size(&shape["box"]["size"][2]), 2.0 * half_extents.z)),
-            _ => None,
-        };
-        if let Some((written, meant)) = written {
-            assert!(written.is_some_and(|size| (size - meant).abs() < 1e-3), "{what}: {shape} for {meant} m");
-        }
-        assert!(shape[shape["type"].as_str().expect("a type")].is_object(), "{what}: {shape}");
-    }
-    for (index, joint) in def.joints.iter().enumerate() {
-        let link = children(node_of(joint.parent))
-            .into_iter()
-            .find(|&node| extension(node)["joint"]["joint"] == index);
-        let link = link.unwrap_or_else(|| panic!("{what}: no node of joint {index}"));
-        let pivot = extension(link)["joint"]["connectedNode"].as_u64().expect("a node") as usize;
-        assert!(children(node_of(joint.child)).contains(&pivot), "{what}");
-        let frame = |body: usize, frame: Transform| def.bodies[body].character_from_body * frame;
-        assert_same(place(joint.parent, link), frame(joint.parent, joint.frame_parent), what);
-        assert_same(place(joint.child, pivot), frame(joint.child, joint.frame_child), what);
-        let described = &physics["physicsJoints"][index];
-        assert!(described["limits"].as_array().is_some_and(|limits| limits.len() >= 2), "{what}");
-        assert_eq!(
-            described["extras"]["sinew"]["friction_torque"].as_f64().map(|t| t as f32),
-            Some(joint.friction_torque)
-        );
-    }
+    let written = Written { def, document, bind_model, json: back.json, what };
+    (0..def.bodies.len()).for_each(|body| written.check_body(body));
+    (0..def.joints.len()).for_each(|joint| written.check_joint(joint));
+    let filters = &written.physics()["collisionFilters"];
     for &(a, b) in &def.disabled_pairs {
-        let others = physics["collisionFilters"][a]["notCollideWithSystems"].as_array().expect("a list");
-        assert!(others.contains(&physics["collisionFilters"][b]["collisionSystems"][0]), "{what}");
+        let others = filters[a]["notCollideWithSystems"].as_array().expect("a list");
+        assert!(others.contains(&filters[b]["collisionSystems"][0]), "{what}");
     }
 }
 
@@ -214,6 +268,13 @@ fn physics_in_the_users_own_file_reads_back() {
     let analysis = analyze(&document.rig).expect("a skin");
     let bytes = std::fs::read(&out).expect("written");
     check_khr(&built(&document.rig), &document, &analysis.bind_model, &bytes, "mannequin");
+    // The new nodes are nobody's bones.
+    let with_physics = load_gltf(&out, ReadOptions::default()).expect("a character still");
+    let (before, after) = (built(&document.rig), built(&with_physics.rig));
+    let sizes = |def: &RagdollDef| {
+        def.bodies.iter().map(|body| (body.bone.clone(), body.shape.clone())).collect::<Vec<_>>()
+    };
+    assert_eq!(sizes(&before), sizes(&after));
     // Twice is once too much.
     let again = sinew(&["ragdoll", "export", &out, "--as", "khr", "-o", &folder.path("twice.glb")]);
     assert!(again.refusal(1).contains("the file has physics of its own"), "{again:?}");

@@ -103,6 +103,31 @@ fn models_of_others_are_examined() {
     assert!(sinew(&["ragdoll", "doctor", &wrong]).refusal(1).contains("not"));
 }
 
+/// Failings planted into a model that others wrote.
+#[test]
+fn failings_in_models_of_others_are_named() {
+    let Some(data) = shared_data() else { return };
+    let folder = Folder::new("models");
+    let text = std::fs::read_to_string(data.join("robots/mujoco_humanoid.xml")).expect("the model");
+    for (from, to, code) in [
+        (r#"range="-160 2""#, r#"range="-90 90""#, "bends-both-ways"),
+        (r#"range="-160 2""#, r#"range="-180 180""#, "limits-missing"),
+        (r#"stiffness="10""#, r#"stiffness="100000""#, "stiffness-above-nyquist"),
+        (
+            r#"<geom name="head" type="sphere" size=".09""#,
+            r#"<geom name="head" type="sphere" mass="3" size=".4""#,
+            "overlap-at-start",
+        ),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let file = folder.file("model.xml", text.replace(from, to));
+        let object = sinew(&["ragdoll", "doctor", &file, "--json"]).json();
+        let mut found = codes(&object);
+        found.dedup();
+        assert_eq!(found, [code], "{from} {to}: {object:#}");
+    }
+}
+
 #[test]
 fn files_that_are_no_ragdoll_are_refused_in_a_line() {
     let folder = Folder::new("doctor-refusals");
@@ -114,6 +139,13 @@ fn files_that_are_no_ragdoll_are_refused_in_a_line() {
         ),
         ("later.json", r#"{"sinew":"ragdoll","version":9}"#, "version 9 is newer than 1"),
         ("half.json", r#"{"sinew":"ragdoll","version":1,"bod"#, "not JSON"),
+        (
+            "empty.json",
+            r#"{"sinew":"ragdoll","version":1,"total_mass":1,"height":1,"unit_scale":1,"up_axis":[0,1,0],"bodies":[]}"#,
+            "at least one body",
+        ),
+        ("nan.json", r#"{"sinew":"ragdoll","version":1,"total_mass":NaN}"#, "not JSON"),
+        ("large.json", r#"{"sinew":"ragdoll","version":1,"total_mass":1e99,"bodies":[]}"#, "(bodies)"),
         ("other.xml", "<robot/>", "not an MJCF file"),
         ("still.xml", "<mujoco><worldbody/></mujoco>", "no body moves"),
     ] {
@@ -141,6 +173,10 @@ fn settings_beside_the_character_are_heeded() {
     assert!(settled["notes"][0].as_str().is_some_and(|note| note.starts_with("with the settings of ")));
     // The command line has the last word.
     assert!((mass(&build(&["--mass", "50"]).json()) - 50.0).abs() < 1e-3);
+    let (settings, _) = (folder.path("mannequin.ragdoll.json"), built(&folder));
+    let definition = folder.path("mannequin.sinew.json");
+    let run = sinew(&["ragdoll", "doctor", &definition, "--settings", &settings]);
+    assert!(run.refusal(2).ends_with("name a character, not a definition or a model"), "{run:?}");
     let wrong = folder.file("wrong.json", text.replace("head", "haed"));
     let run = build(&["--settings", &wrong]);
     let line = run.refusal(1);
@@ -170,4 +206,49 @@ fn an_edited_definition_is_what_falls() {
     let run = bake(&other);
     let line = run.refusal(1);
     assert!(line.contains("bone `elsewhere` is not in this rig") && line.ends_with("(bodies[3])"), "{line}");
+}
+
+/// A definition whose numbers lie: whatever it says, a command does its work or refuses it in a line.
+#[test]
+fn numbers_that_lie_do_no_harm() {
+    let folder = Folder::new("lies");
+    let (path, _) = built(&folder);
+    let text = std::fs::read_to_string(&path).expect("a definition");
+    let rig = folder.path("mannequin.glb");
+    let mut random = sinew::math::Random::new(9);
+    let numbers: Vec<(usize, usize)> = {
+        let is_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | 'e');
+        let mut found = Vec::new();
+        let mut start = None;
+        for (at, c) in text.char_indices() {
+            match (start, is_number(c)) {
+                (None, true) if text[..at].ends_with([' ', '[']) => start = Some(at),
+                (Some(from), false) => {
+                    found.push((from, at));
+                    start = None;
+                }
+                _ => {}
+            }
+        }
+        found
+    };
+    assert!(numbers.len() > 200, "{} numbers", numbers.len());
+    let cases = if std::env::var_os("SINEW_FULL").is_some() { 300 } else { 12 };
+    for _ in 0..cases {
+        let (from, to) = numbers[random.index(numbers.len())];
+        let lie = ["0", "-1", "1e-30", "1e30", "3e38", "-7.5", "1e6", "179.9"][random.index(8)];
+        let file = folder.file("lie.sinew.json", format!("{}{lie}{}", &text[..from], &text[to..]));
+        let (out, fall) = (folder.path("out.sinew.json"), folder.path("out.glb"));
+        let commands: [&[&str]; 3] = [
+            &["ragdoll", "doctor", &file, "--fix", "-o", &out],
+            &["bake", &rig, "--ragdoll", &file, "--seconds", "1", "-o", &fall],
+            &["ragdoll", "export", &file, "--as", "mjcf"],
+        ];
+        for arguments in commands {
+            let run = sinew(arguments);
+            if run.code != Some(0) {
+                assert!(run.refusal(1).starts_with(&format!("error: {file}: ")), "{lie} at {from}: {run:?}");
+            }
+        }
+    }
 }

@@ -1,10 +1,11 @@
 //! Ragdoll files: the example of the documentation, round trips, complaints.
 
 use crate::world::documented_example;
-use sinew_formats::{read_ragdoll, write_ragdoll};
+use serde_json::{Value, json};
+use sinew_formats::{ReadOptions, load_gltf, read_ragdoll, write_ragdoll};
 use sinew_math::{Random, Range, SwingTwistLimit, Sym3, Transform, Vec3};
 use sinew_physics::{JointKind, MassProperties, Shape};
-use sinew_ragdoll::{RagdollBodyDef, RagdollDef, RagdollJointDef};
+use sinew_ragdoll::{BuildOptions, Patient, RagdollBodyDef, RagdollDef, RagdollJointDef, build, cure};
 
 fn example() -> String {
     documented_example(include_str!("../../src/ragdoll.rs"))
@@ -144,6 +145,18 @@ fn complaints_name_the_place() {
             "must lie between -180 and 180 degrees (bodies[1].joint.limits_deg.twist[1])",
         ),
         (r#""kg": 40"#, r#""kg": 0"#, "must be more than 0 (bodies[0].mass.kg)"),
+        (r#""kg": 40"#, r#""kg": 1e30"#, "a mass or moment that no solver can work with (bodies[0].mass)"),
+        (
+            r#""position": [0, 0.95, 0]"#,
+            r#""position": [0, 3e38, 0]"#,
+            "lies more than 1,000 km away (bodies[0].position)",
+        ),
+        (
+            r#""radius": 0.07"#,
+            r#""radius": 1e-20"#,
+            "is smaller than a micrometre or larger than 1,000 km (bodies[1].shape)",
+        ),
+        (r#""height": 1.7"#, r#""height": 1e30"#, "must lie between a millionth and a million (height)"),
         (
             r#""up_axis": [0, 1, 0]"#,
             r#""up_axis": [0, 1, 1]"#,
@@ -174,5 +187,51 @@ fn bytes_changed_at_random_do_no_harm() {
         if let Ok(def) = read_ragdoll(&bytes) {
             assert_eq!(read_ragdoll(write_ragdoll(&def).as_bytes()).unwrap(), def);
         }
+    }
+}
+
+/// Numbers that lie, in a whole body: refused, or examined, mended and written again, whatever they say.
+#[test]
+fn lies_are_refused_or_examined() {
+    let Some(data) = crate::data::shared_data() else { return };
+    let document = load_gltf(data.join("rigs/mannequiny.glb"), ReadOptions::default()).unwrap();
+    let analysis = sinew_anim::analyze(&document.rig).unwrap();
+    let (def, _) = build(&document.rig, &analysis, &BuildOptions::default()).unwrap();
+    let whole: Value = serde_json::from_str(&write_ragdoll(&def)).unwrap();
+    let mut places = Vec::new();
+    numbers(&whole, String::new(), &mut places);
+    assert!(places.len() > 300, "{} numbers", places.len());
+    let mut random = Random::new(23);
+    let cases = if std::env::var_os("SINEW_FULL").is_some() { 3000 } else { 40 };
+    let mut read = 0;
+    for _ in 0..cases {
+        let mut lying = whole.clone();
+        for _ in 0..=random.index(3) {
+            let place = lying.pointer_mut(&places[random.index(places.len())]).unwrap();
+            let factor = [0.0, -1.0, 0.5, 3.0, 1e3, 1e-4, 1e5, 1e-8][random.index(8)];
+            *place = json!(place.as_f64().unwrap_or(1.0) * factor + f64::from(random.range(-0.1, 0.1)));
+        }
+        let Ok(def) = read_ragdoll(lying.to_string().as_bytes()) else { continue };
+        read += 1;
+        let (cured, _) = cure(&Patient::new(def));
+        match read_ragdoll(write_ragdoll(&cured.def).as_bytes()) {
+            Ok(back) => assert!(back == cured.def, "what is written reads back otherwise"),
+            Err(error) => panic!("what a cure writes is refused: {error}"),
+        }
+    }
+    assert!(10 * read > cases, "only {read} of {cases} were read");
+}
+
+/// JSON pointers of all numbers.
+fn numbers(value: &Value, at: String, places: &mut Vec<String>) {
+    match value {
+        Value::Number(_) => places.push(at),
+        Value::Array(list) => {
+            list.iter().enumerate().for_each(|(i, item)| numbers(item, format!("{at}/{i}"), places));
+        }
+        Value::Object(map) => {
+            map.iter().for_each(|(key, item)| numbers(item, format!("{at}/{key}"), places));
+        }
+        _ => {}
     }
 }

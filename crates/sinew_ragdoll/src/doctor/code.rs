@@ -101,7 +101,7 @@ codes! {
     /// It moves though nothing pushes.
     MovesByItself "moves-by-itself" Error
         "something in it pushes without end"
-        "Leave out contacts between the two bodies that are nearest to each other there.";
+        "Widen limits that the bind pose strains, or leave out the deepest contact there.";
     /// A joint that turns without end.
     LimitsMissing "limits-missing" Warning
         "without limits elbows bend backwards and heads turn round"

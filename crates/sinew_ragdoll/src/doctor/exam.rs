@@ -7,9 +7,10 @@ use crate::def::{RagdollDef, RagdollJointDef};
 use crate::fit::Fit;
 use crate::fit::patch::Selection;
 use crate::limits::{JointPlan, joints};
+use core::f32::consts::PI;
 use sinew_anim::roles::Role;
 use sinew_math::limits::hinge_angle;
-use sinew_math::{Rotation, SwingTwistLimit, Transform, Vec3, max};
+use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min};
 use sinew_physics::JointKind;
 
 /// A ragdoll with what follows from it.
@@ -101,7 +102,22 @@ impl<'a> Exam<'a> {
 
     /// The joint that anatomy has here: same pivot, axes and range from the table.
     pub fn anatomical(&self, joint: usize) -> JointPlan {
-        joints(&self.bones, &self.fits, self.def.total_mass)[joint]
+        let mut plan = joints(&self.bones, &self.fits, self.def.total_mass)[joint];
+        plan.def.kind = within_half_turns(plan.def.kind);
+        plan
+    }
+}
+
+/// The kind with twists and hinges that end within half a turn each way: room that was added for a bind pose near that
+/// end would reach round to the other side.
+fn within_half_turns(kind: JointKind) -> JointKind {
+    let held = |range: Range| Range::new(max(range.lo, -PI), min(range.hi, PI));
+    match kind {
+        JointKind::Ball { limit } => JointKind::Ball {
+            limit: limit.map(|limit| SwingTwistLimit { twist: held(limit.twist), ..limit }),
+        },
+        JointKind::Hinge { limit } => JointKind::Hinge { limit: limit.map(held) },
+        kind => kind,
     }
 }
 

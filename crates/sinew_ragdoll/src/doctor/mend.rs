@@ -12,6 +12,8 @@ use sinew_physics::{JointKind, Shape, Softness};
 
 /// Room that the bind pose gets to a limit that it had passed, radians (2°).
 const ROOM: f32 = 0.034_907;
+/// What a joint may be beyond its limits without moving anything, radians (0.1°).
+const STRAIN: f32 = 0.001_745;
 
 /// Mends what a finding tells of; false if nothing could be done.
 pub(super) fn mend(patient: &mut Patient, finding: &Finding) -> bool {
@@ -62,10 +64,7 @@ fn remedied(exam: &Exam<'_>, finding: &Finding, body: usize, other: usize) -> Op
         Code::LimitsNotMirrored => mirror_joint(exam, &mut def, body, other),
         Code::SidesDiffer => mirror_shape(exam, &mut def, body, other),
         Code::OverlapAtStart | Code::CollisionFightsLimit => disable(&mut def, body, other),
-        Code::MovesByItself => {
-            let near = nearest_pair(exam, body)?;
-            disable(&mut def, near.0, near.1);
-        }
+        Code::MovesByItself => settle(exam, &mut def, body)?,
         Code::NoSelfCollision => {
             let clear = shapes::limbs_and_trunk(exam);
             let is_clear = |&(a, b): &(usize, usize)| clear.contains(&(a, b)) || clear.contains(&(b, a));
@@ -316,6 +315,24 @@ fn disable(def: &mut RagdollDef, a: usize, b: usize) {
 
 fn min_of(a: usize, b: usize) -> usize {
     if a < b { a } else { b }
+}
+
+/// Takes away what may push: limits that the bind pose is a little beyond, each too little to be told of by itself; where
+/// there are none, the deepest contact near `body`.
+fn settle(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) -> Option<()> {
+    let strained = |joint: &usize| {
+        let out = beyond(&exam.def.joints[*joint].kind, exam.turned(*joint, Rotation::IDENTITY));
+        max(out.limit, out.locked) > STRAIN
+    };
+    let joints: Vec<usize> = (0..exam.def.joints.len()).filter(strained).collect();
+    for &joint in &joints {
+        def.joints[joint] = holding_bind(exam, joint);
+    }
+    if joints.is_empty() {
+        let (a, b) = nearest_pair(exam, body)?;
+        disable(def, a, b);
+    }
+    Some(())
 }
 
 /// The pair that collides and touches, and has this body or a neighbour of it in it.

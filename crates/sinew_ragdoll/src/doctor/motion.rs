@@ -84,13 +84,17 @@ impl Unrest {
             return Some("left alone without gravity it is lost within half a second".to_owned());
         }
         (self.moved.0 > MOVED * exam.size + SLOP || self.turned.0 > TURNED).then(|| {
+            let gained = if self.energy < 0.01 {
+                String::new()
+            } else {
+                format!(", with {:.2} J from nothing", self.energy)
+            };
             format!(
-                "left alone without gravity {} moves by {:.0} mm and {} turns by {:.0}° within half a second, with {:.2} J from nothing",
+                "left alone without gravity {} moves by {:.0} mm and {} turns by {:.0}° within half a second{gained}",
                 exam.who(self.moved.1),
                 1000.0 * self.moved.0,
                 exam.who(self.turned.1),
                 self.turned.0.to_degrees(),
-                self.energy
             )
         })
     }

@@ -1,11 +1,11 @@
 //! What ragdolls of other tools suffer from, planted into a healthy one: the doctor names exactly that, and mends it.
 
 use crate::actor::walker;
-use sinew_math::{Range, SwingTwistLimit, Sym3, Transform, Vec3};
+use sinew_math::{Range, Rotation, SwingTwistLimit, Sym3, Transform, Vec3};
 use sinew_physics::{Hull, JointKind, MassProperties, Shape, Softness};
-use sinew_ragdoll::doctor::{Code, Finding, Severity};
+use sinew_ragdoll::doctor::{Code, Finding, Severity, limit_reach};
 use sinew_ragdoll::{
-    BuildOptions, Patient, RagdollBodyDef, RagdollDef, RagdollJointDef, build, cure, doctor, drop_test,
+    BuildOptions, Patient, RagdollBodyDef, RagdollDef, RagdollJointDef, build, cure, doctor, drop_test, gate,
 };
 
 /// A healthy ragdoll whose rig is at hand.
@@ -290,8 +290,9 @@ fn strangers_are_read_as_well() {
 
 #[test]
 fn failings_are_mended_and_the_ragdoll_falls_well() {
+    let stride = if std::env::var_os("SINEW_FULL").is_some() { 1 } else { 5 };
     let mut wrong = Vec::new();
-    for (what, code, plant) in FAILINGS {
+    for (index, (what, code, plant)) in FAILINGS.into_iter().enumerate() {
         let mut patient = healthy();
         plant(&mut patient);
         let (cured, findings) = cure(&patient);
@@ -300,14 +301,24 @@ fn failings_are_mended_and_the_ragdoll_falls_well() {
             wrong.push(format!("{what} ({}): {findings:#?} left: {left:#?}", code.name()));
             continue;
         }
-        let report = drop_test(&cured.def);
-        assert_eq!(report.drop.nan + report.wall.nan, 0, "{what}");
-        let gap = sinew_math::max(report.drop.joint_gap_max_m, report.wall.joint_gap_max_m);
-        assert!(gap < 5e-3 && report.drop.asleep_s.is_some(), "{what}: {:?}", report.reasons);
-        let gain = sinew_math::max(report.drop.energy_gain_max, report.wall.energy_gain_max);
-        assert!(gain < 0.02, "{what}: energy gain {gain}");
+        let fallen = gate(&cured.def, 1);
+        assert_eq!(fallen.worst.nan, 0, "{what}");
+        assert!(fallen.worst.energy_gain_max < 0.02, "{what}: {:?}", fallen.worst);
+        if index % stride == 0 {
+            falls_well(&cured.def, what);
+        }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Eight drops and a wall: nothing explodes, no joint opens, it comes to rest.
+fn falls_well(def: &RagdollDef, what: &str) {
+    let report = drop_test(def);
+    assert_eq!(report.drop.nan + report.wall.nan, 0, "{what}");
+    let gap = sinew_math::max(report.drop.joint_gap_max_m, report.wall.joint_gap_max_m);
+    assert!(gap < 5e-3 && report.drop.asleep_s.is_some(), "{what}: {:?}", report.reasons);
+    let gain = sinew_math::max(report.drop.energy_gain_max, report.wall.energy_gain_max);
+    assert!(gain < 0.02, "{what}: energy gain {gain}");
 }
 
 /// What the doctor calls an error must do harm: it shows in motion, and that is told.
@@ -390,6 +401,45 @@ fn a_contact_that_fights_a_limit() {
     assert_eq!(cured.def.disabled_pairs, [(0, 2)]);
 }
 
+/// A tail of hinges that each are 0.9° beyond their limit: too little to be told of one by one.
+fn strained() -> RagdollDef {
+    let link = |index: u8| {
+        let shape = Shape::Capsule { half_height: 0.03, radius: 0.02 };
+        RagdollBodyDef {
+            bone: format!("tail {index}"),
+            joint: index.into(),
+            merged: Vec::new(),
+            role: format!("tail_{index}"),
+            confidence: 1.0,
+            mass: shape.mass_properties(1000.0),
+            shape,
+            character_from_body: Transform::from_translation(Vec3::Y * (0.05 + 0.1 * f32::from(index))),
+        }
+    };
+    let bodies: Vec<RagdollBodyDef> = (0..12).map(link).collect();
+    let hinge = |parent: usize| RagdollJointDef {
+        parent,
+        child: parent + 1,
+        frame_parent: Transform::from_translation(Vec3::Y * 0.05),
+        frame_child: Transform::from_translation(Vec3::Y * -0.05),
+        kind: JointKind::Hinge { limit: Some(Range::degrees(0.9, 30.0)) },
+        friction_torque: 0.0,
+    };
+    let joints = (0..11).map(hinge).collect();
+    let total_mass = bodies.iter().map(|body| body.mass.mass).sum();
+    let (height, up_axis) = (1.2, Vec3::Y);
+    RagdollDef { bodies, joints, total_mass, height, unit_scale: 1.0, up_axis, ..RagdollDef::default() }
+}
+
+#[test]
+fn what_moves_by_itself_is_seen_by_moving() {
+    let patient = Patient::new(strained());
+    let findings = doctor(&patient);
+    assert_eq!(codes(&findings), [Code::MovesByItself], "{findings:#?}");
+    let (cured, told) = cure(&patient);
+    assert!(told[0].fixed && doctor(&cured).is_empty(), "{told:#?}");
+}
+
 #[test]
 fn numbers_that_are_none_are_named_and_nothing_panics() {
     let mut patient = healthy();
@@ -433,4 +483,33 @@ fn the_page_lists_every_code() {
         let row = format!("| `{name}` | {severity} | {} | {} |\n", code.cause(), code.fix());
         assert!(page.contains(&row), "docs/ragdoll.md lacks\n{row}");
     }
+}
+
+/// From the middle of a cone a joint reaches its ends, from elsewhere what is left.
+#[test]
+fn reaches_are_those_of_the_limits() {
+    let limit = SwingTwistLimit {
+        swing_y: Range::degrees(-20.0, 50.0),
+        swing_z: Range::degrees(-30.0, 10.0),
+        twist: Range::degrees(-40.0, 70.0),
+    };
+    let ball = JointKind::Ball { limit: Some(limit) };
+    let reach = |kind: &JointKind, bind, axis| limit_reach(kind, bind, axis).to_degrees();
+    let middle = Rotation::IDENTITY;
+    for (axis, degrees) in [
+        (Vec3::X, 70.0),
+        (-Vec3::X, 40.0),
+        (Vec3::Y, 50.0),
+        (-Vec3::Y, 20.0),
+        (Vec3::Z, 10.0),
+        (-Vec3::Z, 30.0),
+    ] {
+        let found = reach(&ball, middle, axis);
+        assert!((found - degrees).abs() < 0.02, "{axis}: {found}");
+    }
+    let bent = Rotation::from_axis_angle(Vec3::X, 25.0_f32.to_radians());
+    let hinge = JointKind::Hinge { limit: Some(Range::degrees(-2.0, 140.0)) };
+    assert!((reach(&hinge, bent, Vec3::X) - 115.0).abs() < 0.02);
+    assert!((reach(&hinge, bent, -Vec3::X) - 27.0).abs() < 0.02);
+    assert_eq!(limit_reach(&JointKind::Ball { limit: None }, middle, Vec3::Y), core::f32::consts::PI);
 }

@@ -1,11 +1,12 @@
 //! Settings: each does what it says, and nothing else.
 
-use sinew_anim::analyze;
+use sinew_anim::{Joint, LocalTransform, analyze};
 use sinew_math::{Range, Vec3};
 use sinew_physics::{JointKind, Shape};
 use sinew_ragdoll::settings::{BodyWish, BoneSettings, JointWish, ShapeWish, Unit};
 use sinew_ragdoll::{
-    BuildOptions, Mapping, RagdollDef, Settings, SettingsError, Sex, ShapeChoice, build, build_with,
+    BuildOptions, Mapping, RagdollDef, RigMismatch, Settings, SettingsError, Sex, ShapeChoice, build,
+    build_with,
 };
 use sinew_scenes::mannequin::mannequin;
 
@@ -107,13 +108,57 @@ fn bones_are_dropped_and_kept() {
     assert!((def.total_mass - before.total_mass).abs() < 1e-3);
     // It can be mapped to the rig, as any ragdoll can.
     let _ = Mapping::new(&rig, &def, &analysis.bind_model);
-    // What the build merged is kept when asked for.
-    let merged = before.bodies.iter().flat_map(|body| &body.merged).next().copied();
-    let Some(joint) = merged else { return };
+    // What was dropped and is then kept is as it was.
     let keep = BoneSettings { body: Some(BodyWish::Keep), ..BoneSettings::default() };
-    let def = with(&of_bone(&rig.joints[joint].name, keep)).expect("stays");
+    let mut settings = of_bone("leftHand", drop);
+    assert_eq!(with(&settings).expect("goes").bodies.len() + 1, before.bodies.len());
+    settings.bones.push(("leftHand".into(), keep));
+    assert_eq!(with(&settings).expect("comes back"), before);
+}
+
+#[test]
+fn a_bone_that_the_build_merges_is_kept() {
+    let Some(rig) = crate::data::rig("mesh2motion_human_rigify.glb") else { return };
+    let analysis = analyze(&rig).expect("a skin");
+    let options = BuildOptions::default();
+    let (before, _) = build(&rig, &analysis, &options).expect("bones");
+    let merged = before.bodies.iter().flat_map(|body| body.merged.iter().map(move |&joint| (body, joint)));
+    // One that moves skin of its own.
+    let skinned = |joint: usize| rig.skins.iter().any(|skin| skin.joints.contains(&joint));
+    let (carrier, joint) =
+        merged.into_iter().find(|&(_, joint)| skinned(joint)).expect("twist or finger bones");
+    let keep = BoneSettings { body: Some(BodyWish::Keep), ..BoneSettings::default() };
+    let settings = of_bone(&rig.joints[joint].name, keep);
+    let (def, _) = build_with(&rig, &analysis, &options, &settings).expect("stays");
     assert_eq!(def.bodies.len(), before.bodies.len() + 1);
-    assert!(def.bodies.iter().any(|body| body.joint == joint));
+    let new = def.bodies.iter().position(|body| body.joint == joint).expect("a body of its own");
+    assert_eq!(def.bodies[def.joints[new - 1].parent].bone, carrier.bone);
+    assert!(!def.bodies.iter().any(|body| body.merged.contains(&joint)));
+}
+
+/// A file that was exported anew has its joints elsewhere; a definition finds them by name.
+#[test]
+fn definitions_find_their_bones_by_name() {
+    let mut rig = mannequin().rig;
+    let def = plain();
+    assert_eq!(def.clone().for_rig(&rig), Ok(def.clone()));
+    for joint in &mut rig.joints {
+        joint.parent = Some(joint.parent.map_or(0, |parent| parent + 1));
+    }
+    let armature =
+        Joint { name: "Armature".into(), parent: None, rest: LocalTransform::default(), source: 0 };
+    rig.joints.insert(0, armature);
+    let found = def.clone().for_rig(&rig).expect("all bones are there");
+    for (old, new) in def.bodies.iter().zip(&found.bodies) {
+        assert_eq!((new.joint, &rig.joints[new.joint].name), (old.joint + 1, &old.bone));
+    }
+    let hand = body(&def, "leftHand");
+    rig.joints[found.bodies[hand].joint].name = "paw".into();
+    let bone = def.bodies[hand].bone.clone();
+    assert_eq!(def.clone().for_rig(&rig), Err(RigMismatch::NoBone { bone, body: hand }));
+    let mut twice = def.clone();
+    (twice.bodies[hand].bone, twice.bodies[hand].joint) = (def.bodies[0].bone.clone(), def.bodies[0].joint);
+    assert!(matches!(twice.for_rig(&mannequin().rig), Err(RigMismatch::Twice { .. })));
 }
 
 #[test]
