@@ -12,10 +12,9 @@ pub(super) struct Effort {
     /// Change of a velocity in a sweep below which there need not be another, m/s or rad/s. What rows would do about less
     /// is left alone.
     pub tolerance: f32,
-    /// Of contacts with what cannot move.
-    ground: Firmness,
-    /// Of contacts between bodies that can.
-    between: Firmness,
+    contact: Firmness,
+    /// Of contacts between bodies of one tree of joints.
+    within: Firmness,
     pub order: Order,
 }
 
@@ -45,8 +44,8 @@ const JOINTED: Effort = Effort {
     solve: 24,
     relax: 24,
     tolerance: 2e-3,
-    ground: Firmness { softness: 1.0, push_speed: 0.05 },
-    between: Firmness { softness: 0.1, push_speed: 0.5 },
+    contact: Firmness { softness: 1.0, push_speed: 0.05 },
+    within: Firmness { softness: 0.1, push_speed: 0.5 },
     order: Order::Forward,
 };
 /// Of contacts of free bodies.
@@ -55,7 +54,7 @@ const HARD: Firmness = Firmness { softness: 1e-3, push_speed: 3.0 };
 /// loads were found, and what is soft sinks by a load that its own mass says nothing of. In `relax` two sweeps, since friction of
 /// the first knows only the impulses of `solve` (1.5 % too little).
 const PILE: Effort =
-    Effort { solve: 24, relax: 2, tolerance: 2e-3, ground: HARD, between: HARD, order: Order::ToAndFro };
+    Effort { solve: 24, relax: 2, tolerance: 2e-3, contact: HARD, within: HARD, order: Order::ToAndFro };
 /// Of a pile that `PILE` is for. What one end of it feels reaches the other in as many sweeps as it has levels: a wall of a hundred
 /// leaned by 0.8 m within 17 s.
 const LEVELS: f32 = 10.0;
@@ -99,10 +98,10 @@ impl IslandSolver {
         } else {
             Effort::of_pile(self.levels.highest(), self.mass_ratio())
         };
-        let moving = self.links.len() as u32;
+        let tree = |body: u32| self.links.get(body as usize).map(|link| link.tree);
         for rows in &mut self.manifolds {
-            let is_between = rows.a < moving && rows.b < moving;
-            rows.set_firmness(if is_between { self.effort.between } else { self.effort.ground });
+            let is_within = tree(rows.a).is_some() && tree(rows.a) == tree(rows.b);
+            rows.set_firmness(if is_within { self.effort.within } else { self.effort.contact });
         }
     }
 

@@ -37,7 +37,7 @@ const UNUSUAL: f32 = 1.0 / 0.6;
 /// Likewise of a tapered capsule for a limb, which is as easy to live with.
 const TAPERED: f32 = 1.0 / 0.9;
 /// Likewise of a hull: it costs several times a box's collisions.
-const INTRICATE: f32 = 2.0;
+const INTRICATE: f32 = 3.0;
 
 /// Which shapes a ragdoll is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
