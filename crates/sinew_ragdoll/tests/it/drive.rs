@@ -397,7 +397,7 @@ fn drives_allocate_nothing_once_warm() {
 fn tail(count: usize) -> RagdollDef {
     let mut def = RagdollDef { bodies: vec![body("hips", Vec3::ZERO, 20.0)], ..RagdollDef::default() };
     for i in 1..=count {
-        let mass = 4.0 * 0.5f32.powi(i as i32);
+        let mass = 4.0 / (1 << i) as f32;
         def.bodies.push(body(&format!("tail_{i}"), Vec3::Z * (0.3 * i as f32), mass));
         def.joints.push(RagdollJointDef {
             parent: i - 1,
