@@ -19,6 +19,9 @@ pub(super) struct Mirror {
 /// How far off the mirror image of its counterpart a joint may be in the bind pose, share of the body's height.
 const TOLERANCE: f32 = 0.03;
 
+/// How far from its rest a joint is moved along, share of its distance from its parent.
+const MOVED: f32 = 1e-3;
+
 impl Mirror {
     pub fn new(def: &CharacterDef) -> Self {
         let bind: Vec<Transform> = def.bind().iter().map(Affine::to_rigid).collect();
@@ -34,7 +37,8 @@ impl Mirror {
         Self { twins, bind: bind.iter().map(|bind| bind.rotation).collect() }
     }
 
-    /// The mirror image of a flat pose. Translations change for the joints alone that carry root motion.
+    /// The mirror image of a flat pose. A joint that its clip moves along sits where its counterpart does; the others keep their
+    /// own place, for the two sides of a rig may differ.
     pub fn pose(&self, def: &CharacterDef, pose: &[LocalTransform]) -> Vec<LocalTransform> {
         let (rig, mapping) = (&def.rig, def.mapping());
         let root = mapping.character_from_model();
@@ -50,14 +54,26 @@ impl Mirror {
                 let wanted = reflected(turned) * self.bind[joint];
                 image[joint].rotation = (parent.to_rigid().rotation.inverse() * wanted).normalize();
             }
-            if mapping.heads().any(|head| head == joint) {
-                let place = across(shown[twin].translation);
-                image[joint].translation = parent.inverse().point(place);
-            }
+            let is_head = mapping.heads().any(|head| head == joint);
+            image[joint].translation = match rig.joints[twin].parent {
+                Some(above) if !is_head && is_moved(rig, pose, twin) => {
+                    let offset = across(shown[twin].translation - shown[above].translation);
+                    parent.inverse().point(parent.translation + offset)
+                }
+                _ if is_head => parent.inverse().point(across(shown[twin].translation)),
+                _ if mapping.carries(joint) => pose[joint].translation,
+                _ => node.rest.translation,
+            };
             made.push(parent * image[joint].to_affine());
         }
         image
     }
+}
+
+/// Whether a pose has the joint elsewhere on its parent than it rests.
+fn is_moved(rig: &Rig, pose: &[LocalTransform], joint: JointIdx) -> bool {
+    let rest = rig.joints[joint].rest.translation;
+    (pose[joint].translation - rest).length() > MOVED * rest.length()
 }
 
 fn across(v: Vec3) -> Vec3 {

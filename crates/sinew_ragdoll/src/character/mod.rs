@@ -1,4 +1,5 @@
-//! A character: animated until something knocks it over, limp until it lies still, getting up, animated again.
+//! A character: animated until something knocks it over, limp until it lies still, brought to where a get-up clip begins
+//! if it lies otherwise, getting up, animated again. Each change is an [`Event`].
 //!
 //! The host steps the world, then calls [`Character::update`]; poses and bodies are those of the same moment.
 

@@ -1,7 +1,7 @@
 //! The state machine.
 
-use crate::actor::{floor, shared, somewhere, walker};
-use sinew_anim::{Channel, Interpolation, Joint, LocalTransform, Property};
+use crate::actor::{floor, in_centimetres_and_z_up, kaykit, shared, somewhere, walker};
+use sinew_anim::{Channel, ClipId, Cursor, Interpolation, Joint, LocalTransform, Pose, Property};
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, trig};
 use sinew_physics::{BodyDef, BodyKind, Shape, ShapeDef, World, WorldDef};
 use sinew_ragdoll::{
@@ -327,4 +327,51 @@ fn a_powered_fall_keeps_more_of_its_pose() {
     };
     let (limp, powered) = (bend(DriveMode::Limp), bend(DriveMode::Powered(Muscle::ALIVE)));
     assert!(powered < 0.6 * limp, "off by {powered} rad on the mean, limp by {limp}");
+}
+
+/// Joints in character space, metres, as a clip of the set has them.
+fn places(def: &CharacterDef, clip: ClipId, time: f32) -> Vec<Vec3> {
+    let clip = &def.set().clip(clip).clip;
+    let mut pose = Pose::new(clip.joints());
+    clip.sample(time, &mut Cursor::new(), &mut pose);
+    let pose: Vec<LocalTransform> = pose.iter().collect();
+    let mut model = Vec::new();
+    sinew_anim::local_to_model(&def.rig, &pose, &def.mapping().character_from_model(), &mut model);
+    model.iter().map(|joint| joint.translation).collect()
+}
+
+/// The name of the same joint on the other side.
+fn other_side(name: &str) -> String {
+    let sides = [("left", "right"), ("right", "left")];
+    let ends = [(".l", ".r"), (".r", ".l")];
+    let swapped = |&(from, to): &(&str, &str)| name.strip_prefix(from).map(|rest| format!("{to}{rest}"));
+    let at_end = |&(from, to): &(&str, &str)| name.strip_suffix(from).map(|rest| format!("{rest}{to}"));
+    sides.iter().find_map(swapped).or_else(|| ends.iter().find_map(at_end)).unwrap_or_else(|| name.to_owned())
+}
+
+#[test]
+fn every_get_up_is_there_as_a_mirror_shows_it() {
+    for (name, def) in [("file", Some(in_centimetres_and_z_up())), ("KayKit", kaykit())] {
+        let Some(def) = def else { continue };
+        let clips: Vec<ClipId> = def.set().clips().collect();
+        let own = def.motions().clips.len();
+        assert_eq!(clips.len(), own + def.motions().get_ups.len());
+        let mut worst = 0.0;
+        for (index, &get_up) in def.motions().get_ups.iter().enumerate() {
+            for k in 0..=10 {
+                let time = def.motions().clips[get_up].duration * k as f32 / 10.0;
+                let (plain, image) =
+                    (places(&def, clips[get_up], time), places(&def, clips[own + index], time));
+                for joint in def.ragdoll.bodies.iter().map(|body| body.joint) {
+                    let wanted = other_side(&def.rig.joints[joint].name);
+                    let twin = def.rig.joints.iter().position(|other| other.name == wanted).expect("a twin");
+                    let mirrored = Vec3::new(-plain[twin].x, plain[twin].y, plain[twin].z);
+                    worst = sinew_math::max(worst, (image[joint] - mirrored).length());
+                }
+            }
+        }
+        // Straight lines between 30 poses a second, and what built clips round.
+        println!("{name}: {worst} m off");
+        assert!(worst < 5e-3, "{name}: {worst} m off");
+    }
 }

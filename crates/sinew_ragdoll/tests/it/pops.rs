@@ -3,7 +3,7 @@
 
 use core::fmt;
 use sinew_anim::{Cursor, Decay, LocalTransform, Pose, local_to_model};
-use sinew_math::{Affine, Rotation, Transform, Vec3, max};
+use sinew_math::{Affine, Rotation, Transform, Vec3, max, min};
 use sinew_physics::{World, WorldDef};
 use sinew_ragdoll::{Character, CharacterDef, Event, RagdollBodyDef};
 use std::sync::Arc;
@@ -190,7 +190,14 @@ impl Pops {
                     old[i] - rate[0][i]
                 };
                 let decay = Decay { offset: offsets[i], velocity };
-                let time = if heads.contains(&joint) { INTO[kind] } else { decay.shortened(INTO[kind]) };
+                let whole = INTO[kind];
+                let time = if heads.contains(&joint) {
+                    // It may come back as fast as both together; then it dies away the sooner, down to a third of the time.
+                    let soonest = 5.0 * decay.offset.length() / max(velocity.length(), 1e-6);
+                    max(min(whole, soonest), whole / 3.0)
+                } else {
+                    decay.shortened(whole)
+                };
                 let asked = 6.0 * decay.offset.length() / (time * time) + 4.0 * velocity.length() / time;
                 asked + 1.2 * own(i) + [0.5, 0.05][i]
             }))
