@@ -4,10 +4,12 @@ use crate::contract::check_keys;
 use crate::sinew::{Folder, gltf_files, shared_data, sinew};
 use serde_json::Value;
 use sinew::anim::{Rig, analyze};
-use sinew::formats::{Document, ReadOptions, load_gltf, no_files, read_gltf, read_mjcf, write_mjcf};
+use sinew::formats::{
+    Document, ReadOptions, load_gltf, no_files, read_gltf, read_mjcf, write_khr, write_mjcf,
+};
 use sinew::math::limits::hinge_angle;
 use sinew::math::{Affine, Rotation, Transform, Vec3};
-use sinew::physics::{JointKind, Shape};
+use sinew::physics::{Hull, JointKind, Shape};
 use sinew::ragdoll::mapping::character_from_model;
 use sinew::ragdoll::{BuildOptions, RagdollDef, build};
 
@@ -52,6 +54,11 @@ fn check_mjcf(def: &RagdollDef, text: &str, what: &str) {
             def.bodies[body].character_from_body.point(frame.translation)
         };
         let off = at(&back, joint.child, joint.frame_child) - lift.point(at(def, child, was.frame_child));
+        // A weld has no pivot, and no friction.
+        if was.kind == JointKind::Fixed {
+            assert_eq!(joint.kind, JointKind::Fixed, "{what}");
+            continue;
+        }
         assert!(off.length() < 1e-4, "{what}: a pivot is {off} off");
         assert_eq!(joint.friction_torque, was.friction_torque);
         if let (JointKind::Hinge { limit: Some(a) }, JointKind::Hinge { limit: Some(b) }) =
@@ -294,8 +301,47 @@ fn rigs_of_others_read_back_with_physics() {
         let document = load_gltf(&file, ReadOptions::default()).expect("a file of the collection");
         let Ok(analysis) = analyze(&document.rig) else { continue };
         let (def, _) = build(&document.rig, &analysis, &BuildOptions::default()).expect("bones");
-        let written = sinew::formats::write_khr(&document, &analysis.bind_model, &def);
+        let written = write_khr(&document, &analysis.bind_model, &def);
         let written = written.unwrap_or_else(|error| panic!("{file}: {error}"));
         check_khr(&def, &document, &analysis.bind_model, &written.bytes, &file);
     }
+}
+
+/// Shapes, joints and names that a build does not give, but a person may write.
+#[test]
+fn whatever_a_definition_holds_is_written() {
+    let folder = Folder::new("kinds");
+    let document = load_gltf(folder.mannequin(), ReadOptions::default()).expect("a character");
+    let analysis = analyze(&document.rig).expect("a skin");
+    let mut def = built(&document.rig);
+    let corner = |i: u8| {
+        let side = |bit: u8| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
+        Vec3::new(0.03 * side(0), 0.08 * side(1), 0.05 * side(2))
+    };
+    let hull = Hull::new(&(0..8).map(corner).collect::<Vec<_>>()).expect("a box is a hull");
+    let shapes = [
+        Shape::Hull(hull.into()),
+        Shape::TaperedCapsule { half_height: 0.1, radius_bottom: 0.04, radius_top: 0.06 },
+        Shape::Cone { half_height: 0.1, radius: 0.05 },
+        Shape::Cylinder { half_height: 0.1, radius: 0.05 },
+        Shape::Sphere { radius: 0.07 },
+        Shape::Capsule { half_height: 0.0, radius: 0.07 },
+    ];
+    for (body, shape) in def.bodies.iter_mut().zip(shapes) {
+        body.shape = shape;
+    }
+    def.joints[0].kind = JointKind::Fixed;
+    def.joints[1].kind = JointKind::Ball { limit: None };
+    def.joints[2].kind = JointKind::Hinge { limit: None };
+    let khr = write_khr(&document, &analysis.bind_model, &def).expect("a file");
+    check_khr(&def, &document, &analysis.bind_model, &khr.bytes, "kinds");
+    assert!(khr.notes.iter().any(|note| note.contains("became the box around it")), "{:?}", khr.notes);
+    def.bodies[3].bone = "<\"&'> \u{e9}".into();
+    let mjcf = write_mjcf(&def, "a \"name\"");
+    check_mjcf(&def, &mjcf.text, "kinds");
+    assert_eq!(mjcf.notes.len(), 4, "{:?}", mjcf.notes);
+    // A name that two bodies have is made two names.
+    def.bodies[4].bone = def.bodies[3].bone.clone();
+    let model = read_mjcf(write_mjcf(&def, "twins").text.as_bytes()).expect("a model");
+    assert_eq!(model.bodies.len(), def.bodies.len() + 1);
 }
