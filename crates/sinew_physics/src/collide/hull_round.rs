@@ -12,6 +12,8 @@ use sinew_math::{Vec3, max, min};
 
 /// Normals within 0.03° of a face's are that face's: rounding is below that.
 const FACE_SINE: f32 = 5e-4;
+/// Share of a core by which rounding moves the ends of a stretch.
+const ROUNDING: f32 = 1e-3;
 /// A core whose sine against an edge is below this runs along it (1.8°).
 const ALONG_SINE: f32 = 0.03;
 
@@ -163,6 +165,7 @@ fn push_line(
             let [from, to] = hull.edge(side).ends;
             cut(core, (to - from).cross(plane.normal), from, &mut stretch);
         }
+        reach(core, meeting.on_core, &mut stretch);
         (normal, name, height) = (plane.normal, feature::face_number(face), plane.offset);
     } else if let Some(side) = meeting.edge
         && runs_along(&hull.edge(side), along)
@@ -178,6 +181,17 @@ fn push_line(
     }
     let line = Line { core, radius, stretch, normal, name };
     line.push_ends(|p| p.dot(normal) - height, margin, out)
+}
+
+/// Where the core is nearest is part of its stretch over a face, unless there is none: of two faces that hardly differ the other one
+/// may be below it.
+fn reach(core: &Segment, nearest: Vec3, stretch: &mut (f32, f32)) {
+    let along = core.ends[1] - core.ends[0];
+    let place = (nearest - core.ends[0]).dot(along) / along.length_squared();
+    let is_off = place < stretch.0 - ROUNDING || place > stretch.1 + ROUNDING;
+    if is_off && stretch.1 - stretch.0 > ROUNDING {
+        *stretch = (min(stretch.0, place), max(stretch.1, place));
+    }
 }
 
 fn runs_along(edge: &Segment, along: Vec3) -> bool {
