@@ -6,7 +6,7 @@
 use crate::build::bones::Bones;
 use crate::build::part::Part;
 use crate::fit::{Fit, stretched};
-use sinew_math::{Vec3, max};
+use sinew_math::{Transform, Vec3, max};
 use sinew_physics::Shape;
 use sinew_physics::collide::{Manifold, collide};
 
@@ -174,9 +174,14 @@ fn thinner(shape: &Shape, factor: f32) -> Shape {
     }
 }
 
-/// How deep two fitted shapes overlap, metres; 0 or less if they do not.
+/// How deep two fitted shapes overlap, metres; 0 if they do not.
 pub fn depth(a: &Fit, b: &Fit) -> f32 {
+    depth_of((&a.shape, &a.character_from_body), (&b.shape, &b.character_from_body))
+}
+
+/// How deep two placed shapes overlap, metres; 0 if they do not.
+pub(crate) fn depth_of((a, at): (&Shape, &Transform), (b, there): (&Shape, &Transform)) -> f32 {
     let mut manifold = Manifold::default();
-    collide(&a.shape, &a.character_from_body, &b.shape, &b.character_from_body, 0.0, &mut manifold);
+    collide(a, at, b, there, 0.0, &mut manifold);
     manifold.points().iter().fold(0.0, |deepest, point| max(deepest, -point.separation))
 }

@@ -12,8 +12,9 @@ pub(super) struct Effort {
     /// Change of a velocity in a sweep below which there need not be another, m/s or rad/s. What rows would do about less
     /// is left alone.
     pub tolerance: f32,
+    /// Of contacts.
     contact: Firmness,
-    /// Of contacts between bodies of one tree of joints.
+    /// Of those between bodies of one tree of joints.
     within: Firmness,
     pub order: Order,
 }

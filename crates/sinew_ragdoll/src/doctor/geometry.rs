@@ -1,9 +1,10 @@
 //! Sizes of shapes and depths of overlaps.
 
 use super::exam::Exam;
+use crate::filter::depth_of;
+use crate::fit::stretched;
 use sinew_math::{Transform, Vec3, max};
 use sinew_physics::Shape;
-use sinew_physics::collide::{Manifold, collide};
 
 /// Full sizes of the box around a shape, in its own axes, metres.
 pub(super) fn full_size(shape: &Shape) -> Vec3 {
@@ -20,9 +21,7 @@ pub(super) fn longest(shape: &Shape) -> f32 {
 /// How deep body `a` overlaps body `b` with `a` elsewhere, metres; 0 if they do not.
 pub(super) fn depth_at(exam: &Exam<'_>, (a, place): (usize, Transform), b: usize) -> f32 {
     let (one, other) = (&exam.def.bodies[a], &exam.def.bodies[b]);
-    let mut manifold = Manifold::default();
-    collide(&one.shape, &place, &other.shape, &other.character_from_body, 0.0, &mut manifold);
-    manifold.points().iter().fold(0.0, |deepest, point| max(deepest, -point.separation))
+    depth_of((&one.shape, &place), (&other.shape, &other.character_from_body))
 }
 
 /// How deep two bodies overlap in the bind pose, metres.
@@ -49,10 +48,7 @@ pub(crate) fn scaled(shape: &Shape, factor: f32) -> Shape {
         Shape::Cone { half_height, radius } => {
             Shape::Cone { half_height: half_height * factor, radius: radius * factor }
         }
-        Shape::Hull(ref hull) => {
-            let points: Vec<Vec3> = hull.vertices().iter().map(|&v| v * factor).collect();
-            sinew_physics::Hull::new(&points).map_or_else(|_| shape.clone(), |hull| Shape::Hull(hull.into()))
-        }
+        Shape::Hull(ref hull) => stretched(hull, Vec3::splat(factor)).unwrap_or_else(|| shape.clone()),
         Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => shape.clone(),
     }
 }

@@ -133,10 +133,10 @@ fn nearest(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     let [flat, round] = if is_square { [1.0, UNUSUAL] } else { [UNUSUAL, 1.0] };
     let capsule = round::fit_capsule(bones, bone, patch);
     let tapered = round::taper(&capsule, patch).map(|fit| (fit, round * TAPERED));
-    let hull = solid::fit_hull(bones, bone, patch).map(|fit| (fit, INTRICATE));
-    let cuboid = (solid::fit_box(bones, bone, patch), flat);
+    let cuboid = solid::fit_box(bones, bone, patch);
+    let hull = solid::fit_hull(&cuboid, patch).map(|fit| (fit, INTRICATE));
     let first = (round::rounded(capsule), round);
-    let least = [Some(cuboid), tapered, hull].into_iter().flatten().fold(first, |best, other| {
+    let least = [Some((cuboid, flat)), tapered, hull].into_iter().flatten().fold(first, |best, other| {
         if other.0.error * other.1 < best.0.error * best.1 { other } else { best }
     });
     least.0

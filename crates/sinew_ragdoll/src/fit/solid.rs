@@ -30,8 +30,7 @@ pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
 
 /// The hull of the outermost points along 26 directions: the faces, edges and corners of the part's box. `None` where they
 /// have none.
-pub(super) fn fit_hull(bones: &Bones, bone: usize, patch: &Patch) -> Option<Fit> {
-    let cuboid = fit_box(bones, bone, patch);
+pub(super) fn fit_hull(cuboid: &Fit, patch: &Patch) -> Option<Fit> {
     let Shape::Box { half_extents: half } = cuboid.shape else { return None };
     let frame = cuboid.character_from_body;
     // Within the box, so that it ends at the joints where that does.

@@ -82,7 +82,7 @@ pub(crate) struct ManifoldRows {
     material: ContactMaterial,
     slop: f32,
     soft: Softness,
-    /// Its share of that softness is not for the bias.
+    /// How hard it is: a share of that softness, which the bias takes no notice of, and how fast it pushes apart.
     firmness: Firmness,
     /// Of the present pose.
     separation: [f32; MAX_POINTS],
