@@ -56,8 +56,8 @@ const WEIGHINGS: usize = 2;
 /// Most Newton steps to the middle of a free body's spin, and the square of the relative change with which they end.
 const MIDPOINT_STEPS: usize = 4;
 const MIDPOINT_TOLERANCE: f32 = 1e-12;
-/// Rounds in which limits that the substep would pass by far are tightened.
-const LIMIT_CORRECTIONS: usize = 4;
+/// Rounds in which limits and contacts that the substep would pass by far are tightened.
+const FORESIGHTS: usize = 4;
 
 /// A body of the island. Moving ones come first, in tree order; fixed ones (static, kinematic, asleep) follow.
 #[derive(Clone, Debug)]
@@ -323,8 +323,9 @@ impl IslandSolver {
         self.sweep(Pass::Solve);
         self.calm_trees();
         let mut torn = self.correct_positions();
-        for _ in 0..LIMIT_CORRECTIONS {
-            if !self.tighten_limits() {
+        for _ in 0..FORESIGHTS {
+            let tightened = self.tighten_limits();
+            if !self.foresee_contacts() && !tightened {
                 break;
             }
             self.sweep(Pass::Solve);
@@ -419,7 +420,7 @@ impl IslandSolver {
         self.factor_joints();
         for rows in &mut self.manifolds {
             rows.refind(&self.bodies, &self.velocities, self.h);
-            rows.place(&self.bodies);
+            rows.place(rows.poses(&self.bodies));
         }
         self.choose_limits();
         self.refresh_response();
@@ -487,6 +488,18 @@ impl IslandSolver {
         for row in &mut self.limits {
             row.respond(&self.joints, &self.bodies, &self.links, &self.response);
         }
+    }
+
+    /// Contacts that the substep would press in by far at other points than those of their rows. Gives whether there are any.
+    fn foresee_contacts(&mut self) -> bool {
+        let mut any = false;
+        for rows in &mut self.manifolds {
+            if rows.foresee(&self.bodies, &self.velocities, self.h) {
+                rows.respond(&self.bodies, &self.links, &self.response);
+                any = true;
+            }
+        }
+        any
     }
 
     /// True if some joints are solved as trees.

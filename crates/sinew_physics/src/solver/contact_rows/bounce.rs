@@ -12,11 +12,11 @@ const BOUNCE_SPEED: f32 = 1.0;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Approach {
     /// At its beginning, m/s; negative if it comes nearer.
-    rate: f32,
+    pub rate: f32,
     /// Likewise, metres; 0 if it overlaps.
-    gap: f32,
+    pub gap: f32,
     /// What forces and joints add in the substep before contacts, toward the surface, m/s; not negative.
-    pull: f32,
+    pub pull: f32,
 }
 
 impl Approach {

@@ -17,7 +17,7 @@ use bounce::Approach;
 pub(crate) use refind::PlacedShape;
 use refind::{REFIND_TURN, ROLL_TURN};
 use row::{Pair, Row, Softness};
-use sinew_math::{Mat3, Vec3, any_orthonormal, max, min};
+use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max, min};
 
 /// An impulse that grew by more than this factor since the substep before is an impact.
 pub(super) const IMPACT_JUMP: f32 = 2.0;
@@ -176,8 +176,9 @@ impl ManifoldRows {
             rolling: source.memory.rolling,
             memory: source.memory.of_new_step(),
         };
-        rows.take_manifold(bodies);
-        rows.place(bodies);
+        let poses = rows.poses(bodies);
+        rows.take_manifold(poses);
+        rows.place(poses);
         rows
     }
 
@@ -186,9 +187,13 @@ impl ManifoldRows {
         self.firmness = firmness;
     }
 
-    /// Cores of the manifold's points at the present poses.
-    fn take_manifold(&mut self, bodies: &[SolverBody]) {
-        let (pose_a, pose_b) = (bodies[self.a as usize].pose, bodies[self.b as usize].pose);
+    /// Of its two bodies.
+    pub fn poses(&self, bodies: &[SolverBody]) -> [Transform; 2] {
+        [self.a, self.b].map(|body| bodies[body as usize].pose)
+    }
+
+    /// Cores of the manifold's points, which was found at these poses.
+    fn take_manifold(&mut self, [pose_a, pose_b]: [Transform; 2]) {
         self.normal = self.manifold.normal;
         self.count = self.manifold.count;
         self.spin = Row::about(self.normal);
@@ -215,9 +220,8 @@ impl ManifoldRows {
         Pair { a: self.a, b: self.b }
     }
 
-    /// Separations and Jacobians at the present pose.
-    pub fn place(&mut self, bodies: &[SolverBody]) {
-        let (pose_a, pose_b) = (bodies[self.a as usize].pose, bodies[self.b as usize].pose);
+    /// Separations and Jacobians at these poses.
+    pub fn place(&mut self, [pose_a, pose_b]: [Transform; 2]) {
         let n = self.normal;
         let mut points = [Vec3::ZERO; MAX_POINTS];
         let mut center = Vec3::ZERO;

@@ -1,10 +1,11 @@
 //! The contact of two bodies that turn fast is looked for again within the step.
 
 use super::ManifoldRows;
+use super::bounce::Approach;
 use crate::collide::{Half, Manifold, collide, is_on_face, name_as_face};
 use crate::contact::{ContactMemory, PointImpulse};
 use crate::shape::Shape;
-use crate::solver::SolverBody;
+use crate::solver::{SolverBody, advance};
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::{Rotation, Transform, Vec3, max, min};
 
@@ -15,6 +16,8 @@ pub(super) const ROLL_TURN: f32 = 1e-4;
 /// Then points this far apart count, as a share of the smaller bounding radius: a hand between thigh and floor that spins
 /// off one corner meets the other within the substep.
 const FAR_CORNER: f32 = 0.4;
+/// What a substep may press in by points that its rows do not know, metres.
+const FORESEEN_DEPTH: f32 = 1e-3;
 
 /// One of the two shapes of a manifold.
 #[derive(Clone, Debug)]
@@ -66,26 +69,66 @@ impl PlacedShape {
     }
 }
 
+/// Of a body within a substep, radians.
+fn turn(velocities: &[Vec6], body: u32, h: f32) -> f32 {
+    angular(&velocities[body as usize]).length() * h
+}
+
 impl ManifoldRows {
     /// Looks for the contact anew if a body turned fast in this substep: the points of the step's beginning say nothing
     /// of the corner that swings in. Impulses go on by feature. A pair that has come apart keeps its rows.
     pub fn refind(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) {
-        let turn = |body: u32| angular(&velocities[body as usize]).length() * h;
-        if turn(self.a) < self.most_turn && turn(self.b) < self.most_turn {
-            return;
+        if self.turns(velocities, h)
+            && let Some(manifold) = self.found_anew(self.poses(bodies), self.margin(velocities, h))
+        {
+            self.go_on_with(manifold, self.poses(bodies));
         }
-        let [a, b] = &self.shapes;
-        let (pose_a, pose_b) = (bodies[self.a as usize].pose, bodies[self.b as usize].pose);
+    }
+
+    /// Looks where the velocities of this substep lead to: points that its rows do not know may come down there, and would be
+    /// in by far before they are found. Then it takes the contact there, as if it had come that way along a straight line; the
+    /// caller computes its responses. Gives whether it did.
+    pub fn foresee(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) -> bool {
+        if !self.turns(velocities, h) {
+            return false;
+        }
+        let poses =
+            [self.a, self.b].map(|body| advance(&bodies[body as usize].pose, &velocities[body as usize], h));
+        let Some(manifold) = self.found_anew(poses, self.margin(velocities, h)) else { return false };
+        let deepest = |separations: &mut dyn Iterator<Item = f32>| separations.fold(0.0, min);
+        let now = deepest(&mut self.separation[..self.count].iter().copied());
+        if deepest(&mut manifold.points().iter().map(|point| point.separation)) > now - FORESEEN_DEPTH {
+            return false;
+        }
+        self.go_on_with(manifold, poses);
+        self.place(poses);
+        for i in 0..self.count {
+            let rate = self.rows[i].rate(self.pair(), velocities);
+            self.separation[i] -= rate * h;
+            self.approach[i] = Approach { rate, gap: max(self.separation[i], 0.0), pull: 0.0 };
+        }
+        true
+    }
+
+    /// Whether a body turns so fast in this substep that other points come down.
+    fn turns(&self, velocities: &[Vec6], h: f32) -> bool {
+        [self.a, self.b].iter().any(|&body| turn(velocities, body, h) >= self.most_turn)
+    }
+
+    /// How far apart points may be that this substep brings together, metres.
+    fn margin(&self, velocities: &[Vec6], h: f32) -> f32 {
+        let [a, b] = self.shapes.each_ref().map(|placed| placed.shape.bounding_radius());
         let relative = linear(&velocities[self.b as usize]) - linear(&velocities[self.a as usize]);
-        let reach = a.shape.bounding_radius() * turn(self.a) + b.shape.bounding_radius() * turn(self.b);
+        let reach = a * turn(velocities, self.a, h) + b * turn(velocities, self.b, h);
         let turning = if reach < f32::INFINITY { reach } else { 0.0 };
-        let far_corner = FAR_CORNER * min(a.shape.bounding_radius(), b.shape.bounding_radius());
-        let margin = max(4.0 * self.slop + relative.length() * h + turning, far_corner);
-        let frames = [pose_a * a.principal_from_shape, pose_b * b.principal_from_shape];
-        let Some(manifold) = self.found_anew(frames, [pose_a, pose_b], margin) else { return };
+        max(4.0 * self.slop + relative.length() * h + turning, FAR_CORNER * min(a, b))
+    }
+
+    /// Takes a manifold that was found at these poses. Impulses go on by feature.
+    fn go_on_with(&mut self, manifold: Manifold, poses: [Transform; 2]) {
         let impulse = self.impulse.map(|now| PointImpulse { now, ..PointImpulse::default() });
         let of_substep = ContactMemory { points: impulse, ..self.memory }.matched(&self.manifold, &manifold);
-        let memory = self.memory.matched(&self.manifold, &manifold);
+        self.memory = self.memory.matched(&self.manifold, &manifold);
         let mean = self.rebound[..self.count].iter().sum::<f32>() / self.count as f32;
         let (was, rebound) = (self.manifold, self.rebound);
         for (i, point) in manifold.points().iter().enumerate() {
@@ -93,16 +136,16 @@ impl ManifoldRows {
             self.rebound[i] = known.map_or(mean, |k| rebound[k]);
             self.impulse[i] = of_substep.points[i].now;
         }
-        self.memory = memory;
         self.manifold = manifold;
-        self.take_manifold(bodies);
+        self.take_manifold(poses);
     }
 
-    /// The contact at the present poses, if there is one. Of a surface the plane stands that the manifold lies on: the surface
+    /// The contact at these poses, if there is one. Of a surface the plane stands that the manifold lies on: the surface
     /// itself would answer for all its manifolds at once. What lies on its edges stays as it was found.
-    fn found_anew(&self, frames: [Transform; 2], poses: [Transform; 2], margin: f32) -> Option<Manifold> {
+    fn found_anew(&self, poses: [Transform; 2], margin: f32) -> Option<Manifold> {
         static PLANE: Shape = Shape::HalfSpace;
         let [a, b] = &self.shapes;
+        let frames = [poses[0] * a.principal_from_shape, poses[1] * b.principal_from_shape];
         let plane = |origin: Vec3, normal: Vec3| Transform::new(origin, Rotation::from_arc(Vec3::Y, normal));
         let mut manifold = Manifold::default();
         let surface = match (a.shape.surface(), b.shape.surface()) {
