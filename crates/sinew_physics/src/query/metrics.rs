@@ -1,5 +1,6 @@
 //! What a scene measures: energies, momenta, overlaps of bodies.
 
+use crate::boxes::{Aabb, Overlap};
 use crate::collide::collide_all;
 use crate::contact::ContactKey;
 use crate::def::BodyKind;
@@ -93,6 +94,9 @@ impl World {
         for (i, s) in body_a.shapes.iter().enumerate() {
             for (j, t) in body_b.shapes.iter().enumerate() {
                 let (from_s, from_t) = (body_a.world_from_shape(i), body_b.world_from_shape(j));
+                if !Overlap::<Aabb>::overlaps(&s.shape.aabb(&from_s), &t.shape.aabb(&from_t)) {
+                    continue;
+                }
                 collide_all(&s.shape, &from_s, &t.shape, &from_t, 0.0, |manifold| {
                     for point in manifold.points() {
                         deepest = max(deepest, -point.separation);

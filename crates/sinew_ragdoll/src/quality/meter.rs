@@ -21,6 +21,10 @@ pub struct QualityMeter {
     overshoots: Vec<f32>,
     calm_steps: u32,
     calm_since: Option<f32>,
+    /// Of the bodies in the world in the last step, metres.
+    penetration: f32,
+    /// Nothing has moved since they slept then.
+    asleep: bool,
 }
 
 impl QualityMeter {
@@ -37,6 +41,8 @@ impl QualityMeter {
             overshoots: Vec::with_capacity(samples),
             calm_steps: 0,
             calm_since: None,
+            penetration: 0.0,
+            asleep: false,
         }
     }
 
@@ -44,6 +50,7 @@ impl QualityMeter {
     pub fn went_limp(&mut self) {
         self.calm_steps = 0;
         self.calm_since = None;
+        self.asleep = false;
     }
 
     /// A push did this much work, J.
@@ -63,17 +70,21 @@ impl QualityMeter {
 
     /// After a step, with the bodies still there.
     pub fn after_step(&mut self, world: &World, ragdoll: &Ragdoll) {
-        let penetration = self.measure_joints(world, ragdoll);
-        self.measure_rest(world, ragdoll, penetration, world.time() as f32);
+        self.measure_motion(world, ragdoll);
+        self.measure_rest(world, ragdoll, world.time() as f32);
     }
 
     /// After a step of bodies that were driven, and so are not at rest: all but that is measured.
     pub fn after_driven_step(&mut self, world: &World, ragdoll: &Ragdoll) {
-        self.measure_joints(world, ragdoll);
+        self.measure_motion(world, ragdoll);
     }
 
-    /// Gives how deep the bodies are in the world.
-    fn measure_joints(&mut self, world: &World, ragdoll: &Ragdoll) -> f32 {
+    /// Joints, overlaps and energy. What sleeps is as it was when it fell asleep.
+    fn measure_motion(&mut self, world: &World, ragdoll: &Ragdoll) {
+        let slept = core::mem::replace(&mut self.asleep, all_sleep(world, ragdoll));
+        if slept && self.asleep {
+            return;
+        }
         self.measure_energy(world);
         let q = &mut self.quality;
         for &joint in &ragdoll.joints {
@@ -89,7 +100,7 @@ impl QualityMeter {
         if q.first_contact_s.is_none() && touches_world(world, &ragdoll.bodies) {
             q.first_contact_s = Some(world.time() as f32);
         }
-        penetration
+        self.penetration = penetration;
     }
 
     fn measure_energy(&mut self, world: &World) {
@@ -102,7 +113,7 @@ impl QualityMeter {
         self.quality.energy_gain_max = max(self.quality.energy_gain_max, gain);
     }
 
-    fn measure_rest(&mut self, world: &World, ragdoll: &Ragdoll, penetration: f32, now: f32) {
+    fn measure_rest(&mut self, world: &World, ragdoll: &Ragdoll, now: f32) {
         let q = &mut self.quality;
         self.calm_steps = if is_still(world, &ragdoll.bodies) { self.calm_steps + 1 } else { 0 };
         let still = self.calm_steps as f32 * world.def().dt();
@@ -113,13 +124,13 @@ impl QualityMeter {
             let spin = |&body: &BodyId| world.velocity(body).angular.length();
             let fastest = ragdoll.bodies.iter().map(spin).fold(q.settled_omega_max.unwrap_or(0.0), max);
             q.settled_omega_max = Some(fastest);
-            q.penetration_rest_max_m = max(q.penetration_rest_max_m, penetration);
+            q.penetration_rest_max_m = max(q.penetration_rest_max_m, self.penetration);
         }
         let calm = |&body: &BodyId| world.velocity(body).linear.length() < CALM;
         if q.first_contact_s.is_some() && self.calm_since.is_none() && ragdoll.bodies.iter().all(calm) {
             self.calm_since = Some(now);
         }
-        if q.asleep_s.is_none() && ragdoll.bodies.iter().all(|&body| !world.is_awake(body)) {
+        if q.asleep_s.is_none() && self.asleep {
             q.asleep_s = Some(now);
             q.calm_to_asleep_s = self.calm_since.map(|since| now - since);
         }
@@ -134,6 +145,10 @@ impl QualityMeter {
         (quality.limit_overshoot_p99_deg, quality.limit_overshoot_max_deg) = p99_and_max(&mut sorted);
         quality
     }
+}
+
+fn all_sleep(world: &World, ragdoll: &Ragdoll) -> bool {
+    ragdoll.bodies.iter().all(|&body| !world.is_awake(body))
 }
 
 /// 99th percentile (nearest rank) and largest; 0 of nothing.
