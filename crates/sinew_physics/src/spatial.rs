@@ -1,18 +1,20 @@
 //! Six-dimensional algebra of the joint trees: linear part first, angular part second.
 
 use sinew_math::Vec3;
+use sinew_math::lanes::WIDTH;
 
-/// Velocity (m/s, rad/s) or impulse (N·s, N·m·s) of a body at its centre of mass, or one row of a Jacobian.
-pub(crate) type Vec6 = [f32; 6];
+/// Velocity (m/s, rad/s) or impulse (N·s, N·m·s) of a body at its centre of mass, or one row of a Jacobian: six numbers, and
+/// two zeros that fill a register of eight.
+pub(crate) type Vec6 = [f32; WIDTH];
 /// Rows of a 6×6 matrix.
-pub(crate) type Mat6 = [[f32; 6]; 6];
+pub(crate) type Mat6 = [Vec6; 6];
 
-pub(crate) const ZERO6: Vec6 = [0.0; 6];
-pub(crate) const ZERO66: Mat6 = [[0.0; 6]; 6];
+pub(crate) const ZERO6: Vec6 = [0.0; WIDTH];
+pub(crate) const ZERO66: Mat6 = [ZERO6; 6];
 
 #[inline(always)]
 pub(crate) fn join(linear: Vec3, angular: Vec3) -> Vec6 {
-    [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
+    [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z, 0.0, 0.0]
 }
 
 #[inline(always)]
@@ -33,15 +35,15 @@ pub(crate) fn dot(a: &Vec6, b: &Vec6) -> f32 {
 /// `a += k b`
 #[inline(always)]
 pub(crate) fn add_scaled(a: &mut Vec6, b: &Vec6, k: f32) {
-    for i in 0..6 {
-        a[i] += b[i] * k;
+    for (a, b) in a.iter_mut().zip(b) {
+        *a += b * k;
     }
 }
 
 /// `m v`
 #[inline(always)]
 pub(crate) fn mul(m: &Mat6, v: &Vec6) -> Vec6 {
-    [dot(&m[0], v), dot(&m[1], v), dot(&m[2], v), dot(&m[3], v), dot(&m[4], v), dot(&m[5], v)]
+    [dot(&m[0], v), dot(&m[1], v), dot(&m[2], v), dot(&m[3], v), dot(&m[4], v), dot(&m[5], v), 0.0, 0.0]
 }
 
 /// `mᵀ v`: sums whole rows, which fills vector registers where `mul` has to add across them.
@@ -81,59 +83,66 @@ pub(crate) fn transpose(m: &Mat6) -> Mat6 {
 /// Inverse of the leading `n`×`n` block of a symmetric positive definite matrix by LDLᵀ; the rest is zero.
 /// `None` if a pivot is not safely positive (below 1e-7 of its diagonal entry) or not finite.
 pub(crate) fn spd_inverse(m: &Mat6, n: usize) -> Option<Mat6> {
-    // L below the diagonal, 1/D on it.
-    let mut l = ZERO66;
-    for i in 0..n {
-        for j in 0..=i {
-            // Row i holds L·D until it is divided below.
-            let mut sum = m[i][j];
-            if i != j {
-                for k in 0..j {
-                    sum -= l[i][k] * l[j][k];
-                }
-                l[i][j] = sum;
-                continue;
-            }
-            for k in 0..i {
-                sum -= l[i][k] * l[i][k] * l[k][k];
-            }
-            let safe = sum > 1e-7 * m[i][i] && sum < f32::INFINITY;
-            if !safe {
-                return None;
-            }
-            l[i][i] = 1.0 / sum;
-        }
-        for k in 0..i {
-            l[i][k] *= l[k][k];
-        }
+    match n {
+        0 => Some(ZERO66),
+        1 => inverse_of::<1>(m),
+        2 => inverse_of::<2>(m),
+        3 => inverse_of::<3>(m),
+        4 => inverse_of::<4>(m),
+        5 => inverse_of::<5>(m),
+        _ => inverse_of::<6>(m),
     }
-    Some(invert_factor(&l, n))
 }
 
-/// `(L D Lᵀ)⁻¹` from unit lower triangular `L` (below the diagonal) and `1/D` (on it).
-fn invert_factor(l: &Mat6, n: usize) -> Mat6 {
-    let mut inverse = ZERO66;
-    for column in 0..n {
-        let mut x = ZERO6;
-        x[column] = 1.0;
-        for i in column..n {
-            for k in column..i {
-                x[i] -= l[i][k] * x[k];
+/// With loops of known length, which the compiler writes out.
+fn inverse_of<const N: usize>(m: &Mat6) -> Option<Mat6> {
+    // L below the diagonal, 1/D on it.
+    let mut l = [[0.0; N]; N];
+    for i in 0..N {
+        // Row i holds L·D until it is divided below.
+        for j in 0..i {
+            let mut sum = m[i][j];
+            for k in 0..j {
+                sum -= l[i][k] * l[j][k];
             }
+            l[i][j] = sum;
         }
-        for i in 0..n {
-            x[i] *= l[i][i];
+        let mut pivot = m[i][i];
+        for k in 0..i {
+            let divided = l[i][k] * l[k][k];
+            pivot -= l[i][k] * divided;
+            l[i][k] = divided;
         }
-        for i in (0..n).rev() {
-            for k in i + 1..n {
-                x[i] -= l[k][i] * x[k];
+        let safe = pivot > 1e-7 * m[i][i] && pivot < f32::INFINITY;
+        if !safe {
+            return None;
+        }
+        l[i][i] = 1.0 / pivot;
+    }
+    // The inverse of L, below the diagonal; the inverse of the whole is its square over D.
+    let mut inverse_l = [[0.0; N]; N];
+    for i in 0..N {
+        inverse_l[i][i] = 1.0;
+        for j in 0..i {
+            let mut sum = l[i][j];
+            for k in j + 1..i {
+                sum += l[i][k] * inverse_l[k][j];
             }
-        }
-        for i in 0..n {
-            inverse[i][column] = x[i];
+            inverse_l[i][j] = -sum;
         }
     }
-    inverse
+    let mut inverse = ZERO66;
+    for i in 0..N {
+        for j in 0..=i {
+            let mut sum = inverse_l[i][j] * l[i][i];
+            for k in i + 1..N {
+                sum += inverse_l[k][i] * l[k][k] * inverse_l[k][j];
+            }
+            inverse[i][j] = sum;
+            inverse[j][i] = sum;
+        }
+    }
+    Some(inverse)
 }
 
 #[cfg(test)]
@@ -171,8 +180,8 @@ mod tests {
     #[test]
     fn a_singular_matrix_is_refused() {
         let mut m = ZERO66;
-        m[0] = [1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
-        m[1] = [1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
+        m[0] = [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        m[1] = [1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         assert!(spd_inverse(&m, 2).is_none());
         m[1][1] = f32::NAN;
         assert!(spd_inverse(&m, 2).is_none());

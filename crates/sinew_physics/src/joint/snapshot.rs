@@ -76,14 +76,14 @@ impl Joint {
 }
 
 fn save_vec6(w: &mut Writer, v: &Vec6) {
-    for &x in v {
+    for &x in &v[..DIRECTIONS] {
         w.f32(x);
     }
 }
 
 fn load_vec6(r: &mut Reader<'_>) -> Result<Vec6, ReadError> {
     let mut v = ZERO6;
-    for x in &mut v {
+    for x in &mut v[..DIRECTIONS] {
         *x = r.f32()?;
     }
     Ok(v)

@@ -6,6 +6,7 @@ use super::contact_rows::ManifoldRows;
 use super::sweep::Pass;
 use super::tree::NONE;
 use super::{IslandSolver, SolverBody};
+use crate::joint::DIRECTIONS;
 use crate::spatial::{Vec6, ZERO6, angular, join, linear};
 use sinew_math::{Sym3, Vec3, max, min};
 
@@ -112,7 +113,7 @@ impl IslandSolver {
     pub(super) fn drop_nonsense(&mut self, torn: f32) {
         let moving = self.links.len();
         let most = [NONSENSE * self.max_speed, NONSENSE_SPIN];
-        let sane = |v: &Vec6| v.iter().enumerate().all(|(k, x)| x.abs() < most[k / 3]);
+        let sane = |v: &Vec6| (0..DIRECTIONS).all(|k| v[k].abs() < most[k / 3]);
         let sane = self.velocities[..moving].iter().all(sane);
         if sane && torn < TORN {
             return;

@@ -1,10 +1,13 @@
 //! The small linear complementarity problem of one manifold's normal rows.
 
-use crate::spatial::{Mat6, spd_inverse};
+use crate::spatial::{ZERO66, spd_inverse};
 use sinew_math::max;
 
 /// At most this many rows.
 const N: usize = 4;
+
+/// Of the largest response: added to all.
+const PROXIMAL: f32 = 1e-5;
 
 /// New impulses `x ≥ 0` of `n` unilateral rows with response `k`, gap velocities `v` (at impulses `old`, bias
 /// included) and softness `soft`: `K (x − old) + v + soft x ≥ 0`, complementary to `x`.
@@ -13,11 +16,15 @@ const N: usize = 4;
 /// cycle, and a body explodes about once in five 30 m/s wall hits if that is let pass: then all sets are tried, and if
 /// rounding leaves none, Gauss-Seidel has the last word.
 pub(crate) fn solve(k: &[[f32; N]; N], v: &[f32; N], old: &[f32; N], soft: &[f32; N], n: usize) -> [f32; N] {
+    if n == 1 {
+        let change = (v[0] + soft[0] * old[0]) / (k[0][0] * (1.0 + PROXIMAL) + soft[0]);
+        return [max(old[0] - change, 0.0), 0.0, 0.0, 0.0];
+    }
     let mut largest = 0.0;
     for i in 0..n {
         largest = max(largest, k[i][i]);
     }
-    let mut problem = Problem { m: *k, r: [0.0; N], old: *old, proximal: 1e-5 * largest, n };
+    let mut problem = Problem { m: *k, r: [0.0; N], old: *old, proximal: PROXIMAL * largest, n };
     for i in 0..n {
         problem.m[i][i] += soft[i];
         problem.r[i] = v[i] + soft[i] * old[i];
@@ -100,7 +107,7 @@ impl Problem {
                 x[i] = -self.old[i];
             }
         }
-        let mut a: Mat6 = [[0.0; 6]; 6];
+        let mut a = ZERO66;
         let mut b = [0.0; N];
         for p in 0..count {
             for q in 0..count {

@@ -105,7 +105,7 @@ impl SolverBody {
         for k in 0..3 {
             m[k][k] = self.mass * self.ballast;
             let row = angular.row(k);
-            m[3 + k][3..].copy_from_slice(&[row.x, row.y, row.z]);
+            m[3 + k][3..6].copy_from_slice(&[row.x, row.y, row.z]);
         }
         m
     }

@@ -3,7 +3,9 @@
 
 use super::loops::MAX_EXACT_ROWS;
 use super::tree::{Link, NONE};
-use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, mul, mul_transposed, product, transpose};
+use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, mul, mul_transposed, product, transpose};
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::Lanes;
 
 /// Blocks `W_ij` (6×6) between the bodies of each tree that carry rows, and their ancestors.
 #[derive(Clone, Debug, Default)]
@@ -56,7 +58,7 @@ impl Response {
             entry.count = self.members.len() - entry.first;
             blocks += entry.count * entry.count;
         }
-        self.blocks.resize(blocks, [[0.0; 6]; 6]);
+        self.blocks.resize(blocks, ZERO66);
     }
 
     /// Fills the blocks from the factored links: for `c` below `p`, `W_cj = A_c W_pj` with `A_c` the transfer of the
@@ -154,8 +156,38 @@ impl Response {
         let TreeBlocks { first, count, blocks } = self.trees[links[from].tree as usize];
         // W is symmetric: the row of blocks of `from`, transposed, is its column, and lies in one piece of memory.
         let row = blocks + self.slot[from] as usize * count;
-        for (&body, block) in self.members[first..first + count].iter().zip(&self.blocks[row..row + count]) {
-            add_scaled(&mut velocities[body as usize], &mul_transposed(block, p), 1.0);
+        dispatch::run(Spread {
+            impulse: p,
+            blocks: &self.blocks[row..row + count],
+            members: &self.members[first..first + count],
+            velocities,
+        });
+    }
+}
+
+/// Velocity changes of the members of a tree from an impulse on one of them.
+struct Spread<'a> {
+    impulse: &'a Vec6,
+    /// Transposed, one a member.
+    blocks: &'a [Mat6],
+    members: &'a [u32],
+    velocities: &'a mut [Vec6],
+}
+
+impl Kernel for Spread<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let [p0, p1, p2, p3, p4, p5, ..] = *self.impulse;
+        let (p0, p1, p2) = (L::splat(p0), L::splat(p1), L::splat(p2));
+        let (p3, p4, p5) = (L::splat(p3), L::splat(p4), L::splat(p5));
+        for (&body, block) in self.members.iter().zip(self.blocks) {
+            let [r0, r1, r2, r3, r4, r5] = block;
+            let linear = L::load(r0) * p0 + L::load(r1) * p1 + L::load(r2) * p2;
+            let angular = L::load(r3) * p3 + L::load(r4) * p4 + L::load(r5) * p5;
+            let velocity = &mut self.velocities[body as usize];
+            (L::load(velocity) + (linear + angular)).store(velocity);
         }
     }
 }

@@ -9,6 +9,7 @@
 //! Γ is zero for rigid rows, the compliance of springs, motors and dry friction for the others.
 
 use super::SolverJoint;
+use crate::joint::DIRECTIONS;
 use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, dot, mul, spd_inverse};
 
 /// No parent, no joint, no slot.
@@ -62,7 +63,9 @@ impl Link {
         self.rows = rows.count;
         self.rigid = joint.rigid;
         (self.child, self.parent_rows) = if child_is_b { (rows.b, rows.a) } else { (rows.a, rows.b) };
-        self.compliance = core::array::from_fn(|row| joint.compliance(row));
+        for row in 0..DIRECTIONS {
+            self.compliance[row] = joint.compliance(row);
+        }
     }
 
     /// `−Y D⁻¹ J_p`: velocity that this body takes on from its parent's, when nothing acts below the joint.
