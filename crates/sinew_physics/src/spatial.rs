@@ -109,37 +109,34 @@ fn inverse_of<const N: usize>(m: &Mat6) -> Option<Mat6> {
         }
         let mut pivot = m[i][i];
         for k in 0..i {
-            let divided = l[i][k] * l[k][k];
-            pivot -= l[i][k] * divided;
-            l[i][k] = divided;
+            pivot -= l[i][k] * l[i][k] * l[k][k];
         }
         let safe = pivot > 1e-7 * m[i][i] && pivot < f32::INFINITY;
         if !safe {
             return None;
         }
         l[i][i] = 1.0 / pivot;
-    }
-    // The inverse of L, below the diagonal; the inverse of the whole is its square over D.
-    let mut inverse_l = [[0.0; N]; N];
-    for i in 0..N {
-        inverse_l[i][i] = 1.0;
-        for j in 0..i {
-            let mut sum = l[i][j];
-            for k in j + 1..i {
-                sum += l[i][k] * inverse_l[k][j];
-            }
-            inverse_l[i][j] = -sum;
+        for k in 0..i {
+            l[i][k] *= l[k][k];
         }
     }
     let mut inverse = ZERO66;
-    for i in 0..N {
-        for j in 0..=i {
-            let mut sum = inverse_l[i][j] * l[i][i];
-            for k in i + 1..N {
-                sum += inverse_l[k][i] * l[k][k] * inverse_l[k][j];
+    for column in 0..N {
+        let mut x = [0.0; N];
+        x[column] = 1.0;
+        for i in column..N {
+            for k in column..i {
+                x[i] -= l[i][k] * x[k];
             }
-            inverse[i][j] = sum;
-            inverse[j][i] = sum;
+        }
+        for i in 0..N {
+            x[i] *= l[i][i];
+        }
+        for i in (0..N).rev() {
+            for k in i + 1..N {
+                x[i] -= l[k][i] * x[k];
+            }
+            inverse[i][column] = x[i];
         }
     }
     Some(inverse)

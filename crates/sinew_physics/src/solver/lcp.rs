@@ -16,8 +16,9 @@ const PROXIMAL: f32 = 1e-5;
 /// cycle, and a body explodes about once in five 30 m/s wall hits if that is let pass: then all sets are tried, and if
 /// rounding leaves none, Gauss-Seidel has the last word.
 pub(crate) fn solve(k: &[[f32; N]; N], v: &[f32; N], old: &[f32; N], soft: &[f32; N], n: usize) -> [f32; N] {
-    if n == 1 {
-        let change = (v[0] + soft[0] * old[0]) / (k[0][0] * (1.0 + PROXIMAL) + soft[0]);
+    if n == 1 && k[0][0] > 0.0 {
+        let response = k[0][0] + soft[0] + PROXIMAL * k[0][0];
+        let change = (1.0 / response) * (v[0] + soft[0] * old[0]);
         return [max(old[0] - change, 0.0), 0.0, 0.0, 0.0];
     }
     let mut largest = 0.0;

@@ -185,9 +185,9 @@ impl Kernel for Spread<'_> {
         for (&body, block) in self.members.iter().zip(self.blocks) {
             let [r0, r1, r2, r3, r4, r5] = block;
             let linear = L::load(r0) * p0 + L::load(r1) * p1 + L::load(r2) * p2;
-            let angular = L::load(r3) * p3 + L::load(r4) * p4 + L::load(r5) * p5;
+            let change = linear + L::load(r3) * p3 + L::load(r4) * p4 + L::load(r5) * p5;
             let velocity = &mut self.velocities[body as usize];
-            (L::load(velocity) + (linear + angular)).store(velocity);
+            (L::load(velocity) + change).store(velocity);
         }
     }
 }
