@@ -77,12 +77,8 @@ impl RagdollReport<'_> {
         text += &quality_text(drop);
         text += "Thrown at a wall at 15 m/s\n";
         text += &quality_text(wall);
-        if let Some(GateReport { spawns, verdicts: [good, usable, bad], worst, worst_spawn }) = self.gated {
-            let _ = writeln!(
-                text,
-                "{spawns} random falls: {good} good, {usable} usable, {bad} bad (worst is fall {worst_spawn})"
-            );
-            text += &quality_text(worst);
+        if let Some(gated) = self.gated {
+            text += &gate_text(gated);
         }
         let _ = writeln!(text, "verdict: {}", verdict.name());
         for reason in reasons {
@@ -193,15 +189,45 @@ impl RagdollReport<'_> {
 }
 
 fn gate_json(gated: &GateReport) -> Value {
-    let GateReport { spawns, verdicts: [good, usable, bad], worst, worst_spawn } = gated;
+    let GateReport { spawns, verdicts: [good, usable, bad], worst, misses, .. } = gated;
+    let misses = misses.iter().take(LISTED);
     json!({
         "spawns": spawns,
         "good": good,
         "usable": usable,
         "bad": bad,
         "worst": quality_json(worst),
-        "worst_spawn": worst_spawn,
+        "worst_spawn": gated.worst_spawn,
+        "worst_reasons": gated.worst_reasons,
+        "bad_spawns": gated.bad.iter().take(LISTED).collect::<Vec<_>>(),
+        "failed": failed(gated),
+        "failures": misses
+            .map(|miss| json!({ "spawn": miss.spawn, "what": miss.bar.key(), "value": number(miss.value) }))
+            .collect::<Vec<_>>(),
     })
+}
+
+/// No list of falls is longer.
+const LISTED: usize = 100;
+
+/// Falls in which something that must hold in each did not.
+fn failed(gated: &GateReport) -> usize {
+    let mut spawns: Vec<u64> = gated.misses.iter().map(|miss| miss.spawn).collect();
+    spawns.dedup();
+    spawns.len()
+}
+
+fn gate_text(gated: &GateReport) -> String {
+    let GateReport { spawns, verdicts: [good, usable, bad], worst, worst_spawn, .. } = gated;
+    let mut text = format!(
+        "{spawns} random falls: {good} good, {usable} usable, {bad} bad (worst is fall {worst_spawn})\n"
+    );
+    text += &quality_text(worst);
+    let _ = writeln!(text, "  {} of them beyond what must hold in every fall", failed(gated));
+    for miss in gated.misses.iter().take(LISTED) {
+        let _ = writeln!(text, "  fall {}: {} {}", miss.spawn, miss.bar.key(), miss.value);
+    }
+    text
 }
 
 /// No rotation at all.

@@ -252,3 +252,22 @@ fn numbers_that_lie_do_no_harm() {
         }
     }
 }
+
+/// A fall that went wrong can be looked at alone, and threads change nothing.
+#[test]
+fn falls_of_a_gate_have_numbers() {
+    let folder = Folder::new("gate");
+    let file = folder.mannequin();
+    let gate = |more: &[&str]| {
+        let run = sinew(&[&["ragdoll", "build", &file, "--json"], more].concat());
+        run.json()["quality"]["gate"].clone()
+    };
+    let whole = gate(&["--gate", "3"]);
+    assert_eq!(gate(&["--gate", "3", "--threads", "2"]), whole);
+    let parts: Vec<Value> =
+        ["0", "1", "2"].iter().map(|from| gate(&["--gate", "1", "--gate-from", from])).collect();
+    let deepest = |gate: &Value| gate["worst"]["penetration_max_m"].as_f64().expect("a number");
+    assert_eq!(parts.iter().map(deepest).fold(0.0, f64::max), deepest(&whole));
+    assert!(parts.iter().any(|part| deepest(part) != deepest(&whole)), "the falls differ");
+    assert_eq!(sinew(&["ragdoll", "build", &file, "--gate-from", "7"]).code, Some(2));
+}
