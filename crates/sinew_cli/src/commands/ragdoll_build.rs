@@ -10,8 +10,9 @@ use crate::settings_arg::{LoadedSettings, SettingsArg};
 use clap::ValueEnum;
 use sinew::formats::{Textures, write_ragdoll};
 use sinew::physics::Threads;
+use sinew::ragdoll::build::BuildReport;
 use sinew::ragdoll::quality::{GateReport, gate_on};
-use sinew::ragdoll::{BuildOptions, RagdollDef, Sex, ShapeChoice, drop_test};
+use sinew::ragdoll::{BuildOptions, LimitSource, RagdollDef, Sex, ShapeChoice, drop_test};
 use std::path::PathBuf;
 
 /// Build a ragdoll from a rigged file: shapes, masses, limits, collision filter, and a quality report
@@ -21,6 +22,7 @@ Example:
   sinew ragdoll build character.glb -o character.sinew.json
   sinew ragdoll build character.glb --shapes capsule --mass 62 --sex f
   sinew ragdoll build character.glb --settings hero.ragdoll.json
+  sinew ragdoll build character.glb --limits clips --gate 1000 --threads 8
 
 docs/ragdoll.md says what a definition and settings hold.")]
 pub struct RagdollBuild {
@@ -38,6 +40,9 @@ pub struct RagdollBuild {
     /// Whose distribution of mass over the body; by default male
     #[arg(long, value_enum)]
     sex: Option<SexArg>,
+    /// Joint limits: those of anatomy, the default, or learned from the file's clips
+    #[arg(long, value_enum)]
+    limits: Option<Limits>,
     /// Also let it fall this many times at random: pose, speed and ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     gate: Option<u32>,
@@ -62,6 +67,12 @@ enum Shapes {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
+enum Limits {
+    Anatomy,
+    Clips,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
 enum SexArg {
     /// Male
     M,
@@ -73,13 +84,13 @@ impl RagdollBuild {
     /// Builds, drops it, reports, writes.
     pub fn run(&self) -> Result<Report> {
         let (built, seconds) = timed(|| self.build());
-        let (character, def, notes) = built?;
+        let (character, def, build) = built?;
         let tested = drop_test(&def);
         let gated = self.gate.map(|spawns| self.gated(&def, spawns));
         let report = RagdollReport {
             file: &character.name,
             def: &def,
-            notes: &notes,
+            build: &build,
             build_ms: 1000.0 * seconds,
             tested: &tested,
             gated: gated.as_ref(),
@@ -107,10 +118,10 @@ impl RagdollBuild {
     }
 
     /// From the file to the definition, with what a person should know.
-    fn build(&self) -> Result<(CharacterFile, RagdollDef, Vec<String>)> {
+    fn build(&self) -> Result<(CharacterFile, RagdollDef, BuildReport)> {
         let character = CharacterFile::load(&self.file, Textures::Skip)?;
-        let (def, notes) = self.settings()?.build(&character, &BuildOptions::default())?;
-        Ok((character, def, notes))
+        let (def, report) = self.settings()?.build(&character, &BuildOptions::default())?;
+        Ok((character, def, report))
     }
 
     /// Settings of the file, and over them what the command line says.
@@ -128,6 +139,12 @@ impl RagdollBuild {
             settings.sex = Some(match sex {
                 SexArg::M => Sex::Male,
                 SexArg::F => Sex::Female,
+            });
+        }
+        if let Some(limits) = self.limits {
+            settings.limits = Some(match limits {
+                Limits::Anatomy => LimitSource::Anatomy,
+                Limits::Clips => LimitSource::Clips,
             });
         }
         settings.mass = self.mass.or(settings.mass);

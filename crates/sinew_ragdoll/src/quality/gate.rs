@@ -3,9 +3,10 @@
 use super::drop_test::{carried, measure, worse};
 use super::{Quality, Verdict, judge};
 use crate::def::RagdollDef;
+use crate::limits::sample::random_turn;
 use crate::ragdoll::{BodyState, Flesh, Ragdoll, colliding_pairs};
-use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, min};
-use sinew_physics::{BodyDef, BodyKind, JointKind, Serial, Shape, ShapeDef, TaskRunner, World, WorldDef};
+use sinew_math::{Random, Rotation, Transform, Vec3, min};
+use sinew_physics::{BodyDef, BodyKind, Serial, Shape, ShapeDef, TaskRunner, World, WorldDef};
 use std::sync::{Mutex, PoisonError};
 
 /// Longest that a fall is watched, seconds.
@@ -262,31 +263,7 @@ pub fn random_pose(def: &RagdollDef, random: &mut Random) -> Vec<Transform> {
 fn turned_joints(def: &RagdollDef, random: &mut Random, share: f32) -> Vec<Transform> {
     let mut pose: Vec<_> = def.bodies.iter().map(|body| body.character_from_body).collect();
     for joint in &def.joints {
-        let within = |random: &mut Random, range: Range| {
-            range.center() + 0.5 * (range.hi - range.lo) * share * random.range(-1.0, 1.0)
-        };
-        let free = SwingTwistLimit {
-            swing_y: Range::symmetric(1.0),
-            swing_z: Range::symmetric(1.0),
-            twist: Range::symmetric(1.0),
-        };
-        let turned = match joint.kind {
-            JointKind::Ball { limit } | JointKind::Universal { limit } => {
-                let limit = limit.unwrap_or(free);
-                // On the ellipse's inscribed box, so that both swings together stay inside.
-                let [y, z] = [limit.swing_y, limit.swing_z].map(|range| 0.7 * within(random, range));
-                let swing = Rotation::from_scaled_axis(Vec3::new(0.0, y, z));
-                let ball = matches!(joint.kind, JointKind::Ball { .. });
-                let twist = if ball { within(random, limit.twist) } else { 0.0 };
-                swing * Rotation::from_axis_angle(Vec3::X, twist)
-            }
-            JointKind::Hinge { limit } => {
-                let range = limit.unwrap_or(Range::symmetric(1.0));
-                Rotation::from_axis_angle(Vec3::X, within(random, range))
-            }
-            JointKind::Fixed => Rotation::IDENTITY,
-            kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
-        };
+        let turned = random_turn(joint.kind, random, share);
         pose[joint.child] = pose[joint.parent]
             * joint.frame_parent
             * Transform::new(Vec3::ZERO, turned)
