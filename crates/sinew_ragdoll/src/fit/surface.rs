@@ -88,7 +88,7 @@ pub fn share_surface(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<Vec<Sh
             match mesh.skin.filter(|_| !primitive.joints.is_empty()) {
                 Some(skin) => {
                     let slots: Vec<_> = rig.skins[skin].joints.iter().map(|&joint| owner[joint]).collect();
-                    share_skinned(primitive, &positions, &slots, FINEST * bones.height, &mut skinned);
+                    share_skinned(primitive, &positions, &slots, FINEST * bones.size(), &mut skinned);
                 }
                 None => {
                     if let Some(bone) = owner[mesh.joint] {

@@ -10,6 +10,7 @@ mod doctor;
 mod drive;
 mod falls;
 mod filter;
+mod guises;
 mod hand_over;
 mod learned;
 mod mapping;
