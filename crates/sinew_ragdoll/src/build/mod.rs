@@ -13,6 +13,7 @@ use crate::filter::filter_pairs;
 use crate::filter::poses::{Frames, Poses, of_clips, within_limits};
 use crate::fit::surface::{BindPose, share_surface};
 use crate::fit::{Fit, ShapeChoice, fit_shapes};
+use crate::limits::friction::friction_torques;
 use crate::limits::learned::learned;
 use crate::limits::{JointPlan, LimitSource, joints};
 use crate::masses::de_leva::Sex;
@@ -129,8 +130,9 @@ pub(crate) fn build_overridden(
     let masses = distribute(&bones, &fits, MassOptions { total: options.mass, sex: options.sex });
     let total_mass = masses.iter().map(|mass| mass.mass).sum();
     // Friction goes by the mass, which goes by the shapes.
-    for (plan, heavy) in plans.iter_mut().zip(joints(&bones, &fits, total_mass)) {
-        plan.def.friction_torque = heavy.def.friction_torque;
+    let heavy = joints(&bones, &fits, total_mass);
+    for (plan, torque) in plans.iter_mut().zip(friction_torques(&bones, &fits, &masses, &heavy)) {
+        plan.def.friction_torque = torque;
     }
     let report = BuildReport::new(rig, &bones, &fits, &filter, (&plans, &limits));
     let name = |joint: JointIdx| joint_name(rig, joint);

@@ -1,6 +1,7 @@
 //! Joints: where they are, which way their axes point, how far they go.
 
 pub mod anatomy;
+pub mod friction;
 pub mod learned;
 pub mod sample;
 pub mod table;
