@@ -2,7 +2,7 @@
 
 use crate::command::{self, Profile};
 use crate::golden::{self, Coverage};
-use crate::{bench, contract, targets, tidy};
+use crate::{bench, contract, spawns, targets, tidy};
 use anyhow::{Context, Result, anyhow, bail};
 use serde_json::Value;
 use std::fs;
@@ -15,7 +15,7 @@ use std::time::Instant;
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
     /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
-    /// SINEW_WORLDS, as in 100..200); the peers that need no C; instruction counts
+    /// SINEW_WORLDS, as in 100..200); 10,000 random falls of each rig, not 100; the peers that need no C; instruction counts
     #[arg(long)]
     full: bool,
 }
@@ -43,6 +43,7 @@ impl Ci {
         check("docs", &documentation);
         check("golden", &|| golden::check(coverage));
         check("demo", &demo);
+        check("random falls", &|| spawns::check(if self.full { spawns::ALL } else { spawns::SOME }));
         check("wasm", &targets::browser);
         check("soup", &targets::soup);
         check("arm", &targets::arm);

@@ -9,6 +9,7 @@ mod contract;
 mod fuzz;
 mod golden;
 mod ragdolls;
+mod spawns;
 mod targets;
 mod tidy;
 

@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const PAGE: &str = "docs/ragdoll-quality.md";
+/// Rigs that lie beside the repository.
+pub const SHARED: &str = "../shared/data/rigs";
 /// Files that may hold a rig.
 const RIGS: [&str; 3] = ["glb", "gltf", "vrm"];
 
@@ -18,7 +20,7 @@ const RIGS: [&str; 3] = ["glb", "gltf", "vrm"];
 #[command(after_help = "Example: cargo xtask ragdolls --rigs ~/characters --gate 1000")]
 pub struct Ragdolls {
     /// Folder with rigs, or with folders of rigs
-    #[arg(long, default_value = "../shared/data/rigs")]
+    #[arg(long, default_value = SHARED)]
     rigs: PathBuf,
     /// Random falls of each
     #[arg(long, default_value_t = 100)]
@@ -31,37 +33,21 @@ impl Ragdolls {
     pub fn run(&self) -> Result<()> {
         let binary = command::build_sinew(Profile::Release)?;
         let folder = command::root().join(&self.rigs);
-        let mut files = Vec::new();
-        find(&folder, &mut files)?;
-        files.sort();
         let mut measured = Vec::new();
-        for file in files {
+        for file in rigs_in(&folder)? {
             let name = file.strip_prefix(&folder).unwrap_or(&file).display().to_string();
             eprintln!("{name}");
-            measured.push((name, self.measure(&binary, &file)?));
+            measured.push((name, measure(&binary, &file, self.gate)?));
         }
-        ensure!(measured.iter().any(|(_, report)| report.is_ok()), "{}: no rig", folder.display());
+        ensure!(
+            measured.iter().any(|(_, report)| matches!(report, Measured::Built(_))),
+            "{}: no rig",
+            folder.display()
+        );
         fs::write(command::root().join(PAGE), self.page(&measured)).context(PAGE)
     }
 
-    /// What `ragdoll build` says, or the line with which it refuses.
-    fn measure(&self, binary: &Path, file: &Path) -> Result<Result<Value, String>> {
-        let gate = self.gate.to_string();
-        let mut command = Command::new(binary);
-        command.args(["ragdoll", "build", "--json"]).arg(file);
-        if self.gate > 0 {
-            command.args(["--gate", &gate]);
-        }
-        let output = command.output().with_context(|| binary.display().to_string())?;
-        if output.status.success() {
-            return Ok(Ok(serde_json::from_slice(&output.stdout)?));
-        }
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        let what = said.trim().rsplit(": ").next().unwrap_or_default().to_owned();
-        Ok(Err(what))
-    }
-
-    fn page(&self, measured: &[(String, Result<Value, String>)]) -> String {
+    fn page(&self, measured: &[(String, Measured)]) -> String {
         let mut page = format!(
             "# Ragdolls of rigs that nobody prepared\n\nMade by `cargo xtask ragdolls --gate {}`; do not edit. No rig has settings or code of its own.\n\n{LEGEND}\n",
             self.gate
@@ -71,7 +57,7 @@ impl Ragdolls {
         let mut reasons = String::new();
         for (name, report) in measured {
             match report {
-                Ok(report) => {
+                Measured::Built(report) => {
                     drops.row(drop_row(name, report));
                     if self.gate > 0 {
                         falls.row(fall_row(name, &report["quality"]["gate"]));
@@ -84,7 +70,7 @@ impl Ragdolls {
                         let _ = writeln!(reasons, "- {name}: {reason}");
                     }
                 }
-                Err(what) => _ = writeln!(reasons, "- {name}: refused, {what}"),
+                Measured::Refused(what) => _ = writeln!(reasons, "- {name}: refused, {what}"),
             }
         }
         let _ = write!(page, "## Eight drops from 1 m, and a wall at 15 m/s\n\n{drops}\n");
@@ -97,6 +83,35 @@ impl Ragdolls {
         );
         page
     }
+}
+
+/// What became of a rig.
+pub enum Measured {
+    /// What `ragdoll build` says.
+    Built(Value),
+    /// The line with which it refuses.
+    Refused(String),
+}
+
+/// Builds, drops and throws the ragdoll of a file, and lets it fall at random, on all threads.
+///
+/// # Errors
+/// If the binary does not start, or what it prints is no JSON.
+pub fn measure(binary: &Path, file: &Path, gate: u32) -> Result<Measured> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut command = Command::new(binary);
+    command.args(["ragdoll", "build", "--json"]).arg(file);
+    if gate > 0 {
+        command.args(["--gate", &gate.to_string(), "--threads", &threads.min(256).to_string()]);
+    }
+    let output = command.output().with_context(|| binary.display().to_string())?;
+    if output.status.success() {
+        return Ok(Measured::Built(serde_json::from_slice(&output.stdout)?));
+    }
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    // A refusal is one line; a panic is a fault of ours.
+    ensure!(output.status.code() == Some(1), "{}: {}\n{said}", file.display(), output.status);
+    Ok(Measured::Refused(said.trim().rsplit(": ").next().unwrap_or_default().to_owned()))
 }
 
 const LEGEND: &str = "A rig is *good* with every figure inside its bar: gap of joints below 1 mm (99 % of all) and 5 mm
@@ -164,7 +179,17 @@ fn fall_row(name: &str, gate: &Value) -> Vec<String> {
     ]
 }
 
-/// All files that may hold a rig, in a folder and those in it.
+/// All files that may hold a rig, in a folder and those in it, in the order of their names.
+///
+/// # Errors
+/// If a folder cannot be read.
+pub fn rigs_in(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    find(folder, &mut files)?;
+    files.sort();
+    Ok(files)
+}
+
 fn find(folder: &Path, files: &mut Vec<PathBuf>) -> Result<()> {
     let entries = fs::read_dir(folder).with_context(|| folder.display().to_string())?;
     for entry in entries {

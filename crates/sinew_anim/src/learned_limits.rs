@@ -88,7 +88,7 @@ pub fn learn_limits(rig: &Rig, takes: &[&Take]) -> Vec<LearnedLimit> {
             take.of_joint(joint).map(|local: LocalTransform| local.rotation).collect::<Vec<_>>()
         };
         let turns: Vec<Rotation> = takes.iter().flat_map(of_take).filter(|turn| turn.is_finite()).collect();
-        learn_joint(joint, bone(rig, joint), &turns)
+        learn_limit(joint, bone(rig, joint), &turns)
     };
     (0..rig.joints.len()).filter_map(learn).collect()
 }
@@ -102,7 +102,9 @@ fn bone(rig: &Rig, joint: JointIdx) -> Vec3 {
     farthest.and_then(direction).unwrap_or(Vec3::X)
 }
 
-fn learn_joint(joint: JointIdx, bone: Vec3, turns: &[Rotation]) -> Option<LearnedLimit> {
+/// The limit of one joint from its rotations, any number: those of a joint of the rig, or of any other two frames that turn
+/// against each other. `bone` is unit, in the joint's own axes. `None` if it does not turn.
+pub fn learn_limit(joint: JointIdx, bone: Vec3, turns: &[Rotation]) -> Option<LearnedLimit> {
     let mean = mean(turns)?;
     let across = any_orthonormal(bone);
     let frame = Rotation::from_mat3(&Mat3::from_cols(bone, across, bone.cross(across)));
@@ -180,8 +182,11 @@ impl LearnedLimit {
     }
 }
 
-/// The range that holds all numbers but for the lowest and highest of them.
-fn covered(mut numbers: Vec<f32>) -> Range {
+/// The range that holds [`COVERAGE`] of all numbers, but for the lowest and highest of them.
+///
+/// # Panics
+/// If there are none.
+pub fn covered(mut numbers: Vec<f32>) -> Range {
     numbers.sort_by(f32::total_cmp);
     let tail = 0.5 * (1.0 - COVERAGE);
     Range::new(numbers[at_share(numbers.len(), tail)], numbers[at_share(numbers.len(), 1.0 - tail)])

@@ -48,9 +48,9 @@ impl RagdollFile {
             Kind::Character => {
                 drop(bytes);
                 let character = CharacterFile::load(path, textures)?;
-                let (def, notes) = settings.load(path)?.build(&character, &BuildOptions::default())?;
+                let (def, report) = settings.load(path)?.build(&character, &BuildOptions::default())?;
                 let patient = Patient { reference: Some(def.clone()), ..Patient::new(def) };
-                Ok(Self { patient, name, notes })
+                Ok(Self { patient, name, notes: report.notes })
             }
         }
     }

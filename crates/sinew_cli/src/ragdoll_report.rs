@@ -6,8 +6,10 @@ use crate::table::{Table, shown};
 use serde_json::{Map, Value, json};
 use sinew::math::{Range, SwingTwistLimit, Vec3};
 use sinew::physics::{JointKind, Shape};
+use sinew::ragdoll::build::BuildReport;
+use sinew::ragdoll::filter::{Overlap, Remedy, Seen};
 use sinew::ragdoll::quality::GateReport;
-use sinew::ragdoll::{DropReport, RagdollDef, RagdollJointDef};
+use sinew::ragdoll::{DropReport, LimitSource, RagdollDef, RagdollJointDef};
 use std::fmt::Write;
 
 /// A ragdoll to be reported.
@@ -16,8 +18,8 @@ pub struct RagdollReport<'a> {
     pub file: &'a str,
     /// The ragdoll.
     pub def: &'a RagdollDef,
-    /// What the build wants a person to know.
-    pub notes: &'a [String],
+    /// How it came about.
+    pub build: &'a BuildReport,
     /// Processor time from the file to the definition, milliseconds.
     pub build_ms: f64,
     /// Eight drops and a wall hit.
@@ -45,7 +47,8 @@ impl RagdollReport<'_> {
             "up_axis": axis_name(def.up_axis),
             "dropped_bones": def.dropped_bones,
             "disabled_pairs": pairs,
-            "notes": self.notes,
+            "overlaps": self.build.overlaps.iter().map(|overlap| self.overlap_json(overlap)).collect::<Vec<_>>(),
+            "notes": self.build.notes,
             "build_ms": self.build_ms,
             "quality": self.quality_json(),
         })
@@ -77,12 +80,8 @@ impl RagdollReport<'_> {
         text += &quality_text(drop);
         text += "Thrown at a wall at 15 m/s\n";
         text += &quality_text(wall);
-        if let Some(GateReport { spawns, verdicts: [good, usable, bad], worst, worst_spawn }) = self.gated {
-            let _ = writeln!(
-                text,
-                "{spawns} random falls: {good} good, {usable} usable, {bad} bad (worst is fall {worst_spawn})"
-            );
-            text += &quality_text(worst);
+        if let Some(gated) = self.gated {
+            text += &gate_text(gated);
         }
         let _ = writeln!(text, "verdict: {}", verdict.name());
         for reason in reasons {
@@ -136,6 +135,25 @@ impl RagdollReport<'_> {
         object.into()
     }
 
+    /// Why a pair does not collide, or was made thinner.
+    fn overlap_json(&self, overlap: &Overlap) -> Value {
+        let (a, b) = overlap.pair;
+        let Seen { bind, limits, clips } = overlap.seen;
+        let remedy = match overlap.remedy {
+            Remedy::Tolerated => "tolerated",
+            Remedy::OnlyBound => "only_bound",
+            Remedy::Shrunk => "shrunk",
+            Remedy::Disabled => "disabled",
+        };
+        json!({
+            "bones": [self.def.bodies[a].bone, self.def.bodies[b].bone],
+            "bind_m": number(bind),
+            "limits_share": number(limits),
+            "clips_share": clips.map_or(Value::Null, number),
+            "remedy": remedy,
+        })
+    }
+
     fn joint_json(&self, joint: &RagdollJointDef) -> Value {
         let bone = |body: usize| &self.def.bodies[body].bone;
         let (kind, limit) = match joint.kind {
@@ -150,10 +168,15 @@ impl RagdollReport<'_> {
             JointKind::Fixed => ("fixed", SwingTwistLimit { swing_y: NONE, swing_z: NONE, twist: NONE }),
             kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
         };
+        let limits_from = match self.build.bodies[joint.child].limits {
+            LimitSource::Anatomy => "anatomy",
+            LimitSource::Clips => "clips",
+        };
         json!({
             "parent": bone(joint.parent),
             "child": bone(joint.child),
             "type": kind,
+            "limits_from": limits_from,
             "limits_deg": {
                 "swing_y": degrees(limit.swing_y),
                 "swing_z": degrees(limit.swing_z),
@@ -185,7 +208,7 @@ impl RagdollReport<'_> {
             let names: Vec<String> = def.dropped_bones.iter().map(|name| shown(name)).collect();
             let _ = writeln!(text, "\nwithout a body: {}", names.join(", "));
         }
-        for note in self.notes {
+        for note in &self.build.notes {
             let _ = writeln!(text, "note: {}", shown(note));
         }
         text + &self.quality_text()
@@ -193,15 +216,45 @@ impl RagdollReport<'_> {
 }
 
 fn gate_json(gated: &GateReport) -> Value {
-    let GateReport { spawns, verdicts: [good, usable, bad], worst, worst_spawn } = gated;
+    let GateReport { spawns, verdicts: [good, usable, bad], worst, misses, .. } = gated;
+    let misses = misses.iter().take(LISTED);
     json!({
         "spawns": spawns,
         "good": good,
         "usable": usable,
         "bad": bad,
         "worst": quality_json(worst),
-        "worst_spawn": worst_spawn,
+        "worst_spawn": gated.worst_spawn,
+        "worst_reasons": gated.worst_reasons,
+        "bad_spawns": gated.bad.iter().take(LISTED).collect::<Vec<_>>(),
+        "failed": failed(gated),
+        "failures": misses
+            .map(|miss| json!({ "spawn": miss.spawn, "what": miss.bar.key(), "value": number(miss.value) }))
+            .collect::<Vec<_>>(),
     })
+}
+
+/// No list of falls is longer.
+const LISTED: usize = 100;
+
+/// Falls in which something that must hold in each did not.
+fn failed(gated: &GateReport) -> usize {
+    let mut spawns: Vec<u64> = gated.misses.iter().map(|miss| miss.spawn).collect();
+    spawns.dedup();
+    spawns.len()
+}
+
+fn gate_text(gated: &GateReport) -> String {
+    let GateReport { spawns, verdicts: [good, usable, bad], worst, worst_spawn, .. } = gated;
+    let mut text = format!(
+        "{spawns} random falls: {good} good, {usable} usable, {bad} bad (worst is fall {worst_spawn})\n"
+    );
+    text += &quality_text(worst);
+    let _ = writeln!(text, "  {} of them beyond what must hold in every fall", failed(gated));
+    for miss in gated.misses.iter().take(LISTED) {
+        let _ = writeln!(text, "  fall {}: {} {}", miss.spawn, miss.bar.key(), miss.value);
+    }
+    text
 }
 
 /// No rotation at all.

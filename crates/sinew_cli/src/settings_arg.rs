@@ -3,7 +3,8 @@
 use crate::failure::{Failure, Result};
 use crate::files::CharacterFile;
 use sinew::formats::{read_bytes, read_ragdoll_settings, settings_path};
-use sinew::ragdoll::{BuildOptions, RagdollDef, Settings, SettingsError, build_with};
+use sinew::ragdoll::build::{BuildReport, takes};
+use sinew::ragdoll::{BuildOptions, RagdollDef, Settings, SettingsError, build_moving};
 use std::path::{Path, PathBuf};
 
 /// Where settings come from.
@@ -45,22 +46,22 @@ impl SettingsArg {
 }
 
 impl LoadedSettings {
-    /// The ragdoll of a character, and notes for a person.
+    /// The ragdoll of a character and its clips, and what the build says of it.
     pub fn build(
         &self,
         character: &CharacterFile,
         options: &BuildOptions,
-    ) -> Result<(RagdollDef, Vec<String>)> {
+    ) -> Result<(RagdollDef, BuildReport)> {
         let CharacterFile { name, document, analysis } = character;
-        let built = build_with(&document.rig, analysis, options, &self.settings);
-        let (def, report) = built.map_err(|error| match error {
+        let moves = takes(&document.rig, &document.clips);
+        let built = build_moving(&document.rig, analysis, &moves, options, &self.settings);
+        let (def, mut report) = built.map_err(|error| match error {
             SettingsError::Build(error) => Failure::of_file(name, error),
             SettingsError::Setting { what, place } => Failure::at(&self.file, what, place),
         })?;
-        let mut notes = report.notes;
         if !self.file.is_empty() {
-            notes.insert(0, format!("with the settings of {}", self.file));
+            report.notes.insert(0, format!("with the settings of {}", self.file));
         }
-        Ok((def, notes))
+        Ok((def, report))
     }
 }

@@ -4,7 +4,7 @@ use super::RoleGuess;
 use super::axes::{feet_lead, left_by_name, possible_ups, snap};
 use super::bind::Bound;
 use super::creature::{generic_roles, up_by_feet};
-use super::graph::Graph;
+use super::graph::{Graph, ancestors};
 use super::humanoid::{Evidence, Humanoid, Limb, Split, Stance};
 use super::names::{Part, Reading, read_names, settle_duplicates};
 use super::role::{Role, Side};
@@ -82,7 +82,10 @@ impl<'a> Scene<'a> {
     fn of(rig: &'a Rig, bound: &'a Bound) -> Option<(Self, Vec<String>)> {
         let mut notes = Vec::new();
         let mut readings = read_names(rig.joints.iter().map(|joint| joint.name.as_str()));
-        settle_duplicates(&mut readings, |joint| bound.area[joint] > 0.0);
+        let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
+        settle_duplicates(&mut readings, &names, |joint| {
+            (bound.area[joint] > 0.0).then(|| ancestors(rig, joint).count())
+        });
         let mut graph = Graph::of(rig, bound, |_| true)?;
         let mut symmetry = Symmetry::find(&graph, bound.size());
         let (agreeing, pairs) = mirrored_names(&graph, &symmetry, &readings);
@@ -265,7 +268,7 @@ impl<'a> Scene<'a> {
         // A body without pairs may have its plane of symmetry across its own up.
         let left = if lateral.dot(up).abs() < 0.5 { self.left(up, &feet, notes) } else { Vec3::X };
         let mut roles = vec![None; self.rig.joints.len()];
-        for (node, role) in self.graph.nodes.iter().zip(generic_roles(&self.graph, &self.symmetry)) {
+        for (node, role) in self.graph.nodes.iter().zip(generic_roles(&self.graph, &self.symmetry, left)) {
             roles[node.joint] = Some(RoleGuess { role, confidence: CONFIDENCE_GENERIC });
         }
         Draft { roles, humanoid: false, up, left }

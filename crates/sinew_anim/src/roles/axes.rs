@@ -56,15 +56,23 @@ pub(super) fn left_by_name(graph: &Graph, symmetry: &Symmetry, readings: &[Readi
 
 /// Metres per file unit, and why if it is not 1.
 ///
-/// A humanoid between 0.5 m and 3 m is taken at its word; else centimetres, inches, decimetres and millimetres are
-/// tried, then 1.75 m is assumed. A creature's longest side may be 0.1 m to 10 m; else one metre is assumed after
+/// A humanoid between 0.5 m and 3 m is taken at its word; else centimetres, inches, decimetres, millimetres and units that
+/// were converted twice are tried, then 1.75 m is assumed. A creature's longest side may be 0.1 m to 10 m; else one metre is assumed after
 /// the same units.
 pub(super) fn unit_scale(height: f32, size: f32, humanoid: bool) -> (f32, Option<String>) {
     let (measure, range, assumed) = if humanoid { (height, 0.5..3.0, 1.75) } else { (size, 0.1..10.0, 1.0) };
     if range.contains(&measure) {
         return (1.0, None);
     }
-    let units = [(0.01, "centimetres"), (0.0254, "inches"), (0.1, "decimetres"), (0.001, "millimetres")];
+    // The last two are what is left of metres and centimetres where a program converts a file that was converted already.
+    let units = [
+        (0.01, "centimetres"),
+        (0.0254, "inches"),
+        (0.1, "decimetres"),
+        (0.001, "millimetres"),
+        (100.0, "metres divided by a hundred"),
+        (0.0001, "centimetres times a hundred"),
+    ];
     if let Some((scale, unit)) = units.into_iter().find(|(scale, _)| range.contains(&(measure * scale))) {
         return (scale, Some(format!("{measure:.1} units tall or long: taken as {unit}")));
     }

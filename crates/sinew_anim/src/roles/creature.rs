@@ -10,7 +10,7 @@ use sinew_math::Vec3;
 
 /// A role per node: the midline chain with the most skin is the trunk, the first other midline chain the tail, every
 /// other chain a limb.
-pub(super) fn generic_roles(graph: &Graph, symmetry: &Symmetry) -> Vec<Role> {
+pub(super) fn generic_roles(graph: &Graph, symmetry: &Symmetry, left: Vec3) -> Vec<Role> {
     let mut roles: Vec<Option<Role>> = vec![None; graph.nodes.len()];
     let skin = |i: usize| graph.nodes[i].subtree_area;
     let heavier = |a: usize, b: usize| if skin(b) > skin(a) { b } else { a };
@@ -32,18 +32,44 @@ pub(super) fn generic_roles(graph: &Graph, symmetry: &Symmetry) -> Vec<Role> {
     for (n, &node) in (0..).zip(&tail) {
         roles[node] = Some(Role::TailSegment(n));
     }
-    let mut limb = 0;
+    let mut begins = Vec::new();
+    let mut in_limb: Vec<bool> = roles.iter().map(Option::is_some).collect();
     for &node in &graph.order {
-        if roles[node].is_some() {
+        if in_limb[node] {
             continue;
         }
         // Parents come first, so a node without a role begins a chain; its side branches begin others.
-        for (segment, part) in (0..).zip(core::iter::successors(Some(node), |&i| longest(graph, i))) {
+        begins.push(node);
+        along(graph, node).for_each(|part| in_limb[part] = true);
+    }
+    number(graph, symmetry, left, &mut begins);
+    for (limb, &node) in (0..).zip(&begins) {
+        for (segment, part) in (0..).zip(along(graph, node)) {
             roles[part] = Some(Role::LimbSegment { limb, segment });
         }
-        limb += 1;
     }
     roles.into_iter().map(|role| role.expect("every node is in a chain")).collect()
+}
+
+/// Sorts limbs by where they begin and how far they reach, not by their order in the file: those near the root first, of a
+/// mirrored pair the left one. Both of a pair count as their mean, so that no rounding puts a third between them.
+fn number(graph: &Graph, symmetry: &Symmetry, left: Vec3, begins: &mut [usize]) {
+    let mean = |node: usize, of: &dyn Fn(usize) -> f32| of(node) + of(symmetry.other(node).unwrap_or(node));
+    let key = |node: usize| {
+        let distance = mean(node, &|i| graph.distance(graph.root, i));
+        let reach = mean(node, &|i| graph.nodes[i].reach);
+        (graph.up_from(node).count(), [distance, reach, -graph.nodes[node].position.dot(left)])
+    };
+    begins.sort_by(|&a, &b| {
+        let ((depth_a, a), (depth_b, b)) = (key(a), key(b));
+        let lengths = a.iter().zip(&b).map(|(a, b)| a.total_cmp(b));
+        lengths.fold(depth_a.cmp(&depth_b), core::cmp::Ordering::then)
+    });
+}
+
+/// A limb from a node on to its farthest end.
+fn along(graph: &Graph, node: usize) -> impl Iterator<Item = usize> {
+    core::iter::successors(Some(node), |&i| longest(graph, i))
 }
 
 fn longest(graph: &Graph, node: usize) -> Option<usize> {

@@ -118,7 +118,17 @@ impl Selection<'_> {
             }
         }
         let fair = |&&i: &&usize| i == self.graph.root || area[i] >= LEAST_SHARE * total;
-        let joints: Vec<JointIdx> = self.graph.order.iter().filter(fair).map(|&i| nodes[i].joint).collect();
+        let mut joints: Vec<JointIdx> =
+            self.graph.order.iter().filter(fair).map(|&i| nodes[i].joint).collect();
+        // In the order of their roles, which is that of the body and not of the file: trunk, tail, then limbs, of which none
+        // hangs on one of a higher number.
+        joints.sort_by_key(|&joint| match self.role(joint) {
+            Role::LimbSegment { limb, segment } => (2, limb, segment),
+            Role::TailSegment(segment) => (1, 0, segment),
+            Role::SpineSegment(segment) => (0, 0, segment),
+            // No creature has others.
+            _ => (3, 0, 0),
+        });
         let place = self.places(&joints);
         self.bones(&joints, |joint| place[self.carried_by(joint, |i| place[i].is_some())?])
     }

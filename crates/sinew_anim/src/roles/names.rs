@@ -116,30 +116,49 @@ pub(super) fn read_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<Readin
     readings
 }
 
-/// Settles parts that several joints of one side claim, of those that move skin. Where the rig names all four long
-/// limb parts, the first is meant and the others continue it (Rigify's "upper_arm.L.001"); else the name tells
-/// nothing (CesiumMan calls all of its arm "arm").
-pub(super) fn settle_duplicates(readings: &mut [Reading], has_skin: impl Fn(usize) -> bool) {
+/// Settles parts that several joints of one side claim, of those that move skin: they have a `depth`, the number of
+/// joints above them. Where the rig names all four long limb parts, one is meant and the others continue it (Rigify's
+/// "upper_arm.L.001"); else the name tells nothing (CesiumMan calls all of its arm "arm").
+pub(super) fn settle_duplicates(
+    readings: &mut [Reading],
+    names: &[&str],
+    depth: impl Fn(usize) -> Option<usize>,
+) {
     use Part::{LowerArm, LowerLeg, UpperArm, UpperLeg};
     let names_all = [UpperArm, LowerArm, UpperLeg, LowerLeg]
         .into_iter()
         .all(|part| readings.iter().any(|reading| reading.part == Some(part)));
     let claims: Vec<(Option<Part>, Option<Side>)> =
-        readings.iter().enumerate().map(|(i, r)| (r.part.filter(|_| has_skin(i)), r.side)).collect();
-    for (i, claim) in claims.iter().enumerate() {
+        readings.iter().enumerate().map(|(i, r)| (r.part.filter(|_| depth(i).is_some()), r.side)).collect();
+    for i in 0..claims.len() {
+        let claim = claims[i];
         let many =
             Some(Part::Neck) == claim.0 && readings.iter().any(|reading| reading.part == Some(Part::Head));
         if many || matches!(claim.0, None | Some(Part::Spine | Part::Tail | Part::Appendix)) {
             continue;
         }
-        let first = claims.iter().position(|other| other == claim) == Some(i);
-        let alone = first && !claims[i + 1..].contains(claim);
-        readings[i].part = match (alone || names_all && first, names_all) {
-            (true, _) => claim.0,
-            (false, true) => Some(Part::Appendix),
-            (false, false) => None,
-        };
+        // Each claim once, at the first joint that makes it.
+        if claims[..i].contains(&claim) {
+            continue;
+        }
+        let same: Vec<usize> = (i..claims.len()).filter(|&other| claims[other] == claim).collect();
+        if same.len() == 1 {
+            continue;
+        }
+        let meant = meant(same.clone(), names, &depth).filter(|_| names_all);
+        for joint in same.into_iter().filter(|&joint| Some(joint) != meant) {
+            readings[joint].part = names_all.then_some(Part::Appendix);
+        }
     }
+}
+
+/// Which of several joints of one name is meant, whatever their order in the file: that nearest to the root; of siblings the
+/// one in the middle by name (of three palms the second, of two the first).
+fn meant(mut same: Vec<usize>, names: &[&str], depth: &impl Fn(usize) -> Option<usize>) -> Option<usize> {
+    let least = same.iter().filter_map(|&joint| depth(joint)).min()?;
+    same.retain(|&joint| depth(joint) == Some(least));
+    same.sort_by_key(|&joint| names[joint]);
+    same.get((same.len() - 1) / 2).copied()
 }
 
 fn read_name(name: &str) -> Reading {

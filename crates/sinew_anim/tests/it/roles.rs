@@ -190,30 +190,30 @@ fn a_fox_is_no_human_whatever_its_joints_are_called() {
     check(
         "Fox.glb",
         &expect![[r#"
-        creature, 0.79 m, unit 0.01, forward +z
-        spine_0 < - 0.60 b_Hip_01
-        spine_1 < spine_0 0.60 b_Spine01_02
-        tail_0 < spine_0 0.60 b_Tail01_012
-        limb_0_0 < spine_0 0.60 b_LeftLeg01_015
-        limb_1_0 < spine_0 0.60 b_RightLeg01_019
-        spine_2 < spine_1 0.60 b_Spine02_03
-        tail_1 < tail_0 0.60 b_Tail02_013
-        limb_0_1 < limb_0_0 0.60 b_LeftLeg02_016
-        limb_1_1 < limb_1_0 0.60 b_RightLeg02_020
-        spine_3 < spine_2 0.60 b_Neck_04
-        limb_2_0 < spine_2 0.60 b_RightUpperArm_06
-        limb_3_0 < spine_2 0.60 b_LeftUpperArm_09
-        tail_2 < tail_1 0.60 b_Tail03_014
-        limb_0_2 < limb_0_1 0.60 b_LeftFoot01_017
-        limb_1_2 < limb_1_1 0.60 b_RightFoot01_021
-        spine_4 < spine_3 0.60 b_Head_05
-        limb_2_1 < limb_2_0 0.60 b_RightForeArm_07
-        limb_3_1 < limb_3_0 0.60 b_LeftForeArm_010
-        limb_0_3 < limb_0_2 0.60 b_LeftFoot02_018
-        limb_1_3 < limb_1_2 0.60 b_RightFoot02_022
-        limb_2_2 < limb_2_1 0.60 b_RightHand_08
-        limb_3_2 < limb_3_1 0.60 b_LeftHand_011
-    "#]],
+            creature, 0.79 m, unit 0.01, forward +z
+            spine_0 < - 0.60 b_Hip_01
+            spine_1 < spine_0 0.60 b_Spine01_02
+            spine_2 < spine_1 0.60 b_Spine02_03
+            spine_3 < spine_2 0.60 b_Neck_04
+            spine_4 < spine_3 0.60 b_Head_05
+            tail_0 < spine_0 0.60 b_Tail01_012
+            tail_1 < tail_0 0.60 b_Tail02_013
+            tail_2 < tail_1 0.60 b_Tail03_014
+            limb_0_0 < spine_0 0.60 b_LeftLeg01_015
+            limb_0_1 < limb_0_0 0.60 b_LeftLeg02_016
+            limb_0_2 < limb_0_1 0.60 b_LeftFoot01_017
+            limb_0_3 < limb_0_2 0.60 b_LeftFoot02_018
+            limb_1_0 < spine_0 0.60 b_RightLeg01_019
+            limb_1_1 < limb_1_0 0.60 b_RightLeg02_020
+            limb_1_2 < limb_1_1 0.60 b_RightFoot01_021
+            limb_1_3 < limb_1_2 0.60 b_RightFoot02_022
+            limb_2_0 < spine_2 0.60 b_LeftUpperArm_09
+            limb_2_1 < limb_2_0 0.60 b_LeftForeArm_010
+            limb_2_2 < limb_2_1 0.60 b_LeftHand_011
+            limb_3_0 < spine_2 0.60 b_RightUpperArm_06
+            limb_3_1 < limb_3_0 0.60 b_RightForeArm_07
+            limb_3_2 < limb_3_1 0.60 b_RightHand_08
+        "#]],
     );
 }
 
@@ -222,35 +222,35 @@ fn a_spider_gets_its_feet_back() {
     check(
         "quaternius_Spider.glb",
         &expect![[r#"
-        creature, 1.95 m, unit 1, forward +z
-        spine_0 < - 0.60 Abdomen
-        limb_0_0 < spine_0 0.60 FrontLeg.L
-        limb_1_0 < spine_0 0.60 MidFrontLeg.L
-        limb_2_0 < spine_0 0.60 BackLeg.L
-        limb_3_0 < spine_0 0.60 MidBackLeg.L
-        limb_4_0 < spine_0 0.60 FrontLeg.R
-        limb_5_0 < spine_0 0.60 MidFrontLeg.R
-        limb_6_0 < spine_0 0.60 BackLeg.R
-        limb_7_0 < spine_0 0.60 MidBackLeg.R
-        spine_1 < spine_0 0.60 Thorax
-        limb_0_1 < limb_0_0 0.60 FrontLeg2.L
-        limb_1_1 < limb_1_0 0.60 MidFrontLeg2.L
-        limb_2_1 < limb_2_0 0.60 BackLeg2.L
-        limb_3_1 < limb_3_0 0.60 MidBackLeg2.L
-        limb_4_1 < limb_4_0 0.60 FrontLeg2.R
-        limb_5_1 < limb_5_0 0.60 MidFrontLeg2.R
-        limb_6_1 < limb_6_0 0.60 BackLeg2.R
-        limb_7_1 < limb_7_0 0.60 MidBackLeg2.R
-        spine_2 < spine_1 0.60 Head
-        limb_0_2 < limb_0_1 0.60 FrontLeg3.L
-        limb_1_2 < limb_1_1 0.60 MidFrontLeg3.L
-        limb_2_2 < limb_2_1 0.60 BackLeg3.L
-        limb_3_2 < limb_3_1 0.60 MidBackLeg3.L
-        limb_4_2 < limb_4_1 0.60 FrontLeg3.R
-        limb_5_2 < limb_5_1 0.60 MidFrontLeg3.R
-        limb_6_2 < limb_6_1 0.60 BackLeg3.R
-        limb_7_2 < limb_7_1 0.60 MidBackLeg3.R
-    "#]],
+            creature, 1.95 m, unit 1, forward +z
+            spine_0 < - 0.60 Abdomen
+            spine_1 < spine_0 0.60 Thorax
+            spine_2 < spine_1 0.60 Head
+            limb_0_0 < spine_0 0.60 BackLeg.L
+            limb_0_1 < limb_0_0 0.60 BackLeg2.L
+            limb_0_2 < limb_0_1 0.60 BackLeg3.L
+            limb_1_0 < spine_0 0.60 BackLeg.R
+            limb_1_1 < limb_1_0 0.60 BackLeg2.R
+            limb_1_2 < limb_1_1 0.60 BackLeg3.R
+            limb_2_0 < spine_0 0.60 MidBackLeg.L
+            limb_2_1 < limb_2_0 0.60 MidBackLeg2.L
+            limb_2_2 < limb_2_1 0.60 MidBackLeg3.L
+            limb_3_0 < spine_0 0.60 MidBackLeg.R
+            limb_3_1 < limb_3_0 0.60 MidBackLeg2.R
+            limb_3_2 < limb_3_1 0.60 MidBackLeg3.R
+            limb_4_0 < spine_0 0.60 MidFrontLeg.L
+            limb_4_1 < limb_4_0 0.60 MidFrontLeg2.L
+            limb_4_2 < limb_4_1 0.60 MidFrontLeg3.L
+            limb_5_0 < spine_0 0.60 MidFrontLeg.R
+            limb_5_1 < limb_5_0 0.60 MidFrontLeg2.R
+            limb_5_2 < limb_5_1 0.60 MidFrontLeg3.R
+            limb_6_0 < spine_0 0.60 FrontLeg.L
+            limb_6_1 < limb_6_0 0.60 FrontLeg2.L
+            limb_6_2 < limb_6_1 0.60 FrontLeg3.L
+            limb_7_0 < spine_0 0.60 FrontLeg.R
+            limb_7_1 < limb_7_0 0.60 FrontLeg2.R
+            limb_7_2 < limb_7_1 0.60 FrontLeg3.R
+        "#]],
     );
 }
 

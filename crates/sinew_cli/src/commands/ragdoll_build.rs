@@ -3,12 +3,16 @@
 use crate::cpu_clock::timed;
 use crate::failure::Result;
 use crate::files::{CharacterFile, Outputs};
+use crate::progress::Progress;
 use crate::ragdoll_report::RagdollReport;
 use crate::report::Report;
 use crate::settings_arg::{LoadedSettings, SettingsArg};
 use clap::ValueEnum;
 use sinew::formats::{Textures, write_ragdoll};
-use sinew::ragdoll::{BuildOptions, RagdollDef, Sex, ShapeChoice, drop_test, gate};
+use sinew::physics::Threads;
+use sinew::ragdoll::build::BuildReport;
+use sinew::ragdoll::quality::{GateReport, gate_on};
+use sinew::ragdoll::{BuildOptions, LimitSource, RagdollDef, Sex, ShapeChoice, drop_test};
 use std::path::PathBuf;
 
 /// Build a ragdoll from a rigged file: shapes, masses, limits, collision filter, and a quality report
@@ -18,6 +22,7 @@ Example:
   sinew ragdoll build character.glb -o character.sinew.json
   sinew ragdoll build character.glb --shapes capsule --mass 62 --sex f
   sinew ragdoll build character.glb --settings hero.ragdoll.json
+  sinew ragdoll build character.glb --limits clips --gate 1000 --threads 8
 
 docs/ragdoll.md says what a definition and settings hold.")]
 pub struct RagdollBuild {
@@ -35,18 +40,36 @@ pub struct RagdollBuild {
     /// Whose distribution of mass over the body; by default male
     #[arg(long, value_enum)]
     sex: Option<SexArg>,
+    /// Joint limits: those of anatomy, the default, or learned from the file's clips
+    #[arg(long, value_enum)]
+    limits: Option<Limits>,
     /// Also let it fall this many times at random: pose, speed and ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     gate: Option<u32>,
+    /// Number of the first of these falls: the report names those that went wrong
+    #[arg(long, value_name = "K", default_value_t = 0, requires = "gate")]
+    gate_from: u32,
+    /// Threads that the falls are spread over; the report is the same with any number
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
+    threads: u16,
     #[command(flatten)]
     settings: SettingsArg,
 }
+
+/// Falls between two looks at the progress bar.
+const BATCH: u32 = 64;
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Shapes {
     Box,
     Capsule,
     Auto,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Limits {
+    Anatomy,
+    Clips,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -61,13 +84,13 @@ impl RagdollBuild {
     /// Builds, drops it, reports, writes.
     pub fn run(&self) -> Result<Report> {
         let (built, seconds) = timed(|| self.build());
-        let (character, def, notes) = built?;
+        let (character, def, build) = built?;
         let tested = drop_test(&def);
-        let gated = self.gate.map(|spawns| gate(&def, spawns as usize));
+        let gated = self.gate.map(|spawns| self.gated(&def, spawns));
         let report = RagdollReport {
             file: &character.name,
             def: &def,
-            notes: &notes,
+            build: &build,
             build_ms: 1000.0 * seconds,
             tested: &tested,
             gated: gated.as_ref(),
@@ -80,11 +103,25 @@ impl RagdollBuild {
         Ok(report.finish())
     }
 
+    /// Random falls, with a bar for who waits for them.
+    fn gated(&self, def: &RagdollDef, spawns: u32) -> GateReport {
+        let threads = Threads::new(usize::from(self.threads));
+        let progress = Progress::new("random falls", spawns as usize);
+        let mut report = GateReport::default();
+        for from in (0..spawns).step_by(BATCH as usize) {
+            let to = u32::min(from.saturating_add(BATCH), spawns);
+            let number = |fall: u32| u64::from(self.gate_from) + u64::from(fall);
+            report = report.and(gate_on(def, number(from)..number(to), &threads));
+            progress.reach(to as usize);
+        }
+        report
+    }
+
     /// From the file to the definition, with what a person should know.
-    fn build(&self) -> Result<(CharacterFile, RagdollDef, Vec<String>)> {
+    fn build(&self) -> Result<(CharacterFile, RagdollDef, BuildReport)> {
         let character = CharacterFile::load(&self.file, Textures::Skip)?;
-        let (def, notes) = self.settings()?.build(&character, &BuildOptions::default())?;
-        Ok((character, def, notes))
+        let (def, report) = self.settings()?.build(&character, &BuildOptions::default())?;
+        Ok((character, def, report))
     }
 
     /// Settings of the file, and over them what the command line says.
@@ -102,6 +139,12 @@ impl RagdollBuild {
             settings.sex = Some(match sex {
                 SexArg::M => Sex::Male,
                 SexArg::F => Sex::Female,
+            });
+        }
+        if let Some(limits) = self.limits {
+            settings.limits = Some(match limits {
+                Limits::Anatomy => LimitSource::Anatomy,
+                Limits::Clips => LimitSource::Clips,
             });
         }
         settings.mass = self.mass.or(settings.mass);

@@ -1,11 +1,12 @@
 //! `sinew ragdoll doctor`, and what definitions of ragdolls go through.
 
 use crate::contract::check_keys;
-use crate::sinew::{Folder, gltf_files, shared_data, sinew};
+use crate::sinew::{Folder, glb, gltf_files, shared_data, sinew};
 use serde_json::Value;
 use sinew::formats::{read_ragdoll, write_ragdoll};
 use sinew::physics::JointKind;
 use sinew::ragdoll::RagdollDef;
+use sinew_scenes::mannequin::mannequin;
 
 /// The mannequin's definition, as `ragdoll build` writes it.
 fn built(folder: &Folder) -> (String, RagdollDef) {
@@ -251,4 +252,48 @@ fn numbers_that_lie_do_no_harm() {
             }
         }
     }
+}
+
+/// A fall that went wrong can be looked at alone, and threads change nothing.
+#[test]
+fn falls_of_a_gate_have_numbers() {
+    let folder = Folder::new("gate");
+    let file = folder.mannequin();
+    let gate = |more: &[&str]| {
+        let run = sinew(&[&["ragdoll", "build", &file, "--json"], more].concat());
+        run.json()["quality"]["gate"].clone()
+    };
+    let whole = gate(&["--gate", "3"]);
+    assert_eq!(gate(&["--gate", "3", "--threads", "2"]), whole);
+    let parts: Vec<Value> =
+        ["0", "1", "2"].iter().map(|from| gate(&["--gate", "1", "--gate-from", from])).collect();
+    let deepest = |gate: &Value| gate["worst"]["penetration_max_m"].as_f64().expect("a number");
+    assert_eq!(parts.iter().map(deepest).fold(0.0, f64::max), deepest(&whole));
+    assert!(parts.iter().any(|part| deepest(part) != deepest(&whole)), "the falls differ");
+    assert_eq!(sinew(&["ragdoll", "build", &file, "--gate-from", "7"]).code, Some(2));
+}
+
+/// Limits are learned from the file's own clips, as the command line or the settings say; a file without clips is refused
+/// in one line.
+#[test]
+fn limits_come_from_clips() {
+    let folder = Folder::new("limits");
+    let file = folder.mannequin();
+    let build = |more: &[&str]| sinew(&[&["ragdoll", "build", &file, "--json"], more].concat()).json();
+    let from = |object: &Value| -> Vec<String> {
+        let joints = object["joints"].as_array().expect("joints");
+        joints.iter().map(|joint| joint["limits_from"].as_str().expect("a word").to_owned()).collect()
+    };
+    let (table, learned) = (build(&[]), build(&["--limits", "clips"]));
+    check_keys("ragdoll build", &learned);
+    assert!(from(&table).iter().all(|from| from == "anatomy"));
+    let moved = from(&learned).iter().filter(|from| *from == "clips").count();
+    assert!(2 * moved > from(&learned).len(), "a walk moves most joints: {:?}", from(&learned));
+    let settings = r#"{"sinew":"ragdoll-settings","version":1,"limits":"clips"}"#;
+    let settings = folder.file("slow.ragdoll.json", settings);
+    assert_eq!(build(&["--settings", &settings])["joints"], learned["joints"]);
+    let still = folder.file("still.glb", glb(&mannequin().rig, &[]));
+    let run = sinew(&["ragdoll", "build", &still, "--limits", "clips"]);
+    let line = format!("error: {still}: no clip moves a joint: there are no limits to learn");
+    assert_eq!(run.refusal(1), line);
 }

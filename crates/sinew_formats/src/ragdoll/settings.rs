@@ -7,6 +7,7 @@
 //!   "shapes": "auto",
 //!   "mass": 82,
 //!   "sex": "m",
+//!   "limits": "anatomy",
 //!   "height": 1.83,
 //!   "bones": {
 //!     "head": { "shape": "sphere", "scale": 0.95 },
@@ -21,7 +22,7 @@
 //! ```
 //!
 //! Every key but the first two may be absent. `shapes` is `box`, `capsule` or `auto`; `mass` kg of the whole; `sex` `m`
-//! or `f`; the unit of the rigged file is given by `unit_scale` (metres) or by the `height` that the character shall have;
+//! or `f`; `limits` are those of `anatomy`, or learned from the file's `clips`; the unit of the rigged file is given by `unit_scale` (metres) or by the `height` that the character shall have;
 //! `up_axis` (`[0, 0, 1]`) is the file's axis that points up. A bone is named by its role, by its role without the side (both
 //! sides; ranges are the left one's, mirrored on the right) or by the name of the rig's joint. Of a bone: `body` (`keep` or
 //! `drop`), `shape` (`box`, `capsule`, `sphere`), `scale` of it, `mass` in kg, `type` and `limits_deg` of the joint to its
@@ -32,17 +33,18 @@ use crate::error::{Error, Result, quoted};
 use crate::json::{self, At};
 use sinew_math::Range;
 use sinew_ragdoll::settings::{BodyWish, BoneSettings, JointWish, Settings, ShapeWish, Unit, nearest};
-use sinew_ragdoll::{Sex, ShapeChoice};
+use sinew_ragdoll::{LimitSource, Sex, ShapeChoice};
 
 const VERSION: usize = 1;
 
-const ROOT_KEYS: [&str; 12] = [
+const ROOT_KEYS: [&str; 13] = [
     "sinew",
     "version",
     "comment",
     "shapes",
     "mass",
     "sex",
+    "limits",
     "height",
     "unit_scale",
     "up_axis",
@@ -75,6 +77,7 @@ pub fn read_ragdoll_settings(bytes: &[u8]) -> Result<Settings> {
         shapes: word(root, "shapes", &SHAPES)?,
         mass: root.get("mass")?.map(At::positive).transpose()?,
         sex: word(root, "sex", &[("m", Sex::Male), ("f", Sex::Female)])?,
+        limits: word(root, "limits", &LIMITS)?,
         unit,
         up_axis: root.get("up_axis")?.map(read_up_axis).transpose()?,
         bones: Vec::new(),
@@ -92,6 +95,8 @@ pub fn read_ragdoll_settings(bytes: &[u8]) -> Result<Settings> {
 
 const SHAPES: [(&str, ShapeChoice); 3] =
     [("auto", ShapeChoice::Auto), ("box", ShapeChoice::Box), ("capsule", ShapeChoice::Capsule)];
+
+const LIMITS: [(&str, LimitSource); 2] = [("anatomy", LimitSource::Anatomy), ("clips", LimitSource::Clips)];
 
 fn read_bone(at: At<'_>) -> Result<BoneSettings> {
     only(at, &BONE_KEYS)?;

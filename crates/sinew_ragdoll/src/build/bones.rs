@@ -3,7 +3,7 @@
 use crate::build::part::{Part, Side, part_of_role};
 use sinew_anim::JointIdx;
 use sinew_anim::roles::Role;
-use sinew_math::{Vec3, normalize_or};
+use sinew_math::{Vec3, max, normalize_or};
 
 /// One kept bone: what will become a body.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,7 +120,19 @@ impl Bones {
     pub fn is_central(&self, bone: usize) -> bool {
         let bone = &self.list[bone];
         let aside = (bone.head.x - self.plane_of_symmetry()).abs();
-        bone.side == Side::Middle && bone.part != Part::Limb && aside < 0.02 * self.height
+        bone.side == Side::Middle && bone.part != Part::Limb && aside < 0.02 * self.size()
+    }
+
+    /// A human's height; of a creature, of which nothing may tell which way is up, twice the way from its first bone to the
+    /// farthest. Metres.
+    pub fn size(&self) -> f32 {
+        match self.anatomy {
+            Anatomy::Human => self.height,
+            Anatomy::Creature => {
+                let away = |bone: &Bone| (bone.head - self.list[0].head).length();
+                2.0 * self.list.iter().map(away).fold(0.0, max)
+            }
+        }
     }
 
     /// The x of the plane that separates left from right: the pelvis's, character space, metres.

@@ -3,24 +3,25 @@
 pub mod bones;
 pub mod part;
 mod report;
+mod takes;
 
 pub use report::{BodyReport, BuildReport};
+pub use takes::takes;
 
 use crate::def::{RagdollBodyDef, RagdollDef};
-use crate::filter::{FilterReport, Remedy, filter_pairs};
-use crate::fit::patch::Selection;
+use crate::filter::filter_pairs;
+use crate::filter::poses::{Frames, Poses, of_clips, within_limits};
 use crate::fit::surface::{BindPose, share_surface};
 use crate::fit::{Fit, ShapeChoice, fit_shapes};
-use crate::limits::{JointPlan, joints};
+use crate::limits::friction::friction_torques;
+use crate::limits::learned::learned;
+use crate::limits::{JointPlan, LimitSource, joints};
 use crate::masses::de_leva::Sex;
 use crate::masses::{MassOptions, distribute};
 use bones::{Anatomy, Bone, Bones};
 use sinew_anim::roles::RigAnalysis;
-use sinew_anim::{JointIdx, Rig};
+use sinew_anim::{JointIdx, Rig, Take};
 use sinew_math::{Transform, Vec3};
-
-/// A widening of limits below this is not worth a note, radians (1°).
-const NOTEWORTHY: f32 = 0.017;
 
 /// What kind of ragdoll is wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,6 +32,8 @@ pub struct BuildOptions {
     pub mass: Option<f32>,
     /// Whose mass distribution. Default male.
     pub sex: Sex,
+    /// Where joint limits come from. Default anatomy.
+    pub limits: LimitSource,
 }
 
 /// Why there is no ragdoll.
@@ -48,6 +51,9 @@ pub enum BuildError {
     /// The mass asked for is not a positive number.
     #[error("a mass of {0} kg: it must be positive")]
     Mass(f32),
+    /// Limits were to be learned, and there is nothing to learn from.
+    #[error("no clip moves a joint: there are no limits to learn")]
+    NoClips,
 }
 
 /// Builds a ragdoll from a rig and what its analysis found.
@@ -73,11 +79,13 @@ pub(crate) struct Overrides<'a> {
     pub disable: Vec<(usize, usize)>,
     /// Pairs of bodies that shall.
     pub enable: Vec<(usize, usize)>,
+    /// What the character does.
+    pub takes: &'a [Take],
 }
 
 impl Overrides<'_> {
     fn none() -> Self {
-        Overrides { shape: &|_, fit, _| fit, disable: Vec::new(), enable: Vec::new() }
+        Overrides { shape: &|_, fit, _| fit, disable: Vec::new(), enable: Vec::new(), takes: &[] }
     }
 
     /// The pairs that do not collide after all.
@@ -117,11 +125,16 @@ pub(crate) fn build_overridden(
             (overrides.shape)(body, fits[body].clone(), &other)
         })
         .collect();
-    let filter = filter_pairs(&bones, &mut fits);
+    let Planned { mut plans, limits, poses } = planned(rig, &bones, bind, &fits, options, overrides.takes)?;
+    let filter = filter_pairs(&bones, &mut fits, &poses);
     let masses = distribute(&bones, &fits, MassOptions { total: options.mass, sex: options.sex });
     let total_mass = masses.iter().map(|mass| mass.mass).sum();
-    let plans = joints(&bones, &fits, total_mass);
-    let report = report(rig, &bones, &fits, &filter, &plans);
+    // Friction goes by the mass, which goes by the shapes.
+    let heavy = joints(&bones, &fits, total_mass);
+    for (plan, torque) in plans.iter_mut().zip(friction_torques(&bones, &fits, &masses, &heavy)) {
+        plan.def.friction_torque = torque;
+    }
+    let report = BuildReport::new(rig, &bones, &fits, &filter, (&plans, &limits));
     let name = |joint: JointIdx| joint_name(rig, joint);
     let bodies = bones.list.into_iter().zip(fits).zip(masses).map(|((bone, fit), mass)| RagdollBodyDef {
         bone: name(bone.joint),
@@ -146,6 +159,45 @@ pub(crate) fn build_overridden(
         character_from_model,
     };
     Ok((def, report))
+}
+
+/// Joints, and the poses in which shapes are held against each other.
+struct Planned {
+    plans: Vec<JointPlan>,
+    /// Where the limits of each joint are from.
+    limits: Vec<LimitSource>,
+    poses: Poses,
+}
+
+fn planned(
+    rig: &Rig,
+    bones: &Bones,
+    bind: BindPose<'_>,
+    fits: &[Fit],
+    options: &BuildOptions,
+    takes: &[Take],
+) -> Result<Planned, BuildError> {
+    // The mass is not known yet, and nothing but friction depends on it.
+    let mut plans = joints(bones, fits, 1.0);
+    let mut limits = vec![LimitSource::Anatomy; plans.len()];
+    if options.limits == LimitSource::Clips {
+        let frames = of_clips(rig, takes, bones, bind, fits, Frames::All);
+        let table = plans.clone();
+        for (index, (plan, source)) in plans.iter_mut().zip(&mut limits).enumerate() {
+            let twin = bones.twin(table[index].def.child).map(|twin| &table[twin - 1]);
+            if let Some(from_clips) = learned(&table[index], twin, fits, &frames, bones.anatomy) {
+                (*plan, *source) = (from_clips, LimitSource::Clips);
+            }
+        }
+        if !limits.contains(&LimitSource::Clips) {
+            return Err(BuildError::NoClips);
+        }
+    }
+    let poses = Poses {
+        within_limits: within_limits(fits, &plans),
+        of_clips: of_clips(rig, takes, bones, bind, fits, Frames::Some),
+    };
+    Ok(Planned { plans, limits, poses })
 }
 
 /// The joint's name in the file, or `joint N`.
@@ -174,41 +226,4 @@ fn kept_bones(analysis: &RigAnalysis, bind: BindPose<'_>) -> Result<Bones, Build
     }
     let anatomy = if analysis.humanoid { Anatomy::Human } else { Anatomy::Creature };
     Ok(Bones::new(list, anatomy, analysis.height))
-}
-
-fn report(rig: &Rig, bones: &Bones, fits: &[Fit], filter: &FilterReport, plans: &[JointPlan]) -> BuildReport {
-    let bodies: Vec<_> = (0..fits.len())
-        .map(|body| BodyReport {
-            error: fits[body].error,
-            selection: fits[body].selection,
-            scale: filter.scale[body],
-            widened: body.checked_sub(1).map_or(0.0, |joint| plans[joint].widened),
-        })
-        .collect();
-    let mut notes = Vec::new();
-    let name = |body: usize| {
-        format!("{} ({})", bones.list[body].role.name(), joint_name(rig, bones.list[body].joint))
-    };
-    for (index, body) in bodies.iter().enumerate() {
-        if body.selection == Selection::Nothing {
-            notes.push(format!("{} moves no skin: a thin capsule along the bone stands in", name(index)));
-        }
-        if body.selection == Selection::Twin {
-            notes.push(format!("{} fits worse than its twin: it has the twin's shape", name(index)));
-        }
-        if body.widened > NOTEWORTHY {
-            let degrees = body.widened.to_degrees();
-            notes
-                .push(format!("{} is bound {degrees:.0}° beyond its limits: they were widened", name(index)));
-        }
-    }
-    for overlap in filter.overlaps.iter().filter(|overlap| overlap.remedy == Remedy::Disabled) {
-        let (a, b) = overlap.pair;
-        let depth = 1000.0 * overlap.depth;
-        notes.push(format!("{} and {} overlap by {depth:.0} mm: they do not collide", name(a), name(b)));
-    }
-    let area: f32 = fits.iter().map(|fit| fit.area).sum();
-    let mean_error = fits.iter().map(|fit| fit.error * fit.area).sum::<f32>() / sinew_math::max(area, 1e-9);
-    let shape_volume = fits.iter().map(|fit| fit.shape.volume()).sum();
-    BuildReport { bodies, overlaps: filter.overlaps.clone(), mean_error, shape_volume, notes }
 }

@@ -82,7 +82,7 @@ fn reconciled(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
     let plane = bones.plane_of_symmetry();
     let image = |p: Vec3| Vec3::new(2.0 * plane - p.x, p.y, p.z);
     let mirrored_pivots = (image(bones.list[twin].head) - bones.list[bone].head).length();
-    if other.selection == Selection::Nothing || mirrored_pivots > 0.05 * bones.height {
+    if other.selection == Selection::Nothing || mirrored_pivots > 0.05 * bones.size() {
         return own;
     }
     let burdened = own.shape.bounding_radius() > BURDENED * other.shape.bounding_radius();
@@ -150,8 +150,8 @@ fn prefers_box(part: Part) -> bool {
 fn stand_in(bones: &Bones, bone: usize) -> Fit {
     let direction = bones.direction(bone, None);
     let parent_length = bones.list[bone].parent.and_then(|parent| bones.length(parent));
-    let length = bones.length(bone).or(parent_length.map(|l| 0.5 * l)).unwrap_or(0.1 * bones.height);
-    let radius = max(clamp(0.2 * length, 0.01 * bones.height, 0.05 * bones.height), LEAST_HALF);
+    let length = bones.length(bone).or(parent_length.map(|l| 0.5 * l)).unwrap_or(0.1 * bones.size());
+    let radius = max(clamp(0.2 * length, 0.01 * bones.size(), 0.05 * bones.size()), LEAST_HALF);
     let half_height = max(0.5 * length - radius, 0.0);
     let middle = bones.list[bone].head + direction * (0.5 * length);
     Fit {

@@ -63,6 +63,13 @@ impl BindPose<'_> {
     pub fn character_point(&self, model_point: Vec3) -> Vec3 {
         self.character_from_model.point(model_point * self.unit_scale)
     }
+
+    /// Character space, metres, from model space, file units.
+    pub fn character_from_file(&self) -> Affine {
+        let turn = self.character_from_model;
+        let scale = Vec3::splat(self.unit_scale);
+        Affine::from_scale_rotation_translation(scale, turn.rotation, turn.translation)
+    }
 }
 
 /// The skin's triangles by bone. Meshes without a skin (armour, robots) count for the bones that have no skin at all,
@@ -81,7 +88,7 @@ pub fn share_surface(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<Vec<Sh
             match mesh.skin.filter(|_| !primitive.joints.is_empty()) {
                 Some(skin) => {
                     let slots: Vec<_> = rig.skins[skin].joints.iter().map(|&joint| owner[joint]).collect();
-                    share_skinned(primitive, &positions, &slots, FINEST * bones.height, &mut skinned);
+                    share_skinned(primitive, &positions, &slots, FINEST * bones.size(), &mut skinned);
                 }
                 None => {
                     if let Some(bone) = owner[mesh.joint] {

@@ -1,6 +1,9 @@
 //! Joints: where they are, which way their axes point, how far they go.
 
 pub mod anatomy;
+pub mod friction;
+pub mod learned;
+pub mod sample;
 pub mod table;
 
 use crate::build::bones::{Anatomy, Bones};
@@ -25,6 +28,16 @@ const BENT: f32 = 0.984_8;
 const BELIEVED: f32 = 0.642_8;
 /// No swing half-angle is widened beyond this, radians (170°).
 const WIDEST: f32 = 2.967;
+
+/// Where limits come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LimitSource {
+    /// The table of ranges of motion.
+    #[default]
+    Anatomy,
+    /// What the character does in its clips, within the table; of joints that the clips show too little of, the table.
+    Clips,
+}
 
 /// A joint, and what had to be done to it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,9 +3,11 @@
 use super::drop_test::{carried, measure, worse};
 use super::{Quality, Verdict, judge};
 use crate::def::RagdollDef;
+use crate::limits::sample::random_turn;
 use crate::ragdoll::{BodyState, Flesh, Ragdoll, colliding_pairs};
-use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, min};
-use sinew_physics::{BodyDef, BodyKind, JointKind, Shape, ShapeDef, World, WorldDef};
+use sinew_math::{Random, Rotation, Transform, Vec3, min};
+use sinew_physics::{BodyDef, BodyKind, Serial, Shape, ShapeDef, TaskRunner, World, WorldDef};
+use std::sync::{Mutex, PoisonError};
 
 /// Longest that a fall is watched, seconds.
 const SECONDS: f32 = 10.0;
@@ -24,29 +26,152 @@ pub struct GateReport {
     /// The worst of all, figure by figure.
     pub worst: Quality,
     /// Number of the first fall with the worst verdict, for a look at it alone.
-    pub worst_spawn: usize,
+    pub worst_spawn: u64,
+    /// Why that fall has its verdict, a sentence each; empty if it is good.
+    pub worst_reasons: Vec<String>,
+    /// Numbers of the falls that are bad, ascending.
+    pub bad: Vec<u64>,
+    /// What must hold in every fall and did not, by fall.
+    pub misses: Vec<Miss>,
+    lowest: Verdict,
+}
+
+/// A fall that breaks what must hold in every one of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Miss {
+    /// Number of the fall: [`random_fall`] shows it alone.
+    pub spawn: u64,
+    /// What does not hold.
+    pub bar: Bar,
+    /// The figure.
+    pub value: f32,
+}
+
+/// What must hold in every random fall (specification, section 4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bar {
+    /// No body has a state that is not finite.
+    Finite,
+    /// [`Quality::energy_gain_max`] is below 0.01.
+    EnergyGain,
+    /// [`Quality::joint_gap_p99_m`] is below 1 mm.
+    JointGap,
+}
+
+impl Bar {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Finite, Self::EnergyGain, Self::JointGap];
+
+    /// The figure's key in reports.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Finite => "nan",
+            Self::EnergyGain => "energy_gain_max",
+            Self::JointGap => "joint_gap_p99_m",
+        }
+    }
+
+    /// The figure, and whether it is on the right side of the bar; a figure that is no number is not.
+    fn of(self, quality: &Quality) -> (f32, Side) {
+        let (value, holds) = match self {
+            Self::Finite => (quality.nan as f32, quality.nan == 0),
+            Self::EnergyGain => (quality.energy_gain_max, quality.energy_gain_max < 0.01),
+            Self::JointGap => (quality.joint_gap_p99_m, quality.joint_gap_p99_m < 1e-3),
+        };
+        (value, if holds { Side::Inside } else { Side::Outside })
+    }
+}
+
+/// Where a figure is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Inside,
+    Outside,
+}
+
+impl Default for GateReport {
+    /// Of no fall at all.
+    fn default() -> Self {
+        Self {
+            spawns: 0,
+            verdicts: [0; 3],
+            worst: Quality::default(),
+            worst_spawn: 0,
+            worst_reasons: Vec::new(),
+            bad: Vec::new(),
+            misses: Vec::new(),
+            lowest: Verdict::Good,
+        }
+    }
+}
+
+impl GateReport {
+    /// Both as one; `later` has the higher numbers.
+    pub fn and(mut self, later: Self) -> Self {
+        if later.spawns == 0 {
+            return self;
+        }
+        if self.spawns == 0 {
+            return later;
+        }
+        self.worst = worse(self.worst, later.worst);
+        if later.lowest < self.lowest {
+            self.lowest = later.lowest;
+            (self.worst_spawn, self.worst_reasons) = (later.worst_spawn, later.worst_reasons);
+        }
+        self.spawns += later.spawns;
+        for (count, more) in self.verdicts.iter_mut().zip(later.verdicts) {
+            *count += more;
+        }
+        self.bad.extend(later.bad);
+        self.misses.extend(later.misses);
+        self
+    }
+
+    fn of_fall(spawn: u64, quality: Quality) -> Self {
+        // A fall has no wall hit; its own figures stand for both.
+        let (verdict, reasons) = judge(&quality, &quality);
+        let is = |wanted: Verdict| usize::from(verdict == wanted);
+        let misses = Bar::ALL.into_iter().filter_map(|bar| match bar.of(&quality) {
+            (_, Side::Inside) => None,
+            (value, Side::Outside) => Some(Miss { spawn, bar, value }),
+        });
+        Self {
+            spawns: 1,
+            verdicts: [is(Verdict::Good), is(Verdict::Usable), is(Verdict::Bad)],
+            worst: quality,
+            worst_spawn: spawn,
+            worst_reasons: if verdict == Verdict::Good { Vec::new() } else { reasons },
+            bad: if verdict == Verdict::Bad { vec![spawn] } else { Vec::new() },
+            misses: misses.collect(),
+            lowest: verdict,
+        }
+    }
 }
 
 /// Lets the ragdoll fall `spawns` times; fall `k` is the same whatever `spawns` is.
 pub fn gate(def: &RagdollDef, spawns: usize) -> GateReport {
-    let mut report = GateReport { spawns, verdicts: [0; 3], worst: Quality::default(), worst_spawn: 0 };
-    let mut lowest = Verdict::Good;
-    for spawn in 0..spawns {
-        let quality = random_fall(def, spawn as u64);
-        // A fall has no wall hit; its own figures stand for both.
-        let (verdict, _) = judge(&quality, &quality);
-        let place = match verdict {
-            Verdict::Good => 0,
-            Verdict::Usable => 1,
-            Verdict::Bad => 2,
-        };
-        report.verdicts[place] += 1;
-        if verdict < lowest {
-            (lowest, report.worst_spawn) = (verdict, spawn);
+    gate_on(def, 0..spawns as u64, &Serial)
+}
+
+/// The falls of these numbers, on the threads of `runner`. The report is the same with any.
+pub fn gate_on(def: &RagdollDef, spawns: core::ops::Range<u64>, runner: &dyn TaskRunner) -> GateReport {
+    let count = usize::try_from(spawns.end.saturating_sub(spawns.start)).unwrap_or(usize::MAX);
+    let queue = Mutex::new(spawns);
+    let fallen = Mutex::new(Vec::new());
+    runner.run(count, &|| {
+        // Whichever thread is free takes the next: some falls last three times as long as others.
+        loop {
+            let next = queue.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some(spawn) = next else { break };
+            let report = GateReport::of_fall(spawn, random_fall(def, spawn));
+            fallen.lock().unwrap_or_else(PoisonError::into_inner).push((spawn, report));
         }
-        report.worst = if spawn == 0 { quality } else { worse(report.worst, quality) };
-    }
-    report
+    });
+    let mut fallen = fallen.into_inner().unwrap_or_else(PoisonError::into_inner);
+    // DETERMINISM: which fall ends first depends on the threads.
+    fallen.sort_unstable_by_key(|&(spawn, _)| spawn);
+    fallen.into_iter().fold(GateReport::default(), |sum, (_, report)| sum.and(report))
 }
 
 /// One random fall: number `seed` of a [`gate`], for a look at it alone.
@@ -138,31 +263,7 @@ pub fn random_pose(def: &RagdollDef, random: &mut Random) -> Vec<Transform> {
 fn turned_joints(def: &RagdollDef, random: &mut Random, share: f32) -> Vec<Transform> {
     let mut pose: Vec<_> = def.bodies.iter().map(|body| body.character_from_body).collect();
     for joint in &def.joints {
-        let within = |random: &mut Random, range: Range| {
-            range.center() + 0.5 * (range.hi - range.lo) * share * random.range(-1.0, 1.0)
-        };
-        let free = SwingTwistLimit {
-            swing_y: Range::symmetric(1.0),
-            swing_z: Range::symmetric(1.0),
-            twist: Range::symmetric(1.0),
-        };
-        let turned = match joint.kind {
-            JointKind::Ball { limit } | JointKind::Universal { limit } => {
-                let limit = limit.unwrap_or(free);
-                // On the ellipse's inscribed box, so that both swings together stay inside.
-                let [y, z] = [limit.swing_y, limit.swing_z].map(|range| 0.7 * within(random, range));
-                let swing = Rotation::from_scaled_axis(Vec3::new(0.0, y, z));
-                let ball = matches!(joint.kind, JointKind::Ball { .. });
-                let twist = if ball { within(random, limit.twist) } else { 0.0 };
-                swing * Rotation::from_axis_angle(Vec3::X, twist)
-            }
-            JointKind::Hinge { limit } => {
-                let range = limit.unwrap_or(Range::symmetric(1.0));
-                Rotation::from_axis_angle(Vec3::X, within(random, range))
-            }
-            JointKind::Fixed => Rotation::IDENTITY,
-            kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
-        };
+        let turned = random_turn(joint.kind, random, share);
         pose[joint.child] = pose[joint.parent]
             * joint.frame_parent
             * Transform::new(Vec3::ZERO, turned)
@@ -179,4 +280,21 @@ fn overlaps(def: &RagdollDef, pose: &[Transform]) -> bool {
     let ragdoll = Ragdoll::spawn(&mut world, def, &states, &Flesh::default());
     // Those that overlap at the start are not among the colliding ones.
     ragdoll.colliding.len() < colliding_pairs(def).len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_bar_that_a_fall_breaks_is_named() {
+        let fine = Quality { energy_gain_max: 0.009, joint_gap_p99_m: 9e-4, ..Quality::default() };
+        assert_eq!(GateReport::of_fall(3, fine).misses, []);
+        let broken = Quality { energy_gain_max: 0.01, joint_gap_p99_m: f32::NAN, nan: 2, ..fine };
+        let report = GateReport::of_fall(1, fine).and(GateReport::of_fall(7, broken));
+        let found: Vec<_> = report.misses.iter().map(|miss| (miss.spawn, miss.bar)).collect();
+        assert_eq!(found, [(7, Bar::Finite), (7, Bar::EnergyGain), (7, Bar::JointGap)]);
+        assert_eq!((report.spawns, report.worst_spawn), (2, 1), "neither ever slept, so both are bad");
+        assert_eq!((report.bad, report.verdicts), (vec![1, 7], [0, 0, 2]));
+    }
 }

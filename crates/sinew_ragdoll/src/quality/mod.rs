@@ -6,7 +6,7 @@ mod meter;
 mod verdict;
 
 pub use drop_test::{DropReport, drop_test};
-pub use gate::{GateReport, gate, random_fall, random_pose};
+pub use gate::{Bar, GateReport, Miss, gate, gate_on, random_fall, random_pose};
 pub use meter::QualityMeter;
 pub use verdict::{Verdict, judge};
 

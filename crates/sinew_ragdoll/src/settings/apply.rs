@@ -6,10 +6,11 @@ use crate::build::{BuildOptions, BuildReport, Overrides, build_overridden};
 use crate::def::{RagdollDef, RagdollJointDef};
 use crate::doctor::scaled;
 use crate::fit::{Fit, ShapeChoice};
+use crate::limits::LimitSource;
 use crate::masses::de_leva::Sex;
 use core::f32::consts::PI;
-use sinew_anim::Rig;
 use sinew_anim::roles::RigAnalysis;
+use sinew_anim::{Rig, Take};
 use sinew_math::{Range, SwingTwistLimit};
 use sinew_physics::{JointKind, Shape};
 
@@ -19,11 +20,13 @@ pub(super) fn build(
     analysis: &RigAnalysis,
     options: &BuildOptions,
     settings: &Settings,
+    takes: &[Take],
 ) -> Result<(RagdollDef, BuildReport), SettingsError> {
     let options = BuildOptions {
         shapes: settings.shapes.filter(|_| options.shapes == ShapeChoice::Auto).unwrap_or(options.shapes),
         mass: options.mass.or(settings.mass),
         sex: settings.sex.filter(|_| options.sex == Sex::Male).unwrap_or(options.sex),
+        limits: settings.limits.filter(|_| options.limits == LimitSource::Anatomy).unwrap_or(options.limits),
     };
     let names: Vec<[String; 2]> = analysis
         .kept
@@ -35,6 +38,7 @@ pub(super) fn build(
         shape: &|body, fit, other| wishes.shape(body, fit, other),
         disable: wishes.pairs(&settings.disable, "disable_pairs")?,
         enable: wishes.pairs(&settings.enable, "enable_pairs")?,
+        takes,
     };
     let (mut def, report) = build_overridden(rig, analysis, &options, &overrides)?;
     wishes.check_enabled(&def, settings)?;

@@ -7,9 +7,10 @@ mod bodies;
 use crate::build::{BuildError, BuildOptions, BuildReport};
 use crate::def::RagdollDef;
 use crate::fit::ShapeChoice;
+use crate::limits::LimitSource;
 use crate::masses::de_leva::Sex;
-use sinew_anim::Rig;
 use sinew_anim::roles::RigAnalysis;
+use sinew_anim::{Rig, Take};
 use sinew_math::{Range, Vec3};
 
 /// What is wanted otherwise. The default changes nothing.
@@ -21,6 +22,8 @@ pub struct Settings {
     pub mass: Option<f32>,
     /// Whose distribution of mass; `None`: that of the options.
     pub sex: Option<Sex>,
+    /// Where joint limits come from; `None`: what the options say.
+    pub limits: Option<LimitSource>,
     /// Length of the file's unit.
     pub unit: Option<Unit>,
     /// The file's axis that points up: unit, along an axis.
@@ -131,11 +134,26 @@ pub fn build_with(
     options: &BuildOptions,
     settings: &Settings,
 ) -> Result<(RagdollDef, BuildReport), SettingsError> {
-    if *settings == Settings::default() {
-        return Ok(crate::build::build(rig, analysis, options)?);
-    }
+    build_moving(rig, analysis, &[], options, settings)
+}
+
+/// [`build_with`] for a character whose motion is known, as [`takes`](crate::build::takes()) gives it from clips: shapes
+/// that overlap in it are dealt with, and limits may be learned from it.
+///
+/// # Errors
+/// As `build_with`; where limits are to be learned and no take moves a joint, [`BuildError::NoClips`].
+///
+/// # Panics
+/// If a take is not one of the rig's.
+pub fn build_moving(
+    rig: &Rig,
+    analysis: &RigAnalysis,
+    takes: &[Take],
+    options: &BuildOptions,
+    settings: &Settings,
+) -> Result<(RagdollDef, BuildReport), SettingsError> {
     let analysis = bodies::settled(rig, analysis, settings)?;
-    apply::build(rig, &analysis, options, settings)
+    apply::build(rig, &analysis, options, settings, takes)
 }
 
 /// The name among `known` that is nearest to `name`, if it is near: at most a third of its letters differ.

@@ -2,9 +2,10 @@
 
 use sinew_anim::roles::{Role, Side};
 use sinew_math::{Range, Rotation, Transform, Vec3, limits::hinge_angle, trig};
-use sinew_physics::{JointKind, Shape};
+use sinew_physics::{JointKind, MassProperties, Shape};
 use sinew_ragdoll::build::bones::{Anatomy, Bone, Bones};
 use sinew_ragdoll::fit::{Fit, patch::Selection};
+use sinew_ragdoll::limits::friction::friction_torques;
 use sinew_ragdoll::limits::{JointPlan, joints};
 
 /// A person of 1.75 m whose arms hang `drop` radians below the horizontal.
@@ -221,4 +222,32 @@ fn every_bind_pose_is_inside_its_limits() {
             assert!(beyond <= 0.0, "{:?} at {drop}: {beyond}", bones.list[plan.def.child].role);
         }
     }
+}
+
+/// 5 kg whose middle is 0.1 m below the joint, 3 kg 0.4 m above it: the joint need carry no more than the lesser of the two
+/// moments, and resists with a fifth of that, or with the table's torque where that is more.
+#[test]
+fn a_creatures_joint_resists_by_what_it_carries() {
+    let list = vec![
+        Bone::new(0, Role::SpineSegment(0), None, Vec3::ZERO),
+        Bone::new(1, Role::SpineSegment(1), Some(0), Vec3::Y),
+    ];
+    let bones = |anatomy| Bones::new(list.clone(), anatomy, 1.75);
+    let mass = |mass: f32| MassProperties { mass, ..MassProperties::default() };
+    let masses = [mass(5.0), mass(3.0)];
+    let torque = |anatomy, total: f32| {
+        let bones = bones(anatomy);
+        let mut fits = fits(&bones);
+        for (fit, height) in fits.iter_mut().zip([0.9, 1.4]) {
+            fit.character_from_body.translation = Vec3::Y * height;
+        }
+        let plans = joints(&bones, &fits, total);
+        (friction_torques(&bones, &fits, &masses, &plans)[0], plans[0].def.friction_torque)
+    };
+    let (resists, table) = torque(Anatomy::Creature, 8.0);
+    assert!(table < 0.5 && (resists - 0.2 * 9.81 * 0.5).abs() < 1e-4, "{resists} and {table} N·m");
+    let (resists, table) = torque(Anatomy::Creature, 800.0);
+    assert!(resists == table && table > 5.0, "{resists} and {table} N·m");
+    let (resists, table) = torque(Anatomy::Human, 8.0);
+    assert_eq!(resists, table);
 }

@@ -1,0 +1,261 @@
+//! Which bodies of a ragdoll collide with each other.
+//!
+//! Bodies that overlap where they start would be blown apart, and such as overlap wherever their joints turn would fight
+//! them for ever, so these pairs must be shrunk or left out. Shrinking is preferred where the contact is what makes a
+//! crumple look real: hand on thigh, thigh on thigh, arm on trunk.
+//!
+//! A pair is looked at in the bind pose, in poses within the limits, and in those of the character's clips. What overlaps
+//! in a few poses alone is no fault of the shapes: limbs do meet. A ragdoll that starts in such a pose leaves the pair out
+//! by itself (`Ragdoll::spawn`).
+
+pub mod poses;
+mod thin;
+
+use crate::build::bones::Bones;
+use crate::build::part::Part;
+use crate::fit::Fit;
+use poses::Poses;
+use sinew_math::{Transform, max};
+use sinew_physics::Shape;
+use sinew_physics::collide::{Manifold, collide};
+
+/// Overlap in the bind pose that is let be, metres: about the solver's slop.
+pub const TOLERATED: f32 = 0.005;
+/// The most that a shape's cross-section may be shrunk.
+const LEAST_SCALE: f32 = 0.86;
+/// Shrinking is done in steps of this factor.
+const STEP: f32 = 0.975;
+/// A pair that overlaps in as large a share of the poses within the limits overlaps always.
+const ALWAYS: f32 = 0.9;
+/// One that overlaps in the bind pose, but in a smaller share of those, is only bound so.
+const SELDOM: f32 = 0.1;
+/// The same of the clips' poses: limbs that overlap in most of them are never apart, and other parts not in more than a
+/// few, for their meeting is no sight that a fall needs.
+const MOSTLY: f32 = 0.5;
+const A_FEW: f32 = 0.02;
+
+/// Two bodies that overlap although no joint connects them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Overlap {
+    /// Indices of the bodies, the smaller first.
+    pub pair: (usize, usize),
+    /// Where they do, before anything was done.
+    pub seen: Seen,
+    /// What was done.
+    pub remedy: Remedy,
+}
+
+/// Where two bodies overlap.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seen {
+    /// Depth in the bind pose, metres; 0 if they do not overlap there.
+    pub bind: f32,
+    /// Share of the poses within the limits in which they overlap by more than [`TOLERATED`].
+    pub limits: f32,
+    /// Likewise of the clips' poses; `None` where there are none.
+    pub clips: Option<f32>,
+}
+
+/// How an overlap was dealt with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// It is less than the solver notices, or a meeting of limbs in a few poses.
+    Tolerated,
+    /// They overlap where the rig is bound and hardly anywhere else: they collide, but for a ragdoll that starts there.
+    OnlyBound,
+    /// Both shapes were made thinner.
+    Shrunk,
+    /// The pair does not collide.
+    Disabled,
+}
+
+/// Result of [`filter_pairs`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FilterReport {
+    /// Every overlap that was found.
+    pub overlaps: Vec<Overlap>,
+    /// Pairs that must not collide, the smaller index first, sorted.
+    pub disabled: Vec<(usize, usize)>,
+    /// Factor on each body's cross-section; 1 for most.
+    pub scale: Vec<f32>,
+}
+
+/// Finds the overlaps between bodies that no joint connects, in the bind pose and in `poses`; shrinks `fits` where that is
+/// enough and names the pairs that must not collide.
+pub fn filter_pairs(bones: &Bones, fits: &mut [Fit], poses: &Poses) -> FilterReport {
+    let mut report = FilterReport { scale: vec![1.0; fits.len()], ..FilterReport::default() };
+    for a in 0..fits.len() {
+        for b in a + 1..fits.len() {
+            if bones.list[b].parent == Some(a) {
+                continue;
+            }
+            let seen = look(fits, poses, (a, b));
+            if seen.bind <= 0.0 && !needs_more_room(bones, &seen, (a, b)) {
+                continue;
+            }
+            let remedy = remedy(bones, fits, &mut report.scale, (a, b), (seen, poses));
+            report.overlaps.push(Overlap { pair: (a, b), seen, remedy });
+            if remedy == Remedy::Disabled {
+                report.disabled.push((a, b));
+            }
+        }
+    }
+    mirror_remedies(bones, fits, poses, &mut report);
+    report
+}
+
+/// Where a pair overlaps.
+fn look(fits: &[Fit], poses: &Poses, (a, b): (usize, usize)) -> Seen {
+    let (a_shape, b_shape) = (&fits[a].shape, &fits[b].shape);
+    let reach = reach(&fits[a]) + reach(&fits[b]);
+    let overlaps = |pose: &&Vec<Transform>| {
+        let (at, there) = (&pose[a], &pose[b]);
+        let apart = (at.translation - there.translation).length_squared() > reach * reach;
+        !apart && depth_of((a_shape, at), (b_shape, there)) > TOLERATED
+    };
+    let share = |poses: &[Vec<Transform>]| {
+        (!poses.is_empty()).then(|| poses.iter().filter(overlaps).count() as f32 / poses.len() as f32)
+    };
+    Seen {
+        bind: depth(&fits[a], &fits[b]),
+        limits: share(&poses.within_limits).unwrap_or(0.0),
+        clips: share(&poses.of_clips),
+    }
+}
+
+/// Radius of a ball about the body's origin that holds its shape.
+fn reach(fit: &Fit) -> f32 {
+    let bounds = fit.shape.aabb(&Transform::IDENTITY);
+    max(bounds.min.length(), bounds.max.length())
+}
+
+/// Whether a pair overlaps where it should not.
+fn needs_more_room(bones: &Bones, seen: &Seen, (a, b): (usize, usize)) -> bool {
+    seen.bind > TOLERATED || seen.clips.unwrap_or(0.0) > A_FEW || is_never_apart(bones, seen, (a, b))
+}
+
+/// Whether a pair overlaps in so many poses that it cannot collide.
+fn is_never_apart(bones: &Bones, seen: &Seen, (a, b): (usize, usize)) -> bool {
+    let limb = |bone: usize| bones.list[bone].part.is_limb();
+    let most = if limb(a) || limb(b) { MOSTLY } else { A_FEW };
+    seen.limits >= ALWAYS || seen.clips.unwrap_or(0.0) > most
+}
+
+/// What was done on one side is done on the other, so that a slight asymmetry of the mesh makes no limping ragdoll.
+fn mirror_remedies(bones: &Bones, fits: &mut [Fit], poses: &Poses, report: &mut FilterReport) {
+    for body in 0..fits.len() {
+        let Some(twin) = bones.twin(body) else { continue };
+        let factor = report.scale[twin] / report.scale[body];
+        if factor < 1.0 {
+            report.scale[body] = report.scale[twin];
+            fits[body].shape = thin::thinner(&fits[body].shape, factor);
+        }
+    }
+    for index in 0..report.disabled.len() {
+        let (a, b) = report.disabled[index];
+        let (a, b) = (bones.twin(a).unwrap_or(a), bones.twin(b).unwrap_or(b));
+        let pair = (usize::min(a, b), usize::max(a, b));
+        // The two of a pair may be joined on this side, where a rig is not built alike on both.
+        if report.disabled.contains(&pair) || bones.list[pair.1].parent == Some(pair.0) {
+            continue;
+        }
+        report.disabled.push(pair);
+        match report.overlaps.iter_mut().find(|overlap| overlap.pair == pair) {
+            Some(overlap) => overlap.remedy = Remedy::Disabled,
+            None => {
+                let seen = look(fits, poses, pair);
+                report.overlaps.push(Overlap { pair, seen, remedy: Remedy::Disabled });
+            }
+        }
+    }
+    report.overlaps.sort_unstable_by_key(|overlap| overlap.pair);
+    report.disabled.sort_unstable();
+    report.disabled.dedup();
+}
+
+fn remedy(
+    bones: &Bones,
+    fits: &mut [Fit],
+    scale: &mut [f32],
+    (a, b): (usize, usize),
+    (seen, poses): (Seen, &Poses),
+) -> Remedy {
+    let trunk = |bone: usize| bones.list[bone].part.is_trunk() || bones.list[bone].part == Part::Neck;
+    // Neighbours but one within the trunk move over each other whatever their sizes.
+    if bones.distance(a, b) <= 2
+        && seen.bind > 0.0
+        && (trunk(a) && trunk(b) || meets_at_pivot(bones, fits, a, b))
+    {
+        return Remedy::Disabled;
+    }
+    if !needs_more_room(bones, &seen, (a, b)) {
+        return Remedy::Tolerated;
+    }
+    if is_worth_shrinking(bones, a, b) && shrink_apart(bones, fits, scale, (a, b), poses) {
+        return Remedy::Shrunk;
+    }
+    if is_never_apart(bones, &seen, (a, b)) {
+        return Remedy::Disabled;
+    }
+    if seen.bind <= TOLERATED {
+        return Remedy::Tolerated;
+    }
+    if seen.limits < SELDOM { Remedy::OnlyBound } else { Remedy::Disabled }
+}
+
+/// Whether two bodies with one between them touch around the very joint that hangs the later one (an upper arm and the
+/// chest beside the shoulder): whatever the pose, they then overlap there.
+fn meets_at_pivot(bones: &Bones, fits: &[Fit], a: usize, b: usize) -> bool {
+    let pivot = bones.list[b].head;
+    let (distance, _) = fits[a].shape.signed_distance(&fits[a].character_from_body, pivot);
+    distance < 0.5 * fits[b].shape.inner_radius()
+}
+
+fn is_worth_shrinking(bones: &Bones, a: usize, b: usize) -> bool {
+    let (a, b) = (bones.list[a].part, bones.list[b].part);
+    let limb = |part: Part| part.is_limb();
+    limb(a) && (limb(b) || b.is_trunk()) || limb(b) && a.is_trunk()
+}
+
+/// Makes both shapes thinner until they no longer overlap where they should not; leaves them as they are and says so if the
+/// most that is allowed does not do it. A trunk is not made thinner: its neighbours need its size.
+fn shrink_apart(
+    bones: &Bones,
+    fits: &mut [Fit],
+    scale: &mut [f32],
+    (a, b): (usize, usize),
+    poses: &Poses,
+) -> bool {
+    let before = (fits[a].clone(), fits[b].clone(), scale[a], scale[b]);
+    loop {
+        let mut any = false;
+        for body in [a, b] {
+            if !bones.list[body].part.is_trunk() && scale[body] * STEP >= LEAST_SCALE {
+                scale[body] *= STEP;
+                fits[body].shape = thin::thinner(&fits[body].shape, STEP);
+                any = true;
+            }
+        }
+        if depth(&fits[a], &fits[b]) <= TOLERATED
+            && !needs_more_room(bones, &look(fits, poses, (a, b)), (a, b))
+        {
+            return true;
+        }
+        if !any {
+            (fits[a], fits[b], scale[a], scale[b]) = before;
+            return false;
+        }
+    }
+}
+
+/// How deep two fitted shapes overlap, metres; 0 if they do not.
+pub fn depth(a: &Fit, b: &Fit) -> f32 {
+    depth_of((&a.shape, &a.character_from_body), (&b.shape, &b.character_from_body))
+}
+
+/// How deep two placed shapes overlap, metres; 0 if they do not.
+pub(crate) fn depth_of((a, at): (&Shape, &Transform), (b, there): (&Shape, &Transform)) -> f32 {
+    let mut manifold = Manifold::default();
+    collide(a, at, b, there, 0.0, &mut manifold);
+    manifold.points().iter().fold(0.0, |deepest, point| max(deepest, -point.separation))
+}

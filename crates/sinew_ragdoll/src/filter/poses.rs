@@ -1,0 +1,91 @@
+//! Poses in which bodies are looked at: what the joints allow, and what the character does.
+
+use crate::build::bones::Bones;
+use crate::fit::Fit;
+use crate::fit::surface::BindPose;
+use crate::limits::JointPlan;
+use crate::limits::sample::random_turn;
+use sinew_anim::{Rig, Take, local_to_model};
+use sinew_math::{Affine, Random, Transform, Vec3};
+
+/// Poses within the limits: enough to tell a tenth from nothing.
+const WITHIN_LIMITS: usize = 96;
+/// No more of the clips' frames are looked at, the same number of each clip.
+const OF_CLIPS: usize = 256;
+const SEED: u64 = 0x00F1_17E4;
+
+/// Poses of all bodies in character space, metres, one transform per body.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Poses {
+    /// Joints turned at random within their limits, the first body in its bind pose.
+    pub within_limits: Vec<Vec<Transform>>,
+    /// Of the character's clips.
+    pub of_clips: Vec<Vec<Transform>>,
+}
+
+/// Which frames are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frames {
+    /// Every one.
+    All,
+    /// 256 at most, as many of each take.
+    Some,
+}
+
+/// Poses within the limits of `plans`, the same for every build of a rig.
+pub fn within_limits(fits: &[Fit], plans: &[JointPlan]) -> Vec<Vec<Transform>> {
+    let mut random = Random::new(SEED);
+    let bind: Vec<_> = fits.iter().map(|fit| fit.character_from_body).collect();
+    let turned = |random: &mut Random| {
+        let mut pose = bind.clone();
+        // Parents come before their children.
+        for JointPlan { def: joint, .. } in plans {
+            let turn = Transform::new(Vec3::ZERO, random_turn(joint.kind, random, 1.0));
+            let parent = pose[joint.parent];
+            pose[joint.child] = parent * joint.frame_parent * turn * joint.frame_child.inverse();
+        }
+        pose
+    };
+    (0..WITHIN_LIMITS).map(|_| turned(&mut random)).collect()
+}
+
+/// Poses of frames of `takes`; such as are not finite are left out.
+///
+/// # Panics
+/// If a take is not one of the rig's.
+pub fn of_clips(
+    rig: &Rig,
+    takes: &[Take],
+    bones: &Bones,
+    bind: BindPose<'_>,
+    fits: &[Fit],
+    frames: Frames,
+) -> Vec<Vec<Transform>> {
+    let (most, each) = match frames {
+        Frames::All => (takes.len(), usize::MAX),
+        Frames::Some => (OF_CLIPS, (OF_CLIPS / usize::max(takes.len(), 1)).max(1)),
+    };
+    let character = bind.character_from_file();
+    let rigid = |model: &[Affine], body: usize| (character * model[bones.list[body].joint]).to_rigid();
+    // A body keeps the offset to its bone that it has in the bind pose.
+    let bone_from_body: Vec<_> = (0..fits.len())
+        .map(|body| rigid(bind.model, body).inverse() * fits[body].character_from_body)
+        .collect();
+    let mut poses = Vec::new();
+    let mut model = Vec::new();
+    for take in takes.iter().take(most) {
+        assert_eq!(take.joints, rig.joints.len(), "takes of this rig");
+        let frames = take.frames();
+        let looks = usize::min(each, frames);
+        for look in 0..looks {
+            local_to_model(rig, take.pose(look * frames / looks), &Affine::IDENTITY, &mut model);
+            let body = |body: usize| rigid(&model, body) * bone_from_body[body];
+            let pose: Vec<_> = (0..fits.len()).map(body).collect();
+            // Clips may scale a bone to nothing; what is nowhere overlaps nothing.
+            if pose.iter().all(|body| body.is_finite()) {
+                poses.push(pose);
+            }
+        }
+    }
+    poses
+}

@@ -1,0 +1,205 @@
+//! Limits read from what the character does, within what its anatomy allows.
+//!
+//! Of each joint its rotations in all frames give a centre, an ellipse of swing and a range of twist that hold 99.5 % of
+//! them, and a margin. Beyond the anatomical limits there is no margin: only as much as the clips show, by their frames or
+//! by the ellipse about them.
+
+use super::{BIND_MARGIN, JointPlan, Twist, WIDEST, widened_cone};
+use crate::build::bones::Anatomy;
+use crate::def::RagdollJointDef;
+use crate::fit::Fit;
+use sinew_anim::learned_limits::{COVERAGE, LearnedHinge, LearnedLimit, covered, learn_limit};
+use sinew_math::limits::{hinge_angle, wrap};
+use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, max, min, trig};
+use sinew_physics::JointKind;
+
+/// Swings beyond what was seen, as a factor, tried from the widest on.
+const SWING_FACTORS: [f32; 4] = [1.15, 1.1, 1.05, 1.0];
+/// Twist and hinges' angles beyond what was seen, radians (10°).
+const TWIST_MARGIN: f32 = 0.174_532_92;
+/// A joint that moves less shows too little to learn from, and no range becomes narrower, radians (5°).
+const LEAST: f32 = 0.087_266_46;
+/// Further beyond the anatomical limits than the clips, radians (1°): half of what a limit may be overshot by.
+const ROUNDING: f32 = 0.017_453_292;
+/// One copy of the bind pose to so many frames: twice what the coverage leaves out, so that the limits hold it.
+const FRAMES_PER_BIND: usize = 100;
+/// Directions in which a cone is held against the anatomical one.
+const DIRECTIONS: usize = 16;
+
+/// The joint with limits from the clips; `None` if they show too little of it. What its twin on the other side does counts
+/// as its own, mirrored: a motion that only one arm makes is no sign that the other could not. `fits` and `poses` as the
+/// plan's bodies: poses in character space, one transform per body.
+pub fn learned(
+    plan: &JointPlan,
+    twin: Option<&JointPlan>,
+    fits: &[Fit],
+    poses: &[Vec<Transform>],
+    anatomy: Anatomy,
+) -> Option<JointPlan> {
+    let joint = &plan.def;
+    let bind = turn(joint, &|body| fits[body].character_from_body);
+    let mut turns: Vec<Rotation> = poses.iter().map(|pose| turn(joint, &|body| pose[body])).collect();
+    if let Some(twin) = twin {
+        turns.extend(poses.iter().map(|pose| mirrored(joint.kind, turn(&twin.def, &|body| pose[body]))));
+    }
+    turns.retain(|turn| turn.is_finite());
+    if turns.is_empty() {
+        return None;
+    }
+    let copies = turns.len().div_ceil(FRAMES_PER_BIND);
+    turns.extend(core::iter::repeat_n(bind, copies));
+    let def = match joint.kind {
+        JointKind::Hinge { limit: Some(limit) } => {
+            let range = hinge_range(limit, &turns, hinge_angle(bind))?;
+            RagdollJointDef { kind: JointKind::Hinge { limit: Some(range) }, ..*joint }
+        }
+        JointKind::Ball { limit: Some(limit) } => {
+            let learned = learn_limit(joint.child, Vec3::X, &turns).filter(shows_enough)?;
+            match learned.hinge.filter(|_| anatomy == Anatomy::Creature) {
+                Some(hinge) => hinged(joint, &learned, hinge, bind),
+                None => Cone { joint, anatomical: limit, twisting: Twist::Free }.def(&learned, &turns, bind),
+            }
+        }
+        JointKind::Universal { limit: Some(limit) } => {
+            let learned = learn_limit(joint.child, Vec3::X, &turns).filter(shows_enough)?;
+            Cone { joint, anatomical: limit, twisting: Twist::Locked }.def(&learned, &turns, bind)
+        }
+        _ => return None,
+    };
+    Some(JointPlan { def, widened: 0.0 })
+}
+
+/// The joint rotation in a pose of the bodies.
+fn turn(joint: &RagdollJointDef, pose: &dyn Fn(usize) -> Transform) -> Rotation {
+    let parent = pose(joint.parent).rotation * joint.frame_parent.rotation;
+    (parent.inverse() * (pose(joint.child).rotation * joint.frame_child.rotation)).normalize()
+}
+
+/// The same turn on the other side: swing about z and twist have the other sign there, and a hinge bends the same way.
+fn mirrored(kind: JointKind, turn: Rotation) -> Rotation {
+    match kind {
+        JointKind::Hinge { .. } => turn,
+        _ => Rotation { x: -turn.x, z: -turn.z, ..turn },
+    }
+}
+
+fn shows_enough(limit: &LearnedLimit) -> bool {
+    let [y, z] = limit.swing;
+    limit.hinge.is_some() || max(y, z) >= LEAST || limit.twist.hi - limit.twist.lo >= 2.0 * LEAST
+}
+
+/// What a hinge of a human does, with a margin as far as its anatomy goes.
+fn hinge_range(anatomical: Range, turns: &[Rotation], bind: f32) -> Option<Range> {
+    let middle = anatomical.center();
+    let angle = |&turn: &Rotation| middle + wrap(hinge_angle(turn) - middle);
+    let shown = covered(turns.iter().map(angle).collect());
+    (shown.hi - shown.lo >= LEAST).then(|| {
+        let lo = min(shown.lo, max(anatomical.lo, shown.lo - TWIST_MARGIN));
+        let hi = max(shown.hi, min(anatomical.hi, shown.hi + TWIST_MARGIN));
+        Range::new(min(lo, bind - BIND_MARGIN), max(hi, bind + BIND_MARGIN))
+    })
+}
+
+/// A creature's joint that turns about one axis alone becomes a hinge about it.
+fn hinged(
+    joint: &RagdollJointDef,
+    learned: &LearnedLimit,
+    hinge: LearnedHinge,
+    bind: Rotation,
+) -> RagdollJointDef {
+    let onto_axis = Rotation::from_arc(Vec3::X, hinge.axis);
+    let (parent, child) = (learned.center * onto_axis, onto_axis);
+    // A hinge has nothing but its angle; what else the bind pose has is part of the frame.
+    let seen = parent.inverse() * bind * child;
+    let (swing, twist) = seen.swing_twist(Vec3::X);
+    let range = wider(hinge.range, TWIST_MARGIN);
+    let angle = hinge_angle(twist);
+    let range = Range::new(min(range.lo, angle - BIND_MARGIN), max(range.hi, angle + BIND_MARGIN));
+    let kind = JointKind::Hinge { limit: Some(range) };
+    turned(joint, parent * swing, child, kind)
+}
+
+/// The joint with its frames turned, each in its own axes.
+fn turned(joint: &RagdollJointDef, parent: Rotation, child: Rotation, kind: JointKind) -> RagdollJointDef {
+    let turn =
+        |frame: Transform, by: Rotation| Transform::new(frame.translation, (frame.rotation * by).normalize());
+    RagdollJointDef {
+        frame_parent: turn(joint.frame_parent, parent),
+        frame_child: turn(joint.frame_child, child),
+        kind,
+        ..*joint
+    }
+}
+
+/// A joint that swings, and what its anatomy allows in its own frames.
+struct Cone<'a> {
+    joint: &'a RagdollJointDef,
+    anatomical: SwingTwistLimit,
+    twisting: Twist,
+}
+
+impl Cone<'_> {
+    fn def(&self, learned: &LearnedLimit, turns: &[Rotation], bind: Rotation) -> RagdollJointDef {
+        let (parent, mut child) = (learned.center * learned.frame, learned.frame);
+        let limit = self.limit(learned, turns);
+        let mut seen = parent.inverse() * bind * child;
+        if self.twisting == Twist::Locked {
+            let (_, twist) = seen.swing_twist(Vec3::X);
+            child = child * twist.inverse();
+            seen = parent.inverse() * bind * child;
+        }
+        let (limit, _) = widened_cone(limit, seen, self.twisting);
+        let kind = match self.twisting {
+            Twist::Free => JointKind::Ball { limit: Some(limit) },
+            Twist::Locked => JointKind::Universal { limit: Some(limit) },
+        };
+        turned(self.joint, parent, child, kind)
+    }
+
+    /// The widest of the learned cones that goes no further beyond the anatomical one than what the clips do: their
+    /// frames, and the cone about them without a margin.
+    fn limit(&self, learned: &LearnedLimit, turns: &[Rotation]) -> SwingTwistLimit {
+        let mut beyond: Vec<f32> = turns.iter().map(|&turn| self.beyond(turn)).collect();
+        beyond.sort_unstable_by(f32::total_cmp);
+        let frames = beyond[((beyond.len() - 1) as f32 * COVERAGE) as usize];
+        let bare = cone(learned, 1.0);
+        let shown = max(frames, self.farthest(learned, &bare)) + ROUNDING;
+        let widest = SWING_FACTORS.into_iter().map(|factor| cone(learned, factor));
+        widest.into_iter().find(|limit| self.farthest(learned, limit) <= shown).unwrap_or(bare)
+    }
+
+    /// How far a rotation is beyond the anatomical limits, radians.
+    fn beyond(&self, turn: Rotation) -> f32 {
+        match self.twisting {
+            Twist::Free => self.anatomical.overshoot(turn),
+            Twist::Locked => max(-self.anatomical.swing_state(turn).room, 0.0),
+        }
+    }
+
+    /// The same of the farthest rotation of a cone.
+    fn farthest(&self, learned: &LearnedLimit, limit: &SwingTwistLimit) -> f32 {
+        let frame = learned.frame;
+        let mut farthest = 0.0;
+        for step in 0..DIRECTIONS {
+            let (sin, cos) = trig::sin_cos(core::f32::consts::TAU * step as f32 / DIRECTIONS as f32);
+            let swing = Vec3::new(0.0, cos * limit.swing_y.hi, sin * limit.swing_z.hi);
+            for twist in [limit.twist.lo, limit.twist.hi] {
+                let edge = Rotation::from_scaled_axis(swing) * Rotation::from_axis_angle(Vec3::X, twist);
+                farthest = max(farthest, self.beyond(learned.center * frame * edge * frame.inverse()));
+            }
+        }
+        farthest
+    }
+}
+
+/// What was learned, with margins: `factor` on the swing, and as much of the twist's margin as there is of the swing's.
+fn cone(learned: &LearnedLimit, factor: f32) -> SwingTwistLimit {
+    let [y, z] = learned.swing.map(|half| Range::symmetric(min(max(half * factor, LEAST), WIDEST)));
+    let twist = wider(learned.twist, TWIST_MARGIN * (factor - 1.0) / (SWING_FACTORS[0] - 1.0));
+    let twist = Range::new(min(twist.lo, -0.5 * LEAST), max(twist.hi, 0.5 * LEAST));
+    SwingTwistLimit { swing_y: y, swing_z: z, twist }
+}
+
+fn wider(range: Range, by: f32) -> Range {
+    Range::new(range.lo - by, range.hi + by)
+}

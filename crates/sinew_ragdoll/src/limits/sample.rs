@@ -1,0 +1,36 @@
+//! Random turns of joints within their limits.
+
+use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Vec3};
+use sinew_physics::JointKind;
+
+/// Range of a joint without limits that random turns use, radians.
+const FREE: Range = Range::symmetric(1.0);
+/// A square in the ellipse of the swing has this much of its half-axes, so that both swings together stay inside.
+const INSCRIBED: f32 = 0.7;
+
+/// A joint rotation (joint frame of the parent to that of the child) that uses at most `share` of each range, about its
+/// middle.
+///
+/// # Panics
+/// If the joint does more than turn.
+pub fn random_turn(kind: JointKind, random: &mut Random, share: f32) -> Rotation {
+    let within = |random: &mut Random, range: Range| {
+        range.center() + 0.5 * (range.hi - range.lo) * share * random.range(-1.0, 1.0)
+    };
+    let free = SwingTwistLimit { swing_y: FREE, swing_z: FREE, twist: FREE };
+    match kind {
+        JointKind::Ball { limit } | JointKind::Universal { limit } => {
+            let limit = limit.unwrap_or(free);
+            let [y, z] = [limit.swing_y, limit.swing_z].map(|range| INSCRIBED * within(random, range));
+            let swing = Rotation::from_scaled_axis(Vec3::new(0.0, y, z));
+            let ball = matches!(kind, JointKind::Ball { .. });
+            let twist = if ball { within(random, limit.twist) } else { 0.0 };
+            swing * Rotation::from_axis_angle(Vec3::X, twist)
+        }
+        JointKind::Hinge { limit } => {
+            Rotation::from_axis_angle(Vec3::X, within(random, limit.unwrap_or(FREE)))
+        }
+        JointKind::Fixed => Rotation::IDENTITY,
+        kind => unreachable!("{kind:?} in a ragdoll: its joints turn"),
+    }
+}

@@ -1,0 +1,176 @@
+//! Limits learned from clips: they hold what the clips do, and no more than anatomy allows beside it.
+
+use crate::data::document;
+use sinew_anim::{Rig, Take, analyze, local_to_model};
+use sinew_math::limits::{hinge_angle, wrap};
+use sinew_math::{Affine, Random, Rotation, Transform, Vec3, max};
+use sinew_physics::JointKind;
+use sinew_ragdoll::build::takes;
+use sinew_ragdoll::limits::sample::random_turn;
+use sinew_ragdoll::{
+    BuildError, BuildOptions, LimitSource, Mapping, RagdollDef, RagdollJointDef, Settings, SettingsError,
+    build_moving,
+};
+use sinew_scenes::mannequin::mannequin;
+
+fn built(rig: &Rig, takes: &[Take], limits: LimitSource) -> Result<RagdollDef, SettingsError> {
+    let analysis = analyze(rig).expect("a skin");
+    let options = BuildOptions { limits, ..BuildOptions::default() };
+    build_moving(rig, &analysis, takes, &options, &Settings::default()).map(|(def, _)| def)
+}
+
+/// Every body in character space, in every frame.
+fn poses(rig: &Rig, def: &RagdollDef, takes: &[Take]) -> Vec<Vec<Transform>> {
+    let mapping = Mapping::new(rig, def, &analyze(rig).expect("a skin").bind_model);
+    let (mut model, mut poses) = (Vec::new(), Vec::new());
+    for take in takes {
+        for frame in 0..take.frames() {
+            let mut bodies = Vec::new();
+            local_to_model(rig, take.pose(frame), &Affine::IDENTITY, &mut model);
+            mapping.bodies_from_model(&model, Transform::IDENTITY, &mut bodies);
+            poses.push(bodies);
+        }
+    }
+    poses
+}
+
+/// The joint rotation for a turn of the child against the parent.
+fn joint_turn(joint: &RagdollJointDef, parent: Rotation, child: Rotation) -> Rotation {
+    (parent * joint.frame_parent.rotation).inverse() * (child * joint.frame_child.rotation)
+}
+
+/// How far beyond its limits, radians.
+fn beyond(joint: &RagdollJointDef, turn: Rotation) -> f32 {
+    match joint.kind {
+        JointKind::Ball { limit: Some(limit) } => limit.overshoot(turn),
+        JointKind::Universal { limit: Some(limit) } => max(-limit.swing_state(turn).room, 0.0),
+        JointKind::Hinge { limit: Some(limit) } => {
+            let middle = limit.center();
+            limit.excess(middle + wrap(hinge_angle(turn) - middle))
+        }
+        kind => panic!("{kind:?} has no limits"),
+    }
+}
+
+/// The clips stay inside, the bind pose too, and no turn that is allowed is further beyond the table than the clips are, but
+/// for the corners of an ellipse about them.
+fn check(name: &str, rig: &Rig, takes: &[Take]) {
+    let table = built(rig, takes, LimitSource::Anatomy).expect("bones");
+    let learned = built(rig, takes, LimitSource::Clips).expect("clips");
+    let poses = poses(rig, &table, takes);
+    let mut random = Random::new(1);
+    let mut changed = 0;
+    for (old, new) in table.joints.iter().zip(&learned.joints) {
+        let who = format!("{name}, {}", table.bodies[old.child].role);
+        let turns = |joint: &RagdollJointDef| -> Vec<Rotation> {
+            let of = |pose: &Vec<Transform>| {
+                joint_turn(joint, pose[joint.parent].rotation, pose[joint.child].rotation)
+            };
+            poses.iter().map(of).collect()
+        };
+        if old.kind == new.kind {
+            continue;
+        }
+        changed += 1;
+        let mut outside: Vec<f32> = turns(new).into_iter().map(|turn| beyond(new, turn)).collect();
+        outside.sort_by(f32::total_cmp);
+        let most = outside[(outside.len() - 1) * 98 / 100].to_degrees();
+        assert!(most < 1.0, "{who}: the clips are {most}° beyond what was learned from them");
+        let bind = |body: usize| table.bodies[body].character_from_body.rotation;
+        let bound = beyond(new, joint_turn(new, bind(new.parent), bind(new.child)));
+        assert!(bound.to_degrees() < 0.1, "{who}: bound {}° beyond", bound.to_degrees());
+        // The other side's motion counts too.
+        let twin = table.bodies[old.child].role.replacen("left", "?", 1).replacen("right", "left", 1);
+        let twin = twin.replacen('?', "right", 1);
+        let twin = table.joints.iter().find(|joint| table.bodies[joint.child].role == twin);
+        let shown = [Some(old), twin]
+            .into_iter()
+            .flatten()
+            .flat_map(|joint| turns(joint).into_iter().map(|turn| beyond(joint, turn)).collect::<Vec<_>>());
+        let shown = shown.fold(0.0, max);
+        for _ in 0..200 {
+            let turn = random_turn(new.kind, &mut random, 1.0);
+            // The bodies' turn against each other, in the old frames.
+            let child = new.frame_parent.rotation * turn * new.frame_child.rotation.inverse();
+            let excess = beyond(old, joint_turn(old, Rotation::IDENTITY, child)) - shown;
+            assert!(excess.to_degrees() < 6.0, "{who}: {}° wider than seen", excess.to_degrees());
+        }
+    }
+    assert!(changed * 2 > table.joints.len(), "{name}: {changed} of {} joints", table.joints.len());
+}
+
+#[test]
+fn limits_hold_what_the_clips_do_and_no_more() {
+    let mannequin = mannequin();
+    check("mannequin", &mannequin.rig, &takes(&mannequin.rig, &mannequin.clips));
+    for name in ["CesiumMan.glb", "mannequiny.glb", "mesh2motion_human_rigify.glb"] {
+        let Some(document) = document(name) else { return };
+        check(name, &document.rig, &takes(&document.rig, &document.clips));
+    }
+}
+
+/// One take in which the left elbow goes from 20° to 70° and the left knee 20° the wrong way.
+fn bending(rig: &Rig) -> Take {
+    let def = built(rig, &[], LimitSource::Anatomy).expect("bones");
+    let frames = 200;
+    let rest: Vec<_> = rig.joints.iter().map(|joint| joint.rest).collect();
+    let mut poses = Vec::new();
+    for frame in 0..=frames {
+        let mut pose = rest.clone();
+        let share = frame as f32 / frames as f32;
+        for (role, degrees) in [("leftLowerArm", 20.0 + 50.0 * share), ("leftLowerLeg", -20.0 * share)] {
+            let joint = def.joints.iter().find(|joint| def.bodies[joint.child].role == role);
+            let joint = joint.expect("it has both");
+            let child = &def.bodies[joint.child];
+            let bind = |body: usize| def.bodies[body].character_from_body.rotation;
+            let now = hinge_angle(joint_turn(joint, bind(joint.parent), bind(joint.child)));
+            let axis = bind(joint.child) * (joint.frame_child.rotation * Vec3::X);
+            // Character axes are those of the mannequin's model, in which its bind pose is its rest pose.
+            let mut model = Vec::new();
+            local_to_model(rig, &rest, &Affine::IDENTITY, &mut model);
+            let own = model[child.joint].to_rigid().rotation;
+            let turn = Rotation::from_axis_angle(own.inverse() * axis, degrees.to_radians() - now);
+            pose[child.joint].rotation = (pose[child.joint].rotation * turn).normalize();
+        }
+        poses.extend(pose);
+    }
+    Take { frame_time: 1.0 / 30.0, joints: rig.joints.len(), poses }
+}
+
+#[test]
+fn a_hinge_has_a_margin_within_its_anatomy_and_none_beyond() {
+    let rig = mannequin().rig;
+    let def = built(&rig, &[bending(&rig)], LimitSource::Clips).expect("it moves");
+    let range = |role: &str| {
+        let joint = def.joints.iter().find(|joint| def.bodies[joint.child].role == role);
+        match joint.expect("it has both").kind {
+            JointKind::Hinge { limit: Some(range) } => [range.lo.to_degrees(), range.hi.to_degrees()],
+            kind => panic!("{kind:?}"),
+        }
+    };
+    for side in ["left", "right"] {
+        // The bind pose, straight, counts as seen.
+        let [lo, hi] = range(&format!("{side}LowerArm"));
+        assert!(lo > -3.0 && lo < 1.0 && (hi - 80.0).abs() < 1.0, "{side} elbow {lo}..{hi}°");
+        let [lo, hi] = range(&format!("{side}LowerLeg"));
+        assert!((lo + 20.0).abs() < 1.0 && hi > 5.0 && hi < 20.0, "{side} knee {lo}..{hi}°");
+    }
+    // What did not move keeps the table's limits.
+    let table = built(&rig, &[], LimitSource::Anatomy).expect("bones");
+    let neck = table.bodies.iter().position(|body| body.role == "neck").expect("a neck");
+    assert_eq!(def.joints[neck - 1], table.joints[neck - 1]);
+}
+
+#[test]
+fn without_motion_there_is_nothing_to_learn() {
+    let rig = mannequin().rig;
+    let still = Take {
+        frame_time: 0.1,
+        joints: rig.joints.len(),
+        poses: rig.joints.iter().map(|joint| joint.rest).collect(),
+    };
+    for takes in [vec![], vec![still]] {
+        let refused = built(&rig, &takes, LimitSource::Clips);
+        assert_eq!(refused, Err(SettingsError::Build(BuildError::NoClips)));
+    }
+}
