@@ -7,8 +7,8 @@ use crate::files::{CharacterFile, Outputs};
 use crate::motion::Motion;
 use crate::onto::{Carried, carry};
 use crate::report::Report;
-use crate::skeleton::{bones_only, frame_rate, transform};
-use crate::table::{counted, shown};
+use crate::skeleton::{bones_only, frame_rate, lost_meshes, transform};
+use crate::table::shown;
 use clap::ValueEnum;
 use serde_json::json;
 use sinew::anim::retarget::{Feet, Pace, RetargetOptions};
@@ -349,20 +349,6 @@ type Told = (Vec<String>, Vec<String>);
 
 fn line_of(clip: &Clip) -> String {
     format!("{}: {:.2} s", shown(&clip.name), clip.duration)
-}
-
-fn lost_meshes(rig: &Rig, dropped: &[String], notes: &mut Vec<String>) {
-    if !rig.meshes.is_empty() {
-        let (meshes, skins) =
-            (counted(rig.meshes.len(), "mesh", "meshes"), counted(rig.skins.len(), "skin", "skins"));
-        notes.push(format!("left out: {meshes} and {skins}, which the format has not"));
-    }
-    if !dropped.is_empty() {
-        let names: Vec<String> = dropped.iter().take(8).map(|name| shown(name)).collect();
-        let more = if dropped.len() > names.len() { ", …" } else { "" };
-        let nodes = counted(dropped.len(), "node", "nodes");
-        notes.push(format!("left out: {nodes} without a bone ({}{more})", names.join(", ")));
-    }
 }
 
 /// A clip as one pose a frame.

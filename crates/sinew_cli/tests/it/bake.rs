@@ -2,7 +2,10 @@
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, shared_data, sinew};
-use sinew::formats::{ReadOptions, load_gltf, write_world};
+use sinew::anim::{Clip, Rig, Wrap, local_to_model, rest_pose, sample};
+use sinew::formats::bvh::BvhUnit;
+use sinew::formats::{BvhOptions, ReadOptions, load_gltf, read_bvh, write_world};
+use sinew::math::Affine;
 use sinew_scenes::cabin::Site;
 use std::fs;
 
@@ -40,6 +43,85 @@ fn the_fall_is_a_clip_in_a_copy_of_the_file() {
     assert!((baked.duration - 0.5).abs() < 1e-6, "{} s", baked.duration);
     assert!(fs::read(&picture).expect("a picture").starts_with(b"\x89PNG"));
     assert_eq!(folder.names(), ["fall.glb", "fall.png", "mannequin.glb"]);
+}
+
+#[test]
+fn keys_that_are_not_needed_are_left_out() {
+    let folder = Folder::new("keys");
+    let file = folder.mannequin();
+    let baked = |error: &[&str]| {
+        let out = folder.path("out.glb");
+        let arguments = [&["bake", file.as_str(), "--seconds", "3", "-o", &out, "--json"], error].concat();
+        let object = sinew(&arguments).json();
+        let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+        let clip = document.clips.last().expect("a clip").clone();
+        let keys: usize = clip.channels.iter().map(|channel| channel.times.len()).sum();
+        assert_eq!(object["keys"], keys);
+        (object, clip)
+    };
+    let number = |object: &serde_json::Value, key: &str| object[key].as_f64().expect("a number");
+    let (all, every_key) = baked(&["--key-error", "0"]);
+    assert_eq!(all["keys"], all["keys_of_all_frames"]);
+    assert!(every_key.channels.iter().all(|channel| channel.times.len() == 91));
+    let (usual, _) = baked(&[]);
+    assert!(number(&usual, "keys") < number(&all, "keys"));
+    let (coarse, clip) = baked(&["--key-error", "2"]);
+    assert!(number(&coarse, "keys") < 0.9 * number(&usual, "keys"), "{coarse:#}");
+    for (object, mm) in [(&usual, 0.1), (&coarse, 2.0)] {
+        assert!((number(object, "key_error_bound_m") - 1e-3 * mm).abs() < 1e-9);
+        assert!((number(object, "key_error_bound_deg") - 0.1 * mm).abs() < 1e-6);
+        assert!(number(object, "key_error_max_m") <= 1e-3 * mm, "{object:#}");
+        assert!(number(object, "key_error_max_deg") <= 0.1 * mm, "{object:#}");
+    }
+    assert!((clip.duration - 3.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_bvh_has_the_bones_and_every_frame() {
+    let folder = Folder::new("bvh");
+    let file = folder.mannequin();
+    for (fps, frames) in [("24", 49), ("25", 51), ("120", 241)] {
+        let arguments = ["bake", &file, "--seconds", "2", "--fps", fps, "--json", "-o"];
+        let run = |out: &str, extra: &[&str]| sinew(&[&arguments[..], &[out], extra].concat()).json();
+        let (bvh, glb) = (folder.path("fall.bvh"), folder.path("fall.glb"));
+        let (of_bvh, of_glb) = (run(&bvh, &[]), run(&glb, &["--key-error", "0"]));
+        check_keys("bake", &of_bvh);
+        assert_eq!((&of_bvh["hash"], &of_bvh["frames"]), (&of_glb["hash"], &frames.into()));
+        assert_eq!((&of_bvh["key_error_max_m"], &of_glb["notes"]), (&0.0.into(), &serde_json::json!([])));
+        assert!(of_bvh["notes"][0].as_str().is_some_and(|note| note.contains("mesh")), "{of_bvh:#}");
+        let text = fs::read(&bvh).expect("it is written");
+        let read = read_bvh(&text, BvhOptions { unit: BvhUnit::Metres(0.01), ..BvhOptions::default() })
+            .expect("it can be read");
+        assert_eq!(
+            (read.frames, (1.0 / read.frame_time).round() as u32),
+            (frames, fps.parse().expect("a number"))
+        );
+        let document = load_gltf(&glb, ReadOptions::default()).expect("it can be read");
+        let clip = document.clips.last().expect("a clip");
+        let mut worst = 0.0;
+        for frame in 0..frames {
+            let time = (frame as f64 * read.frame_time) as f32;
+            let places = |rig: &Rig, clip: &Clip| {
+                let (mut pose, mut model) = (rest_pose(rig), Vec::new());
+                sample(clip, rig, time, Wrap::Clamp, &mut pose);
+                local_to_model(rig, &pose, &Affine::IDENTITY, &mut model);
+                model
+            };
+            let [from, to] = [places(&document.rig, clip), places(&read.rig, &read.clip)];
+            for (joint, place) in read.rig.joints.iter().zip(&to).filter(|(joint, _)| !joint.name.is_empty())
+            {
+                let same = document.rig.joints.iter().position(|other| other.name == joint.name);
+                let same = same.unwrap_or_else(|| panic!("no joint {}", joint.name));
+                worst = sinew::math::max(worst, (from[same].translation - place.translation).length());
+            }
+        }
+        // Six digits behind the point, of degrees and centimetres.
+        assert!(worst < 2e-5, "{fps}: {worst} m off");
+    }
+    let run = sinew(&["bake", &file, "-o", &folder.path("x.bvh"), "--key-error", "1"]);
+    assert_eq!(run.refusal(2), "error: --key-error does not apply to a BVH, which holds every frame");
+    let run = sinew(&["bake", &file, "-o", "x.gltf"]);
+    assert!(run.code == Some(2) && run.stderr.contains("must end in .glb, .vrm or .bvh"), "{run:?}");
 }
 
 #[test]

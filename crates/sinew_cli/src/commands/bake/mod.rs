@@ -1,5 +1,6 @@
 //! `sinew bake`: a character is hit or goes limp, falls, and the fall becomes a clip on the user's own rig.
 
+mod clip_file;
 mod clips;
 mod hit;
 
@@ -12,11 +13,14 @@ use crate::ragdoll_file::read_definition;
 use crate::report::Report;
 use crate::settings_arg::SettingsArg;
 use crate::table::shown;
+use clip_file::{ClipFile, ClipFormat};
 use clips::Motions;
 use hit::HitArg;
-use sinew::formats::{Textures, append_clip, load_world};
+use sinew::anim::KeyBound;
+use sinew::formats::{Textures, load_world};
 use sinew::math::Vec3;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
+use sinew::ragdoll::bake::KEY_BOUND;
 use sinew::ragdoll::{
     AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, MotionSet, RagdollBodyDef, RagdollDef,
 };
@@ -29,14 +33,17 @@ const LIMP_AT: f32 = 0.5;
 const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
 const OBSTACLES: [[f32; 3]; 3] = [[0.45, 0.33, 0.22], [0.40, 0.36, 0.30], [0.33, 0.27, 0.22]];
 
-/// Let your character fall: simulated from its animation, written back as a clip into a copy of your file
+/// Let your character fall: simulated from its animation, written back as a clip into a copy of your file, or as a BVH
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
   sinew bake character.glb -o fall.glb
   sinew bake character.glb --clip Walk --hit chest=0,0,-60@1.0 -o fall.glb --picture fall.gif
   sinew bake character.glb --world house.json --limp-at 1.2 --seconds 6 -o fall.glb --json
-  sinew bake character.glb --ragdoll edited.sinew.json -o fall.glb")]
+  sinew bake character.glb --ragdoll edited.sinew.json -o fall.glb
+  sinew bake character.glb --fps 120 -o fall.bvh
+
+Keys that no joint needs to stay within --key-error are left out. A BVH holds the skeleton alone, with every frame.")]
 pub struct Bake {
     /// A glTF, GLB or VRM file with a skinned character
     character: PathBuf,
@@ -68,17 +75,35 @@ pub struct Bake {
     /// Frames per second of the clip
     #[arg(long, value_name = "N", default_value = "30", value_parser = clap::value_parser!(u16).range(1..=240))]
     fps: u16,
-    /// Where to write the copy of your file with the new clip in it
-    #[arg(short, long, value_name = "OUT.glb")]
-    output: PathBuf,
+    /// How far any joint of the clip may be from the simulation at a frame, mm, and by how many tenths of a degree it may
+    /// be turned; 0 keeps a key for every frame. Default 0.1: a tenth of a millimetre, a hundredth of a degree
+    #[arg(long, value_name = "MM", value_parser = key_error)]
+    key_error: Option<f32>,
+    /// Where to write: a copy of your file with the new clip in it (.glb, .vrm), or its skeleton and the clip (.bvh)
+    #[arg(short, long, value_name = "OUT.(glb|vrm|bvh)")]
+    output: ClipFile,
     /// Also draw it: a .gif, .png (animated) or .webp file
     #[arg(long, value_name = "OUT.(gif|png|webp)")]
     picture: Option<PictureFile>,
 }
 
+/// Largest error of keys, mm: what is worse is no copy of the motion.
+const LARGEST_KEY_ERROR: f32 = 100.0;
+
+/// An error that keys may have, mm.
+fn key_error(text: &str) -> Result<f32, String> {
+    let error: f32 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
+    if (0.0..=LARGEST_KEY_ERROR).contains(&error) {
+        Ok(error)
+    } else {
+        Err(format!("must lie between 0 and {LARGEST_KEY_ERROR} mm"))
+    }
+}
+
 impl Bake {
     /// Reads, simulates, draws, writes.
     pub fn run(&self) -> Result<Report> {
+        let key_bound = self.key_bound()?;
         self.check_outputs()?;
         let textures = if self.picture.is_some() { Textures::Decode } else { Textures::Skip };
         let file = CharacterFile::load(&self.character, textures)?;
@@ -97,11 +122,26 @@ impl Bake {
             limp_at,
             seconds: self.seconds,
             fps: f32::from(self.fps),
+            key_bound,
             ..BakeInput::new(character)
         };
         let fall = Fall::simulate(&input);
-        self.write(&file, &fall)?;
-        Ok(self.report(&file, &fall))
+        let notes = self.write(&file, &fall)?;
+        Ok(self.report(&file, &fall, &notes))
+    }
+
+    /// What the user allows keys to be off by; nothing in a format that has all frames anyway.
+    fn key_bound(&self) -> Result<KeyBound> {
+        match (self.output.format, self.key_error) {
+            (ClipFormat::Bvh, None) => Ok(KeyBound::ALL_KEYS),
+            (ClipFormat::Bvh, Some(_)) => {
+                Err(Failure::Usage("--key-error does not apply to a BVH, which holds every frame".to_owned()))
+            }
+            (ClipFormat::Copy, None) => Ok(KEY_BOUND),
+            (ClipFormat::Copy, Some(mm)) => {
+                Ok(KeyBound { distance: 1e-3 * mm, angle: 0.1 * mm.to_radians() })
+            }
+        }
     }
 
     /// The definition that was given, or what a build gives.
@@ -136,27 +176,32 @@ impl Bake {
     }
 
     fn outputs(&self) -> Vec<&Path> {
-        std::iter::once(self.output.as_path()).chain(self.picture.iter().map(PictureFile::path)).collect()
+        std::iter::once(self.output.path()).chain(self.picture.iter().map(PictureFile::path)).collect()
     }
 
-    fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<()> {
-        let Fall { input, baked, .. } = fall;
-        let bytes = append_clip(&file.document, &baked.clip, input.name, None)
-            .map_err(|error| error.with_file(&file.name))?;
+    /// Writes all files; gives what the clip's cannot hold, a sentence each.
+    fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<Vec<String>> {
+        let (bytes, notes) = self.output.write(file, fall)?;
         let mut outputs = Outputs::default();
-        outputs.add(&self.output, bytes);
+        outputs.add(self.output.path(), bytes);
         if let Some(picture) = &self.picture {
             let failed = |error| Failure::of_file(picture.path().display().to_string(), error);
             outputs.add(picture.path(), film(fall).shoot(picture.format).map_err(failed)?);
         }
-        outputs.write()
+        outputs.write()?;
+        Ok(notes)
     }
 
-    fn report(&self, file: &CharacterFile, fall: &Fall<'_>) -> Report {
+    fn report(&self, file: &CharacterFile, fall: &Fall<'_>, notes: &[String]) -> Report {
         let outputs = self.outputs();
         let left_out = left_out(fall.input.bodies).map_or(String::new(), |what| format!("\n{what}"));
-        let text = format!("{}{left_out}\n{}", shown(&file.name), fall.to_text(&outputs));
-        Report { json: fall.to_json(&outputs), text }
+        let mut text = format!("{}{left_out}\n{}", shown(&file.name), fall.to_text(&outputs));
+        for note in notes {
+            text += &format!("note: {}\n", shown(note));
+        }
+        let mut json = fall.to_json(&outputs);
+        json["notes"] = notes.into();
+        Report { json, text }
     }
 }
 
