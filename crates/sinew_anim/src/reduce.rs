@@ -6,9 +6,9 @@
 //! corrected until the bound is used up and kept.
 
 use crate::clip::{Channel, Clip, Interpolation, Property};
-use crate::pose::local_to_model;
+use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, LocalTransform, Rig};
-use crate::sample::{SampleCache, Wrap, sample_cached};
+use crate::sample::{channel_at, write_property};
 use sinew_math::{Affine, Rotation, Vec3, clamp, max, min};
 
 /// How far joints may be from where they were, in the space that [`reduce_keys`] measures in.
@@ -54,14 +54,15 @@ pub struct Reduced {
 
 /// Rounds of choosing and measuring, and the share of the bound that is good enough to stop at.
 const ROUNDS: usize = 5;
-const GOOD_ENOUGH: f32 = 0.8;
+const GOOD_ENOUGH: f32 = 0.75;
 /// Share of the bound for each channel to begin with: errors of different joints hardly ever add up.
-const FIRST_SHARE: f32 = 0.5;
+const FIRST_SHARE: f32 = 0.7;
 /// The share aims at this much of the bound.
-const AIM: f32 = 0.92;
+const AIM: f32 = 0.9;
 
 /// Leaves out the keys of linear channels that are not needed for joints to stay within `bound` in model space, times
-/// `root`: the root's unit is the bound's. Other channels keep their keys. The clip lasts as long as before.
+/// `root`: the root's unit is the bound's. Other channels keep their keys. The clip lasts as long as before. Its values are
+/// finite.
 ///
 /// # Panics
 /// As [`sample`](crate::sample()), and if the bound is negative or not finite.
@@ -69,11 +70,11 @@ pub fn reduce_keys(rig: &Rig, clip: &Clip, root: &Affine, bound: KeyBound) -> Re
     let sound = |x: f32| (0.0..f32::INFINITY).contains(&x);
     assert!(sound(bound.distance) && sound(bound.angle), "a bound is not negative, and finite: {bound:?}");
     let before = count(clip);
-    let all = Reduced { clip: clip.clone(), error: KeyError::default(), keys: [before, before] };
-    if bound.distance <= 0.0 || bound.angle <= 0.0 {
-        return all;
+    let all = || Reduced { clip: clip.clone(), error: KeyError::default(), keys: [before, before] };
+    if bound.distance <= 0.0 || bound.angle <= 0.0 || rig.joints.is_empty() {
+        return all();
     }
-    let mut meter = Meter::new(rig, clip, root);
+    let meter = Meter::new(rig, clip, root);
     let (mut best, mut share): (Option<Reduced>, f32) = (None, FIRST_SHARE);
     for _ in 0..ROUNDS {
         let reduced = meter.thinned(bound, share);
@@ -88,7 +89,7 @@ pub fn reduce_keys(rig: &Rig, clip: &Clip, root: &Affine, bound: KeyBound) -> Re
         }
         share *= clamp(AIM / max(used, 1e-3), 0.2, 3.0);
     }
-    best.unwrap_or(all)
+    best.unwrap_or_else(all)
 }
 
 fn count(clip: &Clip) -> usize {
@@ -102,6 +103,8 @@ struct Meter<'a> {
     root: &'a Affine,
     /// All times of keys.
     times: Vec<f32>,
+    /// Where the joints are at these times, times the root: time by time.
+    model: Vec<Affine>,
     /// Per joint: how far it is to the farthest that hangs on it at any time, and how much longer a length of its
     /// parent's axes is in the space of the bound.
     reach: Vec<f32>,
@@ -111,27 +114,32 @@ struct Meter<'a> {
 impl<'a> Meter<'a> {
     fn new(rig: &'a Rig, clip: &'a Clip, root: &'a Affine) -> Self {
         let joints = rig.joints.len();
-        let mut meter =
-            Self { rig, clip, root, times: Vec::new(), reach: vec![0.0; joints], scale: vec![0.0; joints] };
+        let mut times: Vec<f32> = Vec::new();
         for channel in &clip.channels {
             // Channels of one take share their times.
-            if channel.times != meter.times {
-                meter.times.extend_from_slice(&channel.times);
-                meter.times.sort_by(f32::total_cmp);
-                meter.times.dedup();
+            if channel.times != times {
+                times.extend_from_slice(&channel.times);
+                times.sort_by(f32::total_cmp);
+                times.dedup();
             }
         }
+        let model = Vec::with_capacity(times.len() * joints);
+        let mut meter =
+            Self { rig, clip, root, times, model, reach: vec![0.0; joints], scale: vec![0.0; joints] };
         let mut bones = vec![0.0; joints];
-        let mut poses = Poses::new(rig);
+        let mut poses = Poses::new(rig, clip);
         for &time in &meter.times {
             poses.sample(rig, clip, root, time);
             for (i, joint) in rig.joints.iter().enumerate() {
                 let parent = joint.parent.map_or(root, |parent| &poses.model[parent]);
                 let bone = poses.model[i].translation - parent.translation;
-                bones[i] = max(bones[i], bone.length());
-                meter.scale[i] = max(meter.scale[i], longest(parent));
+                bones[i] = max(bones[i], bone.length_squared());
+                meter.scale[i] = max(meter.scale[i], longest_squared(parent));
             }
+            meter.model.extend_from_slice(&poses.model);
         }
+        meter.scale.iter_mut().for_each(|scale| *scale = scale.sqrt());
+        bones.iter_mut().for_each(|bone| *bone = bone.sqrt());
         for (i, joint) in rig.joints.iter().enumerate().rev() {
             if let Some(parent) = joint.parent {
                 meter.reach[parent] = max(meter.reach[parent], meter.reach[i] + bones[i]);
@@ -171,13 +179,12 @@ impl<'a> Meter<'a> {
         }
     }
 
-    fn error(&mut self, reduced: &Clip) -> KeyError {
-        let (mut was, mut is) = (Poses::new(self.rig), Poses::new(self.rig));
+    fn error(&self, reduced: &Clip) -> KeyError {
+        let mut poses = Poses::new(self.rig, reduced);
         let mut worst = KeyError::default();
-        for &time in &self.times {
-            was.sample(self.rig, self.clip, self.root, time);
-            is.sample(self.rig, reduced, self.root, time);
-            for (a, b) in was.model.iter().zip(&is.model) {
+        for (&time, was) in self.times.iter().zip(self.model.chunks_exact(self.rig.joints.len())) {
+            poses.sample(self.rig, reduced, self.root, time);
+            for (a, b) in was.iter().zip(&poses.model) {
                 worst.distance = max(worst.distance, (a.translation - b.translation).length_squared());
                 worst.angle = max(worst.angle, turned_squared(a, b));
             }
@@ -186,29 +193,41 @@ impl<'a> Meter<'a> {
     }
 }
 
-/// A pose of a clip, and its buffers.
+/// Poses of a clip at ever later times, and their buffers.
 struct Poses {
-    cache: SampleCache,
+    /// Per channel: its last key not after the time.
+    keys: Vec<usize>,
     local: Vec<LocalTransform>,
     model: Vec<Affine>,
 }
 
 impl Poses {
-    fn new(rig: &Rig) -> Self {
-        let local = vec![LocalTransform::default(); rig.joints.len()];
-        Self { cache: SampleCache::default(), local, model: Vec::new() }
+    fn new(rig: &Rig, clip: &Clip) -> Self {
+        Self { keys: vec![0; clip.channels.len()], local: rest_pose(rig), model: Vec::new() }
     }
 
+    /// As [`sample`](crate::sample()); values at keys are taken as they are, so that most cost nothing.
     fn sample(&mut self, rig: &Rig, clip: &Clip, root: &Affine, time: f32) {
-        sample_cached(clip, rig, time, Wrap::Clamp, &mut self.cache, &mut self.local);
+        for (channel, key) in clip.channels.iter().zip(&mut self.keys) {
+            while channel.times.get(*key + 1).is_some_and(|&next| next <= time) {
+                *key += 1;
+            }
+            let is_key = channel.times[*key] >= time || *key + 1 == channel.times.len();
+            let value = match channel.interpolation {
+                Interpolation::Linear if is_key => channel.value(*key),
+                Interpolation::Linear => Line::between(channel, *key, *key + 1).at(time),
+                Interpolation::Step | Interpolation::CubicSpline => channel_at(channel, time),
+            };
+            write_property(&mut self.local[channel.joint], channel.property, value);
+        }
         local_to_model(rig, &self.local, root, &mut self.model);
     }
 }
 
-/// Length of the longest axis of a map.
-fn longest(map: &Affine) -> f32 {
+/// Square of the length of the longest axis of a map.
+fn longest_squared(map: &Affine) -> f32 {
     let m = &map.linear;
-    [m.x_axis, m.y_axis, m.z_axis].into_iter().map(Vec3::length).fold(0.0, max)
+    [m.x_axis, m.y_axis, m.z_axis].into_iter().map(Vec3::length_squared).fold(0.0, max)
 }
 
 /// Square of the angle between two maps, as far as they turn, for small angles: of a turn by `a`, the squares of what
@@ -216,13 +235,10 @@ fn longest(map: &Affine) -> f32 {
 fn turned_squared(a: &Affine, b: &Affine) -> f32 {
     let (a, b) = (&a.linear, &b.linear);
     let axes = [(a.x_axis, b.x_axis), (a.y_axis, b.y_axis), (a.z_axis, b.z_axis)];
+    // By differences: the cosine of a small angle has lost it.
     let moved = |(a, b): (Vec3, Vec3)| {
-        let lengths = a.length() * b.length();
-        if lengths > 0.0 {
-            (a * (b.length() / lengths) - b * (a.length() / lengths)).length_squared()
-        } else {
-            0.0
-        }
+        let [la, lb] = [a, b].map(Vec3::length);
+        if min(la, lb) > 0.0 { (a * (1.0 / la) - b * (1.0 / lb)).length_squared() } else { 0.0 }
     };
     0.5 * axes.into_iter().map(moved).sum::<f32>()
 }
@@ -233,13 +249,14 @@ fn thinned(channel: &Channel, tolerance: f32) -> Channel {
         return channel.clone();
     }
     let last = channel.times.len() - 1;
-    let line = Line { channel, tolerance };
-    if (1..=last).all(|key| line.off(key, channel.value(0)) <= tolerance) {
+    let fit = Fit { channel, squared: tolerance * tolerance };
+    let first = channel.value(0);
+    if (1..=last).all(|key| fit.holds_at(key, first)) {
         return with_keys(channel, &[0]);
     }
     let (mut kept, mut from) = (vec![0], 0);
     while from < last {
-        from = line.farthest(from, last);
+        from = fit.farthest(from, last);
         kept.push(from);
     }
     with_keys(channel, &kept)
@@ -275,13 +292,40 @@ impl Channel {
     }
 }
 
-/// Straight lines from key to key of a channel.
-struct Line<'a> {
-    channel: &'a Channel,
-    tolerance: f32,
+/// The straight line between two keys of a channel.
+struct Line {
+    property: Property,
+    start: f32,
+    span: f32,
+    values: [[f32; 4]; 2],
 }
 
-impl Line<'_> {
+impl Line {
+    fn between(channel: &Channel, from: usize, to: usize) -> Self {
+        let (start, end) = (channel.times[from], channel.times[to]);
+        let values = [channel.value(from), channel.value(to)];
+        Self { property: channel.property, start, span: end - start, values }
+    }
+
+    fn at(&self, time: f32) -> [f32; 4] {
+        let t = (time - self.start) / self.span;
+        let [a, b] = self.values;
+        if self.property == Property::Rotation {
+            let [a, b] = [a, b].map(|[x, y, z, w]| Rotation::from_xyzw(x, y, z, w));
+            let q = a.slerp(b, t);
+            return [q.x, q.y, q.z, q.w];
+        }
+        core::array::from_fn(|i| a[i] + t * (b[i] - a[i]))
+    }
+}
+
+/// A channel whose keys may be off by so much, squared.
+struct Fit<'a> {
+    channel: &'a Channel,
+    squared: f32,
+}
+
+impl Fit<'_> {
     /// The last key to which a line from `from` can go: by ever wider steps until one is too wide, and back by halves.
     fn farthest(&self, from: usize, last: usize) -> usize {
         let (mut good, mut step) = (from + 1, 2);
@@ -302,27 +346,16 @@ impl Line<'_> {
         good
     }
 
-    /// Whether all keys between two are near the line between these.
+    /// Whether all keys between two are near the line between these. The middle is where most are not.
     fn holds(&self, from: usize, to: usize) -> bool {
-        let channel = self.channel;
-        let (start, span) = (channel.times[from], channel.times[to] - channel.times[from]);
-        let (a, b) = (channel.value(from), channel.value(to));
-        let turns = channel.property == Property::Rotation;
-        let [qa, qb] = [a, b].map(|[x, y, z, w]| Rotation::from_xyzw(x, y, z, w));
-        (from + 1..to).all(|key| {
-            let t = (channel.times[key] - start) / span;
-            let between = if turns {
-                let q = qa.slerp(qb, t);
-                [q.x, q.y, q.z, q.w]
-            } else {
-                core::array::from_fn(|i| a[i] + t * (b[i] - a[i]))
-            };
-            self.off(key, between) <= self.tolerance
-        })
+        let line = Line::between(self.channel, from, to);
+        let holds = |key: usize| self.holds_at(key, line.at(self.channel.times[key]));
+        let middle = from + (to - from) / 2;
+        holds(middle) && (from + 1..middle).all(holds) && (middle + 1..to).all(holds)
     }
 
-    /// How far a key is from a value: units, or radians for small angles.
-    fn off(&self, key: usize, value: [f32; 4]) -> f32 {
+    /// Whether a key is near a value: by its own units, or by radians, for small angles.
+    fn holds_at(&self, key: usize, value: [f32; 4]) -> bool {
         let own = self.channel.value(key);
         let squared = |sign: f32| {
             own.iter().zip(&value).fold(0.0, |sum: f32, (a, b)| {
@@ -332,8 +365,8 @@ impl Line<'_> {
         };
         match self.channel.property {
             // A quaternion goes half as far as what it turns, and means the same with all signs turned.
-            Property::Rotation => 2.0 * min(squared(1.0), squared(-1.0)).sqrt(),
-            Property::Translation | Property::Scale => squared(1.0).sqrt(),
+            Property::Rotation => 4.0 * min(squared(1.0), squared(-1.0)) <= self.squared,
+            Property::Translation | Property::Scale => squared(1.0) <= self.squared,
         }
     }
 }

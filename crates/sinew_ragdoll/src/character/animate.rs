@@ -59,6 +59,17 @@ impl Character {
         self.pose.clone_from(&self.earlier.pose);
     }
 
+    /// A copy of the animator, in the place of the last one: it is to be put back into [`Scratch`](super::Scratch).
+    pub(super) fn sent_ahead(&mut self) -> Animator {
+        match self.scratch.ahead.take() {
+            Some(mut ahead) => {
+                ahead.copy_from(&self.animator);
+                ahead
+            }
+            None => self.animator.clone(),
+        }
+    }
+
     /// Poses of the bodies as an animator that is sent ahead has them after `seconds` more, seen from where the character
     /// stands now. `place` is where the animator has brought it until then.
     pub(super) fn bodies_ahead(

@@ -43,6 +43,7 @@ impl Character {
         let states = self.carried();
         self.let_linger(world);
         self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
+        self.scratch.posed.clear();
         self.ragdoll = Some(Ragdoll::spawn(world, &self.def.ragdoll, &states, &self.def.flesh));
         self.drives.set_all(self.def.falling, 0.0);
         self.state = State::Limp;
@@ -104,10 +105,11 @@ impl Character {
         let pose = core::mem::take(&mut self.pose);
         self.bodies_of(&pose, Transform::IDENTITY, &mut now);
         self.pose = pose;
-        let (mut animator, mut way) = (self.animator.clone(), Transform::IDENTITY);
+        let (mut animator, mut way) = (self.sent_ahead(), Transform::IDENTITY);
         self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut ahead);
         let mut further = Vec::new();
         self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut further);
+        self.scratch.ahead = Some(animator);
         let place = self.world_from_character;
         let state = |(((&now, &ahead), &further), body): (
             ((&Transform, &Transform), &Transform),
@@ -133,9 +135,24 @@ impl Character {
         let dt = world.def().dt();
         self.keep_earlier();
         self.animator.update(self.def.set(), dt);
-        self.come_to_rest(dt);
         let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
         ragdoll.poses(world, &mut self.scratch.after);
+        // Bodies that lie where the last pose had them need no other: most of a fall is lying.
+        if !self.lingering.is_over() || self.scratch.posed != self.scratch.after {
+            self.pose_by_bodies(dt);
+        }
+        for &joint in self.def.mapping().free() {
+            self.pose[joint] = self.animator.pose().get(joint);
+        }
+    }
+
+    /// The pose for bodies at `scratch.after`.
+    fn pose_by_bodies(&mut self, dt: f32) {
+        self.scratch.posed.clear();
+        if self.lingering.is_over() {
+            self.scratch.posed.extend_from_slice(&self.scratch.after);
+        }
+        self.come_to_rest(dt);
         self.physical.pose_over(
             self.def.mapping(),
             &self.def.rig,
@@ -144,9 +161,6 @@ impl Character {
             &self.scratch.after,
             &mut self.pose,
         );
-        for &joint in self.def.mapping().free() {
-            self.pose[joint] = self.animator.pose().get(joint);
-        }
     }
 
     /// Powers the joints of a falling body, for the next step, toward the pose of its clips.
@@ -156,10 +170,12 @@ impl Character {
         }
         let mut targets = core::mem::take(&mut self.scratch.after);
         let mut before = core::mem::take(&mut self.scratch.before);
-        let (mut animator, mut way) = (self.animator.clone(), Transform::IDENTITY);
-        self.bodies_ahead(&mut animator, &mut way, 0.0, &mut before);
+        let mut ahead = self.sent_ahead();
+        let mut way = Transform::IDENTITY;
+        self.bodies_ahead(&mut ahead, &mut way, 0.0, &mut before);
         let dt = world.def().dt();
-        self.bodies_ahead(&mut animator, &mut way, dt, &mut targets);
+        self.bodies_ahead(&mut ahead, &mut way, dt, &mut targets);
+        self.scratch.ahead = Some(ahead);
         let place = self.world_from_character;
         for pose in before.iter_mut().chain(&mut targets) {
             *pose = place * *pose;

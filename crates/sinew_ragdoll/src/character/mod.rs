@@ -109,9 +109,13 @@ struct Earlier {
     world_from_character: Transform,
 }
 
-/// Buffers that are kept to be used again; they hold nothing from one call to the next.
+/// Buffers that are kept to be used again; but for `posed` they hold nothing from one call to the next.
 #[derive(Clone, Debug, Default)]
 struct Scratch {
+    /// Bodies that the present pose was made of, where it will be the same as long as they stay; else nothing. Work that is
+    /// saved, not state: the pose is the same without it.
+    posed: Vec<Transform>,
+    ahead: Option<Animator>,
     pose: Vec<LocalTransform>,
     resting: Pose,
     model: Vec<Affine>,

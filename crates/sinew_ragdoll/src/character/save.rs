@@ -102,6 +102,7 @@ impl Character {
             self.physical.rebase(self.def.mapping(), &self.def.rig, &base);
         }
         self.events.clear();
+        self.scratch.posed.clear();
         Ok(())
     }
 
