@@ -35,6 +35,8 @@ impl Character {
             to.translation.y += clamp(height - to.translation.y, -CLIMB_SPEED * dt, CLIMB_SPEED * dt);
         }
         self.world_from_character = to;
+        let way = to.translation - from.translation;
+        self.speed = Vec3::new(way.x, 0.0, way.z).length() / dt;
         self.climbing = (to.translation.y - from.translation.y) / dt;
     }
 
@@ -85,6 +87,7 @@ impl Character {
         let mut pose = core::mem::take(&mut self.scratch.pose);
         pose.clear();
         pose.extend(ahead.pose().iter());
+        self.place_feet(self.planting.ahead(seconds), &mut pose);
         self.bodies_of(&pose, *place, out);
         self.scratch.pose = pose;
     }

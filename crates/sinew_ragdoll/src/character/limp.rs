@@ -1,5 +1,6 @@
 //! Going limp at the speed of the animation, and lying still.
 
+use super::feet::Planting;
 use super::{AfterSettling, Character, Event, State};
 use crate::def::RagdollBodyDef;
 use crate::drive::DriveMode;
@@ -40,7 +41,11 @@ impl Character {
         if self.ragdoll.is_some() {
             return self.fall_again(world);
         }
+        if !self.planting.is_over() {
+            self.pose.clone_from(&self.planted);
+        }
         let states = self.carried();
+        self.planting = Planting::default();
         self.let_linger(world);
         self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
         self.scratch.posed.clear();
