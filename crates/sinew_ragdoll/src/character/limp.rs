@@ -7,7 +7,7 @@ use crate::drive::DriveMode;
 use crate::hand_over::body_velocity;
 use crate::ragdoll::{BodyState, Ragdoll};
 use sinew_anim::{Motion, Pose};
-use sinew_math::{Transform, Vec3};
+use sinew_math::{Transform, Vec3, min};
 use sinew_physics::{BodyId, Velocity, World};
 
 /// Seconds between the poses ahead of now that the hand-over takes velocities from: short against any motion, long against
@@ -16,6 +16,9 @@ const HAND_OVER: f32 = 1.0 / 1000.0;
 
 /// Seconds in which what no body moves comes to rest.
 const LINGERS: f32 = 0.25;
+
+/// Seconds in which joints take on their friction.
+const SLACKENS: f32 = 0.2;
 
 /// A body below both speeds lies still, m/s and rad/s.
 pub(crate) const STILL_LINEAR: f32 = 0.02;
@@ -53,7 +56,18 @@ impl Character {
         self.drives.set_all(self.def.falling, 0.0);
         self.state = State::Limp;
         self.stillness = Stillness::default();
+        self.slacken(world);
         self.events.push(Event::WentLimp);
+    }
+
+    /// What muscles held a moment ago goes on: friction comes into the joints over [`SLACKENS`] seconds, for all of it at
+    /// once would stop a hand within a step.
+    fn slacken(&self, world: &mut World) {
+        let share = self.stillness.steps as f32 * world.def().dt() / SLACKENS;
+        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
+        for (joint, &id) in self.def.ragdoll.joints.iter().zip(&ragdoll.joints) {
+            world.set_joint_friction(id, joint.friction_torque * min(share, 1.0));
+        }
     }
 
     /// What no body moves does not stop at once: toes, helpers, and where joints sit that a clip moved along.
@@ -201,9 +215,13 @@ impl Character {
         self.follow_bodies(world);
         self.brace(world);
         let dt = world.def().dt();
+        let was_slack = self.stillness.steps as f32 * dt < SLACKENS;
+        self.stillness.steps += 1;
+        if was_slack {
+            self.slacken(world);
+        }
         let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
         let still = &mut self.stillness;
-        still.steps += 1;
         if !still.touched && touches_world(world, &ragdoll.bodies) {
             still.touched = true;
             self.events.push(Event::Touched);
