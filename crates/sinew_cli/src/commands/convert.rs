@@ -3,7 +3,7 @@
 use crate::bones::flesh_out;
 use crate::commands::clip_choice::choose_clips;
 use crate::failure::{Failure, Result};
-use crate::files::{CharacterFile, Outputs};
+use crate::files::{CharacterFile, Outputs, never_over};
 use crate::motion::Motion;
 use crate::onto::{Carried, carry};
 use crate::report::Report;
@@ -135,7 +135,7 @@ impl Convert {
     /// Reads, converts, writes.
     pub fn run(&self) -> Result<Report> {
         let target = self.target()?;
-        self.check_paths()?;
+        never_over([&self.input].into_iter().chain(&self.onto).map(PathBuf::as_path), [self.output()])?;
         let mut motion = Motion::load(&self.input, &self.motion_options())?;
         let chosen = choose_clips(&motion, &self.clips)?;
         let source = &mut motion.file;
@@ -178,18 +178,6 @@ impl Convert {
             "bvh" => Ok(Target::Bvh),
             _ => Err(Failure::Usage(format!("'{}' must end in .glb or .bvh", self.output().display()))),
         }
-    }
-
-    /// The user's own files are never the output.
-    fn check_paths(&self) -> Result<()> {
-        let real = |path: &Path| std::fs::canonicalize(path).ok();
-        let output = real(self.output());
-        let mut inputs = std::iter::once(&self.input).chain(&self.onto);
-        if output.is_some() && inputs.any(|input| real(input) == output) {
-            let what = format!("{} is an input: write to another file", self.output().display());
-            return Err(Failure::Usage(what));
-        }
-        Ok(())
     }
 
     fn motion_options(&self) -> MotionOptions<'static> {

@@ -201,8 +201,43 @@ fn outputs_come_together_or_not_at_all_and_never_over_an_input() {
     let run = sinew(&["bake", &file, "--seconds", "0.1", "-o", &out, "--picture", &picture]);
     assert_eq!(run.refusal(1), format!("error: {picture}: cannot write: no such file"));
     assert_eq!(folder.names(), ["mannequin.glb"]);
-    let run = sinew(&["bake", &file, "-o", &file]);
-    assert_eq!(run.refusal(2), format!("error: {file} is an input: write to another file"));
+    let settings = folder.file("mannequin.ragdoll.json", r#"{ "sinew": "ragdoll-settings", "version": 1 }"#);
+    let before = [&file, &settings].map(|path| fs::read(path).expect("the file"));
+    for input in [&file, &settings] {
+        for command in [
+            &["bake", &file, "-o", input][..],
+            &["ragdoll", "build", &file, "-o", input],
+            &["ragdoll", "doctor", &file, "--fix", "-o", input],
+            &["ragdoll", "export", &file, "--as", "mjcf", "-o", input],
+        ] {
+            // A bake's file has an extension of its own.
+            if command[0] != "bake" || input == &file {
+                let run = sinew(command);
+                assert_eq!(run.refusal(2), format!("error: {input} is an input: write to another file"));
+            }
+        }
+    }
+    assert_eq!([&file, &settings].map(|path| fs::read(path).expect("the file")), before);
+}
+
+#[test]
+fn what_would_never_happen_is_refused() {
+    let folder = Folder::new("late");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let line = |extra: &[&str]| {
+        sinew(&[&["bake", file.as_str(), "-o", &out, "--seconds", "2"], extra].concat()).refusal(2).to_owned()
+    };
+    assert_eq!(
+        line(&["--hit", "chest=0,0,9@1", "--hit", "chest=0,0,9@3"]),
+        "error: --hit at 3 s is after the end, at 2 s (--seconds)"
+    );
+    assert_eq!(line(&["--limp-at", "2.5"]), "error: --limp-at at 2.5 s is after the end, at 2 s (--seconds)");
+    for (option, why) in [("--key-error", "between 0 and 100 mm"), ("--limp-at", "between 0 and 600 s")] {
+        let run = sinew(&["bake", &file, "-o", &out, option, "-1"]);
+        assert!(run.code == Some(2) && run.stderr.contains(why), "{run:?}");
+    }
+    let run = sinew(&["ragdoll", "build", &file, "--mass", "-4"]);
+    assert!(run.refusal(1).contains("mass"), "{run:?}");
 }
 
 #[test]

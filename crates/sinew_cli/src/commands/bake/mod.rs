@@ -6,7 +6,7 @@ mod hit;
 
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
-use crate::files::{CharacterFile, Outputs};
+use crate::files::{CharacterFile, Outputs, never_over};
 use crate::film::{FLOOR_HALF_SIZE, Film, body_models};
 use crate::picture_file::{PictureFile, length, seconds};
 use crate::ragdoll_file::read_definition;
@@ -45,7 +45,7 @@ Example:
 
 Keys that no joint needs to stay within --key-error are left out. A BVH holds the skeleton alone, with every frame.")]
 pub struct Bake {
-    /// A glTF, GLB or VRM file with a skinned character
+    /// A GLB, glTF, VRM or FBX file with a skinned character
     character: PathBuf,
     /// The clip that plays until the fall, by name, or by number from 0 if it has none; without it the file's walk,
     /// else its idle, else its first clip; in a file without clips the rest pose
@@ -67,17 +67,17 @@ pub struct Bake {
     #[arg(long = "hit", value_name = "BONE=IX,IY,IZ@T", allow_hyphen_values = true)]
     hits: Vec<HitArg>,
     /// Go limp at this time, seconds; without any --hit the default is 0.5
-    #[arg(long, value_name = "T", value_parser = seconds)]
+    #[arg(long, value_name = "T", value_parser = seconds, allow_negative_numbers = true)]
     limp_at: Option<f32>,
     /// Length of the clip, seconds
-    #[arg(long, value_name = "S", default_value = "8", value_parser = length)]
+    #[arg(long, value_name = "S", default_value = "8", value_parser = length, allow_negative_numbers = true)]
     seconds: f32,
     /// Frames per second of the clip
     #[arg(long, value_name = "N", default_value = "30", value_parser = clap::value_parser!(u16).range(1..=240))]
     fps: u16,
     /// How far any joint of the clip may be from the simulation at a frame, mm, and by how many tenths of a degree it may
     /// be turned; 0 keeps a key for every frame. Default 0.1: a tenth of a millimetre, a hundredth of a degree
-    #[arg(long, value_name = "MM", value_parser = key_error)]
+    #[arg(long, value_name = "MM", value_parser = key_error, allow_negative_numbers = true)]
     key_error: Option<f32>,
     /// Where to write: a copy of your file with the new clip in it (.glb, .vrm), or its skeleton and the clip (.bvh)
     #[arg(short, long, value_name = "OUT.(glb|vrm|bvh)")]
@@ -105,6 +105,7 @@ impl Bake {
     pub fn run(&self) -> Result<Report> {
         let key_bound = self.key_bound()?;
         self.check_outputs()?;
+        self.check_times()?;
         let textures = if self.picture.is_some() { Textures::Decode } else { Textures::Skip };
         let file = CharacterFile::load(&self.character, textures)?;
         let motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
@@ -153,26 +154,23 @@ impl Bake {
         read_definition(path, file)
     }
 
-    /// The user's own file is never the output.
+    /// The user's own files are never the output.
     fn check_outputs(&self) -> Result<()> {
-        let real = |path: &Path| std::fs::canonicalize(path).ok();
-        let inputs: Vec<_> = self
-            .clips
-            .iter()
-            .map(PathBuf::as_path)
-            .chain(self.world.as_deref())
-            .chain(self.ragdoll.as_deref())
-            .chain(self.settings.path())
-            .chain([self.character.as_path()])
-            .filter_map(real)
-            .collect();
-        for output in self.outputs() {
-            if real(output).is_some_and(|output| inputs.contains(&output)) {
-                let output = output.display();
-                return Err(Failure::Usage(format!("{output} is an input: write to another file")));
+        let settings = self.settings.path_for(&self.character);
+        let inputs = self.clips.iter().chain([&self.character, &settings]).map(PathBuf::as_path);
+        never_over(inputs.chain(self.world.as_deref()).chain(self.ragdoll.as_deref()), self.outputs())
+    }
+
+    /// What is to happen happens before the end.
+    fn check_times(&self) -> Result<()> {
+        let hits = self.hits.iter().map(|hit| ("--hit", hit.time));
+        match hits.chain(self.limp_at.map(|time| ("--limp-at", time))).find(|(_, t)| *t > self.seconds) {
+            Some((what, time)) => {
+                let end = self.seconds;
+                Err(Failure::Usage(format!("{what} at {time} s is after the end, at {end} s (--seconds)")))
             }
+            None => Ok(()),
         }
-        Ok(())
     }
 
     fn outputs(&self) -> Vec<&Path> {
