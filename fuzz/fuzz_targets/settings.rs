@@ -10,7 +10,13 @@ fuzz_target!(|bytes: &[u8]| {
         Ok(settings) => {
             let positive = |x: Option<f32>| x.is_none_or(|x| x > 0.0 && x.is_finite());
             assert!(positive(settings.mass));
-            assert!(settings.bones.iter().all(|bone| !bone.name.is_empty()));
+            let names = settings.bones.iter().map(|(name, _)| name);
+            assert!(
+                names
+                    .clone()
+                    .enumerate()
+                    .all(|(i, name)| names.clone().skip(i + 1).all(|other| other != name))
+            );
         }
     }
 });
