@@ -6,7 +6,7 @@
 //! corrected until the bound is used up and kept.
 
 use crate::clip::{Channel, Clip, Interpolation, Property};
-use crate::pose::{local_to_model, rest_pose};
+use crate::pose::rest_pose;
 use crate::rig::{JointIdx, LocalTransform, Rig};
 use crate::sample::{channel_at, write_property};
 use sinew_math::{Affine, Rotation, Vec3, clamp, max, min};
@@ -71,7 +71,7 @@ pub fn reduce_keys(rig: &Rig, clip: &Clip, root: &Affine, bound: KeyBound) -> Re
     assert!(sound(bound.distance) && sound(bound.angle), "a bound is not negative, and finite: {bound:?}");
     let before = count(clip);
     let all = || Reduced { clip: clip.clone(), error: KeyError::default(), keys: [before, before] };
-    if bound.distance <= 0.0 || bound.angle <= 0.0 || rig.joints.is_empty() {
+    if bound.distance <= 0.0 || bound.angle <= 0.0 || rig.joints.is_empty() || moves_twice(rig, clip) {
         return all();
     }
     let meter = Meter::new(rig, clip, root);
@@ -96,6 +96,12 @@ fn count(clip: &Clip) -> usize {
     clip.channels.iter().map(|channel| channel.times.len()).sum()
 }
 
+/// Whether two channels move the same: then what one does depends on the other, and no key is left out.
+fn moves_twice(rig: &Rig, clip: &Clip) -> bool {
+    let mut moved = vec![[false; 3]; rig.joints.len()];
+    clip.channels.iter().any(|c| core::mem::replace(&mut moved[c.joint][c.property as usize], true))
+}
+
 /// A clip, and what is needed to choose its keys and to measure what that did.
 struct Meter<'a> {
     rig: &'a Rig,
@@ -103,8 +109,10 @@ struct Meter<'a> {
     root: &'a Affine,
     /// All times of keys.
     times: Vec<f32>,
-    /// Where the joints are at these times, times the root: time by time.
+    /// Where the joints are at these times, times the root: time by time; and whether that is elsewhere than the time
+    /// before.
     model: Vec<Affine>,
+    moved: Vec<bool>,
     /// Per joint: how far it is to the farthest that hangs on it at any time, and how much longer a length of its
     /// parent's axes is in the space of the bound.
     reach: Vec<f32>,
@@ -123,20 +131,22 @@ impl<'a> Meter<'a> {
                 times.dedup();
             }
         }
-        let model = Vec::with_capacity(times.len() * joints);
-        let mut meter =
-            Self { rig, clip, root, times, model, reach: vec![0.0; joints], scale: vec![0.0; joints] };
+        let size = times.len() * joints;
+        let (model, moved) = (Vec::with_capacity(size), Vec::with_capacity(size));
+        let (reach, scale) = (vec![0.0; joints], vec![0.0; joints]);
+        let mut meter = Self { rig, clip, root, times, model, moved, reach, scale };
         let mut bones = vec![0.0; joints];
         let mut poses = Poses::new(rig, clip);
         for &time in &meter.times {
             poses.sample(rig, clip, root, time);
-            for (i, joint) in rig.joints.iter().enumerate() {
+            for (i, joint) in rig.joints.iter().enumerate().filter(|(i, _)| poses.moved[*i]) {
                 let parent = joint.parent.map_or(root, |parent| &poses.model[parent]);
                 let bone = poses.model[i].translation - parent.translation;
                 bones[i] = max(bones[i], bone.length_squared());
                 meter.scale[i] = max(meter.scale[i], longest_squared(parent));
             }
             meter.model.extend_from_slice(&poses.model);
+            meter.moved.extend_from_slice(&poses.moved);
         }
         meter.scale.iter_mut().for_each(|scale| *scale = scale.sqrt());
         bones.iter_mut().for_each(|bone| *bone = bone.sqrt());
@@ -150,8 +160,8 @@ impl<'a> Meter<'a> {
 
     /// The clip with the keys that channels need which may use up `share` of the bound each.
     fn thinned(&self, bound: KeyBound, share: f32) -> Clip {
-        let mut clip = Clip { channels: Vec::with_capacity(self.clip.channels.len()), ..self.clip.clone() };
-        clip.channels.clear();
+        let channels = Vec::with_capacity(self.clip.channels.len());
+        let mut clip = Clip { name: self.clip.name.clone(), duration: self.clip.duration, channels };
         for channel in &self.clip.channels {
             let tolerance = share * self.tolerance(channel.property, channel.joint, bound);
             clip.channels.push(thinned(channel, tolerance));
@@ -182,9 +192,13 @@ impl<'a> Meter<'a> {
     fn error(&self, reduced: &Clip) -> KeyError {
         let mut poses = Poses::new(self.rig, reduced);
         let mut worst = KeyError::default();
-        for (&time, was) in self.times.iter().zip(self.model.chunks_exact(self.rig.joints.len())) {
+        let joints = self.rig.joints.len();
+        for (at, &time) in self.times.iter().enumerate() {
             poses.sample(self.rig, reduced, self.root, time);
-            for (a, b) in was.iter().zip(&poses.model) {
+            let here = at * joints..(at + 1) * joints;
+            let (was, moved) = (&self.model[here.clone()], &self.moved[here]);
+            for joint in (0..joints).filter(|&joint| moved[joint] || poses.moved[joint]) {
+                let (a, b) = (&was[joint], &poses.model[joint]);
                 worst.distance = max(worst.distance, (a.translation - b.translation).length_squared());
                 worst.angle = max(worst.angle, turned_squared(a, b));
             }
@@ -193,22 +207,30 @@ impl<'a> Meter<'a> {
     }
 }
 
-/// Poses of a clip at ever later times, and their buffers.
+/// Poses of a clip at ever later times. What does not move from one to the next costs next to nothing.
 struct Poses {
-    /// Per channel: its last key not after the time.
+    /// Per channel: its last key not after the time, and its value at the last time.
     keys: Vec<usize>,
+    values: Vec<Option<[f32; 4]>>,
     local: Vec<LocalTransform>,
     model: Vec<Affine>,
+    /// Which joints are elsewhere than at the last time.
+    moved: Vec<bool>,
 }
 
 impl Poses {
     fn new(rig: &Rig, clip: &Clip) -> Self {
-        Self { keys: vec![0; clip.channels.len()], local: rest_pose(rig), model: Vec::new() }
+        let (keys, values) = (vec![0; clip.channels.len()], vec![None; clip.channels.len()]);
+        let (model, moved) = (vec![Affine::IDENTITY; rig.joints.len()], vec![true; rig.joints.len()]);
+        Self { keys, values, local: rest_pose(rig), model, moved }
     }
 
     /// As [`sample`](crate::sample()); values at keys are taken as they are, so that most cost nothing.
     fn sample(&mut self, rig: &Rig, clip: &Clip, root: &Affine, time: f32) {
-        for (channel, key) in clip.channels.iter().zip(&mut self.keys) {
+        let is_first = self.values.iter().all(Option::is_none);
+        self.moved.fill(is_first);
+        for (i, channel) in clip.channels.iter().enumerate() {
+            let key = &mut self.keys[i];
             while channel.times.get(*key + 1).is_some_and(|&next| next <= time) {
                 *key += 1;
             }
@@ -218,9 +240,19 @@ impl Poses {
                 Interpolation::Linear => Line::between(channel, *key, *key + 1).at(time),
                 Interpolation::Step | Interpolation::CubicSpline => channel_at(channel, time),
             };
-            write_property(&mut self.local[channel.joint], channel.property, value);
+            if self.values[i] != Some(value) {
+                self.values[i] = Some(value);
+                self.moved[channel.joint] = true;
+                write_property(&mut self.local[channel.joint], channel.property, value);
+            }
         }
-        local_to_model(rig, &self.local, root, &mut self.model);
+        for (i, joint) in rig.joints.iter().enumerate() {
+            self.moved[i] |= joint.parent.is_some_and(|parent| self.moved[parent]);
+            if self.moved[i] {
+                let parent = joint.parent.map_or(root, |parent| &self.model[parent]);
+                self.model[i] = *parent * self.local[i].to_affine();
+            }
+        }
     }
 }
 
@@ -308,8 +340,11 @@ impl Line {
     }
 
     fn at(&self, time: f32) -> [f32; 4] {
-        let t = (time - self.start) / self.span;
         let [a, b] = self.values;
+        if a == b {
+            return a;
+        }
+        let t = (time - self.start) / self.span;
         if self.property == Property::Rotation {
             let [a, b] = [a, b].map(|[x, y, z, w]| Rotation::from_xyzw(x, y, z, w));
             let q = a.slerp(b, t);
