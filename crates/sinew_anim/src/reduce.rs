@@ -53,10 +53,10 @@ pub struct Reduced {
 }
 
 /// Rounds of choosing and measuring, and the share of the bound that is good enough to stop at.
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 4;
 const GOOD_ENOUGH: f32 = 0.75;
 /// Share of the bound for each channel to begin with: errors of different joints hardly ever add up.
-const FIRST_SHARE: f32 = 0.7;
+const FIRST_SHARE: f32 = 0.55;
 /// The share aims at this much of the bound.
 const AIM: f32 = 0.9;
 
@@ -76,6 +76,8 @@ pub fn reduce_keys(rig: &Rig, clip: &Clip, root: &Affine, bound: KeyBound) -> Re
     }
     let meter = Meter::new(rig, clip, root);
     let (mut best, mut share): (Option<Reduced>, f32) = (None, FIRST_SHARE);
+    // The largest share that kept the bound, and the smallest that broke it.
+    let (mut kept, mut broke) = (0.0, f32::INFINITY);
     for _ in 0..ROUNDS {
         let reduced = meter.thinned(bound, share);
         let error = meter.error(&reduced);
@@ -87,7 +89,13 @@ pub fn reduce_keys(rig: &Rig, clip: &Clip, root: &Affine, bound: KeyBound) -> Re
         if (GOOD_ENOUGH..=1.0).contains(&used) {
             break;
         }
-        share *= clamp(AIM / max(used, 1e-3), 0.2, 3.0);
+        if used <= 1.0 {
+            kept = share;
+        } else {
+            broke = share;
+        }
+        let next = share * clamp(AIM / max(used, 1e-3), 0.2, 3.0);
+        share = if kept < next && next < broke { next } else { 0.5 * (kept + broke) };
     }
     best.unwrap_or_else(all)
 }
@@ -105,7 +113,8 @@ fn moves_twice(rig: &Rig, clip: &Clip) -> bool {
 /// A clip, and what is needed to choose its keys and to measure what that did.
 struct Meter<'a> {
     rig: &'a Rig,
-    clip: &'a Clip,
+    /// The same motion: of equal keys one after the other only the first and the last.
+    clip: Clip,
     root: &'a Affine,
     /// All times of keys.
     times: Vec<f32>,
@@ -120,7 +129,7 @@ struct Meter<'a> {
 }
 
 impl<'a> Meter<'a> {
-    fn new(rig: &'a Rig, clip: &'a Clip, root: &'a Affine) -> Self {
+    fn new(rig: &'a Rig, clip: &Clip, root: &'a Affine) -> Self {
         let joints = rig.joints.len();
         let mut times: Vec<f32> = Vec::new();
         for channel in &clip.channels {
@@ -131,14 +140,16 @@ impl<'a> Meter<'a> {
                 times.dedup();
             }
         }
+        let channels = clip.channels.iter().map(without_repeats).collect();
+        let clip = Clip { name: clip.name.clone(), duration: clip.duration, channels };
         let size = times.len() * joints;
         let (model, moved) = (Vec::with_capacity(size), Vec::with_capacity(size));
         let (reach, scale) = (vec![0.0; joints], vec![0.0; joints]);
         let mut meter = Self { rig, clip, root, times, model, moved, reach, scale };
         let mut bones = vec![0.0; joints];
-        let mut poses = Poses::new(rig, clip);
+        let mut poses = Poses::new(rig, &meter.clip);
         for &time in &meter.times {
-            poses.sample(rig, clip, root, time);
+            poses.sample(rig, &meter.clip, root, time);
             for (i, joint) in rig.joints.iter().enumerate().filter(|(i, _)| poses.moved[*i]) {
                 let parent = joint.parent.map_or(root, |parent| &poses.model[parent]);
                 let bone = poses.model[i].translation - parent.translation;
@@ -209,9 +220,10 @@ impl<'a> Meter<'a> {
 
 /// Poses of a clip at ever later times. What does not move from one to the next costs next to nothing.
 struct Poses {
-    /// Per channel: its last key not after the time, and its value at the last time.
+    /// Per channel: its last key not after the time, and until when its value stays.
     keys: Vec<usize>,
-    values: Vec<Option<[f32; 4]>>,
+    stays: Vec<f32>,
+    is_first: bool,
     local: Vec<LocalTransform>,
     model: Vec<Affine>,
     /// Which joints are elsewhere than at the last time.
@@ -220,31 +232,26 @@ struct Poses {
 
 impl Poses {
     fn new(rig: &Rig, clip: &Clip) -> Self {
-        let (keys, values) = (vec![0; clip.channels.len()], vec![None; clip.channels.len()]);
+        let (keys, stays) = (vec![0; clip.channels.len()], vec![f32::NEG_INFINITY; clip.channels.len()]);
         let (model, moved) = (vec![Affine::IDENTITY; rig.joints.len()], vec![true; rig.joints.len()]);
-        Self { keys, values, local: rest_pose(rig), model, moved }
+        Self { keys, stays, is_first: true, local: rest_pose(rig), model, moved }
     }
 
     /// As [`sample`](crate::sample()); values at keys are taken as they are, so that most cost nothing.
     fn sample(&mut self, rig: &Rig, clip: &Clip, root: &Affine, time: f32) {
-        let is_first = self.values.iter().all(Option::is_none);
-        self.moved.fill(is_first);
+        self.moved.fill(core::mem::take(&mut self.is_first));
         for (i, channel) in clip.channels.iter().enumerate() {
+            if time <= self.stays[i] {
+                continue;
+            }
             let key = &mut self.keys[i];
             while channel.times.get(*key + 1).is_some_and(|&next| next <= time) {
                 *key += 1;
             }
-            let is_key = channel.times[*key] >= time || *key + 1 == channel.times.len();
-            let value = match channel.interpolation {
-                Interpolation::Linear if is_key => channel.value(*key),
-                Interpolation::Linear => Line::between(channel, *key, *key + 1).at(time),
-                Interpolation::Step | Interpolation::CubicSpline => channel_at(channel, time),
-            };
-            if self.values[i] != Some(value) {
-                self.values[i] = Some(value);
-                self.moved[channel.joint] = true;
-                write_property(&mut self.local[channel.joint], channel.property, value);
-            }
+            let (value, stays) = value_and_end(channel, *key, time);
+            self.stays[i] = stays;
+            self.moved[channel.joint] = true;
+            write_property(&mut self.local[channel.joint], channel.property, value);
         }
         for (i, joint) in rig.joints.iter().enumerate() {
             self.moved[i] |= joint.parent.is_some_and(|parent| self.moved[parent]);
@@ -254,6 +261,24 @@ impl Poses {
             }
         }
     }
+}
+
+/// Value of a channel at `time`, `key` the last not after it, and until when it stays: a time before now where it moves. At
+/// keys it is taken as it is.
+fn value_and_end(channel: &Channel, key: usize, time: f32) -> ([f32; 4], f32) {
+    if channel.interpolation != Interpolation::Linear {
+        return (channel_at(channel, time), f32::NEG_INFINITY);
+    }
+    let Some(&next) = channel.times.get(key + 1) else { return (channel.value(key), f32::INFINITY) };
+    if time < channel.times[key] {
+        return (channel.value(key), f32::NEG_INFINITY);
+    }
+    let line = Line::between(channel, key, key + 1);
+    let [a, b] = line.values;
+    if a == b {
+        return (a, next);
+    }
+    (if time == channel.times[key] { a } else { line.at(time) }, f32::NEG_INFINITY)
 }
 
 /// Square of the length of the longest axis of a map.
@@ -273,6 +298,21 @@ fn turned_squared(a: &Affine, b: &Affine) -> f32 {
         if min(la, lb) > 0.0 { (a * (1.0 / la) - b * (1.0 / lb)).length_squared() } else { 0.0 }
     };
     0.5 * axes.into_iter().map(moved).sum::<f32>()
+}
+
+/// A linear channel without keys that are equal to both their neighbours.
+fn without_repeats(channel: &Channel) -> Channel {
+    if channel.interpolation != Interpolation::Linear {
+        return channel.clone();
+    }
+    let width = channel.property.width();
+    let value = |key: usize| &channel.values[key * width..][..width];
+    let last = channel.times.len() - 1;
+    let says_more = |&key: &usize| {
+        key == 0 || key == last || value(key) != value(key - 1) || value(key) != value(key + 1)
+    };
+    let kept: Vec<usize> = (0..=last).filter(says_more).collect();
+    with_keys(channel, &kept)
 }
 
 /// A channel without the keys that lines between the others tell within `tolerance`.
@@ -341,9 +381,6 @@ impl Line {
 
     fn at(&self, time: f32) -> [f32; 4] {
         let [a, b] = self.values;
-        if a == b {
-            return a;
-        }
         let t = (time - self.start) / self.span;
         if self.property == Property::Rotation {
             let [a, b] = [a, b].map(|[x, y, z, w]| Rotation::from_xyzw(x, y, z, w));

@@ -303,6 +303,10 @@ impl Frames {
 }
 
 fn between(a: &LocalTransform, b: &LocalTransform, t: f32) -> LocalTransform {
+    // What lies still has the same bits in all frames.
+    if a == b {
+        return *a;
+    }
     LocalTransform {
         translation: a.translation * (1.0 - t) + b.translation * t,
         rotation: a.rotation.nlerp(b.rotation, t),
