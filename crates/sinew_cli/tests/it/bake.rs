@@ -2,10 +2,10 @@
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, shared_data, sinew};
-use sinew::anim::{Clip, Rig, Wrap, local_to_model, rest_pose, sample};
+use sinew::anim::{Clip, Joint, Rig, Wrap, local_to_model, rest_pose, sample};
 use sinew::formats::bvh::BvhUnit;
-use sinew::formats::{BvhOptions, ReadOptions, load_gltf, read_bvh, write_world};
-use sinew::math::Affine;
+use sinew::formats::{BvhDocument, BvhOptions, Document, ReadOptions, load_gltf, read_bvh, write_world};
+use sinew::math::{Affine, Rotation, Vec3};
 use sinew_scenes::cabin::Site;
 use std::fs;
 
@@ -76,6 +76,36 @@ fn keys_that_are_not_needed_are_left_out() {
     assert!((clip.duration - 3.0).abs() < 1e-6);
 }
 
+/// Farthest that a joint of a BVH is from that of the same name in the last clip of a file, whose unit is so many metres.
+fn between(document: &Document, bvh: &BvhDocument, unit: f32) -> f32 {
+    let clip = document.clips.last().expect("a clip");
+    let named = |(_, joint): &(usize, &Joint)| !joint.name.is_empty();
+    let same = |joint: &Joint| {
+        let found = document.rig.joints.iter().position(|other| other.name.replace(' ', "_") == joint.name);
+        found.unwrap_or_else(|| panic!("no joint {}", joint.name))
+    };
+    let pairs: Vec<[usize; 2]> =
+        bvh.rig.joints.iter().enumerate().filter(named).map(|(index, joint)| [same(joint), index]).collect();
+    assert!(pairs.len() > 10, "{} joints", pairs.len());
+    let mut worst = 0.0;
+    for frame in 0..bvh.frames {
+        let time = (frame as f64 * bvh.frame_time) as f32;
+        let places = |rig: &Rig, clip: &Clip, unit: f32| {
+            let (mut pose, mut model) = (rest_pose(rig), Vec::new());
+            sample(clip, rig, time, Wrap::Clamp, &mut pose);
+            let scaled =
+                Affine::from_scale_rotation_translation(Vec3::splat(unit), Rotation::IDENTITY, Vec3::ZERO);
+            local_to_model(rig, &pose, &scaled, &mut model);
+            model
+        };
+        let [from, to] = [places(&document.rig, clip, unit), places(&bvh.rig, &bvh.clip, 1.0)];
+        for &[a, b] in &pairs {
+            worst = sinew::math::max(worst, (from[a].translation - to[b].translation).length());
+        }
+    }
+    worst
+}
+
 #[test]
 fn a_bvh_has_the_bones_and_every_frame() {
     let folder = Folder::new("bvh");
@@ -96,25 +126,7 @@ fn a_bvh_has_the_bones_and_every_frame() {
             (read.frames, (1.0 / read.frame_time).round() as u32),
             (frames, fps.parse().expect("a number"))
         );
-        let document = load_gltf(&glb, ReadOptions::default()).expect("it can be read");
-        let clip = document.clips.last().expect("a clip");
-        let mut worst = 0.0;
-        for frame in 0..frames {
-            let time = (frame as f64 * read.frame_time) as f32;
-            let places = |rig: &Rig, clip: &Clip| {
-                let (mut pose, mut model) = (rest_pose(rig), Vec::new());
-                sample(clip, rig, time, Wrap::Clamp, &mut pose);
-                local_to_model(rig, &pose, &Affine::IDENTITY, &mut model);
-                model
-            };
-            let [from, to] = [places(&document.rig, clip), places(&read.rig, &read.clip)];
-            for (joint, place) in read.rig.joints.iter().zip(&to).filter(|(joint, _)| !joint.name.is_empty())
-            {
-                let same = document.rig.joints.iter().position(|other| other.name == joint.name);
-                let same = same.unwrap_or_else(|| panic!("no joint {}", joint.name));
-                worst = sinew::math::max(worst, (from[same].translation - place.translation).length());
-            }
-        }
+        let worst = between(&load_gltf(&glb, ReadOptions::default()).expect("it can be read"), &read, 1.0);
         // Six digits behind the point, of degrees and centimetres.
         assert!(worst < 2e-5, "{fps}: {worst} m off");
     }
@@ -256,5 +268,27 @@ fn strangers_are_baked() {
         assert_eq!(object["nan"], 0, "{name}");
         assert!(object["first_contact_s"].is_number(), "{name}: {object:#}");
         assert!(load_gltf(&out, ReadOptions::default()).is_ok(), "{name}");
+    }
+}
+
+#[test]
+fn strangers_become_a_bvh() {
+    let Some(data) = shared_data() else { return };
+    let folder = Folder::new("strangers-bvh");
+    for name in ["CesiumMan.glb", "kaykit_Knight.glb", "Fox.glb", "quaternius_cyberpunk_Character.glb"] {
+        let file = data.join("rigs").join(name).display().to_string();
+        let (bvh, glb) = (folder.path("fall.bvh"), folder.path("fall.glb"));
+        let arguments = ["bake", &file, "--seconds", "1.5", "--json"];
+        let object = sinew(&[&arguments[..], &["-o", &bvh]].concat()).json();
+        sinew(&[&arguments[..], &["--key-error", "0", "-o", &glb]].concat()).json();
+        let unit = sinew(&["inspect", &file, "--json"]).json()["unit_scale"].as_f64().expect("a unit") as f32;
+        let text = fs::read(&bvh).expect("it is written");
+        let options = BvhOptions { unit: BvhUnit::Metres(0.01), ..BvhOptions::default() };
+        let read = read_bvh(&text, options).expect("it can be read");
+        assert_eq!(object["frames"], read.frames, "{name}");
+        let document = load_gltf(&glb, ReadOptions::default()).expect("it can be read");
+        let worst = between(&document, &read, unit);
+        println!("{name}: {worst} m, {}", object["notes"]);
+        assert!(worst < 2e-4, "{name}: {worst} m off, {object:#}");
     }
 }
