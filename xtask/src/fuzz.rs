@@ -8,7 +8,7 @@ const FOLDER: &str = "fuzz";
 /// `cargo xtask fuzz`: looks for bytes that break something, each target for a while.
 ///
 /// What it finds lies in fuzz/artifacts; what it learns, in fuzz/corpus, from which the next run goes on. Files in
-/// `../shared/data` are where it begins, if they are there.
+/// fuzz/seeds, and in `../shared/data` if they are there, are where it begins.
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask fuzz --target bvh --seconds 600")]
 pub struct Fuzz {
@@ -33,7 +33,11 @@ const TARGETS: &[Target] = &[
     Target { name: "clip", seeds: "", longest: 4_096 },
     Target { name: "deepmimic", seeds: "../shared/data/mocap", longest: 16_384 },
     Target { name: "events", seeds: "", longest: 4_096 },
+    Target { name: "fbx", seeds: "fuzz/seeds/fbx", longest: 16_384 },
     Target { name: "gltf", seeds: "../shared/data/rigs", longest: 65_536 },
+    Target { name: "jolt", seeds: "../shared/data/peers/jolt", longest: 32_768 },
+    Target { name: "ragdoll", seeds: "fuzz/seeds/ragdoll", longest: 16_384 },
+    Target { name: "settings", seeds: "fuzz/seeds/settings", longest: 4_096 },
 ];
 
 impl Fuzz {

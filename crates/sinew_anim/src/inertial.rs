@@ -96,6 +96,12 @@ pub struct Motion<'a> {
 }
 
 impl Inertia {
+    /// Becomes another; allocates where it has not seen as many joints.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.joints.clone_from(&other.joints);
+        (self.seconds, self.elapsed) = (other.seconds, other.elapsed);
+    }
+
     /// Takes what `from` (its pose now, and one earlier) is beyond `to` (its pose now, and one later), to die away within
     /// `seconds`. All four poses have the same length. Allocates where it has not seen as many joints.
     ///

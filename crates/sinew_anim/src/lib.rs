@@ -17,6 +17,7 @@ pub mod learned_limits;
 pub mod legs;
 pub mod playhead;
 pub mod pose;
+pub mod reduce;
 pub mod retarget;
 pub mod rig;
 pub mod roles;
@@ -39,6 +40,7 @@ pub use pose::{
     BlendLayer, BlendOptions, Blender, JointVelocity, Mask, ModelPose, Pose, RotationMean, Skeleton,
     WeightedPose, blend, crossfade, joint_velocities, local_to_model, rest_pose, smoothstep,
 };
+pub use reduce::{KeyBound, KeyError, Reduced, reduce_keys};
 pub use rig::{Joint, JointIdx, LocalTransform, Mesh, Primitive, Rig, Skin, Texture};
 pub use roles::{KeptBone, NoSkin, RigAnalysis, Role, RoleGuess, Side, analyze, analyze_skeleton};
 pub use root_motion::{AxisMotion, MotionTrack, RootMotionOptions, extract_root_motion};

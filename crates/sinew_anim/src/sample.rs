@@ -87,7 +87,8 @@ fn last_key_at(times: &[f32], time: f32, hint: usize) -> usize {
     times.partition_point(|&t| t <= time).saturating_sub(1)
 }
 
-fn write_property(target: &mut LocalTransform, property: Property, [x, y, z, w]: [f32; 4]) {
+/// Sets one property of a local transform.
+pub(crate) fn write_property(target: &mut LocalTransform, property: Property, [x, y, z, w]: [f32; 4]) {
     match property {
         Property::Translation => target.translation = Vec3::new(x, y, z),
         Property::Rotation => target.rotation = Rotation::from_xyzw(x, y, z, w).normalize(),

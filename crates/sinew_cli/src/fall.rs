@@ -36,6 +36,13 @@ impl<'a> Fall<'a> {
         object.insert("frames".into(), self.baked.frames.len().into());
         object.insert("bodies".into(), self.baked.bodies.into());
         object.insert("realtime_factor".into(), json!(self.realtime_factor));
+        let (bound, error) = (self.input.key_bound, self.baked.key_error);
+        object.insert("keys".into(), self.baked.keys[1].into());
+        object.insert("keys_of_all_frames".into(), self.baked.keys[0].into());
+        object.insert("key_error_bound_m".into(), number(bound.distance));
+        object.insert("key_error_bound_deg".into(), number(bound.angle.to_degrees()));
+        object.insert("key_error_max_m".into(), number(error.distance));
+        object.insert("key_error_max_deg".into(), number(error.angle.to_degrees()));
         object.append(&mut quality_json(&self.baked.quality));
         object.insert("hash".into(), format!("{:016x}", self.baked.hash).into());
         object.insert("outputs".into(), outputs.into());
@@ -55,9 +62,25 @@ impl<'a> Fall<'a> {
             "\n{} s of {} bodies at {:.0} × real time, state {:016x}",
             self.input.seconds, self.baked.bodies, self.realtime_factor, self.baked.hash
         );
+        text += &self.keys_text();
         for path in outputs {
             let _ = writeln!(text, "wrote {}", path.display());
         }
         text
+    }
+
+    /// How many keys the clip has, and what leaving out the others did.
+    fn keys_text(&self) -> String {
+        let (bound, error, [all, keys]) = (self.input.key_bound, self.baked.key_error, self.baked.keys);
+        if keys == all {
+            return format!("{keys} keys, one for each frame\n");
+        }
+        format!(
+            "{keys} of {all} keys: joints are off by {:.3} mm and {:.4}° at most, of {:.3} mm and {:.4}° allowed\n",
+            1000.0 * error.distance,
+            error.angle.to_degrees(),
+            1000.0 * bound.distance,
+            bound.angle.to_degrees(),
+        )
     }
 }

@@ -43,6 +43,22 @@ fn is_fbx(path: &Path) -> Result<bool> {
     Ok(matches!(MotionFormat::of(&bytes), Ok(MotionFormat::Fbx)))
 }
 
+/// Refuses an output that is one of the user's own files.
+pub fn never_over<'a>(
+    inputs: impl IntoIterator<Item = &'a Path>,
+    outputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<()> {
+    // Both may be named in different ways; what does not exist yet is no input.
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    let inputs: Vec<PathBuf> = inputs.into_iter().filter_map(real).collect();
+    match outputs.into_iter().find(|output| real(output).is_some_and(|output| inputs.contains(&output))) {
+        Some(output) => {
+            Err(Failure::Usage(format!("{} is an input: write to another file", output.display())))
+        }
+        None => Ok(()),
+    }
+}
+
 /// Files that are written together: all of them, or none.
 #[derive(Debug, Default)]
 pub struct Outputs {

@@ -78,7 +78,7 @@ enum Kind {
     Character,
 }
 
-/// By the first bytes: a glTF is JSON too, but says nothing of us at its top.
+/// A glTF is JSON too, but has an `asset` at its top, and nothing of us.
 fn kind_of(bytes: &[u8]) -> Kind {
     let text = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes).trim_ascii_start();
     match text.first() {
@@ -88,7 +88,10 @@ fn kind_of(bytes: &[u8]) -> Kind {
     }
 }
 
-/// Whether the first key of the object is `"sinew"`.
+/// Whether an object's first key is `"sinew"`, or one after it and there is no `asset`.
 fn is_ours(text: &[u8]) -> bool {
     text[1..].trim_ascii_start().starts_with(b"\"sinew\"")
+        || text.windows(7).any(|word| word == b"\"sinew\"")
+            && serde_json::from_slice::<serde_json::Map<String, serde_json::Value>>(text)
+                .is_ok_and(|object| object.contains_key("sinew") && !object.contains_key("asset"))
 }

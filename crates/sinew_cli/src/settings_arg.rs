@@ -30,14 +30,17 @@ impl SettingsArg {
         self.settings.as_deref()
     }
 
+    /// Where those for a character's file are: where the user said, else beside it, whether there are any or not.
+    pub fn path_for(&self, character: &Path) -> PathBuf {
+        self.settings.clone().unwrap_or_else(|| settings_path(character))
+    }
+
     /// Reads those for a character's file.
     pub fn load(&self, character: &Path) -> Result<LoadedSettings> {
-        let beside = settings_path(character);
-        let path = match &self.settings {
-            Some(path) => path,
-            None if beside.is_file() => &beside,
-            None => return Ok(LoadedSettings::default()),
-        };
+        let path = &self.path_for(character);
+        if self.settings.is_none() && !path.is_file() {
+            return Ok(LoadedSettings::default());
+        }
         let file = path.display().to_string();
         let read = read_bytes(path).and_then(|bytes| read_ragdoll_settings(&bytes));
         let settings = read.map_err(|error| error.with_file(&file))?;

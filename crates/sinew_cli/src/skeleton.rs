@@ -1,5 +1,6 @@
 //! A rig as other programs want its skeleton: in metres, with the axis up that they have, without what is no bone.
 
+use crate::table::{counted, shown};
 use sinew::anim::{Channel, Clip, Interpolation, Joint, JointIdx, Property, Rig};
 use sinew::math::{Rotation, Vec3};
 
@@ -49,6 +50,21 @@ fn keeps_its_size(channel: &Channel, rig: &Rig) -> bool {
     channel.property == Property::Scale
         && channel.interpolation != Interpolation::CubicSpline
         && channel.values.chunks_exact(3).all(near)
+}
+
+/// Notes what a format of bones alone leaves out: meshes, and the nodes of these names.
+pub fn lost_meshes(rig: &Rig, dropped: &[String], notes: &mut Vec<String>) {
+    if !rig.meshes.is_empty() {
+        let (meshes, skins) =
+            (counted(rig.meshes.len(), "mesh", "meshes"), counted(rig.skins.len(), "skin", "skins"));
+        notes.push(format!("left out: {meshes} and {skins}, which the format has not"));
+    }
+    if !dropped.is_empty() {
+        let names: Vec<String> = dropped.iter().take(8).map(|name| shown(name)).collect();
+        let more = if dropped.len() > names.len() { ", …" } else { "" };
+        let nodes = counted(dropped.len(), "node", "nodes");
+        notes.push(format!("left out: {nodes} without a bone ({}{more})", names.join(", ")));
+    }
 }
 
 /// Turns and scales a whole rig and its clip about the origin.

@@ -43,6 +43,11 @@ impl Weights {
 }
 
 impl Crossfade {
+    /// Becomes another, in the memory that it has.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.turns.clone_from(&other.turns);
+    }
+
     /// For a track that is used again.
     pub fn clear(&mut self) {
         self.turns.clear();

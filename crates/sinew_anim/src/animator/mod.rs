@@ -2,6 +2,7 @@
 
 mod advance;
 mod compose;
+mod copy;
 mod crossfade;
 mod fire;
 mod root_inertia;

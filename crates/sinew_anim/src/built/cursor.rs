@@ -62,6 +62,14 @@ impl Cursor {
         Self::default()
     }
 
+    /// Becomes another, in the memory that it has.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.fingerprint = other.fingerprint;
+        self.rotations.clone_from(&other.rotations);
+        self.translations.clone_from(&other.translations);
+        self.scales.clone_from(&other.scales);
+    }
+
     fn fit(&mut self, clip: &BuiltClip) {
         if self.fingerprint != clip.fingerprint {
             self.fingerprint = clip.fingerprint;

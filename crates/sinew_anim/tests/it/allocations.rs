@@ -48,6 +48,43 @@ fn a_warm_update_allocates_nothing() {
 }
 
 #[test]
+fn an_animator_sent_ahead_gets_where_the_other_will_be() {
+    let mut set = AnimationSet::new(Skeleton::new(&stage::rig()));
+    let mut random = Random::new(2);
+    for duration in [1.0, 0.75, 1.5] {
+        let clip = stage::build(&stage::swaying(&mut random, duration), sinew_anim::Fill::Rest);
+        set.add_clip(AnimatedClip { events: vec![Event::new(0.3, "a")], ..clip });
+    }
+    let clips: Vec<_> = set.clips().collect();
+    let mut animator = Animator::new(&set);
+    animator.play(&set, &TrackDef::new(clips[0]));
+    let mut ahead = animator.clone();
+    let mut allocations = 0;
+    for i in 0..200_usize {
+        let to = TrackDef::new(clips[i / 20 % 3]);
+        match i % 60 {
+            20 => drop(animator.transition(&set, &to, Transition::Inertial { seconds: 0.4 })),
+            40 => {
+                let by = Transition::Crossfade { seconds: 0.3, easing: Easing::Smooth };
+                animator.transition(&set, &to, by);
+            }
+            _ => {}
+        }
+        let counted = allocation_counter::measure(|| {
+            ahead.copy_from(&animator);
+            ahead.update(&set, 1.0 / 60.0);
+        });
+        // The first lap has seen all there is.
+        allocations += if i >= 120 { counted.count_total } else { 0 };
+        animator.update(&set, 1.0 / 60.0);
+        assert_eq!(ahead.pose(), animator.pose(), "update {i}");
+        assert_eq!((ahead.root_motion(), ahead.events()), (animator.root_motion(), animator.events()));
+        assert!(ahead.tracks().eq(animator.tracks()));
+    }
+    assert_eq!(allocations, 0);
+}
+
+#[test]
 fn inverse_kinematics_allocates_nothing() {
     let rig = toy::body(Role::name);
     let joint =

@@ -11,6 +11,7 @@ mod mocap;
 mod playheads;
 mod pose;
 mod precise;
+mod reduce;
 mod retarget;
 mod rigs;
 mod roles;

@@ -3,12 +3,12 @@
 use crate::bones::flesh_out;
 use crate::commands::clip_choice::choose_clips;
 use crate::failure::{Failure, Result};
-use crate::files::{CharacterFile, Outputs};
+use crate::files::{CharacterFile, Outputs, never_over};
 use crate::motion::Motion;
 use crate::onto::{Carried, carry};
 use crate::report::Report;
-use crate::skeleton::{bones_only, frame_rate, transform};
-use crate::table::{counted, shown};
+use crate::skeleton::{bones_only, frame_rate, lost_meshes, transform};
+use crate::table::shown;
 use clap::ValueEnum;
 use serde_json::json;
 use sinew::anim::retarget::{Feet, Pace, RetargetOptions};
@@ -135,7 +135,7 @@ impl Convert {
     /// Reads, converts, writes.
     pub fn run(&self) -> Result<Report> {
         let target = self.target()?;
-        self.check_paths()?;
+        never_over([&self.input].into_iter().chain(&self.onto).map(PathBuf::as_path), [self.output()])?;
         let mut motion = Motion::load(&self.input, &self.motion_options())?;
         let chosen = choose_clips(&motion, &self.clips)?;
         let source = &mut motion.file;
@@ -178,18 +178,6 @@ impl Convert {
             "bvh" => Ok(Target::Bvh),
             _ => Err(Failure::Usage(format!("'{}' must end in .glb or .bvh", self.output().display()))),
         }
-    }
-
-    /// The user's own files are never the output.
-    fn check_paths(&self) -> Result<()> {
-        let real = |path: &Path| std::fs::canonicalize(path).ok();
-        let output = real(self.output());
-        let mut inputs = std::iter::once(&self.input).chain(&self.onto);
-        if output.is_some() && inputs.any(|input| real(input) == output) {
-            let what = format!("{} is an input: write to another file", self.output().display());
-            return Err(Failure::Usage(what));
-        }
-        Ok(())
     }
 
     fn motion_options(&self) -> MotionOptions<'static> {
@@ -349,20 +337,6 @@ type Told = (Vec<String>, Vec<String>);
 
 fn line_of(clip: &Clip) -> String {
     format!("{}: {:.2} s", shown(&clip.name), clip.duration)
-}
-
-fn lost_meshes(rig: &Rig, dropped: &[String], notes: &mut Vec<String>) {
-    if !rig.meshes.is_empty() {
-        let (meshes, skins) =
-            (counted(rig.meshes.len(), "mesh", "meshes"), counted(rig.skins.len(), "skin", "skins"));
-        notes.push(format!("left out: {meshes} and {skins}, which the format has not"));
-    }
-    if !dropped.is_empty() {
-        let names: Vec<String> = dropped.iter().take(8).map(|name| shown(name)).collect();
-        let more = if dropped.len() > names.len() { ", …" } else { "" };
-        let nodes = counted(dropped.len(), "node", "nodes");
-        notes.push(format!("left out: {nodes} without a bone ({}{more})", names.join(", ")));
-    }
 }
 
 /// A clip as one pose a frame.

@@ -2,7 +2,7 @@
 
 use crate::cpu_clock::timed;
 use crate::failure::Result;
-use crate::files::{CharacterFile, Outputs};
+use crate::files::{CharacterFile, Outputs, never_over};
 use crate::progress::Progress;
 use crate::ragdoll_report::RagdollReport;
 use crate::report::Report;
@@ -26,7 +26,7 @@ Example:
 
 docs/ragdoll.md says what a definition and settings hold.")]
 pub struct RagdollBuild {
-    /// A glTF, GLB or VRM file with a skinned character
+    /// A GLB, glTF, VRM or FBX file with a skinned character
     file: PathBuf,
     /// Where to write the definition; without it there is only the report
     #[arg(short, long, value_name = "OUT.sinew.json")]
@@ -35,7 +35,7 @@ pub struct RagdollBuild {
     #[arg(long, value_enum)]
     shapes: Option<Shapes>,
     /// Mass of the whole character, kg; by default from its height or volume
-    #[arg(long, value_name = "KG")]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
     mass: Option<f32>,
     /// Whose distribution of mass over the body; by default male
     #[arg(long, value_enum)]
@@ -83,6 +83,8 @@ enum SexArg {
 impl RagdollBuild {
     /// Builds, drops it, reports, writes.
     pub fn run(&self) -> Result<Report> {
+        let settings = self.settings.path_for(&self.file);
+        never_over([self.file.as_path(), &settings], self.output.as_deref())?;
         let (built, seconds) = timed(|| self.build());
         let (character, def, build) = built?;
         let tested = drop_test(&def);

@@ -1,7 +1,7 @@
 //! `sinew ragdoll doctor`: what is wrong with a ragdoll, and what mends it.
 
-use crate::failure::{Failure, Result};
-use crate::files::{CharacterFile, Outputs};
+use crate::failure::Result;
+use crate::files::{CharacterFile, Outputs, never_over};
 use crate::ragdoll_file::RagdollFile;
 use crate::report::Report;
 use crate::settings_arg::SettingsArg;
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use sinew::formats::{Textures, write_ragdoll};
 use sinew::ragdoll::doctor::{Finding, Severity};
 use sinew::ragdoll::{BuildOptions, cure, doctor};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Say why a ragdoll jitters, explodes or looks wrong, with what was measured, and mend it
 #[derive(clap::Args)]
@@ -42,7 +42,9 @@ pub struct RagdollDoctor {
 impl RagdollDoctor {
     /// Reads, examines, mends, writes.
     pub fn run(&self) -> Result<Report> {
-        self.check_output()?;
+        let character = self.rig.as_deref().unwrap_or(&self.file);
+        let settings = self.settings.path_for(character);
+        never_over([self.file.as_path(), character, &settings], self.output.as_deref())?;
         let file = RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
         if self.rig.is_none() {
             file.check_settings(&self.settings)?;
@@ -67,19 +69,6 @@ impl RagdollDoctor {
             }
         };
         Ok(Report { json: self.to_json(&findings, &notes), text: self.to_text(&name, &findings, &notes) })
-    }
-
-    fn check_output(&self) -> Result<()> {
-        let real = |path: &Path| std::fs::canonicalize(path).ok();
-        let inputs = [Some(self.file.as_path()), self.rig.as_deref(), self.settings.path()];
-        let inputs: Vec<_> = inputs.into_iter().flatten().filter_map(real).collect();
-        match &self.output {
-            Some(output) if real(output).is_some_and(|output| inputs.contains(&output)) => {
-                let output = output.display();
-                Err(Failure::Usage(format!("{output} is an input: write to another file")))
-            }
-            _ => Ok(()),
-        }
     }
 
     fn to_json(&self, findings: &[Finding], notes: &[String]) -> Value {

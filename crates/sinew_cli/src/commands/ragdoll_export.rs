@@ -1,7 +1,7 @@
 //! `sinew ragdoll export`: the definition for other engines.
 
 use crate::failure::{Failure, Result};
-use crate::files::{CharacterFile, Outputs};
+use crate::files::{CharacterFile, Outputs, never_over};
 use crate::ragdoll_file::{RagdollFile, is_character, read_definition};
 use crate::report::Report;
 use crate::settings_arg::SettingsArg;
@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use serde_json::json;
 use sinew::formats::{KhrFile, MjcfText, Textures, read_bytes, write_khr, write_mjcf};
 use sinew::ragdoll::{BuildOptions, RagdollDef};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Write a ragdoll for other engines: as physics in a copy of the character's own file, or as a MuJoCo model
 #[derive(clap::Args)]
@@ -45,7 +45,9 @@ impl RagdollExport {
     /// Reads, converts, writes.
     pub fn run(&self) -> Result<Report> {
         let output = self.output();
-        self.check_output(&output)?;
+        let settings = self.settings.path_for(&self.file);
+        let inputs = [self.file.as_path(), &settings].into_iter().chain(self.ragdoll.as_deref());
+        never_over(inputs, [output.as_path()])?;
         let (def, bytes, notes) = match self.format {
             Format::Khr => self.khr()?,
             Format::Mjcf => self.mjcf()?,
@@ -114,16 +116,5 @@ impl RagdollExport {
             Format::Mjcf => "mjcf.xml",
         };
         self.output.clone().unwrap_or_else(|| self.file.with_extension(extension))
-    }
-
-    fn check_output(&self, output: &Path) -> Result<()> {
-        let real = |path: &Path| std::fs::canonicalize(path).ok();
-        let inputs = [Some(self.file.as_path()), self.ragdoll.as_deref(), self.settings.path()];
-        let mut inputs = inputs.into_iter().flatten().filter_map(real);
-        if real(output).is_some_and(|output| inputs.any(|input| input == output)) {
-            let output = output.display();
-            return Err(Failure::Usage(format!("{output} is an input: write to another file")));
-        }
-        Ok(())
     }
 }

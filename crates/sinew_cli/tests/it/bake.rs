@@ -2,7 +2,10 @@
 
 use crate::contract::check_keys;
 use crate::sinew::{Folder, shared_data, sinew};
-use sinew::formats::{ReadOptions, load_gltf, write_world};
+use sinew::anim::{Clip, Joint, Rig, Wrap, local_to_model, rest_pose, sample};
+use sinew::formats::bvh::BvhUnit;
+use sinew::formats::{BvhDocument, BvhOptions, Document, ReadOptions, load_gltf, read_bvh, write_world};
+use sinew::math::{Affine, Rotation, Vec3};
 use sinew_scenes::cabin::Site;
 use std::fs;
 
@@ -40,6 +43,97 @@ fn the_fall_is_a_clip_in_a_copy_of_the_file() {
     assert!((baked.duration - 0.5).abs() < 1e-6, "{} s", baked.duration);
     assert!(fs::read(&picture).expect("a picture").starts_with(b"\x89PNG"));
     assert_eq!(folder.names(), ["fall.glb", "fall.png", "mannequin.glb"]);
+}
+
+#[test]
+fn keys_that_are_not_needed_are_left_out() {
+    let folder = Folder::new("keys");
+    let file = folder.mannequin();
+    let baked = |error: &[&str]| {
+        let out = folder.path("out.glb");
+        let arguments = [&["bake", file.as_str(), "--seconds", "3", "-o", &out, "--json"], error].concat();
+        let object = sinew(&arguments).json();
+        let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+        let clip = document.clips.last().expect("a clip").clone();
+        let keys: usize = clip.channels.iter().map(|channel| channel.times.len()).sum();
+        assert_eq!(object["keys"], keys);
+        (object, clip)
+    };
+    let number = |object: &serde_json::Value, key: &str| object[key].as_f64().expect("a number");
+    let (all, every_key) = baked(&["--key-error", "0"]);
+    assert_eq!(all["keys"], all["keys_of_all_frames"]);
+    assert!(every_key.channels.iter().all(|channel| channel.times.len() == 91));
+    let (usual, _) = baked(&[]);
+    assert!(number(&usual, "keys") < number(&all, "keys"));
+    let (coarse, clip) = baked(&["--key-error", "2"]);
+    assert!(number(&coarse, "keys") < 0.9 * number(&usual, "keys"), "{coarse:#}");
+    for (object, mm) in [(&usual, 0.1), (&coarse, 2.0)] {
+        assert!((number(object, "key_error_bound_m") - 1e-3 * mm).abs() < 1e-9);
+        assert!((number(object, "key_error_bound_deg") - 0.1 * mm).abs() < 1e-6);
+        assert!(number(object, "key_error_max_m") <= 1e-3 * mm, "{object:#}");
+        assert!(number(object, "key_error_max_deg") <= 0.1 * mm, "{object:#}");
+    }
+    assert!((clip.duration - 3.0).abs() < 1e-6);
+}
+
+/// Farthest that a joint of a BVH is from that of the same name in the last clip of a file, whose unit is so many metres.
+fn between(document: &Document, bvh: &BvhDocument, unit: f32) -> f32 {
+    let clip = document.clips.last().expect("a clip");
+    let named = |(_, joint): &(usize, &Joint)| !joint.name.is_empty();
+    let same = |joint: &Joint| {
+        let found = document.rig.joints.iter().position(|other| other.name.replace(' ', "_") == joint.name);
+        found.unwrap_or_else(|| panic!("no joint {}", joint.name))
+    };
+    let pairs: Vec<[usize; 2]> =
+        bvh.rig.joints.iter().enumerate().filter(named).map(|(index, joint)| [same(joint), index]).collect();
+    assert!(pairs.len() > 10, "{} joints", pairs.len());
+    let mut worst = 0.0;
+    for frame in 0..bvh.frames {
+        let time = (frame as f64 * bvh.frame_time) as f32;
+        let places = |rig: &Rig, clip: &Clip, unit: f32| {
+            let (mut pose, mut model) = (rest_pose(rig), Vec::new());
+            sample(clip, rig, time, Wrap::Clamp, &mut pose);
+            let scaled =
+                Affine::from_scale_rotation_translation(Vec3::splat(unit), Rotation::IDENTITY, Vec3::ZERO);
+            local_to_model(rig, &pose, &scaled, &mut model);
+            model
+        };
+        let [from, to] = [places(&document.rig, clip, unit), places(&bvh.rig, &bvh.clip, 1.0)];
+        for &[a, b] in &pairs {
+            worst = sinew::math::max(worst, (from[a].translation - to[b].translation).length());
+        }
+    }
+    worst
+}
+
+#[test]
+fn a_bvh_has_the_bones_and_every_frame() {
+    let folder = Folder::new("bvh");
+    let file = folder.mannequin();
+    for (fps, frames) in [("24", 49), ("25", 51), ("120", 241)] {
+        let arguments = ["bake", &file, "--seconds", "2", "--fps", fps, "--json", "-o"];
+        let run = |out: &str, extra: &[&str]| sinew(&[&arguments[..], &[out], extra].concat()).json();
+        let (bvh, glb) = (folder.path("fall.bvh"), folder.path("fall.glb"));
+        let (of_bvh, of_glb) = (run(&bvh, &[]), run(&glb, &["--key-error", "0"]));
+        check_keys("bake", &of_bvh);
+        assert_eq!((&of_bvh["hash"], &of_bvh["frames"]), (&of_glb["hash"], &frames.into()));
+        assert_eq!((&of_bvh["key_error_max_m"], &of_glb["notes"]), (&0.0.into(), &serde_json::json!([])));
+        assert!(of_bvh["notes"][0].as_str().is_some_and(|note| note.contains("mesh")), "{of_bvh:#}");
+        let text = fs::read(&bvh).expect("it is written");
+        let read = read_bvh(&text, BvhOptions { unit: BvhUnit::Metres(0.01), ..BvhOptions::default() })
+            .expect("it can be read");
+        assert_eq!(
+            (read.frames, (1.0 / read.frame_time).round() as u32),
+            (frames, fps.parse().expect("a number"))
+        );
+        let worst = between(&load_gltf(&glb, ReadOptions::default()).expect("it can be read"), &read, 1.0);
+        // Six digits behind the point, of degrees and centimetres.
+        assert!(worst < 2e-5, "{fps}: {worst} m off");
+    }
+    let run = sinew(&["bake", &file, "-o", &folder.path("x.bvh"), "--key-error", "1"]);
+    assert_eq!(run.refusal(2), "error: --key-error does not apply to a BVH, which holds every frame");
+    let run = sinew(&["bake", &file, "-o", "x.gltf"]);
+    assert!(run.code == Some(2) && run.stderr.contains("must end in .glb, .vrm or .bvh"), "{run:?}");
 }
 
 #[test]
@@ -119,8 +213,43 @@ fn outputs_come_together_or_not_at_all_and_never_over_an_input() {
     let run = sinew(&["bake", &file, "--seconds", "0.1", "-o", &out, "--picture", &picture]);
     assert_eq!(run.refusal(1), format!("error: {picture}: cannot write: no such file"));
     assert_eq!(folder.names(), ["mannequin.glb"]);
-    let run = sinew(&["bake", &file, "-o", &file]);
-    assert_eq!(run.refusal(2), format!("error: {file} is an input: write to another file"));
+    let settings = folder.file("mannequin.ragdoll.json", r#"{ "sinew": "ragdoll-settings", "version": 1 }"#);
+    let before = [&file, &settings].map(|path| fs::read(path).expect("the file"));
+    for input in [&file, &settings] {
+        for command in [
+            &["bake", &file, "-o", input][..],
+            &["ragdoll", "build", &file, "-o", input],
+            &["ragdoll", "doctor", &file, "--fix", "-o", input],
+            &["ragdoll", "export", &file, "--as", "mjcf", "-o", input],
+        ] {
+            // A bake's file has an extension of its own.
+            if command[0] != "bake" || input == &file {
+                let run = sinew(command);
+                assert_eq!(run.refusal(2), format!("error: {input} is an input: write to another file"));
+            }
+        }
+    }
+    assert_eq!([&file, &settings].map(|path| fs::read(path).expect("the file")), before);
+}
+
+#[test]
+fn what_would_never_happen_is_refused() {
+    let folder = Folder::new("late");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let line = |extra: &[&str]| {
+        sinew(&[&["bake", file.as_str(), "-o", &out, "--seconds", "2"], extra].concat()).refusal(2).to_owned()
+    };
+    assert_eq!(
+        line(&["--hit", "chest=0,0,9@1", "--hit", "chest=0,0,9@3"]),
+        "error: --hit at 3 s is after the end, at 2 s (--seconds)"
+    );
+    assert_eq!(line(&["--limp-at", "2.5"]), "error: --limp-at at 2.5 s is after the end, at 2 s (--seconds)");
+    for (option, why) in [("--key-error", "between 0 and 100 mm"), ("--limp-at", "between 0 and 600 s")] {
+        let run = sinew(&["bake", &file, "-o", &out, option, "-1"]);
+        assert!(run.code == Some(2) && run.stderr.contains(why), "{run:?}");
+    }
+    let run = sinew(&["ragdoll", "build", &file, "--mass", "-4"]);
+    assert!(run.refusal(1).contains("mass"), "{run:?}");
 }
 
 #[test]
@@ -139,5 +268,27 @@ fn strangers_are_baked() {
         assert_eq!(object["nan"], 0, "{name}");
         assert!(object["first_contact_s"].is_number(), "{name}: {object:#}");
         assert!(load_gltf(&out, ReadOptions::default()).is_ok(), "{name}");
+    }
+}
+
+#[test]
+fn strangers_become_a_bvh() {
+    let Some(data) = shared_data() else { return };
+    let folder = Folder::new("strangers-bvh");
+    for name in ["CesiumMan.glb", "kaykit_Knight.glb", "Fox.glb", "quaternius_cyberpunk_Character.glb"] {
+        let file = data.join("rigs").join(name).display().to_string();
+        let (bvh, glb) = (folder.path("fall.bvh"), folder.path("fall.glb"));
+        let arguments = ["bake", &file, "--seconds", "1.5", "--json"];
+        let object = sinew(&[&arguments[..], &["-o", &bvh]].concat()).json();
+        sinew(&[&arguments[..], &["--key-error", "0", "-o", &glb]].concat()).json();
+        let unit = sinew(&["inspect", &file, "--json"]).json()["unit_scale"].as_f64().expect("a unit") as f32;
+        let text = fs::read(&bvh).expect("it is written");
+        let options = BvhOptions { unit: BvhUnit::Metres(0.01), ..BvhOptions::default() };
+        let read = read_bvh(&text, options).expect("it can be read");
+        assert_eq!(object["frames"], read.frames, "{name}");
+        let document = load_gltf(&glb, ReadOptions::default()).expect("it can be read");
+        let worst = between(&document, &read, unit);
+        println!("{name}: {worst} m, {}", object["notes"]);
+        assert!(worst < 2e-4, "{name}: {worst} m off, {object:#}");
     }
 }

@@ -115,6 +115,19 @@ impl World {
         }
     }
 
+    /// Gives a joint another friction, N·m ([`JointDef::friction_torque`]); both bodies wake, unless it is the one that it
+    /// has. Cheap enough for every step.
+    ///
+    /// # Panics
+    /// If it is negative or not finite.
+    pub fn set_joint_friction(&mut self, id: JointId, torque: f32) {
+        assert!((0.0..f32::INFINITY).contains(&torque), "friction is not negative, and finite");
+        if self.expect_joint(id).drive.friction != torque {
+            self.expect_joint_mut(id).drive.friction = torque;
+            self.wake_joint(id);
+        }
+    }
+
     /// Lets a joint act, or not; both bodies wake. One that broke acts again, with the gap that it has.
     pub fn set_joint_state(&mut self, id: JointId, state: JointState) {
         self.expect_joint_mut(id).state = state;

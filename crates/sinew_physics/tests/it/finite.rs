@@ -241,6 +241,7 @@ fn joints() {
     refuses_pose("frame a", |f, pose| set(f, &|def| def.frame_a = pose));
     refuses_pose("frame b", |f, pose| set(f, &|def| def.frame_b = pose));
     refuses("friction", &BAD, |f, x| set(f, &|def| def.friction_torque = x));
+    refuses("friction later", &BAD, |f, x| f.world.set_joint_friction(f.joint, x));
     refuses("strength", &nan, |f, x| set(f, &|def| def.strength.force = x));
     refuses("strength", &nan, |f, x| set(f, &|def| def.strength.torque = x));
     for given in [true, false] {

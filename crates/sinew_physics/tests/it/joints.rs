@@ -345,6 +345,19 @@ fn friction_slows_a_hinge_by_its_torque() {
 }
 
 #[test]
+fn friction_that_comes_later_slows_from_then_on() {
+    let (mut world, b, def) = arm(0.0);
+    let id = world.add_joint(&def);
+    world.set_velocity(b, Velocity { linear: Vec3::Y * 2.5, angular: Vec3::Z * 5.0 });
+    run(&mut world, 1.0);
+    near(world.velocity(b).angular.z, 5.0, 0.001, "not slowed");
+    world.set_joint_friction(id, 0.5);
+    assert_eq!(world.joint(id).friction_torque, 0.5);
+    run(&mut world, 2.0);
+    near(world.velocity(b).angular.z, 5.0 - 2.0 * 0.5 / ARM_MOMENT, 0.02, "slowed");
+}
+
+#[test]
 fn reactions_are_the_weights_that_hang_below() {
     let mut world = world(G);
     let mut last = anchor(&mut world);

@@ -4,7 +4,7 @@ mod keys;
 
 use crate::character::{Character, CharacterDef, Event, State};
 use crate::quality::{Quality, QualityMeter};
-use sinew_anim::{Clip, LocalTransform};
+use sinew_anim::{Clip, KeyBound, KeyError, LocalTransform, Reduced, reduce_keys};
 use sinew_math::hash::hash_bytes;
 use sinew_math::{Affine, Transform, Vec3, Writer, clamp};
 use sinew_physics::{BodyDef, World, WorldDef};
@@ -42,12 +42,19 @@ pub struct BakeInput<'a> {
     pub seconds: f32,
     /// Frames per second of the clip, at least 1.
     pub fps: f32,
+    /// How far any joint of the clip may be from where the frames have it, metres and radians: keys that are not needed
+    /// for that are left out.
+    pub key_bound: KeyBound,
     /// Name of the clip.
     pub name: &'a str,
 }
 
+/// The bound on the keys that [`BakeInput::new`] sets: a tenth of a millimetre and a hundredth of a degree.
+pub const KEY_BOUND: KeyBound = KeyBound { distance: 1e-4, angle: 1.745_329_3e-4 };
+
 impl<'a> BakeInput<'a> {
-    /// Ten seconds at 30 frames a second at the world's origin, nothing in the world and nothing done.
+    /// Ten seconds at 30 frames a second at the world's origin, nothing in the world and nothing done; keys within
+    /// [`KEY_BOUND`].
     pub fn new(character: Arc<CharacterDef>) -> Self {
         Self {
             character,
@@ -59,6 +66,7 @@ impl<'a> BakeInput<'a> {
             limp_at: None,
             seconds: 10.0,
             fps: 30.0,
+            key_bound: KEY_BOUND,
             name: "sinew",
         }
     }
@@ -78,9 +86,14 @@ pub struct Frame {
 /// The result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Baked {
-    /// Linear keys at the frame rate, for every joint that moves: rotations, and translations where they change. It
+    /// Linear keys at times of frames, for every joint that moves: rotations, and translations where they change. It
     /// starts where the file's character stands, and all root motion is in the pelvis.
     pub clip: Clip,
+    /// How far joints of the clip are from where the frames have them, at most, at the times of frames: metres and
+    /// radians, within [`BakeInput::key_bound`].
+    pub key_error: KeyError,
+    /// Keys of the clip's channels: with one for each frame, and as they are.
+    pub keys: [usize; 2],
     /// The frames that the clip was made of.
     pub frames: Vec<Frame>,
     /// From the model space of the file to the world, the same for all frames.
@@ -101,7 +114,7 @@ pub struct Baked {
 /// Runs a character through a world. The same bits on every target and for every frame rate.
 ///
 /// # Panics
-/// If a number is not finite, `fps` is below 1, or a hit names a body that is not there.
+/// If a number is not finite, `fps` is below 1, the key bound is negative, or a hit names a body that is not there.
 pub fn bake(input: &BakeInput<'_>) -> Baked {
     assert!(input.seconds.is_finite() && input.fps >= 1.0, "a bake has a length and a frame rate");
     assert!(input.hits.iter().all(|hit| hit.time.is_finite()), "hits have a time");
@@ -113,10 +126,18 @@ pub fn bake(input: &BakeInput<'_>) -> Baked {
         frames.add_until(&run);
     }
     let hash = run.hash();
+    let rig = &input.character.rig;
+    let world_from_model = input.character.mapping().world_from_model(input.world_from_character);
+    // Seen from where the character starts: far from the world's origin small ways drown in rounding.
+    let root = input.character.mapping().character_from_model();
+    let every_key = keys::clip(rig, input.name, &frames.list);
+    let Reduced { clip, error, keys } = reduce_keys(rig, &every_key, &root, input.key_bound);
     Baked {
-        clip: keys::clip(&input.character.rig, input.name, &frames.list),
+        clip,
+        key_error: error,
+        keys,
         frames: frames.list,
-        world_from_model: input.character.mapping().world_from_model(input.world_from_character),
+        world_from_model,
         quality: run.meter.quality(),
         events: run.events,
         bodies: input.character.ragdoll.bodies.len(),
@@ -282,6 +303,10 @@ impl Frames {
 }
 
 fn between(a: &LocalTransform, b: &LocalTransform, t: f32) -> LocalTransform {
+    // What lies still has the same bits in all frames.
+    if a == b {
+        return *a;
+    }
     LocalTransform {
         translation: a.translation * (1.0 - t) + b.translation * t,
         rotation: a.rotation.nlerp(b.rotation, t),

@@ -35,6 +35,8 @@ impl Character {
             to.translation.y += clamp(height - to.translation.y, -CLIMB_SPEED * dt, CLIMB_SPEED * dt);
         }
         self.world_from_character = to;
+        let way = to.translation - from.translation;
+        self.speed = Vec3::new(way.x, 0.0, way.z).length() / dt;
         self.climbing = (to.translation.y - from.translation.y) / dt;
     }
 
@@ -59,6 +61,17 @@ impl Character {
         self.pose.clone_from(&self.earlier.pose);
     }
 
+    /// A copy of the animator, in the place of the last one: it is to be put back into [`Scratch`](super::Scratch).
+    pub(super) fn sent_ahead(&mut self) -> Animator {
+        match self.scratch.ahead.take() {
+            Some(mut ahead) => {
+                ahead.copy_from(&self.animator);
+                ahead
+            }
+            None => self.animator.clone(),
+        }
+    }
+
     /// Poses of the bodies as an animator that is sent ahead has them after `seconds` more, seen from where the character
     /// stands now. `place` is where the animator has brought it until then.
     pub(super) fn bodies_ahead(
@@ -74,6 +87,7 @@ impl Character {
         let mut pose = core::mem::take(&mut self.scratch.pose);
         pose.clear();
         pose.extend(ahead.pose().iter());
+        self.place_feet(self.planting.ahead(seconds), &mut pose);
         self.bodies_of(&pose, *place, out);
         self.scratch.pose = pose;
     }

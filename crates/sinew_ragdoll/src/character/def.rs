@@ -1,5 +1,6 @@
 //! What characters of one kind share.
 
+use super::feet::Feet;
 use super::moves::{MotionError, Moves};
 use crate::def::RagdollDef;
 use crate::drive::DriveMode;
@@ -82,6 +83,8 @@ pub struct CharacterDef {
     rest: Vec<LocalTransform>,
     /// Bind pose in character space, metres.
     bind: Vec<Affine>,
+    /// What it stands on, if it is a humanoid.
+    feet: Option<Feet>,
     motions: MotionSet,
     /// What the motions come to.
     moves: Arc<Moves>,
@@ -95,10 +98,12 @@ impl CharacterDef {
     pub fn new(rig: Rig, ragdoll: RagdollDef, bind_model: &[Affine]) -> Self {
         let mapping = Mapping::new(&rig, &ragdoll, bind_model);
         let root = mapping.character_from_model();
+        let bind: Vec<Affine> = bind_model.iter().map(|&bind| root * bind).collect();
         Self {
+            feet: Feet::of(&rig, &ragdoll, &bind),
             moves: Arc::new(Moves::none(&rig, &ragdoll, &mapping)),
             mapping,
-            bind: bind_model.iter().map(|&bind| root * bind).collect(),
+            bind,
             motions: MotionSet::default(),
             rest: rest_pose(&rig),
             rig,
@@ -146,6 +151,10 @@ impl CharacterDef {
     /// If there is no such clip.
     pub fn clip(&self, index: usize) -> ClipId {
         self.moves.clips[index]
+    }
+
+    pub(super) fn feet(&self) -> Option<&Feet> {
+        self.feet.as_ref()
     }
 
     pub(super) fn moves(&self) -> &Moves {

@@ -82,12 +82,9 @@ impl Character {
         self.state = State::GettingUp;
     }
 
-    /// On a slope the clip, made for a level floor, lies as the slope does and comes to stand upright.
-    pub(super) fn straighten(&mut self) {
-        if self.lean == Vec3::ZERO {
-            return;
-        }
-        let left = match self.rising {
+    /// How much of a get-up is left until it stands upright: 1 and more as long as it still lies, 0 and less once it does.
+    pub(super) fn lies_still(&self) -> f32 {
+        match self.rising {
             Rising::ByClip(id) => {
                 let time =
                     self.animator.track(id).map(|track| (track.playhead().clip_time(), track.def().clip));
@@ -97,12 +94,19 @@ impl Character {
                 })
             }
             Rising::Without(seconds) => seconds / INTO_STANDING,
-        };
+        }
+    }
+
+    /// On a slope the clip, made for a level floor, lies as the slope does and comes to stand upright.
+    pub(super) fn straighten(&mut self) {
+        if self.lean == Vec3::ZERO {
+            return;
+        }
         let before = self.world_from_character.rotation;
         // What is left of the lean after the last step is in the rotation: the heading is what it had without.
         let heading = Rotation::from_axis_angle(Vec3::Y, before.twist_angle(Vec3::Y));
         self.world_from_character.rotation =
-            Rotation::from_scaled_axis(self.lean * smoothstep(left)) * heading;
+            Rotation::from_scaled_axis(self.lean * smoothstep(self.lies_still())) * heading;
     }
 
     /// Goes on with a get-up, and ends it.

@@ -1,12 +1,13 @@
 //! Going limp at the speed of the animation, and lying still.
 
+use super::feet::Planting;
 use super::{AfterSettling, Character, Event, State};
 use crate::def::RagdollBodyDef;
 use crate::drive::DriveMode;
 use crate::hand_over::body_velocity;
 use crate::ragdoll::{BodyState, Ragdoll};
 use sinew_anim::{Motion, Pose};
-use sinew_math::{Transform, Vec3};
+use sinew_math::{Transform, Vec3, min};
 use sinew_physics::{BodyId, Velocity, World};
 
 /// Seconds between the poses ahead of now that the hand-over takes velocities from: short against any motion, long against
@@ -15,6 +16,9 @@ const HAND_OVER: f32 = 1.0 / 1000.0;
 
 /// Seconds in which what no body moves comes to rest.
 const LINGERS: f32 = 0.25;
+
+/// Seconds in which joints take on their friction.
+const SLACKENS: f32 = 0.2;
 
 /// A body below both speeds lies still, m/s and rad/s.
 pub(crate) const STILL_LINEAR: f32 = 0.02;
@@ -40,14 +44,30 @@ impl Character {
         if self.ragdoll.is_some() {
             return self.fall_again(world);
         }
+        if !self.planting.is_over() {
+            self.pose.clone_from(&self.planted);
+        }
         let states = self.carried();
+        self.planting = Planting::default();
         self.let_linger(world);
         self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
+        self.scratch.posed.clear();
         self.ragdoll = Some(Ragdoll::spawn(world, &self.def.ragdoll, &states, &self.def.flesh));
         self.drives.set_all(self.def.falling, 0.0);
         self.state = State::Limp;
         self.stillness = Stillness::default();
+        self.slacken(world);
         self.events.push(Event::WentLimp);
+    }
+
+    /// What muscles held a moment ago goes on: friction comes into the joints over [`SLACKENS`] seconds, for all of it at
+    /// once would stop a hand within a step.
+    fn slacken(&self, world: &mut World) {
+        let share = self.stillness.steps as f32 * world.def().dt() / SLACKENS;
+        let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
+        for (joint, &id) in self.def.ragdoll.joints.iter().zip(&ragdoll.joints) {
+            world.set_joint_friction(id, joint.friction_torque * min(share, 1.0));
+        }
     }
 
     /// What no body moves does not stop at once: toes, helpers, and where joints sit that a clip moved along.
@@ -104,10 +124,11 @@ impl Character {
         let pose = core::mem::take(&mut self.pose);
         self.bodies_of(&pose, Transform::IDENTITY, &mut now);
         self.pose = pose;
-        let (mut animator, mut way) = (self.animator.clone(), Transform::IDENTITY);
+        let (mut animator, mut way) = (self.sent_ahead(), Transform::IDENTITY);
         self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut ahead);
         let mut further = Vec::new();
         self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut further);
+        self.scratch.ahead = Some(animator);
         let place = self.world_from_character;
         let state = |(((&now, &ahead), &further), body): (
             ((&Transform, &Transform), &Transform),
@@ -133,9 +154,24 @@ impl Character {
         let dt = world.def().dt();
         self.keep_earlier();
         self.animator.update(self.def.set(), dt);
-        self.come_to_rest(dt);
         let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
         ragdoll.poses(world, &mut self.scratch.after);
+        // Bodies that lie where the last pose had them need no other: most of a fall is lying.
+        if !self.lingering.is_over() || self.scratch.posed != self.scratch.after {
+            self.pose_by_bodies(dt);
+        }
+        for &joint in self.def.mapping().free() {
+            self.pose[joint] = self.animator.pose().get(joint);
+        }
+    }
+
+    /// The pose for bodies at `scratch.after`.
+    fn pose_by_bodies(&mut self, dt: f32) {
+        self.scratch.posed.clear();
+        if self.lingering.is_over() {
+            self.scratch.posed.extend_from_slice(&self.scratch.after);
+        }
+        self.come_to_rest(dt);
         self.physical.pose_over(
             self.def.mapping(),
             &self.def.rig,
@@ -144,9 +180,6 @@ impl Character {
             &self.scratch.after,
             &mut self.pose,
         );
-        for &joint in self.def.mapping().free() {
-            self.pose[joint] = self.animator.pose().get(joint);
-        }
     }
 
     /// Powers the joints of a falling body, for the next step, toward the pose of its clips.
@@ -156,10 +189,12 @@ impl Character {
         }
         let mut targets = core::mem::take(&mut self.scratch.after);
         let mut before = core::mem::take(&mut self.scratch.before);
-        let (mut animator, mut way) = (self.animator.clone(), Transform::IDENTITY);
-        self.bodies_ahead(&mut animator, &mut way, 0.0, &mut before);
+        let mut ahead = self.sent_ahead();
+        let mut way = Transform::IDENTITY;
+        self.bodies_ahead(&mut ahead, &mut way, 0.0, &mut before);
         let dt = world.def().dt();
-        self.bodies_ahead(&mut animator, &mut way, dt, &mut targets);
+        self.bodies_ahead(&mut ahead, &mut way, dt, &mut targets);
+        self.scratch.ahead = Some(ahead);
         let place = self.world_from_character;
         for pose in before.iter_mut().chain(&mut targets) {
             *pose = place * *pose;
@@ -180,9 +215,13 @@ impl Character {
         self.follow_bodies(world);
         self.brace(world);
         let dt = world.def().dt();
+        let was_slack = self.stillness.steps as f32 * dt < SLACKENS;
+        self.stillness.steps += 1;
+        if was_slack {
+            self.slacken(world);
+        }
         let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
         let still = &mut self.stillness;
-        still.steps += 1;
         if !still.touched && touches_world(world, &ragdoll.bodies) {
             still.touched = true;
             self.events.push(Event::Touched);

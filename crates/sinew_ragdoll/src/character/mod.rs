@@ -5,6 +5,7 @@
 
 mod animate;
 mod def;
+mod feet;
 mod get_up;
 mod ground;
 mod likeness;
@@ -23,6 +24,7 @@ pub use moves::MotionError;
 use crate::drive::Drives;
 use crate::mapping::Physical;
 use crate::ragdoll::Ragdoll;
+use feet::Planting;
 use get_up::Rising;
 use limp::Stillness;
 use prepare::Preparation;
@@ -86,9 +88,16 @@ pub struct Character {
     rising: Rising,
     /// How the ground slopes on which it gets up, as a turn from the vertical: scaled axis, world axes.
     lean: Vec3,
+    /// How its feet stand on ground that is not the floor of its clips.
+    planting: Planting,
+    /// The pose with the feet planted, while they are.
+    planted: Vec<LocalTransform>,
+    /// How fast it went over the ground in the last step, m/s.
+    speed: f32,
     world_from_character: Transform,
     /// How fast the ground took the character's origin up in the last step, m/s.
     climbing: f32,
+    /// As bodies or clips have it.
     pose: Vec<LocalTransform>,
     earlier: Earlier,
     ragdoll: Option<Ragdoll>,
@@ -109,9 +118,13 @@ struct Earlier {
     world_from_character: Transform,
 }
 
-/// Buffers that are kept to be used again; they hold nothing from one call to the next.
+/// Buffers that are kept to be used again; but for `posed` they hold nothing from one call to the next.
 #[derive(Clone, Debug, Default)]
 struct Scratch {
+    /// Bodies that the present pose was made of, where it will be the same as long as they stay; else nothing. Work that is
+    /// saved, not state: the pose is the same without it.
+    posed: Vec<Transform>,
+    ahead: Option<Animator>,
     pose: Vec<LocalTransform>,
     resting: Pose,
     model: Vec<Affine>,
@@ -134,6 +147,9 @@ impl Character {
             animator,
             rising: Rising::Without(0.0),
             lean: Vec3::ZERO,
+            planting: Planting::default(),
+            planted: Vec::new(),
+            speed: 0.0,
             climbing: 0.0,
             earlier: Earlier { pose: pose.clone(), world_from_character },
             world_from_character,
@@ -172,7 +188,7 @@ impl Character {
 
     /// Local transform of every joint of the rig; nodes above the pelvis are at rest (see [`crate::mapping`]).
     pub fn pose(&self) -> &[LocalTransform] {
-        &self.pose
+        if self.planting.is_over() { &self.pose } else { &self.planted }
     }
 
     /// Where it stands. While it is limp: where it stood when it went limp.
@@ -211,11 +227,15 @@ impl Character {
         match self.state {
             State::Limp => self.lie(world),
             State::Preparing => self.go_on_preparing(world),
-            State::Animated => self.animate(world),
+            State::Animated => {
+                self.animate(world);
+                self.plant(world);
+            }
             State::GettingUp => {
                 self.animate(world);
                 self.straighten();
                 self.rise(world);
+                self.plant(world);
             }
         }
     }

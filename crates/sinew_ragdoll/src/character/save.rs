@@ -1,5 +1,6 @@
 //! A character's own state, beside the world's snapshot.
 
+use super::feet::Planting;
 use super::get_up::Rising;
 use super::limp::Stillness;
 use super::prepare::Preparation;
@@ -11,7 +12,7 @@ use sinew_math::{ReadError, Reader, Writer};
 use sinew_physics::{BodyId, JointId};
 
 /// First bytes; the last is the version.
-const MAGIC: &[u8; 8] = b"sinew-c\x02";
+const MAGIC: &[u8; 8] = b"sinew-c\x03";
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
 
@@ -28,6 +29,7 @@ impl Character {
         w.transform(self.world_from_character);
         w.f32(self.climbing);
         w.vec3(self.lean);
+        self.planting.heights.into_iter().chain(self.planting.rates).for_each(|x| w.f32(x));
         self.animator.save(self.def.set(), w);
         save_rising(w, self.rising);
         save_pose(w, &self.pose);
@@ -72,6 +74,7 @@ impl Character {
             _ => return Err(r.error("unknown state of a character")),
         };
         let (world_from_character, climbing, lean) = (r.transform()?, r.f32()?, r.vec3()?);
+        let planting = Planting { heights: [r.f32()?, r.f32()?], rates: [r.f32()?, r.f32()?] };
         let animator = Animator::load(self.def.set(), r)?;
         let rising = load_rising(r)?;
         let joints = self.def.rig.joints.len();
@@ -96,12 +99,17 @@ impl Character {
         (self.state, self.animator, self.rising, self.stillness) = (state, animator, rising, stillness);
         self.lingering = lingering;
         (self.drives, self.preparation, self.lean) = (drives, preparation, lean);
-        (self.world_from_character, self.climbing) = (world_from_character, climbing);
+        (self.world_from_character, self.climbing, self.planting) =
+            (world_from_character, climbing, planting);
         (self.pose, self.earlier, self.ragdoll) = (pose, earlier, ragdoll);
         if !base.is_empty() {
             self.physical.rebase(self.def.mapping(), &self.def.rig, &base);
         }
+        if !planting.is_over() {
+            self.show_planted();
+        }
         self.events.clear();
+        self.scratch.posed.clear();
         Ok(())
     }
 

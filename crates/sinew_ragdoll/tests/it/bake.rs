@@ -1,12 +1,17 @@
 //! A whole run, from walk to walk, as a clip.
 
 use crate::actor::{floor, in_centimetres_and_z_up, shared, somewhere, walker};
-use sinew_anim::{Wrap, local_to_model, rest_pose, sample};
-use sinew_math::{Affine, Vec3};
+use sinew_anim::{KeyBound, Wrap, local_to_model, rest_pose, sample};
+use sinew_math::{Affine, Vec3, max};
+use sinew_ragdoll::bake::KEY_BOUND;
 use sinew_ragdoll::{BakeInput, Baked, CharacterDef, Hit, State, bake};
 use std::sync::Arc;
 
 fn baked(def: &Arc<CharacterDef>, impulse: Vec3, fps: f32) -> Baked {
+    baked_within(def, impulse, fps, KEY_BOUND)
+}
+
+fn baked_within(def: &Arc<CharacterDef>, impulse: Vec3, fps: f32, key_bound: KeyBound) -> Baked {
     let body = def.body_named("chest").expect("it has a chest");
     let (bodies, hits) = ([floor()], [Hit { time: 0.8, body, impulse }]);
     let input = BakeInput {
@@ -14,6 +19,7 @@ fn baked(def: &Arc<CharacterDef>, impulse: Vec3, fps: f32) -> Baked {
         hits: &hits,
         seconds: 9.0,
         fps,
+        key_bound,
         world_from_character: somewhere(),
         ..BakeInput::new(def.clone())
     };
@@ -56,7 +62,7 @@ fn the_clip_shows_what_happened() {
             local_to_model(&def.rig, &pose, &baked.world_from_model, &mut played);
             local_to_model(&def.rig, &frame.pose, &baked.world_from_model, &mut shown);
             for (a, b) in played.iter().zip(&shown) {
-                assert!((a.translation - b.translation).length() < 1e-4, "at {} s", frame.time);
+                assert!((a.translation - b.translation).length() < 1.01e-4, "at {} s", frame.time);
             }
             heights.push(played[hips].translation.y);
         }
@@ -123,4 +129,61 @@ fn frame_rate_changes_nothing_but_the_frames() {
         (baked.hash, baked.steps)
     });
     assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{hashes:?}");
+}
+
+/// Largest distance, metres, and angle between the joints of the clip and of the frames, at the frames.
+fn off(def: &CharacterDef, baked: &Baked) -> [f32; 2] {
+    let mut worst = [0.0, 0.0];
+    let root = def.mapping().character_from_model();
+    for frame in &baked.frames {
+        let mut pose = rest_pose(&def.rig);
+        sample(&baked.clip, &def.rig, frame.time, Wrap::Clamp, &mut pose);
+        let (mut played, mut shown) = (Vec::new(), Vec::new());
+        local_to_model(&def.rig, &pose, &root, &mut played);
+        local_to_model(&def.rig, &frame.pose, &root, &mut shown);
+        for (a, b) in played.iter().zip(&shown) {
+            let (a, b) = (a.to_rigid(), b.to_rigid());
+            worst[0] = max(worst[0], (a.translation - b.translation).length());
+            worst[1] = max(worst[1], a.rotation.angle_to(b.rotation));
+        }
+    }
+    worst
+}
+
+#[test]
+fn keys_are_those_that_the_bound_needs_at_any_rate() {
+    for def in [walker(), in_centimetres_and_z_up()] {
+        let def = shared(def);
+        for fps in [24.0, 25.0, 30.0, 120.0] {
+            let baked = baked(&def, PUSH, fps);
+            assert_eq!(baked.frames.len(), (9.0 * fps) as usize + 1);
+            let [distance, angle] = off(&def, &baked);
+            println!(
+                "{fps}: {:?} keys, {distance} m, {}°, told {:?}",
+                baked.keys,
+                angle.to_degrees(),
+                baked.key_error
+            );
+            // Keys of the frames themselves are as near as rounding is.
+            assert!(distance <= 1.01 * KEY_BOUND.distance && angle <= 1.01 * KEY_BOUND.angle);
+            assert!((distance - baked.key_error.distance).abs() < 4e-6, "{distance} {:?}", baked.key_error);
+            assert!((angle - baked.key_error.angle).abs() < 4e-6, "{angle} {:?}", baked.key_error);
+            let count: usize = baked.clip.channels.iter().map(|channel| channel.times.len()).sum();
+            assert_eq!(baked.keys[1], count);
+            assert!(baked.keys[1] < baked.keys[0], "{:?}", baked.keys);
+            let last = baked.frames.last().expect("frames").time;
+            assert!((baked.clip.duration - last).abs() < 1e-6 && (last - 9.0).abs() < 1.0 / fps);
+        }
+    }
+}
+
+#[test]
+fn no_bound_keeps_every_key() {
+    let def = shared(walker());
+    let all = baked_within(&def, PUSH, 30.0, KeyBound::ALL_KEYS);
+    assert!(all.clip.channels.iter().all(|channel| channel.times.len() == all.frames.len()));
+    assert_eq!(all.keys[0], all.keys[1]);
+    let coarse = baked_within(&def, PUSH, 30.0, KeyBound { distance: 2e-3, angle: 3.5e-3 });
+    assert_eq!((all.hash, &all.frames), (coarse.hash, &coarse.frames));
+    assert!(4 * coarse.keys[1] < 3 * coarse.keys[0], "{:?}", coarse.keys);
 }

@@ -375,3 +375,21 @@ fn every_get_up_is_there_as_a_mirror_shows_it() {
         assert!(worst < 5e-3, "{name}: {worst} m off");
     }
 }
+
+#[test]
+fn a_character_that_falls_or_lies_allocates_nothing() {
+    for falling in [DriveMode::Limp, DriveMode::Powered(Muscle::ALIVE)] {
+        let mut def = walker();
+        def.falling = falling;
+        def.after_settling = AfterSettling::StayDown;
+        let (mut world, mut character) = knocked_over(&shared(def), Vec3::new(60.0, 0.0, 30.0));
+        run_until(&mut world, &mut character, 0.2, |_| false);
+        let mut count = 0;
+        for _ in 0..300 {
+            world.step();
+            count += allocation_counter::measure(|| character.update(&mut world)).count_total;
+        }
+        // Its events: that it touches, that it has settled.
+        assert!(count <= 1, "{falling:?}: {count} allocations");
+    }
+}

@@ -1,6 +1,6 @@
 //! Momentum of the animated pose and of the ragdoll that takes over.
 
-use crate::actor::{floor, shared, somewhere, walker};
+use crate::actor::{floor, kaykit, shared, somewhere, walker};
 use sinew_anim::{
     AnimatedClip, AnimationSet, Animator, BuiltClip, ClipId, Easing, LocalTransform, LoopMode, Skeleton,
     TrackDef, Transition, Wrap, local_to_model, sample,
@@ -10,6 +10,7 @@ use sinew_physics::{Velocity, World, WorldDef};
 use sinew_ragdoll::hand_over::{SpeedBound, body_velocities, body_velocity};
 use sinew_ragdoll::{BodyState, Character, CharacterDef, Flesh, Ragdoll};
 use sinew_scenes::mannequin::WALK_SPEED;
+use std::sync::Arc;
 
 /// World poses of the bodies as the walk has them at a time, without a `Character`.
 fn carried_bodies(def: &CharacterDef, at: Transform, time: f32) -> Vec<Transform> {
@@ -316,4 +317,49 @@ fn ragdoll_has_the_momentum_of_any_blend() {
         }
     }
     assert!(least > 10.0, "they move");
+}
+
+/// Largest angular acceleration of a body in the first step after going limp, at several phases, in the air: neither floor
+/// nor push, only joints act on limbs. At the end joints have the friction of the definition.
+fn first_jolt(def: &Arc<CharacterDef>) -> f32 {
+    let mut jolt = 0.0;
+    for start in [0.0, 0.2, 0.45, 0.7] {
+        let mut world = World::new(WorldDef::default());
+        let place = Transform::from_translation(Vec3::Y * 30.0);
+        let mut character = Character::new(def.clone(), place, start);
+        for _ in 0..10 {
+            world.step();
+            character.update(&mut world);
+        }
+        character.go_limp(&mut world);
+        let ragdoll = character.ragdoll().expect("it is limp").clone();
+        let spins = |world: &World| -> Vec<Vec3> {
+            ragdoll.bodies.iter().map(|&body| world.velocity(body).angular).collect()
+        };
+        let before = spins(&world);
+        for step in 0..13 {
+            world.step();
+            character.update(&mut world);
+            if step == 0 {
+                let jolts = before.iter().zip(spins(&world)).map(|(&a, b)| (b - a).length() * 60.0);
+                jolt = jolts.fold(jolt, max);
+            }
+        }
+        for (joint, &id) in def.ragdoll.joints.iter().zip(&ragdoll.joints) {
+            assert_eq!(world.joint(id).friction_torque, joint.friction_torque);
+        }
+    }
+    jolt
+}
+
+#[test]
+fn friction_stops_no_limb_at_once() {
+    for def in [Some(walker()), kaykit()].into_iter().flatten() {
+        let mut smooth = def.clone();
+        smooth.ragdoll.joints.iter_mut().for_each(|joint| joint.friction_torque = 0.0);
+        let [usual, without] = [def, smooth].map(|def| first_jolt(&shared(def)));
+        println!("{usual} rad/s² in the first step, {without} without friction");
+        // What is left is limits that a clip goes beyond.
+        assert!(usual <= 1.001 * without, "{usual} rad/s² in the first step, {without} without friction");
+    }
 }

@@ -1,22 +1,26 @@
 //! `sinew bake`: a character is hit or goes limp, falls, and the fall becomes a clip on the user's own rig.
 
+mod clip_file;
 mod clips;
 mod hit;
 
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
-use crate::files::{CharacterFile, Outputs};
+use crate::files::{CharacterFile, Outputs, never_over};
 use crate::film::{FLOOR_HALF_SIZE, Film, body_models};
 use crate::picture_file::{PictureFile, length, seconds};
 use crate::ragdoll_file::read_definition;
 use crate::report::Report;
 use crate::settings_arg::SettingsArg;
 use crate::table::shown;
+use clip_file::{ClipFile, ClipFormat};
 use clips::Motions;
 use hit::HitArg;
-use sinew::formats::{Textures, append_clip, load_world};
+use sinew::anim::KeyBound;
+use sinew::formats::{Textures, load_world};
 use sinew::math::Vec3;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
+use sinew::ragdoll::bake::KEY_BOUND;
 use sinew::ragdoll::{
     AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, MotionSet, RagdollBodyDef, RagdollDef,
 };
@@ -29,16 +33,19 @@ const LIMP_AT: f32 = 0.5;
 const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
 const OBSTACLES: [[f32; 3]; 3] = [[0.45, 0.33, 0.22], [0.40, 0.36, 0.30], [0.33, 0.27, 0.22]];
 
-/// Let your character fall: simulated from its animation, written back as a clip into a copy of your file
+/// Let your character fall: simulated from its animation, written back as a clip into a copy of your file, or as a BVH
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
   sinew bake character.glb -o fall.glb
   sinew bake character.glb --clip Walk --hit chest=0,0,-60@1.0 -o fall.glb --picture fall.gif
   sinew bake character.glb --world house.json --limp-at 1.2 --seconds 6 -o fall.glb --json
-  sinew bake character.glb --ragdoll edited.sinew.json -o fall.glb")]
+  sinew bake character.glb --ragdoll edited.sinew.json -o fall.glb
+  sinew bake character.glb --fps 120 -o fall.bvh
+
+Keys that no joint needs to stay within --key-error are left out. A BVH holds the skeleton alone, with every frame.")]
 pub struct Bake {
-    /// A glTF, GLB or VRM file with a skinned character
+    /// A GLB, glTF, VRM or FBX file with a skinned character
     character: PathBuf,
     /// The clip that plays until the fall, by name, or by number from 0 if it has none; without it the file's walk,
     /// else its idle, else its first clip; in a file without clips the rest pose
@@ -60,26 +67,45 @@ pub struct Bake {
     #[arg(long = "hit", value_name = "BONE=IX,IY,IZ@T", allow_hyphen_values = true)]
     hits: Vec<HitArg>,
     /// Go limp at this time, seconds; without any --hit the default is 0.5
-    #[arg(long, value_name = "T", value_parser = seconds)]
+    #[arg(long, value_name = "T", value_parser = seconds, allow_negative_numbers = true)]
     limp_at: Option<f32>,
     /// Length of the clip, seconds
-    #[arg(long, value_name = "S", default_value = "8", value_parser = length)]
+    #[arg(long, value_name = "S", default_value = "8", value_parser = length, allow_negative_numbers = true)]
     seconds: f32,
     /// Frames per second of the clip
     #[arg(long, value_name = "N", default_value = "30", value_parser = clap::value_parser!(u16).range(1..=240))]
     fps: u16,
-    /// Where to write the copy of your file with the new clip in it
-    #[arg(short, long, value_name = "OUT.glb")]
-    output: PathBuf,
+    /// How far any joint of the clip may be from the simulation at a frame, mm, and by how many tenths of a degree it may
+    /// be turned; 0 keeps a key for every frame. Default 0.1: a tenth of a millimetre, a hundredth of a degree
+    #[arg(long, value_name = "MM", value_parser = key_error, allow_negative_numbers = true)]
+    key_error: Option<f32>,
+    /// Where to write: a copy of your file with the new clip in it (.glb, .vrm), or its skeleton and the clip (.bvh)
+    #[arg(short, long, value_name = "OUT.(glb|vrm|bvh)")]
+    output: ClipFile,
     /// Also draw it: a .gif, .png (animated) or .webp file
     #[arg(long, value_name = "OUT.(gif|png|webp)")]
     picture: Option<PictureFile>,
 }
 
+/// Largest error of keys, mm: what is worse is no copy of the motion.
+const LARGEST_KEY_ERROR: f32 = 100.0;
+
+/// An error that keys may have, mm.
+fn key_error(text: &str) -> Result<f32, String> {
+    let error: f32 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
+    if (0.0..=LARGEST_KEY_ERROR).contains(&error) {
+        Ok(error)
+    } else {
+        Err(format!("must lie between 0 and {LARGEST_KEY_ERROR} mm"))
+    }
+}
+
 impl Bake {
     /// Reads, simulates, draws, writes.
     pub fn run(&self) -> Result<Report> {
+        let key_bound = self.key_bound()?;
         self.check_outputs()?;
+        self.check_times()?;
         let textures = if self.picture.is_some() { Textures::Decode } else { Textures::Skip };
         let file = CharacterFile::load(&self.character, textures)?;
         let motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
@@ -97,11 +123,26 @@ impl Bake {
             limp_at,
             seconds: self.seconds,
             fps: f32::from(self.fps),
+            key_bound,
             ..BakeInput::new(character)
         };
         let fall = Fall::simulate(&input);
-        self.write(&file, &fall)?;
-        Ok(self.report(&file, &fall))
+        let notes = self.write(&file, &fall)?;
+        Ok(self.report(&file, &fall, &notes))
+    }
+
+    /// What the user allows keys to be off by; nothing in a format that has all frames anyway.
+    fn key_bound(&self) -> Result<KeyBound> {
+        match (self.output.format, self.key_error) {
+            (ClipFormat::Bvh, None) => Ok(KeyBound::ALL_KEYS),
+            (ClipFormat::Bvh, Some(_)) => {
+                Err(Failure::Usage("--key-error does not apply to a BVH, which holds every frame".to_owned()))
+            }
+            (ClipFormat::Copy, None) => Ok(KEY_BOUND),
+            (ClipFormat::Copy, Some(mm)) => {
+                Ok(KeyBound { distance: 1e-3 * mm, angle: 0.1 * mm.to_radians() })
+            }
+        }
     }
 
     /// The definition that was given, or what a build gives.
@@ -113,50 +154,52 @@ impl Bake {
         read_definition(path, file)
     }
 
-    /// The user's own file is never the output.
+    /// The user's own files are never the output.
     fn check_outputs(&self) -> Result<()> {
-        let real = |path: &Path| std::fs::canonicalize(path).ok();
-        let inputs: Vec<_> = self
-            .clips
-            .iter()
-            .map(PathBuf::as_path)
-            .chain(self.world.as_deref())
-            .chain(self.ragdoll.as_deref())
-            .chain(self.settings.path())
-            .chain([self.character.as_path()])
-            .filter_map(real)
-            .collect();
-        for output in self.outputs() {
-            if real(output).is_some_and(|output| inputs.contains(&output)) {
-                let output = output.display();
-                return Err(Failure::Usage(format!("{output} is an input: write to another file")));
+        let settings = self.settings.path_for(&self.character);
+        let inputs = self.clips.iter().chain([&self.character, &settings]).map(PathBuf::as_path);
+        never_over(inputs.chain(self.world.as_deref()).chain(self.ragdoll.as_deref()), self.outputs())
+    }
+
+    /// What is to happen happens before the end.
+    fn check_times(&self) -> Result<()> {
+        let hits = self.hits.iter().map(|hit| ("--hit", hit.time));
+        match hits.chain(self.limp_at.map(|time| ("--limp-at", time))).find(|(_, t)| *t > self.seconds) {
+            Some((what, time)) => {
+                let end = self.seconds;
+                Err(Failure::Usage(format!("{what} at {time} s is after the end, at {end} s (--seconds)")))
             }
+            None => Ok(()),
         }
-        Ok(())
     }
 
     fn outputs(&self) -> Vec<&Path> {
-        std::iter::once(self.output.as_path()).chain(self.picture.iter().map(PictureFile::path)).collect()
+        std::iter::once(self.output.path()).chain(self.picture.iter().map(PictureFile::path)).collect()
     }
 
-    fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<()> {
-        let Fall { input, baked, .. } = fall;
-        let bytes = append_clip(&file.document, &baked.clip, input.name, None)
-            .map_err(|error| error.with_file(&file.name))?;
+    /// Writes all files; gives what the clip's cannot hold, a sentence each.
+    fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<Vec<String>> {
+        let (bytes, notes) = self.output.write(file, fall)?;
         let mut outputs = Outputs::default();
-        outputs.add(&self.output, bytes);
+        outputs.add(self.output.path(), bytes);
         if let Some(picture) = &self.picture {
             let failed = |error| Failure::of_file(picture.path().display().to_string(), error);
             outputs.add(picture.path(), film(fall).shoot(picture.format).map_err(failed)?);
         }
-        outputs.write()
+        outputs.write()?;
+        Ok(notes)
     }
 
-    fn report(&self, file: &CharacterFile, fall: &Fall<'_>) -> Report {
+    fn report(&self, file: &CharacterFile, fall: &Fall<'_>, notes: &[String]) -> Report {
         let outputs = self.outputs();
         let left_out = left_out(fall.input.bodies).map_or(String::new(), |what| format!("\n{what}"));
-        let text = format!("{}{left_out}\n{}", shown(&file.name), fall.to_text(&outputs));
-        Report { json: fall.to_json(&outputs), text }
+        let mut text = format!("{}{left_out}\n{}", shown(&file.name), fall.to_text(&outputs));
+        for note in notes {
+            text += &format!("note: {}\n", shown(note));
+        }
+        let mut json = fall.to_json(&outputs);
+        json["notes"] = notes.into();
+        Report { json, text }
     }
 }
 

@@ -1,0 +1,75 @@
+//! `-o OUT.(glb|vrm|bvh)`: the file that the clip goes into.
+
+use crate::failure::Result;
+use crate::fall::Fall;
+use crate::files::CharacterFile;
+use crate::skeleton::{bones_only, lost_meshes, transform};
+use sinew::formats::{BvhEnds, BvhWriteOptions, append_clip, write_bvh};
+use sinew::math::Rotation;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// What a file is, by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClipFormat {
+    /// A copy of the character's file with one clip more.
+    Copy,
+    /// Its skeleton and the clip, with every frame.
+    Bvh,
+}
+
+/// Where to write the clip, and as what.
+#[derive(Clone, Debug)]
+pub struct ClipFile {
+    path: PathBuf,
+    /// Of its bytes.
+    pub format: ClipFormat,
+}
+
+impl ClipFile {
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Its bytes, and what they cannot hold, a sentence each.
+    pub fn write(&self, file: &CharacterFile, fall: &Fall<'_>) -> Result<(Vec<u8>, Vec<String>)> {
+        let written = match self.format {
+            ClipFormat::Copy => append_clip(&file.document, &fall.baked.clip, fall.input.name, None)
+                .map(|bytes| (bytes, Vec::new())),
+            ClipFormat::Bvh => skeleton(file, fall),
+        };
+        Ok(written.map_err(|error| error.with_file(&file.name))?)
+    }
+}
+
+/// Bones in metres, with the rest pose as the offsets, and a row for each frame.
+fn skeleton(file: &CharacterFile, fall: &Fall<'_>) -> sinew::formats::Result<(Vec<u8>, Vec<String>)> {
+    let rig = &file.document.rig;
+    let (mut bones, mut clip, dropped) = bones_only(rig, &fall.baked.clip);
+    let mut notes = Vec::new();
+    lost_meshes(rig, &dropped, &mut notes);
+    transform(&mut bones, &mut clip, Rotation::IDENTITY, file.analysis.unit_scale);
+    let frame_time = 1.0 / f64::from(fall.input.fps);
+    let options = BvhWriteOptions { frame_time, ends: BvhEnds::EveryChain, ..BvhWriteOptions::default() };
+    let written = write_bvh(&bones, &clip, &options)?;
+    notes.extend(written.notes);
+    Ok((written.text.into_bytes(), notes))
+}
+
+impl FromStr for ClipFile {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let path = PathBuf::from(text);
+        let extension =
+            path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+        let format = match extension.as_deref() {
+            // A name without an end says nothing else.
+            None | Some("glb" | "vrm") => ClipFormat::Copy,
+            Some("bvh") => ClipFormat::Bvh,
+            _ => return Err("must end in .glb, .vrm or .bvh"),
+        };
+        Ok(Self { path, format })
+    }
+}
