@@ -56,20 +56,8 @@ pub(crate) fn mul_transposed(m: &Mat6, v: &Vec6) -> Vec6 {
     out
 }
 
-/// `a b`
-#[inline]
-pub(crate) fn product(a: &Mat6, b: &Mat6) -> Mat6 {
-    let mut out = ZERO66;
-    for i in 0..6 {
-        for k in 0..6 {
-            add_scaled(&mut out[i], &b[k], a[i][k]);
-        }
-    }
-    out
-}
-
 /// `mᵀ`
-#[inline]
+#[inline(always)]
 pub(crate) fn transpose(m: &Mat6) -> Mat6 {
     let mut out = ZERO66;
     for i in 0..6 {
@@ -82,6 +70,7 @@ pub(crate) fn transpose(m: &Mat6) -> Mat6 {
 
 /// Inverse of the leading `n`×`n` block of a symmetric positive definite matrix by LDLᵀ; the rest is zero.
 /// `None` if a pivot is not safely positive (below 1e-7 of its diagonal entry) or not finite.
+#[inline(always)]
 pub(crate) fn spd_inverse(m: &Mat6, n: usize) -> Option<Mat6> {
     match n {
         0 => Some(ZERO66),
@@ -95,6 +84,7 @@ pub(crate) fn spd_inverse(m: &Mat6, n: usize) -> Option<Mat6> {
 }
 
 /// With loops of known length, which the compiler writes out.
+#[inline(always)]
 fn inverse_of<const N: usize>(m: &Mat6) -> Option<Mat6> {
     // L below the diagonal, 1/D on it.
     let mut l = [[0.0; N]; N];
@@ -146,6 +136,17 @@ fn inverse_of<const N: usize>(m: &Mat6) -> Option<Mat6> {
 mod tests {
     use super::*;
     use sinew_math::Random;
+
+    /// `a b`
+    fn product(a: &Mat6, b: &Mat6) -> Mat6 {
+        let mut out = ZERO66;
+        for i in 0..6 {
+            for k in 0..6 {
+                add_scaled(&mut out[i], &b[k], a[i][k]);
+            }
+        }
+        out
+    }
 
     #[test]
     fn inverse_of_random_spd_matrices() {

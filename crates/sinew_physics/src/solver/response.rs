@@ -3,7 +3,7 @@
 
 use super::loops::MAX_EXACT_ROWS;
 use super::tree::{Link, NONE};
-use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, mul, mul_transposed, product, transpose};
+use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, mul, mul_transposed, transpose};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
 
@@ -64,30 +64,7 @@ impl Response {
     /// Fills the blocks from the factored links: for `c` below `p`, `W_cj = A_c W_pj` with `A_c` the transfer of the
     /// joint, since nothing acts below it; `W_cc = L_c + A_c W_pp A_cᵀ`.
     pub fn fill(&mut self, links: &[Link]) {
-        for tree in &self.trees {
-            let members = &self.members[tree.first..tree.first + tree.count];
-            let n = tree.count;
-            let blocks = &mut self.blocks[tree.blocks..tree.blocks + n * n];
-            for (c, &body) in members.iter().enumerate() {
-                let link = &links[body as usize];
-                blocks[c * n + c] = link.response_with_parent_held();
-                let parent = link.parent as usize;
-                if parent >= links.len() {
-                    continue; // the root, always the first member
-                }
-                let p = self.slot[parent] as usize;
-                let transfer = link.transfer();
-                for j in 0..c {
-                    let block = product(&transfer, &blocks[p * n + j]);
-                    blocks[j * n + c] = transpose(&block);
-                    blocks[c * n + j] = block;
-                }
-                let through = product(&transfer, &blocks[p * n + c]);
-                for (own, add) in blocks[c * n + c].iter_mut().zip(&through) {
-                    add_scaled(own, add, 1.0);
-                }
-            }
-        }
+        dispatch::run(Fill { response: self, links });
     }
 
     /// Members of a tree, parents first.
@@ -162,6 +139,72 @@ impl Response {
             members: &self.members[first..first + count],
             velocities,
         });
+    }
+}
+
+struct Fill<'a> {
+    response: &'a mut Response,
+    links: &'a [Link],
+}
+
+impl Kernel for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { response, links } = self;
+        for tree in &response.trees {
+            let members = &response.members[tree.first..tree.first + tree.count];
+            let n = tree.count;
+            let blocks = &mut response.blocks[tree.blocks..tree.blocks + n * n];
+            for (c, &body) in members.iter().enumerate() {
+                let link = &links[body as usize];
+                let mut own = link.response_with_parent_held::<L>();
+                let parent = link.parent as usize;
+                // The root is always the first member.
+                if parent < links.len() {
+                    let p = response.slot[parent] as usize;
+                    let mut transfer = ZERO66;
+                    store(link.transfer::<L>(), &mut transfer);
+                    for j in 0..c {
+                        let mut block = ZERO66;
+                        store(product::<L>(&transfer, &blocks[p * n + j]), &mut block);
+                        blocks[j * n + c] = transpose(&block);
+                        blocks[c * n + j] = block;
+                    }
+                    let through = product::<L>(&transfer, &blocks[p * n + c]);
+                    for (own, add) in own.iter_mut().zip(through) {
+                        *own = *own + add;
+                    }
+                }
+                store(own, &mut blocks[c * n + c]);
+            }
+        }
+    }
+}
+
+/// `a b`
+#[inline(always)]
+fn product<L: Lanes>(a: &Mat6, b: &Mat6) -> [L; 6] {
+    let [r0, r1, r2, r3, r4, r5] = b;
+    let (r0, r1, r2) = (L::load(r0), L::load(r1), L::load(r2));
+    let (r3, r4, r5) = (L::load(r3), L::load(r4), L::load(r5));
+    let mut out = [L::splat(0.0); 6];
+    for (out, a) in out.iter_mut().zip(a) {
+        *out = r0 * L::splat(a[0])
+            + r1 * L::splat(a[1])
+            + r2 * L::splat(a[2])
+            + r3 * L::splat(a[3])
+            + r4 * L::splat(a[4])
+            + r5 * L::splat(a[5]);
+    }
+    out
+}
+
+#[inline(always)]
+fn store<L: Lanes>(rows: [L; 6], out: &mut Mat6) {
+    for (row, out) in rows.into_iter().zip(out) {
+        row.store(out);
     }
 }
 

@@ -11,6 +11,8 @@
 use super::SolverJoint;
 use crate::joint::DIRECTIONS;
 use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, dot, mul, spd_inverse};
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::Lanes;
 
 /// No parent, no joint, no slot.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -69,38 +71,36 @@ impl Link {
     }
 
     /// `−Y D⁻¹ J_p`: velocity that this body takes on from its parent's, when nothing acts below the joint.
-    pub fn transfer(&self) -> Mat6 {
-        let mut z = [ZERO6; 6];
-        for (row, zr) in z.iter_mut().enumerate().take(self.rows) {
-            for k in 0..self.rows {
-                add_scaled(zr, &self.parent_rows[k], self.d_inverse[row][k]);
-            }
-        }
-        let mut out = ZERO66;
+    #[inline(always)]
+    pub fn transfer<L: Lanes>(&self) -> [L; 6] {
+        let mut out = [L::splat(0.0); 6];
         for row in 0..self.rows {
-            for (i, line) in out.iter_mut().enumerate() {
-                add_scaled(line, &z[row], -self.y[row][i]);
+            let line = combined::<L>(&self.parent_rows[..self.rows], &self.d_inverse[row]);
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = *out + line * L::splat(-self.y[row][i]);
             }
         }
         out
     }
 
     /// `P − Y D⁻¹ Yᵀ`: response to an impulse on this body while its parent is held.
-    pub fn response_with_parent_held(&self) -> Mat6 {
-        let mut out = self.inverse;
+    #[inline(always)]
+    pub fn response_with_parent_held<L: Lanes>(&self) -> [L; 6] {
+        let mut out = [L::splat(0.0); 6];
+        for (out, line) in out.iter_mut().zip(&self.inverse) {
+            *out = L::load(line);
+        }
         for row in 0..self.rows {
-            let mut line = ZERO6;
-            for k in 0..self.rows {
-                add_scaled(&mut line, &self.y[k], self.d_inverse[row][k]);
-            }
-            for (i, o) in out.iter_mut().enumerate() {
-                add_scaled(o, &line, -self.y[row][i]);
+            let line = combined::<L>(&self.y[..self.rows], &self.d_inverse[row]);
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = *out + line * L::splat(-self.y[row][i]);
             }
         }
         out
     }
 
     /// Computes P, Y, D⁻¹ from the articulated inertia of the child.
+    #[inline(always)]
     fn factor(&mut self, inertia: &Mat6) {
         self.inverse = robust_inverse(inertia, 6);
         let mut d = ZERO66;
@@ -117,6 +117,7 @@ impl Link {
     }
 
     /// `J_pᵀ D⁻¹ J_p`: what this joint adds to its parent's inertia.
+    #[inline(always)]
     fn add_to_parent(&self, inertia: &mut Mat6) {
         for row in 0..self.rows {
             let mut line = ZERO6;
@@ -130,8 +131,19 @@ impl Link {
     }
 }
 
+/// The sum of rows, each times its factor.
+#[inline(always)]
+fn combined<L: Lanes>(rows: &[Vec6], factors: &Vec6) -> L {
+    let mut sum = L::splat(0.0);
+    for (row, &factor) in rows.iter().zip(factors) {
+        sum = sum + L::load(row) * L::splat(factor);
+    }
+    sum
+}
+
 /// Inverse of a matrix that is positive definite but for rounding: a bad pivot raises the diagonal and tries again
 /// (as Newton Dynamics does); what stays bad gives zero, so the row does nothing, never a NaN.
+#[inline(always)]
 fn robust_inverse(m: &Mat6, n: usize) -> Mat6 {
     let mut m = *m;
     for _ in 0..6 {
@@ -147,12 +159,27 @@ fn robust_inverse(m: &Mat6, n: usize) -> Mat6 {
 
 /// Factors all trees: `inertia` holds the bodies' own inertias and is overwritten by the articulated ones.
 pub(crate) fn factor(links: &mut [Link], inertia: &mut [Mat6]) {
-    for i in (0..links.len()).rev() {
-        let m = inertia[i];
-        links[i].factor(&m);
-        let parent = links[i].parent as usize;
-        if parent < links.len() {
-            links[i].add_to_parent(&mut inertia[parent]);
+    dispatch::run(Factor { links, inertia });
+}
+
+struct Factor<'a> {
+    links: &'a mut [Link],
+    inertia: &'a mut [Mat6],
+}
+
+impl Kernel for Factor<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { links, inertia } = self;
+        for i in (0..links.len()).rev() {
+            let m = inertia[i];
+            links[i].factor(&m);
+            let parent = links[i].parent as usize;
+            if parent < links.len() {
+                links[i].add_to_parent(&mut inertia[parent]);
+            }
         }
     }
 }
