@@ -8,7 +8,7 @@ use super::{Character, State, ground};
 use crate::def::RagdollDef;
 use sinew_anim::ik::{FootGround, FootPlacement, TwoBone, place_feet};
 use sinew_anim::{JointIdx, LocalTransform, Rig, local_to_model, smoothstep};
-use sinew_math::{Affine, Transform, Vec3, max, min, trig};
+use sinew_math::{Affine, Transform, Vec3, max, min, normalize_or, trig};
 use sinew_physics::World;
 
 /// How fast feet follow the ground, rad/s: a step of a stair asks for as much of a leg as a transition within 0.2 s.
@@ -21,6 +21,10 @@ const LEAST: f32 = 2e-3;
 const OVER: f32 = 1e-5;
 /// So many times sooner than the body stands upright its feet are planted.
 const PLANTED: f32 = 2.0;
+/// Ground that rises or falls more than this along a foot is an edge, not a slope.
+const STEEPEST: f32 = 0.6;
+/// Most that a foot tilts, radians.
+const MOST_TILT: f32 = 0.6;
 /// How far above a foot the ground is sought, metres.
 const ABOVE: f32 = 0.5;
 /// A character that goes this fast has its feet where its clips have them, m/s.
@@ -73,14 +77,14 @@ impl Feet {
         })
     }
 
-    /// Brings a pose's feet so much higher than the floor of its clip, along `up` (character axes), by the pelvis and the
-    /// knees. `model` is cleared and filled.
+    /// Brings a pose's feet onto the ground as it is planted on, by the pelvis and the knees; `up` is seen by the character.
+    /// `model` is cleared and filled.
     fn place(
         &self,
         rig: &Rig,
         root: &Affine,
         up: Vec3,
-        heights: [f32; 2],
+        planting: Planting,
         local: &mut [LocalTransform],
         model: &mut Vec<Affine>,
     ) {
@@ -92,19 +96,37 @@ impl Feet {
             ankle_height: self.ankle_height,
             free_height: 0.1,
             max_step: MOST,
-            max_tilt: 0.0,
+            max_tilt: MOST_TILT,
         };
-        let mut heights = heights.into_iter();
-        let ground = |_: Vec3| heights.next().map(|height| FootGround { height, normal: up });
+        let normal = |foot: usize| {
+            let ankle = model[self.legs[foot].end].to_rigid();
+            let along = ankle.rotation * self.balls[foot];
+            let along = normalize_or(along - up * along.dot(up), Vec3::ZERO);
+            (up - along * planting.slopes[foot]).normalize()
+        };
+        let grounds = [0, 1].map(|foot| FootGround { height: planting.heights[foot], normal: normal(foot) });
+        let mut grounds = grounds.into_iter();
+        let ground = |_: Vec3| grounds.next();
         place_feet(rig, self.pelvis, &self.legs, &settings, ground, local, model);
     }
 }
 
-/// How high the ground under each foot is held to be over the floor of the clip, metres, and how fast that changes.
+/// What the ground under each foot is held to be, over the floor of the clip, and how fast that changes, per second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Planting {
+    /// Metres.
     pub heights: [f32; 2],
     pub rates: [f32; 2],
+    /// From heel to ball: up over along.
+    pub slopes: [f32; 2],
+    pub slope_rates: [f32; 2],
+}
+
+/// Ground under a foot over the floor of its clip: metres, and up over along.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Need {
+    height: f32,
+    slope: f32,
 }
 
 impl Planting {
@@ -112,27 +134,32 @@ impl Planting {
         *self == Self::default()
     }
 
-    /// Follows the ground for `dt` seconds: `x″ = −ω²(x − g) − 2ω x′`, solved exactly.
-    fn follow(&mut self, goals: [f32; 2], dt: f32) {
-        let decay = trig::exp(-QUICKNESS * dt);
+    /// Follows the ground for `dt` seconds.
+    fn follow(&mut self, goals: [Need; 2], dt: f32) {
         for (foot, goal) in goals.into_iter().enumerate() {
-            let (off, rate) = (self.heights[foot] - goal, self.rates[foot]);
-            let carried = rate + QUICKNESS * off;
-            self.heights[foot] = goal + (off + carried * dt) * decay;
-            self.rates[foot] = (rate - QUICKNESS * carried * dt) * decay;
+            follow(&mut self.heights[foot], &mut self.rates[foot], goal.height, dt);
+            follow(&mut self.slopes[foot], &mut self.slope_rates[foot], goal.slope, dt);
         }
-        let is_nothing = |x: f32| x.abs() < OVER;
-        let rests = self.heights.into_iter().chain(self.rates).all(is_nothing);
-        if rests && goals == [0.0; 2] {
+        let all = [self.heights, self.rates, self.slopes, self.slope_rates];
+        if goals == [Need::default(); 2] && all.as_flattened().iter().all(|x| x.abs() < OVER) {
             *self = Self::default();
         }
     }
 
     /// After so many seconds more at the present rates.
     pub fn ahead(&self, seconds: f32) -> Self {
-        let at = |foot: usize| self.heights[foot] + self.rates[foot] * seconds;
-        Self { heights: [at(0), at(1)], ..*self }
+        let at = |x: [f32; 2], rate: [f32; 2]| [0, 1].map(|foot| x[foot] + rate[foot] * seconds);
+        Self { heights: at(self.heights, self.rates), slopes: at(self.slopes, self.slope_rates), ..*self }
     }
+}
+
+/// `x″ = −ω²(x − g) − 2ω x′` for `dt` seconds, solved exactly.
+fn follow(x: &mut f32, rate: &mut f32, goal: f32, dt: f32) {
+    let decay = trig::exp(-QUICKNESS * dt);
+    let off = *x - goal;
+    let carried = *rate + QUICKNESS * off;
+    *x = goal + (off + carried * dt) * decay;
+    *rate = (*rate - QUICKNESS * carried * dt) * decay;
 }
 
 impl Character {
@@ -149,7 +176,10 @@ impl Character {
         if share <= 0.0 && self.planting.is_over() {
             return;
         }
-        let goals = if share > 0.0 { self.needed(world, feet).map(|need| share * need) } else { [0.0; 2] };
+        let mut goals = if share > 0.0 { self.needed(world, feet) } else { Default::default() };
+        goals
+            .iter_mut()
+            .for_each(|need| (need.height, need.slope) = (share * need.height, share * need.slope));
         self.planting.follow(goals, world.def().dt());
         self.show_planted();
     }
@@ -167,12 +197,12 @@ impl Character {
         let Some(feet) = self.def.feet().filter(|_| !planting.is_over()) else { return };
         let root = self.def.mapping().character_from_model();
         let up = self.world_from_character.rotation.inverse() * Vec3::Y;
-        feet.place(&self.def.rig, &root, up, planting.heights, pose, &mut self.scratch.model);
+        feet.place(&self.def.rig, &root, up, planting, pose, &mut self.scratch.model);
     }
 
-    /// How high the ground is under each foot over the floor of the clip: under heel or ball, whichever is higher, for it is
-    /// there that a foot across an edge stands.
-    fn needed(&mut self, world: &World, feet: &Feet) -> [f32; 2] {
+    /// The ground under each foot over the floor of the clip: on a slope that under the heel, and how it tilts; across an edge
+    /// what is higher of that under heel and ball, for there a foot stands.
+    fn needed(&mut self, world: &World, feet: &Feet) -> [Need; 2] {
         let root = self.def.mapping().character_from_model();
         let model = &mut self.scratch.model;
         local_to_model(&self.def.rig, &self.pose, &root, model);
@@ -184,11 +214,20 @@ impl Character {
             let floor = place.translation.y - (normal.x * away.x + normal.z * away.z) / normal.y;
             Some(height - floor).filter(|over| over.abs() <= MOST)
         };
+        let least = |over: f32| if over.abs() < LEAST { 0.0 } else { over };
         [0, 1].map(|foot| {
             let ankle: Transform = place * model[feet.legs[foot].end].to_rigid();
-            let [heel, ball] = [ankle.translation, ankle.point(feet.balls[foot])].map(over_floor);
-            let over = heel.into_iter().chain(ball).reduce(max).unwrap_or(0.0);
-            if over.abs() < LEAST { 0.0 } else { over }
+            let (heel, ball) = (ankle.translation, ankle.point(feet.balls[foot]));
+            let along = (ball - heel) * Vec3::new(1.0, 0.0, 1.0);
+            match (over_floor(heel), over_floor(ball)) {
+                (Some(heel), Some(ball)) if (ball - heel).abs() <= STEEPEST * along.length() => {
+                    Need { height: least(heel), slope: least(ball - heel) / max(along.length(), 1e-3) }
+                }
+                (heel, ball) => {
+                    let over = heel.into_iter().chain(ball).reduce(max).unwrap_or(0.0);
+                    Need { height: least(over), slope: 0.0 }
+                }
+            }
         })
     }
 }

@@ -29,7 +29,8 @@ impl Character {
         w.transform(self.world_from_character);
         w.f32(self.climbing);
         w.vec3(self.lean);
-        self.planting.heights.into_iter().chain(self.planting.rates).for_each(|x| w.f32(x));
+        let Planting { heights, rates, slopes, slope_rates } = self.planting;
+        [heights, rates, slopes, slope_rates].as_flattened().iter().for_each(|&x| w.f32(x));
         self.animator.save(self.def.set(), w);
         save_rising(w, self.rising);
         save_pose(w, &self.pose);
@@ -74,7 +75,8 @@ impl Character {
             _ => return Err(r.error("unknown state of a character")),
         };
         let (world_from_character, climbing, lean) = (r.transform()?, r.f32()?, r.vec3()?);
-        let planting = Planting { heights: [r.f32()?, r.f32()?], rates: [r.f32()?, r.f32()?] };
+        let mut pair = || Ok([r.f32()?, r.f32()?]);
+        let planting = Planting { heights: pair()?, rates: pair()?, slopes: pair()?, slope_rates: pair()? };
         let animator = Animator::load(self.def.set(), r)?;
         let rising = load_rising(r)?;
         let joints = self.def.rig.joints.len();

@@ -44,10 +44,7 @@ fn height(world: &World, at: Vec3) -> f32 {
 /// How deep joints are in the ground while it gets up, at most, and how high its lower foot is over it, metres; and how hard
 /// its pelvis and feet are accelerated from when the pose of the bodies has died away until it walks, m/s².
 fn gets_up(def: &Arc<CharacterDef>, ground: &[BodyDef], push: Vec3) -> [f32; 3] {
-    let mut world = World::new(WorldDef::default());
-    ground.iter().for_each(|body| {
-        world.add_body(body);
-    });
+    let mut world = world_of(ground);
     let mut character = Character::new(def.clone(), Transform::IDENTITY, 0.2);
     character.hit(&mut world, def.body_named("chest").expect("it has a chest"), push);
     let joint = |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("a joint");
@@ -105,49 +102,83 @@ fn nobody_sinks_into_a_slope_or_floats_over_it() {
     }
 }
 
-/// How high feet are over what is under their heel or under their ball, whichever is higher: across the edge of a step a foot
-/// stands on that.
-fn held(def: &CharacterDef, world: &World, character: &Character) -> [f32; 2] {
+/// How high heel and ball of both feet are over what is under them, beyond how high they are in the pose of the file.
+fn soles(def: &CharacterDef, world: &World, character: &Character) -> [[f32; 2]; 2] {
     let (mut model, mut stands) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
     local_to_model(&def.rig, def.rest(), &def.mapping().character_from_model(), &mut stands);
     let joint = |name: &str| def.rig.joints.iter().position(|joint| joint.name == name).expect("a joint");
     [["leftFoot", "leftToes"], ["rightFoot", "rightToes"]].map(|foot| {
-        let [heel, ball] = foot.map(joint).map(|joint| {
+        foot.map(joint).map(|joint| {
             let place = model[joint].translation;
             place.y - height(world, place) - stands[joint].translation.y
-        });
-        min(heel, ball)
+        })
     })
+}
+
+/// How high feet are: across the edge of a step a foot stands on what is under its heel or under its ball.
+fn held(def: &CharacterDef, world: &World, character: &Character) -> [f32; 2] {
+    soles(def, world, character).map(|[heel, ball]| min(heel, ball))
+}
+
+/// A mannequin that stands where it got up, a second and a half later: from `start`, pushed.
+fn stands_again(def: &Arc<CharacterDef>, world: &mut World, start: Transform, push: Vec3) -> Character {
+    let mut character = Character::new(def.clone(), start, 0.0);
+    character.hit(world, def.body_named("chest").expect("it has a chest"), push);
+    let mut up = 0;
+    for _ in 0..1200 {
+        world.step();
+        character.update(world);
+        up = if character.state() == State::Animated { up + 1 } else { 0 };
+        if up > 90 {
+            return character;
+        }
+    }
+    panic!("it is not up");
+}
+
+/// Without a walk: it stands.
+fn stander() -> Arc<CharacterDef> {
+    let mut def = walker();
+    let motions = MotionSet { looped: None, locomotion: Locomotion::InPlace, ..def.motions().clone() };
+    def.set_motions(motions).expect("they could be played before");
+    shared(def)
+}
+
+fn world_of(ground: &[BodyDef]) -> World {
+    let mut world = World::new(WorldDef::default());
+    ground.iter().for_each(|body| {
+        world.add_body(body);
+    });
+    world
+}
+
+#[test]
+fn feet_lie_on_a_slope() {
+    let def = stander();
+    for degrees in [5.0, 10.0, 20.0] {
+        let mut worst = 0.0_f32;
+        for push in PUSHES {
+            let mut world = world_of(&slope(degrees));
+            let character = stands_again(&def, &mut world, Transform::IDENTITY, push);
+            let soles = soles(&def, &world, &character);
+            worst = soles.as_flattened().iter().fold(worst, |worst, over| max(worst, over.abs()));
+        }
+        println!("{degrees}°: heels and balls {worst} m off");
+        assert!(worst < 0.01, "{degrees}°: {worst} m off");
+    }
 }
 
 #[test]
 fn who_stands_across_an_edge_has_both_feet_on_the_ground() {
-    let mut def = walker();
-    let motions = MotionSet { looped: None, locomotion: Locomotion::InPlace, ..def.motions().clone() };
-    def.set_motions(motions).expect("they could be played before");
-    let def = shared(def);
+    let def = stander();
     let (mut worst, mut bent) = (0.0_f32, 0);
     // Where the edges are under it is chance.
     for k in 0..6_u8 {
         for push in PUSHES {
-            let mut world = World::new(WorldDef::default());
-            stairs().iter().for_each(|body| {
-                world.add_body(body);
-            });
+            let mut world = world_of(&stairs());
             let start = Transform::from_translation(Vec3::Z * (0.05 * f32::from(k)));
-            let mut character = Character::new(def.clone(), start, 0.0);
-            character.hit(&mut world, def.body_named("chest").expect("it has a chest"), push);
-            let mut up = 0;
-            for _ in 0..1200 {
-                world.step();
-                character.update(&mut world);
-                up = if character.state() == State::Animated { up + 1 } else { 0 };
-                if up > 90 {
-                    break;
-                }
-            }
-            assert!(up > 90, "it is up");
+            let character = stands_again(&def, &mut world, start, push);
             let held = held(&def, &world, &character);
             worst = held.into_iter().fold(worst, |worst, over| max(worst, over.abs()));
             let knee = |name: &str| {
@@ -164,14 +195,8 @@ fn who_stands_across_an_edge_has_both_feet_on_the_ground() {
 
 #[test]
 fn planted_feet_are_saved_and_handed_over() {
-    let mut def = walker();
-    let motions = MotionSet { looped: None, locomotion: Locomotion::InPlace, ..def.motions().clone() };
-    def.set_motions(motions).expect("they could be played before");
-    let def = shared(def);
-    let mut world = World::new(WorldDef::default());
-    stairs().iter().for_each(|body| {
-        world.add_body(body);
-    });
+    let def = stander();
+    let mut world = world_of(&stairs());
     let mut character = Character::new(def.clone(), Transform::IDENTITY, 0.0);
     character.hit(&mut world, def.body_named("chest").expect("it has a chest"), PUSHES[0]);
     // Restored on the way up, and once it stands: it goes on as the original.
