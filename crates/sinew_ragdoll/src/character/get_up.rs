@@ -47,11 +47,13 @@ pub(super) fn choose<'a>(
 }
 
 impl Character {
-    /// The present pose in the world.
+    /// The present pose in the world. Its points may be given back to [`Scratch`](super::Scratch).
     pub(super) fn stance(&mut self) -> Stance {
         let model = &mut self.scratch.model;
         local_to_model(&self.def.rig, &self.pose, &Affine::IDENTITY, model);
-        self.def.moves().landmarks.stance(self.def.mapping(), model, self.world_from_character)
+        let (points, bodies) = (core::mem::take(&mut self.scratch.points), &mut self.scratch.before);
+        let landmarks = &self.def.moves().landmarks;
+        landmarks.stance(self.def.mapping(), model, self.world_from_character, points, bodies)
     }
 
     /// Gives the pose back to the clips, by the moment of a get-up clip that is most like it.

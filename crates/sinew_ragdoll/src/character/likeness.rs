@@ -73,13 +73,19 @@ impl Landmarks {
         }
     }
 
-    /// The stance of a pose in model space; `world_from_character` says where that is.
-    pub fn stance(&self, mapping: &Mapping, model: &[Affine], world_from_character: Transform) -> Stance {
+    /// The stance of a pose in model space; `world_from_character` says where that is. Memory is that of `points` and `bodies`.
+    pub fn stance(
+        &self,
+        mapping: &Mapping,
+        model: &[Affine],
+        world_from_character: Transform,
+        mut points: Vec<Vec3>,
+        bodies: &mut Vec<Transform>,
+    ) -> Stance {
         let world = mapping.world_from_model(world_from_character);
-        let mut points: Vec<Vec3> =
-            self.joints.iter().map(|&joint| world.point(model[joint].translation)).collect();
-        let mut bodies = Vec::new();
-        mapping.bodies_from_model(model, world_from_character, &mut bodies);
+        points.clear();
+        points.extend(self.joints.iter().map(|&joint| world.point(model[joint].translation)));
+        mapping.bodies_from_model(model, world_from_character, bodies);
         let mut pelvis = Rotation::IDENTITY;
         for (index, &(body, body_from_bind)) in self.trunk.iter().enumerate() {
             let turn = bodies[body].rotation * body_from_bind;

@@ -128,6 +128,7 @@ struct Scratch {
     pose: Vec<LocalTransform>,
     resting: Pose,
     model: Vec<Affine>,
+    points: Vec<Vec3>,
     before: Vec<Transform>,
     after: Vec<Transform>,
     velocities: Vec<Velocity>,

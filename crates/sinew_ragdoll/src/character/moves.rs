@@ -143,8 +143,9 @@ fn starts(def: &CharacterDef, landmarks: &Landmarks, take: &Take) -> Vec<Start> 
         .map(|frame| {
             let (mut model, mut bodies) = (Vec::new(), Vec::new());
             local_to_model(&def.rig, take.pose(frame), &Affine::IDENTITY, &mut model);
-            def.mapping().bodies_from_model(&model, Transform::IDENTITY, &mut bodies);
-            let stance = landmarks.stance(def.mapping(), &model, Transform::IDENTITY);
+            let (mapping, points) = (def.mapping(), Vec::new());
+            // Which fills in the bodies, too.
+            let stance = landmarks.stance(mapping, &model, Transform::IDENTITY, points, &mut bodies);
             Start { time: take.time(frame), stance, bodies }
         })
         .collect()
@@ -153,7 +154,7 @@ fn starts(def: &CharacterDef, landmarks: &Landmarks, take: &Take) -> Vec<Start> 
 fn stance(rig: &Rig, mapping: &Mapping, landmarks: &Landmarks, pose: &[LocalTransform]) -> Stance {
     let mut model = Vec::new();
     local_to_model(rig, pose, &Affine::IDENTITY, &mut model);
-    landmarks.stance(mapping, &model, Transform::IDENTITY)
+    landmarks.stance(mapping, &model, Transform::IDENTITY, Vec::new(), &mut Vec::new())
 }
 
 /// The flat pose at the start of the looped clip, or the rest pose.

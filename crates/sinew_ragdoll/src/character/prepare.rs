@@ -81,6 +81,7 @@ impl Character {
             return self.get_up(world);
         }
         self.draw(world, &choice);
+        self.scratch.points = lies.points;
     }
 
     fn is_like(&self, choice: &Choice<'_>, pelvis: Rotation, [trunk, joints]: [f32; 2]) -> bool {

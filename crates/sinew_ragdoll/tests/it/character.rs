@@ -393,3 +393,25 @@ fn a_character_that_falls_or_lies_allocates_nothing() {
         assert!(count <= 1, "{falling:?}: {count} allocations");
     }
 }
+
+#[test]
+fn a_body_that_is_rolled_over_allocates_nothing() {
+    let def = shared(walker());
+    let mut rolled = 0;
+    for push in [90.0, -90.0, 60.0] {
+        let (mut world, mut character) = knocked_over(&def, somewhere().rotation * Vec3::X * push);
+        run_until(&mut world, &mut character, 9.0, |c| c.state() == State::Preparing);
+        // Pins come in the first steps.
+        run_until(&mut world, &mut character, 0.2, |c| c.state() != State::Preparing);
+        let mut count = 0;
+        for _ in 0..20 {
+            world.step();
+            let update = allocation_counter::measure(|| character.update(&mut world));
+            if character.state() == State::Preparing {
+                (rolled, count) = (rolled + 1, count + update.count_total);
+            }
+        }
+        assert_eq!(count, 0, "pushed by {push}");
+    }
+    assert!(rolled > 10, "{rolled} steps");
+}
