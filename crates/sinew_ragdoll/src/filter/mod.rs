@@ -89,6 +89,9 @@ pub fn filter_pairs(bones: &Bones, fits: &mut [Fit], poses: &Poses) -> FilterRep
             if bones.list[b].parent == Some(a) {
                 continue;
             }
+            if !may_need_room(fits, poses, (a, b)) {
+                continue;
+            }
             let seen = look(fits, poses, (a, b));
             if seen.bind <= 0.0 && !needs_more_room(bones, &seen, (a, b)) {
                 continue;
@@ -104,17 +107,47 @@ pub fn filter_pairs(bones: &Bones, fits: &mut [Fit], poses: &Poses) -> FilterRep
     report
 }
 
+/// Whether a pair is worth a look at every pose: most are apart in the first few within the limits, and in all of the
+/// clips.
+fn may_need_room(fits: &[Fit], poses: &Poses, (a, b): (usize, usize)) -> bool {
+    let meeting = Meeting::of(fits, (a, b));
+    let apart = |pose: &&Vec<Transform>| !meeting.is_in(pose);
+    // One more apart than leaves them together always.
+    let within = &poses.within_limits;
+    let enough = ((1.0 - ALWAYS) * within.len() as f32) as usize + 1;
+    depth(&fits[a], &fits[b]) > 0.0
+        || within.iter().filter(apart).take(enough).count() < enough && !within.is_empty()
+        || poses.of_clips.iter().any(|pose| meeting.is_in(pose))
+}
+
+/// Two shapes that may overlap.
+struct Meeting<'a> {
+    pair: (usize, usize),
+    shapes: [&'a Shape; 2],
+    /// Bodies farther apart than that do not, metres.
+    reach: f32,
+}
+
+impl<'a> Meeting<'a> {
+    fn of(fits: &'a [Fit], pair: (usize, usize)) -> Self {
+        let [a, b] = [&fits[pair.0], &fits[pair.1]];
+        Self { pair, shapes: [&a.shape, &b.shape], reach: reach(a) + reach(b) }
+    }
+
+    /// Whether they overlap by more than is tolerated.
+    fn is_in(&self, pose: &[Transform]) -> bool {
+        let (at, there) = (&pose[self.pair.0], &pose[self.pair.1]);
+        let apart = (at.translation - there.translation).length_squared() > self.reach * self.reach;
+        !apart && depth_of((self.shapes[0], at), (self.shapes[1], there)) > TOLERATED
+    }
+}
+
 /// Where a pair overlaps.
 fn look(fits: &[Fit], poses: &Poses, (a, b): (usize, usize)) -> Seen {
-    let (a_shape, b_shape) = (&fits[a].shape, &fits[b].shape);
-    let reach = reach(&fits[a]) + reach(&fits[b]);
-    let overlaps = |pose: &&Vec<Transform>| {
-        let (at, there) = (&pose[a], &pose[b]);
-        let apart = (at.translation - there.translation).length_squared() > reach * reach;
-        !apart && depth_of((a_shape, at), (b_shape, there)) > TOLERATED
-    };
+    let meeting = Meeting::of(fits, (a, b));
     let share = |poses: &[Vec<Transform>]| {
-        (!poses.is_empty()).then(|| poses.iter().filter(overlaps).count() as f32 / poses.len() as f32)
+        let count = poses.iter().filter(|pose| meeting.is_in(pose)).count();
+        (!poses.is_empty()).then(|| count as f32 / poses.len() as f32)
     };
     Seen {
         bind: depth(&fits[a], &fits[b]),
