@@ -142,6 +142,7 @@ impl Response {
     }
 }
 
+/// The blocks of all trees.
 struct Fill<'a> {
     response: &'a mut Response,
     links: &'a [Link],
@@ -201,6 +202,7 @@ fn product<L: Lanes>(a: &Mat6, b: &Mat6) -> [L; 6] {
     out
 }
 
+/// Six rows into a matrix.
 #[inline(always)]
 fn store<L: Lanes>(rows: [L; 6], out: &mut Mat6) {
     for (row, out) in rows.into_iter().zip(out) {
@@ -227,8 +229,12 @@ impl Kernel for Spread<'_> {
         let (p3, p4, p5) = (L::splat(p3), L::splat(p4), L::splat(p5));
         for (&body, block) in self.members.iter().zip(self.blocks) {
             let [r0, r1, r2, r3, r4, r5] = block;
-            let linear = L::load(r0) * p0 + L::load(r1) * p1 + L::load(r2) * p2;
-            let change = linear + L::load(r3) * p3 + L::load(r4) * p4 + L::load(r5) * p5;
+            let change = L::load(r0) * p0
+                + L::load(r1) * p1
+                + L::load(r2) * p2
+                + L::load(r3) * p3
+                + L::load(r4) * p4
+                + L::load(r5) * p5;
             let velocity = &mut self.velocities[body as usize];
             (L::load(velocity) + change).store(velocity);
         }

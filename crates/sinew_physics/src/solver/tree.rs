@@ -162,6 +162,7 @@ pub(crate) fn factor(links: &mut [Link], inertia: &mut [Mat6]) {
     dispatch::run(Factor { links, inertia });
 }
 
+/// Plain arithmetic, which the compiler puts on the registers that it is entered with.
 struct Factor<'a> {
     links: &'a mut [Link],
     inertia: &'a mut [Mat6],
