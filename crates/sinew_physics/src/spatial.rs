@@ -1,7 +1,7 @@
 //! Six-dimensional algebra of the joint trees: linear part first, angular part second.
 
-use sinew_math::Vec3;
 use sinew_math::lanes::WIDTH;
+use sinew_math::{Vec3, max};
 
 /// Velocity (m/s, rad/s) or impulse (N·s, N·m·s) of a body at its centre of mass, or one row of a Jacobian: six numbers, and
 /// two zeros that fill a register of eight.
@@ -32,6 +32,13 @@ pub(crate) fn dot(a: &Vec6, b: &Vec6) -> f32 {
     (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
 }
 
+/// The largest component, without its sign.
+#[inline(always)]
+pub(crate) fn largest(v: &Vec6) -> f32 {
+    let [x, y, z, u, v, w, ..] = v.map(f32::abs);
+    max(max(max(x, y), z), max(max(u, v), w))
+}
+
 /// `a += k b`
 #[inline(always)]
 pub(crate) fn add_scaled(a: &mut Vec6, b: &Vec6, k: f32) {
@@ -40,13 +47,7 @@ pub(crate) fn add_scaled(a: &mut Vec6, b: &Vec6, k: f32) {
     }
 }
 
-/// `m v`
-#[inline(always)]
-pub(crate) fn mul(m: &Mat6, v: &Vec6) -> Vec6 {
-    [dot(&m[0], v), dot(&m[1], v), dot(&m[2], v), dot(&m[3], v), dot(&m[4], v), dot(&m[5], v), 0.0, 0.0]
-}
-
-/// `mᵀ v`: sums whole rows, which fills vector registers where `mul` has to add across them.
+/// `mᵀ v`: sums whole rows, which fill vector registers; a sum across each row would not.
 #[inline(always)]
 pub(crate) fn mul_transposed(m: &Mat6, v: &Vec6) -> Vec6 {
     let mut out = ZERO6;
@@ -110,23 +111,22 @@ fn inverse_of<const N: usize>(m: &Mat6) -> Option<Mat6> {
             l[i][k] *= l[k][k];
         }
     }
+    // All columns at once: L D Lᵀ X = 1, row by row of X.
     let mut inverse = ZERO66;
-    for column in 0..N {
-        let mut x = [0.0; N];
-        x[column] = 1.0;
-        for i in column..N {
-            for k in column..i {
-                x[i] -= l[i][k] * x[k];
-            }
+    for i in 0..N {
+        inverse[i][i] = 1.0;
+        for k in 0..i {
+            let above = inverse[k];
+            add_scaled(&mut inverse[i], &above, -l[i][k]);
         }
-        for i in 0..N {
-            x[i] *= l[i][i];
-        }
-        for i in (0..N).rev() {
-            for k in i + 1..N {
-                x[i] -= l[k][i] * x[k];
-            }
-            inverse[i][column] = x[i];
+    }
+    for i in 0..N {
+        inverse[i] = inverse[i].map(|x| x * l[i][i]);
+    }
+    for i in (0..N).rev() {
+        for k in i + 1..N {
+            let below = inverse[k];
+            add_scaled(&mut inverse[i], &below, -l[k][i]);
         }
     }
     Some(inverse)

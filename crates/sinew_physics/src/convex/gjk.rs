@@ -183,14 +183,22 @@ impl Simplex {
 /// Three vertices by number, and the weight of each; 0 for those that do not count.
 type Carriers = ([usize; 3], [f64; 3]);
 
-fn point_of(p: &[DVec3; 4], (carriers, weights): &Carriers) -> DVec3 {
-    let terms = carriers.iter().zip(weights);
-    terms.fold(DVec3::ZERO, |sum, (&index, &weight)| sum + p[index] * weight)
-}
-
-fn nearer(p: &[DVec3; 4], x: Carriers, y: Carriers) -> Carriers {
-    let squared = |c: &Carriers| point_of(p, c).dot(point_of(p, c));
-    if squared(&y) < squared(&x) { y } else { x }
+/// Those of the nearest point, the first among equals.
+fn nearest_of<const N: usize>(p: &[DVec3; 4], all: [Carriers; N]) -> Carriers {
+    let squared = |(carriers, weights): &Carriers| {
+        let terms = carriers.iter().zip(weights);
+        let point = terms.fold(DVec3::ZERO, |sum, (&index, &weight)| sum + p[index] * weight);
+        point.dot(point)
+    };
+    let mut nearest = all[0];
+    let mut shortest = squared(&nearest);
+    for other in &all[1..] {
+        let length = squared(other);
+        if length < shortest {
+            (nearest, shortest) = (*other, length);
+        }
+    }
+    nearest
 }
 
 fn on_segment([p, q]: [DVec3; 2], [i, j]: [usize; 2]) -> Carriers {
@@ -218,8 +226,7 @@ fn on_triangle(p: &[DVec3; 4], at: [usize; 3]) -> Carriers {
         let sum = areas[0] + areas[1] + areas[2];
         return (at, areas.map(|area| area / sum));
     }
-    let sides = [on_segment([a, b], [i, j]), on_segment([b, c], [j, k]), on_segment([c, a], [k, i])];
-    sides.into_iter().reduce(|x, y| nearer(p, x, y)).unwrap_or((at, [1.0, 0.0, 0.0]))
+    nearest_of(p, [on_segment([a, b], [i, j]), on_segment([b, c], [j, k]), on_segment([c, a], [k, i])])
 }
 
 const FACES: [[usize; 4]; 4] = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0]];
@@ -238,6 +245,5 @@ fn holds_origin(p: &[DVec3; 4]) -> bool {
 /// On the face that comes closest. On which side of its faces the origin lies is rounding where a tetrahedron is flat, so that
 /// all are looked at.
 fn on_tetrahedron(p: &[DVec3; 4]) -> Carriers {
-    let [first, others @ ..] = FACES.map(|[i, j, k, _]| on_triangle(p, [i, j, k]));
-    others.into_iter().fold(first, |x, y| nearer(p, x, y))
+    nearest_of(p, FACES.map(|[i, j, k, _]| on_triangle(p, [i, j, k])))
 }

@@ -6,8 +6,7 @@ use super::contact_rows::{Given, ManifoldRows};
 use super::limit_rows::LimitRow;
 use super::sweep::Unrest;
 use super::tree::Link;
-use crate::spatial::{Vec6, add_scaled};
-use sinew_math::max;
+use crate::spatial::{Vec6, add_scaled, largest};
 
 /// Where a pass stands. What lists hold of a pass before is never used: its first sweep has no energy to go on from.
 #[derive(Clone, Debug, Default)]
@@ -20,12 +19,11 @@ pub(super) struct Conjugate {
     energy: f32,
 }
 
-/// Impulses of all rows, and what the bodies have of them.
+/// Impulses of all rows, and the velocities that they make.
 #[derive(Clone, Debug, Default)]
 struct State {
     manifolds: Vec<Given>,
     limits: Vec<f32>,
-    impulses: Vec<Vec6>,
     velocities: Vec<Vec6>,
 }
 
@@ -33,7 +31,6 @@ struct State {
 pub(super) struct Rows<'a> {
     pub manifolds: &'a mut [ManifoldRows],
     pub limits: &'a mut [LimitRow],
-    pub impulses: &'a mut [Vec6],
     pub velocities: &'a mut [Vec6],
     pub links: &'a [Link],
     pub unrest: &'a mut Unrest,
@@ -45,10 +42,8 @@ impl Conjugate {
         for state in [&mut self.was, &mut self.direction] {
             state.manifolds.clear();
             state.manifolds.reserve(manifolds);
-            for list in [&mut state.impulses, &mut state.velocities] {
-                list.clear();
-                list.reserve(bodies);
-            }
+            state.velocities.clear();
+            state.velocities.reserve(bodies);
         }
     }
 
@@ -63,8 +58,6 @@ impl Conjugate {
         self.was.manifolds.extend(rows.manifolds.iter().map(ManifoldRows::given));
         self.was.limits.clear();
         self.was.limits.extend(rows.limits.iter().map(|row| row.impulse));
-        self.was.impulses.clear();
-        self.was.impulses.extend_from_slice(rows.impulses);
         self.was.velocities.clear();
         self.was.velocities.extend_from_slice(rows.velocities);
     }
@@ -94,11 +87,10 @@ impl State {
         for (was, row) in self.limits.iter_mut().zip(rows.limits.iter()) {
             *was = row.impulse - *was;
         }
-        for (was, now) in self.impulses.iter_mut().zip(rows.impulses.iter()) {
-            *was = sum(now, was, -1.0);
-        }
         for (was, now) in self.velocities.iter_mut().zip(rows.velocities.iter()) {
-            *was = sum(now, was, -1.0);
+            for (was, now) in was.iter_mut().zip(now) {
+                *was = now - *was;
+            }
         }
     }
 
@@ -115,18 +107,11 @@ impl State {
             *d = change.limits[i] + *d * share;
         }
         for (i, link) in rows.links.iter().enumerate() {
-            add_scaled(&mut rows.impulses[i], &self.impulses[i], share);
-            add_scaled(&mut rows.velocities[i], &self.velocities[i], share);
-            let largest = self.velocities[i].iter().fold(0.0, |most, x| max(most, x.abs()));
-            rows.unrest.stir(link.tree, largest * share);
-            self.impulses[i] = sum(&change.impulses[i], &self.impulses[i], share);
-            self.velocities[i] = sum(&change.velocities[i], &self.velocities[i], share);
+            let by = self.velocities[i].map(|d| d * share);
+            add_scaled(&mut rows.velocities[i], &by, 1.0);
+            rows.unrest.stir(link.tree, largest(&by));
+            self.velocities[i] = change.velocities[i];
+            add_scaled(&mut self.velocities[i], &by, 1.0);
         }
     }
-}
-
-fn sum(a: &Vec6, b: &Vec6, share: f32) -> Vec6 {
-    let mut sum = *a;
-    add_scaled(&mut sum, b, share);
-    sum
 }

@@ -1,5 +1,6 @@
 //! Rows of joint limits: unilateral, outside the tree factor, visited by the sweeps.
 
+use super::columns::{Change, Columns};
 use super::contact_rows::IMPACT_JUMP;
 use super::response::Response;
 use super::sweep::Pass;
@@ -44,7 +45,9 @@ pub(super) struct LimitRow {
     /// Gradient of the room, world axes.
     axis: Vec3,
     row: Row,
-    /// Response of the row to its own impulse.
+    /// Where its column lies; none as long as it has not pushed.
+    pub column: Option<usize>,
+    /// Response of the row to its own impulse, with its column.
     effective: f32,
     /// Of this substep: ≥ 0 after a visit, less between sweeps by what a conjugate step asked too much.
     pub impulse: f32,
@@ -120,9 +123,14 @@ impl IslandSolver {
             let rate = stop.row.rate(joint, &self.velocities) + beyond / self.h;
             let axis = predicted.rotation_a * stop.axis;
             let hardness = Hardness::Foreseen(rate);
-            let mut row = LimitRow { axis, row: stop.row, hardness, impulse: 0.0, ..row.clone() };
-            row.respond(&self.joints, &self.bodies, &self.links, &self.response);
-            self.limits.push(row);
+            self.limits.push(LimitRow {
+                axis,
+                row: stop.row,
+                hardness,
+                column: None,
+                impulse: 0.0,
+                ..row.clone()
+            });
         }
         self.limits.len() > known
     }
@@ -136,8 +144,16 @@ impl IslandSolver {
             if !self.unrest.wakes_limit(i, now) {
                 continue;
             }
-            if let Some(push) = self.limits[i].visit(joint, &self.velocities, pass, self.h) {
-                self.push(a, b, &push);
+            let rate = self.limits[i].row.rate(joint, &self.velocities);
+            if self.limits[i].is_idle(pass, rate, self.h) {
+                continue;
+            }
+            let row = &mut self.limits[i];
+            if row.column.is_none() {
+                row.respond(joint, &self.bodies, &self.links, &self.response, &mut self.columns);
+            }
+            if let Some(change) = row.visit(pass, rate, self.h) {
+                self.push([a, b], &change);
             }
         }
     }
@@ -185,6 +201,7 @@ impl LimitRow {
             hardness,
             axis: joint.pose.rotation_a * stop.axis,
             row: stop.row,
+            column: None,
             effective: 0.0,
             impulse,
         }
@@ -201,25 +218,33 @@ impl LimitRow {
         let axis = joint.pose.rotation_a.inverse() * self.axis;
         let (now, before) = (share(limit.now, axis), share(limit.before, axis));
         self.impulse = if now > IMPACT_JUMP * before { before } else { now };
-        add_row(impulses, joint.a, &self.row.a, self.impulse);
-        add_row(impulses, joint.b, &self.row.b, self.impulse);
+        self.add_given(joints, impulses, 1.0);
     }
 
-    pub fn respond(
+    /// Adds its present impulse, times `sign`, to those of its bodies.
+    pub fn add_given(&self, joints: &[SolverJoint], impulses: &mut [Vec6], sign: f32) {
+        if self.impulse != 0.0 {
+            let joint = &joints[self.joint as usize];
+            add_row(impulses, joint.a, &self.row.a, sign * self.impulse);
+            add_row(impulses, joint.b, &self.row.b, sign * self.impulse);
+        }
+    }
+
+    /// Computes its column and effective mass.
+    fn respond(
         &mut self,
-        joints: &[SolverJoint],
+        joint: &SolverJoint,
         bodies: &[SolverBody],
         links: &[Link],
         response: &Response,
+        columns: &mut Columns,
     ) {
-        let joint = &joints[self.joint as usize];
-        let (a, b) = (joint.a as usize, joint.b as usize);
-        let Row { a: ja, b: jb } = &self.row;
-        self.effective = dot(jb, &response.at(links, b, b, jb))
-            + dot(ja, &response.at(links, a, a, ja))
-            + dot(jb, &response.at(links, b, a, ja))
-            + dot(ja, &response.at(links, a, b, jb))
-            + REDUNDANCY * free_response(bodies, links.len(), [(joint.a, ja), (joint.b, jb)]);
+        let Row { a, b } = &self.row;
+        self.column = Some(columns.end());
+        let [on_a, on_b] = columns.add(response, links, [joint.a, joint.b], [a, b]);
+        self.effective = dot(a, &on_a)
+            + dot(b, &on_b)
+            + REDUNDANCY * free_response(bodies, links.len(), [(joint.a, a), (joint.b, b)]);
     }
 
     /// Adds to the impulse of this substep; the caller puts it on the bodies. Gives the speed that it makes by itself.
@@ -228,21 +253,20 @@ impl LimitRow {
         more.abs() * self.effective
     }
 
-    /// Change of the impulses on both bodies for the present velocities.
-    fn visit(
-        &mut self,
-        joint: &SolverJoint,
-        velocities: &[Vec6],
-        pass: Pass,
-        h: f32,
-    ) -> Option<(Vec6, Vec6)> {
+    /// Gives nothing, and has nothing to give at this rate.
+    fn is_idle(&self, pass: Pass, rate: f32, h: f32) -> bool {
+        match self.hardness {
+            Hardness::Soft(..) => pass != Pass::Solve || self.impulse == 0.0 && self.room + h * rate >= 0.0,
+            _ => self.impulse == 0.0 && rate >= self.wanted(pass, rate, h),
+        }
+    }
+
+    /// Change of its impulse at this rate.
+    fn visit(&mut self, pass: Pass, rate: f32, h: f32) -> Option<Change> {
         if self.effective < 1e-9 {
             return None;
         }
-        let rate = self.row.rate(joint, velocities);
         let new = match self.hardness {
-            Hardness::Soft(..) if pass != Pass::Solve => return None,
-            Hardness::Soft(..) if self.impulse == 0.0 && self.room + h * rate >= 0.0 => return None,
             Hardness::Soft(softness, damped) => {
                 let (stiffness, damping) = softness.of_mass(1.0 / self.effective);
                 // Implicit: λ = −h (k (room + h v) + c v), never pulling.
@@ -254,7 +278,9 @@ impl LimitRow {
         };
         let change = max(new, 0.0) - self.impulse;
         self.impulse += change;
-        (change != 0.0).then(|| (self.row.a.map(|x| x * change), self.row.b.map(|x| x * change)))
+        let mut of_row = Change::from_column(self.column?);
+        of_row.add([&self.row.a, &self.row.b], change);
+        Some(of_row)
     }
 
     /// What the spring of a soft row gives in a substep.

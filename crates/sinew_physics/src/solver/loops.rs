@@ -3,6 +3,7 @@
 //! between trees, are solved by conjugate gradients on the same equations: `S p` is one pass through the trees, so a net
 //! that hangs by its ropes is carried at once, and each round takes energy out, however early it ends.
 
+use super::columns::Columns;
 use super::limit_rows::add_row;
 use super::response::Response;
 use super::tree::{self, Link, NONE};
@@ -43,7 +44,7 @@ pub(super) struct Loops {
     /// S⁻¹ of all closures, row by row.
     inverses: Vec<f32>,
     /// `W Jᵀ` of all closures: per row, per member of the tree, a velocity change.
-    columns: Vec<Vec6>,
+    columns: Columns,
     scratch: Vec<f32>,
     gradient: Gradient,
 }
@@ -111,7 +112,7 @@ impl Loops {
         &mut self,
         joints: &[SolverJoint],
         bodies: &[SolverBody],
-        moving: usize,
+        links: &[Link],
         response: &mut Response,
     ) {
         self.inverses.clear();
@@ -125,13 +126,13 @@ impl Loops {
                 })
             };
             closure.rows = rows().count();
-            closure.columns = self.columns.len();
+            closure.columns = self.columns.end();
             for (joint, row) in rows() {
-                let rows = [(joint.a, &joint.rows.a[row]), (joint.b, &joint.rows.b[row])];
-                response.column(closure.tree, rows, &mut self.columns);
+                let row = [&joint.rows.a[row], &joint.rows.b[row]];
+                self.columns.add(response, links, [joint.a, joint.b], row);
             }
             let members = response.members(closure.tree).len();
-            let columns = &self.columns[closure.columns..];
+            let columns = self.columns.from(closure.columns);
             let n = closure.rows;
             let s = &mut self.scratch;
             s.clear();
@@ -143,8 +144,8 @@ impl Loops {
                     let mut entry = on(joint.a, &joint.rows.a[row]) + on(joint.b, &joint.rows.b[row]);
                     if k == l {
                         let ends = [(joint.a, &joint.rows.a[row]), (joint.b, &joint.rows.b[row])];
-                        entry +=
-                            joint.compliance(row) + LOOP_REDUNDANCY * free_response(bodies, moving, ends);
+                        entry += joint.compliance(row)
+                            + LOOP_REDUNDANCY * free_response(bodies, links.len(), ends);
                     }
                     s.push(entry);
                 }

@@ -4,6 +4,7 @@
 //! `finalize`, so that threads never share what they write.
 
 mod build;
+mod columns;
 mod composite;
 mod conjugate;
 mod contact_rows;
@@ -33,6 +34,7 @@ use crate::project::TakenGroup;
 use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, angular, dot, join, linear};
 use crate::work::Work;
 pub(crate) use build::View;
+use columns::Columns;
 use conjugate::Conjugate;
 use contact_rows::ManifoldRows;
 use drives::SoftRow;
@@ -183,6 +185,7 @@ pub(crate) struct IslandSolver {
     pins: Pins,
     limits: Vec<LimitRow>,
     response: Response,
+    columns: Columns,
     /// Impulses of contacts and limits that the sweeps in progress have put on each moving body.
     impulses: Vec<Vec6>,
     /// Linear impulses of contacts on each moving body in this substep.
@@ -481,12 +484,13 @@ impl IslandSolver {
         }
         self.response.choose(&self.links, self.tree_count, wanted);
         self.response.fill(&self.links);
-        self.loops.respond(&self.joints, &self.bodies, self.links.len(), &mut self.response);
+        self.loops.respond(&self.joints, &self.bodies, &self.links, &mut self.response);
+        self.columns.clear();
         for rows in &mut self.manifolds {
-            rows.respond(&self.bodies, &self.links, &self.response);
+            rows.columns = None;
         }
         for row in &mut self.limits {
-            row.respond(&self.joints, &self.bodies, &self.links, &self.response);
+            row.column = None;
         }
     }
 
@@ -499,7 +503,7 @@ impl IslandSolver {
         }
         for rows in &mut self.manifolds {
             if rows.foresee(&self.bodies, &self.velocities, self.h) {
-                rows.respond(&self.bodies, &self.links, &self.response);
+                rows.columns = None;
                 any = true;
             }
         }

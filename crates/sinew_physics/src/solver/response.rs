@@ -3,7 +3,7 @@
 
 use super::loops::MAX_EXACT_ROWS;
 use super::tree::{Link, NONE};
-use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, mul, mul_transposed, transpose};
+use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, transpose};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
 
@@ -78,20 +78,6 @@ impl Response {
         self.slot.get(body as usize).map(|&slot| slot as usize)
     }
 
-    /// Appends the velocity changes of all members of a tree per impulse along the rows of its bodies.
-    pub fn column(&self, tree: u32, rows: [(u32, &Vec6); 2], out: &mut Vec<Vec6>) {
-        let TreeBlocks { count, blocks, .. } = self.trees[tree as usize];
-        for i in 0..count {
-            let mut change = ZERO6;
-            for (body, row) in rows {
-                if let Some(slot) = self.slot(body) {
-                    add_scaled(&mut change, &mul(&self.blocks[blocks + i * count + slot], row), 1.0);
-                }
-            }
-            out.push(change);
-        }
-    }
-
     /// Closes the loops of a tree: `W −= U S⁻¹ Uᵀ` with the columns U of the loop rows, `n` of them.
     pub fn close(&mut self, tree: u32, columns: &[Vec6], inverse: &[f32], n: usize) {
         let TreeBlocks { count, blocks, .. } = self.trees[tree as usize];
@@ -115,30 +101,12 @@ impl Response {
         }
     }
 
-    /// Velocity change of body `to` per impulse `p` on body `from`; zero for fixed bodies and across trees.
-    pub fn at(&self, links: &[Link], to: usize, from: usize, p: &Vec6) -> Vec6 {
-        if to >= links.len() || from >= links.len() || links[to].tree != links[from].tree {
-            return ZERO6;
-        }
-        let tree = &self.trees[links[to].tree as usize];
-        let (i, j) = (self.slot[to] as usize, self.slot[from] as usize);
-        mul_transposed(&self.blocks[tree.blocks + j * tree.count + i], p)
-    }
-
-    /// Adds the velocity changes of an impulse `p` on body `from` to all members of its tree.
-    pub fn apply(&self, links: &[Link], from: usize, p: &Vec6, velocities: &mut [Vec6]) {
-        if from >= links.len() {
-            return;
-        }
-        let TreeBlocks { first, count, blocks } = self.trees[links[from].tree as usize];
-        // W is symmetric: the row of blocks of `from`, transposed, is its column, and lies in one piece of memory.
-        let row = blocks + self.slot[from] as usize * count;
-        dispatch::run(Spread {
-            impulse: p,
-            blocks: &self.blocks[row..row + count],
-            members: &self.members[first..first + count],
-            velocities,
-        });
+    /// Adds to `out` the velocity changes of all members of the tree of a moving body from an impulse on it.
+    pub fn answer(&self, links: &[Link], body: u32, impulse: &Vec6, out: &mut [Vec6]) {
+        let TreeBlocks { count, blocks, .. } = self.trees[links[body as usize].tree as usize];
+        // W is symmetric: the row of blocks of the body, transposed, is its column, and lies in one piece of memory.
+        let row = blocks + self.slot[body as usize] as usize * count;
+        dispatch::run(Spread { impulse, blocks: &self.blocks[row..row + count], out });
     }
 }
 
@@ -215,8 +183,7 @@ struct Spread<'a> {
     impulse: &'a Vec6,
     /// Transposed, one a member.
     blocks: &'a [Mat6],
-    members: &'a [u32],
-    velocities: &'a mut [Vec6],
+    out: &'a mut [Vec6],
 }
 
 impl Kernel for Spread<'_> {
@@ -227,7 +194,7 @@ impl Kernel for Spread<'_> {
         let [p0, p1, p2, p3, p4, p5, ..] = *self.impulse;
         let (p0, p1, p2) = (L::splat(p0), L::splat(p1), L::splat(p2));
         let (p3, p4, p5) = (L::splat(p3), L::splat(p4), L::splat(p5));
-        for (&body, block) in self.members.iter().zip(self.blocks) {
+        for (out, block) in self.out.iter_mut().zip(self.blocks) {
             let [r0, r1, r2, r3, r4, r5] = block;
             let change = L::load(r0) * p0
                 + L::load(r1) * p1
@@ -235,8 +202,7 @@ impl Kernel for Spread<'_> {
                 + L::load(r3) * p3
                 + L::load(r4) * p4
                 + L::load(r5) * p5;
-            let velocity = &mut self.velocities[body as usize];
-            (L::load(velocity) + change).store(velocity);
+            (L::load(out) + change).store(out);
         }
     }
 }

@@ -2,12 +2,14 @@
 //! kept up to date, through the articulated response; then the trees are solved once with all impulses, so that the
 //! joints hold exactly.
 
+use super::columns::Change;
 use super::conjugate::{Conjugate, Rows};
-use super::contact_rows::{ManifoldRows, Push};
+use super::contact_rows::ManifoldRows;
 use super::effort::Order;
+use super::limit_rows::add_row;
 use super::tree::Link;
 use super::{IslandSolver, WEIGHINGS};
-use crate::spatial::{ZERO6, add_scaled, linear};
+use crate::spatial::{ZERO6, add_scaled, dot, largest, linear};
 use sinew_math::max;
 
 /// What a pass over the rows is for.
@@ -95,6 +97,7 @@ impl IslandSolver {
             return;
         }
         self.reset_impulses();
+        self.add_given(-1.0);
         self.unrest.start(self.effort.tolerance, self.tree_count, self.manifolds.len(), self.limits.len());
         let moving = self.links.len();
         self.scratch.before.clear();
@@ -134,7 +137,6 @@ impl IslandSolver {
         let rows = Rows {
             manifolds: &mut self.manifolds,
             limits: &mut self.limits,
-            impulses: &mut self.impulses,
             velocities: &mut self.velocities[..moving],
             links: &self.links,
             unrest: &mut self.unrest,
@@ -152,33 +154,41 @@ impl IslandSolver {
             if !self.unrest.wakes_manifold(i, now) {
                 continue;
             }
+            let rows = &mut self.manifolds[i];
+            let strip = match rows.columns {
+                Some(strip) => strip,
+                None if rows.is_idle(&self.velocities, pass, self.h) => continue,
+                None => rows.respond(&self.bodies, &self.links, &self.response, &mut self.columns),
+            };
+            let bodies = [rows.a, rows.b];
             if pass == Pass::Relax {
-                let push = self.manifolds[i].visit_friction(&self.velocities);
-                self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
-                if let Some(push) = self.manifolds[i].visit_rolling(&self.velocities) {
-                    self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
+                let change = self.manifolds[i].visit_friction(strip, &self.velocities);
+                self.push(bodies, &change);
+                if let Some(change) = self.manifolds[i].visit_rolling(strip, &self.velocities) {
+                    self.push(bodies, &change);
                 }
             }
-            let push = self.manifolds[i].visit_normal(&self.velocities, pass, self.h);
-            self.push(self.manifolds[i].a, self.manifolds[i].b, &push);
+            let change = self.manifolds[i].visit_normal(strip, &self.velocities, pass, self.h);
+            self.push(bodies, &change);
         }
     }
 
-    /// Puts impulses on two bodies and their trees.
-    pub(super) fn push(&mut self, a: u32, b: u32, push: &Push) {
-        for (body, p) in [(a as usize, &push.0), (b as usize, &push.1)] {
-            if body < self.links.len() && *p != ZERO6 {
-                add_scaled(&mut self.impulses[body], p, 1.0);
-                let before = self.velocities[body];
-                self.response.apply(&self.links, body, p, &mut self.velocities);
-                let mut change = 0.0;
-                for ((x, y), p) in self.velocities[body].iter().zip(&before).zip(p) {
-                    change = max(change, (x - y).abs());
-                    self.change_energy += (x - y) * p;
-                }
-                self.unrest.stir(self.links[body].tree, change);
-                self.largest_change = max(self.largest_change, change);
-            }
+    /// Puts changes of rows on two bodies and their trees.
+    pub(super) fn push(&mut self, bodies: [u32; 2], change: &Change) {
+        if change.is_zero() {
+            return;
+        }
+        let before = bodies.map(|body| self.velocities[body as usize]);
+        self.columns.push(&self.response, &self.links, bodies, change, &mut self.velocities);
+        for (end, body) in bodies.into_iter().enumerate() {
+            let body = body as usize;
+            let Some(link) = self.links.get(body) else { continue };
+            let mut by = self.velocities[body];
+            add_scaled(&mut by, &before[end], -1.0);
+            self.change_energy += dot(&by, &change.push[end]);
+            let largest = largest(&by);
+            self.unrest.stir(link.tree, largest);
+            self.largest_change = max(self.largest_change, largest);
         }
     }
 
@@ -187,8 +197,21 @@ impl IslandSolver {
         self.impulses.resize(self.links.len(), ZERO6);
     }
 
+    /// Adds the present impulses of all rows, times `sign`, to those of the sweeps.
+    fn add_given(&mut self, sign: f32) {
+        for rows in &self.manifolds {
+            let push = rows.total_push();
+            add_row(&mut self.impulses, rows.a, &push.0, sign);
+            add_row(&mut self.impulses, rows.b, &push.1, sign);
+        }
+        for row in &self.limits {
+            row.add_given(&self.joints, &mut self.impulses, sign);
+        }
+    }
+
     /// Velocities of all bodies from the impulses of the sweeps, exactly.
     fn finish_sweep(&mut self, pass: Pass) {
+        self.add_given(1.0);
         for (push, p) in self.contact_push.iter_mut().zip(&self.impulses) {
             *push += linear(p);
         }

@@ -10,7 +10,7 @@
 
 use super::SolverJoint;
 use crate::joint::DIRECTIONS;
-use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, dot, mul, spd_inverse};
+use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, mul_transposed, spd_inverse, transpose};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
 
@@ -32,12 +32,16 @@ pub(crate) struct Link {
     /// Jacobians of child and parent, row by row.
     pub child: [Vec6; 6],
     pub parent_rows: [Vec6; 6],
+    /// Those of the parent column by column.
+    parent_columns: Mat6,
     /// Γ, row by row.
     pub compliance: Vec6,
     /// P.
     pub inverse: Mat6,
     /// Rows of Yᵀ.
     pub y: [Vec6; 6],
+    /// Rows of Y.
+    y_columns: Mat6,
     /// D⁻¹.
     pub d_inverse: Mat6,
 }
@@ -52,9 +56,11 @@ impl Link {
             rigid: 0,
             child: [ZERO6; 6],
             parent_rows: [ZERO6; 6],
+            parent_columns: ZERO66,
             compliance: ZERO6,
             inverse: ZERO66,
             y: [ZERO6; 6],
+            y_columns: ZERO66,
             d_inverse: ZERO66,
         }
     }
@@ -104,13 +110,14 @@ impl Link {
     fn factor(&mut self, inertia: &Mat6) {
         self.inverse = robust_inverse(inertia, 6);
         let mut d = ZERO66;
+        self.y = ZERO66;
         for row in 0..self.rows {
-            self.y[row] = mul(&self.inverse, &self.child[row]);
+            self.y[row] = mul_transposed(&self.inverse, &self.child[row]);
         }
+        self.y_columns = transpose(&self.y);
+        self.parent_columns = transpose(&self.parent_rows);
         for row in 0..self.rows {
-            for k in 0..self.rows {
-                d[row][k] = dot(&self.child[row], &self.y[k]);
-            }
+            d[row] = mul_transposed(&self.y_columns, &self.child[row]);
             d[row][row] += self.compliance[row];
         }
         self.d_inverse = robust_inverse(&d, self.rows);
@@ -188,32 +195,41 @@ impl Kernel for Factor<'_> {
 /// Velocity change of every body from impulses on the bodies and residuals of the joint rows: solves
 /// `M dv = impulses + Jᵀ λ`, `J dv + Γ λ = residuals`. `impulses` and `residuals` are used up.
 pub(crate) fn solve(links: &[Link], impulses: &mut [Vec6], residuals: &mut [Vec6], dv: &mut [Vec6]) {
-    // Leaf to root: what the subtree below a joint pushes through it.
-    for i in (0..links.len()).rev() {
-        let link = &links[i];
-        for row in 0..link.rows {
-            residuals[i][row] -= dot(&link.y[row], &impulses[i]);
-        }
-        let parent = link.parent as usize;
-        if parent < links.len() {
-            let push = mul(&link.d_inverse, &residuals[i]);
-            for row in 0..link.rows {
-                add_scaled(&mut impulses[parent], &link.parent_rows[row], push[row]);
+    dispatch::run(Solve { links, impulses, residuals, dv });
+}
+
+/// Plain arithmetic, as in [`Factor`]. P and D⁻¹ are symmetric: their rows are their columns.
+struct Solve<'a> {
+    links: &'a [Link],
+    impulses: &'a mut [Vec6],
+    residuals: &'a mut [Vec6],
+    dv: &'a mut [Vec6],
+}
+
+impl Kernel for Solve<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { links, impulses, residuals, dv } = self;
+        // Leaf to root: what the subtree below a joint pushes through it.
+        for (i, link) in links.iter().enumerate().rev() {
+            add_scaled(&mut residuals[i], &mul_transposed(&link.y_columns, &impulses[i]), -1.0);
+            let parent = link.parent as usize;
+            if parent < links.len() {
+                let push = mul_transposed(&link.d_inverse, &residuals[i]);
+                add_scaled(&mut impulses[parent], &mul_transposed(&link.parent_rows, &push), 1.0);
             }
         }
-    }
-    // Root to leaf.
-    for (i, link) in links.iter().enumerate() {
-        let parent = link.parent as usize;
-        if parent < links.len() {
-            for row in 0..link.rows {
-                residuals[i][row] -= dot(&link.parent_rows[row], &dv[parent]);
+        // Root to leaf.
+        for (i, link) in links.iter().enumerate() {
+            let parent = link.parent as usize;
+            if parent < links.len() {
+                add_scaled(&mut residuals[i], &mul_transposed(&link.parent_columns, &dv[parent]), -1.0);
             }
-        }
-        dv[i] = mul(&link.inverse, &impulses[i]);
-        let lambda = mul(&link.d_inverse, &residuals[i]);
-        for row in 0..link.rows {
-            add_scaled(&mut dv[i], &link.y[row], lambda[row]);
+            let lambda = mul_transposed(&link.d_inverse, &residuals[i]);
+            dv[i] = mul_transposed(&link.inverse, &impulses[i]);
+            add_scaled(&mut dv[i], &mul_transposed(&link.y, &lambda), 1.0);
         }
     }
 }

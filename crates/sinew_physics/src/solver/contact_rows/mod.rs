@@ -5,6 +5,7 @@ mod refind;
 mod row;
 mod visit;
 
+use super::columns::{Columns, Strip};
 use super::effort::Firmness;
 use super::response::Response;
 use super::tree::Link;
@@ -54,7 +55,10 @@ impl Given {
     }
 }
 
-/// Change of impulse of a manifold: on A and on B.
+/// Those about which torques resist rolling.
+const AXES: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
+
+/// Impulses on A and on B.
 pub(super) type Push = (Vec6, Vec6);
 
 #[derive(Clone, Debug)]
@@ -94,7 +98,10 @@ pub(crate) struct ManifoldRows {
     weight: [f32; MAX_POINTS],
     /// Weighted distance of the points from that centre: lever of the twist friction.
     lever: f32,
-    /// Responses.
+    /// Where the columns of its rows lie: of the points, the tangents, the twist, and of torques about each axis if it resists
+    /// rolling. None as long as it has not pushed.
+    pub columns: Option<Strip>,
+    /// Responses, with the columns.
     k: [[f32; MAX_POINTS]; MAX_POINTS],
     k_tangent: [[f32; 2]; 2],
     k_spin: f32,
@@ -161,6 +168,7 @@ impl ManifoldRows {
             spin: Row::about(n),
             weight: [0.0; MAX_POINTS],
             lever: 0.0,
+            columns: None,
             k: [[0.0; MAX_POINTS]; MAX_POINTS],
             k_tangent: [[0.0; 2]; 2],
             k_spin: 0.0,
@@ -250,14 +258,26 @@ impl ManifoldRows {
         self.tangents = self.tangent_axes.map(|axis| Row::at(axis, arm_a, arm_b));
     }
 
-    /// Effective masses from the response of the bodies.
-    pub fn respond(&mut self, bodies: &[SolverBody], links: &[Link], response: &Response) {
+    /// Computes the columns of its rows and what they answer to each other. Gives where the columns lie.
+    pub fn respond(
+        &mut self,
+        bodies: &[SolverBody],
+        links: &[Link],
+        response: &Response,
+        columns: &mut Columns,
+    ) -> Strip {
         let pair = self.pair();
         let least =
             |row: &Row| REDUNDANCY * free_response(bodies, links.len(), [(pair.a, &row.a), (pair.b, &row.b)]);
+        let strip = columns.strip(response, links, [pair.a, pair.b]);
+        self.columns = Some(strip);
+        let mut answer = |row: &Row| {
+            let [a, b] = columns.add(response, links, [pair.a, pair.b], [&row.a, &row.b]);
+            Row { a, b }
+        };
         let mut answers = [Row::ZERO; MAX_POINTS];
         for i in 0..self.count {
-            answers[i] = self.rows[i].response(pair, links, response);
+            answers[i] = answer(&self.rows[i]);
         }
         for i in 0..self.count {
             for j in 0..self.count {
@@ -265,7 +285,7 @@ impl ManifoldRows {
             }
             self.k[i][i] += least(&self.rows[i]);
         }
-        let across = self.tangents.map(|row| row.response(pair, links, response));
+        let across = self.tangents.map(|row| answer(&row));
         for i in 0..2 {
             for j in 0..2 {
                 self.k_tangent[i][j] = self.tangents[i].dot(&across[j]);
@@ -273,14 +293,16 @@ impl ManifoldRows {
             self.k_tangent[i][i] += least(&self.tangents[i]);
         }
         self.k_spin_tangent = across.map(|answer| self.spin.dot(&answer));
-        self.k_spin = self.spin.dot(&self.spin.response(pair, links, response)) + least(&self.spin);
+        self.k_spin = self.spin.dot(&answer(&self.spin)) + least(&self.spin);
         if self.material.rolling > 0.0 {
-            let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
-                let answer = Row::about(axis).response(pair, links, response);
-                angular(&answer.b) - angular(&answer.a) + axis * least(&Row::about(axis))
+            let axes = AXES.map(|axis| {
+                let row = Row::about(axis);
+                let answer = answer(&row);
+                angular(&answer.b) - angular(&answer.a) + axis * least(&row)
             });
-            self.k_roll = Mat3::from_cols(columns[0], columns[1], columns[2]);
+            self.k_roll = Mat3::from_cols(axes[0], axes[1], axes[2]);
         }
+        strip
     }
 
     /// Puts the starting impulses on the bodies: those of the last substep, unless they jumped up from the one before:

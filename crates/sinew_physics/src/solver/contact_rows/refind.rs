@@ -4,6 +4,7 @@ use super::ManifoldRows;
 use super::bounce::Approach;
 use crate::collide::{Half, Manifold, collide, is_on_face, name_as_face};
 use crate::contact::{ContactMemory, PointImpulse};
+use crate::convex::support::{Core, Posed, wide};
 use crate::shape::Shape;
 use crate::solver::{SolverBody, advance};
 use crate::spatial::{Vec6, angular, linear};
@@ -94,10 +95,13 @@ impl ManifoldRows {
         }
         let poses =
             [self.a, self.b].map(|body| advance(&bodies[body as usize].pose, &velocities[body as usize], h));
-        let Some(manifold) = self.found_anew(poses, self.margin(velocities, h)) else { return false };
         let deepest = |separations: &mut dyn Iterator<Item = f32>| separations.fold(0.0, min);
-        let now = deepest(&mut self.separation[..self.count].iter().copied());
-        if deepest(&mut manifold.points().iter().map(|point| point.separation)) > now - FORESEEN_DEPTH {
+        let least = deepest(&mut self.separation[..self.count].iter().copied()) - FORESEEN_DEPTH;
+        if self.apart_along_normal(poses) > least {
+            return false;
+        }
+        let Some(manifold) = self.found_anew(poses, self.margin(velocities, h)) else { return false };
+        if deepest(&mut manifold.points().iter().map(|point| point.separation)) > least {
             return false;
         }
         self.go_on_with(manifold, poses);
@@ -108,6 +112,24 @@ impl ManifoldRows {
             self.approach[i] = Approach { rate, gap: max(self.separation[i], 0.0), pull: 0.0 };
         }
         true
+    }
+
+    /// How far the shapes are apart along the present normal if the bodies are at these poses: no more than by the normal that
+    /// parts them best, metres.
+    fn apart_along_normal(&self, poses: [Transform; 2]) -> f32 {
+        let origin = poses[1].translation;
+        let extent = |end: usize, core: Vec3, direction: Vec3| {
+            let PlacedShape { shape, principal_from_shape } = &self.shapes[end];
+            match Core::of(shape) {
+                Some(solid) => {
+                    let frame = poses[end] * *principal_from_shape;
+                    Posed::new(&solid, &frame, origin).extent(wide(direction)) as f32
+                }
+                // A plane, or a face.
+                None => (poses[end].point(core) - origin).dot(direction),
+            }
+        };
+        -extent(0, self.core_a[0], self.normal) - extent(1, self.core_b[0], -self.normal)
     }
 
     /// Whether a body turns so fast in this substep that other points come down.

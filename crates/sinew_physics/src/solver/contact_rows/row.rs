@@ -1,8 +1,6 @@
 //! A row of two bodies, and how softly it gives.
 
-use crate::solver::response::Response;
-use crate::solver::tree::Link;
-use crate::spatial::{Vec6, ZERO6, add_scaled, dot, join};
+use crate::spatial::{Vec6, ZERO6, dot, join};
 use sinew_math::Vec3;
 
 /// Coefficients of a soft constraint (Catto, "Soft Constraints", GDC 2011).
@@ -53,13 +51,9 @@ impl Row {
         dot(&self.a, &velocities[pair.a as usize]) + dot(&self.b, &velocities[pair.b as usize])
     }
 
-    /// Velocity changes of both bodies per unit impulse of this row, as a row.
-    pub fn response(&self, pair: Pair, links: &[Link], response: &Response) -> Self {
-        let (a, b) = (pair.a as usize, pair.b as usize);
-        let mut out = Self { a: response.at(links, a, a, &self.a), b: response.at(links, b, b, &self.b) };
-        add_scaled(&mut out.a, &response.at(links, a, b, &self.b), 1.0);
-        add_scaled(&mut out.b, &response.at(links, b, a, &self.a), 1.0);
-        out
+    /// On A and on B.
+    pub fn ends(&self) -> [&Vec6; 2] {
+        [&self.a, &self.b]
     }
 
     pub fn dot(&self, other: &Self) -> f32 {

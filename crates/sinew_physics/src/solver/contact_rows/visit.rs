@@ -1,13 +1,14 @@
 //! Visits of a manifold's rows in a sweep.
 
 use super::row::Row;
-use super::{IMPACT_JUMP, ManifoldRows, Push};
+use super::{AXES, IMPACT_JUMP, ManifoldRows};
 use crate::collide::MAX_POINTS;
 use crate::material::ContactMaterial;
+use crate::solver::columns::{Change, Strip};
 use crate::solver::sweep::Pass;
 use crate::solver::{disk, lcp};
-use crate::spatial::{Vec6, ZERO6, angular};
-use sinew_math::{clamp, max, min};
+use crate::spatial::{Vec6, angular};
+use sinew_math::{Vec3, clamp, max, min};
 
 /// What static friction leaves of the speed of two surfaces along each other, m/s, if they slide: more than loads that have
 /// not converged make of it in a substep.
@@ -59,19 +60,7 @@ impl ManifoldRows {
         let mut problem = NormalProblem::default();
         for i in 0..self.count {
             let s = self.separation[i];
-            let bias = if pass == Pass::Restitution && self.rebound[i] > 0.0 {
-                -self.rebound[i]
-            } else if s > 0.0 && self.comes_to_bounce(i) && !biased {
-                NEVER
-            } else if s > 0.0 {
-                s / h
-            } else if biased {
-                let apart = self.soft.bias_rate * min(s + DEAD_ZONE * self.slop, 0.0);
-                let push = max(apart, -self.firmness.push_speed);
-                min(push, -self.material.launch)
-            } else {
-                -self.material.launch
-            };
+            let bias = self.bias(i, pass, h);
             let soft = if biased && s <= 0.0 { at_center } else { 0.0 };
             problem.soft[i] = soft;
             problem.old[i] = self.impulse[i] - self.floor[i];
@@ -81,24 +70,53 @@ impl ManifoldRows {
         problem
     }
 
+    /// What a point's rate may be less than nothing, m/s.
+    fn bias(&self, i: usize, pass: Pass, h: f32) -> f32 {
+        let (s, biased) = (self.separation[i], pass == Pass::Solve);
+        if pass == Pass::Restitution && self.rebound[i] > 0.0 {
+            -self.rebound[i]
+        } else if s > 0.0 && self.comes_to_bounce(i) && !biased {
+            NEVER
+        } else if s > 0.0 {
+            s / h
+        } else if biased {
+            let apart = self.soft.bias_rate * min(s + DEAD_ZONE * self.slop, 0.0);
+            let push = max(apart, -self.firmness.push_speed);
+            min(push, -self.material.launch)
+        } else {
+            -self.material.launch
+        }
+    }
+
+    /// Gives nothing, and has nothing to give at these velocities.
+    pub fn is_idle(&self, velocities: &[Vec6], pass: Pass, h: f32) -> bool {
+        let parts_by_itself = |i: usize| {
+            let rate = self.rows[i].rate(self.pair(), velocities) + self.bias(i, pass, h);
+            self.separation[i] > 0.0 && self.impulse[i] == 0.0 && rate >= 0.0
+        };
+        (0..self.count).all(parts_by_itself)
+            && self.friction == Vec3::ZERO
+            && self.twist == 0.0
+            && self.rolling == Vec3::ZERO
+    }
+
     /// One visit of the normal rows as a block.
-    pub fn visit_normal(&mut self, velocities: &[Vec6], pass: Pass, h: f32) -> Push {
+    pub fn visit_normal(&mut self, strip: Strip, velocities: &[Vec6], pass: Pass, h: f32) -> Change {
         let NormalProblem { rate, old, soft } = self.normal_problem(velocities, pass, h);
         let new = lcp::solve(&self.k, &rate, &old, &soft, self.count);
-        let mut push = (ZERO6, ZERO6);
+        let mut change = Change::from_column(strip.column(0));
         for i in 0..self.count {
-            let row = self.rows[i];
-            self.add(&mut push, &row, new[i] - old[i]);
+            change.add(self.rows[i].ends(), new[i] - old[i]);
             self.impulse[i] = new[i] + self.floor[i];
         }
-        push
+        change
     }
 
     /// One visit of friction, limited by the load that was weighed last: a 2×2 row limited to the circle, twist about the
     /// normal. What static friction does not hold slides.
-    pub fn visit_friction(&mut self, velocities: &[Vec6]) -> Push {
+    pub fn visit_friction(&mut self, strip: Strip, velocities: &[Vec6]) -> Change {
         let pair = self.pair();
-        let mut push = (ZERO6, ZERO6);
+        let mut change = Change::from_column(strip.column(self.count));
         let k = &self.k_tangent;
         let old = self.tangent_axes.map(|axis| self.friction.dot(axis));
         let slip = |i: usize| {
@@ -115,8 +133,7 @@ impl ManifoldRows {
             grip = friction;
         }
         for i in 0..2 {
-            let row = self.tangents[i];
-            self.add(&mut push, &row, new[i] - old[i]);
+            change.add(self.tangents[i].ends(), new[i] - old[i]);
         }
         self.friction = self.tangent_axes[0] * new[0] + self.tangent_axes[1] * new[1];
         if self.k_spin > 1e-12 {
@@ -132,22 +149,25 @@ impl ManifoldRows {
             let slip = max(wanted.abs() - most, 0.0) * self.k_spin * self.lever;
             let most = if slip > SLIP_SPEED { friction * self.lever * self.load } else { most };
             let new = clamp(wanted, -most, most);
-            self.add(&mut push, &self.spin, new - self.twist);
+            change.add(self.spin.ends(), new - self.twist);
             self.twist = new;
         }
-        push
+        change
     }
 
     /// One visit of the rolling resistance: a torque against the relative rotation, at most `rolling × load`.
-    pub fn visit_rolling(&mut self, velocities: &[Vec6]) -> Option<Push> {
+    pub fn visit_rolling(&mut self, strip: Strip, velocities: &[Vec6]) -> Option<Change> {
         if self.material.rolling <= 0.0 {
             return None;
         }
         let w = angular(&velocities[self.b as usize]) - angular(&velocities[self.a as usize]);
-        let new = disk::step_in_ball(&self.k_roll, self.rolling, w, self.material.rolling * self.load);
-        let mut push = (ZERO6, ZERO6);
-        self.add(&mut push, &Row::about(new - self.rolling), 1.0);
+        let new =
+            disk::least_energy_in_ball(&self.k_roll, self.rolling, w, self.material.rolling * self.load);
+        let mut change = Change::from_column(strip.column(self.count + 3));
+        for (axis, by) in AXES.into_iter().zip((new - self.rolling).to_array()) {
+            change.add(Row::about(axis).ends(), by);
+        }
         self.rolling = new;
-        Some(push)
+        Some(change)
     }
 }

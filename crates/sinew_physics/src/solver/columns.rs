@@ -1,0 +1,194 @@
+//! Columns of the response: what a unit of a row's impulse makes of the velocities of all members of its trees. They are
+//! computed for rows that push, once for a pose: a push then adds a multiple of a column, where the blocks would have to be
+//! multiplied for every visit.
+
+use super::response::Response;
+use super::tree::Link;
+use crate::collide::MAX_POINTS;
+use crate::spatial::{Vec6, ZERO6, add_scaled};
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::Lanes;
+
+/// The columns of all rows that have pushed at the present pose.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Columns {
+    /// Column after column, each as its [`Reach`] says.
+    entries: Vec<Vec6>,
+}
+
+/// Where columns of the same bodies lie side by side.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Strip {
+    start: usize,
+    stride: usize,
+}
+
+impl Strip {
+    /// Where one of them starts.
+    pub fn column(&self, k: usize) -> usize {
+        self.start + k * self.stride
+    }
+}
+
+/// Which bodies the columns of two bodies' rows speak of: the members of the tree of A, then those of the tree of B if it is
+/// another one. Fixed bodies have none.
+#[derive(Clone, Copy, Debug)]
+struct Reach<'a> {
+    members: [&'a [u32]; 2],
+    /// Places of A and B in a column.
+    places: [Option<usize>; 2],
+}
+
+impl<'a> Reach<'a> {
+    fn new(response: &'a Response, links: &[Link], bodies: [u32; 2]) -> Self {
+        let trees = bodies.map(|body| links.get(body as usize).map(|link| link.tree));
+        let members = |tree: Option<u32>| tree.map_or(&[][..], |tree| response.members(tree));
+        let one = trees[0] == trees[1];
+        let members = [members(trees[0]), if one { &[] } else { members(trees[1]) }];
+        let second = if one { 0 } else { members[0].len() };
+        let [a, b] = bodies.map(|body| response.slot(body));
+        Self { members, places: [a, b.map(|slot| second + slot)] }
+    }
+
+    /// Entries of a column.
+    fn len(&self) -> usize {
+        self.members[0].len() + self.members[1].len()
+    }
+}
+
+/// Changes of the impulses of rows whose columns lie side by side.
+#[derive(Clone, Debug)]
+pub(crate) struct Change {
+    /// Where the column of the first lies.
+    column: usize,
+    count: usize,
+    by: [f32; MAX_POINTS],
+    /// Impulses on A and on B.
+    pub push: [Vec6; 2],
+}
+
+impl Change {
+    /// None yet, of those from a column on.
+    pub fn from_column(column: usize) -> Self {
+        Self { column, count: 0, by: [0.0; MAX_POINTS], push: [ZERO6; 2] }
+    }
+
+    /// Of the next row.
+    pub fn add(&mut self, [on_a, on_b]: [&Vec6; 2], by: f32) {
+        self.by[self.count] = by;
+        self.count += 1;
+        add_scaled(&mut self.push[0], on_a, by);
+        add_scaled(&mut self.push[1], on_b, by);
+    }
+
+    pub fn is_zero(&self) -> bool {
+        self.by.iter().all(|by| *by == 0.0)
+    }
+}
+
+impl Columns {
+    pub fn clear(&mut self) {
+        self.entries.clear();
+    }
+
+    /// Where the next columns, of these bodies, will lie.
+    pub fn strip(&self, response: &Response, links: &[Link], bodies: [u32; 2]) -> Strip {
+        Strip { start: self.end(), stride: Reach::new(response, links, bodies).len() }
+    }
+
+    /// Where the next column will start.
+    pub fn end(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// From the entry `start` on.
+    pub fn from(&self, start: usize) -> &[Vec6] {
+        &self.entries[start..]
+    }
+
+    /// Appends the column of a row. Gives the velocity changes of the row's own bodies.
+    pub fn add(
+        &mut self,
+        response: &Response,
+        links: &[Link],
+        bodies: [u32; 2],
+        row: [&Vec6; 2],
+    ) -> [Vec6; 2] {
+        let reach = Reach::new(response, links, bodies);
+        let start = self.end();
+        self.entries.resize(start + reach.len(), ZERO6);
+        let column = &mut self.entries[start..];
+        for ((body, p), place) in bodies.into_iter().zip(row).zip(reach.places) {
+            let Some(place) = place else { continue };
+            let first = if place < reach.members[0].len() { 0 } else { reach.members[0].len() };
+            response.answer(links, body, p, &mut column[first..]);
+        }
+        reach.places.map(|place| place.map_or(ZERO6, |place| column[place]))
+    }
+
+    /// Adds to the velocities what changes of the impulses of rows of two bodies give.
+    pub fn push(
+        &self,
+        response: &Response,
+        links: &[Link],
+        bodies: [u32; 2],
+        change: &Change,
+        velocities: &mut [Vec6],
+    ) {
+        let reach = Reach::new(response, links, bodies);
+        let (stride, by) = (reach.len(), &change.by[..change.count]);
+        let columns = &self.entries[change.column..change.column + by.len() * stride];
+        dispatch::run(Push { columns, stride, by, members: reach.members, velocities });
+    }
+}
+
+/// The sum of columns, each times the change of its row.
+struct Push<'a> {
+    columns: &'a [Vec6],
+    stride: usize,
+    by: &'a [f32],
+    members: [&'a [u32]; 2],
+    velocities: &'a mut [Vec6],
+}
+
+impl Kernel for Push<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { columns, stride, by, members, velocities } = self;
+        let mut start = 0;
+        for members in members {
+            let rows = |k: usize| &columns[k * stride + start..][..members.len()];
+            match *by {
+                [x] => add::<L, 1>(members, [rows(0)], [x], velocities),
+                [x, y] => add::<L, 2>(members, [rows(0), rows(1)], [x, y], velocities),
+                [x, y, z] => add::<L, 3>(members, [rows(0), rows(1), rows(2)], [x, y, z], velocities),
+                [x, y, z, w] => {
+                    add::<L, 4>(members, [rows(0), rows(1), rows(2), rows(3)], [x, y, z, w], velocities);
+                }
+                _ => {}
+            }
+            start += members.len();
+        }
+    }
+}
+
+/// To the velocities of members, columns times changes.
+#[inline(always)]
+fn add<L: Lanes, const N: usize>(
+    members: &[u32],
+    columns: [&[Vec6]; N],
+    by: [f32; N],
+    velocities: &mut [Vec6],
+) {
+    let by = by.map(L::splat);
+    for (place, &body) in members.iter().enumerate() {
+        let velocity = &mut velocities[body as usize];
+        let mut sum = L::load(velocity);
+        for (column, by) in columns.iter().zip(by) {
+            sum = sum + L::load(&column[place]) * by;
+        }
+        sum.store(velocity);
+    }
+}
