@@ -163,6 +163,8 @@ impl IslandSolver {
         s.pieces.clear();
         s.pieces.reserve(island.bodies.len());
         self.pins.make_room(island.bodies.len(), island.joints.len());
+        s.predicted.clear();
+        s.predicted.reserve(island.bodies.len());
         s.shares.clear();
         s.shares.reserve(island.bodies.len());
         self.conjugate.make_room(island.bodies.len(), island.contacts.len());

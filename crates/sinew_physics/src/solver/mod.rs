@@ -244,6 +244,8 @@ struct Scratch {
     dv: Vec<Vec6>,
     wanted: Vec<bool>,
     before: Vec<Vec6>,
+    /// Poses of the moving bodies at the end of the substep.
+    predicted: Vec<Transform>,
     /// Velocities that the joints of the substep are solved from.
     started: Vec<Vec6>,
     /// Bodies that each moving body stands on.

@@ -145,11 +145,14 @@ impl IslandSolver {
     /// Residuals that would remove the position errors at the predicted pose; gives the largest error (m or rad).
     fn predict_errors(&mut self) -> f32 {
         let h = self.h;
+        let poses = &mut self.scratch.predicted;
+        poses.clear();
+        let moving = self.bodies[..self.links.len()].iter().zip(&self.velocities);
+        poses.extend(moving.map(|(body, v)| advance(&body.pose, v, h)));
         let mut largest = 0.0;
         let mut residual = |joint: &mut SolverJoint| {
-            let pose =
-                |body: u32| advance(&self.bodies[body as usize].pose, &self.velocities[body as usize], h);
-            let predicted = JointPose::new(&joint.geometry, &pose(joint.a), &pose(joint.b));
+            let pose = |body: u32| poses.get(body as usize).unwrap_or(&self.bodies[body as usize].pose);
+            let predicted = JointPose::new(&joint.geometry, pose(joint.a), pose(joint.b));
             let error = if joint.rigid > 0 {
                 joint.rigid_error(&predicted)
             } else {

@@ -181,8 +181,8 @@ fn names_do_not_matter_where_the_shape_tells() {
     }
 }
 
-/// All at once, and then it falls no worse. A fall is chaotic: one figure of eight drops may pass its bar by a rounding, so
-/// what is worse is held against fifty random falls of the plain rig.
+/// All at once, and then it falls no worse. A fall is chaotic: in three of a thousand something passes a bar of comfort, whatever
+/// the rig is called, and that may be one of the eight drops. Then a hundred random falls of each are held against each other.
 #[test]
 fn a_rig_in_other_guise_falls_as_well() {
     for (name, rig) in rigs() {
@@ -190,9 +190,13 @@ fn a_rig_in_other_guise_falls_as_well() {
         let [plain, other] = plain_and(&rig, name, &other, &place);
         let [before, after] = [&plain, &other].map(drop_test);
         if after.verdict < before.verdict {
-            let [_, usable, bad] = gate(&plain, 50).verdicts;
-            let has_such = bad > 0 || after.verdict == Verdict::Usable && usable > 0;
-            assert!(has_such, "{name}: {:?}, not {:?}", after.reasons, before.reasons);
+            let [falls_before, falls_after] = [&plain, &other].map(|def| gate(def, 100).verdicts);
+            let falls_worse = falls_after[0] + 3 < falls_before[0] || falls_after[2] > falls_before[2] + 1;
+            let what = format!("{name}: {:?}, not {:?}", after.reasons, before.reasons);
+            assert!(
+                after.verdict != Verdict::Bad && !falls_worse,
+                "{what}; {falls_after:?}, not {falls_before:?}"
+            );
         }
     }
 }
