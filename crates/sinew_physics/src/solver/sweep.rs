@@ -9,7 +9,7 @@ use super::effort::Order;
 use super::limit_rows::add_row;
 use super::tree::Link;
 use super::{IslandSolver, WEIGHINGS};
-use crate::spatial::{ZERO6, add_scaled, dot, largest, linear};
+use crate::spatial::{ZERO6, add_scaled, largest, linear};
 use sinew_math::max;
 
 /// What a pass over the rows is for.
@@ -179,13 +179,21 @@ impl IslandSolver {
             return;
         }
         let before = bodies.map(|body| self.velocities[body as usize]);
-        self.columns.push(&self.response, &self.links, bodies, change, &mut self.velocities);
+        if self.is_articulated() {
+            self.columns.push(&self.response, &self.links, bodies, change, &mut self.velocities);
+        }
         for (end, body) in bodies.into_iter().enumerate() {
             let body = body as usize;
             let Some(link) = self.links.get(body) else { continue };
+            if !self.is_articulated() {
+                let own = core::slice::from_mut(&mut self.velocities[body]);
+                self.response.answer(&self.links, body as u32, &change.push[end], own);
+            }
             let mut by = self.velocities[body];
             add_scaled(&mut by, &before[end], -1.0);
-            self.change_energy += dot(&by, &change.push[end]);
+            for (x, p) in by.iter().zip(&change.push[end]) {
+                self.change_energy += x * p;
+            }
             let largest = largest(&by);
             self.unrest.stir(link.tree, largest);
             self.largest_change = max(self.largest_change, largest);
