@@ -161,8 +161,7 @@ impl ManifoldRows {
             return None;
         }
         let w = angular(&velocities[self.b as usize]) - angular(&velocities[self.a as usize]);
-        let new =
-            disk::least_energy_in_ball(&self.k_roll, self.rolling, w, self.material.rolling * self.load);
+        let new = disk::step_in_ball(&self.k_roll, self.rolling, w, self.material.rolling * self.load);
         let mut change = Change::from_column(strip.column(self.count + 3));
         for (axis, by) in AXES.into_iter().zip((new - self.rolling).to_array()) {
             change.add(Row::about(axis).ends(), by);
