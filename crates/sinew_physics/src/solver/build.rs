@@ -163,8 +163,6 @@ impl IslandSolver {
         s.pieces.clear();
         s.pieces.reserve(island.bodies.len());
         self.pins.make_room(island.bodies.len(), island.joints.len());
-        s.predicted.clear();
-        s.predicted.reserve(island.bodies.len());
         s.shares.clear();
         s.shares.reserve(island.bodies.len());
         self.conjugate.make_room(island.bodies.len(), island.contacts.len());
@@ -295,6 +293,8 @@ impl IslandSolver {
             let velocity = if still { ZERO6 } else { join(body.velocity.linear, body.velocity.angular) };
             self.velocities.push(velocity);
         }
+        self.scratch.predicted.clear();
+        self.scratch.predicted.reserve(self.bodies.len());
     }
 
     /// Local index of a world body.

@@ -244,7 +244,7 @@ struct Scratch {
     dv: Vec<Vec6>,
     wanted: Vec<bool>,
     before: Vec<Vec6>,
-    /// Poses of the moving bodies at the end of the substep.
+    /// Poses of all bodies at the end of the substep; kinematic ones move, too.
     predicted: Vec<Transform>,
     /// Velocities that the joints of the substep are solved from.
     started: Vec<Vec6>,

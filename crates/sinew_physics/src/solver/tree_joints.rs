@@ -147,12 +147,11 @@ impl IslandSolver {
         let h = self.h;
         let poses = &mut self.scratch.predicted;
         poses.clear();
-        let moving = self.bodies[..self.links.len()].iter().zip(&self.velocities);
-        poses.extend(moving.map(|(body, v)| advance(&body.pose, v, h)));
+        poses.extend(self.bodies.iter().zip(&self.velocities).map(|(body, v)| advance(&body.pose, v, h)));
         let mut largest = 0.0;
         let mut residual = |joint: &mut SolverJoint| {
-            let pose = |body: u32| poses.get(body as usize).unwrap_or(&self.bodies[body as usize].pose);
-            let predicted = JointPose::new(&joint.geometry, pose(joint.a), pose(joint.b));
+            let [a, b] = [joint.a, joint.b].map(|body| &poses[body as usize]);
+            let predicted = JointPose::new(&joint.geometry, a, b);
             let error = if joint.rigid > 0 {
                 joint.rigid_error(&predicted)
             } else {
