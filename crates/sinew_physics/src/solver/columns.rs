@@ -1,6 +1,6 @@
 //! Columns of the response: what a unit of a row's impulse makes of the velocities of all members of its trees. They are
-//! computed for rows that push, once for a pose: a push then adds a multiple of a column, where the blocks would have to be
-//! multiplied for every visit.
+//! computed for rows that are not idle, once for a pose: a push then adds a multiple of a column, where the blocks would have to
+//! be multiplied for every visit. What rows answer to each other is read from them, too.
 
 use super::response::Response;
 use super::tree::Link;
@@ -9,7 +9,7 @@ use crate::spatial::{Vec6, ZERO6, add_scaled};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
 
-/// The columns of all rows that have pushed at the present pose.
+/// The columns of all rows that were not idle at the present pose.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Columns {
     /// Column after column, each as its [`Reach`] says.

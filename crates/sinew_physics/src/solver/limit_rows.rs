@@ -45,7 +45,7 @@ pub(super) struct LimitRow {
     /// Gradient of the room, world axes.
     axis: Vec3,
     row: Row,
-    /// Where its column lies; none as long as it has not pushed.
+    /// Where its column lies; none as long as it is idle at this pose.
     pub column: Option<usize>,
     /// Response of the row to its own impulse, with its column.
     effective: f32,

@@ -79,9 +79,7 @@ impl IslandSolver {
     fn take_pushes(&mut self) {
         let sums = &mut self.scratch.impulses;
         for rows in &self.manifolds {
-            let push = rows.total_push();
-            add_row(sums, rows.a, &push.0, -1.0);
-            add_row(sums, rows.b, &push.1, -1.0);
+            rows.add_given(sums, -1.0);
         }
         for &joint in self.loops.joints.iter().chain(&self.pins.joints) {
             let joint = &self.joints[joint as usize];

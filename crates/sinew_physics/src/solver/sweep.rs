@@ -6,7 +6,6 @@ use super::columns::Change;
 use super::conjugate::{Conjugate, Rows};
 use super::contact_rows::ManifoldRows;
 use super::effort::Order;
-use super::limit_rows::add_row;
 use super::tree::Link;
 use super::{IslandSolver, WEIGHINGS};
 use crate::spatial::{ZERO6, add_scaled, largest, linear};
@@ -179,16 +178,10 @@ impl IslandSolver {
             return;
         }
         let before = bodies.map(|body| self.velocities[body as usize]);
-        if self.is_articulated() {
-            self.columns.push(&self.response, &self.links, bodies, change, &mut self.velocities);
-        }
+        self.answer(bodies, change);
         for (end, body) in bodies.into_iter().enumerate() {
             let body = body as usize;
             let Some(link) = self.links.get(body) else { continue };
-            if !self.is_articulated() {
-                let own = core::slice::from_mut(&mut self.velocities[body]);
-                self.response.answer(&self.links, body as u32, &change.push[end], own);
-            }
             let mut by = self.velocities[body];
             add_scaled(&mut by, &before[end], -1.0);
             for (x, p) in by.iter().zip(&change.push[end]) {
@@ -200,6 +193,21 @@ impl IslandSolver {
         }
     }
 
+    /// Velocities after changes of rows: by columns, or of bodies by themselves, which would gain nothing from those, by the sum of
+    /// the impulses on each.
+    fn answer(&mut self, bodies: [u32; 2], change: &Change) {
+        if self.is_articulated() {
+            self.columns.push(&self.response, &self.links, bodies, change, &mut self.velocities);
+            return;
+        }
+        for (body, p) in bodies.into_iter().zip(&change.push) {
+            if (body as usize) < self.links.len() {
+                let own = core::slice::from_mut(&mut self.velocities[body as usize]);
+                self.response.answer(&self.links, body, p, own);
+            }
+        }
+    }
+
     pub(super) fn reset_impulses(&mut self) {
         self.impulses.clear();
         self.impulses.resize(self.links.len(), ZERO6);
@@ -208,9 +216,7 @@ impl IslandSolver {
     /// Adds the present impulses of all rows, times `sign`, to those of the sweeps.
     fn add_given(&mut self, sign: f32) {
         for rows in &self.manifolds {
-            let push = rows.total_push();
-            add_row(&mut self.impulses, rows.a, &push.0, sign);
-            add_row(&mut self.impulses, rows.b, &push.1, sign);
+            rows.add_given(&mut self.impulses, sign);
         }
         for row in &self.limits {
             row.add_given(&self.joints, &mut self.impulses, sign);

@@ -7,6 +7,7 @@ mod visit;
 
 use super::columns::{Columns, Strip};
 use super::effort::Firmness;
+use super::limit_rows::add_row;
 use super::response::Response;
 use super::tree::Link;
 use super::{REDUNDANCY, SolverBody, free_response};
@@ -99,7 +100,7 @@ pub(crate) struct ManifoldRows {
     /// Weighted distance of the points from that centre: lever of the twist friction.
     lever: f32,
     /// Where the columns of its rows lie: of the points, the tangents, the twist, and of torques about each axis if it resists
-    /// rolling. None as long as it has not pushed.
+    /// rolling. None as long as it is idle at this pose.
     pub columns: Option<Strip>,
     /// Responses, with the columns.
     k: [[f32; MAX_POINTS]; MAX_POINTS],
@@ -321,9 +322,14 @@ impl ManifoldRows {
         self.floor = [0.0; MAX_POINTS];
         self.twist = self.memory.twist * share;
         self.rolling = self.memory.rolling * share;
+        self.add_given(impulses, 1.0);
+    }
+
+    /// Adds its present impulses, times `sign`, to those of its bodies.
+    pub fn add_given(&self, impulses: &mut [Vec6], sign: f32) {
         let push = self.total_push();
-        super::limit_rows::add_row(impulses, self.a, &push.0, 1.0);
-        super::limit_rows::add_row(impulses, self.b, &push.1, 1.0);
+        add_row(impulses, self.a, &push.0, sign);
+        add_row(impulses, self.b, &push.1, sign);
     }
 
     /// Impulses of this substep.
