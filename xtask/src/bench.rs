@@ -10,13 +10,15 @@ mod page;
 mod peers;
 mod results;
 pub mod table;
+mod trace;
 
 use crate::command::{self, Profile};
 use anyhow::{Context, Result, bail};
 use machine::Machine;
-use peers::{Engine, Judging, Scene};
+use peers::{Engine, Judging, Run, Scene};
 use results::{EngineResult, Results, SceneResult};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -31,6 +33,9 @@ const PAGE: &str = "docs/benchmarks.md";
 /// Rounds in which the engines take turns.
 const ROUNDS: u32 = 3;
 
+/// Starts of a heap, in which the engines take turns instead: a single run says little of what is chaotic.
+const STARTS: u32 = 5;
+
 /// Steps of a scene in a quick run.
 const QUICK_STEPS: u32 = 60;
 
@@ -40,19 +45,25 @@ const LIMIT: Duration = Duration::from_secs(900);
 /// Not a scene of the peers: a character from rig to baked clip, whose speed is held against real time.
 const BAKE: &str = "bake";
 
+/// Nor this: some scenes of it on one thread and on two, by the wall's clock.
+const THREADS: &str = "threads";
+
+/// The scenes of it, and steps of each: enough for a heap.
+const THREADED: &[(&str, u32)] = &[("box_rain", 120), ("ragdoll_pile", 300)];
+
 /// `cargo xtask bench`: writes docs/benchmarks.md and target/bench/benchmarks.json.
 ///
 /// Exits with 2 if a peer cannot be built.
 #[derive(clap::Args)]
 #[command(after_help = "Example: cargo xtask bench --scene ragdoll_pile --scene chain_swing_1000 --quick")]
 pub struct Bench {
-    /// Only this scene, of those that `peers list` names, or `bake`; others keep the figures that they have
+    /// Only this scene, of those that `peers list` names, or `bake` or `threads`; others keep the figures that they have
     #[arg(long = "scene", value_name = "NAME")]
     scenes: Vec<String>,
     /// Only this engine, of those that `peers list` names; of the scenes that run, the figures of others are forgotten
     #[arg(long = "engine", value_name = "NAME")]
     engines: Vec<String>,
-    /// How often the engines take turns
+    /// How often the engines take turns; heaps are run from 5 starts that differ a little, and each run is judged
     #[arg(long, default_value_t = ROUNDS, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
     /// Instead of as many steps as a scene says; the page tells how many there were
@@ -71,6 +82,13 @@ pub struct Bench {
     /// has less than its share
     #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "counts"])]
     kernels: bool,
+    /// Instead, print where Sinew's step spends its time on a scene and how much there is to do: one that `peers list` names,
+    /// or else `sinew scenes`. With --steps: as many, after a warm-up of a third of the scene
+    #[arg(long, value_name = "SCENE", conflicts_with_all = ["scenes", "engines", "quick", "check", "counts", "kernels", "page"])]
+    trace: Option<String>,
+    /// Steps that a trace does not look at, instead of a third of the scene
+    #[arg(long, value_name = "STEPS", requires = "trace")]
+    warm_up: Option<u32>,
     /// Instead, write the page anew from the figures that there are
     #[arg(long, conflicts_with_all = ["scenes", "engines", "quick", "check", "counts", "kernels"])]
     page: bool,
@@ -92,6 +110,9 @@ impl Bench {
             let fails = self.check && !shortfalls.is_empty();
             return Ok(if fails { ExitCode::FAILURE } else { ExitCode::SUCCESS });
         }
+        if let Some(scene) = &self.trace {
+            return trace::print(scene, self.steps, self.warm_up).map(|()| ExitCode::SUCCESS);
+        }
         if self.page {
             return write_page(&kept(), &[]).map(|()| ExitCode::SUCCESS);
         }
@@ -108,7 +129,8 @@ impl Bench {
         let results = self.measure(&engines, &scenes)?;
         let [joints, stands] = [musts::HOLDS, musts::STANDS].map(|rows| page::holds(&results, rows));
         let [physics, animation] = [page::glance(&results), page::animation(&results)];
-        println!("{physics}\n{joints}\n{stands}\n{animation}\n{}", page::speeds(&results));
+        println!("{physics}\n{joints}\n{stands}\n{animation}\n{}", page::figures_alone(&results));
+        println!("{}", page::speeds(&results));
         Ok(self.verdict(&results))
     }
 
@@ -117,11 +139,13 @@ impl Bench {
         if let Some(name) = self.engines.iter().find(|name| !is_there(name)) {
             bail!("no engine `{name}`");
         }
-        let is_known = |scene: &String| scene == BAKE || scenes.iter().any(|known| known.name == *scene);
+        let is_known = |scene: &String| {
+            scene == BAKE || scene == THREADS || scenes.iter().any(|known| known.name == *scene)
+        };
         match self.scenes.iter().find(|scene| !is_known(scene)) {
             Some(scene) => {
                 let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
-                bail!("no scene `{scene}`; there are {}, {BAKE}", names.join(", "))
+                bail!("no scene `{scene}`; there are {}, {BAKE}, {THREADS}", names.join(", "))
             }
             None => Ok(()),
         }
@@ -148,6 +172,10 @@ impl Bench {
             (results.bake, results.build) = bake()?;
             self.keep(&results, scenes)?;
         }
+        if self.is_wanted(THREADS) && !self.quick {
+            results.threads = two_threads(self.rounds)?;
+            self.keep(&results, scenes)?;
+        }
         Ok(results)
     }
 
@@ -161,7 +189,8 @@ impl Bench {
         let result = |engine: &Engine| EngineResult { name: engine.name.clone(), reports: Vec::new() };
         let engines: Vec<&Engine> = engines.iter().filter(|engine| engine.is_for(scene)).collect();
         let mut results: Vec<_> = engines.iter().copied().map(result).collect();
-        let (rounds, steps) = if self.quick { (1, Some(QUICK_STEPS)) } else { (self.rounds, self.steps) };
+        let whole = if scene.is_chaotic { STARTS } else { self.rounds };
+        let (rounds, steps) = if self.quick { (1, Some(QUICK_STEPS)) } else { (whole, self.steps) };
         for round in 1..=rounds {
             for (engine, result) in engines.iter().zip(&mut results) {
                 if result.why_not().is_some() {
@@ -169,8 +198,9 @@ impl Bench {
                 }
                 eprint!("{:<26} round {round} of {rounds}  {:<14}", scene.name, engine.name);
                 std::io::stderr().flush()?;
-                let judging = if round == 1 { Judging::On } else { Judging::Off };
-                let report = engine.run(&scene.name, steps, judging, LIMIT)?;
+                let judging = if round == 1 || scene.is_chaotic { Judging::On } else { Judging::Off };
+                let start = scene.is_chaotic.then_some(round);
+                let report = engine.run(&scene.name, Run { steps, start, judging }, LIMIT)?;
                 eprintln!("{}", in_a_word(&report));
                 result.reports.push(report);
             }
@@ -223,6 +253,26 @@ fn bake() -> Result<(Option<f64>, Option<f64>)> {
     Ok((Some(realtime), Some(100.0 / milliseconds * (vertices / 6000.0))))
 }
 
+/// Of each scene, how much sooner a step is done on two threads than on one: the median of rounds by turns.
+fn two_threads(rounds: u32) -> Result<BTreeMap<String, f64>> {
+    let binary = peers::build_ours()?;
+    let wall = |scene: &str, steps: u32, threads: u32| -> Result<f64> {
+        let mut run = Command::new(&binary);
+        run.args(["trace", "--scene", scene, "--steps", &steps.to_string()]);
+        let trace = command::output_json(run.args(["--threads", &threads.to_string()]))?;
+        trace["step"]["wall_us"].as_f64().context("`peers trace`: no `wall_us`")
+    };
+    let mut factors = BTreeMap::new();
+    for &(scene, steps) in THREADED {
+        let ratio = |_| Ok(wall(scene, steps, 1)? / wall(scene, steps, 2)?);
+        let mut ratios = (0..rounds).map(ratio).collect::<Result<Vec<f64>>>()?;
+        ratios.sort_by(f64::total_cmp);
+        eprintln!("{scene:<26} on two threads {}×", figures::rounded(ratios[ratios.len() / 2]));
+        factors.insert(scene.to_owned(), ratios[ratios.len() / 2]);
+    }
+    Ok(factors)
+}
+
 /// Where the figures of earlier runs are.
 fn file() -> PathBuf {
     command::target().join("bench/benchmarks.json")
@@ -240,7 +290,7 @@ fn write(results: Results, scenes: &[Scene]) -> Result<()> {
     let mut all = kept();
     all.update(results, &names);
     fs::write(file(), format!("{:#}\n", all.to_json())).with_context(|| file().display().to_string())?;
-    write_page(&all, &[&names[..], &[BAKE]].concat())
+    write_page(&all, &[&names[..], &[BAKE, THREADS]].concat())
 }
 
 /// Writes the page of all figures, and which of `names` have none; but never over one with more scenes.

@@ -1,8 +1,9 @@
 //! Instructions that the kernels take, counted under valgrind: the same on a busy machine and on a quiet one.
 //!
-//! `cargo xtask bench --counts` runs these and compares them with `bench/counts/baseline.txt`. What is not public is
-//! measured as the step of a world in which it is nearly all there is.
+//! Six scenes as whole steps (`scene_step`), then kernels. `cargo xtask bench --counts` runs these and compares them with
+//! `bench/counts/baseline.txt`. What is not public is measured as the step of a world in which it is nearly all there is.
 
+use gungraun::Callgrind;
 use gungraun::prelude::*;
 use sinew::math::{Random, Rotation, Transform, Vec3};
 use sinew::physics::collide::{Manifold, collide};
@@ -88,8 +89,53 @@ fn beside_sleepers(awake: u32, asleep: u32) -> World {
     world
 }
 
+/// A scene after so many steps.
+fn after(steps: u32, blueprint: &blueprint::Blueprint) -> World {
+    let (mut world, ..) = blueprint.build();
+    for _ in 0..steps {
+        world.step();
+    }
+    world
+}
+
+/// Four figures of 15 bodies in a heap, still moving.
+fn ragdoll_pile() -> World {
+    after(40, &blueprint::ragdoll_column(4))
+}
+
+/// 1,240 cubes, 8,555 manifolds.
+fn box_pyramid() -> World {
+    after(1, &blueprint::box_pyramid())
+}
+
+/// A layer of 144 boxes that has landed.
+fn box_rain() -> World {
+    after(50, &blueprint::box_rain_of(144))
+}
+
+/// The mannequin's ragdoll on its back, at rest and awake.
+fn humanoid_lying() -> World {
+    after(90, &blueprint::humanoid_lying())
+}
+
+/// 14 cubes, and a figure that has fallen down on them.
+fn ragdoll_on_boxes() -> World {
+    after(40, &blueprint::ragdoll_on_boxes(3))
+}
+
 #[library_benchmark]
-#[bench::chains_10_of_100_links(chains())]
+#[bench::ragdoll_pile(ragdoll_pile())]
+#[bench::box_pyramid(box_pyramid())]
+#[bench::box_rain(box_rain())]
+#[bench::chain_100_links(chains())]
+#[bench::humanoid_lying(humanoid_lying())]
+#[bench::ragdoll_on_boxes(ragdoll_on_boxes())]
+fn scene_step(mut world: World) -> World {
+    world.step();
+    world
+}
+
+#[library_benchmark]
 #[bench::manifold_of_one_box(lone_box())]
 #[bench::awake_100(beside_sleepers(100, 0))]
 #[bench::awake_100_asleep_10_000(beside_sleepers(100, 10_000))]
@@ -162,5 +208,12 @@ fn blend_two_clips(mut crowd: Crowd) -> Crowd {
     crowd
 }
 
-library_benchmark_group!(name = kernels, benchmarks = [ragdoll_step, step, collide_64, blend_two_clips]);
-main!(library_benchmark_groups = kernels);
+library_benchmark_group!(
+    name = kernels,
+    benchmarks = [scene_step, ragdoll_step, step, collide_64, blend_two_clips]
+);
+// Caches are not simulated: instructions alone are compared, in half the time.
+main!(
+    config = LibraryBenchmarkConfig::default().tool(Callgrind::with_args(["--cache-sim=no"])),
+    library_benchmark_groups = kernels
+);

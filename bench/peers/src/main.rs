@@ -4,8 +4,10 @@
 use clap::{Parser, Subcommand};
 use serde_json::{Value, json};
 use sinew_peers::engines::{self, ENGINES, Entry};
-use sinew_peers::run::{Judging, run};
-use sinew_peers::scenes::{self, SCENES, Scene};
+use sinew_peers::mjcf::mjcf;
+use sinew_peers::run::{Judging, Start, run};
+use sinew_peers::scenes::{self, Course, Field, SCENES, Scene, Work};
+use sinew_peers::trace::Trace;
 use std::process::ExitCode;
 
 /// The same scenes on Sinew and on other engines.
@@ -22,6 +24,30 @@ enum Command {
     List,
     /// Version, flags and settings of the engines in this binary.
     Versions,
+    /// Time that each stage of Sinew's step takes on a scene, µs, and counts of its work.
+    Trace {
+        /// Name of the scene: one that `peers list` or `sinew scenes` prints.
+        #[arg(long)]
+        scene: String,
+        /// After the warm-up, instead of the rest of the scene.
+        #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+        steps: Option<u32>,
+        /// Steps that are not looked at, instead of a third of the scene.
+        #[arg(long)]
+        warm_up: Option<u32>,
+        /// On several there is the wall's time of the whole step alone.
+        #[arg(long, default_value_t = 1)]
+        threads: usize,
+    },
+    /// A scene of our own ragdolls for MuJoCo: the figure, where it starts, what it falls on.
+    Mjcf {
+        /// As `peers list` names it.
+        #[arg(long, value_parser = parse_scene)]
+        scene: &'static Scene,
+        /// As for `run`.
+        #[arg(long)]
+        start: Option<u64>,
+    },
     /// Runs a scene on an engine, on one thread.
     Run {
         /// As `peers list` names it.
@@ -33,6 +59,9 @@ enum Command {
         /// Instead of as many as the scene says.
         #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
         steps: Option<u32>,
+        /// Bodies put aside by up to 0.1 mm, as this number says, instead of where the scene has them.
+        #[arg(long)]
+        start: Option<u64>,
         /// Run it again, untimed, and look at what the time bought.
         #[arg(long)]
         quality: bool,
@@ -51,15 +80,33 @@ fn main() -> ExitCode {
     let report = match Peers::parse().command {
         Command::List => list(),
         Command::Versions => versions(),
+        Command::Trace { scene, steps, warm_up, threads } => {
+            match (Trace { scene: &scene, steps, warm_up, threads }).run() {
+                Ok(trace) => trace,
+                Err(error) => {
+                    eprintln!("error: {error}");
+                    return ExitCode::from(2);
+                }
+            }
+        }
+        Command::Mjcf { scene, start } => match start.map_or(Start::Own, Start::Perturbed).of((scene.work)())
+        {
+            Work::Bodies(blueprint) if scene.field == Field::Figures => mjcf(&blueprint),
+            _ => {
+                eprintln!("error: {} is no scene of figures", scene.name);
+                return ExitCode::from(2);
+            }
+        },
         Command::Run { engine: Entry { name, engine: None }, .. } => {
             eprintln!(
                 "error: this binary was built without {name}: see the features in bench/peers/Cargo.toml"
             );
             return ExitCode::from(2);
         }
-        Command::Run { engine: Entry { engine: Some(engine), .. }, scene, steps, quality } => {
+        Command::Run { engine: Entry { engine: Some(engine), .. }, scene, steps, start, quality } => {
+            let start = start.map_or(Start::Own, Start::Perturbed);
             let judging = if quality { Judging::On } else { Judging::Off };
-            run(*engine, scene, steps.map(|steps| steps as usize), judging)
+            run(*engine, scene, start, steps.map(|steps| steps as usize), judging)
         }
     };
     println!("{report}");
@@ -72,8 +119,14 @@ fn list() -> Value {
         let fields: Vec<&str> = fields.iter().map(|field| field.name()).collect();
         json!({ "name": entry.name, "built": entry.engine.is_some(), "fields": fields })
     };
-    let scene =
-        |scene: &Scene| json!({ "name": scene.name, "about": scene.about, "field": scene.field.name() });
+    let scene = |scene: &Scene| {
+        json!({
+            "name": scene.name,
+            "about": scene.about,
+            "field": scene.field.name(),
+            "is_chaotic": scene.course == Course::Chaotic,
+        })
+    };
     json!({
         "engines": ENGINES.iter().map(engine).collect::<Vec<_>>(),
         "scenes": SCENES.iter().map(scene).collect::<Vec<_>>(),

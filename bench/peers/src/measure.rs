@@ -50,7 +50,7 @@ impl StepTimes {
 }
 
 /// The smallest value that at least the share `q` of the values does not exceed.
-fn quantile(values: &[f64], q: f64) -> f64 {
+pub(crate) fn quantile(values: &[f64], q: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     let rank = (q * sorted.len() as f64).ceil() as usize;

@@ -11,6 +11,7 @@ pub fn vector(v: Vec3) -> Vector {
     Vector::new(v.x, v.y, v.z)
 }
 
+#[cfg(feature = "rapier")]
 /// The same point or direction.
 pub fn from_vector(v: Vector) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)
@@ -26,6 +27,7 @@ pub fn pose(t: Transform) -> Pose {
     Pose::from_parts(vector(t.translation), rotation(t.rotation))
 }
 
+#[cfg(feature = "rapier")]
 /// The same motion.
 pub fn from_pose(pose: &Pose) -> Transform {
     let q = pose.rotation;

@@ -23,11 +23,39 @@ pub enum Judging {
     On,
 }
 
+/// Largest displacement of a body in a perturbed start, metres.
+const ASIDE: f32 = 1e-4;
+
+/// Start of a scene: as its blueprint says, or perturbed by a seed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// As it is written.
+    Own,
+    /// Bodies put aside by up to 0.1 mm as this seed says, in every engine alike.
+    Perturbed(u64),
+}
+
+impl Start {
+    /// The same work from this start.
+    pub fn of(self, work: Work) -> Work {
+        match (self, work) {
+            (Self::Perturbed(seed), Work::Bodies(scene)) => Work::Bodies(scene.perturbed(seed, ASIDE)),
+            (_, work) => work,
+        }
+    }
+}
+
 /// What was measured, as one JSON object; `"unsupported"` in it says why there are no figures.
 ///
 /// `steps`: as many as the scene says if `None`.
-pub fn run(engine: &dyn Engine, scene: &Scene, steps: Option<usize>, judging: Judging) -> Value {
-    let work = (scene.work)();
+pub fn run(
+    engine: &dyn Engine,
+    scene: &Scene,
+    start: Start,
+    steps: Option<usize>,
+    judging: Judging,
+) -> Value {
+    let work = start.of((scene.work)());
     let steps = steps.unwrap_or(work.steps());
     let mut report = engine.describe().to_json();
     report["scene"] = json!(scene.name);

@@ -87,16 +87,22 @@ impl SwingTwistLimit {
     /// `φ̇ = ω·u`, and the axis itself turns at `−ω·(u × x_b)/sin φ`, since a swung body that spins about the axis of A
     /// carries its swing round to another side of the cone.
     pub fn swing_state(&self, joint: Rotation) -> LimitState {
-        let (swing, _) = Self::angles(joint);
-        let angle = swing.length();
-        let u = if angle > 1e-6 { Vec3::new(0.0, swing.y, swing.z) / angle } else { Vec3::Y };
+        self.state_of_swing(joint.swing_twist(Vec3::X).0)
+    }
+
+    /// State of the swing cone for the swing of the joint rotation, see [`swing_state`](Self::swing_state).
+    pub fn state_of_swing(&self, swing: Rotation) -> LimitState {
+        let swing = swing.positive();
+        let half = (swing.y * swing.y + swing.z * swing.z).sqrt();
+        let angle = 2.0 * trig::atan2(half, swing.w);
+        let u = if angle > 1e-6 { Vec3::new(0.0, swing.y, swing.z) / half } else { Vec3::Y };
         let a = crate::max(if u.y < 0.0 { -self.swing_y.lo } else { self.swing_y.hi }, 1e-4);
         let b = crate::max(if u.z < 0.0 { -self.swing_z.lo } else { self.swing_z.hi }, 1e-4);
         let normal = crate::normalize_or(Vec3::new(0.0, u.y / (a * a), u.z / (b * b)), u);
         let tangent = Vec3::new(0.0, -u.z, u.y);
         let room = (self.cone_angle(u.y, u.z) - angle) * normal.dot(u);
         // φ/sin φ is held off its pole at half a turn.
-        let (sin, cos) = trig::sin_cos(angle);
+        let (sin, cos) = (2.0 * half * swing.w, 1.0 - 2.0 * half * half);
         let turning = if angle > 1e-4 { angle / crate::max(sin, 0.1) } else { 1.0 };
         let x_b = Vec3::new(cos, sin * u.z, -sin * u.y);
         let axis = u.cross(x_b) * (turning * normal.dot(tangent)) - u * normal.dot(u);
@@ -105,11 +111,16 @@ impl SwingTwistLimit {
 
     /// States of the lower and the upper twist stop for the joint rotation `a⁻¹ b`.
     pub fn twist_states(&self, joint: Rotation) -> [LimitState; 2] {
-        let (swing, twist_about_x) = joint.swing_twist(Vec3::X);
+        let (swing, twist) = joint.swing_twist(Vec3::X);
+        self.states_of_twist(swing, twist)
+    }
+
+    /// States of the twist stops for the swing and the twist of the joint rotation.
+    pub fn states_of_twist(&self, swing: Rotation, twist: Rotation) -> [LimitState; 2] {
         // Measured from the middle of the range and wrapped, so that ranges near ±π have no jump inside.
         let middle = self.twist.center();
         let half = 0.5 * (self.twist.hi - self.twist.lo);
-        let angle = wrap(twist_about_x.twist_angle(Vec3::X) - middle);
+        let angle = wrap(twist.twist_angle(Vec3::X) - middle);
         // The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b); the divisor is held off 0 near a swing of half a turn.
         let x_b = swing * Vec3::X;
         let axis = (Vec3::X + x_b) / crate::max(1.0 + x_b.x, 0.05);

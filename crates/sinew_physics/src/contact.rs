@@ -3,13 +3,15 @@
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::boxes::separation::AxisOf;
-use crate::collide::{MAX_POINTS, Manifold};
+use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint, Parting};
+use crate::kept::Kept;
 use crate::material::ContactMaterial;
+use core::cmp::Ordering;
 use sinew_math::Vec3;
 
 /// Which two shapes: body index and shape number of each, the smaller body index first, and which part of their contact.
 /// Sorting by it is the order in which everything about contacts happens.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ContactKey {
     pub a: u32,
     pub b: u32,
@@ -17,6 +19,21 @@ pub(crate) struct ContactKey {
     pub shape_b: u32,
     /// Which of several manifolds of the two, from 0; a pair of convex shapes has only one.
     pub part: u32,
+}
+
+/// Field by field, two at a time.
+impl Ord for ContactKey {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let both = |first: u32, second: u32| u64::from(first) << 32 | u64::from(second);
+        let order = |key: &Self| (both(key.a, key.b), both(key.shape_a, key.shape_b), key.part);
+        order(self).cmp(&order(other))
+    }
+}
+
+impl PartialOrd for ContactKey {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
 }
 
 impl ContactKey {
@@ -80,12 +97,36 @@ impl ContactMemory {
         Self { points, total_friction: Vec3::ZERO, ..*self }
     }
 
+    /// Impulses that last from substep to substep as those of substeps `times` as long; the sums of the step stay.
+    pub fn of_substeps(&self, times: f32) -> Self {
+        if times == 1.0 {
+            return *self;
+        }
+        let scaled = |point: PointImpulse| PointImpulse {
+            now: point.now * times,
+            before: point.before * times,
+            lasting: point.lasting * times,
+            ..point
+        };
+        Self {
+            points: self.points.map(scaled),
+            friction: self.friction * times,
+            twist: self.twist * times,
+            rolling: self.rolling * times,
+            ..*self
+        }
+    }
+
     /// What a new manifold of the same shapes starts with. Points keep their impulses by feature; those of points that
     /// are gone go to the new ones in equal parts, since the load stays when the shapes tip from one corner to another.
     /// Nothing is kept if the normal turned by more than about 25°.
     pub fn matched(&self, old: &Manifold, new: &Manifold) -> Self {
         if new.count == 0 || old.count == 0 || old.normal.dot(new.normal) < 0.9 {
             return Self::default();
+        }
+        let same = |(p, q): (&ManifoldPoint, &ManifoldPoint)| p.feature == q.feature;
+        if old.count == new.count && old.points().iter().zip(new.points()).all(same) {
+            return *self;
         }
         let mut memory = Self { points: Default::default(), ..*self };
         let mut fresh = [true; MAX_POINTS];
@@ -149,6 +190,13 @@ pub(crate) struct Contact {
     /// What parted the shapes when they were last looked at. Not part of the state: it decides nothing but how soon that is
     /// found again.
     pub apart: Option<AxisOf>,
+    /// How far they were surely apart then, metres, if they had no points. Likewise.
+    pub gap: f32,
+    /// One of the shapes is a mesh or a height field.
+    pub has_surface: bool,
+    /// It does nothing but push, as long as neither surface is changed. Not part of the state: it follows from them.
+    pub is_plain: bool,
+    pub kept: Kept,
 }
 
 impl Contact {
@@ -165,7 +213,21 @@ impl Contact {
             passes: false,
             approach: 0.0,
             apart: None,
+            gap: f32::NEG_INFINITY,
+            has_surface: false,
+            is_plain: false,
+            kept: Kept::default(),
         }
+    }
+
+    /// It has no points, and nothing is to be told of it: as good as none.
+    pub fn is_idle(&self) -> bool {
+        self.manifold.count == 0 && !self.touching && !self.sensed
+    }
+
+    /// What is known of its shapes' gap.
+    pub fn parting(&self) -> Parting {
+        Parting { axis: self.apart, gap: self.gap }
     }
 
     /// Whether the solver has to do with it.

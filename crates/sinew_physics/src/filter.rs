@@ -37,6 +37,8 @@ pub(crate) struct PairFilter<'a> {
     /// Body indices, smaller first, ascending.
     pub parted: &'a [(u32, u32)],
     pub function: Option<PairFunction>,
+    /// Another one whenever `parted` is another.
+    pub version: u64,
 }
 
 impl PairFilter<'_> {

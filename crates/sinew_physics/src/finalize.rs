@@ -46,27 +46,25 @@ pub(crate) fn store(
     let solution = islands.solution();
     for solved in &solution.contacts {
         let contact = &mut contacts[solved.index as usize];
-        contact.manifold = solved.manifold;
+        if let Some(manifold) = solved.found {
+            let of_solved = manifold.points().iter().map(|point| point.feature);
+            if contact.manifold.points().iter().map(|point| point.feature).ne(of_solved) {
+                contact.kept.drop();
+            }
+            contact.manifold = manifold;
+        }
         contact.memory = solved.memory;
     }
-    for solved in &solution.joints {
-        let joint = joints.at_mut(solved.index);
-        joint.limits = solved.limits;
-        joint.force = solved.force;
-        joint.warm_impulse = solved.warm_impulse;
-        joint.saturated = solved.saturated;
-        joint.mass = solved.mass;
-        joint.reaction = solved.reaction.map(|impulse| impulse / context.dt);
-    }
-    break_joints(islands, joints, parted, events);
-}
-
-/// Joints that the step loaded beyond their strength break.
-fn break_joints(islands: &Islands, joints: &mut Arena<Joint>, parted: &mut PartedPairs, events: &mut Events) {
     events.broken.clear();
-    for &SolvedJoint { index, .. } in &islands.solution().joints {
+    for &SolvedJoint { index, limits, force, warm_impulse, saturated, mass, reaction } in &solution.joints {
         let generation = joints.generation(index);
         let joint = joints.at_mut(index);
+        joint.limits = limits;
+        joint.force = force;
+        joint.warm_impulse = warm_impulse;
+        joint.saturated = saturated;
+        joint.mass = mass;
+        joint.reaction = reaction.map(|impulse| impulse / context.dt);
         if joint.is_overloaded() {
             joint.state = JointState::Disabled;
             events.broken.push(JointId { index, generation });

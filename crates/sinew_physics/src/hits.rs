@@ -64,7 +64,7 @@ impl OpenHits {
             if !fast && self.list.is_empty() || pair[0].effect != Effect::Push {
                 continue;
             }
-            let (a, b) = shape_ids(bodies, &pair[0]);
+            let (a, b) = shape_ids(bodies, pair[0].key);
             let begun = self.list.iter().find(|hit| (hit.a, hit.b) == (a, b));
             if !fast && begun.is_none() {
                 continue;

@@ -1,8 +1,6 @@
 //! `islands` and `color`: which active bodies hang together through contacts, joints, particles and attraction.
 
 use crate::arena::Arena;
-use crate::body::Body;
-use crate::contact::Contact;
 use crate::field::Target;
 use crate::particles::ParticleGroup;
 use crate::project::{Neighbors, TakenGroup};
@@ -31,7 +29,13 @@ pub(crate) struct Islands {
     /// By slot: the number of each active body.
     places: Vec<u32>,
     /// Enabled joints of active bodies, ascending.
-    holding: Vec<u32>,
+    holding: Vec<Tie>,
+    /// Contacts that push, ascending.
+    touching: Vec<Tie>,
+    /// By place in the contact array, of those: whether only one of the bodies is active.
+    is_border: Vec<bool>,
+    /// Memory of `color`.
+    border: Vec<u32>,
     parent: Vec<u32>,
     island_of_root: Vec<u32>,
     count: usize,
@@ -51,6 +55,20 @@ pub(crate) struct Islands {
 }
 
 const NONE: u32 = u32::MAX;
+
+/// A joint or a contact by its index, and the numbers of its bodies, where they are active.
+#[derive(Clone, Copy, Debug)]
+struct Tie {
+    index: u32,
+    bodies: [u32; 2],
+}
+
+impl Tie {
+    /// A body of it that is active, by number.
+    fn either(self) -> Option<u32> {
+        self.bodies.into_iter().find(|&place| place != NONE)
+    }
+}
 
 impl Islands {
     /// The islands of this step, ordered by their smallest body.
@@ -76,20 +94,20 @@ impl Islands {
     /// Finds the islands and takes the particle groups into them for the length of the step.
     pub fn find(&mut self, view: &View<'_>, groups: &mut Arena<ParticleGroup>) {
         self.number(view, groups.slot_count());
-        self.join_touching_and_held(view);
+        self.join_touching_and_held();
         let first_group = self.active.len() as u32;
         self.neighbors.resize(groups.slot_count(), Neighbors::default());
         for (index, group) in groups.iter() {
             self.neighbors[index as usize].find(group, view);
             for i in 0..self.neighbors[index as usize].bodies.len() {
                 let body = self.neighbors[index as usize].bodies[i];
-                if let Some(place) = self.place(view, body) {
+                if let Some(place) = self.place(body) {
                     self.join(first_group + index, place);
                 }
             }
         }
         self.join_attracted(view, groups);
-        self.collect(view);
+        self.collect();
         for (index, _) in groups.iter() {
             let island = self.island_of(first_group + index);
             self.groups.push(island, index);
@@ -109,39 +127,64 @@ impl Islands {
 
     /// Lists what is active: bodies get the numbers by which they and the groups are joined, in order of their indices.
     fn number(&mut self, view: &View<'_>, groups: usize) {
-        let View { bodies, joints, activity, .. } = view;
-        self.active.clear();
+        let View { bodies, activity, .. } = view;
+        for body in self.active.drain(..) {
+            self.places[body as usize] = NONE;
+        }
         self.active.extend(activity.active());
-        self.places.resize(bodies.slot_count(), 0);
-        self.holding.clear();
+        self.places.resize(bodies.slot_count(), NONE);
         for (place, &body) in self.active.iter().enumerate() {
             self.places[body as usize] = place as u32;
-            self.holding.extend_from_slice(activity.joints_of.body(body));
         }
-        self.holding.retain(|&joint| joints.at(joint).is_enabled());
-        self.holding.sort_unstable();
-        self.holding.dedup();
+        self.list_joints(view);
+        self.touching.clear();
+        self.is_border.clear();
+        self.is_border.resize(view.contacts.len(), false);
+        for (index, contact) in view.contacts.iter().enumerate().filter(|(_, contact)| contact.pushes()) {
+            let bodies = [contact.key.a, contact.key.b].map(|body| self.places[body as usize]);
+            self.touching.push(Tie { index: index as u32, bodies });
+            self.is_border[index] = bodies.contains(&NONE);
+        }
         self.parent.clear();
         self.parent.extend(0..(self.active.len() + groups) as u32);
     }
 
+    /// Each joint is found by the later of its active bodies: where joints were made after their bodies, parents before
+    /// children, that is their order.
+    fn list_joints(&mut self, view: &View<'_>) {
+        self.holding.clear();
+        for (place, &body) in self.active.iter().enumerate() {
+            for &index in view.activity.joints_of.body(body) {
+                let joint = view.joints.at(index);
+                let bodies = [joint.a, joint.b].map(|body| self.places[body as usize]);
+                let is_later = bodies.iter().all(|&other| other == NONE || other <= place as u32);
+                if is_later && joint.is_enabled() {
+                    self.holding.push(Tie { index, bodies });
+                }
+            }
+        }
+        if !self.holding.is_sorted_by_key(|tie| tie.index) {
+            self.holding.sort_unstable_by_key(|tie| tie.index);
+        }
+    }
+
     /// Number of a body, if it is active.
-    fn place(&self, view: &View<'_>, body: u32) -> Option<u32> {
-        view.bodies.at(body).is_active().then(|| self.places[body as usize])
+    fn place(&self, body: u32) -> Option<u32> {
+        Some(self.places[body as usize]).filter(|&place| place != NONE)
     }
 
-    fn join_touching_and_held(&mut self, view: &View<'_>) {
-        for contact in view.contacts.iter().filter(|contact| contact.pushes()) {
-            self.join_bodies(view, contact.key.a, contact.key.b);
+    fn join_touching_and_held(&mut self) {
+        for at in 0..self.touching.len() {
+            self.join_ends(self.touching[at]);
         }
-        for i in 0..self.holding.len() {
-            let joint = view.joints.at(self.holding[i]);
-            self.join_bodies(view, joint.a, joint.b);
+        for at in 0..self.holding.len() {
+            self.join_ends(self.holding[at]);
         }
     }
 
-    fn join_bodies(&mut self, view: &View<'_>, a: u32, b: u32) {
-        if let (Some(a), Some(b)) = (self.place(view, a), self.place(view, b)) {
+    fn join_ends(&mut self, tie: Tie) {
+        let [a, b] = tie.bodies;
+        if a != NONE && b != NONE {
             self.join(a, b);
         }
     }
@@ -198,13 +241,7 @@ impl Islands {
         self.island_of_root[root]
     }
 
-    /// The island in which either of two bodies is active.
-    fn island_of_either(&mut self, view: &View<'_>, a: u32, b: u32) -> Option<u32> {
-        let place = self.place(view, a).or_else(|| self.place(view, b))?;
-        Some(self.island_of(place))
-    }
-
-    fn collect(&mut self, view: &View<'_>) {
+    fn collect(&mut self) {
         self.count = 0;
         for lists in [&mut self.bodies, &mut self.joints, &mut self.contacts, &mut self.groups] {
             lists.clear();
@@ -216,27 +253,38 @@ impl Islands {
             self.bodies.push(island, self.active[place]);
         }
         for i in 0..self.holding.len() {
-            let joint = view.joints.at(self.holding[i]);
-            if let Some(island) = self.island_of_either(view, joint.a, joint.b) {
-                self.joints.push(island, self.holding[i]);
+            let tie = self.holding[i];
+            if let Some(place) = tie.either() {
+                let island = self.island_of(place);
+                self.joints.push(island, tie.index);
             }
         }
-        for (index, contact) in view.contacts.iter().enumerate().filter(|(_, contact)| contact.pushes()) {
-            if let Some(island) = self.island_of_either(view, contact.key.a, contact.key.b) {
-                self.contacts.push(island, index as u32);
+        for i in 0..self.touching.len() {
+            let tie = self.touching[i];
+            if let Some(place) = tie.either() {
+                let island = self.island_of(place);
+                self.contacts.push(island, tie.index);
             }
         }
     }
 
     /// `color`: contacts between moving bodies first, those with fixed ones last, each by key. With one scalar lane a
     /// colour is no more than this order.
-    pub fn color(&mut self, bodies: &Arena<Body>, contacts: &[Contact]) {
-        let fixed = |index: u32| !bodies.at(index).is_active();
+    pub fn color(&mut self) {
         for island in 0..self.count {
-            self.contacts.of_mut(island).sort_unstable_by_key(|&i| {
-                let key = contacts[i as usize].key;
-                (fixed(key.a) || fixed(key.b), i)
-            });
+            let list = self.contacts.of_mut(island);
+            let mut kept = 0;
+            self.border.clear();
+            for at in 0..list.len() {
+                let index = list[at];
+                if self.is_border[index as usize] {
+                    self.border.push(index);
+                } else {
+                    list[kept] = index;
+                    kept += 1;
+                }
+            }
+            list[kept..].copy_from_slice(&self.border);
         }
     }
 

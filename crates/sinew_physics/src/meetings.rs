@@ -2,7 +2,7 @@
 
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::contact::Contact;
+use crate::contact::{Contact, ContactKey};
 use crate::hits::OpenHits;
 use crate::id::{BodyId, ShapeId};
 use crate::modifiers::Modifiers;
@@ -50,10 +50,10 @@ impl Meetings {
     /// A contact is dropped: what it told of ends.
     pub fn part(&mut self, bodies: &Arena<Body>, contact: &Contact) {
         if contact.touching {
-            self.touching.gone.push(touch_of(bodies, contact));
+            self.touching.gone.push(touch_of(bodies, contact.key));
         }
         if contact.sensed {
-            self.sensed.gone.push(touch_of(bodies, contact));
+            self.sensed.gone.push(touch_of(bodies, contact.key));
         }
     }
 
@@ -84,8 +84,7 @@ impl Touch {
 }
 
 /// Ids of the two shapes of a contact.
-pub(crate) fn shape_ids(bodies: &Arena<Body>, contact: &Contact) -> (ShapeId, ShapeId) {
-    let key = contact.key;
+pub(crate) fn shape_ids(bodies: &Arena<Body>, key: ContactKey) -> (ShapeId, ShapeId) {
     (
         ShapeId { body: id(bodies, key.a), shape: key.shape_a },
         ShapeId { body: id(bodies, key.b), shape: key.shape_b },
@@ -93,8 +92,8 @@ pub(crate) fn shape_ids(bodies: &Arena<Body>, contact: &Contact) -> (ShapeId, Sh
 }
 
 /// The shapes of a contact.
-pub(crate) fn touch_of(bodies: &Arena<Body>, contact: &Contact) -> Touch {
-    let (a, b) = shape_ids(bodies, contact);
+fn touch_of(bodies: &Arena<Body>, key: ContactKey) -> Touch {
+    let (a, b) = shape_ids(bodies, key);
     Touch { a, b }
 }
 
@@ -104,8 +103,21 @@ pub(crate) fn touch_of(bodies: &Arena<Body>, contact: &Contact) -> Touch {
 pub(crate) struct Touches {
     /// Pairs that touched until their contact was dropped: the next step tells of it. Part of the snapshot.
     gone: Vec<Touch>,
-    /// What touched before this step or does now.
+    /// What touched before this step or does now; only of bodies of which something changed, where nothing is gone.
+    seen: Vec<Seen>,
+    /// Where those of the two bodies at hand begin, and whether anything changed of them.
+    first: usize,
+    changes: bool,
+    /// Both together, while they are told of.
     noted: Vec<Noted>,
+}
+
+/// A pair of shapes that the step came by.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    key: ContactKey,
+    was: bool,
+    is: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -124,20 +136,39 @@ pub(crate) struct Told<'a> {
 impl Touches {
     /// Makes room for the pairs of so many contacts.
     pub fn start(&mut self, contacts: usize) {
+        self.seen.clear();
         self.noted.clear();
+        (self.first, self.changes) = (0, false);
+        self.seen.reserve(contacts);
         self.noted.reserve(contacts + self.gone.len());
         self.gone.reserve(contacts);
     }
 
-    /// Notes a pair of shapes: whether it touched when it was last looked at, and whether it does now.
-    pub fn note(&mut self, touch: Touch, was: bool, is: bool) {
-        if was || is {
-            self.noted.push(Noted { touch, was, is });
+    /// Notes a pair of shapes: whether it touched when it was last looked at, and whether it does now. Pairs come in order.
+    pub fn note(&mut self, key: ContactKey, was: bool, is: bool) {
+        if !was && !is {
+            return;
         }
+        if self.seen.last().is_some_and(|last| (last.key.a, last.key.b) != (key.a, key.b)) {
+            self.forget_unchanged();
+        }
+        self.changes |= was != is;
+        self.seen.push(Seen { key, was, is });
+    }
+
+    /// Of two bodies of which nothing changed there is nothing to tell, unless a contact of theirs is gone.
+    fn forget_unchanged(&mut self) {
+        if !self.changes && self.gone.is_empty() {
+            self.seen.truncate(self.first);
+        }
+        (self.first, self.changes) = (self.seen.len(), false);
     }
 
     /// Tells in order what is not as it was.
-    pub fn tell<'a>(&mut self, mut begin: Told<'a>, mut end: Told<'a>) {
+    pub fn tell<'a>(&mut self, bodies: &Arena<Body>, mut begin: Told<'a>, mut end: Told<'a>) {
+        self.forget_unchanged();
+        let noted = |&Seen { key, was, is }: &Seen| Noted { touch: touch_of(bodies, key), was, is };
+        self.noted.extend(self.seen.iter().map(noted));
         self.noted.extend(self.gone.drain(..).map(|touch| Noted { touch, was: true, is: false }));
         // All of them: how many come at once differs from hit to hit.
         let most = self.noted.capacity();
@@ -180,7 +211,7 @@ impl Touches {
         for _ in 0..r.count(24)? {
             gone.push(Touch { a: load_shape_id(r)?, b: load_shape_id(r)? });
         }
-        Ok(Self { gone, noted: Vec::new() })
+        Ok(Self { gone, ..Self::default() })
     }
 }
 

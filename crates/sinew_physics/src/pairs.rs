@@ -3,22 +3,40 @@
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
+use crate::collide::{Manifold, Parting};
 use crate::contact::{Contact, ContactKey};
 use crate::filter::PairFilter;
+use crate::kept::Kept;
 use crate::meetings::Meetings;
-use crate::proxies::{Owner, Proxies};
+use crate::near::{NearPair, NearPairs, insert_sorted};
+use crate::proxies::{MARGIN, Proxies};
+use sinew_math::max;
 
 /// The trees, and what pairs are found with.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BroadPhase {
     pub proxies: Proxies,
-    keys: Vec<ContactKey>,
-    next: Vec<Contact>,
+    pub near: NearPairs,
+    /// Pairs without a contact that are so near that they may have points, in order.
+    pub asked: Vec<Asked>,
+    /// Contacts that begin, in order.
+    pub born: Vec<Contact>,
+}
+
+/// A pair without a contact, and what is found of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked {
+    pub key: ContactKey,
+    /// Its place among the near pairs.
+    pub pair: usize,
+    pub parting: Parting,
+    pub manifold: Manifold,
+    pub kept: Kept,
 }
 
 impl BroadPhase {
-    /// Brings `contacts` up to date: sorted by key, one for each pair that may meet. Those to which nothing can happen are
-    /// put aside; what touched and is dropped, `meetings` tell of.
+    /// Brings `contacts` up to date: sorted by key, of pairs that are near. Those to which nothing can happen are put aside;
+    /// what touched and is dropped, `meetings` tell of. Near pairs that have none are to be asked whether they begin one.
     pub fn update(
         &mut self,
         bodies: &Arena<Body>,
@@ -30,59 +48,167 @@ impl BroadPhase {
     ) {
         activity.return_contacts(contacts);
         self.proxies.follow(bodies, activity, dt);
-        self.keys.clear();
-        let keys = &mut self.keys;
-        let mut visit = |p, q| {
-            let key = key(p, q);
-            if filter.lets_meet(bodies, key) {
-                keys.push(key);
-            }
-        };
-        self.proxies.pairs(bodies, activity, &mut visit);
-        self.proxies.pairs_of_changed(bodies, &meetings.stirred, &mut visit);
-        self.keys.sort_unstable();
-        self.merge(bodies, meetings, contacts, activity);
+        self.proxies.take_stock(bodies, activity, &meetings.stirred);
+        self.near.update(&mut self.proxies, bodies, filter);
+        self.sort_out(bodies, meetings, contacts, activity);
+        bear(contacts, &mut self.born);
     }
 
-    /// Merges the sorted keys with the sorted contacts: old ones keep their memory, and those that were not found go, or
-    /// are put aside where nothing about them can have changed.
-    fn merge(
+    /// Goes through pairs and contacts side by side: contacts of pairs that are no longer near go, or are put aside where
+    /// nothing about them can have changed.
+    fn sort_out(
         &mut self,
         bodies: &Arena<Body>,
         meetings: &mut Meetings,
         contacts: &mut Vec<Contact>,
         activity: &mut Activity,
     ) {
-        let lies_still = |index: u32| !bodies.at(index).can_touch() && !bodies.at(index).quarantined;
-        let mut part_with = |contact: Contact| {
-            if lies_still(contact.key.a) && lies_still(contact.key.b) {
-                // What it came in with was not of the step in which it comes back.
-                activity.put_aside(Contact { approach: 0.0, ..contact });
-            } else {
-                meetings.part(bodies, &contact);
+        self.asked.clear();
+        self.born.clear();
+        let mut keeper = Keeper { contacts, from: 0, to: 0, bodies, meetings, activity };
+        let mut next = keeper.next_pair();
+        for (place, pair) in self.near.list.iter_mut().enumerate() {
+            while next < pair.key {
+                keeper.part(1);
+                next = keeper.next_pair();
             }
-        };
-        self.next.clear();
-        let mut old = contacts.iter().copied().peekable();
-        for &key in &self.keys {
-            while let Some(contact) = old.next_if(|contact| contact.key < key) {
-                part_with(contact);
+            let strides = [pair.key.a, pair.key.b].map(|body| self.proxies.stride_of(body));
+            let count = if next == pair.key { keeper.count_of(pair.key) } else { 0 };
+            if count == 0 {
+                pair.left -= strides[0].moved + strides[1].moved;
+                // No points are looked for further away.
+                if !pair.meets || pair.left > max(MARGIN, strides[0].ahead + strides[1].ahead) {
+                    continue;
+                }
             }
-            let before = self.next.len();
-            while let Some(contact) = old.next_if(|contact| contact.key.is_of_pair(key)) {
-                self.next.push(contact);
+            let is_near = pair.meets && self.proxies.are_near(bodies, pair.key, pair.leaves);
+            match (count, is_near) {
+                (0, false) => {}
+                (0, true) if pair.has_surface => {
+                    self.born.push(Contact { has_surface: true, ..Contact::new(pair.key) });
+                }
+                (0, true) => self.asked.push(Asked::new(place, pair)),
+                (_, false) => {
+                    pair.left = f32::NEG_INFINITY;
+                    keeper.part(count);
+                }
+                (1, true) if !pair.has_surface && keeper.next_is_idle() => {
+                    // It had no points in the last step: from now on the pair knows why.
+                    let parting = keeper.forget();
+                    pair.part(&parting);
+                    pair.left -= strides[0].moved + strides[1].moved;
+                    if pair.left <= max(MARGIN, strides[0].ahead + strides[1].ahead) {
+                        self.asked.push(Asked::new(place, pair));
+                    }
+                }
+                (_, true) => keeper.keep(count),
             }
-            if self.next.len() == before {
-                self.next.push(Contact::new(key));
+            if count > 0 {
+                next = keeper.next_pair();
             }
         }
-        old.for_each(part_with);
-        core::mem::swap(contacts, &mut self.next);
+        keeper.finish();
+    }
+
+    /// Takes over what was found of the pairs that were asked.
+    pub fn answer(&mut self, contacts: &mut Vec<Contact>, weigh: impl Fn(&mut Contact)) {
+        self.born.clear();
+        for asked in &self.asked {
+            if asked.manifold.count > 0 {
+                let Asked { key, manifold, kept, .. } = *asked;
+                let mut contact = Contact { manifold, kept, ..Contact::new(key) };
+                weigh(&mut contact);
+                self.born.push(contact);
+            } else {
+                self.near.list[asked.pair].part(&asked.parting);
+            }
+        }
+        bear(contacts, &mut self.born);
     }
 }
 
-fn key(p: Owner, q: Owner) -> ContactKey {
-    ContactKey::new((p.body, p.shape), (q.body, q.shape))
+impl Asked {
+    fn new(pair: usize, near: &NearPair) -> Self {
+        Self {
+            key: near.key,
+            pair,
+            parting: near.parting(),
+            manifold: Manifold::default(),
+            kept: Kept::default(),
+        }
+    }
+}
+
+/// Puts contacts that begin in their places; both lists are in order of their keys.
+pub(crate) fn bear(contacts: &mut Vec<Contact>, born: &mut Vec<Contact>) {
+    insert_sorted(contacts, born, |contact| contact.key);
+}
+
+/// The contacts of the last step, each of which is kept, or goes.
+struct Keeper<'a> {
+    contacts: &'a mut Vec<Contact>,
+    /// The first that is not decided, and where the next that is kept will be.
+    from: usize,
+    to: usize,
+    bodies: &'a Arena<Body>,
+    meetings: &'a mut Meetings,
+    activity: &'a mut Activity,
+}
+
+impl Keeper<'_> {
+    /// The pair of the next one; beyond all others if there is none.
+    fn next_pair(&self) -> ContactKey {
+        let end = ContactKey { a: u32::MAX, b: u32::MAX, shape_a: u32::MAX, shape_b: u32::MAX, part: 0 };
+        self.contacts.get(self.from).map_or(end, |contact| ContactKey { part: 0, ..contact.key })
+    }
+
+    /// How many there are of a pair.
+    fn count_of(&self, key: ContactKey) -> usize {
+        let rest = &self.contacts[self.from..];
+        rest.iter().take_while(|contact| contact.key.is_of_pair(key)).count()
+    }
+
+    /// Whether the next one had no points, and nothing is to be told of it.
+    fn next_is_idle(&self) -> bool {
+        self.contacts[self.from].is_idle()
+    }
+
+    fn keep(&mut self, count: usize) {
+        if self.to != self.from {
+            self.contacts.copy_within(self.from..self.from + count, self.to);
+        }
+        self.from += count;
+        self.to += count;
+    }
+
+    /// Drops one that is idle, and tells what parted its shapes.
+    fn forget(&mut self) -> Parting {
+        self.from += 1;
+        self.contacts[self.from - 1].parting()
+    }
+
+    fn part(&mut self, count: usize) {
+        for _ in 0..count {
+            let contact = self.contacts[self.from];
+            self.from += 1;
+            let lies_still = |index: u32| {
+                let body = self.bodies.at(index);
+                !body.can_touch() && !body.quarantined
+            };
+            if !lies_still(contact.key.a) || !lies_still(contact.key.b) {
+                self.meetings.part(self.bodies, &contact);
+            } else if !contact.is_idle() {
+                // What it came in with was not of the step in which it comes back.
+                self.activity.put_aside(Contact { approach: 0.0, ..contact });
+            }
+        }
+    }
+
+    fn finish(mut self) {
+        let rest = self.contacts.len() - self.from;
+        self.part(rest);
+        self.contacts.truncate(self.to);
+    }
 }
 
 #[cfg(test)]
@@ -93,7 +219,7 @@ mod tests {
     use crate::boxes::{Aabb, Overlap};
     use crate::def::{BodyDef, BodyKind, WorldDef};
     use crate::id::BodyId;
-    use crate::proxies::MARGIN;
+    use crate::proxies::Owner;
     use crate::shape::{Filter, Shape, ShapeDef};
     use crate::{Velocity, World};
     use sinew_math::{Random, Reader, Transform, Vec3, Writer};
@@ -108,6 +234,10 @@ mod tests {
         let speed = body.velocity.linear.length() + body.velocity.angular.length() * body.reach();
         let motion = if body.kind == BodyKind::Static { 0.0 } else { speed * dt };
         body.shapes[shape].shape.aabb(&body.world_from_shape(shape)).expand(MARGIN + motion)
+    }
+
+    fn key(p: Owner, q: Owner) -> ContactKey {
+        ContactKey::new((p.body, p.shape), (q.body, q.shape))
     }
 
     fn tried(world: &World, filter: PairFilter<'_>) -> Vec<ContactKey> {
@@ -183,12 +313,17 @@ mod tests {
     /// What the next step will find, and whether it is what there is to find.
     fn check(world: &mut World, case: usize) -> usize {
         let dt = world.def.dt();
-        let parted = world.parted.filter(&world.joints).parted.to_vec();
-        let filter = PairFilter { parted: &parted, function: None };
+        let PairFilter { parted, version, .. } = world.parted.filter(&world.joints);
+        let parted = parted.to_vec();
+        let filter = PairFilter { parted: &parted, function: None, version };
         let World { bodies, broad, meetings, contacts, activity, .. } = &mut *world;
         broad.update(bodies, filter, meetings, contacts, activity, dt);
         let tried = tried(world, filter);
-        assert_eq!(world.broad.keys, tried, "case {case}");
+        let BroadPhase { proxies, near, .. } = &world.broad;
+        let near = near.list.iter();
+        let near = near.filter(|pair| pair.meets && proxies.are_near(&world.bodies, pair.key, pair.leaves));
+        let found: Vec<ContactKey> = near.map(|pair| pair.key).collect();
+        assert_eq!(found, tried, "case {case}");
         tried.len()
     }
 
@@ -224,5 +359,65 @@ mod tests {
             }
         }
         assert!(found > case, "{found} pairs in {case} cases say little");
+    }
+
+    /// Steps a heap of all kinds of shapes, and asks in each the pairs that are not looked at after all: how many there were.
+    fn skipped(random: &mut Random, steps: usize) -> usize {
+        let mut world = World::new(WorldDef::default());
+        let far = [0.0, 30.0, 3e4][random.index(3)];
+        let floor = BodyDef {
+            kind: BodyKind::Static,
+            position: Vec3::new(far, -1.0, 0.0),
+            shapes: vec![ShapeDef::new(Shape::Box { half_extents: Vec3::new(9.0, 1.0, 9.0) })],
+            ..BodyDef::default()
+        };
+        world.add_body(&floor);
+        for _ in 0..30 {
+            let points: Vec<Vec3> = (0..12).map(|_| random.in_cube() * 0.3).collect();
+            let shape = match random.index(6) {
+                0 => Shape::Hull(std::sync::Arc::new(crate::hull::Hull::new(&points).expect("a hull"))),
+                1 => Shape::Cylinder { half_height: 0.2, radius: 0.15 },
+                _ => some_shape(random, BodyKind::Dynamic).shape,
+            };
+            let mut body = BodyDef {
+                position: Vec3::new(far, 2.0, 0.0) + random.in_cube() * 2.0,
+                rotation: random.rotation(),
+                angular_velocity: random.in_cube() * 9.0,
+                shapes: vec![ShapeDef::new(shape)],
+                ..BodyDef::default()
+            };
+            body.shapes[0].body_from_shape = Transform::new(random.in_cube() * 0.2, random.rotation());
+            world.add_body(&body);
+        }
+        let mut count = 0;
+        for _ in 0..steps {
+            if random.unit() < 0.02 {
+                change(&mut world, random, 2.0);
+            }
+            check(&mut world, 0);
+            let World { bodies, broad, contacts, def, .. } = &world;
+            for (place, pair) in broad.near.list.iter().enumerate() {
+                let asked = broad.asked.binary_search_by_key(&place, |asked| asked.pair).is_ok();
+                let known = contacts.iter().any(|contact| contact.key.is_of_pair(pair.key));
+                if pair.meets && !asked && !known {
+                    let (a, b) = (bodies.at(pair.key.a), bodies.at(pair.key.b));
+                    let mut asked = Asked::new(place, pair);
+                    crate::touch::ask(a, b, &mut asked, def.dt());
+                    let found = asked.manifold;
+                    assert_eq!(found.count, 0, "{:?} with {} left: {found:?}", pair.key, pair.left);
+                    count += 1;
+                }
+            }
+            world.step();
+        }
+        count
+    }
+
+    #[test]
+    fn pairs_that_are_not_looked_at_have_no_points() {
+        let mut random = Random::new(12);
+        let worlds = cases(600);
+        let count: usize = (0..worlds).map(|_| skipped(&mut random, 250)).sum();
+        assert!(count > 3_000 * worlds, "{count} in {worlds} worlds say little");
     }
 }

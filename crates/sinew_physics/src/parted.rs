@@ -14,6 +14,8 @@ pub(crate) struct PartedPairs {
     all: Vec<(u32, u32)>,
     /// `all` misses something.
     stale: bool,
+    /// How often `all` was made.
+    version: u64,
     /// The user's, that part more.
     pub functions: PairFunctions,
 }
@@ -59,7 +61,8 @@ impl PartedPairs {
             self.all.extend(jointed.map(|(_, joint)| ordered(joint.a, joint.b)));
             self.all.sort_unstable();
             self.all.dedup();
+            self.version += 1;
         }
-        PairFilter { parted: &self.all, function: self.functions.function() }
+        PairFilter { parted: &self.all, function: self.functions.function(), version: self.version }
     }
 }

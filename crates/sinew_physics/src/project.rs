@@ -133,7 +133,7 @@ impl Seen {
                 start: starts[local],
                 pose: body.pose,
                 velocity: solver.velocities[local],
-                coming: body.force * (view.h / body.mass),
+                coming: body.force * (view.pace.h / body.mass),
                 inverse_mass: 1.0 / body.mass,
                 inverse_inertia: body.inverse_inertia,
                 local: Some(local),
@@ -147,11 +147,11 @@ impl Seen {
         // The world moves kinematic bodies when the step is done.
         let mut start = body.world_from_principal;
         for _ in 0..substep {
-            start = moved(&start, &velocity, view.h);
+            start = moved(&start, &velocity, view.pace.h);
         }
         Self {
             start,
-            pose: moved(&start, &velocity, view.h),
+            pose: moved(&start, &velocity, view.pace.h),
             velocity: join(velocity.linear, velocity.angular),
             coming: Vec3::ZERO,
             inverse_mass: 0.0,
@@ -192,14 +192,20 @@ impl Surroundings {
         self.starts.clear();
         self.starts.extend(solver.moving_bodies().iter().zip(&solver.velocities).map(|(body, v)| {
             let back = Velocity { linear: -linear(v), angular: -angular(v) };
-            moved(&body.pose, &back, view.h)
+            moved(&body.pose, &back, view.pace.h)
         }));
         for taken in groups {
             self.seen.clear();
             let see = |&index: &u32| Seen::new(index, &self.starts, solver, view, substep);
             self.seen.extend(taken.near.bodies.iter().map(see));
             self.place(taken, view);
-            taken.group.substep(view.h, view.def.gravity, &self.anchors, &self.obstacles, &mut self.bodies);
+            taken.group.substep(
+                view.pace.h,
+                view.def.gravity,
+                &self.anchors,
+                &self.obstacles,
+                &mut self.bodies,
+            );
             self.push_bodies(taken, solver);
         }
     }

@@ -4,8 +4,9 @@
 
 use crate::activity::Activity;
 use crate::arena::Arena;
-use crate::body::Body;
+use crate::body::{Body, Velocity};
 use crate::boxes::Aabb;
+use crate::contact::ContactKey;
 use crate::def::BodyKind;
 use crate::shape::{Filter, Sensing, Shape};
 use crate::surface::Surface;
@@ -19,6 +20,8 @@ pub(crate) const MARGIN: f32 = 0.02;
 /// Room that what moves has beyond that, metres and steps at its present speed.
 const ROOM: f32 = 0.04;
 const ROOM_STEPS: f32 = 2.0;
+/// Of bounds that have this many times as much room, some is taken.
+const TOO_MUCH: f32 = 3.0;
 /// Bodies with fewer shapes are put into a tree one by one.
 const FEW: usize = 64;
 
@@ -42,7 +45,93 @@ pub(crate) struct Proxies {
     lone: Vec<Option<Placed>>,
     /// Of each leaf of `moving`: where it may be within the coming step.
     reach: Vec<Aabb>,
+    /// By the first leaf of each body that may move.
+    traces: Vec<Trace>,
+    /// By index of the body.
+    strides: Vec<Stride>,
+    /// Bodies whose strides are not none.
+    strode: Vec<u32>,
+    /// Bodies that could touch something when pairs were looked for last, and when that was.
+    lively: Vec<u32>,
+    lively_before: Vec<u32>,
+    stamp: u64,
+    /// Step that the last `follow` was for, seconds.
+    dt: f32,
+    /// Bodies all of whose shapes are to be looked for anew.
+    soiled: Vec<u32>,
+    /// Leaves of `moving` that have other bounds than when they were last looked for.
+    stray: Vec<u32>,
+    /// All that moves is to be looked for anew.
+    all_loose: bool,
+    /// Leaves that are marked as loose.
+    loose: Vec<Leaf>,
     scratch: Vec<Item>,
+}
+
+/// How a body moves, metres. A bound for each of its points.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Stride {
+    /// Since pairs were last looked for; without end if it was put somewhere.
+    pub moved: f32,
+    /// In the coming step, at its present velocity.
+    pub ahead: f32,
+}
+
+/// Where a body was when its bounds were last worked out.
+#[derive(Clone, Copy, Debug)]
+struct Trace {
+    /// The body's reach: its shapes never change.
+    arm: f32,
+    pose: Transform,
+    velocity: Velocity,
+    /// How far its points moved since pairs were last looked for, metres.
+    way: f32,
+}
+
+impl Trace {
+    /// Of a body that was put where it is.
+    const NONE: Self = Self {
+        arm: f32::NAN,
+        pose: Transform { translation: Vec3::NAN, ..Transform::IDENTITY },
+        velocity: Velocity { linear: Vec3::ZERO, angular: Vec3::ZERO },
+        way: f32::INFINITY,
+    };
+}
+
+/// Share by which motion is taken as more than it is, and the same of the distance from the origin and of a body's size: what
+/// rounding may do to a bound and to the gap that it is taken from.
+const SLACK: f32 = 1e-3;
+const BLUR: f32 = 2e-6;
+
+/// How far any point within `arm` of a body's centre has moved, metres: by the chord of half the turn, twice as long as that
+/// of a quarter.
+fn way(from: &Transform, to: &Transform, arm: f32) -> f32 {
+    let (p, q) = (from.rotation, to.rotation.toward(from.rotation));
+    let turned = Vec3::new(q.x - p.x, q.y - p.y, q.z - p.z).length_squared() + (q.w - p.w) * (q.w - p.w);
+    let shift = (to.translation - from.translation).length();
+    let far = to.translation.abs();
+    let blur = BLUR * (far.x + far.y + far.z + arm);
+    (shift + 2.0 * arm * turned.sqrt()) * (1.0 + SLACK) + blur
+}
+
+/// A leaf of either tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Leaf(u32);
+
+impl Leaf {
+    const FIXED: u32 = 1 << 31;
+
+    fn new(moves: bool, leaf: u32) -> Self {
+        Self(if moves { leaf } else { leaf | Self::FIXED })
+    }
+
+    fn moves(self) -> bool {
+        self.0 & Self::FIXED == 0
+    }
+
+    fn at(self) -> usize {
+        (self.0 & !Self::FIXED) as usize
+    }
 }
 
 /// A shape where it is, and who asks for it.
@@ -59,6 +148,8 @@ pub(crate) struct Placed {
 struct Layer {
     tree: Tree,
     owners: Vec<Owner>,
+    /// Of each leaf, whether its pairs are being looked for anew.
+    is_loose: Vec<bool>,
     /// Numbers of leaves that are not used, by how many there are in a row.
     gaps: BTreeMap<u32, Vec<u32>>,
 }
@@ -69,6 +160,16 @@ struct Home {
     first: u32,
     count: u32,
     moves: bool,
+    /// It is among those to be looked for anew.
+    soiled: bool,
+    /// When it last could touch something.
+    lively: u64,
+}
+
+impl Home {
+    fn leaf(&self, shape: u32) -> Leaf {
+        Leaf::new(self.moves, self.first + shape)
+    }
 }
 
 impl Layer {
@@ -84,6 +185,7 @@ impl Layer {
                 self.owners.reserve_exact(count as usize);
             }
             self.owners.resize(end, Owner { body, shape: 0 });
+            self.is_loose.resize(end, false);
         }
         for shape in 0..count {
             self.owners[(first + shape) as usize] = Owner { body, shape };
@@ -109,12 +211,9 @@ pub(crate) fn thick(bounds: &Aabb) -> Aabb {
     }
 }
 
-/// How far a body may move within `dt` seconds, metres.
-fn motion(body: &Body, dt: f32) -> f32 {
-    match body.kind {
-        BodyKind::Static => 0.0,
-        _ => (body.velocity.linear.length() + body.velocity.angular.length() * body.reach()) * dt,
-    }
+/// How far a body that is not static may move within `dt` seconds, metres; `arm` is its reach.
+fn motion(body: &Body, arm: f32, dt: f32) -> f32 {
+    (body.velocity.linear.length() + body.velocity.angular.length() * arm) * dt
 }
 
 /// Where contacts of a shape are looked for: its bounds, grown by its motion and a margin.
@@ -136,6 +235,7 @@ impl Proxies {
             }
             self.mend(home.moves);
         }
+        self.soil(index);
     }
 
     /// A body has gone.
@@ -150,6 +250,9 @@ impl Proxies {
         }
         layer.gaps.entry(home.count).or_default().push(home.first);
         self.unbounded.retain(|owner| owner.body != index);
+        for shape in 0..home.count {
+            self.loosen(home.leaf(shape));
+        }
     }
 
     /// A body has been put somewhere else.
@@ -159,6 +262,7 @@ impl Proxies {
         for shape in (0..home.count).filter(|&shape| is_bounded(body, shape)) {
             self.cover(home, shape, &self.needed(home, body, shape), ROOM);
         }
+        self.soil(index);
     }
 
     /// A body has other surfaces than before.
@@ -191,91 +295,239 @@ impl Proxies {
                 }
             }
         }
+        self.all_loose = true;
+        self.traces.fill(Trace::NONE);
     }
 
     /// Works out where all that moves may be within a step of `dt` seconds, and lets the tree follow.
     pub fn follow(&mut self, bodies: &Arena<Body>, activity: &Activity, dt: f32) {
         self.mend(false);
         self.mend(true);
+        let same_step = core::mem::replace(&mut self.dt, dt) == dt;
         for index in activity.movers() {
             let body = bodies.at(index);
-            if !body.can_touch() {
+            let Some(home) = self.homes[index as usize].filter(|home| home.count > 0 && body.can_touch())
+            else {
+                continue;
+            };
+            let trace = &mut self.traces[home.first as usize];
+            if same_step && trace.pose == body.world_from_principal && trace.velocity == body.velocity {
                 continue;
             }
-            let Some(home) = self.homes[index as usize] else { continue };
-            let motion = motion(body, dt);
+            // Where it was is not known of what was put somewhere.
+            let arm = if trace.arm >= 0.0 { trace.arm } else { body.reach() };
+            let way = way(&trace.pose, &body.world_from_principal, arm);
+            let way = if way >= 0.0 { trace.way + way } else { f32::INFINITY };
+            *trace = Trace { arm, pose: body.world_from_principal, velocity: body.velocity, way };
+            let motion = motion(body, arm, dt);
+            self.strides[index as usize].ahead = motion;
             for shape in 0..home.count {
                 let reach = grown(body, shape, motion);
                 self.reach[(home.first + shape) as usize] = reach;
-                self.cover(home, shape, &thick(&reach), ROOM + ROOM_STEPS * motion);
+                if self.cover(home, shape, &thick(&reach), ROOM + ROOM_STEPS * motion) {
+                    self.stray.push(home.first + shape);
+                }
             }
         }
     }
 
-    /// Pairs of shapes whose bounds, grown by their motion in the coming step and a margin, overlap, and of which the first
-    /// can start a contact: each once, in no order. [`follow`](Self::follow) comes before.
-    pub fn pairs(&self, bodies: &Arena<Body>, activity: &Activity, mut visit: impl FnMut(Owner, Owner)) {
-        for index in activity.movers() {
-            let Some(home) = self.homes[index as usize].filter(|_| bodies.at(index).can_touch()) else {
-                continue;
-            };
+    /// Takes note of who can touch something in this step, and of how far all have moved. [`follow`](Self::follow) comes
+    /// before. What was `stirred`, comes to be able to touch, or no longer is, is to be looked for anew.
+    pub fn take_stock(&mut self, bodies: &Arena<Body>, activity: &Activity, stirred: &[u32]) {
+        self.stamp += 1;
+        core::mem::swap(&mut self.lively, &mut self.lively_before);
+        self.lively.clear();
+        for index in activity.movers().filter(|&index| bodies.at(index).can_touch()) {
+            self.enliven(index);
+        }
+        for &index in stirred {
+            self.enliven(index);
+            self.soil(index);
+        }
+        for at in 0..self.lively_before.len() {
+            let index = self.lively_before[at];
+            if self.home(index).is_some_and(|home| home.lively != self.stamp) {
+                self.soil(index);
+            }
+        }
+        if self.soiled.len() > self.lively.len() {
+            // Cheaper from the other side.
+            self.all_loose = true;
+        }
+        self.stride(bodies);
+    }
+
+    fn enliven(&mut self, index: u32) {
+        let Some(home) = &mut self.homes[index as usize] else { return };
+        let before = core::mem::replace(&mut home.lively, self.stamp);
+        if before == self.stamp {
+            return;
+        }
+        self.lively.push(index);
+        if before + 1 != self.stamp {
+            self.soil(index);
+        }
+    }
+
+    fn stride(&mut self, bodies: &Arena<Body>) {
+        for index in self.strode.drain(..) {
+            self.strides[index as usize].moved = 0.0;
+        }
+        for at in 0..self.soiled.len() {
+            let index = self.soiled[at];
+            let (Some(home), Some(body)) = (self.home(index), bodies.try_at(index)) else { continue };
+            let stride = &mut self.strides[index as usize];
+            stride.moved = f32::INFINITY;
+            self.strode.push(index);
+            if !home.moves {
+                // What is static may have been given one, which counts when points are looked for.
+                stride.ahead = body.velocity.linear.length() * self.dt;
+            } else if home.count > 0 && !body.can_touch() {
+                // It rests, and nobody will work out its bounds.
+                stride.ahead = 0.0;
+                self.traces[home.first as usize] = Trace::NONE;
+                for shape in 0..home.count {
+                    self.reach[(home.first + shape) as usize] = grown(body, shape, 0.0);
+                }
+            }
+        }
+        for at in 0..self.lively.len() {
+            let index = self.lively[at];
+            let Some(home) = self.home(index).filter(|home| home.moves && home.count > 0) else { continue };
+            let way = core::mem::replace(&mut self.traces[home.first as usize].way, 0.0);
+            let stride = &mut self.strides[index as usize];
+            stride.moved = max(stride.moved, way);
+            self.strode.push(index);
+        }
+    }
+
+    /// How a body moves.
+    pub fn stride_of(&self, body: u32) -> Stride {
+        self.strides[body as usize]
+    }
+
+    /// Whether there is anything to be looked for anew.
+    pub fn has_loose(&self) -> bool {
+        self.all_loose || !(self.soiled.is_empty() && self.stray.is_empty() && self.loose.is_empty())
+    }
+
+    /// Whether that is no more than shapes that left their bounds.
+    pub fn only_strayed(&self) -> bool {
+        !self.all_loose && self.soiled.is_empty() && self.loose.len() == self.stray.len()
+    }
+
+    /// Whether the pairs of a shape are being looked for anew.
+    pub fn is_loose(&self, leaf: Leaf) -> bool {
+        self.all_loose || self.layer(leaf.moves()).is_loose[leaf.at()]
+    }
+
+    /// Everything has been looked for.
+    pub fn fasten(&mut self) {
+        self.all_loose = false;
+        for index in self.soiled.drain(..) {
+            if let Some(home) = &mut self.homes[index as usize] {
+                home.soiled = false;
+            }
+        }
+        self.stray.clear();
+        for leaf in self.loose.drain(..) {
+            let layer = if leaf.moves() { &mut self.moving } else { &mut self.fixed };
+            layer.is_loose[leaf.at()] = false;
+        }
+    }
+
+    /// Pairs of a loose shape and another whose bounds in the trees overlap its own, of which one can touch something: each at
+    /// least once, in no order. [`take_stock`](Self::take_stock) comes before.
+    pub fn search(&mut self, bodies: &Arena<Body>, mut visit: impl FnMut((Owner, Leaf), (Owner, Leaf))) {
+        if self.all_loose {
+            for &index in &self.lively {
+                let Some(home) = self.home(index) else { continue };
+                for shape in 0..home.count {
+                    self.neighbors(bodies, Owner { body: index, shape }, home.leaf(shape), &mut visit);
+                }
+            }
+            return;
+        }
+        for at in 0..self.soiled.len() {
+            let Some(home) = self.home(self.soiled[at]) else { continue };
             for shape in 0..home.count {
-                let reach = self.reach[(home.first + shape) as usize];
-                let owner = Owner { body: index, shape };
-                self.meeting(bodies, index, &reach, |other| visit(owner, other));
+                self.loosen(home.leaf(shape));
+            }
+        }
+        self.stray.retain(|&leaf| !self.moving.is_loose[leaf as usize]);
+        for at in 0..self.stray.len() {
+            self.loosen(Leaf::new(true, self.stray[at]));
+        }
+        for &leaf in &self.loose {
+            let owner = self.layer(leaf.moves()).owners[leaf.at()];
+            let is_there = self.home(owner.body).is_some_and(|home| home.leaf(owner.shape) == leaf);
+            if is_there && bodies.try_at(owner.body).is_some() {
+                self.neighbors(bodies, owner, leaf, &mut visit);
             }
         }
     }
 
-    /// Likewise, pairs of fixed bodies that were changed with what cannot start a contact itself.
-    pub fn pairs_of_changed(
+    /// What the bounds of a shape meet.
+    fn neighbors(
         &self,
         bodies: &Arena<Body>,
-        changed: &[u32],
-        mut visit: impl FnMut(Owner, Owner),
+        owner: Owner,
+        leaf: Leaf,
+        visit: &mut impl FnMut((Owner, Leaf), (Owner, Leaf)),
     ) {
-        for &index in changed {
-            let Some(home) = self.home(index).filter(|home| !home.moves) else { continue };
-            for shape in 0..home.count {
-                let reach = grown(bodies.at(index), shape, 0.0);
-                let _ = self.moving.tree.overlapping(&reach, |leaf| {
-                    let other = self.moving.owners[leaf as usize];
-                    let body = bodies.at(other.body);
-                    if !body.can_touch() && overlap(&reach, &grown(body, other.shape, 0.0)) {
-                        visit(Owner { body: index, shape }, other);
-                    }
-                    ControlFlow::<()>::Continue(())
-                });
+        let body = bodies.at(owner.body);
+        let bounds = self.wide_bounds(body, owner, leaf);
+        let mut meet = |other: Owner, its: Leaf| {
+            if other.body != owner.body && (body.can_touch() || bodies.at(other.body).can_touch()) {
+                visit((owner, leaf), (other, its));
+            }
+            ControlFlow::<()>::Continue(())
+        };
+        let _ = self
+            .moving
+            .tree
+            .overlapping(&bounds, |leaf| meet(self.moving.owners[leaf as usize], Leaf::new(true, leaf)));
+        if !leaf.moves() {
+            return;
+        }
+        // The bounds of what is fixed lack its margin.
+        let _ = self.fixed.tree.overlapping(&bounds.expand(1.01 * MARGIN), |leaf| {
+            meet(self.fixed.owners[leaf as usize], Leaf::new(false, leaf))
+        });
+        for &other in &self.unbounded {
+            if let Some(home) = self.home(other.body) {
+                let _ = meet(other, home.leaf(other.shape));
             }
         }
     }
 
-    /// What the bounds of a shape of a body meet, but for what finds this one.
-    fn meeting(&self, bodies: &Arena<Body>, index: u32, reach: &Aabb, mut visit: impl FnMut(Owner)) {
-        let mut visit_if = |other: Owner, its: &Aabb| {
-            if overlap(reach, its) {
-                visit(other);
-            }
-        };
-        for &other in &self.unbounded {
-            visit_if(other, &grown(bodies.at(other.body), other.shape, 0.0));
+    /// What holds a shape and all that may touch it, as long as its tree does not change.
+    fn wide_bounds(&self, body: &Body, owner: Owner, leaf: Leaf) -> Aabb {
+        match (leaf.moves(), is_bounded(body, owner.shape)) {
+            (true, _) => self.moving.tree.bounds(leaf.at() as u32),
+            (false, true) => self.fixed.tree.bounds(leaf.at() as u32).expand(1.01 * MARGIN),
+            (false, false) => Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY },
         }
-        // The bounds of what is fixed lack its margin.
-        let _ = self.fixed.tree.overlapping(&reach.expand(1.01 * MARGIN), |leaf| {
-            let other = self.fixed.owners[leaf as usize];
-            visit_if(other, &grown(bodies.at(other.body), other.shape, 0.0));
-            ControlFlow::<()>::Continue(())
-        });
-        let _ = self.moving.tree.overlapping(reach, |leaf| {
-            let other = self.moving.owners[leaf as usize];
-            let body = bodies.at(other.body);
-            if !body.can_touch() {
-                visit_if(other, &grown(body, other.shape, 0.0));
-            } else if index < other.body {
-                visit_if(other, &self.reach[leaf as usize]);
-            }
-            ControlFlow::<()>::Continue(())
-        });
+    }
+
+    /// Whether the bounds of two shapes in their trees do not overlap. Both are there.
+    pub fn are_parted(&self, leaves: [Leaf; 2]) -> bool {
+        let bounds = |leaf: Leaf| {
+            let tree = &self.layer(leaf.moves()).tree;
+            let margin = if leaf.moves() { 0.0 } else { 1.01 * MARGIN };
+            tree.contains(leaf.at() as u32).then(|| tree.bounds(leaf.at() as u32).expand(margin))
+        };
+        let [p, q] = leaves.map(bounds);
+        p.is_some_and(|p| q.is_some_and(|q| !overlap(&p, &q)))
+    }
+
+    /// Whether two shapes are near each other: their bounds, grown by the motion of the coming step and a margin, overlap. That
+    /// does not depend on what the trees hold.
+    pub fn are_near(&self, bodies: &Arena<Body>, key: ContactKey, leaves: [Leaf; 2]) -> bool {
+        let reach = |leaf: Leaf, body: u32, shape: u32| {
+            if leaf.moves() { self.reach[leaf.at()] } else { grown(bodies.at(body), shape, 0.0) }
+        };
+        overlap(&reach(leaves[0], key.a, key.shape_a), &reach(leaves[1], key.b, key.shape_b))
     }
 
     /// Every shape whose bounds overlap these, touching ones and half-spaces too, and perhaps others near by; in no order,
@@ -356,16 +608,21 @@ impl Proxies {
     fn move_in(&mut self, index: u32, body: &Body) -> Home {
         let moves = body.kind != BodyKind::Static;
         let count = body.shapes.len() as u32;
-        let home = Home { first: self.layer_mut(moves).claim(index, count), count, moves };
+        let first = self.layer_mut(moves).claim(index, count);
+        let home = Home { first, count, moves, soiled: false, lively: 0 };
         if self.homes.len() <= index as usize {
             self.homes.resize(index as usize + 1, None);
             self.lone.resize(index as usize + 1, None);
+            self.strides.resize(index as usize + 1, Stride::default());
         }
         self.homes[index as usize] = Some(home);
+        self.strides[index as usize] = Stride::default();
         self.lone[index as usize] = lone(body);
         if moves {
             let count = self.moving.owners.len();
             self.reach.resize(count, Aabb::default());
+            self.traces.resize(count, Trace::NONE);
+            self.traces[first as usize..(first + home.count) as usize].fill(Trace::NONE);
             self.moving.tree.reserve(count);
             self.scratch.reserve(count);
         }
@@ -410,11 +667,36 @@ impl Proxies {
     }
 
     /// Sees to it that the bounds of a shape in its tree hold these, with room to spare if they have to be changed.
-    fn cover(&mut self, home: Home, shape: u32, needed: &Aabb, room: f32) {
+    /// Tells whether they had to be.
+    fn cover(&mut self, home: Home, shape: u32, needed: &Aabb, room: f32) -> bool {
         let leaf = home.first + shape;
         let tree = &mut self.layer_mut(home.moves).tree;
-        if !tree.bounds(leaf).contains(needed) {
-            tree.update(leaf, &needed.expand(if home.moves { room } else { 0.0 }));
+        let (own, room) = (tree.bounds(leaf), if home.moves { room } else { 0.0 });
+        // What comes to rest needs less room than what fell.
+        let fits = own.contains(needed) && needed.expand(TOO_MUCH * room).contains(&own);
+        if !fits {
+            tree.update(leaf, &needed.expand(room));
+        }
+        !fits
+    }
+
+    /// Has all shapes of a body looked for anew; how far it moved is not known.
+    fn soil(&mut self, index: u32) {
+        let Some(home) = &mut self.homes[index as usize] else { return };
+        if core::mem::replace(&mut home.soiled, true) {
+            return;
+        }
+        if !home.moves && home.count as usize > FEW {
+            // Cheaper from the other side.
+            self.all_loose = true;
+        }
+        self.soiled.push(index);
+    }
+
+    fn loosen(&mut self, leaf: Leaf) {
+        let layer = if leaf.moves() { &mut self.moving } else { &mut self.fixed };
+        if !core::mem::replace(&mut layer.is_loose[leaf.at()], true) {
+            self.loose.push(leaf);
         }
     }
 

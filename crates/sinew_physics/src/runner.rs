@@ -1,5 +1,8 @@
 //! Threads come from the host: the step only says how many independent tasks there are.
 
+use crate::pool::Pool;
+use std::sync::Arc;
+
 /// Runs independent tasks, on as many threads as it likes.
 ///
 /// How work is split never depends on the number of threads, so every runner gives the same bits.
@@ -21,31 +24,36 @@ impl TaskRunner for Serial {
     }
 }
 
-/// A fixed number of threads, started for each batch of work: simple, for hosts without a pool of their own.
-#[derive(Clone, Copy, Debug)]
+/// A fixed number of threads, for hosts without a pool of their own: started once, they wait from one batch to the next,
+/// and end with the last clone.
+///
+/// One batch at a time: one that begins while another runs, within a task or on another thread of the host's, runs on the
+/// thread that asks for it. A task that panics ends its batch, and the panic goes on in who asked for it.
+#[derive(Clone)]
 pub struct Threads {
-    count: usize,
+    pool: Arc<Pool>,
 }
 
 impl Threads {
-    /// `count` threads, the caller's included; 0 counts as 1.
+    /// `count` threads, the caller's included; 0 counts as 1. Where the system gives fewer (wasm: none), those are all.
     pub fn new(count: usize) -> Self {
-        Self { count: count.max(1) }
+        Self { pool: Arc::new(Pool::new(count.saturating_sub(1))) }
+    }
+
+    /// How many there are, the caller's included.
+    pub fn count(&self) -> usize {
+        self.pool.workers() + 1
+    }
+}
+
+impl core::fmt::Debug for Threads {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Threads").field("count", &self.count()).finish()
     }
 }
 
 impl TaskRunner for Threads {
     fn run(&self, count: usize, task: &(dyn Fn() + Sync)) {
-        let threads = usize::min(self.count, count);
-        if threads <= 1 {
-            return Serial.run(count, task);
-        }
-        let share = |thread: usize| (count * (thread + 1) / threads) - (count * thread / threads);
-        std::thread::scope(|scope| {
-            for thread in 1..threads {
-                scope.spawn(move || Serial.run(share(thread), task));
-            }
-            Serial.run(share(0), task);
-        });
+        self.pool.run(count, task);
     }
 }

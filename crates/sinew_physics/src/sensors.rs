@@ -4,7 +4,7 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::contact::{Contact, Effect, pairs_of};
 use crate::events::Events;
-use crate::meetings::{Meetings, Told, touch_of};
+use crate::meetings::{Meetings, Told};
 
 /// Compares the sensor pairs with those of the step before, and tells of hits faster than `hit_speed` (m/s). All that the
 /// user changed since has been looked at now.
@@ -20,10 +20,14 @@ pub(crate) fn sensors(
     for pair in pairs_of(contacts) {
         let was = pair.iter().any(|contact| contact.sensed);
         let is = pair[0].effect == Effect::Sense && pair.iter().any(Contact::overlaps);
-        sensed.note(touch_of(bodies, &pair[0]), was, is);
+        if !was && !is {
+            continue;
+        }
+        sensed.note(pair[0].key, was, is);
         pair.iter_mut().for_each(|contact| contact.sensed = is);
     }
     sensed.tell(
+        bodies,
         Told { bodies: &mut events.sensor_begin, shapes: &mut events.sensor_shapes_begin },
         Told { bodies: &mut events.sensor_end, shapes: &mut events.sensor_shapes_end },
     );

@@ -11,6 +11,7 @@ use crate::events::Events;
 use crate::field::FieldDef;
 use crate::force::BodyForces;
 use crate::joint::Joint;
+use crate::kept::Kept;
 use crate::library::{DataKind, LoadError, ShapeLibrary};
 use crate::material::{Combine, CombineRules, Material};
 use crate::meetings::Meetings;
@@ -22,7 +23,7 @@ use crate::world::World;
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
 /// First bytes of a snapshot; the last is its version.
-const MAGIC: &[u8; 8] = b"sinew-w\x06";
+const MAGIC: &[u8; 8] = b"sinew-w\x07";
 /// A thousand steps a second for 280,000 years.
 const MOST_STEPS: u64 = 1 << 53;
 
@@ -36,7 +37,9 @@ impl World {
         w.u32(self.sleepers);
         self.bodies.save(w, save_body);
         self.joints.save(w, |w, joint| joint.save(w));
-        let contacts = self.contacts_in_order();
+        let mut contacts = self.contacts_in_order();
+        // Which pairs have none depends on how they came to where they are.
+        contacts.retain(|contact| !contact.is_idle());
         w.count(contacts.len());
         contacts.into_iter().for_each(|contact| save_contact(w, contact));
         self.groups.save(w, |w, group| group.save(w));
@@ -552,6 +555,7 @@ fn save_contact(w: &mut Writer, contact: &Contact) {
     w.f32(contact.memory.twist);
     w.vec3(contact.memory.rolling);
     w.vec3(contact.memory.total_friction);
+    contact.kept.save(w);
 }
 
 fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, ReadError> {
@@ -584,7 +588,10 @@ fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, Rea
     memory.twist = r.f32()?;
     memory.rolling = r.vec3()?;
     memory.total_friction = r.vec3()?;
-    Ok(Contact { manifold, memory, effect, touching, sensed, passes, ..Contact::new(key) })
+    let kept = Kept::load(r)?;
+    let is_surface = |body: u32, shape: u32| bodies.at(body).shapes[shape as usize].shape.surface().is_some();
+    let has_surface = is_surface(a, key.shape_a) || is_surface(b, key.shape_b);
+    Ok(Contact { manifold, memory, effect, touching, sensed, passes, has_surface, kept, ..Contact::new(key) })
 }
 
 fn load_group(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<ParticleGroup, ReadError> {

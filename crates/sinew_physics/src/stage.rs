@@ -1,4 +1,5 @@
-//! The stages of a step, by the one name that function, module, profile zone and `docs/step.md` share.
+//! The stages of a step, by the one name that function, module, profile zone and `docs/step.md` share, and what can be
+//! counted in them.
 
 /// A stage of the step, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -42,13 +43,57 @@ pub enum Stage {
     Sensors,
 }
 
-/// Receives stage times from the step: the library reads no clock itself. Stages inside an island are reported by
-/// the thread that runs it.
+/// What a step counts for a [`Profiler`] that asks for it. From [`Bodies`](Self::Bodies) on each is told once for every island
+/// by the thread that solves it, `Bodies` first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Counter {
+    /// Shapes of all bodies, awake or not.
+    Shapes,
+    /// Pairs of shapes near each other of which one is awake.
+    Pairs,
+    /// Of these, pairs with points.
+    PairsWithPoints,
+    /// Moving bodies of an island: as many calls as there are islands.
+    Bodies,
+    /// Moving bodies, once for each substep that their island took.
+    BodySubsteps,
+    /// Joints of an island.
+    Joints,
+    /// Contacts that an island solves.
+    Manifolds,
+    /// Points of these contacts.
+    Points,
+    /// Rows of joint limits in the island's last substep.
+    LimitRows,
+    /// Manifolds and limit rows of a pass, once for each substep: what one sweep goes through.
+    PassRows,
+    /// Rows that all sweeps of `solve` went through: over `PassRows`, it is the sweeps of a pass.
+    SolveRows,
+    /// Rows that all sweeps of `relax` went through.
+    RelaxRows,
+    /// Rows that sweeps visited, of all passes: those that lay still were gone through only.
+    Visits,
+    /// Bytes of the solver's arrays for the island, as they are filled: more than the cache holds comes from memory.
+    ResidentBytes,
+    /// Bytes of these that the step went over: all of them in `prepare`, twice in each substep (poses change) and in `store`,
+    /// and for each visit a row and the velocities of its two bodies. What sweeps push onto other bodies of a tree is not in it.
+    TouchedBytes,
+}
+
+/// Receives stage times and counts from the step: the library reads no clock itself. Stages inside an island are reported
+/// by the thread that runs it.
 pub trait Profiler: Sync {
     /// A stage begins.
     fn begin(&self, stage: Stage);
     /// The stage that began last on this thread ends.
     fn end(&self, stage: Stage);
+    /// Whether it wants counts; else none are made.
+    fn is_counting(&self) -> bool {
+        false
+    }
+    /// There are `by` more of what is counted in this step; only told to one that is counting.
+    fn count(&self, _counter: Counter, _by: u64) {}
 }
 
 /// Measures nothing.

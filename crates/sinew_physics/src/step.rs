@@ -3,7 +3,7 @@
 use crate::field::Fields;
 use crate::object::lockstep;
 use crate::runner::TaskRunner;
-use crate::solver::View;
+use crate::solver::{Pace, View};
 use crate::stage::{Profiler, Stage, zone};
 use crate::tasks::{Phase, Task, Workspace};
 use crate::world::World;
@@ -32,15 +32,15 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         activity.wake_struck(bodies, groups, &broad.proxies, def);
         broad.update(bodies, parted.filter(joints), meetings, contacts, activity, context.dt);
     });
-    stage(Stage::Collide, &mut || touch::collide(bodies, contacts, parts, context));
+    stage(Stage::Collide, &mut || touch::collide(bodies, broad, contacts, parts, context));
     stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, meetings, events));
     let (proxies, modifiers) = (&broad.proxies, &meetings.modifiers);
-    let view = View { bodies, activity, proxies, joints, contacts, modifiers, def, fields, h: context.h };
+    let pace = Pace::new(context, objects);
+    let view = View { bodies, activity, proxies, joints, contacts, modifiers, def, fields, pace };
     stage(Stage::Islands, &mut || islands.find(&view, groups));
-    stage(Stage::Color, &mut || islands.color(bodies, contacts));
+    stage(Stage::Color, &mut || islands.color());
     if objects.is_empty() {
-        let all = || Phase::of_step(context.substeps);
-        islands.run(context.runner, |task| all().for_each(|phase| solve(phase, task, &view, context)));
+        islands.run(context.runner, |task| task.solve(&view, context));
     } else {
         lockstep(objects, islands, &view, context);
         objects.rouse(bodies, activity);
@@ -67,14 +67,14 @@ pub(crate) fn solve(phase: Phase, task: &mut Task<'_>, view: &View<'_>, context:
             stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity(view, groups));
             stage(Stage::WarmStart, &mut || solver.warm_start());
             stage(Stage::Solve, &mut || solver.solve());
-            stage(Stage::IntegratePosition, &mut || solver.integrate_position());
+            stage(Stage::IntegratePosition, &mut || solver.integrate_position(view));
             stage(Stage::Project, &mut || surroundings.project(groups, solver, view, substep));
         }
         Phase::Relax(_) => {
-            stage(Stage::Relax, &mut || solver.relax());
+            stage(Stage::Relax, &mut || solver.relax(view));
             stage(Stage::Restitution, &mut || solver.restitution());
             solver.drop_fields(view);
         }
-        Phase::Store => stage(Stage::Store, &mut || solver.store(solution)),
+        Phase::Store => stage(Stage::Store, &mut || solver.store(solution, context.profiler)),
     }
 }

@@ -3,7 +3,8 @@
 use crate::islands::Island;
 use crate::project::{Surroundings, TakenGroup};
 use crate::runner::TaskRunner;
-use crate::solver::{IslandSolution, IslandSolver, Solution, split_off};
+use crate::solver::{IslandSolution, IslandSolver, Solution, View, split_off};
+use crate::step::{StepContext, solve};
 use std::sync::{Mutex, PoisonError};
 
 /// Memory in which islands are solved, one after the other: it comes to be as large as the largest needs it, and stays warm
@@ -29,8 +30,14 @@ pub(crate) enum Phase {
 impl Phase {
     /// Those of a step, in order.
     pub fn of_step(substeps: u32) -> impl Iterator<Item = Self> {
-        let of_substeps = (0..substeps).flat_map(|substep| [Self::Move(substep), Self::Relax(substep)]);
-        core::iter::once(Self::Prepare).chain(of_substeps).chain(core::iter::once(Self::Store))
+        core::iter::once(Self::Prepare)
+            .chain(Self::of_substeps(substeps))
+            .chain(core::iter::once(Self::Store))
+    }
+
+    /// Those of an island that takes so many substeps, in order, after [`Prepare`](Self::Prepare) and before [`Store`](Self::Store).
+    pub fn of_substeps(substeps: u32) -> impl Iterator<Item = Self> {
+        (0..substeps).flat_map(|substep| [Self::Move(substep), Self::Relax(substep)])
     }
 }
 
@@ -66,6 +73,16 @@ pub(crate) struct Task<'a> {
     pub groups: &'a mut [TakenGroup],
     pub solution: IslandSolution<'a>,
     pub workspace: Workspace,
+}
+
+impl Task<'_> {
+    /// All of the island's step, in the substeps that it takes.
+    pub fn solve(&mut self, view: &View<'_>, context: &StepContext<'_>) {
+        solve(Phase::Prepare, self, view, context);
+        let substeps = self.workspace.solver.substeps();
+        Phase::of_substeps(substeps).for_each(|phase| solve(phase, self, view, context));
+        solve(Phase::Store, self, view, context);
+    }
 }
 
 /// Islands that are still to be solved, with the room for what will come of them.

@@ -4,7 +4,7 @@ use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::collide::parts::Parts;
-use crate::collide::{Manifold, ManifoldPoint, Motion, collide_again};
+use crate::collide::{Manifold, ManifoldPoint, Motion, Parting, collide_again};
 use crate::contact::{Contact, ContactKey, ContactMemory, Effect, pairs_of, slop};
 use crate::contact_rule::ContactRule;
 use crate::def::BodyKind;
@@ -12,59 +12,111 @@ use crate::events::Events;
 use crate::field::Fields;
 use crate::id::BodyId;
 use crate::joint::Joint;
-use crate::meetings::{Meetings, Told, touch_of};
+use crate::kept::Kept;
+use crate::meetings::{Meetings, Told};
+use crate::pairs::{Asked, BroadPhase};
 use crate::shape::Sensing;
 use crate::slices::for_each_mut;
 use crate::step::StepContext;
+use crate::surface::Surface;
 use sinew_math::{max, min};
 
 /// Gap within which two shapes that touched go on touching, as a share of their slop.
 const LINGER: f32 = 0.1;
+/// Points are looked for so many slops away, however slow.
+pub(crate) const SPECULATIVE_SLOPS: f32 = 4.0;
 
 /// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
 pub(crate) fn collide(
     bodies: &Arena<Body>,
+    broad: &mut BroadPhase,
     contacts: &mut Vec<Contact>,
     parts: &mut Parts,
     context: &StepContext<'_>,
 ) {
+    let BroadPhase { proxies, asked, .. } = broad;
+    let ahead = |key: ContactKey| proxies.stride_of(key.a).ahead + proxies.stride_of(key.b).ahead;
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
+        contact.approach = 0.0;
         if !a.can_touch() && !b.can_touch() {
             return;
         }
         contact.pushed = contact.has_pushed();
-        let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
-        let (shape_a, shape_b) = (&a.shapes[sa].shape, &b.shapes[sb].shape);
-        if shape_a.surface().is_some() || shape_b.surface().is_some() {
+        if contact.has_surface {
             return;
         }
-        let margin = margin(a, b, contact.key, context.dt);
-        let mut manifold = Manifold::default();
-        let (from_a, from_b) = (a.world_from_shape(sa), b.world_from_shape(sb));
-        collide_again((shape_a, &from_a), (shape_b, &from_b), margin, &mut contact.apart, &mut manifold);
-        contact.memory = contact.memory.matched(&contact.manifold, &manifold);
-        contact.manifold = manifold;
+        renew(contact, a, b, ahead(contact.key), context.dt);
+        weigh(contact, a, b);
     });
+    for_each_mut(context.runner, asked, |asked| {
+        ask(bodies.at(asked.key.a), bodies.at(asked.key.b), asked, context.dt);
+    });
+    broad.answer(contacts, |contact| weigh(contact, bodies.at(contact.key.a), bodies.at(contact.key.b)));
+    if !contacts.iter().any(|contact| contact.has_surface) {
+        return;
+    }
     parts.update(bodies, contacts, context, |contact| surface_motion(bodies, contact, context.dt));
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
-        contact.approach = 0.0;
-        if a.can_touch() || b.can_touch() {
-            contact.approach = approach_of(a, b, &contact.manifold);
-            rule(contact, a, b);
+        if contact.has_surface && (a.can_touch() || b.can_touch()) {
+            weigh(contact, a, b);
         }
     });
 }
 
-/// How far apart points of two shapes are looked for, metres.
-fn margin(a: &Body, b: &Body, key: ContactKey, dt: f32) -> f32 {
+/// Brings the manifold of two convex shapes to where they are. They move by less than `ahead` (m) within the step.
+fn renew(contact: &mut Contact, a: &Body, b: &Body, ahead: f32, dt: f32) {
+    let is_slow = ahead * (1.0 + 1e-4) < contact.kept.least_margin();
+    if is_slow && contact.kept.renew([a, b], contact.kept.least_margin(), &mut contact.manifold) {
+        return;
+    }
+    let (margin, slop) = margin(a, b, contact.key, dt);
+    if !is_slow && contact.kept.renew([a, b], margin, &mut contact.manifold) {
+        return;
+    }
+    let (mut manifold, mut parting) = (Manifold::default(), contact.parting());
+    meet(a, b, contact.key, margin, &mut parting, &mut manifold);
+    contact.memory = contact.memory.matched(&contact.manifold, &manifold);
+    contact.manifold = manifold;
+    contact.kept = Kept::new([a, b], contact.key, (margin, slop), &manifold);
+    (contact.apart, contact.gap) = (parting.axis, parting.gap);
+}
+
+/// The manifold of two convex shapes.
+fn meet(a: &Body, b: &Body, key: ContactKey, margin: f32, parting: &mut Parting, manifold: &mut Manifold) {
+    let (sa, sb) = (key.shape_a as usize, key.shape_b as usize);
+    let (shape_a, shape_b) = (&a.shapes[sa].shape, &b.shapes[sb].shape);
+    let (from_a, from_b) = (a.world_from_shape(sa), b.world_from_shape(sb));
+    collide_again((shape_a, &from_a), (shape_b, &from_b), margin, parting, manifold);
+}
+
+/// A contact of a pair that had none, if it has points now.
+pub(crate) fn ask(a: &Body, b: &Body, asked: &mut Asked, dt: f32) {
+    let (margin, slop) = margin(a, b, asked.key, dt);
+    meet(a, b, asked.key, margin, &mut asked.parting, &mut asked.manifold);
+    asked.kept = Kept::new([a, b], asked.key, (margin, slop), &asked.manifold);
+}
+
+/// How fast a contact comes in, and what it does.
+fn weigh(contact: &mut Contact, a: &Body, b: &Body) {
+    contact.approach = approach_of(a, b, &contact.manifold);
+    if contact.is_plain && !a.stirred && !b.stirred {
+        (contact.effect, contact.one_way) = (Effect::Push, false);
+    } else {
+        rule(contact, a, b);
+    }
+}
+
+/// How far apart points of two shapes are looked for, and their slop, metres.
+fn margin(a: &Body, b: &Body, key: ContactKey, dt: f32) -> (f32, f32) {
     // Beside their approach: two that move together may not do so any more once one of them is hit.
     let (va, vb) = (a.velocity.linear, b.velocity.linear);
     let approach = max((va - vb).length(), max(va.length(), vb.length()))
         + a.velocity.angular.length() * a.reach()
         + b.velocity.angular.length() * b.reach();
-    max(4.0 * slop(smallest_extent(a, b, key)), approach * dt)
+    let slop = slop(smallest_extent(a, b, key));
+    (max(SPECULATIVE_SLOPS * slop, approach * dt), slop)
 }
 
 /// Of the two shapes, metres.
@@ -80,6 +132,9 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Mo
     if !a.can_touch() && !b.can_touch() {
         return None;
     }
+    if !contact.has_surface {
+        return None;
+    }
     let is_surface = |body: &Body, shape: u32| body.shapes[shape as usize].shape.surface().is_some();
     let center = |body: &Body, shape: u32| body.world_from_shape(shape as usize).translation;
     let (mover, ground, at) = match (is_surface(a, key.shape_a), is_surface(b, key.shape_b)) {
@@ -88,7 +143,7 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Mo
         _ => return None,
     };
     let speed = |body: &Body| body.velocity.linear + body.velocity.angular.cross(at - body.center());
-    Some(Motion { velocity: speed(mover) - speed(ground), dt, margin: margin(a, b, key, dt) })
+    Some(Motion { velocity: speed(mover) - speed(ground), dt, margin: margin(a, b, key, dt).0 })
 }
 
 /// How fast the points come in, m/s; the fastest counts.
@@ -100,11 +155,18 @@ fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
     })
 }
 
+/// Whether a surface pushes, wherever it is met.
+fn is_plain(surface: &Surface) -> bool {
+    let pushes = matches!(surface.rule, ContactRule::Push | ContactRule::Modified { .. });
+    pushes && surface.sensing == Sensing::Solid
+}
+
 /// What the contact does, as far as its shapes say.
 fn rule(contact: &mut Contact, a: &Body, b: &Body) {
     let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
     contact.effect = Effect::Push;
     contact.one_way = false;
+    contact.is_plain = [a.surface(sa), b.surface(sb)].into_iter().all(is_plain);
     let normal = contact.manifold.normal;
     for (body, shape, away) in [(a, sa, normal), (b, sb, -normal)] {
         match body.surface(shape).rule {
@@ -141,7 +203,7 @@ pub(crate) fn touch(
         agree(pair);
         let was = pair[0].touching;
         let is = pair[0].effect != Effect::Sense && touches(bodies, pair);
-        touching.note(touch_of(bodies, &pair[0]), was, is);
+        touching.note(pair[0].key, was, is);
         pair.iter_mut().for_each(|contact| contact.touching = is);
         if pair.iter().any(Contact::pushes) {
             wake_touched(bodies, activity, pair);
@@ -150,6 +212,7 @@ pub(crate) fn touch(
         }
     }
     touching.tell(
+        bodies,
         Told { bodies: &mut events.begin, shapes: &mut events.shapes_begin },
         Told { bodies: &mut events.end, shapes: &mut events.shapes_end },
     );
@@ -163,6 +226,13 @@ pub(crate) fn touch(
 
 fn wake_touched(bodies: &mut Arena<Body>, activity: &mut Activity, pair: &[Contact]) {
     let key = pair[0].key;
+    let is_settled = |index: u32| {
+        let body = bodies.at(index);
+        body.kind != BodyKind::Kinematic && body.is_awake()
+    };
+    if is_settled(key.a) && is_settled(key.b) {
+        return;
+    }
     for (mover, touched) in [(key.a, key.b), (key.b, key.a)] {
         let body = bodies.at(mover);
         match body.kind {
@@ -204,10 +274,11 @@ fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Act
 /// there is a gap that is none by rounding.
 fn touches(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
     let Contact { key, touching, .. } = pair[0];
-    let slop = slop(smallest_extent(bodies.at(key.a), bodies.at(key.b), key));
-    let most = if touching { LINGER * slop } else { 0.0 };
-    let pushed = pair.iter().any(|contact| contact.pushed);
-    points_of(pair).any(|point| pushed || point.separation <= most)
+    let nearest = points_of(pair).fold(f32::INFINITY, |least, point| min(point.separation, least));
+    if nearest <= 0.0 || nearest < f32::INFINITY && pair.iter().any(|contact| contact.pushed) {
+        return true;
+    }
+    touching && nearest <= LINGER * slop(smallest_extent(bodies.at(key.a), bodies.at(key.b), key))
 }
 
 fn points_of(pair: &[Contact]) -> impl Iterator<Item = &ManifoldPoint> {

@@ -193,6 +193,7 @@ impl World {
         let h = dt / substeps as f32;
         let context = StepContext { dt, h, substeps, time: self.time(), runner, profiler };
         step(self, &context);
+        self.tell_counts(profiler);
         self.work = self.islands.work();
         self.steps += 1;
     }

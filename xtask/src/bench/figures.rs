@@ -48,6 +48,12 @@ pub const LIMITS: Figure = Figure {
 /// Deepest overlap of two bodies after any step that was looked at.
 pub const DEPTH: Figure =
     Figure { heading: "depth", unit: Unit::Length, of: |e| number(e, "penetration_run_max_m") };
+/// The same after the last step.
+pub const DEPTH_END: Figure =
+    Figure { heading: "depth at the end", unit: Unit::Length, of: |e| number(e, "penetration_end_max_m") };
+/// Likewise, of all but 1 % of the pairs.
+pub const DEPTH_P99: Figure =
+    Figure { heading: "its p99", unit: Unit::Length, of: |e| number(e, "penetration_end_p99_m") };
 /// How far from its place a body is that should stay.
 pub const SHIFT: Figure =
     Figure { heading: "shift", unit: Unit::Length, of: |e| number(e, "displacement_max_m") };
@@ -73,8 +79,8 @@ pub const FIGURES: &[Figure] = &[
     LIMITS,
     Figure { heading: "worst limit", unit: Unit::Angle, of: |e| over_limits(e, "worst_run_rad", f64::max) },
     DEPTH,
-    Figure { heading: "depth at the end", unit: Unit::Length, of: |e| number(e, "penetration_end_max_m") },
-    Figure { heading: "its p99", unit: Unit::Length, of: |e| number(e, "penetration_end_p99_m") },
+    DEPTH_END,
+    DEPTH_P99,
     SHIFT,
     ASLEEP,
     CLOTH,
@@ -94,7 +100,8 @@ pub fn headline(scene: &str) -> &'static Figure {
         "box_pyramid" | "large_pyramid" => &SHIFT,
         "stack_mass_ratio" | "stack_ratio" | "jenga" | "cards" | "arch" => &SHIFT,
         "ragdolls" | "wave_pile" | "mesh_drop" => &ASLEEP,
-        "box_rain" => &DEPTH,
+        "box_rain" | "boxes_10000" => &DEPTH,
+        "humanoid_lying" | "humanoid_pile_10" | "humanoid_pile_100" => &DEPTH,
         "chain_100_links" => &STRETCH,
         "heavy_rope" | "hanging_rope" => &GAP_PER_LINK,
         "cloth" => &CLOTH,
@@ -112,12 +119,17 @@ pub fn came_apart(engine: &EngineResult) -> bool {
 }
 
 fn number(engine: &EngineResult, key: &str) -> Option<f64> {
-    engine.quality()?.get(key)?.as_f64()
+    engine.judged(|quality| quality.get(key)?.as_f64())
 }
 
 fn over_limits(engine: &EngineResult, key: &str, fold: fn(f64, f64) -> f64) -> Option<f64> {
-    let kinds = engine.quality()?.get("limits")?.as_object()?;
-    kinds.values().map(|kind: &Value| kind[key].as_f64()).try_fold(0.0, |sum, value| Some(fold(sum, value?)))
+    engine.judged(|quality| {
+        let kinds = quality.get("limits")?.as_object()?;
+        kinds
+            .values()
+            .map(|kind: &Value| kind[key].as_f64())
+            .try_fold(0.0, |sum, value| Some(fold(sum, value?)))
+    })
 }
 
 /// The most that the world ever had above what it began with; nothing put any in.

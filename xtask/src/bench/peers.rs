@@ -11,6 +11,15 @@ use std::time::{Duration, Instant};
 
 const MANIFEST: &str = "bench/peers/Cargo.toml";
 
+/// MuJoCo, by its Python wheel.
+const MUJOCO: &str = "mujoco";
+
+/// Runs it as the binary runs the others.
+const MUJOCO_SCRIPT: &str = "bench/peers/mujoco_run.py";
+
+/// Field of the scenes that it runs.
+const FIGURES: &str = "figures";
+
 /// Rapier with eight lanes.
 const WIDE: &str = "rapier_simd8";
 
@@ -32,6 +41,10 @@ pub struct Engine {
     /// As the binary and the reports name it.
     pub name: String,
     binary: PathBuf,
+    /// Which knows the scenes.
+    peers: PathBuf,
+    /// Before the scene.
+    arguments: Vec<String>,
     /// What it is made for.
     fields: Vec<String>,
 }
@@ -45,6 +58,8 @@ pub struct Scene {
     pub about: String,
     /// What engine it is for.
     field: String,
+    /// Whether a small change of its start makes another run of it.
+    pub is_chaotic: bool,
 }
 
 /// Whether a run is followed by one that is looked at instead of timed.
@@ -54,6 +69,17 @@ pub enum Judging {
     Off,
     /// Time, then quality.
     On,
+}
+
+/// How a scene is run.
+#[derive(Clone, Copy, Debug)]
+pub struct Run {
+    /// Instead of as many as the scene says.
+    pub steps: Option<u32>,
+    /// Number of a start that differs a little from the scene's own.
+    pub start: Option<u32>,
+    /// Whether it is judged.
+    pub judging: Judging,
 }
 
 /// Builds the peers as most users have them, and Rapier once more for wide registers where this machine has them: the
@@ -78,6 +104,11 @@ pub fn build(wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Engine>> {
         engines.extend(ozz.into_iter().filter(|engine| engine.name == OZZ));
     } else if wanted(OZZ) {
         eprintln!("SKIPPED: {OZZ}, which needs `rustup toolchain install {OZZ_TOOLCHAIN} --profile minimal`");
+    }
+    if wanted(MUJOCO) && has_mujoco() {
+        engines.push(mujoco(&plain));
+    } else if wanted(MUJOCO) {
+        eprintln!("SKIPPED: {MUJOCO}, which needs `pip install mujoco`");
     }
     engines.retain(|engine| wanted(&engine.name));
     Ok(engines)
@@ -112,6 +143,29 @@ fn ozz_build() -> Command {
     build
 }
 
+/// A binary of Sinew alone, which needs nothing but a Rust toolchain.
+///
+/// # Errors
+/// If it does not compile.
+pub fn build_ours() -> Result<PathBuf> {
+    let build = &BUILD[..BUILD.len() - 1];
+    build_with("peers", command::cargo(build).arg("--no-default-features"))
+}
+
+fn has_mujoco() -> bool {
+    let import = Command::new("python3").args(["-c", "import mujoco"]).stderr(Stdio::null()).status();
+    import.is_ok_and(|status| status.success())
+}
+
+/// `peers` tells it what the scenes are.
+fn mujoco(peers: &Path) -> Engine {
+    let script = command::root().join(MUJOCO_SCRIPT);
+    let arguments = [&script, Path::new("--peers"), peers].map(|part| part.to_string_lossy().into_owned());
+    let (name, fields) = (MUJOCO.to_owned(), vec![FIGURES.to_owned()]);
+    let (binary, peers) = ("python3".into(), peers.to_owned());
+    Engine { name, binary, peers, arguments: arguments.to_vec(), fields }
+}
+
 fn has_toolchain(name: &str) -> bool {
     let version = Command::new("rustup").args(["run", name, "rustc", "--version"]).output();
     version.is_ok_and(|output| output.status.success())
@@ -132,7 +186,9 @@ fn engines(binary: &Path) -> Result<Vec<Engine>> {
             let name = engine["name"].as_str().context("an engine without a name")?.to_owned();
             let fields = engine["fields"].as_array().into_iter().flatten();
             let fields = fields.filter_map(Value::as_str).map(str::to_owned).collect();
-            Ok(Engine { name, binary: binary.to_owned(), fields })
+            let arguments = ["run", "--engine", &name].map(str::to_owned).to_vec();
+            let [binary, peers] = [binary, binary].map(Path::to_owned);
+            Ok(Engine { name, binary, peers, arguments, fields })
         })
         .collect()
 }
@@ -142,11 +198,13 @@ fn engines(binary: &Path) -> Result<Vec<Engine>> {
 /// # Errors
 /// If the binary does not say.
 pub fn scenes(engine: &Engine) -> Result<Vec<Scene>> {
-    let list = command::output_json(Command::new(&engine.binary).arg("list"))?;
+    let list = command::output_json(Command::new(&engine.peers).arg("list"))?;
     let scenes = list["scenes"].as_array().context("`peers list` names no scenes")?;
     let text = |scene: &Value, key: &str| scene[key].as_str().map(str::to_owned);
-    let scene = |scene| {
-        Some(Scene { name: text(scene, "name")?, about: text(scene, "about")?, field: text(scene, "field")? })
+    let scene = |scene: &Value| {
+        let is_chaotic = scene["is_chaotic"].as_bool()?;
+        let (name, about, field) = (text(scene, "name")?, text(scene, "about")?, text(scene, "field")?);
+        Some(Scene { name, about, field, is_chaotic })
     };
     scenes.iter().map(|value| scene(value).context("a scene without a name")).collect()
 }
@@ -162,11 +220,14 @@ impl Engine {
     ///
     /// # Errors
     /// If it cannot be started, or prints something else.
-    pub fn run(&self, scene: &str, steps: Option<u32>, judging: Judging, limit: Duration) -> Result<Value> {
+    pub fn run(&self, scene: &str, run: Run, limit: Duration) -> Result<Value> {
+        let Run { steps, start, judging } = run;
         let mut run = Command::new(&self.binary);
-        run.args(["run", "--engine", &self.name, "--scene", scene]);
-        if let Some(steps) = steps {
-            run.args(["--steps", &steps.to_string()]);
+        run.args(&self.arguments).args(["--scene", scene]);
+        for (option, value) in [("--steps", steps), ("--start", start)] {
+            if let Some(value) = value {
+                run.args([option, &value.to_string()]);
+            }
         }
         if judging == Judging::On {
             run.arg("--quality");

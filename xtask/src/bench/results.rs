@@ -1,6 +1,7 @@
 //! What was measured: the reports of the peers, kept as they are, and the figures in them.
 
 use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 
 /// All scenes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -11,6 +12,8 @@ pub struct Results {
     pub bake: Option<f64>,
     /// How often a rig of 6,000 vertices becomes a ragdoll in 100 ms, if that was measured with the bake.
     pub build: Option<f64>,
+    /// By scene: wall time on one thread over that on two, where that was measured.
+    pub threads: BTreeMap<String, f64>,
 }
 
 /// A scene on all engines, their rounds interleaved.
@@ -56,7 +59,9 @@ impl Results {
 
     /// Whether the scene of that name was measured, or the bake.
     pub fn has(&self, name: &str) -> bool {
-        self.scene(name).is_some() || name == super::BAKE && self.bake.is_some()
+        self.scene(name).is_some()
+            || name == super::BAKE && self.bake.is_some()
+            || name == super::THREADS && !self.threads.is_empty()
     }
 
     /// Takes what is newer, keeps the rest, in the order of `names`; forgets other scenes.
@@ -64,6 +69,9 @@ impl Results {
         let older = std::mem::replace(self, newer);
         self.bake = self.bake.or(older.bake);
         self.build = self.build.or(older.build);
+        for (scene, factor) in older.threads {
+            self.threads.entry(scene).or_insert(factor);
+        }
         let mut found: Vec<SceneResult> = self.scenes.drain(..).chain(older.scenes).collect();
         for name in names {
             if let Some(at) = found.iter().position(|scene| scene.name == *name) {
@@ -89,6 +97,7 @@ impl Results {
             "version": 1,
             "bake_realtime_factor": self.bake,
             "builds_in_100_ms": self.build,
+            "two_threads": self.threads,
             "scenes": scenes,
         })
     }
@@ -100,8 +109,13 @@ impl Results {
             scenes: scenes.filter_map(scene).collect(),
             bake: value["bake_realtime_factor"].as_f64(),
             build: value["builds_in_100_ms"].as_f64(),
+            threads: value["two_threads"].as_object().into_iter().flatten().filter_map(factor).collect(),
         }
     }
+}
+
+fn factor((scene, value): (&String, &Value)) -> Option<(String, f64)> {
+    Some((scene.clone(), value.as_f64()?))
 }
 
 fn scene(value: &Value) -> Option<SceneResult> {
@@ -183,9 +197,12 @@ impl EngineResult {
         self.reports.iter().filter_map(|report| report["peak_rss_mib"].as_f64()).min_by(f64::total_cmp)
     }
 
-    /// Figures of the run that was looked at.
-    pub fn quality(&self) -> Option<&Map<String, Value>> {
-        self.reports.iter().find_map(|report| report["quality"].as_object())
+    /// Of a figure of the runs that were looked at, one or from several starts, the median; `None` if one lacks it.
+    pub fn judged(&self, figure: impl Fn(&Map<String, Value>) -> Option<f64>) -> Option<f64> {
+        let runs = self.reports.iter().filter_map(|report| report["quality"].as_object());
+        let mut values: Vec<f64> = runs.map(figure).collect::<Option<_>>()?;
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied()
     }
 
     /// A text such as `version`.
@@ -230,6 +247,19 @@ pub mod tests {
     }
 
     #[test]
+    fn figures_of_several_starts_are_medians() {
+        let runs = |gaps: &[Value]| {
+            let report = |gap: &Value| json!({ "quality": { "joint_gap_peak_m": gap } });
+            let reports = gaps.iter().map(report).chain([json!({})]).collect();
+            let gap = |quality: &Map<String, Value>| quality.get("joint_gap_peak_m")?.as_f64();
+            EngineResult { name: "sinew".into(), reports }.judged(gap)
+        };
+        assert_eq!(runs(&[json!(3.0), json!(1.0), json!(2.0)]), Some(2.0));
+        assert_eq!(runs(&[json!(3.0), json!(null)]), None, "not a number in one of them");
+        assert_eq!(runs(&[]), None);
+    }
+
+    #[test]
     fn speed_is_against_the_fastest_peer() {
         let ours = engine("sinew", &[2.0], &Value::Null);
         let peers = [engine("rapier", &[3.0], &Value::Null), engine("jolt", &[4.0], &Value::Null)];
@@ -244,12 +274,13 @@ pub mod tests {
         let mut results = Results {
             scenes: vec![of("c", 1.0), of("gone", 1.0), of("a", 1.0)],
             bake: Some(5.0),
-            build: None,
+            threads: BTreeMap::from([("a".to_owned(), 1.5)]),
+            ..Results::default()
         };
-        let newer = Results { scenes: vec![of("b", 2.0), of("a", 2.0)], bake: None, build: None };
+        let newer = Results { scenes: vec![of("b", 2.0), of("a", 2.0)], ..Results::default() };
         results.update(newer, &["a", "b", "c"]);
         assert_eq!(results.scenes, [of("a", 2.0), of("b", 2.0), of("c", 1.0)]);
-        assert_eq!(results.bake, Some(5.0));
+        assert_eq!((results.bake, results.threads["a"]), (Some(5.0), 1.5));
         assert_eq!(Results::from_json(&results.to_json()), results);
     }
 }

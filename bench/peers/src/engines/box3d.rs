@@ -58,6 +58,7 @@ impl Engine for Box3d {
             let frames = joint_frames(scene, def).map(|frame| frame * Transform::new(Vec3::ZERO, Z_TO_X));
             world.add_joint([def.a, def.b], frames, joint(def)?);
         }
+        scene.apart.iter().for_each(|&(a, b)| world.part([a, b]));
         Ok(Box::new(Box3dWorld { world, bodies: scene.bodies.len() }))
     }
 

@@ -49,6 +49,11 @@ impl Engine for Rapier {
         for def in &scene.joints {
             world.insert_impulse_joint(bodies[def.a], bodies[def.b], joint(def, scene)?);
         }
+        for &(a, b) in &scene.apart {
+            // Without a hook of the user's, a joint that holds nothing is what parts a pair.
+            let parted = GenericJointBuilder::new(JointAxesMask::empty()).contacts_enabled(false);
+            world.insert_impulse_joint(bodies[a], bodies[b], parted);
+        }
         Ok(Box::new(RapierWorld { world, bodies }))
     }
 

@@ -29,7 +29,7 @@ impl Engine for Sinew {
     }
 
     fn fields(&self) -> &'static [Field] {
-        &[Field::Physics, Field::Animation]
+        &[Field::Physics, Field::Figures, Field::Animation]
     }
 
     fn build(&self, scene: &Blueprint) -> Result<Box<dyn Simulation>, Unsupported> {

@@ -210,6 +210,21 @@ impl World {
         }
     }
 
+    /// Keeps two bodies from colliding with each other.
+    ///
+    /// # Panics
+    /// If there are no such bodies.
+    pub fn part(&mut self, bodies: [usize; 2]) {
+        let [a, b] = bodies.map(|place| self.bodies[place]);
+        // SAFETY: defaults take nothing and return values; both bodies live as long as this world; the definition comes from
+        // the defaults and is copied.
+        unsafe {
+            let mut def = b3DefaultFilterJointDef();
+            (def.base.bodyIdA, def.base.bodyIdB) = (a, b);
+            b3CreateFilterJoint(self.id, &raw const def);
+        }
+    }
+
     /// Joins two bodies, which then do not collide with each other.
     ///
     /// # Panics

@@ -26,8 +26,8 @@ pub struct PenetrationQuality {
 
 pub(super) struct PenetrationMeter {
     shapes: Vec<Solid>,
-    /// Pairs of bodies that joints hold, the smaller place first, sorted: they do not collide.
-    jointed: Vec<(usize, usize)>,
+    /// Pairs of bodies that joints hold or the scene parts, the smaller place first, sorted: they do not collide.
+    apart: Vec<(usize, usize)>,
     every: usize,
     run_max: f32,
 }
@@ -45,9 +45,10 @@ impl PenetrationMeter {
     pub fn new(scene: &Blueprint, every: usize) -> Self {
         // Depths of some shapes are not those of the scene: one that Parry does not have, and nothing is judged.
         let shapes = Self::solids(scene).unwrap_or_default();
-        let mut jointed: Vec<_> = scene.joints.iter().map(|joint| ordered(joint.a, joint.b)).collect();
-        jointed.sort_unstable();
-        Self { shapes, jointed, every, run_max: 0.0 }
+        let mut apart: Vec<_> = scene.joints.iter().map(|joint| ordered(joint.a, joint.b)).collect();
+        apart.extend(scene.apart.iter().map(|&(a, b)| ordered(a, b)));
+        apart.sort_unstable();
+        Self { shapes, apart, every, run_max: 0.0 }
     }
 
     fn solids(scene: &Blueprint) -> Result<Vec<Solid>, Unsupported> {
@@ -106,7 +107,7 @@ impl PenetrationMeter {
         a.body != b.body
             && (a.is_dynamic || b.is_dynamic)
             && a.filter.meets(b.filter)
-            && self.jointed.binary_search(&ordered(a.body, b.body)).is_err()
+            && self.apart.binary_search(&ordered(a.body, b.body)).is_err()
     }
 }
 

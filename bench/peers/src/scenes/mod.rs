@@ -23,8 +23,19 @@ pub struct Scene {
     pub about: &'static str,
     /// Whom it is for.
     pub field: Field,
+    /// Sensitivity of the scene to its start.
+    pub course: Course,
     /// What an engine is given to do.
     pub work: fn() -> Work,
+}
+
+/// Sensitivity of a scene's run to a small change of its start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Course {
+    /// A small change of the run.
+    Steady,
+    /// Another run: figures are those of several starts.
+    Chaotic,
 }
 
 /// What an engine may be made for.
@@ -32,6 +43,8 @@ pub struct Scene {
 pub enum Field {
     /// Bodies, joints, cloth, questions about shapes.
     Physics,
+    /// Figures whose joints have the limits and the friction of a body's, awake.
+    Figures,
     /// Clips and poses.
     Animation,
 }
@@ -41,6 +54,7 @@ impl Field {
     pub fn name(self) -> &'static str {
         match self {
             Self::Physics => "physics",
+            Self::Figures => "figures",
             Self::Animation => "animation",
         }
     }
@@ -62,19 +76,37 @@ pub enum Work {
 
 macro_rules! bodies {
     ($name:literal, $about:literal, $blueprint:expr) => {
-        Scene { name: $name, about: $about, field: Field::Physics, work: || Work::Bodies($blueprint) }
+        bodies!($name, $about, $blueprint, Field::Physics, Course::Steady)
+    };
+    ($name:literal, $about:literal, $blueprint:expr, $field:expr, $course:expr) => {
+        Scene {
+            name: $name,
+            about: $about,
+            field: $field,
+            course: $course,
+            work: || Work::Bodies($blueprint),
+        }
+    };
+}
+
+/// Bodies in a heap.
+macro_rules! heap {
+    ($name:literal, $about:literal, $blueprint:expr) => {
+        bodies!($name, $about, $blueprint, Field::Physics, Course::Chaotic)
     };
 }
 
 /// All scenes, in the order in which they are printed.
 pub const SCENES: &[Scene] = &[
-    bodies!("ragdoll_pile", "100 ragdolls fall on 50 boxes", blueprint::ragdoll_pile()),
+    heap!("ragdoll_pile", "100 ragdolls fall on 50 boxes", blueprint::ragdoll_pile()),
     bodies!("box_pyramid", "1,240 unit cubes in 15 layers", blueprint::box_pyramid()),
-    bodies!("box_rain", "4,000 boxes fall into a pit", blueprint::box_rain()),
+    heap!("box_rain", "4,000 boxes fall into a pit", blueprint::box_rain()),
+    heap!("boxes_10000", "10,000 boxes sink into one heap in a pit", blueprint::boxes_10000()),
+    heap!("crowd_pile", "100 of our own ragdolls fall into one heap in a pit", blueprint::crowd_pile()),
     bodies!("chain_100_links", "10 chains of 100 links, 100 kg at each end", blueprint::chain_100_links()),
     bodies!("joint_grid", "100 × 100 balls, all neighbours joined", blueprint::joint_grid()),
     bodies!("large_pyramid", "a wall of 5,050 unit cubes in 100 rows", blueprint::large_pyramid()),
-    bodies!("rain", "300 ragdolls fall on the ground", blueprint::rain()),
+    heap!("rain", "300 ragdolls fall on the ground", blueprint::rain()),
     bodies!(
         "stack_mass_ratio",
         "10 boxes, each 10 times as heavy as the one below",
@@ -99,34 +131,60 @@ pub const SCENES: &[Scene] = &[
     bodies!("heavy_rope", "19 level links, at the end 1,800 times one's mass", blueprint::heavy_rope()),
     bodies!("hanging_rope", "48 plumb links, at the end 200 times one's mass", blueprint::hanging_rope()),
     bodies!("net", "12 × 12 knots sag from two corners, 25 kg below", blueprint::net()),
+    bodies!(
+        "humanoid_lying",
+        "one of our own ragdolls lies awake",
+        blueprint::humanoid_lying(),
+        Field::Figures,
+        Course::Steady
+    ),
+    bodies!(
+        "humanoid_pile_10",
+        "10 of our own ragdolls fall into a pit and stay awake",
+        blueprint::humanoid_pile(10),
+        Field::Figures,
+        Course::Chaotic
+    ),
+    bodies!(
+        "humanoid_pile_100",
+        "100 of our own ragdolls fall into one heap and stay awake",
+        blueprint::humanoid_pile(100),
+        Field::Figures,
+        Course::Chaotic
+    ),
     Scene {
         name: "cloth",
         about: "100 × 100 particles fall over a ball and a box",
         field: Field::Physics,
+        course: Course::Steady,
         work: || Work::Cloth(ClothScene::new()),
     },
     Scene {
         name: "rays",
         about: "rays of 100 m against 10,000 boxes, 1,000 rays a step",
         field: Field::Physics,
+        course: Course::Steady,
         work: || Work::Rays(RayScene::new()),
     },
     Scene {
         name: "obb_tests",
         about: "do two boxes overlap: 4,096 pairs that stay in the cache, all in a step",
         field: Field::Physics,
+        course: Course::Steady,
         work: || Work::Boxes(BoxPairs::new(4_096, 4_096)),
     },
     Scene {
         name: "obb_tests_streamed",
         about: "do two boxes overlap: a million pairs from memory, 10,000 a step",
         field: Field::Physics,
+        course: Course::Steady,
         work: || Work::Boxes(BoxPairs::new(1_000_000, 10_000)),
     },
     Scene {
         name: "crowd",
         about: "1,000 characters of 50 joints each blend two clips into model space",
         field: Field::Animation,
+        course: Course::Steady,
         work: || Work::Crowd(CrowdScene::new(1_000)),
     },
 ];

@@ -20,7 +20,15 @@ pub fn engines_of(field: Field) -> impl Iterator<Item = &'static dyn Engine> {
 
 fn scene(bodies: Vec<BodyDef>) -> Blueprint {
     let gravity = Vec3::new(0.0, -9.81, 0.0);
-    Blueprint { name: "by hand", gravity, sleeping: Sleeping::Off, steps: 60, bodies, joints: Vec::new() }
+    Blueprint {
+        name: "by hand",
+        gravity,
+        sleeping: Sleeping::Off,
+        steps: 60,
+        bodies,
+        joints: Vec::new(),
+        apart: Vec::new(),
+    }
 }
 
 fn body(kind: BodyKind, shape: Shape, position: Vec3) -> BodyDef {

@@ -21,7 +21,7 @@ fn cuboid(half_extents: Vec3, position: Vec3) -> BodyDef {
 
 fn scene(bodies: Vec<BodyDef>, joints: Vec<BlueprintJoint>) -> Blueprint {
     let gravity = Vec3::new(0.0, -9.81, 0.0);
-    Blueprint { name: "test", gravity, sleeping: Sleeping::Off, steps: 0, bodies, joints }
+    Blueprint { name: "test", gravity, sleeping: Sleeping::Off, steps: 0, bodies, joints, apart: Vec::new() }
 }
 
 /// All bodies after `steps` steps.

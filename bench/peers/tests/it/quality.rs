@@ -9,7 +9,15 @@ use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
 
 fn scene(bodies: Vec<BodyDef>, joints: Vec<BlueprintJoint>) -> Blueprint {
     let gravity = Vec3::new(0.0, -10.0, 0.0);
-    Blueprint { name: "by hand", gravity, sleeping: Sleeping::Off, steps: 1, bodies, joints }
+    Blueprint {
+        name: "by hand",
+        gravity,
+        sleeping: Sleeping::Off,
+        steps: 1,
+        bodies,
+        joints,
+        apart: Vec::new(),
+    }
 }
 
 fn body(kind: BodyKind, shape: Shape, position: Vec3) -> BodyDef {

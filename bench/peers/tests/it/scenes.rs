@@ -2,7 +2,8 @@
 
 use sinew_peers::engine::Engine;
 use sinew_peers::engines;
-use sinew_peers::run::{Judging, run};
+use sinew_peers::mjcf::mjcf;
+use sinew_peers::run::{Judging, Start, run};
 use sinew_peers::scenes::{self, BoxPairs, ClothScene, RayScene, SCENES, Work};
 
 fn sinew() -> &'static dyn Engine {
@@ -30,6 +31,35 @@ fn bodies_and_joints_are_as_many_as_published() {
     assert_eq!(counts("box_rain"), (4_005, 4_000, 0));
     assert_eq!(counts("chain_100_links"), (1_020, 1_010, 1_010));
     assert_eq!(counts("large_pyramid").1, 5_050);
+    assert_eq!(counts("boxes_10000").1, 10_000);
+    assert_eq!(counts("crowd_pile"), (1_905, 1_900, 1_800));
+}
+
+/// Engines differ by their answers to the same words; so nothing in the words may be one's own.
+#[test]
+fn every_engine_has_our_ragdolls() {
+    let crowd = scenes::find("crowd_pile").expect("a scene");
+    for entry in engines::ENGINES {
+        let Some(engine) = entry.engine.filter(|engine| engine.fields().contains(&crowd.field)) else {
+            continue;
+        };
+        let report = run(engine, crowd, Start::Perturbed(1), Some(1), Judging::Off);
+        assert!(report["cpu_ms"]["median"].is_number(), "{report}");
+    }
+}
+
+#[test]
+fn mujoco_is_told_of_every_figure_and_wall() {
+    let Work::Bodies(scene) = (scenes::find("humanoid_pile_10").expect("a scene").work)() else {
+        panic!("no bodies")
+    };
+    let told = mjcf(&scene);
+    assert_eq!(told["figures"].as_array().map(Vec::len), Some(10));
+    assert_eq!(told["walls"].as_array().map(Vec::len), Some(4));
+    assert!(told["friction"].as_f64().is_some_and(|friction| (friction - 0.7).abs() < 1e-6));
+    let text = told["mjcf"].as_str().expect("a model");
+    assert_eq!(text.matches("<freejoint").count(), 1);
+    assert_eq!(text.matches("<inertial").count(), 19);
 }
 
 #[test]
@@ -57,7 +87,7 @@ fn the_cloth_is_a_square_of_four_metres() {
 #[test]
 fn what_an_engine_cannot_run_it_says() {
     let cloth = scenes::find("cloth").expect("a scene");
-    let report = run(sinew(), cloth, Some(1), Judging::Off);
+    let report = run(sinew(), cloth, Start::Own, Some(1), Judging::Off);
     assert_eq!(report["scene"], "cloth");
     assert!(report["unsupported"].as_str().is_some_and(|why| !why.is_empty()));
     assert!(report.get("cpu_ms").is_none());
@@ -66,7 +96,7 @@ fn what_an_engine_cannot_run_it_says() {
 #[test]
 fn a_report_has_what_its_readers_need() {
     let chain = scenes::find("chain_hang_100").expect("a scene");
-    let report = run(sinew(), chain, Some(12), Judging::On);
+    let report = run(sinew(), chain, Start::Own, Some(12), Judging::On);
     assert_eq!((&report["engine"], &report["steps"]), (&"sinew".into(), &12.into()));
     assert_eq!((&report["bodies"], &report["joints"]), (&12.into(), &11.into()));
     for key in ["median", "p99", "mean", "last_third", "best"] {
@@ -77,6 +107,6 @@ fn a_report_has_what_its_readers_need() {
     }
     assert!(report["quality"]["joint_gap_peak_m"].as_f64().is_some_and(|gap| gap < 1e-3));
     assert!(report["quality"]["stretch_end"].is_number());
-    let without = run(sinew(), chain, Some(2), Judging::Off);
+    let without = run(sinew(), chain, Start::Own, Some(2), Judging::Off);
     assert!(without.get("quality").is_none());
 }

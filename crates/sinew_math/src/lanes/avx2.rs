@@ -7,8 +7,9 @@ use super::{LaneMask, Lanes, Mask, Real, WIDTH};
 use core::arch::x86_64::{
     __m256, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps,
     _mm256_blendv_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps,
-    _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_set1_ps, _mm256_sqrt_ps, _mm256_storeu_ps,
-    _mm256_sub_ps, _mm256_xor_ps,
+    _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_permute2f128_ps, _mm256_set1_ps,
+    _mm256_shuffle_ps, _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_sub_ps, _mm256_unpackhi_ps,
+    _mm256_unpacklo_ps, _mm256_xor_ps,
 };
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -150,4 +151,35 @@ impl Lanes for Avx2 {
         // SAFETY: as above; and the array has room for the eight floats that are written.
         unsafe { _mm256_storeu_ps(to.as_mut_ptr(), self.0) }
     }
+
+    #[inline(always)]
+    fn transpose(rows: [Self; WIDTH]) -> [Self; WIDTH] {
+        let [a, b, c, d, e, f, g, h] = rows;
+        let ([p, q, r, s], [t, u, v, w]) = (quarters(a, b, c, d), quarters(e, f, g, h));
+        avx!([
+            Self(_mm256_permute2f128_ps::<0x20>(p, t)),
+            Self(_mm256_permute2f128_ps::<0x20>(q, u)),
+            Self(_mm256_permute2f128_ps::<0x20>(r, v)),
+            Self(_mm256_permute2f128_ps::<0x20>(s, w)),
+            Self(_mm256_permute2f128_ps::<0x31>(p, t)),
+            Self(_mm256_permute2f128_ps::<0x31>(q, u)),
+            Self(_mm256_permute2f128_ps::<0x31>(r, v)),
+            Self(_mm256_permute2f128_ps::<0x31>(s, w)),
+        ])
+    }
+}
+
+/// Column `k` of four rows in the lower half of register `k`, column `4 + k` in its upper half.
+#[inline(always)]
+fn quarters(a: Avx2, b: Avx2, c: Avx2, d: Avx2) -> [__m256; 4] {
+    avx!({
+        let (low_ab, high_ab) = (_mm256_unpacklo_ps(a.0, b.0), _mm256_unpackhi_ps(a.0, b.0));
+        let (low_cd, high_cd) = (_mm256_unpacklo_ps(c.0, d.0), _mm256_unpackhi_ps(c.0, d.0));
+        [
+            _mm256_shuffle_ps::<0x44>(low_ab, low_cd),
+            _mm256_shuffle_ps::<0xEE>(low_ab, low_cd),
+            _mm256_shuffle_ps::<0x44>(high_ab, high_cd),
+            _mm256_shuffle_ps::<0xEE>(high_ab, high_cd),
+        ]
+    })
 }

@@ -57,6 +57,12 @@ pub trait Real:
     /// `value` in every lane.
     fn splat(value: f32) -> Self;
 
+    /// `value` in every lane, rounded to what lanes hold.
+    #[inline(always)]
+    fn splat_wide(value: f64) -> Self {
+        Self::splat(value as f32)
+    }
+
     /// Square root, exact; NaN below zero, −0 of −0.
     fn sqrt(self) -> Self;
 
@@ -134,4 +140,21 @@ pub trait Lanes: Real<Mask: LaneMask> {
 
     /// Lane `k` into item `k`.
     fn store(self, to: &mut [f32; WIDTH]);
+
+    /// Rows become columns: lane `j` of row `i` goes to lane `i` of row `j`. Eight records become eight fields, and back.
+    #[inline(always)]
+    fn transpose(rows: [Self; WIDTH]) -> [Self; WIDTH] {
+        let [mut records, mut fields] = [[[0.0; WIDTH]; WIDTH]; 2];
+        for i in 0..WIDTH {
+            rows[i].store(&mut records[i]);
+            for j in 0..WIDTH {
+                fields[j][i] = records[i][j];
+            }
+        }
+        let mut out = rows;
+        for j in 0..WIDTH {
+            out[j] = Self::load(&fields[j]);
+        }
+        out
+    }
 }

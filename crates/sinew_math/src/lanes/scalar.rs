@@ -56,6 +56,61 @@ impl Real for f32 {
     }
 }
 
+/// One number of twice the digits, for sums that cancel; never in lanes.
+impl Real for f64 {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        f64::from(value)
+    }
+
+    #[inline(always)]
+    fn splat_wide(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+
+    #[inline(always)]
+    fn lt(a: Self, b: Self) -> bool {
+        a < b
+    }
+
+    #[inline(always)]
+    fn le(a: Self, b: Self) -> bool {
+        a <= b
+    }
+
+    #[inline(always)]
+    fn eq(a: Self, b: Self) -> bool {
+        a == b
+    }
+
+    #[inline(always)]
+    fn select(mask: bool, a: Self, b: Self) -> Self {
+        if mask { a } else { b }
+    }
+
+    #[inline(always)]
+    fn masked(self, mask: bool) -> Self {
+        if mask { self } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn nan_where(self, mask: bool) -> Self {
+        if mask { f64::NAN } else { self }
+    }
+}
+
 /// Eight `f32`, each treated as `f32` is.
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar([f32; WIDTH]);

@@ -213,3 +213,36 @@ fn a_foreign_level_is_refused() {
     let foreign = Level::ALL.into_iter().find(|level| !level.is_available());
     dispatch::run_at(foreign.expect("no processor has them all"), Masks);
 }
+
+struct Transposed;
+
+impl Kernel for Transposed {
+    type Output = [[f32; WIDTH]; WIDTH];
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let mut records = [[0.0; WIDTH]; WIDTH];
+        for (i, record) in records.iter_mut().enumerate() {
+            for (j, number) in record.iter_mut().enumerate() {
+                *number = (10 * i + j) as f32;
+            }
+        }
+        let fields = L::transpose(records.map(|record| L::load(&record)));
+        for (record, field) in records.iter_mut().zip(fields) {
+            field.store(record);
+        }
+        records
+    }
+}
+
+#[test]
+fn records_become_fields() {
+    for level in Level::available() {
+        let fields = dispatch::run_at(level, Transposed);
+        for (j, field) in fields.iter().enumerate() {
+            for (i, &number) in field.iter().enumerate() {
+                assert_eq!(number, (10 * i + j) as f32, "{level:?}: lane {i} of field {j}");
+            }
+        }
+    }
+}

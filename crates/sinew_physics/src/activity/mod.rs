@@ -15,6 +15,7 @@ use crate::body::{Body, Rest, Velocity};
 use crate::contact::Contact;
 use crate::def::{BodyKind, WorldDef};
 use crate::joint::{Incidence, Joint};
+use crate::pairs::bear;
 use crate::particles::ParticleGroup;
 use crate::proxies::{Owner, Proxies};
 use aside::Aside;
@@ -197,18 +198,7 @@ impl Activity {
     /// Merges contacts that were recalled with those of the step, which are in order of their keys.
     pub fn return_contacts(&mut self, contacts: &mut Vec<Contact>) {
         self.returned.sort_unstable_by_key(|contact| contact.key);
-        let mut left = contacts.len();
-        contacts.extend_from_slice(&self.returned);
-        let mut end = contacts.len();
-        // From the back, where there is room.
-        while let Some(contact) = self.returned.pop() {
-            while left > 0 && contacts[left - 1].key > contact.key {
-                (left, end) = (left - 1, end - 1);
-                contacts.swap(left, end);
-            }
-            end -= 1;
-            contacts[end] = contact;
-        }
+        bear(contacts, &mut self.returned);
     }
 
     /// The contacts of a body that are not in the world's list, in no order that means anything.

@@ -56,32 +56,55 @@ pub(crate) struct Gap {
     pub distance: f32,
 }
 
-/// The closest points of the box of the given half extents around the origin and a segment: one of them is an end of the
-/// segment, or lies on an edge of the box. `None` if the segment enters the box.
+/// The closest points of the box of the given half extents around the origin and a segment. `None` if the segment enters the
+/// box.
 pub(crate) fn gap(half: Vec3, core: &Segment) -> Option<Gap> {
-    let mut inside = (0.0, 1.0);
-    if (0..3).all(|axis| cut(core, axis, half[axis], &mut inside)) {
-        return None;
-    }
-    let mut best = (f32::INFINITY, Vec3::ZERO, Vec3::ZERO);
-    let mut consider = |on_core: Vec3, on_box: Vec3| {
-        let squared = (on_core - on_box).dot(on_core - on_box);
-        if squared < best.0 {
-            best = (squared, on_core, on_box);
-        }
+    let on_core = core.at(closest_to_box(half, core));
+    let on_box = max3(min3(on_core, half), -half);
+    let squared = (on_core - on_box).length_squared();
+    (squared > 0.0).then(|| Gap { on_core, on_box, distance: squared.sqrt() })
+}
+
+/// Parameter of the segment's point that is closest to the box, 0..=1; an end where ends are as close as what lies between.
+///
+/// The square of the distance is convex along the segment, and its slope made of straight pieces that meet where the segment
+/// crosses a face's plane: the two crossings between which it changes sign hold the place where it is nothing.
+fn closest_to_box(half: Vec3, core: &Segment) -> f32 {
+    let (from, step) = (core.ends[0], core.ends[1] - core.ends[0]);
+    let outside = |t: f32| {
+        let p = from + step * t;
+        p - max3(min3(p, half), -half)
     };
-    for p in core.ends {
-        consider(p, max3(min3(p, half), -half));
+    let slope = |t: f32| outside(t).dot(step);
+    if slope(0.0) >= 0.0 {
+        return 0.0;
     }
+    if slope(1.0) <= 0.0 {
+        return 1.0;
+    }
+    let (mut low, mut high) = (0.0, 1.0);
     for axis in 0..3 {
-        for corner in 0..4 {
-            let edge = edge(half, axis, [corner & 1 == 1, corner & 2 == 2]);
-            let (s, t) = core.closest_to_segment(&edge);
-            consider(core.at(s), edge.at(t));
+        for side in [half[axis], -half[axis]] {
+            let t = (side - from[axis]) / step[axis];
+            if low < t && t < high {
+                if slope(t) < 0.0 {
+                    low = t;
+                } else {
+                    high = t;
+                }
+            }
         }
     }
-    let (squared, on_core, on_box) = best;
-    Some(Gap { on_core, on_box, distance: squared.sqrt() })
+    let beyond = outside(0.5 * (low + high));
+    let (mut along, mut length) = (0.0, 0.0);
+    for axis in 0..3 {
+        if beyond[axis] != 0.0 {
+            let side = if beyond[axis] < 0.0 { -half[axis] } else { half[axis] };
+            along += (side - from[axis]) * step[axis];
+            length += step[axis] * step[axis];
+        }
+    }
+    if length > 0.0 { clamp(along / length, low, high) } else { low }
 }
 
 /// Where a box and a segment are closest, or deepest in each other, in the box's frame.

@@ -1,6 +1,5 @@
 //! Box against box: separating axes (Gottschalk, Lin & Manocha 1996), then the two faces or the two edges that meet.
 
-use super::Manifold;
 use super::axes::{
     Bridge, Faceted, PARALLEL_SINE, TIE_DIRECTION, choose, choose_face, push, push_bridges, push_faces,
     tolerance,
@@ -8,29 +7,25 @@ use super::axes::{
 use super::clip::{BOX_CORNERS, BoxFace, Reference};
 use super::feature::{self, WHOLE, pair};
 use super::placed::{PlacedBox, Segment, sign};
+use super::{Manifold, Parting};
 use crate::boxes::separation::{Axis, AxisOf, axis, best_edges, best_face};
 use sinew_math::Vec3;
 
-/// `apart` is as in [`super::collide_again`].
-pub(super) fn collide(
-    a: &PlacedBox,
-    b: &PlacedBox,
-    margin: f32,
-    apart: &mut Option<AxisOf>,
-    out: &mut Manifold,
-) {
+pub(super) fn collide(a: &PlacedBox, b: &PlacedBox, margin: f32, parting: &mut Parting, out: &mut Manifold) {
     let parts = |axis: &Axis| axis.separation > margin;
-    if apart.and_then(|of| axis(a, b, of, PARALLEL_SINE)).is_some_and(|axis| parts(&axis)) {
+    if let Some(axis) = parting.axis.and_then(|of| axis(a, b, of, PARALLEL_SINE)).filter(parts) {
+        parting.gap = axis.separation;
         return;
     }
+    parting.axis = None;
     let (face_a, face_b) = (best_face(a, b, 1.0, AxisOf::FaceA), best_face(b, a, -1.0, AxisOf::FaceB));
-    *apart = [face_a, face_b].into_iter().find(parts).map(|axis| axis.of);
-    if apart.is_some() {
+    if let Some(axis) = [face_a, face_b].iter().find(|axis| parts(axis)) {
+        *parting = Parting::along(axis);
         return;
     }
     let edges = best_edges(a, b, PARALLEL_SINE);
-    *apart = edges.filter(parts).map(|axis| axis.of);
-    if apart.is_some() {
+    if let Some(axis) = edges.filter(parts) {
+        *parting = Parting::along(&axis);
         return;
     }
     let tolerance = tolerance(a.thinnest(), b.thinnest());

@@ -1,10 +1,10 @@
 //! Box against capsule: closest points of the box and the core while they are apart, separating axes once the core
 //! has entered the box. Everything happens in the box's frame.
 
-use super::Manifold;
 use super::feature::{self, WHOLE, pair};
 use super::line::Line;
 use super::placed::{Pill, PlacedBox, Segment, largest_axis, sign};
+use super::{Manifold, Parting};
 use crate::boxes::segment::{Gap, Meeting, best_edge, best_face, cut, gap};
 use sinew_math::{Vec3, min};
 
@@ -17,11 +17,12 @@ const ACROSS_SINE: f32 = 0.03;
 /// A core whose sine against a side is below this is taken as parallel: the faces then say all there is to say.
 const PARALLEL_SINE: f32 = 0.005;
 
-pub(super) fn collide(a: &PlacedBox, b: &Pill, margin: f32, out: &mut Manifold) {
+pub(super) fn collide(a: &PlacedBox, b: &Pill, margin: f32, parting: &mut Parting, out: &mut Manifold) {
     let core = Segment { ends: b.core.ends.map(|p| a.local_point(p)) };
     let meeting = apart(a.half, &core).unwrap_or_else(|| pierced(a.half, &core, b.radius));
     let nearest = (meeting.on_core - meeting.on_box).dot(meeting.normal) - b.radius;
     if nearest > margin {
+        parting.gap = nearest;
         return;
     }
     if !push_line(a.half, &core, b.radius, &meeting, margin, out) {

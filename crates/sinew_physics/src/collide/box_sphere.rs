@@ -1,14 +1,15 @@
 //! Box against sphere: the closest point of the box to the centre.
 
-use super::Manifold;
 use super::feature::{WHOLE, pair};
 use super::placed::{Ball, PlacedBox};
+use super::{Manifold, Parting};
 use crate::distance::box_distance;
 
-pub(super) fn collide(a: &PlacedBox, b: &Ball, margin: f32, out: &mut Manifold) {
+pub(super) fn collide(a: &PlacedBox, b: &Ball, margin: f32, parting: &mut Parting, out: &mut Manifold) {
     let (distance, normal) = box_distance(a.half, a.local_point(b.center));
     let separation = distance - b.radius;
     if separation > margin {
+        parting.gap = separation;
         return;
     }
     out.normal = a.vector(normal);

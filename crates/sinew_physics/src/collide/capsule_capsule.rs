@@ -1,8 +1,8 @@
 //! Capsule against capsule: closest points of the cores; two points where the cores run side by side.
 
-use super::Manifold;
 use super::feature::{WHOLE, end, pair};
 use super::placed::{Pill, direction_or, sign};
+use super::{Manifold, Parting};
 use sinew_math::{Vec3, any_orthonormal, min, normalize_or};
 
 /// Cores that run side by side touch along a line; its two ends are used while the cores lie within this share of
@@ -12,7 +12,7 @@ const SIDEWAYS_SHARE: f32 = 0.25;
 /// Sine of the angle from which on cores count as crossing: about half a degree.
 const LEAST_SINE: f32 = 0.01;
 
-pub(super) fn collide(a: &Pill, b: &Pill, margin: f32, out: &mut Manifold) {
+pub(super) fn collide(a: &Pill, b: &Pill, margin: f32, parting: &mut Parting, out: &mut Manifold) {
     let (s, t) = a.core.closest_to_segment(&b.core);
     let (pa, pb) = (a.core.at(s), b.core.at(t));
     let cross = a.axis.cross(b.axis);
@@ -31,6 +31,7 @@ pub(super) fn collide(a: &Pill, b: &Pill, margin: f32, out: &mut Manifold) {
         (normal, (pb - pa).length() - a.radius - b.radius)
     };
     if separation > margin {
+        parting.gap = separation;
         return;
     }
     out.normal = normal;

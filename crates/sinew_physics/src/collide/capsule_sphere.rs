@@ -1,16 +1,17 @@
 //! Capsule against sphere: the closest point of the core to the centre. Sphere against sphere is a capsule whose
 //! core is a point.
 
-use super::Manifold;
 use super::feature::{WHOLE, pair};
 use super::placed::{Ball, Pill, direction_or};
+use super::{Manifold, Parting};
 use sinew_math::any_orthonormal;
 
-pub(super) fn collide(a: &Pill, b: &Ball, margin: f32, out: &mut Manifold) {
+pub(super) fn collide(a: &Pill, b: &Ball, margin: f32, parting: &mut Parting, out: &mut Manifold) {
     let on_core = a.core.at(a.core.closest(b.center));
     let offset = b.center - on_core;
     let separation = offset.length() - a.radius - b.radius;
     if separation > margin {
+        parting.gap = separation;
         return;
     }
     // A centre on the core: any way out across the core is as good as another.

@@ -4,7 +4,7 @@ use super::clip_features::{Clipped, clip};
 use super::feature::{WHOLE, pair};
 use super::placed::{Segment, sign};
 use super::reduce::push_best;
-use super::{Manifold, ManifoldPoint};
+use super::{Manifold, ManifoldPoint, Parting};
 use crate::convex::feature::Feature;
 use crate::convex::support::{Posed, Support, wide};
 use crate::convex::{Gap, apart_along, meet};
@@ -30,11 +30,14 @@ pub(crate) fn collide<A: Support, B: Support>(
     a: &Posed<'_, A>,
     b: &Posed<'_, B>,
     margin: f32,
+    parting: &mut Parting,
     out: &mut Manifold,
 ) {
     let gap = meet(a, b);
     if gap.distance <= margin {
         manifold_of_features(a, b, &gap, margin, out);
+    } else {
+        parting.gap = gap.distance;
     }
 }
 

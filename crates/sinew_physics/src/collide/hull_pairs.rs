@@ -1,23 +1,22 @@
 //! Hull against everything that has an end, in the frame of the hull.
 
-use super::Manifold;
 use super::axes::TIE_DIRECTION;
 use super::placed::{Pill, PlacedBox};
+use super::{Manifold, Parting};
 use super::{features, hull_round, polytope};
-use crate::boxes::separation::AxisOf;
 use crate::convex::support::{Core, Posed};
 use crate::hull::{BoxPolytope, Hull, Room};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3};
 
-/// A hull against a shape of the same or a later rank. `apart` is as in [`super::collide_again`].
+/// A hull against a shape of the same or a later rank.
 pub(super) fn collide(
     hull: &Hull,
     pair_from_hull: &Transform,
     other: &Shape,
     pair_from_other: &Transform,
     margin: f32,
-    apart: &mut Option<AxisOf>,
+    parting: &mut Parting,
     out: &mut Manifold,
 ) {
     let frame = pair_from_hull.inverse() * *pair_from_other;
@@ -27,24 +26,24 @@ pub(super) fn collide(
         Shape::Hull(ref other) => {
             let mut room = Room::EMPTY;
             let other = other.polytope().seen_from(&frame, &mut room);
-            polytope::collide(&polytope, &other, margin, tie, apart, out);
+            polytope::collide(&polytope, &other, margin, tie, parting, out);
         }
         Shape::Box { half_extents } => {
             let other = BoxPolytope::new(&PlacedBox::new(half_extents, &frame));
-            polytope::collide(&polytope, &other.polytope(), margin, tie, apart, out);
+            polytope::collide(&polytope, &other.polytope(), margin, tie, parting, out);
         }
         Shape::Capsule { half_height, radius } => {
             let pill = Pill::new(half_height, radius, &frame);
-            hull_round::against_capsule(&polytope, &pill.core, radius, margin, out);
+            hull_round::against_capsule(&polytope, &pill.core, radius, margin, parting, out);
         }
         Shape::Sphere { radius } => {
-            hull_round::against_sphere(&polytope, frame.translation, radius, margin, out);
+            hull_round::against_sphere(&polytope, frame.translation, radius, margin, parting, out);
         }
         _ => {
             let core = Core::Hull(hull);
             let a = Posed::new(&core, &Transform::IDENTITY, Vec3::ZERO);
             if let Some(core) = Core::of(other) {
-                features::collide(&a, &Posed::new(&core, &frame, Vec3::ZERO), margin, out);
+                features::collide(&a, &Posed::new(&core, &frame, Vec3::ZERO), margin, parting, out);
             }
         }
     }

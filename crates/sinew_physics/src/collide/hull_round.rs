@@ -1,11 +1,11 @@
 //! Hull against sphere and capsule: closest points of the hull and the core while they are apart, separating axes once a
 //! capsule's core has entered the hull. Everything happens in the hull's frame.
 
-use super::Manifold;
 use super::axes::{PARALLEL_SINE, choose};
 use super::feature::{self, WHOLE, pair};
 use super::line::Line;
 use super::placed::Segment;
+use super::{Manifold, Parting};
 use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{Plane, Polytope};
 use sinew_math::{Vec3, max, min};
@@ -22,11 +22,13 @@ pub(super) fn against_sphere(
     center: Vec3,
     radius: f32,
     margin: f32,
+    parting: &mut Parting,
     out: &mut Manifold,
 ) {
     let (distance, normal) = hull.distance(center);
     let separation = distance - radius;
     if separation > margin {
+        parting.gap = separation;
         return;
     }
     out.normal = normal;
@@ -50,11 +52,13 @@ pub(super) fn against_capsule(
     core: &Segment,
     radius: f32,
     margin: f32,
+    parting: &mut Parting,
     out: &mut Manifold,
 ) {
     let meeting = apart(hull, core).unwrap_or_else(|| pierced(hull, core, radius));
     let nearest = meeting.distance - radius;
     if nearest > margin {
+        parting.gap = nearest;
         return;
     }
     if !push_line(hull, core, radius, &meeting, margin, out) {

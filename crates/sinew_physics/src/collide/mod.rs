@@ -25,7 +25,7 @@ mod reduce;
 mod round_sphere;
 mod surface;
 
-use crate::boxes::separation::AxisOf;
+use crate::boxes::separation::{Axis, AxisOf};
 use crate::convex::support::{Core, Posed};
 use crate::shape::Shape;
 use placed::{Ball, Pill, PlacedBox, Plane};
@@ -110,6 +110,30 @@ impl Manifold {
     }
 }
 
+/// What is known of two shapes beside their points. It decides nothing about those, whatever it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Parting {
+    /// The axis along which two polytopes were parted when they were asked last: it is tried first, since most that stay apart
+    /// do so along the same one.
+    pub axis: Option<AxisOf>,
+    /// How far apart they surely are, metres. Told where no points are found.
+    pub gap: f32,
+}
+
+impl Default for Parting {
+    /// Nothing is known.
+    fn default() -> Self {
+        Self { axis: None, gap: f32::NEG_INFINITY }
+    }
+}
+
+impl Parting {
+    /// They are parted along an axis.
+    fn along(axis: &Axis) -> Self {
+        Self { axis: Some(axis.of), gap: axis.separation }
+    }
+}
+
 /// Fills `out` with the contact of two placed shapes: the normal points from `a` to `b`, every point has a
 /// separation of at most `margin` (metres, ≥ 0). No points if the shapes are further apart than that, if both are
 /// half-spaces, one is a mesh or height field (see [`collide_all`]), or if a number is not finite. What `out` held before does not matter.
@@ -124,30 +148,34 @@ pub fn collide(
     margin: f32,
     out: &mut Manifold,
 ) {
-    collide_again((a, world_from_a), (b, world_from_b), margin, &mut None, out);
+    collide_again((a, world_from_a), (b, world_from_b), margin, &mut Parting::default(), out);
 }
 
-/// [`collide`] of shapes that were asked before. `apart` remembers the axis along which two polytopes were parted then: it is
-/// tried first, since most that stay apart do so along the same one. It decides nothing about what is found, whatever it is.
+/// Share of the distance between two frames by which rounding may make a gap too large.
+const ROUNDING: f32 = 4e-6;
+
+/// [`collide`] of shapes that were asked before.
 pub(crate) fn collide_again(
     (a, world_from_a): (&Shape, &Transform),
     (b, world_from_b): (&Shape, &Transform),
     margin: f32,
-    apart: &mut Option<AxisOf>,
+    parting: &mut Parting,
     out: &mut Manifold,
 ) {
     *out = Manifold::default();
+    parting.gap = f32::NEG_INFINITY;
     if !(world_from_a.is_finite() && world_from_b.is_finite()) {
         return;
     }
     let balls = [a, b].map(as_ball);
     let (a, b) = (balls[0].as_ref().unwrap_or(a), balls[1].as_ref().unwrap_or(b));
     if rank(a) <= rank(b) {
-        collide_ranked((a, world_from_a), (b, world_from_b), margin, apart, out);
+        collide_ranked((a, world_from_a), (b, world_from_b), margin, parting, out);
     } else {
-        collide_ranked((b, world_from_b), (a, world_from_a), margin, apart, out);
+        collide_ranked((b, world_from_b), (a, world_from_a), margin, parting, out);
         out.flip();
     }
+    parting.gap -= ROUNDING * (world_from_b.translation - world_from_a.translation).length();
 }
 
 /// Calls `visit` with the contacts of two placed shapes, as [`collide`] gives them: of a mesh or height field and a convex
@@ -216,12 +244,31 @@ fn rank(shape: &Shape) -> u32 {
     }
 }
 
+/// A half-space and any solid.
+fn collide_half_space(a: &Plane, b: &Shape, wb: &Transform, margin: f32, out: &mut Manifold) {
+    match *b {
+        Shape::Box { half_extents } => {
+            half_space::against_box(a, &PlacedBox::new(half_extents, wb), margin, out);
+        }
+        Shape::Capsule { half_height, radius } => {
+            half_space::against_capsule(a, &Pill::new(half_height, radius, wb), margin, out);
+        }
+        Shape::Sphere { radius } => half_space::against_sphere(a, &Ball::new(radius, wb), margin, out),
+        Shape::Hull(ref hull) => half_space::against_hull(a, hull, wb, margin, out),
+        ref other => {
+            if let Some(core) = Core::of(other) {
+                half_space::against_core(a, &Posed::new(&core, wb, Vec3::ZERO), margin, out);
+            }
+        }
+    }
+}
+
 /// [`collide`] for `rank(a) <= rank(b)`.
 fn collide_ranked(
     (a, wa): (&Shape, &Transform),
     (b, wb): (&Shape, &Transform),
     margin: f32,
-    apart: &mut Option<AxisOf>,
+    parting: &mut Parting,
     out: &mut Manifold,
 ) {
     // B is never the half-space, whose origin may be far away.
@@ -229,59 +276,53 @@ fn collide_ranked(
     let (wa, wb) =
         (Transform::new(wa.translation - origin, wa.rotation), Transform::new(Vec3::ZERO, wb.rotation));
     match (a, b) {
-        (&Shape::HalfSpace, &Shape::Box { half_extents }) => {
-            half_space::against_box(&Plane::new(&wa), &PlacedBox::new(half_extents, &wb), margin, out);
+        (Shape::HalfSpace, other) => {
+            let plane = Plane::new(&wa);
+            parting.gap = plane.height(Vec3::ZERO) - other.bounding_radius();
+            collide_half_space(&plane, other, &wb, margin, out);
         }
-        (&Shape::HalfSpace, &Shape::Capsule { half_height, radius }) => {
-            half_space::against_capsule(&Plane::new(&wa), &Pill::new(half_height, radius, &wb), margin, out);
-        }
-        (&Shape::HalfSpace, &Shape::Sphere { radius }) => {
-            half_space::against_sphere(&Plane::new(&wa), &Ball::new(radius, &wb), margin, out);
-        }
-        (Shape::HalfSpace, Shape::Hull(hull)) => {
-            half_space::against_hull(&Plane::new(&wa), hull, &wb, margin, out);
-        }
-        (Shape::Hull(hull), _) => hull_pairs::collide(hull, &wa, b, &wb, margin, apart, out),
+        (Shape::Hull(hull), _) => hull_pairs::collide(hull, &wa, b, &wb, margin, parting, out),
         (&Shape::Box { half_extents: half_a }, &Shape::Box { half_extents: half_b }) => {
             let (a, b) = (PlacedBox::new(half_a, &wa), PlacedBox::new(half_b, &wb));
-            box_box::collide(&a, &b, margin, apart, out);
+            box_box::collide(&a, &b, margin, parting, out);
         }
         (&Shape::Box { half_extents }, &Shape::Capsule { half_height, radius }) => {
             let pill = Pill::new(half_height, radius, &wb);
-            box_capsule::collide(&PlacedBox::new(half_extents, &wa), &pill, margin, out);
+            box_capsule::collide(&PlacedBox::new(half_extents, &wa), &pill, margin, parting, out);
         }
         (&Shape::Box { half_extents }, &Shape::Sphere { radius }) => {
-            box_sphere::collide(&PlacedBox::new(half_extents, &wa), &Ball::new(radius, &wb), margin, out);
+            box_sphere::collide(
+                &PlacedBox::new(half_extents, &wa),
+                &Ball::new(radius, &wb),
+                margin,
+                parting,
+                out,
+            );
         }
         (
             &Shape::Capsule { half_height: height_a, radius: radius_a },
             &Shape::Capsule { half_height: height_b, radius: radius_b },
         ) => {
             let (a, b) = (Pill::new(height_a, radius_a, &wa), Pill::new(height_b, radius_b, &wb));
-            capsule_capsule::collide(&a, &b, margin, out);
+            capsule_capsule::collide(&a, &b, margin, parting, out);
         }
         (&Shape::Capsule { half_height, radius }, &Shape::Sphere { radius: radius_b }) => {
             let pill = Pill::new(half_height, radius, &wa);
-            capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, out);
+            capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, parting, out);
         }
         (&Shape::Sphere { radius }, &Shape::Sphere { radius: radius_b }) => {
             // A ball is a capsule without a middle.
             let pill = Pill::new(0.0, radius, &wa);
-            capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, out);
+            capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, parting, out);
         }
         (round, &Shape::Sphere { radius }) => {
             round_sphere::collide(round, &wa, &Ball::new(radius, &wb), margin, out);
-        }
-        (Shape::HalfSpace, other) => {
-            if let Some(core) = Core::of(other) {
-                half_space::against_core(&Plane::new(&wa), &Posed::new(&core, &wb, Vec3::ZERO), margin, out);
-            }
         }
         // The other half of the pairs is brought into this order by `collide`; two half-spaces never meet.
         (a, b) => {
             if let (Some(a), Some(b)) = (Core::of(a), Core::of(b)) {
                 let (a, b) = (Posed::new(&a, &wa, Vec3::ZERO), Posed::new(&b, &wb, Vec3::ZERO));
-                features::collide(&a, &b, margin, out);
+                features::collide(&a, &b, margin, parting, out);
             }
         }
     }
@@ -314,24 +355,25 @@ mod tests {
             let (a, b) = (solid(&mut random), solid(&mut random));
             let mut frame = Transform::new(random.direction(), random.rotation());
             let (drift, turn) = (random.in_cube() * 0.05, random.in_cube() * 0.05);
-            let mut apart = None;
+            let mut parting = Parting::default();
             for _ in 0..20 {
-                let before = apart;
+                let before = parting.axis;
                 let mut found = Manifold::default();
-                collide_again((&a, &Transform::IDENTITY), (&b, &frame), 0.02, &mut apart, &mut found);
+                collide_again((&a, &Transform::IDENTITY), (&b, &frame), 0.02, &mut parting, &mut found);
                 let any = |random: &mut Random| random.index(70);
-                let mut wild = Some(match random.index(3) {
+                let axis = Some(match random.index(3) {
                     0 => AxisOf::FaceA(any(&mut random)),
                     1 => AxisOf::FaceB(any(&mut random)),
                     _ => AxisOf::Edges(any(&mut random), any(&mut random)),
                 });
+                let mut wild = Parting { axis, gap: 1.0 };
                 let mut again = Manifold::default();
                 collide_again((&a, &Transform::IDENTITY), (&b, &frame), 0.02, &mut wild, &mut again);
                 let mut fresh = Manifold::default();
                 collide(&a, &Transform::IDENTITY, &b, &frame, 0.02, &mut fresh);
                 assert_eq!((found, again), (fresh, fresh));
-                parted += u32::from(apart.is_some());
-                same += u32::from(apart.is_some() && before == apart);
+                parted += u32::from(parting.axis.is_some());
+                same += u32::from(parting.axis.is_some() && before == parting.axis);
                 touching += u32::from(fresh.count > 0);
                 frame = Transform::new(
                     frame.translation + drift,

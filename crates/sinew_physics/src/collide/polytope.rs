@@ -2,13 +2,13 @@
 //! arcs cross on the Gauss map, since only they are faces of the Minkowski difference (Gregorius, "The Separating Axis Test
 //! between Convex Polyhedra", GDC 2013). Then the two faces or the two edges that meet.
 
-use super::Manifold;
 use super::axes::{
     Bridge, Faceted, PARALLEL_SINE, choose, choose_face, push, push_bridges, push_faces, tolerance,
 };
 use super::clip::{PolytopeFace, Reference};
 use super::feature::{self, WHOLE, pair};
 use super::placed::Segment;
+use super::{Manifold, Parting};
 use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{MAX_VERTICES, Plane, Polytope};
 use sinew_math::{Vec3, min};
@@ -18,33 +18,34 @@ const FACE_CORNERS: usize = MAX_VERTICES;
 /// Parallel edges and corners that are as close as the closest.
 const CLOSEST: usize = 16;
 
-/// `tie` settles ties between faces of A and B: a direction that stays when the shapes change places. `apart` is as in
-/// [`super::collide_again`].
+/// `tie` settles ties between faces of A and B: a direction that stays when the shapes change places.
 pub(super) fn collide(
     a: &Polytope<'_>,
     b: &Polytope<'_>,
     margin: f32,
     tie: Vec3,
-    apart: &mut Option<AxisOf>,
+    parting: &mut Parting,
     out: &mut Manifold,
 ) {
     let parts = |axis: &Axis| axis.separation > margin;
-    if apart.and_then(|of| axis(a, b, of)).is_some_and(|axis| parts(&axis)) {
+    if let Some(axis) = parting.axis.and_then(|of| axis(a, b, of)).filter(parts) {
+        parting.gap = axis.separation;
         return;
     }
+    parting.axis = None;
     let face_a = best_face(a, b, margin, AxisOf::FaceA);
-    *apart = parts(&face_a).then_some(face_a.of);
-    if apart.is_some() {
+    if parts(&face_a) {
+        *parting = Parting::along(&face_a);
         return;
     }
     let face_b = best_face(b, a, margin, AxisOf::FaceB);
-    *apart = parts(&face_b).then_some(face_b.of);
-    if apart.is_some() {
+    if parts(&face_b) {
+        *parting = Parting::along(&face_b);
         return;
     }
     let edges = best_edges(a, b);
-    *apart = edges.filter(parts).map(|axis| axis.of);
-    if apart.is_some() {
+    if let Some(axis) = edges.filter(parts) {
+        *parting = Parting::along(&axis);
         return;
     }
     let tolerance = tolerance(a.thickness, b.thickness);
@@ -269,7 +270,7 @@ mod tests {
                 best = sinew_math::max(gap(&a, &b, n), best);
             }
             let mut out = Manifold::default();
-            collide(&a, &b, 0.0, Vec3::Y, &mut None, &mut out);
+            collide(&a, &b, 0.0, Vec3::Y, &mut Parting::default(), &mut out);
             assert_eq!(out.count > 0, best <= 0.0, "case {case}: {best}, {out:?}");
             if out.count > 0 {
                 let along = gap(&a, &b, out.normal);

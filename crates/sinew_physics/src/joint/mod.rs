@@ -14,8 +14,8 @@ use def::{
 pub(crate) use incidence::Incidence;
 use rows::locked_count;
 pub(crate) use rows::{
-    DIRECTIONS, JointGeometry, JointPose, JointRows, MAX_LIMITS, Row, Stop, TWIST, anchor_gap, displacement,
-    locked_error, open_directions, open_row, overshoot, stops, turns,
+    DIRECTIONS, JointGeometry, JointPose, JointRows, MAX_LIMITS, MAX_STOPS, Row, Stop, TWIST, anchor_gap,
+    displacement, locked_error, open_directions, open_row, overshoot, stops, turns,
 };
 use sinew_math::{Transform, Vec3};
 pub use world::Reaction;
@@ -26,6 +26,13 @@ pub use world::Reaction;
 pub(crate) struct LimitImpulse {
     pub now: Vec3,
     pub before: Vec3,
+}
+
+impl LimitImpulse {
+    /// As those of substeps `times` as long.
+    pub fn of_substeps(self, times: f32) -> Self {
+        Self { now: self.now * times, before: self.before * times }
+    }
 }
 
 /// What acts in a joint's directions beside the hard constraint.
@@ -49,6 +56,16 @@ impl JointDrive {
             motor: def.motor,
             friction: def.friction_torque,
         }
+    }
+
+    /// Nothing but friction acts in what the joint leaves open, and its stops are hard.
+    pub fn is_limp(&self) -> bool {
+        let Self { weld, limit_softness, soft_zone, spring, motor, friction: _ } = self;
+        weld.is_none()
+            && limit_softness.is_none()
+            && soft_zone.is_none()
+            && spring.is_none()
+            && motor.is_none()
     }
 
     /// True if some row needs to know what mass it moves.
@@ -162,7 +179,7 @@ impl Joint {
         if let Some(weld) = self.drive.weld {
             let rows = JointRows::new(&self.geometry(), pose, [false; DIRECTIONS]);
             for row in 0..rows.locked {
-                sum += half(weld, rows.direction[row], rows.error[row]);
+                sum += half(weld, rows.direction(row), rows.error[row]);
             }
         }
         if let Some(spring) = self.drive.spring {

@@ -1,7 +1,7 @@
 //! Constraint rows and stops of a joint at a pose.
 
 use super::def::{AxisMotion, JointKind};
-use crate::spatial::{Vec6, ZERO6, join};
+use crate::spatial::{Vec6, ZERO6, angular, join, linear};
 use sinew_math::limits::{hinge_angle, wrap};
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3};
 
@@ -93,13 +93,11 @@ impl Row {
     fn about(axis: Vec3) -> Self {
         Self { a: join(Vec3::ZERO, -axis), b: join(Vec3::ZERO, axis) }
     }
-
-    fn negated(self) -> Self {
-        Self { a: self.a.map(|x| -x), b: self.b.map(|x| -x) }
-    }
 }
 
 /// Rows `J_a v_a + J_b v_b` of one joint: those of locked directions first, then those of open ones.
+///
+/// A row is an axis: along it one of translation measures what the anchors do, about it one of rotation what the frames do.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointRows {
     /// Rows in use.
@@ -108,56 +106,119 @@ pub(crate) struct JointRows {
     pub locked: usize,
     /// Position error of the locked rows, metres or radians.
     pub error: Vec6,
+    /// World arms from the centres of mass to where the rows of translation act.
+    pub arm_a: Vec3,
+    pub arm_b: Vec3,
+    /// World axes, row by row.
+    pub axis: [Vec3; DIRECTIONS],
     /// Which direction each row is of.
-    pub direction: [usize; DIRECTIONS],
-    /// Jacobians of the two bodies, row by row.
-    pub a: [Vec6; DIRECTIONS],
-    pub b: [Vec6; DIRECTIONS],
+    direction: [u8; DIRECTIONS],
 }
 
 impl JointRows {
     /// Rows of all locked directions, and of those open ones that are asked for.
     pub fn new(joint: &JointGeometry, pose: &JointPose, open: [bool; DIRECTIONS]) -> Self {
+        let kind = &joint.kind;
+        let locks = locks(kind);
         let mut rows = Self {
             count: 0,
             locked: 0,
             error: ZERO6,
+            arm_a: if turns_with_a(kind, &locks) { pose.arm_a + pose.gap } else { pose.arm_a },
+            arm_b: pose.arm_b,
+            axis: [Vec3::ZERO; DIRECTIONS],
             direction: [0; DIRECTIONS],
-            a: [ZERO6; DIRECTIONS],
-            b: [ZERO6; DIRECTIONS],
         };
-        let locks = locks(&joint.kind);
-        for i in (0..DIRECTIONS).filter(|&i| locks[i]) {
-            let (error, row) = locked_row(&joint.kind, &locks, pose, i);
-            rows.push(i, error, row);
-        }
+        each_locked(kind, &locks, pose, |direction, error, axis| rows.push(direction, error, axis));
         rows.locked = rows.count;
-        for i in open_directions(joint.kind).filter(|&i| open[i]) {
-            rows.push(i, 0.0, open_row(&joint.kind, pose, i));
+        if open != [false; DIRECTIONS] {
+            for i in open_directions(*kind).filter(|&i| open[i]) {
+                rows.push(i, 0.0, open_axis(kind, &locks, pose, i));
+            }
         }
         rows
     }
 
-    fn push(&mut self, direction: usize, error: f32, row: Row) {
+    #[inline(always)]
+    fn push(&mut self, direction: usize, error: f32, axis: Vec3) {
         self.error[self.count] = error;
-        self.direction[self.count] = direction;
-        self.a[self.count] = row.a;
-        self.b[self.count] = row.b;
+        self.direction[self.count] = direction as u8;
+        self.axis[self.count] = axis;
         self.count += 1;
     }
+
+    /// Direction of a row.
+    #[inline(always)]
+    pub fn direction(&self, row: usize) -> usize {
+        usize::from(self.direction[row])
+    }
+
+    /// True of a row of rotation.
+    #[inline(always)]
+    pub fn turns(&self, row: usize) -> bool {
+        self.direction(row) >= TWIST
+    }
+
+    /// True if the anchors are held together: the first three rows, along the axes of the world.
+    pub fn locks_point(&self) -> bool {
+        self.locked >= TWIST && self.direction(TWIST - 1) < TWIST
+    }
+
+    /// Jacobian of a row on A.
+    pub fn on_a(&self, row: usize) -> Vec6 {
+        self.jacobian(row, self.arm_a).map(|x| -x)
+    }
+
+    /// Jacobian of a row on B.
+    pub fn on_b(&self, row: usize) -> Vec6 {
+        self.jacobian(row, self.arm_b)
+    }
+
+    fn jacobian(&self, row: usize, arm: Vec3) -> Vec6 {
+        let axis = self.axis[row];
+        if self.turns(row) { join(Vec3::ZERO, axis) } else { join(axis, arm.cross(axis)) }
+    }
+
+    /// What impulses of the rows are together on B, and with the other sign on A; torques about each one's centre.
+    pub fn impulse(&self, of_rows: &Vec6) -> [Vec6; 2] {
+        let (mut force, mut torque) = (Vec3::ZERO, Vec3::ZERO);
+        for row in 0..self.count {
+            let part = self.axis[row] * of_rows[row];
+            *(if self.turns(row) { &mut torque } else { &mut force }) += part;
+        }
+        [self.arm_a, self.arm_b].map(|arm| join(force, torque + arm.cross(force)))
+    }
+
+    /// `J v`, row by row, at velocities of A and B.
+    #[inline]
+    pub fn rate(&self, a: &Vec6, b: &Vec6) -> Vec6 {
+        let turn = angular(b) - angular(a);
+        let slide = (linear(b) + angular(b).cross(self.arm_b)) - (linear(a) + angular(a).cross(self.arm_a));
+        let mut out = ZERO6;
+        for row in 0..self.count {
+            out[row] = self.axis[row].dot(if self.turns(row) { turn } else { slide });
+        }
+        out
+    }
+}
+
+/// Whether rows of translation turn with A: those of a point and of a distance stand still.
+fn turns_with_a(kind: &JointKind, locks: &[bool; 6]) -> bool {
+    locks[..TWIST] != [true; 3] && !matches!(kind, JointKind::Distance { .. })
 }
 
 /// Position errors of the locked rows alone, in the order of [`JointRows`].
 pub(crate) fn locked_error(joint: &JointGeometry, pose: &JointPose) -> Vec6 {
-    let locks = locks(&joint.kind);
-    let mut error = ZERO6;
-    for (row, i) in (0..DIRECTIONS).filter(|&i| locks[i]).enumerate() {
-        error[row] = locked_row(&joint.kind, &locks, pose, i).0;
-    }
-    error
+    let (mut all, mut count) = (ZERO6, 0);
+    each_locked(&joint.kind, &locks(&joint.kind), pose, |_, error, _| {
+        all[count] = error;
+        count += 1;
+    });
+    all
 }
 
 /// Which directions are held.
+#[inline]
 pub(crate) fn locks(kind: &JointKind) -> [bool; DIRECTIONS] {
     match kind {
         JointKind::Ball { .. } => [true, true, true, false, false, false],
@@ -178,49 +239,53 @@ fn exists(kind: &JointKind, direction: usize) -> bool {
     !matches!(kind, JointKind::Distance { .. }) || direction == 0
 }
 
-/// Error and row of a locked direction.
-fn locked_row(kind: &JointKind, locks: &[bool; 6], pose: &JointPose, direction: usize) -> (f32, Row) {
-    if direction >= TWIST {
-        let (error, axis) = locked_rotation(locks, pose, direction);
-        return (error, Row::about(axis));
-    }
+/// Direction, error and axis of each locked direction, in ascending order.
+#[inline(always)]
+fn each_locked(kind: &JointKind, locks: &[bool; 6], pose: &JointPose, mut put: impl FnMut(usize, f32, Vec3)) {
     if let JointKind::Distance { range } = kind {
-        return (pose.gap.length() - range.lo, Row::along(pose.line(), pose));
+        if locks[0] {
+            put(0, pose.gap.length() - range.lo, pose.line());
+        }
+        return;
     }
     if locks[..TWIST] == [true; 3] {
         // A point: any axes will do, and those of the world need no turning.
-        let axis = [Vec3::X, Vec3::Y, Vec3::Z][direction];
-        return (axis.dot(pose.gap), Row::along(axis, pose));
+        put(0, pose.gap.x, Vec3::X);
+        put(1, pose.gap.y, Vec3::Y);
+        put(2, pose.gap.z, Vec3::Z);
+    } else {
+        for i in (0..TWIST).filter(|&i| locks[i]) {
+            let axis = pose.axis(i);
+            put(i, axis.dot(pose.gap), axis);
+        }
     }
-    let axis = pose.axis(direction);
-    (axis.dot(pose.gap), Row::along_turning(axis, pose))
-}
-
-/// Locked rotation: error in radians and world axis whose dot product with `ω_b − ω_a` is its rate.
-fn locked_rotation(locks: &[bool; 6], pose: &JointPose, direction: usize) -> (f32, Vec3) {
-    let (ra, x_b) = (pose.rotation_a, pose.rotation_b * Vec3::X);
-    if locks[TWIST..] == [true; 3] {
+    let [twist, swing_y, swing_z] = [locks[TWIST], locks[4], locks[5]];
+    if twist && swing_y && swing_z {
         let error = pose.relative().to_scaled_axis();
-        let i = direction - TWIST;
-        return ([error.x, error.y, error.z][i], pose.axis(i));
+        for (i, error) in [error.x, error.y, error.z].into_iter().enumerate() {
+            put(TWIST + i, error, pose.axis(i));
+        }
+        return;
     }
-    match direction {
-        TWIST => {
-            // The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b). C = ½ (1 + x_a·x_b) θ fades where a swing of half a turn leaves
-            // the twist θ undefined, instead of growing beyond all bounds: Ċ = ω · ½ (x_a + x_b + θ x_b × x_a).
-            let (swing, twist) = pose.relative().swing_twist(Vec3::X);
-            let (x_b, angle) = (swing * Vec3::X, twist.twist_angle(Vec3::X));
-            let sum = Vec3::X + x_b;
-            (angle * 0.5 * sum.x, ra * ((sum + x_b.cross(Vec3::X) * angle) * 0.5))
-        }
-        // C = −z_a · x_b and y_a · x_b keep x_b out of the planes it would swing into. Ċ = (x_b × y_a) · (ω_b − ω_a).
-        4 => {
+    let ra = pose.rotation_a;
+    if twist {
+        // The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b). C = ½ (1 + x_a·x_b) θ fades where a swing of half a turn leaves
+        // the twist θ undefined, instead of growing beyond all bounds: Ċ = ω · ½ (x_a + x_b + θ x_b × x_a).
+        let (swing, twist) = pose.relative().swing_twist(Vec3::X);
+        let (x_b, angle) = (swing * Vec3::X, twist.twist_angle(Vec3::X));
+        let sum = Vec3::X + x_b;
+        put(TWIST, angle * 0.5 * sum.x, ra * ((sum + x_b.cross(Vec3::X) * angle) * 0.5));
+    }
+    // C = −z_a · x_b and y_a · x_b keep x_b out of the planes it would swing into. Ċ = (x_b × y_a) · (ω_b − ω_a).
+    if swing_y || swing_z {
+        let x_b = pose.rotation_b * Vec3::X;
+        if swing_y {
             let z = ra * Vec3::Z;
-            (-z.dot(x_b), z.cross(x_b))
+            put(4, -z.dot(x_b), z.cross(x_b));
         }
-        _ => {
+        if swing_z {
             let y = ra * Vec3::Y;
-            (y.dot(x_b), x_b.cross(y))
+            put(5, y.dot(x_b), x_b.cross(y));
         }
     }
 }
@@ -239,12 +304,22 @@ pub(crate) fn open_directions(kind: JointKind) -> impl Iterator<Item = usize> {
 /// Row of an open direction.
 pub(crate) fn open_row(kind: &JointKind, pose: &JointPose, direction: usize) -> Row {
     let locks = locks(kind);
+    let axis = open_axis(kind, &locks, pose, direction);
     match direction {
-        0 if matches!(kind, JointKind::Distance { .. }) => Row::along(pose.line(), pose),
-        0..TWIST => Row::along_turning(pose.axis(direction), pose),
+        TWIST.. => Row::about(axis),
+        _ if turns_with_a(kind, &locks) => Row::along_turning(axis, pose),
+        _ => Row::along(axis, pose),
+    }
+}
+
+/// Axis of an open direction.
+fn open_axis(kind: &JointKind, locks: &[bool; 6], pose: &JointPose, direction: usize) -> Vec3 {
+    match direction {
+        0 if matches!(kind, JointKind::Distance { .. }) => pose.line(),
+        0..TWIST => pose.axis(direction),
         // With one swing locked the twist is about the axis that B carries.
-        TWIST if locks[4] != locks[5] => Row::about(pose.rotation_b * Vec3::X),
-        _ => Row::about(pose.axis(direction - TWIST)),
+        TWIST if locks[4] != locks[5] => pose.rotation_b * Vec3::X,
+        _ => pose.axis(direction - TWIST),
     }
 }
 
@@ -276,8 +351,20 @@ pub(crate) struct Stop {
     pub room: f32,
     /// Gradient of the room in frame A: rotation for the first two limits, translation for the others.
     pub axis: Vec3,
+}
+
+impl Stop {
     /// Rate of the room.
-    pub row: Row,
+    pub fn row(&self, kind: &JointKind, pose: &JointPose) -> Row {
+        let axis = pose.rotation_a * self.axis;
+        if turns(self.limit) {
+            Row::about(axis)
+        } else if let JointKind::Distance { .. } = kind {
+            Row::along(axis, pose)
+        } else {
+            Row::along_turning(axis, pose)
+        }
+    }
 }
 
 /// Whether a limit is of a rotation.
@@ -289,37 +376,37 @@ pub(crate) fn turns(limit: usize) -> bool {
 pub(crate) fn stops(kind: &JointKind, pose: &JointPose) -> [Option<Stop>; MAX_STOPS] {
     let mut out = [None; MAX_STOPS];
     let mut put = |place: usize, room: f32, axis: Vec3| {
-        let row = Row::about(pose.rotation_a * axis);
-        out[place] = Some(Stop { limit: place.div_ceil(2), room, axis, row });
+        out[place] = Some(Stop { limit: place.div_ceil(2), room, axis });
     };
-    let (cone, twist) = rotation_limits(kind);
-    if let Some(limit) = cone {
-        let state = limit.swing_state(pose.relative());
-        put(0, state.room, state.axis);
-    }
-    if let JointKind::Hinge { limit: Some(range) } = kind {
+    let (cone, twist_range) = rotation_limits(kind);
+    if cone.is_some() || twist_range.is_some() {
+        let (swing, twist) = pose.relative().swing_twist(Vec3::X);
+        if let Some(limit) = cone {
+            let state = limit.state_of_swing(swing);
+            put(0, state.room, state.axis);
+        }
+        if let Some(range) = twist_range {
+            let [below, above] = twist_only(range).states_of_twist(swing, twist);
+            put(1, below.room, below.axis);
+            put(2, above.room, above.axis);
+        }
+    } else if let JointKind::Hinge { limit: Some(range) } = kind {
         // Measured from the middle and wrapped, as for a twist.
         let half = 0.5 * (range.hi - range.lo);
         let angle = wrap(hinge_angle(pose.relative()) - range.center());
         put(1, half + angle, Vec3::X);
         put(2, half - angle, -Vec3::X);
-    } else if let Some(range) = twist {
-        let [below, above] = twist_stops(range, pose.relative());
-        put(1, below.room, below.axis);
-        put(2, above.room, above.axis);
     }
     for (i, range) in linear_limits(kind).into_iter().enumerate() {
         let Some(range) = range else { continue };
-        let (at, axis, row) = if let JointKind::Distance { .. } = kind {
-            let line = pose.line();
-            (pose.gap.length(), pose.rotation_a.inverse() * line, Row::along(line, pose))
+        let (at, axis) = if let JointKind::Distance { .. } = kind {
+            (pose.gap.length(), pose.rotation_a.inverse() * pose.line())
         } else {
-            let axis = pose.axis(i);
-            (axis.dot(pose.gap), [Vec3::X, Vec3::Y, Vec3::Z][i], Row::along_turning(axis, pose))
+            (pose.axis(i).dot(pose.gap), [Vec3::X, Vec3::Y, Vec3::Z][i])
         };
         let limit = 2 + i;
-        out[3 + 2 * i] = Some(Stop { limit, room: at - range.lo, axis, row });
-        out[4 + 2 * i] = Some(Stop { limit, room: range.hi - at, axis: -axis, row: row.negated() });
+        out[3 + 2 * i] = Some(Stop { limit, room: at - range.lo, axis });
+        out[4 + 2 * i] = Some(Stop { limit, room: range.hi - at, axis: -axis });
     }
     out
 }
@@ -359,9 +446,9 @@ fn linear_limits(kind: &JointKind) -> [Option<Range>; 3] {
     }
 }
 
-fn twist_stops(twist: Range, relative: Rotation) -> [sinew_math::limits::LimitState; 2] {
+fn twist_only(twist: Range) -> SwingTwistLimit {
     let free = Range::symmetric(core::f32::consts::PI);
-    SwingTwistLimit { swing_y: free, swing_z: free, twist }.twist_states(relative)
+    SwingTwistLimit { swing_y: free, swing_z: free, twist }
 }
 
 /// How far a joint is beyond its limits of rotation, radians.
@@ -378,10 +465,9 @@ pub(crate) fn anchor_gap(kind: &JointKind, pose: &JointPose) -> f32 {
         return pose.gap.length();
     }
     let mut square = 0.0;
-    for i in (0..TWIST).filter(|&i| locks[i]) {
-        let (error, _) = locked_row(kind, &locks, pose, i);
-        square += error * error;
-    }
+    each_locked(kind, &locks, pose, |direction, error, _| {
+        square += if direction < TWIST { error * error } else { 0.0 };
+    });
     for stop in stops(kind, pose).into_iter().flatten().filter(|stop| !turns(stop.limit) && stop.room < 0.0) {
         square += stop.room * stop.room;
     }

@@ -47,13 +47,13 @@ impl<'a> Substep<'a> {
 
     /// Length of a substep, seconds.
     pub fn h(&self) -> f32 {
-        self.view.h
+        self.view.pace.h
     }
 
     /// Simulated time at which things are where they are, seconds: the substep's beginning for forces, its end for
     /// corrections.
     pub fn time(&self) -> f64 {
-        self.start + f64::from(self.moved) * f64::from(self.view.h)
+        self.start + f64::from(self.moved) * f64::from(self.view.pace.h)
     }
 
     /// The world's gravity, m/s².
@@ -137,7 +137,7 @@ impl<'a> Substep<'a> {
         match self.moving(id) {
             Some((solver, local)) => solver.bodies[local].pose,
             None => match self.expect(id) {
-                body if body.kind == BodyKind::Kinematic => body.carried(self.view.h, self.moved),
+                body if body.kind == BodyKind::Kinematic => body.carried(self.view.pace.h, self.moved),
                 body => body.world_from_principal,
             },
         }

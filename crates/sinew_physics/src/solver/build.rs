@@ -1,24 +1,33 @@
 //! `prepare`: from the world to the arrays of one island's solver.
 
-use super::contact_rows::{ManifoldRows, ManifoldSource, PlacedShape};
+use super::contact_rows::{ManifoldRows, ManifoldSource, PlacedShape, REFIND_TURN};
+use super::contacts::OfStep;
 use super::drives::SoftRow;
 use super::loops::MAX_EXACT_ROWS;
+use super::squeeze::Touch;
 use super::tree::{Link, NONE};
-use super::{IslandSolver, SolverBody, SolverJoint};
+use super::{IslandSolver, SolverBody, SolverJoint, counts};
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
+use crate::collide::MAX_POINTS;
 use crate::contact::{Contact, slop};
 use crate::def::WorldDef;
 use crate::field::Fields;
 use crate::islands::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
 use crate::modifiers::Modifiers;
+use crate::object::Objects;
 use crate::proxies::Proxies;
 use crate::spatial::{ZERO6, join};
+use crate::step::StepContext;
 use crate::work::Work;
 use sinew_math::{Sym3, Vec3, min};
 
+/// Bodies and contacts more than an island has for which there is room: those that come and go ask for none.
+const SPARE: usize = 32;
+/// Contacts that come in faster than this may have other points before the step is over, m/s.
+const FAST_APPROACH: f32 = 1.0;
 /// At most this many bodies are solved as one tree; joints beyond become loop rows.
 const MAX_TREE: usize = 1024;
 
@@ -32,8 +41,33 @@ pub(crate) struct View<'a> {
     pub modifiers: &'a Modifiers,
     pub def: &'a WorldDef,
     pub fields: Fields<'a>,
-    /// Substep, seconds.
+    pub pace: Pace,
+}
+
+/// Substeps of the world.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace {
+    /// Length of one, seconds, and how many a step has.
     pub h: f32,
+    pub substeps: u32,
+    pub grading: Grading,
+}
+
+impl Pace {
+    /// Objects act in every substep of the world's, so that with any all islands take those.
+    pub fn new(context: &StepContext<'_>, objects: &Objects) -> Self {
+        let grading = if objects.is_empty() { Grading::ByContent } else { Grading::None };
+        Self { h: context.h, substeps: context.substeps, grading }
+    }
+}
+
+/// Whether an island may take fewer substeps than the world's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Grading {
+    /// It follows from what the island holds.
+    ByContent,
+    /// All take those of the world.
+    None,
 }
 
 /// Memory for building.
@@ -53,6 +87,8 @@ pub(super) struct Scratch {
     local: Vec<u32>,
     /// World indices of the fixed bodies, ascending.
     fixed: Vec<u32>,
+    /// Per slot of the world's bodies: local index, of those that the island has.
+    local_of: Vec<u32>,
     /// Per joint of the island: used by a tree.
     used: Vec<bool>,
     /// (body's place, joint's place), ascending: which joints a body has.
@@ -128,9 +164,10 @@ pub(super) fn lasting_force(body: &Body, view: &View<'_>) -> (Vec3, Vec3) {
 impl IslandSolver {
     /// Fills the solver with an island of the world.
     pub fn prepare(&mut self, island: &Island<'_>, view: &View<'_>) {
-        self.h = view.h;
+        self.choose_substeps(island, view);
         self.displaced = false;
         self.work = Work::default();
+        self.tally = counts::Tally::default();
         (self.max_speed, self.max_turn) = (view.def.max_speed, view.def.max_turn);
         self.order_trees(island, view);
         self.make_room(island);
@@ -139,16 +176,21 @@ impl IslandSolver {
         self.copy_joints(island, view);
         self.weigh_joints();
         self.refresh_joints();
-        self.copy_contacts(island, view);
-        if !self.is_articulated() {
-            self.levels.count(self.links.len(), &self.manifolds);
-            self.guess_loads();
-            self.add_ballast();
-        }
+        self.choose_coupling(island.contacts.len());
+        self.note_touches(island, view);
         self.refresh_inertia();
-        self.factor_joints();
         self.choose_effort();
         self.limits.clear();
+        self.manifolds.clear();
+        if self.is_in_lanes() {
+            self.prepare_contacts(island, view);
+        } else {
+            self.copy_contacts(island, view);
+        }
+        if !self.is_articulated() {
+            return;
+        }
+        self.factor_joints();
         self.choose_limits();
         self.refresh_response();
     }
@@ -166,6 +208,15 @@ impl IslandSolver {
         s.shares.clear();
         s.shares.reserve(island.bodies.len());
         self.conjugate.make_room(island.bodies.len(), island.contacts.len());
+        self.touches.clear();
+        self.touches.reserve(island.contacts.len() + SPARE);
+        self.starts.clear();
+        self.starts.reserve(island.bodies.len() + SPARE);
+        self.contacts.clear();
+        self.contacts.make_room(island.bodies.len() + SPARE, island.contacts.len() + SPARE);
+        self.bounces = false;
+        self.bounced_from.clear();
+        self.bounced_from.reserve(island.bodies.len() + SPARE);
     }
 
     /// Spanning trees: few loops are closed exactly in one tree per thing that hangs together. Where there are too many
@@ -272,7 +323,11 @@ impl IslandSolver {
         self.bodies.clear();
         self.velocities.clear();
         let ordered = s.order.iter().copied();
+        if s.local_of.len() < view.bodies.slot_count() {
+            s.local_of.resize(view.bodies.slot_count(), NONE);
+        }
         for index in ordered.chain(s.fixed.iter().copied()) {
+            s.local_of[index as usize] = self.bodies.len() as u32;
             let body = view.bodies.at(index);
             let (force, torque) = lasting_force(body, view);
             self.bodies.push(SolverBody {
@@ -298,12 +353,8 @@ impl IslandSolver {
     }
 
     /// Local index of a world body.
-    fn local(&self, island: &Island<'_>, body: u32) -> u32 {
-        let s = &self.scratch.build;
-        match island.bodies.binary_search(&body) {
-            Ok(place) => s.local[place],
-            Err(_) => (self.links.len() + s.fixed.binary_search(&body).unwrap_or(0)) as u32,
-        }
+    fn local(&self, body: u32) -> u32 {
+        self.scratch.build.local_of[body as usize]
     }
 
     fn copy_joints(&mut self, island: &Island<'_>, view: &View<'_>) {
@@ -312,7 +363,7 @@ impl IslandSolver {
         self.pins.clear();
         for (place, &index) in island.joints.iter().enumerate() {
             let joint = view.joints.at(index);
-            let (a, b) = (self.local(island, joint.a), self.local(island, joint.b));
+            let (a, b) = (self.local(joint.a), self.local(joint.b));
             let geometry = joint.geometry();
             let pose =
                 JointPose::new(&geometry, &self.bodies[a as usize].pose, &self.bodies[b as usize].pose);
@@ -335,11 +386,11 @@ impl IslandSolver {
                 least_mass: ZERO6,
                 start_rate: ZERO6,
                 saturated: joint.saturated,
-                limits: joint.limits,
+                limits: joint.limits.map(|limit| limit.of_substeps(self.stretch)),
                 limit_impulse: [Vec3::ZERO; MAX_LIMITS],
                 force: joint.force,
                 impulse: ZERO6,
-                warm_impulse: joint.warm_impulse,
+                warm_impulse: joint.warm_impulse.map(|impulse| impulse * self.stretch),
                 reaction: ZERO6,
                 accounted: ZERO6,
             });
@@ -350,7 +401,6 @@ impl IslandSolver {
                 self.loops.joints.push(place as u32);
             }
         }
-        self.articulated = !self.pins.joints.is_empty() || self.links.iter().any(|link| link.joint != NONE);
         self.loops.group(&self.joints, &self.links);
         // A grounded root's parent is the fixed body of its joint.
         for i in 0..self.links.len() {
@@ -362,8 +412,43 @@ impl IslandSolver {
         }
     }
 
+    /// Who touches whom, and what presses on bodies that no joint holds.
+    fn note_touches(&mut self, island: &Island<'_>, view: &View<'_>) {
+        for &index in island.contacts {
+            let contact = &view.contacts[index as usize];
+            let key = contact.key;
+            let extent = || {
+                let [a, b] = [(key.a, key.shape_a), (key.b, key.shape_b)]
+                    .map(|(body, shape)| view.bodies.at(body).shapes[shape as usize].shape.smallest_extent());
+                min(a, b)
+            };
+            let bodies = [key.a, key.b].map(|body| self.local(body));
+            self.touches.push(Touch::new(bodies, contact, self.stretch, || slop(extent())));
+        }
+        self.levels.count(self.links.len(), &self.touches);
+        self.guess_loads();
+        self.add_ballast();
+    }
+
+    /// Contacts in lanes.
+    fn prepare_contacts(&mut self, island: &Island<'_>, view: &View<'_>) {
+        let h = self.h;
+        let turns = |body: u32| view.bodies.at(body).velocity.angular.length() * h >= 0.5 * REFIND_TURN;
+        for (&index, touch) in island.contacts.iter().zip(&self.touches) {
+            let contact = &view.contacts[index as usize];
+            // What turns or comes in fast may come down on more points within the step.
+            let is_fast = contact.approach > FAST_APPROACH || turns(contact.key.a) || turns(contact.key.b);
+            let points = if is_fast { MAX_POINTS } else { contact.manifold.count };
+            self.contacts.push(index, touch.bodies, points, self.firmness(touch.bodies));
+        }
+        self.starts.clear();
+        self.starts.extend(self.bodies.iter().map(|body| body.pose));
+        let of_step =
+            OfStep { view, bodies: &self.bodies, moving: self.links.len(), h: self.h, stretch: self.stretch };
+        self.driven = self.contacts.prepare(&of_step);
+    }
+
     fn copy_contacts(&mut self, island: &Island<'_>, view: &View<'_>) {
-        self.manifolds.clear();
         self.driven = false;
         for &index in island.contacts {
             let contact = &view.contacts[index as usize];
@@ -373,19 +458,22 @@ impl IslandSolver {
             let extent = min(shape_a.shape.smallest_extent(), shape_b.shape.smallest_extent());
             let source = ManifoldSource {
                 contact: index,
-                a: self.local(island, contact.key.a),
-                b: self.local(island, contact.key.b),
+                a: self.local(contact.key.a),
+                b: self.local(contact.key.b),
                 a_moves: a.is_active(),
                 b_moves: b.is_active(),
                 manifold: &contact.manifold,
-                memory: contact.memory,
+                memory: contact.memory.of_substeps(self.stretch),
                 material: view.modifiers.material(view.bodies, view.contacts, index),
                 slop: slop(extent),
                 shapes: [shape_a, shape_b].map(|s| PlacedShape::new(s.shape.clone(), s.principal_from_shape)),
-                h: view.h,
+                h: self.h,
             };
             self.driven |= source.material.drives();
-            self.manifolds.push(ManifoldRows::new(&source, &self.bodies));
+            let firmness = self.firmness([source.a, source.b]);
+            let mut rows = ManifoldRows::new(&source, &self.bodies);
+            rows.set_firmness(firmness);
+            self.manifolds.push(rows);
         }
     }
 }

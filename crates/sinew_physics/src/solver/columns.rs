@@ -96,6 +96,11 @@ impl Columns {
         Strip { start: self.end(), stride: Reach::new(response, links, bodies).len() }
     }
 
+    /// Bytes that are filled.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.entries[..])
+    }
+
     /// Where the next column will start.
     pub fn end(&self) -> usize {
         self.entries.len()
@@ -116,14 +121,28 @@ impl Columns {
     ) -> [Vec6; 2] {
         let reach = Reach::new(response, links, bodies);
         let start = self.end();
-        self.entries.resize(start + reach.len(), ZERO6);
+        let second =
+            reach.places[1].map_or(0, |place| if place < reach.members[0].len() { reach.len() } else { 0 });
+        self.entries.resize(start + reach.len() + second, ZERO6);
         let column = &mut self.entries[start..];
-        for ((body, p), place) in bodies.into_iter().zip(row).zip(reach.places) {
-            let Some(place) = place else { continue };
-            let first = if place < reach.members[0].len() { 0 } else { reach.members[0].len() };
-            response.answer(links, body, p, &mut column[first..]);
+        let [a, b] = bodies;
+        let (on_a, on_b) = column.split_at_mut(reach.members[0].len());
+        if reach.places[0].is_some() {
+            response.answer(links, a, row[0], on_a);
         }
-        reach.places.map(|place| place.map_or(ZERO6, |place| column[place]))
+        match reach.places[1] {
+            // Both in one tree: the second answer goes beside the first, to be added.
+            Some(place) if place < on_a.len() => {
+                response.answer(links, b, row[1], on_b);
+                for (sum, more) in on_a.iter_mut().zip(on_b) {
+                    add_scaled(sum, more, 1.0);
+                }
+                self.entries.truncate(start + reach.len());
+            }
+            Some(_) => response.answer(links, b, row[1], on_b),
+            None => {}
+        }
+        reach.places.map(|place| place.map_or(ZERO6, |place| self.entries[start + place]))
     }
 
     /// Adds to the velocities what changes of the impulses of rows of two bodies give.

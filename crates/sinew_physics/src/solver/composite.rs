@@ -81,7 +81,10 @@ impl IslandSolver {
             let joint = &self.joints[j];
             let rows = JointRows::new(&joint.geometry, &joint.pose, [true; DIRECTIONS]);
             let (mut response, mut alone) = (ZERO66, ZERO66);
-            for (side, rows) in [(joint.a, &rows.a), (joint.b, &rows.b)] {
+            let jacobians = [JointRows::on_a, JointRows::on_b];
+            for (side, on_side) in [joint.a, joint.b].into_iter().zip(jacobians) {
+                let on_side: [Vec6; DIRECTIONS] = core::array::from_fn(|row| on_side(&rows, row));
+                let on_side = &on_side[..rows.count];
                 let Some(link) = self.links.get(side as usize) else { continue };
                 let center = self.bodies[side as usize].pose.translation;
                 // Below this joint the subtree, above it the rest of the tree, unless a fixed body holds that.
@@ -99,11 +102,11 @@ impl IslandSolver {
                     (Some(Piece::of(&self.bodies[side as usize], center)), center)
                 };
                 if let Some(piece) = piece {
-                    piece.add_response(&rows[..], center - reference, &mut response);
+                    piece.add_response(on_side, center - reference, &mut response);
                 }
                 if joint.drive.motor.is_some() {
                     let own = Piece::of(&self.bodies[side as usize], center);
-                    own.add_response(&rows[..], Vec3::ZERO, &mut alone);
+                    own.add_response(on_side, Vec3::ZERO, &mut alone);
                 }
             }
             let joint = &mut self.joints[j];
@@ -159,7 +162,7 @@ enum Together {
 fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS], together: Together) -> Vec6 {
     let rigid = if joint.drive.weld.is_some() { 0 } else { rows.locked };
     let turns =
-        |row: usize| together == Together::Rotations && row >= rows.locked && rows.direction[row] >= TWIST;
+        |row: usize| together == Together::Rotations && row >= rows.locked && rows.direction(row) >= TWIST;
     let mut out = ZERO6;
     for row in rigid..rows.count {
         let is_held = |k: usize| k < rigid || (turns(row) && turns(k) && k != row);
@@ -179,7 +182,7 @@ fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS], 
         let alone = response[row][row];
         // Rows that depend on each other (a gimbal's end) leave the row by itself.
         let mass = inverse.map_or(if alone > 0.0 { 1.0 / alone } else { 0.0 }, |m| m[count - 1][count - 1]);
-        out[rows.direction[row]] = max(mass, LEAST_MASS);
+        out[rows.direction(row)] = max(mass, LEAST_MASS);
     }
     out
 }

@@ -130,7 +130,7 @@ impl SolverJoint {
         if self.rigid < self.rows.count {
             let rates = self.anchor_rates(velocities);
             for row in self.rigid..self.rows.count {
-                let direction = self.rows.direction[row];
+                let direction = self.rows.direction(row);
                 if self.drive.motor.is_some() && row >= self.rows.locked && self.saturated[direction] == 0 {
                     self.driven[row] = self.motor_row(direction, h);
                 }
@@ -140,7 +140,7 @@ impl SolverJoint {
     }
 
     fn soft_row(&self, row: usize, rates: [f32; 2], h: f32) -> SoftRow {
-        let direction = self.rows.direction[row];
+        let direction = self.rows.direction(row);
         let mut soft = SoftRow::default();
         if row < self.rows.locked {
             if let Some(weld) = self.drive.weld {
@@ -219,7 +219,7 @@ impl SolverJoint {
 
     /// Rate that a soft row goes to where it moves nothing.
     pub(super) fn wanted(&self, row: usize) -> f32 {
-        self.soft[row].wanted(self.start_rate[self.rows.direction[row]])
+        self.soft[row].wanted(self.start_rate[self.rows.direction(row)])
     }
 
     /// Γ of a row.
@@ -227,15 +227,20 @@ impl SolverJoint {
         if row < self.rigid { 0.0 } else { self.soft[row].compliance() }
     }
 
+    /// 1/Γ of a row that is not rigid.
+    pub(super) fn gain(&self, row: usize) -> f32 {
+        self.soft[row].gain
+    }
+
+    /// True if the anchors are held together exactly and rotations are all that is left, none of them held.
+    pub(super) fn is_point(&self) -> bool {
+        self.rigid == TWIST && self.rows.locked == TWIST && self.rows.locks_point()
+    }
+
     /// `J v`, row by row; bodies that `velocities` does not have stand still.
     pub(super) fn rate(&self, velocities: &[Vec6]) -> Vec6 {
-        let (a, b) = (velocities.get(self.a as usize), velocities.get(self.b as usize));
-        let mut out = ZERO6;
-        for row in 0..self.rows.count {
-            out[row] =
-                a.map_or(0.0, |v| dot(&self.rows.a[row], v)) + b.map_or(0.0, |v| dot(&self.rows.b[row], v));
-        }
-        out
+        let of = |body: u32| velocities.get(body as usize).unwrap_or(&ZERO6);
+        self.rows.rate(of(self.a), of(self.b))
     }
 
     /// How much further a weld that gives is off at other poses of the bodies than its rows foresaw, beyond what is made up
@@ -270,10 +275,11 @@ impl IslandSolver {
     /// Before the forces of a substep: rates of the soft rows, and what saturated motors push.
     pub(super) fn begin_drives(&mut self) {
         for joint in &mut self.joints {
-            for row in joint.rigid..joint.rows.count {
-                joint.start_rate[joint.rows.direction[row]] =
-                    dot(&joint.rows.a[row], &self.velocities[joint.a as usize])
-                        + dot(&joint.rows.b[row], &self.velocities[joint.b as usize]);
+            if joint.rigid < joint.rows.count {
+                let rate = joint.rate(&self.velocities);
+                for row in joint.rigid..joint.rows.count {
+                    joint.start_rate[joint.rows.direction(row)] = rate[row];
+                }
             }
             if joint.drive.motor.is_some() {
                 for i in joint.motor_directions() {
@@ -320,7 +326,7 @@ impl IslandSolver {
         for joint in self.joints.iter().filter(|joint| joint.rigid < joint.rows.count) {
             let rate = joint.rate(&self.velocities);
             for row in joint.rigid..joint.rows.count {
-                let before = joint.start_rate[joint.rows.direction[row]];
+                let before = joint.start_rate[joint.rows.direction(row)];
                 let rate = rate[row] + joint.bent[row] / self.h;
                 if joint.drive.motor.is_some() {
                     by_motors += joint.soft[row].work(before, rate);
@@ -342,7 +348,7 @@ impl IslandSolver {
         for joint in self.joints.iter().filter(|joint| joint.drive.motor.is_some()) {
             let rate = joint.rate(&self.velocities);
             for row in joint.rows.locked..joint.rows.count {
-                let before = joint.start_rate[joint.rows.direction[row]];
+                let before = joint.start_rate[joint.rows.direction(row)];
                 sum += joint.driven[row].impulse(before, rate[row]) * rate[row];
             }
             for i in joint.motor_directions().filter(|&i| joint.saturated[i] != 0) {
@@ -360,7 +366,7 @@ impl IslandSolver {
         for joint in self.joints.iter().filter(passive) {
             let rate = joint.rate(&self.velocities);
             for row in joint.rigid..joint.rows.count {
-                let (soft, before) = (&joint.soft[row], joint.start_rate[joint.rows.direction[row]]);
+                let (soft, before) = (&joint.soft[row], joint.start_rate[joint.rows.direction(row)]);
                 let rate = rate[row] + joint.bent[row] / self.h;
                 square += soft.gain * rate * rate;
                 linear += (soft.carry * before + soft.push) * rate;

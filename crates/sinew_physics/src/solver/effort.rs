@@ -1,10 +1,15 @@
 //! How hard the sweeps of an island try, and how hard its contacts are.
 
-use super::IslandSolver;
+use super::contact_rows::BOUNCE_SPEED;
+use super::contacts::Sweeps;
+use super::squeeze::Touch;
 use super::sweep::Pass;
+use super::tree::NONE;
+use super::{Coupling, Grading, IslandSolver, View};
+use crate::islands::Island;
 use sinew_math::{max, min};
 
-/// Visits of all rows per pass, most of which end sooner.
+/// How long the sweeps of a pass go on.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Effort {
     solve: usize,
@@ -12,10 +17,6 @@ pub(super) struct Effort {
     /// Change of a velocity in a sweep below which there need not be another, m/s or rad/s. What rows would do about less
     /// is left alone.
     pub tolerance: f32,
-    /// Of contacts.
-    contact: Firmness,
-    /// Of those between bodies of one tree of joints.
-    within: Firmness,
     pub order: Order,
 }
 
@@ -28,6 +29,21 @@ pub(crate) struct Firmness {
     pub push_speed: f32,
 }
 
+impl Firmness {
+    /// Between bodies that no joint holds. Nearly hard: what is soft sinks by a load that its own mass says nothing of, and a tower
+    /// of 18 levels fell.
+    pub const FREE: Self = Self { softness: 1e-3, push_speed: 3.0 };
+    /// Of a body that a joint holds. What stands on the edge of a foot must sink in a little, or it never comes to rest. What an
+    /// impact drove in comes out no faster than 5.5 cm/s: that lifts it by 0.009 J/kg a step at most.
+    pub const JOINTED: Self = Self { softness: 1.0, push_speed: 0.055 };
+    /// Between a jointed body and one that moves by itself: what a pile bears on must be as hard as the pile, or a tower of unequal
+    /// masses falls with a jointed pair on it.
+    pub const ON_FREE: Self = Self { softness: 1e-3, push_speed: 0.055 };
+    /// Between two bodies of one tree of joints: two legs under a heavy body would pass through each other (43 mm of a spider's
+    /// 1.2 m, against 5 with a hundredth of the softness).
+    pub const WITHIN_TREE: Self = Self { softness: 0.01, push_speed: 0.5 };
+}
+
 /// Of the contacts in a pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Order {
@@ -38,48 +54,61 @@ pub(super) enum Order {
     ToAndFro,
 }
 
-/// Of a heavy body on a jointed light one. What stands on the edge of a foot must sink in a little, or it never comes to rest; but
-/// two legs under a heavy body would pass through each other (43 mm of a spider's 1.2 m, against 5 with a hundredth of it). What an
-/// impact drove into the ground comes out no faster than 5.5 cm/s: that lifts it by 0.009 J/kg a step at most.
-const JOINTED: Effort = Effort {
-    solve: 24,
-    relax: 24,
-    tolerance: 2e-3,
-    contact: Firmness { softness: 1.0, push_speed: 0.055 },
-    within: Firmness { softness: 0.01, push_speed: 0.5 },
-    order: Order::Forward,
-};
-/// Of contacts of free bodies.
-const HARD: Firmness = Firmness { softness: 1e-3, push_speed: 3.0 };
-/// Of a pile of bodies that weigh about the same. Nearly hard, which one sweep could not do: a tower of 18 levels fell before its
-/// loads were found, and what is soft sinks by a load that its own mass says nothing of. In `relax` two sweeps, since friction of
-/// the first knows only the impulses of `solve` (1.5 % too little).
-const PILE: Effort =
-    Effort { solve: 24, relax: 2, tolerance: 2e-3, contact: HARD, within: HARD, order: Order::ToAndFro };
+/// Of islands with joints that are swept with the response of all links.
+const JOINTED: Effort = Effort { solve: 24, relax: 24, tolerance: 2e-3, order: Order::Forward };
+/// Of heaps in which contacts and trees are solved by turns.
+const TURNS: Effort = Effort { solve: 4, relax: 4, tolerance: 1e-2, order: Order::Forward };
+/// Of a pile of bodies that weigh about the same: hard contacts want sweeps that find the loads, most of which a pile at rest does not
+/// need. In `relax` two, since friction of the first knows only the impulses of `solve` (1.5 % too little).
+const PILE: Effort = Effort { solve: 96, relax: 2, tolerance: 2e-3, order: Order::ToAndFro };
+/// Of a heap with more contacts than [`MANY_CONTACTS`]: what falls in it finds its loads over some substeps.
+const HEAP: Effort = Effort { solve: 16, ..PILE };
 /// Of a pile that `PILE` is for. What one end of it feels reaches the other in as many sweeps as it has levels: a wall of a hundred
 /// leaned by 0.8 m within 17 s.
 const LEVELS: f32 = 10.0;
 /// The most for high and unequal ones.
-const MOST_SOLVE: f32 = 256.0;
-const MOST_RELAX: f32 = 128.0;
-const LEAST_TOLERANCE: f32 = 1e-6;
+const MOST_SOLVE: f32 = 1024.0;
+const MOST_RELAX: f32 = 512.0;
+const LEAST_TOLERANCE: f32 = 1e-7;
 /// Beyond this ratio of masses the light ones are squeezed out if what cannot move does not have the last word.
 const EVEN: f32 = 4.0;
 
 impl Effort {
-    /// For a pile of so many levels with a heaviest body `ratio` times as heavy as the lightest.
+    /// For a pile of so many levels and contacts with a heaviest body `ratio` times as heavy as the lightest.
     ///
     /// A light body between heavy ones tosses what they do to each other to and fro. Exponents and bounds are what a tower of six
     /// cubes, each 8 times as heavy as the one below it, stands with.
-    fn of_pile(levels: u32, ratio: f32) -> Self {
+    fn of_pile(levels: u32, ratio: f32, contacts: usize) -> Self {
+        let even = if contacts < MANY_CONTACTS { PILE } else { HEAP };
         let root = ratio.sqrt();
         let height = max(1.0, levels as f32 / LEVELS);
         Self {
-            solve: min(PILE.solve as f32 * height * root.sqrt(), MOST_SOLVE) as usize,
-            relax: min(PILE.relax as f32 * height * root, MOST_RELAX) as usize,
-            tolerance: max(PILE.tolerance / (height * ratio), LEAST_TOLERANCE),
+            solve: min(even.solve as f32 * height * root.sqrt(), MOST_SOLVE) as usize,
+            relax: min(even.relax as f32 * height * root, MOST_RELAX) as usize,
+            tolerance: max(even.tolerance / (height * ratio), LEAST_TOLERANCE),
             order: if ratio <= EVEN { PILE.order } else { Order::Forward },
-            ..PILE
+        }
+    }
+
+    /// Of contacts in blocks.
+    pub fn of_blocks(&self, pass: Pass) -> Sweeps {
+        let most = self.sweeps(pass);
+        Sweeps { most, tolerance: self.tolerance, order: self.order, first_conjugate: FIRST_CONJUGATE }
+    }
+
+    /// Of contacts and trees by turns.
+    pub fn of_turns(&self, pass: Pass) -> Sweeps {
+        Sweeps { first_conjugate: 1, ..self.of_blocks(pass) }
+    }
+
+    /// As long as the longer of two, in the order of this one: where trees have their turns, backward sweeps let what stands under
+    /// joints creep (a tower of 18 levels under a rope fell).
+    fn at_least(self, other: Self) -> Self {
+        Self {
+            solve: usize::max(self.solve, other.solve),
+            relax: usize::max(self.relax, other.relax),
+            tolerance: min(self.tolerance, other.tolerance),
+            order: self.order,
         }
     }
 
@@ -91,27 +120,93 @@ impl Effort {
     }
 }
 
+/// Trees of joints, and contacts, beyond which an island is solved by turns: the response of all links grows with the square of what
+/// is coupled.
+const FIGURES: usize = 8;
+const CONTACTS_OF_FIGURES: usize = 128;
+/// The sweep from which on those of free bodies are conjugate steps: a pile at rest is done before.
+const FIRST_CONJUGATE: usize = 4;
+/// Contacts from which on an island of free bodies is a heap: below, four substeps and many sweeps cost little, and every figure is
+/// better.
+const MANY_CONTACTS: usize = 1024;
+/// Likewise contacts per body, of islands with joints: what lies takes half of them, what swings or flies all.
+const CONTACTS_PER_BODY: f32 = 0.25;
+/// With fewer contacts than this one contact decides: a foot of 1 kg under 69 kg sinks by 2.3 mm instead of 2 in half the substeps.
+const FEW_CONTACTS: usize = 4;
+/// Most that a body may turn in a substep of the longer kind, radians: rows are linearised at its beginning.
+const CALM_TURN: f32 = 0.25;
+/// Ratio of the masses in an island beyond which it takes all substeps.
+const GRADED_RATIO: f32 = 100.0;
+
 impl IslandSolver {
-    /// After the contacts are there.
-    pub(super) fn choose_effort(&mut self) {
-        self.effort = if self.is_articulated() {
-            JOINTED
-        } else {
-            Effort::of_pile(self.levels.highest(), self.mass_ratio())
+    /// How many substeps an island takes: half of the world's where many contacts damp all motion, nothing spins fast and masses
+    /// are alike; all of them for what swings, flies, balances, or has particles.
+    pub(super) fn choose_substeps(&mut self, island: &Island<'_>, view: &View<'_>) {
+        let halves = view.pace.grading == Grading::ByContent
+            && view.pace.substeps.is_multiple_of(2)
+            && island.groups.is_empty()
+            && is_damped(island, view);
+        self.stretch = if halves { 2.0 } else { 1.0 };
+        self.substeps = if halves { view.pace.substeps / 2 } else { view.pace.substeps };
+        self.h = view.pace.h * self.stretch;
+    }
+
+    /// How islands of joints come to agree with their contacts: few figures by the response of all their links, heaps by turns.
+    pub(super) fn choose_coupling(&mut self, contacts: usize) {
+        let trees = self.links.chunk_by(|a, b| a.tree == b.tree);
+        let jointed = trees.filter(|tree| tree.len() > 1 || tree[0].joint != NONE).count();
+        self.coupling = match jointed {
+            0 if self.pins.joints.is_empty() => Coupling::Free,
+            _ if jointed > FIGURES || contacts > CONTACTS_OF_FIGURES => Coupling::Turns,
+            _ => Coupling::Response,
         };
+    }
+
+    /// Once it is known who touches.
+    pub(super) fn choose_effort(&mut self) {
+        let free = Effort::of_pile(self.levels.highest(), self.mass_ratio(), self.touches.len());
+        self.effort = match self.coupling {
+            Coupling::Free => free,
+            // What touches jointed bodies is swept as they need it, piles beside and under them as they would be without.
+            _ if self.touches.iter().any(|touch| touch.bodies.iter().all(|&body| !self.is_jointed(body))) => {
+                self.effort_with_joints().at_least(free)
+            }
+            _ => self.effort_with_joints(),
+        };
+    }
+
+    fn effort_with_joints(&self) -> Effort {
+        if self.coupling == Coupling::Turns { TURNS } else { JOINTED }
+    }
+
+    /// How hard the contact of two bodies is.
+    pub(super) fn firmness(&self, [a, b]: [u32; 2]) -> Firmness {
+        if self.coupling == Coupling::Free {
+            return Firmness::FREE;
+        }
         let tree = |body: u32| self.links.get(body as usize).map(|link| link.tree);
-        for rows in &mut self.manifolds {
-            let is_within = tree(rows.a).is_some() && tree(rows.a) == tree(rows.b);
-            rows.set_firmness(if is_within { self.effort.within } else { self.effort.contact });
+        if tree(a).is_some() && tree(a) == tree(b) {
+            Firmness::WITHIN_TREE
+        } else {
+            let moving = |body: u32| (body as usize) < self.links.len();
+            match [a, b].map(|body| self.is_jointed(body)) {
+                [false, false] => Firmness::FREE,
+                [true, false] if moving(b) => Firmness::ON_FREE,
+                [false, true] if moving(a) => Firmness::ON_FREE,
+                _ => Firmness::JOINTED,
+            }
         }
     }
 
-    /// Of the heaviest to the lightest of those that touch each other, as they answer to impulses.
+    /// Of the heaviest to the lightest of those that touch each other and are not jointed, as they answer to impulses.
     pub(super) fn mass_ratio(&self) -> f32 {
         let moving = &self.bodies[..self.links.len()];
         let (mut lightest, mut heaviest) = (f32::INFINITY, 0.0);
-        for rows in &self.manifolds {
-            if let (Some(a), Some(b)) = (moving.get(rows.a as usize), moving.get(rows.b as usize)) {
+        for &Touch { bodies: [a, b], .. } in &self.touches {
+            if self.is_jointed(a) || self.is_jointed(b) {
+                continue;
+            }
+            if let (Some(a), Some(b)) = (moving.get(a as usize), moving.get(b as usize)) {
                 let [a, b] = [a, b].map(|body| body.mass * body.ballast);
                 lightest = min(lightest, min(a, b));
                 heaviest = max(heaviest, max(a, b));
@@ -119,4 +214,31 @@ impl IslandSolver {
         }
         if heaviest > lightest { heaviest / lightest } else { 1.0 }
     }
+}
+
+/// Whether contacts and masses of an island let it take longer substeps.
+fn is_damped(island: &Island<'_>, view: &View<'_>) -> bool {
+    let (contacts, bodies) = (island.contacts.len(), island.bodies.len());
+    let many = if island.joints.is_empty() {
+        contacts >= MANY_CONTACTS
+    } else {
+        contacts >= FEW_CONTACTS
+            && contacts as f32 >= CONTACTS_PER_BODY * bodies as f32
+            && island.joints.iter().all(|&joint| view.joints.at(joint).drive.is_limp())
+    };
+    let bounces = |&contact: &u32| {
+        let approach = view.contacts[contact as usize].approach;
+        approach > BOUNCE_SPEED && view.contacts[contact as usize].material(view.bodies).restitution > 0.0
+    };
+    if !many || island.contacts.iter().any(bounces) {
+        return false;
+    }
+    let (mut lightest, mut heaviest, mut spin) = (f32::INFINITY, 0.0, 0.0);
+    for &index in island.bodies {
+        let body = view.bodies.at(index);
+        lightest = min(lightest, body.mass);
+        heaviest = max(heaviest, body.mass);
+        spin = max(spin, body.velocity.angular.length());
+    }
+    heaviest <= GRADED_RATIO * lightest && spin * 2.0 * view.pace.h <= CALM_TURN
 }

@@ -30,7 +30,7 @@ impl IslandSolver {
         let moving = self.links.len();
         let before = self.kinetic_energy(&self.unconstrained);
         let rise = self.kinetic_energy(&self.velocities[..moving]) - before;
-        if !self.is_articulated() || rise <= ENERGY_SLACK * max(before, self.mass()) {
+        if self.is_in_lanes() || rise <= ENERGY_SLACK * max(before, self.mass()) {
             return;
         }
         self.velocities[..moving].copy_from_slice(&self.unconstrained);
@@ -44,6 +44,7 @@ impl IslandSolver {
         for rows in &mut self.manifolds {
             rows.forget();
         }
+        self.contacts.forget();
         for joint in &mut self.joints {
             joint.impulse = ZERO6;
             joint.bent = ZERO6;
@@ -242,6 +243,34 @@ impl IslandSolver {
     /// No joint is left open by what it may not close in this substep.
     fn joints_close_in_time(&self) -> bool {
         !self.joints.iter().any(|joint| joint.left_open[..joint.rigid].iter().any(|left| *left != 0.0))
+    }
+
+    /// Points that bounce at once, each with its own speed, may ask for more energy than came in. Then the velocities go only as far
+    /// along the bounce as there is: momentum stays, and what parts goes on parting.
+    pub(super) fn limit_bounce(&mut self) {
+        if self.pushed_from_outside || !self.is_passive() {
+            return;
+        }
+        let moving = self.links.len();
+        let allowed = self.kinetic_start + self.force_work.abs();
+        let start = self.kinetic_energy(&self.bounced_from);
+        let after = self.kinetic_energy(&self.velocities[..moving]);
+        if after <= allowed || start >= allowed {
+            return;
+        }
+        // Energy along the bounce is E(0) + b s + a s², with a that of the change itself.
+        let s = &mut self.scratch;
+        s.dv.clear();
+        s.dv.extend(self.velocities.iter().zip(&self.bounced_from).map(|(v, from)| difference(v, from)));
+        let a = self.kinetic_energy(&self.scratch.dv);
+        let b = after - start - a;
+        let room = allowed - start;
+        let root = (b * b + 4.0 * a * room).sqrt();
+        let share = if b > 0.0 { 2.0 * room / (b + root) } else { (root - b) / (2.0 * a) };
+        let share = sinew_math::clamp(share, 0.0, 1.0);
+        for (v, from) in self.velocities.iter_mut().zip(&self.bounced_from) {
+            *v = core::array::from_fn(|k| from[k] + (v[k] - from[k]) * share);
+        }
     }
 
     /// Nothing that rows push against moves by itself.

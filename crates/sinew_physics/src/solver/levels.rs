@@ -1,6 +1,6 @@
 //! How high the bodies of a pile stand.
 
-use super::contact_rows::ManifoldRows;
+use super::squeeze::Touch;
 
 /// The level of a body of which no way to what cannot move is known.
 const UNSUPPORTED: u32 = u32::MAX;
@@ -13,18 +13,18 @@ pub(super) struct Levels {
 
 impl Levels {
     /// Of so many moving bodies.
-    pub fn count(&mut self, moving: usize, manifolds: &[ManifoldRows]) {
+    pub fn count(&mut self, moving: usize, touches: &[Touch]) {
         self.of.clear();
         self.of.resize(moving, UNSUPPORTED);
         // To and fro, since bodies are numbered from the bottom up or from the top down more often than at random.
-        while self.climb(manifolds.iter()) && self.climb(manifolds.iter().rev()) {}
+        while self.climb(touches.iter()) && self.climb(touches.iter().rev()) {}
     }
 
     /// Lowers each body to one level above what it touches; false if all were there already.
-    fn climb<'a>(&mut self, manifolds: impl Iterator<Item = &'a ManifoldRows>) -> bool {
+    fn climb<'a>(&mut self, touches: impl Iterator<Item = &'a Touch>) -> bool {
         let mut lowered = false;
-        for rows in manifolds {
-            for (below, body) in [(rows.a, rows.b), (rows.b, rows.a)] {
+        for &Touch { bodies: [a, b], .. } in touches {
+            for (below, body) in [(a, b), (b, a)] {
                 let above = self.of(below).saturating_add(1);
                 match self.of.get_mut(body as usize) {
                     Some(level) if above < *level => (*level, lowered) = (above, true),

@@ -4,10 +4,10 @@ use super::columns::{Change, Columns};
 use super::contact_rows::IMPACT_JUMP;
 use super::response::Response;
 use super::sweep::Pass;
-use super::tree::Link;
-use super::{IslandSolver, REDUNDANCY, SolverBody, SolverJoint, advance, free_response};
+use super::tree::{Link, NONE};
+use super::{IslandSolver, REDUNDANCY, SolverBody, SolverJoint, free_response};
 use crate::joint::def::Softness;
-use crate::joint::{JointPose, LimitImpulse, MAX_LIMITS, Row, Stop, stops, turns};
+use crate::joint::{JointPose, LimitImpulse, MAX_LIMITS, MAX_STOPS, Row, Stop, stops, turns};
 use crate::spatial::{Vec6, add_scaled, angular, dot, linear};
 use sinew_math::{Vec3, clamp, max, min};
 
@@ -64,7 +64,7 @@ impl IslandSolver {
             self.joints[row.joint as usize].limit_impulse[row.limit] += row.axis * row.impulse;
         }
         self.hit_rate = 0.0;
-        if !self.manifolds.is_empty() {
+        if !(self.manifolds.is_empty() && self.contacts.is_empty()) {
             for v in &self.velocities[..self.links.len()] {
                 self.hit_rate = max(self.hit_rate, angular(v).length() + linear(v).length() / LEVER);
             }
@@ -102,30 +102,39 @@ impl IslandSolver {
     /// Looks where the velocities lead: a limit row is linear, and a limb that turns by much of a radian within the
     /// substep may end up far beyond, leave a cone on a side that its row does not face, or whirl around outside of it as
     /// fast as the row would bring it back. For each such limit comes
-    /// one more row, linearised at the pose that the velocities lead to; the sweeps must then run again.
+    /// one more row, linearised at the pose that the velocities lead to ([predicted](Self::correct_positions) with the joints
+    /// corrected); the sweeps must then run again.
     pub(super) fn tighten_limits(&mut self) -> bool {
         let known = self.limits.len();
+        let poses = &self.scratch.predicted;
+        // Rows of a joint are neighbours.
+        let mut looked_at = NONE;
+        let (mut predicted, mut there) = (None, [None; MAX_STOPS]);
         for i in 0..known {
             let row = &self.limits[i];
             if row.hardness != Hardness::Hard {
                 continue;
             }
             let joint = &self.joints[row.joint as usize];
-            let pose = |body: u32| {
-                advance(&self.bodies[body as usize].pose, &self.velocities[body as usize], self.h)
-            };
-            let predicted = JointPose::new(&joint.geometry, &pose(joint.a), &pose(joint.b));
-            let Some(stop) = stops(&joint.geometry.kind, &predicted)[row.stop] else { continue };
+            if looked_at != row.joint {
+                looked_at = row.joint;
+                let [a, b] = [joint.a, joint.b].map(|body| &poses[body as usize]);
+                let pose = JointPose::new(&joint.geometry, a, b);
+                there = stops(&joint.geometry.kind, &pose);
+                predicted = Some(pose);
+            }
+            let (Some(predicted), Some(stop)) = (&predicted, &there[row.stop]) else { continue };
             let beyond = min(row.room + LIMIT_PUSH * self.h, 0.0) - stop.room;
             if beyond < LIMIT_SLACK {
                 continue;
             }
-            let rate = stop.row.rate(joint, &self.velocities) + beyond / self.h;
+            let of_stop = stop.row(&joint.geometry.kind, predicted);
+            let rate = of_stop.rate(joint, &self.velocities) + beyond / self.h;
             let axis = predicted.rotation_a * stop.axis;
             let hardness = Hardness::Foreseen(rate);
             self.limits.push(LimitRow {
                 axis,
-                row: stop.row,
+                row: of_stop,
                 hardness,
                 column: None,
                 impulse: 0.0,
@@ -149,6 +158,7 @@ impl IslandSolver {
                 continue;
             }
             let row = &mut self.limits[i];
+            self.tally.visits += 1;
             if row.column.is_none() {
                 row.respond(joint, &self.bodies, &self.links, &self.response, &mut self.columns);
             }
@@ -200,7 +210,7 @@ impl LimitRow {
             room: stop.room,
             hardness,
             axis: joint.pose.rotation_a * stop.axis,
-            row: stop.row,
+            row: stop.row(&joint.geometry.kind, &joint.pose),
             column: None,
             effective: 0.0,
             impulse,
@@ -254,17 +264,48 @@ impl LimitRow {
     }
 
     /// Gives nothing, and has nothing to give at this rate.
-    fn is_idle(&self, pass: Pass, rate: f32, h: f32) -> bool {
+    pub fn is_idle(&self, pass: Pass, rate: f32, h: f32) -> bool {
         match self.hardness {
             Hardness::Soft(..) => pass != Pass::Solve || self.impulse == 0.0 && self.room + h * rate >= 0.0,
             _ => self.impulse == 0.0 && rate >= self.wanted(pass, rate, h),
         }
     }
 
-    /// Change of its impulse at this rate.
+    /// Change of its impulse at this rate, as a change of its column.
     fn visit(&mut self, pass: Pass, rate: f32, h: f32) -> Option<Change> {
+        let change = self.change(pass, rate, h);
+        let mut of_row = Change::from_column(self.column?);
+        of_row.add([&self.row.a, &self.row.b], change);
+        Some(of_row)
+    }
+
+    /// Takes its response from the answers of its two bodies.
+    pub fn weigh(&mut self, joint: &SolverJoint, bodies: &[SolverBody], moving: usize, answers: &[Vec6; 2]) {
+        let Row { a, b } = &self.row;
+        self.effective = dot(a, &answers[0])
+            + dot(b, &answers[1])
+            + REDUNDANCY * free_response(bodies, moving, [(joint.a, a), (joint.b, b)]);
+    }
+
+    /// What it gives its joint's bodies by a unit of its impulse, A's and B's.
+    pub fn ends(&self) -> [&Vec6; 2] {
+        [&self.row.a, &self.row.b]
+    }
+
+    /// Of its joint, as its own response sees it.
+    pub fn rate(&self, joint: &SolverJoint, velocities: &[Vec6]) -> f32 {
+        self.row.rate(joint, velocities)
+    }
+
+    /// Response to its own impulse.
+    pub fn effective(&self) -> f32 {
+        self.effective
+    }
+
+    /// Changes its impulse as this rate asks for; by how much.
+    pub fn change(&mut self, pass: Pass, rate: f32, h: f32) -> f32 {
         if self.effective < 1e-9 {
-            return None;
+            return 0.0;
         }
         let new = match self.hardness {
             Hardness::Soft(softness, damped) => {
@@ -278,9 +319,7 @@ impl LimitRow {
         };
         let change = max(new, 0.0) - self.impulse;
         self.impulse += change;
-        let mut of_row = Change::from_column(self.column?);
-        of_row.add([&self.row.a, &self.row.b], change);
-        Some(of_row)
+        change
     }
 
     /// What the spring of a soft row gives in a substep.

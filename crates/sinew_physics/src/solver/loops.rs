@@ -4,7 +4,6 @@
 //! that hangs by its ropes is carried at once, and each round takes energy out, however early it ends.
 
 use super::columns::Columns;
-use super::limit_rows::add_row;
 use super::response::Response;
 use super::tree::{self, Link, NONE};
 use super::{IslandSolver, Scratch, SolverBody, SolverJoint, free_response};
@@ -128,8 +127,8 @@ impl Loops {
             closure.rows = rows().count();
             closure.columns = self.columns.end();
             for (joint, row) in rows() {
-                let row = [&joint.rows.a[row], &joint.rows.b[row]];
-                self.columns.add(response, links, [joint.a, joint.b], row);
+                let [on_a, on_b] = [joint.rows.on_a(row), joint.rows.on_b(row)];
+                self.columns.add(response, links, [joint.a, joint.b], [&on_a, &on_b]);
             }
             let members = response.members(closure.tree).len();
             let columns = self.columns.from(closure.columns);
@@ -137,13 +136,14 @@ impl Loops {
             let s = &mut self.scratch;
             s.clear();
             for (k, (joint, row)) in rows().enumerate() {
+                let [on_a, on_b] = [joint.rows.on_a(row), joint.rows.on_b(row)];
                 for l in 0..n {
                     let column = &columns[l * members..(l + 1) * members];
                     let on =
                         |body: u32, j: &Vec6| response.slot(body).map_or(0.0, |slot| dot(j, &column[slot]));
-                    let mut entry = on(joint.a, &joint.rows.a[row]) + on(joint.b, &joint.rows.b[row]);
+                    let mut entry = on(joint.a, &on_a) + on(joint.b, &on_b);
                     if k == l {
-                        let ends = [(joint.a, &joint.rows.a[row]), (joint.b, &joint.rows.b[row])];
+                        let ends = [(joint.a, &on_a), (joint.b, &on_b)];
                         entry += joint.compliance(row)
                             + LOOP_REDUNDANCY * free_response(bodies, links.len(), ends);
                     }
@@ -163,8 +163,7 @@ impl Loops {
             self.iterate(joints, links, scratch);
         } else {
             self.close_exactly(joints, scratch);
-            scratch.dv.fill(ZERO6);
-            tree::solve(links, &mut scratch.impulses, &mut scratch.residuals, &mut scratch.dv);
+            tree::solve(links, &mut scratch.impulses, &[], &mut scratch.dv);
             self.keep_descent(joints, scratch);
         }
     }
@@ -226,14 +225,15 @@ impl Loops {
             let mut lines = self.inverses[closure.inverse..].chunks_exact(closure.rows);
             for &joint in &self.joints[range] {
                 let joint = &mut joints[joint as usize];
+                let mut of_rows = ZERO6;
                 for row in 0..joint.rows.count {
                     let line = lines.next().unwrap_or_default();
                     let lambda = line.iter().zip(left.iter()).fold(0.0, |sum, (s, r)| sum + s * r);
                     lambdas.push(lambda);
                     joint.impulse[row] += lambda;
-                    add_row(&mut scratch.impulses, joint.a, &joint.rows.a[row], lambda);
-                    add_row(&mut scratch.impulses, joint.b, &joint.rows.b[row], lambda);
+                    of_rows[row] = lambda;
                 }
+                joint.push(&of_rows, &mut scratch.impulses, 1.0);
             }
         }
     }
@@ -289,16 +289,16 @@ impl Loops {
 /// `S p` for the direction `p`, and the velocities that it gives.
 fn answer(loops: &[u32], joints: &[SolverJoint], links: &[Link], scratch: &mut Scratch, g: &mut Gradient) {
     scratch.impulses.fill(ZERO6);
-    scratch.residuals.fill(ZERO6);
     let mut push = g.direction.iter();
     for &joint in loops {
         let joint = &joints[joint as usize];
-        for (row, &p) in (0..joint.rows.count).zip(&mut push) {
-            add_row(&mut scratch.impulses, joint.a, &joint.rows.a[row], p);
-            add_row(&mut scratch.impulses, joint.b, &joint.rows.b[row], p);
+        let mut of_rows = ZERO6;
+        for (of_row, &p) in of_rows[..joint.rows.count].iter_mut().zip(&mut push) {
+            *of_row = p;
         }
+        joint.push(&of_rows, &mut scratch.impulses, 1.0);
     }
-    tree::solve(links, &mut scratch.impulses, &mut scratch.residuals, &mut g.dv);
+    tree::solve(links, &mut scratch.impulses, &[], &mut g.dv);
     g.answer.clear();
     for &joint in loops {
         let joint = &joints[joint as usize];
@@ -321,17 +321,14 @@ impl IslandSolver {
         }
         for &joint in &self.loops.joints {
             let joint = &mut self.joints[joint as usize];
-            let (mut on_a, mut on_b) = (ZERO6, ZERO6);
             for row in 0..joint.rows.count {
-                let impulse = joint.warm_impulse[joint.rows.direction[row]];
-                joint.impulse[row] = impulse;
-                add_scaled(&mut on_a, &joint.rows.a[row], impulse);
-                add_scaled(&mut on_b, &joint.rows.b[row], impulse);
+                joint.impulse[row] = joint.warm_impulse[joint.rows.direction(row)];
             }
-            for (body, push) in [(joint.a as usize, on_a), (joint.b as usize, on_b)] {
+            let [on_a, on_b] = joint.rows.impulse(&joint.impulse);
+            for (body, push, sign) in [(joint.a as usize, on_a, -1.0), (joint.b as usize, on_b, 1.0)] {
                 if body < self.links.len() {
                     let change = self.bodies[body].velocity_change(&push);
-                    add_scaled(&mut self.velocities[body], &change, 1.0);
+                    add_scaled(&mut self.velocities[body], &change, sign);
                 }
             }
         }
@@ -343,7 +340,7 @@ impl IslandSolver {
             let joint = &mut self.joints[joint as usize];
             joint.warm_impulse = ZERO6;
             for row in 0..joint.rows.count {
-                joint.warm_impulse[joint.rows.direction[row]] = joint.impulse[row];
+                joint.warm_impulse[joint.rows.direction(row)] = joint.impulse[row];
             }
         }
     }

@@ -3,11 +3,15 @@
 //! An island is one task. It reads the world, works on its copies, and the world takes the results in `store` and
 //! `finalize`, so that threads never share what they write.
 
+mod articulated;
 mod build;
 mod columns;
 mod composite;
 mod conjugate;
 mod contact_rows;
+mod contacts;
+mod counts;
+mod coupled;
 mod disk;
 mod drives;
 mod effort;
@@ -31,12 +35,16 @@ use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
 use crate::project::TakenGroup;
-use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, angular, dot, join, linear};
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
 use crate::work::Work;
-pub(crate) use build::View;
+use articulated::{Inertia, Symmetric};
+use build::Grading;
+pub(crate) use build::{Pace, View};
 use columns::Columns;
 use conjugate::Conjugate;
 use contact_rows::ManifoldRows;
+use contacts::{Contacts, Substep};
+use coupled::OwnResponse;
 use drives::SoftRow;
 use effort::Effort;
 use energy::Momentum;
@@ -48,7 +56,7 @@ use pins::Pins;
 use response::Response;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, min, normalize_or, skew, trig};
 pub(crate) use solution::{IslandSolution, Solution, SolvedBody, SolvedJoint, split_off};
-use squeeze::Pressing;
+use squeeze::{Pressing, Touch};
 use sweep::{Pass, Unrest};
 use tree::Link;
 
@@ -100,16 +108,13 @@ fn free_response(bodies: &[SolverBody], moving: usize, ends: [(u32, &Vec6); 2]) 
 
 impl SolverBody {
     /// Mass and inertia at the centre of mass, world axes, geometric stiffness and ballast included.
-    fn mass_matrix(&self) -> Mat6 {
-        let mut m = [ZERO6; 6];
-        let inertia = (self.inertia + self.excess) * self.ballast;
-        let angular = Sym3::from_rotated_diagonal(self.pose.rotation, inertia).to_mat3();
-        for k in 0..3 {
-            m[k][k] = self.mass * self.ballast;
-            let row = angular.row(k);
-            m[3 + k][3..6].copy_from_slice(&[row.x, row.y, row.z]);
-        }
-        m
+    fn articulated_inertia(&self) -> Inertia<f64> {
+        let moments = (self.inertia + self.excess) * self.ballast;
+        let Sym3 { diagonal, off } = Sym3::from_rotated_diagonal(self.pose.rotation, moments);
+        Inertia::of_body(
+            f64::from(self.mass * self.ballast),
+            Symmetric([diagonal.x, off.z, off.y, diagonal.y, off.x, diagonal.z].map(f64::from)),
+        )
     }
 
     /// N·m·s, without what geometric stiffness adds.
@@ -169,6 +174,18 @@ pub(crate) struct SolverJoint {
     accounted: Vec6,
 }
 
+/// How contacts and joints of an island come to agree. It decides how nearly and how soon they do, nothing else.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Coupling {
+    /// There are no joints.
+    #[default]
+    Free,
+    /// Contacts and limits see all links move with each impulse: for single figures.
+    Response,
+    /// Contacts in lanes and trees by turns: for heaps.
+    Turns,
+}
+
 /// The solver of one island. Its memory is kept for the next one, but nothing in it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct IslandSolver {
@@ -177,15 +194,28 @@ pub(crate) struct IslandSolver {
     pub velocities: Vec<Vec6>,
     pub joints: Vec<SolverJoint>,
     pub manifolds: Vec<ManifoldRows>,
+    /// In lanes, of an island without joints.
+    contacts: Contacts,
+    /// Poses when the step began.
+    starts: Vec<Transform>,
+    /// Who touches, of an island without joints.
+    touches: Vec<Touch>,
+    /// Masses of what touches differ so much that loads are guessed, and ballast follows from substep to substep.
+    is_unequal: bool,
+    /// A point was hit in this substep so that it bounces.
+    bounces: bool,
+    /// Velocities before the bounce.
+    bounced_from: Vec<Vec6>,
     /// One per moving body.
     links: Vec<Link>,
     tree_count: usize,
-    articulated: bool,
+    coupling: Coupling,
     loops: Loops,
     pins: Pins,
     limits: Vec<LimitRow>,
     response: Response,
     columns: Columns,
+    own: OwnResponse,
     /// Impulses of contacts and limits that the sweeps in progress have put on each moving body.
     impulses: Vec<Vec6>,
     /// Linear impulses of contacts on each moving body in this substep.
@@ -228,8 +258,11 @@ pub(crate) struct IslandSolver {
     displaced: bool,
     /// How fast a hit may make a joint turn, rad/s: limits within reach of it get rows.
     hit_rate: f32,
-    /// Substep, seconds.
+    /// Substep, seconds, how many there are in the step, and how many times as long as the world's they are: a power of two.
     h: f32,
+    substeps: u32,
+    stretch: f32,
+    tally: counts::Tally,
     /// Most that a body moves, m/s, and turns within a substep, radians.
     max_speed: f32,
     max_turn: f32,
@@ -237,7 +270,7 @@ pub(crate) struct IslandSolver {
 
 #[derive(Clone, Debug, Default)]
 struct Scratch {
-    inertia: Vec<Mat6>,
+    inertia: Vec<Inertia<f64>>,
     residuals: Vec<Vec6>,
     loop_residuals: Vec<Vec6>,
     impulses: Vec<Vec6>,
@@ -259,9 +292,11 @@ impl IslandSolver {
     /// middle of the substep by gyroscopic torque. Limits act here, never after the solve: there they tear joints.
     pub fn integrate_velocity(&mut self, view: &View<'_>, groups: &mut [TakenGroup]) {
         let h = self.h;
+        self.tally.substeps += 1;
         for rows in &mut self.manifolds {
             rows.begin_approach(&self.velocities);
         }
+        self.contacts.begin_approach(&self.velocities);
         if self.forces_vary {
             self.add_fields(view, groups);
         }
@@ -294,10 +329,21 @@ impl IslandSolver {
 
     /// The last substep's impulses of contacts and limits, but for what jumped up in it: an impact is not repeated.
     pub fn warm_start(&mut self) {
-        self.reset_impulses();
+        if !self.is_articulated() {
+            self.contacts.warm_start(&mut self.velocities);
+            return;
+        }
         for joint in &mut self.joints {
             joint.impulse = ZERO6;
         }
+        if self.coupling == Coupling::Turns {
+            self.warm_start_coupled();
+            self.warm_start_loops();
+            self.scratch.started.clear();
+            self.scratch.started.extend_from_slice(&self.velocities[..self.links.len()]);
+            return;
+        }
+        self.reset_impulses();
         for rows in &mut self.manifolds {
             rows.warm_start(&mut self.impulses);
         }
@@ -319,12 +365,20 @@ impl IslandSolver {
     ///
     /// Never contacts before the tree: the joints would undo what the contacts did (823 mm gap, +59 kJ in one step).
     pub fn solve(&mut self) {
+        if !self.is_articulated() {
+            self.contacts.pull_approach(&self.velocities);
+            self.sweep(Pass::Solve);
+            self.drop_nonsense(0.0);
+            self.bounces = self.contacts.end_approach(self.h);
+            return;
+        }
         self.project_joints(Pass::Solve);
         self.drop_bad_warm_start();
         self.saturate_motors();
         for rows in &mut self.manifolds {
             rows.pull_approach(&self.velocities);
         }
+        self.contacts.pull_approach(&self.velocities);
         self.sweep(Pass::Solve);
         self.calm_trees();
         let mut torn = self.correct_positions();
@@ -338,16 +392,22 @@ impl IslandSolver {
             torn = self.correct_positions();
         }
         self.drop_nonsense(torn);
+        if self.coupling == Coupling::Turns {
+            self.bounces = self.contacts.end_approach(self.h);
+            self.add_drive_work();
+            return;
+        }
         for rows in &mut self.manifolds {
             rows.end_approach(self.h);
         }
+        self.bounces = self.manifolds.iter().any(ManifoldRows::bounces);
         self.pay_for_positions();
         self.add_drive_work();
     }
 
     /// Velocities to poses; joint forces of the substep; then everything that depends on the pose, once, for `relax`
     /// and the next substep's `solve`.
-    pub fn integrate_position(&mut self) {
+    pub fn integrate_position(&mut self, view: &View<'_>) {
         self.read_pins();
         self.store_joint_forces();
         self.add_solve_reactions();
@@ -363,7 +423,7 @@ impl IslandSolver {
                 *v = join(linear(v), r.turn(r.inverse().turn(momentum) / body.inertia));
             }
         }
-        self.refresh();
+        self.refresh(view);
         self.begin_relax_reactions();
     }
 
@@ -382,9 +442,16 @@ impl IslandSolver {
     }
 
     /// Joint velocities to zero at the new pose (RATTLE), contacts and limits without bias, friction.
-    pub fn relax(&mut self) {
+    pub fn relax(&mut self, view: &View<'_>) {
         if core::mem::take(&mut self.displaced) {
-            self.refresh();
+            self.refresh(view);
+        }
+        if !self.is_articulated() {
+            self.sweep(Pass::Relax);
+            self.drop_nonsense(0.0);
+            self.govern_energy();
+            self.contacts.end_substep(self.h);
+            return;
         }
         for rows in &mut self.manifolds {
             rows.begin_relax(&self.velocities, self.h);
@@ -393,7 +460,11 @@ impl IslandSolver {
         self.refine_joints();
         self.sweep(Pass::Relax);
         self.drop_nonsense(0.0);
-        self.govern_energy();
+        if self.coupling == Coupling::Turns {
+            self.contacts.end_substep(self.h);
+        } else {
+            self.govern_energy();
+        }
         for rows in &mut self.manifolds {
             rows.end_substep(self.h);
         }
@@ -405,9 +476,13 @@ impl IslandSolver {
 
     /// Bounce of what was hit in this substep, the last of it: the work of bodies that move by themselves is counted.
     pub fn restitution(&mut self) {
-        if self.manifolds.iter().any(ManifoldRows::bounces) {
+        if self.bounces {
+            self.bounced_from.clear();
+            self.bounced_from.extend_from_slice(&self.velocities[..self.links.len()]);
             self.sweep(Pass::Restitution);
+            self.limit_bounce();
             self.drop_nonsense(0.0);
+            self.contacts.end_bounce();
             for rows in &mut self.manifolds {
                 rows.add_bounce();
             }
@@ -416,19 +491,38 @@ impl IslandSolver {
     }
 
     /// Rows, inertias, factor and response at the present pose.
-    fn refresh(&mut self) {
-        self.refresh_joints();
+    fn refresh(&mut self, view: &View<'_>) {
         if !self.is_articulated() {
-            self.add_ballast();
+            self.refresh_ballast();
+            self.refresh_inertia();
+            self.place_contacts(view);
+            return;
         }
+        self.refresh_joints();
         self.refresh_inertia();
         self.factor_joints();
+        if self.coupling == Coupling::Turns {
+            self.contacts.spoil();
+            self.place_contacts(view);
+        }
         for rows in &mut self.manifolds {
             rows.refind(&self.bodies, &self.velocities, self.h);
             rows.place(rows.poses(&self.bodies));
         }
         self.choose_limits();
         self.refresh_response();
+    }
+
+    /// Contacts in lanes at the poses to which bodies have come.
+    fn place_contacts(&mut self, view: &View<'_>) {
+        self.contacts.place(&Substep {
+            view,
+            bodies: &self.bodies,
+            starts: &self.starts,
+            velocities: &self.velocities,
+            moving: self.links.len(),
+            h: self.h,
+        });
     }
 
     /// Inverse inertias at the present pose. Geometric stiffness `h² k_g` of the joint forces counts only as far as it
@@ -480,7 +574,8 @@ impl IslandSolver {
             want(rows.b);
         }
         let loops = self.loops.closed_exactly().iter().copied();
-        for joint in loops.chain(self.limits.iter().map(|row| row.joint)) {
+        let limits = if self.coupling == Coupling::Turns { &[][..] } else { &self.limits };
+        for joint in loops.chain(limits.iter().map(|row| row.joint)) {
             want(self.joints[joint as usize].a);
             want(self.joints[joint as usize].b);
         }
@@ -493,6 +588,9 @@ impl IslandSolver {
         }
         for row in &mut self.limits {
             row.column = None;
+        }
+        if self.coupling == Coupling::Turns {
+            self.own.fill(&self.links);
         }
     }
 
@@ -512,9 +610,14 @@ impl IslandSolver {
         any
     }
 
-    /// True if some joints are solved as trees.
+    /// Some joints are solved as trees.
     fn is_articulated(&self) -> bool {
-        self.articulated
+        self.coupling != Coupling::Free
+    }
+
+    /// Contacts lie in lanes.
+    fn is_in_lanes(&self) -> bool {
+        self.coupling != Coupling::Response
     }
 
     /// In the motion of this substep, J.
@@ -533,6 +636,11 @@ impl IslandSolver {
                 0.5 * body.mass * linear(v).length_squared() + 0.5 * (momentum / body.inertia).dot(momentum);
         }
         sum
+    }
+
+    /// How many of them this step has.
+    pub fn substeps(&self) -> u32 {
+        self.substeps
     }
 
     /// The bodies that move, in tree order.

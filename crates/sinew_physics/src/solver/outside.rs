@@ -55,13 +55,16 @@ impl IslandSolver {
 
     /// How a row on a body answers to its own impulse, joints of the trees included.
     pub fn response_along(&mut self, local: usize, row: &Vec6) -> f32 {
+        if !self.is_articulated() {
+            return dot(row, &self.bodies[local].velocity_change(row));
+        }
         let s = &mut self.scratch;
         for list in [&mut s.impulses, &mut s.residuals, &mut s.dv] {
             list.clear();
             list.resize(self.links.len(), ZERO6);
         }
         s.impulses[local] = *row;
-        tree::solve(&self.links, &mut s.impulses, &mut s.residuals, &mut s.dv);
+        tree::solve(&self.links, &mut s.impulses, &s.residuals, &mut s.dv);
         dot(row, &s.dv[local])
     }
 

@@ -2,10 +2,11 @@
 //! `J` of gains `G`, a pin gives `λ = G (r − J dv)`, so the body moves as if it had `Jᵀ G J` more inertia and were pushed by
 //! `Jᵀ G r`. Both go into the factor of its tree, which stays exact, in linear time, and stable for any stiffness.
 
+use super::articulated::{Inertia, wide};
 use super::composite::Piece;
 use super::tree::NONE;
 use super::{IslandSolver, SolverJoint};
-use crate::spatial::{Mat6, Vec6, ZERO6, add_scaled, angular, dot, linear};
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, linear};
 
 /// The pins of an island.
 #[derive(Clone, Debug, Default)]
@@ -42,22 +43,21 @@ impl Pins {
 
 impl SolverJoint {
     /// The moving body of a pin; `moving` is the number of those.
-    fn pinned(&self, moving: usize) -> (usize, &[Vec6; 6]) {
-        if (self.a as usize) < moving {
-            (self.a as usize, &self.rows.a)
-        } else {
-            (self.b as usize, &self.rows.b)
-        }
+    fn pinned(&self, moving: usize) -> usize {
+        (if (self.a as usize) < moving { self.a } else { self.b }) as usize
+    }
+
+    /// Jacobian of a row on that body.
+    fn on_pinned(&self, body: usize, row: usize) -> Vec6 {
+        if self.a as usize == body { self.rows.on_a(row) } else { self.rows.on_b(row) }
     }
 
     /// Adds `Jᵀ G J` of a pin.
-    pub(super) fn stiffen(&self, inertia: &mut [Mat6]) {
-        let (body, rows) = self.pinned(inertia.len());
-        for (row, j) in rows[..self.rows.count].iter().enumerate() {
-            let gain = 1.0 / self.compliance(row);
-            for (line, x) in inertia[body].iter_mut().zip(j) {
-                add_scaled(line, j, gain * x);
-            }
+    pub(super) fn stiffen(&self, inertia: &mut [Inertia<f64>]) {
+        let body = self.pinned(inertia.len());
+        for row in 0..self.rows.count {
+            let j = self.on_pinned(body, row);
+            inertia[body].add_row(wide(linear(&j)), wide(angular(&j)), f64::from(self.gain(row)));
         }
     }
 }
@@ -77,7 +77,7 @@ impl IslandSolver {
             self.pins.nearest.push((NONE, if held { 1 } else { u32::MAX - 1 }));
         }
         for (place, &pin) in self.pins.joints.iter().enumerate() {
-            let (body, _) = self.joints[pin as usize].pinned(moving);
+            let body = self.joints[pin as usize].pinned(moving);
             if self.pins.nearest[body].1 > 0 {
                 self.pins.nearest[body] = (place as u32, 0);
             }
@@ -97,7 +97,7 @@ impl IslandSolver {
         }
         for &pin in &self.pins.joints {
             // A second pin of a body moves no more than that.
-            let (body, _) = self.joints[pin as usize].pinned(moving);
+            let body = self.joints[pin as usize].pinned(moving);
             let first = self.pins.joints[self.pins.nearest[body].0 as usize] == pin;
             let reference = self.reference(self.links[body].tree);
             let own = Piece::of(&self.bodies[body], reference);
@@ -114,15 +114,13 @@ impl IslandSolver {
 
     /// Adds `Jᵀ G r` to the impulses that the trees are to answer.
     pub(super) fn pull_pins(&mut self) {
-        let moving = self.links.len();
         for &pin in &self.pins.joints {
             let joint = &self.joints[pin as usize];
             let residual = joint.residual(&joint.rate(&self.velocities), true, self.h);
-            let (body, rows) = joint.pinned(moving);
-            for row in 0..joint.rows.count {
-                let push = residual[row] / joint.compliance(row);
-                add_scaled(&mut self.scratch.impulses[body], &rows[row], push);
-            }
+            let of_rows = core::array::from_fn(|row| {
+                if row < joint.rows.count { residual[row] / joint.compliance(row) } else { 0.0 }
+            });
+            joint.push(&of_rows, &mut self.scratch.impulses, 1.0);
         }
     }
 
@@ -132,7 +130,7 @@ impl IslandSolver {
             let joint = &mut self.joints[pin as usize];
             let rate = joint.rate(&self.velocities);
             for row in 0..joint.rows.count {
-                let before = joint.start_rate[joint.rows.direction[row]];
+                let before = joint.start_rate[joint.rows.direction(row)];
                 joint.impulse[row] = joint.soft[row].impulse(before, rate[row]);
             }
         }
@@ -143,12 +141,12 @@ impl IslandSolver {
         let moving = self.links.len();
         for &pin in &self.pins.joints {
             let joint = &mut self.joints[pin as usize];
-            let (body, rows) = joint.pinned(moving);
+            let body = joint.pinned(moving);
             let mut change = self.velocities[body];
             add_scaled(&mut change, &self.moved[body], -1.0);
             let mut resisted = ZERO6;
             for row in 0..joint.rows.count {
-                resisted[row] = dot(&rows[row], &change) / joint.compliance(row);
+                resisted[row] = dot(&joint.on_pinned(body, row), &change) / joint.compliance(row);
             }
             add_scaled(&mut joint.impulse, &resisted, -1.0);
         }
@@ -161,7 +159,7 @@ impl IslandSolver {
         if self.velocities[moving..].iter().all(|v| *v == ZERO6) {
             return;
         }
-        let mut given = 0.0;
+        let mut given = self.contacts.work_of_kinematic(&self.velocities, moving);
         for rows in &self.manifolds {
             let push = rows.total_push();
             for (body, push) in [(rows.a as usize, &push.0), (rows.b as usize, &push.1)] {

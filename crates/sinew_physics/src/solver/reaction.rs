@@ -2,7 +2,6 @@
 //! it; torques about the anchor of B. Summed in two parts, since the pose changes between `solve` and `relax`: with the
 //! arms of the new one, the torque of what `solve` gave is 3 % too high for an arm that turns at 3 rad/s.
 
-use super::limit_rows::add_row;
 use super::tree::NONE;
 use super::{IslandSolver, SolverBody};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
@@ -81,12 +80,10 @@ impl IslandSolver {
         for rows in &self.manifolds {
             rows.add_given(sums, -1.0);
         }
+        self.contacts.add_given(sums, -1.0);
         for &joint in self.loops.joints.iter().chain(&self.pins.joints) {
             let joint = &self.joints[joint as usize];
-            for row in 0..joint.rows.count {
-                add_row(sums, joint.a, &joint.rows.a[row], -joint.impulse[row]);
-                add_row(sums, joint.b, &joint.rows.b[row], -joint.impulse[row]);
-            }
+            joint.push(&joint.impulse, sums, -1.0);
         }
     }
 
@@ -94,11 +91,8 @@ impl IslandSolver {
     fn add_loop_reactions(&mut self, sign: f32) {
         for &joint in self.loops.joints.iter().chain(&self.pins.joints) {
             let joint = &mut self.joints[joint as usize];
-            let mut on_b = ZERO6;
-            for row in 0..joint.rows.count {
-                add_scaled(&mut on_b, &joint.rows.b[row], sign * joint.impulse[row]);
-            }
-            joint.add_reaction(&on_b, joint.pose.arm_b);
+            let [_, on_b] = joint.rows.impulse(&joint.impulse);
+            joint.add_reaction(&on_b.map(|x| sign * x), joint.pose.arm_b);
         }
     }
 
@@ -131,6 +125,16 @@ impl IslandSolver {
 }
 
 impl super::SolverJoint {
+    /// Adds to those of the bodies what impulses of its rows are, times `sign`.
+    pub(super) fn push(&self, of_rows: &Vec6, impulses: &mut [Vec6], sign: f32) {
+        let [on_a, on_b] = self.rows.impulse(of_rows);
+        for (body, push, sign) in [(self.a, on_a, -sign), (self.b, on_b, sign)] {
+            if let Some(sum) = impulses.get_mut(body as usize) {
+                add_scaled(sum, &push, sign);
+            }
+        }
+    }
+
     /// Of an impulse on B at its centre, `arm` from its anchor.
     pub(super) fn add_reaction(&mut self, on_b: &Vec6, arm: Vec3) {
         let torque = angular(on_b) - arm.cross(linear(on_b));

@@ -2,18 +2,21 @@
 //! joints holding. A contact that sees its link's own mass instead sinks: a 1 kg foot under 69 kg by 72 mm.
 
 use super::loops::MAX_EXACT_ROWS;
-use super::tree::{Link, NONE};
+use super::tree::{Link, NONE, store, sum};
 use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, transpose};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
 
-/// Blocks `W_ij` (6×6) between the bodies of each tree that carry rows, and their ancestors.
+/// Blocks `W_ij` (6×6) between the bodies of each tree that carry rows, and their ancestors. Those above the diagonal are needed
+/// where loops are closed only: what a body gets from an impulse on an earlier one it has from its parent.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Response {
     /// Per body: its position among the members of its tree, or `NONE`.
     slot: Vec<u32>,
     /// Members of all trees, tree after tree, parents first.
     members: Vec<u32>,
+    /// Place of each one's parent among them; 0 of a root.
+    above: Vec<u32>,
     /// Per tree: range in `members`, start of its blocks.
     trees: Vec<TreeBlocks>,
     blocks: Vec<Mat6>,
@@ -24,6 +27,8 @@ struct TreeBlocks {
     first: usize,
     count: usize,
     blocks: usize,
+    /// All blocks are there, not only those on and below the diagonal.
+    full: bool,
 }
 
 impl Response {
@@ -41,6 +46,7 @@ impl Response {
             }
         }
         self.members.clear();
+        self.above.clear();
         self.trees.clear();
         self.trees.resize(tree_count, TreeBlocks::default());
         let mut blocks = 0;
@@ -52,6 +58,8 @@ impl Response {
                 if self.slot[i] != NONE {
                     self.slot[i] = (self.members.len() - entry.first) as u32;
                     self.members.push(i as u32);
+                    let parent = self.slot.get(links[i].parent as usize);
+                    self.above.push(parent.map_or(0, |&place| place));
                 }
                 i += 1;
             }
@@ -65,6 +73,11 @@ impl Response {
     /// joint, since nothing acts below it; `W_cc = L_c + A_c W_pp A_cᵀ`.
     pub fn fill(&mut self, links: &[Link]) {
         dispatch::run(Fill { response: self, links });
+    }
+
+    /// Bytes that are filled.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.blocks[..]) + size_of_val(&self.members[..]) + size_of_val(&self.slot[..])
     }
 
     /// Members of a tree, parents first.
@@ -81,6 +94,12 @@ impl Response {
     /// Closes the loops of a tree: `W −= U S⁻¹ Uᵀ` with the columns U of the loop rows, `n` of them.
     pub fn close(&mut self, tree: u32, columns: &[Vec6], inverse: &[f32], n: usize) {
         let TreeBlocks { count, blocks, .. } = self.trees[tree as usize];
+        self.trees[tree as usize].full = true;
+        for i in 0..count {
+            for j in 0..i {
+                self.blocks[blocks + j * count + i] = transpose(&self.blocks[blocks + i * count + j]);
+            }
+        }
         for j in 0..count {
             // S⁻¹ U_jᵀ, row by row of S⁻¹.
             let mut answer = [ZERO6; MAX_EXACT_ROWS];
@@ -101,12 +120,22 @@ impl Response {
         }
     }
 
-    /// Adds to `out` the velocity changes of all members of the tree of a moving body from an impulse on it.
+    /// Makes `out`, which is zero, the velocity changes of all members of the tree of a moving body from an impulse on it. Where
+    /// it is the only member, adds to its velocity.
     pub fn answer(&self, links: &[Link], body: u32, impulse: &Vec6, out: &mut [Vec6]) {
-        let TreeBlocks { count, blocks, .. } = self.trees[links[body as usize].tree as usize];
+        let TreeBlocks { first, count, blocks, full } = self.trees[links[body as usize].tree as usize];
+        let slot = self.slot[body as usize] as usize;
         // W is symmetric: the row of blocks of the body, transposed, is its column, and lies in one piece of memory.
-        let row = blocks + self.slot[body as usize] as usize * count;
-        dispatch::run(Spread { impulse, blocks: &self.blocks[row..row + count], out });
+        let row = blocks + slot * count;
+        let known = if full { count } else { slot + 1 };
+        let blocks = &self.blocks[row..row + known];
+        if full || count == 1 {
+            dispatch::run(Spread { impulse, blocks, out });
+            return;
+        }
+        let later = first + known..first + count;
+        let (members, above) = (&self.members[later.clone()], &self.above[later]);
+        dispatch::run(SpreadDown { impulse, blocks, members, above, links, out });
     }
 }
 
@@ -128,20 +157,26 @@ impl Kernel for Fill<'_> {
             let blocks = &mut response.blocks[tree.blocks..tree.blocks + n * n];
             for (c, &body) in members.iter().enumerate() {
                 let link = &links[body as usize];
-                let mut own = link.response_with_parent_held::<L>();
+                let mut own = load::<L>(link.response_with_parent_held());
                 let parent = link.parent as usize;
                 // The root is always the first member.
                 if parent < links.len() {
-                    let p = response.slot[parent] as usize;
-                    let mut transfer = ZERO66;
-                    store(link.transfer::<L>(), &mut transfer);
-                    for j in 0..c {
-                        let mut block = ZERO66;
-                        store(product::<L>(&transfer, &blocks[p * n + j]), &mut block);
-                        blocks[j * n + c] = transpose(&block);
-                        blocks[c * n + j] = block;
+                    let p = response.above[tree.first + c] as usize;
+                    let carry = link.carry::<L>();
+                    let (above, row) = blocks.split_at_mut(c * n);
+                    for j in 0..=p {
+                        store(product(&carry, &above[p * n + j]), &mut row[j]);
                     }
-                    let through = product::<L>(&transfer, &blocks[p * n + c]);
+                    for j in p + 1..c {
+                        // Not above this body: an impulse there moves this one by way of its parent.
+                        let other = &links[members[j] as usize];
+                        let by = row[response.above[tree.first + j] as usize];
+                        for (out, by) in row[j].iter_mut().zip(&by) {
+                            other.carried::<L>(by).store(out);
+                        }
+                    }
+                    // A W_pp Aᵀ is A times the parent's answer to this body.
+                    let through = product(&carry, &transpose(&row[p]));
                     for (own, add) in own.iter_mut().zip(through) {
                         *own = *own + add;
                     }
@@ -154,27 +189,47 @@ impl Kernel for Fill<'_> {
 
 /// `a b`
 #[inline(always)]
-fn product<L: Lanes>(a: &Mat6, b: &Mat6) -> [L; 6] {
-    let [r0, r1, r2, r3, r4, r5] = b;
-    let (r0, r1, r2) = (L::load(r0), L::load(r1), L::load(r2));
-    let (r3, r4, r5) = (L::load(r3), L::load(r4), L::load(r5));
+pub(super) fn product<L: Lanes>(a: &[[L; 6]; 6], b: &Mat6) -> [L; 6] {
+    let [r0, r1, r2, r3, r4, r5] = load::<L>(b);
     let mut out = [L::splat(0.0); 6];
-    for (out, a) in out.iter_mut().zip(a) {
-        *out = r0 * L::splat(a[0])
-            + r1 * L::splat(a[1])
-            + r2 * L::splat(a[2])
-            + r3 * L::splat(a[3])
-            + r4 * L::splat(a[4])
-            + r5 * L::splat(a[5]);
+    for (out, [a0, a1, a2, a3, a4, a5]) in out.iter_mut().zip(a) {
+        *out = (r0 * *a0 + r1 * *a1) + (r2 * *a2 + r3 * *a3) + (r4 * *a4 + r5 * *a5);
     }
     out
 }
 
-/// Six rows into a matrix.
+/// The rows of a matrix.
 #[inline(always)]
-fn store<L: Lanes>(rows: [L; 6], out: &mut Mat6) {
-    for (row, out) in rows.into_iter().zip(out) {
-        row.store(out);
+pub(super) fn load<L: Lanes>(m: &Mat6) -> [L; 6] {
+    let [r0, r1, r2, r3, r4, r5] = m;
+    [L::load(r0), L::load(r1), L::load(r2), L::load(r3), L::load(r4), L::load(r5)]
+}
+
+/// Velocity changes of the members of a tree from an impulse on one of them: of those up to it by its row of blocks, of later ones,
+/// on which nothing acts, by what their parents carry over.
+struct SpreadDown<'a> {
+    impulse: &'a Vec6,
+    blocks: &'a [Mat6],
+    /// Later bodies and the places of their parents.
+    members: &'a [u32],
+    above: &'a [u32],
+    links: &'a [Link],
+    out: &'a mut [Vec6],
+}
+
+impl Kernel for SpreadDown<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { impulse, blocks, members, above, links, out } = self;
+        for (out, block) in out.iter_mut().zip(blocks) {
+            sum::<L>(block, impulse).store(out);
+        }
+        for (k, (&body, &above)) in members.iter().zip(above).enumerate() {
+            let (before, rest) = out.split_at_mut(blocks.len() + k);
+            links[body as usize].carried::<L>(&before[above as usize]).store(&mut rest[0]);
+        }
     }
 }
 
@@ -191,18 +246,8 @@ impl Kernel for Spread<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let [p0, p1, p2, p3, p4, p5, ..] = *self.impulse;
-        let (p0, p1, p2) = (L::splat(p0), L::splat(p1), L::splat(p2));
-        let (p3, p4, p5) = (L::splat(p3), L::splat(p4), L::splat(p5));
         for (out, block) in self.out.iter_mut().zip(self.blocks) {
-            let [r0, r1, r2, r3, r4, r5] = block;
-            let change = L::load(r0) * p0
-                + L::load(r1) * p1
-                + L::load(r2) * p2
-                + L::load(r3) * p3
-                + L::load(r4) * p4
-                + L::load(r5) * p5;
-            (L::load(out) + change).store(out);
+            (L::load(out) + sum::<L>(block, self.impulse)).store(out);
         }
     }
 }

@@ -7,6 +7,7 @@ use crate::contact::ContactMemory;
 use crate::islands::Island;
 use crate::joint::{LimitImpulse, MAX_LIMITS, Saturation};
 use crate::spatial::{Vec6, angular, linear};
+use crate::stage::Profiler;
 use crate::work::Work;
 use sinew_math::{Transform, Vec3};
 
@@ -38,7 +39,8 @@ pub(crate) struct SolvedJoint {
 pub(crate) struct SolvedContact {
     /// In the world.
     pub index: u32,
-    pub manifold: Manifold,
+    /// Its manifold, if it was looked for anew within the step.
+    pub found: Option<Manifold>,
     pub memory: ContactMemory,
 }
 
@@ -99,7 +101,8 @@ pub(crate) fn split_off<'a, T>(left: &mut &'a mut [T], count: usize) -> &'a mut 
 
 impl IslandSolver {
     /// Writes down what has come of the island.
-    pub fn store(&self, solution: &mut IslandSolution<'_>) {
+    pub fn store(&self, solution: &mut IslandSolution<'_>, profiler: &dyn Profiler) {
+        self.tell_counts(profiler);
         for ((solved, body), v) in solution.bodies.iter_mut().zip(&self.bodies).zip(&self.velocities) {
             let velocity = Velocity { linear: linear(v), angular: angular(v) };
             *solved = SolvedBody { index: body.index, pose: body.pose, velocity };
@@ -107,17 +110,25 @@ impl IslandSolver {
         for (solved, joint) in solution.joints.iter_mut().zip(&self.joints) {
             *solved = SolvedJoint {
                 index: joint.index,
-                limits: joint.limits,
+                limits: joint.limits.map(|limit| limit.of_substeps(1.0 / self.stretch)),
                 force: joint.force,
-                warm_impulse: joint.warm_impulse,
+                warm_impulse: joint.warm_impulse.map(|impulse| impulse / self.stretch),
                 saturated: joint.saturated,
                 mass: joint.mass,
                 reaction: joint.reaction,
             };
         }
         solution.work.fill(self.work);
+        if self.is_in_lanes() {
+            self.contacts.store(self.stretch, solution.contacts);
+            return;
+        }
         for (solved, rows) in solution.contacts.iter_mut().zip(&self.manifolds) {
-            *solved = SolvedContact { index: rows.contact, manifold: rows.manifold, memory: rows.memory };
+            *solved = SolvedContact {
+                index: rows.contact,
+                found: rows.found(),
+                memory: rows.memory.of_substeps(1.0 / self.stretch),
+            };
         }
     }
 }

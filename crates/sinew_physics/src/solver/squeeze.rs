@@ -6,7 +6,7 @@
 //! nor what hits it from one side alone.
 
 use super::IslandSolver;
-use super::contact_rows::ManifoldRows;
+use crate::contact::Contact;
 use sinew_math::{Vec3, max};
 
 /// Least mass of a body per impulse that cancels itself on it in a substep, kg/(N·s): what bears less than 4,000 times its
@@ -22,6 +22,30 @@ pub(super) struct Pressing {
     size: f32,
     /// What stands on it, as long as contacts do not know.
     guess: f32,
+}
+
+/// Two bodies that touch, when a step begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    /// Local.
+    pub bodies: [u32; 2],
+    /// What B got along the normal in the last substep, N·s.
+    pub push: Vec3,
+    /// They touch, and do not know their load yet.
+    pub is_new: bool,
+}
+
+impl Touch {
+    /// A contact in substeps `stretch` times as long as the world's, whose points are taken for touching at gaps below `slop`,
+    /// metres.
+    pub fn new(bodies: [u32; 2], contact: &Contact, stretch: f32, slop: impl Fn() -> f32) -> Self {
+        let points = contact.manifold.points();
+        let load =
+            stretch * contact.memory.points[..points.len()].iter().fold(0.0, |sum, point| sum + point.now);
+        let is_near = |slop: f32| points.iter().any(|point| point.separation < slop);
+        let is_new = load == 0.0 && is_near(slop());
+        Self { bodies, push: contact.manifold.normal * load, is_new }
+    }
 }
 
 impl Pressing {
@@ -41,8 +65,9 @@ impl IslandSolver {
     pub(super) fn guess_loads(&mut self) {
         self.pressing.clear();
         self.pressing.resize(self.links.len(), Pressing::default());
-        let unknown = self.manifolds.iter().any(ManifoldRows::touches_anew);
-        if !unknown || self.mass_ratio() < GUESSED {
+        self.is_unequal = self.mass_ratio() >= GUESSED;
+        let unknown = self.touches.iter().any(|touch| touch.is_new);
+        if !unknown || !self.is_unequal {
             return;
         }
         for (pressing, body) in self.pressing.iter_mut().zip(&self.bodies) {
@@ -59,38 +84,50 @@ impl IslandSolver {
 
     /// Bodies of a level share what they bear, and themselves, among those that they stand on.
     fn hand_down(&mut self, level: u32) {
-        let Self { manifolds, pressing, levels, scratch, .. } = self;
-        let supports = |rows: &ManifoldRows| {
-            [(rows.a, rows.b), (rows.b, rows.a)]
+        let Self { touches, pressing, levels, scratch, .. } = self;
+        let supports = |touch: &Touch| {
+            let [a, b] = touch.bodies;
+            [(a, b), (b, a)]
                 .into_iter()
                 .find(|&(below, above)| levels.of(above) == level && levels.of(below) == level - 1)
         };
         let shares = &mut scratch.shares;
         shares.clear();
         shares.resize(pressing.len(), 0.0);
-        for (_, above) in manifolds.iter().filter_map(supports) {
+        for (_, above) in touches.iter().filter_map(supports) {
             shares[above as usize] += 1.0;
         }
-        for (below, above) in manifolds.iter().filter_map(supports) {
+        for (below, above) in touches.iter().filter_map(supports) {
             pressing[below as usize].guess += pressing[above as usize].guess / shares[above as usize];
         }
     }
 
-    /// Gives ballast to what is squeezed in this substep.
+    /// Where masses are very unequal, ballast follows from what presses in this substep.
+    pub(super) fn refresh_ballast(&mut self) {
+        if self.is_unequal {
+            self.touches.clear();
+            self.contacts.list_pushes(&mut self.touches);
+            self.add_ballast();
+            self.contacts.spoil();
+        }
+    }
+
+    /// Gives ballast to what was squeezed in the last substep.
     pub(super) fn add_ballast(&mut self) {
         for pressing in &mut self.pressing {
             *pressing = Pressing { guess: pressing.guess, ..Pressing::default() };
         }
-        for rows in &self.manifolds {
-            let push = rows.normal_push();
-            for (body, push) in [(rows.a, -push), (rows.b, push)] {
+        for &Touch { bodies: [a, b], push, .. } in &self.touches {
+            for (body, push) in [(a, -push), (b, push)] {
                 if let Some(pressing) = self.pressing.get_mut(body as usize) {
                     pressing.add(push);
                 }
             }
         }
-        for (body, pressing) in self.bodies.iter_mut().zip(&self.pressing) {
-            body.ballast = max(1.0, BALLAST * pressing.squeeze() / body.mass);
+        for i in 0..self.pressing.len() {
+            let (squeeze, mass) = (self.pressing[i].squeeze(), self.bodies[i].mass);
+            let is_jointed = self.is_jointed(i as u32);
+            self.bodies[i].ballast = if is_jointed { 1.0 } else { max(1.0, BALLAST * squeeze / mass) };
         }
     }
 }

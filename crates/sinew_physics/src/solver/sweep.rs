@@ -7,7 +7,7 @@ use super::conjugate::{Conjugate, Rows};
 use super::contact_rows::ManifoldRows;
 use super::effort::Order;
 use super::tree::Link;
-use super::{IslandSolver, WEIGHINGS};
+use super::{Coupling, IslandSolver, WEIGHINGS};
 use crate::spatial::{ZERO6, add_scaled, largest, linear};
 use sinew_math::max;
 
@@ -92,6 +92,22 @@ fn wakes(seen: &mut f32, now: f32, tolerance: f32) -> bool {
 impl IslandSolver {
     /// Visits all rows and gives the bodies their impulses.
     pub(super) fn sweep(&mut self, pass: Pass) {
+        match self.coupling {
+            Coupling::Free => self.sweep_free(pass),
+            Coupling::Turns => self.sweep_by_turns(pass),
+            Coupling::Response => self.sweep_by_response(pass),
+        }
+    }
+
+    /// Contacts in lanes alone.
+    fn sweep_free(&mut self, pass: Pass) {
+        let sweeps = self.effort.of_blocks(pass);
+        let done = self.contacts.sweep(pass, sweeps, &mut self.velocities, self.h);
+        let rows = self.contacts.tally().manifolds as usize;
+        (1..=done).for_each(|sweep| self.tally.sweep(pass, sweep, rows));
+    }
+
+    fn sweep_by_response(&mut self, pass: Pass) {
         if self.manifolds.is_empty() && self.limits.is_empty() {
             return;
         }
@@ -107,11 +123,9 @@ impl IslandSolver {
         for done in 1..=sweeps {
             self.largest_change = 0.0;
             self.change_energy = 0.0;
+            self.tally.sweep(pass, done, self.manifolds.len() + self.limits.len());
             if pass == Pass::Relax && done <= WEIGHINGS {
-                // Islands with joints sweep until they know.
-                let weigh =
-                    if self.is_articulated() { ManifoldRows::weigh } else { ManifoldRows::weigh_by_memory };
-                self.manifolds.iter_mut().for_each(weigh);
+                self.manifolds.iter_mut().for_each(ManifoldRows::weigh);
             }
             if conjugates {
                 let (conjugate, rows) = self.rows_to_conjugate();
@@ -160,6 +174,7 @@ impl IslandSolver {
                 None => rows.respond(&self.bodies, &self.links, &self.response, &mut self.columns),
             };
             let bodies = [rows.a, rows.b];
+            self.tally.visits += 1;
             if pass == Pass::Relax {
                 let change = self.manifolds[i].visit_friction(strip, &self.velocities);
                 self.push(bodies, &change);
@@ -178,7 +193,7 @@ impl IslandSolver {
             return;
         }
         let before = bodies.map(|body| self.velocities[body as usize]);
-        self.answer(bodies, change);
+        self.columns.push(&self.response, &self.links, bodies, change, &mut self.velocities);
         for (end, body) in bodies.into_iter().enumerate() {
             let body = body as usize;
             let Some(link) = self.links.get(body) else { continue };
@@ -190,21 +205,6 @@ impl IslandSolver {
             let largest = largest(&by);
             self.unrest.stir(link.tree, largest);
             self.largest_change = max(self.largest_change, largest);
-        }
-    }
-
-    /// Velocities after changes of rows: by columns, or of bodies by themselves, which would gain nothing from those, by the sum of
-    /// the impulses on each.
-    fn answer(&mut self, bodies: [u32; 2], change: &Change) {
-        if self.is_articulated() {
-            self.columns.push(&self.response, &self.links, bodies, change, &mut self.velocities);
-            return;
-        }
-        for (body, p) in bodies.into_iter().zip(&change.push) {
-            if (body as usize) < self.links.len() {
-                let own = core::slice::from_mut(&mut self.velocities[body as usize]);
-                self.response.answer(&self.links, body, p, own);
-            }
         }
     }
 
@@ -228,9 +228,6 @@ impl IslandSolver {
         self.add_given(1.0);
         for (push, p) in self.contact_push.iter_mut().zip(&self.impulses) {
             *push += linear(p);
-        }
-        if !self.is_articulated() {
-            return; // every tree is one body, and the response was exact
         }
         let moving = self.links.len();
         self.velocities[..moving].copy_from_slice(&self.scratch.before);

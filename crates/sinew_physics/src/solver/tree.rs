@@ -1,21 +1,24 @@
-//! Joint trees: the joints of a tree are solved exactly, in linear time, by block LDLᵀ from the leaves to the root.
+//! Joint trees: the joints of a tree are solved exactly, in linear time, from the leaves to the root and back.
 //!
-//! For child `c`, joint rows `J_c v_c + J_p v_p + Γ λ = r` and parent `p` (Baraff 1996; a tree has no fill-in):
-//! ```text
-//! P  = M'_c⁻¹                  M'_c: inertia of c with all that hangs below it
-//! D  = J_c P J_cᵀ + Γ          Y = P J_cᵀ
-//! M'_p += J_pᵀ D⁻¹ J_p
-//! ```
-//! Γ is zero for rigid rows, the compliance of springs, motors and dry friction for the others.
+//! Each joint's open directions are eliminated from the articulated inertia of its child, see
+//! [`articulated`](super::articulated): a tree has no fill-in. The answer is that of
+//! `M dv = impulses + Jᵀ λ`, `J dv + Γ λ = residuals`, with Γ zero for rigid rows, and `1/gain` for springs, motors and
+//! dry friction.
 
 use super::SolverJoint;
-use crate::joint::DIRECTIONS;
-use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, add_scaled, mul_transposed, spd_inverse, transpose};
+use super::articulated::{Elimination, Freedom, Inertia, Sequence, Swivel, Twist, wide};
+use crate::joint::{DIRECTIONS, JointRows};
+use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, join, mul_transposed};
 use sinew_math::dispatch::{self, Kernel};
-use sinew_math::lanes::Lanes;
+use sinew_math::lanes::{Lanes, Real, Vector3};
+use sinew_math::{Vec3, any_orthonormal};
 
 /// No parent, no joint, no slot.
 pub(crate) const NONE: u32 = u32::MAX;
+
+/// Square of the length below which an axis is none, and the share of that square that other axes must leave.
+const LEAST_AXIS: f32 = 1e-6;
+const LEAST_SHARE: f32 = 1e-5;
 
 /// A moving body as a node of its tree. Nodes of a tree are contiguous, parents before children.
 #[derive(Clone, Debug)]
@@ -26,24 +29,19 @@ pub(crate) struct Link {
     pub joint: u32,
     /// Which tree.
     pub tree: u32,
-    /// Rows in use, and how many of them are rigid.
-    pub rows: usize,
-    pub rigid: usize,
-    /// Jacobians of child and parent, row by row.
-    pub child: [Vec6; 6],
-    pub parent_rows: [Vec6; 6],
-    /// Those of the parent column by column.
-    parent_columns: Mat6,
-    /// Γ, row by row.
-    pub compliance: Vec6,
-    /// P.
-    pub inverse: Mat6,
-    /// Rows of Yᵀ.
-    pub y: [Vec6; 6],
-    /// Rows of Y.
-    y_columns: Mat6,
-    /// D⁻¹.
-    pub d_inverse: Mat6,
+    /// How many rows ask for a velocity, and which.
+    asking: usize,
+    row: [u8; DIRECTIONS],
+    /// What a unit of each one's residual makes of this body with its parent held, and the impulse that it passes on.
+    follow: [Vec6; DIRECTIONS],
+    pass: [Vec6; DIRECTIONS],
+    /// Rows whose gains push both bodies, bit by bit.
+    pushing: u8,
+    /// Velocity that this body takes on from its parent's when nothing acts below the joint: rows, columns.
+    carry: Mat6,
+    carry_columns: Mat6,
+    /// Answer to an impulse on this body while its parent is held.
+    own: Mat6,
 }
 
 impl Link {
@@ -52,127 +50,285 @@ impl Link {
             parent,
             joint,
             tree,
-            rows: 0,
-            rigid: 0,
-            child: [ZERO6; 6],
-            parent_rows: [ZERO6; 6],
-            parent_columns: ZERO66,
-            compliance: ZERO6,
-            inverse: ZERO66,
-            y: [ZERO6; 6],
-            y_columns: ZERO66,
-            d_inverse: ZERO66,
+            asking: 0,
+            row: [0; DIRECTIONS],
+            follow: [ZERO6; DIRECTIONS],
+            pass: [ZERO6; DIRECTIONS],
+            pushing: 0,
+            carry: ZERO66,
+            carry_columns: ZERO66,
+            own: ZERO66,
         }
     }
 
-    /// Takes the rows of its joint at the present pose.
-    pub fn take_rows(&mut self, joint: &SolverJoint, child_is_b: bool) {
+    /// Velocity that this body takes on from its parent's when nothing acts below the joint.
+    #[inline(always)]
+    pub fn carried<L: Lanes>(&self, parent: &Vec6) -> L {
+        sum(&self.carry_columns, parent)
+    }
+
+    /// The numbers of that matrix, each in all lanes: to multiply many others by it.
+    #[inline(always)]
+    pub fn carry<L: Lanes>(&self) -> [[L; 6]; 6] {
+        let mut out = [[L::splat(0.0); 6]; 6];
+        for (out, row) in out.iter_mut().zip(&self.carry) {
+            for (out, &x) in out.iter_mut().zip(row) {
+                *out = L::splat(x);
+            }
+        }
+        out
+    }
+
+    /// What a velocity of the parent gives this body.
+    #[inline(always)]
+    pub fn carry_down(&self, v: &Vec6) -> Vec6 {
+        mul_transposed(&self.carry_columns, v)
+    }
+
+    /// What an impulse on this body gives the parent.
+    #[inline(always)]
+    pub fn carry_up(&self, p: &Vec6) -> Vec6 {
+        mul_transposed(&self.carry, p)
+    }
+
+    /// Answer to an impulse on this body while its parent is held.
+    pub fn response_with_parent_held(&self) -> &Mat6 {
+        &self.own
+    }
+
+    /// Adds what the gains of rows that ask for nothing push for their residuals.
+    pub fn push_gains(&self, joint: &SolverJoint, residuals: &Vec6, impulses: &mut [Vec6]) {
+        if self.pushing == 0 {
+            return;
+        }
+        let mut of_rows = ZERO6;
+        for row in (joint.rigid..joint.rows.count).filter(|&row| self.pushing & 1 << row != 0) {
+            of_rows[row] = residuals[row] * joint.gain(row);
+        }
+        joint.push(&of_rows, impulses, 1.0);
+    }
+
+    /// Eliminates what its joint leaves open. Gives what the parent gets of the articulated inertia.
+    #[inline(always)]
+    fn factor(&mut self, joint: Option<&SolverJoint>, is_b: bool, inertia: &Inertia<f64>) -> Inertia<f64> {
+        (self.asking, self.pushing) = (0, 0);
+        let Some(joint) = joint else {
+            let mut free = Swivel::new(Freedom::All, [wide(Vec3::ZERO); 2], inertia);
+            free.factor();
+            self.condense(&free);
+            return Inertia::zero();
+        };
+        if joint.is_point() {
+            let mut swivel = self.swivel(joint, is_b, inertia);
+            let through = swivel.factor();
+            self.condense(&swivel);
+            self.answer_rows(&swivel, &through, swivel.parent_arm());
+            return through;
+        }
+        let mut sequence = self.sequence(joint, is_b, inertia);
+        let through = sequence.factor();
+        self.condense(&sequence);
+        self.answer_rows(&sequence, &through, sequence.parent_arm());
+        // With nothing but free directions, all of it is rounding.
+        if joint.rows.count == 0 { Inertia::zero() } else { through }
+    }
+
+    /// What an elimination makes of units of velocities and impulses. Formed with twice the digits: in single precision light
+    /// bodies between heavy ones would pass on more rounding than they weigh.
+    #[inline(always)]
+    fn condense<E: Elimination<f64>>(&mut self, by: &E) {
+        for column in 0..6 {
+            let mut unit = [0.0; 6];
+            unit[column] = 1.0;
+            let mut kept = [0.0; 6];
+            if self.joint != NONE {
+                let carried = narrow(by.descend(twist(unit), &kept));
+                self.carry_columns[column] = carried;
+                set_column(&mut self.carry, column, &carried);
+            }
+            // What it passes on is, by symmetry, a column of what the parent's velocities carry over.
+            by.ascend(twist(unit), &mut kept);
+            set_column(&mut self.own, column, &narrow(by.descend_alone(&kept)));
+        }
+    }
+
+    /// From what rows ask of the child at the anchor to what that makes of it and passes on. Both are formed with twice the
+    /// digits: what a heavy child takes along and what it passes on nearly cancel.
+    #[inline(always)]
+    fn answer_rows<E: Elimination<f64>>(&mut self, by: &E, through: &Inertia<f64>, parent_arm: Vector3<f64>) {
+        for (follow, pass) in self.follow.iter_mut().zip(&mut self.pass).take(self.asking) {
+            let [x, y, z, u, v, w, ..] = follow.map(f64::from);
+            let [v, w] = twist([x, y, z, u, v, w]);
+            *follow = narrow(by.follow([v, w], &[0.0; 6]));
+            // The velocity of the parent that moves the anchor in that way, resisted.
+            let [force, torque] = through.times([v - w.cross(parent_arm), w]);
+            *pass = narrow([-force, -torque]);
+        }
+    }
+
+    /// A point that turns in all directions.
+    #[inline(always)]
+    fn swivel(&mut self, joint: &SolverJoint, is_b: bool, inertia: &Inertia<f64>) -> Swivel<f64> {
         let rows = &joint.rows;
-        self.rows = rows.count;
-        self.rigid = joint.rigid;
-        (self.child, self.parent_rows) = if child_is_b { (rows.b, rows.a) } else { (rows.a, rows.b) };
-        for row in 0..DIRECTIONS {
-            self.compliance[row] = joint.compliance(row);
+        let (arms, sign) = arms(rows, is_b);
+        let driven = rows.count > rows.locked;
+        let freedom = if driven { Freedom::DrivenRotation } else { Freedom::Rotation };
+        let mut swivel = Swivel::new(freedom, arms.map(wide), inertia);
+        for (row, axis) in [Vec3::X, Vec3::Y, Vec3::Z].into_iter().enumerate() {
+            self.ask(row, join(axis * sign, Vec3::ZERO));
         }
-    }
-
-    /// `−Y D⁻¹ J_p`: velocity that this body takes on from its parent's, when nothing acts below the joint.
-    #[inline(always)]
-    pub fn transfer<L: Lanes>(&self) -> [L; 6] {
-        let mut out = [L::splat(0.0); 6];
-        for row in 0..self.rows {
-            let line = combined::<L>(&self.parent_rows[..self.rows], &self.d_inverse[row]);
-            for (i, out) in out.iter_mut().enumerate() {
-                *out = *out + line * L::splat(-self.y[row][i]);
+        for row in rows.locked..rows.count {
+            let (axis, gain) = (rows.axis[row], f64::from(joint.gain(row)));
+            swivel.gain.add_outer(wide(axis), gain);
+            if gain > swivel.weight(true, wide(axis)) {
+                self.ask(row, join(Vec3::ZERO, axis * sign));
+            } else {
+                self.pushing |= 1 << row;
             }
         }
-        out
+        swivel
     }
 
-    /// `P − Y D⁻¹ Yᵀ`: response to an impulse on this body while its parent is held.
+    /// Any other joint.
     #[inline(always)]
-    pub fn response_with_parent_held<L: Lanes>(&self) -> [L; 6] {
-        let mut out = [L::splat(0.0); 6];
-        for (out, line) in out.iter_mut().zip(&self.inverse) {
-            *out = L::load(line);
-        }
-        for row in 0..self.rows {
-            let line = combined::<L>(&self.y[..self.rows], &self.d_inverse[row]);
-            for (i, out) in out.iter_mut().enumerate() {
-                *out = *out + line * L::splat(-self.y[row][i]);
+    fn sequence(&mut self, joint: &SolverJoint, is_b: bool, inertia: &Inertia<f64>) -> Sequence<f64> {
+        let rows = &joint.rows;
+        let (arms, sign) = arms(rows, is_b);
+        let mut sequence = Sequence::new(arms.map(wide), inertia);
+        for turns in [false, true] {
+            let Ways { way, row, count } = Ways::new(rows, turns);
+            for (k, way) in way.into_iter().enumerate() {
+                let row = usize::from(row[k]);
+                let gain = if k >= count { 0.0 } else { f64::from(joint.gain(row)) };
+                if k < count {
+                    // Gains beyond the inertia ask for a velocity, those below push: either would drown in the other.
+                    if row < joint.rigid || gain > sequence.weight(turns, wide(way)) {
+                        let way = way * sign;
+                        self.ask(row, if turns { join(Vec3::ZERO, way) } else { join(way, Vec3::ZERO) });
+                    } else {
+                        self.pushing |= 1 << row;
+                    }
+                    if row < joint.rigid {
+                        continue;
+                    }
+                }
+                sequence.push(turns, wide(way), gain);
             }
         }
-        out
+        sequence
     }
 
-    /// Computes P, Y, D⁻¹ from the articulated inertia of the child.
+    /// A row that asks this body to move in a way at the anchor, to be [answered](Self::answer_rows).
     #[inline(always)]
-    fn factor(&mut self, inertia: &Mat6) {
-        self.inverse = robust_inverse(inertia, 6);
-        let mut d = ZERO66;
-        self.y = ZERO66;
-        for row in 0..self.rows {
-            self.y[row] = mul_transposed(&self.inverse, &self.child[row]);
-        }
-        self.y_columns = transpose(&self.y);
-        self.parent_columns = transpose(&self.parent_rows);
-        for row in 0..self.rows {
-            d[row] = mul_transposed(&self.y_columns, &self.child[row]);
-            d[row][row] += self.compliance[row];
-        }
-        self.d_inverse = robust_inverse(&d, self.rows);
-    }
-
-    /// `J_pᵀ D⁻¹ J_p`: what this joint adds to its parent's inertia.
-    #[inline(always)]
-    fn add_to_parent(&self, inertia: &mut Mat6) {
-        for row in 0..self.rows {
-            let mut line = ZERO6;
-            for k in 0..self.rows {
-                add_scaled(&mut line, &self.parent_rows[k], self.d_inverse[row][k]);
-            }
-            for (i, m) in inertia.iter_mut().enumerate() {
-                add_scaled(m, &line, self.parent_rows[row][i]);
-            }
-        }
+    fn ask(&mut self, row: usize, way: Vec6) {
+        (self.row[self.asking], self.follow[self.asking]) = (row as u8, way);
+        self.asking += 1;
     }
 }
 
-/// The sum of rows, each times its factor.
+/// Those of the child and its parent, and the sign with which rows act on the child.
 #[inline(always)]
-fn combined<L: Lanes>(rows: &[Vec6], factors: &Vec6) -> L {
-    let mut sum = L::splat(0.0);
-    for (row, &factor) in rows.iter().zip(factors) {
-        sum = sum + L::load(row) * L::splat(factor);
-    }
-    sum
+fn arms(rows: &JointRows, is_b: bool) -> ([Vec3; 2], f32) {
+    if is_b { ([rows.arm_b, rows.arm_a], 1.0) } else { ([rows.arm_a, rows.arm_b], -1.0) }
 }
 
-/// Inverse of a matrix that is positive definite but for rounding: a bad pivot raises the diagonal and tries again
-/// (as Newton Dynamics does); what stays bad gives zero, so the row does nothing, never a NaN.
 #[inline(always)]
-fn robust_inverse(m: &Mat6, n: usize) -> Mat6 {
-    let mut m = *m;
-    for _ in 0..6 {
-        if let Some(inverse) = spd_inverse(&m, n) {
-            return inverse;
-        }
-        for (i, row) in m.iter_mut().enumerate().take(n) {
-            row[i] += 1e-6 + row[i].abs() * 1e-4;
-        }
+fn twist<R: Real>([x, y, z, u, v, w]: [R; 6]) -> Twist<R> {
+    [Vector3::new(x, y, z), Vector3::new(u, v, w)]
+}
+
+#[inline(always)]
+fn flat<R: Real>([v, w]: Twist<R>) -> [R; 6] {
+    [v.x, v.y, v.z, w.x, w.y, w.z]
+}
+
+/// With the digits of the solve.
+#[inline(always)]
+fn narrow(twist: Twist<f64>) -> Vec6 {
+    let [x, y, z, u, v, w] = flat(twist);
+    [x, y, z, u, v, w, 0.0, 0.0].map(|x| x as f32)
+}
+
+#[inline(always)]
+fn set_column(m: &mut Mat6, column: usize, to: &Vec6) {
+    for (row, x) in m.iter_mut().zip(to) {
+        row[column] = *x;
     }
-    ZERO66
+}
+
+/// The ways in which a joint's child moves, of translation or of rotation: each of the first `count` moves its row by a unit and
+/// no other, and the rest move none. A row that others leave next to nothing of has no way.
+struct Ways {
+    way: [Vec3; 3],
+    row: [u8; 3],
+    count: usize,
+}
+
+impl Ways {
+    #[inline(always)]
+    fn new(rows: &JointRows, turns: bool) -> Self {
+        if !turns && rows.locks_point() {
+            return Self { way: [Vec3::X, Vec3::Y, Vec3::Z], row: [0, 1, 2], count: 3 };
+        }
+        let mut ways = Self { way: [Vec3::ZERO; 3], row: [0; 3], count: 0 };
+        let mut axes = [Vec3::ZERO; 3];
+        for row in (0..rows.count).filter(|&row| rows.turns(row) == turns) {
+            let axis = rows.axis[row];
+            if is_apart(axis, &axes[..ways.count]) {
+                (ways.row[ways.count], axes[ways.count]) = (row as u8, axis);
+                ways.count += 1;
+            }
+        }
+        let [x, y, z] = axes;
+        ways.way = match ways.count {
+            0 => [Vec3::X, Vec3::Y, Vec3::Z],
+            1 => {
+                let across = any_orthonormal(x / x.length());
+                [x / x.length_squared(), across, x.cross(across)]
+            }
+            2 => {
+                let across = x.cross(y);
+                let scale = 1.0 / across.length_squared();
+                [y.cross(across) * scale, across.cross(x) * scale, across]
+            }
+            _ => {
+                let across = y.cross(z);
+                let scale = 1.0 / across.dot(x);
+                [across * scale, z.cross(x) * scale, x.cross(y) * scale]
+            }
+        };
+        ways
+    }
+}
+
+/// Whether enough of an axis is left beside others.
+#[inline(always)]
+fn is_apart(axis: Vec3, others: &[Vec3]) -> bool {
+    let square = axis.length_squared();
+    // Of a triangle's, of a box's edges: how much of the last one stands off the others.
+    let (left, of) = match *others {
+        [] => return square > LEAST_AXIS,
+        [x] => (x.cross(axis).length_squared(), x.length_squared()),
+        [x, y, ..] => {
+            let across = x.cross(y);
+            let off = across.dot(axis);
+            (off * off, across.length_squared())
+        }
+    };
+    square > LEAST_AXIS && left > LEAST_SHARE * of * square
 }
 
 /// Factors all trees: `inertia` holds the bodies' own inertias and is overwritten by the articulated ones.
-pub(crate) fn factor(links: &mut [Link], inertia: &mut [Mat6]) {
-    dispatch::run(Factor { links, inertia });
+#[inline(never)]
+pub(crate) fn factor(links: &mut [Link], joints: &[SolverJoint], inertia: &mut [Inertia<f64>]) {
+    dispatch::run(Factor { links, joints, inertia });
 }
 
 /// Plain arithmetic, which the compiler puts on the registers that it is entered with.
 struct Factor<'a> {
     links: &'a mut [Link],
-    inertia: &'a mut [Mat6],
+    joints: &'a [SolverJoint],
+    inertia: &'a mut [Inertia<f64>],
 }
 
 impl Kernel for Factor<'_> {
@@ -180,29 +336,30 @@ impl Kernel for Factor<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { links, inertia } = self;
+        let Self { links, joints, inertia } = self;
         for i in (0..links.len()).rev() {
-            let m = inertia[i];
-            links[i].factor(&m);
-            let parent = links[i].parent as usize;
-            if parent < links.len() {
-                links[i].add_to_parent(&mut inertia[parent]);
+            let joint = joints.get(links[i].joint as usize);
+            let is_b = joint.is_some_and(|joint| joint.b as usize == i);
+            let through = links[i].factor(joint, is_b, &inertia[i]);
+            if let Some(parent) = inertia.get_mut(links[i].parent as usize) {
+                parent.add(&through);
             }
         }
     }
 }
 
-/// Velocity change of every body from impulses on the bodies and residuals of the joint rows: solves
-/// `M dv = impulses + Jᵀ λ`, `J dv + Γ λ = residuals`. `impulses` and `residuals` are used up.
-pub(crate) fn solve(links: &[Link], impulses: &mut [Vec6], residuals: &mut [Vec6], dv: &mut [Vec6]) {
+/// Velocity change of every body from impulses on the bodies and residuals of the joint rows, but for
+/// [those that push](Link::push_gains); no list of residuals means none. `impulses` are used up.
+#[inline(never)]
+pub(crate) fn solve(links: &[Link], impulses: &mut [Vec6], residuals: &[Vec6], dv: &mut [Vec6]) {
     dispatch::run(Solve { links, impulses, residuals, dv });
 }
 
-/// Plain arithmetic, as in [`Factor`]. P and D⁻¹ are symmetric: their rows are their columns.
+/// Plain arithmetic, as in [`Factor`].
 struct Solve<'a> {
     links: &'a [Link],
     impulses: &'a mut [Vec6],
-    residuals: &'a mut [Vec6],
+    residuals: &'a [Vec6],
     dv: &'a mut [Vec6],
 }
 
@@ -212,24 +369,51 @@ impl Kernel for Solve<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { links, impulses, residuals, dv } = self;
+        let (impulses, dv) = (&mut impulses[..links.len()], &mut dv[..links.len()]);
         // Leaf to root: what the subtree below a joint pushes through it.
-        for (i, link) in links.iter().enumerate().rev() {
-            add_scaled(&mut residuals[i], &mul_transposed(&link.y_columns, &impulses[i]), -1.0);
+        for i in (0..links.len()).rev() {
+            let link = &links[i];
+            let (mut own, mut through) = (L::splat(0.0), sum::<L>(&link.carry, &impulses[i]));
+            if let Some(residuals) = residuals.get(i) {
+                for ((follow, pass), row) in
+                    link.follow.iter().zip(&link.pass).zip(link.row).take(link.asking)
+                {
+                    let residual = L::splat(residuals[usize::from(row) & 7]);
+                    own = own + L::load(follow) * residual;
+                    through = through + L::load(pass) * residual;
+                }
+            }
+            own.store(&mut dv[i]);
             let parent = link.parent as usize;
-            if parent < links.len() {
-                let push = mul_transposed(&link.d_inverse, &residuals[i]);
-                add_scaled(&mut impulses[parent], &mul_transposed(&link.parent_rows, &push), 1.0);
+            if parent < i {
+                (L::load(&impulses[parent]) + through).store(&mut impulses[parent]);
             }
         }
         // Root to leaf.
         for (i, link) in links.iter().enumerate() {
+            let mut v = L::load(&dv[i]) + sum::<L>(&link.own, &impulses[i]);
             let parent = link.parent as usize;
-            if parent < links.len() {
-                add_scaled(&mut residuals[i], &mul_transposed(&link.parent_columns, &dv[parent]), -1.0);
+            if parent < i {
+                v = v + sum::<L>(&link.carry_columns, &dv[parent]);
             }
-            let lambda = mul_transposed(&link.d_inverse, &residuals[i]);
-            dv[i] = mul_transposed(&link.inverse, &impulses[i]);
-            add_scaled(&mut dv[i], &mul_transposed(&link.y, &lambda), 1.0);
+            v.store(&mut dv[i]);
         }
+    }
+}
+
+/// The sum of six rows, each times its factor.
+#[inline(always)]
+pub(crate) fn sum<L: Lanes>(rows: &Mat6, by: &Vec6) -> L {
+    let [r0, r1, r2, r3, r4, r5] = rows;
+    (L::load(r0) * L::splat(by[0]) + L::load(r1) * L::splat(by[1]))
+        + (L::load(r2) * L::splat(by[2]) + L::load(r3) * L::splat(by[3]))
+        + (L::load(r4) * L::splat(by[4]) + L::load(r5) * L::splat(by[5]))
+}
+
+/// Six rows into a matrix.
+#[inline(always)]
+pub(crate) fn store<L: Lanes>(rows: [L; 6], out: &mut Mat6) {
+    for (row, out) in rows.into_iter().zip(out) {
+        row.store(out);
     }
 }

@@ -67,7 +67,7 @@ impl World {
     }
 
     fn body_contact(&self, contact: &Contact) -> BodyContact {
-        let (a, b) = shape_ids(&self.bodies, contact);
+        let (a, b) = shape_ids(&self.bodies, contact.key);
         let mut points = [ContactPoint::default(); MAX_POINTS];
         for (i, point) in contact.manifold.points().iter().enumerate() {
             let impulse = contact.memory.points[i].total;

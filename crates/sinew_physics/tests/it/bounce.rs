@@ -125,7 +125,9 @@ fn bounces_of_a_weightless_heap_give_no_energy() {
         world.step();
         let now = world.energy().kinetic;
         // Corners of a box that bounce at once, each by its own speed, may gain a little (0.13 % is the most here).
-        assert!(now < before * 1.002 && now <= start, "step {}: {before} J, {now} J", world.step_count());
+        // Sums in 32 bits are off by their rounding.
+        let no_more = start * (1.0 + 1e-6);
+        assert!(now < before * 1.002 && now <= no_more, "step {}: {before} J, {now} J", world.step_count());
         before = now;
     }
 }

@@ -27,6 +27,7 @@ mod rope;
 mod sleep;
 mod stacks;
 mod surfaces;
+mod threads;
 mod touches;
 mod trees;
 mod trouble;

@@ -2,16 +2,20 @@
 
 use super::{Blueprint, damped, in_box, rotation};
 use crate::parts::{cuboid, fixed};
-use sinew::math::{Random, Vec3};
+use sinew::math::{Random, Rotation, Vec3};
 use sinew::physics::Sleeping;
 
 /// A square pyramid of 15 layers of unit cubes side by side.
 pub fn box_pyramid() -> Blueprint {
-    const LAYERS: usize = 15;
+    box_pyramid_of(15)
+}
+
+/// The same with `layers` layers.
+pub fn box_pyramid_of(layers: usize) -> Blueprint {
     let mut scene = Blueprint::new("box_pyramid", Sleeping::Off, 300);
     scene.body(fixed(cuboid(Vec3::new(50.0, 1.0, 50.0), Vec3::NEG_Y)));
-    for layer in 0..LAYERS {
-        let side = LAYERS - layer;
+    for layer in 0..layers {
+        let side = layers - layer;
         let middle = 0.5 * (side - 1) as f32;
         for (a, b) in (0..side).flat_map(|a| (0..side).map(move |b| (a, b))) {
             let at = Vec3::new(a as f32 - middle, 0.5 + layer as f32, b as f32 - middle);
@@ -64,6 +68,37 @@ pub fn box_rain_of(count: usize) -> Blueprint {
         let half_extents = in_box(&mut random, 0.1, 0.4);
         let mut def = cuboid(half_extents, Vec3::new(place(a), 2.0 + 1.4 * layer as f32, place(b)));
         def.rotation = rotation(&mut random);
+        scene.body(damped(def));
+    }
+    scene
+}
+
+/// 10,000 boxes of all sizes, put loosely beside and over each other into a pit, sink into one heap.
+pub fn boxes_10000() -> Blueprint {
+    box_heap(20, 25)
+}
+
+/// The same with `side` × `side` boxes in each of `layers` layers.
+pub fn box_heap(side: usize, layers: usize) -> Blueprint {
+    /// From one box to the next, metres: turned as little as they are, none reaches further than half of it along an axis.
+    const APART: f32 = 0.86;
+    /// Most that one is turned, radians.
+    const TURN: f32 = 0.35;
+    let mut scene = Blueprint::new("boxes_10000", Sleeping::Off, 240);
+    let half = 0.5 * APART * side as f32;
+    let (outer, height) = (half + 2.0, 0.5 * APART * layers as f32);
+    scene.body(fixed(cuboid(Vec3::new(outer, 1.0, outer), Vec3::NEG_Y)));
+    for out in [-1.0, 1.0].map(|side| side * (half + 1.0)) {
+        scene.body(fixed(cuboid(Vec3::new(1.0, height, outer), Vec3::new(out, height, 0.0))));
+        scene.body(fixed(cuboid(Vec3::new(outer, height, 1.0), Vec3::new(0.0, height, out))));
+    }
+    let mut random = Random::new(4);
+    for i in 0..side * side * layers {
+        let (layer, a, b) = (i / (side * side), i / side % side, i % side);
+        let place = |index: usize| (index as f32 + 0.5) * APART;
+        let half_extents = in_box(&mut random, 0.15, 0.3);
+        let mut def = cuboid(half_extents, Vec3::new(place(a) - half, place(layer), place(b) - half));
+        def.rotation = Rotation::from_axis_angle(random.direction(), random.range(0.0, TURN));
         scene.body(damped(def));
     }
     scene

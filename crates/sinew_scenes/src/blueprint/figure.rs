@@ -1,6 +1,6 @@
 //! Many figures of 15 bodies each.
 
-use super::{Blueprint, BlueprintJoint, damped, in_box, rotation};
+use super::{Blueprint, BlueprintJoint, box_pyramid_of, damped, in_box, rotation};
 use crate::parts::{body, cuboid, fixed, tilt};
 use sinew::math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3};
 use sinew::physics::{BodyDef, JointKind, Shape, Sleeping};
@@ -25,6 +25,29 @@ pub fn ragdoll_pile() -> Blueprint {
         let base = Vec3::new((x as f32 - 1.5) * 2.0, 2.5 + 2.0 * layer as f32, (z as f32 - 2.0) * 2.0);
         figure(&mut scene, base, random.range(0.0, core::f32::consts::TAU));
     }
+    scene
+}
+
+/// `count` figures in a column are thrown down onto each other: soon a small heap.
+pub fn ragdoll_column(count: usize) -> Blueprint {
+    /// m/s.
+    const DOWN: f32 = 8.0;
+    let mut scene = Blueprint::new("ragdoll_column", Sleeping::Off, 60);
+    scene.body(fixed(cuboid(Vec3::new(50.0, 0.5, 50.0), Vec3::NEG_Y * 0.5)));
+    let mut random = Random::new(1);
+    for i in 0..count {
+        figure(&mut scene, Vec3::Y * 1.9 * i as f32, random.range(0.0, core::f32::consts::TAU));
+    }
+    for place in scene.dynamic().collect::<Vec<_>>() {
+        scene.bodies[place].linear_velocity = Vec3::NEG_Y * DOWN;
+    }
+    scene
+}
+
+/// A pyramid of `layers` layers of unit cubes, and a figure that falls down on it.
+pub fn ragdoll_on_boxes(layers: usize) -> Blueprint {
+    let mut scene = Blueprint { name: "ragdoll_on_boxes", steps: 60, ..box_pyramid_of(layers) };
+    figure(&mut scene, Vec3::Y * (layers as f32 + 0.05), 0.0);
     scene
 }
 
@@ -91,8 +114,12 @@ fn across() -> Rotation {
 /// Adds a standing figure with its arms stretched out sideways, soles at `base`, which it faces +z from, its left toward
 /// +x, but for a turn by `yaw` radians about y: 15 bodies and 14 joints.
 fn figure(scene: &mut Blueprint, base: Vec3, yaw: f32) {
-    let stand = Transform::new(base, Rotation::from_axis_angle(Vec3::Y, yaw));
-    let mut figure = Figure { scene, stand };
+    figure_at(scene, Transform::new(base, Rotation::from_axis_angle(Vec3::Y, yaw)), 1.0);
+}
+
+/// Likewise anyhow turned, `scale` times as large.
+pub(super) fn figure_at(scene: &mut Blueprint, stand: Transform, scale: f32) {
+    let mut figure = Figure { scene, stand, scale };
     let pelvis = figure.cuboid([0.15, 0.09, 0.09], [0.0, 0.95, 0.0]);
     let chest = figure.cuboid([0.17, 0.18, 0.10], [0.0, 1.28, 0.0]);
     let head = figure.capsule(0.10, 0.04, [0.0, 1.62, 0.0], Rotation::IDENTITY);
@@ -109,6 +136,8 @@ struct Figure<'a> {
     scene: &'a mut Blueprint,
     /// World from the figure's own frame.
     stand: Transform,
+    /// Of all lengths.
+    scale: f32,
 }
 
 impl Figure<'_> {
@@ -132,11 +161,12 @@ impl Figure<'_> {
     }
 
     fn cuboid(&mut self, half_extents: [f32; 3], at: [f32; 3]) -> usize {
-        self.place(cuboid(Vec3::from(half_extents), Vec3::from(at)))
+        self.place(cuboid(self.scale * Vec3::from(half_extents), self.scale * Vec3::from(at)))
     }
 
     fn capsule(&mut self, radius: f32, half_height: f32, at: [f32; 3], rotation: Rotation) -> usize {
-        let capsule = body(Shape::Capsule { half_height, radius }, Vec3::from(at));
+        let [half_height, radius] = [half_height, radius].map(|length| self.scale * length);
+        let capsule = body(Shape::Capsule { half_height, radius }, self.scale * Vec3::from(at));
         self.place(BodyDef { rotation, ..capsule })
     }
 
@@ -158,7 +188,7 @@ impl Figure<'_> {
     }
 
     fn joint(&mut self, a: usize, b: usize, at: [f32; 3], axis: Vec3, kind: JointKind) {
-        let frame = Transform::new(Vec3::from(at), Rotation::from_arc(Vec3::X, axis));
+        let frame = Transform::new(self.scale * Vec3::from(at), Rotation::from_arc(Vec3::X, axis));
         let world_from_joint = self.stand * frame;
         self.scene.joints.push(BlueprintJoint { a, b, world_from_joint, kind, friction_torque: 0.0 });
     }

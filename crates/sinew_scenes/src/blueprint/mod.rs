@@ -8,14 +8,20 @@ mod boxes;
 mod chains;
 mod figure;
 mod grids;
+mod humanoids;
+pub(crate) mod loads;
 mod stands;
 pub(crate) mod waves;
 
 pub use arch::arch;
-pub use boxes::{box_pyramid, box_rain, box_rain_of, large_pyramid, large_pyramid_of};
+pub use boxes::{
+    box_heap, box_pyramid, box_pyramid_of, box_rain, box_rain_of, boxes_10000, large_pyramid,
+    large_pyramid_of,
+};
 pub use chains::{chain_100_links, chain_hang, chain_swing, hanging_rope, heavy_rope};
-pub use figure::{ragdoll_pile, ragdolls, rain};
+pub use figure::{ragdoll_column, ragdoll_on_boxes, ragdoll_pile, ragdolls, rain};
 pub use grids::{joint_grid, joint_grid_of, net};
+pub use humanoids::{crowd_pile, humanoid, humanoid_lying, humanoid_pile, roots};
 pub use stands::{cards, jenga, stack_mass_ratio, stack_ratio};
 pub use waves::{mesh_drop, rocks, wave_pile};
 
@@ -40,6 +46,8 @@ pub struct Blueprint {
     pub bodies: Vec<BodyDef>,
     /// All joints.
     pub joints: Vec<BlueprintJoint>,
+    /// Pairs of bodies that do not collide, beside those that a joint holds.
+    pub apart: Vec<(usize, usize)>,
 }
 
 /// A joint of a [`Blueprint`]: its angles are zero in the start pose, and its two bodies do not collide.
@@ -70,7 +78,7 @@ impl Blueprint {
     /// Without bodies, in Earth's gravity.
     fn new(name: &'static str, sleeping: Sleeping, steps: u32) -> Self {
         let gravity = Vec3::NEG_Y * GRAVITY;
-        Self { name, gravity, sleeping, steps, bodies: Vec::new(), joints: Vec::new() }
+        Self { name, gravity, sleeping, steps, bodies: Vec::new(), joints: Vec::new(), apart: Vec::new() }
     }
 
     /// A world of its own.
@@ -90,6 +98,7 @@ impl Blueprint {
             world.add_joint(&JointDef { friction_torque: joint.friction_torque, ..def })
         };
         let joints = self.joints.iter().map(joint).collect();
+        self.apart.iter().for_each(|&(a, b)| world.disable_pair(bodies[a], bodies[b]));
         Built { bodies, joints }
     }
 
@@ -100,6 +109,22 @@ impl Blueprint {
         }
         for joint in &mut self.joints {
             joint.world_from_joint.translation += by;
+        }
+        self
+    }
+
+    /// The same from another start: each body that moves is put aside by up to `most` metres, as the `seed` says. Joints go with
+    /// their second bodies. Heaps are chaotic: what holds of one start may not hold of the next.
+    pub fn perturbed(mut self, seed: u64, most: f32) -> Self {
+        let mut random = Random::new(seed);
+        let aside: Vec<Vec3> = self.bodies.iter().map(|_| in_box(&mut random, -most, most)).collect();
+        for place in self.dynamic().collect::<Vec<_>>() {
+            self.bodies[place].position += aside[place];
+        }
+        for joint in &mut self.joints {
+            if self.bodies[joint.b].kind == BodyKind::Dynamic {
+                joint.world_from_joint.translation += aside[joint.b];
+            }
         }
         self
     }

@@ -41,6 +41,7 @@ mod gimbal;
 mod house;
 mod impacts;
 mod incline;
+mod laden;
 mod linkages;
 mod mjcf;
 mod mocap;
@@ -185,6 +186,13 @@ const REGISTRY: &[Scene] = &[
     stacks::CARDS,
     arch::ARCH,
     stacks::LARGE_PYRAMID,
+    laden::JENGA,
+    laden::SIZE_RATIO,
+    laden::MASS_RATIO,
+    laden::CARDS,
+    laden::PYRAMID,
+    laden::ARCH,
+    laden::STACK,
     springs::ROPE_ON_BOX,
     ragdolls::DROP,
     falls::POSES,

@@ -53,12 +53,12 @@ impl Stand {
 }
 
 /// Its centre of mass, turned as it is.
-fn center(world: &World, id: BodyId) -> Transform {
+pub(super) fn center(world: &World, id: BodyId) -> Transform {
     Transform::new(world.center_of_mass(id), world.transform(id).rotation)
 }
 
 /// Sideways, metres.
-fn shift(from: Transform, to: Transform) -> f32 {
+pub(super) fn shift(from: Transform, to: Transform) -> f32 {
     let moved = to.translation - from.translation;
     Vec3::new(moved.x, 0.0, moved.z).length()
 }

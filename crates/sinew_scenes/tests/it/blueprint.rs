@@ -29,6 +29,12 @@ fn they_are_as_large_as_described() {
     check(&blueprint::mesh_drop(), 401, 400, 0);
     check(&blueprint::rocks(), 65, 64, 0);
     check(&blueprint::arch(15, 4), 2 + 15 + 4, 15 + 4, 0);
+    check(&blueprint::crowd_pile(), 5 + 1900, 1900, 1800);
+    check(&blueprint::humanoid_pile(10), 5 + 190, 190, 180);
+    check(&blueprint::humanoid_lying(), 1 + 19, 19, 18);
+    check(&blueprint::ragdoll_column(6), 1 + 90, 90, 84);
+    check(&blueprint::ragdoll_on_boxes(5), 1 + 55 + 15, 55 + 15, 14);
+    check(&blueprint::boxes_10000(), 10_005, 10_000, 0);
     check(&blueprint::box_pyramid(), 1241, 1240, 0);
     check(&blueprint::box_rain(), 4005, 4000, 0);
     check(&blueprint::large_pyramid(), 5051, 5050, 0);
@@ -46,6 +52,48 @@ fn they_are_as_large_as_described() {
     check(&blueprint::joint_grid_of(30), 900, 870, 1740 - 29);
     let full = blueprint::joint_grid();
     assert_eq!((full.bodies.len(), full.dynamic().count(), full.joints.len()), (10_000, 9_900, 19_800 - 99));
+}
+
+/// Deepest that a moving body of the start is in a fixed one or in a moving one `stride` places or more away, metres.
+fn overlap(scene: &Blueprint, stride: usize) -> f32 {
+    /// Middles further apart than this belong to bodies that do not touch, metres.
+    const NEAR: f32 = 1.1;
+    let (world, bodies, _) = scene.build();
+    let far = |a: usize, b: usize| {
+        let moves = scene.bodies[a].kind == scene.bodies[b].kind;
+        let apart = (scene.bodies[a].position - scene.bodies[b].position).length();
+        moves && (a.abs_diff(b) < stride || apart > NEAR)
+    };
+    let mut deepest = 0.0;
+    for a in scene.dynamic() {
+        for b in (0..scene.bodies.len()).filter(|&b| b < a && !far(a, b)) {
+            deepest = f32::max(deepest, world.overlap(bodies[a], bodies[b]));
+        }
+    }
+    deepest
+}
+
+#[test]
+fn figures_and_boxes_of_heaps_start_apart() {
+    // Bodies of one figure follow each other, and may overlap where the definition parts them.
+    let heaps = [(blueprint::humanoid_lying(), 19), (blueprint::humanoid_pile(33), 19)];
+    for (scene, stride) in heaps.into_iter().chain([(blueprint::box_heap(6, 6), 1)]) {
+        let overlap = overlap(&scene, stride);
+        assert!(overlap < 1e-3, "{}: {overlap} m", scene.name);
+    }
+}
+
+#[test]
+fn another_start_is_nearly_the_same_and_fits() {
+    let scene = blueprint::humanoid_pile(10);
+    let moved = scene.clone().perturbed(3, 1e-4);
+    let apart = |place: usize| (scene.bodies[place].position - moved.bodies[place].position).length();
+    assert!(scene.dynamic().all(|place| apart(place) > 0.0 && apart(place) < 2e-4));
+    assert!((0..5).all(|place| apart(place) == 0.0), "walls stay");
+    check(&moved, 195, 190, 180);
+    let again = scene.clone().perturbed(3, 1e-4);
+    assert_eq!(moved.build().0.hash(), again.build().0.hash());
+    assert_ne!(moved.build().0.hash(), scene.clone().perturbed(4, 1e-4).build().0.hash());
 }
 
 fn mass_ratio(scene: &Blueprint) -> f32 {

@@ -84,11 +84,14 @@ impl Filters {
         !(a.is_static && b.is_static) && a.filter.meets(b.filter)
     }
 
-    /// Puts each set of bodies that hang together by joints into a group, in which jointed pairs do not collide.
+    /// Puts each set of bodies that hang together by joints into a group, in which jointed pairs and parted ones do not
+    /// collide.
     /// Groups of the same make, such as ragdolls, share a table. Bodies that would not meet anyway need none.
     fn keep_jointed_apart(&mut self, scene: &Blueprint) -> Result<(), Unsupported> {
         let meet = |pair: &[usize; 2]| self.kinds_meet(self.kind_of[pair[0]], self.kind_of[pair[1]]);
-        let pairs: Vec<_> = scene.joints.iter().map(|joint| [joint.a, joint.b]).filter(meet).collect();
+        let jointed = scene.joints.iter().map(|joint| [joint.a, joint.b]);
+        let apart = scene.apart.iter().map(|&(a, b)| [a, b]);
+        let pairs: Vec<_> = jointed.chain(apart).filter(meet).collect();
         let mut tables: BTreeMap<(u32, Vec<[u32; 2]>), GroupFilterTable> = BTreeMap::new();
         for (group, bodies) in connected(scene.bodies.len(), &pairs).into_iter().enumerate() {
             let place = |body: usize| bodies.binary_search(&body).ok().map(|place| place as u32);

@@ -6,7 +6,7 @@ use crate::spatial::Vec6;
 use sinew_math::max;
 
 /// Approach below which nothing bounces, m/s.
-const BOUNCE_SPEED: f32 = 1.0;
+pub(in crate::solver) const BOUNCE_SPEED: f32 = 1.0;
 
 /// Motion of a point along its normal, in a substep.
 #[derive(Clone, Copy, Debug, Default)]

@@ -16,9 +16,11 @@ use crate::contact::ContactMemory;
 use crate::material::ContactMaterial;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
 use bounce::Approach;
+pub(super) use bounce::BOUNCE_SPEED;
 pub(crate) use refind::PlacedShape;
-use refind::{REFIND_TURN, ROLL_TURN};
-use row::{Pair, Row, Softness};
+pub(super) use refind::{Placed, REFIND_TURN, ROLL_TURN, found_anew, margin};
+pub(super) use row::Softness;
+use row::{Pair, Row};
 use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max, min};
 
 /// An impulse that grew by more than this factor since the substep before is an impact.
@@ -26,14 +28,14 @@ pub(super) const IMPACT_JUMP: f32 = 2.0;
 /// Overlap beyond this many slops is deep.
 const DEEP: f32 = 2.0;
 /// A body that turns by less than this within a substep counts as being where it was, radians.
-const RELAX_TURN: f32 = 0.15;
+pub(super) const RELAX_TURN: f32 = 0.15;
 /// Contact stiffness as a frequency, Hz, against moving and against fixed bodies, and damping ratio.
 const CONTACT_HERTZ: f32 = 30.0;
 const FIXED_HERTZ: f32 = 60.0;
 const CONTACT_DAMPING: f32 = 10.0;
 /// Contacts are soft to changes of their load, not to the load that lasts for longer than this, seconds: a pile would sag by
 /// all the weight it bears (30 rows of cubes by a quarter of a cube). Without any delay tall piles never come to rest.
-const LASTING: f32 = 1.0 / 60.0;
+pub(super) const LASTING: f32 = 1.0 / 60.0;
 
 /// Impulses of a manifold's rows.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +73,8 @@ pub(crate) struct ManifoldRows {
     pub b: u32,
     /// As last found: at the step's beginning, or since, if a body turned fast.
     pub manifold: Manifold,
+    /// It was found since the step's beginning.
+    is_new: bool,
     shapes: [PlacedShape; 2],
     /// Radii of the shapes' roundings around their cores, where they meet.
     rounds: [f32; 2],
@@ -143,12 +147,12 @@ pub(crate) struct ManifoldSource<'a> {
 impl ManifoldRows {
     pub fn new(source: &ManifoldSource<'_>, bodies: &[SolverBody]) -> Self {
         let n = source.manifold.normal;
-        let hertz = if source.a_moves && source.b_moves { CONTACT_HERTZ } else { FIXED_HERTZ };
         let mut rows = Self {
             contact: source.contact,
             a: source.a,
             b: source.b,
             manifold: *source.manifold,
+            is_new: false,
             shapes: source.shapes.clone(),
             rounds: [0.0; 2],
             most_turn: REFIND_TURN,
@@ -160,7 +164,7 @@ impl ManifoldRows {
             b_moves: source.b_moves,
             material: source.material,
             slop: source.slop,
-            soft: Softness::new(min(hertz, 0.25 / source.h), CONTACT_DAMPING, source.h),
+            soft: contact_softness(source.a_moves && source.b_moves, source.h),
             firmness: Firmness::default(),
             separation: [0.0; MAX_POINTS],
             rows: [Row::ZERO; MAX_POINTS],
@@ -191,6 +195,11 @@ impl ManifoldRows {
         rows
     }
 
+    /// Its manifold, if it was found since the step's beginning.
+    pub fn found(&self) -> Option<Manifold> {
+        self.is_new.then_some(self.manifold)
+    }
+
     /// Says how hard it is.
     pub fn set_firmness(&mut self, firmness: Firmness) {
         self.firmness = firmness;
@@ -209,6 +218,7 @@ impl ManifoldRows {
         let n = self.normal;
         let [a, b] = &self.shapes;
         let [in_a, in_b] = [pose_a, pose_b].map(|pose| pose.rotation.inverse() * n);
+        let [a, b] = [a.placed(), b.placed()];
         let [round_a, round_b] = [a.round(in_a), b.round(in_b)];
         self.rounds = [round_a, round_b];
         // Of a rim, the points beside the one that it rolls on bear nothing.
@@ -355,23 +365,6 @@ impl ManifoldRows {
         self.separation[..self.count].iter().any(|s| *s < -DEEP * self.slop)
     }
 
-    /// It touches, and does not know its load yet.
-    pub fn touches_anew(&self) -> bool {
-        let points = 0..self.count;
-        points.clone().all(|i| self.memory.points[i].now == 0.0)
-            && points.into_iter().any(|i| self.separation[i] < self.slop)
-    }
-
-    /// What its normal rows put on each body in this substep, or in the last before there is anything in this one.
-    pub fn normal_push(&self) -> Vec3 {
-        let (mut now, mut last) = (0.0, 0.0);
-        for i in 0..self.count {
-            now += self.impulse[i];
-            last += self.memory.points[i].now;
-        }
-        self.normal * if now > 0.0 { now } else { last }
-    }
-
     /// What all rows put on the bodies in this substep.
     pub fn total_push(&self) -> Push {
         let mut push = (ZERO6, ZERO6);
@@ -422,9 +415,15 @@ impl ManifoldRows {
     }
 }
 
+/// How a contact gives before its firmness says otherwise, in a substep of `h` seconds.
+pub(super) fn contact_softness(both_move: bool, h: f32) -> Softness {
+    let hertz = if both_move { CONTACT_HERTZ } else { FIXED_HERTZ };
+    Softness::new(min(hertz, 0.25 / h), CONTACT_DAMPING, h)
+}
+
 /// Shares of the load by point, smoothed so that a point which is about to bear some has a say: one whose separation is at
 /// most `bearing`, if there is any.
-fn weights(memory: &ContactMemory, manifold: &Manifold, bearing: f32) -> [f32; MAX_POINTS] {
+pub(super) fn weights(memory: &ContactMemory, manifold: &Manifold, bearing: f32) -> [f32; MAX_POINTS] {
     let points = manifold.points();
     let total: f32 = memory.points[..points.len()].iter().map(|point| point.now).sum();
     let bears = |separation: f32| separation <= bearing;

@@ -11,9 +11,9 @@ use crate::spatial::{Vec6, angular, linear};
 use sinew_math::{Rotation, Transform, Vec3, max, min};
 
 /// A body that turns by more than this within a substep has its contacts looked for anew, radians.
-pub(super) const REFIND_TURN: f32 = 0.01;
+pub(in crate::solver) const REFIND_TURN: f32 = 0.01;
 /// Likewise where a rim rolls: however slowly, what pushes from where the rim was turns the body as much as it gyrates.
-pub(super) const ROLL_TURN: f32 = 1e-4;
+pub(in crate::solver) const ROLL_TURN: f32 = 1e-4;
 /// Then points this far apart count, as a share of the smaller bounding radius: a hand between thigh and floor that spins
 /// off one corner meets the other within the substep.
 const FAR_CORNER: f32 = 0.4;
@@ -38,9 +38,30 @@ impl PlacedShape {
         Self { shape, principal_from_shape }
     }
 
+    pub(super) fn placed(&self) -> Placed<'_> {
+        Placed { shape: &self.shape, principal_from_shape: &self.principal_from_shape }
+    }
+}
+
+/// A shape in the principal frame of its body.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct Placed<'a> {
+    pub shape: &'a Shape,
+    pub principal_from_shape: &'a Transform,
+}
+
+impl Placed<'_> {
+    /// Whether any part of it has a rounding or a rim.
+    pub fn is_curved(&self) -> bool {
+        !matches!(
+            self.shape,
+            Shape::Box { .. } | Shape::Hull(_) | Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_)
+        )
+    }
+
     /// Radius of the rounding around its core where it meets a normal (in the principal frame); 0 of what has corners.
-    pub(super) fn round(&self, normal: Vec3) -> f32 {
-        match self.shape {
+    pub fn round(&self, normal: Vec3) -> f32 {
+        match *self.shape {
             Shape::Sphere { radius } | Shape::Capsule { radius, .. } => radius,
             // The thinner end's: what a core is rounded by all around.
             Shape::TaperedCapsule { radius_bottom, radius_top, .. } => min(radius_bottom, radius_top),
@@ -59,9 +80,9 @@ impl PlacedShape {
 
     /// Whether it meets a normal (in the principal frame) with what is curved but not by [`Self::round`]: as it rolls, other
     /// points come down.
-    pub(super) fn has_rim(&self, normal: Vec3) -> bool {
+    pub fn has_rim(&self, normal: Vec3) -> bool {
         let axis = || self.principal_from_shape.rotation * Vec3::Y;
-        match self.shape {
+        match *self.shape {
             Shape::Cylinder { .. } => self.round(normal) == 0.0 && axis().cross(normal).length() > FLAT_SINE,
             Shape::Cone { .. } => axis().cross(normal).length() > FLAT_SINE,
             Shape::TaperedCapsule { radius_bottom, radius_top, .. } => radius_bottom != radius_top,
@@ -139,11 +160,10 @@ impl ManifoldRows {
 
     /// How far apart points may be that this substep brings together, metres.
     fn margin(&self, velocities: &[Vec6], h: f32) -> f32 {
-        let [a, b] = self.shapes.each_ref().map(|placed| placed.shape.bounding_radius());
         let relative = linear(&velocities[self.b as usize]) - linear(&velocities[self.a as usize]);
-        let reach = a * turn(velocities, self.a, h) + b * turn(velocities, self.b, h);
-        let turning = if reach < f32::INFINITY { reach } else { 0.0 };
-        max(4.0 * self.slop + relative.length() * h + turning, FAR_CORNER * min(a, b))
+        let turns = [self.a, self.b].map(|body| turn(velocities, body, h));
+        let [a, b] = &self.shapes;
+        margin(&[a.placed(), b.placed()], turns, relative.length() * h, self.slop)
     }
 
     /// Takes a manifold that was found at these poses. Impulses go on by feature.
@@ -158,40 +178,62 @@ impl ManifoldRows {
             self.rebound[i] = known.map_or(mean, |k| rebound[k]);
             self.impulse[i] = of_substep.points[i].now;
         }
-        self.manifold = manifold;
+        (self.manifold, self.is_new) = (manifold, true);
         self.take_manifold(poses);
     }
 
-    /// The contact at these poses, if there is one. Of a surface the plane stands that the manifold lies on: the surface
-    /// itself would answer for all its manifolds at once. What lies on its edges stays as it was found.
+    /// The contact at these poses, if there is one.
     fn found_anew(&self, poses: [Transform; 2], margin: f32) -> Option<Manifold> {
-        static PLANE: Shape = Shape::HalfSpace;
         let [a, b] = &self.shapes;
-        let frames = [poses[0] * a.principal_from_shape, poses[1] * b.principal_from_shape];
-        let plane = |origin: Vec3, normal: Vec3| Transform::new(origin, Rotation::from_arc(Vec3::Y, normal));
-        let mut manifold = Manifold::default();
-        let surface = match (a.shape.surface(), b.shape.surface()) {
-            (None, None) => {
-                collide(&a.shape, &frames[0], &b.shape, &frames[1], margin, &mut manifold);
-                return (manifold.count > 0).then_some(manifold);
-            }
-            (Some(_), _) => Half::OfA,
-            _ => Half::OfB,
-        };
-        if !is_on_face(&self.manifold, surface) {
-            return None;
-        }
-        match surface {
-            Half::OfA => {
-                let ground = plane(poses[0].point(self.core_a[0]), self.normal);
-                collide(&PLANE, &ground, &b.shape, &frames[1], margin, &mut manifold);
-            }
-            Half::OfB => {
-                let ground = plane(poses[1].point(self.core_b[0]), -self.normal);
-                collide(&a.shape, &frames[0], &PLANE, &ground, margin, &mut manifold);
-            }
-        }
-        name_as_face(&mut manifold, surface);
-        (manifold.count > 0).then_some(manifold)
+        let on_surfaces = [poses[0].point(self.core_a[0]), poses[1].point(self.core_b[0])];
+        found_anew([a.placed(), b.placed()], poses, margin, &self.manifold, on_surfaces)
     }
+}
+
+/// How far apart points of two shapes may be that a substep brings together in which the bodies turn by so many radians and
+/// approach by so many metres, metres.
+pub(in crate::solver) fn margin(shapes: &[Placed<'_>; 2], turns: [f32; 2], approach: f32, slop: f32) -> f32 {
+    let [a, b] = shapes.map(|placed| placed.shape.bounding_radius());
+    let reach = a * turns[0] + b * turns[1];
+    let turning = if reach < f32::INFINITY { reach } else { 0.0 };
+    max(4.0 * slop + approach + turning, FAR_CORNER * min(a, b))
+}
+
+/// The contact of two shapes at these poses, if there is one. Of a surface the plane stands that the manifold known so far lies on,
+/// through `on_surfaces` of A or B: the surface itself would answer for all its manifolds at once. What lies on its edges stays as it
+/// was found.
+pub(in crate::solver) fn found_anew(
+    [a, b]: [Placed<'_>; 2],
+    poses: [Transform; 2],
+    margin: f32,
+    known: &Manifold,
+    on_surfaces: [Vec3; 2],
+) -> Option<Manifold> {
+    static PLANE: Shape = Shape::HalfSpace;
+    let frames = [poses[0] * *a.principal_from_shape, poses[1] * *b.principal_from_shape];
+    let plane = |origin: Vec3, normal: Vec3| Transform::new(origin, Rotation::from_arc(Vec3::Y, normal));
+    let mut manifold = Manifold::default();
+    let surface = match (a.shape.surface(), b.shape.surface()) {
+        (None, None) => {
+            collide(a.shape, &frames[0], b.shape, &frames[1], margin, &mut manifold);
+            return (manifold.count > 0).then_some(manifold);
+        }
+        (Some(_), _) => Half::OfA,
+        _ => Half::OfB,
+    };
+    if !is_on_face(known, surface) {
+        return None;
+    }
+    match surface {
+        Half::OfA => {
+            let ground = plane(on_surfaces[0], known.normal);
+            collide(&PLANE, &ground, b.shape, &frames[1], margin, &mut manifold);
+        }
+        Half::OfB => {
+            let ground = plane(on_surfaces[1], -known.normal);
+            collide(a.shape, &frames[0], &PLANE, &ground, margin, &mut manifold);
+        }
+    }
+    name_as_face(&mut manifold, surface);
+    (manifold.count > 0).then_some(manifold)
 }

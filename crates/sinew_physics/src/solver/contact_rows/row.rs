@@ -5,7 +5,7 @@ use sinew_math::Vec3;
 
 /// Coefficients of a soft constraint (Catto, "Soft Constraints", GDC 2011).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Softness {
+pub(in crate::solver) struct Softness {
     /// 1/s.
     pub bias_rate: f32,
     pub mass_scale: f32,

@@ -1,7 +1,7 @@
 //! Visits of a manifold's rows in a sweep.
 
 use super::row::Row;
-use super::{AXES, IMPACT_JUMP, ManifoldRows};
+use super::{AXES, ManifoldRows};
 use crate::collide::MAX_POINTS;
 use crate::material::ContactMaterial;
 use crate::solver::columns::{Change, Strip};
@@ -33,16 +33,6 @@ impl ManifoldRows {
     /// Takes the normal impulses as they are for the load of friction.
     pub fn weigh(&mut self) {
         self.load = self.impulse[..self.count].iter().fold(0.0, |sum, p| sum + max(*p, 0.0));
-    }
-
-    /// Likewise, but unless this is a hit the normal impulses that the last substep ended with: what few sweeps know of this
-    /// one's is off to one side, that sum is not, since it is what held the body up.
-    pub fn weigh_by_memory(&mut self) {
-        self.weigh();
-        let last = self.memory.points[..self.count].iter().fold(0.0, |sum, p| sum + p.now);
-        if self.load <= IMPACT_JUMP * last && last <= IMPACT_JUMP * self.load {
-            self.load = last;
-        }
     }
 
     /// What the normal rows are to reach at the present velocities.

@@ -1,0 +1,20 @@
+//! What a step went through outside of islands, for a profiler that counts.
+
+use crate::contact::Contact;
+use crate::stage::{Counter, Profiler};
+use crate::world::World;
+
+impl World {
+    /// Of the step just taken, as it left the contacts: those of what fell asleep in it are put aside by now.
+    pub(crate) fn tell_counts(&self, profiler: &dyn Profiler) {
+        if !profiler.is_counting() {
+            return;
+        }
+        let shapes: usize = self.bodies.iter().map(|(_, body)| body.shapes.len()).sum();
+        let pairs = || self.contacts.chunk_by(|one, other| one.key.is_of_pair(other.key));
+        let has_points = |parts: &&[Contact]| parts.iter().any(|contact| contact.manifold.count > 0);
+        profiler.count(Counter::Shapes, shapes as u64);
+        profiler.count(Counter::Pairs, pairs().count() as u64);
+        profiler.count(Counter::PairsWithPoints, pairs().filter(has_points).count() as u64);
+    }
+}

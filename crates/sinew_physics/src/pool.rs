@@ -1,0 +1,228 @@
+//! Threads that wait for work, for [`Threads`](crate::runner::Threads).
+//!
+//! A batch lies on the stack of who runs it. Workers reach it by a pointer, which one word guards, the *gate*: it says whether a
+//! batch is open, which one, and how many workers are inside. A worker goes in only by raising that number while the gate is
+//! open, and who runs the batch does not return before it has shut the gate and the number is 0.
+#![allow(unsafe_code)]
+
+use core::any::Any;
+use core::hint::spin_loop;
+use core::sync::atomic::{AtomicBool, AtomicPtr, AtomicU64, AtomicUsize, Ordering};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
+
+/// Looks at the gate before a thread lays itself to sleep: some 10 to 40 µs, which is more than what lies between two batches
+/// of a stage and about what it takes to be woken.
+const SPINS: u32 = 1_000;
+
+/// In the gate: workers inside.
+const INSIDE: u64 = (1 << 30) - 1;
+/// In the gate: who runs the batch sleeps until the last worker is out.
+const AWAITED: u64 = 1 << 30;
+/// In the gate: a batch is there.
+const OPEN: u64 = 1 << 31;
+/// In the gate: the number of the batch, above the rest, so that no worker enters the same one twice.
+const ONE_BATCH: u64 = 1 << 32;
+
+/// Calls of one task.
+struct Batch<'a> {
+    task: &'a (dyn Fn() + Sync),
+    count: usize,
+    /// Calls that were begun, or more.
+    begun: AtomicUsize,
+    /// Of the first call that panicked.
+    panic: Mutex<Option<Box<dyn Any + Send>>>,
+}
+
+impl Batch<'_> {
+    /// Makes calls as long as there are any. A panic ends the batch.
+    fn work(&self) {
+        while self.begun.fetch_add(1, Ordering::Relaxed) < self.count {
+            if let Err(payload) = catch_unwind(AssertUnwindSafe(self.task)) {
+                // Half is as much as no call can add to, and far above every count.
+                self.begun.store(usize::MAX / 2, Ordering::Relaxed);
+                self.panic.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(payload);
+                return;
+            }
+        }
+    }
+}
+
+/// What the threads of a pool share.
+#[derive(Default)]
+struct Shared {
+    gate: AtomicU64,
+    /// Of the batch, while the gate is open or workers are inside.
+    batch: AtomicPtr<Batch<'static>>,
+    /// A batch is being run: another one, such as a call's own, runs on its caller's thread alone.
+    is_busy: AtomicBool,
+    /// Workers are to end.
+    is_closing: AtomicBool,
+    /// Workers that sleep or are about to.
+    asleep: AtomicUsize,
+    /// What sleepers hold while they look; nothing is in it.
+    sleep: Mutex<()>,
+    wake: Condvar,
+    /// Likewise for who waits until the last worker is out.
+    wait: Mutex<()>,
+    out: Condvar,
+}
+
+fn lock(mutex: &Mutex<()>) -> MutexGuard<'_, ()> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Shared {
+    /// Lets workers into `batch`, makes calls beside them, and waits until all are out.
+    fn run(&self, batch: &Batch<'_>, workers: usize) {
+        self.batch.store(core::ptr::from_ref(batch).cast_mut().cast(), Ordering::Relaxed);
+        // Nobody is inside, and none but us opens.
+        let number = self.gate.load(Ordering::Relaxed) & !(OPEN | AWAITED | INSIDE);
+        // SeqCst, as `asleep`: either we see the sleeper or it sees the open gate.
+        self.gate.store(number.wrapping_add(ONE_BATCH) | OPEN, Ordering::SeqCst);
+        if self.asleep.load(Ordering::SeqCst) > 0 {
+            // Who is about to sleep holds it from its last look at the gate on; nobody is to wake into a lock that we hold.
+            drop(lock(&self.sleep));
+            for _ in 0..workers.min(batch.count - 1) {
+                self.wake.notify_one();
+            }
+        }
+        batch.work();
+        self.gate.fetch_and(!OPEN, Ordering::AcqRel);
+        self.wait_until_out();
+    }
+
+    fn wait_until_out(&self) {
+        for _ in 0..SPINS {
+            if self.gate.load(Ordering::Acquire) & INSIDE == 0 {
+                return;
+            }
+            spin_loop();
+        }
+        let mut waiting = lock(&self.wait);
+        if self.gate.fetch_or(AWAITED, Ordering::AcqRel) & INSIDE == 0 {
+            return; // the next batch clears the mark
+        }
+        while self.gate.load(Ordering::Acquire) & INSIDE != 0 {
+            waiting = self.out.wait(waiting).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// The life of a worker.
+    fn serve(&self) {
+        let mut last = 0;
+        while let Some(number) = self.enter_next(last) {
+            last = number;
+            let batch = self.batch.load(Ordering::Relaxed);
+            // SAFETY: we are inside, by a compare-exchange (Acquire) on a gate that was open, so that the pointer is the one
+            // stored before it was opened (SeqCst store), and who runs the batch keeps it alive and where it is until we are
+            // out: it does not leave `run`, whatever panics in a call (`work` catches it), before it has seen nobody inside.
+            // Nothing of the batch is used after `leave`.
+            unsafe { &*batch }.work();
+            self.leave();
+        }
+    }
+
+    /// Waits for a batch other than the one of number `last` and goes in; gives its number, or `None` when all is over.
+    fn enter_next(&self, last: u64) -> Option<u64> {
+        for _ in 0..SPINS {
+            if let Some(number) = self.try_enter(last) {
+                return Some(number);
+            }
+            if self.is_closing.load(Ordering::Relaxed) {
+                return None;
+            }
+            spin_loop();
+        }
+        let mut sleeping = lock(&self.sleep);
+        self.asleep.fetch_add(1, Ordering::SeqCst);
+        let entered = loop {
+            if let Some(number) = self.try_enter(last) {
+                break Some(number);
+            }
+            if self.is_closing.load(Ordering::SeqCst) {
+                break None;
+            }
+            sleeping = self.wake.wait(sleeping).unwrap_or_else(PoisonError::into_inner);
+        };
+        self.asleep.fetch_sub(1, Ordering::SeqCst);
+        entered
+    }
+
+    /// Goes in if the gate is open and the batch is another one than `last`.
+    fn try_enter(&self, last: u64) -> Option<u64> {
+        let mut gate = self.gate.load(Ordering::SeqCst);
+        loop {
+            let number = gate & !(OPEN | AWAITED | INSIDE);
+            if gate & OPEN == 0 || number == last {
+                return None;
+            }
+            match self.gate.compare_exchange_weak(gate, gate + 1, Ordering::AcqRel, Ordering::SeqCst) {
+                Ok(_) => return Some(number),
+                Err(now) => gate = now,
+            }
+        }
+    }
+
+    fn leave(&self) {
+        let before = self.gate.fetch_sub(1, Ordering::AcqRel);
+        if before & (INSIDE | AWAITED) == 1 | AWAITED {
+            let _out = lock(&self.wait);
+            self.out.notify_all();
+        }
+    }
+}
+
+/// Threads that sleep until there is work. They end when the pool is dropped.
+pub(crate) struct Pool {
+    shared: Arc<Shared>,
+    workers: Vec<JoinHandle<()>>,
+}
+
+impl Pool {
+    /// With so many threads beside the caller's, or as many as the system gives.
+    pub fn new(workers: usize) -> Self {
+        let shared = Arc::new(Shared::default());
+        let start = |number: usize| {
+            let shared = shared.clone();
+            thread::Builder::new().name(format!("sinew-{number}")).spawn(move || shared.serve()).ok()
+        };
+        let workers = (1..=workers).map_while(start).collect();
+        Self { shared, workers }
+    }
+
+    /// Threads beside the caller's.
+    pub fn workers(&self) -> usize {
+        self.workers.len()
+    }
+
+    /// Calls `task` `count` times. Where the pool is at work already, on this thread alone.
+    ///
+    /// # Panics
+    /// If a call does, with what it panicked, when no call runs any more; calls not begun by then are left out.
+    pub fn run(&self, count: usize, task: &(dyn Fn() + Sync)) {
+        let is_alone = count <= 1 || self.workers.is_empty();
+        if is_alone || self.shared.is_busy.swap(true, Ordering::Acquire) {
+            return (0..count).for_each(|_| task());
+        }
+        let batch = Batch { task, count, begun: AtomicUsize::new(0), panic: Mutex::default() };
+        self.shared.run(&batch, self.workers.len());
+        self.shared.is_busy.store(false, Ordering::Release);
+        if let Some(payload) = batch.panic.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            resume_unwind(payload);
+        }
+    }
+}
+
+impl Drop for Pool {
+    fn drop(&mut self) {
+        self.shared.is_closing.store(true, Ordering::SeqCst);
+        drop(lock(&self.shared.sleep));
+        self.shared.wake.notify_all();
+        for worker in self.workers.drain(..) {
+            // It catches what calls panic with, and nothing else in it does.
+            let _ = worker.join();
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! Eight manifolds of one colour, side by side: no two of them push the same body, so that a sweep solves them at once.
+
+use crate::spatial::Vec6;
+use sinew_math::lanes::{Lanes, Vector3, WIDTH};
+
+/// One number of each of the eight manifolds.
+pub(super) type Eight = [f32; WIDTH];
+/// A vector of each.
+pub(super) type Eight3 = [Eight; 3];
+
+pub(super) const ZERO8: Eight = [0.0; WIDTH];
+
+/// Set in the index of a body that contacts do not move, and in those of empty lanes.
+pub(super) const HELD: u32 = 1 << 31;
+/// No contact: an empty lane.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Where `(i, j)` of a symmetric matrix lies in its packed lower triangle, row by row.
+#[inline(always)]
+pub(super) const fn packed(i: usize, j: usize) -> usize {
+    if i >= j { i * (i + 1) / 2 + j } else { j * (j + 1) / 2 + i }
+}
+
+/// What sweeps read and write of eight manifolds with up to `N` points, whose responses to each other are `T = N (N + 1) / 2`.
+///
+/// Points lie where they lay when the step began; a body that turns fast has its manifolds written anew. World axes, metres,
+/// kilograms, seconds.
+#[derive(Clone, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Block<const N: usize, const T: usize> {
+    /// Local bodies A and B, with [`HELD`].
+    pub bodies: [[u32; WIDTH]; 2],
+    /// Unit, from A to B.
+    pub normal: Eight3,
+    /// First direction of friction; the second is `normal × tangent`.
+    pub tangent: Eight3,
+    /// From the centre of mass of B to that of A: added to an arm of A it gives that of B.
+    pub offset: Eight3,
+    /// Inverse masses.
+    pub mass: [Eight; 2],
+    /// Inverse inertias: xx, yy, zz, yz, xz, xy.
+    pub inertia: [[Eight; 6]; 2],
+    /// From the centre of A to each point.
+    pub arms: [Eight3; N],
+    /// From the centre of A to where friction acts.
+    pub center: Eight3,
+    /// Gap of each point at the present poses, negative where they overlap.
+    pub separation: [Eight; N],
+    /// What a point's rate may be less than nothing in this pass, m/s.
+    pub target: [Eight; N],
+    /// How much a point gives in this pass, m/s per N·s.
+    pub soft: [Eight; N],
+    /// Response of the points' rates to their impulses, packed.
+    pub response: [Eight; T],
+    /// Inverse of each point's own response, softness included.
+    pub gain: [Eight; N],
+    /// Response of the tangents (00, 01, 11), of the twist, and of the twist to the tangents.
+    pub tangent_response: [Eight; 3],
+    pub twist_response: Eight,
+    pub twist_to_tangents: [Eight; 2],
+    /// Impulses of this substep, and what `relax` may not go below.
+    pub impulse: [Eight; N],
+    pub floor: [Eight; N],
+    pub friction: [Eight; 2],
+    pub twist: Eight,
+    /// Sum of the normal impulses that friction is limited by, and that of the last substep.
+    pub load: Eight,
+    pub last_load: Eight,
+    /// Coefficients of sliding and of holding friction.
+    pub sliding: Eight,
+    pub holding: Eight,
+    /// Weighted distance of the points from the centre: lever of the twist.
+    pub lever: Eight,
+    /// Velocity of B's surface less A's along both tangents, and its spin about the normal.
+    pub surface: Eight3,
+    /// Place of the rolling resistance of its manifolds, or [`NONE`].
+    pub rolling: u32,
+    /// How much the velocities of its bodies had changed when it was last visited.
+    pub seen: f32,
+    /// A lane was written anew: the responses are to be computed again.
+    pub is_stale: bool,
+}
+
+/// What of eight manifolds is looked at once a substep.
+#[derive(Clone, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Memory<const N: usize> {
+    /// Places in the world's contact array.
+    pub contacts: [u32; WIDTH],
+    /// Separations when the step began, and the radii of both shapes' roundings, summed.
+    pub start: [Eight; N],
+    pub round: Eight,
+    /// Overlap that is left alone, metres.
+    pub dead_zone: Eight,
+    /// Speed of parting by overlap, 1/s, and the most of it, m/s.
+    pub bias_rate: Eight,
+    pub push_speed: Eight,
+    /// Softness as a share of the response at the manifold's centre.
+    pub softness: Eight,
+    /// Speed with which surfaces are to part, m/s.
+    pub launch: Eight,
+    pub restitution: Eight,
+    /// Normal impulses: of the substep before the last, of all substeps, and the load that lasts.
+    pub before: [Eight; N],
+    pub total: [Eight; N],
+    pub lasting: [Eight; N],
+    /// Friction of all substeps, along both tangents.
+    pub total_friction: [Eight; 2],
+    /// Place of how its points come in and leave, or [`NONE`] if none of them may bounce.
+    pub bounce: u32,
+}
+
+/// How points come in and leave, of eight manifolds of which some may bounce.
+#[derive(Clone, Debug)]
+pub(super) struct Bounce<const N: usize> {
+    /// Rate and gap when the substep began, m/s and metres; a point that overlaps has no gap.
+    pub rate: [Eight; N],
+    pub gap: [Eight; N],
+    /// What forces add toward the surface before contacts, m/s.
+    pub pull: [Eight; N],
+    /// Speed with which a point leaves, m/s; 0 if it does not.
+    pub rebound: [Eight; N],
+    /// Normal impulses before the bounce.
+    pub held: [Eight; N],
+}
+
+/// Resistance to rolling of eight manifolds.
+#[derive(Clone, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Rolling {
+    /// Lever: of the load, the most torque, metres.
+    pub lever: Eight,
+    /// Response of the relative spin to a torque, inverse: xx, yy, zz, yz, xz, xy; and its trace.
+    pub inverse: [Eight; 6],
+    pub trace: Eight,
+    /// World axes, N·m·s.
+    pub impulse: Eight3,
+}
+
+impl<const N: usize, const T: usize> Block<N, T> {
+    /// Of empty lanes.
+    pub fn empty() -> Self {
+        Self {
+            bodies: [[HELD; WIDTH]; 2],
+            normal: [ZERO8; 3],
+            tangent: [ZERO8; 3],
+            offset: [ZERO8; 3],
+            mass: [ZERO8; 2],
+            inertia: [[ZERO8; 6]; 2],
+            arms: [[ZERO8; 3]; N],
+            center: [ZERO8; 3],
+            separation: [ZERO8; N],
+            target: [ZERO8; N],
+            soft: [ZERO8; N],
+            response: [ZERO8; T],
+            gain: [ZERO8; N],
+            tangent_response: [ZERO8; 3],
+            twist_response: ZERO8,
+            twist_to_tangents: [ZERO8; 2],
+            impulse: [ZERO8; N],
+            floor: [ZERO8; N],
+            friction: [ZERO8; 2],
+            twist: ZERO8,
+            load: ZERO8,
+            last_load: ZERO8,
+            sliding: ZERO8,
+            holding: ZERO8,
+            lever: ZERO8,
+            surface: [ZERO8; 3],
+            rolling: NONE,
+            seen: f32::NEG_INFINITY,
+            is_stale: true,
+        }
+    }
+}
+
+impl<const N: usize> Bounce<N> {
+    /// Of points that do not.
+    pub const NONE: Self =
+        Self { rate: [ZERO8; N], gap: [ZERO8; N], pull: [ZERO8; N], rebound: [ZERO8; N], held: [ZERO8; N] };
+}
+
+impl<const N: usize> Memory<N> {
+    /// Of empty lanes.
+    pub fn empty() -> Self {
+        Self {
+            contacts: [NONE; WIDTH],
+            start: [ZERO8; N],
+            round: ZERO8,
+            dead_zone: ZERO8,
+            bias_rate: ZERO8,
+            push_speed: ZERO8,
+            softness: ZERO8,
+            launch: ZERO8,
+            restitution: ZERO8,
+            before: [ZERO8; N],
+            total: [ZERO8; N],
+            lasting: [ZERO8; N],
+            total_friction: [ZERO8; 2],
+            bounce: NONE,
+        }
+    }
+}
+
+/// A vector of each of eight manifolds.
+#[inline(always)]
+pub(super) fn load3<L: Lanes>(from: &Eight3) -> Vector3<L> {
+    Vector3::load(&from[0], &from[1], &from[2])
+}
+
+#[inline(always)]
+pub(super) fn store3<L: Lanes>(v: Vector3<L>, to: &mut Eight3) {
+    v.x.store(&mut to[0]);
+    v.y.store(&mut to[1]);
+    v.z.store(&mut to[2]);
+}
+
+/// Symmetric matrices (xx, yy, zz, yz, xz, xy) times vectors.
+#[inline(always)]
+pub(super) fn times<L: Lanes>(m: &[Eight; 6], v: Vector3<L>) -> Vector3<L> {
+    let (xx, yy, zz) = (L::load(&m[0]), L::load(&m[1]), L::load(&m[2]));
+    let (yz, xz, xy) = (L::load(&m[3]), L::load(&m[4]), L::load(&m[5]));
+    Vector3::new(
+        xx * v.x + xy * v.y + xz * v.z,
+        xy * v.x + yy * v.y + yz * v.z,
+        xz * v.x + yz * v.y + zz * v.z,
+    )
+}
+
+/// Eight rows of a list, by the bodies' indices, field by field.
+#[inline(always)]
+pub(super) fn gather<L: Lanes>(rows: &[Vec6], bodies: &[u32; WIDTH]) -> [L; WIDTH] {
+    let [a, b, c, d, e, f, g, h] = *bodies;
+    L::transpose([
+        at(rows, a),
+        at(rows, b),
+        at(rows, c),
+        at(rows, d),
+        at(rows, e),
+        at(rows, f),
+        at(rows, g),
+        at(rows, h),
+    ])
+}
+
+#[inline(always)]
+fn at<L: Lanes>(rows: &[Vec6], body: u32) -> L {
+    L::load(&rows[(body & !HELD) as usize])
+}
+
+/// Velocities of eight bodies.
+#[derive(Clone, Copy)]
+pub(super) struct Motion<L> {
+    pub linear: Vector3<L>,
+    pub angular: Vector3<L>,
+}
+
+impl<L: Lanes> Motion<L> {
+    #[inline(always)]
+    pub fn gather(velocities: &[Vec6], bodies: &[u32; WIDTH]) -> Self {
+        let [x, y, z, u, v, w, _, _] = gather::<L>(velocities, bodies);
+        Self { linear: Vector3::new(x, y, z), angular: Vector3::new(u, v, w) }
+    }
+
+    /// Writes those that move.
+    #[inline(always)]
+    pub fn scatter(self, velocities: &mut [Vec6], bodies: &[u32; WIDTH]) {
+        let Self { linear: v, angular: w } = self;
+        let zero = L::splat(0.0);
+        let rows = L::transpose([v.x, v.y, v.z, w.x, w.y, w.z, zero, zero]);
+        for k in 0..WIDTH {
+            if bodies[k] & HELD == 0 {
+                rows[k].store(&mut velocities[bodies[k] as usize]);
+            }
+        }
+    }
+
+    /// Takes an impulse and a torque; `inertia` and `mass` inverse.
+    #[inline(always)]
+    pub fn push(&mut self, mass: L, inertia: &[Eight; 6], impulse: Vector3<L>, torque: Vector3<L>) {
+        self.linear = self.linear + impulse * mass;
+        self.angular = self.angular + times(inertia, torque);
+    }
+
+    /// The largest change of a component since.
+    #[inline(always)]
+    pub fn change(self, before: Self) -> L {
+        let (v, w) = ((self.linear - before.linear).abs(), (self.angular - before.angular).abs());
+        L::max(L::max(L::max(v.x, v.y), L::max(v.z, w.x)), L::max(w.y, w.z))
+    }
+}

@@ -1,0 +1,193 @@
+//! Which contacts are solved side by side: those of a colour share no body that moves.
+
+use crate::solver::effort::Firmness;
+
+/// Colours of one round: bits of a mask.
+const COLORS: u32 = u64::BITS;
+/// Classes of blocks, by their points.
+const CLASSES: u32 = 3;
+
+/// A contact to be coloured.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    /// Place in the world's contact array.
+    pub contact: u32,
+    /// Local bodies.
+    pub bodies: [u32; 2],
+    /// Which class of blocks it goes to.
+    pub class: u32,
+    pub firmness: Firmness,
+    color: u32,
+}
+
+impl Edge {
+    pub fn new(contact: u32, bodies: [u32; 2], class: u32, firmness: Firmness) -> Self {
+        Self { contact, bodies, class, firmness, color: 0 }
+    }
+}
+
+/// Memory for colouring.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Coloring {
+    pub edges: Vec<Edge>,
+    /// In order of colour, class and place.
+    sorted: Vec<Edge>,
+    /// Where those of each colour and class begin.
+    starts: Vec<usize>,
+    /// Colours that each moving body has, in the round.
+    used: Vec<u64>,
+    pending: Vec<u32>,
+    left: Vec<u32>,
+}
+
+impl Coloring {
+    pub fn clear(&mut self) {
+        self.edges.clear();
+    }
+
+    /// For so many bodies and edges.
+    pub fn make_room(&mut self, bodies: usize, edges: usize) {
+        for list in [&mut self.edges, &mut self.sorted] {
+            list.clear();
+            list.reserve(edges);
+        }
+        for list in [&mut self.pending, &mut self.left] {
+            list.clear();
+            list.reserve(edges);
+        }
+        self.used.clear();
+        self.used.reserve(bodies);
+        self.starts.clear();
+        self.starts.reserve((COLORS * CLASSES) as usize);
+    }
+
+    /// Colours by first fit in the order of the edges, then sorts them by colour and class; bodies from `moving` on do not move.
+    /// Contacts with those have the last colours: what cannot move has the last word. Gives the number of colours.
+    pub fn color(&mut self, moving: usize) -> u32 {
+        let mut colors = 0;
+        for with_fixed in [false, true] {
+            let is_here = |edge: &Edge| edge.bodies.iter().any(|&body| body as usize >= moving) == with_fixed;
+            self.pending.clear();
+            let here = self.edges.iter().enumerate().filter(|(_, edge)| is_here(edge));
+            self.pending.extend(here.map(|(i, _)| i as u32));
+            while !self.pending.is_empty() {
+                colors += self.round(moving, colors);
+                core::mem::swap(&mut self.pending, &mut self.left);
+            }
+        }
+        self.sort(colors);
+        colors
+    }
+
+    /// A counting sort, which keeps the order of the edges.
+    fn sort(&mut self, colors: u32) {
+        let Self { edges, sorted, starts, .. } = self;
+        starts.clear();
+        starts.resize((colors * CLASSES) as usize + 1, 0);
+        for edge in edges.iter() {
+            starts[edge.run() + 1] += 1;
+        }
+        for run in 1..starts.len() {
+            starts[run] += starts[run - 1];
+        }
+        sorted.clear();
+        sorted.resize(edges.len(), Edge::new(0, [0; 2], 0, Firmness::FREE));
+        for edge in edges.iter() {
+            let place = &mut starts[edge.run()];
+            sorted[*place] = *edge;
+            *place += 1;
+        }
+    }
+
+    /// Gives colours from `first` on to what is pending, as many as a mask has; the others are left. Gives how many colours it
+    /// took.
+    fn round(&mut self, moving: usize, first: u32) -> u32 {
+        let Self { edges, used, pending, left, .. } = self;
+        used.clear();
+        used.resize(moving, 0);
+        left.clear();
+        let mut count = 0;
+        for &i in pending.iter() {
+            let edge = &mut edges[i as usize];
+            let taken = edge
+                .bodies
+                .iter()
+                .fold(0, |taken, &body| taken | used.get(body as usize).copied().unwrap_or(0));
+            let color = taken.trailing_ones();
+            if color == COLORS {
+                left.push(i);
+                continue;
+            }
+            for &body in &edge.bodies {
+                if let Some(used) = used.get_mut(body as usize) {
+                    *used |= 1 << color;
+                }
+            }
+            edge.color = first + color;
+            count = u32::max(count, color + 1);
+        }
+        count
+    }
+
+    /// Runs of edges of one colour and class, in order.
+    pub fn runs(&self) -> impl Iterator<Item = &[Edge]> {
+        self.sorted.chunk_by(|a, b| a.run() == b.run())
+    }
+}
+
+impl Edge {
+    pub fn color(&self) -> u32 {
+        self.color
+    }
+
+    /// Number of its colour and class.
+    fn run(&self) -> usize {
+        (self.color * CLASSES + self.class) as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_math::Random;
+
+    #[test]
+    fn edges_of_a_color_share_no_moving_body() {
+        let mut random = Random::new(5);
+        let mut coloring = Coloring::default();
+        for case in 0..200 {
+            let (moving, fixed) = (1 + random.index(60), random.index(3));
+            coloring.clear();
+            for contact in 0..random.index(400) as u32 {
+                let a = random.index(moving) as u32;
+                // A hub among them has more contacts than a round has colours.
+                let b = if random.unit() < 0.4 { 0 } else { random.index(moving + fixed) as u32 };
+                if a != b {
+                    coloring.edges.push(Edge::new(contact, [a, b], random.index(3) as u32, Firmness::FREE));
+                }
+            }
+            let count = coloring.edges.len();
+            let colors = coloring.color(moving);
+            assert_eq!(coloring.runs().map(<[Edge]>::len).sum::<usize>(), count);
+            let mut last_moving = 0;
+            for color in 0..colors {
+                let mut seen = vec![false; moving];
+                for edge in coloring.sorted.iter().filter(|edge| edge.color() == color) {
+                    for &body in edge.bodies.iter().filter(|&&body| (body as usize) < moving) {
+                        assert!(!core::mem::replace(&mut seen[body as usize], true), "case {case}");
+                    }
+                    if edge.bodies.iter().all(|&body| (body as usize) < moving) {
+                        last_moving = color;
+                    }
+                }
+            }
+            for edge in &coloring.sorted {
+                let is_fixed = edge.bodies.iter().any(|&body| body as usize >= moving);
+                assert!(
+                    !is_fixed || edge.color() > last_moving || last_moving == 0,
+                    "case {case}: fixed come last"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,473 @@
+//! Contacts of an island in lanes: eight manifolds that share no moving body are solved at once, by block Gauss-Seidel in impulse
+//! space over the bodies' own masses, colour after colour.
+//!
+//! Rows are made once a step; from substep to substep only separations change, exactly, by how bodies have moved. The manifold of
+//! a body that turns fast is looked for anew and written to its lane.
+
+mod block;
+mod color;
+mod conjugate;
+mod disk;
+mod geometry;
+mod memory;
+mod place;
+mod prepare;
+mod refind;
+mod store;
+mod visit;
+
+pub(super) use prepare::OfStep;
+pub(super) use refind::Substep;
+
+use super::SolverBody;
+use super::WEIGHINGS;
+pub(super) use super::contact_rows::{BOUNCE_SPEED, IMPACT_JUMP, LASTING, RELAX_TURN};
+use super::effort::Order;
+use super::sweep::Pass;
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
+use block::{Block, Bounce, Memory, Rolling};
+use color::Coloring;
+use conjugate::Conjugate;
+use core::ops::Range;
+use refind::Found;
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::Lanes;
+use visit::Sweep;
+
+/// Blocks of manifolds with up to `N` points.
+#[derive(Clone, Debug, Default)]
+struct Class<const N: usize, const T: usize> {
+    blocks: Vec<Block<N, T>>,
+    memory: Vec<Memory<N>>,
+    bounces: Vec<Bounce<N>>,
+    /// Blocks in use: memory stays for the next island.
+    count: usize,
+}
+
+/// Blocks of one colour, in each class.
+#[derive(Clone, Debug, Default)]
+struct Color {
+    one: Range<usize>,
+    two: Range<usize>,
+    four: Range<usize>,
+}
+
+/// All contacts of an island.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Contacts {
+    one: Class<1, 1>,
+    two: Class<2, 3>,
+    four: Class<4, 10>,
+    colors: Vec<Color>,
+    rolling: Vec<Rolling>,
+    coloring: Coloring,
+    /// Inverse mass and inertia of each body: 1/m, then xx, yy, zz, yz, xz, xy.
+    inverse: Vec<Vec6>,
+    /// How each body has moved since the step began.
+    moved: Vec<Vec6>,
+    /// Per body: how much its velocity has changed in the pass.
+    stir: Vec<f32>,
+    found: Vec<Found>,
+    conjugate: Conjugate,
+    is_spoiled: bool,
+    tally: Tally,
+}
+
+/// What the sweeps of a step have gone through.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tally {
+    pub manifolds: u64,
+    pub points: u64,
+    /// Manifolds in blocks that were not skipped, and the blocks' bytes.
+    pub visits: u64,
+    pub visited_bytes: u64,
+}
+
+impl<const N: usize, const T: usize> Class<N, T> {
+    fn bytes(&self) -> usize {
+        self.count * (size_of::<Block<N, T>>() + size_of::<Memory<N>>())
+    }
+}
+
+/// Something that is done to each block.
+trait Visitor {
+    fn visit<L: Lanes, const N: usize, const T: usize>(
+        &mut self,
+        block: &mut Block<N, T>,
+        memory: &mut Memory<N>,
+        bounces: &mut [Bounce<N>],
+    );
+}
+
+/// Blocks of one class, one after the other.
+#[inline(always)]
+fn each<L: Lanes, V: Visitor, const N: usize, const T: usize>(
+    class: &mut Class<N, T>,
+    range: &Range<usize>,
+    visitor: &mut V,
+) {
+    let Class { blocks, memory, bounces, .. } = class;
+    for i in range.clone() {
+        visitor.visit::<L, N, T>(&mut blocks[i], &mut memory[i], bounces);
+    }
+}
+
+/// All blocks, colour by colour.
+struct Each<'a, V> {
+    one: &'a mut Class<1, 1>,
+    two: &'a mut Class<2, 3>,
+    four: &'a mut Class<4, 10>,
+    colors: &'a [Color],
+    order: Order,
+    visitor: V,
+}
+
+impl<V: Visitor> Kernel for Each<'_, V> {
+    type Output = V;
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self) -> V {
+        let count = self.colors.len();
+        for turn in 0..count {
+            let at = if self.order == Order::ToAndFro { count - 1 - turn } else { turn };
+            let color = &self.colors[at];
+            each::<L, V, 1, 1>(self.one, &color.one, &mut self.visitor);
+            each::<L, V, 2, 3>(self.two, &color.two, &mut self.visitor);
+            each::<L, V, 4, 10>(self.four, &color.four, &mut self.visitor);
+        }
+        self.visitor
+    }
+}
+
+/// Declares a visitor: its fields, and what it does to a block.
+macro_rules! visitor {
+    ($(#[$doc:meta])* $name:ident $(<$life:lifetime>)? { $($field:ident: $type:ty),* },
+     |$self:ident, $block:ident, $memory:ident, $bounces:ident| $body:expr) => {
+        $(#[$doc])*
+        struct $name $(<$life>)? { $($field: $type),* }
+
+        impl $(<$life>)? Visitor for $name $(<$life>)? {
+            #[inline(always)]
+            fn visit<L: Lanes, const N: usize, const T: usize>(
+                &mut $self,
+                $block: &mut Block<N, T>,
+                $memory: &mut Memory<N>,
+                $bounces: &mut [Bounce<N>],
+            ) {
+                $body
+            }
+        }
+    };
+}
+
+visitor!(
+    /// Responses of blocks that were written.
+    Respond<'a> { inverse: &'a [Vec6], all: bool },
+    |self, block, _memory, _bounces| {
+        if core::mem::take(&mut block.is_stale) || self.all {
+            place::take_inertias::<L, N, T>(block, self.inverse);
+            place::respond::<L, N, T>(block);
+        }
+    }
+);
+
+visitor!(
+    /// Separations at the present poses.
+    Measure<'a> { moved: &'a [Vec6] },
+    |self, block, memory, _bounces| place::measure::<L, N, T>(block, memory, &place::Moved(self.moved))
+);
+
+visitor!(
+    /// What points are to reach in a pass.
+    Aim { pass: Pass, h: f32 },
+    |self, block, memory, bounces| {
+        block.seen = f32::NEG_INFINITY;
+        if self.pass == Pass::Restitution && memory.bounce != block::NONE {
+            bounces[memory.bounce as usize].held = block.impulse;
+        }
+        place::aim::<L, N, T>(block, memory, bounces, self.pass, self.h);
+    }
+);
+
+visitor!(
+    /// What may not be taken back.
+    RaiseFloor<'a> { velocities: &'a [Vec6], h: f32 },
+    |self, block, _memory, _bounces| place::raise_floor::<L, N, T>(block, self.velocities, self.h)
+);
+
+visitor!(
+    /// Starting impulses.
+    WarmStart<'a> { rolling: &'a mut [Rolling], velocities: &'a mut [Vec6] },
+    |self, block, memory, _bounces| {
+        memory::warm_start::<L, N, T>(block, memory, self.rolling, self.velocities);
+    }
+);
+
+visitor!(
+    /// Impulses of all rows, added to those of bodies.
+    AddGiven<'a> { rolling: &'a [Rolling], impulses: &'a mut [Vec6], sign: f32 },
+    |self, block, _memory, _bounces| {
+        memory::add_given::<L, N, T>(block, self.rolling, self.impulses, self.sign);
+    }
+);
+
+visitor!(
+    /// Impulses become memory.
+    EndSubstep { h: f32 },
+    |self, block, memory, _bounces| memory::end_substep::<L, N, T>(block, memory, self.h)
+);
+
+visitor!(
+    /// How points come in.
+    BeginApproach<'a> { velocities: &'a [Vec6] },
+    |self, block, memory, bounces| {
+        if memory.bounce != block::NONE {
+            memory::begin_approach::<L, N, T>(block, &mut bounces[memory.bounce as usize], self.velocities);
+        }
+    }
+);
+
+visitor!(
+    /// What forces add to that.
+    PullApproach<'a> { velocities: &'a [Vec6] },
+    |self, block, memory, bounces| {
+        if memory.bounce != block::NONE {
+            memory::pull_approach::<L, N, T>(block, &mut bounces[memory.bounce as usize], self.velocities);
+        }
+    }
+);
+
+visitor!(
+    /// Which points will bounce.
+    EndApproach { h: f32, any: bool },
+    |self, block, memory, bounces| {
+        if memory.bounce != block::NONE {
+            let bounce = &mut bounces[memory.bounce as usize];
+            memory::end_approach::<L, N, T>(block, bounce, L::load(&memory.restitution), self.h);
+            self.any |= bounce.rebound.iter().flatten().any(|&speed| speed > 0.0);
+        }
+    }
+);
+
+visitor!(
+    /// After the bounce.
+    EndBounce {},
+    |self, block, memory, bounces| {
+        if memory.bounce != block::NONE {
+            memory::end_bounce::<L, N, T>(block, memory, &bounces[memory.bounce as usize]);
+        }
+    }
+);
+
+impl Visitor for Sweep<'_> {
+    #[inline(always)]
+    fn visit<L: Lanes, const N: usize, const T: usize>(
+        &mut self,
+        block: &mut Block<N, T>,
+        _: &mut Memory<N>,
+        _: &mut [Bounce<N>],
+    ) {
+        self.visit_block::<L, N, T>(block);
+    }
+}
+
+/// Most sweeps of a pass, the change of a velocity in one below which there is no other, m/s or rad/s, and their order.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sweeps {
+    pub most: usize,
+    pub tolerance: f32,
+    pub order: Order,
+    /// The sweep from which on they are conjugate steps.
+    pub first_conjugate: usize,
+}
+
+/// What a sweep did.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Swept {
+    /// Largest change of a velocity component.
+    pub largest: f32,
+    /// Energy that the changes have block by block, J, if sweeps are conjugate steps.
+    pub energy: f32,
+}
+
+impl Contacts {
+    pub fn is_empty(&self) -> bool {
+        self.colors.is_empty()
+    }
+
+    /// Does something to each block, colour by colour.
+    fn each<V: Visitor>(&mut self, visitor: V) -> V {
+        let Self { one, two, four, colors, .. } = self;
+        dispatch::run(Each { one, two, four, colors, order: Order::Forward, visitor })
+    }
+
+    /// Separations at the poses to which bodies have come; manifolds of what turns fast are written anew by the caller.
+    fn measure(&mut self, bodies: &[SolverBody], starts: &[sinew_math::Transform]) {
+        self.moved.clear();
+        for (body, start) in bodies.iter().zip(starts) {
+            let by = body.pose.translation - start.translation;
+            let turned = body.pose.rotation * start.rotation.inverse();
+            self.moved.push([by.x, by.y, by.z, turned.x, turned.y, turned.z, turned.w, 0.0]);
+        }
+        let moved = core::mem::take(&mut self.moved);
+        self.each(Measure { moved: &moved });
+        self.moved = moved;
+    }
+
+    /// Inverse masses and inertias of bodies at their present poses; those from `moving` on have none.
+    fn take_inertias(&mut self, bodies: &[SolverBody], moving: usize) {
+        self.inverse.clear();
+        self.inverse.extend(bodies.iter().enumerate().map(|(i, body)| {
+            if i >= moving {
+                return ZERO6;
+            }
+            let m = body.inverse_inertia;
+            let inverse_mass = 1.0 / (body.mass * body.ballast);
+            let (d, o) = (m.diagonal, m.off);
+            [inverse_mass, d.x, d.y, d.z, o.x, o.y, o.z, 0.0]
+        }));
+    }
+
+    fn respond(&mut self) {
+        let inverse = core::mem::take(&mut self.inverse);
+        let all = core::mem::take(&mut self.is_spoiled);
+        self.each(Respond { inverse: &inverse, all });
+        self.inverse = inverse;
+    }
+
+    /// Inertias have changed: all responses are to be computed anew when bodies are placed.
+    pub fn spoil(&mut self) {
+        self.is_spoiled = true;
+    }
+
+    /// How points come in, when the substep begins.
+    pub fn begin_approach(&mut self, velocities: &[Vec6]) {
+        if self.may_bounce() {
+            self.each(BeginApproach { velocities });
+        }
+    }
+
+    /// What forces have added to that.
+    pub fn pull_approach(&mut self, velocities: &[Vec6]) {
+        if self.may_bounce() {
+            self.each(PullApproach { velocities });
+        }
+    }
+
+    /// Which points will bounce.
+    pub fn end_approach(&mut self, h: f32) -> bool {
+        self.may_bounce() && self.each(EndApproach { h, any: false }).any
+    }
+
+    fn may_bounce(&self) -> bool {
+        !(self.one.bounces.is_empty() && self.two.bounces.is_empty() && self.four.bounces.is_empty())
+    }
+
+    /// Puts the starting impulses on the bodies.
+    pub fn warm_start(&mut self, velocities: &mut [Vec6]) {
+        let mut rolling = core::mem::take(&mut self.rolling);
+        self.each(WarmStart { rolling: &mut rolling, velocities });
+        self.rolling = rolling;
+    }
+
+    /// Sweeps over all blocks until the velocities change no more. Gives how often.
+    pub fn sweep(&mut self, pass: Pass, sweeps: Sweeps, velocities: &mut [Vec6], h: f32) -> usize {
+        if self.is_empty() {
+            return 0;
+        }
+        self.begin_pass(pass, velocities, h);
+        for done in 1..=sweeps.most {
+            let conjugate = done >= sweeps.first_conjugate && pass != Pass::Restitution;
+            if conjugate {
+                self.before_conjugate(velocities, &[]);
+            }
+            let swept = self.sweep_once(pass, sweeps, done, velocities);
+            // Friction learns what really presses from the second sweep on.
+            if (done > 1 || pass == Pass::Solve) && swept.largest < sweeps.tolerance {
+                return done;
+            }
+            if conjugate && done < sweeps.most {
+                self.after_conjugate(swept.energy, velocities, &mut []);
+            }
+        }
+        sweeps.most
+    }
+
+    /// Before the first sweep of a pass.
+    pub fn begin_pass(&mut self, pass: Pass, velocities: &[Vec6], h: f32) {
+        self.each(Aim { pass, h });
+        let whirls = |v: &Vec6| angular(v).length() * h >= RELAX_TURN;
+        if pass == Pass::Relax && velocities.iter().any(whirls) {
+            self.each(RaiseFloor { velocities, h });
+        }
+        self.stir.clear();
+        self.stir.resize(velocities.len(), 0.0);
+        self.start_conjugate();
+    }
+
+    /// Visits all blocks about whose bodies something has changed; `done` counts from 1.
+    pub fn sweep_once(&mut self, pass: Pass, sweeps: Sweeps, done: usize, velocities: &mut [Vec6]) -> Swept {
+        let Self { one, two, four, colors, stir, rolling, .. } = self;
+        let is_backward = sweeps.order == Order::ToAndFro && !done.is_multiple_of(2);
+        let order = if is_backward { Order::ToAndFro } else { Order::Forward };
+        let visitor = Sweep {
+            velocities,
+            stir,
+            rolling,
+            pass,
+            weighs: done <= WEIGHINGS,
+            tolerance: sweeps.tolerance,
+            largest: 0.0,
+            energy: (done >= sweeps.first_conjugate).then_some(0.0),
+            visits: 0,
+            visited_bytes: 0,
+        };
+        let Sweep { largest, energy, visits, visited_bytes, .. } =
+            dispatch::run(Each { one, two, four, colors, order, visitor });
+        self.tally.visits += visits;
+        self.tally.visited_bytes += visited_bytes;
+        Swept { largest, energy: energy.unwrap_or(0.0) }
+    }
+
+    /// Of the step so far.
+    pub fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// Of the blocks.
+    pub fn bytes(&self) -> usize {
+        self.one.bytes() + self.two.bytes() + self.four.bytes()
+    }
+
+    /// A body's velocity has changed by something else than contacts.
+    pub fn stir(&mut self, body: usize, change: f32) {
+        if let Some(stir) = self.stir.get_mut(body) {
+            *stir += change;
+        }
+    }
+
+    /// Adds what all rows give in this substep, times `sign`, to the impulses of moving bodies.
+    pub fn add_given(&mut self, impulses: &mut [Vec6], sign: f32) {
+        if self.is_empty() {
+            return;
+        }
+        let (rolling, mut given) = (core::mem::take(&mut self.rolling), core::mem::take(&mut self.moved));
+        given.clear();
+        given.resize(self.inverse.len(), ZERO6);
+        self.each(AddGiven { rolling: &rolling, impulses: &mut given, sign });
+        for (sum, given) in impulses.iter_mut().zip(&given) {
+            add_scaled(sum, given, 1.0);
+        }
+        (self.rolling, self.moved) = (rolling, given);
+    }
+
+    /// Impulses of this substep become memory.
+    pub fn end_substep(&mut self, h: f32) {
+        self.each(EndSubstep { h });
+    }
+
+    /// After the bounce.
+    pub fn end_bounce(&mut self) {
+        self.each(EndBounce {});
+    }
+}

@@ -1,0 +1,252 @@
+//! Manifolds of bodies that turn fast are looked for again within the step, and written to their lanes.
+
+use super::block::{Block, HELD, Memory};
+use super::color::Edge;
+use super::geometry::{Cores, Geometry};
+use super::prepare::{placed, write_impulses, write_material};
+use super::store::memory_of;
+use super::{Class, Contacts};
+use crate::collide::{MAX_POINTS, Manifold};
+use crate::contact::slop;
+pub(super) use crate::solver::contact_rows::ROLL_TURN;
+use crate::solver::contact_rows::{self, REFIND_TURN, weights};
+use crate::solver::{SolverBody, View};
+use crate::spatial::{Vec6, angular, linear};
+use sinew_math::lanes::WIDTH;
+use sinew_math::{Transform, min};
+
+/// A manifold whose lane is written in each substep.
+#[derive(Clone, Debug)]
+pub(super) struct Found {
+    /// Class, block and lane.
+    place: [u32; 3],
+    contact: u32,
+    /// Local bodies.
+    bodies: [u32; 2],
+    manifold: Manifold,
+    cores: Cores,
+    /// It is looked for where a body turns by more than this in a substep, radians.
+    most_turn: f32,
+}
+
+impl Found {
+    pub fn new(place: [u32; 3], edge: &Edge, manifold: Manifold, cores: Cores, most_turn: f32) -> Self {
+        Self { place, contact: edge.contact, bodies: edge.bodies, manifold, cores, most_turn }
+    }
+}
+
+/// Bodies as a substep has left them.
+pub(in crate::solver) struct Substep<'a> {
+    pub view: &'a View<'a>,
+    pub bodies: &'a [SolverBody],
+    /// When the step began.
+    pub starts: &'a [Transform],
+    pub velocities: &'a [Vec6],
+    pub moving: usize,
+    pub h: f32,
+}
+
+impl Substep<'_> {
+    /// Of a body in this substep, radians.
+    fn turn(&self, body: u32) -> f32 {
+        angular(&self.velocities[body as usize]).length() * self.h
+    }
+}
+
+impl Contacts {
+    /// Takes the poses to which bodies have come: separations, and what turns fast anew.
+    pub fn place(&mut self, substep: &Substep<'_>) {
+        if self.is_empty() {
+            return;
+        }
+        self.measure(substep.bodies, substep.starts);
+        self.find_fast(substep);
+        if self.found.is_empty() && !self.is_spoiled {
+            return;
+        }
+        let mut found = core::mem::take(&mut self.found);
+        for one in &mut found {
+            match one.place[0] {
+                0 => one.update(&mut self.one, &self.rolling, substep),
+                1 => one.update(&mut self.two, &self.rolling, substep),
+                _ => one.update(&mut self.four, &self.rolling, substep),
+            }
+        }
+        self.found = found;
+        self.take_inertias(substep.bodies, substep.moving);
+        self.respond();
+    }
+
+    /// Lists what turns fast for the first time.
+    fn find_fast(&mut self, substep: &Substep<'_>) {
+        let is_fast = |body: u32| substep.turn(body) >= REFIND_TURN;
+        if !(0..substep.moving as u32).any(is_fast) {
+            return;
+        }
+        let known = self.found.len();
+        self.one.find_fast(0, substep, known, &mut self.found);
+        self.two.find_fast(1, substep, known, &mut self.found);
+        self.four.find_fast(2, substep, known, &mut self.found);
+        self.found.sort_unstable_by_key(Found::place);
+    }
+}
+
+impl<const N: usize, const T: usize> Class<N, T> {
+    /// Adds what turns fast to the list, of which the first `known` are sorted.
+    fn find_fast(&self, class: u32, substep: &Substep<'_>, known: usize, found: &mut Vec<Found>) {
+        for place in 0..self.count {
+            for lane in 0..WIDTH {
+                let (block, contact) = (&self.blocks[place], self.memory[place].contacts[lane]);
+                let bodies = [0, 1].map(|end| block.bodies[end][lane] & !HELD);
+                if contact == super::block::NONE
+                    || bodies.iter().all(|&body| substep.turn(body) < REFIND_TURN)
+                {
+                    continue;
+                }
+                let at = [class, place as u32, lane as u32];
+                if found[..known].binary_search_by_key(&at, Found::place).is_ok() {
+                    continue;
+                }
+                let of = &substep.view.contacts[contact as usize];
+                let starts = bodies.map(|body| substep.starts[body as usize]);
+                let cores =
+                    Cores::new(&of.manifold, starts, rounds(substep.view, contact, starts, &of.manifold));
+                found.push(Found {
+                    place: at,
+                    contact,
+                    bodies,
+                    manifold: of.manifold,
+                    cores,
+                    most_turn: REFIND_TURN,
+                });
+            }
+        }
+    }
+}
+
+/// Radii of the roundings of a contact's shapes where they meet.
+fn rounds(view: &View<'_>, contact: u32, poses: [Transform; 2], manifold: &Manifold) -> [f32; 2] {
+    let shapes = placed(view, &view.contacts[contact as usize]);
+    [0, 1].map(|end: usize| shapes[end].round(poses[end].rotation.inverse() * manifold.normal))
+}
+
+impl Found {
+    /// Looks for the contact anew if a body turned fast in this substep: the points of the step's beginning say nothing of the
+    /// corner that swings in. Impulses go on by feature. A pair that has come apart keeps its rows.
+    fn update<const N: usize, const T: usize>(
+        &mut self,
+        class: &mut Class<N, T>,
+        rolling: &[super::Rolling],
+        substep: &Substep<'_>,
+    ) {
+        let [_, place, lane] = self.place.map(|number| number as usize);
+        let poses = self.bodies.map(|body| substep.bodies[body as usize].pose);
+        let (block, memory) = (&mut class.blocks[place], &mut class.memory[place]);
+        let contact = &substep.view.contacts[self.contact as usize];
+        let shapes = placed(substep.view, contact);
+        let slop = slop(min(shapes[0].shape.smallest_extent(), shapes[1].shape.smallest_extent()));
+        let mut of_lane = memory_of(block, memory, rolling, lane, 1.0);
+        if self.bodies.iter().any(|&body| substep.turn(body) >= self.most_turn) {
+            let on_surfaces = [0, 1].map(|end: usize| poses[end].point(self.cores.points[end][0]));
+            let margin = self.margin(substep, &shapes, slop);
+            let anew = contact_rows::found_anew(shapes, poses, margin, &self.manifold, on_surfaces)
+                .map(|manifold| fitted(&manifold, N));
+            if let Some(manifold) = anew {
+                of_lane = of_lane.matched(&self.manifold, &manifold);
+                if memory.bounce != super::block::NONE {
+                    let bounce = &mut class.bounces[memory.bounce as usize];
+                    carry_rebounds(&mut bounce.rebound, lane, &self.manifold, &manifold);
+                }
+                self.manifold = manifold;
+                self.cores =
+                    Cores::new(&manifold, poses, rounds(substep.view, self.contact, poses, &manifold));
+            }
+        }
+        let in_principal = |end: usize| poses[end].rotation.inverse() * self.cores.normal;
+        let rolls = shapes[0].has_rim(in_principal(0)) || shapes[1].has_rim(in_principal(1));
+        self.most_turn = if rolls { ROLL_TURN } else { REFIND_TURN };
+        let weights = weights(&of_lane, &self.manifold, if rolls { slop } else { f32::INFINITY });
+        let moves = self.bodies.map(|body| (body as usize) < substep.moving);
+        let geometry = Geometry::new(&self.cores, poses, moves, &weights);
+        self.write(block, memory, &geometry, &of_lane, substep);
+    }
+
+    fn write<const N: usize, const T: usize>(
+        &self,
+        block: &mut Block<N, T>,
+        memory: &mut Memory<N>,
+        geometry: &Geometry,
+        of_lane: &crate::contact::ContactMemory,
+        substep: &Substep<'_>,
+    ) {
+        let lane = self.place[2] as usize;
+        let (loads, totals) = ([block.load[lane], block.last_load[lane]], of_lane.total_friction);
+        geometry.write(block, memory, lane);
+        let view = substep.view;
+        let material = view.modifiers.material(view.bodies, view.contacts, self.contact);
+        write_material(block, memory, lane, &material, geometry);
+        write_impulses(block, memory, lane, of_lane, geometry);
+        [block.load[lane], block.last_load[lane]] = loads;
+        for (i, point) in of_lane.points.iter().enumerate().take(N) {
+            memory.total[i][lane] = point.total;
+        }
+        for (k, tangent) in geometry.tangents().into_iter().enumerate() {
+            memory.total_friction[k][lane] = totals.dot(tangent);
+        }
+    }
+
+    /// How far apart points may be that this substep brings together, metres.
+    fn margin(&self, substep: &Substep<'_>, shapes: &[contact_rows::Placed<'_>; 2], slop: f32) -> f32 {
+        let [a, b] = self.bodies.map(|body| linear(&substep.velocities[body as usize]));
+        let turns = self.bodies.map(|body| substep.turn(body));
+        contact_rows::margin(shapes, turns, (b - a).length() * substep.h, slop)
+    }
+
+    pub fn place(&self) -> [u32; 3] {
+        self.place
+    }
+
+    pub fn class(&self) -> u32 {
+        self.place[0]
+    }
+
+    pub fn contact(&self) -> u32 {
+        self.contact
+    }
+
+    /// As it was found last.
+    pub fn manifold(&self) -> Manifold {
+        self.manifold
+    }
+}
+
+/// The deepest points of a manifold, as many as a lane has room for.
+fn fitted(manifold: &Manifold, room: usize) -> Manifold {
+    if manifold.count <= room {
+        return *manifold;
+    }
+    let mut points = manifold.points;
+    points[..manifold.count].sort_by(|p, q| p.separation.total_cmp(&q.separation));
+    let mut fitted = Manifold { count: room, ..*manifold };
+    fitted.points[..room].copy_from_slice(&points[..room]);
+    fitted
+}
+
+/// Speeds with which points leave go on by feature; what is new leaves with the mean.
+fn carry_rebounds<const N: usize>(
+    rebounds: &mut [[f32; WIDTH]; N],
+    lane: usize,
+    old: &Manifold,
+    new: &Manifold,
+) {
+    let count = usize::min(old.count, N);
+    let mut was = [0.0; MAX_POINTS];
+    for i in 0..count {
+        was[i] = rebounds[i][lane];
+    }
+    let mean = was[..count].iter().sum::<f32>() / usize::max(count, 1) as f32;
+    for i in 0..usize::min(new.count, N) {
+        let known = old.points().iter().position(|point| point.feature == new.points[i].feature);
+        rebounds[i][lane] = known.map_or(mean, |k| was[k]);
+    }
+}

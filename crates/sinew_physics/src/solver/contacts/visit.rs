@@ -1,0 +1,270 @@
+//! One visit of a block in a sweep: friction, then the normal rows, block by block in impulse space.
+
+use super::block::{Block, Eight, HELD, Motion, NONE, Rolling, load3, packed, store3, times};
+use super::disk;
+use crate::solver::sweep::Pass;
+use crate::spatial::Vec6;
+use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
+
+/// What static friction leaves of the speed of two surfaces along each other, m/s, if they slide: more than loads that have
+/// not converged make of it in a substep.
+const SLIP_SPEED: f32 = 0.005;
+/// Rounds of Gauss-Seidel over the points of a manifold within a visit: four points of a face share a load that one round
+/// would leave with the first.
+const ROUNDS: usize = 4;
+
+/// What a sweep over blocks works on.
+pub(super) struct Sweep<'a> {
+    pub velocities: &'a mut [Vec6],
+    /// How much each body's velocity has changed in this pass, m/s or rad/s.
+    pub stir: &'a mut [f32],
+    pub rolling: &'a mut [Rolling],
+    pub pass: Pass,
+    /// Friction takes its loads from the impulses as they are.
+    pub weighs: bool,
+    /// A block whose bodies changed by less than this since is left alone, m/s or rad/s.
+    pub tolerance: f32,
+    /// Largest change in the sweep so far.
+    pub largest: f32,
+    /// Energy that the changes of the sweep have block by block, J, if it is asked for.
+    pub energy: Option<f32>,
+    /// Manifolds in blocks that were not skipped, and the blocks' bytes.
+    pub visits: u64,
+    pub visited_bytes: u64,
+}
+
+impl Sweep<'_> {
+    /// Whether bodies of a block have changed enough since it was last visited; then this is the last visit.
+    #[inline(always)]
+    fn wakes<const N: usize, const T: usize>(&self, block: &mut Block<N, T>) -> bool {
+        let mut now = 0.0;
+        for k in 0..WIDTH {
+            let [a, b] = [block.bodies[0][k], block.bodies[1][k]];
+            now += self.stir[(a & !HELD) as usize] + self.stir[(b & !HELD) as usize];
+        }
+        let wakes = now - block.seen >= self.tolerance;
+        if wakes {
+            block.seen = now;
+        }
+        wakes
+    }
+
+    /// Visits a block.
+    #[inline(always)]
+    pub fn visit_block<L: Lanes, const N: usize, const T: usize>(&mut self, block: &mut Block<N, T>) {
+        if !self.wakes(block) {
+            return;
+        }
+        self.visits += WIDTH as u64;
+        self.visited_bytes += size_of::<Block<N, T>>() as u64;
+        let before = [
+            Motion::<L>::gather(self.velocities, &block.bodies[0]),
+            Motion::<L>::gather(self.velocities, &block.bodies[1]),
+        ];
+        let mut ends = before;
+        if self.pass == Pass::Relax {
+            if self.weighs {
+                weigh::<L, N, T>(block);
+            }
+            let energy = visit_friction(block, &mut ends);
+            self.add_energy(energy);
+            if block.rolling != NONE {
+                visit_rolling(block, &mut self.rolling[block.rolling as usize], &mut ends);
+            }
+        }
+        let energy = visit_normal(block, &mut ends);
+        self.add_energy(energy);
+        let changes = [ends[0].change(before[0]), ends[1].change(before[1])];
+        if !L::gt(L::max(changes[0], changes[1]), L::splat(0.0)).any() {
+            return;
+        }
+        for end in 0..2 {
+            ends[end].scatter(self.velocities, &block.bodies[end]);
+            self.stir(&block.bodies[end], changes[end]);
+        }
+    }
+
+    #[inline(always)]
+    fn add_energy<L: Lanes>(&mut self, energy: L) {
+        if let Some(sum) = &mut self.energy {
+            let mut by = [0.0; WIDTH];
+            energy.store(&mut by);
+            for k in 0..WIDTH {
+                *sum += by[k];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn stir<L: Lanes>(&mut self, bodies: &[u32; WIDTH], change: L) {
+        let mut by = [0.0; WIDTH];
+        change.store(&mut by);
+        for k in 0..WIDTH {
+            if bodies[k] & HELD == 0 {
+                self.stir[bodies[k] as usize] += by[k];
+                self.largest = sinew_math::max(self.largest, by[k]);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn sum<L: Lanes, const N: usize>(rows: &[Eight; N]) -> L {
+    let mut sum = L::load(&rows[0]);
+    for i in 1..N {
+        sum = sum + L::load(&rows[i]);
+    }
+    sum
+}
+
+/// Friction is limited by the normal impulses that the last substep ended with, unless this is a hit: what few sweeps know of
+/// this one's is off to one side, that sum is not, since it is what held the body up.
+#[inline(always)]
+fn weigh<L: Lanes, const N: usize, const T: usize>(block: &mut Block<N, T>) {
+    let (now, last) = (sum::<L, N>(&block.impulse), L::load(&block.last_load));
+    let jump = L::splat(super::IMPACT_JUMP);
+    let lasts = L::le(now, jump * last) & L::le(last, jump * now);
+    L::select(lasts, last, now).store(&mut block.load);
+}
+
+#[inline(always)]
+fn visit_normal<L: Lanes, const N: usize, const T: usize>(
+    block: &mut Block<N, T>,
+    ends: &mut [Motion<L>; 2],
+) -> L {
+    let (n, offset) = (load3::<L>(&block.normal), load3::<L>(&block.offset));
+    let zero = L::splat(0.0);
+    let (a, b) = (ends[0], ends[1]);
+    let lever = offset.cross(n);
+    let turning = b.angular - a.angular;
+    let shared = n.dot(b.linear - a.linear) + b.angular.dot(lever);
+    let none = Vector3::new(zero, zero, zero);
+    let (mut arms, mut rates, mut given) = ([none; N], [zero; N], [zero; N]);
+    for i in 0..N {
+        arms[i] = load3::<L>(&block.arms[i]).cross(n);
+        rates[i] = shared + turning.dot(arms[i]) + L::load(&block.target[i]);
+        given[i] = L::load(&block.impulse[i]);
+    }
+    let (old, before) = (given, rates);
+    let rounds = if N == 1 { 1 } else { ROUNDS };
+    for round in 0..rounds {
+        for turn in 0..N {
+            // To and fro: all one way would leave a little motion to the side that comes first.
+            let i = if round % 2 == 0 { turn } else { N - 1 - turn };
+            let asked = rates[i] + L::load(&block.soft[i]) * given[i];
+            let new = L::max(given[i] - asked * L::load(&block.gain[i]), L::load(&block.floor[i]));
+            let change = new - given[i];
+            given[i] = new;
+            for j in 0..N {
+                rates[j] = rates[j] + L::load(&block.response[packed(i, j)]) * change;
+            }
+        }
+    }
+    let mut push = given[0] - old[0];
+    let mut torque = arms[0] * push;
+    let mut energy = push * (rates[0] - before[0]);
+    given[0].store(&mut block.impulse[0]);
+    for i in 1..N {
+        let change = given[i] - old[i];
+        energy = energy + change * (rates[i] - before[i]);
+        push = push + change;
+        torque = torque + arms[i] * change;
+        given[i].store(&mut block.impulse[i]);
+    }
+    let impulse = n * push;
+    ends[0].push(L::load(&block.mass[0]), &block.inertia[0], -impulse, -torque);
+    ends[1].push(L::load(&block.mass[1]), &block.inertia[1], impulse, torque + lever * push);
+    energy
+}
+
+#[inline(always)]
+fn visit_friction<L: Lanes, const N: usize, const T: usize>(
+    block: &mut Block<N, T>,
+    ends: &mut [Motion<L>; 2],
+) -> L {
+    let (n, t0) = (load3::<L>(&block.normal), load3::<L>(&block.tangent));
+    let t1 = n.cross(t0);
+    let arm_a = load3::<L>(&block.center);
+    let arm_b = arm_a + load3::<L>(&block.offset);
+    let (a, b) = (ends[0], ends[1]);
+    let slides = (b.linear + b.angular.cross(arm_b)) - (a.linear + a.angular.cross(arm_a));
+    let rates = [t0.dot(slides) + L::load(&block.surface[0]), t1.dot(slides) + L::load(&block.surface[1])];
+    let k = [
+        L::load(&block.tangent_response[0]),
+        L::load(&block.tangent_response[1]),
+        L::load(&block.tangent_response[2]),
+    ];
+    let old = [L::load(&block.friction[0]), L::load(&block.friction[1])];
+    let wanted = [k[0] * old[0] + k[1] * old[1] - rates[0], k[1] * old[0] + k[2] * old[1] - rates[1]];
+    let (load, sliding, holding) = (L::load(&block.load), L::load(&block.sliding), L::load(&block.holding));
+    let mut new = disk::least_energy(k, wanted, holding * load);
+    let mut grip = holding;
+    let holds_more = L::gt(holding, sliding);
+    let limit = L::splat(SLIP_SPEED);
+    if holds_more.any() {
+        let slip = [k[0] * new[0] + k[1] * new[1] - wanted[0], k[1] * new[0] + k[2] * new[1] - wanted[1]];
+        let slips = holds_more & L::gt(slip[0] * slip[0] + slip[1] * slip[1], limit * limit);
+        let slid = disk::least_energy(k, wanted, sliding * load);
+        new = [L::select(slips, slid[0], new[0]), L::select(slips, slid[1], new[1])];
+        grip = L::select(slips, sliding, holding);
+    }
+    new[0].store(&mut block.friction[0]);
+    new[1].store(&mut block.friction[1]);
+    let change = [new[0] - old[0], new[1] - old[1]];
+    let impulse = t0 * change[0] + t1 * change[1];
+    let (mut torque_a, mut torque_b) = (arm_a.cross(impulse), arm_b.cross(impulse));
+    if N > 1 {
+        let [k0, k1] = [L::load(&block.twist_to_tangents[0]), L::load(&block.twist_to_tangents[1])];
+        let rate =
+            n.dot(b.angular - a.angular) + L::load(&block.surface[2]) + k0 * change[0] + k1 * change[1];
+        let twisted = n * visit_twist(block, rate, grip, load);
+        torque_a = torque_a + twisted;
+        torque_b = torque_b + twisted;
+    }
+    ends[0].push(L::load(&block.mass[0]), &block.inertia[0], -impulse, -torque_a);
+    ends[1].push(L::load(&block.mass[1]), &block.inertia[1], impulse, torque_b);
+    let answer = [k[0] * change[0] + k[1] * change[1], k[1] * change[0] + k[2] * change[1]];
+    change[0] * answer[0] + change[1] * answer[1]
+}
+
+/// After the tangents: a light body turns far about a contact beside its centre, and to answer both at once overshoots, sweep by
+/// sweep more. Gives the change.
+#[inline(always)]
+fn visit_twist<L: Lanes, const N: usize, const T: usize>(
+    block: &mut Block<N, T>,
+    rate: L,
+    grip: L,
+    load: L,
+) -> L {
+    let (zero, limit) = (L::splat(0.0), L::splat(SLIP_SPEED));
+    let (k, lever) = (L::load(&block.twist_response), L::load(&block.lever));
+    let turns = L::gt(k, L::splat(1e-12));
+    let old = L::load(&block.twist);
+    let wanted = old - rate / L::select(turns, k, L::splat(1.0));
+    let held = grip * lever * load;
+    let slip = L::max(wanted.abs() - held, zero) * k * lever;
+    let most = L::select(L::gt(slip, limit), L::load(&block.sliding) * lever * load, held);
+    let new = L::select(turns, L::min(L::max(wanted, -most), most), old);
+    new.store(&mut block.twist);
+    new - old
+}
+
+/// A torque against the relative spin, at most the lever times the load.
+#[inline(always)]
+fn visit_rolling<L: Lanes, const N: usize, const T: usize>(
+    block: &Block<N, T>,
+    rolling: &mut Rolling,
+    ends: &mut [Motion<L>; 2],
+) {
+    let spin = ends[1].angular - ends[0].angular;
+    let old = load3::<L>(&rolling.impulse);
+    let answer = times(&rolling.inverse, spin);
+    let most = L::load(&rolling.lever) * L::load(&block.load);
+    let new = disk::step_in_ball(old, spin, answer, L::load(&rolling.trace), most);
+    store3(new, &mut rolling.impulse);
+    let change = new - old;
+    let zero = L::splat(0.0);
+    let none = Vector3::new(zero, zero, zero);
+    ends[0].push(zero, &block.inertia[0], none, -change);
+    ends[1].push(zero, &block.inertia[1], none, change);
+}
