@@ -39,34 +39,18 @@ pub(crate) fn largest(v: &Vec6) -> f32 {
     max(max(max(x, y), z), max(max(u, v), w))
 }
 
+/// `a − b`
+#[inline(always)]
+pub(crate) fn difference(a: &Vec6, b: &Vec6) -> Vec6 {
+    core::array::from_fn(|k| a[k] - b[k])
+}
+
 /// `a += k b`
 #[inline(always)]
 pub(crate) fn add_scaled(a: &mut Vec6, b: &Vec6, k: f32) {
     for (a, b) in a.iter_mut().zip(b) {
         *a += b * k;
     }
-}
-
-/// `mᵀ v`: sums whole rows, which fill vector registers; a sum across each row would not.
-#[inline(always)]
-pub(crate) fn mul_transposed(m: &Mat6, v: &Vec6) -> Vec6 {
-    let mut out = ZERO6;
-    for k in 0..6 {
-        add_scaled(&mut out, &m[k], v[k]);
-    }
-    out
-}
-
-/// `mᵀ`
-#[inline(always)]
-pub(crate) fn transpose(m: &Mat6) -> Mat6 {
-    let mut out = ZERO66;
-    for i in 0..6 {
-        for j in 0..6 {
-            out[j][i] = m[i][j];
-        }
-    }
-    out
 }
 
 /// Inverse of the leading `n`×`n` block of a symmetric positive definite matrix by LDLᵀ; the rest is zero.

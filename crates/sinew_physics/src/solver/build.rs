@@ -198,7 +198,15 @@ impl IslandSolver {
     /// What only islands with joints need, also for one that has none: memory goes on to the next, which may have some.
     fn make_room(&mut self, island: &Island<'_>) {
         let s = &mut self.scratch;
-        for list in [&mut s.residuals, &mut s.impulses, &mut s.dv, &mut self.moved, &mut self.accounted] {
+        let lists = [
+            &mut s.residuals,
+            &mut s.impulses,
+            &mut s.dv,
+            &mut s.swept,
+            &mut self.moved,
+            &mut self.accounted,
+        ];
+        for list in lists {
             list.clear();
             list.reserve(island.bodies.len());
         }

@@ -7,7 +7,7 @@ use super::sweep::Pass;
 use super::tree::NONE;
 use super::{IslandSolver, SolverBody};
 use crate::joint::DIRECTIONS;
-use crate::spatial::{Vec6, ZERO6, angular, join, linear};
+use crate::spatial::{Vec6, ZERO6, angular, difference, join, linear};
 use sinew_math::{Sym3, Vec3, max, min};
 
 /// Angle that a link may turn within a substep beside the motion of its tree as a whole, radians: position corrections
@@ -362,8 +362,4 @@ fn center_of_mass(bodies: &[SolverBody]) -> (f32, Vec3) {
         center += body.pose.translation * body.mass;
     }
     (mass, center / mass)
-}
-
-fn difference(a: &Vec6, b: &Vec6) -> Vec6 {
-    core::array::from_fn(|k| a[k] - b[k])
 }

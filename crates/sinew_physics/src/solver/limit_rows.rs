@@ -279,31 +279,8 @@ impl LimitRow {
         Some(of_row)
     }
 
-    /// Takes its response from the answers of its two bodies.
-    pub fn weigh(&mut self, joint: &SolverJoint, bodies: &[SolverBody], moving: usize, answers: &[Vec6; 2]) {
-        let Row { a, b } = &self.row;
-        self.effective = dot(a, &answers[0])
-            + dot(b, &answers[1])
-            + REDUNDANCY * free_response(bodies, moving, [(joint.a, a), (joint.b, b)]);
-    }
-
-    /// What it gives its joint's bodies by a unit of its impulse, A's and B's.
-    pub fn ends(&self) -> [&Vec6; 2] {
-        [&self.row.a, &self.row.b]
-    }
-
-    /// Of its joint, as its own response sees it.
-    pub fn rate(&self, joint: &SolverJoint, velocities: &[Vec6]) -> f32 {
-        self.row.rate(joint, velocities)
-    }
-
-    /// Response to its own impulse.
-    pub fn effective(&self) -> f32 {
-        self.effective
-    }
-
     /// Changes its impulse as this rate asks for; by how much.
-    pub fn change(&mut self, pass: Pass, rate: f32, h: f32) -> f32 {
+    fn change(&mut self, pass: Pass, rate: f32, h: f32) -> f32 {
         if self.effective < 1e-9 {
             return 0.0;
         }

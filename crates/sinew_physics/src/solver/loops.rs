@@ -152,7 +152,7 @@ impl Loops {
             }
             closure.inverse = self.inverses.len();
             invert(s, n, &mut self.inverses);
-            response.close(closure.tree, columns, &self.inverses[closure.inverse..], n);
+            response.close(closure.tree, columns, &self.inverses[closure.inverse..]);
         }
     }
 

@@ -11,7 +11,6 @@ mod conjugate;
 mod contact_rows;
 mod contacts;
 mod counts;
-mod coupled;
 mod disk;
 mod drives;
 mod effort;
@@ -30,6 +29,7 @@ mod squeeze;
 mod sweep;
 mod tree;
 mod tree_joints;
+mod turns;
 
 use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
@@ -44,7 +44,6 @@ use columns::Columns;
 use conjugate::Conjugate;
 use contact_rows::ManifoldRows;
 use contacts::{Contacts, Substep};
-use coupled::OwnResponse;
 use drives::SoftRow;
 use effort::Effort;
 use energy::Momentum;
@@ -215,7 +214,6 @@ pub(crate) struct IslandSolver {
     limits: Vec<LimitRow>,
     response: Response,
     columns: Columns,
-    own: OwnResponse,
     /// Impulses of contacts and limits that the sweeps in progress have put on each moving body.
     impulses: Vec<Vec6>,
     /// Linear impulses of contacts on each moving body in this substep.
@@ -279,6 +277,10 @@ struct Scratch {
     before: Vec<Vec6>,
     /// Poses of all bodies at the end of the substep; kinematic ones move, too.
     predicted: Vec<Transform>,
+    /// Within a sweep by turns, after the limits or the contacts had theirs.
+    swept: Vec<Vec6>,
+    /// Impulses of the limits.
+    limits: Vec<f32>,
     /// Velocities that the joints of the substep are solved from.
     started: Vec<Vec6>,
     /// Bodies that each moving body stands on.
@@ -337,7 +339,7 @@ impl IslandSolver {
             joint.impulse = ZERO6;
         }
         if self.coupling == Coupling::Turns {
-            self.warm_start_coupled();
+            self.warm_start_by_turns();
             self.warm_start_loops();
             self.scratch.started.clear();
             self.scratch.started.extend_from_slice(&self.velocities[..self.links.len()]);
@@ -574,13 +576,15 @@ impl IslandSolver {
             want(rows.b);
         }
         let loops = self.loops.closed_exactly().iter().copied();
-        let limits = if self.coupling == Coupling::Turns { &[][..] } else { &self.limits };
-        for joint in loops.chain(limits.iter().map(|row| row.joint)) {
+        for joint in loops.chain(self.limits.iter().map(|row| row.joint)) {
             want(self.joints[joint as usize].a);
             want(self.joints[joint as usize].b);
         }
+        if self.coupling == Coupling::Turns {
+            // Contacts between the turns of limits read all velocities.
+            wanted.fill(true);
+        }
         self.response.choose(&self.links, self.tree_count, wanted);
-        self.response.fill(&self.links);
         self.loops.respond(&self.joints, &self.bodies, &self.links, &mut self.response);
         self.columns.clear();
         for rows in &mut self.manifolds {
@@ -588,9 +592,6 @@ impl IslandSolver {
         }
         for row in &mut self.limits {
             row.column = None;
-        }
-        if self.coupling == Coupling::Turns {
-            self.own.fill(&self.links);
         }
     }
 

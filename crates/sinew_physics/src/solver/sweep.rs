@@ -35,7 +35,7 @@ pub(super) struct Unrest {
 }
 
 impl Unrest {
-    fn start(&mut self, tolerance: f32, trees: usize, manifolds: usize, limits: usize) {
+    pub fn start(&mut self, tolerance: f32, trees: usize, manifolds: usize, limits: usize) {
         self.tolerance = tolerance;
         for (list, count, start) in [
             (&mut self.trees, trees, 0.0),
@@ -214,7 +214,7 @@ impl IslandSolver {
     }
 
     /// Adds the present impulses of all rows, times `sign`, to those of the sweeps.
-    fn add_given(&mut self, sign: f32) {
+    pub(super) fn add_given(&mut self, sign: f32) {
         for rows in &self.manifolds {
             rows.add_given(&mut self.impulses, sign);
         }
@@ -226,16 +226,26 @@ impl IslandSolver {
     /// Velocities of all bodies from the impulses of the sweeps, exactly.
     fn finish_sweep(&mut self, pass: Pass) {
         self.add_given(1.0);
-        for (push, p) in self.contact_push.iter_mut().zip(&self.impulses) {
-            *push += linear(p);
+        self.answer_sweep();
+        if pass == Pass::Relax && self.is_passive() {
+            self.keep_energy();
         }
+    }
+
+    /// Velocities from those before the sweep and all impulses of it.
+    pub(super) fn answer_sweep(&mut self) {
+        self.add_pushes();
         let moving = self.links.len();
         self.velocities[..moving].copy_from_slice(&self.scratch.before);
         self.scratch.impulses.clear();
         self.scratch.impulses.extend_from_slice(&self.impulses);
         self.answer_impulses();
-        if pass == Pass::Relax && self.is_passive() {
-            self.keep_energy();
+    }
+
+    /// Adds the impulses of a sweep to those that bodies have got in this substep.
+    pub(super) fn add_pushes(&mut self) {
+        for (push, p) in self.contact_push.iter_mut().zip(&self.impulses) {
+            *push += linear(p);
         }
     }
 }

@@ -8,7 +8,7 @@
 use super::SolverJoint;
 use super::articulated::{Elimination, Freedom, Inertia, Sequence, Swivel, Twist, wide};
 use crate::joint::{DIRECTIONS, JointRows};
-use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, join, mul_transposed};
+use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, join};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, Real, Vector3};
 use sinew_math::{Vec3, any_orthonormal};
@@ -67,33 +67,16 @@ impl Link {
         sum(&self.carry_columns, parent)
     }
 
-    /// The numbers of that matrix, each in all lanes: to multiply many others by it.
-    #[inline(always)]
-    pub fn carry<L: Lanes>(&self) -> [[L; 6]; 6] {
-        let mut out = [[L::splat(0.0); 6]; 6];
-        for (out, row) in out.iter_mut().zip(&self.carry) {
-            for (out, &x) in out.iter_mut().zip(row) {
-                *out = L::splat(x);
-            }
-        }
-        out
-    }
-
-    /// What a velocity of the parent gives this body.
-    #[inline(always)]
-    pub fn carry_down(&self, v: &Vec6) -> Vec6 {
-        mul_transposed(&self.carry_columns, v)
-    }
-
     /// What an impulse on this body gives the parent.
     #[inline(always)]
-    pub fn carry_up(&self, p: &Vec6) -> Vec6 {
-        mul_transposed(&self.carry, p)
+    pub fn passed_up<L: Lanes>(&self, impulse: &Vec6) -> L {
+        sum(&self.carry, impulse)
     }
 
     /// Answer to an impulse on this body while its parent is held.
-    pub fn response_with_parent_held(&self) -> &Mat6 {
-        &self.own
+    #[inline(always)]
+    pub fn alone<L: Lanes>(&self, impulse: &Vec6) -> L {
+        sum(&self.own, impulse)
     }
 
     /// Adds what the gains of rows that ask for nothing push for their residuals.
@@ -373,7 +356,7 @@ impl Kernel for Solve<'_> {
         // Leaf to root: what the subtree below a joint pushes through it.
         for i in (0..links.len()).rev() {
             let link = &links[i];
-            let (mut own, mut through) = (L::splat(0.0), sum::<L>(&link.carry, &impulses[i]));
+            let (mut own, mut through) = (L::splat(0.0), link.passed_up::<L>(&impulses[i]));
             if let Some(residuals) = residuals.get(i) {
                 for ((follow, pass), row) in
                     link.follow.iter().zip(&link.pass).zip(link.row).take(link.asking)
@@ -391,10 +374,10 @@ impl Kernel for Solve<'_> {
         }
         // Root to leaf.
         for (i, link) in links.iter().enumerate() {
-            let mut v = L::load(&dv[i]) + sum::<L>(&link.own, &impulses[i]);
+            let mut v = L::load(&dv[i]) + link.alone::<L>(&impulses[i]);
             let parent = link.parent as usize;
             if parent < i {
-                v = v + sum::<L>(&link.carry_columns, &dv[parent]);
+                v = v + link.carried::<L>(&dv[parent]);
             }
             v.store(&mut dv[i]);
         }
@@ -408,12 +391,4 @@ pub(crate) fn sum<L: Lanes>(rows: &Mat6, by: &Vec6) -> L {
     (L::load(r0) * L::splat(by[0]) + L::load(r1) * L::splat(by[1]))
         + (L::load(r2) * L::splat(by[2]) + L::load(r3) * L::splat(by[3]))
         + (L::load(r4) * L::splat(by[4]) + L::load(r5) * L::splat(by[5]))
-}
-
-/// Six rows into a matrix.
-#[inline(always)]
-pub(crate) fn store<L: Lanes>(rows: [L; 6], out: &mut Mat6) {
-    for (row, out) in rows.into_iter().zip(out) {
-        row.store(out);
-    }
 }
