@@ -143,9 +143,11 @@ mod tests {
                         *x = random.range(-1.0, 1.0);
                     }
                 }
-                let mut m = product(&g, &transpose(&g));
+                let mut m = ZERO66;
                 for i in 0..n {
-                    m[i][i] += 0.5;
+                    for j in 0..n {
+                        m[i][j] = dot(&g[i], &g[j]) + if i == j { 0.5 } else { 0.0 };
+                    }
                 }
                 let inverse = spd_inverse(&m, n).expect("positive definite");
                 let unit = product(&m, &inverse);

@@ -280,7 +280,7 @@ impl IslandSolver {
     fn is_entangled(&mut self, island: &Island<'_>, view: &View<'_>) -> bool {
         let s = &mut self.scratch.build;
         s.loop_rows.clear();
-        s.loop_rows.resize(self.tree_count, 0);
+        s.loop_rows.resize(self.trees.len(), 0);
         let tree = |body: u32| {
             let place = island.bodies.binary_search(&body).ok()?;
             Some(self.links[s.local[place] as usize].tree as usize)
@@ -306,12 +306,16 @@ impl IslandSolver {
         for (local, seed) in s.seeds.iter().enumerate() {
             s.local[seed.place as usize] = local as u32;
         }
-        for seed in &s.seeds {
+        self.trees.clear();
+        for (local, seed) in s.seeds.iter().enumerate() {
+            match self.trees.get_mut(seed.tree as usize) {
+                Some(tree) => tree.end = local + 1,
+                None => self.trees.push(local..local + 1),
+            }
             let parent = if seed.parent == NONE { NONE } else { s.local[seed.parent as usize] };
             s.order.push(island.bodies[seed.place as usize]);
             self.links.push(Link::new(parent, seed.joint, seed.tree));
         }
-        self.tree_count = s.sizes.len();
     }
 
     fn copy_bodies(&mut self, island: &Island<'_>, view: &View<'_>) {

@@ -17,6 +17,9 @@ pub(super) struct Effort {
     /// Change of a velocity in a sweep below which there need not be another, m/s or rad/s. What rows would do about less
     /// is left alone.
     pub tolerance: f32,
+    /// Speed at which a body of the island's mean mass has the energy that a sweep must change for another to follow, m/s; 0 where only
+    /// the tolerance ends them. Of sweeps by turns.
+    pub enough: f32,
     pub order: Order,
 }
 
@@ -55,12 +58,13 @@ pub(super) enum Order {
 }
 
 /// Of islands with joints that are swept with the response of all links.
-const JOINTED: Effort = Effort { solve: 24, relax: 24, tolerance: 2e-3, order: Order::Forward };
-/// Of heaps in which contacts and trees are solved by turns.
-const TURNS: Effort = Effort { solve: 4, relax: 4, tolerance: 1e-2, order: Order::Forward };
+const JOINTED: Effort = Effort { solve: 24, relax: 24, tolerance: 2e-3, enough: 0.0, order: Order::Forward };
+/// Of heaps in which contacts and trees are solved by turns: most sweeps of a heap at rest end with the second, those of a crash are
+/// needed (a chain of 70 links sank 85 mm into a wall with four).
+const TURNS: Effort = Effort { solve: 16, relax: 16, tolerance: 0.05, enough: 0.1, order: Order::Forward };
 /// Of a pile of bodies that weigh about the same: hard contacts want sweeps that find the loads, most of which a pile at rest does not
 /// need. In `relax` two, since friction of the first knows only the impulses of `solve` (1.5 % too little).
-const PILE: Effort = Effort { solve: 96, relax: 2, tolerance: 2e-3, order: Order::ToAndFro };
+const PILE: Effort = Effort { solve: 96, relax: 2, tolerance: 2e-3, enough: 0.0, order: Order::ToAndFro };
 /// Of a heap with more contacts than [`MANY_CONTACTS`]: what falls in it finds its loads over some substeps.
 const HEAP: Effort = Effort { solve: 16, ..PILE };
 /// Of a pile that `PILE` is for. What one end of it feels reaches the other in as many sweeps as it has levels: a wall of a hundred
@@ -86,6 +90,7 @@ impl Effort {
             solve: min(even.solve as f32 * height * root.sqrt(), MOST_SOLVE) as usize,
             relax: min(even.relax as f32 * height * root, MOST_RELAX) as usize,
             tolerance: max(even.tolerance / (height * ratio), LEAST_TOLERANCE),
+            enough: 0.0,
             order: if ratio <= EVEN { PILE.order } else { Order::Forward },
         }
     }
@@ -108,6 +113,7 @@ impl Effort {
             solve: usize::max(self.solve, other.solve),
             relax: usize::max(self.relax, other.relax),
             tolerance: min(self.tolerance, other.tolerance),
+            enough: min(self.enough, other.enough),
             order: self.order,
         }
     }
@@ -120,10 +126,11 @@ impl Effort {
     }
 }
 
-/// Trees of joints, and contacts, beyond which an island is solved by turns: the response of all links grows with the square of what
-/// is coupled.
+/// Trees of joints, and contacts, beyond which an island is solved by turns: what contacts answer to each other grows with the product
+/// of both. A tree of many links has many contacts that never push, with itself.
 const FIGURES: usize = 8;
 const CONTACTS_OF_FIGURES: usize = 128;
+const CONTACTS_OF_LINK: usize = 4;
 /// The sweep from which on those of free bodies are conjugate steps: a pile at rest is done before.
 const FIRST_CONJUGATE: usize = 4;
 /// Contacts from which on an island of free bodies is a heap: below, four substeps and many sweeps cost little, and every figure is
@@ -153,11 +160,13 @@ impl IslandSolver {
 
     /// How islands of joints come to agree with their contacts: few figures by the response of all their links, heaps by turns.
     pub(super) fn choose_coupling(&mut self, contacts: usize) {
-        let trees = self.links.chunk_by(|a, b| a.tree == b.tree);
-        let jointed = trees.filter(|tree| tree.len() > 1 || tree[0].joint != NONE).count();
-        self.coupling = match jointed {
+        let jointed = self.trees.iter().filter(|tree| tree.len() > 1 || self.links[tree.start].joint != NONE);
+        let (trees, links) = jointed.fold((0, 0), |(trees, links), tree| (trees + 1, links + tree.len()));
+        self.coupling = match trees {
             0 if self.pins.joints.is_empty() => Coupling::Free,
-            _ if jointed > FIGURES || contacts > CONTACTS_OF_FIGURES => Coupling::Turns,
+            _ if trees > FIGURES || contacts > CONTACTS_OF_FIGURES + CONTACTS_OF_LINK * links => {
+                Coupling::Turns
+            }
             _ => Coupling::Response,
         };
     }

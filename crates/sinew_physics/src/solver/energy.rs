@@ -65,7 +65,7 @@ impl IslandSolver {
     }
 
     /// Of the moving bodies, kg.
-    fn mass(&self) -> f32 {
+    pub(super) fn mass(&self) -> f32 {
         self.bodies[..self.links.len()].iter().fold(0.0, |sum, body| sum + body.mass)
     }
 

@@ -233,10 +233,15 @@ impl LimitRow {
 
     /// Adds its present impulse, times `sign`, to those of its bodies.
     pub fn add_given(&self, joints: &[SolverJoint], impulses: &mut [Vec6], sign: f32) {
-        if self.impulse != 0.0 {
+        self.add_to(joints, impulses, sign * self.impulse);
+    }
+
+    /// Adds an impulse of this row to those of its bodies.
+    pub fn add_to(&self, joints: &[SolverJoint], impulses: &mut [Vec6], impulse: f32) {
+        if impulse != 0.0 {
             let joint = &joints[self.joint as usize];
-            add_row(impulses, joint.a, &self.row.a, sign * self.impulse);
-            add_row(impulses, joint.b, &self.row.b, sign * self.impulse);
+            add_row(impulses, joint.a, &self.row.a, impulse);
+            add_row(impulses, joint.b, &self.row.b, impulse);
         }
     }
 

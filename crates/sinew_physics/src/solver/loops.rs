@@ -163,7 +163,7 @@ impl Loops {
             self.iterate(joints, links, scratch);
         } else {
             self.close_exactly(joints, scratch);
-            tree::solve(links, &mut scratch.impulses, &[], &mut scratch.dv);
+            tree::solve(links, 0..links.len(), &mut scratch.impulses, &[], &mut scratch.dv);
             self.keep_descent(joints, scratch);
         }
     }
@@ -298,7 +298,7 @@ fn answer(loops: &[u32], joints: &[SolverJoint], links: &[Link], scratch: &mut S
         }
         joint.push(&of_rows, &mut scratch.impulses, 1.0);
     }
-    tree::solve(links, &mut scratch.impulses, &[], &mut g.dv);
+    tree::solve(links, 0..links.len(), &mut scratch.impulses, &[], &mut g.dv);
     g.answer.clear();
     for &joint in loops {
         let joint = &joints[joint as usize];

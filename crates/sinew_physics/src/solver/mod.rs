@@ -44,6 +44,7 @@ use columns::Columns;
 use conjugate::Conjugate;
 use contact_rows::ManifoldRows;
 use contacts::{Contacts, Substep};
+use core::ops::Range;
 use drives::SoftRow;
 use effort::Effort;
 use energy::Momentum;
@@ -207,7 +208,8 @@ pub(crate) struct IslandSolver {
     bounced_from: Vec<Vec6>,
     /// One per moving body.
     links: Vec<Link>,
-    tree_count: usize,
+    /// Where the links of each tree lie.
+    trees: Vec<Range<usize>>,
     coupling: Coupling,
     loops: Loops,
     pins: Pins,
@@ -279,6 +281,7 @@ struct Scratch {
     predicted: Vec<Transform>,
     /// Within a sweep by turns, after the limits or the contacts had theirs.
     swept: Vec<Vec6>,
+    contacted: Vec<Vec6>,
     /// Impulses of the limits.
     limits: Vec<f32>,
     /// Velocities that the joints of the substep are solved from.
@@ -584,7 +587,7 @@ impl IslandSolver {
             // Contacts between the turns of limits read all velocities.
             wanted.fill(true);
         }
-        self.response.choose(&self.links, self.tree_count, wanted);
+        self.response.choose(&self.links, self.trees.len(), wanted);
         self.loops.respond(&self.joints, &self.bodies, &self.links, &mut self.response);
         self.columns.clear();
         for rows in &mut self.manifolds {

@@ -64,7 +64,7 @@ impl IslandSolver {
             list.resize(self.links.len(), ZERO6);
         }
         s.impulses[local] = *row;
-        tree::solve(&self.links, &mut s.impulses, &s.residuals, &mut s.dv);
+        tree::solve(&self.links, 0..self.links.len(), &mut s.impulses, &s.residuals, &mut s.dv);
         dot(row, &s.dv[local])
     }
 

@@ -5,7 +5,6 @@
 use super::columns::Change;
 use super::conjugate::{Conjugate, Rows};
 use super::contact_rows::ManifoldRows;
-use super::effort::Order;
 use super::tree::Link;
 use super::{Coupling, IslandSolver, WEIGHINGS};
 use crate::spatial::{ZERO6, add_scaled, largest, linear};
@@ -113,7 +112,7 @@ impl IslandSolver {
         }
         self.reset_impulses();
         self.add_given(-1.0);
-        self.unrest.start(self.effort.tolerance, self.tree_count, self.manifolds.len(), self.limits.len());
+        self.unrest.start(self.effort.tolerance, self.trees.len(), self.manifolds.len(), self.limits.len());
         let moving = self.links.len();
         self.scratch.before.clear();
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
@@ -131,7 +130,7 @@ impl IslandSolver {
                 let (conjugate, rows) = self.rows_to_conjugate();
                 conjugate.before(&rows);
             }
-            self.visit_contacts(pass, done);
+            self.visit_contacts(pass);
             self.visit_limits(pass);
             if done == sweeps || (done > 1 && self.largest_change < self.effort.tolerance) {
                 break;
@@ -157,12 +156,8 @@ impl IslandSolver {
         (&mut self.conjugate, rows)
     }
 
-    /// `sweep` counts from 1.
-    fn visit_contacts(&mut self, pass: Pass, sweep: usize) {
-        let count = self.manifolds.len();
-        let backward = self.effort.order == Order::ToAndFro && !sweep.is_multiple_of(2);
-        for turn in 0..count {
-            let i = if backward { count - 1 - turn } else { turn };
+    fn visit_contacts(&mut self, pass: Pass) {
+        for i in 0..self.manifolds.len() {
             let now = self.unrest.of(&self.links, self.manifolds[i].a, self.manifolds[i].b);
             if !self.unrest.wakes_manifold(i, now) {
                 continue;

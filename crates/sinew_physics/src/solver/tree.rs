@@ -9,6 +9,7 @@ use super::SolverJoint;
 use super::articulated::{Elimination, Freedom, Inertia, Sequence, Swivel, Twist, wide};
 use crate::joint::{DIRECTIONS, JointRows};
 use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, join};
+use core::ops::Range;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{Lanes, Real, Vector3};
 use sinew_math::{Vec3, any_orthonormal};
@@ -331,16 +332,23 @@ impl Kernel for Factor<'_> {
     }
 }
 
-/// Velocity change of every body from impulses on the bodies and residuals of the joint rows, but for
+/// Velocity change of every body of some trees, those of `range`, from impulses on the bodies and residuals of the joint rows, but for
 /// [those that push](Link::push_gains); no list of residuals means none. `impulses` are used up.
 #[inline(never)]
-pub(crate) fn solve(links: &[Link], impulses: &mut [Vec6], residuals: &[Vec6], dv: &mut [Vec6]) {
-    dispatch::run(Solve { links, impulses, residuals, dv });
+pub(crate) fn solve(
+    links: &[Link],
+    range: Range<usize>,
+    impulses: &mut [Vec6],
+    residuals: &[Vec6],
+    dv: &mut [Vec6],
+) {
+    dispatch::run(Solve { links, range, impulses, residuals, dv });
 }
 
 /// Plain arithmetic, as in [`Factor`].
 struct Solve<'a> {
     links: &'a [Link],
+    range: Range<usize>,
     impulses: &'a mut [Vec6],
     residuals: &'a [Vec6],
     dv: &'a mut [Vec6],
@@ -351,10 +359,10 @@ impl Kernel for Solve<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { links, impulses, residuals, dv } = self;
+        let Self { links, range, impulses, residuals, dv } = self;
         let (impulses, dv) = (&mut impulses[..links.len()], &mut dv[..links.len()]);
         // Leaf to root: what the subtree below a joint pushes through it.
-        for i in (0..links.len()).rev() {
+        for i in range.clone().rev() {
             let link = &links[i];
             let (mut own, mut through) = (L::splat(0.0), link.passed_up::<L>(&impulses[i]));
             if let Some(residuals) = residuals.get(i) {
@@ -373,7 +381,8 @@ impl Kernel for Solve<'_> {
             }
         }
         // Root to leaf.
-        for (i, link) in links.iter().enumerate() {
+        for i in range {
+            let link = &links[i];
             let mut v = L::load(&dv[i]) + link.alone::<L>(&impulses[i]);
             let parent = link.parent as usize;
             if parent < i {

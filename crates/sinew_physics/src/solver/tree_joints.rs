@@ -208,7 +208,7 @@ impl IslandSolver {
                 link.push_gains(joint, residuals, &mut s.impulses);
             }
         }
-        tree::solve(&self.links, &mut s.impulses, &s.residuals, &mut s.dv);
+        tree::solve(&self.links, 0..self.links.len(), &mut s.impulses, &s.residuals, &mut s.dv);
         for (v, dv) in self.velocities.iter_mut().zip(&s.dv) {
             add_scaled(v, dv, 1.0);
         }

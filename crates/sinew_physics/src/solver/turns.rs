@@ -7,7 +7,7 @@
 //! alone, a chain of 70 links that was curled up by a wall gained five times its energy.
 
 use super::sweep::Pass;
-use super::tree::NONE;
+use super::tree::{self, NONE};
 use super::{Coupling, IslandSolver, SolverBody};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, difference, join, largest, linear};
 use sinew_math::max;
@@ -21,17 +21,20 @@ fn impulse_of(body: &SolverBody, change: &Vec6) -> Vec6 {
 }
 
 impl IslandSolver {
-    /// Sweeps over limits, blocks and trees.
+    /// Sweeps over limits, blocks and trees, until one changes little.
     pub(super) fn sweep_by_turns(&mut self, pass: Pass) {
-        let sweeps = self.effort.of_turns(pass);
         if self.contacts.is_empty() && self.limits.is_empty() {
             return;
         }
+        let sweeps = self.effort.of_turns(pass);
+        let enough = self.effort.enough;
+        let enough = 0.5 * enough * enough * self.mass() / self.links.len() as f32;
         self.contacts.begin_pass(pass, &self.velocities, self.h);
+        self.unrest.start(sweeps.tolerance, self.trees.len(), 0, self.limits.len());
         let conjugate = pass != Pass::Restitution;
         for done in 1..=sweeps.most {
+            self.note_limits();
             if conjugate {
-                self.note_limits();
                 self.contacts.before_conjugate(&self.velocities, &self.scratch.limits);
             }
             let rows = self.contacts.tally().manifolds as usize + self.limits.len();
@@ -39,23 +42,18 @@ impl IslandSolver {
             self.take_turn_of_limits(pass);
             let swept = self.contacts.sweep_once(pass, sweeps, done, &mut self.velocities);
             self.take_impulses_of_contacts();
-            let change = max(self.largest_change, max(swept.largest, self.solve_trees_with_impulses()));
-            if done == sweeps.most || (done > 1 && change < sweeps.tolerance) {
+            let change = max(self.largest_change, max(swept.largest, self.take_turn_of_trees()));
+            let energy = swept.energy + self.change_energy;
+            if done == sweeps.most || (done > 1 && (energy < enough || change < sweeps.tolerance)) {
                 break;
             }
             if conjugate {
-                self.note_limits();
-                let energy = swept.energy + self.change_energy;
-                let impulses = &mut self.scratch.limits;
-                self.contacts.after_conjugate(energy, &mut self.velocities, impulses);
-                for (row, &impulse) in self.limits.iter_mut().zip(impulses.iter()) {
-                    row.impulse = impulse;
-                }
+                self.step_conjugate(energy, sweeps.tolerance);
             }
         }
     }
 
-    /// Impulses of limits, for conjugate steps.
+    /// Impulses of limits before a sweep or a conjugate step.
     fn note_limits(&mut self) {
         self.scratch.limits.clear();
         self.scratch.limits.extend(self.limits.iter().map(|row| row.impulse));
@@ -66,13 +64,13 @@ impl IslandSolver {
         let moving = self.links.len();
         self.scratch.before.clear();
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
-        self.unrest.start(self.effort.tolerance, self.tree_count, 0, self.limits.len());
         (self.largest_change, self.change_energy) = (0.0, 0.0);
-        self.reset_impulses();
-        self.add_given(-1.0);
         self.visit_limits(pass);
-        self.add_given(1.0);
+        self.reset_impulses();
         if self.largest_change > 0.0 {
+            for (row, before) in self.limits.iter().zip(&self.scratch.limits) {
+                row.add_to(&self.joints, &mut self.impulses, row.impulse - before);
+            }
             for (i, before) in self.scratch.before.iter().enumerate() {
                 self.contacts.stir(i, largest(&difference(&self.velocities[i], before)));
             }
@@ -95,18 +93,68 @@ impl IslandSolver {
         }
     }
 
-    /// Velocities from those before the sweep and the impulses of it, exactly. Gives the largest change by what the sweep did not
-    /// know of.
-    fn solve_trees_with_impulses(&mut self) -> f32 {
-        self.note_swept();
-        self.answer_sweep();
+    /// Velocities from those before the sweep and the impulses of it, exactly. Trees that have got none are as they were. Gives the
+    /// largest change by what the contacts did not know of.
+    fn take_turn_of_trees(&mut self) -> f32 {
+        self.add_pushes();
+        let moving = self.links.len();
+        let s = &mut self.scratch;
+        s.contacted.clear();
+        s.contacted.extend_from_slice(&self.velocities[..moving]);
+        s.impulses.clear();
+        s.impulses.extend_from_slice(&self.impulses);
+        let entangled = !self.loops.is_empty();
+        if entangled {
+            self.velocities[..moving].copy_from_slice(&self.scratch.before);
+            self.answer_impulses();
+        }
+        self.scratch.dv.resize(moving, ZERO6);
         let mut most = 0.0;
-        for (i, swept) in self.scratch.swept.iter().enumerate() {
-            let change = largest(&difference(&self.velocities[i], swept));
-            self.contacts.stir(i, change);
-            most = max(most, change);
+        for tree in 0..self.trees.len() {
+            let range = self.trees[tree].clone();
+            if self.impulses[range.clone()].iter().all(|p| *p == ZERO6) && !entangled {
+                continue;
+            }
+            let s = &mut self.scratch;
+            if !entangled {
+                tree::solve(&self.links, range.clone(), &mut s.impulses, &[], &mut s.dv);
+            }
+            let mut moved: f32 = 0.0;
+            for i in range {
+                if !entangled {
+                    self.velocities[i] = s.before[i];
+                    add_scaled(&mut self.velocities[i], &s.dv[i], 1.0);
+                }
+                let now = &self.velocities[i];
+                let change = largest(&difference(now, &s.contacted[i]));
+                self.contacts.stir(i, change);
+                most = max(most, change);
+                moved = max(moved, largest(&difference(now, &s.swept[i])));
+            }
+            self.unrest.stir(tree as u32, moved);
         }
         most
+    }
+
+    /// Goes on in the direction of the last sweeps.
+    fn step_conjugate(&mut self, energy: f32, tolerance: f32) {
+        self.note_limits();
+        let Self { contacts, velocities, scratch, unrest, trees, limits, .. } = self;
+        let mut tree = 0;
+        let stir = |body: usize, change: f32| {
+            while trees.get(tree).is_some_and(|links| body >= links.end) {
+                tree += 1;
+            }
+            if tree == trees.len() {
+                return; // fixed
+            }
+            unrest.stir(tree as u32, change);
+        };
+        contacts.after_conjugate(energy, tolerance, velocities, &mut scratch.limits, stir);
+        for (i, (row, impulse)) in limits.iter_mut().zip(&scratch.limits).enumerate() {
+            let change = row.give(impulse - row.impulse);
+            unrest.stir_limit(i, change);
+        }
     }
 
     /// Puts the starting impulses of limits and contacts on the bodies, as if nothing held them.

@@ -1,10 +1,10 @@
 //! Faster sweeps where loads have far to go or masses are unequal: each sweep's change of all impulses is a step downhill, and steps
 //! downhill are made conjugate (nonsmooth nonlinear conjugate gradients: Silcowitz, Niebe and Erleben 2010).
 
-use super::block::{Block, Bounce, Eight, Memory};
+use super::block::{Block, Bounce, Eight, Memory, packed};
 use super::{Contacts, Visitor};
-use crate::spatial::{Vec6, add_scaled};
-use sinew_math::lanes::Lanes;
+use crate::spatial::{Vec6, add_scaled, largest};
+use sinew_math::lanes::{LaneMask, Lanes};
 
 /// Numbers of a block's impulses that take part: four points, two of friction, twist.
 const NUMBERS: usize = 7;
@@ -95,6 +95,8 @@ struct GoOn<'a> {
     direction: &'a mut [[Eight; NUMBERS]],
     change: &'a [[Eight; NUMBERS]],
     share: f32,
+    /// Change of what a row makes of its own velocity that asks for a visit.
+    tolerance: f32,
     at: usize,
 }
 
@@ -108,18 +110,22 @@ impl Visitor for GoOn<'_> {
     ) {
         let (direction, change) = (&mut self.direction[self.at], &self.change[self.at]);
         let share = L::splat(self.share);
+        let mut most = L::splat(0.0);
         for k in 0..NUMBERS {
             let more = L::load(&direction[k]) * share;
             (L::load(&change[k]) + more).store(&mut direction[k]);
-            let to = match k {
-                0..4 if k < N => &mut block.impulse[k],
-                4..6 => &mut block.friction[k - 4],
-                6 => &mut block.twist,
+            let (to, response) = match k {
+                0..4 if k < N => (&mut block.impulse[k], &block.response[packed(k, k)]),
+                4..6 => (&mut block.friction[k - 4], &block.tangent_response[2 * (k - 4)]),
+                6 => (&mut block.twist, &block.twist_response),
                 _ => continue,
             };
             (L::load(to) + more).store(to);
+            most = L::max(most, more.abs() * L::load(response));
         }
-        block.seen = f32::NEG_INFINITY;
+        if L::gt(most, L::splat(self.tolerance)).any() {
+            block.seen = f32::NEG_INFINITY;
+        }
         self.at += 1;
     }
 }
@@ -149,12 +155,14 @@ impl Contacts {
     }
 
     /// After a sweep whose changes had this energy: goes on in the direction so far. What it asks too much of rows, the next sweep
-    /// takes back.
+    /// takes back. Tells `moved` of the bodies, in order, and by how much.
     pub(in crate::solver) fn after_conjugate(
         &mut self,
         energy: f32,
+        tolerance: f32,
         velocities: &mut [Vec6],
         limits: &mut [f32],
+        mut moved: impl FnMut(usize, f32),
     ) {
         let Conjugate { mut was, mut direction, energy: last } = core::mem::take(&mut self.conjugate);
         self.each(Difference { was: &mut was.blocks, at: 0 });
@@ -170,10 +178,19 @@ impl Contacts {
         if share == 0.0 {
             core::mem::swap(&mut direction, &mut was);
         } else {
-            self.each(GoOn { direction: &mut direction.blocks, change: &was.blocks, share, at: 0 });
+            self.each(GoOn {
+                direction: &mut direction.blocks,
+                change: &was.blocks,
+                share,
+                tolerance,
+                at: 0,
+            });
             for (i, v) in velocities.iter_mut().enumerate() {
                 let by = direction.velocities[i].map(|d| d * share);
                 add_scaled(v, &by, 1.0);
+                let change = largest(&by);
+                self.stir(i, change);
+                moved(i, change);
                 direction.velocities[i] = was.velocities[i];
                 add_scaled(&mut direction.velocities[i], &by, 1.0);
             }

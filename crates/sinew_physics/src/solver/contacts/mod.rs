@@ -387,7 +387,7 @@ impl Contacts {
                 return done;
             }
             if conjugate && done < sweeps.most {
-                self.after_conjugate(swept.energy, velocities, &mut []);
+                self.after_conjugate(swept.energy, sweeps.tolerance, velocities, &mut [], |_, _| {});
             }
         }
         sweeps.most
