@@ -15,6 +15,7 @@ mod disk;
 mod drives;
 mod effort;
 mod energy;
+mod faces;
 mod fields;
 pub(crate) mod lcp;
 mod levels;

@@ -5,7 +5,7 @@ use crate::solver::effort::Firmness;
 /// Colours of one round: bits of a mask.
 const COLORS: u32 = u64::BITS;
 /// Classes of blocks, by their points.
-const CLASSES: u32 = 3;
+const CLASSES: usize = 3;
 
 /// A contact to be coloured.
 #[derive(Clone, Copy, Debug)]
@@ -17,12 +17,14 @@ pub(super) struct Edge {
     /// Which class of blocks it goes to.
     pub class: u32,
     pub firmness: Firmness,
+    /// Place of what only few contacts have, or no place.
+    pub extra: u32,
     color: u32,
 }
 
 impl Edge {
-    pub fn new(contact: u32, bodies: [u32; 2], class: u32, firmness: Firmness) -> Self {
-        Self { contact, bodies, class, firmness, color: 0 }
+    pub fn new(contact: u32, bodies: [u32; 2], class: u32, firmness: Firmness, extra: u32) -> Self {
+        Self { contact, bodies, class, firmness, extra, color: 0 }
     }
 }
 
@@ -30,10 +32,10 @@ impl Edge {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Coloring {
     pub edges: Vec<Edge>,
-    /// In order of colour, class and place.
-    sorted: Vec<Edge>,
-    /// Where those of each colour and class begin.
-    starts: Vec<usize>,
+    /// Places of edges, in order of colour, class and place.
+    sorted: Vec<u32>,
+    /// Where those of each colour and class end.
+    ends: Vec<usize>,
     /// Colours that each moving body has, in the round.
     used: Vec<u64>,
     pending: Vec<u32>,
@@ -47,18 +49,16 @@ impl Coloring {
 
     /// For so many bodies and edges.
     pub fn make_room(&mut self, bodies: usize, edges: usize) {
-        for list in [&mut self.edges, &mut self.sorted] {
-            list.clear();
-            list.reserve(edges);
-        }
-        for list in [&mut self.pending, &mut self.left] {
+        self.edges.clear();
+        self.edges.reserve(edges);
+        for list in [&mut self.sorted, &mut self.pending, &mut self.left] {
             list.clear();
             list.reserve(edges);
         }
         self.used.clear();
         self.used.reserve(bodies);
-        self.starts.clear();
-        self.starts.reserve((COLORS * CLASSES) as usize);
+        self.ends.clear();
+        self.ends.reserve(COLORS as usize * CLASSES);
     }
 
     /// Colours by first fit in the order of the edges, then sorts them by colour and class; bodies from `moving` on do not move.
@@ -81,21 +81,23 @@ impl Coloring {
 
     /// A counting sort, which keeps the order of the edges.
     fn sort(&mut self, colors: u32) {
-        let Self { edges, sorted, starts, .. } = self;
-        starts.clear();
-        starts.resize((colors * CLASSES) as usize + 1, 0);
+        let Self { edges, sorted, ends, .. } = self;
+        ends.clear();
+        ends.resize(colors as usize * CLASSES, 0);
         for edge in edges.iter() {
-            starts[edge.run() + 1] += 1;
+            ends[edge.run()] += 1;
         }
-        for run in 1..starts.len() {
-            starts[run] += starts[run - 1];
+        let mut start = 0;
+        for end in ends.iter_mut() {
+            // Where the run starts, until it is filled.
+            start += core::mem::replace(end, start);
         }
         sorted.clear();
-        sorted.resize(edges.len(), Edge::new(0, [0; 2], 0, Firmness::FREE));
-        for edge in edges.iter() {
-            let place = &mut starts[edge.run()];
-            sorted[*place] = *edge;
-            *place += 1;
+        sorted.resize(edges.len(), 0);
+        for (place, edge) in edges.iter().enumerate() {
+            let end = &mut ends[edge.run()];
+            sorted[*end] = place as u32;
+            *end += 1;
         }
     }
 
@@ -129,20 +131,21 @@ impl Coloring {
         count
     }
 
-    /// Runs of edges of one colour and class, in order.
-    pub fn runs(&self) -> impl Iterator<Item = &[Edge]> {
-        self.sorted.chunk_by(|a, b| a.run() == b.run())
+    /// Places of the edges of each colour, class by class.
+    pub fn runs(&self) -> impl Iterator<Item = [&[u32]; CLASSES]> {
+        self.ends.chunks_exact(CLASSES).scan(0, |start, ends| {
+            Some(core::array::from_fn(|class| {
+                let from = core::mem::replace(start, ends[class]);
+                &self.sorted[from..ends[class]]
+            }))
+        })
     }
 }
 
 impl Edge {
-    pub fn color(&self) -> u32 {
-        self.color
-    }
-
     /// Number of its colour and class.
     fn run(&self) -> usize {
-        (self.color * CLASSES + self.class) as usize
+        self.color as usize * CLASSES + self.class as usize
     }
 }
 
