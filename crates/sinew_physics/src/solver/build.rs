@@ -249,6 +249,8 @@ impl IslandSolver {
         self.conjugate.make_room(island.bodies.len(), island.contacts.len());
         self.touches.clear();
         self.touches.reserve(island.contacts.len() + SPARE);
+        self.paired.clear();
+        self.paired.reserve(island.bodies.len() + SPARE);
         self.starts.clear();
         self.starts.reserve(island.bodies.len() + SPARE);
         self.contacts.clear();
@@ -449,32 +451,41 @@ impl IslandSolver {
     fn note_touches(&mut self, island: &Island<'_>, view: &View<'_>) {
         let mut faces = core::mem::take(&mut self.scratch.build.faces);
         let mut contacts = core::mem::take(&mut self.contacts);
+        let (in_lanes, moving) = (self.is_in_lanes(), self.links.len());
+        self.paired.clear();
+        self.paired.resize(moving, false);
         for &index in island.contacts {
             let contact = &view.contacts[index as usize];
             let key = contact.key;
             let bodies = [key.a, key.b].map(|body| self.local(body));
-            let slop = slop(faces.smallest_extent(view, key, bodies));
+            let moves = bodies.map(|body| (body as usize) < moving);
+            if moves == [true; 2] && !self.is_jointed(bodies[0]) && !self.is_jointed(bodies[1]) {
+                bodies.into_iter().for_each(|body| self.paired[body as usize] = true);
+            }
+            let sides = faces.of(view, key, bodies);
+            let slop = slop(min(sides[0].smallest_extent, sides[1].smallest_extent));
             self.touches.push(Touch::new(bodies, contact, self.stretch, slop));
-            if !self.is_in_lanes() {
+            if !in_lanes {
                 continue;
             }
             // What turns or comes in fast may come down on more points within the step.
-            let is_fast = contact.approach > FAST_APPROACH || faces.turn(bodies);
+            let is_fast = contact.approach > FAST_APPROACH || sides[0].turns || sides[1].turns;
+            let is_curved = sides[0].is_curved || sides[1].is_curved;
             let added = Added {
                 index,
                 contact,
                 bodies,
-                moves: bodies.map(|body| (body as usize) < self.links.len()),
+                moves,
                 points: if is_fast { MAX_POINTS } else { contact.manifold.count },
                 firmness: self.firmness(bodies),
                 slop,
-                material: faces.material(view, index, contact, bodies),
-                curved: faces.is_curved(view, key, bodies).then(|| placed(view, contact)),
+                material: faces.material(view, index, &sides),
+                curved: is_curved.then(|| placed(view, contact)),
             };
             contacts.push(&added, &self.bodies);
         }
         (self.contacts, self.scratch.build.faces) = (contacts, faces);
-        self.levels.count(self.links.len(), &self.touches);
+        self.levels.count(moving, self.bodies.len(), &self.touches);
         self.guess_loads();
         self.add_ballast();
     }

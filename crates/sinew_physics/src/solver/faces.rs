@@ -4,21 +4,21 @@ use super::View;
 use super::contact_rows::Placed;
 use super::tree::NONE;
 use crate::body::{Body, BodyShape};
-use crate::contact::{Contact, ContactKey};
+use crate::contact::ContactKey;
 use crate::material::{ContactMaterial, Material};
-use sinew_math::min;
 
 /// Different materials of an island of which pairs are combined once; others are combined for each contact.
 const MATERIALS: usize = 8;
 
 /// Of a body's first shape, the only one that most have.
 #[derive(Clone, Copy, Debug)]
-struct Face {
+pub(super) struct Face {
     /// Metres.
-    smallest_extent: f32,
-    is_curved: bool,
+    pub smallest_extent: f32,
+    /// It has a rounding or a rim.
+    pub is_curved: bool,
     /// The body turns so fast that contacts may have other points before the step is over.
-    turns: bool,
+    pub turns: bool,
     /// Place of its material, or [`NONE`] if it has to be looked at.
     material: u32,
 }
@@ -30,10 +30,17 @@ pub(super) struct Faces {
     materials: Vec<Material>,
     /// Of two materials, by their places.
     pairs: Vec<Option<ContactMaterial>>,
+    /// What was asked for last, and of which pair, or [`NONE`].
+    material: ContactMaterial,
+    pair: u32,
 }
 
-fn is_curved(shape: &BodyShape) -> bool {
-    Placed { shape: &shape.shape, principal_from_shape: &shape.principal_from_shape }.is_curved()
+impl Face {
+    fn of(shape: &BodyShape, turns: bool, material: u32) -> Self {
+        let BodyShape { shape, principal_from_shape, .. } = shape;
+        let is_curved = Placed { shape, principal_from_shape }.is_curved();
+        Self { smallest_extent: shape.smallest_extent(), is_curved, turns, material }
+    }
 }
 
 impl Faces {
@@ -42,17 +49,13 @@ impl Faces {
         self.materials.clear();
         self.pairs.clear();
         self.pairs.resize(MATERIALS * MATERIALS, None);
+        self.pair = NONE;
     }
 
     /// Adds a body.
     pub fn push(&mut self, body: &Body, turns: bool) {
         let face = match body.shapes.first() {
-            Some(shape) => Face {
-                smallest_extent: shape.shape.smallest_extent(),
-                is_curved: is_curved(shape),
-                turns,
-                material: self.place(&body.surface(0).material),
-            },
+            Some(shape) => Face::of(shape, turns, self.place(&body.surface(0).material)),
             None => Face { smallest_extent: f32::INFINITY, is_curved: false, turns, material: NONE },
         };
         self.of.push(face);
@@ -73,44 +76,37 @@ impl Faces {
         }
     }
 
-    /// Whether one of two bodies turns fast.
-    pub fn turn(&self, bodies: [u32; 2]) -> bool {
-        bodies.into_iter().any(|body| self.of[body as usize].turns)
+    /// Of the two shapes of a contact.
+    #[inline]
+    pub fn of(&self, view: &View<'_>, key: ContactKey, [a, b]: [u32; 2]) -> [Face; 2] {
+        [self.one(view, key.a, key.shape_a, a), self.one(view, key.b, key.shape_b, b)]
     }
 
-    /// Of both shapes of a contact, metres.
-    pub fn smallest_extent(&self, view: &View<'_>, key: ContactKey, bodies: [u32; 2]) -> f32 {
-        let of = |index: u32, shape: u32, local: u32| match shape {
-            0 => self.of[local as usize].smallest_extent,
-            _ => view.bodies.at(index).shapes[shape as usize].shape.smallest_extent(),
-        };
-        min(of(key.a, key.shape_a, bodies[0]), of(key.b, key.shape_b, bodies[1]))
-    }
-
-    /// Whether one of the shapes of a contact has a rounding or a rim.
-    pub fn is_curved(&self, view: &View<'_>, key: ContactKey, bodies: [u32; 2]) -> bool {
-        let of = |index: u32, shape: u32, local: u32| match shape {
-            0 => self.of[local as usize].is_curved,
-            _ => is_curved(&view.bodies.at(index).shapes[shape as usize]),
-        };
-        of(key.a, key.shape_a, bodies[0]) || of(key.b, key.shape_b, bodies[1])
+    #[inline]
+    fn one(&self, view: &View<'_>, body: u32, shape: u32, local: u32) -> Face {
+        let first = self.of[local as usize];
+        match shape {
+            0 => first,
+            _ => Face::of(&view.bodies.at(body).shapes[shape as usize], first.turns, NONE),
+        }
     }
 
     /// What the surfaces of a contact are to each other in this step.
-    pub fn material(
-        &mut self,
-        view: &View<'_>,
-        index: u32,
-        contact: &Contact,
-        bodies: [u32; 2],
-    ) -> ContactMaterial {
-        let [a, b] = bodies.map(|body| self.of[body as usize].material);
-        let is_first = contact.key.shape_a == 0 && contact.key.shape_b == 0;
-        if !is_first || a == NONE || b == NONE || view.modifiers.have_changed(index) {
-            return view.modifiers.material(view.bodies, view.contacts, index);
+    #[inline]
+    pub fn material(&mut self, view: &View<'_>, index: u32, [a, b]: &[Face; 2]) -> &ContactMaterial {
+        let (a, b) = (a.material, b.material);
+        if a == NONE || b == NONE || view.modifiers.have_changed(index) {
+            self.pair = NONE;
+            self.material = view.modifiers.material(view.bodies, view.contacts, index);
+            return &self.material;
         }
-        let Self { materials, pairs, .. } = self;
-        let combined = || ContactMaterial::of(&materials[a as usize], &materials[b as usize]);
-        *pairs[a as usize * MATERIALS + b as usize].get_or_insert_with(combined)
+        let pair = a * MATERIALS as u32 + b;
+        if pair != self.pair {
+            let Self { materials, pairs, .. } = self;
+            let combined = || ContactMaterial::of(&materials[a as usize], &materials[b as usize]);
+            self.material = *pairs[pair as usize].get_or_insert_with(combined);
+            self.pair = pair;
+        }
+        &self.material
     }
 }

@@ -48,9 +48,9 @@ impl Touch {
 }
 
 impl Pressing {
-    fn add(&mut self, push: Vec3) {
+    fn add(&mut self, push: Vec3, size: f32) {
         self.sum += push;
-        self.size += push.length();
+        self.size += size;
     }
 
     /// The part that cancels itself.
@@ -117,9 +117,10 @@ impl IslandSolver {
             *pressing = Pressing { guess: pressing.guess, ..Pressing::default() };
         }
         for &Touch { bodies: [a, b], push, .. } in &self.touches {
+            let size = push.length();
             for (body, push) in [(a, -push), (b, push)] {
                 if let Some(pressing) = self.pressing.get_mut(body as usize) {
-                    pressing.add(push);
+                    pressing.add(push, size);
                 }
             }
         }

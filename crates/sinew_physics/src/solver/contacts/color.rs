@@ -61,18 +61,19 @@ impl Coloring {
         self.ends.reserve(COLORS as usize * CLASSES);
     }
 
-    /// Colours by first fit in the order of the edges, then sorts them by colour and class; bodies from `moving` on do not move.
-    /// Contacts with those have the last colours: what cannot move has the last word. Gives the number of colours.
+    /// Colours by first fit in the order of the edges, then sorts them by colour and class. Bodies from `moving` on do not move;
+    /// contacts with those come last, and have the last colours: what cannot move has the last word. Gives the number of colours.
     pub fn color(&mut self, moving: usize) -> u32 {
+        let is_free = |edge: &Edge| edge.bodies.iter().all(|&body| (body as usize) < moving);
+        let (count, free) = (self.edges.len() as u32, self.edges.partition_point(is_free) as u32);
         let mut colors = 0;
-        for with_fixed in [false, true] {
-            let is_here = |edge: &Edge| edge.bodies.iter().any(|&body| body as usize >= moving) == with_fixed;
-            self.pending.clear();
-            let here = self.edges.iter().enumerate().filter(|(_, edge)| is_here(edge));
-            self.pending.extend(here.map(|(i, _)| i as u32));
-            while !self.pending.is_empty() {
-                colors += self.round(moving, colors);
-                core::mem::swap(&mut self.pending, &mut self.left);
+        for places in [0..free, free..count] {
+            colors += self.round(places, moving, colors);
+            while !self.left.is_empty() {
+                let mut pending = core::mem::take(&mut self.pending);
+                core::mem::swap(&mut pending, &mut self.left);
+                colors += self.round(pending.iter().copied(), moving, colors);
+                self.pending = pending;
             }
         }
         self.sort(colors);
@@ -101,23 +102,20 @@ impl Coloring {
         }
     }
 
-    /// Gives colours from `first` on to what is pending, as many as a mask has; the others are left. Gives how many colours it
-    /// took.
-    fn round(&mut self, moving: usize, first: u32) -> u32 {
-        let Self { edges, used, pending, left, .. } = self;
+    /// Gives colours from `first` on to the edges at some places, as many as a mask has; the others are left. Gives how many
+    /// colours it took.
+    fn round(&mut self, places: impl Iterator<Item = u32>, moving: usize, first: u32) -> u32 {
+        let Self { edges, used, left, .. } = self;
         used.clear();
         used.resize(moving, 0);
         left.clear();
         let mut count = 0;
-        for &i in pending.iter() {
-            let edge = &mut edges[i as usize];
-            let taken = edge
-                .bodies
-                .iter()
-                .fold(0, |taken, &body| taken | used.get(body as usize).copied().unwrap_or(0));
-            let color = taken.trailing_ones();
+        for place in places {
+            let edge = &mut edges[place as usize];
+            let [a, b] = edge.bodies.map(|body| used.get(body as usize).copied().unwrap_or(0));
+            let color = (a | b).trailing_ones();
             if color == COLORS {
-                left.push(i);
+                left.push(place);
                 continue;
             }
             for &body in &edge.bodies {
@@ -166,16 +164,27 @@ mod tests {
                 // A hub among them has more contacts than a round has colours.
                 let b = if random.unit() < 0.4 { 0 } else { random.index(moving + fixed) as u32 };
                 if a != b {
-                    coloring.edges.push(Edge::new(contact, [a, b], random.index(3) as u32, Firmness::FREE));
+                    let class = random.index(CLASSES) as u32;
+                    coloring.edges.push(Edge::new(contact, [a, b], class, Firmness::FREE, u32::MAX));
                 }
             }
+            coloring.edges.sort_by_key(|edge| edge.bodies.iter().any(|&body| body as usize >= moving));
             let count = coloring.edges.len();
             let colors = coloring.color(moving);
-            assert_eq!(coloring.runs().map(<[Edge]>::len).sum::<usize>(), count);
+            assert_eq!(coloring.runs().flatten().map(<[u32]>::len).sum::<usize>(), count);
+            for (color, runs) in coloring.runs().enumerate() {
+                for (class, run) in runs.into_iter().enumerate() {
+                    let here = |&place: &u32| {
+                        let edge = &coloring.edges[place as usize];
+                        (edge.color, edge.class) == (color as u32, class as u32)
+                    };
+                    assert!(run.iter().all(here) && run.is_sorted(), "case {case}");
+                }
+            }
             let mut last_moving = 0;
             for color in 0..colors {
                 let mut seen = vec![false; moving];
-                for edge in coloring.sorted.iter().filter(|edge| edge.color() == color) {
+                for edge in coloring.edges.iter().filter(|edge| edge.color == color) {
                     for &body in edge.bodies.iter().filter(|&&body| (body as usize) < moving) {
                         assert!(!core::mem::replace(&mut seen[body as usize], true), "case {case}");
                     }
@@ -184,10 +193,10 @@ mod tests {
                     }
                 }
             }
-            for edge in &coloring.sorted {
+            for edge in &coloring.edges {
                 let is_fixed = edge.bodies.iter().any(|&body| body as usize >= moving);
                 assert!(
-                    !is_fixed || edge.color() > last_moving || last_moving == 0,
+                    !is_fixed || edge.color > last_moving || last_moving == 0,
                     "case {case}: fixed come last"
                 );
             }

@@ -5,13 +5,13 @@ use super::Contacts;
 use super::block::NONE;
 use super::color::Edge;
 use super::geometry::Side;
-use crate::collide::MAX_POINTS;
-use crate::contact::Contact;
+use crate::collide::ManifoldPoint;
+use crate::contact::{Contact, PointImpulse};
 use crate::material::ContactMaterial;
 use crate::solver::SolverBody;
 use crate::solver::contact_rows::Placed;
 use crate::solver::effort::Firmness;
-use crate::spatial::{Vec6, ZERO6};
+use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, WIDTH};
 use sinew_math::{Transform, Vec3};
 
@@ -59,7 +59,7 @@ pub(in crate::solver) struct Added<'a> {
     pub points: usize,
     pub firmness: Firmness,
     pub slop: f32,
-    pub material: ContactMaterial,
+    pub material: &'a ContactMaterial,
     /// Its shapes, if one of them is curved.
     pub curved: Option<[Placed<'a>; 2]>,
 }
@@ -90,29 +90,35 @@ impl Record {
     fn new(added: &Added<'_>, rounds: [f32; 2]) -> Self {
         let Added { contact, material, .. } = added;
         let (manifold, memory) = (&contact.manifold, &contact.memory);
-        let mut rows = [ZERO6; 6];
         let n = manifold.normal;
         let share = Side::new(rounds, added.moves).share();
         let round = rounds[0] + rounds[1];
-        rows[SHAPE] = [n.x, n.y, n.z, rounds[0], round, added.slop, share, manifold.count as f32];
-        for i in 0..MAX_POINTS {
-            let (row, from) = (i / 2, 4 * (i % 2));
-            let (point, impulse) = (&manifold.points[i], &memory.points[i]);
-            let p = point.position;
-            rows[POINTS + row][from..from + 4].copy_from_slice(&[p.x, p.y, p.z, point.separation]);
-            let numbers = [impulse.now, impulse.before, impulse.total, impulse.lasting];
-            rows[IMPULSES + row][from..from + 4].copy_from_slice(&numbers);
-        }
         let ContactMaterial { friction: sliding, static_friction: holding, restitution, launch, .. } =
-            *material;
+            **material;
         let f = memory.friction;
-        rows[FRICTION] = [f.x, f.y, f.z, memory.twist, sliding, holding, restitution, launch];
+        let rows = [
+            [n.x, n.y, n.z, rounds[0], round, added.slop, share, manifold.count as f32],
+            two_points(&manifold.points[0], &manifold.points[1]),
+            two_points(&manifold.points[2], &manifold.points[3]),
+            two_impulses(&memory.points[0], &memory.points[1]),
+            two_impulses(&memory.points[2], &memory.points[3]),
+            [f.x, f.y, f.z, memory.twist, sliding, holding, restitution, launch],
+        ];
         Self { rows }
     }
 
     pub fn slop(&self) -> f32 {
         self.rows[SHAPE][5]
     }
+}
+
+fn two_points(p: &ManifoldPoint, q: &ManifoldPoint) -> Vec6 {
+    let (a, b) = (p.position, q.position);
+    [a.x, a.y, a.z, p.separation, b.x, b.y, b.z, q.separation]
+}
+
+fn two_impulses(p: &PointImpulse, q: &PointImpulse) -> Vec6 {
+    [p.now, p.before, p.total, p.lasting, q.now, q.before, q.total, q.lasting]
 }
 
 /// A row of eight records, field by field.
@@ -138,6 +144,7 @@ fn at<L: Lanes>(records: &[Record], place: u32, row: usize) -> L {
 
 impl Contacts {
     /// Adds a contact: first those of two moving bodies, then those with fixed ones.
+    #[inline]
     pub fn push(&mut self, added: &Added<'_>, bodies: &[SolverBody]) {
         let Added { contact, material, .. } = added;
         self.tally.manifolds += 1;
