@@ -17,7 +17,9 @@ impl Levels {
         self.of.clear();
         self.of.resize(moving, UNSUPPORTED);
         self.of.resize(bodies, 0);
-        // To and fro, since bodies are numbered from the bottom up or from the top down more often than at random.
+        // What touches the ground comes last. Then to and fro, since bodies are numbered from the bottom up or from the top down more often than at random.
+        let moves = |touch: &Touch| touch.bodies.iter().all(|&body| (body as usize) < moving);
+        self.climb(touches[touches.iter().rposition(moves).map_or(0, |last| last + 1)..].iter());
         while self.climb(touches.iter()) && self.climb(touches.iter().rev()) {}
     }
 

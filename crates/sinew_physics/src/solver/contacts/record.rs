@@ -87,6 +87,7 @@ fn class_of(points: usize) -> u32 {
 }
 
 impl Record {
+    #[inline(always)]
     fn new(added: &Added<'_>, rounds: [f32; 2]) -> Self {
         let Added { contact, material, .. } = added;
         let (manifold, memory) = (&contact.manifold, &contact.memory);
@@ -112,11 +113,13 @@ impl Record {
     }
 }
 
+#[inline(always)]
 fn two_points(p: &ManifoldPoint, q: &ManifoldPoint) -> Vec6 {
     let (a, b) = (p.position, q.position);
     [a.x, a.y, a.z, p.separation, b.x, b.y, b.z, q.separation]
 }
 
+#[inline(always)]
 fn two_impulses(p: &PointImpulse, q: &PointImpulse) -> Vec6 {
     [p.now, p.before, p.total, p.lasting, q.now, q.before, q.total, q.lasting]
 }
