@@ -247,6 +247,7 @@ impl IslandSolver {
         s.shares.clear();
         s.shares.reserve(island.bodies.len());
         self.conjugate.make_room(island.bodies.len(), island.contacts.len());
+        s.build.faces.make_room(island.bodies.len() + SPARE);
         self.touches.clear();
         self.touches.reserve(island.contacts.len() + SPARE);
         self.paired.clear();

@@ -44,6 +44,14 @@ impl Face {
 }
 
 impl Faces {
+    /// For so many bodies.
+    pub fn make_room(&mut self, bodies: usize) {
+        self.of.clear();
+        self.of.reserve(bodies);
+        self.materials.reserve(MATERIALS);
+        self.clear();
+    }
+
     pub fn clear(&mut self) {
         self.of.clear();
         self.materials.clear();

@@ -59,6 +59,8 @@ impl Contacts {
         self.stir.reserve(bodies);
         self.records.clear();
         self.records.reserve(contacts);
+        self.extras.clear();
+        self.extras.reserve(SPARE_BLOCKS * WIDTH);
         self.colors.reserve(SPARE_BLOCKS);
         let blocks = usize::min(contacts, SPARE_BLOCKS);
         self.one.make_room(blocks);
