@@ -54,12 +54,19 @@ impl Modifiers {
         }
     }
 
+    /// Whether they made something of a contact in this step.
+    pub fn have_changed(&self, place: u32) -> bool {
+        self.find(place).is_some()
+    }
+
+    fn find(&self, place: u32) -> Option<&ContactMaterial> {
+        let found = self.changed.binary_search_by_key(&place, |&(contact, _)| contact).ok()?;
+        Some(&self.changed[found].1)
+    }
+
     /// What a contact is in this step.
     pub fn material(&self, bodies: &Arena<Body>, contacts: &[Contact], place: u32) -> ContactMaterial {
-        match self.changed.binary_search_by_key(&place, |&(contact, _)| contact) {
-            Ok(found) => self.changed[found].1,
-            Err(_) => contacts[place as usize].material(bodies),
-        }
+        self.find(place).copied().unwrap_or_else(|| contacts[place as usize].material(bodies))
     }
 }
 

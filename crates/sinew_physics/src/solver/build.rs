@@ -1,8 +1,9 @@
 //! `prepare`: from the world to the arrays of one island's solver.
 
 use super::contact_rows::{ManifoldRows, ManifoldSource, PlacedShape, REFIND_TURN};
-use super::contacts::OfStep;
+use super::contacts::{Added, OfStep, placed};
 use super::drives::SoftRow;
+use super::faces::Faces;
 use super::loops::MAX_EXACT_ROWS;
 use super::squeeze::Touch;
 use super::tree::{Link, NONE};
@@ -93,6 +94,7 @@ pub(super) struct Scratch {
     used: Vec<bool>,
     /// (body's place, joint's place), ascending: which joints a body has.
     adjacent: Vec<(u32, u32)>,
+    faces: Faces,
 }
 
 /// In which order the trees of an island grow.
@@ -156,6 +158,35 @@ impl Scratch {
     }
 }
 
+impl Scratch {
+    /// Whether a body of a joint or a contact is one of those that move.
+    fn moves(&self, body: u32) -> bool {
+        self.order.get(self.local_of[body as usize] as usize) == Some(&body)
+    }
+
+    /// Lists the bodies of joints and contacts that do not move.
+    fn list_fixed(&mut self, island: &Island<'_>, view: &View<'_>) {
+        let mut fixed = core::mem::take(&mut self.fixed);
+        fixed.clear();
+        for &index in island.joints {
+            let joint = view.joints.at(index);
+            fixed.extend([joint.a, joint.b].into_iter().filter(|&body| !self.moves(body)));
+        }
+        // Contacts with them come last.
+        for &index in island.contacts.iter().rev() {
+            let key = view.contacts[index as usize].key;
+            let before = fixed.len();
+            fixed.extend([key.a, key.b].into_iter().filter(|&body| !self.moves(body)));
+            if fixed.len() == before {
+                break;
+            }
+        }
+        fixed.sort_unstable();
+        fixed.dedup();
+        self.fixed = fixed;
+    }
+}
+
 /// Force and torque that act on a body all through the step: gravity and the user's.
 pub(super) fn lasting_force(body: &Body, view: &View<'_>) -> (Vec3, Vec3) {
     (body.force + view.def.gravity * (body.gravity_scale * body.mass), body.torque)
@@ -183,7 +214,7 @@ impl IslandSolver {
         self.limits.clear();
         self.manifolds.clear();
         if self.is_in_lanes() {
-            self.prepare_contacts(island, view);
+            self.prepare_contacts(view);
         } else {
             self.copy_contacts(island, view);
         }
@@ -216,8 +247,11 @@ impl IslandSolver {
         s.shares.clear();
         s.shares.reserve(island.bodies.len());
         self.conjugate.make_room(island.bodies.len(), island.contacts.len());
+        s.build.faces.make_room(island.bodies.len() + SPARE);
         self.touches.clear();
         self.touches.reserve(island.contacts.len() + SPARE);
+        self.paired.clear();
+        self.paired.reserve(island.bodies.len() + SPARE);
         self.starts.clear();
         self.starts.reserve(island.bodies.len() + SPARE);
         self.contacts.clear();
@@ -320,24 +354,17 @@ impl IslandSolver {
 
     fn copy_bodies(&mut self, island: &Island<'_>, view: &View<'_>) {
         let s = &mut self.scratch.build;
-        s.fixed.clear();
-        let moving = |body: u32| view.bodies.at(body).is_active();
-        for &index in island.joints {
-            let joint = view.joints.at(index);
-            s.fixed.extend([joint.a, joint.b].into_iter().filter(|&body| !moving(body)));
-        }
-        for &index in island.contacts {
-            let key = view.contacts[index as usize].key;
-            s.fixed.extend([key.a, key.b].into_iter().filter(|&body| !moving(body)));
-        }
-        s.fixed.sort_unstable();
-        s.fixed.dedup();
-        self.bodies.clear();
-        self.velocities.clear();
-        let ordered = s.order.iter().copied();
         if s.local_of.len() < view.bodies.slot_count() {
             s.local_of.resize(view.bodies.slot_count(), NONE);
         }
+        for (local, &index) in s.order.iter().enumerate() {
+            s.local_of[index as usize] = local as u32;
+        }
+        s.list_fixed(island, view);
+        s.faces.clear();
+        self.bodies.clear();
+        self.velocities.clear();
+        let ordered = s.order.iter().copied();
         for index in ordered.chain(s.fixed.iter().copied()) {
             s.local_of[index as usize] = self.bodies.len() as u32;
             let body = view.bodies.at(index);
@@ -359,6 +386,7 @@ impl IslandSolver {
             let still = body.kind == crate::BodyKind::Dynamic && !body.is_active();
             let velocity = if still { ZERO6 } else { join(body.velocity.linear, body.velocity.angular) };
             self.velocities.push(velocity);
+            s.faces.push(body, body.velocity.angular.length() * self.h >= 0.5 * REFIND_TURN);
         }
         self.scratch.predicted.clear();
         self.scratch.predicted.reserve(self.bodies.len());
@@ -424,39 +452,55 @@ impl IslandSolver {
         }
     }
 
-    /// Who touches whom, and what presses on bodies that no joint holds.
+    /// Who touches whom, and what presses on bodies that no joint holds. What lies in lanes is listed for them.
     fn note_touches(&mut self, island: &Island<'_>, view: &View<'_>) {
+        let mut faces = core::mem::take(&mut self.scratch.build.faces);
+        let mut contacts = core::mem::take(&mut self.contacts);
+        let (in_lanes, moving) = (self.is_in_lanes(), self.links.len());
+        self.paired.clear();
+        self.paired.resize(moving, false);
         for &index in island.contacts {
             let contact = &view.contacts[index as usize];
             let key = contact.key;
-            let extent = || {
-                let [a, b] = [(key.a, key.shape_a), (key.b, key.shape_b)]
-                    .map(|(body, shape)| view.bodies.at(body).shapes[shape as usize].shape.smallest_extent());
-                min(a, b)
-            };
             let bodies = [key.a, key.b].map(|body| self.local(body));
-            self.touches.push(Touch::new(bodies, contact, self.stretch, || slop(extent())));
+            let moves = bodies.map(|body| (body as usize) < moving);
+            if moves == [true; 2] && !self.is_jointed(bodies[0]) && !self.is_jointed(bodies[1]) {
+                bodies.into_iter().for_each(|body| self.paired[body as usize] = true);
+            }
+            let sides = faces.of(view, key, bodies);
+            let slop = slop(min(sides[0].smallest_extent, sides[1].smallest_extent));
+            self.touches.push(Touch::new(bodies, contact, self.stretch, slop));
+            if !in_lanes {
+                continue;
+            }
+            // What turns or comes in fast may come down on more points within the step.
+            let is_fast = contact.approach > FAST_APPROACH || sides[0].turns || sides[1].turns;
+            let is_curved = sides[0].is_curved || sides[1].is_curved;
+            let added = Added {
+                index,
+                contact,
+                bodies,
+                moves,
+                points: if is_fast { MAX_POINTS } else { contact.manifold.count },
+                firmness: self.firmness(bodies),
+                slop,
+                material: faces.material(view, index, &sides),
+                curved: is_curved.then(|| placed(view, contact)),
+            };
+            contacts.push(&added, &self.bodies);
         }
-        self.levels.count(self.links.len(), &self.touches);
+        (self.contacts, self.scratch.build.faces) = (contacts, faces);
+        self.levels.count(moving, self.bodies.len(), &self.touches);
         self.guess_loads();
         self.add_ballast();
     }
 
     /// Contacts in lanes.
-    fn prepare_contacts(&mut self, island: &Island<'_>, view: &View<'_>) {
-        let h = self.h;
-        let turns = |body: u32| view.bodies.at(body).velocity.angular.length() * h >= 0.5 * REFIND_TURN;
-        for (&index, touch) in island.contacts.iter().zip(&self.touches) {
-            let contact = &view.contacts[index as usize];
-            // What turns or comes in fast may come down on more points within the step.
-            let is_fast = contact.approach > FAST_APPROACH || turns(contact.key.a) || turns(contact.key.b);
-            let points = if is_fast { MAX_POINTS } else { contact.manifold.count };
-            self.contacts.push(index, touch.bodies, points, self.firmness(touch.bodies));
-        }
+    fn prepare_contacts(&mut self, view: &View<'_>) {
         self.starts.clear();
         self.starts.extend(self.bodies.iter().map(|body| body.pose));
-        let of_step =
-            OfStep { view, bodies: &self.bodies, moving: self.links.len(), h: self.h, stretch: self.stretch };
+        let (bodies, moving) = (&self.bodies, self.links.len());
+        let of_step = OfStep { view, bodies, moving, h: self.h, stretch: self.stretch };
         self.driven = self.contacts.prepare(&of_step);
     }
 

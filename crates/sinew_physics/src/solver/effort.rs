@@ -2,7 +2,6 @@
 
 use super::contact_rows::BOUNCE_SPEED;
 use super::contacts::Sweeps;
-use super::squeeze::Touch;
 use super::sweep::Pass;
 use super::tree::NONE;
 use super::{Coupling, Grading, IslandSolver, View};
@@ -209,17 +208,11 @@ impl IslandSolver {
 
     /// Of the heaviest to the lightest of those that touch each other and are not jointed, as they answer to impulses.
     pub(super) fn mass_ratio(&self) -> f32 {
-        let moving = &self.bodies[..self.links.len()];
         let (mut lightest, mut heaviest) = (f32::INFINITY, 0.0);
-        for &Touch { bodies: [a, b], .. } in &self.touches {
-            if self.is_jointed(a) || self.is_jointed(b) {
-                continue;
-            }
-            if let (Some(a), Some(b)) = (moving.get(a as usize), moving.get(b as usize)) {
-                let [a, b] = [a, b].map(|body| body.mass * body.ballast);
-                lightest = min(lightest, min(a, b));
-                heaviest = max(heaviest, max(a, b));
-            }
+        for (body, _) in self.bodies.iter().zip(&self.paired).filter(|(_, is_paired)| **is_paired) {
+            let mass = body.mass * body.ballast;
+            lightest = min(lightest, mass);
+            heaviest = max(heaviest, mass);
         }
         if heaviest > lightest { heaviest / lightest } else { 1.0 }
     }

@@ -5,18 +5,21 @@ use super::squeeze::Touch;
 /// The level of a body of which no way to what cannot move is known.
 const UNSUPPORTED: u32 = u32::MAX;
 
-/// Per moving body: bodies on the shortest way of touch down to what cannot move, itself among them.
+/// Per body: bodies on the shortest way of touch down to what cannot move, itself among them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Levels {
     of: Vec<u32>,
 }
 
 impl Levels {
-    /// Of so many moving bodies.
-    pub fn count(&mut self, moving: usize, touches: &[Touch]) {
+    /// Of so many bodies, of which the first move.
+    pub fn count(&mut self, moving: usize, bodies: usize, touches: &[Touch]) {
         self.of.clear();
         self.of.resize(moving, UNSUPPORTED);
-        // To and fro, since bodies are numbered from the bottom up or from the top down more often than at random.
+        self.of.resize(bodies, 0);
+        // What touches the ground comes last. Then to and fro, since bodies are numbered from the bottom up or from the top down more often than at random.
+        let moves = |touch: &Touch| touch.bodies.iter().all(|&body| (body as usize) < moving);
+        self.climb(touches[touches.iter().rposition(moves).map_or(0, |last| last + 1)..].iter());
         while self.climb(touches.iter()) && self.climb(touches.iter().rev()) {}
     }
 
@@ -24,12 +27,11 @@ impl Levels {
     fn climb<'a>(&mut self, touches: impl Iterator<Item = &'a Touch>) -> bool {
         let mut lowered = false;
         for &Touch { bodies: [a, b], .. } in touches {
-            for (below, body) in [(a, b), (b, a)] {
-                let above = self.of(below).saturating_add(1);
-                match self.of.get_mut(body as usize) {
-                    Some(level) if above < *level => (*level, lowered) = (above, true),
-                    _ => {}
-                }
+            let [of_a, of_b] = [a, b].map(|body| self.of[body as usize]);
+            if of_b > of_a.saturating_add(1) {
+                (self.of[b as usize], lowered) = (of_a + 1, true);
+            } else if of_a > of_b.saturating_add(1) {
+                (self.of[a as usize], lowered) = (of_b + 1, true);
             }
         }
         lowered

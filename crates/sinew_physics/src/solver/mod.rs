@@ -15,6 +15,7 @@ mod disk;
 mod drives;
 mod effort;
 mod energy;
+mod faces;
 mod fields;
 pub(crate) mod lcp;
 mod levels;
@@ -200,6 +201,8 @@ pub(crate) struct IslandSolver {
     starts: Vec<Transform>,
     /// Who touches, of an island without joints.
     touches: Vec<Touch>,
+    /// Per moving body: it touches another one, and no joint holds either.
+    paired: Vec<bool>,
     /// Masses of what touches differ so much that loads are guessed, and ballast follows from substep to substep.
     is_unequal: bool,
     /// A point was hit in this substep so that it bounces.

@@ -38,20 +38,19 @@ pub(super) struct Touch {
 impl Touch {
     /// A contact in substeps `stretch` times as long as the world's, whose points are taken for touching at gaps below `slop`,
     /// metres.
-    pub fn new(bodies: [u32; 2], contact: &Contact, stretch: f32, slop: impl Fn() -> f32) -> Self {
+    pub fn new(bodies: [u32; 2], contact: &Contact, stretch: f32, slop: f32) -> Self {
         let points = contact.manifold.points();
         let load =
             stretch * contact.memory.points[..points.len()].iter().fold(0.0, |sum, point| sum + point.now);
-        let is_near = |slop: f32| points.iter().any(|point| point.separation < slop);
-        let is_new = load == 0.0 && is_near(slop());
+        let is_new = load == 0.0 && points.iter().any(|point| point.separation < slop);
         Self { bodies, push: contact.manifold.normal * load, is_new }
     }
 }
 
 impl Pressing {
-    fn add(&mut self, push: Vec3) {
+    fn add(&mut self, push: Vec3, size: f32) {
         self.sum += push;
-        self.size += push.length();
+        self.size += size;
     }
 
     /// The part that cancels itself.
@@ -118,9 +117,10 @@ impl IslandSolver {
             *pressing = Pressing { guess: pressing.guess, ..Pressing::default() };
         }
         for &Touch { bodies: [a, b], push, .. } in &self.touches {
+            let size = push.length();
             for (body, push) in [(a, -push), (b, push)] {
                 if let Some(pressing) = self.pressing.get_mut(body as usize) {
-                    pressing.add(push);
+                    pressing.add(push, size);
                 }
             }
         }

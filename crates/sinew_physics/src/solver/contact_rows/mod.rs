@@ -421,6 +421,10 @@ pub(super) fn contact_softness(both_move: bool, h: f32) -> Softness {
     Softness::new(min(hertz, 0.25 / h), CONTACT_DAMPING, h)
 }
 
+/// Weights of the load that a point has, and of all alike.
+pub(super) const OF_LOAD: f32 = 0.8;
+pub(super) const EVENLY: f32 = 0.2;
+
 /// Shares of the load by point, smoothed so that a point which is about to bear some has a say: one whose separation is at
 /// most `bearing`, if there is any.
 pub(super) fn weights(memory: &ContactMemory, manifold: &Manifold, bearing: f32) -> [f32; MAX_POINTS] {
@@ -436,7 +440,7 @@ pub(super) fn weights(memory: &ContactMemory, manifold: &Manifold, bearing: f32)
             _ => 0.0,
         };
         let share = if total > 0.0 { memory.points[i].now / total } else { even };
-        weights[i] = 0.8 * share + 0.2 * even;
+        weights[i] = OF_LOAD * share + EVENLY * even;
     }
     weights
 }

@@ -5,7 +5,7 @@ use crate::solver::effort::Firmness;
 /// Colours of one round: bits of a mask.
 const COLORS: u32 = u64::BITS;
 /// Classes of blocks, by their points.
-const CLASSES: u32 = 3;
+const CLASSES: usize = 3;
 
 /// A contact to be coloured.
 #[derive(Clone, Copy, Debug)]
@@ -17,12 +17,14 @@ pub(super) struct Edge {
     /// Which class of blocks it goes to.
     pub class: u32,
     pub firmness: Firmness,
+    /// Place of what only few contacts have, or no place.
+    pub extra: u32,
     color: u32,
 }
 
 impl Edge {
-    pub fn new(contact: u32, bodies: [u32; 2], class: u32, firmness: Firmness) -> Self {
-        Self { contact, bodies, class, firmness, color: 0 }
+    pub fn new(contact: u32, bodies: [u32; 2], class: u32, firmness: Firmness, extra: u32) -> Self {
+        Self { contact, bodies, class, firmness, extra, color: 0 }
     }
 }
 
@@ -30,10 +32,10 @@ impl Edge {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Coloring {
     pub edges: Vec<Edge>,
-    /// In order of colour, class and place.
-    sorted: Vec<Edge>,
-    /// Where those of each colour and class begin.
-    starts: Vec<usize>,
+    /// Places of edges, in order of colour, class and place.
+    sorted: Vec<u32>,
+    /// Where those of each colour and class end.
+    ends: Vec<usize>,
     /// Colours that each moving body has, in the round.
     used: Vec<u64>,
     pending: Vec<u32>,
@@ -47,32 +49,31 @@ impl Coloring {
 
     /// For so many bodies and edges.
     pub fn make_room(&mut self, bodies: usize, edges: usize) {
-        for list in [&mut self.edges, &mut self.sorted] {
-            list.clear();
-            list.reserve(edges);
-        }
-        for list in [&mut self.pending, &mut self.left] {
+        self.edges.clear();
+        self.edges.reserve(edges);
+        for list in [&mut self.sorted, &mut self.pending, &mut self.left] {
             list.clear();
             list.reserve(edges);
         }
         self.used.clear();
         self.used.reserve(bodies);
-        self.starts.clear();
-        self.starts.reserve((COLORS * CLASSES) as usize);
+        self.ends.clear();
+        self.ends.reserve(COLORS as usize * CLASSES);
     }
 
-    /// Colours by first fit in the order of the edges, then sorts them by colour and class; bodies from `moving` on do not move.
-    /// Contacts with those have the last colours: what cannot move has the last word. Gives the number of colours.
+    /// Colours by first fit in the order of the edges, then sorts them by colour and class. Bodies from `moving` on do not move;
+    /// contacts with those come last, and have the last colours: what cannot move has the last word. Gives the number of colours.
     pub fn color(&mut self, moving: usize) -> u32 {
+        let is_free = |edge: &Edge| edge.bodies.iter().all(|&body| (body as usize) < moving);
+        let (count, free) = (self.edges.len() as u32, self.edges.partition_point(is_free) as u32);
         let mut colors = 0;
-        for with_fixed in [false, true] {
-            let is_here = |edge: &Edge| edge.bodies.iter().any(|&body| body as usize >= moving) == with_fixed;
-            self.pending.clear();
-            let here = self.edges.iter().enumerate().filter(|(_, edge)| is_here(edge));
-            self.pending.extend(here.map(|(i, _)| i as u32));
-            while !self.pending.is_empty() {
-                colors += self.round(moving, colors);
-                core::mem::swap(&mut self.pending, &mut self.left);
+        for places in [0..free, free..count] {
+            colors += self.round(places, moving, colors);
+            while !self.left.is_empty() {
+                let mut pending = core::mem::take(&mut self.pending);
+                core::mem::swap(&mut pending, &mut self.left);
+                colors += self.round(pending.iter().copied(), moving, colors);
+                self.pending = pending;
             }
         }
         self.sort(colors);
@@ -81,41 +82,40 @@ impl Coloring {
 
     /// A counting sort, which keeps the order of the edges.
     fn sort(&mut self, colors: u32) {
-        let Self { edges, sorted, starts, .. } = self;
-        starts.clear();
-        starts.resize((colors * CLASSES) as usize + 1, 0);
+        let Self { edges, sorted, ends, .. } = self;
+        ends.clear();
+        ends.resize(colors as usize * CLASSES, 0);
         for edge in edges.iter() {
-            starts[edge.run() + 1] += 1;
+            ends[edge.run()] += 1;
         }
-        for run in 1..starts.len() {
-            starts[run] += starts[run - 1];
+        let mut start = 0;
+        for end in ends.iter_mut() {
+            // Where the run starts, until it is filled.
+            start += core::mem::replace(end, start);
         }
         sorted.clear();
-        sorted.resize(edges.len(), Edge::new(0, [0; 2], 0, Firmness::FREE));
-        for edge in edges.iter() {
-            let place = &mut starts[edge.run()];
-            sorted[*place] = *edge;
-            *place += 1;
+        sorted.resize(edges.len(), 0);
+        for (place, edge) in edges.iter().enumerate() {
+            let end = &mut ends[edge.run()];
+            sorted[*end] = place as u32;
+            *end += 1;
         }
     }
 
-    /// Gives colours from `first` on to what is pending, as many as a mask has; the others are left. Gives how many colours it
-    /// took.
-    fn round(&mut self, moving: usize, first: u32) -> u32 {
-        let Self { edges, used, pending, left, .. } = self;
+    /// Gives colours from `first` on to the edges at some places, as many as a mask has; the others are left. Gives how many
+    /// colours it took.
+    fn round(&mut self, places: impl Iterator<Item = u32>, moving: usize, first: u32) -> u32 {
+        let Self { edges, used, left, .. } = self;
         used.clear();
         used.resize(moving, 0);
         left.clear();
         let mut count = 0;
-        for &i in pending.iter() {
-            let edge = &mut edges[i as usize];
-            let taken = edge
-                .bodies
-                .iter()
-                .fold(0, |taken, &body| taken | used.get(body as usize).copied().unwrap_or(0));
-            let color = taken.trailing_ones();
+        for place in places {
+            let edge = &mut edges[place as usize];
+            let [a, b] = edge.bodies.map(|body| used.get(body as usize).copied().unwrap_or(0));
+            let color = (a | b).trailing_ones();
             if color == COLORS {
-                left.push(i);
+                left.push(place);
                 continue;
             }
             for &body in &edge.bodies {
@@ -129,20 +129,21 @@ impl Coloring {
         count
     }
 
-    /// Runs of edges of one colour and class, in order.
-    pub fn runs(&self) -> impl Iterator<Item = &[Edge]> {
-        self.sorted.chunk_by(|a, b| a.run() == b.run())
+    /// Places of the edges of each colour, class by class.
+    pub fn runs(&self) -> impl Iterator<Item = [&[u32]; CLASSES]> {
+        self.ends.chunks_exact(CLASSES).scan(0, |start, ends| {
+            Some(core::array::from_fn(|class| {
+                let from = core::mem::replace(start, ends[class]);
+                &self.sorted[from..ends[class]]
+            }))
+        })
     }
 }
 
 impl Edge {
-    pub fn color(&self) -> u32 {
-        self.color
-    }
-
     /// Number of its colour and class.
     fn run(&self) -> usize {
-        (self.color * CLASSES + self.class) as usize
+        self.color as usize * CLASSES + self.class as usize
     }
 }
 
@@ -163,16 +164,27 @@ mod tests {
                 // A hub among them has more contacts than a round has colours.
                 let b = if random.unit() < 0.4 { 0 } else { random.index(moving + fixed) as u32 };
                 if a != b {
-                    coloring.edges.push(Edge::new(contact, [a, b], random.index(3) as u32, Firmness::FREE));
+                    let class = random.index(CLASSES) as u32;
+                    coloring.edges.push(Edge::new(contact, [a, b], class, Firmness::FREE, u32::MAX));
                 }
             }
+            coloring.edges.sort_by_key(|edge| edge.bodies.iter().any(|&body| body as usize >= moving));
             let count = coloring.edges.len();
             let colors = coloring.color(moving);
-            assert_eq!(coloring.runs().map(<[Edge]>::len).sum::<usize>(), count);
+            assert_eq!(coloring.runs().flatten().map(<[u32]>::len).sum::<usize>(), count);
+            for (color, runs) in coloring.runs().enumerate() {
+                for (class, run) in runs.into_iter().enumerate() {
+                    let here = |&place: &u32| {
+                        let edge = &coloring.edges[place as usize];
+                        (edge.color, edge.class) == (color as u32, class as u32)
+                    };
+                    assert!(run.iter().all(here) && run.is_sorted(), "case {case}");
+                }
+            }
             let mut last_moving = 0;
             for color in 0..colors {
                 let mut seen = vec![false; moving];
-                for edge in coloring.sorted.iter().filter(|edge| edge.color() == color) {
+                for edge in coloring.edges.iter().filter(|edge| edge.color == color) {
                     for &body in edge.bodies.iter().filter(|&&body| (body as usize) < moving) {
                         assert!(!core::mem::replace(&mut seen[body as usize], true), "case {case}");
                     }
@@ -181,10 +193,10 @@ mod tests {
                     }
                 }
             }
-            for edge in &coloring.sorted {
+            for edge in &coloring.edges {
                 let is_fixed = edge.bodies.iter().any(|&body| body as usize >= moving);
                 assert!(
-                    !is_fixed || edge.color() > last_moving || last_moving == 0,
+                    !is_fixed || edge.color > last_moving || last_moving == 0,
                     "case {case}: fixed come last"
                 );
             }

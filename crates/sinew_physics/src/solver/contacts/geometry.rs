@@ -5,7 +5,7 @@ use crate::collide::{MAX_POINTS, Manifold};
 use sinew_math::{Transform, Vec3, any_orthonormal};
 
 /// Gap of a point that is not there, metres.
-const FAR: f32 = 1e6;
+pub(super) const FAR: f32 = 1e6;
 
 /// Cores of the surfaces at each point of a manifold, in the principal frames: a ball's contact does not turn with it, a box's
 /// corner does.
@@ -34,7 +34,7 @@ impl Cores {
 
 /// Which of two surfaces a contact acts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Side {
+pub(super) enum Side {
     OfA,
     Between,
     OfB,
@@ -42,7 +42,7 @@ enum Side {
 
 impl Side {
     /// Where a ball touches goes along with the ball, also on a table that moves away under it; else it is on what does not move.
-    fn new(rounds: [f32; 2], moves: [bool; 2]) -> Self {
+    pub fn new(rounds: [f32; 2], moves: [bool; 2]) -> Self {
         match rounds.map(|round| round > 0.0).into() {
             (true, false) => Self::OfA,
             (false, true) => Self::OfB,
@@ -61,7 +61,7 @@ impl Side {
     }
 
     /// As a share of the separation, from half-way between the surfaces toward B.
-    fn share(self) -> f32 {
+    pub fn share(self) -> f32 {
         match self {
             Self::OfA => -0.5,
             Self::Between => 0.0,
@@ -108,36 +108,6 @@ impl Geometry {
             geometry.center += at * weights[i];
         }
         geometry.finish(cores.count, weights, cores.rounds[0]);
-        geometry
-    }
-
-    /// Of a manifold that was found at the present poses of its bodies, whose centres are given.
-    pub fn of_manifold(
-        manifold: &Manifold,
-        centers: [Vec3; 2],
-        rounds: [f32; 2],
-        moves: [bool; 2],
-        weights: &[f32; MAX_POINTS],
-    ) -> Self {
-        let n = manifold.normal;
-        let mut geometry = Self {
-            normal: n,
-            tangent: any_orthonormal(n),
-            offset: centers[0] - centers[1],
-            arms: [Vec3::ZERO; MAX_POINTS],
-            separation: [FAR; MAX_POINTS],
-            round: rounds[0] + rounds[1],
-            center: Vec3::ZERO,
-            lever: 0.0,
-        };
-        let side = Side::new(rounds, moves).share();
-        for (i, point) in manifold.points().iter().enumerate() {
-            geometry.separation[i] = point.separation;
-            let at = point.position + n * (side * point.separation) - centers[0];
-            geometry.arms[i] = at - n * rounds[0];
-            geometry.center += at * weights[i];
-        }
-        geometry.finish(manifold.count, weights, rounds[0]);
         geometry
     }
 

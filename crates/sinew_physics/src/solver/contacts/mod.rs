@@ -12,11 +12,14 @@ mod geometry;
 mod memory;
 mod place;
 mod prepare;
+mod record;
 mod refind;
 mod store;
 mod visit;
+mod write;
 
-pub(super) use prepare::OfStep;
+pub(super) use prepare::{OfStep, placed};
+pub(super) use record::Added;
 pub(super) use refind::Substep;
 
 use super::SolverBody;
@@ -29,6 +32,7 @@ use block::{Block, Bounce, Memory, Rolling};
 use color::Coloring;
 use conjugate::Conjugate;
 use core::ops::Range;
+use record::{Extra, Record};
 use refind::Found;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
@@ -61,8 +65,15 @@ pub(crate) struct Contacts {
     colors: Vec<Color>,
     rolling: Vec<Rolling>,
     coloring: Coloring,
+    /// Of what was added, in that order, and of few of them.
+    records: Vec<Record>,
+    extras: Vec<Extra>,
+    /// A surface moves along its body, or throws off what touches it.
+    drives: bool,
     /// Inverse mass and inertia of each body: 1/m, then xx, yy, zz, yz, xz, xy.
     inverse: Vec<Vec6>,
+    /// Where the centre of each body was when the step began: x, y, z.
+    centers: Vec<Vec6>,
     /// How each body has moved since the step began.
     moved: Vec<Vec6>,
     /// Per body: how much its velocity has changed in the pass.

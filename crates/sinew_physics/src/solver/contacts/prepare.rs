@@ -1,22 +1,23 @@
 //! From the world's contacts to blocks: once a step.
 
-use super::block::{Block, Bounce, HELD, Memory, NONE, Rolling, ZERO8};
+use super::block::{Block, Bounce, Memory, NONE, Rolling, ZERO8};
 use super::color::Edge;
 use super::geometry::{Cores, Geometry};
+use super::place::{respond, take_inertias};
+use super::record::{Extra, Record};
 use super::refind::{self, Found};
+use super::write::write;
 use super::{Class, Color, Contacts};
 use crate::collide::MAX_POINTS;
-use crate::contact::{Contact, ContactMemory, slop};
+use crate::contact::{Contact, ContactMemory};
 use crate::material::ContactMaterial;
-use crate::solver::contact_rows::{Placed, Softness, contact_softness, weights};
-use crate::solver::effort::Firmness;
+use crate::solver::contact_rows::{Placed, Softness, contact_softness};
 use crate::solver::{SolverBody, View};
+use crate::spatial::Vec6;
 use core::ops::Range;
-use sinew_math::lanes::WIDTH;
-use sinew_math::{Sym3, Vec3, min};
-
-/// Share of the slop that is left overlapping.
-const DEAD_ZONE: f32 = 0.2;
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::{Lanes, WIDTH};
+use sinew_math::{Sym3, Vec3};
 
 /// Blocks for which there is room at once where another is needed.
 pub(super) const SPARE_BLOCKS: usize = 8;
@@ -32,27 +33,14 @@ pub(in crate::solver) struct OfStep<'a> {
     pub stretch: f32,
 }
 
-/// What lanes are written from.
-struct Source<'a> {
-    of: &'a OfStep<'a>,
-    /// Softness between moving bodies, and against fixed ones.
-    soft: [Softness; 2],
-}
-
-/// Two numbers of a contact's class: the most points of its blocks.
-fn class_of(points: usize) -> u32 {
-    match points {
-        0 | 1 => 0,
-        2 => 1,
-        _ => 2,
-    }
-}
-
 impl Contacts {
     /// Begins a list of contacts.
     pub fn clear(&mut self) {
         self.tally = Default::default();
         self.coloring.clear();
+        self.records.clear();
+        self.extras.clear();
+        self.drives = false;
         self.colors.clear();
         self.found.clear();
         self.rolling.clear();
@@ -63,25 +51,22 @@ impl Contacts {
 
     /// Lists for so many bodies and contacts, also for an island that has none: memory goes on to the next.
     pub fn make_room(&mut self, bodies: usize, contacts: usize) {
-        for list in [&mut self.inverse, &mut self.moved] {
+        for list in [&mut self.inverse, &mut self.moved, &mut self.centers] {
             list.clear();
             list.reserve(bodies);
         }
         self.stir.clear();
         self.stir.reserve(bodies);
+        self.records.clear();
+        self.records.reserve(contacts);
+        self.extras.clear();
+        self.extras.reserve(SPARE_BLOCKS * WIDTH);
         self.colors.reserve(SPARE_BLOCKS);
         let blocks = usize::min(contacts, SPARE_BLOCKS);
         self.one.make_room(blocks);
         self.two.make_room(blocks);
         self.four.make_room(blocks);
         self.coloring.make_room(bodies, contacts);
-    }
-
-    /// Adds a contact of two local bodies.
-    pub fn push(&mut self, contact: u32, bodies: [u32; 2], points: usize, firmness: Firmness) {
-        self.tally.manifolds += 1;
-        self.tally.points += points as u64;
-        self.coloring.edges.push(Edge::new(contact, bodies, class_of(points), firmness));
     }
 
     /// Colours what was added and writes it to blocks. Gives whether a surface moves along its body, or throws off what touches it.
@@ -93,41 +78,70 @@ impl Contacts {
         self.rolling.reserve(SPARE_BLOCKS);
         let colors = self.coloring.color(of.moving) as usize;
         self.colors.resize(colors, Color::default());
+        self.take_inertias(of.bodies, of.moving);
+        self.centers.clear();
+        self.centers.extend(of.bodies.iter().map(|body| {
+            let [x, y, z] = body.pose.translation.to_array();
+            [x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0]
+        }));
         let soft = [true, false].map(|both_move| contact_softness(both_move, of.h));
-        let source = Source { of, soft };
-        let Self { one, two, four, colors, coloring, rolling, found, .. } = self;
-        let mut color = usize::MAX;
-        let mut into = Into { rolling, found, drives: false };
-        for run in coloring.runs() {
-            let [first, ..] = run else { continue };
-            if first.color() as usize != color {
-                color = first.color() as usize;
-                // Classes that this colour has none of.
-                let (one, two, four) = (one.count, two.count, four.count);
-                colors[color] = Color { one: one..one, two: two..two, four: four..four };
-            }
-            let color = &mut colors[color];
-            match first.class {
-                0 => color.one = one.write(run, &source, 0, &mut into),
-                1 => color.two = two.write(run, &source, 1, &mut into),
-                _ => color.four = four.write(run, &source, 2, &mut into),
-            }
-        }
-        let drives = into.drives;
+        let Self {
+            one, two, four, colors, coloring, records, extras, centers, inverse, rolling, found, ..
+        } = self;
+        let source = Source { of, edges: &coloring.edges, records, extras, centers, inverse, soft };
+        let lists = Lists { rolling, found };
+        dispatch::run(Write { one, two, four, colors, runs: coloring.runs(), source, lists });
+        self.is_spoiled = false;
         self.found.sort_unstable_by_key(Found::place);
         self.make_room_for_conjugate(of.bodies.len());
-        self.take_inertias(of.bodies, of.moving);
-        self.respond();
-        drives
+        self.drives
     }
 }
 
+/// What lanes are written from.
+pub(super) struct Source<'a> {
+    pub of: &'a OfStep<'a>,
+    pub edges: &'a [Edge],
+    /// Of the edges.
+    pub records: &'a [Record],
+    pub extras: &'a [Extra],
+    /// Per body: where its centre is, its inverse mass and inertia.
+    pub centers: &'a [Vec6],
+    inverse: &'a [Vec6],
+    /// Softness between moving bodies, and against fixed ones.
+    pub soft: [Softness; 2],
+}
+
 /// Lists beside the blocks.
-struct Into<'a> {
+struct Lists<'a> {
     rolling: &'a mut Vec<Rolling>,
     found: &'a mut Vec<Found>,
-    /// A surface moves along its body, or throws off what touches it.
-    drives: bool,
+}
+
+/// Writes all blocks, colour by colour.
+struct Write<'a, R> {
+    one: &'a mut Class<1, 1>,
+    two: &'a mut Class<2, 3>,
+    four: &'a mut Class<4, 10>,
+    colors: &'a mut [Color],
+    /// Places of the edges of each colour, class by class.
+    runs: R,
+    source: Source<'a>,
+    lists: Lists<'a>,
+}
+
+impl<'a, R: Iterator<Item = [&'a [u32]; 3]>> Kernel for Write<'_, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { one, two, four, colors, runs, source, mut lists } = self;
+        for (color, run) in colors.iter_mut().zip(runs) {
+            color.one = one.write::<L>(run[0], &source, 0, &mut lists);
+            color.two = two.write::<L>(run[1], &source, 1, &mut lists);
+            color.four = four.write::<L>(run[2], &source, 2, &mut lists);
+        }
+    }
 }
 
 impl<const N: usize, const T: usize> Class<N, T> {
@@ -143,129 +157,87 @@ impl<const N: usize, const T: usize> Class<N, T> {
         self.bounces.reserve(blocks);
     }
 
+    /// Appends a block of whatever numbers.
+    #[inline(always)]
+    fn append(&mut self) -> usize {
+        self.count += 1;
+        if self.blocks.len() < self.count {
+            // Room for some that come and go, so that a pile which settles asks for no more.
+            self.blocks.reserve(SPARE_BLOCKS);
+            self.memory.reserve(SPARE_BLOCKS);
+            self.bounces.reserve(SPARE_BLOCKS);
+            self.blocks.push(Block::empty());
+            self.memory.push(Memory::empty());
+        }
+        self.count - 1
+    }
+
     /// Appends blocks with the contacts of a run. Gives which blocks.
-    fn write(&mut self, run: &[Edge], source: &Source<'_>, class: u32, into: &mut Into<'_>) -> Range<usize> {
+    #[inline(always)]
+    fn write<L: Lanes>(
+        &mut self,
+        run: &[u32],
+        source: &Source<'_>,
+        class: u32,
+        lists: &mut Lists<'_>,
+    ) -> Range<usize> {
         let first = self.count;
         for edges in run.chunks(WIDTH) {
-            let place = self.count;
-            self.count += 1;
-            if self.blocks.len() < self.count {
-                // Room for some that come and go, so that a pile which settles asks for no more.
-                self.blocks.reserve(SPARE_BLOCKS);
-                self.memory.reserve(SPARE_BLOCKS);
-                self.bounces.reserve(SPARE_BLOCKS);
-                self.blocks.push(Block::empty());
-                self.memory.push(Memory::empty());
-            }
+            let place = self.append();
             let (block, memory) = (&mut self.blocks[place], &mut self.memory[place]);
-            (block.rolling, memory.bounce) = (NONE, NONE);
-            for lane in 0..WIDTH {
-                // Empty lanes repeat the last contact, and hold its bodies.
-                let edge = &edges[usize::min(lane, edges.len() - 1)];
-                let is_empty = lane >= edges.len();
-                let written = Lane { source, edge, place: [class, place as u32, lane as u32], is_empty };
-                written.write(block, memory, &mut self.bounces, into);
+            let bounces = write::<L, N, T>(block, memory, edges, source);
+            take_inertias::<L, N, T>(block, source.inverse);
+            respond::<L, N, T>(block);
+            if bounces {
+                memory.bounce = self.bounces.len() as u32;
+                self.bounces.push(Bounce::NONE);
+            }
+            for (lane, &edge) in edges.iter().enumerate() {
+                let edge = &source.edges[edge as usize];
+                if edge.extra != NONE {
+                    let at = [class, place as u32, lane as u32];
+                    block.rolling = lists.add(source, edge, at, block.rolling);
+                }
             }
         }
         first..self.count
     }
 }
 
-/// One contact on its way to a lane.
-struct Lane<'a> {
-    source: &'a Source<'a>,
-    edge: &'a Edge,
-    /// Class, block and lane.
-    place: [u32; 3],
-    is_empty: bool,
-}
-
-impl Lane<'_> {
-    fn write<const N: usize, const T: usize>(
-        &self,
-        block: &mut Block<N, T>,
-        memory: &mut Memory<N>,
-        bounces: &mut Vec<Bounce<N>>,
-        into: &mut Into<'_>,
-    ) {
-        let OfStep { view, bodies, moving, stretch, .. } = *self.source.of;
-        let (contact, lane) = (&view.contacts[self.edge.contact as usize], self.place[2] as usize);
-        let ends = self.edge.bodies;
-        let moves = ends.map(|body| (body as usize) < moving);
-        for end in 0..2 {
-            let held = if moves[end] && !self.is_empty { 0 } else { HELD };
-            block.bodies[end][lane] = ends[end] | held;
+impl Lists<'_> {
+    /// Adds what only few contacts have. Gives the place of the rolling resistance of its block.
+    fn add(&mut self, source: &Source<'_>, edge: &Edge, at: [u32; 3], rolling: u32) -> u32 {
+        let OfStep { view, bodies, moving, stretch, .. } = *source.of;
+        let extra = &source.extras[edge.extra as usize];
+        let bodies = edge.bodies.map(|body| &bodies[body as usize]);
+        if extra.rolls {
+            let manifold = view.contacts[edge.contact as usize].manifold;
+            let cores = Cores::new(&manifold, bodies.map(|body| body.pose), extra.rounds);
+            self.found.push(Found::new(at, edge, manifold, cores, refind::ROLL_TURN));
         }
-        memory.contacts[lane] = if self.is_empty { NONE } else { self.edge.contact };
-        let poses = ends.map(|body| &bodies[body as usize].pose);
-        let shapes = placed(view, contact);
-        let in_principal = |end: usize| poses[end].rotation.inverse() * contact.manifold.normal;
-        let (mut rounds, mut rolls) = ([0.0; 2], false);
-        for end in 0..2 {
-            if shapes[end].is_curved() {
-                rounds[end] = shapes[end].round(in_principal(end));
-                rolls |= shapes[end].has_rim(in_principal(end));
-            }
+        if extra.rolling <= 0.0 {
+            return rolling;
         }
-        let slop = slop(min(shapes[0].shape.smallest_extent(), shapes[1].shape.smallest_extent()));
-        let weights = weights(&contact.memory, &contact.manifold, if rolls { slop } else { f32::INFINITY });
-        let centers = poses.map(|pose| pose.translation);
-        let geometry = Geometry::of_manifold(&contact.manifold, centers, rounds, moves, &weights);
-        geometry.write(block, memory, lane);
-        self.write_softness(block, memory, slop);
-        let material = view.modifiers.material(view.bodies, view.contacts, self.edge.contact);
-        write_material(block, memory, lane, &material, &geometry);
-        let kept = contact.memory.of_substeps(stretch);
-        write_impulses(block, memory, lane, &kept, &geometry);
-        if self.is_empty {
-            return;
+        let place = if rolling == NONE { self.rolling.len() as u32 } else { rolling };
+        if rolling == NONE {
+            self.rolling.push(Rolling::NONE);
         }
-        if material.restitution > 0.0 && memory.bounce == NONE {
-            memory.bounce = bounces.len() as u32;
-            bounces.push(Bounce::NONE);
-        }
-        if material.rolling > 0.0 {
-            if block.rolling == NONE {
-                block.rolling = into.rolling.len() as u32;
-                into.rolling.push(Rolling::NONE);
-            }
-            let rolling = &mut into.rolling[block.rolling as usize];
-            write_rolling(
-                rolling,
-                lane,
-                &material,
-                kept.rolling,
-                ends.map(|body| &bodies[body as usize]),
-                moves,
-            );
-        }
-        into.drives |= material.drives();
-        if rolls {
-            let cores = Cores::new(&contact.manifold, poses.map(|pose| *pose), rounds);
-            into.found.push(Found::new(self.place, self.edge, contact.manifold, cores, refind::ROLL_TURN));
-        }
-    }
-
-    fn write_softness<const N: usize, const T: usize>(
-        &self,
-        block: &Block<N, T>,
-        memory: &mut Memory<N>,
-        slop: f32,
-    ) {
-        let lane = self.place[2] as usize;
-        let (firmness, soft) = (self.edge.firmness, &self.source.soft);
-        let both_move = block.bodies.iter().all(|bodies| bodies[lane] & HELD == 0);
-        let soft = if both_move { &soft[0] } else { &soft[1] };
-        memory.dead_zone[lane] = DEAD_ZONE * slop;
-        memory.bias_rate[lane] = soft.bias_rate;
-        memory.push_speed[lane] = firmness.push_speed;
-        // Of the mean response of the points: its sum is divided here.
-        memory.softness[lane] = firmness.softness * soft.impulse_scale / soft.mass_scale / (N * N) as f32;
+        let moves = edge.bodies.map(|body| (body as usize) < moving);
+        let impulse = extra.impulse * stretch;
+        write_rolling(
+            &mut self.rolling[place as usize],
+            at[2] as usize,
+            extra.rolling,
+            impulse,
+            bodies,
+            moves,
+        );
+        place
     }
 }
 
 /// The shapes of a contact, in their bodies' principal frames.
-pub(super) fn placed<'a>(view: &View<'a>, contact: &Contact) -> [Placed<'a>; 2] {
+pub(in crate::solver) fn placed<'a>(view: &View<'a>, contact: &Contact) -> [Placed<'a>; 2] {
     let key = contact.key;
     [(key.a, key.shape_a), (key.b, key.shape_b)].map(|(body, shape)| {
         let shape = &view.bodies.at(body).shapes[shape as usize];
@@ -318,7 +290,7 @@ pub(super) fn write_impulses<const N: usize, const T: usize>(
 fn write_rolling(
     rolling: &mut Rolling,
     lane: usize,
-    material: &ContactMaterial,
+    lever: f32,
     impulse: Vec3,
     bodies: [&SolverBody; 2],
     moves: [bool; 2],
@@ -328,7 +300,7 @@ fn write_rolling(
         response += body.inverse_inertia;
     }
     let inverse = response.inverse();
-    rolling.lever[lane] = material.rolling;
+    rolling.lever[lane] = lever;
     rolling.trace[lane] = response.diagonal.x + response.diagonal.y + response.diagonal.z;
     let numbers = [inverse.diagonal.to_array(), inverse.off.to_array()];
     for (row, number) in rolling.inverse.iter_mut().zip(numbers.into_iter().flatten()) {
