@@ -145,7 +145,8 @@ fn what_was_compressed_comes_back() {
             .map(|t| turned([corner(&t[0]), corner(&t[1]), corner(&t[2])]))
             .collect();
         let mut wanted: Vec<[usize; 3]> = triangles().into_iter().map(turned).collect();
-        (found.sort_unstable(), wanted.sort_unstable());
+        found.sort_unstable();
+        wanted.sort_unstable();
         assert_eq!(found, wanted, "method {method}");
     }
 }
