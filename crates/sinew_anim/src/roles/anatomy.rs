@@ -229,7 +229,6 @@ impl<'a> Scene<'a> {
             add(Role::Shoulder(side), Part::Clavicle, Role::UpperArm(side));
             add(Role::Hand(side), Part::Hand, Role::LowerArm(side));
             add(Role::Foot(side), Part::Foot, Role::LowerLeg(side));
-            add(Role::Toes(side), Part::Toes, Role::Foot(side));
         }
     }
 
@@ -285,7 +284,24 @@ impl<'a> Scene<'a> {
             level(Role::Hand(side)).is_some_and(|hand| hand < foot + 0.35 * leg)
         };
         let walks_on_hands = [Side::Left, Side::Right].into_iter().any(low);
+        if !self.stands(&draft) {
+            return None;
+        }
         (!walks_on_hands).then_some(draft)
+    }
+
+    /// Whether the legs point away from the head: those of a beast that is named like a human hang across its trunk.
+    fn stands(&self, draft: &Draft) -> bool {
+        let place = |role: Role| {
+            let joint = draft.roles.iter().position(|r| r.is_some_and(|guess| guess.role == role));
+            joint.map(|joint| self.bound.model[joint].translation)
+        };
+        let along = |side: Side| {
+            let end = place(Role::Foot(side)).or(place(Role::LowerLeg(side)))?;
+            let leg = end - place(Role::UpperLeg(side))?;
+            Some(leg.dot(draft.up) / sinew_math::max(leg.length(), 1e-12))
+        };
+        [Side::Left, Side::Right].into_iter().filter_map(along).all(|down| down < -0.5)
     }
 
     /// A draft from known roles; `None` if hips, head, or one of the upper and lower limbs is missing.

@@ -219,6 +219,67 @@ fn roles_of_rigs_from_the_wild() {
     }
 }
 
+/// Animals, machines and fish, by their files' beginnings; some have arms, hips and a head by name.
+const BEASTS: [&str; 14] = [
+    "quaternius_animals_",
+    "quaternius_dinosaurs_",
+    "quaternius_easy_enemies_",
+    "quaternius_fish_",
+    "quaternius_cute_fish_",
+    "quaternius_tank_",
+    "quaternius_cyberpunk_Enemy_",
+    "quaternius_platformer_game_B",
+    "quaternius_platformer_game_Crab",
+    "playground_frontend_Fox",
+    "pet_proj_wolf",
+    "Multi_",
+    "godot_4_3D_Characters_",
+    "siege_bakery_",
+];
+
+#[test]
+fn no_beast_is_a_human_whatever_its_joints_are_called() {
+    if rigs::bytes("skeletons/README.md").is_none() {
+        return;
+    }
+    let mut seen = 0;
+    for file in BEASTS.iter().flat_map(|start| files(&format!("skeletons/{start}*"))) {
+        let json = serde_json::from_slice(&rigs::bytes(&file).expect("the data")).expect("JSON");
+        let rig = of_skeleton(&json);
+        for rig in [rig.clone(), blurred(&rig, 2)] {
+            assert!(!analyze(&rig).expect("a skin").humanoid, "{file}");
+        }
+        seen += 1;
+    }
+    assert!(seen > 35, "{seen} files");
+}
+
+#[test]
+fn a_dog_with_a_humans_names_is_none() {
+    let dog = |role: &str| {
+        let at = human(role);
+        let trunk = !role.starts_with("left") && !role.starts_with("right");
+        let arm = ["Arm", "Hand", "Shoulder"].iter().any(|part| role.contains(part));
+        match (trunk, arm) {
+            // Upright is ahead, and arms hang down under the chest.
+            (true, _) => Vec3::new(0.0, 0.6, at.y - 0.95),
+            (_, true) => Vec3::new(0.12 * at.x.signum(), 0.65 - 0.8 * (at.x.abs() - 0.04), 0.4),
+            _ => Vec3::new(at.x, 0.6 * at.y, 0.05 + at.z),
+        }
+    };
+    let (_, mut lines) = conventions().into_iter().find(|(name, _)| name == "Unreal").expect("a convention");
+    // Paws have no name here, or they would walk on hands.
+    let gone = |line: &Line| line.2.as_deref().is_some_and(|role| role.ends_with("Hand"));
+    for line in lines.iter_mut().filter(|line| gone(line)) {
+        line.0 = "dewclaw".into();
+    }
+    let rig = dressed_as(&lines, &dog);
+    for rig in [rig.clone(), blurred(&rig, 4)] {
+        let found = analyze(&rig).expect("a skin");
+        assert!(!found.humanoid, "{:?}", found.notes);
+    }
+}
+
 /// A skeleton of conventions.txt: name, parent, role if any, whether it moves skin.
 type Line = (String, Option<usize>, Option<String>, bool);
 
@@ -288,6 +349,11 @@ fn human(role: &str) -> Vec3 {
 
 /// A human with the joints of a convention; those without a role sit between what carries them and what they carry.
 fn dressed(lines: &[Line]) -> Rig {
+    dressed_as(lines, &human)
+}
+
+/// As [`dressed`], with the joints of roles elsewhere.
+fn dressed_as(lines: &[Line], human: &dyn Fn(&str) -> Vec3) -> Rig {
     let mut places: Vec<Vec3> = Vec::new();
     for (i, (name, parent, role, _)) in lines.iter().enumerate() {
         let carried =
