@@ -6,7 +6,7 @@ use super::bind::Bound;
 use super::creature::{generic_roles, up_by_feet};
 use super::graph::{Graph, ancestors};
 use super::humanoid::{Evidence, Humanoid, Limb, Split, Stance};
-use super::names::{Part, Reading, read_names, settle_duplicates};
+use super::names::{Part, Reading, read_names, settle_duplicates, settle_trunk};
 use super::role::{Role, Side};
 use super::symmetry::Symmetry;
 use crate::rig::{JointIdx, Rig};
@@ -30,6 +30,10 @@ const CONFIDENCE: [f32; 3] = [0.95, 0.8, 0.5];
 const CONFIDENCE_NAMED: f32 = 0.6;
 /// Confidence of a generic role.
 const CONFIDENCE_GENERIC: f32 = 0.6;
+
+/// How far both feet together must stick out against what left and right are named, in heights of the body: half of what
+/// a human's do.
+const LEAD_AGAINST_NAMES: f32 = 0.04;
 
 /// Graph, symmetry and names of a rig, as far as the names can be trusted.
 struct Scene<'a> {
@@ -81,15 +85,18 @@ impl Draft {
 impl<'a> Scene<'a> {
     fn of(rig: &'a Rig, bound: &'a Bound) -> Option<(Self, Vec<String>)> {
         let mut notes = Vec::new();
-        let mut readings = read_names(rig.joints.iter().map(|joint| joint.name.as_str()));
         let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
+        let parents: Vec<Option<JointIdx>> = rig.joints.iter().map(|joint| joint.parent).collect();
+        let mut readings = read_names(&names, &parents);
         settle_duplicates(&mut readings, &names, |joint| {
             (bound.area[joint] > 0.0).then(|| ancestors(rig, joint).count())
         });
+        settle_trunk(&mut readings, &parents, |joint| bound.area[joint] > 0.0);
         let mut graph = Graph::of(rig, bound, |_| true)?;
         let mut symmetry = Symmetry::find(&graph, bound.size());
         let (agreeing, pairs) = mirrored_names(&graph, &symmetry, &readings);
-        if 10 * agreeing >= 6 * pairs && pairs > 0 {
+        let trusted = if pairs > 0 { 10 * agreeing >= 6 * pairs } else { sides_pair_up(&readings) };
+        if trusted {
             let body = |joint: JointIdx| readings[joint].part != Some(Part::Appendix);
             if let Some(smaller) = Graph::of(rig, bound, body) {
                 symmetry = Symmetry::find(&smaller, bound.size());
@@ -123,8 +130,8 @@ impl<'a> Scene<'a> {
         let forward = lateral.cross(up);
         let lead = feet_lead(self.bound, &Stance::new(self.bound, up), forward, ankles);
         let named = left_by_name(&self.graph, &self.symmetry, &self.node_readings());
-        // Half a per cent of the height and more is a foot; less is noise.
-        if lead.abs() > 0.005 {
+        // Half a per cent of the height and more is a foot, less is noise; against names it takes a foot that nobody doubts.
+        if lead.abs() > if named * lead < 0.0 { LEAD_AGAINST_NAMES } else { 0.005 } {
             if named * lead < 0.0 {
                 notes.push(
                     "the feet point the other way than left and right are named: the feet count".into(),
@@ -146,26 +153,49 @@ impl<'a> Scene<'a> {
         let left = self.left(up, &ankles, notes);
         let first = if left.dot(self.symmetry.lateral) > 0.0 { Side::Left } else { Side::Right };
         let mut roles = vec![None; self.rig.joints.len()];
-        let mut set = |node: usize, role: Role| {
-            let joint = self.graph.nodes[node].joint;
+        let mut set_joint = |joint: JointIdx, role: Role| {
             roles[joint] = Some(RoleGuess { role, confidence: confidence(role, &self.readings[joint]) });
         };
-        set(found.pelvis, Role::Hips);
         let parts = [Role::Spine, Role::Chest, Role::UpperChest];
-        for (part, role) in thirds(&found.spine).into_iter().zip(parts) {
-            set(part, role);
+        let spine = self.with_bare(&found.spine, Part::Spine);
+        for (place, role) in thirds(spine.len()).zip(parts) {
+            set_joint(spine[place], role);
         }
-        if let Some(&neck) = found.neck.first() {
-            set(neck, Role::Neck);
+        if let Some(&neck) = self.with_bare(&found.neck, Part::Neck).first() {
+            set_joint(neck, Role::Neck);
         }
+        let mut set = |node: usize, role: Role| set_joint(self.graph.nodes[node].joint, role);
+        set(found.pelvis, Role::Hips);
         set(found.head, Role::Head);
         for (k, side) in [(0, first), (1, first.mirror())] {
             for (node, role) in arm_roles(&found.arms, k, side).into_iter().chain(leg_roles(legs, k, side)) {
                 set(node, role);
             }
         }
-        self.find_bare_feet(&mut roles);
+        self.add_named(&mut roles);
         Draft { roles, humanoid: true, up, left }
+    }
+
+    /// The joints of a chain of the trunk, and among them and right above those without skin that are named as its part.
+    fn with_bare(&self, chain: &[usize], part: Part) -> Vec<JointIdx> {
+        let mut joints: Vec<JointIdx> = chain.iter().map(|&node| self.graph.nodes[node].joint).collect();
+        let (Some(&first), Some(&last)) = (joints.first(), joints.last()) else { return joints };
+        let named = |joint: &JointIdx| self.readings[*joint].part == Some(part);
+        let mut path: Vec<JointIdx> = Vec::new();
+        let mut passed_first = false;
+        for joint in core::iter::once(last).chain(ancestors(self.rig, last)) {
+            if passed_first && !(named(&joint) && self.bound.area[joint] <= 0.0) {
+                break;
+            }
+            path.push(joint);
+            passed_first |= joint == first;
+        }
+        if passed_first {
+            path.retain(|joint| joints.contains(joint) || named(joint) && self.bound.area[*joint] <= 0.0);
+            path.reverse();
+            joints = path;
+        }
+        joints
     }
 
     /// Where the foot begins: its node, or the end of the shank where the foot moves no skin of its own.
@@ -178,19 +208,27 @@ impl<'a> Scene<'a> {
         self.bound.model[end.unwrap_or(joint)].translation
     }
 
-    /// Feet without skin of their own, beside the body in the rig: found by name at the end of the shank.
-    fn find_bare_feet(&self, roles: &mut [Option<RoleGuess>]) {
-        for side in [Side::Left, Side::Right] {
-            let has =
-                |role: Role| roles.iter().position(|r| r.is_some_and(|guess: RoleGuess| guess.role == role));
-            let (Some(shank), None) = (has(Role::LowerLeg(side)), has(Role::Foot(side))) else { continue };
+    /// Parts that the shape does not show, by name: feet without skin beside the body in the rig, hands of arms whose two
+    /// sides are posed differently, a neck without skin.
+    fn add_named(&self, roles: &mut [Option<RoleGuess>]) {
+        let mut add = |role: Role, part: Part, on: Role| {
+            let has = |role: Role| roles.iter().position(|r| r.is_some_and(|guess| guess.role == role));
+            let (Some(on), None) = (has(on), has(role)) else { return };
             let named = |&joint: &JointIdx| {
-                let reading = &self.readings[joint];
-                reading.part == Some(Part::Foot) && roles[joint].is_none() && self.on_side_of(joint, shank)
+                let (reading, side) = (&self.readings[joint], self.readings[on].side);
+                let same_side =
+                    if side.is_some() { reading.side == side } else { self.on_side_of(joint, on) };
+                reading.part == Some(part) && roles[joint].is_none() && (part == Part::Neck || same_side)
             };
-            if let Some(foot) = (0..roles.len()).find(named) {
-                roles[foot] = Some(RoleGuess { role: Role::Foot(side), confidence: CONFIDENCE_NAMED });
+            if let Some(joint) = (0..roles.len()).find(named) {
+                roles[joint] = Some(RoleGuess { role, confidence: CONFIDENCE_NAMED });
             }
+        };
+        add(Role::Neck, Part::Neck, Role::Head);
+        for side in [Side::Left, Side::Right] {
+            add(Role::Shoulder(side), Part::Clavicle, Role::UpperArm(side));
+            add(Role::Hand(side), Part::Hand, Role::LowerArm(side));
+            add(Role::Foot(side), Part::Foot, Role::LowerLeg(side));
         }
     }
 
@@ -209,13 +247,18 @@ impl<'a> Scene<'a> {
 
     /// Roles that trusted names tell, if they make a body and the hands do not walk on the floor.
     fn named_draft(&self) -> Option<Draft> {
+        if self.readings.iter().any(|reading| reading.part == Some(Part::Beast)) {
+            return None;
+        }
         let mut found: Vec<(Role, JointIdx)> = Vec::new();
-        let mut spine: Vec<usize> = Vec::new();
+        let (mut spine, mut necks): (Vec<usize>, Vec<usize>) = Default::default();
         for &i in &self.graph.order {
             let joint = self.graph.nodes[i].joint;
             let Reading { part: Some(part), side, .. } = &self.readings[joint] else { continue };
             if *part == Part::Spine {
                 spine.push(i);
+            } else if *part == Part::Neck {
+                necks.push(i);
             } else if let Some(role) =
                 role_of(*part, *side).filter(|role| found.iter().all(|(r, _)| r != role))
             {
@@ -223,16 +266,42 @@ impl<'a> Scene<'a> {
             }
         }
         let parts = [Role::Spine, Role::Chest, Role::UpperChest];
-        found
-            .extend(thirds(&spine).into_iter().zip(parts).map(|(i, role)| (role, self.graph.nodes[i].joint)));
-        let draft = self.draft_of(found, CONFIDENCE_NAMED)?;
+        necks.truncate(1);
+        found.extend(self.with_bare(&necks, Part::Neck).first().map(|&neck| (Role::Neck, neck)));
+        let spine = self.with_bare(&spine, Part::Spine);
+        found.extend(thirds(spine.len()).zip(parts).map(|(place, role)| (role, spine[place])));
+        let mut draft = self.draft_of(found, CONFIDENCE_NAMED)?;
+        self.add_named(&mut draft.roles);
         let stance = Stance::new(self.bound, draft.up);
-        let low = |role: Role| {
+        let level = |role: Role| {
             let joint = draft.roles.iter().position(|r| r.is_some_and(|guess| guess.role == role));
-            joint.is_some_and(|joint| stance.level(self.bound.model[joint].translation) < 0.2)
+            joint.map(|joint| stance.level(self.bound.model[joint].translation))
         };
-        let walks_on_hands = [Side::Left, Side::Right].into_iter().any(|side| low(Role::Hand(side)));
+        // In the lowest third of the leg.
+        let low = |side: Side| {
+            let foot = level(Role::Foot(side)).unwrap_or(0.0);
+            let leg = level(Role::UpperLeg(side)).map_or(0.0, |hip| hip - foot);
+            level(Role::Hand(side)).is_some_and(|hand| hand < foot + 0.35 * leg)
+        };
+        let walks_on_hands = [Side::Left, Side::Right].into_iter().any(low);
+        if !self.stands(&draft) {
+            return None;
+        }
         (!walks_on_hands).then_some(draft)
+    }
+
+    /// Whether the legs point away from the head: those of a beast that is named like a human hang across its trunk.
+    fn stands(&self, draft: &Draft) -> bool {
+        let place = |role: Role| {
+            let joint = draft.roles.iter().position(|r| r.is_some_and(|guess| guess.role == role));
+            joint.map(|joint| self.bound.model[joint].translation)
+        };
+        let along = |side: Side| {
+            let end = place(Role::Foot(side)).or(place(Role::LowerLeg(side)))?;
+            let leg = end - place(Role::UpperLeg(side))?;
+            Some(leg.dot(draft.up) / sinew_math::max(leg.length(), 1e-12))
+        };
+        [Side::Left, Side::Right].into_iter().filter_map(along).all(|down| down < -0.5)
     }
 
     /// A draft from known roles; `None` if hips, head, or one of the upper and lower limbs is missing.
@@ -287,10 +356,23 @@ fn mirrored_names(graph: &Graph, symmetry: &Symmetry, readings: &[Reading]) -> (
     (agreeing, pairs)
 }
 
-/// At most three of a chain, evenly spread, the first among them.
-fn thirds(chain: &[usize]) -> Vec<usize> {
-    let count = chain.len().min(3);
-    (0..count).map(|k| chain[k * chain.len() / count]).collect()
+/// Whether nearly every part with a side is named on the other, too: for a bind pose in which no mirror finds its image.
+fn sides_pair_up(readings: &[Reading]) -> bool {
+    let mut sides: Vec<(&str, Side)> = readings
+        .iter()
+        .filter_map(|reading| reading.part.and(reading.side).map(|side| (reading.key.as_str(), side)))
+        .collect();
+    let all = sides.len();
+    sides.sort_unstable();
+    let paired =
+        sides.iter().filter(|(key, side)| sides.binary_search(&(key, side.mirror())).is_ok()).count();
+    all >= 8 && 10 * paired >= 9 * all
+}
+
+/// At most three places in a chain, evenly spread, the first among them.
+fn thirds(length: usize) -> impl Iterator<Item = usize> {
+    let count = length.min(3);
+    (0..count).map(move |k| k * length / count)
 }
 
 fn arm_roles(arms: &Limb, k: usize, side: Side) -> Vec<(usize, Role)> {

@@ -117,7 +117,8 @@ impl Bound {
 
 /// Which joints have a sibling of the other side, or both none by name, in their place.
 fn twins(rig: &Rig, model: &[Affine], tolerance: f32) -> Vec<bool> {
-    let readings = read_names(rig.joints.iter().map(|joint| joint.name.as_str()));
+    let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
+    let readings = read_names(&names, &[]);
     let mirrored = |a: usize, b: usize| match (readings[a].side, readings[b].side) {
         (Some(a), Some(b)) => a != b,
         _ => rig.joints[a].name.is_empty() && rig.joints[b].name.is_empty(),

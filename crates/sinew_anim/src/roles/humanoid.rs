@@ -82,12 +82,12 @@ impl Evidence<'_> {
         let arms = self.take_arms(&limbs, &legs)?;
         let pelvis = self.pelvis(&legs, &arms);
         let chest = self.attachment(&arms);
-        let spine: Vec<usize> = {
-            let mut path: Vec<usize> = self.graph.up_from(chest).take_while(|&i| i != pelvis).collect();
-            path.reverse();
-            path
-        };
-        let (neck, head) = self.neck_and_head(chest, &arms, pelvis)?;
+        let mut spine: Vec<usize> = self.graph.up_from(chest).take_while(|&i| i != pelvis).collect();
+        spine.reverse();
+        let (mut neck, head) = self.neck_and_head(chest, &arms, pelvis)?;
+        // Arms may hang off what is called the neck.
+        let trunk = spine.iter().position(|&i| self.part(i) == Some(Part::Neck)).unwrap_or(spine.len());
+        neck.splice(..0, spine.drain(trunk..));
         let limb = |chain: [Vec<usize>; 2], wanted: [Part; 3]| {
             let split = self.split(&chain[0], wanted)?;
             Some(Limb { chain, split })
@@ -188,7 +188,8 @@ impl Evidence<'_> {
         let nearest = trunk.iter().map(|&i| off(i)).fold(f32::INFINITY, min);
         let near: Vec<usize> =
             trunk.iter().copied().filter(|&i| off(i) < max(nearest + 0.01, 0.07)).collect();
-        if let Some(&named) = near.iter().find(|&&i| self.part(i) == Some(Part::Hips)) {
+        let named = |&&i: &&usize| self.part(i) == Some(Part::Hips) && (near.contains(&i) || off(i) < 0.15);
+        if let Some(&named) = trunk.iter().find(named) {
             return named;
         }
         let most = near.iter().map(|&i| self.graph.nodes[i].area).fold(0.0, max);

@@ -2,7 +2,9 @@
 //!
 //! Roles that the file states (VRM) come first; then geometry (mirrored chains of the bind pose) decides and names
 //! only bear witness: they settle how a limb is divided, raise the confidence where they agree and lower it where
-//! they don't. Names whose left and right do not mirror each other are not listened to at all.
+//! they don't. Names whose left and right do not mirror each other are not listened to at all. Where the shape shows no
+//! human (a bind pose without a mirror, feet beside the body), names alone decide, if what they name stands like one.
+//! What a name says is told by its words, not by a list of names.
 
 mod anatomy;
 mod axes;

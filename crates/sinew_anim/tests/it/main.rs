@@ -24,6 +24,7 @@ mod stage;
 mod take;
 mod toy;
 mod transitions;
+mod wild;
 
 /// How many of `all` random cases to try: a hundredth, but all with `SINEW_FULL` set.
 fn cases(all: u32) -> u32 {

@@ -4,7 +4,7 @@ use sinew_anim::{Clip, Rig};
 use std::io::Write as _;
 use std::path::Path;
 
-const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/");
+pub const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/");
 
 /// All files of ../shared/data/rigs that hold clips.
 pub const WITH_CLIPS: [&str; 16] = [

@@ -1,7 +1,7 @@
 //! Typed reading of accessors (glTF 2.0 §3.6.2): strides, sparse parts, normalised integers.
 
 use super::source::Source;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::json::At;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,6 +119,16 @@ impl Accessor<'_> {
     }
 }
 
+/// Puts 0 for numbers that are not finite; the elements that had any.
+pub(super) fn fill_holes<const N: usize>(elements: &mut [[f32; N]]) -> Vec<usize> {
+    let is_hole = |element: &[f32; N]| element.iter().any(|x| !x.is_finite());
+    let holes: Vec<usize> = (0..elements.len()).filter(|&i| is_hole(&elements[i])).collect();
+    for &i in &holes {
+        elements[i] = elements[i].map(|x| if x.is_finite() { x } else { 0.0 });
+    }
+    holes
+}
+
 impl<'a> Source<'a> {
     /// How many numbers an element of the accessor at index `at` has: 1 for SCALAR to 16 for MAT4.
     pub(super) fn width(&self, at: At<'a>) -> Result<usize> {
@@ -136,17 +146,44 @@ impl<'a> Source<'a> {
 
     /// Elements of `N` finite numbers of the accessor at index `at`; normalised integers become −1..=1.
     pub(super) fn floats<const N: usize>(&self, at: At<'a>) -> Result<Vec<[f32; N]>> {
+        let (out, holes) = self.floats_and_holes(at)?;
+        match holes.first() {
+            Some(i) => Err(self.not_finite(at, *i)),
+            None => Ok(out),
+        }
+    }
+
+    /// Why an element of the accessor at index `at` is refused.
+    pub(super) fn not_finite(&self, at: At<'a>, element: usize) -> Error {
+        let accessor = at.index(self.accessors.len(), "accessors").map_or(at, |index| self.accessors[index]);
+        accessor.malformed(format!("element {element} holds a number that is not finite"))
+    }
+
+    /// As [`floats`](Self::floats), with 0 for what is not finite, and the elements that it was in.
+    pub(super) fn floats_and_holes<const N: usize>(&self, at: At<'a>) -> Result<(Vec<[f32; N]>, Vec<usize>)> {
         let accessor = self.accessor::<N>(at)?;
         let (component, normalized) = (accessor.component, accessor.normalized);
         // The common case apart, so that its loop is a plain copy.
-        let out: Vec<[f32; N]> = match component {
+        let mut out: Vec<[f32; N]> = match component {
             Component::F32 => accessor.decode(|b| Component::F32.number(b, Normalized::No)),
             _ => accessor.decode(|b| component.number(b, normalized)),
         };
-        if let Some(i) = out.iter().position(|element| element.iter().any(|x| !x.is_finite())) {
-            return Err(accessor.at.malformed(format!("element {i} holds a number that is not finite")));
-        }
-        Ok(out)
+        let holes = fill_holes(&mut out);
+        Ok((out, holes))
+    }
+
+    /// By what the integers of the accessor at index `at` are divided; 1 where they are numbers as they stand.
+    pub(super) fn full_scale(&self, at: At<'a>) -> Result<f32> {
+        let accessor = self.accessors[at.index(self.accessors.len(), "accessors")?];
+        let normalized = accessor.get("normalized")?.map_or(Ok(false), At::bool)?;
+        Ok(match Component::read(accessor.need("componentType")?)? {
+            _ if !normalized => 1.0,
+            Component::I8 => 127.0,
+            Component::U8 => 255.0,
+            Component::I16 => 32767.0,
+            Component::U16 => 65535.0,
+            Component::U32 | Component::F32 => 1.0,
+        })
     }
 
     /// Elements of `N` unsigned integers of the accessor at index `at`.

@@ -1,9 +1,9 @@
 //! Meshes: triangles with skin weights (glTF 2.0 §3.7.2, §3.7.3).
 
+use super::attributes::Attributes;
 use super::material::Materials;
 use super::scene::Scene;
 use super::source::Source;
-use super::{DRACO, draco};
 use crate::error::Result;
 use crate::json::At;
 use sinew_anim::{Mesh, Primitive};
@@ -14,6 +14,7 @@ pub(super) fn read_all<'a>(
     source: &Source<'a>,
     scene: &Scene,
     materials: &mut Materials<'_, 'a>,
+    warnings: &mut Vec<String>,
 ) -> Result<Vec<Mesh>> {
     let meshes = source.root.list("meshes")?;
     let mut out = Vec::new();
@@ -26,10 +27,15 @@ pub(super) fn read_all<'a>(
             None => None,
         };
         let slots = skin.map(|skin| scene.rig.skins[skin].joints.len());
-        let mut primitives = Vec::new();
+        let (mut primitives, mut unweighted) = (Vec::new(), Vec::new());
         for primitive in mesh.need("primitives")?.items()? {
-            primitives.extend(read_primitive(source, primitive, slots, materials)?);
+            let mut mending = Mending { warnings, unweighted: Vec::new() };
+            if let Some(read) = read_primitive(source, primitive, slots, materials, &mut mending)? {
+                unweighted.push(mending.unweighted);
+                primitives.push(read);
+            }
         }
+        weigh_like_neighbours(&mut primitives, &unweighted);
         // Parts without weights in a skinned mesh move with the node, like any rigid mesh.
         let (skinned, rigid): (Vec<_>, Vec<_>) = primitives.into_iter().partition(|p| !p.joints.is_empty());
         for (primitives, skin) in [(skinned, skin), (rigid, None)] {
@@ -41,36 +47,66 @@ pub(super) fn read_all<'a>(
     Ok(out)
 }
 
+/// What is not finite in a primitive and was mended.
+struct Mending<'w> {
+    warnings: &'w mut Vec<String>,
+    /// Vertices whose weights are not finite.
+    unweighted: Vec<usize>,
+}
+
+impl Mending<'_> {
+    /// Tells of elements that were mended, once a place.
+    fn note(&mut self, at: At<'_>, holes: &[usize], of: usize, mended: &str) {
+        let note = format!("{} of {of} elements are not finite: {mended} ({})", holes.len(), at.path());
+        if !holes.is_empty() && !self.warnings.contains(&note) {
+            self.warnings.push(note);
+        }
+    }
+}
+
 /// One primitive; `None` for points, lines, and what has no positions. `slots` is the size of the skin, if any.
 fn read_primitive<'a>(
     source: &Source<'a>,
     primitive: At<'a>,
     slots: Option<usize>,
     materials: &mut Materials<'_, 'a>,
+    mending: &mut Mending<'_>,
 ) -> Result<Option<Primitive>> {
     let mode = primitive.get("mode")?.map_or(Ok(4), At::usize)?;
-    let attributes = primitive.need("attributes")?;
-    let Some(position_at) = attributes.get("POSITION")? else { return Ok(None) };
+    let Some(position_at) = primitive.need("attributes")?.get("POSITION")? else { return Ok(None) };
     if mode < 4 {
         return Ok(None);
     }
-    refuse_compressed(source, primitive, position_at)?;
-    let positions: Vec<Vec3> = source.floats(position_at)?.into_iter().map(Vec3::from_array).collect();
+    let attributes = Attributes::of(source, primitive, position_at)?;
+    let (mut positions, holes) = attributes.floats::<3>("POSITION", position_at)?;
     let count = positions.len();
-    let normals = read_attribute(source, attributes, "NORMAL", count)?.into_iter();
+    let indices = match attributes.triangles()? {
+        Some(corners) => corners,
+        None => read_triangles(source, primitive, mode, count)?,
+    };
+    let used = |hole: &&usize| indices.iter().any(|&corner| corner as usize == **hole);
+    // Vertices of no triangle do no harm, but must not stretch the body either.
+    if let Some(hole) = holes.iter().take(MOST_UNUSED).find(used).or(holes.get(MOST_UNUSED)) {
+        return Err(source.not_finite(position_at, *hole));
+    }
+    let whole = (0..count).find(|vertex| holes.binary_search(vertex).is_err());
+    let whole = whole.map_or([0.0; 3], |vertex| positions[vertex]);
+    holes.iter().for_each(|&hole| positions[hole] = whole);
+    mending.note(position_at, &holes, count, "no triangle uses them");
+    let normals = read_attribute(&attributes, "NORMAL", count, mending)?.into_iter();
     let look = materials.look(primitive)?;
     let uv_name = format!("TEXCOORD_{}", look.uv_set);
-    let uvs = read_attribute(source, attributes, &uv_name, count)?.into_iter();
+    let uvs = read_attribute(&attributes, &uv_name, count, mending)?.into_iter();
     let (joints, weights) = match slots {
-        Some(slots) => read_weights(source, attributes, count, slots)?,
+        Some(slots) => read_weights(&attributes, count, slots, mending)?,
         None => Default::default(),
     };
     Ok(Some(Primitive {
-        indices: read_triangles(source, primitive, mode, count)?,
+        indices,
         normals: normals.map(|n| normalize_or(Vec3::from_array(n), Vec3::Y)).collect(),
         uvs: uvs.map(Vec2::from_array).collect(),
-        colors: read_colors(source, attributes, count)?,
-        positions,
+        colors: read_colors(source, &attributes, count, mending)?,
+        positions: positions.into_iter().map(Vec3::from_array).collect(),
         joints,
         weights,
         base_color: look.base_color,
@@ -78,26 +114,20 @@ fn read_primitive<'a>(
     }))
 }
 
-/// Compressed geometry whose plain fallback is not there.
-fn refuse_compressed<'a>(source: &Source<'a>, primitive: At<'a>, position: At<'a>) -> Result<()> {
-    let accessor = source.accessors[position.index(source.accessors.len(), "accessors")?];
-    let plain = accessor.get("bufferView")?.is_some() || accessor.get("sparse")?.is_some();
-    if !plain && primitive.value()["extensions"].get(DRACO).is_some() {
-        return Err(primitive.unsupported(draco()));
-    }
-    Ok(())
-}
+/// Positions that are not finite and no triangle's, at most: more are refused unseen.
+const MOST_UNUSED: usize = 64;
 
-/// An optional attribute with one element a vertex; empty if absent.
-fn read_attribute<'a, const N: usize>(
-    source: &Source<'a>,
-    attributes: At<'a>,
+/// An optional attribute with one element a vertex; empty if absent. What is not finite is 0.
+fn read_attribute<const N: usize>(
+    attributes: &Attributes<'_, '_>,
     name: &str,
     count: usize,
+    mending: &mut Mending<'_>,
 ) -> Result<Vec<[f32; N]>> {
     let Some(at) = attributes.get(name)? else { return Ok(Vec::new()) };
-    let values = source.floats(at)?;
+    let (values, holes) = attributes.floats(name, at)?;
     check_count(at, values.len(), count)?;
+    mending.note(at, &holes, count, "taken as 0");
     Ok(values)
 }
 
@@ -108,30 +138,50 @@ fn check_count(at: At<'_>, there: usize, vertices: usize) -> Result<()> {
     Err(at.malformed(format!("{there} elements for {vertices} vertices")))
 }
 
-/// `COLOR_0` as RGBA in 0..=1; RGB gets alpha 1.
-fn read_colors<'a>(source: &Source<'a>, attributes: At<'a>, count: usize) -> Result<Vec<[f32; 4]>> {
-    let Some(at) = attributes.get("COLOR_0")? else { return Ok(Vec::new()) };
-    let colors: Vec<[f32; 4]> = match source.width(at)? {
-        3 => source.floats(at)?.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect(),
-        _ => source.floats(at)?,
+/// `COLOR_0` as RGBA in 0..=1; RGB gets alpha 1. What is not finite is white.
+fn read_colors<'a>(
+    source: &Source<'a>,
+    attributes: &Attributes<'_, 'a>,
+    count: usize,
+    mending: &mut Mending<'_>,
+) -> Result<Vec<[f32; 4]>> {
+    const NAME: &str = "COLOR_0";
+    let Some(at) = attributes.get(NAME)? else { return Ok(Vec::new()) };
+    let (mut colors, holes): (Vec<[f32; 4]>, _) = match source.width(at)? {
+        3 => {
+            let (colors, holes) = attributes.floats(NAME, at)?;
+            (colors.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect(), holes)
+        }
+        _ => attributes.floats(NAME, at)?,
     };
     check_count(at, colors.len(), count)?;
+    holes.iter().for_each(|&hole| colors[hole] = [1.0; 4]);
+    mending.note(at, &holes, count, "taken as white");
     Ok(colors.into_iter().map(|color| color.map(|x| clamp(x, 0.0, 1.0))).collect())
 }
 
 type Weights = (Vec<[u16; 4]>, Vec<[f32; 4]>);
 
 /// Skin slots and weights, the four largest of each vertex, their sum 1. Empty if the primitive has none.
-fn read_weights<'a>(source: &Source<'a>, attributes: At<'a>, count: usize, slots: usize) -> Result<Weights> {
+fn read_weights(
+    attributes: &Attributes<'_, '_>,
+    count: usize,
+    slots: usize,
+    mending: &mut Mending<'_>,
+) -> Result<Weights> {
     let mut influences: Vec<Vec<(u16, f32)>> = Vec::new();
     for set in 0.. {
-        let joints_at = attributes.get(&format!("JOINTS_{set}"))?;
-        let weights_at = attributes.get(&format!("WEIGHTS_{set}"))?;
-        let (Some(joints_at), Some(weights_at)) = (joints_at, weights_at) else { break };
-        let joints = source.integers::<4>(joints_at)?;
-        let weights = source.floats::<4>(weights_at)?;
+        let names = [format!("JOINTS_{set}"), format!("WEIGHTS_{set}")];
+        let (Some(joints_at), Some(weights_at)) = (attributes.get(&names[0])?, attributes.get(&names[1])?)
+        else {
+            break;
+        };
+        let joints = attributes.integers::<4>(&names[0], joints_at)?;
+        let (weights, holes) = attributes.floats::<4>(&names[1], weights_at)?;
         check_count(joints_at, joints.len(), count)?;
         check_count(weights_at, weights.len(), count)?;
+        mending.note(weights_at, &holes, count, "they follow the nearest skin");
+        mending.unweighted.extend(holes);
         influences.resize_with(count, Vec::new);
         for (vertex, (joints, weights)) in joints.iter().zip(&weights).enumerate() {
             for (&slot, &weight) in joints.iter().zip(weights) {
@@ -144,7 +194,39 @@ fn read_weights<'a>(source: &Source<'a>, attributes: At<'a>, count: usize, slots
             }
         }
     }
+    // A weight that is left speaks for its vertex.
+    mending.unweighted.retain(|&vertex| influences[vertex].iter().all(|&(_, weight)| weight <= 0.0));
     Ok(influences.into_iter().map(strongest_four).unzip())
+}
+
+/// Comparisons of a vertex without weights with one that has some, at most, for a whole mesh.
+const MOST_COMPARED: usize = 50_000_000;
+
+/// Gives vertices whose weights were not finite those of the nearest vertex of the mesh that has some.
+fn weigh_like_neighbours(primitives: &mut [Primitive], unweighted: &[Vec<usize>]) {
+    let lost: usize = unweighted.iter().map(Vec::len).sum();
+    if lost == 0 {
+        return;
+    }
+    let mut known: Vec<(Vec3, [u16; 4], [f32; 4])> = Vec::new();
+    for (primitive, lost) in primitives.iter().zip(unweighted) {
+        let lost: std::collections::BTreeSet<usize> = lost.iter().copied().collect();
+        let has = |vertex: &usize| *vertex < primitive.weights.len() && !lost.contains(vertex);
+        let of = |i: usize| (primitive.positions[i], primitive.joints[i], primitive.weights[i]);
+        known.extend((0..primitive.positions.len()).filter(has).map(of));
+    }
+    // Of a very large mesh every so many are as good.
+    let stride = 1 + known.len().saturating_mul(lost) / MOST_COMPARED;
+    for (primitive, lost) in primitives.iter_mut().zip(unweighted) {
+        for &vertex in lost {
+            let at = primitive.positions[vertex];
+            let away = |known: &&(Vec3, [u16; 4], [f32; 4])| (known.0 - at).length_squared();
+            let nearest = known.iter().step_by(stride).min_by(|a, b| away(a).total_cmp(&away(b)));
+            if let Some(&(_, joints, weights)) = nearest {
+                (primitive.joints[vertex], primitive.weights[vertex]) = (joints, weights);
+            }
+        }
+    }
 }
 
 /// Keeps the four largest weights, in order of size beyond four only, and brings their sum to 1. A vertex without any

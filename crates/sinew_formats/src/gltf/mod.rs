@@ -6,6 +6,8 @@
 mod accessor;
 mod animation;
 mod append;
+mod attributes;
+mod draco;
 mod khr;
 mod material;
 mod mesh;
@@ -111,8 +113,9 @@ pub fn no_files(path: &str) -> Result<Vec<u8>> {
 ///
 /// # Errors
 /// Bytes that are no glTF 2.0, an index or range outside its list, numbers that are not finite, a node that is its own
-/// ancestor, a required extension that is not understood (Draco), a compressed view whose stream is broken, a missing
-/// external buffer.
+/// ancestor, a required extension that is not understood, a compressed view or mesh whose stream is broken, a missing
+/// external buffer. Numbers that are not finite in normals, texture coordinates and colours, and in weights, are mended
+/// with a warning.
 pub fn read_gltf(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<'_>) -> Result<Document> {
     let (container, json_bytes, bin, other_chunks) = unwrap_container(bytes)?;
     let json = json::parse(json_bytes)?;
@@ -127,7 +130,7 @@ pub fn read_gltf(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<'_>)
     let source = Source::new(root, &buffers, bin, &decompressed, budget)?;
     let mut materials = material::Materials::new(&source, &external_images, options.textures)?;
     let mut scene = scene::read(&source)?;
-    scene.rig.meshes = mesh::read_all(&source, &scene, &mut materials)?;
+    scene.rig.meshes = mesh::read_all(&source, &scene, &mut materials, &mut warnings)?;
     scene.rig.textures = materials.textures;
     warnings.append(&mut materials.warnings);
     scene.rig.stated_roles = vrm::stated_roles(root, &scene.joint_of_node);
@@ -193,24 +196,13 @@ const HARMLESS: [&str; 10] = [
     "KHR_physics_",
 ];
 
-/// Meshes in bit streams of their own.
-const DRACO: &str = "KHR_draco_mesh_compression";
-
-/// Why a file with such meshes is refused, and what to do about it.
-fn draco() -> String {
-    format!(
-        "needs the extension `{DRACO}`, which is not supported: export without compression, or run \
-         `gltf-transform copy IN OUT`, which decodes it"
-    )
-}
-
 fn check_extensions(root: At<'_>) -> Result<()> {
     for required in root.list("extensionsRequired")? {
         let name = required.str()?;
-        if name == DRACO {
-            return Err(required.unsupported(draco()));
-        }
-        if !HARMLESS.iter().any(|prefix| name.starts_with(prefix)) && !meshopt::is_known(name) {
+        if !HARMLESS.iter().any(|prefix| name.starts_with(prefix))
+            && !meshopt::is_known(name)
+            && name != draco::NAME
+        {
             let name = quoted(name);
             return Err(required.unsupported(format!("needs the extension {name}, which is not supported")));
         }

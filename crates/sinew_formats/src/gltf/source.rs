@@ -104,6 +104,11 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
+    /// Bytes that may still be decoded.
+    pub(super) fn left(&self) -> usize {
+        self.budget.get()
+    }
+
     /// The bytes of the buffer view that `at` is the index of, and the view itself.
     pub(super) fn view(&self, at: At<'a>) -> Result<(&'a [u8], At<'a>)> {
         let index = at.index(self.views.len(), "buffer views")?;

@@ -4,6 +4,7 @@ mod append;
 mod bvh;
 mod data;
 mod deepmimic;
+mod draco;
 mod events;
 #[cfg(feature = "fbx")]
 mod fbx;
@@ -16,6 +17,7 @@ mod fs;
 mod geometry;
 mod hostile;
 mod jolt;
+mod mended;
 mod meshopt;
 mod meshopt_encoder;
 mod mjcf;

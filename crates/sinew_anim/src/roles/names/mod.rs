@@ -1,0 +1,381 @@
+//! What a joint's name says about it. Names are a witness, not a judge: see [`super::humanoid`].
+
+mod lexicon;
+mod tokens;
+
+use super::role::Side;
+use lexicon::Word;
+use tokens::{Token, tokens};
+
+/// Part of the body that a name speaks of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    Hips,
+    Spine,
+    Neck,
+    Head,
+    Clavicle,
+    UpperArm,
+    LowerArm,
+    Hand,
+    UpperLeg,
+    LowerLeg,
+    Foot,
+    Toes,
+    Tail,
+    /// A limb of a body on four legs, which is no human's.
+    Beast,
+    /// Never a body of its own: twist and IK joints, ends, sockets, fingers, face.
+    Appendix,
+}
+
+/// A name taken apart.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Reading {
+    /// What the name says but for prefixes, numbers and side: equal for both joints of a mirrored pair.
+    pub key: String,
+    /// Side that the name states.
+    pub side: Option<Side>,
+    /// Part of the body, where the name is one of those in use.
+    pub part: Option<Part>,
+}
+
+/// Readings of all names of a rig, with the words resolved whose meaning hangs on the others. `parents` has the parent of
+/// every joint, or is empty where the names alone are asked.
+pub(super) fn read_names(names: &[&str], parents: &[Option<usize>]) -> Vec<Reading> {
+    let (mut readings, senses): (Vec<Reading>, Vec<Option<Sense>>) =
+        tokens(names).iter().map(|t| read(t)).unzip();
+    let has = |wanted: &[Sense]| senses.iter().flatten().any(|sense| wanted.contains(sense));
+    let upper_arm = has(&[Sense::Arm, Sense::Part(Part::UpperArm)]);
+    let thigh = has(&[Sense::Part(Part::UpperLeg)]);
+    let shank = has(&[Sense::Part(Part::LowerLeg)]);
+    let (wrist, ankle) = (has(&[Sense::Wrist]), has(&[Sense::Ankle]));
+    let alone = |sense: Sense, side: Option<Side>| {
+        (0..senses.len()).filter(|&i| senses[i] == Some(sense) && readings[i].side == side).count() == 1
+    };
+    let one_leg = [Side::Left, Side::Right].into_iter().all(|side| alone(Sense::Leg, Some(side)));
+    for (reading, sense) in readings.iter_mut().zip(&senses) {
+        let sided = reading.side.is_some();
+        reading.part = match sense {
+            None => None,
+            // The clavicle to Mixamo, VRM and CMU, the humerus to SMPL and Daz, which have no other word for it.
+            Some(Sense::Shoulder) if upper_arm => Some(Part::Clavicle),
+            Some(Sense::Shoulder | Sense::Arm) => Some(Part::UpperArm),
+            // SMPL's hip joint is the thigh; CMU's only leads to it. Rigify has a pelvis on either side.
+            Some(Sense::Hip) if sided && !thigh => Some(Part::UpperLeg),
+            Some(Sense::Hip | Sense::Pelvis) if sided => Some(Part::Appendix),
+            Some(Sense::Hip | Sense::Pelvis) => Some(Part::Hips),
+            // The shank to Mixamo, the thigh to MMD and whoever has only one; the whole of a leg to some.
+            Some(Sense::LegOrFoot) if thigh && shank => Some(Part::Foot),
+            Some(Sense::Leg | Sense::LegOrFoot) if thigh => Some(Part::LowerLeg),
+            Some(Sense::Leg | Sense::LegOrFoot) if shank || one_leg => Some(Part::UpperLeg),
+            Some(Sense::Leg | Sense::LegOrFoot) => None,
+            Some(Sense::Hand) => Some(if wrist { Part::Appendix } else { Part::Hand }),
+            Some(Sense::Wrist) => Some(Part::Hand),
+            Some(Sense::Foot) => Some(if ankle { Part::Toes } else { Part::Foot }),
+            Some(Sense::Ankle) => Some(Part::Foot),
+            Some(Sense::Part(Part::Spine | Part::Neck | Part::Head)) if sided => None,
+            Some(Sense::Part(part)) => Some(*part),
+        };
+    }
+    if parents.len() == readings.len() {
+        name_ball(&mut readings, parents);
+    }
+    readings
+}
+
+/// A foot on a foot is the ball of it, where nothing is called toes.
+fn name_ball(readings: &mut [Reading], parents: &[Option<usize>]) {
+    if readings.iter().any(|reading| reading.part == Some(Part::Toes)) {
+        return;
+    }
+    let is_foot = |readings: &[Reading], joint: usize| readings[joint].part == Some(Part::Foot);
+    let balls: Vec<usize> = (0..readings.len())
+        .filter(|&joint| {
+            let under = parents[joint].filter(|&parent| is_foot(readings, parent));
+            is_foot(readings, joint)
+                && under.is_some_and(|parent| readings[parent].side == readings[joint].side)
+        })
+        .collect();
+    balls.into_iter().for_each(|joint| readings[joint].part = Some(Part::Toes));
+}
+
+/// Settles parts that several joints of one side claim, of those that move skin: they have a `depth`, the number of
+/// joints above them. Where the rig names all four long limb parts, one is meant and the others continue it (Rigify's
+/// "upper_arm.L.001"); else the name tells nothing (CesiumMan calls all of its arm "arm").
+pub(super) fn settle_duplicates(
+    readings: &mut [Reading],
+    names: &[&str],
+    depth: impl Fn(usize) -> Option<usize>,
+) {
+    use Part::{LowerArm, LowerLeg, UpperArm, UpperLeg};
+    let names_all = [UpperArm, LowerArm, UpperLeg, LowerLeg]
+        .into_iter()
+        .all(|part| readings.iter().any(|reading| reading.part == Some(part)));
+    let claims: Vec<(Option<Part>, Option<Side>)> =
+        readings.iter().enumerate().map(|(i, r)| (r.part.filter(|_| depth(i).is_some()), r.side)).collect();
+    for i in 0..claims.len() {
+        let claim = claims[i];
+        let many =
+            Some(Part::Neck) == claim.0 && readings.iter().any(|reading| reading.part == Some(Part::Head));
+        if many || matches!(claim.0, None | Some(Part::Spine | Part::Tail | Part::Beast | Part::Appendix)) {
+            continue;
+        }
+        // Each claim once, at the first joint that makes it.
+        if claims[..i].contains(&claim) {
+            continue;
+        }
+        let same: Vec<usize> = (i..claims.len()).filter(|&other| claims[other] == claim).collect();
+        if same.len() == 1 {
+            continue;
+        }
+        let meant = meant(same.clone(), names, &depth).filter(|_| names_all);
+        for joint in same.into_iter().filter(|&joint| Some(joint) != meant) {
+            readings[joint].part = names_all.then_some(Part::Appendix);
+        }
+    }
+}
+
+/// Where the trunk begins, of joints that move skin: what nobody calls hips but carries thighs and the rest of the trunk, and
+/// no part of the spine is above the hips.
+pub(super) fn settle_trunk(
+    readings: &mut [Reading],
+    parents: &[Option<usize>],
+    moves_skin: impl Fn(usize) -> bool,
+) {
+    let up = |joint: usize| core::iter::successors(Some(joint), |&at| parents[at]);
+    let with = |part: Part, side: Option<Side>| {
+        let named = |reading: &Reading| reading.part == Some(part) && reading.side == side;
+        readings.iter().position(named)
+    };
+    let is_hips = |i: &usize| readings[*i].part == Some(Part::Hips) && moves_skin(*i);
+    let hips = (0..readings.len()).find(is_hips).or_else(|| {
+        let thighs = [Side::Left, Side::Right].map(|side| with(Part::UpperLeg, Some(side)));
+        let [Some(left), Some(right)] = thighs else { return None };
+        let top = with(Part::Head, None).or(with(Part::Neck, None))?;
+        let fork = up(top).find(|&at| [left, right].into_iter().all(|thigh| up(thigh).any(|i| i == at)))?;
+        // Bare, the fork is no pelvis; what it carries toward the head is.
+        let mut trunk: Vec<usize> = up(top).take_while(|&at| at != fork).collect();
+        trunk.push(fork);
+        let lowest = trunk.into_iter().rev().find(|&at| moves_skin(at))?;
+        matches!(readings[lowest].part, None | Some(Part::Spine)).then_some(lowest)
+    });
+    let Some(hips) = hips else { return };
+    for above in up(hips).skip(1) {
+        if readings[above].part == Some(Part::Spine) {
+            readings[above].part = Some(Part::Appendix);
+        }
+    }
+    readings[hips].part = Some(Part::Hips);
+}
+
+/// Which of several joints of one name is meant, whatever their order in the file: that nearest to the root; of siblings the
+/// one in the middle by name (of three palms the second, of two the first).
+fn meant(mut same: Vec<usize>, names: &[&str], depth: &impl Fn(usize) -> Option<usize>) -> Option<usize> {
+    let least = same.iter().filter_map(|&joint| depth(joint)).min()?;
+    same.retain(|&joint| depth(joint) == Some(least));
+    same.sort_by_key(|&joint| names[joint]);
+    same.get((same.len() - 1) / 2).copied()
+}
+
+/// What a name says by itself; some words mean one part or another by what else the rig has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sense {
+    Part(Part),
+    Shoulder,
+    Arm,
+    Hip,
+    Pelvis,
+    Leg,
+    LegOrFoot,
+    Hand,
+    Wrist,
+    Foot,
+    Ankle,
+}
+
+fn read(tokens: &[Token]) -> (Reading, Option<Sense>) {
+    let mut reading = Reading::default();
+    let (mut words, mut unknown) = (Vec::new(), false);
+    for token in tokens {
+        let Some(said) = &token.words else {
+            unknown = true;
+            reading.key.push_str(&token.text);
+            continue;
+        };
+        for word in said {
+            match word {
+                Word::Noise => {}
+                // Of two sides the last counts (Blender's ".L"); the other is some letter.
+                Word::Side(side) => unknown |= reading.side.replace(*side).is_some(),
+                _ => words.push(*word),
+            }
+        }
+    }
+    reading.key.push_str(&key(&words));
+    let sense =
+        if words.contains(&Word::Appendix) { Some(Sense::Part(Part::Appendix)) } else { sense(&words) };
+    let sense = sense.filter(|sense| !unknown || *sense == Sense::Part(Part::Appendix));
+    reading.part = None;
+    (reading, sense)
+}
+
+/// Words as a text that is equal for both joints of a pair.
+fn key(words: &[Word]) -> String {
+    words.iter().map(|word| format!("{word:?}")).collect()
+}
+
+/// What known words make together, in any order but where it matters.
+fn sense(words: &[Word]) -> Option<Sense> {
+    use Word::{Arm, Back, Body, Fore, Front, Leg, Lower, Mid, Paw, Twist, Upper};
+    let has = |word: Word| words.contains(&word);
+    let is_level = |word: &Word| matches!(word, Upper | Lower | Mid | Fore | Twist | Front | Back);
+    let mut rest: Vec<Word> = words.iter().copied().filter(|word| !is_level(word)).collect();
+    rest.dedup();
+    let level = |upper: Part, lower: Part, plain: Option<Sense>| {
+        if has(Upper) {
+            Some(Sense::Part(upper))
+        } else if has(Lower) {
+            Some(Sense::Part(lower))
+        } else {
+            plain
+        }
+    };
+    let of_limb = |word: &Word| {
+        use Word::{Ankle, Foot, Hand, LegOrFoot, LowerArm, LowerLeg, Shoulder, UpperArm, UpperLeg, Wrist};
+        let arm = matches!(word, Arm | UpperArm | LowerArm | Hand | Wrist | Shoulder);
+        arm || matches!(word, Leg | LegOrFoot | UpperLeg | LowerLeg | Foot | Ankle | Word::Hip | Word::Toes)
+    };
+    let before_limb = |word: Word| {
+        let limb = words.iter().position(of_limb);
+        words.iter().position(|&w| w == word).is_some_and(|at| limb.is_some_and(|limb| at < limb))
+    };
+    if has(Paw) || before_limb(Front) || before_limb(Back) || has(Fore) && rest.contains(&Leg) {
+        return Some(Sense::Part(Part::Beast));
+    }
+    if has(Front) {
+        return None;
+    }
+    let found = match *rest.as_slice() {
+        [] if has(Back) => level(Part::Spine, Part::Spine, None),
+        [Arm] if has(Fore) => Some(Sense::Part(Part::LowerArm)),
+        [Arm] => level(Part::UpperArm, Part::LowerArm, Some(Sense::Arm)),
+        [Leg] => level(Part::UpperLeg, Part::LowerLeg, Some(Sense::Leg)),
+        [Body] if has(Upper) => Some(Sense::Part(Part::Spine)),
+        [Body] if has(Lower) => Some(Sense::Pelvis),
+        [Body] | [] => None,
+        [Word::Spine, ..] => Some(Sense::Part(Part::Spine)),
+        [one] => plain(one),
+        [Word::Shoulder, Word::Clavicle] | [Word::Clavicle, Word::Shoulder] => plain(Word::Clavicle),
+        [Arm, last @ (Word::Hand | Word::Wrist)] | [Leg, last @ (Word::Foot | Word::Ankle)] => plain(last),
+        [Word::Hand, Word::Wrist] | [Word::Wrist, Word::Hand] => plain(Word::Wrist),
+        [Word::Foot, Word::Ankle] | [Word::Ankle, Word::Foot] => plain(Word::Ankle),
+        [Word::Foot, Word::Toes] | [Word::Toes, Word::Foot] => plain(Word::Toes),
+        _ => None,
+    }?;
+    let trunk = matches!(found, Sense::Part(Part::Neck | Part::Spine | Part::Head));
+    if has(Mid) && !trunk {
+        return None;
+    }
+    if has(Twist) && !trunk { Some(Sense::Part(Part::Appendix)) } else { Some(found) }
+}
+
+/// What a word means by itself.
+fn plain(word: Word) -> Option<Sense> {
+    Some(match word {
+        Word::Pelvis => Sense::Pelvis,
+        Word::Hip => Sense::Hip,
+        Word::Spine => Sense::Part(Part::Spine),
+        Word::Neck => Sense::Part(Part::Neck),
+        Word::Head => Sense::Part(Part::Head),
+        Word::Shoulder => Sense::Shoulder,
+        Word::Clavicle => Sense::Part(Part::Clavicle),
+        Word::UpperArm => Sense::Part(Part::UpperArm),
+        Word::LowerArm => Sense::Part(Part::LowerArm),
+        Word::Hand => Sense::Hand,
+        Word::Wrist => Sense::Wrist,
+        Word::UpperLeg => Sense::Part(Part::UpperLeg),
+        Word::LowerLeg => Sense::Part(Part::LowerLeg),
+        Word::LegOrFoot => Sense::LegOrFoot,
+        Word::Foot => Sense::Foot,
+        Word::Ankle => Sense::Ankle,
+        Word::Toes => Sense::Part(Part::Toes),
+        Word::Tail => Sense::Part(Part::Tail),
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(names: &[&str], expected: &[(Option<Part>, Option<Side>)]) {
+        let got: Vec<_> = read_names(names, &[]).into_iter().map(|r| (r.part, r.side)).collect();
+        assert_eq!(got, expected, "{names:?}");
+    }
+
+    #[test]
+    fn names_of_the_common_conventions() {
+        use Part::*;
+        let (l, r) = (Some(Side::Left), Some(Side::Right));
+        let names =
+            ["mixamorig:LeftArm", "mixamorig5:RightUpLeg", "mixamorig:LeftLeg", "mixamorig:LeftShoulder"];
+        check(&names, &[(Some(UpperArm), l), (Some(UpperLeg), r), (Some(LowerLeg), l), (Some(Clavicle), l)]);
+        let names = ["DEF-upper_arm.L.001", "DEF-shin.R", "DEF-f_index.01.L", "DEF-spine.003"];
+        check(&names, &[(Some(UpperArm), l), (Some(LowerLeg), r), (Some(Appendix), l), (Some(Spine), None)]);
+        let names = ["Bip01 L UpperArm", "ValveBiped.Bip01_R_Calf", "CC_Base_L_Thigh", "J_Bip_C_Hips"];
+        check(&names, &[(Some(UpperArm), l), (Some(LowerLeg), r), (Some(UpperLeg), l), (Some(Hips), None)]);
+        let names = ["upperarm.l", "wrist.l", "hand.l", "control-toe-roll.l", "kneeIK.r"];
+        check(
+            &names,
+            &[
+                (Some(UpperArm), l),
+                (Some(Hand), l),
+                (Some(Appendix), l),
+                (Some(Appendix), l),
+                (Some(Appendix), r),
+            ],
+        );
+    }
+
+    #[test]
+    fn words_whose_meaning_hangs_on_the_others() {
+        use Part::*;
+        let (l, r) = (Some(Side::Left), Some(Side::Right));
+        let smpl = [
+            "Pelvis",
+            "L_Hip",
+            "L_Knee",
+            "L_Ankle",
+            "L_Foot",
+            "R_Collar",
+            "R_Shoulder",
+            "R_Elbow",
+            "R_Wrist",
+        ];
+        let expected = [
+            (Some(Hips), None),
+            (Some(UpperLeg), l),
+            (Some(LowerLeg), l),
+            (Some(Foot), l),
+            (Some(Toes), l),
+            (Some(Clavicle), r),
+            (Some(UpperArm), r),
+            (Some(LowerArm), r),
+            (Some(Hand), r),
+        ];
+        check(&smpl, &expected);
+        let cmu = ["LHipJoint", "LeftUpLeg", "LeftLeg", "LowerBack", "RThumb"];
+        check(
+            &cmu,
+            &[
+                (Some(Appendix), l),
+                (Some(UpperLeg), l),
+                (Some(LowerLeg), l),
+                (Some(Spine), None),
+                (Some(Appendix), r),
+            ],
+        );
+        check(&["leg_joint_L_1", "torso_joint_3", "Cube"], &[(None, l), (Some(Spine), None), (None, None)]);
+    }
+}

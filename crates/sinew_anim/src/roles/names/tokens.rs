@@ -1,0 +1,133 @@
+//! Names of a rig taken apart into words, less what most of its names have in common.
+
+use super::lexicon::{Word, meaning, meanings};
+use std::collections::BTreeMap;
+
+/// A word of a name, in lower case, and what it says; `None` for a word that no lexicon knows.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Token {
+    pub text: String,
+    pub words: Option<Vec<Word>>,
+}
+
+/// Fewer names than this have nothing in common but chance.
+const FEW: usize = 4;
+
+/// The words of every name, without numbers and without the rig's own prefixes and suffixes.
+pub(super) fn tokens(names: &[&str]) -> Vec<Vec<Token>> {
+    let mut split: Vec<Vec<String>> = names.iter().map(|name| words(name)).collect();
+    name_vertebrae(names, &mut split);
+    // With "rt" beside it "lf" is short for left, else for left front.
+    let has = |wanted: &str| split.iter().flatten().any(|word| word == wanted);
+    if has("rt") && !has("rf") {
+        split.iter_mut().flatten().filter(|word| *word == "lf").for_each(|word| *word = "left".into());
+    }
+    cut_glued_prefix(&mut split);
+    let own = own_words(&split);
+    let token = |text: String| Token { words: meanings(&text), text };
+    let telling = |words: Vec<String>| {
+        let all: Vec<Token> = words.into_iter().map(token).collect();
+        let is_own = |at: usize, token: &Token| {
+            own.iter().any(|(word, anywhere)| *word == token.text && (*anywhere || at == 0 && all.len() > 1))
+        };
+        let kept = all.iter().enumerate().filter(|(at, token)| !is_own(*at, token));
+        kept.map(|(_, token)| token.clone()).collect()
+    };
+    split.into_iter().map(telling).collect()
+}
+
+/// Xsens calls the spine by its vertebrae, L5 to T8; where there is an R1, an L1 is a left one.
+fn name_vertebrae(names: &[&str], split: &mut [Vec<String>]) {
+    let numbered = |name: &str, letter: char| {
+        let rest = name.strip_prefix(letter).or_else(|| name.strip_prefix(letter.to_ascii_uppercase()));
+        rest.is_some_and(|rest| !rest.is_empty() && rest.bytes().all(|byte| byte.is_ascii_digit()))
+    };
+    let any = |letter: char| names.iter().any(|name| numbered(name, letter));
+    if !(any('l') && any('t')) || any('r') {
+        return;
+    }
+    for (name, words) in names.iter().zip(split) {
+        if numbered(name, 'l') || numbered(name, 't') {
+            *words = vec!["spine".into()];
+        }
+    }
+}
+
+/// Words that say nothing because most names have them: unknown ones anywhere in half of all names, known ones at the
+/// start of nearly all.
+fn own_words(split: &[Vec<String>]) -> Vec<(String, bool)> {
+    let named = split.iter().filter(|words| !words.is_empty()).count();
+    let (mut anywhere, mut first): (BTreeMap<&str, usize>, BTreeMap<&str, usize>) = Default::default();
+    for words in split {
+        for (i, word) in words.iter().enumerate() {
+            *anywhere.entry(word).or_default() += usize::from(!words[..i].contains(word));
+        }
+        if let Some(word) = words.first() {
+            *first.entry(word).or_default() += 1;
+        }
+    }
+    let common = |&(_, &count): &(&&str, &usize), tenths: usize| count >= FEW && 10 * count >= tenths * named;
+    let unknown = anywhere.iter().filter(|entry| common(entry, 5) && meanings(entry.0).is_none());
+    let known = first.iter().filter(|entry| common(entry, 8));
+    let mut own: Vec<(String, bool)> = unknown.map(|(word, _)| ((*word).to_owned(), true)).collect();
+    own.extend(known.map(|(word, _)| ((*word).to_owned(), false)));
+    own.sort_unstable();
+    own
+}
+
+/// Cuts off what half of all first words begin with, if it is no word itself and the rest of them is known ("herohips",
+/// "herospine").
+fn cut_glued_prefix(split: &mut [Vec<String>]) {
+    let unknown = |words: &&Vec<String>| words.first().is_some_and(|word| meanings(word).is_none());
+    let firsts: Vec<&str> = split.iter().filter(unknown).map(|words| words[0].as_str()).collect();
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for word in &firsts {
+        for (end, _) in word.char_indices().skip(1) {
+            *counts.entry(&word[..end]).or_default() += usize::from(meanings(&word[end..]).is_some());
+        }
+    }
+    let named = split.iter().filter(|words| !words.is_empty()).count();
+    let common = |&(_, &count): &(&&str, &usize)| count >= FEW && 2 * count >= named;
+    let longest = counts.iter().filter(common).map(|(prefix, _)| *prefix);
+    let Some(prefix) = longest.max_by_key(|prefix| (counts[prefix], prefix.len(), *prefix)) else { return };
+    let prefix = prefix.to_owned();
+    for word in split.iter_mut().filter_map(|words| words.first_mut()) {
+        if meaning(word).is_none()
+            && let Some(rest) = word.strip_prefix(&prefix).filter(|rest| !rest.is_empty())
+        {
+            *word = rest.to_owned();
+        }
+    }
+}
+
+/// Words in lower case, split at punctuation, at digits, at camel humps ("LHipJoint": l, hip, joint) and between Latin
+/// and other letters; namespaces and numbers are dropped.
+fn words(name: &str) -> Vec<String> {
+    let bare = name.rsplit([':', '|']).find(|part| !part.is_empty()).unwrap_or(name);
+    let chars: Vec<char> = bare.chars().map(half_width).collect();
+    let mut words = vec![String::new()];
+    for (i, &c) in chars.iter().enumerate() {
+        let before = i.checked_sub(1).map(|b| chars[b]);
+        let hump = c.is_uppercase()
+            && (before.is_some_and(char::is_lowercase)
+                || chars.get(i + 1).is_some_and(|next| next.is_lowercase()));
+        let digits = before.is_some_and(|b| b.is_ascii_digit() != c.is_ascii_digit());
+        let script = before.is_some_and(|b| (b < '\u{3000}') != (c < '\u{3000}'));
+        if hump || digits || script || !c.is_alphanumeric() {
+            words.push(String::new());
+        }
+        if c.is_alphanumeric() {
+            words.last_mut().expect("starts with one word").extend(c.to_lowercase());
+        }
+    }
+    words.retain(|word| !word.is_empty() && !word.starts_with(|c: char| c.is_ascii_digit()));
+    words
+}
+
+/// The ASCII letter that a full-width one stands for: MMD writes "ＩＫ".
+fn half_width(c: char) -> char {
+    match c {
+        '\u{ff01}'..='\u{ff5e}' => char::from_u32(u32::from(c) - 0xfee0).unwrap_or(c),
+        _ => c,
+    }
+}

@@ -1,0 +1,396 @@
+//! Roles of rigs from the wild against a table that was written before the recogniser first ran on them.
+
+use crate::rigs;
+use sinew_anim::roles::HUMANOID_ROLES;
+use sinew_anim::{Joint, LocalTransform, Mesh, Primitive, Rig, Skin, analyze};
+use sinew_math::{Affine, Random, Vec3};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Roles of a convention: joint name per role name.
+struct Truth {
+    convention: String,
+    files: Vec<String>,
+    roles: BTreeMap<String, String>,
+}
+
+/// `[a|b]` as a for the left, b for the right; both the same where there is none.
+fn sides(text: &str) -> [String; 2] {
+    let parts = text.split_once('[').and_then(|(before, rest)| {
+        let (choice, after) = rest.split_once(']')?;
+        let (left, right) = choice.split_once('|')?;
+        Some([left, right].map(|side| format!("{before}{side}{after}")))
+    });
+    parts.unwrap_or_else(|| [text.to_owned(), text.to_owned()])
+}
+
+fn truths() -> Vec<Truth> {
+    let mut truths: Vec<Truth> = Vec::new();
+    for line in
+        include_str!("../data/truth.txt").lines().filter(|line| !line.is_empty() && !line.starts_with('#'))
+    {
+        let (word, rest) = line.split_once(' ').expect("two words a line");
+        if word == "convention" {
+            truths.push(Truth { convention: rest.into(), files: vec![], roles: BTreeMap::new() });
+            continue;
+        }
+        let truth = truths.last_mut().expect("a convention first");
+        let [left, right] = sides(rest);
+        if word == "files" {
+            truth.files = rest.split(' ').map(str::to_owned).collect();
+        } else if word.starts_with(char::is_uppercase) {
+            truth.roles.extend([(format!("left{word}"), left), (format!("right{word}"), right)]);
+        } else {
+            truth.roles.insert(word.into(), rest.into());
+        }
+    }
+    truths
+}
+
+/// Files under ../shared/data that a pattern with at most one star, at its end or not, names.
+fn files(pattern: &str) -> Vec<String> {
+    let Some((before, after)) = pattern.split_once('*') else { return vec![pattern.into()] };
+    let (folder, start) = before.split_once('/').expect("a folder");
+    let names = std::fs::read_dir(format!("{}{folder}", rigs::DATA)).expect("the folder");
+    let mut found: Vec<String> = names
+        .map(|entry| entry.expect("an entry").file_name().into_string().expect("a name in UTF-8"))
+        .filter(|name| name.starts_with(start) && name.ends_with(after))
+        .map(|name| format!("{folder}/{name}"))
+        .collect();
+    found.sort();
+    found
+}
+
+/// A rig of a skeleton's joints at their places, each with skin around its bone if it moves any in the file.
+fn of_skeleton(json: &serde_json::Value) -> Rig {
+    let nodes = json["nodes"].as_array().expect("nodes");
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number") as f32;
+    let place = |i: usize| {
+        let at = nodes[i]["rest"].as_array().expect("a place");
+        Vec3::new(number(&at[0]), number(&at[1]), number(&at[2]))
+    };
+    let parent = |i: usize| usize::try_from(nodes[i]["parent"].as_i64().expect("an index")).ok();
+    let vertices = |i: usize| nodes[i]["vertices"].as_u64().unwrap_or(0);
+    // Compressed meshes were not counted: then every joint of the skin counts, but for those that never move any.
+    let counted = (0..nodes.len()).any(|i| vertices(i) > 0);
+    let bare = |i: usize| {
+        let name = nodes[i]["name"].as_str().expect("a name");
+        ["Root", "root", "Body"].contains(&name) || name.starts_with("PoleTarget") || name.ends_with("_end")
+    };
+    let in_skin = |i: usize| nodes[i]["joint"].as_bool() == Some(true) && !bare(i);
+    let moves = |i: usize| if counted { vertices(i) > 0 } else { in_skin(i) };
+    let mut bones: Vec<(usize, Vec3, Vec3)> = Vec::new();
+    for i in (0..nodes.len()).filter(|&i| moves(i)) {
+        let children: Vec<usize> = (0..nodes.len()).filter(|&k| parent(k) == Some(i)).collect();
+        let length = |k: &usize| (place(*k) - place(i)).length();
+        let longest = children.into_iter().max_by(|a, b| length(a).total_cmp(&length(b)));
+        // Where a chain ends nothing says which way it points: straight up tells nothing of forward.
+        let end = Vec3::Y * parent(i).map_or(0.1, |p| 0.4 * (place(i) - place(p)).length());
+        bones.push((i, place(i), longest.map_or(place(i) + end, place)));
+    }
+    rig_of(nodes.iter().map(|node| node["name"].as_str().expect("a name")), &parent, &place, &bones)
+}
+
+/// A rig with a double pyramid of skin around every bone (joint, from, to).
+fn rig_of<'a>(
+    names: impl Iterator<Item = &'a str>,
+    parent: &dyn Fn(usize) -> Option<usize>,
+    place: &dyn Fn(usize) -> Vec3,
+    bones: &[(usize, Vec3, Vec3)],
+) -> Rig {
+    let mut rig = Rig::default();
+    let (mut skin, mut skinned) =
+        (Skin { name: String::new(), joints: vec![], inverse_bind: vec![] }, Primitive::default());
+    for (i, name) in names.enumerate() {
+        let translation = place(i) - parent(i).map_or(Vec3::ZERO, place);
+        let rest = LocalTransform { translation, ..LocalTransform::default() };
+        rig.joints.push(Joint { name: name.into(), parent: parent(i), rest, source: i });
+        skin.joints.push(i);
+        skin.inverse_bind.push(Affine { translation: -place(i), ..Affine::IDENTITY });
+    }
+    for &(joint, from, to) in bones {
+        let first = u32::try_from(skinned.positions.len()).expect("few");
+        let (middle, r) = ((from + to) * 0.5, 0.15 * (to - from).length() + 1e-4);
+        let belt = [Vec3::X, Vec3::Z, -Vec3::X, -Vec3::Z].map(|way| middle + way * r + Vec3::Y * (0.3 * r));
+        skinned.positions.extend([from, to]);
+        skinned.positions.extend(belt);
+        skinned.joints.extend([[u16::try_from(joint).expect("few"), 0, 0, 0]; 6]);
+        skinned.weights.extend([[1.0, 0.0, 0.0, 0.0]; 6]);
+        for k in 0..4 {
+            let (a, b) = (2 + k, 2 + (k + 1) % 4);
+            skinned.indices.extend([0, a, b, 1, b, a].map(|corner| first + corner));
+        }
+    }
+    rig.skins = vec![skin];
+    rig.meshes = vec![Mesh { name: String::new(), joint: 0, skin: Some(0), primitives: vec![skinned] }];
+    rig
+}
+
+/// How many roles are right, of all that the rig has or was given.
+fn score(rig: &Rig, truth: &BTreeMap<String, String>, complaints: &mut Vec<String>) -> (usize, usize) {
+    let found = analyze(rig).expect("a skin");
+    let mut all: BTreeSet<(String, String)> = BTreeSet::new();
+    let given: BTreeSet<(String, String)> = found
+        .roles
+        .iter()
+        .enumerate()
+        .filter_map(|(joint, guess)| Some((guess.as_ref()?.role, rig.joints[joint].name.clone())))
+        // A generic role is none of the humanoid: where one is due, it is missing.
+        .filter(|(role, _)| HUMANOID_ROLES.contains(role))
+        .map(|(role, name)| (role.name(), name))
+        .collect();
+    let wanted: BTreeSet<(String, String)> =
+        truth.iter().map(|(role, joint)| (role.clone(), joint.clone())).collect();
+    all.extend(given.iter().chain(&wanted).cloned());
+    let roles: BTreeSet<&String> = all.iter().map(|(role, _)| role).collect();
+    let right = given.intersection(&wanted).count();
+    let wrong: Vec<String> =
+        wanted.difference(&given).map(|(role, joint)| format!("{role}={joint}")).collect();
+    let extra: Vec<String> =
+        given.difference(&wanted).map(|(role, joint)| format!("+{role}={joint}")).collect();
+    if !found.humanoid {
+        complaints.push(format!("no humanoid: {:?}", found.notes));
+    } else if wrong.len() + extra.len() > 0 {
+        complaints.push(format!("{} {}", wrong.join(" "), extra.join(" ")));
+    }
+    (right, roles.len())
+}
+
+/// The rig with every joint moved aside at random, so that no mirror finds a limb and only names tell.
+fn blurred(rig: &Rig, seed: u64) -> Rig {
+    let mut rig = rig.clone();
+    let mut random = Random::new(seed);
+
+    let places: Vec<Vec3> = rig.skins[0].inverse_bind.iter().map(|inverse| -inverse.translation).collect();
+    let size = places.iter().fold(0.0f32, |size, p| size.max((*p - places[0]).length()));
+    for inverse in &mut rig.skins[0].inverse_bind {
+        inverse.translation += random.in_cube() * (0.05 * size);
+    }
+    rig
+}
+
+/// A row of the table: convention, roles right with the shape and by names alone, of all.
+fn measure(truth: &Truth, rows: &mut String) -> [(usize, usize); 2] {
+    let mut sums = [(0, 0); 2];
+    for file in truth.files.iter().flat_map(|pattern| files(pattern)) {
+        let mut complaints = Vec::new();
+        let rig = if file.starts_with("skeletons/") {
+            let bytes = rigs::bytes(&file).expect("the data");
+            of_skeleton(&serde_json::from_slice(&bytes).expect("JSON"))
+        } else {
+            let path = format!("{}{file}", rigs::DATA);
+            match sinew_formats::load_gltf(path, sinew_formats::ReadOptions::default()) {
+                Ok(document) => document.rig,
+                Err(error) => {
+                    *rows += &format!("{file}: {error}\n");
+                    sums[0].1 += truth.roles.len();
+                    continue;
+                }
+            }
+        };
+        let mut scores = vec![score(&rig, &truth.roles, &mut complaints)];
+        if file.starts_with("skeletons/") {
+            complaints.push("| by names:".into());
+            scores.push(score(&blurred(&rig, 7), &truth.roles, &mut complaints));
+        }
+        for (sum, score) in sums.iter_mut().zip(&scores) {
+            *sum = (sum.0 + score.0, sum.1 + score.1);
+        }
+        *rows += &format!("{file}: {scores:?} {}\n", complaints.join(" "));
+    }
+    *rows += &format!("{}: {sums:?}\n", truth.convention);
+    sums
+}
+
+#[test]
+fn roles_of_rigs_from_the_wild() {
+    if rigs::bytes("skeletons/README.md").is_none() {
+        return;
+    }
+    let mut rows = String::new();
+    let mut sums = [(0, 0); 2];
+    for truth in truths() {
+        for (sum, part) in sums.iter_mut().zip(measure(&truth, &mut rows)) {
+            *sum = (sum.0 + part.0, sum.1 + part.1);
+        }
+    }
+    println!("{rows}all: {sums:?}");
+    for (right, all) in sums {
+        assert!(100 * right >= 98 * all, "{right} of {all} roles are right\n{rows}");
+    }
+}
+
+/// Animals, machines and fish, by their files' beginnings; some have arms, hips and a head by name.
+const BEASTS: [&str; 14] = [
+    "quaternius_animals_",
+    "quaternius_dinosaurs_",
+    "quaternius_easy_enemies_",
+    "quaternius_fish_",
+    "quaternius_cute_fish_",
+    "quaternius_tank_",
+    "quaternius_cyberpunk_Enemy_",
+    "quaternius_platformer_game_B",
+    "quaternius_platformer_game_Crab",
+    "playground_frontend_Fox",
+    "pet_proj_wolf",
+    "Multi_",
+    "godot_4_3D_Characters_",
+    "siege_bakery_",
+];
+
+#[test]
+fn no_beast_is_a_human_whatever_its_joints_are_called() {
+    if rigs::bytes("skeletons/README.md").is_none() {
+        return;
+    }
+    let mut seen = 0;
+    for file in BEASTS.iter().flat_map(|start| files(&format!("skeletons/{start}*"))) {
+        let json = serde_json::from_slice(&rigs::bytes(&file).expect("the data")).expect("JSON");
+        let rig = of_skeleton(&json);
+        for rig in [rig.clone(), blurred(&rig, 2)] {
+            assert!(!analyze(&rig).expect("a skin").humanoid, "{file}");
+        }
+        seen += 1;
+    }
+    assert!(seen > 35, "{seen} files");
+}
+
+#[test]
+fn a_dog_with_a_humans_names_is_none() {
+    let dog = |role: &str| {
+        let at = human(role);
+        let trunk = !role.starts_with("left") && !role.starts_with("right");
+        let arm = ["Arm", "Hand", "Shoulder"].iter().any(|part| role.contains(part));
+        match (trunk, arm) {
+            // Upright is ahead, and arms hang down under the chest.
+            (true, _) => Vec3::new(0.0, 0.6, at.y - 0.95),
+            (_, true) => Vec3::new(0.12 * at.x.signum(), 0.65 - 0.8 * (at.x.abs() - 0.04), 0.4),
+            _ => Vec3::new(at.x, 0.6 * at.y, 0.05 + at.z),
+        }
+    };
+    let (_, mut lines) = conventions().into_iter().find(|(name, _)| name == "Unreal").expect("a convention");
+    // Paws have no name here, or they would walk on hands.
+    let gone = |line: &Line| line.2.as_deref().is_some_and(|role| role.ends_with("Hand"));
+    for line in lines.iter_mut().filter(|line| gone(line)) {
+        line.0 = "dewclaw".into();
+    }
+    let rig = dressed_as(&lines, &dog);
+    for rig in [rig.clone(), blurred(&rig, 4)] {
+        let found = analyze(&rig).expect("a skin");
+        assert!(!found.humanoid, "{:?}", found.notes);
+    }
+}
+
+/// A skeleton of conventions.txt: name, parent, role if any, whether it moves skin.
+type Line = (String, Option<usize>, Option<String>, bool);
+
+fn conventions() -> Vec<(String, Vec<Line>)> {
+    let text = include_str!("../data/conventions.txt");
+    let blocks = text.split("convention ").skip(1);
+    let read = |block: &str| {
+        let (name, lines) = block.split_once('\n').expect("lines");
+        let lines: Vec<&str> = lines.lines().filter(|line| !line.is_empty()).collect();
+        let mut joints = Vec::new();
+        add_lines(&lines, None, None, &mut joints);
+        (name.to_owned(), joints)
+    };
+    blocks.map(read).collect()
+}
+
+/// Adds the joints of lines that are all of one depth or below it, each side of a pair with all under it.
+fn add_lines(lines: &[&str], parent: Option<usize>, side: Option<usize>, out: &mut Vec<Line>) {
+    let depth = |line: &str| line.len() - line.trim_start_matches(' ').len();
+    let mut at = 0;
+    while at < lines.len() {
+        let end = (at + 1..lines.len()).find(|&i| depth(lines[i]) <= depth(lines[at])).unwrap_or(lines.len());
+        let (name, role) =
+            lines[at].trim().split_once(" = ").map_or((lines[at].trim(), None), |(a, b)| (a, Some(b)));
+        let both = if name.contains('[') && side.is_none() { vec![Some(0), Some(1)] } else { vec![side] };
+        for side in both {
+            let name = sides(name)[side.unwrap_or(0)].clone();
+            let role = role.map(|role| match side {
+                Some(side) => format!("{}{role}", ["left", "right"][side]),
+                None => role.to_owned(),
+            });
+            let bare = name.starts_with('-');
+            let joint = out.len();
+            out.push((name.trim_start_matches('-').to_owned(), parent, role, !bare));
+            add_lines(&lines[at + 1..end], Some(joint), side, out);
+        }
+        at = end;
+    }
+}
+
+/// Where a human's joint of that role is, metres; its toes point forward (+Z).
+fn human(role: &str) -> Vec3 {
+    let (x, role) = match (role.strip_prefix("left"), role.strip_prefix("right")) {
+        (Some(part), _) => (1.0, part),
+        (_, Some(part)) => (-1.0, part),
+        _ => (0.0, role),
+    };
+    let [across, up, ahead] = match role {
+        "hips" => [0.0, 0.95, 0.0],
+        "spine" => [0.0, 1.07, 0.0],
+        "chest" => [0.0, 1.2, 0.0],
+        "upperChest" => [0.0, 1.32, 0.0],
+        "neck" => [0.0, 1.5, 0.0],
+        "head" => [0.0, 1.6, 0.0],
+        "Shoulder" => [0.04, 1.44, 0.0],
+        "UpperArm" => [0.18, 1.44, 0.0],
+        "LowerArm" => [0.46, 1.44, 0.0],
+        "Hand" => [0.71, 1.44, 0.0],
+        "UpperLeg" => [0.1, 0.92, 0.0],
+        "LowerLeg" => [0.1, 0.5, 0.0],
+        "Foot" => [0.1, 0.09, 0.0],
+        "Toes" => [0.1, 0.03, 0.14],
+        other => panic!("no role {other}"),
+    };
+    Vec3::new(x * across, up, ahead)
+}
+
+/// A human with the joints of a convention; those without a role sit between what carries them and what they carry.
+fn dressed(lines: &[Line]) -> Rig {
+    dressed_as(lines, &human)
+}
+
+/// As [`dressed`], with the joints of roles elsewhere.
+fn dressed_as(lines: &[Line], human: &dyn Fn(&str) -> Vec3) -> Rig {
+    let mut places: Vec<Vec3> = Vec::new();
+    for (i, (name, parent, role, _)) in lines.iter().enumerate() {
+        let carried =
+            (i + 1..lines.len()).find(|&k| lines[k].1 == Some(i)).and_then(|k| lines[k].2.as_deref());
+        let from = parent.map_or(Vec3::Y * 0.9, |parent| places[parent]);
+        // Off the line a little, by the name, so that no two joints are in one place.
+        let aside = Vec3::new(0.0, 0.004, 0.004) * (1.0 + name.len() as f32 * 0.1);
+        places.push(match (role, carried) {
+            (Some(role), _) => human(role),
+            (None, Some(carried)) if parent.is_some() => (from + human(carried)) * 0.5 + aside,
+            _ => from + aside * 2.0,
+        });
+    }
+    let mut bones = Vec::new();
+    for (i, line) in lines.iter().enumerate().filter(|(_, line)| line.3) {
+        let next = (i + 1..lines.len()).find(|&k| lines[k].1 == Some(i) && lines[k].3);
+        let end = if line.2.is_some() { Vec3::Y * 0.1 } else { Vec3::Y * 0.01 };
+        bones.push((i, places[i], next.map_or(places[i] + end, |k| places[k])));
+    }
+    let names = lines.iter().map(|line| line.0.as_str());
+    rig_of(names, &|i| lines[i].1, &|i| places[i], &bones)
+}
+
+#[test]
+fn names_of_the_worlds_conventions_tell_the_roles() {
+    let mut wrong = String::new();
+    for (convention, lines) in conventions() {
+        let truth: BTreeMap<String, String> =
+            lines.iter().filter_map(|line| Some((line.2.clone()?, line.0.clone()))).collect();
+        let rig = dressed(&lines);
+        for (what, rig) in [("in shape", rig.clone()), ("by names alone", blurred(&rig, 3))] {
+            let mut complaints = Vec::new();
+            let (right, all) = score(&rig, &truth, &mut complaints);
+            if right < all {
+                wrong += &format!("{convention}, {what}: {right} of {all}: {}\n", complaints.join(" "));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}

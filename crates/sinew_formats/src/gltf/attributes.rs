@@ -1,0 +1,64 @@
+//! What a primitive says of its vertices, plain or compressed.
+
+use super::accessor::fill_holes;
+use super::draco::Decoded;
+use super::source::Source;
+use crate::error::Result;
+use crate::json::At;
+
+/// The attributes of a primitive.
+pub(super) struct Attributes<'s, 'a> {
+    source: &'s Source<'a>,
+    at: At<'a>,
+    draco: Option<Decoded<'a>>,
+}
+
+impl<'s, 'a> Attributes<'s, 'a> {
+    /// Of a primitive whose positions are at index `position`.
+    pub(super) fn of(source: &'s Source<'a>, primitive: At<'a>, position: At<'a>) -> Result<Self> {
+        let draco = Decoded::of(source, primitive, position)?;
+        Ok(Self { source, at: primitive.need("attributes")?, draco })
+    }
+
+    /// The attribute's accessor index, if the primitive has it.
+    pub(super) fn get(&self, name: &str) -> Result<Option<At<'a>>> {
+        self.at.get(name)
+    }
+
+    /// The stream, if it holds the attribute.
+    fn stream(&self, name: &str) -> Result<Option<&Decoded<'a>>> {
+        match &self.draco {
+            Some(draco) if draco.holds(name)? => Ok(Some(draco)),
+            _ => Ok(None),
+        }
+    }
+
+    /// Elements of `N` numbers, with 0 for those that are not finite, and the elements that had any.
+    pub(super) fn floats<const N: usize>(
+        &self,
+        name: &str,
+        at: At<'a>,
+    ) -> Result<(Vec<[f32; N]>, Vec<usize>)> {
+        let Some(draco) = self.stream(name)? else { return self.source.floats_and_holes(at) };
+        let full = self.source.full_scale(at)?;
+        let mut numbers = draco.numbers::<N>(self.source, name)?;
+        if full > 1.0 {
+            numbers.iter_mut().flatten().for_each(|x| *x = sinew_math::max(*x / full, -1.0));
+        }
+        let holes = fill_holes(&mut numbers);
+        Ok((numbers, holes))
+    }
+
+    /// Elements of `N` unsigned integers.
+    pub(super) fn integers<const N: usize>(&self, name: &str, at: At<'a>) -> Result<Vec<[u32; N]>> {
+        let Some(draco) = self.stream(name)? else { return self.source.integers(at) };
+        let numbers = draco.numbers::<N>(self.source, name)?;
+        // From −0 down and NaN to 0: what the stream has of integers is none of them.
+        Ok(numbers.into_iter().map(|element| element.map(|x| x as u32)).collect())
+    }
+
+    /// The corners of the stream's triangles; `None` where they are plain.
+    pub(super) fn triangles(&self) -> Result<Option<Vec<u32>>> {
+        self.draco.as_ref().map(|draco| draco.triangles(self.source)).transpose()
+    }
+}
