@@ -2,7 +2,7 @@
 //! downhill are made conjugate (nonsmooth nonlinear conjugate gradients: Silcowitz, Niebe and Erleben 2010).
 
 use super::block::{Block, Bounce, Eight, Memory, packed};
-use super::{Contacts, Visitor};
+use super::{Contacts, Visitor, visitor};
 use crate::spatial::{Vec6, add_scaled, largest};
 use sinew_math::lanes::{LaneMask, Lanes};
 
@@ -53,61 +53,35 @@ fn impulses<const N: usize, const T: usize>(block: &Block<N, T>) -> [Eight; NUMB
     all
 }
 
-/// Writes down the impulses of each block.
-struct Note<'a>(&'a mut Vec<[Eight; NUMBERS]>);
+visitor!(
+    /// Writes down the impulses of each block.
+    Note<'a> { list: &'a mut Vec<[Eight; NUMBERS]> },
+    |self, block, _memory, _bounces| self.list.push(impulses(block))
+);
 
-impl Visitor for Note<'_> {
-    #[inline(always)]
-    fn visit<L: Lanes, const N: usize, const T: usize>(
-        &mut self,
-        block: &mut Block<N, T>,
-        _: &mut Memory<N>,
-        _: &mut [Bounce<N>],
-    ) {
-        self.0.push(impulses(block));
-    }
-}
-
-/// The change of each block's impulses since they were written down.
-struct Difference<'a> {
-    was: &'a mut [[Eight; NUMBERS]],
-    at: usize,
-}
-
-impl Visitor for Difference<'_> {
-    #[inline(always)]
-    fn visit<L: Lanes, const N: usize, const T: usize>(
-        &mut self,
-        block: &mut Block<N, T>,
-        _: &mut Memory<N>,
-        _: &mut [Bounce<N>],
-    ) {
+visitor!(
+    /// The change of each block's impulses since they were written down.
+    Difference<'a> { was: &'a mut [[Eight; NUMBERS]], at: usize },
+    |self, block, _memory, _bounces| {
         let (now, was) = (impulses(block), &mut self.was[self.at]);
         for k in 0..NUMBERS {
             (L::load(&now[k]) - L::load(&was[k])).store(&mut was[k]);
         }
         self.at += 1;
     }
-}
+);
 
-/// Adds a share of the direction so far to each block; then the direction is that share and the change.
-struct GoOn<'a> {
-    direction: &'a mut [[Eight; NUMBERS]],
-    change: &'a [[Eight; NUMBERS]],
-    share: f32,
-    /// Change of what a row makes of its own velocity that asks for a visit.
-    tolerance: f32,
-    at: usize,
-}
-
-impl Visitor for GoOn<'_> {
-    #[inline(always)]
-    fn visit<L: Lanes, const N: usize, const T: usize>(
-        &mut self,
-        block: &mut Block<N, T>,
-        _: &mut Memory<N>,
-        _: &mut [Bounce<N>],
-    ) {
+visitor!(
+    /// Adds a share of the direction so far to each block; then the direction is that share and the change. `tolerance` is how much a
+    /// row must have changed of its own velocity to be visited for that alone.
+    GoOn<'a> {
+        direction: &'a mut [[Eight; NUMBERS]],
+        change: &'a [[Eight; NUMBERS]],
+        share: f32,
+        tolerance: f32,
+        at: usize
+    },
+    |self, block, _memory, _bounces| {
         let (direction, change) = (&mut self.direction[self.at], &self.change[self.at]);
         let share = L::splat(self.share);
         let mut most = L::splat(0.0);
@@ -128,7 +102,7 @@ impl Visitor for GoOn<'_> {
         }
         self.at += 1;
     }
-}
+);
 
 impl Contacts {
     /// For the blocks of the island, and so many bodies.
@@ -148,7 +122,7 @@ impl Contacts {
     pub(in crate::solver) fn before_conjugate(&mut self, velocities: &[Vec6], limits: &[f32]) {
         let mut was = core::mem::take(&mut self.conjugate.was);
         was.clear();
-        self.each(Note(&mut was.blocks));
+        self.each(Note { list: &mut was.blocks });
         was.velocities.extend_from_slice(velocities);
         was.limits.extend_from_slice(limits);
         self.conjugate.was = was;

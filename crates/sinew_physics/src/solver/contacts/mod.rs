@@ -171,6 +171,8 @@ macro_rules! visitor {
     };
 }
 
+use visitor;
+
 visitor!(
     /// Responses of blocks that were written.
     Respond<'a> { inverse: &'a [Vec6], all: bool },
