@@ -20,61 +20,52 @@ const SETTINGS: &[Setting] = &[
     Setting::number("heavy", 1.0, (0.001, 10.0), "of the heavy pair, likewise"),
 ];
 
-pub(super) const JENGA: Scene = Scene {
-    name: "jenga_laden",
-    about: "`jenga` stands under a jointed pair, a rope, a doll, with a rope hanging from it, a plank leaning on it",
-    steps: STEPS,
-    settings: SETTINGS,
-    build: |setup| side_by_side(setup, &jenga()),
-};
+/// What stands, beside copies of it that bear loads.
+const fn laden(name: &'static str, about: &'static str, build: fn(&Setup<'_>) -> Instance) -> Scene {
+    Scene { name, about, steps: STEPS, settings: SETTINGS, build }
+}
 
-pub(super) const SIZE_RATIO: Scene = Scene {
-    name: "stack_ratio_laden",
-    about: "`stack_ratio` stands under a jointed pair, a rope, a figure, with a rope hanging from it, a plank leaning on it",
-    steps: STEPS,
-    settings: SETTINGS,
-    build: |setup| side_by_side(setup, &size_ratio()),
-};
+pub(super) const JENGA: Scene = laden(
+    "jenga_laden",
+    "`jenga` stands under a jointed pair, a rope, a doll, with a rope hanging from it, a plank leaning on it",
+    |setup| side_by_side(setup, &jenga()),
+);
 
-pub(super) const MASS_RATIO: Scene = Scene {
-    name: "stack_mass_ratio_laden",
-    about: "`stack_mass_ratio` stands under a jointed pair, a rope, a figure, with a rope hanging from it, a plank leaning on it",
-    steps: STEPS,
-    settings: SETTINGS,
-    build: |setup| side_by_side(setup, &tower(blueprint::stack_mass_ratio(10, 10.0))),
-};
+pub(super) const SIZE_RATIO: Scene = laden(
+    "stack_ratio_laden",
+    "`stack_ratio` stands under a jointed pair, a rope, a figure, with a rope hanging from it, a plank leaning on it",
+    |setup| side_by_side(setup, &size_ratio()),
+);
 
-pub(super) const CARDS: Scene = Scene {
-    name: "cards_laden",
-    about: "`cards` stands with a jointed pair or a doll on its ceiling, a rope over its ridge, a plank leaning on it",
-    steps: STEPS,
-    settings: SETTINGS,
-    build: |setup| side_by_side(setup, &cards()),
-};
+pub(super) const MASS_RATIO: Scene = laden(
+    "stack_mass_ratio_laden",
+    "`stack_mass_ratio` stands under a jointed pair, a rope, a figure, with a rope hanging from it, a plank leaning on it",
+    |setup| side_by_side(setup, &tower(blueprint::stack_mass_ratio(10, 10.0))),
+);
 
-pub(super) const PYRAMID: Scene = Scene {
-    name: "pyramid_laden",
-    about: "`large_pyramid` stands under a jointed pair, a rope, a figure, with a rope hanging from it, a plank leaning on it",
-    steps: STEPS,
-    settings: SETTINGS,
-    build: |setup| side_by_side(setup, &pyramid()),
-};
+pub(super) const CARDS: Scene = laden(
+    "cards_laden",
+    "`cards` stands with a jointed pair or a doll on its ceiling, a rope over its ridge, a plank leaning on it",
+    |setup| side_by_side(setup, &cards()),
+);
 
-pub(super) const ARCH: Scene = Scene {
-    name: "arch_laden",
-    about: "`arch` stands under a jointed pair, a rope, a figure, with a rope hanging from it, a plank leaning on it",
-    steps: STEPS,
-    settings: SETTINGS,
-    build: |setup| side_by_side(setup, &masonry()),
-};
+pub(super) const PYRAMID: Scene = laden(
+    "pyramid_laden",
+    "`large_pyramid` stands under a jointed pair, a rope, a figure, with a rope hanging from it, a plank leaning on it",
+    |setup| side_by_side(setup, &pyramid()),
+);
 
-pub(super) const STACK: Scene = Scene {
-    name: "stack_laden",
-    about: "`stack` stands under a jointed pair, a rope, a figure, with a rope hanging from it, a plank leaning on it",
-    steps: STEPS,
-    settings: SETTINGS,
-    build: |setup| side_by_side(setup, &tower(blueprint::loads::stack(10))),
-};
+pub(super) const ARCH: Scene = laden(
+    "arch_laden",
+    "`arch` stands under a jointed pair, a rope, a figure, with a rope hanging from it, a plank leaning on it",
+    |setup| side_by_side(setup, &masonry()),
+);
+
+pub(super) const STACK: Scene = laden(
+    "stack_laden",
+    "`stack` stands under a jointed pair, a rope, a figure, with a rope hanging from it, a plank leaning on it",
+    |setup| side_by_side(setup, &tower(blueprint::loads::stack(10))),
+);
 
 /// What jointed things are put on.
 struct Host {
