@@ -25,7 +25,7 @@ const TRIAL: u32 = 3;
 /// Reads by which a clock's cost is known.
 const READS: u32 = 1_000;
 
-/// What is traced, and how long.
+/// A scene to trace, and for how many steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Trace<'a> {
     /// A scene of the peers, or else of `sinew scenes`.
@@ -54,7 +54,7 @@ impl Run {
 }
 
 impl Trace<'_> {
-    /// What was found, as one JSON object.
+    /// Runs the scene and gives time and counts of each stage as one JSON object.
     ///
     /// # Errors
     /// If there is no such scene, or it cannot be built without settings.
@@ -96,7 +96,7 @@ impl Trace<'_> {
         json!({ "scene": self.scene, "warm_up": warm_up, "steps": steps, "step": step })
     }
 
-    /// Of work that is no world's.
+    /// Gives the time of whole steps, for work that is no world's (rays, boxes, clips).
     fn whole(&self, scene: &scenes::Scene) -> Result<Value, String> {
         let entry = engines::find("sinew").and_then(|entry| entry.engine).ok_or("this build has no Sinew")?;
         let steps = self.steps.map(|steps| steps as usize);
@@ -170,7 +170,7 @@ fn choose_clock(run: &mut Run, steps: u32) -> Clock {
     }
 }
 
-/// What time is read from.
+/// Clock that times stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Clock {
     /// Processor time of the process, which has one thread: neighbours do not count, but a read is a call of the system.
@@ -186,7 +186,7 @@ impl Clock {
         }
     }
 
-    /// Of one read.
+    /// Duration of one read of the clock.
     fn cost(self) -> Duration {
         let start = Instant::now();
         let watch = Watch::start(self);
@@ -220,20 +220,20 @@ impl Watch {
     }
 }
 
-/// Of one step.
+/// Times and counts of one step.
 #[derive(Clone, Debug, Default)]
 struct Record {
     wall: Duration,
     cpu: Duration,
     stages: [StageTime; Stage::Sensors as usize + 1],
     counts: BTreeMap<Counter, Count>,
-    /// How often the clock was read.
+    /// Number of reads of the clock.
     reads: u32,
 }
 
 #[derive(Clone, Debug, Default)]
 struct StageTime {
-    /// Of those that came.
+    /// Stage whose time it is.
     stage: Option<Stage>,
     time: Duration,
 }

@@ -282,8 +282,9 @@ struct Scratch {
     before: Vec<Vec6>,
     /// Poses of all bodies at the end of the substep; kinematic ones move, too.
     predicted: Vec<Transform>,
-    /// Within a sweep by turns, after the limits or the contacts had theirs.
+    /// Velocities within a sweep by turns, after the limits had their turn.
     swept: Vec<Vec6>,
+    /// Velocities within a sweep by turns, after the contacts had theirs.
     contacted: Vec<Vec6>,
     /// Impulses of the limits.
     limits: Vec<f32>,

@@ -6,7 +6,7 @@ use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
 
-/// Who answers to impulses: the bodies of each tree that carry rows, and their ancestors.
+/// Links that answer to impulses: the bodies of each tree that carry rows, and their ancestors.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Response {
     /// Per body: its position among the members of its tree, or `NONE`.
@@ -16,12 +16,12 @@ pub(crate) struct Response {
     /// Place of each one's parent among them; 0 of a root.
     above: Vec<u32>,
     trees: Vec<Members>,
-    /// Of all trees with loops, for [`close`](Self::close): columns of their rows, and the inverses of what rows answer to each other.
+    /// Columns of the rows that [close](Self::close) loops, and inverses of what these rows answer to each other, tree after tree.
     columns: Vec<Vec6>,
     inverses: Vec<f32>,
 }
 
-/// Those of a tree.
+/// Members of one tree, and the rows that close loops in it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Members {
     first: usize,
