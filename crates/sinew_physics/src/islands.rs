@@ -5,7 +5,9 @@ use crate::field::Target;
 use crate::particles::ParticleGroup;
 use crate::project::{Neighbors, TakenGroup};
 use crate::runner::TaskRunner;
+use crate::solver::flight::{Flight, flies};
 use crate::solver::{Solution, View};
+use crate::step::StepContext;
 use crate::tasks::{Queue, Task, Workspace, Workspaces};
 use crate::work::Work;
 
@@ -18,6 +20,8 @@ pub(crate) struct Island<'a> {
     pub contacts: &'a [u32],
     /// Particle groups that hang on its bodies or may touch them.
     pub groups: &'a [u32],
+    /// It has come through this step by itself: a body in flight.
+    pub is_flown: bool,
 }
 
 /// Union-find over the active bodies, then over the slots of particle groups. Everything of one kind lies in one list for
@@ -48,6 +52,9 @@ pub(crate) struct Islands {
     /// Out of the world for the length of the step, island after island.
     taken: Vec<TakenGroup>,
     solution: Solution,
+    /// Per island: its only body was in flight, and is where it comes to.
+    flown: Vec<bool>,
+    flight: Flight,
     /// One for each thread that has worked at the same time as others.
     idle: Vec<Workspace>,
     /// One for each island, where they go in lockstep.
@@ -73,12 +80,17 @@ impl Tie {
 impl Islands {
     /// The islands of this step, ordered by their smallest body.
     pub fn iter(&self) -> impl Iterator<Item = Island<'_>> {
-        (0..self.count).map(|i| Island {
+        (0..self.count).map(|i| self.at(i))
+    }
+
+    fn at(&self, i: usize) -> Island<'_> {
+        Island {
             bodies: self.bodies.of(i),
             joints: self.joints.of(i),
             contacts: self.contacts.of(i),
             groups: self.groups.of(i),
-        })
+            is_flown: self.flown[i],
+        }
     }
 
     /// Of drives and of bodies that move by themselves, island after island.
@@ -115,6 +127,10 @@ impl Islands {
         for lists in [&mut self.bodies, &mut self.joints, &mut self.contacts, &mut self.groups] {
             lists.sort(self.count, self.parent.len());
         }
+        self.flight.clear();
+        self.flown.clear();
+        self.flown.reserve(self.parent.len());
+        self.flown.resize(self.count, false);
         for (_, group) in groups.iter_mut() {
             group.begin_step();
         }
@@ -288,7 +304,21 @@ impl Islands {
         }
     }
 
-    /// Calls `work` once for each island, on `runner`'s threads: all that there is to do for it in this step.
+    /// `flight`: takes bodies that nothing touches or holds through the step, so that [`run`](Self::run) need not.
+    pub fn fly(&mut self, view: &View<'_>, context: &StepContext<'_>) {
+        let mut flight = core::mem::take(&mut self.flight);
+        for i in 0..self.count {
+            let island = self.at(i);
+            if flies(&island, view) {
+                flight.add(island.bodies[0], view);
+                self.flown[i] = true;
+            }
+        }
+        flight.run(view, context);
+        self.flight = flight;
+    }
+
+    /// Calls `work` once for each island that is not flown, on `runner`'s threads: all that there is to do for it in this step.
     pub fn run(&mut self, runner: &dyn TaskRunner, work: impl Fn(&mut Task<'_>) + Sync) {
         let mut idle = core::mem::take(&mut self.idle);
         self.run_in(Workspaces::Idle(&mut idle), runner, work);
@@ -319,7 +349,14 @@ impl Islands {
             self.joints.numbers.len(),
             self.contacts.numbers.len(),
         );
-        Queue::new(self.iter(), &mut taken, &mut solution, workspaces).run(runner, self.count, work);
+        let mut flown = self.flight.solved();
+        for i in (0..self.count).filter(|&i| self.flown[i]) {
+            solution.work[i] = Work::default();
+            let solved = &mut solution.bodies[self.bodies.range(i).start];
+            *solved = flown.next().unwrap_or(*solved);
+        }
+        let left = self.flown.iter().filter(|is_flown| !**is_flown).count();
+        Queue::new(self.iter(), &mut taken, &mut solution, workspaces).run(runner, left, work);
         (self.solution, self.taken) = (solution, taken);
     }
 

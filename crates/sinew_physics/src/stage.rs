@@ -15,6 +15,8 @@ pub enum Stage {
     Islands,
     /// In which order an island's contacts are solved.
     Color,
+    /// Bodies that nothing touches or holds.
+    Flight,
     /// From bodies, joints and contacts to the solver's own arrays.
     Prepare,
     /// Forces to velocities.
@@ -44,7 +46,7 @@ pub enum Stage {
 }
 
 /// What a step counts for a [`Profiler`] that asks for it. From [`Bodies`](Self::Bodies) on each is told once for every island
-/// by the thread that solves it, `Bodies` first.
+/// by the thread that solves it, `Bodies` first; of a body in flight, [`BodySubsteps`](Self::BodySubsteps) alone follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Counter {

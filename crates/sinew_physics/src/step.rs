@@ -40,6 +40,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     stage(Stage::Islands, &mut || islands.find(&view, groups));
     stage(Stage::Color, &mut || islands.color());
     if objects.is_empty() {
+        stage(Stage::Flight, &mut || islands.fly(&view, context));
         islands.run(context.runner, |task| task.solve(&view, context));
     } else {
         lockstep(objects, islands, &view, context);

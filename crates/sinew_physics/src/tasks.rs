@@ -124,14 +124,16 @@ impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
         while work_on_next() {}
     }
 
+    /// The next of them that has not flown.
     fn next(&mut self) -> Option<Task<'a>> {
-        let (number, island) = self.islands.next()?;
-        Some(Task {
-            number,
-            island,
-            groups: split_off(&mut self.groups, island.groups.len()),
-            solution: self.solution.split_off(&island),
-            workspace: self.workspaces.take(number),
-        })
+        loop {
+            let (number, island) = self.islands.next()?;
+            let solution = self.solution.split_off(&island);
+            if island.is_flown {
+                continue;
+            }
+            let groups = split_off(&mut self.groups, island.groups.len());
+            return Some(Task { number, island, groups, solution, workspace: self.workspaces.take(number) });
+        }
     }
 }

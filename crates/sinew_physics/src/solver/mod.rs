@@ -17,6 +17,7 @@ mod effort;
 mod energy;
 mod faces;
 mod fields;
+pub(crate) mod flight;
 pub(crate) mod lcp;
 mod levels;
 mod limit_rows;
@@ -67,6 +68,8 @@ const WEIGHINGS: usize = 2;
 /// Most Newton steps to the middle of a free body's spin, and the square of the relative change with which they end.
 const MIDPOINT_STEPS: usize = 4;
 const MIDPOINT_TOLERANCE: f32 = 1e-12;
+/// Most that half a substep is taken to turn on the way there, radians: within a quarter of a turn, should the world's limit allow more.
+const MOST_HALF_TURN: f32 = 1.2;
 /// Rounds in which limits and contacts that the substep would pass by far are tightened.
 const FORESIGHTS: usize = 4;
 
@@ -683,8 +686,7 @@ fn gyroscopic(body: &SolverBody, w: Vec3, h: f32) -> Vec3 {
     let mut m = w0;
     for _ in 0..MIDPOINT_STEPS {
         let l = m * i;
-        // Within a quarter of a turn, should the world's limit allow more.
-        let angle = min(0.5 * h * m.length(), 1.2);
+        let angle = min(0.5 * h * m.length(), MOST_HALF_TURN);
         let tau = 0.5 * h * (if angle > 1e-3 { trig::tan(angle) / angle } else { 1.0 });
         // Jacobian I + τ (m× I − (I m)×), but for what τ changes with m.
         let jacobian = Mat3::from_diagonal(i) + (skew(m) * Mat3::from_diagonal(i) - skew(l)) * tau;

@@ -11,6 +11,7 @@ mod cook;
 mod events;
 mod fields;
 mod finite;
+mod flight;
 mod hull;
 mod humanoid;
 mod joints;

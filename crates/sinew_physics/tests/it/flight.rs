@@ -1,0 +1,69 @@
+//! Bodies in flight, eight at a time: as they fly alone, and as they would as islands.
+
+use crate::build::box_body;
+use sinew_math::{Random, Transform, Vec3};
+use sinew_physics::*;
+
+/// A box that spins, number `i` of a crowd in which none comes near another.
+fn spinning(world: &mut World, i: u32) -> BodyId {
+    let mut random = Random::new(u64::from(i) + 1);
+    let extents = Vec3::new(random.range(0.1, 0.2), random.range(0.2, 0.4), random.range(0.4, 0.8));
+    let mut def = box_body(extents, Vec3::new(10.0 * i as f32, 50.0, 0.0));
+    def.velocity = Velocity { linear: random.direction() * 5.0, angular: random.direction() * 12.0 };
+    (def.linear_damping, def.angular_damping) = (random.range(0.0, 0.2), random.range(0.0, 0.2));
+    world.add_body(&def)
+}
+
+fn flown(world: &mut World, id: BodyId, steps: usize) -> (Transform, Velocity) {
+    for _ in 0..steps {
+        world.step();
+    }
+    (world.transform(id), world.velocity(id))
+}
+
+#[test]
+fn bits_are_the_same_alone_and_in_a_crowd() {
+    for i in [0, 7, 11, 18] {
+        let mut crowd = World::new(WorldDef::default());
+        let ids: Vec<_> = (0..19).map(|i| spinning(&mut crowd, i)).collect();
+        let mut alone = World::new(WorldDef::default());
+        let only = spinning(&mut alone, i);
+        assert_eq!(flown(&mut crowd, ids[i as usize], 60), flown(&mut alone, only, 60), "body {i}");
+    }
+}
+
+#[test]
+fn a_flight_is_what_an_island_does() {
+    // Gravity as a field takes bodies through islands.
+    let field = FieldKind::Uniform(UniformGravity { acceleration: WorldDef::default().gravity });
+    for i in 0..8 {
+        let mut free = World::new(WorldDef::default());
+        let mut fielded = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+        fielded.add_field(&FieldDef::new(field));
+        let [(pose, v), (expected, w)] = [&mut free, &mut fielded].map(|world| {
+            let id = spinning(world, i);
+            world.apply_torque(id, Vec3::X);
+            flown(world, id, 60)
+        });
+        assert!((pose.translation - expected.translation).length() < 1e-4, "{i}: {pose:?}, {expected:?}");
+        assert!(pose.rotation.dot(expected.rotation).abs() > 1.0 - 1e-6, "{i}: {pose:?}, {expected:?}");
+        assert!((v.linear - w.linear).length() < 1e-4, "{i}: {v:?}, {w:?}");
+        assert!((v.angular - w.angular).length() < 2e-3, "{i}: {v:?}, {w:?}");
+    }
+}
+
+#[test]
+fn spin_and_speed_stay_within_the_worlds_limits() {
+    let mut world =
+        World::new(WorldDef { gravity: Vec3::ZERO, max_speed: 20.0, max_turn: 0.1, ..WorldDef::default() });
+    let mut def = box_body(Vec3::new(0.1, 0.2, 0.3), Vec3::ZERO);
+    def.velocity = Velocity { linear: Vec3::X * 1e4, angular: Vec3::new(1e3, 1.0, 1e3) };
+    let id = world.add_body(&def);
+    for _ in 0..10 {
+        world.step();
+        let v = world.velocity(id);
+        assert!((v.linear.length() - 20.0).abs() < 1e-3, "{v:?}");
+        // 0.1 rad in each of 240 substeps a second; the spin of a body that tumbles changes by its moments.
+        assert!(v.angular.is_finite() && v.angular.length() < 3.0 * 24.0, "{v:?}");
+    }
+}
