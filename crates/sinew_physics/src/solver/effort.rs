@@ -16,6 +16,9 @@ pub(super) struct Effort {
     /// Change of a velocity in a sweep below which there need not be another, m/s or rad/s. What rows would do about less
     /// is left alone.
     pub tolerance: f32,
+    /// Share of the energy of the substep's largest change that a sweep must change for another to follow: what a hit leaves beyond that
+    /// is a thirtieth of its speed (of a heap, a tenth), and the next substep goes on from there.
+    pub small: f32,
     /// Speed at which a body of the island's mean mass has the energy that a sweep must change for another to follow, m/s; 0 where only
     /// the tolerance ends them. Of sweeps by turns.
     pub enough: f32,
@@ -57,15 +60,18 @@ pub(super) enum Order {
 }
 
 /// Of islands with joints that are swept with the response of all links.
-const JOINTED: Effort = Effort { solve: 24, relax: 24, tolerance: 2e-3, enough: 0.0, order: Order::Forward };
+const JOINTED: Effort =
+    Effort { solve: 24, relax: 24, tolerance: 2e-3, small: 0.0, enough: 0.0, order: Order::Forward };
 /// Of heaps in which contacts and trees are solved by turns: most sweeps of a heap at rest end with the second, those of a crash are
 /// needed (a chain of 70 links sank 85 mm into a wall with four).
-const TURNS: Effort = Effort { solve: 16, relax: 16, tolerance: 0.05, enough: 0.1, order: Order::Forward };
+const TURNS: Effort =
+    Effort { solve: 16, relax: 16, tolerance: 0.05, small: 0.0, enough: 0.1, order: Order::Forward };
 /// Of a pile of bodies that weigh about the same: hard contacts want sweeps that find the loads, most of which a pile at rest does not
 /// need. In `relax` two, since friction of the first knows only the impulses of `solve` (1.5 % too little).
-const PILE: Effort = Effort { solve: 96, relax: 2, tolerance: 2e-3, enough: 0.0, order: Order::ToAndFro };
+const PILE: Effort =
+    Effort { solve: 96, relax: 2, tolerance: 2e-3, small: 1e-3, enough: 0.0, order: Order::ToAndFro };
 /// Of a heap with more contacts than [`MANY_CONTACTS`]: what falls in it finds its loads over some substeps.
-const HEAP: Effort = Effort { solve: 16, ..PILE };
+const HEAP: Effort = Effort { solve: 16, small: 0.01, ..PILE };
 /// Of a pile that `PILE` is for. What one end of it feels reaches the other in as many sweeps as it has levels: a wall of a hundred
 /// leaned by 0.8 m within 17 s.
 const LEVELS: f32 = 10.0;
@@ -89,6 +95,7 @@ impl Effort {
             solve: min(even.solve as f32 * height * root.sqrt(), MOST_SOLVE) as usize,
             relax: min(even.relax as f32 * height * root, MOST_RELAX) as usize,
             tolerance: max(even.tolerance / (height * ratio), LEAST_TOLERANCE),
+            small: if ratio <= GRADED_RATIO { even.small } else { 0.0 },
             enough: 0.0,
             order: if ratio <= EVEN { PILE.order } else { Order::Forward },
         }
@@ -97,7 +104,8 @@ impl Effort {
     /// Of contacts in blocks.
     pub fn of_blocks(&self, pass: Pass) -> Sweeps {
         let most = self.sweeps(pass);
-        Sweeps { most, tolerance: self.tolerance, order: self.order, first_conjugate: FIRST_CONJUGATE }
+        let Self { tolerance, small, order, .. } = *self;
+        Sweeps { most, tolerance, small, order, first_conjugate: FIRST_CONJUGATE }
     }
 
     /// Of contacts and trees by turns.
@@ -112,6 +120,7 @@ impl Effort {
             solve: usize::max(self.solve, other.solve),
             relax: usize::max(self.relax, other.relax),
             tolerance: min(self.tolerance, other.tolerance),
+            small: min(self.small, other.small),
             enough: min(self.enough, other.enough),
             order: self.order,
         }

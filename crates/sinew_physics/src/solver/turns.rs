@@ -48,7 +48,7 @@ impl IslandSolver {
                 break;
             }
             if conjugate {
-                self.step_conjugate(energy, sweeps.tolerance);
+                self.step_conjugate(energy);
             }
         }
     }
@@ -137,7 +137,7 @@ impl IslandSolver {
     }
 
     /// Goes on in the direction of the last sweeps.
-    fn step_conjugate(&mut self, energy: f32, tolerance: f32) {
+    fn step_conjugate(&mut self, energy: f32) {
         self.note_limits();
         let Self { contacts, velocities, scratch, unrest, trees, limits, .. } = self;
         let mut tree = 0;
@@ -150,7 +150,7 @@ impl IslandSolver {
             }
             unrest.stir(tree as u32, change);
         };
-        contacts.after_conjugate(energy, tolerance, velocities, &mut scratch.limits, stir);
+        contacts.after_conjugate(energy, velocities, &mut scratch.limits, stir);
         for (i, (row, impulse)) in limits.iter_mut().zip(&scratch.limits).enumerate() {
             let change = row.give(impulse - row.impulse);
             unrest.stir_limit(i, change);

@@ -324,6 +324,7 @@ impl ManifoldRows {
             now += point.now;
             before += point.before;
         }
+        let before = max(before, 0.0);
         let share = if now > IMPACT_JUMP * before { before / now } else { 1.0 };
         for i in 0..self.count {
             self.impulse[i] = self.memory.points[i].now * share;

@@ -4,7 +4,8 @@
 use super::block::{Block, Bounce, Eight, Memory, packed};
 use super::{Contacts, Visitor, visitor};
 use crate::spatial::{Vec6, add_scaled, largest};
-use sinew_math::lanes::{LaneMask, Lanes};
+use sinew_math::lanes::Lanes;
+use sinew_math::max;
 
 /// Numbers of a block's impulses that take part: four points, two of friction, twist.
 const NUMBERS: usize = 7;
@@ -72,13 +73,12 @@ visitor!(
 );
 
 visitor!(
-    /// Adds a share of the direction so far to each block; then the direction is that share and the change. `tolerance` is how much a
-    /// row must have changed of its own velocity to be visited for that alone.
+    /// Adds a share of the direction so far to each block; then the direction is that share and the change. What a row has changed of
+    /// its own velocity counts for its next visit, however little at a time: what nobody visits would run away.
     GoOn<'a> {
         direction: &'a mut [[Eight; NUMBERS]],
         change: &'a [[Eight; NUMBERS]],
         share: f32,
-        tolerance: f32,
         at: usize
     },
     |self, block, _memory, _bounces| {
@@ -97,9 +97,9 @@ visitor!(
             (L::load(to) + more).store(to);
             most = L::max(most, more.abs() * L::load(response));
         }
-        if L::gt(most, L::splat(self.tolerance)).any() {
-            block.seen = f32::NEG_INFINITY;
-        }
+        let mut by = [0.0; 8];
+        most.store(&mut by);
+        block.seen -= by.into_iter().fold(0.0, max);
         self.at += 1;
     }
 );
@@ -133,7 +133,6 @@ impl Contacts {
     pub(in crate::solver) fn after_conjugate(
         &mut self,
         energy: f32,
-        tolerance: f32,
         velocities: &mut [Vec6],
         limits: &mut [f32],
         mut moved: impl FnMut(usize, f32),
@@ -152,13 +151,7 @@ impl Contacts {
         if share == 0.0 {
             core::mem::swap(&mut direction, &mut was);
         } else {
-            self.each(GoOn {
-                direction: &mut direction.blocks,
-                change: &was.blocks,
-                share,
-                tolerance,
-                at: 0,
-            });
+            self.each(GoOn { direction: &mut direction.blocks, change: &was.blocks, share, at: 0 });
             for (i, v) in velocities.iter_mut().enumerate() {
                 let by = direction.velocities[i].map(|d| d * share);
                 add_scaled(v, &by, 1.0);

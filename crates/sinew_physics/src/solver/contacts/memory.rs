@@ -15,7 +15,9 @@ pub(super) fn warm_start<L: Lanes, const N: usize, const T: usize>(
     rolling: &mut [Rolling],
     velocities: &mut [Vec6],
 ) {
-    let (now, before) = (sum::<L, N>(&block.impulse), sum::<L, N>(&memory.before));
+    let now = sum::<L, N>(&block.impulse);
+    // A conjugate step may leave a little less than nothing.
+    let before = L::max(sum::<L, N>(&memory.before), L::splat(0.0));
     let jumps = L::gt(now, L::splat(IMPACT_JUMP) * before);
     let one = L::splat(1.0);
     let share = L::select(jumps, before / L::select(jumps, now, one), one);

@@ -36,6 +36,7 @@ use record::{Extra, Record};
 use refind::Found;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
+use sinew_math::max;
 use visit::Sweep;
 
 /// Blocks of manifolds with up to `N` points.
@@ -78,8 +79,12 @@ pub(crate) struct Contacts {
     moved: Vec<Vec6>,
     /// Per body: how much its velocity has changed in the pass.
     stir: Vec<f32>,
+    /// Per body: how far it has turned in the step so far, radians.
+    turned: Vec<f32>,
     found: Vec<Found>,
     conjugate: Conjugate,
+    /// Energy of the sweep of this substep that changed most, J.
+    most_energy: f32,
     is_spoiled: bool,
     tally: Tally,
 }
@@ -289,6 +294,8 @@ impl Visitor for Sweep<'_> {
 pub(super) struct Sweeps {
     pub most: usize,
     pub tolerance: f32,
+    /// Share of the energy of the substep's largest change that is small enough for there to be no other sweep.
+    pub small: f32,
     pub order: Order,
     /// The sweep from which on they are conjugate steps.
     pub first_conjugate: usize,
@@ -299,7 +306,7 @@ pub(super) struct Sweeps {
 pub(super) struct Swept {
     /// Largest change of a velocity component.
     pub largest: f32,
-    /// Energy that the changes have block by block, J, if sweeps are conjugate steps.
+    /// Energy that the changes have block by block, J.
     pub energy: f32,
 }
 
@@ -389,6 +396,9 @@ impl Contacts {
             return 0;
         }
         self.begin_pass(pass, velocities, h);
+        if pass == Pass::Solve {
+            self.most_energy = 0.0;
+        }
         for done in 1..=sweeps.most {
             let conjugate = done >= sweeps.first_conjugate && pass != Pass::Restitution;
             if conjugate {
@@ -396,11 +406,13 @@ impl Contacts {
             }
             let swept = self.sweep_once(pass, sweeps, done, velocities);
             // Friction learns what really presses from the second sweep on.
-            if (done > 1 || pass == Pass::Solve) && swept.largest < sweeps.tolerance {
+            self.most_energy = max(self.most_energy, swept.energy);
+            let is_small = swept.energy < sweeps.small * self.most_energy;
+            if (done > 1 || pass == Pass::Solve) && (is_small || swept.largest < sweeps.tolerance) {
                 return done;
             }
             if conjugate && done < sweeps.most {
-                self.after_conjugate(swept.energy, sweeps.tolerance, velocities, &mut [], |_, _| {});
+                self.after_conjugate(swept.energy, velocities, &mut [], |_, _| {});
             }
         }
         sweeps.most
@@ -431,7 +443,7 @@ impl Contacts {
             weighs: done <= WEIGHINGS,
             tolerance: sweeps.tolerance,
             largest: 0.0,
-            energy: (done >= sweeps.first_conjugate).then_some(0.0),
+            energy: 0.0,
             visits: 0,
             visited_bytes: 0,
         };
@@ -439,7 +451,7 @@ impl Contacts {
             dispatch::run(Each { one, two, four, colors, order, visitor });
         self.tally.visits += visits;
         self.tally.visited_bytes += visited_bytes;
-        Swept { largest, energy: energy.unwrap_or(0.0) }
+        Swept { largest, energy }
     }
 
     /// Of the step so far.

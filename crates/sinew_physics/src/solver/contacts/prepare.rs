@@ -55,8 +55,10 @@ impl Contacts {
             list.clear();
             list.reserve(bodies);
         }
-        self.stir.clear();
-        self.stir.reserve(bodies);
+        for list in [&mut self.stir, &mut self.turned] {
+            list.clear();
+            list.reserve(bodies);
+        }
         self.records.clear();
         self.records.reserve(contacts);
         self.extras.clear();
@@ -79,6 +81,8 @@ impl Contacts {
         let colors = self.coloring.color(of.moving) as usize;
         self.colors.resize(colors, Color::default());
         self.take_inertias(of.bodies, of.moving);
+        self.turned.clear();
+        self.turned.resize(of.bodies.len(), 0.0);
         self.centers.clear();
         self.centers.extend(of.bodies.iter().map(|body| {
             let [x, y, z] = body.pose.translation.to_array();

@@ -9,11 +9,16 @@ use super::{Class, Contacts};
 use crate::collide::{MAX_POINTS, Manifold};
 use crate::contact::slop;
 pub(super) use crate::solver::contact_rows::ROLL_TURN;
-use crate::solver::contact_rows::{self, REFIND_TURN, weights};
+use crate::solver::contact_rows::{self, weights};
 use crate::solver::{SolverBody, View};
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::lanes::WIDTH;
-use sinew_math::{Transform, min};
+use sinew_math::{Transform, max, min};
+
+/// A body that has turned by more than this has its contacts looked for anew, radians: points that are known stay exact, and corners
+/// that swing in by less have rows, since they were within reach. With a fifth of it heaps that fall cost half as much again and are as
+/// deep.
+const FIND_TURN: f32 = 0.05;
 
 /// A manifold whose lane is written in each substep.
 #[derive(Clone, Debug)]
@@ -25,13 +30,15 @@ pub(super) struct Found {
     bodies: [u32; 2],
     manifold: Manifold,
     cores: Cores,
-    /// It is looked for where a body turns by more than this in a substep, radians.
+    /// It is looked for when a body has turned by more than this since it was found last, radians.
     most_turn: f32,
+    /// How far that body had turned then in the step, radians.
+    turned: f32,
 }
 
 impl Found {
     pub fn new(place: [u32; 3], edge: &Edge, manifold: Manifold, cores: Cores, most_turn: f32) -> Self {
-        Self { place, contact: edge.contact, bodies: edge.bodies, manifold, cores, most_turn }
+        Self { place, contact: edge.contact, bodies: edge.bodies, manifold, cores, most_turn, turned: 0.0 }
     }
 }
 
@@ -67,9 +74,9 @@ impl Contacts {
         let mut found = core::mem::take(&mut self.found);
         for one in &mut found {
             match one.place[0] {
-                0 => one.update(&mut self.one, &self.rolling, substep),
-                1 => one.update(&mut self.two, &self.rolling, substep),
-                _ => one.update(&mut self.four, &self.rolling, substep),
+                0 => one.update(&mut self.one, &self.rolling, &self.turned, substep),
+                1 => one.update(&mut self.two, &self.rolling, &self.turned, substep),
+                _ => one.update(&mut self.four, &self.rolling, &self.turned, substep),
             }
         }
         self.found = found;
@@ -79,27 +86,36 @@ impl Contacts {
 
     /// Lists what turns fast for the first time.
     fn find_fast(&mut self, substep: &Substep<'_>) {
-        let is_fast = |body: u32| substep.turn(body) >= REFIND_TURN;
-        if !(0..substep.moving as u32).any(is_fast) {
+        for (turned, body) in self.turned[..substep.moving].iter_mut().zip(0..) {
+            *turned += substep.turn(body);
+        }
+        if !self.turned.iter().any(|&turned| turned >= FIND_TURN) {
             return;
         }
         let known = self.found.len();
-        self.one.find_fast(0, substep, known, &mut self.found);
-        self.two.find_fast(1, substep, known, &mut self.found);
-        self.four.find_fast(2, substep, known, &mut self.found);
+        self.one.find_fast(0, substep, &self.turned, known, &mut self.found);
+        self.two.find_fast(1, substep, &self.turned, known, &mut self.found);
+        self.four.find_fast(2, substep, &self.turned, known, &mut self.found);
         self.found.sort_unstable_by_key(Found::place);
     }
 }
 
 impl<const N: usize, const T: usize> Class<N, T> {
     /// Adds what turns fast to the list, of which the first `known` are sorted.
-    fn find_fast(&self, class: u32, substep: &Substep<'_>, known: usize, found: &mut Vec<Found>) {
+    fn find_fast(
+        &self,
+        class: u32,
+        substep: &Substep<'_>,
+        turned: &[f32],
+        known: usize,
+        found: &mut Vec<Found>,
+    ) {
         for place in 0..self.count {
             for lane in 0..WIDTH {
                 let (block, contact) = (&self.blocks[place], self.memory[place].contacts[lane]);
                 let bodies = [0, 1].map(|end| block.bodies[end][lane] & !HELD);
                 if contact == super::block::NONE
-                    || bodies.iter().all(|&body| substep.turn(body) < REFIND_TURN)
+                    || bodies.iter().all(|&body| turned[body as usize] < FIND_TURN)
                 {
                     continue;
                 }
@@ -117,7 +133,8 @@ impl<const N: usize, const T: usize> Class<N, T> {
                     bodies,
                     manifold: of.manifold,
                     cores,
-                    most_turn: REFIND_TURN,
+                    most_turn: FIND_TURN,
+                    turned: 0.0,
                 });
             }
         }
@@ -137,6 +154,7 @@ impl Found {
         &mut self,
         class: &mut Class<N, T>,
         rolling: &[super::Rolling],
+        turned: &[f32],
         substep: &Substep<'_>,
     ) {
         let [_, place, lane] = self.place.map(|number| number as usize);
@@ -146,7 +164,9 @@ impl Found {
         let shapes = placed(substep.view, contact);
         let slop = slop(min(shapes[0].shape.smallest_extent(), shapes[1].shape.smallest_extent()));
         let mut of_lane = memory_of(block, memory, rolling, lane, 1.0);
-        if self.bodies.iter().any(|&body| substep.turn(body) >= self.most_turn) {
+        let turned = self.bodies.iter().fold(0.0, |most, &body| max(most, turned[body as usize]));
+        if turned - self.turned >= self.most_turn {
+            self.turned = turned;
             let on_surfaces = [0, 1].map(|end: usize| poses[end].point(self.cores.points[end][0]));
             let margin = self.margin(substep, &shapes, slop);
             let anew = contact_rows::found_anew(shapes, poses, margin, &self.manifold, on_surfaces)
@@ -164,7 +184,7 @@ impl Found {
         }
         let in_principal = |end: usize| poses[end].rotation.inverse() * self.cores.normal;
         let rolls = shapes[0].has_rim(in_principal(0)) || shapes[1].has_rim(in_principal(1));
-        self.most_turn = if rolls { ROLL_TURN } else { REFIND_TURN };
+        self.most_turn = if rolls { ROLL_TURN } else { FIND_TURN };
         let weights = weights(&of_lane, &self.manifold, if rolls { slop } else { f32::INFINITY });
         let moves = self.bodies.map(|body| (body as usize) < substep.moving);
         let geometry = Geometry::new(&self.cores, poses, moves, &weights);

@@ -26,8 +26,8 @@ pub(super) struct Sweep<'a> {
     pub tolerance: f32,
     /// Largest change in the sweep so far.
     pub largest: f32,
-    /// Energy that the changes of the sweep have block by block, J, if it is asked for.
-    pub energy: Option<f32>,
+    /// Energy that the changes of the sweep have block by block, J.
+    pub energy: f32,
     /// Manifolds in blocks that were not skipped, and the blocks' bytes.
     pub visits: u64,
     pub visited_bytes: u64,
@@ -86,12 +86,10 @@ impl Sweep<'_> {
 
     #[inline(always)]
     fn add_energy<L: Lanes>(&mut self, energy: L) {
-        if let Some(sum) = &mut self.energy {
-            let mut by = [0.0; WIDTH];
-            energy.store(&mut by);
-            for k in 0..WIDTH {
-                *sum += by[k];
-            }
+        let mut by = [0.0; WIDTH];
+        energy.store(&mut by);
+        for k in 0..WIDTH {
+            self.energy += by[k];
         }
     }
 
