@@ -133,7 +133,7 @@ mod tests {
     #[test]
     fn what_is_not_there_is_told_with_the_nearest() {
         let names = ["Walk", "Run", "Jump", "Idle", "WalkBack"];
-        let line = "no clip 'wakl'; the nearest of 5 are Walk, Run, Jump; 'sinew inspect' lists all";
+        let line = "no clip 'wakl'; the nearest of 5 are Walk, WalkBack, Run; 'sinew inspect' lists all";
         assert_eq!(found(&names, "wakl"), Err(line.into()));
         assert_eq!(found(&["Walk"], "fly"), Err("no clip 'fly'; there is Walk".into()));
         assert_eq!(found(&[], "fly"), Err("no clip 'fly': there are no clips".into()));

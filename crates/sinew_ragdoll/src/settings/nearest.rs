@@ -19,12 +19,23 @@ pub fn nearest_three<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Ve
         let lower = other.to_lowercase();
         let apart = !(is_part(&wanted, &lower) || is_part(&lower, &wanted));
         if ranked.iter().all(|(_, _, listed)| *listed != other) {
-            ranked.push((apart, distance(name, other), other));
+            ranked.push((apart, unlike(&wanted, &lower), other));
         }
         ranked.sort_by_key(|&(apart, distance, _)| (apart, distance));
         ranked.truncate(3);
     }
     ranked.into_iter().map(|(_, _, other)| other).collect()
+}
+
+/// How much two names differ: as a whole, or a little more where one word of the other, or its beginning, is meant.
+fn unlike(wanted: &str, other: &str) -> usize {
+    let length = wanted.chars().count();
+    let of_word = |word: &str| {
+        let beginning: String = word.chars().take(length).collect();
+        1 + usize::min(distance(wanted, &beginning), distance(wanted, word))
+    };
+    let words = other.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
+    words.map(of_word).fold(distance(wanted, other), usize::min)
 }
 
 /// What there is instead of `name`, as the end of a sentence: all of it if it is little, else the three nearest.
@@ -62,19 +73,23 @@ pub fn role_named(name: &str) -> Result<Role, String> {
     })
 }
 
-/// Levenshtein's distance, letters without case.
+/// Levenshtein's distance, letters without case; two neighbours that changed places count as one.
 fn distance(a: &str, b: &str) -> usize {
     let lower = |text: &str| -> Vec<char> { text.chars().flat_map(char::to_lowercase).take(64).collect() };
     let (a, b) = (lower(a), lower(b));
+    let mut before: Vec<usize> = Vec::new();
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, x) in a.iter().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
+        let mut next = vec![i + 1];
         for (j, y) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+            let replaced = row[j] + usize::from(x != y);
+            let mut least = replaced.min(row[j + 1] + 1).min(next[j] + 1);
+            if i > 0 && j > 0 && *x == b[j - 1] && a[i - 1] == *y {
+                least = least.min(before[j - 1] + 1);
+            }
+            next.push(least);
         }
+        before = core::mem::replace(&mut row, next);
     }
     row[b.len()]
 }
@@ -85,9 +100,11 @@ mod tests {
 
     #[test]
     fn three_are_told_the_nearest_first() {
+        let clips = ["Block", "Idle", "Cheer", "Walking_A", "Rig|Walk", "Hit_A"];
+        assert_eq!(nearest_three("wlak", clips.into_iter())[..2], ["Walking_A", "Rig|Walk"]);
         let known = ["mixamorig:Spine", "mixamorig:Hips", "Hip", "Tips", "mixamorig:Head", "Hip"];
-        assert_eq!(nearest_three("hips", known.into_iter()), ["Hip", "mixamorig:Hips", "Tips"]);
-        assert_eq!(instead("hips", known.into_iter()), "the nearest of 5 are Hip, mixamorig:Hips, Tips");
+        assert_eq!(nearest_three("hips", known.into_iter()), ["mixamorig:Hips", "Hip", "Tips"]);
+        assert_eq!(instead("hips", known.into_iter()), "the nearest of 5 are mixamorig:Hips, Hip, Tips");
         assert_eq!(instead("hips", ["a\n", "b"].into_iter()), r"there are a\n, b");
         assert_eq!(instead("hips", ["a"].into_iter()), "there is a");
         assert_eq!(instead("hips", [].into_iter()), "there are none");
