@@ -14,7 +14,7 @@ use std::str::FromStr;
 /// Under which the help lists these options.
 const HEADING: &str = "Correcting what is read from the file";
 
-/// What the build of a ragdoll shall do otherwise.
+/// Options by which a user corrects the build of a ragdoll.
 #[derive(clap::Args)]
 pub struct SettingsArg {
     /// Settings of the ragdoll, a JSON file; by default NAME.ragdoll.json beside the character, if it is there. The options
@@ -88,7 +88,7 @@ pub struct LoadedSettings {
     pub file: String,
     /// What they say.
     pub settings: Settings,
-    /// What the command line said: the key in the settings, and the option as it was typed.
+    /// Keys in the settings that the command line said, with the option as it was typed.
     said: Vec<(String, String)>,
 }
 
@@ -174,12 +174,12 @@ impl SettingsArg {
     }
 }
 
-/// How long a unit was taken to be, and what says otherwise.
+/// A guess of the unit with the options that set it.
 pub fn unit_note(guess: &UnitGuess) -> String {
     format!("{}; --unit or --height sets it", guess.note)
 }
 
-/// What the analysis assumed, the unit among it, a sentence each.
+/// Assumptions of the analysis, the unit among them, a sentence each.
 pub fn assumed(analysis: &RigAnalysis) -> Vec<String> {
     let unit = analysis.unit_guess.as_ref().map(unit_note);
     unit.into_iter().chain(analysis.notes.iter().cloned()).collect()

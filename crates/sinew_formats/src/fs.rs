@@ -69,7 +69,7 @@ fn cannot_write(path: &Path, error: &io::Error) -> Error {
     Error::io(format!("cannot write: {}", reason(error))).with_file(path.display().to_string())
 }
 
-/// Where the bytes of an output go: to the end of its links, and never over what is no regular file.
+/// Place that the bytes of an output go to: the end of its links, and never what is no regular file.
 fn place_of(path: &Path) -> io::Result<PathBuf> {
     // As many as Linux follows.
     const MOST_LINKS: usize = 40;

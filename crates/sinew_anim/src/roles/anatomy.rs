@@ -124,7 +124,7 @@ impl<'a> Scene<'a> {
         self.generic_draft(notes)
     }
 
-    /// How far a joint stands from the middle toward a direction at right angles to up.
+    /// Distance of a joint from the middle toward a direction at right angles to up.
     pub fn toward(&self, left: Vec3, joint: JointIdx) -> f32 {
         let lateral = self.symmetry.lateral;
         (self.bound.model[joint].translation.dot(lateral) - self.symmetry.centre) * left.dot(lateral)

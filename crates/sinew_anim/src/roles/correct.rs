@@ -1,4 +1,4 @@
-//! What a person knows of a rig and its analysis does not.
+//! Corrections of an analysis by who knows the rig.
 
 use super::anatomy::{Draft, Scene};
 use super::role::{HUMANOID_ROLES, Role};
@@ -69,7 +69,7 @@ pub(super) fn needed() -> impl Iterator<Item = Role> {
 }
 
 impl Correction {
-    /// Whether there is nothing to correct.
+    /// True if there is nothing to correct.
     pub fn is_empty(&self) -> bool {
         self.roles.is_empty() && self.ignored.is_empty()
     }
@@ -187,7 +187,7 @@ pub(super) fn corrected(
     Ok(draft)
 }
 
-/// Whether every known joint of a side stands on the other side of the body.
+/// True if every known joint of a side stands on the other side of the body.
 fn is_seen_mirrored(scene: &Scene<'_>, draft: &Draft, known: &[(Role, JointIdx)]) -> bool {
     let mut sided = known.iter().filter(|(role, _)| role.side().is_some()).peekable();
     sided.peek().is_some()

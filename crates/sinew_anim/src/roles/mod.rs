@@ -83,13 +83,13 @@ pub struct RigAnalysis {
     pub bind_model: Vec<Affine>,
     /// Joints of the skins that are not kept.
     pub dropped: Vec<JointIdx>,
-    /// How long a unit of the file was taken to be, and why; `None` where it was given.
+    /// Length that a unit of the file was taken to have, and why; `None` where it was given.
     pub unit_guess: Option<UnitGuess>,
-    /// What else was assumed, a sentence each.
+    /// Other assumptions, a sentence each.
     pub notes: Vec<String>,
 }
 
-/// How long a unit of a file was taken to be.
+/// Length that a unit of a file was taken to have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnitGuess {
     /// The unit, the reason and the alternatives, a sentence.

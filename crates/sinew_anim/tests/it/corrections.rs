@@ -1,4 +1,4 @@
-//! What a person says of a rig goes before what the analysis sees.
+//! Roles that a person gives go before those that the analysis sees.
 
 use crate::roles::sound;
 use crate::{rigs, toy};

@@ -65,7 +65,7 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// Whether each of the wanted words is the beginning of one that is there.
+/// True if each of the wanted words is the beginning of one that is there.
 fn begins_with_all(there: &[String], wanted: &[String]) -> bool {
     wanted.iter().all(|word| there.iter().any(|other| other.starts_with(word.as_str())))
 }

@@ -42,7 +42,7 @@ enum Format {
 }
 
 impl Format {
-    /// What a file of it may end in.
+    /// Extensions that a file of it may have.
     fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Khr => &["glb", "vrm"],

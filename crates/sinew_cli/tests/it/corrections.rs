@@ -1,4 +1,4 @@
-//! What a user says of a rig: roles, what is ignored, which bones get bodies; names that nearly fit.
+//! Corrections by the user: roles, what is ignored, which bones get bodies; names that nearly fit.
 
 use crate::sinew::{Folder, glb, shared_data, sinew};
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! How the command behaves where something is odd: outputs, names, notes.
+//! Manners of the command where something is odd: outputs, names, notes.
 
 use crate::sinew::{Folder, glb, shared_data, sinew};
 use serde_json::Value;

@@ -5,7 +5,7 @@ use std::fs;
 
 const README: &str = include_str!("../../../../README.md");
 
-/// What stands before the arguments of `sinew` there.
+/// Words before the arguments of `sinew` there.
 const LEAD: &str = "cargo run --release -- ";
 
 /// Arguments of the lines below the heading, without comments.

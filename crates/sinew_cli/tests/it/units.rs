@@ -1,4 +1,4 @@
-//! How long a unit is, what the body weighs, and what is said where either is hard to believe.
+//! The file's unit and the body's mass, and what is said where either is hard to believe.
 
 use crate::sinew::{Folder, glb, sinew};
 use serde_json::Value;

@@ -1,10 +1,10 @@
-//! Whether a body can have the size and the mass that were guessed.
+//! Doubts about the size and the mass that were guessed.
 
 use crate::def::RagdollDef;
 
-/// What a human may weigh, kg.
+/// Mass that a human may have, kg.
 const HUMAN: core::ops::RangeInclusive<f32> = 3.0..=500.0;
-/// What a creature may weigh: from a small bird's to the heaviest dinosaur's mass on two legs, kg.
+/// Mass that a creature may have, kg: from a small bird's to that of the heaviest dinosaur on two legs.
 const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=8000.0;
 
 /// Why hardly any body has this mass, a sentence; `None` if there are such. Where the size of a file's unit is guessed, that

@@ -6,7 +6,7 @@ use crate::build::joint_name;
 use sinew_anim::roles::{Correction, CorrectionError, RigAnalysis, analyze_corrected};
 use sinew_anim::{JointIdx, Rig};
 
-/// What the settings know of the rig. Of what is said twice the later counts.
+/// The correction that the settings ask for. Of what is said twice the later counts.
 pub(super) fn correction(rig: &Rig, settings: &Settings) -> Result<Correction, SettingsError> {
     let mut correction = Correction::default();
     for (name, bone) in &settings.bones {

@@ -55,7 +55,7 @@ pub enum Unit {
 /// What is wanted otherwise of one bone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BoneSettings {
-    /// What part of the body it is. Only for a bone by the name of its joint, for roles are what this changes.
+    /// Part of the body that it is. Only for a bone by the name of its joint, for roles are what this changes.
     pub role: Option<Role>,
     /// Whether it gets a body.
     pub body: Option<BodyWish>,

@@ -27,7 +27,7 @@ pub fn nearest_three<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Ve
     ranked.into_iter().map(|(_, _, other)| other).collect()
 }
 
-/// How much two names differ: as a whole, or a little more where one word of the other, or its beginning, is meant.
+/// Difference of two names: as a whole, or a little more where one word of the other, or its beginning, is meant.
 fn unlike(wanted: &str, other: &str) -> usize {
     let length = wanted.chars().count();
     let of_word = |word: &str| {
@@ -38,7 +38,7 @@ fn unlike(wanted: &str, other: &str) -> usize {
     words.map(of_word).fold(distance(wanted, other), usize::min)
 }
 
-/// What there is instead of `name`, as the end of a sentence: all of it if it is little, else the three nearest.
+/// The end of a sentence that says what there is instead of `name`: all of it if it is little, else the three nearest.
 pub fn instead<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let mut known: Vec<&str> = known.collect();
     let mut seen = std::collections::BTreeSet::new();

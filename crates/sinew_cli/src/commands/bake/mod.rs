@@ -31,7 +31,7 @@ use std::sync::Arc;
 
 /// When a character goes limp that nothing hits, seconds.
 const LIMP_AT: f32 = 0.5;
-/// What the new clip is called where the user does not say it.
+/// Name of the new clip where the user does not say it.
 const CLIP_NAME: &str = "sinew";
 const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
 const OBSTACLES: [[f32; 3]; 3] = [[0.45, 0.33, 0.22], [0.40, 0.36, 0.30], [0.33, 0.27, 0.22]];
@@ -87,7 +87,7 @@ pub struct Bake {
     /// Where to write: a copy of your file with the new clip in it (.glb, .vrm), or its skeleton and the clip (.bvh)
     #[arg(short, long, value_name = "OUT.(glb|vrm|bvh)")]
     output: ClipFile,
-    /// What the new clip is called; by default sinew, or sinew 2 and so on where the file has that already
+    /// Name of the new clip; by default sinew, or sinew 2 and so on where the file has that already
     #[arg(long, value_name = "NAME", value_parser = clap::builder::NonEmptyStringValueParser::new())]
     name: Option<String>,
     /// Also draw it: a .gif, .png (animated) or .webp file
@@ -172,7 +172,7 @@ impl Bake {
         Ok((file, def, Vec::new()))
     }
 
-    /// What the new clip is called: as the user says, else `sinew`, with a number where the file has that already.
+    /// Name of the new clip: as the user says, else `sinew`, with a number where the file has that already.
     fn clip_name(&self, file: &CharacterFile) -> Result<String> {
         let is_taken = |name: &str| file.document.clips.iter().any(|clip| clip.name == name);
         match &self.name {

@@ -1,11 +1,11 @@
-//! What a bake has to say besides its figures: what did not happen, and why.
+//! Notes of a bake: what did not happen, and why.
 
 use sinew::math::Vec3;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyKinds, QueryFilter, World, WorldDef};
 use sinew::ragdoll::{AfterSettling, BakeInput, Event};
 
-/// How far down the ground is sought, metres.
+/// Depth to which the ground is sought, metres.
 const DEPTH: f32 = 1000.0;
 /// Ground that is lower than this below the soles is no ground to stand on, metres.
 const GAP: f32 = 0.3;
