@@ -7,7 +7,7 @@ use sinew::formats::{Textures, read_bytes, read_ragdoll_settings, settings_path}
 use sinew::ragdoll::build::{BuildReport, takes};
 use sinew::ragdoll::quality::implausible;
 use sinew::ragdoll::settings::{BodyWish, BoneSettings, Unit, analyze_with, role_named};
-use sinew::ragdoll::{BuildOptions, RagdollDef, Settings, SettingsError, build_moving};
+use sinew::ragdoll::{BuildError, BuildOptions, RagdollDef, Settings, SettingsError, build_moving};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -69,6 +69,9 @@ fn positive(text: &str) -> Result<f32, String> {
     let number: f32 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be above 0".to_owned()) }
 }
+
+/// Key of the whole's mass in settings.
+const MASS: &str = "mass";
 
 /// Units by their names, in metres.
 const UNITS: [(&str, f32); 6] =
@@ -169,7 +172,10 @@ impl SettingsArg {
             settings.unit = Some(unit);
             said.push(("height".into(), "--height".into()));
         }
-        settings.mass = self.mass.or(settings.mass);
+        if let Some(mass) = self.mass {
+            settings.mass = Some(mass);
+            said.push((MASS.into(), "--mass".into()));
+        }
         Ok(())
     }
 }
@@ -217,6 +223,11 @@ impl LoadedSettings {
     /// Names the file of the settings, or the option that said what cannot be.
     fn failure(&self, character: &str, error: SettingsError) -> Failure {
         match error {
+            SettingsError::Build(error @ BuildError::Mass(_)) => {
+                let is_said = self.said.iter().any(|(key, _)| key == MASS);
+                let place = if is_said { "--mass" } else { "" };
+                Failure::at(character, error, place)
+            }
             SettingsError::Build(error) => Failure::of_file(character, error),
             SettingsError::Setting { what, place } => {
                 match self.said.iter().rev().find(|(key, _)| *key == place) {

@@ -105,6 +105,12 @@ fn two_bakes_give_two_clips() {
     let (_, second) = bake(&first, "second.glb", &["--clip", "Walk"]);
     let (_, third) = bake(&second, "third.glb", &["--clip", "Walk", "--name", "stumbles"]);
     assert_eq!(names(&third), ["Walk", "sinew", "sinew 2", "stumbles"]);
+    // What was baked is not what it does before the next fall.
+    let still = folder.file("still.glb", glb(&mannequin().rig, &[]));
+    let (_, once) = bake(&still, "once.glb", &[]);
+    let (run, twice) = bake(&once, "twice.glb", &[]);
+    assert!(run.stdout.contains("stands in its rest pose"), "{run:?}");
+    assert_eq!(names(&twice), ["sinew", "sinew 2"]);
     let (run, _) = bake(&third, "fourth.glb", &["--clip", "Walk", "--name", "stumbles"]);
     assert!(
         run.refusal(1)

@@ -17,7 +17,7 @@ use crate::settings_arg::{SettingsArg, unit_note};
 use crate::table::shown;
 use aim::aim;
 use clip_file::{ClipFile, ClipFormat};
-use clips::Motions;
+use clips::{CLIP_NAME, Motions};
 use hit::HitArg;
 use sinew::anim::KeyBound;
 use sinew::formats::{Textures, load_world};
@@ -31,8 +31,6 @@ use std::sync::Arc;
 
 /// When a character goes limp that nothing hits, seconds.
 const LIMP_AT: f32 = 0.5;
-/// Name of the new clip where the user does not say it.
-const CLIP_NAME: &str = "sinew";
 const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
 const OBSTACLES: [[f32; 3]; 3] = [[0.45, 0.33, 0.22], [0.40, 0.36, 0.30], [0.33, 0.27, 0.22]];
 
