@@ -42,7 +42,10 @@ pub use pose::{
 };
 pub use reduce::{KeyBound, KeyError, Reduced, reduce_keys};
 pub use rig::{Joint, JointIdx, LocalTransform, Mesh, Primitive, Rig, Skin, Texture};
-pub use roles::{KeptBone, NoSkin, RigAnalysis, Role, RoleGuess, Side, analyze, analyze_skeleton};
+pub use roles::{
+    Correction, CorrectionError, KeptBone, NoSkin, RigAnalysis, Role, RoleGuess, Side, UnitGuess, analyze,
+    analyze_corrected, analyze_skeleton,
+};
 pub use root_motion::{AxisMotion, MotionTrack, RootMotionOptions, extract_root_motion};
 pub use sample::{SampleCache, Wrap, sample, sample_cached};
 pub use set::{AnimatedClip, AnimationSet, ClipId, MaskId};

@@ -59,6 +59,16 @@ pub fn never_over<'a>(
     }
 }
 
+/// Refuses an output whose name ends in none of these: a name says what is in a file.
+pub fn must_end_in(output: &Path, extensions: &[&str]) -> Result<()> {
+    let extension = output.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    if extensions.iter().any(|known| known.eq_ignore_ascii_case(extension)) {
+        return Ok(());
+    }
+    let known: Vec<String> = extensions.iter().map(|known| format!(".{known}")).collect();
+    Err(Failure::Usage(format!("-o {}: must end in {}", output.display(), known.join(" or "))))
+}
+
 /// Files that are written together: all of them, or none.
 #[derive(Debug, Default)]
 pub struct Outputs {
@@ -78,6 +88,14 @@ impl Outputs {
 
     /// Writes them. Each is there as a whole or not at all; none appears before all are on the disk.
     pub fn write(&self) -> Result<()> {
+        let mut paths: Vec<&Path> = self.paths().collect();
+        paths.sort_unstable();
+        if let Some(twice) = paths.windows(2).find(|pair| pair[0] == pair[1]) {
+            let name = twice[0].display();
+            return Err(Failure::Usage(format!(
+                "{name} is asked for twice: give each output a name of its own"
+            )));
+        }
         Ok(write_all_atomic(&self.files)?)
     }
 }

@@ -3,7 +3,7 @@
 use crate::failure::Result;
 use sinew::anim::retarget::stand;
 use sinew::anim::{Clip, RigAnalysis, analyze};
-use sinew::formats::{MotionFile, MotionOptions, load_motion};
+use sinew::formats::{Error, MotionFile, MotionOptions, load_motion};
 use std::path::Path;
 
 /// A file with clips: what it holds, and what its joints are.
@@ -19,7 +19,7 @@ pub struct Motion {
 impl Motion {
     /// Reads a file and finds out what its joints are.
     pub fn load(path: &Path, options: &MotionOptions<'_>) -> Result<Self> {
-        let file = load_motion(path, options)?;
+        let file = load_motion(path, options).map_err(helped)?;
         let analysis = analyze_any(&file);
         Ok(Self { name: path.display().to_string(), file, analysis })
     }
@@ -28,6 +28,14 @@ impl Motion {
     pub fn has_skin(&self) -> bool {
         !self.file.rig.skins.is_empty()
     }
+}
+
+/// An error with the option that gets around it, where there is one.
+fn helped(mut error: Error) -> Error {
+    if error.what.starts_with("declares ") && error.what.contains(" frames, has ") {
+        error.what += "; 'sinew convert --any-rows' takes those that are there";
+    }
+    error
 }
 
 /// By the skin, else as a skeleton in the pose in which it stands best: any few nodes look like some creature, so that

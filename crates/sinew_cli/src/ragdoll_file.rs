@@ -20,10 +20,9 @@ pub struct RagdollFile {
 impl RagdollFile {
     /// Settings change a build: of what is built already there is nothing to change.
     pub fn check_settings(&self, settings: &SettingsArg) -> Result<()> {
-        if self.patient.reference.is_none() && settings.path().is_some() {
-            let what =
-                "--settings change how a ragdoll is built: name a character, not a definition or a model";
-            return Err(Failure::Usage(what.to_owned()));
+        if let Some(option) = settings.given().filter(|_| self.patient.reference.is_none()) {
+            let what = "changes how a ragdoll is built: name a character, not a definition or a model";
+            return Err(Failure::Usage(format!("{option} {what}")));
         }
         Ok(())
     }
@@ -47,8 +46,8 @@ impl RagdollFile {
             }
             Kind::Character => {
                 drop(bytes);
-                let character = CharacterFile::load(path, textures)?;
-                let (def, report) = settings.load(path)?.build(&character, &BuildOptions::default())?;
+                let (character, settings) = settings.load_character(path, textures)?;
+                let (def, report) = settings.build(&character, &BuildOptions::default())?;
                 let patient = Patient { reference: Some(def.clone()), ..Patient::new(def) };
                 Ok(Self { patient, name, notes: report.notes })
             }

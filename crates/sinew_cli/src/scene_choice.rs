@@ -1,11 +1,15 @@
 //! A scene by its name, with what `--set` says.
 
 use crate::failure::{Failure, Result};
-use sinew_scenes::scenes::{Scene, SettingError, Settings, find};
+use sinew::ragdoll::settings::instead;
+use sinew_scenes::scenes::{Scene, SettingError, Settings, find, registry};
 
 /// The scene of that name, ready to be started.
 pub fn choose(name: &str, assignments: &[String]) -> Result<(&'static Scene, Settings)> {
-    let unknown = || Failure::Usage(format!("no scene '{name}'; 'sinew scenes' lists what there is"));
+    let unknown = || {
+        let instead = instead(name, registry().iter().map(|scene| scene.name));
+        Failure::Usage(format!("no scene '{name}'; {instead}; 'sinew scenes' lists what there is"))
+    };
     let scene = find(name).ok_or_else(unknown)?;
     let mut settings = scene.settings();
     for assignment in assignments {

@@ -40,10 +40,12 @@ fn reason(error: &io::Error) -> String {
     }
 }
 
-/// Writes a file so that nobody ever sees half of it: into a temporary file in the same folder, then renamed.
+/// Writes a file so that nobody ever sees half of it: into a temporary file in the same folder, then renamed. Of a symbolic
+/// link it is the target that is written. Nothing but a regular file is ever replaced.
 ///
 /// # Errors
-/// Names the file: its folder is missing, full or write-protected. The temporary file is removed.
+/// Names the file: its folder is missing, full or write-protected; it is a folder, a device, a pipe. The temporary file is
+/// removed.
 pub fn write_atomic(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
     write_all_atomic(&[(path, bytes)])
 }
@@ -57,7 +59,8 @@ pub fn write_all_atomic(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)]) -> Resul
     let mut staged = Vec::with_capacity(files.len());
     for (path, bytes) in files {
         let path = path.as_ref();
-        staged.push(Staged::write(path, bytes.as_ref()).map_err(|e| cannot_write(path, &e))?);
+        let place = place_of(path).map_err(|e| cannot_write(path, &e))?;
+        staged.push(Staged::write(path, place, bytes.as_ref()).map_err(|e| cannot_write(path, &e))?);
     }
     staged.into_iter().try_for_each(|file| file.publish().map_err(|e| cannot_write(file.path, &e)))
 }
@@ -66,19 +69,44 @@ fn cannot_write(path: &Path, error: &io::Error) -> Error {
     Error::io(format!("cannot write: {}", reason(error))).with_file(path.display().to_string())
 }
 
+/// Place that the bytes of an output go to: the end of its links, and never what is no regular file.
+fn place_of(path: &Path) -> io::Result<PathBuf> {
+    // As many as Linux follows.
+    const MOST_LINKS: usize = 40;
+    let mut place = path.to_path_buf();
+    for _ in 0..MOST_LINKS {
+        let data = match fs::symlink_metadata(&place) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(place),
+            data => data?,
+        };
+        if data.is_file() {
+            return Ok(place);
+        }
+        if !data.is_symlink() {
+            return Err(io::Error::other("is there and is not a regular file"));
+        }
+        let target = fs::read_link(&place)?;
+        place = place.parent().unwrap_or(Path::new("")).join(target);
+    }
+    Err(io::Error::other("is a link that leads to a link without end"))
+}
+
 /// A file's bytes under a temporary name beside its place; removed when dropped, if they are still there.
 struct Staged<'a> {
+    /// As the user named it.
     path: &'a Path,
+    place: PathBuf,
     temporary: PathBuf,
 }
 
 impl<'a> Staged<'a> {
-    fn write(path: &'a Path, bytes: &[u8]) -> io::Result<Self> {
-        let name = path.file_name().ok_or(io::ErrorKind::IsADirectory)?;
+    fn write(path: &'a Path, place: PathBuf, bytes: &[u8]) -> io::Result<Self> {
+        let name = place.file_name().ok_or(io::ErrorKind::IsADirectory)?;
         let mut temporary_name = std::ffi::OsString::from(".");
         temporary_name.push(name);
         temporary_name.push(format!(".{}.tmp", std::process::id()));
-        let staged = Self { path, temporary: path.with_file_name(temporary_name) };
+        let temporary = place.with_file_name(temporary_name);
+        let staged = Self { path, place, temporary };
         let mut file = fs::File::create(&staged.temporary)?;
         file.write_all(bytes)?;
         file.sync_all()?;
@@ -86,7 +114,7 @@ impl<'a> Staged<'a> {
     }
 
     fn publish(&self) -> io::Result<()> {
-        fs::rename(&self.temporary, self.path)
+        fs::rename(&self.temporary, &self.place)
     }
 }
 
@@ -161,7 +189,11 @@ fn read_any(path: &Path, options: &MotionOptions<'_>) -> Result<MotionFile> {
             return Ok(file);
         }
     }
-    read_motion(&bytes, options, &mut resolve)
+    read_motion(&bytes, options, &mut resolve).map_err(|mut error| {
+        let extension = path.extension().map_or("no extension".into(), |it| format!(".{}", it.display()));
+        error.what += &format!("; none beside it, in its folder with {extension}, fits");
+        error
+    })
 }
 
 /// DeepMimic characters in the folder of a clip, by name.

@@ -1,14 +1,15 @@
 //! From evidence to roles: stated by the file, else seen in the geometry, else named, else generic.
 
-use super::RoleGuess;
 use super::axes::{feet_lead, left_by_name, possible_ups, snap};
 use super::bind::Bound;
+use super::correct::{CorrectionError, corrected, needed};
 use super::creature::{generic_roles, up_by_feet};
 use super::graph::{Graph, ancestors};
 use super::humanoid::{Evidence, Humanoid, Limb, Split, Stance};
 use super::names::{Part, Reading, read_names, settle_duplicates, settle_trunk};
 use super::role::{Role, Side};
 use super::symmetry::Symmetry;
+use super::{NoSkin, RoleGuess};
 use crate::rig::{JointIdx, Rig};
 use sinew_math::Vec3;
 
@@ -36,7 +37,7 @@ const CONFIDENCE_GENERIC: f32 = 0.6;
 const LEAD_AGAINST_NAMES: f32 = 0.04;
 
 /// Graph, symmetry and names of a rig, as far as the names can be trusted.
-struct Scene<'a> {
+pub(super) struct Scene<'a> {
     rig: &'a Rig,
     bound: &'a Bound,
     graph: Graph,
@@ -46,33 +47,21 @@ struct Scene<'a> {
 }
 
 impl Anatomy {
-    /// `None` if no joint moves skin.
-    pub fn of(rig: &Rig, bound: &Bound) -> Option<Self> {
-        let (scene, mut notes) = Scene::of(rig, bound)?;
-        if let Some(stated) = scene.stated_draft() {
-            notes.push("roles are those that the file states".into());
-            return Some(stated.finish(scene, notes));
-        }
-        let found = possible_ups(scene.symmetry.lateral).find_map(|up| Some((up, scene.recognise(up)?)));
-        if let Some((up, humanoid)) = found {
-            let draft = scene.shape_draft(up, &humanoid, &mut notes);
-            return Some(draft.finish(scene, notes));
-        }
-        if let Some(named) = scene.named_draft() {
-            notes.push("the shape is not clear: roles are those of the names".into());
-            return Some(named.finish(scene, notes));
-        }
-        notes.push("no human shape: generic roles".into());
-        Some(scene.generic_draft(&mut notes).finish(scene, notes))
+    /// Errs if no joint moves skin, or on what is `known` and cannot be.
+    pub fn of(rig: &Rig, bound: &Bound, known: &[(Role, JointIdx)]) -> Result<Self, CorrectionError> {
+        let (scene, mut notes) = Scene::of(rig, bound, known).ok_or(NoSkin)?;
+        let draft = scene.draft(&mut notes);
+        let draft = corrected(&scene, draft, known, &mut notes)?;
+        Ok(draft.finish(scene, notes))
     }
 }
 
 /// Roles and directions before they are put together with the graph.
-struct Draft {
-    roles: Vec<Option<RoleGuess>>,
-    humanoid: bool,
-    up: Vec3,
-    left: Vec3,
+pub(super) struct Draft {
+    pub roles: Vec<Option<RoleGuess>>,
+    pub humanoid: bool,
+    pub up: Vec3,
+    pub left: Vec3,
 }
 
 impl Draft {
@@ -83,7 +72,7 @@ impl Draft {
 }
 
 impl<'a> Scene<'a> {
-    fn of(rig: &'a Rig, bound: &'a Bound) -> Option<(Self, Vec<String>)> {
+    fn of(rig: &'a Rig, bound: &'a Bound, known: &[(Role, JointIdx)]) -> Option<(Self, Vec<String>)> {
         let mut notes = Vec::new();
         let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
         let parents: Vec<Option<JointIdx>> = rig.joints.iter().map(|joint| joint.parent).collect();
@@ -96,13 +85,7 @@ impl<'a> Scene<'a> {
         let mut symmetry = Symmetry::find(&graph, bound.size());
         let (agreeing, pairs) = mirrored_names(&graph, &symmetry, &readings);
         let trusted = if pairs > 0 { 10 * agreeing >= 6 * pairs } else { sides_pair_up(&readings) };
-        if trusted {
-            let body = |joint: JointIdx| readings[joint].part != Some(Part::Appendix);
-            if let Some(smaller) = Graph::of(rig, bound, body) {
-                symmetry = Symmetry::find(&smaller, bound.size());
-                graph = smaller;
-            }
-        } else {
+        if !trusted {
             if pairs > 0 && rig.joints.iter().any(|joint| !joint.name.is_empty()) {
                 notes.push(format!(
                     "names of only {agreeing} of {pairs} mirrored pairs match: names are ignored"
@@ -110,7 +93,56 @@ impl<'a> Scene<'a> {
             }
             readings = vec![Reading::default(); readings.len()];
         }
+        for &(role, joint) in known {
+            (readings[joint].part, readings[joint].side) = (part_of(role), role.side());
+        }
+        if trusted {
+            let body = |joint: JointIdx| readings[joint].part != Some(Part::Appendix);
+            if let Some(smaller) = Graph::of(rig, bound, body) {
+                symmetry = Symmetry::find(&smaller, bound.size());
+                graph = smaller;
+            }
+        }
         Some((Self { rig, bound, graph, symmetry, readings }, notes))
+    }
+
+    /// By what the file states, else by shape, else by names, else generic.
+    fn draft(&self, notes: &mut Vec<String>) -> Draft {
+        if let Some(stated) = self.stated_draft() {
+            notes.push("roles are those that the file states".into());
+            return stated;
+        }
+        let found = possible_ups(self.symmetry.lateral).find_map(|up| Some((up, self.recognise(up)?)));
+        if let Some((up, humanoid)) = found {
+            return self.shape_draft(up, &humanoid, notes);
+        }
+        if let Some(named) = self.named_draft() {
+            notes.push("the shape is not clear: roles are those of the names".into());
+            return named;
+        }
+        notes.push("no human shape: generic roles".into());
+        self.generic_draft(notes)
+    }
+
+    /// Distance of a joint from the middle toward a direction at right angles to up.
+    pub fn toward(&self, left: Vec3, joint: JointIdx) -> f32 {
+        let lateral = self.symmetry.lateral;
+        (self.bound.model[joint].translation.dot(lateral) - self.symmetry.centre) * left.dot(lateral)
+    }
+
+    /// A human of the roles that are known, and others by their names; errs with those that are missing for one.
+    pub fn known_draft(&self, known: &[(Role, JointIdx)]) -> Result<Draft, Vec<Role>> {
+        let mut all = known.to_vec();
+        for (joint, reading) in self.readings.iter().enumerate() {
+            let Some(role) = reading.part.and_then(|part| role_of(part, reading.side)) else { continue };
+            if all.iter().all(|&(other, at)| other != role && at != joint) {
+                all.push((role, joint));
+            }
+        }
+        let missing: Vec<Role> = needed().filter(|role| all.iter().all(|(other, _)| other != role)).collect();
+        let mut draft = self.draft_of(all, CONFIDENCE_NAMED).ok_or(missing)?;
+        self.add_named(&mut draft.roles);
+        Ok(draft)
     }
 
     fn node_readings(&self) -> Vec<Reading> {

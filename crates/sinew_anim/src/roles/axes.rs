@@ -1,5 +1,6 @@
 //! Up, forward and the length of a metre, read off the body instead of the file.
 
+use super::UnitGuess;
 use super::bind::Bound;
 use super::graph::Graph;
 use super::humanoid::Stance;
@@ -54,28 +55,48 @@ pub(super) fn left_by_name(graph: &Graph, symmetry: &Symmetry, readings: &[Readi
     if sum.abs() > 0.0 { sum.signum() } else { 0.0 }
 }
 
-/// Metres per file unit, and why if it is not 1.
+/// Units that files are in, metres. The last two are what is left of metres and centimetres where a program converts a file
+/// that was converted already.
+const UNITS: [(f32, &str); 7] = [
+    (1.0, "metres"),
+    (0.01, "centimetres"),
+    (0.0254, "inches"),
+    (0.1, "decimetres"),
+    (0.001, "millimetres"),
+    (100.0, "metres divided by a hundred"),
+    (0.0001, "centimetres times a hundred"),
+];
+
+/// Metres per file unit, why, and what else it may be.
 ///
 /// A humanoid between 0.5 m and 3 m is taken at its word; else centimetres, inches, decimetres, millimetres and units that
 /// were converted twice are tried, then 1.75 m is assumed. A creature's longest side may be 0.1 m to 10 m; else one metre is assumed after
 /// the same units.
-pub(super) fn unit_scale(height: f32, size: f32, humanoid: bool) -> (f32, Option<String>) {
+pub(super) fn unit_scale(height: f32, size: f32, humanoid: bool) -> (f32, UnitGuess) {
     let (measure, range, assumed) = if humanoid { (height, 0.5..3.0, 1.75) } else { (size, 0.1..10.0, 1.0) };
-    if range.contains(&measure) {
-        return (1.0, None);
-    }
-    // The last two are what is left of metres and centimetres where a program converts a file that was converted already.
-    let units = [
-        (0.01, "centimetres"),
-        (0.0254, "inches"),
-        (0.1, "decimetres"),
-        (0.001, "millimetres"),
-        (100.0, "metres divided by a hundred"),
-        (0.0001, "centimetres times a hundred"),
-    ];
-    if let Some((scale, unit)) = units.into_iter().find(|(scale, _)| range.contains(&(measure * scale))) {
-        return (scale, Some(format!("{measure:.1} units tall or long: taken as {unit}")));
-    }
-    let scale = assumed / max(measure, 1e-12);
-    (scale, Some(format!("{measure:.3} units tall or long fits no unit: scaled to {assumed} m")))
+    let body = if humanoid { "a human is" } else { "a creature is" };
+    let across = if humanoid { "tall" } else { "long" };
+    let usual = format!("{body} {} to {} m", range.start, range.end);
+    let fits = |&(scale, _): &(f32, &str)| range.contains(&(measure * scale));
+    let mut fitting = UNITS.into_iter().filter(fits);
+    let Some((scale, unit)) = fitting.next() else {
+        let scale = assumed / max(measure, 1e-12);
+        let note = format!(
+            "{measure:.3} units {across} fits no unit, for {usual}: scaled to {assumed} m, a unit of {scale} m; as metres \
+             it would be {measure:.2} m"
+        );
+        return (scale, UnitGuess { note, is_sure: false });
+    };
+    let others: Vec<String> =
+        fitting.map(|(scale, unit)| format!("{unit} ({:.2} m)", measure * scale)).collect();
+    let is_sure = others.is_empty() && humanoid && scale == 1.0;
+    let others = match others.is_empty() {
+        true => "no other unit makes it so".to_owned(),
+        false => format!("it may also be {}", others.join(", ")),
+    };
+    let note = format!(
+        "{measure:.2} units {across}, taken as {unit}: {:.2} m, for {usual}; {others}",
+        measure * scale
+    );
+    (scale, UnitGuess { note, is_sure })
 }

@@ -129,8 +129,24 @@ impl Selection<'_> {
             // No creature has others.
             _ => (3, 0, 0),
         });
+        self.parents_first(&mut joints);
         let place = self.places(&joints);
         self.bones(&joints, |joint| place[self.carried_by(joint, |i| place[i].is_some())?])
+    }
+
+    /// Roles that a person gave may put a part before what carries it: it comes right after that. Others stay in order.
+    fn parents_first(&self, joints: &mut Vec<JointIdx>) {
+        let mut sorted: Vec<JointIdx> = Vec::with_capacity(joints.len());
+        // The root first: whatever nothing carries hangs on it.
+        let root = self.graph.nodes[self.graph.root].joint;
+        let root = joints.iter().position(|&joint| joint == root).map(|at| joints.remove(at));
+        sorted.extend(root);
+        while !joints.is_empty() {
+            let waits = |joint: JointIdx| self.carried_by(joint, |at| joints.contains(&at)).is_some();
+            let next = joints.iter().position(|&joint| !waits(joint)).unwrap_or(0);
+            sorted.push(joints.remove(next));
+        }
+        *joints = sorted;
     }
 
     /// Per joint its place among the kept ones.

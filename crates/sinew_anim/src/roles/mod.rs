@@ -9,6 +9,7 @@
 mod anatomy;
 mod axes;
 mod bind;
+mod correct;
 mod creature;
 mod graph;
 mod humanoid;
@@ -17,6 +18,7 @@ mod names;
 mod role;
 mod symmetry;
 
+pub use correct::{Correction, CorrectionError};
 pub use role::{HUMANOID_ROLES, Role, Side};
 
 use crate::rig::{JointIdx, LocalTransform, Rig};
@@ -81,8 +83,19 @@ pub struct RigAnalysis {
     pub bind_model: Vec<Affine>,
     /// Joints of the skins that are not kept.
     pub dropped: Vec<JointIdx>,
-    /// What was assumed, a sentence each.
+    /// Length that a unit of the file was taken to have, and why; `None` where it was given.
+    pub unit_guess: Option<UnitGuess>,
+    /// Other assumptions, a sentence each.
     pub notes: Vec<String>,
+}
+
+/// Length that a unit of a file was taken to have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnitGuess {
+    /// The unit, the reason and the alternatives, a sentence.
+    pub note: String,
+    /// True for a human in metres, whom no other unit would make one.
+    pub is_sure: bool,
 }
 
 impl RigAnalysis {
@@ -112,7 +125,8 @@ impl RigAnalysis {
     pub fn with_unit_scale(self, unit_scale: f32) -> Self {
         assert!(unit_scale > 0.0 && unit_scale.is_finite(), "a unit has a length, not {unit_scale}");
         let factor = unit_scale / self.unit_scale;
-        Self { unit_scale, floor: self.floor * factor, height: self.height * factor, ..self }
+        let (floor, height) = (self.floor * factor, self.height * factor);
+        Self { unit_scale, floor, height, unit_guess: None, ..self }
     }
 }
 
@@ -129,7 +143,44 @@ pub struct NoSkin;
 /// # Panics
 /// If the rig's indices (parents, skin joints, vertex slots) are out of range.
 pub fn analyze(rig: &Rig) -> Result<RigAnalysis, NoSkin> {
-    analyze_bound(rig, Bound::of(rig).ok_or(NoSkin)?)
+    plain(analyze_bound(rig, Bound::of(rig).ok_or(NoSkin)?, &[]))
+}
+
+/// [`analyze`] with what a person knows: see [`Correction`].
+///
+/// # Errors
+/// [`CorrectionError`]: no skin, none left, or roles that the rig cannot have.
+///
+/// # Panics
+/// As [`analyze`], and if the correction names a joint that the rig does not have.
+pub fn analyze_corrected(rig: &Rig, correction: &Correction) -> Result<RigAnalysis, CorrectionError> {
+    let seen = correction.seen(rig);
+    let Some(bound) = Bound::of(&seen) else {
+        return Err(if correction.ignored.is_empty() { NoSkin.into() } else { CorrectionError::NothingLeft });
+    };
+    let mut analysis = analyze_bound(&seen, bound, &correction.roles)?;
+    // What is ignored still goes along, with the root where nothing of the body carries it.
+    let mut moves_skin: Vec<JointIdx> = rig.skins.iter().flat_map(|skin| skin.joints.clone()).collect();
+    moves_skin.sort_unstable();
+    moves_skin.dedup();
+    let is_ignored = |joint: JointIdx| {
+        let mut line = core::iter::successors(Some(joint), |&at| rig.joints[at].parent);
+        line.any(|at| correction.ignored.contains(&at))
+    };
+    let Some(root) = analysis.kept.first().map(|bone| bone.joint) else { return Ok(analysis) };
+    for joint in moves_skin {
+        if analysis.merge_into[joint].is_none() && joint != root && is_ignored(joint) {
+            analysis.merge_into[joint] = Some(root);
+            analysis.kept[0].merged.push(joint);
+        }
+    }
+    analysis.kept[0].merged.sort_unstable();
+    Ok(analysis)
+}
+
+/// Without a correction there is nothing else to err in.
+fn plain(analyzed: Result<RigAnalysis, CorrectionError>) -> Result<RigAnalysis, NoSkin> {
+    analyzed.map_err(|_| NoSkin)
 }
 
 /// Roles, axes and unit of a skeleton without skin, as motion capture files have it, standing in `pose`: best with straight
@@ -142,14 +193,17 @@ pub fn analyze(rig: &Rig) -> Result<RigAnalysis, NoSkin> {
 /// # Panics
 /// If `pose` is not as long as the rig has joints.
 pub fn analyze_skeleton(rig: &Rig, pose: &[LocalTransform]) -> Result<RigAnalysis, NoSkin> {
-    analyze_bound(rig, Bound::of_bones(rig, pose).ok_or(NoSkin)?)
+    plain(analyze_bound(rig, Bound::of_bones(rig, pose).ok_or(NoSkin)?, &[]))
 }
 
-fn analyze_bound(rig: &Rig, bound: Bound) -> Result<RigAnalysis, NoSkin> {
-    let Anatomy { graph, roles, humanoid, up, left, mut notes } = Anatomy::of(rig, &bound).ok_or(NoSkin)?;
+fn analyze_bound(
+    rig: &Rig,
+    bound: Bound,
+    known: &[(Role, JointIdx)],
+) -> Result<RigAnalysis, CorrectionError> {
+    let Anatomy { graph, roles, humanoid, up, left, mut notes } = Anatomy::of(rig, &bound, known)?;
     let stance = Stance::new(&bound, up);
-    let (unit_scale, unit_note) = axes::unit_scale(stance.height, bound.size(), humanoid);
-    notes.extend(unit_note);
+    let (unit_scale, unit_guess) = axes::unit_scale(stance.height, bound.size(), humanoid);
     if up.dot(Vec3::Y) < 0.9 {
         notes.push(format!("the body stands along {up} of the file, not along +Y"));
     }
@@ -173,6 +227,7 @@ fn analyze_bound(rig: &Rig, bound: Bound) -> Result<RigAnalysis, NoSkin> {
         merge_into,
         bind_model: bound.model,
         dropped,
+        unit_guess: Some(unit_guess),
         notes,
     })
 }

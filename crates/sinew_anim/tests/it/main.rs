@@ -5,6 +5,7 @@ mod animators;
 mod blending;
 mod built;
 mod cleanup;
+mod corrections;
 mod ik;
 mod learned_limits;
 mod mocap;

@@ -33,7 +33,7 @@ fn analyzed(file: &str) -> Option<(Rig, RigAnalysis)> {
 }
 
 /// What holds for every analysis, whatever the rig.
-fn sound(rig: &Rig, found: &RigAnalysis) {
+pub fn sound(rig: &Rig, found: &RigAnalysis) {
     let mut carried = vec![0; rig.joints.len()];
     for (i, bone) in found.kept.iter().enumerate() {
         assert_eq!(bone.parent.is_none(), i == 0, "one root, first");

@@ -1,7 +1,7 @@
 //! `sinew boxes`: a render mesh becomes a world of few boxes.
 
 use crate::failure::{Failure, Result};
-use crate::files::Outputs;
+use crate::files::{Outputs, must_end_in};
 use crate::film::body_models;
 use crate::picture_file::PictureFile;
 use crate::progress::Progress;
@@ -74,7 +74,7 @@ impl Boxes {
             Some(path) => {
                 Err(Failure::Usage(format!("{} is an input: write to another file", path.display())))
             }
-            None => Ok(()),
+            None => must_end_in(&self.output, &["json"]),
         }
     }
 

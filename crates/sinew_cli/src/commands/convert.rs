@@ -1,9 +1,9 @@
 //! `sinew convert`: clips from one format into another, or from one character onto another.
 
 use crate::bones::flesh_out;
-use crate::commands::clip_choice::choose_clips;
+use crate::commands::clip_choice::{choose_clips, few};
 use crate::failure::{Failure, Result};
-use crate::files::{CharacterFile, Outputs, never_over};
+use crate::files::{CharacterFile, Outputs, must_end_in, never_over};
 use crate::motion::Motion;
 use crate::onto::{Carried, carry};
 use crate::report::Report;
@@ -171,13 +171,9 @@ impl Convert {
     }
 
     fn target(&self) -> Result<Target> {
-        let extension =
-            self.output().extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-        match extension.to_ascii_lowercase().as_str() {
-            "glb" => Ok(Target::Glb),
-            "bvh" => Ok(Target::Bvh),
-            _ => Err(Failure::Usage(format!("'{}' must end in .glb or .bvh", self.output().display()))),
-        }
+        must_end_in(self.output(), &["glb", "bvh"])?;
+        let is_bvh = self.output().extension().is_some_and(|it| it.eq_ignore_ascii_case("bvh"));
+        Ok(if is_bvh { Target::Bvh } else { Target::Glb })
     }
 
     fn motion_options(&self) -> MotionOptions<'static> {
@@ -193,7 +189,13 @@ impl Convert {
         let count = motion.file.clips.len();
         let what = match count {
             0 => "there is no clip to write".to_owned(),
-            _ => format!("there are {count} clips, of which a BVH holds one: choose it with --clip NAME"),
+            _ => {
+                let names: Vec<String> = motion.file.clips.iter().map(|clip| shown(&clip.name)).collect();
+                let names = few(&names);
+                format!(
+                    "there are {count} clips, of which a BVH holds one: choose it with --clip NAME, {names}"
+                )
+            }
         };
         Failure::at(&motion.name, what, "--clip")
     }

@@ -2,7 +2,7 @@
 
 use crate::commands::clip_choice::choose_clips;
 use crate::failure::{Failure, Result};
-use crate::files::Outputs;
+use crate::files::{Outputs, must_end_in, never_over};
 use crate::footsteps::footsteps;
 use crate::motion::Motion;
 use crate::report::{Report, number};
@@ -57,6 +57,8 @@ const SAME_STEP: f32 = 0.15;
 impl Detect {
     /// Reads, looks, writes.
     pub fn run(&self) -> Result<Report> {
+        self.output.iter().try_for_each(|output| must_end_in(output, &["json"]))?;
+        never_over([self.file.as_path()], self.output.as_deref())?;
         let motion = Motion::load(&self.file, &MotionOptions::default())?;
         let Some(analysis) = motion.analysis.as_ref().filter(|analysis| analysis.humanoid) else {
             return Err(Failure::of_file(&motion.name, "no human legs to look at: footsteps cannot be told"));

@@ -2,7 +2,7 @@
 
 use crate::cpu_clock::timed;
 use crate::failure::Result;
-use crate::files::{CharacterFile, Outputs, never_over};
+use crate::files::{CharacterFile, Outputs, must_end_in, never_over};
 use crate::progress::Progress;
 use crate::ragdoll_report::RagdollReport;
 use crate::report::Report;
@@ -12,7 +12,7 @@ use sinew::formats::{Textures, write_ragdoll};
 use sinew::physics::Threads;
 use sinew::ragdoll::build::BuildReport;
 use sinew::ragdoll::quality::{GateReport, gate_on};
-use sinew::ragdoll::{BuildOptions, LimitSource, RagdollDef, Sex, ShapeChoice, drop_test};
+use sinew::ragdoll::{BuildOptions, LimitSource, RagdollDef, Settings, Sex, ShapeChoice, Verdict, drop_test};
 use std::path::PathBuf;
 
 /// Build a ragdoll from a rigged file: shapes, masses, limits, collision filter, and a quality report
@@ -22,6 +22,7 @@ Example:
   sinew ragdoll build character.glb -o character.sinew.json
   sinew ragdoll build character.glb --shapes capsule --mass 62 --sex f
   sinew ragdoll build character.glb --settings hero.ragdoll.json
+  sinew ragdoll build character.glb --role hips=Bone_12 --ignore Cape --height 1.8
   sinew ragdoll build character.glb --limits clips --gate 1000 --threads 8
 
 docs/ragdoll.md says what a definition and settings hold.")]
@@ -34,9 +35,6 @@ pub struct RagdollBuild {
     /// Shapes of the bodies; auto, the default, takes for each bone what fits better
     #[arg(long, value_enum)]
     shapes: Option<Shapes>,
-    /// Mass of the whole character, kg; by default from its height or volume
-    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
-    mass: Option<f32>,
     /// Whose distribution of mass over the body; by default male
     #[arg(long, value_enum)]
     sex: Option<SexArg>,
@@ -85,9 +83,14 @@ impl RagdollBuild {
     pub fn run(&self) -> Result<Report> {
         let settings = self.settings.path_for(&self.file);
         never_over([self.file.as_path(), &settings], self.output.as_deref())?;
+        self.output.iter().try_for_each(|output| must_end_in(output, &["json"]))?;
         let (built, seconds) = timed(|| self.build());
-        let (character, def, build) = built?;
-        let tested = drop_test(&def);
+        let (character, settings, def, build) = built?;
+        let mut tested = drop_test(&def);
+        if let Some(doubt) = settings.doubt(&def) {
+            tested.verdict = Verdict::min(tested.verdict, Verdict::Usable);
+            tested.reasons.insert(0, doubt);
+        }
         let gated = self.gate.map(|spawns| self.gated(&def, spawns));
         let report = RagdollReport {
             file: &character.name,
@@ -120,16 +123,15 @@ impl RagdollBuild {
     }
 
     /// From the file to the definition, with what a person should know.
-    fn build(&self) -> Result<(CharacterFile, RagdollDef, BuildReport)> {
-        let character = CharacterFile::load(&self.file, Textures::Skip)?;
-        let (def, report) = self.settings()?.build(&character, &BuildOptions::default())?;
-        Ok((character, def, report))
+    fn build(&self) -> Result<(CharacterFile, LoadedSettings, RagdollDef, BuildReport)> {
+        let (character, mut loaded) = self.settings.load_character(&self.file, Textures::Skip)?;
+        self.say(&mut loaded.settings);
+        let (def, report) = loaded.build(&character, &BuildOptions::default())?;
+        Ok((character, loaded, def, report))
     }
 
-    /// Settings of the file, and over them what the command line says.
-    fn settings(&self) -> Result<LoadedSettings> {
-        let mut loaded = self.settings.load(&self.file)?;
-        let settings = &mut loaded.settings;
+    /// Puts what the command line says over the settings.
+    fn say(&self, settings: &mut Settings) {
         if let Some(shapes) = self.shapes {
             settings.shapes = Some(match shapes {
                 Shapes::Box => ShapeChoice::Box,
@@ -149,7 +151,5 @@ impl RagdollBuild {
                 Limits::Clips => LimitSource::Clips,
             });
         }
-        settings.mass = self.mass.or(settings.mass);
-        Ok(loaded)
     }
 }

@@ -1,7 +1,7 @@
 //! `sinew ragdoll doctor`: what is wrong with a ragdoll, and what mends it.
 
 use crate::failure::Result;
-use crate::files::{CharacterFile, Outputs, never_over};
+use crate::files::{Outputs, must_end_in, never_over};
 use crate::ragdoll_file::RagdollFile;
 use crate::report::Report;
 use crate::settings_arg::SettingsArg;
@@ -45,14 +45,14 @@ impl RagdollDoctor {
         let character = self.rig.as_deref().unwrap_or(&self.file);
         let settings = self.settings.path_for(character);
         never_over([self.file.as_path(), character, &settings], self.output.as_deref())?;
+        self.output.iter().try_for_each(|output| must_end_in(output, &["json"]))?;
         let file = RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
         if self.rig.is_none() {
             file.check_settings(&self.settings)?;
         }
         let RagdollFile { name, mut patient, mut notes } = file;
         if let Some(rig) = &self.rig {
-            let character = CharacterFile::load(rig, Textures::Skip)?;
-            let settings = self.settings.load(rig)?;
+            let (character, settings) = self.settings.load_character(rig, Textures::Skip)?;
             patient.reference = Some(settings.build(&character, &BuildOptions::default())?.0);
         }
         let findings = match &self.output {

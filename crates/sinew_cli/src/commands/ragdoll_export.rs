@@ -1,7 +1,7 @@
 //! `sinew ragdoll export`: the definition for other engines.
 
 use crate::failure::{Failure, Result};
-use crate::files::{CharacterFile, Outputs, never_over};
+use crate::files::{CharacterFile, Outputs, must_end_in, never_over};
 use crate::ragdoll_file::{RagdollFile, is_character, read_definition};
 use crate::report::Report;
 use crate::settings_arg::SettingsArg;
@@ -29,7 +29,7 @@ pub struct RagdollExport {
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     /// A ragdoll of this character from `ragdoll build`, as it is or edited; without it one is built
-    #[arg(long, value_name = "FILE.sinew.json", conflicts_with = "settings")]
+    #[arg(long, value_name = "FILE.sinew.json", conflicts_with = "SettingsArg")]
     ragdoll: Option<PathBuf>,
     #[command(flatten)]
     settings: SettingsArg,
@@ -41,6 +41,16 @@ enum Format {
     Mjcf,
 }
 
+impl Format {
+    /// Extensions that a file of it may have.
+    fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Self::Khr => &["glb", "vrm"],
+            Self::Mjcf => &["xml", "mjcf"],
+        }
+    }
+}
+
 impl RagdollExport {
     /// Reads, converts, writes.
     pub fn run(&self) -> Result<Report> {
@@ -48,6 +58,7 @@ impl RagdollExport {
         let settings = self.settings.path_for(&self.file);
         let inputs = [self.file.as_path(), &settings].into_iter().chain(self.ragdoll.as_deref());
         never_over(inputs, [output.as_path()])?;
+        must_end_in(&output, self.format.extensions())?;
         let (def, bytes, notes) = match self.format {
             Format::Khr => self.khr()?,
             Format::Mjcf => self.mjcf()?,
@@ -80,17 +91,20 @@ impl RagdollExport {
                 "khr puts physics into the character's own file: name that, and this one with --ragdoll";
             return Err(Failure::of_file(self.file.display().to_string(), what));
         }
-        let character = CharacterFile::load(&self.file, Textures::Skip)?;
-        let def = self.ragdoll_of(&character)?;
+        let (character, def, mut told) = self.character()?;
         let CharacterFile { name, document, analysis } = &character;
         let KhrFile { bytes, notes } =
             write_khr(document, &analysis.bind_model, &def).map_err(|error| error.with_file(name))?;
-        Ok((def, bytes, notes))
+        told.extend(notes);
+        Ok((def, bytes, told))
     }
 
     fn mjcf(&self) -> Result<(RagdollDef, Vec<u8>, Vec<String>)> {
         let (def, mut notes) = match &self.ragdoll {
-            Some(_) => (self.ragdoll_of(&CharacterFile::load(&self.file, Textures::Skip)?)?, Vec::new()),
+            Some(_) => {
+                let (_, def, notes) = self.character()?;
+                (def, notes)
+            }
             None => {
                 let file = RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
                 file.check_settings(&self.settings)?;
@@ -103,10 +117,19 @@ impl RagdollExport {
         Ok((def, text.into_bytes(), notes))
     }
 
-    fn ragdoll_of(&self, character: &CharacterFile) -> Result<RagdollDef> {
+    /// The character with its ragdoll, and what a person should know of it.
+    fn character(&self) -> Result<(CharacterFile, RagdollDef, Vec<String>)> {
         match &self.ragdoll {
-            Some(path) => read_definition(path, character),
-            None => Ok(self.settings.load(&self.file)?.build(character, &BuildOptions::default())?.0),
+            Some(path) => {
+                let character = CharacterFile::load(&self.file, Textures::Skip)?;
+                let def = read_definition(path, &character)?;
+                Ok((character, def, Vec::new()))
+            }
+            None => {
+                let (character, settings) = self.settings.load_character(&self.file, Textures::Skip)?;
+                let (def, report) = settings.build(&character, &BuildOptions::default())?;
+                Ok((character, def, report.notes))
+            }
         }
     }
 

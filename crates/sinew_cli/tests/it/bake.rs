@@ -117,8 +117,9 @@ fn a_bvh_has_the_bones_and_every_frame() {
         let (of_bvh, of_glb) = (run(&bvh, &[]), run(&glb, &["--key-error", "0"]));
         check_keys("bake", &of_bvh);
         assert_eq!((&of_bvh["hash"], &of_bvh["frames"]), (&of_glb["hash"], &frames.into()));
-        assert_eq!((&of_bvh["key_error_max_m"], &of_glb["notes"]), (&0.0.into(), &serde_json::json!([])));
-        assert!(of_bvh["notes"][0].as_str().is_some_and(|note| note.contains("mesh")), "{of_bvh:#}");
+        assert_eq!(of_bvh["key_error_max_m"], 0.0);
+        let lost = |object: &serde_json::Value| object["notes"].to_string().contains("mesh");
+        assert!(lost(&of_bvh) && !lost(&of_glb), "{of_bvh:#}");
         let text = fs::read(&bvh).expect("it is written");
         let read = read_bvh(&text, BvhOptions { unit: BvhUnit::Metres(0.01), ..BvhOptions::default() })
             .expect("it can be read");
@@ -199,9 +200,9 @@ fn what_does_not_exist_is_told_with_what_does() {
         let arguments = [&["bake", file.as_str(), "-o", &out], extra].concat();
         sinew(&arguments).refusal(1).to_owned()
     };
-    assert_eq!(line(&["--clip", "Fly"]), format!("error: {file}: no clip 'Fly'; there are Walk (--clip)"));
-    let hit = line(&["--hit", "tail=0,0,1@1"]);
-    assert!(hit.contains("no bone 'tail' to hit; there are hips, spine, chest"), "{hit}");
+    assert_eq!(line(&["--clip", "Fly"]), format!("error: {file}: no clip 'Fly'; there is Walk (--clip)"));
+    let hit = line(&["--hit", "haed=0,0,1@1"]);
+    assert!(hit.contains("no bone 'haed' to hit; the nearest of ") && hit.contains(" are head, "), "{hit}");
     assert_eq!(folder.names(), ["mannequin.glb"]);
 }
 
@@ -243,13 +244,12 @@ fn what_would_never_happen_is_refused() {
         line(&["--hit", "chest=0,0,9@1", "--hit", "chest=0,0,9@3"]),
         "error: --hit at 3 s is after the end, at 2 s (--seconds)"
     );
-    assert_eq!(line(&["--limp-at", "2.5"]), "error: --limp-at at 2.5 s is after the end, at 2 s (--seconds)");
     for (option, why) in [("--key-error", "between 0 and 100 mm"), ("--limp-at", "between 0 and 600 s")] {
         let run = sinew(&["bake", &file, "-o", &out, option, "-1"]);
         assert!(run.code == Some(2) && run.stderr.contains(why), "{run:?}");
     }
     let run = sinew(&["ragdoll", "build", &file, "--mass", "-4"]);
-    assert!(run.refusal(1).contains("mass"), "{run:?}");
+    assert!(run.refusal(1).ends_with("a mass of -4 kg: it must be positive (--mass)"), "{run:?}");
 }
 
 #[test]

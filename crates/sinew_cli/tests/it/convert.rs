@@ -178,7 +178,7 @@ fn what_cannot_be_converted() {
     };
     let out = folder.path("out.bvh");
     refused(&["convert", &bvh, &bvh], 2, "is an input");
-    refused(&["convert", &mannequin, &out, "--clip", "Fly"], 1, "no clip 'Fly'; there are Walk");
+    refused(&["convert", &mannequin, &out, "--clip", "Fly"], 1, "no clip 'Fly'; there is Walk");
     refused(
         &["convert", &bvh, "--onto", &mannequin, &folder.path("out.glb")],
         1,

@@ -4,12 +4,16 @@ mod bake;
 mod boxes;
 mod contract;
 mod convert;
+mod corrections;
 mod demo;
 mod export;
+mod manners;
 mod ragdoll;
+mod readme;
 mod refusals;
 mod scenes;
 mod sinew;
+mod units;
 mod usage;
 mod view;
 

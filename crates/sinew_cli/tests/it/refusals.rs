@@ -22,8 +22,8 @@ fn frugal(arguments: &[&str]) -> Run {
 /// `bake` and `ragdoll build` refuse the file with a line that holds `reason`, and write nothing.
 fn check_refused(folder: &Folder, file: &str, reason: &str) {
     let before = folder.names();
-    let out = folder.path("out");
-    for arguments in [["bake", file, "-o", &out].as_slice(), &["ragdoll", "build", file, "-o", &out]] {
+    let (out, def) = (folder.path("out.glb"), folder.path("out.json"));
+    for arguments in [["bake", file, "-o", &out].as_slice(), &["ragdoll", "build", file, "-o", &def]] {
         let run = frugal(arguments);
         let line = run.refusal(1);
         assert!(line.starts_with(&format!("error: {file}: ")) && line.contains(reason), "{line}");

@@ -39,7 +39,12 @@ fn settings_change_the_outcome() {
 #[test]
 fn what_is_not_there_is_bad_usage() {
     let line = |arguments: &[&str]| sinew(arguments).refusal(2).to_owned();
-    assert_eq!(line(&["run", "nix"]), "error: no scene 'nix'; 'sinew scenes' lists what there is");
+    let suggested = line(&["run", "pendulm"]);
+    assert!(suggested.starts_with("error: no scene 'pendulm'; the nearest of "), "{suggested}");
+    assert!(
+        suggested.contains(" are pendulum, ") && suggested.ends_with("; 'sinew scenes' lists what there is")
+    );
+    assert!(line(&["view", "pendulm", "--picture", "x.png"]).contains(" are pendulum, "));
     assert!(line(&["run", "pendulum", "--set", "nix=1"]).starts_with("error: --set: no setting `nix`"));
     assert!(line(&["run", "pendulum", "--set", "amplitude"]).contains("is not key=value"));
 }

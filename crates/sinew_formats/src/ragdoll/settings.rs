@@ -14,8 +14,10 @@
 //!     "upperArm": { "limits_deg": { "swing_y": [-80, 80], "swing_z": [-70, 70], "twist": [-60, 60] } },
 //!     "lowerLeg": { "type": "hinge", "limits_deg": { "twist": [-2, 130] }, "friction_torque": 2 },
 //!     "leftHand": { "mass": 1.5 },
-//!     "Cape_01": { "body": "drop" }
+//!     "Cape_01": { "body": "drop" },
+//!     "Bone_12": { "role": "hips" }
 //!   },
+//!   "ignore": ["Flag"],
 //!   "disable_pairs": [["leftHand", "leftUpperLeg"]],
 //!   "enable_pairs": [["leftUpperLeg", "rightUpperLeg"]]
 //! }
@@ -24,20 +26,24 @@
 //! Every key but the first two may be absent. `shapes` is `box`, `capsule` or `auto`; `mass` kg of the whole; `sex` `m`
 //! or `f`; `limits` are those of `anatomy`, or learned from the file's `clips`; the unit of the rigged file is given by `unit_scale` (metres) or by the `height` that the character shall have;
 //! `up_axis` (`[0, 0, 1]`) is the file's axis that points up. A bone is named by its role, by its role without the side (both
-//! sides; ranges are the left one's, mirrored on the right) or by the name of the rig's joint. Of a bone: `body` (`keep` or
-//! `drop`), `shape` (`box`, `capsule`, `sphere`), `scale` of it, `mass` in kg, `type` and `limits_deg` of the joint to its
-//! parent as in [ragdoll files](super), each range by itself, and `friction_torque` in N·m.
+//! sides; ranges are the left one's, mirrored on the right) or by the name of the rig's joint. Of a bone: the `role` that it has
+//! whatever shape and names say (only by the joint's name), `body` (`keep` or `drop`), `shape` (`box`, `capsule`, `sphere`), `scale` of it, `mass` in kg, `type` and `limits_deg` of the joint to its
+//! parent as in [ragdoll files](super), each range by itself, and `friction_torque` in N·m. Joints that `ignore` names are no part
+//! of the body, with all that hangs below them.
 
 use super::{read_range, read_up_axis};
 use crate::error::{Error, Result, quoted};
 use crate::json::{self, At};
+use sinew_anim::Role;
 use sinew_math::Range;
-use sinew_ragdoll::settings::{BodyWish, BoneSettings, JointWish, Settings, ShapeWish, Unit, nearest};
+use sinew_ragdoll::settings::{
+    BodyWish, BoneSettings, JointWish, Settings, ShapeWish, Unit, nearest, role_named,
+};
 use sinew_ragdoll::{LimitSource, Sex, ShapeChoice};
 
 const VERSION: usize = 1;
 
-const ROOT_KEYS: [&str; 13] = [
+const ROOT_KEYS: [&str; 14] = [
     "sinew",
     "version",
     "comment",
@@ -49,12 +55,13 @@ const ROOT_KEYS: [&str; 13] = [
     "unit_scale",
     "up_axis",
     "bones",
+    "ignore",
     "disable_pairs",
     "enable_pairs",
 ];
 
-const BONE_KEYS: [&str; 8] =
-    ["comment", "body", "shape", "scale", "mass", "type", "limits_deg", "friction_torque"];
+const BONE_KEYS: [&str; 9] =
+    ["comment", "role", "body", "shape", "scale", "mass", "type", "limits_deg", "friction_torque"];
 
 /// The settings of a settings file. Bones are looked for when they are applied to a rig.
 ///
@@ -81,6 +88,7 @@ pub fn read_ragdoll_settings(bytes: &[u8]) -> Result<Settings> {
         unit,
         up_axis: root.get("up_axis")?.map(read_up_axis).transpose()?,
         bones: Vec::new(),
+        ignore: read_names(root, "ignore")?,
         disable: read_pairs(root, "disable_pairs")?,
         enable: read_pairs(root, "enable_pairs")?,
     };
@@ -109,6 +117,7 @@ fn read_bone(at: At<'_>) -> Result<BoneSettings> {
         ("fixed", JointWish::Fixed),
     ];
     let mut bone = BoneSettings {
+        role: at.get("role")?.map(read_role).transpose()?,
         body: word(at, "body", &bodies)?,
         shape: word(at, "shape", &shapes)?,
         scale: at.get("scale")?.map(At::positive).transpose()?,
@@ -132,6 +141,14 @@ fn read_bone(at: At<'_>) -> Result<BoneSettings> {
         bone.twist = limits.get("twist")?.map(read_range).transpose()?;
     }
     Ok(bone)
+}
+
+fn read_role(at: At<'_>) -> Result<Role> {
+    role_named(at.str()?).map_err(|what| at.malformed(what))
+}
+
+fn read_names(root: At<'_>, key: &str) -> Result<Vec<String>> {
+    root.list(key)?.into_iter().map(|name| Ok(name.str()?.to_owned())).collect()
 }
 
 fn read_pairs(root: At<'_>, key: &str) -> Result<Vec<[String; 2]>> {

@@ -30,6 +30,40 @@ fn a_write_replaces_and_leaves_nothing_beside_it() {
     fs::remove_dir_all(folder).unwrap();
 }
 
+/// A link's target is written, and the link stays; what is no regular file is never replaced.
+#[cfg(unix)]
+#[test]
+fn nothing_but_a_regular_file_is_replaced() {
+    use std::os::unix::fs::symlink;
+    let folder = folder("replaced");
+    fs::create_dir(folder.join("far")).unwrap();
+    fs::write(folder.join("far/target.json"), "old").unwrap();
+    symlink("far/target.json", folder.join("link.json")).unwrap();
+    symlink("link.json", folder.join("second.json")).unwrap();
+    symlink("far/new.json", folder.join("dangling.json")).unwrap();
+    for (link, target) in [("second.json", "far/target.json"), ("dangling.json", "far/new.json")] {
+        write_atomic(folder.join(link), b"new").unwrap();
+        assert_eq!(fs::read(folder.join(target)).unwrap(), b"new", "{link}");
+        assert!(fs::symlink_metadata(folder.join(link)).unwrap().is_symlink(), "{link}");
+    }
+    symlink("/dev/null", folder.join("device.json")).unwrap();
+    symlink("circle.json", folder.join("circle.json")).unwrap();
+    let socket = std::os::unix::net::UnixListener::bind(folder.join("socket.json")).unwrap();
+    for (name, why) in [
+        ("device.json", "is there and is not a regular file"),
+        ("socket.json", "is there and is not a regular file"),
+        ("far", "is there and is not a regular file"),
+        ("circle.json", "is a link that leads to a link without end"),
+    ] {
+        let error = write_atomic(folder.join(name), b"new").unwrap_err();
+        assert_eq!(error.what, format!("cannot write: {why}"), "{name}");
+    }
+    drop(socket);
+    assert!(!fs::metadata("/dev/null").unwrap().is_file());
+    assert_eq!(fs::read_dir(folder.join("far")).unwrap().count(), 2, "nothing is left beside");
+    fs::remove_dir_all(folder).unwrap();
+}
+
 #[test]
 fn of_several_files_none_appears_before_all_are_written() {
     let folder = folder("several");

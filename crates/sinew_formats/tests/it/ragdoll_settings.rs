@@ -23,6 +23,10 @@ fn the_documented_example_is_read() {
         (Some(JointWish::Hinge), Some(2.0))
     );
     assert_eq!(bone("Cape_01").body, Some(BodyWish::Drop));
+    assert_eq!(
+        (bone("Bone_12").role, settings.ignore),
+        (Some(sinew_anim::Role::Hips), vec!["Flag".to_owned()])
+    );
     assert_eq!(settings.disable, [["leftHand".to_owned(), "leftUpperLeg".to_owned()]]);
     assert_eq!(settings.enable.len(), 1);
 }
@@ -36,9 +40,15 @@ fn complaints_name_the_place_and_the_nearest_key() {
         (
             r#""friction_torque": 2"#,
             r#""wobble": 2"#,
-            "unknown key `wobble`; known are comment, body, shape, scale, mass, type, limits_deg, friction_torque (bones.lowerLeg)",
+            "unknown key `wobble`; known are comment, role, body, shape, scale, mass, type, limits_deg, friction_torque (bones.lowerLeg)",
         ),
         (r#""sphere""#, r#""spere""#, "unknown word `spere`; did you mean `sphere`? (bones.head.shape)"),
+        (
+            r#""role": "hips""#,
+            r#""role": "hisp""#,
+            "no role `hisp`; the nearest of 22 are hips, chest, head; of a creature spine_0, tail_0, limb_0_0 and so on (bones.Bone_12.role)",
+        ),
+        (r#"["Flag"]"#, r#"[7]"#, "must be a string (ignore[0])"),
         (r#""mass": 82"#, r#""mass": -1"#, "must be more than 0 (mass)"),
         (
             r#""mass": 82"#,

@@ -169,7 +169,7 @@ codes! {
     /// The rig's unit was not a metre.
     UnitInferred "unit-inferred" Note
         "the file's unit is not a metre, so that its length was inferred from the size of the body"
-        "Give `unit_scale` or `height` in settings if it is another.";
+        "Give `unit_scale` or `height` in settings (`--unit`, `--height`) if it is another.";
     /// A bone's role is little more than a guess.
     RoleUncertain "role-uncertain" Note
         "name and shape of the rig do not tell for sure which part of the body a bone is"

@@ -3,11 +3,13 @@
 mod drop_test;
 mod gate;
 mod meter;
+mod plausible;
 mod verdict;
 
 pub use drop_test::{DropReport, drop_test};
 pub use gate::{Bar, GateReport, Miss, gate, gate_on, random_fall, random_pose};
 pub use meter::QualityMeter;
+pub use plausible::implausible;
 pub use verdict::{Verdict, judge};
 
 /// Figures of a character's falls, see the fields. Times are seconds of the world.

@@ -61,8 +61,9 @@ impl<'a> Wishes<'a> {
         let mut wishes = Self { names, bodies: vec![BoneSettings::default(); names.len()] };
         for (name, bone) in &settings.bones {
             let place = format!("bones.{name}");
-            // A bone without a body has nothing more to be said about.
-            if bone.body == Some(super::BodyWish::Drop) {
+            // A bone without a body has nothing more to be said about, and a role may be that of one.
+            let only_a_role = BoneSettings { role: bone.role, ..BoneSettings::default() } == *bone;
+            if bone.body == Some(super::BodyWish::Drop) || only_a_role && bone.role.is_some() {
                 continue;
             }
             for body in wishes.named(name, &place)? {
@@ -203,6 +204,7 @@ fn merged(old: BoneSettings, new: &BoneSettings, mirror: bool) -> BoneSettings {
     let bends = new.joint == Some(JointWish::Hinge) || new.swing_y.is_none() && new.swing_z.is_none();
     let twist = if bends { new.twist } else { new.twist.map(turned) };
     BoneSettings {
+        role: new.role.or(old.role),
         body: new.body.or(old.body),
         shape: new.shape.or(old.shape),
         scale: new.scale.or(old.scale),

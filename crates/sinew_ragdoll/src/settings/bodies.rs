@@ -1,42 +1,49 @@
 //! Settings that change what the analysis says: unit, axis, which bones get bodies.
 
-use super::{BodyWish, Settings, SettingsError, Unit, nearest};
+use super::{BodyWish, Settings, SettingsError, Unit, instead};
 use crate::build::joint_name;
 use sinew_anim::roles::{KeptBone, RigAnalysis, Role};
 use sinew_anim::skinning::skin_vertices;
 use sinew_anim::{JointIdx, Rig};
 use sinew_math::{Rotation, Transform, Vec3, max, min};
 
-/// The analysis as the settings want it.
-pub(super) fn settled(
+/// The analysis with the axis and the unit that are wanted.
+pub(super) fn placed(
     rig: &Rig,
-    analysis: &RigAnalysis,
+    mut analysis: RigAnalysis,
     settings: &Settings,
 ) -> Result<RigAnalysis, SettingsError> {
-    let mut analysis = analysis.clone();
     if let Some(up) = settings.up_axis {
         stand_along(rig, &mut analysis, up);
     }
-    let analysis = &mut match settings.unit {
-        Some(Unit::Scale(scale)) => analysis.with_unit_scale(scale),
+    match settings.unit {
+        Some(Unit::Scale(scale)) => Ok(analysis.with_unit_scale(scale)),
         Some(Unit::Height(height)) => {
             let scale = analysis.unit_scale * height / analysis.height;
             if !(scale.is_finite() && scale > 0.0) {
                 return Err(SettingsError::at("height", "the character has no height in its bind pose"));
             }
-            analysis.with_unit_scale(scale)
+            Ok(analysis.with_unit_scale(scale))
         }
-        None => analysis,
-    };
+        None => Ok(analysis),
+    }
+}
+
+/// The analysis with bodies for those bones that shall have one.
+pub(super) fn settled(
+    rig: &Rig,
+    mut analysis: RigAnalysis,
+    settings: &Settings,
+) -> Result<RigAnalysis, SettingsError> {
     for (name, bone) in &settings.bones {
         let place = || format!("bones.{name}");
         match bone.body {
-            Some(BodyWish::Drop) => drop(rig, analysis, name, &place())?,
-            Some(BodyWish::Keep) => keep(rig, analysis, name, &place())?,
+            Some(BodyWish::Drop) => drop(rig, &mut analysis, name, &place())?,
+            Some(BodyWish::Keep) => keep(rig, &mut analysis, name, &place())?,
             None => {}
         }
     }
-    Ok(core::mem::replace(analysis, RigAnalysis { kept: Vec::new(), ..analysis.clone() }))
+    Ok(analysis)
 }
 
 /// Turns the character so that `up` of the file is up; it faces as before as nearly as that goes.
@@ -197,7 +204,6 @@ fn unknown(rig: &Rig, analysis: &RigAnalysis, name: &str, place: &str) -> Settin
 
 /// No bone has that name; `known` are those that are there.
 pub(super) fn no_bone(name: &str, known: &[String], place: &str) -> SettingsError {
-    let hint = nearest(name, known.iter().map(String::as_str));
-    let hint = hint.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-    SettingsError::at(place, format!("no bone or role `{}`{hint}", name.escape_debug()))
+    let instead = instead(name, known.iter().map(String::as_str));
+    SettingsError::at(place, format!("no bone or role `{}`; {instead}", name.escape_debug()))
 }

@@ -3,13 +3,17 @@
 
 mod apply;
 mod bodies;
+mod correct;
+mod nearest;
+
+pub use nearest::{instead, nearest, nearest_three, role_named};
 
 use crate::build::{BuildError, BuildOptions, BuildReport};
 use crate::def::RagdollDef;
 use crate::fit::ShapeChoice;
 use crate::limits::LimitSource;
 use crate::masses::de_leva::Sex;
-use sinew_anim::roles::RigAnalysis;
+use sinew_anim::roles::{RigAnalysis, Role};
 use sinew_anim::{Rig, Take};
 use sinew_math::{Range, Vec3};
 
@@ -30,6 +34,9 @@ pub struct Settings {
     pub up_axis: Option<Vec3>,
     /// Bones, by role, by role without its side (both sides), or by the name of the rig's joint; later ones win.
     pub bones: Vec<(String, BoneSettings)>,
+    /// Bones that are no part of the body, with all that hangs below them, by the name of the rig's joint: they go along, and
+    /// their skin shapes nothing.
+    pub ignore: Vec<String>,
     /// Pairs of bones that shall not collide.
     pub disable: Vec<[String; 2]>,
     /// Pairs of bones that shall collide, whatever the build thinks.
@@ -48,6 +55,8 @@ pub enum Unit {
 /// What is wanted otherwise of one bone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BoneSettings {
+    /// Part of the body that it is. Only for a bone by the name of its joint, for roles are what this changes.
+    pub role: Option<Role>,
     /// Whether it gets a body.
     pub body: Option<BodyWish>,
     /// Kind of its shape.
@@ -152,29 +161,23 @@ pub fn build_moving(
     options: &BuildOptions,
     settings: &Settings,
 ) -> Result<(RagdollDef, BuildReport), SettingsError> {
+    let correction = correct::correction(rig, settings)?;
+    let seen = correction.seen(rig);
+    let analysis = correct::corrected(rig, &seen, analysis, &correction, settings)?;
     let analysis = bodies::settled(rig, analysis, settings)?;
-    apply::build(rig, &analysis, options, settings, takes)
+    apply::build(&seen, &analysis, options, settings, takes)
 }
 
-/// The name among `known` that is nearest to `name`, if it is near: at most a third of its letters differ.
-pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let close = |&(distance, _): &(usize, &str)| distance <= name.chars().count().div_ceil(3);
-    known.map(|other| (distance(name, other), other)).filter(close).min_by_key(|&(d, _)| d).map(|(_, n)| n)
-}
-
-/// Levenshtein's distance, letters without case.
-fn distance(a: &str, b: &str) -> usize {
-    let lower = |text: &str| -> Vec<char> { text.chars().flat_map(char::to_lowercase).take(64).collect() };
-    let (a, b) = (lower(a), lower(b));
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.iter().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
+/// An analysis as settings correct it: roles, what is ignored, unit and axis. Which bones get bodies is left to the build,
+/// which asks for this by itself.
+///
+/// # Errors
+/// Names that the rig does not have, with the nearest ones; roles that cannot be.
+pub fn analyze_with(
+    rig: &Rig,
+    analysis: &RigAnalysis,
+    settings: &Settings,
+) -> Result<RigAnalysis, SettingsError> {
+    let correction = correct::correction(rig, settings)?;
+    correct::corrected(rig, &correction.seen(rig), analysis, &correction, settings)
 }

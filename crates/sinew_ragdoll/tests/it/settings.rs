@@ -1,14 +1,15 @@
 //! Settings: each does what it says, and nothing else.
 
-use sinew_anim::{Joint, LocalTransform, analyze};
+use sinew_anim::{Joint, LocalTransform, Role, analyze};
 use sinew_math::{Range, Vec3};
-use sinew_physics::{JointKind, Shape};
-use sinew_ragdoll::settings::{BodyWish, BoneSettings, JointWish, ShapeWish, Unit};
+use sinew_physics::{BodyDef, JointKind, Shape};
+use sinew_ragdoll::settings::{BodyWish, BoneSettings, JointWish, ShapeWish, Unit, analyze_with};
 use sinew_ragdoll::{
-    BuildOptions, Mapping, RagdollDef, RigMismatch, Settings, SettingsError, Sex, ShapeChoice, build,
-    build_with,
+    BakeInput, BuildOptions, CharacterDef, Mapping, RagdollDef, RigMismatch, Settings, SettingsError, Sex,
+    ShapeChoice, bake, build, build_with,
 };
 use sinew_scenes::mannequin::mannequin;
+use std::sync::Arc;
 
 fn with(settings: &Settings) -> Result<RagdollDef, SettingsError> {
     let rig = mannequin().rig;
@@ -193,15 +194,86 @@ fn unit_height_and_up() {
 }
 
 #[test]
+fn roles_that_are_given_and_bones_that_are_no_part_of_the_body() {
+    let of = |name: &str| mannequin().rig.joints.iter().position(|joint| joint.name == name).expect(name);
+    let chest = BoneSettings { role: Some(Role::UpperChest), ..BoneSettings::default() };
+    let (def, before) = (with(&of_bone("chest", chest)).expect("a body"), plain());
+    assert_eq!(def.bodies[body(&def, "upperChest")].joint, of("chest"));
+    assert_eq!((def.bodies.len(), def.total_mass), (before.bodies.len(), before.total_mass));
+    assert!(def.bodies.iter().all(|body| body.role != "chest"));
+    let hand = before.bodies[body(&before, "leftHand")].bone.clone();
+    let def = with(&Settings { ignore: vec![hand.clone()], ..Settings::default() }).expect("a body");
+    assert!(def.bodies.iter().all(|body| body.bone != hand && body.role != "leftHand"));
+    let forearm = |def: &RagdollDef| def.bodies[body(def, "leftLowerArm")].shape.volume();
+    assert!(forearm(&def) < 1.1 * forearm(&before), "the hand's skin shapes nothing");
+    // An analysis that was corrected already is corrected to the same.
+    let rig = mannequin().rig;
+    let settings = Settings { unit: Some(Unit::Height(1.2)), ..of_bone("chest", chest) };
+    let once = analyze_with(&rig, &analyze(&rig).expect("a skin"), &settings).expect("a body");
+    assert_eq!(analyze_with(&rig, &once, &settings), Ok(once.clone()));
+    let options = BuildOptions::default();
+    let built = |analysis| build_with(&rig, analysis, &options, &settings).expect("a body").0;
+    assert_eq!(built(&once), built(&analyze(&rig).expect("a skin")));
+    assert!((once.height - 1.2).abs() < 1e-5, "{}", once.height);
+}
+
+/// Whatever a user says of a rig, what comes of it falls, or is refused.
+#[test]
+fn any_roles_make_a_ragdoll_or_a_refusal() {
+    let mut rigs = vec![mannequin().rig];
+    rigs.extend(
+        ["Fox.glb", "quaternius_Spider.glb", "RiggedSimple.glb"].iter().filter_map(|f| crate::data::rig(f)),
+    );
+    let mut random = sinew_math::Random::new(6);
+    let (mut ragdolls, mut refusals) = (0, 0);
+    for rig in &rigs {
+        let analysis = analyze(rig).expect("a skin");
+        for _ in 0..12 {
+            let mut settings = Settings::default();
+            for _ in 0..=random.index(3) {
+                let role = match random.index(3) {
+                    0 => Role::LimbSegment { limb: random.index(4) as u16, segment: random.index(3) as u16 },
+                    1 => Role::SpineSegment(random.index(4) as u16),
+                    _ => sinew_anim::roles::HUMANOID_ROLES[random.index(22)],
+                };
+                let name = rig.joints[random.index(rig.joints.len())].name.clone();
+                settings.bones.push((name, BoneSettings { role: Some(role), ..BoneSettings::default() }));
+            }
+            if random.index(2) == 0 {
+                settings.ignore.push(rig.joints[random.index(rig.joints.len())].name.clone());
+            }
+            let Ok((def, _)) = build_with(rig, &analysis, &BuildOptions::default(), &settings) else {
+                refusals += 1;
+                continue;
+            };
+            let analysis = analyze_with(rig, &analysis, &settings).expect("it was built");
+            let character = CharacterDef::new(rig.clone(), def, &analysis.bind_model);
+            let floor = [BodyDef::fixed(Shape::HalfSpace)];
+            let input = BakeInput {
+                bodies: &floor,
+                limp_at: Some(0.0),
+                seconds: 0.3,
+                ..BakeInput::new(Arc::new(character))
+            };
+            assert_eq!(bake(&input).quality.nan, 0, "{settings:?}");
+            ragdolls += 1;
+        }
+    }
+    assert!(ragdolls > 0 && refusals > 0, "{ragdolls} {refusals}");
+}
+
+#[test]
 fn what_a_rig_does_not_allow_is_told_with_its_place() {
     let place = |settings: &Settings| match with(settings) {
         Err(SettingsError::Setting { what, place }) => format!("{what} ({place})"),
         other => panic!("{other:?}"),
     };
     let scale = BoneSettings { scale: Some(2.0), ..BoneSettings::default() };
-    assert_eq!(
-        place(&of_bone("leftUperArm", scale)),
-        "no bone or role `leftUperArm`; did you mean `leftUpperArm`? (bones.leftUperArm)"
+    let unknown = place(&of_bone("leftUperArm", scale));
+    assert!(unknown.starts_with("no bone or role `leftUperArm`; the nearest of "), "{unknown}");
+    assert!(
+        unknown.contains(" are leftUpperArm, ") && unknown.ends_with(" (bones.leftUperArm)"),
+        "{unknown}"
     );
     let drop = BoneSettings { body: Some(BodyWish::Drop), ..BoneSettings::default() };
     assert!(place(&of_bone("hips", drop)).ends_with("it cannot be dropped (bones.hips)"));

@@ -65,8 +65,7 @@ impl FromStr for ClipFile {
         let extension =
             path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
         let format = match extension.as_deref() {
-            // A name without an end says nothing else.
-            None | Some("glb" | "vrm") => ClipFormat::Copy,
+            Some("glb" | "vrm") => ClipFormat::Copy,
             Some("bvh") => ClipFormat::Bvh,
             _ => return Err("must end in .glb, .vrm or .bvh"),
         };

@@ -18,6 +18,10 @@ pub struct Motions {
     pub looped: Option<usize>,
 }
 
+/// Name of a clip that is baked, where the user does not say it; with a number where the file has that already. None of them is
+/// played until the next fall unless it is asked for.
+pub const CLIP_NAME: &str = "sinew";
+
 /// What a clip that gets a body up is called, without case, blanks, `-` and `_`: none to play until the fall.
 const GET_UP_NAMES: [&str; 3] = ["getup", "standup", "gettingup"];
 
@@ -30,13 +34,17 @@ impl Motions {
         }
         let plain: Vec<String> = clips.iter().map(|clip| plain(&clip.name)).collect();
         let is_get_up = |index: &usize| GET_UP_NAMES.iter().any(|name| plain[*index].contains(name));
+        let is_baked = |index: &usize| {
+            let number = plain[*index].strip_prefix(CLIP_NAME);
+            number.is_some_and(|number| number.chars().all(|c| c.is_ascii_digit()))
+        };
         let looped = match wanted {
             Some(name) => {
                 Some(find_clip(&clips, name).map_err(|what| Failure::at(&file.name, what, "--clip"))?)
             }
             None => {
                 let called = |word: &str| plain.iter().position(|name| name.contains(word));
-                let first = (0..clips.len()).find(|index| !is_get_up(index));
+                let first = (0..clips.len()).find(|index| !is_get_up(index) && !is_baked(index));
                 called("walk").or_else(|| called("idle")).or(first)
             }
         };

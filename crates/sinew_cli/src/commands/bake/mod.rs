@@ -1,8 +1,10 @@
 //! `sinew bake`: a character is hit or goes limp, falls, and the fall becomes a clip on the user's own rig.
 
+mod aim;
 mod clip_file;
 mod clips;
 mod hit;
+mod notes;
 
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
@@ -11,19 +13,18 @@ use crate::film::{FLOOR_HALF_SIZE, Film, body_models};
 use crate::picture_file::{PictureFile, length, seconds};
 use crate::ragdoll_file::read_definition;
 use crate::report::Report;
-use crate::settings_arg::SettingsArg;
+use crate::settings_arg::{SettingsArg, unit_note};
 use crate::table::shown;
+use aim::aim;
 use clip_file::{ClipFile, ClipFormat};
-use clips::Motions;
+use clips::{CLIP_NAME, Motions};
 use hit::HitArg;
 use sinew::anim::KeyBound;
 use sinew::formats::{Textures, load_world};
 use sinew::math::Vec3;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::bake::KEY_BOUND;
-use sinew::ragdoll::{
-    AfterSettling, BakeInput, BuildOptions, CharacterDef, Hit, MotionSet, RagdollBodyDef, RagdollDef,
-};
+use sinew::ragdoll::{AfterSettling, BakeInput, BuildOptions, CharacterDef, MotionSet, RagdollDef};
 use sinew_picture::Sun;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,14 +42,15 @@ Example:
   sinew bake character.glb --clip Walk --hit chest=0,0,-60@1.0 -o fall.glb --picture fall.gif
   sinew bake character.glb --world house.json --limp-at 1.2 --seconds 6 -o fall.glb --json
   sinew bake character.glb --ragdoll edited.sinew.json -o fall.glb
+  sinew bake character.glb --role hips=Bone_12 --ignore Cape --height 1.8 -o fall.glb
   sinew bake character.glb --fps 120 -o fall.bvh
 
 Keys that no joint needs to stay within --key-error are left out. A BVH holds the skeleton alone, with every frame.")]
 pub struct Bake {
     /// A GLB, glTF, VRM or FBX file with a skinned character
     character: PathBuf,
-    /// The clip that plays until the fall, by name, or by number from 0 if it has none; without it the file's walk,
-    /// else its idle, else its first clip; in a file without clips the rest pose
+    /// The clip that plays until the fall, by name or words of it, or by number from 0; without it the file's walk, else
+    /// its idle, else its first clip; in a file without clips the rest pose
     #[arg(long, value_name = "NAME")]
     clip: Option<String>,
     /// Further files with clips (GLB, VRMA, BVH, FBX, DeepMimic): for the same skeleton by the names of joints, else for a
@@ -59,11 +61,12 @@ pub struct Bake {
     #[arg(long, value_name = "FILE")]
     world: Option<PathBuf>,
     /// A ragdoll of this character from `ragdoll build`, as it is or edited; without it one is built
-    #[arg(long, value_name = "FILE.sinew.json", conflicts_with = "settings")]
+    #[arg(long, value_name = "FILE.sinew.json", conflicts_with = "SettingsArg")]
     ragdoll: Option<PathBuf>,
     #[command(flatten)]
     settings: SettingsArg,
-    /// Push a bone: joint name or role, impulse in N·s along the world's axes (+Y up), time in seconds; repeatable
+    /// Push a bone: joint name or role, impulse in N·s along the world's axes (+Y up), time in seconds; repeatable. A role
+    /// without a body means the nearest one that has
     #[arg(long = "hit", value_name = "BONE=IX,IY,IZ@T", allow_hyphen_values = true)]
     hits: Vec<HitArg>,
     /// Go limp at this time, seconds; without any --hit the default is 0.5
@@ -82,6 +85,9 @@ pub struct Bake {
     /// Where to write: a copy of your file with the new clip in it (.glb, .vrm), or its skeleton and the clip (.bvh)
     #[arg(short, long, value_name = "OUT.(glb|vrm|bvh)")]
     output: ClipFile,
+    /// Name of the new clip; by default sinew, or sinew 2 and so on where the file has that already
+    #[arg(long, value_name = "NAME", value_parser = clap::builder::NonEmptyStringValueParser::new())]
+    name: Option<String>,
     /// Also draw it: a .gif, .png (animated) or .webp file
     #[arg(long, value_name = "OUT.(gif|png|webp)")]
     picture: Option<PictureFile>,
@@ -107,15 +113,16 @@ impl Bake {
         self.check_outputs()?;
         self.check_times()?;
         let textures = if self.picture.is_some() { Textures::Decode } else { Textures::Skip };
-        let file = CharacterFile::load(&self.character, textures)?;
+        let (file, ragdoll, mut notes) = self.character(textures)?;
+        let name = self.clip_name(&file)?;
         let motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
         let bodies = match &self.world {
             Some(path) => load_world(path)?,
             None => vec![floor()],
         };
-        let character = Arc::new(character(&file, self.ragdoll(&file)?, motions)?);
-        let hits =
-            self.hits.iter().map(|hit| aim(hit, &character, &file.name)).collect::<Result<Vec<_>>>()?;
+        let character = Arc::new(character(&file, ragdoll, motions)?);
+        let aimed = self.hits.iter().map(|hit| aim(hit, &character, &file, &mut notes));
+        let hits = aimed.collect::<Result<Vec<_>>>()?;
         let limp_at = self.limp_at.or(if hits.is_empty() { Some(LIMP_AT) } else { None });
         let input = BakeInput {
             bodies: &bodies,
@@ -124,11 +131,14 @@ impl Bake {
             seconds: self.seconds,
             fps: f32::from(self.fps),
             key_bound,
+            name: &name,
             ..BakeInput::new(character)
         };
         let fall = Fall::simulate(&input);
-        let notes = self.write(&file, &fall)?;
-        Ok(self.report(&file, &fall, &notes))
+        let world = self.world.as_ref().map(|path| path.display().to_string());
+        notes.extend(notes::of_bake(&input, &fall.baked.events, world.as_deref()));
+        notes.extend(self.write(&file, &fall)?);
+        Ok(self.report(&file, &fall, &once(notes)))
     }
 
     /// What the user allows keys to be off by; nothing in a format that has all frames anyway.
@@ -145,13 +155,37 @@ impl Bake {
         }
     }
 
-    /// The definition that was given, or what a build gives.
-    fn ragdoll(&self, file: &CharacterFile) -> Result<RagdollDef> {
+    /// The character, and the definition that was given or what a build gives, with what is to be said of it.
+    fn character(&self, textures: Textures) -> Result<(CharacterFile, RagdollDef, Vec<String>)> {
         let Some(path) = &self.ragdoll else {
-            let settings = self.settings.load(&self.character)?;
-            return Ok(settings.build(file, &BuildOptions::default())?.0);
+            let (file, settings) = self.settings.load_character(&self.character, textures)?;
+            let (def, _) = settings.build(&file, &BuildOptions::default())?;
+            let guess = file.analysis.unit_guess.as_ref().filter(|guess| !guess.is_sure);
+            let mut notes: Vec<String> = guess.map(unit_note).into_iter().collect();
+            notes.extend(settings.doubt(&def));
+            return Ok((file, def, notes));
         };
-        read_definition(path, file)
+        let file = CharacterFile::load(&self.character, textures)?;
+        let def = read_definition(path, &file)?;
+        Ok((file, def, Vec::new()))
+    }
+
+    /// Name of the new clip: as the user says, else `sinew`, with a number where the file has that already.
+    fn clip_name(&self, file: &CharacterFile) -> Result<String> {
+        let is_taken = |name: &str| file.document.clips.iter().any(|clip| clip.name == name);
+        match &self.name {
+            Some(name) if self.output.format == ClipFormat::Copy && is_taken(name) => {
+                let what =
+                    format!("there is a clip '{}' already: give the new one another name", shown(name));
+                Err(Failure::at(&file.name, what, "--name"))
+            }
+            Some(name) => Ok(name.clone()),
+            None => {
+                let mut names = std::iter::once(CLIP_NAME.to_owned())
+                    .chain((2..).map(|number: u32| format!("{CLIP_NAME} {number}")));
+                Ok(names.find(|name| !is_taken(name)).expect("there is a number for every clip"))
+            }
+        }
     }
 
     /// The user's own files are never the output.
@@ -161,13 +195,12 @@ impl Bake {
         never_over(inputs.chain(self.world.as_deref()).chain(self.ragdoll.as_deref()), self.outputs())
     }
 
-    /// What is to happen happens before the end.
+    /// A hit that would never come is a mistake; going limp after the end only leaves the fall out.
     fn check_times(&self) -> Result<()> {
-        let hits = self.hits.iter().map(|hit| ("--hit", hit.time));
-        match hits.chain(self.limp_at.map(|time| ("--limp-at", time))).find(|(_, t)| *t > self.seconds) {
-            Some((what, time)) => {
+        match self.hits.iter().map(|hit| hit.time).find(|time| *time > self.seconds) {
+            Some(time) => {
                 let end = self.seconds;
-                Err(Failure::Usage(format!("{what} at {time} s is after the end, at {end} s (--seconds)")))
+                Err(Failure::Usage(format!("--hit at {time} s is after the end, at {end} s (--seconds)")))
             }
             None => Ok(()),
         }
@@ -203,6 +236,17 @@ impl Bake {
     }
 }
 
+/// Each sentence, the first time it is said.
+fn once(notes: Vec<String>) -> Vec<String> {
+    let mut said: Vec<String> = Vec::new();
+    for note in notes {
+        if !said.contains(&note) {
+            said.push(note);
+        }
+    }
+    said
+}
+
 /// Triangles of the world that nothing collides with, if there are any.
 fn left_out(bodies: &[BodyDef]) -> Option<String> {
     let shapes = bodies.iter().flat_map(|body| &body.shapes);
@@ -236,21 +280,6 @@ fn character(file: &CharacterFile, ragdoll: RagdollDef, motions: Motions) -> Res
     let motions = MotionSet { clips, looped, get_ups, ..MotionSet::default() };
     def.set_motions(motions).map_err(|error| Failure::of_file(name, error))?;
     Ok(def)
-}
-
-/// The body that a hit means.
-fn aim(hit: &HitArg, character: &CharacterDef, file: &str) -> Result<Hit> {
-    let Some(body) = character.body_named(&hit.bone) else {
-        let known: Vec<String> = character.ragdoll.bodies.iter().map(known_as).collect();
-        let what = format!("no bone '{}' to hit; there are {}", hit.bone, known.join(", "));
-        return Err(Failure::at(file, what, "--hit"));
-    };
-    Ok(Hit { time: hit.time, body, impulse: hit.impulse })
-}
-
-/// A role, with the joint's name where that says something else.
-fn known_as(body: &RagdollBodyDef) -> String {
-    if body.role == body.bone { body.role.clone() } else { format!("{} ({})", body.role, shown(&body.bone)) }
 }
 
 /// The whole character, seen from its front left.

@@ -6,6 +6,7 @@ use crate::failure::Result;
 use crate::motion::Motion;
 use crate::ragdoll_report::axis_name;
 use crate::report::{Report, number};
+use crate::settings_arg::assumed;
 use crate::table::{Table, counted, shown};
 use clips::{ClipFacts, clip_table, event_table};
 use serde_json::{Value, json};
@@ -131,14 +132,21 @@ impl Content<'_> {
         }
     }
 
-    /// The joints as a tree, in file order.
+    /// The joints as a tree: below each what hangs on it, in file order.
     fn joint_table(&self) -> Table {
         let joints = &self.motion.file.rig.joints;
-        let mut depths: Vec<usize> = Vec::with_capacity(joints.len());
+        let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
+        let mut open: Vec<(usize, usize)> = Vec::new();
+        for (index, joint) in joints.iter().enumerate().rev() {
+            match joint.parent {
+                Some(parent) => children[parent].push(index),
+                None => open.push((index, 0)),
+            }
+        }
         let mut table = Table::titled(&["joint", "role", "confidence"]);
-        for (index, joint) in joints.iter().enumerate() {
-            let depth = joint.parent.map_or(0, |parent| depths[parent] + 1);
-            depths.push(depth);
+        while let Some((index, depth)) = open.pop() {
+            open.extend(children[index].iter().map(|&child| (child, depth + 1)));
+            let joint = &joints[index];
             // A chain of thousands would fill the page with spaces.
             let indent = "  ".repeat(depth.min(DEEPEST_INDENT));
             let star = if self.has_body(index) { " *" } else { "" };
@@ -156,8 +164,8 @@ impl Content<'_> {
         kept.is_some_and(|kept| kept.iter().any(|bone| bone.joint == joint))
     }
 
-    fn notes(&self) -> &[String] {
-        self.motion.analysis.as_ref().map_or(&[], |analysis| &analysis.notes)
+    fn notes(&self) -> Vec<String> {
+        self.motion.analysis.as_ref().map_or_else(Vec::new, assumed)
     }
 
     /// What could not be read, and what cannot be played.

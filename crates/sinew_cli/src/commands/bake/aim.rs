@@ -1,0 +1,89 @@
+//! The body that a hit means.
+
+use super::hit::HitArg;
+use crate::failure::{Failure, Result};
+use crate::files::CharacterFile;
+use crate::table::shown;
+use sinew::anim::{RigAnalysis, Role, Side};
+use sinew::ragdoll::settings::{instead, role_named};
+use sinew::ragdoll::{CharacterDef, Hit, RagdollBodyDef};
+
+/// From the hips up.
+const SPINE: [Role; 6] = [Role::Hips, Role::Spine, Role::Chest, Role::UpperChest, Role::Neck, Role::Head];
+
+/// A hit on the body that is named, or on the nearest one where a part of a body has none of its own: then it is said so.
+pub fn aim(
+    hit: &HitArg,
+    character: &CharacterDef,
+    file: &CharacterFile,
+    notes: &mut Vec<String>,
+) -> Result<Hit> {
+    let bodies = &character.ragdoll.bodies;
+    let role = role_named(&hit.bone).ok();
+    let named = || character.body_named(&hit.bone).or_else(|| body_with(role?, bodies));
+    let body = match named().or_else(|| carrier(role?, &file.analysis, bodies)) {
+        Some(body) => body,
+        None => {
+            let Some(body) = role.and_then(|role| nearest(role, bodies)) else {
+                let names = bodies.iter().flat_map(|body| [body.role.as_str(), body.bone.as_str()]);
+                let what = format!("no bone '{}' to hit; {}", hit.bone, instead(&hit.bone, names));
+                return Err(Failure::at(&file.name, what, "--hit"));
+            };
+            body
+        }
+    };
+    let RagdollBodyDef { role: met, bone, merged, .. } = &bodies[body];
+    let joint_named = |&joint: &usize| character.rig.joints.get(joint).is_some_and(|j| j.name == hit.bone);
+    let meant = role.is_some_and(|role| role.name() == *met) || *bone == hit.bone || *met == hit.bone;
+    if !meant {
+        let bone = shown(bone);
+        notes.push(if merged.iter().any(joint_named) {
+            format!("--hit {}: it moves with the body of {met} ({bone}), which is hit", shown(&hit.bone))
+        } else {
+            format!("--hit {}: there is no such body; the nearest is hit, {met} ({bone})", shown(&hit.bone))
+        });
+    }
+    Ok(Hit { time: hit.time, body, impulse: hit.impulse })
+}
+
+fn body_with(role: Role, bodies: &[RagdollBodyDef]) -> Option<usize> {
+    let name = role.name();
+    bodies.iter().position(|body| body.role == name)
+}
+
+/// The body that the joint of a role moves with.
+fn carrier(role: Role, analysis: &RigAnalysis, bodies: &[RagdollBodyDef]) -> Option<usize> {
+    let joint = analysis.joint_with(role)?;
+    bodies.iter().position(|body| body.joint == joint || body.merged.contains(&joint))
+}
+
+/// The nearest body along the spine, of two as near the lower one; of a limb the next part toward the trunk. A creature's spine is
+/// as long as a human's, however many parts it has.
+fn nearest(role: Role, bodies: &[RagdollBodyDef]) -> Option<usize> {
+    if let Some(place) = SPINE.iter().position(|other| *other == role) {
+        let along = (1..SPINE.len()).flat_map(|away| [place.checked_sub(away), Some(place + away)]);
+        let human = along.flatten().filter_map(|at| SPINE.get(at)).find_map(|&role| body_with(role, bodies));
+        return human.or_else(|| {
+            let segment = |body: &RagdollBodyDef| match Role::from_name(&body.role) {
+                Some(Role::SpineSegment(n)) => Some(n),
+                _ => None,
+            };
+            let mut parts: Vec<(u16, usize)> =
+                (0..bodies.len()).filter_map(|body| segment(&bodies[body]).map(|n| (n, body))).collect();
+            parts.sort_unstable();
+            let at = (place * parts.len().saturating_sub(1) + 2) / (SPINE.len() - 1);
+            parts.get(at.min(parts.len().saturating_sub(1))).map(|&(_, body)| body)
+        });
+    }
+    let inward = |side: Side| {
+        use Role::{Foot, Hand, LowerArm, LowerLeg, Shoulder, Toes, UpperArm, UpperLeg};
+        let arm = vec![Hand(side), LowerArm(side), UpperArm(side), Shoulder(side)];
+        let trunk = [Role::UpperChest, Role::Chest, Role::Spine, Role::Hips];
+        let leg = vec![Toes(side), Foot(side), LowerLeg(side), UpperLeg(side), Role::Hips];
+        [arm.into_iter().chain(trunk).collect(), leg]
+    };
+    let chains: [Vec<Role>; 2] = inward(role.side()?);
+    let chain = chains.iter().find(|chain| chain.contains(&role))?;
+    let place = chain.iter().position(|other| *other == role)?;
+    chain[place..].iter().find_map(|&role| body_with(role, bodies))
+}

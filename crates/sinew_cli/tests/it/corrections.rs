@@ -1,0 +1,169 @@
+//! Corrections by the user: roles, what is ignored, which bones get bodies; names that nearly fit.
+
+use crate::sinew::{Folder, glb, shared_data, sinew};
+use serde_json::Value;
+use sinew::anim::{Clip, Rig};
+use sinew_scenes::mannequin::mannequin;
+
+/// The mannequin with numbers for names, and its walk.
+fn numbered(folder: &Folder) -> (String, Rig) {
+    let mannequin = mannequin();
+    let mut rig = mannequin.rig;
+    rig.joints.iter_mut().enumerate().for_each(|(i, joint)| joint.name = format!("Bone_{i}"));
+    let walk = Clip { name: "Armature|Walk_Loop".into(), ..mannequin.clips[mannequin.motions.walk].clone() };
+    let idle = Clip { name: "Armature|Idle_Loop".into(), ..walk.clone() };
+    (folder.file("numbered.glb", glb(&rig, &[idle, walk])), rig)
+}
+
+fn bodies(object: &Value) -> Vec<(String, String)> {
+    let text = |body: &Value, key: &str| body[key].as_str().expect("a string").to_owned();
+    let bodies = object["bodies"].as_array().expect("bodies");
+    bodies.iter().map(|body| (text(body, "role"), text(body, "bone"))).collect()
+}
+
+fn bone_of(bodies: &[(String, String)], role: &str) -> Option<String> {
+    bodies.iter().find(|(own, _)| own == role).map(|(_, bone)| bone.clone())
+}
+
+#[test]
+fn roles_are_as_the_user_says() {
+    let folder = Folder::new("said-roles");
+    let (file, _) = numbered(&folder);
+    let build = |extra: &[&str]| sinew(&[&["ragdoll", "build", &file, "--json"], extra].concat());
+    let before = bodies(&build(&[]).json());
+    let [chest, spine] = ["chest", "spine"].map(|role| bone_of(&before, role).expect("a part of the trunk"));
+    // The two parts of the trunk by other names: the one that is said counts, and its confidence is whole.
+    let object =
+        build(&["--role", &format!("upperChest={chest}"), "--role", &format!("Chest={spine}")]).json();
+    let after = bodies(&object);
+    assert_eq!(bone_of(&after, "upperChest"), Some(chest.clone()));
+    assert_eq!(bone_of(&after, "chest"), Some(spine.clone()));
+    assert_eq!((bone_of(&after, "spine"), after.len()), (None, before.len()));
+    let body = object["bodies"].as_array().expect("bodies").iter().find(|body| body["role"] == "chest");
+    assert_eq!(body.expect("a chest")["confidence"], 1.0);
+    // The same in settings beside the file, which bake and the doctor follow, too.
+    let settings = format!(
+        r#"{{"sinew":"ragdoll-settings","version":1,"bones":{{"{chest}":{{"role":"upperChest"}},"{spine}":{{"role":"chest"}}}}}}"#
+    );
+    folder.file("numbered.ragdoll.json", settings);
+    assert_eq!(bodies(&build(&[]).json()), after);
+    let out = folder.path("out.glb");
+    let run = sinew(&["bake", &file, "--hit", "spine=0,0,9@0.1", "--seconds", "0.2", "-o", &out, "--json"]);
+    let notes = run.json()["notes"].to_string();
+    assert!(notes.contains("--hit spine: there is no such body; the nearest is hit, "), "{notes}");
+    assert_eq!(sinew(&["ragdoll", "doctor", &file, "--json"]).code, Some(0));
+}
+
+#[test]
+fn what_is_ignored_and_who_gets_a_body() {
+    let folder = Folder::new("said-bodies");
+    let (file, _) = numbered(&folder);
+    let build =
+        |extra: &[&str]| bodies(&sinew(&[&["ragdoll", "build", &file, "--json"], extra].concat()).json());
+    let before = build(&[]);
+    let forearm = bone_of(&before, "leftLowerArm").expect("a forearm");
+    let hand = bone_of(&before, "leftHand").expect("a hand");
+    let without = build(&["--no-body", "hand"]);
+    assert_eq!(without.len() + 2, before.len(), "a role without its side means both");
+    let stump = build(&["--ignore", &hand]);
+    assert!(stump.iter().all(|(_, bone)| *bone != hand), "{stump:?}");
+    assert!(stump.iter().any(|(_, bone)| *bone == forearm), "{stump:?}");
+    assert_eq!(build(&["--body", &forearm]), before, "it has one already");
+    for command in [["bake"].as_slice(), &["ragdoll", "doctor"], &["ragdoll", "export"]] {
+        let run = sinew(&[command, &["--help"]].concat());
+        for option in ["--role", "--ignore", "--body", "--no-body", "--height", "--unit", "--mass"] {
+            assert!(run.stdout.contains(option), "{command:?} has no {option}");
+        }
+    }
+}
+
+#[test]
+fn names_that_nothing_has_are_told_with_the_nearest() {
+    let folder = Folder::new("said-names");
+    let (file, rig) = numbered(&folder);
+    let line =
+        |extra: &[&str]| sinew(&[&["ragdoll", "build", file.as_str()], extra].concat()).refusal(1).to_owned();
+    // The file has a node for the mesh, too.
+    let near = format!("the nearest of {} are Bone_0, Bone_1, Bone_2", rig.joints.len() + 1);
+    assert_eq!(
+        line(&["--role", "hips=Bnoe_0"]),
+        format!("error: {file}: no bone `Bnoe_0`; {near} (--role hips=Bnoe_0)")
+    );
+    assert_eq!(
+        line(&["--ignore", "Bnoe_0"]),
+        format!("error: {file}: no bone `Bnoe_0`; {near} (--ignore Bnoe_0)")
+    );
+    for option in ["--body", "--no-body"] {
+        let line = line(&[option, "lefthnd"]);
+        assert!(line.contains("no bone or role `lefthnd`; the nearest of "), "{line}");
+        assert!(line.contains(" are leftHand, ") && line.ends_with(&format!("({option} lefthnd)")), "{line}");
+    }
+    let run = sinew(&["ragdoll", "build", &file, "--role", "hisp=Bone_0"]);
+    assert!(
+        run.code == Some(2) && run.stderr.contains("no role `hisp`; the nearest of 22 are hips, "),
+        "{run:?}"
+    );
+    let twice = ["ragdoll", "build", &file, "--role", "hips=Bone_0", "--role", "hips=Bone_1"];
+    assert!(sinew(&twice).refusal(2).contains("--role hips=Bone_1 is said twice"));
+    let all = line(&["--ignore", "Bone_0"]);
+    assert!(all.ends_with("nothing that moves skin is left (--ignore)"), "{all}");
+}
+
+#[test]
+fn clips_are_found_without_case_and_by_words() {
+    let folder = Folder::new("said-clips");
+    let (file, _) = numbered(&folder);
+    let out = folder.path("out.glb");
+    let bake = |clip: &str| {
+        sinew(&["bake", &file, "--clip", clip, "--seconds", "0.1", "--limp-at", "0", "-o", &out])
+    };
+    for clip in ["Armature|Walk_Loop", "armature|walk_loop", "walk", "Walk Loop", "1"] {
+        assert_eq!(bake(clip).code, Some(0), "{clip}");
+    }
+    let line = bake("loop").refusal(1).to_owned();
+    assert!(
+        line.contains("'loop' may be 2 clips: Armature|Idle_Loop, Armature|Walk_Loop (--clip)"),
+        "{line}"
+    );
+    let bvh = folder.path("walk.bvh");
+    assert_eq!(sinew(&["convert", &file, "--clip", "WALK", &bvh]).code, Some(0));
+}
+
+#[test]
+fn a_hit_on_what_has_no_body_meets_the_nearest_and_says_so() {
+    let folder = Folder::new("said-hits");
+    let (file, _) = numbered(&folder);
+    let out = folder.path("out.glb");
+    let baked = |extra: &[&str], hit: &str| {
+        let hit = format!("{hit}=0,0,9@0.1");
+        let base = ["bake", &file, "--seconds", "0.2", "-o", &out, "--json", "--hit", &hit];
+        sinew(&[&base, extra].concat()).json()
+    };
+    let hits = |object: &Value| object["notes"].to_string().matches("--hit ").count();
+    assert_eq!(hits(&baked(&[], "chest")), 0);
+    assert_eq!(hits(&baked(&[], "CHEST")), 0, "roles have no case");
+    let gone = ["--no-body", "chest"];
+    let object = baked(&gone, "chest");
+    assert!(
+        object["notes"].to_string().contains("--hit chest: it moves with the body of spine")
+            || hits(&object) == 1,
+        "{object:#}"
+    );
+    let object = baked(&["--no-body", "hand"], "leftHand");
+    assert!(object["notes"].to_string().contains("leftLowerArm"), "{object:#}");
+    assert_eq!(hits(&baked(&[], "leftToes")), 1);
+}
+
+/// A creature has a spine as well, by other names.
+#[test]
+fn a_hit_on_the_chest_of_a_creature_meets_its_spine() {
+    let Some(data) = shared_data() else { return };
+    let folder = Folder::new("said-fox");
+    let (file, out) = (data.join("rigs/Fox.glb").display().to_string(), folder.path("out.glb"));
+    let run = |hit: &str| sinew(&["bake", &file, "--hit", hit, "--seconds", "0.2", "-o", &out, "--json"]);
+    let object = run("chest=0,0,2@0.1").json();
+    let notes = object["notes"].to_string();
+    assert!(notes.contains("--hit chest: there is no such body; the nearest is hit, spine_"), "{notes}");
+    let line = run("leftHand=0,0,2@0.1").refusal(1).to_owned();
+    assert!(line.contains("no bone 'leftHand' to hit; the nearest of "), "{line}");
+}

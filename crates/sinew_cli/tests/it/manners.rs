@@ -1,0 +1,236 @@
+//! Manners of the command where something is odd: outputs, names, notes.
+
+use crate::sinew::{Folder, glb, shared_data, sinew};
+use serde_json::Value;
+use sinew::anim::Rig;
+use sinew::formats::{MotionOptions, ReadOptions, load_gltf, load_motion, write_world};
+use sinew::math::Vec3;
+use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
+use sinew_scenes::mannequin::mannequin;
+use std::fs;
+
+fn notes(object: &Value) -> Vec<String> {
+    let notes = object["notes"].as_array().expect("notes");
+    notes.iter().map(|note| note.as_str().expect("a sentence").to_owned()).collect()
+}
+
+#[test]
+fn an_output_that_says_nothing_or_something_else_is_refused_with_what_there_is() {
+    let folder = Folder::new("extensions");
+    let file = folder.mannequin();
+    let commands: [(&[&str], &str); 9] = [
+        (&["bake", &file], ".glb, .vrm or .bvh"),
+        (&["ragdoll", "build", &file], ".json"),
+        (&["ragdoll", "doctor", &file, "--fix"], ".json"),
+        (&["ragdoll", "export", &file, "--as", "khr"], ".glb or .vrm"),
+        (&["ragdoll", "export", &file, "--as", "mjcf"], ".xml or .mjcf"),
+        (&["boxes", &file], ".json"),
+        (&["convert", &file], ".glb or .bvh"),
+        (&["events", "detect", &file], ".json"),
+        (&["view", "pendulum", "--movie", "x.gif"], ".gif, .png or .webp"),
+    ];
+    for (command, known) in commands {
+        let option = if command[0] == "view" { "--picture" } else { "-o" };
+        for name in ["out", "out.zip"] {
+            let run = sinew(&[command, &[option, &folder.path(name)]].concat());
+            let says = run.stderr.contains(&format!("must end in {known}"));
+            assert!(run.code == Some(2) && says && run.stdout.is_empty(), "{command:?} {name}: {run:?}");
+        }
+    }
+    let picture = folder.path("same.gif");
+    let run = sinew(&["view", "pendulum", "--picture", &picture, "--movie", &picture, "--seconds", "0.1"]);
+    assert!(run.refusal(2).ends_with("is asked for twice: give each output a name of its own"));
+    assert_eq!(folder.names(), ["mannequin.glb"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_is_written_through_and_a_device_never_replaced() {
+    let folder = Folder::new("links");
+    let file = folder.mannequin();
+    let (target, link) = (folder.file("target.json", "old"), folder.path("link.json"));
+    std::os::unix::fs::symlink("target.json", &link).expect("a link");
+    assert_eq!(sinew(&["ragdoll", "build", &file, "-o", &link]).code, Some(0));
+    assert!(fs::symlink_metadata(&link).expect("the link").is_symlink());
+    assert!(fs::read_to_string(&target).expect("its target").starts_with("{"));
+    let device = folder.path("device.json");
+    std::os::unix::fs::symlink("/dev/null", &device).expect("a link");
+    let run = sinew(&["ragdoll", "build", &file, "-o", &device]);
+    assert_eq!(run.refusal(1), format!("error: {device}: cannot write: is there and is not a regular file"));
+    // A link to an input is that input.
+    let own = folder.path("own.glb");
+    std::os::unix::fs::symlink("mannequin.glb", &own).expect("a link");
+    assert_eq!(sinew(&["bake", &file, "-o", &own]).code, Some(2));
+}
+
+#[test]
+fn errors_name_the_option_that_helps() {
+    let folder = Folder::new("help");
+    let bvh = "HIERARCHY\nROOT hips\n{\n OFFSET 0 0 0\n CHANNELS 3 Zrotation Yrotation Xrotation\n End Site\n {\n  OFFSET 0 9 0\n }\n}\n\
+        MOTION\nFrames: 3\nFrame Time: 0.05\n0 0 0\n1 1 1\n";
+    let short = folder.file("short.bvh", bvh);
+    let line = sinew(&["convert", &short, &folder.path("out.glb")]).refusal(1).to_owned();
+    assert!(line.contains("declares 3 frames, has 2; 'sinew convert --any-rows' takes those"), "{line}");
+    assert_eq!(sinew(&["convert", &short, &folder.path("out.glb"), "--any-rows"]).code, Some(0));
+    let mimic = folder.file("run.txt", r#"{"Loop":"wrap","Frames":[[0.1,0,1,0,1,0,0,0]]}"#);
+    let line = sinew(&["inspect", &mimic]).refusal(1).to_owned();
+    assert!(
+        line.contains("its character's file is needed; none beside it, in its folder with .txt, fits"),
+        "{line}"
+    );
+    let rig = mannequin().rig;
+    let clips = mannequin().clips;
+    let many = folder.file("many.glb", glb(&rig, &clips[..2]));
+    let line = sinew(&["convert", &many, &folder.path("many.bvh")]).refusal(1).to_owned();
+    assert!(
+        line.contains("there are 2 clips, of which a BVH holds one: choose it with --clip NAME, "),
+        "{line}"
+    );
+}
+
+#[test]
+fn two_bakes_give_two_clips() {
+    let folder = Folder::new("names-of-clips");
+    let file = folder.mannequin();
+    let bake = |from: &str, to: &str, extra: &[&str]| {
+        let to = folder.path(to);
+        let run = sinew(&[&["bake", from, "--seconds", "0.2", "--limp-at", "0", "-o", &to], extra].concat());
+        (run, to)
+    };
+    let names = |path: &str| -> Vec<String> {
+        let document = load_gltf(path, ReadOptions::default()).expect("it can be read");
+        document.clips.into_iter().map(|clip| clip.name).collect()
+    };
+    let (_, first) = bake(&file, "first.glb", &[]);
+    let (_, second) = bake(&first, "second.glb", &["--clip", "Walk"]);
+    let (_, third) = bake(&second, "third.glb", &["--clip", "Walk", "--name", "stumbles"]);
+    assert_eq!(names(&third), ["Walk", "sinew", "sinew 2", "stumbles"]);
+    // What was baked is not what it does before the next fall.
+    let still = folder.file("still.glb", glb(&mannequin().rig, &[]));
+    let (_, once) = bake(&still, "once.glb", &[]);
+    let (run, twice) = bake(&once, "twice.glb", &[]);
+    assert!(run.stdout.contains("stands in its rest pose"), "{run:?}");
+    assert_eq!(names(&twice), ["sinew", "sinew 2"]);
+    let (run, _) = bake(&third, "fourth.glb", &["--clip", "Walk", "--name", "stumbles"]);
+    assert!(
+        run.refusal(1)
+            .ends_with("there is a clip 'stumbles' already: give the new one another name (--name)")
+    );
+}
+
+#[test]
+fn what_does_not_happen_is_said() {
+    let folder = Folder::new("said");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let bake = |extra: &[&str]| sinew(&[&["bake", file.as_str(), "-o", &out], extra].concat());
+    let said = |extra: &[&str], what: &str| {
+        let object = bake(&[extra, &["--json"]].concat()).json();
+        let all = notes(&object);
+        assert_eq!(all.iter().filter(|note| note.contains(what)).count(), 1, "{what}: {all:?}");
+        assert!(bake(extra).stdout.contains("note: "), "in words, too");
+        all
+    };
+    let late = said(&["--seconds", "1", "--limp-at", "2"], "--limp-at 2 s is not before the end, at 1 s");
+    assert!(late.iter().all(|note| !note.contains("does not get up")), "nothing fell: {late:?}");
+    said(&["--seconds", "6"], "it does not get up: no clip gets it up: name a file with one by --clips");
+    let empty = folder.file("empty.json", r#"{"sinew":"world","version":1,"bodies":[]}"#);
+    let all = said(&["--seconds", "1", "--world", &empty], "has no ground under the character");
+    assert!(all.iter().any(|note| note.contains("it does not get up: it touches nothing")), "{all:?}");
+    let half_extents = Vec3::new(9.0, 0.5, 9.0);
+    let low = BodyDef {
+        kind: BodyKind::Static,
+        position: Vec3::Y * -3.0,
+        shapes: vec![ShapeDef::new(Shape::Box { half_extents })],
+        ..BodyDef::default()
+    };
+    let low = folder.file("low.json", write_world(&[low]));
+    said(&["--seconds", "1", "--world", &low], "low.json is 2.50 m below the character");
+}
+
+/// Nodes of a file may stand in any order; the list does not.
+#[test]
+fn joints_are_listed_as_a_tree() {
+    let folder = Folder::new("tree");
+    let nodes = r#"[{"name":"hand"},{"name":"arm","children":[0]},{"name":"leg"},{"name":"hips","children":[1,2]},{"name":"foot"}]"#;
+    let nodes = nodes.replace(r#"{"name":"leg"}"#, r#"{"name":"leg","children":[4]}"#);
+    let file = folder.file(
+        "tree.gltf",
+        format!(r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[3]}}],"nodes":{nodes}}}"#),
+    );
+    let object = sinew(&["inspect", &file, "--json"]).json();
+    let joints = object["joints"].as_array().expect("joints");
+    let names: Vec<&str> = joints.iter().map(|joint| joint["name"].as_str().expect("a name")).collect();
+    assert_eq!(names, ["hips", "arm", "hand", "leg", "foot"]);
+    for (index, joint) in joints.iter().enumerate() {
+        assert!(joint["parent"].as_u64().is_none_or(|parent| (parent as usize) < index), "{joint}");
+    }
+    let text = sinew(&["inspect", &file]).stdout;
+    assert!(text.contains("  hips\n    arm\n      hand\n    leg\n      foot\n"), "{text}");
+}
+
+/// Some formats list joints level by level; below a joint stands what hangs on it all the same.
+#[test]
+fn a_list_level_by_level_is_shown_as_a_tree() {
+    let Some(data) = shared_data() else { return };
+    let file = data.join("mocap/deepmimic_humanoid3d.txt").display().to_string();
+    let object = sinew(&["inspect", &file, "--json"]).json();
+    let joints = object["joints"].as_array().expect("joints");
+    let text = sinew(&["inspect", &file]).stdout;
+    let (_, list) = text.split_once("\nJoints\n").expect("a list of joints");
+    let rows: Vec<(usize, &str)> = list
+        .lines()
+        .skip(1)
+        .take(joints.len())
+        .map(|line| {
+            (line.len() - line.trim_start().len(), line.split_whitespace().next().unwrap_or_default())
+        })
+        .collect();
+    for (index, &(indent, name)) in rows.iter().enumerate() {
+        let above = rows[..index].iter().rev().find(|row| row.0 < indent).map(|row| row.1);
+        let joint = joints.iter().find(|joint| joint["name"] == name).expect("it is one of them");
+        let parent = joint["parent"].as_u64().map(|parent| joints[parent as usize]["name"].as_str());
+        assert_eq!(parent.flatten(), above, "{name}\n{list}");
+    }
+}
+
+#[test]
+fn every_shape_of_a_body_is_in_the_contract() {
+    let contract = include_str!("../../../../docs/contract.md");
+    let source = include_str!("../../src/ragdoll_report.rs");
+    let row = |key: &str| {
+        contract.lines().any(|line| line.starts_with(&format!("| `ragdoll build` | `bodies[].{key}` |")))
+    };
+    let shapes = ["box", "capsule", "sphere", "hull", "tapered_capsule", "cylinder", "cone"];
+    let line = contract.lines().find(|line| line.contains("`bodies[].shape`")).expect("a row for shapes");
+    for shape in shapes {
+        assert!(source.contains(&format!("\"{shape}\"")), "{shape} is not written");
+        assert!(line.contains(&format!("`{shape}`")), "{shape} is written");
+    }
+    let keys = source.split("put(\"").skip(1).filter_map(|rest| rest.split('"').next());
+    let missing: Vec<&str> = keys.filter(|key| !row(key)).collect();
+    assert!(missing.is_empty(), "no row for {missing:?}");
+}
+
+/// A rig that is read with every kind of remark says each once.
+#[test]
+fn notes_come_once() {
+    let folder = Folder::new("once");
+    let twice = |rig: Rig| folder.file("twice.glb", glb(&rig, &[]));
+    let file = twice(mannequin().rig);
+    let model = folder.path("twice.xml");
+    let commands: [&[&str]; 4] = [
+        &["ragdoll", "build", &file],
+        &["ragdoll", "doctor", &file],
+        &["ragdoll", "export", &file, "--as", "mjcf", "-o", &model],
+        &["bake", &file, "--seconds", "0.3", "-o", &folder.path("twice.bvh")],
+    ];
+    for command in commands {
+        let mut all = notes(&sinew(&[command, &["--json"]].concat()).json());
+        let count = all.len();
+        all.sort();
+        all.dedup();
+        assert_eq!(all.len(), count, "{command:?}: {all:?}");
+    }
+    let motion = load_motion(&file, &MotionOptions::default()).expect("it can be read");
+    assert!(motion.notes.is_empty());
+}

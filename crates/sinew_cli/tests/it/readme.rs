@@ -1,0 +1,44 @@
+//! The README's own lines, one after the other, as a reader would type them.
+
+use crate::sinew::{Folder, Run, command, shared_data};
+use std::fs;
+
+const README: &str = include_str!("../../../../README.md");
+
+/// Words before the arguments of `sinew` there.
+const LEAD: &str = "cargo run --release -- ";
+
+/// Arguments of the lines below the heading, without comments.
+fn lines(heading: &str) -> Vec<Vec<&'static str>> {
+    let (_, rest) = README.split_once(heading).unwrap_or_else(|| panic!("no heading {heading}"));
+    let (_, block) = rest.split_once("```sh\n").expect("a block of commands");
+    let (block, _) = block.split_once("```").expect("the block ends");
+    let lines = block.lines().filter_map(|line| line.strip_prefix(LEAD));
+    lines.map(|line| line.split('#').next().unwrap_or(line).split_whitespace().collect()).collect()
+}
+
+#[test]
+fn its_lines_run_one_after_the_other() {
+    let Some(data) = shared_data() else { return };
+    for rig in ["rigs/quaternius_cyberpunk_Character.glb", "rigs_wild/platformer_game_Character.glb"] {
+        let folder = Folder::new("readme");
+        let copy = |from: &str, to: &str| {
+            fs::copy(data.join(from), folder.path(to)).unwrap_or_else(|error| panic!("{from}: {error}"));
+        };
+        copy(rig, "character.glb");
+        copy("mocap/cmu_12_01_walk.bvh", "walk.bvh");
+        copy("worlds/house_2story_stairs.glb", "house.glb");
+        let own = lines("## With your own character");
+        let others = lines("## The experiments, and a world from a mesh");
+        assert!(own.len() >= 7 && others.len() >= 4, "the README has fewer lines than it had");
+        for arguments in own.iter().chain(&others) {
+            let run = Run::of(command(arguments).current_dir(folder.path("")));
+            assert_eq!(run.code, Some(0), "{rig}: sinew {}\n{}", arguments.join(" "), run.stderr);
+        }
+        for written in
+            ["character.sinew.json", "character.xml", "fall.glb", "fall.gif", "walking.glb", "walking.bvh"]
+        {
+            assert!(folder.names().iter().any(|name| name == written), "{rig}: no {written}");
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! The file's unit and the body's mass, and what is said where either is hard to believe.
+
+use crate::sinew::{Folder, glb, sinew};
+use serde_json::Value;
+use sinew::anim::Rig;
+use sinew::math::Vec3;
+use sinew_scenes::mannequin::mannequin;
+
+/// A rig in another unit: all lengths times `factor`.
+fn scaled(mut rig: Rig, factor: f32) -> Rig {
+    for joint in &mut rig.joints {
+        joint.rest.translation *= factor;
+    }
+    for bind in rig.skins.iter_mut().flat_map(|skin| &mut skin.inverse_bind) {
+        bind.translation *= factor;
+    }
+    for mesh in &mut rig.meshes {
+        for primitive in &mut mesh.primitives {
+            primitive.positions.iter_mut().for_each(|position| *position *= factor);
+        }
+    }
+    rig
+}
+
+/// A worm of two joints, `length` units long and so many times as thick as the mannequin's trunk: no human, whose mass comes from
+/// its volume.
+fn worm(length: f32, girth: f32) -> Rig {
+    let mut rig = mannequin().rig;
+    let keep = ["hips", "spine"];
+    let kept = |name: &str| keep.contains(&name);
+    for mesh in &mut rig.meshes {
+        let Some(skin) = mesh.skin else { continue };
+        let slots = rig.skins[skin].joints.clone();
+        for primitive in &mut mesh.primitives {
+            let of_kept = |vertex: u32| {
+                let slot = usize::from(primitive.joints[vertex as usize][0]);
+                kept(&rig.joints[slots[slot]].name)
+            };
+            let corners =
+                primitive.indices.chunks_exact(3).filter(|corner| corner.iter().all(|&i| of_kept(i)));
+            primitive.indices = corners.flatten().copied().collect();
+            let used: Vec<bool> = {
+                let mut used = vec![false; primitive.positions.len()];
+                primitive.indices.iter().for_each(|&i| used[i as usize] = true);
+                used
+            };
+            for (position, used) in primitive.positions.iter_mut().zip(used) {
+                let thick = Vec3::new(girth * position.x, position.y, girth * position.z);
+                // What no triangle uses is put inside.
+                *position = if used { thick } else { Vec3::Y };
+            }
+        }
+    }
+    let heights = rig.meshes.iter().flat_map(|mesh| &mesh.primitives).flat_map(|p| &p.positions);
+    let (low, high) = heights.fold((f32::MAX, f32::MIN), |(lo, hi), p| (lo.min(p.y), hi.max(p.y)));
+    scaled(rig, length / (high - low))
+}
+
+fn notes(object: &Value) -> Vec<String> {
+    let notes = object["notes"].as_array().expect("notes");
+    notes.iter().map(|note| note.as_str().expect("a sentence").to_owned()).collect()
+}
+
+#[test]
+fn the_unit_its_reason_and_its_alternatives_are_a_note() {
+    let folder = Folder::new("unit-note");
+    let build = |rig: &Rig, extra: &[&str]| {
+        let file = folder.file("body.glb", glb(rig, &[]));
+        sinew(&[&["ragdoll", "build", &file, "--json"], extra].concat()).json()
+    };
+    let rig = mannequin().rig;
+    let of_unit = |object: &Value| notes(object).into_iter().find(|note| note.contains("taken as"));
+    let metres = of_unit(&build(&rig, &[])).expect("a note");
+    assert!(
+        metres.contains("taken as metres: 1.") && metres.contains("no other unit makes it so"),
+        "{metres}"
+    );
+    let object = build(&scaled(rig.clone(), 100.0), &[]);
+    let note = of_unit(&object).expect("a note");
+    assert!(note.contains("taken as centimetres: 1.") && note.contains("a human is 0.5 to 3 m"), "{note}");
+    assert!(note.ends_with("; --unit or --height sets it"), "{note}");
+    // 20 units: two metres in decimetres, half a metre in inches.
+    let object = build(&scaled(rig.clone(), 20.0 / 1.75), &[]);
+    let note = of_unit(&object).expect("a note");
+    assert!(note.contains("taken as") && note.contains("it may also be decimetres"), "{note}");
+    // What is given is no guess.
+    for extra in [["--unit", "cm"], ["--unit", "0.01"], ["--height", "1.8"]] {
+        let object = build(&scaled(rig.clone(), 100.0), &extra);
+        assert_eq!(of_unit(&object), None, "{extra:?}");
+        let height = object["height_m"].as_f64().expect("a height");
+        assert!((1.7..1.9).contains(&height), "{extra:?}: {height}");
+    }
+    let inches = build(&scaled(rig, 100.0), &["--unit", "in"]);
+    assert!(inches["height_m"].as_f64().expect("a height") > 4.0);
+}
+
+#[test]
+fn a_mass_that_no_body_has_is_no_good() {
+    let folder = Folder::new("unit-mass");
+    for (length, girth, mass) in [(0.15, 0.3, " g at"), (9.9, 1.0, " t at")] {
+        let file = folder.file("worm.glb", glb(&worm(length, girth), &[]));
+        let build = |extra: &[&str]| sinew(&[&["ragdoll", "build", &file, "--json"], extra].concat()).json();
+        let object = build(&[]);
+        let reasons = object["quality"]["reasons"].to_string();
+        let kg = object["total_mass_kg"].as_f64().expect("a mass");
+        assert!(!(0.1..=8000.0).contains(&kg), "{length}: {kg} kg");
+        assert_ne!(object["quality"]["verdict"], "good", "{length}: {kg} kg");
+        assert!(reasons.contains(mass) && reasons.contains("--mass the mass"), "{length}: {reasons}");
+        let in_notes = |object: &Value| notes(object).iter().any(|note| note.contains("--mass the mass"));
+        assert!(in_notes(&object));
+        for given in [["--mass", "70"], ["--height", "1.2"], ["--unit", "0.5"]] {
+            let object = build(&given);
+            assert!(!object["quality"]["reasons"].to_string().contains("--mass the mass"), "{given:?}");
+            assert!(!in_notes(&object), "{given:?}");
+        }
+        let (fall, model) = (folder.path("fall.glb"), folder.path("worm.xml"));
+        assert!(in_notes(
+            &sinew(&["bake", &file, "--limp-at", "0", "--seconds", "0.5", "-o", &fall, "--json"]).json()
+        ));
+        assert!(in_notes(&sinew(&["ragdoll", "doctor", &file, "--json"]).json()));
+        assert!(in_notes(
+            &sinew(&["ragdoll", "export", &file, "--as", "mjcf", "-o", &model, "--json"]).json()
+        ));
+    }
+}
+
+#[test]
+fn a_unit_is_a_length() {
+    for arguments in [["--unit", "0"], ["--unit", "ell"], ["--height", "-1"], ["--height", "NaN"]] {
+        let run = sinew(&[&["ragdoll", "build", "a.glb"][..], &arguments].concat());
+        assert!(run.code == Some(2), "{arguments:?}: {run:?}");
+    }
+    let run = sinew(&["ragdoll", "build", "a.glb", "--unit", "cm", "--height", "2"]);
+    assert!(run.code == Some(2) && run.stderr.contains("cannot be used with"), "{run:?}");
+}
