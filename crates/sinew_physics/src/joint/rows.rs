@@ -2,7 +2,7 @@
 
 use super::def::{AxisMotion, JointKind};
 use crate::spatial::{Vec6, ZERO6, angular, join, linear};
-use sinew_math::limits::{hinge_angle, wrap};
+use sinew_math::limits::{LimitState, hinge_angle, wrap};
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3};
 
 /// Directions of a joint: translation along x, y, z of frame A (along the line between the anchors for a distance),
@@ -375,27 +375,39 @@ pub(crate) fn turns(limit: usize) -> bool {
 /// The stops of a joint, each at its own place; those that it does not have are `None`.
 pub(crate) fn stops(kind: &JointKind, pose: &JointPose) -> [Option<Stop>; MAX_STOPS] {
     let mut out = [None; MAX_STOPS];
-    let mut put = |place: usize, room: f32, axis: Vec3| {
-        out[place] = Some(Stop { limit: place.div_ceil(2), room, axis });
-    };
+    each_stop(kind, pose, [f32::INFINITY; 2], |place, stop| out[place] = Some(stop));
+    out
+}
+
+/// The stops of a joint in the order of their places, but for those that have no less room than `reach`, of translation and of
+/// rotation: these may be left out, with what their axes cost.
+#[inline]
+pub(crate) fn each_stop(
+    kind: &JointKind,
+    pose: &JointPose,
+    [slide, turn]: [f32; 2],
+    mut put: impl FnMut(usize, Stop),
+) {
     let (cone, twist_range) = rotation_limits(kind);
     if cone.is_some() || twist_range.is_some() {
         let (swing, twist) = pose.relative().swing_twist(Vec3::X);
-        if let Some(limit) = cone {
-            let state = limit.state_of_swing(swing);
-            put(0, state.room, state.axis);
+        if let Some(LimitState { room, axis }) = cone.and_then(|limit| limit.swing_within(swing, turn)) {
+            put(0, Stop { limit: 0, room, axis });
         }
-        if let Some(range) = twist_range {
-            let [below, above] = twist_only(range).states_of_twist(swing, twist);
-            put(1, below.room, below.axis);
-            put(2, above.room, above.axis);
+        if let Some(states) = twist_range.and_then(|range| twist_only(range).twist_within(swing, twist, turn))
+        {
+            for (place, LimitState { room, axis }) in (1..).zip(states) {
+                put(place, Stop { limit: 1, room, axis });
+            }
         }
     } else if let JointKind::Hinge { limit: Some(range) } = kind {
         // Measured from the middle and wrapped, as for a twist.
         let half = 0.5 * (range.hi - range.lo);
         let angle = wrap(hinge_angle(pose.relative()) - range.center());
-        put(1, half + angle, Vec3::X);
-        put(2, half - angle, -Vec3::X);
+        if half - angle.abs() < turn {
+            put(1, Stop { limit: 1, room: half + angle, axis: Vec3::X });
+            put(2, Stop { limit: 1, room: half - angle, axis: -Vec3::X });
+        }
     }
     for (i, range) in linear_limits(kind).into_iter().enumerate() {
         let Some(range) = range else { continue };
@@ -404,11 +416,12 @@ pub(crate) fn stops(kind: &JointKind, pose: &JointPose) -> [Option<Stop>; MAX_ST
         } else {
             (pose.axis(i).dot(pose.gap), [Vec3::X, Vec3::Y, Vec3::Z][i])
         };
-        let limit = 2 + i;
-        out[3 + 2 * i] = Some(Stop { limit, room: at - range.lo, axis });
-        out[4 + 2 * i] = Some(Stop { limit, room: range.hi - at, axis: -axis });
+        let (below, above) = (at - range.lo, range.hi - at);
+        if below < slide || above < slide {
+            put(3 + 2 * i, Stop { limit: 2 + i, room: below, axis });
+            put(4 + 2 * i, Stop { limit: 2 + i, room: above, axis: -axis });
+        }
     }
-    out
 }
 
 /// Cone and twist range of a joint; a hinge's range is read where it is used.
