@@ -116,19 +116,23 @@ pub(crate) struct JointRows {
 }
 
 impl JointRows {
+    /// None yet.
+    pub const NONE: Self = Self {
+        count: 0,
+        locked: 0,
+        error: ZERO6,
+        arm_a: Vec3::ZERO,
+        arm_b: Vec3::ZERO,
+        axis: [Vec3::ZERO; DIRECTIONS],
+        direction: [0; DIRECTIONS],
+    };
+
     /// Rows of all locked directions, and of those open ones that are asked for.
     pub fn new(joint: &JointGeometry, pose: &JointPose, open: [bool; DIRECTIONS]) -> Self {
         let kind = &joint.kind;
         let locks = locks(kind);
-        let mut rows = Self {
-            count: 0,
-            locked: 0,
-            error: ZERO6,
-            arm_a: if turns_with_a(kind, &locks) { pose.arm_a + pose.gap } else { pose.arm_a },
-            arm_b: pose.arm_b,
-            axis: [Vec3::ZERO; DIRECTIONS],
-            direction: [0; DIRECTIONS],
-        };
+        let arm_a = if turns_with_a(kind, &locks) { pose.arm_a + pose.gap } else { pose.arm_a };
+        let mut rows = Self { arm_a, arm_b: pose.arm_b, ..Self::NONE };
         each_locked(kind, &locks, pose, |direction, error, axis| rows.push(direction, error, axis));
         rows.locked = rows.count;
         if open != [false; DIRECTIONS] {

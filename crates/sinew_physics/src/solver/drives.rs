@@ -292,6 +292,9 @@ impl IslandSolver {
     /// Puts the full push of all saturated motors on their bodies.
     pub(super) fn push_saturated(&mut self) {
         for j in 0..self.joints.len() {
+            if self.joints[j].drive.motor.is_none() {
+                continue;
+            }
             for i in 0..DIRECTIONS {
                 if let Some(on_b) = self.push_motor(j, i) {
                     let arm = self.joints[j].pose.arm_b;
@@ -435,7 +438,7 @@ impl IslandSolver {
 
     /// Saturated motors that no longer ask for all they have are released, for the next substep.
     pub(super) fn release_motors(&mut self) {
-        for joint in &mut self.joints {
+        for joint in self.joints.iter_mut().filter(|joint| joint.drive.motor.is_some()) {
             for i in 0..DIRECTIONS {
                 if joint.saturated[i] != 0 {
                     let rate = joint.open_rate(i, &self.velocities);

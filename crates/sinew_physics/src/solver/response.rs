@@ -2,9 +2,9 @@
 //! that sees its link's own mass instead sinks: a 1 kg foot under 69 kg by 72 mm.
 
 use super::tree::{Link, NONE};
-use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
+use crate::spatial::{Vec6, add_scaled, dot};
 use sinew_math::dispatch::{self, Kernel};
-use sinew_math::lanes::Lanes;
+use sinew_math::lanes::{LaneMask, Lanes};
 
 /// Links that answer to impulses: the bodies of each tree that carry rows, and their ancestors.
 #[derive(Clone, Debug, Default)]
@@ -144,8 +144,9 @@ impl Kernel for Answer<'_> {
         }
         for place in 0..members.len() {
             // What has no impulse is beside the way to the root, or has nothing to answer to.
-            let answers = place <= slot && out[place] != ZERO6;
-            let mut v = if answers { link(place).alone::<L>(&out[place]) } else { L::splat(0.0) };
+            let none = L::splat(0.0);
+            let answers = place <= slot && !L::eq(L::load(&out[place]), none).all();
+            let mut v = if answers { link(place).alone::<L>(&out[place]) } else { none };
             if place > 0 {
                 v = v + link(place).carried::<L>(&out[above[place] as usize]);
             }
