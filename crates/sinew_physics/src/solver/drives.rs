@@ -4,8 +4,8 @@
 use super::{IslandSolver, SolverJoint};
 use crate::joint::def::{Gains, Motor, Softness};
 use crate::joint::{DIRECTIONS, JointRows, TWIST, displacement, locked_error, open_row};
-use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, linear};
-use sinew_math::{clamp, max, trig};
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
+use sinew_math::{Vec3, clamp, max, trig};
 
 /// Joint friction is a viscosity that gives the full torque at the joint's present rate, but never more than this slow
 /// rate would ask, rad/s or m/s: a joint that should stick creeps below it, and sleep ends the creep.
@@ -259,6 +259,12 @@ impl SolverJoint {
             bend[row] = if bent.abs() < MOST_BENT { bent - self.bent[row] } else { 0.0 };
         }
         bend
+    }
+
+    /// Position errors of a [point](Self::is_point) with a gap, but for what this substep leaves open.
+    pub(super) fn point_error(&self, gap: Vec3) -> Vec6 {
+        let [x, y, z, ..] = self.left_open;
+        join(gap - Vec3::new(x, y, z), Vec3::ZERO)
     }
 
     /// Position errors of the rigid rows at other poses of the bodies, but for what this substep leaves open.
