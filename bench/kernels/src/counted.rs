@@ -154,6 +154,16 @@ impl Real for Counted {
 }
 
 impl Lanes for Counted {
+    type Wide = f64;
+
+    fn widen(self) -> f64 {
+        f64::from(self.0)
+    }
+
+    fn narrow(wide: f64) -> Self {
+        Self(wide as f32)
+    }
+
     fn load(from: &[f32; WIDTH]) -> Self {
         Self(from[0])
     }

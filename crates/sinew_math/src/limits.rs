@@ -92,6 +92,16 @@ impl SwingTwistLimit {
 
     /// State of the swing cone for the swing of the joint rotation, see [`swing_state`](Self::swing_state).
     pub fn state_of_swing(&self, swing: Rotation) -> LimitState {
+        self.place_in_cone(swing).state()
+    }
+
+    /// The same if there is less room than `reach`.
+    pub fn swing_within(&self, swing: Rotation, reach: f32) -> Option<LimitState> {
+        let place = self.place_in_cone(swing);
+        (place.room < reach).then(|| place.state())
+    }
+
+    fn place_in_cone(&self, swing: Rotation) -> PlaceInCone {
         let swing = swing.positive();
         let half = (swing.y * swing.y + swing.z * swing.z).sqrt();
         let angle = 2.0 * trig::atan2(half, swing.w);
@@ -99,14 +109,8 @@ impl SwingTwistLimit {
         let a = crate::max(if u.y < 0.0 { -self.swing_y.lo } else { self.swing_y.hi }, 1e-4);
         let b = crate::max(if u.z < 0.0 { -self.swing_z.lo } else { self.swing_z.hi }, 1e-4);
         let normal = crate::normalize_or(Vec3::new(0.0, u.y / (a * a), u.z / (b * b)), u);
-        let tangent = Vec3::new(0.0, -u.z, u.y);
         let room = (self.cone_angle(u.y, u.z) - angle) * normal.dot(u);
-        // φ/sin φ is held off its pole at half a turn.
-        let (sin, cos) = (2.0 * half * swing.w, 1.0 - 2.0 * half * half);
-        let turning = if angle > 1e-4 { angle / crate::max(sin, 0.1) } else { 1.0 };
-        let x_b = Vec3::new(cos, sin * u.z, -sin * u.y);
-        let axis = u.cross(x_b) * (turning * normal.dot(tangent)) - u * normal.dot(u);
-        LimitState { room, axis }
+        PlaceInCone { half, cos: swing.w, angle, u, normal, room }
     }
 
     /// States of the lower and the upper twist stop for the joint rotation `a⁻¹ b`.
@@ -117,14 +121,22 @@ impl SwingTwistLimit {
 
     /// States of the twist stops for the swing and the twist of the joint rotation.
     pub fn states_of_twist(&self, swing: Rotation, twist: Rotation) -> [LimitState; 2] {
+        twist_states(self.room_of_twist(twist), swing)
+    }
+
+    /// The same if one of them has less room than `reach`.
+    pub fn twist_within(&self, swing: Rotation, twist: Rotation, reach: f32) -> Option<[LimitState; 2]> {
+        let room = self.room_of_twist(twist);
+        (room[0] < reach || room[1] < reach).then(|| twist_states(room, swing))
+    }
+
+    /// Below and above.
+    fn room_of_twist(&self, twist: Rotation) -> [f32; 2] {
         // Measured from the middle of the range and wrapped, so that ranges near ±π have no jump inside.
         let middle = self.twist.center();
         let half = 0.5 * (self.twist.hi - self.twist.lo);
         let angle = wrap(twist.twist_angle(Vec3::X) - middle);
-        // The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b); the divisor is held off 0 near a swing of half a turn.
-        let x_b = swing * Vec3::X;
-        let axis = (Vec3::X + x_b) / crate::max(1.0 + x_b.x, 0.05);
-        [LimitState { room: angle + half, axis }, LimitState { room: half - angle, axis: -axis }]
+        [angle + half, half - angle]
     }
 
     /// How far the joint rotation `a⁻¹ b` is beyond the limits, radians: the larger of swing and twist excess.
@@ -134,6 +146,40 @@ impl SwingTwistLimit {
             worst = crate::max(worst, -state.room);
         }
         crate::max(worst, 0.0)
+    }
+}
+
+/// States of the twist stops with so much room. The twist rate is ω·(x_a + x_b)/(1 + x_a·x_b); the divisor is held off 0 near a
+/// swing of half a turn.
+fn twist_states([below, above]: [f32; 2], swing: Rotation) -> [LimitState; 2] {
+    let x_b = swing * Vec3::X;
+    let axis = (Vec3::X + x_b) / crate::max(1.0 + x_b.x, 0.05);
+    [LimitState { room: below, axis }, LimitState { room: above, axis: -axis }]
+}
+
+/// Where a swing is in its cone.
+struct PlaceInCone {
+    /// Sine and cosine of half its angle.
+    half: f32,
+    cos: f32,
+    angle: f32,
+    /// What it is about.
+    u: Vec3,
+    /// Of the ellipse, outward.
+    normal: Vec3,
+    room: f32,
+}
+
+impl PlaceInCone {
+    fn state(&self) -> LimitState {
+        let Self { half, angle, u, normal, .. } = *self;
+        let tangent = Vec3::new(0.0, -u.z, u.y);
+        // φ/sin φ is held off its pole at half a turn.
+        let (sin, cos) = (2.0 * half * self.cos, 1.0 - 2.0 * half * half);
+        let turning = if angle > 1e-4 { angle / crate::max(sin, 0.1) } else { 1.0 };
+        let x_b = Vec3::new(cos, sin * u.z, -sin * u.y);
+        let axis = u.cross(x_b) * (turning * normal.dot(tangent)) - u * normal.dot(u);
+        LimitState { room: self.room, axis }
     }
 }
 

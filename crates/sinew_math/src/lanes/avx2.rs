@@ -3,13 +3,14 @@
 //! A value of [`Avx2`] is made by [`dispatch`](crate::dispatch) alone, and only where the processor has AVX2; each
 //! `unsafe` below rests on that. The types are private to this crate, so that nothing else can call them into being.
 
+use super::avx2_wide::Wide;
 use super::{LaneMask, Lanes, Mask, Real, WIDTH};
 use core::arch::x86_64::{
     __m256, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps,
-    _mm256_blendv_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps,
-    _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_permute2f128_ps, _mm256_set1_ps,
-    _mm256_shuffle_ps, _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_sub_ps, _mm256_unpackhi_ps,
-    _mm256_unpacklo_ps, _mm256_xor_ps,
+    _mm256_blendv_ps, _mm256_castps256_ps128, _mm256_cmp_ps, _mm256_cvtpd_ps, _mm256_cvtps_pd, _mm256_div_ps,
+    _mm256_extractf128_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps,
+    _mm256_or_ps, _mm256_permute2f128_ps, _mm256_set_m128, _mm256_set1_ps, _mm256_shuffle_ps, _mm256_sqrt_ps,
+    _mm256_storeu_ps, _mm256_sub_ps, _mm256_unpackhi_ps, _mm256_unpacklo_ps, _mm256_xor_ps,
 };
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -140,6 +141,21 @@ impl Real for Avx2 {
 }
 
 impl Lanes for Avx2 {
+    type Wide = Wide;
+
+    #[inline(always)]
+    fn widen(self) -> Wide {
+        avx!(Wide(
+            _mm256_cvtps_pd(_mm256_castps256_ps128(self.0)),
+            _mm256_cvtps_pd(_mm256_extractf128_ps::<1>(self.0))
+        ))
+    }
+
+    #[inline(always)]
+    fn narrow(Wide(low, high): Wide) -> Self {
+        Self(avx!(_mm256_set_m128(_mm256_cvtpd_ps(high), _mm256_cvtpd_ps(low))))
+    }
+
     #[inline(always)]
     fn load(from: &[f32; WIDTH]) -> Self {
         // SAFETY: as above; and the array has the eight floats that are read, at no alignment of their own.

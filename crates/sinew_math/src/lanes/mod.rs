@@ -17,6 +17,8 @@ use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx2_wide;
 mod blocks;
 #[cfg(target_arch = "aarch64")]
 pub(crate) mod neon;
@@ -135,6 +137,15 @@ pub trait LaneMask: Mask {
 /// A type that stands for a processor's own registers exists only where [`dispatch`](crate::dispatch) has found them:
 /// nothing else can name it.
 pub trait Lanes: Real<Mask: LaneMask> {
+    /// Eight numbers of twice the digits, for sums that cancel.
+    type Wide: Real;
+
+    /// The same numbers.
+    fn widen(self) -> Self::Wide;
+
+    /// Each rounded to the nearest.
+    fn narrow(wide: Self::Wide) -> Self;
+
     /// The numbers of an array, item `k` in lane `k`.
     fn load(from: &[f32; WIDTH]) -> Self;
 

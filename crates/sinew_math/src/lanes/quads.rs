@@ -1,5 +1,6 @@
 //! Eight lanes as two registers of four, for the processors that have those.
 
+use super::scalar::Doubles;
 use super::{LaneMask, Lanes, Mask, Real, WIDTH};
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -156,6 +157,20 @@ impl<Q: Quad> Real for Quads<Q> {
 }
 
 impl<Q: Quad> Lanes for Quads<Q> {
+    type Wide = Doubles;
+
+    #[inline(always)]
+    fn widen(self) -> Doubles {
+        let mut numbers = [0.0; WIDTH];
+        self.store(&mut numbers);
+        Doubles::widened(numbers)
+    }
+
+    #[inline(always)]
+    fn narrow(wide: Doubles) -> Self {
+        Self::load(&wide.narrowed())
+    }
+
     #[inline(always)]
     fn load(from: &[f32; WIDTH]) -> Self {
         let [a, b, c, d, e, f, g, h] = *from;

@@ -56,7 +56,7 @@ impl Real for f32 {
     }
 }
 
-/// One number of twice the digits, for sums that cancel; never in lanes.
+/// One number of twice the digits, for sums that cancel.
 impl Real for f64 {
     type Mask = bool;
 
@@ -115,6 +115,22 @@ impl Real for f64 {
 #[derive(Clone, Copy, Debug)]
 pub struct Scalar([f32; WIDTH]);
 
+/// Eight `f64`, each treated as `f64` is: on processors without registers for so many, too.
+#[derive(Clone, Copy, Debug)]
+pub struct Doubles([f64; WIDTH]);
+
+impl Doubles {
+    #[inline(always)]
+    pub(crate) fn widened(from: [f32; WIDTH]) -> Self {
+        Self(from.map(f64::from))
+    }
+
+    #[inline(always)]
+    pub(crate) fn narrowed(self) -> [f32; WIDTH] {
+        self.0.map(|x| x as f32)
+    }
+}
+
 /// Eight `bool`.
 #[derive(Clone, Copy, Debug)]
 pub struct Bools([bool; WIDTH]);
@@ -132,12 +148,21 @@ macro_rules! lane_by_lane {
 }
 
 lane_by_lane!(Add add Scalar, Sub sub Scalar, Mul mul Scalar, Div div Scalar, BitAnd bitand Bools, BitOr bitor Bools);
+lane_by_lane!(Add add Doubles, Sub sub Doubles, Mul mul Doubles, Div div Doubles);
 
 impl Neg for Scalar {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
         Self(self.0.map(f32::neg))
+    }
+}
+
+impl Neg for Doubles {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.map(f64::neg))
     }
 }
 
@@ -208,7 +233,73 @@ impl Real for Scalar {
     }
 }
 
+impl Real for Doubles {
+    type Mask = Bools;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self([f64::from(value); WIDTH])
+    }
+
+    #[inline(always)]
+    fn splat_wide(value: f64) -> Self {
+        Self([value; WIDTH])
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f64::abs))
+    }
+
+    #[inline(always)]
+    fn lt(a: Self, b: Self) -> Bools {
+        Bools(array::from_fn(|k| a.0[k] < b.0[k]))
+    }
+
+    #[inline(always)]
+    fn le(a: Self, b: Self) -> Bools {
+        Bools(array::from_fn(|k| a.0[k] <= b.0[k]))
+    }
+
+    #[inline(always)]
+    fn eq(a: Self, b: Self) -> Bools {
+        Bools(array::from_fn(|k| a.0[k] == b.0[k]))
+    }
+
+    #[inline(always)]
+    fn select(mask: Bools, a: Self, b: Self) -> Self {
+        Self(array::from_fn(|k| f64::select(mask.0[k], a.0[k], b.0[k])))
+    }
+
+    #[inline(always)]
+    fn masked(self, mask: Bools) -> Self {
+        Self(array::from_fn(|k| self.0[k].masked(mask.0[k])))
+    }
+
+    #[inline(always)]
+    fn nan_where(self, mask: Bools) -> Self {
+        Self(array::from_fn(|k| self.0[k].nan_where(mask.0[k])))
+    }
+}
+
 impl Lanes for Scalar {
+    type Wide = Doubles;
+
+    #[inline(always)]
+    fn widen(self) -> Doubles {
+        Doubles::widened(self.0)
+    }
+
+    #[inline(always)]
+    fn narrow(wide: Doubles) -> Self {
+        Self(wide.narrowed())
+    }
+
     #[inline(always)]
     fn load(from: &[f32; WIDTH]) -> Self {
         Self(*from)

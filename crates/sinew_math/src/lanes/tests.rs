@@ -123,6 +123,46 @@ fn lanes_do_what_one_number_does() {
     }
 }
 
+struct WideOperations<'a>(&'a [[f32; 2]]);
+
+impl Kernel for WideOperations<'_> {
+    /// Results of each pair, narrowed.
+    type Output = Vec<[u32; OPERATIONS]>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let mut results = Vec::new();
+        for eight in self.0.chunks_exact(WIDTH) {
+            let [mut a, mut b] = [[0.0; WIDTH]; 2];
+            for (lane, pair) in eight.iter().enumerate() {
+                [a[lane], b[lane]] = *pair;
+            }
+            let first = results.len();
+            results.resize(first + WIDTH, [0; OPERATIONS]);
+            let wide = operations(L::load(&a).widen(), L::load(&b).widen());
+            for (operation, result) in wide.into_iter().enumerate() {
+                let mut row = [0.0; WIDTH];
+                L::narrow(result).store(&mut row);
+                for lane in 0..WIDTH {
+                    results[first + lane][operation] = bits(row[lane]);
+                }
+            }
+        }
+        results
+    }
+}
+
+#[test]
+fn wide_lanes_do_what_one_wide_number_does() {
+    let soup = soup();
+    for level in Level::available() {
+        for (&[a, b], result) in soup.iter().zip(dispatch::run_at(level, WideOperations(&soup))) {
+            let one = operations(f64::from(a), f64::from(b)).map(|x| bits(x as f32));
+            assert_eq!(result, one, "{level:?}: {a:e} and {b:e}");
+        }
+    }
+}
+
 #[test]
 fn golden_soup_of_operations() {
     let soup = soup();

@@ -2,7 +2,7 @@
 
 use super::def::{AxisMotion, JointKind};
 use crate::spatial::{Vec6, ZERO6, angular, join, linear};
-use sinew_math::limits::{hinge_angle, wrap};
+use sinew_math::limits::{LimitState, hinge_angle, wrap};
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3};
 
 /// Directions of a joint: translation along x, y, z of frame A (along the line between the anchors for a distance),
@@ -42,6 +42,14 @@ impl JointPose {
             rotation_a: a.rotation * joint.frame_a.rotation,
             rotation_b: b.rotation * joint.frame_b.rotation,
         }
+    }
+
+    /// The gap alone.
+    #[inline]
+    pub fn gap(joint: &JointGeometry, a: &Transform, b: &Transform) -> Vec3 {
+        let arm_a = a.rotation * joint.frame_a.translation;
+        let arm_b = b.rotation * joint.frame_b.translation;
+        (b.translation - a.translation) + (arm_b - arm_a)
     }
 
     /// Rotation of frame B seen from frame A.
@@ -116,19 +124,23 @@ pub(crate) struct JointRows {
 }
 
 impl JointRows {
+    /// None yet.
+    pub const NONE: Self = Self {
+        count: 0,
+        locked: 0,
+        error: ZERO6,
+        arm_a: Vec3::ZERO,
+        arm_b: Vec3::ZERO,
+        axis: [Vec3::ZERO; DIRECTIONS],
+        direction: [0; DIRECTIONS],
+    };
+
     /// Rows of all locked directions, and of those open ones that are asked for.
     pub fn new(joint: &JointGeometry, pose: &JointPose, open: [bool; DIRECTIONS]) -> Self {
         let kind = &joint.kind;
         let locks = locks(kind);
-        let mut rows = Self {
-            count: 0,
-            locked: 0,
-            error: ZERO6,
-            arm_a: if turns_with_a(kind, &locks) { pose.arm_a + pose.gap } else { pose.arm_a },
-            arm_b: pose.arm_b,
-            axis: [Vec3::ZERO; DIRECTIONS],
-            direction: [0; DIRECTIONS],
-        };
+        let arm_a = if turns_with_a(kind, &locks) { pose.arm_a + pose.gap } else { pose.arm_a };
+        let mut rows = Self { arm_a, arm_b: pose.arm_b, ..Self::NONE };
         each_locked(kind, &locks, pose, |direction, error, axis| rows.push(direction, error, axis));
         rows.locked = rows.count;
         if open != [false; DIRECTIONS] {
@@ -375,27 +387,39 @@ pub(crate) fn turns(limit: usize) -> bool {
 /// The stops of a joint, each at its own place; those that it does not have are `None`.
 pub(crate) fn stops(kind: &JointKind, pose: &JointPose) -> [Option<Stop>; MAX_STOPS] {
     let mut out = [None; MAX_STOPS];
-    let mut put = |place: usize, room: f32, axis: Vec3| {
-        out[place] = Some(Stop { limit: place.div_ceil(2), room, axis });
-    };
+    each_stop(kind, pose, [f32::INFINITY; 2], |place, stop| out[place] = Some(stop));
+    out
+}
+
+/// The stops of a joint in the order of their places, but for those that have no less room than `reach`, of translation and of
+/// rotation: these may be left out, with what their axes cost.
+#[inline]
+pub(crate) fn each_stop(
+    kind: &JointKind,
+    pose: &JointPose,
+    [slide, turn]: [f32; 2],
+    mut put: impl FnMut(usize, Stop),
+) {
     let (cone, twist_range) = rotation_limits(kind);
     if cone.is_some() || twist_range.is_some() {
         let (swing, twist) = pose.relative().swing_twist(Vec3::X);
-        if let Some(limit) = cone {
-            let state = limit.state_of_swing(swing);
-            put(0, state.room, state.axis);
+        if let Some(LimitState { room, axis }) = cone.and_then(|limit| limit.swing_within(swing, turn)) {
+            put(0, Stop { limit: 0, room, axis });
         }
-        if let Some(range) = twist_range {
-            let [below, above] = twist_only(range).states_of_twist(swing, twist);
-            put(1, below.room, below.axis);
-            put(2, above.room, above.axis);
+        if let Some(states) = twist_range.and_then(|range| twist_only(range).twist_within(swing, twist, turn))
+        {
+            for (place, LimitState { room, axis }) in (1..).zip(states) {
+                put(place, Stop { limit: 1, room, axis });
+            }
         }
     } else if let JointKind::Hinge { limit: Some(range) } = kind {
         // Measured from the middle and wrapped, as for a twist.
         let half = 0.5 * (range.hi - range.lo);
         let angle = wrap(hinge_angle(pose.relative()) - range.center());
-        put(1, half + angle, Vec3::X);
-        put(2, half - angle, -Vec3::X);
+        if half - angle.abs() < turn {
+            put(1, Stop { limit: 1, room: half + angle, axis: Vec3::X });
+            put(2, Stop { limit: 1, room: half - angle, axis: -Vec3::X });
+        }
     }
     for (i, range) in linear_limits(kind).into_iter().enumerate() {
         let Some(range) = range else { continue };
@@ -404,11 +428,12 @@ pub(crate) fn stops(kind: &JointKind, pose: &JointPose) -> [Option<Stop>; MAX_ST
         } else {
             (pose.axis(i).dot(pose.gap), [Vec3::X, Vec3::Y, Vec3::Z][i])
         };
-        let limit = 2 + i;
-        out[3 + 2 * i] = Some(Stop { limit, room: at - range.lo, axis });
-        out[4 + 2 * i] = Some(Stop { limit, room: range.hi - at, axis: -axis });
+        let (below, above) = (at - range.lo, range.hi - at);
+        if below < slide || above < slide {
+            put(3 + 2 * i, Stop { limit: 2 + i, room: below, axis });
+            put(4 + 2 * i, Stop { limit: 2 + i, room: above, axis: -axis });
+        }
     }
-    out
 }
 
 /// Cone and twist range of a joint; a hinge's range is read where it is used.

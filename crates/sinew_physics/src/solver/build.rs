@@ -206,7 +206,7 @@ impl IslandSolver {
         self.look_for_fields(view);
         self.copy_joints(island, view);
         self.weigh_joints();
-        self.refresh_joints();
+        self.refresh_rows();
         self.choose_coupling(island.contacts.len());
         self.note_touches(island, view);
         self.refresh_inertia();
@@ -336,7 +336,6 @@ impl IslandSolver {
         let s = &mut self.scratch.build;
         s.seeds.sort_unstable_by_key(|seed| (seed.tree, seed.found));
         s.order.clear();
-        self.links.clear();
         for (local, seed) in s.seeds.iter().enumerate() {
             s.local[seed.place as usize] = local as u32;
         }
@@ -348,8 +347,13 @@ impl IslandSolver {
             }
             let parent = if seed.parent == NONE { NONE } else { s.local[seed.parent as usize] };
             s.order.push(island.bodies[seed.place as usize]);
-            self.links.push(Link::new(parent, seed.joint, seed.tree));
+            // What links answer is written by the factor: its place need not be cleared.
+            match self.links.get_mut(local) {
+                Some(link) => (link.parent, link.joint, link.tree) = (parent, seed.joint, seed.tree),
+                None => self.links.push(Link::new(parent, seed.joint, seed.tree)),
+            }
         }
+        self.links.truncate(s.seeds.len());
     }
 
     fn copy_bodies(&mut self, island: &Island<'_>, view: &View<'_>) {
@@ -414,7 +418,7 @@ impl IslandSolver {
                 geometry,
                 drive: joint.drive,
                 pose,
-                rows: JointRows::new(&geometry, &pose, [false; DIRECTIONS]),
+                rows: JointRows::NONE,
                 rigid: 0,
                 left_open: ZERO6,
                 most_rows: joint.most_rows(),

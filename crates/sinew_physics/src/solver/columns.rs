@@ -127,20 +127,20 @@ impl Columns {
         let column = &mut self.entries[start..];
         let [a, b] = bodies;
         let (on_a, on_b) = column.split_at_mut(reach.members[0].len());
-        if reach.places[0].is_some() {
-            response.answer(links, a, row[0], on_a);
-        }
-        match reach.places[1] {
+        match reach.places {
             // Both in one tree: the second answer goes beside the first, to be added.
-            Some(place) if place < on_a.len() => {
-                response.answer(links, b, row[1], on_b);
-                for (sum, more) in on_a.iter_mut().zip(on_b) {
-                    add_scaled(sum, more, 1.0);
-                }
+            [Some(_), Some(place)] if place < on_a.len() => {
+                response.answer_both(links, bodies, row, [on_a, on_b]);
                 self.entries.truncate(start + reach.len());
             }
-            Some(_) => response.answer(links, b, row[1], on_b),
-            None => {}
+            [of_a, of_b] => {
+                if of_a.is_some() {
+                    response.answer(links, a, row[0], on_a);
+                }
+                if of_b.is_some() {
+                    response.answer(links, b, row[1], on_b);
+                }
+            }
         }
         reach.places.map(|place| place.map_or(ZERO6, |place| self.entries[start + place]))
     }

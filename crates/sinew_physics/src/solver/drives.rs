@@ -4,8 +4,8 @@
 use super::{IslandSolver, SolverJoint};
 use crate::joint::def::{Gains, Motor, Softness};
 use crate::joint::{DIRECTIONS, JointRows, TWIST, displacement, locked_error, open_row};
-use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, linear};
-use sinew_math::{clamp, max, trig};
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
+use sinew_math::{Vec3, clamp, max, trig};
 
 /// Joint friction is a viscosity that gives the full torque at the joint's present rate, but never more than this slow
 /// rate would ask, rad/s or m/s: a joint that should stick creeps below it, and sleep ends the creep.
@@ -261,6 +261,12 @@ impl SolverJoint {
         bend
     }
 
+    /// Position errors of a [point](Self::is_point) with a gap, but for what this substep leaves open.
+    pub(super) fn point_error(&self, gap: Vec3) -> Vec6 {
+        let [x, y, z, ..] = self.left_open;
+        join(gap - Vec3::new(x, y, z), Vec3::ZERO)
+    }
+
     /// Position errors of the rigid rows at other poses of the bodies, but for what this substep leaves open.
     pub(super) fn rigid_error(&self, pose: &crate::joint::JointPose) -> Vec6 {
         let mut error = locked_error(&self.geometry, pose);
@@ -292,6 +298,9 @@ impl IslandSolver {
     /// Puts the full push of all saturated motors on their bodies.
     pub(super) fn push_saturated(&mut self) {
         for j in 0..self.joints.len() {
+            if self.joints[j].drive.motor.is_none() {
+                continue;
+            }
             for i in 0..DIRECTIONS {
                 if let Some(on_b) = self.push_motor(j, i) {
                     let arm = self.joints[j].pose.arm_b;
@@ -435,7 +444,7 @@ impl IslandSolver {
 
     /// Saturated motors that no longer ask for all they have are released, for the next substep.
     pub(super) fn release_motors(&mut self) {
-        for joint in &mut self.joints {
+        for joint in self.joints.iter_mut().filter(|joint| joint.drive.motor.is_some()) {
             for i in 0..DIRECTIONS {
                 if joint.saturated[i] != 0 {
                     let rate = joint.open_rate(i, &self.velocities);

@@ -7,7 +7,7 @@ use super::sweep::Pass;
 use super::tree::{Link, NONE};
 use super::{IslandSolver, REDUNDANCY, SolverBody, SolverJoint, free_response};
 use crate::joint::def::Softness;
-use crate::joint::{JointPose, LimitImpulse, MAX_LIMITS, MAX_STOPS, Row, Stop, stops, turns};
+use crate::joint::{JointPose, LimitImpulse, MAX_LIMITS, MAX_STOPS, Row, Stop, each_stop, turns};
 use crate::spatial::{Vec6, add_scaled, angular, dot, linear};
 use sinew_math::{Vec3, clamp, max, min};
 
@@ -69,33 +69,29 @@ impl IslandSolver {
                 self.hit_rate = max(self.hit_rate, angular(v).length() + linear(v).length() / LEVER);
             }
         }
+        let limits = &mut self.limits;
         for (index, joint) in self.joints.iter().enumerate() {
-            let stops = stops(&joint.geometry.kind, &joint.pose);
-            if stops.iter().all(Option::is_none) {
-                continue;
-            }
             let [slide, turn] = joint.anchor_rates(&self.velocities);
-            for (place, stop) in stops.into_iter().enumerate() {
-                let Some(stop) = stop else { continue };
-                let rate = if turns(stop.limit) { max(turn, self.hit_rate) } else { slide };
-                let reach = LIMIT_MARGIN + 2.0 * self.h * rate;
-                let soft = joint.drive.limit_softness;
-                if stop.room < reach {
+            let reach = [slide, max(turn, self.hit_rate)].map(|rate| LIMIT_MARGIN + 2.0 * self.h * rate);
+            let (soft, zone) = (joint.drive.limit_softness, joint.drive.soft_zone);
+            let looked_for = [reach[0], max(reach[1], zone.map_or(0.0, |zone| zone.width))];
+            each_stop(&joint.geometry.kind, &joint.pose, looked_for, |place, stop| {
+                if stop.room < reach[usize::from(turns(stop.limit))] {
                     let hardness = soft.map_or(Hardness::Hard, |soft| Hardness::Soft(soft, 1.0));
                     let axis = joint.pose.rotation_a * stop.axis;
                     let impulse = share(joint.limit_impulse[stop.limit], axis);
                     let impulse = if soft.is_some() { 0.0 } else { impulse };
-                    self.limits.push(LimitRow::new((index, joint), place, &stop, hardness, impulse));
+                    limits.push(LimitRow::new((index, joint), place, &stop, hardness, impulse));
                 }
-                let zone = joint.drive.soft_zone.filter(|zone| turns(stop.limit) && stop.room < zone.width);
+                let zone = zone.filter(|zone| turns(stop.limit) && stop.room < zone.width);
                 if let (Some(zone), None) = (zone, soft) {
                     let early = Stop { room: stop.room - zone.width, ..stop };
                     // Damping comes with depth: all of it at once would be a blow at the zone's edge.
                     let depth = min(-early.room / zone.width, 1.0);
                     let hardness = Hardness::Soft(zone.softness, depth);
-                    self.limits.push(LimitRow::new((index, joint), place, &early, hardness, 0.0));
+                    limits.push(LimitRow::new((index, joint), place, &early, hardness, 0.0));
                 }
-            }
+            });
         }
     }
 
@@ -120,7 +116,9 @@ impl IslandSolver {
                 looked_at = row.joint;
                 let [a, b] = [joint.a, joint.b].map(|body| &poses[body as usize]);
                 let pose = JointPose::new(&joint.geometry, a, b);
-                there = stops(&joint.geometry.kind, &pose);
+                // What is to be beyond has no room.
+                there = [None; MAX_STOPS];
+                each_stop(&joint.geometry.kind, &pose, [0.0; 2], |place, stop| there[place] = Some(stop));
                 predicted = Some(pose);
             }
             let (Some(predicted), Some(stop)) = (&predicted, &there[row.stop]) else { continue };

@@ -56,7 +56,7 @@ use limit_rows::LimitRow;
 use loops::Loops;
 use pins::Pins;
 use response::Response;
-use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, min, normalize_or, skew, trig};
+use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, min, normalize_or, trig};
 pub(crate) use solution::{IslandSolution, Solution, SolvedBody, SolvedJoint, split_off};
 use squeeze::{Pressing, Touch};
 use sweep::{Pass, Unrest};
@@ -689,7 +689,11 @@ fn gyroscopic(body: &SolverBody, w: Vec3, h: f32) -> Vec3 {
         let angle = min(0.5 * h * m.length(), MOST_HALF_TURN);
         let tau = 0.5 * h * (if angle > 1e-3 { trig::tan(angle) / angle } else { 1.0 });
         // Jacobian I + τ (m× I − (I m)×), but for what τ changes with m.
-        let jacobian = Mat3::from_diagonal(i) + (skew(m) * Mat3::from_diagonal(i) - skew(l)) * tau;
+        let jacobian = Mat3::from_cols(
+            Vec3::new(i.x, (m.z * i.x - l.z) * tau, (l.y - m.y * i.x) * tau),
+            Vec3::new((l.z - m.z * i.y) * tau, i.y, (m.x * i.y - l.x) * tau),
+            Vec3::new((m.y * i.z - l.y) * tau, (l.x - m.x * i.z) * tau, i.z),
+        );
         let change = jacobian.inverse() * ((m - w0) * i + m.cross(l) * tau);
         m -= change;
         if change.length_squared() <= MIDPOINT_TOLERANCE * w0.length_squared() {

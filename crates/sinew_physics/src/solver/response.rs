@@ -2,9 +2,9 @@
 //! that sees its link's own mass instead sinks: a 1 kg foot under 69 kg by 72 mm.
 
 use super::tree::{Link, NONE};
-use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
+use crate::spatial::{Vec6, add_scaled, dot};
 use sinew_math::dispatch::{self, Kernel};
-use sinew_math::lanes::Lanes;
+use sinew_math::lanes::{LaneMask, Lanes};
 
 /// Links that answer to impulses: the bodies of each tree that carry rows, and their ancestors.
 #[derive(Clone, Debug, Default)]
@@ -94,6 +94,25 @@ impl Response {
         self.inverses.extend_from_slice(inverse);
     }
 
+    /// The sum of what two impulses make of a tree that both bodies are of: in the first list, and something else in the second. Both
+    /// are zero.
+    pub fn answer_both(&self, links: &[Link], bodies: [u32; 2], impulses: [&Vec6; 2], out: [&mut [Vec6]; 2]) {
+        let tree = &self.trees[links[bodies[0] as usize].tree as usize];
+        if tree.rows == 0 {
+            let range = tree.first..tree.first + tree.count;
+            let (members, above) = (&self.members[range.clone()], &self.above[range]);
+            let slots = bodies.map(|body| self.slot[body as usize] as usize);
+            dispatch::run(AnswerBoth { links, members, above, slots, impulses, out });
+            return;
+        }
+        let [first, second] = out;
+        self.answer(links, bodies[0], impulses[0], first);
+        self.answer(links, bodies[1], impulses[1], second);
+        for (sum, more) in first.iter_mut().zip(second) {
+            add_scaled(sum, more, 1.0);
+        }
+    }
+
     /// Makes `out`, which is zero, the velocity changes of all members of the tree of a moving body from an impulse on it.
     pub fn answer(&self, links: &[Link], body: u32, impulse: &Vec6, out: &mut [Vec6]) {
         let tree = &self.trees[links[body as usize].tree as usize];
@@ -133,23 +152,71 @@ impl Kernel for Answer<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { links, members, above, slot, impulse, out } = self;
-        let link = |place: usize| &links[members[place] as usize];
         let out = &mut out[..members.len()];
-        out[slot] = *impulse;
-        let mut place = slot;
-        while place > 0 {
-            let through = link(place).passed_up::<L>(&out[place]);
-            place = above[place] as usize;
-            through.store(&mut out[place]);
-        }
+        ascend::<L>(links, members, above, (slot, impulse), out);
         for place in 0..members.len() {
-            // What has no impulse is beside the way to the root, or has nothing to answer to.
-            let answers = place <= slot && out[place] != ZERO6;
-            let mut v = if answers { link(place).alone::<L>(&out[place]) } else { L::splat(0.0) };
-            if place > 0 {
-                v = v + link(place).carried::<L>(&out[above[place] as usize]);
-            }
-            v.store(&mut out[place]);
+            descend::<L>(&links[members[place] as usize], above[place] as usize, place, slot, out);
         }
     }
+}
+
+/// The sum of the changes from impulses on two members, in the first list; in the second those from the second impulse.
+struct AnswerBoth<'a> {
+    links: &'a [Link],
+    members: &'a [u32],
+    above: &'a [u32],
+    slots: [usize; 2],
+    impulses: [&'a Vec6; 2],
+    out: [&'a mut [Vec6]; 2],
+}
+
+impl Kernel for AnswerBoth<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { links, members, above, slots: [one, two], impulses, out: [first, second] } = self;
+        let (first, second) = (&mut first[..members.len()], &mut second[..members.len()]);
+        ascend::<L>(links, members, above, (one, impulses[0]), first);
+        ascend::<L>(links, members, above, (two, impulses[1]), second);
+        for place in 0..members.len() {
+            let (link, parent) = (&links[members[place] as usize], above[place] as usize);
+            descend::<L>(link, parent, place, one, first);
+            descend::<L>(link, parent, place, two, second);
+        }
+        for (sum, more) in first.iter_mut().zip(second) {
+            (L::load(sum) + L::load(more)).store(sum);
+        }
+    }
+}
+
+/// What an impulse on the member `slot` passes on, up to the root.
+#[inline(always)]
+fn ascend<L: Lanes>(
+    links: &[Link],
+    members: &[u32],
+    above: &[u32],
+    (slot, impulse): (usize, &Vec6),
+    out: &mut [Vec6],
+) {
+    out[slot] = *impulse;
+    let mut place = slot;
+    while place > 0 {
+        let through = links[members[place] as usize].passed_up::<L>(&out[place]);
+        place = above[place] as usize;
+        through.store(&mut out[place]);
+    }
+}
+
+/// The answer of a member, from the impulse on it and its parent's answer.
+#[inline(always)]
+fn descend<L: Lanes>(link: &Link, parent: usize, place: usize, slot: usize, out: &mut [Vec6]) {
+    // What has no impulse is beside the way to the root, or has nothing to answer to.
+    let none = L::splat(0.0);
+    let answers = place <= slot && !L::eq(L::load(&out[place]), none).all();
+    let mut v = if answers { link.alone::<L>(&out[place]) } else { none };
+    if place > 0 {
+        v = v + link.carried::<L>(&out[parent]);
+    }
+    v.store(&mut out[place]);
 }

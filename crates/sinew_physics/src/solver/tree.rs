@@ -7,7 +7,7 @@
 
 use super::SolverJoint;
 use super::articulated::{Elimination, Freedom, Inertia, Sequence, Swivel, Twist, wide};
-use crate::joint::{DIRECTIONS, JointRows};
+use crate::joint::{DIRECTIONS, JointRows, TWIST};
 use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, join};
 use core::ops::Range;
 use sinew_math::dispatch::{self, Kernel};
@@ -20,6 +20,19 @@ pub(crate) const NONE: u32 = u32::MAX;
 /// Square of the length below which an axis is none, and the share of that square that other axes must leave.
 const LEAST_AXIS: f32 = 1e-6;
 const LEAST_SHARE: f32 = 1e-5;
+
+/// One in each of the lanes that six numbers take.
+const SIX: Vec6 = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0];
+/// Rows of the unit matrix.
+const UNITS: Mat6 = {
+    let mut units = ZERO66;
+    let mut k = 0;
+    while k < 6 {
+        units[k][k] = 1.0;
+        k += 1;
+    }
+    units
+};
 
 /// A moving body as a node of its tree. Nodes of a tree are contiguous, parents before children.
 #[derive(Clone, Debug)]
@@ -94,53 +107,81 @@ impl Link {
 
     /// Eliminates what its joint leaves open. Gives what the parent gets of the articulated inertia.
     #[inline(always)]
-    fn factor(&mut self, joint: Option<&SolverJoint>, is_b: bool, inertia: &Inertia<f64>) -> Inertia<f64> {
+    fn factor<L: Lanes>(
+        &mut self,
+        joint: Option<&SolverJoint>,
+        is_b: bool,
+        inertia: &Inertia<f64>,
+    ) -> Inertia<f64> {
         (self.asking, self.pushing) = (0, 0);
         let Some(joint) = joint else {
             let mut free = Swivel::new(Freedom::All, [wide(Vec3::ZERO); 2], inertia);
             free.factor();
-            self.condense(&free);
+            self.condense::<L>(&free);
             return Inertia::zero();
         };
         if joint.is_point() {
             let mut swivel = self.swivel(joint, is_b, inertia);
             let through = swivel.factor();
-            self.condense(&swivel);
-            self.answer_rows(&swivel, &through, swivel.parent_arm());
+            self.condense::<L>(&swivel);
+            self.answer_point(&through, is_b);
+            self.answer_rows(TWIST, &swivel, &through, swivel.parent_arm());
             return through;
         }
         let mut sequence = self.sequence(joint, is_b, inertia);
         let through = sequence.factor();
-        self.condense(&sequence);
-        self.answer_rows(&sequence, &through, sequence.parent_arm());
+        self.condense::<L>(&sequence);
+        let holds_point = joint.rigid >= TWIST && joint.rows.locks_point();
+        if holds_point {
+            self.answer_point(&through, is_b);
+        }
+        let answered = if holds_point { TWIST } else { 0 };
+        self.answer_rows(answered, &sequence, &through, sequence.parent_arm());
         // With nothing but free directions, all of it is rounding.
         if joint.rows.count == 0 { Inertia::zero() } else { through }
     }
 
-    /// What an elimination makes of units of velocities and impulses. Formed with twice the digits: in single precision light
-    /// bodies between heavy ones would pass on more rounding than they weigh.
+    /// What an elimination makes of units of velocities and impulses, one in each lane. Formed with twice the digits: in single
+    /// precision light bodies between heavy ones would pass on more rounding than they weigh.
     #[inline(always)]
-    fn condense<E: Elimination<f64>>(&mut self, by: &E) {
-        for column in 0..6 {
-            let mut unit = [0.0; 6];
-            unit[column] = 1.0;
-            let mut kept = [0.0; 6];
-            if self.joint != NONE {
-                let carried = narrow(by.descend(twist(unit), &kept));
-                self.carry_columns[column] = carried;
-                set_column(&mut self.carry, column, &carried);
-            }
-            // What it passes on is, by symmetry, a column of what the parent's velocities carry over.
-            by.ascend(twist(unit), &mut kept);
-            set_column(&mut self.own, column, &narrow(by.descend_alone(&kept)));
+    fn condense<L: Lanes>(&mut self, by: &impl Elimination<f64>) {
+        let [x, y, z, u, v, w] = &UNITS;
+        let units =
+            [widen::<L>(x), widen::<L>(y), widen::<L>(z), widen::<L>(u), widen::<L>(v), widen::<L>(w)];
+        let mut kept = [L::Wide::splat(0.0); 6];
+        if self.joint != NONE {
+            let [x, y, z, u, v, w] = narrow_lanes::<L>(by.descend(twist(units), &kept));
+            store([x, y, z, u, v, w], &mut self.carry);
+            let none = L::splat(0.0);
+            let [x, y, z, u, v, w, ..] = L::transpose([x, y, z, u, v, w, none, none]);
+            store([x, y, z, u, v, w], &mut self.carry_columns);
+        }
+        // What it passes on is, by symmetry, a column of what the parent's velocities carry over.
+        by.ascend(twist(units), &mut kept);
+        store(narrow_lanes::<L>(by.descend_alone(&kept)), &mut self.own);
+    }
+
+    /// The rows that hold a point: they ask for what units of the parent's velocity make of the anchor.
+    #[inline(always)]
+    fn answer_point(&mut self, through: &Inertia<f64>, is_b: bool) {
+        let sign = if is_b { 1.0 } else { -1.0 };
+        for (k, (force, torque)) in through.mass.rows().into_iter().zip(through.coupling).enumerate() {
+            self.follow[k] = self.carry_columns[k].map(|x| x * sign);
+            self.pass[k] = narrow([force, torque]).map(|x| -sign * x);
         }
     }
 
-    /// From what rows ask of the child at the anchor to what that makes of it and passes on. Both are formed with twice the
-    /// digits: what a heavy child takes along and what it passes on nearly cancel.
+    /// From what rows, those from the `first` on, ask of the child at the anchor to what that makes of it and passes on. Both are
+    /// formed with twice the digits: what a heavy child takes along and what it passes on nearly cancel.
     #[inline(always)]
-    fn answer_rows<E: Elimination<f64>>(&mut self, by: &E, through: &Inertia<f64>, parent_arm: Vector3<f64>) {
-        for (follow, pass) in self.follow.iter_mut().zip(&mut self.pass).take(self.asking) {
+    fn answer_rows<E: Elimination<f64>>(
+        &mut self,
+        first: usize,
+        by: &E,
+        through: &Inertia<f64>,
+        parent_arm: Vector3<f64>,
+    ) {
+        for (follow, pass) in self.follow.iter_mut().zip(&mut self.pass).take(self.asking).skip(first) {
             let [x, y, z, u, v, w, ..] = follow.map(f64::from);
             let [v, w] = twist([x, y, z, u, v, w]);
             *follow = narrow(by.follow([v, w], &[0.0; 6]));
@@ -234,9 +275,29 @@ fn narrow(twist: Twist<f64>) -> Vec6 {
 }
 
 #[inline(always)]
-fn set_column(m: &mut Mat6, column: usize, to: &Vec6) {
-    for (row, x) in m.iter_mut().zip(to) {
-        row[column] = *x;
+fn widen<L: Lanes>(from: &Vec6) -> L::Wide {
+    L::load(from).widen()
+}
+
+/// With the digits of the solve; nothing in the lanes that fill a register.
+#[inline(always)]
+fn narrow_lanes<L: Lanes>(twist: Twist<L::Wide>) -> [L; 6] {
+    let six = L::gt(L::load(&SIX), L::splat(0.0));
+    let [x, y, z, u, v, w] = flat(twist);
+    [
+        L::narrow(x).masked(six),
+        L::narrow(y).masked(six),
+        L::narrow(z).masked(six),
+        L::narrow(u).masked(six),
+        L::narrow(v).masked(six),
+        L::narrow(w).masked(six),
+    ]
+}
+
+#[inline(always)]
+fn store<L: Lanes>(rows: [L; 6], to: &mut Mat6) {
+    for (row, to) in rows.into_iter().zip(to) {
+        row.store(to);
     }
 }
 
@@ -324,7 +385,7 @@ impl Kernel for Factor<'_> {
         for i in (0..links.len()).rev() {
             let joint = joints.get(links[i].joint as usize);
             let is_b = joint.is_some_and(|joint| joint.b as usize == i);
-            let through = links[i].factor(joint, is_b, &inertia[i]);
+            let through = links[i].factor::<L>(joint, is_b, &inertia[i]);
             if let Some(parent) = inertia.get_mut(links[i].parent as usize) {
                 parent.add(&through);
             }

@@ -158,11 +158,12 @@ impl IslandSolver {
         let mut largest = 0.0;
         let mut residual = |joint: &mut SolverJoint| {
             let [a, b] = [joint.a, joint.b].map(|body| &poses[body as usize]);
-            let predicted = JointPose::new(&joint.geometry, a, b);
-            let error = if joint.rigid > 0 {
-                joint.rigid_error(&predicted)
+            let error = if joint.is_point() {
+                joint.point_error(JointPose::gap(&joint.geometry, a, b))
+            } else if joint.rigid > 0 {
+                joint.rigid_error(&JointPose::new(&joint.geometry, a, b))
             } else {
-                joint.bend_error(&predicted, &self.velocities, h)
+                joint.bend_error(&JointPose::new(&joint.geometry, a, b), &self.velocities, h)
             };
             largest = error.iter().fold(largest, |most, error| max(most, error.abs()));
             error.map(|error| -error / h)

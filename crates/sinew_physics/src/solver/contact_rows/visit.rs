@@ -80,14 +80,12 @@ impl ManifoldRows {
 
     /// Gives nothing, and has nothing to give at these velocities.
     pub fn is_idle(&self, velocities: &[Vec6], pass: Pass, h: f32) -> bool {
-        let parts_by_itself = |i: usize| {
-            let rate = self.rows[i].rate(self.pair(), velocities) + self.bias(i, pass, h);
-            self.separation[i] > 0.0 && self.impulse[i] == 0.0 && rate >= 0.0
-        };
-        (0..self.count).all(parts_by_itself)
-            && self.friction == Vec3::ZERO
+        let rate = |i: usize| self.rows[i].rate(self.pair(), velocities) + self.bias(i, pass, h);
+        let is_apart = |i: usize| self.separation[i] > 0.0 && self.impulse[i] == 0.0;
+        self.friction == Vec3::ZERO
             && self.twist == 0.0
             && self.rolling == Vec3::ZERO
+            && (0..self.count).all(|i| is_apart(i) && rate(i) >= 0.0)
     }
 
     /// One visit of the normal rows as a block.
