@@ -9,7 +9,7 @@ fn spinning(world: &mut World, i: u32) -> BodyId {
     let mut random = Random::new(u64::from(i) + 1);
     let extents = Vec3::new(random.range(0.1, 0.2), random.range(0.2, 0.4), random.range(0.4, 0.8));
     let mut def = box_body(extents, Vec3::new(10.0 * i as f32, 50.0, 0.0));
-    def.velocity = Velocity { linear: random.direction() * 5.0, angular: random.direction() * 12.0 };
+    (def.linear_velocity, def.angular_velocity) = (random.direction() * 5.0, random.direction() * 12.0);
     (def.linear_damping, def.angular_damping) = (random.range(0.0, 0.2), random.range(0.0, 0.2));
     world.add_body(&def)
 }
@@ -57,7 +57,7 @@ fn spin_and_speed_stay_within_the_worlds_limits() {
     let mut world =
         World::new(WorldDef { gravity: Vec3::ZERO, max_speed: 20.0, max_turn: 0.1, ..WorldDef::default() });
     let mut def = box_body(Vec3::new(0.1, 0.2, 0.3), Vec3::ZERO);
-    def.velocity = Velocity { linear: Vec3::X * 1e4, angular: Vec3::new(1e3, 1.0, 1e3) };
+    (def.linear_velocity, def.angular_velocity) = (Vec3::X * 1e4, Vec3::new(1e3, 1.0, 1e3));
     let id = world.add_body(&def);
     for _ in 0..10 {
         world.step();
