@@ -34,8 +34,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     });
     stage(Stage::Collide, &mut || touch::collide(bodies, broad, contacts, parts, context));
     stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, meetings, events));
-    let (proxies, modifiers) = (&broad.proxies, &meetings.modifiers);
-    let pace = Pace::new(context, objects);
+    let (proxies, modifiers, pace) = (&broad.proxies, &meetings.modifiers, Pace::new(context, objects));
     let view = View { bodies, activity, proxies, joints, contacts, modifiers, def, fields, pace };
     stage(Stage::Islands, &mut || islands.find(&view, groups));
     stage(Stage::Color, &mut || islands.color());

@@ -9,8 +9,6 @@ const NOT_YET: &[(&str, &[&str])] = &[
     ("arch", &["shift_max_m"]),
     // An end that hangs beside the box rubs on nothing, and swings by 3 cm/s after ten seconds, instead of 2.
     ("rope_on_box", &["fastest_m_s"]),
-    // At step 220 instead of 213: one stick slides for 8 steps more.
-    ("mesh_drop", &["asleep_steps"]),
 ];
 
 /// Scenes in which gravity has no part, and one whose bound is about walls alone (`fast_particle`).
