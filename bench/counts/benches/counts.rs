@@ -30,13 +30,19 @@ fn falling() -> Instance {
     ragdoll(12)
 }
 
-/// On the floor, twitching.
-fn lying() -> Instance {
+/// Coming down on the floor: the busiest steps of the fall.
+fn landing() -> Instance {
     ragdoll(60)
+}
+
+/// On the floor, still and awake.
+fn lying() -> Instance {
+    ragdoll(95)
 }
 
 #[library_benchmark]
 #[bench::falling(falling())]
+#[bench::landing(landing())]
 #[bench::lying(lying())]
 fn ragdoll_step(mut drop: Instance) -> Instance {
     drop.world_mut().step();
