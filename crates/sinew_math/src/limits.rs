@@ -95,7 +95,7 @@ impl SwingTwistLimit {
         self.place_in_cone(swing).state()
     }
 
-    /// The same if there is less room than `reach`.
+    /// State of the swing stop if it has less room than `reach`, radians.
     pub fn swing_within(&self, swing: Rotation, reach: f32) -> Option<LimitState> {
         let place = self.place_in_cone(swing);
         (place.room < reach).then(|| place.state())
@@ -124,13 +124,13 @@ impl SwingTwistLimit {
         twist_states(self.room_of_twist(twist), swing)
     }
 
-    /// The same if one of them has less room than `reach`.
+    /// States of the lower and the upper twist stop if one of them has less room than `reach`, radians.
     pub fn twist_within(&self, swing: Rotation, twist: Rotation, reach: f32) -> Option<[LimitState; 2]> {
         let room = self.room_of_twist(twist);
         (room[0] < reach || room[1] < reach).then(|| twist_states(room, swing))
     }
 
-    /// Below and above.
+    /// Room below and above the twist, radians.
     fn room_of_twist(&self, twist: Rotation) -> [f32; 2] {
         // Measured from the middle of the range and wrapped, so that ranges near ±π have no jump inside.
         let middle = self.twist.center();
@@ -157,15 +157,15 @@ fn twist_states([below, above]: [f32; 2], swing: Rotation) -> [LimitState; 2] {
     [LimitState { room: below, axis }, LimitState { room: above, axis: -axis }]
 }
 
-/// Where a swing is in its cone.
+/// Place of a swing in the cone of its limit.
 struct PlaceInCone {
     /// Sine and cosine of half its angle.
     half: f32,
     cos: f32,
     angle: f32,
-    /// What it is about.
+    /// Unit axis of the swing, at right angles to x.
     u: Vec3,
-    /// Of the ellipse, outward.
+    /// Outward normal of the cone's ellipse where the swing meets it.
     normal: Vec3,
     room: f32,
 }

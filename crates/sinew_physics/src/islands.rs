@@ -20,7 +20,7 @@ pub(crate) struct Island<'a> {
     pub contacts: &'a [u32],
     /// Particle groups that hang on its bodies or may touch them.
     pub groups: &'a [u32],
-    /// It has come through this step by itself: a body in flight.
+    /// Its only body is in flight and has been through this step.
     pub is_flown: bool,
 }
 
@@ -52,7 +52,7 @@ pub(crate) struct Islands {
     /// Out of the world for the length of the step, island after island.
     taken: Vec<TakenGroup>,
     solution: Solution,
-    /// Per island: its only body was in flight, and is where it comes to.
+    /// True of each island whose only body is in flight and has been through this step.
     flown: Vec<bool>,
     flight: Flight,
     /// One for each thread that has worked at the same time as others.

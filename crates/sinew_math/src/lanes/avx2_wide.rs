@@ -14,7 +14,7 @@ use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 #[derive(Clone, Copy)]
 pub(crate) struct Wide(pub __m256d, pub __m256d);
 
-/// What comparisons of [`Wide`] give.
+/// True or false in each lane: the result of comparing two [`Wide`].
 #[derive(Clone, Copy)]
 pub(crate) struct WideMask(__m256d, __m256d);
 

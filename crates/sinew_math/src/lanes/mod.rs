@@ -140,10 +140,10 @@ pub trait Lanes: Real<Mask: LaneMask> {
     /// Eight numbers of twice the digits, for sums that cancel.
     type Wide: Real;
 
-    /// The same numbers.
+    /// The same numbers in 64 bits.
     fn widen(self) -> Self::Wide;
 
-    /// Each rounded to the nearest.
+    /// Eight numbers of 64 bits, each rounded to the nearest of 32.
     fn narrow(wide: Self::Wide) -> Self;
 
     /// The numbers of an array, item `k` in lane `k`.

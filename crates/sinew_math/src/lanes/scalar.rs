@@ -150,22 +150,6 @@ macro_rules! lane_by_lane {
 lane_by_lane!(Add add Scalar, Sub sub Scalar, Mul mul Scalar, Div div Scalar, BitAnd bitand Bools, BitOr bitor Bools);
 lane_by_lane!(Add add Doubles, Sub sub Doubles, Mul mul Doubles, Div div Doubles);
 
-impl Neg for Scalar {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(self.0.map(f32::neg))
-    }
-}
-
-impl Neg for Doubles {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(self.0.map(f64::neg))
-    }
-}
-
 impl Not for Bools {
     type Output = Self;
     #[inline(always)]
@@ -184,108 +168,75 @@ impl LaneMask for Bools {
     }
 }
 
-impl Real for Scalar {
-    type Mask = Bools;
+/// Numbers side by side in an array, each treated as one of them is.
+macro_rules! array_of {
+    ($of:ident $number:ident) => {
+        impl Neg for $of {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self(self.0.map($number::neg))
+            }
+        }
 
-    #[inline(always)]
-    fn splat(value: f32) -> Self {
-        Self([value; WIDTH])
-    }
+        impl Real for $of {
+            type Mask = Bools;
 
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.map(f32::sqrt))
-    }
+            #[inline(always)]
+            fn splat(value: f32) -> Self {
+                Self([$number::splat(value); WIDTH])
+            }
 
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.map(f32::abs))
-    }
+            #[inline(always)]
+            fn splat_wide(value: f64) -> Self {
+                Self([$number::splat_wide(value); WIDTH])
+            }
 
-    #[inline(always)]
-    fn lt(a: Self, b: Self) -> Bools {
-        Bools(array::from_fn(|k| a.0[k] < b.0[k]))
-    }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                Self(self.0.map($number::sqrt))
+            }
 
-    #[inline(always)]
-    fn le(a: Self, b: Self) -> Bools {
-        Bools(array::from_fn(|k| a.0[k] <= b.0[k]))
-    }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                Self(self.0.map($number::abs))
+            }
 
-    #[inline(always)]
-    fn eq(a: Self, b: Self) -> Bools {
-        Bools(array::from_fn(|k| a.0[k] == b.0[k]))
-    }
+            #[inline(always)]
+            fn lt(a: Self, b: Self) -> Bools {
+                Bools(array::from_fn(|k| a.0[k] < b.0[k]))
+            }
 
-    #[inline(always)]
-    fn select(mask: Bools, a: Self, b: Self) -> Self {
-        Self(array::from_fn(|k| f32::select(mask.0[k], a.0[k], b.0[k])))
-    }
+            #[inline(always)]
+            fn le(a: Self, b: Self) -> Bools {
+                Bools(array::from_fn(|k| a.0[k] <= b.0[k]))
+            }
 
-    #[inline(always)]
-    fn masked(self, mask: Bools) -> Self {
-        Self(array::from_fn(|k| self.0[k].masked(mask.0[k])))
-    }
+            #[inline(always)]
+            fn eq(a: Self, b: Self) -> Bools {
+                Bools(array::from_fn(|k| a.0[k] == b.0[k]))
+            }
 
-    #[inline(always)]
-    fn nan_where(self, mask: Bools) -> Self {
-        Self(array::from_fn(|k| self.0[k].nan_where(mask.0[k])))
-    }
+            #[inline(always)]
+            fn select(mask: Bools, a: Self, b: Self) -> Self {
+                Self(array::from_fn(|k| $number::select(mask.0[k], a.0[k], b.0[k])))
+            }
+
+            #[inline(always)]
+            fn masked(self, mask: Bools) -> Self {
+                Self(array::from_fn(|k| self.0[k].masked(mask.0[k])))
+            }
+
+            #[inline(always)]
+            fn nan_where(self, mask: Bools) -> Self {
+                Self(array::from_fn(|k| self.0[k].nan_where(mask.0[k])))
+            }
+        }
+    };
 }
 
-impl Real for Doubles {
-    type Mask = Bools;
-
-    #[inline(always)]
-    fn splat(value: f32) -> Self {
-        Self([f64::from(value); WIDTH])
-    }
-
-    #[inline(always)]
-    fn splat_wide(value: f64) -> Self {
-        Self([value; WIDTH])
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.map(f64::sqrt))
-    }
-
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.map(f64::abs))
-    }
-
-    #[inline(always)]
-    fn lt(a: Self, b: Self) -> Bools {
-        Bools(array::from_fn(|k| a.0[k] < b.0[k]))
-    }
-
-    #[inline(always)]
-    fn le(a: Self, b: Self) -> Bools {
-        Bools(array::from_fn(|k| a.0[k] <= b.0[k]))
-    }
-
-    #[inline(always)]
-    fn eq(a: Self, b: Self) -> Bools {
-        Bools(array::from_fn(|k| a.0[k] == b.0[k]))
-    }
-
-    #[inline(always)]
-    fn select(mask: Bools, a: Self, b: Self) -> Self {
-        Self(array::from_fn(|k| f64::select(mask.0[k], a.0[k], b.0[k])))
-    }
-
-    #[inline(always)]
-    fn masked(self, mask: Bools) -> Self {
-        Self(array::from_fn(|k| self.0[k].masked(mask.0[k])))
-    }
-
-    #[inline(always)]
-    fn nan_where(self, mask: Bools) -> Self {
-        Self(array::from_fn(|k| self.0[k].nan_where(mask.0[k])))
-    }
-}
+array_of!(Scalar f32);
+array_of!(Doubles f64);
 
 impl Lanes for Scalar {
     type Wide = Doubles;

@@ -20,7 +20,7 @@ type Eight = [f32; WIDTH];
 /// Most that a body turns within a substep, should the world's limit allow more, radians: what the series for sine and cosine reach.
 const MOST_TURN: f32 = 3.0;
 
-/// Whether nothing but lasting forces acts on an island's only body.
+/// True of an island of one body on which nothing acts but gravity and the forces and torques of this step.
 pub(crate) fn flies(island: &Island<'_>, view: &View<'_>) -> bool {
     let &[body] = island.bodies else { return false };
     let held = !(island.joints.is_empty() && island.contacts.is_empty() && island.groups.is_empty());
@@ -68,7 +68,7 @@ impl Flight {
         }
     }
 
-    /// Where they have come to, in the order in which they were added.
+    /// Poses and velocities after the step, in the order in which bodies were added.
     pub fn solved(&self) -> impl Iterator<Item = SolvedBody> {
         (0..self.count).map(|i| self.flocks[i / WIDTH].read(i % WIDTH))
     }
@@ -77,7 +77,7 @@ impl Flight {
 /// Eight bodies in flight.
 #[derive(Clone, Debug)]
 struct Flock {
-    /// In the world.
+    /// Indices in the world.
     bodies: [u32; WIDTH],
     position: [Eight; 3],
     rotation: [Eight; 4],
@@ -86,8 +86,9 @@ struct Flock {
     momentum: [Eight; 3],
     /// Principal moments, kg·m².
     inertia: [Eight; 3],
-    /// By lasting forces, m/s².
+    /// Acceleration by gravity and the forces of this step, m/s².
     acceleration: [Eight; 3],
+    /// Torque of this step, world axes, N·m.
     torque: [Eight; 3],
     linear_damping: Eight,
     angular_damping: Eight,
@@ -275,7 +276,7 @@ fn turn_back<L: Lanes>(vector: Vector3<L>, real: L, v: Vector3<L>) -> Vector3<L>
     v + across * real + across.cross(vector)
 }
 
-/// How much of a vector may stay for it to be no longer than `most`.
+/// Factor, 1 at most, that makes a vector no longer than `most`.
 #[inline(always)]
 fn within<L: Lanes>(v: Vector3<L>, most: f32) -> L {
     let (length, most) = (v.length(), L::splat(most));

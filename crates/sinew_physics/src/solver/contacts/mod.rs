@@ -79,7 +79,7 @@ pub(crate) struct Contacts {
     moved: Vec<Vec6>,
     /// Per body: how much its velocity has changed in the pass.
     stir: Vec<f32>,
-    /// Per body: how far it has turned in the step so far, radians.
+    /// Angle through which each body has turned in the step so far, radians.
     turned: Vec<f32>,
     found: Vec<Found>,
     conjugate: Conjugate,

@@ -30,9 +30,9 @@ pub(super) struct Found {
     bodies: [u32; 2],
     manifold: Manifold,
     cores: Cores,
-    /// It is looked for when a body has turned by more than this since it was found last, radians.
+    /// The manifold is looked for when a body has turned by more than this since it was found last, radians.
     most_turn: f32,
-    /// How far that body had turned then in the step, radians.
+    /// Turn of the faster body from the beginning of the step to then, radians.
     turned: f32,
 }
 
