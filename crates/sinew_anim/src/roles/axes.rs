@@ -82,7 +82,7 @@ pub(super) fn unit_scale(height: f32, size: f32, humanoid: bool) -> (f32, UnitGu
     let Some((scale, unit)) = fitting.next() else {
         let scale = assumed / max(measure, 1e-12);
         let note = format!(
-            "{measure:.3} units {across} fits no unit, for {usual}: scaled to {assumed} m, a unit of {scale} m; as metres \
+            "{measure:.3} units {across} fits no unit, since {usual}: scaled to {assumed} m, a unit of {scale} m; as metres \
              it would be {measure:.2} m"
         );
         return (scale, UnitGuess { note, is_sure: false });
@@ -95,7 +95,7 @@ pub(super) fn unit_scale(height: f32, size: f32, humanoid: bool) -> (f32, UnitGu
         false => format!("it may also be {}", others.join(", ")),
     };
     let note = format!(
-        "{measure:.2} units {across}, taken as {unit}: {:.2} m, for {usual}; {others}",
+        "{measure:.2} units {across}, taken as {unit}: {:.2} m, since {usual}; {others}",
         measure * scale
     );
     (scale, UnitGuess { note, is_sure })
