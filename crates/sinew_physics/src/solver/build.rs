@@ -5,14 +5,14 @@ use super::contacts::{Added, OfStep, placed};
 use super::drives::SoftRow;
 use super::faces::Faces;
 use super::loops::MAX_EXACT_ROWS;
-use super::squeeze::Touch;
+use super::squeeze::{Touch, UNEQUAL};
 use super::tree::{Link, NONE};
 use super::{IslandSolver, SolverBody, SolverJoint, counts};
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
 use crate::collide::MAX_POINTS;
-use crate::contact::{Contact, slop};
+use crate::contact::{Contact, ContactMemory, slop};
 use crate::def::WorldDef;
 use crate::field::Fields;
 use crate::islands::Island;
@@ -244,8 +244,7 @@ impl IslandSolver {
         s.pieces.clear();
         s.pieces.reserve(island.bodies.len());
         self.pins.make_room(island.bodies.len(), island.joints.len());
-        s.shares.clear();
-        s.shares.reserve(island.bodies.len());
+        s.loads.make_room(island.bodies.len() + SPARE, island.contacts.len() + SPARE);
         self.conjugate.make_room(island.bodies.len(), island.contacts.len());
         s.build.faces.make_room(island.bodies.len() + SPARE);
         self.touches.clear();
@@ -493,9 +492,17 @@ impl IslandSolver {
             };
             contacts.push(&added, &self.bodies);
         }
-        (self.contacts, self.scratch.build.faces) = (contacts, faces);
         self.levels.count(moving, self.bodies.len(), &self.touches);
+        self.is_unequal = self.mass_ratio() >= UNEQUAL;
         self.guess_loads();
+        if in_lanes {
+            for (place, (touch, &index)) in self.touches.iter().zip(island.contacts).enumerate() {
+                if let Some(points) = touch.started(&view.contacts[index as usize], self.stretch) {
+                    contacts.start_with(place, &points);
+                }
+            }
+        }
+        (self.contacts, self.scratch.build.faces) = (contacts, faces);
         self.add_ballast();
     }
 
@@ -510,12 +517,14 @@ impl IslandSolver {
 
     fn copy_contacts(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.driven = false;
-        for &index in island.contacts {
+        for (&index, touch) in island.contacts.iter().zip(&self.touches) {
             let contact = &view.contacts[index as usize];
             let (a, b) = (view.bodies.at(contact.key.a), view.bodies.at(contact.key.b));
             let shape_a = &a.shapes[contact.key.shape_a as usize];
             let shape_b = &b.shapes[contact.key.shape_b as usize];
             let extent = min(shape_a.shape.smallest_extent(), shape_b.shape.smallest_extent());
+            let points = touch.started(contact, self.stretch).unwrap_or(contact.memory.points);
+            let memory = ContactMemory { points, ..contact.memory };
             let source = ManifoldSource {
                 contact: index,
                 a: self.local(contact.key.a),
@@ -523,7 +532,7 @@ impl IslandSolver {
                 a_moves: a.is_active(),
                 b_moves: b.is_active(),
                 manifold: &contact.manifold,
-                memory: contact.memory.of_substeps(self.stretch),
+                memory: memory.of_substeps(self.stretch),
                 material: view.modifiers.material(view.bodies, view.contacts, index),
                 slop: slop(extent),
                 shapes: [shape_a, shape_b].map(|s| PlacedShape::new(s.shape.clone(), s.principal_from_shape)),

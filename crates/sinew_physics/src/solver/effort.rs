@@ -23,6 +23,8 @@ pub(super) struct Effort {
     /// the tolerance ends them. Of sweeps by turns.
     pub enough: f32,
     pub order: Order,
+    /// The sweep from which on those of free bodies are conjugate steps.
+    first_conjugate: usize,
 }
 
 /// How hard a contact is.
@@ -60,20 +62,44 @@ pub(super) enum Order {
 }
 
 /// Of islands with joints that are swept with the response of all links.
-const JOINTED: Effort =
-    Effort { solve: 24, relax: 24, tolerance: 2e-3, small: 0.0, enough: 0.0, order: Order::Forward };
+const JOINTED: Effort = Effort {
+    solve: 24,
+    relax: 24,
+    tolerance: 2e-3,
+    small: 0.0,
+    enough: 0.0,
+    order: Order::Forward,
+    first_conjugate: 1,
+};
 /// Of heaps in which contacts and trees are solved by turns: most sweeps of a heap at rest end with the second, those of a crash are
 /// needed (a chain of 70 links sank 85 mm into a wall with four).
-const TURNS: Effort =
-    Effort { solve: 16, relax: 16, tolerance: 0.05, small: 0.0, enough: 0.1, order: Order::Forward };
-/// Of a pile of bodies that weigh about the same: hard contacts want sweeps that find the loads, most of which a pile at rest does not
-/// need. In `relax` two, since friction of the first knows only the impulses of `solve` (1.5 % too little).
-const PILE: Effort =
-    Effort { solve: 96, relax: 2, tolerance: 2e-3, small: 1e-3, enough: 0.0, order: Order::ToAndFro };
-/// Of a heap with more contacts than [`MANY_CONTACTS`]: what falls in it finds its loads over some substeps.
-const HEAP: Effort = Effort { solve: 16, small: 0.01, ..PILE };
-/// Of a pile that `PILE` is for. What one end of it feels reaches the other in as many sweeps as it has levels: a wall of a hundred
-/// leaned by 0.8 m within 17 s.
+const TURNS: Effort = Effort {
+    solve: 6,
+    relax: 4,
+    tolerance: 0.05,
+    small: 0.0,
+    enough: 0.1,
+    order: Order::Forward,
+    first_conjugate: 1,
+};
+/// Of few bodies that weigh about the same: an overhang that all but tips over wants 24 sweeps. In `relax` two, since friction of the first knows only the impulses of `solve` (1.5 % too little).
+const PILE: Effort = Effort {
+    solve: 24,
+    relax: 2,
+    tolerance: 1e-3,
+    small: 1e-3,
+    enough: 0.0,
+    order: Order::ToAndFro,
+    first_conjugate: 4,
+};
+/// Of a pile or heap of [`MANY_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
+/// over some substeps.
+const HEAP: Effort = Effort { solve: 8, relax: 4, first_conjugate: 2, ..PILE };
+/// Of unequal masses: a light body between heavy ones tosses what they do to each other to and fro, and what cannot move must have the
+/// last word.
+const UNEQUAL: Effort =
+    Effort { solve: 96, tolerance: 2e-3, small: 0.0, order: Order::Forward, first_conjugate: 4, ..PILE };
+/// Levels of a pile that `UNEQUAL` is for. What one end of it feels reaches the other in as many sweeps as it has levels.
 const LEVELS: f32 = 10.0;
 /// The most for high and unequal ones.
 const MOST_SOLVE: f32 = 1024.0;
@@ -88,24 +114,25 @@ impl Effort {
     /// A light body between heavy ones tosses what they do to each other to and fro. Exponents and bounds are what a tower of six
     /// cubes, each 8 times as heavy as the one below it, stands with.
     fn of_pile(levels: u32, ratio: f32, contacts: usize) -> Self {
-        let even = if contacts < MANY_CONTACTS { PILE } else { HEAP };
+        if ratio <= GRADED_RATIO {
+            let even = if contacts < MANY_CONTACTS { PILE } else { HEAP };
+            return Self { order: if ratio <= EVEN { even.order } else { Order::Forward }, ..even };
+        }
         let root = ratio.sqrt();
         let height = max(1.0, levels as f32 / LEVELS);
         Self {
-            solve: min(even.solve as f32 * height * root.sqrt(), MOST_SOLVE) as usize,
-            relax: min(even.relax as f32 * height * root, MOST_RELAX) as usize,
-            tolerance: max(even.tolerance / (height * ratio), LEAST_TOLERANCE),
-            small: if ratio <= GRADED_RATIO { even.small } else { 0.0 },
-            enough: 0.0,
-            order: if ratio <= EVEN { PILE.order } else { Order::Forward },
+            solve: min(UNEQUAL.solve as f32 * height * root.sqrt(), MOST_SOLVE) as usize,
+            relax: min(UNEQUAL.relax as f32 * height * root, MOST_RELAX) as usize,
+            tolerance: max(UNEQUAL.tolerance / (height * ratio), LEAST_TOLERANCE),
+            ..UNEQUAL
         }
     }
 
     /// Of contacts in blocks.
     pub fn of_blocks(&self, pass: Pass) -> Sweeps {
         let most = self.sweeps(pass);
-        let Self { tolerance, small, order, .. } = *self;
-        Sweeps { most, tolerance, small, order, first_conjugate: FIRST_CONJUGATE }
+        let Self { tolerance, small, order, first_conjugate, .. } = *self;
+        Sweeps { most, tolerance, small, order, first_conjugate }
     }
 
     /// Of contacts and trees by turns.
@@ -123,6 +150,7 @@ impl Effort {
             small: min(self.small, other.small),
             enough: min(self.enough, other.enough),
             order: self.order,
+            first_conjugate: self.first_conjugate,
         }
     }
 
@@ -139,12 +167,9 @@ impl Effort {
 const FIGURES: usize = 8;
 const CONTACTS_OF_FIGURES: usize = 128;
 const CONTACTS_OF_LINK: usize = 4;
-/// The sweep from which on those of free bodies are conjugate steps: a pile at rest is done before.
-const FIRST_CONJUGATE: usize = 4;
-/// Contacts from which on an island of free bodies is a heap: below, four substeps and many sweeps cost little, and every figure is
-/// better.
-const MANY_CONTACTS: usize = 1024;
-/// Likewise contacts per body, of islands with joints: what lies takes half of them, what swings or flies all.
+/// Contacts from which on an island of free bodies is a heap: they damp all motion, and no single one decides.
+const MANY_CONTACTS: usize = 32;
+/// Contacts per body, of islands with joints: what lies takes half of them, what swings or flies all.
 const CONTACTS_PER_BODY: f32 = 0.25;
 /// With fewer contacts than this one contact decides: a foot of 1 kg under 69 kg sinks by 2.3 mm instead of 2 in half the substeps.
 const FEW_CONTACTS: usize = 4;
@@ -181,12 +206,12 @@ impl IslandSolver {
 
     /// Once it is known who touches.
     pub(super) fn choose_effort(&mut self) {
-        let free = Effort::of_pile(self.levels.highest(), self.mass_ratio(), self.touches.len());
+        let of_pile = |contacts: usize| Effort::of_pile(self.levels.highest(), self.mass_ratio(), contacts);
         self.effort = match self.coupling {
-            Coupling::Free => free,
-            // What touches jointed bodies is swept as they need it, piles beside and under them as they would be without.
+            Coupling::Free => of_pile(self.touches.len()),
+            // What touches jointed bodies is swept as they need it, piles beside and under them as those of which each contact counts.
             _ if self.touches.iter().any(|touch| touch.bodies.iter().all(|&body| !self.is_jointed(body))) => {
-                self.effort_with_joints().at_least(free)
+                self.effort_with_joints().at_least(of_pile(0))
             }
             _ => self.effort_with_joints(),
         };

@@ -21,6 +21,7 @@ pub(crate) mod flight;
 pub(crate) mod lcp;
 mod levels;
 mod limit_rows;
+mod loads;
 mod loops;
 mod outside;
 mod pins;
@@ -206,7 +207,7 @@ pub(crate) struct IslandSolver {
     touches: Vec<Touch>,
     /// Per moving body: it touches another one, and no joint holds either.
     paired: Vec<bool>,
-    /// Masses of what touches differ so much that loads are guessed, and ballast follows from substep to substep.
+    /// Masses of what touches differ so much that ballast follows from substep to substep.
     is_unequal: bool,
     /// A point was hit in this substep so that it bounces.
     bounces: bool,
@@ -293,8 +294,7 @@ struct Scratch {
     limits: Vec<f32>,
     /// Velocities that the joints of the substep are solved from.
     started: Vec<Vec6>,
-    /// Bodies that each moving body stands on.
-    shares: Vec<f32>,
+    loads: loads::Scratch,
     pieces: Vec<composite::Piece>,
     build: build::Scratch,
 }

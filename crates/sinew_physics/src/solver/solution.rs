@@ -57,6 +57,9 @@ pub(crate) struct Solution {
 impl Solution {
     /// Makes room for so many of each.
     pub fn resize(&mut self, islands: usize, bodies: usize, joints: usize, contacts: usize) {
+        // Islands part and join, but there are never more than bodies.
+        self.work.clear();
+        self.work.reserve(bodies);
         self.work.resize(islands, Work::default());
         self.bodies.resize(bodies, SolvedBody::default());
         self.joints.resize(joints, SolvedJoint::default());

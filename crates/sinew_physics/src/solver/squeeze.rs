@@ -6,22 +6,23 @@
 //! nor what hits it from one side alone.
 
 use super::IslandSolver;
-use crate::contact::Contact;
+use crate::collide::{MAX_POINTS, ManifoldPoint};
+use crate::contact::{Contact, PointImpulse};
 use sinew_math::{Vec3, max};
 
 /// Least mass of a body per impulse that cancels itself on it in a substep, kg/(N·s): what bears less than 4,000 times its
 /// weight has no ballast, and an ulp of that impulse is worth 1e-5 m/s.
 const BALLAST: f32 = 6e-3;
-/// Before contacts know their loads, they are guessed where masses differ by more than this: less gives nobody ballast.
-const GUESSED: f32 = 1e3;
+/// Where masses differ by less than this nobody has ballast.
+pub(super) const UNEQUAL: f32 = 1e3;
+/// Fastest approach of what is taken to stand already, m/s.
+const STANDING_SPEED: f32 = 0.1;
 
 /// What presses on a body in a substep, N·s.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pressing {
     sum: Vec3,
     size: f32,
-    /// What stands on it, as long as contacts do not know.
-    guess: f32,
 }
 
 /// Two bodies that touch, when a step begins.
@@ -29,21 +30,49 @@ pub(super) struct Pressing {
 pub(super) struct Touch {
     /// Local.
     pub bodies: [u32; 2],
-    /// What B got along the normal in the last substep, N·s.
-    pub push: Vec3,
+    /// From A to B.
+    pub normal: Vec3,
+    /// What B got along the normal in the last substep, or is guessed to get in this one, N·s.
+    pub load: f32,
+    /// Gap below which points are taken for touching, metres.
+    slop: f32,
     /// They touch, and do not know their load yet.
     pub is_new: bool,
 }
 
 impl Touch {
-    /// A contact in substeps `stretch` times as long as the world's, whose points are taken for touching at gaps below `slop`,
-    /// metres.
+    /// Two bodies with what presses between them in a substep.
+    pub fn pressing(bodies: [u32; 2], normal: Vec3, load: f32) -> Self {
+        Self { bodies, normal, load, slop: 0.0, is_new: false }
+    }
+
+    /// A contact in substeps `stretch` times as long as the world's. What comes in fast does not stand there.
     pub fn new(bodies: [u32; 2], contact: &Contact, stretch: f32, slop: f32) -> Self {
         let points = contact.manifold.points();
         let load =
             stretch * contact.memory.points[..points.len()].iter().fold(0.0, |sum, point| sum + point.now);
-        let is_new = load == 0.0 && points.iter().any(|point| point.separation < slop);
-        Self { bodies, push: contact.manifold.normal * load, is_new }
+        let is_new = load == 0.0
+            && contact.approach < STANDING_SPEED
+            && points.iter().any(|point| point.separation < slop);
+        Self { bodies, normal: contact.manifold.normal, load, slop, is_new }
+    }
+
+    /// Impulses that the points of the contact start with if its load is guessed, in substeps of the world's: equal parts to
+    /// those that touch.
+    pub fn started(&self, contact: &Contact, stretch: f32) -> Option<[PointImpulse; MAX_POINTS]> {
+        if !self.is_new || self.load == 0.0 {
+            return None;
+        }
+        let touches = |point: &&ManifoldPoint| point.separation < self.slop;
+        let count = contact.manifold.points().iter().filter(touches).count();
+        let part = self.load / (stretch * count as f32);
+        let mut started = [PointImpulse::default(); MAX_POINTS];
+        for (impulse, _) in
+            started.iter_mut().zip(contact.manifold.points()).filter(|(_, point)| touches(point))
+        {
+            *impulse = PointImpulse { now: part, before: part, lasting: part, total: 0.0 };
+        }
+        Some(started)
     }
 }
 
@@ -55,52 +84,11 @@ impl Pressing {
 
     /// The part that cancels itself.
     fn squeeze(&self) -> f32 {
-        max(0.5 * (self.size - self.sum.length()), self.guess)
+        0.5 * (self.size - self.sum.length())
     }
 }
 
 impl IslandSolver {
-    /// When a step begins.
-    pub(super) fn guess_loads(&mut self) {
-        self.pressing.clear();
-        self.pressing.resize(self.links.len(), Pressing::default());
-        self.is_unequal = self.mass_ratio() >= GUESSED;
-        let unknown = self.touches.iter().any(|touch| touch.is_new);
-        if !unknown || !self.is_unequal {
-            return;
-        }
-        for (pressing, body) in self.pressing.iter_mut().zip(&self.bodies) {
-            pressing.guess = body.force.length() * self.h;
-        }
-        for level in (2..=self.levels.highest()).rev() {
-            self.hand_down(level);
-        }
-        // Their own weight squeezes nobody.
-        for (pressing, body) in self.pressing.iter_mut().zip(&self.bodies) {
-            pressing.guess -= body.force.length() * self.h;
-        }
-    }
-
-    /// Bodies of a level share what they bear, and themselves, among those that they stand on.
-    fn hand_down(&mut self, level: u32) {
-        let Self { touches, pressing, levels, scratch, .. } = self;
-        let supports = |touch: &Touch| {
-            let [a, b] = touch.bodies;
-            [(a, b), (b, a)]
-                .into_iter()
-                .find(|&(below, above)| levels.of(above) == level && levels.of(below) == level - 1)
-        };
-        let shares = &mut scratch.shares;
-        shares.clear();
-        shares.resize(pressing.len(), 0.0);
-        for (_, above) in touches.iter().filter_map(supports) {
-            shares[above as usize] += 1.0;
-        }
-        for (below, above) in touches.iter().filter_map(supports) {
-            pressing[below as usize].guess += pressing[above as usize].guess / shares[above as usize];
-        }
-    }
-
     /// Where masses are very unequal, ballast follows from what presses in this substep.
     pub(super) fn refresh_ballast(&mut self) {
         if self.is_unequal {
@@ -113,11 +101,10 @@ impl IslandSolver {
 
     /// Gives ballast to what was squeezed in the last substep.
     pub(super) fn add_ballast(&mut self) {
-        for pressing in &mut self.pressing {
-            *pressing = Pressing { guess: pressing.guess, ..Pressing::default() };
-        }
-        for &Touch { bodies: [a, b], push, .. } in &self.touches {
-            let size = push.length();
+        self.pressing.clear();
+        self.pressing.resize(self.links.len(), Pressing::default());
+        for &Touch { bodies: [a, b], normal, load, .. } in &self.touches {
+            let (push, size) = (normal * load, load);
             for (body, push) in [(a, -push), (b, push)] {
                 if let Some(pressing) = self.pressing.get_mut(body as usize) {
                     pressing.add(push, size);

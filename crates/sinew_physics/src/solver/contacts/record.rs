@@ -5,7 +5,7 @@ use super::Contacts;
 use super::block::NONE;
 use super::color::Edge;
 use super::geometry::Side;
-use crate::collide::ManifoldPoint;
+use crate::collide::{MAX_POINTS, ManifoldPoint};
 use crate::contact::{Contact, PointImpulse};
 use crate::material::ContactMaterial;
 use crate::solver::SolverBody;
@@ -146,6 +146,13 @@ fn at<L: Lanes>(records: &[Record], place: u32, row: usize) -> L {
 }
 
 impl Contacts {
+    /// Gives a contact that was added the impulses that it starts with.
+    pub fn start_with(&mut self, place: usize, points: &[PointImpulse; MAX_POINTS]) {
+        let [p, q, r, s] = points;
+        let rows = &mut self.records[place].rows;
+        (rows[IMPULSES], rows[IMPULSES + 1]) = (two_impulses(p, q), two_impulses(r, s));
+    }
+
     /// Adds a contact: first those of two moving bodies, then those with fixed ones.
     #[inline]
     pub fn push(&mut self, added: &Added<'_>, bodies: &[SolverBody]) {

@@ -75,7 +75,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
             let block = &self.blocks[place];
             let load = block.impulse.iter().fold(0.0, |sum, row| sum + row[lane]);
             let bodies = [0, 1].map(|end| block.bodies[end][lane] & !super::block::HELD);
-            touches.push(Touch { bodies, push: vector(&block.normal, lane) * load, is_new: false });
+            touches.push(Touch::pressing(bodies, vector(&block.normal, lane), load));
         }
     }
 
