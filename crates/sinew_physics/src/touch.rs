@@ -35,7 +35,6 @@ pub(crate) fn collide(
     context: &StepContext<'_>,
 ) {
     let BroadPhase { proxies, asked, .. } = broad;
-    let ahead = |key: ContactKey| proxies.stride_of(key.a).ahead + proxies.stride_of(key.b).ahead;
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
         contact.approach = 0.0;
@@ -46,7 +45,7 @@ pub(crate) fn collide(
         if contact.has_surface {
             return;
         }
-        renew(contact, a, b, ahead(contact.key), context.dt);
+        renew(contact, a, b, proxies.ahead(contact.key), context.dt);
         weigh(contact, a, b);
     });
     for_each_mut(context.runner, asked, |asked| {
@@ -65,9 +64,10 @@ pub(crate) fn collide(
     });
 }
 
-/// Brings the manifold of two convex shapes to where they are. They move by less than `ahead` (m) within the step.
+/// Brings the manifold of two convex shapes to where they are. Points are looked for within `ahead` (m)
+/// at most because of how fast they are.
 fn renew(contact: &mut Contact, a: &Body, b: &Body, ahead: f32, dt: f32) {
-    let is_slow = ahead * (1.0 + 1e-4) < contact.kept.least_margin();
+    let is_slow = ahead < contact.kept.least_margin();
     if is_slow && contact.kept.renew([a, b], contact.kept.least_margin(), &mut contact.manifold) {
         return;
     }
