@@ -10,7 +10,8 @@ use crate::boxes::separation::AxisOf;
 use crate::collide::Parting;
 use crate::contact::ContactKey;
 use crate::filter::PairFilter;
-use crate::proxies::{Leaf, Owner, Proxies};
+use crate::proxies::{Closing, Leaf, MARGIN, Owner, Proxies};
+use sinew_math::max;
 
 /// Two shapes that may come near each other.
 #[derive(Clone, Copy, Debug)]
@@ -18,8 +19,8 @@ pub(crate) struct NearPair {
     pub key: ContactKey,
     /// Where their bounds are, in the order of the key.
     pub leaves: [Leaf; 2],
-    /// How far they are surely apart, metres: the gap found last less what both may have moved since. Only while they have no
-    /// contact.
+    /// How far they are surely apart, metres: the gap found last, or that of their bounds, less what they may have moved against
+    /// each other since. Only while they have no contact.
     pub left: f32,
     /// The axis that parted them then.
     axis: PackedAxis,
@@ -34,8 +35,39 @@ pub(crate) struct NearPair {
 const SKIN: f32 = 0.001;
 
 impl NearPair {
+    /// That they may meet is still to be [found](Self::met).
+    fn new(key: ContactKey, leaves: [Leaf; 2]) -> Self {
+        let axis = PackedAxis::default();
+        Self { key, leaves, left: f32::NEG_INFINITY, axis, meets: false, has_surface: false }
+    }
+
+    /// With what the shapes say of whether they meet.
+    fn met(&self, bodies: &Arena<Body>, filter: PairFilter<'_>) -> Self {
+        let key = self.key;
+        let is_surface =
+            |body: u32, shape: u32| bodies.at(body).shapes[shape as usize].shape.surface().is_some();
+        let has_surface = is_surface(key.a, key.shape_a) || is_surface(key.b, key.shape_b);
+        Self { meets: filter.lets_meet(bodies, key), has_surface, ..*self }
+    }
+
     pub fn parting(&self) -> Parting {
         Parting { axis: self.axis.unpack(), gap: f32::NEG_INFINITY }
+    }
+
+    /// Takes note of how the two moved: whether points may be looked for as far away as they are apart.
+    pub fn comes_near(&mut self, closing: &Closing) -> bool {
+        self.left -= closing.moved;
+        let is_far = self.left > max(MARGIN, closing.ahead);
+        !is_far
+    }
+
+    /// Takes note of a gap between their bounds, metres, if no points are looked for that far away.
+    pub fn is_apart(&mut self, closing: &Closing, gap: f32) -> bool {
+        let is_far = !self.has_surface && gap - SKIN > max(MARGIN, closing.ahead);
+        if is_far {
+            self.left = gap - SKIN;
+        }
+        is_far
     }
 
     /// They were looked at, and have no points.
@@ -94,14 +126,14 @@ impl NearPairs {
             proxies.search(bodies, |(p, leaf_p), (q, leaf_q)| {
                 let key = key(p, q);
                 let leaves = if key.a == p.body { [leaf_p, leaf_q] } else { [leaf_q, leaf_p] };
-                fresh.push(new_pair(bodies, filter, key, leaves));
+                fresh.push(NearPair::new(key, leaves));
             });
             self.fresh.sort_unstable_by_key(|pair| pair.key);
             self.fresh.dedup_by_key(|pair| pair.key);
             if proxies.only_strayed() && self.strayed + self.fresh.len() <= self.list.len() / 8 {
-                self.add();
+                self.add(bodies, filter);
             } else {
-                self.merge(proxies);
+                self.merge(proxies, bodies, filter);
             }
             proxies.fasten();
         }
@@ -116,32 +148,37 @@ impl NearPairs {
     }
 
     /// Takes in what was not known. Others stay, although their bounds may not overlap any more.
-    fn add(&mut self) {
+    fn add(&mut self, bodies: &Arena<Body>, filter: PairFilter<'_>) {
         self.strayed += self.fresh.len() + 1;
         let list = &mut self.list;
         self.fresh.retain(|pair| list.binary_search_by_key(&pair.key, |old| old.key).is_err());
+        for pair in &mut self.fresh {
+            *pair = pair.met(bodies, filter);
+        }
         insert_sorted(list, &mut self.fresh, |pair| pair.key);
     }
 
     /// Pairs of loose shapes go, unless they were found again: then they keep what they know.
-    fn merge(&mut self, proxies: &Proxies) {
+    fn merge(&mut self, proxies: &Proxies, bodies: &Arena<Body>, filter: PairFilter<'_>) {
         let prunes = self.strayed > 0;
+        let only_strayed = proxies.only_strayed();
         self.strayed = 0;
         self.next.clear();
         let mut fresh = self.fresh.iter().peekable();
         for old in &self.list {
             while let Some(pair) = fresh.next_if(|pair| pair.key < old.key) {
-                self.next.push(*pair);
+                self.next.push(pair.met(bodies, filter));
             }
             if let Some(pair) = fresh.next_if(|pair| pair.key == old.key) {
-                self.next.push(NearPair { left: old.left, axis: old.axis, ..*pair });
+                let known = NearPair { left: old.left, axis: old.axis, ..*pair };
+                self.next.push(if only_strayed { *old } else { known.met(bodies, filter) });
             } else if !(old.leaves.iter().any(|&leaf| proxies.is_loose(leaf))
                 || prunes && proxies.are_parted(old.leaves))
             {
                 self.next.push(*old);
             }
         }
-        self.next.extend(fresh);
+        self.next.extend(fresh.map(|pair| pair.met(bodies, filter)));
         core::mem::swap(&mut self.list, &mut self.next);
     }
 }
@@ -158,18 +195,6 @@ pub(crate) fn insert_sorted<T: Copy, K: Ord>(list: &mut Vec<T>, new: &mut Vec<T>
         list.copy_within(place..left, end - moved);
         (left, end) = (place, end - moved - 1);
         list[end] = item;
-    }
-}
-
-fn new_pair(bodies: &Arena<Body>, filter: PairFilter<'_>, key: ContactKey, leaves: [Leaf; 2]) -> NearPair {
-    let is_surface = |body: u32, shape: u32| bodies.at(body).shapes[shape as usize].shape.surface().is_some();
-    NearPair {
-        key,
-        leaves,
-        left: f32::NEG_INFINITY,
-        axis: PackedAxis::default(),
-        meets: filter.lets_meet(bodies, key),
-        has_surface: is_surface(key.a, key.shape_a) || is_surface(key.b, key.shape_b),
     }
 }
 

@@ -9,8 +9,7 @@ use crate::filter::PairFilter;
 use crate::kept::Kept;
 use crate::meetings::Meetings;
 use crate::near::{NearPair, NearPairs, insert_sorted};
-use crate::proxies::{MARGIN, Proxies};
-use sinew_math::max;
+use crate::proxies::Proxies;
 
 /// The trees, and what pairs are found with.
 #[derive(Clone, Debug, Default)]
@@ -72,12 +71,14 @@ impl BroadPhase {
                 keeper.part(1);
                 next = keeper.next_pair();
             }
-            let strides = [pair.key.a, pair.key.b].map(|body| self.proxies.stride_of(body));
             let count = if next == pair.key { keeper.count_of(pair.key) } else { 0 };
             if count == 0 {
-                pair.left -= strides[0].moved + strides[1].moved;
-                // No points are looked for further away.
-                if !pair.meets || pair.left > max(MARGIN, strides[0].ahead + strides[1].ahead) {
+                let closing = self.proxies.closing(pair.key);
+                let (key, leaves) = (pair.key, pair.leaves);
+                if !pair.comes_near(&closing)
+                    || !pair.meets
+                    || pair.is_apart(&closing, self.proxies.gap(bodies, key, leaves))
+                {
                     continue;
                 }
             }
@@ -96,8 +97,7 @@ impl BroadPhase {
                     // It had no points in the last step: from now on the pair knows why.
                     let parting = keeper.forget();
                     pair.part(&parting);
-                    pair.left -= strides[0].moved + strides[1].moved;
-                    if pair.left <= max(MARGIN, strides[0].ahead + strides[1].ahead) {
+                    if pair.comes_near(&self.proxies.closing(pair.key)) {
                         self.asked.push(Asked::new(place, pair));
                     }
                 }
@@ -219,7 +219,7 @@ mod tests {
     use crate::boxes::{Aabb, Overlap};
     use crate::def::{BodyDef, BodyKind, WorldDef};
     use crate::id::BodyId;
-    use crate::proxies::Owner;
+    use crate::proxies::{MARGIN, Owner};
     use crate::shape::{Filter, Shape, ShapeDef};
     use crate::{Velocity, World};
     use sinew_math::{Random, Reader, Transform, Vec3, Writer};
@@ -402,7 +402,7 @@ mod tests {
                 if pair.meets && !asked && !known {
                     let (a, b) = (bodies.at(pair.key.a), bodies.at(pair.key.b));
                     let mut asked = Asked::new(place, pair);
-                    crate::touch::ask(a, b, &mut asked, def.dt());
+                    crate::touch::ask(a, b, &mut asked, f32::INFINITY, def.dt());
                     let found = asked.manifold;
                     assert_eq!(found.count, 0, "{:?} with {} left: {found:?}", pair.key, pair.left);
                     count += 1;

@@ -12,14 +12,14 @@ use crate::shape::{Filter, Sensing, Shape};
 use crate::surface::Surface;
 use crate::tree::{Item, PAD, Sweep, Tree};
 use core::ops::ControlFlow;
-use sinew_math::{Transform, Vec3, max, max3};
+use sinew_math::{Transform, Vec3, max, max3, min3};
 use std::collections::BTreeMap;
 
 /// Distance within which contacts are looked for, beside the motion of the step, metres.
 pub(crate) const MARGIN: f32 = 0.02;
-/// Room that what moves has beyond that, metres and steps at its present speed.
+/// Room that what moves has beyond that, metres, and where it is going to, steps at its present velocity.
 const ROOM: f32 = 0.04;
-const ROOM_STEPS: f32 = 2.0;
+const ROOM_STEPS: f32 = 3.0;
 /// Of bounds that have this many times as much room, some is taken.
 const TOO_MUCH: f32 = 3.0;
 /// Bodies with fewer shapes are put into a tree one by one.
@@ -68,12 +68,26 @@ pub(crate) struct Proxies {
     scratch: Vec<Item>,
 }
 
-/// How a body moves, metres. A bound for each of its points.
+/// How a body moves, metres.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Stride {
-    /// Since pairs were last looked for; without end if it was put somewhere.
+struct Stride {
+    /// How its centre moved since pairs were last looked for, and how far its points did besides; without end if it was put
+    /// somewhere.
+    shift: Vec3,
+    turned: f32,
+    /// Likewise in the coming step, at its present velocity.
+    ahead: Vec3,
+    spin: f32,
+    /// How much larger its bounds are made for that.
+    grown: f32,
+}
+
+/// How two bodies move to each other, metres. A bound for any two of their points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Closing {
+    /// By how much they may have come closer since pairs were last looked for.
     pub moved: f32,
-    /// In the coming step, at its present velocity.
+    /// How far apart points are looked for at most because of how fast they are.
     pub ahead: f32,
 }
 
@@ -84,8 +98,9 @@ struct Trace {
     arm: f32,
     pose: Transform,
     velocity: Velocity,
-    /// How far its points moved since pairs were last looked for, metres.
-    way: f32,
+    /// As in [`Stride`].
+    shift: Vec3,
+    turned: f32,
 }
 
 impl Trace {
@@ -94,7 +109,8 @@ impl Trace {
         arm: f32::NAN,
         pose: Transform { translation: Vec3::NAN, ..Transform::IDENTITY },
         velocity: Velocity { linear: Vec3::ZERO, angular: Vec3::ZERO },
-        way: f32::INFINITY,
+        shift: Vec3::ZERO,
+        turned: f32::INFINITY,
     };
 }
 
@@ -103,15 +119,14 @@ impl Trace {
 const SLACK: f32 = 1e-3;
 const BLUR: f32 = 2e-6;
 
-/// How far any point within `arm` of a body's centre has moved, metres: by the chord of half the turn, twice as long as that
-/// of a quarter.
-fn way(from: &Transform, to: &Transform, arm: f32) -> f32 {
+/// How far a body's centre has moved, and how far any point within `arm` of it did besides, metres: by the chord of half the
+/// turn, twice as long as that of a quarter.
+fn way(from: &Transform, to: &Transform, arm: f32) -> (Vec3, f32) {
     let (p, q) = (from.rotation, to.rotation.toward(from.rotation));
     let turned = Vec3::new(q.x - p.x, q.y - p.y, q.z - p.z).length_squared() + (q.w - p.w) * (q.w - p.w);
-    let shift = (to.translation - from.translation).length();
     let far = to.translation.abs();
     let blur = BLUR * (far.x + far.y + far.z + arm);
-    (shift + 2.0 * arm * turned.sqrt()) * (1.0 + SLACK) + blur
+    (to.translation - from.translation, 2.0 * arm * turned.sqrt() * (1.0 + SLACK) + blur)
 }
 
 /// A leaf of either tree.
@@ -211,11 +226,6 @@ pub(crate) fn thick(bounds: &Aabb) -> Aabb {
     }
 }
 
-/// How far a body that is not static may move within `dt` seconds, metres; `arm` is its reach.
-fn motion(body: &Body, arm: f32, dt: f32) -> f32 {
-    (body.velocity.linear.length() + body.velocity.angular.length() * arm) * dt
-}
-
 /// Where contacts of a shape are looked for: its bounds, grown by its motion and a margin.
 fn grown(body: &Body, shape: u32, motion: f32) -> Aabb {
     bounds(body, shape).expand(MARGIN + motion)
@@ -260,7 +270,7 @@ impl Proxies {
         let Some(home) = self.homes[index as usize] else { return };
         self.refresh(index, body);
         for shape in (0..home.count).filter(|&shape| is_bounded(body, shape)) {
-            self.cover(home, shape, &self.needed(home, body, shape), ROOM);
+            self.cover(home, shape, &self.needed(home, body, shape), Vec3::ZERO);
         }
         self.soil(index);
     }
@@ -316,15 +326,21 @@ impl Proxies {
             }
             // Where it was is not known of what was put somewhere.
             let arm = if trace.arm >= 0.0 { trace.arm } else { body.reach() };
-            let way = way(&trace.pose, &body.world_from_principal, arm);
-            let way = if way >= 0.0 { trace.way + way } else { f32::INFINITY };
-            *trace = Trace { arm, pose: body.world_from_principal, velocity: body.velocity, way };
-            let motion = motion(body, arm, dt);
-            self.strides[index as usize].ahead = motion;
+            let (shift, turned) = way(&trace.pose, &body.world_from_principal, arm);
+            let (shift, turned) = (trace.shift + shift, trace.turned + turned);
+            let is_known = shift.is_finite() && turned >= 0.0;
+            let (shift, turned) = if is_known { (shift, turned) } else { (Vec3::ZERO, f32::INFINITY) };
+            let Body { world_from_principal: pose, velocity, .. } = *body;
+            *trace = Trace { arm, pose, velocity, shift, turned };
+            let stride = &mut self.strides[index as usize];
+            stride.ahead = velocity.linear * dt;
+            stride.spin = velocity.angular.length() * arm * dt;
+            stride.grown = (velocity.linear.length() + velocity.angular.length() * arm) * dt;
+            let (way, motion) = (stride.ahead * ROOM_STEPS, stride.grown);
             for shape in 0..home.count {
                 let reach = grown(body, shape, motion);
                 self.reach[(home.first + shape) as usize] = reach;
-                if self.cover(home, shape, &thick(&reach), ROOM + ROOM_STEPS * motion) {
+                if self.cover(home, shape, &thick(&reach), way) {
                     self.stray.push(home.first + shape);
                 }
             }
@@ -371,20 +387,21 @@ impl Proxies {
 
     fn stride(&mut self, bodies: &Arena<Body>) {
         for index in self.strode.drain(..) {
-            self.strides[index as usize].moved = 0.0;
+            let stride = &mut self.strides[index as usize];
+            (stride.shift, stride.turned) = (Vec3::ZERO, 0.0);
         }
         for at in 0..self.soiled.len() {
             let index = self.soiled[at];
             let (Some(home), Some(body)) = (self.home(index), bodies.try_at(index)) else { continue };
             let stride = &mut self.strides[index as usize];
-            stride.moved = f32::INFINITY;
+            stride.turned = f32::INFINITY;
             self.strode.push(index);
             if !home.moves {
                 // What is static may have been given one, which counts when points are looked for.
-                stride.ahead = body.velocity.linear.length() * self.dt;
+                stride.ahead = body.velocity.linear * self.dt;
             } else if home.count > 0 && !body.can_touch() {
                 // It rests, and nobody will work out its bounds.
-                stride.ahead = 0.0;
+                (stride.ahead, stride.spin, stride.grown) = (Vec3::ZERO, 0.0, 0.0);
                 self.traces[home.first as usize] = Trace::NONE;
                 for shape in 0..home.count {
                     self.reach[(home.first + shape) as usize] = grown(body, shape, 0.0);
@@ -394,16 +411,28 @@ impl Proxies {
         for at in 0..self.lively.len() {
             let index = self.lively[at];
             let Some(home) = self.home(index).filter(|home| home.moves && home.count > 0) else { continue };
-            let way = core::mem::replace(&mut self.traces[home.first as usize].way, 0.0);
+            let trace = &mut self.traces[home.first as usize];
             let stride = &mut self.strides[index as usize];
-            stride.moved = max(stride.moved, way);
+            stride.shift = core::mem::take(&mut trace.shift);
+            stride.turned = max(stride.turned, core::mem::take(&mut trace.turned));
             self.strode.push(index);
         }
     }
 
-    /// How a body moves.
-    pub fn stride_of(&self, body: u32) -> Stride {
-        self.strides[body as usize]
+    /// How two bodies move to each other.
+    pub fn closing(&self, key: ContactKey) -> Closing {
+        let [p, q] = [key.a, key.b].map(|body| &self.strides[body as usize]);
+        let moved = (p.shift - q.shift).length() * (1.0 + SLACK) + (p.turned + q.turned);
+        Closing { moved, ahead: self.ahead(key) }
+    }
+
+    /// How far apart points of two bodies are looked for at most because of how fast they are, metres: as far as they come
+    /// closer, or one of them comes, whichever is more, and what both turn.
+    pub fn ahead(&self, key: ContactKey) -> f32 {
+        let [p, q] = [key.a, key.b].map(|body| &self.strides[body as usize]);
+        let (p2, q2) = (p.ahead.length_squared(), q.ahead.length_squared());
+        let fastest = max((p.ahead - q.ahead).length_squared(), max(p2, q2));
+        (fastest.sqrt() + (p.spin + q.spin)) * (1.0 + SLACK)
     }
 
     /// Whether there is anything to be looked for anew.
@@ -467,6 +496,15 @@ impl Proxies {
         }
     }
 
+    /// Whether the neighbours of a shape that moves are asked for.
+    fn is_asking(&self, owner: Owner, leaf: Leaf) -> bool {
+        if self.all_loose {
+            self.home(owner.body).is_some_and(|home| home.lively == self.stamp)
+        } else {
+            self.moving.is_loose[leaf.at()]
+        }
+    }
+
     /// What the bounds of a shape meet.
     fn neighbors(
         &self,
@@ -478,7 +516,12 @@ impl Proxies {
         let body = bodies.at(owner.body);
         let bounds = self.wide_bounds(body, owner, leaf);
         let mut meet = |other: Owner, its: Leaf| {
-            if other.body != owner.body && (body.can_touch() || bodies.at(other.body).can_touch()) {
+            // Two that move and are both looked for find each other.
+            let is_found = leaf.moves() && its.moves() && its.at() < leaf.at() && self.is_asking(other, its);
+            if other.body != owner.body
+                && !is_found
+                && (body.can_touch() || bodies.at(other.body).can_touch())
+            {
                 visit((owner, leaf), (other, its));
             }
             ControlFlow::<()>::Continue(())
@@ -524,10 +567,29 @@ impl Proxies {
     /// Whether two shapes are near each other: their bounds, grown by the motion of the coming step and a margin, overlap. That
     /// does not depend on what the trees hold.
     pub fn are_near(&self, bodies: &Arena<Body>, key: ContactKey, leaves: [Leaf; 2]) -> bool {
-        let reach = |leaf: Leaf, body: u32, shape: u32| {
-            if leaf.moves() { self.reach[leaf.at()] } else { grown(bodies.at(body), shape, 0.0) }
+        let [(p, _), (q, _)] = self.grown_bounds(bodies, key, leaves);
+        overlap(&p, &q)
+    }
+
+    /// How far apart two shapes surely are by their bounds, metres.
+    pub fn gap(&self, bodies: &Arena<Body>, key: ContactKey, leaves: [Leaf; 2]) -> f32 {
+        let [(p, grown_p), (q, grown_q)] = self.grown_bounds(bodies, key, leaves);
+        let beyond = max3(p.min - q.max, q.min - p.max);
+        let apart = max3(beyond + Vec3::splat(2.0 * MARGIN + (grown_p + grown_q)), Vec3::ZERO);
+        let far = max3(max3(-p.min, p.max), max3(-q.min, q.max));
+        apart.length() - PAD * max(far.x, max(far.y, far.z))
+    }
+
+    /// Bounds of the shapes of a pair, grown by a margin and by motion, which is told besides.
+    fn grown_bounds(&self, bodies: &Arena<Body>, key: ContactKey, leaves: [Leaf; 2]) -> [(Aabb, f32); 2] {
+        let grown = |leaf: Leaf, body: u32, shape: u32| {
+            if leaf.moves() {
+                (self.reach[leaf.at()], self.strides[body as usize].grown)
+            } else {
+                (grown(bodies.at(body), shape, 0.0), 0.0)
+            }
         };
-        overlap(&reach(leaves[0], key.a, key.shape_a), &reach(leaves[1], key.b, key.shape_b))
+        [grown(leaves[0], key.a, key.shape_a), grown(leaves[1], key.b, key.shape_b)]
     }
 
     /// Every shape whose bounds overlap these, touching ones and half-spaces too, and perhaps others near by; in no order,
@@ -666,16 +728,19 @@ impl Proxies {
         }
     }
 
-    /// Sees to it that the bounds of a shape in its tree hold these, with room to spare if they have to be changed.
-    /// Tells whether they had to be.
-    fn cover(&mut self, home: Home, shape: u32, needed: &Aabb, room: f32) -> bool {
+    /// Sees to it that the bounds of a shape in its tree hold these, with room to spare if they have to be changed: most of it
+    /// along the `way` that it is expected to go, metres. Tells whether they had to be.
+    fn cover(&mut self, home: Home, shape: u32, needed: &Aabb, way: Vec3) -> bool {
         let leaf = home.first + shape;
         let tree = &mut self.layer_mut(home.moves).tree;
-        let (own, room) = (tree.bounds(leaf), if home.moves { room } else { 0.0 });
+        let own = tree.bounds(leaf);
+        let room = if home.moves { ROOM } else { 0.0 };
         // What comes to rest needs less room than what fell.
-        let fits = own.contains(needed) && needed.expand(TOO_MUCH * room).contains(&own);
+        let fits = own.contains(needed) && needed.expand(TOO_MUCH * (room + way.length())).contains(&own);
         if !fits {
-            tree.update(leaf, &needed.expand(room));
+            let Aabb { min, max } = needed.expand(room);
+            let roomy = Aabb { min: min + min3(way, Vec3::ZERO), max: max + max3(way, Vec3::ZERO) };
+            tree.update(leaf, &roomy);
         }
         !fits
     }

@@ -35,7 +35,6 @@ pub(crate) fn collide(
     context: &StepContext<'_>,
 ) {
     let BroadPhase { proxies, asked, .. } = broad;
-    let ahead = |key: ContactKey| proxies.stride_of(key.a).ahead + proxies.stride_of(key.b).ahead;
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
         contact.approach = 0.0;
@@ -46,11 +45,12 @@ pub(crate) fn collide(
         if contact.has_surface {
             return;
         }
-        renew(contact, a, b, ahead(contact.key), context.dt);
+        renew(contact, a, b, proxies.ahead(contact.key), context.dt);
         weigh(contact, a, b);
     });
     for_each_mut(context.runner, asked, |asked| {
-        ask(bodies.at(asked.key.a), bodies.at(asked.key.b), asked, context.dt);
+        let (a, b) = (bodies.at(asked.key.a), bodies.at(asked.key.b));
+        ask(a, b, asked, proxies.ahead(asked.key), context.dt);
     });
     broad.answer(contacts, |contact| weigh(contact, bodies.at(contact.key.a), bodies.at(contact.key.b)));
     if !contacts.iter().any(|contact| contact.has_surface) {
@@ -65,13 +65,14 @@ pub(crate) fn collide(
     });
 }
 
-/// Brings the manifold of two convex shapes to where they are. They move by less than `ahead` (m) within the step.
+/// Brings the manifold of two convex shapes to where they are. Points are looked for within `ahead` (m)
+/// at most because of how fast they are.
 fn renew(contact: &mut Contact, a: &Body, b: &Body, ahead: f32, dt: f32) {
-    let is_slow = ahead * (1.0 + 1e-4) < contact.kept.least_margin();
+    let is_slow = ahead < contact.kept.least_margin();
     if is_slow && contact.kept.renew([a, b], contact.kept.least_margin(), &mut contact.manifold) {
         return;
     }
-    let (margin, slop) = margin(a, b, contact.key, dt);
+    let (margin, slop) = margin(a, b, contact.key, ahead, dt);
     if !is_slow && contact.kept.renew([a, b], margin, &mut contact.manifold) {
         return;
     }
@@ -91,9 +92,9 @@ fn meet(a: &Body, b: &Body, key: ContactKey, margin: f32, parting: &mut Parting,
     collide_again((shape_a, &from_a), (shape_b, &from_b), margin, parting, manifold);
 }
 
-/// A contact of a pair that had none, if it has points now.
-pub(crate) fn ask(a: &Body, b: &Body, asked: &mut Asked, dt: f32) {
-    let (margin, slop) = margin(a, b, asked.key, dt);
+/// A contact of a pair that had none, if it has points now; `ahead` as in [`margin`].
+pub(crate) fn ask(a: &Body, b: &Body, asked: &mut Asked, ahead: f32, dt: f32) {
+    let (margin, slop) = margin(a, b, asked.key, ahead, dt);
     meet(a, b, asked.key, margin, &mut asked.parting, &mut asked.manifold);
     asked.kept = Kept::new([a, b], asked.key, (margin, slop), &asked.manifold);
 }
@@ -108,15 +109,20 @@ fn weigh(contact: &mut Contact, a: &Body, b: &Body) {
     }
 }
 
-/// How far apart points of two shapes are looked for, and their slop, metres.
-fn margin(a: &Body, b: &Body, key: ContactKey, dt: f32) -> (f32, f32) {
+/// How far apart points of two shapes are looked for, and their slop, metres. Because of how fast the two are it is no more than
+/// `ahead`, which may be far too much.
+fn margin(a: &Body, b: &Body, key: ContactKey, ahead: f32, dt: f32) -> (f32, f32) {
+    let slop = slop(smallest_extent(a, b, key));
+    let least = SPECULATIVE_SLOPS * slop;
+    if ahead < least {
+        return (least, slop);
+    }
     // Beside their approach: two that move together may not do so any more once one of them is hit.
     let (va, vb) = (a.velocity.linear, b.velocity.linear);
     let approach = max((va - vb).length(), max(va.length(), vb.length()))
         + a.velocity.angular.length() * a.reach()
         + b.velocity.angular.length() * b.reach();
-    let slop = slop(smallest_extent(a, b, key));
-    (max(SPECULATIVE_SLOPS * slop, approach * dt), slop)
+    (max(least, approach * dt), slop)
 }
 
 /// Of the two shapes, metres.
@@ -143,7 +149,11 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Mo
         _ => return None,
     };
     let speed = |body: &Body| body.velocity.linear + body.velocity.angular.cross(at - body.center());
-    Some(Motion { velocity: speed(mover) - speed(ground), dt, margin: margin(a, b, key, dt).0 })
+    Some(Motion {
+        velocity: speed(mover) - speed(ground),
+        dt,
+        margin: margin(a, b, key, f32::INFINITY, dt).0,
+    })
 }
 
 /// How fast the points come in, m/s; the fastest counts.

@@ -30,8 +30,13 @@ pub(super) fn choose_face(a: Axis, b: Axis, tolerance: f32, tie: Vec3) -> Axis {
 
 /// The edges instead of the face if they are clearly the better axis: faces give up to four points and hold better.
 pub(super) fn choose(face: Axis, edges: Option<Axis>, tolerance: f32) -> Axis {
-    let least = face.separation + tolerance + 0.05 * face.separation.abs();
+    let least = least_of_edges(&face, tolerance);
     edges.filter(|edges| edges.separation > least).unwrap_or(face)
+}
+
+/// How far edges have to part at least to be taken instead of a face, metres.
+pub(super) fn least_of_edges(face: &Axis, tolerance: f32) -> f32 {
+    face.separation + tolerance + 0.05 * face.separation.abs()
 }
 
 /// A solid with flat faces.

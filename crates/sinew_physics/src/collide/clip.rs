@@ -23,7 +23,7 @@ enum Side {
     /// An edge of the incident face, by its feature.
     Incident(u16),
     /// A side of the reference face, by its number.
-    Reference(usize),
+    Reference(u16),
     #[default]
     None,
 }
@@ -114,15 +114,20 @@ fn cut<const N: usize>(
     tolerance: f32,
 ) {
     let Line { outward, offset } = reference.side(side);
-    let beyond = |c: &Corner| (c.local.x * outward.x + c.local.y * outward.y) - (offset + tolerance);
-    if polygon.corners().iter().all(|c| beyond(c) <= 0.0) {
+    let mut beyond = [0.0; N];
+    let mut all_within = true;
+    for (beyond, c) in beyond.iter_mut().zip(polygon.corners()) {
+        *beyond = (c.local.x * outward.x + c.local.y * outward.y) - (offset + tolerance);
+        all_within &= *beyond <= 0.0;
+    }
+    if all_within {
         return;
     }
     let mut out = Polygon::new();
     let corners = polygon.corners();
     for (k, from) in corners.iter().enumerate() {
-        let to = &corners[(k + 1) % corners.len()];
-        let (d0, d1) = (beyond(from), beyond(to));
+        let next = if k + 1 < corners.len() { k + 1 } else { 0 };
+        let (to, d0, d1) = (&corners[next], beyond[k], beyond[next]);
         if d0 <= 0.0 {
             out.push(*from);
         }
@@ -132,13 +137,13 @@ fn cut<const N: usize>(
             match from.side {
                 Side::Incident(edge) => (corner.reference, corner.incident) = (reference.edge(side), edge),
                 Side::Reference(other) => {
-                    (corner.reference, corner.incident) = (reference.vertex(other, side), face);
+                    (corner.reference, corner.incident) = (reference.vertex(usize::from(other), side), face);
                 }
                 Side::None => {}
             }
             // Where the outline leaves, it goes on along this side of the reference face.
             if d0 <= 0.0 {
-                corner.side = Side::Reference(side);
+                corner.side = Side::Reference(side as u16);
             }
             out.push(corner);
         }
@@ -149,26 +154,30 @@ fn cut<const N: usize>(
 /// A quadrilateral cut by four planes has at most eight corners.
 pub(super) const BOX_CORNERS: usize = 8;
 
-/// A face of a box: its axis and side.
+/// A face of a box.
 pub(super) struct BoxFace<'a> {
-    pub of: &'a PlacedBox,
-    pub axis: usize,
-    pub sign: f32,
+    of: &'a PlacedBox,
+    axis: usize,
+    sign: f32,
+    center: Vec3,
+    normal: Vec3,
+    /// The axes along the face's sides.
+    sides: [usize; 2],
+    along: [Vec3; 2],
 }
 
-impl BoxFace<'_> {
-    /// The axes along the face's sides.
-    fn axes(&self) -> [usize; 2] {
-        [(self.axis + 1) % 3, (self.axis + 2) % 3]
-    }
-
-    fn center(&self) -> Vec3 {
-        self.of.center + self.normal() * self.of.half[self.axis]
+impl<'a> BoxFace<'a> {
+    /// By its axis and side.
+    pub fn new(of: &'a PlacedBox, axis: usize, sign: f32) -> Self {
+        let normal = of.axes[axis] * sign;
+        let sides = [[1, 2], [2, 0], [0, 1]][axis];
+        let center = of.center + normal * of.half[axis];
+        Self { of, axis, sign, center, normal, sides, along: sides.map(|side| of.axes[side]) }
     }
 
     /// Index of the corner on the given sides of the two side axes.
     fn corner(&self, positive: [bool; 2]) -> usize {
-        let [u, v] = self.axes();
+        let [u, v] = self.sides;
         usize::from(self.sign > 0.0) << self.axis
             | usize::from(positive[0]) << u
             | usize::from(positive[1]) << v
@@ -176,7 +185,7 @@ impl BoxFace<'_> {
 
     /// The four corners in turn.
     pub fn corners(&self) -> impl Iterator<Item = Incident> {
-        let [u, v] = self.axes();
+        let [u, v] = self.sides;
         let sides = [([false, false], u), ([true, false], v), ([true, true], u), ([false, true], v)];
         sides.into_iter().map(move |(positive, along)| {
             let index = self.corner(positive);
@@ -192,17 +201,17 @@ impl Reference for BoxFace<'_> {
     }
 
     fn normal(&self) -> Vec3 {
-        self.of.axes[self.axis] * self.sign
+        self.normal
     }
 
     fn local(&self, p: Vec3) -> Vec3 {
-        let (offset, [u, v]) = (p - self.center(), self.axes());
-        Vec3::new(offset.dot(self.of.axes[u]), offset.dot(self.of.axes[v]), offset.dot(self.normal()))
+        let (offset, [u, v]) = (p - self.center, self.along);
+        Vec3::new(offset.dot(u), offset.dot(v), offset.dot(self.normal))
     }
 
     fn point(&self, local: Vec3) -> Vec3 {
-        let [u, v] = self.axes();
-        self.center() + self.of.axes[u] * local.x + self.of.axes[v] * local.y + self.normal() * local.z
+        let [u, v] = self.along;
+        self.center + u * local.x + v * local.y + self.normal * local.z
     }
 
     fn sides(&self) -> usize {
@@ -212,11 +221,11 @@ impl Reference for BoxFace<'_> {
     fn side(&self, number: usize) -> Line {
         let mut outward = Vec3::ZERO;
         outward[number / 2] = if number % 2 == 1 { 1.0 } else { -1.0 };
-        Line { outward, offset: self.of.half[self.axes()[number / 2]] }
+        Line { outward, offset: self.of.half[self.sides[number / 2]] }
     }
 
     fn edge(&self, side: usize) -> u16 {
-        let [u, v] = self.axes();
+        let [u, v] = self.sides;
         let positive = side % 2 == 1;
         if side < 2 {
             feature::edge(v, self.corner([positive, false]))

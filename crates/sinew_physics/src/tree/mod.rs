@@ -136,7 +136,7 @@ impl Tree {
     /// Whether so many leaves were put in one by one, or so many nodes are nearly empty, that building anew pays.
     pub fn is_worn(&self) -> bool {
         let used = self.nodes.len() - self.free.len();
-        (self.inserted > 64 && self.inserted * 2 > self.len) || used > self.len / 2 + MOST_LEVELS
+        (self.inserted > 64 && self.inserted > self.len) || used > self.len / 2 + MOST_LEVELS
     }
 
     /// Makes room for so many leaves, however they come and go.
