@@ -82,11 +82,12 @@ const TURNS: Effort = Effort {
     order: Order::Forward,
     first_conjugate: 1,
 };
-/// Of few bodies that weigh about the same: an overhang that all but tips over wants 24 sweeps. In `relax` two, since friction of the first knows only the impulses of `solve` (1.5 % too little).
+/// Of few bodies that weigh about the same: an overhang that all but tips over wants 24 sweeps. In `relax`
+/// two (more, the more unequal masses are), since friction of the first knows only the impulses of `solve` (1.5 % too little).
 const PILE: Effort = Effort {
     solve: 24,
     relax: 2,
-    tolerance: 1e-3,
+    tolerance: 5e-4,
     small: 1e-3,
     enough: 0.0,
     order: Order::ToAndFro,
@@ -94,7 +95,7 @@ const PILE: Effort = Effort {
 };
 /// Of a pile or heap of [`MANY_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
 /// over some substeps.
-const HEAP: Effort = Effort { solve: 8, relax: 4, first_conjugate: 2, ..PILE };
+const HEAP: Effort = Effort { solve: 8, relax: 3, first_conjugate: 2, ..PILE };
 /// Of unequal masses: a light body between heavy ones tosses what they do to each other to and fro, and what cannot move must have the
 /// last word.
 const UNEQUAL: Effort =
@@ -114,11 +115,14 @@ impl Effort {
     /// A light body between heavy ones tosses what they do to each other to and fro. Exponents and bounds are what a tower of six
     /// cubes, each 8 times as heavy as the one below it, stands with.
     fn of_pile(levels: u32, ratio: f32, contacts: usize) -> Self {
+        let root = ratio.sqrt();
         if ratio <= GRADED_RATIO {
-            let even = if contacts < MANY_CONTACTS { PILE } else { HEAP };
+            let even = match contacts {
+                0..MANY_CONTACTS => Self { relax: (PILE.relax as f32 * root) as usize, ..PILE },
+                _ => HEAP,
+            };
             return Self { order: if ratio <= EVEN { even.order } else { Order::Forward }, ..even };
         }
-        let root = ratio.sqrt();
         let height = max(1.0, levels as f32 / LEVELS);
         Self {
             solve: min(UNEQUAL.solve as f32 * height * root.sqrt(), MOST_SOLVE) as usize,
