@@ -53,6 +53,7 @@ impl Unrest {
     }
 
     /// A tree's velocities have changed by this much.
+    #[inline(always)]
     pub fn stir(&mut self, tree: u32, change: f32) {
         self.trees[tree as usize] += change;
     }

@@ -421,36 +421,48 @@ impl Kernel for Solve<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { links, range, impulses, residuals, dv } = self;
-        let (impulses, dv) = (&mut impulses[..links.len()], &mut dv[..links.len()]);
-        // Leaf to root: what the subtree below a joint pushes through it.
-        for i in range.clone().rev() {
-            let link = &links[i];
-            let (mut own, mut through) = (L::splat(0.0), link.passed_up::<L>(&impulses[i]));
-            if let Some(residuals) = residuals.get(i) {
-                for ((follow, pass), row) in
-                    link.follow.iter().zip(&link.pass).zip(link.row).take(link.asking)
-                {
-                    let residual = L::splat(residuals[usize::from(row) & 7]);
-                    own = own + L::load(follow) * residual;
-                    through = through + L::load(pass) * residual;
-                }
-            }
-            own.store(&mut dv[i]);
-            let parent = link.parent as usize;
-            if parent < i {
-                (L::load(&impulses[parent]) + through).store(&mut impulses[parent]);
+        solve_in::<L>(links, range, impulses, residuals, dv);
+    }
+}
+
+/// [`solve`] within a kernel.
+#[inline(always)]
+pub(super) fn solve_in<L: Lanes>(
+    links: &[Link],
+    range: Range<usize>,
+    impulses: &mut [Vec6],
+    residuals: &[Vec6],
+    dv: &mut [Vec6],
+) {
+    let (impulses, dv) = (&mut impulses[..links.len()], &mut dv[..links.len()]);
+    // Leaf to root: what the subtree below a joint pushes through it.
+    for i in range.clone().rev() {
+        let link = &links[i];
+        let (mut own, mut through) = (L::splat(0.0), link.passed_up::<L>(&impulses[i]));
+        if let Some(residuals) = residuals.get(i) {
+            for ((follow, pass), row) in
+                link.follow.iter().zip(&link.pass).zip(link.row).take(link.asking)
+            {
+                let residual = L::splat(residuals[usize::from(row) & 7]);
+                own = own + L::load(follow) * residual;
+                through = through + L::load(pass) * residual;
             }
         }
-        // Root to leaf.
-        for i in range {
-            let link = &links[i];
-            let mut v = L::load(&dv[i]) + link.alone::<L>(&impulses[i]);
-            let parent = link.parent as usize;
-            if parent < i {
-                v = v + link.carried::<L>(&dv[parent]);
-            }
-            v.store(&mut dv[i]);
+        own.store(&mut dv[i]);
+        let parent = link.parent as usize;
+        if parent < i {
+            (L::load(&impulses[parent]) + through).store(&mut impulses[parent]);
         }
+    }
+    // Root to leaf.
+    for i in range {
+        let link = &links[i];
+        let mut v = L::load(&dv[i]) + link.alone::<L>(&impulses[i]);
+        let parent = link.parent as usize;
+        if parent < i {
+            v = v + link.carried::<L>(&dv[parent]);
+        }
+        v.store(&mut dv[i]);
     }
 }
 
