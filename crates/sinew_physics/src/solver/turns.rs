@@ -112,7 +112,8 @@ impl IslandSolver {
         let enough = self.effort.enough;
         let enough = 0.5 * enough * enough * self.mass() / self.links.len() as f32;
         self.contacts.begin_pass(pass, &self.velocities, self.h);
-        self.unrest.start(sweeps.tolerance, self.trees.len(), 0, self.limits.len());
+        self.arrange_limits(pass);
+        self.unrest.start(sweeps.tolerance, self.trees.len(), 0, self.limit_blocks.len());
         let conjugate = pass != Pass::Restitution;
         for done in 1..=sweeps.most {
             self.note_limits();
@@ -147,12 +148,9 @@ impl IslandSolver {
         self.scratch.before.clear();
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
         (self.largest_change, self.change_energy) = (0.0, 0.0);
-        self.visit_limits(pass);
         self.reset_impulses();
+        self.visit_limits(pass);
         if self.largest_change > 0.0 {
-            for (row, before) in self.limits.iter().zip(&self.scratch.limits) {
-                row.add_to(&self.joints, &mut self.impulses, row.impulse - before);
-            }
             let (before, velocities) = (&self.scratch.before[..], &self.velocities[..]);
             dispatch::run(NoteStir { before, velocities, contacts: &mut self.contacts });
         }
@@ -220,9 +218,9 @@ impl IslandSolver {
             unrest.stir(tree as u32, change);
         };
         contacts.after_conjugate(energy, velocities, &mut scratch.limits, stir);
-        for (i, (row, impulse)) in limits.iter_mut().zip(&scratch.limits).enumerate() {
+        for (row, impulse) in limits.iter_mut().zip(&scratch.limits) {
             let change = row.give(impulse - row.impulse);
-            unrest.stir_limit(i, change);
+            unrest.stir_limits(row.block, change);
         }
     }
 
