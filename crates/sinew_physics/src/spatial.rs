@@ -32,11 +32,12 @@ pub(crate) fn dot(a: &Vec6, b: &Vec6) -> f32 {
     (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
 }
 
-/// The largest component, without its sign.
+/// The largest component, without its sign: in pairs, as registers hold them.
 #[inline(always)]
 pub(crate) fn largest(v: &Vec6) -> f32 {
-    let [x, y, z, u, v, w, ..] = v.map(f32::abs);
-    max(max(max(x, y), z), max(max(u, v), w))
+    let [a, b, c, d, e, f, g, h] = v.map(f32::abs);
+    let [a, b, c, d] = [max(a, e), max(b, f), max(c, g), max(d, h)];
+    max(max(a, c), max(b, d))
 }
 
 /// `a − b`

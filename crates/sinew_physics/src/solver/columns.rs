@@ -2,18 +2,20 @@
 //! computed for rows that are not idle, once for a pose: a push then adds a multiple of a column, where the blocks would have to
 //! be multiplied for every visit. What rows answer to each other is read from them, too.
 
-use super::response::Response;
+use super::response::{AnswerLanes, Response};
 use super::tree::Link;
 use crate::collide::MAX_POINTS;
-use crate::spatial::{Vec6, ZERO6, add_scaled};
+use crate::joint::Row;
+use crate::spatial::{Vec6, ZERO6, add_scaled, dot, largest};
 use sinew_math::dispatch::{self, Kernel};
-use sinew_math::lanes::Lanes;
+use sinew_math::lanes::{Lanes, WIDTH};
 
 /// The columns of all rows that were not idle at the present pose.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Columns {
     /// Column after column, each as its [`Reach`] says.
     entries: Vec<Vec6>,
+    lanes: Vec<AnswerLanes>,
 }
 
 /// Where columns of the same bodies lie side by side.
@@ -145,6 +147,66 @@ impl Columns {
         reach.places.map(|place| place.map_or(ZERO6, |place| self.entries[start + place]))
     }
 
+    /// Appends the columns of up to eight rows of two trees, or of one, side by side. Gives where the first lies, and how far each is from
+    /// the next.
+    pub fn add_all(
+        &mut self,
+        response: &Response,
+        links: &[Link],
+        rows: &[([u32; 2], &Row)],
+    ) -> (usize, usize) {
+        let reach = Reach::new(response, links, rows[0].0);
+        let (start, stride) = (self.end(), reach.len());
+        self.entries.resize(start + rows.len() * stride, ZERO6);
+        let mut first = start;
+        for members in reach.members {
+            let Some(&member) = members.first() else { continue };
+            let tree = links[member as usize].tree;
+            let on = |body: u32, impulse| {
+                let link = links.get(body as usize).filter(|link| link.tree == tree);
+                link.and_then(|_| response.slot(body)).map(|slot| (slot, impulse))
+            };
+            let mut pushes = [[None; 2]; WIDTH];
+            for (pushes, &([a, b], row)) in pushes.iter_mut().zip(rows) {
+                *pushes = [on(a, &row.a), on(b, &row.b)];
+            }
+            let columns = (&mut self.entries[first..], stride);
+            response.answer_all(links, tree, &pushes[..rows.len()], columns, &mut self.lanes);
+            first += members.len();
+        }
+        (start, stride)
+    }
+
+    /// Where the bodies of a row have their places in its column.
+    pub fn places(response: &Response, links: &[Link], bodies: [u32; 2]) -> [Option<usize>; 2] {
+        Reach::new(response, links, bodies).places
+    }
+
+    /// What a unit of impulse of a column's row makes of the rate of a row whose bodies have these places in it.
+    pub fn answer(&self, column: usize, places: [Option<usize>; 2], row: &Row) -> f32 {
+        let [a, b] = places.map(|place| place.map(|place| &self.entries[column + place]));
+        a.map_or(0.0, |on_a| dot(&row.a, on_a)) + b.map_or(0.0, |on_b| dot(&row.b, on_b))
+    }
+
+    /// Adds to the velocities what changes of the impulses of rows of two trees, or one, give. Gives the largest change.
+    pub fn push_all(
+        &self,
+        response: &Response,
+        links: &[Link],
+        bodies: [u32; 2],
+        (columns, by): (&[usize; WIDTH], &[f32; WIDTH]),
+        velocities: &mut [Vec6],
+    ) -> f32 {
+        let reach = Reach::new(response, links, bodies);
+        let (mut starts, mut shares, mut count) = ([0; WIDTH], [0.0; WIDTH], 0);
+        for (&column, &by) in columns.iter().zip(by).filter(|(_, by)| **by != 0.0) {
+            (starts[count], shares[count]) = (column, by);
+            count += 1;
+        }
+        let (entries, starts, by) = (&self.entries[..], &starts[..count], &shares[..count]);
+        dispatch::run(PushAll { entries, starts, by, members: reach.members, velocities })
+    }
+
     /// Adds to the velocities what changes of the impulses of rows of two bodies give.
     pub fn push(
         &self,
@@ -190,6 +252,41 @@ impl Kernel for Push<'_> {
             }
             start += members.len();
         }
+    }
+}
+
+/// The sum of columns that lie anywhere, each times the change of its row.
+struct PushAll<'a> {
+    entries: &'a [Vec6],
+    starts: &'a [usize],
+    by: &'a [f32],
+    members: [&'a [u32]; 2],
+    velocities: &'a mut [Vec6],
+}
+
+impl Kernel for PushAll<'_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> f32 {
+        let Self { entries, starts, by, members, velocities } = self;
+        let mut most = L::splat(0.0);
+        let mut place = 0;
+        for members in members {
+            for &body in members {
+                let mut change = L::splat(0.0);
+                for (&start, &by) in starts.iter().zip(by) {
+                    change = change + L::load(&entries[start + place]) * L::splat(by);
+                }
+                let velocity = &mut velocities[body as usize];
+                (L::load(velocity) + change).store(velocity);
+                most = L::max(most, change.abs());
+                place += 1;
+            }
+        }
+        let mut by = ZERO6;
+        most.store(&mut by);
+        largest(&by)
     }
 }
 

@@ -103,7 +103,7 @@ impl State {
         }
         for (i, row) in rows.limits.iter_mut().enumerate() {
             let d = &mut self.limits[i];
-            rows.unrest.stir_limit(i, row.give(*d * share));
+            rows.unrest.stir_limits(row.block, row.give(*d * share));
             *d = change.limits[i] + *d * share;
         }
         for (i, link) in rows.links.iter().enumerate() {

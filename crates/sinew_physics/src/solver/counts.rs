@@ -83,7 +83,8 @@ impl IslandSolver {
             + self.links.len() * size_of::<Link>()
             + self.contacts.bytes()
             + self.response.bytes()
-            + self.columns.bytes();
+            + self.columns.bytes()
+            + self.limit_blocks.bytes();
         bytes as u64
     }
 }

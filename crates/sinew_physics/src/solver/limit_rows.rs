@@ -1,10 +1,8 @@
 //! Rows of joint limits: unilateral, outside the tree factor, visited by the sweeps.
 
-use super::columns::{Change, Columns};
 use super::contact_rows::IMPACT_JUMP;
-use super::response::Response;
 use super::sweep::Pass;
-use super::tree::{Link, NONE};
+use super::tree::NONE;
 use super::{IslandSolver, REDUNDANCY, SolverBody, SolverJoint, free_response};
 use crate::joint::def::Softness;
 use crate::joint::{JointPose, LimitImpulse, MAX_LIMITS, MAX_STOPS, Row, Stop, each_stop, turns};
@@ -44,9 +42,9 @@ pub(super) struct LimitRow {
     hardness: Hardness,
     /// Gradient of the room, world axes.
     axis: Vec3,
-    row: Row,
-    /// Where its column lies; none as long as it is idle at this pose.
-    pub column: Option<usize>,
+    pub row: Row,
+    /// Which block it is in.
+    pub block: u32,
     /// Response of the row to its own impulse, with its column.
     effective: f32,
     /// Of this substep: ≥ 0 after a visit, less between sweeps by what a conjugate step asked too much.
@@ -134,36 +132,12 @@ impl IslandSolver {
                 axis,
                 row: of_stop,
                 hardness,
-                column: None,
+                block: NONE,
                 impulse: 0.0,
                 ..row.clone()
             });
         }
         self.limits.len() > known
-    }
-
-    /// Limits come last in a sweep: they have the last word over contacts.
-    pub(super) fn visit_limits(&mut self, pass: Pass) {
-        for i in 0..self.limits.len() {
-            let joint = &self.joints[self.limits[i].joint as usize];
-            let (a, b) = (joint.a, joint.b);
-            let now = self.unrest.of(&self.links, a, b);
-            if !self.unrest.wakes_limit(i, now) {
-                continue;
-            }
-            let rate = self.limits[i].row.rate(joint, &self.velocities);
-            if self.limits[i].is_idle(pass, rate, self.h) {
-                continue;
-            }
-            let row = &mut self.limits[i];
-            self.tally.visits += 1;
-            if row.column.is_none() {
-                row.respond(joint, &self.bodies, &self.links, &self.response, &mut self.columns);
-            }
-            if let Some(change) = row.visit(pass, rate, self.h) {
-                self.push([a, b], &change);
-            }
-        }
     }
 
     /// True if some hard stop was passed and pushes back.
@@ -209,7 +183,7 @@ impl LimitRow {
             hardness,
             axis: joint.pose.rotation_a * stop.axis,
             row: stop.row(&joint.geometry.kind, &joint.pose),
-            column: None,
+            block: NONE,
             effective: 0.0,
             impulse,
         }
@@ -235,6 +209,7 @@ impl LimitRow {
     }
 
     /// Adds an impulse of this row to those of its bodies.
+    #[inline]
     pub fn add_to(&self, joints: &[SolverJoint], impulses: &mut [Vec6], impulse: f32) {
         if impulse != 0.0 {
             let joint = &joints[self.joint as usize];
@@ -243,21 +218,10 @@ impl LimitRow {
         }
     }
 
-    /// Computes its column and effective mass.
-    fn respond(
-        &mut self,
-        joint: &SolverJoint,
-        bodies: &[SolverBody],
-        links: &[Link],
-        response: &Response,
-        columns: &mut Columns,
-    ) {
+    /// Takes on what it answers to its own impulse.
+    pub fn take_response(&mut self, own: f32, joint: &SolverJoint, bodies: &[SolverBody], moving: usize) {
         let Row { a, b } = &self.row;
-        self.column = Some(columns.end());
-        let [on_a, on_b] = columns.add(response, links, [joint.a, joint.b], [a, b]);
-        self.effective = dot(a, &on_a)
-            + dot(b, &on_b)
-            + REDUNDANCY * free_response(bodies, links.len(), [(joint.a, a), (joint.b, b)]);
+        self.effective = own + REDUNDANCY * free_response(bodies, moving, [(joint.a, a), (joint.b, b)]);
     }
 
     /// Adds to the impulse of this substep; the caller puts it on the bodies. Gives the speed that it makes by itself.
@@ -266,24 +230,17 @@ impl LimitRow {
         more.abs() * self.effective
     }
 
-    /// Gives nothing, and has nothing to give at this rate.
-    pub fn is_idle(&self, pass: Pass, rate: f32, h: f32) -> bool {
+    /// Rate below which it has something to give in a pass, if it gives nothing yet.
+    pub fn threshold(&self, pass: Pass, h: f32) -> f32 {
         match self.hardness {
-            Hardness::Soft(..) => pass != Pass::Solve || self.impulse == 0.0 && self.room + h * rate >= 0.0,
-            _ => self.impulse == 0.0 && rate >= self.wanted(pass, rate, h),
+            Hardness::Soft(..) if pass != Pass::Solve => f32::NEG_INFINITY,
+            Hardness::Soft(..) => -self.room / h,
+            _ => self.wanted(pass, f32::NEG_INFINITY, h),
         }
     }
 
-    /// Change of its impulse at this rate, as a change of its column.
-    fn visit(&mut self, pass: Pass, rate: f32, h: f32) -> Option<Change> {
-        let change = self.change(pass, rate, h);
-        let mut of_row = Change::from_column(self.column?);
-        of_row.add([&self.row.a, &self.row.b], change);
-        Some(of_row)
-    }
-
     /// Changes its impulse as this rate asks for; by how much.
-    fn change(&mut self, pass: Pass, rate: f32, h: f32) -> f32 {
+    pub fn change(&mut self, pass: Pass, rate: f32, h: f32) -> f32 {
         if self.effective < 1e-9 {
             return 0.0;
         }

@@ -20,6 +20,7 @@ mod fields;
 pub(crate) mod flight;
 pub(crate) mod lcp;
 mod levels;
+mod limit_blocks;
 mod limit_rows;
 mod loads;
 mod loops;
@@ -53,6 +54,7 @@ use effort::Effort;
 use energy::Momentum;
 use fields::Attraction;
 use levels::Levels;
+use limit_blocks::LimitBlocks;
 use limit_rows::LimitRow;
 use loops::Loops;
 use pins::Pins;
@@ -221,6 +223,7 @@ pub(crate) struct IslandSolver {
     loops: Loops,
     pins: Pins,
     limits: Vec<LimitRow>,
+    limit_blocks: LimitBlocks,
     response: Response,
     columns: Columns,
     /// Impulses of contacts and limits that the sweeps in progress have put on each moving body.
@@ -597,11 +600,9 @@ impl IslandSolver {
         self.response.choose(&self.links, self.trees.len(), wanted);
         self.loops.respond(&self.joints, &self.bodies, &self.links, &mut self.response);
         self.columns.clear();
+        self.limit_blocks.clear(self.trees.len());
         for rows in &mut self.manifolds {
             rows.columns = None;
-        }
-        for row in &mut self.limits {
-            row.column = None;
         }
     }
 

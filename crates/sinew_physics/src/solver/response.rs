@@ -2,7 +2,7 @@
 //! that sees its link's own mass instead sinks: a 1 kg foot under 69 kg by 72 mm.
 
 use super::tree::{Link, NONE};
-use crate::spatial::{Vec6, add_scaled, dot};
+use crate::spatial::{Mat6, Vec6, ZERO66, add_scaled, dot};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes};
 
@@ -120,6 +120,34 @@ impl Response {
         let (members, above) = (&self.members[range.clone()], &self.above[range]);
         let slot = self.slot[body as usize] as usize;
         dispatch::run(Answer { links, members, above, slot, impulse, out });
+        self.close_answer(tree, slot, impulse, out);
+    }
+
+    /// Makes columns, `stride` apart from each other, the velocity changes of all members of a tree from impulses: each column from those
+    /// on one or two members, which are given with their places. They are zero.
+    pub fn answer_all(
+        &self,
+        links: &[Link],
+        tree: u32,
+        pushes: &[[Push<'_>; 2]],
+        (columns, stride): (&mut [Vec6], usize),
+        lanes: &mut Vec<AnswerLanes>,
+    ) {
+        let tree = &self.trees[tree as usize];
+        let range = tree.first..tree.first + tree.count;
+        let (members, above) = (&self.members[range.clone()], &self.above[range]);
+        lanes.clear();
+        lanes.resize(tree.count, AnswerLanes::NONE);
+        dispatch::run(AnswerAll { links, members, above, pushes, lanes, columns, stride });
+        for (k, pushes) in pushes.iter().enumerate() {
+            for &(slot, impulse) in pushes.iter().flatten() {
+                self.close_answer(tree, slot, impulse, &mut columns[k * stride..][..tree.count]);
+            }
+        }
+    }
+
+    /// Takes off what the rows that close loops do about the answer to an impulse.
+    fn close_answer(&self, tree: &Members, slot: usize, impulse: &Vec6, out: &mut [Vec6]) {
         if tree.rows == 0 {
             return;
         }
@@ -186,6 +214,81 @@ impl Kernel for AnswerBoth<'_> {
         }
         for (sum, more) in first.iter_mut().zip(second) {
             (L::load(sum) + L::load(more)).store(sum);
+        }
+    }
+}
+
+/// An impulse on a member of a tree, which is given by its place.
+pub(crate) type Push<'a> = Option<(usize, &'a Vec6)>;
+
+/// Impulses on a member of a tree, then its velocity changes, one in each lane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AnswerLanes {
+    numbers: Mat6,
+    /// An impulse is on it or was passed on to it.
+    is_pushed: bool,
+}
+
+impl AnswerLanes {
+    const NONE: Self = Self { numbers: ZERO66, is_pushed: false };
+}
+
+/// Eight times [`Answer`], of impulses on one or two members.
+struct AnswerAll<'a> {
+    links: &'a [Link],
+    members: &'a [u32],
+    above: &'a [u32],
+    pushes: &'a [[Push<'a>; 2]],
+    lanes: &'a mut [AnswerLanes],
+    columns: &'a mut [Vec6],
+    stride: usize,
+}
+
+impl Kernel for AnswerAll<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { links, members, above, pushes, lanes, columns, stride } = self;
+        for (k, pushes) in pushes.iter().enumerate() {
+            for &(slot, impulse) in pushes.iter().flatten() {
+                for (row, number) in lanes[slot].numbers.iter_mut().zip(impulse) {
+                    row[k] += number;
+                }
+                lanes[slot].is_pushed = true;
+            }
+        }
+        for place in (1..members.len()).rev() {
+            if lanes[place].is_pushed {
+                let through = links[members[place] as usize].passed_up_all::<L>(&lanes[place].numbers);
+                let parent = &mut lanes[above[place] as usize];
+                for (sum, through) in parent.numbers.iter_mut().zip(through) {
+                    (L::load(sum) + through).store(sum);
+                }
+                parent.is_pushed = true;
+            }
+        }
+        let none = L::splat(0.0);
+        for place in 0..members.len() {
+            let link = &links[members[place] as usize];
+            let mut change = [none; 6];
+            if lanes[place].is_pushed {
+                change = link.alone_all::<L>(&lanes[place].numbers);
+            }
+            if place > 0 {
+                let carried = link.carried_all::<L>(&lanes[above[place] as usize].numbers);
+                for (change, carried) in change.iter_mut().zip(carried) {
+                    *change = *change + carried;
+                }
+            }
+            for (row, change) in lanes[place].numbers.iter_mut().zip(change) {
+                change.store(row);
+            }
+            let [x, y, z, u, v, w] = change;
+            let of_columns = L::transpose([x, y, z, u, v, w, none, none]);
+            for (k, column) in of_columns.into_iter().enumerate().take(pushes.len()) {
+                column.store(&mut columns[k * stride + place]);
+            }
         }
     }
 }

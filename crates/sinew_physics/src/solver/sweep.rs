@@ -28,7 +28,7 @@ pub(super) struct Unrest {
     /// A change below it is none.
     tolerance: f32,
     trees: Vec<f32>,
-    /// Per manifold and per limit row: the sum of its trees when it was last visited.
+    /// Per manifold and per block of limits: the sum of its trees when it was last visited.
     manifolds: Vec<f32>,
     limits: Vec<f32>,
 }
@@ -53,6 +53,7 @@ impl Unrest {
     }
 
     /// A tree's velocities have changed by this much.
+    #[inline(always)]
     pub fn stir(&mut self, tree: u32, change: f32) {
         self.trees[tree as usize] += change;
     }
@@ -64,9 +65,10 @@ impl Unrest {
         }
     }
 
-    pub fn stir_limit(&mut self, i: usize, change: f32) {
+    /// Likewise the block of a limit.
+    pub fn stir_limits(&mut self, block: u32, change: f32) {
         if change >= self.tolerance {
-            self.limits[i] = f32::NEG_INFINITY;
+            self.limits[block as usize] = f32::NEG_INFINITY;
         }
     }
 
@@ -74,8 +76,13 @@ impl Unrest {
         wakes(&mut self.manifolds[i], now, self.tolerance)
     }
 
-    pub fn wakes_limit(&mut self, i: usize, now: f32) -> bool {
-        wakes(&mut self.limits[i], now, self.tolerance)
+    pub fn wakes_limits(&mut self, block: usize, now: f32) -> bool {
+        wakes(&mut self.limits[block], now, self.tolerance)
+    }
+
+    /// A block of limits need not be visited before its trees change again.
+    pub fn see_limits(&mut self, block: usize, now: f32) {
+        self.limits[block] = now;
     }
 }
 
@@ -112,7 +119,9 @@ impl IslandSolver {
         }
         self.reset_impulses();
         self.add_given(-1.0);
-        self.unrest.start(self.effort.tolerance, self.trees.len(), self.manifolds.len(), self.limits.len());
+        self.arrange_limits(pass);
+        let blocks = self.limit_blocks.len();
+        self.unrest.start(self.effort.tolerance, self.trees.len(), self.manifolds.len(), blocks);
         let moving = self.links.len();
         self.scratch.before.clear();
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);

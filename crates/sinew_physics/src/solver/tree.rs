@@ -93,6 +93,24 @@ impl Link {
         sum(&self.own, impulse)
     }
 
+    /// [`carried`](Self::carried) from eight velocities of the parent, one in each lane.
+    #[inline(always)]
+    pub fn carried_all<L: Lanes>(&self, parent: &Mat6) -> [L; 6] {
+        sums(&self.carry_columns, parent)
+    }
+
+    /// [`passed_up`](Self::passed_up) of eight impulses.
+    #[inline(always)]
+    pub fn passed_up_all<L: Lanes>(&self, impulses: &Mat6) -> [L; 6] {
+        sums(&self.carry, impulses)
+    }
+
+    /// [`alone`](Self::alone) to eight impulses.
+    #[inline(always)]
+    pub fn alone_all<L: Lanes>(&self, impulses: &Mat6) -> [L; 6] {
+        sums(&self.own, impulses)
+    }
+
     /// Adds what the gains of rows that ask for nothing push for their residuals.
     pub fn push_gains(&self, joint: &SolverJoint, residuals: &Vec6, impulses: &mut [Vec6]) {
         if self.pushing == 0 {
@@ -421,36 +439,46 @@ impl Kernel for Solve<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { links, range, impulses, residuals, dv } = self;
-        let (impulses, dv) = (&mut impulses[..links.len()], &mut dv[..links.len()]);
-        // Leaf to root: what the subtree below a joint pushes through it.
-        for i in range.clone().rev() {
-            let link = &links[i];
-            let (mut own, mut through) = (L::splat(0.0), link.passed_up::<L>(&impulses[i]));
-            if let Some(residuals) = residuals.get(i) {
-                for ((follow, pass), row) in
-                    link.follow.iter().zip(&link.pass).zip(link.row).take(link.asking)
-                {
-                    let residual = L::splat(residuals[usize::from(row) & 7]);
-                    own = own + L::load(follow) * residual;
-                    through = through + L::load(pass) * residual;
-                }
-            }
-            own.store(&mut dv[i]);
-            let parent = link.parent as usize;
-            if parent < i {
-                (L::load(&impulses[parent]) + through).store(&mut impulses[parent]);
+        solve_in::<L>(links, range, impulses, residuals, dv);
+    }
+}
+
+/// [`solve`] within a kernel.
+#[inline(always)]
+pub(super) fn solve_in<L: Lanes>(
+    links: &[Link],
+    range: Range<usize>,
+    impulses: &mut [Vec6],
+    residuals: &[Vec6],
+    dv: &mut [Vec6],
+) {
+    let (impulses, dv) = (&mut impulses[..links.len()], &mut dv[..links.len()]);
+    // Leaf to root: what the subtree below a joint pushes through it.
+    for i in range.clone().rev() {
+        let link = &links[i];
+        let (mut own, mut through) = (L::splat(0.0), link.passed_up::<L>(&impulses[i]));
+        if let Some(residuals) = residuals.get(i) {
+            for ((follow, pass), row) in link.follow.iter().zip(&link.pass).zip(link.row).take(link.asking) {
+                let residual = L::splat(residuals[usize::from(row) & 7]);
+                own = own + L::load(follow) * residual;
+                through = through + L::load(pass) * residual;
             }
         }
-        // Root to leaf.
-        for i in range {
-            let link = &links[i];
-            let mut v = L::load(&dv[i]) + link.alone::<L>(&impulses[i]);
-            let parent = link.parent as usize;
-            if parent < i {
-                v = v + link.carried::<L>(&dv[parent]);
-            }
-            v.store(&mut dv[i]);
+        own.store(&mut dv[i]);
+        let parent = link.parent as usize;
+        if parent < i {
+            (L::load(&impulses[parent]) + through).store(&mut impulses[parent]);
         }
+    }
+    // Root to leaf.
+    for i in range {
+        let link = &links[i];
+        let mut v = L::load(&dv[i]) + link.alone::<L>(&impulses[i]);
+        let parent = link.parent as usize;
+        if parent < i {
+            v = v + link.carried::<L>(&dv[parent]);
+        }
+        v.store(&mut dv[i]);
     }
 }
 
@@ -461,4 +489,18 @@ pub(crate) fn sum<L: Lanes>(rows: &Mat6, by: &Vec6) -> L {
     (L::load(r0) * L::splat(by[0]) + L::load(r1) * L::splat(by[1]))
         + (L::load(r2) * L::splat(by[2]) + L::load(r3) * L::splat(by[3]))
         + (L::load(r4) * L::splat(by[4]) + L::load(r5) * L::splat(by[5]))
+}
+
+/// Eight times [`sum`], of factors that lie in lanes: number by number, each in all lanes.
+#[inline(always)]
+fn sums<L: Lanes>(rows: &Mat6, by: &Mat6) -> [L; 6] {
+    let [x, y, z, u, v, w] = by;
+    let by: [L; 6] = [L::load(x), L::load(y), L::load(z), L::load(u), L::load(v), L::load(w)];
+    let mut out = [L::splat(0.0); 6];
+    for (k, out) in out.iter_mut().enumerate() {
+        *out = (L::splat(rows[0][k]) * by[0] + L::splat(rows[1][k]) * by[1])
+            + (L::splat(rows[2][k]) * by[2] + L::splat(rows[3][k]) * by[3])
+            + (L::splat(rows[4][k]) * by[4] + L::splat(rows[5][k]) * by[5]);
+    }
+    out
 }

@@ -6,10 +6,14 @@
 //! of them couple dozens of trees. Limits must have it: those of a tree see each other, and with what their own two bodies answer
 //! alone, a chain of 70 links that was curled up by a wall gained five times its energy.
 
-use super::sweep::Pass;
-use super::tree::{self, NONE};
+use super::contacts::Contacts;
+use super::sweep::{Pass, Unrest};
+use super::tree::{self, Link, NONE};
 use super::{Coupling, IslandSolver, SolverBody};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, difference, join, largest, linear};
+use core::ops::Range;
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::{LaneMask, Lanes};
 use sinew_math::max;
 
 /// What gave a body this change of velocity, if nothing held it.
@@ -18,6 +22,84 @@ fn impulse_of(body: &SolverBody, change: &Vec6) -> Vec6 {
     let inertia = (body.inertia + body.excess) * body.ballast;
     let spin = r * ((r.inverse() * angular(change)) * inertia);
     join(linear(change) * (body.mass * body.ballast), spin)
+}
+
+/// Trees that have got impulses take on what those make of their velocities before the sweep; who did not know of it is told.
+struct TurnOfTrees<'a> {
+    links: &'a [Link],
+    trees: &'a [Range<usize>],
+    impulses: &'a mut [Vec6],
+    dv: &'a mut [Vec6],
+    /// Velocities before the sweep; if loops were closed, those that are to be; and those after the limits had their turn.
+    before: &'a [Vec6],
+    solved: &'a [Vec6],
+    swept: &'a [Vec6],
+    velocities: &'a mut [Vec6],
+    contacts: &'a mut Contacts,
+    unrest: &'a mut Unrest,
+}
+
+impl Kernel for TurnOfTrees<'_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> f32 {
+        let Self { links, trees, impulses, dv, before, solved, swept, velocities, contacts, unrest } = self;
+        let mut most = L::splat(0.0);
+        for (tree, range) in trees.iter().enumerate() {
+            let mut is_pushed = !solved.is_empty();
+            for impulse in &impulses[range.clone()] {
+                is_pushed = is_pushed || !L::eq(L::load(impulse), L::splat(0.0)).all();
+            }
+            if !is_pushed {
+                continue;
+            }
+            if solved.is_empty() {
+                tree::solve_in::<L>(links, range.clone(), impulses, &[], dv);
+            }
+            let mut moved = L::splat(0.0);
+            for i in range.clone() {
+                let now = match solved.get(i) {
+                    Some(solved) => L::load(solved),
+                    None => L::load(&before[i]) + L::load(&dv[i]),
+                };
+                let change = (now - L::load(&velocities[i])).abs();
+                contacts.stir(i, largest_of(change));
+                most = L::max(most, change);
+                moved = L::max(moved, (now - L::load(&swept[i])).abs());
+                now.store(&mut velocities[i]);
+            }
+            unrest.stir(tree as u32, largest_of(moved));
+        }
+        largest_of(most)
+    }
+}
+
+/// Bodies whose velocities limits have changed are noted for the contacts.
+struct NoteStir<'a> {
+    before: &'a [Vec6],
+    velocities: &'a [Vec6],
+    contacts: &'a mut Contacts,
+}
+
+impl Kernel for NoteStir<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { before, velocities, contacts } = self;
+        for (i, (now, before)) in velocities.iter().zip(before).enumerate() {
+            contacts.stir(i, largest_of((L::load(now) - L::load(before)).abs()));
+        }
+    }
+}
+
+/// Of numbers without signs.
+#[inline(always)]
+fn largest_of<L: Lanes>(numbers: L) -> f32 {
+    let mut all = ZERO6;
+    numbers.store(&mut all);
+    largest(&all)
 }
 
 impl IslandSolver {
@@ -30,7 +112,8 @@ impl IslandSolver {
         let enough = self.effort.enough;
         let enough = 0.5 * enough * enough * self.mass() / self.links.len() as f32;
         self.contacts.begin_pass(pass, &self.velocities, self.h);
-        self.unrest.start(sweeps.tolerance, self.trees.len(), 0, self.limits.len());
+        self.arrange_limits(pass);
+        self.unrest.start(sweeps.tolerance, self.trees.len(), 0, self.limit_blocks.len());
         let conjugate = pass != Pass::Restitution;
         for done in 1..=sweeps.most {
             self.note_limits();
@@ -65,15 +148,11 @@ impl IslandSolver {
         self.scratch.before.clear();
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
         (self.largest_change, self.change_energy) = (0.0, 0.0);
-        self.visit_limits(pass);
         self.reset_impulses();
+        self.visit_limits(pass);
         if self.largest_change > 0.0 {
-            for (row, before) in self.limits.iter().zip(&self.scratch.limits) {
-                row.add_to(&self.joints, &mut self.impulses, row.impulse - before);
-            }
-            for (i, before) in self.scratch.before.iter().enumerate() {
-                self.contacts.stir(i, largest(&difference(&self.velocities[i], before)));
-            }
+            let (before, velocities) = (&self.scratch.before[..], &self.velocities[..]);
+            dispatch::run(NoteStir { before, velocities, contacts: &mut self.contacts });
         }
         self.note_swept();
     }
@@ -98,42 +177,30 @@ impl IslandSolver {
     fn take_turn_of_trees(&mut self) -> f32 {
         self.add_pushes();
         let moving = self.links.len();
-        let s = &mut self.scratch;
-        s.contacted.clear();
-        s.contacted.extend_from_slice(&self.velocities[..moving]);
-        s.impulses.clear();
-        s.impulses.extend_from_slice(&self.impulses);
+        core::mem::swap(&mut self.scratch.impulses, &mut self.impulses);
         let entangled = !self.loops.is_empty();
         if entangled {
-            self.velocities[..moving].copy_from_slice(&self.scratch.before);
-            self.answer_impulses();
-        }
-        self.scratch.dv.resize(moving, ZERO6);
-        let mut most = 0.0;
-        for tree in 0..self.trees.len() {
-            let range = self.trees[tree].clone();
-            if self.impulses[range.clone()].iter().all(|p| *p == ZERO6) && !entangled {
-                continue;
-            }
             let s = &mut self.scratch;
-            if !entangled {
-                tree::solve(&self.links, range.clone(), &mut s.impulses, &[], &mut s.dv);
-            }
-            let mut moved: f32 = 0.0;
-            for i in range {
-                if !entangled {
-                    self.velocities[i] = s.before[i];
-                    add_scaled(&mut self.velocities[i], &s.dv[i], 1.0);
-                }
-                let now = &self.velocities[i];
-                let change = largest(&difference(now, &s.contacted[i]));
-                self.contacts.stir(i, change);
-                most = max(most, change);
-                moved = max(moved, largest(&difference(now, &s.swept[i])));
-            }
-            self.unrest.stir(tree as u32, moved);
+            s.contacted.clear();
+            s.contacted.extend_from_slice(&self.velocities[..moving]);
+            self.velocities[..moving].copy_from_slice(&s.before);
+            self.answer_impulses();
+            self.velocities[..moving].swap_with_slice(&mut self.scratch.contacted);
         }
-        most
+        let s = &mut self.scratch;
+        s.dv.resize(moving, ZERO6);
+        dispatch::run(TurnOfTrees {
+            links: &self.links,
+            trees: &self.trees,
+            impulses: &mut s.impulses,
+            dv: &mut s.dv,
+            before: &s.before,
+            solved: if entangled { &s.contacted } else { &[] },
+            swept: &s.swept,
+            velocities: &mut self.velocities[..moving],
+            contacts: &mut self.contacts,
+            unrest: &mut self.unrest,
+        })
     }
 
     /// Goes on in the direction of the last sweeps.
@@ -151,9 +218,9 @@ impl IslandSolver {
             unrest.stir(tree as u32, change);
         };
         contacts.after_conjugate(energy, velocities, &mut scratch.limits, stir);
-        for (i, (row, impulse)) in limits.iter_mut().zip(&scratch.limits).enumerate() {
+        for (row, impulse) in limits.iter_mut().zip(&scratch.limits) {
             let change = row.give(impulse - row.impulse);
-            unrest.stir_limit(i, change);
+            unrest.stir_limits(row.block, change);
         }
     }
 

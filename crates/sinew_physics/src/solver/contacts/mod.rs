@@ -465,6 +465,7 @@ impl Contacts {
     }
 
     /// A body's velocity has changed by something else than contacts.
+    #[inline(always)]
     pub fn stir(&mut self, body: usize, change: f32) {
         if let Some(stir) = self.stir.get_mut(body) {
             *stir += change;
