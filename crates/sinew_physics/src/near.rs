@@ -19,7 +19,7 @@ pub(crate) struct NearPair {
     pub key: ContactKey,
     /// Where their bounds are, in the order of the key.
     pub leaves: [Leaf; 2],
-    /// How far they are surely apart, metres: the gap found last, or that of their bounds, less what they may have moved against
+    /// Gap that surely is left, metres: the gap found last, or that of their bounds, less what they may have moved against
     /// each other since. Only while they have no contact.
     pub left: f32,
     /// The axis that parted them then.

@@ -68,26 +68,26 @@ pub(crate) struct Proxies {
     scratch: Vec<Item>,
 }
 
-/// How a body moves, metres.
+/// Motion of a body in a step, metres.
 #[derive(Clone, Copy, Debug, Default)]
 struct Stride {
     /// How its centre moved since pairs were last looked for, and how far its points did besides; without end if it was put
     /// somewhere.
     shift: Vec3,
     turned: f32,
-    /// Likewise in the coming step, at its present velocity.
+    /// Motion in the coming step, at its present velocity.
     ahead: Vec3,
     spin: f32,
-    /// How much larger its bounds are made for that.
+    /// Room by which its bounds are larger for that, metres.
     grown: f32,
 }
 
-/// How two bodies move to each other, metres. A bound for any two of their points.
+/// Relative motion of two bodies, metres: a bound for any two of their points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Closing {
     /// By how much they may have come closer since pairs were last looked for.
     pub moved: f32,
-    /// How far apart points are looked for at most because of how fast they are.
+    /// Largest gap within which points are looked for because of how fast they are, metres.
     pub ahead: f32,
 }
 
@@ -419,7 +419,7 @@ impl Proxies {
         }
     }
 
-    /// How two bodies move to each other.
+    /// Relative motion of two bodies, metres.
     pub fn closing(&self, key: ContactKey) -> Closing {
         let [p, q] = [key.a, key.b].map(|body| &self.strides[body as usize]);
         let moved = (p.shift - q.shift).length() * (1.0 + SLACK) + (p.turned + q.turned);
@@ -571,7 +571,7 @@ impl Proxies {
         overlap(&p, &q)
     }
 
-    /// How far apart two shapes surely are by their bounds, metres.
+    /// Gap of the bounds of two shapes, metres: they are at least so far apart.
     pub fn gap(&self, bodies: &Arena<Body>, key: ContactKey, leaves: [Leaf; 2]) -> f32 {
         let [(p, grown_p), (q, grown_q)] = self.grown_bounds(bodies, key, leaves);
         let beyond = max3(p.min - q.max, q.min - p.max);

@@ -26,7 +26,7 @@ pub(crate) enum AxisOf {
     Edges(usize, usize),
 }
 
-/// How two boxes lie to each other: what their axes share.
+/// Relative attitude of two boxes: what their axes share.
 pub(crate) struct Crossed<'a> {
     a: &'a PlacedBox,
     b: &'a PlacedBox,
@@ -78,7 +78,7 @@ impl<'a> Crossed<'a> {
         best
     }
 
-    /// Of the nine pairs of edges, the side of B changing fastest, those that may part by more than `enough` (m): by the gap
+    /// Pairs of edges among the nine, the side of B changing fastest, that may part by more than `enough` (m): by the gap
     /// times the sine, as in [`overlap`].
     fn edges_that_may_part(&self, enough: f32) -> [bool; 9] {
         let t = self.a.local_vector(self.offset).to_array();

@@ -34,7 +34,7 @@ pub(super) fn choose(face: Axis, edges: Option<Axis>, tolerance: f32) -> Axis {
     edges.filter(|edges| edges.separation > least).unwrap_or(face)
 }
 
-/// How far edges have to part at least to be taken instead of a face, metres.
+/// Least gap of edges to be taken instead of a face, metres.
 pub(super) fn least_of_edges(face: &Axis, tolerance: f32) -> f32 {
     face.separation + tolerance + 0.05 * face.separation.abs()
 }

@@ -85,12 +85,12 @@ const BLUR: f32 = 1e-5;
 struct Closest<'a> {
     boxes: [&'a PlacedBox; 2],
     corners: [[Vec3; 8]; 2],
-    /// How far each corner of A and of B reaches along the direction that parts them, metres.
+    /// Reach of each corner of A and of B along the direction that parts them, metres.
     heights: [[f32; 8]; 2],
-    /// How far those reach that reach furthest toward the other box, metres.
+    /// Furthest reach of either's corners toward the other box, metres.
     tops: [f32; 2],
     normal: Vec3,
-    /// What is further apart is of no account, metres.
+    /// Gap beyond which nothing counts, metres.
     most: f32,
 }
 

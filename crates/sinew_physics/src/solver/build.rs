@@ -5,7 +5,7 @@ use super::contacts::{Added, OfStep, placed};
 use super::drives::SoftRow;
 use super::faces::Faces;
 use super::loops::MAX_EXACT_ROWS;
-use super::squeeze::{Touch, UNEQUAL};
+use super::squeeze::{BALLASTED_RATIO, Touch};
 use super::tree::{Link, NONE};
 use super::{IslandSolver, SolverBody, SolverJoint, counts};
 use crate::activity::Activity;
@@ -493,7 +493,7 @@ impl IslandSolver {
             contacts.push(&added, &self.bodies);
         }
         self.levels.count(moving, self.bodies.len(), &self.touches);
-        self.is_unequal = self.mass_ratio() >= UNEQUAL;
+        self.is_unequal = self.mass_ratio() >= BALLASTED_RATIO;
         self.guess_loads();
         if in_lanes {
             for (place, (touch, &index)) in self.touches.iter().zip(island.contacts).enumerate() {

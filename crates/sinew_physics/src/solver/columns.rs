@@ -177,12 +177,12 @@ impl Columns {
         (start, stride)
     }
 
-    /// Where the bodies of a row have their places in its column.
+    /// Places of a row's bodies in its column.
     pub fn places(response: &Response, links: &[Link], bodies: [u32; 2]) -> [Option<usize>; 2] {
         Reach::new(response, links, bodies).places
     }
 
-    /// What a unit of impulse of a column's row makes of the rate of a row whose bodies have these places in it.
+    /// Response of the rate of a row whose bodies have these places in a column, per unit of impulse of the column's row.
     pub fn answer(&self, column: usize, places: [Option<usize>; 2], row: &Row) -> f32 {
         let [a, b] = places.map(|place| place.map(|place| &self.entries[column + place]));
         a.map_or(0.0, |on_a| dot(&row.a, on_a)) + b.map_or(0.0, |on_b| dot(&row.b, on_b))

@@ -82,7 +82,7 @@ const TURNS: Effort = Effort {
     order: Order::Forward,
     first_conjugate: 1,
 };
-/// Of few bodies that weigh about the same: an overhang that all but tips over wants 24 sweeps. In `relax`
+/// Effort for few bodies that weigh about the same: an overhang that all but tips over wants 24 sweeps. In `relax`
 /// two (more, the more unequal masses are), since friction of the first knows only the impulses of `solve` (1.5 % too little).
 const PILE: Effort = Effort {
     solve: 24,
@@ -93,10 +93,10 @@ const PILE: Effort = Effort {
     order: Order::ToAndFro,
     first_conjugate: 4,
 };
-/// Of a pile or heap of [`MANY_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
+/// Effort for a pile or heap of [`MANY_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
 /// over some substeps.
 const HEAP: Effort = Effort { solve: 8, relax: 3, first_conjugate: 2, ..PILE };
-/// Of unequal masses: a light body between heavy ones tosses what they do to each other to and fro, and what cannot move must have the
+/// Effort for unequal masses: a light body between heavy ones tosses what they do to each other to and fro, and what cannot move must have the
 /// last word.
 const UNEQUAL: Effort =
     Effort { solve: 96, tolerance: 2e-3, small: 0.0, order: Order::Forward, first_conjugate: 4, ..PILE };

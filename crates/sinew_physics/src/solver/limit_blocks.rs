@@ -33,12 +33,12 @@ struct Block {
     rows: [[f32; WIDTH]; 12],
     /// Rates below which they have something to give.
     threshold: [f32; WIDTH],
-    /// What a unit of impulse of each row makes of the rates of all.
+    /// Response of all rates to a unit of impulse of each row.
     response: [[f32; WIDTH]; WIDTH],
     bodies: [[u32; WIDTH]; 2],
     /// Places among the island's limits.
     limits: [u32; WIDTH],
-    /// Where the column of each lies, and the places of its bodies in columns.
+    /// Column of each row, and the places of its bodies in columns.
     columns: [usize; WIDTH],
     places: [[Option<usize>; 2]; WIDTH],
     count: usize,
@@ -155,7 +155,7 @@ impl LimitBlocks {
         self.placed = 0;
     }
 
-    /// How many there are.
+    /// Number of blocks.
     pub fn len(&self) -> usize {
         self.blocks.len()
     }

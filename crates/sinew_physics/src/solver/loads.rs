@@ -11,7 +11,7 @@ const STANDING: f32 = 0.7;
 /// A moving body, while loads are handed down.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Bearer {
-    /// What it bears and weighs, as an impulse of a substep, N·s.
+    /// Load that it bears and weight of its own, as an impulse of a substep, N·s.
     load: f32,
     /// Contacts below that it stands on.
     supports: u32,

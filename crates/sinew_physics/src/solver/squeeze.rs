@@ -13,8 +13,8 @@ use sinew_math::{Vec3, max};
 /// Least mass of a body per impulse that cancels itself on it in a substep, kg/(N·s): what bears less than 4,000 times its
 /// weight has no ballast, and an ulp of that impulse is worth 1e-5 m/s.
 const BALLAST: f32 = 6e-3;
-/// Where masses differ by less than this nobody has ballast.
-pub(super) const UNEQUAL: f32 = 1e3;
+/// Ratio of masses below which nobody has ballast.
+pub(super) const BALLASTED_RATIO: f32 = 1e3;
 /// Fastest approach of what is taken to stand already, m/s.
 const STANDING_SPEED: f32 = 0.1;
 
@@ -32,7 +32,7 @@ pub(super) struct Touch {
     pub bodies: [u32; 2],
     /// From A to B.
     pub normal: Vec3,
-    /// What B got along the normal in the last substep, or is guessed to get in this one, N·s.
+    /// Impulse on B along the normal in the last substep, or guessed for this one, N·s.
     pub load: f32,
     /// Gap below which points are taken for touching, metres.
     slop: f32,

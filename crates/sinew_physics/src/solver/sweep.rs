@@ -65,7 +65,7 @@ impl Unrest {
         }
     }
 
-    /// Likewise the block of a limit.
+    /// Marks a block of limits for a visit if its own change asks for one.
     pub fn stir_limits(&mut self, block: u32, change: f32) {
         if change >= self.tolerance {
             self.limits[block as usize] = f32::NEG_INFINITY;

@@ -94,7 +94,7 @@ impl Kernel for NoteStir<'_> {
     }
 }
 
-/// Of numbers without signs.
+/// Largest of the lanes of numbers without signs.
 #[inline(always)]
 fn largest_of<L: Lanes>(numbers: L) -> f32 {
     let mut all = ZERO6;
