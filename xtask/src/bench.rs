@@ -51,7 +51,7 @@ const THREADS: &str = "threads";
 /// The scenes of it, and steps of each: enough for a heap.
 const THREADED: &[(&str, u32)] = &[("box_rain", 120), ("ragdoll_pile", 300)];
 
-/// `cargo xtask bench`: writes docs/benchmarks.md and target/bench/benchmarks.json.
+/// `cargo xtask bench`: writes docs/benchmarks.md and bench/benchmarks.json.
 ///
 /// Exits with 2 if a peer cannot be built.
 #[derive(clap::Args)]
@@ -273,9 +273,9 @@ fn two_threads(rounds: u32) -> Result<BTreeMap<String, f64>> {
     Ok(factors)
 }
 
-/// Where the figures of earlier runs are.
+/// Where the figures of earlier runs are: in the repository, since a whole run takes longer than a machine may last.
 fn file() -> PathBuf {
-    command::target().join("bench/benchmarks.json")
+    command::root().join("bench/benchmarks.json")
 }
 
 /// The figures of earlier runs; none if there are none that can be read.
@@ -289,7 +289,7 @@ fn write(results: Results, scenes: &[Scene]) -> Result<()> {
     let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
     let mut all = kept();
     all.update(results, &names);
-    fs::write(file(), format!("{:#}\n", all.to_json())).with_context(|| file().display().to_string())?;
+    fs::write(file(), format!("{}\n", all.to_json())).with_context(|| file().display().to_string())?;
     write_page(&all, &[&names[..], &[BAKE, THREADS]].concat())
 }
 
