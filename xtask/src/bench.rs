@@ -273,7 +273,7 @@ fn two_threads(rounds: u32) -> Result<BTreeMap<String, f64>> {
     Ok(factors)
 }
 
-/// Where the figures of earlier runs are: in the repository, since a whole run takes longer than a machine may last.
+/// File with the figures of earlier runs, in the repository: a whole run takes longer than a machine may last.
 fn file() -> PathBuf {
     command::root().join("bench/benchmarks.json")
 }
