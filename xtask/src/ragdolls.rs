@@ -116,7 +116,7 @@ pub fn measure(binary: &Path, file: &Path, gate: u32) -> Result<Measured> {
 
 const LEGEND: &str = "A rig is *good* with every figure inside its bar: gap of joints below 1 mm (99 % of all) and 5 mm
 (worst), beyond a limit below 2° and 4°, asleep within 6 s of a release from 1 m and 3 s of calm, overlap of bodies that no joint
-connects below 10 mm, 5 mm in the ground at rest, energy from nothing below 0.01; *usable* without NaN, with a gap below 20 mm,
+connects below 10 mm, 5 mm in the ground at rest, energy from nothing below 0.01, and a sound skin ([ragdolls](ragdoll.md)); *usable* without NaN, with a gap below 20 mm,
 asleep within 8 s, overlap below 30 mm. Where there are two figures, the first is of the drops, the second of the wall.
 ";
 

@@ -21,6 +21,7 @@ mod scene_choice;
 mod settings_arg;
 mod skeleton;
 mod skin;
+mod skin_report;
 mod story;
 mod table;
 

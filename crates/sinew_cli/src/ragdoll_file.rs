@@ -15,6 +15,8 @@ pub struct RagdollFile {
     pub patient: Patient,
     /// What reading and building want a person to know, a sentence each.
     pub notes: Vec<String>,
+    /// The rigged file that it was built from, if it is one.
+    pub character: Option<CharacterFile>,
 }
 
 impl RagdollFile {
@@ -36,20 +38,21 @@ impl RagdollFile {
                 patient: Patient::new(read_ragdoll(&bytes).map_err(|error| error.with_file(&name))?),
                 name,
                 notes: Vec::new(),
+                character: None,
             }),
             Kind::Mjcf => {
                 let model = read_mjcf(&bytes).and_then(|model| Ok((model.to_ragdoll()?, model.notes)));
                 let (ragdoll, mut notes) = model.map_err(|error| error.with_file(&name))?;
                 notes.extend(ragdoll.notes);
                 let patient = Patient { springs: ragdoll.springs, ..Patient::new(ragdoll.def) };
-                Ok(Self { patient, name, notes })
+                Ok(Self { patient, name, notes, character: None })
             }
             Kind::Character => {
                 drop(bytes);
                 let (character, settings) = settings.load_character(path, textures)?;
                 let (def, report) = settings.build(&character, &BuildOptions::default())?;
                 let patient = Patient { reference: Some(def.clone()), ..Patient::new(def) };
-                Ok(Self { patient, name, notes: report.notes })
+                Ok(Self { patient, name, notes: report.notes, character: Some(character) })
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::quality_report::{quality_json, quality_text};
 use crate::report::{Report, number, numbers};
+use crate::skin_report::{SkinReport, skin_json, skin_text};
 use crate::table::{Table, shown};
 use serde_json::{Map, Value, json};
 use sinew::math::{Range, SwingTwistLimit, Vec3};
@@ -24,6 +25,8 @@ pub struct RagdollReport<'a> {
     pub build_ms: f64,
     /// Eight drops and a wall hit.
     pub tested: &'a DropReport,
+    /// The drawn skin.
+    pub skin: &'a SkinReport,
     /// Random falls, if they were asked for.
     pub gated: Option<&'a GateReport>,
 }
@@ -64,6 +67,7 @@ impl RagdollReport<'_> {
             "calm_to_asleep_s": time(drop.calm_to_asleep_s),
             "settled_omega_max_rad_s": time(drop.settled_omega_max),
             "nonadjacent_overlap_max_m": number(drop.nonadjacent_overlap_max_m),
+            "skin": skin_json(&self.skin.figures),
         });
         if let Some(gated) = self.gated {
             quality["gate"] = gate_json(gated);
@@ -80,6 +84,7 @@ impl RagdollReport<'_> {
         text += &quality_text(drop);
         text += "Thrown at a wall at 15 m/s\n";
         text += &quality_text(wall);
+        text += &skin_text(&self.skin.figures);
         if let Some(gated) = self.gated {
             text += &gate_text(gated);
         }

@@ -17,6 +17,7 @@ pub mod quality;
 pub mod ragdoll;
 pub mod rig_match;
 pub mod settings;
+pub mod skin;
 
 pub use bake::{BakeInput, Baked, Hit, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
@@ -34,3 +35,4 @@ pub use quality::{DropReport, Quality, QualityMeter, Verdict, drop_test, gate};
 pub use ragdoll::{BodyState, Flesh, Ragdoll};
 pub use rig_match::RigMismatch;
 pub use settings::{Settings, SettingsError, build_moving, build_with};
+pub use skin::{Flaw, FlawKind, SkinMeter, SkinQuality, measure_skin};

@@ -32,6 +32,10 @@ const CONFIDENCE_NAMED: f32 = 0.6;
 /// Confidence of a generic role.
 const CONFIDENCE_GENERIC: f32 = 0.6;
 
+/// Share of all skin from which a joint named as a control counts as a bone. It need not be enough for a body: a hoof too small
+/// for one must still go with its leg.
+const LEAST_CONTROL_SHARE: f32 = 5e-4;
+
 /// How far both feet together must stick out against what left and right are named, in heights of the body: half of what
 /// a human's do.
 const LEAD_AGAINST_NAMES: f32 = 0.04;
@@ -97,7 +101,13 @@ impl<'a> Scene<'a> {
             (readings[joint].part, readings[joint].side) = (part_of(role), role.side());
         }
         if trusted {
-            let body = |joint: JointIdx| readings[joint].part != Some(Part::Appendix);
+            // A control that moves skin which nothing above it moves is a part of the body, whatever its name.
+            let fair = LEAST_CONTROL_SHARE * bound.area.iter().sum::<f32>();
+            let is_bone = |joint: JointIdx| {
+                let carries = |ancestor: JointIdx| bound.area[ancestor] > 0.0;
+                readings[joint].is_control && bound.area[joint] >= fair && !ancestors(rig, joint).any(carries)
+            };
+            let body = |joint: JointIdx| readings[joint].part != Some(Part::Appendix) || is_bone(joint);
             if let Some(smaller) = Graph::of(rig, bound, body) {
                 symmetry = Symmetry::find(&smaller, bound.size());
                 graph = smaller;
@@ -112,7 +122,8 @@ impl<'a> Scene<'a> {
             notes.push("roles are those that the file states".into());
             return stated;
         }
-        let found = possible_ups(self.symmetry.lateral).find_map(|up| Some((up, self.recognise(up)?)));
+        let human = |up: Vec3| self.recognise(up).filter(|found| !self.is_beast(found));
+        let found = possible_ups(self.symmetry.lateral).find_map(|up| Some((up, human(up)?)));
         if let Some((up, humanoid)) = found {
             return self.shape_draft(up, &humanoid, notes);
         }
@@ -154,6 +165,15 @@ impl<'a> Scene<'a> {
         let readings = self.node_readings();
         Evidence { graph: &self.graph, symmetry: &self.symmetry, stance: &stance, readings: &readings }
             .recognise()
+    }
+
+    /// Whether what looks like arms and what looks like legs are both named as limbs of a body on four legs.
+    fn is_beast(&self, found: &Humanoid) -> bool {
+        let is_named = |limb: &Limb| {
+            let mut joints = limb.chain.iter().flatten().map(|&node| self.graph.nodes[node].joint);
+            joints.any(|joint| self.readings[joint].part == Some(Part::Beast))
+        };
+        is_named(&found.arms) && is_named(&found.legs)
     }
 
     /// Left by the feet, else by names, else so that the body faces the file's +Z.

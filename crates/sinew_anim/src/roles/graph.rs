@@ -19,6 +19,11 @@ pub(super) struct Node {
     pub reach: f32,
 }
 
+/// Most joints of a foot beside the body: it and its toes.
+const LONGEST_FOOT: usize = 2;
+/// A foot that hangs on the root belongs to the leg whose end is nearer than this share of the skin's size.
+const AT_END: f32 = 0.01;
+
 /// A tree of [`Node`]s with one root.
 pub(super) struct Graph {
     pub nodes: Vec<Node>,
@@ -77,6 +82,7 @@ impl Graph {
             self.nodes[parent].children.push(stray);
             self.adopted.push(stray);
         }
+        self.hang_feet(&ends, bound.size());
         self.order = self.subtree(self.root);
         for k in (0..self.order.len()).rev() {
             let i = self.order[k];
@@ -87,6 +93,29 @@ impl Graph {
             }
         }
         Some(())
+    }
+
+    /// Feet that hang on the root, as those led by inverse kinematics do, and sit right at the end of a leg go with the leg.
+    fn hang_feet(&mut self, ends: &[(usize, Vec3)], size: f32) {
+        for foot in self.nodes[self.root].children.clone() {
+            let own = self.subtree(foot);
+            if own.len() > LONGEST_FOOT {
+                continue;
+            }
+            let start = self.nodes[foot].position;
+            let is_leg = |node: usize| {
+                node != self.root && self.nodes[node].children.is_empty() && !own.contains(&node)
+            };
+            let leg = ends.iter().find(|&&(node, at)| is_leg(node) && (at - start).length() < AT_END * size);
+            let Some(&(leg, _)) = leg else { continue };
+            self.nodes[foot].parent = Some(leg);
+            self.nodes[leg].children.push(foot);
+            let root = self.root;
+            self.nodes[root].children.retain(|&child| child != foot);
+            if !self.adopted.contains(&foot) {
+                self.adopted.push(foot);
+            }
+        }
     }
 
     /// Where a stray tree belongs. Rigs baked from inverse kinematics leave the feet beside the body: such a short
@@ -107,11 +136,15 @@ impl Graph {
         {
             return node;
         }
-        let leaves = |i: &usize| self.nodes[*i].children.is_empty() && self.nodes[*i].parent.is_some();
+        // No foot stands on another foot: what was adopted itself adopts nothing.
+        let leaves = |i: &usize| {
+            let is_leaf = self.nodes[*i].children.iter().all(|child| self.adopted.contains(child));
+            is_leaf && self.nodes[*i].parent.is_some() && !self.adopted.contains(i)
+        };
         let mut leaves = (0..self.nodes.len()).filter(leaves).map(|i| (i, self.nodes[i].position));
         match nearest(&mut leaves) {
             Some((distance, leaf))
-                if self.subtree(stray).len() <= 2
+                if self.subtree(stray).len() <= LONGEST_FOOT
                     && distance < 0.75 * (self.nodes[self.root].position - start).length() =>
             {
                 leaf

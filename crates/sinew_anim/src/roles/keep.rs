@@ -228,6 +228,7 @@ impl Selection<'_> {
                 parent: parent(joint).or((i > 0).then_some(0)),
                 merged: Vec::new(),
                 bind_model: self.bound.model[joint],
+                is_prop: false,
             });
         }
         let place = self.places(joints);

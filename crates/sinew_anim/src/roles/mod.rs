@@ -15,6 +15,7 @@ mod graph;
 mod humanoid;
 mod keep;
 mod names;
+mod props;
 mod role;
 mod symmetry;
 
@@ -53,6 +54,8 @@ pub struct KeptBone {
     pub merged: Vec<JointIdx>,
     /// Transform in the bind pose, model space, file units.
     pub bind_model: Affine,
+    /// Whether it is carried, as a sword or a cape without a skin is, and no part of the body: it is held fast.
+    pub is_prop: bool,
 }
 
 /// What [`analyze`] found out about a rig.
@@ -210,7 +213,10 @@ fn analyze_bound(
     let carrier = keep::carriers(rig, &bound, &graph, &roles);
     let selection =
         Selection { rig, bound: &bound, graph: &graph, roles: &roles, height: stance.height, carrier };
-    let Kept { bones: kept, merge_into } = if humanoid { selection.humanoid() } else { selection.creature() };
+    let mut kept = if humanoid { selection.humanoid() } else { selection.creature() };
+    let mut roles = roles;
+    props::keep_props(rig, &bound, &mut kept, &mut roles);
+    let Kept { bones: kept, merge_into } = kept;
     let mut dropped: Vec<JointIdx> = rig.skins.iter().flat_map(|skin| skin.joints.iter().copied()).collect();
     dropped.sort_unstable();
     dropped.dedup();

@@ -7,6 +7,7 @@ use crate::progress::Progress;
 use crate::ragdoll_report::RagdollReport;
 use crate::report::Report;
 use crate::settings_arg::{LoadedSettings, SettingsArg};
+use crate::skin_report::SkinReport;
 use clap::ValueEnum;
 use sinew::formats::{Textures, write_ragdoll};
 use sinew::physics::Threads;
@@ -91,6 +92,8 @@ impl RagdollBuild {
             tested.verdict = Verdict::min(tested.verdict, Verdict::Usable);
             tested.reasons.insert(0, doubt);
         }
+        let skin = SkinReport::of(&character, &def, &tested);
+        skin.judge(&mut tested);
         let gated = self.gate.map(|spawns| self.gated(&def, spawns));
         let report = RagdollReport {
             file: &character.name,
@@ -98,6 +101,7 @@ impl RagdollBuild {
             build: &build,
             build_ms: 1000.0 * seconds,
             tested: &tested,
+            skin: &skin,
             gated: gated.as_ref(),
         };
         let mut outputs = Outputs::default();

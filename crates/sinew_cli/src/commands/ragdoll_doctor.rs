@@ -1,15 +1,16 @@
 //! `sinew ragdoll doctor`: what is wrong with a ragdoll, and what mends it.
 
 use crate::failure::Result;
-use crate::files::{Outputs, must_end_in, never_over};
+use crate::files::{CharacterFile, Outputs, must_end_in, never_over};
 use crate::ragdoll_file::RagdollFile;
 use crate::report::Report;
 use crate::settings_arg::SettingsArg;
+use crate::skin_report::SkinReport;
 use crate::table::{Table, counted, shown};
 use serde_json::{Value, json};
 use sinew::formats::{Textures, write_ragdoll};
-use sinew::ragdoll::doctor::{Finding, Severity};
-use sinew::ragdoll::{BuildOptions, cure, doctor};
+use sinew::ragdoll::doctor::{Code, Finding, Severity};
+use sinew::ragdoll::{BuildOptions, Flaw, Patient, cure, doctor, drop_test};
 use std::path::PathBuf;
 
 /// Say why a ragdoll jitters, explodes or looks wrong, with what was measured, and mend it
@@ -39,6 +40,22 @@ pub struct RagdollDoctor {
     settings: SettingsArg,
 }
 
+/// What is wrong with the skin of a ragdoll on its rig. One that explodes is not dropped, nor one whose bodies are known to be
+/// missing: nothing would be learned of its skin.
+fn skin_flaws(patient: &Patient, character: &CharacterFile) -> Vec<Flaw> {
+    let is_cause = |finding: &Finding| {
+        let is_missing = matches!(finding.code, Code::HeadWithoutBody | Code::LimbWithoutBody);
+        is_missing || finding.severity == Severity::Error
+    };
+    if doctor(patient).iter().any(is_cause) {
+        return Vec::new();
+    }
+    match patient.def.clone().for_rig(&character.document.rig) {
+        Ok(def) => SkinReport::of(character, &def, &drop_test(&def)).flaws,
+        Err(_) => Vec::new(),
+    }
+}
+
 impl RagdollDoctor {
     /// Reads, examines, mends, writes.
     pub fn run(&self) -> Result<Report> {
@@ -50,10 +67,14 @@ impl RagdollDoctor {
         if self.rig.is_none() {
             file.check_settings(&self.settings)?;
         }
-        let RagdollFile { name, mut patient, mut notes } = file;
+        let RagdollFile { name, mut patient, mut notes, mut character } = file;
         if let Some(rig) = &self.rig {
-            let (character, settings) = self.settings.load_character(rig, Textures::Skip)?;
-            patient.reference = Some(settings.build(&character, &BuildOptions::default())?.0);
+            let (rig, settings) = self.settings.load_character(rig, Textures::Skip)?;
+            patient.reference = Some(settings.build(&rig, &BuildOptions::default())?.0);
+            character = Some(rig);
+        }
+        if let Some(character) = &character {
+            patient.skin = skin_flaws(&patient, character);
         }
         let findings = match &self.output {
             None => doctor(&patient),

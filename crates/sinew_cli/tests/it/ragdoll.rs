@@ -91,6 +91,24 @@ fn rigs_of_others_have_no_errors() {
     }
 }
 
+/// A sword that is skinned to a hand has no body: it lies in the floor, which is said with the bone and a remedy.
+#[test]
+fn skin_in_the_floor_is_told() {
+    let Some(data) = shared_data() else { return };
+    let file = data.join("rigs/quaternius_cyberpunk_Character.glb").display().to_string();
+    let object = sinew(&["ragdoll", "doctor", &file, "--json"]).json();
+    check_keys("ragdoll doctor", &object);
+    assert_eq!(codes(&object), ["skin-off-floor"]);
+    assert_eq!(
+        (&object["findings"][0]["bone"], &object["findings"][0]["fixed"]),
+        (&"Hand.R".into(), &false.into())
+    );
+    let built = sinew(&["ragdoll", "build", &file, "--json"]).json();
+    assert_eq!(built["quality"]["verdict"], "usable");
+    let reasons = built["quality"]["reasons"].as_array().expect("reasons");
+    assert!(reasons.iter().any(|reason| reason.as_str().is_some_and(|r| r.starts_with("skin: at rest"))));
+}
+
 #[test]
 fn models_of_others_are_examined() {
     let Some(data) = shared_data() else { return };

@@ -24,6 +24,8 @@ pub struct Bone {
     pub parent: Option<usize>,
     /// Pivot of the joint to the parent, character space at the bind pose, metres.
     pub head: Vec3,
+    /// Whether it is carried and no part of the body: nothing ends where it begins, and its joint is fixed.
+    pub is_prop: bool,
 }
 
 /// The kept bones of a character.
@@ -31,7 +33,7 @@ pub struct Bone {
 pub struct Bones {
     /// Parents before children; the first is the pelvis.
     pub list: Vec<Bone>,
-    /// Indices of the children of each bone.
+    /// Indices of the children of each bone, without props.
     pub children: Vec<Vec<usize>>,
     /// Whether the anatomy of a human applies.
     pub anatomy: Anatomy,
@@ -58,7 +60,9 @@ impl Bones {
         for (index, bone) in list.iter().enumerate() {
             if let Some(parent) = bone.parent {
                 assert!(parent < index, "bone {index} comes before its parent {parent}");
-                children[parent].push(index);
+                if !bone.is_prop {
+                    children[parent].push(index);
+                }
             }
         }
         Self { list, children, anatomy, height }
@@ -158,6 +162,6 @@ impl Bone {
     /// A bone from its role's name.
     pub fn new(joint: JointIdx, role: Role, parent: Option<usize>, head: Vec3) -> Self {
         let (part, side) = part_of_role(role);
-        Self { joint, merged: Vec::new(), role, confidence: 1.0, part, side, parent, head }
+        Self { joint, merged: Vec::new(), role, confidence: 1.0, part, side, parent, head, is_prop: false }
     }
 }

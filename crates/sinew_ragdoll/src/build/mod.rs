@@ -215,7 +215,8 @@ fn kept_bones(analysis: &RigAnalysis, bind: BindPose<'_>) -> Result<Bones, Build
         .map(|kept| {
             let head = bind.character_point(kept.bind_model.translation);
             let bone = Bone::new(kept.joint, kept.role, kept.parent, head);
-            Bone { merged: kept.merged.clone(), confidence: kept.confidence, ..bone }
+            let (merged, confidence, is_prop) = (kept.merged.clone(), kept.confidence, kept.is_prop);
+            Bone { merged, confidence, is_prop, ..bone }
         })
         .collect();
     if list.is_empty() {

@@ -166,6 +166,34 @@ codes! {
     StiffnessAboveNyquist "stiffness-above-nyquist" Warning
         "a spring that swings faster than twice per two substeps cannot be followed"
         "Lower it to half of what the substep can follow, or take more substeps.";
+    /// Skin is far from every body that moves it.
+    SkinUncovered "skin-uncovered" Warning
+        "skin that no shape is near lies in floors and walls: hair, clothes or gear without a body, or a limb that got none"
+        "Give what sticks out a body (`--body`), say that it is no part of the body (`--ignore`), or enlarge the shape there.";
+    /// A fall stretches the skin.
+    SkinTorn "skin-torn" Warning
+        "joints move skin that no body near it carries, so that it stays behind when the body falls"
+        "Give the joint that stays behind a body (`--body`), or say what it is (`--role`).";
+    /// Left and right differ.
+    SkinLopsided "skin-lopsided" Warning
+        "the two sides got bodies of different length, size or mass, so that it falls to one side"
+        "Set shape, scale or mass of both by the role without its side, or give the missing part a body.";
+    /// A part hangs on what it does not grow from.
+    LimbApart "limb-apart" Warning
+        "the rig has a part of a limb beside the body, as controls of inverse kinematics do, and it was hung elsewhere"
+        "Say with `--role` which part of which limb it is.";
+    /// Drawn in another size than bound.
+    DrawnResized "drawn-resized" Warning
+        "the nodes' own transforms scale the skin otherwise than its bind matrices, so that it sinks in or floats"
+        "Apply scales in the modelling tool and export the rig anew.";
+    /// The skin lies in the floor, or above it.
+    SkinOffFloor "skin-off-floor" Warning
+        "a part of the skin without a shape around it lies in the floor, or a shape outside the skin keeps it above"
+        "Give that part a body (`--body`), leave it out (`--ignore`), or change the shape's `scale` in settings.";
+    /// It lies still without touching anything.
+    RestsInAir "rests-in-air" Warning
+        "it came to rest on nothing"
+        "Report it with the file: a ragdoll that is not held must fall.";
     /// The rig's unit was not a metre.
     UnitInferred "unit-inferred" Note
         "the file's unit is not a metre, so that its length was inferred from the size of the body"

@@ -180,7 +180,7 @@ pub fn limit_reach(kind: &JointKind, bind: Rotation, axis: Vec3) -> f32 {
 }
 
 /// The bodies of a definition as bones.
-pub(super) fn bones_of(def: &RagdollDef) -> Bones {
+pub(crate) fn bones_of(def: &RagdollDef) -> Bones {
     let list: Vec<Bone> = def
         .bodies
         .iter()
@@ -192,7 +192,9 @@ pub(super) fn bones_of(def: &RagdollDef) -> Bones {
             let joint = index.checked_sub(1).map(|joint| &def.joints[joint]);
             let head = joint.map_or(body.character_from_body.translation, |joint| anchors(def, joint)[1]);
             let bone = Bone::new(body.joint, role, joint.map(|joint| joint.parent), head);
-            Bone { merged: body.merged.clone(), confidence: body.confidence, ..bone }
+            let is_fixed = joint.is_some_and(|joint| joint.kind == JointKind::Fixed);
+            let is_prop = is_fixed && matches!(Role::from_name(&body.role), Some(Role::LimbSegment { .. }));
+            Bone { merged: body.merged.clone(), confidence: body.confidence, is_prop, ..bone }
         })
         .collect();
     let has = |part: Part| list.iter().any(|bone| bone.part == part);

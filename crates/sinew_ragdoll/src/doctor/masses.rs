@@ -90,7 +90,9 @@ fn ratios(exam: &Exam<'_>) -> Vec<Finding> {
     let mass = |body: usize| exam.def.bodies[body].mass.mass;
     let ratio = |a: usize, b: usize| max(mass(a) / mass(b), mass(b) / mass(a));
     let mut findings = Vec::new();
-    for joint in &exam.def.joints {
+    // What is held fast moves as one with what holds it.
+    let is_held = |body: usize| exam.bones.list[body].is_prop;
+    for joint in exam.def.joints.iter().filter(|joint| !is_held(joint.child)) {
         let found = ratio(joint.parent, joint.child);
         if found > NEIGHBOUR_RATIO {
             let evidence = format!(
@@ -113,7 +115,7 @@ fn ratios(exam: &Exam<'_>) -> Vec<Finding> {
 fn chain(exam: &Exam<'_>) -> Option<Finding> {
     let mass = |body: usize| exam.def.bodies[body].mass.mass;
     let mut worst: Option<(f32, usize, usize)> = None;
-    for body in 1..exam.def.bodies.len() {
+    for body in (1..exam.def.bodies.len()).filter(|&body| !exam.bones.list[body].is_prop) {
         let mut above = exam.bones.list[body].parent;
         while let Some(at) = above {
             let ratio = max(mass(at) / mass(body), mass(body) / mass(at));

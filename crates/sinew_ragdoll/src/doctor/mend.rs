@@ -91,6 +91,13 @@ fn remedied(exam: &Exam<'_>, finding: &Finding, body: usize, other: usize) -> Op
         | Code::WrongUnit
         | Code::HeadWithoutBody
         | Code::LimbWithoutBody
+        | Code::SkinUncovered
+        | Code::SkinTorn
+        | Code::SkinLopsided
+        | Code::LimbApart
+        | Code::DrawnResized
+        | Code::SkinOffFloor
+        | Code::RestsInAir
         | Code::StiffnessAboveNyquist => return None,
     }
     Some(def)

@@ -16,10 +16,12 @@ mod motion;
 mod shapes;
 
 pub use code::{Code, Severity};
+pub(crate) use exam::bones_of;
 pub use exam::limit_reach;
 pub(crate) use geometry::scaled;
 
 use crate::def::RagdollDef;
+use crate::skin::{Flaw, FlawKind};
 use exam::Exam;
 use sinew_physics::{Softness, WorldDef};
 
@@ -32,6 +34,8 @@ pub struct Patient {
     pub springs: Vec<Option<Softness>>,
     /// What a build from the patient's rig gives, if the rig is at hand: it knows what the definition leaves out.
     pub reference: Option<RagdollDef>,
+    /// What is wrong with its skin ([`SkinQuality::flaws`](crate::SkinQuality::flaws)), where it was measured.
+    pub skin: Vec<Flaw>,
     /// Length of a substep, seconds. Default: that of a default world, 1/240.
     pub substep: f32,
 }
@@ -40,7 +44,8 @@ impl Patient {
     /// A limp ragdoll whose rig is not at hand.
     pub fn new(def: RagdollDef) -> Self {
         let world = WorldDef::default();
-        Self { def, springs: Vec::new(), reference: None, substep: world.dt() / world.substeps as f32 }
+        let substep = world.dt() / world.substeps as f32;
+        Self { def, springs: Vec::new(), reference: None, skin: Vec::new(), substep }
     }
 }
 
@@ -88,8 +93,31 @@ pub fn doctor(patient: &Patient) -> Vec<Finding> {
         };
         findings.extend(in_proportion(&Exam::new(patient)));
     }
+    findings.extend(patient.skin.iter().map(of_skin));
     findings.sort_by_key(|finding| (finding.severity, finding.code));
     findings
+}
+
+/// A flaw of the skin as a finding. What mends a definition does not measure the skin anew, so that none counts as fixed.
+fn of_skin(flaw: &Flaw) -> Finding {
+    let code = match flaw.kind {
+        FlawKind::Uncovered => Code::SkinUncovered,
+        FlawKind::Torn => Code::SkinTorn,
+        FlawKind::Lopsided => Code::SkinLopsided,
+        FlawKind::Apart => Code::LimbApart,
+        FlawKind::Resized => Code::DrawnResized,
+        FlawKind::OffFloor => Code::SkinOffFloor,
+        FlawKind::Airborne => Code::RestsInAir,
+    };
+    Finding {
+        code,
+        severity: code.severity(),
+        bodies: flaw.bodies.clone(),
+        bones: flaw.bones.clone(),
+        evidence: flaw.evidence.clone(),
+        fix: code.fix().to_owned(),
+        fixed: false,
+    }
 }
 
 /// Findings on a ragdoll of sound numbers and a sensible size.

@@ -58,7 +58,8 @@ fn out_of_size(exam: &Exam<'_>, body: usize) -> Option<Finding> {
         return Some(exam.finding(Code::TinyShape, &[body], evidence));
     }
     let most = longest_allowed(exam);
-    (long > most).then(|| {
+    // A spear may be longer than who carries it.
+    (long > most && !exam.bones.list[body].is_prop).then(|| {
         let evidence = format!(
             "{} is {:.2} m long, {:.0} % of a height of {:.2} m",
             exam.who(body),

@@ -11,7 +11,7 @@ mod round;
 mod solid;
 pub mod surface;
 
-use crate::build::bones::Bones;
+use crate::build::bones::{Bone, Bones};
 use crate::build::part::Part;
 use core::mem::discriminant;
 use patch::{Patch, Selection, Symmetry};
@@ -46,7 +46,7 @@ pub enum ShapeChoice {
     Box,
     /// Capsules only.
     Capsule,
-    /// Boxes for trunk, hands and feet, capsules for limbs, neck and head, unless the other is clearly closer to the skin.
+    /// Boxes for trunk, hands, feet and what is carried, capsules for limbs, neck and head, unless the other is clearly closer to the skin.
     #[default]
     Auto,
 }
@@ -129,7 +129,7 @@ fn fit_bone(bones: &Bones, bone: usize, shares: &[Share], choice: ShapeChoice) -
 
 /// Of all kinds, the shape whose error, weighed by how well its kind suits the part, is least.
 fn nearest(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
-    let is_square = prefers_box(bones.list[bone].part);
+    let is_square = prefers_box(bones.list[bone].part) || bones.list[bone].is_prop;
     let [flat, round] = if is_square { [1.0, UNUSUAL] } else { [UNUSUAL, 1.0] };
     let capsule = round::fit_capsule(bones, bone, patch);
     let tapered = round::taper(&capsule, patch).map(|fit| (fit, round * TAPERED));
@@ -165,10 +165,11 @@ fn stand_in(bones: &Bones, bone: usize) -> Fit {
 
 /// The extent `lo..hi` of a shape along `axis` from `origin`: cut where it passes the bone's own joint and that of its
 /// continuation by more than [`PAST_JOINT`] of its length, and for the
-/// trunk stretched to reach them. Shapes across the bone (feet) are left alone.
+/// trunk stretched to reach them. Shapes across the bone (feet) are left alone, and what is held and not grown.
 fn clip_at_joints(bones: &Bones, bone: usize, origin: Vec3, axis: Vec3, lo: f32, hi: f32) -> (f32, f32) {
     let direction = bones.direction(bone, Some(origin));
-    if axis.dot(direction) < 0.7 || bones.list[bone].part == Part::Foot {
+    let Bone { part, is_prop, .. } = bones.list[bone];
+    if axis.dot(direction) < 0.7 || part == Part::Foot || is_prop {
         return (lo, hi);
     }
     let own = bones.list[bone].parent.map(|_| (bones.list[bone].head - origin).dot(axis));

@@ -16,7 +16,9 @@ pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
         direction.y = 0.0;
     }
     let axes = with_y(box_frame(bones, bone, patch), direction);
-    let extent = |axis: Vec3| patch.quantiles([0.01, 0.99], |p| (p - patch.center).dot(axis));
+    // Of a sword the last hundredth is its point.
+    let shares = if bones.list[bone].is_prop { [0.0, 1.0] } else { [0.01, 0.99] };
+    let extent = |axis: Vec3| patch.quantiles(shares, |p| (p - patch.center).dot(axis));
     let ([x_lo, x_hi], [z_lo, z_hi]) = (extent(axes.x_axis), extent(axes.z_axis));
     let [y_lo, y_hi] = extent(axes.y_axis);
     let (y_lo, y_hi) = clip_at_joints(bones, bone, patch.center, axes.y_axis, y_lo, y_hi);

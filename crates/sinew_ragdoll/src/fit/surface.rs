@@ -27,17 +27,25 @@ pub struct Share {
 ///
 /// A joint that is neither kept nor merged goes with its nearest ancestor that is.
 pub fn owners(rig: &Rig, bones: &Bones) -> Vec<Option<usize>> {
+    carried(rig, bones.list.iter().map(|bone| (bone.joint, bone.merged.as_slice())))
+}
+
+/// [`owners`] of bodies by their joints and what is merged into them; joints that the rig does not have are passed over.
+pub(crate) fn carried<'a>(
+    rig: &Rig,
+    bodies: impl Iterator<Item = (JointIdx, &'a [JointIdx])> + Clone,
+) -> Vec<Option<usize>> {
     let mut owner = vec![None; rig.joints.len()];
     let mut own = |joint: JointIdx, bone| {
         if let Some(slot) = owner.get_mut(joint) {
             *slot = Some(bone);
         }
     };
-    for (index, bone) in bones.list.iter().enumerate() {
-        bone.merged.iter().for_each(|&joint| own(joint, index));
+    for (index, (_, merged)) in bodies.clone().enumerate() {
+        merged.iter().for_each(|&joint| own(joint, index));
     }
-    for (index, bone) in bones.list.iter().enumerate() {
-        own(bone.joint, index);
+    for (index, (joint, _)) in bodies.enumerate() {
+        own(joint, index);
     }
     for joint in 0..owner.len() {
         if owner[joint].is_none() {

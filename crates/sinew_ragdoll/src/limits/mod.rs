@@ -64,7 +64,11 @@ pub fn joints(bones: &Bones, fits: &[Fit], total_mass: f32) -> Vec<JointPlan> {
             }
             let seen =
                 Seen { side: bones.list[child].side, turned: [turned[parent], turned[child]], directions };
-            let (frames, kind, widened) = seen.joint(&entry, bones.anatomy);
+            let (frames, kind, widened) = if bones.list[child].is_prop {
+                ([Rotation::IDENTITY; 2], JointKind::Fixed, 0.0)
+            } else {
+                seen.joint(&entry, bones.anatomy)
+            };
             let pivot = bones.list[child].head;
             let [frame_parent, frame_child] = [(parent, frames[0]), (child, frames[1])]
                 .map(|(body, frame)| fits[body].character_from_body.inverse() * Transform::new(pivot, frame));

@@ -1,10 +1,11 @@
 //! Eight falls and a crash: what every ragdoll must survive.
 
+use super::meter::CALM;
 use super::{Quality, QualityMeter, Verdict, judge};
 use crate::def::RagdollDef;
 use crate::ragdoll::{BodyState, Flesh, Ragdoll};
 use sinew_math::{Rotation, Transform, Vec3, max, min};
-use sinew_physics::{BodyDef, BodyKind, Shape, ShapeDef, Velocity, World, WorldDef};
+use sinew_physics::{BodyDef, BodyId, BodyKind, Shape, ShapeDef, Velocity, World, WorldDef};
 
 /// Height of a drop: from the lowest point to the floor, metres.
 const HEIGHT: f32 = 1.0;
@@ -23,10 +24,53 @@ pub struct DropReport {
     pub drops: Vec<Quality>,
     /// The wall hit.
     pub wall: Quality,
+    /// How the bodies lay in each drop.
+    pub falls: Vec<Fallen>,
     /// What to make of it.
     pub verdict: Verdict,
     /// Why, a sentence each.
     pub reasons: Vec<String>,
+}
+
+/// Where the bodies of a ragdoll were in a drop onto the plane y = 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Fallen {
+    /// World poses of the bodies, four times a second from the release on, and at last as they lay.
+    pub poses: Vec<Vec<Transform>>,
+    /// Time after the first calm (every body below 0.3 m/s after something touched the floor) in which no body was within 1 cm of
+    /// the floor, seconds.
+    pub airborne_s: f32,
+    has_touched: bool,
+    is_calm: bool,
+}
+
+/// Time between two poses of a [`Fallen`], in steps of 1/60 s.
+const STEPS_A_POSE: u32 = 15;
+/// A body nearer to the floor than this is not in the air, metres.
+const IN_THE_AIR: f32 = 0.01;
+
+impl Fallen {
+    fn see(&mut self, step: u32, world: &World, def: &RagdollDef, ragdoll: &Ragdoll) {
+        if step.is_multiple_of(STEPS_A_POSE) {
+            self.keep(world, ragdoll);
+        }
+        let lowest = def.bodies.iter().zip(&ragdoll.bodies).fold(f32::INFINITY, |lowest, (body, &id)| {
+            min(lowest, body.shape.aabb(&world.transform(id)).min.y)
+        });
+        let is_touching = lowest < IN_THE_AIR;
+        self.has_touched |= is_touching;
+        let is_slow = |&body: &BodyId| world.velocity(body).linear.length() < CALM;
+        self.is_calm |= self.has_touched && ragdoll.bodies.iter().all(is_slow);
+        if self.is_calm && !is_touching {
+            self.airborne_s += world.def().dt();
+        }
+    }
+
+    fn keep(&mut self, world: &World, ragdoll: &Ragdoll) {
+        let mut poses = Vec::new();
+        ragdoll.poses(world, &mut poses);
+        self.poses.push(poses);
+    }
 }
 
 /// Drops the ragdoll from 1 m in eight orientations and throws it at a wall at 15 m/s.
@@ -34,11 +78,12 @@ pub struct DropReport {
 /// # Panics
 /// If the definition is not one that `build` gives: no bodies, masses that are not positive.
 pub fn drop_test(def: &RagdollDef) -> DropReport {
-    let drops: Vec<_> = releases().into_iter().map(|(turn, spin)| drop_once(def, turn, spin)).collect();
+    let (drops, falls): (Vec<_>, Vec<_>) =
+        releases().into_iter().map(|(turn, spin)| drop_once(def, turn, spin)).unzip();
     let drop = drops.iter().copied().reduce(worse).unwrap_or_default();
     let wall = wall_hit(def);
     let (verdict, reasons) = judge(&drop, &wall);
-    DropReport { drop, drops, wall, verdict, reasons }
+    DropReport { drop, drops, wall, falls, verdict, reasons }
 }
 
 /// Orientations and angular velocities (rad/s) of the eight drops: standing, on the face, on the back, on each side, on
@@ -64,11 +109,15 @@ fn floor() -> BodyDef {
     BodyDef { kind: BodyKind::Static, shapes: vec![ShapeDef::new(Shape::HalfSpace)], ..BodyDef::default() }
 }
 
-fn drop_once(def: &RagdollDef, turn: Rotation, spin: Vec3) -> Quality {
+fn drop_once(def: &RagdollDef, turn: Rotation, spin: Vec3) -> (Quality, Fallen) {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
     let ragdoll = released(&mut world, def, turn, spin, Vec3::ZERO);
-    measure(&mut world, def, &ragdoll, DROP_SECONDS)
+    let mut fallen = Fallen::default();
+    let see = |step: u32, world: &World| fallen.see(step, world, def, &ragdoll);
+    let quality = measure_seen(&mut world, def, &ragdoll, DROP_SECONDS, see);
+    fallen.keep(&world, &ragdoll);
+    (quality, fallen)
 }
 
 fn wall_hit(def: &RagdollDef) -> Quality {
@@ -127,14 +176,26 @@ pub(super) fn carried(
 
 /// Steps until it sleeps, or the time is over.
 pub(super) fn measure(world: &mut World, def: &RagdollDef, ragdoll: &Ragdoll, seconds: f32) -> Quality {
+    measure_seen(world, def, ragdoll, seconds, |_, _| ())
+}
+
+/// [`measure`], and shows the world after each step, with the step's number.
+fn measure_seen(
+    world: &mut World,
+    def: &RagdollDef,
+    ragdoll: &Ragdoll,
+    seconds: f32,
+    mut see: impl FnMut(u32, &World),
+) -> Quality {
     let mut meter = QualityMeter::new(def, seconds);
     let steps = (seconds / world.def().dt()) as u32;
     let steps_of_rest = (0.5 / world.def().dt()) as u32 + 1;
     let mut asleep = 0;
-    for _ in 0..steps {
+    for step in 0..steps {
         meter.before_step(world);
         world.step();
         meter.after_step(world, ragdoll);
+        see(step, world);
         let all = ragdoll.bodies.iter().all(|&body| !world.is_awake(body));
         asleep = if all { asleep + 1 } else { 0 };
         // The figures at rest are of the first half second of it.

@@ -8,7 +8,7 @@ use sinew_math::max;
 use sinew_physics::{BodyId, Energy, World};
 
 /// All bodies below this are calm, m/s.
-const CALM: f32 = 0.3;
+pub(super) const CALM: f32 = 0.3;
 
 /// Collects the figures of [`Quality`] over the steps in which a character is limp.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ mod meter;
 mod plausible;
 mod verdict;
 
-pub use drop_test::{DropReport, drop_test};
+pub use drop_test::{DropReport, Fallen, drop_test};
 pub use gate::{Bar, GateReport, Miss, gate, gate_on, random_fall, random_pose};
 pub use meter::QualityMeter;
 pub use plausible::implausible;

@@ -178,6 +178,7 @@ fn insert(rig: &Rig, analysis: &mut RigAnalysis, joint: JointIdx, carrier: usize
         parent: Some(carrier),
         merged: own.into_iter().filter(|&merged| merged != joint).collect(),
         bind_model: analysis.bind_model[joint],
+        is_prop: false,
     };
     let index = carrier + 1;
     for follower in &new.merged {

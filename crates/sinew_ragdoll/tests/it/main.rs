@@ -17,4 +17,5 @@ mod mapping;
 mod pops;
 mod quality;
 mod settings;
+mod skin;
 mod slopes;

@@ -43,6 +43,8 @@ pub(super) enum Word {
     Tail,
     /// Turns with a bone's end: a helper beside a limb, a plain bone in the neck.
     Twist,
+    /// What an animator moves, and no part of a body: an appendix too, as long as it moves no skin to speak of.
+    Control,
     /// Makes the joint an appendix whatever else its name says.
     Appendix,
 }
@@ -100,10 +102,8 @@ const WORDS: &[(Word, &str)] = &[
     (Tail, "tail shippo weiba schwanz 尾 尾巴 しっぽ"),
     (Twist, "twist twst roll nejiri 捩 捩り"),
     // Inverse kinematics, controls, ends, sockets.
-    (
-        Appendix,
-        "ik fk pole target ctrl ctl control end tip nub slot handslot socket attach attachment helper",
-    ),
+    (Control, "ik fk pole target ctrl ctl control"),
+    (Appendix, "end tip nub slot handslot socket attach attachment helper"),
     (
         Appendix,
         "effector goal hint aim lookat locator loc null dummy marker ダミー dummies share correct corrective",

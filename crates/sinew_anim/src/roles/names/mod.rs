@@ -38,6 +38,8 @@ pub(super) struct Reading {
     pub side: Option<Side>,
     /// Part of the body, where the name is one of those in use.
     pub part: Option<Part>,
+    /// Whether it is an appendix only because the name speaks of a control, such as "IK".
+    pub is_control: bool,
 }
 
 /// Readings of all names of a rig, with the words resolved whose meaning hangs on the others. `parents` has the parent of
@@ -213,8 +215,10 @@ fn read(tokens: &[Token]) -> (Reading, Option<Sense>) {
         }
     }
     reading.key.push_str(&key(&words));
+    let is_appendix = words.contains(&Word::Appendix);
+    reading.is_control = !is_appendix && words.contains(&Word::Control);
     let sense =
-        if words.contains(&Word::Appendix) { Some(Sense::Part(Part::Appendix)) } else { sense(&words) };
+        if is_appendix || reading.is_control { Some(Sense::Part(Part::Appendix)) } else { sense(&words) };
     let sense = sense.filter(|sense| !unknown || *sense == Sense::Part(Part::Appendix));
     reading.part = None;
     (reading, sense)

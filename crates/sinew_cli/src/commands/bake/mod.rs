@@ -14,6 +14,7 @@ use crate::picture_file::{PictureFile, length, seconds};
 use crate::ragdoll_file::read_definition;
 use crate::report::Report;
 use crate::settings_arg::{SettingsArg, unit_note};
+use crate::skin_report::{SkinReport, skin_json};
 use crate::table::shown;
 use aim::aim;
 use clip_file::{ClipFile, ClipFormat};
@@ -137,8 +138,12 @@ impl Bake {
         let fall = Fall::simulate(&input);
         let world = self.world.as_ref().map(|path| path.display().to_string());
         notes.extend(notes::of_bake(&input, &fall.baked.events, world.as_deref()));
+        let skin = SkinReport::of_bake(&file, &fall, self.world.is_none());
+        notes.extend(skin.flaws.iter().map(|flaw| format!("skin: {}", flaw.evidence)));
         notes.extend(self.write(&file, &fall)?);
-        Ok(self.report(&file, &fall, &once(notes)))
+        let mut report = self.report(&file, &fall, &once(notes));
+        report.json["skin"] = skin_json(&skin.figures);
+        Ok(report)
     }
 
     /// What the user allows keys to be off by; nothing in a format that has all frames anyway.

@@ -1,0 +1,216 @@
+//! From figures of the skin to what is wrong with it.
+//!
+//! The bars were tuned on 43 open rigs (`docs/ragdoll.md` has their figures): each lies in the gap between rigs that look right
+//! when they lie and rigs that do not.
+
+use super::SkinQuality;
+use crate::def::RagdollDef;
+use crate::quality::Verdict;
+use sinew_math::max;
+
+/// Least share of vertices that are near their body.
+const COVERED: f32 = 0.95;
+/// Largest stretch, as a share of the size: 99.9th percentile and worst. Sound rigs reach 8 % and 16 %, torn ones begin at 15 %
+/// and 24 %.
+const STRETCH: [f32; 2] = [0.10, 0.20];
+/// Stretch that is let pass because the file's own clips have it, times theirs: 99.9th percentile and worst.
+const STRETCH_OF_CLIPS: [f32; 2] = [1.5, 3.0];
+/// Largest difference of two sides, as a share of the size.
+const ASYMMETRY: f32 = 0.02;
+/// Largest difference of the drawn and the bound height, as a share of the size.
+const HEIGHT: f32 = 0.02;
+/// How deep in the floor the lowest drawn point may lie, as a share of the size: shapes lie inside the skin, so that noses, hair
+/// and fingers sink in.
+const SUNK: f32 = 0.06;
+/// How high above the floor it may be: there is no reason but a shape outside the skin.
+const RAISED: f32 = 0.02;
+/// Neither counts below this, metres.
+const LEAST_OFF: f32 = 0.01;
+/// Longest time in the air after calm, seconds: six steps, in which what fell asleep askew may tip over.
+const AIRBORNE: f32 = 0.1;
+
+/// Kind of trouble with the skin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FlawKind {
+    /// Skin is far from every body that moves it.
+    Uncovered,
+    /// A fall stretches the skin.
+    Torn,
+    /// Left and right differ.
+    Lopsided,
+    /// A part hangs on what it does not grow from.
+    Apart,
+    /// The character is drawn in another size than it was bound in.
+    Resized,
+    /// The skin lies in the floor, or above it.
+    OffFloor,
+    /// It lies still without touching anything.
+    Airborne,
+}
+
+/// Something that is wrong with the skin of a ragdoll.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flaw {
+    /// What it is.
+    pub kind: FlawKind,
+    /// What was measured against which bar, a sentence.
+    pub evidence: String,
+    /// Bodies to look at, by index in the definition.
+    pub bodies: Vec<usize>,
+    /// Their bones.
+    pub bones: Vec<String>,
+}
+
+impl SkinQuality {
+    /// Everything that keeps the skin from being good, with the bodies of the definition that it was measured on.
+    ///
+    /// # Panics
+    /// If the figures are of a definition with more bodies.
+    pub fn flaws(&self, def: &RagdollDef) -> Vec<Flaw> {
+        let who = Who(def);
+        [
+            self.uncovered(&who),
+            self.torn(&who),
+            self.lopsided(&who),
+            self.apart(&who),
+            self.resized(&who),
+            self.off_floor(&who),
+            self.airborne(&who),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    /// A verdict on bodies and skin together, of one on bodies: at most `Usable` where the skin has flaws.
+    pub fn verdict(flaws: &[Flaw], of_bodies: Verdict) -> Verdict {
+        if flaws.is_empty() { of_bodies } else { Verdict::min(of_bodies, Verdict::Usable) }
+    }
+
+    fn uncovered(&self, who: &Who<'_>) -> Option<Flaw> {
+        // Comparisons with NaN are false: a poisoned figure is a flaw.
+        if self.covered_share >= COVERED {
+            return None;
+        }
+        let [share, asked] = [self.covered_share, COVERED].map(|share| 100.0 * share);
+        let near = 100.0 * self.tolerance();
+        let mut said = format!(
+            "{share:.1} % of the skin's vertices are within {near:.0} cm of their body, {asked:.0} % are asked"
+        );
+        if let Some(body) = self.worst.uncovered {
+            said += &format!("; most of the others hang on {}", who.name(body));
+        }
+        if self.worst.adrift > 0 {
+            said += &format!("; {:.1} % hang on no body", self.worst.adrift as f32 / 10.0);
+        }
+        Some(who.flaw(FlawKind::Uncovered, said, self.worst.uncovered.as_slice()))
+    }
+
+    fn torn(&self, who: &Who<'_>) -> Option<Flaw> {
+        let clips = [self.clips_stretch_p999, self.clips_stretch_max];
+        let bar = |k: usize| max(STRETCH[k], clips[k].map_or(0.0, |clip| STRETCH_OF_CLIPS[k] * clip));
+        if self.edge_stretch_p999 <= bar(0) && self.edge_stretch_max <= bar(1) {
+            return None;
+        }
+        let cm = |share: f32| 100.0 * share * self.size;
+        let mut said = format!(
+            "falling stretches one side of its triangles in a thousand by more than {:.1} cm, {:.1} cm at worst; up to {:.1} and {:.1} cm are let pass",
+            cm(self.edge_stretch_p999),
+            cm(self.edge_stretch_max),
+            cm(bar(0)),
+            cm(bar(1)),
+        );
+        let Some((a, b)) = self.worst.torn else {
+            return Some(who.flaw(FlawKind::Torn, said, &[]));
+        };
+        let (a_name, b_name) = (who.name(a), who.name(b));
+        said += &if a == b {
+            format!("; worst on {a_name}")
+        } else {
+            format!("; worst between {a_name} and {b_name}")
+        };
+        let bodies = [a, b];
+        Some(who.flaw(FlawKind::Torn, said, if a == b { &bodies[..1] } else { &bodies }))
+    }
+
+    fn lopsided(&self, who: &Who<'_>) -> Option<Flaw> {
+        let bar = ASYMMETRY * self.size;
+        if self.symmetry_error_m <= bar {
+            return None;
+        }
+        let cm = 100.0 * self.symmetry_error_m;
+        let of = self.worst.unlike.map_or(String::new(), |body| format!("{} and ", who.name(body)));
+        let said = format!("{of}its mirror image differ by {cm:.1} cm, more than {:.1} cm", 100.0 * bar);
+        Some(who.flaw(FlawKind::Lopsided, said, self.worst.unlike.as_slice()))
+    }
+
+    fn apart(&self, who: &Who<'_>) -> Option<Flaw> {
+        if self.contiguous {
+            return None;
+        }
+        let body = self.worst.apart;
+        let parent = body.and_then(|body| who.0.joints.iter().find(|joint| joint.child == body));
+        let said = match (body, parent) {
+            (Some(body), Some(joint)) => {
+                format!("{} hangs on {}, which it does not grow from", who.name(body), who.name(joint.parent))
+            }
+            _ => "a body hangs on one that it does not grow from".to_owned(),
+        };
+        Some(who.flaw(FlawKind::Apart, said, body.as_slice()))
+    }
+
+    fn resized(&self, who: &Who<'_>) -> Option<Flaw> {
+        if (self.drawn_height_m - self.bind_height_m).abs() <= HEIGHT * self.size {
+            return None;
+        }
+        let said = format!(
+            "drawn by its nodes it is {:.3} m high, bound {:.3} m",
+            self.drawn_height_m, self.bind_height_m
+        );
+        Some(who.flaw(FlawKind::Resized, said, &[]))
+    }
+
+    fn off_floor(&self, who: &Who<'_>) -> Option<Flaw> {
+        let (sunk, raised) = (max(SUNK * self.size, LEAST_OFF), max(RAISED * self.size, LEAST_OFF));
+        let height = self.rest_height_m?;
+        if height >= -sunk && height <= raised {
+            return None;
+        }
+        let cm = 100.0 * height;
+        let what = match self.worst.lowest {
+            Some(body) => format!("the lowest point of its skin, on {},", who.name(body)),
+            None => "the lowest point of its skin".to_owned(),
+        };
+        let said = if cm < 0.0 {
+            format!("at rest {what} is {:.1} cm in the floor, more than {:.1} cm", -cm, 100.0 * sunk)
+        } else {
+            format!("at rest {what} is {cm:.1} cm above the floor, more than {:.1} cm", 100.0 * raised)
+        };
+        Some(who.flaw(FlawKind::OffFloor, said, self.worst.lowest.as_slice()))
+    }
+
+    fn airborne(&self, who: &Who<'_>) -> Option<Flaw> {
+        let seconds = self.airborne_s?;
+        if seconds <= AIRBORNE {
+            return None;
+        }
+        let said = format!("it is calm and touches nothing for {seconds:.2} s, more than {AIRBORNE} s");
+        Some(who.flaw(FlawKind::Airborne, said, &[]))
+    }
+}
+
+/// Names of bodies.
+struct Who<'a>(&'a RagdollDef);
+
+impl Who<'_> {
+    /// Role and bone, the latter where it says something else.
+    fn name(&self, body: usize) -> String {
+        let body = &self.0.bodies[body];
+        if body.role == body.bone { body.role.clone() } else { format!("{} ({})", body.role, body.bone) }
+    }
+
+    fn flaw(&self, kind: FlawKind, said: String, bodies: &[usize]) -> Flaw {
+        let bones = bodies.iter().map(|&body| self.0.bodies[body].bone.clone()).collect();
+        Flaw { kind, evidence: said, bodies: bodies.to_vec(), bones }
+    }
+}

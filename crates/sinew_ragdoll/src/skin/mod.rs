@@ -1,0 +1,299 @@
+//! How well the drawn skin follows the bodies: what a person sees, where [`crate::quality`] measures what is computed.
+//!
+//! A ragdoll may rest quietly and still look broken: a limb without a body stays behind and tears the mesh, a hat sinks into the
+//! floor, a figure that was scaled twice floats. So the skin is drawn as a viewer would draw it, in the poses of the eight
+//! drops, and held against the bodies, against the floor, and against what the file's own clips do to it.
+
+mod judge;
+mod sides;
+mod stretch;
+mod surface;
+
+use crate::def::RagdollDef;
+use crate::doctor::bones_of;
+use crate::mapping::{Mapping, Physical};
+use crate::quality::Fallen;
+pub use judge::{Flaw, FlawKind};
+use sinew_anim::{LocalTransform, Rig, Take, local_to_model, rest_pose};
+use sinew_math::{Affine, Transform, Vec3, max, max3, min3};
+use stretch::{Stretch, Stretched};
+use surface::{Side, Surface};
+
+/// Most poses of clips that are looked at, evenly spread over all of them.
+const MOST_CLIP_POSES: usize = 64;
+/// A body must have this share of a vertex's weight for the vertex to be its own.
+const LEAST_PULL: f32 = 0.25;
+
+/// Figures of the drawn skin. Metres, except where a field says otherwise.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SkinQuality {
+    /// Share of the skin's vertices that are, in the bind pose, no farther than [`tolerance`](Self::tolerance) outside the shape of
+    /// a body that moves them: 0..=1.
+    pub covered_share: f32,
+    /// How far sides of the skin's triangles get longer over the drops than they were bound: 99.9th percentile over sides and
+    /// poses, as a share of [`size`](Self::size).
+    pub edge_stretch_p999: f32,
+    /// The same, largest.
+    pub edge_stretch_max: f32,
+    /// The same over the file's clips; `None` where it has none.
+    pub clips_stretch_p999: Option<f32>,
+    /// The same over the file's clips, largest.
+    pub clips_stretch_max: Option<f32>,
+    /// Largest difference between a body and its mirror image, as a length.
+    pub symmetry_error_m: f32,
+    /// Height of the drawn skin as it was bound.
+    pub bind_height_m: f32,
+    /// Height of the skin as it is drawn where the bodies are in the bind pose, by the nodes' own transforms.
+    pub drawn_height_m: f32,
+    /// Height of the drawn skin's lowest point above the floor, at the end of the drop where it is farthest from it: negative in
+    /// the floor; `None` where it never lay on one.
+    pub rest_height_m: Option<f32>,
+    /// Whether every body is near the one that it hangs on, and every part of a limb hangs on that limb.
+    pub contiguous: bool,
+    /// Longest time of a drop that no body was near the floor after the ragdoll had been calm, seconds;
+    /// `None` where that was not looked at.
+    pub airborne_s: Option<f32>,
+    /// What heights and stretches are shares of: the height of a human, of a creature the longest side of its skin's box.
+    pub size: f32,
+    /// Bodies to look at first.
+    pub worst: Worst,
+}
+
+/// Bodies of a definition, by index, that have the worst of each figure; `None` where nothing is wrong or no body is to blame.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Worst {
+    /// Has the most vertices that are not covered.
+    pub uncovered: Option<usize>,
+    /// Vertices that no body moves at all, of a thousand.
+    pub adrift: u32,
+    /// Moves an end of the side that is stretched most; the other end's stands second.
+    pub torn: Option<(usize, usize)>,
+    /// Differs most from its mirror image.
+    pub unlike: Option<usize>,
+    /// Is apart from its parent.
+    pub apart: Option<usize>,
+    /// Moves the lowest point at rest.
+    pub lowest: Option<usize>,
+}
+
+impl SkinQuality {
+    /// Distance from its body at which a vertex still counts as covered, metres: 3 cm, or 5 % of the size where that is more.
+    pub fn tolerance(&self) -> f32 {
+        tolerance(self.size)
+    }
+}
+
+fn tolerance(size: f32) -> f32 {
+    max(0.03, 0.05 * size)
+}
+
+/// Measures the skin of a rig on its ragdoll over the drops of a [`drop_test`](crate::drop_test); see [`SkinMeter::new`].
+///
+/// # Panics
+/// As [`SkinMeter::new`], and if the falls are of another ragdoll.
+pub fn measure_skin(
+    rig: &Rig,
+    def: &RagdollDef,
+    bind_model: &[Affine],
+    takes: &[Take],
+    falls: &[Fallen],
+) -> SkinQuality {
+    let mut meter = SkinMeter::new(rig, def, bind_model, takes);
+    let to_world = meter.to_character;
+    let mut drawn = Drawn::new(rig, &meter.mapping);
+    for fall in falls {
+        meter.skin.airborne_s = Some(max(meter.skin.airborne_s.unwrap_or(0.0), fall.airborne_s));
+        for poses in &fall.poses {
+            drawn.pose_by(rig, &meter.mapping, poses);
+            meter.fell(&drawn.pose);
+        }
+        if !fall.poses.is_empty() {
+            meter.lay(&drawn.pose, &to_world);
+        }
+    }
+    meter.figures()
+}
+
+/// Measures a character's drawn skin pose by pose. Of large meshes and long clips a sample, always the same.
+pub struct SkinMeter<'a> {
+    rig: &'a Rig,
+    surface: Surface,
+    mapping: Mapping,
+    to_character: Affine,
+    stretch: Stretch,
+    skin: SkinQuality,
+    model: Vec<Affine>,
+    palette: Vec<Affine>,
+}
+
+impl<'a> SkinMeter<'a> {
+    /// Measures what does not hang on a fall: cover, sides, heights, and what the file's clips do. `bind_model` is the bind pose
+    /// (`RigAnalysis::bind_model`), `takes` are the clips.
+    ///
+    /// # Panics
+    /// If the definition is not one of the rig: it has no body, or names joints that the rig does not have; or if `bind_model`
+    /// or a take is not as long as the rig has joints.
+    pub fn new(rig: &'a Rig, def: &RagdollDef, bind_model: &[Affine], takes: &[Take]) -> Self {
+        let surface = Surface::of(rig, def);
+        let mapping = Mapping::new(rig, def, bind_model);
+        let to_character = mapping.character_from_model();
+        let mut palette = Vec::new();
+        surface.palette(bind_model, &mut palette);
+        let stretch = Stretch::new(&surface, &palette, def.unit_scale);
+        let (low, high) = bounds(&surface, &palette, &to_character);
+        let size = size(def, low, high);
+        let mut skin = SkinQuality { size, bind_height_m: high.y - low.y, ..SkinQuality::default() };
+        cover(&mut skin, &surface, def, &palette, &to_character);
+        let bones = bones_of(def);
+        (skin.symmetry_error_m, skin.worst.unlike) = sides::symmetry_error(def, &bones, size);
+        skin.worst.apart = sides::apart(def, &bones, &surface.links(), size);
+        skin.contiguous = skin.worst.apart.is_none();
+        let model = Vec::new();
+        let mut meter = Self { rig, surface, mapping, to_character, stretch, skin, model, palette };
+        meter.draw_bound(def);
+        meter.look_at_clips(takes);
+        meter
+    }
+
+    /// Height of the skin where the bodies are in the bind pose.
+    fn draw_bound(&mut self, def: &RagdollDef) {
+        let own: Vec<Transform> = def.bodies.iter().map(|body| body.character_from_body).collect();
+        let mut drawn = Drawn::new(self.rig, &self.mapping);
+        drawn.pose_by(self.rig, &self.mapping, &own);
+        self.draw(&drawn.pose);
+        let (low, high) = bounds(&self.surface, &self.palette, &self.to_character);
+        self.skin.drawn_height_m = high.y - low.y;
+    }
+
+    fn look_at_clips(&mut self, takes: &[Take]) {
+        let frames: usize = takes.iter().map(Take::frames).sum();
+        if frames == 0 {
+            return;
+        }
+        let all = takes.iter().flat_map(|take| (0..take.frames()).map(move |frame| take.pose(frame)));
+        for pose in all.step_by(frames.div_ceil(MOST_CLIP_POSES)) {
+            self.fell(pose);
+        }
+        let Stretched { p999, max, .. } = self.stretch.take(&self.surface);
+        let size = self.skin.size;
+        (self.skin.clips_stretch_p999, self.skin.clips_stretch_max) = (Some(p999 / size), Some(max / size));
+    }
+
+    /// A pose of the fall, local transforms: how far it stretches the skin. Keeps up to 16 KiB a pose, for the percentile.
+    ///
+    /// # Panics
+    /// If the pose is not as long as the rig has joints.
+    pub fn fell(&mut self, pose: &[LocalTransform]) {
+        self.draw(pose);
+        self.stretch.add(&self.surface, &self.palette);
+    }
+
+    /// The pose at rest over a floor at y = 0; `to_world` is from the model space of the file.
+    ///
+    /// # Panics
+    /// As [`fell`](Self::fell).
+    pub fn lay(&mut self, pose: &[LocalTransform], to_world: &Affine) {
+        self.draw(pose);
+        let mut lowest = (f32::INFINITY, 0);
+        for &vertex in &self.surface.sample {
+            let height = to_world.point(self.surface.place(&self.palette, vertex)).y;
+            if height < lowest.0 {
+                lowest = (height, vertex);
+            }
+        }
+        let skin = &mut self.skin;
+        if lowest.0.is_finite() && skin.rest_height_m.is_none_or(|known| lowest.0.abs() > known.abs()) {
+            (skin.rest_height_m, skin.worst.lowest) = (Some(lowest.0), self.surface.owner(lowest.1));
+        }
+    }
+
+    fn draw(&mut self, pose: &[LocalTransform]) {
+        local_to_model(self.rig, pose, &Affine::IDENTITY, &mut self.model);
+        self.surface.palette(&self.model, &mut self.palette);
+    }
+
+    /// The figures so far.
+    pub fn figures(mut self) -> SkinQuality {
+        let Stretched { p999, max, side } = self.stretch.take(&self.surface);
+        let mut skin = self.skin;
+        (skin.edge_stretch_p999, skin.edge_stretch_max) = (p999 / skin.size, max / skin.size);
+        skin.worst.torn = side.and_then(|side| {
+            let Side(a, b) = self.surface.sides[side];
+            let (a, b) = (self.surface.owner(a), self.surface.owner(b));
+            Some((a.or(b)?, b.or(a)?))
+        });
+        skin
+    }
+}
+
+/// Poses of a rig from poses of its bodies, over its rest pose.
+struct Drawn {
+    physical: Physical,
+    pose: Vec<LocalTransform>,
+}
+
+impl Drawn {
+    fn new(rig: &Rig, mapping: &Mapping) -> Self {
+        let pose = rest_pose(rig);
+        let mut physical = Physical::default();
+        physical.rebase(mapping, rig, &pose);
+        Self { physical, pose }
+    }
+
+    /// Poses the rig for bodies at these world poses, of a character that stands at the world's origin.
+    fn pose_by(&mut self, rig: &Rig, mapping: &Mapping, world_from_body: &[Transform]) {
+        self.physical.pose(mapping, rig, Transform::IDENTITY, world_from_body, &mut self.pose);
+    }
+}
+
+/// Least and greatest corner of the skin in a pose, character space; of no skin at all the origin.
+fn bounds(surface: &Surface, palette: &[Affine], to_character: &Affine) -> (Vec3, Vec3) {
+    let places = surface.sample.iter().map(|&vertex| to_character.point(surface.place(palette, vertex)));
+    let corners = places.filter(|place| place.is_finite()).fold(None, |corners, place| {
+        let (low, high) = corners.unwrap_or((place, place));
+        Some((min3(low, place), max3(high, place)))
+    });
+    corners.unwrap_or((Vec3::ZERO, Vec3::ZERO))
+}
+
+fn size(def: &RagdollDef, low: Vec3, high: Vec3) -> f32 {
+    let is_human = def.bodies[0].role == "hips";
+    let sides = high - low;
+    let size = if is_human { def.height } else { max(sides.x, max(sides.y, sides.z)) };
+    // Nothing is a share of nothing.
+    max(size, 1e-6)
+}
+
+fn cover(
+    skin: &mut SkinQuality,
+    surface: &Surface,
+    def: &RagdollDef,
+    bound: &[Affine],
+    to_character: &Affine,
+) {
+    let tolerance = skin.tolerance();
+    let mut bare = vec![0_u32; def.bodies.len()];
+    let (mut covered, mut adrift) = (0_u32, 0_u32);
+    for &vertex in &surface.sample {
+        let place = to_character.point(surface.place(bound, vertex));
+        let Some(owner) = surface.owner(vertex) else {
+            adrift += 1;
+            continue;
+        };
+        let is_within = |body: usize| {
+            let body = &def.bodies[body];
+            body.shape.signed_distance(&body.character_from_body, place).0 <= tolerance
+        };
+        let pulls = surface.pulls(vertex).filter(|&(_, pull)| pull >= LEAST_PULL);
+        if is_within(owner) || pulls.into_iter().any(|(body, _)| is_within(body)) {
+            covered += 1;
+        } else {
+            bare[owner] += 1;
+        }
+    }
+    let all = max(surface.sample.len() as f32, 1.0);
+    skin.covered_share = if surface.sample.is_empty() { 1.0 } else { covered as f32 / all };
+    skin.worst.adrift = (1000.0 * adrift as f32 / all) as u32;
+    let most = (0..bare.len()).reduce(|a, b| if bare[b] > bare[a] { b } else { a });
+    skin.worst.uncovered = most.filter(|&body| bare[body] > 0);
+}

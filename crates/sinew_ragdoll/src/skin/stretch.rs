@@ -1,0 +1,68 @@
+//! Sides of triangles that get longer than they were bound: where the skin tears.
+
+use super::surface::{Side, Surface};
+use sinew_math::{Affine, max};
+
+/// What is asked of all sides in all poses: one in a thousand is longer.
+const SHARE: f32 = 0.999;
+
+/// How much longer sides got, metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Stretched {
+    /// 99.9th percentile over the sides of all triangles and all poses.
+    pub p999: f32,
+    /// The largest.
+    pub max: f32,
+    /// Index of the side that has it, in [`Surface::sides`].
+    pub side: Option<usize>,
+}
+
+/// Collects sides over poses.
+pub(super) struct Stretch {
+    /// Length of each side in the bind pose, metres.
+    bound: Vec<f32>,
+    /// Per side and pose, metres.
+    longer: Vec<f32>,
+    /// Metres per unit of the model space.
+    unit_scale: f32,
+    worst: Stretched,
+}
+
+impl Stretch {
+    /// `palette` is that of the bind pose.
+    pub fn new(surface: &Surface, palette: &[Affine], unit_scale: f32) -> Self {
+        let bound = surface.sides.iter().map(|side| length(surface, palette, side) * unit_scale).collect();
+        Self { bound, longer: Vec::new(), unit_scale, worst: Stretched::default() }
+    }
+
+    /// A pose by its palette, model space.
+    pub fn add(&mut self, surface: &Surface, palette: &[Affine]) {
+        for (index, side) in surface.sides.iter().enumerate() {
+            let longer = length(surface, palette, side) * self.unit_scale - self.bound[index];
+            // What is not finite is as long as can be.
+            let longer = if longer.is_finite() { max(longer, 0.0) } else { f32::INFINITY };
+            self.longer.push(longer);
+            if longer > self.worst.max {
+                (self.worst.max, self.worst.side) = (longer, Some(index));
+            }
+        }
+    }
+
+    /// The figures over all poses since the last time; zeros where no side can stretch.
+    pub fn take(&mut self, surface: &Surface) -> Stretched {
+        let mut longer = core::mem::take(&mut self.longer);
+        let worst = core::mem::take(&mut self.worst);
+        // The sides that no pose stretches rank below the others.
+        let share = 1.0 - (1.0 - SHARE) / max(surface.stretchable, 1e-6);
+        if longer.is_empty() || share <= 0.0 {
+            return worst;
+        }
+        let rank = ((longer.len() as f64 * f64::from(share)) as usize).min(longer.len() - 1);
+        let (_, &mut p999, _) = longer.select_nth_unstable_by(rank, f32::total_cmp);
+        Stretched { p999, ..worst }
+    }
+}
+
+fn length(surface: &Surface, palette: &[Affine], &Side(a, b): &Side) -> f32 {
+    (surface.place(palette, a) - surface.place(palette, b)).length()
+}

@@ -1,0 +1,199 @@
+//! The drawn skin of a character as plain vertices: what moves each of them, and between which it may tear.
+
+use crate::def::RagdollDef;
+use crate::fit::surface::carried;
+use sinew_anim::{JointIdx, Mesh, Primitive, Rig};
+use sinew_math::{Affine, Mat3, Vec3};
+
+/// Most vertices that are looked at: of larger meshes every so many.
+const MOST_VERTICES: usize = 8192;
+/// Most sides of triangles that are looked at, of those that a pose can stretch.
+const MOST_SIDES: usize = 4096;
+/// Weights of the two ends of a side that differ by no more cannot stretch it.
+const ALIKE: f32 = 1e-3;
+
+/// A joint that moves vertices, and where they were when they were bound to it.
+#[derive(Clone, Copy, Debug)]
+struct Slot {
+    joint: JointIdx,
+    /// From mesh space to the joint's.
+    inverse_bind: Affine,
+}
+
+/// A vertex in mesh space with what moves it: indices of slots and their weights.
+#[derive(Clone, Copy, Debug)]
+struct Vertex {
+    position: Vec3,
+    slots: [u32; 4],
+    weights: [f32; 4],
+}
+
+/// A side of a triangle, whose ends different joints move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Side(pub usize, pub usize);
+
+/// The drawn skin: meshes with a skin, and those without one that hang on a body's bone. Deterministic samples of large ones.
+pub(super) struct Surface {
+    slots: Vec<Slot>,
+    vertices: Vec<Vertex>,
+    /// Body that carries each slot; `None` for what hangs on no body.
+    owners: Vec<Option<usize>>,
+    /// Vertices that stand for all.
+    pub sample: Vec<usize>,
+    /// Sides that a pose can stretch, or as many of them as stand for all.
+    pub sides: Vec<Side>,
+    /// Share of all sides that a pose can stretch, 0..=1.
+    pub stretchable: f32,
+}
+
+impl Surface {
+    pub fn of(rig: &Rig, def: &RagdollDef) -> Self {
+        let carried = carried(rig, def.bodies.iter().map(|body| (body.joint, body.merged.as_slice())));
+        let mut raw = Raw::default();
+        for mesh in &rig.meshes {
+            raw.add_mesh(rig, mesh, &carried);
+        }
+        let sample = strided(raw.vertices.len(), MOST_VERTICES);
+        let stretchable = raw.sides.len() as f32 / raw.all_sides.max(1) as f32;
+        let sides = strided(raw.sides.len(), MOST_SIDES).into_iter().map(|i| raw.sides[i]).collect();
+        let owners = raw.slots.iter().map(|slot| carried[slot.joint]).collect();
+        Self { slots: raw.slots, vertices: raw.vertices, owners, sample, sides, stretchable }
+    }
+
+    /// Matrices from mesh space to that of `model`, one per slot: `palette` is cleared and filled.
+    pub fn palette(&self, model: &[Affine], palette: &mut Vec<Affine>) {
+        palette.clear();
+        palette.extend(self.slots.iter().map(|slot| model[slot.joint] * slot.inverse_bind));
+    }
+
+    /// Where a vertex is.
+    pub fn place(&self, palette: &[Affine], vertex: usize) -> Vec3 {
+        let Vertex { position, slots, weights } = self.vertices[vertex];
+        // Most of a figure's vertices follow one joint.
+        if weights[0] >= 1.0 {
+            return palette[slots[0] as usize].point(position);
+        }
+        let mut sum = Affine { linear: Mat3::ZERO, translation: Vec3::ZERO };
+        for (slot, weight) in slots.into_iter().zip(weights) {
+            if weight > 0.0 {
+                let matrix = &palette[slot as usize];
+                sum.linear += matrix.linear * weight;
+                sum.translation += matrix.translation * weight;
+            }
+        }
+        sum.point(position)
+    }
+
+    /// Bodies that move a vertex, and how much: at most four, each once; what no body carries is left out.
+    pub fn pulls(&self, vertex: usize) -> impl Iterator<Item = (usize, f32)> {
+        let Vertex { slots, weights, .. } = self.vertices[vertex];
+        let mut pulls = [(0_usize, 0.0_f32); 4];
+        let mut count = 0;
+        for (slot, weight) in slots.into_iter().zip(weights) {
+            let Some(body) = self.owners[slot as usize].filter(|_| weight > 0.0) else { continue };
+            match pulls[..count].iter_mut().find(|(known, _)| *known == body) {
+                Some((_, sum)) => *sum += weight,
+                None => {
+                    pulls[count] = (body, weight);
+                    count += 1;
+                }
+            }
+        }
+        pulls.into_iter().take(count)
+    }
+
+    /// Bodies at both ends of the sides whose ends different bodies move.
+    pub fn links(&self) -> Vec<(usize, usize)> {
+        let link = |&Side(a, b): &Side| Some((self.owner(a)?, self.owner(b)?));
+        self.sides.iter().filter_map(link).filter(|(a, b)| a != b).collect()
+    }
+
+    /// The body that moves a vertex most; `None` where none does.
+    pub fn owner(&self, vertex: usize) -> Option<usize> {
+        self.pulls(vertex).reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(body, _)| body)
+    }
+}
+
+/// Everything before samples are taken.
+#[derive(Default)]
+struct Raw {
+    slots: Vec<Slot>,
+    vertices: Vec<Vertex>,
+    sides: Vec<Side>,
+    all_sides: usize,
+}
+
+impl Raw {
+    fn add_mesh(&mut self, rig: &Rig, mesh: &Mesh, carried: &[Option<usize>]) {
+        let first = self.slots.len();
+        if let Some(skin) = mesh.skin.map(|skin| &rig.skins[skin]) {
+            let slots = skin.joints.iter().zip(&skin.inverse_bind);
+            self.slots.extend(slots.map(|(&joint, &inverse_bind)| Slot { joint, inverse_bind }));
+        }
+        let rigid = self.slots.len();
+        self.slots.push(Slot { joint: mesh.joint, inverse_bind: Affine::IDENTITY });
+        for primitive in &mesh.primitives {
+            let is_skinned = mesh.skin.is_some() && !primitive.joints.is_empty();
+            // Scenery in the file is no part of the character.
+            if is_skinned || carried[mesh.joint].is_some() {
+                self.add_primitive(primitive, is_skinned.then_some(first), rigid);
+            }
+        }
+    }
+
+    /// Vertices and sides of a part; `first` is the slot that the part's slot 0 is, `rigid` that of a part without weights.
+    fn add_primitive(&mut self, primitive: &Primitive, first: Option<usize>, rigid: usize) {
+        let base = self.vertices.len();
+        for (index, &position) in primitive.positions.iter().enumerate() {
+            let (slots, weights) = match first {
+                Some(first) => (
+                    primitive.joints[index].map(|slot| u32::from(slot) + first as u32),
+                    primitive.weights[index],
+                ),
+                None => ([rigid as u32; 4], [1.0, 0.0, 0.0, 0.0]),
+            };
+            self.vertices.push(Vertex { position, slots, weights });
+        }
+        for corner in primitive.indices.chunks_exact(3) {
+            let corner = [corner[0] as usize, corner[1] as usize, corner[2] as usize];
+            if corner.iter().any(|&at| at >= primitive.positions.len()) {
+                continue;
+            }
+            for [a, b] in [[0, 1], [1, 2], [2, 0]] {
+                let (a, b) = (base + corner[a], base + corner[b]);
+                self.all_sides += 1;
+                if !alike(&self.vertices[a], &self.vertices[b]) {
+                    self.sides.push(Side(a, b));
+                }
+            }
+        }
+    }
+}
+
+/// Whether the same joints move both with the same weights.
+fn alike(a: &Vertex, b: &Vertex) -> bool {
+    let weight = |of: &Vertex, slot: u32| -> f32 {
+        of.slots.iter().zip(of.weights).filter(|(at, _)| **at == slot).map(|(_, weight)| weight).sum()
+    };
+    let mut slots = a.slots.iter().chain(&b.slots);
+    slots.all(|&slot| (weight(a, slot) - weight(b, slot)).abs() <= ALIKE)
+}
+
+/// At most `most` of the indices below `count`, evenly spread, the first among them.
+fn strided(count: usize, most: usize) -> Vec<usize> {
+    let used = usize::min(count, most);
+    // Of a count that fits in memory the product does not overflow on 64 bits; on 32 it is taken wide.
+    (0..used).map(|k| (k as u64 * count as u64 / used as u64) as usize).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_even_and_within() {
+        assert_eq!(strided(3, 8), [0, 1, 2]);
+        assert_eq!(strided(10, 4), [0, 2, 5, 7]);
+        assert!(strided(0, 4).is_empty());
+    }
+}

@@ -1,0 +1,269 @@
+//! The verdict of the skin: each measure on a mannequin that has just that fault, and on rigs of others.
+
+use crate::data::document;
+use sinew_anim::{Joint, LocalTransform, Rig, RigAnalysis, analyze};
+use sinew_math::{Affine, Transform, Vec3};
+use sinew_physics::Shape;
+use sinew_ragdoll::build::takes;
+use sinew_ragdoll::doctor::Code;
+use sinew_ragdoll::quality::Fallen;
+use sinew_ragdoll::{
+    BuildOptions, Flaw, FlawKind, Patient, RagdollDef, SkinQuality, Verdict, build, doctor, drop_test,
+    measure_skin,
+};
+use sinew_scenes::mannequin::mannequin;
+
+struct Subject {
+    rig: Rig,
+    analysis: RigAnalysis,
+    def: RagdollDef,
+}
+
+impl Subject {
+    fn mannequin() -> Self {
+        Self::of(mannequin().rig)
+    }
+
+    fn of(rig: Rig) -> Self {
+        let analysis = analyze(&rig).expect("a skin");
+        let (def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
+        Self { rig, analysis, def }
+    }
+
+    /// The skin over these falls.
+    fn over(&self, falls: &[Fallen]) -> SkinQuality {
+        measure_skin(&self.rig, &self.def, &self.analysis.bind_model, &[], falls)
+    }
+
+    fn flaws(&self, falls: &[Fallen]) -> Vec<Flaw> {
+        self.over(falls).flaws(&self.def)
+    }
+
+    fn body(&self, role: &str) -> usize {
+        self.def.bodies.iter().position(|body| body.role == role).unwrap_or_else(|| panic!("no {role}"))
+    }
+
+    /// A fall that ends in the bind pose, `height` metres up.
+    fn lifted(&self, height: f32) -> Vec<Fallen> {
+        let up = Transform::from_translation(Vec3::Y * height);
+        let mut fall = Fallen::default();
+        fall.poses.push(self.def.bodies.iter().map(|body| up * body.character_from_body).collect());
+        vec![fall]
+    }
+}
+
+fn kinds(flaws: &[Flaw]) -> Vec<FlawKind> {
+    flaws.iter().map(|flaw| flaw.kind).collect()
+}
+
+#[test]
+fn the_mannequin_has_no_flaw() {
+    let subject = Subject::mannequin();
+    let tested = drop_test(&subject.def);
+    assert_eq!(tested.falls.len(), 8);
+    let skin = subject.over(&tested.falls);
+    assert_eq!(skin.flaws(&subject.def), []);
+    assert!(skin.covered_share > 0.99 && skin.contiguous, "{skin:?}");
+    assert!((skin.bind_height_m - subject.def.height).abs() < 0.01, "{skin:?}");
+    assert!((skin.drawn_height_m - skin.bind_height_m).abs() < 1e-3, "{skin:?}");
+    // It does lie on the floor, and not above it.
+    assert!(skin.rest_height_m.is_some_and(|height| (-0.06..0.01).contains(&height)), "{skin:?}");
+    assert!(skin.edge_stretch_max > 0.0 && skin.edge_stretch_max >= skin.edge_stretch_p999, "{skin:?}");
+    assert_eq!(skin, subject.over(&tested.falls), "always the same sample");
+}
+
+/// In the bind pose nothing is stretched, and the soles stand on the floor.
+#[test]
+fn in_the_bind_pose_nothing_is_stretched() {
+    let subject = Subject::mannequin();
+    let skin = subject.over(&subject.lifted(0.0));
+    assert!(
+        skin.edge_stretch_max < 1e-3 && skin.rest_height_m.is_some_and(|height| height.abs() < 1e-3),
+        "{skin:?}"
+    );
+}
+
+/// Vertices of a hand that hang on a joint beside the body stay where they were.
+#[test]
+fn torn_skin_is_seen() {
+    let mut subject = Subject::mannequin();
+    let hand = subject.def.bodies[subject.body("leftHand")].joint;
+    let stray = subject.rig.joints.len();
+    let rest = LocalTransform::default();
+    subject.rig.joints.push(Joint { name: "stray".into(), parent: None, rest, source: stray });
+    subject.analysis.bind_model.push(Affine::IDENTITY);
+    for skin in &mut subject.rig.skins {
+        if let Some(slot) = skin.joints.iter().position(|&joint| joint == hand) {
+            // Bound where the hand was: what it moves is where it was, as long as nothing moves.
+            skin.inverse_bind[slot] = subject.analysis.bind_model[hand] * skin.inverse_bind[slot];
+            skin.joints[slot] = stray;
+        }
+    }
+    let skin = subject.over(&drop_test(&subject.def).falls);
+    assert!(skin.worst.adrift > 0 && skin.worst.torn.is_some(), "{skin:?}");
+    assert!(skin.edge_stretch_max > 0.3, "{skin:?}");
+    let flaws = skin.flaws(&subject.def);
+    assert!(kinds(&flaws).contains(&FlawKind::Torn), "{flaws:?}");
+    let torn = flaws.iter().find(|flaw| flaw.kind == FlawKind::Torn).expect("torn");
+    assert!(torn.evidence.contains("leftLowerArm"), "{}", torn.evidence);
+    // The doctor tells it with a remedy, and does not claim to have mended it.
+    let found = doctor(&Patient { skin: flaws, ..Patient::new(subject.def) });
+    let finding = found.iter().find(|finding| finding.code == Code::SkinTorn).expect("a finding");
+    assert!(!finding.fix.is_empty() && !finding.fixed, "{finding:?}");
+}
+
+#[test]
+fn floating_and_sunk_meshes_are_seen() {
+    let subject = Subject::mannequin();
+    for (height, expected) in
+        [(0.5, vec![FlawKind::OffFloor]), (-0.3, vec![FlawKind::OffFloor]), (0.02, vec![])]
+    {
+        let falls = subject.lifted(height);
+        let skin = subject.over(&falls);
+        assert!(skin.rest_height_m.is_some_and(|found| (found - height).abs() < 1e-3), "{height}: {skin:?}");
+        assert_eq!(kinds(&skin.flaws(&subject.def)), expected, "{height}");
+    }
+    let mut falls = subject.lifted(0.0);
+    falls[0].airborne_s = 0.5;
+    assert_eq!(kinds(&subject.flaws(&falls)), [FlawKind::Airborne]);
+}
+
+#[test]
+fn a_lopsided_body_is_seen() {
+    let mut subject = Subject::mannequin();
+    let arm = subject.body("leftUpperArm");
+    let sound = subject.over(&[]).symmetry_error_m;
+    assert!(sound < 1e-3, "{sound}");
+    subject.def.bodies[arm].mass.mass *= 3.0;
+    let skin = subject.over(&[]);
+    // A third of the masses' relative difference, 2/3, as a length.
+    let radius = subject.def.bodies[arm].shape.bounding_radius();
+    assert!((skin.symmetry_error_m - radius * 2.0 / 9.0).abs() < 1e-3, "{skin:?}");
+    subject.def.bodies[arm].shape = Shape::Sphere { radius: 0.4 };
+    let flaws = subject.flaws(&[]);
+    assert!(kinds(&flaws).contains(&FlawKind::Lopsided), "{flaws:?}");
+    // A part that has no twin at all.
+    let mut subject = Subject::mannequin();
+    let hand = subject.body("rightHand");
+    subject.def.bodies[hand].role = "limb_0_0".into();
+    assert!(kinds(&subject.flaws(&[])).contains(&FlawKind::Lopsided));
+}
+
+#[test]
+fn uncovered_skin_is_seen() {
+    let mut subject = Subject::mannequin();
+    let thigh = subject.body("leftUpperLeg");
+    let chest = subject.body("hips");
+    for body in [thigh, chest] {
+        subject.def.bodies[body].character_from_body.translation += Vec3::Z * 2.0;
+    }
+    let skin = subject.over(&[]);
+    assert!(skin.covered_share < 0.95, "{skin:?}");
+    assert!([Some(thigh), Some(chest)].contains(&skin.worst.uncovered), "{skin:?}");
+    assert!(kinds(&skin.flaws(&subject.def)).contains(&FlawKind::Uncovered));
+}
+
+#[test]
+fn a_foot_on_the_pelvis_is_seen() {
+    let mut subject = Subject::mannequin();
+    let foot = subject.body("leftFoot");
+    subject.def.joints[foot - 1].parent = 0;
+    let flaws = subject.flaws(&[]);
+    assert_eq!(kinds(&flaws), [FlawKind::Apart]);
+    assert!(flaws[0].evidence.starts_with("leftFoot"), "{}", flaws[0].evidence);
+}
+
+/// Nodes that scale the skin otherwise than its bind matrices.
+#[test]
+fn a_character_drawn_in_another_size_is_seen() {
+    let mut subject = Subject::mannequin();
+    for joint in subject.rig.joints.iter_mut().filter(|joint| joint.parent.is_none()) {
+        joint.rest.scale *= 1.1;
+    }
+    let skin = subject.over(&[]);
+    assert!((skin.drawn_height_m / skin.bind_height_m - 1.1).abs() < 0.03, "{skin:?}");
+    assert!(kinds(&skin.flaws(&subject.def)).contains(&FlawKind::Resized));
+}
+
+/// What the animator does to the skin, a fall may do and half as much again.
+#[test]
+fn stretch_of_the_clips_is_let_pass() {
+    let subject = Subject::mannequin();
+    let torn = SkinQuality { edge_stretch_p999: 0.14, edge_stretch_max: 0.5, ..subject.over(&[]) };
+    assert_eq!(kinds(&torn.flaws(&subject.def)), [FlawKind::Torn]);
+    let clips = SkinQuality { clips_stretch_p999: Some(0.1), clips_stretch_max: Some(0.2), ..torn.clone() };
+    assert_eq!(kinds(&clips.flaws(&subject.def)), []);
+    let less = SkinQuality { clips_stretch_p999: Some(0.09), ..clips };
+    assert_eq!(kinds(&less.flaws(&subject.def)), [FlawKind::Torn]);
+    assert_eq!(SkinQuality::verdict(&less.flaws(&subject.def), Verdict::Good), Verdict::Usable);
+    assert_eq!(SkinQuality::verdict(&less.flaws(&subject.def), Verdict::Bad), Verdict::Bad);
+    assert_eq!(SkinQuality::verdict(&[], Verdict::Good), Verdict::Good);
+}
+
+#[test]
+fn figures_that_are_no_numbers_are_flaws_and_nothing_panics() {
+    let mut subject = Subject::mannequin();
+    let nan = f32::NAN;
+    let poisoned = SkinQuality {
+        covered_share: nan,
+        edge_stretch_p999: nan,
+        symmetry_error_m: nan,
+        drawn_height_m: nan,
+        rest_height_m: Some(nan),
+        airborne_s: Some(nan),
+        contiguous: true,
+        size: 1.7,
+        ..SkinQuality::default()
+    };
+    assert_eq!(poisoned.flaws(&subject.def).len(), 6);
+    for mesh in &mut subject.rig.meshes {
+        for primitive in &mut mesh.primitives {
+            primitive.positions.iter_mut().for_each(|position| *position = Vec3::splat(f32::NAN));
+        }
+    }
+    let skin = subject.over(&subject.lifted(0.0));
+    assert_eq!(skin.covered_share, 0.0, "{skin:?}");
+    assert!(!skin.flaws(&subject.def).is_empty());
+    subject.rig.meshes.clear();
+    let skin = subject.over(&subject.lifted(0.0));
+    assert_eq!((skin.covered_share, skin.edge_stretch_max), (1.0, 0.0), "{skin:?}");
+}
+
+/// The verdict of the skin on a rig of others: figures over its drops.
+fn skin_of(name: &str) -> Option<(SkinQuality, RagdollDef)> {
+    let document = document(name)?;
+    let subject = Subject::of(document.rig);
+    let moves = takes(&subject.rig, &document.clips);
+    let falls = drop_test(&subject.def).falls;
+    let skin = measure_skin(&subject.rig, &subject.def, &subject.analysis.bind_model, &moves, &falls);
+    Some((skin, subject.def))
+}
+
+/// Feet whose joints are named as controls, or hang on the root, fall with their legs: they tore by half a height.
+#[test]
+fn beasts_keep_their_feet() {
+    for name in ["animals_Wolf", "animals_Cow", "dinosaurs_Stegosaurus"] {
+        let Some((skin, def)) = skin_of(&format!("../rigs_wild/{name}.glb")) else { return };
+        assert!(skin.edge_stretch_p999 < 0.1 && skin.contiguous, "{name}: {skin:?}");
+        assert!(skin.rest_height_m.is_some_and(|height| height > -0.06 * skin.size), "{name}: {skin:?}");
+        assert!(kinds(&skin.flaws(&def)).iter().all(|kind| *kind != FlawKind::Torn), "{name}: {skin:?}");
+    }
+}
+
+/// The swords and shields of the knight lay 1.9 m in the floor.
+#[test]
+fn the_knight_lies_on_his_sword_and_not_around_it() {
+    let Some((skin, def)) = skin_of("kaykit_Knight.glb") else { return };
+    assert_eq!(skin.flaws(&def), [], "{skin:?}");
+    let held = def.joints.iter().filter(|joint| joint.kind == sinew_physics::JointKind::Fixed).count();
+    assert_eq!(held, 3, "both hands and the cape");
+}
+
+/// What still lies in the floor is named: a sword that is skinned to the hand itself.
+#[test]
+fn a_sword_without_a_body_is_told() {
+    let Some((skin, def)) = skin_of("quaternius_cyberpunk_Character.glb") else { return };
+    let flaws = skin.flaws(&def);
+    assert_eq!(kinds(&flaws), [FlawKind::OffFloor], "{skin:?}");
+    assert_eq!(flaws[0].bones, ["Hand.R"]);
+}
