@@ -33,7 +33,8 @@
 //! - `kind`: `static` (default), `kinematic` or `dynamic`; `name` is for people and not kept.
 //! - `position` (default the origin), `rotation`: a unit quaternion `[x, y, z, w]` or `{ "axis", "degrees" }`.
 //! - `linear_velocity` (m/s), `angular_velocity` (rad/s), `linear_damping`, `angular_damping` (1/s), all 0 by default;
-//!   `gravity_scale`, default 1; `sleeping`, whether it may, default true; `user_data`, a whole number.
+//!   `gravity_scale`, default 1; `sleeping`, whether it may, default true; `quality`: `fast`, `balanced` or
+//!   `exact`, default the world's; `user_data`, a whole number.
 //! - `mass`: `{ "kg", "center", "inertia": [xx, yy, zz, yz, xz, xy] }`; without it from the shapes' densities.
 //!
 //! A **shape** has a `type`: `box` with `half_extents`, `sphere` with `radius`, `capsule` with `half_height` (of the
@@ -58,11 +59,11 @@ use crate::material::{read_filter, read_material, read_rule, write_material, wri
 use crate::parts::{self, POSE_KEYS, SHAPE_KEYS};
 use serde_json::{Map, Value, json};
 use sinew_math::{Transform, Vec3};
-use sinew_physics::{BodyDef, BodyKind, Filter, Sensing, Shape, ShapeDef, Sleeping};
+use sinew_physics::{BodyDef, BodyKind, Filter, Quality, Sensing, Shape, ShapeDef, Sleeping};
 
 const VERSION: usize = 1;
 
-const BODY_KEYS: [&str; 12] = [
+const BODY_KEYS: [&str; 13] = [
     "name",
     "kind",
     "linear_velocity",
@@ -71,6 +72,7 @@ const BODY_KEYS: [&str; 12] = [
     "angular_damping",
     "gravity_scale",
     "sleeping",
+    "quality",
     "user_data",
     "mass",
     "shapes",
@@ -135,8 +137,19 @@ fn read_body(at: At<'_>, materials: Option<At<'_>>) -> Result<BodyDef> {
             Some(false) => Sleeping::Off,
             Some(true) | None => Sleeping::On,
         },
+        quality: at.get("quality")?.map(read_quality).transpose()?,
         user_data: at.get("user_data")?.map_or(Ok(0), At::u64)?,
     })
+}
+
+/// Words for qualities in files.
+const QUALITIES: [(&str, Quality); 3] =
+    [("fast", Quality::Fast), ("balanced", Quality::Balanced), ("exact", Quality::Exact)];
+
+fn read_quality(at: At<'_>) -> Result<Quality> {
+    let word = at.str()?;
+    let found = QUALITIES.iter().find(|(name, _)| *name == word);
+    found.map(|&(_, quality)| quality).ok_or_else(|| at.malformed("must be fast, balanced or exact"))
 }
 
 fn read_shape(at: At<'_>, materials: Option<At<'_>>) -> Result<ShapeDef> {
@@ -189,6 +202,9 @@ fn write_body(body: &BodyDef) -> Value {
     put(&mut object, "gravity_scale", body.gravity_scale, 1.0);
     if body.sleeping == Sleeping::Off {
         object.insert("sleeping".into(), false.into());
+    }
+    if let Some((name, _)) = QUALITIES.iter().find(|(_, quality)| Some(*quality) == body.quality) {
+        object.insert("quality".into(), (*name).into());
     }
     if body.user_data != 0 {
         object.insert("user_data".into(), body.user_data.into());

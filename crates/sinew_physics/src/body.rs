@@ -1,6 +1,6 @@
 //! A body as the world keeps it.
 
-use crate::def::{BodyDef, BodyKind, Sleeping};
+use crate::def::{BodyDef, BodyKind, Quality, Sleeping};
 use crate::force::BodyForces;
 use crate::shape::{MassProperties, Shape, ShapeDef};
 use crate::surface::{Surface, Surfaces};
@@ -74,6 +74,8 @@ pub(crate) struct Body {
     pub rest: Rest,
     /// Whether it may fall asleep by itself.
     pub sleeping: Sleeping,
+    /// Instead of the world's.
+    pub quality: Option<Quality>,
     /// Where it was when the time it has been calm began.
     pub place: Transform,
     /// Set when its state became non-finite: it was rolled back and takes no further part.
@@ -154,6 +156,7 @@ impl Body {
             surfaces,
             rest: Rest::Awake { calm: 0.0 },
             sleeping: def.sleeping,
+            quality: def.quality,
             place: world_from_body * body_from_principal,
             quarantined: false,
             stirred: false,

@@ -12,6 +12,8 @@ pub struct WorldDef {
     pub step_nanoseconds: u64,
     /// Substeps per step, at least 1. Default 4.
     pub substeps: u32,
+    /// Work that a step does to come nearer to the truth, of bodies that do not [say otherwise](BodyDef::quality). Default balanced.
+    pub quality: Quality,
     /// Most steps that one [`World::update`](crate::World::update) takes, at least 1: a host that was held up, or steps that
     /// take longer than they last, must not end in ever longer frames. Default 15, a quarter of a second of default steps.
     pub catch_up_steps: u32,
@@ -27,6 +29,23 @@ pub struct WorldDef {
     /// How fast two shapes come in along their contact's normal for [a hit](crate::Hit) to be told of, m/s, ≥ 0. Default 1:
     /// what lies or rolls about tells of none.
     pub hit_speed: f32,
+}
+
+/// How near to the truth a step comes, for how much time. Joints hold exactly and contacts are as hard with each: what changes is
+/// the length of substeps and how many sweeps look for the impulses. `docs/performance.md` has a table of what that gives.
+///
+/// An island, which is what hangs together through contacts and joints, takes the highest quality of its bodies. Where particles hang
+/// on it, or the world has [objects](crate::PhysicsObject), all substeps are those of the world, and only sweeps change.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quality {
+    /// Half of the world's substeps unless masses differ by more than 100 or something spins fast, and half of the sweeps: for crowds in
+    /// the distance.
+    Fast,
+    /// Half of the world's substeps where many contacts damp all motion, else all of them.
+    #[default]
+    Balanced,
+    /// Twice the world's substeps, and twice the sweeps: for films, robots and what is measured.
+    Exact,
 }
 
 /// Whether what is at rest is put to sleep.
@@ -67,6 +86,7 @@ impl Default for WorldDef {
             gravity: Vec3::new(0.0, -9.81, 0.0),
             step_nanoseconds: 16_666_667,
             substeps: 4,
+            quality: Quality::Balanced,
             catch_up_steps: 15,
             sleeping: Sleeping::On,
             sleep_thresholds: SleepThresholds::default(),
@@ -157,6 +177,9 @@ pub struct BodyDef {
     pub mass: Option<MassProperties>,
     /// Whether it may fall asleep by itself, and with it what it touches and is joined to. Default yes.
     pub sleeping: Sleeping,
+    /// Work that a step does for this body and what hangs together with it; `None`: as the [world](WorldDef::quality) has it. Default
+    /// `None`.
+    pub quality: Option<Quality>,
     /// For the user.
     pub user_data: u64,
 }
@@ -175,6 +198,7 @@ impl Default for BodyDef {
             shapes: Vec::new(),
             mass: None,
             sleeping: Sleeping::On,
+            quality: None,
             user_data: 0,
         }
     }

@@ -71,7 +71,7 @@ pub use body::Velocity;
 pub use boxes::{Aabb, Obb};
 pub use contact::Effect;
 pub use contact_rule::{ContactModifier, ContactRule, ContactSide, FoundContact, OneWay};
-pub use def::{BodyDef, BodyKind, SleepThresholds, Sleeping, WorldDef};
+pub use def::{BodyDef, BodyKind, Quality, SleepThresholds, Sleeping, WorldDef};
 pub use draw::{DebugDraw, DrawKind};
 pub use events::Events;
 pub use field::{

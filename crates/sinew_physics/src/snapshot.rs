@@ -6,7 +6,7 @@ use crate::body::{Body, BodyShape, Rest, Velocity};
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint};
 use crate::contact::{Contact, ContactKey, ContactMemory, Effect, PointImpulse};
 use crate::contact_rule::{ContactRule, OneWay};
-use crate::def::{BodyKind, SleepThresholds, Sleeping, WorldDef};
+use crate::def::{BodyKind, Quality, SleepThresholds, Sleeping, WorldDef};
 use crate::events::Events;
 use crate::field::FieldDef;
 use crate::force::BodyForces;
@@ -23,7 +23,7 @@ use crate::world::World;
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
 /// First bytes of a snapshot; the last is its version.
-const MAGIC: &[u8; 8] = b"sinew-w\x07";
+const MAGIC: &[u8; 8] = b"sinew-w\x08";
 /// A thousand steps a second for 280,000 years.
 const MOST_STEPS: u64 = 1 << 53;
 
@@ -162,6 +162,7 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
     w.u64(def.step_nanoseconds);
     w.u32(def.substeps);
     w.u32(def.catch_up_steps);
+    save_quality(w, def.quality);
     w.bool(def.sleeping == Sleeping::On);
     let SleepThresholds { time, distance, angle, speed, spin } = def.sleep_thresholds;
     [time, distance, angle, speed, spin].into_iter().for_each(|x| w.f32(x));
@@ -173,6 +174,7 @@ fn save_def(w: &mut Writer, def: &WorldDef) {
 fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
     let gravity = r.vec3()?;
     let (step_nanoseconds, substeps, catch_up_steps) = (r.u64()?, r.u32()?, r.u32()?);
+    let quality = load_quality(r)?;
     let sleeping = load_sleeping(r)?;
     let sleep_thresholds = SleepThresholds {
         time: r.f32()?,
@@ -186,6 +188,7 @@ fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
         gravity,
         step_nanoseconds,
         substeps,
+        quality,
         catch_up_steps,
         sleeping,
         sleep_thresholds,
@@ -195,6 +198,23 @@ fn load_def(r: &mut Reader<'_>) -> Result<WorldDef, ReadError> {
     };
     def.check().map_err(|what| r.error(what))?;
     Ok(def)
+}
+
+fn save_quality(w: &mut Writer, quality: Quality) {
+    w.u8(match quality {
+        Quality::Fast => 0,
+        Quality::Balanced => 1,
+        Quality::Exact => 2,
+    });
+}
+
+fn load_quality(r: &mut Reader<'_>) -> Result<Quality, ReadError> {
+    match r.u8()? {
+        0 => Ok(Quality::Fast),
+        1 => Ok(Quality::Balanced),
+        2 => Ok(Quality::Exact),
+        _ => Err(r.error("unknown quality")),
+    }
 }
 
 fn load_sleeping(r: &mut Reader<'_>) -> Result<Sleeping, ReadError> {
@@ -244,6 +264,7 @@ fn save_body(w: &mut Writer, body: &Body) {
         }
     }
     w.bool(body.sleeping == Sleeping::On);
+    save_option(w, body.quality, save_quality);
     w.transform(body.place);
     w.bool(body.quarantined);
     w.u64(body.user_data);
@@ -286,6 +307,7 @@ fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadErr
         _ => return Err(r.error("a body neither awake nor asleep").into()),
     };
     let sleeping = load_sleeping(r)?;
+    let quality = load_option(r, load_quality)?;
     let (place, quarantined, user_data) = (r.transform()?, r.bool()?, r.u64()?);
     let finite =
         [world_from_principal, previous, principal_from_body, place].into_iter().all(Transform::is_finite)
@@ -313,6 +335,7 @@ fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadErr
         surfaces: Surfaces::new(surfaces),
         rest,
         sleeping,
+        quality,
         place,
         quarantined,
         stirred: false,

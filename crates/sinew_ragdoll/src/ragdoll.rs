@@ -5,7 +5,7 @@ use crate::filter::TOLERATED;
 use sinew_math::limits::hinge_angle;
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, clamp, max, min};
 use sinew_physics::{
-    BodyDef, BodyId, Filter, JointDef, JointId, JointKind, Material, ShapeDef, Velocity, World,
+    BodyDef, BodyId, Filter, JointDef, JointId, JointKind, Material, Quality, ShapeDef, Velocity, World,
 };
 
 /// Where a body starts.
@@ -27,6 +27,8 @@ pub struct Flesh {
     pub filter: Filter,
     /// 1/s: share of the spin lost per second, which is soft tissue's. Default 0.05.
     pub angular_damping: f32,
+    /// Work that a step does for the ragdoll and what hangs together with it. Default `None`: as the world has it.
+    pub quality: Option<Quality>,
 }
 
 impl Default for Flesh {
@@ -35,6 +37,7 @@ impl Default for Flesh {
             material: Material { friction: 0.7, rolling: 0.02, ..Material::DEFAULT },
             filter: Filter::default(),
             angular_damping: 0.05,
+            quality: None,
         }
     }
 }
@@ -93,6 +96,15 @@ impl Ragdoll {
         Self { bodies, joints, colliding }
     }
 
+    /// Sets the quality of the step for all bodies of the ragdoll, from the next step on: less for what is far away, more for what is filmed;
+    /// `None`: as the world has it. What touches the ragdoll takes the higher of both.
+    ///
+    /// # Panics
+    /// If a body is no longer there.
+    pub fn set_quality(&self, world: &mut World, quality: Option<Quality>) {
+        self.bodies.iter().for_each(|&body| world.set_quality(body, quality));
+    }
+
     /// Takes the ragdoll out of the world.
     ///
     /// # Panics
@@ -137,6 +149,7 @@ fn body_def(body: &RagdollBodyDef, state: &BodyState, flesh: &Flesh, index: usiz
         shapes: vec![shape],
         mass: Some(body.mass),
         user_data: index as u64,
+        quality: flesh.quality,
         ..BodyDef::default()
     }
 }

@@ -7,7 +7,7 @@ use crate::scene_choice::choose;
 use crate::table::Table;
 use serde_json::{Map, Value, json};
 use sinew::physics::stage::NoProfiler;
-use sinew::physics::{Serial, TaskRunner, Threads};
+use sinew::physics::{Quality, Serial, TaskRunner, Threads};
 use sinew_scenes::scenes::{Expected, Instance, Metric, Part, Scene};
 use std::fmt::Write;
 use std::time::Instant;
@@ -19,6 +19,7 @@ Example:
   sinew run pendulum
   sinew run stairs --steps 600 --threads 2 --set impulse=50 --json
   sinew run mjcf_drop --set file=humanoid.xml
+  sinew run double_pendulum --quality exact
 
 'sinew scenes' lists the scenes, 'sinew scenes --json' their settings too. 'mjcf_drop', which it does
 not list, drops MuJoCo's humanoid, or another model in MJCF with the poses 'prone' and 'supine'.")]
@@ -31,9 +32,34 @@ pub struct Run {
     /// Threads; the state is the same with any number
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=256))]
     threads: u16,
+    /// Work that each step does to come nearer to the truth
+    #[arg(long, default_value_t, value_enum)]
+    quality: QualityName,
     /// Change a setting of the scene; repeatable
     #[arg(long = "set", value_name = "KEY=VALUE")]
     settings: Vec<String>,
+}
+
+/// A [`Quality`] by name.
+#[derive(Clone, Copy, Default, clap::ValueEnum)]
+enum QualityName {
+    /// Half of the substeps and sweeps
+    Fast,
+    /// As content asks for
+    #[default]
+    Balanced,
+    /// Twice the substeps and sweeps
+    Exact,
+}
+
+impl From<QualityName> for Quality {
+    fn from(name: QualityName) -> Self {
+        match name {
+            QualityName::Fast => Self::Fast,
+            QualityName::Balanced => Self::Balanced,
+            QualityName::Exact => Self::Exact,
+        }
+    }
 }
 
 impl Run {
@@ -42,6 +68,7 @@ impl Run {
         let (scene, settings) = choose(&self.scene, &self.settings)?;
         let steps = self.steps.unwrap_or(scene.steps);
         let mut instance = scene.start(&settings);
+        instance.world_mut().set_world_quality(self.quality.into());
         let times = StepTimes::measure(&mut instance, steps, &*self.runner());
         let outcome = Outcome {
             scene,

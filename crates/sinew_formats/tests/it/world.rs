@@ -4,7 +4,7 @@ use sinew_formats::{read_world, write_world};
 use sinew_math::{Random, Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{
     BodyDef, BodyKind, Combine, CombineRules, ContactRule, Filter, Hull, MassProperties, Material, OneWay,
-    Sensing, Shape, ShapeDef, Sleeping, World, WorldDef,
+    Quality, Sensing, Shape, ShapeDef, Sleeping, World, WorldDef,
 };
 use std::sync::Arc;
 
@@ -189,6 +189,7 @@ fn random_body(random: &mut Random) -> BodyDef {
             inertia: Sym3::from_rotated_diagonal(random.rotation(), principal),
         }),
         sleeping: [Sleeping::On, Sleeping::Off][random.index(2)],
+        quality: [None, Some(Quality::Fast), Some(Quality::Balanced), Some(Quality::Exact)][random.index(4)],
         user_data: random.bits(),
     }
 }

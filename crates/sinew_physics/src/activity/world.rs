@@ -1,7 +1,7 @@
 //! Sleep as a user sees it: asked, and changed by hand.
 
 use crate::contact::Contact;
-use crate::def::Sleeping;
+use crate::def::{Quality, Sleeping};
 use crate::id::BodyId;
 use crate::world::World;
 use sinew_math::Vec3;
@@ -41,6 +41,21 @@ impl World {
         if sleeping == Sleeping::Off {
             self.wake_body(id.index);
         }
+    }
+
+    /// Quality of the step for a body and what hangs together with it; `None`: as the world has it.
+    pub fn quality(&self, id: BodyId) -> Option<Quality> {
+        self.expect(id).quality
+    }
+
+    /// Sets the quality of the step for a body and what hangs together with it, from the next step on; `None`: as the world has it.
+    pub fn set_quality(&mut self, id: BodyId, quality: Option<Quality>) {
+        self.expect_mut(id).quality = quality;
+    }
+
+    /// Sets the quality of the step for all bodies that have none of their own, from the next step on.
+    pub fn set_world_quality(&mut self, quality: Quality) {
+        self.def.quality = quality;
     }
 
     /// Sets the world's gravity, m/s²; everything wakes, if it is another than before.

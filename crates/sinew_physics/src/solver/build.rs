@@ -13,7 +13,7 @@ use crate::arena::Arena;
 use crate::body::Body;
 use crate::collide::MAX_POINTS;
 use crate::contact::{Contact, ContactMemory, slop};
-use crate::def::WorldDef;
+use crate::def::{Quality, WorldDef};
 use crate::field::Fields;
 use crate::islands::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
@@ -43,6 +43,13 @@ pub(crate) struct View<'a> {
     pub def: &'a WorldDef,
     pub fields: Fields<'a>,
     pub pace: Pace,
+}
+
+impl View<'_> {
+    /// Quality that a body asks for.
+    pub fn quality(&self, body: u32) -> Quality {
+        self.bodies.at(body).quality.unwrap_or(self.def.quality)
+    }
 }
 
 /// Substeps of the world.

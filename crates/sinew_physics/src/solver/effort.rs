@@ -5,6 +5,7 @@ use super::contacts::Sweeps;
 use super::sweep::Pass;
 use super::tree::NONE;
 use super::{Coupling, Grading, IslandSolver, View};
+use crate::def::Quality;
 use crate::islands::Island;
 use sinew_math::{max, min};
 
@@ -93,7 +94,7 @@ const PILE: Effort = Effort {
     order: Order::ToAndFro,
     first_conjugate: 4,
 };
-/// Effort for a pile or heap of [`MANY_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
+/// Effort for a pile or heap of [`FEW_SWEEPS_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
 /// over some substeps.
 const HEAP: Effort = Effort { solve: 8, relax: 3, first_conjugate: 2, ..PILE };
 /// Effort for unequal masses: a light body between heavy ones tosses what they do to each other to and fro, and what cannot move must have the
@@ -117,10 +118,9 @@ impl Effort {
     fn of_pile(levels: u32, ratio: f32, contacts: usize) -> Self {
         let root = ratio.sqrt();
         if ratio <= GRADED_RATIO {
-            let even = match contacts {
-                0..MANY_CONTACTS => Self { relax: (PILE.relax as f32 * root) as usize, ..PILE },
-                _ => HEAP,
-            };
+            let even = if contacts < FEW_SWEEPS_CONTACTS { PILE } else { HEAP };
+            let relax = usize::max((PILE.relax as f32 * root) as usize, even.relax);
+            let even = Self { relax, ..even };
             return Self { order: if ratio <= EVEN { even.order } else { Order::Forward }, ..even };
         }
         let height = max(1.0, levels as f32 / LEVELS);
@@ -129,6 +129,24 @@ impl Effort {
             relax: min(UNEQUAL.relax as f32 * height * root, MOST_RELAX) as usize,
             tolerance: max(UNEQUAL.tolerance / (height * ratio), LEAST_TOLERANCE),
             ..UNEQUAL
+        }
+    }
+
+    /// Fewer or more sweeps, which end later or sooner.
+    fn of_quality(self, quality: Quality) -> Self {
+        let [sweeps, finer] = match quality {
+            Quality::Fast => [0.5, 2.0],
+            Quality::Balanced => return self,
+            Quality::Exact => [2.0, 0.25],
+        };
+        let times = |most: usize| usize::max((most as f32 * sweeps) as usize, 1);
+        Self {
+            solve: times(self.solve),
+            relax: times(self.relax),
+            tolerance: self.tolerance * finer,
+            small: self.small * finer,
+            enough: self.enough * finer,
+            ..self
         }
     }
 
@@ -171,7 +189,10 @@ impl Effort {
 const FIGURES: usize = 8;
 const CONTACTS_OF_FIGURES: usize = 128;
 const CONTACTS_OF_LINK: usize = 4;
-/// Contacts from which on an island of free bodies is a heap: they damp all motion, and no single one decides.
+/// Contacts from which on an island of free bodies is swept as a heap.
+const FEW_SWEEPS_CONTACTS: usize = 16;
+/// Contacts from which on an island of free bodies takes half of the substeps: they damp all motion, and no single one decides. With
+/// 16, a house of cards sinks by a hundredth more than it may.
 const MANY_CONTACTS: usize = 32;
 /// Contacts per body, of islands with joints: what lies takes half of them, what swings or flies all.
 const CONTACTS_PER_BODY: f32 = 0.25;
@@ -183,15 +204,19 @@ const CALM_TURN: f32 = 0.25;
 const GRADED_RATIO: f32 = 100.0;
 
 impl IslandSolver {
-    /// How many substeps an island takes: half of the world's where many contacts damp all motion, nothing spins fast and masses
-    /// are alike; all of them for what swings, flies, balances, or has particles.
+    /// How many substeps an island takes. Balanced: half of the world's where many contacts damp all motion, nothing spins fast and
+    /// masses are alike; all of them for what swings, flies or balances. With particles all, whatever the quality.
     pub(super) fn choose_substeps(&mut self, island: &Island<'_>, view: &View<'_>) {
-        let halves = view.pace.grading == Grading::ByContent
-            && view.pace.substeps.is_multiple_of(2)
-            && island.groups.is_empty()
-            && is_damped(island, view);
-        self.stretch = if halves { 2.0 } else { 1.0 };
-        self.substeps = if halves { view.pace.substeps / 2 } else { view.pace.substeps };
+        self.quality = island.bodies.iter().map(|&body| view.quality(body)).max().unwrap_or_default();
+        let may_halve = view.pace.substeps.is_multiple_of(2);
+        self.stretch = match self.quality {
+            _ if view.pace.grading == Grading::None || !island.groups.is_empty() => 1.0,
+            Quality::Exact => 0.5,
+            Quality::Balanced if may_halve && is_damped(island, view) => 2.0,
+            Quality::Fast if may_halve && is_calm(island, view) => 2.0,
+            Quality::Balanced | Quality::Fast => 1.0,
+        };
+        self.substeps = (view.pace.substeps as f32 / self.stretch) as u32;
         self.h = view.pace.h * self.stretch;
     }
 
@@ -218,7 +243,8 @@ impl IslandSolver {
                 self.effort_with_joints().at_least(of_pile(0))
             }
             _ => self.effort_with_joints(),
-        };
+        }
+        .of_quality(self.quality);
     }
 
     fn effort_with_joints(&self) -> Effort {
@@ -256,7 +282,7 @@ impl IslandSolver {
     }
 }
 
-/// Whether contacts and masses of an island let it take longer substeps.
+/// Whether contacts of an island damp all motion, so that it may take longer substeps.
 fn is_damped(island: &Island<'_>, view: &View<'_>) -> bool {
     let (contacts, bodies) = (island.contacts.len(), island.bodies.len());
     let many = if island.joints.is_empty() {
@@ -270,9 +296,11 @@ fn is_damped(island: &Island<'_>, view: &View<'_>) -> bool {
         let approach = view.contacts[contact as usize].approach;
         approach > BOUNCE_SPEED && view.contacts[contact as usize].material(view.bodies).restitution > 0.0
     };
-    if !many || island.contacts.iter().any(bounces) {
-        return false;
-    }
+    many && !island.contacts.iter().any(bounces) && is_calm(island, view)
+}
+
+/// Whether masses and spins of an island let it take longer substeps.
+fn is_calm(island: &Island<'_>, view: &View<'_>) -> bool {
     let (mut lightest, mut heaviest, mut spin) = (f32::INFINITY, 0.0, 0.0);
     for &index in island.bodies {
         let body = view.bodies.at(index);

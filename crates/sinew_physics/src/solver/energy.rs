@@ -3,11 +3,13 @@
 //! work. None of this acts at rest or in ordinary falls.
 
 use super::contact_rows::ManifoldRows;
+use super::motion::KineticEnergy;
 use super::sweep::Pass;
 use super::tree::NONE;
 use super::{IslandSolver, SolverBody};
 use crate::joint::DIRECTIONS;
 use crate::spatial::{Vec6, ZERO6, angular, difference, join, linear};
+use sinew_math::dispatch;
 use sinew_math::{Sym3, Vec3, max, min};
 
 /// Angle that a link may turn within a substep beside the motion of its tree as a whole, radians: position corrections
@@ -56,12 +58,7 @@ impl IslandSolver {
 
     /// Of the moving bodies with the given velocities, joules.
     pub(super) fn kinetic_energy(&self, velocities: &[Vec6]) -> f32 {
-        let mut sum = 0.0;
-        for (body, v) in self.bodies.iter().zip(velocities) {
-            let w = body.pose.rotation.inverse() * angular(v);
-            sum += 0.5 * body.mass * linear(v).length_squared() + 0.5 * (w * body.inertia).dot(w);
-        }
-        sum
+        dispatch::run(KineticEnergy { bodies: &self.bodies[..velocities.len()], velocities })
     }
 
     /// Of the moving bodies, kg.

@@ -1,18 +1,19 @@
 //! Bodies in flight: nothing touches or holds them, so that a step of eight of them side by side is all their own motion.
 //!
 //! The angular momentum stays as it is in the world but for torque and damping; spin and rotation follow from it, substep by substep,
-//! by the midpoint of [`gyroscopic`](super::gyroscopic).
+//! by [`middle_of_spin`].
 
 use super::build::{View, lasting_force};
+use super::motion::{Turn, divided, middle_of_spin, over, within};
 use super::solution::SolvedBody;
-use super::{MIDPOINT_STEPS, MIDPOINT_TOLERANCE, MOST_HALF_TURN};
 use crate::body::Velocity;
+use crate::def::Quality;
 use crate::islands::Island;
 use crate::slices::for_each_mut;
 use crate::stage::Counter;
 use crate::step::StepContext;
 use sinew_math::dispatch::{self, Kernel};
-use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
+use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 use sinew_math::{Rotation, Transform, Vec3, min};
 
 type Eight = [f32; WIDTH];
@@ -24,7 +25,8 @@ const MOST_TURN: f32 = 3.0;
 pub(crate) fn flies(island: &Island<'_>, view: &View<'_>) -> bool {
     let &[body] = island.bodies else { return false };
     let held = !(island.joints.is_empty() && island.contacts.is_empty() && island.groups.is_empty());
-    !held && view.fields.is_empty() && view.bodies.at(body).forces.list.is_empty()
+    let has_own_substeps = view.quality(body) == Quality::Exact;
+    !held && !has_own_substeps && view.fields.is_empty() && view.bodies.at(body).forces.list.is_empty()
 }
 
 /// All bodies in flight, eight to a flock.
@@ -179,124 +181,27 @@ impl Kernel for Fly<'_> {
         let mut velocity = load::<L>(&flock.velocity);
         let mut momentum = load::<L>(&flock.momentum);
         let [x, y, z, w] = &flock.rotation;
-        let (mut vector, mut real) = (Vector3::<L>::load(x, y, z), L::load(w));
+        let mut rotation = Turn { vector: Vector3::<L>::load(x, y, z), real: L::load(w) };
         for _ in 0..substeps {
             velocity = divided(velocity, slower) + push;
             velocity = velocity * within(velocity, max_speed);
             momentum = divided(momentum, calmer) + torque;
-            let spin = over(turn_back(vector, real, momentum), inertia);
+            let spin = over(rotation.turned_back(momentum), inertia);
             let share = within(spin, max_spin);
             momentum = momentum * share;
             let middle = middle_of_spin(spin * share, inertia, h);
             position = position + velocity * h;
-            let half = h * L::splat(0.5);
-            let angle = half * middle.length();
-            let by = middle * (half * sin_over(angle));
-            (vector, real) = turn(vector, real, by, cos(angle));
+            rotation = rotation.then_own(Turn::by_half_angles(middle * (h * L::splat(0.5))));
         }
         store(position, &mut flock.position);
         store(velocity, &mut flock.velocity);
         store(momentum, &mut flock.momentum);
         let [x, y, z, w] = &mut flock.rotation;
-        vector.x.store(x);
-        vector.y.store(y);
-        vector.z.store(z);
-        real.store(w);
+        rotation.vector.x.store(x);
+        rotation.vector.y.store(y);
+        rotation.vector.z.store(z);
+        rotation.real.store(w);
     }
-}
-
-/// The spin of the middle of a substep, principal axes: eight times [`gyroscopic`](super::gyroscopic).
-#[inline(always)]
-fn middle_of_spin<L: Lanes>(start: Vector3<L>, i: Vector3<L>, h: L) -> Vector3<L> {
-    let half = h * L::splat(0.5);
-    let tolerance = start.dot(start) * L::splat(MIDPOINT_TOLERANCE);
-    let mut m = start;
-    let mut done = L::lt(half, half);
-    for _ in 0..MIDPOINT_STEPS {
-        let angle = L::min(half * m.length(), L::splat(MOST_HALF_TURN));
-        let tau = half * (sin_over(angle) / cos(angle));
-        let [x, y, z] = (m * tau).to_array();
-        // Columns of I + τ (m× I − (I m)×).
-        let a = Vector3::new(i.x, z * (i.x - i.z), y * (i.y - i.x));
-        let b = Vector3::new(z * (i.z - i.y), i.y, x * (i.y - i.x));
-        let c = Vector3::new(y * (i.z - i.y), x * (i.x - i.z), i.z);
-        let error = times(m - start, i) + m.cross(times(m, i)) * tau;
-        let across = b.cross(c);
-        let change = Vector3::new(error.dot(across), a.dot(error.cross(c)), a.dot(b.cross(error)));
-        let change = divided(change, a.dot(across));
-        let next = m - change;
-        m = Vector3::new(
-            L::select(done, m.x, next.x),
-            L::select(done, m.y, next.y),
-            L::select(done, m.z, next.z),
-        );
-        done = done | L::le(change.dot(change), tolerance);
-        if done.all() {
-            break;
-        }
-    }
-    m
-}
-
-/// `sin(x)/x` to 5e-8 for |x| below 1.6.
-#[inline(always)]
-fn sin_over<L: Lanes>(x: L) -> L {
-    series(x * x, [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0, 0.0])
-}
-
-/// Cosine of x to 1e-8 for |x| below 1.6.
-#[inline(always)]
-fn cos<L: Lanes>(x: L) -> L {
-    let last = 1.0 / 479_001_600.0;
-    series(x * x, [1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, last])
-}
-
-#[inline(always)]
-fn series<L: Lanes>(x: L, terms: [f32; 7]) -> L {
-    let mut sum = L::splat(terms[6]);
-    for k in (0..6).rev() {
-        sum = sum * x + L::splat(terms[k]);
-    }
-    sum
-}
-
-/// A rotation after turning by another, which is given in the rotation's own axes.
-#[inline(always)]
-fn turn<L: Lanes>(vector: Vector3<L>, real: L, by: Vector3<L>, by_real: L) -> (Vector3<L>, L) {
-    let v = vector * by_real + by * real + vector.cross(by);
-    let w = real * by_real - vector.dot(by);
-    let scale = L::splat(1.0) / (v.dot(v) + w * w).sqrt();
-    (v * scale, w * scale)
-}
-
-/// A vector by the inverse of a rotation.
-#[inline(always)]
-fn turn_back<L: Lanes>(vector: Vector3<L>, real: L, v: Vector3<L>) -> Vector3<L> {
-    let across = v.cross(vector) * L::splat(2.0);
-    v + across * real + across.cross(vector)
-}
-
-/// Factor, 1 at most, that makes a vector no longer than `most`.
-#[inline(always)]
-fn within<L: Lanes>(v: Vector3<L>, most: f32) -> L {
-    let (length, most) = (v.length(), L::splat(most));
-    let long = L::gt(length, most);
-    L::select(long, most / L::select(long, length, most), L::splat(1.0))
-}
-
-#[inline(always)]
-fn times<L: Lanes>(a: Vector3<L>, b: Vector3<L>) -> Vector3<L> {
-    Vector3::new(a.x * b.x, a.y * b.y, a.z * b.z)
-}
-
-#[inline(always)]
-fn over<L: Lanes>(a: Vector3<L>, b: Vector3<L>) -> Vector3<L> {
-    Vector3::new(a.x / b.x, a.y / b.y, a.z / b.z)
-}
-
-#[inline(always)]
-fn divided<L: Lanes>(a: Vector3<L>, by: L) -> Vector3<L> {
-    Vector3::new(a.x / by, a.y / by, a.z / by)
 }
 
 #[inline(always)]

@@ -88,7 +88,7 @@ impl IslandSolver {
             let touch = &self.touches[place as usize];
             let Some(bearer) = bearers.get_mut(above as usize) else { continue };
             if touch.is_new
-                && level == below.saturating_add(1)
+                && below.checked_add(1) == Some(level)
                 && !bearer.is_settled
                 && slope(&self.bodies[above as usize], touch, sign) > STANDING
             {

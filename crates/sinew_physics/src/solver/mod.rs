@@ -24,6 +24,7 @@ mod limit_blocks;
 mod limit_rows;
 mod loads;
 mod loops;
+mod motion;
 mod outside;
 mod pins;
 mod reaction;
@@ -35,13 +36,14 @@ mod tree;
 mod tree_joints;
 mod turns;
 
+use crate::def::Quality;
 use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
 use crate::project::TakenGroup;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
 use crate::work::Work;
-use articulated::{Inertia, Symmetric};
+use articulated::Inertia;
 use build::Grading;
 pub(crate) use build::{Pace, View};
 use columns::Columns;
@@ -57,9 +59,11 @@ use levels::Levels;
 use limit_blocks::LimitBlocks;
 use limit_rows::LimitRow;
 use loops::Loops;
+use motion::{IntegratePosition, IntegrateVelocity, RefreshInertia};
 use pins::Pins;
 use response::Response;
-use sinew_math::{Mat3, Sym3, Transform, Vec3, abs3, max3, min, normalize_or, trig};
+use sinew_math::dispatch;
+use sinew_math::{Sym3, Transform, Vec3, abs3, normalize_or};
 pub(crate) use solution::{IslandSolution, Solution, SolvedBody, SolvedJoint, split_off};
 use squeeze::{Pressing, Touch};
 use sweep::{Pass, Unrest};
@@ -114,16 +118,6 @@ fn free_response(bodies: &[SolverBody], moving: usize, ends: [(u32, &Vec6); 2]) 
 }
 
 impl SolverBody {
-    /// Mass and inertia at the centre of mass, world axes, geometric stiffness and ballast included.
-    fn articulated_inertia(&self) -> Inertia<f64> {
-        let moments = (self.inertia + self.excess) * self.ballast;
-        let Sym3 { diagonal, off } = Sym3::from_rotated_diagonal(self.pose.rotation, moments);
-        Inertia::of_body(
-            f64::from(self.mass * self.ballast),
-            Symmetric([diagonal.x, off.z, off.y, diagonal.y, off.x, diagonal.z].map(f64::from)),
-        )
-    }
-
     /// N·m·s, without what geometric stiffness adds.
     fn angular_momentum(&self, w: Vec3) -> Vec3 {
         self.pose.rotation.turn(self.pose.rotation.inverse().turn(w) * self.inertia)
@@ -243,6 +237,7 @@ pub(crate) struct IslandSolver {
     levels: Levels,
     /// Per moving body.
     pressing: Vec<Pressing>,
+    quality: Quality,
     effort: Effort,
     unrest: Unrest,
     conjugate: Conjugate,
@@ -318,21 +313,14 @@ impl IslandSolver {
         self.begin_drives();
         self.kinetic_before = self.kinetic_energy(&self.velocities[..self.links.len()]);
         self.push_saturated();
-        for (body, v) in self.bodies.iter_mut().zip(&mut self.velocities).take(self.links.len()) {
-            let inverse_mass = 1.0 / (body.mass * body.ballast);
-            let lin = linear(v) / (1.0 + h * body.linear_damping) + body.force * (inverse_mass * h);
-            let mut ang = angular(v) / (1.0 + h * body.angular_damping);
-            ang += body.inverse_inertia * (body.torque * h);
-            // Geometric stiffness beyond the inertia acts as inertia: the spin it takes part in is shared with it.
-            if body.excess != Vec3::ZERO {
-                let r = body.pose.rotation;
-                ang = r * ((r.inverse() * ang) * body.inertia / (body.inertia + body.excess));
-            }
-            ang = limit_length(ang, self.max_turn / h);
-            body.momentum = body.angular_momentum(ang);
-            *v = join(limit_length(lin, self.max_speed), gyroscopic(body, ang, h));
-        }
-        self.kinetic_start = self.kinetic_of_momenta();
+        let moving = self.links.len();
+        self.kinetic_start = dispatch::run(IntegrateVelocity {
+            bodies: &mut self.bodies[..moving],
+            velocities: &mut self.velocities[..moving],
+            h,
+            max_speed: self.max_speed,
+            max_spin: self.max_turn / h,
+        });
         self.momentum_start = self.momentum_of_start();
         self.drive_work = 0.0;
         self.pushed_from_outside = false;
@@ -427,16 +415,12 @@ impl IslandSolver {
         self.store_joint_forces();
         self.add_solve_reactions();
         self.force_work = self.work_of_forces();
-        for (i, (body, v)) in self.bodies.iter_mut().zip(&mut self.velocities).enumerate() {
-            let turned = self.unconstrained.get(i).map(|before| {
-                // What impulses gave. Geometric stiffness is no inertia of the body.
-                body.momentum + body.angular_momentum(angular(v) - angular(before))
-            });
-            body.pose = advance(&body.pose, v, self.h);
-            if let Some(momentum) = turned {
-                let r = body.pose.rotation;
-                *v = join(linear(v), r.turn(r.inverse().turn(momentum) / body.inertia));
-            }
+        let h = self.h;
+        let (moving, fixed) = self.bodies.split_at_mut(self.links.len());
+        let (velocities, of_fixed) = self.velocities.split_at_mut(moving.len());
+        dispatch::run(IntegratePosition { bodies: moving, velocities, before: &self.unconstrained, h });
+        for (body, v) in fixed.iter_mut().zip(of_fixed) {
+            body.pose = advance(&body.pose, v, h);
         }
         self.refresh(view);
         self.begin_relax_reactions();
@@ -567,11 +551,7 @@ impl IslandSolver {
                 }
             }
         }
-        for body in &mut self.bodies[..self.links.len()] {
-            body.excess = max3(body.excess - body.inertia, Vec3::ZERO);
-            let total = (body.inertia + body.excess) * body.ballast;
-            body.inverse_inertia = Sym3::from_rotated_diagonal(body.pose.rotation, Vec3::ONE / total);
-        }
+        dispatch::run(RefreshInertia(&mut self.bodies[..self.links.len()]));
     }
 
     /// Which bodies carry rows, and how they answer to impulses.
@@ -639,17 +619,6 @@ impl IslandSolver {
         self.h * moving.map(power).fold(0.0, |sum, power| sum + power)
     }
 
-    /// Of the moving bodies as the forces leave them, J.
-    fn kinetic_of_momenta(&self) -> f32 {
-        let mut sum = 0.0;
-        for (body, v) in self.bodies.iter().zip(&self.velocities[..self.links.len()]) {
-            let momentum = body.pose.rotation.inverse() * body.momentum;
-            sum +=
-                0.5 * body.mass * linear(v).length_squared() + 0.5 * (momentum / body.inertia).dot(momentum);
-        }
-        sum
-    }
-
     /// How many of them this step has.
     pub fn substeps(&self) -> u32 {
         self.substeps
@@ -664,42 +633,4 @@ impl IslandSolver {
 /// Pose after moving with a velocity for `h` seconds.
 fn advance(pose: &Transform, v: &Vec6, h: f32) -> Transform {
     Transform::new(pose.translation + linear(v) * h, pose.rotation.integrate(angular(v), h))
-}
-
-fn limit_length(v: Vec3, most: f32) -> Vec3 {
-    let length = v.length();
-    if length > most { v * (most / length) } else { v }
-}
-
-/// Angular velocity that turns a free body within `h` seconds as its inertia lets it (world axes).
-///
-/// The implicit midpoint `I (m − ω) + τ m × I m = 0` in the principal frame keeps energy and the length of the momentum to
-/// rounding, and with the Cayley map for the turn, `2 atan(τ|m|)` about `m`, the momentum itself (after Austin,
-/// Krishnaprasad and Wang 1993), whatever `τ`. With `τ = tan(½h|m|) / |m|` that turn is `h|m|`: `m` is the spin that joints
-/// and contacts feel, no slower one. The explicit torque explodes; leaving it out makes wrong tops.
-fn gyroscopic(body: &SolverBody, w: Vec3, h: f32) -> Vec3 {
-    let i = body.inertia;
-    if i.x == i.y && i.y == i.z {
-        return w;
-    }
-    let r = body.pose.rotation;
-    let w0 = r.inverse() * w;
-    let mut m = w0;
-    for _ in 0..MIDPOINT_STEPS {
-        let l = m * i;
-        let angle = min(0.5 * h * m.length(), MOST_HALF_TURN);
-        let tau = 0.5 * h * (if angle > 1e-3 { trig::tan(angle) / angle } else { 1.0 });
-        // Jacobian I + τ (m× I − (I m)×), but for what τ changes with m.
-        let jacobian = Mat3::from_cols(
-            Vec3::new(i.x, (m.z * i.x - l.z) * tau, (l.y - m.y * i.x) * tau),
-            Vec3::new((l.z - m.z * i.y) * tau, i.y, (m.x * i.y - l.x) * tau),
-            Vec3::new((m.y * i.z - l.y) * tau, (l.x - m.x * i.z) * tau, i.z),
-        );
-        let change = jacobian.inverse() * ((m - w0) * i + m.cross(l) * tau);
-        m -= change;
-        if change.length_squared() <= MIDPOINT_TOLERANCE * w0.length_squared() {
-            break;
-        }
-    }
-    r * m
 }

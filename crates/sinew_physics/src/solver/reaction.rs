@@ -2,10 +2,12 @@
 //! it; torques about the anchor of B. Summed in two parts, since the pose changes between `solve` and `relax`: with the
 //! arms of the new one, the torque of what `solve` gave is 3 % too high for an arm that turns at 3 rad/s.
 
+use super::IslandSolver;
+use super::motion::ListGains;
 use super::tree::NONE;
-use super::{IslandSolver, SolverBody};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
 use sinew_math::Vec3;
+use sinew_math::dispatch;
 
 /// From when on gains count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,13 +67,13 @@ impl IslandSolver {
             Since::Forces => &self.unconstrained,
             Since::Motion => &self.moved,
         };
-        let gained = |((body, v), before): ((&SolverBody, &Vec6), &Vec6)| {
-            let turned = body.angular_momentum(angular(v) - angular(before));
-            join((linear(v) - linear(before)) * body.mass, turned)
-        };
-        let moved = self.bodies.iter().zip(&self.velocities).zip(before);
-        self.scratch.impulses.clear();
-        self.scratch.impulses.extend(moved.map(gained));
+        let moving = self.links.len();
+        dispatch::run(ListGains {
+            bodies: &self.bodies[..moving],
+            velocities: &self.velocities[..moving],
+            before: &before[..moving],
+            list: &mut self.scratch.impulses,
+        });
     }
 
     /// Takes off what contacts, loops and pins have given in this substep.

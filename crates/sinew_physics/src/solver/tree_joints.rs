@@ -1,10 +1,12 @@
 //! The joints of the trees: their rows, the factor, and the exact solve of velocities (RATTLE) and positions (SHAKE).
 
+use super::motion::{ListInertias, Predict};
 use super::sweep::Pass;
 use super::tree::{self, NONE};
-use super::{Coupling, IslandSolver, SolverBody, SolverJoint, advance};
+use super::{Coupling, IslandSolver, SolverJoint};
 use crate::joint::JointPose;
 use crate::spatial::{Vec6, ZERO6, add_scaled, linear};
+use sinew_math::dispatch;
 use sinew_math::max;
 
 /// Most rounds of position corrections in a pass, likewise with many loops, and the error that needs none, m or rad.
@@ -37,8 +39,7 @@ impl IslandSolver {
     /// Rows of the tree joints and the factor of all trees.
     pub(super) fn factor_joints(&mut self) {
         let inertia = &mut self.scratch.inertia;
-        inertia.clear();
-        inertia.extend(self.bodies[..self.links.len()].iter().map(SolverBody::articulated_inertia));
+        dispatch::run(ListInertias { bodies: &self.bodies[..self.links.len()], list: inertia });
         for &pin in &self.pins.joints {
             self.joints[pin as usize].stiffen(inertia);
         }
@@ -145,9 +146,7 @@ impl IslandSolver {
     /// Poses that the velocities lead to.
     fn predict_poses(&mut self) {
         let poses = &mut self.scratch.predicted;
-        poses.clear();
-        poses
-            .extend(self.bodies.iter().zip(&self.velocities).map(|(body, v)| advance(&body.pose, v, self.h)));
+        dispatch::run(Predict { bodies: &self.bodies, velocities: &self.velocities, h: self.h, poses });
     }
 
     /// Residuals that would remove the position errors at the predicted pose; gives the largest error (m or rad).

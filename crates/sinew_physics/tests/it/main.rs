@@ -20,6 +20,7 @@ mod nets;
 mod objects;
 mod particles;
 mod pins;
+mod quality;
 mod queries;
 mod random_worlds;
 mod ray;
