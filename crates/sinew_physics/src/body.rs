@@ -89,34 +89,37 @@ pub(crate) struct Body {
 /// (`r × n` dominates the effective mass); they are raised to it.
 const SMALLEST_MOMENT: f32 = 1e-3;
 
+/// Panics if a number is not finite, a shape is not valid, or a half-space is to move.
+fn check(def: &BodyDef) {
+    assert!(def.position.is_finite() && def.rotation.is_finite(), "a body's pose is finite");
+    assert!(
+        def.linear_velocity.is_finite() && def.angular_velocity.is_finite(),
+        "a body's velocity is finite"
+    );
+    assert!(
+        def.linear_damping.is_finite() && def.angular_damping.is_finite() && def.gravity_scale.is_finite(),
+        "a body's damping and gravity scale are finite"
+    );
+    if let Some(MassProperties { mass, center, inertia }) = &def.mass {
+        let finite = mass.is_finite() && center.is_finite() && inertia.is_finite();
+        assert!(finite, "a body's mass, centre and inertia are finite");
+    }
+    for shape in &def.shapes {
+        if let Err(what) = shape.check() {
+            panic!("a body's shape is valid: {what}");
+        }
+        assert!(
+            def.kind == BodyKind::Static || shape.shape != Shape::HalfSpace,
+            "half-spaces are static bodies"
+        );
+    }
+}
+
 impl Body {
     /// # Panics
     /// If a number is not finite, a shape is not valid, or a dynamic body has no mass.
     pub fn new(def: &BodyDef) -> Self {
-        assert!(def.position.is_finite() && def.rotation.is_finite(), "a body's pose is finite");
-        assert!(
-            def.linear_velocity.is_finite() && def.angular_velocity.is_finite(),
-            "a body's velocity is finite"
-        );
-        assert!(
-            def.linear_damping.is_finite()
-                && def.angular_damping.is_finite()
-                && def.gravity_scale.is_finite(),
-            "a body's damping and gravity scale are finite"
-        );
-        if let Some(MassProperties { mass, center, inertia }) = &def.mass {
-            let finite = mass.is_finite() && center.is_finite() && inertia.is_finite();
-            assert!(finite, "a body's mass, centre and inertia are finite");
-        }
-        for shape in &def.shapes {
-            if let Err(what) = shape.check() {
-                panic!("a body's shape is valid: {what}");
-            }
-            assert!(
-                def.kind == BodyKind::Static || shape.shape != Shape::HalfSpace,
-                "half-spaces are static bodies"
-            );
-        }
+        check(def);
         let world_from_body = Transform::new(def.position, def.rotation.normalize());
         let properties = def.mass.unwrap_or_else(|| mass_of_shapes(&def.shapes));
         let (moments, body_from_principal) = match def.kind {

@@ -72,11 +72,6 @@ use tree::Link;
 /// Sweeps of `relax` before which friction learns its loads anew: the impulses of `solve` first, then those that really
 /// press. From then on loads stay, or friction and normals may chase each other for ever.
 const WEIGHINGS: usize = 2;
-/// Most Newton steps to the middle of a free body's spin, and the square of the relative change with which they end.
-const MIDPOINT_STEPS: usize = 4;
-const MIDPOINT_TOLERANCE: f32 = 1e-12;
-/// Most that half a substep is taken to turn on the way there, radians: within a quarter of a turn, should the world's limit allow more.
-const MOST_HALF_TURN: f32 = 1.2;
 /// Rounds in which limits and contacts that the substep would pass by far are tightened.
 const FORESIGHTS: usize = 4;
 

@@ -2,10 +2,10 @@
 
 use crate::actor::{floor, walker};
 use sinew_math::{Rotation, Transform, Vec3};
-use sinew_physics::{Serial, Threads, Velocity, World, WorldDef};
+use sinew_physics::{Quality, Serial, Threads, Velocity, World, WorldDef};
 use sinew_ragdoll::quality::{GateReport, gate_on};
 use sinew_ragdoll::ragdoll::fitted;
-use sinew_ragdoll::{BodyState, Flesh, QualityMeter, Ragdoll, Verdict, drop_test, gate};
+use sinew_ragdoll::{BodyState, Flesh, QualityMeter, Ragdoll, RagdollBodyDef, Verdict, drop_test, gate};
 
 #[test]
 fn the_mannequin_survives_drops_and_a_wall() {
@@ -80,21 +80,38 @@ fn the_meter_sees_energy_from_nothing() {
     assert!((gain - 0.1).abs() < 0.01, "{gain}");
 }
 
+/// The walker in its bind pose.
+fn spawn(world: &mut World, flesh: &Flesh) -> Ragdoll {
+    let def = walker().ragdoll;
+    let at = |body: &RagdollBodyDef| BodyState {
+        world_from_body: body.character_from_body,
+        ..BodyState::default()
+    };
+    let states: Vec<_> = def.bodies.iter().map(at).collect();
+    Ragdoll::spawn(world, &def, &states, flesh)
+}
+
 #[test]
 fn despawning_leaves_nothing_behind() {
-    let def = walker().ragdoll;
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
-    let states: Vec<_> = def
-        .bodies
-        .iter()
-        .map(|body| BodyState { world_from_body: body.character_from_body, ..BodyState::default() })
-        .collect();
-    let ragdoll = Ragdoll::spawn(&mut world, &def, &states, &Flesh::default());
+    let ragdoll = spawn(&mut world, &Flesh::default());
     world.step();
     ragdoll.despawn(&mut world);
     assert_eq!((world.body_ids().count(), world.joint_ids().count()), (1, 0));
     world.step();
+}
+
+#[test]
+fn a_ragdoll_has_its_own_quality_of_the_step() {
+    let mut world = World::new(WorldDef::default());
+    let ragdoll = spawn(&mut world, &Flesh { quality: Some(Quality::Exact), ..Flesh::default() });
+    let has = |world: &World, quality| ragdoll.bodies.iter().all(|&body| world.quality(body) == quality);
+    assert!(has(&world, Some(Quality::Exact)));
+    ragdoll.set_quality(&mut world, Some(Quality::Fast));
+    assert!(has(&world, Some(Quality::Fast)));
+    ragdoll.set_quality(&mut world, None);
+    assert!(has(&world, None));
 }
 
 /// However the bodies are placed, the joints that are fitted to them agree with them.

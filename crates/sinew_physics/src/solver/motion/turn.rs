@@ -1,0 +1,254 @@
+//! Turns of eight bodies side by side, and the spin of a free body through a substep.
+
+use sinew_math::lanes::{LaneMask, Lanes, Real, Vector3, WIDTH};
+use sinew_math::{Rotation, Vec3};
+
+/// Most Newton steps to the middle of a free body's spin, and the square of the relative change with which they end.
+const MIDPOINT_STEPS: usize = 4;
+const MIDPOINT_TOLERANCE: f32 = 1e-12;
+/// Most that half a substep is taken to turn on the way there, radians: within a quarter of a turn, should the world's limit allow more.
+pub const MOST_HALF_TURN: f32 = 1.2;
+/// Half of the angle up to which the series of a turn are exact, radians. Beyond it, bodies are turned one by one.
+pub const MOST_SERIES: f32 = 1.5;
+
+/// Eight [rotations](Rotation), or one.
+#[derive(Clone, Copy)]
+pub struct Turn<R> {
+    pub vector: Vector3<R>,
+    pub real: R,
+}
+
+impl<R: Real> Turn<R> {
+    /// After turning by another, which is given in this one's own axes.
+    #[inline(always)]
+    pub fn then_own(self, by: Self) -> Self {
+        let vector = self.vector * by.real + by.vector * self.real + self.vector.cross(by.vector);
+        Self { vector, real: self.real * by.real - self.vector.dot(by.vector) }.normalized()
+    }
+
+    /// After turning by another, which is given in the axes of the world.
+    #[inline(always)]
+    pub fn then(self, by: Self) -> Self {
+        by.then_own(self)
+    }
+
+    #[inline(always)]
+    fn normalized(self) -> Self {
+        let Self { vector, real } = self;
+        let scale = R::splat(1.0) / (vector.dot(vector) + real * real).sqrt();
+        Self { vector: vector * scale, real: real * scale }
+    }
+
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        Self { vector: -self.vector, real: self.real }
+    }
+
+    /// A vector after the rotation.
+    #[inline(always)]
+    pub fn turned(self, v: Vector3<R>) -> Vector3<R> {
+        let across = self.vector.cross(v) * R::splat(2.0);
+        v + across * self.real + self.vector.cross(across)
+    }
+
+    /// A vector before the rotation.
+    #[inline(always)]
+    pub fn turned_back(self, v: Vector3<R>) -> Vector3<R> {
+        self.inverse().turned(v)
+    }
+
+    /// Turn about `half` by twice its length, radians, up to twice [`MOST_SERIES`].
+    #[inline(always)]
+    pub fn by_half_angles(half: Vector3<R>) -> Self {
+        let angle = half.length();
+        Self { vector: half * sin_over(angle), real: cos(angle) }
+    }
+
+    /// Where the axes go.
+    #[inline(always)]
+    fn columns(self) -> [Vector3<R>; 3] {
+        let [x, y, z] = self.vector.to_array();
+        let (w, one, two) = (self.real, R::splat(1.0), R::splat(2.0));
+        [
+            Vector3::new(one - two * (y * y + z * z), two * (x * y + w * z), two * (x * z - w * y)),
+            Vector3::new(two * (x * y - w * z), one - two * (x * x + z * z), two * (y * z + w * x)),
+            Vector3::new(two * (x * z + w * y), two * (y * z - w * x), one - two * (x * x + y * y)),
+        ]
+    }
+
+    /// A tensor with principal moments `d` in the axes of the world: diagonal, and xy, xz, yz.
+    #[inline(always)]
+    pub fn rotated_diagonal(self, d: Vector3<R>) -> [Vector3<R>; 2] {
+        let [x, y, z] = self.columns();
+        let diagonal = Vector3::new(
+            x.x * x.x * d.x + y.x * y.x * d.y + z.x * z.x * d.z,
+            x.y * x.y * d.x + y.y * y.y * d.y + z.y * z.y * d.z,
+            x.z * x.z * d.x + y.z * y.z * d.y + z.z * z.z * d.z,
+        );
+        let off = Vector3::new(
+            x.y * x.z * d.x + y.y * y.z * d.y + z.y * z.z * d.z,
+            x.x * x.z * d.x + y.x * y.z * d.y + z.x * z.z * d.z,
+            x.x * x.y * d.x + y.x * y.y * d.y + z.x * z.y * d.z,
+        );
+        [diagonal, off]
+    }
+}
+
+impl<L: Lanes> Turn<L> {
+    /// Rotations with twice the digits and what is over their squared length: for [`turn`](Rotation::turn).
+    #[inline(always)]
+    pub fn exact(self) -> Exact<L> {
+        let vector = widen(self.vector);
+        let real = self.real.widen();
+        let square = vector.x * vector.x + vector.y * vector.y + vector.z * vector.z + real * real;
+        Exact { vector, real, scale: L::Wide::splat(2.0) / square }
+    }
+
+    /// Angular momenta for spins, or as much of them as inertias of 1/`moments` give.
+    #[inline(always)]
+    pub fn angular_momentum(self, spin: Vector3<L>, moments: Vector3<L>) -> Vector3<L> {
+        let exact = self.exact();
+        exact.turned(times(exact.turned_back(spin), moments))
+    }
+
+    #[inline(always)]
+    pub fn store(self) -> [Rotation; WIDTH] {
+        let vector = vectors(self.vector);
+        let mut real = [0.0; WIDTH];
+        self.real.store(&mut real);
+        let mut out = [Rotation::IDENTITY; WIDTH];
+        for k in 0..WIDTH {
+            out[k] = Rotation::from_xyzw(vector[k].x, vector[k].y, vector[k].z, real[k]);
+        }
+        out
+    }
+}
+
+/// Eight times [`Rotation::turn`]: without what the quaternions' lengths are off from 1 by.
+#[derive(Clone, Copy)]
+pub struct Exact<L: Lanes> {
+    vector: Vector3<L::Wide>,
+    real: L::Wide,
+    scale: L::Wide,
+}
+
+impl<L: Lanes> Exact<L> {
+    #[inline(always)]
+    pub fn turned(self, v: Vector3<L>) -> Vector3<L> {
+        let v = widen(v);
+        let across = self.vector.cross(v);
+        narrow(v + (across * self.real + self.vector.cross(across)) * self.scale)
+    }
+
+    #[inline(always)]
+    pub fn turned_back(self, v: Vector3<L>) -> Vector3<L> {
+        Self { vector: -self.vector, ..self }.turned(v)
+    }
+}
+
+#[inline(always)]
+fn widen<L: Lanes>(v: Vector3<L>) -> Vector3<L::Wide> {
+    Vector3::new(v.x.widen(), v.y.widen(), v.z.widen())
+}
+
+#[inline(always)]
+fn narrow<L: Lanes>(v: Vector3<L::Wide>) -> Vector3<L> {
+    Vector3::new(L::narrow(v.x), L::narrow(v.y), L::narrow(v.z))
+}
+
+/// Angular velocity in the middle of a substep that turns a free body as its inertia lets it, from that at its beginning; principal
+/// axes.
+///
+/// The implicit midpoint `I (m − ω) + τ m × I m = 0` keeps energy and the length of the momentum to
+/// rounding, and with the Cayley map for the turn, `2 atan(τ|m|)` about `m`, the momentum itself (after Austin,
+/// Krishnaprasad and Wang 1993), whatever `τ`. With `τ = tan(½h|m|) / |m|` that turn is `h|m|`: `m` is the spin that joints
+/// and contacts feel, no slower one. The explicit torque explodes; leaving it out makes wrong tops.
+#[inline(always)]
+pub fn middle_of_spin<L: Lanes>(start: Vector3<L>, i: Vector3<L>, h: L) -> Vector3<L> {
+    let half = h * L::splat(0.5);
+    let tolerance = start.dot(start) * L::splat(MIDPOINT_TOLERANCE);
+    let mut m = start;
+    let mut done = L::eq(i.x, i.y) & L::eq(i.y, i.z);
+    for _ in 0..MIDPOINT_STEPS {
+        if done.all() {
+            break;
+        }
+        let angle = L::min(half * m.length(), L::splat(MOST_HALF_TURN));
+        let tau = half * (sin_over(angle) / cos(angle));
+        let [x, y, z] = (m * tau).to_array();
+        // Columns of the Jacobian I + τ (m× I − (I m)×), but for what τ changes with m.
+        let a = Vector3::new(i.x, z * (i.x - i.z), y * (i.y - i.x));
+        let b = Vector3::new(z * (i.z - i.y), i.y, x * (i.y - i.x));
+        let c = Vector3::new(y * (i.z - i.y), x * (i.x - i.z), i.z);
+        let error = times(m - start, i) + m.cross(times(m, i)) * tau;
+        let across = b.cross(c);
+        let change = Vector3::new(error.dot(across), a.dot(error.cross(c)), a.dot(b.cross(error)));
+        let change = divided(change, a.dot(across));
+        let next = m - change;
+        m = Vector3::new(
+            L::select(done, m.x, next.x),
+            L::select(done, m.y, next.y),
+            L::select(done, m.z, next.z),
+        );
+        done = done | L::le(change.dot(change), tolerance);
+    }
+    m
+}
+
+/// `sin(x)/x` to 5e-8 for |x| below 1.6.
+#[inline(always)]
+fn sin_over<R: Real>(x: R) -> R {
+    series(x * x, [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0, 0.0])
+}
+
+/// Cosine of x to 1e-8 for |x| below 1.6.
+#[inline(always)]
+fn cos<R: Real>(x: R) -> R {
+    let last = 1.0 / 479_001_600.0;
+    series(x * x, [1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, last])
+}
+
+#[inline(always)]
+fn series<R: Real>(x: R, terms: [f32; 7]) -> R {
+    let mut sum = R::splat(terms[6]);
+    for k in (0..6).rev() {
+        sum = sum * x + R::splat(terms[k]);
+    }
+    sum
+}
+
+/// Factor, 1 at most, that makes a vector no longer than `most`.
+#[inline(always)]
+pub fn within<L: Lanes>(v: Vector3<L>, most: f32) -> L {
+    let (length, most) = (v.length(), L::splat(most));
+    let long = L::gt(length, most);
+    L::select(long, most / L::select(long, length, most), L::splat(1.0))
+}
+
+#[inline(always)]
+pub fn times<R: Real>(a: Vector3<R>, b: Vector3<R>) -> Vector3<R> {
+    Vector3::new(a.x * b.x, a.y * b.y, a.z * b.z)
+}
+
+#[inline(always)]
+pub fn over<R: Real>(a: Vector3<R>, b: Vector3<R>) -> Vector3<R> {
+    Vector3::new(a.x / b.x, a.y / b.y, a.z / b.z)
+}
+
+#[inline(always)]
+pub fn divided<R: Real>(a: Vector3<R>, by: R) -> Vector3<R> {
+    Vector3::new(a.x / by, a.y / by, a.z / by)
+}
+
+#[inline(always)]
+pub fn vectors<L: Lanes>(v: Vector3<L>) -> [Vec3; WIDTH] {
+    let [mut x, mut y, mut z] = [[0.0; WIDTH]; 3];
+    v.x.store(&mut x);
+    v.y.store(&mut y);
+    v.z.store(&mut z);
+    let mut out = [Vec3::ZERO; WIDTH];
+    for k in 0..WIDTH {
+        out[k] = Vec3::new(x[k], y[k], z[k]);
+    }
+    out
+}
