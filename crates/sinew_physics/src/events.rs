@@ -29,14 +29,17 @@ pub struct Events {
     /// A sensor sees the solid shapes of static, kinematic, dynamic and sleeping bodies, if one of the two bodies is not
     /// static. Sensors do not see each other.
     pub sensor_begin: Vec<(BodyId, BodyId)>,
-    /// Likewise, ended.
+    /// Pairs of bodies of which one stopped being inside a sensor of the other.
     pub sensor_end: Vec<(BodyId, BodyId)>,
     /// Pairs of shapes, one of them a sensor, of which one began to be inside the other.
     pub sensor_shapes_begin: Vec<(ShapeId, ShapeId)>,
-    /// Likewise, ended.
+    /// Pairs of shapes, one of them a sensor, of which one stopped being inside the other.
     pub sensor_shapes_end: Vec<(ShapeId, ShapeId)>,
     /// Bodies whose state became non-finite: rolled back to the step before, stopped and taken out of the simulation.
     pub quarantined: Vec<BodyId>,
+    /// Bodies that were slowed to [`WorldDef::max_speed`](crate::WorldDef::max_speed) or [`WorldDef::max_turn`](crate::WorldDef::max_turn),
+    /// by index: a force or an impulse was too large, or a fall too long.
+    pub limited: Vec<BodyId>,
     /// Groups with particles whose state became non-finite: those stopped where they were before the step.
     pub rolled_back: Vec<GroupId>,
     /// Joints that broke, in the order of joint indices. They are there, but disabled.

@@ -86,7 +86,8 @@ pub(crate) fn finalize(
     context: &StepContext<'_>,
 ) {
     events.quarantined.clear();
-    for SolvedBody { index, pose, velocity } in &islands.solution().bodies {
+    events.limited.clear();
+    for SolvedBody { index, pose, velocity, is_limited } in &islands.solution().bodies {
         let body = bodies.at_mut(*index);
         body.previous = body.world_from_principal;
         body.force = Vec3::ZERO;
@@ -94,6 +95,10 @@ pub(crate) fn finalize(
         if pose.is_finite() && velocity.linear.is_finite() && velocity.angular.is_finite() {
             body.world_from_principal = *pose;
             body.velocity = *velocity;
+            if *is_limited {
+                let id = id(bodies, *index);
+                events.limited.push(id);
+            }
         } else {
             body.velocity = Default::default();
             body.quarantined = true;
@@ -107,6 +112,7 @@ pub(crate) fn finalize(
         body.previous = body.world_from_principal;
         body.world_from_principal = body.carried(context.h, context.substeps);
     }
+    events.limited.sort_unstable();
 }
 
 /// `continuous`: a body without joints whose centre passed through a static shape within the step is put back to where

@@ -8,7 +8,7 @@ use crate::body::Body;
 use crate::def::BodyKind;
 use crate::id::BodyId;
 use crate::world::World;
-use sinew_math::{Mat3, ReadError, Reader, Sym3, Transform, Vec3, Writer, skew};
+use sinew_math::{Mat3, ReadError, Reader, Sym3, Transform, Vec3, Writer, max, min, skew};
 
 /// Force and torque about the centre of mass, world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -130,6 +130,20 @@ impl BodyForces {
     }
 }
 
+/// Change of a velocity by an impulse, with its direction if it is beyond all measure: the next step slows the body to what its world
+/// allows.
+fn finite_change(impulse: Vec3, change: impl Fn(Vec3) -> Vec3) -> Vec3 {
+    // Beyond the first, products with arms and inverse masses may not be finite; beyond the second, squares of sums are not.
+    const HUGE: f32 = 1e15;
+    const MOST: f32 = 1e30;
+    const SCALE: f32 = 1e-20;
+    if impulse.abs().max_element() <= HUGE {
+        return change(impulse);
+    }
+    let small = change(impulse * SCALE);
+    small * min(1.0 / SCALE, MOST / max(small.abs().max_element(), f32::MIN_POSITIVE))
+}
+
 impl World {
     /// Impulse (N·s) at a world point: changes the velocity at once, `Δv = J/m`, `Δω = I⁻¹ ((p − c) × J)`. No effect on
     /// static and kinematic bodies.
@@ -137,9 +151,10 @@ impl World {
         assert!(impulse.is_finite() && point.is_finite(), "an impulse is finite");
         self.wake_body(id.index);
         let body = self.expect_mut(id);
-        let turn = body.inverse_inertia_mul((point - body.center()).cross(impulse));
-        body.velocity.linear += impulse * body.inverse_mass();
-        body.velocity.angular += turn;
+        let arm = point - body.center();
+        body.velocity.linear += finite_change(impulse, |impulse| impulse * body.inverse_mass());
+        body.velocity.angular +=
+            finite_change(impulse, |impulse| body.inverse_inertia_mul(arm.cross(impulse)));
     }
 
     /// Impulse (N·s) at the centre of mass: `Δv = J/m`, without spin.
@@ -152,7 +167,7 @@ impl World {
         assert!(impulse.is_finite(), "an impulse is finite");
         self.wake_body(id.index);
         let body = self.expect_mut(id);
-        body.velocity.angular += body.inverse_inertia_mul(impulse);
+        body.velocity.angular += finite_change(impulse, |impulse| body.inverse_inertia_mul(impulse));
     }
 
     /// Force (N) at a world point, constant over the next step and gone after it. The torque is that about the centre of

@@ -2,7 +2,7 @@
 
 use sinew_math::{Vec3, max, min};
 
-/// ContactMaterial of a shape: how it rubs, bounces and moves along.
+/// Material of a shape: how it rubs, bounces and moves along.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Coulomb coefficient of sliding, ≥ 0. Default 0.6.

@@ -392,6 +392,7 @@ impl IslandSolver {
                 momentum: Vec3::ZERO,
                 linear_damping: body.linear_damping,
                 angular_damping: body.angular_damping,
+                is_limited: false,
             });
             let still = body.kind == crate::BodyKind::Dynamic && !body.is_active();
             let velocity = if still { ZERO6 } else { join(body.velocity.linear, body.velocity.angular) };

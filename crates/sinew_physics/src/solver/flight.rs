@@ -13,7 +13,7 @@ use crate::slices::for_each_mut;
 use crate::stage::Counter;
 use crate::step::StepContext;
 use sinew_math::dispatch::{self, Kernel};
-use sinew_math::lanes::{Lanes, Vector3, WIDTH};
+use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Rotation, Transform, Vec3, min};
 
 type Eight = [f32; WIDTH];
@@ -94,6 +94,8 @@ struct Flock {
     torque: [Eight; 3],
     linear_damping: Eight,
     angular_damping: Eight,
+    /// Bit `k`: the body in lane `k` was faster than the world lets it be.
+    limited: u8,
 }
 
 const ZERO: Eight = [0.0; WIDTH];
@@ -120,6 +122,7 @@ impl Flock {
         torque: [ZERO; 3],
         linear_damping: ZERO,
         angular_damping: ZERO,
+        limited: 0,
     };
 
     fn write(&mut self, lane: usize, index: u32, view: &View<'_>) {
@@ -128,6 +131,7 @@ impl Flock {
         let (force, torque) = lasting_force(body, view);
         let spin = rotation.inverse().turn(body.velocity.angular);
         self.bodies[lane] = index;
+        self.limited &= !(1 << lane);
         put(translation, &mut self.position, lane);
         for (row, number) in self.rotation.iter_mut().zip([rotation.x, rotation.y, rotation.z, rotation.w]) {
             row[lane] = number;
@@ -147,6 +151,7 @@ impl Flock {
         let spin = rotation.inverse().turn(take(&self.momentum, lane)) / take(&self.inertia, lane);
         SolvedBody {
             index: self.bodies[lane],
+            is_limited: self.limited >> lane & 1 == 1,
             pose: Transform::new(take(&self.position, lane), rotation),
             velocity: Velocity { linear: take(&self.velocity, lane), angular: rotation.turn(spin) },
         }
@@ -184,11 +189,13 @@ impl Kernel for Fly<'_> {
         let mut rotation = Turn { vector: Vector3::<L>::load(x, y, z), real: L::load(w) };
         for _ in 0..substeps {
             velocity = divided(velocity, slower) + push;
-            velocity = velocity * within(velocity, max_speed);
+            let linear_share = within(velocity, max_speed);
+            velocity = velocity * linear_share;
             momentum = divided(momentum, calmer) + torque;
             let spin = over(rotation.turned_back(momentum), inertia);
             let share = within(spin, max_spin);
             momentum = momentum * share;
+            flock.limited |= (L::gt(one, share) | L::gt(one, linear_share)).bits();
             let middle = middle_of_spin(spin * share, inertia, h);
             position = position + velocity * h;
             rotation = rotation.then_own(Turn::by_half_angles(middle * (h * L::splat(0.5))));

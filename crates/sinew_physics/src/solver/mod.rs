@@ -97,6 +97,8 @@ pub(crate) struct SolverBody {
     momentum: Vec3,
     pub linear_damping: f32,
     pub angular_damping: f32,
+    /// In a substep of this step it was faster than the world lets it be.
+    pub is_limited: bool,
 }
 
 /// What is added to the response of every row of contacts, limits and loops, as a share of what the bodies would answer if

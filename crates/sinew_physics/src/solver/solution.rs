@@ -1,6 +1,6 @@
 //! What comes of the islands' substeps, for the world to take.
 
-use super::IslandSolver;
+use super::{IslandSolver, SolverBody};
 use crate::body::Velocity;
 use crate::collide::Manifold;
 use crate::contact::ContactMemory;
@@ -18,6 +18,8 @@ pub(crate) struct SolvedBody {
     pub index: u32,
     pub pose: Transform,
     pub velocity: Velocity,
+    /// In a substep it was faster than the world lets it be.
+    pub is_limited: bool,
 }
 
 /// What a joint carries on.
@@ -108,7 +110,8 @@ impl IslandSolver {
         self.tell_counts(profiler);
         for ((solved, body), v) in solution.bodies.iter_mut().zip(&self.bodies).zip(&self.velocities) {
             let velocity = Velocity { linear: linear(v), angular: angular(v) };
-            *solved = SolvedBody { index: body.index, pose: body.pose, velocity };
+            let SolverBody { index, pose, is_limited, .. } = *body;
+            *solved = SolvedBody { index, pose, velocity, is_limited };
         }
         for (solved, joint) in solution.joints.iter_mut().zip(&self.joints) {
             *solved = SolvedJoint {

@@ -1,7 +1,7 @@
 //! Numeric trouble: what is not finite is stopped and told of, and the rest goes on.
 
 use crate::build::{floor, sphere_body};
-use sinew_math::Vec3;
+use sinew_math::{Transform, Vec3};
 use sinew_physics::field::PARAMETERS;
 use sinew_physics::particles::{AttachmentDef, AttachmentTarget, GroupDef, ParticleDef};
 use sinew_physics::*;
@@ -107,4 +107,52 @@ fn a_pose_is_turned_not_scaled() {
     let long = sinew_math::Rotation::from_xyzw(0.0, 0.0, 0.0, 3.0);
     world.set_transform(ball, sinew_math::Transform::new(Vec3::X, long));
     assert_eq!(world.transform(ball).rotation.length(), 1.0);
+}
+
+/// What is beyond all measure is slowed to what the world allows, in its direction, and told of once: also where squares of it are beyond
+/// 32 bits.
+#[test]
+fn impulses_beyond_all_measure_are_limited_and_told_of() {
+    for (on_floor, jointed) in [(false, false), (true, false), (false, true)] {
+        for impulse in [1e10, 1e18, 1e20, 1e30, 3e38] {
+            let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+            if on_floor {
+                floor(&mut world);
+            }
+            let body = world.add_body(&sphere_body(0.1, Vec3::Y * 0.1));
+            if jointed {
+                let other = world.add_body(&sphere_body(0.1, Vec3::Y * 0.4));
+                let [a, b, between] = [0.1, 0.4, 0.25].map(|y| Transform::from_translation(Vec3::Y * y));
+                world.add_joint(&JointDef::new(body, other, a, b, between, JointKind::Ball { limit: None }));
+            }
+            world.apply_impulse_at_center(body, Vec3::X * impulse);
+            world.step();
+            let v = world.velocity(body).linear;
+            let what = format!("{impulse:e} on floor {on_floor}, jointed {jointed}: {v}");
+            assert!(v.x > 1999.0 && v.length() < 4000.5, "{what}");
+            assert!(world.events().limited.contains(&body), "{what}");
+            assert!(world.events().quarantined.is_empty(), "{what}");
+            world.set_velocity(body, Velocity::default());
+            world.step();
+            assert!(world.events().limited.is_empty(), "{what}");
+        }
+    }
+}
+
+#[test]
+fn spins_beyond_all_measure_are_limited_and_told_of() {
+    for impulse in [1e10, 1e20, 1e30, 3e38] {
+        let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+        let body = world.add_body(&sphere_body(0.1, Vec3::ZERO));
+        world.apply_angular_impulse(body, Vec3::Y * impulse);
+        world.step();
+        let spin = world.velocity(body).angular;
+        // A quarter of a turn in each of four substeps.
+        let most = core::f32::consts::FRAC_PI_2 * 240.0;
+        assert!(
+            (spin.y - most).abs() < 1e-3 * most && spin.x.abs() + spin.z.abs() < 1e-3,
+            "{impulse:e}: {spin}"
+        );
+        assert_eq!(world.events().limited, [body], "{impulse:e}");
+    }
 }

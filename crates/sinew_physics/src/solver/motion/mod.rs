@@ -109,8 +109,9 @@ impl Kernel for IntegrateVelocity<'_> {
             let total = inertia + vector!(eight, excess);
             let exact = rotation.exact();
             let spin = over(times(exact.turned_back(angular), inertia), total);
-            let spin = spin * within(spin, max_spin);
-            let linear = linear * within(linear, max_speed);
+            let [share, linear_share] = [within(spin, max_spin), within(linear, max_speed)];
+            let limited = (L::gt(one, share) | L::gt(one, linear_share)).bits();
+            let [spin, linear] = [spin * share, linear * linear_share];
             let momentum = times(spin, inertia);
             let kinetic = mass * linear.dot(linear) + momentum.dot(spin);
             let momentum = exact.turned(momentum);
@@ -120,9 +121,10 @@ impl Kernel for IntegrateVelocity<'_> {
             (kinetic * L::splat(0.5)).store(&mut energies);
             store_velocities([linear, middle], &mut velocities[first..]);
             let momenta = vectors(momentum);
-            for ((body, momentum), of_one) in bodies[first..].iter_mut().zip(momenta).zip(energies) {
-                body.momentum = momentum;
-                energy += of_one;
+            for (k, body) in bodies[first..].iter_mut().take(WIDTH).enumerate() {
+                body.momentum = momenta[k];
+                body.is_limited |= limited >> k & 1 == 1;
+                energy += energies[k];
             }
         }
         energy

@@ -28,6 +28,7 @@ fn random_body(random: &mut Random) -> SolverBody {
         force: random_vector(random, 100.0),
         torque: random_vector(random, 5.0),
         momentum: Vec3::ZERO,
+        is_limited: false,
         linear_damping: random.range(0.0, 0.5),
         angular_damping: random.range(0.0, 0.5),
     }

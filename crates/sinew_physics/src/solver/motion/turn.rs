@@ -217,10 +217,15 @@ fn series<R: Real>(x: R, terms: [f32; 7]) -> R {
     sum
 }
 
+/// Numbers whose squares are beyond 32 bits are made smaller first by this factor.
+const OF_HUGE: f32 = 1e-20;
+
 /// Factor, 1 at most, that makes a vector no longer than `most`.
 #[inline(always)]
 pub fn within<L: Lanes>(v: Vector3<L>, most: f32) -> L {
-    let (length, most) = (v.length(), L::splat(most));
+    let largest = L::max(L::max(v.x.abs(), v.y.abs()), v.z.abs());
+    let scale = L::select(L::gt(largest, L::splat(1e18)), L::splat(OF_HUGE), L::splat(1.0));
+    let (length, most) = ((v * scale).length(), L::splat(most) * scale);
     let long = L::gt(length, most);
     L::select(long, most / L::select(long, length, most), L::splat(1.0))
 }
