@@ -15,7 +15,7 @@ use std::time::Instant;
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
     /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
-    /// SINEW_WORLDS, as in 100..200); 10,000 random falls of each rig, not 100; the peers that need no C; instruction counts
+    /// SINEW_WORLDS, as in 100..200); 10,000 random falls of each rig, not 100; the peers that need no C; instruction counts; the oldest compiler
     #[arg(long)]
     full: bool,
 }
@@ -41,6 +41,7 @@ impl Ci {
         check("clippy", &clippy);
         check("tidy", &|| tidy::Tidy {}.run());
         check("docs", &documentation);
+        check("licences", &licences);
         check("golden", &|| golden::check(coverage));
         check("demo", &demo);
         check("random falls", &|| spawns::check(if self.full { spawns::ALL } else { spawns::SOME }));
@@ -53,6 +54,7 @@ impl Ci {
             check("random worlds", &random_worlds);
             check("peers", &peers);
             check("counts", &bench::check_counts);
+            check("oldest compiler", &oldest_compiler);
         }
         if !failed.is_empty() {
             bail!("failed: {}", failed.join(", "));
@@ -65,7 +67,7 @@ impl Ci {
 /// Workspaces beside the root's. They are compiled only where it is worth the time, but always well formatted.
 const OTHER_WORKSPACES: &[&str] = &["bench/peers", "bench/counts", "bench/kernels", "fuzz"];
 
-fn fmt() -> Result<()> {
+pub fn fmt() -> Result<()> {
     command::run(&mut command::cargo(&["fmt", "--all", "--check"]))?;
     for workspace in OTHER_WORKSPACES {
         let manifest = format!("{workspace}/Cargo.toml");
@@ -104,8 +106,28 @@ fn all_cases() -> Result<()> {
     command::run(test.args(["tree", "pairs", "hostile", "mjcf"]).env("SINEW_FULL", "1"))
 }
 
-fn clippy() -> Result<()> {
+pub fn clippy() -> Result<()> {
     command::run(&mut command::cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+}
+
+/// Licences and origins of all dependencies, by `deny.toml`.
+fn licences() -> Result<()> {
+    if !command::answers("cargo-deny") {
+        eprintln!("skipped: no cargo-deny here (`cargo install --locked cargo-deny`)");
+        return Ok(());
+    }
+    command::run(&mut command::cargo(&["deny", "check", "licenses", "bans", "sources"]))
+}
+
+/// Everything compiles with the `rust-version` of the root manifest.
+fn oldest_compiler() -> Result<()> {
+    let manifest = fs::read_to_string(command::root().join("Cargo.toml"))?;
+    let version = manifest.lines().find_map(|line| line.strip_prefix("rust-version = "));
+    let version = version.context("Cargo.toml: no rust-version")?.trim_matches('"');
+    command::run(Command::new("rustup").args(["toolchain", "install", version, "--profile", "minimal"]))?;
+    let mut check = Command::new("rustup");
+    check.args(["run", version, "cargo", "check", "--workspace"]).current_dir(command::root());
+    command::run(check.env_remove("CARGO").arg("--target-dir").arg(command::target().join("oldest")))
 }
 
 fn documentation() -> Result<()> {

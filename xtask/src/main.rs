@@ -1,8 +1,9 @@
-//! All automation of this repository: `cargo xtask ci | tidy | golden | book | ragdolls | bench | fuzz`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | bench | fuzz`.
 #![forbid(unsafe_code)]
 
 mod bench;
 mod book;
+mod check;
 mod ci;
 mod command;
 mod contract;
@@ -25,6 +26,8 @@ struct Xtask {
 
 #[derive(Subcommand)]
 enum Task {
+    /// Format, lints, rules and tests of what changed: before a commit
+    Check(check::Check),
     /// Everything that must hold before a change is merged, but for `cargo test --workspace`
     Ci(ci::Ci),
     /// The rules of the house that no compiler checks
@@ -43,6 +46,7 @@ enum Task {
 
 fn main() -> anyhow::Result<ExitCode> {
     match Xtask::parse().task {
+        Task::Check(check) => check.run()?,
         Task::Ci(ci) => ci.run()?,
         Task::Tidy(tidy) => tidy.run()?,
         Task::Golden(golden) => golden.run()?,

@@ -137,11 +137,12 @@ fn finite_change(impulse: Vec3, change: impl Fn(Vec3) -> Vec3) -> Vec3 {
     const HUGE: f32 = 1e15;
     const MOST: f32 = 1e30;
     const SCALE: f32 = 1e-20;
-    if impulse.abs().max_element() <= HUGE {
+    let largest = |v: Vec3| max(max(v.x.abs(), v.y.abs()), v.z.abs());
+    if largest(impulse) <= HUGE {
         return change(impulse);
     }
     let small = change(impulse * SCALE);
-    small * min(1.0 / SCALE, MOST / max(small.abs().max_element(), f32::MIN_POSITIVE))
+    small * min(1.0 / SCALE, MOST / max(largest(small), f32::MIN_POSITIVE))
 }
 
 impl World {
