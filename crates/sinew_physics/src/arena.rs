@@ -1,10 +1,17 @@
 //! Items with stable indices and generations; free slots are reused last in, first out.
 
+use crate::id::{Handle, Lineage};
 use sinew_math::{ReadError, Reader, Writer};
+
+/// What an arena holds, found by ids of a kind of their own.
+pub(crate) trait Item {
+    type Id: Handle;
+}
 
 /// Slots by index. The free list is part of the state: after a restore, new items get the same ids again.
 #[derive(Clone, Debug)]
 pub(crate) struct Arena<T> {
+    lineage: Lineage,
     /// Of each slot; close together, since queries name many items that they do not look at.
     generations: Vec<u32>,
     items: Vec<Option<T>>,
@@ -13,42 +20,99 @@ pub(crate) struct Arena<T> {
 
 impl<T> Default for Arena<T> {
     fn default() -> Self {
-        Self { generations: Vec::new(), items: Vec::new(), free: Vec::new() }
+        Self::new(Lineage::default())
     }
 }
 
 impl<T> Arena<T> {
-    /// Puts an item in; gives its index and generation.
-    pub fn insert(&mut self, item: T) -> (u32, u32) {
-        if let Some(index) = self.free.pop() {
-            self.items[index as usize] = Some(item);
-            return (index, self.generations[index as usize]);
-        }
-        self.generations.push(0);
-        self.items.push(Some(item));
-        (u32::try_from(self.items.len() - 1).expect("at most 2^32 items of a kind"), 0)
+    /// One without items, of a world.
+    pub fn new(lineage: Lineage) -> Self {
+        Self { lineage, generations: Vec::new(), items: Vec::new(), free: Vec::new() }
+    }
+}
+
+impl<T: Item> Arena<T> {
+    /// Puts an item in.
+    pub fn insert(&mut self, item: T) -> T::Id {
+        let index = self.free.pop().unwrap_or_else(|| {
+            self.generations.push(0);
+            self.items.push(None);
+            u32::try_from(self.items.len() - 1).expect("at most 2^32 items of a kind")
+        });
+        self.items[index as usize] = Some(item);
+        self.id(index)
     }
 
     /// Takes an item out; its id is stale from now on.
-    pub fn remove(&mut self, index: u32, generation: u32) -> Option<T> {
-        let item = self.current(index, generation).then(|| self.items[index as usize].take())??;
-        self.generations[index as usize] = generation.wrapping_add(1);
+    pub fn remove(&mut self, id: T::Id) -> Option<T> {
+        let index = id.index();
+        let item = self.is_current(id).then(|| self.items[index as usize].take())??;
+        self.generations[index as usize] = id.generation().wrapping_add(1);
         self.free.push(index);
         Some(item)
     }
 
     /// The item of an id, if it is not stale.
-    pub fn get(&self, index: u32, generation: u32) -> Option<&T> {
-        if self.current(index, generation) { self.items[index as usize].as_ref() } else { None }
+    pub fn get(&self, id: T::Id) -> Option<&T> {
+        if self.is_current(id) { self.items[id.index() as usize].as_ref() } else { None }
     }
 
-    /// Likewise, mutable.
-    pub fn get_mut(&mut self, index: u32, generation: u32) -> Option<&mut T> {
-        if self.current(index, generation) { self.items[index as usize].as_mut() } else { None }
+    /// The item of an id, if it is not stale, mutable.
+    pub fn get_mut(&mut self, id: T::Id) -> Option<&mut T> {
+        if self.is_current(id) { self.items[id.index() as usize].as_mut() } else { None }
     }
 
-    fn current(&self, index: u32, generation: u32) -> bool {
-        self.generations.get(index as usize) == Some(&generation)
+    /// The item of an id that the user gave.
+    ///
+    /// # Panics
+    /// At the caller, with what is wrong, if the id is stale or of another world.
+    #[track_caller]
+    pub fn expect(&self, id: T::Id) -> &T {
+        match self.get(id) {
+            Some(item) => item,
+            None => self.refuse(id),
+        }
+    }
+
+    /// The item of an id that the user gave, mutable.
+    ///
+    /// # Panics
+    /// At the caller, with what is wrong, if the id is stale or of another world.
+    #[track_caller]
+    pub fn expect_mut(&mut self, id: T::Id) -> &mut T {
+        self.expect(id);
+        self.at_mut(id.index())
+    }
+
+    /// Takes out the item of an id that the user gave; the id is stale from now on.
+    ///
+    /// # Panics
+    /// At the caller, with what is wrong, if the id is stale or of another world.
+    #[track_caller]
+    pub fn take(&mut self, id: T::Id) -> T {
+        match self.remove(id) {
+            Some(item) => item,
+            None => self.refuse(id),
+        }
+    }
+
+    #[track_caller]
+    fn refuse(&self, id: T::Id) -> ! {
+        assert!(id.lineage().goes_with(self.lineage), "{id:?} is of another world");
+        match self.generations.get(id.index() as usize) {
+            Some(_) => panic!("{id:?} was removed"),
+            None => panic!("{id:?} was never in this world"),
+        }
+    }
+
+    fn is_current(&self, id: T::Id) -> bool {
+        let generation = self.generations.get(id.index() as usize);
+        generation == Some(&id.generation()) && id.lineage().goes_with(self.lineage)
+    }
+
+    /// Id of the item in a slot, or of the next that will be.
+    pub fn id(&self, index: u32) -> T::Id {
+        T::Id::new(index, self.generations[index as usize], self.lineage)
     }
 
     /// The item at an index that is known to be in use.
@@ -61,14 +125,9 @@ impl<T> Arena<T> {
         self.items.get(index as usize)?.as_ref()
     }
 
-    /// Likewise, mutable.
+    /// The item at an index that is known to be in use, mutable.
     pub fn at_mut(&mut self, index: u32) -> &mut T {
         self.items[index as usize].as_mut().expect("the index is in use")
-    }
-
-    /// Generation of a slot.
-    pub fn generation(&self, index: u32) -> u32 {
-        self.generations[index as usize]
     }
 
     /// True if no slot is in use.
@@ -76,11 +135,13 @@ impl<T> Arena<T> {
         self.free.len() == self.items.len()
     }
 
-    /// The same slots with other items; `item` makes one from index, generation and item.
-    pub fn map<U>(self, mut item: impl FnMut(u32, u32, T) -> U) -> Arena<U> {
-        let slots = self.items.into_iter().zip(&self.generations).enumerate();
-        let items = slots.map(|(index, (it, &generation))| it.map(|it| item(index as u32, generation, it)));
-        Arena { items: items.collect(), generations: self.generations, free: self.free }
+    /// The same slots with other items; `item` makes one from id and item.
+    pub fn map<U>(self, mut item: impl FnMut(T::Id, T) -> U) -> Arena<U> {
+        let Self { lineage, generations, items, free } = self;
+        let slots = items.into_iter().zip(&generations).enumerate();
+        let id = |index: usize, generation| T::Id::new(index as u32, generation, lineage);
+        let items = slots.map(|(index, (it, &generation))| it.map(|it| item(id(index, generation), it)));
+        Arena { lineage, items: items.collect(), generations, free }
     }
 
     /// Number of slots, free ones included.
@@ -93,21 +154,22 @@ impl<T> Arena<T> {
         self.items.iter().enumerate().filter_map(|(i, item)| Some((i as u32, item.as_ref()?)))
     }
 
-    /// Likewise, mutable.
+    /// Items with their indices, by index, mutable.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = (u32, &mut T)> {
         self.items.iter_mut().enumerate().filter_map(|(i, item)| Some((i as u32, item.as_mut()?)))
     }
 
-    /// Items with their indices and generations.
-    pub fn entries(&self) -> impl Iterator<Item = (u32, u32, &T)> {
-        let slots = self.generations.iter().zip(&self.items).enumerate();
-        slots.filter_map(|(i, (&generation, item))| Some((i as u32, generation, item.as_ref()?)))
+    /// Ids of all items, by index.
+    pub fn ids(&self) -> impl Iterator<Item = T::Id> {
+        self.iter().map(|(index, _)| self.id(index))
     }
 
-    /// Likewise, mutable.
-    pub fn entries_mut(&mut self) -> impl Iterator<Item = (u32, u32, &mut T)> {
-        let slots = self.generations.iter().zip(&mut self.items).enumerate();
-        slots.filter_map(|(i, (&generation, item))| Some((i as u32, generation, item.as_mut()?)))
+    /// Items with their ids, by index, mutable.
+    pub fn entries_mut(&mut self) -> impl Iterator<Item = (T::Id, &mut T)> {
+        let Self { lineage, generations, items, .. } = self;
+        let slots = generations.iter().zip(items).enumerate();
+        let id = |index: usize, generation| T::Id::new(index as u32, generation, *lineage);
+        slots.filter_map(move |(i, (&generation, item))| Some((id(i, generation), item.as_mut()?)))
     }
 
     /// Writes slots and free list; `item` writes one item.
@@ -126,7 +188,7 @@ impl<T> Arena<T> {
         }
     }
 
-    /// Reads what [`save`](Self::save) wrote.
+    /// Reads what [`save`](Self::save) wrote; of an unknown lineage, since any world may have written it.
     pub fn load<'a, E: From<ReadError>>(
         r: &mut Reader<'a>,
         mut item: impl FnMut(&mut Reader<'a>) -> Result<T, E>,
@@ -154,6 +216,6 @@ impl<T> Arena<T> {
         if items.iter().filter(|item| item.is_none()).count() != free.len() {
             return Err(r.error("free list misses an empty slot").into());
         }
-        Ok(Self { generations, items, free })
+        Ok(Self { lineage: Lineage::default(), generations, items, free })
     }
 }

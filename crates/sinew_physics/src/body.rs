@@ -1,7 +1,9 @@
 //! A body as the world keeps it.
 
+use crate::arena::Item;
 use crate::def::{BodyDef, BodyKind, Quality, Sleeping};
 use crate::force::BodyForces;
+use crate::id::BodyId;
 use crate::shape::{MassProperties, Shape, ShapeDef};
 use crate::surface::{Surface, Surfaces};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};
@@ -113,6 +115,10 @@ fn check(def: &BodyDef) {
             "half-spaces are static bodies"
         );
     }
+}
+
+impl Item for Body {
+    type Id = BodyId;
 }
 
 impl Body {

@@ -7,7 +7,6 @@ use crate::def::BodyKind;
 use crate::id::{BodyId, ShapeId};
 use crate::registered::Registered;
 use crate::shape::{Filter, Sensing};
-use crate::touch::id;
 use crate::world::World;
 
 /// One side of a pair that may meet.
@@ -63,7 +62,7 @@ fn side(bodies: &Arena<Body>, index: u32, shape: u32) -> PairSide {
     let body = bodies.at(index);
     let s = body.surface(shape as usize);
     PairSide {
-        shape: ShapeId { body: id(bodies, index), shape },
+        shape: ShapeId { body: bodies.id(index), shape },
         kind: body.kind,
         user_data: body.user_data,
         filter: s.filter,
@@ -129,6 +128,7 @@ impl World {
     }
 
     /// From now on two bodies pass through each other; if they touch, both wake.
+    #[track_caller]
     pub fn disable_pair(&mut self, a: BodyId, b: BodyId) {
         self.expect(a);
         self.expect(b);
@@ -140,6 +140,7 @@ impl World {
     }
 
     /// Undoes [`disable_pair`](Self::disable_pair); they wake. Joints between them may still keep them from colliding.
+    #[track_caller]
     pub fn enable_pair(&mut self, a: BodyId, b: BodyId) {
         self.expect(a);
         self.expect(b);

@@ -8,7 +8,6 @@ use crate::contact_rule::ContactRule;
 use crate::def::BodyKind;
 use crate::events::Events;
 use crate::filter::PairFilter;
-use crate::id::{GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
 use crate::joint::def::JointState;
@@ -21,7 +20,6 @@ use crate::shape::Sensing;
 use crate::solver::{SolvedBody, SolvedJoint};
 use crate::step::StepContext;
 use crate::surface::Surface;
-use crate::touch::id;
 use crate::tree::Sweep;
 use sinew_math::{Transform, Vec3, normalize_or};
 
@@ -38,9 +36,9 @@ pub(crate) fn store(
 ) {
     islands.release(groups);
     events.rolled_back.clear();
-    for (index, generation, group) in groups.entries_mut() {
+    for (id, group) in groups.entries_mut() {
         if group.roll_back() {
-            events.rolled_back.push(GroupId { index, generation });
+            events.rolled_back.push(id);
         }
     }
     let solution = islands.solution();
@@ -57,7 +55,7 @@ pub(crate) fn store(
     }
     events.broken.clear();
     for &SolvedJoint { index, limits, force, warm_impulse, saturated, mass, reaction } in &solution.joints {
-        let generation = joints.generation(index);
+        let id = joints.id(index);
         let joint = joints.at_mut(index);
         joint.limits = limits;
         joint.force = force;
@@ -67,7 +65,7 @@ pub(crate) fn store(
         joint.reaction = reaction.map(|impulse| impulse / context.dt);
         if joint.is_overloaded() {
             joint.state = JointState::Disabled;
-            events.broken.push(JointId { index, generation });
+            events.broken.push(id);
         }
     }
     if !events.broken.is_empty() {
@@ -96,14 +94,14 @@ pub(crate) fn finalize(
             body.world_from_principal = *pose;
             body.velocity = *velocity;
             if *is_limited {
-                let id = id(bodies, *index);
+                let id = bodies.id(*index);
                 events.limited.push(id);
             }
         } else {
             body.velocity = Default::default();
             body.quarantined = true;
             activity.note(*index, body);
-            let id = id(bodies, *index);
+            let id = bodies.id(*index);
             events.quarantined.push(id);
         }
     }

@@ -148,6 +148,7 @@ fn finite_change(impulse: Vec3, change: impl Fn(Vec3) -> Vec3) -> Vec3 {
 impl World {
     /// Impulse (N·s) at a world point: changes the velocity at once, `Δv = J/m`, `Δω = I⁻¹ ((p − c) × J)`. No effect on
     /// static and kinematic bodies.
+    #[track_caller]
     pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
         assert!(impulse.is_finite() && point.is_finite(), "an impulse is finite");
         self.wake_body(id.index);
@@ -159,11 +160,13 @@ impl World {
     }
 
     /// Impulse (N·s) at the centre of mass: `Δv = J/m`, without spin.
+    #[track_caller]
     pub fn apply_impulse_at_center(&mut self, id: BodyId, impulse: Vec3) {
         self.apply_impulse(id, impulse, self.center_of_mass(id));
     }
 
     /// Angular impulse (N·m·s): `Δω = I⁻¹ L`.
+    #[track_caller]
     pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Vec3) {
         assert!(impulse.is_finite(), "an impulse is finite");
         self.wake_body(id.index);
@@ -173,6 +176,7 @@ impl World {
 
     /// Force (N) at a world point, constant over the next step and gone after it. The torque is that about the centre of
     /// mass as it lies now.
+    #[track_caller]
     pub fn apply_force(&mut self, id: BodyId, force: Vec3, point: Vec3) {
         assert!(force.is_finite() && point.is_finite(), "a force is finite");
         let torque = (point - self.center_of_mass(id)).cross(force);
@@ -180,12 +184,14 @@ impl World {
     }
 
     /// Force (N) at the centre of mass for the next step.
+    #[track_caller]
     pub fn apply_force_at_center(&mut self, id: BodyId, force: Vec3) {
         assert!(force.is_finite(), "a force is finite");
         self.apply_wrench(id, Wrench { force, torque: Vec3::ZERO });
     }
 
     /// Torque (N·m) for the next step.
+    #[track_caller]
     pub fn apply_torque(&mut self, id: BodyId, torque: Vec3) {
         assert!(torque.is_finite(), "a torque is finite");
         self.apply_wrench(id, Wrench { force: Vec3::ZERO, torque });
@@ -205,6 +211,7 @@ impl World {
     ///
     /// # Panics
     /// If a number is not finite.
+    #[track_caller]
     pub fn add_force(&mut self, body: BodyId, def: &ForceDef) -> ForceId {
         assert!(def.is_finite(), "a force is finite");
         self.wake_body(body.index);
@@ -248,6 +255,7 @@ impl World {
     }
 
     /// The lasting forces of a body, in the order in which they came.
+    #[track_caller]
     pub fn forces_of(&self, body: BodyId) -> impl Iterator<Item = ForceId> {
         self.expect(body).forces.list.iter().map(move |&(number, _)| ForceId { body, number })
     }
@@ -274,6 +282,7 @@ impl World {
     ///
     /// # Panics
     /// If a number is not finite, or the mass not positive.
+    #[track_caller]
     pub fn hit_by(&mut self, id: BodyId, mass: f32, velocity: Vec3, point: Vec3) -> Vec3 {
         assert!(mass > 0.0 && mass < f32::INFINITY, "a bullet's mass is positive and finite");
         assert!(velocity.is_finite() && point.is_finite(), "a bullet's velocity and place are finite");

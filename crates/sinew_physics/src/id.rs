@@ -1,22 +1,101 @@
-//! Handles: an index and a generation, so that a stale one is caught.
+//! Handles: an index, a generation and a lineage, so that a stale one and one of another world are caught.
+
+use core::fmt;
+use std::hash::{BuildHasher, RandomState};
+
+/// Which world an id is of. In neither snapshot nor hash: ids from bits and those of a world that has loaded a snapshot are of an unknown
+/// one, which goes with every world, since whoever loads another world's snapshot goes on using its ids.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Lineage(u32);
+
+impl Lineage {
+    /// One that no other world of the process has, but for one chance in 2³¹: hashers are seeded anew each time.
+    pub fn fresh() -> Self {
+        Self(RandomState::new().hash_one(()) as u32 | 1)
+    }
+
+    /// True unless both are known and differ.
+    pub fn goes_with(self, other: Self) -> bool {
+        self == other || self == Self::default() || other == Self::default()
+    }
+}
+
+/// What an [`Arena`](crate::arena::Arena) finds its items by.
+pub(crate) trait Handle: Copy + fmt::Debug {
+    fn new(index: u32, generation: u32, lineage: Lineage) -> Self;
+    fn index(self) -> u32;
+    fn generation(self) -> u32;
+    fn lineage(self) -> Lineage;
+}
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        ///
+        /// A world panics about the id of something that was removed, and about that of another world, unless it has loaded a
+        /// snapshot. Ids are equal if their [bits](Self::to_bits) are.
+        #[derive(Clone, Copy)]
         pub struct $name {
             pub(crate) index: u32,
             pub(crate) generation: u32,
+            lineage: Lineage,
         }
 
         impl $name {
-            /// Both parts in one number, for storage on the user's side.
+            /// Index and generation in one number, for storage on the user's side.
             pub fn to_bits(self) -> u64 {
                 u64::from(self.generation) << 32 | u64::from(self.index)
             }
-            /// From [`to_bits`](Self::to_bits).
+            /// Id from [`to_bits`](Self::to_bits), of whatever world it is used with.
             pub fn from_bits(bits: u64) -> Self {
-                Self { index: bits as u32, generation: (bits >> 32) as u32 }
+                Self { index: bits as u32, generation: (bits >> 32) as u32, lineage: Lineage::default() }
+            }
+        }
+
+        impl Handle for $name {
+            fn new(index: u32, generation: u32, lineage: Lineage) -> Self {
+                Self { index, generation, lineage }
+            }
+            fn index(self) -> u32 {
+                self.index
+            }
+            fn generation(self) -> u32 {
+                self.generation
+            }
+            fn lineage(self) -> Lineage {
+                self.lineage
+            }
+        }
+
+        impl PartialEq for $name {
+            fn eq(&self, other: &Self) -> bool {
+                self.to_bits() == other.to_bits()
+            }
+        }
+
+        impl Eq for $name {}
+
+        impl PartialOrd for $name {
+            fn partial_cmp(&self, other: &Self) -> Option<core::cmp::Ordering> {
+                Some(self.cmp(other))
+            }
+        }
+
+        impl Ord for $name {
+            fn cmp(&self, other: &Self) -> core::cmp::Ordering {
+                (self.index, self.generation).cmp(&(other.index, other.generation))
+            }
+        }
+
+        impl core::hash::Hash for $name {
+            fn hash<H: core::hash::Hasher>(&self, state: &mut H) {
+                self.to_bits().hash(state);
+            }
+        }
+
+        impl fmt::Debug for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "{} {}v{}", stringify!($name), self.index, self.generation)
             }
         }
     };

@@ -12,6 +12,7 @@ impl World {
     ///
     /// # Panics
     /// If the body is or is to be static, or was made kinematic.
+    #[track_caller]
     pub fn set_kind(&mut self, id: BodyId, kind: BodyKind) {
         let body = self.expect_mut(id);
         if body.kind == kind {

@@ -7,7 +7,6 @@ use crate::hits::OpenHits;
 use crate::id::{BodyId, ShapeId};
 use crate::modifiers::Modifiers;
 use crate::snapshot::body_index;
-use crate::touch::id;
 use sinew_math::{ReadError, Reader, Writer};
 
 /// What the world remembers of pairs beside their contacts, which come and go with the broad phase. Part of the snapshot.
@@ -86,8 +85,8 @@ impl Touch {
 /// Ids of the two shapes of a contact.
 pub(crate) fn shape_ids(bodies: &Arena<Body>, key: ContactKey) -> (ShapeId, ShapeId) {
     (
-        ShapeId { body: id(bodies, key.a), shape: key.shape_a },
-        ShapeId { body: id(bodies, key.b), shape: key.shape_b },
+        ShapeId { body: bodies.id(key.a), shape: key.shape_a },
+        ShapeId { body: bodies.id(key.b), shape: key.shape_b },
     )
 }
 

@@ -7,7 +7,6 @@ use crate::contact_rule::{ContactModifier, ContactRule, ContactSide, FoundContac
 use crate::id::ShapeId;
 use crate::material::ContactMaterial;
 use crate::registered::Registered;
-use crate::touch::id;
 use crate::world::World;
 
 #[derive(Clone, Debug, Default)]
@@ -73,7 +72,7 @@ impl Modifiers {
 fn side(bodies: &Arena<Body>, index: u32, shape: u32) -> ContactSide {
     let body = bodies.at(index);
     ContactSide {
-        shape: ShapeId { body: id(bodies, index), shape },
+        shape: ShapeId { body: bodies.id(index), shape },
         user_data: body.user_data,
         material: body.surface(shape as usize).material,
         velocity: body.velocity,

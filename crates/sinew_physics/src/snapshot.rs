@@ -620,7 +620,7 @@ fn load_contact(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Contact, Rea
 fn load_group(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<ParticleGroup, ReadError> {
     let group = ParticleGroup::load(r)?;
     let held = |target| match target {
-        AttachmentTarget::Body { body, .. } => bodies.get(body.index, body.generation).is_some(),
+        AttachmentTarget::Body { body, .. } => bodies.get(body).is_some(),
         AttachmentTarget::World(_) => true,
     };
     if group.attachments().iter().all(|a| held(a.target)) {
@@ -632,7 +632,5 @@ fn load_group(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<ParticleGroup,
 
 pub(crate) fn body_index(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<u32, ReadError> {
     let index = r.u32()?;
-    let there =
-        (index as usize) < bodies.slot_count() && bodies.get(index, bodies.generation(index)).is_some();
-    if there { Ok(index) } else { Err(r.error("names a body that is not there")) }
+    if bodies.try_at(index).is_some() { Ok(index) } else { Err(r.error("names a body that is not there")) }
 }

@@ -10,7 +10,6 @@ use crate::contact_rule::ContactRule;
 use crate::def::BodyKind;
 use crate::events::Events;
 use crate::field::Fields;
-use crate::id::BodyId;
 use crate::joint::Joint;
 use crate::kept::Kept;
 use crate::meetings::{Meetings, Told};
@@ -310,8 +309,4 @@ fn agree(pair: &mut [Contact]) {
         contact.passes = passes;
         contact.effect = if passes { Effect::Pass } else { Effect::Push };
     }
-}
-
-pub(crate) fn id(bodies: &Arena<Body>, index: u32) -> BodyId {
-    BodyId { index, generation: bodies.generation(index) }
 }

@@ -8,6 +8,7 @@ use crate::contact::Contact;
 use crate::def::{BodyDef, BodyKind, WorldDef};
 use crate::events::Events;
 use crate::field::{FieldDef, Functions};
+use crate::id::Lineage;
 use crate::id::{BodyId, GroupId, JointId};
 use crate::islands::Islands;
 use crate::joint::Joint;
@@ -68,17 +69,18 @@ impl World {
         if let Err(what) = def.check() {
             panic!("{what}");
         }
+        let lineage = Lineage::fresh();
         Self {
             def,
-            bodies: Arena::default(),
-            joints: Arena::default(),
+            bodies: Arena::new(lineage),
+            joints: Arena::new(lineage),
             contacts: Vec::new(),
             activity: Activity::default(),
-            groups: Arena::default(),
-            fields: Arena::default(),
+            groups: Arena::new(lineage),
+            fields: Arena::new(lineage),
             functions: Functions::default(),
             library: ShapeLibrary::default(),
-            objects: Objects::default(),
+            objects: Objects::new(lineage),
             parted: PartedPairs::default(),
             meetings: Meetings::default(),
             events: Events::default(),
@@ -106,13 +108,13 @@ impl World {
     /// mass.
     pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
         def.shapes.iter().for_each(|shape| self.expect_modifier(shape.rule));
-        let (index, generation) = self.bodies.insert(Body::new(def));
+        let id = self.bodies.insert(Body::new(def));
+        let index = id.index;
         for shape in &def.shapes {
             self.library.keep(&shape.shape);
         }
         self.activity.add(index, self.bodies.at(index));
         self.broad.proxies.add(index, self.bodies.at(index));
-        let id = BodyId { index, generation };
         let senses = def.shapes.iter().any(|shape| shape.sensing == Sensing::Sensor);
         if senses || def.kind == BodyKind::Kinematic || self.sleepers > 0 {
             // It may be around what does not move by itself.
@@ -125,6 +127,7 @@ impl World {
     ///
     /// # Panics
     /// If particles are attached to it.
+    #[track_caller]
     pub fn remove_body(&mut self, id: BodyId) {
         self.expect(id);
         let held = |target| matches!(target, AttachmentTarget::Body { body, .. } if body == id);
@@ -142,7 +145,7 @@ impl World {
         }
         self.activity.remove(id.index, |contact| self.meetings.part(&self.bodies, &contact));
         self.parted.forget(id.index);
-        self.bodies.remove(id.index, id.generation);
+        self.bodies.remove(id);
         self.broad.proxies.remove(id.index);
     }
 
@@ -157,29 +160,32 @@ impl World {
             AttachmentTarget::World(_) => None,
         });
         held.clone().for_each(|body| _ = self.expect(body));
-        let (index, generation) = self.groups.insert(ParticleGroup::new(def));
+        let id = self.groups.insert(ParticleGroup::new(def));
         held.for_each(|body| self.wake_body(body.index));
-        GroupId { index, generation }
+        id
     }
 
     /// Takes a particle group out.
+    #[track_caller]
     pub fn remove_particles(&mut self, id: GroupId) {
-        self.groups.remove(id.index, id.generation).expect("the group is there");
+        self.groups.take(id);
     }
 
     /// A particle group.
+    #[track_caller]
     pub fn particles(&self, id: GroupId) -> &ParticleGroup {
-        self.groups.get(id.index, id.generation).expect("the group is there")
+        self.groups.expect(id)
     }
 
     /// A particle group, to be pushed.
+    #[track_caller]
     pub fn particles_mut(&mut self, id: GroupId) -> &mut ParticleGroup {
-        self.groups.get_mut(id.index, id.generation).expect("the group is there")
+        self.groups.expect_mut(id)
     }
 
     /// All particle groups, by index.
     pub fn group_ids(&self) -> impl Iterator<Item = GroupId> {
-        self.groups.iter().map(|(index, _)| GroupId { index, generation: self.groups.generation(index) })
+        self.groups.ids()
     }
 
     /// One step on the calling thread.
@@ -215,20 +221,22 @@ impl World {
 
     /// All bodies, by index.
     pub fn body_ids(&self) -> impl Iterator<Item = BodyId> {
-        self.bodies.iter().map(|(index, _)| BodyId { index, generation: self.bodies.generation(index) })
+        self.bodies.ids()
     }
 
     /// True if the id names a body that is there.
     pub fn contains(&self, id: BodyId) -> bool {
-        self.bodies.get(id.index, id.generation).is_some()
+        self.bodies.get(id).is_some()
     }
 
     /// Pose of the body's frame.
+    #[track_caller]
     pub fn transform(&self, id: BodyId) -> Transform {
         self.expect(id).world_from_body()
     }
 
     /// Pose between the last step (`alpha` 0) and this one (1), for drawing.
+    #[track_caller]
     pub fn interpolated(&self, id: BodyId, alpha: f32) -> Transform {
         let body = self.expect(id);
         let (from, to) = (body.previous, body.world_from_principal);
@@ -241,6 +249,7 @@ impl World {
 
     /// Puts a body somewhere; it wakes, and so does what touched it there or hangs on it. It does not sweep what lies
     /// between.
+    #[track_caller]
     pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
         assert!(world_from_body.is_finite(), "a body's pose is finite");
         self.expect_mut(id).set_world_from_body(world_from_body);
@@ -254,16 +263,19 @@ impl World {
     }
 
     /// World position of the centre of mass.
+    #[track_caller]
     pub fn center_of_mass(&self, id: BodyId) -> Vec3 {
         self.expect(id).center()
     }
 
     /// Velocity of the centre of mass and angular velocity.
+    #[track_caller]
     pub fn velocity(&self, id: BodyId) -> Velocity {
         self.expect(id).velocity
     }
 
     /// Sets the velocity of a dynamic or kinematic body; it wakes.
+    #[track_caller]
     pub fn set_velocity(&mut self, id: BodyId, velocity: Velocity) {
         assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "a velocity is finite");
         let body = self.expect_mut(id);
@@ -280,25 +292,30 @@ impl World {
     }
 
     /// Static, kinematic or dynamic.
+    #[track_caller]
     pub fn kind(&self, id: BodyId) -> BodyKind {
         self.expect(id).kind
     }
 
     /// Mass (0 unless dynamic), centre and inertia in the body's frame.
+    #[track_caller]
     pub fn mass(&self, id: BodyId) -> MassProperties {
         self.expect(id).mass_properties()
     }
 
     /// The user's number on a body.
+    #[track_caller]
     pub fn user_data(&self, id: BodyId) -> u64 {
         self.expect(id).user_data
     }
 
+    #[track_caller]
     pub(crate) fn expect(&self, id: BodyId) -> &Body {
-        self.bodies.get(id.index, id.generation).expect("the body is there")
+        self.bodies.expect(id)
     }
 
+    #[track_caller]
     pub(crate) fn expect_mut(&mut self, id: BodyId) -> &mut Body {
-        self.bodies.get_mut(id.index, id.generation).expect("the body is there")
+        self.bodies.expect_mut(id)
     }
 }

@@ -9,11 +9,13 @@ use std::collections::BTreeSet;
 
 impl World {
     /// False while it sleeps.
+    #[track_caller]
     pub fn is_awake(&self, id: BodyId) -> bool {
         self.expect(id).is_awake()
     }
 
     /// Wakes a body and its island. One that is awake stays so for as long as if it had just woken.
+    #[track_caller]
     pub fn wake(&mut self, id: BodyId) {
         self.expect(id);
         self.wake_body(id.index);
@@ -22,6 +24,7 @@ impl World {
     /// Puts a body to sleep at once, and with it all that it hangs together with by joints and by contacts of the last step,
     /// whether it may fall asleep by itself or not. What wakes sleepers wakes them as well: a moving kinematic body that
     /// one of them touches does so in the next step. Nothing happens to what sleeps already, or is not dynamic.
+    #[track_caller]
     pub fn put_to_sleep(&mut self, id: BodyId) {
         if self.expect(id).is_active() {
             let island = self.island_of(id.index);
@@ -31,11 +34,13 @@ impl World {
     }
 
     /// Whether a body may fall asleep by itself.
+    #[track_caller]
     pub fn sleeping(&self, id: BodyId) -> Sleeping {
         self.expect(id).sleeping
     }
 
     /// Says whether a body may fall asleep by itself; it wakes if it may not.
+    #[track_caller]
     pub fn set_sleeping(&mut self, id: BodyId, sleeping: Sleeping) {
         self.expect_mut(id).sleeping = sleeping;
         if sleeping == Sleeping::Off {
@@ -44,11 +49,13 @@ impl World {
     }
 
     /// Quality of the step for a body and what hangs together with it; `None`: as the world has it.
+    #[track_caller]
     pub fn quality(&self, id: BodyId) -> Option<Quality> {
         self.expect(id).quality
     }
 
     /// Sets the quality of the step for a body and what hangs together with it, from the next step on; `None`: as the world has it.
+    #[track_caller]
     pub fn set_quality(&mut self, id: BodyId, quality: Option<Quality>) {
         self.expect_mut(id).quality = quality;
     }

@@ -2,6 +2,8 @@
 
 use super::custom::PARAMETERS;
 use super::{Buoyancy, Drag, MutualGravity, PointGravity, Region, UniformGravity, Wind};
+use crate::arena::Item;
+use crate::id::FieldId;
 use sinew_math::Transform;
 
 /// A field to be made: what it does, where, and to whom.
@@ -39,6 +41,10 @@ pub enum FieldKind {
         /// What it is called with.
         parameters: [f32; PARAMETERS],
     },
+}
+
+impl Item for FieldDef {
+    type Id = FieldId;
 }
 
 impl FieldDef {

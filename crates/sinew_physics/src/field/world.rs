@@ -16,42 +16,44 @@ impl World {
         self.check_field(def);
         self.keep_region(def);
         self.wake_reached(def);
-        let (index, generation) = self.fields.insert(def.clone());
-        FieldId { index, generation }
+        self.fields.insert(def.clone())
     }
 
     /// Gives a field another definition; what it reached and what it reaches now wakes.
     ///
     /// # Panics
     /// If [`FieldDef::check`] finds something wrong, or a user's function is not registered.
+    #[track_caller]
     pub fn set_field(&mut self, id: FieldId, def: &FieldDef) {
         self.check_field(def);
         self.keep_region(def);
         let before = self.field(id).clone();
         self.wake_reached(&before);
         self.wake_reached(def);
-        *self.fields.get_mut(id.index, id.generation).expect("the field is there") = def.clone();
+        *self.fields.expect_mut(id) = def.clone();
     }
 
     /// Takes a field out; what it reached wakes.
+    #[track_caller]
     pub fn remove_field(&mut self, id: FieldId) {
-        let before = self.fields.remove(id.index, id.generation).expect("the field is there");
+        let before = self.fields.take(id);
         self.wake_reached(&before);
     }
 
     /// A field as it is now.
+    #[track_caller]
     pub fn field(&self, id: FieldId) -> &FieldDef {
-        self.fields.get(id.index, id.generation).expect("the field is there")
+        self.fields.expect(id)
     }
 
     /// All fields, by index.
     pub fn field_ids(&self) -> impl Iterator<Item = FieldId> {
-        self.fields.iter().map(|(index, _)| FieldId { index, generation: self.fields.generation(index) })
+        self.fields.ids()
     }
 
     /// True if the id names a field that is there.
     pub fn contains_field(&self, id: FieldId) -> bool {
-        self.fields.get(id.index, id.generation).is_some()
+        self.fields.get(id).is_some()
     }
 
     /// Registers a function for [`FieldKind::Custom`] under a number of the user's choice, in place of the one that had it.
@@ -65,6 +67,7 @@ impl World {
 
     /// Force and torque about the centre of mass that a field has on a body as it is now, N and N·m, world axes; 0 on what
     /// is not dynamic.
+    #[track_caller]
     pub fn field_force(&self, id: FieldId, body: BodyId) -> Wrench {
         let (field, it) = (self.field(id), self.expect(body));
         if it.kind != BodyKind::Dynamic {
@@ -82,6 +85,7 @@ impl World {
     ///
     /// # Panics
     /// If there is no such particle.
+    #[track_caller]
     pub fn field_force_on_particle(&self, id: FieldId, group: GroupId, particle: u32) -> Vec3 {
         let field = self.field(id);
         let target = Target::of_particle(self.particles(group), particle as usize);
@@ -97,6 +101,7 @@ impl World {
     /// Energy of all that is in a field that acts everywhere, J: uniform and point gravity, attraction, and what it took to
     /// push water aside. Others have none: those that brake take it, and a user's function may have none. Nor has a field in a
     /// region.
+    #[track_caller]
     pub fn field_energy(&self, id: FieldId) -> f32 {
         let field = self.field(id);
         if let (FieldKind::Mutual(law), super::Region::Everywhere) = (&field.kind, &field.region) {
@@ -156,9 +161,8 @@ impl World {
 
     fn wake_reached(&mut self, def: &FieldDef) {
         for index in 0..self.bodies.slot_count() as u32 {
-            let generation = self.bodies.generation(index);
             let asleep = |body: &&crate::body::Body| !body.is_awake() && def.reaches(&Target::of_body(body));
-            if self.bodies.get(index, generation).filter(asleep).is_some() {
+            if self.bodies.try_at(index).filter(asleep).is_some() {
                 self.wake_body(index);
             }
         }

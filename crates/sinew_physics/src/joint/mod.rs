@@ -6,6 +6,8 @@ mod rows;
 mod snapshot;
 mod world;
 
+use crate::arena::Item;
+use crate::id::JointId;
 use crate::spatial::{Vec6, ZERO6};
 use def::{
     Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness, Spring,
@@ -113,6 +115,10 @@ pub(crate) struct Joint {
     pub mass: Vec6,
     /// Mean over the last step on body B, N and N·m about its anchor, world axes.
     pub reaction: Vec6,
+}
+
+impl Item for Joint {
+    type Id = JointId;
 }
 
 impl Joint {

@@ -29,45 +29,48 @@ impl World {
         assert!(a.kind == BodyKind::Dynamic || b.kind == BodyKind::Dynamic, "a joint needs a dynamic body");
         let (ia, ib) = (def.body_a.index, def.body_b.index);
         let joint = Joint::new(def, ia, ib, a.principal_from_body, b.principal_from_body);
-        let (index, generation) = self.joints.insert(joint);
-        self.activity.joints_of.insert(index, self.joints.at(index));
-        let id = JointId { index, generation };
+        let id = self.joints.insert(joint);
+        self.activity.joints_of.insert(id.index, self.joints.at(id.index));
         self.joint_changed(id);
         id
     }
 
     /// Takes a joint out; both bodies wake.
+    #[track_caller]
     pub fn remove_joint(&mut self, id: JointId) {
         self.joint_changed(id);
-        let joint = self.joints.remove(id.index, id.generation).expect("the joint is there");
+        let joint = self.joints.take(id);
         self.activity.joints_of.remove(id.index, &joint);
     }
 
     /// All joints, by index.
     pub fn joint_ids(&self) -> impl Iterator<Item = JointId> {
-        self.joints.iter().map(|(index, _)| JointId { index, generation: self.joints.generation(index) })
+        self.joints.ids()
     }
 
     /// The joints of a body, by index.
+    #[track_caller]
     pub fn joints_of(&self, body: BodyId) -> impl Iterator<Item = JointId> {
         self.expect(body);
-        let id = |&index: &u32| JointId { index, generation: self.joints.generation(index) };
+        let id = |&index: &u32| self.joints.id(index);
         self.activity.joints_of.body(body.index).iter().map(id)
     }
 
     /// True if the id names a joint that is there.
     pub fn contains_joint(&self, id: JointId) -> bool {
-        self.joints.get(id.index, id.generation).is_some()
+        self.joints.get(id).is_some()
     }
 
     /// The two bodies of a joint.
+    #[track_caller]
     pub fn joint_bodies(&self, id: JointId) -> (BodyId, BodyId) {
         let joint = self.expect_joint(id);
-        let id = |index| BodyId { index, generation: self.bodies.generation(index) };
+        let id = |index| self.bodies.id(index);
         (id(joint.a), id(joint.b))
     }
 
     /// A joint's definition as it is now.
+    #[track_caller]
     pub fn joint(&self, id: JointId) -> JointDef {
         let joint = self.expect_joint(id);
         let (body_a, body_b) = self.joint_bodies(id);
@@ -94,6 +97,7 @@ impl World {
     ///
     /// # Panics
     /// If it names other bodies, or a number is not valid.
+    #[track_caller]
     pub fn set_joint(&mut self, id: JointId, def: &JointDef) {
         assert!(self.joint_bodies(id) == (def.body_a, def.body_b), "a joint keeps its bodies");
         let from_body = |body: BodyId| self.expect(body).principal_from_body;
@@ -107,6 +111,7 @@ impl World {
     ///
     /// # Panics
     /// If a number is not valid.
+    #[track_caller]
     pub fn set_motor(&mut self, id: JointId, motor: Option<Motor>) {
         assert!(motor.is_none_or(|motor| motor.is_valid()), "a motor's numbers are finite");
         if self.expect_joint(id).drive.motor != motor {
@@ -120,6 +125,7 @@ impl World {
     ///
     /// # Panics
     /// If it is negative or not finite.
+    #[track_caller]
     pub fn set_joint_friction(&mut self, id: JointId, torque: f32) {
         assert!((0.0..f32::INFINITY).contains(&torque), "friction is not negative, and finite");
         if self.expect_joint(id).drive.friction != torque {
@@ -129,12 +135,14 @@ impl World {
     }
 
     /// Lets a joint act, or not; both bodies wake. One that broke acts again, with the gap that it has.
+    #[track_caller]
     pub fn set_joint_state(&mut self, id: JointId, state: JointState) {
         self.expect_joint_mut(id).state = state;
         self.joint_changed(id);
     }
 
     /// What a joint carried in the last step.
+    #[track_caller]
     pub fn reaction(&self, id: JointId) -> Reaction {
         let reaction = self.expect_joint(id).reaction;
         Reaction { force: linear(&reaction), torque: angular(&reaction) }
@@ -146,17 +154,20 @@ impl World {
     }
 
     /// Frame B of a joint seen from its frame A: angles and travel.
+    #[track_caller]
     pub fn joint_transform(&self, id: JointId) -> Transform {
         self.joint_pose(self.expect_joint(id)).a_from_b()
     }
 
     /// How far the joint's anchors are from where it allows them to be, metres: of a ball joint their distance.
+    #[track_caller]
     pub fn joint_gap(&self, id: JointId) -> f32 {
         let joint = self.expect_joint(id);
         anchor_gap(&joint.kind, &self.joint_pose(joint))
     }
 
     /// How far the joint is beyond its limits of rotation, radians; 0 inside.
+    #[track_caller]
     pub fn joint_overshoot(&self, id: JointId) -> f32 {
         let joint = self.expect_joint(id);
         overshoot(&joint.kind, &self.joint_pose(joint))
@@ -164,17 +175,18 @@ impl World {
 
     /// Energy that a joint's spring and its weld hold, and its soft limits where their stiffness is given, J. Of a spring
     /// given by its frequency it is known from the first step on.
+    #[track_caller]
     pub fn joint_energy(&self, id: JointId) -> f32 {
         let joint = self.expect_joint(id);
         if joint.is_enabled() { joint.elastic_energy(&self.joint_pose(joint)) } else { 0.0 }
     }
 
     fn expect_joint(&self, id: JointId) -> &Joint {
-        self.joints.get(id.index, id.generation).expect("the joint is there")
+        self.joints.expect(id)
     }
 
     fn expect_joint_mut(&mut self, id: JointId) -> &mut Joint {
-        self.joints.get_mut(id.index, id.generation).expect("the joint is there")
+        self.joints.expect_mut(id)
     }
 
     fn wake_joint(&mut self, id: JointId) {

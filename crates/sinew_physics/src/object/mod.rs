@@ -57,8 +57,9 @@ mod world;
 pub(crate) use lockstep::lockstep;
 pub use substep::{Corrections, Forces, Substep};
 
-use crate::arena::Arena;
+use crate::arena::{Arena, Item};
 use crate::draw::DebugDraw;
+use crate::id::{Lineage, ObjectId};
 use crate::world::World;
 use core::any::Any;
 use lockstep::{Places, Roused};
@@ -110,7 +111,16 @@ pub(crate) struct Objects {
     roused: Vec<Roused>,
 }
 
+impl Item for Box<dyn PhysicsObject> {
+    type Id = ObjectId;
+}
+
 impl Objects {
+    /// None, of a world.
+    pub fn new(lineage: Lineage) -> Self {
+        Self { arena: Arena::new(lineage), ..Self::default() }
+    }
+
     pub fn is_empty(&self) -> bool {
         self.arena.is_empty()
     }

@@ -1,13 +1,18 @@
 //! Objects to bytes and back.
 
 use super::{Objects, PhysicsObject};
-use crate::arena::Arena;
+use crate::arena::{Arena, Item};
+use crate::id::ObjectId;
 use sinew_math::{ReadError, Reader, Writer};
 
 /// An object in a snapshot.
 struct Saved<'a> {
     kind: &'a str,
     state: Reader<'a>,
+}
+
+impl Item for Saved<'_> {
+    type Id = ObjectId;
 }
 
 impl Objects {
@@ -29,16 +34,16 @@ impl Objects {
         let saved = Arena::load(r, |r| Ok(Saved { kind: r.text()?, state: r.block()? }))?;
         let before = self.states();
         let mut made = Vec::new();
-        for (index, generation, saved) in saved.entries() {
-            if let Err(error) = self.load_one(index, generation, saved, &mut made) {
+        for id in saved.ids() {
+            if let Err(error) = self.load_one(id, saved.expect(id), &mut made) {
                 self.take_back(&before);
                 return Err(error);
             }
         }
         let mut made = made.into_iter();
         let mut old = core::mem::take(&mut self.arena);
-        self.arena = saved.map(|index, generation, saved| {
-            let kept = old.remove(index, generation).filter(|object| object.kind() == saved.kind);
+        self.arena = saved.map(|id, saved| {
+            let kept = old.remove(id).filter(|object| object.kind() == saved.kind);
             kept.or_else(|| made.next()).expect("it is there or was made")
         });
         Ok(())
@@ -46,13 +51,12 @@ impl Objects {
 
     fn load_one(
         &mut self,
-        index: u32,
-        generation: u32,
+        id: ObjectId,
         saved: &Saved<'_>,
         made: &mut Vec<Box<dyn PhysicsObject>>,
     ) -> Result<(), ReadError> {
         let state = saved.state.clone();
-        match self.arena.get_mut(index, generation).filter(|object| object.kind() == saved.kind) {
+        match self.arena.get_mut(id).filter(|object| object.kind() == saved.kind) {
             Some(object) => take_state(object.as_mut(), state),
             None => {
                 let make = self.kinds.iter().find(|(kind, _)| *kind == saved.kind).map(|(_, make)| make);

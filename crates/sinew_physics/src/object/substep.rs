@@ -63,12 +63,12 @@ impl<'a> Substep<'a> {
 
     /// All bodies, by index.
     pub fn body_ids(&self) -> impl Iterator<Item = BodyId> + use<'a> {
-        self.view.bodies.entries().map(|(index, generation, _)| BodyId { index, generation })
+        self.view.bodies.ids()
     }
 
     /// True if the id names a body that is there.
     pub fn contains(&self, id: BodyId) -> bool {
-        self.view.bodies.get(id.index, id.generation).is_some()
+        self.view.bodies.get(id).is_some()
     }
 
     /// Static, kinematic or dynamic.
@@ -130,7 +130,7 @@ impl<'a> Substep<'a> {
     }
 
     fn expect(&self, id: BodyId) -> &'a Body {
-        self.view.bodies.get(id.index, id.generation).expect("the body is there")
+        self.view.bodies.expect(id)
     }
 
     fn principal_frame(&self, id: BodyId) -> Transform {

@@ -10,21 +10,22 @@ impl World {
     /// Adds an object of the user's own: [`init`](PhysicsObject::init) is called at once, the rest from the next step on.
     pub fn add_object(&mut self, mut object: Box<dyn PhysicsObject>) -> ObjectId {
         object.init(self);
-        let (index, generation) = self.objects.arena.insert(object);
-        ObjectId { index, generation }
+        self.objects.arena.insert(object)
     }
 
     /// Takes an object out and gives it back; bodies that it made remain.
+    #[track_caller]
     pub fn remove_object(&mut self, id: ObjectId) -> Box<dyn PhysicsObject> {
-        self.objects.arena.remove(id.index, id.generation).expect("the object is there")
+        self.objects.arena.take(id)
     }
 
     /// An object.
     ///
     /// # Panics
     /// If it is of another type.
+    #[track_caller]
     pub fn object<T: PhysicsObject>(&self, id: ObjectId) -> &T {
-        let object = self.objects.arena.get(id.index, id.generation).expect("the object is there");
+        let object = self.objects.arena.expect(id);
         let object: &dyn Any = object.as_ref();
         object.downcast_ref().expect("the object is of this type")
     }
@@ -33,20 +34,21 @@ impl World {
     ///
     /// # Panics
     /// If it is of another type.
+    #[track_caller]
     pub fn object_mut<T: PhysicsObject>(&mut self, id: ObjectId) -> &mut T {
-        let object = self.objects.arena.get_mut(id.index, id.generation).expect("the object is there");
+        let object = self.objects.arena.expect_mut(id);
         let object: &mut dyn Any = object.as_mut();
         object.downcast_mut().expect("the object is of this type")
     }
 
     /// All objects, by index.
     pub fn object_ids(&self) -> impl Iterator<Item = ObjectId> {
-        self.objects.arena.entries().map(|(index, generation, _)| ObjectId { index, generation })
+        self.objects.arena.ids()
     }
 
     /// True if the id names an object that is there.
     pub fn contains_object(&self, id: ObjectId) -> bool {
-        self.objects.arena.get(id.index, id.generation).is_some()
+        self.objects.arena.get(id).is_some()
     }
 
     pub(crate) fn draw_objects(&self, out: &mut dyn DebugDraw) {

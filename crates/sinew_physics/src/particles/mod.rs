@@ -35,7 +35,9 @@ pub use def::{
     TetherDef, VolumeDef,
 };
 
+use crate::arena::Item;
 use crate::boxes::Aabb;
+use crate::id::GroupId;
 use crate::material::Material;
 use crate::shape::{Filter, Shape};
 use contact::{Grip, Placed, Touch};
@@ -118,6 +120,10 @@ pub struct ParticleGroup {
     outer: Vec<Vec3>,
     /// Gravity and outer force of the last substep on each particle, over its mass, m/s².
     accelerations: Vec<Vec3>,
+}
+
+impl Item for ParticleGroup {
+    type Id = GroupId;
 }
 
 impl ParticleGroup {

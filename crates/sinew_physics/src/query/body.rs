@@ -9,6 +9,7 @@ use sinew_math::{Transform, Vec3};
 impl World {
     /// Bounds of all shapes of a body at its present pose, sensors among them; of a body without shapes the point where its
     /// frame is.
+    #[track_caller]
     pub fn bounds(&self, id: BodyId) -> Aabb {
         let place = self.transform(id).translation;
         let bounds = self.shapes(id).map(|(shape, frame)| shape.aabb(&frame));
@@ -17,6 +18,7 @@ impl World {
 
     /// Where the surface of a body is closest to a point (world), over all its shapes; `None` of a body without shapes. A
     /// point that several shapes hold is measured in the one that holds it deepest.
+    #[track_caller]
     pub fn nearest_surface(&self, id: BodyId, point: Vec3) -> Option<SurfacePoint> {
         let of_shape = |(shape, frame): (Shape, Transform)| shape.nearest_surface(&frame, point);
         self.shapes(id).map(of_shape).reduce(|a, b| if b.distance < a.distance { b } else { a })
@@ -29,6 +31,7 @@ impl World {
 
     /// How deep a point (world) is in a body and in which direction the way out is shortest; `None` if it is outside. The
     /// way leads out of the shape that holds the point deepest.
+    #[track_caller]
     pub fn point_penetration(&self, id: BodyId, point: Vec3) -> Option<Penetration> {
         let SurfacePoint { distance, normal, .. } = self.nearest_surface(id, point)?;
         (distance <= 0.0).then_some(Penetration { depth: -distance, direction: normal })

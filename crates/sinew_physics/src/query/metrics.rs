@@ -35,6 +35,7 @@ pub struct Momentum {
 
 impl World {
     /// Energy of one body.
+    #[track_caller]
     pub fn body_energy(&self, id: BodyId) -> Energy {
         let body = self.expect(id);
         let weight = self.def.gravity * (body.mass * body.gravity_scale);
@@ -42,6 +43,7 @@ impl World {
     }
 
     /// Energy of one particle group.
+    #[track_caller]
     pub fn group_energy(&self, id: GroupId) -> Energy {
         let group = self.particles(id);
         let mut sum = Energy::default();
@@ -88,6 +90,7 @@ impl World {
     }
 
     /// Deepest overlap of two bodies, metres; 0 if they do not overlap.
+    #[track_caller]
     pub fn overlap(&self, a: BodyId, b: BodyId) -> f32 {
         let (body_a, body_b) = (self.expect(a), self.expect(b));
         let mut deepest = 0.0;
@@ -108,6 +111,7 @@ impl World {
     }
 
     /// Bodies that `id` touches or nearly touches, in the order of contacts.
+    #[track_caller]
     pub fn neighbors(&self, id: BodyId) -> impl Iterator<Item = BodyId> {
         self.expect(id);
         let pushing = self.contacts_at(id.index).filter(|contact| contact.pushes());
@@ -116,10 +120,11 @@ impl World {
         keys.sort_unstable();
         keys.dedup();
         let other = move |key: ContactKey| key.other(id.index);
-        keys.into_iter().map(other).map(|index| BodyId { index, generation: self.bodies.generation(index) })
+        keys.into_iter().map(other).map(|index| self.bodies.id(index))
     }
 
     /// Deepest overlap of a body with static ones, metres, at its present pose.
+    #[track_caller]
     pub fn penetration(&self, id: BodyId) -> f32 {
         self.expect(id);
         self.neighbors(id)
@@ -128,6 +133,7 @@ impl World {
     }
 
     /// Shapes of a body with their world poses, for drawing.
+    #[track_caller]
     pub fn shapes(&self, id: BodyId) -> impl Iterator<Item = (crate::shape::Shape, sinew_math::Transform)> {
         let body = self.expect(id);
         body.shapes.iter().enumerate().map(|(i, s)| (s.shape.clone(), body.world_from_shape(i)))

@@ -239,8 +239,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
     #[inline]
     fn meet<T>(&self, owner: Owner, visit: impl FnOnce(ShapeId, &Shape, &Transform) -> T) -> Option<T> {
         let Owner { body: index, shape: number } = owner;
-        let generation = self.world.bodies.generation(index);
-        let id = ShapeId { body: BodyId { index, generation }, shape: number };
+        let id = ShapeId { body: self.world.bodies.id(index), shape: number };
         // A body is spread over lines of the cache that a ray would wait for: what stands alone is asked without it.
         if let Some(placed) = self.world.broad.proxies.lone(index) {
             let Placed { shape, world_from_shape, filter, sensing } = placed;

@@ -55,6 +55,7 @@ pub struct ContactPoint {
 
 impl World {
     /// Contacts of a body with others, near ones that do not touch among them, in the order of pairs.
+    #[track_caller]
     pub fn contacts_of(&self, id: BodyId) -> impl Iterator<Item = BodyContact> {
         self.expect(id);
         self.contacts().filter(move |contact| contact.a.body == id || contact.b.body == id)
@@ -86,26 +87,31 @@ impl World {
     }
 
     /// The shapes of a body.
+    #[track_caller]
     pub fn shape_ids(&self, body: BodyId) -> impl Iterator<Item = ShapeId> + use<> {
         (0..self.expect(body).shapes.len() as u32).map(move |shape| ShapeId { body, shape })
     }
 
     /// What a shape is made of.
+    #[track_caller]
     pub fn material(&self, id: ShapeId) -> Material {
         self.expect(id.body).surface(id.shape as usize).material
     }
 
     /// Whom a shape meets.
+    #[track_caller]
     pub fn filter(&self, id: ShapeId) -> Filter {
         self.expect(id.body).surface(id.shape as usize).filter
     }
 
     /// Whether a shape pushes.
+    #[track_caller]
     pub fn sensing(&self, id: ShapeId) -> Sensing {
         self.expect(id.body).surface(id.shape as usize).sensing
     }
 
     /// What becomes of a shape's contacts.
+    #[track_caller]
     pub fn contact_rule(&self, id: ShapeId) -> ContactRule {
         self.expect(id.body).surface(id.shape as usize).rule
     }
@@ -114,6 +120,7 @@ impl World {
     ///
     /// # Panics
     /// If [`Material::check`] finds something wrong.
+    #[track_caller]
     pub fn set_material(&mut self, id: ShapeId, material: Material) {
         if let Err(what) = material.check() {
             panic!("{what}");
@@ -123,12 +130,14 @@ impl World {
 
     /// Lets a shape meet others than before, from the next step on, which also tells of what it no longer touches. Its body
     /// and what it touches wake.
+    #[track_caller]
     pub fn set_filter(&mut self, id: ShapeId, filter: Filter) {
         self.change_surface(id, |surface| surface.filter = filter);
     }
 
     /// Lets a shape push or only sense, from the next step on; what touches it ends and begins anew as the other kind of
     /// event. Its body and what it touches wake.
+    #[track_caller]
     pub fn set_sensing(&mut self, id: ShapeId, sensing: Sensing) {
         self.change_surface(id, |surface| surface.sensing = sensing);
     }
@@ -137,6 +146,7 @@ impl World {
     ///
     /// # Panics
     /// If [`ContactRule::check`] finds something wrong, or a modifier is not registered.
+    #[track_caller]
     pub fn set_contact_rule(&mut self, id: ShapeId, rule: ContactRule) {
         if let Err(what) = rule.check() {
             panic!("{what}");
@@ -160,12 +170,14 @@ impl World {
     }
 
     /// Has the next step look anew at what a body touches, whatever moves; it and its neighbours wake.
+    #[track_caller]
     pub(crate) fn stir(&mut self, id: BodyId) {
         self.look_anew(id);
         self.wake_neighbors(id.index);
     }
 
     /// Likewise, and nobody wakes.
+    #[track_caller]
     pub(crate) fn look_anew(&mut self, id: BodyId) {
         let body = self.expect_mut(id);
         if !core::mem::replace(&mut body.stirred, true) {

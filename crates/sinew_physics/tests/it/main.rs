@@ -14,6 +14,7 @@ mod finite;
 mod flight;
 mod hull;
 mod humanoid;
+mod ids;
 mod joints;
 mod meshes;
 mod nets;

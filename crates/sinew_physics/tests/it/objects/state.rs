@@ -175,7 +175,7 @@ fn an_object_of_another_type() {
 }
 
 #[test]
-#[should_panic(expected = "the object is there")]
+#[should_panic(expected = "was removed")]
 fn an_object_that_was_taken_out() {
     let mut world = mixed();
     let id = world.add_object(Box::new(Counter::default()));
