@@ -6,6 +6,7 @@ use crate::particles::ParticleGroup;
 use crate::project::{Neighbors, TakenGroup};
 use crate::runner::TaskRunner;
 use crate::solver::flight::{Flight, flies};
+use crate::solver::strands::Strands;
 use crate::solver::{Solution, View};
 use crate::step::StepContext;
 use crate::tasks::{Queue, Task, Workspace, Workspaces};
@@ -20,7 +21,7 @@ pub(crate) struct Island<'a> {
     pub contacts: &'a [u32],
     /// Particle groups that hang on its bodies or may touch them.
     pub groups: &'a [u32],
-    /// Its only body is in flight and has been through this step.
+    /// It is a body in flight or a strand and has been through this step.
     pub is_flown: bool,
 }
 
@@ -52,9 +53,10 @@ pub(crate) struct Islands {
     /// Out of the world for the length of the step, island after island.
     taken: Vec<TakenGroup>,
     solution: Solution,
-    /// True of each island whose only body is in flight and has been through this step.
+    /// True of each island that is a body in flight or a strand and has been through this step.
     flown: Vec<bool>,
     flight: Flight,
+    strands: Strands,
     /// One for each thread that has worked at the same time as others.
     idle: Vec<Workspace>,
     /// One for each island, where they go in lockstep.
@@ -128,6 +130,7 @@ impl Islands {
             lists.sort(self.count, self.parent.len());
         }
         self.flight.clear();
+        self.strands.clear();
         self.flown.clear();
         self.flown.reserve(self.parent.len());
         self.flown.resize(self.count, false);
@@ -316,6 +319,29 @@ impl Islands {
         }
         flight.run(view, context);
         self.flight = flight;
+        self.run_strands(view, context, |_| true);
+        for strand in self.strands.solved() {
+            self.flown[strand.island] = true;
+        }
+    }
+
+    /// After a step in lockstep: strands that no object has disturbed go through it as they would without objects.
+    pub fn fly_undisturbed(&mut self, view: &View<'_>, context: &StepContext<'_>) {
+        let own = core::mem::take(&mut self.own);
+        self.run_strands(view, context, |island| !own[island].solver.is_disturbed());
+        self.own = own;
+        let mut solution = core::mem::take(&mut self.solution);
+        self.take_strands(&mut solution);
+        self.solution = solution;
+    }
+
+    fn run_strands(&mut self, view: &View<'_>, context: &StepContext<'_>, takes: impl Fn(usize) -> bool) {
+        let mut strands = core::mem::take(&mut self.strands);
+        for i in (0..self.count).filter(|&i| takes(i)) {
+            strands.add(i, &self.at(i), view);
+        }
+        strands.run(view, context);
+        self.strands = strands;
     }
 
     /// Calls `work` once for each island that is not flown, on `runner`'s threads: all that there is to do for it in this step.
@@ -350,14 +376,29 @@ impl Islands {
             self.contacts.numbers.len(),
         );
         let mut flown = self.flight.solved();
-        for i in (0..self.count).filter(|&i| self.flown[i]) {
+        for i in (0..self.count).filter(|&i| self.flown[i] && self.joints.range(i).is_empty()) {
             solution.work[i] = Work::default();
             let solved = &mut solution.bodies[self.bodies.range(i).start];
             *solved = flown.next().unwrap_or(*solved);
         }
+        self.take_strands(&mut solution);
         let left = self.flown.iter().filter(|is_flown| !**is_flown).count();
         Queue::new(self.iter(), &mut taken, &mut solution, workspaces).run(runner, left, work);
         (self.solution, self.taken) = (solution, taken);
+    }
+
+    /// Writes down what has come of the strands.
+    fn take_strands(&self, solution: &mut Solution) {
+        for strand in self.strands.solved() {
+            solution.work[strand.island] = Work::default();
+            let (bodies, joints) = (self.bodies.range(strand.island), self.joints.range(strand.island));
+            for (solved, body) in solution.bodies[bodies].iter_mut().zip(strand.bodies()) {
+                *solved = body;
+            }
+            for (solved, joint) in solution.joints[joints].iter_mut().zip(strand.joints()) {
+                *solved = joint;
+            }
+        }
     }
 
     /// Between two parts: the workspaces in the order of islands, and the particle groups.

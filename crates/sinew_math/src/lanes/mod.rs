@@ -20,6 +20,7 @@ pub(crate) mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx2_wide;
 mod blocks;
+mod first;
 #[cfg(target_arch = "aarch64")]
 pub(crate) mod neon;
 #[cfg(any(
@@ -38,6 +39,7 @@ mod tests;
 mod vector;
 
 pub use blocks::{Block, Blocks};
+pub use first::First;
 pub use scalar::Scalar;
 pub use vector::Vector3;
 

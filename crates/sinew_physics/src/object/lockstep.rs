@@ -59,7 +59,8 @@ pub(super) struct Roused {
     pub change: Vec6,
 }
 
-/// All islands phase by phase. Objects act before the two phases of each substep.
+/// All islands phase by phase. Objects act before the two phases of each substep. Strands on which none has acted are solved again as
+/// what they are: an object that does nothing changes nothing.
 pub(crate) fn lockstep(
     objects: &mut Objects,
     islands: &mut Islands,
@@ -81,6 +82,7 @@ pub(crate) fn lockstep(
             objects.places.find(islands, view.bodies);
         }
     }
+    zone(context.profiler, Stage::Flight, || islands.fly_undisturbed(view, context));
 }
 
 impl Objects {

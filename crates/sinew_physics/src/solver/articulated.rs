@@ -67,7 +67,7 @@ pub(crate) fn wide(v: Vec3) -> Vector3<f64> {
 }
 
 #[inline(always)]
-fn zero<R: Real>() -> Vector3<R> {
+pub(crate) fn zero<R: Real>() -> Vector3<R> {
     let zero = R::splat(0.0);
     Vector3::new(zero, zero, zero)
 }
@@ -79,13 +79,13 @@ fn zeros<R: Real>() -> Matrix<R> {
 
 /// `mᵀ v`
 #[inline(always)]
-fn transposed_times<R: Real>(m: &Matrix<R>, v: Vector3<R>) -> Vector3<R> {
+pub(crate) fn transposed_times<R: Real>(m: &Matrix<R>, v: Vector3<R>) -> Vector3<R> {
     m[0] * v.x + m[1] * v.y + m[2] * v.z
 }
 
 /// `m v`
 #[inline(always)]
-fn times<R: Real>(m: &Matrix<R>, v: Vector3<R>) -> Vector3<R> {
+pub(crate) fn times<R: Real>(m: &Matrix<R>, v: Vector3<R>) -> Vector3<R> {
     Vector3::new(m[0].dot(v), m[1].dot(v), m[2].dot(v))
 }
 
@@ -144,7 +144,7 @@ impl<R: Real> Symmetric<R> {
 
     /// Inertia of a mass that depends on the direction, about a point `r` from it.
     #[inline(always)]
-    fn at(&self, r: Vector3<R>) -> Inertia<R> {
+    pub fn at(&self, r: Vector3<R>) -> Inertia<R> {
         let [a0, a1, a2] = self.rows();
         let coupling = [a0.cross(r), a1.cross(r), a2.cross(r)];
         let [x, y, z] = columns(&coupling);
@@ -327,10 +327,30 @@ impl<R: Real> Swivel<R> {
         }
     }
 
+    /// Of a child with an articulated inertia about the anchor.
+    #[inline(always)]
+    pub fn at_anchor(freedom: Freedom, inertia: Inertia<R>) -> Self {
+        let (arm, parent_arm, gain) = (zero(), zero(), Symmetric::zero());
+        let (pivot, coupled, free) = (Symmetric::zero(), zeros(), Symmetric::zero());
+        Self { freedom, arm, parent_arm, inertia, gain, pivot, coupled, free }
+    }
+
     /// From the parent's centre of mass to the anchor.
     #[inline(always)]
     pub fn parent_arm(&self) -> Vector3<R> {
         self.parent_arm
+    }
+
+    /// (B + G)⁻¹ and rows of C (B + G)⁻¹; after [`factor`](Self::factor).
+    #[inline(always)]
+    pub fn pivots(&self) -> (Symmetric<R>, Matrix<R>) {
+        (self.pivot, self.coupled)
+    }
+
+    /// Of a free body, the inverse of the mass that is left; after [`factor`](Self::factor).
+    #[inline(always)]
+    pub fn inverse_mass(&self) -> Symmetric<R> {
+        self.free
     }
 
     /// What the child weighs about the anchor.

@@ -67,6 +67,11 @@ impl Pace {
         let grading = if objects.is_empty() { Grading::ByContent } else { Grading::None };
         Self { h: context.h, substeps: context.substeps, grading }
     }
+
+    /// Length of substeps that are some times as long, seconds, and how many a step has.
+    pub fn stretched(&self, times: f32) -> (f32, u32) {
+        (self.h * times, (self.substeps as f32 / times) as u32)
+    }
 }
 
 /// Whether an island may take fewer substeps than the world's.
@@ -204,6 +209,7 @@ impl IslandSolver {
     pub fn prepare(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.choose_substeps(island, view);
         self.displaced = false;
+        self.disturbed = false;
         self.work = Work::default();
         self.tally = counts::Tally::default();
         (self.max_speed, self.max_turn) = (view.def.max_speed, view.def.max_turn);

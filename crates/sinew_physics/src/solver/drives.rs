@@ -13,7 +13,7 @@ const STICK_RATE: f32 = 0.004;
 /// A velocity motor is a viscosity that would bring what it moves to its speed within this share of a substep.
 const MOTOR_SHARE: f32 = 1e-3;
 /// Fastest that a joint which is open closes, m/s or rad/s: one attached anew at a distance does not jump.
-const CLOSING: f32 = 4.0;
+pub(super) const CLOSING: f32 = 4.0;
 /// Most that a weld is off beyond what its rows foresaw, m or rad.
 const MOST_BENT: f32 = 0.1;
 /// `(ωh)²` of the fastest spring whose oscillation is kept.

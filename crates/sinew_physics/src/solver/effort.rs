@@ -207,17 +207,9 @@ impl IslandSolver {
     /// How many substeps an island takes. Balanced: half of the world's where many contacts damp all motion, nothing spins fast and
     /// masses are alike; all of them for what swings, flies or balances. With particles all, whatever the quality.
     pub(super) fn choose_substeps(&mut self, island: &Island<'_>, view: &View<'_>) {
-        self.quality = island.bodies.iter().map(|&body| view.quality(body)).max().unwrap_or_default();
-        let may_halve = view.pace.substeps.is_multiple_of(2);
-        self.stretch = match self.quality {
-            _ if view.pace.grading == Grading::None || !island.groups.is_empty() => 1.0,
-            Quality::Exact => 0.5,
-            Quality::Balanced if may_halve && is_damped(island, view) => 2.0,
-            Quality::Fast if may_halve && is_calm(island, view) => 2.0,
-            Quality::Balanced | Quality::Fast => 1.0,
-        };
-        self.substeps = (view.pace.substeps as f32 / self.stretch) as u32;
-        self.h = view.pace.h * self.stretch;
+        self.quality = quality_of(island, view);
+        self.stretch = stretch_of(island, view);
+        (self.h, self.substeps) = view.pace.stretched(self.stretch);
     }
 
     /// How islands of joints come to agree with their contacts: few figures by the response of all their links, heaps by turns.
@@ -279,6 +271,23 @@ impl IslandSolver {
             heaviest = max(heaviest, mass);
         }
         if heaviest > lightest { heaviest / lightest } else { 1.0 }
+    }
+}
+
+/// The highest that a body of an island asks for.
+fn quality_of(island: &Island<'_>, view: &View<'_>) -> Quality {
+    island.bodies.iter().map(|&body| view.quality(body)).max().unwrap_or_default()
+}
+
+/// How many times as long as the world's the substeps of an island are: a power of two.
+pub(super) fn stretch_of(island: &Island<'_>, view: &View<'_>) -> f32 {
+    let may_halve = view.pace.substeps.is_multiple_of(2);
+    match quality_of(island, view) {
+        _ if view.pace.grading == Grading::None || !island.groups.is_empty() => 1.0,
+        Quality::Exact => 0.5,
+        Quality::Balanced if may_halve && is_damped(island, view) => 2.0,
+        Quality::Fast if may_halve && is_calm(island, view) => 2.0,
+        Quality::Balanced | Quality::Fast => 1.0,
     }
 }
 

@@ -14,16 +14,16 @@ use sinew_math::{Sym3, Vec3, max, min};
 
 /// Angle that a link may turn within a substep beside the motion of its tree as a whole, radians: position corrections
 /// converge below it.
-const MAX_INNER_TURN: f32 = 1.0;
+pub(super) const MAX_INNER_TURN: f32 = 1.0;
 /// Share of the kinetic energy (of at least 1 J/kg) that warm starting or relaxing may give before it counts as an error:
 /// rounding and the give and take of resting contacts are far below.
-const ENERGY_SLACK: f32 = 1e-3;
+pub(super) const ENERGY_SLACK: f32 = 1e-3;
 
 /// No velocity is as fast, as a multiple of the speed limit; no spin, rad/s.
-const NONSENSE: f32 = 2.5;
-const NONSENSE_SPIN: f32 = 1e4;
+pub(super) const NONSENSE: f32 = 2.5;
+pub(super) const NONSENSE_SPIN: f32 = 1e4;
 /// A joint that a substep leaves open by this much more than it was has not been solved, m or rad.
-const TORN: f32 = 0.1;
+pub(super) const TORN: f32 = 0.1;
 
 impl IslandSolver {
     /// Impulses that hold up weights take energy away; those of an impact, repeated at another pose, add it. If they did,

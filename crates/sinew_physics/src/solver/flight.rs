@@ -16,7 +16,8 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Rotation, Transform, Vec3, min};
 
-type Eight = [f32; WIDTH];
+/// A number of each of eight bodies.
+pub(super) type Eight = [f32; WIDTH];
 
 /// Most that a body turns within a substep, should the world's limit allow more, radians: what the series for sine and cosine reach.
 const MOST_TURN: f32 = 3.0;
@@ -98,15 +99,17 @@ struct Flock {
     limited: u8,
 }
 
-const ZERO: Eight = [0.0; WIDTH];
+pub(super) const ZERO: Eight = [0.0; WIDTH];
 
-fn put(v: Vec3, to: &mut [Eight; 3], lane: usize) {
+/// Writes a vector into a lane.
+pub(super) fn put(v: Vec3, to: &mut [Eight; 3], lane: usize) {
     for (row, number) in to.iter_mut().zip(v.to_array()) {
         row[lane] = number;
     }
 }
 
-fn take(from: &[Eight; 3], lane: usize) -> Vec3 {
+/// A lane's vector.
+pub(super) fn take(from: &[Eight; 3], lane: usize) -> Vec3 {
     Vec3::from_array([from[0][lane], from[1][lane], from[2][lane]])
 }
 
@@ -212,13 +215,13 @@ impl Kernel for Fly<'_> {
 }
 
 #[inline(always)]
-fn store<L: Lanes>(v: Vector3<L>, to: &mut [Eight; 3]) {
+pub(super) fn store<L: Lanes>(v: Vector3<L>, to: &mut [Eight; 3]) {
     v.x.store(&mut to[0]);
     v.y.store(&mut to[1]);
     v.z.store(&mut to[2]);
 }
 
 #[inline(always)]
-fn load<L: Lanes>(rows: &[Eight; 3]) -> Vector3<L> {
+pub(super) fn load<L: Lanes>(rows: &[Eight; 3]) -> Vector3<L> {
     Vector3::load(&rows[0], &rows[1], &rows[2])
 }

@@ -31,6 +31,7 @@ mod reaction;
 mod response;
 mod solution;
 mod squeeze;
+pub(crate) mod strands;
 mod sweep;
 mod tree;
 mod tree_joints;
@@ -254,6 +255,8 @@ pub(crate) struct IslandSolver {
     pub work: Work,
     /// Particles or objects pushed in this substep.
     pushed_from_outside: bool,
+    /// Objects pushed in this step.
+    disturbed: bool,
     /// A surface moves along its body, or throws off what touches it.
     driven: bool,
     /// Poses changed since all that depends on them was computed.

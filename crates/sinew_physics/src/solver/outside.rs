@@ -16,6 +16,7 @@ impl IslandSolver {
 
     /// Adds to what `integrate_velocity` will apply, N and N·m about the centre of mass.
     pub fn add_force(&mut self, local: usize, force: Vec3, torque: Vec3) {
+        self.disturbed |= force != Vec3::ZERO || torque != Vec3::ZERO;
         let body = &mut self.bodies[local];
         body.force += force;
         body.torque += torque;
@@ -23,6 +24,7 @@ impl IslandSolver {
 
     /// An impulse before the substep: what joints make of it comes with `solve`.
     pub fn push_loose(&mut self, local: usize, impulse: &Vec6) {
+        self.disturbed |= *impulse != ZERO6;
         let change = self.bodies[local].velocity_change(impulse);
         add_scaled(&mut self.velocities[local], &change, 1.0);
     }
@@ -30,6 +32,7 @@ impl IslandSolver {
     /// An impulse after bodies have moved, through the joints.
     pub fn push_held(&mut self, local: usize, impulse: &Vec6) {
         self.pushed_from_outside = true;
+        self.disturbed |= *impulse != ZERO6;
         if let Some(accounted) = self.accounted.get_mut(local) {
             add_scaled(accounted, impulse, 1.0);
         }
@@ -66,6 +69,11 @@ impl IslandSolver {
         s.impulses[local] = *row;
         tree::solve(&self.links, 0..self.links.len(), &mut s.impulses, &s.residuals, &mut s.dv);
         dot(row, &s.dv[local])
+    }
+
+    /// An object has acted on the island in this step.
+    pub fn is_disturbed(&self) -> bool {
+        self.disturbed
     }
 
     fn answer_one(&mut self, local: usize, impulse: &Vec6) {

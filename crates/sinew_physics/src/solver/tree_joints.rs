@@ -10,15 +10,18 @@ use sinew_math::dispatch;
 use sinew_math::max;
 
 /// Most rounds of position corrections in a pass, likewise with many loops, and the error that needs none, m or rad.
-const POSITION_CORRECTIONS: usize = 6;
+pub(super) const POSITION_CORRECTIONS: usize = 6;
 const POSITION_CORRECTIONS_ITERATED: usize = 1;
 /// Likewise in heaps: the second round leaves micrometres.
 const POSITION_CORRECTIONS_BY_TURNS: usize = 2;
-const POSITION_TOLERANCE: f32 = 1e-6;
+pub(super) const POSITION_TOLERANCE: f32 = 1e-6;
+/// Share of the largest coordinate that needs none either: one and a half of its last digits, which is what rounding of two positions
+/// makes of a gap.
+pub(super) const POSITION_ROUNDING: f32 = 1.5 * f32::EPSILON;
 
 /// Most further solves in `relax`, and the share of the fastest velocity that joints may leave.
-const REFINEMENTS: usize = 2;
-const RATE_SHARE: f32 = 1e-4;
+pub(super) const REFINEMENTS: usize = 2;
+pub(super) const RATE_SHARE: f32 = 1e-4;
 
 impl IslandSolver {
     /// Poses and rows of all joints.

@@ -29,6 +29,7 @@ mod rims;
 mod rope;
 mod sleep;
 mod stacks;
+mod strands;
 mod surfaces;
 mod threads;
 mod touches;

@@ -11,8 +11,8 @@ use sinew_math::{Sym3, Transform};
 mod tests;
 mod turn;
 
-use turn::{MOST_SERIES, times, vectors};
-pub(super) use turn::{Turn, divided, middle_of_spin, over, within};
+use turn::{MOST_SERIES, vectors};
+pub(super) use turn::{Turn, divided, middle_of_spin, narrow, over, times, widen, within};
 
 /// A field of eight bodies, one in each lane.
 macro_rules! field {

@@ -133,6 +133,7 @@ pub struct Exact<L: Lanes> {
 }
 
 impl<L: Lanes> Exact<L> {
+    /// A vector after the rotation.
     #[inline(always)]
     pub fn turned(self, v: Vector3<L>) -> Vector3<L> {
         let v = widen(v);
@@ -140,6 +141,7 @@ impl<L: Lanes> Exact<L> {
         narrow(v + (across * self.real + self.vector.cross(across)) * self.scale)
     }
 
+    /// A vector before the rotation.
     #[inline(always)]
     pub fn turned_back(self, v: Vector3<L>) -> Vector3<L> {
         Self { vector: -self.vector, ..self }.turned(v)
@@ -147,12 +149,12 @@ impl<L: Lanes> Exact<L> {
 }
 
 #[inline(always)]
-fn widen<L: Lanes>(v: Vector3<L>) -> Vector3<L::Wide> {
+pub fn widen<L: Lanes>(v: Vector3<L>) -> Vector3<L::Wide> {
     Vector3::new(v.x.widen(), v.y.widen(), v.z.widen())
 }
 
 #[inline(always)]
-fn narrow<L: Lanes>(v: Vector3<L::Wide>) -> Vector3<L> {
+pub fn narrow<L: Lanes>(v: Vector3<L::Wide>) -> Vector3<L> {
     Vector3::new(L::narrow(v.x), L::narrow(v.y), L::narrow(v.z))
 }
 

@@ -1,0 +1,192 @@
+//! The exact solve of a strand's joints, up to its first link and down again.
+
+use super::super::articulated::{times, transposed_times, zero};
+use super::super::flight::{Eight, load, store};
+use super::super::motion::Turn;
+use super::factor::kept;
+use super::link::{Hook, Link, load_turn, store_turn};
+use sinew_math::lanes::{Lanes, Vector3};
+
+/// What joints are asked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Asked {
+    /// To stop.
+    Rest,
+    /// To close their gaps within the substep.
+    Closed,
+    /// To close those that they will have with the present velocities.
+    Corrected,
+}
+
+/// From the end of the strand to its first link: what is asked of each joint, and what the links below push through it.
+#[inline(always)]
+pub(super) fn ascend<L: Lanes>(links: &mut [Link], is_held: bool, asked: Asked, h: f32) {
+    let rate = L::splat(1.0 / h);
+    let (mut force, mut arm_below) = (zero::<L>(), zero::<L>());
+    for i in (0..links.len()).rev() {
+        let (before, rest) = links.split_at_mut(i);
+        let link = &mut rest[0];
+        let arm = load::<L>(&link.arm);
+        let torque = (arm_below - arm).cross(force);
+        store(torque, &mut link.left);
+        force = force - times(&rows::<L>(&link.coupled), torque);
+        let passed = kept::<L>(&link.passed);
+        if i == 0 && !is_held {
+            store(passed.times(force), &mut link.asked);
+            return;
+        }
+        let mut wanted = zero::<L>();
+        if asked != Asked::Corrected {
+            wanted = -slide::<L>(link, before.last());
+        }
+        if asked != Asked::Rest {
+            wanted = wanted - load::<L>(&link.gap) * rate;
+        }
+        store(wanted, &mut link.asked);
+        force = force - passed.times(wanted);
+        arm_below = load(&link.parent_arm);
+    }
+}
+
+/// Velocity of a body's anchor against that of its parent; fixed ones stand still.
+#[inline(always)]
+fn slide<L: Lanes>(link: &Link, parent: Option<&Link>) -> Vector3<L> {
+    let of_body = load::<L>(&link.velocity) + load::<L>(&link.spin).cross(load(&link.arm));
+    match parent {
+        Some(parent) => {
+            of_body - (load::<L>(&parent.velocity) + load::<L>(&parent.spin).cross(load(&link.parent_arm)))
+        }
+        None => of_body,
+    }
+}
+
+/// How a link answers, from the answer of its parent.
+#[inline(always)]
+fn answer<L: Lanes>(link: &Link, [v, w]: [Vector3<L>; 2]) -> [Vector3<L>; 2] {
+    let at = (v + w.cross(load(&link.parent_arm))) + load(&link.asked);
+    let spin =
+        kept::<L>(&link.pivot).times(load(&link.left)) - transposed_times(&rows::<L>(&link.coupled), at);
+    [at + load::<L>(&link.arm).cross(spin), spin]
+}
+
+#[inline(always)]
+fn rows<L: Lanes>([x, y, z]: &[[Eight; 3]; 3]) -> [Vector3<L>; 3] {
+    [load(x), load(y), load(z)]
+}
+
+/// Fastest velocities of a strand, component by component, and how fast its joints still open, m/s and rad/s.
+#[derive(Clone, Copy)]
+pub(super) struct Left<L> {
+    pub fastest: L,
+    pub rate: L,
+}
+
+/// Down the strand in the lanes of the mask, for velocities alone.
+#[inline(always)]
+pub(super) fn descend<L: Lanes>(links: &mut [Link], is_held: bool, mask: L::Mask) -> Left<L> {
+    let none = L::splat(0.0);
+    let mut left = Left { fastest: none, rate: none };
+    let (mut answered, mut before) = ([zero::<L>(); 2], [zero::<L>(); 2]);
+    for (i, link) in links.iter_mut().enumerate() {
+        answered = answer(link, answered);
+        let velocity = load::<L>(&link.velocity) + masked(answered[0], mask);
+        let spin = load::<L>(&link.spin) + masked(answered[1], mask);
+        store(velocity, &mut link.velocity);
+        store(spin, &mut link.spin);
+        left.fastest = L::max(left.fastest, L::max(largest(velocity), largest(spin)));
+        if i > 0 || is_held {
+            let of_parent = before[0] + before[1].cross(load(&link.parent_arm));
+            let rate = (velocity + spin.cross(load(&link.arm))) - of_parent;
+            left.rate = L::max(left.rate, largest(rate));
+        }
+        before = [velocity, spin];
+    }
+    left
+}
+
+/// Likewise, and to the poses that the velocities lead to. Gives the largest gap there, m.
+#[inline(always)]
+pub(super) fn descend_ahead<L: Lanes>(links: &mut [Link], hook: Option<&Hook>, mask: L::Mask, h: f32) -> L {
+    let mut answered = [zero::<L>(); 2];
+    let mut parent = Parent::<L>::of_hook(hook);
+    let mut most = L::splat(0.0);
+    for (i, link) in links.iter_mut().enumerate() {
+        answered = answer(link, answered);
+        let [velocity, spin] = [load::<L>(&link.velocity), load::<L>(&link.spin)];
+        store(velocity, &mut link.before_velocity);
+        store(spin, &mut link.before_spin);
+        store(velocity + masked(answered[0], mask), &mut link.velocity);
+        store(spin + masked(answered[1], mask), &mut link.spin);
+        parent = look_ahead(link, parent, i > 0 || hook.is_some(), h);
+        most = L::max(most, largest(load::<L>(&link.gap)));
+    }
+    most
+}
+
+/// Takes the last correction back in the lanes of the mask.
+#[inline(always)]
+pub(super) fn take_back<L: Lanes>(links: &mut [Link], hook: Option<&Hook>, mask: L::Mask, h: f32) {
+    let mut parent = Parent::<L>::of_hook(hook);
+    for (i, link) in links.iter_mut().enumerate() {
+        let (velocity, spin) = (load::<L>(&link.velocity), load::<L>(&link.spin));
+        store(select(mask, load(&link.before_velocity), velocity), &mut link.velocity);
+        store(select(mask, load(&link.before_spin), spin), &mut link.spin);
+        parent = look_ahead(link, parent, i > 0 || hook.is_some(), h);
+    }
+}
+
+/// Where a parent will be.
+#[derive(Clone, Copy)]
+struct Parent<L> {
+    position: Vector3<L>,
+    rotation: Turn<L>,
+    /// Of a fixed one, to the anchor.
+    arm: Vector3<L>,
+    is_fixed: bool,
+}
+
+impl<L: Lanes> Parent<L> {
+    #[inline(always)]
+    fn of_hook(hook: Option<&Hook>) -> Self {
+        let (one, none) = (L::splat(1.0), zero::<L>());
+        let [position, arm] = match hook {
+            Some(hook) => [load(&hook.position), load(&hook.arm)],
+            None => [none, none],
+        };
+        Self { position, rotation: Turn { vector: none, real: one }, arm, is_fixed: true }
+    }
+}
+
+/// Pose that a body's velocities lead to, and the gap that its joint will have there.
+#[inline(always)]
+fn look_ahead<L: Lanes>(link: &mut Link, parent: Parent<L>, is_jointed: bool, h: f32) -> Parent<L> {
+    let position = load::<L>(&link.position) + load::<L>(&link.velocity) * L::splat(h);
+    let half = load::<L>(&link.spin) * L::splat(0.5 * h);
+    let rotation = load_turn::<L>(&link.rotation).then(Turn::by_half_angles(half));
+    store(position, &mut link.ahead);
+    store_turn(rotation, &mut link.ahead_rotation);
+    if is_jointed {
+        let parent_arm =
+            if parent.is_fixed { parent.arm } else { parent.rotation.turned(load(&link.parent_anchor)) };
+        let arm = rotation.turned(load(&link.anchor));
+        store((position - parent.position) + (arm - parent_arm), &mut link.gap);
+    }
+    Parent { position, rotation, arm: parent.arm, is_fixed: false }
+}
+
+/// The largest component.
+#[inline(always)]
+pub(super) fn largest<L: Lanes>(v: Vector3<L>) -> L {
+    let v = v.abs();
+    L::max(v.x, L::max(v.y, v.z))
+}
+
+#[inline(always)]
+fn masked<L: Lanes>(v: Vector3<L>, mask: L::Mask) -> Vector3<L> {
+    Vector3::new(v.x.masked(mask), v.y.masked(mask), v.z.masked(mask))
+}
+
+#[inline(always)]
+fn select<L: Lanes>(mask: L::Mask, a: Vector3<L>, b: Vector3<L>) -> Vector3<L> {
+    Vector3::new(L::select(mask, a.x, b.x), L::select(mask, a.y, b.y), L::select(mask, a.z, b.z))
+}

@@ -1,0 +1,197 @@
+//! Strands: unbranched chains of plain ball joints that nothing touches, up to eight of one length side by side.
+//!
+//! The method is that of the islands ([`tree_joints`](super::tree_joints)): SHAKE and RATTLE over the exact factor of the chain, with
+//! geometric stiffness. What an unbranched chain of points saves is everything around it: there are no rows, no residuals but of three
+//! directions a joint, no impulses from outside, and what one link hands to the next stays in registers. A strand that comes to where
+//! a safeguard of the islands would act has its step solved by them, from its beginning.
+
+mod factor;
+mod joints;
+mod link;
+mod motion;
+mod order;
+mod substep;
+
+use super::build::View;
+use super::effort::stretch_of;
+use super::solution::{SolvedBody, SolvedJoint};
+use crate::islands::Island;
+use crate::joint::Joint;
+use crate::slices::for_each_mut;
+use crate::stage::Counter;
+use crate::step::StepContext;
+use link::{Hook, Link};
+use order::Order;
+use sinew_math::Vec3;
+use sinew_math::dispatch;
+use sinew_math::lanes::WIDTH;
+use substep::{Advance, Alone, Pace};
+
+/// Bundles, from the last one on, in which room is looked for: more would cost more than half-empty ones where all lengths differ.
+const OPEN: usize = 32;
+
+/// All strands of a step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Strands {
+    /// Those in use, and memory of earlier steps behind them.
+    bundles: Vec<Bundle>,
+    used: usize,
+    order: Order,
+}
+
+/// Up to eight strands of one length, each held by a fixed body or all free.
+#[derive(Clone, Debug)]
+struct Bundle {
+    /// Numbers of the islands, lane by lane.
+    islands: Vec<u32>,
+    /// From the held end on.
+    links: Vec<Link>,
+    is_held: bool,
+    hook: Hook,
+    /// How many times as long as the world's its substeps are.
+    stretch: f32,
+    /// Strands beside which the other lanes have last been filled.
+    filled: usize,
+    /// Lanes that the islands' solver is to take, bit by bit.
+    left: u8,
+}
+
+/// A strand that has been through the step.
+pub(crate) struct SolvedStrand<'a> {
+    bundle: &'a Bundle,
+    lane: usize,
+    /// Which island it is.
+    pub island: usize,
+}
+
+impl Strands {
+    /// Begins with none.
+    pub fn clear(&mut self) {
+        self.used = 0;
+    }
+
+    /// Adds an island if it is a strand.
+    pub fn add(&mut self, number: usize, island: &Island<'_>, view: &View<'_>) {
+        if !self.order.find(island, view) {
+            return;
+        }
+        let (count, is_held, stretch) =
+            (self.order.links.len(), self.order.is_held(), stretch_of(island, view));
+        let fits = |bundle: &Bundle| {
+            let has_room = bundle.islands.len() < WIDTH;
+            has_room && bundle.links.len() == count && bundle.is_held == is_held && bundle.stretch == stretch
+        };
+        let first = self.used.saturating_sub(OPEN);
+        let place = self.bundles[first..self.used].iter().rposition(fits);
+        let place = place.map_or_else(|| self.open(count), |place| first + place);
+        let bundle = &mut self.bundles[place];
+        (bundle.is_held, bundle.stretch) = (is_held, stretch);
+        let lane = bundle.islands.len();
+        bundle.islands.push(number as u32);
+        if let Some(first) = self.order.links.first().filter(|_| is_held) {
+            bundle.hook.write(lane, first, view);
+        }
+        for (link, placed) in bundle.links.iter_mut().zip(&self.order.links) {
+            link.write(lane, placed, view);
+        }
+    }
+
+    /// Another bundle, of strands of so many links.
+    fn open(&mut self, count: usize) -> usize {
+        if self.used == self.bundles.len() {
+            self.bundles.push(Bundle::EMPTY);
+        }
+        let bundle = &mut self.bundles[self.used];
+        bundle.islands.clear();
+        bundle.islands.reserve(WIDTH);
+        if bundle.links.len() != count {
+            bundle.links.resize(count, Link::EMPTY);
+            bundle.filled = 0;
+        }
+        self.used += 1;
+        self.used - 1
+    }
+
+    /// Takes all of them through a step.
+    pub fn run(&mut self, view: &View<'_>, context: &StepContext<'_>) {
+        for_each_mut(context.runner, &mut self.bundles[..self.used], |bundle| {
+            let (h, substeps) = view.pace.stretched(bundle.stretch);
+            bundle.run(Pace { h, substeps, max_speed: view.def.max_speed, max_spin: view.def.max_turn / h });
+        });
+        if context.profiler.is_counting() {
+            for strand in self.solved() {
+                let links = strand.bundle.links.len() as u64;
+                let (_, substeps) = view.pace.stretched(strand.bundle.stretch);
+                context.profiler.count(Counter::Bodies, links);
+                context.profiler.count(Counter::BodySubsteps, links * u64::from(substeps));
+                context.profiler.count(Counter::Joints, strand.joint_links().count() as u64);
+            }
+        }
+    }
+
+    /// Those that the islands' solver need not take.
+    pub fn solved(&self) -> impl Iterator<Item = SolvedStrand<'_>> {
+        self.bundles[..self.used].iter().flat_map(|bundle| {
+            let done = (0..bundle.islands.len()).filter(|lane| bundle.left & 1 << lane == 0);
+            done.map(|lane| SolvedStrand { bundle, lane, island: bundle.islands[lane] as usize })
+        })
+    }
+}
+
+impl Bundle {
+    const EMPTY: Self = Self {
+        islands: Vec::new(),
+        links: Vec::new(),
+        is_held: false,
+        hook: Hook::EMPTY,
+        stretch: 1.0,
+        filled: 0,
+        left: 0,
+    };
+
+    fn run(&mut self, pace: Pace) {
+        let lanes = self.islands.len();
+        if lanes > 1 && lanes != self.filled {
+            self.links.iter_mut().for_each(|link| link.fill(lanes));
+            self.hook.fill(lanes);
+            self.filled = lanes;
+        }
+        let hook = self.is_held.then_some(&self.hook);
+        let advance = Advance { links: &mut self.links, hook, pace, lanes };
+        self.left = if lanes > 1 { dispatch::run(advance) } else { dispatch::run(Alone(advance)) };
+    }
+}
+
+impl SolvedStrand<'_> {
+    /// Poses and velocities after the step.
+    pub fn bodies(&self) -> impl Iterator<Item = SolvedBody> {
+        self.bundle.links.iter().map(|link| link.body(self.lane))
+    }
+
+    /// What its joints carry on.
+    pub fn joints(&self) -> impl Iterator<Item = SolvedJoint> {
+        self.joint_links().map(|link| link.joint(self.lane))
+    }
+
+    fn joint_links(&self) -> impl Iterator<Item = &Link> {
+        self.bundle.links.iter().filter(|link| link.joints[self.lane] != order::NONE)
+    }
+}
+
+/// True of a joint that holds a point and does nothing else.
+fn is_plain(joint: &Joint) -> bool {
+    use crate::joint::def::JointKind;
+    joint.kind == JointKind::Ball { limit: None } && joint.drive.is_limp() && joint.drive.friction == 0.0
+}
+
+/// Geometric stiffness about the principal axes that a unit of pull at an anchor adds to the moments: row sums of `1 − r̂ r̂ᵀ`, so
+/// that the inertia stays diagonal.
+fn stiffness_of(anchor: Vec3) -> Vec3 {
+    let axis = sinew_math::normalize_or(anchor, Vec3::X);
+    let off = sinew_math::abs3(axis);
+    Vec3::new(
+        1.0 - axis.x * axis.x + off.x * (off.y + off.z),
+        1.0 - axis.y * axis.y + off.y * (off.x + off.z),
+        1.0 - axis.z * axis.z + off.z * (off.x + off.y),
+    )
+}

@@ -1,0 +1,105 @@
+//! Which islands are strands, and in what order their links follow each other.
+
+use super::super::build::View;
+use super::is_plain;
+use crate::islands::Island;
+
+/// No body, no joint.
+pub(super) const NONE: u32 = u32::MAX;
+/// The joints of a body that the island does not have.
+const ABSENT: [u32; 2] = [NONE - 1; 2];
+
+/// A link in its place; indices of the world.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed {
+    pub body: u32,
+    /// To the link before, or to what holds the strand.
+    pub joint: u32,
+    pub parent: u32,
+    /// The body is the joint's second one.
+    pub is_b: bool,
+}
+
+/// The links of the strand that was found last, from the held end on; of a free one from that with the smaller index.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Order {
+    pub links: Vec<Placed>,
+    /// By slot of the world's bodies: the joints of a body of the island.
+    joints_of: Vec<[u32; 2]>,
+}
+
+impl Order {
+    /// A fixed body holds the first link.
+    pub fn is_held(&self) -> bool {
+        self.links.first().is_some_and(|first| first.joint != NONE)
+    }
+
+    /// Lists the links of an island, if it is a strand; the answer depends on the island alone.
+    pub fn find(&mut self, island: &Island<'_>, view: &View<'_>) -> bool {
+        self.links.clear();
+        let (bodies, joints) = (island.bodies.len(), island.joints.len());
+        let is_tree = joints == bodies || joints + 1 == bodies;
+        let is_apart = island.contacts.is_empty() && island.groups.is_empty() && view.fields.is_empty();
+        // Nothing acts but gravity and the forces and torques of this step.
+        let is_left_alone = |&body: &u32| view.bodies.at(body).forces.list.is_empty();
+        if joints == 0 || !is_tree || !is_apart || !island.bodies.iter().all(is_left_alone) {
+            return false;
+        }
+        self.joints_of.resize(view.bodies.slot_count(), ABSENT);
+        for &body in island.bodies {
+            self.joints_of[body as usize] = [NONE; 2];
+        }
+        let start = self.join(island, view);
+        if let Some(start) = start {
+            self.walk(start, joints == bodies, view);
+        }
+        for &body in island.bodies {
+            self.joints_of[body as usize] = ABSENT;
+        }
+        self.links.len() == bodies
+    }
+
+    /// Notes the joints of each body. Gives that which begins the strand, and the body with it; nothing where links branch, a joint
+    /// is not plain or what holds the strand moves.
+    fn join(&mut self, island: &Island<'_>, view: &View<'_>) -> Option<(u32, u32)> {
+        let mut held = None;
+        for &index in island.joints {
+            let joint = view.joints.at(index);
+            if !is_plain(joint) {
+                return None;
+            }
+            for (body, other) in [(joint.a, joint.b), (joint.b, joint.a)] {
+                let of_body = &mut self.joints_of[body as usize];
+                if *of_body == ABSENT {
+                    if !view.bodies.at(body).velocity.is_zero() {
+                        return None;
+                    }
+                    held = Some((index, other));
+                    continue;
+                }
+                *of_body.iter_mut().find(|place| **place == NONE)? = index;
+            }
+        }
+        let is_end = |&&body: &&u32| self.joints_of[body as usize][1] == NONE;
+        held.or_else(|| island.bodies.iter().find(is_end).map(|&body| (NONE, body)))
+    }
+
+    /// From the first link on, as far as joints lead.
+    fn walk(&mut self, (mut through, mut body): (u32, u32), is_held: bool, view: &View<'_>) {
+        if is_held != (through != NONE) {
+            return;
+        }
+        loop {
+            let joint = (through != NONE).then(|| view.joints.at(through));
+            let is_b = joint.is_some_and(|joint| joint.b == body);
+            let parent = joint.map_or(NONE, |joint| if is_b { joint.a } else { joint.b });
+            self.links.push(Placed { body, joint: through, parent, is_b });
+            let next =
+                self.joints_of[body as usize].into_iter().find(|&next| next != through && next != NONE);
+            let Some(next) = next else { return };
+            let joint = view.joints.at(next);
+            body = if joint.a == body { joint.b } else { joint.a };
+            through = next;
+        }
+    }
+}

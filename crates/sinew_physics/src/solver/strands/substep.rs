@@ -1,0 +1,278 @@
+//! The substeps of eight strands side by side.
+
+use super::super::drives::CLOSING;
+use super::super::energy::{ENERGY_SLACK, MAX_INNER_TURN, NONSENSE, NONSENSE_SPIN, TORN};
+use super::super::flight::load;
+use super::super::tree_joints::{
+    POSITION_CORRECTIONS, POSITION_ROUNDING, POSITION_TOLERANCE, RATE_SHARE, REFINEMENTS,
+};
+use super::factor::{factor, place_arms, place_gaps};
+use super::joints::{Asked, ascend, descend, descend_ahead, largest, take_back};
+use super::link::{Hook, Link};
+use super::motion::{Kinetic, end_substep, integrate_position, integrate_velocity, work_of_forces};
+use sinew_math::dispatch::Kernel;
+use sinew_math::lanes::{First, LaneMask, Lanes, WIDTH};
+
+/// How strands go through a step.
+#[derive(Clone, Copy)]
+pub(super) struct Pace {
+    /// Substep, seconds.
+    pub h: f32,
+    pub substeps: u32,
+    /// Limits, m/s and rad/s.
+    pub max_speed: f32,
+    pub max_spin: f32,
+}
+
+/// A step of a bundle. Gives the lanes in which a safeguard of the islands would have acted, bit by bit: what has come of these means
+/// nothing.
+pub(super) struct Advance<'a> {
+    pub links: &'a mut [Link],
+    /// What holds them, if anything does.
+    pub hook: Option<&'a Hook>,
+    pub pace: Pace,
+    /// Strands there are, from the first lane on.
+    pub lanes: usize,
+}
+
+/// The same of a single strand, without the other lanes.
+pub(super) struct Alone<'a>(pub Advance<'a>);
+
+impl Kernel for Alone<'_> {
+    type Output = u8;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u8 {
+        self.0.run::<First>()
+    }
+}
+
+impl Kernel for Advance<'_> {
+    type Output = u8;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u8 {
+        let Self { links, hook, pace, lanes } = self;
+        let bounds = Bounds::of(links);
+        place_arms::<L>(links);
+        place_gaps::<L>(links, hook);
+        factor::<L>(links, hook.is_some(), &pace);
+        let used = first_lanes::<L>(lanes);
+        let mut sound = used;
+        for _ in 0..pace.substeps {
+            let kinetic = integrate_velocity::<L>(links, &pace);
+            sound = sound & solve::<L>(links, hook, &pace, kinetic, bounds, used);
+            integrate_position::<L>(links, hook.is_some(), &pace);
+            place_arms::<L>(links);
+            factor::<L>(links, hook.is_some(), &pace);
+            relax::<L>(links, hook.is_some(), pace.h, used);
+            let end = end_substep::<L>(links, hook.is_some());
+            // Joints cannot give energy.
+            let slack = L::max(kinetic.start, bounds.mass) * L::splat(ENERGY_SLACK);
+            sound = sound & L::le(end, kinetic.start + slack);
+            if !sound.any() {
+                break;
+            }
+        }
+        !sound.bits()
+    }
+}
+
+/// What eight strands have in a step.
+#[derive(Clone, Copy)]
+struct Bounds<L> {
+    /// Of all links, kg.
+    mass: L,
+    /// The largest coordinate, m.
+    reach: L,
+}
+
+impl<L: Lanes> Bounds<L> {
+    #[inline(always)]
+    fn of(links: &[Link]) -> Self {
+        let mut bounds = Self { mass: L::splat(0.0), reach: L::splat(0.0) };
+        for link in links {
+            bounds.mass = bounds.mass + L::load(&link.mass);
+            bounds.reach = L::max(bounds.reach, largest(load::<L>(&link.position)));
+        }
+        bounds
+    }
+}
+
+/// So many lanes.
+#[inline(always)]
+fn first_lanes<L: Lanes>(count: usize) -> L::Mask {
+    let mut numbers = [0.0; WIDTH];
+    for (lane, number) in numbers.iter_mut().enumerate() {
+        *number = lane as f32;
+    }
+    L::lt(L::load(&numbers), L::splat(count as f32))
+}
+
+/// All lanes.
+#[inline(always)]
+fn all<L: Lanes>() -> L::Mask {
+    L::eq(L::splat(0.0), L::splat(0.0))
+}
+
+/// Joints exactly, then SHAKE: a correction that does not halve the gap is the last one, and one that widens it is taken back. Gives
+/// the lanes in which no safeguard acts.
+#[inline(always)]
+fn solve<L: Lanes>(
+    links: &mut [Link],
+    hook: Option<&Hook>,
+    pace: &Pace,
+    kinetic: Kinetic<L>,
+    bounds: Bounds<L>,
+    used: L::Mask,
+) -> L::Mask {
+    let Pace { h, .. } = *pace;
+    let mut widest = L::splat(0.0);
+    for link in links.iter() {
+        widest = L::max(widest, largest(load::<L>(&link.gap)));
+    }
+    // Joints that are open by more close over several substeps.
+    let mut sound = L::le(widest, L::splat(CLOSING * h));
+    ascend::<L>(links, hook.is_some(), Asked::Closed, h);
+    let mut error = descend_ahead::<L>(links, hook, all::<L>(), h);
+    sound = sound & turn_within::<L>(links, MAX_INNER_TURN / h);
+    let tolerance = L::max(L::splat(POSITION_TOLERANCE), bounds.reach * L::splat(POSITION_ROUNDING));
+    let mut going = used & L::ge(error, tolerance);
+    for _ in 0..POSITION_CORRECTIONS {
+        if !going.any() {
+            break;
+        }
+        ascend::<L>(links, hook.is_some(), Asked::Corrected, h);
+        let left = descend_ahead::<L>(links, hook, going, h);
+        let worse = going & L::gt(left, error);
+        if worse.any() {
+            take_back::<L>(links, hook, worse, h);
+        }
+        let better = L::lt(left, L::splat(0.5) * error);
+        error = L::select(going & !worse, left, error);
+        going = going & better & L::ge(left, tolerance);
+    }
+    sound = sound & L::lt(error, L::splat(TORN)) & is_sane::<L>(links, pace);
+    if hook.is_some() {
+        // What hangs rises by what it has.
+        let there = kinetic.before + L::max(kinetic.before, bounds.mass) * L::splat(ENERGY_SLACK);
+        sound = sound & L::le(-work_of_forces::<L>(links, pace), there);
+    }
+    sound
+}
+
+/// RATTLE: joint velocities to zero at the new pose, by as many solves as masses that differ by far need.
+#[inline(always)]
+fn relax<L: Lanes>(links: &mut [Link], is_held: bool, h: f32, used: L::Mask) {
+    let mut going = used;
+    for _ in 0..=REFINEMENTS {
+        ascend::<L>(links, is_held, Asked::Rest, h);
+        let left = descend::<L>(links, is_held, going);
+        going = going & L::gt(left.rate, left.fastest * L::splat(RATE_SHARE));
+        if !going.any() {
+            break;
+        }
+    }
+}
+
+/// No link turns faster, rad/s.
+#[inline(always)]
+fn turn_within<L: Lanes>(links: &[Link], most: f32) -> L::Mask {
+    let most = L::splat(most * most);
+    let mut within = L::le(most, most);
+    for link in links {
+        let spin = load::<L>(&link.spin);
+        within = within & L::le(spin.dot(spin), most);
+    }
+    within
+}
+
+/// All velocities are of this world.
+#[inline(always)]
+fn is_sane<L: Lanes>(links: &[Link], pace: &Pace) -> L::Mask {
+    let (speed, turn) = (L::splat(NONSENSE * pace.max_speed), L::splat(NONSENSE_SPIN));
+    let mut sane = L::le(speed, speed);
+    for link in links {
+        sane = sane & L::lt(largest(load::<L>(&link.velocity)), speed);
+        sane = sane & L::lt(largest(load::<L>(&link.spin)), turn);
+    }
+    sane
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::flight::{put, take};
+    use super::*;
+    use sinew_math::dispatch::{self, Level, run_at};
+    use sinew_math::{Random, Vec3};
+
+    const PACE: Pace = Pace { h: 1.0 / 240.0, substeps: 4, max_speed: 4000.0, max_spin: 377.0 };
+
+    /// Level strands that swing, each with masses and velocities of its own.
+    fn random_links(count: usize) -> Vec<Link> {
+        let mut random = Random::new(5);
+        let mut links = vec![Link::EMPTY; count];
+        for (i, link) in links.iter_mut().enumerate() {
+            for lane in 0..WIDTH {
+                let mass = random.range(0.5, 20.0);
+                link.mass[lane] = mass;
+                put(Vec3::new(0.02, 0.03, 0.001) * mass, &mut link.inertia, lane);
+                put(Vec3::Z * -0.2, &mut link.anchor, lane);
+                put(Vec3::Z * 0.2, &mut link.parent_anchor, lane);
+                put(super::super::stiffness_of(Vec3::Z), &mut link.stiffness, lane);
+                put(super::super::stiffness_of(Vec3::Z), &mut link.parent_stiffness, lane);
+                put(Vec3::Z * (0.4 * i as f32 + 0.2), &mut link.position, lane);
+                put(Vec3::Y * -9.81, &mut link.acceleration, lane);
+                put(random.direction() * 2.0, &mut link.velocity, lane);
+                put(random.direction() * 3.0, &mut link.spin, lane);
+            }
+        }
+        links
+    }
+
+    fn bits(links: &[Link], lane: usize) -> Vec<u32> {
+        let mut bits = Vec::new();
+        for link in links {
+            for of in [&link.position, &link.velocity, &link.spin, &link.force, &link.pushed, &link.turned] {
+                bits.extend(take(of, lane).to_array().map(f32::to_bits));
+            }
+            bits.extend(link.rotation.map(|row| row[lane].to_bits()));
+        }
+        bits
+    }
+
+    #[test]
+    fn all_levels_have_the_same_bits_and_so_has_a_single_strand() {
+        for hook in [Some(&Hook::EMPTY), None] {
+            let step = |level: Level| {
+                let mut links = random_links(6);
+                let left = run_at(level, Advance { links: &mut links, hook, pace: PACE, lanes: WIDTH });
+                assert_eq!(left, 0, "{level:?}");
+                links
+            };
+            let expected = step(Level::Scalar);
+            assert_ne!(bits(&expected, 0), bits(&random_links(6), 0));
+            for level in Level::available() {
+                let links = step(level);
+                assert!((0..WIDTH).all(|lane| bits(&links, lane) == bits(&expected, lane)), "{level:?}");
+            }
+            let mut links = random_links(6);
+            let left = dispatch::run(Alone(Advance { links: &mut links, hook, pace: PACE, lanes: 1 }));
+            assert_eq!((left, bits(&links, 0)), (0, bits(&expected, 0)));
+        }
+    }
+
+    #[test]
+    fn a_lane_whose_numbers_mean_nothing_is_left_and_disturbs_no_other() {
+        let mut expected = random_links(4);
+        dispatch::run(Advance { links: &mut expected, hook: None, pace: PACE, lanes: WIDTH });
+        let mut links = random_links(4);
+        put(Vec3::splat(f32::NAN), &mut links[2].velocity, 3);
+        put(Vec3::X * 1e6, &mut links[1].position, 5);
+        let left = dispatch::run(Advance { links: &mut links, hook: None, pace: PACE, lanes: WIDTH });
+        assert_eq!(left, 1 << 3 | 1 << 5);
+        for lane in [0, 1, 2, 4, 6, 7] {
+            assert_eq!(bits(&links, lane), bits(&expected, lane), "{lane}");
+        }
+    }
+}

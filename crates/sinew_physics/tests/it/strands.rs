@@ -1,0 +1,164 @@
+//! Chains of plain ball joints, up to eight side by side: as they swing alone, and as they would as islands.
+
+use crate::build::{ball, capsule_body};
+use sinew_math::{Random, ReadError, Reader, Transform, Vec3, Writer};
+use sinew_physics::*;
+
+const LENGTH: f32 = 0.3;
+
+/// A chain of links of 1 to 50 kg that swings, number `i` of a crowd in which none comes near another.
+struct Chain {
+    bodies: Vec<BodyId>,
+    joints: Vec<JointId>,
+}
+
+impl Chain {
+    fn new(world: &mut World, i: u32, links: usize, is_held: bool) -> Self {
+        let mut random = Random::new(u64::from(i) + 1);
+        // Near the origin: at 40 m the rounding of a position is a millimetre a second.
+        let origin = Vec3::Z * (6.0 * i as f32);
+        let mut last = is_held.then(|| {
+            world.add_body(&BodyDef { kind: BodyKind::Static, position: origin, ..BodyDef::default() })
+        });
+        let (mut bodies, mut joints) = (Vec::new(), Vec::new());
+        for k in 0..links {
+            let at = origin + Vec3::Z * (LENGTH * (k as f32 + 0.5));
+            let mut def = capsule_body(0.1, 0.03, at);
+            def.shapes[0].density *= random.range(1.0, 50.0);
+            if is_held {
+                (def.linear_damping, def.angular_damping) = (random.range(0.0, 0.1), random.range(0.0, 0.1));
+            }
+            let body = world.add_body(&def);
+            if let Some(last) = last {
+                let joint = ball(world, last, body, at - Vec3::Z * (0.5 * LENGTH));
+                // Either may be the second body.
+                let flipped = JointDef {
+                    body_a: joint.body_b,
+                    body_b: joint.body_a,
+                    frame_a: joint.frame_b,
+                    frame_b: joint.frame_a,
+                    ..joint
+                };
+                joints.push(world.add_joint(if k % 3 == 1 { &flipped } else { &joint }));
+            }
+            last = Some(body);
+            bodies.push(body);
+        }
+        for &body in &bodies {
+            let impulse = random.direction() * world.mass(body).mass;
+            world.apply_impulse_at_center(body, impulse);
+        }
+        Self { bodies, joints }
+    }
+
+    fn state(&self, world: &World) -> Vec<(Transform, Velocity)> {
+        self.bodies.iter().map(|&id| (world.transform(id), world.velocity(id))).collect()
+    }
+}
+
+/// Pushes bodies by as good as nothing, so that their islands are solved as such.
+struct Touch(Vec<BodyId>);
+
+impl PhysicsObject for Touch {
+    fn kind(&self) -> &'static str {
+        "touch"
+    }
+    fn save(&self, _: &mut Writer) {}
+    fn load(&mut self, _: &mut Reader<'_>) -> Result<(), ReadError> {
+        Ok(())
+    }
+    fn add_forces(&mut self, forces: &mut Forces<'_>) {
+        self.0.iter().for_each(|&id| forces.apply_force_at_center(id, Vec3::X * 1e-30));
+    }
+}
+
+fn run(world: &mut World, steps: usize) {
+    (0..steps).for_each(|_| world.step());
+}
+
+#[test]
+fn bits_are_the_same_alone_and_beside_others() {
+    let lengths = |i: u32| if i.is_multiple_of(3) { 4 } else { 7 };
+    let mut crowd = World::new(WorldDef::default());
+    let chains: Vec<_> = (0..15).map(|i| Chain::new(&mut crowd, i, lengths(i), i != 8)).collect();
+    run(&mut crowd, 60);
+    for i in [0, 1, 8, 13, 14] {
+        let mut world = World::new(WorldDef::default());
+        let alone = Chain::new(&mut world, i, lengths(i), i != 8);
+        run(&mut world, 60);
+        assert_eq!(chains[i as usize].state(&crowd), alone.state(&world), "chain {i}");
+    }
+}
+
+#[test]
+fn a_strand_is_what_an_island_does() {
+    for (i, links, is_held) in [(0, 1, true), (1, 2, true), (2, 9, true), (3, 2, false), (4, 9, false)] {
+        let [mut strand, mut island] = [(); 2].map(|()| World::new(WorldDef::default()));
+        let [a, b] = [&mut strand, &mut island].map(|world| Chain::new(world, i, links, is_held));
+        island.add_object(Box::new(Touch(b.bodies.clone())));
+        for step in 1..=20 {
+            strand.step();
+            island.step();
+            for ((pose, v), (expected, w)) in a.state(&strand).into_iter().zip(b.state(&island)) {
+                let off = (pose.translation - expected.translation).length();
+                assert!(off < 1e-4, "chain {i}, step {step}: {pose:?}, {expected:?}");
+                assert!(pose.rotation.dot(expected.rotation).abs() > 1.0 - 1e-6, "chain {i}, step {step}");
+                assert!((v.linear - w.linear).length() < 5e-3, "chain {i}, step {step}: {v:?}, {w:?}");
+                assert!((v.angular - w.angular).length() < 5e-2, "chain {i}, step {step}: {v:?}, {w:?}");
+            }
+            for (&a, &b) in a.joints.iter().zip(&b.joints) {
+                let (of_strand, of_island) = (strand.reaction(a), island.reaction(b));
+                let off = (of_strand.force - of_island.force).length();
+                assert!(
+                    off < 0.01 * of_island.force.length() + 0.1,
+                    "chain {i}: {of_strand:?}, {of_island:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn objects_disturb_only_what_they_act_on() {
+    let [mut with, mut without] = [(); 2].map(|()| World::new(WorldDef::default()));
+    let [with_chains, chains] =
+        [&mut with, &mut without].map(|world| [0, 1].map(|i| Chain::new(world, i, 5, true)));
+    with.add_object(Box::new(Touch(with_chains[0].bodies.clone())));
+    run(&mut with, 60);
+    run(&mut without, 60);
+    assert_ne!(with_chains[0].state(&with), chains[0].state(&without));
+    assert_eq!(with_chains[1].state(&with), chains[1].state(&without));
+}
+
+#[test]
+fn momentum_of_a_free_strand_stays() {
+    let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+    let chain = Chain::new(&mut world, 0, 6, false);
+    let weights = chain.bodies.iter().map(|&id| (id, world.mass(id).mass)).collect::<Vec<_>>();
+    let mass: f32 = weights.iter().map(|(_, mass)| mass).sum();
+    let momentum =
+        |world: &World| -> Vec3 { weights.iter().map(|&(id, mass)| world.velocity(id).linear * mass).sum() };
+    let before = momentum(&world);
+    run(&mut world, 120);
+    let lost = (momentum(&world) - before).length();
+    assert!(before.length() > 0.1 * mass && lost < 1e-4 * mass, "{lost} of {before}");
+}
+
+#[test]
+fn a_joint_that_is_open_closes_as_in_an_island() {
+    let [mut strand, mut island] = [(); 2].map(|()| World::new(WorldDef::default()));
+    let [a, b] = [&mut strand, &mut island].map(|world| {
+        let chain = Chain::new(world, 0, 3, true);
+        let body = chain.bodies[2];
+        let pose = world.transform(body);
+        world.set_transform(body, Transform::new(pose.translation + Vec3::X * 0.2, pose.rotation));
+        chain
+    });
+    island.add_object(Box::new(Touch(b.bodies.clone())));
+    run(&mut strand, 1);
+    run(&mut island, 1);
+    // The islands' solver has it: to the bit.
+    assert_eq!(a.state(&strand), b.state(&island));
+    run(&mut strand, 30);
+    assert!(strand.joint_gap(a.joints[2]) < 1e-5, "{}", strand.joint_gap(a.joints[2]));
+}
