@@ -18,6 +18,9 @@ pub use sinew_physics as physics;
 #[cfg(feature = "ragdoll")]
 pub use sinew_ragdoll as ragdoll;
 
+pub mod mannequin;
+#[cfg(feature = "ragdoll")]
+pub mod motions;
 pub mod prelude;
 
 /// Reads a character from a GLB, glTF, VRM or VRMA with the files beside it: rig, clips, and what is needed to write a

@@ -102,13 +102,13 @@ impl Legs {
     }
 
     /// Shifts the whole body, in the axes of the model pose.
-    pub(crate) fn carry(&self, rig: &Rig, by: Vec3, local: &mut [LocalTransform], model: &mut [Affine]) {
+    pub fn carry(&self, rig: &Rig, by: Vec3, local: &mut [LocalTransform], model: &mut [Affine]) {
         shift(rig, self.pelvis, by, local, model);
         self.gather(rig, local, model);
     }
 
     /// Gives a foot back a rotation that moving its leg has changed.
-    pub(crate) fn plant(
+    pub fn plant(
         &self,
         rig: &Rig,
         foot: &Foot,

@@ -81,6 +81,11 @@ impl Outputs {
         self.files.push((path.to_path_buf(), bytes));
     }
 
+    /// The first of them.
+    pub fn first(&self) -> Option<(&Path, &[u8])> {
+        self.files.first().map(|(path, bytes)| (path.as_path(), bytes.as_slice()))
+    }
+
     /// Where they go.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
         self.files.iter().map(|(path, _)| path.as_path())

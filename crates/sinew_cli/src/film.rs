@@ -1,12 +1,15 @@
 //! Moving pictures of a fall.
 
 use crate::fall::Fall;
+use crate::framing::Framing;
 use crate::progress::Progress;
 use crate::skin;
 use crate::story;
 use sinew::anim::{Wrap, local_to_model, sample};
 use sinew::math::{Affine, Rotation, Transform, Vec3};
-use sinew::physics::{BodyDef, Shape};
+use sinew::physics::boxes::Aabb;
+use sinew::physics::ray::Ray;
+use sinew::physics::{BodyDef, BodyKind, BodyKinds, QueryFilter, Shape, World, WorldDef};
 use sinew_picture::draw;
 use sinew_picture::{
     Caption, EncodeError, FollowCamera, Image, Material, Model, Movie, PictureFormat, RenderSettings,
@@ -27,10 +30,19 @@ pub struct Film<'a> {
     pub set: Vec<Model>,
     /// From the character to the camera.
     pub direction: Vec3,
-    /// What the camera shows around the character, metres.
-    pub radius: f32,
+    /// What the camera shows.
+    pub view: View,
     /// Light.
     pub sun: Sun,
+}
+
+/// What a camera shows of a fall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum View {
+    /// A ball of that radius (metres) around the character, which the camera follows.
+    Around(f32),
+    /// The character as a whole, all the way, from where least stands before it.
+    Whole,
 }
 
 impl Film<'_> {
@@ -41,13 +53,19 @@ impl Film<'_> {
         let mut movie = Movie::new(format, FPS);
         let frames = (self.fall.input.seconds * FPS as f32) as u32 + 1;
         let progress = Progress::new("drawing", frames as usize);
-        let mut shots = Shots::new(self);
+        let mut shots = Shots::new(self, frames);
         for frame in 0..frames {
-            movie.push(&shots.shoot(&mut renderer, frame as f32 / FPS as f32))?;
+            movie.push(&shots.shoot(&mut renderer, frame))?;
             progress.step();
         }
         movie.finish()
     }
+}
+
+/// Where the camera is.
+enum Shooting {
+    Following { radius: f32, camera: Option<FollowCamera> },
+    Framing(Framing),
 }
 
 /// A film on its way.
@@ -58,44 +76,64 @@ struct Shots<'a> {
     standing: usize,
     looks: Vec<Material>,
     phases: Vec<story::Phase>,
-    camera: Option<FollowCamera>,
+    camera: Shooting,
     direction: Vec3,
-    radius: f32,
     /// The character at the time: joints and bodies, in the world.
     model: Vec<Affine>,
     bodies: Vec<Transform>,
 }
 
 impl<'a> Shots<'a> {
-    fn new(film: Film<'a>) -> Self {
-        let Film { fall, set, direction, radius, sun } = film;
+    fn new(film: Film<'a>, frames: u32) -> Self {
+        let Film { fall, set, direction, view, sun } = film;
         let rig = &fall.input.character.rig;
-        Self {
+        let radius = if let View::Around(radius) = view { radius } else { 0.0 };
+        let mut shots = Self {
             fall,
             standing: set.len(),
             scene: Scene { models: set, sun, ..Scene::default() },
             looks: skin::looks(rig),
             phases: story::phases(&fall.input.character, &fall.baked.events),
-            camera: None,
+            camera: Shooting::Following { radius, camera: None },
             direction,
-            radius,
             model: Vec::new(),
             bodies: Vec::new(),
+        };
+        if view == View::Whole {
+            let boxes: Vec<Aabb> = (0..frames)
+                .map(|frame| {
+                    shots.pose(frame as f32 / FPS as f32);
+                    shots.around()
+                })
+                .collect();
+            let framing = Framing::new(&boxes, FPS as f32, direction);
+            let side = clear_side(fall.input.bodies, &framing, &boxes, direction);
+            shots.camera = Shooting::Framing(framing.seen_from(side));
         }
+        shots
     }
 
-    fn shoot(&mut self, renderer: &mut Renderer, time: f32) -> Image {
+    fn shoot(&mut self, renderer: &mut Renderer, frame: u32) -> Image {
+        let time = frame as f32 / FPS as f32;
         self.pose(time);
         self.scene.models.truncate(self.standing);
         self.add_character();
         self.add_arrows(time);
-        let subject = self.middle();
-        let (direction, radius) = (self.direction, self.radius);
-        let camera = self.camera.get_or_insert_with(|| FollowCamera::new(subject, radius, direction));
-        camera.update(subject, 1.0 / FPS as f32);
+        let subject = self.around().center();
+        let size = renderer.settings();
+        let aspect = size.width as f32 / size.height as f32;
+        let camera = match &mut self.camera {
+            Shooting::Following { radius, camera } => {
+                let camera =
+                    camera.get_or_insert_with(|| FollowCamera::new(subject, *radius, self.direction));
+                camera.update(subject, 1.0 / FPS as f32);
+                camera.camera()
+            }
+            Shooting::Framing(framing) => framing.camera(frame as usize, aspect),
+        };
         let phase = self.phases.iter().rev().find(|(since, _)| *since <= time).map_or("", |(_, what)| what);
         self.scene.captions = vec![Caption::new(format!("{time:5.2} s  {phase}"))];
-        renderer.render(&self.scene, &camera.camera())
+        renderer.render(&self.scene, &camera)
     }
 
     fn pose(&mut self, time: f32) {
@@ -110,11 +148,11 @@ impl<'a> Shots<'a> {
         }
     }
 
-    /// The middle of the box around all bodies, in the world.
-    fn middle(&self) -> Vec3 {
+    /// Around all bodies, in the world.
+    fn around(&self) -> Aabb {
         let bodies = &self.fall.input.character.ragdoll.bodies;
         let boxes = bodies.iter().zip(&self.bodies).map(|(body, place)| body.shape.aabb(place));
-        boxes.reduce(|all, one| all.merge(&one)).map_or(Vec3::ZERO, |all| all.center())
+        boxes.reduce(|all, one| all.merge(&one)).unwrap_or_default()
     }
 
     fn add_character(&mut self) {
@@ -132,6 +170,35 @@ impl<'a> Shots<'a> {
         }
     }
 }
+
+/// Of the ways to look at something that moves through a world, by eighths of a turn and then from higher up, the first from
+/// which least of it is hidden behind what stands.
+fn clear_side(bodies: &[BodyDef], framing: &Framing, boxes: &[Aabb], wanted: Vec3) -> Vec3 {
+    let mut world = World::new(WorldDef::default());
+    for body in bodies.iter().filter(|body| body.kind == BodyKind::Static) {
+        world.add_body(body);
+    }
+    let stands = world.query().filter(QueryFilter::of(BodyKinds::STATIC));
+    let hidden = |direction: Vec3| {
+        let seen = framing.seen_from(direction);
+        let looks = boxes.iter().enumerate().step_by(LOOK_EVERY).flat_map(|(frame, bounds)| {
+            let (center, camera) = (bounds.center(), seen.camera(frame, 1.0).position);
+            let height = bounds.max.y - bounds.min.y;
+            [-0.3, 0.0, 0.4].map(|share| center + Vec3::Y * (share * height)).map(|from| (from, camera))
+        });
+        looks.filter(|&(from, camera)| stands.any(&Ray { origin: from, direction: camera - from })).count()
+    };
+    let turned = |eighths: u8, lift: f32| {
+        let turn = Rotation::from_axis_angle(Vec3::Y, f32::from(eighths) * core::f32::consts::FRAC_PI_4);
+        turn * (wanted + Vec3::Y * lift)
+    };
+    let sides = [0, 7, 1, 6, 2, 5, 3, 4];
+    let ways = [0.0, 0.8, 3.0].into_iter().flat_map(|lift| sides.map(|eighths| turned(eighths, lift)));
+    ways.min_by_key(|&way| hidden(way)).unwrap_or(wanted)
+}
+
+/// Pictures from one for which it is looked whether something is in the way to the next.
+const LOOK_EVERY: usize = 4;
 
 /// A shaft and a head that end at `tip`, along the unit vector `along`.
 fn arrow(tip: Vec3, along: Vec3) -> [Model; 2] {

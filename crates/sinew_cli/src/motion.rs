@@ -20,8 +20,13 @@ impl Motion {
     /// Reads a file and finds out what its joints are.
     pub fn load(path: &Path, options: &MotionOptions<'_>) -> Result<Self> {
         let file = load_motion(path, options).map_err(helped)?;
+        Ok(Self::new(path.display().to_string(), file))
+    }
+
+    /// Finds out what the joints of a file of that name are.
+    pub fn new(name: String, file: MotionFile) -> Self {
         let analysis = analyze_any(&file);
-        Ok(Self { name: path.display().to_string(), file, analysis })
+        Self { name, file, analysis }
     }
 
     /// Whether a mesh hangs on its joints.

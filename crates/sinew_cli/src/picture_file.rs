@@ -43,6 +43,11 @@ pub fn seconds(text: &str) -> Result<f32, String> {
     }
 }
 
+/// A length that a movie may have: of a clip of so many seconds.
+pub fn longest(seconds: f32) -> f32 {
+    if seconds < LONGEST { seconds } else { LONGEST }
+}
+
 /// A time that takes a while.
 pub fn length(text: &str) -> Result<f32, String> {
     let time = seconds(text)?;

@@ -1,7 +1,7 @@
 //! What happens to a character, in words.
 
 use crate::table::shown;
-use sinew::ragdoll::{BakeInput, CharacterDef, Event, Locomotion};
+use sinew::ragdoll::{BakeInput, CharacterDef, Event, Locomotion, Opening};
 
 /// What the character is doing from some time on, in a word or two for the corner of a picture.
 pub type Phase = (f32, String);
@@ -9,9 +9,11 @@ pub type Phase = (f32, String);
 /// Seconds for which a hit is called one.
 const HIT_SECONDS: f32 = 0.4;
 
+const RESTS: &str = "stands in its rest pose";
+
 /// The phases of a bake, in order of time.
 pub fn phases(def: &CharacterDef, events: &[(f32, Event)]) -> Vec<Phase> {
-    let mut phases = vec![(0.0, upright(def))];
+    let mut phases = vec![(0.0, at_first(def))];
     let mut add = |time: f32, what: &str| phases.push((time, what.to_owned()));
     for &(time, event) in events {
         match event {
@@ -32,20 +34,28 @@ pub fn phases(def: &CharacterDef, events: &[(f32, Event)]) -> Vec<Phase> {
     phases
 }
 
+/// Before anything has happened to it.
+fn at_first(def: &CharacterDef) -> String {
+    match def.motions().opening {
+        Opening::Looped => upright(def),
+        Opening::Rest => RESTS.to_owned(),
+    }
+}
+
 fn upright(def: &CharacterDef) -> String {
     match (def.motions().looped.map(|clip| def.motions().clips[clip].name.as_str()), def.motions().locomotion)
     {
         (Some(_), Locomotion::Forward { .. }) => "walks".to_owned(),
         (Some(""), Locomotion::InPlace) => "plays a clip without a name".to_owned(),
         (Some(clip), Locomotion::InPlace) => format!("plays clip {}", shown(clip)),
-        (None, _) => "stands in its rest pose".to_owned(),
+        (None, _) => RESTS.to_owned(),
     }
 }
 
 /// The events of a bake as sentences, in order of time.
 pub fn told(input: &BakeInput<'_>, events: &[(f32, Event)]) -> Vec<(f32, String)> {
     let def = &input.character;
-    let mut told = vec![(0.0, upright(def))];
+    let mut told = vec![(0.0, at_first(def))];
     for &(time, event) in events {
         let sentence = match event {
             Event::Hit { body } => hit_sentence(input, time, body),
@@ -64,6 +74,7 @@ pub fn told(input: &BakeInput<'_>, events: &[(f32, Event)]) -> Vec<(f32, String)
                 format!("gets up by clip {}", shown(&def.motions().clips[clip].name))
             }
             Event::GettingUp { clip: None } => "gets up".to_owned(),
+            Event::Up if def.motions().opening == Opening::Rest => upright(def),
             Event::Up => format!("{} again", upright(def)),
         };
         told.push((time, sentence));

@@ -11,6 +11,9 @@ use crate::islands::Islands;
 /// What creeps is calm wherever it gets to while it is slower than this many times the distance in the time, and than the angle
 /// in the time: limp limbs sag for seconds.
 const CREEP: f32 = 2.0;
+/// What goes faster than this, and yet has no speed, is being pushed out of another, m/s: half of what bodies with joints are pushed
+/// out with.
+const PUSHED: f32 = 0.0275;
 /// What hangs on particles swings about its place, and must come to rest before it may sleep: below both of these, m/s and
 /// rad/s.
 const SLOW_LINEAR: f32 = 0.02;
@@ -34,7 +37,7 @@ pub(crate) fn sleep(
                 body,
                 CREEP * thresholds.distance / thresholds.time,
                 thresholds.angle / thresholds.time,
-            );
+            ) && !is_pushed_out(body, def.dt());
             if creeps_little {
                 body.place = body.world_from_principal;
             }
@@ -71,6 +74,11 @@ fn stays(body: &Body, thresholds: &SleepThresholds) -> bool {
     let (was, is) = (body.place, body.world_from_principal);
     (is.translation - was.translation).length() < thresholds.distance
         && is.rotation.angle_to(was.rotation) < thresholds.angle
+}
+
+/// Whether a slow body went on all the same in this step.
+fn is_pushed_out(body: &Body, dt: f32) -> bool {
+    (body.world_from_principal.translation - body.previous.translation).length() > PUSHED * dt
 }
 
 fn is_slower(body: &Body, speed: f32, spin: f32) -> bool {

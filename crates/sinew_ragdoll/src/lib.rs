@@ -22,7 +22,8 @@ pub mod skin;
 pub use bake::{BakeInput, Baked, Hit, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
 pub use character::{
-    AfterSettling, Character, CharacterDef, Event, GettingReady, Locomotion, MotionError, MotionSet, State,
+    AfterSettling, Character, CharacterDef, Event, GettingReady, Locomotion, MotionError, MotionSet, Opening,
+    State,
 };
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 pub use doctor::{Patient, cure, doctor};

@@ -73,6 +73,7 @@ pub(crate) fn walking_mannequin() -> (CharacterDef, f32) {
         looped: Some(motions.walk),
         get_ups: vec![motions.get_up_supine, motions.get_up_prone],
         locomotion: Locomotion::Forward { speed },
+        ..MotionSet::default()
     };
     character.set_motions(motions).expect("clips made by code can be played");
     (character, speed)

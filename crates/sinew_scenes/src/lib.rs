@@ -5,6 +5,6 @@ pub mod blueprint;
 pub mod cabin;
 pub mod crowd;
 pub mod demo;
-pub mod mannequin;
+pub use sinew::mannequin;
 mod parts;
 pub mod scenes;

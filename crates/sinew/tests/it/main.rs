@@ -7,6 +7,8 @@ mod pendulum_clock;
 #[path = "../../examples/probes.rs"]
 mod probes;
 
+mod motions;
+
 #[test]
 fn the_flock_flies() {
     flock::main();

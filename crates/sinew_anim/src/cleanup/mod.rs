@@ -12,7 +12,7 @@ mod spikes;
 
 pub use foot_slide::{FootSlideReport, remove_foot_slide};
 pub use limits::{JointExcess, project_limits};
-pub use penetration::{PenetrationReport, remove_penetration};
+pub use penetration::{PenetrationReport, raise, remove_penetration};
 pub use smooth::{SmoothReport, smooth};
 pub use spikes::{Spike, SpikeSettings, despike};
 

@@ -41,14 +41,32 @@ pub fn remove_penetration(
         let low = body.iter().map(|&joint| model[joint].translation.y).fold(soles, min);
         depth.push(max(floor - low, 0.0));
     }
-    let lift = smooth_above(&depth, take.frames_in(blend));
+    raise(rig, root, legs, &depth, blend, take)
+}
+
+/// Raises the whole body by at least so much in each frame (metres, in the space that `root` maps the rig's to, y up; 0 and
+/// more), smoothly over `blend` seconds before and after.
+///
+/// # Panics
+/// If the take is not one of the rig's, or there is not one number for each frame.
+pub fn raise(
+    rig: &Rig,
+    root: &Affine,
+    legs: &Legs,
+    least: &[f32],
+    blend: f32,
+    take: &mut Take,
+) -> PenetrationReport {
+    assert_eq!(least.len(), take.frames(), "a number for each frame");
+    let lift = smooth_above(least, take.frames_in(blend));
+    let mut model = Vec::new();
     for (frame, &lift) in lift.iter().enumerate().filter(|(_, lift)| **lift > 0.0) {
         local_to_model(rig, take.pose(frame), root, &mut model);
         legs.carry(rig, Vec3::Y * lift, take.pose_mut(frame), &mut model);
     }
     PenetrationReport {
-        frames: depth.iter().filter(|&&depth| depth > 1e-5).count(),
-        deepest: depth.into_iter().fold(0.0, max),
+        frames: least.iter().filter(|&&depth| depth > 1e-5).count(),
+        deepest: least.iter().copied().fold(0.0, max),
         raised: lift.into_iter().fold(0.0, max),
     }
 }

@@ -6,7 +6,9 @@ use crate::failure::{Failure, Result};
 use crate::files::{CharacterFile, Outputs, must_end_in, never_over};
 use crate::motion::Motion;
 use crate::onto::{Carried, carry};
+use crate::picture_file::{PictureFile, longest};
 use crate::report::Report;
+use crate::show::Show;
 use crate::skeleton::{bones_only, frame_rate, lost_meshes, transform};
 use crate::table::shown;
 use clap::ValueEnum;
@@ -16,9 +18,11 @@ use sinew::anim::{Clip, Event, Rig, RigAnalysis, Take, rest_pose};
 use sinew::formats::bvh::{BvhRows, BvhUnit, RestFrame};
 use sinew::formats::{
     BvhEnds, BvhOptions, BvhWriteOptions, MotionFormat, MotionOptions, NewClip, ReadOptions, Textures,
-    append_clips, events_extras, events_path, load_gltf, write_bvh, write_events, write_motion,
+    append_clips, events_extras, events_path, load_gltf, no_files, read_motion, write_bvh, write_events,
+    write_motion,
 };
 use sinew::math::{EulerOrder, Rotation, Vec3};
+use sinew_picture::RenderSettings;
 use std::path::{Path, PathBuf};
 
 /// Convert clips between BVH, FBX and GLB, or put them on another character
@@ -28,7 +32,7 @@ Example:
   sinew convert walk.bvh walk.glb
   sinew convert character.glb --clip Walk walk.bvh
   sinew convert character.fbx character.glb
-  sinew convert walk.bvh --onto character.glb walking.glb
+  sinew convert walk.bvh --onto character.glb walking.glb --picture walking.gif
 
 Reads glTF, GLB, VRM, VRMA, BVH, DeepMimic and FBX; writes GLB and BVH, by the name of OUT. What the new format cannot hold
 is told in a line each.")]
@@ -41,6 +45,9 @@ pub struct Convert {
     /// The same as OUT
     #[arg(short = 'o', long = "output", value_name = "OUT")]
     output_option: Option<PathBuf>,
+    /// Also draw the first clip that is written: a .gif, .png (animated) or .webp file
+    #[arg(long, value_name = "OUT.(gif|png|webp)")]
+    picture: Option<PictureFile>,
     /// Only this clip, by name, or by number from 0 if it has none; repeatable. A BVH holds one
     #[arg(long = "clip", value_name = "NAME")]
     clips: Vec<String>,
@@ -135,7 +142,8 @@ impl Convert {
     /// Reads, converts, writes.
     pub fn run(&self) -> Result<Report> {
         let target = self.target()?;
-        never_over([&self.input].into_iter().chain(&self.onto).map(PathBuf::as_path), [self.output()])?;
+        let inputs = [&self.input].into_iter().chain(&self.onto).map(PathBuf::as_path);
+        never_over(inputs, self.picture.iter().map(PictureFile::path).chain([self.output()]))?;
         let mut motion = Motion::load(&self.input, &self.motion_options())?;
         let chosen = choose_clips(&motion, &self.clips)?;
         let source = &mut motion.file;
@@ -161,6 +169,10 @@ impl Convert {
                 self.to_bvh(&name, content, analysis.as_ref(), &mut outputs)?
             }
         };
+        if let Some(picture) = &self.picture {
+            let bytes = draw(&outputs, clips.len(), picture)?;
+            outputs.add(picture.path(), bytes);
+        }
         outputs.write()?;
         Ok(self.report(&clips, &notes, &outputs))
     }
@@ -332,6 +344,23 @@ impl Convert {
         }
         Report { json, text }
     }
+}
+
+/// The movie of what is written: of the first of its last `new` clips.
+fn draw(outputs: &Outputs, new: usize, picture: &PictureFile) -> Result<Vec<u8>> {
+    let (path, bytes) = outputs.first().expect("something is written");
+    let name = path.display().to_string();
+    let gltf = ReadOptions { textures: Textures::Decode };
+    let options = MotionOptions { gltf, ..MotionOptions::default() };
+    let file = read_motion(bytes, &options, &mut no_files).map_err(|error| error.with_file(&name))?;
+    let first = file.clips.len().checked_sub(new.max(1));
+    let show = Show::new(Motion::new(name, file), first)?;
+    let settings = RenderSettings {
+        threads: std::thread::available_parallelism().map_or(1, usize::from),
+        ..RenderSettings::default()
+    };
+    show.movie(longest(show.seconds()), settings, picture.format)
+        .map_err(|error| Failure::of_file(picture.path().display().to_string(), error))
 }
 
 /// A line for each clip, and the notes.

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
 use crate::files::Outputs;
-use crate::film::{FLOOR_HALF_SIZE, Film, body_models};
+use crate::film::{FLOOR_HALF_SIZE, Film, View, body_models};
 use crate::report::Report;
 use sinew::anim::{Joint, LocalTransform, Mesh, Primitive, Rig};
 use sinew::formats::write_gltf;
@@ -88,5 +88,5 @@ fn film<'a>(fall: &'a Fall<'a>, props: &[Prop]) -> Film<'a> {
     let set =
         props.iter().flat_map(|prop| body_models(&prop.body, FLOOR_HALF_SIZE, prop.color, MOWN)).collect();
     let sun = Sun { direction: Vec3::new(0.45, 0.8, 0.5), ..Sun::default() };
-    Film { fall, set, direction: Vec3::new(0.9, 0.28, 0.42), radius: 1.5, sun }
+    Film { fall, set, direction: Vec3::new(0.9, 0.28, 0.42), view: View::Around(1.5), sun }
 }

@@ -1,12 +1,14 @@
 //! `sinew bake` on a file of its own making.
 
 use crate::contract::check_keys;
-use crate::sinew::{Folder, shared_data, sinew};
+use crate::sinew::{Folder, glb, shared_data, sinew};
 use sinew::anim::{Clip, Joint, Rig, Wrap, local_to_model, rest_pose, sample};
 use sinew::formats::bvh::BvhUnit;
 use sinew::formats::{BvhDocument, BvhOptions, Document, ReadOptions, load_gltf, read_bvh, write_world};
 use sinew::math::{Affine, Rotation, Vec3};
+use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew_scenes::cabin::Site;
+use sinew_scenes::mannequin::mannequin;
 use std::fs;
 
 #[test]
@@ -291,4 +293,111 @@ fn strangers_become_a_bvh() {
         println!("{name}: {worst} m, {}", object["notes"]);
         assert!(worst < 2e-4, "{name}: {worst} m off, {object:#}");
     }
+}
+
+#[test]
+fn a_human_without_clips_gets_up_and_walks_on() {
+    let folder = Folder::new("builtin");
+    let bare = folder.file("bare.glb", glb(&mannequin().rig, &[]));
+    let out = folder.path("out.glb");
+    let baked = |file: &str, extra: &[&str]| {
+        sinew(&[&["bake", file, "--seconds", "9", "-o", &out, "--json"], extra].concat()).json()
+    };
+    let says = |object: &serde_json::Value, what: &str| {
+        let notes = object["notes"].as_array().expect("notes");
+        assert!(notes.iter().any(|note| note.as_str().is_some_and(|note| note.contains(what))), "{notes:?}");
+    };
+    let object = baked(&bare, &[]);
+    let up = object["up_s"].as_f64().expect("it is up") as f32;
+    says(&object, "gets up by motions that come with Sinew");
+    let document = load_gltf(&out, ReadOptions::default()).expect("it can be read");
+    let hips = |time: f32| {
+        let (rig, clip) = (&document.rig, document.clips.last().expect("a clip"));
+        let (mut local, mut model) = (rest_pose(rig), Vec::new());
+        let rest = local.clone();
+        sample(clip, rig, time, Wrap::Clamp, &mut local);
+        local_to_model(rig, &local, &Affine::IDENTITY, &mut model);
+        let joint = rig.joints.iter().position(|joint| joint.name == "hips").expect("hips");
+        let turned = local.iter().zip(&rest).map(|(a, b)| a.rotation.angle_to(b.rotation));
+        (model[joint].translation, turned.fold(0.0, f32::max))
+    };
+    assert!(hips(0.0).1 < 1e-3, "it begins in its rest pose");
+    assert!((hips(0.0).0.y - hips(up + 1.0).0.y).abs() < 0.1, "it stands again");
+    let way = (hips(up + 1.5).0 - hips(up + 0.5).0) * Vec3::new(1.0, 0.0, 1.0);
+    assert!((way.length() - 1.25).abs() < 0.1, "it walks: {way}");
+
+    let object = baked(&bare, &["--no-builtin-motions"]);
+    assert!(object["up_s"].is_null());
+    says(&object, "--no-builtin-motions leaves out Sinew's");
+    let Some(data) = shared_data() else { return };
+    let object = baked(&data.join("rigs/Fox.glb").display().to_string(), &[]);
+    assert!(object["up_s"].is_null());
+    says(&object, "it does not get up: Sinew's own motions are a human's, and this is none");
+}
+
+fn block(min: [f32; 3], max: [f32; 3]) -> BodyDef {
+    let (min, max) = (Vec3::from_array(min), Vec3::from_array(max));
+    let half_extents = (max - min) * 0.5;
+    BodyDef {
+        kind: BodyKind::Static,
+        position: (min + max) * 0.5,
+        shapes: vec![ShapeDef::new(Shape::Box { half_extents })],
+        ..BodyDef::default()
+    }
+}
+
+/// The middle of this world is a pillar; beside it a roof hangs too low, and all around is a ramp. Only on the terrace is there room.
+#[test]
+fn a_character_stands_where_there_is_room() {
+    let folder = Folder::new("place");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let mut ramp = block([-30.0, -1.0, -30.0], [30.0, 0.0, 30.0]);
+    ramp.rotation = Rotation::from_axis_angle(Vec3::Z, 0.3);
+    let world = [
+        ramp,
+        block([-0.5, 0.0, -0.5], [0.5, 9.0, 0.5]),
+        block([-4.0, -3.0, -4.0], [4.0, 2.0, 4.0]),
+        block([-4.0, 4.0, -4.0], [4.0, 4.2, 4.0]),
+        block([12.0, 0.0, -4.0], [20.0, 7.0, 4.0]),
+    ];
+    let world = folder.file("world.json", write_world(&world));
+    let bake = |extra: &[&str]| {
+        let arguments = ["bake", &file, "--world", &world, "--seconds", "1", "-o", &out, "--json"];
+        sinew(&[&arguments[..], extra].concat())
+    };
+    let notes = bake(&[]).json()["notes"].to_string();
+    let (_, stands) = notes.split_once("it stands at ").expect("it is said where");
+    let (place, _) = stands.split_once(", the flat").expect("and why");
+    let at: Vec<f32> = place.split(',').map(|number| number.parse().expect("a number")).collect();
+    assert!((12.0..20.0).contains(&at[0]) && at[1] == 7.0 && at[2].abs() < 4.0, "{at:?}");
+    // With 1.7 m to the roof there is no room to fall; what is said is done all the same, and nothing is found.
+    let under = bake(&["--at", "2,2,2"]).json();
+    assert!(!under["notes"].to_string().contains("it stands at"), "{under:#}");
+    assert!(under["penetration_max_m"].as_f64().expect("a number") < 0.05, "{under:#}");
+    let beside = bake(&["--at", "200,0,0"]);
+    assert!(beside.refusal(1).contains("no ground under the character at 200,0,0; --floor Y"), "{beside:?}");
+    let floored = bake(&["--at", "200,0,0", "--floor", "-0.02"]).json();
+    assert!(floored["first_contact_s"].is_number(), "{floored:#}");
+}
+
+#[test]
+fn it_falls_the_way_that_it_faces() {
+    let folder = Folder::new("facing");
+    let (file, out) = (folder.mannequin(), folder.path("out.glb"));
+    let notes = |extra: &[&str]| {
+        let arguments = ["bake", &file, "--seconds", "2", "-o", &out, "--json"];
+        sinew(&[&arguments[..], extra].concat()).json()
+    };
+    let (plain, raised) = (notes(&[]), notes(&["--floor", "3"]));
+    for key in ["first_contact_s", "penetration_max_m"] {
+        let [a, b] = [&plain, &raised].map(|object| object[key].as_f64().expect("a number"));
+        assert!((a - b).abs() < 0.02, "{key}: {a} and {b}");
+    }
+    // A push along the world's x throws one that faces it on its back or its face, not on its side: other bodies fall.
+    assert_ne!(
+        notes(&["--hit", "chest=60,0,0@0.2"])["hash"],
+        notes(&["--hit", "chest=60,0,0@0.2", "--facing", "90"])["hash"]
+    );
+    let run = sinew(&["bake", &file, "-o", &out, "--at", "1,2"]);
+    assert!(run.code == Some(2) && run.stderr.contains("must be three numbers"), "{run:?}");
 }

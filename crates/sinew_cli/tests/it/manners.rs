@@ -132,10 +132,17 @@ fn what_does_not_happen_is_said() {
     };
     let late = said(&["--seconds", "1", "--limp-at", "2"], "--limp-at 2 s is not before the end, at 1 s");
     assert!(late.iter().all(|note| !note.contains("does not get up")), "nothing fell: {late:?}");
-    said(&["--seconds", "6"], "it does not get up: no clip gets it up: name a file with one by --clips");
+    said(
+        &["--seconds", "6", "--no-builtin-motions"],
+        "it does not get up: no clip of its own does it, and --no-builtin-motions leaves out Sinew's",
+    );
     let empty = folder.file("empty.json", r#"{"sinew":"world","version":1,"bodies":[]}"#);
-    let all = said(&["--seconds", "1", "--world", &empty], "has no ground under the character");
-    assert!(all.iter().any(|note| note.contains("it does not get up: it touches nothing")), "{all:?}");
+    let nowhere = bake(&["--seconds", "1", "--world", &empty]);
+    assert!(nowhere.refusal(1).contains("no ground to stand on; --at X,Y,Z says where"), "{nowhere:?}");
+    let nowhere = bake(&["--seconds", "1", "--world", &empty, "--at", "0,0,0"]);
+    assert!(nowhere.refusal(1).contains("no ground under the character at 0,0,0; --floor"), "{nowhere:?}");
+    let all = said(&["--seconds", "1", "--at", "0,9,0"], "it does not get up: it touches nothing");
+    assert!(!all.iter().any(|note| note.contains("it stands at")), "{all:?}");
     let half_extents = Vec3::new(9.0, 0.5, 9.0);
     let low = BodyDef {
         kind: BodyKind::Static,
@@ -144,7 +151,8 @@ fn what_does_not_happen_is_said() {
         ..BodyDef::default()
     };
     let low = folder.file("low.json", write_world(&[low]));
-    said(&["--seconds", "1", "--world", &low], "low.json is 2.50 m below the character");
+    said(&["--seconds", "1", "--world", &low, "--at", "0,0,0"], "low.json is 2.50 m below the character");
+    said(&["--seconds", "1", "--world", &low], "it stands at 0.00,-2.50,0.00, the flat place");
 }
 
 /// Nodes of a file may stand in any order; the list does not.

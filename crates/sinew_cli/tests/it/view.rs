@@ -79,9 +79,10 @@ fn what_it_cannot_draw_is_bad_usage() {
     for no_picture in [&["view"][..], &["view", "pendulum"], &["view", "--picture", "a.png"]] {
         assert!(line(no_picture).contains("comes with a later release"), "{no_picture:?}");
     }
-    for file in ["fall.glb", "run.sinewrec"] {
-        assert!(line(&["view", file, "--picture", "a.png"]).contains("comes with a later release"), "{file}");
-    }
+    let recording = line(&["view", "run.sinewrec", "--picture", "a.png"]);
+    assert!(recording.contains("comes with a later release"), "{recording}");
+    let missing = sinew(&["view", "fall.glb", "--picture", "a.png"]);
+    assert_eq!(missing.refusal(1), "error: fall.glb: no such file");
     let unknown = line(&["view", "nix", "--picture", "a.png"]);
     assert!(unknown.starts_with("error: no scene 'nix'; the nearest of "), "{unknown}");
     assert!(unknown.ends_with("; 'sinew scenes' lists what there is"), "{unknown}");
@@ -96,4 +97,64 @@ fn what_it_cannot_draw_is_bad_usage() {
         let run = sinew(&[&["view", "pendulum"], wrong].concat());
         assert!(run.code == Some(2) && run.stdout.is_empty(), "{wrong:?}: {run:?}");
     }
+}
+
+/// Bytes of a file.
+fn size(path: &str) -> u64 {
+    std::fs::metadata(path).expect("the picture is there").len()
+}
+
+#[test]
+fn a_character_is_drawn_with_its_clip() {
+    let folder = Folder::new("view-character");
+    let file = folder.mannequin();
+    let draw = |name: &str, extra: &[&str]| {
+        let out = folder.path(name);
+        let arguments = ["view", &file, "--picture", &out, "--width", "160", "--height", "90", "--json"];
+        let object = sinew(&[&arguments[..], extra].concat()).json();
+        check_keys("view", &object);
+        (object, std::fs::read(&out).expect("the picture is there"))
+    };
+    let (first, picture) = draw("a.png", &[]);
+    assert_eq!(first["clip"], "Walk");
+    assert!((first["at_s"].as_f64().expect("a time") - 32.0 / 60.0).abs() < 1e-3, "{first}");
+    assert_eq!(draw("b.png", &["--clip", "walk"]).1, picture);
+    assert_ne!(draw("c.png", &["--at", "0.2"]).1, picture);
+    let run = sinew(&["view", &file, "--picture", &folder.path("d.png"), "--clip", "Dance"]);
+    assert!(run.refusal(1).contains("Walk"), "{run:?}");
+    let run = sinew(&["view", "pendulum", "--picture", &folder.path("e.png"), "--clip", "Walk"]);
+    assert!(run.refusal(2).contains("--clip is for files"), "{run:?}");
+    let run = sinew(&["view", &file, "--picture", &folder.path("f.png"), "--set", "a=1"]);
+    assert!(run.refusal(2).contains("--set is for scenes"), "{run:?}");
+}
+
+#[test]
+fn a_skeleton_without_a_mesh_is_drawn_as_bones() {
+    let folder = Folder::new("view-bones");
+    let (file, bvh) = (folder.mannequin(), folder.path("walk.bvh"));
+    let run = sinew(&["convert", &file, &bvh]);
+    assert_eq!(run.code, Some(0), "{run:?}");
+    let small = ["--width", "160", "--height", "90"];
+    let (movie, empty) = (folder.path("walk.gif"), folder.path("empty.png"));
+    let object = sinew(&[&["view", &bvh, "--movie", &movie, "--json"], &small[..]].concat()).json();
+    assert!((object["seconds"].as_f64().expect("a time") - 32.0 / 30.0).abs() < 0.02, "{object}");
+    let bytes = std::fs::read(&movie).expect("the movie is there");
+    let pictures = bytes.windows(3).filter(|window| *window == [0x21, 0xf9, 4]).count();
+    assert_eq!(pictures, 22);
+    let nothing = folder.file("nothing.gltf", r#"{"asset":{"version":"2.0"}}"#);
+    let run = sinew(&["view", &nothing, "--picture", &empty]);
+    assert!(run.refusal(1).contains("no skeleton, mesh or clip to draw"), "{run:?}");
+}
+
+#[test]
+fn what_is_converted_is_drawn() {
+    let folder = Folder::new("convert-picture");
+    let (file, bvh, gif) = (folder.mannequin(), folder.path("walk.bvh"), folder.path("walk.gif"));
+    let object = sinew(&["convert", &file, &bvh, "--picture", &gif, "--json"]).json();
+    assert_eq!(object["outputs"], serde_json::json!([bvh, gif]));
+    // The same bones as a view of what was written.
+    let viewed = folder.path("viewed.gif");
+    sinew(&["view", &bvh, "--movie", &viewed, "--json"]).json();
+    let [a, b] = [&gif, &viewed].map(|path| size(path));
+    assert!(a.abs_diff(b) * 50 < a, "{a} and {b} bytes");
 }

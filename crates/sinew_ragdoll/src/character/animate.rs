@@ -1,6 +1,6 @@
 //! The pose while clips decide it.
 
-use super::{Character, CharacterDef, ground};
+use super::{Character, CharacterDef, Opening, ground};
 use sinew_anim::{Animator, TrackDef, TrackId};
 use sinew_math::{Affine, Transform, Vec3, clamp};
 use sinew_physics::World;
@@ -8,10 +8,12 @@ use sinew_physics::World;
 /// How fast the height of the character's origin follows the ground, m/s: a step of a stair takes a few frames.
 const CLIMB_SPEED: f32 = 1.2;
 
-/// The animator of a new character, with its looped clip.
-pub(super) fn looping(def: &CharacterDef, phase: f32) -> Animator {
+/// The animator of a new character, with its looped clip if it opens by that.
+pub(super) fn opening(def: &CharacterDef, phase: f32) -> Animator {
     let mut animator = Animator::new(def.set());
-    play_looped(def, &mut animator, phase);
+    if def.motions().opening == Opening::Looped {
+        play_looped(def, &mut animator, phase);
+    }
     animator.update(def.set(), 0.0);
     animator
 }

@@ -41,6 +41,15 @@ pub enum GettingReady {
     RollOver,
 }
 
+/// What a character does before anything has happened to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Opening {
+    /// It plays its looped clip.
+    Looped,
+    /// It stands in its rest pose; the looped clip is what it does after getting up.
+    Rest,
+}
+
 /// What a kind of character can do. Default: nothing, it stands in its rest pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionSet {
@@ -52,11 +61,19 @@ pub struct MotionSet {
     pub get_ups: Vec<usize>,
     /// Default in place.
     pub locomotion: Locomotion,
+    /// Default: the looped clip.
+    pub opening: Opening,
 }
 
 impl Default for MotionSet {
     fn default() -> Self {
-        Self { clips: Vec::new(), looped: None, get_ups: Vec::new(), locomotion: Locomotion::InPlace }
+        Self {
+            clips: Vec::new(),
+            looped: None,
+            get_ups: Vec::new(),
+            locomotion: Locomotion::InPlace,
+            opening: Opening::Looped,
+        }
     }
 }
 

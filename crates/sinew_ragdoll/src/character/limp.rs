@@ -227,7 +227,10 @@ impl Character {
             self.events.push(Event::Touched);
         }
         still.calm_steps = if is_still(world, &ragdoll.bodies) { still.calm_steps + 1 } else { 0 };
-        let calm = still.calm_steps as f32 * dt;
+        let mut calm = still.calm_steps as f32 * dt;
+        if !still.settled && calm >= STILL_TIME && is_sunk(world, &ragdoll.bodies) {
+            (still.calm_steps, calm) = (0, 0.0);
+        }
         if !still.settled && calm >= STILL_TIME {
             still.settled = true;
             self.events.push(Event::Settled { since: world.time() as f32 - calm });
@@ -248,6 +251,14 @@ pub(crate) fn is_still(world: &World, bodies: &[BodyId]) -> bool {
         let velocity = world.velocity(body);
         velocity.linear.length() < STILL_LINEAR && velocity.angular.length() < STILL_ANGULAR
     })
+}
+
+/// Deeper than this in what stands, a body does not lie yet, metres: it is pushed out, for which it has no speed of its own.
+const SUNK: f32 = 5e-3;
+
+/// Whether one of the bodies is on its way out of what stands.
+pub(crate) fn is_sunk(world: &World, bodies: &[BodyId]) -> bool {
+    bodies.iter().any(|&body| world.penetration(body) > SUNK)
 }
 
 /// Whether one of the bodies began to touch something else in the last step.

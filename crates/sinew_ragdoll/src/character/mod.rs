@@ -16,9 +16,9 @@ mod prepare;
 mod recognise;
 mod save;
 
-pub(crate) use limp::{STILL_TIME, is_still, touches_world};
+pub(crate) use limp::{STILL_TIME, is_still, is_sunk, touches_world};
 
-pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet};
+pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet, Opening};
 pub use moves::MotionError;
 
 use crate::drive::Drives;
@@ -141,7 +141,7 @@ impl Character {
     /// # Panics
     /// If `phase` is not finite.
     pub fn new(def: Arc<CharacterDef>, world_from_character: Transform, phase: f32) -> Self {
-        let animator = animate::looping(&def, phase);
+        let animator = animate::opening(&def, phase);
         let pose: Vec<LocalTransform> = animator.pose().iter().collect();
         Self {
             state: State::Animated,

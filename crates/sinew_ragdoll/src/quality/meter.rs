@@ -1,7 +1,7 @@
 //! Measures a ragdoll step by step.
 
 use super::Quality;
-use crate::character::{STILL_TIME, is_still, touches_world};
+use crate::character::{STILL_TIME, is_still, is_sunk, touches_world};
 use crate::def::RagdollDef;
 use crate::ragdoll::Ragdoll;
 use sinew_math::max;
@@ -116,7 +116,10 @@ impl QualityMeter {
     fn measure_rest(&mut self, world: &World, ragdoll: &Ragdoll, now: f32) {
         let q = &mut self.quality;
         self.calm_steps = if is_still(world, &ragdoll.bodies) { self.calm_steps + 1 } else { 0 };
-        let still = self.calm_steps as f32 * world.def().dt();
+        let mut still = self.calm_steps as f32 * world.def().dt();
+        if q.settled_s.is_none() && still >= STILL_TIME && is_sunk(world, &ragdoll.bodies) {
+            (self.calm_steps, still) = (0, 0.0);
+        }
         if still >= STILL_TIME {
             q.settled_s.get_or_insert(now - still);
         }

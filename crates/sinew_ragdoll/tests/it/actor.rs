@@ -24,6 +24,7 @@ fn character(rig: Rig, clips: Vec<Clip>, motions: Motions) -> CharacterDef {
         looped: Some(motions.walk),
         get_ups: vec![motions.get_up_supine, motions.get_up_prone],
         locomotion: Locomotion::Forward { speed: motions.walk_speed },
+        ..MotionSet::default()
     };
     def.set_motions(motions).expect("the mannequin's clips can be played");
     def
@@ -85,7 +86,8 @@ pub fn kaykit() -> Option<CharacterDef> {
     ];
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
     let locomotion = Locomotion::Forward { speed: 1.2 };
-    let motions = MotionSet { clips, looped: Some(0), get_ups: vec![1, 2], locomotion };
+    let motions =
+        MotionSet { clips, looped: Some(0), get_ups: vec![1, 2], locomotion, ..MotionSet::default() };
     def.set_motions(motions).expect("clips of a file that was read can be played");
     Some(def)
 }

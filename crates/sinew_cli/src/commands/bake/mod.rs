@@ -1,31 +1,35 @@
 //! `sinew bake`: a character is hit or goes limp, falls, and the fall becomes a clip on the user's own rig.
 
+mod actor;
 mod aim;
 mod clip_file;
 mod clips;
 mod hit;
 mod notes;
+mod place;
 
 use crate::failure::{Failure, Result};
 use crate::fall::Fall;
 use crate::files::{CharacterFile, Outputs, never_over};
-use crate::film::{FLOOR_HALF_SIZE, Film, body_models};
+use crate::film::{FLOOR_HALF_SIZE, Film, View, body_models};
 use crate::picture_file::{PictureFile, length, seconds};
 use crate::ragdoll_file::read_definition;
 use crate::report::Report;
 use crate::settings_arg::{SettingsArg, unit_note};
 use crate::skin_report::{SkinReport, skin_json};
 use crate::table::shown;
+use actor::actor;
 use aim::aim;
 use clip_file::{ClipFile, ClipFormat};
 use clips::{CLIP_NAME, Motions};
 use hit::HitArg;
+use place::{Place, degrees, metres, place, point};
 use sinew::anim::KeyBound;
 use sinew::formats::{Textures, load_world};
-use sinew::math::Vec3;
+use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::bake::KEY_BOUND;
-use sinew::ragdoll::{AfterSettling, BakeInput, BuildOptions, CharacterDef, MotionSet, RagdollDef};
+use sinew::ragdoll::{BakeInput, BuildOptions, RagdollDef};
 use sinew_picture::Sun;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -58,12 +62,26 @@ pub struct Bake {
     /// human of any size by what the joints are
     #[arg(long, value_name = "FILE", num_args = 1..)]
     clips: Vec<PathBuf>,
-    /// A world file (JSON) or a mesh (GLB, OBJ) to fall in; without it a floor at y = 0. The character stands at the origin
+    /// A world file (JSON) or a mesh (GLB, OBJ) to fall in; without it a floor at y = 0
     #[arg(long, value_name = "FILE")]
     world: Option<PathBuf>,
+    /// Where the character stands, metres; by default the flat place of the world nearest its middle with half as much room
+    /// again over it as the character is tall, without --world the origin
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    at: Option<Vec3>,
+    /// Which way it faces, degrees from +Z toward +X
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = degrees, allow_negative_numbers = true)]
+    facing: f32,
+    /// Add a floor at this height, metres
+    #[arg(long, value_name = "Y", value_parser = metres, allow_negative_numbers = true)]
+    floor: Option<f32>,
     /// A ragdoll of this character from `ragdoll build`, as it is or edited; without it one is built
     #[arg(long, value_name = "FILE.sinew.json", conflicts_with = "SettingsArg")]
     ragdoll: Option<PathBuf>,
+    /// Get up only by clips of the file or of --clips. Else a human without any gets up and walks on by motions that come with
+    /// Sinew
+    #[arg(long)]
+    no_builtin_motions: bool,
     #[command(flatten)]
     settings: SettingsArg,
     /// Push a bone: joint name or role, impulse in N·s along the world's axes (+Y up), time in seconds; repeatable. A role
@@ -117,15 +135,15 @@ impl Bake {
         let (file, ragdoll, mut notes) = self.character(textures)?;
         let name = self.clip_name(&file)?;
         let motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
-        let bodies = match &self.world {
-            Some(path) => load_world(path)?,
-            None => vec![floor()],
-        };
-        let character = Arc::new(character(&file, ragdoll, motions)?);
+        let bodies = self.bodies()?;
+        let place = self.place(&bodies, ragdoll.height)?;
+        let (character, gets_up_by) = actor(&file, ragdoll, motions, !self.no_builtin_motions)?;
+        let character = Arc::new(character);
         let aimed = self.hits.iter().map(|hit| aim(hit, &character, &file, &mut notes));
         let hits = aimed.collect::<Result<Vec<_>>>()?;
         let limp_at = self.limp_at.or(if hits.is_empty() { Some(LIMP_AT) } else { None });
         let input = BakeInput {
+            world_from_character: place.stands,
             bodies: &bodies,
             hits: &hits,
             limp_at,
@@ -137,13 +155,35 @@ impl Bake {
         };
         let fall = Fall::simulate(&input);
         let world = self.world.as_ref().map(|path| path.display().to_string());
-        notes.extend(notes::of_bake(&input, &fall.baked.events, world.as_deref()));
-        let skin = SkinReport::of_bake(&file, &fall, self.world.is_none());
+        notes.extend(world.as_deref().and_then(|world| notes::stands_at(&place, world)));
+        notes.extend(notes::of_bake(&input, &fall.baked.events, &gets_up_by, world.as_deref()));
+        let is_level = self.world.is_none() && place.stands.translation.y == self.floor.unwrap_or(0.0);
+        let skin = SkinReport::of_bake(&file, &fall, is_level);
         notes.extend(skin.flaws.iter().map(|flaw| format!("skin: {}", flaw.evidence)));
         notes.extend(self.write(&file, &fall)?);
         let mut report = self.report(&file, &fall, &once(notes));
         report.json["skin"] = skin_json(&skin.figures);
         Ok(report)
+    }
+
+    /// What is in the world: what the file says, and the floor that is asked for, at y = 0 where there is no file.
+    fn bodies(&self) -> Result<Vec<BodyDef>> {
+        let mut bodies = self.world.as_ref().map_or(Ok(Vec::new()), load_world)?;
+        let level = self.floor.or_else(|| self.world.is_none().then_some(0.0));
+        bodies.extend(level.map(floor));
+        Ok(bodies)
+    }
+
+    /// Where a character of that height (metres) stands.
+    fn place(&self, bodies: &[BodyDef], height: f32) -> Result<Place> {
+        let Some(world) = &self.world else {
+            let on_floor = self.at.unwrap_or(Vec3::Y * self.floor.unwrap_or(0.0));
+            let turn = Rotation::from_axis_angle(Vec3::Y, self.facing.to_radians());
+            return Ok(Place { stands: Transform::new(on_floor, turn), found: false });
+        };
+        let name = world.display().to_string();
+        place(bodies, height, self.at, self.facing)
+            .map_err(|what| Failure::at(&name, what, if self.at.is_some() { "--at" } else { "--world" }))
     }
 
     /// What the user allows keys to be off by; nothing in a format that has all frames anyway.
@@ -268,26 +308,13 @@ fn left_out(bodies: &[BodyDef]) -> Option<String> {
     })
 }
 
-/// A static half-space with its surface at y = 0.
-fn floor() -> BodyDef {
-    BodyDef { kind: BodyKind::Static, shapes: vec![ShapeDef::new(Shape::HalfSpace)], ..BodyDef::default() }
+/// A static half-space with its surface at that height.
+fn floor(level: f32) -> BodyDef {
+    let shapes = vec![ShapeDef::new(Shape::HalfSpace)];
+    BodyDef { kind: BodyKind::Static, position: Vec3::Y * level, shapes, ..BodyDef::default() }
 }
 
-/// The ragdoll and the motions of the user's character.
-fn character(file: &CharacterFile, ragdoll: RagdollDef, motions: Motions) -> Result<CharacterDef> {
-    let CharacterFile { name, document, analysis } = file;
-    let mut def = CharacterDef::new(document.rig.clone(), ragdoll, &analysis.bind_model);
-    let mut get_ups = def.get_ups_among(&motions.clips);
-    get_ups.retain(|&clip| Some(clip) != motions.looped);
-    // A body that lies down and has no motion to get up by would float to its feet.
-    def.after_settling = if get_ups.is_empty() { AfterSettling::StayDown } else { AfterSettling::GetUp };
-    let Motions { clips, looped } = motions;
-    let motions = MotionSet { clips, looped, get_ups, ..MotionSet::default() };
-    def.set_motions(motions).map_err(|error| Failure::of_file(name, error))?;
-    Ok(def)
-}
-
-/// The whole character, seen from its front left.
+/// The whole character, seen from the front left of one that faces +Z if nothing is in the way.
 fn film<'a>(fall: &'a Fall<'a>) -> Film<'a> {
     let mut set = Vec::new();
     for (index, body) in fall.input.bodies.iter().enumerate() {
@@ -295,12 +322,5 @@ fn film<'a>(fall: &'a Fall<'a>) -> Film<'a> {
         let [color, other] = if is_floor { FLOOR } else { [OBSTACLES[index % OBSTACLES.len()]; 2] };
         set.extend(body_models(body, FLOOR_HALF_SIZE, color, other));
     }
-    let radius = reach(&fall.input.character.ragdoll);
-    Film { fall, set, direction: Vec3::new(0.75, 0.4, 0.75), radius, sun: Sun::default() }
-}
-
-/// Half the diagonal of the box around the bind pose, metres: no pose is much larger.
-fn reach(ragdoll: &RagdollDef) -> f32 {
-    let boxes = ragdoll.bodies.iter().map(|body| body.shape.aabb(&body.character_from_body));
-    boxes.reduce(|all, one| all.merge(&one)).map_or(ragdoll.height, |all| 0.5 * (all.max - all.min).length())
+    Film { fall, set, direction: Vec3::new(0.75, 0.4, 0.75), view: View::Whole, sun: Sun::default() }
 }

@@ -1,9 +1,11 @@
 //! Notes of a bake: what did not happen, and why.
 
+use super::actor::GetsUpBy;
+use super::place::Place;
 use sinew::math::Vec3;
 use sinew::physics::ray::Ray;
 use sinew::physics::{BodyKinds, QueryFilter, World, WorldDef};
-use sinew::ragdoll::{AfterSettling, BakeInput, Event};
+use sinew::ragdoll::{BakeInput, Event};
 
 /// Depth to which the ground is sought, metres.
 const DEPTH: f32 = 1000.0;
@@ -11,8 +13,40 @@ const DEPTH: f32 = 1000.0;
 const GAP: f32 = 0.3;
 
 /// All of it, a sentence each; `world` names the file that the bodies come from.
-pub fn of_bake(input: &BakeInput<'_>, events: &[(f32, Event)], world: Option<&str>) -> Vec<String> {
-    [late(input), ground(input, world), stays_down(input, events)].into_iter().flatten().collect()
+pub fn of_bake(
+    input: &BakeInput<'_>,
+    events: &[(f32, Event)],
+    gets_up_by: &GetsUpBy,
+    world: Option<&str>,
+) -> Vec<String> {
+    let all = [
+        late(input),
+        ground(input, world),
+        borrows(events, gets_up_by),
+        stays_down(input, events, gets_up_by),
+    ];
+    all.into_iter().flatten().collect()
+}
+
+/// Where a character stands that nobody has said a place for.
+pub fn stands_at(place: &Place, world: &str) -> Option<String> {
+    let [x, y, z] = place.stands.translation.to_array();
+    place.found.then(|| {
+        format!(
+            "it stands at {x:.2},{y:.2},{z:.2}, the flat place with room over it nearest the middle of {world}; \
+             --at X,Y,Z says another"
+        )
+    })
+}
+
+/// Motions that are not the file's.
+fn borrows(events: &[(f32, Event)], gets_up_by: &GetsUpBy) -> Option<String> {
+    let rises = events.iter().any(|(_, event)| matches!(event, Event::GettingUp { .. }));
+    (rises && *gets_up_by == GetsUpBy::Builtin).then(|| {
+        "it gets up by motions that come with Sinew, for it has no clip that does: --clips brings others, \
+         --no-builtin-motions leaves it lying"
+            .to_owned()
+    })
 }
 
 /// A fall that begins when the clip has ended.
@@ -22,7 +56,7 @@ fn late(input: &BakeInput<'_>) -> Option<String> {
     Some(format!("--limp-at {time} s is not before the end, at {end} s (--seconds): it does not go limp"))
 }
 
-/// No ground under where the character stands, or none near.
+/// No ground near under where the character stands.
 fn ground(input: &BakeInput<'_>, file: Option<&str>) -> Option<String> {
     let file = file?;
     let mut world = World::new(WorldDef::default());
@@ -33,20 +67,12 @@ fn ground(input: &BakeInput<'_>, file: Option<&str>) -> Option<String> {
     let height = input.character.ragdoll.height;
     let ray = Ray { origin: soles + Vec3::Y * (0.5 * height), direction: Vec3::Y * -DEPTH };
     let down = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&ray);
-    match down {
-        None => Some(format!(
-            "{file} has no ground under the character, which stands at the origin: it falls without end"
-        )),
-        Some(hit) if hit.start.is_none() && soles.y - hit.point.y > GAP => Some(format!(
-            "the ground of {file} is {:.2} m below the character, which stands at the origin",
-            soles.y - hit.point.y
-        )),
-        Some(_) => None,
-    }
+    let hit = down.filter(|hit| hit.start.is_none() && soles.y - hit.point.y > GAP)?;
+    Some(format!("the ground of {file} is {:.2} m below the character", soles.y - hit.point.y))
 }
 
 /// Why a character that fell is not up again at the end.
-fn stays_down(input: &BakeInput<'_>, events: &[(f32, Event)]) -> Option<String> {
+fn stays_down(input: &BakeInput<'_>, events: &[(f32, Event)], gets_up_by: &GetsUpBy) -> Option<String> {
     let last = |wanted: fn(&Event) -> bool| events.iter().rposition(|(_, event)| wanted(event));
     let fell = last(|event| matches!(event, Event::WentLimp | Event::Hit { .. }))?;
     let since = &events[fell..];
@@ -58,8 +84,8 @@ fn stays_down(input: &BakeInput<'_>, events: &[(f32, Event)]) -> Option<String> 
     let touched = events.iter().any(|(_, event)| matches!(event, Event::Touched));
     let why = if !touched {
         format!("it touches nothing until the end, at {end} s")
-    } else if input.character.after_settling == AfterSettling::StayDown {
-        "no clip gets it up: name a file with one by --clips, called such as 'get up'".to_owned()
+    } else if let GetsUpBy::Nothing(why) = gets_up_by {
+        why.clone()
     } else if has(|event| matches!(event, Event::GettingUp { .. })) {
         format!("it is on its way up at the end, at {end} s: --seconds gives it more time")
     } else if has(|event| matches!(event, Event::Settled { .. } | Event::Preparing { .. })) {

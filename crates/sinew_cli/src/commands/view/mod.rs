@@ -1,15 +1,19 @@
-//! `sinew view`: a scene or a world file as a picture or a movie.
+//! `sinew view`: a scene, a world file, or a file with a skeleton, a skin or a clip as a picture or a movie.
 
 mod reel;
 
+use crate::commands::clip_choice::find_clip;
 use crate::failure::{Failure, Result};
-use crate::files::Outputs;
-use crate::picture_file::{PictureFile, length, seconds};
+use crate::files::{Outputs, never_over};
+use crate::motion::Motion;
+use crate::picture_file::{PictureFile, length, longest, seconds};
 use crate::report::{Report, number};
 use crate::scene_choice::choose;
+use crate::show::Show;
+use crate::table::shown;
 use reel::Reel;
 use serde_json::json;
-use sinew::formats::load_world;
+use sinew::formats::{MotionOptions, ReadOptions, Textures, load_world};
 use sinew::physics::{BodyDef, World, WorldDef};
 use sinew_picture::{EncodeError, RenderSettings};
 use sinew_scenes::scenes::{Instance, Scene, Settings, find};
@@ -18,28 +22,35 @@ use std::path::Path;
 /// Length of the movie of a world file, and when a picture of one is taken, seconds: things have fallen by then.
 const WORLD_SECONDS: f32 = 3.0;
 
-/// Draw a named scene, or what happens in a world file, as a picture or a movie
+/// Draw a named scene, what happens in a world file, or a character or motion file, as a picture or a movie
 #[derive(clap::Args)]
 #[command(after_help = "\
 Example:
   sinew view pendulum --picture pendulum.png --at 1.5
   sinew view stairs --movie stairs.gif --set impulse=50
+  sinew view character.glb --clip Walk --movie walk.gif
+  sinew view walk.bvh --picture walk.png
   sinew view house.json --picture house.png --at 0 --width 1280 --height 720
 
 A window comes with a later release. The same command draws the same bytes on every machine.")]
 pub struct View {
-    /// Name of a scene ('sinew scenes' lists them), or a world file (.json)
+    /// Name of a scene ('sinew scenes' lists them), a world file (.json), or a file with a skeleton, a skin or a clip (GLB, glTF,
+    /// VRM, VRMA, BVH, FBX, DeepMimic)
     subject: Option<String>,
+    /// The clip of a file, by name or words of it, or by number from 0; by default its first, in a file without clips the rest
+    /// pose
+    #[arg(long, value_name = "NAME")]
+    clip: Option<String>,
     /// Draw one picture: a .png, .gif or .webp file
     #[arg(long, value_name = "OUT.(png|gif|webp)")]
     picture: Option<PictureFile>,
-    /// When the picture is taken, seconds from the start; by default at the scene's end
+    /// When the picture is taken, seconds from the start; by default at the scene's end, of a clip in its middle
     #[arg(long, value_name = "T", requires = "picture", value_parser = seconds)]
     at: Option<f32>,
     /// Draw all of it, 20 pictures a second: a .gif, .png (animated) or .webp file
     #[arg(long, value_name = "OUT.(gif|png|webp)")]
     movie: Option<PictureFile>,
-    /// Length of the movie, seconds; by default the scene's
+    /// Length of the movie, seconds; by default the scene's, or the clip's
     #[arg(long, value_name = "S", requires = "movie", value_parser = length)]
     seconds: Option<f32>,
     /// Change a setting of the scene; repeatable
@@ -61,6 +72,12 @@ impl View {
                         give a scene and --picture OUT or --movie OUT";
             return Err(Failure::Usage(line.into()));
         };
+        if is_motion(name) {
+            return self.show(Path::new(name));
+        }
+        if self.clip.is_some() {
+            return Err(Failure::Usage("--clip is for files with clips: a scene or a world has none".into()));
+        }
         let subject = Subject::find(name, &self.settings)?;
         let ends = subject.seconds();
         let reel = Reel { title: subject.title(), ends, settings: self.render_settings() };
@@ -73,7 +90,39 @@ impl View {
             outputs.add(file.path(), reel.movie(&subject, seconds, file.format).map_err(failed(file))?);
         }
         outputs.write()?;
-        Ok(self.report(reel.title, at, seconds))
+        Ok(self.report(reel.title, None, at, seconds))
+    }
+
+    /// Draws a file with a skeleton, a skin or a clip.
+    fn show(&self, path: &Path) -> Result<Report> {
+        if !self.settings.is_empty() {
+            return Err(Failure::Usage("--set is for scenes; a file has none".into()));
+        }
+        never_over([path], self.outputs().map(PictureFile::path))?;
+        let gltf = ReadOptions { textures: Textures::Decode };
+        let motion = Motion::load(path, &MotionOptions { gltf, ..MotionOptions::default() })?;
+        let name = motion.name.clone();
+        let clips = &motion.file.clips;
+        let clip = match &self.clip {
+            Some(wanted) => {
+                Some(find_clip(clips, wanted).map_err(|what| Failure::at(&name, what, "--clip"))?)
+            }
+            None => (!clips.is_empty()).then_some(0),
+        };
+        let called = clip.map(|clip| clips[clip].name.clone());
+        let show = Show::new(motion, clip)?;
+        let settings = self.render_settings();
+        let (at, seconds) =
+            (self.at.unwrap_or(0.5 * show.seconds()), self.seconds.unwrap_or(longest(show.seconds())));
+        let mut outputs = Outputs::default();
+        if let Some(file) = &self.picture {
+            outputs.add(file.path(), show.picture(at, settings, file.format).map_err(failed(file))?);
+        }
+        if let Some(file) = &self.movie {
+            outputs.add(file.path(), show.movie(seconds, settings, file.format).map_err(failed(file))?);
+        }
+        outputs.write()?;
+        Ok(self.report(&name, called.as_deref(), at, seconds))
     }
 
     fn outputs(&self) -> impl Iterator<Item = &PictureFile> {
@@ -86,14 +135,23 @@ impl View {
         RenderSettings { width, height, threads, ..RenderSettings::default() }
     }
 
-    fn report(&self, subject: &str, at: f32, seconds: f32) -> Report {
+    fn report(&self, subject: &str, clip: Option<&str>, at: f32, seconds: f32) -> Report {
         let paths: Vec<String> = self.outputs().map(|file| file.path().display().to_string()).collect();
         let at = self.picture.as_ref().map(|_| number(at));
         let seconds = self.movie.as_ref().map(|_| number(seconds));
-        let text = format!("{subject}\n\n  wrote {}\n", paths.join(", "));
-        let json = json!({"subject": subject, "at_s": at, "seconds": seconds, "outputs": paths});
+        let text = format!("{}\n\n  wrote {}\n", shown(subject), paths.join(", "));
+        let json =
+            json!({"subject": subject, "clip": clip, "at_s": at, "seconds": seconds, "outputs": paths});
         Report { json, text }
     }
+}
+
+/// Whether a subject is a file of a character or a motion: no scene, world or recording.
+fn is_motion(name: &str) -> bool {
+    const OTHERS: [&str; 2] = ["json", "sinewrec"];
+    let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
+    let is_other = extension.is_some_and(|it| OTHERS.iter().any(|other| it.eq_ignore_ascii_case(other)));
+    find(name).is_none() && extension.is_some() && !is_other
 }
 
 fn failed(file: &PictureFile) -> impl Fn(EncodeError) -> Failure {
@@ -118,7 +176,7 @@ impl<'a> Subject<'a> {
                 Some("json") => {
                     return Err(Failure::Usage("--set is for scenes; a world file has none".into()));
                 }
-                Some("glb" | "gltf" | "vrm" | "sinewrec") => {
+                Some("sinewrec") => {
                     let line = format!("'sinew view' of such a file comes with a later release: {name}");
                     return Err(Failure::Usage(line));
                 }

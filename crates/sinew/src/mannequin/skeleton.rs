@@ -4,8 +4,8 @@
 //! turn away from the bind pose about the world's axes. Segment lengths are those of de Leva 1996 (J. Biomechanics 29)
 //! for a man of 1.741 m, joint heights rounded for 1.75 m.
 
-use sinew::anim::{Joint, JointIdx, LocalTransform, Rig, Skin};
-use sinew::math::{Affine, Rotation, Vec3, trig};
+use crate::anim::{Joint, JointIdx, LocalTransform, Rig, Skin};
+use crate::math::{Affine, Rotation, Vec3, trig};
 
 /// A joint of the mannequin. The number is its index in the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

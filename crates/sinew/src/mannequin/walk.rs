@@ -4,8 +4,8 @@ use super::gait::{Gait, Path, Swing, laid_on};
 use super::keys::{RATE, record};
 use super::posture::{Hanging, Posture};
 use super::skeleton::{HIPS_ABOVE_HIP, Side};
-use sinew::anim::Clip;
-use sinew::math::{Vec3, trig};
+use crate::anim::Clip;
+use crate::math::{Vec3, trig};
 
 /// Speed at which the planted feet of the walk do not slide, m/s along +Z.
 pub const WALK_SPEED: f32 = 1.25;

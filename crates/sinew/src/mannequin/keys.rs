@@ -2,8 +2,8 @@
 
 use super::posture::Posture;
 use super::skeleton::Bone;
-use sinew::anim::{Channel, Clip, Interpolation, LocalTransform, Property};
-use sinew::math::Rotation;
+use crate::anim::{Channel, Clip, Interpolation, LocalTransform, Property};
+use crate::math::Rotation;
 
 /// Keys per second of the clips.
 pub(super) const RATE: f32 = 30.0;

@@ -5,8 +5,8 @@ use super::keys::{Key, RATE, between, record};
 use super::posture::{Foot, Hand, Posture};
 use super::skeleton::{Bone, HIPS_ABOVE_HIP, Side};
 use super::walk::{self, RUN, WALK};
-use sinew::anim::{Channel, Clip, Interpolation, Property};
-use sinew::math::Vec3;
+use crate::anim::{Channel, Clip, Interpolation, Property};
+use crate::math::Vec3;
 
 /// A cycle of two steps that gets on: its clip moves the joint above the hips along a path.
 #[derive(Clone, Debug, PartialEq)]

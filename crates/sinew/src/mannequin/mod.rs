@@ -14,7 +14,7 @@ mod posture;
 mod skeleton;
 mod walk;
 
-use sinew::anim::{Clip, Rig};
+use crate::anim::{Clip, Rig};
 
 pub use gait::Path;
 pub use walk::{RUN_SPEED, WALK_SPEED};

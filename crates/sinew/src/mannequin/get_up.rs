@@ -6,8 +6,8 @@
 use super::keys::{Key, RATE, between, record};
 use super::posture::{Foot, Hand, Hanging, Posture};
 use super::skeleton::Side::{Left, Right};
-use sinew::anim::Clip;
-use sinew::math::Vec3;
+use crate::anim::Clip;
+use crate::math::Vec3;
 
 fn clip(name: &str, keys: &[Key]) -> Clip {
     let frames = (keys[keys.len() - 1].at * RATE + 0.5) as usize;

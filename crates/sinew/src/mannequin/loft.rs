@@ -1,8 +1,8 @@
 //! Closed surfaces from cross-sections, with skin weights that pass from bone to bone along an axis.
 
 use super::skeleton::Bone;
-use sinew::anim::{Primitive, smoothstep};
-use sinew::math::{Vec3, normalize_or, trig};
+use crate::anim::{Primitive, smoothstep};
+use crate::math::{Vec3, normalize_or, trig};
 
 /// A rounded cross-section: an ellipse whose two halves across `u` may differ in depth.
 #[derive(Clone, Copy, Debug)]

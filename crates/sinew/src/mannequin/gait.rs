@@ -3,8 +3,8 @@
 use super::keys::{RATE, monotone};
 use super::posture::{Foot, turn};
 use super::skeleton::{ANKLE_HEIGHT, Bone, Side, bind_position};
-use sinew::anim::smoothstep;
-use sinew::math::{Rotation, Transform, Vec3};
+use crate::anim::smoothstep;
+use crate::math::{Rotation, Transform, Vec3};
 
 /// Where a gait leads, seen from the character as it starts.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,8 +4,8 @@
 
 use super::loft::{Chain, Loft, Section, mirror};
 use super::skeleton::{Bone, FOREARM, UPPER_ARM, bind_position, left_arm_axes};
-use sinew::anim::{Mesh, Primitive};
-use sinew::math::{Vec3, trig};
+use crate::anim::{Mesh, Primitive};
+use crate::math::{Vec3, trig};
 
 /// Linear RGBA of the trunk and limbs: pale beech.
 const WOOD: [f32; 4] = [0.70, 0.47, 0.27, 1.0];

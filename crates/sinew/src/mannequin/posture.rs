@@ -1,8 +1,8 @@
 //! Posing the mannequin as an animator does: trunk by turns, hands and feet by where they are.
 
 use super::skeleton::{ANKLE_HEIGHT, Bone, HIPS_ABOVE_HIP, Side, bind_offset, bind_position, left_arm_axes};
-use sinew::anim::LocalTransform;
-use sinew::math::{Mat3, Rotation, Vec3, clamp, normalize_or, trig};
+use crate::anim::LocalTransform;
+use crate::math::{Mat3, Rotation, Vec3, clamp, normalize_or, trig};
 
 /// From the middle of the knee to its skin in front, metres.
 const KNEE_RADIUS: f32 = 0.056;

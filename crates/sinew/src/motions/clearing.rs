@@ -1,0 +1,220 @@
+//! Motions on a body of another build: what lies, kneels and rolls over its toes out of the floor, feet that stand on it.
+
+use crate::anim::cleanup::raise;
+use crate::anim::contact::FootContact;
+use crate::anim::ik::{Pole, TwoBone, TwoBoneGoal, two_bone_ik};
+use crate::anim::legs::{Foot, Legs};
+use crate::anim::retarget::Retargeted;
+use crate::anim::roles::HUMANOID_ROLES;
+use crate::anim::{JointIdx, LocalTransform, RigAnalysis, Role, Side, local_to_model, smoothstep};
+use crate::math::{Affine, Transform, Vec3, clamp, max, min};
+use crate::ragdoll::CharacterDef;
+
+/// Time over which the body is raised and lowered again, seconds of a human's motion.
+const BLEND: f32 = 0.07;
+/// Time over which a foot comes down to where it stands, seconds of a human's motion.
+const TREAD: f32 = 0.1;
+/// A foot that should stand is brought down by no more than this, in lengths of the leg.
+const REACH: f32 = 0.3;
+/// The body is raised by no more than this, in heights of the character: what is deeper no raising mends.
+const MOST: f32 = 0.3;
+
+/// A body whose shapes tell how deep it is in the floor.
+pub(super) struct Clearing<'a> {
+    def: &'a CharacterDef,
+    root: Affine,
+    legs: Legs,
+    /// Height of the floor in the character's own axes, metres.
+    floor: f32,
+    /// How deep each body is in the floor as it stands in the bind pose, metres: for the shape is not quite the skin.
+    stands: Vec<f32>,
+    /// Bodies that the pelvis is raised for: the trunk, the head, thighs and shanks.
+    trunk: Vec<usize>,
+    /// Of the feet, left and right.
+    feet: [Vec<usize>; 2],
+    arms: Vec<Arm>,
+    /// Bodies that the rig hangs elsewhere than on the body that carries them.
+    props: Vec<Prop>,
+}
+
+/// An arm, and the bodies at its end.
+struct Arm {
+    limb: TwoBone,
+    bodies: Vec<usize>,
+}
+
+/// A joint that goes with another, and where it is in the axes of that.
+struct Prop {
+    joint: JointIdx,
+    carrier: JointIdx,
+    at: Affine,
+}
+
+impl<'a> Clearing<'a> {
+    /// `None` for a body without two whole legs.
+    pub fn new(def: &'a CharacterDef, analysis: &RigAnalysis) -> Option<Self> {
+        let bodies = &def.ragdoll.bodies;
+        let places: Vec<Transform> = bodies.iter().map(|body| body.character_from_body).collect();
+        let low = |body: usize| bodies[body].shape.aabb(&places[body]).min.y;
+        let hanging_on = |top: JointIdx| -> Vec<usize> {
+            (0..bodies.len()).filter(|&body| hangs(def, bodies[body].joint, top)).collect()
+        };
+        let foot = |side: Side| analysis.joint_with(Role::Foot(side)).map_or(Vec::new(), hanging_on);
+        let is_trunk = |body: &usize| {
+            use Role::{Chest, Head, Hips, LowerLeg, Neck, Spine, UpperChest, UpperLeg};
+            let role = Role::from_name(&bodies[*body].role);
+            matches!(role, Some(Hips | Spine | Chest | UpperChest | Neck | Head | UpperLeg(_) | LowerLeg(_)))
+        };
+        let arm = |side: Side| {
+            let [upper, lower] =
+                [Role::UpperArm(side), Role::LowerArm(side)].map(|role| analysis.joint_with(role));
+            let (upper, lower) = (upper?, lower?);
+            let end = analysis.joint_with(Role::Hand(side)).or_else(|| tip(def, analysis, lower))?;
+            let is_chain = hangs(def, lower, upper) && hangs(def, end, lower);
+            is_chain.then(|| Arm { limb: TwoBone { upper, lower, end }, bodies: hanging_on(lower) })
+        };
+        Some(Self {
+            root: analysis.character_from_file(),
+            legs: Legs::of(&def.rig, analysis)?,
+            floor: analysis.floor,
+            stands: (0..bodies.len()).map(|body| max(-low(body), 0.0)).collect(),
+            trunk: (0..bodies.len()).filter(is_trunk).collect(),
+            feet: [Side::Left, Side::Right].map(foot),
+            arms: [Side::Left, Side::Right].into_iter().filter_map(arm).collect(),
+            props: props(def, analysis),
+            def,
+        })
+    }
+
+    /// Brings props along, raises the body where its trunk, its head or its legs are in the floor, puts the feet back on it and
+    /// not into it, and raises the hands.
+    pub fn clear(&self, fitted: &mut Retargeted) {
+        let (def, most) = (self.def, MOST * self.def.ragdoll.height);
+        let mut model = Vec::new();
+        let (mut depths, mut ankles) = (Vec::new(), Vec::new());
+        for frame in 0..fitted.take.frames() {
+            let pose = fitted.take.pose_mut(frame);
+            self.bring_props(pose, &mut model);
+            depths.push(clamp(self.depth(&self.trunk, pose), 0.0, most));
+            local_to_model(&def.rig, pose, &self.root, &mut model);
+            ankles.push(self.legs.feet.each_ref().map(|foot| model[foot.leg.end].to_rigid()));
+        }
+        raise(&def.rig, &self.root, &self.legs, &depths, BLEND * fitted.pace, &mut fitted.take);
+        for (frame, ankles) in ankles.iter().enumerate() {
+            let time = fitted.take.time(frame);
+            let pose = fitted.take.pose_mut(frame);
+            for (k, foot) in self.legs.feet.iter().enumerate() {
+                let stands = standing(&fitted.contacts, foot.side, time, TREAD * fitted.pace);
+                self.tread(k, ankles[k], stands, pose, &mut model);
+            }
+            for arm in &self.arms {
+                let depth = max(self.depth(&arm.bodies, pose), 0.0);
+                if depth > 0.0 {
+                    local_to_model(&def.rig, pose, &self.root, &mut model);
+                    let side = model[arm.limb.lower].translation - model[arm.limb.end].translation;
+                    let target = model[arm.limb.end].translation + Vec3::Y * depth;
+                    let goal = TwoBoneGoal::at(target, Pole::Keep(side));
+                    two_bone_ik(&def.rig, arm.limb, &goal, pose, &mut model);
+                }
+            }
+        }
+    }
+
+    /// Brings a foot to where it was before the body was raised, as far as it `stands`, then onto the floor, or out of it.
+    fn tread(
+        &self,
+        k: usize,
+        was: Transform,
+        stands: f32,
+        pose: &mut [LocalTransform],
+        model: &mut Vec<Affine>,
+    ) {
+        let (rig, foot) = (&self.def.rig, &self.legs.feet[k]);
+        local_to_model(rig, pose, &self.root, model);
+        let raised = model[foot.leg.end].translation;
+        let wanted = raised + (was.translation - raised) * stands;
+        if stands > 0.0 && wanted != raised {
+            self.put(foot, Transform::new(wanted, was.rotation), pose, model);
+        }
+        let shape = -self.depth(&self.feet[k], pose);
+        local_to_model(rig, pose, &self.root, model);
+        let sole = foot.points(model).iter().fold(f32::INFINITY, |low, point| min(low, point.y)) - self.floor;
+        let reach = REACH * foot.length;
+        let off = if shape < 0.0 { shape } else { min(min(shape, max(sole, 0.0)), reach) * stands };
+        if off != 0.0 {
+            let ankle = model[foot.leg.end].to_rigid();
+            let on_floor = Transform::new(ankle.translation - Vec3::Y * off, ankle.rotation);
+            self.put(foot, on_floor, pose, model);
+        }
+    }
+
+    fn put(&self, foot: &Foot, ankle: Transform, pose: &mut [LocalTransform], model: &mut [Affine]) {
+        let side = model[foot.leg.upper].to_rigid().rotation * foot.forward;
+        let goal = TwoBoneGoal::at(ankle.translation, Pole::Keep(side));
+        two_bone_ik(&self.def.rig, foot.leg, &goal, pose, model);
+        self.legs.plant(&self.def.rig, foot, ankle.rotation, pose, model);
+    }
+
+    fn bring_props(&self, pose: &mut [LocalTransform], model: &mut Vec<Affine>) {
+        for prop in &self.props {
+            local_to_model(&self.def.rig, pose, &Affine::IDENTITY, model);
+            let parent = self.def.rig.joints[prop.joint].parent.map_or(Affine::IDENTITY, |p| model[p]);
+            let place = parent.inverse() * model[prop.carrier] * prop.at;
+            if place.is_finite() {
+                pose[prop.joint].translation = place.translation;
+                pose[prop.joint].rotation = place.to_rigid().rotation;
+            }
+        }
+    }
+
+    /// How much deeper than in the bind pose the deepest of these bodies is in the floor, metres; negative above it, without
+    /// end where there is none.
+    fn depth(&self, bodies: &[usize], pose: &[LocalTransform]) -> f32 {
+        let (mut model, mut places) = (Vec::new(), Vec::new());
+        local_to_model(&self.def.rig, pose, &Affine::IDENTITY, &mut model);
+        self.def.mapping().bodies_from_model(&model, Transform::IDENTITY, &mut places);
+        let under = |&body: &usize| {
+            -self.def.ragdoll.bodies[body].shape.aabb(&places[body]).min.y - self.stands[body]
+        };
+        bodies.iter().map(under).fold(f32::NEG_INFINITY, max)
+    }
+}
+
+/// How much a foot stands at a time, 0 to 1, coming to it and leaving within `blend` seconds.
+fn standing(contacts: &[FootContact], side: Side, time: f32, blend: f32) -> f32 {
+    let own = contacts.iter().filter(|contact| contact.foot == side);
+    let share = own.map(|contact| {
+        let away = max(max(contact.start - time, time - contact.end), 0.0);
+        smoothstep(clamp(1.0 - away / blend, 0.0, 1.0))
+    });
+    share.fold(0.0, max)
+}
+
+/// Bodies without a human's role whose joint does not hang on that of the body that carries them.
+fn props(def: &CharacterDef, analysis: &RigAnalysis) -> Vec<Prop> {
+    let bodies = &def.ragdoll.bodies;
+    let strays = def.ragdoll.joints.iter().filter(|joint| {
+        let (parent, child) = (&bodies[joint.parent], &bodies[joint.child]);
+        Role::from_name(&child.role).is_none_or(|role| !HUMANOID_ROLES.contains(&role))
+            && !hangs(def, child.joint, parent.joint)
+    });
+    let prop = |(joint, carrier): (JointIdx, JointIdx)| Prop {
+        joint,
+        carrier,
+        at: analysis.bind_model[carrier].inverse() * analysis.bind_model[joint],
+    };
+    strays.map(|joint| prop((bodies[joint.child].joint, bodies[joint.parent].joint))).collect()
+}
+
+/// The joint farthest from another that hangs on it.
+fn tip(def: &CharacterDef, analysis: &RigAnalysis, top: JointIdx) -> Option<JointIdx> {
+    let place = |joint: JointIdx| analysis.bind_model[joint].translation;
+    let away = |joint: &JointIdx| (place(*joint) - place(top)).length();
+    let hanging = (0..def.rig.joints.len()).filter(|&joint| hangs(def, joint, top));
+    hanging.max_by(|a, b| away(a).total_cmp(&away(b))).filter(|&joint| joint != top)
+}
+
+/// Whether a joint is `top` or hangs on it.
+fn hangs(def: &CharacterDef, joint: JointIdx, top: JointIdx) -> bool {
+    core::iter::successors(Some(joint), |&i| def.rig.joints[i].parent).any(|i| i == top)
+}

@@ -1,0 +1,168 @@
+//! Motions of a human that come with the crate: the [mannequin](crate::mannequin)'s walk, idling and both ways to get up, on any
+//! humanoid, for files that have none of their own.
+
+mod clearing;
+
+use crate::anim::legs::Legs;
+use crate::anim::retarget::{Body, Pace, RetargetError, RetargetOptions, Retargeted, retarget};
+use crate::anim::{Clip, RigAnalysis, analyze};
+use crate::mannequin::{Mannequin, mannequin};
+use crate::math::clamp;
+use crate::ragdoll::{AfterSettling, CharacterDef, Locomotion, MotionError, MotionSet, Opening};
+use clearing::Clearing;
+
+/// The mannequin's motions on a character.
+#[derive(Clone, Debug)]
+pub struct BuiltinMotions {
+    /// A cycle of two steps on the spot.
+    pub walk: Clip,
+    /// Speed forward at which the feet of `walk` do not slide, m/s: of the size of the character.
+    pub walk_speed: f32,
+    /// Standing and breathing, a cycle that begins as the clips to get up by end.
+    pub idle: Clip,
+    /// To get up by: from lying on the back, and on the face.
+    pub get_ups: [Clip; 2],
+    /// How walk, idle and get-ups fit, in that order.
+    pub fits: [Retargeted; 4],
+}
+
+/// Why a character has not been given the built-in motions.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BuiltinError {
+    /// They are a human's, and it is none.
+    #[error("the built-in motions are a human's: {0}")]
+    Retarget(#[from] RetargetError),
+    /// A clip cannot be played.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+}
+
+/// Carries the built-in motions over to a humanoid, by the roles of its joints; where its bodies would be in the
+/// floor it is raised, or its hands are. The time that they take grows with the root of
+/// the length of the legs (Froude), so that a giant walks as giants do.
+///
+/// ```
+/// use sinew::anim::RigAnalysis;
+/// use sinew::motions::builtin_motions;
+/// use sinew::ragdoll::CharacterDef;
+///
+/// fn walk_speed(def: &CharacterDef, analysis: &RigAnalysis) -> Option<f32> {
+///     builtin_motions(def, analysis).ok().map(|motions| motions.walk_speed)
+/// }
+/// ```
+///
+/// # Errors
+/// A body without the roles of a humanoid, without hips or with less than two whole legs.
+///
+/// # Panics
+/// If the analysis is not one of the rig's.
+pub fn builtin_motions(def: &CharacterDef, analysis: &RigAnalysis) -> Result<BuiltinMotions, RetargetError> {
+    let rig = &def.rig;
+    let Mannequin { rig: actor_rig, clips, motions } = mannequin();
+    let actor_analysis = analyze(&actor_rig).expect("the mannequin has a skin");
+    let actor = Body { rig: &actor_rig, analysis: &actor_analysis };
+    let body = Body { rig, analysis };
+    let clearing = Clearing::new(def, analysis);
+    let onto = |clip: &Clip| -> Result<Retargeted, RetargetError> {
+        let mut fitted = retarget(actor, clip, body, &options(actor, body))?;
+        clearing.iter().for_each(|clearing| clearing.clear(&mut fitted));
+        Ok(fitted)
+    };
+    let cycle = |clip: &Clip| Ok(one_round(onto(&repeated(clip, PLAYED))?, clip));
+    let (walks, idles) = (cycle(&clips[motions.walk])?, cycle(&clips[motions.idle])?);
+    let (supine, prone) = (onto(&clips[motions.get_up_supine])?, onto(&clips[motions.get_up_prone])?);
+    Ok(BuiltinMotions {
+        walk: walks.clip(rig, &clips[motions.walk].name),
+        walk_speed: motions.walk_speed * walks.scale / walks.pace,
+        idle: idles.clip(rig, &clips[motions.idle].name),
+        get_ups: [
+            supine.clip(rig, &clips[motions.get_up_supine].name),
+            prone.clip(rig, &clips[motions.get_up_prone].name),
+        ],
+        fits: [walks, idles, supine, prone],
+    })
+}
+
+impl BuiltinMotions {
+    /// What is missing in a character's own motions, added: ways to get up where there are none; where no clip loops, the walk,
+    /// which begins after getting up, for until then the character stands in its rest pose.
+    pub fn fill_in(self, own: MotionSet) -> MotionSet {
+        let mut set = own;
+        if set.get_ups.is_empty() {
+            set.get_ups = vec![set.clips.len(), set.clips.len() + 1];
+            set.clips.extend(self.get_ups);
+        }
+        if set.looped.is_none() {
+            set.looped = Some(set.clips.len());
+            set.clips.push(self.walk);
+            set.locomotion = Locomotion::Forward { speed: self.walk_speed };
+            set.opening = Opening::Rest;
+        }
+        set
+    }
+}
+
+/// Gives a character motions, and what they lack of the built-in ones: it will get up, and go on as its own looped clip says, or
+/// walk where it has none.
+///
+/// # Errors
+/// A character that is no humanoid, or a clip that cannot be played; its motions are then as they were.
+///
+/// # Panics
+/// As [`CharacterDef::set_motions`].
+pub fn set_motions_with_builtin(
+    def: &mut CharacterDef,
+    analysis: &RigAnalysis,
+    own: MotionSet,
+) -> Result<(), BuiltinError> {
+    let builtin = builtin_motions(def, analysis)?;
+    def.set_motions(builtin.fill_in(own))?;
+    def.after_settling = AfterSettling::GetUp;
+    Ok(())
+}
+
+/// Frames of the actor a second.
+const RATE: f64 = 30.0;
+/// How often a cycle is played, so that the one in the middle knows what comes before and after it.
+const PLAYED: usize = 3;
+
+/// At the pace of the character, in the actor's own frames.
+fn options(actor: Body<'_>, body: Body<'_>) -> RetargetOptions {
+    let legs = |body: Body<'_>| {
+        Legs::of(body.rig, body.analysis).map(|legs| legs.feet[0].length + legs.feet[1].length)
+    };
+    let pace = legs(body).zip(legs(actor)).map_or(1.0, |(own, actor)| (own / actor).sqrt());
+    let frame_time = f64::from(pace) / RATE;
+    RetargetOptions { pace: Pace::Times(pace), floor: Some(0.0), frame_time, ..RetargetOptions::default() }
+}
+
+/// The round in the middle of a cycle that is repeated; its last pose is its first.
+fn one_round(mut fitted: Retargeted, clip: &Clip) -> Retargeted {
+    let joints = fitted.take.joints;
+    let frames = (f64::from(clip.duration) * RATE).round() as usize;
+    let mut round = fitted.take.poses[frames * joints..2 * frames * joints].to_vec();
+    round.extend_from_within(..joints);
+    fitted.take.poses = round;
+    let length = clip.duration * fitted.pace;
+    for contact in &mut fitted.contacts {
+        contact.start = clamp(contact.start - length, 0.0, length);
+        contact.end = clamp(contact.end - length, 0.0, length);
+    }
+    fitted.contacts.retain(|contact| contact.start < contact.end);
+    fitted
+}
+
+/// A clip of linear keys, so many times one after the other.
+fn repeated(clip: &Clip, times: usize) -> Clip {
+    let mut whole = Clip { duration: clip.duration * times as f32, ..clip.clone() };
+    for (channel, one) in whole.channels.iter_mut().zip(&clip.channels) {
+        // The last key of a round is the first of the next.
+        let width = channel.property.width();
+        for round in 1..times {
+            let later = one.times.iter().skip(1).map(|time| time + round as f32 * clip.duration);
+            channel.times.extend(later);
+            channel.values.extend(one.values.iter().skip(width));
+        }
+    }
+    whole
+}

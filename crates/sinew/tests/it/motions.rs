@@ -1,0 +1,133 @@
+//! The built-in motions on other bodies.
+
+use sinew::anim::contact::sole_points;
+use sinew::anim::legs::Legs;
+use sinew::anim::retarget::Retargeted;
+use sinew::anim::{Clip, LocalTransform, Rig, RigAnalysis, Role, Side, analyze, local_to_model};
+use sinew::formats::{ReadOptions, load_gltf};
+use sinew::mannequin::{WALK_SPEED, mannequin};
+use sinew::math::{Affine, Transform};
+use sinew::motions::builtin_motions;
+use sinew::ragdoll::{BuildOptions, CharacterDef, Locomotion, MotionSet, Opening, RagdollBodyDef, build};
+use std::path::PathBuf;
+
+fn character(rig: Rig) -> (CharacterDef, RigAnalysis) {
+    let analysis = analyze(&rig).expect("a skin");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
+    (CharacterDef::new(rig, ragdoll, &analysis.bind_model), analysis)
+}
+
+/// The mannequin, and the humanoids of the shared data, if they are there.
+fn humanoids() -> Vec<(String, CharacterDef, RigAnalysis)> {
+    let data = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let mut files: Vec<PathBuf> = ["rigs", "rigs_wild"]
+        .iter()
+        .filter_map(|folder| std::fs::read_dir(data.join(folder)).ok())
+        .flatten()
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "glb" || e == "vrm"))
+        .collect();
+    files.sort();
+    if files.is_empty() {
+        eprintln!("skipped: no shared data");
+    }
+    let read = |path: PathBuf| {
+        let rig = load_gltf(&path, ReadOptions::default()).ok()?.rig;
+        let humanoid = analyze(&rig).is_ok_and(|analysis| analysis.humanoid);
+        let name = path.file_stem()?.to_string_lossy().into_owned();
+        humanoid.then(|| character(rig)).map(|(def, analysis)| (name, def, analysis))
+    };
+    let (def, analysis) = character(mannequin().rig);
+    let own = std::iter::once(("mannequin".to_owned(), def, analysis));
+    own.chain(files.into_iter().filter_map(read)).collect()
+}
+
+/// Lowest point of all bodies in a pose that `counts` says yes to (by the joint), metres over the floor.
+fn lowest(def: &CharacterDef, pose: &[LocalTransform], counts: impl Fn(&RagdollBodyDef) -> bool) -> f32 {
+    let (mut model, mut places) = (Vec::new(), Vec::new());
+    local_to_model(&def.rig, pose, &Affine::IDENTITY, &mut model);
+    def.mapping().bodies_from_model(&model, Transform::IDENTITY, &mut places);
+    let bodies = def.ragdoll.bodies.iter().zip(&places).filter(|(body, _)| counts(body));
+    bodies.map(|(body, place)| body.shape.aabb(place).min.y).fold(f32::INFINITY, f32::min)
+}
+
+/// How far a foot that stands is off the floor at most, metres: above it with its sole and its body, or in it with its body.
+fn worst_stance(def: &CharacterDef, analysis: &RigAnalysis, fit: &Retargeted) -> f32 {
+    let legs = Legs::of(&def.rig, analysis).expect("legs");
+    let points = sole_points(&def.rig, &analysis.character_from_file(), &legs.feet, &fit.take);
+    let mut worst: f32 = 0.0;
+    for (frame, feet) in points.iter().enumerate() {
+        let time = fit.take.time(frame);
+        for contact in fit.contacts.iter().filter(|contact| contact.start <= time && time <= contact.end) {
+            let k = usize::from(contact.foot == Side::Right);
+            let top = legs.feet[k].leg.end;
+            let hangs = |body: &RagdollBodyDef| {
+                std::iter::successors(Some(body.joint), |&i| def.rig.joints[i].parent).any(|i| i == top)
+            };
+            let body = lowest(def, fit.take.pose(frame), hangs);
+            let sole = feet[k].iter().map(|point| point.y - analysis.floor).fold(f32::INFINITY, f32::min);
+            let body_under = if body.is_finite() { -body } else { -sole };
+            worst = worst.max(body_under).max(body.min(sole));
+        }
+    }
+    worst
+}
+
+#[test]
+fn feet_stand_on_the_floor_and_nothing_of_the_trunk_is_in_it() {
+    let all = humanoids();
+    for (name, def, analysis) in &all {
+        let motions = builtin_motions(def, analysis).unwrap_or_else(|error| panic!("{name}: {error}"));
+        for (fit, what) in motions.fits.iter().zip(["walk", "idle", "supine", "prone"]) {
+            assert!(!fit.contacts.is_empty(), "{name}: no foot ever stands in {what}");
+            // Of a giant by as much more; what has no legs to speak of may miss.
+            let size = def.ragdoll.height / 1.8;
+            let off = worst_stance(def, analysis, fit);
+            let is_stub = fit.scale < 0.3 * size;
+            assert!(off < 0.01 * size.max(1.0) || is_stub, "{name}: {off} m off the floor in {what}");
+            let is_trunk = |body: &RagdollBodyDef| {
+                let part = |end: &str| body.role.ends_with(end);
+                part("hips") || part("spine") || part("hest") || part("neck") || part("head")
+            };
+            let low = (0..fit.take.frames()).map(|frame| lowest(def, fit.take.pose(frame), is_trunk));
+            let deep = low.fold(0.0, |deep: f32, low| deep.max(-low));
+            assert!(deep < 0.01 * size.max(1.0), "{name}: the trunk is {deep} m in the floor in {what}");
+        }
+    }
+}
+
+#[test]
+fn a_cycle_closes_and_goes_at_the_pace_of_the_legs() {
+    let (def, analysis) = character(mannequin().rig);
+    let motions = builtin_motions(&def, &analysis).expect("a human");
+    assert!((motions.walk_speed - WALK_SPEED).abs() < 1e-3, "{} m/s", motions.walk_speed);
+    for (clip, fit) in [(&motions.walk, &motions.fits[0]), (&motions.idle, &motions.fits[1])] {
+        let take = &fit.take;
+        assert_eq!(take.pose(0), take.pose(take.frames() - 1), "{}", clip.name);
+    }
+    // The ankle goes back under the body as fast as the body is said to go on.
+    let take = &motions.fits[0].take;
+    let ankle = analysis.joint_with(Role::Foot(Side::Left)).expect("a foot");
+    let at = |frame: usize| {
+        let mut model = Vec::new();
+        local_to_model(&def.rig, take.pose(frame), &Affine::IDENTITY, &mut model);
+        model[ankle].translation.z
+    };
+    let (from, to) = (4, 9);
+    let speed = (at(from) - at(to)) / (take.time(to) - take.time(from));
+    assert!((speed - WALK_SPEED).abs() < 0.02, "{speed} m/s");
+}
+
+#[test]
+fn only_what_is_missing_is_filled_in() {
+    let (def, analysis) = character(mannequin().rig);
+    let builtin = || builtin_motions(&def, &analysis).expect("a human");
+    let bare = builtin().fill_in(MotionSet::default());
+    assert_eq!((bare.get_ups.len(), bare.opening), (2, Opening::Rest));
+    assert_eq!(bare.clips[bare.looped.expect("a walk")].name, "walk");
+    let dance = Clip { name: "dance".into(), ..Clip::default() };
+    let own = MotionSet { clips: vec![dance], looped: Some(0), ..MotionSet::default() };
+    let own = builtin().fill_in(own);
+    assert_eq!((own.looped, own.get_ups.as_slice(), own.opening), (Some(0), &[1, 2][..], Opening::Looped));
+    assert_eq!(own.locomotion, Locomotion::InPlace);
+}

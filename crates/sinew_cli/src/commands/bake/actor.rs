@@ -1,0 +1,58 @@
+//! Who falls: the ragdoll and the motions of the user's character, its own or those that come with Sinew.
+
+use super::clips::Motions;
+use crate::failure::{Failure, Result};
+use crate::files::CharacterFile;
+use sinew::anim::retarget::RetargetError;
+use sinew::motions::{BuiltinError, set_motions_with_builtin};
+use sinew::ragdoll::{AfterSettling, CharacterDef, MotionSet, RagdollDef};
+
+/// Where the clips come from by which a character gets up.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GetsUpBy {
+    /// Its own, or those of `--clips`.
+    Own,
+    /// The built-in ones.
+    Builtin,
+    /// There are none: why not, after 'it does not get up: '.
+    Nothing(String),
+}
+
+/// What there is to do without clips to get up by.
+const CLIPS_HELP: &str = "name a file with a clip to get up by with --clips, called such as 'get up'";
+
+/// The character, and by what it gets up; `builtin`: whether the built-in motions may fill in.
+pub fn actor(
+    file: &CharacterFile,
+    ragdoll: RagdollDef,
+    motions: Motions,
+    builtin: bool,
+) -> Result<(CharacterDef, GetsUpBy)> {
+    let CharacterFile { name, document, analysis } = file;
+    let failed = |error| Failure::of_file(name, error);
+    let mut def = CharacterDef::new(document.rig.clone(), ragdoll, &analysis.bind_model);
+    let mut get_ups = def.get_ups_among(&motions.clips);
+    get_ups.retain(|&clip| Some(clip) != motions.looped);
+    let Motions { clips, looped } = motions;
+    let own = MotionSet { clips, looped, get_ups, ..MotionSet::default() };
+    if !own.get_ups.is_empty() {
+        def.set_motions(own).map_err(failed)?;
+        return Ok((def, GetsUpBy::Own));
+    }
+    let why = if builtin {
+        match set_motions_with_builtin(&mut def, analysis, own.clone()) {
+            Ok(()) => return Ok((def, GetsUpBy::Builtin)),
+            Err(BuiltinError::Motion(error)) => return Err(failed(error)),
+            Err(BuiltinError::Retarget(RetargetError::NotHumanoid(_))) => {
+                format!("Sinew's own motions are a human's, and this is none; {CLIPS_HELP}")
+            }
+            Err(error) => format!("{error}; {CLIPS_HELP}"),
+        }
+    } else {
+        format!("no clip of its own does it, and --no-builtin-motions leaves out Sinew's; {CLIPS_HELP}")
+    };
+    // A body that lies down and has no motion to get up by would float to its feet.
+    def.after_settling = AfterSettling::StayDown;
+    def.set_motions(own).map_err(failed)?;
+    Ok((def, GetsUpBy::Nothing(why)))
+}

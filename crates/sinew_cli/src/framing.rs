@@ -1,0 +1,117 @@
+//! A camera that has all of something in its picture, for as long as it moves.
+
+use sinew::math::{Vec3, max};
+use sinew::physics::boxes::Aabb;
+use sinew_picture::Camera;
+
+/// Time over which the camera's way is smoothed, to each side, seconds.
+const CALM: f32 = 0.6;
+/// Around what is shown, as a share of its size: hair and hats reach over what their bodies are.
+const MARGIN: f32 = 0.08;
+/// As long as all that is ever shown is no larger than this many times what is shown at once, the camera stands still.
+const STILL: f32 = 1.7;
+
+/// Where the camera looks from picture to picture, always from the same side and as far away.
+#[derive(Clone, Debug)]
+pub struct Framing {
+    centers: Vec<Vec3>,
+    half: Vec3,
+    /// From what is shown to the camera, any length.
+    direction: Vec3,
+}
+
+impl Framing {
+    /// Of what is within these boxes, one for each picture (metres, world), `fps` a second.
+    ///
+    /// # Panics
+    /// If there is no box.
+    pub fn new(boxes: &[Aabb], fps: f32, direction: Vec3) -> Self {
+        let whole = boxes.iter().copied().reduce(|a, b| a.merge(&b)).expect("there is a picture");
+        let size = |bounds: &Aabb| (bounds.max - bounds.min).length();
+        let largest = boxes.iter().map(size).fold(0.0, max);
+        let reach = (CALM * fps) as usize;
+        let mean = |i: usize| {
+            let near = &boxes[i.saturating_sub(reach)..(i + reach + 1).min(boxes.len())];
+            near.iter().map(Aabb::center).sum::<Vec3>() / near.len() as f32
+        };
+        let centers: Vec<Vec3> = if size(&whole) <= STILL * largest {
+            vec![whole.center(); boxes.len()]
+        } else {
+            (0..boxes.len()).map(mean).collect()
+        };
+        let larger = |a: Vec3, b: Vec3| Vec3::new(max(a.x, b.x), max(a.y, b.y), max(a.z, b.z));
+        let half = boxes.iter().zip(&centers).fold(Vec3::ZERO, |half, (bounds, &center)| {
+            larger(half, larger(bounds.max - center, center - bounds.min))
+        });
+        let least = max(MARGIN * half.length(), 1e-3);
+        Self { centers, half: half + Vec3::splat(least), direction }
+    }
+
+    /// The same from another side: any length.
+    pub fn seen_from(&self, direction: Vec3) -> Self {
+        Self { direction, ..self.clone() }
+    }
+
+    /// Half the diagonal of what a picture shows, metres.
+    pub fn radius(&self) -> f32 {
+        self.half.length()
+    }
+
+    /// The camera of a picture; after the last it stays where it is.
+    pub fn camera(&self, frame: usize, aspect: f32) -> Camera {
+        let center = self.centers[frame.min(self.centers.len() - 1)];
+        let shown = Aabb { min: center - self.half, max: center + self.half };
+        Camera::framing_box(&shown, self.direction, aspect)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A box of a body that walks 12 m and lies down on the way.
+    fn walk(frame: usize) -> Aabb {
+        let height = if frame % 100 > 60 { 0.3 } else { 1.8 };
+        let at = Vec3::X * (0.06 * frame as f32);
+        Aabb { min: at - Vec3::new(0.4, 0.0, 0.4), max: at + Vec3::new(0.4, height, 0.4) }
+    }
+
+    /// Whether the picture of a camera has all of a box: by the angles at which its corners are seen.
+    fn shows(camera: &Camera, bounds: &Aabb, aspect: f32) -> bool {
+        let back = (camera.position - camera.target).normalize();
+        let right = Vec3::Y.cross(back).normalize();
+        let up = back.cross(right);
+        let half = sinew::math::trig::tan(0.5 * camera.fov_y);
+        (0..8).all(|corner| {
+            let pick = |bit: u8, lo: f32, hi: f32| if corner >> bit & 1 == 1 { hi } else { lo };
+            let (min, max) = (bounds.min, bounds.max);
+            let point = Vec3::new(pick(0, min.x, max.x), pick(1, min.y, max.y), pick(2, min.z, max.z));
+            let way = point - camera.position;
+            let depth = -way.dot(back);
+            depth > 0.0
+                && (way.dot(up) / depth).abs() < half
+                && (way.dot(right) / depth).abs() < half * aspect
+        })
+    }
+
+    #[test]
+    fn nothing_is_ever_cut_off() {
+        let boxes: Vec<Aabb> = (0..200).map(walk).collect();
+        for direction in [Vec3::new(0.75, 0.4, 0.75), Vec3::new(-1.0, 0.1, 0.2), Vec3::new(0.1, 3.0, 0.3)] {
+            let framing = Framing::new(&boxes, 20.0, direction);
+            for (frame, bounds) in boxes.iter().enumerate() {
+                let camera = framing.camera(frame, 1.6);
+                assert!(shows(&camera, bounds, 1.6), "frame {frame} from {direction}");
+                // Near enough to be seen: it goes along.
+                assert!((camera.position - bounds.center()).length() < 8.0, "frame {frame} from {direction}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_camera_stands_still_where_all_is_in_one_place() {
+        let boxes: Vec<Aabb> = (0..20).map(walk).collect();
+        let framing = Framing::new(&boxes, 20.0, Vec3::ONE);
+        assert_eq!(framing.camera(0, 1.6), framing.camera(19, 1.6));
+    }
+}
