@@ -113,7 +113,7 @@ impl Trace<'_> {
         let median = |of: &dyn Fn(&Record) -> f64| quantile(&records.iter().map(of).collect::<Vec<_>>(), 0.5);
         let us = |time: Duration| time.as_secs_f64() * 1e6;
         let mut stages = Map::new();
-        for stage in 0..=Stage::Sensors as usize {
+        for stage in 0..=Stage::Movers as usize {
             let found = records.iter().find_map(|record| record.stages[stage].stage);
             let Some(named) = found else { continue };
             stages.insert(
@@ -225,7 +225,7 @@ impl Watch {
 struct Record {
     wall: Duration,
     cpu: Duration,
-    stages: [StageTime; Stage::Sensors as usize + 1],
+    stages: [StageTime; Stage::Movers as usize + 1],
     counts: BTreeMap<Counter, Count>,
     /// Number of reads of the clock.
     reads: u32,

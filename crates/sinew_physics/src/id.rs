@@ -118,6 +118,10 @@ id! {
     FieldId
 }
 id! {
+    /// A character mover of a [`World`](crate::World).
+    MoverId
+}
+id! {
     /// An object of the user's own kind in a [`World`](crate::World).
     ObjectId
 }

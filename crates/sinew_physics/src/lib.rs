@@ -22,6 +22,7 @@ mod kept;
 mod library;
 mod meetings;
 mod modifiers;
+mod mover;
 mod near;
 mod pairs;
 mod parted;
@@ -82,7 +83,7 @@ pub use filter::{PairFunction, PairSide};
 pub use force::{ForceDef, ForceFrame, ForceId, Wrench};
 pub use hits::Hit;
 pub use hull::{Hull, HullError};
-pub use id::{BodyId, FieldId, GroupId, JointId, ObjectId, ShapeId};
+pub use id::{BodyId, FieldId, GroupId, JointId, MoverId, ObjectId, ShapeId};
 pub use joint::Reaction;
 pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
@@ -90,6 +91,7 @@ pub use joint::def::{
 };
 pub use library::{DataKind, LoadError};
 pub use material::{Combine, CombineRules, ContactMaterial, Material};
+pub use mover::{Mover, MoverDef, MoverGround};
 pub use object::{Corrections, Forces, PhysicsObject, Substep};
 pub use query::{
     BodyHit, BodyKinds, BodyPenetration, BodySurface, ContainsPoint, Energy, Momentum, NearestTo,

@@ -15,6 +15,7 @@ use crate::kept::Kept;
 use crate::library::{DataKind, LoadError, ShapeLibrary};
 use crate::material::{Combine, CombineRules, Material};
 use crate::meetings::Meetings;
+use crate::mover::Mover;
 use crate::particles::{AttachmentTarget, ParticleGroup};
 use crate::shape::{Filter, Sensing, Shape};
 use crate::surface::{Surface, Surfaces};
@@ -51,6 +52,7 @@ impl World {
         }
         self.meetings.save(w);
         save_option(w, self.parted.functions.chosen, Writer::u32);
+        self.movers.all.save(w, |w, mover| mover.save(w));
         self.objects.save(w);
     }
 
@@ -105,6 +107,7 @@ impl World {
         if !pair_function.is_none_or(|number| self.parted.functions.registered.has(number)) {
             return Err(r.error("names a pair function that is not registered").into());
         }
+        let movers = Arena::load(r, |r| Mover::load(r, &bodies))?;
         self.objects.load(r)?;
         self.def = def;
         (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
@@ -113,7 +116,7 @@ impl World {
         self.parted.restore(disabled, pair_function);
         let modifiers = core::mem::take(&mut self.meetings.modifiers);
         self.meetings = Meetings { modifiers, ..meetings };
-        (self.groups, self.fields) = (groups, fields);
+        (self.groups, self.fields, self.movers.all) = (groups, fields, movers);
         self.events = Events::default();
         self.work = Work::default();
         self.broad.proxies.adopt(&self.bodies);

@@ -43,6 +43,8 @@ pub enum Stage {
     Sleep,
     /// Who is inside whom.
     Sensors,
+    /// Character movers, among bodies that have come to where they are.
+    Movers,
 }
 
 /// What a step counts for a [`Profiler`] that asks for it. From [`Bodies`](Self::Bodies) on each is told once for every island

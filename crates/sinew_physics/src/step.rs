@@ -7,7 +7,7 @@ use crate::solver::{Pace, View};
 use crate::stage::{Profiler, Stage, zone};
 use crate::tasks::{Phase, Task, Workspace};
 use crate::world::World;
-use crate::{finalize, sensors, sleep, touch};
+use crate::{finalize, mover, sensors, sleep, touch};
 
 /// Everything that lives for one step.
 pub(crate) struct StepContext<'a> {
@@ -45,13 +45,13 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         lockstep(objects, islands, &view, context);
         objects.rouse(bodies, activity);
     }
-
     stage(Stage::Store, &mut || finalize::store(islands, joints, parted, contacts, groups, events, context));
     stage(Stage::Finalize, &mut || finalize::finalize(islands, bodies, activity, events, context));
     let filter = parted.filter(joints);
     stage(Stage::Continuous, &mut || finalize::continuous(islands, bodies, activity, broad, filter, context));
     stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, activity, &fields, sleepers, def));
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, def.hit_speed, events));
+    stage(Stage::Movers, &mut || mover::movers(world));
 }
 
 /// A part of an island's step, which goes on where the part before ended.

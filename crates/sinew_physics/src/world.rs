@@ -14,6 +14,7 @@ use crate::islands::Islands;
 use crate::joint::Joint;
 use crate::library::ShapeLibrary;
 use crate::meetings::Meetings;
+use crate::mover::Movers;
 use crate::object::Objects;
 use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
@@ -42,6 +43,7 @@ pub struct World {
     pub(crate) functions: Functions,
     pub(crate) library: ShapeLibrary,
     pub(crate) objects: Objects,
+    pub(crate) movers: Movers,
     pub(crate) parted: PartedPairs,
     pub(crate) meetings: Meetings,
     pub(crate) events: Events,
@@ -81,6 +83,7 @@ impl World {
             functions: Functions::default(),
             library: ShapeLibrary::default(),
             objects: Objects::new(lineage),
+            movers: Movers::new(lineage),
             parted: PartedPairs::default(),
             meetings: Meetings::default(),
             events: Events::default(),
@@ -145,6 +148,7 @@ impl World {
         }
         self.activity.remove(id.index, |contact| self.meetings.part(&self.bodies, &contact));
         self.parted.forget(id.index);
+        self.movers.forget(id);
         self.bodies.remove(id);
         self.broad.proxies.remove(id.index);
     }

@@ -17,6 +17,7 @@ mod humanoid;
 mod ids;
 mod joints;
 mod meshes;
+mod mover;
 mod nets;
 mod objects;
 mod particles;

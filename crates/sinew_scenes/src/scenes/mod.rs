@@ -46,6 +46,7 @@ mod linkages;
 mod mjcf;
 mod mocap;
 mod motors;
+mod movers;
 mod nets;
 mod orbits;
 mod orientation;
@@ -150,6 +151,7 @@ const REGISTRY: &[Scene] = &[
     surfaces::CONVEYOR,
     surfaces::ONE_WAY,
     surfaces::SENSORS,
+    movers::COURSE,
     impacts::ELASTIC_PAIRS,
     impacts::NEWTONS_CRADLE,
     impacts::BOUNCING_BALLS,

@@ -7,5 +7,6 @@ mod mannequin;
 mod mjcf;
 mod mocap;
 mod motions;
+mod movers;
 mod scenes;
 mod scenes_repeat;

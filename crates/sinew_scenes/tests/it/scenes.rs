@@ -150,6 +150,7 @@ scenes!(
         conveyor,
         one_way,
         sensors,
+        mover_course,
         elastic_pairs,
         newtons_cradle,
         bouncing_balls,

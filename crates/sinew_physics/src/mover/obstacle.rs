@@ -1,0 +1,208 @@
+//! What is around a mover: shapes, triangles and other movers, gathered once a step.
+
+use super::Mover;
+use super::segment::axis_to_triangle;
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::boxes::{Aabb, Overlap};
+use crate::contact_rule::ContactRule;
+use crate::convex::{Gap, gap};
+use crate::def::BodyKind;
+use crate::proxies::thick;
+use crate::shape::{Sensing, Shape};
+use crate::triangles::Triangle;
+use crate::world::World;
+use core::ops::ControlFlow;
+use sinew_math::{Rotation, Transform, Vec3, abs3, max3, min3};
+
+/// Who is in the way; ordered, so that gathering has one order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Owner {
+    /// Body, shape, and which of the triangles near by.
+    Shape(u32, u32, u32),
+    Mover(u32),
+}
+
+/// Something that a mover may meet in this step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Obstacle {
+    pub owner: Owner,
+    pub bounds: Aabb,
+    pub kind: BodyKind,
+    form: Form,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Form {
+    Solid(Transform),
+    /// In the world.
+    Triangle(Triangle),
+    Capsule {
+        center: Vec3,
+        half: f32,
+        radius: f32,
+    },
+}
+
+impl Obstacle {
+    pub fn body(&self) -> Option<u32> {
+        match self.owner {
+            Owner::Shape(body, ..) => Some(body),
+            Owner::Mover(_) => None,
+        }
+    }
+}
+
+/// A mover's capsule, and what is around it.
+pub(super) struct Sight<'a> {
+    pub bodies: &'a Arena<Body>,
+    pub obstacles: &'a [Obstacle],
+    pub shape: Shape,
+    pub rotation: Rotation,
+    pub up: Vec3,
+    pub half: f32,
+    pub radius: f32,
+    /// Body that is not there, while it carries the mover.
+    pub without: Option<u32>,
+}
+
+impl<'a> Sight<'a> {
+    pub fn new(bodies: &'a Arena<Body>, obstacles: &'a [Obstacle], mover: &Mover) -> Self {
+        let (radius, half) = (mover.def.radius, mover.half_height());
+        Self {
+            bodies,
+            obstacles,
+            shape: Shape::Capsule { half_height: half, radius },
+            rotation: Rotation::from_arc(Vec3::Y, mover.def.up),
+            up: mover.def.up,
+            half,
+            radius,
+            without: None,
+        }
+    }
+
+    /// Bounds of the capsule on its way.
+    pub fn bounds(&self, center: Vec3, way: Vec3, margin: f32) -> Aabb {
+        let half = abs3(self.up * self.half) + Vec3::splat(self.radius + margin);
+        let to = center + way;
+        Aabb { min: min3(center, to) - half, max: max3(center, to) + half }
+    }
+
+    pub fn is_there(&self, obstacle: &Obstacle) -> bool {
+        self.without.is_none() || obstacle.body() != self.without
+    }
+
+    /// From an obstacle to the capsule, unless a neighbour is nearer.
+    pub fn gap(&self, obstacle: &Obstacle, center: Vec3) -> Option<Gap> {
+        self.look(obstacle, center).filter(|(_, hidden)| !hidden).map(|(gap, _)| gap)
+    }
+
+    /// From an obstacle to the capsule; and whether that is to the plane of a face alone, since what is nearest is an edge of it
+    /// that is no edge of the surface.
+    pub fn look(&self, obstacle: &Obstacle, center: Vec3) -> Option<(Gap, bool)> {
+        let shown = |gap: Gap| (gap, false);
+        match &obstacle.form {
+            Form::Solid(world_from_shape) => {
+                let Owner::Shape(body, shape, _) = obstacle.owner else { return None };
+                let other = &self.bodies.at(body).shapes[shape as usize].shape;
+                gap(other, world_from_shape, &self.shape, &Transform::new(center, self.rotation)).map(shown)
+            }
+            Form::Triangle(triangle) => {
+                let along = self.up * self.half;
+                let moved = triangle.moved(-center);
+                let near = axis_to_triangle(&moved, [-along, along])?;
+                let (on_a, distance) = (near.point + center, near.distance - self.radius);
+                let on_b = on_a + near.normal * distance;
+                Some((Gap { distance, normal: near.normal, on_a, on_b }, near.hidden))
+            }
+            &Form::Capsule { center: other, half, radius } => {
+                let shape = Shape::Capsule { half_height: half, radius };
+                let at = |center| Transform::new(center, self.rotation);
+                gap(&shape, &at(other), &self.shape, &at(center)).map(shown)
+            }
+        }
+    }
+}
+
+/// Gathers what a mover may meet within `region`.
+pub(super) fn gather(
+    world: &World,
+    movers: &Arena<Mover>,
+    index: u32,
+    region: &Aabb,
+    obstacles: &mut Vec<Obstacle>,
+) {
+    obstacles.clear();
+    let mover = movers.at(index);
+    let _ = world.broad.proxies.overlapping(&thick(region), |owner| {
+        gather_shape(world, mover, (owner.body, owner.shape), region, obstacles);
+        ControlFlow::<()>::Continue(())
+    });
+    for (other, at) in movers.iter() {
+        if other == index || !mover.def.filter.meets(at.def.filter) {
+            continue;
+        }
+        let (half, radius, center) = (at.half_height(), at.def.radius, at.center());
+        let around = abs3(at.def.up * half) + Vec3::splat(radius);
+        let bounds = Aabb { min: center - around, max: center + around };
+        if bounds.overlaps(region) {
+            let form = Form::Capsule { center, half, radius };
+            obstacles.push(Obstacle { owner: Owner::Mover(other), bounds, kind: BodyKind::Kinematic, form });
+        }
+    }
+    // DETERMINISM: in which order trees show what they hold depends on how they were built.
+    obstacles.sort_unstable_by_key(|obstacle| obstacle.owner);
+}
+
+fn gather_shape(
+    world: &World,
+    mover: &Mover,
+    (index, number): (u32, u32),
+    region: &Aabb,
+    obstacles: &mut Vec<Obstacle>,
+) {
+    let body = world.bodies.at(index);
+    let surface = body.surface(number as usize);
+    let solid = surface.sensing == Sensing::Solid && surface.rule != ContactRule::Ghost;
+    if !solid || body.quarantined || !mover.def.filter.meets(surface.filter) {
+        return;
+    }
+    let shape = &body.shapes[number as usize].shape;
+    let pose = body.world_from_shape(number as usize);
+    let (kind, owner) = (body.kind, |part| Owner::Shape(index, number, part));
+    if let Some(triangles) = shape.surface() {
+        let mut part = 0;
+        triangles.overlapping(&into_frame(region, &pose), |triangle| {
+            let corners = triangle.corners.map(|corner| pose.point(corner));
+            let triangle = Triangle { corners, normal: pose.rotation * triangle.normal, ..triangle };
+            let [a, b, c] = corners;
+            let bounds = Aabb { min: min3(min3(a, b), c), max: max3(max3(a, b), c) };
+            obstacles.push(Obstacle { owner: owner(part), bounds, kind, form: Form::Triangle(triangle) });
+            part += 1;
+        });
+        return;
+    }
+    let bounds = if *shape == Shape::HalfSpace { *region } else { shape.aabb(&pose) };
+    if !bounds.overlaps(region) {
+        return;
+    }
+    let obstacle = Obstacle { owner: owner(0), bounds, kind, form: Form::Solid(pose) };
+    if let ContactRule::OneWay(one_way) = surface.rule {
+        let sight = Sight::new(&world.bodies, &[], mover);
+        let gap = sight.gap(&obstacle, mover.center());
+        let holds = |gap: Gap| gap.distance >= 0.0 && one_way.holds(pose.rotation.inverse() * gap.normal);
+        if !gap.is_some_and(holds) {
+            return;
+        }
+    }
+    obstacles.push(obstacle);
+}
+
+/// Bounds of world bounds in another frame.
+fn into_frame(bounds: &Aabb, world_from_frame: &Transform) -> Aabb {
+    let to_frame = world_from_frame.rotation.inverse();
+    let half = bounds.half_extents();
+    let axes = [Vec3::X * half.x, Vec3::Y * half.y, Vec3::Z * half.z].map(|axis| abs3(to_frame * axis));
+    let center = world_from_frame.inverse_point(bounds.center());
+    thick(&Aabb::around(center, axes[0] + axes[1] + axes[2]))
+}

@@ -1,0 +1,133 @@
+//! What mover and dynamic bodies do to each other: hits by momentum, pushes by limited force, weight.
+
+use super::obstacle::{Owner, Sight};
+use super::{Bearer, Mover};
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::boxes::Overlap;
+use crate::def::BodyKind;
+use crate::world::World;
+use sinew_math::{Vec3, max, min};
+
+/// An impulse that a body gets from a mover.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Press {
+    body: u32,
+    impulse: Vec3,
+    point: Vec3,
+    /// Whether a body that sleeps wakes of it.
+    wakes: bool,
+}
+
+/// Share of what a body is too deep that it is told to leave within a second, and the fastest of that, 1/s and m/s.
+const LEAVE: f32 = 12.0;
+const FASTEST_LEAVE: f32 = 1.0;
+/// Where up is this much of the normal, what meets there bears or is borne.
+const BEARS: f32 = 0.7;
+
+/// A mover as what hits and is hit.
+struct Hitter {
+    velocity: Vec3,
+    up: Vec3,
+    inverse_mass: f32,
+    grounded: bool,
+    force: f32,
+}
+
+/// Impulses between a mover at `center` and the dynamic bodies that it meets within the step; gives the change of its velocity.
+pub(super) fn meet(
+    sight: &Sight<'_>,
+    mover: &Mover,
+    center: Vec3,
+    dt: f32,
+    presses: &mut Vec<Press>,
+) -> Vec3 {
+    let mut hitter = Hitter {
+        velocity: mover.velocity(),
+        up: mover.def.up,
+        inverse_mass: 1.0 / mover.def.mass,
+        grounded: mover.ground.is_some(),
+        force: mover.def.push_force,
+    };
+    let on = mover.ground.and_then(|footing| match footing.on {
+        Bearer::Shape { body, .. } => Some(body.index),
+        Bearer::Mover(_) => None,
+    });
+    let before = hitter.velocity;
+    for obstacle in sight.obstacles {
+        let Owner::Shape(index, ..) = obstacle.owner else { continue };
+        let body = sight.bodies.at(index);
+        if obstacle.kind != BodyKind::Dynamic || on == Some(index) {
+            continue;
+        }
+        let reach = (body.velocity.linear.length()
+            + body.velocity.angular.length() * body.reach()
+            + hitter.velocity.length())
+            * dt
+            + mover.def.skin * 1.1;
+        if !obstacle.bounds.overlaps(&sight.bounds(center, Vec3::ZERO, reach)) {
+            continue;
+        }
+        let Some(gap) = sight.gap(obstacle, center) else { continue };
+        let room = gap.distance - mover.def.skin;
+        if let Some(impulse) = hitter.meet(body, gap.normal, gap.on_a, room, dt) {
+            presses.push(Press { body: index, impulse: -gap.normal * impulse, point: gap.on_a, wakes: true });
+        }
+    }
+    hitter.velocity - before
+}
+
+impl Hitter {
+    /// Impulse with which the two are pushed apart, N·s.
+    fn meet(&mut self, body: &Body, normal: Vec3, point: Vec3, room: f32, dt: f32) -> Option<f32> {
+        let arm = point - body.center();
+        let (comes, walks) = (body.velocity.at(arm).dot(normal), -self.velocity.dot(normal));
+        let closing = comes + walks;
+        let deep = min(max(-room, 0.0) * LEAVE, FASTEST_LEAVE);
+        let excess = closing + deep - max(room, 0.0) / dt;
+        if excess <= 0.0 || closing + deep <= 1e-4 {
+            return None;
+        }
+        let turn = body.inverse_inertia_mul(arm.cross(normal)).cross(arm).dot(normal);
+        let response = body.inverse_mass() + turn;
+        let rise = normal.dot(self.up);
+        // What the ground holds does not yield downward.
+        let braced = self.grounded && rise < 0.0;
+        let own = if braced { self.inverse_mass * (1.0 - rise * rise) } else { self.inverse_mass };
+        let inelastic = |speed: f32| speed / (response + self.inverse_mass);
+        let wanted = excess / (response + own);
+        let hit = if rise > BEARS { wanted } else { inelastic(min(max(comes, 0.0), excess)) };
+        let impulse = min(wanted, hit + self.force * dt);
+        self.velocity += normal * (impulse * own);
+        Some(impulse)
+    }
+}
+
+/// The weight of a mover on what bears it.
+pub(super) fn weigh(
+    bodies: &Arena<Body>,
+    mover: &Mover,
+    is_new: bool,
+    impulse: f32,
+    presses: &mut Vec<Press>,
+) {
+    let Some(footing) = mover.ground else { return };
+    let Bearer::Shape { body, .. } = footing.on else { return };
+    if bodies.get(body).is_some_and(|body| body.kind == BodyKind::Dynamic) {
+        let impulse = -mover.def.up * impulse;
+        presses.push(Press { body: body.index, impulse, point: footing.point, wakes: is_new });
+    }
+}
+
+/// Gives bodies what movers press on them.
+pub(super) fn apply(world: &mut World, presses: &mut Vec<Press>) {
+    for &Press { body: index, impulse, point, wakes } in presses.iter() {
+        let body = world.bodies.at(index);
+        if !body.is_awake() && !wakes || !impulse.is_finite() {
+            continue;
+        }
+        let id = world.bodies.id(index);
+        world.apply_impulse(id, impulse, point);
+    }
+    presses.clear();
+}

@@ -1,0 +1,249 @@
+//! Ways of a capsule: until it touches, along what it touches, out of what it is in.
+
+use super::obstacle::Sight;
+use super::planes::{MOST, Planes};
+use super::segment::level;
+use crate::boxes::Overlap;
+use sinew_math::{Vec3, clamp, min};
+
+/// Where the capsule is near an obstacle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    /// Unit, from the obstacle to the capsule.
+    pub normal: Vec3,
+    pub distance: f32,
+    /// On the obstacle.
+    pub point: Vec3,
+    /// Its number in the sight.
+    pub obstacle: usize,
+}
+
+/// Those within a distance, the nearest first.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touches {
+    all: [Touch; MOST],
+    count: usize,
+}
+
+impl Touches {
+    pub fn as_slice(&self) -> &[Touch] {
+        &self.all[..self.count]
+    }
+
+    fn insert(&mut self, touch: Touch) {
+        let mut at = self.count;
+        while at > 0 && touch.distance < self.all[at - 1].distance {
+            at -= 1;
+        }
+        if at == MOST {
+            return;
+        }
+        let end = usize::min(self.count, MOST - 1);
+        self.all.copy_within(at..end, at + 1);
+        self.all[at] = touch;
+        self.count = end + 1;
+    }
+
+    /// Leaves out what lies behind the plane of something nearer: the seam of two boxes that abut, or the edge of the next
+    /// triangle. A way that leads against it is still stopped by it.
+    fn drop_hidden(&mut self, behind: f32) {
+        let mut kept = 0;
+        for i in 0..self.count {
+            let touch = self.all[i];
+            let hides = |nearer: &Touch| {
+                (touch.point - nearer.point).dot(nearer.normal) < behind
+                    && nearer.normal.dot(touch.normal) > 0.0
+            };
+            if !self.all[..kept].iter().any(hides) {
+                self.all[kept] = touch;
+                kept += 1;
+            }
+        }
+        self.count = kept;
+    }
+}
+
+/// Shares of the skin: where sweeps stop, what counts as touching and as bearing beyond the skin, what is as good as there,
+/// what lies in one plane.
+const STOP: f32 = 0.75;
+const BAND: f32 = 0.05;
+const BEARS: f32 = 0.5;
+const THERE: f32 = 0.02;
+const HIDDEN: f32 = 0.04;
+/// Share of a way by which it may lead toward what it slides along.
+const ALONG: f32 = 1e-4;
+/// Share of the skin by which one slide leads away from what is too near.
+const LEAVE: f32 = 0.3;
+/// Share of the radius by which a way goes on beside a face that it may come to.
+const BESIDE: f32 = 0.1;
+const MOST_STEPS: usize = 48;
+const MOST_SLIDES: usize = 8;
+const MOST_PUSHES: usize = 8;
+
+/// How planes turn a way aside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Course {
+    /// By the shortest change: in the air.
+    Free,
+    /// Up and down are cheap: on the ground.
+    Level,
+}
+
+/// How a mover slides: its skin, and what is too steep.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Manner {
+    pub skin: f32,
+    /// Cosine of the steepest slope that is walked on.
+    pub flattest: f32,
+    pub course: Course,
+}
+
+impl Manner {
+    pub fn stop(&self) -> f32 {
+        STOP * self.skin
+    }
+}
+
+impl Sight<'_> {
+    /// Everything within `reach` of the capsule.
+    fn near(&self, center: Vec3, reach: f32) -> Touches {
+        let nothing = Touch { normal: Vec3::ZERO, distance: 0.0, point: Vec3::ZERO, obstacle: 0 };
+        let mut touches = Touches { all: [nothing; MOST], count: 0 };
+        let bounds = self.bounds(center, Vec3::ZERO, reach);
+        for (number, obstacle) in self.obstacles.iter().enumerate() {
+            if !self.is_there(obstacle) || !obstacle.bounds.overlaps(&bounds) {
+                continue;
+            }
+            let Some(gap) = self.gap(obstacle, center) else { continue };
+            if gap.distance <= reach {
+                let touch =
+                    Touch { normal: gap.normal, distance: gap.distance, point: gap.on_a, obstacle: number };
+                touches.insert(touch);
+            }
+        }
+        touches
+    }
+
+    /// What the capsule touches: within its skin, and a little beyond.
+    pub fn touches(&self, center: Vec3, skin: f32) -> Touches {
+        let mut touches = self.near(center, skin * (1.0 + BAND));
+        touches.drop_hidden(HIDDEN * skin);
+        touches
+    }
+
+    /// What may bear the capsule: a little farther away than what stops it.
+    pub fn bearers(&self, center: Vec3, skin: f32) -> Touches {
+        let mut touches = self.near(center, skin * (1.0 + BEARS));
+        touches.drop_hidden(HIDDEN * skin);
+        touches
+    }
+
+    /// Share of a way until something is at `stop` from the capsule, and what.
+    pub fn sweep(&self, center: Vec3, way: Vec3, manner: &Manner) -> (f32, Option<Touch>) {
+        let length = way.length();
+        let (mut first, mut hit) = (1.0, None);
+        if length <= 0.0 {
+            return (first, hit);
+        }
+        let bounds = self.bounds(center, way, manner.skin);
+        for (number, obstacle) in self.obstacles.iter().enumerate() {
+            if !self.is_there(obstacle) || !obstacle.bounds.overlaps(&bounds) {
+                continue;
+            }
+            let mut share = 0.0;
+            for _ in 0..MOST_STEPS {
+                let Some((gap, hidden)) = self.look(obstacle, center + way * share) else { break };
+                let approach = -way.dot(gap.normal);
+                // What is convex lies behind the plane at its nearest point.
+                if approach <= ALONG * length {
+                    break;
+                }
+                let left = gap.distance - manner.stop();
+                if hidden && left <= THERE * manner.skin {
+                    // Beside a face, in its plane: the way may yet lead over it.
+                    share += BESIDE * self.radius / length;
+                } else if left <= THERE * manner.skin {
+                    let touch = Touch {
+                        normal: gap.normal,
+                        distance: gap.distance,
+                        point: gap.on_a,
+                        obstacle: number,
+                    };
+                    (first, hit) = (share, Some(touch));
+                    break;
+                } else {
+                    share += left / approach;
+                }
+                if share >= first {
+                    break;
+                }
+            }
+        }
+        (first, hit)
+    }
+
+    /// What forbids ways from where the capsule is.
+    pub fn planes(&self, center: Vec3, manner: &Manner) -> Planes {
+        let mut planes = Planes::new();
+        for touch in self.touches(center, manner.skin).as_slice() {
+            // What a sweep stopped at is left for the skin again: the next of two walls that abut would be met there.
+            let least = min(manner.skin - touch.distance, LEAVE * manner.skin);
+            let rise = touch.normal.dot(self.up);
+            planes.push(touch.normal, least);
+            if rise > 0.0 && rise < manner.flattest {
+                planes.push(level(touch.normal, self.up), 0.0);
+            }
+        }
+        planes
+    }
+
+    /// Where a way leads along what is met.
+    pub fn slide(&self, mut center: Vec3, way: Vec3, manner: &Manner) -> Vec3 {
+        let mut left = way;
+        for _ in 0..MOST_SLIDES {
+            let mut planes = self.planes(center, manner);
+            let turn = |planes: &Planes| match manner.course {
+                Course::Free => planes.closest(left),
+                Course::Level => planes.closest_level(left, self.up),
+            };
+            let turned = turn(&planes).or_else(|| {
+                planes.stop();
+                turn(&planes)
+            });
+            let turned = turned.unwrap_or(Vec3::ZERO);
+            if turned.length_squared() < 1e-14 {
+                break;
+            }
+            let (share, hit) = self.sweep(center, turned, manner);
+            center += turned * share;
+            left *= 1.0 - share;
+            if hit.is_none() {
+                break;
+            }
+        }
+        center
+    }
+
+    /// Where the capsule comes to that is pushed out of what it is in, by the shortest way that leads into nothing else.
+    pub fn recover(&self, mut center: Vec3, manner: &Manner) -> Vec3 {
+        let (stop, reach) = (manner.stop(), 0.5 * self.radius);
+        for _ in 0..MOST_PUSHES {
+            let touches = self.near(center, stop * 0.9);
+            if touches.as_slice().is_empty() {
+                break;
+            }
+            let around = self.near(center, reach + manner.skin);
+            let mut planes = Planes::new();
+            for touch in around.as_slice() {
+                planes.push(touch.normal, clamp(stop - touch.distance, -reach, reach));
+            }
+            let out = planes.closest(Vec3::ZERO).unwrap_or_else(|| {
+                let deepest = &touches.as_slice()[0];
+                deepest.normal * (0.5 * (stop - deepest.distance))
+            });
+            let length = out.length();
+            center += if length > reach { out * (reach / length) } else { out };
+        }
+        center
+    }
+}

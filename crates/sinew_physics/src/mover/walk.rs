@@ -1,0 +1,329 @@
+//! One move of one mover, in order.
+
+use super::obstacle::{Obstacle, Owner, Sight, gather};
+use super::press::{Press, meet, weigh};
+use super::sweep::{Course, Manner, Touch};
+use super::{Bearer, Footing, Mover, Movers, surface_velocity};
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::ray::Ray;
+use crate::world::World;
+use sinew_math::{Vec3, max, trig};
+
+/// How far around its way a mover looks for bodies that come toward it, metres.
+const LOOK: f32 = 0.5;
+/// How far behind an edge, and over and under it, it is looked whether there is a tread, metres.
+const BEHIND_EDGE: f32 = 0.01;
+const OVER_EDGE: f32 = 0.03;
+/// Where this share of a way is missing, something other than the ground's slope has stopped it.
+const STOPPED: f32 = 0.02;
+/// A fall that comes less far than this share of its way lies wedged.
+const WEDGED: f32 = 0.02;
+
+/// What a move of a mover needs besides itself.
+struct Move<'a> {
+    world: &'a World,
+    movers: &'a Arena<Mover>,
+    sight: Sight<'a>,
+    manner: Manner,
+    dt: f32,
+}
+
+/// Moves one mover by one step.
+pub(super) fn advance(world: &World, movers: &mut Movers, index: u32, dt: f32) {
+    let Movers { all, obstacles, presses } = movers;
+    let mut mover = all.at(index).clone();
+    mover.previous = mover.position;
+    mover.refresh_ground(&world.bodies);
+    let carried = mover.carried(&world.bodies, dt);
+    mover.accelerate(dt);
+    let gravity = world.def.gravity * mover.def.gravity_scale;
+    look_around(world, all, index, (&mover, carried, gravity, dt), obstacles);
+    {
+        let steps = Move::new(world, all, obstacles, &mover, dt);
+        steps.run(&mut mover, carried, gravity, presses);
+    }
+    *all.at_mut(index) = mover;
+}
+
+/// Gathers what may be met in this step.
+fn look_around(
+    world: &World,
+    movers: &Arena<Mover>,
+    index: u32,
+    (mover, carried, gravity, dt): (&Mover, Vec3, Vec3, f32),
+    obstacles: &mut Vec<Obstacle>,
+) {
+    let def = &mover.def;
+    let (center, way) = (mover.center(), mover.velocity() * dt + carried);
+    let jump = (mover.jump + gravity.length() * dt) * dt;
+    let margin = LOOK + jump + 2.0 * def.step_height + 0.5 * def.radius + 4.0 * def.skin + 0.3 * way.length();
+    let bounds = Sight::new(&world.bodies, &[], mover).bounds(center, way, margin);
+    gather(world, movers, index, &bounds, obstacles);
+}
+
+impl Mover {
+    /// Falls from what bore it, with its velocity.
+    pub(super) fn leave_ground(&mut self) {
+        if let Some(footing) = self.ground.take() {
+            self.velocity += footing.velocity;
+        }
+    }
+
+    /// The ground may have been taken out or changed its velocity.
+    fn refresh_ground(&mut self, bodies: &Arena<Body>) {
+        let Some(footing) = self.ground else { return };
+        if let Bearer::Shape { body, shape } = footing.on {
+            match bodies.get(body) {
+                Some(body) => {
+                    let velocity = surface_velocity(body, shape, footing.point);
+                    self.ground = Some(Footing { velocity, ..footing });
+                }
+                None => self.leave_ground(),
+            }
+        }
+    }
+
+    /// Way on which what bears it takes it along in this step; its yaw follows.
+    fn carried(&mut self, bodies: &Arena<Body>, dt: f32) -> Vec3 {
+        let Some(Footing { on: Bearer::Shape { body, shape }, .. }) = self.ground else { return Vec3::ZERO };
+        let body = bodies.at(body.index);
+        let runs = body.surface_velocity(shape as usize, self.position);
+        self.yaw += (body.velocity.angular + runs.angular).dot(self.def.up) * dt;
+        let moved = if body.previous == body.world_from_principal || !body.is_awake() {
+            Vec3::ZERO
+        } else {
+            let on_body = body.previous.inverse_point(self.position);
+            body.world_from_principal.point(on_body) - self.position
+        };
+        moved + runs.linear * dt
+    }
+
+    /// Brings the velocity toward the wanted one, and jumps.
+    fn accelerate(&mut self, dt: f32) {
+        let up = self.def.up;
+        if self.jump > 0.0 && self.ground.is_some() {
+            self.leave_ground();
+            self.velocity += up * self.jump;
+        }
+        self.jump = 0.0;
+        let across = |v: Vec3| v - up * v.dot(up);
+        let wanted = across(self.walk);
+        let most = match self.ground {
+            Some(_) => self.def.ground_acceleration * dt,
+            None if wanted == Vec3::ZERO => 0.0,
+            None => self.def.air_acceleration * dt,
+        };
+        let change = wanted - across(self.velocity);
+        let length = change.length();
+        self.velocity += if length > most { change * (most / length) } else { change };
+    }
+}
+
+impl<'a> Move<'a> {
+    fn new(
+        world: &'a World,
+        movers: &'a Arena<Mover>,
+        obstacles: &'a [Obstacle],
+        mover: &Mover,
+        dt: f32,
+    ) -> Self {
+        let sight = Sight::new(&world.bodies, obstacles, mover);
+        let flattest = trig::cos(mover.def.slope_limit);
+        let manner = Manner { skin: mover.def.skin, flattest, course: Course::Free };
+        Self { world, movers, sight, manner, dt }
+    }
+
+    /// Carried, pushed out, hit, moved, put on the ground: the whole move.
+    fn run(mut self, mover: &mut Mover, carried: Vec3, gravity: Vec3, presses: &mut Vec<Press>) {
+        let mut center = mover.center();
+        let stood = mover.ground.map(|footing| footing.on);
+        if carried != Vec3::ZERO {
+            self.sight.without = match stood {
+                Some(Bearer::Shape { body, .. }) => Some(body.index),
+                _ => None,
+            };
+            center = self.sight.slide(center, carried, &self.manner);
+            self.sight.without = None;
+        }
+        center = self.sight.recover(center, &self.manner);
+        let up = mover.def.up;
+        let change = meet(&self.sight, mover, center, self.dt, presses);
+        if change != Vec3::ZERO {
+            let change = if stood.is_some() { change - up * change.dot(up) } else { change };
+            mover.velocity += change;
+        }
+        center = match mover.ground {
+            Some(_) => self.walk(mover, center),
+            None => self.fly(mover, center, gravity),
+        };
+        mover.put(center);
+        let is_new = mover.ground.map(|footing| footing.on) != stood;
+        let weight = max(-gravity.dot(up), 0.0) * mover.def.mass * self.dt;
+        weigh(self.sight.bodies, mover, is_new, weight, presses);
+    }
+
+    fn level(&self) -> Manner {
+        Manner { course: Course::Level, ..self.manner }
+    }
+
+    /// Along the ground, up steps, and down to where the ground is.
+    fn walk(&self, mover: &mut Mover, start: Vec3) -> Vec3 {
+        let up = mover.def.up;
+        let wanted = mover.velocity * self.dt;
+        let mut center = self.sight.slide(start, wanted, &self.level());
+        let across = |v: Vec3| v - up * v.dot(up);
+        let missing = wanted - across(center - start);
+        if missing.dot(wanted) > STOPPED * wanted.length_squared() {
+            center = self.step_up(mover, start, center, missing).unwrap_or(center);
+        }
+        let (found, footing) = self.snap(mover, center);
+        let gone = across(found - start);
+        let longest = mover.velocity.length() * self.dt;
+        if across(wanted - gone).length() > 1e-6 {
+            let length = gone.length();
+            let kept = if length > longest { gone * (longest / length) } else { gone };
+            mover.velocity = kept / self.dt;
+        }
+        match footing {
+            Some(footing) => mover.ground = Some(footing),
+            None => mover.leave_ground(),
+        }
+        found
+    }
+
+    /// Up, along and down onto a tread that is no higher than a step over the feet.
+    fn step_up(&self, mover: &Mover, start: Vec3, blocked: Vec3, missing: Vec3) -> Option<Vec3> {
+        let (up, step) = (mover.def.up, mover.def.step_height);
+        let length = missing.length();
+        if step <= 0.0 {
+            return None;
+        }
+        let along = missing / length;
+        // Less than this would not bring it over the edge from where its skin keeps it.
+        let length = max(length, 2.0 * mover.def.skin);
+        let (share, _) = self.sight.sweep(blocked, up * step, &self.manner);
+        let raised = blocked + up * (step * share);
+        let there = self.sight.slide(raised, along * length, &self.level());
+        if (there - raised).dot(along) < 0.25 * length {
+            return None;
+        }
+        let depth = (there - blocked).dot(up) + mover.def.skin;
+        let (share, hit) = self.sight.sweep(there, -up * depth, &self.manner);
+        let landed = there - up * (depth * share);
+        let touch = hit?;
+        let feet = start - up * (0.5 * mover.def.height);
+        let is_low = (touch.point - feet).dot(up) <= step + mover.def.skin;
+        (is_low && self.bears(&touch, mover, landed)).then_some(landed)
+    }
+
+    /// Down to the ground, no farther than a step; what bears the mover there.
+    fn snap(&self, mover: &Mover, center: Vec3) -> (Vec3, Option<Footing>) {
+        let up = mover.def.up;
+        if let Some(footing) = self.ground_at(mover, center, Edges::Bear) {
+            return (center, Some(footing));
+        }
+        let depth = mover.def.step_height + mover.def.skin;
+        let (share, hit) = self.sight.sweep(center, -up * depth, &self.manner);
+        if hit.is_none() {
+            return (center, None);
+        }
+        // Beside what stops it but does not bear it, such as the edge of a riser, it may come lower.
+        let below = center - up * (depth * share);
+        let beside = || self.sight.slide(below, -up * (depth * (1.0 - share)), &self.manner);
+        let stands = |at: Vec3| self.ground_at(mover, at, Edges::Bear).map(|footing| (at, Some(footing)));
+        stands(below).or_else(|| stands(beside())).unwrap_or((center, None))
+    }
+
+    /// Through the air, by gravity.
+    fn fly(&self, mover: &mut Mover, start: Vec3, gravity: Vec3) -> Vec3 {
+        let (dt, up) = (self.dt, mover.def.up);
+        let wanted = mover.velocity * dt + gravity * (0.5 * dt * dt);
+        mover.velocity += gravity * dt;
+        let speed = mover.velocity.length();
+        if speed > self.world.def.max_speed {
+            mover.velocity *= self.world.def.max_speed / speed;
+        }
+        let center = self.sight.slide(start, wanted, &self.manner);
+        let mut blocked = self.sight.planes(center, &self.manner);
+        blocked.stop();
+        let free = mover.velocity;
+        mover.velocity = blocked.closest(free).unwrap_or(Vec3::ZERO);
+        let fell = -wanted.dot(up);
+        let wedged = fell > 0.0 && (center - start).length() < WEDGED * fell;
+        let edges = if wedged { Edges::Wedge } else { Edges::Fall };
+        if let Some(footing) = self.ground_at(mover, center, edges) {
+            let beside = free - footing.velocity;
+            if beside.dot(up) <= 0.01 {
+                mover.ground = Some(footing);
+                let beside = mover.velocity - footing.velocity;
+                mover.velocity = beside - up * beside.dot(up);
+            }
+        }
+        center
+    }
+
+    /// What bears a mover at a place: of what it touches the flattest.
+    fn ground_at(&self, mover: &Mover, center: Vec3, edges: Edges) -> Option<Footing> {
+        let touches = self.sight.bearers(center, self.manner.skin);
+        let rise = |touch: &Touch| touch.normal.dot(mover.def.up);
+        let mut best: Option<&Touch> = None;
+        for touch in touches.as_slice() {
+            let bears = match edges {
+                Edges::Fall => rise(touch) >= self.manner.flattest,
+                Edges::Bear => self.bears(touch, mover, center),
+                Edges::Wedge => rise(touch) > 0.02,
+            };
+            if bears && best.is_none_or(|best| rise(touch) > rise(best)) {
+                best = Some(touch);
+            }
+        }
+        best.map(|touch| self.footing(touch))
+    }
+
+    /// Whether a mover stands on what it touches: it is flat, or the edge of a tread that is.
+    fn bears(&self, touch: &Touch, mover: &Mover, center: Vec3) -> bool {
+        let up = mover.def.up;
+        let rise = touch.normal.dot(up);
+        if rise >= self.manner.flattest {
+            return true;
+        }
+        let feet = center - up * (0.5 * mover.def.height);
+        let Owner::Shape(index, shape, _) = self.sight.obstacles[touch.obstacle].owner else { return false };
+        if rise < 0.02 || (touch.point - feet).dot(up) > mover.def.step_height + mover.def.skin {
+            return false;
+        }
+        let inward = -super::segment::level(touch.normal, up);
+        let origin = touch.point + inward * BEHIND_EDGE + up * OVER_EDGE;
+        let ray = Ray { origin, direction: -up * (2.0 * OVER_EDGE) };
+        let hit =
+            self.world.query().accept(|body, number| (body.index, number) == (index, shape)).first(&ray);
+        hit.is_some_and(|hit| hit.fraction > 0.0 && hit.normal.dot(up) >= self.manner.flattest)
+    }
+
+    fn footing(&self, touch: &Touch) -> Footing {
+        let Touch { normal, point, obstacle, .. } = *touch;
+        let (on, velocity) = match self.sight.obstacles[obstacle].owner {
+            Owner::Shape(index, shape, _) => {
+                let on = Bearer::Shape { body: self.sight.bodies.id(index), shape };
+                (on, surface_velocity(self.sight.bodies.at(index), shape, point))
+            }
+            Owner::Mover(index) => {
+                let on = Bearer::Mover(self.movers.id(index));
+                (on, Vec3::ZERO)
+            }
+        };
+        Footing { on, point, normal, velocity }
+    }
+}
+
+/// Which edges bear.
+#[derive(Clone, Copy, PartialEq)]
+enum Edges {
+    /// Those of treads: on the ground.
+    Bear,
+    /// None: in the air.
+    Fall,
+    /// All that holds up what cannot fall on.
+    Wedge,
+}

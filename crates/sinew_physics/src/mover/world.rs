@@ -1,0 +1,143 @@
+//! Movers of a world: made, steered, asked.
+
+use super::obstacle::{Sight, gather};
+use super::{Bearer, Mover, MoverDef, MoverGround};
+use crate::id::{MoverId, ShapeId};
+use crate::material::Material;
+use crate::shape::Filter;
+use crate::world::World;
+use sinew_math::Vec3;
+
+impl World {
+    /// Adds a mover. It moves in steps, from the next one on.
+    ///
+    /// # Panics
+    /// If [`MoverDef::check`] finds something wrong.
+    pub fn add_mover(&mut self, def: &MoverDef) -> MoverId {
+        if let Err(what) = def.check() {
+            panic!("{what}");
+        }
+        self.movers.all.insert(Mover::new(def))
+    }
+
+    /// Takes a mover out.
+    #[track_caller]
+    pub fn remove_mover(&mut self, id: MoverId) {
+        self.movers.all.take(id);
+        for (_, mover) in self.movers.all.iter_mut() {
+            if mover.ground.is_some_and(|footing| footing.on == Bearer::Mover(id)) {
+                mover.leave_ground();
+            }
+        }
+    }
+
+    /// A mover.
+    #[track_caller]
+    pub fn mover(&self, id: MoverId) -> &Mover {
+        self.movers.all.expect(id)
+    }
+
+    /// True if the id names a mover that is there.
+    pub fn contains_mover(&self, id: MoverId) -> bool {
+        self.movers.all.get(id).is_some()
+    }
+
+    /// All movers, by index.
+    pub fn mover_ids(&self) -> impl Iterator<Item = MoverId> {
+        self.movers.all.ids()
+    }
+
+    /// What a mover stands on; `None` in the air and on what is too steep.
+    #[track_caller]
+    pub fn mover_ground(&self, id: MoverId) -> Option<MoverGround> {
+        let footing = self.mover(id).ground?;
+        let (shape, mover) = match footing.on {
+            Bearer::Shape { body, shape } => (Some(ShapeId { body, shape }), None),
+            Bearer::Mover(mover) => (None, Some(mover)),
+        };
+        let material = shape.map_or(Material::DEFAULT, |shape| self.material(shape));
+        let super::Footing { point, normal, velocity, .. } = footing;
+        Some(MoverGround { shape, mover, point, normal, velocity, material })
+    }
+
+    /// Velocity with which a mover is to walk from now on, m/s, beside that of the ground; its part along up does nothing.
+    #[track_caller]
+    pub fn set_mover_walk(&mut self, id: MoverId, velocity: Vec3) {
+        assert!(velocity.is_finite(), "a velocity is finite");
+        self.expect_mover(id).walk = velocity;
+    }
+
+    /// Throws a mover: it leaves the ground with this velocity, m/s.
+    #[track_caller]
+    pub fn set_mover_velocity(&mut self, id: MoverId, velocity: Vec3) {
+        assert!(velocity.is_finite(), "a velocity is finite");
+        let mover = self.expect_mover(id);
+        mover.ground = None;
+        mover.velocity = velocity;
+    }
+
+    /// Has a mover jump in the next step, if something bears it then, with this speed upward, m/s, beside the ground's. It
+    /// rises by `speed² / 2g`.
+    #[track_caller]
+    pub fn mover_jump(&mut self, id: MoverId, speed: f32) {
+        assert!((0.0..f32::INFINITY).contains(&speed), "the speed of a jump is finite and not negative");
+        self.expect_mover(id).jump = speed;
+    }
+
+    /// Puts a mover with its feet somewhere, at rest. It does not sweep what lies between.
+    #[track_caller]
+    pub fn set_mover_position(&mut self, id: MoverId, position: Vec3) {
+        assert!(position.is_finite(), "a mover's position is finite");
+        let mover = self.expect_mover(id);
+        (mover.position, mover.previous) = (position, position);
+        (mover.ground, mover.velocity) = (None, Vec3::ZERO);
+    }
+
+    /// Makes a mover lower or higher, from its feet up. False, and nothing changes, if there is no room to grow.
+    ///
+    /// # Panics
+    /// If the height is less than twice the radius, or not finite.
+    #[track_caller]
+    pub fn set_mover_height(&mut self, id: MoverId, height: f32) -> bool {
+        let now = self.mover(id);
+        let fits = height >= 2.0 * now.def.radius && height < f32::INFINITY;
+        assert!(fits, "a mover's height is at least twice its radius");
+        if height > now.def.height && !self.has_room(id, height) {
+            return false;
+        }
+        self.expect_mover(id).def.height = height;
+        true
+    }
+
+    /// From now on it meets what this filter meets.
+    #[track_caller]
+    pub fn set_mover_filter(&mut self, id: MoverId, filter: Filter) {
+        self.expect_mover(id).def.filter = filter;
+    }
+
+    /// Whether nothing is where a mover would grow to.
+    #[track_caller]
+    fn has_room(&self, id: MoverId, height: f32) -> bool {
+        let mut grown = self.mover(id).clone();
+        let old = grown.center();
+        grown.def.height = height;
+        let (center, skin) = (grown.center(), grown.def.skin);
+        let bounds = Sight::new(&self.bodies, &[], &grown).bounds(center, Vec3::ZERO, skin);
+        let mut obstacles = Vec::new();
+        gather(self, &self.movers.all, id.index, &bounds, &mut obstacles);
+        let sight = Sight::new(&self.bodies, &obstacles, &grown);
+        let low = Sight::new(&self.bodies, &obstacles, self.mover(id));
+        // What it touches already it may go on touching.
+        obstacles.iter().all(|obstacle| {
+            let distance =
+                |sight: &Sight<'_>, center| sight.gap(obstacle, center).map_or(skin, |gap| gap.distance);
+            let (before, after) = (distance(&low, old), distance(&sight, center));
+            after >= 0.5 * skin || after >= before - 1e-4
+        })
+    }
+
+    #[track_caller]
+    fn expect_mover(&mut self, id: MoverId) -> &mut Mover {
+        self.movers.all.expect_mut(id)
+    }
+}

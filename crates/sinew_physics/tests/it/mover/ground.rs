@@ -1,0 +1,171 @@
+//! Stairs, ledges, jumps, crouching.
+
+use super::{block, depth, level, settle};
+use sinew_math::Vec3;
+use sinew_physics::*;
+
+/// Twelve steps up along x from 2 m on, a landing, and twelve down again.
+fn stairs(world: &mut World, rise: f32) -> f32 {
+    let tread = 0.3;
+    for i in 0..24_u8 {
+        let high = if i < 12 { i + 1 } else { 24 - i };
+        let x = 2.0 + f32::from(i) * tread;
+        block(world, Vec3::new(x, 0.0, -2.0), Vec3::new(x + tread, rise * f32::from(high), 2.0));
+    }
+    2.0 + 24.0 * tread
+}
+
+#[test]
+fn stairs_are_climbed_and_descended_without_leaving_the_ground() {
+    for rise in [0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.39] {
+        for speed in [0.3, 0.6, 1.0, 2.0, 4.0, 6.0] {
+            let mut world = level();
+            let end = stairs(&mut world, rise);
+            let id = world.add_mover(&MoverDef { step_height: 0.4, ..MoverDef::at(Vec3::X * 1.0) });
+            settle(&mut world, id);
+            world.set_mover_walk(id, Vec3::X * speed);
+            let (mut highest, mut slowest) = (0.0_f32, f32::INFINITY);
+            let steps = ((end + 1.0) / (speed * world.def().dt())) as usize + 60;
+            for _ in 0..steps {
+                let before = world.mover(id).position().x;
+                world.step();
+                let mover = world.mover(id);
+                assert!(
+                    mover.is_grounded(),
+                    "{rise} m at {speed} m/s: off the ground at {}",
+                    mover.position()
+                );
+                assert_eq!(depth(&world, id), 0.0, "{rise} m at {speed} m/s: {}", mover.position());
+                highest = if mover.position().y > highest { mover.position().y } else { highest };
+                let gone = mover.position().x - before;
+                slowest = if gone < slowest { gone } else { slowest };
+            }
+            let at = world.mover(id).position();
+            assert!(highest > rise * 11.9, "{rise} m at {speed} m/s: only {highest} m high, at {at}");
+            assert!(at.x > end && at.y < 0.01, "{rise} m at {speed} m/s: {at}");
+            assert!(slowest > -1e-3, "{rise} m at {speed} m/s: it was thrown back by {slowest} m");
+        }
+    }
+}
+
+#[test]
+fn what_is_higher_than_a_step_is_a_wall() {
+    for (height, climbs) in
+        [(0.1, true), (0.3, true), (0.34, true), (0.37, false), (0.5, false), (1.0, false)]
+    {
+        for speed in [0.5, 2.0, 6.0] {
+            let mut world = level();
+            block(&mut world, Vec3::new(2.0, 0.0, -2.0), Vec3::new(9.0, height, 2.0));
+            let id = world.add_mover(&MoverDef::default());
+            settle(&mut world, id);
+            world.set_mover_walk(id, Vec3::X * speed);
+            for _ in 0..(4.0 / (speed * world.def().dt())) as usize {
+                world.step();
+            }
+            let at = world.mover(id).position();
+            assert_eq!(at.x > 2.5, climbs, "{height} m at {speed} m/s: {at}");
+        }
+    }
+}
+
+#[test]
+fn off_a_ledge_it_falls_as_a_stone_does() {
+    let mut world = level();
+    block(&mut world, Vec3::new(-5.0, 0.0, -2.0), Vec3::new(0.0, 10.0, 2.0));
+    let id = world.add_mover(&MoverDef::at(Vec3::new(-2.0, 10.0, 0.0)));
+    settle(&mut world, id);
+    world.set_mover_walk(id, Vec3::X * 3.0);
+    while world.mover(id).is_grounded() {
+        world.step();
+    }
+    let (from, dt) = (world.mover(id).position(), world.def().dt());
+    let mut steps = 0;
+    while !world.mover(id).is_grounded() {
+        world.step();
+        steps += 1;
+        if !world.mover(id).is_grounded() {
+            let t = steps as f32 * dt;
+            let fallen = from.y - world.mover(id).position().y;
+            assert!((fallen - 4.905 * t * t).abs() < 0.01 + 1e-3 * fallen, "{fallen} m after {t} s");
+        }
+        assert!(steps < 200);
+    }
+    assert!(world.mover(id).position().y < 0.01 && world.mover(id).position().x > 2.0);
+}
+
+#[test]
+fn a_jump_is_as_high_as_its_speed_says() {
+    for speed in [2.0, 4.5, 8.0_f32] {
+        let mut world = level();
+        let id = world.add_mover(&MoverDef::default());
+        settle(&mut world, id);
+        let from = world.mover(id).position().y;
+        world.mover_jump(id, speed);
+        let (mut top, mut steps) = (0.0_f32, 0);
+        loop {
+            world.step();
+            steps += 1;
+            let height = world.mover(id).position().y - from;
+            top = if height > top { height } else { top };
+            if world.mover(id).is_grounded() {
+                break;
+            }
+            // In the air there is nothing to jump off.
+            world.mover_jump(id, speed);
+            assert!(steps < 200);
+        }
+        // The step in which it lands must not take the last wish.
+        let expected = speed * speed / (2.0 * 9.81);
+        // The highest point may lie half a step off the nearest step.
+        let between = 9.81 * 0.5 * (0.5 * world.def().dt()) * (0.5 * world.def().dt());
+        assert!(top <= expected + 1e-4 && top >= expected - between - 1e-4, "{top} of {expected}");
+        let seconds = steps as f32 * world.def().dt();
+        assert!((seconds - 2.0 * speed / 9.81).abs() < 2.0 * world.def().dt(), "{seconds} s");
+    }
+}
+
+#[test]
+fn it_grows_only_where_there_is_room() {
+    let mut world = level();
+    block(&mut world, Vec3::new(2.0, 1.2, -2.0), Vec3::new(4.0, 1.5, 2.0));
+    let id = world.add_mover(&MoverDef::default());
+    settle(&mut world, id);
+    world.set_mover_walk(id, Vec3::X * 2.0);
+    for _ in 0..120 {
+        world.step();
+    }
+    assert!(world.mover(id).position().x < 2.0, "upright it does not fit under");
+    assert!(world.set_mover_height(id, 1.0));
+    while world.mover(id).position().x < 3.0 {
+        world.step();
+        assert!(world.step_count() < 600);
+    }
+    assert!(!world.set_mover_height(id, 1.8), "there is no room under the roof");
+    assert!(world.mover(id).def().height == 1.0 && depth(&world, id) == 0.0);
+    while world.mover(id).position().x < 5.0 {
+        world.step();
+        assert!(world.step_count() < 600);
+    }
+    assert!(world.set_mover_height(id, 1.8), "there is room again");
+    world.step();
+    assert!(depth(&world, id) == 0.0 && world.mover(id).is_grounded());
+}
+
+#[test]
+fn ground_is_told_with_its_material() {
+    let mut world = level();
+    let mut stage = BodyDef::fixed(Shape::Box { half_extents: Vec3::new(2.0, 0.5, 2.0) });
+    stage.shapes[0].material.tag = 7;
+    let stage = world.add_body(&stage);
+    let id = world.add_mover(&MoverDef::at(Vec3::new(0.0, 1.0, 0.0)));
+    assert!(world.mover_ground(id).is_none());
+    settle(&mut world, id);
+    let ground = world.mover_ground(id).expect("it stands");
+    assert_eq!(ground.shape.map(|shape| shape.body), Some(stage));
+    assert!(ground.material.tag == 7 && (ground.normal - Vec3::Y).length() < 1e-6);
+    assert!((ground.point.y - 0.5).abs() < 1e-5 && ground.velocity == Vec3::ZERO);
+    world.remove_body(stage);
+    assert!(world.mover_ground(id).is_none());
+    settle(&mut world, id);
+    assert!(world.mover(id).position().y < 0.01);
+}

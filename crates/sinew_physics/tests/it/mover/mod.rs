@@ -1,0 +1,54 @@
+//! Movers: against closed forms, and against what queries of the world say of where they are.
+
+mod clutter;
+mod ground;
+mod push;
+mod ride;
+mod state;
+mod walls;
+
+use sinew_math::{Rotation, Transform, Vec3};
+use sinew_physics::*;
+
+/// A world with a floor at height 0.
+pub fn level() -> World {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+    world
+}
+
+/// A fixed box from corner to corner.
+pub fn block(world: &mut World, min: Vec3, max: Vec3) -> BodyId {
+    let half_extents = (max - min) * 0.5;
+    world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at((min + max) * 0.5))
+}
+
+/// A fixed box that is turned about z around its centre.
+pub fn turned(world: &mut World, half_extents: Vec3, at: Vec3, angle: f32) -> BodyId {
+    let mut def = BodyDef::fixed(Shape::Box { half_extents }).at(at);
+    def.rotation = Rotation::from_axis_angle(Vec3::Z, angle);
+    world.add_body(&def)
+}
+
+/// Steps until the mover stands.
+pub fn settle(world: &mut World, id: MoverId) {
+    for _ in 0..120 {
+        world.step();
+    }
+    assert!(world.mover(id).is_grounded(), "it stands at {}", world.mover(id).position());
+}
+
+/// How deep a mover's capsule is in anything, by the world's own queries, metres.
+pub fn depth(world: &World, id: MoverId) -> f32 {
+    let mover = world.mover(id);
+    let shape = Shape::Capsule { half_height: mover.half_height(), radius: mover.def().radius };
+    let world_from_shape = Transform::from_translation(mover.center());
+    let mut found = Vec::new();
+    world.query().all(&PenetrationOf(Probe { shape, world_from_shape }), &mut found);
+    found.first().map_or(0.0, |deepest| deepest.depth)
+}
+
+/// How many random cases to try: `few`, but `all` with `SINEW_FULL` set.
+pub fn cases(few: usize, all: usize) -> usize {
+    if std::env::var_os("SINEW_FULL").is_some() { all } else { few }
+}

@@ -1,0 +1,112 @@
+//! What movers and dynamic bodies do to each other.
+
+use super::{depth, level, settle};
+use sinew_math::Vec3;
+use sinew_physics::*;
+
+fn crate_of(world: &mut World, mass: f32, at: Vec3, friction: f32) -> BodyId {
+    let half = 0.4;
+    let mut def = BodyDef::dynamic(Shape::Box { half_extents: Vec3::splat(half) }).at(at);
+    def.shapes[0].density = mass / (8.0 * half * half * half);
+    def.shapes[0].material.friction = friction;
+    world.add_body(&def)
+}
+
+/// Friction of a floor of 0.6 and a crate of 0.6 on `m` is `0.6 m g`: what 800 N can move weighs up to 136 kg.
+#[test]
+fn it_pushes_what_its_force_can_move_and_no_more() {
+    for (mass, moves) in [(10.0, true), (60.0, true), (110.0, true), (170.0, false), (1000.0, false)] {
+        let mut world = level();
+        let crate_ = crate_of(&mut world, mass, Vec3::new(1.5, 0.4, 0.0), 0.6);
+        let id = world.add_mover(&MoverDef { step_height: 0.2, ..MoverDef::default() });
+        settle(&mut world, id);
+        world.set_mover_walk(id, Vec3::X * 2.0);
+        for _ in 0..240 {
+            world.step();
+            assert!(depth(&world, id) < 2e-3, "{mass} kg: {}", depth(&world, id));
+        }
+        let at = world.transform(crate_).translation;
+        assert_eq!(at.x > 2.0, moves, "{mass} kg: {at}");
+        assert!(moves || at.x < 1.6, "{mass} kg: {at}");
+        let behind = at.x - 0.4 - 0.3 - world.mover(id).position().x;
+        assert!((-0.002..0.08).contains(&behind), "{mass} kg: it is {behind} m behind");
+    }
+}
+
+/// A ball of 200 kg at 5 m/s against 80 kg that stand: momentum is shared, and the mover is never faster than an elastic hit.
+#[test]
+fn a_heavy_ball_pushes_it_by_momentum() {
+    for speed in [2.0, 5.0, 15.0, 30.0] {
+        let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+        let mut def = BodyDef::dynamic(Shape::Sphere { radius: 0.5 }).at(Vec3::new(-4.0, 0.9, 0.0));
+        def.shapes[0].density = 200.0 / (4.0 / 3.0 * core::f32::consts::PI * 0.125);
+        def.linear_velocity = Vec3::X * speed;
+        let ball = world.add_body(&def);
+        let id = world.add_mover(&MoverDef::default());
+        let mut fastest = 0.0_f32;
+        for _ in 0..(8.0 / (speed * world.def().dt())) as usize {
+            world.step();
+            let now = world.mover(id).velocity().x;
+            fastest = if now > fastest { now } else { fastest };
+            assert!(depth(&world, id) < 0.01, "{speed} m/s: {}", depth(&world, id));
+        }
+        let after = world.velocity(ball).linear.x;
+        let momentum = 200.0 * after + 80.0 * world.mover(id).velocity().x;
+        assert!((momentum - 200.0 * speed).abs() < 0.01 * 200.0 * speed, "{momentum} of {}", 200.0 * speed);
+        let common = 200.0 / 280.0 * speed;
+        assert!((fastest - common).abs() < 0.05 * common, "{speed} m/s: {fastest} of {common}");
+    }
+}
+
+#[test]
+fn a_light_ball_does_not_move_it_much_and_does_not_pass() {
+    let mut world = level();
+    let mut def = BodyDef::dynamic(Shape::Sphere { radius: 0.1 }).at(Vec3::new(-4.0, 1.2, 0.0));
+    def.shapes[0].density = 0.4 / (4.0 / 3.0 * core::f32::consts::PI * 0.001);
+    def.linear_velocity = Vec3::X * 20.0;
+    let ball = world.add_body(&def);
+    let id = world.add_mover(&MoverDef::default());
+    for _ in 0..120 {
+        world.step();
+        assert!(world.transform(ball).translation.x < 0.0, "it passed");
+    }
+    assert!(world.mover(id).position().x < 0.05, "{}", world.mover(id).position());
+}
+
+#[test]
+fn its_weight_tips_a_plank_and_lies_on_a_raft() {
+    let mut world = level();
+    let beam = Shape::Box { half_extents: Vec3::new(0.1, 0.1, 1.0) };
+    world.add_body(&BodyDef::fixed(beam).at(Vec3::Y * 0.1));
+    let mut def = BodyDef::dynamic(Shape::Box { half_extents: Vec3::new(2.0, 0.05, 0.6) })
+        .at(Vec3::new(0.0, 0.26, 0.0));
+    def.shapes[0].density = 20.0 / (8.0 * 2.0 * 0.05 * 0.6);
+    let plank = world.add_body(&def);
+    for _ in 0..120 {
+        world.step();
+    }
+    let id = world.add_mover(&MoverDef::at(Vec3::new(1.2, 0.36, 0.0)));
+    for _ in 0..240 {
+        world.step();
+    }
+    let end = world.transform(plank).point(Vec3::new(2.0, 0.0, 0.0)).y;
+    assert!(end < 0.1, "its end is at {end}");
+    assert!(world.mover(id).is_grounded() && depth(&world, id) < 2e-3, "{}", depth(&world, id));
+}
+
+#[test]
+fn what_lies_on_its_head_lies_and_falls_when_it_walks_away() {
+    let mut world = level();
+    let id = world.add_mover(&MoverDef { radius: 0.5, ..MoverDef::default() });
+    settle(&mut world, id);
+    let lid = crate_of(&mut world, 10.0, Vec3::Y * 2.25, 0.6);
+    for _ in 0..240 {
+        world.step();
+        assert!(world.transform(lid).translation.y > 2.1, "{}", world.transform(lid).translation);
+    }
+    world.set_mover_walk(id, Vec3::X * 4.0);
+    for _ in 0..240 {
+        world.step();
+    }
+    assert!(world.transform(lid).translation.y < 0.5, "{}", world.transform(lid).translation);
+}

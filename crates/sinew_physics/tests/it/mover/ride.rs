@@ -1,0 +1,164 @@
+//! Platforms, belts, one-way floors, other movers.
+
+use super::{block, depth, level, settle};
+use sinew_math::Vec3;
+use sinew_physics::*;
+
+fn platform(world: &mut World, half_extents: Vec3, at: Vec3, linear: Vec3, angular: Vec3) -> BodyId {
+    let mut def = BodyDef::fixed(Shape::Box { half_extents }).at(at);
+    def.kind = BodyKind::Kinematic;
+    let id = world.add_body(&def);
+    world.set_velocity(id, Velocity { linear, angular });
+    id
+}
+
+/// Up and down by 4 m, 20 s long.
+#[test]
+fn a_lift_carries_it() {
+    let mut world = level();
+    let lift = platform(&mut world, Vec3::new(2.0, 0.1, 2.0), Vec3::Y * 0.4, Vec3::ZERO, Vec3::ZERO);
+    let id = world.add_mover(&MoverDef::at(Vec3::new(0.3, 0.6, 0.2)));
+    settle(&mut world, id);
+    let over = |world: &World| world.mover(id).position() - world.transform(lift).translation;
+    let start = over(&world);
+    for step in 0..1200 {
+        let speed = if (step / 200) % 2 == 0 { 1.2 } else { -1.2 };
+        world.set_velocity(lift, Velocity { linear: Vec3::Y * speed, angular: Vec3::ZERO });
+        world.step();
+        assert!(world.mover(id).is_grounded(), "in step {step}");
+        assert!((over(&world) - start).length() < 1e-3, "in step {step}: {} from {start}", over(&world));
+        assert_eq!(depth(&world, id), 0.0);
+        assert!((world.mover(id).velocity().y - speed).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn a_turntable_carries_and_turns_it() {
+    let mut world = level();
+    let spin = Vec3::Y * 1.5;
+    let table = platform(&mut world, Vec3::new(3.0, 0.1, 3.0), Vec3::Y * 0.4, Vec3::X * 0.1, spin);
+    let id = world.add_mover(&MoverDef::at(Vec3::new(1.5, 0.51, 0.2)));
+    world.step();
+    for _ in 0..30 {
+        world.step();
+    }
+    let on = |world: &World| world.transform(table).inverse_point(world.mover(id).position());
+    let (start, yaw) = (on(&world), world.mover(id).yaw());
+    for step in 0..1200 {
+        world.step();
+        assert!(world.mover(id).is_grounded(), "in step {step}");
+        assert!((on(&world) - start).length() < 1e-3, "in step {step}: {} from {start}", on(&world));
+    }
+    let turned = world.mover(id).yaw() - yaw;
+    assert!((turned - 1.5 * 1200.0 * world.def().dt()).abs() < 1e-3, "it turned by {turned}");
+    // It leaves with the table's velocity there.
+    let velocity = world.mover(id).velocity();
+    let at = world.mover(id).position() - world.transform(table).translation;
+    let expected = Vec3::X * 0.1 + spin.cross(at);
+    assert!((velocity - expected).length() < 1e-2, "{velocity} {expected}");
+    world.mover_jump(id, 3.0);
+    world.step();
+    let flies = world.mover(id).velocity();
+    assert!((flies - expected - Vec3::Y * (3.0 - 9.81 * world.def().dt())).length() < 2e-2, "{flies}");
+}
+
+#[test]
+fn a_belt_carries_it_and_walking_adds() {
+    let mut world = level();
+    let mut belt = BodyDef::fixed(Shape::Box { half_extents: Vec3::new(20.0, 0.1, 2.0) }).at(Vec3::Y * 0.1);
+    belt.shapes[0].material.surface_velocity = Vec3::X * 1.5;
+    world.add_body(&belt);
+    let id = world.add_mover(&MoverDef::at(Vec3::new(-10.0, 0.3, 0.0)));
+    settle(&mut world, id);
+    let second = |world: &mut World| {
+        let before = world.mover(id).position();
+        (0..60).for_each(|_| world.step());
+        (world.mover(id).position() - before) / (60.0 * world.def().dt())
+    };
+    let rides = second(&mut world);
+    assert!((rides - Vec3::X * 1.5).length() < 1e-3, "{rides}");
+    world.set_mover_walk(id, Vec3::new(-1.5, 0.0, 0.5));
+    second(&mut world);
+    let walks = second(&mut world);
+    assert!((walks - Vec3::Z * 0.5).length() < 1e-2, "{walks}");
+}
+
+#[test]
+fn a_wall_that_comes_pushes_it() {
+    let mut world = level();
+    platform(&mut world, Vec3::new(0.2, 2.0, 2.0), Vec3::new(3.0, 2.0, 0.0), Vec3::X * -2.0, Vec3::ZERO);
+    let id = world.add_mover(&MoverDef::default());
+    for _ in 0..180 {
+        world.step();
+        assert!(depth(&world, id) < 1e-3, "{}", depth(&world, id));
+    }
+    let at = world.mover(id).position();
+    assert!((at.x - (3.0 - 6.0 - 0.5)).abs() < 0.01 && at.y < 0.01, "{at}");
+}
+
+#[test]
+fn a_one_way_floor_lets_it_up_and_holds_it() {
+    let mut world = level();
+    let mut shelf = BodyDef::fixed(Shape::Box { half_extents: Vec3::new(2.0, 0.1, 2.0) }).at(Vec3::Y * 1.9);
+    shelf.shapes[0].rule = ContactRule::OneWay(OneWay::default());
+    world.add_body(&shelf);
+    let id = world.add_mover(&MoverDef { height: 1.5, ..MoverDef::default() });
+    settle(&mut world, id);
+    world.mover_jump(id, 7.5);
+    for _ in 0..120 {
+        world.step();
+    }
+    let at = world.mover(id).position();
+    assert!(world.mover(id).is_grounded() && (at.y - 2.0).abs() < 0.01, "{at}");
+    world.set_mover_walk(id, Vec3::X * 3.0);
+    for _ in 0..120 {
+        world.step();
+    }
+    assert!(world.mover(id).position().y < 0.01, "off its edge it falls");
+}
+
+#[test]
+fn movers_stop_each_other() {
+    let mut world = level();
+    let at = |x: f32| MoverDef::at(Vec3::X * x);
+    let (a, b) = (world.add_mover(&at(-2.0)), world.add_mover(&at(2.0)));
+    world.set_mover_walk(a, Vec3::X * 3.0);
+    world.set_mover_walk(b, Vec3::X * -3.0);
+    for _ in 0..120 {
+        world.step();
+        let apart = (world.mover(b).position() - world.mover(a).position()).x;
+        assert!(apart > 0.6, "{apart}");
+    }
+    let apart = (world.mover(b).position() - world.mover(a).position()).x;
+    assert!(apart < 0.61, "they meet: {apart}");
+    // One that may not meet the other passes.
+    let ghost = Filter { mask: 0, ..world.mover(b).def().filter };
+    world.set_mover_filter(b, ghost);
+    for _ in 0..120 {
+        world.step();
+    }
+    assert!(world.mover(a).position().x > 1.0);
+}
+
+#[test]
+fn a_mover_stands_on_another_and_a_filter_lets_it_through_walls() {
+    let mut world = level();
+    let low = world.add_mover(&MoverDef::default());
+    let high = world.add_mover(&MoverDef::at(Vec3::Y * 2.0));
+    settle(&mut world, high);
+    assert!((world.mover(high).position().y - 1.81).abs() < 0.01);
+    assert_eq!(world.mover_ground(high).and_then(|ground| ground.mover), Some(low));
+    world.remove_mover(low);
+    settle(&mut world, high);
+    assert!(world.mover(high).position().y < 0.01);
+
+    let wall = block(&mut world, Vec3::new(1.0, 0.0, -3.0), Vec3::new(1.2, 3.0, 3.0));
+    let wall = ShapeId { body: wall, shape: 0 };
+    world.set_filter(wall, Filter { layers: 2, ..Filter::default() });
+    world.set_mover_filter(high, Filter { mask: !2, ..Filter::default() });
+    world.set_mover_walk(high, Vec3::X * 3.0);
+    for _ in 0..60 {
+        world.step();
+    }
+    assert!(world.mover(high).position().x > 2.0);
+}

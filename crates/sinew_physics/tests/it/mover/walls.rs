@@ -1,0 +1,233 @@
+//! Walls, corners, wedges, seams, and speeds at which a step is longer than a wall is thick.
+
+use super::{block, depth, level, settle, turned};
+use sinew_math::trig::{cos, sin};
+use sinew_math::{Rotation, Vec3};
+use sinew_physics::*;
+
+#[test]
+fn a_wall_stops_it_at_its_skin_and_it_slides_along() {
+    let mut world = level();
+    block(&mut world, Vec3::new(2.0, 0.0, -50.0), Vec3::new(2.2, 3.0, 50.0));
+    let id = world.add_mover(&MoverDef::default());
+    settle(&mut world, id);
+    world.set_mover_walk(id, Vec3::new(3.0, 0.0, 0.0));
+    for _ in 0..120 {
+        world.step();
+    }
+    let at = world.mover(id).position();
+    assert!((at.x - 1.695).abs() < 2e-3 && at.z.abs() < 1e-4, "{at}");
+    world.set_mover_walk(id, Vec3::new(3.0, 0.0, 4.0));
+    for _ in 0..20 {
+        world.step();
+    }
+    let before = world.mover(id).position().z;
+    for _ in 0..60 {
+        world.step();
+        assert!(depth(&world, id) == 0.0);
+    }
+    let gone = world.mover(id).position().z - before;
+    assert!((gone - 240.0 * world.def().dt()).abs() < 0.01, "it slid {gone} m");
+}
+
+#[test]
+fn it_walks_as_fast_as_it_is_told() {
+    let mut world = level();
+    let id = world.add_mover(&MoverDef::default());
+    settle(&mut world, id);
+    world.set_mover_walk(id, Vec3::new(0.0, 0.0, 2.0));
+    for _ in 0..60 {
+        world.step();
+    }
+    let before = world.mover(id).position();
+    for _ in 0..600 {
+        world.step();
+        assert!(world.mover(id).is_grounded());
+    }
+    let gone = world.mover(id).position() - before;
+    let seconds = 600.0 * world.def().dt();
+    assert!((gone.z - 2.0 * seconds).abs() < 1e-3 && gone.x.abs() < 1e-4 && gone.y.abs() < 1e-3, "{gone}");
+}
+
+/// Two walls that meet at an angle, from a right angle to 5 degrees; the mover presses in and must lie still.
+#[test]
+fn wedges_hold_it_still() {
+    for degrees in [90.0_f32, 60.0, 40.0, 20.0, 10.0, 5.0] {
+        for aside in [0.0, 0.3, -0.5] {
+            let half = degrees.to_radians() * 0.5;
+            let mut world = level();
+            for side in [-1.0, 1.0] {
+                // Its inner face goes through the origin, along the wedge's side.
+                let along = Vec3::new(-cos(half), 0.0, side * sin(half));
+                let outward = Vec3::new(sin(half), 0.0, side * cos(half));
+                let mut wall = BodyDef::fixed(Shape::Box { half_extents: Vec3::new(20.0, 2.0, 0.25) })
+                    .at(along * 18.0 + outward * 0.25 + Vec3::Y * 2.0);
+                wall.rotation = Rotation::from_arc(Vec3::X, along);
+                world.add_body(&wall);
+            }
+            let start = Vec3::new(-12.0, 0.0, 0.0);
+            let id = world.add_mover(&MoverDef::at(start));
+            world.set_mover_walk(id, Vec3::new(5.0, 0.0, 5.0 * aside));
+            for _ in 0..360 {
+                world.step();
+            }
+            let mut last = world.mover(id).position();
+            for _ in 0..120 {
+                world.step();
+                let now = world.mover(id).position();
+                assert!((now - last).length() < 1e-4, "{degrees}° {aside}: it jumps from {last} to {now}");
+                assert_eq!(depth(&world, id), 0.0, "{degrees}° {aside}");
+                last = now;
+            }
+            // Where a capsule and its skin fit in.
+            let deepest = -0.3 / sin(half);
+            assert!(last.x < deepest + 1e-3, "{degrees}° {aside}: {last} beyond {deepest}");
+            assert!(last.x > deepest - 0.02 / sin(half), "{degrees}° {aside}: {last} before {deepest}");
+        }
+    }
+}
+
+/// Abutting boxes, under the feet and beside them, slow nothing down.
+#[test]
+fn it_does_not_catch_between_boxes_that_abut() {
+    let mut world = World::new(WorldDef::default());
+    for i in 0..40 {
+        let x = i as f32 * 0.5;
+        block(&mut world, Vec3::new(x, -0.5, -2.0), Vec3::new(x + 0.5, 0.0, 2.0));
+        block(&mut world, Vec3::new(x, 0.0, 0.5), Vec3::new(x + 0.5, 3.0, 1.0));
+    }
+    let id = world.add_mover(&MoverDef::at(Vec3::new(1.0, 0.01, 0.1)));
+    settle(&mut world, id);
+    world.set_mover_walk(id, Vec3::new(3.0, 0.0, 2.0));
+    for _ in 0..30 {
+        world.step();
+    }
+    let start = world.mover(id).position();
+    let mut last = start;
+    for _ in 0..240 {
+        world.step();
+        let now = world.mover(id).position();
+        assert!((now.x - last.x - 3.0 * world.def().dt()).abs() < 2e-3, "it caught at {now}");
+        assert!((now.y - last.y).abs() < 1e-3 && world.mover(id).is_grounded(), "it hops at {now}");
+        last = now;
+    }
+}
+
+/// A floor and a wall of many triangles.
+#[test]
+fn it_does_not_catch_on_the_seams_of_a_mesh() {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for i in 0..=40_u32 {
+        let x = i as f32 * 0.37;
+        vertices.extend([Vec3::new(x, 0.0, -2.0), Vec3::new(x, 0.0, 0.5), Vec3::new(x, 3.0, 0.5)]);
+        if i < 40 {
+            let (a, b) = (3 * i, 3 * i + 3);
+            triangles.extend([
+                [a, a + 1, b],
+                [a + 1, b + 1, b],
+                [a + 1, a + 2, b + 1],
+                [a + 2, b + 2, b + 1],
+            ]);
+        }
+    }
+    let mesh = Mesh::new(&vertices, &triangles).expect("a mesh");
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(Shape::Mesh(mesh.into())));
+    let id = world.add_mover(&MoverDef::at(Vec3::new(1.0, 0.01, 0.1)));
+    settle(&mut world, id);
+    world.set_mover_walk(id, Vec3::new(3.0, 0.0, 2.0));
+    for _ in 0..30 {
+        world.step();
+    }
+    let mut last = world.mover(id).position();
+    for _ in 0..180 {
+        world.step();
+        let now = world.mover(id).position();
+        assert!((now.x - last.x - 3.0 * world.def().dt()).abs() < 2e-3, "it caught at {now} from {last}");
+        assert!((now.y - last.y).abs() < 1e-3 && world.mover(id).is_grounded(), "it hops at {now}");
+        last = now;
+    }
+}
+
+/// 50 m/s is 0.8 m a step; the walls are 1 cm, boxes and one-sided triangles.
+#[test]
+fn thin_walls_stop_it_at_50_metres_a_second() {
+    for turn in 0..16 {
+        let angle = turn as f32 * 0.4;
+        let way = Vec3::new(cos(angle), 0.0, sin(angle));
+        for triangles in [false, true] {
+            let mut world = level();
+            let mut wall = if triangles {
+                let corners = [
+                    Vec3::new(0.0, -1.0, -9.0),
+                    Vec3::new(0.0, 4.0, -9.0),
+                    Vec3::new(0.0, 4.0, 9.0),
+                    Vec3::new(0.0, -1.0, 9.0),
+                ];
+                let mesh = Mesh::new(&corners, &[[0, 2, 1], [0, 3, 2]]).expect("a mesh");
+                BodyDef::fixed(Shape::Mesh(mesh.into()))
+            } else {
+                BodyDef::fixed(Shape::Box { half_extents: Vec3::new(0.005, 4.0, 9.0) })
+            };
+            wall.position = way * 7.0;
+            wall.rotation = Rotation::from_arc(Vec3::X, way);
+            world.add_body(&wall);
+            let id = world.add_mover(&MoverDef { ground_acceleration: 1e4, ..MoverDef::default() });
+            world.set_mover_velocity(id, way * 50.0);
+            world.set_mover_walk(id, way * 50.0);
+            for _ in 0..60 {
+                world.step();
+                let far = world.mover(id).position().dot(way);
+                assert!(far < 6.71, "at {far} in direction {way}, triangles {triangles}");
+                assert_eq!(depth(&world, id), 0.0);
+            }
+            assert!(world.mover(id).position().dot(way) > 6.65);
+        }
+    }
+}
+
+#[test]
+fn a_slope_is_walked_on_up_to_the_limit_and_slid_down_beyond_it() {
+    for (degrees, walks) in [(10.0_f32, true), (30.0, true), (48.0, true), (52.0, false), (70.0, false)] {
+        let angle = degrees.to_radians();
+        let mut world = level();
+        // Its upper face begins at the origin.
+        let up = Vec3::new(-sin(angle), cos(angle), 0.0);
+        let along = Vec3::new(cos(angle), sin(angle), 0.0);
+        turned(&mut world, Vec3::new(10.0, 0.5, 4.0), along * 9.0 - up * 0.5, angle);
+        let id = world.add_mover(&MoverDef::at(Vec3::new(-2.0, 0.0, 0.0)));
+        settle(&mut world, id);
+        world.set_mover_walk(id, Vec3::X * 2.0);
+        for _ in 0..180 {
+            world.step();
+            assert_eq!(depth(&world, id), 0.0, "{degrees}°");
+        }
+        let at = world.mover(id).position();
+        let seconds = 180.0 * world.def().dt();
+        if walks {
+            assert!((at.x - (2.0 * seconds - 2.0)).abs() < 0.15, "{degrees}°: {at} {seconds}");
+            assert!(world.mover(id).is_grounded() && at.y > 2.0 * sin(angle), "{degrees}°: {at}");
+            let ground = world.mover_ground(id).expect("it stands");
+            assert!((ground.normal - up).length() < 1e-3, "{degrees}°: {}", ground.normal);
+            // It stays where it stands.
+            world.set_mover_walk(id, Vec3::ZERO);
+            for _ in 0..30 {
+                world.step();
+            }
+            let stood = world.mover(id).position();
+            for _ in 0..240 {
+                world.step();
+            }
+            assert!((world.mover(id).position() - stood).length() < 1e-4, "{degrees}°");
+        } else {
+            assert!(at.y < 0.4 && at.x < 0.8, "{degrees}°: it climbed to {at}");
+            // From above it comes down as far as the floor.
+            world.set_mover_walk(id, Vec3::ZERO);
+            world.set_mover_position(id, along * 4.0 + up * 0.2);
+            for _ in 0..240 {
+                world.step();
+            }
+            assert!(world.mover(id).position().y < 0.02, "{degrees}°: {}", world.mover(id).position());
+        }
+    }
+}
