@@ -190,7 +190,9 @@ fn disturb(world: &mut World, r: &mut Random, parted: &mut BTreeSet<(BodyId, Bod
         3 => world.set_contact_rule(shape, [ContactRule::Push, ContactRule::Ghost][r.index(2)]),
         4 if id != other => {
             world.disable_pair(id, other);
-            parted.insert((BodyId::min(id, other), BodyId::max(id, other)));
+            // As bits: they are used with the other ways' worlds, too.
+            let [a, b] = [id, other].map(|id| BodyId::from_bits(id.to_bits()));
+            parted.insert((BodyId::min(a, b), BodyId::max(a, b)));
         }
         5 => {
             if let Some((a, b)) = parted.pop_first()
