@@ -3,7 +3,7 @@
 use crate::id::{Handle, Lineage};
 use sinew_math::{ReadError, Reader, Writer};
 
-/// What an arena holds, found by ids of a kind of their own.
+/// Item of an arena, found by ids of a kind of their own.
 pub(crate) trait Item {
     type Id: Handle;
 }

@@ -31,7 +31,7 @@ pub struct WorldDef {
     pub hit_speed: f32,
 }
 
-/// How near to the truth a step comes, for how much time. Joints hold exactly and contacts are as hard with each: what changes is
+/// Accuracy of a step against its time. Joints hold exactly and contacts are as hard with each: what changes is
 /// the length of substeps and how many sweeps look for the impulses. `docs/performance.md` has a table of what that gives.
 ///
 /// An island, which is what hangs together through contacts and joints, takes the highest quality of its bodies. Where particles hang

@@ -3,7 +3,7 @@
 use core::fmt;
 use std::hash::{BuildHasher, RandomState};
 
-/// Which world an id is of. In neither snapshot nor hash: ids from bits and those of a world that has loaded a snapshot are of an unknown
+/// World that an id is of. In neither snapshot nor hash: ids from bits and those of a world that has loaded a snapshot are of an unknown
 /// one, which goes with every world, since whoever loads another world's snapshot goes on using its ids.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Lineage(u32);
@@ -20,7 +20,7 @@ impl Lineage {
     }
 }
 
-/// What an [`Arena`](crate::arena::Arena) finds its items by.
+/// Id by which an [`Arena`](crate::arena::Arena) finds its items.
 pub(crate) trait Handle: Copy + fmt::Debug {
     fn new(index: u32, generation: u32, lineage: Lineage) -> Self;
     fn index(self) -> u32;

@@ -11,7 +11,7 @@ use crate::islands::Islands;
 /// What creeps is calm wherever it gets to while it is slower than this many times the distance in the time, and than the angle
 /// in the time: limp limbs sag for seconds.
 const CREEP: f32 = 2.0;
-/// What goes faster than this, and yet has no speed, is being pushed out of another, m/s: half of what bodies with joints are pushed
+/// Speed of the way in a step from which on a body without velocity is being pushed out of another, m/s: half of what bodies with joints are pushed
 /// out with.
 const PUSHED: f32 = 0.0275;
 /// What hangs on particles swings about its place, and must come to rest before it may sleep: below both of these, m/s and
@@ -76,7 +76,7 @@ fn stays(body: &Body, thresholds: &SleepThresholds) -> bool {
         && is.rotation.angle_to(was.rotation) < thresholds.angle
 }
 
-/// Whether a slow body went on all the same in this step.
+/// True if a slow body went on all the same in this step.
 fn is_pushed_out(body: &Body, dt: f32) -> bool {
     (body.world_from_principal.translation - body.previous.translation).length() > PUSHED * dt
 }

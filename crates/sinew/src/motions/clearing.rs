@@ -26,11 +26,11 @@ pub(super) struct Clearing<'a> {
     legs: Legs,
     /// Height of the floor in the character's own axes, metres.
     floor: f32,
-    /// How deep each body is in the floor as it stands in the bind pose, metres: for the shape is not quite the skin.
+    /// Depth of each body in the floor as it stands in the bind pose, metres: for the shape is not quite the skin.
     stands: Vec<f32>,
     /// Bodies that the pelvis is raised for: the trunk, the head, thighs and shanks.
     trunk: Vec<usize>,
-    /// Of the feet, left and right.
+    /// Bodies of the feet, left and right.
     feet: [Vec<usize>; 2],
     arms: Vec<Arm>,
     /// Bodies that the rig hangs elsewhere than on the body that carries them.
@@ -167,7 +167,7 @@ impl<'a> Clearing<'a> {
         }
     }
 
-    /// How much deeper than in the bind pose the deepest of these bodies is in the floor, metres; negative above it, without
+    /// Depth by which the deepest of these bodies is farther in the floor than in the bind pose, metres; negative above it, without
     /// end where there is none.
     fn depth(&self, bodies: &[usize], pose: &[LocalTransform]) -> f32 {
         let (mut model, mut places) = (Vec::new(), Vec::new());
@@ -180,7 +180,7 @@ impl<'a> Clearing<'a> {
     }
 }
 
-/// How much a foot stands at a time, 0 to 1, coming to it and leaving within `blend` seconds.
+/// Share by which a foot stands at a time, 0 to 1, coming to it and leaving within `blend` seconds.
 fn standing(contacts: &[FootContact], side: Side, time: f32, blend: f32) -> f32 {
     let own = contacts.iter().filter(|contact| contact.foot == side);
     let share = own.map(|contact| {
@@ -214,7 +214,7 @@ fn tip(def: &CharacterDef, analysis: &RigAnalysis, top: JointIdx) -> Option<Join
     hanging.max_by(|a, b| away(a).total_cmp(&away(b))).filter(|&joint| joint != top)
 }
 
-/// Whether a joint is `top` or hangs on it.
+/// True if a joint is `top` or hangs on it.
 fn hangs(def: &CharacterDef, joint: JointIdx, top: JointIdx) -> bool {
     core::iter::successors(Some(joint), |&i| def.rig.joints[i].parent).any(|i| i == top)
 }

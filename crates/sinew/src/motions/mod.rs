@@ -22,7 +22,7 @@ pub struct BuiltinMotions {
     pub idle: Clip,
     /// To get up by: from lying on the back, and on the face.
     pub get_ups: [Clip; 2],
-    /// How walk, idle and get-ups fit, in that order.
+    /// Fit of walk, idle and get-ups to the character, in that order.
     pub fits: [Retargeted; 4],
 }
 
@@ -84,7 +84,7 @@ pub fn builtin_motions(def: &CharacterDef, analysis: &RigAnalysis) -> Result<Bui
 }
 
 impl BuiltinMotions {
-    /// What is missing in a character's own motions, added: ways to get up where there are none; where no clip loops, the walk,
+    /// Adds what is missing in a character's own motions: ways to get up where there are none; where no clip loops, the walk,
     /// which begins after getting up, for until then the character stands in its rest pose.
     pub fn fill_in(self, own: MotionSet) -> MotionSet {
         let mut set = own;
@@ -123,7 +123,7 @@ pub fn set_motions_with_builtin(
 
 /// Frames of the actor a second.
 const RATE: f64 = 30.0;
-/// How often a cycle is played, so that the one in the middle knows what comes before and after it.
+/// Number of times that a cycle is played, so that the one in the middle knows what comes before and after it.
 const PLAYED: usize = 3;
 
 /// At the pace of the character, in the actor's own frames.

@@ -31,7 +31,7 @@ pub struct MoverDef {
     pub gravity_scale: f32,
     /// Distance that it keeps from what it meets, metres, above 0 and below the radius. Default 5 mm.
     pub skin: f32,
-    /// Which shapes and other movers it meets. Default all.
+    /// Filter of the shapes and other movers that it meets. Default all.
     pub filter: Filter,
     /// Number of the user's. Default 0.
     pub user_data: u64,
@@ -64,7 +64,7 @@ impl MoverDef {
         Self { position, ..Self::default() }
     }
 
-    /// Whether its numbers make sense; the phrase says what is wrong.
+    /// Checks that its numbers make sense; the phrase says what is wrong.
     ///
     /// # Errors
     /// What is wrong, in lower case.

@@ -30,11 +30,11 @@ pub struct Mover {
     pub(crate) def: MoverDef,
     /// Feet, world.
     position: Vec3,
-    /// Before the last step.
+    /// Feet before the last step, world.
     previous: Vec3,
-    /// On the ground beside the ground's own; in the air in the world.
+    /// Velocity, m/s: on the ground beside the ground's own, in the air in the world.
     velocity: Vec3,
-    /// That is wanted, beside the ground's.
+    /// Velocity that is wanted beside the ground's, m/s.
     walk: Vec3,
     /// Radians by which what it stood on turned it.
     yaw: f32,
@@ -43,13 +43,13 @@ pub struct Mover {
     ground: Option<Footing>,
 }
 
-/// What bears a mover.
+/// Footing of a mover: the surface that bears it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Footing {
     on: Bearer,
     point: Vec3,
     normal: Vec3,
-    /// Of the ground's surface there, at the end of the step.
+    /// Velocity of the ground's surface there at the end of the step, m/s.
     velocity: Vec3,
 }
 
@@ -59,20 +59,20 @@ enum Bearer {
     Mover(MoverId),
 }
 
-/// What a mover stands on.
+/// Ground under a mover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MoverGround {
     /// Body and the number of its shape; `None` on another mover.
     pub shape: Option<crate::ShapeId>,
     /// The other mover, if it stands on one.
     pub mover: Option<MoverId>,
-    /// Where it is borne, world, metres.
+    /// Point at which it is borne, world, metres.
     pub point: Vec3,
     /// Unit, from the ground to the mover.
     pub normal: Vec3,
     /// Velocity of the ground's surface there, of a belt's too, m/s.
     pub velocity: Vec3,
-    /// What it is made of; the default on another mover.
+    /// Material of the ground; the default on another mover.
     pub material: Material,
 }
 
@@ -130,7 +130,7 @@ impl Mover {
         self.yaw
     }
 
-    /// Whether something bears it that is not too steep.
+    /// True if something bears it that is not too steep.
     pub fn is_grounded(&self) -> bool {
         self.ground.is_some()
     }

@@ -5,7 +5,7 @@ use sinew_math::Vec3;
 /// Most planes that count; the nearest are kept.
 pub(super) const MOST: usize = 24;
 
-/// What may be done along a direction: `normal · x ≥ least`.
+/// Bound on motion along a direction: `normal · x ≥ least`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
     pub normal: Vec3,
@@ -83,7 +83,7 @@ impl Planes {
         best.map(|(_, x)| x)
     }
 
-    /// Likewise where up counts less than along: what is lost to planes is lost of the climb.
+    /// Closest motion where up counts less than along: what is lost to planes is lost of the climb.
     pub fn closest_level(&self, wanted: Vec3, up: Vec3) -> Option<Vec3> {
         const UP: f32 = 0.03;
         let squeeze = |v: Vec3, by: f32| v + up * (v.dot(up) * (by - 1.0));

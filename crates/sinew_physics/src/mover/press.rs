@@ -15,7 +15,7 @@ pub(super) struct Press {
     body: u32,
     impulse: Vec3,
     point: Vec3,
-    /// Whether a body that sleeps wakes of it.
+    /// True if a body that sleeps wakes of it.
     wakes: bool,
 }
 

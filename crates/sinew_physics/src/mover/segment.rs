@@ -3,7 +3,7 @@
 use crate::triangles::{Part, Triangle, closest_on_triangle};
 use sinew_math::{Vec3, clamp, normalize_or};
 
-/// How an axis lies to a triangle.
+/// Position of an axis to a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AxisGap {
     /// From the triangle to the axis, metres; negative where the axis is through.
@@ -77,7 +77,7 @@ fn can_be_hit(triangle: &Triangle, part: Part) -> bool {
     }
 }
 
-/// Where the axis goes through the face: out of it leads the way to the outside.
+/// Crossing of the axis and the face: out of it leads the way to the outside.
 fn through(triangle: &Triangle, [p, q]: [Vec3; 2], [above_p, above_q]: [f32; 2]) -> Option<AxisGap> {
     let at = p + (q - p) * (above_p / (above_p - above_q));
     let (closest, _) = closest_on_triangle(&triangle.corners, at);

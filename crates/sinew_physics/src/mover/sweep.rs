@@ -6,7 +6,7 @@ use super::segment::level;
 use crate::boxes::Overlap;
 use sinew_math::{Vec3, clamp, min};
 
-/// Where the capsule is near an obstacle.
+/// Place at which the capsule is near an obstacle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     /// Unit, from the obstacle to the capsule.
@@ -18,7 +18,7 @@ pub(super) struct Touch {
     pub obstacle: usize,
 }
 
-/// Those within a distance, the nearest first.
+/// Touches within a distance, the nearest first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touches {
     all: [Touch; MOST],
@@ -80,7 +80,7 @@ const MOST_STEPS: usize = 48;
 const MOST_SLIDES: usize = 8;
 const MOST_PUSHES: usize = 8;
 
-/// How planes turn a way aside.
+/// Way in which planes turn a motion aside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Course {
     /// By the shortest change: in the air.
@@ -89,7 +89,7 @@ pub(super) enum Course {
     Level,
 }
 
-/// How a mover slides: its skin, and what is too steep.
+/// Manner in which a mover slides: its skin, and what is too steep.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Manner {
     pub skin: f32,
@@ -124,14 +124,14 @@ impl Sight<'_> {
         touches
     }
 
-    /// What the capsule touches: within its skin, and a little beyond.
+    /// Touches of the capsule: within its skin, and a little beyond.
     pub fn touches(&self, center: Vec3, skin: f32) -> Touches {
         let mut touches = self.near(center, skin * (1.0 + BAND));
         touches.drop_hidden(HIDDEN * skin);
         touches
     }
 
-    /// What may bear the capsule: a little farther away than what stops it.
+    /// Touches that may bear the capsule: a little farther away than what stops it.
     pub fn bearers(&self, center: Vec3, skin: f32) -> Touches {
         let mut touches = self.near(center, skin * (1.0 + BEARS));
         touches.drop_hidden(HIDDEN * skin);
@@ -182,7 +182,7 @@ impl Sight<'_> {
         (first, hit)
     }
 
-    /// What forbids ways from where the capsule is.
+    /// Planes that forbid ways from where the capsule is.
     pub fn planes(&self, center: Vec3, manner: &Manner) -> Planes {
         let mut planes = Planes::new();
         for touch in self.touches(center, manner.skin).as_slice() {
@@ -197,7 +197,7 @@ impl Sight<'_> {
         planes
     }
 
-    /// Where a way leads along what is met.
+    /// Place to which a way leads along what is met.
     pub fn slide(&self, mut center: Vec3, way: Vec3, manner: &Manner) -> Vec3 {
         let mut left = way;
         for _ in 0..MOST_SLIDES {
@@ -224,7 +224,7 @@ impl Sight<'_> {
         center
     }
 
-    /// Where the capsule comes to that is pushed out of what it is in, by the shortest way that leads into nothing else.
+    /// Place of the capsule after it is pushed out of what it is in, by the shortest way that leads into nothing else.
     pub fn recover(&self, mut center: Vec3, manner: &Manner) -> Vec3 {
         let (stop, reach) = (manner.stop(), 0.5 * self.radius);
         for _ in 0..MOST_PUSHES {

@@ -10,17 +10,17 @@ use crate::ray::Ray;
 use crate::world::World;
 use sinew_math::{Vec3, max, trig};
 
-/// How far around its way a mover looks for bodies that come toward it, metres.
+/// Distance around its way within which a mover looks for bodies that come toward it, metres.
 const LOOK: f32 = 0.5;
-/// How far behind an edge, and over and under it, it is looked whether there is a tread, metres.
+/// Distances behind an edge, and over and under it, at which a tread is looked for, metres.
 const BEHIND_EDGE: f32 = 0.01;
 const OVER_EDGE: f32 = 0.03;
-/// Where this share of a way is missing, something other than the ground's slope has stopped it.
+/// Missing share of a way from which on something other than the ground's slope has stopped it.
 const STOPPED: f32 = 0.02;
 /// A fall that comes less far than this share of its way lies wedged.
 const WEDGED: f32 = 0.02;
 
-/// What a move of a mover needs besides itself.
+/// Surroundings of a move, besides the mover itself.
 struct Move<'a> {
     world: &'a World,
     movers: &'a Arena<Mover>,
@@ -263,7 +263,7 @@ impl<'a> Move<'a> {
         center
     }
 
-    /// What bears a mover at a place: of what it touches the flattest.
+    /// Footing of a mover at a place: of what it touches the flattest.
     fn ground_at(&self, mover: &Mover, center: Vec3, edges: Edges) -> Option<Footing> {
         let touches = self.sight.bearers(center, self.manner.skin);
         let rise = |touch: &Touch| touch.normal.dot(mover.def.up);
@@ -281,7 +281,7 @@ impl<'a> Move<'a> {
         best.map(|touch| self.footing(touch))
     }
 
-    /// Whether a mover stands on what it touches: it is flat, or the edge of a tread that is.
+    /// True if a mover stands on what it touches: it is flat, or the edge of a tread that is.
     fn bears(&self, touch: &Touch, mover: &Mover, center: Vec3) -> bool {
         let up = mover.def.up;
         let rise = touch.normal.dot(up);
@@ -317,10 +317,10 @@ impl<'a> Move<'a> {
     }
 }
 
-/// Which edges bear.
+/// Kinds of edges that bear.
 #[derive(Clone, Copy, PartialEq)]
 enum Edges {
-    /// Those of treads: on the ground.
+    /// Edges of treads: on the ground.
     Bear,
     /// None: in the air.
     Fall,

@@ -47,7 +47,7 @@ impl World {
         self.movers.all.ids()
     }
 
-    /// What a mover stands on; `None` in the air and on what is too steep.
+    /// Ground under a mover; `None` in the air and on what is too steep.
     #[track_caller]
     pub fn mover_ground(&self, id: MoverId) -> Option<MoverGround> {
         let footing = self.mover(id).ground?;
@@ -115,7 +115,7 @@ impl World {
         self.expect_mover(id).def.filter = filter;
     }
 
-    /// Whether nothing is where a mover would grow to.
+    /// True if nothing is where a mover would grow to.
     #[track_caller]
     fn has_room(&self, id: MoverId, height: f32) -> bool {
         let mut grown = self.mover(id).clone();

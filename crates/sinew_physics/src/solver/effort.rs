@@ -204,7 +204,7 @@ const CALM_TURN: f32 = 0.25;
 const GRADED_RATIO: f32 = 100.0;
 
 impl IslandSolver {
-    /// How many substeps an island takes. Balanced: half of the world's where many contacts damp all motion, nothing spins fast and
+    /// Number of substeps that an island takes. Balanced: half of the world's where many contacts damp all motion, nothing spins fast and
     /// masses are alike; all of them for what swings, flies or balances. With particles all, whatever the quality.
     pub(super) fn choose_substeps(&mut self, island: &Island<'_>, view: &View<'_>) {
         self.quality = quality_of(island, view);
@@ -279,7 +279,7 @@ fn quality_of(island: &Island<'_>, view: &View<'_>) -> Quality {
     island.bodies.iter().map(|&body| view.quality(body)).max().unwrap_or_default()
 }
 
-/// How many times as long as the world's the substeps of an island are: a power of two.
+/// Length of an island's substeps over that of the world's: a power of two.
 pub(super) fn stretch_of(island: &Island<'_>, view: &View<'_>) -> f32 {
     let may_halve = view.pace.substeps.is_multiple_of(2);
     match quality_of(island, view) {
@@ -291,7 +291,7 @@ pub(super) fn stretch_of(island: &Island<'_>, view: &View<'_>) -> f32 {
     }
 }
 
-/// Whether contacts of an island damp all motion, so that it may take longer substeps.
+/// True if contacts of an island damp all motion, so that it may take longer substeps.
 fn is_damped(island: &Island<'_>, view: &View<'_>) -> bool {
     let (contacts, bodies) = (island.contacts.len(), island.bodies.len());
     let many = if island.joints.is_empty() {
@@ -308,7 +308,7 @@ fn is_damped(island: &Island<'_>, view: &View<'_>) -> bool {
     many && !island.contacts.iter().any(bounces) && is_calm(island, view)
 }
 
-/// Whether masses and spins of an island let it take longer substeps.
+/// True if masses and spins of an island let it take longer substeps.
 fn is_calm(island: &Island<'_>, view: &View<'_>) -> bool {
     let (mut lightest, mut heaviest, mut spin) = (f32::INFINITY, 0.0, 0.0);
     for &index in island.bodies {

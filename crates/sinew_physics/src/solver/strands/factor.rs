@@ -65,7 +65,7 @@ pub(super) fn factor<L: Lanes>(links: &mut [Link], is_held: bool, pace: &Pace) {
     }
 }
 
-/// What a link feels of those below it.
+/// Inertia that a link feels of those below it.
 struct Below<L: Lanes> {
     /// At the joint, kg.
     mass: Symmetric<L::Wide>,

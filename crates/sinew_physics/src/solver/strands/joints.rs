@@ -7,7 +7,7 @@ use super::factor::kept;
 use super::link::{Hook, Link, load_turn, store_turn};
 use sinew_math::lanes::{Lanes, Vector3};
 
-/// What joints are asked for.
+/// Motions that joints are asked for.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Asked {
     /// To stop.
@@ -60,7 +60,7 @@ fn slide<L: Lanes>(link: &Link, parent: Option<&Link>) -> Vector3<L> {
     }
 }
 
-/// How a link answers, from the answer of its parent.
+/// Answer of a link, from the answer of its parent.
 #[inline(always)]
 fn answer<L: Lanes>(link: &Link, [v, w]: [Vector3<L>; 2]) -> [Vector3<L>; 2] {
     let at = (v + w.cross(load(&link.parent_arm))) + load(&link.asked);
@@ -135,12 +135,12 @@ pub(super) fn take_back<L: Lanes>(links: &mut [Link], hook: Option<&Hook>, mask:
     }
 }
 
-/// Where a parent will be.
+/// Place at which a parent will be.
 #[derive(Clone, Copy)]
 struct Parent<L> {
     position: Vector3<L>,
     rotation: Turn<L>,
-    /// Of a fixed one, to the anchor.
+    /// Arm of a fixed one to the anchor.
     arm: Vector3<L>,
     is_fixed: bool,
 }

@@ -21,10 +21,10 @@ pub(super) struct Link {
     pub mass: Eight,
     /// Principal moments, kg·m².
     pub inertia: [Eight; 3],
-    /// Of the joint on body and parent, in their principal frames.
+    /// Anchor of the joint on body and parent, in their principal frames, metres.
     pub anchor: [Eight; 3],
     pub parent_anchor: [Eight; 3],
-    /// What a unit of pull there adds to the moments of body and parent.
+    /// Amount that a unit of pull there adds to the moments of body and parent.
     pub stiffness: [Eight; 3],
     pub parent_stiffness: [Eight; 3],
     /// By gravity and the forces of this step, m/s², and the torque of this step, N·m, world axes.
@@ -50,14 +50,14 @@ pub(super) struct Link {
     pub parent_arm: [Eight; 3],
     /// Anchor of the body less that of the parent, world axes.
     pub gap: [Eight; 3],
-    /// What stability adds to the moments.
+    /// Amount that stability adds to the moments, kg·m².
     pub excess: [Eight; 3],
     /// The factor: see [`Swivel`](super::super::articulated::Swivel). Of the first link of free strands, the last is the inverse of
     /// the mass that is left.
     pub pivot: [Eight; 6],
     pub coupled: [[Eight; 3]; 3],
     pub passed: [Eight; 6],
-    /// What is asked of the anchor on top of the parent's motion, m/s, and what torque is left to turn the body, N·m·s.
+    /// Velocity that is asked of the anchor on top of the parent's motion, m/s, and what torque is left to turn the body, N·m·s.
     pub asked: [Eight; 3],
     pub left: [Eight; 3],
     /// Velocities from which impulses are reckoned: as the forces leave them, then as bodies have moved.
@@ -191,7 +191,7 @@ impl Link {
         }
     }
 
-    /// What the joint carries on: a plain one has neither limits nor motors.
+    /// State that the joint carries on: a plain one has neither limits nor motors.
     pub fn joint(&self, lane: usize) -> SolvedJoint {
         let sign = self.sign[lane];
         SolvedJoint {
@@ -217,7 +217,7 @@ pub(super) fn store_turn<L: Lanes>(turn: Turn<L>, [x, y, z, w]: &mut [Eight; 4])
     turn.real.store(w);
 }
 
-/// What holds eight strands.
+/// Fixed bodies that hold eight strands.
 #[derive(Clone, Debug)]
 pub(super) struct Hook {
     /// Centre of the fixed body, and from there to the anchor, world axes.
@@ -228,7 +228,7 @@ pub(super) struct Hook {
 impl Hook {
     pub const EMPTY: Self = Self { position: ZERO3, arm: ZERO3 };
 
-    /// Of a strand with that first link.
+    /// Writes what holds a strand with that first link.
     pub fn write(&mut self, lane: usize, first: &Placed, view: &View<'_>) {
         let joint = view.joints.at(first.joint);
         let Transform { translation, rotation } = view.bodies.at(first.parent).world_from_principal;
@@ -237,7 +237,7 @@ impl Hook {
         put(rotation * frame.translation, &mut self.arm, lane);
     }
 
-    /// As for [links](Link::fill).
+    /// Fills the other lanes as for [links](Link::fill).
     pub fn fill(&mut self, lanes: usize) {
         for row in self.position.iter_mut().chain(&mut self.arm) {
             for lane in lanes..WIDTH {

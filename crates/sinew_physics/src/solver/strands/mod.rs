@@ -33,7 +33,7 @@ const OPEN: usize = 32;
 /// All strands of a step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Strands {
-    /// Those in use, and memory of earlier steps behind them.
+    /// Bundles in use, and memory of earlier steps behind them.
     bundles: Vec<Bundle>,
     used: usize,
     order: Order,
@@ -48,7 +48,7 @@ struct Bundle {
     links: Vec<Link>,
     is_held: bool,
     hook: Hook,
-    /// How many times as long as the world's its substeps are.
+    /// Length of its substeps over that of the world's.
     stretch: f32,
     /// Strands beside which the other lanes have last been filled.
     filled: usize,
@@ -60,7 +60,7 @@ struct Bundle {
 pub(crate) struct SolvedStrand<'a> {
     bundle: &'a Bundle,
     lane: usize,
-    /// Which island it is.
+    /// Number of its island.
     pub island: usize,
 }
 
@@ -129,7 +129,7 @@ impl Strands {
         }
     }
 
-    /// Those that the islands' solver need not take.
+    /// Strands that the islands' solver need not take.
     pub fn solved(&self) -> impl Iterator<Item = SolvedStrand<'_>> {
         self.bundles[..self.used].iter().flat_map(|bundle| {
             let done = (0..bundle.islands.len()).filter(|lane| bundle.left & 1 << lane == 0);
@@ -168,7 +168,7 @@ impl SolvedStrand<'_> {
         self.bundle.links.iter().map(|link| link.body(self.lane))
     }
 
-    /// What its joints carry on.
+    /// State that its joints carry on.
     pub fn joints(&self) -> impl Iterator<Item = SolvedJoint> {
         self.joint_links().map(|link| link.joint(self.lane))
     }

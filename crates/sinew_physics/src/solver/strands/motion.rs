@@ -74,7 +74,7 @@ pub(super) fn integrate_position<L: Lanes>(links: &mut [Link], is_held: bool, pa
     }
 }
 
-/// What joints gave in `relax`. Gives the kinetic energy, J.
+/// Notes what joints gave in `relax`. Gives the kinetic energy, J.
 #[inline(always)]
 pub(super) fn end_substep<L: Lanes>(links: &mut [Link], is_held: bool) -> L {
     let none = L::splat(0.0);
@@ -114,7 +114,7 @@ fn push<L: Lanes>(link: &mut Link, [force, torque]: [Vector3<L>; 2]) -> [Vector3
     [force, torque + load::<L>(&link.parent_arm).cross(force)]
 }
 
-/// What the forces do on the way that the bodies are about to go, J.
+/// Work of the forces on the way that the bodies are about to go, J.
 #[inline(always)]
 pub(super) fn work_of_forces<L: Lanes>(links: &[Link], pace: &Pace) -> L {
     let mut power = L::splat(0.0);

@@ -13,7 +13,7 @@ use super::motion::{Kinetic, end_substep, integrate_position, integrate_velocity
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{First, LaneMask, Lanes, WIDTH};
 
-/// How strands go through a step.
+/// Pace at which strands go through a step.
 #[derive(Clone, Copy)]
 pub(super) struct Pace {
     /// Substep, seconds.
@@ -78,10 +78,10 @@ impl Kernel for Advance<'_> {
     }
 }
 
-/// What eight strands have in a step.
+/// Mass and reach of eight strands, which their bounds grow with.
 #[derive(Clone, Copy)]
 struct Bounds<L> {
-    /// Of all links, kg.
+    /// Mass of all links, kg.
     mass: L,
     /// The largest coordinate, m.
     reach: L,
