@@ -203,7 +203,7 @@ impl<R: Real> Inertia<R> {
 
     /// About a point `r` from the present one, of whatever is fixed to the same body.
     #[inline(always)]
-    fn shifted(&self, r: Vector3<R>) -> Self {
+    pub fn shifted(&self, r: Vector3<R>) -> Self {
         let [a0, a1, a2] = self.mass.rows();
         let [c0, c1, c2] = self.coupling;
         let coupling = [c0 + a0.cross(r), c1 + a1.cross(r), c2 + a2.cross(r)];
@@ -250,6 +250,16 @@ impl<R: Real> Inertia<R> {
         } else {
             [self.mass.times(way), transposed_times(&self.coupling, way)]
         }
+    }
+
+    /// Takes out a direction that is left open, of some gain; `start` is the inertia before any was. Gives `I s` and `1/d`.
+    #[inline(always)]
+    pub fn eliminate(&mut self, start: &Self, (turns, way): (bool, Vector3<R>), gain: R) -> (Twist<R>, R) {
+        let [force, torque] = self.times_part(turns, way);
+        let pivot = (if turns { torque } else { force }).dot(way) + gain;
+        let inverse = reciprocal(pivot, start.along(turns, way));
+        self.add_row(force, torque, -inverse);
+        ([force, torque], inverse)
     }
 
     /// What a unit of a velocity without rotation, or of a rotation alone, weighs.
@@ -508,12 +518,7 @@ impl<R: Real> Sequence<R> {
     pub fn factor(&mut self) -> Inertia<R> {
         let mut left = self.inertia;
         for open in &mut self.openings[..self.open] {
-            let start = self.inertia.along(open.turns, open.way);
-            let [force, torque] = left.times_part(open.turns, open.way);
-            let pivot = (if open.turns { torque } else { force }).dot(open.way) + open.gain;
-            open.momentum = [force, torque];
-            open.inverse = reciprocal(pivot, start);
-            left.add_row(force, torque, -open.inverse);
+            (open.momentum, open.inverse) = left.eliminate(&self.inertia, (open.turns, open.way), open.gain);
         }
         left.shifted(-self.parent_arm)
     }

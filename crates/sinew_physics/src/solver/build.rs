@@ -7,7 +7,7 @@ use super::faces::Faces;
 use super::loops::MAX_EXACT_ROWS;
 use super::squeeze::{BALLASTED_RATIO, Touch};
 use super::tree::{Link, NONE};
-use super::{IslandSolver, SolverBody, SolverJoint, counts};
+use super::{Coupling, IslandSolver, SolverBody, SolverJoint, counts};
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
@@ -221,6 +221,7 @@ impl IslandSolver {
         self.weigh_joints();
         self.refresh_rows();
         self.choose_coupling(island.contacts.len());
+        self.form_batches();
         self.note_touches(island, view);
         self.refresh_inertia();
         self.choose_effort();
@@ -237,6 +238,20 @@ impl IslandSolver {
         self.factor_joints();
         self.choose_limits();
         self.refresh_response();
+    }
+
+    /// Of heaps. Loops and pins want the answers of single links.
+    fn form_batches(&mut self) {
+        if self.coupling == Coupling::Turns && self.loops.is_empty() && self.pins.joints.is_empty() {
+            self.batches.form(&self.links, &self.joints, &self.trees);
+            for tree in (0..self.trees.len()).filter(|&tree| self.batches.have(tree)) {
+                for link in &mut self.links[self.trees[tree].clone()] {
+                    link.push_all_gains(&self.joints);
+                }
+            }
+        } else {
+            self.batches.clear(self.links.len());
+        }
     }
 
     /// What only islands with joints need, also for one that has none: memory goes on to the next, which may have some.

@@ -2,6 +2,7 @@
 //! computed for rows that are not idle, once for a pose: a push then adds a multiple of a column, where the blocks would have to
 //! be multiplied for every visit. What rows answer to each other is read from them, too.
 
+use super::batches::Batches;
 use super::response::{AnswerLanes, Response};
 use super::tree::Link;
 use crate::collide::MAX_POINTS;
@@ -149,10 +150,10 @@ impl Columns {
 
     /// Appends the columns of up to eight rows of two trees, or of one, side by side. Gives where the first lies, and how far each is from
     /// the next.
-    pub fn add_all(
+    pub(super) fn add_all(
         &mut self,
         response: &Response,
-        links: &[Link],
+        (links, batches): (&[Link], &mut Batches),
         rows: &[([u32; 2], &Row)],
     ) -> (usize, usize) {
         let reach = Reach::new(response, links, rows[0].0);
@@ -170,8 +171,11 @@ impl Columns {
             for (pushes, &([a, b], row)) in pushes.iter_mut().zip(rows) {
                 *pushes = [on(a, &row.a), on(b, &row.b)];
             }
-            let columns = (&mut self.entries[first..], stride);
-            response.answer_all(links, tree, &pushes[..rows.len()], columns, &mut self.lanes);
+            let (columns, pushes) = (&mut self.entries[first..], &pushes[..rows.len()]);
+            if !batches.answer(tree, pushes, (columns, stride)) {
+                let columns = &mut self.entries[first..];
+                response.answer_all(links, tree, pushes, (columns, stride), &mut self.lanes);
+            }
             first += members.len();
         }
         (start, stride)

@@ -81,6 +81,7 @@ impl IslandSolver {
             + self.manifolds.len() * size_of::<ManifoldRows>()
             + self.limits.len() * size_of::<LimitRow>()
             + self.links.len() * size_of::<Link>()
+            + self.batches.bytes()
             + self.contacts.bytes()
             + self.response.bytes()
             + self.columns.bytes()

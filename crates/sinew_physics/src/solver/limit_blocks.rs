@@ -155,6 +155,11 @@ impl LimitBlocks {
         self.placed = 0;
     }
 
+    /// Rows that have a place, from the first on.
+    pub fn placed(&self) -> usize {
+        self.placed
+    }
+
     /// Number of blocks.
     pub fn len(&self) -> usize {
         self.blocks.len()
@@ -268,7 +273,7 @@ impl IslandSolver {
 
     /// Columns of rows of a block that begin to push, and what they and those that push already answer to each other.
     fn respond_to_limits(&mut self, at: usize, new: u8) {
-        let Self { limits, limit_blocks, joints, bodies, links, response, columns, .. } = self;
+        let Self { limits, limit_blocks, joints, bodies, links, batches, response, columns, .. } = self;
         let block = &mut limit_blocks.blocks[at];
         let mut rows = [([NONE; 2], &limits[block.limits[0] as usize].row); WIDTH];
         let mut count = 0;
@@ -276,7 +281,7 @@ impl IslandSolver {
             rows[count] = (block.ends(k), &limits[block.limits[k] as usize].row);
             count += 1;
         }
-        let (mut column, stride) = columns.add_all(response, links, &rows[..count]);
+        let (mut column, stride) = columns.add_all(response, (links, batches), &rows[..count]);
         for k in lanes(new) {
             block.columns[k] = column;
             block.places[k] = Columns::places(response, links, block.ends(k));

@@ -110,6 +110,9 @@ impl IslandSolver {
                 continue;
             }
             let joint = &self.joints[row.joint as usize];
+            if !self.is_looked_at(joint) {
+                continue;
+            }
             if looked_at != row.joint {
                 looked_at = row.joint;
                 let [a, b] = [joint.a, joint.b].map(|body| &poses[body as usize]);
@@ -138,6 +141,13 @@ impl IslandSolver {
             });
         }
         self.limits.len() > known
+    }
+
+    /// True if positions of a joint's trees have been corrected since limits were last looked at.
+    fn is_looked_at(&self, joint: &SolverJoint) -> bool {
+        [joint.a, joint.b].iter().any(|&body| {
+            self.links.get(body as usize).is_some_and(|link| self.scratch.looked_at[link.tree as usize])
+        })
     }
 
     /// True if some hard stop was passed and pushes back.

@@ -4,6 +4,7 @@
 //! `finalize`, so that threads never share what they write.
 
 mod articulated;
+mod batches;
 mod build;
 mod columns;
 mod composite;
@@ -45,6 +46,7 @@ use crate::project::TakenGroup;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
 use crate::work::Work;
 use articulated::Inertia;
+use batches::Batches;
 use build::Grading;
 pub(crate) use build::{Pace, View};
 use columns::Columns;
@@ -69,6 +71,7 @@ pub(crate) use solution::{IslandSolution, Solution, SolvedBody, SolvedJoint, spl
 use squeeze::{Pressing, Touch};
 use sweep::{Pass, Unrest};
 use tree::Link;
+use tree_joints::Corrected;
 
 /// Sweeps of `relax` before which friction learns its loads anew: the impulses of `solve` first, then those that really
 /// press. From then on loads stay, or friction and normals may chase each other for ever.
@@ -211,6 +214,8 @@ pub(crate) struct IslandSolver {
     links: Vec<Link>,
     /// Where the links of each tree lie.
     trees: Vec<Range<usize>>,
+    /// Trees of one shape, of an island by turns.
+    batches: Batches,
     coupling: Coupling,
     loops: Loops,
     pins: Pins,
@@ -284,6 +289,11 @@ struct Scratch {
     before: Vec<Vec6>,
     /// Poses of all bodies at the end of the substep; kinematic ones move, too.
     predicted: Vec<Transform>,
+    /// Per tree: position error, m or rad; whether it is being corrected, and whether it was in the last corrections.
+    errors: Vec<f32>,
+    errors_left: Vec<f32>,
+    corrected: Vec<bool>,
+    looked_at: Vec<bool>,
     /// Velocities within a sweep by turns, after the limits had their turn.
     swept: Vec<Vec6>,
     /// Velocities within a sweep by turns, after the contacts had theirs.
@@ -384,15 +394,15 @@ impl IslandSolver {
         self.contacts.pull_approach(&self.velocities);
         self.sweep(Pass::Solve);
         self.calm_trees();
-        let mut torn = self.correct_positions();
+        let mut torn = self.correct_positions(Corrected::All);
         for _ in 0..FORESIGHTS {
             let tightened = self.tighten_limits();
             if !self.foresee_contacts() && !tightened {
                 break;
             }
-            self.sweep(Pass::Solve);
+            let stirred = self.sweep_again();
             self.calm_trees();
-            torn = self.correct_positions();
+            torn = self.correct_positions(stirred);
         }
         self.drop_nonsense(torn);
         if self.coupling == Coupling::Turns {

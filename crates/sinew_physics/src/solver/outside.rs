@@ -1,7 +1,7 @@
 //! What the user's objects do to the moving bodies of an island between its stages.
 
 use super::build::{View, lasting_force};
-use super::{IslandSolver, advance, tree};
+use super::{IslandSolver, advance};
 use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
 use sinew_math::Vec3;
 
@@ -67,8 +67,8 @@ impl IslandSolver {
             list.resize(self.links.len(), ZERO6);
         }
         s.impulses[local] = *row;
-        tree::solve(&self.links, 0..self.links.len(), &mut s.impulses, &s.residuals, &mut s.dv);
-        dot(row, &s.dv[local])
+        self.answer_trees();
+        dot(row, &self.scratch.dv[local])
     }
 
     /// An object has acted on the island in this step.

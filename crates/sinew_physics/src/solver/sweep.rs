@@ -5,7 +5,9 @@
 use super::columns::Change;
 use super::conjugate::{Conjugate, Rows};
 use super::contact_rows::ManifoldRows;
+use super::limit_rows::LimitRow;
 use super::tree::Link;
+use super::tree_joints::Corrected;
 use super::{Coupling, IslandSolver, WEIGHINGS};
 use crate::spatial::{ZERO6, add_scaled, largest, linear};
 use sinew_math::max;
@@ -31,6 +33,8 @@ pub(super) struct Unrest {
     /// Per manifold and per block of limits: the sum of its trees when it was last visited.
     manifolds: Vec<f32>,
     limits: Vec<f32>,
+    /// Per tree: its sum when the pass was resumed.
+    corrected: Vec<f32>,
 }
 
 impl Unrest {
@@ -46,6 +50,21 @@ impl Unrest {
         }
     }
 
+    /// Goes on with a pass in which limits have got rows more, those from `first` on; so many blocks there are now.
+    pub fn resume(&mut self, blocks: usize, new: &[LimitRow]) {
+        self.limits.resize(blocks, f32::NEG_INFINITY);
+        for row in new {
+            self.limits[row.block as usize] = f32::NEG_INFINITY;
+        }
+        self.corrected.clear();
+        self.corrected.extend_from_slice(&self.trees);
+    }
+
+    /// True of a tree whose velocities have changed since the pass was [resumed](Self::resume).
+    pub fn has_stirred(&self, tree: usize) -> bool {
+        self.trees[tree] != self.corrected[tree]
+    }
+
     /// Of the trees of two bodies.
     pub fn of(&self, links: &[Link], a: u32, b: u32) -> f32 {
         let tree = |body: u32| links.get(body as usize).map_or(0.0, |link| self.trees[link.tree as usize]);
@@ -55,7 +74,9 @@ impl Unrest {
     /// A tree's velocities have changed by this much.
     #[inline(always)]
     pub fn stir(&mut self, tree: u32, change: f32) {
-        self.trees[tree as usize] += change;
+        if let Some(sum) = self.trees.get_mut(tree as usize) {
+            *sum += change;
+        }
     }
 
     /// A row whose impulses have changed what they make of a velocity by this needs a visit, whatever its trees do.
@@ -103,6 +124,16 @@ impl IslandSolver {
             Coupling::Turns => self.sweep_by_turns(pass),
             Coupling::Response => self.sweep_by_response(pass),
         }
+    }
+
+    /// Goes on with the sweeps of `solve`, since limits or contacts have got rows more. Gives the trees that may have changed.
+    pub(super) fn sweep_again(&mut self) -> Corrected {
+        if self.coupling == Coupling::Turns {
+            self.resume_by_turns();
+            return Corrected::Stirred;
+        }
+        self.sweep(Pass::Solve);
+        Corrected::All
     }
 
     /// Contacts in lanes alone.

@@ -123,6 +123,13 @@ impl Link {
         joint.push(&of_rows, impulses, 1.0);
     }
 
+    /// All rows that are not rigid push, and none asks for a velocity.
+    pub fn push_all_gains(&mut self, joints: &[SolverJoint]) {
+        self.pushing = joints
+            .get(self.joint as usize)
+            .map_or(0, |joint| (joint.rigid..joint.rows.count).fold(0, |bits, row| bits | 1 << row));
+    }
+
     /// Eliminates what its joint leaves open. Gives what the parent gets of the articulated inertia.
     #[inline(always)]
     fn factor<L: Lanes>(
@@ -271,7 +278,7 @@ impl Link {
 
 /// Those of the child and its parent, and the sign with which rows act on the child.
 #[inline(always)]
-fn arms(rows: &JointRows, is_b: bool) -> ([Vec3; 2], f32) {
+pub(super) fn arms(rows: &JointRows, is_b: bool) -> ([Vec3; 2], f32) {
     if is_b { ([rows.arm_b, rows.arm_a], 1.0) } else { ([rows.arm_a, rows.arm_b], -1.0) }
 }
 
@@ -321,15 +328,15 @@ fn store<L: Lanes>(rows: [L; 6], to: &mut Mat6) {
 
 /// The ways in which a joint's child moves, of translation or of rotation: each of the first `count` moves its row by a unit and
 /// no other, and the rest move none. A row that others leave next to nothing of has no way.
-struct Ways {
-    way: [Vec3; 3],
-    row: [u8; 3],
-    count: usize,
+pub(super) struct Ways {
+    pub way: [Vec3; 3],
+    pub row: [u8; 3],
+    pub count: usize,
 }
 
 impl Ways {
     #[inline(always)]
-    fn new(rows: &JointRows, turns: bool) -> Self {
+    pub fn new(rows: &JointRows, turns: bool) -> Self {
         if !turns && rows.locks_point() {
             return Self { way: [Vec3::X, Vec3::Y, Vec3::Z], row: [0, 1, 2], count: 3 };
         }
@@ -381,15 +388,21 @@ fn is_apart(axis: Vec3, others: &[Vec3]) -> bool {
     square > LEAST_AXIS && left > LEAST_SHARE * of * square
 }
 
-/// Factors all trees: `inertia` holds the bodies' own inertias and is overwritten by the articulated ones.
+/// Factors the trees of some links: `inertia` holds the bodies' own inertias and is overwritten by the articulated ones.
 #[inline(never)]
-pub(crate) fn factor(links: &mut [Link], joints: &[SolverJoint], inertia: &mut [Inertia<f64>]) {
-    dispatch::run(Factor { links, joints, inertia });
+pub(crate) fn factor(
+    links: &mut [Link],
+    range: Range<usize>,
+    joints: &[SolverJoint],
+    inertia: &mut [Inertia<f64>],
+) {
+    dispatch::run(Factor { links, range, joints, inertia });
 }
 
 /// Plain arithmetic, which the compiler puts on the registers that it is entered with.
 struct Factor<'a> {
     links: &'a mut [Link],
+    range: Range<usize>,
     joints: &'a [SolverJoint],
     inertia: &'a mut [Inertia<f64>],
 }
@@ -399,8 +412,8 @@ impl Kernel for Factor<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { links, joints, inertia } = self;
-        for i in (0..links.len()).rev() {
+        let Self { links, range, joints, inertia } = self;
+        for i in range.rev() {
             let joint = joints.get(links[i].joint as usize);
             let is_b = joint.is_some_and(|joint| joint.b as usize == i);
             let through = links[i].factor::<L>(joint, is_b, &inertia[i]);

@@ -5,15 +5,12 @@ use super::sweep::Pass;
 use super::tree::{self, NONE};
 use super::{Coupling, IslandSolver, SolverJoint};
 use crate::joint::JointPose;
-use crate::spatial::{Vec6, ZERO6, add_scaled, linear};
-use sinew_math::dispatch;
-use sinew_math::max;
+use crate::spatial::{Vec6, ZERO6, add_scaled, largest, linear};
+use sinew_math::{Transform, dispatch, max, min};
 
 /// Most rounds of position corrections in a pass, likewise with many loops, and the error that needs none, m or rad.
 pub(super) const POSITION_CORRECTIONS: usize = 6;
 const POSITION_CORRECTIONS_ITERATED: usize = 1;
-/// Likewise in heaps: the second round leaves micrometres.
-const POSITION_CORRECTIONS_BY_TURNS: usize = 2;
 pub(super) const POSITION_TOLERANCE: f32 = 1e-6;
 /// Share of the largest coordinate that needs none either: one and a half of its last digits, which is what rounding of two positions
 /// makes of a gap.
@@ -22,6 +19,14 @@ pub(super) const POSITION_ROUNDING: f32 = 1.5 * f32::EPSILON;
 /// Most further solves in `relax`, and the share of the fastest velocity that joints may leave.
 pub(super) const REFINEMENTS: usize = 2;
 pub(super) const RATE_SHARE: f32 = 1e-4;
+
+/// Trees whose positions are corrected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Corrected {
+    All,
+    /// Those whose velocities have changed since the last corrections of this substep.
+    Stirred,
+}
 
 impl IslandSolver {
     /// Poses and rows of all joints.
@@ -46,7 +51,21 @@ impl IslandSolver {
         for &pin in &self.pins.joints {
             self.joints[pin as usize].stiffen(inertia);
         }
-        tree::factor(&mut self.links, &self.joints, inertia);
+        for range in &self.batches.alone {
+            tree::factor(&mut self.links, range.clone(), &self.joints, inertia);
+        }
+        self.batches.factor(&self.links, &self.joints, &self.bodies);
+    }
+
+    /// Makes `scratch.dv` the answer of all trees to `scratch.impulses`, which are used up, and `scratch.residuals`, those of the rows
+    /// that [push](Link::push_gains) left out. No residuals mean none.
+    pub(super) fn answer_trees(&mut self) {
+        let Self { links, batches, scratch: s, .. } = self;
+        s.dv.resize(links.len(), ZERO6);
+        for range in &batches.alone {
+            tree::solve(links, range.clone(), &mut s.impulses, &s.residuals, &mut s.dv);
+        }
+        batches.solve(&s.impulses, &s.residuals, &mut s.dv);
     }
 
     /// Solves the joint rows exactly.
@@ -102,85 +121,172 @@ impl IslandSolver {
         }
     }
 
-    /// SHAKE: removes the position error at the pose that the velocities lead to, with the same factor, until it is
+    /// SHAKE: removes the position errors at the poses that the velocities lead to, with the same factor, tree by tree until they are
     /// small enough (one or two rounds but for violent hits). The factor is that of the substep's beginning: for a body
-    /// that turns by more than a radian it may lead away, so a round that does not halve the error is taken back and
-    /// the next substep goes on from there.
+    /// that turns by more than a radian it may lead away, so a round that does not halve a tree's error is its last one, one that
+    /// makes it larger is taken back, and the next substep goes on from there. Trees that loops tie together, and
+    /// the few of an island that is not solved by turns, go on and back together.
     ///
     /// Gives the largest error that is left, m or rad.
-    pub(super) fn correct_positions(&mut self) -> f32 {
+    pub(super) fn correct_positions(&mut self, of: Corrected) -> f32 {
         if !self.is_articulated() {
             return 0.0;
         }
-        let moving = self.links.len();
-        let mut error = self.predict_errors();
         let rounds = match self.coupling {
             _ if self.loops.are_iterated() => POSITION_CORRECTIONS_ITERATED,
-            Coupling::Turns => POSITION_CORRECTIONS_BY_TURNS,
             _ => POSITION_CORRECTIONS,
         };
+        self.choose_corrected(of);
+        let mut errors = core::mem::take(&mut self.scratch.errors);
+        self.predict(of == Corrected::All);
+        self.find_errors(&mut errors);
         for _ in 0..rounds {
-            if error < POSITION_TOLERANCE {
+            self.leave_corrected(|tree| errors[tree] < POSITION_TOLERANCE);
+            if !self.scratch.corrected.contains(&true) {
                 break;
             }
             self.scratch.before.clear();
-            self.scratch.before.extend_from_slice(&self.velocities[..moving]);
+            self.scratch.before.extend_from_slice(&self.velocities[..self.links.len()]);
             self.scratch.impulses.clear();
-            self.scratch.impulses.resize(moving, ZERO6);
+            self.scratch.impulses.resize(self.links.len(), ZERO6);
             self.bend_welds();
             self.solve_trees();
-            let left = self.predict_errors();
-            let better = left < 0.5 * error;
-            if !better {
-                if left > error {
-                    self.velocities[..moving].copy_from_slice(&self.scratch.before);
-                    for joint in &mut self.joints {
-                        joint.bent = joint.bent_before;
-                    }
-                    self.predict_poses();
-                }
-                break;
+            self.tell_corrections();
+            self.predict(false);
+            let mut left = core::mem::take(&mut self.scratch.errors_left);
+            left.clear();
+            left.extend_from_slice(&errors);
+            self.find_errors(&mut left);
+            self.take_back(|tree| left[tree] > errors[tree]);
+            for (error, left) in errors.iter_mut().zip(&mut left) {
+                // No better than half: the last round.
+                let better = *left < 0.5 * *error;
+                (*error, *left) = (min(*error, *left), if better { 0.0 } else { 1.0 });
             }
-            error = left;
+            self.leave_corrected(|tree| left[tree] > 0.0);
+            self.scratch.errors_left = left;
         }
-        error
+        let most = errors.iter().fold(0.0, |most, error| max(most, *error));
+        self.scratch.errors = errors;
+        most
     }
 
-    /// Poses that the velocities lead to.
-    fn predict_poses(&mut self) {
-        let poses = &mut self.scratch.predicted;
-        dispatch::run(Predict { bodies: &self.bodies, velocities: &self.velocities, h: self.h, poses });
+    /// Trees whose positions are to be corrected.
+    fn choose_corrected(&mut self, of: Corrected) {
+        let s = &mut self.scratch;
+        let trees = self.trees.len();
+        s.corrected.clear();
+        match of {
+            Corrected::All => s.corrected.resize(trees, true),
+            Corrected::Stirred => s.corrected.extend((0..trees).map(|tree| self.unrest.has_stirred(tree))),
+        }
+        s.errors.resize(trees, 0.0);
+        s.looked_at.clear();
+        s.looked_at.extend_from_slice(&s.corrected);
+        s.residuals.clear();
+        s.residuals.resize(self.links.len(), ZERO6);
     }
 
-    /// Residuals that would remove the position errors at the predicted pose; gives the largest error (m or rad).
-    fn predict_errors(&mut self) -> f32 {
-        self.predict_poses();
-        let h = self.h;
-        let poses = &self.scratch.predicted;
-        let mut largest = 0.0;
-        let mut residual = |joint: &mut SolverJoint| {
+    /// Trees for which this is true are corrected no more.
+    fn leave_corrected(&mut self, is_done: impl Fn(usize) -> bool) {
+        let s = &mut self.scratch;
+        for (tree, range) in self.trees.iter().enumerate() {
+            if s.corrected[tree] && is_done(tree) {
+                s.corrected[tree] = false;
+                s.residuals[range.clone()].fill(ZERO6);
+            }
+        }
+    }
+
+    /// Rows of contacts and limits are told of what a correction has changed.
+    fn tell_corrections(&mut self) {
+        if self.coupling != Coupling::Turns {
+            return;
+        }
+        for (tree, range) in self.trees.iter().enumerate().filter(|(tree, _)| self.scratch.corrected[*tree]) {
+            let mut most = 0.0;
+            for i in range.clone() {
+                let change = largest(&self.scratch.dv[i]);
+                self.contacts.stir(i, change);
+                most = max(most, change);
+            }
+            self.unrest.stir(tree as u32, most);
+        }
+    }
+
+    /// Velocities of trees for which this is true go back to what they were before the last round.
+    fn take_back(&mut self, is_worse: impl Fn(usize) -> bool) {
+        for tree in 0..self.trees.len() {
+            if !self.scratch.corrected[tree] || !is_worse(tree) {
+                continue;
+            }
+            let range = self.trees[tree].clone();
+            self.velocities[range.clone()].copy_from_slice(&self.scratch.before[range.clone()]);
+            for link in &self.links[range.clone()] {
+                if let Some(joint) = self.joints.get_mut(link.joint as usize) {
+                    joint.bent = joint.bent_before;
+                }
+            }
+            for &joint in &self.loops.joints {
+                let joint = &mut self.joints[joint as usize];
+                joint.bent = joint.bent_before;
+            }
+            let (bodies, velocities) = (&self.bodies[range.clone()], &self.velocities[range.clone()]);
+            let poses = &mut self.scratch.predicted[range];
+            dispatch::run(Predict { bodies, velocities, h: self.h, poses });
+        }
+    }
+
+    /// Poses that the velocities lead to: of all bodies, or of the trees that are corrected.
+    fn predict(&mut self, all: bool) {
+        let Self { bodies, velocities, scratch, trees, h, .. } = self;
+        scratch.predicted.resize(bodies.len(), Transform::IDENTITY);
+        let mut predict = |range: core::ops::Range<usize>| {
+            let (bodies, velocities) = (&bodies[range.clone()], &velocities[range.clone()]);
+            dispatch::run(Predict { bodies, velocities, h: *h, poses: &mut scratch.predicted[range] });
+        };
+        if all {
+            predict(0..bodies.len());
+        } else {
+            for (_, range) in trees.iter().enumerate().filter(|(tree, _)| scratch.corrected[*tree]) {
+                predict(range.clone());
+            }
+        }
+    }
+
+    /// Residuals that would remove the position errors of the trees that are corrected at their predicted poses; writes the largest
+    /// error of each (m or rad).
+    fn find_errors(&mut self, errors: &mut [f32]) {
+        let Self { velocities, joints, links, loops, trees, coupling, h, scratch: s, .. } = self;
+        let (h, poses) = (*h, &s.predicted);
+        let residual = |joint: &mut SolverJoint, largest: &mut f32| {
             let [a, b] = [joint.a, joint.b].map(|body| &poses[body as usize]);
             let error = if joint.is_point() {
                 joint.point_error(JointPose::gap(&joint.geometry, a, b))
             } else if joint.rigid > 0 {
                 joint.rigid_error(&JointPose::new(&joint.geometry, a, b))
             } else {
-                joint.bend_error(&JointPose::new(&joint.geometry, a, b), &self.velocities, h)
+                joint.bend_error(&JointPose::new(&joint.geometry, a, b), velocities, h)
             };
-            largest = error.iter().fold(largest, |most, error| max(most, error.abs()));
+            *largest = error.iter().fold(*largest, |most, error| max(most, error.abs()));
             error.map(|error| -error / h)
         };
-        self.scratch.residuals.clear();
-        for link in &self.links {
-            self.scratch
-                .residuals
-                .push(self.joints.get_mut(link.joint as usize).map_or(ZERO6, &mut residual));
+        for (tree, range) in trees.iter().enumerate().filter(|(tree, _)| s.corrected[*tree]) {
+            errors[tree] = 0.0;
+            for i in range.clone() {
+                let joint = joints.get_mut(links[i].joint as usize);
+                s.residuals[i] = joint.map_or(ZERO6, |joint| residual(joint, &mut errors[tree]));
+            }
         }
-        self.scratch.loop_residuals.clear();
-        for &joint in &self.loops.joints {
-            self.scratch.loop_residuals.push(residual(&mut self.joints[joint as usize]));
+        s.loop_residuals.clear();
+        if *coupling == Coupling::Turns && loops.is_empty() {
+            return;
         }
-        largest
+        let mut most = errors.iter().fold(0.0, |most, error| max(most, *error));
+        for &joint in &loops.joints {
+            s.loop_residuals.push(residual(&mut joints[joint as usize], &mut most));
+        }
+        errors.fill(most);
     }
 
     /// The residuals of welds that give, as they stand, are made up for.
@@ -205,13 +311,13 @@ impl IslandSolver {
     /// Adds to the velocities the answer of the trees to `scratch.impulses` and `scratch.residuals`, loops closed.
     pub(super) fn solve_trees(&mut self) {
         let s = &mut self.scratch;
-        s.dv.resize(self.links.len(), ZERO6);
         for (link, residuals) in self.links.iter().zip(&s.residuals) {
             if let Some(joint) = self.joints.get(link.joint as usize) {
                 link.push_gains(joint, residuals, &mut s.impulses);
             }
         }
-        tree::solve(&self.links, 0..self.links.len(), &mut s.impulses, &s.residuals, &mut s.dv);
+        self.answer_trees();
+        let s = &mut self.scratch;
         for (v, dv) in self.velocities.iter_mut().zip(&s.dv) {
             add_scaled(v, dv, 1.0);
         }

@@ -6,6 +6,7 @@
 //! of them couple dozens of trees. Limits must have it: those of a tree see each other, and with what their own two bodies answer
 //! alone, a chain of 70 links that was curled up by a wall gained five times its energy.
 
+use super::batches::{Batches, Swept};
 use super::contacts::Contacts;
 use super::sweep::{Pass, Unrest};
 use super::tree::{self, Link, NONE};
@@ -28,6 +29,7 @@ fn impulse_of(body: &SolverBody, change: &Vec6) -> Vec6 {
 struct TurnOfTrees<'a> {
     links: &'a [Link],
     trees: &'a [Range<usize>],
+    batches: &'a Batches,
     impulses: &'a mut [Vec6],
     dv: &'a mut [Vec6],
     /// Velocities before the sweep; if loops were closed, those that are to be; and those after the limits had their turn.
@@ -44,9 +46,13 @@ impl Kernel for TurnOfTrees<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> f32 {
-        let Self { links, trees, impulses, dv, before, solved, swept, velocities, contacts, unrest } = self;
+        let Self { links, trees, batches, impulses, dv, .. } = self;
+        let Self { before, solved, swept, velocities, contacts, unrest, .. } = self;
         let mut most = L::splat(0.0);
         for (tree, range) in trees.iter().enumerate() {
+            if batches.have(tree) {
+                continue;
+            }
             let mut is_pushed = !solved.is_empty();
             for impulse in &impulses[range.clone()] {
                 is_pushed = is_pushed || !L::eq(L::load(impulse), L::splat(0.0)).all();
@@ -108,12 +114,28 @@ impl IslandSolver {
         if self.contacts.is_empty() && self.limits.is_empty() {
             return;
         }
+        self.contacts.begin_pass(pass, &self.velocities, self.h);
+        self.arrange_limits(pass);
+        self.unrest.start(self.effort.tolerance, self.trees.len(), 0, self.limit_blocks.len());
+        self.run_turns(pass);
+    }
+
+    /// Goes on with `solve`: what the rows that limits have got since, and corrections of positions, have not stirred is at rest.
+    pub(super) fn resume_by_turns(&mut self) {
+        if self.contacts.is_empty() && self.limits.is_empty() {
+            return;
+        }
+        let known = self.limit_blocks.placed();
+        self.arrange_limits(Pass::Solve);
+        self.unrest.resume(self.limit_blocks.len(), &self.limits[known..]);
+        self.contacts.start_conjugate();
+        self.run_turns(Pass::Solve);
+    }
+
+    fn run_turns(&mut self, pass: Pass) {
         let sweeps = self.effort.of_turns(pass);
         let enough = self.effort.enough;
         let enough = 0.5 * enough * enough * self.mass() / self.links.len() as f32;
-        self.contacts.begin_pass(pass, &self.velocities, self.h);
-        self.arrange_limits(pass);
-        self.unrest.start(sweeps.tolerance, self.trees.len(), 0, self.limit_blocks.len());
         let conjugate = pass != Pass::Restitution;
         for done in 1..=sweeps.most {
             self.note_limits();
@@ -162,12 +184,15 @@ impl IslandSolver {
         self.scratch.swept.extend_from_slice(&self.velocities[..self.links.len()]);
     }
 
-    /// From the changes of velocities since they were noted, which the contacts made with the bodies' own masses.
+    /// From the changes of velocities since they were noted, which the contacts made with the bodies' own masses. Of trees in batches
+    /// their turn does it.
     fn take_impulses_of_contacts(&mut self) {
-        for (i, before) in self.scratch.swept.iter().enumerate() {
-            let change = difference(&self.velocities[i], before);
-            if change != ZERO6 {
-                add_scaled(&mut self.impulses[i], &impulse_of(&self.bodies[i], &change), 1.0);
+        for range in &self.batches.alone {
+            for i in range.clone() {
+                let change = difference(&self.velocities[i], &self.scratch.swept[i]);
+                if change != ZERO6 {
+                    add_scaled(&mut self.impulses[i], &impulse_of(&self.bodies[i], &change), 1.0);
+                }
             }
         }
     }
@@ -175,7 +200,13 @@ impl IslandSolver {
     /// Velocities from those before the sweep and the impulses of it, exactly. Trees that have got none are as they were. Gives the
     /// largest change by what the contacts did not know of.
     fn take_turn_of_trees(&mut self) -> f32 {
+        let Self { batches, impulses, scratch, velocities, contacts, unrest, .. } = self;
+        let mut swept = Swept { before: &scratch.before, limited: &scratch.swept, now: velocities };
+        let change = batches.take_turns(impulses, &mut swept, contacts, unrest);
         self.add_pushes();
+        if self.batches.alone.is_empty() {
+            return change;
+        }
         let moving = self.links.len();
         core::mem::swap(&mut self.scratch.impulses, &mut self.impulses);
         let entangled = !self.loops.is_empty();
@@ -189,9 +220,10 @@ impl IslandSolver {
         }
         let s = &mut self.scratch;
         s.dv.resize(moving, ZERO6);
-        dispatch::run(TurnOfTrees {
+        let of_others = dispatch::run(TurnOfTrees {
             links: &self.links,
             trees: &self.trees,
+            batches: &self.batches,
             impulses: &mut s.impulses,
             dv: &mut s.dv,
             before: &s.before,
@@ -200,7 +232,8 @@ impl IslandSolver {
             velocities: &mut self.velocities[..moving],
             contacts: &mut self.contacts,
             unrest: &mut self.unrest,
-        })
+        });
+        max(change, of_others)
     }
 
     /// Goes on in the direction of the last sweeps.
@@ -238,8 +271,11 @@ impl IslandSolver {
         }
         self.note_swept();
         self.contacts.warm_start(&mut self.velocities);
-        self.take_impulses_of_contacts();
-        self.add_pushes();
+        for (i, before) in self.scratch.swept.iter().enumerate() {
+            let change = difference(&self.velocities[i], before);
+            let mass = self.bodies[i].mass * self.bodies[i].ballast;
+            self.contact_push[i] += linear(&self.impulses[i]) + linear(&change) * mass;
+        }
     }
 
     /// Whether a link is part of a tree of joints.

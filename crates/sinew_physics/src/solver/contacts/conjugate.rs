@@ -114,7 +114,7 @@ impl Contacts {
     }
 
     /// Before the first sweep of a pass.
-    pub(super) fn start_conjugate(&mut self) {
+    pub(in crate::solver) fn start_conjugate(&mut self) {
         self.conjugate.energy = 0.0;
     }
 

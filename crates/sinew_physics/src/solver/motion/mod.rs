@@ -173,7 +173,7 @@ pub(super) struct Predict<'a> {
     pub bodies: &'a [SolverBody],
     pub velocities: &'a [Vec6],
     pub h: f32,
-    pub poses: &'a mut Vec<Transform>,
+    pub poses: &'a mut [Transform],
 }
 
 impl Kernel for Predict<'_> {
@@ -182,14 +182,15 @@ impl Kernel for Predict<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Self { bodies, velocities, h, poses } = self;
-        poses.clear();
         for first in (0..bodies.len()).step_by(WIDTH) {
             let eight = eight_from(bodies, first);
             let rotation = rotation!(eight, pose.rotation);
             let position = vector!(eight, pose.translation);
             let velocity = velocities_from::<L>(velocities, first);
             let ahead = advanced(position, rotation, velocity, h, &velocities[first..], eight_poses(&eight));
-            poses.extend_from_slice(&ahead[..usize::min(WIDTH, bodies.len() - first)]);
+            for (pose, ahead) in poses[first..].iter_mut().zip(ahead) {
+                *pose = ahead;
+            }
         }
     }
 }
