@@ -2,7 +2,7 @@
 
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::boxes::separation::AxisOf;
+use crate::boxes::AxisOf;
 use crate::collide::{MAX_POINTS, Manifold, ManifoldPoint, Parting};
 use crate::kept::Kept;
 use crate::material::ContactMaterial;

@@ -1,6 +1,7 @@
 //! Definitions of worlds and bodies: plain data that they are made from.
 
-use crate::shape::{MassProperties, ShapeDef};
+use crate::boxes::Obb;
+use crate::shape::{MassProperties, Shape, ShapeDef};
 use sinew_math::{Rotation, Vec3};
 
 /// Settings of a world.
@@ -214,6 +215,14 @@ impl BodyDef {
     /// One that moves as its velocity says, of one shape, at the world's origin.
     pub fn kinematic(shape: impl Into<ShapeDef>) -> Self {
         Self { kind: BodyKind::Kinematic, ..Self::dynamic(shape) }
+    }
+
+    /// Static body that is this box. One for each of [`Cooked::boxes`](crate::cook::Cooked) makes a level: the broad phase
+    /// takes shapes one by one, so a body each costs it nothing, and every question about a body (overlap, neighbours, events)
+    /// then concerns one box alone.
+    pub fn fixed_box(obb: &Obb) -> Self {
+        let shape = Shape::Box { half_extents: obb.half_extents };
+        Self { position: obb.center, rotation: obb.rotation, ..Self::fixed(shape) }
     }
 
     /// A static one, of one shape, at the world's origin.

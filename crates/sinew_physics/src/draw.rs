@@ -1,7 +1,7 @@
 //! Debug drawing: the world as lines, for any renderer.
 
 use crate::def::BodyKind;
-use crate::revolved::{Frustum, Tapered};
+use crate::revolved::{TaperedCapsule, TruncatedCone};
 use crate::shape::Shape;
 use crate::world::World;
 use sinew_math::{Transform, Vec3, trig};
@@ -95,13 +95,13 @@ fn draw_shape(shape: &Shape, pose: &Transform, kind: DrawKind, out: &mut dyn Deb
             }
         }
         Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
-            draw_tapered(&Tapered::new(half_height, radius_bottom, radius_top), &mut line);
+            draw_tapered(&TaperedCapsule::new(half_height, radius_bottom, radius_top), &mut line);
         }
         Shape::Cylinder { half_height, radius } => {
-            draw_frustum(&Frustum::cylinder(half_height, radius), 0.0, &mut line);
+            draw_truncated_cone(&TruncatedCone::cylinder(half_height, radius), 0.0, &mut line);
         }
         Shape::Cone { half_height, radius } => {
-            draw_frustum(&Frustum::cone(half_height, radius), 0.0, &mut line);
+            draw_truncated_cone(&TruncatedCone::cone(half_height, radius), 0.0, &mut line);
         }
         Shape::HalfSpace => {
             let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
@@ -155,8 +155,8 @@ fn on_circle(i: usize) -> (f32, f32) {
 }
 
 /// Rings at both ends and four lines between them; `middle` is the height of its middle.
-fn draw_frustum(frustum: &Frustum, middle: f32, line: &mut dyn FnMut(Vec3, Vec3)) {
-    let ends = [(middle - frustum.half_height, frustum.bottom), (middle + frustum.half_height, frustum.top)];
+fn draw_truncated_cone(cone: &TruncatedCone, middle: f32, line: &mut dyn FnMut(Vec3, Vec3)) {
+    let ends = [(middle - cone.half_height, cone.bottom), (middle + cone.half_height, cone.top)];
     let corner = |(y, radius): (f32, f32), i: usize| {
         let (sin, cos) = on_circle(i);
         Vec3::new(cos * radius, y, sin * radius)
@@ -172,9 +172,9 @@ fn draw_frustum(frustum: &Frustum, middle: f32, line: &mut dyn FnMut(Vec3, Vec3)
 }
 
 /// The side, and arcs of the two balls beyond it in two planes through the axis.
-fn draw_tapered(tapered: &Tapered, line: &mut dyn FnMut(Vec3, Vec3)) {
+fn draw_tapered(tapered: &TaperedCapsule, line: &mut dyn FnMut(Vec3, Vec3)) {
     let (side, middle) = tapered.side();
-    draw_frustum(&side, middle, line);
+    draw_truncated_cone(&side, middle, line);
     let lean = trig::asin(tapered.side_normal().y);
     let quarter = core::f32::consts::FRAC_PI_2;
     for ((center, radius), pole) in tapered.balls().into_iter().zip([-quarter, quarter]) {

@@ -37,7 +37,7 @@ pub(crate) struct Kept {
 fn is_of_face(shape: &Shape, direction: Vec3) -> bool {
     match shape {
         Shape::Box { .. } => direction.abs().cmpgt(Vec3::splat(ON_FACE)).any(),
-        Shape::Hull(hull) => hull.polytope().planes.iter().any(|plane| plane.normal.dot(direction) > ON_FACE),
+        Shape::Hull(hull) => hull.faces().any(|face| face.normal().dot(direction) > ON_FACE),
         _ => false,
     }
 }

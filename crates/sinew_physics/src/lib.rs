@@ -10,13 +10,10 @@ pub mod stage;
 pub mod step;
 mod world;
 
-pub mod collide;
-pub mod cook;
 mod events;
 mod filter;
 mod finalize;
 mod hits;
-pub mod hull;
 mod islands;
 mod kept;
 mod library;
@@ -26,6 +23,7 @@ mod mover;
 mod near;
 mod pairs;
 mod parted;
+mod parts;
 mod pool;
 mod project;
 mod proxies;
@@ -34,42 +32,38 @@ mod sleep;
 mod solver;
 mod tasks;
 mod touch;
-mod tree;
-pub mod triangles;
 mod update;
 
 mod activity;
 mod arena;
 mod body;
-pub mod boxes;
 mod contact;
 mod contact_rule;
-pub mod convex;
 mod counts;
-mod distance;
 mod draw;
 pub mod id;
 pub mod joint;
 mod kind;
-mod mass;
 mod material;
 pub mod object;
 pub mod particles;
 pub mod query;
-pub mod ray;
 mod registered;
-mod revolved;
 pub mod runner;
 pub mod shape;
-mod slabs;
 mod slices;
 mod snapshot;
 mod spatial;
 mod surface;
 mod work;
 
+pub use sinew_geometry::{
+    Aabb, DataKind, HeightField, HeightFieldDef, HeightFieldError, Hull, HullError, Mesh, MeshError, Obb,
+    boxes, collide, convex, cook, hull, ray, triangles,
+};
+use sinew_geometry::{revolved, slabs, tree};
+
 pub use body::Velocity;
-pub use boxes::{Aabb, Obb};
 pub use contact::Effect;
 pub use contact_rule::{ContactModifier, ContactRule, ContactSide, FoundContact, OneWay};
 pub use def::{BodyDef, BodyKind, Quality, SleepThresholds, Sleeping, WorldDef};
@@ -82,14 +76,13 @@ pub use field::{
 pub use filter::{PairFunction, PairSide};
 pub use force::{ForceDef, ForceFrame, ForceId, Wrench};
 pub use hits::Hit;
-pub use hull::{Hull, HullError};
 pub use id::{BodyId, FieldId, GroupId, JointId, MoverId, ObjectId, ShapeId};
 pub use joint::Reaction;
 pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
     Spring, Strength,
 };
-pub use library::{DataKind, LoadError};
+pub use library::LoadError;
 pub use material::{Combine, CombineRules, ContactMaterial, Material};
 pub use mover::{Mover, MoverDef, MoverGround};
 pub use object::{Corrections, Forces, PhysicsObject, Substep};
@@ -100,7 +93,6 @@ pub use query::{
 pub use runner::{Serial, TaskRunner, Threads};
 pub use shape::{Filter, MassProperties, Sensing, Shape, ShapeDef};
 pub use surface::{BodyContact, ContactPoint};
-pub use triangles::{HeightField, HeightFieldDef, HeightFieldError, Mesh, MeshError};
 pub use update::Update;
 pub use work::Work;
 pub use world::World;

@@ -3,55 +3,16 @@
 //! A snapshot names such a shape by kind and hash and finds it here again, so that it stays small and quick. Another
 //! process gets the library itself by [`World::save_shapes`].
 
-use crate::hull::Hull;
 use crate::shape::Shape;
-use crate::triangles::{HeightField, Mesh};
 use crate::world::World;
+use sinew_geometry::DataKind;
 use sinew_math::{ReadError, Reader, Writer};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// First bytes of a written library; the last is its version.
 const MAGIC: &[u8; 8] = b"sinew-s\x01";
 /// Bytes of the smallest entry: its kind and the length of its data.
 const ENTRY_BYTES: usize = 5;
-
-/// What a shape with data is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DataKind {
-    /// Convex hull of points.
-    Hull,
-    /// Triangle mesh.
-    Mesh,
-    /// Height field.
-    HeightField,
-}
-
-/// In the order of their tags in bytes, the first of which is [`FIRST_TAG`].
-const KINDS: [DataKind; 3] = [DataKind::Hull, DataKind::Mesh, DataKind::HeightField];
-/// Lower tags are those of shapes that are sizes only.
-const FIRST_TAG: u8 = 16;
-
-impl DataKind {
-    fn tag(self) -> u8 {
-        FIRST_TAG + self as u8
-    }
-
-    /// The kind of a tag, if it is that of a shape with data.
-    pub(crate) fn of_tag(tag: u8) -> Option<Self> {
-        KINDS.into_iter().find(|kind| kind.tag() == tag)
-    }
-}
-
-impl core::fmt::Display for DataKind {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Hull => "hull",
-            Self::Mesh => "mesh",
-            Self::HeightField => "height field",
-        })
-    }
-}
 
 /// Why a snapshot could not be loaded.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -100,6 +61,14 @@ impl ShapeLibrary {
     }
 }
 
+/// Writes what a snapshot names a shape with data by. False, and nothing written, of those that are sizes only.
+pub(crate) fn save_name(shape: &Shape, w: &mut Writer) -> bool {
+    let Some((kind, hash)) = shape.data_kind().zip(shape.content_hash()) else { return false };
+    w.u8(kind.tag());
+    w.u64(hash);
+    true
+}
+
 impl World {
     /// Writes every shape with data that this world was ever given: what another process loads before a snapshot.
     pub fn save_shapes(&self, w: &mut Writer) {
@@ -126,7 +95,7 @@ impl World {
             let tag = r.u8()?;
             let kind = DataKind::of_tag(tag).ok_or_else(|| r.error("unknown kind of shape"))?;
             let mut data = r.block()?;
-            let shape = load_data(kind, &mut data)?;
+            let shape = Shape::load_data(kind, &mut data)?;
             data.finish()?;
             let known = shape.content_hash().and_then(|hash| library.shapes.get(&hash));
             if known.is_some_and(|known| *known != shape) {
@@ -136,54 +105,5 @@ impl World {
         }
         self.library = library;
         Ok(())
-    }
-}
-
-/// What [`Shape::save_data`] wrote.
-fn load_data(kind: DataKind, data: &mut Reader<'_>) -> Result<Shape, ReadError> {
-    match kind {
-        DataKind::Hull => Ok(Shape::Hull(Arc::new(Hull::load(data)?))),
-        DataKind::Mesh => Ok(Shape::Mesh(Arc::new(Mesh::load(data)?))),
-        DataKind::HeightField => Ok(Shape::HeightField(Arc::new(HeightField::load(data)?))),
-    }
-}
-
-impl Shape {
-    /// Hash of the data of a shape that holds some, the same on every machine; `None` of those that are sizes only.
-    pub fn content_hash(&self) -> Option<u64> {
-        match self {
-            Self::Mesh(mesh) => Some(mesh.content_hash()),
-            Self::HeightField(field) => Some(field.content_hash()),
-            Self::Hull(hull) => Some(hull.content_hash()),
-            _ => None,
-        }
-    }
-
-    /// What a shape with data is; `None` of those that are sizes only.
-    pub fn data_kind(&self) -> Option<DataKind> {
-        match self {
-            Self::Hull(_) => Some(DataKind::Hull),
-            Self::Mesh(_) => Some(DataKind::Mesh),
-            Self::HeightField(_) => Some(DataKind::HeightField),
-            _ => None,
-        }
-    }
-
-    /// Writes the data; nothing of a shape that is sizes only.
-    fn save_data(&self, w: &mut Writer) {
-        match self {
-            Self::Hull(hull) => hull.save(w),
-            Self::Mesh(mesh) => mesh.save(w),
-            Self::HeightField(field) => field.save(w),
-            _ => {}
-        }
-    }
-
-    /// What a snapshot names a shape with data by. False, and nothing written, of those that are sizes only.
-    pub(crate) fn save_name(&self, w: &mut Writer) -> bool {
-        let Some((kind, hash)) = self.data_kind().zip(self.content_hash()) else { return false };
-        w.u8(kind.tag());
-        w.u64(hash);
-        true
     }
 }

@@ -6,7 +6,7 @@
 
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::boxes::separation::AxisOf;
+use crate::boxes::AxisOf;
 use crate::collide::Parting;
 use crate::contact::ContactKey;
 use crate::filter::PairFilter;

@@ -12,7 +12,7 @@ use crate::field::FieldDef;
 use crate::force::BodyForces;
 use crate::joint::Joint;
 use crate::kept::Kept;
-use crate::library::{DataKind, LoadError, ShapeLibrary};
+use crate::library::{LoadError, ShapeLibrary, save_name};
 use crate::material::{Combine, CombineRules, Material};
 use crate::meetings::Meetings;
 use crate::mover::Mover;
@@ -21,6 +21,7 @@ use crate::shape::{Filter, Sensing, Shape};
 use crate::surface::{Surface, Surfaces};
 use crate::work::Work;
 use crate::world::World;
+use sinew_geometry::DataKind;
 use sinew_math::{ReadError, Reader, Transform, Vec3, Writer};
 
 /// First bytes of a snapshot; the last is its version.
@@ -398,7 +399,7 @@ fn load_list<'a, T, E: From<ReadError>>(
 }
 
 pub(crate) fn save_geometry(w: &mut Writer, shape: &Shape) {
-    if shape.save_name(w) {
+    if save_name(shape, w) {
         return;
     }
     match *shape {

@@ -3,7 +3,6 @@
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::collide::parts::Parts;
 use crate::collide::{Manifold, ManifoldPoint, Motion, Parting, collide_again};
 use crate::contact::{Contact, ContactKey, ContactMemory, Effect, pairs_of, slop};
 use crate::contact_rule::ContactRule;
@@ -14,6 +13,7 @@ use crate::joint::Joint;
 use crate::kept::Kept;
 use crate::meetings::{Meetings, Told};
 use crate::pairs::{Asked, BroadPhase};
+use crate::parts::Parts;
 use crate::shape::Sensing;
 use crate::slices::for_each_mut;
 use crate::step::StepContext;

@@ -3,7 +3,6 @@
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::{Body, Velocity};
-use crate::collide::parts::Parts;
 use crate::contact::Contact;
 use crate::def::{BodyDef, BodyKind, WorldDef};
 use crate::events::Events;
@@ -19,6 +18,7 @@ use crate::object::Objects;
 use crate::pairs::BroadPhase;
 use crate::parted::PartedPairs;
 use crate::particles::{AttachmentTarget, GroupDef, ParticleGroup};
+use crate::parts::Parts;
 use crate::runner::{Serial, TaskRunner};
 use crate::shape::{MassProperties, Sensing};
 use crate::stage::{NoProfiler, Profiler};

@@ -1,6 +1,7 @@
 //! A field that acts for an instant.
 
 use super::def::{not_negative, positive};
+use super::exposed::exposed;
 use super::{Fade, Form, Target};
 use crate::def::BodyKind;
 use crate::id::BodyId;
@@ -65,7 +66,7 @@ impl Explosion {
         }
         let outward = normalize_or(at.translation - self.center, Vec3::Y);
         let mut area = 0.0;
-        shape.exposed(at, outward, |panel| {
+        exposed(shape, at, outward, |panel| {
             area += panel.area * panel.normal.map_or(1.0, |normal| max(-outward.dot(normal), 0.0));
         });
         let strength = self.impulse * self.fade.strength(1.0 - distance / self.radius);

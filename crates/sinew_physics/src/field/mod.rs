@@ -17,7 +17,6 @@
 //!
 //! A world without fields pays nothing for them.
 
-mod below;
 mod buoyancy;
 mod custom;
 mod def;
@@ -30,7 +29,6 @@ mod mutual;
 mod noise;
 mod region;
 mod snapshot;
-mod submerged;
 mod target;
 mod wind;
 mod world;
@@ -43,7 +41,7 @@ pub use explosion::{Explosion, Occlusion};
 pub use gravity::{PointGravity, UniformGravity};
 pub use mutual::MutualGravity;
 pub use region::{Fade, Region};
-pub use submerged::{Submerged, WaterPlane, submerged_hull};
+pub use sinew_geometry::submerged::{Submerged, WaterPlane, submerged_hull};
 pub use wind::{Gusts, Wind};
 
 pub(crate) use custom::Functions;

@@ -6,7 +6,7 @@ use super::candidates::{Reach, sweep, what_is_left};
 use super::question::sealed::{Ask, Reply};
 use super::{BodyHit, Query, keep_first};
 use crate::boxes::Obb;
-use crate::boxes::batch::record::{NUMBERS, Record};
+use crate::boxes::batch::{NUMBERS, Record};
 use crate::id::BodyId;
 use crate::proxies::Owner;
 use crate::ray::{CLEARLY_OUTSIDE, Ray};
