@@ -615,7 +615,7 @@ impl Proxies {
 
     /// All other shapes: trees that are not empty, each with whose its leaves are.
     pub fn trees(&self) -> impl Iterator<Item = (&Tree, &[Owner])> {
-        let layers = [&self.fixed, &self.moving].into_iter().filter(|layer| layer.tree.len() > 0);
+        let layers = [&self.fixed, &self.moving].into_iter().filter(|layer| !layer.tree.is_empty());
         layers.map(|layer| (&layer.tree, layer.owners.as_slice()))
     }
 

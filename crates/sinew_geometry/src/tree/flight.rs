@@ -45,7 +45,7 @@ impl Flight {
 
     /// The nearest of what it has still to see.
     #[inline(always)]
-    pub fn next(&mut self) -> Stop {
+    pub fn next_stop(&mut self) -> Stop {
         while let Some((key, child)) = self.waiting.pop() {
             if key > self.limit * (1.0 + PAD) || child.is_none() {
                 continue;

@@ -66,6 +66,12 @@ impl Tree {
         self.len
     }
 
+    /// Whether there are no leaves.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
     /// Whether a leaf of that number is there.
     #[inline]
     pub fn contains(&self, leaf: u32) -> bool {

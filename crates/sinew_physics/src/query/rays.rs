@@ -112,7 +112,7 @@ impl<P: Fn(BodyId, u32) -> bool> Kernel for Stream<'_, '_, P> {
             while place < going && meetings.count < WIDTH {
                 let number = order[place];
                 let rider = &mut riders[number];
-                let goes_on = match rider.flight.next() {
+                let goes_on = match rider.flight.next_stop() {
                     Stop::Node(node) => {
                         nodes[place] = node;
                         place += 1;
