@@ -3,7 +3,7 @@
 use super::def::not_negative;
 use super::exposed::{exposed, stream_force};
 use super::{Load, Target, WaterPlane};
-use crate::shape::Shape;
+use crate::body::shape::Shape;
 use sinew_math::{Transform, Vec3};
 
 /// A fluid at rest or in uniform flow below a plane.

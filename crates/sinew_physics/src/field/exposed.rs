@@ -1,8 +1,8 @@
 //! What a shape exposes to a stream: panels of its surface, each with an area and where it lies.
 
+use crate::body::shape::Shape;
 use crate::hull::Hull;
 use crate::revolved::{TaperedCapsule, TruncatedCone};
-use crate::shape::Shape;
 use core::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 use sinew_math::trig::{acos, asin, sin};
 use sinew_math::{Transform, Vec3, clamp, max, normalize_or};

@@ -31,7 +31,6 @@ mod region;
 mod snapshot;
 mod target;
 mod wind;
-mod world;
 
 pub use buoyancy::Buoyancy;
 pub use custom::{FieldFunction, FieldPoint, PARAMETERS};
@@ -46,14 +45,13 @@ pub use wind::{Gusts, Wind};
 
 pub(crate) use custom::Functions;
 pub(crate) use load::{Load, least};
-pub(crate) use mutual::Attractor;
+pub(crate) use mutual::{Attractor, attractor};
 pub(crate) use target::{Form, Target};
-pub(crate) use world::attractor;
 
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::def::WorldDef;
+use crate::body::def::WorldDef;
 use crate::particles::ParticleGroup;
 use sinew_math::Vec3;
 

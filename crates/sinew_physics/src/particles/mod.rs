@@ -36,10 +36,10 @@ pub use def::{
 };
 
 use crate::arena::Item;
+use crate::body::material::Material;
+use crate::body::shape::{Filter, Shape};
 use crate::boxes::Aabb;
 use crate::id::GroupId;
-use crate::material::Material;
-use crate::shape::{Filter, Shape};
 use contact::{Grip, Placed, Touch};
 use forest::{Forest, Freedom, System};
 use impact::MAX_TOUCHES;

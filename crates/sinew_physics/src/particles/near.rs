@@ -141,12 +141,12 @@ impl ParticleGroup {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::Material;
+    use crate::body::material::Material;
+    use crate::body::shape::Shape;
     use crate::particles::{
         Anchor, AttachmentDef, AttachmentTarget, GroupDef, Obstacle, ObstacleBody, ParticleDef, Resists,
         SpringDef,
     };
-    use crate::shape::Shape;
     use sinew_math::{Random, Sym3, Transform, Writer};
 
     const H: f32 = 1.0 / 240.0;

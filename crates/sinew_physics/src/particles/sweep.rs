@@ -1,7 +1,7 @@
 //! A ball on a straight way against a shape.
 
+use crate::body::shape::Shape;
 use crate::boxes::Aabb;
-use crate::shape::Shape;
 use crate::triangles::{Part, Triangle, closest_on_triangle};
 use sinew_math::{Vec3, max, max3, min3};
 

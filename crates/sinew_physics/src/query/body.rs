@@ -1,8 +1,8 @@
 //! Questions about one body: bounds, nearest surface, points inside.
 
+use crate::body::shape::Shape;
 use crate::boxes::{Aabb, Penetration, SurfacePoint};
 use crate::id::BodyId;
-use crate::shape::Shape;
 use crate::world::World;
 use sinew_math::{Transform, Vec3};
 

@@ -1,8 +1,8 @@
 //! Which shapes a question is about.
 
-use crate::def::BodyKind;
+use crate::body::def::BodyKind;
+use crate::body::shape::{Filter, Sensing};
 use crate::id::{BodyId, ShapeId};
-use crate::shape::{Filter, Sensing};
 use core::ops::BitOr;
 
 /// Which shapes of a world a [`Query`](super::Query) is about. Default: every shape that is no sensor.

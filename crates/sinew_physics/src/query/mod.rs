@@ -83,10 +83,10 @@ pub use place::{
 pub use probe::Probe;
 pub use question::Question;
 
-use crate::def::BodyKind;
+use crate::body::def::BodyKind;
+use crate::body::shape::{Filter, Sensing, Shape};
+use crate::contact::proxies::{Owner, Placed};
 use crate::id::{BodyId, ShapeId};
-use crate::proxies::{Owner, Placed};
-use crate::shape::{Filter, Sensing, Shape};
 use crate::world::World;
 use candidates::{Limit, candidates};
 use core::ops::ControlFlow;

@@ -2,9 +2,9 @@
 
 use super::probe::Probe;
 use super::surface;
+use crate::body::shape::Shape;
 use crate::boxes::Penetration;
 use crate::convex::{Gap, ShapeHit, cast_shape, gap};
-use crate::shape::Shape;
 use sinew_math::{Transform, Vec3};
 
 /// How the probe lies to the shape, from the shape to the probe; of a surface only if it is within a distance.

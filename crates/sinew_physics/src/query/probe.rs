@@ -1,8 +1,8 @@
 //! Shapes put somewhere to ask with.
 
+use crate::body::shape::Shape;
 use crate::boxes::{Aabb, Capsule, Obb, Sphere};
 use crate::convex::support::Core;
-use crate::shape::Shape;
 use sinew_math::{Rotation, Transform, Vec3, normalize_or};
 
 /// A shape that is put somewhere to ask a world with, without being in it.

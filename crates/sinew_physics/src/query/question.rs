@@ -2,8 +2,8 @@
 
 use super::Query;
 use super::candidates::Reach;
+use crate::body::shape::Shape;
 use crate::id::{BodyId, ShapeId};
-use crate::shape::Shape;
 use sinew_math::Transform;
 
 /// What a [`Query`](super::Query) can be asked; [the module](super) lists all questions there are.

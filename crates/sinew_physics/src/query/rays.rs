@@ -5,12 +5,12 @@
 use super::candidates::{Reach, sweep, what_is_left};
 use super::question::sealed::{Ask, Reply};
 use super::{BodyHit, Query, keep_first};
+use crate::body::shape::Shape;
 use crate::boxes::Obb;
 use crate::boxes::batch::{NUMBERS, Record};
+use crate::contact::proxies::Owner;
 use crate::id::BodyId;
-use crate::proxies::Owner;
 use crate::ray::{CLEARLY_OUTSIDE, Ray};
-use crate::shape::Shape;
 use crate::slabs::Slabs;
 use crate::tree::{Flight, Stop, Sweep, Tree};
 use sinew_math::dispatch::{self, Kernel, Level};
