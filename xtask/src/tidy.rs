@@ -11,6 +11,7 @@ mod dependencies;
 mod leftovers;
 mod lexer;
 mod libraries;
+mod rooms;
 mod size;
 mod stages;
 mod unsafety;
@@ -26,6 +27,7 @@ use std::path::Path;
 /// The rules, in the order in which their findings are printed.
 const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     arrows::check,
+    rooms::check,
     libraries::check,
     bits::check,
     size::check,
