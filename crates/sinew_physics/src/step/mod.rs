@@ -1,5 +1,7 @@
 //! One step, in order. `docs/step.md` has a heading for each stage.
 
+pub(crate) mod collide;
+pub(crate) mod continuous;
 pub(crate) mod finalize;
 pub(crate) mod islands;
 pub(crate) mod pairs;
@@ -7,6 +9,7 @@ pub(crate) mod phase;
 pub(crate) mod project;
 pub(crate) mod sensors;
 pub(crate) mod sleep;
+pub(crate) mod store;
 pub(crate) mod tasks;
 pub(crate) mod touch;
 
@@ -29,7 +32,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         activity.wake_struck(bodies, groups, &broad.proxies, def);
         broad.update(bodies, parted.filter(joints), meetings, contacts, activity, context.dt);
     });
-    stage(Stage::Collide, &mut || touch::collide(bodies, broad, contacts, parts, context));
+    stage(Stage::Collide, &mut || collide::collide(bodies, broad, contacts, parts, context));
     stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, meetings, events));
     let (proxies, modifiers, pace) =
         (&broad.proxies, &meetings.modifiers, Pace::new(context, objects.grading()));
@@ -43,10 +46,12 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
         lockstep(objects, islands, &view, context);
         objects.rouse(bodies, activity);
     }
-    stage(Stage::Store, &mut || finalize::store(islands, joints, parted, contacts, groups, events, context));
+    stage(Stage::Store, &mut || store::store(islands, joints, parted, contacts, groups, events, context));
     stage(Stage::Finalize, &mut || finalize::finalize(islands, bodies, activity, events, context));
     let filter = parted.filter(joints);
-    stage(Stage::Continuous, &mut || finalize::continuous(islands, bodies, activity, broad, filter, context));
+    stage(Stage::Continuous, &mut || {
+        continuous::continuous(islands, bodies, activity, broad, filter, context)
+    });
     stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, activity, &fields, sleepers, def));
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, def.hit_speed, events));
     stage(Stage::Movers, &mut || mover::movers(world));

@@ -397,7 +397,7 @@ mod tests {
                 if pair.meets && !asked && !known {
                     let (a, b) = (bodies.at(pair.key.a), bodies.at(pair.key.b));
                     let mut asked = Asked::new(place, pair);
-                    crate::step::touch::ask(a, b, &mut asked, f32::INFINITY, def.dt());
+                    crate::step::collide::ask(a, b, &mut asked, f32::INFINITY, def.dt());
                     let found = asked.manifold;
                     assert_eq!(found.count, 0, "{:?} with {} left: {found:?}", pair.key, pair.left);
                     count += 1;
