@@ -8,6 +8,7 @@ mod arrows;
 mod bits;
 mod contract_table;
 mod dependencies;
+mod first_words;
 mod leftovers;
 mod lexer;
 mod libraries;
@@ -36,6 +37,7 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     contract_table::check,
     leftovers::check,
     dependencies::check,
+    first_words::check,
 ];
 
 /// `cargo xtask tidy`.

@@ -15,7 +15,7 @@ impl Shape {
         (distance, world_from_shape.rotation * normal)
     }
 
-    /// Where the surface is closest to `point` (world), by [`signed_distance`](Self::signed_distance); but nothing is inside of
+    /// Point of the surface closest to `point` (world), by [`signed_distance`](Self::signed_distance); but nothing is inside of
     /// a mesh or a height field: from those the distance is 0 or more, and the normal points to where the point is.
     pub fn nearest_surface(&self, world_from_shape: &Transform, point: Vec3) -> SurfacePoint {
         let (distance, normal) = self.signed_distance(world_from_shape, point);

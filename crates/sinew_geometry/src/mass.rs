@@ -80,7 +80,7 @@ fn capsule_inertia(half_height: f32, radius: f32, density: f32) -> Vec3 {
 }
 
 impl MassProperties {
-    /// Of two things taken as one; both in the same frame (parallel axis theorem).
+    /// Sum of two things taken as one; both in the same frame (parallel axis theorem).
     #[must_use]
     pub fn combine(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;

@@ -27,7 +27,7 @@ impl Ray {
         self.origin + self.direction * fraction
     }
 
-    /// Whether squares of its length may overflow.
+    /// True if squares of its length may overflow.
     #[inline]
     pub fn is_long(&self) -> bool {
         let way = abs3(self.direction);
@@ -40,7 +40,7 @@ const LONG: f32 = 1e15;
 /// 2⁻⁹⁶: what longer rays are multiplied by, without rounding.
 const SHORTENED: f32 = f32::from_bits((127 - 96) << 23);
 
-/// Where a ray meets a shape first.
+/// First point of a ray in a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
     /// Share of the ray before the hit, 0..=1; for a half-line lengths of its direction, ≥ 0.

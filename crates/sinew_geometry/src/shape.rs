@@ -61,7 +61,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Whether its sizes are finite and positive (a capsule's half height may be 0), and make a shape of its kind; the
+    /// Checks that its sizes are finite and positive (a capsule's half height may be 0), and make a shape of its kind; the
     /// phrase says what is wrong.
     ///
     /// # Errors
@@ -138,7 +138,7 @@ impl Shape {
         }
     }
 
-    /// Whether it has volume, and with it a mass by density.
+    /// True if it has volume, and with it a mass by density.
     #[inline]
     pub fn is_solid(&self) -> bool {
         !matches!(self, Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_))

@@ -1,4 +1,4 @@
-//! Where a line goes through a box, one at a time or eight: slabs (Kay & Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986).
+//! Lines through boxes, one at a time or eight: slabs (Kay & Kajiya, "Ray tracing complex scenes", SIGGRAPH 1986).
 
 use sinew_math::lanes::{Real, Vector3};
 
@@ -8,14 +8,14 @@ pub struct Slabs<R: Real> {
     pub enter: R,
     /// Fraction at which it leaves the first of them.
     leave: R,
-    /// Whether it runs along a slab, outside of it.
+    /// True if it runs along a slab, outside of it.
     beside: R::Mask,
     /// Fraction at which it comes into each, and from which side.
     each: [(R, R); 3],
 }
 
 impl<R: Real> Slabs<R> {
-    /// Of the box with these half extents around the origin.
+    /// Slabs of the box with these half extents around the origin.
     #[inline(always)]
     pub fn new(half_extents: Vector3<R>, origin: Vector3<R>, direction: Vector3<R>) -> Self {
         let (half, origin, way) = (half_extents.to_array(), origin.to_array(), direction.to_array());
@@ -37,7 +37,7 @@ impl<R: Real> Slabs<R> {
         slabs
     }
 
-    /// Whether the line comes into the box, at its start or later.
+    /// True if the line comes into the box, at its start or later.
     #[inline(always)]
     pub fn is_entered(&self) -> R::Mask {
         R::le(self.enter, self.leave) & R::ge(self.enter, R::splat(0.0)) & !self.beside

@@ -1,6 +1,7 @@
 //! The world: bodies, shapes, joints, particles and springs, in one deterministic step.
 //!
-//! SI units, radians, +Y up, right-handed, `f32`. Read [`step`] first: it is the physics, in order.
+//! SI units, radians, +Y up, right-handed, `f32`. Shapes are those of [`sinew_geometry`]. Read `step/mod.rs` first: it is
+//! the physics, in order.
 #![deny(unsafe_code)] // `slices` alone allows it
 
 pub mod field;
@@ -11,7 +12,6 @@ pub mod particles;
 pub mod query;
 pub mod runner;
 pub mod stage;
-pub mod step;
 
 mod activity;
 mod arena;
@@ -26,6 +26,7 @@ mod registered;
 mod slices;
 mod solver;
 mod spatial;
+mod step;
 mod world;
 
 pub use sinew_geometry::{

@@ -48,7 +48,7 @@ impl Aabb {
         Self { min: center - half_extents, max: center + half_extents }
     }
 
-    /// Whether the other one is inside.
+    /// True if the other one is inside.
     #[inline]
     pub fn contains(&self, other: &Self) -> bool {
         self.merge(other) == *self
@@ -147,7 +147,7 @@ impl Shape {
     }
 }
 
-/// How far the unit disk across y reaches along each axis. Of the sines themselves: from the cosine, near 1, half of
+/// Reach of the unit disk across y along each axis. Of the sines themselves: from the cosine, near 1, half of
 /// their digits would be gone.
 fn disk_reach(m: &Mat3) -> Vec3 {
     let reach = |x: f32, z: f32| (x * x + z * z).sqrt();

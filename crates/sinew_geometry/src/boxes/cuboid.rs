@@ -1,4 +1,4 @@
-//! What can be asked of a box of either kind.
+//! Questions to a box of either kind.
 
 use super::{Aabb, Obb, Penetration, PlacedBox, SurfacePoint};
 use crate::distance::distance_beyond;
@@ -15,7 +15,7 @@ pub trait Cuboid {
     /// The box with its axes worked out.
     fn placed(&self) -> PlacedBox;
 
-    /// Whether the point is in the box or on its surface: `|(p − c)·aₖ| ≤ hₖ` along each axis, without any tolerance.
+    /// True if the point is in the box or on its surface: `|(p − c)·aₖ| ≤ hₖ` along each axis, without any tolerance.
     fn contains_point(&self, point: Vec3) -> bool {
         self.placed().holds(point)
     }
@@ -35,13 +35,13 @@ pub trait Cuboid {
         self.placed().closest(point)
     }
 
-    /// How deep a point is in the box and in which direction the way out is shortest; `None` if it is outside.
+    /// Depth of a point in the box and direction of the shortest way out; `None` if it is outside.
     fn point_penetration(&self, point: Vec3) -> Option<Penetration> {
         let SurfacePoint { distance, normal, .. } = self.nearest_surface(point);
         (distance <= 0.0).then_some(Penetration { depth: -distance, direction: normal })
     }
 
-    /// Where a segment, from the ray's origin to its end, meets the box first, with the normal; the rules of
+    /// First point of a segment, from the ray's origin to its end, in the box, with the normal; the rules of
     /// [`Shape::cast_ray`] hold for a start inside.
     fn cast_ray(&self, ray: &Ray) -> Option<RayHit> {
         self.cast_half_line(ray).filter(|hit| hit.fraction <= 1.0)

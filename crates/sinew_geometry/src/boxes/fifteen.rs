@@ -1,4 +1,4 @@
-//! Whether two boxes overlap, for one pair or for eight: fifteen comparisons without a root or a division (Ericson, "Real-Time
+//! Overlap of two boxes, yes or no, for one pair or for eight: fifteen comparisons without a root or a division (Ericson, "Real-Time
 //! Collision Detection", 2005, §4.4.1).
 
 use super::PlacedBox;
@@ -36,7 +36,7 @@ impl FifteenAxes<f32> {
         Self::new(parts(a), parts(b))
     }
 
-    /// Whether no axis parts them.
+    /// True if no axis parts them.
     pub fn overlap(&self) -> bool {
         self.faces() && self.edges()
     }
@@ -65,7 +65,7 @@ impl<R: Real> FifteenAxes<R> {
         }
     }
 
-    /// Whether the axes of the faces leave no gap.
+    /// True if the axes of the faces leave no gap.
     #[inline(always)]
     pub fn faces(&self) -> R::Mask {
         self.face_of_a::<0>()
@@ -76,7 +76,7 @@ impl<R: Real> FifteenAxes<R> {
             & self.face_of_b::<2>()
     }
 
-    /// Whether what is at right angles to an edge of each leaves no gap.
+    /// True if what is at right angles to an edge of each leaves no gap.
     #[inline(always)]
     pub fn edges(&self) -> R::Mask {
         self.pair::<0, 0>()

@@ -1,4 +1,4 @@
-//! What an eye sees: culling and picking.
+//! Frustum of an eye: culling and picking.
 
 use super::{Cuboid, PlacedBox, Sphere};
 use crate::ray::{Ray, RayHit};
@@ -7,7 +7,7 @@ use sinew_math::{Transform, Vec2, Vec3, trig};
 /// A pyramid of sight without its tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frustum {
-    /// Where the eye is and how it is turned: it looks along −z of this frame, x is to its right, y up.
+    /// Frame of the eye: it looks along −z of this frame, x is to its right, y up.
     pub world_from_eye: Transform,
     /// Half the width and half the height of what it sees at a distance of 1 m, metres: tangents of half the angles of view.
     pub slopes: Vec2,
@@ -17,7 +17,7 @@ pub struct Frustum {
     pub far: f32,
 }
 
-/// How something lies to a [`Frustum`].
+/// Position of something relative to a [`Frustum`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Visibility {
     /// All of it is in sight.
@@ -62,7 +62,7 @@ impl Frustum {
         })
     }
 
-    /// How a box lies to it, by the box's extent across each plane (Assarsson & Möller 2000), and the other way round by the
+    /// Position of a box relative to it, by the box's extent across each plane (Assarsson & Möller 2000), and the other way round by the
     /// frustum's corners over each face. Never `Outside` though something is seen, nor `Inside` though something is not,
     /// but for rounding; a box that is just past an edge may be said to intersect.
     pub fn sees(&self, cuboid: &impl Cuboid) -> Visibility {
@@ -78,7 +78,7 @@ impl Frustum {
         self.across_planes(sphere.center, |_| sphere.radius)
     }
 
-    /// Of something around a point that reaches so far along a unit normal.
+    /// Visibility of something around a point that reaches so far along a unit normal.
     fn across_planes(&self, center: Vec3, reach: impl Fn(Vec3) -> f32) -> Visibility {
         let from_eye = center - self.world_from_eye.translation;
         let mut visibility = Visibility::Inside;
@@ -109,7 +109,7 @@ impl Frustum {
         ]
     }
 
-    /// Whether all corners are beyond one face of a box.
+    /// True if all corners are beyond one face of a box.
     fn is_beyond_a_face(&self, placed: &PlacedBox) -> bool {
         let corners = self.corners().map(|p| placed.local_point(p));
         let beyond = |k: usize, side: f32| corners.iter().all(|q| q[k] * side > placed.half[k]);

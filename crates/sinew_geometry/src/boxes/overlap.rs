@@ -30,7 +30,7 @@ impl Sphere {
 /// All points within a radius of a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
-    /// Of the segment, metres; they may coincide.
+    /// Ends of the segment, metres; they may coincide.
     pub ends: [Vec3; 2],
     /// Metres, ≥ 0; of radius 0 it is a segment.
     pub radius: f32,
@@ -55,10 +55,10 @@ fn expect_radius(radius: f32) {
 /// Overlap of two convex things of which at least one is a box. What touches overlaps; so does what contains the other.
 /// The order does not matter but for rounding: the other one gives the opposite direction.
 pub trait Overlap<Other> {
-    /// Whether they have a point in common.
+    /// True if they have a point in common.
     fn overlaps(&self, other: &Other) -> bool;
 
-    /// How far and in which direction `other` has to move so that they only touch: the shortest of all such ways.
+    /// Way that `other` has to move so that they only touch, with its depth: the shortest of all such ways.
     /// `Some` exactly where [`overlaps`](Self::overlaps) is true.
     fn penetration(&self, other: &Other) -> Option<Penetration>;
 }

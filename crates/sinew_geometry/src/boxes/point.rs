@@ -4,7 +4,7 @@ use super::PlacedBox;
 use crate::distance::box_distance;
 use sinew_math::Vec3;
 
-/// Where the surface of a box is closest to a point.
+/// Point of a box's surface that is closest to another point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// On the surface, metres.
@@ -15,7 +15,7 @@ pub struct SurfacePoint {
     pub distance: f32,
 }
 
-/// How deep something is in a box, and which way out is the shortest.
+/// Depth of something in a box, and its shortest way out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penetration {
     /// Metres, ≥ 0; 0 for what only touches.

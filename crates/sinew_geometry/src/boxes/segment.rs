@@ -49,7 +49,7 @@ impl Segment {
     }
 }
 
-/// Where a box and a segment (a capsule's core) that is outside are closest, in the box's frame.
+/// Closest points of a box and a segment (a capsule's core) that is outside, in the box's frame.
 pub(crate) struct Gap {
     pub on_core: Vec3,
     pub on_box: Vec3,
@@ -107,7 +107,7 @@ fn closest_to_box(half: Vec3, core: &Segment) -> f32 {
     if length > 0.0 { clamp(along / length, low, high) } else { low }
 }
 
-/// Where a box and a segment are closest, or deepest in each other, in the box's frame.
+/// Points of a box and a segment that are closest, or deepest in each other, in the box's frame.
 pub(crate) struct Meeting {
     /// Unit, out of the box.
     pub normal: Vec3,

@@ -1,4 +1,4 @@
-//! What boxes and polytopes have in common: which of the separating axes a contact takes, and its points.
+//! Common parts of boxes and polytopes: the separating axis that a contact takes, and its points.
 
 use super::clip::{Incident, Reference, clip};
 use super::feature::{self, pair};

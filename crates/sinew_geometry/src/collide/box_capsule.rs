@@ -94,7 +94,7 @@ fn push_line(
     line.push_ends(|p| (p - meeting.on_box).dot(normal), margin, out)
 }
 
-/// Of the corner in the octant of `p`.
+/// Number of the corner in the octant of `p`.
 fn corner_index(p: Vec3) -> usize {
     usize::from(p.x > 0.0) | usize::from(p.y > 0.0) << 1 | usize::from(p.z > 0.0) << 2
 }

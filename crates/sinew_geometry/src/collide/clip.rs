@@ -14,7 +14,7 @@ pub(super) struct Corner {
     pub reference: u16,
     /// Feature of the incident shape.
     pub incident: u16,
-    /// What the side from this corner to the next one lies on.
+    /// Plane on which the side from this corner to the next one lies.
     side: Side,
 }
 
@@ -243,7 +243,7 @@ impl Reference for BoxFace<'_> {
 pub(super) struct PolytopeFace<'a> {
     of: &'a Polytope<'a>,
     face: usize,
-    /// Of its frame: along it, along it, outward.
+    /// Axes of its frame: along it, along it, outward.
     axes: [Vec3; 3],
     origin: Vec3,
 }

@@ -21,7 +21,7 @@ pub(super) struct Clipped {
 #[derive(Clone, Copy, Default)]
 struct Outline {
     at: Clipped,
-    /// What the side from here to the next corner lies on.
+    /// Plane on which the side from here to the next corner lies.
     side: Side,
 }
 
@@ -47,7 +47,7 @@ impl Cut {
     }
 }
 
-/// What lies over or under the face, widened by `tolerance` so that corners on its sides keep their names under rounding
+/// Part that lies over or under the face, widened by `tolerance` so that corners on its sides keep their names under rounding
 /// (Sutherland & Hodgman 1974).
 pub(super) fn clip(face: &Feature, incident: &Feature, tolerance: f32) -> Cut {
     let mut outline = [Outline::default(); MOST_POINTS];

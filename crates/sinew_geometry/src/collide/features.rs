@@ -85,7 +85,7 @@ struct Pairing<'a> {
     tolerance: f32,
 }
 
-/// Which of the two.
+/// One of the two solids.
 #[derive(Clone, Copy, PartialEq)]
 enum Of {
     A,

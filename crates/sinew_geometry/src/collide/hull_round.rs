@@ -36,12 +36,12 @@ pub(super) fn against_sphere(
     out.push(center - normal * (radius + 0.5 * separation), separation, pair(WHOLE, WHOLE));
 }
 
-/// Where a hull and a core are closest, or deepest in each other.
+/// Points of a hull and a core that are closest, or deepest in each other.
 struct Meeting {
     /// Unit, out of the hull.
     normal: Vec3,
     on_core: Vec3,
-    /// Of the core and the hull, metres.
+    /// Distance of the core and the hull, metres.
     distance: f32,
     /// Half-edge of the hull that is met, if it is an edge.
     edge: Option<usize>,
@@ -187,7 +187,7 @@ fn push_line(
     line.push_ends(|p| p.dot(normal) - height, margin, out)
 }
 
-/// Where the core is nearest is part of its stretch over a face, unless there is none: of two faces that hardly differ the other one
+/// Takes care that where the core is nearest is part of its stretch over a face, unless there is none: of two faces that hardly differ the other one
 /// may be below it.
 fn reach(core: &Segment, nearest: Vec3, stretch: &mut (f32, f32)) {
     let along = core.ends[1] - core.ends[0];

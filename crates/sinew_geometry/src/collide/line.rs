@@ -13,7 +13,7 @@ pub(super) struct Line<'a> {
     pub stretch: (f32, f32),
     /// Unit, from the face or edge to the core.
     pub normal: Vec3,
-    /// Of the face or edge.
+    /// Name of the face or edge.
     pub name: u16,
 }
 

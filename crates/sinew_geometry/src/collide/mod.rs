@@ -41,19 +41,19 @@ pub struct ManifoldPoint {
     pub position: Vec3,
     /// Gap along the normal, metres; negative when they overlap.
     pub separation: f32,
-    /// Which features touch: A's in the low 16 bits, B's in the high ones. The same from step to step while the
+    /// Features that touch: A's in the low 16 bits, B's in the high ones. The same from step to step while the
     /// same features touch; the other order of the shapes exchanges the halves (`feature.rotate_left(16)`).
     pub feature: u32,
 }
 
-/// Where and how two convex shapes touch or are about to.
+/// Contact of two convex shapes that touch or are about to: a normal and up to four points.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Manifold {
     /// Unit, from A to B.
     pub normal: Vec3,
     /// The points; only the first `count` count.
     pub points: [ManifoldPoint; MAX_POINTS],
-    /// How many points, 0..=4.
+    /// Number of points, 0..=4.
     pub count: usize,
 }
 
@@ -109,13 +109,13 @@ impl Manifold {
     }
 }
 
-/// What is known of two shapes beside their points. It decides nothing about those, whatever it is.
+/// Knowledge of two shapes beside their points. It decides nothing about those, whatever it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parting {
     /// The axis along which two polytopes were parted when they were asked last: it is tried first, since most that stay apart
     /// do so along the same one.
     pub axis: Option<AxisOf>,
-    /// How far apart they surely are, metres. Told where no points are found.
+    /// Least gap that they surely have, metres. Told where no points are found.
     pub gap: f32,
 }
 

@@ -8,7 +8,7 @@ use sinew_math::{Transform, Vec3};
 pub(crate) struct Plane {
     /// Unit, out of the matter.
     pub normal: Vec3,
-    /// Of the plane along the normal.
+    /// Distance of the plane from the origin along the normal.
     pub offset: f32,
 }
 

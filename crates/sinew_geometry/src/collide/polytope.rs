@@ -58,7 +58,7 @@ pub(super) fn collide(
     }
 }
 
-/// Where two edges part better than the face that was preferred to them, they may cross beside that face, deeper than all
+/// Adds a point where edges cross: two that part better than the face that was preferred to them, they may cross beside that face, deeper than all
 /// that is over it: then their points are told, too.
 fn push_crossing(
     (a, b): (&Polytope<'_>, &Polytope<'_>),
@@ -198,7 +198,7 @@ impl Faceted for Polytope<'_> {
         push_faces::<FACE_CORNERS>(&reference, corners, best, margin, tolerance, out)
     }
 
-    /// Of corners and edges those are tried that reach far enough along `normal` to be within `margin` of the other solid.
+    /// Tries those corners and edges that reach far enough along `normal` to be within `margin` of the other solid.
     fn push_closest(&self, b: &Self, normal: Vec3, margin: f32, tolerance: f32, out: &mut Manifold) {
         let a = self;
         let (lowest, highest) = (-b.reach(-normal) - margin, a.reach(normal) + margin);

@@ -5,12 +5,12 @@ use super::pair::{Gap, gap};
 use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, min};
 
-/// Where a moving shape first touches another.
+/// First touch of a moving shape with another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeHit {
     /// Share of the motion before the hit, 0..=1.
     pub fraction: f32,
-    /// Where the two touch, world, metres.
+    /// Point where the two touch, world, metres.
     pub point: Vec3,
     /// Unit, out of the other shape and against the moving one, in the world.
     pub normal: Vec3,
@@ -74,7 +74,7 @@ pub fn advance(motion: Vec3, close: f32, mut gap_after: impl FnMut(Vec3) -> Opti
     Some(hit_of(now, fraction))
 }
 
-/// How near two shapes of which the smaller has this radius count as touching, on such a motion, metres.
+/// Gap at which two shapes of which the smaller has this radius count as touching, on such a motion, metres.
 pub fn closeness(radius: f32, motion: Vec3) -> f32 {
     CLOSE * radius + CLOSE_STEP * motion.length()
 }

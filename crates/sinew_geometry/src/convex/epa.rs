@@ -1,4 +1,4 @@
-//! How deep two cores overlap: the face of their Minkowski difference that is closest to the origin, by a polytope that
+//! Depth of two cores that overlap: the face of their Minkowski difference that is closest to the origin, by a polytope that
 //! grows into it (van den Bergen, "Proximity queries and penetration depth computation on 3D game objects", GDC 2001).
 
 use super::gjk::{self, Bridge, Cores, Simplex, Vertex, support};
@@ -31,7 +31,7 @@ struct Face {
     corners: [usize; 3],
     /// Unit, outward; 0 of a face without area, which is kept as it closes the polytope.
     normal: DVec3,
-    /// Of its plane from the origin; infinite without area.
+    /// Distance of its plane from the origin; infinite without area.
     distance: f64,
 }
 

@@ -62,7 +62,7 @@ impl Feature {
         &self.corners[..self.count]
     }
 
-    /// Whether it is a polygon, with a normal.
+    /// True if it is a polygon, with a normal.
     #[inline]
     pub fn is_face(&self) -> bool {
         self.count > 2
@@ -105,7 +105,7 @@ impl Feature {
         Self::new(&corners, feature::face(axis, side), normal)
     }
 
-    /// Of the faces, edges and corners of a hull that reach furthest along `direction`: the face that looks that way or nearly
+    /// Feature of a hull that reaches furthest along `direction`: the face that looks that way or nearly
     /// so, or else the edge across it, or else the corner.
     pub fn of_hull(hull: &Hull, direction: Vec3) -> Self {
         let (polytope, vertices) = (hull.polytope(), hull.vertices());

@@ -1,4 +1,4 @@
-//! How far two cores are apart: the point of their Minkowski difference that is closest to the origin
+//! Gap between two cores: the point of their Minkowski difference that is closest to the origin
 //! (Gilbert, Johnson & Keerthi, "A fast procedure for computing the distance between complex objects in
 //! three-dimensional space", IEEE J. Robotics and Automation 4(2), 1988).
 
@@ -53,7 +53,7 @@ pub(super) struct Bridge {
 /// Steps that do not come closer before no further one is tried.
 const MOST_STALLS: u32 = 12;
 
-/// What two cores are to each other.
+/// Relation of two cores to each other.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::large_enum_variant, reason = "it lives on the stack, for one pair")]
 pub(super) enum Cores {
@@ -109,7 +109,7 @@ pub(super) fn closest<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>
     Cores::Apart(Bridge { on_a, on_b, distance: apart, normal: -toward_a })
 }
 
-/// Whether some direction shows that the cores are apart: then no simplex holds the origin, however it looks.
+/// Knowledge of a direction that shows the cores to be apart: then no simplex holds the origin, however it looks.
 #[derive(Clone, Copy, PartialEq)]
 enum Known {
     Nothing,
@@ -183,7 +183,7 @@ impl Simplex {
 /// Three vertices by number, and the weight of each; 0 for those that do not count.
 type Carriers = ([usize; 3], [f64; 3]);
 
-/// Those of the nearest point, the first among equals.
+/// Carriers of the nearest point, the first among equals.
 fn nearest_of<const N: usize>(p: &[DVec3; 4], all: [Carriers; N]) -> Carriers {
     let squared = |(carriers, weights): &Carriers| {
         let terms = carriers.iter().zip(weights);
@@ -231,7 +231,7 @@ fn on_triangle(p: &[DVec3; 4], at: [usize; 3]) -> Carriers {
 
 const FACES: [[usize; 4]; 4] = [[0, 1, 2, 3], [0, 2, 3, 1], [0, 3, 1, 2], [1, 3, 2, 0]];
 
-/// Whether the origin is on the inner side of all faces of a tetrahedron that is not flat.
+/// True if the origin is on the inner side of all faces of a tetrahedron that is not flat.
 fn holds_origin(p: &[DVec3; 4]) -> bool {
     FACES.iter().all(|&[i, j, k, opposite]| {
         let normal = (p[j] - p[i]).cross(p[k] - p[i]);

@@ -1,4 +1,4 @@
-//! How two solids lie to each other.
+//! Gap between two solids, or their depth in each other.
 
 use super::epa;
 use super::gjk::{self, Bridge, Cores};
@@ -19,7 +19,7 @@ pub struct Gap {
     pub on_b: Vec3,
 }
 
-/// How two placed shapes lie to each other; `None` of two half-spaces, of a mesh, or if a number is not finite.
+/// Gap between two placed shapes, or their depth in each other; `None` of two half-spaces, of a mesh, or if a number is not finite.
 ///
 /// Right to a few roundings (6e-8) of the sizes and the distance. Where several ways out are shortest, one of them, always
 /// the same; of round shapes that are nearly concentric, and so nearly as deep in many directions, the way found may be longer
@@ -44,7 +44,7 @@ pub fn gap(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &Transf
     .filter(Gap::is_finite)
 }
 
-/// Whether two placed shapes have a point in common; what touches overlaps. Two half-spaces always do.
+/// True if two placed shapes have a point in common; what touches overlaps. Two half-spaces always do.
 pub fn overlaps(a: &Shape, world_from_a: &Transform, b: &Shape, world_from_b: &Transform) -> bool {
     (*a == Shape::HalfSpace && *b == Shape::HalfSpace)
         || gap(a, world_from_a, b, world_from_b).is_some_and(|gap| gap.distance <= 0.0)
@@ -114,7 +114,7 @@ impl Gap {
     }
 }
 
-/// How far two solids are apart along a unit direction from A to B; negative where they overlap along it.
+/// Gap between two solids along a unit direction from A to B; negative where they overlap along it.
 pub fn apart_along<A: Support, B: Support>(a: &Posed<'_, A>, b: &Posed<'_, B>, direction: DVec3) -> f64 {
     -b.extent(-direction) - a.extent(direction)
 }

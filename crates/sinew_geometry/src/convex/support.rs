@@ -23,7 +23,7 @@ pub trait Support {
     /// measured by it.
     fn thinnest(&self) -> f32;
 
-    /// What of the core's surface meets another solid that lies along the unit vector `direction`: the face that looks that
+    /// Feature of the core's surface that meets another solid that lies along the unit vector `direction`: the face that looks that
     /// way or, where there is none, the edge or corner.
     fn feature(&self, direction: Vec3) -> Feature;
 }
@@ -221,7 +221,7 @@ impl<'a, S: Support> Posed<'a, S> {
         self.center + x * p.x + y * p.y + z * p.z
     }
 
-    /// How far the solid reaches along the unit vector `direction`, from the origin of the frame.
+    /// Reach of the solid along the unit vector `direction`, from the origin of the frame.
     pub fn extent(&self, direction: DVec3) -> f64 {
         self.support(direction).dot(direction) + f64::from(self.solid.rounding())
     }

@@ -54,7 +54,7 @@ impl<'a> BoxSet<'a> {
         outer
     }
 
-    /// Of the union, cubic metres: each box's volume, shared with those that hold the same points.
+    /// Volume of the union, m³: each box's volume, shared with those that hold the same points.
     pub fn volume(&self, random: &mut Random) -> f32 {
         const SAMPLES: usize = 100_000;
         let total: f32 = self.boxes.iter().map(Cuboid::volume).sum();

@@ -12,7 +12,7 @@ const FAR: f32 = 2.0;
 #[derive(Clone, Debug)]
 pub struct MeshBvh {
     tree: Tree,
-    /// Of the triangles below each node of the tree.
+    /// Cluster of the triangles below each node of the tree.
     clusters: Vec<Cluster>,
     /// Corners, in the order of leaves.
     triangles: Vec<[Vec3; 3]>,
@@ -28,7 +28,7 @@ struct Cluster {
     area: f32,
     /// Mean of the triangles' middles, by area.
     center: Vec3,
-    /// Of a ball around `center` that holds all triangles.
+    /// Radius of a ball around `center` that holds all triangles.
     radius: f32,
 }
 
@@ -39,7 +39,7 @@ pub struct ClosestPoint {
     pub point: Vec3,
     /// From the point asked for, metres, ≥ 0.
     pub distance: f32,
-    /// Of the triangle, unit, to the side from which its corners run counter-clockwise.
+    /// Unit normal of the triangle, to the side from which its corners run counter-clockwise.
     pub normal: Vec3,
     /// Number of the triangle.
     pub triangle: u32,
@@ -60,7 +60,7 @@ impl MeshBvh {
         Self { tree, clusters, triangles, numbers }
     }
 
-    /// How many triangles there are.
+    /// Number of triangles.
     pub fn len(&self) -> usize {
         self.triangles.len()
     }
@@ -139,7 +139,7 @@ fn triangles_in(triangles: &[[Vec3; 3]], places: Range<u32>) -> &[[Vec3; 3]] {
     &triangles[places.start as usize..places.end as usize]
 }
 
-/// Of each node of a tree over triangles, which are in the order of its leaves.
+/// Clusters of each node of a tree over triangles, which are in the order of its leaves.
 fn clusters(tree: &Tree, triangles: &[[Vec3; 3]]) -> Vec<Cluster> {
     let mut clusters = vec![Cluster::default(); tree.len()];
     // Those below a node have higher numbers.

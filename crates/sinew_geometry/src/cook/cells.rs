@@ -94,7 +94,7 @@ impl Grid {
         })
     }
 
-    /// How many cells each full cell is away from an empty one, along the nearest axis.
+    /// Distance, in cells, of each full cell from an empty one, along the nearest axis.
     fn depths(&self) -> Vec<u32> {
         let counts = self.counts();
         let strides = [counts[1] * counts[2], counts[2], 1];
@@ -148,7 +148,7 @@ const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2,
 /// Sums over boxes of cells in constant time (Crow 1984, in three dimensions).
 struct Sums {
     counts: [usize; 3],
-    /// Of all cells below a corner; in f64, whose differences keep a whole number's digits.
+    /// Sums over all cells below a corner; in f64, whose differences keep a whole number's digits.
     sums: Vec<f64>,
 }
 

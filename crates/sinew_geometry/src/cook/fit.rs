@@ -1,4 +1,4 @@
-//! Which way a box should be turned to lie close around a part of a mesh.
+//! Attitude in which a box lies close around a part of a mesh.
 
 use super::fitted::around;
 use super::mesh::SurfaceMesh;

@@ -1,4 +1,4 @@
-//! How far boxes are from the mesh they stand for.
+//! Deviation of boxes from the mesh they stand for.
 
 use super::box_set::BoxSet;
 use super::bvh::MeshBvh;
@@ -48,7 +48,7 @@ fn quantiles(mut distances: Vec<f32>) -> [f32; 2] {
     [distances[(distances.len() * 95).div_ceil(100) - 1], last]
 }
 
-/// Of a closed mesh: by the divergence theorem where its parts are apart, else by points with a winding number.
+/// Volume of a closed mesh: by the divergence theorem where its parts are apart, else by points with a winding number.
 fn enclosed_volume(mesh: &SurfaceMesh, bvh: &MeshBvh, random: &mut Random) -> f32 {
     const ACROSS: usize = 48;
     if !parts_meet(mesh) {
@@ -71,7 +71,7 @@ fn enclosed_volume(mesh: &SurfaceMesh, bvh: &MeshBvh, random: &mut Random) -> f3
     size.x * size.y * size.z * (inside as f32 / (ACROSS * ACROSS * ACROSS) as f32)
 }
 
-/// Whether the bounds of two connected parts overlap.
+/// True if the bounds of two connected parts overlap.
 fn parts_meet(mesh: &SurfaceMesh) -> bool {
     let mut bounds: Vec<Option<Aabb>> = vec![None; mesh.parts];
     for (triangle, &part) in mesh.part.iter().enumerate() {

@@ -15,16 +15,16 @@ pub const MAX_TRIANGLES: usize = 16 << 20;
 pub enum CookError {
     /// Nothing is left to make boxes of: no triangle, or none with an area.
     NoTriangles {
-        /// How many there were without area.
+        /// Number of triangles without area.
         degenerate: usize,
     },
     /// A triangle names a vertex that is not there.
     IndexOutOfRange {
         /// Number of the triangle.
         triangle: usize,
-        /// What it names.
+        /// Vertex that it names.
         index: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
     /// A triangle names a vertex whose coordinates are not finite, or beyond 10⁶ m.
@@ -36,7 +36,7 @@ pub enum CookError {
     },
     /// More triangles than [`MAX_TRIANGLES`].
     TooMany {
-        /// How many there are.
+        /// Number that was given.
         triangles: usize,
     },
 }
@@ -58,7 +58,7 @@ impl fmt::Display for CookError {
 impl core::error::Error for CookError {}
 
 impl CookError {
-    /// Where in the mesh, such as `triangle 7, vertex 12`; empty for the mesh as a whole.
+    /// Place in the mesh, such as `triangle 7, vertex 12`; empty for the mesh as a whole.
     pub fn place(&self) -> String {
         match *self {
             Self::NoTriangles { .. } | Self::TooMany { .. } => String::new(),
@@ -68,7 +68,7 @@ impl CookError {
     }
 }
 
-/// What was put right about a mesh.
+/// Repairs that were made to a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Repairs {
     /// Triangles without area, left out.
@@ -84,7 +84,7 @@ pub struct Repairs {
 pub(crate) struct SurfaceMesh {
     pub positions: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
-    /// Which connected part each triangle belongs to: parts share no vertex.
+    /// Connected part of each triangle: parts share no vertex.
     pub part: Vec<u32>,
     pub parts: usize,
     pub bounds: Aabb,

@@ -35,12 +35,12 @@ use mesh::SurfaceMesh;
 use reduce::Reduction;
 use sinew_math::{Random, Vec3, max};
 
-/// How to cook.
+/// Settings of [`cook`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CookOptions {
     /// Most boxes, at least 1. Default 150.
     pub max_boxes: usize,
-    /// How far a box may be from the part of the mesh that it stands for, as a share of the mesh's diagonal, before
+    /// Most distance of a box from the part of the mesh that it stands for, as a share of the mesh's diagonal, before
     /// more boxes are tried. Default 0.01.
     pub tolerance: f32,
 }
@@ -56,15 +56,15 @@ impl Default for CookOptions {
 pub struct Cooked {
     /// The boxes, in the mesh's frame.
     pub boxes: Vec<Obb>,
-    /// How far they are from it.
+    /// Their distance from it.
     pub deviation: Deviation,
-    /// What was put right about the mesh.
+    /// Repairs that were made to the mesh.
     pub repairs: Repairs,
     /// Connected parts of the mesh.
     pub parts: usize,
 }
 
-/// How far the cooking has come: told as it goes, for whoever waits.
+/// Progress of the cooking: told as it goes, for whoever waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
     /// So many triangles have their boxes.
@@ -76,11 +76,11 @@ pub enum Progress {
 /// Lengths that decisions are made by, metres.
 #[derive(Clone, Copy, Debug)]
 struct Scale {
-    /// How far a box may be from its part.
+    /// Most distance of a box from its part.
     tolerance: f32,
     /// Least half extent of a box.
     thinnest: f32,
-    /// Of a plate behind a sheet.
+    /// Thickness of a plate behind a sheet.
     thickness: f32,
     /// Distances that nobody sees.
     unseen: f32,

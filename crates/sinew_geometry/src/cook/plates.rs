@@ -1,4 +1,4 @@
-//! What no box is near: flat regions of the mesh become plates behind their faces.
+//! Plates: flat regions of the mesh that no box is near become plates behind their faces.
 
 use super::Scale;
 use super::bvh::MeshBvh;

@@ -29,7 +29,7 @@ struct Entry {
     alive: bool,
 }
 
-/// What can be done to come by with one box less.
+/// A way to come by with one box less.
 #[derive(Clone, Copy)]
 enum Step {
     /// Leave out a box.
@@ -40,9 +40,9 @@ enum Step {
 
 struct Candidate {
     step: Step,
-    /// What it added to the integral of squared distances when last looked at, m⁴.
+    /// Its addition to the integral of squared distances when last looked at, m⁴.
     cost: f32,
-    /// How many boxes were left then.
+    /// Number of boxes that were left then.
     seen: usize,
 }
 
@@ -50,7 +50,7 @@ struct Candidate {
 pub(super) struct Reduction<'a> {
     bvh: &'a MeshBvh,
     points: &'a [MeshPoint],
-    /// Of the mesh that each point stands for, square metres.
+    /// Area of the mesh that each point stands for, m².
     area: f32,
     scale: Scale,
     entries: Vec<Entry>,
@@ -59,7 +59,7 @@ pub(super) struct Reduction<'a> {
 }
 
 impl<'a> Reduction<'a> {
-    /// Of `blocks` that stand for a mesh of which `points` are known, each for `area` square metres.
+    /// Reduction of `blocks` that stand for a mesh of which `points` are known, each for `area` square metres.
     pub fn new(bvh: &'a MeshBvh, points: &'a [MeshPoint], area: f32, scale: Scale, blocks: &[Obb]) -> Self {
         let entries: Vec<Entry> = blocks.iter().map(|&block| Entry::new(block)).collect();
         let left = entries.len();
@@ -155,7 +155,7 @@ impl<'a> Reduction<'a> {
         }
     }
 
-    /// What a step adds to the integral of squared distances, m⁴.
+    /// Addition of a step to the integral of squared distances, m⁴.
     fn cost(&mut self, step: &Step) -> f32 {
         match *step {
             Step::Drop(i) => {
@@ -179,7 +179,7 @@ impl<'a> Reduction<'a> {
         }
     }
 
-    /// What a box itself stands for, m⁴: looked up where nothing has changed since it was last asked.
+    /// Integral that a box itself stands for, m⁴: looked up where nothing has changed since it was last asked.
     fn cost_of(&mut self, i: usize) -> f32 {
         if self.entries[i].seen != self.left {
             let Entry { block, ref points, .. } = self.entries[i];
@@ -302,7 +302,7 @@ impl Entry {
         }
     }
 
-    /// Whether a point is deeper inside than `least`.
+    /// True if a point is deeper inside than `least`.
     fn holds(&self, p: Vec3, least: f32) -> bool {
         self.bounds.overlaps(&Aabb { min: p, max: p }) && self.placed.signed_distance(p) < -least
     }

@@ -7,7 +7,7 @@ use sinew_math::{Random, Vec3};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MeshPoint {
     pub position: Vec3,
-    /// Of the triangle, unit.
+    /// Unit normal of the triangle.
     pub normal: Vec3,
 }
 

@@ -76,7 +76,7 @@ fn rms_distances(bvh: &MeshBvh, points: &[MeshPoint], blocks: &[Obb], random: &m
     [there, rms(outer.iter().map(|&p| bvh.closest_point(p).distance).collect())]
 }
 
-/// Whether the faces around the middle of a box look inward, as a room's.
+/// True if the faces around the middle of a box look inward, as a room's.
 pub(super) fn is_seen_from_inside(bvh: &MeshBvh, block: &Obb) -> bool {
     bvh.winding_number(block.center) < -0.5
 }

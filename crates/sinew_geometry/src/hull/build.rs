@@ -10,7 +10,7 @@ use sinew_math::{Vec3, max, max3, min, min3};
 
 /// Numbers of corners to try. Triangles around 66 corners are [`MAX_FACES`].
 const BUDGETS: [usize; 4] = [usize::MAX, MAX_VERTICES, 128, MAX_FACES / 2 + 2];
-/// How far from the plane of a face, in steps of the grid, a corner may lie and be on it. The last one merges what is exactly
+/// Distance from the plane of a face, in steps of the grid, within which a corner is on it. The last one merges what is exactly
 /// one plane, and always succeeds.
 const TOLERANCES: [f64; 4] = [8.0, 2.0, 0.5, 0.0];
 /// Share of the size by which merging may leave a corner outside.

@@ -18,7 +18,7 @@ pub(super) struct Integrals {
 }
 
 impl Integrals {
-    /// Of the solid between faces given by the numbers of their corners, counter-clockwise from outside.
+    /// Mass of the solid between faces given by the numbers of their corners, counter-clockwise from outside.
     pub fn new(vertices: &[Vec3], loops: &[Vec<u8>]) -> Self {
         let wide = |v: &Vec3| v.to_array().map(f64::from);
         let mut from = [0.0; 3];

@@ -31,7 +31,7 @@ pub(super) fn faces(points: &[Point], tolerance: f64) -> Result<Faces, HullError
 /// Triangles by the face that they belong to.
 struct Regions<'a> {
     triangles: &'a [Triangle],
-    /// Of each triangle; a region is named by the triangle it grew from.
+    /// Region of each triangle; a region is named by the triangle it grew from.
     region: Vec<u32>,
 }
 

@@ -59,7 +59,7 @@ pub struct Hull {
     areas: Vec<f32>,
     bounds: Aabb,
     volume: f32,
-    /// Of mass, which is the same everywhere.
+    /// Centre of mass, of even density.
     center: Vec3,
     /// About the centre, of density 1.
     inertia: Sym3,
@@ -206,7 +206,7 @@ pub(crate) fn support(vertices: &[Vec3], direction: Vec3) -> usize {
     best
 }
 
-/// How far points reach along a direction.
+/// Furthest reach of points along a direction.
 pub(crate) fn reach(vertices: &[Vec3], direction: Vec3) -> f32 {
     vertices.iter().fold(f32::NEG_INFINITY, |reach, v| max(v.dot(direction), reach))
 }

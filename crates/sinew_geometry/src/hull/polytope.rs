@@ -71,7 +71,7 @@ impl<'a> Polytope<'a> {
         support(self.vertices, direction)
     }
 
-    /// How far it reaches along a direction.
+    /// Reach along a direction, from the origin.
     pub fn reach(&self, direction: Vec3) -> f32 {
         reach(self.vertices, direction)
     }
@@ -93,7 +93,7 @@ impl<'a> Polytope<'a> {
         best
     }
 
-    /// Of the faces at the corner that is furthest along a direction, or as far but for `tolerance`, the one that looks most
+    /// The face, of those at the corner that is furthest along a direction, or as far but for `tolerance`, that looks most
     /// into it.
     pub fn face_at_support(&self, direction: Vec3, tolerance: f32) -> usize {
         let least = self.reach(direction) - tolerance;
@@ -172,7 +172,7 @@ impl<'a> Polytope<'a> {
         if distance > noise { (distance, span / distance) } else { (distance, normal) }
     }
 
-    /// Where a line from outside enters: fraction (≥ 0) and normal. A convex solid is the intersection of its faces'
+    /// Entry of a line from outside: fraction (≥ 0) and normal. A convex solid is the intersection of its faces'
     /// half-spaces.
     pub fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         let (mut first, mut last) = (f32::NEG_INFINITY, f32::INFINITY);

@@ -10,7 +10,7 @@ impl Hull {
         self.polytope().distance(p)
     }
 
-    /// Where a line from outside enters: fraction (≥ 0) and normal.
+    /// Entry of a line from outside: fraction (≥ 0) and normal.
     pub(crate) fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         self.polytope().enter(origin, direction)
     }

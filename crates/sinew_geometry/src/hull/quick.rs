@@ -24,12 +24,12 @@ pub(super) struct Triangle {
 pub(super) struct Plane {
     normal: Point,
     offset: i128,
-    /// Of the normal: twice the triangle's area.
+    /// Length of the normal: twice the triangle's area.
     pub length: f64,
 }
 
 impl Plane {
-    /// Whether both look to the same half of all directions.
+    /// True if both look to the same half of all directions.
     pub fn faces_like(&self, other: &Self) -> bool {
         dot(self.normal, other.normal) > 0
     }

@@ -1,4 +1,4 @@
-//! How corners, edges and faces hang together: half-edges, those of a face one after the other.
+//! Topology of corners, edges and faces: half-edges, those of a face one after the other.
 
 use sinew_math::Vec3;
 
@@ -59,12 +59,12 @@ impl<'a> Topology<'a> {
         (0..self.half_edges.len()).filter(move |&side| self.is_first(side))
     }
 
-    /// Whether a half-edge of that number is there and stands for its edge.
+    /// True if a half-edge of that number is there and stands for its edge.
     pub fn has_edge(self, side: usize) -> bool {
         side < self.half_edges.len() && self.is_first(side)
     }
 
-    /// Whether a half-edge is the one of two that stands for its edge.
+    /// True if a half-edge is the one of two that stands for its edge.
     pub fn is_first(self, side: usize) -> bool {
         side < usize::from(self.half_edges[side].twin)
     }
@@ -128,7 +128,7 @@ impl Outline {
         Ok(outline)
     }
 
-    /// Whether it is one closed surface without handles (Euler: V − E + F = 2), around each corner just once.
+    /// Checks that it is one closed surface without handles (Euler: V − E + F = 2), around each corner just once.
     fn check(&self, corners: usize) -> Result<(), &'static str> {
         let mut leaving = vec![0_u32; corners];
         let mut start = vec![None; corners];

@@ -259,7 +259,7 @@ fn wedge(s: f32, cos: f32, sin: f32, low: f32, high: f32) -> (f32, f32, f32) {
     (slope * volume, slope * along, slope * (aside(high) - aside(low)))
 }
 
-/// Likewise from `from` to `to` along the axis where the cut hardly changes, and the differences above would be rounding:
+/// The same from `from` to `to` along the axis where the cut hardly changes, and the differences above would be rounding:
 /// the three-point Gauss rule.
 fn wedge_by_rule(from: f32, to: f32, at: impl Fn(f32) -> f32) -> (f32, f32, f32) {
     const NODES: [(f32, f32); 3] =

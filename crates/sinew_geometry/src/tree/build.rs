@@ -158,7 +158,7 @@ fn best_split(items: &[Item]) -> (usize, usize) {
     (best.1, best.2)
 }
 
-/// What falls between two planes.
+/// Items between two planes.
 #[derive(Clone, Copy)]
 struct Bin {
     bounds: Aabb,

@@ -15,7 +15,7 @@ pub struct Flight {
     waiting: Waiting,
 }
 
-/// Where a line has come to.
+/// Next place on the way of a line.
 pub enum Stop {
     /// A leaf that it may meet.
     Leaf(u32),

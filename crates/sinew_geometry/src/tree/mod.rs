@@ -25,7 +25,7 @@ use sinew_math::lanes::{Lanes, WIDTH};
 /// Most levels of nodes: what the queries' stacks are made for. Full nodes hold 2³² leaves in 11.
 const MOST_LEVELS: usize = 14;
 
-/// Where a child is: node times eight plus slot.
+/// Place of a child: node times eight plus slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Place(u32);
 
@@ -46,10 +46,10 @@ impl Place {
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
     nodes: Vec<Node>,
-    /// Where each node hangs.
+    /// Place of each node in its parent.
     parents: Vec<Place>,
     free: Vec<u32>,
-    /// Where each leaf is, by its number.
+    /// Place of each leaf, by its number.
     places: Vec<Place>,
     root: Option<u32>,
     /// Levels of nodes.
@@ -66,13 +66,13 @@ impl Tree {
         self.len
     }
 
-    /// Whether there are no leaves.
+    /// True if there are no leaves.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// Whether a leaf of that number is there.
+    /// True if a leaf of that number is there.
     #[inline]
     pub fn contains(&self, leaf: u32) -> bool {
         self.places.get(leaf as usize).is_some_and(|&place| place != Place::NOWHERE)
@@ -142,7 +142,7 @@ impl Tree {
         }
     }
 
-    /// Whether so many leaves were put in one by one, or so many nodes are nearly empty, that building anew pays.
+    /// True if building anew pays: many leaves were put in one by one, or many nodes are nearly empty.
     pub fn is_worn(&self) -> bool {
         let used = self.nodes.len() - self.free.len();
         (self.inserted > 64 && self.inserted > self.len) || used > self.len / 2 + MOST_LEVELS
@@ -156,7 +156,7 @@ impl Tree {
         self.free.reserve(nodes.saturating_sub(self.free.len()));
     }
 
-    /// Where a leaf of that number will be written down.
+    /// Makes room in the list of places for a leaf of that number.
     fn make_room(&mut self, leaf: u32) {
         if self.places.len() <= leaf as usize {
             self.places.resize(leaf as usize + 1, Place::NOWHERE);

@@ -9,7 +9,7 @@ const LEAF: u32 = 1 << 31;
 /// No child.
 const NONE: u32 = u32::MAX;
 
-/// What a slot of a node holds.
+/// Content of a slot of a node: a leaf, a node or nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Child(u32);
 
@@ -101,7 +101,7 @@ impl Node {
         self.set(slot, Child::NONE, &EMPTY);
     }
 
-    /// Of all that it holds.
+    /// Bounds of all that it holds.
     pub fn total(&self) -> Aabb {
         (0..WIDTH).fold(EMPTY, |sum, slot| sum.merge(&self.bounds(slot)))
     }
@@ -142,7 +142,7 @@ impl Node {
         best.map_or(0, |(slot, _)| slot)
     }
 
-    /// What is in the slots of a mask, lowest first. Bounds without end and sums that overflow meet empty slots, too: these are
+    /// Children in the slots of a mask, lowest first. Bounds without end and sums that overflow meet empty slots, too: these are
     /// left out.
     #[inline(always)]
     pub fn held(&self, mut mask: u8) -> impl Iterator<Item = (usize, Child)> {
@@ -155,7 +155,7 @@ impl Node {
         children.filter(|(_, child)| !child.is_none())
     }
 
-    /// Which boxes overlap another one: bit `k` for slot `k`. Of empty slots the bit says nothing: see [`held`](Self::held).
+    /// Mask of the boxes that overlap another one: bit `k` for slot `k`. Of empty slots the bit says nothing: see [`held`](Self::held).
     #[inline(always)]
     pub fn overlapping<L: Lanes>(&self, other: &[L; 6]) -> u8 {
         let [x, y, z, u, v, w] = &self.rows;
@@ -168,7 +168,7 @@ impl Node {
         mask.bits()
     }
 
-    /// Which boxes a line meets before `limit`, and where it enters each; as in [`overlapping`](Self::overlapping).
+    /// Mask of the boxes that a line meets before `limit`, and the fraction at which it enters each; as in [`overlapping`](Self::overlapping).
     #[inline(always)]
     pub fn entered<L: Lanes>(&self, line: &Line, limit: f32, enter: &mut [f32; WIDTH]) -> u8 {
         let slack = L::splat(1.0 + PAD);
@@ -184,7 +184,7 @@ impl Node {
         (L::le(first, last * slack) & L::le(first, L::splat(limit) * slack)).bits()
     }
 
-    /// How far faces are beyond the start of a line, along an axis.
+    /// Distances of faces beyond the start of a line, along an axis.
     #[inline(always)]
     fn beyond<L: Lanes>(&self, faces: &Faces, axis: usize) -> L {
         L::load(&self.rows[faces.row[axis]]) - L::splat(faces.origin[axis])
@@ -233,14 +233,14 @@ pub(super) struct Line {
 
 /// The faces of boxes that a line comes to first, or last, along each axis.
 struct Faces {
-    /// Which row of a node they are.
+    /// Row of a node that they are.
     row: [usize; 3],
-    /// Where the line starts, moved aside by what is swept along it and by what rounding may do.
+    /// Start of the line, moved aside by what is swept along it and by what rounding may do.
     origin: [f32; 3],
 }
 
 impl Line {
-    /// Of a box with these half extents that goes from `origin` along `direction`, at most `limit` times.
+    /// Way of a box with these half extents that goes from `origin` along `direction`, at most `limit` times.
     #[inline(always)]
     pub fn new(origin: Vec3, direction: Vec3, half_extents: Vec3, limit: f32) -> Self {
         let end = origin.abs() + direction.abs() * limit + half_extents;

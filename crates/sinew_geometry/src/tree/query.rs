@@ -17,7 +17,7 @@ pub struct Sweep {
     pub origin: Vec3,
     /// Way at fraction 1, metres.
     pub direction: Vec3,
-    /// Of the box, metres, ≥ 0.
+    /// Half extents of the box, metres, ≥ 0.
     pub half_extents: Vec3,
     /// Fraction at which it ends, ≥ 0.
     pub limit: f32,

@@ -139,7 +139,7 @@ impl Pair {
     }
 }
 
-/// Whether a swept box meets a box, by clipping in `f64`.
+/// True if a swept box meets a box, by clipping in `f64`.
 fn meets(bounds: &Aabb, sweep: &Sweep) -> bool {
     let (mut first, mut last) = (0.0_f64, f64::from(sweep.limit));
     for axis in 0..3 {

@@ -1,4 +1,4 @@
-//! What a query has seen of a tree and not gone into yet.
+//! Nodes that a query has seen and not gone into yet.
 
 use super::MOST_LEVELS;
 use super::node::{Child, Node};
@@ -58,7 +58,7 @@ impl Waiting {
         }
     }
 
-    /// Likewise; up to two slots, as it mostly is, without a branch: of those, the processor guesses every other one wrongly. A
+    /// Pushes those of a mask; up to two slots, as it mostly is, without a branch: of those, the processor guesses every other one wrongly. A
     /// slot that is empty may be among them.
     #[inline(always)]
     pub fn push_few(&mut self, node: &Node, mask: u8, keys: &[f32; WIDTH]) {

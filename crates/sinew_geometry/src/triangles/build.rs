@@ -9,7 +9,7 @@ const FELT_COSINE: f32 = 0.996_194_7;
 /// A triangle whose height is less than this share of its longest side has no area.
 const THINNEST: f32 = 1e-6;
 
-/// What was left out of a mesh.
+/// Triangles that were left out of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dropped {
     /// Triangles without area.
@@ -123,7 +123,7 @@ struct Side {
     edge: (u32, u32),
     triangle: u32,
     corner: u32,
-    /// Whether it runs from the smaller vertex to the larger.
+    /// True if it runs from the smaller vertex to the larger.
     forward: bool,
 }
 
@@ -152,7 +152,7 @@ fn active_edges(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
     active
 }
 
-/// Whether the edge between two triangles can be felt: the surface falls away there.
+/// True if the edge between two triangles can be felt: the surface falls away there.
 pub(super) fn is_felt(triangle: &[Vec3; 3], beyond: &[Vec3; 3]) -> bool {
     let (n, m) = (triangle::normal(triangle), triangle::normal(beyond));
     let middle = |&[a, b, c]: &[Vec3; 3]| (a + b + c) * (1.0 / 3.0);

@@ -32,9 +32,9 @@ pub enum HeightFieldError {
     /// As many heights as vertices are needed.
     #[error("{heights} heights do not make {vertices} vertices")]
     Heights {
-        /// How many there are.
+        /// Number that was given.
         heights: usize,
-        /// How many are needed.
+        /// Number that is needed.
         vertices: usize,
     },
     /// A spacing that is not positive and finite, or makes the field larger than [`MAX_COORDINATE`].
@@ -43,15 +43,15 @@ pub enum HeightFieldError {
     /// A height that is not finite, or beyond [`MAX_COORDINATE`].
     #[error("height {index} is not finite or beyond 10⁶ m")]
     NotFinite {
-        /// Which.
+        /// Its place in the list.
         index: usize,
     },
     /// A hole where no cell is.
     #[error("hole {hole} is not a cell: there are {cells}")]
     Hole {
-        /// Which cell.
+        /// Number of the cell.
         hole: u32,
-        /// How many there are.
+        /// Number that was given.
         cells: usize,
     },
     /// All cells are holes.
@@ -64,7 +64,7 @@ pub enum HeightFieldError {
 #[derive(Clone, Debug)]
 pub struct HeightField {
     def: HeightFieldDef,
-    /// Of each cell: active edges of its first triangle in the lowest three bits, of its second in the next; `HOLE`.
+    /// Bits of each cell: active edges of its first triangle in the lowest three bits, of its second in the next; `HOLE`.
     cells: Vec<u8>,
     bounds: Aabb,
     hash: u64,
@@ -100,7 +100,7 @@ impl HeightField {
         Ok(field)
     }
 
-    /// What it was made from.
+    /// Definition it was made from.
     pub fn def(&self) -> &HeightFieldDef {
         &self.def
     }
@@ -116,7 +116,7 @@ impl HeightField {
         cells.flat_map(|cell| [self.corners(2 * cell as u32), self.corners(2 * cell as u32 + 1)])
     }
 
-    /// Of the content: equal for equal fields, on every machine.
+    /// Hash of the content: equal for equal fields, on every machine.
     pub fn content_hash(&self) -> u64 {
         self.hash
     }
@@ -315,7 +315,7 @@ fn check(def: &HeightFieldDef) -> Result<(), HeightFieldError> {
     }
 }
 
-/// Of the numbers; holes by where they are, not by how they were listed.
+/// Hash of the numbers; holes by where they are, not by how they were listed.
 fn hash(def: &HeightFieldDef, cells: &[u8]) -> u64 {
     let mut hasher = StableHasher::default();
     hasher.write(&(def.columns as u64).to_le_bytes());

@@ -17,7 +17,7 @@ pub enum MeshError {
     /// Nothing is left: no triangle, or none with an area.
     #[error("{}", if *.degenerate > 0 { "no triangle has an area" } else { "there are no triangles" })]
     NoTriangles {
-        /// How many there were without area.
+        /// Number of triangles without area.
         degenerate: usize,
     },
     /// A triangle names a vertex that is not there.
@@ -25,9 +25,9 @@ pub enum MeshError {
     IndexOutOfRange {
         /// Number of the triangle.
         triangle: usize,
-        /// What it names.
+        /// Vertex that it names.
         index: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
     /// A vertex whose coordinates are not finite, or beyond [`MAX_COORDINATE`].
@@ -39,7 +39,7 @@ pub enum MeshError {
     /// More triangles than [`MAX_TRIANGLES`], or more vertices than three of each.
     #[error("{triangles} triangles are more than {MAX_TRIANGLES}")]
     TooMany {
-        /// How many there are.
+        /// Number that was given.
         triangles: usize,
     },
 }
@@ -121,12 +121,12 @@ impl Mesh {
         self.faces.iter().map(|face| (face.number(), face.vertices))
     }
 
-    /// How many triangles there are.
+    /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.faces.len()
     }
 
-    /// What was left out.
+    /// Triangles that were left out.
     pub fn dropped(&self) -> Dropped {
         self.dropped
     }
@@ -136,7 +136,7 @@ impl Mesh {
         self.tree.bounds()
     }
 
-    /// Of the content: equal for equal vertices and triangles, on every machine.
+    /// Hash of the content: equal for equal vertices and triangles, on every machine.
     pub fn content_hash(&self) -> u64 {
         self.hash
     }

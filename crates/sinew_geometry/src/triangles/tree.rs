@@ -25,7 +25,7 @@ struct Node {
     count: u32,
 }
 
-/// What hangs on a node.
+/// Children of a node.
 pub(crate) enum Branch {
     /// Two nodes, by number.
     Nodes([u32; 2]),
@@ -62,7 +62,7 @@ impl Tree {
         self.nodes[node as usize].bounds
     }
 
-    /// What a node holds.
+    /// Content of a node.
     pub fn branch(&self, node: u32) -> Branch {
         match self.nodes[node as usize] {
             Node { next, count: 0, .. } => Branch::Nodes([node + 1, next]),

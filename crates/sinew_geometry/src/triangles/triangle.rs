@@ -52,7 +52,7 @@ impl Triangle {
         (p - self.corners[0]).dot(self.normal)
     }
 
-    /// Whether the edge with this number, 0..3, can be hit.
+    /// True if the edge with this number, 0..3, can be hit.
     #[inline]
     pub fn is_active(&self, edge: usize) -> bool {
         self.active >> edge & 1 == 1

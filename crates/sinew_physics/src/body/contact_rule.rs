@@ -68,7 +68,7 @@ impl OneWay {
         Ok(())
     }
 
-    /// Whether it is solid against what lies along `normal` from it, in its frame.
+    /// True if it is solid against what lies along `normal` from it, in its frame.
     pub(crate) fn holds(&self, normal: Vec3) -> bool {
         normalize_or(self.direction, Vec3::Y).dot(normal) >= sinew_math::trig::cos(self.tolerance)
     }

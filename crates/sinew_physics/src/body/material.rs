@@ -62,7 +62,7 @@ impl Material {
         self.static_friction.unwrap_or(self.friction)
     }
 
-    /// Whether its surface moves along its body.
+    /// True if its surface moves along its body.
     pub(crate) fn runs(&self) -> bool {
         self.surface_velocity != Vec3::ZERO || self.surface_spin != Vec3::ZERO
     }
@@ -160,7 +160,7 @@ impl ContactMaterial {
         }
     }
 
-    /// Whether it moves what it touches.
+    /// True if it moves what it touches.
     pub(crate) fn drives(&self) -> bool {
         self.velocity != Vec3::ZERO || self.spin != Vec3::ZERO || self.launch != 0.0
     }

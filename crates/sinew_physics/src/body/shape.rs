@@ -24,7 +24,7 @@ impl Default for Filter {
 }
 
 impl Filter {
-    /// Whether two shapes meet.
+    /// True if two shapes meet.
     pub fn meets(self, other: Self) -> bool {
         if self.group != 0 && self.group == other.group {
             return self.group > 0;

@@ -125,7 +125,7 @@ pub(crate) fn save_body(w: &mut Writer, body: &Body) {
     w.u64(body.user_data);
 }
 
-/// Whether a body of such mass and moments may be dynamic.
+/// True if a body of such mass and moments may be dynamic.
 fn solid(mass: f32, inertia: Vec3) -> bool {
     let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
     [mass, inertia.x, inertia.y, inertia.z].into_iter().all(positive)

@@ -29,7 +29,7 @@ impl Surface {
         Self { density, material, filter, sensing, rule }
     }
 
-    /// Whether particles with a filter cannot get through: a one-way shape and one with a modifier are walls to them.
+    /// True if particles with a filter cannot get through: a one-way shape and one with a modifier are walls to them.
     pub fn is_wall_to(&self, filter: Filter) -> bool {
         self.sensing == Sensing::Solid && self.rule != ContactRule::Ghost && self.filter.meets(filter)
     }

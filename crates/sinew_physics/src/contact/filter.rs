@@ -23,7 +23,7 @@ pub struct PairSide {
     pub sensing: Sensing,
 }
 
-/// Whether two shapes may meet that all other filters let meet; the one with the smaller body index comes first.
+/// True if two shapes may meet that all other filters let meet; the one with the smaller body index comes first.
 ///
 /// A pure function, so that a snapshot holds all that decides; a plain one, not a closure: there is nothing that it could
 /// remember. It is asked in every step, in no defined order.

@@ -18,7 +18,7 @@ const ON_FACE: f32 = 0.999_999;
 /// A manifold as it was found, in the frames of its bodies. Part of the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Kept {
-    /// How many points; none if there is nothing to keep to.
+    /// Number of points; none if there is nothing to keep to.
     count: usize,
     /// How B lay to A.
     a_from_b: Rotation,
@@ -33,7 +33,7 @@ pub(crate) struct Kept {
     points: [[Vec3; 2]; MAX_POINTS],
 }
 
-/// Whether a direction in the frame of a solid is that of the normal of one of its faces.
+/// True if a direction in the frame of a solid is that of the normal of one of its faces.
 fn is_of_face(shape: &Shape, direction: Vec3) -> bool {
     match shape {
         Shape::Box { .. } => direction.abs().cmpgt(Vec3::splat(ON_FACE)).any(),

@@ -58,12 +58,12 @@ impl ContactKey {
         Self { a: a.0, b: b.0, shape_a: a.1, shape_b: b.1, part: 0 }
     }
 
-    /// Whether it is one of the manifolds of the same two shapes.
+    /// True if it is one of the manifolds of the same two shapes.
     pub fn is_of_pair(&self, other: Self) -> bool {
         Self { part: other.part, ..*self } == other
     }
 
-    /// Whether a body is one of the two.
+    /// True if a body is one of the two.
     pub fn has(self, body: u32) -> bool {
         self.a == body || self.b == body
     }
@@ -245,7 +245,7 @@ impl Contact {
         Parting { axis: self.apart, gap: self.gap }
     }
 
-    /// Whether the solver has to do with it.
+    /// True if the solver has to do with it.
     pub fn pushes(&self) -> bool {
         self.manifold.count > 0 && self.effect == Effect::Push
     }

@@ -52,7 +52,7 @@ impl Modifiers {
         }
     }
 
-    /// Whether they made something of a contact in this step.
+    /// True if they made something of a contact in this step.
     pub fn have_changed(&self, place: u32) -> bool {
         self.find(place).is_some()
     }

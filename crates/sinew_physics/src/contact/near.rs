@@ -111,7 +111,7 @@ pub(crate) struct NearPairs {
     pub list: Vec<NearPair>,
     fresh: Vec<NearPair>,
     next: Vec<NearPair>,
-    /// How many were found of shapes that strayed, and one for each time, since those went that do not overlap any more.
+    /// Number that were found of shapes that strayed, and one for each time, since those went that do not overlap any more.
     strayed: usize,
     /// Of the filter that was asked last.
     filter_version: u64,

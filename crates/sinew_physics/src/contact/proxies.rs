@@ -434,17 +434,17 @@ impl Proxies {
         (fastest.sqrt() + (p.spin + q.spin)) * (1.0 + SLACK)
     }
 
-    /// Whether there is anything to be looked for anew.
+    /// True if there is anything to be looked for anew.
     pub fn has_loose(&self) -> bool {
         self.all_loose || !(self.soiled.is_empty() && self.stray.is_empty() && self.loose.is_empty())
     }
 
-    /// Whether that is no more than shapes that left their bounds.
+    /// True if that is no more than shapes that left their bounds.
     pub fn only_strayed(&self) -> bool {
         !self.all_loose && self.soiled.is_empty() && self.loose.len() == self.stray.len()
     }
 
-    /// Whether the pairs of a shape are being looked for anew.
+    /// True if the pairs of a shape are being looked for anew.
     pub fn is_loose(&self, leaf: Leaf) -> bool {
         self.all_loose || self.layer(leaf.moves()).is_loose[leaf.at()]
     }
@@ -495,7 +495,7 @@ impl Proxies {
         }
     }
 
-    /// Whether the neighbours of a shape that moves are asked for.
+    /// True if the neighbours of a shape that moves are asked for.
     fn is_asking(&self, owner: Owner, leaf: Leaf) -> bool {
         if self.all_loose {
             self.home(owner.body).is_some_and(|home| home.lively == self.stamp)
@@ -701,7 +701,7 @@ impl Proxies {
         }
     }
 
-    /// Whether a body's leaves are those that it would be given now, and hold it.
+    /// True if a body's leaves are those that it would be given now, and hold it.
     fn fits(&mut self, index: u32, body: &Body) -> bool {
         let Some(home) = self.home(index) else { return false };
         let tree = &self.layer(home.moves).tree;

@@ -102,7 +102,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// Whether a body lies in a field that changes by itself, or attracts particles.
+    /// True if a body lies in a field that changes by itself, or attracts particles.
     pub fn keep_awake(&self, body: &Body) -> bool {
         let mut fields = self.arena.iter();
         fields.any(|(_, field)| {
@@ -124,7 +124,7 @@ impl<'a> Fields<'a> {
 }
 
 impl FieldDef {
-    /// Whether it acts on something at all.
+    /// True if it acts on something at all.
     pub(crate) fn reaches(&self, target: &Target<'_>) -> bool {
         target.is_on(self.layers) && self.region.weight(target.center()) > 0.0
     }

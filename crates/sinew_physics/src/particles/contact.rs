@@ -286,7 +286,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Whether a particle surely meets nothing on its way of this length.
+    /// True if a particle surely meets nothing on its way of this length.
     pub(super) fn is_clear(&self, i: usize, way: f32) -> bool {
         self.attachment_of[i] != u32::MAX || self.clearances[i] > DETOUR * way
     }

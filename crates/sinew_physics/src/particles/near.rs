@@ -67,7 +67,7 @@ impl Near {
         &self.obstacles[start..self.ends[i]]
     }
 
-    /// Whether each obstacle is in its room.
+    /// True if each obstacle is in its room.
     fn holds(&self, placed: &[Placed]) -> bool {
         self.rooms.len() == placed.len()
             && self.rooms.iter().zip(placed).all(|(room, placed)| room.contains(&placed.bounds))

@@ -41,7 +41,7 @@ impl<'a> QueryFilter<'a> {
         Self { except, ..Self::default() }
     }
 
-    /// Whether a shape of a body of some kind passes.
+    /// True if a shape of a body of some kind passes.
     pub(super) fn passes(&self, id: ShapeId, kind: BodyKind, filter: Filter, sensing: Sensing) -> bool {
         self.kinds.contains(kind)
             && (sensing == Sensing::Solid || self.sensors == Sensors::Included)
@@ -74,7 +74,7 @@ impl BodyKinds {
     /// All three.
     pub const ALL: Self = Self(7);
 
-    /// Whether a kind is in the set.
+    /// True if a kind is in the set.
     pub fn contains(self, kind: BodyKind) -> bool {
         self.0 & Self::from(kind).0 != 0
     }

@@ -129,7 +129,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         self.best(question)
     }
 
-    /// Whether there is an answer; cheaper than the first one.
+    /// True if there is an answer; cheaper than the first one.
     pub fn any<Q: Question>(&self, question: &Q) -> bool {
         let mut any = false;
         self.shapes(question, |id, shape, frame| {

@@ -20,7 +20,7 @@ pub(super) fn gap_within(
     }
 }
 
-/// Whether they have a point in common.
+/// True if they have a point in common.
 pub(super) fn overlap(shape: &Shape, world_from_shape: &Transform, probe: &Probe) -> bool {
     penetration(shape, world_from_shape, probe).is_some()
 }

@@ -27,7 +27,7 @@ impl Probe {
         Self::new(shape, Transform::from_translation(position))
     }
 
-    /// Whether its numbers can be asked with: finite, and no size negative.
+    /// True if its numbers can be asked with: finite, and no size negative.
     ///
     /// # Panics
     /// If the shape is not convex or not bounded: that is no matter of numbers.

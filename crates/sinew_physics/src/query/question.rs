@@ -39,7 +39,7 @@ pub(super) mod sealed {
             }
         }
 
-        /// Whether it has one; where that is cheaper than the answer itself.
+        /// True if it has one; where that is cheaper than the answer itself.
         fn is_met(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> bool {
             self.ask(id, shape, world_from_shape).is_some()
         }

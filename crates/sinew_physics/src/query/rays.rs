@@ -77,7 +77,7 @@ struct Stream<'a, 'w, P> {
     owners: &'a [Owner],
     rays: &'a [Ray],
     hits: &'a mut [Option<BodyHit>],
-    /// How many have set out.
+    /// Number that have set out.
     begun: usize,
 }
 
@@ -161,7 +161,7 @@ impl<P: Fn(BodyId, u32) -> bool> Stream<'_, '_, P> {
         false
     }
 
-    /// Whether a ray that has come to a leaf has to wait until it is tested with others; else it goes on.
+    /// True if a ray that has come to a leaf has to wait until it is tested with others; else it goes on.
     #[inline(always)]
     fn arrive(&mut self, rider: &mut Rider, number: usize, leaf: u32, meetings: &mut Meetings) -> bool {
         let (owner, ray) = (self.owners[leaf as usize], &self.rays[rider.ray]);

@@ -154,7 +154,7 @@ fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
     })
 }
 
-/// Whether a surface pushes, wherever it is met.
+/// True if a surface pushes, wherever it is met.
 fn is_plain(surface: &Surface) -> bool {
     let pushes = matches!(surface.rule, ContactRule::Push | ContactRule::Modified { .. });
     pushes && surface.sensing == Sensing::Solid

@@ -85,7 +85,7 @@ fn first_static_hit(
     first
 }
 
-/// Whether a shape surely stops what comes along a ray. One that a modifier may open is left to the speculative contacts.
+/// True if a shape surely stops what comes along a ray. One that a modifier may open is left to the speculative contacts.
 fn stops(s: &Surface, frame: &Transform, ray: &Ray) -> bool {
     let solid = s.sensing == Sensing::Solid;
     solid

@@ -163,7 +163,7 @@ impl Keeper<'_> {
         rest.iter().take_while(|contact| contact.key.is_of_pair(key)).count()
     }
 
-    /// Whether the next one had no points, and nothing is to be told of it.
+    /// True if the next one had no points, and nothing is to be told of it.
     fn next_is_idle(&self) -> bool {
         self.contacts[self.from].is_idle()
     }

@@ -76,7 +76,7 @@ fn wake_touched(bodies: &mut Arena<Body>, activity: &mut Activity, pair: &[Conta
     }
 }
 
-/// Whether two shapes lie deeper in each other than what rests does.
+/// True if two shapes lie deeper in each other than what rests does.
 fn is_deep(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
     let key = pair[0].key;
     let deep = -slop(smallest_extent(bodies.at(key.a), bodies.at(key.b), key));
@@ -99,7 +99,7 @@ fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Act
     }
 }
 
-/// Whether two shapes overlap, or pushed each other in the last step and are still near: what bears a load may do so from a
+/// True if two shapes overlap, or pushed each other in the last step and are still near: what bears a load may do so from a
 /// thousandth of a millimetre away, and what bounced has met although it is gone by now. What touched goes on touching until
 /// there is a gap that is none by rounding.
 fn touches(bodies: &Arena<Body>, pair: &[Contact]) -> bool {

@@ -11,7 +11,7 @@ use sinew_math::lanes::{Block, Blocks, LaneMask, Lanes, WIDTH};
 #[derive(Clone, Debug, Default)]
 pub struct Pairs(Blocks<{ 2 * NUMBERS }>);
 
-/// What [`Pairs::separations`] finds, in the order of the pairs: 8 bytes a pair.
+/// Answers of [`Pairs::separations`], in the order of the pairs: 8 bytes a pair.
 #[derive(Clone, Debug, Default)]
 pub struct Separations(Blocks<2>);
 
@@ -26,7 +26,7 @@ impl Pairs {
         self.0.len()
     }
 
-    /// Whether there are none.
+    /// True if there are none.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -44,7 +44,7 @@ impl Pairs {
         self.0.clear();
     }
 
-    /// Which pairs overlap, by all fifteen axes: [`Overlap::overlaps`](crate::boxes::Overlap::overlaps) of each, to the bit. Bit `k` of `overlapping[i]` is
+    /// Finds the pairs that overlap, by all fifteen axes: [`Overlap::overlaps`](crate::boxes::Overlap::overlaps) of each, to the bit. Bit `k` of `overlapping[i]` is
     /// pair `8 i + k`, bits beyond the last pair are 0. A pair with NaN does not overlap.
     ///
     /// # Panics
@@ -59,19 +59,19 @@ impl Pairs {
         dispatch::run(FindSeparations { pairs: self, axes: Axes::Fifteen, found });
     }
 
-    /// Likewise among the six axes of the faces alone, at a third of the cost: never more than the true gap, and at
+    /// Finds the same among the six axes of the faces alone, at a third of the cost: never more than the true gap, and at
     /// least where the boxes overlap, so that what it separates is separate.
     pub fn face_separations(&self, found: &mut Separations) {
         dispatch::run(FindSeparations { pairs: self, axes: Axes::Faces, found });
     }
 }
 
-/// Which axes are tried.
+/// Axes that are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
     /// The three sides of each box.
     Faces,
-    /// Those, and what is at right angles to a side of each.
+    /// The three sides of each box, and what is at right angles to a side of each.
     Fifteen,
 }
 
@@ -86,12 +86,12 @@ impl Separations {
         self.0.len()
     }
 
-    /// Whether there are none.
+    /// True if there are none.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Of pair `index`.
+    /// Answer for pair `index`.
     ///
     /// # Panics
     /// If there are not so many.
@@ -101,7 +101,7 @@ impl Separations {
         Separation { distance, axis: SeparatingAxis::from_index(axis as u8) }
     }
 
-    /// Of all pairs, in their order.
+    /// Answers for all pairs, in their order.
     pub fn iter(&self) -> impl Iterator<Item = Separation> + '_ {
         (0..self.len()).map(|index| self.get(index))
     }
@@ -140,9 +140,9 @@ impl Kernel for FindOverlaps<'_> {
 pub struct FindSeparations<'a> {
     /// The boxes.
     pub pairs: &'a Pairs,
-    /// What is tried on them.
+    /// Axes that are tried on them.
     pub axes: Axes,
-    /// Where the answers go.
+    /// Place for the answers.
     pub found: &'a mut Separations,
 }
 

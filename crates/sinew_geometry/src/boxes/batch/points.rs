@@ -20,7 +20,7 @@ impl Points {
         self.0.len()
     }
 
-    /// Whether there are none.
+    /// True if there are none.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -65,7 +65,7 @@ impl From<&[Vec3]> for Points {
 }
 
 impl Obb {
-    /// Which of the points are in the box; those on its surface are. Bit `k` of `inside[i]` is point `8 i + k`, bits
+    /// Finds the points in the box; those on its surface are. Bit `k` of `inside[i]` is point `8 i + k`, bits
     /// beyond the last point are 0. A point with NaN is nowhere.
     ///
     /// # Panics
@@ -103,7 +103,7 @@ impl<R: Real> Placed<R> {
         }
     }
 
-    /// How far a point is from the box's planes of symmetry, along each of its axes.
+    /// Distances of a point from the box's planes of symmetry, along each of its axes.
     #[inline(always)]
     fn aside(&self, point: Vector3<R>) -> Vector3<R> {
         let offset = point - self.center;
@@ -134,7 +134,7 @@ impl<R: Real> Placed<R> {
 pub struct ContainsPoints<'a> {
     /// The box.
     pub obb: &'a Obb,
-    /// What may be in it.
+    /// Points that may be in it.
     pub points: &'a Points,
     /// One byte for every eight points.
     pub inside: &'a mut [u8],

@@ -1,4 +1,4 @@
-//! How far two boxes are apart or overlap: the separating axis theorem (Gottschalk, Lin & Manocha, "OBBTree", SIGGRAPH
+//! Gap or depth of two boxes: the separating axis theorem (Gottschalk, Lin & Manocha, "OBBTree", SIGGRAPH
 //! 1996), with the amount along each axis.
 
 use super::record::{Record, matrix};
@@ -21,7 +21,7 @@ pub struct Separation {
     /// an edge. Exact but for rounding, except where edges are within a milliradian of parallel: there it may be off by
     /// that angle times the boxes' size.
     pub distance: f32,
-    /// Of the best axes, the first in the order in which they are listed at [`SeparatingAxis`].
+    /// The first of the best axes, in the order in which they are listed at [`SeparatingAxis`].
     pub axis: SeparatingAxis,
 }
 
@@ -63,7 +63,7 @@ impl SeparatingAxis {
 }
 
 impl Separation {
-    /// Of two boxes, by all fifteen axes.
+    /// Separation of two boxes, by all fifteen axes.
     ///
     /// Swapping them gives the same distance but for rounding, and the same axis where no other is as good.
     pub fn between(a: &Obb, b: &Obb) -> Self {

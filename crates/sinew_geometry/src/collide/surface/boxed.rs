@@ -10,7 +10,7 @@ use sinew_math::{Vec3, max, min};
 
 /// Edges whose sine is below this are taken as parallel.
 const PARALLEL_SINE: f32 = 0.005;
-/// Of ways out those are not taken that lead through the triangle: below this cosine to its normal.
+/// Least cosine to the triangle's normal of a way out, so that none leads through the triangle: below this cosine to its normal.
 const LEAST_COSINE: f32 = -0.02;
 
 /// Cosine of the angle between a normal and a face of the box from which on the face lies on what gives the normal.
@@ -26,7 +26,7 @@ struct Axis {
 
 #[derive(Clone, Copy)]
 enum AxisOf {
-    /// Of the box, by its axis.
+    /// A face of the box, by its axis.
     Face(usize),
     /// An edge of the triangle and an axis of the box.
     Edges(usize, usize),
@@ -62,7 +62,7 @@ pub(super) fn meet(placed: &PlacedBox, gap: f32, teller: &mut Teller<'_>) -> Opt
     None
 }
 
-/// What of the box is over the triangle. `None`, and nothing told, if that does not show how far they are apart: they pass each
+/// Part of the box over the triangle. `None`, and nothing told, if that does not show how far they are apart: they pass each
 /// other beside the face.
 fn face(gap: f32, widest: f32, teller: &mut Teller<'_>) -> Option<Part> {
     let over = teller.over_face(Vec3::ZERO);
@@ -71,7 +71,7 @@ fn face(gap: f32, widest: f32, teller: &mut Teller<'_>) -> Option<Part> {
     (!beside && teller.face_points(&over, When::Now)).then_some(Part::Face)
 }
 
-/// What the separating axes beside the triangle's own say.
+/// Answers of the separating axes beside the triangle's own.
 struct Axes {
     /// The largest gap along any of them.
     widest: f32,
@@ -198,7 +198,7 @@ fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Telle
     Some(part)
 }
 
-/// Those of two points that are no further apart than the margin.
+/// Points of two that are no further apart than the margin.
 fn within(points: &[ManifoldPoint; 2], margin: f32) -> &[ManifoldPoint] {
     match points.each_ref().map(|point| point.separation <= margin) {
         [true, true] => points,

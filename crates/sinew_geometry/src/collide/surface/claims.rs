@@ -1,4 +1,4 @@
-//! Which contacts with the edges and corners of a surface are real. One is if every triangle that has the edge or corner is
+//! Contacts with the edges and corners of a surface that are real. One is if every triangle that has the edge or corner is
 //! nearest to the shape there: over whose face the shape lies, to that it touches none of its edges (the idea of voided
 //! features: Box2D's ghost vertices, Bullet's internal edges).
 
@@ -54,7 +54,7 @@ impl Claims {
         hear_what_faces(candidates, &overlaps);
     }
 
-    /// What a triangle is not touched at. Corners are denied by edges that end there, and not the other way round: between
+    /// Denies the parts at which a triangle is not touched. Corners are denied by edges that end there, and not the other way round: between
     /// the two, rounding decides.
     fn deny_others(&mut self, candidate: &Candidate) {
         let triangle = &candidate.triangle;
@@ -103,7 +103,7 @@ fn hear_what_faces(candidates: &mut [Candidate], overlaps: &impl Fn(&Candidate) 
     }
 }
 
-/// Whether one of the edges can be felt, or else the normal is as good as the face's.
+/// True if one of the edges can be felt, or else the normal is as good as the face's.
 fn is_felt(candidate: &Candidate, edges: [usize; 2]) -> bool {
     let triangle = &candidate.triangle;
     edges.into_iter().any(|edge| triangle.is_active(edge))

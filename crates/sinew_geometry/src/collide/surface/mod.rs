@@ -26,10 +26,10 @@ use outline::Outline;
 use sinew_math::{Transform, Vec3, min};
 use solid::Solid;
 
-/// How a shape moves against a surface in the coming step.
+/// Motion of a shape against a surface in the coming step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Motion {
-    /// Of the shape's centre relative to the surface, world, m/s.
+    /// Velocity of the shape's centre relative to the surface, world, m/s.
     pub velocity: Vec3,
     /// For how long, seconds.
     pub dt: f32,
@@ -37,14 +37,14 @@ pub struct Motion {
     pub margin: f32,
 }
 
-/// What one triangle has to say: points along one normal.
+/// Answer of one triangle: points along one normal.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     /// From the surface to the shape.
     normal: Vec3,
-    /// Of the triangle that is touched.
+    /// Part of the triangle that is touched.
     part: Part,
-    /// Where it is, or where it will be once the shape has come over the triangle.
+    /// Now, or once the shape has come over the triangle.
     when: When,
     triangle: Triangle,
     /// Its points, in the list of all.
@@ -52,7 +52,7 @@ struct Candidate {
     count: u32,
     /// Least separation, metres.
     nearest: f32,
-    /// Whether it is not overruled.
+    /// True if it is not overruled.
     holds: bool,
 }
 
@@ -118,7 +118,7 @@ fn middle(shape: &Shape) -> Vec3 {
     }
 }
 
-/// What a triangle near the shape has to say.
+/// Asks a triangle near the shape.
 fn meet(triangle: &Triangle, solid: &Solid<'_>, motion: &Motion, scratch: &mut Scratch) {
     // The centre is in front: from behind a triangle is not there.
     let height = triangle.height(Vec3::ZERO);
@@ -241,7 +241,7 @@ pub fn name_as_face(manifold: &mut super::Manifold, of_surface: Half) {
     }
 }
 
-/// Whether all points of a manifold lie on faces of the surface.
+/// True if all points of a manifold lie on faces of the surface.
 pub fn is_on_face(manifold: &super::Manifold, of_surface: Half) -> bool {
     manifold.points().iter().all(|point| name::is_face((point.feature >> of_surface.shift()) as u16))
 }

@@ -20,7 +20,7 @@ pub(super) fn vertex(triangle: &Triangle, corner: usize) -> u16 {
     name(VERTEX, triangle.vertices[corner])
 }
 
-/// Of the corner where two edges meet.
+/// Name of the corner where two edges meet.
 pub(super) fn corner(triangle: &Triangle, edge_a: usize, edge_b: usize) -> u16 {
     // Edge k begins at corner k and ends at the next one.
     vertex(triangle, if (edge_a + 1) % 3 == edge_b { edge_b } else { edge_a })
@@ -34,7 +34,7 @@ pub(super) fn part(triangle: &Triangle, part: Part) -> u16 {
     }
 }
 
-/// Whether a feature is a face of a surface.
+/// True if a feature is a face of a surface.
 pub(super) fn is_face(feature: u16) -> bool {
     feature == FACE
 }

@@ -16,7 +16,7 @@ pub(super) struct Corner {
     pub of_shape: u16,
     /// Feature of the surface.
     pub of_surface: u16,
-    /// What the line from here to the next corner lies on.
+    /// Plane on which the line from here to the next corner lies.
     pub side: Side,
 }
 
@@ -66,7 +66,7 @@ impl Outline {
         self
     }
 
-    /// What lies over or under the triangle, widened by `tolerance` so that corners which lie on its edges keep their names
+    /// Part that lies over or under the triangle, widened by `tolerance` so that corners which lie on its edges keep their names
     /// under rounding (Sutherland & Hodgman 1974).
     pub fn cut(mut self, triangle: &Triangle, tolerance: f32) -> Self {
         for edge in 0..3 {

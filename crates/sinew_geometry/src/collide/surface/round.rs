@@ -48,7 +48,7 @@ pub(super) fn pill(pill: &Pill, teller: &mut Teller<'_>) -> Option<Part> {
     Some(nearest.part)
 }
 
-/// Whether the core goes through the triangle.
+/// True if the core goes through the triangle.
 fn pierces(pill: &Pill, teller: &Teller<'_>) -> bool {
     let [from, to] = pill.core.ends.map(|end| teller.triangle.height(end));
     if from * to > 0.0 {

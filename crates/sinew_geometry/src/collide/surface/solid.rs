@@ -1,4 +1,4 @@
-//! What meets a surface: a shape around the origin, in the directions of the surface's frame.
+//! Solids that meet a surface: a shape around the origin, in the directions of the surface's frame.
 
 use super::name;
 use super::outline::{Corner, Outline, Side};
@@ -37,7 +37,7 @@ impl<'a> Solid<'a> {
         }
     }
 
-    /// How far it reaches against the unit vector `n`, metres.
+    /// Reach against the unit vector `n`, metres.
     pub fn depth(&self, n: Vec3) -> f32 {
         match self {
             Self::Ball(radius) => *radius,
