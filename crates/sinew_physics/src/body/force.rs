@@ -47,7 +47,7 @@ impl ForceDef {
     }
 }
 
-/// A lasting force of a body of a [`World`].
+/// A lasting force of a body of a [`World`](crate::World).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ForceId {
     body: BodyId,

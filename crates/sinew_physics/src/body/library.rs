@@ -1,7 +1,7 @@
 //! The library: every shape with data that the world was ever given, by the hash of its content (ADR 0014).
 //!
 //! A snapshot names such a shape by kind and hash and finds it here again, so that it stays small and quick. Another
-//! process gets the library itself by [`World::save_shapes`].
+//! process gets the library itself by [`World::save_shapes`](crate::World::save_shapes).
 
 use crate::body::shape::Shape;
 use sinew_geometry::DataKind;
@@ -19,7 +19,7 @@ pub enum LoadError {
     /// The bytes are not a snapshot of this version.
     #[error(transparent)]
     Bytes(#[from] ReadError),
-    /// The snapshot names a shape with data that the world was never given: see [`World::load_shapes`].
+    /// The snapshot names a shape with data that the world was never given: see [`World::load_shapes`](crate::World::load_shapes).
     #[error("names a {kind} of hash {hash:016x} that the world does not have (at byte {at})")]
     UnknownShape {
         /// Offset of the hash.
