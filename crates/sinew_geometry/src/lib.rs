@@ -55,6 +55,8 @@
 //! | in the cache | 0.029 | 1.00 | 35× |
 //! | from memory | 0.123 | 3.42 | 28× |
 //!
+//! Manifolds beside Parry's are measured by `cargo run --release --bin manifolds` in `bench/kernels`; figures are still to be taken.
+//!
 //! # Same bits
 //! Every answer has the same bits on every target, at every optimisation level and with any number of lanes, alone or in a
 //! batch. NaN and infinities go in and no panic comes out; what each call does with them is in its documentation.
