@@ -100,8 +100,8 @@ fn random_worlds() -> Result<()> {
 /// Every random case of tests that otherwise run a hundredth: boxes, every pair of shapes, trees and questions against brute
 /// force, hostile files.
 fn all_cases() -> Result<()> {
-    let test = ["test", "--release", "--package", "sinew_physics", "--package", "sinew_formats"];
-    let mut test = command::cargo(&test);
+    let mut test = command::cargo(&["test", "--release", "--package", "sinew_geometry"]);
+    test.args(["--package", "sinew_physics", "--package", "sinew_formats"]);
     test.args(["--lib", "--test", "it", "--", "boxes", "collide", "convex", "hull", "meshes", "queries"]);
     command::run(test.args(["tree", "pairs", "hostile", "mjcf"]).env("SINEW_FULL", "1"))
 }

@@ -57,7 +57,7 @@ pub fn soup() -> Result<()> {
     for flags in ["", "-C target-feature=+simd128"] {
         eprintln!("RUSTFLAGS={flags:?}");
         soup_with(flags, &["--package", "sinew_math", "--lib"])?;
-        soup_with(flags, &["--package", "sinew_physics", "--test", "it"])?;
+        soup_with(flags, &["--package", "sinew_geometry", "--test", "it"])?;
     }
     Ok(())
 }

@@ -8,9 +8,11 @@ mod arrows;
 mod bits;
 mod contract_table;
 mod dependencies;
+mod first_words;
 mod leftovers;
 mod lexer;
 mod libraries;
+mod rooms;
 mod size;
 mod stages;
 mod unsafety;
@@ -26,6 +28,7 @@ use std::path::Path;
 /// The rules, in the order in which their findings are printed.
 const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     arrows::check,
+    rooms::check,
     libraries::check,
     bits::check,
     size::check,
@@ -34,6 +37,7 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     contract_table::check,
     leftovers::check,
     dependencies::check,
+    first_words::check,
 ];
 
 /// `cargo xtask tidy`.

@@ -1,12 +1,12 @@
 //! The kernels, with data to work on.
 
 use crate::counted::{self, Operations};
-use sinew_math::dispatch::{self, Level};
-use sinew_math::{Random, Vec3};
-use sinew_physics::boxes::Obb;
-use sinew_physics::boxes::batch::{
+use sinew_geometry::boxes::Obb;
+use sinew_geometry::boxes::batch::{
     Axes, ContainsPoints, FindOverlaps, FindSeparations, Pairs, Points, Separations, SignedDistances,
 };
+use sinew_math::dispatch::{self, Level};
+use sinew_math::{Random, Vec3};
 use std::hint::black_box;
 
 /// How many points: with their answers they stay in the second cache.

@@ -13,6 +13,7 @@
 pub use sinew_anim as anim;
 #[cfg(feature = "formats")]
 pub use sinew_formats as formats;
+pub use sinew_geometry as geometry;
 pub use sinew_math as math;
 pub use sinew_physics as physics;
 #[cfg(feature = "ragdoll")]

@@ -1,96 +1,62 @@
 //! The world: bodies, shapes, joints, particles and springs, in one deterministic step.
 //!
-//! SI units, radians, +Y up, right-handed, `f32`. Read [`step`] first: it is the physics, in order.
+//! SI units, radians, +Y up, right-handed, `f32`. Shapes are those of [`sinew_geometry`]. Read `step/mod.rs` first: it is
+//! the physics, in order.
 #![deny(unsafe_code)] // `slices` alone allows it
 
-pub mod def;
 pub mod field;
-mod force;
+pub mod id;
+pub mod joint;
+pub mod object;
+pub mod particles;
+pub mod query;
+pub mod runner;
 pub mod stage;
-pub mod step;
-mod world;
-
-pub mod collide;
-pub mod cook;
-mod events;
-mod filter;
-mod finalize;
-mod hits;
-pub mod hull;
-mod islands;
-mod kept;
-mod library;
-mod meetings;
-mod modifiers;
-mod mover;
-mod near;
-mod pairs;
-mod parted;
-mod pool;
-mod project;
-mod proxies;
-mod sensors;
-mod sleep;
-mod solver;
-mod tasks;
-mod touch;
-mod tree;
-pub mod triangles;
-mod update;
 
 mod activity;
 mod arena;
 mod body;
-pub mod boxes;
 mod contact;
-mod contact_rule;
-pub mod convex;
-mod counts;
-mod distance;
+mod context;
 mod draw;
-pub mod id;
-pub mod joint;
-mod kind;
-mod mass;
-mod material;
-pub mod object;
-pub mod particles;
-pub mod query;
-pub mod ray;
+mod island;
+mod mover;
+mod pool;
 mod registered;
-mod revolved;
-pub mod runner;
-pub mod shape;
-mod slabs;
 mod slices;
-mod snapshot;
+mod solver;
 mod spatial;
-mod surface;
-mod work;
+mod step;
+mod world;
 
-pub use body::Velocity;
-pub use boxes::{Aabb, Obb};
+pub use sinew_geometry::{
+    Aabb, DataKind, HeightField, HeightFieldDef, HeightFieldError, Hull, HullError, Mesh, MeshError, Obb,
+    boxes, collide, convex, cook, hull, ray, triangles,
+};
+use sinew_geometry::{revolved, slabs, tree};
+
+pub use body::contact_rule::{ContactModifier, ContactRule, ContactSide, FoundContact, OneWay};
+pub use body::def::{BodyDef, BodyKind, Quality, SleepThresholds, Sleeping, WorldDef};
+pub use body::force::{ForceDef, ForceFrame, ForceId, Wrench};
+pub use body::library::LoadError;
+pub use body::material::{Combine, CombineRules, ContactMaterial, Material};
+pub use body::shape::{Filter, MassProperties, Sensing, Shape, ShapeDef};
+pub use body::work::Work;
+pub use body::{Velocity, def, shape};
 pub use contact::Effect;
-pub use contact_rule::{ContactModifier, ContactRule, ContactSide, FoundContact, OneWay};
-pub use def::{BodyDef, BodyKind, Quality, SleepThresholds, Sleeping, WorldDef};
+pub use contact::events::Events;
+pub use contact::filter::{PairFunction, PairSide};
+pub use contact::hits::Hit;
 pub use draw::{DebugDraw, DrawKind};
-pub use events::Events;
 pub use field::{
     Buoyancy, Drag, Explosion, Fade, FieldDef, FieldKind, FieldPoint, Gusts, MutualGravity, Occlusion,
     PointGravity, Region, UniformGravity, Wind,
 };
-pub use filter::{PairFunction, PairSide};
-pub use force::{ForceDef, ForceFrame, ForceId, Wrench};
-pub use hits::Hit;
-pub use hull::{Hull, HullError};
 pub use id::{BodyId, FieldId, GroupId, JointId, MoverId, ObjectId, ShapeId};
-pub use joint::Reaction;
 pub use joint::def::{
     AxisMotion, Gains, JointCollision, JointDef, JointKind, JointState, Motor, SixDof, SoftZone, Softness,
     Spring, Strength,
 };
-pub use library::{DataKind, LoadError};
-pub use material::{Combine, CombineRules, ContactMaterial, Material};
 pub use mover::{Mover, MoverDef, MoverGround};
 pub use object::{Corrections, Forces, PhysicsObject, Substep};
 pub use query::{
@@ -98,9 +64,4 @@ pub use query::{
     NearestToShape, OverlapWith, PenetrationOf, Probe, Query, QueryFilter, Question, Sensors, ShapeCast,
 };
 pub use runner::{Serial, TaskRunner, Threads};
-pub use shape::{Filter, MassProperties, Sensing, Shape, ShapeDef};
-pub use surface::{BodyContact, ContactPoint};
-pub use triangles::{HeightField, HeightFieldDef, HeightFieldError, Mesh, MeshError};
-pub use update::Update;
-pub use work::Work;
-pub use world::World;
+pub use world::{BodyContact, ContactPoint, Reaction, Update, World};

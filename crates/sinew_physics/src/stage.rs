@@ -92,7 +92,7 @@ pub trait Profiler: Sync {
     fn begin(&self, stage: Stage);
     /// The stage that began last on this thread ends.
     fn end(&self, stage: Stage);
-    /// Whether it wants counts; else none are made.
+    /// True if it wants counts; else none are made.
     fn is_counting(&self) -> bool {
         false
     }

@@ -7,11 +7,15 @@ use serde_json::Value;
 /// including those that are not there yet.
 const ARROWS: &[(&str, &[&str])] = &[
     ("sinew_math", &[]),
-    ("sinew_physics", &["sinew_math"]),
+    ("sinew_geometry", &["sinew_math"]),
+    ("sinew_physics", &["sinew_geometry"]),
     ("sinew_anim", &["sinew_math"]),
     ("sinew_ragdoll", &["sinew_physics", "sinew_anim"]),
     ("sinew_formats", &["sinew_anim", "sinew_physics", "sinew_ragdoll"]),
-    ("sinew", &["sinew_math", "sinew_physics", "sinew_anim", "sinew_ragdoll", "sinew_formats"]),
+    (
+        "sinew",
+        &["sinew_math", "sinew_geometry", "sinew_physics", "sinew_anim", "sinew_ragdoll", "sinew_formats"],
+    ),
     ("sinew_scenes", &["sinew"]),
     ("sinew_picture", &["sinew"]),
     ("sinew_viewer", &["sinew_scenes", "sinew_picture"]),

@@ -9,8 +9,15 @@ use super::lexer::{self, Kind, Token};
 use super::{File, Finding, Repo};
 
 /// Crates whose results must have the same bits everywhere.
-const EXACT: &[&str] =
-    &["sinew_math", "sinew_physics", "sinew_anim", "sinew_ragdoll", "sinew_scenes", "sinew_picture"];
+const EXACT: &[&str] = &[
+    "sinew_math",
+    "sinew_geometry",
+    "sinew_physics",
+    "sinew_anim",
+    "sinew_ragdoll",
+    "sinew_scenes",
+    "sinew_picture",
+];
 
 /// glam types with a SIMD layout: their sums are ordered differently on each target.
 const TYPES: &[&str] = &["Quat", "Vec3A", "Vec4", "Mat4", "Mat3A", "Affine3A", "Affine2"];

@@ -6,6 +6,7 @@ use super::{File, Finding, Repo};
 /// Crates that a user links. Tests in them are free to do what they like.
 const LIBRARIES: &[&str] = &[
     "sinew_math",
+    "sinew_geometry",
     "sinew_physics",
     "sinew_anim",
     "sinew_ragdoll",

@@ -45,7 +45,7 @@ impl Boxes {
         let name = self.mesh.display().to_string();
         let mesh = load_mesh(&self.mesh)?;
         let cooked = self.cook(&name, &mesh)?;
-        let bodies = cooked.to_bodies();
+        let bodies: Vec<BodyDef> = cooked.boxes.iter().map(BodyDef::fixed_box).collect();
         let mut outputs = Outputs::default();
         outputs.add(&self.output, write_world(&bodies).into_bytes());
         if let Some(picture) = &self.picture {

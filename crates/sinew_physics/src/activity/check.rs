@@ -87,11 +87,11 @@ impl World {
     }
 }
 
-use crate::def::{BodyDef, BodyKind, WorldDef};
+use crate::body::def::{BodyDef, BodyKind, WorldDef};
+use crate::body::shape::{Sensing, Shape, ShapeDef};
 use crate::id::{BodyId, JointId};
 use crate::joint::def::{JointDef, JointKind};
 use crate::runner::Threads;
-use crate::shape::{Sensing, Shape, ShapeDef};
 use crate::stage::NoProfiler;
 use crate::{Strength, Velocity};
 use sinew_math::{Random, Reader, Transform, Vec3, Writer};

@@ -8,16 +8,15 @@ mod aside;
 #[cfg(test)]
 mod check;
 mod slot_set;
-mod world;
 
 use crate::arena::Arena;
+use crate::body::def::{BodyKind, WorldDef};
 use crate::body::{Body, Rest, Velocity};
 use crate::contact::Contact;
-use crate::def::{BodyKind, WorldDef};
+use crate::contact::near::bear;
+use crate::contact::proxies::{Owner, Proxies};
 use crate::joint::{Incidence, Joint};
-use crate::pairs::bear;
 use crate::particles::ParticleGroup;
-use crate::proxies::{Owner, Proxies};
 use aside::Aside;
 use core::ops::ControlFlow;
 use slot_set::SlotSet;

@@ -1,9 +1,9 @@
 //! Water.
 
 use super::def::not_negative;
-use super::exposed::stream_force;
+use super::exposed::{exposed, stream_force};
 use super::{Load, Target, WaterPlane};
-use crate::shape::Shape;
+use crate::body::shape::Shape;
 use sinew_math::{Transform, Vec3};
 
 /// A fluid at rest or in uniform flow below a plane.
@@ -88,7 +88,7 @@ impl Buoyancy {
         let d = moment.diagonal;
         load.spin_resistance += self.damping * (d.x + d.y + d.z);
         if self.drag > 0.0 {
-            shape.exposed(at, stream(at.translation), |panel| {
+            exposed(shape, at, stream(at.translation), |panel| {
                 let (force, brake) = stream_force(&panel, stream(panel.point), self.density, self.drag, 0.0);
                 load.push_at(panel.point - target.center(), force * share, brake * share);
             });

@@ -1,7 +1,7 @@
 //! Fields that the user writes.
 
 use super::{Fields, Target};
-use crate::force::Wrench;
+use crate::body::force::Wrench;
 use crate::registered::Registered;
 use sinew_math::Vec3;
 

@@ -1,13 +1,9 @@
 //! A field that acts for an instant.
 
+use super::Fade;
 use super::def::{not_negative, positive};
-use super::{Fade, Form, Target};
-use crate::def::BodyKind;
-use crate::id::BodyId;
-use crate::query::{BodyKinds, QueryFilter};
-use crate::ray::Ray;
-use crate::shape::Shape;
-use crate::world::World;
+use super::exposed::exposed;
+use crate::body::shape::Shape;
 use sinew_math::{Transform, Vec3, max, normalize_or};
 
 /// A blast: pressure that is over before anything moves, so that all it leaves is an impulse.
@@ -58,62 +54,17 @@ impl Explosion {
     }
 
     /// Impulse on a shape, N·s, and where it acts.
-    fn push(&self, shape: &Shape, at: &Transform) -> (Vec3, Vec3) {
+    pub(crate) fn push(&self, shape: &Shape, at: &Transform) -> (Vec3, Vec3) {
         let distance = max(shape.signed_distance(at, self.center).0, 0.0);
         if distance >= self.radius {
             return (Vec3::ZERO, at.translation);
         }
         let outward = normalize_or(at.translation - self.center, Vec3::Y);
         let mut area = 0.0;
-        shape.exposed(at, outward, |panel| {
+        exposed(shape, at, outward, |panel| {
             area += panel.area * panel.normal.map_or(1.0, |normal| max(-outward.dot(normal), 0.0));
         });
         let strength = self.impulse * self.fade.strength(1.0 - distance / self.radius);
         (outward * (strength * area), at.translation)
-    }
-}
-
-impl World {
-    /// Sets off an explosion: what it reaches has its new velocity at once, and wakes.
-    ///
-    /// # Panics
-    /// If [`Explosion::check`] finds something wrong.
-    pub fn explode(&mut self, explosion: &Explosion) {
-        if let Err(what) = explosion.check() {
-            panic!("{what}");
-        }
-        let bodies: Vec<BodyId> = self.body_ids().filter(|&id| self.kind(id) == BodyKind::Dynamic).collect();
-        for id in bodies {
-            for shape in 0..self.expect(id).shapes.len() {
-                self.blast_shape(explosion, id, shape);
-            }
-        }
-        let groups: Vec<_> = self.group_ids().collect();
-        for id in groups {
-            for particle in 0..self.particles(id).positions().len() {
-                let target = Target::of_particle(self.particles(id), particle);
-                let Form::Particle { radius, layers } = target.form else { continue };
-                let (impulse, to) = explosion.push(&Shape::Sphere { radius }, &target.pose);
-                if layers & explosion.layers != 0 && !self.shelters(explosion, to) {
-                    self.particles_mut(id).apply_impulse(particle as u32, impulse);
-                }
-            }
-        }
-    }
-
-    fn blast_shape(&mut self, explosion: &Explosion, id: BodyId, shape: usize) {
-        let body = self.expect(id);
-        let s = &body.shapes[shape];
-        let (impulse, point) = explosion.push(&s.shape, &body.world_from_shape(shape));
-        let reached = body.surface(shape).filter.layers & explosion.layers != 0 && impulse != Vec3::ZERO;
-        if reached && !self.shelters(explosion, point) {
-            self.apply_impulse(id, impulse, point);
-        }
-    }
-
-    fn shelters(&self, explosion: &Explosion, point: Vec3) -> bool {
-        let ray = Ray { origin: explosion.center, direction: point - explosion.center };
-        explosion.occlusion == Occlusion::Static
-            && self.query().filter(QueryFilter::of(BodyKinds::STATIC)).any(&ray)
     }
 }

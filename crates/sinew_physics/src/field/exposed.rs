@@ -1,8 +1,8 @@
 //! What a shape exposes to a stream: panels of its surface, each with an area and where it lies.
 
+use crate::body::shape::Shape;
 use crate::hull::Hull;
-use crate::revolved::{Frustum, Tapered};
-use crate::shape::Shape;
+use crate::revolved::{TaperedCapsule, TruncatedCone};
 use core::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 use sinew_math::trig::{acos, asin, sin};
 use sinew_math::{Transform, Vec3, clamp, max, normalize_or};
@@ -21,46 +21,49 @@ pub(super) struct Panel {
     pub normal: Option<Vec3>,
 }
 
-impl Shape {
-    /// Calls `visit` with panels that together have the shape's projected area in every direction: the faces of a box,
-    /// each at its 2×2 Gauss points, so that spin is braked as well; a ball's disk; a capsule's disk and the strip of its
-    /// cylinder that faces `stream` (m/s, world); likewise of a tapered one; the ends of cylinder and cone, and the part of
-    /// their side that faces the stream; a hull's faces in triangles, each at three points. Half-spaces, meshes and height
-    /// fields have none.
-    pub(super) fn exposed(&self, at: &Transform, stream: Vec3, mut visit: impl FnMut(Panel)) {
-        match *self {
-            Self::Box { half_extents } => box_panels(half_extents, at, &mut visit),
-            Self::Sphere { radius } => visit(disk(at.translation, radius)),
-            Self::Capsule { half_height, radius } => {
-                visit(disk(at.translation, radius));
-                let axis = at.rotation * Vec3::Y;
-                let across = normalize_or(axis * stream.dot(axis) - stream, Vec3::ZERO);
-                for node in GAUSS {
-                    visit(Panel {
-                        point: at.translation + axis * (node * half_height),
-                        area: 2.0 * radius * half_height,
-                        normal: Some(across),
-                    });
-                }
+/// Calls `visit` with panels that together have the shape's projected area in every direction: the faces of a box,
+/// each at its 2×2 Gauss points, so that spin is braked as well; a ball's disk; a capsule's disk and the strip of its
+/// cylinder that faces `stream` (m/s, world); likewise of a tapered one; the ends of cylinder and cone, and the part of
+/// their side that faces the stream; a hull's faces in triangles, each at three points. Half-spaces, meshes and height
+/// fields have none.
+pub(super) fn exposed(shape: &Shape, at: &Transform, stream: Vec3, mut visit: impl FnMut(Panel)) {
+    match *shape {
+        Shape::Box { half_extents } => box_panels(half_extents, at, &mut visit),
+        Shape::Sphere { radius } => visit(disk(at.translation, radius)),
+        Shape::Capsule { half_height, radius } => {
+            visit(disk(at.translation, radius));
+            let axis = at.rotation * Vec3::Y;
+            let across = normalize_or(axis * stream.dot(axis) - stream, Vec3::ZERO);
+            for node in GAUSS {
+                visit(Panel {
+                    point: at.translation + axis * (node * half_height),
+                    area: 2.0 * radius * half_height,
+                    normal: Some(across),
+                });
             }
-            Self::Hull(ref hull) => hull_panels(hull, at, &mut visit),
-            Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
-                tapered_panels(&Tapered::new(half_height, radius_bottom, radius_top), at, stream, &mut visit);
-            }
-            Self::Cylinder { half_height, radius } => {
-                frustum_panels(&Frustum::cylinder(half_height, radius), at, stream, &mut visit);
-            }
-            Self::Cone { half_height, radius } => {
-                frustum_panels(&Frustum::cone(half_height, radius), at, stream, &mut visit);
-            }
-            Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_) => {}
         }
+        Shape::Hull(ref hull) => hull_panels(hull, at, &mut visit),
+        Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+            tapered_panels(
+                &TaperedCapsule::new(half_height, radius_bottom, radius_top),
+                at,
+                stream,
+                &mut visit,
+            );
+        }
+        Shape::Cylinder { half_height, radius } => {
+            truncated_cone_panels(&TruncatedCone::cylinder(half_height, radius), at, stream, &mut visit);
+        }
+        Shape::Cone { half_height, radius } => {
+            truncated_cone_panels(&TruncatedCone::cone(half_height, radius), at, stream, &mut visit);
+        }
+        Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_) => {}
     }
 }
 
 /// The outline seen along the stream is that of two disks and their common tangents: a sector of each disk, and between them
 /// two right trapezoids.
-fn tapered_panels(tapered: &Tapered, at: &Transform, stream: Vec3, visit: &mut impl FnMut(Panel)) {
+fn tapered_panels(tapered: &TaperedCapsule, at: &Transform, stream: Vec3, visit: &mut impl FnMut(Panel)) {
     let axis = at.rotation * Vec3::Y;
     let along = normalize_or(stream, Vec3::ZERO);
     let sine = along.cross(axis).length();
@@ -88,16 +91,16 @@ fn tapered_panels(tapered: &Tapered, at: &Transform, stream: Vec3, visit: &mut i
 
 /// The ends, each at four points that integrate squares exactly; and the vector area of that part of the side whose normals
 /// look against the stream.
-fn frustum_panels(frustum: &Frustum, at: &Transform, stream: Vec3, visit: &mut impl FnMut(Panel)) {
+fn truncated_cone_panels(cone: &TruncatedCone, at: &Transform, stream: Vec3, visit: &mut impl FnMut(Panel)) {
     let (up, side_x, side_z) = (at.rotation * Vec3::Y, at.rotation * Vec3::X, at.rotation * Vec3::Z);
-    for (radius, end) in [(frustum.bottom, -1.0), (frustum.top, 1.0)] {
-        let center = at.translation + up * (end * frustum.half_height);
+    for (radius, end) in [(cone.bottom, -1.0), (cone.top, 1.0)] {
+        let center = at.translation + up * (end * cone.half_height);
         for way in [side_x, -side_x, side_z, -side_z] {
             let point = center + way * (radius * FRAC_1_SQRT_2);
             visit(Panel { point, area: 0.25 * PI * radius * radius, normal: Some(up * end) });
         }
     }
-    let side = frustum.side_normal();
+    let side = cone.side_normal();
     let against = -normalize_or(stream, Vec3::ZERO);
     let along_axis = against.dot(up);
     let flat = against - up * along_axis;
@@ -117,12 +120,12 @@ fn frustum_panels(frustum: &Frustum, at: &Transform, stream: Vec3, visit: &mut i
         return;
     }
     // A ring's area per radian is its radius by the slant.
-    let slant = 2.0 * frustum.half_height / side.x;
+    let slant = 2.0 * cone.half_height / side.x;
     for node in GAUSS {
-        let y = node * frustum.half_height;
+        let y = node * cone.half_height;
         visit(Panel {
             point: at.translation + up * y,
-            area: 0.5 * slant * frustum.radius_at(y) * length,
+            area: 0.5 * slant * cone.radius_at(y) * length,
             normal: Some(vector_area / length),
         });
     }

@@ -1,6 +1,6 @@
 //! What a field does to what it acts on, and how much of it a substep can bear.
 
-use crate::force::Wrench;
+use crate::body::force::Wrench;
 use sinew_math::{Vec3, min};
 
 /// What fields do to a body or particle.

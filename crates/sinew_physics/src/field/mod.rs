@@ -17,7 +17,6 @@
 //!
 //! A world without fields pays nothing for them.
 
-mod below;
 mod buoyancy;
 mod custom;
 mod def;
@@ -30,10 +29,8 @@ mod mutual;
 mod noise;
 mod region;
 mod snapshot;
-mod submerged;
 mod target;
 mod wind;
-mod world;
 
 pub use buoyancy::Buoyancy;
 pub use custom::{FieldFunction, FieldPoint, PARAMETERS};
@@ -43,19 +40,18 @@ pub use explosion::{Explosion, Occlusion};
 pub use gravity::{PointGravity, UniformGravity};
 pub use mutual::MutualGravity;
 pub use region::{Fade, Region};
-pub use submerged::{Submerged, WaterPlane, submerged_hull};
+pub use sinew_geometry::submerged::{Submerged, WaterPlane, submerged_hull};
 pub use wind::{Gusts, Wind};
 
 pub(crate) use custom::Functions;
 pub(crate) use load::{Load, least};
-pub(crate) use mutual::Attractor;
+pub(crate) use mutual::{Attractor, attractor};
 pub(crate) use target::{Form, Target};
-pub(crate) use world::attractor;
 
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::def::WorldDef;
+use crate::body::def::WorldDef;
 use crate::particles::ParticleGroup;
 use sinew_math::Vec3;
 
@@ -106,7 +102,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// Whether a body lies in a field that changes by itself, or attracts particles.
+    /// True if a body lies in a field that changes by itself, or attracts particles.
     pub fn keep_awake(&self, body: &Body) -> bool {
         let mut fields = self.arena.iter();
         fields.any(|(_, field)| {
@@ -128,7 +124,7 @@ impl<'a> Fields<'a> {
 }
 
 impl FieldDef {
-    /// Whether it acts on something at all.
+    /// True if it acts on something at all.
     pub(crate) fn reaches(&self, target: &Target<'_>) -> bool {
         target.is_on(self.layers) && self.region.weight(target.center()) > 0.0
     }

@@ -1,7 +1,8 @@
 //! Bodies and particles attract each other.
 
-use super::def::not_negative;
+use super::def::{FieldDef, not_negative};
 use super::gravity::{attraction, potential};
+use super::target::Target;
 use core::f32::consts::PI;
 use sinew_math::Vec3;
 
@@ -77,4 +78,8 @@ impl MutualGravity {
             }
         }
     }
+}
+
+pub(crate) fn attractor(field: &FieldDef, target: &Target<'_>) -> Attractor {
+    Attractor { position: target.center(), mass: target.mass, weight: field.weight(target) }
 }

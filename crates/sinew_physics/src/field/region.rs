@@ -1,6 +1,6 @@
 //! Where a field acts, and how it fades toward its border.
 
-use crate::shape::Shape;
+use crate::body::shape::Shape;
 use sinew_math::{Transform, Vec3};
 
 /// How the strength of a field falls from where it is full to its border, with `u` from 1 to 0 on the way.

@@ -4,8 +4,8 @@ use super::{
     Buoyancy, Drag, Fade, FieldDef, FieldKind, Functions, Gusts, MutualGravity, PARAMETERS, PointGravity,
     Region, UniformGravity, Wind,
 };
-use crate::library::{LoadError, ShapeLibrary};
-use crate::snapshot::{load_geometry, save_geometry};
+use crate::body::library::{LoadError, ShapeLibrary};
+use crate::body::snapshot::{load_geometry, save_geometry};
 use sinew_math::{ReadError, Reader, Writer};
 
 impl FieldDef {

@@ -1,8 +1,8 @@
 //! What a field acts on.
 
+use crate::body::shape::Shape;
 use crate::body::{Body, Velocity};
 use crate::particles::ParticleGroup;
-use crate::shape::Shape;
 use sinew_math::{Transform, Vec3};
 
 /// What a field finds in its reach: a body or a particle.

@@ -1,7 +1,7 @@
 //! Moving air.
 
 use super::def::{not_negative, positive};
-use super::exposed::stream_force;
+use super::exposed::{exposed, stream_force};
 use super::noise::turbulence;
 use super::{Load, Target};
 use sinew_math::Vec3;
@@ -87,7 +87,7 @@ impl Wind {
         target.for_each_shape(|shape, at| {
             let air = self.at(at.translation, nanoseconds);
             let stream = air - target.velocity_at(at.translation);
-            shape.exposed(at, stream, |panel| {
+            exposed(shape, at, stream, |panel| {
                 let stream = air - target.velocity_at(panel.point);
                 let (force, brake) = stream_force(&panel, stream, self.density, self.drag, self.lift);
                 load.push_at(panel.point - target.center(), force, brake);

@@ -361,7 +361,7 @@ impl Softness {
 }
 
 impl Motor {
-    pub(super) fn is_valid(&self) -> bool {
+    pub(crate) fn is_valid(&self) -> bool {
         self.target.is_finite()
             && self.velocity.linear.is_finite()
             && self.velocity.angular.is_finite()

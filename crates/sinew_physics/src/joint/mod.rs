@@ -4,7 +4,6 @@ pub mod def;
 mod incidence;
 mod rows;
 mod snapshot;
-mod world;
 
 use crate::arena::Item;
 use crate::id::JointId;
@@ -20,7 +19,6 @@ pub(crate) use rows::{
     displacement, each_stop, locked_error, open_directions, open_row, overshoot, stops, turns,
 };
 use sinew_math::{Transform, Vec3};
-pub use world::Reaction;
 
 /// Impulse of a limit in the last substep and the one before, N·s or N·m·s, in frame A: as a vector, because the axis of
 /// a cone turns, and an impulse about the old axis must not be handed on about the new one.
@@ -177,7 +175,7 @@ impl Joint {
     }
 
     /// J.
-    fn elastic_energy(&self, pose: &JointPose) -> f32 {
+    pub(crate) fn elastic_energy(&self, pose: &JointPose) -> f32 {
         let half = |softness: Softness, direction: usize, x: f32| {
             0.5 * softness.of_mass(self.mass[direction]).0 * x * x
         };

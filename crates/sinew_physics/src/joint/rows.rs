@@ -379,7 +379,7 @@ impl Stop {
     }
 }
 
-/// Whether a limit is of a rotation.
+/// True if a limit is of a rotation.
 pub(crate) fn turns(limit: usize) -> bool {
     limit < 2
 }

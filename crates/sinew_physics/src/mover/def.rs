@@ -1,6 +1,6 @@
 //! What a mover is made from.
 
-use crate::shape::Filter;
+use crate::body::shape::Filter;
 use core::f32::consts::PI;
 use sinew_math::Vec3;
 

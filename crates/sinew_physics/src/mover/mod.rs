@@ -17,8 +17,8 @@ pub use def::MoverDef;
 
 use crate::arena::{Arena, Item};
 use crate::body::Body;
+use crate::body::material::Material;
 use crate::id::{BodyId, Lineage, MoverId};
-use crate::material::Material;
 use crate::world::World;
 use obstacle::Obstacle;
 use press::Press;

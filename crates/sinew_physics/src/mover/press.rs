@@ -4,8 +4,8 @@ use super::obstacle::{Owner, Sight};
 use super::{Bearer, Mover};
 use crate::arena::Arena;
 use crate::body::Body;
+use crate::body::def::BodyKind;
 use crate::boxes::Overlap;
-use crate::def::BodyKind;
 use crate::world::World;
 use sinew_math::{Vec3, max, min};
 

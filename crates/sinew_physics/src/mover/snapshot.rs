@@ -3,8 +3,8 @@
 use super::{Bearer, Footing, Mover, MoverDef};
 use crate::arena::Arena;
 use crate::body::Body;
+use crate::body::snapshot::{load_filter, save_filter};
 use crate::id::{BodyId, MoverId};
-use crate::snapshot::{load_filter, save_filter};
 use sinew_math::{ReadError, Reader, Writer};
 
 impl Mover {

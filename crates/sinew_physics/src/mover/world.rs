@@ -2,9 +2,9 @@
 
 use super::obstacle::{Sight, gather};
 use super::{Bearer, Mover, MoverDef, MoverGround};
+use crate::body::material::Material;
+use crate::body::shape::Filter;
 use crate::id::{MoverId, ShapeId};
-use crate::material::Material;
-use crate::shape::Filter;
 use crate::world::World;
 use sinew_math::Vec3;
 

@@ -4,13 +4,13 @@ use super::{Corrections, Forces, Objects, Substep};
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
+use crate::context::StepContext;
 use crate::id::{BodyId, GroupId};
-use crate::islands::Islands;
 use crate::solver::View;
 use crate::spatial::{Vec6, angular, linear};
 use crate::stage::{Stage, zone};
-use crate::step::{StepContext, solve};
-use crate::tasks::Phase;
+use crate::step::islands::Islands;
+use crate::step::phase::{Phase, solve};
 
 /// Where bodies and particle groups are in the course of a step, by their slots in the world.
 #[derive(Clone, Debug, Default)]

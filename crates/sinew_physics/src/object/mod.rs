@@ -52,7 +52,6 @@
 mod lockstep;
 mod snapshot;
 mod substep;
-mod world;
 
 pub(crate) use lockstep::lockstep;
 pub use substep::{Corrections, Forces, Substep};
@@ -60,6 +59,7 @@ pub use substep::{Corrections, Forces, Substep};
 use crate::arena::{Arena, Item};
 use crate::draw::DebugDraw;
 use crate::id::{Lineage, ObjectId};
+use crate::solver::Grading;
 use crate::world::World;
 use core::any::Any;
 use lockstep::{Places, Roused};
@@ -104,9 +104,9 @@ type Make = fn() -> Box<dyn PhysicsObject>;
 /// The objects of a world.
 #[derive(Default)]
 pub(crate) struct Objects {
-    arena: Arena<Box<dyn PhysicsObject>>,
+    pub(crate) arena: Arena<Box<dyn PhysicsObject>>,
     /// Kinds that snapshots may bring.
-    kinds: Vec<(&'static str, Make)>,
+    pub(crate) kinds: Vec<(&'static str, Make)>,
     places: Places,
     roused: Vec<Roused>,
 }
@@ -119,6 +119,11 @@ impl Objects {
     /// None, of a world.
     pub fn new(lineage: Lineage) -> Self {
         Self { arena: Arena::new(lineage), ..Self::default() }
+    }
+
+    /// They act in every substep of the world's, so that with any all islands take those.
+    pub fn grading(&self) -> Grading {
+        if self.is_empty() { Grading::ByContent } else { Grading::None }
     }
 
     pub fn is_empty(&self) -> bool {

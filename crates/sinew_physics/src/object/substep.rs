@@ -1,17 +1,17 @@
 //! What an object sees of a substep, and what it may do.
 
 use super::lockstep::{Places, Roused};
+use crate::body::def::BodyKind;
+use crate::body::shape::MassProperties;
 use crate::body::{Body, Velocity};
-use crate::def::BodyKind;
+use crate::context::StepContext;
 use crate::id::{BodyId, GroupId};
-use crate::islands::Islands;
 use crate::particles::ParticleGroup;
-use crate::project::TakenGroup;
-use crate::shape::MassProperties;
+use crate::solver::groups::TakenGroup;
 use crate::solver::{IslandSolver, View};
 use crate::spatial::{Vec6, ZERO6, angular, join, linear};
-use crate::step::StepContext;
-use crate::tasks::Workspace;
+use crate::step::islands::Islands;
+use crate::step::tasks::Workspace;
 use core::ops::{Deref, DerefMut};
 use sinew_math::{Transform, Vec3};
 

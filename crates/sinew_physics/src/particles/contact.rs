@@ -10,9 +10,9 @@
 use super::forest::Freedom;
 use super::sweep::{Meeting, sweep_ball};
 use super::{Part, ParticleGroup};
+use crate::body::material::{ContactMaterial, Material};
+use crate::body::shape::Shape;
 use crate::boxes::Aabb;
-use crate::material::{ContactMaterial, Material};
-use crate::shape::Shape;
 use sinew_math::{Mat3, Sym3, Transform, Vec3, max, max3, min, normalize_or};
 
 /// Slower than that, nothing moves, m/s.
@@ -286,7 +286,7 @@ impl ParticleGroup {
         }
     }
 
-    /// Whether a particle surely meets nothing on its way of this length.
+    /// True if a particle surely meets nothing on its way of this length.
     pub(super) fn is_clear(&self, i: usize, way: f32) -> bool {
         self.attachment_of[i] != u32::MAX || self.clearances[i] > DETOUR * way
     }

@@ -1,8 +1,8 @@
 //! Definitions: plain data that particle groups are made from.
 
+use crate::body::material::Material;
+use crate::body::shape::Filter;
 use crate::id::BodyId;
-use crate::material::Material;
-use crate::shape::Filter;
 use sinew_math::Vec3;
 
 /// A particle to be made.

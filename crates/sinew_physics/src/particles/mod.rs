@@ -36,10 +36,10 @@ pub use def::{
 };
 
 use crate::arena::Item;
+use crate::body::material::Material;
+use crate::body::shape::{Filter, Shape};
 use crate::boxes::Aabb;
 use crate::id::GroupId;
-use crate::material::Material;
-use crate::shape::{Filter, Shape};
 use contact::{Grip, Placed, Touch};
 use forest::{Forest, Freedom, System};
 use impact::MAX_TOUCHES;
@@ -288,7 +288,7 @@ impl ParticleGroup {
         self.velocities.iter().fold(0.0, |most, v| max(most, v.length()))
     }
 
-    /// Whether a particle comes to a shape at rest within `dt` seconds, and into it faster than `speed` (m/s).
+    /// True if a particle comes to a shape at rest within `dt` seconds, and into it faster than `speed` (m/s).
     pub(crate) fn strikes(&self, shape: &Shape, at: &Transform, speed: f32, dt: f32) -> bool {
         let mut particles = self.positions.iter().zip(&self.velocities).zip(&self.radii);
         particles.any(|((&position, &velocity), radius)| {

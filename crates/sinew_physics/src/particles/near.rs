@@ -67,7 +67,7 @@ impl Near {
         &self.obstacles[start..self.ends[i]]
     }
 
-    /// Whether each obstacle is in its room.
+    /// True if each obstacle is in its room.
     fn holds(&self, placed: &[Placed]) -> bool {
         self.rooms.len() == placed.len()
             && self.rooms.iter().zip(placed).all(|(room, placed)| room.contains(&placed.bounds))
@@ -141,12 +141,12 @@ impl ParticleGroup {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::Material;
+    use crate::body::material::Material;
+    use crate::body::shape::Shape;
     use crate::particles::{
         Anchor, AttachmentDef, AttachmentTarget, GroupDef, Obstacle, ObstacleBody, ParticleDef, Resists,
         SpringDef,
     };
-    use crate::shape::Shape;
     use sinew_math::{Random, Sym3, Transform, Writer};
 
     const H: f32 = 1.0 / 240.0;

@@ -5,8 +5,8 @@ use super::{
     AttachmentDef, AttachmentTarget, BendDef, GroupDef, ParticleDef, ParticleGroup, Resists, SpringDef,
     SpringScheme, TetherDef, VolumeDef,
 };
+use crate::body::snapshot::{load_filter, load_material, save_filter, save_material};
 use crate::id::BodyId;
-use crate::snapshot::{load_filter, load_material, save_filter, save_material};
 use sinew_math::{ReadError, Reader, Vec3, Writer};
 
 /// Bytes of a particle: position, velocity, mass, radius, contact impulse, grip, position before the step.

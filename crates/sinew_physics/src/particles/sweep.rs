@@ -1,7 +1,7 @@
 //! A ball on a straight way against a shape.
 
+use crate::body::shape::Shape;
 use crate::boxes::Aabb;
-use crate::shape::Shape;
 use crate::triangles::{Part, Triangle, closest_on_triangle};
 use sinew_math::{Vec3, max, max3, min3};
 
@@ -51,7 +51,7 @@ pub(super) fn sweep_ball(shape: &Shape, radius: f32, from: Vec3, to: Vec3) -> Op
     first
 }
 
-/// Whether what a point is nearest to can be met: an edge within the surface is left to the faces on both sides.
+/// True if what a point is nearest to can be met: an edge within the surface is left to the faces on both sides.
 fn is_felt(triangle: &Triangle, at: Vec3) -> bool {
     match closest_on_triangle(&triangle.corners, at).1 {
         Part::Face => true,

@@ -1,8 +1,8 @@
 //! Questions about one body: bounds, nearest surface, points inside.
 
+use crate::body::shape::Shape;
 use crate::boxes::{Aabb, Penetration, SurfacePoint};
 use crate::id::BodyId;
-use crate::shape::Shape;
 use crate::world::World;
 use sinew_math::{Transform, Vec3};
 
@@ -24,7 +24,7 @@ impl World {
         self.shapes(id).map(of_shape).reduce(|a, b| if b.distance < a.distance { b } else { a })
     }
 
-    /// Whether a point (world) is in a body or on its surface.
+    /// True if a point (world) is in a body or on its surface.
     pub fn contains_point(&self, id: BodyId, point: Vec3) -> bool {
         self.nearest_surface(id, point).is_some_and(|nearest| nearest.distance <= 0.0)
     }

@@ -1,7 +1,7 @@
 //! Which shapes may have an answer: the one place where a question meets the trees.
 
 use crate::boxes::Aabb;
-use crate::proxies::{Owner, thick};
+use crate::contact::proxies::{Owner, thick};
 use crate::tree::Sweep;
 use crate::world::World;
 use core::ops::ControlFlow;

@@ -7,11 +7,11 @@ use super::probe::Probe;
 use super::question::Question;
 use super::question::sealed::{Ask, Reply};
 use super::rays;
+use crate::body::shape::Shape;
 use crate::boxes::{Aabb, Penetration};
 use crate::convex::{ShapeHit, closeness};
 use crate::id::{BodyId, ShapeId};
 use crate::ray::{Ray, RayHit};
-use crate::shape::Shape;
 use sinew_math::{Transform, Vec3, max, normalize_or};
 
 /// Where a ray or a moved shape meets a shape of a body first.

@@ -1,8 +1,8 @@
 //! Which shapes a question is about.
 
-use crate::def::BodyKind;
+use crate::body::def::BodyKind;
+use crate::body::shape::{Filter, Sensing};
 use crate::id::{BodyId, ShapeId};
-use crate::shape::{Filter, Sensing};
 use core::ops::BitOr;
 
 /// Which shapes of a world a [`Query`](super::Query) is about. Default: every shape that is no sensor.
@@ -41,7 +41,7 @@ impl<'a> QueryFilter<'a> {
         Self { except, ..Self::default() }
     }
 
-    /// Whether a shape of a body of some kind passes.
+    /// True if a shape of a body of some kind passes.
     pub(super) fn passes(&self, id: ShapeId, kind: BodyKind, filter: Filter, sensing: Sensing) -> bool {
         self.kinds.contains(kind)
             && (sensing == Sensing::Solid || self.sensors == Sensors::Included)
@@ -74,7 +74,7 @@ impl BodyKinds {
     /// All three.
     pub const ALL: Self = Self(7);
 
-    /// Whether a kind is in the set.
+    /// True if a kind is in the set.
     pub fn contains(self, kind: BodyKind) -> bool {
         self.0 & Self::from(kind).0 != 0
     }

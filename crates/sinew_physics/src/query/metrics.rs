@@ -1,9 +1,9 @@
 //! What a scene measures: energies, momenta, overlaps of bodies.
 
+use crate::body::def::BodyKind;
 use crate::boxes::{Aabb, Overlap};
 use crate::collide::collide_all;
 use crate::contact::ContactKey;
-use crate::def::BodyKind;
 use crate::id::{BodyId, GroupId};
 use crate::world::World;
 use sinew_math::{Vec3, max};
@@ -138,7 +138,10 @@ impl World {
 
     /// Shapes of a body with their world poses, for drawing.
     #[track_caller]
-    pub fn shapes(&self, id: BodyId) -> impl Iterator<Item = (crate::shape::Shape, sinew_math::Transform)> {
+    pub fn shapes(
+        &self,
+        id: BodyId,
+    ) -> impl Iterator<Item = (crate::body::shape::Shape, sinew_math::Transform)> {
         let body = self.expect(id);
         body.shapes.iter().enumerate().map(|(i, s)| (s.shape.clone(), body.world_from_shape(i)))
     }

@@ -83,10 +83,10 @@ pub use place::{
 pub use probe::Probe;
 pub use question::Question;
 
-use crate::def::BodyKind;
+use crate::body::def::BodyKind;
+use crate::body::shape::{Filter, Sensing, Shape};
+use crate::contact::proxies::{Owner, Placed};
 use crate::id::{BodyId, ShapeId};
-use crate::proxies::{Owner, Placed};
-use crate::shape::{Filter, Sensing, Shape};
 use crate::world::World;
 use candidates::{Limit, candidates};
 use core::ops::ControlFlow;
@@ -129,7 +129,7 @@ impl<'a, P: Fn(BodyId, u32) -> bool> Query<'a, P> {
         self.best(question)
     }
 
-    /// Whether there is an answer; cheaper than the first one.
+    /// True if there is an answer; cheaper than the first one.
     pub fn any<Q: Question>(&self, question: &Q) -> bool {
         let mut any = false;
         self.shapes(question, |id, shape, frame| {

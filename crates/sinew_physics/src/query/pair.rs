@@ -2,9 +2,9 @@
 
 use super::probe::Probe;
 use super::surface;
+use crate::body::shape::Shape;
 use crate::boxes::Penetration;
 use crate::convex::{Gap, ShapeHit, cast_shape, gap};
-use crate::shape::Shape;
 use sinew_math::{Transform, Vec3};
 
 /// How the probe lies to the shape, from the shape to the probe; of a surface only if it is within a distance.
@@ -20,7 +20,7 @@ pub(super) fn gap_within(
     }
 }
 
-/// Whether they have a point in common.
+/// True if they have a point in common.
 pub(super) fn overlap(shape: &Shape, world_from_shape: &Transform, probe: &Probe) -> bool {
     penetration(shape, world_from_shape, probe).is_some()
 }

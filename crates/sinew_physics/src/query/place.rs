@@ -5,10 +5,10 @@ use super::pair;
 use super::probe::Probe;
 use super::question::Question;
 use super::question::sealed::{Ask, Reply};
+use crate::body::shape::Shape;
 use crate::boxes::{Aabb, Penetration, SurfacePoint};
 use crate::convex::Gap;
 use crate::id::{BodyId, ShapeId};
-use crate::shape::Shape;
 use sinew_math::{Transform, Vec3};
 
 /// Which shapes hold a point (world, metres), on their surfaces too; by body and shape.

@@ -1,8 +1,8 @@
 //! Shapes put somewhere to ask with.
 
+use crate::body::shape::Shape;
 use crate::boxes::{Aabb, Capsule, Obb, Sphere};
 use crate::convex::support::Core;
-use crate::shape::Shape;
 use sinew_math::{Rotation, Transform, Vec3, normalize_or};
 
 /// A shape that is put somewhere to ask a world with, without being in it.
@@ -27,7 +27,7 @@ impl Probe {
         Self::new(shape, Transform::from_translation(position))
     }
 
-    /// Whether its numbers can be asked with: finite, and no size negative.
+    /// True if its numbers can be asked with: finite, and no size negative.
     ///
     /// # Panics
     /// If the shape is not convex or not bounded: that is no matter of numbers.

@@ -2,8 +2,8 @@
 
 use super::Query;
 use super::candidates::Reach;
+use crate::body::shape::Shape;
 use crate::id::{BodyId, ShapeId};
-use crate::shape::Shape;
 use sinew_math::Transform;
 
 /// What a [`Query`](super::Query) can be asked; [the module](super) lists all questions there are.
@@ -39,7 +39,7 @@ pub(super) mod sealed {
             }
         }
 
-        /// Whether it has one; where that is cheaper than the answer itself.
+        /// True if it has one; where that is cheaper than the answer itself.
         fn is_met(&self, id: ShapeId, shape: &Shape, world_from_shape: &Transform) -> bool {
             self.ask(id, shape, world_from_shape).is_some()
         }

@@ -5,12 +5,12 @@
 use super::candidates::{Reach, sweep, what_is_left};
 use super::question::sealed::{Ask, Reply};
 use super::{BodyHit, Query, keep_first};
+use crate::body::shape::Shape;
 use crate::boxes::Obb;
-use crate::boxes::batch::record::{NUMBERS, Record};
+use crate::boxes::batch::{NUMBERS, Record};
+use crate::contact::proxies::Owner;
 use crate::id::BodyId;
-use crate::proxies::Owner;
 use crate::ray::{CLEARLY_OUTSIDE, Ray};
-use crate::shape::Shape;
 use crate::slabs::Slabs;
 use crate::tree::{Flight, Stop, Sweep, Tree};
 use sinew_math::dispatch::{self, Kernel, Level};
@@ -77,7 +77,7 @@ struct Stream<'a, 'w, P> {
     owners: &'a [Owner],
     rays: &'a [Ray],
     hits: &'a mut [Option<BodyHit>],
-    /// How many have set out.
+    /// Number that have set out.
     begun: usize,
 }
 
@@ -112,7 +112,7 @@ impl<P: Fn(BodyId, u32) -> bool> Kernel for Stream<'_, '_, P> {
             while place < going && meetings.count < WIDTH {
                 let number = order[place];
                 let rider = &mut riders[number];
-                let goes_on = match rider.flight.next() {
+                let goes_on = match rider.flight.next_stop() {
                     Stop::Node(node) => {
                         nodes[place] = node;
                         place += 1;
@@ -161,7 +161,7 @@ impl<P: Fn(BodyId, u32) -> bool> Stream<'_, '_, P> {
         false
     }
 
-    /// Whether a ray that has come to a leaf has to wait until it is tested with others; else it goes on.
+    /// True if a ray that has come to a leaf has to wait until it is tested with others; else it goes on.
     #[inline(always)]
     fn arrive(&mut self, rider: &mut Rider, number: usize, leaf: u32, meetings: &mut Meetings) -> bool {
         let (owner, ray) = (self.owners[leaf as usize], &self.rays[rider.ray]);

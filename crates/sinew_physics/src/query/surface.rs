@@ -3,10 +3,10 @@
 use super::candidates::FARTHEST;
 use super::probe::Probe;
 use crate::boxes::Aabb;
+use crate::contact::proxies::thick;
 use crate::convex::feature::{Corner, Feature};
 use crate::convex::support::{Core, Posed, Support, narrow, wide};
 use crate::convex::{Gap, ShapeHit, advance, apart_along, closeness, meet};
-use crate::proxies::thick;
 use crate::triangles::{Surface, Triangle, normal};
 use sinew_math::{DVec3, Transform, Vec3, max, min};
 

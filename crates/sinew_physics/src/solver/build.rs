@@ -11,18 +11,17 @@ use super::{Coupling, IslandSolver, SolverBody, SolverJoint, counts};
 use crate::activity::Activity;
 use crate::arena::Arena;
 use crate::body::Body;
+use crate::body::def::{Quality, WorldDef};
+use crate::body::work::Work;
 use crate::collide::MAX_POINTS;
+use crate::contact::modifiers::Modifiers;
+use crate::contact::proxies::Proxies;
 use crate::contact::{Contact, ContactMemory, slop};
-use crate::def::{Quality, WorldDef};
+use crate::context::StepContext;
 use crate::field::Fields;
-use crate::islands::Island;
+use crate::island::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
-use crate::modifiers::Modifiers;
-use crate::object::Objects;
-use crate::proxies::Proxies;
 use crate::spatial::{ZERO6, join};
-use crate::step::StepContext;
-use crate::work::Work;
 use sinew_math::{Sym3, Vec3, min};
 
 /// Bodies and contacts more than an island has for which there is room: those that come and go ask for none.
@@ -62,9 +61,7 @@ pub(crate) struct Pace {
 }
 
 impl Pace {
-    /// Objects act in every substep of the world's, so that with any all islands take those.
-    pub fn new(context: &StepContext<'_>, objects: &Objects) -> Self {
-        let grading = if objects.is_empty() { Grading::ByContent } else { Grading::None };
+    pub fn new(context: &StepContext<'_>, grading: Grading) -> Self {
         Self { h: context.h, substeps: context.substeps, grading }
     }
 

@@ -5,8 +5,8 @@ use super::contacts::Sweeps;
 use super::sweep::Pass;
 use super::tree::NONE;
 use super::{Coupling, Grading, IslandSolver, View};
-use crate::def::Quality;
-use crate::islands::Island;
+use crate::body::def::Quality;
+use crate::island::Island;
 use sinew_math::{max, min};
 
 /// How long the sweeps of a pass go on.

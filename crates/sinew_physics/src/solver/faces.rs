@@ -3,9 +3,9 @@
 use super::View;
 use super::contact_rows::Placed;
 use super::tree::NONE;
+use crate::body::material::{ContactMaterial, Material};
 use crate::body::{Body, BodyShape};
 use crate::contact::ContactKey;
-use crate::material::{ContactMaterial, Material};
 
 /// Different materials of an island of which pairs are combined once; others are combined for each contact.
 const MATERIALS: usize = 8;

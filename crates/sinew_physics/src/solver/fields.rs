@@ -3,9 +3,9 @@
 
 use super::{IslandSolver, SolverBody, View};
 use crate::body::Velocity;
+use crate::body::force::Wrench;
 use crate::field::{Attractor, Target, attractor, least};
-use crate::force::Wrench;
-use crate::project::TakenGroup;
+use crate::solver::groups::TakenGroup;
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::Vec3;
 

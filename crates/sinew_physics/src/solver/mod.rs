@@ -19,6 +19,7 @@ mod energy;
 mod faces;
 mod fields;
 pub(crate) mod flight;
+pub(crate) mod groups;
 pub(crate) mod lcp;
 mod levels;
 mod limit_blocks;
@@ -38,16 +39,16 @@ mod tree;
 mod tree_joints;
 mod turns;
 
-use crate::def::Quality;
+use crate::body::def::Quality;
+use crate::body::work::Work;
 use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
-use crate::project::TakenGroup;
+use crate::solver::groups::TakenGroup;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
-use crate::work::Work;
 use articulated::Inertia;
 use batches::Batches;
-use build::Grading;
+pub(crate) use build::Grading;
 pub(crate) use build::{Pace, View};
 use columns::Columns;
 use conjugate::Conjugate;

@@ -2,13 +2,13 @@
 
 use super::{IslandSolver, SolverBody};
 use crate::body::Velocity;
+use crate::body::work::Work;
 use crate::collide::Manifold;
 use crate::contact::ContactMemory;
-use crate::islands::Island;
+use crate::island::Island;
 use crate::joint::{LimitImpulse, MAX_LIMITS, Saturation};
 use crate::spatial::{Vec6, angular, linear};
 use crate::stage::Profiler;
-use crate::work::Work;
 use sinew_math::{Transform, Vec3};
 
 /// A moving body after the step.

@@ -1,18 +1,82 @@
-//! Boxes against brute force in `f64`. Each pair is asked 1,000 times, or 100,000 times when `SINEW_FULL` is set, as
-//! `cargo xtask ci --full` does.
+//! Questions to the world about points and regions.
 
-mod batch;
-mod build;
-mod cast;
-mod fit;
-mod frustum;
-pub(crate) mod oracle;
-mod overlap;
-mod point;
-mod random_pairs;
-mod world;
+use crate::cases::{cases, half_extents};
+use sinew_math::{Random, Rotation, Transform, Vec3};
+use sinew_physics::boxes::Cuboid;
+use sinew_physics::{Aabb, BodyDef, BodyId, BodyKind, Obb, OverlapWith, Shape, ShapeDef, World, WorldDef};
 
-/// Of `all` cases those that are run: a hundredth unless `SINEW_FULL` is set.
-pub fn cases(all: u32) -> u32 {
-    if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
+fn body(shapes: Vec<ShapeDef>, position: Vec3, rotation: Rotation) -> BodyDef {
+    BodyDef { kind: BodyKind::Static, position, rotation, shapes, ..BodyDef::default() }
+}
+
+/// A ball of radius 1 at the origin and a box of 2 × 1 × 1 m beside it.
+fn pair_of_shapes(world: &mut World) -> BodyId {
+    let ball = ShapeDef::new(Shape::Sphere { radius: 1.0 });
+    let beside = ShapeDef {
+        body_from_shape: Transform::from_translation(Vec3::X),
+        ..ShapeDef::new(Shape::Box { half_extents: Vec3::new(1.0, 0.5, 0.5) })
+    };
+    world.add_body(&body(vec![ball, beside], Vec3::new(0.0, 10.0, 0.0), Rotation::IDENTITY))
+}
+
+#[test]
+fn bodies_answer_over_all_their_shapes() {
+    let mut world = World::new(WorldDef::default());
+    let id = pair_of_shapes(&mut world);
+    assert_eq!(world.bounds(id), Aabb::new(Vec3::new(-1.0, 9.0, -1.0), Vec3::new(2.0, 11.0, 1.0)));
+    let deepest = |x: f32, y: f32| world.point_penetration(id, Vec3::new(x, 10.0 + y, 0.0));
+    let way = deepest(1.7, 0.2).expect("in the box");
+    assert!((way.depth - 0.3).abs() < 1e-5, "{way:?}");
+    let way = deepest(-0.6, 0.0).expect("in the ball");
+    assert!((way.depth - 0.4).abs() < 1e-5 && (way.direction - Vec3::NEG_X).length() < 1e-5, "{way:?}");
+    assert_eq!(deepest(1.5, 0.6), None);
+    let above = world.nearest_surface(id, Vec3::new(1.5, 12.5, 0.0)).expect("it has shapes");
+    let expected = (1.5f32 * 1.5 + 2.5 * 2.5).sqrt() - 1.0;
+    assert!((above.distance - expected).abs() < 1e-5, "{above:?}");
+    assert!(world.contains_point(id, Vec3::new(2.0, 10.0, 0.0)));
+    assert!(!world.contains_point(id, Vec3::new(2.01, 10.0, 0.0)));
+    let bare = world.add_body(&body(Vec::new(), Vec3::ONE, Rotation::IDENTITY));
+    assert_eq!(world.bounds(bare), Aabb::new(Vec3::ONE, Vec3::ONE));
+    assert_eq!(world.nearest_surface(bare, Vec3::ZERO), None);
+    assert!(!world.contains_point(bare, Vec3::ONE));
+}
+
+/// Every body that a region overlaps shows some of its points in it, and those that it misses show none.
+#[test]
+fn regions_find_the_bodies_whose_points_they_hold() {
+    let mut random = Random::new(95);
+    for case in 0..cases(10_000) {
+        let mut world = World::new(WorldDef::default());
+        for _ in 0..6 {
+            let half = half_extents(0.8, &mut random) + Vec3::splat(0.1);
+            let shape = match random.index(3) {
+                0 => Shape::Box { half_extents: half },
+                1 => Shape::Sphere { radius: half.x },
+                _ => Shape::Capsule { half_height: half.y, radius: 0.5 * half.x },
+            };
+            world.add_body(&body(vec![ShapeDef::new(shape)], random.in_cube() * 2.0, random.rotation()));
+        }
+        let ground = Transform::new(Vec3::NEG_Y, Rotation::from_scaled_axis(random.in_cube() * 0.5));
+        world.add_body(&body(vec![ShapeDef::new(Shape::HalfSpace)], ground.translation, ground.rotation));
+        let region = Obb::new(random.in_cube() * 2.0, random.rotation(), half_extents(0.8, &mut random));
+        let mut found = Vec::new();
+        world.query().bodies(&OverlapWith(region.into()), &mut found);
+        let frame = region.to_transform();
+        let points: Vec<Vec3> =
+            (0..400).map(|_| frame.point(region.half_extents * random.in_cube())).collect();
+        for id in world.body_ids() {
+            let distance = |p: &Vec3| world.nearest_surface(id, *p).expect("it has a shape").distance;
+            let nearest = points.iter().map(distance).fold(f32::INFINITY, f32::min);
+            if found.contains(&id) {
+                // Samples lie about a sixth of the region's size apart.
+                assert!(nearest < 0.35, "case {case}: {id:?} is {nearest} from {region:?}");
+            } else {
+                assert!(nearest > 0.0, "case {case}: {id:?} is in {region:?}");
+            }
+        }
+        let all = Aabb::around(Vec3::ZERO, Vec3::splat(10.0));
+        world.query().bodies(&OverlapWith(all.into()), &mut found);
+        assert_eq!(found.len(), 7);
+        assert!(all.volume() > 0.0);
+    }
 }

@@ -3,4 +3,3 @@
 mod closed_forms;
 mod forces;
 mod state;
-mod submerged;

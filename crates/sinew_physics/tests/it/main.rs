@@ -4,10 +4,9 @@ mod allocations;
 mod bounce;
 mod boxes;
 mod build;
+#[path = "../../../sinew_geometry/tests/it/cases.rs"]
+mod cases;
 mod closed_forms;
-mod collide;
-mod convex;
-mod cook;
 mod events;
 mod fields;
 mod finite;
@@ -25,10 +24,12 @@ mod pins;
 mod quality;
 mod queries;
 mod random_worlds;
-mod ray;
 mod rims;
 mod rope;
+mod round_rest;
 mod sleep;
+#[path = "../../../sinew_geometry/tests/it/solids.rs"]
+mod solids;
 mod stacks;
 mod strands;
 mod surfaces;
@@ -37,3 +38,5 @@ mod touches;
 mod trees;
 mod trouble;
 mod update;
+#[path = "../../../sinew_geometry/tests/it/wide.rs"]
+mod wide;

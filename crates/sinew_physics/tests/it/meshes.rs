@@ -1,15 +1,10 @@
 //! Meshes and height fields: what slides over them feels no edge between triangles; what falls on them comes to rest.
 
 mod levels;
-mod pairs;
 
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::*;
 use std::sync::Arc;
-
-fn cases(all: u32) -> u32 {
-    if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
-}
 
 /// Tiles along a side of the floor.
 const TILES: usize = 100;

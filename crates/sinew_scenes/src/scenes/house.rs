@@ -76,5 +76,5 @@ fn bodies(level: &TriangleMesh, as_mesh: bool) -> Vec<BodyDef> {
         return vec![level.to_body().expect("a level that was read has triangles")];
     }
     let cooked = cook(&level.positions, &level.triangles, &CookOptions::default(), &mut |_| {});
-    cooked.expect("a level that was read has triangles").to_bodies()
+    cooked.expect("a level that was read has triangles").boxes.iter().map(BodyDef::fixed_box).collect()
 }

@@ -2,10 +2,10 @@
 
 use super::ManifoldRows;
 use super::bounce::Approach;
+use crate::body::shape::Shape;
 use crate::collide::{Half, Manifold, collide, is_on_face, name_as_face};
 use crate::contact::{ContactMemory, PointImpulse};
 use crate::convex::support::{Core, Posed, wide};
-use crate::shape::Shape;
 use crate::solver::{SolverBody, advance};
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::{Rotation, Transform, Vec3, max, min};

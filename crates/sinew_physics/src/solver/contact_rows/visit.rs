@@ -2,8 +2,8 @@
 
 use super::row::Row;
 use super::{AXES, ManifoldRows};
+use crate::body::material::ContactMaterial;
 use crate::collide::MAX_POINTS;
-use crate::material::ContactMaterial;
 use crate::solver::columns::{Change, Strip};
 use crate::solver::sweep::Pass;
 use crate::solver::{disk, lcp};

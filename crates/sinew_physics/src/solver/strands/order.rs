@@ -2,7 +2,7 @@
 
 use super::super::build::View;
 use super::is_plain;
-use crate::islands::Island;
+use crate::island::Island;
 
 /// No body, no joint.
 pub(super) const NONE: u32 = u32::MAX;

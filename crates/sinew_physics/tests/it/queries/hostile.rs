@@ -1,7 +1,7 @@
 //! Numbers that no question should be asked with, and worlds that nobody should make.
 
 use super::random::{KINDS, Populated, shape};
-use crate::boxes::cases;
+use crate::cases::cases;
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::ray::Ray;
 use sinew_physics::*;

@@ -1,8 +1,8 @@
 //! Questions see bodies where they are now, whatever brought them there.
 
 use super::random::{Populated, body, filter, frame};
-use crate::boxes::cases;
 use crate::build::{box_body, floor};
+use crate::cases::cases;
 use sinew_math::{Random, Reader, Transform, Vec3, Writer};
 use sinew_physics::ray::Ray;
 use sinew_physics::{

@@ -1,6 +1,6 @@
 //! Shapes in `f64`, by their distance functions alone: what a ray or a moved ball meets follows by search.
 
-use crate::boxes::oracle::{Wide, add, axes, dot, length, wide};
+use crate::wide::{Wide, add, axes, dot, length, wide};
 use sinew_math::Transform;
 use sinew_physics::Shape;
 

@@ -2,8 +2,8 @@
 
 use super::oracle::WideShape;
 use super::random::{KINDS, frame, shape};
-use crate::boxes::cases;
-use crate::boxes::oracle::wide;
+use crate::cases::cases;
+use crate::wide::wide;
 use sinew_math::{Random, Transform, Vec3};
 use sinew_physics::ray::Ray;
 use sinew_physics::{BodyDef, BodyHit, BodyKind, Shape, ShapeDef, World, WorldDef};

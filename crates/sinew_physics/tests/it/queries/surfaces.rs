@@ -1,7 +1,7 @@
 //! Questions to meshes and height fields, against trying every triangle.
 
 use super::random::{KINDS, frame, shape};
-use crate::boxes::cases;
+use crate::cases::cases;
 use sinew_math::{Random, Transform, Vec3};
 use sinew_physics::boxes::Cuboid;
 use sinew_physics::ray::Ray;

@@ -1,7 +1,7 @@
 //! Every question to a whole world, against every shape by itself.
 
 use super::random::{KINDS, Populated, filter, frame, shape};
-use crate::boxes::cases;
+use crate::cases::cases;
 use sinew_math::{Random, Transform};
 use sinew_physics::boxes::{Penetration, SurfacePoint};
 use sinew_physics::convex::{cast_shape, gap};

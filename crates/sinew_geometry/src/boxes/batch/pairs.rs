@@ -1,0 +1,193 @@
+//! Many pairs of boxes.
+
+use super::record::{NUMBERS, Record};
+use super::separation::{Best, Relative, SeparatingAxis, Separation};
+use crate::boxes::Obb;
+use crate::boxes::fifteen::FifteenAxes;
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::{Block, Blocks, LaneMask, Lanes, WIDTH};
+
+/// Pairs of boxes, stored so that eight are examined at a time: 80 bytes a pair.
+#[derive(Clone, Debug, Default)]
+pub struct Pairs(Blocks<{ 2 * NUMBERS }>);
+
+/// Answers of [`Pairs::separations`], in the order of the pairs: 8 bytes a pair.
+#[derive(Clone, Debug, Default)]
+pub struct Separations(Blocks<2>);
+
+impl Pairs {
+    /// No pairs.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Number of pairs.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// True if there are none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Adds the pair of `a` and `b` at the end.
+    pub fn push(&mut self, a: &Obb, b: &Obb) {
+        let mut pair = [0.0; 2 * NUMBERS];
+        pair[..NUMBERS].copy_from_slice(&Record::of(a).to_array());
+        pair[NUMBERS..].copy_from_slice(&Record::of(b).to_array());
+        self.0.push(pair);
+    }
+
+    /// Removes all and keeps the memory.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Finds the pairs that overlap, by all fifteen axes: [`Overlap::overlaps`](crate::boxes::Overlap::overlaps) of each, to the bit. Bit `k` of `overlapping[i]` is
+    /// pair `8 i + k`, bits beyond the last pair are 0. A pair with NaN does not overlap.
+    ///
+    /// # Panics
+    /// If `overlapping` is not one byte for every eight pairs, the last eight begun.
+    pub fn overlaps(&self, overlapping: &mut [u8]) {
+        dispatch::run(FindOverlaps { pairs: self, overlapping });
+    }
+
+    /// Finds, for each pair, the axis among the fifteen along which the two boxes are furthest apart or overlap least:
+    /// [`Separation::between`] of each, to the bit. `found` takes its length from here, and allocates only to grow.
+    pub fn separations(&self, found: &mut Separations) {
+        dispatch::run(FindSeparations { pairs: self, axes: Axes::Fifteen, found });
+    }
+
+    /// Finds the same among the six axes of the faces alone, at a third of the cost: never more than the true gap, and at
+    /// least where the boxes overlap, so that what it separates is separate.
+    pub fn face_separations(&self, found: &mut Separations) {
+        dispatch::run(FindSeparations { pairs: self, axes: Axes::Faces, found });
+    }
+}
+
+/// Axes that are tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// The three sides of each box.
+    Faces,
+    /// The three sides of each box, and what is at right angles to a side of each.
+    Fifteen,
+}
+
+impl Separations {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Number of pairs.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// True if there are none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Answer for pair `index`.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    #[inline]
+    pub fn get(&self, index: usize) -> Separation {
+        let [distance, axis] = self.0.get(index);
+        Separation { distance, axis: SeparatingAxis::from_index(axis as u8) }
+    }
+
+    /// Answers for all pairs, in their order.
+    pub fn iter(&self) -> impl Iterator<Item = Separation> + '_ {
+        (0..self.len()).map(|index| self.get(index))
+    }
+}
+
+/// The kernel of [`Pairs::overlaps`], for those who choose the registers.
+#[derive(Debug)]
+pub struct FindOverlaps<'a> {
+    /// The boxes.
+    pub pairs: &'a Pairs,
+    /// One byte for every eight pairs.
+    pub overlapping: &'a mut [u8],
+}
+
+impl Kernel for FindOverlaps<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let blocks = self.pairs.0.blocks();
+        assert_eq!(self.overlapping.len(), blocks.len(), "one byte for every eight pairs");
+        for (pair, overlapping) in blocks.iter().zip(&mut *self.overlapping) {
+            let (a, b) = load::<L>(pair);
+            let boxes = FifteenAxes::new((a.center, a.axes(), a.half), (b.center, b.axes(), b.half));
+            let near = boxes.faces();
+            *overlapping = if near.any() { (near & boxes.edges()).bits() } else { 0 };
+        }
+        if let (tail @ 1.., Some(last)) = (self.pairs.len() % WIDTH, self.overlapping.last_mut()) {
+            *last &= (1 << tail) - 1;
+        }
+    }
+}
+
+/// The kernel of [`Pairs::separations`], for those who choose the registers.
+#[derive(Debug)]
+pub struct FindSeparations<'a> {
+    /// The boxes.
+    pub pairs: &'a Pairs,
+    /// Axes that are tried on them.
+    pub axes: Axes,
+    /// Place for the answers.
+    pub found: &'a mut Separations,
+}
+
+impl Kernel for FindSeparations<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.found.0.resize(self.pairs.len());
+        let blocks = self.pairs.0.blocks().iter().zip(self.found.0.blocks_mut());
+        match self.axes {
+            Axes::Faces => {
+                for (pair, found) in blocks {
+                    {
+                        let (a, b) = load::<L>(pair);
+                        Relative::new(&a, &b).six_faces()
+                    }
+                    .store(found);
+                }
+            }
+            Axes::Fifteen => {
+                for (pair, found) in blocks {
+                    {
+                        let (a, b) = load::<L>(pair);
+                        Relative::new(&a, &b).fifteen_axes()
+                    }
+                    .store(found);
+                }
+            }
+        }
+    }
+}
+
+impl<L: Lanes> Best<L> {
+    #[inline(always)]
+    fn store(self, to: &mut Block<2>) {
+        let [distance, index] = &mut to.0;
+        self.distance.store(distance);
+        self.index.store(index);
+    }
+}
+
+/// The first and the second box of eight pairs.
+#[inline(always)]
+fn load<L: Lanes>(pair: &Block<{ 2 * NUMBERS }>) -> (Record<L>, Record<L>) {
+    let [cx, cy, cz, x, y, z, w, hx, hy, hz, rest @ ..] = &pair.0;
+    (Record::load([cx, cy, cz, x, y, z, w, hx, hy, hz]), Record::load(rest.each_ref()))
+}

@@ -1,0 +1,135 @@
+//! Questions to a box of either kind.
+
+use super::{Aabb, Obb, Penetration, PlacedBox, SurfacePoint};
+use crate::distance::distance_beyond;
+use crate::mass::box_inertia;
+use crate::ray::{Ray, RayHit};
+use crate::shape::{MassProperties, Shape};
+use sinew_math::{Rotation, Sym3, Transform, Vec3, max3, min3};
+
+/// A box: [`Aabb`], [`Obb`] or [`PlacedBox`]. Points, distances and directions are in the space that the box stands in.
+///
+/// Every answer is computed from [`placed`](Self::placed), in an order of operations that its documentation gives, so that
+/// code for many boxes at once can give the same bits.
+pub trait Cuboid {
+    /// The box with its axes worked out.
+    fn placed(&self) -> PlacedBox;
+
+    /// True if the point is in the box or on its surface: `|(p − c)·aₖ| ≤ hₖ` along each axis, without any tolerance.
+    fn contains_point(&self, point: Vec3) -> bool {
+        self.placed().holds(point)
+    }
+
+    /// Distance from the point to the surface, metres, negative inside, 0 on it.
+    fn signed_distance(&self, point: Vec3) -> f32 {
+        self.nearest_surface(point).distance
+    }
+
+    /// The point of the surface that is closest, and how far it is.
+    fn nearest_surface(&self, point: Vec3) -> SurfacePoint {
+        self.placed().nearest_surface(point)
+    }
+
+    /// The point of the solid box that is closest; the given one itself, but for rounding, if it is inside.
+    fn closest_point(&self, point: Vec3) -> Vec3 {
+        self.placed().closest(point)
+    }
+
+    /// Depth of a point in the box and direction of the shortest way out; `None` if it is outside.
+    fn point_penetration(&self, point: Vec3) -> Option<Penetration> {
+        let SurfacePoint { distance, normal, .. } = self.nearest_surface(point);
+        (distance <= 0.0).then_some(Penetration { depth: -distance, direction: normal })
+    }
+
+    /// First point of a segment, from the ray's origin to its end, in the box, with the normal; the rules of
+    /// [`Shape::cast_ray`] hold for a start inside.
+    fn cast_ray(&self, ray: &Ray) -> Option<RayHit> {
+        self.cast_half_line(ray).filter(|hit| hit.fraction <= 1.0)
+    }
+
+    /// As [`cast_ray`](Self::cast_ray) for the ray without an end; the fraction counts lengths of the ray's direction.
+    fn cast_half_line(&self, ray: &Ray) -> Option<RayHit> {
+        if !(ray.origin.is_finite() && ray.direction.is_finite()) {
+            return None;
+        }
+        let placed = self.placed();
+        let shape = Shape::Box { half_extents: placed.half };
+        let (origin, direction) = (placed.local_point(ray.origin), placed.local_vector(ray.direction));
+        let (fraction, normal) = shape.cast_local(origin, direction)?;
+        Some(RayHit { fraction, point: ray.at(fraction), normal: placed.vector(normal) })
+    }
+
+    /// The corners: bit k of the index is set on the positive side of axis k.
+    fn corners(&self) -> [Vec3; 8] {
+        let placed = self.placed();
+        core::array::from_fn(|index| placed.vertex(index))
+    }
+
+    /// Cubic metres.
+    fn volume(&self) -> f32 {
+        let h = self.placed().half;
+        8.0 * h.x * h.y * h.z
+    }
+
+    /// Square metres; of a rectangle both sides.
+    fn surface_area(&self) -> f32 {
+        let h = self.placed().half;
+        8.0 * (h.x * h.y + h.y * h.z + h.z * h.x)
+    }
+
+    /// Inertia about the centre of a solid box of that mass (kg, ≥ 0), in the axes of the space it stands in, kg·m².
+    /// Boxes without volume have one too.
+    ///
+    /// # Panics
+    /// If the mass is negative or not finite.
+    fn inertia(&self, mass: f32) -> Sym3 {
+        assert!((0.0..f32::INFINITY).contains(&mass), "a mass is finite and not negative");
+        let PlacedBox { axes: [x, y, z], half, .. } = self.placed();
+        let d = box_inertia(half, mass);
+        Sym3::outer(x) * d.x + Sym3::outer(y) * d.y + Sym3::outer(z) * d.z
+    }
+
+    /// Mass, centre and inertia of a solid box at `density` kg/m³, in the space it stands in.
+    ///
+    /// # Panics
+    /// If the density is negative or not finite.
+    fn mass_properties(&self, density: f32) -> MassProperties {
+        assert!((0.0..f32::INFINITY).contains(&density), "a density is finite and not negative");
+        let mass = density * self.volume();
+        MassProperties { mass, center: self.placed().center, inertia: self.inertia(mass) }
+    }
+}
+
+impl Cuboid for PlacedBox {
+    fn placed(&self) -> PlacedBox {
+        *self
+    }
+}
+
+impl Cuboid for Obb {
+    fn placed(&self) -> PlacedBox {
+        PlacedBox::new(self.half_extents, &self.to_transform())
+    }
+}
+
+/// Points are held against the corners themselves. Overlaps with other kinds, and rays, go by the centre, which is rounded to
+/// `f32` as any position is.
+impl Cuboid for Aabb {
+    fn placed(&self) -> PlacedBox {
+        PlacedBox::new(self.half_extents(), &Transform::new(self.center(), Rotation::IDENTITY))
+    }
+
+    fn contains_point(&self, point: Vec3) -> bool {
+        self.min.cmple(point).all() && point.cmple(self.max).all()
+    }
+
+    fn nearest_surface(&self, point: Vec3) -> SurfacePoint {
+        let (below, above) = (self.min - point, point - self.max);
+        let (distance, normal) = distance_beyond(max3(below, above), above - below);
+        SurfacePoint { point: point - normal * distance, normal, distance }
+    }
+
+    fn closest_point(&self, point: Vec3) -> Vec3 {
+        max3(min3(point, self.max), self.min)
+    }
+}

@@ -1,0 +1,125 @@
+//! Frustum of an eye: culling and picking.
+
+use super::{Cuboid, PlacedBox, Sphere};
+use crate::ray::{Ray, RayHit};
+use sinew_math::{Transform, Vec2, Vec3, trig};
+
+/// A pyramid of sight without its tip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frustum {
+    /// Frame of the eye: it looks along −z of this frame, x is to its right, y up.
+    pub world_from_eye: Transform,
+    /// Half the width and half the height of what it sees at a distance of 1 m, metres: tangents of half the angles of view.
+    pub slopes: Vec2,
+    /// Nothing nearer than this is seen, metres along the line of sight, above 0.
+    pub near: f32,
+    /// Nor anything farther, metres.
+    pub far: f32,
+}
+
+/// Position of something relative to a [`Frustum`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Visibility {
+    /// All of it is in sight.
+    Inside,
+    /// Some of it is, or so little is missing that this was not told.
+    Intersects,
+    /// None of it is.
+    Outside,
+}
+
+impl Frustum {
+    /// From the angle of view between the upper and the lower edge (radians, above 0 and below π) and the width of the
+    /// picture over its height.
+    ///
+    /// # Panics
+    /// If a number is not finite or out of its range.
+    pub fn new(world_from_eye: Transform, fov_y: f32, aspect: f32, near: f32, far: f32) -> Self {
+        assert!(world_from_eye.is_finite(), "an eye is somewhere");
+        assert!(fov_y > 0.0 && fov_y < core::f32::consts::PI, "an angle of view is above 0 and below π");
+        assert!(aspect > 0.0 && aspect < f32::INFINITY, "a picture has a width and a height");
+        assert!(near > 0.0 && near < far && far < f32::INFINITY, "the near plane is before the far one");
+        let slope = trig::tan(0.5 * fov_y);
+        Self { world_from_eye, slopes: Vec2::new(slope * aspect, slope), near, far }
+    }
+
+    /// The segment under a place in the picture, from the near plane to the far one: x from −1 at its left edge to 1 at its
+    /// right, y from −1 below to 1 above. For picking.
+    pub fn ray(&self, screen: Vec2) -> Ray {
+        let sight = Vec3::new(screen.x * self.slopes.x, screen.y * self.slopes.y, -1.0);
+        Ray::between(
+            self.world_from_eye.point(sight * self.near),
+            self.world_from_eye.point(sight * self.far),
+        )
+    }
+
+    /// The corners: bit 0 of the index is set on the right, bit 1 above, bit 2 on the far plane.
+    pub fn corners(&self) -> [Vec3; 8] {
+        core::array::from_fn(|index| {
+            let side = |k: usize| if index >> k & 1 == 1 { 1.0 } else { -1.0 };
+            let Ray { origin, direction } = self.ray(Vec2::new(side(0), side(1)));
+            if side(2) > 0.0 { origin + direction } else { origin }
+        })
+    }
+
+    /// Position of a box relative to it, by the box's extent across each plane (Assarsson & Möller 2000), and the other way round by the
+    /// frustum's corners over each face. Never `Outside` though something is seen, nor `Inside` though something is not,
+    /// but for rounding; a box that is just past an edge may be said to intersect.
+    pub fn sees(&self, cuboid: &impl Cuboid) -> Visibility {
+        let placed = cuboid.placed();
+        match self.across_planes(placed.center, |normal| placed.half_width(normal)) {
+            Visibility::Intersects if self.is_beyond_a_face(&placed) => Visibility::Outside,
+            visibility => visibility,
+        }
+    }
+
+    /// As [`sees`](Self::sees) for a ball.
+    pub fn sees_sphere(&self, sphere: &Sphere) -> Visibility {
+        self.across_planes(sphere.center, |_| sphere.radius)
+    }
+
+    /// Visibility of something around a point that reaches so far along a unit normal.
+    fn across_planes(&self, center: Vec3, reach: impl Fn(Vec3) -> f32) -> Visibility {
+        let from_eye = center - self.world_from_eye.translation;
+        let mut visibility = Visibility::Inside;
+        for (normal, offset) in self.planes() {
+            let (height, reach) = (normal.dot(from_eye) - offset, reach(normal));
+            if height < -reach {
+                return Visibility::Outside;
+            }
+            if height < reach {
+                visibility = Visibility::Intersects;
+            }
+        }
+        visibility
+    }
+
+    /// Inward unit normals, and the planes' offsets along them from the eye.
+    fn planes(&self) -> [(Vec3, f32); 6] {
+        let Vec2 { x, y } = self.slopes;
+        let side = |v: Vec3| (self.world_from_eye.rotation * v.normalize(), 0.0);
+        let ahead = self.world_from_eye.rotation * Vec3::NEG_Z;
+        [
+            side(Vec3::new(1.0, 0.0, -x)),
+            side(Vec3::new(-1.0, 0.0, -x)),
+            side(Vec3::new(0.0, 1.0, -y)),
+            side(Vec3::new(0.0, -1.0, -y)),
+            (ahead, self.near),
+            (-ahead, -self.far),
+        ]
+    }
+
+    /// True if all corners are beyond one face of a box.
+    fn is_beyond_a_face(&self, placed: &PlacedBox) -> bool {
+        let corners = self.corners().map(|p| placed.local_point(p));
+        let beyond = |k: usize, side: f32| corners.iter().all(|q| q[k] * side > placed.half[k]);
+        (0..3).any(|k| beyond(k, 1.0) || beyond(k, -1.0))
+    }
+}
+
+/// The box that a segment meets first, by its index, and where: what is under a place in the picture, with
+/// [`Frustum::ray`]. The first in the slice wins a tie.
+pub fn pick<B: Cuboid>(boxes: &[B], ray: &Ray) -> Option<(usize, RayHit)> {
+    let hits = boxes.iter().enumerate().filter_map(|(index, cuboid)| Some((index, cuboid.cast_ray(ray)?)));
+    hits.reduce(|first, other| if other.1.fraction < first.1.fraction { other } else { first })
+}

@@ -1,0 +1,197 @@
+//! Common parts of boxes and polytopes: the separating axis that a contact takes, and its points.
+
+use super::clip::{Incident, Reference, clip};
+use super::feature::{self, pair};
+use super::placed::Segment;
+use super::reduce::{midway, push_best};
+use super::{Manifold, ManifoldPoint};
+use crate::boxes::separation::{Axis, AxisOf};
+use sinew_math::{Vec3, min};
+
+/// Edges whose sine is below this are taken as parallel: the faces' axes then say all there is to say.
+pub(super) const PARALLEL_SINE: f32 = 0.005;
+
+/// Settles ties between the faces of A and B by geometry, so that neither the order of the shapes nor rounding
+/// decides. No common direction of a level (axes, diagonals) is at right angles to it.
+pub(super) const TIE_DIRECTION: Vec3 = Vec3::new(0.331, 0.873, 0.357);
+
+/// Below which lengths don't matter for the choice of features: 1 % of the thinner one's half width, at most 0.5 mm.
+pub(super) fn tolerance(half_width_a: f32, half_width_b: f32) -> f32 {
+    min(0.0005, 0.01 * min(half_width_a, half_width_b))
+}
+
+/// The better of two faces. Those that lie on each other are as good, and one of them is kept to.
+/// `tie` is [`TIE_DIRECTION`] in the frame at hand.
+pub(super) fn choose_face(a: Axis, b: Axis, tolerance: f32, tie: Vec3) -> Axis {
+    let tied = (a.separation - b.separation).abs() <= tolerance && a.normal.dot(b.normal) > 0.9;
+    let a_wins = if tied { (a.normal + b.normal).dot(tie) > 0.0 } else { a.separation > b.separation };
+    if a_wins { a } else { b }
+}
+
+/// The edges instead of the face if they are clearly the better axis: faces give up to four points and hold better.
+pub(super) fn choose(face: Axis, edges: Option<Axis>, tolerance: f32) -> Axis {
+    let least = least_of_edges(&face, tolerance);
+    edges.filter(|edges| edges.separation > least).unwrap_or(face)
+}
+
+/// Least gap of edges to be taken instead of a face, metres.
+pub(super) fn least_of_edges(face: &Axis, tolerance: f32) -> f32 {
+    face.separation + tolerance + 0.05 * face.separation.abs()
+}
+
+/// A solid with flat faces.
+pub(super) trait Faceted {
+    /// The corner furthest along a direction: its number and place.
+    fn corner(&self, direction: Vec3) -> (usize, Vec3);
+
+    /// The edge that an axis names, of several the one furthest along a direction; and its feature.
+    fn edge_named(&self, number: usize, direction: Vec3) -> (Segment, u16);
+
+    /// The face of `other` that looks at a face of this one, cut to it: [`push_faces`].
+    fn push_faces(
+        &self,
+        face: usize,
+        other: &Self,
+        best: &Axis,
+        margin: f32,
+        tolerance: f32,
+        out: &mut Manifold,
+    ) -> bool;
+
+    /// The closest points of this solid and another that is apart, by trying corners and edges: slow and sure, for the rare
+    /// pairs that pass each other corner by corner or edge by edge. `normal` parts them.
+    fn push_closest(&self, other: &Self, normal: Vec3, margin: f32, tolerance: f32, out: &mut Manifold);
+}
+
+/// The points of a contact along the axis that was chosen.
+pub(super) fn push<S: Faceted>(a: &S, b: &S, axis: &Axis, margin: f32, tolerance: f32, out: &mut Manifold) {
+    let touched = match axis.of {
+        AxisOf::FaceA(k) => a.push_faces(k, b, axis, margin, tolerance, out),
+        AxisOf::FaceB(k) => b.push_faces(k, a, axis, margin, tolerance, out),
+        AxisOf::Edges(i, j) => {
+            push_edges(a.edge_named(i, axis.normal), b.edge_named(j, -axis.normal), axis, out)
+        }
+    };
+    if !touched {
+        if axis.separation > 0.0 {
+            a.push_closest(b, axis.normal, margin, tolerance, out);
+        } else {
+            push_support(a, b, axis, out);
+        }
+    }
+}
+
+/// The closest points of two edges. False, and nothing pushed, if the solids are apart and these are not their closest
+/// points.
+fn push_edges(
+    (edge_a, feature_a): (Segment, u16),
+    (edge_b, feature_b): (Segment, u16),
+    axis: &Axis,
+    out: &mut Manifold,
+) -> bool {
+    let (s, t) = edge_a.closest_to_segment(&edge_b);
+    let inside = |x: f32| x > 0.0 && x < 1.0;
+    if axis.separation > 0.0 && !(inside(s) && inside(t)) {
+        return false;
+    }
+    out.normal = axis.normal;
+    out.push((edge_a.at(s) + edge_b.at(t)) * 0.5, axis.separation, pair(feature_a, feature_b));
+    true
+}
+
+/// B's deepest corner, for overlaps that no face or edge describes.
+fn push_support<S: Faceted>(a: &S, b: &S, axis: &Axis, out: &mut Manifold) {
+    let ((of_a, _), (of_b, corner)) = (a.corner(axis.normal), b.corner(-axis.normal));
+    out.normal = axis.normal;
+    let position = midway(corner, axis.normal, axis.separation);
+    out.push(position, axis.separation, pair(feature::vertex(of_a), feature::vertex(of_b)));
+}
+
+/// The other shape's face cut to the reference face. False, and nothing pushed, if that does not show how far the
+/// shapes are apart: they pass each other beside the face.
+pub(super) fn push_faces<const N: usize>(
+    reference: &impl Reference,
+    (incident, corners): (u16, impl Iterator<Item = Incident>),
+    best: &Axis,
+    margin: f32,
+    tolerance: f32,
+    out: &mut Manifold,
+) -> bool {
+    let outward = reference.normal();
+    let mut points = [ManifoldPoint::default(); N];
+    let (mut count, mut nearest) = (0, f32::INFINITY);
+    for corner in clip::<N>(reference, incident, corners, tolerance).corners() {
+        let separation = corner.local.z;
+        nearest = min(separation, nearest);
+        if separation <= margin {
+            let feature = match best.of {
+                AxisOf::FaceB(_) => pair(corner.incident, corner.reference),
+                AxisOf::FaceA(_) | AxisOf::Edges(..) => pair(corner.reference, corner.incident),
+            };
+            let position = midway(reference.point(corner.local), outward, separation);
+            points[count] = ManifoldPoint { position, separation, feature };
+            count += 1;
+        }
+    }
+    if best.separation > 0.0 && nearest > best.separation + tolerance {
+        return false;
+    }
+    out.normal = best.normal;
+    push_best(&points[..count], tolerance, out);
+    out.count > 0
+}
+
+/// A pair of points on A and B.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Bridge {
+    pub on_a: Vec3,
+    pub on_b: Vec3,
+    pub feature: u32,
+}
+
+impl Bridge {
+    pub fn span(&self) -> Vec3 {
+        self.on_b - self.on_a
+    }
+
+    /// The shorter one, the first among equals.
+    pub fn shorter(self, other: Self) -> Self {
+        if other.span().length() < self.span().length() { other } else { self }
+    }
+}
+
+/// The contact of shapes that are apart, with bridges of which `best` is the shortest. Parallel edges are equally close
+/// along a line, at whose ends there are corners: `corners` are all bridges from corners. `size` is that of the shapes,
+/// `fallback` the direction in which they part.
+pub(super) fn push_bridges<const N: usize>(
+    best: Bridge,
+    corners: impl Iterator<Item = Bridge>,
+    (size, fallback): (f32, Vec3),
+    margin: f32,
+    tolerance: f32,
+    out: &mut Manifold,
+) {
+    let separation = best.span().length();
+    if separation > margin {
+        return;
+    }
+    // The direction between points that all but coincide is noise.
+    let precise = separation > 2e-5 * size;
+    out.normal = if precise { best.span() / separation } else { fallback };
+    let mut points = [ManifoldPoint::default(); N];
+    let mut count = 0;
+    for bridge in corners {
+        let (length, along) = (bridge.span().length(), bridge.span().dot(out.normal));
+        let position = (bridge.on_a + bridge.on_b) * 0.5;
+        let known = points[..count].iter().any(|p| (p.position - position).length() <= 2.0 * tolerance);
+        if length <= separation + tolerance && along >= 0.99 * length && !known && count < N {
+            points[count] = ManifoldPoint { position, separation: along, feature: bridge.feature };
+            count += 1;
+        }
+    }
+    if count > 0 {
+        push_best(&points[..count], tolerance, out);
+    } else {
+        out.push((best.on_a + best.on_b) * 0.5, separation, best.feature);
+    }
+}

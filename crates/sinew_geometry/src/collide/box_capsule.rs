@@ -1,0 +1,100 @@
+//! Box against capsule: closest points of the box and the core while they are apart, separating axes once the core
+//! has entered the box. Everything happens in the box's frame.
+
+use super::feature::{self, WHOLE, pair};
+use super::line::Line;
+use super::placed::{Pill, PlacedBox, Segment, largest_axis, sign};
+use super::{Manifold, Parting};
+use crate::boxes::segment::{Gap, Meeting, best_edge, best_face, cut, gap};
+use sinew_math::{Vec3, min};
+
+/// Normals within 0.03° of a face's are that face's: rounding is below that, and the rim of a long box not far off.
+const FACE_SINE: f32 = 5e-4;
+/// A core within 1.8° of a side's direction runs along it.
+const ALONG_COSINE: f32 = 0.9995;
+/// A normal within 1.8° of the plane across that side.
+const ACROSS_SINE: f32 = 0.03;
+/// A core whose sine against a side is below this is taken as parallel: the faces then say all there is to say.
+const PARALLEL_SINE: f32 = 0.005;
+
+pub(super) fn collide(a: &PlacedBox, b: &Pill, margin: f32, parting: &mut Parting, out: &mut Manifold) {
+    let core = Segment { ends: b.core.ends.map(|p| a.local_point(p)) };
+    let meeting = apart(a.half, &core).unwrap_or_else(|| pierced(a.half, &core, b.radius));
+    let nearest = (meeting.on_core - meeting.on_box).dot(meeting.normal) - b.radius;
+    if nearest > margin {
+        parting.gap = nearest;
+        return;
+    }
+    if !push_line(a.half, &core, b.radius, &meeting, margin, out) {
+        out.normal = meeting.normal;
+        let position = meeting.on_core - meeting.normal * (b.radius + 0.5 * nearest);
+        out.push(position, nearest, pair(WHOLE, WHOLE));
+    }
+    out.normal = a.vector(out.normal);
+    for point in &mut out.points[..out.count] {
+        point.position = a.point(point.position);
+    }
+}
+
+/// The closest points, if the core is clearly outside the box.
+fn apart(half: Vec3, core: &Segment) -> Option<Meeting> {
+    let Gap { on_core, on_box, distance } = gap(half, core)?;
+    // Closer than rounding can tell, the direction between the points is noise.
+    let reach = half.length() + on_core.length();
+    (distance > 1e-4 * reach).then(|| Meeting { normal: (on_core - on_box) / distance, on_box, on_core })
+}
+
+/// The shortest way out, over the box's faces and the directions across the core and an edge.
+fn pierced(half: Vec3, core: &Segment, radius: f32) -> Meeting {
+    let (face_gap, face) = best_face(half, core);
+    // A face can carry two points: an edge must be clearly the better way.
+    let preference = 0.05 * face_gap.abs() + 0.01 * min(min(half.x, half.y), min(half.z, radius));
+    match best_edge(half, core, PARALLEL_SINE) {
+        Some((edge_gap, edge)) if edge_gap > face_gap + preference => edge,
+        _ => face,
+    }
+}
+
+/// The two ends of the stretch of the core that lies over the face or along the edge it meets. False, and nothing
+/// pushed, if it meets a corner, crosses an edge, or the stretch is too short.
+fn push_line(
+    half: Vec3,
+    core: &Segment,
+    radius: f32,
+    meeting: &Meeting,
+    margin: f32,
+    out: &mut Manifold,
+) -> bool {
+    let along = core.ends[1] - core.ends[0];
+    let length = along.length();
+    let mut stretch = (0.0, 1.0);
+    let face = largest_axis(meeting.normal);
+    let along_axis = largest_axis(along);
+    let mut straight = Vec3::ZERO;
+    straight[face] = sign(meeting.normal[face]);
+    let (normal, name);
+    if (meeting.normal - straight).length() <= FACE_SINE {
+        (normal, name) = (straight, feature::face(face, straight[face]));
+        for axis in (0..3).filter(|axis| *axis != face) {
+            if !cut(core, axis, half[axis], &mut stretch) {
+                return false;
+            }
+        }
+    } else if along[along_axis].abs() >= ALONG_COSINE * length
+        && meeting.normal[along_axis].abs() < ACROSS_SINE
+    {
+        (normal, name) = (meeting.normal, feature::edge(along_axis, corner_index(meeting.on_box)));
+        if !cut(core, along_axis, half[along_axis], &mut stretch) {
+            return false;
+        }
+    } else {
+        return false;
+    }
+    let line = Line { core, radius, stretch, normal, name };
+    line.push_ends(|p| (p - meeting.on_box).dot(normal), margin, out)
+}
+
+/// Number of the corner in the octant of `p`.
+fn corner_index(p: Vec3) -> usize {
+    usize::from(p.x > 0.0) | usize::from(p.y > 0.0) << 1 | usize::from(p.z > 0.0) << 2
+}

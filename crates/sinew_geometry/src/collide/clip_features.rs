@@ -1,0 +1,134 @@
+//! A feature of one solid cut to the prism over a face of another, with the names of the parts that meet.
+
+use super::feature::WHOLE;
+use crate::convex::feature::{Corner, Feature, MOST_CORNERS};
+use sinew_math::{Vec3, normalize_or};
+
+/// Each side of the face can add a corner to what is cut.
+pub(super) const MOST_POINTS: usize = 2 * MOST_CORNERS;
+
+/// A point of the cut feature.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Clipped {
+    pub point: Vec3,
+    /// Part of the face.
+    pub reference: u16,
+    /// Part of the feature.
+    pub incident: u16,
+}
+
+/// A corner of the outline on the way.
+#[derive(Clone, Copy, Default)]
+struct Outline {
+    at: Clipped,
+    /// Plane on which the side from here to the next corner lies.
+    side: Side,
+}
+
+#[derive(Clone, Copy, Default)]
+enum Side {
+    /// A side of the incident feature, by name.
+    Incident(u16),
+    /// A side of the reference face, by number.
+    Reference(usize),
+    #[default]
+    None,
+}
+
+/// The cut feature: a polygon, a segment, a point, or nothing.
+pub(super) struct Cut {
+    points: [Clipped; MOST_POINTS],
+    count: usize,
+}
+
+impl Cut {
+    pub fn points(&self) -> &[Clipped] {
+        &self.points[..self.count]
+    }
+}
+
+/// Part that lies over or under the face, widened by `tolerance` so that corners on its sides keep their names under rounding
+/// (Sutherland & Hodgman 1974).
+pub(super) fn clip(face: &Feature, incident: &Feature, tolerance: f32) -> Cut {
+    let mut outline = [Outline::default(); MOST_POINTS];
+    let mut count = incident.corners().len();
+    for (to, Corner { point, name, side }) in outline.iter_mut().zip(incident.corners()) {
+        let at = Clipped { point: *point, reference: face.name, incident: *name };
+        *to = Outline { at, side: Side::Incident(*side) };
+    }
+    let sides = face.corners().len();
+    for number in 0..sides {
+        let from = face.corners()[number].point;
+        let along = face.corners()[(number + 1) % sides].point - from;
+        let outward = normalize_or(along.cross(face.normal), Vec3::ZERO);
+        let beyond = |p: Vec3| (p - from).dot(outward) - tolerance;
+        let mut next = [Outline::default(); MOST_POINTS];
+        count = cut(&outline[..count], face, incident, number, beyond, &mut next);
+        outline = next;
+    }
+    Cut { points: outline.map(|corner| corner.at), count }
+}
+
+/// Cuts away what lies beyond one side of the face; how many corners are left.
+fn cut(
+    outline: &[Outline],
+    face: &Feature,
+    incident: &Feature,
+    number: usize,
+    beyond: impl Fn(Vec3) -> f32,
+    out: &mut [Outline; MOST_POINTS],
+) -> usize {
+    let mut count = 0;
+    let mut push = |corner: Outline| {
+        // Rounding could make a corner too many of a sliver; it adds nothing.
+        if count < MOST_POINTS {
+            out[count] = corner;
+            count += 1;
+        }
+    };
+    for (k, from) in outline.iter().enumerate() {
+        let d0 = beyond(from.at.point);
+        if d0 <= 0.0 {
+            push(*from);
+        }
+        // Of a segment there is no way back from its end.
+        if k + 1 == outline.len() && incident.corners().len() < 3 {
+            break;
+        }
+        let to = &outline[(k + 1) % outline.len()];
+        let d1 = beyond(to.at.point);
+        if (d0 <= 0.0) == (d1 <= 0.0) {
+            continue;
+        }
+        let mut corner = *from;
+        corner.at.point = from.at.point + (to.at.point - from.at.point) * (d0 / (d0 - d1));
+        match from.side {
+            Side::Incident(name) => {
+                (corner.at.reference, corner.at.incident) = (face.corners()[number].side, name);
+            }
+            Side::Reference(other) => {
+                (corner.at.reference, corner.at.incident) =
+                    (corner_between(face, other, number), incident.name);
+            }
+            Side::None => {}
+        }
+        // Where the outline leaves, it goes on along this side of the face.
+        if d0 <= 0.0 {
+            corner.side = Side::Reference(number);
+        }
+        push(corner);
+    }
+    count
+}
+
+/// Name of the corner of the face at which two of its sides meet; of none if they don't.
+fn corner_between(face: &Feature, one: usize, other: usize) -> u16 {
+    let sides = face.corners().len();
+    if (one + 1) % sides == other {
+        face.corners()[other].name
+    } else if (other + 1) % sides == one {
+        face.corners()[one].name
+    } else {
+        WHOLE
+    }
+}

@@ -1,0 +1,216 @@
+//! Hull against sphere and capsule: closest points of the hull and the core while they are apart, separating axes once a
+//! capsule's core has entered the hull. Everything happens in the hull's frame.
+
+use super::axes::{PARALLEL_SINE, choose};
+use super::feature::{self, WHOLE, pair};
+use super::line::Line;
+use super::placed::Segment;
+use super::{Manifold, Parting};
+use crate::boxes::separation::{Axis, AxisOf};
+use crate::hull::{Plane, Polytope};
+use sinew_math::{Vec3, max, min};
+
+/// Normals within 0.03° of a face's are that face's: rounding is below that.
+const FACE_SINE: f32 = 5e-4;
+/// Share of a core by which rounding moves the ends of a stretch.
+const ROUNDING: f32 = 1e-3;
+/// A core whose sine against an edge is below this runs along it (1.8°).
+const ALONG_SINE: f32 = 0.03;
+
+pub(super) fn against_sphere(
+    hull: &Polytope<'_>,
+    center: Vec3,
+    radius: f32,
+    margin: f32,
+    parting: &mut Parting,
+    out: &mut Manifold,
+) {
+    let (distance, normal) = hull.distance(center);
+    let separation = distance - radius;
+    if separation > margin {
+        parting.gap = separation;
+        return;
+    }
+    out.normal = normal;
+    // One id for all features of the hull: the contact of a ball that rolls over an edge is still the same one.
+    out.push(center - normal * (radius + 0.5 * separation), separation, pair(WHOLE, WHOLE));
+}
+
+/// Points of a hull and a core that are closest, or deepest in each other.
+struct Meeting {
+    /// Unit, out of the hull.
+    normal: Vec3,
+    on_core: Vec3,
+    /// Distance of the core and the hull, metres.
+    distance: f32,
+    /// Half-edge of the hull that is met, if it is an edge.
+    edge: Option<usize>,
+}
+
+pub(super) fn against_capsule(
+    hull: &Polytope<'_>,
+    core: &Segment,
+    radius: f32,
+    margin: f32,
+    parting: &mut Parting,
+    out: &mut Manifold,
+) {
+    let meeting = apart(hull, core).unwrap_or_else(|| pierced(hull, core, radius));
+    let nearest = meeting.distance - radius;
+    if nearest > margin {
+        parting.gap = nearest;
+        return;
+    }
+    if !push_line(hull, core, radius, &meeting, margin, out) {
+        out.normal = meeting.normal;
+        let position = meeting.on_core - meeting.normal * (radius + 0.5 * nearest);
+        out.push(position, nearest, pair(WHOLE, WHOLE));
+    }
+}
+
+/// The closest points, if the core is clearly outside: one of them is an end of the core, or lies on an edge.
+fn apart(hull: &Polytope<'_>, core: &Segment) -> Option<Meeting> {
+    let [from, to] = core.ends;
+    let enters = |p: Vec3, way: Vec3| hull.enter(p, way).is_some_and(|(fraction, _)| fraction <= 1.0);
+    if core.ends.iter().any(|&p| hull.highest_plane(p).0 <= 0.0) || enters(from, to - from) {
+        return None;
+    }
+    let mut best = (f32::INFINITY, Vec3::ZERO, Vec3::ZERO, None);
+    let mut consider = |on_core: Vec3, on_hull: Vec3, edge: Option<usize>| {
+        let squared = (on_core - on_hull).length_squared();
+        if squared < best.0 {
+            best = (squared, on_core, on_hull, edge);
+        }
+    };
+    for p in core.ends {
+        consider(p, hull.closest(p), None);
+    }
+    for side in hull.topology.edge_numbers() {
+        let edge = hull.edge(side);
+        let (s, t) = core.closest_to_segment(&edge);
+        consider(core.at(s), edge.at(t), Some(side));
+    }
+    let (squared, on_core, on_hull, edge) = best;
+    let distance = squared.sqrt();
+    // Closer than rounding can tell, the direction between the points is noise.
+    let reach = 2.0 * (on_core - hull.center).length();
+    (distance > 1e-4 * reach).then(|| Meeting {
+        normal: (on_core - on_hull) / distance,
+        on_core,
+        distance,
+        edge,
+    })
+}
+
+/// The shortest way out, over the hull's faces and the directions across the core and an edge.
+fn pierced(hull: &Polytope<'_>, core: &Segment, radius: f32) -> Meeting {
+    let lower = |plane: &Plane| min(plane.height(core.ends[0]), plane.height(core.ends[1]));
+    let mut face = Axis { normal: Vec3::Y, separation: f32::NEG_INFINITY, of: AxisOf::FaceA(0) };
+    for (k, plane) in hull.planes.iter().enumerate() {
+        if lower(plane) > face.separation {
+            face = Axis { normal: plane.normal, separation: lower(plane), of: AxisOf::FaceA(k) };
+        }
+    }
+    // A face can carry two points: an edge must be clearly the better way.
+    let axis = choose(face, best_edge(hull, core), 0.01 * min(hull.thickness, radius));
+    let [p, q] = core.ends;
+    let (on_core, edge) = match axis.of {
+        AxisOf::Edges(side, _) => (core.at(core.closest_to_segment(&hull.edge(side)).0), Some(side)),
+        AxisOf::FaceA(_) | AxisOf::FaceB(_) => {
+            (if q.dot(axis.normal) < p.dot(axis.normal) { q } else { p }, None)
+        }
+    };
+    Meeting { normal: axis.normal, on_core, distance: axis.separation, edge }
+}
+
+/// The direction across the core and an edge that separates best. The core's arc is the whole circle across it.
+fn best_edge(hull: &Polytope<'_>, core: &Segment) -> Option<Axis> {
+    let along = core.ends[1] - core.ends[0];
+    let mut best: Option<Axis> = None;
+    for side in hull.topology.edge_numbers() {
+        let [n, m] = hull.topology.faces_of(side).map(|face| hull.planes[face].normal);
+        if n.dot(along) * m.dot(along) >= 0.0 {
+            continue;
+        }
+        let [from, to] = hull.edge(side).ends;
+        let across = (to - from).cross(along);
+        let length = across.length();
+        if length <= PARALLEL_SINE * ((to - from).length() * along.length()) {
+            continue;
+        }
+        let outward = if across.dot(n + m) < 0.0 { -across } else { across };
+        let normal = outward / length;
+        let separation = normal.dot(core.ends[0] - from);
+        if best.is_none_or(|axis| separation > axis.separation) {
+            best = Some(Axis { normal, separation, of: AxisOf::Edges(side, 0) });
+        }
+    }
+    best
+}
+
+/// The two ends of the stretch of the core that lies over the face or along the edge it meets. False, and nothing
+/// pushed, if it meets a corner, crosses an edge, or the stretch is too short.
+fn push_line(
+    hull: &Polytope<'_>,
+    core: &Segment,
+    radius: f32,
+    meeting: &Meeting,
+    margin: f32,
+    out: &mut Manifold,
+) -> bool {
+    let along = core.ends[1] - core.ends[0];
+    let face = hull.facing(meeting.normal);
+    let flat = (meeting.normal - hull.planes[face].normal).length() <= FACE_SINE;
+    let mut stretch = (0.0, 1.0);
+    let (normal, name, height);
+    if flat {
+        let plane = hull.planes[face];
+        for side in hull.topology.sides(face) {
+            let [from, to] = hull.edge(side).ends;
+            cut(core, (to - from).cross(plane.normal), from, &mut stretch);
+        }
+        reach(core, meeting.on_core, &mut stretch);
+        (normal, name, height) = (plane.normal, feature::face_number(face), plane.offset);
+    } else if let Some(side) = meeting.edge
+        && runs_along(&hull.edge(side), along)
+    {
+        let [from, to] = hull.edge(side).ends;
+        cut(core, to - from, to, &mut stretch);
+        cut(core, from - to, from, &mut stretch);
+        normal = meeting.normal;
+        (name, height) =
+            (feature::half_edge(hull.topology, side), (meeting.on_core.dot(normal) - meeting.distance));
+    } else {
+        return false;
+    }
+    let line = Line { core, radius, stretch, normal, name };
+    line.push_ends(|p| p.dot(normal) - height, margin, out)
+}
+
+/// Takes care that where the core is nearest is part of its stretch over a face, unless there is none: of two faces that hardly differ the other one
+/// may be below it.
+fn reach(core: &Segment, nearest: Vec3, stretch: &mut (f32, f32)) {
+    let along = core.ends[1] - core.ends[0];
+    let place = (nearest - core.ends[0]).dot(along) / along.length_squared();
+    let is_off = place < stretch.0 - ROUNDING || place > stretch.1 + ROUNDING;
+    if is_off && stretch.1 - stretch.0 > ROUNDING {
+        *stretch = (min(stretch.0, place), max(stretch.1, place));
+    }
+}
+
+fn runs_along(edge: &Segment, along: Vec3) -> bool {
+    let side = edge.ends[1] - edge.ends[0];
+    side.cross(along).length() <= ALONG_SINE * (side.length() * along.length())
+}
+
+/// Narrows the stretch of the core to what is not beyond the plane through `at`, across `outward` (of any length).
+fn cut(core: &Segment, outward: Vec3, at: Vec3, stretch: &mut (f32, f32)) {
+    let [d0, d1] = core.ends.map(|p| (p - at).dot(outward));
+    if d0 > 0.0 && d1 > 0.0 {
+        stretch.1 = stretch.0;
+    } else if d0 > 0.0 {
+        stretch.0 = max(d0 / (d0 - d1), stretch.0);
+    } else if d1 > 0.0 {
+        stretch.1 = min(d0 / (d0 - d1), stretch.1);
+    }
+}

@@ -1,0 +1,385 @@
+//! Narrow phase: from two placed shapes to a manifold.
+//!
+//! One file per pair of shapes; each is written for one order of its pair, [`collide`] brings the pair into that
+//! order and turns the result round if need be. Inside, positions are relative to one of the two shapes, so that
+//! a contact far from the world's origin is as precise as one near it.
+
+mod axes;
+mod box_box;
+mod box_capsule;
+mod box_sphere;
+mod capsule_capsule;
+mod capsule_sphere;
+mod clip;
+mod clip_features;
+pub(crate) mod feature;
+pub(crate) mod features;
+mod half_space;
+mod hull_pairs;
+mod hull_round;
+mod line;
+pub(crate) mod placed;
+pub(crate) mod polytope;
+mod reduce;
+mod round_sphere;
+mod surface;
+
+use crate::boxes::separation::{Axis, AxisOf};
+use crate::convex::support::{Core, Posed};
+use crate::shape::Shape;
+use placed::{Ball, Pill, PlacedBox, Plane};
+use sinew_math::{Transform, Vec3};
+pub use surface::{Half, MAX_PARTS, Motion, Patch, Scratch, collide_surface, is_on_face, name_as_face};
+
+/// At most this many points describe the contact of two shapes.
+pub const MAX_POINTS: usize = 4;
+
+/// One point of a manifold.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ManifoldPoint {
+    /// Half-way between the two surfaces, in the frame the shapes were given in (world), metres.
+    pub position: Vec3,
+    /// Gap along the normal, metres; negative when they overlap.
+    pub separation: f32,
+    /// Features that touch: A's in the low 16 bits, B's in the high ones. The same from step to step while the
+    /// same features touch; the other order of the shapes exchanges the halves (`feature.rotate_left(16)`).
+    pub feature: u32,
+}
+
+/// Contact of two convex shapes that touch or are about to: a normal and up to four points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Manifold {
+    /// Unit, from A to B.
+    pub normal: Vec3,
+    /// The points; only the first `count` count.
+    pub points: [ManifoldPoint; MAX_POINTS],
+    /// Number of points, 0..=4.
+    pub count: usize,
+}
+
+impl Manifold {
+    /// The points that count.
+    #[inline]
+    pub fn points(&self) -> &[ManifoldPoint] {
+        &self.points[..self.count]
+    }
+
+    /// Middle of its points, metres; the origin if there are none.
+    #[inline]
+    pub fn center(&self) -> Vec3 {
+        let sum = self.points().iter().fold(Vec3::ZERO, |sum, point| sum + point.position);
+        if self.count > 0 { sum / self.count as f32 } else { sum }
+    }
+
+    /// Appends a point that lies on one of the surfaces' midplane.
+    fn push(&mut self, position: Vec3, separation: f32, feature: u32) {
+        self.points[self.count] = ManifoldPoint { position, separation, feature };
+        self.count += 1;
+    }
+
+    /// Appends a point, or puts it in the place of the one that is least deep where there is no room.
+    fn push_or_replace_shallowest(&mut self, position: Vec3, separation: f32, feature: u32) {
+        if self.count < MAX_POINTS {
+            self.push(position, separation, feature);
+        } else {
+            let deeper =
+                |a: &usize, b: &usize| self.points[*a].separation.total_cmp(&self.points[*b].separation);
+            let shallowest = (0..MAX_POINTS).max_by(deeper).unwrap_or(0);
+            self.points[shallowest] = ManifoldPoint { position, separation, feature };
+        }
+    }
+
+    /// Turns the result of (B, A) into that of (A, B).
+    fn flip(&mut self) {
+        self.normal = -self.normal;
+        for point in &mut self.points[..self.count] {
+            point.feature = point.feature.rotate_left(16);
+        }
+    }
+
+    /// Back from coordinates relative to `origin`; drops everything if a number is not finite.
+    fn finish(&mut self, origin: Vec3) {
+        for point in &mut self.points[..self.count] {
+            point.position += origin;
+        }
+        let sane = |p: &ManifoldPoint| p.position.is_finite() && p.separation.is_finite();
+        if !self.normal.is_finite() || !self.points().iter().all(sane) {
+            self.count = 0;
+        }
+    }
+}
+
+/// Knowledge of two shapes beside their points. It decides nothing about those, whatever it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parting {
+    /// The axis along which two polytopes were parted when they were asked last: it is tried first, since most that stay apart
+    /// do so along the same one.
+    pub axis: Option<AxisOf>,
+    /// Least gap that they surely have, metres. Told where no points are found.
+    pub gap: f32,
+}
+
+impl Default for Parting {
+    /// Nothing is known.
+    fn default() -> Self {
+        Self { axis: None, gap: f32::NEG_INFINITY }
+    }
+}
+
+impl Parting {
+    /// They are parted along an axis.
+    fn along(axis: &Axis) -> Self {
+        Self { axis: Some(axis.of), gap: axis.separation }
+    }
+}
+
+/// Fills `out` with the contact of two placed shapes: the normal points from `a` to `b`, every point has a
+/// separation of at most `margin` (metres, ≥ 0). No points if the shapes are further apart than that, if both are
+/// half-spaces, one is a mesh or height field (see [`collide_all`]), or if a number is not finite. What `out` held before does not matter.
+///
+/// The order of the shapes does not matter but for rounding: the other one gives the opposite normal, the same
+/// points, and features with their halves exchanged.
+pub fn collide(
+    a: &Shape,
+    world_from_a: &Transform,
+    b: &Shape,
+    world_from_b: &Transform,
+    margin: f32,
+    out: &mut Manifold,
+) {
+    collide_again((a, world_from_a), (b, world_from_b), margin, &mut Parting::default(), out);
+}
+
+/// Share of the distance between two frames by which rounding may make a gap too large.
+const ROUNDING: f32 = 4e-6;
+
+/// [`collide`] of shapes that were asked before.
+pub fn collide_again(
+    (a, world_from_a): (&Shape, &Transform),
+    (b, world_from_b): (&Shape, &Transform),
+    margin: f32,
+    parting: &mut Parting,
+    out: &mut Manifold,
+) {
+    *out = Manifold::default();
+    parting.gap = f32::NEG_INFINITY;
+    if !(world_from_a.is_finite() && world_from_b.is_finite()) {
+        return;
+    }
+    let balls = [a, b].map(as_ball);
+    let (a, b) = (balls[0].as_ref().unwrap_or(a), balls[1].as_ref().unwrap_or(b));
+    if rank(a) <= rank(b) {
+        collide_ranked((a, world_from_a), (b, world_from_b), margin, parting, out);
+    } else {
+        collide_ranked((b, world_from_b), (a, world_from_a), margin, parting, out);
+        out.flip();
+    }
+    parting.gap -= ROUNDING * (world_from_b.translation - world_from_a.translation).length();
+}
+
+/// Calls `visit` with the contacts of two placed shapes, as [`collide`] gives them: of a mesh or height field and a convex
+/// shape there may be several, each with a normal of its own. Two surfaces, and a surface and a half-space, never meet.
+pub fn collide_all(
+    a: &Shape,
+    world_from_a: &Transform,
+    b: &Shape,
+    world_from_b: &Transform,
+    margin: f32,
+    visit: impl FnMut(&Manifold),
+) {
+    if a.surface().is_none() && b.surface().is_none() {
+        let mut manifold = Manifold::default();
+        collide(a, world_from_a, b, world_from_b, margin, &mut manifold);
+        let found = (manifold.count > 0).then_some(manifold);
+        found.iter().for_each(visit);
+        return;
+    }
+    let mut patch = Patch::default();
+    let still = Motion { margin, ..Motion::default() };
+    collide_pair((a, world_from_a), (b, world_from_b), &still, &mut Scratch::default(), &mut patch);
+    patch.manifolds().iter().for_each(visit);
+}
+
+/// The contacts of two placed shapes of which one is a surface: normals point from `a` to `b`.
+pub fn collide_pair(
+    (a, world_from_a): (&Shape, &Transform),
+    (b, world_from_b): (&Shape, &Transform),
+    motion: &Motion,
+    scratch: &mut Scratch,
+    out: &mut Patch,
+) {
+    match (a.surface(), b.surface()) {
+        (Some(surface), None) => {
+            collide_surface(&surface, world_from_a, b, world_from_b, motion, scratch, out);
+        }
+        (None, Some(surface)) => {
+            collide_surface(&surface, world_from_b, a, world_from_a, motion, scratch, out);
+            out.flip();
+        }
+        _ => out.clear(),
+    }
+}
+
+/// A capsule without length is a ball: it touches at one point.
+fn as_ball(shape: &Shape) -> Option<Shape> {
+    match *shape {
+        Shape::Capsule { half_height: 0.0, radius } => Some(Shape::Sphere { radius }),
+        _ => None,
+    }
+}
+
+/// Order of the shapes in a pair. Those of the pairs with files of their own are in the order of the files' names.
+fn rank(shape: &Shape) -> u32 {
+    match shape {
+        Shape::HalfSpace => 0,
+        Shape::Hull(_) => 1,
+        Shape::Box { .. } => 2,
+        Shape::Capsule { .. } => 3,
+        Shape::Cone { .. } => 4,
+        Shape::Cylinder { .. } => 5,
+        Shape::TaperedCapsule { .. } => 6,
+        Shape::Sphere { .. } => 7,
+        Shape::Mesh(_) | Shape::HeightField(_) => 8,
+    }
+}
+
+/// A half-space and any solid.
+fn collide_half_space(a: &Plane, b: &Shape, wb: &Transform, margin: f32, out: &mut Manifold) {
+    match *b {
+        Shape::Box { half_extents } => {
+            half_space::against_box(a, &PlacedBox::new(half_extents, wb), margin, out);
+        }
+        Shape::Capsule { half_height, radius } => {
+            half_space::against_capsule(a, &Pill::new(half_height, radius, wb), margin, out);
+        }
+        Shape::Sphere { radius } => half_space::against_sphere(a, &Ball::new(radius, wb), margin, out),
+        Shape::Hull(ref hull) => half_space::against_hull(a, hull, wb, margin, out),
+        ref other => {
+            if let Some(core) = Core::of(other) {
+                half_space::against_core(a, &Posed::new(&core, wb, Vec3::ZERO), margin, out);
+            }
+        }
+    }
+}
+
+/// [`collide`] for `rank(a) <= rank(b)`.
+fn collide_ranked(
+    (a, wa): (&Shape, &Transform),
+    (b, wb): (&Shape, &Transform),
+    margin: f32,
+    parting: &mut Parting,
+    out: &mut Manifold,
+) {
+    // B is never the half-space, whose origin may be far away.
+    let origin = wb.translation;
+    let (wa, wb) =
+        (Transform::new(wa.translation - origin, wa.rotation), Transform::new(Vec3::ZERO, wb.rotation));
+    match (a, b) {
+        (Shape::HalfSpace, other) => {
+            let plane = Plane::new(&wa);
+            parting.gap = plane.height(Vec3::ZERO) - other.bounding_radius();
+            collide_half_space(&plane, other, &wb, margin, out);
+        }
+        (Shape::Hull(hull), _) => hull_pairs::collide(hull, &wa, b, &wb, margin, parting, out),
+        (&Shape::Box { half_extents: half_a }, &Shape::Box { half_extents: half_b }) => {
+            let (a, b) = (PlacedBox::new(half_a, &wa), PlacedBox::new(half_b, &wb));
+            box_box::collide(&a, &b, margin, parting, out);
+        }
+        (&Shape::Box { half_extents }, &Shape::Capsule { half_height, radius }) => {
+            let pill = Pill::new(half_height, radius, &wb);
+            box_capsule::collide(&PlacedBox::new(half_extents, &wa), &pill, margin, parting, out);
+        }
+        (&Shape::Box { half_extents }, &Shape::Sphere { radius }) => {
+            box_sphere::collide(
+                &PlacedBox::new(half_extents, &wa),
+                &Ball::new(radius, &wb),
+                margin,
+                parting,
+                out,
+            );
+        }
+        (
+            &Shape::Capsule { half_height: height_a, radius: radius_a },
+            &Shape::Capsule { half_height: height_b, radius: radius_b },
+        ) => {
+            let (a, b) = (Pill::new(height_a, radius_a, &wa), Pill::new(height_b, radius_b, &wb));
+            capsule_capsule::collide(&a, &b, margin, parting, out);
+        }
+        (&Shape::Capsule { half_height, radius }, &Shape::Sphere { radius: radius_b }) => {
+            let pill = Pill::new(half_height, radius, &wa);
+            capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, parting, out);
+        }
+        (&Shape::Sphere { radius }, &Shape::Sphere { radius: radius_b }) => {
+            // A ball is a capsule without a middle.
+            let pill = Pill::new(0.0, radius, &wa);
+            capsule_sphere::collide(&pill, &Ball::new(radius_b, &wb), margin, parting, out);
+        }
+        (round, &Shape::Sphere { radius }) => {
+            round_sphere::collide(round, &wa, &Ball::new(radius, &wb), margin, out);
+        }
+        // The other half of the pairs is brought into this order by `collide`; two half-spaces never meet.
+        (a, b) => {
+            if let (Some(a), Some(b)) = (Core::of(a), Core::of(b)) {
+                let (a, b) = (Posed::new(&a, &wa, Vec3::ZERO), Posed::new(&b, &wb, Vec3::ZERO));
+                features::collide(&a, &b, margin, parting, out);
+            }
+        }
+    }
+    out.finish(origin);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hull::Hull;
+    use sinew_math::{Random, Rotation};
+    use std::sync::Arc;
+
+    fn solid(random: &mut Random) -> Shape {
+        let mut side = || random.range(0.1, 0.5);
+        let half_extents = Vec3::new(side(), side(), side());
+        if random.index(2) == 0 {
+            return Shape::Box { half_extents };
+        }
+        let points: Vec<Vec3> = (0..16).map(|_| random.in_cube() * half_extents).collect();
+        Shape::Hull(Arc::new(Hull::new(&points).expect("points in general position")))
+    }
+
+    /// Pairs that drift by each other have the same contacts whether what parted them is remembered or not, and whatever is.
+    #[test]
+    fn what_parted_shapes_before_decides_nothing() {
+        let mut random = Random::new(71);
+        let (mut same, mut parted, mut touching) = (0, 0, 0);
+        for _ in 0..400 {
+            let (a, b) = (solid(&mut random), solid(&mut random));
+            let mut frame = Transform::new(random.direction(), random.rotation());
+            let (drift, turn) = (random.in_cube() * 0.05, random.in_cube() * 0.05);
+            let mut parting = Parting::default();
+            for _ in 0..20 {
+                let before = parting.axis;
+                let mut found = Manifold::default();
+                collide_again((&a, &Transform::IDENTITY), (&b, &frame), 0.02, &mut parting, &mut found);
+                let any = |random: &mut Random| random.index(70);
+                let axis = Some(match random.index(3) {
+                    0 => AxisOf::FaceA(any(&mut random)),
+                    1 => AxisOf::FaceB(any(&mut random)),
+                    _ => AxisOf::Edges(any(&mut random), any(&mut random)),
+                });
+                let mut wild = Parting { axis, gap: 1.0 };
+                let mut again = Manifold::default();
+                collide_again((&a, &Transform::IDENTITY), (&b, &frame), 0.02, &mut wild, &mut again);
+                let mut fresh = Manifold::default();
+                collide(&a, &Transform::IDENTITY, &b, &frame, 0.02, &mut fresh);
+                assert_eq!((found, again), (fresh, fresh));
+                parted += u32::from(parting.axis.is_some());
+                same += u32::from(parting.axis.is_some() && before == parting.axis);
+                touching += u32::from(fresh.count > 0);
+                frame = Transform::new(
+                    frame.translation + drift,
+                    Rotation::from_scaled_axis(turn) * frame.rotation,
+                );
+            }
+        }
+        assert!(parted > 1_000 && touching > 1_000 && same * 10 > parted * 7, "{same} {parted} {touching}");
+    }
+}

@@ -1,0 +1,285 @@
+//! Polytope against polytope: hulls, boxes and triangles, by separating axes. Of the pairs of edges only those count whose
+//! arcs cross on the Gauss map, since only they are faces of the Minkowski difference (Gregorius, "The Separating Axis Test
+//! between Convex Polyhedra", GDC 2013). Then the two faces or the two edges that meet.
+
+use super::axes::{
+    Bridge, Faceted, PARALLEL_SINE, choose, choose_face, push, push_bridges, push_faces, tolerance,
+};
+use super::clip::{PolytopeFace, Reference};
+use super::feature::{self, WHOLE, pair};
+use super::placed::Segment;
+use super::{Manifold, Parting};
+use crate::boxes::separation::{Axis, AxisOf};
+use crate::hull::{MAX_VERTICES, Plane, Polytope};
+use sinew_math::{Vec3, min};
+
+/// Two faces of hulls cut to each other have at most so many corners, but for slivers.
+const FACE_CORNERS: usize = MAX_VERTICES;
+/// Parallel edges and corners that are as close as the closest.
+const CLOSEST: usize = 16;
+
+/// `tie` settles ties between faces of A and B: a direction that stays when the shapes change places.
+pub(super) fn collide(
+    a: &Polytope<'_>,
+    b: &Polytope<'_>,
+    margin: f32,
+    tie: Vec3,
+    parting: &mut Parting,
+    out: &mut Manifold,
+) {
+    let parts = |axis: &Axis| axis.separation > margin;
+    if let Some(axis) = parting.axis.and_then(|of| axis(a, b, of)).filter(parts) {
+        parting.gap = axis.separation;
+        return;
+    }
+    parting.axis = None;
+    let face_a = best_face(a, b, margin, AxisOf::FaceA);
+    if parts(&face_a) {
+        *parting = Parting::along(&face_a);
+        return;
+    }
+    let face_b = best_face(b, a, margin, AxisOf::FaceB);
+    if parts(&face_b) {
+        *parting = Parting::along(&face_b);
+        return;
+    }
+    let edges = best_edges(a, b);
+    if let Some(axis) = edges.filter(parts) {
+        *parting = Parting::along(&axis);
+        return;
+    }
+    let tolerance = tolerance(a.thickness, b.thickness);
+    let face_b = Axis { normal: -face_b.normal, ..face_b };
+    let face = choose_face(face_a, face_b, tolerance, tie);
+    let best = choose(face, edges, tolerance);
+    push(a, b, &best, margin, tolerance, out);
+    if let Some(edges) = edges.filter(|edges| edges.of != best.of && edges.separation > best.separation) {
+        push_crossing((a, b), &best, &edges, tolerance, out);
+    }
+}
+
+/// Adds a point where edges cross: two that part better than the face that was preferred to them, they may cross beside that face, deeper than all
+/// that is over it: then their points are told, too.
+fn push_crossing(
+    (a, b): (&Polytope<'_>, &Polytope<'_>),
+    face: &Axis,
+    edges: &Axis,
+    tolerance: f32,
+    out: &mut Manifold,
+) {
+    let AxisOf::Edges(i, j) = edges.of else { return };
+    let told = out.points().iter().fold(f32::INFINITY, |least, point| min(point.separation, least));
+    if face.separation > 0.0 || told <= face.separation + tolerance + 0.05 * face.separation.abs() {
+        return;
+    }
+    let (edge_a, edge_b) = (a.edge(i), b.edge(j));
+    let (s, t) = edge_a.closest_to_segment(&edge_b);
+    let (on_a, on_b) = (edge_a.at(s), edge_b.at(t));
+    let separation = (on_b - on_a).dot(out.normal);
+    if separation < told - tolerance {
+        let feature = pair(feature::half_edge(a.topology, i), feature::half_edge(b.topology, j));
+        out.push_or_replace_shallowest((on_a + on_b) * 0.5, separation, feature);
+    }
+}
+
+/// The axis of that name, with the bits that [`best_face`] and [`best_edges`] give it; `None` if they have none of it.
+fn axis(a: &Polytope<'_>, b: &Polytope<'_>, of: AxisOf) -> Option<Axis> {
+    match of {
+        AxisOf::FaceA(k) => a.planes.get(k).map(|plane| face(plane, b, of)),
+        AxisOf::FaceB(k) => b.planes.get(k).map(|plane| face(plane, a, of)),
+        AxisOf::Edges(i, j) => {
+            let there = a.topology.has_edge(i) && b.topology.has_edge(j);
+            if there { edges(&Arc::new(a, i), &Arc::new(b, j), of) } else { None }
+        }
+    }
+}
+
+fn face(plane: &Plane, other: &Polytope<'_>, of: AxisOf) -> Axis {
+    Axis { normal: plane.normal, separation: -plane.offset - other.reach(-plane.normal), of }
+}
+
+/// The face of `of` that separates best, with its outward normal, or the first one that separates by more than `enough`.
+fn best_face(of: &Polytope<'_>, other: &Polytope<'_>, enough: f32, name: fn(usize) -> AxisOf) -> Axis {
+    let mut best = Axis { normal: Vec3::Y, separation: f32::NEG_INFINITY, of: name(0) };
+    for (number, plane) in of.planes.iter().enumerate() {
+        let axis = face(plane, other, name(number));
+        if axis.separation > best.separation {
+            best = axis;
+            if axis.separation > enough {
+                break;
+            }
+        }
+    }
+    best
+}
+
+/// An edge with the normals of its faces.
+struct Arc {
+    from: Vec3,
+    along: Vec3,
+    normals: [Vec3; 2],
+}
+
+impl Arc {
+    fn new(of: &Polytope<'_>, side: usize) -> Self {
+        let [from, to] = of.edge(side).ends;
+        Self {
+            from,
+            along: to - from,
+            normals: of.topology.faces_of(side).map(|face| of.planes[face].normal),
+        }
+    }
+
+    /// The direction across both edges that points out of this one's polytope, not of unit length, if there the Minkowski
+    /// difference has a face: if this arc and the other's opposite cross. An edge of a triangle, between opposite normals, has
+    /// half a circle: its direction tells which half.
+    fn crossing(&self, other: &Self) -> Option<Vec3> {
+        let [c, d] = other.normals.map(|n| n.dot(self.along));
+        if c * d >= 0.0 {
+            return None;
+        }
+        let [a, b] = self.normals.map(|n| n.dot(other.along));
+        if a * b >= 0.0 || c * b >= 0.0 {
+            return None;
+        }
+        let across = self.along.cross(other.along);
+        Some(if c < 0.0 { -across } else { across })
+    }
+}
+
+/// The direction across an edge of each that separates best.
+fn best_edges(a: &Polytope<'_>, b: &Polytope<'_>) -> Option<Axis> {
+    let mut best: Option<Axis> = None;
+    for i in a.topology.edge_numbers() {
+        let arc = Arc::new(a, i);
+        for j in b.topology.edge_numbers() {
+            let Some(axis) = edges(&arc, &Arc::new(b, j), AxisOf::Edges(i, j)) else { continue };
+            if best.is_none_or(|best| axis.separation > best.separation) {
+                best = Some(axis);
+            }
+        }
+    }
+    best
+}
+
+/// The direction across two edges; `None` if the Minkowski difference has no face there, or they are parallel.
+fn edges(arc: &Arc, other: &Arc, of: AxisOf) -> Option<Axis> {
+    let across = arc.crossing(other)?;
+    let length = across.length();
+    if length <= PARALLEL_SINE * (arc.along.length() * other.along.length()) {
+        return None;
+    }
+    let normal = across / length;
+    Some(Axis { normal, separation: normal.dot(other.from - arc.from), of })
+}
+
+impl Faceted for Polytope<'_> {
+    fn corner(&self, direction: Vec3) -> (usize, Vec3) {
+        let index = self.support(direction);
+        (index, self.vertices[index])
+    }
+
+    fn edge_named(&self, side: usize, _: Vec3) -> (Segment, u16) {
+        (self.edge(side), feature::half_edge(self.topology, side))
+    }
+
+    fn push_faces(
+        &self,
+        face: usize,
+        other: &Self,
+        best: &Axis,
+        margin: f32,
+        tolerance: f32,
+        out: &mut Manifold,
+    ) -> bool {
+        let reference = PolytopeFace::new(self, face);
+        let incident = PolytopeFace::new(other, other.face_at_support(-reference.normal(), tolerance));
+        let corners = (incident.feature(), incident.corners());
+        push_faces::<FACE_CORNERS>(&reference, corners, best, margin, tolerance, out)
+    }
+
+    /// Tries those corners and edges that reach far enough along `normal` to be within `margin` of the other solid.
+    fn push_closest(&self, b: &Self, normal: Vec3, margin: f32, tolerance: f32, out: &mut Manifold) {
+        let a = self;
+        let (lowest, highest) = (-b.reach(-normal) - margin, a.reach(normal) + margin);
+        let of_a = |p: Vec3| p.dot(normal) >= lowest;
+        let of_b = |p: Vec3| p.dot(normal) <= highest;
+        let from_a = a.vertices.iter().enumerate().filter(|(_, p)| of_a(**p)).map(|(k, &on_a)| {
+            let feature = pair(feature::vertex(k), WHOLE);
+            Bridge { on_a, on_b: b.closest(on_a), feature }
+        });
+        let from_b = b.vertices.iter().enumerate().filter(|(_, p)| of_b(**p)).map(|(k, &on_b)| {
+            let feature = pair(WHOLE, feature::vertex(k));
+            Bridge { on_a: a.closest(on_b), on_b, feature }
+        });
+        let corners = from_a.chain(from_b);
+        let edges_b = || {
+            b.topology.edge_numbers().map(|j| (j, b.edge(j))).filter(|(_, e)| e.ends.into_iter().any(of_b))
+        };
+        let edges_a = a.topology.edge_numbers().map(|i| (i, a.edge(i)));
+        let edges = edges_a.filter(|(_, e)| e.ends.into_iter().any(of_a)).flat_map(|(i, edge_a)| {
+            edges_b().map(move |(j, edge_b)| {
+                let (s, t) = edge_a.closest_to_segment(&edge_b);
+                let feature = pair(feature::half_edge(a.topology, i), feature::half_edge(b.topology, j));
+                Bridge { on_a: edge_a.at(s), on_b: edge_b.at(t), feature }
+            })
+        });
+        let Some(best) = corners.clone().chain(edges).reduce(Bridge::shorter) else { return };
+        let size = (b.center - a.center).length();
+        push_bridges::<CLOSEST>(best, corners, (size, normal), margin, tolerance, out);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::placed::PlacedBox;
+    use super::*;
+    use crate::hull::{BoxPolytope, TrianglePolytope};
+    use sinew_math::{Random, Transform};
+
+    fn gap(a: &Polytope<'_>, b: &Polytope<'_>, n: Vec3) -> f32 {
+        -b.reach(-n) - a.reach(n)
+    }
+
+    /// Two faces and three edges are enough: the best of all face normals and crossed edges, both ways, is found.
+    #[test]
+    fn a_triangle_is_a_polytope() {
+        let mut random = Random::new(31);
+        let (mut touching, mut faces) = (0, 0);
+        for case in 0..3_000 {
+            let corners = [random.in_cube(), random.in_cube(), random.in_cube()];
+            let Some(normal) = (corners[1] - corners[0]).cross(corners[2] - corners[0]).try_normalize()
+            else {
+                continue;
+            };
+            let triangle = TrianglePolytope::new(corners, normal);
+            let frame = Transform::new(random.in_cube(), random.rotation());
+            let cuboid = BoxPolytope::new(&PlacedBox::new(Vec3::new(0.2, 0.3, 0.5), &frame));
+            let (a, b) = (triangle.polytope(), cuboid.polytope());
+            let mut best = f32::NEG_INFINITY;
+            let edges_a = a.topology.edge_numbers().map(|i| a.edge(i));
+            for e in edges_a.map(|e| e.ends[1] - e.ends[0]) {
+                for f in b.topology.edge_numbers().map(|j| b.edge(j)).map(|e| e.ends[1] - e.ends[0]) {
+                    if let Some(n) = e.cross(f).try_normalize() {
+                        best =
+                            [n, -n].into_iter().fold(best, |best, n| sinew_math::max(gap(&a, &b, n), best));
+                    }
+                }
+            }
+            for n in a.planes.iter().map(|p| p.normal).chain(b.planes.iter().map(|p| -p.normal)) {
+                best = sinew_math::max(gap(&a, &b, n), best);
+            }
+            let mut out = Manifold::default();
+            collide(&a, &b, 0.0, Vec3::Y, &mut Parting::default(), &mut out);
+            assert_eq!(out.count > 0, best <= 0.0, "case {case}: {best}, {out:?}");
+            if out.count > 0 {
+                let along = gap(&a, &b, out.normal);
+                let slack = 1e-4 + 0.0011 + 0.06 * best.abs();
+                assert!(along > best - slack, "case {case}: {along} for {best}, {out:?}");
+                touching += 1;
+                faces += usize::from(out.count > 2);
+            }
+        }
+        assert!(touching > 500 && faces > 100, "{touching} touch, {faces} with three points or more");
+    }
+}

@@ -1,0 +1,327 @@
+//! Box against a triangle: separating axes (one of the triangle, three of the box, nine of edges), then the faces or edges that
+//! meet; the closest points where they pass each other.
+
+use super::{Teller, When};
+use crate::collide::ManifoldPoint;
+use crate::collide::feature::{self, WHOLE, pair};
+use crate::collide::placed::{PlacedBox, Segment, sign};
+use crate::triangles::{Part, closest_on_triangle};
+use sinew_math::{Vec3, max, min};
+
+/// Edges whose sine is below this are taken as parallel.
+const PARALLEL_SINE: f32 = 0.005;
+/// Least cosine to the triangle's normal of a way out, so that none leads through the triangle: below this cosine to its normal.
+const LEAST_COSINE: f32 = -0.02;
+
+/// Cosine of the angle between a normal and a face of the box from which on the face lies on what gives the normal.
+const LIES_COSINE: f32 = 0.9;
+
+/// A direction from the triangle to the box and the gap along it.
+#[derive(Clone, Copy)]
+struct Axis {
+    normal: Vec3,
+    separation: f32,
+    of: AxisOf,
+}
+
+#[derive(Clone, Copy)]
+enum AxisOf {
+    /// A face of the box, by its axis.
+    Face(usize),
+    /// An edge of the triangle and an axis of the box.
+    Edges(usize, usize),
+}
+
+/// `gap` is that along the triangle's normal, at most the margin.
+pub(super) fn meet(placed: &PlacedBox, gap: f32, teller: &mut Teller<'_>) -> Option<Part> {
+    let Axes { widest, best } = axes(placed, teller);
+    if widest > teller.margin {
+        return None;
+    }
+    let tolerance = teller.solid.tolerance();
+    // The triangle's own face holds best, and says what the surface is like: another axis must be clearly better.
+    let told = match best.filter(|best| best.separation > gap + tolerance + 0.05 * max(-gap, 0.0)) {
+        None => face(gap, widest, teller),
+        // Apart along a direction that leads through the triangle: they pass each other beside its rim.
+        Some(axis) if axis.separation <= 0.0 && widest > 0.0 => None,
+        Some(axis) => match axis.of {
+            AxisOf::Face(k) => box_face(placed, k, &axis, teller),
+            AxisOf::Edges(i, j) => edges(placed, i, j, &axis, teller),
+        },
+    };
+    if told.is_some() {
+        return told;
+    }
+    if max(widest, gap) > 0.0 {
+        return closest(placed, teller);
+    }
+    if best.is_none_or(|best| best.separation <= gap) {
+        let middle = teller.triangle.corners.iter().sum::<Vec3>() / 3.0;
+        teller.lift(gap, closest_on_triangle(&teller.triangle.corners, placed.closest(middle)).0);
+    }
+    None
+}
+
+/// Part of the box over the triangle. `None`, and nothing told, if that does not show how far they are apart: they pass each
+/// other beside the face.
+fn face(gap: f32, widest: f32, teller: &mut Teller<'_>) -> Option<Part> {
+    let over = teller.over_face(Vec3::ZERO);
+    let nearest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
+    let beside = max(gap, widest) > 0.0 && nearest > gap + teller.solid.tolerance();
+    (!beside && teller.face_points(&over, When::Now)).then_some(Part::Face)
+}
+
+/// Answers of the separating axes beside the triangle's own.
+struct Axes {
+    /// The largest gap along any of them.
+    widest: f32,
+    /// The one with the largest gap of those that lead out of the surface.
+    best: Option<Axis>,
+}
+
+fn axes(placed: &PlacedBox, teller: &Teller<'_>) -> Axes {
+    let triangle = teller.triangle;
+    let mut axes = Axes { widest: f32::NEG_INFINITY, best: None };
+    let mut consider = |direction: Vec3, half: f32, of: AxisOf| {
+        let [a, b, c] = triangle.corners.map(|corner| corner.dot(direction));
+        let (low, high) = (min(min(a, b), c), max(max(a, b), c));
+        for (normal, separation) in [(direction, -half - high), (-direction, low - half)] {
+            axes.widest = max(separation, axes.widest);
+            let leads_out = normal.dot(triangle.normal) >= LEAST_COSINE;
+            if leads_out && axes.best.is_none_or(|best| separation > best.separation) {
+                axes.best = Some(Axis { normal, separation, of });
+            }
+        }
+    };
+    for k in 0..3 {
+        consider(placed.axes[k], placed.half[k], AxisOf::Face(k));
+    }
+    for i in 0..3 {
+        let along = triangle.corners[(i + 1) % 3] - triangle.corners[i];
+        let length = along.length();
+        for j in 0..3 {
+            let across = along.cross(placed.axes[j]);
+            let sine = across.length();
+            if sine > PARALLEL_SINE * length {
+                let direction = across / sine;
+                // Only what both edges bound is a way out over them.
+                consider(direction, placed.half_width(direction), AxisOf::Edges(i, j));
+            }
+        }
+    }
+    axes
+}
+
+/// The triangle cut to the prism over a face of the box.
+fn box_face(placed: &PlacedBox, k: usize, axis: &Axis, teller: &mut Teller<'_>) -> Option<Part> {
+    let outward = -axis.normal;
+    let side = sign(placed.axes[k].dot(outward));
+    let tolerance = teller.solid.tolerance();
+    let part = teller.triangle.support(axis.normal, tolerance);
+    let mut corners = [Vec3::ZERO; 8];
+    let mut count = 3;
+    corners[..3].copy_from_slice(&teller.triangle.corners);
+    for u in [(k + 1) % 3, (k + 2) % 3] {
+        for direction in [placed.axes[u], -placed.axes[u]] {
+            count = cut(&mut corners, count, |p| p.dot(direction) - placed.half[u] - tolerance);
+        }
+    }
+    let mut points = [ManifoldPoint::default(); 8];
+    let (mut told, mut nearest) = (0, f32::INFINITY);
+    for (index, &corner) in corners[..count].iter().enumerate() {
+        let separation = corner.dot(outward) - placed.half[k];
+        nearest = min(separation, nearest);
+        if separation <= teller.margin {
+            let of_surface = super::name::part(teller.triangle, part) ^ ((index as u16) << 10);
+            points[told] = ManifoldPoint {
+                position: corner + axis.normal * (0.5 * separation),
+                separation,
+                feature: pair(of_surface, feature::face(k, side)),
+            };
+            told += 1;
+        }
+    }
+    if told == 0 || (axis.separation > 0.0 && nearest > axis.separation + tolerance) {
+        return None;
+    }
+    teller.tell(axis.normal, part, When::Now, &points[..told]);
+    Some(part)
+}
+
+/// Cuts a convex polygon down to where `beyond` is not positive; gives how many corners are left.
+fn cut(corners: &mut [Vec3; 8], count: usize, beyond: impl Fn(Vec3) -> f32) -> usize {
+    let was = *corners;
+    let mut left = 0;
+    let mut push = |p: Vec3| {
+        if left < corners.len() {
+            corners[left] = p;
+            left += 1;
+        }
+    };
+    for k in 0..count {
+        let (from, to) = (was[k], was[(k + 1) % count]);
+        let (d0, d1) = (beyond(from), beyond(to));
+        if d0 <= 0.0 {
+            push(from);
+        }
+        if (d0 <= 0.0) != (d1 <= 0.0) {
+            push(from + (to - from) * (d0 / (d0 - d1)));
+        }
+    }
+    left
+}
+
+/// The closest points of an edge of each.
+fn edges(placed: &PlacedBox, i: usize, j: usize, axis: &Axis, teller: &mut Teller<'_>) -> Option<Part> {
+    let corners = teller.triangle.corners;
+    let edge = Segment { ends: [corners[i], corners[(i + 1) % 3]] };
+    let index = placed.support(-axis.normal) & !(1 << j);
+    let of_box = Segment { ends: [placed.vertex(index), placed.vertex(index | 1 << j)] };
+    let (s, t) = of_box.closest_to_segment(&edge);
+    let inside = |x: f32| x > 0.0 && x < 1.0;
+    // The triangle may reach further beside this edge: then the axis is not that of the closest points.
+    let across = (of_box.at(s) - edge.at(t)).dot(axis.normal) - axis.separation;
+    let bound = across.abs() <= teller.solid.tolerance();
+    if axis.separation > 0.0 && !(inside(s) && inside(t) && bound) {
+        return None;
+    }
+    let part = Part::on_edge(i, t);
+    let under = under_face(placed, &edge, axis.normal, super::name::part(teller.triangle, part));
+    let under = under.as_ref().map_or(&[][..], |points| within(points, teller.margin));
+    let near = |point: &ManifoldPoint| point.separation <= axis.separation + teller.solid.tolerance();
+    if under.iter().any(near) {
+        teller.tell(axis.normal, part, When::Now, under);
+    } else {
+        let position = (of_box.at(s) + edge.at(t)) * 0.5;
+        teller.point(axis.normal, part, position, axis.separation, feature::edge(j, index));
+    }
+    Some(part)
+}
+
+/// Points of two that are no further apart than the margin.
+fn within(points: &[ManifoldPoint; 2], margin: f32) -> &[ManifoldPoint] {
+    match points.each_ref().map(|point| point.separation <= margin) {
+        [true, true] => points,
+        [true, false] => &points[..1],
+        [false, true] => &points[1..],
+        [false, false] => &[],
+    }
+}
+
+/// Both ends of what a face of the box has of an edge of the triangle, if the face lies on it and does not stand up from it: with
+/// the one point alone where the edges cross the box rocks from one side to the other for ever.
+fn under_face(
+    placed: &PlacedBox,
+    edge: &Segment,
+    normal: Vec3,
+    of_surface: u16,
+) -> Option<[ManifoldPoint; 2]> {
+    let (k, side) = placed.facing(-normal);
+    let outward = placed.axes[k] * side;
+    let slope = -outward.dot(normal);
+    if slope < LIES_COSINE {
+        return None;
+    }
+    let base = usize::from(side > 0.0) << k;
+    // Shares of the edge, and the box's feature above each.
+    let mut ends = [(0.0, feature::face(k, side)), (1.0, feature::face(k, side))];
+    for u in [(k + 1) % 3, (k + 2) % 3] {
+        let along = 3 - k - u;
+        let [from, to] = edge.ends.map(|end| end.dot(placed.axes[u]));
+        for (low, limit) in [(true, -placed.half[u]), (false, placed.half[u])] {
+            // Of the side that the edge comes in by, or goes out by.
+            let (comes, steps) = ((from < to) == low, to - from);
+            if steps.abs() <= f32::MIN_POSITIVE {
+                // Along the side: all of it is beyond, or nothing.
+                if from.abs() > placed.half[u] {
+                    return None;
+                }
+                continue;
+            }
+            let share = (limit - from) / steps;
+            let end = &mut ends[usize::from(!comes)];
+            if (share > end.0) == comes {
+                *end = (share, feature::edge(along, base | usize::from(!low) << u));
+            }
+        }
+    }
+    if ends[0].0 >= ends[1].0 {
+        return None;
+    }
+    Some(ends.map(|(share, of_box)| {
+        let at = edge.at(share);
+        let separation = (at.dot(outward) - placed.half[k]) / slope;
+        let position = at + normal * (0.5 * separation);
+        ManifoldPoint { position, separation, feature: pair(of_surface, of_box) }
+    }))
+}
+
+/// The closest points of a box and a triangle that are apart, by trying corners and edges.
+fn closest(placed: &PlacedBox, teller: &mut Teller<'_>) -> Option<Part> {
+    let corners = teller.triangle.corners;
+    let mut best = (f32::INFINITY, Vec3::ZERO, Vec3::ZERO, Part::Face, WHOLE);
+    let mut consider = |on_box: Vec3, on_triangle: Vec3, part: Part, feature: u16| {
+        let square = (on_box - on_triangle).length_squared();
+        if square < best.0 {
+            best = (square, on_box, on_triangle, part, feature);
+        }
+    };
+    for index in 0..8 {
+        let on_box = placed.vertex(index);
+        let (point, part) = closest_on_triangle(&corners, on_box);
+        consider(on_box, point, part, feature::vertex(index));
+    }
+    for (k, &corner) in corners.iter().enumerate() {
+        consider(placed.closest(corner), corner, Part::Corner(k), WHOLE);
+        let edge = Segment { ends: [corner, corners[(k + 1) % 3]] };
+        for axis in 0..3 {
+            for index in (0..8).filter(|index| index >> axis & 1 == 0) {
+                let of_box = Segment { ends: [placed.vertex(index), placed.vertex(index | 1 << axis)] };
+                let (s, t) = of_box.closest_to_segment(&edge);
+                consider(of_box.at(s), edge.at(t), Part::on_edge(k, t), feature::edge(axis, index));
+            }
+        }
+    }
+    let (square, on_box, on_triangle, part, feature) = best;
+    let separation = square.sqrt();
+    // The direction between points that all but coincide is noise.
+    if separation > teller.margin || separation <= 1e-5 * placed.half.length() {
+        return None;
+    }
+    let normal = (on_box - on_triangle) / separation;
+    teller.point(normal, part, (on_box + on_triangle) * 0.5, separation, feature);
+    Some(part)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_math::Transform;
+
+    /// An edge along a side of the face under which it lies is under it as a whole, or not at all; one across it by what of it
+    /// is between the sides.
+    #[test]
+    fn an_edge_is_under_a_face_between_its_sides() {
+        let placed = PlacedBox::new(Vec3::new(2.0, 0.5, 1.0), &Transform::IDENTITY);
+        let under = |from: Vec3, to: Vec3| {
+            let points = under_face(&placed, &Segment { ends: [from, to] }, Vec3::Y, 0)?;
+            Some(points.map(|point| point.position))
+        };
+        let at = |x: f32, z: f32| Vec3::new(x, -0.5, z);
+        assert_eq!(under(at(-3.0, 0.9), at(1.0, 0.9)), Some([at(-2.0, 0.9), at(1.0, 0.9)]));
+        assert_eq!(under(at(-3.0, -1.5), at(1.0, 2.5)), Some([at(-2.0, -0.5), at(-0.5, 1.0)]));
+        for beside in [1.1, -1.1] {
+            assert_eq!(under(at(-3.0, beside), at(1.0, beside)), None);
+            assert_eq!(under(at(-3.0, beside), at(1.0, beside * 1.001)), None);
+        }
+    }
+
+    #[test]
+    fn what_is_beyond_the_margin_is_left_out() {
+        let [near, far] = [0.01, 0.5].map(|separation| ManifoldPoint { separation, ..Default::default() });
+        assert_eq!(within(&[near, near], 0.1), &[near, near]);
+        assert_eq!(within(&[near, far], 0.1), &[near]);
+        assert_eq!(within(&[far, near], 0.1), &[near]);
+        assert_eq!(within(&[far, far], 0.1), &[]);
+    }
+}

@@ -1,0 +1,111 @@
+//! Contacts with the edges and corners of a surface that are real. One is if every triangle that has the edge or corner is
+//! nearest to the shape there: over whose face the shape lies, to that it touches none of its edges (the idea of voided
+//! features: Box2D's ghost vertices, Bullet's internal edges).
+
+use super::patch::{MAX_PARTS, SAME_NORMAL};
+use super::{Candidate, When};
+use crate::triangles::Part;
+use sinew_math::Vec3;
+
+/// Cosine of the angle between a normal and its triangle's up to which an edge that cannot be felt may give it: a little more
+/// than the 5° by which the surface may turn there.
+const WITHIN_FACE: f32 = 0.995;
+
+/// Cosine of the angle between a normal and its triangle's from which on the shape lies on the triangle.
+const FACES: f32 = 0.9;
+
+/// Cosine of the angle between two normals up to which they keep a shape out from the same side.
+const SAME_SIDE: f32 = 0.5;
+
+/// Features of one surface that are not what a triangle which has them is touched at.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Claims {
+    edges: Vec<(u32, u32)>,
+    vertices: Vec<u32>,
+}
+
+impl Claims {
+    /// Marks the candidates that do not hold. Overlaps up to the tolerance are none.
+    pub fn settle(&mut self, candidates: &mut [Candidate], tolerance: f32) {
+        self.edges.clear();
+        self.vertices.clear();
+        for candidate in candidates.iter().filter(|candidate| candidate.when == When::Now) {
+            self.deny_others(candidate);
+        }
+        self.edges.sort_unstable();
+        self.vertices.sort_unstable();
+        for candidate in candidates.iter_mut() {
+            candidate.holds = self.holds(candidate);
+        }
+        // What lies above a corner may by rounding belong to no one, and what is deep in a steep valley is told of by edges alone
+        // that cannot be felt: then it touches what faces it best.
+        let overlaps = |candidate: &Candidate| candidate.nearest < -tolerance;
+        let is_deep = candidates.iter().any(overlaps);
+        let counts = |candidate: &Candidate| !is_deep || overlaps(candidate);
+        if !candidates.iter().any(|candidate| candidate.holds && counts(candidate)) {
+            let facing = |c: &Candidate| c.normal.dot(c.triangle.normal);
+            let better =
+                |a: usize, b: usize| if facing(&candidates[b]) > facing(&candidates[a]) { b } else { a };
+            let unheard = (0..candidates.len()).filter(|&i| counts(&candidates[i]));
+            if let Some(best) = unheard.reduce(better) {
+                candidates[best].holds = true;
+            }
+        }
+        hear_what_faces(candidates, &overlaps);
+    }
+
+    /// Denies the parts at which a triangle is not touched. Corners are denied by edges that end there, and not the other way round: between
+    /// the two, rounding decides.
+    fn deny_others(&mut self, candidate: &Candidate) {
+        let triangle = &candidate.triangle;
+        let (edges, vertices): (&[usize], &[usize]) = match candidate.part {
+            Part::Face => (&[0, 1, 2], &[0, 1, 2]),
+            Part::Edge(0) => (&[1, 2], &[0, 1, 2]),
+            Part::Edge(1) => (&[0, 2], &[0, 1, 2]),
+            Part::Edge(_) => (&[0, 1], &[0, 1, 2]),
+            Part::Corner(0) => (&[1], &[1, 2]),
+            Part::Corner(1) => (&[2], &[0, 2]),
+            Part::Corner(_) => (&[0], &[0, 1]),
+        };
+        self.edges.extend(edges.iter().map(|&edge| triangle.edge_vertices(edge)));
+        self.vertices.extend(vertices.iter().map(|&corner| triangle.vertices[corner]));
+    }
+
+    fn holds(&self, candidate: &Candidate) -> bool {
+        let triangle = &candidate.triangle;
+        match candidate.part {
+            Part::Face => true,
+            Part::Edge(edge) => {
+                let denied = self.edges.binary_search(&triangle.edge_vertices(edge)).is_ok();
+                !denied && is_felt(candidate, [edge, edge])
+            }
+            Part::Corner(corner) => {
+                let denied = self.vertices.binary_search(&triangle.vertices[corner]).is_ok();
+                !denied && is_felt(candidate, [corner, (corner + 2) % 3])
+            }
+        }
+    }
+}
+
+/// An overlap that faces its triangle is not left unfelt for want of anything that holds it from that side: of two walls of a
+/// valley along whose ridges a shape lies, each denies the other's corners at the bottom.
+fn hear_what_faces(candidates: &mut [Candidate], overlaps: &impl Fn(&Candidate) -> bool) {
+    let facing = |c: &Candidate| c.normal.dot(c.triangle.normal);
+    for _ in 0..MAX_PARTS {
+        let felt = |normal: Vec3| candidates.iter().any(|c| c.holds && c.normal.dot(normal) > SAME_SIDE);
+        let unheard = candidates.iter().filter(|c| !c.holds && overlaps(c) && facing(c) > FACES);
+        let unfelt = unheard.filter(|c| !felt(c.normal));
+        let Some(best) = unfelt.reduce(|a, b| if facing(b) > facing(a) { b } else { a }) else { return };
+        let normal = best.normal;
+        for candidate in candidates.iter_mut() {
+            candidate.holds |= overlaps(candidate) && candidate.normal.dot(normal) > SAME_NORMAL;
+        }
+    }
+}
+
+/// True if one of the edges can be felt, or else the normal is as good as the face's.
+fn is_felt(candidate: &Candidate, edges: [usize; 2]) -> bool {
+    let triangle = &candidate.triangle;
+    edges.into_iter().any(|edge| triangle.is_active(edge))
+        || candidate.normal.dot(triangle.normal) >= WITHIN_FACE
+}

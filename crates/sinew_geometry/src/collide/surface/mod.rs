@@ -1,0 +1,265 @@
+//! A surface of triangles against a convex shape: several manifolds, none of which knows of the edges between triangles.
+//!
+//! Each triangle near the shape is met by itself ([`round`], [`boxed`], [`other`]). What it gives is believed only where the triangle
+//! has a say: a face over which the shape is speaks first and claims its edges and corners; then edges at which the surface
+//! falls away, which claim their corners; then corners ([`claims`]). So nothing catches on an edge within a floor. What is
+//! left is merged by normal and reduced to four points each ([`patch`]).
+
+mod boxed;
+mod claims;
+mod name;
+mod other;
+mod outline;
+mod patch;
+mod round;
+mod solid;
+
+pub use patch::{MAX_PARTS, Patch};
+
+use super::ManifoldPoint;
+use super::feature::{self, pair};
+use crate::boxes::Aabb;
+use crate::convex::support::Core;
+use crate::shape::Shape;
+use crate::triangles::{Part, Surface, Triangle};
+use outline::Outline;
+use sinew_math::{Transform, Vec3, min};
+use solid::Solid;
+
+/// Motion of a shape against a surface in the coming step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Motion {
+    /// Velocity of the shape's centre relative to the surface, world, m/s.
+    pub velocity: Vec3,
+    /// For how long, seconds.
+    pub dt: f32,
+    /// Points are looked for up to this distance, metres.
+    pub margin: f32,
+}
+
+/// Answer of one triangle: points along one normal.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    /// From the surface to the shape.
+    normal: Vec3,
+    /// Part of the triangle that is touched.
+    part: Part,
+    /// Now, or once the shape has come over the triangle.
+    when: When,
+    triangle: Triangle,
+    /// Its points, in the list of all.
+    first: u32,
+    count: u32,
+    /// Least separation, metres.
+    nearest: f32,
+    /// True if it is not overruled.
+    holds: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum When {
+    Now,
+    Soon,
+}
+
+/// Lists that are used for one pair after the other.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    candidates: Vec<Candidate>,
+    points: Vec<ManifoldPoint>,
+    claims: claims::Claims,
+    merging: patch::Merging,
+}
+
+/// Fills `out` with the contacts of a placed surface and a placed convex shape: normals from the surface to the shape.
+pub fn collide_surface(
+    surface: &Surface<'_>,
+    world_from_surface: &Transform,
+    shape: &Shape,
+    world_from_shape: &Transform,
+    motion: &Motion,
+    scratch: &mut Scratch,
+    out: &mut Patch,
+) {
+    out.clear();
+    if !(world_from_surface.is_finite() && world_from_shape.is_finite() && motion.velocity.is_finite()) {
+        return;
+    }
+    let to_surface = world_from_surface.rotation.inverse();
+    let middle = middle(shape);
+    let center = world_from_surface.inverse_point(world_from_shape.point(middle));
+    let Some(core) = Core::of(shape) else { return };
+    let rotation = (to_surface * world_from_shape.rotation).normalize();
+    let frame = Transform::new(-(rotation * middle), rotation);
+    let solid = Solid::new(shape, &core, &frame);
+    let local = Motion { velocity: to_surface * motion.velocity, ..*motion };
+    scratch.candidates.clear();
+    scratch.points.clear();
+    let around = shape.aabb(&frame).expand(motion.margin);
+    let around = Aabb { min: around.min + center, max: around.max + center };
+    surface.overlapping(&around, |triangle| {
+        // With the shape's centre for origin: what is near it is precise far from the surface's.
+        meet(&triangle.moved(-center), &solid, &local, scratch);
+    });
+    if scratch.candidates.is_empty() {
+        sunk(surface, center, shape, &solid, scratch);
+    }
+    scratch.claims.settle(&mut scratch.candidates, solid.tolerance());
+    patch::merge(&scratch.candidates, &scratch.points, solid.tolerance(), &mut scratch.merging, out);
+    out.finish(world_from_surface, center);
+}
+
+/// Well inside of a shape: where a triangle in front of which this is faces it.
+fn middle(shape: &Shape) -> Vec3 {
+    match *shape {
+        Shape::Hull(ref hull) => hull.center(),
+        Shape::Cone { half_height, .. } => Vec3::new(0.0, -0.5 * half_height, 0.0),
+        _ => Vec3::ZERO,
+    }
+}
+
+/// Asks a triangle near the shape.
+fn meet(triangle: &Triangle, solid: &Solid<'_>, motion: &Motion, scratch: &mut Scratch) {
+    // The centre is in front: from behind a triangle is not there.
+    let height = triangle.height(Vec3::ZERO);
+    let gap = height - solid.depth(triangle.normal);
+    if height <= 0.0 || gap > motion.margin {
+        return;
+    }
+    let mut teller = Teller { triangle, solid, margin: motion.margin, scratch };
+    let part = match solid {
+        Solid::Ball(radius) => round::ball(*radius, &mut teller),
+        Solid::Pill(pill) => round::pill(pill, &mut teller),
+        Solid::Box(placed) => boxed::meet(placed, gap, &mut teller),
+        Solid::Other(posed) => other::other(posed, gap, &mut teller),
+    };
+    let closing = -motion.velocity.dot(triangle.normal);
+    if part != Some(Part::Face) && closing > 0.0 && gap > 0.0 {
+        // Where the shape comes down on the triangle: at the foot of a ramp it must not be let in before it is over it.
+        let time = min(gap / closing, motion.dt);
+        teller.face(motion.velocity * time, When::Soon);
+    }
+}
+
+/// A shape whose centre is behind the surface, by no more than it is thick, is pushed out where it is nearest.
+fn sunk(surface: &Surface<'_>, center: Vec3, shape: &Shape, solid: &Solid<'_>, scratch: &mut Scratch) {
+    let Some(closest) = surface.closest(center, shape.inner_radius()) else { return };
+    let (distance, _) = closest.signed(center);
+    if distance >= 0.0 {
+        return;
+    }
+    let triangle = closest.triangle.moved(-center);
+    let separation = distance - solid.depth(triangle.normal);
+    let mut teller = Teller { triangle: &triangle, solid, margin: 0.0, scratch };
+    let point = ManifoldPoint {
+        position: triangle.normal * (0.5 * distance),
+        separation,
+        feature: pair(name::FACE, feature::WHOLE),
+    };
+    teller.tell(triangle.normal, Part::Face, When::Now, &[point]);
+}
+
+/// Writes down what a triangle has to say.
+struct Teller<'a> {
+    triangle: &'a Triangle,
+    solid: &'a Solid<'a>,
+    margin: f32,
+    scratch: &'a mut Scratch,
+}
+
+impl Teller<'_> {
+    /// The side of the shape that faces the triangle, cut to the prism over it after it has moved by `shift`.
+    fn over_face(&self, shift: Vec3) -> Outline {
+        let outline = self.solid.outline(self.triangle.normal).moved(shift);
+        outline.cut(self.triangle, self.solid.tolerance()).moved(-shift)
+    }
+
+    /// Tells of what is over the triangle, once it has moved by `shift`; false if nothing is.
+    fn face(&mut self, shift: Vec3, when: When) -> bool {
+        let over = self.over_face(shift);
+        self.face_points(&over, when)
+    }
+
+    fn face_points(&mut self, over: &Outline, when: When) -> bool {
+        let (normal, radius) = (self.triangle.normal, self.solid.radius());
+        let mut points = [ManifoldPoint::default(); outline::MAX_CORNERS];
+        let mut count = 0;
+        for corner in over.corners() {
+            let separation = self.triangle.height(corner.at) - radius;
+            if separation <= self.margin {
+                points[count] = ManifoldPoint {
+                    position: corner.at - normal * (radius + 0.5 * separation),
+                    separation,
+                    feature: pair(corner.of_surface, corner.of_shape),
+                };
+                count += 1;
+            }
+        }
+        self.tell(normal, Part::Face, when, &points[..count]);
+        count > 0
+    }
+
+    /// Tells of points; of none, nothing.
+    fn tell(&mut self, normal: Vec3, part: Part, when: When, points: &[ManifoldPoint]) {
+        if points.is_empty() {
+            return;
+        }
+        let nearest = points.iter().fold(f32::INFINITY, |least, p| min(p.separation, least));
+        self.scratch.candidates.push(Candidate {
+            normal,
+            part,
+            when,
+            triangle: *self.triangle,
+            first: self.scratch.points.len() as u32,
+            count: points.len() as u32,
+            nearest,
+            holds: true,
+        });
+        self.scratch.points.extend_from_slice(points);
+    }
+
+    /// Tells of a shape that is deep in the rim of the triangle, so that nothing of the side which faces it is over the
+    /// triangle: the way out that leads to the outside. It speaks for this triangle alone.
+    fn lift(&mut self, gap: f32, position: Vec3) {
+        let feature = pair(name::FACE, feature::WHOLE);
+        let point = ManifoldPoint { position, separation: gap, feature };
+        self.tell(self.triangle.normal, Part::Face, When::Soon, &[point]);
+    }
+
+    /// Tells of a single point between the shape and a part of the triangle.
+    fn point(&mut self, normal: Vec3, part: Part, position: Vec3, separation: f32, of_shape: u16) {
+        let feature = pair(name::part(self.triangle, part), of_shape);
+        self.tell(normal, part, When::Now, &[ManifoldPoint { position, separation, feature }]);
+    }
+}
+
+/// Names the points of a manifold that was found with a plane in the place of a surface as the surface would name them.
+/// `of_surface` says in which half of a feature the surface is.
+pub fn name_as_face(manifold: &mut super::Manifold, of_surface: Half) {
+    for point in &mut manifold.points[..manifold.count] {
+        point.feature |= u32::from(name::FACE) << of_surface.shift();
+    }
+}
+
+/// True if all points of a manifold lie on faces of the surface.
+pub fn is_on_face(manifold: &super::Manifold, of_surface: Half) -> bool {
+    manifold.points().iter().all(|point| name::is_face((point.feature >> of_surface.shift()) as u16))
+}
+
+/// Half of a contact point's feature.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Half {
+    /// Low 16 bits: the feature of A.
+    OfA,
+    /// High 16 bits: the feature of B.
+    OfB,
+}
+
+impl Half {
+    fn shift(self) -> u32 {
+        match self {
+            Self::OfA => 0,
+            Self::OfB => 16,
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Ball and capsule against a triangle.
+
+use super::{Teller, When};
+use crate::collide::feature::WHOLE;
+use crate::collide::placed::{Pill, Segment};
+use crate::triangles::{Part, closest_on_triangle};
+use sinew_math::{Vec3, min};
+
+/// The closest point of the triangle to the centre.
+pub(super) fn ball(radius: f32, teller: &mut Teller<'_>) -> Option<Part> {
+    let (point, part) = closest_on_triangle(&teller.triangle.corners, Vec3::ZERO);
+    let distance = point.length();
+    if distance - radius > teller.margin {
+        return None;
+    }
+    // On the edge itself its direction is rounding; the centre is in front of the triangle.
+    if part == Part::Face || distance <= 1e-3 * radius {
+        let height = teller.triangle.height(Vec3::ZERO);
+        let separation = height - radius;
+        let position = -teller.triangle.normal * (radius + 0.5 * separation);
+        teller.point(teller.triangle.normal, Part::Face, position, separation, WHOLE);
+        return Some(Part::Face);
+    }
+    let (normal, separation) = (-point / distance, distance - radius);
+    teller.point(normal, part, -normal * (radius + 0.5 * separation), separation, WHOLE);
+    Some(part)
+}
+
+/// The stretch of the core that is over the triangle, or the closest points of the core and an edge.
+pub(super) fn pill(pill: &Pill, teller: &mut Teller<'_>) -> Option<Part> {
+    let over = teller.over_face(Vec3::ZERO);
+    let lowest = over.corners().iter().fold(f32::INFINITY, |y, c| min(teller.triangle.height(c.at), y));
+    let nearest = nearest_rim(pill, teller);
+    // A core that comes round the rim is behind the triangle and not in it.
+    let in_front = lowest >= 0.0 || nearest.distance <= teller.solid.tolerance() || pierces(pill, teller);
+    if in_front && lowest <= nearest.distance + teller.solid.tolerance() {
+        return teller.face_points(&over, When::Now).then_some(Part::Face);
+    }
+    let separation = nearest.distance - pill.radius;
+    if separation > teller.margin {
+        return None;
+    }
+    let between = nearest.on_core - nearest.on_rim;
+    let precise = nearest.distance > 1e-3 * pill.radius;
+    let normal = if precise { between / nearest.distance } else { teller.triangle.normal };
+    let position = nearest.on_core - normal * (pill.radius + 0.5 * separation);
+    teller.point(normal, nearest.part, position, separation, WHOLE);
+    Some(nearest.part)
+}
+
+/// True if the core goes through the triangle.
+fn pierces(pill: &Pill, teller: &Teller<'_>) -> bool {
+    let [from, to] = pill.core.ends.map(|end| teller.triangle.height(end));
+    if from * to > 0.0 {
+        return false;
+    }
+    let at = pill.core.at(from / (from - to));
+    closest_on_triangle(&teller.triangle.corners, at).1 == Part::Face
+}
+
+/// Closest points of a core and the rim of a triangle.
+struct Nearest {
+    distance: f32,
+    on_core: Vec3,
+    on_rim: Vec3,
+    part: Part,
+}
+
+fn nearest_rim(pill: &Pill, teller: &Teller<'_>) -> Nearest {
+    let corners = teller.triangle.corners;
+    let mut best =
+        Nearest { distance: f32::INFINITY, on_core: Vec3::ZERO, on_rim: Vec3::ZERO, part: Part::Face };
+    for k in 0..3 {
+        let edge = Segment { ends: [corners[k], corners[(k + 1) % 3]] };
+        let (s, t) = pill.core.closest_to_segment(&edge);
+        let (on_core, on_rim) = (pill.core.at(s), edge.at(t));
+        let distance = (on_core - on_rim).length();
+        if distance < best.distance {
+            best = Nearest { distance, on_core, on_rim, part: Part::on_edge(k, t) };
+        }
+    }
+    best
+}

@@ -1,0 +1,111 @@
+//! Solids that meet a surface: a shape around the origin, in the directions of the surface's frame.
+
+use super::name;
+use super::outline::{Corner, Outline, Side};
+use crate::collide::feature::{self, WHOLE};
+use crate::collide::placed::{Pill, PlacedBox};
+use crate::convex::support::{Core, Posed, Support, narrow, wide};
+use crate::shape::Shape;
+use sinew_math::{Transform, Vec3, min};
+
+/// Ball, capsule and box have ways of their own; all others are met by GJK and EPA.
+pub(super) enum Solid<'a> {
+    /// Ball of this radius.
+    Ball(f32),
+    Pill(Pill),
+    Box(PlacedBox),
+    Other(Posed<'a, Core<'a>>),
+}
+
+impl<'a> Solid<'a> {
+    pub fn new(shape: &Shape, core: &'a Core<'a>, frame: &Transform) -> Self {
+        match *shape {
+            Shape::Box { half_extents } => Self::Box(PlacedBox::new(half_extents, frame)),
+            Shape::Sphere { radius } => Self::Ball(radius),
+            Shape::Capsule { half_height, radius } => Self::Pill(Pill::new(half_height, radius, frame)),
+            _ => Self::Other(Posed::new(core, frame, Vec3::ZERO)),
+        }
+    }
+
+    /// Radius of its rounding.
+    pub fn radius(&self) -> f32 {
+        match self {
+            Self::Ball(radius) => *radius,
+            Self::Pill(pill) => pill.radius,
+            Self::Box(_) => 0.0,
+            Self::Other(posed) => posed.solid.rounding(),
+        }
+    }
+
+    /// Reach against the unit vector `n`, metres.
+    pub fn depth(&self, n: Vec3) -> f32 {
+        match self {
+            Self::Ball(radius) => *radius,
+            Self::Pill(pill) => pill.core.ends[1].dot(n).abs() + pill.radius,
+            Self::Box(placed) => placed.half_width(n),
+            Self::Other(posed) => posed.extent(-wide(n)) as f32,
+        }
+    }
+
+    /// Lengths below this don't matter for the choice of features, metres.
+    pub fn tolerance(&self) -> f32 {
+        let thin = match self {
+            Self::Ball(radius) => *radius,
+            Self::Pill(pill) => pill.radius,
+            Self::Box(placed) => placed.thinnest(),
+            Self::Other(posed) => posed.solid.thinnest(),
+        };
+        min(0.0005, 0.01 * thin)
+    }
+
+    /// The side of its core that faces a plane with this normal.
+    pub fn outline(&self, normal: Vec3) -> Outline {
+        let mut outline = Outline::default();
+        let mut push = |at: Vec3, of_shape: u16, side: Side| {
+            outline.push(Corner { at, of_shape, of_surface: name::FACE, side });
+        };
+        match self {
+            Self::Ball(_) => push(Vec3::ZERO, WHOLE, Side::None),
+            Self::Pill(pill) => {
+                for (index, at) in pill.core.ends.into_iter().enumerate() {
+                    push(at, feature::end(index), Side::Shape(WHOLE));
+                }
+            }
+            Self::Box(placed) => {
+                let (axis, sign) = placed.facing(-normal);
+                let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+                let base = usize::from(sign > 0.0) << axis;
+                for (k, [on_u, on_v]) in [[0, 0], [1, 0], [1, 1], [0, 1]].into_iter().enumerate() {
+                    let index = base | on_u << u | on_v << v;
+                    let along = if k % 2 == 0 { u } else { v };
+                    let edge = feature::edge(along, index);
+                    push(placed.vertex(index), feature::vertex(index), Side::Shape(edge));
+                }
+                outline.face = feature::face(axis, sign);
+            }
+            Self::Other(posed) => {
+                let feature = posed.feature(-normal);
+                for corner in feature.corners() {
+                    push(corner.point, corner.name, Side::Shape(corner.side));
+                }
+                if !feature.is_face() {
+                    // Round where it is lowest: between the corners of what stands for it.
+                    outline = lowest(posed, normal, outline);
+                }
+                outline.face = feature.name;
+            }
+        }
+        outline
+    }
+}
+
+/// An edge or corner that stands for a round side lies where the side reaches furthest.
+fn lowest(posed: &Posed<'_, Core<'_>>, normal: Vec3, outline: Outline) -> Outline {
+    let support = narrow(posed.support(-wide(normal)));
+    let named = outline.corners().iter().fold(f32::INFINITY, |y, c| min(c.at.dot(normal), y));
+    if named <= support.dot(normal) + 1e-6 {
+        outline
+    } else {
+        outline.moved(normal * (support.dot(normal) - named))
+    }
+}

@@ -1,0 +1,194 @@
+//! Supporting features: the faces, edges and corners with which convex solids touch, as polygons with names.
+
+use crate::collide::feature::{self, WHOLE};
+use crate::collide::placed::{largest_axis, sign};
+use crate::hull::Hull;
+use crate::revolved::TruncatedCone;
+use core::f32::consts::FRAC_1_SQRT_2;
+use sinew_math::{Vec3, normalize_or};
+
+/// A face with more corners is described by this many of them.
+pub const MOST_CORNERS: usize = 32;
+
+/// A hull's face whose normal is within about 26° of a direction looks that way.
+const FACES: f32 = 0.9;
+
+/// A corner of a feature.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Corner {
+    /// Position, metres.
+    pub point: Vec3,
+    /// Name of the corner.
+    pub name: u16,
+    /// Name of the side from here to the next corner.
+    pub side: u16,
+}
+
+/// A convex polygon, counter-clockwise seen from outside; or an edge; or a corner. Names are the same as long as the
+/// same part of the solid is meant: contact points are known by them from step to step.
+#[derive(Clone, Copy, Debug)]
+pub struct Feature {
+    corners: [Corner; MOST_CORNERS],
+    count: usize,
+    /// Name of the polygon.
+    pub name: u16,
+    /// Unit, outward; 0 of an edge or a corner.
+    pub normal: Vec3,
+}
+
+impl Feature {
+    /// A corner without a name of its own.
+    pub fn of_point(point: Vec3) -> Self {
+        Self::new(&[Corner { point, name: WHOLE, side: WHOLE }], WHOLE, Vec3::ZERO)
+    }
+
+    /// An edge without a name of its own.
+    pub fn of_edge(ends: [Vec3; 2]) -> Self {
+        let corner = |index: usize| Corner { point: ends[index], name: feature::end(index), side: WHOLE };
+        Self::new(&[corner(0), corner(1)], WHOLE, Vec3::ZERO)
+    }
+
+    /// From the corners, at most [`MOST_CORNERS`]; `normal` is 0 if they are fewer than three.
+    pub fn new(corners: &[Corner], name: u16, normal: Vec3) -> Self {
+        let mut feature =
+            Self { corners: [Corner::default(); MOST_CORNERS], count: corners.len(), name, normal };
+        feature.corners[..corners.len()].copy_from_slice(corners);
+        feature
+    }
+
+    /// Corners in order: one of a corner, two of an edge, up to [`MOST_CORNERS`] of a face.
+    #[inline]
+    pub fn corners(&self) -> &[Corner] {
+        &self.corners[..self.count]
+    }
+
+    /// True if it is a polygon, with a normal.
+    #[inline]
+    pub fn is_face(&self) -> bool {
+        self.count > 2
+    }
+
+    /// In another frame.
+    pub fn mapped(mut self, point: impl Fn(Vec3) -> Vec3, vector: impl Fn(Vec3) -> Vec3) -> Self {
+        for corner in &mut self.corners[..self.count] {
+            corner.point = point(corner.point);
+        }
+        self.normal = vector(self.normal);
+        self
+    }
+
+    /// The face of a box that looks along `direction`.
+    pub fn of_box(half: Vec3, direction: Vec3) -> Self {
+        let axis = largest_axis(direction);
+        let side = sign(direction[axis]);
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        // Counter-clockwise about the axis; the other way round seen from the negative side.
+        let mut turns = [(false, false), (true, false), (true, true), (false, true)];
+        if side < 0.0 {
+            turns.reverse();
+        }
+        let index = |(on_u, on_v): (bool, bool)| {
+            usize::from(side > 0.0) << axis | usize::from(on_u) << u | usize::from(on_v) << v
+        };
+        let corners: [Corner; 4] = core::array::from_fn(|k| {
+            let (this, next) = (index(turns[k]), index(turns[(k + 1) % 4]));
+            let along = if (this ^ next) >> u & 1 == 1 { u } else { v };
+            let at = |axis: usize| if this >> axis & 1 == 1 { half[axis] } else { -half[axis] };
+            Corner {
+                point: Vec3::new(at(0), at(1), at(2)),
+                name: feature::vertex(this),
+                side: feature::edge(along, this),
+            }
+        });
+        let mut normal = Vec3::ZERO;
+        normal[axis] = side;
+        Self::new(&corners, feature::face(axis, side), normal)
+    }
+
+    /// Feature of a hull that reaches furthest along `direction`: the face that looks that way or nearly
+    /// so, or else the edge across it, or else the corner.
+    pub fn of_hull(hull: &Hull, direction: Vec3) -> Self {
+        let (polytope, vertices) = (hull.polytope(), hull.vertices());
+        let topology = polytope.topology;
+        let tolerance = 0.01 * hull.inner_radius();
+        let face = polytope.face_at_support(direction, tolerance);
+        let normal = polytope.planes[face].normal;
+        if normal.dot(direction) >= FACES {
+            let sides = topology.sides(face);
+            let count = usize::min(sides.len(), MOST_CORNERS);
+            let mut corners = [Corner::default(); MOST_CORNERS];
+            for (k, corner) in corners[..count].iter_mut().enumerate() {
+                let side = sides.start + k * sides.len() / count;
+                let vertex = topology.ends(side)[0];
+                let (name, side) = (feature::vertex(vertex), feature::half_edge(topology, side));
+                *corner = Corner { point: vertices[vertex], name, side };
+            }
+            return Self::new(&corners[..count], feature::face_number(face), normal);
+        }
+        let reach = polytope.reach(direction) - tolerance;
+        let reaches = |corner: usize| vertices[corner].dot(direction) >= reach;
+        let corner = |k: usize| Corner { point: vertices[k], name: feature::vertex(k), side: WHOLE };
+        match topology
+            .edge_numbers()
+            .map(|side| topology.ends(side))
+            .find(|ends| ends.map(reaches) == [true; 2])
+        {
+            Some([from, to]) => Self::new(&[corner(from), corner(to)], WHOLE, Vec3::ZERO),
+            None => Self::new(&[corner(polytope.support(direction))], WHOLE, Vec3::ZERO),
+        }
+    }
+
+    /// The end of a cylinder or cone as an octagon, or the line along its side.
+    pub fn of_truncated_cone(cone: &TruncatedCone, direction: Vec3) -> Self {
+        let side = cone.side_normal();
+        let out = normalize_or(Vec3::new(direction.x, 0.0, direction.z), Vec3::X);
+        // Half-way between the side's normal and an end's.
+        let facing = direction.x * out.x + direction.z * out.z;
+        let along_side = facing * side.x + direction.y * side.y;
+        let end = sign(direction.y);
+        let radius = if end < 0.0 { cone.bottom } else { cone.top };
+        if direction.y.abs() > along_side && radius > 0.0 {
+            return end_of_truncated_cone(end * cone.half_height, radius, direction, out);
+        }
+        let low = out * cone.bottom - Vec3::Y * cone.half_height;
+        let high = out * cone.top + Vec3::Y * cone.half_height;
+        Self::of_edge([low, high])
+    }
+}
+
+/// Directions whose sine against the axis is below this meet an end flat: then its octagon stays where it is on the solid.
+/// Else a corner of it lies where the end reaches furthest, so that what leans rolls on its rim and not on an octagon.
+const LEANING: f32 = 0.01;
+
+/// Eight points of a rim.
+fn end_of_truncated_cone(y: f32, radius: f32, direction: Vec3, out: Vec3) -> Feature {
+    let leans = direction.x * direction.x + direction.z * direction.z > LEANING * LEANING;
+    let first = if leans { out } else { Vec3::X };
+    // A quarter turn, counter-clockwise seen from outside.
+    let end = sign(y);
+    let quarter = Vec3::new(end * first.z, 0.0, -end * first.x);
+    let corners: [Corner; 8] = core::array::from_fn(|k| {
+        let (cos, sin) = EIGHTHS[k];
+        let point = (first * cos + quarter * sin) * radius + Vec3::new(0.0, y, 0.0);
+        let (name, side) = (feature::vertex(k), feature::edge(0, k));
+        Corner { point, name: name + end_offset(end), side: side + end_offset(end) }
+    });
+    Feature::new(&corners, feature::face(1, end), Vec3::new(0.0, end, 0.0))
+}
+
+/// Tells the names of the two ends apart.
+fn end_offset(end: f32) -> u16 {
+    if end < 0.0 { 0 } else { 0x10 }
+}
+
+/// Cosines and sines of eighths of a turn.
+const EIGHTHS: [(f32, f32); 8] = [
+    (1.0, 0.0),
+    (FRAC_1_SQRT_2, FRAC_1_SQRT_2),
+    (0.0, 1.0),
+    (-FRAC_1_SQRT_2, FRAC_1_SQRT_2),
+    (-1.0, 0.0),
+    (-FRAC_1_SQRT_2, -FRAC_1_SQRT_2),
+    (0.0, -1.0),
+    (FRAC_1_SQRT_2, -FRAC_1_SQRT_2),
+];

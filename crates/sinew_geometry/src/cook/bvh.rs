@@ -1,0 +1,188 @@
+//! A tree of bounds over triangles: the closest point of a mesh, and how often it winds around a point.
+
+use crate::boxes::Aabb;
+use crate::triangles::{Branch, DEPTH, Tree, closest_on_triangle, normal};
+use core::ops::Range;
+use sinew_math::{Vec3, abs3, max3, trig};
+
+/// A cluster counts as one dipole beyond this many of its radii (Barill et al. 2018 use 2).
+const FAR: f32 = 2.0;
+
+/// A triangle mesh that answers where its surface is closest, and whether a point is inside.
+#[derive(Clone, Debug)]
+pub struct MeshBvh {
+    tree: Tree,
+    /// Cluster of the triangles below each node of the tree.
+    clusters: Vec<Cluster>,
+    /// Corners, in the order of leaves.
+    triangles: Vec<[Vec3; 3]>,
+    /// Number of each of them in the list that the tree was made from.
+    numbers: Vec<u32>,
+}
+
+/// Triangles as seen from afar.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cluster {
+    /// Sum of areas times normals.
+    dipole: Vec3,
+    area: f32,
+    /// Mean of the triangles' middles, by area.
+    center: Vec3,
+    /// Radius of a ball around `center` that holds all triangles.
+    radius: f32,
+}
+
+/// The point of a mesh that is closest to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClosestPoint {
+    /// On the surface, metres.
+    pub point: Vec3,
+    /// From the point asked for, metres, ≥ 0.
+    pub distance: f32,
+    /// Unit normal of the triangle, to the side from which its corners run counter-clockwise.
+    pub normal: Vec3,
+    /// Number of the triangle.
+    pub triangle: u32,
+}
+
+impl MeshBvh {
+    /// From triangles, by their corners in metres.
+    ///
+    /// # Panics
+    /// If there is none, or a corner is not finite.
+    pub fn new(triangles: &[[Vec3; 3]]) -> Self {
+        assert!(!triangles.is_empty(), "a mesh has triangles");
+        assert!(triangles.iter().flatten().all(|p| p.is_finite()), "corners are finite");
+        let mut numbers: Vec<u32> = (0..triangles.len() as u32).collect();
+        let tree = Tree::new(&mut numbers, &|number| triangles[number as usize]);
+        let triangles: Vec<[Vec3; 3]> = numbers.iter().map(|&i| triangles[i as usize]).collect();
+        let clusters = clusters(&tree, &triangles);
+        Self { tree, clusters, triangles, numbers }
+    }
+
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Never: a mesh has triangles.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// The point of the surface closest to `p`; of several the one found first, always the same.
+    pub fn closest_point(&self, p: Vec3) -> ClosestPoint {
+        let (square, point, at) = self.search(p, f32::INFINITY);
+        self.answer(square, point, at)
+    }
+
+    /// [`closest_point`](Self::closest_point), if it is nearer than `reach`, metres: faster where most is farther.
+    pub fn closest_point_within(&self, p: Vec3, reach: f32) -> Option<ClosestPoint> {
+        let (square, point, at) = self.search(p, reach * reach);
+        (square < reach * reach).then(|| self.answer(square, point, at))
+    }
+
+    fn answer(&self, square: f32, point: Vec3, at: u32) -> ClosestPoint {
+        let normal = normal(&self.triangles[at as usize]);
+        ClosestPoint { point, distance: square.sqrt(), normal, triangle: self.numbers[at as usize] }
+    }
+
+    /// The closest point, its squared distance, if that is less than `square`, and the triangle's place.
+    fn search(&self, p: Vec3, square: f32) -> (f32, Vec3, u32) {
+        let mut best = (square, Vec3::ZERO, 0);
+        self.tree.nearest(p, square, |places| {
+            for at in places {
+                let (point, _) = closest_on_triangle(&self.triangles[at as usize], p);
+                let square = (point - p).length_squared();
+                if square < best.0 {
+                    best = (square, point, at);
+                }
+            }
+            best.0
+        });
+        best
+    }
+
+    /// The generalised winding number of the surface around `p`: 1 inside a closed mesh, 0 outside, between them where
+    /// it has holes; negative where its faces look inward (Jacobson, Kavan & Sorkine-Hornung 2013; distant clusters
+    /// as dipoles, Barill, Dickson, Schmidt, Levin & Jacobson 2018, eq. 6).
+    pub fn winding_number(&self, p: Vec3) -> f32 {
+        let mut solid_angle = 0.0;
+        let mut open = [0_u32; DEPTH];
+        let mut count = 1;
+        while count > 0 {
+            count -= 1;
+            let Cluster { dipole, center, radius, .. } = self.clusters[open[count] as usize];
+            let away = center - p;
+            let distance = away.length();
+            if distance > FAR * radius {
+                solid_angle += dipole.dot(away) / (distance * distance * distance);
+                continue;
+            }
+            match self.tree.branch(open[count]) {
+                Branch::Leaf(places) => {
+                    let triangles = triangles_in(&self.triangles, places);
+                    solid_angle += triangles.iter().map(|triangle| solid_angle_of(triangle, p)).sum::<f32>();
+                }
+                Branch::Nodes([first, second]) => {
+                    open[count] = second;
+                    open[count + 1] = first;
+                    count += 2;
+                }
+            }
+        }
+        solid_angle / (4.0 * core::f32::consts::PI)
+    }
+}
+
+fn triangles_in(triangles: &[[Vec3; 3]], places: Range<u32>) -> &[[Vec3; 3]] {
+    &triangles[places.start as usize..places.end as usize]
+}
+
+/// Clusters of each node of a tree over triangles, which are in the order of its leaves.
+fn clusters(tree: &Tree, triangles: &[[Vec3; 3]]) -> Vec<Cluster> {
+    let mut clusters = vec![Cluster::default(); tree.len()];
+    // Those below a node have higher numbers.
+    for node in (0..tree.len() as u32).rev() {
+        let bounds = tree.bounds_below(node);
+        clusters[node as usize] = match tree.branch(node) {
+            Branch::Leaf(places) => Cluster::of(triangles_in(triangles, places), &bounds),
+            Branch::Nodes(both) => Cluster::join(both.map(|index| clusters[index as usize]), &bounds),
+        };
+    }
+    clusters
+}
+
+impl Cluster {
+    fn of(triangles: &[[Vec3; 3]], bounds: &Aabb) -> Self {
+        let (mut dipole, mut moment, mut area) = (Vec3::ZERO, Vec3::ZERO, 0.0);
+        for &[a, b, c] in triangles {
+            let normal = (b - a).cross(c - a) * 0.5;
+            let size = normal.length();
+            dipole += normal;
+            moment += (a + b + c) * (size / 3.0);
+            area += size;
+        }
+        Self::within(bounds, dipole, moment, area)
+    }
+
+    fn join([a, b]: [Self; 2], bounds: &Aabb) -> Self {
+        let moment = a.center * a.area + b.center * b.area;
+        Self::within(bounds, a.dipole + b.dipole, moment, a.area + b.area)
+    }
+
+    fn within(bounds: &Aabb, dipole: Vec3, moment: Vec3, area: f32) -> Self {
+        let center = if area > 0.0 { moment / area } else { bounds.center() };
+        let reach = max3(abs3(bounds.max - center), abs3(bounds.min - center));
+        Self { dipole, area, center, radius: reach.length() }
+    }
+}
+
+/// Solid angle of a triangle seen from `p`, positive where it turns its back (van Oosterom & Strackee 1983, eq. 8).
+fn solid_angle_of(triangle: &[Vec3; 3], p: Vec3) -> f32 {
+    let [a, b, c] = triangle.map(|corner| corner - p);
+    let (la, lb, lc) = (a.length(), b.length(), c.length());
+    let numerator = a.dot(b.cross(c));
+    let denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    2.0 * trig::atan2(numerator, denominator)
+}

@@ -1,0 +1,97 @@
+//! Attitude in which a box lies close around a part of a mesh.
+
+use super::fitted::around;
+use super::mesh::SurfaceMesh;
+use crate::boxes::{Cuboid, Obb};
+use sinew_math::{Mat3, Rotation, Vec3, any_orthonormal, normalize_or};
+
+/// Normals within this cosine (10°) are one direction.
+const SAME: f32 = 0.985;
+/// Axes within this cosine (1.8°) of the world's are the world's.
+const LEVEL: f32 = 0.9995;
+/// An oriented box must be smaller by this share to be taken instead of one along the world's axes.
+const GAIN: f32 = 0.92;
+
+/// The smallest of the boxes along the world's axes, along the largest facets, and along those about the vertical.
+pub(super) fn fit(mesh: &SurfaceMesh, triangles: &[u32], least: f32) -> Obb {
+    let corners = || triangles.iter().flat_map(|&t| mesh.corners(t as usize));
+    let boxed = |rotation| around(corners(), rotation, least);
+    let level = boxed(Rotation::IDENTITY);
+    let directions = facet_directions(mesh, triangles);
+    let mut best = level;
+    for rotation in orientations(&directions) {
+        let turned = boxed(rotation);
+        if turned.volume() < best.volume() * if best == level { GAIN } else { 1.0 } {
+            best = turned;
+        }
+    }
+    best
+}
+
+/// Facing of a part: directions, without sign, by area.
+pub(super) fn facet_directions(mesh: &SurfaceMesh, triangles: &[u32]) -> Vec<(Vec3, f32)> {
+    let normals = triangles.iter().map(|&t| mesh.doubled_area(t as usize));
+    cluster(normals.map(|doubled| {
+        let length = doubled.length();
+        (doubled / length, length)
+    }))
+}
+
+/// Directions with weights, those that agree but for sign put together, the heaviest first.
+pub(super) fn cluster(weighted: impl Iterator<Item = (Vec3, f32)>) -> Vec<(Vec3, f32)> {
+    /// Beyond these, the rest of a round surface tells nothing new.
+    const MOST: usize = 24;
+    let mut clusters: Vec<(Vec3, f32)> = Vec::new();
+    for (direction, weight) in weighted {
+        let same = |(sum, _): &(Vec3, f32)| direction.dot(normalize_or(*sum, Vec3::Y)).abs() > SAME;
+        match clusters.iter().position(same) {
+            Some(at) => {
+                let (sum, total) = &mut clusters[at];
+                *sum += direction * if sum.dot(direction) < 0.0 { -weight } else { weight };
+                *total += weight;
+            }
+            None if clusters.len() < MOST => clusters.push((direction * weight, weight)),
+            None => {}
+        }
+    }
+    for (sum, _) in &mut clusters {
+        *sum = normalize_or(*sum, Vec3::Y);
+    }
+    clusters.sort_by(|a, b| b.1.total_cmp(&a.1));
+    clusters
+}
+
+/// Frames with an axis along the heaviest directions, and another along the heaviest at right angles to it.
+pub(super) fn orientations(directions: &[(Vec3, f32)]) -> impl Iterator<Item = Rotation> {
+    const TRIED: usize = 3;
+    let first = directions.iter().take(TRIED).map(|&(x, _)| snap(x));
+    first.map(|x| {
+        let flat = directions.iter().filter(|(d, _)| d.dot(x).abs() < 0.5);
+        let y = flat.map(|&(d, _)| snap(normalize_or(d - x * d.dot(x), any_orthonormal(x)))).next();
+        // Where nothing else is at a right angle, level.
+        let y = y.unwrap_or_else(|| normalize_or(Vec3::Y - x * x.y, any_orthonormal(x)));
+        let y = normalize_or(y - x * x.dot(y), any_orthonormal(x));
+        frame(x, y)
+    })
+}
+
+/// The world's axis that a direction is along but for noise, else itself.
+fn snap(direction: Vec3) -> Vec3 {
+    Vec3::AXES.into_iter().find(|axis| axis.dot(direction).abs() > LEVEL).unwrap_or(direction)
+}
+
+/// A rotation whose axes are, in some order and sign, x, y and their cross product: the one closest to the identity,
+/// so that a box's second half extent is its height.
+fn frame(x: Vec3, y: Vec3) -> Rotation {
+    let axes = [x, y, x.cross(y)];
+    let most = |world: Vec3, taken: Option<usize>| {
+        let free = (0..3).filter(|&k| Some(k) != taken);
+        free.max_by(|&a, &b| axes[a].dot(world).abs().total_cmp(&axes[b].dot(world).abs())).unwrap_or(0)
+    };
+    let toward = |k: usize, world: Vec3| if axes[k].dot(world) < 0.0 { -axes[k] } else { axes[k] };
+    let up = most(Vec3::Y, None);
+    let right = most(Vec3::X, Some(up));
+    let (right, up) = (toward(right, Vec3::X), toward(up, Vec3::Y));
+    let turned = Mat3::from_cols(right, up, right.cross(up));
+    if turned == Mat3::IDENTITY { Rotation::IDENTITY } else { Rotation::from_mat3_lossy(&turned) }
+}

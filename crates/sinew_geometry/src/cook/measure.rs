@@ -1,0 +1,90 @@
+//! Deviation of boxes from the mesh they stand for.
+
+use super::box_set::BoxSet;
+use super::bvh::MeshBvh;
+use super::mesh::SurfaceMesh;
+use super::sample::sample;
+use crate::boxes::{Aabb, Obb, Overlap};
+use sinew_math::{Random, Vec3, max};
+
+/// Points on either side.
+const SAMPLES: usize = 20_000;
+
+/// Distances between two surfaces and a ratio of volumes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Volume of the boxes' union over the volume that the mesh encloses; `None` if the mesh is open,
+    /// or encloses nothing.
+    pub volume_ratio: Option<f32>,
+    /// 95 of 100 points of either surface are closer than this to the other, metres: the larger of both ways.
+    pub distance_p95: f32,
+    /// The largest distance, metres.
+    pub distance_max: f32,
+}
+
+/// Measures boxes against their mesh by points uniform over either surface: points of the mesh to the nearest face of
+/// a box, and points of the boxes' outer surface (faces inside another box do not count) to the mesh.
+pub(super) fn measure(mesh: &SurfaceMesh, bvh: &MeshBvh, blocks: &[Obb], random: &mut Random) -> Deviation {
+    let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+    let (points, _) = sample(mesh, &all, SAMPLES, random);
+    let tree = BoxSet::new(blocks);
+    let to_boxes = points.iter().map(|p| tree.distance_to_faces(p.position));
+    let [p95_there, max_there] = quantiles(to_boxes.collect());
+    let outer = tree.outer_surface(SAMPLES, random);
+    let [p95_back, max_back] = quantiles(outer.iter().map(|&p| bvh.closest_point(p).distance).collect());
+    let ratio = mesh.is_closed().then(|| tree.volume(random) / enclosed_volume(mesh, bvh, random));
+    Deviation {
+        // Closed shells may cancel out: then nothing is enclosed.
+        volume_ratio: ratio.filter(|ratio| ratio.is_finite()),
+        distance_p95: max(p95_there, p95_back),
+        distance_max: max(max_there, max_back),
+    }
+}
+
+/// The 95th percentile and the largest; zeros of nothing.
+fn quantiles(mut distances: Vec<f32>) -> [f32; 2] {
+    distances.sort_unstable_by(f32::total_cmp);
+    let Some(&last) = distances.last() else { return [0.0; 2] };
+    [distances[(distances.len() * 95).div_ceil(100) - 1], last]
+}
+
+/// Volume of a closed mesh: by the divergence theorem where its parts are apart, else by points with a winding number.
+fn enclosed_volume(mesh: &SurfaceMesh, bvh: &MeshBvh, random: &mut Random) -> f32 {
+    const ACROSS: usize = 48;
+    if !parts_meet(mesh) {
+        let center = mesh.bounds.center();
+        let sixfold = |t: usize| {
+            let [a, b, c] = mesh.corners(t).map(|p| p - center);
+            f64::from(a.dot(b.cross(c)))
+        };
+        // Of a room, whose faces look inward, it is negative.
+        return ((0..mesh.triangles.len()).map(sixfold).sum::<f64>() / 6.0).abs() as f32;
+    }
+    let size = mesh.bounds.max - mesh.bounds.min;
+    let mut inside = 0;
+    for i in 0..ACROSS * ACROSS * ACROSS {
+        let cell = [i / (ACROSS * ACROSS), i / ACROSS % ACROSS, i % ACROSS];
+        let t = cell.map(|k| (k as f32 + random.unit()) / ACROSS as f32);
+        let p = mesh.bounds.min + Vec3::new(size.x * t[0], size.y * t[1], size.z * t[2]);
+        inside += usize::from(bvh.winding_number(p) > 0.5);
+    }
+    size.x * size.y * size.z * (inside as f32 / (ACROSS * ACROSS * ACROSS) as f32)
+}
+
+/// True if the bounds of two connected parts overlap.
+fn parts_meet(mesh: &SurfaceMesh) -> bool {
+    let mut bounds: Vec<Option<Aabb>> = vec![None; mesh.parts];
+    for (triangle, &part) in mesh.part.iter().enumerate() {
+        for p in mesh.corners(triangle) {
+            let point = Aabb { min: p, max: p };
+            let of_part = &mut bounds[part as usize];
+            *of_part = Some(of_part.map_or(point, |all| all.merge(&point)));
+        }
+    }
+    let mut bounds: Vec<Aabb> = bounds.into_iter().flatten().collect();
+    bounds.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
+    (0..bounds.len()).any(|i| {
+        let later = bounds[i + 1..].iter().take_while(|b| b.min.x <= bounds[i].max.x);
+        later.into_iter().any(|b| b.overlaps(&bounds[i]))
+    })
+}

@@ -1,0 +1,89 @@
+//! Shapes that hold data beside sizes: hulls, meshes and height fields, as bytes and by the hash of their content.
+
+use crate::hull::Hull;
+use crate::shape::Shape;
+use crate::triangles::{HeightField, Mesh};
+use sinew_math::{ReadError, Reader, Writer};
+use std::sync::Arc;
+
+/// Kind of a shape that holds data beside its sizes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DataKind {
+    /// Convex hull of points.
+    Hull,
+    /// Triangle mesh.
+    Mesh,
+    /// Height field.
+    HeightField,
+}
+
+/// In the order of their tags in bytes, the first of which is [`FIRST_TAG`].
+const KINDS: [DataKind; 3] = [DataKind::Hull, DataKind::Mesh, DataKind::HeightField];
+/// Lower tags are those of shapes that are sizes only.
+const FIRST_TAG: u8 = 16;
+
+impl DataKind {
+    /// Tag of the kind in bytes, at least 16: lower ones are free for shapes that are sizes only.
+    pub fn tag(self) -> u8 {
+        FIRST_TAG + self as u8
+    }
+
+    /// Kind with this tag, if there is one.
+    pub fn of_tag(tag: u8) -> Option<Self> {
+        KINDS.into_iter().find(|kind| kind.tag() == tag)
+    }
+}
+
+impl core::fmt::Display for DataKind {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Hull => "hull",
+            Self::Mesh => "mesh",
+            Self::HeightField => "height field",
+        })
+    }
+}
+
+impl Shape {
+    /// Hash of the data of a shape that holds some, the same on every machine; `None` of those that are sizes only.
+    pub fn content_hash(&self) -> Option<u64> {
+        match self {
+            Self::Mesh(mesh) => Some(mesh.content_hash()),
+            Self::HeightField(field) => Some(field.content_hash()),
+            Self::Hull(hull) => Some(hull.content_hash()),
+            _ => None,
+        }
+    }
+
+    /// Kind of its data; `None` of those that are sizes only.
+    pub fn data_kind(&self) -> Option<DataKind> {
+        match self {
+            Self::Hull(_) => Some(DataKind::Hull),
+            Self::Mesh(_) => Some(DataKind::Mesh),
+            Self::HeightField(_) => Some(DataKind::HeightField),
+            _ => None,
+        }
+    }
+
+    /// Writes the data; nothing of a shape that is sizes only.
+    pub fn save_data(&self, w: &mut Writer) {
+        match self {
+            Self::Hull(hull) => hull.save(w),
+            Self::Mesh(mesh) => mesh.save(w),
+            Self::HeightField(field) => field.save(w),
+            _ => {}
+        }
+    }
+
+    /// Reads what [`save_data`](Self::save_data) wrote.
+    ///
+    /// # Errors
+    /// Bytes that no shape of this kind was written as.
+    pub fn load_data(kind: DataKind, data: &mut Reader<'_>) -> Result<Self, ReadError> {
+        match kind {
+            DataKind::Hull => Ok(Self::Hull(Arc::new(Hull::load(data)?))),
+            DataKind::Mesh => Ok(Self::Mesh(Arc::new(Mesh::load(data)?))),
+            DataKind::HeightField => Ok(Self::HeightField(Arc::new(HeightField::load(data)?))),
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Signed distance from a point to a shape: what particles collide with, and what decides whether a point is inside.
+
+use crate::boxes::SurfacePoint;
+use crate::revolved::{TaperedCapsule, TruncatedCone};
+use crate::shape::Shape;
+use sinew_math::{Transform, Vec3, abs3, clamp, max3, normalize_or};
+
+impl Shape {
+    /// Distance from `point` (world) to the surface, metres, negative inside, and the unit outward normal (world)
+    /// at the closest point of the surface. Exact for every shape. Meshes and height fields are surfaces, which may be
+    /// open: negative is behind the triangle that is closest, however far. Where several points are closest (the middle of
+    /// a box, the axis of a capsule), one of them, always the same.
+    pub fn signed_distance(&self, world_from_shape: &Transform, point: Vec3) -> (f32, Vec3) {
+        let (distance, normal) = self.local_distance(world_from_shape.inverse_point(point));
+        (distance, world_from_shape.rotation * normal)
+    }
+
+    /// Point of the surface closest to `point` (world), by [`signed_distance`](Self::signed_distance); but nothing is inside of
+    /// a mesh or a height field: from those the distance is 0 or more, and the normal points to where the point is.
+    pub fn nearest_surface(&self, world_from_shape: &Transform, point: Vec3) -> SurfacePoint {
+        let (distance, normal) = self.signed_distance(world_from_shape, point);
+        let behind = distance < 0.0 && self.surface().is_some();
+        let (distance, normal) = if behind { (-distance, -normal) } else { (distance, normal) };
+        SurfacePoint { point: point - normal * distance, normal, distance }
+    }
+
+    /// [`signed_distance`](Self::signed_distance) in the shape's own frame.
+    pub fn local_distance(&self, p: Vec3) -> (f32, Vec3) {
+        match *self {
+            Shape::Box { half_extents } => box_distance(half_extents, p),
+            Shape::Sphere { radius } => (p.length() - radius, normalize_or(p, Vec3::Y)),
+            Shape::Capsule { half_height, radius } => {
+                let from_core = p - Vec3::new(0.0, clamp(p.y, -half_height, half_height), 0.0);
+                (from_core.length() - radius, normalize_or(from_core, Vec3::X))
+            }
+            Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                TaperedCapsule::new(half_height, radius_bottom, radius_top).distance(p)
+            }
+            Shape::Cylinder { half_height, radius } => {
+                TruncatedCone::cylinder(half_height, radius).distance(p)
+            }
+            Shape::Cone { half_height, radius } => TruncatedCone::cone(half_height, radius).distance(p),
+            Shape::HalfSpace => (p.y, Vec3::Y),
+            Shape::Mesh(_) | Shape::HeightField(_) => {
+                let closest = self.surface().and_then(|surface| surface.closest(p, f32::MAX.sqrt()));
+                closest.map_or((f32::INFINITY, Vec3::Y), |closest| closest.signed(p))
+            }
+            Shape::Hull(ref hull) => hull.distance(p),
+        }
+    }
+}
+
+/// Behind a surface by more than its radius and this, a particle is on the other side of it, metres.
+const BEHIND: f32 = 0.01;
+
+impl Shape {
+    /// As [`local_distance`](Self::local_distance), for a ball of this radius: a surface is not there for what is well behind
+    /// it, and what is farther away than `reach` need only be told as being so.
+    pub fn ball_distance(&self, p: Vec3, radius: f32, reach: f32) -> (f32, Vec3) {
+        let Some(surface) = self.surface() else { return self.local_distance(p) };
+        let Some(closest) = surface.closest(p, reach) else { return (reach, Vec3::Y) };
+        let (distance, normal) = closest.signed(p);
+        if distance < -(radius + BEHIND) { (-distance, -normal) } else { (distance, normal) }
+    }
+}
+
+/// Signed distance to the box of the given half extents around the origin, and the outward normal.
+pub(crate) fn box_distance(half: Vec3, p: Vec3) -> (f32, Vec3) {
+    distance_beyond(abs3(p) - half, p)
+}
+
+/// Signed distance to a box and its outward normal, from how far a point is beyond the nearer face along each axis, and a
+/// vector whose signs tell on which side that face is.
+pub(crate) fn distance_beyond(beyond: Vec3, p: Vec3) -> (f32, Vec3) {
+    let outside = max3(beyond, Vec3::ZERO);
+    let distance = outside.length();
+    if distance > 0.0 {
+        let toward =
+            Vec3::new(with_sign(outside.x, p.x), with_sign(outside.y, p.y), with_sign(outside.z, p.z));
+        // Squares of tiny distances vanish: measure them again at a larger scale.
+        return if distance > 1e-12 { (distance, toward / distance) } else { (0.0, face_normal(beyond, p)) };
+    }
+    let axis = nearest_face(beyond);
+    (beyond[axis], face_normal(beyond, p))
+}
+
+/// The axis of the face that is nearest from inside; the lowest among equals.
+fn nearest_face(beyond: Vec3) -> usize {
+    let mut axis = 0;
+    for k in 1..3 {
+        if beyond[k] > beyond[axis] {
+            axis = k;
+        }
+    }
+    axis
+}
+
+fn face_normal(beyond: Vec3, p: Vec3) -> Vec3 {
+    let axis = nearest_face(beyond);
+    let mut normal = Vec3::ZERO;
+    normal[axis] = with_sign(1.0, p[axis]);
+    normal
+}
+
+/// `magnitude` with the sign of `x`.
+fn with_sign(magnitude: f32, x: f32) -> f32 {
+    if x < 0.0 { -magnitude } else { magnitude }
+}

@@ -1,0 +1,212 @@
+//! Convex hulls: solids with flat faces, made from points.
+//!
+//! Made once and never changed; shapes hold them by [`Arc`](std::sync::Arc). Everything is in the hull's own frame, metres.
+
+mod build;
+mod bytes;
+mod grid;
+mod mass;
+mod merge;
+mod polytope;
+mod query;
+mod quick;
+mod solids;
+mod topology;
+
+use crate::boxes::Aabb;
+pub(crate) use polytope::{Polytope, Room};
+use sinew_math::{Sym3, Vec3, max};
+pub(crate) use solids::BoxPolytope;
+#[cfg(test)]
+pub(crate) use solids::TrianglePolytope;
+use topology::Outline;
+pub(crate) use topology::{Plane, Topology};
+
+/// Most faces that a hull has.
+pub const MAX_FACES: usize = 128;
+/// Most corners that a hull has: what so many faces can have if three meet in each.
+pub const MAX_VERTICES: usize = 2 * MAX_FACES - 4;
+
+/// Why points have no hull.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum HullError {
+    /// A coordinate is NaN or infinite.
+    #[error("a coordinate is not finite")]
+    NotFinite,
+    /// Fewer than four different points.
+    #[error("a hull needs four different points")]
+    TooFewPoints,
+    /// All points lie on a line.
+    #[error("all points lie on a line")]
+    Collinear,
+    /// All points lie in a plane.
+    #[error("all points lie in a plane")]
+    Coplanar,
+    /// Thinner than 1/10,000 of its longest side.
+    #[error("thinner than 1/10,000 of the longest side")]
+    TooThin,
+    /// The longest side is below 1 µm or above 1,000 km.
+    #[error("the longest side must be between 1e-6 and 1e6 metres")]
+    Size,
+}
+
+/// A convex solid with at most [`MAX_FACES`] flat faces.
+#[derive(Clone, Debug)]
+pub struct Hull {
+    vertices: Vec<Vec3>,
+    planes: Vec<Plane>,
+    outline: Outline,
+    areas: Vec<f32>,
+    bounds: Aabb,
+    volume: f32,
+    /// Centre of mass, of even density.
+    center: Vec3,
+    /// About the centre, of density 1.
+    inertia: Sym3,
+    inner_radius: f32,
+    bounding_radius: f32,
+    content_hash: u64,
+}
+
+/// A face of a [`Hull`].
+#[derive(Clone, Copy, Debug)]
+pub struct HullFace<'a> {
+    hull: &'a Hull,
+    index: usize,
+}
+
+impl Hull {
+    /// The smallest convex solid that holds all points (metres): quickhull, exactly.
+    ///
+    /// Points are put on a grid of at most 2⁻²² of the longest side of their bounds, on which all decisions are exact. Faces
+    /// within 2e-6 of that side of one plane become one polygon; no point is left further outside than 1e-5 of it. The order of
+    /// the points does not matter, and a point that is there twice counts once.
+    ///
+    /// If the hull would have more than [`MAX_FACES`] faces it is **simplified**: it is grown from four points by the one that
+    /// is furthest outside, and ends at 252, 128 or 66 corners, whichever comes first with few enough faces. It then lies
+    /// inside the cloud; [`distance`](Self::distance) tells how far a point is left outside (a ball of 10,000 points: about
+    /// 5 % of its radius).
+    ///
+    /// # Errors
+    /// [`HullError`]: points that span no solid, or numbers that are no lengths.
+    pub fn new(points: &[Vec3]) -> Result<Self, HullError> {
+        build::build(points)
+    }
+
+    /// Corners, sorted by x, then y, then z.
+    #[inline]
+    pub fn vertices(&self) -> &[Vec3] {
+        &self.vertices
+    }
+
+    /// Faces, 4..=[`MAX_FACES`].
+    pub fn faces(&self) -> impl ExactSizeIterator<Item = HullFace<'_>> {
+        (0..self.planes.len()).map(|index| HullFace { hull: self, index })
+    }
+
+    /// Edges as pairs of corners, by their numbers, each once.
+    pub fn edges(&self) -> impl Iterator<Item = [usize; 2]> {
+        let topology = self.topology();
+        topology.edge_numbers().map(move |edge| topology.ends(edge))
+    }
+
+    /// m³.
+    #[inline]
+    pub fn volume(&self) -> f32 {
+        self.volume
+    }
+
+    /// Centre of volume.
+    #[inline]
+    pub fn center(&self) -> Vec3 {
+        self.center
+    }
+
+    /// Inertia about the centre at a density of 1 kg/m³, kg·m².
+    pub fn inertia(&self) -> Sym3 {
+        self.inertia
+    }
+
+    /// Bounds in its own frame.
+    #[inline]
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Radius of the largest ball around the centre that is inside, metres.
+    #[inline]
+    pub fn inner_radius(&self) -> f32 {
+        self.inner_radius
+    }
+
+    /// Radius of the smallest ball around the origin that holds it, metres.
+    #[inline]
+    pub fn bounding_radius(&self) -> f32 {
+        self.bounding_radius
+    }
+
+    /// The corner furthest along a direction; the first among equals.
+    pub fn support(&self, direction: Vec3) -> usize {
+        support(&self.vertices, direction)
+    }
+
+    /// Hash of corners and faces, the same on every machine.
+    pub fn content_hash(&self) -> u64 {
+        self.content_hash
+    }
+
+    pub(crate) fn topology(&self) -> Topology<'_> {
+        self.outline.topology()
+    }
+}
+
+/// By content: what is derived follows from corners and faces.
+impl PartialEq for Hull {
+    fn eq(&self, other: &Self) -> bool {
+        self.content_hash == other.content_hash
+            && self.vertices == other.vertices
+            && self.outline == other.outline
+    }
+}
+
+impl<'a> HullFace<'a> {
+    /// Unit, outward.
+    #[inline]
+    pub fn normal(&self) -> Vec3 {
+        self.hull.planes[self.index].normal
+    }
+
+    /// Distance of its plane from the origin along the normal, metres.
+    #[inline]
+    pub fn offset(&self) -> f32 {
+        self.hull.planes[self.index].offset
+    }
+
+    /// m².
+    #[inline]
+    pub fn area(&self) -> f32 {
+        self.hull.areas[self.index]
+    }
+
+    /// Numbers of its corners, counter-clockwise from outside.
+    pub fn corners(&self) -> impl ExactSizeIterator<Item = usize> + Clone + use<'a> {
+        self.hull.outline.topology().corners(self.index)
+    }
+}
+
+/// The number of the point furthest along a direction; the first among equals.
+pub(crate) fn support(vertices: &[Vec3], direction: Vec3) -> usize {
+    let (mut best, mut reach) = (0, f32::NEG_INFINITY);
+    for (index, vertex) in vertices.iter().enumerate() {
+        let along = vertex.dot(direction);
+        if along > reach {
+            (best, reach) = (index, along);
+        }
+    }
+    best
+}
+
+/// Furthest reach of points along a direction.
+pub(crate) fn reach(vertices: &[Vec3], direction: Vec3) -> f32 {
+    vertices.iter().fold(f32::NEG_INFINITY, |reach, v| max(v.dot(direction), reach))
+}

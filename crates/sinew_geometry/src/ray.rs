@@ -1,0 +1,168 @@
+//! Rays against shapes, exact for every shape.
+
+use crate::revolved::{TaperedCapsule, TruncatedCone};
+use crate::shape::Shape;
+use crate::slabs::Slabs;
+use sinew_math::{Transform, Vec3, abs3, max, normalize_or};
+
+/// A stretch of a line, from `origin` to `origin + direction`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Start, metres.
+    pub origin: Vec3,
+    /// Way to the end, metres; its length is the ray's, so it need not be 1.
+    pub direction: Vec3,
+}
+
+impl Ray {
+    /// From one point to another.
+    #[inline]
+    pub fn between(from: Vec3, to: Vec3) -> Self {
+        Self { origin: from, direction: to - from }
+    }
+
+    /// Point at `fraction`, 0..=1.
+    #[inline]
+    pub fn at(&self, fraction: f32) -> Vec3 {
+        self.origin + self.direction * fraction
+    }
+
+    /// True if squares of its length may overflow.
+    #[inline]
+    pub fn is_long(&self) -> bool {
+        let way = abs3(self.direction);
+        max(max(way.x, way.y), way.z) > LONG
+    }
+}
+
+/// The square of what is longer may overflow.
+const LONG: f32 = 1e15;
+/// 2⁻⁹⁶: what longer rays are multiplied by, without rounding.
+const SHORTENED: f32 = f32::from_bits((127 - 96) << 23);
+
+/// First point of a ray in a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayHit {
+    /// Share of the ray before the hit, 0..=1; for a half-line lengths of its direction, ≥ 0.
+    pub fraction: f32,
+    /// In the world, metres.
+    pub point: Vec3,
+    /// Unit, out of the shape, in the world.
+    pub normal: Vec3,
+}
+
+impl Shape {
+    /// The first point of the ray that lies in the shape, or `None` if there is none, or a number is not finite.
+    ///
+    /// A ray that starts inside (or on the surface) hits at fraction 0, with a normal opposite to its direction; if
+    /// its direction is zero too, with the outward normal of the closest surface. So it is for every shape. A ray
+    /// that leaves the shape from outside its surface never hits.
+    ///
+    /// Meshes and height fields are surfaces that may be open: nothing is inside of them. They are hit from the outside of
+    /// their triangles alone, with the triangle's normal, and let pass what comes from behind.
+    pub fn cast_ray(&self, world_from_shape: &Transform, ray: &Ray) -> Option<RayHit> {
+        self.cast_half_line(world_from_shape, ray).filter(|hit| hit.fraction <= 1.0)
+    }
+
+    /// As [`cast_ray`](Self::cast_ray) for the ray without an end: the fraction counts lengths of its direction, and may
+    /// exceed 1.
+    pub fn cast_half_line(&self, world_from_shape: &Transform, ray: &Ray) -> Option<RayHit> {
+        if !(ray.origin.is_finite() && ray.direction.is_finite() && world_from_shape.is_finite()) {
+            return None;
+        }
+        let scale = if ray.is_long() { SHORTENED } else { 1.0 };
+        let origin = world_from_shape.inverse_point(ray.origin);
+        let direction = world_from_shape.rotation.inverse() * (ray.direction * scale);
+        let (fraction, normal) = self.cast_local(origin, direction)?;
+        let fraction = fraction * scale;
+        Some(RayHit { fraction, point: ray.at(fraction), normal: world_from_shape.rotation * normal })
+    }
+
+    /// Fraction (≥ 0, may exceed 1) and normal where a line enters, in the shape's frame.
+    pub(crate) fn cast_local(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+        if let Some(surface) = self.surface() {
+            return surface.enter(origin, direction);
+        }
+        if let Self::Box { half_extents } = *self
+            && (abs3(origin) - half_extents).cmpgt(Vec3::splat(CLEARLY_OUTSIDE)).any()
+        {
+            return enter_box(half_extents, origin, direction)
+                .filter(|(fraction, _)| *fraction < f32::INFINITY);
+        }
+        let (distance, outward) = self.local_distance(origin);
+        if distance <= 0.0 {
+            return Some((0.0, normalize_or(-direction, outward)));
+        }
+        self.enter(origin, direction).filter(|(fraction, _)| *fraction < f32::INFINITY)
+    }
+
+    /// As [`cast_local`](Self::cast_local), of a line from outside, in the shape's frame.
+    fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+        match *self {
+            Self::Box { half_extents } => enter_box(half_extents, origin, direction),
+            Self::Sphere { radius } => enter_ball(Vec3::ZERO, radius, origin, direction),
+            Self::Capsule { half_height, radius } => {
+                let cap = Vec3::new(0.0, half_height, 0.0);
+                let side = enter_tube(half_height, radius, origin, direction);
+                let caps = [-cap, cap].map(|center| enter_ball(center, radius, origin, direction));
+                first_of(caps, side)
+            }
+            Self::Hull(ref hull) => hull.enter(origin, direction),
+            Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                let tapered = TaperedCapsule::new(half_height, radius_bottom, radius_top);
+                let (side, middle) = tapered.side();
+                let side = side.enter(origin - Vec3::new(0.0, middle, 0.0), direction);
+                let ends = tapered.balls().map(|(center, r)| enter_ball(center, r, origin, direction));
+                first_of(ends, side)
+            }
+            Self::Cylinder { half_height, radius } => {
+                TruncatedCone::cylinder(half_height, radius).enter(origin, direction)
+            }
+            Self::Cone { half_height, radius } => {
+                TruncatedCone::cone(half_height, radius).enter(origin, direction)
+            }
+            Self::HalfSpace => (direction.y < 0.0).then(|| (origin.y / -direction.y, Vec3::Y)),
+            Self::Mesh(_) | Self::HeightField(_) => None,
+        }
+    }
+}
+
+/// Beyond a face by more than this, metres, a point needs no exact distance to be known as outside: rounding takes none of
+/// that for inside.
+pub const CLEARLY_OUTSIDE: f32 = 1e-6;
+
+/// The surface of a union is entered where the first of its parts is.
+fn first_of(ends: [Option<(f32, Vec3)>; 2], side: Option<(f32, Vec3)>) -> Option<(f32, Vec3)> {
+    ends.into_iter().chain([side]).flatten().reduce(|a, b| if b.0 < a.0 { b } else { a })
+}
+
+fn enter_box(half: Vec3, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+    let slabs = Slabs::<f32>::new(half.into(), origin.into(), direction.into());
+    slabs.is_entered().then(|| (slabs.enter, Vec3::from_array(slabs.normal().to_array())))
+}
+
+/// By the line's closest point to the centre: the usual quadratic loses the ball's radius beside a long way
+/// (Haines et al., "Precision improvements for ray/sphere intersection", Ray Tracing Gems 2019).
+fn enter_ball(center: Vec3, radius: f32, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+    let length_squared = direction.dot(direction);
+    if length_squared <= f32::MIN_POSITIVE {
+        return None;
+    }
+    let offset = origin - center;
+    let middle = -offset.dot(direction) / length_squared;
+    let closest = offset + direction * middle;
+    let depth = radius * radius - closest.dot(closest);
+    // Written so that NaN, of squares that overflow, fails.
+    if !(depth >= 0.0 && middle >= 0.0) {
+        return None;
+    }
+    let fraction = max(middle - (depth / length_squared).sqrt(), 0.0);
+    Some((fraction, normalize_or(offset + direction * fraction, normalize_or(-direction, Vec3::Y))))
+}
+
+/// The side of a cylinder along y, without its ends.
+fn enter_tube(half_height: f32, radius: f32, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+    let flat = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
+    let (fraction, normal) = enter_ball(Vec3::ZERO, radius, flat(origin), flat(direction))?;
+    ((origin.y + direction.y * fraction).abs() <= half_height).then_some((fraction, normal))
+}

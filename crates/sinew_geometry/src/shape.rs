@@ -1,0 +1,169 @@
+//! Collision shapes: their kinds and sizes.
+
+use crate::boxes::Aabb;
+use crate::hull::Hull;
+use crate::triangles::{HeightField, Mesh};
+use sinew_math::{Sym3, Vec3, abs3, max, max3, min};
+use std::sync::Arc;
+
+/// A shape in its own frame. All sizes are metres and positive. Convex, but for meshes and height fields.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// Box around the origin.
+    Box {
+        /// Half of each side.
+        half_extents: Vec3,
+    },
+    /// Ball around the origin.
+    Sphere {
+        /// Radius.
+        radius: f32,
+    },
+    /// Segment along y from −`half_height` to `half_height`, with a radius.
+    Capsule {
+        /// Half the length of the segment, without the caps; may be 0.
+        half_height: f32,
+        /// Radius.
+        radius: f32,
+    },
+    /// The hull of two balls on the y axis: one around −`half_height`, one around `half_height`. Neither may hold
+    /// the other: the radii differ by less than the distance of the centres.
+    TaperedCapsule {
+        /// Half the distance of the balls' centres.
+        half_height: f32,
+        /// Radius of the ball at −`half_height`.
+        radius_bottom: f32,
+        /// Radius of the ball at `half_height`.
+        radius_top: f32,
+    },
+    /// Flat-ended cylinder along y from −`half_height` to `half_height`.
+    Cylinder {
+        /// Half of its length.
+        half_height: f32,
+        /// Radius.
+        radius: f32,
+    },
+    /// Cone along y: its base at −`half_height`, its apex at `half_height`.
+    Cone {
+        /// Half the distance from base to apex.
+        half_height: f32,
+        /// Radius of the base.
+        radius: f32,
+    },
+    /// Everything below the plane y = 0 of its frame. Static bodies only.
+    HalfSpace,
+    /// Convex solid with flat faces; its origin need not be inside.
+    Hull(Arc<Hull>),
+    /// A surface of one-sided triangles. It has no mass of its own: for static and kinematic bodies, or with a given mass.
+    Mesh(Arc<Mesh>),
+    /// Terrain over its x and z axes, solid from above. As for meshes.
+    HeightField(Arc<HeightField>),
+}
+
+impl Shape {
+    /// Checks that its sizes are finite and positive (a capsule's half height may be 0), and make a shape of its kind; the
+    /// phrase says what is wrong.
+    ///
+    /// # Errors
+    /// What is wrong, in lower case.
+    pub fn check(&self) -> Result<(), &'static str> {
+        // Written so that NaN fails.
+        let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
+        match *self {
+            Self::Box { half_extents: h } if !(positive(h.x) && positive(h.y) && positive(h.z)) => {
+                Err("half extents of a box must be positive and finite")
+            }
+            Self::Sphere { radius } | Self::Capsule { radius, .. } if !positive(radius) => {
+                Err("a radius must be positive and finite")
+            }
+            Self::Capsule { half_height, .. } if !(half_height == 0.0 || positive(half_height)) => {
+                Err("half height of a capsule must not be negative, and finite")
+            }
+            Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                if !(positive(half_height) && positive(radius_bottom) && positive(radius_top)) {
+                    Err("half height and radii of a tapered capsule must be positive and finite")
+                } else if (radius_bottom - radius_top).abs() >= 2.0 * half_height {
+                    Err("one end of a tapered capsule must not hold the other")
+                } else {
+                    Ok(())
+                }
+            }
+            Self::Cylinder { half_height, radius } if !(positive(half_height) && positive(radius)) => {
+                Err("half height and radius of a cylinder must be positive and finite")
+            }
+            Self::Cone { half_height, radius } if !(positive(half_height) && positive(radius)) => {
+                Err("half height and radius of a cone must be positive and finite")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Radius of the largest ball inside, metres: half the width where the shape is thinnest. Of a cone somewhat less, of a
+    /// hull that around its centre. Infinite for a half-space, a mesh and a height field: nothing is thin about what they
+    /// keep out.
+    #[inline]
+    pub fn inner_radius(&self) -> f32 {
+        match *self {
+            Self::Box { half_extents: h } => min(min(h.x, h.y), h.z),
+            Self::Sphere { radius } | Self::Capsule { radius, .. } => radius,
+            Self::TaperedCapsule { radius_bottom, radius_top, .. } => max(radius_bottom, radius_top),
+            Self::Cylinder { half_height, radius } => min(half_height, radius),
+            // Of the triangle that turns into the cone: twice its area over its girth.
+            Self::Cone { half_height, radius } => {
+                let slant = (radius * radius + 4.0 * half_height * half_height).sqrt();
+                2.0 * half_height * (radius / (radius + slant))
+            }
+            Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_) => f32::INFINITY,
+            Self::Hull(ref hull) => hull.inner_radius(),
+        }
+    }
+
+    /// Radius of the smallest ball around the shape's origin that holds it, metres. Infinite for a half-space.
+    #[inline]
+    pub fn bounding_radius(&self) -> f32 {
+        match *self {
+            Self::Box { half_extents } => half_extents.length(),
+            Self::Sphere { radius } => radius,
+            Self::Capsule { half_height, radius } => half_height + radius,
+            Self::TaperedCapsule { half_height, radius_bottom, radius_top } => {
+                half_height + max(radius_bottom, radius_top)
+            }
+            Self::Cylinder { half_height, radius } | Self::Cone { half_height, radius } => {
+                (half_height * half_height + radius * radius).sqrt()
+            }
+            Self::HalfSpace => f32::INFINITY,
+            Self::Mesh(ref mesh) => reach(&mesh.bounds()),
+            Self::HeightField(ref field) => reach(&field.bounds()),
+            Self::Hull(ref hull) => hull.bounding_radius(),
+        }
+    }
+
+    /// True if it has volume, and with it a mass by density.
+    #[inline]
+    pub fn is_solid(&self) -> bool {
+        !matches!(self, Self::HalfSpace | Self::Mesh(_) | Self::HeightField(_))
+    }
+
+    /// Width where the shape is thinnest, metres: what slop and speculative distance scale with. Infinite for a
+    /// half-space, a mesh and a height field.
+    #[inline]
+    pub fn smallest_extent(&self) -> f32 {
+        2.0 * self.inner_radius()
+    }
+}
+
+/// From the origin to the farthest corner, metres.
+fn reach(bounds: &Aabb) -> f32 {
+    max3(abs3(bounds.min), abs3(bounds.max)).length()
+}
+
+/// Mass, centre of mass and inertia.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MassProperties {
+    /// kg.
+    pub mass: f32,
+    /// Centre of mass in the frame at hand, metres.
+    pub center: Vec3,
+    /// Inertia about the centre of mass, in the axes of the frame at hand, kg·m².
+    pub inertia: Sym3,
+}

@@ -1,0 +1,307 @@
+//! A tree of bounds (bounding-volume hierarchy) with eight boxes in each node: which leaves overlap a box, lie along a line,
+//! or are closest to a point.
+//!
+//! All leaves are equally deep. [`build`](Tree::build) makes a tree of many at once by the surface area heuristic with full
+//! nodes at the bottom; single leaves come and go as in an R-tree (Guttman, "R-trees: a dynamic index structure for spatial
+//! searching", SIGMOD 1984). What a query finds never depends on the tree's shape, only in which order.
+
+mod build;
+mod flight;
+mod node;
+mod query;
+#[cfg(test)]
+mod tests;
+mod waiting;
+
+use crate::boxes::Aabb;
+pub use build::Item;
+pub use flight::{Flight, Stop};
+pub use node::PAD;
+use node::{Child, Node, half_area};
+pub use query::Sweep;
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::{Lanes, WIDTH};
+
+/// Most levels of nodes: what the queries' stacks are made for. Full nodes hold 2³² leaves in 11.
+const MOST_LEVELS: usize = 14;
+
+/// Place of a child: node times eight plus slot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Place(u32);
+
+impl Place {
+    /// Not in the tree, or the root.
+    const NOWHERE: Self = Self(u32::MAX);
+
+    fn new(node: u32, slot: usize) -> Self {
+        Self(node * WIDTH as u32 + slot as u32)
+    }
+
+    fn split(self) -> (u32, usize) {
+        (self.0 / WIDTH as u32, self.0 as usize % WIDTH)
+    }
+}
+
+/// Leaves are numbers that the user gives, from 0 on.
+#[derive(Clone, Debug, Default)]
+pub struct Tree {
+    nodes: Vec<Node>,
+    /// Place of each node in its parent.
+    parents: Vec<Place>,
+    free: Vec<u32>,
+    /// Place of each leaf, by its number.
+    places: Vec<Place>,
+    root: Option<u32>,
+    /// Levels of nodes.
+    levels: usize,
+    len: usize,
+    /// Leaves that were put in one by one since the tree was built.
+    inserted: usize,
+}
+
+impl Tree {
+    /// Number of leaves.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// True if there are no leaves.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// True if a leaf of that number is there.
+    #[inline]
+    pub fn contains(&self, leaf: u32) -> bool {
+        self.places.get(leaf as usize).is_some_and(|&place| place != Place::NOWHERE)
+    }
+
+    /// Bounds of a leaf that is there.
+    #[inline]
+    pub fn bounds(&self, leaf: u32) -> Aabb {
+        let (node, slot) = self.places[leaf as usize].split();
+        self.nodes[node as usize].bounds(slot)
+    }
+
+    /// Puts a leaf in.
+    pub fn insert(&mut self, leaf: u32, bounds: &Aabb) {
+        self.make_room(leaf);
+        self.len += 1;
+        self.inserted += 1;
+        let Some(root) = self.root else {
+            let root = self.new_node(Place::NOWHERE);
+            (self.root, self.levels) = (Some(root), 1);
+            self.put(root, 0, Child::leaf(leaf), bounds);
+            return;
+        };
+        let node = dispatch::run(Descent { tree: self, root, bounds });
+        self.add(node, Child::leaf(leaf), *bounds);
+        if self.levels > MOST_LEVELS {
+            self.rebuild(&mut Vec::new());
+        }
+    }
+
+    /// Takes a leaf out that is there.
+    pub fn remove(&mut self, leaf: u32) {
+        let place = core::mem::replace(&mut self.places[leaf as usize], Place::NOWHERE);
+        self.len -= 1;
+        let (mut node, mut slot) = place.split();
+        loop {
+            self.nodes[node as usize].clear(slot);
+            if !self.nodes[node as usize].is_empty() {
+                self.refit(node);
+                return;
+            }
+            self.free.push(node);
+            let parent = self.parents[node as usize];
+            if parent == Place::NOWHERE {
+                (self.root, self.levels) = (None, 0);
+                return;
+            }
+            (node, slot) = parent.split();
+        }
+    }
+
+    /// Gives a leaf that is there other bounds. It keeps its place as long as they are inside those of the node it is in;
+    /// one that went farther is put in anew.
+    pub fn update(&mut self, leaf: u32, bounds: &Aabb) {
+        let (node, slot) = self.places[leaf as usize].split();
+        let parent = self.parents[node as usize];
+        let stays = parent == Place::NOWHERE || {
+            let (node, slot) = parent.split();
+            self.nodes[node as usize].bounds(slot).contains(bounds)
+        };
+        if stays {
+            self.nodes[node as usize].set_bounds(slot, bounds);
+            self.refit(node);
+        } else {
+            self.remove(leaf);
+            self.insert(leaf, bounds);
+        }
+    }
+
+    /// True if building anew pays: many leaves were put in one by one, or many nodes are nearly empty.
+    pub fn is_worn(&self) -> bool {
+        let used = self.nodes.len() - self.free.len();
+        (self.inserted > 64 && self.inserted > self.len) || used > self.len / 2 + MOST_LEVELS
+    }
+
+    /// Makes room for so many leaves, however they come and go.
+    pub fn reserve(&mut self, leaves: usize) {
+        let nodes = leaves + MOST_LEVELS;
+        self.nodes.reserve(nodes.saturating_sub(self.nodes.len()));
+        self.parents.reserve(nodes.saturating_sub(self.parents.len()));
+        self.free.reserve(nodes.saturating_sub(self.free.len()));
+    }
+
+    /// Makes room in the list of places for a leaf of that number.
+    fn make_room(&mut self, leaf: u32) {
+        if self.places.len() <= leaf as usize {
+            self.places.resize(leaf as usize + 1, Place::NOWHERE);
+        }
+    }
+
+    fn new_node(&mut self, parent: Place) -> u32 {
+        if let Some(node) = self.free.pop() {
+            self.nodes[node as usize] = Node::EMPTY;
+            self.parents[node as usize] = parent;
+            return node;
+        }
+        self.nodes.push(Node::EMPTY);
+        self.parents.push(parent);
+        self.nodes.len() as u32 - 1
+    }
+
+    /// Writes a child into a slot, and with the child where it is.
+    fn put(&mut self, node: u32, slot: usize, child: Child, bounds: &Aabb) {
+        self.nodes[node as usize].set(slot, child, bounds);
+        let place = Place::new(node, slot);
+        match child.get() {
+            Ok(leaf) => self.places[leaf as usize] = place,
+            Err(node) => self.parents[node as usize] = place,
+        }
+    }
+
+    /// Adds a child to a node, which is split if it is full, and then its parents.
+    fn add(&mut self, mut node: u32, mut child: Child, mut bounds: Aabb) {
+        loop {
+            if let Some(slot) = self.nodes[node as usize].free_slot() {
+                self.put(node, slot, child, &bounds);
+                self.refit(node);
+                return;
+            }
+            let other = self.split(node, child, &bounds);
+            let total = self.nodes[node as usize].total();
+            let parent = self.parents[node as usize];
+            (child, bounds) = (Child::node(other), self.nodes[other as usize].total());
+            if parent == Place::NOWHERE {
+                let root = self.new_node(Place::NOWHERE);
+                self.put(root, 0, Child::node(node), &total);
+                self.put(root, 1, child, &bounds);
+                self.root = Some(root);
+                self.levels += 1;
+                return;
+            }
+            let (up, slot) = parent.split();
+            self.nodes[up as usize].set_bounds(slot, &total);
+            node = up;
+        }
+    }
+
+    /// Divides what a full node holds, and one more, between it and a new node, which it gives.
+    fn split(&mut self, node: u32, child: Child, bounds: &Aabb) -> u32 {
+        let own = &self.nodes[node as usize];
+        let mut all = [(*bounds, child); WIDTH + 1];
+        for slot in 0..WIDTH {
+            all[slot] = (own.bounds(slot), own.child(slot));
+        }
+        let first = divide(&mut all);
+        let other = self.new_node(Place::NOWHERE);
+        self.nodes[node as usize] = Node::EMPTY;
+        for (slot, (bounds, child)) in all[..first].iter().enumerate() {
+            self.put(node, slot, *child, bounds);
+        }
+        for (slot, (bounds, child)) in all[first..].iter().enumerate() {
+            self.put(other, slot, *child, bounds);
+        }
+        other
+    }
+
+    /// Brings the boxes above a node up to date.
+    fn refit(&mut self, mut node: u32) {
+        loop {
+            let parent = self.parents[node as usize];
+            if parent == Place::NOWHERE {
+                return;
+            }
+            let total = self.nodes[node as usize].total();
+            let (up, slot) = parent.split();
+            if self.nodes[up as usize].bounds(slot) == total {
+                return;
+            }
+            self.nodes[up as usize].set_bounds(slot, &total);
+            node = up;
+        }
+    }
+}
+
+/// From the root to the lowest node that has to grow least for new bounds.
+struct Descent<'a> {
+    tree: &'a mut Tree,
+    root: u32,
+    bounds: &'a Aabb,
+}
+
+impl Kernel for Descent<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u32 {
+        let Aabb { min, max } = *self.bounds;
+        let bounds = [min.x, min.y, min.z, max.x, max.y, max.z].map(L::splat);
+        let mut node = self.root;
+        for _ in 1..self.tree.levels {
+            let own = &mut self.tree.nodes[node as usize];
+            let slot = own.least_growth(&bounds);
+            own.set_bounds(slot, &own.bounds(slot).merge(self.bounds));
+            node = own.child(slot).get().expect_err("nodes above the lowest hold nodes");
+        }
+        node
+    }
+}
+
+/// Fewest children of a node that was split.
+const FEWEST: usize = 3;
+
+/// Orders children so that the first of them, as many as it says, and the rest have the least surface together.
+fn divide(all: &mut [(Aabb, Child); WIDTH + 1]) -> usize {
+    let mut best = (f32::INFINITY, 0, FEWEST);
+    for axis in 0..3 {
+        order(all, axis);
+        let mut rest = [0.0; WIDTH + 1];
+        let mut sum = all[WIDTH].0;
+        for i in (1..=WIDTH).rev() {
+            sum = sum.merge(&all[i].0);
+            rest[i] = half_area(&sum);
+        }
+        let mut sum = all[0].0;
+        for first in 1..=WIDTH + 1 - FEWEST {
+            if first >= FEWEST {
+                let cost = half_area(&sum) * first as f32 + rest[first] * (WIDTH + 1 - first) as f32;
+                if cost < best.0 {
+                    best = (cost, axis, first);
+                }
+            }
+            sum = sum.merge(&all[first].0);
+        }
+    }
+    order(all, best.1);
+    best.2
+}
+
+fn order(all: &mut [(Aabb, Child); WIDTH + 1], axis: usize) {
+    let middle = |(bounds, _): &(Aabb, Child)| bounds.min[axis] + bounds.max[axis];
+    all.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
+}

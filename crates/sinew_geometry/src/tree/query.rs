@@ -1,0 +1,154 @@
+//! Questions to a tree. Each goes through the nodes with a stack of its own size, allocates nothing, and calls the closure
+//! that it is given with every leaf whose bounds are in question; the closure makes the exact test.
+
+use super::Tree;
+use super::node::Line;
+use super::waiting::{MASK, STACK, Waiting};
+use crate::boxes::Aabb;
+use core::ops::ControlFlow;
+use sinew_math::Vec3;
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::{Lanes, WIDTH};
+
+/// A stretch of a line along which a box moves; of a ray the box is a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Sweep {
+    /// Metres.
+    pub origin: Vec3,
+    /// Way at fraction 1, metres.
+    pub direction: Vec3,
+    /// Half extents of the box, metres, ≥ 0.
+    pub half_extents: Vec3,
+    /// Fraction at which it ends, ≥ 0.
+    pub limit: f32,
+}
+
+impl Tree {
+    /// Every leaf whose bounds overlap these, touching ones too, in no order, until one breaks off.
+    pub fn overlapping<B>(&self, bounds: &Aabb, visit: impl FnMut(u32) -> ControlFlow<B>) -> ControlFlow<B> {
+        match self.root {
+            Some(root) => dispatch::run(Overlapping { tree: self, root, bounds, visit }),
+            None => ControlFlow::Continue(()),
+        }
+    }
+
+    /// Every leaf that may be met along a line, the nearer boxes of a node first. `visit` gives the fraction beyond which
+    /// nothing counts any more: as it was, or less once something was hit; below 0 to break off.
+    pub fn along(&self, sweep: &Sweep, visit: impl FnMut(u32) -> f32) {
+        if let Some(root) = self.root {
+            dispatch::run(Along { tree: self, root, sweep, visit });
+        }
+    }
+
+    /// Every leaf whose bounds are within `distance` (m) of a point, the nearer boxes of a node first. `visit` gives the
+    /// distance beyond which nothing counts any more.
+    pub fn nearest(&self, point: Vec3, distance: f32, visit: impl FnMut(u32) -> f32) {
+        if let Some(root) = self.root {
+            dispatch::run(Nearest { tree: self, root, point, distance, visit });
+        }
+    }
+}
+
+struct Overlapping<'a, V> {
+    tree: &'a Tree,
+    root: u32,
+    bounds: &'a Aabb,
+    visit: V,
+}
+
+impl<B, V: FnMut(u32) -> ControlFlow<B>> Kernel for Overlapping<'_, V> {
+    type Output = ControlFlow<B>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self) -> ControlFlow<B> {
+        let Aabb { min, max } = *self.bounds;
+        let query = [min.x, min.y, min.z, max.x, max.y, max.z].map(L::splat);
+        let mut stack = [0; STACK];
+        stack[0] = self.root;
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let node = &self.tree.nodes[stack[depth & MASK] as usize];
+            for (_, child) in node.held(node.overlapping(&query)) {
+                match child.get() {
+                    Ok(leaf) => (self.visit)(leaf)?,
+                    Err(child) => {
+                        stack[depth & MASK] = child;
+                        depth += 1;
+                    }
+                }
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+struct Along<'a, V> {
+    tree: &'a Tree,
+    root: u32,
+    sweep: &'a Sweep,
+    visit: V,
+}
+
+impl<V: FnMut(u32) -> f32> Kernel for Along<'_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self) {
+        let Sweep { origin, direction, half_extents, mut limit } = *self.sweep;
+        let line = Line::new(origin, direction, half_extents, limit);
+        let mut waiting = Waiting::new(self.root);
+        let mut enter = [0.0; WIDTH];
+        while let Some((key, child)) = waiting.pop() {
+            // What is as near as the best so far may be as good.
+            if key > limit * (1.0 + super::PAD) {
+                continue;
+            }
+            match child.get() {
+                Ok(leaf) => limit = (self.visit)(leaf),
+                Err(index) => {
+                    let node = &self.tree.nodes[index as usize];
+                    let mask = node.entered::<L>(&line, limit, &mut enter);
+                    waiting.push(node, mask, &enter);
+                }
+            }
+        }
+    }
+}
+
+struct Nearest<'a, V> {
+    tree: &'a Tree,
+    root: u32,
+    point: Vec3,
+    distance: f32,
+    visit: V,
+}
+
+impl<V: FnMut(u32) -> f32> Kernel for Nearest<'_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self) {
+        let far = self.point.abs();
+        let pad = super::PAD * sinew_math::max(far.x, sinew_math::max(far.y, far.z));
+        let point = self.point.to_array().map(L::splat);
+        // Squares of distances that are as large as this and those a rounding beyond.
+        let square = |distance: f32| distance * distance * (1.0 + super::PAD);
+        let mut limit = square(self.distance);
+        let mut waiting = Waiting::new(self.root);
+        let mut squares = [0.0; WIDTH];
+        while let Some((key, child)) = waiting.pop() {
+            if key > limit {
+                continue;
+            }
+            match child.get() {
+                Ok(leaf) => limit = square((self.visit)(leaf)),
+                Err(index) => {
+                    let node = &self.tree.nodes[index as usize];
+                    let mask = node.distances(&point, L::splat(pad), limit, &mut squares);
+                    waiting.push(node, mask, &squares);
+                }
+            }
+        }
+    }
+}

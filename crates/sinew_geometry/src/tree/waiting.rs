@@ -1,0 +1,84 @@
+//! Nodes that a query has seen and not gone into yet.
+
+use super::MOST_LEVELS;
+use super::node::{Child, Node};
+use sinew_math::lanes::WIDTH;
+
+/// Room for the most children that wait: all of a node but the one that is gone into, on each level. A power of two, so that
+/// a mask holds places inside.
+pub(super) const STACK: usize = ((WIDTH - 1) * MOST_LEVELS + 1).next_power_of_two();
+pub(super) const MASK: usize = STACK - 1;
+
+/// Children that wait, each with what it is sorted by; the last is the next.
+pub(super) struct Waiting {
+    /// The key's bits above the child's: of numbers that are not negative the bits have the same order.
+    children: [u64; STACK],
+    count: usize,
+}
+
+impl Waiting {
+    /// Nothing waits.
+    pub const NONE: Self = Self { children: [0; STACK], count: 0 };
+
+    /// Only a root waits.
+    #[inline(always)]
+    pub fn new(root: u32) -> Self {
+        let mut waiting = Self::NONE;
+        waiting.start(root);
+        waiting
+    }
+
+    /// Only a root waits from now on.
+    #[inline(always)]
+    pub fn start(&mut self, root: u32) {
+        self.children[0] = entry(0.0, Child::node(root));
+        self.count = 1;
+    }
+
+    #[inline(always)]
+    pub fn pop(&mut self) -> Option<(f32, Child)> {
+        self.count = self.count.checked_sub(1)?;
+        let entry = self.children[self.count & MASK];
+        Some((f32::from_bits((entry >> 32) as u32), Child::from_bits(entry as u32)))
+    }
+
+    /// Pushes slots of a node so that the one with the smallest key, ≥ 0, is the next.
+    #[inline(always)]
+    pub fn push(&mut self, node: &Node, mask: u8, keys: &[f32; WIDTH]) {
+        let start = self.count;
+        for (slot, child) in node.held(mask) {
+            let mut next = entry(keys[slot], child);
+            for at in start..self.count {
+                let other = self.children[at & MASK];
+                self.children[at & MASK] = u64::max(next, other);
+                next = u64::min(next, other);
+            }
+            self.children[self.count & MASK] = next;
+            self.count += 1;
+        }
+    }
+
+    /// Pushes those of a mask; up to two slots, as it mostly is, without a branch: of those, the processor guesses every other one wrongly. A
+    /// slot that is empty may be among them.
+    #[inline(always)]
+    pub fn push_few(&mut self, node: &Node, mask: u8, keys: &[f32; WIDTH]) {
+        let rest = mask & mask.wrapping_sub(1);
+        if rest & rest.wrapping_sub(1) != 0 {
+            return self.push(node, mask, keys);
+        }
+        let [a, b] = [mask, rest].map(|mask| {
+            let slot = mask.trailing_zeros() as usize % WIDTH;
+            entry(keys[slot], node.child(slot))
+        });
+        // Where there is no second, 0 is the least, and beyond what counts.
+        let b = if rest != 0 { b } else { 0 };
+        self.children[self.count & MASK] = u64::max(a, b);
+        self.children[(self.count + 1) & MASK] = u64::min(a, b);
+        self.count += usize::from(mask != 0) + usize::from(rest != 0);
+    }
+}
+
+#[inline(always)]
+fn entry(key: f32, child: Child) -> u64 {
+    u64::from(key.to_bits()) << 32 | u64::from(child.bits())
+}

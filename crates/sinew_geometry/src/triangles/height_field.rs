@@ -1,0 +1,328 @@
+//! Height fields as shapes: terrain on a grid.
+
+use super::build::is_felt;
+use super::triangle::{Triangle, bounds, closest_on_triangle, enter_triangle};
+use super::{Closest, MAX_COORDINATE};
+use crate::boxes::{Aabb, Overlap};
+use core::ops::Range;
+use sinew_math::{StableHasher, Vec3, clamp, max, min};
+
+/// A height field to be made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeightFieldDef {
+    /// Vertices along x, at least 2.
+    pub columns: usize,
+    /// Vertices along z, at least 2.
+    pub rows: usize,
+    /// Metres between neighbours along x and along z, > 0.
+    pub spacing: [f32; 2],
+    /// Heights, metres: `columns × rows` of them, row after row. That of column i and row j is over (i × spacing.0, j ×
+    /// spacing.1).
+    pub heights: Vec<f32>,
+    /// Cells that are not there, by `column + row × (columns − 1)`.
+    pub holes: Vec<u32>,
+}
+
+/// Why numbers make no height field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum HeightFieldError {
+    /// Fewer than 2 vertices along an axis, or more than 2²⁶ cells.
+    #[error("a height field has at least 2 × 2 vertices and at most 2²⁶ cells")]
+    Size,
+    /// As many heights as vertices are needed.
+    #[error("{heights} heights do not make {vertices} vertices")]
+    Heights {
+        /// Number that was given.
+        heights: usize,
+        /// Number that is needed.
+        vertices: usize,
+    },
+    /// A spacing that is not positive and finite, or makes the field larger than [`MAX_COORDINATE`].
+    #[error("the spacing of a height field is positive, and its sides no longer than 10⁶ m")]
+    Spacing,
+    /// A height that is not finite, or beyond [`MAX_COORDINATE`].
+    #[error("height {index} is not finite or beyond 10⁶ m")]
+    NotFinite {
+        /// Its place in the list.
+        index: usize,
+    },
+    /// A hole where no cell is.
+    #[error("hole {hole} is not a cell: there are {cells}")]
+    Hole {
+        /// Number of the cell.
+        hole: u32,
+        /// Number that was given.
+        cells: usize,
+    },
+    /// All cells are holes.
+    #[error("all cells are holes")]
+    Empty,
+}
+
+/// Terrain: heights on a grid in x and z, solid from above. Each cell is two triangles, parted from its corner at the
+/// lower x and higher z to the one at the higher x and lower z. Edges are felt as those of a [`Mesh`](super::Mesh).
+#[derive(Clone, Debug)]
+pub struct HeightField {
+    def: HeightFieldDef,
+    /// Bits of each cell: active edges of its first triangle in the lowest three bits, of its second in the next; `HOLE`.
+    cells: Vec<u8>,
+    bounds: Aabb,
+    hash: u64,
+}
+
+const HOLE: u8 = 1 << 7;
+const MAX_CELLS: usize = 1 << 26;
+
+impl HeightField {
+    /// From its numbers.
+    ///
+    /// # Errors
+    /// What is wrong with them.
+    pub fn new(mut def: HeightFieldDef) -> Result<Self, HeightFieldError> {
+        check(&def)?;
+        // In one order, so that equal fields are equal.
+        def.holes.sort_unstable();
+        def.holes.dedup();
+        let lowest = def.heights.iter().fold(f32::INFINITY, |y, &h| min(h, y));
+        let highest = def.heights.iter().fold(f32::NEG_INFINITY, |y, &h| max(h, y));
+        let [width, depth] = sides(&def);
+        let bounds = Aabb { min: Vec3::new(0.0, lowest, 0.0), max: Vec3::new(width, highest, depth) };
+        let mut cells = vec![0; (def.columns - 1) * (def.rows - 1)];
+        for &hole in &def.holes {
+            cells[hole as usize] = HOLE;
+        }
+        if cells.iter().all(|&cell| cell == HOLE) {
+            return Err(HeightFieldError::Empty);
+        }
+        let hash = hash(&def, &cells);
+        let mut field = Self { def, cells, bounds, hash };
+        field.find_active_edges();
+        Ok(field)
+    }
+
+    /// Definition it was made from.
+    pub fn def(&self) -> &HeightFieldDef {
+        &self.def
+    }
+
+    /// Around all of it, in its own frame.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Corners of its triangles, counter-clockwise seen from above, cell after cell.
+    pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
+        let cells = (0..self.cells.len()).filter(|&cell| self.cells[cell] & HOLE == 0);
+        cells.flat_map(|cell| [self.corners(2 * cell as u32), self.corners(2 * cell as u32 + 1)])
+    }
+
+    /// Hash of the content: equal for equal fields, on every machine.
+    pub fn content_hash(&self) -> u64 {
+        self.hash
+    }
+
+    fn width(&self) -> usize {
+        self.def.columns - 1
+    }
+
+    /// Column, row and vertex number of a triangle's corners.
+    fn grid(&self, triangle: u32) -> [[usize; 2]; 3] {
+        let cell = triangle as usize / 2;
+        let (i, j) = (cell % self.width(), cell / self.width());
+        if triangle.is_multiple_of(2) {
+            [[i, j], [i, j + 1], [i + 1, j]]
+        } else {
+            [[i + 1, j], [i, j + 1], [i + 1, j + 1]]
+        }
+    }
+
+    fn corners(&self, triangle: u32) -> [Vec3; 3] {
+        let [width, depth] = self.def.spacing;
+        self.grid(triangle).map(|[i, j]| {
+            Vec3::new(i as f32 * width, self.def.heights[i + j * self.def.columns], j as f32 * depth)
+        })
+    }
+
+    fn triangle(&self, number: u32) -> Triangle {
+        let vertices = self.grid(number).map(|[i, j]| (i + j * self.def.columns) as u32);
+        let active = self.cells[number as usize / 2] >> (3 * (number % 2)) & 7;
+        Triangle::new(self.corners(number), vertices, active)
+    }
+
+    /// The triangle beyond each edge of another, if one is there.
+    fn beyond(&self, triangle: u32) -> [Option<u32>; 3] {
+        let cell = triangle as usize / 2;
+        let (i, j) = (cell % self.width(), cell / self.width());
+        let there = |inside: bool, cell: usize, half: u32| {
+            let solid = inside && self.cells[cell] & HOLE == 0;
+            solid.then(|| 2 * cell as u32 + half)
+        };
+        if triangle.is_multiple_of(2) {
+            let left = there(i > 0, cell.wrapping_sub(1), 1);
+            let back = there(j > 0, cell.wrapping_sub(self.width()), 1);
+            [left, Some(triangle + 1), back]
+        } else {
+            let right = there(i + 1 < self.width(), cell + 1, 0);
+            let front = there(j + 2 < self.def.rows, cell + self.width(), 0);
+            [Some(triangle - 1), front, right]
+        }
+    }
+
+    fn find_active_edges(&mut self) {
+        for cell in 0..self.cells.len() {
+            if self.cells[cell] & HOLE != 0 {
+                continue;
+            }
+            for half in 0..2 {
+                let triangle = 2 * cell as u32 + half;
+                for (edge, beyond) in self.beyond(triangle).into_iter().enumerate() {
+                    let felt = |other| is_felt(&self.corners(triangle), &self.corners(other));
+                    if beyond.is_none_or(felt) {
+                        self.cells[cell] |= 1 << (3 * half as usize + edge);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Cells between two places along an axis.
+    fn cells_between(&self, axis: usize, from: f32, to: f32) -> Range<usize> {
+        let cells = [self.def.columns - 1, self.def.rows - 1][axis];
+        let cell = |x: f32| clamp((x / self.def.spacing[axis]).floor(), -1.0, cells as f32) as i64;
+        // One more on either side: a place on a grid line belongs to both.
+        let first = i64::max(cell(from) - 1, 0) as usize;
+        let end = i64::min(cell(to) + 2, cells as i64);
+        first..usize::max(i64::max(end, 0) as usize, first)
+    }
+
+    fn solid_cells(&self, columns: Range<usize>, rows: Range<usize>) -> impl Iterator<Item = usize> {
+        let width = self.width();
+        let cells = rows.flat_map(move |j| columns.clone().map(move |i| i + j * width));
+        cells.filter(|&cell| self.cells[cell] & HOLE == 0)
+    }
+
+    /// As [`Surface::overlapping`](super::Surface::overlapping).
+    pub(super) fn overlapping(&self, region: &Aabb, mut visit: impl FnMut(Triangle)) {
+        if !self.bounds.overlaps(region) {
+            return;
+        }
+        let columns = self.cells_between(0, region.min.x, region.max.x);
+        let rows = self.cells_between(1, region.min.z, region.max.z);
+        for cell in self.solid_cells(columns, rows) {
+            for number in [2 * cell as u32, 2 * cell as u32 + 1] {
+                if bounds(&self.corners(number)).overlaps(region) {
+                    visit(self.triangle(number));
+                }
+            }
+        }
+    }
+
+    /// As [`Surface::closest`](super::Surface::closest): in ever larger boxes around the point, until the closest point found
+    /// is nearer than the box's sides.
+    pub(super) fn closest(&self, p: Vec3, reach: f32) -> Option<Closest> {
+        let nearest = sinew_math::max3(sinew_math::min3(p, self.bounds.max), self.bounds.min);
+        let least = (nearest - p).length();
+        let far = (abs_farthest(&self.bounds, p)).length();
+        let mut radius = least + max(self.def.spacing[0], self.def.spacing[1]);
+        loop {
+            let radius_now = min(radius, reach);
+            let mut best = None;
+            let limit = radius_now * radius_now;
+            let region = Aabb::reaching(p, Vec3::splat(radius_now));
+            self.overlapping(&region, |triangle| {
+                let found = closest_on_triangle(&triangle.corners, p);
+                Closest::improve(&mut best, p, limit, found, || triangle);
+            });
+            if best.is_some() || radius >= reach || radius > far {
+                return best;
+            }
+            radius *= 2.0;
+        }
+    }
+
+    /// As [`Surface::enter`](super::Surface::enter): column of cells after column, in each those rows that the line crosses.
+    pub(super) fn enter(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+        let span = |low: f32, high: f32, from: f32, along: f32| {
+            if along == 0.0 {
+                let inside = (low..=high).contains(&from);
+                return if inside { (0.0, f32::INFINITY) } else { (f32::INFINITY, 0.0) };
+            }
+            let (t0, t1) = ((low - from) / along, (high - from) / along);
+            (max(min(t0, t1), 0.0), max(t0, t1))
+        };
+        let mut best: Option<(f32, u32)> = None;
+        let ahead = direction.x >= 0.0;
+        for step in 0..self.width() {
+            let column = if ahead { step } else { self.width() - 1 - step };
+            let low = column as f32 * self.def.spacing[0];
+            let (first, last) = span(low, low + self.def.spacing[0], origin.x, direction.x);
+            if best.is_some_and(|(share, _)| share < first) {
+                break;
+            }
+            if first > last {
+                continue;
+            }
+            let z = |t: f32| if direction.z == 0.0 { origin.z } else { origin.z + direction.z * t };
+            let rows = self.cells_between(1, min(z(first), z(last)), max(z(first), z(last)));
+            for cell in self.solid_cells(column..column + 1, rows) {
+                for number in [2 * cell as u32, 2 * cell as u32 + 1] {
+                    if let Some(share) = enter_triangle(&self.corners(number), origin, direction)
+                        && best.is_none_or(|(least, _)| share < least)
+                    {
+                        best = Some((share, number));
+                    }
+                }
+            }
+        }
+        best.map(|(share, number)| (share, self.triangle(number).normal))
+    }
+}
+
+impl PartialEq for HeightField {
+    fn eq(&self, other: &Self) -> bool {
+        self.hash == other.hash && self.def == other.def
+    }
+}
+
+fn sides(def: &HeightFieldDef) -> [f32; 2] {
+    [(def.columns - 1) as f32 * def.spacing[0], (def.rows - 1) as f32 * def.spacing[1]]
+}
+
+/// From a point to the corner of the bounds that is farthest.
+fn abs_farthest(bounds: &Aabb, p: Vec3) -> Vec3 {
+    sinew_math::max3(sinew_math::abs3(bounds.max - p), sinew_math::abs3(bounds.min - p))
+}
+
+fn check(def: &HeightFieldDef) -> Result<(), HeightFieldError> {
+    let HeightFieldDef { columns, rows, .. } = *def;
+    let cells = (columns >= 2 && rows >= 2).then(|| (columns - 1).checked_mul(rows - 1)).flatten();
+    let cells = cells.filter(|&cells| cells <= MAX_CELLS).ok_or(HeightFieldError::Size)?;
+    let vertices = columns.checked_mul(rows).ok_or(HeightFieldError::Size)?;
+    if def.heights.len() != vertices {
+        return Err(HeightFieldError::Heights { heights: def.heights.len(), vertices });
+    }
+    // Written so that NaN fails.
+    if !(def.spacing.iter().all(|&x| x > 0.0) && sides(def).iter().all(|&x| x <= MAX_COORDINATE)) {
+        return Err(HeightFieldError::Spacing);
+    }
+    let sane = |h: &f32| h.abs() <= MAX_COORDINATE;
+    if let Some(index) = def.heights.iter().position(|h| !sane(h)) {
+        return Err(HeightFieldError::NotFinite { index });
+    }
+    match def.holes.iter().find(|&&hole| hole as usize >= cells) {
+        Some(&hole) => Err(HeightFieldError::Hole { hole, cells }),
+        None => Ok(()),
+    }
+}
+
+/// Hash of the numbers; holes by where they are, not by how they were listed.
+fn hash(def: &HeightFieldDef, cells: &[u8]) -> u64 {
+    let mut hasher = StableHasher::default();
+    hasher.write(&(def.columns as u64).to_le_bytes());
+    hasher.write(&(def.rows as u64).to_le_bytes());
+    for x in def.spacing.iter().chain(&def.heights) {
+        hasher.write(&x.to_bits().to_le_bytes());
+    }
+    hasher.write(cells);
+    hasher.finish()
+}

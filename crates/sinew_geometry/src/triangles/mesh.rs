@@ -1,0 +1,185 @@
+//! Triangle meshes as shapes.
+
+use super::Triangle;
+use super::build::{self, Dropped, Sheet};
+use super::tree::Tree;
+use crate::boxes::Aabb;
+use sinew_math::{StableHasher, Vec3};
+
+/// Most triangles of a mesh.
+pub const MAX_TRIANGLES: usize = 1 << 28;
+/// Largest coordinate of a vertex, metres.
+pub const MAX_COORDINATE: f32 = 1e6;
+
+/// Why triangles make no mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MeshError {
+    /// Nothing is left: no triangle, or none with an area.
+    #[error("{}", if *.degenerate > 0 { "no triangle has an area" } else { "there are no triangles" })]
+    NoTriangles {
+        /// Number of triangles without area.
+        degenerate: usize,
+    },
+    /// A triangle names a vertex that is not there.
+    #[error("triangle {triangle} names vertex {index}: there are {vertices}")]
+    IndexOutOfRange {
+        /// Number of the triangle.
+        triangle: usize,
+        /// Vertex that it names.
+        index: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// A vertex whose coordinates are not finite, or beyond [`MAX_COORDINATE`].
+    #[error("vertex {vertex} is not finite or beyond 10⁶ m")]
+    NotFinite {
+        /// Number of the vertex.
+        vertex: usize,
+    },
+    /// More triangles than [`MAX_TRIANGLES`], or more vertices than three of each.
+    #[error("{triangles} triangles are more than {MAX_TRIANGLES}")]
+    TooMany {
+        /// Number that was given.
+        triangles: usize,
+    },
+}
+
+/// A surface of triangles, each solid from the side from which its corners run counter-clockwise: for levels. It may be open,
+/// and need not enclose anything.
+///
+/// Edges that lie within the surface are not felt: only those count at which it falls away by more than 5°, and its rim.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    vertices: Vec<Vec3>,
+    /// In the order of the tree's leaves.
+    faces: Vec<Face>,
+    tree: Tree,
+    dropped: Dropped,
+    hash: u64,
+}
+
+/// A triangle as it is kept.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    pub vertices: [u32; 3],
+    /// Number in the user's list in the low 28 bits, active edges in the three above.
+    tag: u32,
+}
+
+impl Face {
+    fn number(self) -> u32 {
+        self.tag & (MAX_TRIANGLES as u32 - 1)
+    }
+
+    fn active(self) -> u8 {
+        (self.tag >> 28) as u8
+    }
+}
+
+impl Mesh {
+    /// From vertices (metres) and the indices of each triangle's corners, counter-clockwise seen from outside.
+    ///
+    /// Vertices at the same place are one. Triangles without area, and those that are there twice, are left out:
+    /// [`dropped`](Self::dropped) counts them.
+    ///
+    /// # Errors
+    /// What is wrong with them: coordinates that are not finite, indices out of range, no triangle with an area.
+    pub fn new(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        Ok(Self::of_sheet(build::sheet(vertices, triangles)?))
+    }
+
+    pub(super) fn of_sheet(sheet: Sheet) -> Self {
+        let Sheet { vertices, triangles, active, numbers, dropped } = sheet;
+        let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
+        let tree = Tree::new(&mut order, &|i| triangles[i as usize].map(|v| vertices[v as usize]));
+        let face = |&i: &u32| Face {
+            vertices: triangles[i as usize],
+            tag: numbers[i as usize] | u32::from(active[i as usize]) << 28,
+        };
+        let faces: Vec<Face> = order.iter().map(face).collect();
+        let hash = hash(&vertices, &triangles, &numbers);
+        Self { vertices, faces, tree, dropped, hash }
+    }
+
+    /// Vertices, metres: each place once.
+    pub fn vertices(&self) -> &[Vec3] {
+        &self.vertices
+    }
+
+    /// The triangles that are kept, by [`vertices`](Self::vertices), in the mesh's own order.
+    pub fn triangles(&self) -> impl ExactSizeIterator<Item = [u32; 3]> {
+        self.faces.iter().map(|face| face.vertices)
+    }
+
+    /// The corners of each of them, metres.
+    pub fn corners_of_all(&self) -> impl ExactSizeIterator<Item = [Vec3; 3]> {
+        self.faces.iter().map(|face| face.vertices.map(|v| self.vertices[v as usize]))
+    }
+
+    /// The triangles with their numbers in the user's list.
+    pub(super) fn numbered(&self) -> impl Iterator<Item = (u32, [u32; 3])> {
+        self.faces.iter().map(|face| (face.number(), face.vertices))
+    }
+
+    /// Number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Triangles that were left out.
+    pub fn dropped(&self) -> Dropped {
+        self.dropped
+    }
+
+    /// Around all triangles, in the mesh's frame.
+    pub fn bounds(&self) -> Aabb {
+        self.tree.bounds()
+    }
+
+    /// Hash of the content: equal for equal vertices and triangles, on every machine.
+    pub fn content_hash(&self) -> u64 {
+        self.hash
+    }
+
+    /// Bytes that it takes in memory.
+    pub fn memory(&self) -> usize {
+        size_of::<Self>()
+            + size_of_val(self.vertices.as_slice())
+            + size_of_val(self.faces.as_slice())
+            + self.tree.bytes()
+    }
+
+    pub(super) fn tree(&self) -> &Tree {
+        &self.tree
+    }
+
+    /// The triangle at a place of the tree.
+    pub(super) fn triangle(&self, place: u32) -> Triangle {
+        let face = self.faces[place as usize];
+        Triangle::new(self.corners(place), face.vertices, face.active())
+    }
+
+    pub(super) fn corners(&self, place: u32) -> [Vec3; 3] {
+        self.faces[place as usize].vertices.map(|v| self.vertices[v as usize])
+    }
+}
+
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Self) -> bool {
+        self.hash == other.hash
+            && self.vertices == other.vertices
+            && self.faces.iter().map(|face| face.vertices).eq(other.faces.iter().map(|face| face.vertices))
+    }
+}
+
+fn hash(vertices: &[Vec3], triangles: &[[u32; 3]], numbers: &[u32]) -> u64 {
+    let mut hasher = StableHasher::default();
+    hasher.write(&(vertices.len() as u64).to_le_bytes());
+    for x in vertices.iter().flat_map(Vec3::to_array) {
+        hasher.write(&x.to_bits().to_le_bytes());
+    }
+    for index in triangles.iter().flatten().chain(numbers) {
+        hasher.write(&index.to_le_bytes());
+    }
+    hasher.finish()
+}

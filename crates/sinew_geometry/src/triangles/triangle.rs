@@ -1,0 +1,144 @@
+//! One triangle of a surface: what is closest on it, where a line comes through it.
+
+use crate::boxes::Aabb;
+use sinew_math::{Vec3, max, max3, min3, normalize_or};
+
+/// A triangle that is solid from one side: the one from which its corners run counter-clockwise.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Triangle {
+    /// Corners, counter-clockwise seen from outside, metres.
+    pub corners: [Vec3; 3],
+    /// Unit normal, to the outside.
+    pub normal: Vec3,
+    /// Names of the corners: triangles that meet in one have the same.
+    pub vertices: [u32; 3],
+    /// Bit k is set if the edge from corner k to the next one can be hit: nothing lies beyond it, or the surface falls
+    /// away there.
+    pub active: u8,
+}
+
+/// Part of a triangle: its face, an edge or a corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Its inside.
+    Face,
+    /// Edge from the corner with this number, 0..3, to the next one.
+    Edge(usize),
+    /// Corner with this number, 0..3.
+    Corner(usize),
+}
+
+impl Part {
+    /// Part at a share of an edge, 0..=1 from its first corner to its second: its ends are corners, which the edge itself must not claim.
+    pub fn on_edge(edge: usize, share: f32) -> Self {
+        match share {
+            t if t <= 0.0 => Self::Corner(edge),
+            t if t >= 1.0 => Self::Corner((edge + 1) % 3),
+            _ => Self::Edge(edge),
+        }
+    }
+}
+
+impl Triangle {
+    /// Triangle with its normal worked out.
+    #[inline]
+    pub fn new(corners: [Vec3; 3], vertices: [u32; 3], active: u8) -> Self {
+        Self { corners, normal: normal(&corners), vertices, active }
+    }
+
+    /// Height of a point over its plane, metres.
+    #[inline]
+    pub fn height(&self, p: Vec3) -> f32 {
+        (p - self.corners[0]).dot(self.normal)
+    }
+
+    /// True if the edge with this number, 0..3, can be hit.
+    #[inline]
+    pub fn is_active(&self, edge: usize) -> bool {
+        self.active >> edge & 1 == 1
+    }
+
+    /// The vertices of an edge, the smaller name first.
+    pub fn edge_vertices(&self, edge: usize) -> (u32, u32) {
+        super::ordered(self.vertices[edge], self.vertices[(edge + 1) % 3])
+    }
+
+    /// The part that reaches furthest along a direction, to within `tolerance`, metres.
+    pub fn support(&self, direction: Vec3, tolerance: f32) -> Part {
+        let along = self.corners.map(|corner| corner.dot(direction));
+        let top = max(max(along[0], along[1]), along[2]);
+        match along.map(|x| x >= top - tolerance) {
+            [true, true, true] => Part::Face,
+            [true, true, false] => Part::Edge(0),
+            [false, true, true] => Part::Edge(1),
+            [true, false, true] => Part::Edge(2),
+            [true, ..] => Part::Corner(0),
+            [_, true, _] => Part::Corner(1),
+            _ => Part::Corner(2),
+        }
+    }
+
+    /// Seen from another frame, in which the origin of this one is `offset` away.
+    #[inline]
+    pub fn moved(&self, offset: Vec3) -> Self {
+        Self { corners: self.corners.map(|corner| corner + offset), ..*self }
+    }
+}
+
+/// Unit normal of a triangle, to the side from which the corners run counter-clockwise; up if they lie on a line.
+pub fn normal(&[a, b, c]: &[Vec3; 3]) -> Vec3 {
+    normalize_or((b - a).cross(c - a), Vec3::Y)
+}
+
+pub(crate) fn bounds(&[a, b, c]: &[Vec3; 3]) -> Aabb {
+    Aabb { min: min3(min3(a, b), c), max: max3(max3(a, b), c) }
+}
+
+/// The point of a triangle closest to `p`, by the region of its plane that p lies over (Ericson 2005, §5.1.5), and of
+/// which part it is.
+pub fn closest_on_triangle(&[a, b, c]: &[Vec3; 3], p: Vec3) -> (Vec3, Part) {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return (a, Part::Corner(0));
+    }
+    let bp = p - b;
+    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return (b, Part::Corner(1));
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return (a + ab * (d1 / (d1 - d3)), Part::Edge(0));
+    }
+    let cp = p - c;
+    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return (c, Part::Corner(2));
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return (a + ac * (d2 / (d2 - d6)), Part::Edge(2));
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return (b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), Part::Edge(1));
+    }
+    let scale = 1.0 / (va + vb + vc);
+    (a + ab * (vb * scale) + ac * (vc * scale), Part::Face)
+}
+
+/// Share of `direction` (≥ 0, may exceed 1) after which a line from `origin` comes through a triangle from its outside.
+///
+/// By the line's turn round each side, whose sign is exactly opposite for the triangle beyond: no line slips through
+/// between two triangles.
+pub(crate) fn enter_triangle(corners: &[Vec3; 3], origin: Vec3, direction: Vec3) -> Option<f32> {
+    let [a, b, c] = corners.map(|corner| corner - origin);
+    let beside = |p: Vec3, q: Vec3| direction.dot(p.cross(q));
+    if beside(a, b) > 0.0 || beside(b, c) > 0.0 || beside(c, a) > 0.0 {
+        return None;
+    }
+    let normal = (b - a).cross(c - a);
+    let (toward, away) = (direction.dot(normal), a.dot(normal));
+    (toward < 0.0 && away <= 0.0).then(|| away / toward)
+}

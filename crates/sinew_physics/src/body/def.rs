@@ -1,0 +1,276 @@
+//! Definitions of worlds and bodies: plain data that they are made from.
+
+use crate::body::shape::{MassProperties, Shape, ShapeDef};
+use crate::boxes::Obb;
+use sinew_math::{Rotation, Vec3};
+
+/// Settings of a world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorldDef {
+    /// m/s². Default (0, −9.81, 0).
+    pub gravity: Vec3,
+    /// Length of one step, integer nanoseconds, so that time does not drift. Default 1/60 s (16 666 667 ns).
+    pub step_nanoseconds: u64,
+    /// Substeps per step, at least 1. Default 4.
+    pub substeps: u32,
+    /// Work that a step does to come nearer to the truth, of bodies that do not [say otherwise](BodyDef::quality). Default balanced.
+    pub quality: Quality,
+    /// Most steps that one [`World::update`](crate::World::update) takes, at least 1: a host that was held up, or steps that
+    /// take longer than they last, must not end in ever longer frames. Default 15, a quarter of a second of default steps.
+    pub catch_up_steps: u32,
+    /// Bodies may fall asleep by themselves. Default yes.
+    pub sleeping: Sleeping,
+    /// What counts as rest.
+    pub sleep_thresholds: SleepThresholds,
+    /// Most that a body moves, m/s: it is held to it when forces act, before joints and contacts. Default 4,000.
+    pub max_speed: f32,
+    /// Most that a body turns within a substep, radians, likewise. Beyond a quarter of a turn (the default, 377 rad/s at
+    /// 1/60 s and 4 substeps) rows that are linearised at the substep's start mean little; a top may spin faster.
+    pub max_turn: f32,
+    /// How fast two shapes come in along their contact's normal for [a hit](crate::Hit) to be told of, m/s, ≥ 0. Default 1:
+    /// what lies or rolls about tells of none.
+    pub hit_speed: f32,
+}
+
+/// Accuracy of a step against its time. Joints hold exactly and contacts are as hard with each: what changes is
+/// the length of substeps and how many sweeps look for the impulses. `docs/performance.md` has a table of what that gives.
+///
+/// An island, which is what hangs together through contacts and joints, takes the highest quality of its bodies. Where particles hang
+/// on it, or the world has [objects](crate::PhysicsObject), all substeps are those of the world, and only sweeps change.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quality {
+    /// Half of the world's substeps unless masses differ by more than 100 or something spins fast, and half of the sweeps: for crowds in
+    /// the distance.
+    Fast,
+    /// Half of the world's substeps where many contacts damp all motion, else all of them.
+    #[default]
+    Balanced,
+    /// Twice the world's substeps, and twice the sweeps: for films, robots and what is measured.
+    Exact,
+}
+
+/// Whether what is at rest is put to sleep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sleeping {
+    /// It is.
+    On,
+    /// It goes on being simulated.
+    Off,
+}
+
+/// What counts as rest: an island sleeps when each of its bodies has been in its place for a time. A body that creeps by
+/// more than twice the distance or by the angle within the time does not sleep; one that trembles less far may.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SleepThresholds {
+    /// Seconds, not negative. Default 0.5.
+    pub time: f32,
+    /// From where the time began, metres, positive. Default 0.003: with the time, nothing sleeps that creeps faster than
+    /// 12 mm/s.
+    pub distance: f32,
+    /// Likewise, radians, positive. Default 0.025: 0.05 rad/s.
+    pub angle: f32,
+    /// What is faster is not at rest even in its place, m/s, positive. Default 0.2.
+    pub speed: f32,
+    /// Likewise, rad/s, positive. Default 1.
+    pub spin: f32,
+}
+
+impl Default for SleepThresholds {
+    fn default() -> Self {
+        Self { time: 0.5, distance: 0.003, angle: 0.025, speed: 0.2, spin: 1.0 }
+    }
+}
+
+impl Default for WorldDef {
+    fn default() -> Self {
+        Self {
+            gravity: Vec3::new(0.0, -9.81, 0.0),
+            step_nanoseconds: 16_666_667,
+            substeps: 4,
+            quality: Quality::Balanced,
+            catch_up_steps: 15,
+            sleeping: Sleeping::On,
+            sleep_thresholds: SleepThresholds::default(),
+            max_speed: 4000.0,
+            max_turn: core::f32::consts::FRAC_PI_2,
+            hit_speed: 1.0,
+        }
+    }
+}
+
+/// Nanoseconds.
+const LONGEST_STEP: u64 = 1_000_000_000_000_000_000;
+const MOST_SUBSTEPS: u32 = 1024;
+
+impl WorldDef {
+    /// Whether its numbers make sense; the phrase says what is wrong.
+    ///
+    /// # Errors
+    /// What is wrong, in lower case.
+    pub fn check(&self) -> Result<(), &'static str> {
+        // Written so that NaN fails.
+        let positive = |x: f32| x > 0.0 && x < f32::INFINITY;
+        if self.step_nanoseconds == 0 || self.substeps == 0 {
+            return Err("a step takes time and has substeps");
+        }
+        if self.step_nanoseconds > LONGEST_STEP || self.substeps > MOST_SUBSTEPS {
+            return Err("a step is no longer than 30 years and has at most 1,024 substeps");
+        }
+        if self.catch_up_steps == 0 {
+            return Err("an update may take a step");
+        }
+        if !self.gravity.is_finite() {
+            return Err("gravity is finite");
+        }
+        if !(positive(self.max_speed) && positive(self.max_turn)) {
+            return Err("the speed limits are positive and finite");
+        }
+        if !(0.0..f32::INFINITY).contains(&self.hit_speed) {
+            return Err("the speed of a hit is not negative, and finite");
+        }
+        let SleepThresholds { time, distance, angle, speed, spin } = self.sleep_thresholds;
+        if !((0.0..f32::INFINITY).contains(&time) && [distance, angle, speed, spin].into_iter().all(positive))
+        {
+            return Err("what counts as rest takes no negative time and is positive and finite");
+        }
+        Ok(())
+    }
+
+    /// Step length, seconds.
+    pub fn dt(&self) -> f32 {
+        self.step_nanoseconds as f32 * 1e-9
+    }
+}
+
+/// How a body moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyKind {
+    /// Never.
+    Static,
+    /// As its velocity says; nothing pushes it.
+    Kinematic,
+    /// By forces.
+    Dynamic,
+}
+
+/// A body to be made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyDef {
+    /// How it moves. Default dynamic.
+    pub kind: BodyKind,
+    /// World position of the body's origin (not its centre of mass), metres.
+    pub position: Vec3,
+    /// World orientation.
+    pub rotation: Rotation,
+    /// Of the centre of mass, m/s.
+    pub linear_velocity: Vec3,
+    /// rad/s, world axes.
+    pub angular_velocity: Vec3,
+    /// 1/s: share of linear velocity lost per second. Default 0.
+    pub linear_damping: f32,
+    /// 1/s. Default 0.
+    pub angular_damping: f32,
+    /// Factor on the world's gravity. Default 1.
+    pub gravity_scale: f32,
+    /// Shapes; may be empty if `mass` is given.
+    pub shapes: Vec<ShapeDef>,
+    /// Mass, centre and inertia in the body's frame; `None`: from the shapes' densities.
+    pub mass: Option<MassProperties>,
+    /// Whether it may fall asleep by itself, and with it what it touches and is joined to. Default yes.
+    pub sleeping: Sleeping,
+    /// Work that a step does for this body and what hangs together with it; `None`: as the [world](WorldDef::quality) has it. Default
+    /// `None`.
+    pub quality: Option<Quality>,
+    /// For the user.
+    pub user_data: u64,
+}
+
+impl Default for BodyDef {
+    fn default() -> Self {
+        Self {
+            kind: BodyKind::Dynamic,
+            position: Vec3::ZERO,
+            rotation: Rotation::IDENTITY,
+            linear_velocity: Vec3::ZERO,
+            angular_velocity: Vec3::ZERO,
+            linear_damping: 0.0,
+            angular_damping: 0.0,
+            gravity_scale: 1.0,
+            shapes: Vec::new(),
+            mass: None,
+            sleeping: Sleeping::On,
+            quality: None,
+            user_data: 0,
+        }
+    }
+}
+
+/// Short ways to write down what most bodies are: `BodyDef::dynamic(shape).at(position)`. The rest are fields.
+impl BodyDef {
+    /// One that forces move, of one shape, at the world's origin.
+    pub fn dynamic(shape: impl Into<ShapeDef>) -> Self {
+        Self { shapes: vec![shape.into()], ..Self::default() }
+    }
+
+    /// One that moves as its velocity says, of one shape, at the world's origin.
+    pub fn kinematic(shape: impl Into<ShapeDef>) -> Self {
+        Self { kind: BodyKind::Kinematic, ..Self::dynamic(shape) }
+    }
+
+    /// Static body that is this box. One for each of [`Cooked::boxes`](crate::cook::Cooked) makes a level: the broad phase
+    /// takes shapes one by one, so a body each costs it nothing, and every question about a body (overlap, neighbours, events)
+    /// then concerns one box alone.
+    pub fn fixed_box(obb: &Obb) -> Self {
+        let shape = Shape::Box { half_extents: obb.half_extents };
+        Self { position: obb.center, rotation: obb.rotation, ..Self::fixed(shape) }
+    }
+
+    /// A static one, of one shape, at the world's origin.
+    pub fn fixed(shape: impl Into<ShapeDef>) -> Self {
+        Self { kind: BodyKind::Static, ..Self::dynamic(shape) }
+    }
+
+    /// With its origin at a place (world, metres).
+    #[must_use]
+    pub fn at(self, position: Vec3) -> Self {
+        Self { position, ..self }
+    }
+
+    /// With its axes turned to where `rotation` brings those of the world.
+    #[must_use]
+    pub fn turned(self, rotation: Rotation) -> Self {
+        Self { rotation, ..self }
+    }
+
+    /// With one more shape.
+    #[must_use]
+    pub fn with(mut self, shape: impl Into<ShapeDef>) -> Self {
+        self.shapes.push(shape.into());
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::shape::Shape;
+
+    #[test]
+    fn short_ways_say_what_fields_say() {
+        let (ball, plank) = (Shape::Sphere { radius: 0.5 }, Shape::Box { half_extents: Vec3::ONE });
+        let rotation = Rotation::from_axis_angle(Vec3::Y, 1.0);
+        let heavy = ShapeDef { density: 7800.0, ..ShapeDef::new(plank.clone()) };
+        let long = BodyDef {
+            kind: BodyKind::Dynamic,
+            position: Vec3::X,
+            rotation,
+            shapes: vec![ShapeDef::new(ball.clone()), heavy.clone()],
+            ..BodyDef::default()
+        };
+        assert_eq!(BodyDef::dynamic(ball).with(heavy.clone()).at(Vec3::X).turned(rotation), long);
+        let of = |kind| BodyDef { kind, shapes: vec![heavy.clone()], ..BodyDef::default() };
+        assert_eq!(BodyDef::fixed(heavy.clone()), of(BodyKind::Static));
+        assert_eq!(BodyDef::kinematic(heavy.clone()), of(BodyKind::Kinematic));
+        assert_eq!(BodyDef::fixed(plank.clone()).shapes, [ShapeDef::new(plank)]);
+    }
+}

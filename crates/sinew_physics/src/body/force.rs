@@ -1,0 +1,148 @@
+//! Forces, torques and impulses that the user gives bodies: for one step, until changed, or at once.
+//!
+//! World axes and SI units, unless said otherwise. A force `F` at a point `p` moves the centre of mass `c` as if it acted
+//! there, and turns the body besides: `a = F/m`, `τ = (p − c) × F`, `α = I⁻¹ τ` (Newton, Euler). Several add up. Only
+//! dynamic bodies feel any of them; a sleeping one wakes.
+
+use crate::body::Body;
+use crate::id::BodyId;
+use sinew_math::{ReadError, Reader, Transform, Vec3, Writer, max, min};
+
+/// Force and torque about the centre of mass, world axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// N.
+    pub force: Vec3,
+    /// N·m.
+    pub torque: Vec3,
+}
+
+/// Which axes a lasting force is given in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ForceFrame {
+    /// The world's: it keeps its direction when the body turns, as a pull from far away does. Default.
+    #[default]
+    World,
+    /// The body's: it turns with the body, as a thruster does.
+    Body,
+}
+
+/// A force that acts on a body in every substep until it is changed or taken away.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ForceDef {
+    /// N, in the axes of `frame`.
+    pub force: Vec3,
+    /// N·m, in the axes of `frame`, beside what `force` turns by its lever.
+    pub torque: Vec3,
+    /// Where `force` acts, metres in the body's frame: the point goes along with the body. `None`, the default: at the
+    /// centre of mass.
+    pub point: Option<Vec3>,
+    /// Axes of `force` and `torque`. Default the world's.
+    pub frame: ForceFrame,
+}
+
+impl ForceDef {
+    pub(crate) fn is_finite(&self) -> bool {
+        self.force.is_finite() && self.torque.is_finite() && self.point.is_none_or(Vec3::is_finite)
+    }
+}
+
+/// A lasting force of a body of a [`World`](crate::World).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ForceId {
+    body: BodyId,
+    number: u32,
+}
+
+impl ForceId {
+    pub(crate) fn new(body: BodyId, number: u32) -> Self {
+        Self { body, number }
+    }
+
+    /// The body that it acts on.
+    pub fn body(self) -> BodyId {
+        self.body
+    }
+}
+
+/// Bytes of the shortest force.
+const FORCE_BYTES: usize = 4 + 12 + 12 + 1 + 1;
+
+/// The lasting forces of a body, by the number of their ids, ascending.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct BodyForces {
+    pub list: Vec<(u32, ForceDef)>,
+    /// Number of the next one.
+    pub next: u32,
+}
+
+impl BodyForces {
+    pub fn save(&self, w: &mut Writer) {
+        w.u32(self.next);
+        w.count(self.list.len());
+        for (number, def) in &self.list {
+            w.u32(*number);
+            w.vec3(def.force);
+            w.vec3(def.torque);
+            w.bool(def.point.is_some());
+            if let Some(point) = def.point {
+                w.vec3(point);
+            }
+            w.bool(def.frame == ForceFrame::Body);
+        }
+    }
+
+    pub fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut forces = Self { list: Vec::new(), next: r.u32()? };
+        for _ in 0..r.count(FORCE_BYTES)? {
+            let (number, force, torque) = (r.u32()?, r.vec3()?, r.vec3()?);
+            let point = if r.bool()? { Some(r.vec3()?) } else { None };
+            let frame = if r.bool()? { ForceFrame::Body } else { ForceFrame::World };
+            forces.list.push((number, ForceDef { force, torque, point, frame }));
+        }
+        let known = forces.list.last().is_none_or(|&(number, _)| number < forces.next);
+        if !(known && forces.list.is_sorted_by(|a, b| a.0 < b.0)) {
+            return Err(r.error("lasting forces are out of order"));
+        }
+        Ok(forces)
+    }
+
+    pub fn place(&self, id: ForceId) -> usize {
+        self.list.binary_search_by_key(&id.number, |&(number, _)| number).expect("the force is there")
+    }
+
+    /// Their sum in the given pose of the body's principal frame.
+    pub fn sum(&self, body: &Body, world_from_principal: Transform) -> Wrench {
+        let mut sum = Wrench::default();
+        let world_from_body = world_from_principal.rotation * body.principal_from_body.rotation;
+        for (_, def) in &self.list {
+            let turned = |v: Vec3| match def.frame {
+                ForceFrame::World => v,
+                ForceFrame::Body => world_from_body * v,
+            };
+            let force = turned(def.force);
+            sum.force += force;
+            sum.torque += turned(def.torque);
+            if let Some(point) = def.point {
+                let arm = world_from_principal.rotation * body.principal_from_body.point(point);
+                sum.torque += arm.cross(force);
+            }
+        }
+        sum
+    }
+}
+
+/// Change of a velocity by an impulse, with its direction if it is beyond all measure: the next step slows the body to what its world
+/// allows.
+pub(crate) fn finite_change(impulse: Vec3, change: impl Fn(Vec3) -> Vec3) -> Vec3 {
+    // Beyond the first, products with arms and inverse masses may not be finite; beyond the second, squares of sums are not.
+    const HUGE: f32 = 1e15;
+    const MOST: f32 = 1e30;
+    const SCALE: f32 = 1e-20;
+    let largest = |v: Vec3| max(max(v.x.abs(), v.y.abs()), v.z.abs());
+    if largest(impulse) <= HUGE {
+        return change(impulse);
+    }
+    let small = change(impulse * SCALE);
+    small * min(1.0 / SCALE, MOST / max(largest(small), f32::MIN_POSITIVE))
+}

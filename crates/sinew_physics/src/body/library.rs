@@ -1,0 +1,69 @@
+//! The library: every shape with data that the world was ever given, by the hash of its content (ADR 0014).
+//!
+//! A snapshot names such a shape by kind and hash and finds it here again, so that it stays small and quick. Another
+//! process gets the library itself by [`World::save_shapes`](crate::World::save_shapes).
+
+use crate::body::shape::Shape;
+use sinew_geometry::DataKind;
+use sinew_math::{ReadError, Reader, Writer};
+use std::collections::BTreeMap;
+
+/// First bytes of a written library; the last is its version.
+pub(crate) const MAGIC: &[u8; 8] = b"sinew-s\x01";
+/// Bytes of the smallest entry: its kind and the length of its data.
+pub(crate) const ENTRY_BYTES: usize = 5;
+
+/// Why a snapshot could not be loaded.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LoadError {
+    /// The bytes are not a snapshot of this version.
+    #[error(transparent)]
+    Bytes(#[from] ReadError),
+    /// The snapshot names a shape with data that the world was never given: see [`World::load_shapes`](crate::World::load_shapes).
+    #[error("names a {kind} of hash {hash:016x} that the world does not have (at byte {at})")]
+    UnknownShape {
+        /// Offset of the hash.
+        at: usize,
+        /// What it should be.
+        kind: DataKind,
+        /// Hash of its content.
+        hash: u64,
+    },
+}
+
+/// Shapes with data by their content hash. It only grows: a state that is loaded later may name any of them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ShapeLibrary {
+    pub shapes: BTreeMap<u64, Shape>,
+}
+
+impl ShapeLibrary {
+    /// Takes a shape in, if it has data.
+    ///
+    /// # Panics
+    /// If another shape has the same hash.
+    pub fn keep(&mut self, shape: &Shape) {
+        if let Some(hash) = shape.content_hash() {
+            let kept = self.shapes.entry(hash).or_insert_with(|| shape.clone());
+            assert!(kept == shape, "no two shapes have the same hash ({hash:016x})");
+        }
+    }
+
+    /// The shape whose hash comes next.
+    ///
+    /// # Errors
+    /// If the world was never given it.
+    pub fn find(&self, r: &mut Reader<'_>, kind: DataKind) -> Result<Shape, LoadError> {
+        let (at, hash) = (r.position(), r.u64()?);
+        let found = self.shapes.get(&hash).filter(|shape| shape.data_kind() == Some(kind));
+        found.cloned().ok_or(LoadError::UnknownShape { at, kind, hash })
+    }
+}
+
+/// Writes what a snapshot names a shape with data by. False, and nothing written, of those that are sizes only.
+pub(crate) fn save_name(shape: &Shape, w: &mut Writer) -> bool {
+    let Some((kind, hash)) = shape.data_kind().zip(shape.content_hash()) else { return false };
+    w.u8(kind.tag());
+    w.u64(hash);
+    true
+}

@@ -1,0 +1,243 @@
+//! What surfaces are made of, and how those of two shapes combine.
+
+use sinew_math::{Vec3, max, min};
+
+/// Material of a shape: how it rubs, bounces and moves along.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Coulomb coefficient of sliding, ≥ 0. Default 0.6.
+    pub friction: f32,
+    /// Coefficient up to which what does not slide holds, no less than `friction`. `None`, the default: the same.
+    pub static_friction: Option<f32>,
+    /// Share of the approach speed given back, 0..=1. Default 0.
+    pub restitution: f32,
+    /// Rolling resistance: lever of the resisting torque, metres. Default 0.
+    pub rolling: f32,
+    /// Velocity of the surface along its body, m/s in the shape's frame: a conveyor, a moving walkway. What lies on it is
+    /// carried by friction; the part along the contact's normal does nothing. Default 0.
+    pub surface_velocity: Vec3,
+    /// Likewise about the shape's origin, rad/s in the shape's frame: a turntable. Default 0.
+    pub surface_spin: Vec3,
+    /// How it combines with the other side's.
+    pub combine: CombineRules,
+    /// For the user: what it is made of, such as for sounds. Default 0.
+    pub tag: u32,
+}
+
+impl Material {
+    /// Friction 0.6, nothing else.
+    pub const DEFAULT: Self = Self {
+        friction: 0.6,
+        static_friction: None,
+        restitution: 0.0,
+        rolling: 0.0,
+        surface_velocity: Vec3::ZERO,
+        surface_spin: Vec3::ZERO,
+        combine: CombineRules { friction: None, restitution: None, rolling: None },
+        tag: 0,
+    };
+
+    /// Whether its numbers make sense; the phrase says what is wrong.
+    ///
+    /// # Errors
+    /// What is wrong, in lower case.
+    pub fn check(&self) -> Result<(), &'static str> {
+        // Written so that NaN fails.
+        let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
+        let positive = not_negative(self.friction) && not_negative(self.rolling);
+        if !(positive && not_negative(self.restitution)) {
+            return Err("friction, restitution and rolling must not be negative, and finite");
+        }
+        if !(self.friction..f32::INFINITY).contains(&self.hold()) {
+            return Err("static friction must be no less than friction, and finite");
+        }
+        if !(self.surface_velocity.is_finite() && self.surface_spin.is_finite()) {
+            return Err("the velocity of a surface must be finite");
+        }
+        Ok(())
+    }
+
+    /// Coefficient of static friction.
+    fn hold(&self) -> f32 {
+        self.static_friction.unwrap_or(self.friction)
+    }
+
+    /// True if its surface moves along its body.
+    pub(crate) fn runs(&self) -> bool {
+        self.surface_velocity != Vec3::ZERO || self.surface_spin != Vec3::ZERO
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// How two numbers become one, later ones before earlier ones: where two surfaces ask for different rules, the later of the
+/// two in this list is taken, whichever side it is on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Combine {
+    /// `(a + b) / 2`.
+    Average,
+    /// `√(a b)`.
+    GeometricMean,
+    /// The smaller.
+    Minimum,
+    /// `a b`.
+    Multiply,
+    /// The larger.
+    Maximum,
+}
+
+impl Combine {
+    fn of(self, a: f32, b: f32) -> f32 {
+        match self {
+            Self::Average => 0.5 * (a + b),
+            Self::GeometricMean => (a * b).sqrt(),
+            Self::Minimum => min(a, b),
+            Self::Multiply => a * b,
+            Self::Maximum => max(a, b),
+        }
+    }
+}
+
+/// Which rules a surface asks for. `None`, the default, leaves it to the other side.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct CombineRules {
+    /// Of both coefficients of friction. If neither side says: the geometric mean.
+    pub friction: Option<Combine>,
+    /// If neither side says: the maximum.
+    pub restitution: Option<Combine>,
+    /// If neither side says: the maximum.
+    pub rolling: Option<Combine>,
+}
+
+impl CombineRules {
+    /// The rules of a pair.
+    fn with(self, other: Self) -> [Combine; 3] {
+        // Nothing is less than something.
+        let later = |a: Option<Combine>, b: Option<Combine>, default| Option::max(a, b).unwrap_or(default);
+        [
+            later(self.friction, other.friction, Combine::GeometricMean),
+            later(self.restitution, other.restitution, Combine::Maximum),
+            later(self.rolling, other.rolling, Combine::Maximum),
+        ]
+    }
+}
+
+/// What two materials are where they meet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactMaterial {
+    /// Coulomb coefficient of sliding.
+    pub friction: f32,
+    /// Coefficient up to which what does not slide holds, no less than `friction`.
+    pub static_friction: f32,
+    /// Share of the approach speed given back.
+    pub restitution: f32,
+    /// Lever of rolling resistance, metres.
+    pub rolling: f32,
+    /// Velocity of B's surface less that of A's where they touch, beside the velocities of the bodies, world axes, m/s:
+    /// friction brings the surfaces to rest on each other, not the bodies. Its part along the normal does nothing.
+    pub velocity: Vec3,
+    /// Likewise their spin, rad/s; its part about the normal counts.
+    pub spin: Vec3,
+    /// Speed with which they are to part where they touch, m/s, ≥ 0: a trampoline, a launching pad. Only a
+    /// [modifier](crate::ContactModifier) sets it.
+    pub launch: f32,
+}
+
+impl ContactMaterial {
+    /// Of two materials; no matter which comes first. Velocities depend on the place: they are 0 here.
+    pub fn of(a: &Material, b: &Material) -> Self {
+        let [friction, restitution, rolling] = a.combine.with(b.combine);
+        Self {
+            friction: friction.of(a.friction, b.friction),
+            static_friction: friction.of(a.hold(), b.hold()),
+            restitution: restitution.of(a.restitution, b.restitution),
+            rolling: rolling.of(a.rolling, b.rolling),
+            ..Self::default()
+        }
+    }
+
+    /// True if it moves what it touches.
+    pub(crate) fn drives(&self) -> bool {
+        self.velocity != Vec3::ZERO || self.spin != Vec3::ZERO || self.launch != 0.0
+    }
+
+    pub(crate) fn is_valid(&self) -> bool {
+        // Written so that NaN fails.
+        let not_negative = |x: f32| (0.0..f32::INFINITY).contains(&x);
+        let positive =
+            [self.friction, self.restitution, self.rolling, self.launch].into_iter().all(not_negative);
+        positive
+            && (self.friction..f32::INFINITY).contains(&self.static_friction)
+            && self.velocity.is_finite()
+            && self.spin.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_math::Random;
+
+    const RULES: [Option<Combine>; 6] = [
+        None,
+        Some(Combine::Average),
+        Some(Combine::GeometricMean),
+        Some(Combine::Minimum),
+        Some(Combine::Multiply),
+        Some(Combine::Maximum),
+    ];
+
+    fn random_material(random: &mut Random) -> Material {
+        let mut rule = || RULES[(random.unit() * 5.999) as usize];
+        let combine = CombineRules { friction: rule(), restitution: rule(), rolling: rule() };
+        let friction = random.range(0.0, 1.5);
+        let static_friction = (random.unit() < 0.5).then(|| friction + random.unit());
+        let (restitution, rolling) = (random.unit(), random.range(0.0, 0.1));
+        Material { friction, static_friction, restitution, rolling, combine, ..Material::DEFAULT }
+    }
+
+    #[test]
+    fn no_matter_which_side_comes_first_and_what_rests_holds_no_less() {
+        let mut random = Random::new(5);
+        for _ in 0..100_000 {
+            let (a, b) = (random_material(&mut random), random_material(&mut random));
+            let surface = ContactMaterial::of(&a, &b);
+            assert_eq!(surface, ContactMaterial::of(&b, &a), "{a:?} {b:?}");
+            assert!(surface.static_friction >= surface.friction, "{a:?} {b:?}: {surface:?}");
+            assert!(surface.is_valid(), "{a:?} {b:?}: {surface:?}");
+        }
+    }
+
+    #[test]
+    fn the_later_rule_wins_and_silence_leaves_it_to_the_other_side() {
+        let rules = |friction| CombineRules { friction, ..CombineRules::default() };
+        for (i, &a) in RULES.iter().enumerate() {
+            for (j, &b) in RULES.iter().enumerate() {
+                let [taken, ..] = rules(a).with(rules(b));
+                assert_eq!(taken, RULES[usize::max(i, j)].unwrap_or(Combine::GeometricMean));
+            }
+        }
+        let value = |rule: Combine| rule.of(0.2, 0.8);
+        let all = RULES.into_iter().flatten().map(value).collect::<Vec<_>>();
+        let expected = [0.5, 0.4, 0.2, 0.16, 0.8];
+        assert!(all.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-6), "{all:?}");
+    }
+
+    #[test]
+    fn numbers_that_make_no_sense_are_named() {
+        for wrong in [
+            Material { friction: f32::NAN, ..Material::DEFAULT },
+            Material { restitution: -0.1, ..Material::DEFAULT },
+            Material { static_friction: Some(0.5), ..Material::DEFAULT },
+            Material { static_friction: Some(f32::NAN), ..Material::DEFAULT },
+            Material { surface_velocity: Vec3::splat(f32::INFINITY), ..Material::DEFAULT },
+            Material { surface_spin: Vec3::new(0.0, f32::NAN, 0.0), ..Material::DEFAULT },
+        ] {
+            assert!(wrong.check().is_err(), "{wrong:?}");
+        }
+    }
+}

@@ -1,0 +1,336 @@
+//! A body as the world keeps it.
+
+pub(crate) mod contact_rule;
+pub mod def;
+pub(crate) mod force;
+pub(crate) mod library;
+pub(crate) mod material;
+pub mod shape;
+pub(crate) mod snapshot;
+pub(crate) mod surface;
+pub(crate) mod work;
+
+use crate::arena::Item;
+use crate::body::def::{BodyDef, BodyKind, Quality, Sleeping};
+use crate::body::force::BodyForces;
+use crate::body::shape::{MassProperties, Shape, ShapeDef};
+use crate::body::surface::{Surface, Surfaces};
+use crate::id::BodyId;
+use sinew_math::{Rotation, Sym3, Transform, Vec3};
+
+/// Linear velocity of the centre of mass and angular velocity, world axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Velocity {
+    /// m/s.
+    pub linear: Vec3,
+    /// rad/s.
+    pub angular: Vec3,
+}
+
+impl Velocity {
+    /// True if nothing moves.
+    pub fn is_zero(&self) -> bool {
+        self.linear == Vec3::ZERO && self.angular == Vec3::ZERO
+    }
+
+    /// Velocity of a point at `arm` from the centre of mass, m/s.
+    pub fn at(self, arm: Vec3) -> Vec3 {
+        self.linear + self.angular.cross(arm)
+    }
+}
+
+/// Awake, or asleep with the island it fell asleep with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Rest {
+    /// Seconds for which it has been in its place.
+    Awake { calm: f32 },
+    /// All bodies with the same number wake together.
+    Asleep { island: u32 },
+}
+
+/// A shape of a body, in the body's principal frame. A body may have a million of them.
+#[derive(Clone, Debug)]
+pub(crate) struct BodyShape {
+    pub shape: Shape,
+    pub principal_from_shape: Transform,
+    /// Number among the body's surfaces.
+    pub surface: u32,
+}
+
+/// The pose is that of the **principal frame**: origin at the centre of mass, axes along the principal axes of
+/// inertia, so that the inertia is a diagonal everywhere in the solver.
+#[derive(Clone, Debug)]
+pub(crate) struct Body {
+    pub kind: BodyKind,
+    pub world_from_principal: Transform,
+    /// Before the last step: for interpolation and for what it may have passed.
+    pub previous: Transform,
+    pub velocity: Velocity,
+    /// Applied by the user for the next step, N and N·m, world axes.
+    pub force: Vec3,
+    pub torque: Vec3,
+    /// Those that last.
+    pub forces: BodyForces,
+    pub principal_from_body: Transform,
+    /// kg; 0 unless dynamic.
+    pub mass: f32,
+    /// Principal moments, kg·m².
+    pub inertia: Vec3,
+    /// Mass and moments that it gets back when it is dynamic again; only of a body that was.
+    pub laid_by: Option<(f32, Vec3)>,
+    pub linear_damping: f32,
+    pub angular_damping: f32,
+    pub gravity_scale: f32,
+    pub shapes: Vec<BodyShape>,
+    pub surfaces: Surfaces,
+    pub rest: Rest,
+    /// Whether it may fall asleep by itself.
+    pub sleeping: Sleeping,
+    /// Instead of the world's.
+    pub quality: Option<Quality>,
+    /// Where it was when the time it has been calm began.
+    pub place: Transform,
+    /// Set when its state became non-finite: it was rolled back and takes no further part.
+    pub quarantined: bool,
+    /// The user changed it since the last step.
+    pub stirred: bool,
+    pub user_data: u64,
+}
+
+/// Principal moments below this share of the largest make long thin bodies spin wildly at a touch
+/// (`r × n` dominates the effective mass); they are raised to it.
+const SMALLEST_MOMENT: f32 = 1e-3;
+
+/// Panics if a number is not finite, a shape is not valid, or a half-space is to move.
+fn check(def: &BodyDef) {
+    assert!(def.position.is_finite() && def.rotation.is_finite(), "a body's pose is finite");
+    assert!(
+        def.linear_velocity.is_finite() && def.angular_velocity.is_finite(),
+        "a body's velocity is finite"
+    );
+    assert!(
+        def.linear_damping.is_finite() && def.angular_damping.is_finite() && def.gravity_scale.is_finite(),
+        "a body's damping and gravity scale are finite"
+    );
+    if let Some(MassProperties { mass, center, inertia }) = &def.mass {
+        let finite = mass.is_finite() && center.is_finite() && inertia.is_finite();
+        assert!(finite, "a body's mass, centre and inertia are finite");
+    }
+    for shape in &def.shapes {
+        if let Err(what) = shape.check() {
+            panic!("a body's shape is valid: {what}");
+        }
+        assert!(
+            def.kind == BodyKind::Static || shape.shape != Shape::HalfSpace,
+            "half-spaces are static bodies"
+        );
+    }
+}
+
+impl Item for Body {
+    type Id = BodyId;
+}
+
+impl Body {
+    /// # Panics
+    /// If a number is not finite, a shape is not valid, or a dynamic body has no mass.
+    pub fn new(def: &BodyDef) -> Self {
+        check(def);
+        let world_from_body = Transform::new(def.position, def.rotation.normalize());
+        let properties = def.mass.unwrap_or_else(|| mass_of_shapes(&def.shapes));
+        let (moments, body_from_principal) = match def.kind {
+            BodyKind::Dynamic => principal_frame(&properties),
+            BodyKind::Static | BodyKind::Kinematic => (Vec3::ZERO, Transform::IDENTITY),
+        };
+        let principal_from_body = body_from_principal.inverse();
+        let mass = if def.kind == BodyKind::Dynamic { properties.mass } else { 0.0 };
+        if def.kind == BodyKind::Dynamic {
+            let solid = mass > 0.0 && mass < f32::INFINITY && moments.z > 0.0 && moments.is_finite();
+            assert!(solid, "a dynamic body has positive, finite mass and inertia");
+        }
+        let mut surfaces = Surfaces::default();
+        let body_shape = |def: &ShapeDef| BodyShape {
+            shape: def.shape.clone(),
+            principal_from_shape: principal_from_body * def.body_from_shape,
+            surface: surfaces.intern(&Surface::of(def)),
+        };
+        let shapes = def.shapes.iter().map(body_shape).collect();
+        surfaces.shrink();
+        Self {
+            kind: def.kind,
+            world_from_principal: world_from_body * body_from_principal,
+            previous: world_from_body * body_from_principal,
+            velocity: Velocity { linear: def.linear_velocity, angular: def.angular_velocity },
+            force: Vec3::ZERO,
+            torque: Vec3::ZERO,
+            forces: BodyForces::default(),
+            principal_from_body,
+            mass,
+            inertia: moments,
+            laid_by: None,
+            linear_damping: def.linear_damping,
+            angular_damping: def.angular_damping,
+            gravity_scale: def.gravity_scale,
+            shapes,
+            surfaces,
+            rest: Rest::Awake { calm: 0.0 },
+            sleeping: def.sleeping,
+            quality: def.quality,
+            place: world_from_body * body_from_principal,
+            quarantined: false,
+            stirred: false,
+            user_data: def.user_data,
+        }
+    }
+
+    /// Where the principal frame of a kinematic body comes to be by its velocity, after `count` substeps of `h` seconds.
+    pub fn carried(&self, h: f32, count: u32) -> Transform {
+        let mut pose = self.world_from_principal;
+        for _ in 0..count {
+            pose = Transform::new(
+                pose.translation + self.velocity.linear * h,
+                pose.rotation.integrate(self.velocity.angular, h),
+            );
+        }
+        pose
+    }
+
+    /// Mass, centre and inertia in the body's frame.
+    pub fn mass_properties(&self) -> MassProperties {
+        let body_from_principal = self.principal_from_body.inverse();
+        MassProperties {
+            mass: self.mass,
+            center: body_from_principal.translation,
+            inertia: Sym3::from_rotated_diagonal(body_from_principal.rotation, self.inertia),
+        }
+    }
+
+    pub fn world_from_body(&self) -> Transform {
+        self.world_from_principal * self.principal_from_body
+    }
+
+    pub fn set_world_from_body(&mut self, world_from_body: Transform) {
+        let Transform { translation, rotation } = world_from_body;
+        let world_from_body = Transform::new(translation, rotation.normalize());
+        self.world_from_principal = world_from_body * self.principal_from_body.inverse();
+        self.previous = self.world_from_principal;
+    }
+
+    /// What a shape is besides geometry.
+    pub fn surface(&self, shape: usize) -> &Surface {
+        &self.surfaces.as_slice()[self.shapes[shape].surface as usize]
+    }
+
+    /// Most bodies have one shape where they are themselves, and levels are bodies at the origin: then there is nothing to
+    /// multiply.
+    pub fn world_from_shape(&self, shape: usize) -> Transform {
+        let principal_from_shape = self.shapes[shape].principal_from_shape;
+        if principal_from_shape == Transform::IDENTITY {
+            self.world_from_principal
+        } else if self.world_from_principal == Transform::IDENTITY {
+            principal_from_shape
+        } else {
+            self.world_from_principal * principal_from_shape
+        }
+    }
+
+    /// How the surface of a shape moves along the body at a world point, world axes.
+    pub fn surface_velocity(&self, shape: usize, point: Vec3) -> Velocity {
+        let (frame, material) = (self.world_from_shape(shape), &self.surface(shape).material);
+        let angular = frame.rotation * material.surface_spin;
+        let linear = frame.rotation * material.surface_velocity + angular.cross(point - frame.translation);
+        Velocity { linear, angular }
+    }
+
+    /// World position of the centre of mass.
+    pub fn center(&self) -> Vec3 {
+        self.world_from_principal.translation
+    }
+
+    pub fn is_awake(&self) -> bool {
+        matches!(self.rest, Rest::Awake { .. })
+    }
+
+    /// It is awake, and the time for which it has been calm begins anew.
+    pub fn disturb(&mut self) {
+        self.rest = Rest::Awake { calm: 0.0 };
+        self.place = self.world_from_principal;
+    }
+
+    /// Takes part in the step as something that forces move.
+    pub fn is_active(&self) -> bool {
+        self.kind == BodyKind::Dynamic && self.is_awake() && !self.quarantined
+    }
+
+    /// May start or end a contact: it moves, or was changed.
+    pub fn can_touch(&self) -> bool {
+        if self.stirred {
+            return true;
+        }
+        match self.kind {
+            BodyKind::Dynamic => self.is_active(),
+            BodyKind::Kinematic => self.velocity != Velocity::default(),
+            BodyKind::Static => false,
+        }
+    }
+
+    pub fn inverse_mass(&self) -> f32 {
+        if self.mass > 0.0 { 1.0 / self.mass } else { 0.0 }
+    }
+
+    /// `I⁻¹ v` in world axes.
+    pub fn inverse_inertia_mul(&self, v: Vec3) -> Vec3 {
+        if self.mass == 0.0 {
+            return Vec3::ZERO;
+        }
+        let r = self.world_from_principal.rotation;
+        r * ((r.inverse() * v) / self.inertia)
+    }
+
+    /// `I v` in world axes.
+    pub fn inertia_mul(&self, v: Vec3) -> Vec3 {
+        let r = self.world_from_principal.rotation;
+        r * ((r.inverse() * v) * self.inertia)
+    }
+
+    /// J.
+    pub fn kinetic_energy(&self) -> f32 {
+        let w = self.world_from_principal.rotation.inverse() * self.velocity.angular;
+        0.5 * self.mass * self.velocity.linear.length_squared() + 0.5 * (w * self.inertia).dot(w)
+    }
+
+    /// Largest distance from the centre of mass to the surface, roughly: turns rad/s into m/s. 0 for static bodies,
+    /// which do not turn (and may reach to infinity).
+    pub fn reach(&self) -> f32 {
+        let mut reach = 0.0;
+        for shape in self.shapes.iter().filter(|_| self.kind != BodyKind::Static) {
+            let r = shape.principal_from_shape.translation.length() + shape.shape.bounding_radius();
+            reach = sinew_math::max(reach, r);
+        }
+        reach
+    }
+}
+
+fn mass_of_shapes(shapes: &[ShapeDef]) -> MassProperties {
+    let mut sum = MassProperties::default();
+    for def in shapes {
+        sum = sum.combine(&def.shape.mass_properties(def.density).transformed(&def.body_from_shape));
+    }
+    sum
+}
+
+/// Principal moments (largest first) and the frame they belong to.
+fn principal_frame(properties: &MassProperties) -> (Vec3, Transform) {
+    let Sym3 { diagonal, off } = properties.inertia;
+    if off == Vec3::ZERO {
+        // Keeps the axes of boxes and capsules as they are.
+        return (raise(diagonal), Transform::from_translation(properties.center));
+    }
+    let (moments, rotation): (Vec3, Rotation) = properties.inertia.eigen();
+    (raise(moments), Transform::new(properties.center, rotation))
+}
+
+fn raise(moments: Vec3) -> Vec3 {
+    let largest = sinew_math::max(moments.x, sinew_math::max(moments.y, moments.z));
+    sinew_math::max3(moments, Vec3::splat(largest * SMALLEST_MOMENT))
+}

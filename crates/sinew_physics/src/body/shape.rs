@@ -1,0 +1,103 @@
+//! Shapes as parts of bodies, and whom they meet.
+
+use crate::body::contact_rule::ContactRule;
+use crate::body::material::Material;
+use sinew_math::Transform;
+
+pub use sinew_geometry::{MassProperties, Shape};
+
+/// Two shapes meet if each one's mask holds the other's layer, and they are not in the same negative group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Filter {
+    /// Bits of the layers it is on. Default 1.
+    pub layers: u32,
+    /// Bits of the layers it meets. Default all.
+    pub mask: u32,
+    /// Same non-zero group: positive always meets, negative never. Default 0: none.
+    pub group: i32,
+}
+
+impl Default for Filter {
+    fn default() -> Self {
+        Self { layers: 1, mask: u32::MAX, group: 0 }
+    }
+}
+
+impl Filter {
+    /// True if two shapes meet.
+    pub fn meets(self, other: Self) -> bool {
+        if self.group != 0 && self.group == other.group {
+            return self.group > 0;
+        }
+        self.layers & other.mask != 0 && other.layers & self.mask != 0
+    }
+}
+
+/// A shape as part of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeDef {
+    /// Geometry.
+    pub shape: Shape,
+    /// Shape frame in the body's frame.
+    pub body_from_shape: Transform,
+    /// kg/m³, ≥ 0. Default 1000. Counts only where the body's mass is not given.
+    pub density: f32,
+    /// Surface.
+    pub material: Material,
+    /// Whom it meets.
+    pub filter: Filter,
+    /// Whether it pushes.
+    pub sensing: Sensing,
+    /// What becomes of its contacts. Default: as they are.
+    pub rule: ContactRule,
+}
+
+/// What a shape does to those it meets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sensing {
+    /// It pushes them. Default.
+    #[default]
+    Solid,
+    /// It only reports them.
+    Sensor,
+}
+
+impl ShapeDef {
+    /// Whether its numbers make sense; the phrase says what is wrong.
+    ///
+    /// # Errors
+    /// What is wrong, in lower case.
+    pub fn check(&self) -> Result<(), &'static str> {
+        self.shape.check()?;
+        self.material.check()?;
+        self.rule.check()?;
+        let placed = self.body_from_shape.is_finite();
+        // Written so that NaN fails.
+        let dense = (0.0..f32::INFINITY).contains(&self.density);
+        if placed && dense {
+            Ok(())
+        } else {
+            Err("a shape's pose and density must be finite, density not negative")
+        }
+    }
+
+    /// At the body's origin, with defaults.
+    pub fn new(shape: Shape) -> Self {
+        Self {
+            shape,
+            body_from_shape: Transform::IDENTITY,
+            density: 1000.0,
+            material: Material::default(),
+            filter: Filter::default(),
+            sensing: Sensing::Solid,
+            rule: ContactRule::Push,
+        }
+    }
+}
+
+/// [`ShapeDef::new`].
+impl From<Shape> for ShapeDef {
+    fn from(shape: Shape) -> Self {
+        Self::new(shape)
+    }
+}

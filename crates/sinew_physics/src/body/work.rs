@@ -1,0 +1,25 @@
+//! Energy that comes into a world within a step: of motors, and of bodies that move by themselves.
+
+/// Work done on dynamic bodies within a step, J. What it takes out of them is negative.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Work {
+    /// Of the motors of joints, pins included.
+    pub drives: f32,
+    /// Of kinematic bodies, through contacts and joints.
+    pub kinematic: f32,
+}
+
+impl Work {
+    /// Both together, J.
+    pub fn total(self) -> f32 {
+        self.drives + self.kinematic
+    }
+}
+
+impl core::ops::Add for Work {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { drives: self.drives + other.drives, kinematic: self.kinematic + other.kinematic }
+    }
+}

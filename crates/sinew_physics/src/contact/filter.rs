@@ -1,0 +1,94 @@
+//! Which shapes may meet: filters, pairs that were parted, and a function of the user's.
+
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::body::def::BodyKind;
+use crate::body::shape::{Filter, Sensing};
+use crate::contact::{ContactKey, ordered};
+use crate::id::ShapeId;
+use crate::registered::Registered;
+
+/// One side of a pair that may meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairSide {
+    /// The shape.
+    pub shape: ShapeId,
+    /// How its body moves.
+    pub kind: BodyKind,
+    /// The user's number on its body.
+    pub user_data: u64,
+    /// Its filter.
+    pub filter: Filter,
+    /// Whether it only senses.
+    pub sensing: Sensing,
+}
+
+/// True if two shapes may meet that all other filters let meet; the one with the smaller body index comes first.
+///
+/// A pure function, so that a snapshot holds all that decides; a plain one, not a closure: there is nothing that it could
+/// remember. It is asked in every step, in no defined order.
+pub type PairFunction = fn(&PairSide, &PairSide) -> bool;
+
+/// What keeps shapes from meeting.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PairFilter<'a> {
+    /// Body indices, smaller first, ascending.
+    pub parted: &'a [(u32, u32)],
+    pub function: Option<PairFunction>,
+    /// Another one whenever `parted` is another.
+    pub version: u64,
+}
+
+impl PairFilter<'_> {
+    pub fn lets_meet(&self, bodies: &Arena<Body>, key: ContactKey) -> bool {
+        if key.a == key.b {
+            return false;
+        }
+        let (a, b) = (bodies.at(key.a), bodies.at(key.b));
+        let (s, t) = (a.surface(key.shape_a as usize), b.surface(key.shape_b as usize));
+        kinds_meet([(a.kind, s.sensing), (b.kind, t.sensing)])
+            && s.filter.meets(t.filter)
+            && !a.quarantined
+            && !b.quarantined
+            && self.parted.binary_search(&ordered(key.a, key.b)).is_err()
+            && self.function.is_none_or(|accepts| {
+                accepts(&side(bodies, key.a, key.shape_a), &side(bodies, key.b, key.shape_b))
+            })
+    }
+}
+
+fn side(bodies: &Arena<Body>, index: u32, shape: u32) -> PairSide {
+    let body = bodies.at(index);
+    let s = body.surface(shape as usize);
+    PairSide {
+        shape: ShapeId { body: bodies.id(index), shape },
+        kind: body.kind,
+        user_data: body.user_data,
+        filter: s.filter,
+        sensing: s.sensing,
+    }
+}
+
+/// Contacts push something dynamic. A sensor sees whatever it or the other may move to; two sensors do not see each other.
+fn kinds_meet([a, b]: [(BodyKind, Sensing); 2]) -> bool {
+    let either = |kind: BodyKind| a.0 == kind || b.0 == kind;
+    match (a.1, b.1) {
+        (Sensing::Sensor, Sensing::Sensor) => false,
+        (Sensing::Solid, Sensing::Solid) => either(BodyKind::Dynamic),
+        _ => either(BodyKind::Dynamic) || either(BodyKind::Kinematic),
+    }
+}
+
+/// The user's functions, and which of them is asked.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PairFunctions {
+    pub registered: Registered<PairFunction>,
+    /// Part of the snapshot.
+    pub chosen: Option<u32>,
+}
+
+impl PairFunctions {
+    pub fn function(&self) -> Option<PairFunction> {
+        self.registered.find(self.chosen?)
+    }
+}

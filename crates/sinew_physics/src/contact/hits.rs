@@ -1,0 +1,165 @@
+//! Hits: contacts that came in fast, with what it took to stop them.
+
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::body::def::BodyKind;
+use crate::body::material::Material;
+use crate::contact::meetings::{load_shape_id, save_shape_id, shape_ids};
+use crate::contact::{Contact, Effect};
+use crate::id::ShapeId;
+use sinew_math::{ReadError, Reader, Vec3, Writer, max, normalize_or};
+
+/// Two shapes that hit each other; A is the one with the smaller body index.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// One shape.
+    pub a: ShapeId,
+    /// The other.
+    pub b: ShapeId,
+    /// Where, world, metres: the middle of what pushed, weighed by how much; on the surface that stands still, if one does.
+    pub point: Vec3,
+    /// From A to B, unit length, world axes.
+    pub normal: Vec3,
+    /// How fast they came in along the normal, m/s: where they touched first, when the step began.
+    pub approach: f32,
+    /// All that pushed along the normal, N·s: the sum over the points of contact.
+    pub impulse: f32,
+    /// The most of that at one point, N·s.
+    pub greatest: f32,
+    /// What A and B are made of.
+    pub materials: [Material; 2],
+}
+
+/// A hit that the step ended in the middle of: it is told of in the next, with all that it took.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct OpenHit {
+    a: ShapeId,
+    b: ShapeId,
+    point: Vec3,
+    normal: Vec3,
+    approach: f32,
+    impulse: f32,
+    greatest: f32,
+}
+
+/// Hits that go on, in the order of pairs. Part of the snapshot.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct OpenHits {
+    list: Vec<OpenHit>,
+    next: Vec<OpenHit>,
+}
+
+/// A pair that still comes in with more than this share of the speed that it came with has not been stopped yet.
+const STILL_COMING: f32 = 0.1;
+
+impl OpenHits {
+    /// Tells of what was hit in this step, faster than `threshold` (m/s).
+    pub fn tell(&mut self, bodies: &Arena<Body>, contacts: &[Contact], threshold: f32, hits: &mut Vec<Hit>) {
+        hits.clear();
+        hits.reserve(contacts.len());
+        self.next.clear();
+        self.next.reserve(contacts.len());
+        for pair in contacts.chunk_by(|p, q| p.key.is_of_pair(q.key)) {
+            let fast = pair.iter().any(|contact| contact.approach >= threshold);
+            if !fast && self.list.is_empty() || pair[0].effect != Effect::Push {
+                continue;
+            }
+            let (a, b) = shape_ids(bodies, pair[0].key);
+            let begun = self.list.iter().find(|hit| (hit.a, hit.b) == (a, b));
+            if !fast && begun.is_none() {
+                continue;
+            }
+            let hit = hit_of(bodies, pair, (a, b), begun);
+            if hit.impulse <= 0.0 {
+                continue;
+            }
+            if begun.is_none() && closing_speed(bodies, pair) > STILL_COMING * hit.approach {
+                let Hit { point, normal, approach, impulse, greatest, .. } = hit;
+                self.next.push(OpenHit { a, b, point, normal, approach, impulse, greatest });
+            } else {
+                hits.push(hit);
+            }
+        }
+        core::mem::swap(&mut self.list, &mut self.next);
+    }
+
+    pub fn save(&self, w: &mut Writer) {
+        w.count(self.list.len());
+        for hit in &self.list {
+            save_shape_id(w, hit.a);
+            save_shape_id(w, hit.b);
+            w.vec3(hit.point);
+            w.vec3(hit.normal);
+            for x in [hit.approach, hit.impulse, hit.greatest] {
+                w.f32(x);
+            }
+        }
+    }
+
+    pub fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let mut list = Vec::new();
+        for _ in 0..r.count(60)? {
+            let (a, b) = (load_shape_id(r)?, load_shape_id(r)?);
+            let (point, normal) = (r.vec3()?, r.vec3()?);
+            let (approach, impulse, greatest) = (r.f32()?, r.f32()?, r.f32()?);
+            list.push(OpenHit { a, b, point, normal, approach, impulse, greatest });
+        }
+        Ok(Self { list, next: Vec::new() })
+    }
+}
+
+/// All parts of a pair's contact as one hit, with what the step before had of it.
+fn hit_of(
+    bodies: &Arena<Body>,
+    pair: &[Contact],
+    (a, b): (ShapeId, ShapeId),
+    begun: Option<&OpenHit>,
+) -> Hit {
+    let (mut approach, mut impulse, mut greatest) = (0.0, 0.0, 0.0);
+    let (mut point, mut normal) = (Vec3::ZERO, Vec3::ZERO);
+    if let Some(begun) = begun {
+        (approach, impulse, greatest) = (begun.approach, begun.impulse, begun.greatest);
+        (point, normal) = (begun.point * impulse, begun.normal * impulse);
+    }
+    for contact in pair {
+        approach = max(approach, contact.approach);
+        // The points lie half way between the surfaces: of one that forces move and one that they do not, that one's counts.
+        let on = match [a, b].map(|id| bodies.at(id.body.index).kind == BodyKind::Dynamic) {
+            [true, false] => 0.5,
+            [false, true] => -0.5,
+            _ => 0.0,
+        };
+        for (place, given) in contact.manifold.points().iter().zip(&contact.memory.points) {
+            let (place, given) =
+                (place.position + contact.manifold.normal * (on * place.separation), given.total);
+            impulse += given;
+            greatest = max(greatest, given);
+            point += place * given;
+            normal += contact.manifold.normal * given;
+        }
+    }
+    let material = |id: ShapeId| bodies.at(id.body.index).surface(id.shape as usize).material;
+    Hit {
+        a,
+        b,
+        point: point / max(impulse, f32::MIN_POSITIVE),
+        normal: normalize_or(normal, pair[0].manifold.normal),
+        approach,
+        impulse,
+        greatest,
+        materials: [material(a), material(b)],
+    }
+}
+
+/// How fast the points that pushed still come in at the end of the step, m/s.
+fn closing_speed(bodies: &Arena<Body>, pair: &[Contact]) -> f32 {
+    let mut fastest = 0.0;
+    for contact in pair {
+        let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
+        for (place, _) in contact.impulses().filter(|&(_, given)| given > 0.0) {
+            let relative = b.velocity.at(place - b.center()) - a.velocity.at(place - a.center());
+            fastest = max(fastest, -relative.dot(contact.manifold.normal));
+        }
+    }
+    fastest
+}

@@ -1,0 +1,80 @@
+//! The user's functions that change contacts, and what they made of those of this step.
+
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::body::contact_rule::{ContactModifier, ContactRule, ContactSide, FoundContact};
+use crate::body::material::ContactMaterial;
+use crate::contact::{Contact, ContactMemory, Effect};
+use crate::id::ShapeId;
+use crate::registered::Registered;
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Modifiers {
+    pub registered: Registered<ContactModifier>,
+    /// Of contacts (by their place) that were changed in this step, ascending.
+    changed: Vec<(u32, ContactMaterial)>,
+}
+
+impl Modifiers {
+    /// Lets them change the contacts of this step, or keep them from pushing.
+    pub fn change(&mut self, bodies: &Arena<Body>, contacts: &mut [Contact], step: u64) {
+        self.changed.clear();
+        if self.registered.is_empty() {
+            return;
+        }
+        self.changed.reserve(contacts.len());
+        for (place, contact) in contacts.iter_mut().enumerate().filter(|(_, contact)| contact.pushes()) {
+            let sides = [(contact.key.a, contact.key.shape_a), (contact.key.b, contact.key.shape_b)];
+            let rules = sides.map(|(body, shape)| bodies.at(body).surface(shape as usize).rule);
+            let mut material = None;
+            for rule in rules {
+                let ContactRule::Modified { modifier } = rule else { continue };
+                let Some(modifier) = self.registered.find(modifier) else { continue };
+                let before = material.unwrap_or_else(|| contact.material(bodies));
+                let found = FoundContact {
+                    sides: sides.map(|(body, shape)| side(bodies, body, shape)),
+                    normal: contact.manifold.normal,
+                    points: contact.manifold.points(),
+                    step,
+                };
+                match modifier(&found, before) {
+                    Some(after) => material = Some(if after.is_valid() { after } else { before }),
+                    None => {
+                        contact.effect = Effect::Pass;
+                        contact.memory = ContactMemory::default();
+                        break;
+                    }
+                }
+            }
+            if let (Some(material), Effect::Push) = (material, contact.effect) {
+                self.changed.push((place as u32, material));
+            }
+        }
+    }
+
+    /// True if they made something of a contact in this step.
+    pub fn have_changed(&self, place: u32) -> bool {
+        self.find(place).is_some()
+    }
+
+    fn find(&self, place: u32) -> Option<&ContactMaterial> {
+        let found = self.changed.binary_search_by_key(&place, |&(contact, _)| contact).ok()?;
+        Some(&self.changed[found].1)
+    }
+
+    /// What a contact is in this step.
+    pub fn material(&self, bodies: &Arena<Body>, contacts: &[Contact], place: u32) -> ContactMaterial {
+        self.find(place).copied().unwrap_or_else(|| contacts[place as usize].material(bodies))
+    }
+}
+
+fn side(bodies: &Arena<Body>, index: u32, shape: u32) -> ContactSide {
+    let body = bodies.at(index);
+    ContactSide {
+        shape: ShapeId { body: bodies.id(index), shape },
+        user_data: body.user_data,
+        material: body.surface(shape as usize).material,
+        velocity: body.velocity,
+        center: body.center(),
+    }
+}

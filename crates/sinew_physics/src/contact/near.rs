@@ -1,0 +1,231 @@
+//! Pairs of shapes whose bounds in the trees overlap: candidates, from one step to the next. A shape is looked for anew only
+//! when it left those bounds, or when something was done to it; which candidates are near is tested in every step.
+//!
+//! None of it is part of the state. The bounds depend on how a shape came to where it is, but whatever is near is always among
+//! the candidates, and what is not near has no contact.
+
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::boxes::AxisOf;
+use crate::collide::Parting;
+use crate::contact::filter::PairFilter;
+use crate::contact::proxies::{Closing, Leaf, MARGIN, Owner, Proxies};
+use crate::contact::{Contact, ContactKey};
+use sinew_math::max;
+
+/// Two shapes that may come near each other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NearPair {
+    pub key: ContactKey,
+    /// Where their bounds are, in the order of the key.
+    pub leaves: [Leaf; 2],
+    /// Gap that surely is left, metres: the gap found last, or that of their bounds, less what they may have moved against
+    /// each other since. Only while they have no contact.
+    pub left: f32,
+    /// The axis that parted them then.
+    axis: PackedAxis,
+    /// Their filters let them meet.
+    pub meets: bool,
+    /// One of them is a mesh or a height field.
+    pub has_surface: bool,
+}
+
+/// Length by which a gap that was found may be less than it seems, metres: points of manifolds may lie outside of the faces
+/// that they are cut to by up to half a millimetre.
+const SKIN: f32 = 0.001;
+
+impl NearPair {
+    /// That they may meet is still to be [found](Self::met).
+    fn new(key: ContactKey, leaves: [Leaf; 2]) -> Self {
+        let axis = PackedAxis::default();
+        Self { key, leaves, left: f32::NEG_INFINITY, axis, meets: false, has_surface: false }
+    }
+
+    /// With what the shapes say of whether they meet.
+    fn met(&self, bodies: &Arena<Body>, filter: PairFilter<'_>) -> Self {
+        let key = self.key;
+        let is_surface =
+            |body: u32, shape: u32| bodies.at(body).shapes[shape as usize].shape.surface().is_some();
+        let has_surface = is_surface(key.a, key.shape_a) || is_surface(key.b, key.shape_b);
+        Self { meets: filter.lets_meet(bodies, key), has_surface, ..*self }
+    }
+
+    pub fn parting(&self) -> Parting {
+        Parting { axis: self.axis.unpack(), gap: f32::NEG_INFINITY }
+    }
+
+    /// Takes note of how the two moved: whether points may be looked for as far away as they are apart.
+    pub fn comes_near(&mut self, closing: &Closing) -> bool {
+        self.left -= closing.moved;
+        let is_far = self.left > max(MARGIN, closing.ahead);
+        !is_far
+    }
+
+    /// Takes note of a gap between their bounds, metres, if no points are looked for that far away.
+    pub fn is_apart(&mut self, closing: &Closing, gap: f32) -> bool {
+        let is_far = !self.has_surface && gap - SKIN > max(MARGIN, closing.ahead);
+        if is_far {
+            self.left = gap - SKIN;
+        }
+        is_far
+    }
+
+    /// They were looked at, and have no points.
+    pub fn part(&mut self, parting: &Parting) {
+        self.left = parting.gap - SKIN;
+        self.axis = PackedAxis::new(parting.axis);
+    }
+}
+
+/// An axis in four bytes: its kind in the lowest two bits, then twice fifteen bits.
+#[derive(Clone, Copy, Debug, Default)]
+struct PackedAxis(u32);
+
+impl PackedAxis {
+    const MOST: usize = (1 << 15) - 1;
+
+    fn new(axis: Option<AxisOf>) -> Self {
+        let (kind, i, j) = match axis {
+            None => (0, 0, 0),
+            Some(AxisOf::FaceA(i)) => (1, i, 0),
+            Some(AxisOf::FaceB(i)) => (2, i, 0),
+            Some(AxisOf::Edges(i, j)) => (3, i, j),
+        };
+        if i > Self::MOST || j > Self::MOST { Self(0) } else { Self(kind | (i << 2 | j << 17) as u32) }
+    }
+
+    fn unpack(self) -> Option<AxisOf> {
+        let (i, j) = (self.0 as usize >> 2 & Self::MOST, self.0 as usize >> 17);
+        match self.0 & 3 {
+            1 => Some(AxisOf::FaceA(i)),
+            2 => Some(AxisOf::FaceB(i)),
+            3 => Some(AxisOf::Edges(i, j)),
+            _ => None,
+        }
+    }
+}
+
+/// All of them, sorted by key.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct NearPairs {
+    pub list: Vec<NearPair>,
+    fresh: Vec<NearPair>,
+    next: Vec<NearPair>,
+    /// Number that were found of shapes that strayed, and one for each time, since those went that do not overlap any more.
+    strayed: usize,
+    /// Of the filter that was asked last.
+    filter_version: u64,
+}
+
+impl NearPairs {
+    /// Brings the list up to date.
+    pub fn update(&mut self, proxies: &mut Proxies, bodies: &Arena<Body>, filter: PairFilter<'_>) {
+        if proxies.has_loose() {
+            self.fresh.clear();
+            let fresh = &mut self.fresh;
+            proxies.search(bodies, |(p, leaf_p), (q, leaf_q)| {
+                let key = key(p, q);
+                let leaves = if key.a == p.body { [leaf_p, leaf_q] } else { [leaf_q, leaf_p] };
+                fresh.push(NearPair::new(key, leaves));
+            });
+            self.fresh.sort_unstable_by_key(|pair| pair.key);
+            self.fresh.dedup_by_key(|pair| pair.key);
+            if proxies.only_strayed() && self.strayed + self.fresh.len() <= self.list.len() / 8 {
+                self.add(bodies, filter);
+            } else {
+                self.merge(proxies, bodies, filter);
+            }
+            proxies.fasten();
+        }
+        // A function of the user's is asked in every step: that is what it was told.
+        let asks = core::mem::replace(&mut self.filter_version, filter.version) != filter.version
+            || filter.function.is_some();
+        if asks {
+            for pair in &mut self.list {
+                pair.meets = filter.lets_meet(bodies, pair.key);
+            }
+        }
+    }
+
+    /// Takes in what was not known. Others stay, although their bounds may not overlap any more.
+    fn add(&mut self, bodies: &Arena<Body>, filter: PairFilter<'_>) {
+        self.strayed += self.fresh.len() + 1;
+        let list = &mut self.list;
+        self.fresh.retain(|pair| list.binary_search_by_key(&pair.key, |old| old.key).is_err());
+        for pair in &mut self.fresh {
+            *pair = pair.met(bodies, filter);
+        }
+        insert_sorted(list, &mut self.fresh, |pair| pair.key);
+    }
+
+    /// Pairs of loose shapes go, unless they were found again: then they keep what they know.
+    fn merge(&mut self, proxies: &Proxies, bodies: &Arena<Body>, filter: PairFilter<'_>) {
+        let prunes = self.strayed > 0;
+        let only_strayed = proxies.only_strayed();
+        self.strayed = 0;
+        self.next.clear();
+        let mut fresh = self.fresh.iter().peekable();
+        for old in &self.list {
+            while let Some(pair) = fresh.next_if(|pair| pair.key < old.key) {
+                self.next.push(pair.met(bodies, filter));
+            }
+            if let Some(pair) = fresh.next_if(|pair| pair.key == old.key) {
+                let known = NearPair { left: old.left, axis: old.axis, ..*pair };
+                self.next.push(if only_strayed { *old } else { known.met(bodies, filter) });
+            } else if !(old.leaves.iter().any(|&leaf| proxies.is_loose(leaf))
+                || prunes && proxies.are_parted(old.leaves))
+            {
+                self.next.push(*old);
+            }
+        }
+        self.next.extend(fresh.map(|pair| pair.met(bodies, filter)));
+        core::mem::swap(&mut self.list, &mut self.next);
+    }
+}
+
+/// Puts items in their places; both lists are in order of their keys.
+pub(crate) fn insert_sorted<T: Copy, K: Ord>(list: &mut Vec<T>, new: &mut Vec<T>, key: impl Fn(&T) -> K) {
+    let mut left = list.len();
+    list.extend_from_slice(new);
+    let mut end = list.len();
+    // From the back, where there is room.
+    while let Some(item) = new.pop() {
+        let place = list[..left].partition_point(|other| key(other) < key(&item));
+        let moved = left - place;
+        list.copy_within(place..left, end - moved);
+        (left, end) = (place, end - moved - 1);
+        list[end] = item;
+    }
+}
+
+fn key(p: Owner, q: Owner) -> ContactKey {
+    ContactKey::new((p.body, p.shape), (q.body, q.shape))
+}
+
+/// Puts contacts that begin in their places; both lists are in order of their keys.
+pub(crate) fn bear(contacts: &mut Vec<Contact>, born: &mut Vec<Contact>) {
+    insert_sorted(contacts, born, |contact| contact.key);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_is_packed_without_loss() {
+        let most = PackedAxis::MOST;
+        let axes = [
+            None,
+            Some(AxisOf::FaceA(0)),
+            Some(AxisOf::FaceA(most)),
+            Some(AxisOf::FaceB(5)),
+            Some(AxisOf::Edges(0, 0)),
+            Some(AxisOf::Edges(7, most)),
+            Some(AxisOf::Edges(most, 3)),
+        ];
+        for axis in axes {
+            assert_eq!(PackedAxis::new(axis).unpack(), axis);
+        }
+        assert_eq!(PackedAxis::new(Some(AxisOf::Edges(most + 1, 0))).unpack(), None);
+    }
+}

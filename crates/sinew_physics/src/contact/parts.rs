@@ -1,0 +1,124 @@
+//! In `collide`: pairs that touch in several places at once, a mesh or a height field being one of them. Each of their manifolds
+//! is a contact of its own, a part of the pair.
+
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::collide::{MAX_PARTS, Manifold, Motion, Patch, Scratch, collide_pair};
+use crate::contact::{Contact, ContactMemory};
+use crate::context::StepContext;
+use crate::slices::for_each_mut;
+use std::sync::{Mutex, PoisonError};
+
+/// Cosine of the largest turn of a normal, 25°, after which a part is another one.
+const SAME_PART: f32 = 0.9;
+
+/// What is new of the pairs with parts; kept between steps for its memory.
+#[derive(Debug, Default)]
+pub(crate) struct Parts {
+    pairs: Vec<Pair>,
+    next: Vec<Contact>,
+    /// Lists for as many threads as there were at once.
+    idle: Mutex<Vec<Scratch>>,
+}
+
+/// Nothing in it lasts.
+impl Clone for Parts {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+/// A pair with parts: where its contacts are, and what they are to be.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    first: usize,
+    motion: Motion,
+    patch: Patch,
+}
+
+impl Parts {
+    /// Makes the contacts of such pairs anew. `motion` tells of the first contact of a pair how its bodies move, if it is one
+    /// of them.
+    pub fn update(
+        &mut self,
+        bodies: &Arena<Body>,
+        contacts: &mut Vec<Contact>,
+        context: &StepContext<'_>,
+        motion: impl Fn(&Contact) -> Option<Motion>,
+    ) {
+        self.pairs.clear();
+        let pairs = contacts.iter().enumerate().filter(|(_, contact)| contact.key.part == 0);
+        self.pairs.extend(pairs.filter_map(|(first, contact)| {
+            Some(Pair { first, motion: motion(contact)?, patch: Patch::default() })
+        }));
+        if self.pairs.is_empty() {
+            return;
+        }
+        let idle = &self.idle;
+        for_each_mut(context.runner, &mut self.pairs, |pair| {
+            let lock = || idle.lock().unwrap_or_else(PoisonError::into_inner);
+            let free = lock().pop();
+            let mut scratch = free.unwrap_or_default();
+            find(bodies, &contacts[pair.first], pair, &mut scratch);
+            lock().push(scratch);
+        });
+        self.replace(contacts);
+    }
+
+    fn replace(&mut self, contacts: &mut Vec<Contact>) {
+        self.next.clear();
+        let mut done = 0;
+        for pair in &self.pairs {
+            self.next.extend_from_slice(&contacts[done..pair.first]);
+            let key = contacts[pair.first].key;
+            let old = contacts[pair.first..].iter().take_while(|contact| contact.key.is_of_pair(key)).count();
+            done = pair.first + old;
+            push_parts(&contacts[pair.first..done], pair.patch.manifolds(), &mut self.next);
+        }
+        self.next.extend_from_slice(&contacts[done..]);
+        core::mem::swap(contacts, &mut self.next);
+    }
+}
+
+fn find(bodies: &Arena<Body>, contact: &Contact, pair: &mut Pair, scratch: &mut Scratch) {
+    let key = contact.key;
+    let placed = |body: u32, shape: u32| {
+        let body = bodies.at(body);
+        (&body.shapes[shape as usize].shape, body.world_from_shape(shape as usize))
+    };
+    let ((a, from_a), (b, from_b)) = (placed(key.a, key.shape_a), placed(key.b, key.shape_b));
+    collide_pair((a, &from_a), (b, &from_b), &pair.motion, scratch, &mut pair.patch);
+}
+
+/// The contacts of a pair: those that go on in the order in which they were, then new ones. There is at least one, which may
+/// be empty: it knows whether the pair touches.
+fn push_parts(old: &[Contact], new: &[Manifold], out: &mut Vec<Contact>) {
+    let mut taken = [false; MAX_PARTS];
+    let pushed = old.iter().any(|contact| contact.pushed);
+    let mut part = 0;
+    let mut push = |manifold: Manifold, memory: ContactMemory| {
+        let mut contact = Contact { manifold, memory, pushed, ..old[0] };
+        contact.key.part = part;
+        part += 1;
+        out.push(contact);
+    };
+    for contact in old.iter().filter(|contact| contact.manifold.count > 0) {
+        let mut best: Option<(f32, usize)> = None;
+        for (k, manifold) in new.iter().enumerate().filter(|(k, _)| !taken[*k]) {
+            let cosine = manifold.normal.dot(contact.manifold.normal);
+            if cosine >= SAME_PART && best.is_none_or(|(most, _)| cosine > most) {
+                best = Some((cosine, k));
+            }
+        }
+        if let Some((_, k)) = best {
+            taken[k] = true;
+            push(new[k], contact.memory.matched(&contact.manifold, &new[k]));
+        }
+    }
+    for (manifold, _) in new.iter().zip(taken).filter(|(_, taken)| !taken) {
+        push(*manifold, ContactMemory::default());
+    }
+    if new.is_empty() {
+        push(Manifold::default(), ContactMemory::default());
+    }
+}

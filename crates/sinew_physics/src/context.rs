@@ -1,0 +1,16 @@
+//! Settings and services of one step.
+
+use crate::runner::TaskRunner;
+use crate::stage::Profiler;
+
+/// Everything that lives for one step.
+pub(crate) struct StepContext<'a> {
+    /// Step and substep, seconds.
+    pub dt: f32,
+    pub h: f32,
+    pub substeps: u32,
+    /// When it begins, seconds.
+    pub time: f64,
+    pub runner: &'a dyn TaskRunner,
+    pub profiler: &'a dyn Profiler,
+}

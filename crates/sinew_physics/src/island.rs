@@ -1,0 +1,14 @@
+//! An island: what hangs together through contacts, joints, particles and attraction.
+
+/// Members of one island, by index, each list ascending.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Island<'a> {
+    pub bodies: &'a [u32],
+    pub joints: &'a [u32],
+    /// Positions in the contact array. `color` puts those with static bodies last: what cannot move has the last word.
+    pub contacts: &'a [u32],
+    /// Particle groups that hang on its bodies or may touch them.
+    pub groups: &'a [u32],
+    /// It is a body in flight or a strand and has been through this step.
+    pub is_flown: bool,
+}

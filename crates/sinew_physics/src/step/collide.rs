@@ -1,0 +1,186 @@
+//! `collide`: manifolds of all near pairs, and what they do.
+
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::body::contact_rule::ContactRule;
+use crate::body::shape::Sensing;
+use crate::body::surface::Surface;
+use crate::collide::{Manifold, Motion, Parting, collide_again};
+use crate::contact::SPECULATIVE_SLOPS;
+use crate::contact::kept::Kept;
+use crate::contact::parts::Parts;
+use crate::contact::{Contact, ContactKey, Effect, slop};
+use crate::context::StepContext;
+use crate::slices::for_each_mut;
+use crate::step::pairs::{Asked, BroadPhase};
+use sinew_math::{max, min};
+
+/// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
+pub(crate) fn collide(
+    bodies: &Arena<Body>,
+    broad: &mut BroadPhase,
+    contacts: &mut Vec<Contact>,
+    parts: &mut Parts,
+    context: &StepContext<'_>,
+) {
+    let BroadPhase { proxies, asked, .. } = broad;
+    for_each_mut(context.runner, contacts, |contact| {
+        let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
+        contact.approach = 0.0;
+        if !a.can_touch() && !b.can_touch() {
+            return;
+        }
+        contact.pushed = contact.has_pushed();
+        if contact.has_surface {
+            return;
+        }
+        renew(contact, a, b, proxies.ahead(contact.key), context.dt);
+        weigh(contact, a, b);
+    });
+    for_each_mut(context.runner, asked, |asked| {
+        let (a, b) = (bodies.at(asked.key.a), bodies.at(asked.key.b));
+        ask(a, b, asked, proxies.ahead(asked.key), context.dt);
+    });
+    broad.answer(contacts, |contact| weigh(contact, bodies.at(contact.key.a), bodies.at(contact.key.b)));
+    if !contacts.iter().any(|contact| contact.has_surface) {
+        return;
+    }
+    parts.update(bodies, contacts, context, |contact| surface_motion(bodies, contact, context.dt));
+    for_each_mut(context.runner, contacts, |contact| {
+        let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
+        if contact.has_surface && (a.can_touch() || b.can_touch()) {
+            weigh(contact, a, b);
+        }
+    });
+}
+
+/// Brings the manifold of two convex shapes to where they are. Points are looked for within `ahead` (m)
+/// at most because of how fast they are.
+fn renew(contact: &mut Contact, a: &Body, b: &Body, ahead: f32, dt: f32) {
+    let is_slow = ahead < contact.kept.least_margin();
+    if is_slow && contact.kept.renew([a, b], contact.kept.least_margin(), &mut contact.manifold) {
+        return;
+    }
+    let (margin, slop) = margin(a, b, contact.key, ahead, dt);
+    if !is_slow && contact.kept.renew([a, b], margin, &mut contact.manifold) {
+        return;
+    }
+    let (mut manifold, mut parting) = (Manifold::default(), contact.parting());
+    meet(a, b, contact.key, margin, &mut parting, &mut manifold);
+    contact.memory = contact.memory.matched(&contact.manifold, &manifold);
+    contact.manifold = manifold;
+    contact.kept = Kept::new([a, b], contact.key, (margin, slop), &manifold);
+    (contact.apart, contact.gap) = (parting.axis, parting.gap);
+}
+
+/// The manifold of two convex shapes.
+fn meet(a: &Body, b: &Body, key: ContactKey, margin: f32, parting: &mut Parting, manifold: &mut Manifold) {
+    let (sa, sb) = (key.shape_a as usize, key.shape_b as usize);
+    let (shape_a, shape_b) = (&a.shapes[sa].shape, &b.shapes[sb].shape);
+    let (from_a, from_b) = (a.world_from_shape(sa), b.world_from_shape(sb));
+    collide_again((shape_a, &from_a), (shape_b, &from_b), margin, parting, manifold);
+}
+
+/// A contact of a pair that had none, if it has points now; `ahead` as in [`margin`].
+pub(crate) fn ask(a: &Body, b: &Body, asked: &mut Asked, ahead: f32, dt: f32) {
+    let (margin, slop) = margin(a, b, asked.key, ahead, dt);
+    meet(a, b, asked.key, margin, &mut asked.parting, &mut asked.manifold);
+    asked.kept = Kept::new([a, b], asked.key, (margin, slop), &asked.manifold);
+}
+
+/// How fast a contact comes in, and what it does.
+fn weigh(contact: &mut Contact, a: &Body, b: &Body) {
+    contact.approach = approach_of(a, b, &contact.manifold);
+    if contact.is_plain && !a.stirred && !b.stirred {
+        (contact.effect, contact.one_way) = (Effect::Push, false);
+    } else {
+        rule(contact, a, b);
+    }
+}
+
+/// How far apart points of two shapes are looked for, and their slop, metres. Because of how fast the two are it is no more than
+/// `ahead`, which may be far too much.
+fn margin(a: &Body, b: &Body, key: ContactKey, ahead: f32, dt: f32) -> (f32, f32) {
+    let slop = slop(smallest_extent(a, b, key));
+    let least = SPECULATIVE_SLOPS * slop;
+    if ahead < least {
+        return (least, slop);
+    }
+    // Beside their approach: two that move together may not do so any more once one of them is hit.
+    let (va, vb) = (a.velocity.linear, b.velocity.linear);
+    let approach = max((va - vb).length(), max(va.length(), vb.length()))
+        + a.velocity.angular.length() * a.reach()
+        + b.velocity.angular.length() * b.reach();
+    (max(least, approach * dt), slop)
+}
+
+/// Of the two shapes, metres.
+pub(crate) fn smallest_extent(a: &Body, b: &Body, key: ContactKey) -> f32 {
+    let (shape_a, shape_b) = (&a.shapes[key.shape_a as usize].shape, &b.shapes[key.shape_b as usize].shape);
+    min(shape_a.smallest_extent(), shape_b.smallest_extent())
+}
+
+/// How a pair moves of which one is a surface, the other toward the surface; `None` of other pairs, and of those at rest.
+fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Motion> {
+    let key = contact.key;
+    let (a, b) = (bodies.at(key.a), bodies.at(key.b));
+    if !a.can_touch() && !b.can_touch() {
+        return None;
+    }
+    if !contact.has_surface {
+        return None;
+    }
+    let is_surface = |body: &Body, shape: u32| body.shapes[shape as usize].shape.surface().is_some();
+    let center = |body: &Body, shape: u32| body.world_from_shape(shape as usize).translation;
+    let (mover, ground, at) = match (is_surface(a, key.shape_a), is_surface(b, key.shape_b)) {
+        (true, _) => (b, a, center(b, key.shape_b)),
+        (_, true) => (a, b, center(a, key.shape_a)),
+        _ => return None,
+    };
+    let speed = |body: &Body| body.velocity.linear + body.velocity.angular.cross(at - body.center());
+    Some(Motion {
+        velocity: speed(mover) - speed(ground),
+        dt,
+        margin: margin(a, b, key, f32::INFINITY, dt).0,
+    })
+}
+
+/// How fast the points come in, m/s; the fastest counts.
+fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
+    manifold.points().iter().fold(0.0, |fastest, point| {
+        let p = point.position;
+        let relative = b.velocity.at(p - b.center()) - a.velocity.at(p - a.center());
+        max(fastest, -relative.dot(manifold.normal))
+    })
+}
+
+/// True if a surface pushes, wherever it is met.
+fn is_plain(surface: &Surface) -> bool {
+    let pushes = matches!(surface.rule, ContactRule::Push | ContactRule::Modified { .. });
+    pushes && surface.sensing == Sensing::Solid
+}
+
+/// What the contact does, as far as its shapes say.
+fn rule(contact: &mut Contact, a: &Body, b: &Body) {
+    let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
+    contact.effect = Effect::Push;
+    contact.one_way = false;
+    contact.is_plain = [a.surface(sa), b.surface(sb)].into_iter().all(is_plain);
+    let normal = contact.manifold.normal;
+    for (body, shape, away) in [(a, sa, normal), (b, sb, -normal)] {
+        match body.surface(shape).rule {
+            ContactRule::Push | ContactRule::Modified { .. } => {}
+            ContactRule::Ghost => contact.effect = Effect::Pass,
+            ContactRule::OneWay(one_way) => {
+                contact.one_way = true;
+                let away = body.world_from_shape(shape).rotation.inverse() * away;
+                if contact.manifold.count > 0 && !one_way.holds(away) {
+                    contact.effect = Effect::Pass;
+                }
+            }
+        }
+    }
+    if [a.surface(sa), b.surface(sb)].into_iter().any(|s| s.sensing == Sensing::Sensor) {
+        contact.effect = Effect::Sense;
+    }
+}

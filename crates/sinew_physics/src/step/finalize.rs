@@ -1,0 +1,49 @@
+//! `finalize`: bodies take the state that the islands computed.
+
+use crate::activity::Activity;
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::contact::events::Events;
+use crate::context::StepContext;
+use crate::solver::SolvedBody;
+use crate::step::islands::Islands;
+use sinew_math::Vec3;
+
+/// `finalize`: poses and velocities; a body whose state is not finite keeps its old pose, stops and is quarantined.
+/// Kinematic bodies move as their velocity says; forces of the step are used up.
+pub(crate) fn finalize(
+    islands: &Islands,
+    bodies: &mut Arena<Body>,
+    activity: &mut Activity,
+    events: &mut Events,
+    context: &StepContext<'_>,
+) {
+    events.quarantined.clear();
+    events.limited.clear();
+    for SolvedBody { index, pose, velocity, is_limited } in &islands.solution().bodies {
+        let body = bodies.at_mut(*index);
+        body.previous = body.world_from_principal;
+        body.force = Vec3::ZERO;
+        body.torque = Vec3::ZERO;
+        if pose.is_finite() && velocity.linear.is_finite() && velocity.angular.is_finite() {
+            body.world_from_principal = *pose;
+            body.velocity = *velocity;
+            if *is_limited {
+                let id = bodies.id(*index);
+                events.limited.push(id);
+            }
+        } else {
+            body.velocity = Default::default();
+            body.quarantined = true;
+            activity.note(*index, body);
+            let id = bodies.id(*index);
+            events.quarantined.push(id);
+        }
+    }
+    for &index in activity.kinematic() {
+        let body = bodies.at_mut(index);
+        body.previous = body.world_from_principal;
+        body.world_from_principal = body.carried(context.h, context.substeps);
+    }
+    events.limited.sort_unstable();
+}

@@ -1,0 +1,452 @@
+//! `islands` and `color`: which active bodies hang together through contacts, joints, particles and attraction.
+
+use crate::arena::Arena;
+use crate::body::work::Work;
+use crate::context::StepContext;
+use crate::field::Target;
+use crate::island::Island;
+use crate::particles::ParticleGroup;
+use crate::runner::TaskRunner;
+use crate::solver::flight::{Flight, flies};
+use crate::solver::groups::{Neighbors, TakenGroup};
+use crate::solver::strands::Strands;
+use crate::solver::{Solution, View};
+use crate::step::tasks::{Queue, Task, Workspace, Workspaces};
+
+/// Union-find over the active bodies, then over the slots of particle groups. Everything of one kind lies in one list for
+/// all islands: memory that belonged to an island would have to grow whenever another takes its place.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Islands {
+    /// Active bodies, ascending: their places in it are their numbers here.
+    active: Vec<u32>,
+    /// By slot: the number of each active body.
+    places: Vec<u32>,
+    /// Enabled joints of active bodies, ascending.
+    holding: Vec<Tie>,
+    /// Contacts that push, ascending.
+    touching: Vec<Tie>,
+    /// By place in the contact array, of those: whether only one of the bodies is active.
+    is_border: Vec<bool>,
+    /// Memory of `color`.
+    border: Vec<u32>,
+    parent: Vec<u32>,
+    island_of_root: Vec<u32>,
+    count: usize,
+    bodies: Lists,
+    joints: Lists,
+    contacts: Lists,
+    groups: Lists,
+    /// Per slot of particle groups.
+    neighbors: Vec<Neighbors>,
+    /// Out of the world for the length of the step, island after island.
+    taken: Vec<TakenGroup>,
+    solution: Solution,
+    /// True of each island that is a body in flight or a strand and has been through this step.
+    flown: Vec<bool>,
+    flight: Flight,
+    strands: Strands,
+    /// One for each thread that has worked at the same time as others.
+    idle: Vec<Workspace>,
+    /// One for each island, where they go in lockstep.
+    own: Vec<Workspace>,
+}
+
+const NONE: u32 = u32::MAX;
+
+/// A joint or a contact by its index, and the numbers of its bodies, where they are active.
+#[derive(Clone, Copy, Debug)]
+struct Tie {
+    index: u32,
+    bodies: [u32; 2],
+}
+
+impl Tie {
+    /// A body of it that is active, by number.
+    fn either(self) -> Option<u32> {
+        self.bodies.into_iter().find(|&place| place != NONE)
+    }
+}
+
+impl Islands {
+    /// The islands of this step, ordered by their smallest body.
+    pub fn iter(&self) -> impl Iterator<Item = Island<'_>> {
+        (0..self.count).map(|i| self.at(i))
+    }
+
+    fn at(&self, i: usize) -> Island<'_> {
+        Island {
+            bodies: self.bodies.of(i),
+            joints: self.joints.of(i),
+            contacts: self.contacts.of(i),
+            groups: self.groups.of(i),
+            is_flown: self.flown[i],
+        }
+    }
+
+    /// Of drives and of bodies that move by themselves, island after island.
+    pub fn work(&self) -> Work {
+        self.solution.work[..self.count].iter().fold(Work::default(), |sum, work| sum + *work)
+    }
+
+    /// What came of them.
+    pub fn solution(&self) -> &Solution {
+        &self.solution
+    }
+
+    /// Finds the islands and takes the particle groups into them for the length of the step.
+    pub fn find(&mut self, view: &View<'_>, groups: &mut Arena<ParticleGroup>) {
+        self.number(view, groups.slot_count());
+        self.join_touching_and_held();
+        let first_group = self.active.len() as u32;
+        self.neighbors.resize(groups.slot_count(), Neighbors::default());
+        for (index, group) in groups.iter() {
+            self.neighbors[index as usize].find(group, view);
+            for i in 0..self.neighbors[index as usize].bodies.len() {
+                let body = self.neighbors[index as usize].bodies[i];
+                if let Some(place) = self.place(body) {
+                    self.join(first_group + index, place);
+                }
+            }
+        }
+        self.join_attracted(view, groups);
+        self.collect();
+        for (index, _) in groups.iter() {
+            let island = self.island_of(first_group + index);
+            self.groups.push(island, index);
+        }
+        for lists in [&mut self.bodies, &mut self.joints, &mut self.contacts, &mut self.groups] {
+            lists.sort(self.count, self.parent.len());
+        }
+        self.flight.clear();
+        self.strands.clear();
+        self.flown.clear();
+        self.flown.reserve(self.parent.len());
+        self.flown.resize(self.count, false);
+        for (_, group) in groups.iter_mut() {
+            group.begin_step();
+        }
+        self.taken.extend(self.groups.numbers.iter().map(|&index| TakenGroup {
+            index,
+            group: core::mem::take(groups.at_mut(index)),
+            near: core::mem::take(&mut self.neighbors[index as usize]),
+        }));
+    }
+
+    /// Lists what is active: bodies get the numbers by which they and the groups are joined, in order of their indices.
+    fn number(&mut self, view: &View<'_>, groups: usize) {
+        let View { bodies, activity, .. } = view;
+        for body in self.active.drain(..) {
+            self.places[body as usize] = NONE;
+        }
+        self.active.extend(activity.active());
+        self.places.resize(bodies.slot_count(), NONE);
+        for (place, &body) in self.active.iter().enumerate() {
+            self.places[body as usize] = place as u32;
+        }
+        self.list_joints(view);
+        self.touching.clear();
+        self.is_border.clear();
+        self.is_border.resize(view.contacts.len(), false);
+        for (index, contact) in view.contacts.iter().enumerate().filter(|(_, contact)| contact.pushes()) {
+            let bodies = [contact.key.a, contact.key.b].map(|body| self.places[body as usize]);
+            self.touching.push(Tie { index: index as u32, bodies });
+            self.is_border[index] = bodies.contains(&NONE);
+        }
+        self.parent.clear();
+        self.parent.extend(0..(self.active.len() + groups) as u32);
+    }
+
+    /// Each joint is found by the later of its active bodies: where joints were made after their bodies, parents before
+    /// children, that is their order.
+    fn list_joints(&mut self, view: &View<'_>) {
+        self.holding.clear();
+        for (place, &body) in self.active.iter().enumerate() {
+            for &index in view.activity.joints_of.body(body) {
+                let joint = view.joints.at(index);
+                let bodies = [joint.a, joint.b].map(|body| self.places[body as usize]);
+                let is_later = bodies.iter().all(|&other| other == NONE || other <= place as u32);
+                if is_later && joint.is_enabled() {
+                    self.holding.push(Tie { index, bodies });
+                }
+            }
+        }
+        if !self.holding.is_sorted_by_key(|tie| tie.index) {
+            self.holding.sort_unstable_by_key(|tie| tie.index);
+        }
+    }
+
+    /// Number of a body, if it is active.
+    fn place(&self, body: u32) -> Option<u32> {
+        Some(self.places[body as usize]).filter(|&place| place != NONE)
+    }
+
+    fn join_touching_and_held(&mut self) {
+        for at in 0..self.touching.len() {
+            self.join_ends(self.touching[at]);
+        }
+        for at in 0..self.holding.len() {
+            self.join_ends(self.holding[at]);
+        }
+    }
+
+    fn join_ends(&mut self, tie: Tie) {
+        let [a, b] = tie.bodies;
+        if a != NONE && b != NONE {
+            self.join(a, b);
+        }
+    }
+
+    /// All that a field lets attract each other.
+    fn join_attracted(&mut self, view: &View<'_>, groups: &Arena<ParticleGroup>) {
+        for (field, _) in view.fields.mutual() {
+            let mut first = None;
+            for place in 0..self.active.len() {
+                let body = view.bodies.at(self.active[place]);
+                if field.reaches(&Target::of_body(body)) {
+                    self.join(*first.get_or_insert(place as u32), place as u32);
+                }
+            }
+            for (index, group) in groups.iter() {
+                let mut particles = 0..group.positions().len();
+                if particles.any(|i| field.reaches(&Target::of_particle(group, i))) {
+                    let place = self.active.len() as u32 + index;
+                    self.join(*first.get_or_insert(place), place);
+                }
+            }
+        }
+    }
+
+    /// Gives the groups back.
+    pub fn release(&mut self, groups: &mut Arena<ParticleGroup>) {
+        for TakenGroup { index, group, near } in self.taken.drain(..) {
+            *groups.at_mut(index) = group;
+            self.neighbors[index as usize] = near;
+        }
+    }
+
+    fn root(&mut self, mut i: u32) -> u32 {
+        while self.parent[i as usize] != i {
+            self.parent[i as usize] = self.parent[self.parent[i as usize] as usize];
+            i = self.parent[i as usize];
+        }
+        i
+    }
+
+    /// The smaller root wins, so that the result does not depend on the order of joining.
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[u32::max(a, b) as usize] = u32::min(a, b);
+    }
+
+    /// Number of the island of a body or group, by its own number; a new one if it is the first of its island.
+    fn island_of(&mut self, place: u32) -> u32 {
+        let root = self.root(place) as usize;
+        if self.island_of_root[root] == NONE {
+            self.island_of_root[root] = self.count as u32;
+            self.count += 1;
+        }
+        self.island_of_root[root]
+    }
+
+    fn collect(&mut self) {
+        self.count = 0;
+        for lists in [&mut self.bodies, &mut self.joints, &mut self.contacts, &mut self.groups] {
+            lists.clear();
+        }
+        self.island_of_root.clear();
+        self.island_of_root.resize(self.parent.len(), NONE);
+        for place in 0..self.active.len() {
+            let island = self.island_of(place as u32);
+            self.bodies.push(island, self.active[place]);
+        }
+        for i in 0..self.holding.len() {
+            let tie = self.holding[i];
+            if let Some(place) = tie.either() {
+                let island = self.island_of(place);
+                self.joints.push(island, tie.index);
+            }
+        }
+        for i in 0..self.touching.len() {
+            let tie = self.touching[i];
+            if let Some(place) = tie.either() {
+                let island = self.island_of(place);
+                self.contacts.push(island, tie.index);
+            }
+        }
+    }
+
+    /// `color`: contacts between moving bodies first, those with fixed ones last, each by key. With one scalar lane a
+    /// colour is no more than this order.
+    pub fn color(&mut self) {
+        for island in 0..self.count {
+            let list = self.contacts.of_mut(island);
+            let mut kept = 0;
+            self.border.clear();
+            for at in 0..list.len() {
+                let index = list[at];
+                if self.is_border[index as usize] {
+                    self.border.push(index);
+                } else {
+                    list[kept] = index;
+                    kept += 1;
+                }
+            }
+            list[kept..].copy_from_slice(&self.border);
+        }
+    }
+
+    /// `flight`: takes bodies that nothing touches or holds through the step, so that [`run`](Self::run) need not.
+    pub fn fly(&mut self, view: &View<'_>, context: &StepContext<'_>) {
+        let mut flight = core::mem::take(&mut self.flight);
+        for i in 0..self.count {
+            let island = self.at(i);
+            if flies(&island, view) {
+                flight.add(island.bodies[0], view);
+                self.flown[i] = true;
+            }
+        }
+        flight.run(view, context);
+        self.flight = flight;
+        self.run_strands(view, context, |_| true);
+        for strand in self.strands.solved() {
+            self.flown[strand.island] = true;
+        }
+    }
+
+    /// After a step in lockstep: strands that no object has disturbed go through it as they would without objects.
+    pub fn fly_undisturbed(&mut self, view: &View<'_>, context: &StepContext<'_>) {
+        let own = core::mem::take(&mut self.own);
+        self.run_strands(view, context, |island| !own[island].solver.is_disturbed());
+        self.own = own;
+        let mut solution = core::mem::take(&mut self.solution);
+        self.take_strands(&mut solution);
+        self.solution = solution;
+    }
+
+    fn run_strands(&mut self, view: &View<'_>, context: &StepContext<'_>, takes: impl Fn(usize) -> bool) {
+        let mut strands = core::mem::take(&mut self.strands);
+        for i in (0..self.count).filter(|&i| takes(i)) {
+            strands.add(i, &self.at(i), view);
+        }
+        strands.run(view, context);
+        self.strands = strands;
+    }
+
+    /// Calls `work` once for each island that is not flown, on `runner`'s threads: all that there is to do for it in this step.
+    pub fn run(&mut self, runner: &dyn TaskRunner, work: impl Fn(&mut Task<'_>) + Sync) {
+        let mut idle = core::mem::take(&mut self.idle);
+        self.run_in(Workspaces::Idle(&mut idle), runner, work);
+        self.idle = idle;
+    }
+
+    /// Likewise for a part of it: each island finds its workspace as the part before left it.
+    pub fn run_part(&mut self, runner: &dyn TaskRunner, work: impl Fn(&mut Task<'_>) + Sync) {
+        let mut own = core::mem::take(&mut self.own);
+        if own.len() < self.count {
+            own.resize_with(self.count, Workspace::default);
+        }
+        self.run_in(Workspaces::Own(&mut own), runner, work);
+        self.own = own;
+    }
+
+    fn run_in(
+        &mut self,
+        workspaces: Workspaces<'_>,
+        runner: &dyn TaskRunner,
+        work: impl Fn(&mut Task<'_>) + Sync,
+    ) {
+        let mut solution = core::mem::take(&mut self.solution);
+        let mut taken = core::mem::take(&mut self.taken);
+        solution.resize(
+            self.count,
+            self.bodies.numbers.len(),
+            self.joints.numbers.len(),
+            self.contacts.numbers.len(),
+        );
+        let mut flown = self.flight.solved();
+        for i in (0..self.count).filter(|&i| self.flown[i] && self.joints.range(i).is_empty()) {
+            solution.work[i] = Work::default();
+            let solved = &mut solution.bodies[self.bodies.range(i).start];
+            *solved = flown.next().unwrap_or(*solved);
+        }
+        self.take_strands(&mut solution);
+        let left = self.flown.iter().filter(|is_flown| !**is_flown).count();
+        Queue::new(self.iter(), &mut taken, &mut solution, workspaces).run(runner, left, work);
+        (self.solution, self.taken) = (solution, taken);
+    }
+
+    /// Writes down what has come of the strands.
+    fn take_strands(&self, solution: &mut Solution) {
+        for strand in self.strands.solved() {
+            solution.work[strand.island] = Work::default();
+            let (bodies, joints) = (self.bodies.range(strand.island), self.joints.range(strand.island));
+            for (solved, body) in solution.bodies[bodies].iter_mut().zip(strand.bodies()) {
+                *solved = body;
+            }
+            for (solved, joint) in solution.joints[joints].iter_mut().zip(strand.joints()) {
+                *solved = joint;
+            }
+        }
+    }
+
+    /// Between two parts: the workspaces in the order of islands, and the particle groups.
+    pub fn halted(&mut self) -> (&mut [Workspace], &mut [TakenGroup]) {
+        (&mut self.own[..self.count], &mut self.taken)
+    }
+}
+
+/// Ascending lists of numbers, one for each island, one after the other in memory.
+#[derive(Clone, Debug, Default)]
+struct Lists {
+    /// Island and number, as they come.
+    pairs: Vec<(u32, u32)>,
+    numbers: Vec<u32>,
+    /// Where the list of each island ends.
+    ends: Vec<usize>,
+}
+
+impl Lists {
+    fn clear(&mut self) {
+        self.pairs.clear();
+    }
+
+    fn push(&mut self, island: u32, number: u32) {
+        self.pairs.push((island, number));
+    }
+
+    /// Makes the lists of what was pushed, each in the order in which it came: a counting sort. Makes room for the `most`
+    /// islands that there can be.
+    fn sort(&mut self, islands: usize, most: usize) {
+        self.ends.clear();
+        self.ends.reserve(most);
+        self.ends.resize(islands, 0);
+        for &(island, _) in &self.pairs {
+            self.ends[island as usize] += 1;
+        }
+        let mut start = 0;
+        for end in &mut self.ends {
+            // Where the list starts, until it is filled.
+            start += core::mem::replace(end, start);
+        }
+        self.numbers.resize(self.pairs.len(), 0);
+        for &(island, number) in &self.pairs {
+            let end = &mut self.ends[island as usize];
+            self.numbers[*end] = number;
+            *end += 1;
+        }
+    }
+
+    fn range(&self, island: usize) -> core::ops::Range<usize> {
+        let start = if island == 0 { 0 } else { self.ends[island - 1] };
+        start..self.ends[island]
+    }
+
+    fn of(&self, island: usize) -> &[u32] {
+        &self.numbers[self.range(island)]
+    }
+
+    fn of_mut(&mut self, island: usize) -> &mut [u32] {
+        let range = self.range(island);
+        &mut self.numbers[range]
+    }
+}

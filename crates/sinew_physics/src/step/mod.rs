@@ -1,0 +1,58 @@
+//! One step, in order. `docs/step.md` has a heading for each stage.
+
+pub(crate) mod collide;
+pub(crate) mod continuous;
+pub(crate) mod finalize;
+pub(crate) mod islands;
+pub(crate) mod pairs;
+pub(crate) mod phase;
+pub(crate) mod project;
+pub(crate) mod sensors;
+pub(crate) mod sleep;
+pub(crate) mod store;
+pub(crate) mod tasks;
+pub(crate) mod touch;
+
+use crate::context::StepContext;
+use crate::field::Fields;
+use crate::mover;
+use crate::object::lockstep;
+use crate::solver::{Pace, View};
+use crate::stage::{Stage, zone};
+use crate::world::World;
+
+/// Advances the world by one step.
+pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
+    let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
+    let World { def, bodies, joints, contacts, groups, objects, .. } = world;
+    let World { events, broad, parts, activity, islands, parted, sleepers, meetings, .. } = world;
+    let fields = Fields::new(&world.fields, &world.functions, def, world.steps).among(groups);
+
+    stage(Stage::Pairs, &mut || {
+        activity.wake_struck(bodies, groups, &broad.proxies, def);
+        broad.update(bodies, parted.filter(joints), meetings, contacts, activity, context.dt);
+    });
+    stage(Stage::Collide, &mut || collide::collide(bodies, broad, contacts, parts, context));
+    stage(Stage::Touch, &mut || touch::touch(bodies, joints, contacts, activity, &fields, meetings, events));
+    let (proxies, modifiers, pace) =
+        (&broad.proxies, &meetings.modifiers, Pace::new(context, objects.grading()));
+    let view = View { bodies, activity, proxies, joints, contacts, modifiers, def, fields, pace };
+    stage(Stage::Islands, &mut || islands.find(&view, groups));
+    stage(Stage::Color, &mut || islands.color());
+    if objects.is_empty() {
+        stage(Stage::Flight, &mut || islands.fly(&view, context));
+        islands.run(context.runner, |task| task.solve(&view, context));
+    } else {
+        lockstep(objects, islands, &view, context);
+        objects.rouse(bodies, activity);
+    }
+    stage(Stage::Store, &mut || store::store(islands, joints, parted, contacts, groups, events, context));
+    stage(Stage::Finalize, &mut || finalize::finalize(islands, bodies, activity, events, context));
+    let filter = parted.filter(joints);
+    stage(Stage::Continuous, &mut || {
+        continuous::continuous(islands, bodies, activity, broad, filter, context)
+    });
+    stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, activity, &fields, sleepers, def));
+    stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, def.hit_speed, events));
+    stage(Stage::Movers, &mut || mover::movers(world));
+}

@@ -1,0 +1,57 @@
+//! The stages that an island goes through by itself, by phases.
+
+use crate::context::StepContext;
+use crate::solver::View;
+use crate::stage::{Stage, zone};
+use crate::step::tasks::{Task, Workspace};
+
+/// A part of a step that an island does by itself. Where there are objects they act between two of them, and so all
+/// islands do the same one at a time; else a task does one after the other without barriers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Phase {
+    Prepare,
+    /// The substep of that number until everything has moved.
+    Move(u32),
+    /// The rest of it.
+    Relax(u32),
+    Store,
+}
+
+impl Phase {
+    /// Those of a step, in order.
+    pub fn of_step(substeps: u32) -> impl Iterator<Item = Self> {
+        core::iter::once(Self::Prepare)
+            .chain(Self::of_substeps(substeps))
+            .chain(core::iter::once(Self::Store))
+    }
+
+    /// Those of an island that takes so many substeps, in order, after [`Prepare`](Self::Prepare) and before [`Store`](Self::Store).
+    pub fn of_substeps(substeps: u32) -> impl Iterator<Item = Self> {
+        (0..substeps).flat_map(|substep| [Self::Move(substep), Self::Relax(substep)])
+    }
+}
+
+/// A part of an island's step, which goes on where the part before ended.
+pub(crate) fn solve(phase: Phase, task: &mut Task<'_>, view: &View<'_>, context: &StepContext<'_>) {
+    let stage = |stage: Stage, work: &mut dyn FnMut()| zone(context.profiler, stage, work);
+    let Task { island, groups, solution, workspace: Workspace { solver, surroundings }, .. } = task;
+    match phase {
+        Phase::Prepare => stage(Stage::Prepare, &mut || {
+            solver.prepare(island, view);
+            surroundings.make_room(island);
+        }),
+        Phase::Move(substep) => {
+            stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity(view, groups));
+            stage(Stage::WarmStart, &mut || solver.warm_start());
+            stage(Stage::Solve, &mut || solver.solve());
+            stage(Stage::IntegratePosition, &mut || solver.integrate_position(view));
+            stage(Stage::Project, &mut || surroundings.project(groups, solver, view, substep));
+        }
+        Phase::Relax(_) => {
+            stage(Stage::Relax, &mut || solver.relax(view));
+            stage(Stage::Restitution, &mut || solver.restitution());
+            solver.drop_fields(view);
+        }
+        Phase::Store => stage(Stage::Store, &mut || solver.store(solution, context.profiler)),
+    }
+}

@@ -1,0 +1,200 @@
+//! `project`: the particle groups of an island, after its bodies have moved and before their contacts are relaxed.
+
+use crate::body::Velocity;
+use crate::body::def::BodyKind;
+use crate::island::Island;
+use crate::particles::{Anchor, AttachmentTarget, Obstacle, ObstacleBody};
+use crate::solver::groups::TakenGroup;
+use crate::solver::{IslandSolver, View};
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
+use sinew_math::{Sym3, Transform, Vec3};
+
+/// What a particle group sees of bodies.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Surroundings {
+    obstacles: Vec<Obstacle>,
+    anchors: Vec<Anchor>,
+    bodies: Vec<ObstacleBody>,
+    seen: Vec<Seen>,
+    /// Where the island's moving bodies were when the substep began.
+    starts: Vec<Transform>,
+    /// Impulses on the bodies of the island, by local index.
+    impulses: Vec<Vec6>,
+}
+
+/// A body as particles see it: where it is now, and where to put what they do to it.
+#[derive(Clone, Debug)]
+struct Seen {
+    /// When the substep began.
+    start: Transform,
+    pose: Transform,
+    velocity: Vec6,
+    /// Velocity that the forces of the coming substep will add.
+    coming: Vec3,
+    inverse_mass: f32,
+    inverse_inertia: Sym3,
+    /// Local index in the island, if it moves.
+    local: Option<usize>,
+}
+
+impl Seen {
+    fn new(index: u32, starts: &[Transform], solver: &IslandSolver, view: &View<'_>, substep: u32) -> Self {
+        if let Some(local) = solver.moving_bodies().iter().position(|body| body.index == index) {
+            let body = &solver.moving_bodies()[local];
+            return Self {
+                start: starts[local],
+                pose: body.pose,
+                velocity: solver.velocities[local],
+                coming: body.force * (view.pace.h / body.mass),
+                inverse_mass: 1.0 / body.mass,
+                inverse_inertia: body.inverse_inertia,
+                local: Some(local),
+            };
+        }
+        let body = view.bodies.at(index);
+        let velocity = match body.kind {
+            BodyKind::Kinematic => body.velocity,
+            BodyKind::Static | BodyKind::Dynamic => Velocity::default(),
+        };
+        // The world moves kinematic bodies when the step is done.
+        let mut start = body.world_from_principal;
+        for _ in 0..substep {
+            start = moved(&start, &velocity, view.pace.h);
+        }
+        Self {
+            start,
+            pose: moved(&start, &velocity, view.pace.h),
+            velocity: join(velocity.linear, velocity.angular),
+            coming: Vec3::ZERO,
+            inverse_mass: 0.0,
+            inverse_inertia: Sym3::ZERO,
+            local: None,
+        }
+    }
+}
+
+fn moved(pose: &Transform, velocity: &Velocity, h: f32) -> Transform {
+    if *velocity == Velocity::default() {
+        return *pose;
+    }
+    Transform::new(pose.translation + velocity.linear * h, pose.rotation.integrate(velocity.angular, h))
+}
+
+impl Surroundings {
+    /// What only islands with particles need, also for one that has none: memory goes on to the next, which may have some.
+    pub fn make_room(&mut self, island: &Island<'_>) {
+        self.impulses.clear();
+        self.impulses.reserve(island.bodies.len());
+        self.starts.clear();
+        self.starts.reserve(island.bodies.len());
+    }
+
+    /// Moves the groups of an island by one substep. Bodies get what springs and contacts push them with through their
+    /// trees.
+    pub fn project(
+        &mut self,
+        groups: &mut [TakenGroup],
+        solver: &mut IslandSolver,
+        view: &View<'_>,
+        substep: u32,
+    ) {
+        if groups.is_empty() {
+            return;
+        }
+        self.starts.clear();
+        self.starts.extend(solver.moving_bodies().iter().zip(&solver.velocities).map(|(body, v)| {
+            let back = Velocity { linear: -linear(v), angular: -angular(v) };
+            moved(&body.pose, &back, view.pace.h)
+        }));
+        for taken in groups {
+            self.seen.clear();
+            let see = |&index: &u32| Seen::new(index, &self.starts, solver, view, substep);
+            self.seen.extend(taken.near.bodies.iter().map(see));
+            self.place(taken, view);
+            taken.group.substep(
+                view.pace.h,
+                view.def.gravity,
+                &self.anchors,
+                &self.obstacles,
+                &mut self.bodies,
+            );
+            self.push_bodies(taken, solver);
+        }
+    }
+
+    /// Obstacles and anchors of a group at the present poses.
+    fn place(&mut self, TakenGroup { group, near, .. }: &TakenGroup, view: &View<'_>) {
+        let seen = &self.seen;
+        self.bodies.clear();
+        self.bodies.extend(seen.iter().map(|body| ObstacleBody {
+            center: body.pose.translation,
+            linear_velocity: linear(&body.velocity),
+            angular_velocity: angular(&body.velocity),
+            inverse_mass: body.inverse_mass,
+            inverse_inertia: body.inverse_inertia,
+        }));
+        self.obstacles.clear();
+        for &(place, shape) in &near.shapes {
+            let body = view.bodies.at(near.bodies[place as usize]);
+            let s = &body.shapes[shape as usize];
+            self.obstacles.push(Obstacle {
+                shape: s.shape.clone(),
+                previous: seen[place as usize].start * s.principal_from_shape,
+                world_from_shape: seen[place as usize].pose * s.principal_from_shape,
+                body: place,
+                material: body.surface(shape as usize).material,
+            });
+        }
+        self.anchors.clear();
+        for attachment in group.attachments() {
+            self.anchors.push(match attachment.target {
+                AttachmentTarget::World(position) => Anchor { position, ..Anchor::default() },
+                AttachmentTarget::Body { body, point } => {
+                    let place = near.bodies.binary_search(&body.index).unwrap_or(0);
+                    let principal_from_body = view.bodies.at(body.index).principal_from_body;
+                    anchor(&seen[place], principal_from_body.point(point), near.holds[place])
+                }
+            });
+        }
+    }
+
+    /// Hands the impulses of a group to the island's bodies.
+    fn push_bodies(&mut self, TakenGroup { group, near, .. }: &TakenGroup, solver: &mut IslandSolver) {
+        let seen = &self.seen;
+        self.impulses.clear();
+        self.impulses.resize(solver.moving_bodies().len(), ZERO6);
+        let mut push = |place: usize, point: Vec3, impulse: Vec3| {
+            if let Some(local) = seen[place].local {
+                let arm = point - seen[place].pose.translation;
+                add_scaled(&mut self.impulses[local], &join(impulse, arm.cross(impulse)), 1.0);
+            }
+        };
+        for hit in group.body_impulses() {
+            push(hit.body as usize, hit.point, hit.impulse);
+        }
+        for (k, attachment) in group.attachments().iter().enumerate() {
+            if let AttachmentTarget::Body { body, .. } = attachment.target {
+                let place = near.bodies.binary_search(&body.index).unwrap_or(0);
+                push(place, self.anchors[k].position, group.attachment_impulses()[k]);
+            }
+        }
+        solver.apply_impulses(&self.impulses);
+    }
+}
+
+/// A point of a body (principal frame) as one of so many attachments to it sees it: each has its share of the inertia, so
+/// that what they give together is not too much.
+fn anchor(body: &Seen, point: Vec3, among: u32) -> Anchor {
+    let position = body.pose.point(point);
+    let arm = position - body.pose.translation;
+    // Velocity gained at the point per impulse there: 1/m − [r]× I⁻¹ [r]×.
+    let gained = |e: Vec3| e * body.inverse_mass + (body.inverse_inertia * arm.cross(e)).cross(arm);
+    let columns = sinew_math::Mat3::from_cols(gained(Vec3::X), gained(Vec3::Y), gained(Vec3::Z));
+    let yields = Sym3::from_mat3(&columns) * among as f32;
+    Anchor {
+        position,
+        velocity: linear(&body.velocity) + angular(&body.velocity).cross(arm),
+        gained: body.coming,
+        inverse_mass: if body.local.is_some() { yields } else { Sym3::ZERO },
+    }
+}

@@ -1,0 +1,36 @@
+//! `sensors`: who is inside whom, and who was hit, as events.
+
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::contact::events::Events;
+use crate::contact::meetings::{Meetings, Told};
+use crate::contact::{Contact, Effect, pairs_of};
+
+/// Compares the sensor pairs with those of the step before, and tells of hits faster than `hit_speed` (m/s). All that the
+/// user changed since has been looked at now.
+pub(crate) fn sensors(
+    bodies: &mut Arena<Body>,
+    contacts: &mut [Contact],
+    meetings: &mut Meetings,
+    hit_speed: f32,
+    events: &mut Events,
+) {
+    let sensed = &mut meetings.sensed;
+    sensed.start(contacts.len());
+    for pair in pairs_of(contacts) {
+        let was = pair.iter().any(|contact| contact.sensed);
+        let is = pair[0].effect == Effect::Sense && pair.iter().any(Contact::overlaps);
+        if !was && !is {
+            continue;
+        }
+        sensed.note(pair[0].key, was, is);
+        pair.iter_mut().for_each(|contact| contact.sensed = is);
+    }
+    sensed.tell(
+        bodies,
+        Told { bodies: &mut events.sensor_begin, shapes: &mut events.sensor_shapes_begin },
+        Told { bodies: &mut events.sensor_end, shapes: &mut events.sensor_shapes_end },
+    );
+    meetings.hits.tell(bodies, contacts, hit_speed, &mut events.hits);
+    meetings.settle(bodies);
+}

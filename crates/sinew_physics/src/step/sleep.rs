@@ -1,0 +1,86 @@
+//! `sleep`: an island in which every body has stayed in its place for a while stops being simulated. It is displacement
+//! that counts: a body held between others may tremble and still sleep, one that creeps on may not.
+
+use crate::activity::Activity;
+use crate::arena::Arena;
+use crate::body::def::{SleepThresholds, Sleeping, WorldDef};
+use crate::body::{Body, Rest};
+use crate::field::Fields;
+use crate::step::islands::Islands;
+
+/// What creeps is calm wherever it gets to while it is slower than this many times the distance in the time, and than the angle
+/// in the time: limp limbs sag for seconds.
+const CREEP: f32 = 2.0;
+/// Speed of the way in a step from which on a body without velocity is being pushed out of another, m/s: half of what bodies with joints are pushed
+/// out with.
+const PUSHED: f32 = 0.0275;
+/// What hangs on particles swings about its place, and must come to rest before it may sleep: below both of these, m/s and
+/// rad/s.
+const SLOW_LINEAR: f32 = 0.02;
+const SLOW_ANGULAR: f32 = 0.05;
+
+/// Counts the calm time of every body and puts islands to sleep. `sleepers` numbers them.
+pub(crate) fn sleep(
+    islands: &Islands,
+    bodies: &mut Arena<Body>,
+    activity: &mut Activity,
+    fields: &Fields<'_>,
+    sleepers: &mut u32,
+    def: &WorldDef,
+) {
+    let thresholds = &def.sleep_thresholds;
+    for island in islands.iter() {
+        let mut least = f32::INFINITY;
+        for &index in island.bodies {
+            let body = bodies.at_mut(index);
+            let creeps_little = is_slower(
+                body,
+                CREEP * thresholds.distance / thresholds.time,
+                thresholds.angle / thresholds.time,
+            ) && !is_pushed_out(body, def.dt());
+            if creeps_little {
+                body.place = body.world_from_principal;
+            }
+            let calm = body.sleeping == Sleeping::On
+                && is_slower(body, thresholds.speed, thresholds.spin)
+                && (creeps_little || stays(body, thresholds))
+                && (island.groups.is_empty() || is_slower(body, SLOW_LINEAR, SLOW_ANGULAR))
+                && !fields.keep_awake(body);
+            least = sinew_math::min(least, count(body, calm, def.dt()));
+        }
+        let rests = least >= thresholds.time && !island.bodies.is_empty();
+        if rests && def.sleeping == Sleeping::On {
+            activity.sleep(bodies, island.bodies, *sleepers);
+            *sleepers = sleepers.wrapping_add(1);
+        }
+    }
+}
+
+/// For how long a body has been calm, seconds; if it is not, less than any time.
+fn count(body: &mut Body, calm: bool, dt: f32) -> f32 {
+    match &mut body.rest {
+        Rest::Awake { calm: time } if calm => {
+            *time += dt;
+            *time
+        }
+        _ => {
+            body.disturb();
+            f32::NEG_INFINITY
+        }
+    }
+}
+
+fn stays(body: &Body, thresholds: &SleepThresholds) -> bool {
+    let (was, is) = (body.place, body.world_from_principal);
+    (is.translation - was.translation).length() < thresholds.distance
+        && is.rotation.angle_to(was.rotation) < thresholds.angle
+}
+
+/// True if a slow body went on all the same in this step.
+fn is_pushed_out(body: &Body, dt: f32) -> bool {
+    (body.world_from_principal.translation - body.previous.translation).length() > PUSHED * dt
+}
+
+fn is_slower(body: &Body, speed: f32, spin: f32) -> bool {
+    body.velocity.linear.length() < speed && body.velocity.angular.length() < spin
+}

@@ -1,0 +1,115 @@
+//! Islands as work for threads.
+
+use crate::context::StepContext;
+use crate::island::Island;
+use crate::runner::TaskRunner;
+use crate::solver::groups::TakenGroup;
+use crate::solver::{IslandSolution, IslandSolver, Solution, View, split_off};
+use crate::step::phase::{Phase, solve};
+use crate::step::project::Surroundings;
+use std::sync::{Mutex, PoisonError};
+
+/// Memory in which islands are solved, one after the other: it comes to be as large as the largest needs it, and stays warm
+/// in the cache. Nothing in it lasts from one island to the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Workspace {
+    pub solver: IslandSolver,
+    pub surroundings: Surroundings,
+}
+
+/// Where islands are solved.
+pub(crate) enum Workspaces<'a> {
+    /// Wherever there is room: nothing is to last.
+    Idle(&'a mut Vec<Workspace>),
+    /// Each in its own, where it goes on with what is there, in the order of islands.
+    Own(&'a mut [Workspace]),
+}
+
+impl Workspaces<'_> {
+    fn take(&mut self, island: usize) -> Workspace {
+        match self {
+            Self::Idle(idle) => idle.pop().unwrap_or_default(),
+            Self::Own(own) => core::mem::take(&mut own[island]),
+        }
+    }
+
+    fn put_back(&mut self, island: usize, workspace: Workspace) {
+        match self {
+            Self::Idle(idle) => idle.push(workspace),
+            Self::Own(own) => own[island] = workspace,
+        }
+    }
+}
+
+/// The unit of work: an island, and all that its substeps write.
+pub(crate) struct Task<'a> {
+    /// Which of the islands.
+    number: usize,
+    pub island: Island<'a>,
+    pub groups: &'a mut [TakenGroup],
+    pub solution: IslandSolution<'a>,
+    pub workspace: Workspace,
+}
+
+impl Task<'_> {
+    /// All of the island's step, in the substeps that it takes.
+    pub fn solve(&mut self, view: &View<'_>, context: &StepContext<'_>) {
+        solve(Phase::Prepare, self, view, context);
+        let substeps = self.workspace.solver.substeps();
+        Phase::of_substeps(substeps).for_each(|phase| solve(phase, self, view, context));
+        solve(Phase::Store, self, view, context);
+    }
+}
+
+/// Islands that are still to be solved, with the room for what will come of them.
+pub(crate) struct Queue<'a, I> {
+    islands: core::iter::Enumerate<I>,
+    groups: &'a mut [TakenGroup],
+    solution: IslandSolution<'a>,
+    workspaces: Workspaces<'a>,
+}
+
+impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
+    /// `groups` and `solution` hold what belongs to the islands in their order.
+    pub fn new(
+        islands: I,
+        groups: &'a mut [TakenGroup],
+        solution: &'a mut Solution,
+        workspaces: Workspaces<'a>,
+    ) -> Self {
+        Self { islands: islands.enumerate(), groups, solution: solution.as_mut(), workspaces }
+    }
+
+    /// Calls `work` once for each of the `count` islands, spread over `runner`'s threads.
+    ///
+    /// DETERMINISM: which thread takes which island, and in which workspace, varies, so `work` must depend on neither.
+    pub fn run(self, runner: &dyn TaskRunner, count: usize, work: impl Fn(&mut Task<'_>) + Sync) {
+        let queue = Mutex::new(self);
+        let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
+        let work_on_next = || {
+            let next = lock().next();
+            let Some(mut task) = next else { return false };
+            work(&mut task);
+            lock().workspaces.put_back(task.number, task.workspace);
+            true
+        };
+        runner.run(count, &|| {
+            work_on_next();
+        });
+        // A runner that made too few calls must not lose work.
+        while work_on_next() {}
+    }
+
+    /// The next of them that has not flown.
+    fn next(&mut self) -> Option<Task<'a>> {
+        loop {
+            let (number, island) = self.islands.next()?;
+            let solution = self.solution.split_off(&island);
+            if island.is_flown {
+                continue;
+            }
+            let groups = split_off(&mut self.groups, island.groups.len());
+            return Some(Task { number, island, groups, solution, workspace: self.workspaces.take(number) });
+        }
+    }
+}

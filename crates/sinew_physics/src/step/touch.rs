@@ -1,0 +1,133 @@
+//! `touch`: who began and stopped touching, and who wakes.
+
+use crate::activity::Activity;
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::body::def::BodyKind;
+use crate::collide::ManifoldPoint;
+use crate::contact::events::Events;
+use crate::contact::meetings::{Meetings, Told};
+use crate::contact::{Contact, ContactMemory, Effect, pairs_of, slop};
+use crate::field::Fields;
+use crate::joint::Joint;
+use crate::step::collide::smallest_extent;
+use sinew_math::min;
+
+/// Gap within which two shapes that touched go on touching, as a share of their slop.
+const LINGER: f32 = 0.1;
+
+/// `touch`: what contacts do, events, and waking of what an awake body touches or attracts, or a moving kinematic one holds.
+/// What wakes comes with its contacts.
+pub(crate) fn touch(
+    bodies: &mut Arena<Body>,
+    joints: &Arena<Joint>,
+    contacts: &mut Vec<Contact>,
+    activity: &mut Activity,
+    fields: &Fields<'_>,
+    meetings: &mut Meetings,
+    events: &mut Events,
+) {
+    let touching = &mut meetings.touching;
+    touching.start(contacts.len());
+    for pair in pairs_of(contacts) {
+        agree(pair);
+        let was = pair[0].touching;
+        let is = pair[0].effect != Effect::Sense && touches(bodies, pair);
+        touching.note(pair[0].key, was, is);
+        pair.iter_mut().for_each(|contact| contact.touching = is);
+        if pair.iter().any(Contact::pushes) {
+            wake_touched(bodies, activity, pair);
+        } else {
+            pair.iter_mut().for_each(|contact| contact.memory = ContactMemory::default());
+        }
+    }
+    touching.tell(
+        bodies,
+        Told { bodies: &mut events.begin, shapes: &mut events.shapes_begin },
+        Told { bodies: &mut events.end, shapes: &mut events.shapes_end },
+    );
+    wake_held(bodies, joints, activity);
+    while let Some(attracted) = fields.next_to_wake(bodies, activity) {
+        activity.wake(bodies, attracted);
+    }
+    activity.return_contacts(contacts);
+    meetings.modifiers.change(bodies, contacts, fields.step);
+}
+
+fn wake_touched(bodies: &mut Arena<Body>, activity: &mut Activity, pair: &[Contact]) {
+    let key = pair[0].key;
+    let is_settled = |index: u32| {
+        let body = bodies.at(index);
+        body.kind != BodyKind::Kinematic && body.is_awake()
+    };
+    if is_settled(key.a) && is_settled(key.b) {
+        return;
+    }
+    for (mover, touched) in [(key.a, key.b), (key.b, key.a)] {
+        let body = bodies.at(mover);
+        match body.kind {
+            BodyKind::Dynamic if body.is_active() => activity.wake(bodies, touched),
+            BodyKind::Kinematic if !body.velocity.is_zero() => activity.disturb(bodies, touched),
+            BodyKind::Static | BodyKind::Kinematic if body.stirred && is_deep(bodies, pair) => {
+                activity.wake(bodies, touched);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// True if two shapes lie deeper in each other than what rests does.
+fn is_deep(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
+    let key = pair[0].key;
+    let deep = -slop(smallest_extent(bodies.at(key.a), bodies.at(key.b), key));
+    points_of(pair).any(|point| point.separation < deep)
+}
+
+/// What joints hold to a kinematic body that moves.
+fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Activity) {
+    for at in 0..activity.kinematic().len() {
+        let mover = activity.kinematic()[at];
+        if bodies.at(mover).velocity.is_zero() {
+            continue;
+        }
+        for at in 0..activity.joints_of.body(mover).len() {
+            let joint = joints.at(activity.joints_of.body(mover)[at]);
+            if joint.is_enabled() {
+                activity.disturb(bodies, if joint.a == mover { joint.b } else { joint.a });
+            }
+        }
+    }
+}
+
+/// True if two shapes overlap, or pushed each other in the last step and are still near: what bears a load may do so from a
+/// thousandth of a millimetre away, and what bounced has met although it is gone by now. What touched goes on touching until
+/// there is a gap that is none by rounding.
+fn touches(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
+    let Contact { key, touching, .. } = pair[0];
+    let nearest = points_of(pair).fold(f32::INFINITY, |least, point| min(point.separation, least));
+    if nearest <= 0.0 || nearest < f32::INFINITY && pair.iter().any(|contact| contact.pushed) {
+        return true;
+    }
+    touching && nearest <= LINGER * slop(smallest_extent(bodies.at(key.a), bodies.at(key.b), key))
+}
+
+fn points_of(pair: &[Contact]) -> impl Iterator<Item = &ManifoldPoint> {
+    pair.iter().flat_map(|contact| contact.manifold.points())
+}
+
+/// All parts of a pair of shapes do the same: what touched a one-way shape goes on as it did, anything else passes if any
+/// part of it comes from another side.
+fn agree(pair: &mut [Contact]) {
+    if !pair[0].one_way || pair[0].effect == Effect::Sense {
+        return;
+    }
+    let passes = if pair.iter().any(|contact| contact.touching) {
+        pair.iter().any(|contact| contact.touching && contact.passes)
+    } else {
+        pair.iter().any(|contact| contact.effect == Effect::Pass)
+    };
+    for contact in pair {
+        contact.passes = passes;
+        contact.effect = if passes { Effect::Pass } else { Effect::Push };
+    }
+}

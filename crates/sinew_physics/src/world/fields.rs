@@ -1,0 +1,172 @@
+//! The fields of a world: made, changed, asked.
+
+use crate::body::def::BodyKind;
+use crate::body::force::Wrench;
+use crate::field::{
+    Attractor, FieldDef, FieldFunction, FieldKind, Fields, Load, MutualGravity, Region, Target, attractor,
+};
+use crate::id::{BodyId, FieldId, GroupId};
+use crate::world::World;
+use sinew_math::Vec3;
+
+impl World {
+    /// Adds a field; what it reaches wakes.
+    ///
+    /// # Panics
+    /// If [`FieldDef::check`] finds something wrong, or a user's function is not registered.
+    pub fn add_field(&mut self, def: &FieldDef) -> FieldId {
+        self.check_field(def);
+        self.keep_region(def);
+        self.wake_reached(def);
+        self.fields.insert(def.clone())
+    }
+
+    /// Gives a field another definition; what it reached and what it reaches now wakes.
+    ///
+    /// # Panics
+    /// If [`FieldDef::check`] finds something wrong, or a user's function is not registered.
+    #[track_caller]
+    pub fn set_field(&mut self, id: FieldId, def: &FieldDef) {
+        self.check_field(def);
+        self.keep_region(def);
+        let before = self.field(id).clone();
+        self.wake_reached(&before);
+        self.wake_reached(def);
+        *self.fields.expect_mut(id) = def.clone();
+    }
+
+    /// Takes a field out; what it reached wakes.
+    #[track_caller]
+    pub fn remove_field(&mut self, id: FieldId) {
+        let before = self.fields.take(id);
+        self.wake_reached(&before);
+    }
+
+    /// A field as it is now.
+    #[track_caller]
+    pub fn field(&self, id: FieldId) -> &FieldDef {
+        self.fields.expect(id)
+    }
+
+    /// All fields, by index.
+    pub fn field_ids(&self) -> impl Iterator<Item = FieldId> {
+        self.fields.ids()
+    }
+
+    /// True if the id names a field that is there.
+    pub fn contains_field(&self, id: FieldId) -> bool {
+        self.fields.get(id).is_some()
+    }
+
+    /// Registers a function for [`FieldKind::Custom`] under a number of the user's choice, in place of the one that had it.
+    ///
+    /// A snapshot holds the number and the parameters, not the code: before a snapshot is loaded into a world, the functions
+    /// that it names must be registered in it, else loading fails. Register the same function under the same number, or
+    /// what comes is another future.
+    pub fn register_field(&mut self, number: u32, function: FieldFunction) {
+        self.functions.set(number, function);
+    }
+
+    /// Force and torque about the centre of mass that a field has on a body as it is now, N and N·m, world axes; 0 on what
+    /// is not dynamic.
+    #[track_caller]
+    pub fn field_force(&self, id: FieldId, body: BodyId) -> Wrench {
+        let (field, it) = (self.field(id), self.expect(body));
+        if it.kind != BodyKind::Dynamic {
+            return Wrench::default();
+        }
+        if let FieldKind::Mutual(law) = &field.kind {
+            return Wrench { force: self.attraction_of_all(field, law, body), torque: Vec3::ZERO };
+        }
+        let mut load = Load::default();
+        field.act(&Target::of_body(it), &self.fields_now(), &mut load);
+        load.wrench
+    }
+
+    /// Force that a field has on a particle as it is now, N.
+    ///
+    /// # Panics
+    /// If there is no such particle.
+    #[track_caller]
+    pub fn field_force_on_particle(&self, id: FieldId, group: GroupId, particle: u32) -> Vec3 {
+        let field = self.field(id);
+        let target = Target::of_particle(self.particles(group), particle as usize);
+        if let FieldKind::Mutual(law) = &field.kind {
+            let own = attractor(field, &target);
+            return self.attractors(field).map(|other| law.force(&own, &other)).sum();
+        }
+        let mut load = Load::default();
+        field.act(&target, &self.fields_now(), &mut load);
+        load.wrench.force
+    }
+
+    /// Energy of all that is in a field that acts everywhere, J: uniform and point gravity, attraction, and what it took to
+    /// push water aside. Others have none: those that brake take it, and a user's function may have none. Nor has a field in a
+    /// region.
+    #[track_caller]
+    pub fn field_energy(&self, id: FieldId) -> f32 {
+        let field = self.field(id);
+        if let (FieldKind::Mutual(law), Region::Everywhere) = (&field.kind, &field.region) {
+            return self.energy_of_pairs(field, law);
+        }
+        self.targets().fold(0.0, |sum, target| sum + field.energy(&target, self.def.gravity))
+    }
+
+    fn energy_of_pairs(&self, field: &FieldDef, law: &MutualGravity) -> f32 {
+        let mut sum = 0.0;
+        for (i, a) in self.attractors(field).enumerate() {
+            for b in self.attractors(field).skip(i + 1) {
+                sum += law.energy(&a, &b);
+            }
+        }
+        sum
+    }
+
+    /// On `body` by all others. One at the very same place, the body itself among them, pulls nowhere.
+    fn attraction_of_all(&self, field: &FieldDef, law: &MutualGravity, body: BodyId) -> Vec3 {
+        let own = attractor(field, &Target::of_body(self.expect(body)));
+        self.attractors(field).map(|other| law.force(&own, &other)).sum()
+    }
+
+    fn attractors<'a>(&'a self, field: &'a FieldDef) -> impl Iterator<Item = Attractor> + 'a {
+        self.targets().map(|target| attractor(field, &target)).filter(|attractor| attractor.weight > 0.0)
+    }
+
+    /// All dynamic bodies and all particles.
+    fn targets(&self) -> impl Iterator<Item = Target<'_>> {
+        let bodies = self.bodies.iter().filter(|(_, body)| body.mass > 0.0 && !body.quarantined);
+        let particles = self
+            .groups
+            .iter()
+            .flat_map(|(_, group)| (0..group.positions().len()).map(move |i| Target::of_particle(group, i)));
+        bodies.map(|(_, body)| Target::of_body(body)).chain(particles)
+    }
+
+    fn fields_now(&self) -> Fields<'_> {
+        Fields::new(&self.fields, &self.functions, &self.def, self.steps)
+    }
+
+    fn check_field(&self, def: &FieldDef) {
+        if let Err(what) = def.check() {
+            panic!("{what}");
+        }
+        if let FieldKind::Custom { function, .. } = def.kind {
+            assert!(self.functions.has(function), "field function {function} is registered");
+        }
+    }
+
+    fn keep_region(&mut self, def: &FieldDef) {
+        if let Some(shape) = def.region.shape() {
+            self.library.keep(shape);
+        }
+    }
+
+    fn wake_reached(&mut self, def: &FieldDef) {
+        for index in 0..self.bodies.slot_count() as u32 {
+            let asleep = |body: &&crate::body::Body| !body.is_awake() && def.reaches(&Target::of_body(body));
+            if self.bodies.try_at(index).filter(asleep).is_some() {
+                self.wake_body(index);
+            }
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Forces and impulses of the user's.
+
+use crate::body::def::BodyKind;
+use crate::body::force::{ForceDef, ForceId, Wrench, finite_change};
+use crate::id::BodyId;
+use crate::world::World;
+use sinew_math::{Mat3, Sym3, Vec3, skew};
+
+impl World {
+    /// Impulse (N·s) at a world point: changes the velocity at once, `Δv = J/m`, `Δω = I⁻¹ ((p − c) × J)`. No effect on
+    /// static and kinematic bodies.
+    #[track_caller]
+    pub fn apply_impulse(&mut self, id: BodyId, impulse: Vec3, point: Vec3) {
+        assert!(impulse.is_finite() && point.is_finite(), "an impulse is finite");
+        self.wake_body(id.index);
+        let body = self.expect_mut(id);
+        let arm = point - body.center();
+        body.velocity.linear += finite_change(impulse, |impulse| impulse * body.inverse_mass());
+        body.velocity.angular +=
+            finite_change(impulse, |impulse| body.inverse_inertia_mul(arm.cross(impulse)));
+    }
+
+    /// Impulse (N·s) at the centre of mass: `Δv = J/m`, without spin.
+    #[track_caller]
+    pub fn apply_impulse_at_center(&mut self, id: BodyId, impulse: Vec3) {
+        self.apply_impulse(id, impulse, self.center_of_mass(id));
+    }
+
+    /// Angular impulse (N·m·s): `Δω = I⁻¹ L`.
+    #[track_caller]
+    pub fn apply_angular_impulse(&mut self, id: BodyId, impulse: Vec3) {
+        assert!(impulse.is_finite(), "an impulse is finite");
+        self.wake_body(id.index);
+        let body = self.expect_mut(id);
+        body.velocity.angular += finite_change(impulse, |impulse| body.inverse_inertia_mul(impulse));
+    }
+
+    /// Force (N) at a world point, constant over the next step and gone after it. The torque is that about the centre of
+    /// mass as it lies now.
+    #[track_caller]
+    pub fn apply_force(&mut self, id: BodyId, force: Vec3, point: Vec3) {
+        assert!(force.is_finite() && point.is_finite(), "a force is finite");
+        let torque = (point - self.center_of_mass(id)).cross(force);
+        self.apply_wrench(id, Wrench { force, torque });
+    }
+
+    /// Force (N) at the centre of mass for the next step.
+    #[track_caller]
+    pub fn apply_force_at_center(&mut self, id: BodyId, force: Vec3) {
+        assert!(force.is_finite(), "a force is finite");
+        self.apply_wrench(id, Wrench { force, torque: Vec3::ZERO });
+    }
+
+    /// Torque (N·m) for the next step.
+    #[track_caller]
+    pub fn apply_torque(&mut self, id: BodyId, torque: Vec3) {
+        assert!(torque.is_finite(), "a torque is finite");
+        self.apply_wrench(id, Wrench { force: Vec3::ZERO, torque });
+    }
+
+    fn apply_wrench(&mut self, id: BodyId, Wrench { force, torque }: Wrench) {
+        self.wake_body(id.index);
+        let body = self.expect_mut(id);
+        if body.kind == BodyKind::Dynamic {
+            body.force += force;
+            body.torque += torque;
+        }
+    }
+
+    /// Gives a body a force that lasts until it is changed or taken away; the body wakes. A body that stays where it is
+    /// all the same may sleep under it.
+    ///
+    /// # Panics
+    /// If a number is not finite.
+    #[track_caller]
+    pub fn add_force(&mut self, body: BodyId, def: &ForceDef) -> ForceId {
+        assert!(def.is_finite(), "a force is finite");
+        self.wake_body(body.index);
+        let forces = &mut self.expect_mut(body).forces;
+        let number = forces.next;
+        forces.next += 1;
+        forces.list.push((number, *def));
+        ForceId::new(body, number)
+    }
+
+    /// Changes a lasting force; the body wakes.
+    ///
+    /// # Panics
+    /// If a number is not finite, or the force is not there.
+    pub fn set_force(&mut self, id: ForceId, def: &ForceDef) {
+        assert!(def.is_finite(), "a force is finite");
+        self.wake_body(id.body().index);
+        let forces = &mut self.expect_mut(id.body()).forces;
+        let place = forces.place(id);
+        forces.list[place].1 = *def;
+    }
+
+    /// Takes a lasting force away; the body wakes.
+    ///
+    /// # Panics
+    /// If the force is not there.
+    pub fn remove_force(&mut self, id: ForceId) {
+        self.wake_body(id.body().index);
+        let forces = &mut self.expect_mut(id.body()).forces;
+        let place = forces.place(id);
+        forces.list.remove(place);
+    }
+
+    /// A lasting force as it is now.
+    ///
+    /// # Panics
+    /// If the force is not there.
+    pub fn force(&self, id: ForceId) -> ForceDef {
+        let forces = &self.expect(id.body()).forces;
+        forces.list[forces.place(id)].1
+    }
+
+    /// The lasting forces of a body, in the order in which they came.
+    #[track_caller]
+    pub fn forces_of(&self, body: BodyId) -> impl Iterator<Item = ForceId> {
+        self.expect(body).forces.list.iter().map(move |&(number, _)| ForceId::new(body, number))
+    }
+
+    /// A bullet of `mass` (kg) and `velocity` (m/s) strikes a body at a world point and lodges there: gives the impulse
+    /// (N·s) that it left in the body.
+    ///
+    /// The hit is perfectly inelastic: afterwards bullet and struck point move with one velocity. With `r` from the centre
+    /// of mass to the point and `u` the point's velocity before, the velocity that the pair gains against each other by a
+    /// unit impulse is `K = (1/m + 1/M) 1 − [r]× I⁻¹ [r]×`, and the impulse is
+    ///
+    /// ```text
+    /// J = K⁻¹ (velocity − u)        through the centre: J = m M / (m + M) (velocity − u)
+    /// ```
+    ///
+    /// (Mirtich, "Impulse-based Dynamic Simulation", 1996, §3.3, without rebound). It is less than `mass × velocity`: what
+    /// is missing is the momentum that the bullet keeps, since it flies on with the body. Body and bullet together have the
+    /// momentum that they had before, so a free block leaves at `m v / (m + M)`.
+    ///
+    /// **The bullet's mass does not join the body**: from then on the body weighs what it weighed. Where it should, count
+    /// the bullet by a body of its own, held by a fixed joint. Joints of the body spread the blow in the next step; they do
+    /// not make it heavier here. Nothing happens to static and kinematic bodies: the impulse given back is then what
+    /// stops the bullet.
+    ///
+    /// # Panics
+    /// If a number is not finite, or the mass not positive.
+    #[track_caller]
+    pub fn hit_by(&mut self, id: BodyId, mass: f32, velocity: Vec3, point: Vec3) -> Vec3 {
+        assert!(mass > 0.0 && mass < f32::INFINITY, "a bullet's mass is positive and finite");
+        assert!(velocity.is_finite() && point.is_finite(), "a bullet's velocity and place are finite");
+        let body = self.expect(id);
+        let arm = point - body.center();
+        let turn = skew(arm);
+        let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|e| body.inverse_inertia_mul(turn * e));
+        // K times the mass that it would be through the centre: of the size of 1, whatever the masses.
+        let reduced = 1.0 / (1.0 / mass + body.inverse_mass());
+        let gained = Mat3::IDENTITY - turn * Mat3::from_cols(columns[0], columns[1], columns[2]) * reduced;
+        let impulse = Sym3::from_mat3(&gained).inverse() * (velocity - body.velocity.at(arm)) * reduced;
+        self.apply_impulse(id, impulse, point);
+        impulse
+    }
+}

@@ -1,0 +1,352 @@
+//! The world: owner of everything that is simulated.
+
+mod counts;
+mod draw;
+mod explosions;
+mod fields;
+mod forces;
+mod joints;
+mod kind;
+mod library;
+mod objects;
+mod pairs;
+mod snapshot;
+mod surfaces;
+mod update;
+mod waking;
+
+pub use joints::Reaction;
+pub use surfaces::{BodyContact, ContactPoint};
+pub use update::Update;
+
+use crate::activity::Activity;
+use crate::arena::Arena;
+use crate::body::def::{BodyDef, BodyKind, WorldDef};
+use crate::body::library::ShapeLibrary;
+use crate::body::shape::{MassProperties, Sensing};
+use crate::body::work::Work;
+use crate::body::{Body, Velocity};
+use crate::contact::Contact;
+use crate::contact::events::Events;
+use crate::contact::meetings::Meetings;
+use crate::contact::parted::PartedPairs;
+use crate::contact::parts::Parts;
+use crate::context::StepContext;
+use crate::field::{FieldDef, Functions};
+use crate::id::Lineage;
+use crate::id::{BodyId, GroupId, JointId};
+use crate::joint::Joint;
+use crate::mover::Movers;
+use crate::object::Objects;
+use crate::particles::{AttachmentTarget, GroupDef, ParticleGroup};
+use crate::runner::{Serial, TaskRunner};
+use crate::stage::{NoProfiler, Profiler};
+use crate::step::islands::Islands;
+use crate::step::pairs::BroadPhase;
+use crate::step::step;
+use sinew_math::{Transform, Vec3};
+
+/// Bodies and joints, stepped at a fixed rate.
+///
+/// # Panics
+/// Every method that takes an id panics if the id is stale or from another world, and every method that takes a number
+/// panics if it is not finite.
+pub struct World {
+    pub(crate) def: WorldDef,
+    pub(crate) bodies: Arena<Body>,
+    pub(crate) joints: Arena<Joint>,
+    /// Those of what is awake or moves, in order of their keys; `activity` has the others.
+    pub(crate) contacts: Vec<Contact>,
+    pub(crate) activity: Activity,
+    pub(crate) groups: Arena<ParticleGroup>,
+    pub(crate) fields: Arena<FieldDef>,
+    pub(crate) functions: Functions,
+    pub(crate) library: ShapeLibrary,
+    pub(crate) objects: Objects,
+    pub(crate) movers: Movers,
+    pub(crate) parted: PartedPairs,
+    pub(crate) meetings: Meetings,
+    pub(crate) events: Events,
+    pub(crate) broad: BroadPhase,
+    pub(crate) parts: Parts,
+    pub(crate) islands: Islands,
+    /// Number of islands that fell asleep so far.
+    pub(crate) sleepers: u32,
+    pub(crate) steps: u64,
+    /// Time that `update` was given and no step has used yet, nanoseconds.
+    pub(crate) pending_nanoseconds: u64,
+    /// Of the last step; no part of the state.
+    pub(crate) work: Work,
+    /// Memory of `wake_neighbors`; it holds nothing from one call to the next.
+    pub(crate) around: Vec<u32>,
+    pub(crate) marked: Vec<u8>,
+}
+
+impl World {
+    /// An empty world.
+    ///
+    /// # Panics
+    /// If [`WorldDef::check`] finds something wrong.
+    pub fn new(def: WorldDef) -> Self {
+        if let Err(what) = def.check() {
+            panic!("{what}");
+        }
+        let lineage = Lineage::fresh();
+        Self {
+            def,
+            bodies: Arena::new(lineage),
+            joints: Arena::new(lineage),
+            contacts: Vec::new(),
+            activity: Activity::default(),
+            groups: Arena::new(lineage),
+            fields: Arena::new(lineage),
+            functions: Functions::default(),
+            library: ShapeLibrary::default(),
+            objects: Objects::new(lineage),
+            movers: Movers::new(lineage),
+            parted: PartedPairs::default(),
+            meetings: Meetings::default(),
+            events: Events::default(),
+            broad: BroadPhase::default(),
+            parts: Parts::default(),
+            islands: Islands::default(),
+            sleepers: 0,
+            steps: 0,
+            pending_nanoseconds: 0,
+            work: Work::default(),
+            around: Vec::new(),
+            marked: Vec::new(),
+        }
+    }
+
+    /// Settings.
+    pub fn def(&self) -> &WorldDef {
+        &self.def
+    }
+
+    /// Adds a body.
+    ///
+    /// # Panics
+    /// If a number is not finite, a shape is not valid or names a modifier that is not registered, or a dynamic body has no
+    /// mass.
+    pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
+        def.shapes.iter().for_each(|shape| self.expect_modifier(shape.rule));
+        let id = self.bodies.insert(Body::new(def));
+        let index = id.index;
+        for shape in &def.shapes {
+            self.library.keep(&shape.shape);
+        }
+        self.activity.add(index, self.bodies.at(index));
+        self.broad.proxies.add(index, self.bodies.at(index));
+        let senses = def.shapes.iter().any(|shape| shape.sensing == Sensing::Sensor);
+        if senses || def.kind == BodyKind::Kinematic || self.sleepers > 0 {
+            // It may be around what does not move by itself.
+            self.look_anew(id);
+        }
+        id
+    }
+
+    /// Takes a body out, with its joints; what it touched wakes.
+    ///
+    /// # Panics
+    /// If particles are attached to it.
+    #[track_caller]
+    pub fn remove_body(&mut self, id: BodyId) {
+        self.expect(id);
+        let held = |target| matches!(target, AttachmentTarget::Body { body, .. } if body == id);
+        let attached =
+            self.groups.iter().any(|(_, group)| group.attachments().iter().any(|a| held(a.target)));
+        assert!(!attached, "no particles are attached to a body that is taken out");
+        self.wake_neighbors(id.index);
+        let joints: Vec<JointId> = self.joints_of(id).collect();
+        for joint in joints {
+            self.remove_joint(joint);
+        }
+        self.meetings.stirred.retain(|&index| index != id.index);
+        for contact in self.contacts.extract_if(.., |contact| contact.key.has(id.index)) {
+            self.meetings.part(&self.bodies, &contact);
+        }
+        self.activity.remove(id.index, |contact| self.meetings.part(&self.bodies, &contact));
+        self.parted.forget(id.index);
+        self.movers.forget(id);
+        self.bodies.remove(id);
+        self.broad.proxies.remove(id.index);
+    }
+
+    /// Adds particles with their springs; bodies that they hang on wake. They do not sleep themselves. A body that sleeps is
+    /// a wall to them, unless one strikes it faster than [`SleepThresholds::speed`](crate::SleepThresholds): then it wakes.
+    ///
+    /// # Panics
+    /// If the definition is not valid or names a body that is not there.
+    pub fn add_particles(&mut self, def: &GroupDef) -> GroupId {
+        let held = def.attachments.iter().filter_map(|attachment| match attachment.target {
+            AttachmentTarget::Body { body, .. } => Some(body),
+            AttachmentTarget::World(_) => None,
+        });
+        held.clone().for_each(|body| _ = self.expect(body));
+        let id = self.groups.insert(ParticleGroup::new(def));
+        held.for_each(|body| self.wake_body(body.index));
+        id
+    }
+
+    /// Takes a particle group out.
+    #[track_caller]
+    pub fn remove_particles(&mut self, id: GroupId) {
+        self.groups.take(id);
+    }
+
+    /// A particle group.
+    #[track_caller]
+    pub fn particles(&self, id: GroupId) -> &ParticleGroup {
+        self.groups.expect(id)
+    }
+
+    /// A particle group, to be pushed.
+    #[track_caller]
+    pub fn particles_mut(&mut self, id: GroupId) -> &mut ParticleGroup {
+        self.groups.expect_mut(id)
+    }
+
+    /// All particle groups, by index.
+    pub fn group_ids(&self) -> impl Iterator<Item = GroupId> {
+        self.groups.ids()
+    }
+
+    /// One step on the calling thread.
+    pub fn step(&mut self) {
+        self.step_with(&Serial, &NoProfiler);
+    }
+
+    /// One step with the host's threads and stage times. The result does not depend on either.
+    pub fn step_with(&mut self, runner: &dyn TaskRunner, profiler: &dyn Profiler) {
+        let (dt, substeps) = (self.def.dt(), self.def.substeps);
+        let h = dt / substeps as f32;
+        let context = StepContext { dt, h, substeps, time: self.time(), runner, profiler };
+        step(self, &context);
+        self.tell_counts(profiler);
+        self.work = self.islands.work();
+        self.steps += 1;
+    }
+
+    /// Steps taken.
+    pub fn step_count(&self) -> u64 {
+        self.steps
+    }
+
+    /// Simulated time, seconds.
+    pub fn time(&self) -> f64 {
+        self.steps as f64 * self.def.step_nanoseconds as f64 * 1e-9
+    }
+
+    /// What happened in the last step.
+    pub fn events(&self) -> &Events {
+        &self.events
+    }
+
+    /// What came in during the last step; nothing after [`load`](Self::load), until a step is taken. The energy of the
+    /// bodies ([`energy`](Self::energy)) rises by no more than this beside what the user's forces, fields, surfaces that
+    /// move and impulses between steps do.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// All bodies, by index.
+    pub fn body_ids(&self) -> impl Iterator<Item = BodyId> {
+        self.bodies.ids()
+    }
+
+    /// True if the id names a body that is there.
+    pub fn contains(&self, id: BodyId) -> bool {
+        self.bodies.get(id).is_some()
+    }
+
+    /// Pose of the body's frame.
+    #[track_caller]
+    pub fn transform(&self, id: BodyId) -> Transform {
+        self.expect(id).world_from_body()
+    }
+
+    /// Pose between the last step (`alpha` 0) and this one (1), for drawing.
+    #[track_caller]
+    pub fn interpolated(&self, id: BodyId, alpha: f32) -> Transform {
+        let body = self.expect(id);
+        let (from, to) = (body.previous, body.world_from_principal);
+        let between = Transform::new(
+            from.translation * (1.0 - alpha) + to.translation * alpha,
+            from.rotation.nlerp(to.rotation, alpha),
+        );
+        between * body.principal_from_body
+    }
+
+    /// Puts a body somewhere; it wakes, and so does what touched it there or hangs on it. It does not sweep what lies
+    /// between.
+    #[track_caller]
+    pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
+        assert!(world_from_body.is_finite(), "a body's pose is finite");
+        self.expect_mut(id).set_world_from_body(world_from_body);
+        self.stir(id);
+        // What it bore where it was says nothing of where it is.
+        let returned = self.activity.returned_mut();
+        for contact in self.contacts.iter_mut().chain(returned).filter(|contact| contact.key.has(id.index)) {
+            contact.memory = contact.memory.of_new_step();
+        }
+        self.broad.proxies.place(id.index, self.bodies.at(id.index));
+    }
+
+    /// World position of the centre of mass.
+    #[track_caller]
+    pub fn center_of_mass(&self, id: BodyId) -> Vec3 {
+        self.expect(id).center()
+    }
+
+    /// Velocity of the centre of mass and angular velocity.
+    #[track_caller]
+    pub fn velocity(&self, id: BodyId) -> Velocity {
+        self.expect(id).velocity
+    }
+
+    /// Sets the velocity of a dynamic or kinematic body; it wakes.
+    #[track_caller]
+    pub fn set_velocity(&mut self, id: BodyId, velocity: Velocity) {
+        assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "a velocity is finite");
+        let body = self.expect_mut(id);
+        let stops = velocity.is_zero() && !body.velocity.is_zero();
+        body.velocity = velocity;
+        match body.kind {
+            // Where it has come to nothing has looked yet.
+            BodyKind::Kinematic if stops => self.stir(id),
+            _ => self.wake_body(id.index),
+        }
+        if self.bodies.at(id.index).can_touch() {
+            self.activity.recall(id.index);
+        }
+    }
+
+    /// Static, kinematic or dynamic.
+    #[track_caller]
+    pub fn kind(&self, id: BodyId) -> BodyKind {
+        self.expect(id).kind
+    }
+
+    /// Mass (0 unless dynamic), centre and inertia in the body's frame.
+    #[track_caller]
+    pub fn mass(&self, id: BodyId) -> MassProperties {
+        self.expect(id).mass_properties()
+    }
+
+    /// The user's number on a body.
+    #[track_caller]
+    pub fn user_data(&self, id: BodyId) -> u64 {
+        self.expect(id).user_data
+    }
+
+    #[track_caller]
+    pub(crate) fn expect(&self, id: BodyId) -> &Body {
+        self.bodies.expect(id)
+    }
+
+    #[track_caller]
+    pub(crate) fn expect_mut(&mut self, id: BodyId) -> &mut Body {
+        self.bodies.expect_mut(id)
+    }
+}

@@ -1,0 +1,96 @@
+//! Pairs that may not meet, and functions of the user's that part pairs or change contacts.
+
+use crate::body::contact_rule::{ContactModifier, ContactRule};
+use crate::contact::Contact;
+use crate::contact::filter::PairFunction;
+use crate::id::BodyId;
+use crate::world::World;
+
+impl World {
+    /// Registers a function for [`set_pair_function`](Self::set_pair_function) under a number of the user's choice, in place
+    /// of the one that had it.
+    ///
+    /// A snapshot holds the number, not the code: before a snapshot is loaded into a world, the functions that it names must
+    /// be registered in it, else loading fails. Register the same function under the same number, or what comes is another
+    /// future.
+    pub fn register_pair_function(&mut self, number: u32, function: PairFunction) {
+        self.parted.functions.registered.set(number, function);
+    }
+
+    /// From now on the registered function of this number is asked whether two shapes may meet that filters let meet;
+    /// `None`, as at the start: none is. All bodies wake.
+    ///
+    /// # Panics
+    /// If there is no such function.
+    pub fn set_pair_function(&mut self, number: Option<u32>) {
+        if let Some(number) = number {
+            assert!(self.parted.functions.registered.has(number), "pair function {number} is registered");
+        }
+        self.parted.functions.chosen = number;
+        let ids: Vec<BodyId> = self.body_ids().collect();
+        for id in ids {
+            self.look_anew(id);
+            self.wake_body(id.index);
+        }
+    }
+
+    /// The function that is asked, by number.
+    pub fn pair_function(&self) -> Option<u32> {
+        self.parted.functions.chosen
+    }
+
+    /// From now on two bodies pass through each other; if they touch, both wake.
+    #[track_caller]
+    pub fn disable_pair(&mut self, a: BodyId, b: BodyId) {
+        self.expect(a);
+        self.expect(b);
+        let met = |contact: &Contact| contact.pushes() || contact.touching || contact.sensed;
+        if self.contacts_at(a.index).any(|contact| contact.key.has(b.index) && met(contact)) {
+            self.wake_pair(a, b);
+        }
+        self.parted.disable(a.index, b.index);
+    }
+
+    /// Undoes [`disable_pair`](Self::disable_pair); they wake. Joints between them may still keep them from colliding.
+    #[track_caller]
+    pub fn enable_pair(&mut self, a: BodyId, b: BodyId) {
+        self.expect(a);
+        self.expect(b);
+        self.wake_pair(a, b);
+        self.parted.enable(a.index, b.index);
+    }
+
+    /// Has the next step look anew at a pair: by what wakes of it, or else by one of them.
+    fn wake_pair(&mut self, a: BodyId, b: BodyId) {
+        self.wake_body(a.index);
+        self.wake_body(b.index);
+        if !self.bodies.at(a.index).is_active() && !self.bodies.at(b.index).is_active() {
+            self.look_anew(a);
+        }
+    }
+}
+
+impl World {
+    /// Registers a function for [`ContactRule::Modified`] under a number of the user's choice, in place of the one that had
+    /// it.
+    ///
+    /// A snapshot holds the number, not the code: before a snapshot is loaded into a world, the functions that its shapes
+    /// name must be registered in it, else loading fails. Register the same function under the same number, or what comes is
+    /// another future.
+    pub fn register_modifier(&mut self, number: u32, modifier: ContactModifier) {
+        self.meetings.modifiers.registered.set(number, modifier);
+    }
+
+    /// # Panics
+    /// If a rule names a modifier that is not registered.
+    pub(crate) fn expect_modifier(&self, rule: ContactRule) {
+        assert!(self.knows_rule(rule), "a contact rule's modifier is registered");
+    }
+
+    pub(crate) fn knows_rule(&self, rule: ContactRule) -> bool {
+        match rule {
+            ContactRule::Modified { modifier } => self.meetings.modifiers.registered.has(modifier),
+            ContactRule::Push | ContactRule::Ghost | ContactRule::OneWay(_) => true,
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Snapshots: everything that decides the future, and nothing else, in one order.
+
+use crate::activity::Activity;
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::body::library::LoadError;
+use crate::body::snapshot::{body_index, load_body, load_def, load_option, save_body, save_def, save_option};
+use crate::body::work::Work;
+use crate::contact::Contact;
+use crate::contact::events::Events;
+use crate::contact::meetings::Meetings;
+use crate::contact::snapshot::{load_contact, save_contact};
+use crate::field::FieldDef;
+use crate::joint::Joint;
+use crate::mover::Mover;
+use crate::particles::{AttachmentTarget, ParticleGroup};
+use crate::world::World;
+use sinew_math::{ReadError, Reader, Writer};
+
+/// First bytes of a snapshot; the last is its version.
+const MAGIC: &[u8; 8] = b"sinew-w\x08";
+/// A thousand steps a second for 280,000 years.
+const MOST_STEPS: u64 = 1 << 53;
+
+impl World {
+    /// Writes the state: what [`load`](Self::load) brings back, bit for bit.
+    pub fn save(&self, w: &mut Writer) {
+        w.raw(MAGIC);
+        save_def(w, &self.def);
+        w.u64(self.steps);
+        w.u64(self.pending_nanoseconds);
+        w.u32(self.sleepers);
+        self.bodies.save(w, save_body);
+        self.joints.save(w, |w, joint| joint.save(w));
+        let mut contacts = self.contacts_in_order();
+        // Which pairs have none depends on how they came to where they are.
+        contacts.retain(|contact| !contact.is_idle());
+        w.count(contacts.len());
+        contacts.into_iter().for_each(|contact| save_contact(w, contact));
+        self.groups.save(w, |w, group| group.save(w));
+        self.fields.save(w, |w, field| field.save(w));
+        w.count(self.parted.disabled.len());
+        for &(a, b) in &self.parted.disabled {
+            w.u32(a);
+            w.u32(b);
+        }
+        self.meetings.save(w);
+        save_option(w, self.parted.functions.chosen, Writer::u32);
+        self.movers.all.save(w, |w, mover| mover.save(w));
+        self.objects.save(w);
+    }
+
+    /// Brings back a saved state. Events are those of no step.
+    ///
+    /// Objects of the user's own take their state where they are: the one that the snapshot was taken of, if it is still
+    /// there, or else a new one of a kind that [`register_kind`](Self::register_kind) was told. Objects that were added
+    /// since are dropped.
+    ///
+    /// # Errors
+    /// If the bytes are not a snapshot of this version, a shape with data is named that the world was never given, a field, a
+    /// shape or the world names a function that is not registered, or an object is not there whose kind was not registered;
+    /// the world is then as it was.
+    ///
+    /// # Panics
+    /// If an object does not take the state that it wrote itself.
+    pub fn load(&mut self, r: &mut Reader<'_>) -> Result<(), LoadError> {
+        if r.raw(MAGIC.len())? != MAGIC {
+            return Err(ReadError { at: 0, what: "is not a world snapshot of this version" }.into());
+        }
+        let def = load_def(r)?;
+        let (steps, pending, sleepers) = (r.u64()?, r.u64()?, r.u32()?);
+        if steps > MOST_STEPS {
+            return Err(r.error("more steps than any world takes").into());
+        }
+        let mut bodies = Arena::load(r, |r| load_body(r, &self.library))?;
+        self.check_rules(r, &bodies)?;
+        let joints = Arena::load(r, |r| {
+            let (a, b) = (body_index(r, &bodies)?, body_index(r, &bodies)?);
+            Joint::load(r, a, b)
+        })?;
+        let count = r.count(8)?;
+        let mut contacts = Vec::with_capacity(count);
+        for _ in 0..count {
+            contacts.push(load_contact(r, &bodies)?);
+        }
+        if !contacts.is_sorted_by(|p: &Contact, q| p.key < q.key) {
+            return Err(r.error("contacts are out of order").into());
+        }
+        let groups = Arena::load(r, |r| load_group(r, &bodies))?;
+        let fields = Arena::load(r, |r| FieldDef::load(r, &self.functions, &self.library))?;
+        let count = r.count(8)?;
+        let mut disabled = Vec::with_capacity(count);
+        for _ in 0..count {
+            disabled.push((body_index(r, &bodies)?, body_index(r, &bodies)?));
+        }
+        if !disabled.is_sorted() {
+            return Err(r.error("disabled pairs are out of order").into());
+        }
+        let meetings = Meetings::load(r, &mut bodies)?;
+        let pair_function = load_option(r, Reader::u32)?;
+        if !pair_function.is_none_or(|number| self.parted.functions.registered.has(number)) {
+            return Err(r.error("names a pair function that is not registered").into());
+        }
+        let movers = Arena::load(r, |r| Mover::load(r, &bodies))?;
+        self.objects.load(r)?;
+        self.def = def;
+        (self.steps, self.pending_nanoseconds, self.sleepers) = (steps, pending, sleepers);
+        self.activity = Activity::new(&bodies, &joints);
+        (self.bodies, self.joints, self.contacts) = (bodies, joints, contacts);
+        self.parted.restore(disabled, pair_function);
+        let modifiers = core::mem::take(&mut self.meetings.modifiers);
+        self.meetings = Meetings { modifiers, ..meetings };
+        (self.groups, self.fields, self.movers.all) = (groups, fields, movers);
+        self.events = Events::default();
+        self.work = Work::default();
+        self.broad.proxies.adopt(&self.bodies);
+        Ok(())
+    }
+
+    fn check_rules(&self, r: &Reader<'_>, bodies: &Arena<Body>) -> Result<(), ReadError> {
+        let mut surfaces = bodies.iter().flat_map(|(_, body)| body.surfaces.as_slice());
+        if surfaces.all(|surface| self.knows_rule(surface.rule)) {
+            return Ok(());
+        }
+        Err(r.error("names a modifier that is not registered"))
+    }
+
+    /// Hash of the snapshot's bytes.
+    pub fn hash(&self) -> u64 {
+        let mut w = Writer::new();
+        self.save(&mut w);
+        sinew_math::hash::hash_bytes(w.as_bytes())
+    }
+
+    /// Marks the present state as the one that [`reset`](Self::reset) returns to: all that [`save`](Self::save) writes.
+    pub fn mark(&mut self) {
+        let mut w = Writer::reuse(core::mem::take(&mut self.marked));
+        self.save(&mut w);
+        self.marked = w.into_bytes();
+    }
+
+    /// Returns to the marked state, exactly: what follows has the same bits as what followed the mark, ids of what is
+    /// added included. What was added since is gone, what was taken out is back; [`events`](Self::events) are those of no
+    /// step. Settings that are not part of the state (threads, kinds) stay.
+    ///
+    /// # Panics
+    /// If no state was marked, or an object was taken out since whose kind was not
+    /// [registered](Self::register_kind).
+    pub fn reset(&mut self) {
+        assert!(!self.marked.is_empty(), "a state was marked");
+        let marked = core::mem::take(&mut self.marked);
+        self.load(&mut Reader::new(&marked)).expect("a marked state is valid");
+        self.marked = marked;
+    }
+}
+
+fn load_group(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<ParticleGroup, ReadError> {
+    let group = ParticleGroup::load(r)?;
+    let held = |target| match target {
+        AttachmentTarget::Body { body, .. } => bodies.get(body).is_some(),
+        AttachmentTarget::World(_) => true,
+    };
+    if group.attachments().iter().all(|a| held(a.target)) {
+        Ok(group)
+    } else {
+        Err(r.error("attached to no body"))
+    }
+}

@@ -1,0 +1,188 @@
+//! What a world's shapes are besides geometry, asked and changed while it runs, and what touches what.
+
+use crate::body::contact_rule::ContactRule;
+use crate::body::material::{ContactMaterial, Material};
+use crate::body::shape::{Filter, Sensing};
+use crate::body::surface::Surface;
+use crate::collide::MAX_POINTS;
+use crate::contact::meetings::shape_ids;
+use crate::contact::{Contact, Effect};
+use crate::id::{BodyId, ShapeId};
+use crate::world::World;
+use sinew_math::Vec3;
+
+/// A contact of two shapes, as the last step left it. A pair may have several.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyContact {
+    /// The shape of the body with the smaller index.
+    pub a: ShapeId,
+    /// The other.
+    pub b: ShapeId,
+    /// From A to B, unit length, world axes.
+    pub normal: Vec3,
+    /// What it does.
+    pub effect: Effect,
+    /// What the two materials are to each other, before a modifier.
+    pub material: ContactMaterial,
+    /// All that friction gave B in the step, N·s, world axes; A got the opposite.
+    pub friction: Vec3,
+    points: [ContactPoint; MAX_POINTS],
+    count: usize,
+}
+
+impl BodyContact {
+    /// Where the shapes touch or are near each other, at least one.
+    pub fn points(&self) -> &[ContactPoint] {
+        &self.points[..self.count]
+    }
+
+    /// All that pushed along the normal in the step, N·s.
+    pub fn impulse(&self) -> f32 {
+        self.points().iter().fold(0.0, |sum, point| sum + point.impulse)
+    }
+}
+
+/// A point of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactPoint {
+    /// Between the surfaces, world, metres: where it was when it was last looked for.
+    pub position: Vec3,
+    /// Gap along the normal then, metres; negative if they overlapped.
+    pub separation: f32,
+    /// All that it gave along the normal in the step, N·s.
+    pub impulse: f32,
+}
+
+impl World {
+    /// Contacts of a body with others, near ones that do not touch among them, in the order of pairs.
+    #[track_caller]
+    pub fn contacts_of(&self, id: BodyId) -> impl Iterator<Item = BodyContact> {
+        self.expect(id);
+        self.contacts().filter(move |contact| contact.a.body == id || contact.b.body == id)
+    }
+
+    /// All contacts, near ones that do not touch among them, in the order of pairs.
+    pub fn contacts(&self) -> impl Iterator<Item = BodyContact> {
+        let near = |contact: &&Contact| contact.manifold.count > 0;
+        self.contacts_in_order().into_iter().filter(near).map(|contact| self.body_contact(contact))
+    }
+
+    fn body_contact(&self, contact: &Contact) -> BodyContact {
+        let (a, b) = shape_ids(&self.bodies, contact.key);
+        let mut points = [ContactPoint::default(); MAX_POINTS];
+        for (i, point) in contact.manifold.points().iter().enumerate() {
+            let impulse = contact.memory.points[i].total;
+            points[i] = ContactPoint { position: point.position, separation: point.separation, impulse };
+        }
+        BodyContact {
+            a,
+            b,
+            normal: contact.manifold.normal,
+            effect: contact.effect,
+            material: contact.material(&self.bodies),
+            friction: contact.memory.total_friction,
+            points,
+            count: contact.manifold.count,
+        }
+    }
+
+    /// The shapes of a body.
+    #[track_caller]
+    pub fn shape_ids(&self, body: BodyId) -> impl Iterator<Item = ShapeId> + use<> {
+        (0..self.expect(body).shapes.len() as u32).map(move |shape| ShapeId { body, shape })
+    }
+
+    /// What a shape is made of.
+    #[track_caller]
+    pub fn material(&self, id: ShapeId) -> Material {
+        self.expect(id.body).surface(id.shape as usize).material
+    }
+
+    /// Whom a shape meets.
+    #[track_caller]
+    pub fn filter(&self, id: ShapeId) -> Filter {
+        self.expect(id.body).surface(id.shape as usize).filter
+    }
+
+    /// Whether a shape pushes.
+    #[track_caller]
+    pub fn sensing(&self, id: ShapeId) -> Sensing {
+        self.expect(id.body).surface(id.shape as usize).sensing
+    }
+
+    /// What becomes of a shape's contacts.
+    #[track_caller]
+    pub fn contact_rule(&self, id: ShapeId) -> ContactRule {
+        self.expect(id.body).surface(id.shape as usize).rule
+    }
+
+    /// Makes a shape of something else, from the next step on. Its body and what it touches wake; its mass stays.
+    ///
+    /// # Panics
+    /// If [`Material::check`] finds something wrong.
+    #[track_caller]
+    pub fn set_material(&mut self, id: ShapeId, material: Material) {
+        if let Err(what) = material.check() {
+            panic!("{what}");
+        }
+        self.change_surface(id, |surface| surface.material = material);
+    }
+
+    /// Lets a shape meet others than before, from the next step on, which also tells of what it no longer touches. Its body
+    /// and what it touches wake.
+    #[track_caller]
+    pub fn set_filter(&mut self, id: ShapeId, filter: Filter) {
+        self.change_surface(id, |surface| surface.filter = filter);
+    }
+
+    /// Lets a shape push or only sense, from the next step on; what touches it ends and begins anew as the other kind of
+    /// event. Its body and what it touches wake.
+    #[track_caller]
+    pub fn set_sensing(&mut self, id: ShapeId, sensing: Sensing) {
+        self.change_surface(id, |surface| surface.sensing = sensing);
+    }
+
+    /// Changes what becomes of a shape's contacts, from the next step on. Its body and what it touches wake.
+    ///
+    /// # Panics
+    /// If [`ContactRule::check`] finds something wrong, or a modifier is not registered.
+    #[track_caller]
+    pub fn set_contact_rule(&mut self, id: ShapeId, rule: ContactRule) {
+        if let Err(what) = rule.check() {
+            panic!("{what}");
+        }
+        self.expect_modifier(rule);
+        self.change_surface(id, |surface| surface.rule = rule);
+    }
+
+    fn change_surface(&mut self, id: ShapeId, change: impl FnOnce(&mut Surface)) {
+        self.stir(id.body);
+        let body = self.expect_mut(id.body);
+        let mut surface = *body.surface(id.shape as usize);
+        change(&mut surface);
+        let number = body.shapes[id.shape as usize].surface;
+        if body.shapes.iter().filter(|shape| shape.surface == number).count() == 1 {
+            body.surfaces.set(number, surface);
+        } else {
+            body.shapes[id.shape as usize].surface = body.surfaces.intern(&surface);
+        }
+        self.broad.proxies.refresh(id.body.index, self.bodies.at(id.body.index));
+    }
+
+    /// Has the next step look anew at what a body touches, whatever moves; it and its neighbours wake.
+    #[track_caller]
+    pub(crate) fn stir(&mut self, id: BodyId) {
+        self.look_anew(id);
+        self.wake_neighbors(id.index);
+    }
+
+    /// Likewise, and nobody wakes.
+    #[track_caller]
+    pub(crate) fn look_anew(&mut self, id: BodyId) {
+        let body = self.expect_mut(id);
+        if !core::mem::replace(&mut body.stirred, true) {
+            self.meetings.stirred.push(id.index);
+        }
+        self.activity.recall(id.index);
+    }
+}

@@ -1,0 +1,237 @@
+//! Which room of a crate may name which: a crate's folders and files at the top of its `src/`, from the ground up.
+
+use super::lexer::{self, Kind, Token};
+use super::{File, Finding, Repo};
+
+/// Crates with rooms, each with its rooms from the ground up: a room may name those before it.
+const ROOMS: &[(&str, &[&str])] = &[(
+    "sinew_physics",
+    &[
+        "id",
+        "arena",
+        "spatial",
+        "registered",
+        "pool",
+        "runner",
+        "slices",
+        "stage",
+        "context",
+        "draw",
+        "island",
+        "body",
+        "joint",
+        "contact",
+        "particles",
+        "activity",
+        "field",
+        "solver",
+        "step",
+        "object",
+        "world",
+        "mover",
+        "query",
+    ],
+)];
+
+/// Arrows back up that are there, by file and room. May only shrink.
+const EXCEPTIONS: &[(&str, &str)] = &[
+    // The step is given the whole world, and the user's objects and the movers act on it within the step.
+    ("crates/sinew_physics/src/step/mod.rs", "world"),
+    ("crates/sinew_physics/src/step/mod.rs", "object"),
+    ("crates/sinew_physics/src/step/mod.rs", "mover"),
+    // What users write against is given the world.
+    ("crates/sinew_physics/src/object/mod.rs", "world"),
+    // The world owns its movers, which are nothing but what they do in a world.
+    ("crates/sinew_physics/src/world/mod.rs", "mover"),
+    ("crates/sinew_physics/src/world/snapshot.rs", "mover"),
+    // What shelters from a blast is asked by a ray.
+    ("crates/sinew_physics/src/world/explosions.rs", "query"),
+];
+
+/// Most files that stand beside `lib.rs` without a room of their own, itself included.
+const FLAT_FILES_MAX: usize = 12;
+
+/// Every arrow between rooms goes down, but for the exceptions, which are all needed; and few files stand flat in `src/`.
+pub fn check(repo: &Repo) -> Vec<Finding> {
+    check_rooms(repo, ROOMS, EXCEPTIONS)
+}
+
+fn check_rooms(repo: &Repo, crates: &[(&str, &[&str])], exceptions: &[(&str, &str)]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let mut needed = vec![false; exceptions.len()];
+    for &(name, rooms) in crates {
+        let root = format!("crates/{name}/src/lib.rs");
+        let Some(lib) = repo.file(&root) else { continue };
+        let exported = exports(lib);
+        let files = || repo.rust_files().filter(|file| file.crate_of_source() == Some(name));
+        for file in files().filter(|file| file.path != root && !is_test(file, repo)) {
+            let Some(own) = rooms.iter().position(|&room| room == room_of(file)) else {
+                let message = format!("no room of {name} in xtask/src/tidy/rooms.rs");
+                findings.push(Finding::new(&file.path, 1, message));
+                continue;
+            };
+            for (word, line) in named(file) {
+                let room = exported.iter().find(|(name, _)| *name == word).map_or(word, |&(_, room)| room);
+                let Some(to) = rooms.iter().position(|&name| name == room).filter(|&to| to > own) else {
+                    continue;
+                };
+                match exceptions.iter().position(|&exception| exception == (file.path.as_str(), rooms[to])) {
+                    Some(exception) => needed[exception] = true,
+                    None => {
+                        let message =
+                            format!("`{}` must not name `{}`, which stands above it", rooms[own], rooms[to]);
+                        findings.push(Finding::new(&file.path, line, message));
+                    }
+                }
+            }
+        }
+        let flat = files().filter(|file| file.path.matches('/').count() == 3).count();
+        if flat > FLAT_FILES_MAX {
+            let message =
+                format!("{flat} files beside each other, at most {FLAT_FILES_MAX}: give them rooms");
+            findings.push(Finding::new(&root, 1, message));
+        }
+    }
+    let unneeded = exceptions.iter().zip(needed).filter(|(_, needed)| !needed);
+    findings.extend(unneeded.map(|((file, room), _)| {
+        Finding::new(file, 1, format!("no longer names `{room}`: remove it from the exceptions of rooms.rs"))
+    }));
+    findings
+}
+
+/// The room that a file stands in: its folder at the top of `src/`, or itself.
+fn room_of(file: &File) -> &str {
+    let inside = file.path.splitn(4, '/').nth(3).unwrap_or_default();
+    inside.split('/').next().unwrap_or_default().trim_end_matches(".rs")
+}
+
+/// Whether a file is compiled for tests alone: its module is declared under `#[cfg(test)]`.
+fn is_test(file: &File, repo: &Repo) -> bool {
+    let Some((folder, name)) = file.path.trim_end_matches(".rs").rsplit_once('/') else { return false };
+    let parent = repo.file(&format!("{folder}/mod.rs"));
+    name == "tests"
+        || parent.is_some_and(|parent| {
+            lexer::find(&parent.tokens(), &format!("# [ cfg ( test ) ] mod {name} ;")).next().is_some()
+        })
+}
+
+/// Names that `lib.rs` re-exports, each with the room it comes from.
+fn exports(lib: &File) -> Vec<(&str, &str)> {
+    let tokens = lib.tokens();
+    let mut exports = Vec::new();
+    for start in lexer::find(&tokens, "pub use") {
+        let end = lexer::end_of_item(&tokens, start);
+        let words = tokens[start + 2..end].iter().filter(|token| token.kind == Kind::Word);
+        let mut words = words.map(|token| token.text);
+        if let Some(room) = words.next() {
+            exports.extend(words.map(|word| (word, room)));
+        }
+    }
+    exports
+}
+
+/// What a file names right below `crate`, with the lines.
+fn named(file: &File) -> Vec<(&str, usize)> {
+    // As many `super` as lead to the top.
+    let inside = file.path.splitn(4, '/').nth(3).unwrap_or_default();
+    let depth = inside.trim_end_matches("/mod.rs").matches('/').count() + 1;
+    let tokens = file.tokens_without_tests();
+    let tops = ["crate".to_owned(), vec!["super"; depth].join(" :: ")];
+    let below = |top: &String| {
+        let pattern = format!("{top} ::");
+        let length = pattern.split(' ').count();
+        lexer::find(&tokens, &pattern).map(move |at| at + length).collect::<Vec<_>>()
+    };
+    tops.iter().flat_map(below).flat_map(|at| firsts(&tokens, at)).collect()
+}
+
+/// The word at `at`, or those with which the parts of the group there begin.
+fn firsts<'a>(tokens: &[Token<'a>], at: usize) -> Vec<(&'a str, usize)> {
+    let Some(first) = tokens.get(at) else { return Vec::new() };
+    if first.text != "{" {
+        return vec![(first.text, first.line)];
+    }
+    let mut depth = 0;
+    let mut found = Vec::new();
+    let group = &tokens[at..=lexer::closing(tokens, at)];
+    for pair in group.windows(2) {
+        match pair[0].text {
+            "{" => depth += 1,
+            "}" => depth -= 1,
+            _ => {}
+        }
+        let begins = depth == 1 && matches!(pair[0].text, "{" | ",");
+        if begins && pair[1].kind == Kind::Word {
+            found.push((pair[1].text, pair[1].line));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HOUSE: &[(&str, &[&str])] = &[("sinew_math", &["cellar", "hall", "attic"])];
+
+    fn check_files(files: &[(&str, &str)], exceptions: &[(&str, &str)]) -> Vec<String> {
+        let mut planted =
+            vec![("crates/sinew_math/src/lib.rs", "pub use attic::Roof;\npub use hall::{Door, self};")];
+        planted.extend(files);
+        let found = check_rooms(&Repo::planted(&planted), HOUSE, exceptions);
+        found.iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn a_planted_arrow_back_up_is_found() {
+        let up = "crates/sinew_math/src/hall/door.rs:1: `hall` must not name `attic`, which stands above it";
+        for code in [
+            "use crate::attic::Beam;",
+            "use crate::{cellar, attic::Beam};",
+            "use crate::Roof;",
+            "fn f() { crate::attic::f() }",
+            "use super::super::attic;",
+        ] {
+            assert_eq!(check_files(&[("crates/sinew_math/src/hall/door.rs", code)], &[]), [up], "{code}");
+        }
+        let of_mod = check_files(&[("crates/sinew_math/src/hall/mod.rs", "use super::attic;")], &[]);
+        assert_eq!(of_mod.len(), 1);
+        let of_flat =
+            check_files(&[("crates/sinew_math/src/cellar.rs", "use super::{hall, attic::X};")], &[]);
+        assert_eq!(of_flat.len(), 2);
+    }
+
+    #[test]
+    fn arrows_down_and_of_tests_are_free() {
+        for code in [
+            "use crate::cellar::{Wine, attic};\nuse super::attic;",
+            "#[cfg(test)]\nmod tests { use crate::attic; }",
+            "use crate::Door;",
+            "// crate::attic",
+        ] {
+            assert_eq!(check_files(&[("crates/sinew_math/src/hall/door.rs", code)], &[]), [""; 0], "{code}");
+        }
+        let files = [
+            ("crates/sinew_math/src/hall/mod.rs", "#[cfg(test)]\nmod check;"),
+            ("crates/sinew_math/src/hall/check.rs", "use crate::attic;"),
+        ];
+        assert_eq!(check_files(&files, &[]), [""; 0]);
+    }
+
+    #[test]
+    fn an_exception_excuses_and_must_be_needed() {
+        let path = "crates/sinew_math/src/hall/door.rs";
+        assert_eq!(check_files(&[(path, "use crate::attic;")], &[(path, "attic")]), [""; 0]);
+        assert_eq!(check_files(&[(path, "")], &[(path, "attic")]).len(), 1);
+    }
+
+    #[test]
+    fn a_file_without_a_room_and_a_crowd_are_found() {
+        assert_eq!(check_files(&[("crates/sinew_math/src/shed.rs", "")], &[]).len(), 1);
+        let names: Vec<String> =
+            (0..FLAT_FILES_MAX).map(|k| format!("crates/sinew_math/src/{k}.rs")).collect();
+        let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
+        let found = check_files(&files, &[]);
+        assert!(found.iter().any(|finding| finding.contains("13 files beside each other")), "{found:?}");
+    }
+}
