@@ -50,7 +50,7 @@ pub(crate) fn step(world: &mut World, context: &StepContext<'_>) {
     stage(Stage::Finalize, &mut || finalize::finalize(islands, bodies, activity, events, context));
     let filter = parted.filter(joints);
     stage(Stage::Continuous, &mut || {
-        continuous::continuous(islands, bodies, activity, broad, filter, context)
+        continuous::continuous(islands, bodies, activity, broad, filter, context);
     });
     stage(Stage::Sleep, &mut || sleep::sleep(islands, bodies, activity, &fields, sleepers, def));
     stage(Stage::Sensors, &mut || sensors::sensors(bodies, contacts, meetings, def.hit_speed, events));
