@@ -153,12 +153,13 @@ impl Bake {
             name: &name,
             ..BakeInput::new(character)
         };
-        let fall = Fall::simulate(&input);
+        let mut fall = Fall::simulate(&input);
         let world = self.world.as_ref().map(|path| path.display().to_string());
         notes.extend(world.as_deref().and_then(|world| notes::stands_at(&place, world)));
         notes.extend(notes::of_bake(&input, &fall.baked.events, &gets_up_by, world.as_deref()));
         let is_level = self.world.is_none() && place.stands.translation.y == self.floor.unwrap_or(0.0);
         let skin = SkinReport::of_bake(&file, &fall, is_level);
+        fall.judge_skin(&skin.flaws);
         notes.extend(skin.flaws.iter().map(|flaw| format!("skin: {}", flaw.evidence)));
         notes.extend(self.write(&file, &fall)?);
         let mut report = self.report(&file, &fall, &once(notes));
