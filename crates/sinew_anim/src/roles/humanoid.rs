@@ -57,6 +57,8 @@ pub(super) struct Humanoid {
     pub legs: Limb,
 }
 
+/// Of two joints at the end of an arm the nearer is at least at this share of the other's distance, or it is no finger.
+const FORKED: f32 = 0.8;
 /// The hips of a figure with a large head are at least this high, share of its height.
 const LOWEST_HIP: f32 = 0.1;
 
@@ -140,6 +142,11 @@ impl Evidence<'_> {
             let reach =
                 |way: usize| self.graph.distance(chain[chain.len() - 1], way) + self.graph.nodes[way].reach;
             ways.sort_by(|&a, &b| reach(b).total_cmp(&reach(a)));
+            // Two ends as far away, off the floor, are fingers, too.
+            let fork = ways.len() == 2 && long == 0 && reach(ways[1]) > FORKED * reach(ways[0]);
+            if fork && chain.len() > 2 && self.level(chain[chain.len() - 1]) > 0.22 {
+                break;
+            }
             chain.push(ways[0]);
         }
         let mirrored = chain.iter().filter_map(|&i| self.symmetry.other(i)).collect();

@@ -210,8 +210,8 @@ fn load(file: &str) -> Rig {
     sinew_formats::load_gltf(path, sinew_formats::ReadOptions::default()).expect("a rig").rig
 }
 
-/// The scores of a file, and what is wrong in words.
-fn measure(file: &str, truth: &Truth) -> (Scores, String) {
+/// The scores of a file, and what is wrong in words. `unstated` is the truth where the file says nothing itself.
+fn measure(file: &str, truth: &Truth, unstated: &Truth) -> (Scores, String) {
     let rig = load(file);
     let mut complaints = Vec::new();
     let mut scores = Scores { plain: score(&rig, &truth.roles, &mut complaints), ..Scores::default() };
@@ -221,7 +221,7 @@ fn measure(file: &str, truth: &Truth) -> (Scores, String) {
     } else {
         complaints.push("| by shape:".into());
         let names: Vec<String> = rig.joints.iter().map(|joint| joint.name.clone()).collect();
-        scores.by_shape = Some(score_of(&numbered(&rig), &names, &truth.roles, &mut complaints));
+        scores.by_shape = Some(score_of(&numbered(&rig), &names, &unstated.roles, &mut complaints));
     }
     (scores, complaints.join(" "))
 }
@@ -250,9 +250,13 @@ fn roles_of_rigs_from_the_wild() {
         return;
     }
     let (mut rows, mut table) = (String::new(), Vec::new());
-    for truth in truths() {
+    let truths = truths();
+    for truth in &truths {
+        // `Mixamo, stated as VRM` without the statement is Mixamo.
+        let plain = truth.convention.split(", stated").next().expect("at least one part");
+        let unstated = truths.iter().find(|other| other.convention == plain).unwrap_or(truth);
         for file in truth.files.iter().flat_map(|pattern| files(pattern)) {
-            let (scores, complaints) = measure(&file, &truth);
+            let (scores, complaints) = measure(&file, truth, unstated);
             let Scores { plain, by_names, by_shape } = scores;
             let convention = &truth.convention;
             rows += &format!("{file} ({convention}): {plain:?} {by_names:?} {by_shape:?} {complaints}\n");

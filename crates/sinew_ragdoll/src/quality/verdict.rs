@@ -65,7 +65,7 @@ pub fn judge(drop: &Quality, wall: &Quality) -> (Verdict, Vec<String>) {
 }
 
 /// Judges whatever became of a character: hits, a travelling clip, any world. The limits are those of [`judge`], but for the
-/// times until it sleeps, which hang on where it falls, and on whether it gets up. The reasons name each figure outside its limit.
+/// times until it sleeps and the spin once settled, which hang on where it falls and on what is done to it then. The reasons name each figure outside its limit.
 pub fn judge_bake(quality: &Quality) -> (Verdict, Vec<String>) {
     let [broken, ajar, open, p99, overshoot] = of_joints(quality);
     verdict_of([
@@ -75,8 +75,6 @@ pub fn judge_bake(quality: &Quality) -> (Verdict, Vec<String>) {
         open,
         p99,
         overshoot,
-        // Null where it never settled: then there is nothing to judge.
-        Limit::of("spin once settled, rad/s", quality.settled_omega_max.unwrap_or(0.0), 0.05, f32::INFINITY),
         Limit::of("overlap of bodies, m", quality.nonadjacent_overlap_max_m, 0.01, 0.03),
         Limit::of("sinking at rest, m", quality.penetration_rest_max_m, 5e-3, f32::INFINITY),
     ])

@@ -315,7 +315,8 @@ pub fn affixed(rig: &Rig, prefix: &str, suffix: &str) -> Rig {
     rig
 }
 
-/// Meshes bound in another unit than the joints are in, as exports through FBX have it: the skin is drawn where it was.
+/// Meshes bound in another unit than the joints are in, as exports through FBX have it, or turned inside out by a negative one:
+/// the skin is drawn where it was.
 pub fn bound_in(rig: &Rig, unit: f32) -> Rig {
     let mut rig = rig.clone();
     let joints_from_mesh =
@@ -328,6 +329,34 @@ pub fn bound_in(rig: &Rig, unit: f32) -> Rig {
             *position /= unit;
         }
     }
+    rig
+}
+
+/// Every skinned mesh in two, the second with a skin of its own that was bound in another unit.
+pub fn with_two_skins(rig: &Rig, unit: f32) -> Rig {
+    let mut rig = rig.clone();
+    let other = bound_in(&rig, unit);
+    let skins = rig.skins.len();
+    rig.skins.extend(other.skins);
+    let keep = |mesh: &mut Mesh, second: bool| {
+        for primitive in &mut mesh.primitives {
+            let half = primitive.indices.len() / 6 * 3;
+            let rest = primitive.indices.split_off(half);
+            if second {
+                primitive.indices = rest;
+            }
+        }
+    };
+    let mut added = Vec::new();
+    for (mesh, mut twin) in rig.meshes.iter_mut().zip(other.meshes) {
+        if let Some(skin) = mesh.skin {
+            twin.skin = Some(skins + skin);
+            keep(mesh, false);
+            keep(&mut twin, true);
+            added.push(twin);
+        }
+    }
+    rig.meshes.extend(added);
     rig
 }
 

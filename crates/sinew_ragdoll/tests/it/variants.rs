@@ -4,7 +4,7 @@ use crate::build::{built, check_sound};
 use crate::data::rig;
 use crate::disguise::{
     CONVENTIONS, affixed, bound_in, hung_on_root, renamed, shuffled, transformed, with_controls, with_hair,
-    with_twists, z_up,
+    with_twists, with_two_skins, z_up,
 };
 use crate::guises::check_falls;
 use sinew_anim::{JointIdx, Rig, RigAnalysis, Role, Side, analyze};
@@ -59,8 +59,8 @@ fn variant(rig: &Rig, analysis: &RigAnalysis, seed: u64) -> (Rig, Vec<usize>, St
     if chance(&mut random, "twist bones") {
         rig = with_twists(&rig, analysis);
     }
-    let spine = analysis.kept.iter().rev().find(|bone| matches!(bone.role, Role::SpineSegment(_)));
-    let head = analysis.joint_with(Role::Head).or(spine.map(|bone| bone.joint));
+    // Only on who has a head: what grows on a creature may well be a part of it.
+    let head = analysis.joint_with(Role::Head);
     if let Some(head) = head.filter(|_| chance(&mut random, "hair")) {
         rig = with_hair(&rig, analysis, head, &mut random);
     }
@@ -71,7 +71,10 @@ fn variant(rig: &Rig, analysis: &RigAnalysis, seed: u64) -> (Rig, Vec<usize>, St
         rig = hung_on_root(&rig, &feet(&rig, analysis));
     }
     if chance(&mut random, "binds of another unit") {
-        rig = bound_in(&rig, [100.0, 0.01][random.index(2)]);
+        rig = bound_in(&rig, [100.0, 0.01, -1.0][random.index(3)]);
+    }
+    if chance(&mut random, "two skins") {
+        rig = with_two_skins(&rig, [100.0, 0.01, -1.0][random.index(3)]);
     }
     if chance(&mut random, "other unit and axes") {
         let turn = [Rotation::IDENTITY, z_up()][random.index(2)];

@@ -208,6 +208,7 @@ impl Bake {
             let (def, _) = settings.build(&file, &BuildOptions::default())?;
             let guess = file.analysis.unit_guess.as_ref().filter(|guess| !guess.is_sure);
             let mut notes: Vec<String> = guess.map(unit_note).into_iter().collect();
+            notes.extend(file.analysis.notes.iter().filter(|note| note.contains("--character")).cloned());
             notes.extend(settings.doubt(&def));
             return Ok((file, def, notes));
         };
