@@ -57,7 +57,7 @@ pub(super) struct Humanoid {
     pub legs: Limb,
 }
 
-/// Of two joints at the end of an arm the nearer is at least at this share of the other's distance, or it is no finger.
+/// Of two chains at the end of an arm the shorter reaches at least this share of the other's way, or they are no fingers.
 const FORKED: f32 = 0.8;
 /// The hips of a figure with a large head are at least this high, share of its height.
 const LOWEST_HIP: f32 = 0.1;
@@ -142,8 +142,8 @@ impl Evidence<'_> {
             let reach =
                 |way: usize| self.graph.distance(chain[chain.len() - 1], way) + self.graph.nodes[way].reach;
             ways.sort_by(|&a, &b| reach(b).total_cmp(&reach(a)));
-            // Two ends as far away, off the floor, are fingers, too.
-            let fork = ways.len() == 2 && long == 0 && reach(ways[1]) > FORKED * reach(ways[0]);
+            // Two that reach as far, off the floor, are fingers, too.
+            let fork = ways.len() == 2 && reach(ways[1]) > FORKED * reach(ways[0]);
             if fork && chain.len() > 2 && self.level(chain[chain.len() - 1]) > 0.22 {
                 break;
             }
