@@ -57,7 +57,7 @@ pub(super) struct Humanoid {
     pub legs: Limb,
 }
 
-/// Of two chains at the end of an arm the shorter reaches at least this share of the other's way, or they are no fingers.
+/// Of two joints on a forearm the nearer is at least at this share of the other's distance, or it is no finger.
 const FORKED: f32 = 0.8;
 /// The hips of a figure with a large head are at least this high, share of its height.
 const LOWEST_HIP: f32 = 0.1;
@@ -102,10 +102,25 @@ impl Evidence<'_> {
             spine,
             neck,
             head,
-            arms: limb(arms, [Part::UpperArm, Part::LowerArm, Part::Hand])?,
+            arms: self.without_fingers(limb(arms, [Part::UpperArm, Part::LowerArm, Part::Hand])?),
             legs: limb(legs, [Part::UpperLeg, Part::LowerLeg, Part::Foot])?,
         };
         self.stands(&found).then_some(found)
+    }
+
+    /// Arms without a hand where fingers grow out of the forearm, and nothing is called a hand.
+    fn without_fingers(&self, arms: Limb) -> Limb {
+        let (upper, lower, hand) = arms.split;
+        let is_hand = |&hand: &usize| {
+            let [forearm, hand] = [lower, hand].map(|at| arms.chain[0][at]);
+            let away = |child: usize| self.graph.distance(forearm, child);
+            let as_far =
+                |&&child: &&usize| self.symmetry.other(child).is_some() && away(child) > FORKED * away(hand);
+            let children = &self.graph.nodes[forearm].children;
+            self.part(hand) == Some(Part::Hand) || children.iter().filter(as_far).count() < 2
+        };
+        let hand = hand.filter(is_hand);
+        Limb { split: (upper, lower, hand), ..arms }
     }
 
     /// The trunk goes up and the legs go down.
@@ -142,11 +157,6 @@ impl Evidence<'_> {
             let reach =
                 |way: usize| self.graph.distance(chain[chain.len() - 1], way) + self.graph.nodes[way].reach;
             ways.sort_by(|&a, &b| reach(b).total_cmp(&reach(a)));
-            // Two that reach as far, off the floor, are fingers, too.
-            let fork = ways.len() == 2 && reach(ways[1]) > FORKED * reach(ways[0]);
-            if fork && chain.len() > 2 && self.level(chain[chain.len() - 1]) > 0.22 {
-                break;
-            }
             chain.push(ways[0]);
         }
         let mirrored = chain.iter().filter_map(|&i| self.symmetry.other(i)).collect();

@@ -4,7 +4,7 @@ use crate::build::{OTHERS, PEOPLE, built, check_sound};
 use crate::data::rig;
 use crate::disguise::{misnamed, nameless, shuffled, transformed, z_up};
 use sinew_anim::Rig;
-use sinew_math::{Rotation, Vec3};
+use sinew_math::Rotation;
 use sinew_ragdoll::{BuildOptions, RagdollBodyDef, RagdollDef, Verdict, drop_test, gate};
 
 /// The same bodies on the same joints, at the same places, as heavy.
