@@ -32,6 +32,7 @@ const TARGETS: &[Target] = &[
     Target { name: "bvh", seeds: "../shared/data/mocap", longest: 16_384 },
     Target { name: "clip", seeds: "", longest: 4_096 },
     Target { name: "deepmimic", seeds: "../shared/data/mocap", longest: 16_384 },
+    Target { name: "draco", seeds: "fuzz/seeds/draco", longest: 4_096 },
     Target { name: "events", seeds: "", longest: 4_096 },
     Target { name: "fbx", seeds: "fuzz/seeds/fbx", longest: 16_384 },
     Target { name: "gltf", seeds: "../shared/data/rigs", longest: 65_536 },

@@ -1,4 +1,4 @@
-//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | bench | fuzz`.
+//! All automation of this repository: `cargo xtask check | ci | tidy | golden | book | ragdolls | wild | bench | fuzz`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -13,6 +13,7 @@ mod ragdolls;
 mod spawns;
 mod targets;
 mod tidy;
+mod wild;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -38,6 +39,8 @@ enum Task {
     Book(book::Book),
     /// The quality of the ragdolls of many rigs, into docs/ragdoll-quality.md
     Ragdolls(ragdolls::Ragdolls),
+    /// What is seen in characters from anywhere, how they fall, and pictures of them, into docs/wild.md
+    Wild(wild::Wild),
     /// Time and quality beside other engines, into docs/benchmarks.md; or instructions of the kernels
     Bench(bench::Bench),
     /// Bytes from nowhere against the readers, and clips against the runtime
@@ -52,6 +55,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Task::Golden(golden) => golden.run()?,
         Task::Book(book) => book.run()?,
         Task::Ragdolls(ragdolls) => ragdolls.run()?,
+        Task::Wild(wild) => wild.run()?,
         Task::Fuzz(fuzz) => fuzz.run()?,
         Task::Bench(bench) => return bench.run(),
     }

@@ -5,7 +5,8 @@ use crate::quality_report::{quality_json, quality_text};
 use crate::report::number;
 use crate::story;
 use serde_json::{Map, Value, json};
-use sinew::ragdoll::{BakeInput, Baked, bake};
+use sinew::ragdoll::quality::judge_bake;
+use sinew::ragdoll::{BakeInput, Baked, Flaw, SkinQuality, Verdict, bake};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -17,6 +18,10 @@ pub struct Fall<'a> {
     pub baked: Baked,
     /// Simulated seconds per second of processor time.
     pub realtime_factor: f64,
+    /// Whether it is fit for use.
+    pub verdict: Verdict,
+    /// What is outside its bar, a sentence each.
+    pub reasons: Vec<String>,
 }
 
 impl<'a> Fall<'a> {
@@ -25,7 +30,15 @@ impl<'a> Fall<'a> {
         let (baked, cpu_seconds) = timed(|| bake(input));
         let seconds = baked.steps as f64 * input.world.step_nanoseconds as f64 * 1e-9;
         // The clock may be too coarse for a short bake.
-        Self { input, baked, realtime_factor: seconds / cpu_seconds.max(1e-6) }
+        let realtime_factor = seconds / cpu_seconds.max(1e-6);
+        let (verdict, reasons) = judge_bake(&baked.quality);
+        Self { input, baked, realtime_factor, verdict, reasons }
+    }
+
+    /// Adds what is wrong with the skin to the verdict.
+    pub fn judge_skin(&mut self, flaws: &[Flaw]) {
+        self.verdict = SkinQuality::verdict(flaws, self.verdict);
+        self.reasons.extend(flaws.iter().map(|flaw| format!("skin: {}", flaw.evidence)));
     }
 
     /// The figures of the contract.
@@ -44,6 +57,8 @@ impl<'a> Fall<'a> {
         object.insert("key_error_max_m".into(), number(error.distance));
         object.insert("key_error_max_deg".into(), number(error.angle.to_degrees()));
         object.append(&mut quality_json(&self.baked.quality));
+        object.insert("verdict".into(), self.verdict.name().into());
+        object.insert("reasons".into(), self.reasons.as_slice().into());
         object.insert("hash".into(), format!("{:016x}", self.baked.hash).into());
         object.insert("outputs".into(), outputs.into());
         object.into()
@@ -57,6 +72,10 @@ impl<'a> Fall<'a> {
         }
         text += "\nQuality\n";
         text += &quality_text(&self.baked.quality);
+        let _ = writeln!(text, "  verdict: {}", self.verdict.name());
+        for reason in &self.reasons {
+            let _ = writeln!(text, "    {reason}");
+        }
         let _ = writeln!(
             text,
             "\n{} s of {} bodies at {:.0} × real time, state {:016x}",

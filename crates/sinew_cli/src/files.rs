@@ -1,7 +1,7 @@
 //! Reading and writing what commands work on.
 
 use crate::failure::{Failure, Result};
-use sinew::anim::{RigAnalysis, analyze};
+use sinew::anim::{RigAnalysis, analyze, characters};
 use sinew::formats::{
     Document, MotionFormat, MotionOptions, ReadOptions, Textures, load_gltf, load_motion, no_files,
     read_bytes, read_gltf, write_all_atomic, write_motion,
@@ -35,6 +35,40 @@ impl CharacterFile {
             Ok(analysis) => Ok(Self { name, document, analysis }),
             Err(no_skin) => Err(Failure::of_file(name, no_skin)),
         }
+    }
+}
+
+impl CharacterFile {
+    /// Leaves out the meshes of other characters than the `wanted` one, from 1. Where there are several and none is wanted, that
+    /// is a note of the analysis.
+    pub fn choose(&mut self, wanted: Option<usize>) -> Result<()> {
+        let rig = &mut self.document.rig;
+        let all = characters(rig);
+        let Some(number) = wanted else {
+            if all.len() > 1 {
+                self.analysis.notes.push(format!(
+                    "{} skeletons without a joint in common are taken for one character: --character 1 to {0} picks one",
+                    all.len()
+                ));
+            }
+            return Ok(());
+        };
+        let Some(own) = number.checked_sub(1).and_then(|index| all.get(index)) else {
+            let there = if all.len() == 1 { "one character" } else { &format!("{} characters", all.len()) };
+            return Err(Failure::at(
+                &self.name,
+                format!("there is no character {number} but {there}"),
+                "--character",
+            ));
+        };
+        let is_others = |mesh: usize| all.iter().any(|meshes| meshes.contains(&mesh)) && !own.contains(&mesh);
+        let mut index = 0;
+        rig.meshes.retain(|_| {
+            index += 1;
+            !is_others(index - 1)
+        });
+        self.analysis = analyze(rig).map_err(|no_skin| Failure::of_file(&self.name, no_skin))?;
+        Ok(())
     }
 }
 

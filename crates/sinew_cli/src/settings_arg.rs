@@ -21,6 +21,10 @@ pub struct SettingsArg {
     /// below go before it
     #[arg(help_heading = HEADING, long, value_name = "FILE")]
     settings: Option<PathBuf>,
+    /// Which of the file's characters, from 1, where there are several skeletons that have no joint in common; by default all are
+    /// taken for one
+    #[arg(help_heading = HEADING, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    character: Option<u16>,
     /// Height that the character has, metres: sets the length of the file's unit
     #[arg(help_heading = HEADING, long, value_name = "M", value_parser = positive, allow_negative_numbers = true, conflicts_with = "unit")]
     height: Option<f32>,
@@ -100,6 +104,7 @@ impl SettingsArg {
     pub fn given(&self) -> Option<&'static str> {
         let given = [
             ("--settings", self.settings.is_some()),
+            ("--character", self.character.is_some()),
             ("--height", self.height.is_some()),
             ("--unit", self.unit.is_some()),
             ("--mass", self.mass.is_some()),
@@ -132,6 +137,7 @@ impl SettingsArg {
     /// A character with its settings: its roles and its unit are what they say.
     pub fn load_character(&self, path: &Path, textures: Textures) -> Result<(CharacterFile, LoadedSettings)> {
         let mut character = CharacterFile::load(path, textures)?;
+        character.choose(self.character.map(usize::from))?;
         let loaded = self.load(path)?;
         let analysis = analyze_with(&character.document.rig, &character.analysis, &loaded.settings);
         character.analysis = analysis.map_err(|error| loaded.failure(&character.name, error))?;

@@ -389,7 +389,10 @@ impl<'a> Scene<'a> {
         // A body without pairs may have its plane of symmetry across its own up.
         let left = if lateral.dot(up).abs() < 0.5 { self.left(up, &feet, notes) } else { Vec3::X };
         let mut roles = vec![None; self.rig.joints.len()];
-        for (node, role) in self.graph.nodes.iter().zip(generic_roles(&self.graph, &self.symmetry, left)) {
+        let parts: Vec<Option<Part>> =
+            self.graph.nodes.iter().map(|node| self.readings[node.joint].part).collect();
+        let generic = generic_roles(&self.graph, &self.symmetry, left, &parts);
+        for (node, role) in self.graph.nodes.iter().zip(generic) {
             roles[node.joint] = Some(RoleGuess { role, confidence: CONFIDENCE_GENERIC });
         }
         Draft { roles, humanoid: false, up, left }

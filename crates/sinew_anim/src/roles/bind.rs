@@ -2,9 +2,10 @@
 
 use super::names::read_names;
 use crate::pose::{local_to_model, rest_pose};
-use crate::rig::{LocalTransform, Mesh, Rig};
+use crate::rig::{JointIdx, LocalTransform, Mesh, Rig};
 use crate::skinning::skin_vertices;
 use sinew_math::{Affine, Vec3, max3, min3};
+use std::collections::BTreeMap;
 
 /// Joints nearer to each other than this share of the body's size are in one place.
 const COINCIDENT: f32 = 1e-3;
@@ -17,6 +18,10 @@ pub(super) struct Bound {
     pub area: Vec<f32>,
     /// All skinned vertices.
     pub vertices: Vec<Vec3>,
+    /// Per vertex the joint that moves it most; of a skeleton without skin the joint itself.
+    pub movers: Vec<JointIdx>,
+    /// How many sides of the skin's triangles run from one joint's vertices to another's, the smaller joint first.
+    pub links: BTreeMap<(JointIdx, JointIdx), u32>,
     /// Least corner of the skin.
     pub lo: Vec3,
     /// Greatest corner of the skin.
@@ -30,6 +35,8 @@ impl Bound {
         let mut bound = Self {
             area: vec![0.0; rig.joints.len()],
             vertices: Vec::new(),
+            movers: Vec::new(),
+            links: BTreeMap::new(),
             lo: Vec3::splat(f32::INFINITY),
             hi: Vec3::splat(f32::NEG_INFINITY),
             model,
@@ -49,9 +56,12 @@ impl Bound {
         local_to_model(rig, pose, &Affine::IDENTITY, &mut model);
         let mut is_end = vec![true; rig.joints.len()];
         rig.joints.iter().filter_map(|joint| joint.parent).for_each(|parent| is_end[parent] = false);
+        let movers: Vec<JointIdx> = (0..model.len()).filter(|&i| model[i].translation.is_finite()).collect();
         let mut bound = Self {
             area: vec![0.0; rig.joints.len()],
-            vertices: model.iter().map(|joint| joint.translation).filter(|at| at.is_finite()).collect(),
+            vertices: movers.iter().map(|&joint| model[joint].translation).collect(),
+            movers,
+            links: BTreeMap::new(),
             lo: Vec3::splat(f32::INFINITY),
             hi: Vec3::splat(f32::NEG_INFINITY),
             model,
@@ -99,6 +109,19 @@ impl Bound {
         let (mut positions, mut normals) = (Vec::new(), Vec::new());
         skin_vertices(rig, m, p, &self.model, &mut positions, &mut normals);
         let share = vertex_areas(&positions, &primitive.indices);
+        let mover = |i: usize| {
+            let slots = primitive.joints[i].into_iter().zip(primitive.weights[i]);
+            let most = slots.reduce(|a, b| if b.1 > a.1 { b } else { a });
+            most.map_or(0, |(slot, _)| skin.joints[usize::from(slot)])
+        };
+        for corners in primitive.indices.chunks_exact(3) {
+            for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+                let (a, b) = (mover(corners[a] as usize), mover(corners[b] as usize));
+                if a != b {
+                    *self.links.entry((a.min(b), a.max(b))).or_insert(0) += 1;
+                }
+            }
+        }
         for (i, &position) in positions.iter().enumerate() {
             if !position.is_finite() || !share[i].is_finite() {
                 continue;
@@ -106,6 +129,7 @@ impl Bound {
             self.vertices.push(position);
             self.lo = min3(self.lo, position);
             self.hi = max3(self.hi, position);
+            self.movers.push(mover(i));
             for (slot, weight) in primitive.joints[i].into_iter().zip(primitive.weights[i]) {
                 if weight > 0.0 {
                     self.area[skin.joints[usize::from(slot)]] += weight * share[i];

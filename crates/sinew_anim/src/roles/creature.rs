@@ -4,31 +4,43 @@ use super::axes::possible_ups;
 use super::bind::Bound;
 use super::graph::Graph;
 use super::humanoid::Stance;
+use super::names::Part;
 use super::role::Role;
 use super::symmetry::Symmetry;
 use sinew_math::Vec3;
 
 /// A role per node: the midline chain with the most skin is the trunk, the first other midline chain the tail, every
-/// other chain a limb.
-pub(super) fn generic_roles(graph: &Graph, symmetry: &Symmetry, left: Vec3) -> Vec<Role> {
+/// other chain a limb. Where names speak of a head or a tail (`parts`, per node), the trunk leads to the one and not to the other.
+pub(super) fn generic_roles(
+    graph: &Graph,
+    symmetry: &Symmetry,
+    left: Vec3,
+    parts: &[Option<Part>],
+) -> Vec<Role> {
     let mut roles: Vec<Option<Role>> = vec![None; graph.nodes.len()];
-    let skin = |i: usize| graph.nodes[i].subtree_area;
-    let heavier = |a: usize, b: usize| if skin(b) > skin(a) { b } else { a };
+    let [to_head, to_tail] = [Part::Head, Part::Tail].map(|part| leads_to(graph, parts, part));
+    // Of the ways on, one to what is wanted first, then those that do not lead to what is not, then that with the most skin.
+    let better = |a: usize, b: usize, wanted: &[bool], unwanted: Option<&[bool]>| {
+        let rank = |i: usize| (wanted[i], unwanted.is_none_or(|unwanted| !unwanted[i]));
+        let skin = |i: usize| graph.nodes[i].subtree_area;
+        if rank(b) > rank(a) || rank(b) == rank(a) && skin(b) > skin(a) { b } else { a }
+    };
     // A chain that bends aside without branching still goes on.
-    let midline = |from: usize, roles: &[Option<Role>]| {
+    let midline = |from: usize, roles: &[Option<Role>], wanted: &[bool], unwanted: Option<&[bool]>| {
         let children = &graph.nodes[from].children;
         let goes_on = |i: &usize| roles[*i].is_none() && (children.len() == 1 || symmetry.on_midline(*i));
-        children.iter().copied().filter(goes_on).reduce(heavier)
+        children.iter().copied().filter(goes_on).reduce(|a, b| better(a, b, wanted, unwanted))
     };
     let mut trunk = vec![graph.root];
-    while let Some(next) = midline(trunk[trunk.len() - 1], &roles) {
+    while let Some(next) = midline(trunk[trunk.len() - 1], &roles, &to_head, Some(&to_tail)) {
         trunk.push(next);
     }
     for (n, &node) in (0..).zip(&trunk) {
         roles[node] = Some(Role::SpineSegment(n));
     }
-    let tail_root = trunk.iter().find_map(|&node| midline(node, &roles));
-    let tail: Vec<usize> = core::iter::successors(tail_root, |&node| midline(node, &roles)).collect();
+    let tail_from = |node: usize, roles: &[Option<Role>]| midline(node, roles, &to_tail, None);
+    let tail_root = trunk.iter().find_map(|&node| tail_from(node, &roles));
+    let tail: Vec<usize> = core::iter::successors(tail_root, |&node| tail_from(node, &roles)).collect();
     for (n, &node) in (0..).zip(&tail) {
         roles[node] = Some(Role::TailSegment(n));
     }
@@ -49,6 +61,17 @@ pub(super) fn generic_roles(graph: &Graph, symmetry: &Symmetry, left: Vec3) -> V
         }
     }
     roles.into_iter().map(|role| role.expect("every node is in a chain")).collect()
+}
+
+/// Whether a node or one below it is named for a part.
+fn leads_to(graph: &Graph, parts: &[Option<Part>], part: Part) -> Vec<bool> {
+    let mut leads: Vec<bool> = parts.iter().map(|named| *named == Some(part)).collect();
+    for &node in graph.order.iter().rev() {
+        if let Some(parent) = graph.nodes[node].parent.filter(|_| leads[node]) {
+            leads[parent] = true;
+        }
+    }
+    leads
 }
 
 /// Sorts limbs by where they begin and how far they reach, not by their order in the file: those near the root first, of a

@@ -21,6 +21,8 @@ pub(super) struct Node {
 
 /// Most joints of a foot beside the body: it and its toes.
 const LONGEST_FOOT: usize = 2;
+/// A foot beside the body belongs to the leaf whose skin comes nearer than this share of the skin's size to where it begins.
+const AT_SKIN: f32 = 0.06;
 /// A foot that hangs on the root belongs to the leg whose end is nearer than this share of the skin's size.
 const AT_END: f32 = 0.01;
 
@@ -76,13 +78,14 @@ impl Graph {
         self.root = roots.remove(main);
         roots.sort_by_key(|&root| core::cmp::Reverse(self.subtree(root).len()));
         let ends = ends(rig, bound, node_of);
+        let trunk = self.subtree(self.root);
         for stray in roots {
-            let parent = self.place_for(stray, &ends, bound.size());
+            let parent = self.place_for(stray, &trunk, &ends, bound);
             self.nodes[stray].parent = Some(parent);
             self.nodes[parent].children.push(stray);
             self.adopted.push(stray);
         }
-        self.hang_feet(&ends, bound.size());
+        self.hang_feet(&ends, bound);
         self.order = self.subtree(self.root);
         for k in (0..self.order.len()).rev() {
             let i = self.order[k];
@@ -95,8 +98,10 @@ impl Graph {
         Some(())
     }
 
-    /// Feet that hang on the root, as those led by inverse kinematics do, and sit right at the end of a leg go with the leg.
-    fn hang_feet(&mut self, ends: &[(usize, Vec3)], size: f32) {
+    /// Feet that hang on the root, as those led by inverse kinematics do, and sit right at the end of a leg, or whose skin runs
+    /// into it, go with the leg.
+    fn hang_feet(&mut self, ends: &[(usize, Vec3)], bound: &Bound) {
+        let size = bound.size();
         for foot in self.nodes[self.root].children.clone() {
             let own = self.subtree(foot);
             if own.len() > LONGEST_FOOT {
@@ -106,8 +111,10 @@ impl Graph {
             let is_leg = |node: usize| {
                 node != self.root && self.nodes[node].children.is_empty() && !own.contains(&node)
             };
-            let leg = ends.iter().find(|&&(node, at)| is_leg(node) && (at - start).length() < AT_END * size);
-            let Some(&(leg, _)) = leg else { continue };
+            let at_end =
+                |&&(node, at): &&(usize, Vec3)| is_leg(node) && (at - start).length() < AT_END * size;
+            let grown = || self.grows_into(foot, 0..self.nodes.len(), bound).filter(|&leg| is_leg(leg));
+            let Some(leg) = ends.iter().find(at_end).map(|&(leg, _)| leg).or_else(grown) else { continue };
             self.nodes[foot].parent = Some(leg);
             self.nodes[leg].children.push(foot);
             let root = self.root;
@@ -118,39 +125,71 @@ impl Graph {
         }
     }
 
-    /// Where a stray tree belongs. Rigs baked from inverse kinematics leave the feet beside the body: such a short
-    /// stray belongs to the leaf whose end it starts at, or to a leaf much nearer than the root; all others to the
-    /// root.
-    fn place_for(&self, stray: usize, ends: &[(usize, Vec3)], size: f32) -> usize {
-        let start = self.nodes[stray].position;
-        let mut in_body = vec![false; self.nodes.len()];
-        self.subtree(self.root).into_iter().for_each(|i| in_body[i] = true);
+    /// Where a stray tree belongs. Rigs baked from inverse kinematics leave the feet beside the body: such a short stray belongs
+    /// to the leaf that its skin runs into, or at whose end it starts, or that is much nearer than the root, or whose skin it
+    /// starts at. All others belong to what of the `trunk`, the tree that nothing was added to, their skin runs into. What finds
+    /// nothing hangs on the root.
+    fn place_for(&self, stray: usize, trunk: &[usize], ends: &[(usize, Vec3)], bound: &Bound) -> usize {
+        let (size, start) = (bound.size(), self.nodes[stray].position);
+        let body = self.subtree(self.root);
         let nearest = |places: &mut dyn Iterator<Item = (usize, Vec3)>| {
             places
-                .filter(|&(node, _)| in_body[node])
+                .filter(|(node, _)| body.contains(node))
                 .map(|(node, place)| ((place - start).length(), node))
                 .reduce(|a, b| if b.0 < a.0 { b } else { a })
         };
-        if let Some((distance, node)) = nearest(&mut ends.iter().copied())
-            && distance < 0.03 * size
-        {
-            return node;
+        let end = nearest(&mut ends.iter().copied()).filter(|&(distance, _)| distance < 0.03 * size);
+        if self.subtree(stray).len() > LONGEST_FOOT {
+            let grown = self.grows_into(stray, trunk.iter().copied(), bound);
+            return grown.or(end.map(|(_, node)| node)).unwrap_or(self.root);
         }
         // No foot stands on another foot: what was adopted itself adopts nothing.
-        let leaves = |i: &usize| {
-            let is_leaf = self.nodes[*i].children.iter().all(|child| self.adopted.contains(child));
-            is_leaf && self.nodes[*i].parent.is_some() && !self.adopted.contains(i)
+        let is_leaf = |i: &usize| {
+            let is_end = self.nodes[*i].children.iter().all(|child| self.adopted.contains(child));
+            is_end && self.nodes[*i].parent.is_some() && !self.adopted.contains(i)
         };
-        let mut leaves = (0..self.nodes.len()).filter(leaves).map(|i| (i, self.nodes[i].position));
-        match nearest(&mut leaves) {
-            Some((distance, leaf))
-                if self.subtree(stray).len() <= LONGEST_FOOT
-                    && distance < 0.75 * (self.nodes[self.root].position - start).length() =>
-            {
-                leaf
-            }
-            _ => self.root,
+        let leaves: Vec<usize> = body.iter().copied().filter(is_leaf).collect();
+        if let Some(leaf) = self.grows_into(stray, body.iter().copied(), bound)
+            && leaves.contains(&leaf)
+        {
+            return leaf;
         }
+        if let Some((_, node)) = end {
+            return node;
+        }
+        let from_root = (self.nodes[self.root].position - start).length();
+        let leaf = nearest(&mut leaves.iter().map(|&i| (i, self.nodes[i].position)));
+        if let Some((distance, leaf)) = leaf
+            && distance < 0.75 * from_root
+        {
+            return leaf;
+        }
+        let skin = |&leaf: &usize| {
+            let joint = self.nodes[leaf].joint;
+            let own = bound.vertices.iter().zip(&bound.movers).filter(move |(_, mover)| **mover == joint);
+            own.map(move |(&vertex, _)| (leaf, vertex))
+        };
+        let near = nearest(&mut leaves.iter().flat_map(skin));
+        near.filter(|&(distance, _)| distance < AT_SKIN * size).map_or(self.root, |(_, leaf)| leaf)
+    }
+
+    /// Of some nodes the one with the most skin in common with a tree that is not among them, of two the nearer; `None` if they
+    /// touch nowhere.
+    fn grows_into(&self, tree: usize, among: impl Iterator<Item = usize>, bound: &Bound) -> Option<usize> {
+        let own = self.subtree(tree);
+        let links = |node: usize| -> u32 {
+            let joint = self.nodes[node].joint;
+            let between = |&part: &usize| {
+                let other = self.nodes[part].joint;
+                bound.links.get(&(joint.min(other), joint.max(other)))
+            };
+            own.iter().filter_map(between).sum()
+        };
+        let all = among.filter(|node| !own.contains(node));
+        let all = all.map(|node| (links(node), node)).filter(|(links, _)| *links > 0);
+        let away = |node: usize| self.distance(tree, node);
+        let better = |a: &(u32, usize), b: &(u32, usize)| b.0 > a.0 || b.0 == a.0 && away(b.1) < away(a.1);
+        all.reduce(|a, b| if better(&a, &b) { b } else { a }).map(|(_, node)| node)
     }
 
     /// A node and all below it, parents before children.

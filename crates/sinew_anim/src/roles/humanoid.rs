@@ -57,6 +57,11 @@ pub(super) struct Humanoid {
     pub legs: Limb,
 }
 
+/// Of two joints on a forearm the nearer is at least at this share of the other's distance, or it is no finger.
+const FORKED: f32 = 0.8;
+/// The hips of a figure with a large head are at least this high, share of its height.
+const LOWEST_HIP: f32 = 0.1;
+
 /// What recognition looks at.
 pub(super) struct Evidence<'a> {
     pub graph: &'a Graph,
@@ -97,10 +102,25 @@ impl Evidence<'_> {
             spine,
             neck,
             head,
-            arms: limb(arms, [Part::UpperArm, Part::LowerArm, Part::Hand])?,
+            arms: self.without_fingers(limb(arms, [Part::UpperArm, Part::LowerArm, Part::Hand])?),
             legs: limb(legs, [Part::UpperLeg, Part::LowerLeg, Part::Foot])?,
         };
         self.stands(&found).then_some(found)
+    }
+
+    /// Arms without a hand where fingers grow out of the forearm, and nothing is called a hand.
+    fn without_fingers(&self, arms: Limb) -> Limb {
+        let (upper, lower, hand) = arms.split;
+        let is_hand = |&hand: &usize| {
+            let [forearm, hand] = [lower, hand].map(|at| arms.chain[0][at]);
+            let away = |child: usize| self.graph.distance(forearm, child);
+            let as_far =
+                |&&child: &&usize| self.symmetry.other(child).is_some() && away(child) > FORKED * away(hand);
+            let children = &self.graph.nodes[forearm].children;
+            self.part(hand) == Some(Part::Hand) || children.iter().filter(as_far).count() < 2
+        };
+        let hand = hand.filter(is_hand);
+        Limb { split: (upper, lower, hand), ..arms }
     }
 
     /// The trunk goes up and the legs go down.
@@ -149,7 +169,7 @@ impl Evidence<'_> {
             let lowest = chain.iter().map(|&i| self.level(i)).fold(f32::INFINITY, min);
             // Without a foot joint the chain ends at the knee.
             let limit = if chain.len() > 2 { 0.2 } else { 0.35 };
-            chain.len() > 1 && lowest < limit && (0.2..0.75).contains(&self.level(chain[0]))
+            chain.len() > 1 && lowest < limit && (LOWEST_HIP..0.75).contains(&self.level(chain[0]))
         };
         let best = (0..limbs.len())
             .filter(|&i| reaches_floor(&limbs[i][0]))
@@ -164,11 +184,18 @@ impl Evidence<'_> {
         let width = |chain: &[usize]| chain.iter().map(|&i| self.symmetry.side(self.graph, i)).fold(0.0, max);
         let candidate = |chain: &[usize]| {
             let lowest = chain.iter().map(|&i| self.level(i)).fold(f32::INFINITY, min);
-            chain.len() > 1 && self.level(chain[0]) > hip + 0.1 && lowest > 0.22
+            chain.len() > 1 && self.level(chain[0]) > hip + 0.1 && lowest > min(0.22, hip + 0.02)
+        };
+        // Ears grow out of where the trunk ends.
+        let goes_on = |chain: &[usize]| {
+            let attachment = self.graph.nodes[chain[0]].parent;
+            attachment.is_some_and(|at| {
+                self.graph.nodes[at].children.iter().any(|&child| self.symmetry.on_midline(child))
+            })
         };
         let best = (0..limbs.len())
             .filter(|&i| candidate(&limbs[i][0]))
-            .map(|i| (width(&limbs[i][0]), i))
+            .map(|i| ((goes_on(&limbs[i][0]), width(&limbs[i][0])), i))
             .reduce(|a, b| if b.0 > a.0 { b } else { a })?;
         Some(limbs[best.1].clone())
     }
@@ -178,7 +205,7 @@ impl Evidence<'_> {
     }
 
     /// The midline joint at the height of the hips. Thighs may hang off some other joint of the trunk, so the
-    /// joints from the root to the chest compete: by name, else the first of those near the hips that moves a fair
+    /// joints from the root to the chest compete: by name, else the lowest of those near the hips that moves a fair
     /// share of skin.
     fn pelvis(&self, legs: &[Vec<usize>; 2], arms: &[Vec<usize>; 2]) -> usize {
         let hip = self.level(legs[0][0]);
@@ -193,7 +220,9 @@ impl Evidence<'_> {
             return named;
         }
         let most = near.iter().map(|&i| self.graph.nodes[i].area).fold(0.0, max);
-        near.iter().copied().find(|&i| self.graph.nodes[i].area >= 0.2 * most).unwrap_or(trunk[0])
+        let fair = near.iter().copied().filter(|&i| self.graph.nodes[i].area >= 0.2 * most);
+        // Of one that goes down to the next the lower one: the other leads the body, as a handle does.
+        fair.reduce(|a, b| if self.level(b) < self.level(a) { b } else { a }).unwrap_or(trunk[0])
     }
 
     /// The midline chain above the arms that carries the most skin: its last joint with a fair share is the head.

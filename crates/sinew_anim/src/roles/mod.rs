@@ -9,6 +9,7 @@
 mod anatomy;
 mod axes;
 mod bind;
+mod characters;
 mod correct;
 mod creature;
 mod graph;
@@ -19,6 +20,7 @@ mod props;
 mod role;
 mod symmetry;
 
+pub use characters::characters;
 pub use correct::{Correction, CorrectionError};
 pub use role::{HUMANOID_ROLES, Role, Side};
 

@@ -401,3 +401,38 @@ fn it_falls_the_way_that_it_faces() {
     let run = sinew(&["bake", &file, "-o", &out, "--at", "1,2"]);
     assert!(run.code == Some(2) && run.stderr.contains("must be three numbers"), "{run:?}");
 }
+
+/// A hit, a travelling clip and a world are held to the bars of a drop, and what is beyond them is said.
+#[test]
+fn a_bake_is_judged_like_a_drop() {
+    let folder = Folder::new("bake-judged");
+    let (character, out) = (folder.mannequin(), folder.path("fall.glb"));
+    let bodies: Vec<_> = Site::CabinWithStairs.props().into_iter().map(|prop| prop.body).collect();
+    let world = folder.file("cabin.json", write_world(&bodies));
+    let baked = sinew(&[
+        "bake",
+        &character,
+        "--world",
+        &world,
+        "--hit",
+        "chest=0,0,90@1.0",
+        "--seconds",
+        "4",
+        "-o",
+        &out,
+        "--json",
+    ])
+    .json();
+    assert_eq!(baked["verdict"], "good", "{baked:#}");
+    assert_eq!(baked["reasons"], serde_json::json!([]));
+    let Some(data) = shared_data() else { return };
+    // Its skin lies in the floor, although its bodies do not.
+    let mech = data.join("rigs_wild/mech_George.glb").display().to_string();
+    let baked =
+        sinew(&["bake", &mech, "--no-builtin-motions", "--seconds", "4", "-o", &out, "--json"]).json();
+    assert_eq!(baked["verdict"], "usable", "{baked:#}");
+    assert!(
+        baked["reasons"][0].as_str().is_some_and(|reason| reason.starts_with("skin: at rest")),
+        "{baked:#}"
+    );
+}

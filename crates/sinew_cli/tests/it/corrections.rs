@@ -167,3 +167,55 @@ fn a_hit_on_the_chest_of_a_creature_meets_its_spine() {
     let line = run("leftHand=0,0,2@0.1").refusal(1).to_owned();
     assert!(line.contains("no bone 'leftHand' to hit; the nearest of "), "{line}");
 }
+
+/// Two mannequins in one file, the second half as tall and a metre aside.
+fn couple() -> Rig {
+    let mut rig = mannequin().rig;
+    let mut child = rig.clone();
+    let (joints, skins) = (rig.joints.len(), rig.skins.len());
+    for joint in &mut child.joints {
+        joint.rest.translation *= 0.5;
+        match &mut joint.parent {
+            Some(parent) => *parent += joints,
+            None => joint.rest.translation.x += 1.0,
+        }
+        joint.source += joints;
+        joint.name += "_child";
+    }
+    for skin in &mut child.skins {
+        skin.joints.iter_mut().for_each(|joint| *joint += joints);
+        skin.inverse_bind.iter_mut().for_each(|bind| bind.translation *= 0.5);
+    }
+    for mesh in &mut child.meshes {
+        mesh.joint += joints;
+        mesh.skin = mesh.skin.map(|skin| skins + skin);
+        let positions = mesh.primitives.iter_mut().flat_map(|primitive| &mut primitive.positions);
+        positions.for_each(|position| *position *= 0.5);
+    }
+    rig.joints.extend(child.joints);
+    rig.skins.extend(child.skins);
+    rig.meshes.extend(child.meshes);
+    rig.stated_roles.clear();
+    rig
+}
+
+#[test]
+fn one_of_several_characters_is_picked() {
+    let folder = Folder::new("couple");
+    let file = folder.file("couple.glb", glb(&couple(), &[]));
+    let build = |extra: &[&str]| sinew(&[&["ragdoll", "build", &file, "--json"], extra].concat());
+    let height = |object: &Value| object["height_m"].as_f64().expect("a height");
+    let [first, second] = ["1", "2"].map(|number| build(&["--character", number]).json());
+    assert!((height(&second) / height(&first) - 0.5).abs() < 0.01, "{} {}", height(&first), height(&second));
+    assert_eq!(bodies(&first).len(), bodies(&second).len());
+    assert!(bodies(&second).iter().all(|(bone, _)| bone.ends_with("_child")), "{second:#}");
+    let note =
+        "2 skeletons without a joint in common are taken for one character: --character 1 to 2 picks one";
+    assert!(build(&[]).json()["notes"].to_string().contains(note));
+    assert!(!first["notes"].to_string().contains("--character"));
+    let refused = build(&["--character", "3"]).refusal(1);
+    assert!(refused.ends_with("there is no character 3 but 2 characters (--character)"), "{refused}");
+    let out = folder.path("fall.glb");
+    let baked = sinew(&["bake", &file, "--character", "2", "--seconds", "1", "-o", &out, "--json"]).json();
+    assert_eq!(baked["bodies"].as_u64(), Some(bodies(&second).len() as u64));
+}

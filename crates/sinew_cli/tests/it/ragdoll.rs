@@ -91,18 +91,16 @@ fn rigs_of_others_have_no_errors() {
     }
 }
 
-/// A sword that is skinned to a hand has no body: it lies in the floor, which is said with the bone and a remedy.
+/// The fish's skin reaches far around its bodies: it lies in the floor, which is said with the bone and a remedy.
 #[test]
 fn skin_in_the_floor_is_told() {
     let Some(data) = shared_data() else { return };
-    let file = data.join("rigs/quaternius_cyberpunk_Character.glb").display().to_string();
+    let file = data.join("rigs/quaternius_MandarinFish.glb").display().to_string();
     let object = sinew(&["ragdoll", "doctor", &file, "--json"]).json();
     check_keys("ragdoll doctor", &object);
-    assert_eq!(codes(&object), ["skin-off-floor"]);
-    assert_eq!(
-        (&object["findings"][0]["bone"], &object["findings"][0]["fixed"]),
-        (&"Hand.R".into(), &false.into())
-    );
+    let findings = object["findings"].as_array().expect("findings");
+    let found = findings.iter().find(|finding| finding["code"] == "skin-off-floor").expect("it is told");
+    assert_eq!((&found["bone"], &found["fixed"]), (&"Main1".into(), &false.into()));
     let built = sinew(&["ragdoll", "build", &file, "--json"]).json();
     assert_eq!(built["quality"]["verdict"], "usable");
     let reasons = built["quality"]["reasons"].as_array().expect("reasons");

@@ -28,7 +28,7 @@ const SHRINK: f32 = 0.97;
 /// quarter of it.
 const PAST_JOINT: f32 = 0.125;
 /// A shape so many times as long as its twin on the other side has something in it that is not the body's.
-const BURDENED: f32 = 1.6;
+pub(crate) const BURDENED: f32 = 1.6;
 /// Twins whose volumes differ by more than this factor get the shape of the one that fits better.
 const UNLIKE: f32 = 1.3;
 /// What a shape's error counts for in the choice between kinds, if it is not of the kind that suits the part: another must be
@@ -70,11 +70,25 @@ pub struct Fit {
 pub fn fit_shapes(bones: &Bones, surface: &[Vec<Share>], choice: ShapeChoice) -> Vec<Fit> {
     let fits: Vec<_> =
         (0..bones.list.len()).map(|bone| fit_bone(bones, bone, &surface[bone], choice)).collect();
-    (0..fits.len()).map(|bone| reconciled(bones, &fits, bone)).collect()
+    let held =
+        |bone: usize| holding(bones, &fits, bone, &surface[bone]).filter(|_| choice == ShapeChoice::Auto);
+    (0..fits.len()).map(|bone| held(bone).unwrap_or_else(|| reconciled(bones, &fits, bone))).collect()
 }
 
-/// The shape of a bone, or the mirror image of its twin's where that is the better one: a sword that is skinned to a
-/// hand is no part of it, and a coarse mesh may give the two sides different shapes.
+/// The hull of a hand with what it holds by its own skin, such as a sword, which would lie in the floor; `None` of a hand that is
+/// like the other.
+fn holding(bones: &Bones, fits: &[Fit], bone: usize, shares: &[Share]) -> Option<Fit> {
+    let twin = bones.twin(bone).filter(|_| bones.list[bone].part == Part::Hand)?;
+    let radius = |fit: &Fit| fit.shape.bounding_radius();
+    if fits[twin].selection == Selection::Nothing || radius(&fits[bone]) <= BURDENED * radius(&fits[twin]) {
+        return None;
+    }
+    let patch = Patch::select(shares, Symmetry::AsIs)?;
+    solid::fit_whole_hull(&solid::fit_box(bones, bone, &patch), &patch)
+}
+
+/// The shape of a bone, or the mirror image of its twin's where that is the better one: a pad that is skinned to a shoulder is
+/// no part of it, and a coarse mesh may give the two sides different shapes.
 fn reconciled(bones: &Bones, fits: &[Fit], bone: usize) -> Fit {
     let own = fits[bone].clone();
     let Some(twin) = bones.twin(bone) else { return own };

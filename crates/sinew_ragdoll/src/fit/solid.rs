@@ -30,14 +30,22 @@ pub(super) fn fit_box(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     measured(Shape::Box { half_extents }, frame, patch)
 }
 
-/// The hull of the outermost points along 26 directions: the faces, edges and corners of the part's box. `None` where they
-/// have none.
+/// The hull of the outermost points along 26 directions: the faces, edges and corners of the part's box, within it, so that
+/// it ends at the joints where that does. `None` where they have none.
 pub(super) fn fit_hull(cuboid: &Fit, patch: &Patch) -> Option<Fit> {
     let Shape::Box { half_extents: half } = cuboid.shape else { return None };
+    hull_of(cuboid, patch, |point| max3(min3(point, half), -half))
+}
+
+/// As [`fit_hull`], around all of the skin, wherever it reaches.
+pub(super) fn fit_whole_hull(cuboid: &Fit, patch: &Patch) -> Option<Fit> {
+    hull_of(cuboid, patch, |point| point)
+}
+
+fn hull_of(cuboid: &Fit, patch: &Patch, within: impl Fn(Vec3) -> Vec3) -> Option<Fit> {
+    let Shape::Box { half_extents: half } = cuboid.shape else { return None };
     let frame = cuboid.character_from_body;
-    // Within the box, so that it ends at the joints where that does.
-    let local: Vec<_> =
-        patch.samples.iter().map(|s| max3(min3(frame.inverse_point(s.point), half), -half)).collect();
+    let local: Vec<_> = patch.samples.iter().map(|s| within(frame.inverse_point(s.point))).collect();
     let mut points = Vec::with_capacity(26);
     for direction in directions() {
         let along = direction / half;

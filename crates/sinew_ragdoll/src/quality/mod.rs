@@ -10,7 +10,7 @@ pub use drop_test::{DropReport, Fallen, drop_test};
 pub use gate::{Bar, GateReport, Miss, gate, gate_on, random_fall, random_pose};
 pub use meter::QualityMeter;
 pub use plausible::implausible;
-pub use verdict::{Verdict, judge};
+pub use verdict::{Verdict, judge, judge_bake};
 
 /// Figures of a character's falls, see the fields. Times are seconds of the world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,6 +1,7 @@
 //! From figures to a verdict, by the limits of the specification (section 4).
 
 use super::Quality;
+use super::drop_test::worse;
 
 /// Whether a ragdoll is fit for use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,35 +34,64 @@ struct Limit {
     usable: f32,
 }
 
+impl Limit {
+    fn of(what: &'static str, value: f32, good: f32, usable: f32) -> Self {
+        Self { what, value: Some(value), good, usable }
+    }
+}
+
 /// Judges drops and a 15 m/s wall hit together. The reasons name each figure outside its limit, and each that was not
 /// measured.
 pub fn judge(drop: &Quality, wall: &Quality) -> (Verdict, Vec<String>) {
-    let limit = |what, value, good, usable| Limit { what, value: Some(value), good, usable };
     let timed = |what, value, good, usable| Limit { what, value, good, usable };
+    let [broken, ajar, open, p99, overshoot] = of_joints(&worse(*drop, *wall));
     let limits = [
-        limit("bodies with a state that is not finite", (drop.nan + wall.nan) as f32, 0.0, 0.0),
-        limit("energy gain of a drop", drop.energy_gain_max, 0.01, f32::INFINITY),
-        limit("energy gain at the wall", wall.energy_gain_max, 0.01, f32::INFINITY),
-        limit("joint gap p99, m", sinew_math::max(drop.joint_gap_p99_m, wall.joint_gap_p99_m), 1e-3, 0.02),
-        limit("joint gap, m", sinew_math::max(drop.joint_gap_max_m, wall.joint_gap_max_m), 5e-3, 0.02),
-        limit(
-            "limit overshoot p99, degrees",
-            sinew_math::max(drop.limit_overshoot_p99_deg, wall.limit_overshoot_p99_deg),
-            2.0,
-            f32::INFINITY,
-        ),
-        limit(
-            "limit overshoot, degrees",
-            sinew_math::max(drop.limit_overshoot_max_deg, wall.limit_overshoot_max_deg),
-            4.0,
-            f32::INFINITY,
-        ),
+        Limit { value: Some((drop.nan + wall.nan) as f32), ..broken },
+        Limit::of("energy gain of a drop", drop.energy_gain_max, 0.01, f32::INFINITY),
+        Limit::of("energy gain at the wall", wall.energy_gain_max, 0.01, f32::INFINITY),
+        ajar,
+        open,
+        p99,
+        overshoot,
         timed("time to sleep after a drop, s", drop.asleep_s, 6.0, 8.0),
         timed("time from calm to sleep, s", drop.calm_to_asleep_s, 3.0, f32::INFINITY),
         timed("spin once settled, rad/s", drop.settled_omega_max, 0.05, f32::INFINITY),
-        limit("overlap of bodies, m", drop.nonadjacent_overlap_max_m, 0.01, 0.03),
-        limit("sinking at rest, m", drop.penetration_rest_max_m, 5e-3, f32::INFINITY),
+        Limit::of("overlap of bodies, m", drop.nonadjacent_overlap_max_m, 0.01, 0.03),
+        Limit::of("sinking at rest, m", drop.penetration_rest_max_m, 5e-3, f32::INFINITY),
     ];
+    let (verdict, mut reasons) = verdict_of(limits);
+    reasons.push("hand-over momentum: not measured, no clip is played here".to_owned());
+    (verdict, reasons)
+}
+
+/// Judges whatever became of a character: hits, a travelling clip, any world. The limits are those of [`judge`], but for the
+/// times until it sleeps and the spin once settled, which hang on where it falls and on what is done to it then. The reasons name each figure outside its limit.
+pub fn judge_bake(quality: &Quality) -> (Verdict, Vec<String>) {
+    let [broken, ajar, open, p99, overshoot] = of_joints(quality);
+    verdict_of([
+        broken,
+        Limit::of("energy gain", quality.energy_gain_max, 0.01, f32::INFINITY),
+        ajar,
+        open,
+        p99,
+        overshoot,
+        Limit::of("overlap of bodies, m", quality.nonadjacent_overlap_max_m, 0.01, 0.03),
+        Limit::of("sinking at rest, m", quality.penetration_rest_max_m, 5e-3, f32::INFINITY),
+    ])
+}
+
+/// What must hold of a ragdoll's joints wherever it is.
+fn of_joints(q: &Quality) -> [Limit; 5] {
+    [
+        Limit::of("bodies with a state that is not finite", q.nan as f32, 0.0, 0.0),
+        Limit::of("joint gap p99, m", q.joint_gap_p99_m, 1e-3, 0.02),
+        Limit::of("joint gap, m", q.joint_gap_max_m, 5e-3, 0.02),
+        Limit::of("limit overshoot p99, degrees", q.limit_overshoot_p99_deg, 2.0, f32::INFINITY),
+        Limit::of("limit overshoot, degrees", q.limit_overshoot_max_deg, 4.0, f32::INFINITY),
+    ]
+}
+
+fn verdict_of(limits: impl IntoIterator<Item = Limit>) -> (Verdict, Vec<String>) {
     let mut verdict = Verdict::Good;
     let mut reasons = Vec::new();
     for Limit { what, value, good, usable } in limits {
@@ -78,6 +108,23 @@ pub fn judge(drop: &Quality, wall: &Quality) -> (Verdict, Vec<String>) {
         reasons.push(format!("{what}: {value:.4}, limit {good}"));
         verdict = Verdict::min(verdict, if value <= usable { Verdict::Usable } else { Verdict::Bad });
     }
-    reasons.push("hand-over momentum: not measured, no clip is played here".to_owned());
     (verdict, reasons)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bake_is_held_to_the_gates_of_a_drop() {
+        assert_eq!(judge_bake(&Quality::default()), (Verdict::Good, vec![]));
+        let beyond = Quality { limit_overshoot_max_deg: 22.0, ..Quality::default() };
+        let said = vec!["limit overshoot, degrees: 22.0000, limit 4".to_owned()];
+        assert_eq!(judge_bake(&beyond), (Verdict::Usable, said));
+        let open = Quality { joint_gap_max_m: 0.03, energy_gain_max: 0.07, ..Quality::default() };
+        let (verdict, reasons) = judge_bake(&open);
+        assert_eq!((verdict, reasons.len()), (Verdict::Bad, 2));
+        let poisoned = Quality { joint_gap_p99_m: f32::NAN, ..Quality::default() };
+        assert_eq!(judge_bake(&poisoned).0, Verdict::Bad);
+    }
 }

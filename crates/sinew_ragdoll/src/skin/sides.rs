@@ -1,7 +1,9 @@
 //! Left against right, and whether limbs hang together: what the definition alone tells.
 
 use crate::build::bones::Bones;
+use crate::build::part::Part;
 use crate::def::{RagdollDef, RagdollJointDef};
+use crate::fit::BURDENED;
 use sinew_anim::roles::Role;
 use sinew_math::{Vec3, max};
 use sinew_physics::convex::gap;
@@ -56,6 +58,9 @@ fn twin(bones: &Bones, body: usize, size: f32) -> Twin {
 }
 
 fn difference(def: &RagdollDef, bones: &Bones, body: usize, twin: usize) -> f32 {
+    if holds(def, bones, body, twin) || holds(def, bones, twin, body) {
+        return 0.0;
+    }
     let away =
         |body: usize| (def.bodies[body].character_from_body.translation - bones.list[body].head).length();
     let radius = |body: usize| def.bodies[body].shape.bounding_radius();
@@ -63,6 +68,12 @@ fn difference(def: &RagdollDef, bones: &Bones, body: usize, twin: usize) -> f32 
     let larger = max(radius(body), radius(twin));
     let masses = larger * (mass(body) - mass(twin)).abs() / (3.0 * max(max(mass(body), mass(twin)), 1e-9));
     max(max((away(body) - away(twin)).abs(), (radius(body) - radius(twin)).abs()), masses)
+}
+
+/// Whether a hand is so much larger than the other that there is something in it, which its shape goes around.
+fn holds(def: &RagdollDef, bones: &Bones, hand: usize, other: usize) -> bool {
+    let radius = |body: usize| def.bodies[body].shape.bounding_radius();
+    bones.list[hand].part == Part::Hand && radius(hand) > BURDENED * radius(other)
 }
 
 /// Joints between a body and what most of its skin runs into: of a thigh whose skin runs into the tail by way of two parts of the

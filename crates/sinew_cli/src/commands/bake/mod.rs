@@ -153,12 +153,13 @@ impl Bake {
             name: &name,
             ..BakeInput::new(character)
         };
-        let fall = Fall::simulate(&input);
+        let mut fall = Fall::simulate(&input);
         let world = self.world.as_ref().map(|path| path.display().to_string());
         notes.extend(world.as_deref().and_then(|world| notes::stands_at(&place, world)));
         notes.extend(notes::of_bake(&input, &fall.baked.events, &gets_up_by, world.as_deref()));
         let is_level = self.world.is_none() && place.stands.translation.y == self.floor.unwrap_or(0.0);
         let skin = SkinReport::of_bake(&file, &fall, is_level);
+        fall.judge_skin(&skin.flaws);
         notes.extend(skin.flaws.iter().map(|flaw| format!("skin: {}", flaw.evidence)));
         notes.extend(self.write(&file, &fall)?);
         let mut report = self.report(&file, &fall, &once(notes));
@@ -207,6 +208,7 @@ impl Bake {
             let (def, _) = settings.build(&file, &BuildOptions::default())?;
             let guess = file.analysis.unit_guess.as_ref().filter(|guess| !guess.is_sure);
             let mut notes: Vec<String> = guess.map(unit_note).into_iter().collect();
+            notes.extend(file.analysis.notes.iter().filter(|note| note.contains("--character")).cloned());
             notes.extend(settings.doubt(&def));
             return Ok((file, def, notes));
         };
