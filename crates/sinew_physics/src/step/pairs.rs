@@ -72,11 +72,15 @@ impl BroadPhase {
                 next = keeper.next_pair();
             }
             let count = if next == pair.key { keeper.count_of(pair.key) } else { 0 };
+            if count == 0 && !pair.meets {
+                // Should it come to meet, it is looked at anew.
+                pair.left = f32::NEG_INFINITY;
+                continue;
+            }
             if count == 0 {
                 let closing = self.proxies.closing(pair.key);
                 let (key, leaves) = (pair.key, pair.leaves);
                 if !pair.comes_near(&closing)
-                    || !pair.meets
                     || pair.is_apart(&closing, self.proxies.gap(bodies, key, leaves))
                 {
                     continue;
