@@ -213,7 +213,8 @@ fn one_of_several_characters_is_picked() {
         "2 skeletons without a joint in common are taken for one character: --character 1 to 2 picks one";
     assert!(build(&[]).json()["notes"].to_string().contains(note));
     assert!(!first["notes"].to_string().contains("--character"));
-    let refused = build(&["--character", "3"]).refusal(1);
+    let third = build(&["--character", "3"]);
+    let refused = third.refusal(1);
     assert!(refused.ends_with("there is no character 3 but 2 characters (--character)"), "{refused}");
     let out = folder.path("fall.glb");
     let baked = sinew(&["bake", &file, "--character", "2", "--seconds", "1", "-o", &out, "--json"]).json();

@@ -271,6 +271,8 @@ impl IslandSolver {
             *largest = error.iter().fold(*largest, |most, error| max(most, error.abs()));
             error.map(|error| -error / h)
         };
+        // Where loops were closed they are used up.
+        s.residuals.resize(links.len(), ZERO6);
         for (tree, range) in trees.iter().enumerate().filter(|(tree, _)| s.corrected[*tree]) {
             errors[tree] = 0.0;
             for i in range.clone() {
