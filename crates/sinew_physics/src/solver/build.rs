@@ -268,6 +268,15 @@ impl IslandSolver {
         }
         s.pieces.clear();
         s.pieces.reserve(island.bodies.len());
+        for errors in [&mut s.errors, &mut s.errors_left] {
+            errors.clear();
+            errors.reserve(island.bodies.len());
+        }
+        for trees in [&mut s.corrected, &mut s.looked_at] {
+            trees.clear();
+            trees.reserve(island.bodies.len());
+        }
+        self.batches.make_room(island.bodies.len());
         self.pins.make_room(island.bodies.len(), island.joints.len());
         s.loads.make_room(island.bodies.len() + SPARE, island.contacts.len() + SPARE);
         self.conjugate.make_room(island.bodies.len(), island.contacts.len());

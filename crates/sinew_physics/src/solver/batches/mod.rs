@@ -68,6 +68,14 @@ pub(super) struct Batch {
 }
 
 impl Batches {
+    /// For so many trees, also if there are none now: memory goes on to the next island.
+    pub fn make_room(&mut self, trees: usize) {
+        self.places.clear();
+        self.places.reserve(trees);
+        self.alone.clear();
+        self.alone.reserve(trees + 1);
+    }
+
     /// Begins with none: all trees are solved alone.
     pub fn clear(&mut self, links: usize) {
         self.used = 0;
