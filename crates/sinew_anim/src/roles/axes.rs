@@ -59,7 +59,7 @@ pub(super) fn left_by_name(graph: &Graph, symmetry: &Symmetry, readings: &[Readi
 struct Unit {
     metres: f32,
     name: &'static str,
-    /// How much rarer than centimetres it is, as a natural logarithm of sizes: of two units, one that makes the body `e` times
+    /// Rarity of the unit against centimetres, as a natural logarithm of sizes: of two units, one that makes the body `e` times
     /// farther from its usual size is as likely as one that is rarer by 1.
     rarity: f32,
 }
@@ -76,18 +76,18 @@ const UNITS: [Unit; 7] = [
     Unit { metres: 0.0001, name: "centimetres times a hundred", rarity: 0.5 },
 ];
 
-/// What sizes a kind of body has, metres.
+/// Sizes of a kind of body, metres.
 struct Sizes {
     /// The body, and what is measured of it, for a sentence.
     words: [&'static str; 2],
     fits: core::ops::Range<f32>,
     /// In centimetres, those that leave no doubt.
     surely: core::ops::Range<f32>,
-    /// Of most.
+    /// Size of most, metres.
     usual: f32,
-    /// How much narrower sizes spread than those of creatures.
+    /// Narrowness of the spread of sizes against those of creatures.
     focus: f32,
-    /// Where no unit fits.
+    /// Size that is taken where no unit fits, metres.
     assumed: f32,
 }
 

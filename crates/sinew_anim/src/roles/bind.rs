@@ -20,7 +20,7 @@ pub(super) struct Bound {
     pub vertices: Vec<Vec3>,
     /// Per vertex the joint that moves it most; of a skeleton without skin the joint itself.
     pub movers: Vec<JointIdx>,
-    /// How many sides of the skin's triangles run from one joint's vertices to another's, the smaller joint first.
+    /// Number of sides of the skin's triangles that run from one joint's vertices to another's, the smaller joint first.
     pub links: BTreeMap<(JointIdx, JointIdx), u32>,
     /// Least corner of the skin.
     pub lo: Vec3,
@@ -118,7 +118,7 @@ impl Bound {
             for (a, b) in [(0, 1), (1, 2), (2, 0)] {
                 let (a, b) = (mover(corners[a] as usize), mover(corners[b] as usize));
                 if a != b {
-                    *self.links.entry((a.min(b), a.max(b))).or_insert(0) += 1;
+                    *self.links.entry((usize::min(a, b), usize::max(a, b))).or_insert(0) += 1;
                 }
             }
         }

@@ -63,7 +63,7 @@ pub(super) fn generic_roles(
     roles.into_iter().map(|role| role.expect("every node is in a chain")).collect()
 }
 
-/// Whether a node or one below it is named for a part.
+/// True if a node or one below it is named for a part.
 fn leads_to(graph: &Graph, parts: &[Option<Part>], part: Part) -> Vec<bool> {
     let mut leads: Vec<bool> = parts.iter().map(|named| *named == Some(part)).collect();
     for &node in graph.order.iter().rev() {

@@ -125,7 +125,7 @@ impl Graph {
         }
     }
 
-    /// Where a stray tree belongs. Rigs baked from inverse kinematics leave the feet beside the body: such a short stray belongs
+    /// Place where a stray tree belongs. Rigs baked from inverse kinematics leave the feet beside the body: such a short stray belongs
     /// to the leaf that its skin runs into, or at whose end it starts, or that is much nearer than the root, or whose skin it
     /// starts at. All others belong to what of the `trunk`, the tree that nothing was added to, their skin runs into. What finds
     /// nothing hangs on the root.
@@ -173,7 +173,7 @@ impl Graph {
         near.filter(|&(distance, _)| distance < AT_SKIN * size).map_or(self.root, |(_, leaf)| leaf)
     }
 
-    /// Of some nodes the one with the most skin in common with a tree that is not among them, of two the nearer; `None` if they
+    /// The one of some nodes with the most skin in common with a tree that is not among them, of two the nearer; `None` if they
     /// touch nowhere.
     fn grows_into(&self, tree: usize, among: impl Iterator<Item = usize>, bound: &Bound) -> Option<usize> {
         let own = self.subtree(tree);
@@ -181,7 +181,7 @@ impl Graph {
             let joint = self.nodes[node].joint;
             let between = |&part: &usize| {
                 let other = self.nodes[part].joint;
-                bound.links.get(&(joint.min(other), joint.max(other)))
+                bound.links.get(&(usize::min(joint, other), usize::max(joint, other)))
             };
             own.iter().filter_map(between).sum()
         };

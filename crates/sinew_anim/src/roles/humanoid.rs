@@ -57,7 +57,7 @@ pub(super) struct Humanoid {
     pub legs: Limb,
 }
 
-/// Of two joints on a forearm the nearer is at least at this share of the other's distance, or it is no finger.
+/// The nearer of two joints on a forearm is at least at this share of the other's distance, or it is no finger.
 const FORKED: f32 = 0.8;
 /// The hips of a figure with a large head are at least this high, share of its height.
 const LOWEST_HIP: f32 = 0.1;

@@ -237,7 +237,7 @@ impl IslandSolver {
         self.refresh_response();
     }
 
-    /// Of heaps. Loops and pins want the answers of single links.
+    /// Batches of trees in heaps. Loops and pins want the answers of single links.
     fn form_batches(&mut self) {
         if self.coupling == Coupling::Turns && self.loops.is_empty() && self.pins.joints.is_empty() {
             self.batches.form(&self.links, &self.joints, &self.trees);

@@ -24,7 +24,7 @@ pub(super) const RATE_SHARE: f32 = 1e-4;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Corrected {
     All,
-    /// Those whose velocities have changed since the last corrections of this substep.
+    /// Trees whose velocities have changed since the last corrections of this substep.
     Stirred,
 }
 

@@ -6,7 +6,7 @@
 //! of them couple dozens of trees. Limits must have it: those of a tree see each other, and with what their own two bodies answer
 //! alone, a chain of 70 links that was curled up by a wall gained five times its energy.
 
-use super::batches::{Batches, Swept};
+use super::batches::{Batches, TurnVelocities};
 use super::contacts::Contacts;
 use super::sweep::{Pass, Unrest};
 use super::tree::{self, Link, NONE};
@@ -201,8 +201,9 @@ impl IslandSolver {
     /// largest change by what the contacts did not know of.
     fn take_turn_of_trees(&mut self) -> f32 {
         let Self { batches, impulses, scratch, velocities, contacts, unrest, .. } = self;
-        let mut swept = Swept { before: &scratch.before, limited: &scratch.swept, now: velocities };
-        let change = batches.take_turns(impulses, &mut swept, contacts, unrest);
+        let mut velocities =
+            TurnVelocities { before: &scratch.before, limited: &scratch.swept, now: velocities };
+        let change = batches.take_turns(impulses, &mut velocities, contacts, unrest);
         self.add_pushes();
         if self.batches.alone.is_empty() {
             return change;

@@ -13,7 +13,7 @@ use sinew_math::lanes::Lanes;
 /// one or two links, which are given with their places.
 pub(super) struct AnswerRows<'a> {
     pub batch: &'a Batch,
-    /// Which tree of the batch.
+    /// Lane of the tree in the batch.
     pub lane: usize,
     pub ways: &'a mut [Way],
     pub pushes: &'a [[Push<'a>; 2]],

@@ -36,7 +36,7 @@ const MOST_LINKS: usize = 32;
 /// Batches of an island.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Batches {
-    /// Those in use, and memory of earlier steps behind them.
+    /// Batches in use, and memory of earlier steps behind them.
     batches: Vec<Batch>,
     used: usize,
     /// Batch and lane of each tree; `NONE` of those that are solved alone.
@@ -49,11 +49,11 @@ pub(super) struct Batches {
 }
 
 /// Velocities in a sweep by turns.
-pub(super) struct Swept<'a> {
-    /// Before the sweep, and after the limits had their turn.
+pub(super) struct TurnVelocities<'a> {
+    /// Velocities before the sweep, and after the limits had their turn.
     pub before: &'a [Vec6],
     pub limited: &'a [Vec6],
-    /// After the contacts had theirs.
+    /// Velocities after the contacts had their turn.
     pub now: &'a mut [Vec6],
 }
 
@@ -174,13 +174,13 @@ impl Batches {
     pub fn take_turns(
         &mut self,
         impulses: &mut [Vec6],
-        swept: &mut Swept<'_>,
+        velocities: &mut TurnVelocities<'_>,
         contacts: &mut Contacts,
         unrest: &mut Unrest,
     ) -> f32 {
         let (ways, mut most) = (&mut self.ways[..], 0.0);
         for batch in &self.batches[..self.used] {
-            let turn = TurnOfBatch { batch, ways, impulses, swept, contacts, unrest };
+            let turn = TurnOfBatch { batch, ways, impulses, velocities, contacts, unrest };
             most = max(most, dispatch::run(turn));
         }
         most
@@ -236,7 +236,7 @@ impl Batch {
     }
 }
 
-/// How a joint is eliminated in a batch, if it can be.
+/// Elimination of a joint in a batch; `None` if it has to be solved alone.
 fn kind_of(joint: &SolverJoint) -> Option<Kind> {
     let rows = &joint.rows;
     if joint.rigid != rows.locked || !rows.locks_point() || joint.drive.motor.is_some() {

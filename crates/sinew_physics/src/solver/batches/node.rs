@@ -7,7 +7,7 @@ use crate::joint::TWIST;
 use sinew_math::Vec3;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 
-/// How the joint of a link is eliminated.
+/// Elimination of a link's joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// No joint: the first link of its tree.
@@ -20,7 +20,7 @@ pub(super) enum Kind {
     Axes { held: usize },
 }
 
-/// Where a link is in its tree.
+/// Place of a link in its tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Site {
     /// Place of the parent.
@@ -33,12 +33,12 @@ pub(super) struct Site {
 #[repr(C, align(32))]
 pub(super) struct Node {
     pub site: Site,
-    /// As it answers to impulses, kg.
+    /// Mass that answers to impulses, kg.
     pub mass: Eight,
-    /// Likewise about the principal axes, kg·m², and the rotation of these.
+    /// Moments about the principal axes that answer to impulses, kg·m², and the rotation of these axes.
     pub moments: [Eight; 3],
     pub rotation: [Eight; 4],
-    /// The same in the axes of the world: xx, xy, xz, yy, yz, zz.
+    /// Inertia in the axes of the world, kg·m²: xx, xy, xz, yy, yz, zz.
     pub tensor: [Eight; 6],
     /// World arms from the centres of mass of child and parent to the anchor.
     pub arm: [Eight; 3],
@@ -61,10 +61,10 @@ pub(super) struct Node {
 /// A rotation that is held, or one that is left open.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axis {
-    /// How the child turns by a unit of the row.
+    /// Turn of the child by a unit of the row.
     pub way: [Eight; 3],
     pub gain: Eight,
-    /// Of an open one: see [`Sequence`](super::super::articulated::Sequence).
+    /// Momentum and inverse pivot of an open one: see [`Sequence`](super::super::articulated::Sequence).
     pub force: [Eight; 3],
     pub torque: [Eight; 3],
     pub inverse: Eight,
@@ -167,7 +167,7 @@ impl Node {
     }
 }
 
-/// How the numbers of a node come into the lanes: those of eight trees, or those of one tree in all lanes.
+/// Lanes filled with the numbers of a node: those of eight trees, or those of one tree in all lanes.
 pub(super) trait View<L: Lanes>: Copy {
     fn number(self, of: &Eight) -> L;
 

@@ -9,13 +9,13 @@ use crate::spatial::Vec6;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 
-/// What a solve notes about a link.
+/// Notes of a solve about a link.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Way {
     /// Impulse that has come up to it from those below; on the way down its answer.
     pub twist: [Eight; 6],
-    /// Of a swivel the torque that is left to turn the child, of a root also the force; of axes the impulse along each.
+    /// Torque that is left to turn the child of a swivel, of a root also the force; of axes the impulse along each.
     along: [Eight; 6],
     /// Velocity that is asked of the child at the anchor on top of the parent's motion.
     asked: [Eight; 6],
@@ -175,7 +175,7 @@ impl Batch {
         L::transpose(records)
     }
 
-    /// Likewise back.
+    /// Writes one record of each tree for link `i`.
     #[inline(always)]
     pub(super) fn store<L: Lanes>(&self, i: usize, [v, w]: Twist<L>, to: &mut [Vec6]) {
         let none = L::splat(0.0);
@@ -193,7 +193,7 @@ impl Batch {
     }
 }
 
-/// What has been noted about a link on the way up.
+/// Notes made about a link on the way up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Noted {
     Nothing,

@@ -6,7 +6,7 @@ use super::super::flight::Eight;
 use super::super::sweep::Unrest;
 use super::node::Side;
 use super::solve::{Noted, Way, begin, down, up};
-use super::{Batch, Swept};
+use super::{Batch, TurnVelocities};
 use crate::spatial::Vec6;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
@@ -18,7 +18,7 @@ pub(super) struct TurnOfBatch<'a, 'b> {
     pub ways: &'a mut [Way],
     /// Impulses of limits; those of contacts, which are read from what they changed, are added.
     pub impulses: &'a mut [Vec6],
-    pub swept: &'a mut Swept<'b>,
+    pub velocities: &'a mut TurnVelocities<'b>,
     pub contacts: &'a mut Contacts,
     pub unrest: &'a mut Unrest,
 }
@@ -28,8 +28,8 @@ impl Kernel for TurnOfBatch<'_, '_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> f32 {
-        let Self { batch, ways, impulses, swept, contacts, unrest } = self;
-        let Swept { before, limited, now: velocities } = swept;
+        let Self { batch, ways, impulses, velocities, contacts, unrest } = self;
+        let TurnVelocities { before, limited, now: velocities } = velocities;
         if !is_pushed::<L>(batch, impulses, limited, velocities) {
             return 0.0;
         }
