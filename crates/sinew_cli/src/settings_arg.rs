@@ -23,7 +23,7 @@ pub struct SettingsArg {
     settings: Option<PathBuf>,
     /// Which of the file's characters, from 1, where there are several skeletons that have no joint in common; by default all are
     /// taken for one
-    #[arg(help_heading = HEADING, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(help_heading = HEADING, long = "character", id = "character_number", value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     character: Option<u16>,
     /// Height that the character has, metres: sets the length of the file's unit
     #[arg(help_heading = HEADING, long, value_name = "M", value_parser = positive, allow_negative_numbers = true, conflicts_with = "unit")]

@@ -208,7 +208,7 @@ fn one_of_several_characters_is_picked() {
     let [first, second] = ["1", "2"].map(|number| build(&["--character", number]).json());
     assert!((height(&second) / height(&first) - 0.5).abs() < 0.01, "{} {}", height(&first), height(&second));
     assert_eq!(bodies(&first).len(), bodies(&second).len());
-    assert!(bodies(&second).iter().all(|(bone, _)| bone.ends_with("_child")), "{second:#}");
+    assert!(bodies(&second).iter().all(|(_, bone)| bone.ends_with("_child")), "{second:#}");
     let note =
         "2 skeletons without a joint in common are taken for one character: --character 1 to 2 picks one";
     assert!(build(&[]).json()["notes"].to_string().contains(note));
