@@ -56,7 +56,7 @@ fn substep(level: Level, bodies: &mut [SolverBody], velocities: &mut [Vec6]) -> 
     }
     let mut gains = Vec::new();
     run_at(level, ListGains { bodies, velocities, before: &before, list: &mut gains });
-    let mut poses = Vec::new();
+    let mut poses = vec![Transform::IDENTITY; bodies.len()];
     run_at(level, Predict { bodies, velocities, h: H, poses: &mut poses });
     run_at(level, IntegratePosition { bodies, velocities, before: &before, h: H });
     assert!(poses.iter().zip(&*bodies).all(|(pose, body)| *pose == body.pose), "what was predicted");
