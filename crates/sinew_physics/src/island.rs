@@ -12,3 +12,13 @@ pub(crate) struct Island<'a> {
     /// It is a body in flight or a strand and has been through this step.
     pub is_flown: bool,
 }
+
+/// Contacts from which on all threads work on an island without joints at once, instead of beside each other on islands.
+const LARGE: usize = 1_024;
+
+impl Island<'_> {
+    /// True if threads work on it together.
+    pub fn is_large(&self) -> bool {
+        self.joints.is_empty() && self.contacts.len() >= LARGE
+    }
+}

@@ -2,16 +2,65 @@
 #![allow(unsafe_code)]
 
 use crate::runner::TaskRunner;
-use core::sync::atomic::{AtomicUsize, Ordering};
+use core::marker::PhantomData;
+use core::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
 
-struct Shared<T>(*mut T);
+/// Most items that a thread claims at once. Two threads that claim one by one spend more on the counter than on a light item.
+const MOST_CLAIMED: usize = 32;
+/// Claims into which few items are divided at least, so that no thread waits for another's last one.
+const CLAIMS: usize = 16;
 
-// SAFETY: items are only reached through the claimed indices below, each by one thread, and T may change threads.
-unsafe impl<T: Send> Sync for Shared<T> {}
+/// The items of a slice, for threads of which each reads and writes its own.
+pub(crate) struct SharedRows<'a, T> {
+    start: *mut T,
+    len: usize,
+    of: PhantomData<&'a mut [T]>,
+}
 
-impl<T> Shared<T> {
-    fn at(&self, i: usize) -> *mut T {
-        self.0.wrapping_add(i)
+impl<T> Clone for SharedRows<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for SharedRows<'_, T> {}
+
+// SAFETY: who makes one promises that no item is written by one thread while another reads or writes it, and T may change
+// threads.
+unsafe impl<T: Send> Send for SharedRows<'_, T> {}
+// SAFETY: as above.
+unsafe impl<T: Send> Sync for SharedRows<'_, T> {}
+
+impl<'a, T> SharedRows<'a, T> {
+    /// Shares the items of a slice between copies of what comes of it.
+    ///
+    /// # Safety
+    /// While copies are in use, no item may be written through one of them while a reference to it from another is alive, be it on
+    /// this thread or on another.
+    pub unsafe fn new(items: &'a mut [T]) -> Self {
+        Self { start: items.as_mut_ptr(), len: items.len(), of: PhantomData }
+    }
+
+    /// Item number `i`.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> &T {
+        assert!(i < self.len);
+        // SAFETY: it is inside of the slice, and nobody writes it meanwhile, as was promised.
+        unsafe { &*self.start.add(i) }
+    }
+
+    /// Item number `i`, to be written.
+    ///
+    /// # Panics
+    /// If there are fewer.
+    #[inline(always)]
+    pub fn get_mut(&mut self, i: usize) -> &mut T {
+        assert!(i < self.len);
+        // SAFETY: it is inside of the slice, and nobody else reads or writes it meanwhile, as was promised.
+        unsafe { &mut *self.start.add(i) }
     }
 }
 
@@ -20,19 +69,78 @@ impl<T> Shared<T> {
 /// DETERMINISM: which thread takes which item varies, so `work` must depend on its item alone.
 pub(crate) fn for_each_mut<T: Send>(runner: &dyn TaskRunner, items: &mut [T], work: impl Fn(&mut T) + Sync) {
     let count = items.len();
+    let claim = usize::min(usize::max(count / CLAIMS, 1), MOST_CLAIMED);
     let next = AtomicUsize::new(0);
-    let shared = Shared(items.as_mut_ptr());
+    // SAFETY: `fetch_add` hands out every index once, so no two calls hold the same item, whatever the runner does; `items`
+    // is borrowed exclusively until `run` has returned.
+    let rows = unsafe { SharedRows::new(items) };
     let task = || {
-        let i = next.fetch_add(1, Ordering::Relaxed);
-        if i < count {
-            // SAFETY: `fetch_add` hands out every index once, so no two calls hold the same item, whatever the
-            // runner does; `items` is borrowed exclusively until `run` has returned.
-            work(unsafe { &mut *shared.at(i) });
+        let mut rows = rows;
+        let first = next.fetch_add(claim, Ordering::Relaxed);
+        for i in first..usize::min(first.saturating_add(claim), count) {
+            work(rows.get_mut(i));
         }
     };
-    runner.run(count, &task);
+    runner.run(count.div_ceil(claim), &task);
     // A runner that made too few calls must not lose work.
     while next.load(Ordering::Relaxed) < count {
         task();
+    }
+}
+
+/// Most items of [`for_each_near`].
+pub(crate) const MOST_NEAR: usize = u64::BITS as usize;
+
+/// Threads that take part in such a list.
+const MOST_CALLS: usize = 16;
+
+/// As [`for_each_mut`], for at most [`MOST_NEAR`] items of which neighbours share memory: each thread begins where it began in the
+/// last such list, and goes on with neighbours as long as nobody has taken them.
+pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], work: impl Fn(&mut T) + Sync) {
+    let count = items.len();
+    assert!(count <= MOST_NEAR);
+    let (taken, entered) = (AtomicU64::new(0), AtomicU32::new(0));
+    // SAFETY: `fetch_or` sets the bit of an item once, so no two calls hold the same item, whatever the runner does; `items` is
+    // borrowed exclusively until `run` has returned.
+    let rows = unsafe { SharedRows::new(items) };
+    let task = || {
+        let mut rows = rows;
+        if taken.load(Ordering::Relaxed).count_ones() as usize == count {
+            return;
+        }
+        // The caller comes first, since the others have to be told; two start at the ends of halves, four at those of quarters.
+        let number = entered.fetch_add(1, Ordering::Relaxed);
+        let share = u64::from(number.reverse_bits()) * count as u64 >> u32::BITS;
+        let start = share as usize;
+        for i in (start..count).chain(0..start) {
+            let bit = 1 << i;
+            if taken.load(Ordering::Relaxed) & bit == 0 && taken.fetch_or(bit, Ordering::Relaxed) & bit == 0 {
+                work(rows.get_mut(i));
+            }
+        }
+    };
+    runner.run(usize::min(count, MOST_CALLS), &task);
+    // A runner that made no call must not lose work.
+    task();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::runner::{Serial, Threads};
+
+    #[test]
+    fn each_item_is_worked_on_once() {
+        let threads = Threads::new(3);
+        for count in (0..200).chain([1_000, 4_097]) {
+            for runner in [&Serial as &dyn TaskRunner, &threads] {
+                let mut items = vec![0; count];
+                for_each_mut(runner, &mut items, |item| *item += 1);
+                assert!(items.iter().all(|&item| item == 1), "{count} items");
+                items.truncate(MOST_NEAR);
+                for_each_near(runner, &mut items, |item| *item += 1);
+                assert!(items.iter().all(|&item| item == 2), "{count} items");
+            }
+        }
     }
 }

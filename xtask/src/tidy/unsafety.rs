@@ -9,6 +9,7 @@ const ALLOWED: &[&str] = &[
     "crates/sinew_math/src/dispatch",
     "crates/sinew_physics/src/slices",
     "crates/sinew_physics/src/pool",
+    "crates/sinew_physics/src/solver/contacts/chunks",
     "bench/peers/src/ffi",
 ];
 

@@ -31,6 +31,11 @@ impl Filter {
         }
         self.layers & other.mask != 0 && other.layers & self.mask != 0
     }
+
+    /// True if it meets no other shape, whatever that one's filter is.
+    pub fn meets_none(self) -> bool {
+        self.group <= 0 && (self.layers == 0 || self.mask == 0)
+    }
 }
 
 /// A shape as part of a body.

@@ -16,9 +16,11 @@ use std::collections::BTreeMap;
 
 /// Distance within which contacts are looked for, beside the motion of the step, metres.
 pub(crate) const MARGIN: f32 = 0.02;
-/// Room that what moves has beyond that, metres, and where it is going to, steps at its present velocity.
+/// Room that what moves has beyond that, metres, and where it is going to, steps at its present velocity: more for what meets
+/// nobody, whose bounds nothing but rays and the like ask for.
 const ROOM: f32 = 0.04;
 const ROOM_STEPS: f32 = 3.0;
+const ROOM_STEPS_ALONE: f32 = 12.0;
 /// Of bounds that have this many times as much room, some is taken.
 const TOO_MUCH: f32 = 3.0;
 /// Bodies with fewer shapes are put into a tree one by one.
@@ -335,8 +337,11 @@ impl Proxies {
             stride.ahead = velocity.linear * dt;
             stride.spin = velocity.angular.length() * arm * dt;
             stride.grown = (velocity.linear.length() + velocity.angular.length() * arm) * dt;
-            let (way, motion) = (stride.ahead * ROOM_STEPS, stride.grown);
+            let motion = stride.grown;
+            let ahead = stride.ahead;
             for shape in 0..home.count {
+                let is_alone = body.surface(shape as usize).filter.meets_none();
+                let way = ahead * if is_alone { ROOM_STEPS_ALONE } else { ROOM_STEPS };
                 let reach = grown(body, shape, motion);
                 self.reach[(home.first + shape) as usize] = reach;
                 if self.cover(home, shape, &thick(&reach), way) {
@@ -513,6 +518,9 @@ impl Proxies {
         visit: &mut impl FnMut((Owner, Leaf), (Owner, Leaf)),
     ) {
         let body = bodies.at(owner.body);
+        if body.surface(owner.shape as usize).filter.meets_none() {
+            return;
+        }
         let bounds = self.wide_bounds(body, owner, leaf);
         let mut meet = |other: Owner, its: Leaf| {
             // Two that move and are both looked for find each other.

@@ -21,6 +21,7 @@ use crate::context::StepContext;
 use crate::field::Fields;
 use crate::island::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
+use crate::runner::TaskRunner;
 use crate::spatial::{ZERO6, join};
 use sinew_math::{Sym3, Vec3, min};
 
@@ -203,7 +204,7 @@ pub(super) fn lasting_force(body: &Body, view: &View<'_>) -> (Vec3, Vec3) {
 
 impl IslandSolver {
     /// Fills the solver with an island of the world.
-    pub fn prepare(&mut self, island: &Island<'_>, view: &View<'_>) {
+    pub fn prepare(&mut self, island: &Island<'_>, view: &View<'_>, runner: &dyn TaskRunner) {
         self.choose_substeps(island, view);
         self.displaced = false;
         self.disturbed = false;
@@ -225,7 +226,7 @@ impl IslandSolver {
         self.limits.clear();
         self.manifolds.clear();
         if self.is_in_lanes() {
-            self.prepare_contacts(view);
+            self.prepare_contacts(view, runner);
         } else {
             self.copy_contacts(island, view);
         }
@@ -542,11 +543,11 @@ impl IslandSolver {
     }
 
     /// Contacts in lanes.
-    fn prepare_contacts(&mut self, view: &View<'_>) {
+    fn prepare_contacts(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         self.starts.clear();
         self.starts.extend(self.bodies.iter().map(|body| body.pose));
         let (bodies, moving) = (&self.bodies, self.links.len());
-        let of_step = OfStep { view, bodies, moving, h: self.h, stretch: self.stretch };
+        let of_step = OfStep { view, bodies, moving, h: self.h, stretch: self.stretch, runner };
         self.driven = self.contacts.prepare(&of_step);
     }
 

@@ -44,6 +44,7 @@ use crate::body::work::Work;
 use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
+use crate::runner::TaskRunner;
 use crate::solver::groups::TakenGroup;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
 use articulated::Inertia;
@@ -342,16 +343,16 @@ impl IslandSolver {
     }
 
     /// The last substep's impulses of contacts and limits, but for what jumped up in it: an impact is not repeated.
-    pub fn warm_start(&mut self) {
+    pub fn warm_start(&mut self, runner: &dyn TaskRunner) {
         if !self.is_articulated() {
-            self.contacts.warm_start(&mut self.velocities);
+            self.contacts.warm_start(&mut self.velocities, runner);
             return;
         }
         for joint in &mut self.joints {
             joint.impulse = ZERO6;
         }
         if self.coupling == Coupling::Turns {
-            self.warm_start_by_turns();
+            self.warm_start_by_turns(runner);
             self.warm_start_loops();
             self.scratch.started.clear();
             self.scratch.started.extend_from_slice(&self.velocities[..self.links.len()]);
@@ -378,10 +379,10 @@ impl IslandSolver {
     /// Joints exactly, then contacts and limits with bias, then SHAKE: the joints' positions at the pose to come.
     ///
     /// Never contacts before the tree: the joints would undo what the contacts did (823 mm gap, +59 kJ in one step).
-    pub fn solve(&mut self) {
+    pub fn solve(&mut self, runner: &dyn TaskRunner) {
         if !self.is_articulated() {
             self.contacts.pull_approach(&self.velocities);
-            self.sweep(Pass::Solve);
+            self.sweep(Pass::Solve, runner);
             self.drop_nonsense(0.0);
             self.bounces = self.contacts.end_approach(self.h);
             return;
@@ -393,7 +394,7 @@ impl IslandSolver {
             rows.pull_approach(&self.velocities);
         }
         self.contacts.pull_approach(&self.velocities);
-        self.sweep(Pass::Solve);
+        self.sweep(Pass::Solve, runner);
         self.calm_trees();
         let mut torn = self.correct_positions(Corrected::All);
         for _ in 0..FORESIGHTS {
@@ -401,7 +402,7 @@ impl IslandSolver {
             if !self.foresee_contacts() && !tightened {
                 break;
             }
-            let stirred = self.sweep_again();
+            let stirred = self.sweep_again(runner);
             self.calm_trees();
             torn = self.correct_positions(stirred);
         }
@@ -421,7 +422,7 @@ impl IslandSolver {
 
     /// Velocities to poses; joint forces of the substep; then everything that depends on the pose, once, for `relax`
     /// and the next substep's `solve`.
-    pub fn integrate_position(&mut self, view: &View<'_>) {
+    pub fn integrate_position(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         self.read_pins();
         self.store_joint_forces();
         self.add_solve_reactions();
@@ -433,7 +434,7 @@ impl IslandSolver {
         for (body, v) in fixed.iter_mut().zip(of_fixed) {
             body.pose = advance(&body.pose, v, h);
         }
-        self.refresh(view);
+        self.refresh(view, runner);
         self.begin_relax_reactions();
     }
 
@@ -452,15 +453,15 @@ impl IslandSolver {
     }
 
     /// Joint velocities to zero at the new pose (RATTLE), contacts and limits without bias, friction.
-    pub fn relax(&mut self, view: &View<'_>) {
+    pub fn relax(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         if core::mem::take(&mut self.displaced) {
-            self.refresh(view);
+            self.refresh(view, runner);
         }
         if !self.is_articulated() {
-            self.sweep(Pass::Relax);
+            self.sweep(Pass::Relax, runner);
             self.drop_nonsense(0.0);
             self.govern_energy();
-            self.contacts.end_substep(self.h);
+            self.contacts.end_substep(self.h, runner);
             return;
         }
         for rows in &mut self.manifolds {
@@ -468,10 +469,10 @@ impl IslandSolver {
         }
         self.project_joints(Pass::Relax);
         self.refine_joints();
-        self.sweep(Pass::Relax);
+        self.sweep(Pass::Relax, runner);
         self.drop_nonsense(0.0);
         if self.coupling == Coupling::Turns {
-            self.contacts.end_substep(self.h);
+            self.contacts.end_substep(self.h, runner);
         } else {
             self.govern_energy();
         }
@@ -485,11 +486,11 @@ impl IslandSolver {
     }
 
     /// Bounce of what was hit in this substep, the last of it: the work of bodies that move by themselves is counted.
-    pub fn restitution(&mut self) {
+    pub fn restitution(&mut self, runner: &dyn TaskRunner) {
         if self.bounces {
             self.bounced_from.clear();
             self.bounced_from.extend_from_slice(&self.velocities[..self.links.len()]);
-            self.sweep(Pass::Restitution);
+            self.sweep(Pass::Restitution, runner);
             self.limit_bounce();
             self.drop_nonsense(0.0);
             self.contacts.end_bounce();
@@ -501,11 +502,11 @@ impl IslandSolver {
     }
 
     /// Rows, inertias, factor and response at the present pose.
-    fn refresh(&mut self, view: &View<'_>) {
+    fn refresh(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         if !self.is_articulated() {
             self.refresh_ballast();
             self.refresh_inertia();
-            self.place_contacts(view);
+            self.place_contacts(view, runner);
             return;
         }
         self.refresh_joints();
@@ -513,7 +514,7 @@ impl IslandSolver {
         self.factor_joints();
         if self.coupling == Coupling::Turns {
             self.contacts.spoil();
-            self.place_contacts(view);
+            self.place_contacts(view, runner);
         }
         for rows in &mut self.manifolds {
             rows.refind(&self.bodies, &self.velocities, self.h);
@@ -524,7 +525,7 @@ impl IslandSolver {
     }
 
     /// Contacts in lanes at the poses to which bodies have come.
-    fn place_contacts(&mut self, view: &View<'_>) {
+    fn place_contacts(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         self.contacts.place(&Substep {
             view,
             bodies: &self.bodies,
@@ -532,6 +533,7 @@ impl IslandSolver {
             velocities: &self.velocities,
             moving: self.links.len(),
             h: self.h,
+            runner,
         });
     }
 

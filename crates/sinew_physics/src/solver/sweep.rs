@@ -9,6 +9,7 @@ use super::limit_rows::LimitRow;
 use super::tree::Link;
 use super::tree_joints::Corrected;
 use super::{Coupling, IslandSolver, WEIGHINGS};
+use crate::runner::TaskRunner;
 use crate::spatial::{ZERO6, add_scaled, largest, linear};
 use sinew_math::max;
 
@@ -118,28 +119,28 @@ fn wakes(seen: &mut f32, now: f32, tolerance: f32) -> bool {
 
 impl IslandSolver {
     /// Visits all rows and gives the bodies their impulses.
-    pub(super) fn sweep(&mut self, pass: Pass) {
+    pub(super) fn sweep(&mut self, pass: Pass, runner: &dyn TaskRunner) {
         match self.coupling {
-            Coupling::Free => self.sweep_free(pass),
-            Coupling::Turns => self.sweep_by_turns(pass),
+            Coupling::Free => self.sweep_free(pass, runner),
+            Coupling::Turns => self.sweep_by_turns(pass, runner),
             Coupling::Response => self.sweep_by_response(pass),
         }
     }
 
     /// Goes on with the sweeps of `solve`, since limits or contacts have got rows more. Gives the trees that may have changed.
-    pub(super) fn sweep_again(&mut self) -> Corrected {
+    pub(super) fn sweep_again(&mut self, runner: &dyn TaskRunner) -> Corrected {
         if self.coupling == Coupling::Turns {
-            self.resume_by_turns();
+            self.resume_by_turns(runner);
             return Corrected::Stirred;
         }
-        self.sweep(Pass::Solve);
+        self.sweep(Pass::Solve, runner);
         Corrected::All
     }
 
     /// Contacts in lanes alone.
-    fn sweep_free(&mut self, pass: Pass) {
+    fn sweep_free(&mut self, pass: Pass, runner: &dyn TaskRunner) {
         let sweeps = self.effort.of_blocks(pass);
-        let done = self.contacts.sweep(pass, sweeps, &mut self.velocities, self.h);
+        let done = self.contacts.sweep(pass, sweeps, &mut self.velocities, (self.h, runner));
         let rows = self.contacts.tally().manifolds as usize;
         (1..=done).for_each(|sweep| self.tally.sweep(pass, sweep, rows));
     }

@@ -11,6 +11,7 @@ use super::contacts::Contacts;
 use super::sweep::{Pass, Unrest};
 use super::tree::{self, Link, NONE};
 use super::{Coupling, IslandSolver, SolverBody};
+use crate::runner::TaskRunner;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, difference, join, largest, linear};
 use core::ops::Range;
 use sinew_math::dispatch::{self, Kernel};
@@ -110,18 +111,18 @@ fn largest_of<L: Lanes>(numbers: L) -> f32 {
 
 impl IslandSolver {
     /// Sweeps over limits, blocks and trees, until one changes little.
-    pub(super) fn sweep_by_turns(&mut self, pass: Pass) {
+    pub(super) fn sweep_by_turns(&mut self, pass: Pass, runner: &dyn TaskRunner) {
         if self.contacts.is_empty() && self.limits.is_empty() {
             return;
         }
-        self.contacts.begin_pass(pass, &self.velocities, self.h);
+        self.contacts.begin_pass(pass, &self.velocities, self.h, runner);
         self.arrange_limits(pass);
         self.unrest.start(self.effort.tolerance, self.trees.len(), 0, self.limit_blocks.len());
-        self.run_turns(pass);
+        self.run_turns(pass, runner);
     }
 
     /// Goes on with `solve`: what the rows that limits have got since, and corrections of positions, have not stirred is at rest.
-    pub(super) fn resume_by_turns(&mut self) {
+    pub(super) fn resume_by_turns(&mut self, runner: &dyn TaskRunner) {
         if self.contacts.is_empty() && self.limits.is_empty() {
             return;
         }
@@ -129,10 +130,10 @@ impl IslandSolver {
         self.arrange_limits(Pass::Solve);
         self.unrest.resume(self.limit_blocks.len(), &self.limits[known..]);
         self.contacts.start_conjugate();
-        self.run_turns(Pass::Solve);
+        self.run_turns(Pass::Solve, runner);
     }
 
-    fn run_turns(&mut self, pass: Pass) {
+    fn run_turns(&mut self, pass: Pass, runner: &dyn TaskRunner) {
         let sweeps = self.effort.of_turns(pass);
         let enough = self.effort.enough;
         let enough = 0.5 * enough * enough * self.mass() / self.links.len() as f32;
@@ -140,12 +141,12 @@ impl IslandSolver {
         for done in 1..=sweeps.most {
             self.note_limits();
             if conjugate {
-                self.contacts.before_conjugate(&self.velocities, &self.scratch.limits);
+                self.contacts.before_conjugate(&self.velocities, &self.scratch.limits, runner);
             }
             let rows = self.contacts.tally().manifolds as usize + self.limits.len();
             self.tally.sweep(pass, done, rows);
             self.take_turn_of_limits(pass);
-            let swept = self.contacts.sweep_once(pass, sweeps, done, &mut self.velocities);
+            let swept = self.contacts.sweep_once((pass, sweeps, done), &mut self.velocities, runner);
             self.take_impulses_of_contacts();
             let change = max(self.largest_change, max(swept.largest, self.take_turn_of_trees()));
             let energy = swept.energy + self.change_energy;
@@ -153,7 +154,7 @@ impl IslandSolver {
                 break;
             }
             if conjugate {
-                self.step_conjugate(energy);
+                self.step_conjugate(energy, runner);
             }
         }
     }
@@ -238,7 +239,7 @@ impl IslandSolver {
     }
 
     /// Goes on in the direction of the last sweeps.
-    fn step_conjugate(&mut self, energy: f32) {
+    fn step_conjugate(&mut self, energy: f32, runner: &dyn TaskRunner) {
         self.note_limits();
         let Self { contacts, velocities, scratch, unrest, trees, limits, .. } = self;
         let mut tree = 0;
@@ -251,7 +252,7 @@ impl IslandSolver {
             }
             unrest.stir(tree as u32, change);
         };
-        contacts.after_conjugate(energy, velocities, &mut scratch.limits, stir);
+        contacts.after_conjugate(energy, (velocities, &mut scratch.limits), runner, stir);
         for (row, impulse) in limits.iter_mut().zip(&scratch.limits) {
             let change = row.give(impulse - row.impulse);
             unrest.stir_limits(row.block, change);
@@ -259,7 +260,7 @@ impl IslandSolver {
     }
 
     /// Puts the starting impulses of limits and contacts on the bodies, as if nothing held them.
-    pub(super) fn warm_start_by_turns(&mut self) {
+    pub(super) fn warm_start_by_turns(&mut self, runner: &dyn TaskRunner) {
         self.reset_impulses();
         for row in &mut self.limits {
             row.warm_start(&self.joints, &mut self.impulses);
@@ -271,7 +272,7 @@ impl IslandSolver {
             }
         }
         self.note_swept();
-        self.contacts.warm_start(&mut self.velocities);
+        self.contacts.warm_start(&mut self.velocities, runner);
         for (i, before) in self.scratch.swept.iter().enumerate() {
             let change = difference(&self.velocities[i], before);
             let mass = self.bodies[i].mass * self.bodies[i].ballast;

@@ -6,7 +6,7 @@ use crate::context::StepContext;
 use crate::field::Target;
 use crate::island::Island;
 use crate::particles::ParticleGroup;
-use crate::runner::TaskRunner;
+use crate::runner::{Serial, TaskRunner};
 use crate::solver::flight::{Flight, flies};
 use crate::solver::groups::{Neighbors, TakenGroup};
 use crate::solver::strands::Strands;
@@ -351,7 +351,7 @@ impl Islands {
 
     fn run_in(
         &mut self,
-        workspaces: Workspaces<'_>,
+        mut workspaces: Workspaces<'_>,
         runner: &dyn TaskRunner,
         work: impl Fn(&mut Task<'_>) + Sync,
     ) {
@@ -370,8 +370,14 @@ impl Islands {
             *solved = flown.next().unwrap_or(*solved);
         }
         self.take_strands(&mut solution);
-        let left = self.flown.iter().filter(|is_flown| !**is_flown).count();
-        Queue::new(self.iter(), &mut taken, &mut solution, workspaces).run(runner, left, work);
+        let left = self.iter().filter(|island| !island.is_flown).count();
+        let large = self.iter().filter(|island| !island.is_flown && island.is_large()).count();
+        if large > 0 {
+            let queue = Queue::new((self.iter(), true), &mut taken, &mut solution, workspaces.reborrow());
+            queue.run(&Serial, large, &work);
+        }
+        let queue = Queue::new((self.iter(), false), &mut taken, &mut solution, workspaces);
+        queue.run(runner, left - large, work);
         (self.solution, self.taken) = (solution, taken);
     }
 

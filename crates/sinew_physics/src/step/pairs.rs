@@ -272,7 +272,7 @@ mod tests {
             _ => Shape::HalfSpace,
         };
         let body_from_shape = Transform::new(random.in_cube() * size, random.rotation());
-        let filter = Filter { layers: 1 << random.index(2), mask: 1 + random.index(3) as u32, group: 0 };
+        let filter = Filter { layers: 1 << random.index(2), mask: random.index(4) as u32, group: 0 };
         ShapeDef { body_from_shape, filter, ..ShapeDef::new(shape) }
     }
 

@@ -37,19 +37,19 @@ pub(crate) fn solve(phase: Phase, task: &mut Task<'_>, view: &View<'_>, context:
     let Task { island, groups, solution, workspace: Workspace { solver, surroundings }, .. } = task;
     match phase {
         Phase::Prepare => stage(Stage::Prepare, &mut || {
-            solver.prepare(island, view);
+            solver.prepare(island, view, context.runner);
             surroundings.make_room(island);
         }),
         Phase::Move(substep) => {
             stage(Stage::IntegrateVelocity, &mut || solver.integrate_velocity(view, groups));
-            stage(Stage::WarmStart, &mut || solver.warm_start());
-            stage(Stage::Solve, &mut || solver.solve());
-            stage(Stage::IntegratePosition, &mut || solver.integrate_position(view));
+            stage(Stage::WarmStart, &mut || solver.warm_start(context.runner));
+            stage(Stage::Solve, &mut || solver.solve(context.runner));
+            stage(Stage::IntegratePosition, &mut || solver.integrate_position(view, context.runner));
             stage(Stage::Project, &mut || surroundings.project(groups, solver, view, substep));
         }
         Phase::Relax(_) => {
-            stage(Stage::Relax, &mut || solver.relax(view));
-            stage(Stage::Restitution, &mut || solver.restitution());
+            stage(Stage::Relax, &mut || solver.relax(view, context.runner));
+            stage(Stage::Restitution, &mut || solver.restitution(context.runner));
             solver.drop_fields(view);
         }
         Phase::Store => stage(Stage::Store, &mut || solver.store(solution, context.profiler)),

@@ -26,6 +26,13 @@ pub(crate) enum Workspaces<'a> {
 }
 
 impl Workspaces<'_> {
+    pub fn reborrow(&mut self) -> Workspaces<'_> {
+        match self {
+            Self::Idle(idle) => Workspaces::Idle(idle),
+            Self::Own(own) => Workspaces::Own(own),
+        }
+    }
+
     fn take(&mut self, island: usize) -> Workspace {
         match self {
             Self::Idle(idle) => idle.pop().unwrap_or_default(),
@@ -64,6 +71,8 @@ impl Task<'_> {
 /// Islands that are still to be solved, with the room for what will come of them.
 pub(crate) struct Queue<'a, I> {
     islands: core::iter::Enumerate<I>,
+    /// It hands out the large ones, or all others.
+    is_of_large: bool,
     groups: &'a mut [TakenGroup],
     solution: IslandSolution<'a>,
     workspaces: Workspaces<'a>,
@@ -72,12 +81,12 @@ pub(crate) struct Queue<'a, I> {
 impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
     /// `groups` and `solution` hold what belongs to the islands in their order.
     pub fn new(
-        islands: I,
+        (islands, is_of_large): (I, bool),
         groups: &'a mut [TakenGroup],
         solution: &'a mut Solution,
         workspaces: Workspaces<'a>,
     ) -> Self {
-        Self { islands: islands.enumerate(), groups, solution: solution.as_mut(), workspaces }
+        Self { islands: islands.enumerate(), is_of_large, groups, solution: solution.as_mut(), workspaces }
     }
 
     /// Calls `work` once for each of the `count` islands, spread over `runner`'s threads.
@@ -100,7 +109,7 @@ impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
         while work_on_next() {}
     }
 
-    /// The next of them that has not flown.
+    /// The next of its islands that has not flown.
     fn next(&mut self) -> Option<Task<'a>> {
         loop {
             let (number, island) = self.islands.next()?;
@@ -109,6 +118,9 @@ impl<'a, I: Iterator<Item = Island<'a>> + Send> Queue<'a, I> {
                 continue;
             }
             let groups = split_off(&mut self.groups, island.groups.len());
+            if island.is_large() != self.is_of_large {
+                continue;
+            }
             return Some(Task { number, island, groups, solution, workspace: self.workspaces.take(number) });
         }
     }

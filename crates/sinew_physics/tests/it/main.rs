@@ -15,6 +15,7 @@ mod hull;
 mod humanoid;
 mod ids;
 mod joints;
+mod large_islands;
 mod meshes;
 mod mover;
 mod nets;

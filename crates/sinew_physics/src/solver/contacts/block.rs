@@ -1,5 +1,6 @@
 //! Eight manifolds of one colour, side by side: no two of them push the same body, so that a sweep solves them at once.
 
+use crate::slices::SharedRows;
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};
 
@@ -227,9 +228,47 @@ pub(super) fn times<L: Lanes>(m: &[Eight; 6], v: Vector3<L>) -> Vector3<L> {
     )
 }
 
+/// One row for each body.
+pub(super) trait OfBodies {
+    fn row(&self, body: usize) -> &Vec6;
+}
+
+impl OfBodies for [Vec6] {
+    #[inline(always)]
+    fn row(&self, body: usize) -> &Vec6 {
+        &self[body]
+    }
+}
+
+impl OfBodies for SharedRows<'_, Vec6> {
+    #[inline(always)]
+    fn row(&self, body: usize) -> &Vec6 {
+        self.get(body)
+    }
+}
+
+/// SharedRows of bodies that are written.
+pub(super) trait WrittenOfBodies {
+    fn row_mut(&mut self, body: usize) -> &mut Vec6;
+}
+
+impl WrittenOfBodies for [Vec6] {
+    #[inline(always)]
+    fn row_mut(&mut self, body: usize) -> &mut Vec6 {
+        &mut self[body]
+    }
+}
+
+impl WrittenOfBodies for SharedRows<'_, Vec6> {
+    #[inline(always)]
+    fn row_mut(&mut self, body: usize) -> &mut Vec6 {
+        self.get_mut(body)
+    }
+}
+
 /// Eight rows of a list, by the bodies' indices, field by field.
 #[inline(always)]
-pub(super) fn gather<L: Lanes>(rows: &[Vec6], bodies: &[u32; WIDTH]) -> [L; WIDTH] {
+pub(super) fn gather<L: Lanes>(rows: &(impl OfBodies + ?Sized), bodies: &[u32; WIDTH]) -> [L; WIDTH] {
     let [a, b, c, d, e, f, g, h] = *bodies;
     L::transpose([
         at(rows, a),
@@ -244,8 +283,8 @@ pub(super) fn gather<L: Lanes>(rows: &[Vec6], bodies: &[u32; WIDTH]) -> [L; WIDT
 }
 
 #[inline(always)]
-fn at<L: Lanes>(rows: &[Vec6], body: u32) -> L {
-    L::load(&rows[(body & !HELD) as usize])
+fn at<L: Lanes>(rows: &(impl OfBodies + ?Sized), body: u32) -> L {
+    L::load(rows.row((body & !HELD) as usize))
 }
 
 /// Velocities of eight bodies.
@@ -257,20 +296,20 @@ pub(super) struct Motion<L> {
 
 impl<L: Lanes> Motion<L> {
     #[inline(always)]
-    pub fn gather(velocities: &[Vec6], bodies: &[u32; WIDTH]) -> Self {
+    pub fn gather(velocities: &(impl OfBodies + ?Sized), bodies: &[u32; WIDTH]) -> Self {
         let [x, y, z, u, v, w, _, _] = gather::<L>(velocities, bodies);
         Self { linear: Vector3::new(x, y, z), angular: Vector3::new(u, v, w) }
     }
 
     /// Writes those that move.
     #[inline(always)]
-    pub fn scatter(self, velocities: &mut [Vec6], bodies: &[u32; WIDTH]) {
+    pub fn scatter(self, velocities: &mut (impl WrittenOfBodies + ?Sized), bodies: &[u32; WIDTH]) {
         let Self { linear: v, angular: w } = self;
         let zero = L::splat(0.0);
         let rows = L::transpose([v.x, v.y, v.z, w.x, w.y, w.z, zero, zero]);
         for k in 0..WIDTH {
             if bodies[k] & HELD == 0 {
-                rows[k].store(&mut velocities[bodies[k] as usize]);
+                rows[k].store(velocities.row_mut(bodies[k] as usize));
             }
         }
     }

@@ -3,6 +3,7 @@
 use super::block::{Block, Bounce, Memory, Motion, NONE, Rolling, load3, store3};
 use super::visit::sum;
 use super::{BOUNCE_SPEED, IMPACT_JUMP, LASTING};
+use crate::slices::SharedRows;
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3};
 
@@ -12,8 +13,8 @@ use sinew_math::lanes::{Lanes, Vector3};
 pub(super) fn warm_start<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
     memory: &mut Memory<N>,
-    rolling: &mut [Rolling],
-    velocities: &mut [Vec6],
+    rolling: &mut SharedRows<'_, Rolling>,
+    velocities: &mut SharedRows<'_, Vec6>,
 ) {
     let now = sum::<L, N>(&block.impulse);
     // A conjugate step may leave a little less than nothing.
@@ -31,10 +32,10 @@ pub(super) fn warm_start<L: Lanes, const N: usize, const T: usize>(
     }
     (L::load(&block.twist) * share).store(&mut block.twist);
     if block.rolling != NONE {
-        let rolling = &mut rolling[block.rolling as usize];
+        let rolling = rolling.get_mut(block.rolling as usize);
         store3(load3::<L>(&rolling.impulse) * share, &mut rolling.impulse);
     }
-    let given = Given::<L>::of(block, rolling);
+    let given = Given::<L>::of(block, |place| rolling.get(place));
     for end in 0..2 {
         let mut motion = Motion::<L>::gather(velocities, &block.bodies[end]);
         let sign = L::splat(if end == 0 { -1.0 } else { 1.0 });
@@ -52,7 +53,10 @@ struct Given<L> {
 
 impl<L: Lanes> Given<L> {
     #[inline(always)]
-    fn of<const N: usize, const T: usize>(block: &Block<N, T>, rolling: &[Rolling]) -> Self {
+    fn of<'r, const N: usize, const T: usize>(
+        block: &Block<N, T>,
+        rolling: impl Fn(usize) -> &'r Rolling,
+    ) -> Self {
         let zero = L::splat(0.0);
         let (n, t0) = (load3::<L>(&block.normal), load3::<L>(&block.tangent));
         let (mut push, mut levers) = (zero, Vector3::new(zero, zero, zero));
@@ -64,7 +68,7 @@ impl<L: Lanes> Given<L> {
         let friction = t0 * L::load(&block.friction[0]) + n.cross(t0) * L::load(&block.friction[1]);
         let mut turn = n * L::load(&block.twist);
         if block.rolling != NONE {
-            turn = turn + load3::<L>(&rolling[block.rolling as usize].impulse);
+            turn = turn + load3::<L>(&rolling(block.rolling as usize).impulse);
         }
         let impulse = n * push + friction;
         let on_a = levers.cross(n) + load3::<L>(&block.center).cross(friction) + turn;
@@ -80,7 +84,7 @@ pub(super) fn add_given<L: Lanes, const N: usize, const T: usize>(
     impulses: &mut [Vec6],
     sign: f32,
 ) {
-    let given = Given::<L>::of(block, rolling);
+    let given = Given::<L>::of(block, |place| &rolling[place]);
     for end in 0..2 {
         let mut sum = Motion::<L>::gather(impulses, &block.bodies[end]);
         let sign = L::splat(if end == 0 { -sign } else { sign });

@@ -5,6 +5,7 @@
 //! a body that turns fast is looked for anew and written to its lane.
 
 mod block;
+mod chunks;
 mod color;
 mod conjugate;
 mod disk;
@@ -27,8 +28,11 @@ use super::WEIGHINGS;
 pub(super) use super::contact_rows::{BOUNCE_SPEED, IMPACT_JUMP, LASTING, RELAX_TURN};
 use super::effort::Order;
 use super::sweep::Pass;
+use crate::runner::TaskRunner;
+use crate::slices::SharedRows;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
 use block::{Block, Bounce, Memory, Rolling};
+use chunks::{Parted, parted, shared};
 use color::Coloring;
 use conjugate::Conjugate;
 use core::ops::Range;
@@ -83,6 +87,8 @@ pub(crate) struct Contacts {
     turned: Vec<f32>,
     found: Vec<Found>,
     conjugate: Conjugate,
+    /// Per body: largest component by which it goes on in a conjugate step, m/s or rad/s.
+    changes: Vec<f32>,
     /// Energy of the sweep of this substep that changed most, J.
     most_energy: f32,
     is_spoiled: bool,
@@ -134,7 +140,6 @@ struct Each<'a, V> {
     two: &'a mut Class<2, 3>,
     four: &'a mut Class<4, 10>,
     colors: &'a [Color],
-    order: Order,
     visitor: V,
 }
 
@@ -143,10 +148,7 @@ impl<V: Visitor> Kernel for Each<'_, V> {
 
     #[inline(always)]
     fn run<L: Lanes>(mut self) -> V {
-        let count = self.colors.len();
-        for turn in 0..count {
-            let at = if self.order == Order::ToAndFro { count - 1 - turn } else { turn };
-            let color = &self.colors[at];
+        for color in self.colors {
             each::<L, V, 1, 1>(self.one, &color.one, &mut self.visitor);
             each::<L, V, 2, 3>(self.two, &color.two, &mut self.visitor);
             each::<L, V, 4, 10>(self.four, &color.four, &mut self.visitor);
@@ -189,11 +191,15 @@ visitor!(
     }
 );
 
+parted!(Respond<'_>);
+
 visitor!(
     /// Separations at the present poses.
     Measure<'a> { moved: &'a [Vec6] },
     |self, block, memory, _bounces| place::measure::<L, N, T>(block, memory, &place::Moved(self.moved))
 );
+
+parted!(Measure<'_>);
 
 visitor!(
     /// What points are to reach in a pass.
@@ -207,6 +213,8 @@ visitor!(
     }
 );
 
+parted!(Aim);
+
 visitor!(
     /// What may not be taken back.
     RaiseFloor<'a> { velocities: &'a [Vec6], h: f32 },
@@ -215,11 +223,13 @@ visitor!(
 
 visitor!(
     /// Starting impulses.
-    WarmStart<'a> { rolling: &'a mut [Rolling], velocities: &'a mut [Vec6] },
+    WarmStart<'a> { rolling: SharedRows<'a, Rolling>, velocities: SharedRows<'a, Vec6> },
     |self, block, memory, _bounces| {
-        memory::warm_start::<L, N, T>(block, memory, self.rolling, self.velocities);
+        memory::warm_start::<L, N, T>(block, memory, &mut self.rolling, &mut self.velocities);
     }
 );
+
+parted!(WarmStart<'_>);
 
 visitor!(
     /// Impulses of all rows, added to those of bodies.
@@ -234,6 +244,8 @@ visitor!(
     EndSubstep { h: f32 },
     |self, block, memory, _bounces| memory::end_substep::<L, N, T>(block, memory, self.h)
 );
+
+parted!(EndSubstep);
 
 visitor!(
     /// How points come in.
@@ -318,11 +330,11 @@ impl Contacts {
     /// Does something to each block, colour by colour.
     fn each<V: Visitor>(&mut self, visitor: V) -> V {
         let Self { one, two, four, colors, .. } = self;
-        dispatch::run(Each { one, two, four, colors, order: Order::Forward, visitor })
+        dispatch::run(Each { one, two, four, colors, visitor })
     }
 
     /// Separations at the poses to which bodies have come; manifolds of what turns fast are written anew by the caller.
-    fn measure(&mut self, bodies: &[SolverBody], starts: &[sinew_math::Transform]) {
+    fn measure(&mut self, bodies: &[SolverBody], starts: &[sinew_math::Transform], runner: &dyn TaskRunner) {
         self.moved.clear();
         for (body, start) in bodies.iter().zip(starts) {
             let by = body.pose.translation - start.translation;
@@ -330,7 +342,7 @@ impl Contacts {
             self.moved.push([by.x, by.y, by.z, turned.x, turned.y, turned.z, turned.w, 0.0]);
         }
         let moved = core::mem::take(&mut self.moved);
-        self.each(Measure { moved: &moved });
+        self.each_at_once(runner, Measure { moved: &moved });
         self.moved = moved;
     }
 
@@ -348,10 +360,10 @@ impl Contacts {
         }));
     }
 
-    fn respond(&mut self) {
+    fn respond(&mut self, runner: &dyn TaskRunner) {
         let inverse = core::mem::take(&mut self.inverse);
         let all = core::mem::take(&mut self.is_spoiled);
-        self.each(Respond { inverse: &inverse, all });
+        self.each_at_once(runner, Respond { inverse: &inverse, all });
         self.inverse = inverse;
     }
 
@@ -384,27 +396,34 @@ impl Contacts {
     }
 
     /// Puts the starting impulses on the bodies.
-    pub fn warm_start(&mut self, velocities: &mut [Vec6]) {
+    pub fn warm_start(&mut self, velocities: &mut [Vec6], runner: &dyn TaskRunner) {
         let mut rolling = core::mem::take(&mut self.rolling);
-        self.each(WarmStart { rolling: &mut rolling, velocities });
+        let visitor = WarmStart { rolling: shared(&mut rolling), velocities: shared(velocities) };
+        self.each_parted(runner, Order::Forward, visitor);
         self.rolling = rolling;
     }
 
     /// Sweeps over all blocks until the velocities change no more. Gives how often.
-    pub fn sweep(&mut self, pass: Pass, sweeps: Sweeps, velocities: &mut [Vec6], h: f32) -> usize {
+    pub fn sweep(
+        &mut self,
+        pass: Pass,
+        sweeps: Sweeps,
+        velocities: &mut [Vec6],
+        (h, runner): (f32, &dyn TaskRunner),
+    ) -> usize {
         if self.is_empty() {
             return 0;
         }
-        self.begin_pass(pass, velocities, h);
+        self.begin_pass(pass, velocities, h, runner);
         if pass == Pass::Solve {
             self.most_energy = 0.0;
         }
         for done in 1..=sweeps.most {
             let conjugate = done >= sweeps.first_conjugate && pass != Pass::Restitution;
             if conjugate {
-                self.before_conjugate(velocities, &[]);
+                self.before_conjugate(velocities, &[], runner);
             }
-            let swept = self.sweep_once(pass, sweeps, done, velocities);
+            let swept = self.sweep_once((pass, sweeps, done), velocities, runner);
             // Friction learns what really presses from the second sweep on.
             self.most_energy = max(self.most_energy, swept.energy);
             let is_small = swept.energy < sweeps.small * self.most_energy;
@@ -412,15 +431,19 @@ impl Contacts {
                 return done;
             }
             if conjugate && done < sweeps.most {
-                self.after_conjugate(swept.energy, velocities, &mut [], |_, _| {});
+                self.after_conjugate(swept.energy, (velocities, &mut []), runner, |_, _| {});
             }
         }
         sweeps.most
     }
 
     /// Before the first sweep of a pass.
-    pub fn begin_pass(&mut self, pass: Pass, velocities: &[Vec6], h: f32) {
-        self.each(Aim { pass, h });
+    pub fn begin_pass(&mut self, pass: Pass, velocities: &[Vec6], h: f32, runner: &dyn TaskRunner) {
+        if self.may_bounce() {
+            self.each(Aim { pass, h });
+        } else {
+            self.each_at_once(runner, Aim { pass, h });
+        }
         let whirls = |v: &Vec6| angular(v).length() * h >= RELAX_TURN;
         if pass == Pass::Relax && velocities.iter().any(whirls) {
             self.each(RaiseFloor { velocities, h });
@@ -431,14 +454,19 @@ impl Contacts {
     }
 
     /// Visits all blocks about whose bodies something has changed; `done` counts from 1.
-    pub fn sweep_once(&mut self, pass: Pass, sweeps: Sweeps, done: usize, velocities: &mut [Vec6]) -> Swept {
-        let Self { one, two, four, colors, stir, rolling, .. } = self;
+    pub fn sweep_once(
+        &mut self,
+        (pass, sweeps, done): (Pass, Sweeps, usize),
+        velocities: &mut [Vec6],
+        runner: &dyn TaskRunner,
+    ) -> Swept {
         let is_backward = sweeps.order == Order::ToAndFro && !done.is_multiple_of(2);
         let order = if is_backward { Order::ToAndFro } else { Order::Forward };
+        let (mut stir, mut rolling) = (core::mem::take(&mut self.stir), core::mem::take(&mut self.rolling));
         let visitor = Sweep {
-            velocities,
-            stir,
-            rolling,
+            velocities: shared(velocities),
+            stir: shared(&mut stir),
+            rolling: shared(&mut rolling),
             pass,
             weighs: done <= WEIGHINGS,
             tolerance: sweeps.tolerance,
@@ -447,8 +475,8 @@ impl Contacts {
             visits: 0,
             visited_bytes: 0,
         };
-        let Sweep { largest, energy, visits, visited_bytes, .. } =
-            dispatch::run(Each { one, two, four, colors, order, visitor });
+        let Sweep { largest, energy, visits, visited_bytes, .. } = self.each_parted(runner, order, visitor);
+        (self.stir, self.rolling) = (stir, rolling);
         self.tally.visits += visits;
         self.tally.visited_bytes += visited_bytes;
         Swept { largest, energy }
@@ -488,8 +516,8 @@ impl Contacts {
     }
 
     /// Impulses of this substep become memory.
-    pub fn end_substep(&mut self, h: f32) {
-        self.each(EndSubstep { h });
+    pub fn end_substep(&mut self, h: f32, runner: &dyn TaskRunner) {
+        self.each_at_once(runner, EndSubstep { h });
     }
 
     /// After the bounce.

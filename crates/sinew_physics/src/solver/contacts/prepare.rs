@@ -1,7 +1,8 @@
 //! From the world's contacts to blocks: once a step.
 
 use super::block::{Block, Bounce, Memory, NONE, Rolling, ZERO8};
-use super::color::Edge;
+use super::chunks::Run;
+use super::color::{Coloring, Edge};
 use super::geometry::{Cores, Geometry};
 use super::place::{respond, take_inertias};
 use super::record::{Extra, Record};
@@ -11,6 +12,8 @@ use super::{Class, Color, Contacts};
 use crate::body::material::ContactMaterial;
 use crate::collide::MAX_POINTS;
 use crate::contact::{Contact, ContactMemory};
+use crate::runner::TaskRunner;
+use crate::slices::{MOST_NEAR, for_each_near};
 use crate::solver::contact_rows::{Placed, Softness, contact_softness};
 use crate::solver::{SolverBody, View};
 use crate::spatial::Vec6;
@@ -31,6 +34,7 @@ pub(in crate::solver) struct OfStep<'a> {
     /// Substep of the island, seconds, and how many times as long as the world's it is.
     pub h: f32,
     pub stretch: f32,
+    pub runner: &'a dyn TaskRunner,
 }
 
 impl Contacts {
@@ -93,8 +97,21 @@ impl Contacts {
             one, two, four, colors, coloring, records, extras, centers, inverse, rolling, found, ..
         } = self;
         let source = Source { of, edges: &coloring.edges, records, extras, centers, inverse, soft };
-        let lists = Lists { rolling, found };
-        dispatch::run(Write { one, two, four, colors, runs: coloring.runs(), source, lists });
+        let mut lists = Lists { rolling, found };
+        for (color, run) in colors.iter_mut().zip(coloring.runs()) {
+            color.one = one.append_for(run[0].len());
+            color.two = two.append_for(run[1].len());
+            color.four = four.append_for(run[2].len());
+        }
+        write_all((Run::all(one), Run::all(two), Run::all(four)), coloring, &source, of.runner);
+        one.list_bounces();
+        two.list_bounces();
+        four.list_bounces();
+        for (color, run) in colors.iter().zip(coloring.runs()).filter(|_| !source.extras.is_empty()) {
+            one.list_extras(0, color.one.start, run[0], &source, &mut lists);
+            two.list_extras(1, color.two.start, run[1], &source, &mut lists);
+            four.list_extras(2, color.four.start, run[2], &source, &mut lists);
+        }
         self.is_spoiled = false;
         self.found.sort_unstable_by_key(Found::place);
         self.make_room_for_conjugate(of.bodies.len());
@@ -122,31 +139,81 @@ struct Lists<'a> {
     found: &'a mut Vec<Found>,
 }
 
-/// Writes all blocks, colour by colour.
-struct Write<'a, R> {
-    one: &'a mut Class<1, 1>,
-    two: &'a mut Class<2, 3>,
-    four: &'a mut Class<4, 10>,
-    colors: &'a mut [Color],
-    /// Places of the edges of each colour, class by class.
-    runs: R,
-    source: Source<'a>,
-    lists: Lists<'a>,
+/// Blocks of a class, and the edges that are written to them, eight to a block.
+enum Job<'a> {
+    One(Run<'a, 1, 1>, &'a [u32]),
+    Two(Run<'a, 2, 3>, &'a [u32]),
+    Four(Run<'a, 4, 10>, &'a [u32]),
 }
 
-impl<'a, R: Iterator<Item = [&'a [u32]; 3]>> Kernel for Write<'_, R> {
+/// Writes the blocks of a job.
+struct Write<'a, 'b> {
+    job: Job<'b>,
+    source: &'a Source<'a>,
+}
+
+impl Kernel for Write<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { one, two, four, colors, runs, source, mut lists } = self;
-        for (color, run) in colors.iter_mut().zip(runs) {
-            color.one = one.write::<L>(run[0], &source, 0, &mut lists);
-            color.two = two.write::<L>(run[1], &source, 1, &mut lists);
-            color.four = four.write::<L>(run[2], &source, 2, &mut lists);
+        match self.job {
+            Job::One(run, edges) => write_run::<L, 1, 1>(run, edges, self.source),
+            Job::Two(run, edges) => write_run::<L, 2, 3>(run, edges, self.source),
+            Job::Four(run, edges) => write_run::<L, 4, 10>(run, edges, self.source),
         }
     }
 }
+
+#[inline(always)]
+fn write_run<L: Lanes, const N: usize, const T: usize>(
+    run: Run<'_, N, T>,
+    edges: &[u32],
+    source: &Source<'_>,
+) {
+    for ((block, memory), edges) in run.blocks.iter_mut().zip(run.memory).zip(edges.chunks(WIDTH)) {
+        let bounces = write::<L, N, T>(block, memory, edges, source);
+        take_inertias::<L, N, T>(block, source.inverse);
+        respond::<L, N, T>(block);
+        memory.bounce = if bounces { MAY_BOUNCE } else { NONE };
+    }
+}
+
+/// Writes the blocks of all classes.
+fn write_all(
+    (mut one, mut two, mut four): (Run<'_, 1, 1>, Run<'_, 2, 3>, Run<'_, 4, 10>),
+    coloring: &Coloring,
+    source: &Source<'_>,
+    runner: &dyn TaskRunner,
+) {
+    let blocks = |edges: &[u32]| edges.len().div_ceil(WIDTH);
+    let mut jobs = coloring.runs().flat_map(|[ones, twos, fours]| {
+        [
+            Job::One(one.take(blocks(ones)), ones),
+            Job::Two(two.take(blocks(twos)), twos),
+            Job::Four(four.take(blocks(fours)), fours),
+        ]
+    });
+    loop {
+        let mut some = [const { None }; MOST_NEAR];
+        let mut count = 0;
+        for (place, job) in some.iter_mut().zip(&mut jobs) {
+            *place = Some(job);
+            count += 1;
+        }
+        if count == 0 {
+            return;
+        }
+        for_each_near(runner, &mut some[..count], |job| {
+            if let Some(job) = job.take() {
+                dispatch::run(Write { job, source });
+            }
+        });
+    }
+}
+
+/// Place of bounces that is still to be given.
+const MAY_BOUNCE: u32 = 0;
 
 impl<const N: usize, const T: usize> Class<N, T> {
     fn clear(&mut self) {
@@ -176,35 +243,42 @@ impl<const N: usize, const T: usize> Class<N, T> {
         self.count - 1
     }
 
-    /// Appends blocks with the contacts of a run. Gives which blocks.
-    #[inline(always)]
-    fn write<L: Lanes>(
+    /// Appends blocks for so many contacts. Gives which.
+    fn append_for(&mut self, contacts: usize) -> Range<usize> {
+        let first = self.count;
+        for _ in 0..contacts.div_ceil(WIDTH) {
+            self.append();
+        }
+        first..self.count
+    }
+
+    /// Gives places to what may bounce.
+    fn list_bounces(&mut self) {
+        for memory in self.memory[..self.count].iter_mut().filter(|memory| memory.bounce != NONE) {
+            memory.bounce = self.bounces.len() as u32;
+            self.bounces.push(Bounce::NONE);
+        }
+    }
+
+    /// Lists what only few of the contacts have that were written to blocks from `first` on.
+    fn list_extras(
         &mut self,
+        class: u32,
+        first: usize,
         run: &[u32],
         source: &Source<'_>,
-        class: u32,
         lists: &mut Lists<'_>,
-    ) -> Range<usize> {
-        let first = self.count;
-        for edges in run.chunks(WIDTH) {
-            let place = self.append();
-            let (block, memory) = (&mut self.blocks[place], &mut self.memory[place]);
-            let bounces = write::<L, N, T>(block, memory, edges, source);
-            take_inertias::<L, N, T>(block, source.inverse);
-            respond::<L, N, T>(block);
-            if bounces {
-                memory.bounce = self.bounces.len() as u32;
-                self.bounces.push(Bounce::NONE);
-            }
+    ) {
+        for (place, edges) in (first..).zip(run.chunks(WIDTH)) {
             for (lane, &edge) in edges.iter().enumerate() {
                 let edge = &source.edges[edge as usize];
                 if edge.extra != NONE {
                     let at = [class, place as u32, lane as u32];
+                    let block = &mut self.blocks[place];
                     block.rolling = lists.add(source, edge, at, block.rolling);
                 }
             }
         }
-        first..self.count
     }
 }
 

@@ -8,6 +8,8 @@ use super::store::memory_of;
 use super::{Class, Contacts};
 use crate::collide::{MAX_POINTS, Manifold};
 use crate::contact::slop;
+use crate::runner::TaskRunner;
+use crate::slices::for_each_mut;
 pub(super) use crate::solver::contact_rows::ROLL_TURN;
 use crate::solver::contact_rows::{self, weights};
 use crate::solver::{SolverBody, View};
@@ -34,11 +36,22 @@ pub(super) struct Found {
     most_turn: f32,
     /// Turn of the faster body from the beginning of the step to then, radians.
     turned: f32,
+    /// Found in this substep, and not written yet.
+    anew: Option<Manifold>,
 }
 
 impl Found {
     pub fn new(place: [u32; 3], edge: &Edge, manifold: Manifold, cores: Cores, most_turn: f32) -> Self {
-        Self { place, contact: edge.contact, bodies: edge.bodies, manifold, cores, most_turn, turned: 0.0 }
+        Self {
+            place,
+            contact: edge.contact,
+            bodies: edge.bodies,
+            manifold,
+            cores,
+            most_turn,
+            turned: 0.0,
+            anew: None,
+        }
     }
 }
 
@@ -51,6 +64,7 @@ pub(in crate::solver) struct Substep<'a> {
     pub velocities: &'a [Vec6],
     pub moving: usize,
     pub h: f32,
+    pub runner: &'a dyn TaskRunner,
 }
 
 impl Substep<'_> {
@@ -66,22 +80,23 @@ impl Contacts {
         if self.is_empty() {
             return;
         }
-        self.measure(substep.bodies, substep.starts);
+        self.measure(substep.bodies, substep.starts, substep.runner);
         self.find_fast(substep);
         if self.found.is_empty() && !self.is_spoiled {
             return;
         }
         let mut found = core::mem::take(&mut self.found);
+        for_each_mut(substep.runner, &mut found, |one| one.look(&self.turned, substep));
         for one in &mut found {
             match one.place[0] {
-                0 => one.update(&mut self.one, &self.rolling, &self.turned, substep),
-                1 => one.update(&mut self.two, &self.rolling, &self.turned, substep),
-                _ => one.update(&mut self.four, &self.rolling, &self.turned, substep),
+                0 => one.update(&mut self.one, &self.rolling, substep),
+                1 => one.update(&mut self.two, &self.rolling, substep),
+                _ => one.update(&mut self.four, &self.rolling, substep),
             }
         }
         self.found = found;
         self.take_inertias(substep.bodies, substep.moving);
-        self.respond();
+        self.respond(substep.runner);
     }
 
     /// Lists what turns fast for the first time.
@@ -135,10 +150,16 @@ impl<const N: usize, const T: usize> Class<N, T> {
                     cores,
                     most_turn: FIND_TURN,
                     turned: 0.0,
+                    anew: None,
                 });
             }
         }
     }
+}
+
+/// Slop of two shapes, metres.
+fn slop_of(shapes: &[contact_rows::Placed<'_>; 2]) -> f32 {
+    slop(min(shapes[0].shape.smallest_extent(), shapes[1].shape.smallest_extent()))
 }
 
 /// Radii of the roundings of a contact's shapes where they meet.
@@ -149,12 +170,26 @@ fn rounds(view: &View<'_>, contact: u32, poses: [Transform; 2], manifold: &Manif
 
 impl Found {
     /// Looks for the contact anew if a body turned fast in this substep: the points of the step's beginning say nothing of the
-    /// corner that swings in. Impulses go on by feature. A pair that has come apart keeps its rows.
+    /// corner that swings in.
+    fn look(&mut self, turned: &[f32], substep: &Substep<'_>) {
+        let turned = self.bodies.iter().fold(0.0, |most, &body| max(most, turned[body as usize]));
+        if turned - self.turned < self.most_turn {
+            return;
+        }
+        self.turned = turned;
+        let poses = self.bodies.map(|body| substep.bodies[body as usize].pose);
+        let contact = &substep.view.contacts[self.contact as usize];
+        let shapes = placed(substep.view, contact);
+        let on_surfaces = [0, 1].map(|end: usize| poses[end].point(self.cores.points[end][0]));
+        let margin = self.margin(substep, &shapes, slop_of(&shapes));
+        self.anew = contact_rows::found_anew(shapes, poses, margin, &self.manifold, on_surfaces);
+    }
+
+    /// Writes the contact to its lane as it is now. Impulses go on by feature. A pair that has come apart keeps its rows.
     fn update<const N: usize, const T: usize>(
         &mut self,
         class: &mut Class<N, T>,
         rolling: &[super::Rolling],
-        turned: &[f32],
         substep: &Substep<'_>,
     ) {
         let [_, place, lane] = self.place.map(|number| number as usize);
@@ -162,30 +197,21 @@ impl Found {
         let (block, memory) = (&mut class.blocks[place], &mut class.memory[place]);
         let contact = &substep.view.contacts[self.contact as usize];
         let shapes = placed(substep.view, contact);
-        let slop = slop(min(shapes[0].shape.smallest_extent(), shapes[1].shape.smallest_extent()));
         let mut of_lane = memory_of(block, memory, rolling, lane, 1.0);
-        let turned = self.bodies.iter().fold(0.0, |most, &body| max(most, turned[body as usize]));
-        if turned - self.turned >= self.most_turn {
-            self.turned = turned;
-            let on_surfaces = [0, 1].map(|end: usize| poses[end].point(self.cores.points[end][0]));
-            let margin = self.margin(substep, &shapes, slop);
-            let anew = contact_rows::found_anew(shapes, poses, margin, &self.manifold, on_surfaces)
-                .map(|manifold| fitted(&manifold, N));
-            if let Some(manifold) = anew {
-                of_lane = of_lane.matched(&self.manifold, &manifold);
-                if memory.bounce != super::block::NONE {
-                    let bounce = &mut class.bounces[memory.bounce as usize];
-                    carry_rebounds(&mut bounce.rebound, lane, &self.manifold, &manifold);
-                }
-                self.manifold = manifold;
-                self.cores =
-                    Cores::new(&manifold, poses, rounds(substep.view, self.contact, poses, &manifold));
+        if let Some(manifold) = self.anew.take() {
+            let manifold = fitted(&manifold, N);
+            of_lane = of_lane.matched(&self.manifold, &manifold);
+            if memory.bounce != super::block::NONE {
+                let bounce = &mut class.bounces[memory.bounce as usize];
+                carry_rebounds(&mut bounce.rebound, lane, &self.manifold, &manifold);
             }
+            self.manifold = manifold;
+            self.cores = Cores::new(&manifold, poses, rounds(substep.view, self.contact, poses, &manifold));
         }
         let in_principal = |end: usize| poses[end].rotation.inverse() * self.cores.normal;
         let rolls = shapes[0].has_rim(in_principal(0)) || shapes[1].has_rim(in_principal(1));
         self.most_turn = if rolls { ROLL_TURN } else { FIND_TURN };
-        let weights = weights(&of_lane, &self.manifold, if rolls { slop } else { f32::INFINITY });
+        let weights = weights(&of_lane, &self.manifold, if rolls { slop_of(&shapes) } else { f32::INFINITY });
         let moves = self.bodies.map(|body| (body as usize) < substep.moving);
         let geometry = Geometry::new(&self.cores, poses, moves, &weights);
         self.write(block, memory, &geometry, &of_lane, substep);

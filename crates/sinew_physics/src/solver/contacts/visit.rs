@@ -2,6 +2,7 @@
 
 use super::block::{Block, Eight, HELD, Motion, NONE, Rolling, load3, packed, store3, times};
 use super::disk;
+use crate::slices::SharedRows;
 use crate::solver::sweep::Pass;
 use crate::spatial::Vec6;
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
@@ -15,10 +16,10 @@ const ROUNDS: usize = 4;
 
 /// What a sweep over blocks works on.
 pub(super) struct Sweep<'a> {
-    pub velocities: &'a mut [Vec6],
+    pub velocities: SharedRows<'a, Vec6>,
     /// How much each body's velocity has changed in this pass, m/s or rad/s.
-    pub stir: &'a mut [f32],
-    pub rolling: &'a mut [Rolling],
+    pub stir: SharedRows<'a, f32>,
+    pub rolling: SharedRows<'a, Rolling>,
     pub pass: Pass,
     /// Friction takes its loads from the impulses as they are.
     pub weighs: bool,
@@ -40,7 +41,7 @@ impl Sweep<'_> {
         let mut now = 0.0;
         for k in 0..WIDTH {
             let [a, b] = [block.bodies[0][k], block.bodies[1][k]];
-            now += self.stir[(a & !HELD) as usize] + self.stir[(b & !HELD) as usize];
+            now += self.stir.get((a & !HELD) as usize) + self.stir.get((b & !HELD) as usize);
         }
         let wakes = now - block.seen >= self.tolerance;
         if wakes {
@@ -58,8 +59,8 @@ impl Sweep<'_> {
         self.visits += WIDTH as u64;
         self.visited_bytes += size_of::<Block<N, T>>() as u64;
         let before = [
-            Motion::<L>::gather(self.velocities, &block.bodies[0]),
-            Motion::<L>::gather(self.velocities, &block.bodies[1]),
+            Motion::<L>::gather(&self.velocities, &block.bodies[0]),
+            Motion::<L>::gather(&self.velocities, &block.bodies[1]),
         ];
         let mut ends = before;
         if self.pass == Pass::Relax {
@@ -69,7 +70,7 @@ impl Sweep<'_> {
             let energy = visit_friction(block, &mut ends);
             self.add_energy(energy);
             if block.rolling != NONE {
-                visit_rolling(block, &mut self.rolling[block.rolling as usize], &mut ends);
+                visit_rolling(block, self.rolling.get_mut(block.rolling as usize), &mut ends);
             }
         }
         let energy = visit_normal(block, &mut ends);
@@ -79,7 +80,7 @@ impl Sweep<'_> {
             return;
         }
         for end in 0..2 {
-            ends[end].scatter(self.velocities, &block.bodies[end]);
+            ends[end].scatter(&mut self.velocities, &block.bodies[end]);
             self.stir(&block.bodies[end], changes[end]);
         }
     }
@@ -99,7 +100,7 @@ impl Sweep<'_> {
         change.store(&mut by);
         for k in 0..WIDTH {
             if bodies[k] & HELD == 0 {
-                self.stir[bodies[k] as usize] += by[k];
+                *self.stir.get_mut(bodies[k] as usize) += by[k];
                 self.largest = sinew_math::max(self.largest, by[k]);
             }
         }

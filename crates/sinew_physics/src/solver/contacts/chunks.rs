@@ -1,0 +1,196 @@
+//! Blocks of one colour on several threads: no two of them push the same body, so that threads may take them in any order.
+//!
+//! DETERMINISM: colours are divided in the same way whatever the number of threads, and what parts sum up is added in their order.
+#![allow(unsafe_code)]
+
+use super::block::{Block, Memory};
+use super::visit::Sweep;
+use super::{Class, Color, Contacts, Visitor};
+use crate::runner::TaskRunner;
+use crate::slices::{MOST_NEAR, SharedRows, for_each_near};
+use crate::solver::effort::Order;
+use core::ops::Range;
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::Lanes;
+use sinew_math::max;
+
+/// Blocks of a chunk: a few µs of work, some times what it takes to hand it to a thread.
+const CHUNK: usize = 12;
+/// Colours with fewer blocks are not divided.
+const DIVIDED: usize = 3 * CHUNK;
+/// Most chunks of a colour, whose chunks are larger if it has more blocks than these hold.
+const MOST_CHUNKS: usize = MOST_NEAR;
+
+/// A visitor of which parts may go to blocks of one colour at the same time. It does not look at bounces.
+pub(super) trait Parted: Visitor + Send {
+    /// What goes to a part of the blocks, of which this is the first in the order of visits.
+    fn part(&self, first: usize) -> Self;
+    /// Takes over what a part has summed up.
+    fn join(&mut self, part: &Self);
+}
+
+/// What visitors of this module share: rows of bodies, or of what is one block's own.
+pub(super) fn shared<T>(rows: &mut [T]) -> SharedRows<'_, T> {
+    // SAFETY: a visit writes rows of bodies that move, of which no two blocks of a colour have the same (`Coloring`), and what
+    // belongs to its block; it reads besides rows of bodies that do not move, which none writes. A reference to a row ends within the
+    // visit, and a colour within `for_each_near`.
+    unsafe { SharedRows::new(rows) }
+}
+
+/// Neighbours in a class.
+#[derive(Default)]
+pub(super) struct Run<'a, const N: usize, const T: usize> {
+    pub blocks: &'a mut [Block<N, T>],
+    pub memory: &'a mut [Memory<N>],
+}
+
+impl<'a, const N: usize, const T: usize> Run<'a, N, T> {
+    fn of(class: &'a mut Class<N, T>, range: &Range<usize>) -> Self {
+        Self { blocks: &mut class.blocks[range.clone()], memory: &mut class.memory[range.clone()] }
+    }
+
+    pub fn all(class: &'a mut Class<N, T>) -> Self {
+        let all = 0..class.count;
+        Self::of(class, &all)
+    }
+
+    /// Takes so many from its front.
+    pub fn take(&mut self, count: usize) -> Self {
+        let (blocks, rest) = core::mem::take(&mut self.blocks).split_at_mut(count);
+        let (memory, of_rest) = core::mem::take(&mut self.memory).split_at_mut(count);
+        (self.blocks, self.memory) = (rest, of_rest);
+        Self { blocks, memory }
+    }
+
+    #[inline(always)]
+    fn visit<L: Lanes, V: Visitor>(&mut self, visitor: &mut V) {
+        for (block, memory) in self.blocks.iter_mut().zip(self.memory.iter_mut()) {
+            visitor.visit::<L, N, T>(block, memory, &mut []);
+        }
+    }
+}
+
+/// Blocks of one colour, all or some.
+struct Chunk<'a> {
+    one: Run<'a, 1, 1>,
+    two: Run<'a, 2, 3>,
+    four: Run<'a, 4, 10>,
+}
+
+impl Chunk<'_> {
+    fn len(&self) -> usize {
+        self.one.blocks.len() + self.two.blocks.len() + self.four.blocks.len()
+    }
+
+    /// Takes the first of so many equal parts of each class. Contacts of a class are in the order of their bodies: so
+    /// the same part of each colour has much the same bodies.
+    fn take_part_of(&mut self, parts: usize) -> Self {
+        let of = |blocks: usize| blocks.div_ceil(parts);
+        let (one, two, four) = (self.one.blocks.len(), self.two.blocks.len(), self.four.blocks.len());
+        Self { one: self.one.take(of(one)), two: self.two.take(of(two)), four: self.four.take(of(four)) }
+    }
+}
+
+/// A visitor goes to the blocks of a chunk.
+struct Visit<'a, 'b, V> {
+    chunk: &'a mut Chunk<'b>,
+    visitor: &'a mut V,
+}
+
+impl<V: Visitor> Kernel for Visit<'_, '_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { chunk, visitor } = self;
+        chunk.one.visit::<L, V>(visitor);
+        chunk.two.visit::<L, V>(visitor);
+        chunk.four.visit::<L, V>(visitor);
+    }
+}
+
+/// A visitor goes to all blocks of a chunk that is as large as a colour, or larger; `first` is the number of its first.
+fn visit_all<V: Parted>(mut color: Chunk<'_>, first: usize, visitor: &mut V, runner: &dyn TaskRunner) {
+    let blocks = color.len();
+    if blocks < DIVIDED {
+        dispatch::run(Visit { chunk: &mut color, visitor });
+        return;
+    }
+    let count = usize::min(blocks / CHUNK, MOST_CHUNKS);
+    let mut parts = [const { None }; MOST_CHUNKS];
+    let mut at = first;
+    for (number, part) in parts[..count].iter_mut().enumerate() {
+        let chunk = color.take_part_of(count - number);
+        let of_chunk = visitor.part(at);
+        at += chunk.len();
+        *part = Some((chunk, of_chunk));
+    }
+    for_each_near(runner, &mut parts[..count], |part| {
+        if let Some((chunk, visitor)) = part {
+            dispatch::run(Visit { chunk, visitor });
+        }
+    });
+    for (_, part) in parts[..count].iter().flatten() {
+        visitor.join(part);
+    }
+}
+
+impl Contacts {
+    /// Does something to each block, colour by colour, on as many threads as there are.
+    pub(super) fn each_parted<V: Parted>(
+        &mut self,
+        runner: &dyn TaskRunner,
+        order: Order,
+        mut visitor: V,
+    ) -> V {
+        let Self { one, two, four, colors, .. } = self;
+        let (count, mut first) = (colors.len(), 0);
+        for turn in 0..count {
+            let Color { one: ones, two: twos, four: fours } =
+                &colors[if order == Order::ToAndFro { count - 1 - turn } else { turn }];
+            let color =
+                Chunk { one: Run::of(one, ones), two: Run::of(two, twos), four: Run::of(four, fours) };
+            let blocks = color.len();
+            visit_all(color, first, &mut visitor, runner);
+            first += blocks;
+        }
+        visitor
+    }
+
+    /// Does something to each block, in the order of classes, on as many threads as there are: what looks at no bodies that others
+    /// write.
+    pub(super) fn each_at_once<V: Parted>(&mut self, runner: &dyn TaskRunner, mut visitor: V) -> V {
+        let Self { one, two, four, .. } = self;
+        let chunk = Chunk { one: Run::all(one), two: Run::all(two), four: Run::all(four) };
+        visit_all(chunk, 0, &mut visitor, runner);
+        visitor
+    }
+}
+
+/// Declares that parts of a visitor are like it and sum up nothing.
+macro_rules! parted {
+    ($name:ty) => {
+        impl Parted for $name {
+            fn part(&self, _first: usize) -> Self {
+                Self { ..*self }
+            }
+
+            fn join(&mut self, _part: &Self) {}
+        }
+    };
+}
+
+pub(super) use parted;
+
+impl Parted for Sweep<'_> {
+    fn part(&self, _first: usize) -> Self {
+        Self { largest: 0.0, energy: 0.0, visits: 0, visited_bytes: 0, ..*self }
+    }
+
+    fn join(&mut self, part: &Self) {
+        self.largest = max(self.largest, part.largest);
+        self.energy += part.energy;
+        self.visits += part.visits;
+        self.visited_bytes += part.visited_bytes;
+    }
+}
