@@ -23,6 +23,7 @@ use crate::island::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
 use crate::runner::TaskRunner;
 use crate::spatial::{ZERO6, join};
+use core::ops::Range;
 use sinew_math::{Sym3, Vec3, min};
 
 /// Bodies and contacts more than an island has for which there is room: those that come and go ask for none.
@@ -98,12 +99,13 @@ pub(super) struct Scratch {
     local: Vec<u32>,
     /// World indices of the fixed bodies, ascending.
     fixed: Vec<u32>,
-    /// Per slot of the world's bodies: local index, of those that the island has.
+    /// Per slot of the world's bodies, of those that the island has: the place there while trees grow, then the local index.
     local_of: Vec<u32>,
     /// Per joint of the island: used by a tree.
     used: Vec<bool>,
-    /// (body's place, joint's place), ascending: which joints a body has.
-    adjacent: Vec<(u32, u32)>,
+    /// Places of the joints of each body, ascending, body after body, and where those of each body end.
+    adjacent: Vec<u32>,
+    adjacent_ends: Vec<u32>,
     faces: Faces,
 }
 
@@ -151,20 +153,66 @@ impl Scratch {
         while let Some(&Seed { tree, place, .. }) = self.seeds.get(self.grown) {
             self.grown += 1;
             let body = island.bodies[place as usize];
-            let start = self.adjacent.partition_point(|&(p, _)| p < place);
-            for k in start..self.adjacent.len() {
-                let (p, j) = self.adjacent[k];
-                if p != place || self.sizes[tree as usize] >= MAX_TREE {
+            for k in self.adjacent_of(place) {
+                if self.sizes[tree as usize] >= MAX_TREE {
                     break;
                 }
+                let j = self.adjacent[k];
                 let joint = view.joints.at(island.joints[j as usize]);
                 let other = if joint.a == body { joint.b } else { joint.a };
-                let Ok(other) = island.bodies.binary_search(&other) else { continue };
-                if self.local[other] == NONE {
-                    self.add(tree, other as u32, place, j);
+                let Some(other) = self.place_of(island, other) else { continue };
+                if self.local[other as usize] == NONE {
+                    self.add(tree, other, place, j);
                 }
             }
         }
+    }
+
+    /// Place in the island of one of the world's bodies, if it moves with it.
+    fn place_of(&self, island: &Island<'_>, body: u32) -> Option<u32> {
+        let place = self.local_of[body as usize];
+        (island.bodies.get(place as usize) == Some(&body)).then_some(place)
+    }
+
+    /// Lists which joints each body has: a counting sort.
+    fn list_adjacent(&mut self, island: &Island<'_>, view: &View<'_>) {
+        if self.local_of.len() < view.bodies.slot_count() {
+            self.local_of.resize(view.bodies.slot_count(), NONE);
+        }
+        for (place, &body) in island.bodies.iter().enumerate() {
+            self.local_of[body as usize] = place as u32;
+        }
+        let mut ends = core::mem::take(&mut self.adjacent_ends);
+        ends.clear();
+        ends.resize(island.bodies.len(), 0);
+        let places = |s: &Self, joint: u32| {
+            let joint = view.joints.at(joint);
+            [joint.a, joint.b].map(|body| s.place_of(island, body)).into_iter().flatten()
+        };
+        for &joint in island.joints {
+            places(self, joint).for_each(|place| ends[place as usize] += 1);
+        }
+        let mut start = 0;
+        for end in &mut ends {
+            // Where the list starts, until it is filled.
+            start += core::mem::replace(end, start);
+        }
+        self.adjacent.clear();
+        self.adjacent.resize(start as usize, 0);
+        for (j, &joint) in island.joints.iter().enumerate() {
+            for place in places(self, joint) {
+                let end = &mut ends[place as usize];
+                self.adjacent[*end as usize] = j as u32;
+                *end += 1;
+            }
+        }
+        self.adjacent_ends = ends;
+    }
+
+    fn adjacent_of(&self, place: u32) -> Range<usize> {
+        let place = place as usize;
+        let start = if place == 0 { 0 } else { self.adjacent_ends[place - 1] };
+        start as usize..self.adjacent_ends[place] as usize
     }
 }
 
@@ -269,7 +317,7 @@ impl IslandSolver {
         }
         s.pieces.clear();
         s.pieces.reserve(island.bodies.len());
-        for errors in [&mut s.errors, &mut s.errors_left] {
+        for errors in [&mut s.errors, &mut s.errors_left, &mut s.hit_rates, &mut s.met_rates] {
             errors.clear();
             errors.reserve(island.bodies.len());
         }
@@ -315,18 +363,13 @@ impl IslandSolver {
         s.local.resize(island.bodies.len(), NONE);
         s.used.clear();
         s.used.resize(island.joints.len(), false);
-        s.adjacent.clear();
-        let place = |body: u32| island.bodies.binary_search(&body).ok().map(|i| i as u32);
-        let ends = |index: u32| [view.joints.at(index).a, view.joints.at(index).b].map(place);
+        s.list_adjacent(island, view);
         for (j, &index) in island.joints.iter().enumerate() {
-            let moving = ends(index).into_iter().flatten();
-            s.adjacent.extend(moving.map(|place| (place, j as u32)));
-        }
-        s.adjacent.sort_unstable();
-        for (j, &index) in island.joints.iter().enumerate() {
-            if let [Some(root), None] | [None, Some(root)] = ends(index)
+            let joint = view.joints.at(index);
+            if let [Some(root), None] | [None, Some(root)] =
+                [joint.a, joint.b].map(|body| s.place_of(island, body))
                 && s.local[root as usize] == NONE
-                && !view.joints.at(index).leaves_all_free()
+                && !joint.leaves_all_free()
             {
                 s.plant(root, j as u32);
                 if roots == Roots::InTurn {
@@ -346,23 +389,30 @@ impl IslandSolver {
 
     /// More loops than can be closed exactly in one of its trees, or loops between trees.
     fn is_entangled(&mut self, island: &Island<'_>, view: &View<'_>) -> bool {
-        let s = &mut self.scratch.build;
-        s.loop_rows.clear();
-        s.loop_rows.resize(self.trees.len(), 0);
+        let mut loop_rows = core::mem::take(&mut self.scratch.build.loop_rows);
+        let s = &self.scratch.build;
+        loop_rows.clear();
+        loop_rows.resize(self.trees.len(), 0);
+        let mut is_entangled = false;
         let tree = |body: u32| {
-            let place = island.bodies.binary_search(&body).ok()?;
-            Some(self.links[s.local[place] as usize].tree as usize)
+            let place = s.place_of(island, body)?;
+            Some(self.links[s.local[place as usize] as usize].tree as usize)
         };
         for (&index, _) in island.joints.iter().zip(&s.used).filter(|(_, used)| !**used) {
             let joint = view.joints.at(index);
             let tree = match (tree(joint.a), tree(joint.b)) {
-                (Some(a), Some(b)) if a != b => return true,
+                (Some(a), Some(b)) if a != b => {
+                    is_entangled = true;
+                    break;
+                }
                 (Some(_), None) | (None, Some(_)) if joint.leaves_all_free() => continue,
                 (a, b) => a.or(b).unwrap_or(0),
             };
-            s.loop_rows[tree] += joint.most_rows();
+            loop_rows[tree] += joint.most_rows();
         }
-        s.loop_rows.iter().any(|&rows| rows > MAX_EXACT_ROWS)
+        is_entangled |= loop_rows.iter().any(|&rows| rows > MAX_EXACT_ROWS);
+        self.scratch.build.loop_rows = loop_rows;
+        is_entangled
     }
 
     /// Local indices, tree by tree, parents first.
@@ -392,9 +442,6 @@ impl IslandSolver {
 
     fn copy_bodies(&mut self, island: &Island<'_>, view: &View<'_>) {
         let s = &mut self.scratch.build;
-        if s.local_of.len() < view.bodies.slot_count() {
-            s.local_of.resize(view.bodies.slot_count(), NONE);
-        }
         for (local, &index) in s.order.iter().enumerate() {
             s.local_of[index as usize] = local as u32;
         }

@@ -231,9 +231,7 @@ impl IslandSolver {
         self.effort = match self.coupling {
             Coupling::Free => of_pile(self.touches.len()),
             // What touches jointed bodies is swept as they need it, piles beside and under them as those of which each contact counts.
-            _ if self.touches.iter().any(|touch| touch.bodies.iter().all(|&body| !self.is_jointed(body))) => {
-                self.effort_with_joints().at_least(of_pile(0))
-            }
+            _ if self.paired.contains(&true) => self.effort_with_joints().at_least(of_pile(0)),
             _ => self.effort_with_joints(),
         }
         .of_quality(self.quality);

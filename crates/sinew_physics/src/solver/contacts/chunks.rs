@@ -117,14 +117,14 @@ fn visit_all<V: Parted>(mut color: Chunk<'_>, first: usize, visitor: &mut V, run
         return;
     }
     let count = usize::min(blocks / CHUNK, MOST_CHUNKS);
-    let mut parts = [const { None }; MOST_CHUNKS];
     let mut at = first;
-    for (number, part) in parts[..count].iter_mut().enumerate() {
-        let chunk = color.take_part_of(count - number);
+    let mut parts: [_; MOST_CHUNKS] = core::array::from_fn(|number| {
+        let left = count.checked_sub(number).filter(|&left| left > 0)?;
+        let chunk = color.take_part_of(left);
         let of_chunk = visitor.part(at);
         at += chunk.len();
-        *part = Some((chunk, of_chunk));
-    }
+        Some((chunk, of_chunk))
+    });
     for_each_near(runner, &mut parts[..count], |part| {
         if let Some((chunk, visitor)) = part {
             dispatch::run(Visit { chunk, visitor });
