@@ -317,7 +317,7 @@ impl IslandSolver {
         }
         s.pieces.clear();
         s.pieces.reserve(island.bodies.len());
-        for errors in [&mut s.errors, &mut s.errors_left, &mut s.hit_rates, &mut s.met_rates] {
+        for errors in [&mut s.errors, &mut s.errors_left] {
             errors.clear();
             errors.reserve(island.bodies.len());
         }

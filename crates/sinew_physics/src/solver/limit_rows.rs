@@ -17,8 +17,6 @@ const LIMIT_MARGIN: f32 = 0.15;
 const LIMIT_SLACK: f32 = 0.01;
 /// A hit turns linear speed into rotation over at least this lever, metres.
 const LEVER: f32 = 0.2;
-/// Contacts over which a hit goes on within a substep.
-const HIT_REACH: usize = 2;
 
 /// How a limit row answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,15 +61,16 @@ impl IslandSolver {
         for row in self.limits.drain(..).filter(|row| !matches!(row.hardness, Hardness::Soft(..))) {
             self.joints[row.joint as usize].limit_impulse[row.limit] += row.axis * row.impulse;
         }
-        self.find_hit_rates();
-        let Self { limits, links, velocities, h, .. } = self;
-        let hit_rates = &self.scratch.hit_rates;
+        self.hit_rate = 0.0;
+        if !(self.manifolds.is_empty() && self.contacts.is_empty()) {
+            for v in &self.velocities[..self.links.len()] {
+                self.hit_rate = max(self.hit_rate, angular(v).length() + linear(v).length() / LEVER);
+            }
+        }
+        let limits = &mut self.limits;
         for (index, joint) in self.joints.iter().enumerate() {
-            let [slide, turn] = joint.anchor_rates(velocities);
-            let of_hits = [joint.a, joint.b]
-                .map(|body| links.get(body as usize).map_or(0.0, |link| hit_rates[link.tree as usize]));
-            let turn = max(turn, max(of_hits[0], of_hits[1]));
-            let reach = [slide, turn].map(|rate| LIMIT_MARGIN + 2.0 * *h * rate);
+            let [slide, turn] = joint.anchor_rates(&self.velocities);
+            let reach = [slide, max(turn, self.hit_rate)].map(|rate| LIMIT_MARGIN + 2.0 * self.h * rate);
             let (soft, zone) = (joint.drive.limit_softness, joint.drive.soft_zone);
             let looked_for = [reach[0], max(reach[1], zone.map_or(0.0, |zone| zone.width))];
             each_stop(&joint.geometry.kind, &joint.pose, looked_for, |place, stop| {
@@ -91,33 +90,6 @@ impl IslandSolver {
                     limits.push(LimitRow::new((index, joint), place, &early, hardness, 0.0));
                 }
             });
-        }
-    }
-
-    /// Writes how fast a hit may make joints of each tree turn, rad/s: limits within reach of it get rows. A hit comes from what moves in
-    /// the tree itself, or in what touches it, directly or by one body between.
-    fn find_hit_rates(&mut self) {
-        let Self { links, trees, velocities, manifolds, contacts, scratch, .. } = self;
-        let rates = &mut scratch.hit_rates;
-        rates.clear();
-        rates.resize(trees.len(), 0.0);
-        if manifolds.is_empty() && contacts.is_empty() {
-            return;
-        }
-        for (link, v) in links.iter().zip(velocities.iter()) {
-            let rate = &mut rates[link.tree as usize];
-            *rate = max(*rate, angular(v).length() + linear(v).length() / LEVER);
-        }
-        let touching = manifolds.iter().map(|rows| [rows.a, rows.b]).chain(contacts.bodies());
-        for _ in 0..HIT_REACH {
-            scratch.met_rates.clone_from(rates);
-            for bodies in touching.clone() {
-                if let [Some(a), Some(b)] = bodies.map(|body| links.get(body as usize)) {
-                    let [a, b] = [a, b].map(|link| link.tree as usize);
-                    rates[a] = max(rates[a], scratch.met_rates[b]);
-                    rates[b] = max(rates[b], scratch.met_rates[a]);
-                }
-            }
         }
     }
 

@@ -268,6 +268,8 @@ pub(crate) struct IslandSolver {
     driven: bool,
     /// Poses changed since all that depends on them was computed.
     displaced: bool,
+    /// How fast a hit may make a joint turn, rad/s: limits within reach of it get rows.
+    hit_rate: f32,
     /// Substep, seconds, how many there are in the step, and how many times as long as the world's they are: a power of two.
     h: f32,
     substeps: u32,
@@ -300,9 +302,6 @@ struct Scratch {
     contacted: Vec<Vec6>,
     /// Impulses of the limits.
     limits: Vec<f32>,
-    /// Per tree: how fast a hit may make its joints turn, rad/s, and the same before hits went on by another contact.
-    hit_rates: Vec<f32>,
-    met_rates: Vec<f32>,
     /// Velocities that the joints of the substep are solved from.
     started: Vec<Vec6>,
     loads: loads::Scratch,

@@ -327,11 +327,6 @@ impl Contacts {
         self.colors.is_empty()
     }
 
-    /// Local bodies of each contact.
-    pub fn bodies(&self) -> impl Iterator<Item = [u32; 2]> + Clone {
-        self.coloring.edges.iter().map(|edge| edge.bodies)
-    }
-
     /// Does something to each block, colour by colour.
     fn each<V: Visitor>(&mut self, visitor: V) -> V {
         let Self { one, two, four, colors, .. } = self;
