@@ -12,6 +12,8 @@ use sinew_math::{Transform, dispatch, max, min};
 pub(super) const POSITION_CORRECTIONS: usize = 6;
 const POSITION_CORRECTIONS_ITERATED: usize = 1;
 pub(super) const POSITION_TOLERANCE: f32 = 1e-6;
+/// Share of a tree's error that a round may leave at most for another to follow.
+const WORTH_ANOTHER: f32 = 0.9;
 /// Share of the largest coordinate that needs none either: one and a half of its last digits, which is what rounding of two positions
 /// makes of a gap.
 pub(super) const POSITION_ROUNDING: f32 = 1.5 * f32::EPSILON;
@@ -123,8 +125,8 @@ impl IslandSolver {
 
     /// SHAKE: removes the position errors at the poses that the velocities lead to, with the same factor, tree by tree until they are
     /// small enough (one or two rounds but for violent hits). The factor is that of the substep's beginning: for a body
-    /// that turns by more than a radian it may lead away, so a round that does not halve a tree's error is its last one, one that
-    /// makes it larger is taken back, and the next substep goes on from there. Trees that loops tie together, and
+    /// that turns by much of a radian it may lead away, and back in the next round. So a tree has all rounds unless one lessens its error by
+    /// little, ends with the best of them, and the next substep goes on from there. Trees that loops tie together, and
     /// the few of an island that is not solved by turns, go on and back together.
     ///
     /// Gives the largest error that is left, m or rad.
@@ -140,13 +142,16 @@ impl IslandSolver {
         let mut errors = core::mem::take(&mut self.scratch.errors);
         self.predict(of == Corrected::All);
         self.find_errors(&mut errors);
+        self.scratch.before.clear();
+        self.scratch.before.extend_from_slice(&self.velocities[..self.links.len()]);
+        for joint in &mut self.joints {
+            joint.bent_before = joint.bent;
+        }
         for _ in 0..rounds {
             self.leave_corrected(|tree| errors[tree] < POSITION_TOLERANCE);
             if !self.scratch.corrected.contains(&true) {
                 break;
             }
-            self.scratch.before.clear();
-            self.scratch.before.extend_from_slice(&self.velocities[..self.links.len()]);
             self.scratch.impulses.clear();
             self.scratch.impulses.resize(self.links.len(), ZERO6);
             self.bend_welds();
@@ -157,15 +162,10 @@ impl IslandSolver {
             left.clear();
             left.extend_from_slice(&errors);
             self.find_errors(&mut left);
-            self.take_back(|tree| left[tree] > errors[tree]);
-            for (error, left) in errors.iter_mut().zip(&mut left) {
-                // No better than half: the last round.
-                let better = *left < 0.5 * *error;
-                (*error, *left) = (min(*error, *left), if better { 0.0 } else { 1.0 });
-            }
-            self.leave_corrected(|tree| left[tree] > 0.0);
+            self.keep_best(&left, &mut errors);
             self.scratch.errors_left = left;
         }
+        self.take_back();
         let most = errors.iter().fold(0.0, |most, error| max(most, *error));
         self.scratch.errors = errors;
         most
@@ -214,13 +214,35 @@ impl IslandSolver {
         }
     }
 
-    /// Velocities of trees for which this is true go back to what they were before the last round.
-    fn take_back(&mut self, is_worse: impl Fn(usize) -> bool) {
-        for tree in 0..self.trees.len() {
-            if !self.scratch.corrected[tree] || !is_worse(tree) {
+    /// Notes the velocities of trees whose errors are less than after any round before. Those that have lessened by little are corrected
+    /// no more.
+    fn keep_best(&mut self, left: &[f32], errors: &mut [f32]) {
+        for tree in (0..self.trees.len()).filter(|&tree| left[tree] < errors[tree]) {
+            if !self.scratch.corrected[tree] {
                 continue;
             }
             let range = self.trees[tree].clone();
+            self.scratch.before[range.clone()].copy_from_slice(&self.velocities[range.clone()]);
+            let of_links = self.links[range].iter().map(|link| link.joint);
+            for joint in of_links.chain(self.loops.joints.iter().copied()) {
+                if let Some(joint) = self.joints.get_mut(joint as usize) {
+                    joint.bent_before = joint.bent;
+                }
+            }
+        }
+        self.leave_corrected(|tree| left[tree] < errors[tree] && left[tree] > WORTH_ANOTHER * errors[tree]);
+        for (error, left) in errors.iter_mut().zip(left) {
+            *error = min(*error, *left);
+        }
+    }
+
+    /// Velocities of trees go back to the best that they were.
+    fn take_back(&mut self) {
+        for tree in 0..self.trees.len() {
+            let range = self.trees[tree].clone();
+            if self.velocities[range.clone()] == self.scratch.before[range.clone()] {
+                continue;
+            }
             self.velocities[range.clone()].copy_from_slice(&self.scratch.before[range.clone()]);
             for link in &self.links[range.clone()] {
                 if let Some(joint) = self.joints.get_mut(link.joint as usize) {
@@ -295,7 +317,6 @@ impl IslandSolver {
     fn bend_welds(&mut self) {
         let h = self.h;
         let bend = |joint: &mut SolverJoint, residual: &Vec6| {
-            joint.bent_before = joint.bent;
             if joint.rigid == 0 {
                 add_scaled(&mut joint.bent, residual, -h);
             }
