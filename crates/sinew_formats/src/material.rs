@@ -5,7 +5,7 @@ use crate::json::{At, number, numbers};
 use crate::parts;
 use serde_json::{Map, Value, json};
 use sinew_math::Vec3;
-use sinew_physics::{Combine, CombineRules, ContactRule, Filter, Material, OneWay};
+use sinew_physics::{Combine, CombineRules, ContactRule, Filter, Material, OneWay, Yields};
 
 pub(crate) const MATERIAL_KEYS: [&str; 9] = [
     "friction",
@@ -144,15 +144,24 @@ pub(crate) fn read_filter(at: At<'_>) -> Result<Filter> {
     Ok(Filter { layers: bits("layers", default.layers)?, mask: bits("mask", default.mask)?, group })
 }
 
-/// `"push"`, `"ghost"`, or `{ "one_way": … }`.
+/// `"push"`, `"ghost"`, `{ "one_way": … }`, or `{ "yields": … }`.
 pub(crate) fn read_rule(at: At<'_>) -> Result<ContactRule> {
     match at.value().as_str() {
         Some("push") => return Ok(ContactRule::Push),
         Some("ghost") => return Ok(ContactRule::Ghost),
-        Some(_) => return Err(at.malformed("must be push, ghost, or an object with `one_way`")),
+        Some(_) => return Err(at.malformed("must be push, ghost, or an object with `one_way` or `yields`")),
         None => {}
     }
-    at.only(&["one_way"])?;
+    at.only(&["one_way", "yields"])?;
+    if let Some(at) = at.get("yields")? {
+        at.only(&["max_force", "max_impulse"])?;
+        let default = Yields::default();
+        let number = |key: &str, default| at.get(key)?.map_or(Ok(default), At::not_negative);
+        return Ok(ContactRule::Yields(Yields {
+            max_force: number("max_force", default.max_force)?,
+            max_impulse: number("max_impulse", default.max_impulse)?,
+        }));
+    }
     let at = at.need("one_way")?;
     at.only(&["direction", "tolerance"])?;
     let default = OneWay::default();
@@ -173,6 +182,9 @@ pub(crate) fn write_rule(rule: ContactRule) -> Option<Value> {
         ContactRule::Ghost => Some("ghost".into()),
         ContactRule::OneWay(OneWay { direction, tolerance }) => Some(json!({
             "one_way": { "direction": numbers(&direction.to_array()), "tolerance": number(tolerance) }
+        })),
+        ContactRule::Yields(Yields { max_force, max_impulse }) => Some(json!({
+            "yields": { "max_force": number(max_force), "max_impulse": number(max_impulse) }
         })),
         ContactRule::Modified { .. } => panic!("a world file does not hold functions"),
     }

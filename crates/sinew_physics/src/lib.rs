@@ -35,7 +35,7 @@ pub use sinew_geometry::{
 };
 use sinew_geometry::{revolved, slabs, tree};
 
-pub use body::contact_rule::{ContactModifier, ContactRule, ContactSide, FoundContact, OneWay};
+pub use body::contact_rule::{ContactModifier, ContactRule, ContactSide, FoundContact, OneWay, Yields};
 pub use body::def::{BodyDef, BodyKind, Quality, SleepThresholds, Sleeping, WorldDef};
 pub use body::force::{ForceDef, ForceFrame, ForceId, Wrench};
 pub use body::library::LoadError;

@@ -22,8 +22,8 @@ pub mod skin;
 pub use bake::{BakeInput, Baked, Hit, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
 pub use character::{
-    AfterSettling, Character, CharacterDef, Event, GettingReady, Locomotion, MotionError, MotionSet, Opening,
-    State,
+    AfterSettling, Blow, Character, CharacterDef, Event, GettingReady, HitBodies, InWorld, Locomotion,
+    MotionError, MotionSet, Opening, Part, Preset, State, Toughness,
 };
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 pub use doctor::{Patient, cure, doctor};

@@ -5,7 +5,8 @@ use crate::filter::TOLERATED;
 use sinew_math::limits::hinge_angle;
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, clamp, max, min};
 use sinew_physics::{
-    BodyDef, BodyId, Filter, JointDef, JointId, JointKind, Material, Quality, ShapeDef, Velocity, World,
+    BodyDef, BodyId, BodyKind, ContactRule, Filter, JointDef, JointId, JointKind, Material, Quality,
+    ShapeDef, ShapeId, Velocity, World,
 };
 
 /// Where a body starts.
@@ -75,6 +76,85 @@ impl Ragdoll {
         for &(a, b) in &def.disabled_pairs {
             world.disable_pair(bodies[a], bodies[b]);
         }
+        Self::jointed(world, def, bodies, states)
+    }
+
+    /// Puts the bodies alone into the world, kinematic and without joints, as what can be hit of a character that its clips
+    /// move; `rule` says how hard they push. [`wake`](Self::wake) makes a ragdoll of them.
+    ///
+    /// # Panics
+    /// As [`spawn`](Self::spawn).
+    pub fn spawn_kinematic(
+        world: &mut World,
+        def: &RagdollDef,
+        states: &[BodyState],
+        flesh: &Flesh,
+        rule: ContactRule,
+    ) -> Vec<BodyId> {
+        assert_eq!(states.len(), def.bodies.len(), "every body has a state");
+        let mut bodies = Vec::with_capacity(states.len());
+        for (index, (body, state)) in def.bodies.iter().zip(states).enumerate() {
+            let mut body = body_def(body, state, flesh, index);
+            body.shapes.iter_mut().for_each(|shape| shape.rule = rule);
+            let id = world.add_body(&body);
+            world.set_kind(id, BodyKind::Kinematic);
+            bodies.push(id);
+        }
+        for &(a, b) in &def.disabled_pairs {
+            world.disable_pair(bodies[a], bodies[b]);
+        }
+        bodies
+    }
+
+    /// Makes a ragdoll of bodies that were put into the world by [`spawn_kinematic`](Self::spawn_kinematic), as
+    /// [`spawn`](Self::spawn) does of none; their ids stay.
+    ///
+    /// # Panics
+    /// If there is not one body and one finite state for each of the definition, or a body is no longer there.
+    pub fn wake(
+        world: &mut World,
+        def: &RagdollDef,
+        bodies: &[BodyId],
+        states: &[BodyState],
+        rule: ContactRule,
+    ) -> Self {
+        assert_eq!([states.len(), bodies.len()], [def.bodies.len(); 2], "every body has a state");
+        for (&body, state) in bodies.iter().zip(states) {
+            world.set_kind(body, BodyKind::Dynamic);
+            world.set_transform(body, state.world_from_body);
+            world.set_velocity(body, state.velocity);
+        }
+        for (a, b) in colliding_pairs(def) {
+            world.enable_pair(bodies[a], bodies[b]);
+        }
+        let ragdoll = Self::jointed(world, def, bodies.to_vec(), states);
+        ragdoll.set_rule(world, rule);
+        ragdoll
+    }
+
+    /// Takes the joints out and leaves the bodies in the world, kinematic: the reverse of [`wake`](Self::wake).
+    ///
+    /// # Panics
+    /// If a body is no longer there.
+    pub fn lull(self, world: &mut World, rule: ContactRule) {
+        for &joint in &self.joints {
+            world.remove_joint(joint);
+        }
+        for &body in &self.bodies {
+            world.set_kind(body, BodyKind::Kinematic);
+        }
+        self.set_rule(world, rule);
+    }
+
+    /// Sets what becomes of the bodies' contacts.
+    pub(crate) fn set_rule(&self, world: &mut World, rule: ContactRule) {
+        for &body in &self.bodies {
+            world.set_contact_rule(ShapeId { body, shape: 0 }, rule);
+        }
+    }
+
+    /// Joints between bodies that are there; what overlaps passes through each other.
+    fn jointed(world: &mut World, def: &RagdollDef, bodies: Vec<BodyId>, states: &[BodyState]) -> Self {
         let joints: Vec<JointId> = def
             .joints
             .iter()

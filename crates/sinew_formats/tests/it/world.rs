@@ -4,7 +4,7 @@ use sinew_formats::{read_world, write_world};
 use sinew_math::{Random, Rotation, Sym3, Transform, Vec3};
 use sinew_physics::{
     BodyDef, BodyKind, Combine, CombineRules, ContactRule, Filter, Hull, MassProperties, Material, OneWay,
-    Quality, Sensing, Shape, ShapeDef, Sleeping, World, WorldDef,
+    Quality, Sensing, Shape, ShapeDef, Sleeping, World, WorldDef, Yields,
 };
 use std::sync::Arc;
 
@@ -137,9 +137,10 @@ fn random_shape(random: &mut Random, kind: BodyKind) -> ShapeDef {
             group: random.bits() as i32,
         },
         sensing: [Sensing::Solid, Sensing::Sensor][random.index(2)],
-        rule: match random.index(3) {
+        rule: match random.index(4) {
             0 => ContactRule::Push,
             1 => ContactRule::Ghost,
+            2 => ContactRule::Yields(Yields { max_force: random.unit(), max_impulse: random.unit() }),
             _ => ContactRule::OneWay(OneWay { direction: random.direction(), tolerance: random.unit() }),
         },
     }

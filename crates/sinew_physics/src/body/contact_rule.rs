@@ -16,6 +16,8 @@ pub enum ContactRule {
     Ghost,
     /// They push what comes from one side.
     OneWay(OneWay),
+    /// They push with limited force as long as their body is kinematic: what moves as a clip has it. Movers pass through.
+    Yields(Yields),
     /// They push as a function of the user's says.
     Modified {
         /// Its number, as [registered](crate::World::register_modifier).
@@ -31,6 +33,7 @@ impl ContactRule {
     pub fn check(&self) -> Result<(), &'static str> {
         match self {
             Self::OneWay(one_way) => one_way.check(),
+            Self::Yields(yields) => yields.check(),
             Self::Push | Self::Ghost | Self::Modified { .. } => Ok(()),
         }
     }
@@ -71,6 +74,34 @@ impl OneWay {
     /// True if it is solid against what lies along `normal` from it, in its frame.
     pub(crate) fn holds(&self, normal: Vec3) -> bool {
         normalize_or(self.direction, Vec3::Y).dot(normal) >= sinew_math::trig::cos(self.tolerance)
+    }
+}
+
+/// Bounds of what a kinematic body does to dynamic ones that it meets; beyond them the two pass through each other until they
+/// are apart. A dynamic body with this rule pushes as any other does.
+///
+/// What flies into a hand is stopped and thrown back, a ball is kicked, a crate of 50 kg is let be: the hand goes through it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Yields {
+    /// Most force with which it shoves what does not come by itself, N: over a step, and as if that were free. Default 150.
+    pub max_force: f32,
+    /// Most momentum of what comes by itself that it stops, N·s. Default 60.
+    pub max_impulse: f32,
+}
+
+impl Default for Yields {
+    fn default() -> Self {
+        Self { max_force: 150.0, max_impulse: 60.0 }
+    }
+}
+
+impl Yields {
+    fn check(&self) -> Result<(), &'static str> {
+        // Written so that NaN fails.
+        if [self.max_force, self.max_impulse].iter().all(|x| (0.0..f32::INFINITY).contains(x)) {
+            return Ok(());
+        }
+        Err("the force and the impulse of a shape that yields must not be negative, and finite")
     }
 }
 

@@ -1,7 +1,7 @@
 //! Definitions and bodies as bytes.
 
 use crate::arena::Arena;
-use crate::body::contact_rule::{ContactRule, OneWay};
+use crate::body::contact_rule::{ContactRule, OneWay, Yields};
 use crate::body::def::{BodyKind, Quality, SleepThresholds, Sleeping, WorldDef};
 use crate::body::force::BodyForces;
 use crate::body::library::{LoadError, ShapeLibrary, save_name};
@@ -321,6 +321,11 @@ fn save_rule(w: &mut Writer, rule: ContactRule) {
             w.u8(3);
             w.u32(modifier);
         }
+        ContactRule::Yields(Yields { max_force, max_impulse }) => {
+            w.u8(4);
+            w.f32(max_force);
+            w.f32(max_impulse);
+        }
     }
 }
 
@@ -330,6 +335,7 @@ fn load_rule(r: &mut Reader<'_>) -> Result<ContactRule, ReadError> {
         1 => ContactRule::Ghost,
         2 => ContactRule::OneWay(OneWay { direction: r.vec3()?, tolerance: r.f32()? }),
         3 => ContactRule::Modified { modifier: r.u32()? },
+        4 => ContactRule::Yields(Yields { max_force: r.f32()?, max_impulse: r.f32()? }),
         _ => return Err(r.error("unknown contact rule")),
     };
     rule.check().map_err(|what| r.error(what))?;

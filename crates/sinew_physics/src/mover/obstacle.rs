@@ -163,7 +163,8 @@ fn gather_shape(
 ) {
     let body = world.bodies.at(index);
     let surface = body.surface(number as usize);
-    let solid = surface.sensing == Sensing::Solid && surface.rule != ContactRule::Ghost;
+    let passes = matches!(surface.rule, ContactRule::Ghost | ContactRule::Yields(_));
+    let solid = surface.sensing == Sensing::Solid && !passes;
     if !solid || body.quarantined || !mover.def.filter.meets(surface.filter) {
         return;
     }

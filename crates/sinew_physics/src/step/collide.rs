@@ -2,10 +2,11 @@
 
 use crate::arena::Arena;
 use crate::body::Body;
-use crate::body::contact_rule::ContactRule;
+use crate::body::contact_rule::{ContactRule, Yields};
+use crate::body::def::BodyKind;
 use crate::body::shape::Sensing;
 use crate::body::surface::Surface;
-use crate::collide::{Manifold, Motion, Parting, collide_again};
+use crate::collide::{Manifold, ManifoldPoint, Motion, Parting, collide_again};
 use crate::contact::SPECULATIVE_SLOPS;
 use crate::contact::kept::Kept;
 use crate::contact::parts::Parts;
@@ -35,13 +36,15 @@ pub(crate) fn collide(
             return;
         }
         renew(contact, a, b, proxies.ahead(contact.key), context.dt);
-        weigh(contact, a, b);
+        weigh(contact, a, b, context.dt);
     });
     for_each_mut(context.runner, asked, |asked| {
         let (a, b) = (bodies.at(asked.key.a), bodies.at(asked.key.b));
         ask(a, b, asked, proxies.ahead(asked.key), context.dt);
     });
-    broad.answer(contacts, |contact| weigh(contact, bodies.at(contact.key.a), bodies.at(contact.key.b)));
+    broad.answer(contacts, |contact| {
+        weigh(contact, bodies.at(contact.key.a), bodies.at(contact.key.b), context.dt)
+    });
     if !contacts.iter().any(|contact| contact.has_surface) {
         return;
     }
@@ -49,7 +52,7 @@ pub(crate) fn collide(
     for_each_mut(context.runner, contacts, |contact| {
         let (a, b) = (bodies.at(contact.key.a), bodies.at(contact.key.b));
         if contact.has_surface && (a.can_touch() || b.can_touch()) {
-            weigh(contact, a, b);
+            weigh(contact, a, b, context.dt);
         }
     });
 }
@@ -89,12 +92,12 @@ pub(crate) fn ask(a: &Body, b: &Body, asked: &mut Asked, ahead: f32, dt: f32) {
 }
 
 /// How fast a contact comes in, and what it does.
-fn weigh(contact: &mut Contact, a: &Body, b: &Body) {
+fn weigh(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     contact.approach = approach_of(a, b, &contact.manifold);
     if contact.is_plain && !a.stirred && !b.stirred {
         (contact.effect, contact.one_way) = (Effect::Push, false);
     } else {
-        rule(contact, a, b);
+        rule(contact, a, b, dt);
     }
 }
 
@@ -161,7 +164,7 @@ fn is_plain(surface: &Surface) -> bool {
 }
 
 /// What the contact does, as far as its shapes say.
-fn rule(contact: &mut Contact, a: &Body, b: &Body) {
+fn rule(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
     contact.effect = Effect::Push;
     contact.one_way = false;
@@ -178,9 +181,39 @@ fn rule(contact: &mut Contact, a: &Body, b: &Body) {
                     contact.effect = Effect::Pass;
                 }
             }
+            ContactRule::Yields(yields) => {
+                contact.passes = gives_way(yields, contact, [a, b], dt);
+                if contact.passes {
+                    contact.effect = Effect::Pass;
+                }
+            }
         }
     }
     if [a.surface(sa), b.surface(sb)].into_iter().any(|s| s.sensing == Sensing::Sensor) {
         contact.effect = Effect::Sense;
     }
+}
+
+/// Overlap from which on a shape that yields lets pass what it cannot press out of itself, metres.
+const PRESSED: f32 = 0.01;
+
+/// True if a kinematic body lets a dynamic one pass, since it would have to push it harder than it may, or did until they part.
+fn gives_way(yields: Yields, contact: &Contact, [a, b]: [&Body; 2], dt: f32) -> bool {
+    let (other, led, out) = match (a.kind, b.kind) {
+        (BodyKind::Kinematic, BodyKind::Dynamic) => (b, a, contact.manifold.normal),
+        (BodyKind::Dynamic, BodyKind::Kinematic) => (a, b, -contact.manifold.normal),
+        _ => return false,
+    };
+    if contact.touching && contact.passes {
+        return true;
+    }
+    let excess = |point: &ManifoldPoint| {
+        let (at, on) = (point.position - other.center(), point.position - led.center());
+        let (comes, shoves) = (-other.velocity.at(at).dot(out), led.velocity.at(on).dot(out));
+        let closing = max(comes + shoves, 0.0);
+        let turn = other.inverse_inertia_mul(at.cross(out)).cross(at).dot(out);
+        let mass = 1.0 / (other.inverse_mass() + turn);
+        mass * min(shoves, closing) > yields.max_force * dt || mass * min(comes, closing) > yields.max_impulse
+    };
+    contact.manifold.points().iter().any(|point| point.separation < -PRESSED || excess(point))
 }

@@ -90,7 +90,7 @@ fn stops(s: &Surface, frame: &Transform, ray: &Ray) -> bool {
     let solid = s.sensing == Sensing::Solid;
     solid
         && match s.rule {
-            ContactRule::Push => true,
+            ContactRule::Push | ContactRule::Yields(_) => true,
             ContactRule::Ghost | ContactRule::Modified { .. } => false,
             ContactRule::OneWay(one_way) => {
                 one_way.holds(normalize_or(frame.rotation.inverse() * -ray.direction, Vec3::Y))

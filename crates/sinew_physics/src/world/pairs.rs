@@ -90,7 +90,7 @@ impl World {
     pub(crate) fn knows_rule(&self, rule: ContactRule) -> bool {
         match rule {
             ContactRule::Modified { modifier } => self.meetings.modifiers.registered.has(modifier),
-            ContactRule::Push | ContactRule::Ghost | ContactRule::OneWay(_) => true,
+            ContactRule::Push | ContactRule::Ghost | ContactRule::OneWay(_) | ContactRule::Yields(_) => true,
         }
     }
 }

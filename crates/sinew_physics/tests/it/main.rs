@@ -41,3 +41,4 @@ mod trouble;
 mod update;
 #[path = "../../../sinew_geometry/tests/it/wide.rs"]
 mod wide;
+mod yields;

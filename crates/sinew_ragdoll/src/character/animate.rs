@@ -26,14 +26,21 @@ pub(super) fn play_looped(def: &CharacterDef, animator: &mut Animator, phase: f3
 
 impl Character {
     /// Takes the clips forward by a step, and the character over the ground with them.
-    pub(super) fn animate(&mut self, world: &World) {
+    pub(super) fn animate(&mut self, world: &mut World) {
         let dt = world.def().dt();
+        self.keep_pace(dt);
         self.animator.update(self.def.set(), dt);
         self.keep_earlier();
         self.take_pose();
+        if let Some(to) = self.ride(world, self.step_of(&self.animator)) {
+            self.world_from_character = to;
+            self.climbing = 0.0;
+            return;
+        }
         let from = self.world_from_character;
         let mut to = from * self.step_of(&self.animator);
-        if let Some(height) = ground::below(world, to.translation, ground::HIGHEST_STEP) {
+        let own = self.presence.as_ref().map(|presence| presence.bodies.as_slice());
+        if let Some(height) = ground::below(world, to.translation, ground::HIGHEST_STEP, own) {
             to.translation.y += clamp(height - to.translation.y, -CLIMB_SPEED * dt, CLIMB_SPEED * dt);
         }
         self.world_from_character = to;
@@ -43,7 +50,7 @@ impl Character {
     }
 
     /// How the character went in the last update of an animator: in its own space.
-    fn step_of(&self, animator: &Animator) -> Transform {
+    pub(super) fn step_of(&self, animator: &Animator) -> Transform {
         let root = self.def.mapping().character_from_model();
         let turn = root.to_rigid().rotation;
         let step = animator.root_motion();
@@ -84,8 +91,7 @@ impl Character {
         out: &mut Vec<Transform>,
     ) {
         ahead.update(self.def.set(), seconds);
-        *place = *place * self.step_of(ahead);
-        place.translation += Vec3::Y * (self.climbing * seconds);
+        *place = self.gone_on(*place, ahead, seconds);
         let mut pose = core::mem::take(&mut self.scratch.pose);
         pose.clear();
         pose.extend(ahead.pose().iter());

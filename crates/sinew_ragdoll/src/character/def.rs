@@ -1,6 +1,7 @@
 //! What characters of one kind share.
 
 use super::feet::Feet;
+use super::in_world::InWorld;
 use super::moves::{MotionError, Moves};
 use crate::def::RagdollDef;
 use crate::drive::DriveMode;
@@ -57,6 +58,9 @@ pub struct MotionSet {
     pub clips: Vec<Clip>,
     /// The clip that loops while the character is animated; `None`: it stands in its rest pose. Default none.
     pub looped: Option<usize>,
+    /// The clip that loops while it stands, where [`Character::set_move`](super::Character::set_move) moves it; `None`: the
+    /// looped clip stops. Default none.
+    pub idle: Option<usize>,
     /// Clips that start lying and end standing. Each is used as a mirror shows it, too. Default none.
     pub get_ups: Vec<usize>,
     /// Default in place.
@@ -70,6 +74,7 @@ impl Default for MotionSet {
         Self {
             clips: Vec::new(),
             looped: None,
+            idle: None,
             get_ups: Vec::new(),
             locomotion: Locomotion::InPlace,
             opening: Opening::Looped,
@@ -96,6 +101,8 @@ pub struct CharacterDef {
     pub flesh: Flesh,
     /// Bound on the speeds that an animation hands over.
     pub speed_bound: SpeedBound,
+    /// What of it is in the world while its clips move it.
+    pub in_world: InWorld,
     mapping: Mapping,
     rest: Vec<LocalTransform>,
     /// Bind pose in character space, metres.
@@ -119,6 +126,7 @@ impl CharacterDef {
         Self {
             feet: Feet::of(&rig, &ragdoll, &bind),
             moves: Arc::new(Moves::none(&rig, &ragdoll, &mapping)),
+            in_world: InWorld::of(&ragdoll),
             mapping,
             bind,
             motions: MotionSet::default(),

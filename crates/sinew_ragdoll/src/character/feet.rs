@@ -204,12 +204,13 @@ impl Character {
     /// what is higher of that under heel and ball, for there a foot stands.
     fn needed(&mut self, world: &World, feet: &Feet) -> [Need; 2] {
         let root = self.def.mapping().character_from_model();
+        let own = self.presence.as_ref().map(|presence| presence.bodies.as_slice());
         let model = &mut self.scratch.model;
         local_to_model(&self.def.rig, &self.pose, &root, model);
         let place = self.world_from_character;
         let normal = place.rotation * Vec3::Y;
         let over_floor = |point: Vec3| {
-            let height = ground::below(world, point, ABOVE)?;
+            let height = ground::below(world, point, ABOVE, own)?;
             let away = point - place.translation;
             let floor = place.translation.y - (normal.x * away.x + normal.z * away.z) / normal.y;
             Some(height - floor).filter(|over| over.abs() <= MOST)

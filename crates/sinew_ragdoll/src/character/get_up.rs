@@ -15,6 +15,8 @@ const INTO_STANDING: f32 = 0.8;
 const INTO_LOOP: f32 = 0.3;
 /// Share of a get-up clip, to its end, in which a body that lay on a slope stands upright.
 const STRAIGHTENS: f32 = 0.6;
+/// Share of its height that a mover has over a body that lies.
+const LIES: f32 = 0.0;
 /// How far above the pelvis the ground is sought, metres.
 const ABOVE_PELVIS: f32 = 0.3;
 
@@ -59,11 +61,8 @@ impl Character {
     /// Gives the pose back to the clips, by the moment of a get-up clip that is most like it.
     pub(super) fn get_up(&mut self, world: &mut World) {
         let lies = self.stance();
-        self.lean = ground::slope(world, &lies.points);
-        self.let_go(world);
-        if let Some(ragdoll) = self.ragdoll.take() {
-            ragdoll.despawn(world);
-        }
+        let own = self.presence.as_ref().map(|_| self.bodies());
+        self.lean = ground::slope(world, &lies.points, own);
         let def = self.def.clone();
         let moves = def.moves();
         match choose(&moves.get_ups, &moves.landmarks, &lies) {
@@ -81,7 +80,9 @@ impl Character {
                 self.events.push(Event::GettingUp { clip: None });
             }
         }
+        self.leave_bodies(world);
         self.state = State::GettingUp;
+        self.stand_up(world, LIES);
     }
 
     /// How much of a get-up is left until it stands upright: 1 and more as long as it still lies, 0 and less once it does.
@@ -150,13 +151,14 @@ impl Character {
     /// Stands on the ground at `place`, stops what plays on the whole body, and lets the present pose and its motion die
     /// away within `seconds` in what will be played. Nothing moves in the world yet.
     fn settle_into(&mut self, world: &World, place: Transform, seconds: f32) {
+        let own = self.presence.as_ref().map(|_| self.bodies());
         let mapping = self.def.mapping();
         let pelvis = mapping.world_from_model(self.world_from_character).point({
             let joint = self.def.ragdoll.bodies[0].joint;
             self.scratch.model[joint].translation
         });
-        let height =
-            ground::below(world, pelvis, ABOVE_PELVIS).unwrap_or(self.world_from_character.translation.y);
+        let height = ground::below(world, pelvis, ABOVE_PELVIS, own)
+            .unwrap_or(self.world_from_character.translation.y);
         let mut to =
             Transform::new(place.translation, Rotation::from_scaled_axis(self.lean) * place.rotation);
         // As high as the ground where the pelvis is, on the slope that it lies on.
@@ -167,6 +169,8 @@ impl Character {
         mapping.reframe(&mut self.earlier.pose, self.earlier.world_from_character, to);
         self.world_from_character = to;
         self.earlier.world_from_character = to;
+        mapping.reframe(&mut self.shown.pose, self.shown.world_from_character, to);
+        self.shown.world_from_character = to;
         self.climbing = 0.0;
         let (earlier, now): (Pose, Pose) =
             (self.earlier.pose.iter().copied().collect(), self.pose.iter().copied().collect());

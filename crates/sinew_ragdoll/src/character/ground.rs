@@ -2,19 +2,60 @@
 
 use sinew_math::{Rotation, Vec3, max, min, trig};
 use sinew_physics::ray::Ray;
-use sinew_physics::{BodyKinds, QueryFilter, World};
+use sinew_physics::{BodyHit, BodyId, BodyKinds, ContactRule, QueryFilter, ShapeId, Velocity, World};
 
 /// The highest step that a walking character climbs, metres.
 pub(super) const HIGHEST_STEP: f32 = 0.45;
 /// How far down the ground is sought, metres.
 const DEPTH: f32 = 100.0;
 
-/// Height of the static world under a point, sought from `above` metres over it.
-pub(super) fn below(world: &World, point: Vec3, above: f32) -> Option<f32> {
+/// Height of what bears under a point, sought from `above` metres over it: of the static world for a character that is not in
+/// it (`own` is `None`), else of whatever is there but its own bodies and those of others that their clips move.
+pub(super) fn below(world: &World, point: Vec3, above: f32, own: Option<&[BodyId]>) -> Option<f32> {
     let ray = Ray { origin: point + Vec3::Y * above, direction: Vec3::Y * -(above + DEPTH) };
-    let hit = world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&ray)?;
+    let hit = match own {
+        None => world.query().filter(QueryFilter::of(BodyKinds::STATIC)).first(&ray)?,
+        Some(own) => bearer(world, &ray, own)?,
+    };
     // A ray that starts inside says nothing about the height.
     hit.start.is_none().then_some(hit.point.y)
+}
+
+fn bearer(world: &World, ray: &Ray, own: &[BodyId]) -> Option<BodyHit> {
+    let bears = |body: BodyId, shape: u32| {
+        !matches!(world.contact_rule(ShapeId { body, shape }), ContactRule::Ghost | ContactRule::Yields(_))
+    };
+    world.query().filter(QueryFilter::without(own)).accept(bears).first(ray)
+}
+
+/// How what bears a body moves; by default it stands.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct GroundMotion {
+    velocity: Velocity,
+    center: Vec3,
+}
+
+impl GroundMotion {
+    /// Velocity of its surface at a point, m/s.
+    pub fn at(&self, point: Vec3) -> Vec3 {
+        self.velocity.at(point - self.center)
+    }
+
+    /// Spin, rad/s.
+    pub fn angular(&self) -> Vec3 {
+        self.velocity.angular
+    }
+}
+
+/// How farther down than a body's reach what bears it is sought, metres.
+const LIES_ON: f32 = 1.0;
+
+/// Motion of what the first of some bodies, a pelvis, lies on.
+pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
+    let Some(&pelvis) = bodies.first() else { return GroundMotion::default() };
+    let ray = Ray { origin: world.center_of_mass(pelvis), direction: Vec3::Y * -LIES_ON };
+    let Some(hit) = bearer(world, &ray, bodies) else { return GroundMotion::default() };
+    GroundMotion { velocity: world.velocity(hit.body), center: world.center_of_mass(hit.body) }
 }
 
 /// How far above a point of a body that lies the ground is sought, metres.
@@ -26,8 +67,8 @@ const LEVEL: f32 = 0.02;
 
 /// The ground that a body lies on, as a plane through its heights under these points: the turn that brings the vertical to
 /// the plane's normal, scaled axis. Stairs are the slope on which they lie.
-pub(super) fn slope(world: &World, points: &[Vec3]) -> Vec3 {
-    let under = |&point: &Vec3| below(world, point, ABOVE).map(|y| Vec3::new(point.x, y, point.z));
+pub(super) fn slope(world: &World, points: &[Vec3], own: Option<&[BodyId]>) -> Vec3 {
+    let under = |&point: &Vec3| below(world, point, ABOVE, own).map(|y| Vec3::new(point.x, y, point.z));
     let places: Vec<Vec3> = points.iter().filter_map(under).collect();
     if places.len() < 3 {
         return Vec3::ZERO;

@@ -1,14 +1,14 @@
 //! Going limp at the speed of the animation, and lying still.
 
-use super::feet::Planting;
+use super::ground::{self, GroundMotion};
 use super::{AfterSettling, Character, Event, State};
 use crate::def::RagdollBodyDef;
 use crate::drive::DriveMode;
 use crate::hand_over::body_velocity;
-use crate::ragdoll::{BodyState, Ragdoll};
+use crate::ragdoll::BodyState;
 use sinew_anim::{Motion, Pose};
 use sinew_math::{Transform, Vec3, min};
-use sinew_physics::{BodyId, Velocity, World};
+use sinew_physics::{BodyId, ContactRule, Velocity, World};
 
 /// Seconds between the poses ahead of now that the hand-over takes velocities from: short against any motion, long against
 /// rounding.
@@ -44,15 +44,9 @@ impl Character {
         if self.ragdoll.is_some() {
             return self.fall_again(world);
         }
-        if !self.planting.is_over() {
-            self.pose.clone_from(&self.planted);
-        }
-        let states = self.carried();
-        self.planting = Planting::default();
+        self.become_bodies(world, ContactRule::Push);
         self.let_linger(world);
-        self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
-        self.scratch.posed.clear();
-        self.ragdoll = Some(Ragdoll::spawn(world, &self.def.ragdoll, &states, &self.def.flesh));
+        self.sit_down(world);
         self.drives.set_all(self.def.falling, 0.0);
         self.state = State::Limp;
         self.stillness = Stillness::default();
@@ -97,14 +91,25 @@ impl Character {
         self.scratch.pose.extend(resting.iter());
     }
 
-    /// A body that was about to get up is limp again.
+    /// A body that was about to get up, or that muscles held, is limp again.
     fn fall_again(&mut self, world: &mut World) {
-        if self.state == State::Preparing {
-            self.let_go(world);
-            self.state = State::Limp;
-            self.stillness = Stillness { touched: true, ..Stillness::default() };
-            self.events.push(Event::WentLimp);
+        let powered = match self.state {
+            State::Flinching | State::Powered => true,
+            State::Preparing => false,
+            State::Animated | State::Limp | State::GettingUp => return,
+        };
+        self.let_go(world);
+        self.state = State::Limp;
+        self.stillness = Stillness { touched: !powered, ..Stillness::default() };
+        if powered {
+            self.let_linger(world);
+            self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
+            self.scratch.posed.clear();
+            self.sit_down(world);
+            self.ragdoll.as_ref().expect("it has bodies").set_rule(world, ContactRule::Push);
+            self.slacken(world);
         }
+        self.events.push(Event::WentLimp);
     }
 
     /// Takes all drives off the bodies but those of a fall.
@@ -117,7 +122,7 @@ impl Character {
 
     /// Where the bodies are and how fast they move as the animation carries them, whatever it is made of: by where it will
     /// have them in a moment, for tracks, weights and transitions may all have changed since the last pose.
-    fn carried(&mut self) -> Vec<BodyState> {
+    pub(super) fn carried(&mut self) -> Vec<BodyState> {
         let (mut now, mut ahead) =
             (core::mem::take(&mut self.scratch.before), core::mem::take(&mut self.scratch.after));
         // Seen by the character: far from the world's origin small ways drown in rounding.
@@ -184,9 +189,13 @@ impl Character {
 
     /// Powers the joints of a falling body, for the next step, toward the pose of its clips.
     fn brace(&mut self, world: &mut World) {
-        if self.def.falling == DriveMode::Limp {
-            return;
+        if self.def.falling != DriveMode::Limp {
+            self.drive_toward_clips(world);
         }
+    }
+
+    /// Drives the bodies, for the next step, toward the pose that the clips will have then.
+    pub(super) fn drive_toward_clips(&mut self, world: &mut World) {
         let mut targets = core::mem::take(&mut self.scratch.after);
         let mut before = core::mem::take(&mut self.scratch.before);
         let mut ahead = self.sent_ahead();
@@ -226,7 +235,12 @@ impl Character {
             still.touched = true;
             self.events.push(Event::Touched);
         }
-        still.calm_steps = if is_still(world, &ragdoll.bodies) { still.calm_steps + 1 } else { 0 };
+        let ground = match self.presence {
+            Some(_) => ground::motion_below(world, &ragdoll.bodies),
+            None => GroundMotion::default(),
+        };
+        let is_still = is_still_on(world, &ragdoll.bodies, ground);
+        still.calm_steps = if is_still { still.calm_steps + 1 } else { 0 };
         let mut calm = still.calm_steps as f32 * dt;
         if !still.settled && calm >= STILL_TIME && is_sunk(world, &ragdoll.bodies) {
             (still.calm_steps, calm) = (0, 0.0);
@@ -247,9 +261,15 @@ impl Character {
 
 /// Whether every body is slower than what counts as still.
 pub(crate) fn is_still(world: &World, bodies: &[BodyId]) -> bool {
+    is_still_on(world, bodies, GroundMotion::default())
+}
+
+/// The same beside what bears them.
+fn is_still_on(world: &World, bodies: &[BodyId], ground: GroundMotion) -> bool {
     bodies.iter().all(|&body| {
         let velocity = world.velocity(body);
-        velocity.linear.length() < STILL_LINEAR && velocity.angular.length() < STILL_ANGULAR
+        let linear = velocity.linear - ground.at(world.center_of_mass(body));
+        linear.length() < STILL_LINEAR && (velocity.angular - ground.angular()).length() < STILL_ANGULAR
     })
 }
 

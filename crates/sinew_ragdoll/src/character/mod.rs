@@ -4,30 +4,40 @@
 //! The host steps the world, then calls [`Character::update`]; poses and bodies are those of the same moment.
 
 mod animate;
+mod blows;
 mod def;
 mod feet;
 mod get_up;
 mod ground;
+mod hit_bodies;
+mod in_world;
 mod likeness;
 mod limp;
 mod mirror;
 mod moves;
+mod powered;
 mod prepare;
 mod recognise;
 mod save;
+mod show;
+mod walk;
 
 pub(crate) use limp::{STILL_TIME, is_still, is_sunk, touches_world};
 
 pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet, Opening};
+pub use in_world::{Blow, HitBodies, InWorld, Toughness};
 pub use moves::MotionError;
+pub use powered::{Part, Preset};
 
 use crate::drive::Drives;
 use crate::mapping::Physical;
 use crate::ragdoll::Ragdoll;
 use feet::Planting;
 use get_up::Rising;
+use in_world::Presence;
 use limp::Stillness;
 use prepare::Preparation;
+use show::Shown;
 use sinew_anim::{Animator, Inertia, LocalTransform, Pose};
 use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::{Velocity, World};
@@ -36,7 +46,7 @@ use std::sync::Arc;
 /// What decides the character's pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// A clip; the character has no bodies in the world.
+    /// Clips; its bodies, if it has any in the world, are led by them.
     Animated,
     /// Its bodies: it falls, or lies.
     Limp,
@@ -44,6 +54,10 @@ pub enum State {
     Preparing,
     /// A get-up clip, in which the pose and the motion of the bodies die away.
     GettingUp,
+    /// Clips, but for a limb that was struck and comes back to them.
+    Flinching,
+    /// Its bodies, which muscles and pins draw to its clips.
+    Powered,
 }
 
 /// Something that happened to a character.
@@ -52,6 +66,18 @@ pub enum Event {
     /// It was pushed.
     Hit {
         /// Which body, by index in the definition.
+        body: usize,
+    },
+    /// Something struck one of its bodies: contacts tell more.
+    Struck {
+        /// Which body, by index in the definition.
+        body: usize,
+        /// N·s.
+        impulse: f32,
+    },
+    /// A blow did not fell it: the limb gives way and comes back.
+    Flinched {
+        /// Which body was struck, by index in the definition.
         body: usize,
     },
     /// Its bodies took over.
@@ -100,6 +126,10 @@ pub struct Character {
     /// As bodies or clips have it.
     pose: Vec<LocalTransform>,
     earlier: Earlier,
+    shown: Shown,
+    presence: Option<Presence>,
+    /// Seconds until a limb that was struck has come back.
+    flinching: f32,
     ragdoll: Option<Ragdoll>,
     drives: Drives,
     stillness: Stillness,
@@ -127,6 +157,7 @@ struct Scratch {
     ahead: Option<Animator>,
     pose: Vec<LocalTransform>,
     resting: Pose,
+    wanted: Vec<LocalTransform>,
     model: Vec<Affine>,
     points: Vec<Vec3>,
     before: Vec<Transform>,
@@ -153,8 +184,11 @@ impl Character {
             speed: 0.0,
             climbing: 0.0,
             earlier: Earlier { pose: pose.clone(), world_from_character },
+            shown: Shown { pose: pose.clone(), world_from_character },
             world_from_character,
             pose,
+            presence: None,
+            flinching: 0.0,
             ragdoll: None,
             drives: Drives::new(&def.ragdoll),
             stillness: Stillness::default(),
@@ -222,37 +256,47 @@ impl Character {
     /// Follows the world by the step that it has just taken.
     ///
     /// # Panics
-    /// If the world is not the one that the character went limp in.
+    /// If the world is not the one that the character is in.
     pub fn update(&mut self, world: &mut World) {
         self.events.clear();
+        self.keep_shown();
         match self.state {
             State::Limp => self.lie(world),
             State::Preparing => self.go_on_preparing(world),
+            State::Flinching | State::Powered => {
+                self.feel(world);
+                match self.state {
+                    State::Limp => self.follow_bodies(world),
+                    _ => self.go_on_powered(world),
+                }
+            }
             State::Animated => {
                 self.animate(world);
                 self.plant(world);
+                self.attend(world);
             }
             State::GettingUp => {
                 self.animate(world);
                 self.straighten();
                 self.rise(world);
                 self.plant(world);
+                self.attend(world);
             }
         }
     }
 
-    /// Hits a body with an impulse (N·s, world axes) at its centre of mass; the character goes limp at the speed it
-    /// has. Gives the work that the impulse did, joules.
-    ///
-    /// # Panics
-    /// If there is no such body or the impulse is not finite.
-    pub fn hit(&mut self, world: &mut World, body: usize, impulse: Vec3) -> f32 {
-        self.go_limp(world);
-        self.events.push(Event::Hit { body });
-        let id = self.ragdoll.as_ref().expect("a limp character has bodies").bodies[body];
-        self.drives.hit(&self.def.ragdoll, body, impulse.length());
-        let before = world.body_energy(id).kinetic;
-        world.apply_impulse_at_center(id, impulse);
-        world.body_energy(id).kinetic - before
+    /// What a character that its clips move does to the world, and the world to it.
+    fn attend(&mut self, world: &mut World) {
+        if self.presence.is_none() {
+            return;
+        }
+        if self.falls() {
+            return self.go_limp(world);
+        }
+        self.feel(world);
+        if self.ragdoll.is_none() {
+            self.lead_bodies(world);
+        }
+        self.steer(world);
     }
 }

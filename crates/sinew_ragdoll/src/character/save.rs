@@ -2,6 +2,7 @@
 
 use super::feet::Planting;
 use super::get_up::Rising;
+use super::in_world::Presence;
 use super::limp::Stillness;
 use super::prepare::Preparation;
 use super::{Character, Earlier, State};
@@ -9,10 +10,12 @@ use crate::drive::Drives;
 use crate::ragdoll::Ragdoll;
 use sinew_anim::{Animator, Inertia, LocalTransform, TrackId};
 use sinew_math::{ReadError, Reader, Writer};
-use sinew_physics::{BodyId, JointId};
+use sinew_physics::{BodyId, JointId, MoverId};
 
 /// First bytes; the last is the version.
 const MAGIC: &[u8; 8] = b"sinew-c\x03";
+/// Bit of a state: the character has its share of a world.
+const IN_WORLD: u8 = 0x80;
 /// Bytes of a local transform.
 const LOCAL_BYTES: usize = 40;
 
@@ -20,12 +23,15 @@ impl Character {
     /// Writes what decides the future, and nothing that its definition holds.
     pub fn save(&self, w: &mut Writer) {
         w.raw(MAGIC);
-        w.u8(match self.state {
+        let state = match self.state {
             State::Animated => 0,
             State::Limp => 1,
             State::GettingUp => 2,
             State::Preparing => 3,
-        });
+            State::Flinching => 4,
+            State::Powered => 5,
+        };
+        w.u8(if self.presence.is_some() { state | IN_WORLD } else { state });
         w.transform(self.world_from_character);
         w.f32(self.climbing);
         w.vec3(self.lean);
@@ -56,6 +62,11 @@ impl Character {
                 w.u64(b.to_bits());
             }
         }
+        if let Some(presence) = &self.presence {
+            presence.save(w);
+            w.f32(self.flinching);
+            w.f32(self.speed);
+        }
     }
 
     /// Brings back a saved state of a character of the same definition. Its bodies are those of the world's snapshot
@@ -67,11 +78,14 @@ impl Character {
         if r.raw(MAGIC.len())? != MAGIC {
             return Err(ReadError { at: 0, what: "is not a character of this version" });
         }
-        let state = match r.u8()? {
+        let tag = r.u8()?;
+        let state = match tag & !IN_WORLD {
             0 => State::Animated,
             1 => State::Limp,
             2 => State::GettingUp,
             3 => State::Preparing,
+            4 => State::Flinching,
+            5 => State::Powered,
             _ => return Err(r.error("unknown state of a character")),
         };
         let (world_from_character, climbing, lean) = (r.transform()?, r.f32()?, r.vec3()?);
@@ -90,9 +104,13 @@ impl Character {
         drives.load(r)?;
         let preparation = self.load_preparation(r)?;
         let ragdoll = if r.bool()? { Some(self.load_ragdoll(r)?) } else { None };
+        let presence =
+            if tag & IN_WORLD != 0 { Some(Presence::load(r, self.def.ragdoll.bodies.len())?) } else { None };
+        let (flinching, speed) = if presence.is_some() { (r.f32()?, r.f32()?) } else { (0.0, self.speed) };
+        let has_bodies = !matches!(state, State::Animated | State::GettingUp);
         let fits = pose.len() == joints
             && earlier.pose.len() == joints
-            && matches!(state, State::Limp | State::Preparing) == ragdoll.is_some()
+            && has_bodies == ragdoll.is_some()
             && (state != State::Preparing || !self.def.moves().get_ups.is_empty())
             && (ragdoll.is_none() || base.len() == joints);
         if !fits {
@@ -104,12 +122,14 @@ impl Character {
         (self.world_from_character, self.climbing, self.planting) =
             (world_from_character, climbing, planting);
         (self.pose, self.earlier, self.ragdoll) = (pose, earlier, ragdoll);
+        (self.presence, self.flinching, self.speed) = (presence, flinching, speed);
         if !base.is_empty() {
             self.physical.rebase(self.def.mapping(), &self.def.rig, &base);
         }
         if !planting.is_over() {
             self.show_planted();
         }
+        self.keep_shown();
         self.events.clear();
         self.scratch.posed.clear();
         Ok(())
@@ -138,6 +158,46 @@ impl Character {
             ragdoll.colliding.push((BodyId::from_bits(r.u64()?), BodyId::from_bits(r.u64()?)));
         }
         Ok(ragdoll)
+    }
+}
+
+impl Presence {
+    fn save(&self, w: &mut Writer) {
+        w.u64(self.mover.map_or(u64::MAX, MoverId::to_bits));
+        w.count(self.bodies.len());
+        self.bodies.iter().for_each(|body| w.u64(body.to_bits()));
+        w.count(self.before.len());
+        self.before.iter().for_each(|&pose| w.transform(pose));
+        for wish in [self.wish, self.facing] {
+            w.bool(wish.is_some());
+            w.vec3(wish.unwrap_or_default());
+        }
+        w.vec3(self.velocity);
+        [self.yaw, self.pace, self.air, self.over].into_iter().for_each(|x| w.f32(x));
+        w.bool(self.falls);
+    }
+
+    fn load(r: &mut Reader<'_>, most: usize) -> Result<Self, ReadError> {
+        let mover = r.u64()?;
+        let mut presence =
+            Self { mover: (mover != u64::MAX).then(|| MoverId::from_bits(mover)), ..Self::default() };
+        for _ in 0..r.count(8)? {
+            presence.bodies.push(BodyId::from_bits(r.u64()?));
+        }
+        for _ in 0..r.count(28)? {
+            presence.before.push(r.transform()?);
+        }
+        if [presence.bodies.len(), presence.before.len()].iter().any(|&count| count != 0 && count != most) {
+            return Err(r.error("is of another character"));
+        }
+        let mut wish =
+            || Ok::<_, ReadError>(if r.bool()? { Some(r.vec3()?) } else { r.vec3().map(|_| None)? });
+        (presence.wish, presence.facing) = (wish()?, wish()?);
+        presence.velocity = r.vec3()?;
+        (presence.yaw, presence.pace) = (r.f32()?, r.f32()?);
+        (presence.air, presence.over) = (r.f32()?, r.f32()?);
+        presence.falls = r.bool()?;
+        Ok(presence)
     }
 }
 

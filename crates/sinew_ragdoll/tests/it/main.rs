@@ -13,6 +13,7 @@ mod falls;
 mod filter;
 mod guises;
 mod hand_over;
+mod in_world;
 mod learned;
 mod mapping;
 mod pops;

@@ -1,0 +1,144 @@
+//! Shapes that yield: kinematic bodies that push with limited force.
+
+use crate::build::{box_body, floor, sphere_body};
+use sinew_math::{Reader, Rotation, Vec3, Writer, max};
+use sinew_physics::*;
+
+/// A kinematic arm, an upright capsule of 10 cm, that goes with a velocity.
+fn arm(world: &mut World, at: Vec3, velocity: Vec3) -> BodyId {
+    let shape = Shape::Capsule { half_height: 0.4, radius: 0.1 };
+    let rule = ContactRule::Yields(Yields::default());
+    let def = BodyDef {
+        kind: BodyKind::Kinematic,
+        position: at,
+        linear_velocity: velocity,
+        shapes: vec![ShapeDef { rule, ..ShapeDef::new(shape) }],
+        ..BodyDef::default()
+    };
+    world.add_body(&def)
+}
+
+fn level() -> World {
+    let mut world = World::new(WorldDef::default());
+    floor(&mut world);
+    world
+}
+
+/// A ball of 0.43 kg that bounces.
+fn ball(world: &mut World, at: Vec3, velocity: Vec3) -> BodyId {
+    let mut def = sphere_body(0.11, at);
+    (def.linear_velocity, def.mass) = (velocity, Some(Shape::Sphere { radius: 0.11 }.mass_properties(77.0)));
+    def.shapes[0].material.restitution = 0.8;
+    world.add_body(&def)
+}
+
+#[test]
+fn a_ball_bounces_off_and_is_kicked() {
+    let mut world = level();
+    arm(&mut world, Vec3::Y * 0.5, Vec3::ZERO);
+    let thrown = ball(&mut world, Vec3::new(-1.0, 0.5, 0.0), Vec3::X * 20.0);
+    for _ in 0..20 {
+        world.step();
+    }
+    let back = -world.velocity(thrown).linear.x;
+    assert!((back - 16.0).abs() < 0.3, "it comes back at {back} m/s");
+
+    let mut world = level();
+    arm(&mut world, Vec3::new(-0.5, 0.5, 0.0), Vec3::X * 4.0);
+    let kicked = ball(&mut world, Vec3::Y * 0.11, Vec3::ZERO);
+    for _ in 0..20 {
+        world.step();
+    }
+    assert!(world.velocity(kicked).linear.x > 3.9, "it goes at {}", world.velocity(kicked).linear.x);
+}
+
+#[test]
+fn a_crate_is_let_be_and_told_of() {
+    let mut world = level();
+    let arm = arm(&mut world, Vec3::new(-0.8, 0.5, 0.0), Vec3::X * 3.0);
+    let mut def = box_body(Vec3::splat(0.25), Vec3::Y * 0.25);
+    def.mass = Some(Shape::Box { half_extents: Vec3::splat(0.25) }.mass_properties(320.0));
+    let load = world.add_body(&def);
+    let (mut told, mut fastest) = (0, 0.0);
+    for _ in 0..40 {
+        world.step();
+        let met = |pair: &&(BodyId, BodyId)| **pair == (arm, load) || **pair == (load, arm);
+        told += world.events().begin.iter().filter(met).count();
+        fastest = max(fastest, world.velocity(load).linear.length());
+    }
+    assert!(world.transform(arm).translation.x > 1.0, "the arm has gone through");
+    assert_eq!(told, 1, "its contact is told of once");
+    let way = world.transform(load).translation.x;
+    assert!(way.abs() < 0.01 && fastest < 0.1, "{way} m, {fastest} m/s");
+}
+
+#[test]
+fn what_is_jammed_against_a_wall_is_not_crushed() {
+    let mut world = level();
+    let wall = Shape::Box { half_extents: Vec3::new(0.2, 1.0, 1.0) };
+    world.add_body(&BodyDef::fixed(wall).at(Vec3::new(0.45, 1.0, 0.0)));
+    // So slow that the force for it would do.
+    arm(&mut world, Vec3::new(-0.4, 0.5, 0.0), Vec3::X * 0.05);
+    let mut def = box_body(Vec3::splat(0.25), Vec3::Y * 0.25);
+    def.mass = Some(Shape::Box { half_extents: Vec3::splat(0.25) }.mass_properties(80.0));
+    let load = world.add_body(&def);
+    for _ in 0..900 {
+        world.step();
+        let sunk = world.penetration(load);
+        assert!(sunk < 0.01, "it is {sunk} m in the wall");
+    }
+    assert!((world.transform(load).translation.x).abs() < 0.02, "{}", world.transform(load).translation);
+}
+
+#[test]
+fn what_is_heavy_and_fast_goes_through_and_what_is_dynamic_pushes() {
+    let fly = |kind: BodyKind| {
+        let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
+        let mut def = box_body(Vec3::splat(0.25), Vec3::X * -1.5);
+        def.mass = Some(Shape::Box { half_extents: Vec3::splat(0.25) }.mass_properties(320.0));
+        def.linear_velocity = Vec3::X * 6.0;
+        let load = world.add_body(&def);
+        let mut post = box_body(Vec3::splat(0.25), Vec3::ZERO);
+        (post.kind, post.shapes[0].rule) = (kind, ContactRule::Yields(Yields::default()));
+        post.rotation = Rotation::IDENTITY;
+        let post = world.add_body(&post);
+        for _ in 0..40 {
+            world.step();
+        }
+        (world.velocity(load).linear.x, world.velocity(post).linear.x)
+    };
+    assert_eq!(fly(BodyKind::Kinematic), (6.0, 0.0), "240 N·s are more than it stops");
+    let (load, post) = fly(BodyKind::Dynamic);
+    assert!(load < 4.0 && post > 1.0, "{load} and {post} m/s");
+}
+
+#[test]
+fn movers_go_through_and_a_snapshot_goes_on_the_same() {
+    let mut world = level();
+    arm(&mut world, Vec3::new(1.0, 0.6, 0.0), Vec3::X * -0.5);
+    let mover = world.add_mover(&MoverDef::at(Vec3::ZERO));
+    world.set_mover_walk(mover, Vec3::X * 2.0);
+    let load = world.add_body(&box_body(Vec3::splat(0.2), Vec3::new(0.6, 0.2, 0.1)));
+    for _ in 0..30 {
+        world.step();
+    }
+    let mut w = Writer::new();
+    world.save(&mut w);
+    let mut other = World::new(WorldDef::default());
+    other.load(&mut Reader::new(w.as_bytes())).expect("it is a snapshot");
+    for _ in 0..60 {
+        world.step();
+        other.step();
+        assert_eq!(world.hash(), other.hash());
+    }
+    assert!(world.contains(load) && world.mover(mover).position().x > 1.5);
+}
+
+#[test]
+#[should_panic(expected = "must not be negative")]
+fn a_bound_that_is_no_number_is_refused() {
+    let mut world = level();
+    let mut def = sphere_body(0.1, Vec3::Y);
+    def.shapes[0].rule = ContactRule::Yields(Yields { max_force: f32::NAN, ..Yields::default() });
+    world.add_body(&def);
+}

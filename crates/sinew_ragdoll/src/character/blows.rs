@@ -1,0 +1,122 @@
+//! Blows: what is below the threshold lets a limb give way, what is above fells.
+
+use super::{Blow, Character, Event, State, Toughness};
+use crate::drive::{DriveMode, Muscle};
+use sinew_math::Vec3;
+use sinew_physics::{BodyHit, World};
+
+/// What holds a limb that was struck until it comes back.
+const GIVING: Muscle = Muscle { hertz: 3.0, damping_ratio: 1.0, strength: 0.5 };
+/// Seconds for which it gives way, and half-life of its coming back.
+const GIVES: f32 = 0.12;
+const RETURNS: f32 = 0.08;
+/// Half-lives after which it is as the clips have it again.
+const RETURNED: f32 = 6.0;
+
+impl Character {
+    /// Hits a body with an impulse (N·s, world axes) at its centre of mass. A character that is in a world and
+    /// [tough](super::InWorld::toughness) enough flinches; any other goes limp at the speed it has. Gives the work that the
+    /// impulse did, joules.
+    ///
+    /// # Panics
+    /// If there is no such body or the impulse is not finite.
+    pub fn hit(&mut self, world: &mut World, body: usize, impulse: Vec3) -> f32 {
+        self.strike(world, body, impulse, None)
+    }
+
+    /// [`hit`](Self::hit) where a ray or a shape hit one of its bodies, at that point. `None`, and nothing happens, if it is no
+    /// body of this character.
+    ///
+    /// # Panics
+    /// If the impulse is not finite.
+    pub fn hit_at(&mut self, world: &mut World, hit: &BodyHit, impulse: Vec3) -> Option<f32> {
+        let body = self.body_index(hit.body)?;
+        Some(self.strike(world, body, impulse, Some(hit.point)))
+    }
+
+    pub(super) fn strike(
+        &mut self,
+        world: &mut World,
+        body: usize,
+        impulse: Vec3,
+        point: Option<Vec3>,
+    ) -> f32 {
+        assert!(impulse.is_finite(), "an impulse is finite");
+        assert!(body < self.def.ragdoll.bodies.len(), "there is such a body");
+        if self.stands_blow(Blow { body, impulse }) {
+            return self.flinch(world, body, impulse, point);
+        }
+        self.go_limp(world);
+        self.events.push(Event::Hit { body });
+        self.drives.hit(&self.def.ragdoll, body, impulse.length());
+        self.push(world, body, impulse, point)
+    }
+
+    fn stands_blow(&self, blow: Blow) -> bool {
+        let stands = matches!(self.state, State::Animated | State::Flinching | State::Powered);
+        let is_there = self.presence.is_some() && stands;
+        is_there
+            && match self.def.in_world.toughness {
+                Toughness::None => false,
+                Toughness::Impulse(least) => blow.impulse.length() < least,
+                Toughness::Function(fells) => !fells(self, &blow),
+            }
+    }
+
+    /// Gives a body an impulse, and what that did.
+    fn push(&self, world: &mut World, body: usize, impulse: Vec3, point: Option<Vec3>) -> f32 {
+        let id = self.ragdoll.as_ref().expect("it has bodies").bodies[body];
+        let before = world.body_energy(id).kinetic;
+        match point {
+            Some(point) => world.apply_impulse(id, impulse, point),
+            None => world.apply_impulse_at_center(id, impulse),
+        }
+        world.body_energy(id).kinetic - before
+    }
+
+    /// Lets the limb that was struck give way.
+    fn flinch(&mut self, world: &mut World, body: usize, impulse: Vec3, point: Option<Vec3>) -> f32 {
+        if self.state == State::Animated {
+            self.take_bodies(world, DriveMode::Keyed);
+            self.state = State::Flinching;
+        }
+        if self.state == State::Flinching {
+            for root in self.limb_of(body) {
+                self.drives.set_from(&self.def.ragdoll, root, DriveMode::Powered(GIVING), 0.0);
+            }
+            self.flinching = GIVES + RETURNED * RETURNS;
+        }
+        self.drives.hit(&self.def.ragdoll, body, impulse.length());
+        self.drive_bodies(world);
+        self.events.push(Event::Flinched { body });
+        self.push(world, body, impulse, point)
+    }
+
+    /// The bodies from which a blow to one makes all below give way: the limb that it is of, up to the trunk. Of the pelvis, what
+    /// hangs on it, since the pelvis itself is held.
+    fn limb_of(&self, body: usize) -> Vec<usize> {
+        let def = &self.def.ragdoll;
+        let parent = |body: usize| body.checked_sub(1).map(|joint| def.joints[joint].parent);
+        let children = |body: usize| def.joints.iter().filter(move |joint| joint.parent == body).count();
+        if body == 0 {
+            return def.joints.iter().filter(|joint| joint.parent == 0).map(|joint| joint.child).collect();
+        }
+        let mut root = body;
+        // Where several limbs branch off is the trunk.
+        while let Some(above) = parent(root).filter(|&above| above != 0 && children(above) == 1) {
+            root = above;
+        }
+        vec![root]
+    }
+
+    /// Lets a limb that gave way come back; true once it has.
+    pub(super) fn come_back(&mut self, dt: f32) -> bool {
+        let back = RETURNED * RETURNS;
+        let before = self.flinching;
+        self.flinching -= dt;
+        if before > back && self.flinching <= back {
+            self.drives.set_all(DriveMode::Keyed, RETURNS);
+        }
+        self.flinching <= 0.0
+    }
+}

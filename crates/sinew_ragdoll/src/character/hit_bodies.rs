@@ -1,0 +1,108 @@
+//! Bodies of a character that its clips move: led from pose to pose, and what strikes them.
+
+use super::{Character, Event};
+use sinew_math::{Rotation, Transform, Vec3, max};
+use sinew_physics::{BodyId, BodyKind, Velocity, World};
+
+/// Way of a body within a step beyond which it was put elsewhere, metres.
+const PUT: f32 = 1.0;
+
+impl Character {
+    /// Has the hit bodies go where the pose will be at the end of the next step, as far as it goes on as it did.
+    pub(super) fn lead_bodies(&mut self, world: &mut World) {
+        let Some(presence) = self.presence.as_mut().filter(|presence| !presence.bodies.is_empty()) else {
+            return;
+        };
+        let mut before = core::mem::take(&mut presence.before);
+        let mut now = core::mem::take(&mut self.scratch.after);
+        let place = self.world_from_character;
+        let pose = core::mem::take(if self.planting.is_over() { &mut self.pose } else { &mut self.planted });
+        self.bodies_of(&pose, place, &mut now);
+        if self.planting.is_over() {
+            self.pose = pose;
+        } else {
+            self.planted = pose;
+        }
+        let dt = world.def().dt();
+        let presence = self.presence.as_ref().expect("it was there");
+        for (index, (&id, body)) in presence.bodies.iter().zip(&self.def.ragdoll.bodies).enumerate() {
+            let target = ahead(before.get(index).copied(), now[index], body.mass.center);
+            lead(world, id, body.mass.center, target, dt);
+        }
+        before.clone_from(&now);
+        self.scratch.after = now;
+        if let Some(presence) = &mut self.presence {
+            presence.before = before;
+        }
+    }
+
+    /// Flinches or falls by what struck its bodies in the last step.
+    pub(super) fn feel(&mut self, world: &mut World) {
+        let least = self.def.in_world.feels;
+        let Some(presence) = &self.presence else { return };
+        if presence.bodies.is_empty() || least == f32::INFINITY {
+            return;
+        }
+        let mut felt: Option<(usize, Vec3)> = None;
+        let mut note = |body: usize, impulse: Vec3| {
+            let size = impulse.length();
+            if size >= least && felt.is_none_or(|(_, felt)| size > felt.length()) {
+                felt = Some((body, impulse));
+            }
+        };
+        let own = |id: BodyId| presence.bodies.iter().position(|&body| body == id);
+        for hit in &world.events().hits {
+            match (own(hit.a.body), own(hit.b.body)) {
+                (Some(body), None) => note(body, hit.normal * -hit.impulse),
+                (None, Some(body)) => note(body, hit.normal * hit.impulse),
+                _ => {}
+            }
+        }
+        for &(a, b) in &world.events().begin {
+            match (own(a), own(b)) {
+                (Some(body), None) => note(body, self.passing(world, a, b)),
+                (None, Some(body)) => note(body, self.passing(world, b, a)),
+                _ => {}
+            }
+        }
+        if let Some((body, impulse)) = felt {
+            self.events.push(Event::Struck { body, impulse: impulse.length() });
+            self.strike(world, body, impulse, None);
+        }
+    }
+
+    /// What a body that goes through one of its own would give it, if the two stopped each other: N·s.
+    fn passing(&self, world: &World, own: BodyId, other: BodyId) -> Vec3 {
+        let gone = !world.contains(other) || !world.contains(own);
+        if gone || world.kind(other) != BodyKind::Dynamic || world.kind(own) == BodyKind::Dynamic {
+            return Vec3::ZERO;
+        }
+        let (mass, whole) = (world.mass(other).mass, self.def.ragdoll.total_mass);
+        let relative = world.velocity(other).linear - world.velocity(own).linear;
+        let toward = world.center_of_mass(own) - world.center_of_mass(other);
+        let way = sinew_math::normalize_or(toward, Vec3::ZERO);
+        // What comes by itself, not what it walks into.
+        let comes = max(world.velocity(other).linear.dot(way), 0.0);
+        let closing = max(relative.dot(way), 0.0);
+        way * (mass * whole / (mass + whole) * sinew_math::min(closing, comes))
+    }
+}
+
+/// Where a body comes to that goes on as it went.
+fn ahead(before: Option<Transform>, now: Transform, center: Vec3) -> Transform {
+    let Some(before) = before else { return now };
+    let way = now.point(center) - before.point(center);
+    if way.length() > PUT {
+        return now;
+    }
+    let turn: Rotation = now.rotation * before.rotation.inverse();
+    let rotation = (turn * now.rotation).normalize();
+    Transform::new(now.point(center) + way - rotation * center, rotation)
+}
+
+/// Takes a kinematic body to where it is wanted, exactly within the step.
+fn lead(world: &mut World, id: BodyId, center: Vec3, wanted: Transform, dt: f32) {
+    let angular = world.transform(id).rotation.angular_velocity_to(wanted.rotation, dt);
+    let linear = (wanted.point(center) - world.center_of_mass(id)) / dt;
+    world.set_velocity(id, Velocity { linear, angular });
+}

@@ -1,0 +1,249 @@
+//! What of a character is in the world while its clips move it: a mover that stands, walks and falls, and bodies that can be
+//! hit. Settings, and how it comes and goes.
+
+use super::{Character, CharacterDef, State};
+use crate::def::RagdollDef;
+use crate::ragdoll::{BodyState, Ragdoll};
+use sinew_math::{Transform, Vec3, max, min};
+use sinew_physics::{BodyId, ContactRule, MoverDef, MoverId, Velocity, World, Yields};
+use std::sync::Arc;
+
+/// Bodies of a character that its clips move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HitBodies {
+    /// In the world, kinematic: rays and shapes find them, contacts tell of them, what flies bounces off. They push within
+    /// these bounds. Default.
+    Present(Yields),
+    /// Not in the world.
+    Absent,
+}
+
+/// A blow that a character got.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blow {
+    /// Body that was struck, by index in the definition.
+    pub body: usize,
+    /// N·s, world axes.
+    pub impulse: Vec3,
+}
+
+/// What a blow must be to fell a character that stands.
+#[derive(Clone, Copy, Debug)]
+pub enum Toughness {
+    /// Each blow does.
+    None,
+    /// Blows of that many N·s and more; weaker ones let it flinch. Default: the speed of 0.6 m/s for its whole mass.
+    Impulse(f32),
+    /// The user's function says: true fells it.
+    Function(fn(&Character, &Blow) -> bool),
+}
+
+impl PartialEq for Toughness {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::None, Self::None) => true,
+            (Self::Impulse(a), Self::Impulse(b)) => a == b,
+            (&Self::Function(a), &Self::Function(b)) => core::ptr::fn_addr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
+/// What of characters of a kind is in the world while their clips move them, and what they stand.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InWorld {
+    /// Its bodies. Default present.
+    pub hit_bodies: HitBodies,
+    /// Mover that stands for it, by size, mass and filter; `position` does nothing. `None`: nothing stops or carries it, and
+    /// it goes where its clips take it over the static world. Default: as tall and heavy as the character.
+    pub mover: Option<MoverDef>,
+    /// Speed at which it turns to where it is to face, rad/s. Default 8.
+    pub turn_speed: f32,
+    /// Speed of a jump, m/s. Default 3.5, which is 0.6 m.
+    pub jump_speed: f32,
+    /// Time without ground after which it falls limp, seconds. Default 1.
+    pub air_time: f32,
+    /// Speed toward the ground with which a landing fells it, m/s. Default 7, a fall from 2.5 m.
+    pub landing_speed: f32,
+    /// What a blow must be to fell it.
+    pub toughness: Toughness,
+    /// Impulse from which it feels what strikes its bodies by itself, N·s; infinite: it feels only what it is told of by
+    /// [`Character::hit`]. Default 3.
+    pub feels: f32,
+}
+
+/// Speed that a blow gives to the whole of a character that it fells, m/s.
+const FELLS: f32 = 0.6;
+/// Radius of a mover over its height.
+const RADIUS: f32 = 0.17;
+
+impl InWorld {
+    /// Of a ragdoll's size and mass.
+    pub fn of(ragdoll: &RagdollDef) -> Self {
+        let sound = |x: f32, else_: f32| if x > 0.0 && x < f32::INFINITY { x } else { else_ };
+        let (height, mass) = (sound(ragdoll.height, 1.8), sound(ragdoll.total_mass, 80.0));
+        let usual = MoverDef::default();
+        let mover = MoverDef {
+            height,
+            radius: RADIUS * height,
+            mass,
+            push_force: usual.push_force * mass / usual.mass,
+            step_height: usual.step_height * height / usual.height,
+            skin: min(usual.skin, 0.1 * RADIUS * height),
+            ..usual
+        };
+        Self {
+            hit_bodies: HitBodies::Present(Yields::default()),
+            mover: Some(mover),
+            turn_speed: 8.0,
+            jump_speed: 3.5,
+            air_time: 1.0,
+            landing_speed: 7.0,
+            toughness: Toughness::Impulse(FELLS * mass),
+            feels: 3.0,
+        }
+    }
+
+    /// What becomes of the contacts of its bodies while its clips or its muscles move them.
+    pub(super) fn rule(&self) -> ContactRule {
+        match self.hit_bodies {
+            HitBodies::Present(yields) => ContactRule::Yields(yields),
+            HitBodies::Absent => ContactRule::Yields(Yields::default()),
+        }
+    }
+}
+
+/// A character's share of a world.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Presence {
+    /// While it stands.
+    pub mover: Option<MoverId>,
+    /// Hit bodies, which are the ragdoll's while it has one.
+    pub bodies: Vec<BodyId>,
+    /// Poses of the bodies a step ago as clips had them; empty: none.
+    pub before: Vec<Transform>,
+    /// Velocity that it is to go with, m/s; `None`: as its clips do.
+    pub wish: Option<Vec3>,
+    /// Where it is to look, level, of length 1.
+    pub facing: Option<Vec3>,
+    /// The mover's turn as it was last asked.
+    pub yaw: f32,
+    /// Of the mover, m/s.
+    pub velocity: Vec3,
+    /// Speed at which the looped clip is played, m/s.
+    pub pace: f32,
+    /// Seconds since the mover had ground.
+    pub air: f32,
+    /// How far over its mover it is shown: it takes a moment to come down a step, metres.
+    pub over: f32,
+    /// It left the ground for too long or came down too fast.
+    pub falls: bool,
+}
+
+impl Character {
+    /// A character in a world, animated: with a mover and hit bodies as [`CharacterDef::in_world`] says. `world_from_character`
+    /// is where it stands (metres, its +Y up, +Z the way it faces). [`despawn`](Self::despawn) takes all of it out again.
+    ///
+    /// # Panics
+    /// If the place is not finite.
+    pub fn spawn(world: &mut World, def: &Arc<CharacterDef>, world_from_character: Transform) -> Self {
+        let mut character = Self::new(def.clone(), world_from_character, 0.0);
+        character.enter(world);
+        character
+    }
+
+    /// Brings a character that was made [`new`](Self::new) into a world, as [`spawn`](Self::spawn) does. Nothing happens if it
+    /// is in one.
+    ///
+    /// # Panics
+    /// If it stands nowhere finite, or is not animated.
+    pub fn enter(&mut self, world: &mut World) {
+        if self.presence.is_some() {
+            return;
+        }
+        assert!(self.world_from_character.is_finite(), "a character stands at a finite place");
+        assert!(self.state == State::Animated, "a character comes into a world standing");
+        let mut presence = Presence::default();
+        if let HitBodies::Present(yields) = self.def.in_world.hit_bodies {
+            let def = self.def.clone();
+            let mut poses = Vec::new();
+            let pose = core::mem::take(&mut self.pose);
+            self.bodies_of(&pose, self.world_from_character, &mut poses);
+            self.pose = pose;
+            let at =
+                |&world_from_body: &Transform| BodyState { world_from_body, velocity: Velocity::default() };
+            let states: Vec<BodyState> = poses.iter().map(at).collect();
+            let rule = ContactRule::Yields(yields);
+            presence.bodies = Ragdoll::spawn_kinematic(world, &def.ragdoll, &states, &def.flesh, rule);
+        }
+        self.presence = Some(presence);
+        self.stand_up(world, 1.0);
+    }
+
+    /// Takes all of it out of the world: bodies, joints, drives, mover.
+    ///
+    /// # Panics
+    /// If something of it is no longer there.
+    pub fn despawn(mut self, world: &mut World) {
+        self.leave(world);
+    }
+
+    /// Takes all of it out of the world and keeps its clips going, at the place where it stood.
+    ///
+    /// # Panics
+    /// If something of it is no longer there, or it is not animated.
+    fn leave(&mut self, world: &mut World) {
+        if let Some(ragdoll) = self.ragdoll.take() {
+            self.drives.release(world, &ragdoll);
+            ragdoll.despawn(world);
+            if let Some(presence) = &mut self.presence {
+                presence.bodies.clear();
+            }
+        }
+        self.sit_down(world);
+        for body in self.presence.take().map_or(Vec::new(), |presence| presence.bodies) {
+            world.remove_body(body);
+        }
+    }
+
+    /// Its mover in the world; `None` without one, and while it lies.
+    pub fn mover(&self) -> Option<MoverId> {
+        self.presence.as_ref()?.mover
+    }
+
+    /// Its bodies in the world, in the order of the definition: hit bodies or those of its ragdoll; none of a character that
+    /// was not brought into a world.
+    pub fn bodies(&self) -> &[BodyId] {
+        match (&self.ragdoll, &self.presence) {
+            (Some(ragdoll), _) => &ragdoll.bodies,
+            (None, Some(presence)) => &presence.bodies,
+            (None, None) => &[],
+        }
+    }
+
+    /// Index in the definition of a body of its: of what a ray hit, for one.
+    pub fn body_index(&self, id: BodyId) -> Option<usize> {
+        self.bodies().iter().position(|&body| body == id)
+    }
+
+    /// Puts a mover where it stands, at a share of its height.
+    pub(super) fn stand_up(&mut self, world: &mut World, share: f32) {
+        let Some(presence) = self.presence.as_mut().filter(|presence| presence.mover.is_none()) else {
+            return;
+        };
+        let Some(mover) = &self.def.in_world.mover else { return };
+        let height = max(2.0 * mover.radius, share * mover.height);
+        let position = self.world_from_character.translation;
+        presence.mover = Some(world.add_mover(&MoverDef { position, height, ..mover.clone() }));
+        (presence.yaw, presence.air, presence.over, presence.pace) = (0.0, 0.0, 0.0, 0.0);
+        (presence.velocity, presence.falls) = (Vec3::ZERO, false);
+    }
+
+    /// Takes its mover out: it lies.
+    pub(super) fn sit_down(&mut self, world: &mut World) {
+        let mover = self.presence.as_mut().and_then(|presence| presence.mover.take());
+        if let Some(mover) = mover.filter(|&mover| world.contains_mover(mover)) {
+            world.remove_mover(mover);
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Bodies between clips and physics: each led, pinned, held by muscles or limp, while clips and mover go on.
+
+use super::{Character, State};
+use crate::drive::{DriveMode, Drives, Muscle, Pin};
+use crate::ragdoll::Ragdoll;
+use sinew_math::{Transform, Vec3};
+use sinew_physics::{ContactRule, World};
+
+/// What moves a character, all of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// Its clips: what lies gets up, what is powered comes back to them.
+    Animated,
+    /// Its clips, with bodies that give way and come back as if it had just been struck everywhere.
+    Flinching,
+    /// Muscles toward its clips, and a soft pin at the pelvis that keeps it near its place.
+    Powered,
+    /// Nothing: it falls.
+    Limp,
+}
+
+/// Bodies of a character.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part<'a> {
+    /// All.
+    All,
+    /// One, by index in the definition.
+    Body(usize),
+    /// One, by role or bone.
+    Named(&'a str),
+    /// That one, by role or bone, and all that hangs on it.
+    From(&'a str),
+}
+
+/// Half-life of coming back to the clips, seconds.
+const RETURNS: f32 = 0.1;
+/// A powered character whose pelvis is farther than this from its clips', over its height, or turned by more, radians, falls.
+const FARTHEST: f32 = 0.3;
+const MOST_TURNED: f32 = 1.0;
+
+impl Character {
+    /// Has all of it moved in another way.
+    ///
+    /// # Panics
+    /// If it is not in the world.
+    pub fn set_preset(&mut self, world: &mut World, preset: Preset) {
+        match (preset, self.state) {
+            (Preset::Limp, _) => self.go_limp(world),
+            (Preset::Animated, State::Powered) => {
+                self.drives.set_all(DriveMode::Keyed, RETURNS);
+                self.flinching = 6.0 * RETURNS;
+                self.state = State::Flinching;
+            }
+            (Preset::Animated, State::Limp | State::Preparing) => self.get_up(world),
+            (Preset::Animated, _) => {}
+            (Preset::Flinching, State::Animated | State::Flinching) => {
+                for body in self.pelvis_children() {
+                    self.strike(world, body, Vec3::ZERO, None);
+                }
+            }
+            (Preset::Flinching, _) => {}
+            (Preset::Powered, _) => {
+                self.take_bodies(world, DriveMode::Powered(Muscle::ALIVE));
+                self.drives.set_all(DriveMode::Powered(Muscle::ALIVE), RETURNS);
+                self.drives.set(0, DriveMode::Pinned(Muscle::ALIVE, Pin::SOFT), RETURNS);
+                self.state = State::Powered;
+                self.drive_bodies(world);
+            }
+        }
+    }
+
+    /// Has part of it moved in another way: half of the change is made within `half_life` seconds. What stands is powered
+    /// from then on, all else of it as its clips have it.
+    ///
+    /// # Panics
+    /// If no body is called so, or as [`Drives::set`].
+    pub fn set_drive(&mut self, world: &mut World, part: Part<'_>, mode: DriveMode, half_life: f32) {
+        let def = self.def.clone();
+        let named = |name: &str| def.body_named(name).unwrap_or_else(|| panic!("no body is called '{name}'"));
+        if self.state == State::Animated {
+            self.take_bodies(world, DriveMode::Keyed);
+        }
+        if matches!(self.state, State::Animated | State::Flinching) {
+            self.state = State::Powered;
+        }
+        match part {
+            Part::All => self.drives.set_all(mode, half_life),
+            Part::Body(body) => self.drives.set(body, mode, half_life),
+            Part::Named(name) => self.drives.set(named(name), mode, half_life),
+            Part::From(name) => self.drives.set_from(&def.ragdoll, named(name), mode, half_life),
+        }
+        if self.state == State::Powered {
+            self.drive_bodies(world);
+        }
+    }
+
+    /// What drives its bodies, to be changed: what counts while it has any. [`set_drive`](Self::set_drive) gives it some.
+    pub fn drives_mut(&mut self) -> &mut Drives {
+        &mut self.drives
+    }
+
+    fn pelvis_children(&self) -> Vec<usize> {
+        self.def.ragdoll.joints.iter().filter(|joint| joint.parent == 0).map(|joint| joint.child).collect()
+    }
+
+    /// Makes its bodies those of a ragdoll, at the pose and the speed that the animation has now, driven in one way.
+    pub(super) fn take_bodies(&mut self, world: &mut World, mode: DriveMode) {
+        if self.ragdoll.is_some() {
+            return;
+        }
+        self.become_bodies(world, self.def.in_world.rule());
+        self.drives.set_all(mode, 0.0);
+    }
+
+    /// Brings the bodies into the hands of physics, with joints between them.
+    pub(super) fn become_bodies(&mut self, world: &mut World, rule: ContactRule) {
+        if !self.planting.is_over() {
+            self.pose.clone_from(&self.planted);
+        }
+        let states = self.carried();
+        self.planting = Default::default();
+        self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
+        self.scratch.posed.clear();
+        let def = self.def.clone();
+        let hit = self.presence.as_ref().map(|presence| &presence.bodies).filter(|bodies| !bodies.is_empty());
+        let ragdoll = match hit {
+            Some(bodies) => Ragdoll::wake(world, &def.ragdoll, bodies, &states, rule),
+            None => {
+                let ragdoll = Ragdoll::spawn(world, &def.ragdoll, &states, &def.flesh);
+                if rule != ContactRule::Push {
+                    ragdoll.set_rule(world, rule);
+                }
+                ragdoll
+            }
+        };
+        self.ragdoll = Some(ragdoll);
+    }
+
+    /// Gives the bodies back to the clips: they leave the world, or stay in it as hit bodies.
+    pub(super) fn leave_bodies(&mut self, world: &mut World) {
+        self.let_go(world);
+        let Some(ragdoll) = self.ragdoll.take() else { return };
+        match self.presence.as_mut().filter(|presence| !presence.bodies.is_empty()) {
+            Some(presence) => {
+                presence.before.clear();
+                ragdoll.lull(world, self.def.in_world.rule());
+            }
+            None => ragdoll.despawn(world),
+        }
+    }
+
+    /// Goes on for a step while clips and physics share the bodies.
+    pub(super) fn go_on_powered(&mut self, world: &mut World) {
+        self.animate(world);
+        let dt = world.def().dt();
+        let ragdoll = self.ragdoll.as_ref().expect("a powered character has bodies");
+        let mut resting = core::mem::take(&mut self.scratch.pose);
+        resting.clone_from(&self.pose);
+        ragdoll.poses(world, &mut self.scratch.after);
+        let place = self.world_from_character;
+        let (mapping, bodies) = (self.def.mapping(), &self.scratch.after);
+        self.physical.pose_over(mapping, &self.def.rig, &resting, place, bodies, &mut self.pose);
+        self.scratch.pose = resting;
+        if self.falls() || self.state == State::Powered && self.is_toppled(world) {
+            return self.go_limp(world);
+        }
+        if self.state == State::Flinching && self.come_back(dt) {
+            self.leave_bodies(world);
+            self.state = State::Animated;
+            self.lead_bodies(world);
+        } else {
+            self.drive_bodies(world);
+        }
+        self.steer(world);
+    }
+
+    /// Drives the bodies toward the pose of its clips, for the next step.
+    pub(super) fn drive_bodies(&mut self, world: &mut World) {
+        if self.ragdoll.is_some() {
+            self.drive_toward_clips(world);
+        }
+    }
+
+    pub(super) fn falls(&self) -> bool {
+        self.presence.as_ref().is_some_and(|presence| presence.falls)
+    }
+
+    /// True if the pelvis has got too far from where its clips want it for the feet to hold it.
+    fn is_toppled(&mut self, world: &World) -> bool {
+        let mut wanted = core::mem::take(&mut self.scratch.wanted);
+        wanted.clear();
+        wanted.extend(self.animator.pose().iter());
+        let mut bodies = core::mem::take(&mut self.scratch.before);
+        self.bodies_of(&wanted, self.world_from_character, &mut bodies);
+        let pelvis: Transform = bodies[0];
+        (self.scratch.wanted, self.scratch.before) = (wanted, bodies);
+        let ragdoll = self.ragdoll.as_ref().expect("a powered character has bodies");
+        let now = world.transform(ragdoll.bodies[0]);
+        let away = (now.translation - pelvis.translation).length();
+        away > FARTHEST * self.def.ragdoll.height || now.rotation.angle_to(pelvis.rotation) > MOST_TURNED
+    }
+}

@@ -1,0 +1,223 @@
+//! Steering: where a character's mover is to go, and how the character goes with it.
+
+use super::{Character, State};
+use sinew_anim::{ClipId, MotionTrack, TrackDef, TrackId, smoothstep};
+use sinew_math::{Rotation, Transform, Vec3, clamp, max, normalize_or, trig};
+use sinew_physics::World;
+
+/// Share of what a step of a stair lifts it that is left after a second's part: the eye follows within a few frames, 1/s.
+const SETTLES: f32 = 14.0;
+/// Farthest that it is shown from its mover, metres.
+const MOST_OVER: f32 = 0.4;
+/// Ground that rises by more than this over the way is a step.
+const STEEPEST: f32 = 1.2;
+/// How fast the pace of the looped clip follows the speed, 1/s.
+const PACE: f32 = 10.0;
+/// Speed below which it begins to stand, m/s.
+const STANDS: f32 = 0.35;
+/// Most times its own speed that a clip is played.
+const FASTEST: f32 = 2.0;
+
+impl Character {
+    /// Has it go at a velocity over the ground from now on, m/s, whatever its clips do: they are played as fast as it really
+    /// goes. Its part along up does nothing. Without a mover nothing happens.
+    ///
+    /// # Panics
+    /// If the velocity is not finite.
+    pub fn set_move(&mut self, velocity: Vec3) {
+        assert!(velocity.is_finite(), "a velocity is finite");
+        if let Some(presence) = &mut self.presence {
+            presence.wish = Some(velocity);
+        }
+    }
+
+    /// Has it go as its clips go again, which it does to begin with.
+    pub fn follow_clips(&mut self) {
+        if let Some(presence) = &mut self.presence {
+            presence.wish = None;
+        }
+        if let Some(track) = self.looped_track() {
+            self.animator.set_speed(track, 1.0);
+            self.animator.set_weight(track, 1.0);
+        }
+        if let Some(track) = self.def.motions().idle.and_then(|idle| self.track_of(self.def.clip(idle))) {
+            self.animator.set_weight(track, 0.0);
+        }
+    }
+
+    /// Has it turn to look along a direction, at [`InWorld::turn_speed`](super::InWorld::turn_speed). A direction that is
+    /// level nowhere does nothing.
+    ///
+    /// # Panics
+    /// If the direction is not finite.
+    pub fn face(&mut self, direction: Vec3) {
+        assert!(direction.is_finite(), "a direction is finite");
+        let level = normalize_or(direction * Vec3::new(1.0, 0.0, 1.0), Vec3::ZERO);
+        if let Some(presence) = self.presence.as_mut().filter(|_| level != Vec3::ZERO) {
+            presence.facing = Some(level);
+        }
+    }
+
+    /// Has it jump in the next step, if it has ground then.
+    pub fn jump(&mut self, world: &mut World) {
+        if let Some(mover) = self.mover() {
+            world.mover_jump(mover, self.def.in_world.jump_speed);
+        }
+    }
+
+    /// Puts it elsewhere at once, standing; what lies between is not asked. A character that lies is brought there as it lies.
+    ///
+    /// # Panics
+    /// If the place is not finite.
+    pub fn teleport(&mut self, world: &mut World, world_from_character: Transform) {
+        assert!(world_from_character.is_finite(), "a character stands at a finite place");
+        let from = self.world_from_character;
+        let moved = world_from_character * from.inverse();
+        self.world_from_character = world_from_character;
+        self.earlier.world_from_character = moved * self.earlier.world_from_character;
+        self.shown.world_from_character = moved * self.shown.world_from_character;
+        for &body in self.bodies() {
+            let velocity = world.velocity(body);
+            world.set_transform(body, moved * world.transform(body));
+            let turned = |v: Vec3| moved.rotation * v;
+            let velocity = sinew_physics::Velocity {
+                linear: turned(velocity.linear),
+                angular: turned(velocity.angular),
+            };
+            world.set_velocity(body, velocity);
+        }
+        self.scratch.posed.clear();
+        let Some(presence) = &mut self.presence else { return };
+        presence.before.iter_mut().for_each(|pose| *pose = moved * *pose);
+        (presence.air, presence.over, presence.velocity) = (0.0, 0.0, Vec3::ZERO);
+        if let Some(mover) = presence.mover {
+            world.set_mover_position(mover, world_from_character.translation);
+        }
+    }
+
+    /// Where it comes to within a step, with the mover that stands for it; notes what the mover feels.
+    pub(super) fn ride(&mut self, world: &World, step: Transform) -> Option<Transform> {
+        let from = self.world_from_character;
+        let presence = self.presence.as_mut()?;
+        let mover = world.mover(presence.mover?);
+        let settings = &self.def.in_world;
+        let dt = world.def().dt();
+        let (feet, velocity) = (mover.position(), mover.velocity());
+        let ground = world.mover_ground(presence.mover?);
+        let floor = ground.map_or(Vec3::ZERO, |ground| ground.velocity);
+        let way = feet - mover.interpolated(0.0);
+        let level = |v: Vec3| Vec3::new(v.x, 0.0, v.z);
+        let rise = way.y - velocity.y * dt;
+        if ground.is_some() && rise.abs() > STEEPEST * level(way).length() + 1e-3 {
+            presence.over -= rise;
+        }
+        presence.over = clamp(presence.over, -MOST_OVER, MOST_OVER) * trig::exp(-SETTLES * dt);
+        let fell = floor.y - presence.velocity.y;
+        let landed = ground.is_some() && presence.air > 0.0;
+        presence.air = if ground.is_some() { 0.0 } else { presence.air + dt };
+        presence.falls = presence.air > settings.air_time || landed && fell > settings.landing_speed;
+        // What falls keeps the velocity with which it came down.
+        if !(presence.falls && landed) {
+            presence.velocity = velocity;
+        }
+        self.speed = level(velocity - floor).length();
+        let carried = Rotation::from_axis_angle(Vec3::Y, mover.yaw() - presence.yaw);
+        presence.yaw = mover.yaw();
+        let heading = carried * from.rotation;
+        let rotation = match presence.facing {
+            Some(facing) => turned_to(heading, facing, settings.turn_speed * dt),
+            None if presence.wish.is_some() => heading,
+            None => heading * step.rotation,
+        };
+        Some(Transform::new(feet + Vec3::Y * presence.over, rotation.normalize()))
+    }
+
+    /// Tells the mover where to go in the next step, and lets it grow to its height.
+    pub(super) fn steer(&mut self, world: &mut World) {
+        let step = self.step_of(&self.animator).translation;
+        let dt = world.def().dt();
+        let rotation = self.world_from_character.rotation;
+        let Some(presence) = &self.presence else { return };
+        let Some(mover) = presence.mover else { return };
+        let stands = self.state != State::GettingUp;
+        let walk = match presence.wish.filter(|_| stands) {
+            Some(wish) => wish,
+            None => rotation * step / dt * Vec3::new(1.0, 0.0, 1.0),
+        };
+        world.set_mover_walk(mover, if walk.is_finite() { walk } else { Vec3::ZERO });
+        let height = self.def.in_world.mover.as_ref().map_or(0.0, |mover| mover.height);
+        if world.mover(mover).def().height < height && (stands || self.lies_still() < 0.5) {
+            world.set_mover_height(mover, height);
+        }
+    }
+
+    /// Plays the looped clip as fast as the character goes, and lets it stand where it does not.
+    pub(super) fn keep_pace(&mut self, dt: f32) {
+        let Some(presence) = self.presence.as_mut().filter(|presence| presence.mover.is_some()) else {
+            return;
+        };
+        if presence.wish.is_none() {
+            return;
+        }
+        presence.pace += (self.speed - presence.pace) * -trig::exp_m1(-PACE * dt);
+        let pace = presence.pace;
+        let Some(walk) = self.looped_track() else { return };
+        let natural = self.natural_speed();
+        if natural > 0.0 {
+            self.animator.set_speed(walk, clamp(pace / natural, 0.0, FASTEST));
+        }
+        let Some(idle) = self.def.motions().idle.map(|idle| self.def.clip(idle)) else { return };
+        let def = self.def.clone();
+        let idle = self.track_of(idle).unwrap_or_else(|| {
+            self.animator.play(def.set(), &TrackDef { weight: 0.0, ..TrackDef::new(idle) })
+        });
+        let share = smoothstep(clamp(pace / STANDS, 0.0, 1.0));
+        self.animator.set_weight(walk, share);
+        self.animator.set_weight(idle, 1.0 - share);
+    }
+
+    /// Speed at which the looped clip goes over the ground, m/s.
+    fn natural_speed(&self) -> f32 {
+        let Some(looped) = self.def.motions().looped else { return 0.0 };
+        let clip = self.def.set().clip(self.def.clip(looped));
+        let stride = clip.motion.as_ref().map_or(0.0, MotionTrack::stride);
+        stride * self.def.ragdoll.unit_scale / max(clip.clip.duration(), 1e-3)
+    }
+
+    pub(super) fn looped_track(&self) -> Option<TrackId> {
+        self.track_of(self.def.clip(self.def.motions().looped?))
+    }
+
+    fn track_of(&self, clip: ClipId) -> Option<TrackId> {
+        let plays = |track: &&sinew_anim::Track| track.def().clip == clip && track.def().layer == 0;
+        self.animator.tracks().find(plays).map(sinew_anim::Track::id)
+    }
+
+    /// Where it comes to in `seconds` more, seen from where it stands now: by its mover, or by its clips.
+    pub(super) fn gone_on(&self, place: Transform, ahead: &sinew_anim::Animator, seconds: f32) -> Transform {
+        let step = self.step_of(ahead);
+        match self.presence.as_ref().filter(|presence| presence.mover.is_some()) {
+            Some(presence) => {
+                let way = self.world_from_character.rotation.inverse() * presence.velocity * seconds;
+                let keeps = presence.wish.is_some() || presence.facing.is_some();
+                let turn = if keeps { Rotation::IDENTITY } else { step.rotation };
+                Transform::new(place.translation + way, place.rotation * turn)
+            }
+            None => {
+                let mut place = place * step;
+                place.translation += Vec3::Y * (self.climbing * seconds);
+                place
+            }
+        }
+    }
+}
+
+/// A rotation turned about the vertical so that +z comes toward a level direction, by an angle at most.
+fn turned_to(rotation: Rotation, direction: Vec3, most: f32) -> Rotation {
+    let ahead = rotation * Vec3::Z;
+    let angle = trig::atan2(
+        ahead.z * direction.x - ahead.x * direction.z,
+        ahead.x * direction.x + ahead.z * direction.z,
+    );
+    Rotation::from_axis_angle(Vec3::Y, clamp(angle, -most, most)) * rotation
+}

@@ -1,0 +1,372 @@
+//! A character that its clips move is a thing of the world: walls, others, rays, balls, crates, cliffs and lifts.
+
+use crate::actor::{floor, shared, walker};
+use sinew_math::{Reader, Rotation, Transform, Vec3, Writer, max};
+use sinew_physics::ray::Ray;
+use sinew_physics::{
+    BodyDef, BodyId, BodyKind, Probe, Shape, ShapeCast, ShapeDef, Velocity, World, WorldDef,
+};
+use sinew_ragdoll::{Character, CharacterDef, Event, HitBodies, State};
+use sinew_scenes::mannequin::WALK_SPEED;
+use std::sync::Arc;
+
+fn level() -> World {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&floor());
+    world
+}
+
+/// A fixed box from corner to corner.
+fn block(world: &mut World, min: Vec3, max: Vec3) -> BodyId {
+    let half_extents = (max - min) * 0.5;
+    world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at((min + max) * 0.5))
+}
+
+fn run(world: &mut World, character: &mut Character, steps: usize) -> Vec<Event> {
+    let mut events = Vec::new();
+    for _ in 0..steps {
+        world.step();
+        character.update(world);
+        events.extend_from_slice(character.events());
+    }
+    events
+}
+
+fn place(character: &Character) -> Vec3 {
+    character.world_from_character().translation
+}
+
+#[test]
+fn a_wall_stops_it() {
+    let def = shared(walker());
+    let mut world = level();
+    block(&mut world, Vec3::new(-3.0, 0.0, 2.0), Vec3::new(3.0, 4.0, 2.3));
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    run(&mut world, &mut character, 300);
+    let radius = def.in_world.mover.as_ref().expect("it has one").radius;
+    let z = place(&character).z;
+    assert!((z - (2.0 - radius)).abs() < 0.02, "it stands at {z} m before the wall at 2 m");
+    assert_eq!(character.state(), State::Animated);
+    // Without a mover it goes on.
+    let mut ghost = Character::new(def, Transform::IDENTITY, 0.0);
+    run(&mut world, &mut ghost, 300);
+    assert!(place(&ghost).z > 5.0);
+}
+
+#[test]
+fn without_a_wall_it_walks_as_its_clip_does() {
+    let def = shared(walker());
+    let mut world = level();
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    run(&mut world, &mut character, 240);
+    let expected = WALK_SPEED * 240.0 / 60.0;
+    let at = place(&character);
+    assert!((at.z - expected).abs() < 0.1 && at.y.abs() < 0.01 && at.x.abs() < 1e-3, "{at} for {expected}");
+}
+
+#[test]
+fn two_characters_stop_each_other() {
+    let def = shared(walker());
+    let mut world = level();
+    let toward = Transform::new(Vec3::Z * 4.0, Rotation::from_axis_angle(Vec3::Y, core::f32::consts::PI));
+    let mut one = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    let mut other = Character::spawn(&mut world, &def, toward);
+    for _ in 0..300 {
+        world.step();
+        one.update(&mut world);
+        other.update(&mut world);
+        let apart = (place(&one) - place(&other)).length();
+        let radius = def.in_world.mover.as_ref().expect("it has one").radius;
+        assert!(apart > 2.0 * radius - 0.01, "{apart} m apart");
+    }
+    assert!(place(&one).z < 2.1 && place(&other).z > 1.9);
+}
+
+/// A ray across the character at the height of a bone.
+fn across(character: &Character, bone: &str) -> Ray {
+    let def = character.def();
+    let joint = def.rig.joints.iter().position(|joint| joint.name == bone).expect("a bone");
+    let mut model = Vec::new();
+    sinew_anim::local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
+    let from = Vec3::X * 5.0;
+    Ray { origin: model[joint].translation + from, direction: -from * 2.0 }
+}
+
+#[test]
+fn rays_and_shapes_find_the_bone() {
+    let def = shared(walker());
+    let mut world = level();
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    run(&mut world, &mut character, 97);
+    let mut worst: f32 = 0.0;
+    for _ in 0..60 {
+        run(&mut world, &mut character, 1);
+        for bone in ["head", "leftLowerLeg", "rightLowerLeg"] {
+            let ray = across(&character, bone);
+            let hit = world.query().first(&ray).expect("something is in the way");
+            assert!(character.body_index(hit.body).is_some(), "{bone}: not of the character");
+        }
+        let mut poses = Vec::new();
+        let mut model = Vec::new();
+        sinew_anim::local_to_model(&def.rig, character.pose(), &sinew_math::Affine::IDENTITY, &mut model);
+        def.mapping().bodies_from_model(&model, character.world_from_character(), &mut poses);
+        for (&body, pose) in character.bodies().iter().zip(&poses) {
+            worst = max(worst, (world.transform(body).translation - pose.translation).length());
+        }
+    }
+    assert!(worst < 0.01, "a body is {worst} m from its bone");
+    let ball = Probe::at(Shape::Sphere { radius: 0.05 }, place(&character) + Vec3::new(0.0, 1.2, 5.0));
+    let hit = world.query().first(&ShapeCast { probe: ball, translation: Vec3::Z * -10.0 }).expect("a hit");
+    assert!(character.body_index(hit.body).is_some());
+}
+
+fn ball(world: &mut World, at: Vec3, velocity: Vec3) -> BodyId {
+    let shape = Shape::Sphere { radius: 0.11 };
+    let mut def = BodyDef::dynamic(shape.clone()).at(at);
+    def.mass = Some(shape.mass_properties(77.0));
+    def.linear_velocity = velocity;
+    def.shapes[0].material.restitution = 0.7;
+    world.add_body(&def)
+}
+
+#[test]
+fn a_ball_bounces_off_and_is_told_of() {
+    let mut def = walker();
+    def.in_world.toughness = sinew_ragdoll::Toughness::Impulse(60.0);
+    let def = shared(def);
+    let mut world = level();
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    run(&mut world, &mut character, 30);
+    let chest = place(&character) + Vec3::Y * 1.25;
+    let thrown = ball(&mut world, chest + Vec3::Z * 1.0, Vec3::Z * -20.0);
+    let (mut events, mut met) = (Vec::new(), false);
+    for _ in 0..12 {
+        events.extend(run(&mut world, &mut character, 1));
+        let own = |id: BodyId| character.body_index(id).is_some();
+        met |= world.events().begin.iter().any(|&(a, b)| own(a) && b == thrown || a == thrown && own(b));
+    }
+    assert!(met, "the contact is told of by bone");
+    let speed = world.velocity(thrown).linear.z;
+    assert!(speed > 5.0, "it comes back at {speed} m/s");
+    assert!(events.iter().any(|event| matches!(event, Event::Struck { .. })), "{events:?}");
+    assert!(events.iter().any(|event| matches!(event, Event::Flinched { .. })), "{events:?}");
+    assert!(!events.iter().any(|event| matches!(event, Event::WentLimp)), "17 N·s do not fell it");
+}
+
+#[test]
+fn hit_bodies_can_be_left_out() {
+    let mut def = walker();
+    def.in_world.hit_bodies = HitBodies::Absent;
+    let def = shared(def);
+    let mut world = level();
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    run(&mut world, &mut character, 30);
+    assert_eq!(world.body_ids().count(), 1);
+    assert!(world.query().first(&across(&character, "head")).is_none());
+    assert!(character.mover().is_some());
+}
+
+/// A box of a mass.
+fn load(world: &mut World, mass: f32, half: f32, at: Vec3) -> BodyId {
+    let shape = Shape::Box { half_extents: Vec3::splat(half) };
+    let mut def = BodyDef::dynamic(shape.clone()).at(at);
+    def.mass = Some(shape.mass_properties(mass / (8.0 * half * half * half)));
+    world.add_body(&def)
+}
+
+#[test]
+fn it_pushes_a_crate_as_hard_as_its_mover_may() {
+    let def = shared(walker());
+    let pushed = |mass: f32| {
+        let mut world = level();
+        let load = load(&mut world, mass, 0.4, Vec3::new(0.0, 0.4, 1.5));
+        let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+        let mut fastest = 0.0;
+        for _ in 0..240 {
+            run(&mut world, &mut character, 1);
+            fastest = max(fastest, world.velocity(load).linear.length());
+        }
+        (world.transform(load).translation.z - 1.5, fastest)
+    };
+    let (way, fastest) = pushed(40.0);
+    assert!(way > 1.0 && fastest < 1.3 * WALK_SPEED, "{way} m, {fastest} m/s");
+    // 500 kg need 2.9 kN to slide: hands and feet would push them as far as those go, were there no bound.
+    let (way, fastest) = pushed(500.0);
+    assert!(way.abs() < 0.02 && fastest < 0.1, "{way} m, {fastest} m/s");
+}
+
+#[test]
+fn it_falls_off_a_cliff() {
+    let def = shared(walker());
+    let mut world = level();
+    block(&mut world, Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 10.0, 2.0));
+    let mut character = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::Y * 10.0));
+    let events = run(&mut world, &mut character, 60 * 6);
+    assert!(events.contains(&Event::WentLimp), "{events:?}");
+    let pelvis = world.transform(character.bodies()[0]).translation;
+    assert!(pelvis.y < 1.0 && pelvis.is_finite(), "it lies at {pelvis}");
+    assert!(character.mover().is_none(), "what lies has no mover");
+}
+
+#[test]
+fn a_short_drop_is_walked_off() {
+    let def = shared(walker());
+    let mut world = level();
+    block(&mut world, Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 1.0, 1.0));
+    let mut character = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::Y));
+    let events = run(&mut world, &mut character, 180);
+    assert!(!events.contains(&Event::WentLimp), "{events:?}");
+    assert!(place(&character).y.abs() < 0.01 && place(&character).z > 2.5, "{}", place(&character));
+}
+
+#[test]
+fn a_fast_landing_fells_it() {
+    let def = shared(walker());
+    let mut world = level();
+    block(&mut world, Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 4.0, 1.0));
+    let mut character = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::Y * 4.0));
+    let events = run(&mut world, &mut character, 180);
+    // 4 m take 0.9 s: it is not the time in the air.
+    assert!(events.contains(&Event::WentLimp), "8.9 m/s are more than 7");
+}
+
+/// A platform that moves.
+fn lift(world: &mut World, at: Vec3, velocity: Velocity) -> BodyId {
+    let def = BodyDef {
+        kind: BodyKind::Kinematic,
+        position: at,
+        linear_velocity: velocity.linear,
+        angular_velocity: velocity.angular,
+        shapes: vec![ShapeDef::new(Shape::Box { half_extents: Vec3::new(3.0, 0.1, 3.0) })],
+        ..BodyDef::default()
+    };
+    world.add_body(&def)
+}
+
+fn stander() -> Arc<CharacterDef> {
+    let mut def = walker();
+    let motions = def.motions().clone();
+    def.set_motions(sinew_ragdoll::MotionSet { idle: Some(1), ..motions })
+        .expect("they could be played before");
+    shared(def)
+}
+
+#[test]
+fn a_lift_and_a_turntable_carry_it() {
+    let def = stander();
+    let mut world = World::new(WorldDef::default());
+    let velocity = Velocity { linear: Vec3::new(0.5, 1.0, 0.0), angular: Vec3::Y * 0.5 };
+    let platform = lift(&mut world, Vec3::Y * -0.1, velocity);
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    character.set_move(Vec3::ZERO);
+    run(&mut world, &mut character, 30);
+    let seen = |world: &World, character: &Character| {
+        world.transform(platform).inverse() * character.world_from_character()
+    };
+    let before = seen(&world, &character);
+    run(&mut world, &mut character, 180);
+    let after = seen(&world, &character);
+    assert!(place(&character).y > 3.0, "it has risen: {}", place(&character));
+    assert!((after.translation - before.translation).length() < 0.02, "{before:?} {after:?}");
+    assert!(after.rotation.angle_to(before.rotation) < 0.01);
+}
+
+#[test]
+fn it_is_steered_by_code() {
+    let def = stander();
+    let mut world = level();
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    character.set_move(Vec3::X * 0.9);
+    character.face(Vec3::X);
+    run(&mut world, &mut character, 120);
+    let at = character.world_from_character();
+    assert!((at.translation.x - 0.9 * 2.0).abs() < 0.1 && at.translation.z.abs() < 0.05, "{at:?}");
+    assert!((at.rotation * Vec3::Z - Vec3::X).length() < 0.01, "it looks where it goes");
+    character.jump(&mut world);
+    let mut highest = 0.0;
+    for _ in 0..60 {
+        run(&mut world, &mut character, 1);
+        highest = max(highest, place(&character).y);
+    }
+    let expected = 3.5 * 3.5 / (2.0 * 9.81);
+    assert!((highest - expected).abs() < 0.05, "it jumps {highest} m for {expected}");
+    character.teleport(&mut world, Transform::from_translation(Vec3::new(-4.0, 0.0, 2.0)));
+    character.set_move(Vec3::ZERO);
+    run(&mut world, &mut character, 60);
+    assert!((place(&character) - Vec3::new(-4.0, 0.0, 2.0)).length() < 0.02, "{}", place(&character));
+    assert!((world.transform(character.bodies()[0]).translation - place(&character)).length() < 1.3);
+}
+
+#[test]
+fn nothing_is_left_of_it() {
+    let def = shared(walker());
+    for after in [0, 30, 90, 300, 600] {
+        let mut world = level();
+        let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+        run(&mut world, &mut character, 10);
+        if after > 0 {
+            character.hit(&mut world, 0, Vec3::Z * 100.0);
+        }
+        run(&mut world, &mut character, after);
+        character.despawn(&mut world);
+        assert_eq!(world.body_ids().count(), 1, "after {after} steps");
+        assert_eq!(world.joint_ids().count() + world.mover_ids().count(), 0, "after {after} steps");
+        world.step();
+    }
+}
+
+#[test]
+fn it_falls_gets_up_and_walks_on() {
+    let def = shared(walker());
+    let mut world = level();
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    run(&mut world, &mut character, 30);
+    let bodies = character.bodies().to_vec();
+    character.hit(&mut world, 2, Vec3::new(70.0, 0.0, 20.0));
+    assert_eq!(character.state(), State::Limp);
+    let events = run(&mut world, &mut character, 60 * 12);
+    assert!(events.contains(&Event::Up), "{events:?}");
+    assert_eq!(character.bodies(), bodies, "its bodies have the same ids");
+    assert!(bodies.iter().all(|&body| world.kind(body) == BodyKind::Kinematic));
+    let before = place(&character);
+    run(&mut world, &mut character, 60);
+    assert!((place(&character) - before).length() > 0.8 * WALK_SPEED);
+    let height = def.in_world.mover.as_ref().expect("it has one").height;
+    assert_eq!(world.mover(character.mover().expect("it stands")).def().height, height);
+}
+
+#[test]
+fn a_restored_character_goes_on_as_the_original() {
+    let def = shared(walker());
+    for steps in [20, 40, 60, 150, 400, 500] {
+        let mut world = level();
+        let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+        run(&mut world, &mut character, 15);
+        character.hit(&mut world, 3, Vec3::X * 10.0);
+        run(&mut world, &mut character, 25);
+        character.hit(&mut world, 2, Vec3::X * 90.0);
+        run(&mut world, &mut character, steps);
+        let mut w = Writer::new();
+        world.save(&mut w);
+        character.save(&mut w);
+        run(&mut world, &mut character, 60);
+        let bytes = w.into_bytes();
+        let mut reader = Reader::new(&bytes);
+        let mut other_world = World::new(WorldDef::default());
+        let mut other = Character::new(def.clone(), Transform::IDENTITY, 0.0);
+        other_world.load(&mut reader).expect("a snapshot");
+        other.load(&mut reader).expect("a snapshot");
+        run(&mut other_world, &mut other, 60);
+        assert_eq!(world.hash(), other_world.hash(), "after {steps}");
+        assert_eq!(character.pose(), other.pose(), "after {steps}");
+    }
+}
+
+#[test]
+fn it_can_be_sent_to_another_thread() {
+    fn is_send<T: Send + Sync>(_: &T) {}
+    let def = shared(walker());
+    let mut world = level();
+    let character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    is_send(&character);
+}
