@@ -33,6 +33,8 @@ pub struct MoverDef {
     pub skin: f32,
     /// Filter of the shapes and other movers that it meets. Default all.
     pub filter: Filter,
+    /// Momentum up to which bodies that fly, faster than 2 m/s, pass it, N·s: a character leaves them to its limbs. Default 0.
+    pub lets_pass: f32,
     /// Number of the user's. Default 0.
     pub user_data: u64,
 }
@@ -53,6 +55,7 @@ impl Default for MoverDef {
             gravity_scale: 1.0,
             skin: 0.005,
             filter: Filter::default(),
+            lets_pass: 0.0,
             user_data: 0,
         }
     }
@@ -92,6 +95,9 @@ impl MoverDef {
         }
         if !(not_negative(self.ground_acceleration) && not_negative(self.air_acceleration)) {
             return Err("a mover's accelerations are not negative");
+        }
+        if !not_negative(self.lets_pass) {
+            return Err("a mover lets pass a momentum that is finite and not negative");
         }
         if !self.gravity_scale.is_finite() {
             return Err("a mover's gravity scale is finite");

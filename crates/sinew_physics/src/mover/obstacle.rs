@@ -165,7 +165,8 @@ fn gather_shape(
     let surface = body.surface(number as usize);
     let passes = matches!(surface.rule, ContactRule::Ghost | ContactRule::Yields(_));
     let solid = surface.sensing == Sensing::Solid && !passes;
-    if !solid || body.quarantined || !mover.def.filter.meets(surface.filter) {
+    let flies = mover.def.lets_pass > 0.0 && body.kind == BodyKind::Dynamic && flies_past(body, mover);
+    if flies || !solid || body.quarantined || !mover.def.filter.meets(surface.filter) {
         return;
     }
     let shape = &body.shapes[number as usize].shape;
@@ -197,6 +198,15 @@ fn gather_shape(
         }
     }
     obstacles.push(obstacle);
+}
+
+/// Speed from which a body flies, m/s.
+const FLIES: f32 = 2.0;
+
+/// True if a body is fast and light enough to be left to others than the mover.
+fn flies_past(body: &Body, mover: &Mover) -> bool {
+    let speed = body.velocity.linear.length();
+    speed > FLIES && speed <= mover.def.lets_pass * body.inverse_mass()
 }
 
 /// Bounds of world bounds in another frame.

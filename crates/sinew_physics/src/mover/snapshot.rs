@@ -7,6 +7,9 @@ use crate::body::snapshot::{load_filter, save_filter};
 use crate::id::{BodyId, MoverId};
 use sinew_math::{ReadError, Reader, Writer};
 
+/// Bit of the ground's number: the momentum that it lets pass follows.
+const LETS_PASS: u8 = 0x80;
+
 impl Mover {
     pub(crate) fn save(&self, w: &mut Writer) {
         let def = &self.def;
@@ -31,19 +34,31 @@ impl Mover {
         [self.position, self.previous, self.velocity, self.walk].into_iter().for_each(|v| w.vec3(v));
         w.f32(self.yaw);
         w.f32(self.jump);
-        let Some(Footing { on, point, normal, velocity }) = self.ground else { return w.u8(0) };
+        // Written only where it is used.
+        let passes = if def.lets_pass > 0.0 { LETS_PASS } else { 0 };
+        let Some(Footing { on, point, normal, velocity }) = self.ground else {
+            w.u8(passes);
+            return self.save_passing(w);
+        };
         match on {
             Bearer::Shape { body, shape } => {
-                w.u8(1);
+                w.u8(1 | passes);
                 w.u64(body.to_bits());
                 w.u32(shape);
             }
             Bearer::Mover(mover) => {
-                w.u8(2);
+                w.u8(2 | passes);
                 w.u64(mover.to_bits());
             }
         }
         [point, normal, velocity].into_iter().for_each(|v| w.vec3(v));
+        self.save_passing(w);
+    }
+
+    fn save_passing(&self, w: &mut Writer) {
+        if self.def.lets_pass > 0.0 {
+            w.f32(self.def.lets_pass);
+        }
     }
 
     pub(crate) fn load(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Self, ReadError> {
@@ -52,7 +67,12 @@ impl Mover {
         (mover.position, mover.previous) = (r.vec3()?, r.vec3()?);
         (mover.velocity, mover.walk) = (r.vec3()?, r.vec3()?);
         (mover.yaw, mover.jump) = (r.f32()?, r.f32()?);
-        mover.ground = load_footing(r, bodies)?;
+        let tag = r.u8()?;
+        mover.ground = load_footing(r, tag & !LETS_PASS, bodies)?;
+        if tag & LETS_PASS != 0 {
+            mover.def.lets_pass = r.f32()?;
+            mover.def.check().map_err(|what| r.error(what))?;
+        }
         let finite =
             [mover.position, mover.previous, mover.velocity, mover.walk].iter().all(|v| v.is_finite());
         if !finite || !mover.yaw.is_finite() || !(0.0..f32::INFINITY).contains(&mover.jump) {
@@ -78,13 +98,14 @@ fn load_def(r: &mut Reader<'_>) -> Result<MoverDef, ReadError> {
         skin: r.f32()?,
         filter: load_filter(r)?,
         user_data: r.u64()?,
+        lets_pass: 0.0,
     };
     def.check().map_err(|what| r.error(what))?;
     Ok(def)
 }
 
-fn load_footing(r: &mut Reader<'_>, bodies: &Arena<Body>) -> Result<Option<Footing>, ReadError> {
-    let on = match r.u8()? {
+fn load_footing(r: &mut Reader<'_>, tag: u8, bodies: &Arena<Body>) -> Result<Option<Footing>, ReadError> {
+    let on = match tag {
         0 => return Ok(None),
         1 => {
             let (body, shape) = (BodyId::from_bits(r.u64()?), r.u32()?);

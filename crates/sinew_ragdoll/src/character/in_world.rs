@@ -234,7 +234,12 @@ impl Character {
         let Some(mover) = &self.def.in_world.mover else { return };
         let height = max(2.0 * mover.radius, share * mover.height);
         let position = self.world_from_character.translation;
-        presence.mover = Some(world.add_mover(&MoverDef { position, height, ..mover.clone() }));
+        let lets_pass = match self.def.in_world.hit_bodies {
+            HitBodies::Present(yields) => max(yields.max_impulse, mover.lets_pass),
+            HitBodies::Absent => mover.lets_pass,
+        };
+        let mover = MoverDef { position, height, lets_pass, ..mover.clone() };
+        presence.mover = Some(world.add_mover(&mover));
         (presence.yaw, presence.air, presence.over, presence.pace) = (0.0, 0.0, 0.0, 0.0);
         (presence.velocity, presence.falls) = (Vec3::ZERO, false);
     }

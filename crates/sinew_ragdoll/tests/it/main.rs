@@ -2,6 +2,7 @@
 
 mod actor;
 mod bake;
+mod blows;
 mod build;
 mod build_limits;
 mod character;

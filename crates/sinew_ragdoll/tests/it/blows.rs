@@ -1,0 +1,200 @@
+//! Flinches, falls, and what lies between: drives of a character.
+
+use crate::actor::{floor, shared, walker};
+use sinew_math::{Transform, Vec3, max};
+use sinew_physics::ray::Ray;
+use sinew_physics::{World, WorldDef};
+use sinew_ragdoll::{
+    Blow, Character, CharacterDef, DriveMode, Event, Muscle, Part, Preset, State, Toughness,
+};
+use std::sync::Arc;
+
+fn level() -> World {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&floor());
+    world
+}
+
+fn run(world: &mut World, character: &mut Character, steps: usize) -> Vec<Event> {
+    let mut events = Vec::new();
+    for _ in 0..steps {
+        world.step();
+        character.update(world);
+        events.extend_from_slice(character.events());
+    }
+    events
+}
+
+fn walking(def: &Arc<CharacterDef>) -> (World, Character) {
+    let mut world = level();
+    let mut character = Character::spawn(&mut world, def, Transform::IDENTITY);
+    run(&mut world, &mut character, 40);
+    (world, character)
+}
+
+/// Places of all joints that have bodies, in the world.
+fn places(character: &Character) -> Vec<Vec3> {
+    let def = character.def();
+    let mut model = Vec::new();
+    sinew_anim::local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
+    def.ragdoll.bodies.iter().map(|body| model[body.joint].translation).collect()
+}
+
+/// Farthest that any joint is from where the undisturbed twin has it, metres.
+fn apart(one: &Character, twin: &Character) -> f32 {
+    let far = |(a, b): (&Vec3, &Vec3)| (*a - *b).length();
+    places(one).iter().zip(&places(twin)).map(far).fold(0.0, max)
+}
+
+#[test]
+fn a_hand_that_is_hit_gives_way_and_comes_back_without_a_pop() {
+    let def = shared(walker());
+    let hand = def.body_named("rightHand").expect("it has hands");
+    let (mut world, mut character) = walking(&def);
+    let (mut twin_world, mut twin) = walking(&def);
+    character.hit(&mut world, hand, Vec3::new(-6.0, 0.0, 0.0));
+    assert_eq!(character.state(), State::Flinching);
+    let (mut most, mut jump) = (0.0, 0.0);
+    let mut last: Option<(Vec<Vec3>, Vec<Vec3>)> = None;
+    let mut seen: [Vec<Vec3>; 3] = Default::default();
+    for step in 0..90 {
+        run(&mut world, &mut character, 1);
+        run(&mut twin_world, &mut twin, 1);
+        let off = apart(&character, &twin);
+        most = max(most, off);
+        if step >= 60 {
+            assert!(off < 2e-3, "after {step} steps {off} m are left");
+        }
+        seen.rotate_left(1);
+        seen[2] = places(&character).iter().zip(&places(&twin)).map(|(a, b)| *a - *b).collect();
+        if let (true, Some(_)) = (step > 10, &last) {
+            for ((a, b), c) in seen[0].iter().zip(&seen[1]).zip(&seen[2]) {
+                jump = max(jump, (*a - *b * 2.0 + *c).length() * 3600.0);
+            }
+        }
+        last = Some((places(&character), places(&twin)));
+    }
+    assert_eq!(character.state(), State::Animated);
+    assert!(most > 0.05, "the hand gives way by {most} m");
+    assert!(jump < 60.0, "coming back it is accelerated by {jump} m/s² beyond its clip");
+    let way = character.world_from_character().translation - twin.world_from_character().translation;
+    assert!(way.length() < 1e-3, "it walked on: {way}");
+}
+
+#[test]
+fn thresholds_decide_between_flinch_and_fall() {
+    let fells = |toughness: Toughness, size: f32| {
+        let mut def = walker();
+        def.in_world.toughness = toughness;
+        let def = shared(def);
+        let (mut world, mut character) = walking(&def);
+        let chest = def.body_named("chest").expect("it has a chest");
+        character.hit(&mut world, chest, Vec3::X * size);
+        character.state() == State::Limp
+    };
+    assert!(fells(Toughness::None, 0.5));
+    assert!(!fells(Toughness::Impulse(20.0), 19.0) && fells(Toughness::Impulse(20.0), 21.0));
+    fn heads_only(character: &Character, blow: &Blow) -> bool {
+        character.def().body_named("head") == Some(blow.body)
+    }
+    assert!(!fells(Toughness::Function(heads_only), 500.0));
+}
+
+#[test]
+fn a_shot_finds_the_limb_and_it_may_be_felled_while_it_flinches() {
+    let def = shared(walker());
+    let (mut world, mut character) = walking(&def);
+    let at = places(&character)[def.body_named("head").expect("it has a head")] + Vec3::Y * 0.1;
+    let shot = Ray { origin: at + Vec3::Z * 3.0, direction: Vec3::Z * -6.0 };
+    let hit = world.query().first(&shot).expect("the head is in the way");
+    assert_eq!(character.body_index(hit.body), def.body_named("head"));
+    assert!(character.hit_at(&mut world, &hit, Vec3::Z * -8.0).is_some());
+    assert_eq!(character.state(), State::Flinching);
+    let events = run(&mut world, &mut character, 8);
+    assert!(events.is_empty(), "{events:?}");
+    let floor = world.body_ids().next().expect("the floor");
+    let other = sinew_physics::BodyHit { body: floor, ..hit };
+    assert!(character.hit_at(&mut world, &other, Vec3::Z).is_none(), "not of this character");
+    character.hit(&mut world, 0, Vec3::Z * -120.0);
+    assert_eq!(character.state(), State::Limp);
+    let events = run(&mut world, &mut character, 60 * 12);
+    assert!(events.contains(&Event::Up), "{events:?}");
+    assert_eq!(world.joint_ids().count(), 0, "no pin is left");
+}
+
+#[test]
+fn an_active_ragdoll_takes_few_lines_and_stands_a_push() {
+    let def = shared(walker());
+    let (mut world, mut character) = walking(&def);
+    character.set_preset(&mut world, Preset::Powered);
+    run(&mut world, &mut character, 120);
+    assert_eq!(character.state(), State::Powered);
+    let (_, twin) = {
+        let (mut world, mut twin) = walking(&def);
+        run(&mut world, &mut twin, 120);
+        (world, twin)
+    };
+    let off = apart(&character, &twin);
+    assert!(off < 0.15, "powered it walks as its clips do, to within {off} m");
+    character.hit(&mut world, 2, Vec3::X * 25.0);
+    let events = run(&mut world, &mut character, 120);
+    assert_eq!(character.state(), State::Powered, "{events:?}");
+    character.set_preset(&mut world, Preset::Animated);
+    run(&mut world, &mut character, 90);
+    assert_eq!(character.state(), State::Animated);
+    character.set_preset(&mut world, Preset::Limp);
+    assert_eq!(character.state(), State::Limp);
+}
+
+#[test]
+fn one_part_can_be_driven_otherwise() {
+    let def = shared(walker());
+    let (mut world, mut character) = walking(&def);
+    let (mut twin_world, mut twin) = walking(&def);
+    character.set_drive(&mut world, Part::From("leftUpperArm"), DriveMode::Powered(Muscle::RELAXED), 0.1);
+    run(&mut world, &mut character, 60);
+    run(&mut twin_world, &mut twin, 60);
+    let (with, without) = (places(&character), places(&twin));
+    let off = |role: &str| {
+        let body = def.body_named(role).expect("a body");
+        (with[body] - without[body]).length()
+    };
+    assert!(off("rightHand") < 2e-3 && off("head") < 2e-3 && off("leftFoot") < 2e-3);
+    assert!(off("leftHand") > 0.01, "a relaxed arm follows late: {} m", off("leftHand"));
+    assert_eq!(character.drives_mut().mode(0), DriveMode::Keyed);
+}
+
+#[test]
+#[should_panic(expected = "no body is called 'tail'")]
+fn a_part_that_is_not_there_is_named() {
+    let def = shared(walker());
+    let (mut world, mut character) = walking(&def);
+    character.set_drive(&mut world, Part::Named("tail"), DriveMode::Limp, 0.0);
+}
+
+#[test]
+fn a_renderer_gets_its_matrices() {
+    let def = shared(walker());
+    let (mut world, mut character) = walking(&def);
+    run(&mut world, &mut character, 7);
+    let (mut pose, mut palettes) = (Vec::new(), [0.0, 0.5, 1.0].map(|_| Vec::new()));
+    for (palette, alpha) in palettes.iter_mut().zip([0.0, 0.5, 1.0]) {
+        character.skin_palette(0, alpha, palette);
+    }
+    assert_eq!(character.interpolated(1.0, &mut pose), character.world_from_character());
+    assert_eq!(palettes[0].len(), def.rig.skins[0].joints.len());
+    // The bind pose's place of each joint goes to where the joint is now: rows, translation last.
+    let mut model = Vec::new();
+    sinew_anim::local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
+    let skin = &def.rig.skins[0];
+    for ((matrix, &joint), bind) in palettes[2].iter().zip(&skin.joints).zip(&skin.inverse_bind) {
+        let p = bind.inverse().translation;
+        let row = |i: usize| {
+            matrix[4 * i] * p.x + matrix[4 * i + 1] * p.y + matrix[4 * i + 2] * p.z + matrix[4 * i + 3]
+        };
+        let at = Vec3::new(row(0), row(1), row(2));
+        assert!((at - model[joint].translation).length() < 1e-4, "{at}");
+    }
+    let z = palettes.each_ref().map(|palette| palette[0][11]);
+    assert!((z[1] - 0.5 * (z[0] + z[2])).abs() < 1e-3 && z[2] > z[0] + 0.01, "{z:?}");
+}
