@@ -233,7 +233,7 @@ impl Character {
         };
         let Some(mover) = &self.def.in_world.mover else { return };
         let height = max(2.0 * mover.radius, share * mover.height);
-        let position = self.world_from_character.translation;
+        let position = self.world_from_character.translation + Vec3::Y * mover.skin;
         let lets_pass = match self.def.in_world.hit_bodies {
             HitBodies::Present(yields) => max(yields.max_impulse, mover.lets_pass),
             HitBodies::Absent => mover.lets_pass,

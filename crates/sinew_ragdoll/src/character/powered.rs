@@ -13,7 +13,7 @@ pub enum Preset {
     Animated,
     /// Its clips, with bodies that give way and come back as if it had just been struck everywhere.
     Flinching,
-    /// Muscles toward its clips, and a soft pin at the pelvis that keeps it near its place.
+    /// Muscles toward its clips, and soft pins, the strongest at the pelvis, that keep it near its place.
     Powered,
     /// Nothing: it falls.
     Limp,
@@ -32,6 +32,12 @@ pub enum Part<'a> {
     From(&'a str),
 }
 
+/// What keeps the bodies of a powered character near their places.
+const NEAR: Pin = Pin { hertz: 4.0, damping_ratio: 1.0, max_force: 0.0, max_torque: 0.0 };
+/// Most force of that over the weight of its body; at the pelvis over that of the whole, and the torque there, metres.
+const HELPS: f32 = 4.0;
+const BEARS: f32 = 1.0;
+const TURNS: f32 = 0.3;
 /// Half-life of coming back to the clips, seconds.
 const RETURNS: f32 = 0.1;
 /// A powered character whose pelvis is farther than this from its clips', over its height, or turned by more, radians, falls.
@@ -61,8 +67,15 @@ impl Character {
             (Preset::Flinching, _) => {}
             (Preset::Powered, _) => {
                 self.take_bodies(world, DriveMode::Powered(Muscle::ALIVE));
-                self.drives.set_all(DriveMode::Powered(Muscle::ALIVE), RETURNS);
-                self.drives.set(0, DriveMode::Pinned(Muscle::ALIVE, Pin::SOFT), RETURNS);
+                let (def, gravity) = (self.def.clone(), world.def().gravity.length());
+                for (body, part) in def.ragdoll.bodies.iter().enumerate() {
+                    let weight = part.mass.mass * gravity;
+                    let pin = Pin { max_force: HELPS * weight, ..NEAR };
+                    self.drives.set(body, DriveMode::Pinned(Muscle::ALIVE, pin), RETURNS);
+                }
+                let weight = def.ragdoll.total_mass * gravity;
+                let pin = Pin { max_force: BEARS * weight, max_torque: TURNS * weight, ..NEAR };
+                self.drives.set(0, DriveMode::Pinned(Muscle::ALIVE, pin), RETURNS);
                 self.state = State::Powered;
                 self.drive_bodies(world);
             }

@@ -91,7 +91,8 @@ impl Character {
         presence.before.iter_mut().for_each(|pose| *pose = moved * *pose);
         (presence.air, presence.over, presence.velocity) = (0.0, 0.0, Vec3::ZERO);
         if let Some(mover) = presence.mover {
-            world.set_mover_position(mover, world_from_character.translation);
+            let skin = world.mover(mover).def().skin;
+            world.set_mover_position(mover, world_from_character.translation + Vec3::Y * skin);
         }
     }
 
@@ -129,7 +130,8 @@ impl Character {
             None if presence.wish.is_some() => heading,
             None => heading * step.rotation,
         };
-        Some(Transform::new(feet + Vec3::Y * presence.over, rotation.normalize()))
+        // The mover keeps its skin free, the character stands on its soles.
+        Some(Transform::new(feet + Vec3::Y * (presence.over - mover.def().skin), rotation.normalize()))
     }
 
     /// Tells the mover where to go in the next step, and lets it grow to its height.
