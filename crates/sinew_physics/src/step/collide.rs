@@ -6,7 +6,7 @@ use crate::body::contact_rule::{ContactRule, Yields};
 use crate::body::def::BodyKind;
 use crate::body::shape::Sensing;
 use crate::body::surface::Surface;
-use crate::collide::{Manifold, ManifoldPoint, Motion, Parting, collide_again};
+use crate::collide::{Manifold, Motion, Parting, collide_again};
 use crate::contact::SPECULATIVE_SLOPS;
 use crate::contact::kept::Kept;
 use crate::contact::parts::Parts;
@@ -14,7 +14,7 @@ use crate::contact::{Contact, ContactKey, Effect, slop};
 use crate::context::StepContext;
 use crate::slices::for_each_mut;
 use crate::step::pairs::{Asked, BroadPhase};
-use sinew_math::{max, min};
+use sinew_math::{Vec3, max, min};
 
 /// `collide`: manifolds at the poses of the step's beginning, with points as far away as the step may close.
 pub(crate) fn collide(
@@ -207,13 +207,22 @@ fn gives_way(yields: Yields, contact: &Contact, [a, b]: [&Body; 2], dt: f32) -> 
     if contact.touching && contact.passes {
         return true;
     }
-    let excess = |point: &ManifoldPoint| {
-        let (at, on) = (point.position - other.center(), point.position - led.center());
-        let (comes, shoves) = (-other.velocity.at(at).dot(out), led.velocity.at(on).dot(out));
-        let closing = max(comes + shoves, 0.0);
-        let turn = other.inverse_inertia_mul(at.cross(out)).cross(at).dot(out);
-        let mass = 1.0 / (other.inverse_mass() + turn);
-        mass * min(shoves, closing) > yields.max_force * dt || mass * min(comes, closing) > yields.max_impulse
-    };
-    contact.manifold.points().iter().any(|point| point.separation < -PRESSED || excess(point))
+    let points = contact.manifold.points();
+    if points.is_empty() {
+        return false;
+    }
+    let middle = points.iter().fold(Vec3::ZERO, |sum, point| sum + point.position) / points.len() as f32;
+    let (at, on) = (middle - other.center(), middle - led.center());
+    let (comes, shoves) = (-other.velocity.at(at).dot(out), led.velocity.at(on).dot(out));
+    let closing = max(comes + shoves, 0.0);
+    let turn = other.inverse_inertia_mul(at.cross(out)).cross(at).dot(out);
+    let mass = 1.0 / (other.inverse_mass() + turn);
+    let push = yields.max_force * dt;
+    // What stands in its way behind the other body shows in what it took to push it.
+    let took = contact.impulses().fold(0.0, |sum, (_, impulse)| sum + impulse);
+    let jammed = contact.touching && closing > 0.0 && shoves > 0.0 && took > push;
+    jammed
+        || points.iter().any(|point| point.separation < -PRESSED)
+        || mass * min(shoves, closing) > push
+        || mass * min(comes, closing) > yields.max_impulse
 }

@@ -37,7 +37,7 @@ fn a_ball_bounces_off_and_is_kicked() {
     let mut world = level();
     arm(&mut world, Vec3::Y * 0.5, Vec3::ZERO);
     let thrown = ball(&mut world, Vec3::new(-1.0, 0.5, 0.0), Vec3::X * 20.0);
-    for _ in 0..20 {
+    for _ in 0..8 {
         world.step();
     }
     let back = -world.velocity(thrown).linear.x;
