@@ -142,6 +142,23 @@ impl MotionTrack {
         Self { times: vec![0.0, duration], positions, turns: vec![0.0; 2], up }
     }
 
+    /// Through places (file units, model space) and turns (radians about `up`) at increasing times; straight on in between.
+    ///
+    /// # Panics
+    /// If there is no time, not one place and one turn for each, a number is not finite, or times do not increase.
+    pub fn through(times: Vec<f32>, positions: Vec<Vec3>, turns: Vec<f32>, up: Vec3) -> Self {
+        let count = times.len();
+        assert!(
+            count > 0 && [positions.len(), turns.len()] == [count; 2],
+            "each time has a place and a turn"
+        );
+        assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "times increase");
+        let finite =
+            times.iter().chain(&turns).all(|x| x.is_finite()) && positions.iter().all(|p| p.is_finite());
+        assert!(finite, "times, places and turns are finite");
+        Self { times, positions, turns, up }
+    }
+
     fn from_poses(times: &[f32], poses: &[ChainPose], options: &RootMotionOptions) -> Self {
         let rotation = |pose: &ChainPose| pose.parent.to_rigid().rotation * pose.local.rotation;
         let first = rotation(&poses[0]);

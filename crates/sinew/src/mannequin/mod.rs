@@ -57,3 +57,24 @@ pub fn mannequin() -> Mannequin {
     let motions = Motions { walk: 0, walk_speed: WALK_SPEED, idle: 1, get_up_supine: 2, get_up_prone: 3 };
     Mannequin { rig, clips, motions }
 }
+
+/// The mannequin as a character that stands where it is not moved, walks, and gets up: for
+/// [`Character::spawn`](crate::ragdoll::Character::spawn).
+#[cfg(feature = "ragdoll")]
+pub fn character() -> crate::ragdoll::CharacterDef {
+    use crate::ragdoll::{BuildOptions, CharacterDef, Locomotion, MotionSet, build};
+    let Mannequin { rig, clips, motions } = mannequin();
+    let analysis = crate::anim::analyze(&rig).expect("the mannequin has a skin");
+    let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
+    let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    let motions = MotionSet {
+        clips,
+        looped: Some(motions.walk),
+        idle: Some(motions.idle),
+        get_ups: vec![motions.get_up_supine, motions.get_up_prone],
+        locomotion: Locomotion::Forward { speed: motions.walk_speed },
+        ..MotionSet::default()
+    };
+    def.set_motions(motions).expect("clips made by code can be played");
+    def
+}

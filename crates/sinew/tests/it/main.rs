@@ -1,11 +1,17 @@
 //! The examples run, and what they assert holds.
 
+#[path = "../../examples/active_ragdoll.rs"]
+mod active_ragdoll;
 #[path = "../../examples/flock.rs"]
 mod flock;
 #[path = "../../examples/pendulum_clock.rs"]
 mod pendulum_clock;
+#[path = "../../examples/player.rs"]
+mod player;
 #[path = "../../examples/probes.rs"]
 mod probes;
+#[path = "../../examples/shooter.rs"]
+mod shooter;
 
 mod motions;
 
@@ -22,4 +28,19 @@ fn the_clock_keeps_time() {
 #[test]
 fn the_questions_are_answered() {
     probes::main();
+}
+
+#[test]
+fn the_player_walks_rides_and_jumps() {
+    player::main();
+}
+
+#[test]
+fn the_target_flinches_and_falls() {
+    shooter::main();
+}
+
+#[test]
+fn the_active_ragdoll_stands_a_push() {
+    active_ragdoll::main();
 }

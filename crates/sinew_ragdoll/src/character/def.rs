@@ -15,8 +15,10 @@ use std::sync::Arc;
 /// How a character moves over the ground while its looped clip plays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Locomotion {
-    /// Where the clip takes it, and no further.
+    /// Where the clip takes it, and no further: with each lap it is back where it began.
     InPlace,
+    /// Where the clip takes it, and on from there with each lap. A clip that ends where it began stays in its place.
+    ByClip,
     /// The clip walks on the spot; the character advances along its facing at this speed, m/s.
     Forward {
         /// m/s; negative walks backwards.

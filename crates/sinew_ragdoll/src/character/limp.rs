@@ -6,7 +6,7 @@ use crate::def::RagdollBodyDef;
 use crate::drive::DriveMode;
 use crate::hand_over::body_velocity;
 use crate::ragdoll::BodyState;
-use sinew_anim::{Motion, Pose};
+use sinew_anim::{Animator, Motion, Pose};
 use sinew_math::{Transform, Vec3, min};
 use sinew_physics::{BodyId, ContactRule, Velocity, World};
 
@@ -130,26 +130,32 @@ impl Character {
         self.bodies_of(&pose, Transform::IDENTITY, &mut now);
         self.pose = pose;
         let (mut animator, mut way) = (self.sent_ahead(), Transform::IDENTITY);
+        let laps = laps(&animator);
         self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut ahead);
         let mut further = Vec::new();
         self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut further);
+        let mut from = now.clone();
+        if self::laps(&animator) != laps {
+            // Across a loop's seam poses may jump: what counts is how they go on behind it.
+            core::mem::swap(&mut from, &mut further);
+            self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut ahead);
+            self.bodies_ahead(&mut animator, &mut way, HAND_OVER, &mut further);
+        }
         self.scratch.ahead = Some(animator);
         let place = self.world_from_character;
-        let state = |(((&now, &ahead), &further), body): (
-            ((&Transform, &Transform), &Transform),
-            &RagdollBodyDef,
-        )| {
+        let state = |(index, body): (usize, &RagdollBodyDef)| {
+            let [first, second, third] = [from[index], ahead[index], further[index]];
             let between = |a, b| body_velocity(a, b, body.mass.center, HAND_OVER, self.def.speed_bound);
-            let (soon, later) = (between(now, ahead), between(ahead, further));
+            let (soon, later) = (between(first, second), between(second, third));
             // Means of two spans, brought to the start of the first: a transition may well change speeds by a tenth in one.
             let start = |soon: Vec3, later: Vec3| place.rotation * (soon + (soon - later) * 0.5);
             let velocity = Velocity {
                 linear: start(soon.linear, later.linear),
                 angular: start(soon.angular, later.angular),
             };
-            BodyState { world_from_body: place * now, velocity }
+            BodyState { world_from_body: place * now[index], velocity }
         };
-        let states = now.iter().zip(&ahead).zip(&further).zip(&self.def.ragdoll.bodies).map(state).collect();
+        let states = self.def.ragdoll.bodies.iter().enumerate().map(state).collect();
         (self.scratch.before, self.scratch.after) = (now, ahead);
         states
     }
@@ -257,6 +263,11 @@ impl Character {
             self.prepare(world);
         }
     }
+}
+
+/// Which lap each track is in, summed: another sum after a moment tells of a seam between.
+fn laps(animator: &Animator) -> i64 {
+    animator.tracks().fold(0, |sum, track| sum.wrapping_add(track.playhead().lap()))
 }
 
 /// Whether every body is slower than what counts as still.

@@ -20,6 +20,7 @@ mod prepare;
 mod recognise;
 mod save;
 mod show;
+mod travel;
 mod walk;
 
 pub(crate) use limp::{STILL_TIME, is_still, is_sunk, touches_world};

@@ -2,7 +2,7 @@
 
 use super::likeness::{Landmarks, Stance};
 use super::mirror::Mirror;
-use super::{CharacterDef, Locomotion, MotionSet};
+use super::{CharacterDef, Locomotion, MotionSet, travel};
 use crate::def::RagdollDef;
 use crate::mapping::Mapping;
 use sinew_anim::take::Take;
@@ -77,10 +77,20 @@ impl Moves {
         let mut set = AnimationSet::new(Skeleton::new(&def.rig));
         let mut clips = Vec::new();
         for (index, clip) in motions.clips.iter().enumerate() {
-            let mut played = built(def, &flat(def, clip))?;
-            if motions.looped == Some(index) {
-                played.motion = way(def, motions.locomotion, played.clip.duration());
-            }
+            let is_looped = motions.looped == Some(index);
+            let played = match (is_looped && motions.locomotion == Locomotion::ByClip)
+                .then(|| travelling(def, clip))
+                .flatten()
+            {
+                Some((still, motion)) => AnimatedClip { motion: Some(motion), ..built(def, &still)? },
+                None => {
+                    let mut played = built(def, &flat(def, clip))?;
+                    if is_looped {
+                        played.motion = way(def, motions.locomotion, played.clip.duration());
+                    }
+                    played
+                }
+            };
             clips.push(set.add_clip(played));
         }
         let landmarks = Landmarks::new(&def.ragdoll);
@@ -120,6 +130,17 @@ fn flat_take(def: &CharacterDef, clip: &Clip, frame_time: f64) -> Take {
         def.mapping().flatten(&def.rig, take.pose_mut(frame));
     }
     take
+}
+
+/// A clip that travels, on its place, and its way; frames fit its length, so that the last is its end.
+fn travelling(def: &CharacterDef, clip: &Clip) -> Option<(Clip, MotionTrack)> {
+    let frames = (f64::from(clip.duration) / FRAME).round();
+    if !(frames >= 1.0 && frames < (Take::MOST_FRAMES - 1) as f64) {
+        return None;
+    }
+    let take = flat_take(def, clip, f64::from(clip.duration) / frames);
+    let (still, motion) = travel::parted(def, &take)?;
+    Some((still.to_clip(&def.rig, &clip.name), motion))
 }
 
 fn mirrored(def: &CharacterDef, mirror: &Mirror, take: &Take) -> Take {

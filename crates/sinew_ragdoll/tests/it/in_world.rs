@@ -381,3 +381,33 @@ fn it_can_be_sent_to_another_thread() {
     let character = Character::spawn(&mut world, &def, Transform::IDENTITY);
     is_send(&character);
 }
+
+#[test]
+fn it_gets_up_on_a_lift_that_rises_and_on_a_crate() {
+    let def = stander();
+    let mut world = World::new(WorldDef::default());
+    let velocity = Velocity { linear: Vec3::new(0.3, 0.6, 0.0), angular: Vec3::ZERO };
+    let platform = lift(&mut world, Vec3::Y * -0.1, velocity);
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    character.set_move(Vec3::ZERO);
+    run(&mut world, &mut character, 30);
+    character.hit(&mut world, 2, Vec3::new(0.0, 0.0, -70.0));
+    let events = run(&mut world, &mut character, 60 * 12);
+    let settled = events.iter().any(|event| matches!(event, Event::Settled { .. }));
+    assert!(settled, "it lies still on what moves: {events:?}");
+    assert!(events.contains(&Event::Up), "{events:?}");
+    let height = place(&character).y - (world.transform(platform).translation.y + 0.1);
+    assert!(height.abs() < 0.02, "it stands {height} m over the lift");
+
+    let mut world = level();
+    let shape = Shape::Box { half_extents: Vec3::new(1.5, 0.3, 1.5) };
+    world.add_body(&BodyDef::dynamic(shape).at(Vec3::Y * 0.3));
+    let mut character = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::Y * 0.6));
+    character.set_move(Vec3::ZERO);
+    run(&mut world, &mut character, 30);
+    character.hit(&mut world, 2, Vec3::new(0.0, 0.0, -46.0));
+    let events = run(&mut world, &mut character, 60 * 12);
+    assert!(events.contains(&Event::Up), "{events:?}");
+    let at = place(&character);
+    assert!((at.y - 0.6).abs() < 0.02 || at.y.abs() < 0.02 && at.length() > 1.5, "it stands at {at}");
+}

@@ -22,4 +22,5 @@ mod quality;
 mod settings;
 mod skin;
 mod slopes;
+mod travel;
 mod variants;

@@ -5,7 +5,7 @@ use crate::failure::{Failure, Result};
 use crate::files::CharacterFile;
 use sinew::anim::retarget::RetargetError;
 use sinew::motions::{BuiltinError, set_motions_with_builtin};
-use sinew::ragdoll::{AfterSettling, CharacterDef, MotionSet, RagdollDef};
+use sinew::ragdoll::{AfterSettling, CharacterDef, Locomotion, MotionSet, RagdollDef};
 
 /// Where the clips come from by which a character gets up.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +34,7 @@ pub fn actor(
     let mut get_ups = def.get_ups_among(&motions.clips);
     get_ups.retain(|&clip| Some(clip) != motions.looped);
     let Motions { clips, looped } = motions;
-    let own = MotionSet { clips, looped, get_ups, ..MotionSet::default() };
+    let own = MotionSet { clips, looped, get_ups, locomotion: Locomotion::ByClip, ..MotionSet::default() };
     if !own.get_ups.is_empty() {
         def.set_motions(own).map_err(failed)?;
         return Ok((def, GetsUpBy::Own));

@@ -1,0 +1,46 @@
+//! An active ragdoll: `cargo run -p sinew --example active_ragdoll`.
+//!
+//! Its muscles draw it to its clips while it walks; pushes move it, and it comes back. A hard one fells it, and it gets up.
+
+use sinew::prelude::*;
+use sinew::ragdoll::{Preset, State};
+use std::sync::Arc;
+
+/// Farthest that its head was from over its feet while it walked for some seconds, metres.
+fn walk(world: &mut World, puppet: &mut Character, seconds: f32) -> f32 {
+    let head = puppet.def().body_named("head").expect("it has a head");
+    let mut sway = 0.0;
+    for _ in 0..(seconds * 60.0) as usize {
+        world.step();
+        puppet.update(world);
+        let off =
+            world.transform(puppet.bodies()[head]).translation - puppet.world_from_character().translation;
+        sway = f32::max(sway, off.x.abs());
+    }
+    sway
+}
+
+/// Is pushed, and pushed over.
+pub fn main() {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+
+    // All that there is to it.
+    let def = Arc::new(sinew::mannequin::character());
+    let mut puppet = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    puppet.set_preset(&mut world, Preset::Powered);
+
+    let calm = walk(&mut world, &mut puppet, 2.0);
+    let chest = def.body_named("chest").expect("it has a chest");
+    puppet.hit(&mut world, chest, Vec3::X * 25.0);
+    let pushed = walk(&mut world, &mut puppet, 1.0);
+    let after = walk(&mut world, &mut puppet, 1.0);
+    println!("its head sways by {calm:.2} m, pushed {pushed:.2} m, then {after:.2} m");
+    assert!(puppet.state() == State::Powered && pushed > calm + 0.03 && after < pushed);
+
+    puppet.hit(&mut world, chest, Vec3::X * 90.0);
+    assert_eq!(puppet.state(), State::Limp);
+    walk(&mut world, &mut puppet, 10.0);
+    assert_eq!(puppet.state(), State::Animated, "it is up again");
+    assert_eq!(puppet.bodies().len(), def.ragdoll.bodies.len());
+}

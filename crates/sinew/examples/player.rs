@@ -1,0 +1,66 @@
+//! A player: `cargo run -p sinew --example player`.
+//!
+//! It walks over a floor, pushes a crate, climbs a step, rides a lift and jumps off. What a game does each frame is three lines:
+//! tell it where to go, step the world, let the character follow.
+
+use sinew::prelude::*;
+use std::sync::Arc;
+
+fn crate_of(world: &mut World, mass: f32, at: Vec3) -> BodyId {
+    let shape = Shape::Box { half_extents: Vec3::splat(0.3) };
+    let density = mass / shape.mass_properties(1.0).mass;
+    world.add_body(&BodyDef::dynamic(ShapeDef { density, ..ShapeDef::new(shape) }).at(at))
+}
+
+/// A platform that can be moved.
+fn lift(world: &mut World, at: Vec3) -> BodyId {
+    let shape = Shape::Box { half_extents: Vec3::new(1.0, 0.1, 1.0) };
+    world.add_body(&BodyDef { kind: BodyKind::Kinematic, ..BodyDef::fixed(shape).at(at) })
+}
+
+/// Goes somewhere for so many seconds.
+fn go(world: &mut World, player: &mut Character, velocity: Vec3, seconds: f32) {
+    player.set_move(velocity);
+    player.face(velocity);
+    for _ in 0..(seconds * 60.0) as usize {
+        world.step();
+        player.update(world);
+    }
+}
+
+fn feet(player: &Character) -> Vec3 {
+    player.world_from_character().translation
+}
+
+/// Walks, pushes, climbs, rides, jumps.
+pub fn main() {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+    let kerb = Shape::Box { half_extents: Vec3::new(2.0, 0.1, 0.5) };
+    world.add_body(&BodyDef::fixed(kerb).at(Vec3::new(0.0, 0.1, -2.0)));
+    let load = crate_of(&mut world, 30.0, Vec3::new(0.0, 0.3, 1.5));
+    let platform = lift(&mut world, Vec3::new(3.0, -0.05, 0.0));
+
+    let mut player =
+        Character::spawn(&mut world, &Arc::new(sinew::mannequin::character()), Transform::IDENTITY);
+    go(&mut world, &mut player, Vec3::Z * 1.2, 2.0);
+    let pushed = world.transform(load).translation.z - 1.5;
+    println!("the crate was pushed by {pushed:.2} m");
+    assert!(pushed > 0.5);
+
+    go(&mut world, &mut player, Vec3::Z * -1.5, 2.6);
+    assert!((feet(&player).y - 0.2).abs() < 0.01, "it stands on the kerb, at {}", feet(&player));
+    go(&mut world, &mut player, Vec3::new(1.2, 0.0, 0.8), 2.4);
+
+    go(&mut world, &mut player, Vec3::ZERO, 0.5);
+    world.set_velocity(platform, Velocity { linear: Vec3::Y, ..Velocity::default() });
+    go(&mut world, &mut player, Vec3::ZERO, 2.0);
+    println!("the lift has taken it to {:.2}", feet(&player));
+    assert!(feet(&player).y > 1.9, "it rode the lift: {}", feet(&player));
+
+    player.jump(&mut world);
+    go(&mut world, &mut player, Vec3::X * 3.0, 1.5);
+    assert!(feet(&player).y.abs() < 0.01 && feet(&player).x > 4.0, "it jumped off: {}", feet(&player));
+    player.despawn(&mut world);
+    assert_eq!(world.body_ids().count(), 4, "nothing of it is left");
+}

@@ -1,0 +1,85 @@
+//! A looped clip that travels: the way from its start to its end is taken out of the pose, so that it goes on with each lap.
+
+use super::CharacterDef;
+use sinew_anim::take::Take;
+use sinew_anim::{MotionTrack, local_to_model};
+use sinew_math::{Affine, Rotation, Transform, Vec3, trig};
+
+/// A clip that ends nearer than this to where it began, metres and radians, stays in its place.
+const NEAR: f32 = 0.02;
+const LEVEL: f32 = 0.02;
+/// A turn that is less than this goes straight on, radians.
+const STRAIGHT: f32 = 1e-4;
+
+/// A motion over the ground: from start to end of a clip, along an arc at constant speed.
+#[derive(Clone, Copy, Debug)]
+struct Lap {
+    /// Level, metres.
+    way: Vec3,
+    /// About the vertical, radians.
+    turn: f32,
+}
+
+impl Lap {
+    /// Of a pelvis, in character space.
+    fn of(def: &CharacterDef, take: &Take) -> Self {
+        let [start, end] = [0, take.frames() - 1].map(|frame| stand(def, take, frame));
+        let lap = end * start.inverse();
+        Self { way: lap.translation, turn: lap.rotation.twist_angle(Vec3::Y) }
+    }
+
+    fn travels(self) -> bool {
+        self.way.length() > NEAR || self.turn.abs() > LEVEL
+    }
+
+    /// After a share of it.
+    fn at(self, share: f32) -> Transform {
+        let turned = |angle: f32| Rotation::from_axis_angle(Vec3::Y, angle);
+        if self.turn.abs() < STRAIGHT {
+            return Transform::new(self.way * share, turned(self.turn * share));
+        }
+        // About the centre c that stays: way = c − R c.
+        let half = 0.5 * self.turn;
+        let across = Vec3::new(self.way.z, 0.0, -self.way.x);
+        let center = (self.way + across * (trig::cos(half) / trig::sin(half))) * 0.5;
+        let rotation = turned(self.turn * share);
+        Transform::new(center - rotation * center, rotation)
+    }
+}
+
+/// Where a pelvis is over the ground, and which way it looks.
+fn stand(def: &CharacterDef, take: &Take, frame: usize) -> Transform {
+    let (mut model, mut bodies) = (Vec::new(), Vec::new());
+    local_to_model(&def.rig, take.pose(frame), &Affine::IDENTITY, &mut model);
+    def.mapping().bodies_from_model(&model, Transform::IDENTITY, &mut bodies);
+    let bind = def.ragdoll.bodies[0].character_from_body;
+    let heading = (bodies[0].rotation * bind.rotation.inverse()).twist_angle(Vec3::Y);
+    let place = model[def.ragdoll.bodies[0].joint].translation;
+    let place = def.mapping().character_from_model().point(place) * Vec3::new(1.0, 0.0, 1.0);
+    Transform::new(place, Rotation::from_axis_angle(Vec3::Y, heading))
+}
+
+/// The clip on its place and the way that was taken out of it: model space. `None` if it does not travel.
+pub(super) fn parted(def: &CharacterDef, take: &Take) -> Option<(Take, MotionTrack)> {
+    let last = take.frames() - 1;
+    if last == 0 {
+        return None;
+    }
+    let lap = Lap::of(def, take);
+    if !lap.travels() {
+        return None;
+    }
+    let mut still = take.clone();
+    let model = def.mapping().character_from_model().inverse();
+    let up = model.to_rigid().rotation * Vec3::Y;
+    let (mut times, mut positions, mut turns) = (Vec::new(), Vec::new(), Vec::new());
+    for frame in 0..=last {
+        let share = frame as f32 / last as f32;
+        let stands = lap.at(share);
+        def.mapping().reframe(still.pose_mut(frame), Transform::IDENTITY, stands);
+        times.push(take.time(frame));
+        positions.push(model.vector(stands.translation));
+        turns.push(lap.turn * share);
+    }
+    Some((still, MotionTrack::through(times, positions, turns, up)))
+}
