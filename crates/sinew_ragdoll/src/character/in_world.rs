@@ -61,7 +61,7 @@ pub struct InWorld {
     pub turn_speed: f32,
     /// Speed of a jump, m/s. Default 3.5, which is 0.6 m.
     pub jump_speed: f32,
-    /// Time without ground after which it falls limp, seconds. Default 1.
+    /// Time without ground after which it falls limp, seconds. Default 1.2.
     pub air_time: f32,
     /// Speed toward the ground with which a landing fells it, m/s. Default 7, a fall from 2.5 m.
     pub landing_speed: f32,
@@ -97,7 +97,7 @@ impl InWorld {
             mover: Some(mover),
             turn_speed: 8.0,
             jump_speed: 3.5,
-            air_time: 1.0,
+            air_time: 1.2,
             landing_speed: 7.0,
             toughness: Toughness::Impulse(FELLS * mass),
             feels: 3.0,

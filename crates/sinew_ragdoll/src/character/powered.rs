@@ -32,10 +32,12 @@ pub enum Part<'a> {
     From(&'a str),
 }
 
-/// What keeps the bodies of a powered character near their places.
-const NEAR: Pin = Pin { hertz: 4.0, damping_ratio: 1.0, max_force: 0.0, max_torque: 0.0 };
-/// Most force of that over the weight of its body; at the pelvis over that of the whole, and the torque there, metres.
-const HELPS: f32 = 4.0;
+/// What keeps a body of a powered character near its place, and what keeps its legs and pelvis there: else feet would drag.
+const NEAR: Pin = Pin { hertz: 2.0, damping_ratio: 1.0, max_force: 0.0, max_torque: 0.0 };
+const WALKS: Pin = Pin { hertz: 4.0, ..NEAR };
+/// Most force of that over the weight of the body; at the pelvis over that of the whole, and the torque there, metres.
+const HELPS: f32 = 1.0;
+const STEPS: f32 = 4.0;
 const BEARS: f32 = 1.0;
 const TURNS: f32 = 0.3;
 /// Half-life of coming back to the clips, seconds.
@@ -67,18 +69,30 @@ impl Character {
             (Preset::Flinching, _) => {}
             (Preset::Powered, _) => {
                 self.take_bodies(world, DriveMode::Powered(Muscle::ALIVE));
-                let (def, gravity) = (self.def.clone(), world.def().gravity.length());
-                for (body, part) in def.ragdoll.bodies.iter().enumerate() {
-                    let weight = part.mass.mass * gravity;
-                    let pin = Pin { max_force: HELPS * weight, ..NEAR };
+                let gravity = world.def().gravity.length();
+                for body in 0..self.def.ragdoll.bodies.len() {
+                    let pin = self.powered_pin(body, gravity);
                     self.drives.set(body, DriveMode::Pinned(Muscle::ALIVE, pin), RETURNS);
                 }
-                let weight = def.ragdoll.total_mass * gravity;
-                let pin = Pin { max_force: BEARS * weight, max_torque: TURNS * weight, ..NEAR };
-                self.drives.set(0, DriveMode::Pinned(Muscle::ALIVE, pin), RETURNS);
                 self.state = State::Powered;
                 self.drive_bodies(world);
             }
+        }
+    }
+
+    /// What holds a body near its place by [`Preset::Powered`].
+    fn powered_pin(&self, body: usize, gravity: f32) -> Pin {
+        let def = &self.def.ragdoll;
+        if body == 0 {
+            let weight = def.total_mass * gravity;
+            return Pin { max_force: BEARS * weight, max_torque: TURNS * weight, ..WALKS };
+        }
+        let weight = def.bodies[body].mass.mass * gravity;
+        let role = &def.bodies[body].role;
+        if ["Leg", "Foot", "Toes"].iter().any(|part| role.ends_with(part)) {
+            Pin { max_force: STEPS * weight, ..WALKS }
+        } else {
+            Pin { max_force: HELPS * weight, ..NEAR }
         }
     }
 
