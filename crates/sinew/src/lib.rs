@@ -60,3 +60,8 @@ struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/world.md")]
 struct WorldPage;
+
+/// What is taught about characters.
+#[cfg(all(doctest, feature = "ragdoll"))]
+#[doc = include_str!("../../../docs/character.md")]
+struct CharacterPage;

@@ -11,4 +11,6 @@ pub use sinew_physics::{
     Sensors, Shape, ShapeCast, ShapeDef, ShapeId, Sleeping, Update, Velocity, World, WorldDef,
 };
 #[cfg(feature = "ragdoll")]
-pub use sinew_ragdoll::{BuildOptions, Character, CharacterDef, MotionSet, Ragdoll, RagdollDef, build};
+pub use sinew_ragdoll::{
+    BuildOptions, Character, CharacterDef, MotionSet, Part, Preset, Ragdoll, RagdollDef, build,
+};

@@ -19,7 +19,7 @@ pub mod rig_match;
 pub mod settings;
 pub mod skin;
 
-pub use bake::{BakeInput, Baked, Hit, bake};
+pub use bake::{BakeInput, Baked, Hit, HitEffect, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
 pub use character::{
     AfterSettling, Blow, Character, CharacterDef, Event, GettingReady, HitBodies, InWorld, Locomotion,

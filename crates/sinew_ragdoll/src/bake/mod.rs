@@ -2,7 +2,7 @@
 
 mod keys;
 
-use crate::character::{Character, CharacterDef, Event, State};
+use crate::character::{Character, CharacterDef, Event, InWorld, State};
 use crate::quality::{Quality, QualityMeter};
 use sinew_anim::{Clip, KeyBound, KeyError, LocalTransform, Reduced, reduce_keys};
 use sinew_math::hash::hash_bytes;
@@ -36,6 +36,8 @@ pub struct BakeInput<'a> {
     pub bodies: &'a [BodyDef],
     /// Pushes, in any order.
     pub hits: &'a [Hit],
+    /// What becomes of pushes. Default: each fells.
+    pub hit_effect: HitEffect,
     /// When it goes limp without being pushed, seconds; `None`: only by a hit.
     pub limp_at: Option<f32>,
     /// Length, seconds.
@@ -47,6 +49,16 @@ pub struct BakeInput<'a> {
     pub key_bound: KeyBound,
     /// Name of the clip.
     pub name: &'a str,
+}
+
+/// What a push of a bake does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HitEffect {
+    /// It fells. Default.
+    #[default]
+    Falls,
+    /// It lets the limb flinch, or fells, by [`InWorld::toughness`](crate::InWorld::toughness).
+    FlinchesOrFalls,
 }
 
 /// The bound on the keys that [`BakeInput::new`] sets: a tenth of a millimetre and a hundredth of a degree.
@@ -63,6 +75,7 @@ impl<'a> BakeInput<'a> {
             world: WorldDef::default(),
             bodies: &[],
             hits: &[],
+            hit_effect: HitEffect::Falls,
             limp_at: None,
             seconds: 10.0,
             fps: 30.0,
@@ -156,6 +169,19 @@ struct Run {
     events: Vec<(f32, Event)>,
 }
 
+/// The character as it starts: in the world, if pushes may let it flinch, for that takes bodies.
+fn spawned(input: &BakeInput<'_>, world: &mut World) -> Character {
+    if input.hit_effect == HitEffect::Falls {
+        return Character::new(input.character.clone(), input.world_from_character, input.phase);
+    }
+    let mut def = CharacterDef::clone(&input.character);
+    // It goes where its clips go, and feels what it is told of.
+    def.in_world = InWorld { mover: None, feels: f32::INFINITY, ..def.in_world };
+    let mut character = Character::new(Arc::new(def), input.world_from_character, input.phase);
+    character.enter(world);
+    character
+}
+
 /// What is done to the character at a moment.
 #[derive(Clone, Copy)]
 enum Push {
@@ -176,9 +202,10 @@ impl Run {
         // Stable, so that pushes at one moment keep their order.
         pending.sort_by(|a, b| a.0.total_cmp(&b.0));
         pending.reverse();
+        let character = spawned(input, &mut world);
         let mut run = Self {
             world,
-            character: Character::new(input.character.clone(), input.world_from_character, input.phase),
+            character,
             meter: QualityMeter::new(&input.character.ragdoll, input.seconds),
             pending,
             events: Vec::new(),
@@ -204,6 +231,8 @@ impl Run {
         self.world.step();
         match (self.character.ragdoll(), self.character.state()) {
             (Some(ragdoll), State::Limp) => self.meter.after_step(&self.world, ragdoll),
+            // Led by clips: what they do is no matter of physics.
+            (Some(_), State::Flinching) => {}
             (Some(ragdoll), _) => self.meter.after_driven_step(&self.world, ragdoll),
             (None, _) => {}
         }
@@ -220,15 +249,18 @@ impl Run {
         while let Some(&(time, push)) = self.pending.last().filter(|(time, _)| *time <= now) {
             debug_assert!(time <= now);
             self.pending.pop();
-            let was_limp = self.character.ragdoll().is_some();
+            let is_limp = |run: &Self| matches!(run.character.state(), State::Limp | State::Preparing);
+            let was_limp = is_limp(self);
             match push {
                 Push::Limp => self.character.go_limp(&mut self.world),
                 Push::Hit { body, impulse } => {
                     let work = self.character.hit(&mut self.world, body, impulse);
-                    self.meter.pushed(work);
+                    if is_limp(self) {
+                        self.meter.pushed(work);
+                    }
                 }
             }
-            if !was_limp {
+            if !was_limp && is_limp(self) {
                 self.meter.went_limp();
             }
         }

@@ -4,7 +4,7 @@ use crate::actor::{floor, in_centimetres_and_z_up, shared, somewhere, walker};
 use sinew_anim::{KeyBound, Wrap, local_to_model, rest_pose, sample};
 use sinew_math::{Affine, Vec3, max};
 use sinew_ragdoll::bake::KEY_BOUND;
-use sinew_ragdoll::{BakeInput, Baked, CharacterDef, Hit, State, bake};
+use sinew_ragdoll::{BakeInput, Baked, CharacterDef, Event, Hit, HitEffect, State, bake};
 use std::sync::Arc;
 
 fn baked(def: &Arc<CharacterDef>, impulse: Vec3, fps: f32) -> Baked {
@@ -186,4 +186,29 @@ fn no_bound_keeps_every_key() {
     let coarse = baked_within(&def, PUSH, 30.0, KeyBound { distance: 2e-3, angle: 3.5e-3 });
     assert_eq!((all.hash, &all.frames), (coarse.hash, &coarse.frames));
     assert!(4 * coarse.keys[1] < 3 * coarse.keys[0], "{:?}", coarse.keys);
+}
+
+#[test]
+fn a_hit_may_be_a_flinch() {
+    let def = shared(walker());
+    let body = def.body_named("rightHand").expect("it has hands");
+    let chest = def.body_named("chest").expect("it has a chest");
+    let run = |hit_effect: HitEffect| {
+        let hits = [
+            Hit { time: 0.5, body, impulse: Vec3::X * -5.0 },
+            Hit { time: 2.0, body: chest, impulse: Vec3::Z * -80.0 },
+        ];
+        let (bodies, seconds) = ([floor()], 3.0);
+        bake(&BakeInput { bodies: &bodies, hits: &hits, hit_effect, seconds, ..BakeInput::new(def.clone()) })
+    };
+    let states = |baked: &Baked| {
+        let mut states: Vec<_> = baked.frames.iter().map(|frame| frame.state).collect();
+        states.dedup();
+        states
+    };
+    let flinched = run(HitEffect::FlinchesOrFalls);
+    assert_eq!(states(&flinched), [State::Animated, State::Flinching, State::Animated, State::Limp]);
+    assert!(flinched.events.iter().any(|(_, event)| *event == Event::Flinched { body }));
+    assert!(flinched.quality.nan == 0 && flinched.quality.energy_gain_max < 0.01, "{:?}", flinched.quality);
+    assert_eq!(states(&run(HitEffect::Falls)), [State::Animated, State::Limp]);
 }

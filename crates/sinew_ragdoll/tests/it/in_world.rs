@@ -212,7 +212,7 @@ fn it_falls_off_a_cliff() {
     let mut world = level();
     block(&mut world, Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 10.0, 2.0));
     let mut character = Character::spawn(&mut world, &def, Transform::from_translation(Vec3::Y * 10.0));
-    let events = run(&mut world, &mut character, 60 * 6);
+    let events = run(&mut world, &mut character, 60 * 4);
     assert!(events.contains(&Event::WentLimp), "{events:?}");
     let pelvis = world.transform(character.bodies()[0]).translation;
     assert!(pelvis.y < 1.0 && pelvis.is_finite(), "it lies at {pelvis}");

@@ -19,6 +19,7 @@ mod learned;
 mod mapping;
 mod pops;
 mod quality;
+mod rollback;
 mod settings;
 mod skin;
 mod slopes;

@@ -60,6 +60,7 @@ mod settling;
 mod showroom;
 mod springs;
 mod stacks;
+mod street;
 mod strings;
 mod support;
 mod surfaces;
@@ -152,6 +153,7 @@ const REGISTRY: &[Scene] = &[
     surfaces::ONE_WAY,
     surfaces::SENSORS,
     movers::COURSE,
+    street::STREET,
     impacts::ELASTIC_PAIRS,
     impacts::NEWTONS_CRADLE,
     impacts::BOUNCING_BALLS,

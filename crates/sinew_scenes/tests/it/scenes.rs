@@ -151,6 +151,7 @@ scenes!(
         one_way,
         sensors,
         mover_course,
+        street,
         elastic_pairs,
         newtons_cradle,
         bouncing_balls,

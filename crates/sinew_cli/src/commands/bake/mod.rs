@@ -29,7 +29,7 @@ use sinew::formats::{Textures, load_world};
 use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew::ragdoll::bake::KEY_BOUND;
-use sinew::ragdoll::{BakeInput, BuildOptions, RagdollDef};
+use sinew::ragdoll::{BakeInput, BuildOptions, HitEffect, RagdollDef};
 use sinew_picture::Sun;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -88,6 +88,9 @@ pub struct Bake {
     /// without a body means the nearest one that has
     #[arg(long = "hit", value_name = "BONE=IX,IY,IZ@T", allow_hyphen_values = true)]
     hits: Vec<HitArg>,
+    /// Let hits that are too weak to fell it be a flinch: the limb gives way and comes back
+    #[arg(long)]
+    flinch: bool,
     /// Go limp at this time, seconds; without any --hit the default is 0.5
     #[arg(long, value_name = "T", value_parser = seconds, allow_negative_numbers = true)]
     limp_at: Option<f32>,
@@ -146,6 +149,7 @@ impl Bake {
             world_from_character: place.stands,
             bodies: &bodies,
             hits: &hits,
+            hit_effect: if self.flinch { HitEffect::FlinchesOrFalls } else { HitEffect::Falls },
             limp_at,
             seconds: self.seconds,
             fps: f32::from(self.fps),
