@@ -36,7 +36,7 @@ pub struct BakeInput<'a> {
     pub bodies: &'a [BodyDef],
     /// Pushes, in any order.
     pub hits: &'a [Hit],
-    /// What becomes of pushes. Default: each fells.
+    /// Effect of pushes. Default: each fells.
     pub hit_effect: HitEffect,
     /// When it goes limp without being pushed, seconds; `None`: only by a hit.
     pub limp_at: Option<f32>,
@@ -51,7 +51,7 @@ pub struct BakeInput<'a> {
     pub name: &'a str,
 }
 
-/// What a push of a bake does.
+/// Effect of a push in a bake.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HitEffect {
     /// It fells. Default.

@@ -5,7 +5,7 @@ use crate::drive::{DriveMode, Muscle};
 use sinew_math::Vec3;
 use sinew_physics::{BodyHit, World};
 
-/// What holds a limb that was struck until it comes back.
+/// Muscles that hold a limb that was struck until it comes back.
 const GIVING: Muscle = Muscle { hertz: 3.0, damping_ratio: 1.0, strength: 0.5 };
 /// Seconds for which it gives way, and half-life of its coming back.
 const GIVES: f32 = 0.12;

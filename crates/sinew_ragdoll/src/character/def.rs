@@ -17,7 +17,7 @@ use std::sync::Arc;
 pub enum Locomotion {
     /// Where the clip takes it, and no further: with each lap it is back where it began.
     InPlace,
-    /// Where the clip takes it, and on from there with each lap. A clip that ends where it began stays in its place.
+    /// On and on as the clip takes it, with each lap from where the last one ended. A clip that ends where it began stays in its place.
     ByClip,
     /// The clip walks on the spot; the character advances along its facing at this speed, m/s.
     Forward {
@@ -103,7 +103,7 @@ pub struct CharacterDef {
     pub flesh: Flesh,
     /// Bound on the speeds that an animation hands over.
     pub speed_bound: SpeedBound,
-    /// What of it is in the world while its clips move it.
+    /// Its share of a world while its clips move it.
     pub in_world: InWorld,
     mapping: Mapping,
     rest: Vec<LocalTransform>,

@@ -28,7 +28,7 @@ fn bearer(world: &World, ray: &Ray, own: &[BodyId]) -> Option<BodyHit> {
     world.query().filter(QueryFilter::without(own)).accept(bears).first(ray)
 }
 
-/// How what bears a body moves; by default it stands.
+/// Motion of the ground that bears a body; by default it stands.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct GroundMotion {
     velocity: Velocity,
@@ -47,7 +47,7 @@ impl GroundMotion {
     }
 }
 
-/// How farther down than a body's reach what bears it is sought, metres.
+/// Depth under a pelvis down to which the ground that bears it is sought, metres.
 const LIES_ON: f32 = 1.0;
 
 /// Motion of what the first of some bodies, a pelvis, lies on.

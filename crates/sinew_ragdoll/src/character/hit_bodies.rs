@@ -71,7 +71,7 @@ impl Character {
         }
     }
 
-    /// What a body that goes through one of its own would give it, if the two stopped each other: N·s.
+    /// Impulse that a body that goes through one of its own would give it, if the two stopped each other: N·s.
     fn passing(&self, world: &World, own: BodyId, other: BodyId) -> Vec3 {
         let gone = !world.contains(other) || !world.contains(own);
         if gone || world.kind(other) != BodyKind::Dynamic || world.kind(own) == BodyKind::Dynamic {
@@ -88,7 +88,7 @@ impl Character {
     }
 }
 
-/// Where a body comes to that goes on as it went.
+/// Pose that a body comes to that goes on as it went.
 fn ahead(before: Option<Transform>, now: Transform, center: Vec3) -> Transform {
     let Some(before) = before else { return now };
     let way = now.point(center) - before.point(center);

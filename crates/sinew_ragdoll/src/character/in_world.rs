@@ -1,4 +1,4 @@
-//! What of a character is in the world while its clips move it: a mover that stands, walks and falls, and bodies that can be
+//! A character's share of the world while its clips move it: a mover that stands, walks and falls, and bodies that can be
 //! hit. Settings, and how it comes and goes.
 
 use super::{Character, CharacterDef, State};
@@ -27,7 +27,7 @@ pub struct Blow {
     pub impulse: Vec3,
 }
 
-/// What a blow must be to fell a character that stands.
+/// Rule by which blows fell a character that stands, or let it flinch.
 #[derive(Clone, Copy, Debug)]
 pub enum Toughness {
     /// Each blow does.
@@ -49,7 +49,7 @@ impl PartialEq for Toughness {
     }
 }
 
-/// What of characters of a kind is in the world while their clips move them, and what they stand.
+/// The share of a world that characters of a kind have while their clips move them, and the blows and falls that they stand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InWorld {
     /// Its bodies. Default present.
@@ -65,7 +65,7 @@ pub struct InWorld {
     pub air_time: f32,
     /// Speed toward the ground with which a landing fells it, m/s. Default 7, a fall from 2.5 m.
     pub landing_speed: f32,
-    /// What a blow must be to fell it.
+    /// Rule by which blows fell it or let it flinch.
     pub toughness: Toughness,
     /// Impulse from which it feels what strikes its bodies by itself, N·s; infinite: it feels only what it is told of by
     /// [`Character::hit`]. Default 3.
@@ -78,7 +78,7 @@ const FELLS: f32 = 0.6;
 const RADIUS: f32 = 0.17;
 
 impl InWorld {
-    /// Of a ragdoll's size and mass.
+    /// The defaults for a ragdoll's size and mass.
     pub fn of(ragdoll: &RagdollDef) -> Self {
         let sound = |x: f32, else_: f32| if x > 0.0 && x < f32::INFINITY { x } else { else_ };
         let (height, mass) = (sound(ragdoll.height, 1.8), sound(ragdoll.total_mass, 80.0));
@@ -104,7 +104,7 @@ impl InWorld {
         }
     }
 
-    /// What becomes of the contacts of its bodies while its clips or its muscles move them.
+    /// Rule for contacts of its bodies while its clips or its muscles move them.
     pub(super) fn rule(&self) -> ContactRule {
         match self.hit_bodies {
             HitBodies::Present(yields) => ContactRule::Yields(yields),
@@ -124,17 +124,17 @@ pub(super) struct Presence {
     pub before: Vec<Transform>,
     /// Velocity that it is to go with, m/s; `None`: as its clips do.
     pub wish: Option<Vec3>,
-    /// Where it is to look, level, of length 1.
+    /// Direction in which it is to look, level, of length 1.
     pub facing: Option<Vec3>,
     /// The mover's turn as it was last asked.
     pub yaw: f32,
-    /// Of the mover, m/s.
+    /// Velocity of the mover, m/s.
     pub velocity: Vec3,
     /// Speed at which the looped clip is played, m/s.
     pub pace: f32,
     /// Seconds since the mover had ground.
     pub air: f32,
-    /// How far over its mover it is shown: it takes a moment to come down a step, metres.
+    /// Height over its mover at which it is shown: it takes a moment to come down a step, metres.
     pub over: f32,
     /// It left the ground for too long or came down too fast.
     pub falls: bool,

@@ -265,7 +265,7 @@ impl Character {
     }
 }
 
-/// Which lap each track is in, summed: another sum after a moment tells of a seam between.
+/// Laps of all tracks, summed: another sum after a moment tells of a seam between.
 fn laps(animator: &Animator) -> i64 {
     animator.tracks().fold(0, |sum, track| sum.wrapping_add(track.playhead().lap()))
 }

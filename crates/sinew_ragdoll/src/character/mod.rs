@@ -47,7 +47,7 @@ use std::sync::Arc;
 /// What decides the character's pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// Clips; its bodies, if it has any in the world, are led by them.
+    /// Clips; they lead its bodies, if it has any in the world.
     Animated,
     /// Its bodies: it falls, or lies.
     Limp,
@@ -71,14 +71,14 @@ pub enum Event {
     },
     /// Something struck one of its bodies: contacts tell more.
     Struck {
-        /// Which body, by index in the definition.
+        /// Index of the body in the definition.
         body: usize,
         /// N·s.
         impulse: f32,
     },
     /// A blow did not fell it: the limb gives way and comes back.
     Flinched {
-        /// Which body was struck, by index in the definition.
+        /// Index of the struck body in the definition.
         body: usize,
     },
     /// Its bodies took over.
@@ -286,7 +286,7 @@ impl Character {
         }
     }
 
-    /// What a character that its clips move does to the world, and the world to it.
+    /// Exchange of a character that its clips move with the world: blows, hit bodies, steering.
     fn attend(&mut self, world: &mut World) {
         if self.presence.is_none() {
             return;

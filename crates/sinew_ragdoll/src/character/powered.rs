@@ -6,7 +6,7 @@ use crate::ragdoll::Ragdoll;
 use sinew_math::{Transform, Vec3};
 use sinew_physics::{ContactRule, World};
 
-/// What moves a character, all of it.
+/// Ways to move all of a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preset {
     /// Its clips: what lies gets up, what is powered comes back to them.
@@ -32,7 +32,7 @@ pub enum Part<'a> {
     From(&'a str),
 }
 
-/// What keeps a body of a powered character near its place, and what keeps its legs and pelvis there: else feet would drag.
+/// Pins that keep a body of a powered character near its place, and its legs and pelvis firmer: else feet would drag.
 const NEAR: Pin = Pin { hertz: 2.0, damping_ratio: 1.0, max_force: 0.0, max_torque: 0.0 };
 const WALKS: Pin = Pin { hertz: 4.0, ..NEAR };
 /// Most force of that over the weight of the body; at the pelvis over that of the whole, and the torque there, metres.
@@ -80,7 +80,7 @@ impl Character {
         }
     }
 
-    /// What holds a body near its place by [`Preset::Powered`].
+    /// Pin that holds a body near its place by [`Preset::Powered`].
     fn powered_pin(&self, body: usize, gravity: f32) -> Pin {
         let def = &self.def.ragdoll;
         if body == 0 {
@@ -121,7 +121,7 @@ impl Character {
         }
     }
 
-    /// What drives its bodies, to be changed: what counts while it has any. [`set_drive`](Self::set_drive) gives it some.
+    /// Drives of its bodies, to be changed: they count while it has any. [`set_drive`](Self::set_drive) gives it some.
     pub fn drives_mut(&mut self) -> &mut Drives {
         &mut self.drives
     }

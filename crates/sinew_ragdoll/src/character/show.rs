@@ -1,10 +1,10 @@
-//! What a renderer needs: the pose between two steps, and matrices of the skin.
+//! Data for a renderer: the pose between two steps, and matrices of the skin.
 
 use super::Character;
 use sinew_anim::LocalTransform;
 use sinew_math::{Affine, Transform};
 
-/// What was shown at the end of the step before.
+/// Pose and place that were shown at the end of the step before.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shown {
     pub pose: Vec<LocalTransform>,
@@ -45,7 +45,7 @@ impl Character {
     /// Matrices of a skin for a renderer, between the last step (`alpha` 0) and this one (1): `palette` is cleared and gets one
     /// for each joint of the skin, from the mesh's bind pose to the world in metres. Each is the upper three rows of a 4×4
     /// matrix that a column vector stands to the right of, **row after row**: `[m00, m01, m02, m03, m10, …, m23]`, the
-    /// translation in `m03`, `m13`, `m23`.
+    /// translation in `m03`, `m13`, `m23`. Allocates a pose.
     ///
     /// # Panics
     /// If the rig has no such skin.

@@ -21,7 +21,7 @@ struct Lap {
 }
 
 impl Lap {
-    /// Of a pelvis, in character space.
+    /// Lap of the pelvis, in character space.
     fn of(def: &CharacterDef, take: &Take) -> Self {
         let [start, end] = [0, take.frames() - 1].map(|frame| stand(def, take, frame));
         let lap = end * start.inverse();
@@ -47,7 +47,7 @@ impl Lap {
     }
 }
 
-/// Where a pelvis is over the ground, and which way it looks.
+/// Place of the pelvis over the ground, and its heading.
 fn stand(def: &CharacterDef, take: &Take, frame: usize) -> Transform {
     let (mut model, mut bodies) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, take.pose(frame), &Affine::IDENTITY, &mut model);

@@ -11,7 +11,7 @@ const SETTLES: f32 = 14.0;
 const MOST_OVER: f32 = 0.4;
 /// Ground that rises by more than this over the way is a step.
 const STEEPEST: f32 = 1.2;
-/// How fast the pace of the looped clip follows the speed, 1/s.
+/// Rate at which the pace of the looped clip follows the speed, 1/s.
 const PACE: f32 = 10.0;
 /// Speed below which it begins to stand, m/s.
 const STANDS: f32 = 0.35;
@@ -96,7 +96,7 @@ impl Character {
         }
     }
 
-    /// Where it comes to within a step, with the mover that stands for it; notes what the mover feels.
+    /// Place that it comes to within a step, with the mover that stands for it; notes what the mover feels.
     pub(super) fn ride(&mut self, world: &World, step: Transform) -> Option<Transform> {
         let from = self.world_from_character;
         let presence = self.presence.as_mut()?;
@@ -195,7 +195,7 @@ impl Character {
         self.animator.tracks().find(plays).map(sinew_anim::Track::id)
     }
 
-    /// Where it comes to in `seconds` more, seen from where it stands now: by its mover, or by its clips.
+    /// Place that it comes to in `seconds` more, seen from where it stands now: by its mover, or by its clips.
     pub(super) fn gone_on(&self, place: Transform, ahead: &sinew_anim::Animator, seconds: f32) -> Transform {
         let step = self.step_of(ahead);
         match self.presence.as_ref().filter(|presence| presence.mover.is_some()) {

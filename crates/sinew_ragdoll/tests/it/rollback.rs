@@ -42,7 +42,7 @@ impl Game {
             let character = Character::spawn(&mut self.world, &self.def, place);
             self.cast.push((name, character));
         }
-        let (body, hard) = ((frame as usize * 7) % 17, frame % 3 == 0);
+        let (body, hard) = ((frame as usize * 7) % 17, (frame / 45) % 3 == 0);
         let impulse =
             Rotation::from_axis_angle(Vec3::Y, frame as f32) * Vec3::Z * if hard { 80.0 } else { 8.0 };
         match frame % 45 {
