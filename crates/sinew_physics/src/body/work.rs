@@ -7,12 +7,14 @@ pub struct Work {
     pub drives: f32,
     /// Of kinematic bodies, through contacts and joints.
     pub kinematic: f32,
+    /// Energy that movers give to what they push and stand on.
+    pub movers: f32,
 }
 
 impl Work {
-    /// Both together, J.
+    /// All together, J.
     pub fn total(self) -> f32 {
-        self.drives + self.kinematic
+        self.drives + self.kinematic + self.movers
     }
 }
 
@@ -20,6 +22,10 @@ impl core::ops::Add for Work {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        Self { drives: self.drives + other.drives, kinematic: self.kinematic + other.kinematic }
+        Self {
+            drives: self.drives + other.drives,
+            kinematic: self.kinematic + other.kinematic,
+            movers: self.movers + other.movers,
+        }
     }
 }

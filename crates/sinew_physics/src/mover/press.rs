@@ -127,7 +127,9 @@ pub(super) fn apply(world: &mut World, presses: &mut Vec<Press>) {
             continue;
         }
         let id = world.bodies.id(index);
+        let before = world.body_energy(id).kinetic;
         world.apply_impulse(id, impulse, point);
+        world.work.movers += world.body_energy(id).kinetic - before;
     }
     presses.clear();
 }

@@ -222,9 +222,10 @@ impl World {
         let (dt, substeps) = (self.def.dt(), self.def.substeps);
         let h = dt / substeps as f32;
         let context = StepContext { dt, h, substeps, time: self.time(), runner, profiler };
+        self.work = Work::default();
         step(self, &context);
         self.tell_counts(profiler);
-        self.work = self.islands.work();
+        self.work = self.work + self.islands.work();
         self.steps += 1;
     }
 
