@@ -75,7 +75,13 @@ impl Character {
     }
 
     /// Lets the limb that was struck give way.
-    fn flinch(&mut self, world: &mut World, body: usize, impulse: Vec3, point: Option<Vec3>) -> f32 {
+    pub(super) fn flinch(
+        &mut self,
+        world: &mut World,
+        body: usize,
+        impulse: Vec3,
+        point: Option<Vec3>,
+    ) -> f32 {
         if self.state == State::Animated {
             self.take_bodies(world, DriveMode::Keyed);
             self.state = State::Flinching;

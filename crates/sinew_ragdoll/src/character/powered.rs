@@ -63,7 +63,7 @@ impl Character {
             (Preset::Animated, _) => {}
             (Preset::Flinching, State::Animated | State::Flinching) => {
                 for body in self.pelvis_children() {
-                    self.strike(world, body, Vec3::ZERO, None);
+                    self.flinch(world, body, Vec3::ZERO, None);
                 }
             }
             (Preset::Flinching, _) => {}

@@ -198,3 +198,22 @@ fn a_renderer_gets_its_matrices() {
     let z = palettes.each_ref().map(|palette| palette[0][11]);
     assert!((z[1] - 0.5 * (z[0] + z[2])).abs() < 1e-3 && z[2] > z[0] + 0.01, "{z:?}");
 }
+
+#[test]
+fn the_preset_of_a_flinch_gives_way_all_over_and_comes_back() {
+    let mut def = walker();
+    def.in_world.toughness = Toughness::None;
+    let def = shared(def);
+    let (mut world, mut character) = walking(&def);
+    let (mut twin_world, mut twin) = walking(&def);
+    character.set_preset(&mut world, Preset::Flinching);
+    assert_eq!(character.state(), State::Flinching);
+    let mut most = 0.0;
+    for _ in 0..60 {
+        run(&mut world, &mut character, 1);
+        run(&mut twin_world, &mut twin, 1);
+        most = max(most, apart(&character, &twin));
+    }
+    assert_eq!(character.state(), State::Animated);
+    assert!(most > 0.01 && apart(&character, &twin) < 2e-3, "{most} m, then {}", apart(&character, &twin));
+}

@@ -1,7 +1,7 @@
 //! What movers and dynamic bodies do to each other.
 
 use super::{depth, level, settle};
-use sinew_math::Vec3;
+use sinew_math::{Reader, Vec3, Writer};
 use sinew_physics::*;
 
 fn crate_of(world: &mut World, mass: f32, at: Vec3, friction: f32) -> BodyId {
@@ -109,4 +109,51 @@ fn what_lies_on_its_head_lies_and_falls_when_it_walks_away() {
         world.step();
     }
     assert!(world.transform(lid).translation.y < 0.5, "{}", world.transform(lid).translation);
+}
+
+#[test]
+fn what_flies_passes_a_mover_that_lets_it() {
+    let after = |lets_pass: f32, mass: f32| {
+        let mut world = level();
+        let id = world.add_mover(&MoverDef { lets_pass, ..MoverDef::default() });
+        settle(&mut world, id);
+        let shape = Shape::Sphere { radius: 0.1 };
+        let mut ball = BodyDef::dynamic(shape.clone()).at(Vec3::new(-2.0, 1.0, 0.0));
+        ball.mass = Some(shape.mass_properties(mass / shape.mass_properties(1.0).mass));
+        ball.linear_velocity = Vec3::X * 20.0;
+        let ball = world.add_body(&ball);
+        for _ in 0..8 {
+            world.step();
+        }
+        let mut w = Writer::new();
+        world.save(&mut w);
+        let mut other = World::new(WorldDef::default());
+        other.load(&mut Reader::new(w.as_bytes())).expect("a snapshot");
+        for _ in 0..10 {
+            world.step();
+            other.step();
+            assert_eq!(world.hash(), other.hash());
+        }
+        (world.velocity(ball).linear.x, world.mover(id).position().length())
+    };
+    let (speed, moved) = after(60.0, 0.5);
+    assert!(speed == 20.0 && moved < 0.01, "it has gone through at {speed} m/s, the mover stands at {moved}");
+    assert!(after(0.0, 0.5).0 < 1.0 && after(60.0, 5.0).0 < 19.0, "else, and if it is heavy, it is stopped");
+}
+
+#[test]
+fn the_work_of_a_push_is_told() {
+    let mut world = level();
+    let id = world.add_mover(&MoverDef::at(Vec3::X * -1.2));
+    let load = crate_of(&mut world, 30.0, Vec3::Y * 0.4, 0.6);
+    settle(&mut world, id);
+    world.set_mover_walk(id, Vec3::X * 1.5);
+    let mut work = 0.0;
+    for _ in 0..180 {
+        world.step();
+        work += world.work().movers;
+    }
+    let (way, speed) = (world.transform(load).translation.x, world.velocity(load).linear.length());
+    let expected = 30.0 * (0.6 * 9.81 * way + 0.5 * speed * speed);
+    assert!(way > 1.0 && (work / expected - 1.0).abs() < 0.05, "{work} J for {expected} over {way} m");
 }
