@@ -203,6 +203,19 @@ impl Graph {
         found
     }
 
+    /// Mean place of each node and all below it.
+    pub fn middles(&self) -> Vec<Vec3> {
+        let mut sums: Vec<(Vec3, f32)> = self.nodes.iter().map(|node| (node.position, 1.0)).collect();
+        for &i in self.order.iter().rev() {
+            if let Some(parent) = self.nodes[i].parent {
+                let (sum, count) = sums[i];
+                sums[parent].0 += sum;
+                sums[parent].1 += count;
+            }
+        }
+        sums.into_iter().map(|(sum, count)| sum / count).collect()
+    }
+
     /// A node, its parent and so on up to the root.
     pub fn up_from(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
         core::iter::successors(Some(node), |&i| self.nodes[i].parent)
