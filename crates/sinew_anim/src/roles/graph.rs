@@ -196,6 +196,11 @@ impl Graph {
         if let Some((_, node)) = end {
             return node;
         }
+        // A leg of two joints begins at the trunk.
+        let at_trunk = || nearest(&mut self.skin_of(trunk, bound)).and_then(at_skin);
+        if let Some(part) = self.grows_into(stray, trunk.iter().copied(), bound).or_else(at_trunk) {
+            return part;
+        }
         let from_root = (self.nodes[self.root].position - start).length();
         let leaf = nearest(&mut leaves.iter().map(|&i| (i, self.nodes[i].position)));
         if let Some((distance, leaf)) = leaf

@@ -2,7 +2,7 @@
 
 use crate::build::{OTHERS, PEOPLE, built, check_sound};
 use crate::data::rig;
-use crate::disguise::{misnamed, nameless, shuffled, transformed, z_up};
+use crate::disguise::{misnamed, nameless, shuffled, transformed, under_a_mirror, z_up};
 use sinew_anim::Rig;
 use sinew_math::Rotation;
 use sinew_ragdoll::{BuildOptions, DropReport, RagdollBodyDef, RagdollDef, Verdict, drop_test, gate};
@@ -82,6 +82,14 @@ fn units_and_axes_do_not_matter() {
             let what = format!("{name}, {scale} times, {turn:?}");
             plain_and(&rig, &what, &transformed(&rig, scale, turn), &same);
         }
+    }
+}
+
+#[test]
+fn a_node_of_negative_scale_above_the_skeleton_does_not_matter() {
+    for (name, rig) in rigs() {
+        let place: Vec<usize> = (1..=rig.joints.len()).collect();
+        plain_and(&rig, name, &under_a_mirror(&rig), &place);
     }
 }
 
