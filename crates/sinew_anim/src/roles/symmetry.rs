@@ -45,11 +45,14 @@ impl Symmetry {
     fn pair_up(&mut self, graph: &Graph, tolerance: f32) {
         let middles = graph.middles();
         let mirrored = |p: Vec3| p - self.lateral * (2.0 * (p.dot(self.lateral) - self.centre));
-        // Down a limb that is posed a little otherwise than its twin differences add up: each bone by itself counts, too.
-        let off = |[i, on_i]: [usize; 2], [k, on_k]: [usize; 2]| {
-            let [i, on_i, k, on_k] = [i, on_i, k, on_k].map(|node| graph.nodes[node].position);
-            let image = mirrored(i);
-            min((k - image).length(), (k - on_k - image + mirrored(on_i)).length())
+        // Down a limb that is posed a little otherwise than its twin differences add up: each bone by itself counts, too. Not so on
+        // the midline, where a bone up and one down would be twins in a plane that is none.
+        let off = |nodes: [usize; 2], parents: [usize; 2]| {
+            let [i, k, on_i, on_k] =
+                [nodes[0], nodes[1], parents[0], parents[1]].map(|node| graph.nodes[node].position);
+            let away = (k - mirrored(i)).length();
+            let of_bone = (k - on_k - mirrored(i) + mirrored(on_i)).length();
+            if parents[0] == parents[1] { away } else { min(away, of_bone) }
         };
         let mut partner: Vec<Option<usize>> = vec![None; graph.nodes.len()];
         partner[graph.root] = Some(graph.root);
@@ -58,7 +61,7 @@ impl Symmetry {
             let mut fitting: Vec<(f32, usize, usize)> = Vec::new();
             for &i in &graph.nodes[parent].children {
                 for &k in &graph.nodes[other].children {
-                    let distance = off([i, parent], [k, other]);
+                    let distance = off([i, k], [parent, other]);
                     if distance <= tolerance {
                         fitting.push((distance + (middles[k] - mirrored(middles[i])).length(), i, k));
                     }

@@ -538,3 +538,12 @@ fn wild_beasts_have_their_limbs_and_their_trunk() {
         }
     }
 }
+
+/// Monsters of a head and a body on one line: nothing of them is a limb, whatever lies above and below the root.
+#[test]
+fn what_stands_on_the_midline_has_no_twin_below() {
+    for file in ["rigs_wild/platformer_game_Enemy.glb", "rigs_wild/platformer_game_Crab.glb"] {
+        let Some((limbs, trunk)) = limbs_of(file) else { return };
+        assert!(limbs.is_empty() && trunk.len() == 4, "{file}: {limbs:?} {trunk:?}");
+    }
+}
