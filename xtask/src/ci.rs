@@ -98,12 +98,12 @@ fn random_worlds() -> Result<()> {
 }
 
 /// Every random case of tests that otherwise run a hundredth: boxes, every pair of shapes, trees and questions against brute
-/// force, hostile files.
+/// force, hostile files, rigs in many variants.
 fn all_cases() -> Result<()> {
     let mut test = command::cargo(&["test", "--release", "--package", "sinew_geometry"]);
-    test.args(["--package", "sinew_physics", "--package", "sinew_formats"]);
+    test.args(["--package", "sinew_physics", "--package", "sinew_formats", "--package", "sinew_ragdoll"]);
     test.args(["--lib", "--test", "it", "--", "boxes", "collide", "convex", "hull", "meshes", "queries"]);
-    command::run(test.args(["tree", "pairs", "hostile", "mjcf"]).env("SINEW_FULL", "1"))
+    command::run(test.args(["tree", "pairs", "hostile", "mjcf", "many_variants"]).env("SINEW_FULL", "1"))
 }
 
 pub fn clippy() -> Result<()> {

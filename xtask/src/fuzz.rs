@@ -20,7 +20,7 @@ pub struct Fuzz {
     seconds: u32,
 }
 
-/// A target, where its first inputs lie, and how many bytes an input has at most.
+/// A target, where its first inputs lie beside those of fuzz/seeds, and how many bytes an input has at most.
 struct Target {
     name: &'static str,
     seeds: &'static str,
@@ -32,13 +32,14 @@ const TARGETS: &[Target] = &[
     Target { name: "bvh", seeds: "../shared/data/mocap", longest: 16_384 },
     Target { name: "clip", seeds: "", longest: 4_096 },
     Target { name: "deepmimic", seeds: "../shared/data/mocap", longest: 16_384 },
-    Target { name: "draco", seeds: "fuzz/seeds/draco", longest: 4_096 },
+    Target { name: "draco", seeds: "", longest: 4_096 },
     Target { name: "events", seeds: "", longest: 4_096 },
-    Target { name: "fbx", seeds: "fuzz/seeds/fbx", longest: 16_384 },
+    Target { name: "fbx", seeds: "", longest: 16_384 },
     Target { name: "gltf", seeds: "../shared/data/rigs", longest: 65_536 },
     Target { name: "jolt", seeds: "../shared/data/peers/jolt", longest: 32_768 },
-    Target { name: "ragdoll", seeds: "fuzz/seeds/ragdoll", longest: 16_384 },
-    Target { name: "settings", seeds: "fuzz/seeds/settings", longest: 4_096 },
+    Target { name: "ragdoll", seeds: "", longest: 16_384 },
+    Target { name: "roles", seeds: "", longest: 2_048 },
+    Target { name: "settings", seeds: "", longest: 4_096 },
 ];
 
 impl Fuzz {
@@ -74,8 +75,11 @@ impl Fuzz {
         // The fuzzer itself asks for flags that are unstable.
         let mut fuzz = command::cargo(&["fuzz", "run", "--fuzz-dir", FOLDER, "--target-dir"]);
         fuzz.arg(command::target().join("fuzz")).args([target.name, &corpus]);
-        if !target.seeds.is_empty() && command::root().join(target.seeds).is_dir() {
-            fuzz.arg(target.seeds);
+        let own = format!("{FOLDER}/seeds/{}", target.name);
+        for seeds in [own.as_str(), target.seeds] {
+            if !seeds.is_empty() && command::root().join(seeds).is_dir() {
+                fuzz.arg(seeds);
+            }
         }
         fuzz.args(["--", &format!("-max_total_time={}", self.seconds)]);
         fuzz.args([

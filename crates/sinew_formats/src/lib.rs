@@ -33,7 +33,7 @@ pub use deepmimic::{DeepMimicCharacter, DeepMimicClip, read_deepmimic, read_deep
 pub use error::{Error, ErrorKind, Result};
 pub use events::{events_extras, read_events, write_events};
 #[cfg(feature = "fbx")]
-pub use fbx::read_fbx;
+pub use fbx::{read_fbx, read_fbx_with};
 #[cfg(feature = "fs")]
 pub use fs::{
     events_path, load_gltf, load_mesh, load_motion, load_world, read_bytes, settings_path, write_all_atomic,

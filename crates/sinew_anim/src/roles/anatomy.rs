@@ -40,6 +40,9 @@ const LEAST_CONTROL_SHARE: f32 = 5e-4;
 /// a human's do.
 const LEAD_AGAINST_NAMES: f32 = 0.04;
 
+/// Least distance of both elbows together behind the arms, in heights of the body, to tell more than feet that hardly do.
+const ELBOWS: f32 = 0.03;
+
 /// Graph, symmetry and names of a rig, as far as the names can be trusted.
 pub(super) struct Scene<'a> {
     rig: &'a Rig,
@@ -161,10 +164,13 @@ impl<'a> Scene<'a> {
     }
 
     fn recognise(&self, up: Vec3) -> Option<Humanoid> {
+        self.with_evidence(up, |evidence| evidence.recognise())
+    }
+
+    fn with_evidence<T>(&self, up: Vec3, see: impl FnOnce(&Evidence<'_>) -> T) -> T {
         let stance = Stance::new(self.bound, up);
         let readings = self.node_readings();
-        Evidence { graph: &self.graph, symmetry: &self.symmetry, stance: &stance, readings: &readings }
-            .recognise()
+        see(&Evidence { graph: &self.graph, symmetry: &self.symmetry, stance: &stance, readings: &readings })
     }
 
     /// Whether what looks like arms and what looks like legs are both named as limbs of a body on four legs.
@@ -176,12 +182,18 @@ impl<'a> Scene<'a> {
         is_named(&found.arms) && is_named(&found.legs)
     }
 
-    /// Left by the feet, else by names, else so that the body faces the file's +Z.
-    fn left(&self, up: Vec3, ankles: &[Vec3], notes: &mut Vec<String>) -> Vec3 {
+    /// Left by the feet, else by names, else by the elbows, else so that the body faces the file's +Z.
+    fn left(&self, up: Vec3, ankles: &[Vec3], arms: Option<&Limb>, notes: &mut Vec<String>) -> Vec3 {
         let lateral = self.symmetry.lateral;
         let forward = lateral.cross(up);
         let lead = feet_lead(self.bound, &Stance::new(self.bound, up), forward, ankles);
         let named = left_by_name(&self.graph, &self.symmetry, &self.node_readings());
+        let elbows =
+            arms.map_or(0.0, |arms| self.with_evidence(up, |seen| seen.elbows_behind(arms, forward)));
+        if named == 0.0 && lead.abs() < LEAD_AGAINST_NAMES && elbows.abs() > ELBOWS {
+            notes.push("the feet hardly tell which way the body faces: the elbows do".into());
+            return lateral * elbows.signum();
+        }
         // Half a per cent of the height and more is a foot, less is noise; against names it takes a foot that nobody doubts.
         if lead.abs() > if named * lead < 0.0 { LEAD_AGAINST_NAMES } else { 0.005 } {
             if named * lead < 0.0 {
@@ -202,7 +214,7 @@ impl<'a> Scene<'a> {
     fn shape_draft(&self, up: Vec3, found: &Humanoid, notes: &mut Vec<String>) -> Draft {
         let legs = &found.legs;
         let ankles = legs.chain.each_ref().map(|chain| self.ankle(chain, legs.split));
-        let left = self.left(up, &ankles, notes);
+        let left = self.left(up, &ankles, Some(&found.arms), notes);
         let first = if left.dot(self.symmetry.lateral) > 0.0 { Side::Left } else { Side::Right };
         let mut roles = vec![None; self.rig.joints.len()];
         let mut set_joint = |joint: JointIdx, role: Role| {
@@ -387,7 +399,7 @@ impl<'a> Scene<'a> {
         let feet: Vec<Vec3> =
             (0..self.graph.nodes.len()).filter(foot).map(|i| self.graph.nodes[i].position).collect();
         // A body without pairs may have its plane of symmetry across its own up.
-        let left = if lateral.dot(up).abs() < 0.5 { self.left(up, &feet, notes) } else { Vec3::X };
+        let left = if lateral.dot(up).abs() < 0.5 { self.left(up, &feet, None, notes) } else { Vec3::X };
         let mut roles = vec![None; self.rig.joints.len()];
         let parts: Vec<Option<Part>> =
             self.graph.nodes.iter().map(|node| self.readings[node.joint].part).collect();

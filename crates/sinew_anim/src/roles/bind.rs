@@ -1,5 +1,6 @@
 //! The bind pose: where joints and skin were when the skin was made.
 
+use super::graph::ancestors;
 use super::names::read_names;
 use crate::pose::{local_to_model, rest_pose};
 use crate::rig::{JointIdx, LocalTransform, Mesh, Rig};
@@ -206,16 +207,28 @@ fn bind_pose(rig: &Rig) -> Vec<Affine> {
 /// Where the skinned mesh stands in model space when it is in its bind pose.
 ///
 /// In a rest pose equal to the bind pose, every joint says the same (joint × inverse bind). Where the rest pose is
-/// some other pose the joints disagree; then the mesh's own node counts if any joint confirms it, else the first joint.
+/// some other pose the joints disagree; then the mesh's own node counts if any joint confirms it, else the joint that carries
+/// most of those that move skin: the root of the skeleton, which hardly any pose moves. Joints that move no skin have no
+/// vote: a control may be bound anywhere.
 fn model_from_mesh(rig: &Rig, mesh: &Mesh, rest: &[Affine]) -> Affine {
     let skin = &rig.skins[mesh.skin.expect("only skinned meshes are asked for")];
-    let said: Vec<Affine> = skin
-        .joints
-        .iter()
-        .zip(&skin.inverse_bind)
-        .map(|(&joint, inverse)| rest[joint] * *inverse)
-        .filter(Affine::is_finite)
-        .collect();
+    let mut moves = vec![false; skin.joints.len()];
+    for primitive in &mesh.primitives {
+        for (slots, weights) in primitive.joints.iter().zip(&primitive.weights) {
+            slots.iter().zip(weights).filter(|(_, weight)| **weight > 0.0).for_each(|(&slot, _)| {
+                moves[usize::from(slot)] = true;
+            });
+        }
+    }
+    let mut carried = vec![0_u32; rig.joints.len()];
+    for (&joint, _) in skin.joints.iter().zip(&moves).filter(|(_, moves)| **moves) {
+        carried[joint] += 1;
+        ancestors(rig, joint).for_each(|ancestor| carried[ancestor] += 1);
+    }
+    let place = |slot: usize| rest[skin.joints[slot]] * skin.inverse_bind[slot];
+    let slots = 0..usize::min(skin.joints.len(), skin.inverse_bind.len());
+    let said: Vec<Affine> =
+        slots.clone().filter(|&slot| moves[slot]).map(place).filter(Affine::is_finite).collect();
     let votes = |candidate: &Affine| said.iter().filter(|other| alike(candidate, other)).count();
     let best = said
         .iter()
@@ -223,14 +236,20 @@ fn model_from_mesh(rig: &Rig, mesh: &Mesh, rest: &[Affine]) -> Affine {
         .reduce(|a, b| if b.0 > a.0 { b } else { a });
     let Some((count, majority)) = best else { return rest[mesh.joint] };
     if 2 * count > said.len() {
-        *majority
-    } else if votes(&rest[mesh.joint]) > 0 {
-        rest[mesh.joint]
-    } else {
-        let first =
-            skin.joints.iter().enumerate().min_by_key(|&(_, &joint)| joint).map_or(0, |(slot, _)| slot);
-        said.get(first).copied().unwrap_or(*majority)
+        return *majority;
     }
+    if votes(&rest[mesh.joint]) > 0 {
+        return rest[mesh.joint];
+    }
+    // Of a line of joints that carry as much the first.
+    let carries = |slot: usize| {
+        let joint = skin.joints[slot];
+        (carried[joint], core::cmp::Reverse(ancestors(rig, joint).count()))
+    };
+    let root = slots
+        .filter(|&slot| place(slot).is_finite())
+        .reduce(|a, b| if carries(b) > carries(a) { b } else { a });
+    root.map_or(*majority, place)
 }
 
 /// Equal up to a thousandth of their scale.

@@ -26,6 +26,10 @@ const AT_SKIN: f32 = 0.06;
 /// A foot that hangs on the root belongs to the leg whose end is nearer than this share of the skin's size.
 const AT_END: f32 = 0.01;
 
+/// Twins begin as far from the root, within this share of the skin's size, and move this share of each other's skin at least.
+const TWIN_PLACE: f32 = 0.025;
+const TWIN_AREA: f32 = 0.6;
+
 /// A tree of [`Node`]s with one root.
 pub(super) struct Graph {
     pub nodes: Vec<Node>,
@@ -78,7 +82,7 @@ impl Graph {
         self.root = roots.remove(main);
         roots.sort_by_key(|&root| core::cmp::Reverse(self.subtree(root).len()));
         let ends = ends(rig, bound, node_of);
-        let trunk = self.subtree(self.root);
+        let trunk = self.grow_trunk(&mut roots, bound);
         for stray in roots {
             let parent = self.place_for(stray, &trunk, &ends, bound);
             self.nodes[stray].parent = Some(parent);
@@ -96,6 +100,41 @@ impl Graph {
             }
         }
         Some(())
+    }
+
+    /// Takes from `strays` the parts of the trunk, which have no twin on the other side and whose skin runs into it, and gives the
+    /// nodes of the trunk with them. Where the root of a body moves no skin, hips and back are trees of their own.
+    fn grow_trunk(&mut self, strays: &mut Vec<usize>, bound: &Bound) -> Vec<usize> {
+        let all = strays.clone();
+        loop {
+            let trunk = self.subtree(self.root);
+            let grown = strays.iter().enumerate().find_map(|(place, &stray)| {
+                let is_single =
+                    all.iter().all(|&other| other == stray || !self.are_twins(stray, other, bound));
+                let parent = self.grows_into(stray, trunk.iter().copied(), bound).filter(|_| is_single);
+                Some((place, parent?))
+            });
+            let Some((place, parent)) = grown else { return trunk };
+            let stray = strays.remove(place);
+            self.nodes[stray].parent = Some(parent);
+            self.nodes[parent].children.push(stray);
+            self.adopted.push(stray);
+        }
+    }
+
+    /// True for trees of as many joints and about as much skin that begin as far from the root but not in one place: a left and
+    /// a right.
+    fn are_twins(&self, a: usize, b: usize, bound: &Bound) -> bool {
+        let [of_a, of_b] = [a, b].map(|tree| self.subtree(tree));
+        let area = |tree: &[usize]| tree.iter().map(|&node| self.nodes[node].area).sum::<f32>();
+        let (more, less) =
+            (sinew_math::max(area(&of_a), area(&of_b)), sinew_math::min(area(&of_a), area(&of_b)));
+        let away = |tree: usize| self.distance(self.root, tree);
+        let near = TWIN_PLACE * bound.size();
+        of_a.len() == of_b.len()
+            && less > TWIN_AREA * more
+            && (away(a) - away(b)).abs() < near
+            && self.distance(a, b) > near
     }
 
     /// Feet that hang on the root, as those led by inverse kinematics do, and sit right at the end of a leg, or whose skin runs
@@ -127,8 +166,7 @@ impl Graph {
 
     /// Place where a stray tree belongs. Rigs baked from inverse kinematics leave the feet beside the body: such a short stray belongs
     /// to the leaf that its skin runs into, or at whose end it starts, or that is much nearer than the root, or whose skin it
-    /// starts at. All others belong to what of the `trunk`, the tree that nothing was added to, their skin runs into. What finds
-    /// nothing hangs on the root.
+    /// starts at. All others belong to what of the `trunk` their skin runs into, or begins at. What finds nothing hangs on the root.
     fn place_for(&self, stray: usize, trunk: &[usize], ends: &[(usize, Vec3)], bound: &Bound) -> usize {
         let (size, start) = (bound.size(), self.nodes[stray].position);
         let body = self.subtree(self.root);
@@ -138,10 +176,11 @@ impl Graph {
                 .map(|(node, place)| ((place - start).length(), node))
                 .reduce(|a, b| if b.0 < a.0 { b } else { a })
         };
+        let at_skin = |(distance, node): (f32, usize)| (distance < AT_SKIN * size).then_some(node);
         let end = nearest(&mut ends.iter().copied()).filter(|&(distance, _)| distance < 0.03 * size);
         if self.subtree(stray).len() > LONGEST_FOOT {
-            let grown = self.grows_into(stray, trunk.iter().copied(), bound);
-            return grown.or(end.map(|(_, node)| node)).unwrap_or(self.root);
+            let grown = self.grows_into(stray, trunk.iter().copied(), bound).or(end.map(|(_, node)| node));
+            return grown.or(nearest(&mut self.skin_of(trunk, bound)).and_then(at_skin)).unwrap_or(self.root);
         }
         // No foot stands on another foot: what was adopted itself adopts nothing.
         let is_leaf = |i: &usize| {
@@ -157,6 +196,11 @@ impl Graph {
         if let Some((_, node)) = end {
             return node;
         }
+        // A leg of two joints begins at the trunk.
+        let at_trunk = || nearest(&mut self.skin_of(trunk, bound)).and_then(at_skin);
+        if let Some(part) = self.grows_into(stray, trunk.iter().copied(), bound).or_else(at_trunk) {
+            return part;
+        }
         let from_root = (self.nodes[self.root].position - start).length();
         let leaf = nearest(&mut leaves.iter().map(|&i| (i, self.nodes[i].position)));
         if let Some((distance, leaf)) = leaf
@@ -164,13 +208,20 @@ impl Graph {
         {
             return leaf;
         }
-        let skin = |&leaf: &usize| {
-            let joint = self.nodes[leaf].joint;
+        nearest(&mut self.skin_of(&leaves, bound)).and_then(at_skin).unwrap_or(self.root)
+    }
+
+    /// The vertices that some nodes move most, each with its node.
+    fn skin_of<'a>(
+        &'a self,
+        nodes: &'a [usize],
+        bound: &'a Bound,
+    ) -> impl Iterator<Item = (usize, Vec3)> + 'a {
+        nodes.iter().flat_map(|&node| {
+            let joint = self.nodes[node].joint;
             let own = bound.vertices.iter().zip(&bound.movers).filter(move |(_, mover)| **mover == joint);
-            own.map(move |(&vertex, _)| (leaf, vertex))
-        };
-        let near = nearest(&mut leaves.iter().flat_map(skin));
-        near.filter(|&(distance, _)| distance < AT_SKIN * size).map_or(self.root, |(_, leaf)| leaf)
+            own.map(move |(&vertex, _)| (node, vertex))
+        })
     }
 
     /// The one of some nodes with the most skin in common with a tree that is not among them, of two the nearer; `None` if they
@@ -201,6 +252,19 @@ impl Graph {
             next += 1;
         }
         found
+    }
+
+    /// Mean place of each node and all below it.
+    pub fn middles(&self) -> Vec<Vec3> {
+        let mut sums: Vec<(Vec3, f32)> = self.nodes.iter().map(|node| (node.position, 1.0)).collect();
+        for &i in self.order.iter().rev() {
+            if let Some(parent) = self.nodes[i].parent {
+                let (sum, count) = sums[i];
+                sums[parent].0 += sum;
+                sums[parent].1 += count;
+            }
+        }
+        sums.into_iter().map(|(sum, count)| sum / count).collect()
     }
 
     /// A node, its parent and so on up to the root.

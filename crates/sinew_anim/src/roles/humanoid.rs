@@ -59,6 +59,12 @@ pub(super) struct Humanoid {
 
 /// The nearer of two joints on a forearm is at least at this share of the other's distance, or it is no finger.
 const FORKED: f32 = 0.8;
+/// Fingers whose beginnings lie within this share of their distance from the joint that carries them begin in one place: the wrist.
+const AT_WRIST: f32 = 0.15;
+/// A palm is at most this share of the forearm's length, also of a figure with large hands.
+const LONGEST_PALM: f32 = 0.7;
+/// Two joints are as high where their heights differ by no more than this share of the body's.
+const AS_HIGH: f32 = 0.02;
 /// The hips of a figure with a large head are at least this high, share of its height.
 const LOWEST_HIP: f32 = 0.1;
 
@@ -117,10 +123,26 @@ impl Evidence<'_> {
             let as_far =
                 |&&child: &&usize| self.symmetry.other(child).is_some() && away(child) > FORKED * away(hand);
             let children = &self.graph.nodes[forearm].children;
-            self.part(hand) == Some(Part::Hand) || children.iter().filter(as_far).count() < 2
+            let fingers: Vec<usize> = children.iter().filter(as_far).copied().collect();
+            let named = fingers.iter().filter(|&&finger| self.part(finger) == Some(Part::Hand)).count();
+            self.part(hand) == Some(Part::Hand) && named < 2 || fingers.len() < 2
         };
         let hand = hand.filter(is_hand);
         Limb { split: (upper, lower, hand), ..arms }
+    }
+
+    /// Distance of both elbows together behind the line from shoulder to hand, against `forward`, in heights of the body: no
+    /// elbow bends the other way.
+    pub fn elbows_behind(&self, arms: &Limb, forward: Vec3) -> f32 {
+        let (upper, lower, hand) = arms.split;
+        let behind = |chain: &Vec<usize>| {
+            let end = hand.unwrap_or(chain.len() - 1);
+            let [shoulder, elbow, wrist] = [upper, lower, end].map(|at| self.graph.nodes[chain[at]].position);
+            let (arm, bend) = (wrist - shoulder, elbow - shoulder);
+            let off = bend - arm * (bend.dot(arm) / max(arm.dot(arm), 1e-12));
+            -off.dot(forward) / self.stance.height
+        };
+        arms.chain.iter().map(behind).sum()
     }
 
     /// The trunk goes up and the legs go down.
@@ -151,16 +173,31 @@ impl Evidence<'_> {
             let mut ways: Vec<usize> =
                 node.children.iter().copied().filter(|&child| self.symmetry.other(child).is_some()).collect();
             let long = ways.iter().filter(|&&way| !self.graph.nodes[way].children.is_empty()).count();
-            if ways.is_empty() || chain.len() > 2 && (long >= 2 || ways.len() >= 3) {
+            let is_fork = chain.len() > 2 && (long >= 2 || ways.len() >= 3);
+            if ways.is_empty() || is_fork && !self.ends_at_wrist(&chain, &ways) {
                 break;
             }
             let reach =
                 |way: usize| self.graph.distance(chain[chain.len() - 1], way) + self.graph.nodes[way].reach;
             ways.sort_by(|&a, &b| reach(b).total_cmp(&reach(a)));
             chain.push(ways[0]);
+            if is_fork {
+                break;
+            }
         }
         let mirrored = chain.iter().filter_map(|&i| self.symmetry.other(i)).collect();
         [chain, mirrored]
+    }
+
+    /// True if the end of a chain is a forearm out of which fingers grow: all begin in one place away from it, or farther away
+    /// than a palm is long.
+    fn ends_at_wrist(&self, chain: &[usize], fingers: &[usize]) -> bool {
+        let [.., before, forearm] = chain else { return false };
+        let away = |&finger: &usize| self.graph.distance(*forearm, finger);
+        let (nearest, farthest) =
+            (fingers.iter().map(away).fold(f32::INFINITY, min), fingers.iter().map(away).fold(0.0, max));
+        let apart = fingers.iter().map(|&finger| self.graph.distance(fingers[0], finger)).fold(0.0, max);
+        apart < AT_WRIST * farthest || nearest > LONGEST_PALM * self.graph.distance(*before, *forearm)
     }
 
     /// The pair of chains of at least two joints with the most skin among those that reach the floor.
@@ -221,8 +258,18 @@ impl Evidence<'_> {
         }
         let most = near.iter().map(|&i| self.graph.nodes[i].area).fold(0.0, max);
         let fair = near.iter().copied().filter(|&i| self.graph.nodes[i].area >= 0.2 * most);
-        // Of one that goes down to the next the lower one: the other leads the body, as a handle does.
-        fair.reduce(|a, b| if self.level(b) < self.level(a) { b } else { a }).unwrap_or(trunk[0])
+        // Of one that goes down to the next the lower one: the other leads the body, as a handle does. So does, of two that are as
+        // high, the one that moves less than half as much.
+        let leads = |handle: usize, body: usize| {
+            let (above, areas) =
+                (self.level(handle) - self.level(body), [handle, body].map(|i| self.graph.nodes[i].area));
+            if above.abs() > AS_HIGH || max(areas[0], areas[1]) < 2.0 * min(areas[0], areas[1]) {
+                above > 0.0
+            } else {
+                areas[0] < areas[1]
+            }
+        };
+        fair.reduce(|a, b| if leads(a, b) { b } else { a }).unwrap_or(trunk[0])
     }
 
     /// The midline chain above the arms that carries the most skin: its last joint with a fair share is the head.

@@ -1,7 +1,7 @@
 //! Mirror symmetry of the bind pose: which joint is whose mirror image.
 
 use super::graph::Graph;
-use sinew_math::Vec3;
+use sinew_math::{Vec3, min};
 
 /// A mirror plane and what it pairs.
 pub(super) struct Symmetry {
@@ -39,27 +39,42 @@ impl Symmetry {
         symmetry
     }
 
-    /// From the root down: the image of a joint is sought among the children of its parent's image.
+    /// From the root down: the image of a joint is sought among the children of its parent's image, those that fit best first. Of
+    /// several in one place, as fingers that all begin at the wrist, it is the one whose whole subtree lies nearest to the
+    /// image of the joint's own.
     fn pair_up(&mut self, graph: &Graph, tolerance: f32) {
-        for &i in &graph.order {
-            let Some(parent) = graph.nodes[i].parent else {
-                self.partner[i] = Some(i);
-                continue;
-            };
-            let p = graph.nodes[i].position;
-            let image = p - self.lateral * (2.0 * self.side(graph, i));
-            let pool = self.partner[parent].map_or(&[][..], |other| graph.nodes[other].children.as_slice());
-            let nearest = pool
-                .iter()
-                .map(|&k| ((graph.nodes[k].position - image).length(), k))
-                .reduce(|a, b| if b.0 < a.0 { b } else { a });
-            self.partner[i] = nearest.filter(|&(distance, _)| distance <= tolerance).map(|(_, k)| k);
-        }
-        for i in 0..self.partner.len() {
-            if self.partner[i].is_some_and(|k| self.partner[k] != Some(i)) {
-                self.partner[i] = None;
+        let middles = graph.middles();
+        let mirrored = |p: Vec3| p - self.lateral * (2.0 * (p.dot(self.lateral) - self.centre));
+        // Down a limb that is posed a little otherwise than its twin differences add up: each bone by itself counts, too. Not so on
+        // the midline, where a bone up and one down would be twins in a plane that is none.
+        let off = |nodes: [usize; 2], parents: [usize; 2]| {
+            let [i, k, on_i, on_k] =
+                [nodes[0], nodes[1], parents[0], parents[1]].map(|node| graph.nodes[node].position);
+            let away = (k - mirrored(i)).length();
+            let of_bone = (k - on_k - mirrored(i) + mirrored(on_i)).length();
+            if parents[0] == parents[1] { away } else { min(away, of_bone) }
+        };
+        let mut partner: Vec<Option<usize>> = vec![None; graph.nodes.len()];
+        partner[graph.root] = Some(graph.root);
+        for &parent in &graph.order {
+            let Some(other) = partner[parent].filter(|&other| other >= parent) else { continue };
+            let mut fitting: Vec<(f32, usize, usize)> = Vec::new();
+            for &i in &graph.nodes[parent].children {
+                for &k in &graph.nodes[other].children {
+                    let distance = off([i, k], [parent, other]);
+                    if distance <= tolerance {
+                        fitting.push((distance + (middles[k] - mirrored(middles[i])).length(), i, k));
+                    }
+                }
+            }
+            fitting.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for (_, i, k) in fitting {
+                if partner[i].is_none() && partner[k].is_none() {
+                    (partner[i], partner[k]) = (Some(k), Some(i));
+                }
             }
         }
+        self.partner = partner;
     }
 
     /// Signed distance of a node from the plane.

@@ -241,28 +241,28 @@ fn a_spider_gets_its_feet_back() {
             spine_0 < - 0.60 Abdomen
             spine_1 < spine_0 0.60 Thorax
             spine_2 < spine_1 0.60 Head
-            limb_0_0 < spine_0 0.60 BackLeg.L
+            limb_0_0 < spine_1 0.60 BackLeg.L
             limb_0_1 < limb_0_0 0.60 BackLeg2.L
             limb_0_2 < limb_0_1 0.60 BackLeg3.L
-            limb_1_0 < spine_0 0.60 BackLeg.R
+            limb_1_0 < spine_1 0.60 BackLeg.R
             limb_1_1 < limb_1_0 0.60 BackLeg2.R
             limb_1_2 < limb_1_1 0.60 BackLeg3.R
-            limb_2_0 < spine_0 0.60 MidBackLeg.L
+            limb_2_0 < spine_2 0.60 MidBackLeg.L
             limb_2_1 < limb_2_0 0.60 MidBackLeg2.L
             limb_2_2 < limb_2_1 0.60 MidBackLeg3.L
-            limb_3_0 < spine_0 0.60 MidBackLeg.R
+            limb_3_0 < spine_2 0.60 MidBackLeg.R
             limb_3_1 < limb_3_0 0.60 MidBackLeg2.R
             limb_3_2 < limb_3_1 0.60 MidBackLeg3.R
-            limb_4_0 < spine_0 0.60 MidFrontLeg.L
+            limb_4_0 < spine_2 0.60 MidFrontLeg.L
             limb_4_1 < limb_4_0 0.60 MidFrontLeg2.L
             limb_4_2 < limb_4_1 0.60 MidFrontLeg3.L
-            limb_5_0 < spine_0 0.60 MidFrontLeg.R
+            limb_5_0 < spine_2 0.60 MidFrontLeg.R
             limb_5_1 < limb_5_0 0.60 MidFrontLeg2.R
             limb_5_2 < limb_5_1 0.60 MidFrontLeg3.R
-            limb_6_0 < spine_0 0.60 FrontLeg.L
+            limb_6_0 < spine_2 0.60 FrontLeg.L
             limb_6_1 < limb_6_0 0.60 FrontLeg2.L
             limb_6_2 < limb_6_1 0.60 FrontLeg3.L
-            limb_7_0 < spine_0 0.60 FrontLeg.R
+            limb_7_0 < spine_2 0.60 FrontLeg.R
             limb_7_1 < limb_7_0 0.60 FrontLeg2.R
             limb_7_2 < limb_7_1 0.60 FrontLeg3.R
         "#]],
@@ -451,5 +451,99 @@ fn role_names_round_trip() {
     }
     for wrong in ["", "leftfoot", "spine_", "spine_x", "limb_1", "limb_1_2_3", "tail_-1", "spine_99999"] {
         assert_eq!(Role::from_name(wrong), None, "{wrong}");
+    }
+}
+
+/// Limbs of a wild creature, each from the trunk outward: the joints' names.
+fn limbs_of(file: &str) -> Option<(Vec<Vec<String>>, Vec<String>)> {
+    rigs::bytes(file)?;
+    let options = sinew_formats::ReadOptions::default();
+    let rig = sinew_formats::load_gltf(format!("{}{file}", rigs::DATA), options).expect("a rig").rig;
+    let found = analyze(&rig).expect("a skin");
+    assert!(!found.humanoid, "{file}");
+    let mut limbs: Vec<Vec<String>> = Vec::new();
+    let mut trunk = Vec::new();
+    for bone in &found.kept {
+        let name = rig.joints[bone.joint].name.clone();
+        match bone.role {
+            Role::LimbSegment { limb, .. } => {
+                let limb = usize::from(limb);
+                limbs.resize(limbs.len().max(limb + 1), Vec::new());
+                limbs[limb].push(name);
+            }
+            _ => trunk.push(name),
+        }
+    }
+    Some((limbs, trunk))
+}
+
+/// Frogs, rats, dinosaurs: feet beside the body, hips and back beside the shoulders, bodies whose root moves nothing.
+#[test]
+fn wild_beasts_have_their_limbs_and_their_trunk() {
+    let side = |part: &str, side: &str| format!("{part}.{side}");
+    for (file, legs, trunk) in [
+        (
+            "rigs_wild/easy_enemies_Frog.glb",
+            [
+                &["BackLeg", "BackUpLeg", "BackLowLeg", "BackFoot"],
+                &["FrontUpLeg", "FrontLowLeg", "FrontFoot"][..],
+            ],
+            &["Shoulders", "Neck", "Head", "Hips"][..],
+        ),
+        (
+            "rigs_wild/easy_enemies_Rat.glb",
+            [
+                &["BackLeg", "BackUpLeg", "BackLowLeg", "BackFoot"],
+                &["FrontLeg", "FrontUpLeg", "FrontLowLeg", "FrontFoot"],
+            ],
+            &["Body", "Shoulders", "Neck", "Head", "Back", "Tail1", "Tail6"],
+        ),
+        (
+            "rigs_wild/dinosaurs_Velociraptor.glb",
+            [
+                &["BackLeg", "BackUpLeg", "BackLowLeg", "BackFoot"],
+                &["FrontLeg", "FrontUpLeg", "FrontLowLeg", "FrontFoot"],
+            ],
+            &["Hips", "Torso", "Shoulders", "Neck", "Head", "Back", "Tail1", "Tail5"],
+        ),
+        (
+            "rigs_wild/dinosaurs_Stegosaurus.glb",
+            [&["BackLeg", "BackUpLeg", "BackLowLeg", "BackFoot"], &["FrontLeg", "FrontUpLeg", "FrontLowLeg"]],
+            &["Body", "Torso", "Shoulders", "Neck", "Head", "Back", "Tail1", "Tail5"],
+        ),
+        (
+            "rigs_wild/dinosaurs_Parasaurolophus.glb",
+            [
+                &["BackLeg", "BackUpLeg", "BackLowLeg", "BackFoot"],
+                &["FrontLeg", "FrontUpLeg", "FrontLowLeg", "FrontFoot"],
+            ],
+            &["Hips", "Torso", "Shoulders", "Neck", "Head", "Back", "Tail1", "Tail5"],
+        ),
+    ] {
+        let Some((limbs, middle)) = limbs_of(file) else { return };
+        for part in trunk {
+            assert!(
+                middle.iter().any(|name| name == part),
+                "{file}: {part} is in the trunk: {middle:?}, {limbs:?}"
+            );
+        }
+        for (leg, of) in legs.into_iter().flat_map(|leg| [(leg, "L"), (leg, "R")]) {
+            let wanted: Vec<String> = leg.iter().map(|part| side(part, of)).collect();
+            let other = if of == "L" { ".R" } else { ".L" };
+            let is_leg = |limb: &&Vec<String>| wanted.iter().all(|part| limb.contains(part));
+            let found =
+                limbs.iter().find(is_leg).unwrap_or_else(|| panic!("{file}: no {wanted:?} in {limbs:?}"));
+            assert!(found.iter().all(|name| !name.ends_with(other)), "{file}: {found:?}");
+            assert!(found.len() <= 5, "{file}: more than a leg: {found:?}");
+        }
+    }
+}
+
+/// Monsters of a head and a body on one line: nothing of them is a limb, whatever lies above and below the root.
+#[test]
+fn what_stands_on_the_midline_has_no_twin_below() {
+    for file in ["rigs_wild/platformer_game_Enemy.glb", "rigs_wild/platformer_game_Crab.glb"] {
+        let Some((limbs, trunk)) = limbs_of(file) else { return };
+        assert!(limbs.is_empty() && trunk.len() == 4, "{file}: {limbs:?} {trunk:?}");
     }
 }

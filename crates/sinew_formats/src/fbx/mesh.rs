@@ -1,15 +1,16 @@
 //! Meshes and skins.
 
+use super::material::Materials;
 use super::{affine, index, vector};
 use crate::error::{Error, Result};
 use crate::gltf::strongest_four;
 use sinew_anim::{Mesh, Primitive, Rig, Skin};
-use sinew_math::{Vec2, Vec3, clamp, normalize_or};
+use sinew_math::{Vec2, Vec3, normalize_or};
 use std::collections::BTreeMap;
-use ufbx::{Material, MeshPart, Node, Scene, SkinDeformer};
+use ufbx::{MeshPart, Scene, SkinDeformer};
 
 /// Every mesh as often as a node places it.
-pub(super) fn read_all(scene: &Scene, rig: &mut Rig) -> Result<()> {
+pub(super) fn read_all(scene: &Scene, rig: &mut Rig, materials: &mut Materials<'_, '_>) -> Result<()> {
     for node in &scene.nodes {
         let (Some(mesh), Some(joint)) = (node.mesh.as_ref(), index(node)) else { continue };
         if !mesh.vertex_position.exists {
@@ -23,26 +24,15 @@ pub(super) fn read_all(scene: &Scene, rig: &mut Rig) -> Result<()> {
         };
         let mut primitives = Vec::new();
         for part in mesh.material_parts.iter().filter(|part| part.num_triangles > 0) {
-            primitives.push(Corners::new(mesh, skin.as_ref(), &name).read(part, color(node, mesh, part))?);
+            let mut primitive = Corners::new(mesh, skin.as_ref(), &name).read(part)?;
+            (primitive.base_color, primitive.texture) = materials.look(node, mesh, part);
+            primitives.push(primitive);
         }
         if !primitives.is_empty() {
             rig.meshes.push(Mesh { name, joint, skin: skin.map(|skin| skin.skin), primitives });
         }
     }
     Ok(())
-}
-
-/// Linear RGBA of a part; white where no material says anything.
-fn color(node: &Node, mesh: &ufbx::Mesh, part: &MeshPart) -> [f32; 4] {
-    let at = part.index as usize;
-    let material: Option<&Material> =
-        node.materials.get(at).or_else(|| mesh.materials.get(at)).map(|material| &**material);
-    let Some(map) = material.map(|material| &material.pbr.base_color).filter(|map| map.has_value) else {
-        return [1.0; 4];
-    };
-    let c = &map.value_vec4;
-    let part = |x: f64| if x.is_finite() { clamp(x as f32, 0.0, 1.0) } else { 1.0 };
-    [part(c.x), part(c.y), part(c.z), 1.0]
 }
 
 /// A skin of the rig, and which of its slots each cluster of the file has.
@@ -104,7 +94,7 @@ impl<'a> Corners<'a> {
         Self { mesh, skin, name, known: BTreeMap::new(), out: Primitive::default() }
     }
 
-    fn read(mut self, part: &MeshPart, base_color: [f32; 4]) -> Result<Primitive> {
+    fn read(mut self, part: &MeshPart) -> Result<Primitive> {
         let mut corners = vec![0_u32; self.mesh.max_face_triangles * 3];
         for &face in &part.face_indices {
             let Some(&face) = self.mesh.faces.get(face as usize) else { continue };
@@ -114,7 +104,6 @@ impl<'a> Corners<'a> {
                 self.out.indices.push(vertex);
             }
         }
-        self.out.base_color = base_color;
         Ok(self.out)
     }
 

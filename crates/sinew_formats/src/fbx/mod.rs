@@ -3,13 +3,16 @@
 //! What becomes of the format's many ways: axes are turned to +Y up and lengths into metres in joints, meshes and keys, so
 //! that no root carries a scale; pivots, orders of rotations and scale that is not inherited are resolved into plain
 //! translation, rotation and scale; curves are sampled at the file's frame rate where they are not straight, then reduced to
-//! the keys that are needed. Pictures, morph targets, constraints, cameras and lights are left out.
+//! the keys that are needed. Of materials the base colour and its picture are kept. Morph targets, constraints, cameras and lights are left out.
 
 mod clips;
+mod material;
 mod mesh;
 
 use crate::error::{Error, Result};
+use crate::gltf::{ReadOptions, Resolver, Textures, no_files};
 use crate::motion::{MotionFile, MotionFormat};
+use material::Materials;
 use sinew_anim::{Joint, JointIdx, LocalTransform, Rig};
 use sinew_math::{Affine, Mat3, Rotation, Vec3};
 use ufbx::{
@@ -27,14 +30,27 @@ const DEEPEST: u32 = 512;
 /// # Errors
 /// Bytes that are no FBX, are cut off, of a version before 3.0, more than that memory, numbers that are not finite.
 pub fn read_fbx(bytes: &[u8]) -> Result<MotionFile> {
+    read_fbx_with(bytes, ReadOptions::default(), &mut no_files)
+}
+
+/// [`read_fbx`] with pictures that lie beside the file, which `resolve` gives. One that is missing or broken is left out with
+/// a note.
+///
+/// # Errors
+/// As [`read_fbx`].
+pub fn read_fbx_with(bytes: &[u8], options: ReadOptions, resolve: &mut Resolver<'_>) -> Result<MotionFile> {
     let scene =
-        ufbx::load_memory(bytes, options(bytes.len())).map_err(|error| explain(&error, bytes.len()))?;
+        ufbx::load_memory(bytes, load_options(bytes.len())).map_err(|error| explain(&error, bytes.len()))?;
     let joints =
         scene.nodes.iter().filter(|node| !node.is_root).map(|node| joint(node)).collect::<Result<_>>()?;
     let mut rig = Rig { joints, ..Rig::default() };
-    mesh::read_all(&scene, &mut rig)?;
+    let mut materials = Materials::new(options.textures, resolve);
+    mesh::read_all(&scene, &mut rig, &mut materials)?;
+    rig.textures = materials.textures;
+    let pictures = materials.notes;
     let (clips, mut notes) = clips::read_all(&scene, bytes.len())?;
-    notes.extend(left_out(&scene));
+    notes.extend(pictures);
+    notes.extend(left_out(&scene, options.textures));
     notes.extend(scene.metadata.warnings.iter().map(|warning| warning.description.to_string()));
     let rate = scene.settings.frames_per_second;
     Ok(MotionFile {
@@ -51,11 +67,10 @@ pub fn read_fbx(bytes: &[u8]) -> Result<MotionFile> {
     })
 }
 
-fn options(size: usize) -> LoadOpts<'static> {
+fn load_options(size: usize) -> LoadOpts<'static> {
     LoadOpts {
         temp_allocator: limited(size),
         result_allocator: limited(size),
-        ignore_embedded: true,
         clean_skin_weights: true,
         normalize_normals: true,
         node_depth_limit: DEEPEST,
@@ -143,9 +158,9 @@ fn not_finite(place: String) -> Error {
 }
 
 /// What of the scene does not become part of a rig, a sentence each.
-fn left_out(scene: &Scene) -> Vec<String> {
+fn left_out(scene: &Scene, pictures: Textures) -> Vec<String> {
     let counted = [
-        (scene.textures.len(), "textures"),
+        (if pictures == Textures::Skip { scene.textures.len() } else { 0 }, "textures"),
         (scene.blend_channels.len(), "morph targets"),
         (scene.constraints.len(), "constraints"),
         (scene.nurbs_surfaces.len() + scene.nurbs_curves.len() + scene.line_curves.len(), "curves and NURBS"),

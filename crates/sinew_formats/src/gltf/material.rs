@@ -13,7 +13,7 @@ use std::io::Cursor;
 /// Pixels across or down that a picture may have.
 const MAX_SIDE: u32 = 4096;
 /// Bytes that all decoded pictures of a file may take together.
-const MAX_DECODED: usize = 256 << 20;
+pub(crate) const MAX_DECODED: usize = 256 << 20;
 
 /// The materials of a file, and the textures decoded so far.
 pub(super) struct Materials<'s, 'a> {
@@ -115,7 +115,7 @@ impl<'s, 'a> Materials<'s, 'a> {
 }
 
 /// A PNG or JPEG as RGBA, within the limits of side and of `budget` bytes.
-fn decode_picture(bytes: &[u8], budget: usize) -> Result<Texture, String> {
+pub(crate) fn decode_picture(bytes: &[u8], budget: usize) -> Result<Texture, String> {
     let mut reader =
         image::ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| one_line(&e))?;
     let mut limits = image::Limits::default();

@@ -20,6 +20,8 @@ mod write;
 pub use append::{NewClip, append_clip, append_clips};
 pub use khr::{KhrFile, write_khr};
 #[cfg(feature = "fbx")]
+pub(crate) use material::{MAX_DECODED, decode_picture};
+#[cfg(feature = "fbx")]
 pub(crate) use mesh::strongest_four;
 pub use write::{write_gltf, write_motion};
 

@@ -48,7 +48,8 @@ pub struct MotionFile {
     pub notes: Vec<String>,
 }
 
-/// Reads any file with clips; the kind is told by the bytes. `resolve` gives the files beside a glTF.
+/// Reads any file with clips; the kind is told by the bytes. `resolve` gives the files beside a glTF,
+/// and the pictures beside an FBX.
 ///
 /// Formats without names of clips leave them empty. A DeepMimic character is a rig without clips, and so is a ragdoll of
 /// Jolt: [`read_jolt_animation`](crate::read_jolt_animation) reads its clips.
@@ -74,7 +75,7 @@ pub fn read_motion(
             Ok(MotionFile { metres_per_unit: Some(1.0), ..bare(format, read_jolt_ragdoll(bytes)?.rig) })
         }
         #[cfg(feature = "fbx")]
-        MotionFormat::Fbx => crate::fbx::read_fbx(bytes),
+        MotionFormat::Fbx => crate::fbx::read_fbx_with(bytes, options.gltf, resolve),
         #[cfg(not(feature = "fbx"))]
         MotionFormat::Fbx => {
             let what = "an FBX file: this build has no reader for it (feature `fbx`)";

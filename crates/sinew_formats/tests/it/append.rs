@@ -145,3 +145,28 @@ fn a_clip_without_motion_is_refused_in_one_line() {
     let error = append_clip(&document, &Clip::default(), "", None).unwrap_err();
     assert_eq!(error.to_string(), "the clip moves nothing: there is no channel to write (animations)");
 }
+
+/// A strip of skin with a morph target, and a weight of it in the mesh.
+const STRIP: &[u8] = include_bytes!("../../../../fuzz/seeds/gltf/strip_nan_normals.glb");
+
+#[test]
+fn morph_targets_are_kept() {
+    let old = read_gltf(STRIP, ReadOptions::default(), &mut no_files).unwrap();
+    let bytes = append_clip(&old, &motion(&old), "Moved", None).unwrap();
+    let new = read_gltf(&bytes, ReadOptions::default(), &mut no_files).unwrap();
+    let mesh = |document: &Document| document.json["meshes"][0].clone();
+    assert!(mesh(&old)["primitives"][0]["targets"][0]["POSITION"].is_u64(), "the file has a target");
+    assert_eq!(mesh(&new), mesh(&old));
+    let offsets = |document: &Document| {
+        let accessor = &mesh(document)["primitives"][0]["targets"][0]["POSITION"];
+        let json = &document.json;
+        let accessor = &json["accessors"][usize::try_from(accessor.as_u64().unwrap()).unwrap()];
+        let view = &json["bufferViews"][usize::try_from(accessor["bufferView"].as_u64().unwrap()).unwrap()];
+        let number = |key: &str| usize::try_from(view[key].as_u64().unwrap_or(0)).unwrap();
+        let start = number("byteOffset");
+        document.bin.as_ref().unwrap()[start..start + number("byteLength")].to_vec()
+    };
+    assert!(offsets(&old).iter().any(|&byte| byte != 0));
+    assert_eq!(offsets(&new), offsets(&old));
+    assert_eq!(new.clips.len(), old.clips.len() + 1);
+}

@@ -267,3 +267,19 @@ fn the_compressed_rigs_of_shared_are_read() {
         }
     }
 }
+
+/// Where the fuzzer begins: a stream of each method after the counts that its file claims.
+#[test]
+fn seeds_of_the_fuzzer_are_whole_files() {
+    for (method, name) in [(0, "sequential"), (1, "edgebreaker")] {
+        let path = format!("{}/../../fuzz/seeds/draco/{name}.bin", env!("CARGO_MANIFEST_DIR"));
+        if std::env::var_os("SINEW_BLESS").is_some() {
+            let counts = [SIDE * SIDE, triangles().len()].map(|count| u8::try_from(count).unwrap());
+            std::fs::write(&path, [counts.as_slice(), &stream(method)].concat()).unwrap();
+        }
+        let seed = std::fs::read(&path).unwrap();
+        let [vertices, faces, stream @ ..] = seed.as_slice() else { panic!("{name}: too short") };
+        assert_eq!([*vertices, *faces].map(usize::from), [SIDE * SIDE, triangles().len()]);
+        assert!(read(&file(stream), stream).is_ok(), "{name}");
+    }
+}

@@ -1,8 +1,8 @@
 //! FBX: a small text file, against closed forms.
 
-use crate::fbx_file::{corners, leg};
+use crate::fbx_file::{corners, leg, pictured_leg};
 use sinew_anim::{LocalTransform, Wrap, local_to_model, rest_pose, sample, skin_vertices};
-use sinew_formats::{ErrorKind, MotionFile, read_fbx};
+use sinew_formats::{Error, ErrorKind, MotionFile, ReadOptions, Textures, read_fbx, read_fbx_with};
 use sinew_math::{Affine, Random, Vec3, trig};
 
 fn pose_at(file: &MotionFile, time: f32) -> Vec<Affine> {
@@ -113,4 +113,46 @@ fn garbage_is_no_panic() {
     }
     let error = read_fbx(b"Kaydara FBX Binary  \0\x1a\0\xe8\x1c\0\0").unwrap_err();
     assert_eq!(error.kind, ErrorKind::Malformed);
+}
+
+/// A PNG of one red pixel.
+const RED: [u8; 70] = [
+    137, 80, 78, 71, 13, 10, 26, 10, 0, 0, 0, 13, 73, 72, 68, 82, 0, 0, 0, 1, 0, 0, 0, 1, 8, 6, 0, 0, 0, 31,
+    21, 196, 137, 0, 0, 0, 13, 73, 68, 65, 84, 120, 156, 99, 248, 207, 192, 240, 31, 0, 5, 0, 1, 255, 137,
+    153, 61, 29, 0, 0, 0, 0, 73, 69, 78, 68, 174, 66, 96, 130,
+];
+
+#[test]
+fn a_material_has_its_colour_and_its_picture() {
+    let png = RED.to_vec();
+    let decode = ReadOptions { textures: Textures::Decode };
+    let missing = |_: &str| Err(Error::io("no such file"));
+    // In the file.
+    let text = pictured_leg(Some(&png), "skin.png");
+    let file = read_fbx_with(text.as_bytes(), decode, &mut |path| missing(path)).unwrap();
+    let part = &file.rig.meshes[0].primitives[0];
+    assert_eq!((part.texture, part.base_color), (Some(0), [1.0; 4]), "{:?}", file.notes);
+    assert_eq!(file.rig.textures[0].rgba, [255, 0, 0, 255]);
+    // Beside it, where its folder on another machine is left out.
+    let text = pictured_leg(None, "skin.png");
+    let mut asked = Vec::new();
+    let mut beside = |path: &str| {
+        asked.push(path.to_owned());
+        if path == "skin.png" { Ok(png.clone()) } else { missing(path) }
+    };
+    let file = read_fbx_with(text.as_bytes(), decode, &mut beside).unwrap();
+    assert_eq!(file.rig.textures.len(), 1, "{:?}", file.notes);
+    assert!(asked.iter().all(|path| !path.contains("..") && !path.contains(':')), "{asked:?}");
+    // Missing, broken, or not wanted: the colour is left, and a note says what became of the picture.
+    let broken = pictured_leg(Some(&png[..20]), "skin.png");
+    for (text, options) in [(&text, decode), (&broken, decode), (&text, ReadOptions::default())] {
+        let file = read_fbx_with(text.as_bytes(), options, &mut |path| missing(path)).unwrap();
+        let part = &file.rig.meshes[0].primitives[0];
+        assert_eq!((part.texture, part.base_color), (None, [0.5, 0.25, 1.0, 1.0]));
+        assert!(
+            file.notes.iter().any(|note| note.contains("picture") || note.contains("textures")),
+            "{:?}",
+            file.notes
+        );
+    }
 }

@@ -111,3 +111,34 @@ pub fn leg() -> String {
     text += " C: \"OP\",402,101, \"Lcl Rotation\"\n C: \"OP\",403,402, \"d|X\"\n}\n";
     text
 }
+
+/// The [`leg`] with a material on its box and a picture on that: the bytes of the picture in the file, or no more than its name.
+pub fn pictured_leg(picture: Option<&[u8]>, name: &str) -> String {
+    let content = picture.map_or(String::new(), |bytes| format!(" Content: ,\n \"{}\"\n", base64(bytes)));
+    let objects = format!(
+        "Material: 500, \"Material::skin\", \"\" {{\n Version: 102\n ShadingModel: \"phong\"\n Properties70: {{\n \
+         P: \"DiffuseColor\", \"Color\", \"\", \"A\",0.5,0.25,1\n }}\n}}\n\
+         Texture: 501, \"Texture::skin\", \"\" {{\n Type: \"TextureVideoClip\"\n Version: 202\n \
+         FileName: \"C:\\art\\{name}\"\n RelativeFilename: \"..\\art\\{name}\"\n}}\n\
+         Video: 502, \"Video::skin\", \"Clip\" {{\n Type: \"Clip\"\n FileName: \"C:\\art\\{name}\"\n \
+         RelativeFilename: \"..\\art\\{name}\"\n{content}}}\n"
+    );
+    let links = "C: \"OO\",500,201\n C: \"OP\",501,500, \"DiffuseColor\"\n C: \"OO\",502,501\n ";
+    leg()
+        .replace("AnimationStack:", &(objects + "AnimationStack:"))
+        .replace("Connections: {\n ", &("Connections: {\n ".to_owned() + links))
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for three in bytes.chunks(3) {
+        let bits =
+            three.iter().enumerate().fold(0u32, |bits, (i, &byte)| bits | u32::from(byte) << (16 - 8 * i));
+        for digit in 0..4 {
+            let at = (bits >> (18 - 6 * digit) & 63) as usize;
+            text.push(if digit <= three.len() { char::from(DIGITS[at]) } else { '=' });
+        }
+    }
+    text
+}

@@ -332,6 +332,35 @@ pub fn bound_in(rig: &Rig, unit: f32) -> Rig {
     rig
 }
 
+/// All under a new first joint of negative scale, and every root so that it is drawn where it was.
+pub fn under_a_mirror(rig: &Rig) -> Rig {
+    let mut rig = rig.clone();
+    let mirror = Vec3::new(-1.0, 1.0, 1.0);
+    for joint in &mut rig.joints {
+        if joint.parent.is_none() {
+            // A mirrored rotation turns the other way about the two axes that the mirror keeps.
+            let [x, y, z, w] =
+                [joint.rest.rotation.x, joint.rest.rotation.y, joint.rest.rotation.z, joint.rest.rotation.w];
+            joint.rest.rotation = Rotation::from_xyzw(x, -y, -z, w);
+            joint.rest.translation *= mirror;
+            joint.rest.scale *= mirror;
+        }
+        joint.parent = Some(joint.parent.map_or(0, |parent| parent + 1));
+    }
+    let rest = LocalTransform { scale: mirror, ..LocalTransform::default() };
+    rig.joints.insert(0, Joint { name: "mirror".into(), parent: None, rest, source: rig.joints.len() });
+    for joint in rig.skins.iter_mut().flat_map(|skin| &mut skin.joints) {
+        *joint += 1;
+    }
+    for mesh in &mut rig.meshes {
+        mesh.joint += 1;
+    }
+    for (_, joint) in &mut rig.stated_roles {
+        *joint += 1;
+    }
+    rig
+}
+
 /// Every skinned mesh in two, the second with a skin of its own that was bound in another unit.
 pub fn with_two_skins(rig: &Rig, unit: f32) -> Rig {
     let mut rig = rig.clone();
