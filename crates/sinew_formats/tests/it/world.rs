@@ -299,7 +299,7 @@ fn complaints_about_materials_and_contacts_name_the_place() {
         ),
         (
             r#""contacts":"spirit""#,
-            "must be push, ghost, or an object with `one_way` (bodies[0].shapes[0].contacts)",
+            "must be push, ghost, or an object with `one_way` or `yields` (bodies[0].shapes[0].contacts)",
         ),
     ] {
         let shape = format!(r#"{{"type":"sphere","radius":1,{surface}}}"#);
