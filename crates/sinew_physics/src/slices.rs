@@ -110,7 +110,7 @@ pub(crate) fn for_each_near<T: Send>(runner: &dyn TaskRunner, items: &mut [T], w
         }
         // The caller comes first, since the others have to be told; two start at the ends of halves, four at those of quarters.
         let number = entered.fetch_add(1, Ordering::Relaxed);
-        let share = u64::from(number.reverse_bits()) * count as u64 >> u32::BITS;
+        let share = (u64::from(number.reverse_bits()) * count as u64) >> u32::BITS;
         let start = share as usize;
         for i in (start..count).chain(0..start) {
             let bit = 1 << i;

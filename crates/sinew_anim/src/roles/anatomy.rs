@@ -164,6 +164,10 @@ impl<'a> Scene<'a> {
     }
 
     fn recognise(&self, up: Vec3) -> Option<Humanoid> {
+        #[expect(
+            clippy::redundant_closure_for_method_calls,
+            reason = "the method itself is of one lifetime only"
+        )]
         self.with_evidence(up, |evidence| evidence.recognise())
     }
 

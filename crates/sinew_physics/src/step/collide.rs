@@ -43,7 +43,7 @@ pub(crate) fn collide(
         ask(a, b, asked, proxies.ahead(asked.key), context.dt);
     });
     broad.answer(contacts, |contact| {
-        weigh(contact, bodies.at(contact.key.a), bodies.at(contact.key.b), context.dt)
+        weigh(contact, bodies.at(contact.key.a), bodies.at(contact.key.b), context.dt);
     });
     if !contacts.iter().any(|contact| contact.has_surface) {
         return;

@@ -35,14 +35,14 @@ impl Game {
 
     /// What is done in a frame, by its number alone.
     fn act(&mut self, frame: u32) {
-        if frame % 60 == 0 && self.cast.len() < 6 {
+        if frame.is_multiple_of(60) && self.cast.len() < 6 {
             let name = frame / 60;
             let turn = Rotation::from_axis_angle(Vec3::Y, name as f32);
             let place = Transform::new(Vec3::new(1.2 * (name % 4) as f32, 0.0, 0.0), turn);
             let character = Character::spawn(&mut self.world, &self.def, place);
             self.cast.push((name, character));
         }
-        let (body, hard) = ((frame as usize * 7) % 17, (frame / 45) % 3 == 0);
+        let (body, hard) = ((frame as usize * 7) % 17, (frame / 45).is_multiple_of(3));
         let impulse =
             Rotation::from_axis_angle(Vec3::Y, frame as f32) * Vec3::Z * if hard { 80.0 } else { 8.0 };
         match frame % 45 {

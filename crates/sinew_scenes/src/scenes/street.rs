@@ -194,8 +194,8 @@ impl Street {
 impl Script for Street {
     fn before_step(&mut self, world: &mut World) {
         let step = world.step_count();
-        if step % LIFT_TURNS == 0 {
-            let up = if (step / LIFT_TURNS) % 2 == 0 { LIFT } else { -LIFT };
+        if step.is_multiple_of(LIFT_TURNS) {
+            let up = if (step / LIFT_TURNS).is_multiple_of(2) { LIFT } else { -LIFT };
             world.set_velocity(self.lift, Velocity { linear: Vec3::Y * up, ..Velocity::default() });
         }
         if step == JUMPS {
