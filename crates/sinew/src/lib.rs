@@ -61,7 +61,7 @@ struct Readme;
 #[doc = include_str!("../../../docs/world.md")]
 struct WorldPage;
 
-/// What is taught about characters.
+/// The guide to characters, whose code is tested.
 #[cfg(all(doctest, feature = "ragdoll"))]
 #[doc = include_str!("../../../docs/character.md")]
 struct CharacterPage;

@@ -340,7 +340,7 @@ fn a_dog_with_a_humans_names_is_none() {
     }
 }
 
-/// Which side the arm is taken for that is on the +X of a human with numbers for names.
+/// Side that is told of the arm on the +X of a human with numbers for names.
 fn side_of_plus_x(human: &dyn Fn(&str) -> Vec3) -> String {
     let (_, lines) = conventions().into_iter().find(|(name, _)| name == "Unreal").expect("a convention");
     let found = analyze(&numbered(&dressed_as(&lines, human))).expect("a skin");

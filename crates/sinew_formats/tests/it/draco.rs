@@ -268,7 +268,7 @@ fn the_compressed_rigs_of_shared_are_read() {
     }
 }
 
-/// Where the fuzzer begins: a stream of each method after the counts that its file claims.
+/// Seeds of the fuzzer: a stream of each method after the counts that its file claims.
 #[test]
 fn seeds_of_the_fuzzer_are_whole_files() {
     for (method, name) in [(0, "sequential"), (1, "edgebreaker")] {

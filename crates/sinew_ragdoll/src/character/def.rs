@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// How a character moves over the ground while its looped clip plays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Locomotion {
-    /// Where the clip takes it, and no further: with each lap it is back where it began.
+    /// The character moves as the clip does, and with each lap is back where it began.
     InPlace,
     /// On and on as the clip takes it, with each lap from where the last one ended. A clip that ends where it began stays in its place.
     ByClip,

@@ -1,29 +1,14 @@
 //! Flinches, falls, and what lies between: drives of a character.
 
-use crate::actor::{floor, shared, walker};
+use crate::actor::{shared, walker};
+use crate::in_world::{level, run};
 use sinew_math::{Transform, Vec3, max};
+use sinew_physics::World;
 use sinew_physics::ray::Ray;
-use sinew_physics::{World, WorldDef};
 use sinew_ragdoll::{
     Blow, Character, CharacterDef, DriveMode, Event, Muscle, Part, Preset, State, Toughness,
 };
 use std::sync::Arc;
-
-fn level() -> World {
-    let mut world = World::new(WorldDef::default());
-    world.add_body(&floor());
-    world
-}
-
-fn run(world: &mut World, character: &mut Character, steps: usize) -> Vec<Event> {
-    let mut events = Vec::new();
-    for _ in 0..steps {
-        world.step();
-        character.update(world);
-        events.extend_from_slice(character.events());
-    }
-    events
-}
 
 fn walking(def: &Arc<CharacterDef>) -> (World, Character) {
     let mut world = level();

@@ -10,7 +10,8 @@ use sinew_ragdoll::{Character, CharacterDef, Event, HitBodies, State};
 use sinew_scenes::mannequin::WALK_SPEED;
 use std::sync::Arc;
 
-fn level() -> World {
+/// A world with a floor.
+pub fn level() -> World {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
     world
@@ -22,7 +23,8 @@ fn block(world: &mut World, min: Vec3, max: Vec3) -> BodyId {
     world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at((min + max) * 0.5))
 }
 
-fn run(world: &mut World, character: &mut Character, steps: usize) -> Vec<Event> {
+/// Steps, and gives what the character told.
+pub fn run(world: &mut World, character: &mut Character, steps: usize) -> Vec<Event> {
     let mut events = Vec::new();
     for _ in 0..steps {
         world.step();

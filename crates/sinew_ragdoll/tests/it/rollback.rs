@@ -33,7 +33,7 @@ impl Game {
         Some((&mut self.world, &mut found.1))
     }
 
-    /// What is done in a frame, by its number alone.
+    /// Acts of a frame, by its number alone.
     fn act(&mut self, frame: u32) {
         if frame.is_multiple_of(60) && self.cast.len() < 6 {
             let name = frame / 60;

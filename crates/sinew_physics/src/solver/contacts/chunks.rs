@@ -23,13 +23,13 @@ const MOST_CHUNKS: usize = MOST_NEAR;
 
 /// A visitor of which parts may go to blocks of one colour at the same time. It does not look at bounces.
 pub(super) trait Parted: Visitor + Send {
-    /// What goes to a part of the blocks, of which this is the first in the order of visits.
+    /// A visitor for a part of the blocks; `first` is the number of its first block in the order of visits.
     fn part(&self, first: usize) -> Self;
     /// Takes over what a part has summed up.
     fn join(&mut self, part: &Self);
 }
 
-/// What visitors of this module share: rows of bodies, or of what is one block's own.
+/// Rows that visitors share: of bodies, or of what is one block's own.
 pub(super) fn shared<T>(rows: &mut [T]) -> SharedRows<'_, T> {
     // SAFETY: a visit writes rows of bodies that move, of which no two blocks of a colour have the same (`Coloring`), and what
     // belongs to its block; it reads besides rows of bodies that do not move, which none writes. A reference to a row ends within the
@@ -110,17 +110,17 @@ impl<V: Visitor> Kernel for Visit<'_, '_, V> {
 }
 
 /// A visitor goes to all blocks of a chunk that is as large as a colour, or larger; `first` is the number of its first.
-fn visit_all<V: Parted>(mut color: Chunk<'_>, first: usize, visitor: &mut V, runner: &dyn TaskRunner) {
-    let blocks = color.len();
+fn visit_all<V: Parted>(mut all: Chunk<'_>, first: usize, visitor: &mut V, runner: &dyn TaskRunner) {
+    let blocks = all.len();
     if blocks < DIVIDED {
-        dispatch::run(Visit { chunk: &mut color, visitor });
+        dispatch::run(Visit { chunk: &mut all, visitor });
         return;
     }
     let count = usize::min(blocks / CHUNK, MOST_CHUNKS);
     let mut at = first;
     let mut parts: [_; MOST_CHUNKS] = core::array::from_fn(|number| {
         let left = count.checked_sub(number).filter(|&left| left > 0)?;
-        let chunk = color.take_part_of(left);
+        let chunk = all.take_part_of(left);
         let of_chunk = visitor.part(at);
         at += chunk.len();
         Some((chunk, of_chunk))
