@@ -118,7 +118,7 @@ impl IslandSolver {
         self.contacts.begin_pass(pass, &self.velocities, self.h, runner);
         self.arrange_limits(pass);
         self.unrest.start(self.effort.tolerance, self.trees.len(), 0, self.limit_blocks.len());
-        self.run_turns(pass, runner);
+        self.run_turns(pass, 1, runner);
     }
 
     /// Goes on with `solve`: what the rows that limits have got since, and corrections of positions, have not stirred is at rest.
@@ -130,10 +130,10 @@ impl IslandSolver {
         self.arrange_limits(Pass::Solve);
         self.unrest.resume(self.limit_blocks.len(), &self.limits[known..]);
         self.contacts.start_conjugate();
-        self.run_turns(Pass::Solve, runner);
+        self.run_turns(Pass::Solve, 0, runner);
     }
 
-    fn run_turns(&mut self, pass: Pass, runner: &dyn TaskRunner) {
+    fn run_turns(&mut self, pass: Pass, least: usize, runner: &dyn TaskRunner) {
         let sweeps = self.effort.of_turns(pass);
         let enough = self.effort.enough;
         let enough = 0.5 * enough * enough * self.mass() / self.links.len() as f32;
@@ -150,7 +150,7 @@ impl IslandSolver {
             self.take_impulses_of_contacts();
             let change = max(self.largest_change, max(swept.largest, self.take_turn_of_trees()));
             let energy = swept.energy + self.change_energy;
-            if done == sweeps.most || (done > 1 && (energy < enough || change < sweeps.tolerance)) {
+            if done == sweeps.most || (done > least && (energy < enough || change < sweeps.tolerance)) {
                 break;
             }
             if conjugate {
