@@ -68,7 +68,7 @@ const JOINTED: Effort = Effort {
     relax: 24,
     tolerance: 2e-3,
     small: 0.0,
-    enough: 0.0,
+    enough: 0.01,
     order: Order::Forward,
     first_conjugate: 1,
 };

@@ -5,6 +5,7 @@
 use super::columns::Change;
 use super::conjugate::{Conjugate, Rows};
 use super::contact_rows::ManifoldRows;
+use super::effort::Effort;
 use super::limit_rows::LimitRow;
 use super::tree::Link;
 use super::tree_joints::Corrected;
@@ -159,6 +160,7 @@ impl IslandSolver {
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
         let sweeps = self.effort.sweeps(pass);
         let conjugates = pass != Pass::Restitution;
+        let enough = self.enough_energy();
         self.conjugate.start();
         for done in 1..=sweeps {
             self.largest_change = 0.0;
@@ -173,7 +175,8 @@ impl IslandSolver {
             }
             self.visit_contacts(pass);
             self.visit_limits(pass);
-            if done == sweeps || (done > 1 && self.largest_change < self.effort.tolerance) {
+            let is_small = self.change_energy < enough || self.largest_change < self.effort.tolerance;
+            if done == sweeps || (done > 1 && is_small) {
                 break;
             }
             if conjugates {
@@ -183,6 +186,12 @@ impl IslandSolver {
             }
         }
         self.finish_sweep(pass);
+    }
+
+    /// Energy that a sweep must change for another to follow, J.
+    pub(super) fn enough_energy(&self) -> f32 {
+        let Effort { enough, .. } = self.effort;
+        0.5 * enough * enough * self.mass() / self.links.len() as f32
     }
 
     fn rows_to_conjugate(&mut self) -> (&mut Conjugate, Rows<'_>) {

@@ -135,8 +135,7 @@ impl IslandSolver {
 
     fn run_turns(&mut self, pass: Pass, least: usize, runner: &dyn TaskRunner) {
         let sweeps = self.effort.of_turns(pass);
-        let enough = self.effort.enough;
-        let enough = 0.5 * enough * enough * self.mass() / self.links.len() as f32;
+        let enough = self.enough_energy();
         let conjugate = pass != Pass::Restitution;
         for done in 1..=sweeps.most {
             self.note_limits();
