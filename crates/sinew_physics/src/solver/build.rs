@@ -265,7 +265,6 @@ impl IslandSolver {
         self.look_for_fields(view);
         self.copy_joints(island, view);
         self.weigh_joints();
-        self.follow_all();
         self.refresh_rows();
         self.choose_coupling(island.contacts.len());
         self.form_batches();
@@ -327,7 +326,6 @@ impl IslandSolver {
             trees.reserve(island.bodies.len());
         }
         self.batches.make_room(island.bodies.len());
-        self.followed.make_room(island.bodies.len());
         self.pins.make_room(island.bodies.len(), island.joints.len());
         s.loads.make_room(island.bodies.len() + SPARE, island.contacts.len() + SPARE);
         self.conjugate.make_room(island.bodies.len(), island.contacts.len());

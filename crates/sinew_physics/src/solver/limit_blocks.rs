@@ -155,31 +155,6 @@ impl LimitBlocks {
         self.placed = 0;
     }
 
-    /// Keeps the blocks of rows that have a new place each, the `placed` ones of `limits`. No other row has one.
-    pub fn keep(&mut self, places: &[u32], limits: &mut [LimitRow], tree: impl Fn(&LimitRow) -> usize) {
-        self.last.fill(NONE);
-        self.placed = limits.len();
-        if limits.is_empty() {
-            self.blocks.clear();
-            return;
-        }
-        let mut kept = 0;
-        for at in 0..self.blocks.len() {
-            let block = &mut self.blocks[at];
-            if places[block.limits[0] as usize] == NONE {
-                continue;
-            }
-            for k in 0..block.count {
-                block.limits[k] = places[block.limits[k] as usize];
-                limits[block.limits[k] as usize].block = kept as u32;
-            }
-            self.last[tree(&limits[block.limits[0] as usize])] = kept as u32;
-            self.blocks.swap(kept, at);
-            kept += 1;
-        }
-        self.blocks.truncate(kept);
-    }
-
     /// Rows that have a place, from the first on.
     pub fn placed(&self) -> usize {
         self.placed

@@ -2,7 +2,7 @@
 
 use super::contact_rows::IMPACT_JUMP;
 use super::sweep::Pass;
-use super::tree::{Link, NONE};
+use super::tree::NONE;
 use super::{IslandSolver, REDUNDANCY, SolverBody, SolverJoint, free_response};
 use crate::joint::def::Softness;
 use crate::joint::{JointPose, LimitImpulse, MAX_LIMITS, MAX_STOPS, Row, Stop, each_stop, turns};
@@ -61,18 +61,17 @@ impl IslandSolver {
         for joint in &mut self.joints {
             joint.limit_impulse = [Vec3::ZERO; MAX_LIMITS];
         }
-        self.keep_standing_limits();
+        for row in self.limits.drain(..).filter(|row| !matches!(row.hardness, Hardness::Soft(..))) {
+            self.joints[row.joint as usize].limit_impulse[row.limit] += row.axis * row.impulse;
+        }
         self.hit_rate = 0.0;
         if !(self.manifolds.is_empty() && self.contacts.is_empty()) {
             for v in &self.velocities[..self.links.len()] {
                 self.hit_rate = max(self.hit_rate, angular(v).length() + linear(v).length() / LEVER);
             }
         }
-        let Self { limits, joints, links, batches, .. } = self;
-        for (index, joint) in joints.iter().enumerate() {
-            if batches.stand(joint.tree(links)) {
-                continue;
-            }
+        let limits = &mut self.limits;
+        for (index, joint) in self.joints.iter().enumerate() {
             let [slide, turn] = joint.anchor_rates(&self.velocities);
             let reach = [slide, max(turn, self.hit_rate)].map(|rate| LIMIT_MARGIN + 2.0 * self.h * rate);
             let (soft, zone) = (joint.drive.limit_softness, joint.drive.soft_zone);
@@ -95,29 +94,6 @@ impl IslandSolver {
                 }
             });
         }
-    }
-
-    /// Rows of trees that stand stay, before all others; what others gave goes to the memory of their joints.
-    fn keep_standing_limits(&mut self) {
-        let Self { limits, limit_blocks, joints, links, batches, scratch, .. } = self;
-        let places = &mut scratch.limit_places;
-        places.clear();
-        let mut kept = 0;
-        for i in 0..limits.len() {
-            let row = &limits[i];
-            if batches.stand(row.tree_among(joints, links)) {
-                places.push(kept as u32);
-                limits.swap(kept, i);
-                kept += 1;
-                continue;
-            }
-            places.push(NONE);
-            if !matches!(row.hardness, Hardness::Soft(..)) {
-                joints[row.joint as usize].limit_impulse[row.limit] += row.axis * row.impulse;
-            }
-        }
-        limits.truncate(kept);
-        limit_blocks.keep(places, limits, |row| row.tree_among(joints, links));
     }
 
     /// Looks where the velocities lead: a limit row is linear, and a limb that turns by much of a radian within the
@@ -224,21 +200,6 @@ impl LimitRow {
             effective: 0.0,
             impulse,
         }
-    }
-
-    /// Tree of its joint.
-    pub fn tree_among(&self, joints: &[SolverJoint], links: &[Link]) -> usize {
-        joints[self.joint as usize].tree(links)
-    }
-
-    /// True of a stop at the pose of its tree: neither foreseen nor a spring.
-    pub fn may_stand(&self) -> bool {
-        self.hardness == Hardness::Hard
-    }
-
-    /// Has as much less or more room as velocities take or leave in a substep.
-    pub fn advance(&mut self, joint: &SolverJoint, velocities: &[Vec6], h: f32) {
-        self.room += h * self.row.rate(joint, velocities);
     }
 
     /// Starts with the last substep's impulse, or with the one before if it jumped up since.

@@ -33,7 +33,6 @@ mod reaction;
 mod response;
 mod solution;
 mod squeeze;
-mod standing;
 pub(crate) mod strands;
 mod sweep;
 mod tree;
@@ -72,7 +71,6 @@ use sinew_math::dispatch;
 use sinew_math::{Sym3, Transform, Vec3, abs3, normalize_or};
 pub(crate) use solution::{IslandSolution, Solution, SolvedBody, SolvedJoint, split_off};
 use squeeze::{Pressing, Touch};
-use standing::Followed;
 use sweep::{Pass, Unrest};
 use tree::Link;
 use tree_joints::Corrected;
@@ -180,14 +178,6 @@ pub(crate) struct SolverJoint {
     accounted: Vec6,
 }
 
-impl SolverJoint {
-    /// Tree of a joint, that of its first body which moves.
-    fn tree(&self, links: &[Link]) -> usize {
-        let link = links.get(self.a as usize).or_else(|| links.get(self.b as usize));
-        link.map_or(usize::MAX, |link| link.tree as usize)
-    }
-}
-
 /// How contacts and joints of an island come to agree. It decides how nearly and how soon they do, nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Coupling {
@@ -228,7 +218,6 @@ pub(crate) struct IslandSolver {
     trees: Vec<Range<usize>>,
     /// Trees of one shape, of an island by turns.
     batches: Batches,
-    followed: Followed,
     coupling: Coupling,
     loops: Loops,
     pins: Pins,
@@ -313,8 +302,6 @@ struct Scratch {
     contacted: Vec<Vec6>,
     /// Impulses of the limits.
     limits: Vec<f32>,
-    /// New places of limits that stand; none of others.
-    limit_places: Vec<u32>,
     /// Velocities that the joints of the substep are solved from.
     started: Vec<Vec6>,
     loads: loads::Scratch,
@@ -440,7 +427,6 @@ impl IslandSolver {
         self.store_joint_forces();
         self.add_solve_reactions();
         self.force_work = self.work_of_forces();
-        self.choose_followed();
         let h = self.h;
         let (moving, fixed) = self.bodies.split_at_mut(self.links.len());
         let (velocities, of_fixed) = self.velocities.split_at_mut(moving.len());
@@ -469,7 +455,6 @@ impl IslandSolver {
     /// Joint velocities to zero at the new pose (RATTLE), contacts and limits without bias, friction.
     pub fn relax(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         if core::mem::take(&mut self.displaced) {
-            self.follow_all();
             self.refresh(view, runner);
         }
         if !self.is_articulated() {
@@ -556,19 +541,18 @@ impl IslandSolver {
     /// exceeds the inertia, as row sums in the principal frame so that the block stays diagonal (Andrews et al. 2017):
     /// without it 1000:1 chains explode, with all of it a double pendulum loses 72 % of its energy in 20 s.
     fn refresh_inertia(&mut self) {
-        let Self { followed, bodies, joints, links, .. } = self;
-        for range in followed.ranges() {
-            bodies[range.clone()].iter_mut().for_each(|body| body.excess = Vec3::ZERO);
+        for body in &mut self.bodies[..self.links.len()] {
+            body.excess = Vec3::ZERO;
         }
         let h2 = self.h * self.h;
-        followed.each_joint(joints, links, |joint| {
+        for joint in &self.joints {
             for (body, arm, force) in
                 [(joint.a, joint.pose.arm_a, -joint.force), (joint.b, joint.pose.arm_b, joint.force)]
             {
                 // k_g = max(0, r·f)(1 − r̂ r̂ᵀ) with f the force on this body at its anchor.
                 let pull = arm.dot(force);
-                if pull > 0.0 && (body as usize) < links.len() {
-                    let body = &mut bodies[body as usize];
+                if pull > 0.0 && (body as usize) < self.links.len() {
+                    let body = &mut self.bodies[body as usize];
                     let axis = body.pose.rotation.inverse() * normalize_or(arm, Vec3::X);
                     let off = abs3(axis);
                     let row = Vec3::new(
@@ -579,10 +563,8 @@ impl IslandSolver {
                     body.excess += row * (pull * h2);
                 }
             }
-        });
-        for range in followed.ranges() {
-            dispatch::run(RefreshInertia(&mut bodies[range.clone()]));
         }
+        dispatch::run(RefreshInertia(&mut self.bodies[..self.links.len()]));
     }
 
     /// Which bodies carry rows, and how they answer to impulses.
@@ -610,10 +592,8 @@ impl IslandSolver {
         }
         self.response.choose(&self.links, self.trees.len(), wanted);
         self.loops.respond(&self.joints, &self.bodies, &self.links, &mut self.response);
-        if self.followed.are_all() {
-            self.columns.clear();
-            self.limit_blocks.clear(self.trees.len());
-        }
+        self.columns.clear();
+        self.limit_blocks.clear(self.trees.len());
         for rows in &mut self.manifolds {
             rows.columns = None;
         }

@@ -33,17 +33,17 @@ pub(super) enum Corrected {
 impl IslandSolver {
     /// Poses and rows of all joints.
     pub(super) fn refresh_joints(&mut self) {
-        let Self { followed, joints, links, bodies, .. } = self;
-        followed.each_joint(joints, links, |joint| {
-            let (a, b) = (&bodies[joint.a as usize].pose, &bodies[joint.b as usize].pose);
+        for joint in &mut self.joints {
+            let (a, b) = (&self.bodies[joint.a as usize].pose, &self.bodies[joint.b as usize].pose);
             joint.pose = JointPose::new(&joint.geometry, a, b);
-        });
+        }
         self.refresh_rows();
     }
 
     pub(super) fn refresh_rows(&mut self) {
-        let Self { followed, joints, links, velocities, h, .. } = self;
-        followed.each_joint(joints, links, |joint| joint.refresh_rows(velocities, *h));
+        for joint in &mut self.joints {
+            joint.refresh_rows(&self.velocities, self.h);
+        }
     }
 
     /// Rows of the tree joints and the factor of all trees.

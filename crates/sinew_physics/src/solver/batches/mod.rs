@@ -19,7 +19,7 @@ use super::sweep::Unrest;
 use super::tree::{Link, NONE};
 use super::{SolverBody, SolverJoint};
 use crate::joint::TWIST;
-use crate::spatial::{Vec6, angular};
+use crate::spatial::Vec6;
 use answer::AnswerRows;
 use core::ops::Range;
 use node::{Kind, Node, Site};
@@ -33,9 +33,6 @@ const OPEN: usize = 16;
 /// Most links of a tree in a batch: what the factor knows of them lies on the stack.
 const MOST_LINKS: usize = 32;
 
-/// Most that a link turns for its batch to stand, rad: directions are off by as much, and joints by that share of what they move.
-const STANDING_TURN: f32 = 0.01;
-
 /// Batches of an island.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Batches {
@@ -47,8 +44,6 @@ pub(super) struct Batches {
     /// Links of the trees that are solved alone.
     pub alone: Vec<Range<usize>>,
     shape: Vec<Site>,
-    /// Per tree.
-    standing: Vec<Standing>,
     /// Memory for solves.
     ways: Vec<Way>,
 }
@@ -72,23 +67,11 @@ pub(super) struct Batch {
     nodes: Vec<Node>,
 }
 
-/// Whether a tree stands as an earlier substep of the step left it.
-#[derive(Clone, Copy, Debug, Default)]
-struct Standing {
-    /// It has several links, and no springs, which ask for something else wherever they are.
-    may: bool,
-    /// Angle that a link may have turned by since the tree was factored, rad.
-    turned: f32,
-    now: bool,
-}
-
 impl Batches {
     /// For so many trees, also if there are none now: memory goes on to the next island.
     pub fn make_room(&mut self, trees: usize) {
         self.places.clear();
         self.places.reserve(trees);
-        self.standing.clear();
-        self.standing.reserve(trees);
         self.alone.clear();
         self.alone.reserve(trees + 1);
     }
@@ -98,7 +81,6 @@ impl Batches {
         self.used = 0;
         self.ways.resize(MOST_LINKS, Way::NONE);
         self.places.clear();
-        self.standing.clear();
         self.alone.clear();
         self.alone.push(0..links);
     }
@@ -108,7 +90,6 @@ impl Batches {
         self.clear(links.len());
         self.alone.clear();
         for (number, range) in trees.iter().enumerate() {
-            self.standing.push(Standing::default());
             if !self.read_shape(links, joints, range) {
                 self.places.push((NONE, NONE));
                 match self.alone.last_mut() {
@@ -129,7 +110,6 @@ impl Batches {
             let place = place.map_or_else(|| self.open(), |place| from + place);
             let batch = &mut self.batches[place];
             self.places.push((place as u32, batch.lanes as u32));
-            self.standing[number].may = range.len() > 1 && !is_sprung(&links[range.clone()], joints);
             batch.trees[batch.lanes..].fill(number as u32);
             batch.first[batch.lanes..].fill(range.start);
             batch.lanes += 1;
@@ -223,35 +203,10 @@ impl Batches {
 
     /// Takes on arms, axes and inertias at the present pose, and factors all trees.
     pub fn factor(&mut self, links: &[Link], joints: &[SolverJoint], bodies: &[SolverBody]) {
-        let Self { batches, used, standing, .. } = self;
-        for batch in &mut batches[..*used] {
-            if batch.gather((links, joints, bodies), standing) {
-                dispatch::run(factor::Factor(&mut batch.nodes));
-            }
+        for batch in &mut self.batches[..self.used] {
+            batch.gather(links, joints, bodies);
+            dispatch::run(factor::Factor(&mut batch.nodes));
         }
-    }
-
-    /// Before bodies move by their velocities for `h` seconds: which trees stand after that, of those that are not barred.
-    pub fn choose_standing(&mut self, trees: &[Range<usize>], velocities: &[Vec6], h: f32, barred: &[bool]) {
-        for (tree, standing) in self.standing.iter_mut().enumerate().filter(|(_, standing)| standing.may) {
-            standing.turned += most_turn(&velocities[trees[tree].clone()], h);
-            standing.now = standing.turned <= STANDING_TURN && !barred[tree];
-        }
-    }
-
-    /// All trees are factored anew.
-    pub fn let_none_stand(&mut self) {
-        self.standing.iter_mut().for_each(|standing| standing.now = false);
-    }
-
-    /// True of a tree that stands.
-    pub fn stand(&self, tree: usize) -> bool {
-        self.standing.get(tree).is_some_and(|standing| standing.now)
-    }
-
-    /// True if all trees are solved alone.
-    pub fn are_none(&self) -> bool {
-        self.used == 0
     }
 
     /// True of a tree that shares a batch.
@@ -266,43 +221,19 @@ impl Batches {
 }
 
 impl Batch {
-    /// Takes on trees that do not stand. False if all do.
-    fn gather(
-        &mut self,
-        (links, joints, bodies): (&[Link], &[SolverJoint], &[SolverBody]),
-        standing: &mut [Standing],
-    ) -> bool {
-        let Self { trees, first, lanes, nodes } = self;
-        let mut any = false;
-        for lane in 0..*lanes {
-            let standing = &mut standing[trees[lane] as usize];
-            if standing.now {
-                continue;
-            }
-            (standing.turned, any) = (0.0, true);
-            for (i, node) in nodes.iter_mut().enumerate() {
+    fn gather(&mut self, links: &[Link], joints: &[SolverJoint], bodies: &[SolverBody]) {
+        let Self { first, lanes, nodes, .. } = self;
+        for (i, node) in nodes.iter_mut().enumerate() {
+            for lane in 0..*lanes {
                 let local = first[lane] + i;
                 node.write_body(lane, &bodies[local]);
                 if let Some(joint) = joints.get(links[local].joint as usize) {
                     node.write_joint(lane, joint, joint.b as usize == local);
                 }
             }
+            node.fill(*lanes);
         }
-        if any {
-            nodes.iter_mut().for_each(|node| node.fill(*lanes));
-        }
-        any
     }
-}
-
-/// Most that one of these velocities turns a body by in `h` seconds, rad.
-fn most_turn(velocities: &[Vec6], h: f32) -> f32 {
-    velocities.iter().map(|v| angular(v).length_squared()).fold(0.0, max).sqrt() * h
-}
-
-/// True if springs act in a tree.
-fn is_sprung(links: &[Link], joints: &[SolverJoint]) -> bool {
-    links.iter().filter_map(|link| joints.get(link.joint as usize)).any(|joint| joint.drive.spring.is_some())
 }
 
 /// Elimination of a joint in a batch; `None` if it has to be solved alone.
