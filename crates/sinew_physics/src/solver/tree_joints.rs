@@ -11,7 +11,7 @@ use sinew_math::{Transform, dispatch, max, min};
 /// Most rounds of position corrections in a pass, likewise with many loops, and the error that needs none, m or rad.
 pub(super) const POSITION_CORRECTIONS: usize = 6;
 const POSITION_CORRECTIONS_ITERATED: usize = 1;
-pub(super) const POSITION_TOLERANCE: f32 = 1e-5;
+pub(super) const POSITION_TOLERANCE: f32 = 3e-6;
 /// Share of a tree's error that a round may leave at most for another to follow.
 const WORTH_ANOTHER: f32 = 0.9;
 /// Share of the largest coordinate that needs none either: one and a half of its last digits, which is what rounding of two positions
