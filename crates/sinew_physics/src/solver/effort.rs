@@ -21,7 +21,7 @@ pub(super) struct Effort {
     /// is a thirtieth of its speed (of a heap, a tenth), and the next substep goes on from there.
     pub small: f32,
     /// Speed at which a body of the island's mean mass has the energy that a sweep must change for another to follow, m/s; 0 where only
-    /// the tolerance ends them. Of sweeps by turns.
+    /// the tolerance ends them. Of islands with joints.
     pub enough: f32,
     pub order: Order,
     /// The sweep from which on those of free bodies are conjugate steps.
@@ -62,7 +62,8 @@ pub(super) enum Order {
     ToAndFro,
 }
 
-/// Of islands with joints that are swept with the response of all links.
+/// Of islands with joints that are swept with the response of all links. What a sweep changes is soon next to nothing: a quarter of all
+/// passes of falling figures went through all 24 for a thousandth of the first one's energy.
 const JOINTED: Effort = Effort {
     solve: 24,
     relax: 24,

@@ -15,8 +15,8 @@ const LIMIT_PUSH: f32 = 4.0;
 const LIMIT_MARGIN: f32 = 0.15;
 /// A limit may end a substep this far beyond where it should, radians or metres, before its row is tightened.
 const LIMIT_SLACK: f32 = 0.01;
-/// Most that the room of a stop bends away from its row's line, as a share of the square of the angle by which the faster of the two
-/// bodies turns, rad/rad²: near the middle of a cone or far beyond it; anywhere else it is below one.
+/// Most that the room of a stop may stray from its row's line, rad, per square of the angle by which the faster of the two bodies turns.
+/// Larger looks at more limits in vain; with less, a limb that turns fast passes a stop that curves away from its row.
 const BEND: f32 = 10.0;
 /// A hit turns linear speed into rotation over at least this lever, metres.
 const LEVER: f32 = 0.2;

@@ -8,10 +8,11 @@ use crate::joint::JointPose;
 use crate::spatial::{Vec6, ZERO6, add_scaled, largest, linear};
 use sinew_math::{Transform, dispatch, max, min};
 
-/// Most rounds of position corrections in a pass, likewise with many loops, and the error that needs none, m or rad.
+/// Most rounds of position corrections in a pass, likewise with many loops, and the error that needs none, m or rad. With 3e-6 a
+/// triple pendulum drifts by 1.3 % of its energy.
 pub(super) const POSITION_CORRECTIONS: usize = 6;
 const POSITION_CORRECTIONS_ITERATED: usize = 1;
-pub(super) const POSITION_TOLERANCE: f32 = 3e-6;
+pub(super) const POSITION_TOLERANCE: f32 = 1e-6;
 /// Share of a tree's error that a round may leave at most for another to follow.
 const WORTH_ANOTHER: f32 = 0.9;
 /// Share of the largest coordinate that needs none either: one and a half of its last digits, which is what rounding of two positions
