@@ -38,7 +38,7 @@ impl<'a> Fall<'a> {
     /// Adds what is wrong with the skin to the verdict.
     pub fn judge_skin(&mut self, flaws: &[Flaw]) {
         self.verdict = SkinQuality::verdict(flaws, self.verdict);
-        self.reasons.extend(flaws.iter().map(|flaw| format!("skin: {}", flaw.evidence)));
+        self.reasons.extend(flaws.iter().map(|flaw| format!("skin: {flaw}")));
     }
 
     /// The figures of the contract.

@@ -54,7 +54,7 @@ impl SkinReport {
         tested.verdict = SkinQuality::verdict(&self.flaws, tested.verdict);
         // Before what was not measured, which stands last.
         let at = tested.reasons.len().saturating_sub(1);
-        let said = self.flaws.iter().map(|flaw| format!("skin: {}", flaw.evidence));
+        let said = self.flaws.iter().map(|flaw| format!("skin: {flaw}"));
         tested.reasons.splice(at..at, said);
     }
 }

@@ -174,7 +174,9 @@ fn reasons(rows: &[Row]) -> String {
         for reason in said.filter(|reason| !reason.starts_with("hand-over")) {
             let _ = writeln!(text, "- {}: {reason}", row.file);
         }
-        for note in of_bake.as_array().into_iter().flatten().filter_map(Value::as_str) {
+        // That it stays down is what the command asked for.
+        let noted = of_bake.as_array().into_iter().flatten().filter_map(Value::as_str);
+        for note in noted.filter(|note| !note.starts_with("it does not get up")) {
             let _ = writeln!(text, "- {}, baked: {note}", row.file);
         }
     }

@@ -9,7 +9,7 @@ use super::humanoid::{Evidence, Humanoid, Limb, Split, Stance};
 use super::names::{Part, Reading, read_names, settle_duplicates, settle_trunk};
 use super::role::{Role, Side};
 use super::symmetry::Symmetry;
-use super::{NoSkin, RoleGuess};
+use super::{Basis, NoSkin, RoleGuess};
 use crate::rig::{JointIdx, Rig};
 use sinew_math::Vec3;
 
@@ -24,13 +24,6 @@ pub(super) struct Anatomy {
     pub left: Vec3,
     pub notes: Vec<String>,
 }
-
-/// Confidence of a role seen in the geometry: names agree, are silent, contradict.
-const CONFIDENCE: [f32; 3] = [0.95, 0.8, 0.5];
-/// Confidence of a role that only the names tell.
-const CONFIDENCE_NAMED: f32 = 0.6;
-/// Confidence of a generic role.
-const CONFIDENCE_GENERIC: f32 = 0.6;
 
 /// Share of all skin from which a joint named as a control counts as a bone. It need not be enough for a body: a hoof too small
 /// for one must still go with its leg.
@@ -154,7 +147,7 @@ impl<'a> Scene<'a> {
             }
         }
         let missing: Vec<Role> = needed().filter(|role| all.iter().all(|(other, _)| other != role)).collect();
-        let mut draft = self.draft_of(all, CONFIDENCE_NAMED).ok_or(missing)?;
+        let mut draft = self.draft_of(all, Basis::Name).ok_or(missing)?;
         self.add_named(&mut draft.roles);
         Ok(draft)
     }
@@ -222,7 +215,7 @@ impl<'a> Scene<'a> {
         let first = if left.dot(self.symmetry.lateral) > 0.0 { Side::Left } else { Side::Right };
         let mut roles = vec![None; self.rig.joints.len()];
         let mut set_joint = |joint: JointIdx, role: Role| {
-            roles[joint] = Some(RoleGuess { role, confidence: confidence(role, &self.readings[joint]) });
+            roles[joint] = Some(RoleGuess::new(role, basis(role, &self.readings[joint])));
         };
         let parts = [Role::Spine, Role::Chest, Role::UpperChest];
         let spine = self.with_bare(&found.spine, Part::Spine);
@@ -289,7 +282,7 @@ impl<'a> Scene<'a> {
                 reading.part == Some(part) && roles[joint].is_none() && (part == Part::Neck || same_side)
             };
             if let Some(joint) = (0..roles.len()).find(named) {
-                roles[joint] = Some(RoleGuess { role, confidence: CONFIDENCE_NAMED });
+                roles[joint] = Some(RoleGuess::new(role, Basis::Name));
             }
         };
         add(Role::Neck, Part::Neck, Role::Head);
@@ -310,7 +303,7 @@ impl<'a> Scene<'a> {
     fn stated_draft(&self) -> Option<Draft> {
         let stated = self.rig.stated_roles.iter();
         let known = stated.filter_map(|(name, joint)| Some((Role::from_name(name)?, *joint)));
-        self.draft_of(known.filter(|&(_, joint)| joint < self.rig.joints.len()).collect(), 1.0)
+        self.draft_of(known.filter(|&(_, joint)| joint < self.rig.joints.len()).collect(), Basis::Stated)
     }
 
     /// Roles that trusted names tell, if they make a body and the hands do not walk on the floor.
@@ -338,7 +331,7 @@ impl<'a> Scene<'a> {
         found.extend(self.with_bare(&necks, Part::Neck).first().map(|&neck| (Role::Neck, neck)));
         let spine = self.with_bare(&spine, Part::Spine);
         found.extend(thirds(spine.len()).zip(parts).map(|(place, role)| (role, spine[place])));
-        let mut draft = self.draft_of(found, CONFIDENCE_NAMED)?;
+        let mut draft = self.draft_of(found, Basis::Name)?;
         self.add_named(&mut draft.roles);
         let stance = Stance::new(self.bound, draft.up);
         let level = |role: Role| {
@@ -373,7 +366,7 @@ impl<'a> Scene<'a> {
     }
 
     /// A draft from known roles; `None` if hips, head, or one of the upper and lower limbs is missing.
-    fn draft_of(&self, known: Vec<(Role, JointIdx)>, confidence: f32) -> Option<Draft> {
+    fn draft_of(&self, known: Vec<(Role, JointIdx)>, basis: Basis) -> Option<Draft> {
         let joint_of = |role: Role| known.iter().find(|(r, _)| *r == role).map(|&(_, joint)| joint);
         let place = |role: Role| joint_of(role).map(|joint| self.bound.model[joint].translation);
         let up = snap(place(Role::Head)? - place(Role::Hips)?);
@@ -387,7 +380,7 @@ impl<'a> Scene<'a> {
         }
         let mut roles = vec![None; self.rig.joints.len()];
         for (role, joint) in known {
-            roles[joint] = Some(RoleGuess { role, confidence });
+            roles[joint] = Some(RoleGuess::new(role, basis));
         }
         Some(Draft { roles, humanoid: true, up, left })
     }
@@ -409,7 +402,7 @@ impl<'a> Scene<'a> {
             self.graph.nodes.iter().map(|node| self.readings[node.joint].part).collect();
         let generic = generic_roles(&self.graph, &self.symmetry, left, &parts);
         for (node, role) in self.graph.nodes.iter().zip(generic) {
-            roles[node.joint] = Some(RoleGuess { role, confidence: CONFIDENCE_GENERIC });
+            roles[node.joint] = Some(RoleGuess::new(role, Basis::Place));
         }
         Draft { roles, humanoid: false, up, left }
     }
@@ -466,15 +459,15 @@ fn leg_roles(legs: &Limb, k: usize, side: Side) -> Vec<(usize, Role)> {
     roles
 }
 
-fn confidence(role: Role, reading: &Reading) -> f32 {
-    let [agree, silent, contradict] = CONFIDENCE;
-    let Some(part) = reading.part else { return silent };
+/// Evidence for a role seen in the geometry.
+fn basis(role: Role, reading: &Reading) -> Basis {
+    let Some(part) = reading.part else { return Basis::Shape };
     // Rigify and CesiumMan count the pelvis among the spine.
     if role == Role::Hips && part == Part::Spine {
-        return silent;
+        return Basis::Shape;
     }
     let wrong_side = reading.side.is_some() && role.side().is_some() && reading.side != role.side();
-    if part_of(role) == Some(part) && !wrong_side { agree } else { contradict }
+    if part_of(role) == Some(part) && !wrong_side { Basis::ShapeAndName } else { Basis::ShapeAgainstName }
 }
 
 fn part_of(role: Role) -> Option<Part> {

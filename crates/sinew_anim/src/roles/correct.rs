@@ -2,7 +2,7 @@
 
 use super::anatomy::{Draft, Scene};
 use super::role::{HUMANOID_ROLES, Role};
-use super::{NoSkin, RoleGuess};
+use super::{Basis, NoSkin, RoleGuess};
 use crate::rig::{JointIdx, Primitive, Rig};
 use std::borrow::Cow;
 
@@ -209,6 +209,6 @@ fn assign(draft: &mut Draft, role: Role, joint: JointIdx) -> Result<(), Correcti
         let changes = |guess: &RoleGuess| !draft.humanoid || guess.role == role.mirror();
         draft.roles[holder] = before.filter(changes);
     }
-    draft.roles[joint] = Some(RoleGuess { role, confidence: 1.0 });
+    draft.roles[joint] = Some(RoleGuess::new(role, Basis::Stated));
     Ok(())
 }

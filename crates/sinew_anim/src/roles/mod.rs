@@ -38,6 +38,55 @@ pub struct RoleGuess {
     pub role: Role,
     /// 0..=1; 1 where the file itself states the role.
     pub confidence: f32,
+    /// Evidence for it.
+    pub basis: Basis,
+}
+
+impl RoleGuess {
+    fn new(role: Role, basis: Basis) -> Self {
+        Self { role, confidence: basis.confidence(), basis }
+    }
+}
+
+/// Evidence that a role rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Basis {
+    /// The file, or whoever corrects it, says so.
+    Stated,
+    /// Shape and name agree.
+    ShapeAndName,
+    /// The shape alone: the name says nothing.
+    Shape,
+    /// The shape, while the name says something else.
+    ShapeAgainstName,
+    /// The name alone: the shape does not show it.
+    Name,
+    /// The place in a body that is no human's.
+    Place,
+}
+
+impl Basis {
+    /// Evidence in words, such as `shape and name`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stated => "stated",
+            Self::ShapeAndName => "shape and name",
+            Self::Shape => "shape",
+            Self::ShapeAgainstName => "shape, against its name",
+            Self::Name => "name",
+            Self::Place => "place in the body",
+        }
+    }
+
+    fn confidence(self) -> f32 {
+        match self {
+            Self::Stated => 1.0,
+            Self::ShapeAndName => 0.95,
+            Self::Shape => 0.8,
+            Self::ShapeAgainstName => 0.5,
+            Self::Name | Self::Place => 0.6,
+        }
+    }
 }
 
 /// A joint that deserves a body.

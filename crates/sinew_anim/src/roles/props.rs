@@ -6,7 +6,7 @@
 use super::bind::Bound;
 use super::keep::Kept;
 use super::role::Role;
-use super::{KeptBone, RoleGuess};
+use super::{Basis, KeptBone, RoleGuess};
 use crate::rig::{JointIdx, Rig};
 use crate::skinning::skin_vertices;
 use sinew_math::{Vec3, max, max3, min3};
@@ -151,7 +151,7 @@ fn insert(rig: &Rig, bound: &Bound, kept: &mut Kept, roles: &mut [Option<RoleGue
         _ => None,
     });
     let role = Role::LimbSegment { limb: limbs.max().unwrap_or(0), segment: 0 };
-    roles[joint] = Some(RoleGuess { role, confidence: CONFIDENCE });
+    roles[joint] = Some(RoleGuess { confidence: CONFIDENCE, ..RoleGuess::new(role, Basis::Place) });
     for &at in &own {
         kept.merge_into[at] = Some(joint);
     }

@@ -1,6 +1,6 @@
 use crate::{rigs, toy};
 use expect_test::{Expect, expect};
-use sinew_anim::{LocalTransform, NoSkin, Rig, RigAnalysis, Role, Side, analyze};
+use sinew_anim::{Basis, LocalTransform, NoSkin, Rig, RigAnalysis, Role, Side, analyze};
 use sinew_math::{Affine, Random, Rotation, Vec3};
 
 /// Bodies as lines of role, parent role, confidence and joint name, before them what the body as a whole is like.
@@ -378,6 +378,9 @@ fn a_body_without_names_is_recognised() {
     }
     // Bodies come in the order of the roles, the toy's joints too.
     assert_eq!(table(&rig, &found), expected);
+    assert!(found.roles.iter().flatten().all(|guess| guess.basis == Basis::Shape));
+    let named = analyze(&toy::body(Role::name)).expect("a skin");
+    assert!(named.roles.iter().flatten().all(|guess| guess.basis == Basis::ShapeAndName));
 }
 
 #[test]
@@ -394,7 +397,7 @@ fn names_stand_in_where_the_shape_is_not_symmetric() {
     assert!(found.humanoid, "{:?}", found.notes);
     for (joint, (name, ..)) in toy::BODY.iter().enumerate() {
         assert_eq!(found.roles[joint].map(|guess| guess.role.name()).as_deref(), Some(*name));
-        assert!(found.roles[joint].is_some_and(|guess| guess.confidence < 0.7));
+        assert!(found.roles[joint].is_some_and(|guess| guess.confidence < 0.7 && guess.basis == Basis::Name));
     }
 }
 
@@ -405,6 +408,7 @@ fn feet_that_contradict_the_names_win_and_say_so() {
     let hand = found.joint_with(Role::Hand(Side::Left)).expect("a left hand");
     assert_eq!(rig.joints[hand].name, "rightHand");
     assert!(found.roles[hand].is_some_and(|guess| guess.confidence <= 0.5));
+    assert_eq!(found.roles[hand].map(|guess| guess.basis), Some(Basis::ShapeAgainstName));
     assert!(found.notes.iter().any(|note| note.contains("the feet count")), "{:?}", found.notes);
 }
 
@@ -415,6 +419,7 @@ fn roles_that_the_file_states_are_taken_at_their_word() {
         toy::BODY.iter().enumerate().map(|(joint, (name, ..))| ((*name).into(), joint)).collect();
     let found = analyze(&rig).expect("a skin");
     assert!(found.kept.iter().all(|bone| bone.confidence == 1.0));
+    assert!(found.roles.iter().flatten().all(|guess| guess.basis == Basis::Stated));
     assert_eq!(found.kept.len(), toy::BODY.len());
 }
 

@@ -202,6 +202,20 @@ fn a_list_level_by_level_is_shown_as_a_tree() {
 }
 
 #[test]
+fn a_role_says_what_it_rests_on() {
+    let folder = Folder::new("rests-on");
+    let file = folder.mannequin();
+    let object = sinew(&["inspect", &file, "--json"]).json();
+    let joints = object["joints"].as_array().expect("joints");
+    for joint in joints {
+        assert_eq!(joint["role"].is_null(), joint["rests_on"].is_null(), "{joint}");
+    }
+    assert!(joints.iter().any(|joint| joint["rests_on"] == "shape and name"), "{object:#}");
+    let text = sinew(&["inspect", &file]).stdout;
+    assert!(text.contains("rests on") && text.contains("shape and name"), "{text}");
+}
+
+#[test]
 fn every_shape_of_a_body_is_in_the_contract() {
     let contract = include_str!("../../../../docs/contract.md");
     let source = include_str!("../../src/ragdoll_report.rs");

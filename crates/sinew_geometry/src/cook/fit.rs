@@ -42,20 +42,33 @@ pub(super) fn cluster(weighted: impl Iterator<Item = (Vec3, f32)>) -> Vec<(Vec3,
     /// Beyond these, the rest of a round surface tells nothing new.
     const MOST: usize = 24;
     let mut clusters: Vec<(Vec3, f32)> = Vec::new();
+    // Weight of each that is along the world's axes.
+    let mut along: Vec<Vec3> = Vec::new();
     for (direction, weight) in weighted {
         let same = |(sum, _): &(Vec3, f32)| direction.dot(normalize_or(*sum, Vec3::Y)).abs() > SAME;
-        match clusters.iter().position(same) {
+        let at = match clusters.iter().position(same) {
             Some(at) => {
                 let (sum, total) = &mut clusters[at];
                 *sum += direction * if sum.dot(direction) < 0.0 { -weight } else { weight };
                 *total += weight;
+                at
             }
-            None if clusters.len() < MOST => clusters.push((direction * weight, weight)),
-            None => {}
+            None if clusters.len() < MOST => {
+                clusters.push((direction * weight, weight));
+                along.push(Vec3::ZERO);
+                clusters.len() - 1
+            }
+            None => continue,
+        };
+        if let Some(axis) = axis_along(direction) {
+            along[at][axis] += weight;
         }
     }
-    for (sum, _) in &mut clusters {
-        *sum = normalize_or(*sum, Vec3::Y);
+    for ((sum, total), along) in clusters.iter_mut().zip(along) {
+        // Level treads with worn edges are level.
+        let axis = (0..3).find(|&axis| along[axis] >= 0.5 * *total);
+        let direction = axis.map_or(*sum, |axis| Vec3::AXES[axis] * Vec3::AXES[axis].dot(*sum));
+        *sum = normalize_or(direction, Vec3::Y);
     }
     clusters.sort_by(|a, b| b.1.total_cmp(&a.1));
     clusters
@@ -77,7 +90,11 @@ pub(super) fn orientations(directions: &[(Vec3, f32)]) -> impl Iterator<Item = R
 
 /// The world's axis that a direction is along but for noise, else itself.
 fn snap(direction: Vec3) -> Vec3 {
-    Vec3::AXES.into_iter().find(|axis| axis.dot(direction).abs() > LEVEL).unwrap_or(direction)
+    axis_along(direction).map_or(direction, |axis| Vec3::AXES[axis])
+}
+
+fn axis_along(direction: Vec3) -> Option<usize> {
+    (0..3).find(|&axis| direction[axis].abs() > LEVEL)
 }
 
 /// A rotation whose axes are, in some order and sign, x, y and their cross product: the one closest to the identity,

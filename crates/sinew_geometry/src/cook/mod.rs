@@ -12,6 +12,7 @@
 //!    to merge would take the square of the time.
 //! 5. Steps that add least to the squared distance between the surfaces, dropping a box or merging two, follow until
 //!    no more are left than were asked for.
+//! 6. A box on which one can stand is laid against the ground that it stands for: treads stay level, and as high as drawn.
 
 mod box_set;
 mod bvh;
@@ -24,6 +25,7 @@ mod mesh;
 mod plates;
 mod reduce;
 mod sample;
+mod settle;
 mod solid;
 
 pub use bvh::{ClosestPoint, MeshBvh};

@@ -5,6 +5,7 @@ use super::bvh::MeshBvh;
 use super::fit::{cluster, orientations};
 use super::fitted::{around, bounds, sample_surface};
 use super::sample::MeshPoint;
+use super::settle::settled;
 use super::solid::is_seen_from_inside;
 use crate::boxes::{Aabb, Cuboid, Obb, Overlap, PlacedBox};
 use sinew_math::{Random, Rotation, Vec3, max3, min};
@@ -97,7 +98,13 @@ impl<'a> Reduction<'a> {
             self.apply(step);
             tick(self.left);
         }
-        self.entries.iter().filter(|entry| entry.alive).map(|entry| entry.block).collect()
+        let alive = self.entries.iter().filter(|entry| entry.alive);
+        alive
+            .map(|entry| {
+                let points: Vec<MeshPoint> = entry.points.iter().map(|&p| self.points[p as usize]).collect();
+                settled(entry.block, &points, self.scale)
+            })
+            .collect()
     }
 
     /// The area that a step concerns, square metres.

@@ -141,6 +141,51 @@ fn every_step_of_a_flight_is_a_box() {
     }
 }
 
+/// A closed flight of steps whose treads are level but for a worn edge: the last `worn` of the run falls by `drop`.
+fn worn_stairs(steps: usize, [rise, run, width]: [f32; 3], worn: f32, drop: f32) -> Mesh {
+    let mut outline: Vec<[f32; 2]> = (0..=steps).map(|k| [k as f32 * run, 0.0]).collect();
+    for step in 0..steps {
+        let (x, y) = ((steps - step) as f32 * run, (step + 1) as f32 * rise);
+        outline.extend([[x, y - drop], [x - worn * run, y], [x - run, y]]);
+    }
+    let pieces: Vec<Vec<usize>> = (0..steps)
+        .map(|k| {
+            let top = steps + 1 + 3 * (steps - 1 - k);
+            vec![k, k + 1, top, top + 1, top + 2]
+        })
+        .collect();
+    let pieces: Vec<&[usize]> = pieces.iter().map(Vec::as_slice).collect();
+    Mesh::prism(&outline, &pieces, width)
+}
+
+#[test]
+fn a_tread_stays_level_and_as_high_as_it_was_drawn() {
+    let [rise, run, width] = [0.18, 0.30, 1.2];
+    let about = Rotation::from_axis_angle(Vec3::Y, 0.4);
+    for (worn, drop) in [(0.0, 0.0), (0.4, 0.02), (0.45, 0.022)] {
+        let mut mesh = worn_stairs(6, [rise, run, width], worn, drop);
+        for position in &mut mesh.positions {
+            *position = about * *position;
+        }
+        let cooked = mesh.cook(150);
+        for step in 0..6 {
+            let height = (6 - step) as f32 * rise;
+            // Behind the worn part.
+            let at = about * Vec3::new((step as f32 + 0.25) * run, height, 0.5 * width);
+            let under = cooked.boxes.iter().filter(|block| block.signed_distance(at - Vec3::Y * 0.04) < 0.0);
+            let found = under.map(|block| {
+                let up = block.rotation * Vec3::Y;
+                (block.center.dot(up) + block.half_extents.y - at.dot(up), up.y)
+            });
+            let (off, up) = found.fold((f32::NEG_INFINITY, 0.0), |a, b| if b.0 > a.0 { b } else { a });
+            assert!(
+                off.abs() < 2e-3 && up > 0.999_999,
+                "{worn}, step {step}: {off} m off, up {up}: {cooked:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn a_ball_of_boxes_is_a_ball_within_the_tolerance() {
     let mesh = Mesh::sphere(1.0, 16);

@@ -55,10 +55,18 @@ pub struct Flaw {
     pub kind: FlawKind,
     /// What was measured against which bar, a sentence.
     pub evidence: String,
+    /// Option or setting that helps, with the bones it is about.
+    pub remedy: String,
     /// Bodies to look at, by index in the definition.
     pub bodies: Vec<usize>,
     /// Their bones.
     pub bones: Vec<String>,
+}
+
+impl core::fmt::Display for Flaw {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "{}; {}", self.evidence, self.remedy)
+    }
 }
 
 impl SkinQuality {
@@ -103,7 +111,8 @@ impl SkinQuality {
         if self.worst.adrift > 0 {
             said += &format!("; {:.1} % hang on no body", self.worst.adrift as f32 / 10.0);
         }
-        Some(who.flaw(FlawKind::Uncovered, said, self.worst.uncovered.as_slice()))
+        let remedy = who.body_or_shape(self.worst.uncovered, self.worst.uncovered_joint.as_deref());
+        Some(who.flaw(FlawKind::Uncovered, said, remedy, self.worst.uncovered.as_slice()))
     }
 
     fn torn(&self, who: &Who<'_>) -> Option<Flaw> {
@@ -120,8 +129,10 @@ impl SkinQuality {
             cm(bar(0)),
             cm(bar(1)),
         );
+        let remedy =
+            "--body BONE gives what stays behind a body, --role ROLE=BONE says what it is".to_owned();
         let Some((a, b)) = self.worst.torn else {
-            return Some(who.flaw(FlawKind::Torn, said, &[]));
+            return Some(who.flaw(FlawKind::Torn, said, remedy, &[]));
         };
         let (a_name, b_name) = (who.name(a), who.name(b));
         said += &if a == b {
@@ -130,7 +141,7 @@ impl SkinQuality {
             format!("; worst between {a_name} and {b_name}")
         };
         let bodies = [a, b];
-        Some(who.flaw(FlawKind::Torn, said, if a == b { &bodies[..1] } else { &bodies }))
+        Some(who.flaw(FlawKind::Torn, said, remedy, if a == b { &bodies[..1] } else { &bodies }))
     }
 
     fn lopsided(&self, who: &Who<'_>) -> Option<Flaw> {
@@ -141,7 +152,9 @@ impl SkinQuality {
         let cm = 100.0 * self.symmetry_error_m;
         let of = self.worst.unlike.map_or(String::new(), |body| format!("{} and ", who.name(body)));
         let said = format!("{of}its mirror image differ by {cm:.1} cm, more than {:.1} cm", 100.0 * bar);
-        Some(who.flaw(FlawKind::Lopsided, said, self.worst.unlike.as_slice()))
+        let remedy =
+            "a role without its side in the settings (`bones`) sets shape, scale or mass of both".to_owned();
+        Some(who.flaw(FlawKind::Lopsided, said, remedy, self.worst.unlike.as_slice()))
     }
 
     fn apart(&self, who: &Who<'_>) -> Option<Flaw> {
@@ -156,7 +169,9 @@ impl SkinQuality {
             }
             _ => "a body hangs on one that it does not grow from".to_owned(),
         };
-        Some(who.flaw(FlawKind::Apart, said, body.as_slice()))
+        let bone = body.map_or("BONE", |body| who.0.bodies[body].bone.as_str());
+        let remedy = format!("--role ROLE={bone} says what it is, --no-body {bone} leaves it without a body");
+        Some(who.flaw(FlawKind::Apart, said, remedy, body.as_slice()))
     }
 
     fn resized(&self, who: &Who<'_>) -> Option<Flaw> {
@@ -167,7 +182,8 @@ impl SkinQuality {
             "drawn by its nodes it is {:.3} m high, bound {:.3} m",
             self.drawn_height_m, self.bind_height_m
         );
-        Some(who.flaw(FlawKind::Resized, said, &[]))
+        let remedy = "apply the nodes' scales in the modelling tool and export anew".to_owned();
+        Some(who.flaw(FlawKind::Resized, said, remedy, &[]))
     }
 
     fn off_floor(&self, who: &Who<'_>) -> Option<Flaw> {
@@ -186,7 +202,16 @@ impl SkinQuality {
         } else {
             format!("at rest {what} is {cm:.1} cm above the floor, more than {:.1} cm", 100.0 * raised)
         };
-        Some(who.flaw(FlawKind::OffFloor, said, self.worst.lowest.as_slice()))
+        let remedy = match self.worst.lowest {
+            Some(body) if cm > 0.0 => {
+                format!(
+                    "a `scale` below 1 of {} in the settings makes its shape smaller",
+                    who.0.bodies[body].bone
+                )
+            }
+            lowest => who.body_or_shape(lowest, self.worst.lowest_joint.as_deref()),
+        };
+        Some(who.flaw(FlawKind::OffFloor, said, remedy, self.worst.lowest.as_slice()))
     }
 
     fn airborne(&self, who: &Who<'_>) -> Option<Flaw> {
@@ -195,7 +220,8 @@ impl SkinQuality {
             return None;
         }
         let said = format!("it is calm and touches nothing for {seconds:.2} s, more than {AIRBORNE} s");
-        Some(who.flaw(FlawKind::Airborne, said, &[]))
+        let remedy = "please report it with the file: what nothing holds must fall".to_owned();
+        Some(who.flaw(FlawKind::Airborne, said, remedy, &[]))
     }
 }
 
@@ -209,8 +235,24 @@ impl Who<'_> {
         if body.role == body.bone { body.role.clone() } else { format!("{} ({})", body.role, body.bone) }
     }
 
-    fn flaw(&self, kind: FlawKind, said: String, bodies: &[usize]) -> Flaw {
+    /// What helps where skin is far from a body: one for the joint that moves it, or a larger shape where there is none such.
+    fn body_or_shape(&self, body: Option<usize>, joint: Option<&str>) -> String {
+        match (body, joint.filter(|joint| !joint.is_empty())) {
+            (_, Some(joint)) => {
+                format!("--body {joint} gives that part a body of its own, --ignore {joint} leaves it out")
+            }
+            (Some(body), None) => {
+                format!(
+                    "a `scale` above 1 of {} in the settings makes its shape larger",
+                    self.0.bodies[body].bone
+                )
+            }
+            (None, None) => "--body BONE gives a part a body, --ignore BONE leaves it out".to_owned(),
+        }
+    }
+
+    fn flaw(&self, kind: FlawKind, evidence: String, remedy: String, bodies: &[usize]) -> Flaw {
         let bones = bodies.iter().map(|&body| self.0.bodies[body].bone.clone()).collect();
-        Flaw { kind, evidence: said, bodies: bodies.to_vec(), bones }
+        Flaw { kind, evidence, remedy, bodies: bodies.to_vec(), bones }
     }
 }

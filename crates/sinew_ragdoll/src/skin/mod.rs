@@ -14,7 +14,7 @@ use crate::doctor::bones_of;
 use crate::mapping::{Mapping, Physical};
 use crate::quality::Fallen;
 pub use judge::{Flaw, FlawKind};
-use sinew_anim::{LocalTransform, Rig, Take, local_to_model, rest_pose};
+use sinew_anim::{JointIdx, LocalTransform, Rig, Take, local_to_model, rest_pose};
 use sinew_math::{Affine, Transform, Vec3, max, max3, min3};
 use stretch::{Stretch, Stretched};
 use surface::{Side, Surface};
@@ -64,6 +64,8 @@ pub struct SkinQuality {
 pub struct Worst {
     /// Has the most vertices that are not covered.
     pub uncovered: Option<usize>,
+    /// Name of the joint that moves most of these, where it has no body of its own.
+    pub uncovered_joint: Option<String>,
     /// Vertices that no body moves at all, of a thousand.
     pub adrift: u32,
     /// Moves an end of the side that is stretched most; the other end's stands second.
@@ -74,6 +76,8 @@ pub struct Worst {
     pub apart: Option<usize>,
     /// Moves the lowest point at rest.
     pub lowest: Option<usize>,
+    /// Name of the joint that moves it, where that has no body of its own.
+    pub lowest_joint: Option<String>,
 }
 
 impl SkinQuality {
@@ -122,6 +126,8 @@ pub struct SkinMeter<'a> {
     to_character: Affine,
     stretch: Stretch,
     skin: SkinQuality,
+    /// Joints that have a body of their own.
+    own: Vec<JointIdx>,
     model: Vec<Affine>,
     palette: Vec<Affine>,
 }
@@ -143,13 +149,15 @@ impl<'a> SkinMeter<'a> {
         let (low, high) = bounds(&surface, &palette, &to_character);
         let size = size(def, low, high);
         let mut skin = SkinQuality { size, bind_height_m: high.y - low.y, ..SkinQuality::default() };
-        cover(&mut skin, &surface, def, &palette, &to_character);
+        let bare = cover(&mut skin, &surface, def, &palette, &to_character);
+        skin.worst.uncovered_joint = without_body(rig, def, skin.worst.uncovered, bare);
         let bones = bones_of(def);
         (skin.symmetry_error_m, skin.worst.unlike) = sides::symmetry_error(def, &bones, size);
         skin.worst.apart = sides::apart(def, &bones, &surface.links(), size);
         skin.contiguous = skin.worst.apart.is_none();
         let model = Vec::new();
-        let mut meter = Self { rig, surface, mapping, to_character, stretch, skin, model, palette };
+        let own = def.bodies.iter().map(|body| body.joint).collect();
+        let mut meter = Self { rig, surface, mapping, to_character, stretch, skin, own, model, palette };
         meter.draw_bound(def);
         meter.look_at_clips(takes);
         meter
@@ -204,6 +212,8 @@ impl<'a> SkinMeter<'a> {
         let skin = &mut self.skin;
         if lowest.0.is_finite() && skin.rest_height_m.is_none_or(|known| lowest.0.abs() > known.abs()) {
             (skin.rest_height_m, skin.worst.lowest) = (Some(lowest.0), self.surface.owner(lowest.1));
+            let joint = self.surface.mover(lowest.1).filter(|joint| !self.own.contains(joint));
+            skin.worst.lowest_joint = joint.map(|joint| self.rig.joints[joint].name.clone());
         }
     }
 
@@ -264,13 +274,32 @@ fn size(def: &RagdollDef, low: Vec3, high: Vec3) -> f32 {
     max(size, 1e-6)
 }
 
+/// Name of the joint that moves most of a body's bare vertices, unless it is the body's own.
+fn without_body(
+    rig: &Rig,
+    def: &RagdollDef,
+    body: Option<usize>,
+    mut bare: Vec<(usize, JointIdx)>,
+) -> Option<String> {
+    let body = body?;
+    bare.retain(|(owner, _)| *owner == body);
+    bare.sort_unstable();
+    let runs = bare.chunk_by(|a, b| a == b);
+    let most = runs.reduce(|a, b| if b.len() > a.len() { b } else { a })?;
+    let joint = most[0].1;
+    (joint != def.bodies[body].joint).then(|| rig.joints[joint].name.clone())
+}
+
+/// Writes which share of the skin is near its body, and who has most of the rest; gives that rest: the body that moves each vertex
+/// and the joint.
 fn cover(
     skin: &mut SkinQuality,
     surface: &Surface,
     def: &RagdollDef,
     bound: &[Affine],
     to_character: &Affine,
-) {
+) -> Vec<(usize, JointIdx)> {
+    let mut rest = Vec::new();
     let tolerance = skin.tolerance();
     let mut bare = vec![0_u32; def.bodies.len()];
     let (mut covered, mut adrift) = (0_u32, 0_u32);
@@ -289,6 +318,7 @@ fn cover(
             covered += 1;
         } else {
             bare[owner] += 1;
+            rest.extend(surface.mover(vertex).map(|joint| (owner, joint)));
         }
     }
     let all = max(surface.sample.len() as f32, 1.0);
@@ -296,4 +326,5 @@ fn cover(
     skin.worst.adrift = (1000.0 * adrift as f32 / all) as u32;
     let most = (0..bare.len()).reduce(|a, b| if bare[b] > bare[a] { b } else { a });
     skin.worst.uncovered = most.filter(|&body| bare[body] > 0);
+    rest
 }

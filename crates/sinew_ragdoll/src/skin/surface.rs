@@ -108,6 +108,17 @@ impl Surface {
         self.sides.iter().filter_map(link).filter(|(a, b)| a != b).collect()
     }
 
+    /// The joint on a body that moves a vertex most; `None` where none does.
+    pub fn mover(&self, vertex: usize) -> Option<JointIdx> {
+        let Vertex { slots, weights, .. } = self.vertices[vertex];
+        let on_bodies = slots
+            .into_iter()
+            .zip(weights)
+            .filter(|&(slot, weight)| weight > 0.0 && self.owners[slot as usize].is_some());
+        let most = on_bodies.reduce(|a, b| if b.1 > a.1 { b } else { a });
+        most.map(|(slot, _)| self.slots[slot as usize].joint)
+    }
+
     /// The body that moves a vertex most; `None` where none does.
     pub fn owner(&self, vertex: usize) -> Option<usize> {
         self.pulls(vertex).reduce(|a, b| if b.1 > a.1 { b } else { a }).map(|(body, _)| body)

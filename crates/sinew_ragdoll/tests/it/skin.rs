@@ -121,7 +121,13 @@ fn floating_and_sunk_meshes_are_seen() {
         let falls = subject.lifted(height);
         let skin = subject.over(&falls);
         assert!(skin.rest_height_m.is_some_and(|found| (found - height).abs() < 1e-3), "{height}: {skin:?}");
-        assert_eq!(kinds(&skin.flaws(&subject.def)), expected, "{height}");
+        let flaws = skin.flaws(&subject.def);
+        assert_eq!(kinds(&flaws), expected, "{height}");
+        // Named is the setting that helps, and which way.
+        for flaw in flaws {
+            let way = if height > 0.0 { "below 1 of" } else { "above 1 of" };
+            assert!(flaw.remedy.contains("`scale`") && flaw.remedy.contains(way), "{flaw}");
+        }
     }
     let mut falls = subject.lifted(0.0);
     falls[0].airborne_s = 0.5;

@@ -164,7 +164,7 @@ impl Bake {
         let is_level = self.world.is_none() && place.stands.translation.y == self.floor.unwrap_or(0.0);
         let skin = SkinReport::of_bake(&file, &fall, is_level);
         fall.judge_skin(&skin.flaws);
-        notes.extend(skin.flaws.iter().map(|flaw| format!("skin: {}", flaw.evidence)));
+        notes.extend(skin.flaws.iter().map(|flaw| format!("skin: {flaw}")));
         notes.extend(self.write(&file, &fall)?);
         let mut report = self.report(&file, &fall, &once(notes));
         report.json["skin"] = skin_json(&skin.figures);

@@ -75,6 +75,7 @@ impl Content<'_> {
             "parent": own.parent,
             "role": guess.map(|guess| guess.role.name()),
             "confidence": guess.map(|guess| number(guess.confidence)),
+            "rests_on": guess.map(|guess| guess.basis.name()),
             "has_body": self.has_body(joint),
         })
     }
@@ -143,7 +144,7 @@ impl Content<'_> {
                 None => open.push((index, 0)),
             }
         }
-        let mut table = Table::titled(&["joint", "role", "confidence"]);
+        let mut table = Table::titled(&["joint", "role", "confidence", "rests on"]);
         while let Some((index, depth)) = open.pop() {
             open.extend(children[index].iter().map(|&child| (child, depth + 1)));
             let joint = &joints[index];
@@ -153,7 +154,8 @@ impl Content<'_> {
             let guess = self.motion.analysis.as_ref().and_then(|analysis| analysis.roles[index]);
             let role = guess.map_or(String::new(), |guess| guess.role.name());
             let confidence = guess.map_or(String::new(), |guess| format!("{:.2}", guess.confidence));
-            table.row([format!("{indent}{}{star}", shown(&joint.name)), role, confidence]);
+            let rests_on = guess.map_or(String::new(), |guess| guess.basis.name().to_owned());
+            table.row([format!("{indent}{}{star}", shown(&joint.name)), role, confidence, rests_on]);
         }
         table
     }
