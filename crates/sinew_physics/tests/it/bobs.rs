@@ -1,7 +1,7 @@
 //! Bobs that hang from stones under a plank: what swings slowly in an island neither gains nor loses by how the island is solved.
 
 use crate::build::ball;
-use sinew_math::{Range, Rotation, Vec3};
+use sinew_math::{Range, Rotation, Vec3, trig};
 use sinew_physics::{
     BodyDef, BodyId, BodyKind, JointDef, JointId, JointKind, Shape, ShapeDef, Sleeping, World, WorldDef,
 };
@@ -32,7 +32,7 @@ impl Row {
             let x = 1.2 * i as f32;
             let stone = add(&mut world, BodyKind::Dynamic, Vec3::new(x, 0.5, 0.0), Vec3::splat(0.5));
             let anchor = Vec3::new(x, 0.9, 0.7);
-            let down = Vec3::new(tilt.sin(), -tilt.cos(), 0.0) * LENGTH;
+            let down = Vec3::new(trig::sin(tilt), -trig::cos(tilt), 0.0) * LENGTH;
             let bob = add(&mut world, BodyKind::Dynamic, anchor + down, Vec3::splat(0.05));
             let joint = hang(&world, stone, bob, anchor);
             joints.push(world.add_joint(&joint));
@@ -66,7 +66,7 @@ fn bobs_that_swing_beneath_stones_go_on() {
         let mut row = Row::new(stones, tilt, ball);
         row.reach(900);
         let reach = row.reach(120);
-        let start = LENGTH * tilt.sin();
+        let start = LENGTH * trig::sin(tilt);
         assert!(reach.iter().all(|reach| (reach / start - 1.0).abs() < 0.01), "{tilt}: {reach:?} of {start}");
         assert!(row.gap() < 2e-5, "{tilt}: joints open by {} m", row.gap());
     }
@@ -84,7 +84,7 @@ fn bobs_that_sink_slowly_onto_their_stops_stay_there() {
     });
     row.reach(600);
     let rest = row.reach(60);
-    let stop = LENGTH * 0.1_f32.sin();
+    let stop = LENGTH * trig::sin(0.1);
     assert!(rest.iter().all(|reach| (reach - stop).abs() < 5e-4), "{rest:?}, stop at {stop}");
     assert!(row.gap() < 2e-5, "joints open by {} m", row.gap());
 }

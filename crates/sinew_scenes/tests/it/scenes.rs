@@ -10,8 +10,6 @@ const NOT_YET: &[(&str, &[&str])] = &[
     // Heaps are chaotic: from starts that differ by 1 mm the pile sleeps after 263 to 521 steps, the sticks after 212 to 226.
     ("wave_pile", &["asleep_steps"]),
     ("mesh_drop", &["asleep_steps"]),
-    // From twelve starts that differ by 1 mm the figures sleep after 256 to 337 steps, half of them by 303; Box3D's run, the bar, after 307.
-    ("ragdolls", &["asleep_steps"]),
 ];
 
 /// Scenes in which gravity has no part, and one whose bound is about walls alone (`fast_particle`).
