@@ -427,9 +427,9 @@ fn a_bake_is_judged_like_a_drop() {
     assert_eq!(baked["reasons"], serde_json::json!([]));
     let Some(data) = shared_data() else { return };
     // Its skin lies in the floor, although its bodies do not.
-    let mech = data.join("rigs_wild/mech_George.glb").display().to_string();
+    let skull = data.join("rigs_wild/platformer_game_Skull.glb").display().to_string();
     let baked =
-        sinew(&["bake", &mech, "--no-builtin-motions", "--seconds", "4", "-o", &out, "--json"]).json();
+        sinew(&["bake", &skull, "--no-builtin-motions", "--seconds", "4", "-o", &out, "--json"]).json();
     assert_eq!(baked["verdict"], "usable", "{baked:#}");
     assert!(
         baked["reasons"][0].as_str().is_some_and(|reason| reason.starts_with("skin: at rest")),
