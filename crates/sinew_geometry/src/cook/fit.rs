@@ -93,6 +93,7 @@ fn snap(direction: Vec3) -> Vec3 {
     axis_along(direction).map_or(direction, |axis| Vec3::AXES[axis])
 }
 
+/// Index of the world's axis that a direction is along but for noise.
 fn axis_along(direction: Vec3) -> Option<usize> {
     (0..3).find(|&axis| direction[axis].abs() > LEVEL)
 }

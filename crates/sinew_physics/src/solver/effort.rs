@@ -62,7 +62,7 @@ pub(super) enum Order {
     ToAndFro,
 }
 
-/// Of islands with joints that are swept with the response of all links. What a sweep changes is soon next to nothing: a quarter of all
+/// Effort for islands with joints that are swept with the response of all links. What a sweep changes is soon next to nothing: a quarter of all
 /// passes of falling figures went through all 24 for a thousandth of the first one's energy.
 const JOINTED: Effort = Effort {
     solve: 24,

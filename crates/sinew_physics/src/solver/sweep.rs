@@ -5,7 +5,6 @@
 use super::columns::Change;
 use super::conjugate::{Conjugate, Rows};
 use super::contact_rows::ManifoldRows;
-use super::effort::Effort;
 use super::limit_rows::LimitRow;
 use super::tree::Link;
 use super::tree_joints::Corrected;
@@ -190,7 +189,7 @@ impl IslandSolver {
 
     /// Energy that a sweep must change for another to follow, J.
     pub(super) fn enough_energy(&self) -> f32 {
-        let Effort { enough, .. } = self.effort;
+        let enough = self.effort.enough;
         0.5 * enough * enough * self.mass() / self.links.len() as f32
     }
 

@@ -8,10 +8,10 @@ use crate::joint::JointPose;
 use crate::spatial::{Vec6, ZERO6, add_scaled, largest, linear};
 use sinew_math::{Transform, dispatch, max, min};
 
-/// Most rounds of position corrections in a pass, likewise with many loops, and the error that needs none, m or rad. With 3e-6 a
-/// triple pendulum drifts by 1.3 % of its energy.
+/// Most rounds of position corrections in a pass, and with many loops.
 pub(super) const POSITION_CORRECTIONS: usize = 6;
 const POSITION_CORRECTIONS_ITERATED: usize = 1;
+/// Error of positions that needs no correction, m or rad. With 3e-6 a triple pendulum drifts by 1.3 % of its energy.
 pub(super) const POSITION_TOLERANCE: f32 = 1e-6;
 /// Share of a tree's error that a round may leave at most for another to follow.
 const WORTH_ANOTHER: f32 = 0.9;

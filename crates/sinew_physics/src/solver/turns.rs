@@ -133,6 +133,7 @@ impl IslandSolver {
         self.run_turns(Pass::Solve, 0, runner);
     }
 
+    /// Takes turns until a sweep after the first `least` changes little.
     fn run_turns(&mut self, pass: Pass, least: usize, runner: &dyn TaskRunner) {
         let sweeps = self.effort.of_turns(pass);
         let enough = self.enough_energy();

@@ -235,7 +235,7 @@ impl Who<'_> {
         if body.role == body.bone { body.role.clone() } else { format!("{} ({})", body.role, body.bone) }
     }
 
-    /// What helps where skin is far from a body: one for the joint that moves it, or a larger shape where there is none such.
+    /// Advice where skin is far from a body: one for the joint that moves it, or a larger shape where there is none such.
     fn body_or_shape(&self, body: Option<usize>, joint: Option<&str>) -> String {
         match (body, joint.filter(|joint| !joint.is_empty())) {
             (_, Some(joint)) => {
