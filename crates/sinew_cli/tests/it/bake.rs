@@ -426,7 +426,7 @@ fn a_bake_is_judged_like_a_drop() {
     assert_eq!(baked["verdict"], "good", "{baked:#}");
     assert_eq!(baked["reasons"], serde_json::json!([]));
     let Some(data) = shared_data() else { return };
-    // Its skin lies in the floor, although its bodies do not.
+    // Its skin rests above the floor, although its bodies lie on it.
     let skull = data.join("rigs_wild/platformer_game_Skull.glb").display().to_string();
     let baked =
         sinew(&["bake", &skull, "--no-builtin-motions", "--seconds", "4", "-o", &out, "--json"]).json();
