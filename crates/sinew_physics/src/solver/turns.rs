@@ -141,7 +141,7 @@ impl IslandSolver {
         for done in 1..=sweeps.most {
             self.note_limits();
             if conjugate {
-                self.contacts.before_conjugate(&self.velocities, &self.scratch.limits, runner);
+                self.contacts.before_conjugate(&self.velocities, &self.scratch.limits);
             }
             let rows = self.contacts.tally().manifolds as usize + self.limits.len();
             self.tally.sweep(pass, done, rows);

@@ -1,5 +1,6 @@
 //! Eight manifolds of one colour, side by side: no two of them push the same body, so that a sweep solves them at once.
 
+use super::conjugate::Impulses;
 use crate::slices::SharedRows;
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3, WIDTH};
@@ -64,6 +65,9 @@ pub(super) struct Block<const N: usize, const T: usize> {
     pub floor: [Eight; N],
     pub friction: [Eight; 2],
     pub twist: Eight,
+    /// Impulses before the last sweep of those that are conjugate steps, and the direction of these.
+    pub was: Impulses<N>,
+    pub direction: Impulses<N>,
     /// Sum of the normal impulses that friction is limited by, and that of the last substep.
     pub load: Eight,
     pub last_load: Eight,
@@ -162,6 +166,8 @@ impl<const N: usize, const T: usize> Block<N, T> {
             floor: [ZERO8; N],
             friction: [ZERO8; 2],
             twist: ZERO8,
+            was: Impulses::ZERO,
+            direction: Impulses::ZERO,
             load: ZERO8,
             last_load: ZERO8,
             sliding: ZERO8,

@@ -23,8 +23,8 @@ const MOST_CHUNKS: usize = MOST_NEAR;
 
 /// A visitor of which parts may go to blocks of one colour at the same time. It does not look at bounces.
 pub(super) trait Parted: Visitor + Send {
-    /// A visitor for a part of the blocks; `first` is the number of its first block in the order of visits.
-    fn part(&self, first: usize) -> Self;
+    /// A visitor for a part of the blocks.
+    fn part(&self) -> Self;
     /// Takes over what a part has summed up.
     fn join(&mut self, part: &Self);
 }
@@ -109,21 +109,17 @@ impl<V: Visitor> Kernel for Visit<'_, '_, V> {
     }
 }
 
-/// A visitor goes to all blocks of a chunk that is as large as a colour, or larger; `first` is the number of its first.
-fn visit_all<V: Parted>(mut all: Chunk<'_>, first: usize, visitor: &mut V, runner: &dyn TaskRunner) {
+/// A visitor goes to all blocks of a chunk that is as large as a colour, or larger.
+fn visit_all<V: Parted>(mut all: Chunk<'_>, visitor: &mut V, runner: &dyn TaskRunner) {
     let blocks = all.len();
     if blocks < DIVIDED {
         dispatch::run(Visit { chunk: &mut all, visitor });
         return;
     }
     let count = usize::min(blocks / CHUNK, MOST_CHUNKS);
-    let mut at = first;
     let mut parts: [_; MOST_CHUNKS] = core::array::from_fn(|number| {
         let left = count.checked_sub(number).filter(|&left| left > 0)?;
-        let chunk = all.take_part_of(left);
-        let of_chunk = visitor.part(at);
-        at += chunk.len();
-        Some((chunk, of_chunk))
+        Some((all.take_part_of(left), visitor.part()))
     });
     for_each_near(runner, &mut parts[..count], |part| {
         if let Some((chunk, visitor)) = part {
@@ -144,15 +140,13 @@ impl Contacts {
         mut visitor: V,
     ) -> V {
         let Self { one, two, four, colors, .. } = self;
-        let (count, mut first) = (colors.len(), 0);
+        let count = colors.len();
         for turn in 0..count {
             let Color { one: ones, two: twos, four: fours } =
                 &colors[if order == Order::ToAndFro { count - 1 - turn } else { turn }];
             let color =
                 Chunk { one: Run::of(one, ones), two: Run::of(two, twos), four: Run::of(four, fours) };
-            let blocks = color.len();
-            visit_all(color, first, &mut visitor, runner);
-            first += blocks;
+            visit_all(color, &mut visitor, runner);
         }
         visitor
     }
@@ -162,7 +156,7 @@ impl Contacts {
     pub(super) fn each_at_once<V: Parted>(&mut self, runner: &dyn TaskRunner, mut visitor: V) -> V {
         let Self { one, two, four, .. } = self;
         let chunk = Chunk { one: Run::all(one), two: Run::all(two), four: Run::all(four) };
-        visit_all(chunk, 0, &mut visitor, runner);
+        visit_all(chunk, &mut visitor, runner);
         visitor
     }
 }
@@ -171,7 +165,7 @@ impl Contacts {
 macro_rules! parted {
     ($name:ty) => {
         impl Parted for $name {
-            fn part(&self, _first: usize) -> Self {
+            fn part(&self) -> Self {
                 Self { ..*self }
             }
 
@@ -183,7 +177,7 @@ macro_rules! parted {
 pub(super) use parted;
 
 impl Parted for Sweep<'_> {
-    fn part(&self, _first: usize) -> Self {
+    fn part(&self) -> Self {
         Self { largest: 0.0, energy: 0.0, visits: 0, visited_bytes: 0, ..*self }
     }
 

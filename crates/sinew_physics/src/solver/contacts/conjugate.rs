@@ -1,19 +1,15 @@
 //! Faster sweeps where loads have far to go or masses are unequal: each sweep's change of all impulses is a step downhill, and steps
 //! downhill are made conjugate (nonsmooth nonlinear conjugate gradients: Silcowitz, Niebe and Erleben 2010).
 
-use super::block::{Block, Bounce, Eight, Memory, packed};
-use super::chunks::{Parted, shared};
-use super::{Contacts, Visitor, visitor};
+use super::Contacts;
+use super::block::{Block, Eight, ZERO8, packed};
 use crate::runner::TaskRunner;
-use crate::slices::{MOST_NEAR, SharedRows, for_each_near};
+use crate::slices::{MOST_NEAR, for_each_near};
 use crate::solver::split_off;
 use crate::spatial::{Vec6, ZERO6, largest};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
 use sinew_math::max;
-
-/// Numbers of a block's impulses that take part: four points, two of friction, twist.
-const NUMBERS: usize = 7;
 
 /// Where a pass stands. What lists hold of a pass before is never used: its first sweep has no energy to go on from.
 #[derive(Clone, Debug, Default)]
@@ -24,93 +20,93 @@ pub(super) struct Conjugate {
     direction: State,
     /// Energy of the changes of the last sweep, J.
     energy: f32,
+    /// For the blocks, when the next sweep comes to them.
+    pub step: Step,
 }
 
-/// Impulses of all blocks, in the order of their visits, and the velocities of all bodies.
+/// Velocities of all bodies, and impulses of limits; those of blocks are theirs.
 #[derive(Clone, Debug, Default)]
 struct State {
-    blocks: Vec<[Eight; NUMBERS]>,
     velocities: Vec<Vec6>,
     limits: Vec<f32>,
 }
 
-impl State {
-    /// For so many blocks and bodies: memory is there when the first pass goes on for so long.
-    fn make_room(&mut self, blocks: usize, bodies: usize) {
-        self.clear();
-        self.blocks.reserve(blocks.saturating_sub(self.blocks.len()));
-        self.velocities.reserve(bodies);
-    }
-
-    /// Blocks stay: they are written over.
-    fn clear(&mut self) {
-        self.limits.clear();
-        self.velocities.clear();
-    }
+/// What a block does about conjugate steps when a sweep comes to it, before its visit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Step {
+    #[default]
+    None,
+    /// Writes its impulses down.
+    Begin,
+    /// Goes on by a share of the direction so far, and writes down where that leads. Then the direction is that share and the change of
+    /// the last sweep.
+    GoOn(f32),
 }
 
-/// The impulses of a block.
+/// Impulses of all rows of a block.
+#[derive(Clone, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Impulses<const N: usize> {
+    normal: [Eight; N],
+    friction: [Eight; 2],
+    twist: Eight,
+}
+
+impl<const N: usize> Impulses<N> {
+    pub const ZERO: Self = Self { normal: [ZERO8; N], friction: [ZERO8; 2], twist: ZERO8 };
+}
+
+/// One row of eight manifolds goes on. Gives by how much.
 #[inline(always)]
-fn impulses<const N: usize, const T: usize>(block: &Block<N, T>) -> [Eight; NUMBERS] {
-    let mut all = [[0.0; 8]; NUMBERS];
-    all[..N].copy_from_slice(&block.impulse);
-    all[4..6].copy_from_slice(&block.friction);
-    all[6] = block.twist;
-    all
+fn go_on<L: Lanes>(impulse: &mut Eight, was: &mut Eight, direction: &mut Eight, share: f32) -> L {
+    let now = L::load(impulse);
+    let change = now - L::load(was);
+    if share == 0.0 {
+        change.store(direction);
+        now.store(was);
+        return L::splat(0.0);
+    }
+    let by = L::load(direction) * L::splat(share);
+    (change + by).store(direction);
+    let now = now + by;
+    now.store(impulse);
+    now.store(was);
+    by
 }
 
-visitor!(
-    /// Writes down the impulses of each block.
-    Note<'a> { list: SharedRows<'a, [Eight; NUMBERS]>, at: usize },
-    |self, block, _memory, _bounces| {
-        *self.list.get_mut(self.at) = impulses(block);
-        self.at += 1;
-    }
-);
-
-visitor!(
-    /// The change of each block's impulses since they were written down.
-    Difference<'a> { was: SharedRows<'a, [Eight; NUMBERS]>, at: usize },
-    |self, block, _memory, _bounces| {
-        let (now, was) = (impulses(block), self.was.get_mut(self.at));
-        for k in 0..NUMBERS {
-            (L::load(&now[k]) - L::load(&was[k])).store(&mut was[k]);
-        }
-        self.at += 1;
-    }
-);
-
-visitor!(
-    /// Adds a share of the direction so far to each block; then the direction is that share and the change. What a row has changed of
-    /// its own velocity counts for its next visit, however little at a time: what nobody visits would run away.
-    GoOn<'a> {
-        direction: SharedRows<'a, [Eight; NUMBERS]>,
-        change: &'a [[Eight; NUMBERS]],
-        share: f32,
-        at: usize
-    },
-    |self, block, _memory, _bounces| {
-        let (direction, change) = (self.direction.get_mut(self.at), &self.change[self.at]);
-        let share = L::splat(self.share);
+impl<const N: usize, const T: usize> Block<N, T> {
+    /// What it does before a visit. What a row has changed of its own velocity counts for the next visit, however little at a time:
+    /// what nobody visits would run away.
+    #[inline(always)]
+    pub fn step<L: Lanes>(&mut self, step: Step) {
+        let share = match step {
+            Step::None => return,
+            Step::Begin => {
+                let Self { impulse, friction, twist, .. } = self;
+                self.was = Impulses { normal: *impulse, friction: *friction, twist: *twist };
+                return;
+            }
+            Step::GoOn(share) => share,
+        };
+        let Self { was, direction, .. } = self;
         let mut most = L::splat(0.0);
-        for k in 0..NUMBERS {
-            let more = L::load(&direction[k]) * share;
-            (L::load(&change[k]) + more).store(&mut direction[k]);
-            let (to, response) = match k {
-                0..4 if k < N => (&mut block.impulse[k], &block.response[packed(k, k)]),
-                4..6 => (&mut block.friction[k - 4], &block.tangent_response[2 * (k - 4)]),
-                6 => (&mut block.twist, &block.twist_response),
-                _ => continue,
-            };
-            (L::load(to) + more).store(to);
-            most = L::max(most, more.abs() * L::load(response));
+        let mut seen = |by: L, response: &Eight| most = L::max(most, by.abs() * L::load(response));
+        for i in 0..N {
+            let by = go_on(&mut self.impulse[i], &mut was.normal[i], &mut direction.normal[i], share);
+            seen(by, &self.response[packed(i, i)]);
         }
-        let mut by = [0.0; 8];
-        most.store(&mut by);
-        block.seen -= by.into_iter().fold(0.0, max);
-        self.at += 1;
+        for k in 0..2 {
+            let by = go_on(&mut self.friction[k], &mut was.friction[k], &mut direction.friction[k], share);
+            seen(by, &self.tangent_response[2 * k]);
+        }
+        seen(go_on(&mut self.twist, &mut was.twist, &mut direction.twist, share), &self.twist_response);
+        if share != 0.0 {
+            let mut by = ZERO8;
+            most.store(&mut by);
+            self.seen -= by.into_iter().fold(0.0, max);
+        }
     }
-);
+}
 
 /// Bodies go on by a share of the direction so far, if any; then the direction is that share and the change of the sweep.
 struct GoOnBodies<'a> {
@@ -181,59 +177,37 @@ impl Kernel for GoOnBodies<'_> {
     }
 }
 
-/// Declares parts of visitors that go through lists in the order of the blocks.
-macro_rules! numbered {
-    ($($name:ident)*) => {$(
-        impl Parted for $name<'_> {
-            fn part(&self, first: usize) -> Self {
-                Self { at: first, ..*self }
-            }
-
-            fn join(&mut self, part: &Self) {
-                self.at = part.at;
-            }
-        }
-    )*};
-}
-
-numbered!(Note Difference GoOn);
-
 impl Contacts {
-    /// For the blocks of the island, and so many bodies.
+    /// For so many bodies.
     pub(super) fn make_room_for_conjugate(&mut self, bodies: usize) {
-        let blocks = self.block_count() + super::prepare::SPARE_BLOCKS;
-        self.conjugate.was.make_room(blocks, bodies);
-        self.conjugate.direction.make_room(blocks, bodies);
+        for state in [&mut self.conjugate.was, &mut self.conjugate.direction] {
+            state.limits.clear();
+            state.velocities.clear();
+            state.velocities.reserve(bodies);
+        }
         self.changes.reserve(bodies.saturating_sub(self.changes.len()));
-    }
-
-    fn block_count(&self) -> usize {
-        self.one.count + self.two.count + self.four.count
     }
 
     /// Before the first sweep of a pass.
     pub(in crate::solver) fn start_conjugate(&mut self) {
         self.conjugate.energy = 0.0;
+        self.conjugate.step = Step::None;
     }
 
-    /// Before a sweep. `limits` are impulses of other rows that take part.
-    pub(in crate::solver) fn before_conjugate(
-        &mut self,
-        velocities: &[Vec6],
-        limits: &[f32],
-        runner: &dyn TaskRunner,
-    ) {
-        let mut was = core::mem::take(&mut self.conjugate.was);
-        was.clear();
-        was.blocks.resize(self.block_count(), [[0.0; 8]; NUMBERS]);
-        self.each_at_once(runner, Note { list: shared(&mut was.blocks), at: 0 });
+    /// Before a sweep that another may follow. `limits` are impulses of other rows that take part.
+    pub(in crate::solver) fn before_conjugate(&mut self, velocities: &[Vec6], limits: &[f32]) {
+        let Conjugate { was, step, .. } = &mut self.conjugate;
+        was.velocities.clear();
         was.velocities.extend_from_slice(velocities);
+        was.limits.clear();
         was.limits.extend_from_slice(limits);
-        self.conjugate.was = was;
+        if *step == Step::None {
+            *step = Step::Begin;
+        }
     }
 
-    /// After a sweep whose changes had this energy: goes on in the direction so far. What it asks too much of rows, the next sweep
-    /// takes back. Tells `moved` of the bodies, in order, and by how much.
+    /// After a sweep whose changes had this energy, before another: goes on in the direction so far, blocks when that comes to them. What it
+    /// asks too much of rows, the next sweep takes back. Tells `moved` of the bodies, in order, and by how much.
     pub(in crate::solver) fn after_conjugate(
         &mut self,
         energy: f32,
@@ -241,13 +215,11 @@ impl Contacts {
         runner: &dyn TaskRunner,
         mut moved: impl FnMut(usize, f32),
     ) {
-        let Conjugate { mut was, mut direction, energy: last } = core::mem::take(&mut self.conjugate);
-        self.each_at_once(runner, Difference { was: shared(&mut was.blocks), at: 0 });
-        for (was, now) in was.limits.iter_mut().zip(limits.iter()) {
-            *was = now - *was;
-        }
-        let share = if energy > 0.0 && energy < last { energy / last } else { 0.0 };
+        let Conjugate { was, direction, energy: last, step } = &mut self.conjugate;
+        let share = if energy > 0.0 && energy < *last { energy / *last } else { 0.0 };
+        (*last, *step) = (energy, Step::GoOn(share));
         direction.velocities.resize(velocities.len(), ZERO6);
+        direction.limits.resize(limits.len(), 0.0);
         let mut changes = core::mem::take(&mut self.changes);
         changes.resize(velocities.len(), 0.0);
         let bodies = GoOnBodies {
@@ -258,23 +230,22 @@ impl Contacts {
             changes: &mut changes,
         };
         bodies.run_on(runner);
-        if share == 0.0 {
-            core::mem::swap(&mut direction.blocks, &mut was.blocks);
-            core::mem::swap(&mut direction.limits, &mut was.limits);
-        } else {
-            let go_on = GoOn { direction: shared(&mut direction.blocks), change: &was.blocks, share, at: 0 };
-            self.each_at_once(runner, go_on);
+        for (i, limit) in limits.iter_mut().enumerate() {
+            let change = *limit - was.limits[i];
+            if share == 0.0 {
+                direction.limits[i] = change;
+                continue;
+            }
+            let by = direction.limits[i] * share;
+            *limit += by;
+            direction.limits[i] = change + by;
+        }
+        if share != 0.0 {
             for (i, &change) in changes.iter().enumerate() {
                 self.stir(i, change);
                 moved(i, change);
             }
-            for (i, limit) in limits.iter_mut().enumerate() {
-                let by = direction.limits[i] * share;
-                *limit += by;
-                direction.limits[i] = was.limits[i] + by;
-            }
         }
         self.changes = changes;
-        self.conjugate = Conjugate { was, direction, energy };
     }
 }

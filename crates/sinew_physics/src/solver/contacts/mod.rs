@@ -178,8 +178,6 @@ macro_rules! visitor {
     };
 }
 
-use visitor;
-
 visitor!(
     /// Responses of blocks that were written.
     Respond<'a> { inverse: &'a [Vec6], all: bool },
@@ -421,7 +419,7 @@ impl Contacts {
         for done in 1..=sweeps.most {
             let conjugate = done >= sweeps.first_conjugate && pass != Pass::Restitution;
             if conjugate {
-                self.before_conjugate(velocities, &[], runner);
+                self.before_conjugate(velocities, &[]);
             }
             let swept = self.sweep_once((pass, sweeps, done), velocities, runner);
             // Friction learns what really presses from the second sweep on.
@@ -468,6 +466,7 @@ impl Contacts {
             stir: shared(&mut stir),
             rolling: shared(&mut rolling),
             pass,
+            step: self.conjugate.step,
             weighs: done <= WEIGHINGS,
             tolerance: sweeps.tolerance,
             largest: 0.0,

@@ -1,6 +1,7 @@
 //! One visit of a block in a sweep: friction, then the normal rows, block by block in impulse space.
 
 use super::block::{Block, Eight, HELD, Motion, NONE, Rolling, load3, packed, store3, times};
+use super::conjugate::Step;
 use super::disk;
 use crate::slices::SharedRows;
 use crate::solver::sweep::Pass;
@@ -21,6 +22,8 @@ pub(super) struct Sweep<'a> {
     pub stir: SharedRows<'a, f32>,
     pub rolling: SharedRows<'a, Rolling>,
     pub pass: Pass,
+    /// What blocks do about conjugate steps.
+    pub step: Step,
     /// Friction takes its loads from the impulses as they are.
     pub weighs: bool,
     /// A block whose bodies changed by less than this since is left alone, m/s or rad/s.
@@ -53,6 +56,7 @@ impl Sweep<'_> {
     /// Visits a block.
     #[inline(always)]
     pub fn visit_block<L: Lanes, const N: usize, const T: usize>(&mut self, block: &mut Block<N, T>) {
+        block.step::<L>(self.step);
         if !self.wakes(block) {
             return;
         }
