@@ -44,14 +44,6 @@ impl JointPose {
         }
     }
 
-    /// The gap alone.
-    #[inline]
-    pub fn gap(joint: &JointGeometry, a: &Transform, b: &Transform) -> Vec3 {
-        let arm_a = a.rotation * joint.frame_a.translation;
-        let arm_b = b.rotation * joint.frame_b.translation;
-        (b.translation - a.translation) + (arm_b - arm_a)
-    }
-
     /// Rotation of frame B seen from frame A.
     pub fn relative(&self) -> Rotation {
         self.rotation_a.inverse() * self.rotation_b

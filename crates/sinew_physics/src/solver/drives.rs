@@ -3,9 +3,9 @@
 
 use super::{IslandSolver, SolverJoint};
 use crate::joint::def::{Gains, Motor, Softness};
-use crate::joint::{DIRECTIONS, JointRows, TWIST, displacement, locked_error, open_row};
-use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
-use sinew_math::{Vec3, clamp, max, trig};
+use crate::joint::{DIRECTIONS, JointPose, JointRows, TWIST, displacement, locked_error, open_row};
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, linear};
+use sinew_math::{Transform, clamp, max, trig};
 
 /// Joint friction is a viscosity that gives the full torque at the joint's present rate, but never more than this slow
 /// rate would ask, rad/s or m/s: a joint that should stick creeps below it, and sleep ends the creep.
@@ -246,7 +246,7 @@ impl SolverJoint {
     /// How much further a weld that gives is off at other poses of the bodies than its rows foresaw, beyond what is made up
     /// for: a body on a soft weld that turns would drift outward by `½ ω² r h²` in each substep, and a damper takes long to
     /// take that back.
-    pub(super) fn bend_error(&self, pose: &crate::joint::JointPose, velocities: &[Vec6], h: f32) -> Vec6 {
+    fn bend_error(&self, pose: &JointPose, velocities: &[Vec6], h: f32) -> Vec6 {
         let mut bend = ZERO6;
         if self.drive.weld.is_none() {
             return bend;
@@ -261,19 +261,24 @@ impl SolverJoint {
         bend
     }
 
-    /// Position errors of a [point](Self::is_point) with a gap, but for what this substep leaves open.
-    pub(super) fn point_error(&self, gap: Vec3) -> Vec6 {
-        let [x, y, z, ..] = self.left_open;
-        join(gap - Vec3::new(x, y, z), Vec3::ZERO)
+    /// Position errors that are to be corrected at other poses of the bodies, to which these velocities have led.
+    pub(super) fn position_error(&self, poses: &[Transform], velocities: &[Vec6], h: f32) -> Vec6 {
+        let [a, b] = [self.a, self.b].map(|body| &poses[body as usize]);
+        let pose = JointPose::new(&self.geometry, a, b);
+        if self.rigid == 0 {
+            return self.bend_error(&pose, velocities, h);
+        }
+        let mut error = locked_error(&self.geometry, &pose);
+        self.leave_open(&mut error);
+        error
     }
 
-    /// Position errors of the rigid rows at other poses of the bodies, but for what this substep leaves open.
-    pub(super) fn rigid_error(&self, pose: &crate::joint::JointPose) -> Vec6 {
-        let mut error = locked_error(&self.geometry, pose);
+    /// Takes from the errors of the rigid rows what this substep leaves open.
+    #[inline(always)]
+    pub(super) fn leave_open(&self, error: &mut Vec6) {
         for row in 0..self.rigid {
             error[row] -= self.left_open[row];
         }
-        error
     }
 }
 

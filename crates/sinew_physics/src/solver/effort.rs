@@ -96,8 +96,8 @@ const PILE: Effort = Effort {
     first_conjugate: 4,
 };
 /// Effort for a pile or heap of [`FEW_SWEEPS_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
-/// over some substeps.
-const HEAP: Effort = Effort { solve: 8, relax: 3, first_conjugate: 2, ..PILE };
+/// over some substeps. However unequal masses are, it has many contacts that share what one of them is wrong by.
+const HEAP: Effort = Effort { solve: 6, relax: 4, first_conjugate: 2, ..PILE };
 /// Effort for unequal masses: a light body between heavy ones tosses what they do to each other to and fro, and what cannot move must have the
 /// last word.
 const UNEQUAL: Effort =
@@ -119,9 +119,8 @@ impl Effort {
     fn of_pile(levels: u32, ratio: f32, contacts: usize) -> Self {
         let root = ratio.sqrt();
         if ratio <= GRADED_RATIO {
-            let even = if contacts < FEW_SWEEPS_CONTACTS { PILE } else { HEAP };
-            let relax = usize::max((PILE.relax as f32 * root) as usize, even.relax);
-            let even = Self { relax, ..even };
+            let relax = (PILE.relax as f32 * root) as usize;
+            let even = if contacts < FEW_SWEEPS_CONTACTS { Self { relax, ..PILE } } else { HEAP };
             return Self { order: if ratio <= EVEN { even.order } else { Order::Forward }, ..even };
         }
         let height = max(1.0, levels as f32 / LEVELS);

@@ -1,6 +1,6 @@
 //! The joints of the trees: their rows, the factor, and the exact solve of velocities (RATTLE) and positions (SHAKE).
 
-use super::motion::{ListInertias, Predict};
+use super::motion::{FindErrors, ListInertias, Predict};
 use super::sweep::Pass;
 use super::tree::{self, NONE};
 use super::{Coupling, IslandSolver, SolverJoint};
@@ -281,27 +281,13 @@ impl IslandSolver {
     /// error of each (m or rad).
     fn find_errors(&mut self, errors: &mut [f32]) {
         let Self { velocities, joints, links, loops, trees, coupling, h, scratch: s, .. } = self;
-        let (h, poses) = (*h, &s.predicted);
-        let residual = |joint: &mut SolverJoint, largest: &mut f32| {
-            let [a, b] = [joint.a, joint.b].map(|body| &poses[body as usize]);
-            let error = if joint.is_point() {
-                joint.point_error(JointPose::gap(&joint.geometry, a, b))
-            } else if joint.rigid > 0 {
-                joint.rigid_error(&JointPose::new(&joint.geometry, a, b))
-            } else {
-                joint.bend_error(&JointPose::new(&joint.geometry, a, b), velocities, h)
-            };
-            *largest = error.iter().fold(*largest, |most, error| max(most, error.abs()));
-            error.map(|error| -error / h)
-        };
+        let (h, poses) = (*h, &s.predicted[..]);
         // Where loops were closed they are used up.
         s.residuals.resize(links.len(), ZERO6);
         for (tree, range) in trees.iter().enumerate().filter(|(tree, _)| s.corrected[*tree]) {
-            errors[tree] = 0.0;
-            for i in range.clone() {
-                let joint = joints.get_mut(links[i].joint as usize);
-                s.residuals[i] = joint.map_or(ZERO6, |joint| residual(joint, &mut errors[tree]));
-            }
+            let residuals = &mut s.residuals[range.clone()];
+            let links = &links[range.clone()];
+            errors[tree] = dispatch::run(FindErrors { links, joints, poses, velocities, h, residuals });
         }
         s.loop_residuals.clear();
         if *coupling == Coupling::Turns && loops.is_empty() {
@@ -309,7 +295,9 @@ impl IslandSolver {
         }
         let mut most = errors.iter().fold(0.0, |most, error| max(most, *error));
         for &joint in &loops.joints {
-            s.loop_residuals.push(residual(&mut joints[joint as usize], &mut most));
+            let error = joints[joint as usize].position_error(poses, velocities, h);
+            most = error.iter().fold(most, |most, error| max(most, error.abs()));
+            s.loop_residuals.push(error.map(|error| -error / h));
         }
         errors.fill(most);
     }

@@ -39,6 +39,10 @@ macro_rules! rotation {
     };
 }
 
+mod gaps;
+
+pub(super) use gaps::FindErrors;
+
 /// Eight bodies from the `first` on; the last of all stands for those that are not there.
 #[inline(always)]
 fn eight_from<T>(all: &[T], first: usize) -> [&T; WIDTH] {

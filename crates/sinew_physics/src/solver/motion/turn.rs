@@ -26,6 +26,14 @@ impl<R: Real> Turn<R> {
         Self { vector, real: self.real * by.real - self.vector.dot(by.vector) }.normalized()
     }
 
+    /// Product of two rotations, as it is: the other first.
+    #[inline(always)]
+    pub fn product(self, first: Self) -> Self {
+        let (a, b) = (self.vector, first.vector);
+        let vector = b * self.real + a * first.real + a.cross(b);
+        Self { vector, real: self.real * first.real - a.x * b.x - (a.y * b.y + a.z * b.z) }
+    }
+
     /// After turning by another, which is given in the axes of the world.
     #[inline(always)]
     pub fn then(self, by: Self) -> Self {
@@ -49,6 +57,12 @@ impl<R: Real> Turn<R> {
     pub fn turned(self, v: Vector3<R>) -> Vector3<R> {
         let across = self.vector.cross(v) * R::splat(2.0);
         v + across * self.real + self.vector.cross(across)
+    }
+
+    /// One axis after each of the rotations.
+    #[inline(always)]
+    pub fn turned_axis(self, axis: Vec3) -> Vector3<R> {
+        self.turned(Vector3::new(R::splat(axis.x), R::splat(axis.y), R::splat(axis.z)))
     }
 
     /// A vector before the rotation.
