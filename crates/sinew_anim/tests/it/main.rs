@@ -6,6 +6,7 @@ mod blending;
 mod built;
 mod cleanup;
 mod corrections;
+mod hints;
 mod ik;
 mod learned_limits;
 mod mocap;
