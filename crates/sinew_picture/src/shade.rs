@@ -49,7 +49,13 @@ impl Triangle {
         let depth = self.k * inverse;
         let second = clamp(ray.dot(self.p) * inverse, 0.0, 1.0);
         let third = clamp(ray.dot(self.q) * inverse, 0.0, 1.0);
-        Hit { point: eye + ray * depth, shares: [second, third], depth }
+        Hit { point: eye + ray * depth, shares: [second, third], depth, inverse }
+    }
+
+    /// How far the place where a ray meets the plane moves while the ray itself moves by `step`.
+    #[inline(always)]
+    fn slip(&self, hit: &Hit, ray: Vec3, step: Vec3) -> Vec3 {
+        (step - ray * (step.dot(self.m) * hit.inverse)) * hit.depth
     }
 }
 
@@ -61,6 +67,8 @@ struct Hit {
     shares: [f32; 2],
     /// Metres along the ray's direction of depth 1.
     depth: f32,
+    /// `1 / (ray·m)`, 0 for a ray along the plane.
+    inverse: f32,
 }
 
 /// What a translucent or solid surface sends to the eye.
@@ -111,7 +119,7 @@ impl<'a> Shader<'a> {
         } else {
             triangle.face
         };
-        let base = self.base_color(model, triangle, &hit, (x, y));
+        let base = self.base_color(model, triangle, &hit, ray);
         let lit = self.light(base, hit.point, normal, triangle.face);
         let distance_squared = hit.depth * hit.depth * ray.length_squared();
         let half_haze = self.scene.sky.haze_distance * self.scene.sky.haze_distance;
@@ -119,13 +127,11 @@ impl<'a> Shader<'a> {
         Seen { color: mix(lit, self.scene.sky.horizon, haze), opacity: model.material.opacity }
     }
 
-    fn base_color(&self, model: &Model, triangle: &Triangle, hit: &Hit, (x, y): (f32, f32)) -> [f32; 3] {
+    fn base_color(&self, model: &Model, triangle: &Triangle, hit: &Hit, ray: Vec3) -> [f32; 3] {
         let Material { color, texture, pattern, .. } = &model.material;
         let mut base = *color;
         if let Pattern::Checker { size, other } = *pattern {
-            let point_at = |x: f32, y: f32| triangle.meet(self.view.eye, self.view.ray(x, y)).point;
-            let across = abs3(point_at(x + 1.0, y) - hit.point);
-            let down = abs3(point_at(x, y + 1.0) - hit.point);
+            let [across, down] = self.view.ray_per_pixel().map(|step| abs3(triangle.slip(hit, ray, step)));
             base = mix(base, other, checker(hit.point, across + down, max(size, 1e-3)));
         }
         if model.colors.len() == model.positions.len() {

@@ -11,13 +11,13 @@ pub use takes::takes;
 use crate::def::{RagdollBodyDef, RagdollDef};
 use crate::filter::filter_pairs;
 use crate::filter::poses::{Frames, Poses, of_clips, within_limits};
-use crate::fit::surface::{BindPose, share_surface};
+use crate::fit::surface::{BindPose, share_surface, skin_triangles};
 use crate::fit::{Fit, ShapeChoice, fit_shapes};
 use crate::limits::friction::friction_torques;
 use crate::limits::learned::learned;
 use crate::limits::{JointPlan, LimitSource, joints};
 use crate::masses::de_leva::Sex;
-use crate::masses::{MassOptions, distribute};
+use crate::masses::{MassOptions, distribute, volume};
 use bones::{Anatomy, Bone, Bones};
 use sinew_anim::roles::RigAnalysis;
 use sinew_anim::{JointIdx, Rig, Take};
@@ -127,14 +127,27 @@ pub(crate) fn build_overridden(
         .collect();
     let Planned { mut plans, limits, poses } = planned(rig, &bones, bind, &fits, options, overrides.takes)?;
     let filter = filter_pairs(&bones, &mut fits, &poses);
-    let masses = distribute(&bones, &fits, MassOptions { total: options.mass, sex: options.sex });
+    let (density, matter) = volume::density(rig);
+    let enclosed = match bones.anatomy {
+        Anatomy::Creature => volume::enclosed(&skin_triangles(rig, &bones, bind)),
+        Anatomy::Human => None,
+    };
+    let weighs = MassOptions {
+        total: options.mass,
+        sex: options.sex,
+        enclosed: enclosed.map(|volume| density * volume),
+    };
+    let masses = distribute(&bones, &fits, weighs);
     let total_mass = masses.iter().map(|mass| mass.mass).sum();
     // Friction goes by the mass, which goes by the shapes.
     let heavy = joints(&bones, &fits, total_mass);
     for (plan, torque) in plans.iter_mut().zip(friction_torques(&bones, &fits, &masses, &heavy)) {
         plan.def.friction_torque = torque;
     }
-    let report = BuildReport::new(rig, &bones, &fits, &filter, (&plans, &limits));
+    let mut report = BuildReport::new(rig, &bones, &fits, &filter, (&plans, &limits));
+    if let Some(volume) = enclosed.filter(|volume| (volume * density / total_mass - 1.0).abs() < 1e-3) {
+        report.notes.push(format!("the mass is that of {volume:.3} m³ of {matter}, which the skin encloses"));
+    }
     let name = |joint: JointIdx| joint_name(rig, joint);
     let bodies = bones.list.into_iter().zip(fits).zip(masses).map(|((bone, fit), mass)| RagdollBodyDef {
         bone: name(bone.joint),
