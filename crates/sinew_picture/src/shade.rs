@@ -2,7 +2,7 @@
 
 use crate::camera::View;
 use crate::color::ColorTables;
-use crate::raster::{NOTHING, floor};
+use crate::raster::NOTHING;
 use crate::scene::{Material, Model, Pattern, Scene, Sky};
 use crate::shadow::ShadowMap;
 use sinew::math::{Vec2, Vec3, abs3, clamp, max, min, normalize_or};
@@ -10,6 +10,9 @@ use sinew::math::{Vec2, Vec3, abs3, clamp, max, min, normalize_or};
 /// How much of the sky's brightness falls on things. Less than all, as if much of it were hidden: shadows need to
 /// be dark to be read.
 const SKY_LIGHT: f32 = 0.55;
+
+/// Pixels that [`Shader::flat_span`] shades at once.
+pub(crate) const SPAN: usize = 16;
 
 /// A drawn triangle: its number among these is its id in the layers.
 ///
@@ -127,6 +130,51 @@ impl<'a> Shader<'a> {
         Seen { color: mix(lit, self.scene.sky.horizon, haze), opacity: model.material.opacity }
     }
 
+    /// Whether a triangle has one normal, and one colour or a checker: [`Self::flat_span`] then shades it.
+    #[inline(always)]
+    pub(crate) fn is_flat(&self, id: u32) -> bool {
+        let model = self.model(&self.triangles[id as usize]);
+        let vertices = model.positions.len();
+        let has_picture = model.material.texture.is_some() && model.uvs.len() == vertices;
+        !has_picture && model.normals.len() != vertices && model.colors.len() != vertices
+    }
+
+    /// [`Self::surface`] of a flat triangle in the middles of pixels side by side, from `x` on in the row `y`: the same numbers, many at
+    /// a time.
+    pub(crate) fn flat_span(&self, id: u32, x: usize, y: usize) -> [[f32; 3]; SPAN] {
+        let triangle = &self.triangles[id as usize];
+        let Material { color, pattern, .. } = &self.model(triangle).material;
+        let y = y as f32 + 0.5;
+        let rays: [Vec3; SPAN] = core::array::from_fn(|i| self.view.ray((x + i) as f32 + 0.5, y));
+        let inverses = rays.map(|ray| {
+            let det = ray.dot(triangle.m);
+            if det == 0.0 { 0.0 } else { 1.0 / det }
+        });
+        let depths = inverses.map(|inverse| triangle.k * inverse);
+        let points: [Vec3; SPAN] = core::array::from_fn(|i| self.view.eye + rays[i] * depths[i]);
+        let mut bases = [*color; SPAN];
+        if let Pattern::Checker { size, other } = *pattern {
+            let size = max(size, 1e-3);
+            let steps = self.view.ray_per_pixel();
+            for i in 0..SPAN {
+                let hit = Hit { point: points[i], shares: [0.0; 2], depth: depths[i], inverse: inverses[i] };
+                let [across, down] = steps.map(|step| abs3(triangle.slip(&hit, rays[i], step)));
+                bases[i] = mix(*color, other, checker(points[i], across + down, size));
+            }
+        }
+        let normal = triangle.face;
+        let cos = normal.dot(self.shadow.to_sun);
+        let lift = self.shadow.lift(normal, cos);
+        let around = self.around(normal);
+        let half_haze = max(self.scene.sky.haze_distance * self.scene.sky.haze_distance, 1e-6);
+        core::array::from_fn(|i| {
+            let sun = if cos > 0.0 { cos * self.shadow.light_off(points[i] + lift) } else { 0.0 };
+            let lit = self.lit(bases[i], around, sun);
+            let distance_squared = depths[i] * depths[i] * rays[i].length_squared();
+            mix(lit, self.scene.sky.horizon, distance_squared / (distance_squared + half_haze))
+        })
+    }
+
     fn base_color(&self, model: &Model, triangle: &Triangle, hit: &Hit, ray: Vec3) -> [f32; 3] {
         let Material { color, texture, pattern, .. } = &model.material;
         let mut base = *color;
@@ -154,14 +202,25 @@ impl<'a> Shader<'a> {
 
     /// A matt surface under the sun and a sky that is bright above and dark below.
     fn light(&self, base: [f32; 3], point: Vec3, normal: Vec3, face: Vec3) -> [f32; 3] {
-        let Sky { zenith, horizon, ground, .. } = self.scene.sky;
-        let above = mix(horizon, zenith, 0.6).map(|channel| channel * SKY_LIGHT);
-        let around = mix(ground, above, 0.5 + 0.5 * normal.y);
+        let around = self.around(normal);
         let cos = normal.dot(self.shadow.to_sun);
         let mut sun = 0.0;
         if cos > 0.0 {
-            sun = cos * self.shadow.light_at(point, face, face.dot(self.shadow.to_sun));
+            sun = cos * self.shadow.light_off(point + self.shadow.lift(face, face.dot(self.shadow.to_sun)));
         }
+        self.lit(base, around, sun)
+    }
+
+    /// Light of the sky on a surface.
+    #[inline(always)]
+    fn around(&self, normal: Vec3) -> [f32; 3] {
+        let Sky { zenith, horizon, ground, .. } = self.scene.sky;
+        let above = mix(horizon, zenith, 0.6).map(|channel| channel * SKY_LIGHT);
+        mix(ground, above, 0.5 + 0.5 * normal.y)
+    }
+
+    #[inline(always)]
+    fn lit(&self, base: [f32; 3], around: [f32; 3], sun: f32) -> [f32; 3] {
         let color = self.scene.sun.color;
         core::array::from_fn(|i| base[i] * (around[i] + color[i] * sun))
     }
@@ -171,6 +230,7 @@ fn blend3([a, b, c]: [Vec3; 3], [second, third]: [f32; 2]) -> Vec3 {
     a + (b - a) * second + (c - a) * third
 }
 
+#[inline(always)]
 fn mix(a: [f32; 3], b: [f32; 3], amount: f32) -> [f32; 3] {
     core::array::from_fn(|i| a[i] + (b[i] - a[i]) * amount)
 }
@@ -187,6 +247,7 @@ fn uv_per_area([a, b, c]: [Vec2; 3], normal: Vec3) -> f32 {
 
 /// Share of the second colour in a box of `footprint` around `p`: 0 and 1 within squares, between where the box
 /// covers several. Mean of a product of two square waves, each integrated in closed form.
+#[inline(always)]
 fn checker(p: Vec3, footprint: Vec3, size: f32) -> f32 {
     0.5 - 0.5
         * square_wave_mean(p.x / size, footprint.x / size)
@@ -194,13 +255,26 @@ fn checker(p: Vec3, footprint: Vec3, size: f32) -> f32 {
 }
 
 /// Mean over `x ± width/2` of the wave that is 1 on [0, 1), −1 on [1, 2), and so on.
+#[inline(always)]
 fn square_wave_mean(x: f32, width: f32) -> f32 {
     let width = clamp(width, 1e-3, 8.0);
     clamp((triangle_wave(x + 0.5 * width) - triangle_wave(x - 0.5 * width)) / width, -1.0, 1.0)
 }
 
 /// Integral of the square wave from 0: up to 1 at odd numbers, 0 at even ones.
+#[inline(always)]
 fn triangle_wave(x: f32) -> f32 {
-    let phase = x - 2.0 * floor(0.5 * x) as f32;
+    let phase = x - 2.0 * whole_below(0.5 * x);
     min(phase, 2.0 - phase)
+}
+
+/// The whole number at or below `x`, up to 2²²; beyond it nobody sees a checker. Without a conversion to integers, so that several go
+/// at once.
+#[inline(always)]
+fn whole_below(x: f32) -> f32 {
+    /// Of its size numbers are whole.
+    const WHOLE: f32 = 12_582_912.0;
+    let x = clamp(x, -4_194_304.0, 4_194_304.0);
+    let nearest = (x + WHOLE) - WHOLE;
+    if nearest > x { nearest - 1.0 } else { nearest }
 }
