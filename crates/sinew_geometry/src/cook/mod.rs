@@ -92,6 +92,8 @@ struct Scale {
     /// How far a part that is filled may be away where that closes its holes: boxes that are solid hold better than plates. It goes
     /// by the tolerance that was asked for, however fine the boxes are.
     filled: f32,
+    /// Share of the usual size of the cells in which slanted parts are seen.
+    finer: f32,
 }
 
 /// [`Scale::filled`], in tolerances.
@@ -137,7 +139,7 @@ pub fn cook(
 /// Most triangles of a mesh that is cooked again for want of boxes.
 const FEW_TRIANGLES: usize = 4096;
 /// Times that its tolerance is halved.
-const FINER: usize = 3;
+const FINER: usize = 2;
 /// Boxes are close enough where 95 % of the surfaces are within this share of the tolerance: a plate is half as thick.
 const CLOSE: f32 = 0.55;
 /// More boxes are taken where they bring that down to this share at least.
@@ -179,6 +181,7 @@ fn scale(mesh: &SurfaceMesh, options: &CookOptions, finer: f32) -> Scale {
         thickness: 0.5 * options.tolerance * diagonal,
         unseen: 0.15 * finer * options.tolerance * diagonal,
         filled: FILLED * options.tolerance * diagonal,
+        finer,
     }
 }
 

@@ -126,7 +126,7 @@ fn planes(mesh: &SurfaceMesh, triangles: &[u32], rotation: Rotation, scale: Scal
     let center = rotation.inverse() * bounds.center;
     let h = bounds.half_extents;
     let longest = 2.0 * max(max(h.x, h.y), h.z);
-    let step = if slanted > 0.05 * area { longest / CELLS } else { longest };
+    let step = if slanted > 0.05 * area { scale.finer * longest / CELLS } else { longest };
     let mut axis = 0;
     facets.map(|facets| {
         let ends = [center[axis] - h[axis], center[axis] + h[axis]];

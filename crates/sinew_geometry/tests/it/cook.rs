@@ -201,9 +201,10 @@ fn few_triangles_use_the_budget() {
     mesh.positions.extend(roof.positions.iter().map(|p| *p - Vec3::Z * 6.5));
     mesh.triangles.extend(roof.triangles.iter().map(|t| t.map(|i| i + first)));
     let [few, many] = [12, 150].map(|most| mesh.cook(most));
-    assert!(few.boxes.len() <= 12 && many.boxes.len() > 30, "{} and {}", few.boxes.len(), many.boxes.len());
+    assert!(few.boxes.len() <= 12 && many.boxes.len() > 15, "{} and {}", few.boxes.len(), many.boxes.len());
+    // In 13 boxes, as cells of the usual size give, 0.15 m.
     let [few, many] = [few, many].map(|cooked| cooked.deviation.distance_p95);
-    assert!(many < 0.05 && many < 0.5 * few, "{few} and {many} m");
+    assert!(many < 0.09 && many < 0.2 * few, "{few} and {many} m");
 }
 
 #[test]
