@@ -145,34 +145,53 @@ impl<'a> Shader<'a> {
         let triangle = &self.triangles[id as usize];
         let Material { color, pattern, .. } = &self.model(triangle).material;
         let y = y as f32 + 0.5;
-        let rays: [Vec3; SPAN] = core::array::from_fn(|i| self.view.ray((x + i) as f32 + 0.5, y));
-        let inverses = rays.map(|ray| {
+        // Plain loops over plain numbers, which the compiler does several at a time.
+        let (mut rays, mut points) = ([Vec3::ZERO; SPAN], [Vec3::ZERO; SPAN]);
+        let (mut inverses, mut depths) = ([0.0; SPAN], [0.0; SPAN]);
+        for i in 0..SPAN {
+            let ray = self.view.ray((x + i) as f32 + 0.5, y);
             let det = ray.dot(triangle.m);
-            if det == 0.0 { 0.0 } else { 1.0 / det }
-        });
-        let depths = inverses.map(|inverse| triangle.k * inverse);
-        let points: [Vec3; SPAN] = core::array::from_fn(|i| self.view.eye + rays[i] * depths[i]);
-        let mut bases = [*color; SPAN];
+            rays[i] = ray;
+            inverses[i] = if det == 0.0 { 0.0 } else { 1.0 / det };
+            depths[i] = triangle.k * inverses[i];
+            points[i] = self.view.eye + ray * depths[i];
+        }
+        let mut shares = [0.0; SPAN];
+        let mut other_color = *color;
         if let Pattern::Checker { size, other } = *pattern {
+            other_color = other;
             let size = max(size, 1e-3);
-            let steps = self.view.ray_per_pixel();
+            let [across, down] = self.view.ray_per_pixel();
             for i in 0..SPAN {
                 let hit = Hit { point: points[i], shares: [0.0; 2], depth: depths[i], inverse: inverses[i] };
-                let [across, down] = steps.map(|step| abs3(triangle.slip(&hit, rays[i], step)));
-                bases[i] = mix(*color, other, checker(points[i], across + down, size));
+                let covered =
+                    abs3(triangle.slip(&hit, rays[i], across)) + abs3(triangle.slip(&hit, rays[i], down));
+                shares[i] = checker(points[i], covered, size);
             }
         }
         let normal = triangle.face;
         let cos = normal.dot(self.shadow.to_sun);
-        let lift = self.shadow.lift(normal, cos);
+        let mut suns = [0.0; SPAN];
+        if cos > 0.0 {
+            let lift = self.shadow.lift(normal, cos);
+            for i in 0..SPAN {
+                suns[i] = cos * self.shadow.light_off(points[i] + lift);
+            }
+        }
         let around = self.around(normal);
+        let (sun, horizon) = (self.scene.sun.color, self.scene.sky.horizon);
         let half_haze = max(self.scene.sky.haze_distance * self.scene.sky.haze_distance, 1e-6);
-        core::array::from_fn(|i| {
-            let sun = if cos > 0.0 { cos * self.shadow.light_off(points[i] + lift) } else { 0.0 };
-            let lit = self.lit(bases[i], around, sun);
+        let mut seen = [[0.0; 3]; SPAN];
+        for i in 0..SPAN {
             let distance_squared = depths[i] * depths[i] * rays[i].length_squared();
-            mix(lit, self.scene.sky.horizon, distance_squared / (distance_squared + half_haze))
-        })
+            let haze = distance_squared / (distance_squared + half_haze);
+            for channel in 0..3 {
+                let base = color[channel] + (other_color[channel] - color[channel]) * shares[i];
+                let lit = base * (around[channel] + sun[channel] * suns[i]);
+                seen[i][channel] = lit + (horizon[channel] - lit) * haze;
+            }
+        }
+        seen
     }
 
     fn base_color(&self, model: &Model, triangle: &Triangle, hit: &Hit, ray: Vec3) -> [f32; 3] {
@@ -208,7 +227,8 @@ impl<'a> Shader<'a> {
         if cos > 0.0 {
             sun = cos * self.shadow.light_off(point + self.shadow.lift(face, face.dot(self.shadow.to_sun)));
         }
-        self.lit(base, around, sun)
+        let color = self.scene.sun.color;
+        core::array::from_fn(|i| base[i] * (around[i] + color[i] * sun))
     }
 
     /// Light of the sky on a surface.
@@ -217,12 +237,6 @@ impl<'a> Shader<'a> {
         let Sky { zenith, horizon, ground, .. } = self.scene.sky;
         let above = mix(horizon, zenith, 0.6).map(|channel| channel * SKY_LIGHT);
         mix(ground, above, 0.5 + 0.5 * normal.y)
-    }
-
-    #[inline(always)]
-    fn lit(&self, base: [f32; 3], around: [f32; 3], sun: f32) -> [f32; 3] {
-        let color = self.scene.sun.color;
-        core::array::from_fn(|i| base[i] * (around[i] + color[i] * sun))
     }
 }
 

@@ -63,8 +63,8 @@ impl ShadowMap {
     /// Position on the map, ±1 at its edges, and height toward the sun.
     #[inline(always)]
     fn map_from_world(&self, p: Vec3) -> [f32; 3] {
-        let flat = |i: usize| p.dot(self.axes[i]) - self.center[i];
-        [flat(0), flat(1), (p - self.focus).dot(self.to_sun)]
+        let [across, up] = self.axes;
+        [p.dot(across) - self.center[0], p.dot(up) - self.center[1], (p - self.focus).dot(self.to_sun)]
     }
 
     /// Lets a triangle throw its shadow.
