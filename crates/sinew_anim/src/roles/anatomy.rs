@@ -68,7 +68,7 @@ impl Anatomy {
         Ok(draft.finish(scene, notes))
     }
 
-    /// What of the body tells the unit of its file.
+    /// Sizes of the body that tell the unit of its file.
     pub fn measured(&self, bound: &Bound) -> Measured {
         let stance = Stance::new(bound, self.up);
         let is_head = |guess: &Option<RoleGuess>| guess.is_some_and(|guess| guess.role == Role::Head);
@@ -250,7 +250,7 @@ impl<'a> Scene<'a> {
         Some((swing.stride, stance.level(self.graph.nodes[begin].position) * stance.height))
     }
 
-    /// Where limbs that swing in turns near the floor walk to: their mean correlation of height and speed along `forward`, by how
+    /// Direction in which limbs that swing in turns near the floor walk: their mean correlation of height and speed along `forward`, by how
     /// far they swing.
     fn walks_toward(&self, up: Vec3) -> f32 {
         let swings = self.low_ends(up).filter_map(|end| self.swing(up, end));

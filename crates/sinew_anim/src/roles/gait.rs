@@ -51,7 +51,7 @@ pub(super) struct Swing {
     pub ahead: f32,
 }
 
-/// What is asked of a pair of limbs.
+/// A pair of limbs of which the swing is asked.
 pub(super) struct Pair {
     /// The joint that carries both, and its bind pose.
     pub carrier: JointIdx,

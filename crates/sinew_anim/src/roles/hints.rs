@@ -19,7 +19,7 @@ pub struct Hints {
 }
 
 impl Hints {
-    /// What the clips of a rig tell.
+    /// Hints that the clips of a rig give.
     ///
     /// # Panics
     /// As [`Gait::of`].

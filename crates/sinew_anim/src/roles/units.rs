@@ -4,7 +4,7 @@ use super::{Hints, UnitGuess};
 use core::fmt::Write as _;
 use sinew_math::{clamp, max, trig};
 
-/// What of a body tells the unit of its file.
+/// Sizes of a body that tell the unit of its file.
 pub(super) struct Measured {
     pub humanoid: bool,
     /// From floor to crown, file units.
@@ -58,7 +58,7 @@ const EXPORTERS: [(&str, f32); 16] = [
     ("source engine", 0.0254),
 ];
 
-/// How much likelier a unit is in which the program that wrote the file writes, and one that all files beside it have; in the
+/// Weight of a unit in which the program that wrote the file writes, and one that all files beside it have; in the
 /// measure of [`Unit::rarity`].
 const BY_EXPORTER: f32 = 1.0;
 const BY_KIN: f32 = 2.0;

@@ -89,7 +89,7 @@ struct Scale {
     thickness: f32,
     /// Distances that nobody sees.
     unseen: f32,
-    /// How far a part that is filled may be away where that closes its holes: boxes that are solid hold better than plates. It goes
+    /// Distance at which a part may still be filled where that closes its holes: boxes that are solid hold better than plates. It goes
     /// by the tolerance that was asked for, however fine the boxes are.
     filled: f32,
     /// Share of the usual size of the cells in which slanted parts are seen.

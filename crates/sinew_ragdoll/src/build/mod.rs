@@ -127,16 +127,9 @@ pub(crate) fn build_overridden(
         .collect();
     let Planned { mut plans, limits, poses } = planned(rig, &bones, bind, &fits, options, overrides.takes)?;
     let filter = filter_pairs(&bones, &mut fits, &poses);
-    let (density, matter) = volume::density(rig);
-    let enclosed = match bones.anatomy {
-        Anatomy::Creature => volume::enclosed(&skin_triangles(rig, &bones, bind)),
-        Anatomy::Human => None,
-    };
-    let weighs = MassOptions {
-        total: options.mass,
-        sex: options.sex,
-        enclosed: enclosed.map(|volume| density * volume),
-    };
+    let enclosed = Enclosed::of(rig, &bones, bind);
+    let mass = enclosed.as_ref().map(Enclosed::mass);
+    let weighs = MassOptions { total: options.mass, sex: options.sex, enclosed: mass };
     let masses = distribute(&bones, &fits, weighs);
     let total_mass = masses.iter().map(|mass| mass.mass).sum();
     // Friction goes by the mass, which goes by the shapes.
@@ -145,9 +138,7 @@ pub(crate) fn build_overridden(
         plan.def.friction_torque = torque;
     }
     let mut report = BuildReport::new(rig, &bones, &fits, &filter, (&plans, &limits));
-    if let Some(volume) = enclosed.filter(|volume| (volume * density / total_mass - 1.0).abs() < 1e-3) {
-        report.notes.push(format!("the mass is that of {volume:.3} m³ of {matter}, which the skin encloses"));
-    }
+    report.notes.extend(enclosed.and_then(|enclosed| enclosed.note(total_mass)));
     let name = |joint: JointIdx| joint_name(rig, joint);
     let bodies = bones.list.into_iter().zip(fits).zip(masses).map(|((bone, fit), mass)| RagdollBodyDef {
         bone: name(bone.joint),
@@ -172,6 +163,40 @@ pub(crate) fn build_overridden(
         character_from_model,
     };
     Ok((def, report))
+}
+
+/// Volume that a creature's skin encloses, and what fills it.
+struct Enclosed {
+    /// m³.
+    volume: f32,
+    /// kg/m³.
+    density: f32,
+    matter: &'static str,
+}
+
+impl Enclosed {
+    /// `None` for humans, whose mass goes by their height, and where the skin is too open to tell.
+    fn of(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Option<Self> {
+        if bones.anatomy == Anatomy::Human {
+            return None;
+        }
+        let volume = volume::enclosed(&skin_triangles(rig, bones, bind))?;
+        let (density, matter) = volume::density(rig);
+        Some(Self { volume, density, matter })
+    }
+
+    /// kg.
+    fn mass(&self) -> f32 {
+        self.density * self.volume
+    }
+
+    /// Where the mass is from, if it is from here.
+    fn note(&self, total_mass: f32) -> Option<String> {
+        let Self { volume, matter, .. } = self;
+        let is_from_here = (self.mass() / total_mass - 1.0).abs() < 1e-3;
+        is_from_here
+            .then(|| format!("the mass is that of {volume:.3} m³ of {matter}, which the skin encloses"))
+    }
 }
 
 /// Joints, and the poses in which shapes are held against each other.

@@ -117,7 +117,7 @@ const MACHINES: [&str; 14] = [
     "drone",
 ];
 
-/// What a body is made of, by the words of its joints' names: kg/m³ and a word.
+/// Matter of a body, by the words of its joints' names: kg/m³ and a word.
 pub fn density(rig: &Rig) -> (f32, &'static str) {
     let is_machine =
         rig.joints.iter().any(|joint| words(&joint.name).any(|word| MACHINES.contains(&word.as_str())));
