@@ -97,7 +97,11 @@ impl ShadowMap {
         let blocks = size.div_ceil(BLOCK);
         scan(footprint, *size, *size, [0, 0], |texels, depth| {
             let row = texels.start / *size;
-            *rows = if rows.is_empty() { row..row + 1 } else { usize::min(rows.start, row)..usize::max(rows.end, row + 1) };
+            *rows = if rows.is_empty() {
+                row..row + 1
+            } else {
+                usize::min(rows.start, row)..usize::max(rows.end, row + 1)
+            };
             let first = texels.start - row * *size;
             let blocks_of_row = &mut highest[row / BLOCK * blocks..];
             for (column, texel) in heights[texels].iter_mut().enumerate() {
