@@ -97,7 +97,7 @@ impl ShadowMap {
         let blocks = size.div_ceil(BLOCK);
         scan(footprint, *size, *size, [0, 0], |texels, depth| {
             let row = texels.start / *size;
-            *rows = if rows.is_empty() {
+            *rows = if rows.start == rows.end {
                 row..row + 1
             } else {
                 usize::min(rows.start, row)..usize::max(rows.end, row + 1)
