@@ -117,7 +117,8 @@ fn files_beside_it_tell_a_unit_that_is_in_doubt() {
     folder.file("woman.glb", in_centimetres);
     let note = build();
     assert!(note.contains("taken as centimetres: 0.6"), "{note}");
-    assert!(note.contains("files beside it are in centimetres; it may also be inches (1.6"), "{note}");
+    assert!(note.contains("files beside it are in centimetres, "), "{note}");
+    assert!(note.contains("; it may also be inches (1.6"), "{note}");
     let seen = sinew(&["inspect", &file, "--json"]).json();
     assert!(of_unit(&seen).contains("taken as centimetres"), "{seen:#}");
 }
