@@ -42,7 +42,7 @@ impl CharacterFile {
         // A file in metres is taken at its word; of another the others beside it may know more.
         if file.is_in_doubt() && file.analysis.unit_scale != 1.0 {
             let kin = units_beside(path);
-            file.hint(Hints { kin, ..hints })?;
+            file.hint(&Hints { kin, ..hints })?;
         }
         Ok(file)
     }
@@ -53,9 +53,9 @@ impl CharacterFile {
     }
 
     /// Takes more evidence into account.
-    pub fn hint(&mut self, hints: Hints) -> Result<()> {
-        if hints != self.analysis.hints {
-            let analysis = analyze_hinted(&self.document.rig, &hints);
+    pub fn hint(&mut self, hints: &Hints) -> Result<()> {
+        if *hints != self.analysis.hints {
+            let analysis = analyze_hinted(&self.document.rig, hints);
             self.analysis = analysis.map_err(|no_skin| Failure::of_file(&self.name, no_skin))?;
         }
         Ok(())

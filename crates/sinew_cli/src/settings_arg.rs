@@ -153,7 +153,8 @@ impl SettingsArg {
         {
             // What the choice of a character has to say is none of the analysis's own.
             let notes = character.analysis.notes.clone();
-            character.hint(Hints { door: Some(door), ..character.analysis.hints.clone() })?;
+            let hints = Hints { door: Some(door), ..character.analysis.hints.clone() };
+            character.hint(&hints)?;
             character.analysis.notes = notes;
         }
         let loaded = self.load(path)?;

@@ -113,7 +113,7 @@ fn files_beside_it_tell_a_unit_that_is_in_doubt() {
     assert!(build().contains("taken as inches"), "{}", build());
     let in_centimetres = glb(&scaled(mannequin().rig, 100.0), &[]);
     folder.file("man.glb", in_centimetres.clone());
-    folder.file("noise.glb", b"no character at all".to_vec());
+    folder.file("noise.glb", b"no character at all");
     folder.file("woman.glb", in_centimetres);
     let note = build();
     assert!(note.contains("taken as centimetres: 0.6"), "{note}");
