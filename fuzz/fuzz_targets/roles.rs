@@ -4,7 +4,7 @@
 use libfuzzer_sys::fuzz_target;
 use sinew_anim::roles::HUMANOID_ROLES;
 use sinew_anim::{
-    Correction, Joint, LocalTransform, Mesh, Primitive, Rig, Role, Skin, analyze, analyze_corrected,
+    Correction, Hints, Joint, LocalTransform, Mesh, Primitive, Rig, Role, Skin, analyze, analyze_corrected,
 };
 use sinew_math::{Affine, Vec3};
 
@@ -74,7 +74,7 @@ fuzz_target!(|bytes: &[u8]| {
         return;
     }
     let rig = rig(&lines);
-    let found = [analyze(&rig).ok(), analyze_corrected(&rig, &correction(&lines)).ok()];
+    let found = [analyze(&rig).ok(), analyze_corrected(&rig, &Hints::default(), &correction(&lines)).ok()];
     for found in found.into_iter().flatten() {
         assert_eq!(found.roles.len(), rig.joints.len());
         assert!(found.unit_scale > 0.0 && found.unit_scale.is_finite());

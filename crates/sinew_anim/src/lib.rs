@@ -43,8 +43,8 @@ pub use pose::{
 pub use reduce::{KeyBound, KeyError, Reduced, reduce_keys};
 pub use rig::{Joint, JointIdx, LocalTransform, Mesh, Primitive, Rig, Skin, Texture};
 pub use roles::{
-    Basis, Correction, CorrectionError, KeptBone, NoSkin, RigAnalysis, Role, RoleGuess, Side, UnitGuess,
-    analyze, analyze_corrected, analyze_skeleton, characters,
+    Basis, Correction, CorrectionError, Gait, Hints, KeptBone, NoSkin, RigAnalysis, Role, RoleGuess, Side,
+    UnitGuess, analyze, analyze_corrected, analyze_hinted, analyze_skeleton, characters,
 };
 pub use root_motion::{AxisMotion, MotionTrack, RootMotionOptions, extract_root_motion};
 pub use sample::{SampleCache, Wrap, sample, sample_cached};

@@ -1,7 +1,8 @@
 //! Reading and writing what commands work on.
 
 use crate::failure::{Failure, Result};
-use sinew::anim::{RigAnalysis, analyze, characters};
+use crate::kin::units_beside;
+use sinew::anim::{Hints, RigAnalysis, analyze_hinted, characters};
 use sinew::formats::{
     Document, MotionFormat, MotionOptions, ReadOptions, Textures, load_gltf, load_motion, no_files,
     read_bytes, read_gltf, write_all_atomic, write_motion,
@@ -31,10 +32,33 @@ impl CharacterFile {
         } else {
             load_gltf(path, options)?
         };
-        match analyze(&document.rig) {
-            Ok(analysis) => Ok(Self { name, document, analysis }),
-            Err(no_skin) => Err(Failure::of_file(name, no_skin)),
+        let hints = Hints {
+            exporter: document.generator().to_owned(),
+            ..Hints::of_clips(&document.rig, &document.clips)
+        };
+        let analysis =
+            analyze_hinted(&document.rig, &hints).map_err(|error| Failure::of_file(&name, error))?;
+        let mut file = Self { name, document, analysis };
+        // A file in metres is taken at its word; of another the others beside it may know more.
+        if file.is_in_doubt() && file.analysis.unit_scale != 1.0 {
+            let kin = units_beside(path);
+            file.hint(&Hints { kin, ..hints })?;
         }
+        Ok(file)
+    }
+
+    /// Whether the file's unit may as well be another.
+    pub fn is_in_doubt(&self) -> bool {
+        self.analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only)
+    }
+
+    /// Takes more evidence into account.
+    pub fn hint(&mut self, hints: &Hints) -> Result<()> {
+        if *hints != self.analysis.hints {
+            let analysis = analyze_hinted(&self.document.rig, hints);
+            self.analysis = analysis.map_err(|no_skin| Failure::of_file(&self.name, no_skin))?;
+        }
+        Ok(())
     }
 }
 
@@ -67,7 +91,9 @@ impl CharacterFile {
             index += 1;
             !is_others(index - 1)
         });
-        self.analysis = analyze(rig).map_err(|no_skin| Failure::of_file(&self.name, no_skin))?;
+        let hints = &self.analysis.hints;
+        self.analysis =
+            analyze_hinted(rig, hints).map_err(|no_skin| Failure::of_file(&self.name, no_skin))?;
         Ok(())
     }
 }

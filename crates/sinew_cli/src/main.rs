@@ -10,6 +10,7 @@ mod files;
 mod film;
 mod footsteps;
 mod framing;
+mod kin;
 mod motion;
 mod onto;
 mod picture_file;

@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, Result};
 use crate::files::CharacterFile;
-use sinew::anim::{RigAnalysis, Role, UnitGuess};
+use sinew::anim::{Hints, RigAnalysis, Role, UnitGuess};
 use sinew::formats::{Textures, read_bytes, read_ragdoll_settings, settings_path};
 use sinew::ragdoll::build::{BuildReport, takes};
 use sinew::ragdoll::quality::implausible;
@@ -136,8 +136,27 @@ impl SettingsArg {
 
     /// A character with its settings: its roles and its unit are what they say.
     pub fn load_character(&self, path: &Path, textures: Textures) -> Result<(CharacterFile, LoadedSettings)> {
+        self.load_into(path, textures, || None)
+    }
+
+    /// [`Self::load_character`] for a world with doors of a free height (metres) that is asked for if the unit is in doubt.
+    pub fn load_into(
+        &self,
+        path: &Path,
+        textures: Textures,
+        door: impl FnOnce() -> Option<f32>,
+    ) -> Result<(CharacterFile, LoadedSettings)> {
         let mut character = CharacterFile::load(path, textures)?;
         character.choose(self.character.map(usize::from))?;
+        if character.is_in_doubt()
+            && let Some(door) = door()
+        {
+            // What the choice of a character has to say is none of the analysis's own.
+            let notes = character.analysis.notes.clone();
+            let hints = Hints { door: Some(door), ..character.analysis.hints.clone() };
+            character.hint(&hints)?;
+            character.analysis.notes = notes;
+        }
         let loaded = self.load(path)?;
         let analysis = analyze_with(&character.document.rig, &character.analysis, &loaded.settings);
         character.analysis = analysis.map_err(|error| loaded.failure(&character.name, error))?;

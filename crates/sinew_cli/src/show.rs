@@ -7,12 +7,11 @@ use crate::motion::Motion;
 use crate::progress::Progress;
 use crate::skin;
 use crate::table::shown;
-use sinew::anim::{Clip, Rig, RigAnalysis, Wrap, local_to_model, rest_pose, sample};
+use sinew::anim::{Clip, Rig, RigAnalysis, Wrap, local_to_model, rest_pose, sample, skin_vertices};
 use sinew::math::{Affine, Transform, Vec3, max};
 use sinew::physics::boxes::Aabb;
 use sinew_picture::{
-    Caption, EncodeError, Material, Model, Movie, PictureFormat, RenderSettings, Renderer, Scene, Sky, Sun,
-    draw,
+    Caption, EncodeError, Material, Movie, PictureFormat, RenderSettings, Renderer, Scene, Sky, Sun, draw,
 };
 
 /// Pictures a second: a whole number of a GIF's hundredths of a second.
@@ -81,10 +80,9 @@ impl Show {
         settings: RenderSettings,
         format: PictureFormat,
     ) -> Result<Vec<u8>, EncodeError> {
-        let models = self.models(at);
-        let bounds = around(&models).unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE));
+        let bounds = around(&skin::outline(&self.rig), &self.pose(at));
         let framing = Framing::new(&[bounds], FPS as f32, DIRECTION);
-        let image = self.draw(models, at, 0, &framing, &bounds, &mut Renderer::new(settings));
+        let image = Stage::new(self, framing, bounds, settings).draw(at, 0);
         sinew_picture::encode::encode(format, &[image], FPS)
     }
 
@@ -98,42 +96,33 @@ impl Show {
         let frames = (seconds * FPS as f32) as usize + 1;
         let time = |frame: usize| frame as f32 / FPS as f32;
         // Once to see how far everything goes, once to draw it.
-        let boxes: Vec<Aabb> = (0..frames)
-            .map(|frame| around(&self.models(time(frame))).unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE)))
-            .collect();
+        let outline = skin::outline(&self.rig);
+        let boxes: Vec<Aabb> = (0..frames).map(|frame| around(&outline, &self.pose(time(frame)))).collect();
         let whole = boxes.iter().copied().reduce(|a, b| a.merge(&b)).expect("there is a frame");
         let framing = Framing::new(&boxes, FPS as f32, DIRECTION);
         let progress = Progress::new("drawing", frames);
-        let mut renderer = Renderer::new(settings);
+        let mut stage = Stage::new(self, framing, whole, settings);
         let mut movie = Movie::new(format, FPS);
         for frame in 0..frames {
-            let models = self.models(time(frame));
-            movie.push(&self.draw(models, time(frame), frame, &framing, &whole, &mut renderer))?;
+            movie.push(&stage.draw(time(frame), frame))?;
             progress.step();
         }
         movie.finish()
     }
 
-    /// Its surface at a time.
-    fn models(&self, time: f32) -> Vec<Model> {
+    /// Places of its joints at a time, in the picture's space.
+    fn pose(&self, time: f32) -> Vec<Affine> {
         let mut local = rest_pose(&self.rig);
         if let Some(clip) = &self.clip {
             sample(clip, &self.rig, time, Wrap::Clamp, &mut local);
         }
         let mut model = Vec::new();
         local_to_model(&self.rig, &local, &self.root, &mut model);
-        skin::models(&self.rig, &model, &self.looks).collect()
+        model
     }
 
-    fn draw(
-        &self,
-        models: Vec<Model>,
-        time: f32,
-        frame: usize,
-        framing: &Framing,
-        whole: &Aabb,
-        renderer: &mut Renderer,
-    ) -> sinew_picture::Image {
+    /// What is on every picture.
+    fn scene(&self, framing: &Framing, whole: &Aabb) -> Scene {
         let radius = framing.radius();
         let lowest = self.floor.filter(|floor| *floor <= whole.min.y + 0.5 * radius).unwrap_or(whole.min.y);
         let ground = Transform::from_translation(Vec3::Y * lowest);
@@ -142,23 +131,57 @@ impl Show {
         let mut scene = Scene {
             sun: Sun { shadow_radius: 1.3 * radius, ..Sun::default() },
             sky: Sky { haze_distance: max(45.0, 15.0 * radius), ..Sky::default() },
-            models,
+            models: skin::models(&self.rig, &self.pose(0.0), &self.looks).collect(),
             ..Scene::default()
         };
         scene.models.push(draw::plane(ground, max(GROUND * radius, 40.0), tile, GROUND_COLORS));
-        let caption = match &self.clip {
+        scene
+    }
+
+    fn caption(&self, time: f32) -> String {
+        match &self.clip {
             Some(_) => format!("{time:5.2} s  {}", self.title),
             None => self.title.clone(),
-        };
-        scene.captions = vec![Caption::new(caption)];
-        let size = renderer.settings();
-        let aspect = size.width as f32 / size.height as f32;
-        renderer.render(&scene, &framing.camera(frame, aspect))
+        }
     }
 }
 
-/// Around all vertices that are finite.
-fn around(models: &[Model]) -> Option<Aabb> {
-    let points = models.iter().flat_map(|model| &model.positions).filter(|point| point.is_finite());
-    points.map(|&point| Aabb { min: point, max: point }).reduce(|a, b| a.merge(&b))
+/// A rig before the camera: what stays the same from picture to picture is made once.
+struct Stage<'a> {
+    show: &'a Show,
+    framing: Framing,
+    scene: Scene,
+    renderer: Renderer,
+}
+
+impl<'a> Stage<'a> {
+    /// For pictures within `whole`.
+    fn new(show: &'a Show, framing: Framing, whole: Aabb, settings: RenderSettings) -> Self {
+        let scene = show.scene(&framing, &whole);
+        Self { show, framing, scene, renderer: Renderer::new(settings) }
+    }
+
+    /// The picture of a time, the frame of which the framing knows by number.
+    fn draw(&mut self, time: f32, frame: usize) -> sinew_picture::Image {
+        skin::pose(&self.show.rig, &self.show.pose(time), &mut self.scene.models);
+        self.scene.captions = vec![Caption::new(self.show.caption(time))];
+        let size = self.renderer.settings();
+        let aspect = size.width as f32 / size.height as f32;
+        self.renderer.render(&self.scene, &self.framing.camera(frame, aspect))
+    }
+}
+
+/// Around all vertices of an outline that are finite; a cubic metre if there are none.
+fn around(outline: &Rig, pose: &[Affine]) -> Aabb {
+    let (mut bounds, mut positions, mut normals): (Option<Aabb>, _, _) = (None, Vec::new(), Vec::new());
+    for (mesh, of) in outline.meshes.iter().enumerate() {
+        for part in 0..of.primitives.len() {
+            skin_vertices(outline, mesh, part, pose, &mut positions, &mut normals);
+            for &point in positions.iter().filter(|point: &&Vec3| point.is_finite()) {
+                let own = Aabb { min: point, max: point };
+                bounds = Some(bounds.map_or(own, |all| all.merge(&own)));
+            }
+        }
+    }
+    bounds.unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE))
 }

@@ -3,6 +3,7 @@
 use sinew::anim::{Primitive, Rig, skin_vertices};
 use sinew::math::{Affine, Vec2, Vec3};
 use sinew_picture::{Material, Model, Texture};
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// All primitives of a rig under a pose, one transform per joint; `looks` are those of [`looks`].
@@ -19,6 +20,65 @@ pub fn models<'a>(
         skin_vertices(rig, mesh, part, model, &mut positions, &mut normals);
         surface(primitive, positions, normals, look.clone())
     })
+}
+
+/// Poses what [`models`] gave for the same rig and looks: places and normals alone change.
+pub fn pose(rig: &Rig, model: &[Affine], models: &mut [Model]) {
+    let parts = rig
+        .meshes
+        .iter()
+        .enumerate()
+        .flat_map(|(mesh, of)| (0..of.primitives.len()).map(move |part| (mesh, part)));
+    for ((mesh, part), surface) in parts.zip(models) {
+        skin_vertices(rig, mesh, part, model, &mut surface.positions, &mut surface.normals);
+    }
+}
+
+/// Directions in which a part of a skin reaches farthest somewhere: along the axes, the edges and the corners of a cube.
+fn directions() -> impl Iterator<Item = Vec3> {
+    let steps = [-1.0, 0.0, 1.0];
+    let all = steps
+        .into_iter()
+        .flat_map(move |x| steps.into_iter().flat_map(move |y| steps.map(|z| Vec3::new(x, y, z))));
+    all.filter(|way| *way != Vec3::ZERO)
+}
+
+/// The rig with no more of each joint's skin than its outermost vertices, without normals: what tells how far it reaches in any pose,
+/// for a small part of the work.
+pub fn outline(rig: &Rig) -> Rig {
+    let mut rig = Rig { textures: Vec::new(), ..rig.clone() };
+    for primitive in rig.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives) {
+        let slot = |vertex: usize| {
+            let pulls = primitive.joints.get(vertex).into_iter().flatten().zip(&primitive.weights[vertex]);
+            pulls
+                .fold((0, 0.0), |most, (&slot, &weight)| if weight > most.1 { (slot, weight) } else { most })
+                .0
+        };
+        let slots: Vec<u16> = if primitive.joints.is_empty() {
+            vec![0; primitive.positions.len()]
+        } else {
+            (0..primitive.positions.len()).map(slot).collect()
+        };
+        let mut farthest: BTreeMap<(u16, usize), (f32, usize)> = BTreeMap::new();
+        for (vertex, position) in primitive.positions.iter().enumerate().filter(|(_, at)| at.is_finite()) {
+            for (way, direction) in directions().enumerate() {
+                let reach = position.dot(direction);
+                let best = farthest.entry((slots[vertex], way)).or_insert((reach, vertex));
+                if reach > best.0 {
+                    *best = (reach, vertex);
+                }
+            }
+        }
+        let kept: BTreeSet<usize> = farthest.into_values().map(|(_, vertex)| vertex).collect();
+        let of = |list: &[Vec3]| kept.iter().map(|&vertex| list[vertex]).collect();
+        *primitive = Primitive {
+            positions: of(&primitive.positions),
+            joints: kept.iter().filter_map(|&vertex| primitive.joints.get(vertex).copied()).collect(),
+            weights: kept.iter().filter_map(|&vertex| primitive.weights.get(vertex).copied()).collect(),
+            ..Primitive::default()
+        };
+    }
+    rig
 }
 
 fn surface(part: &Primitive, positions: Vec<Vec3>, normals: Vec<Vec3>, material: Material) -> Model {

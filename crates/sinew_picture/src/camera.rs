@@ -168,6 +168,12 @@ impl View {
         self.corner_ray + self.ray_per_pixel[0] * x + self.ray_per_pixel[1] * y
     }
 
+    /// Change of [`Self::ray`] from a pixel to the next, to the right and down.
+    #[inline(always)]
+    pub(crate) fn ray_per_pixel(&self) -> [Vec3; 2] {
+        self.ray_per_pixel
+    }
+
     /// Side of a pixel at depth 1, metres.
     pub(crate) fn pixel_size(&self) -> f32 {
         self.ray_per_pixel[1].length()

@@ -36,8 +36,9 @@ impl ColorTables {
     }
 
     /// sRGB bytes of a linear colour.
-    pub(crate) fn to_srgb3(&self, linear: [f32; 3]) -> [u8; 3] {
-        linear.map(|channel| self.to_srgb(channel))
+    #[inline(always)]
+    pub(crate) fn to_srgb3(&self, [r, g, b]: [f32; 3]) -> [u8; 3] {
+        [self.to_srgb(r), self.to_srgb(g), self.to_srgb(b)]
     }
 }
 

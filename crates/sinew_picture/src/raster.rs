@@ -138,10 +138,14 @@ impl Layer {
     /// Draws a triangle where it is nearer than what is there. At equal depths the first drawn stays.
     pub(crate) fn draw(&mut self, footprint: &Footprint) {
         let Self { width, height, offset, depth, ids } = self;
-        scan(footprint, *width, *height, *offset, |pixel, z| {
-            if z > depth[pixel] {
-                depth[pixel] = z;
-                ids[pixel] = footprint.id;
+        scan(footprint, *width, *height, *offset, |pixels, ramp| {
+            let row = depth[pixels.clone()].iter_mut().zip(&mut ids[pixels]);
+            for (column, (depth, id)) in row.enumerate() {
+                // Chosen, not branched: so that several pixels go at once.
+                let z = ramp.at(column);
+                let is_nearer = z > *depth;
+                *depth = if is_nearer { z } else { *depth };
+                *id = if is_nearer { footprint.id } else { *id };
             }
         });
     }
@@ -211,15 +215,33 @@ impl EdgeWalk {
     }
 }
 
-/// Calls `visit(pixel, depth)` for every pixel of a `width × height` picture whose sample, `offset` (in 1/256 pixel)
-/// from its middle, is covered; row by row.
+/// Depth along a row of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RowDepth {
+    at_origin: f32,
+    per_x: f32,
+    /// From where the depth is `at_origin` to the row's first pixel, pixels, in two parts: the first is a whole number.
+    first: i32,
+    from_x0: f32,
+}
+
+impl RowDepth {
+    /// Depth so many pixels after the first.
+    #[inline(always)]
+    pub(crate) fn at(&self, column: usize) -> f32 {
+        self.at_origin + self.per_x * ((self.first + column as i32) as f32 + self.from_x0)
+    }
+}
+
+/// Calls `visit(pixels, depth)` for every row of a `width × height` picture with pixels whose sample, `offset` (in 1/256 pixel)
+/// from its middle, is covered.
 #[inline(always)]
 pub(crate) fn scan(
     footprint: &Footprint,
     width: usize,
     height: usize,
     offset: [i64; 2],
-    mut visit: impl FnMut(usize, f32),
+    mut visit: impl FnMut(core::ops::Range<usize>, RowDepth),
 ) {
     let [a, b, c] = footprint.corners;
     let (sample_x, sample_y) = (UNIT / 2 + offset[0], UNIT / 2 + offset[1]);
@@ -241,9 +263,10 @@ pub(crate) fn scan(
         }
         let from_y0 = (row * UNIT + sample_y) as f32 / UNIT as f32 - ramp.y0;
         let depth_row = ramp.at_origin + ramp.per_y * from_y0;
-        let start = row as usize * width;
-        for column in first..=last {
-            visit(start + column as usize, depth_row + ramp.per_x * (column as f32 + from_x0));
+        if first <= last {
+            let start = row as usize * width;
+            let depth = RowDepth { at_origin: depth_row, per_x: ramp.per_x, first: first as i32, from_x0 };
+            visit(start + first as usize..start + last as usize + 1, depth);
         }
     }
 }
@@ -266,7 +289,9 @@ mod tests {
     fn coverage(vertices: [ScreenVertex; 3], offset: [i64; 2]) -> Vec<u32> {
         let mut counts = vec![0; SIZE * SIZE];
         if let Some((footprint, _)) = Footprint::new(vertices, 0) {
-            scan(&footprint, SIZE, SIZE, offset, |pixel, _| counts[pixel] += 1);
+            scan(&footprint, SIZE, SIZE, offset, |pixels, _| {
+                counts[pixels].iter_mut().for_each(|count| *count += 1);
+            });
         }
         counts
     }

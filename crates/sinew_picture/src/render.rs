@@ -5,7 +5,7 @@ use crate::image::Image;
 use crate::overlay;
 use crate::raster::{Footprint, Layer, NOTHING, ScreenVertex, Winding};
 use crate::scene::{Faces, Model, Scene, ShadowCasting};
-use crate::shade::{Shader, Triangle};
+use crate::shade::{SPAN, Shader, Triangle};
 use crate::shadow::ShadowMap;
 use sinew::math::Vec3;
 
@@ -164,12 +164,36 @@ impl Renderer {
         let mut rgba = vec![255; width * height * 4];
         let rows = rgba.chunks_exact_mut(width * 4).enumerate().collect();
         share(self.settings.threads, rows, |(y, row): (usize, &mut [u8])| {
-            for (x, pixel) in row.chunks_exact_mut(4).enumerate() {
-                let color = self.pixel(&shader, x, y);
-                pixel[..3].copy_from_slice(&self.tables.to_srgb3(color));
+            let mut x = 0;
+            while x < width {
+                if let Some(colors) = self.span(&shader, x, y) {
+                    for (pixel, color) in row[4 * x..].chunks_exact_mut(4).zip(colors) {
+                        pixel[..3].copy_from_slice(&self.tables.to_srgb3(color));
+                    }
+                    x += SPAN;
+                } else {
+                    let color = self.pixel(&shader, x, y);
+                    row[4 * x..4 * x + 3].copy_from_slice(&self.tables.to_srgb3(color));
+                    x += 1;
+                }
             }
         });
         Image { width: self.settings.width, height: self.settings.height, rgba }
+    }
+
+    /// Linear colours of pixels side by side that show one flat triangle and nothing else; `None` if they do not.
+    #[inline(always)]
+    fn span(&self, shader: &Shader<'_>, x: usize, y: usize) -> Option<[[f32; 3]; SPAN]> {
+        let width = self.settings.width as usize;
+        if x + SPAN > width || !self.footprints.translucent.is_empty() {
+            return None;
+        }
+        let start = y * width + x;
+        let id = self.solid[0].ids[start];
+        let shows_it = |layer: &Layer| layer.ids[start..start + SPAN].iter().all(|other| *other == id);
+        let is_one =
+            id != NOTHING && self.solid[0].ids[start + SPAN - 1] == id && self.solid.iter().all(shows_it);
+        (is_one && shader.is_flat(id)).then(|| shader.flat_span(id, x, y))
     }
 
     /// Linear colour of a pixel: every triangle in it is shaded once, in the middle of its samples.

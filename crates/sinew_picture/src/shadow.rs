@@ -11,6 +11,10 @@ pub(crate) struct ShadowMap {
     size: usize,
     /// Height toward the sun per texel; −∞ where nothing is.
     heights: Vec<f32>,
+    /// Greatest height per square of [`BLOCK`] texels: most points lie above all that could shade them.
+    highest: Vec<f32>,
+    /// Rows of the map in which something is.
+    rows: core::ops::Range<usize>,
     /// Toward the sun, unit.
     pub(crate) to_sun: Vec3,
     /// World to map: the edges of the map are at ±1.
@@ -22,11 +26,16 @@ pub(crate) struct ShadowMap {
     texel: f32,
 }
 
+/// Texels along a side of a square of [`ShadowMap::highest`].
+const BLOCK: usize = 16;
+
 impl ShadowMap {
     pub(crate) fn new(size: usize) -> Self {
         Self {
             size,
             heights: vec![f32::NEG_INFINITY; size * size],
+            highest: vec![f32::NEG_INFINITY; size.div_ceil(BLOCK) * size.div_ceil(BLOCK)],
+            rows: 0..0,
             to_sun: Vec3::Y,
             axes: [Vec3::X, Vec3::Z],
             center: [0.0; 2],
@@ -45,14 +54,17 @@ impl ShadowMap {
         let texel_on_map = 2.0 / self.size as f32;
         self.center = self.axes.map(|axis| (self.focus.dot(axis) / texel_on_map).floor() * texel_on_map);
         self.texel = texel_on_map * radius;
-        self.heights.fill(f32::NEG_INFINITY);
+        let used = self.rows.start * self.size..self.rows.end * self.size;
+        self.heights[used].fill(f32::NEG_INFINITY);
+        self.highest.fill(f32::NEG_INFINITY);
+        self.rows = 0..0;
     }
 
     /// Position on the map, ±1 at its edges, and height toward the sun.
     #[inline(always)]
     fn map_from_world(&self, p: Vec3) -> [f32; 3] {
-        let flat = |i: usize| p.dot(self.axes[i]) - self.center[i];
-        [flat(0), flat(1), (p - self.focus).dot(self.to_sun)]
+        let [across, up] = self.axes;
+        [p.dot(across) - self.center[0], p.dot(up) - self.center[1], (p - self.focus).dot(self.to_sun)]
     }
 
     /// Lets a triangle throw its shadow.
@@ -75,23 +87,54 @@ impl ShadowMap {
         for i in 1..corners.len() - 1 {
             let fan = [vertex(corners[0]), vertex(corners[i]), vertex(corners[i + 1])];
             if let Some((footprint, _)) = Footprint::new(fan, NOTHING) {
-                let heights = &mut self.heights;
-                scan(&footprint, self.size, self.size, [0, 0], |texel, height| {
-                    if height > heights[texel] {
-                        heights[texel] = height;
-                    }
-                });
+                self.raise(&footprint);
             }
         }
+    }
+
+    fn raise(&mut self, footprint: &Footprint) {
+        let Self { size, heights, highest, rows, .. } = self;
+        let blocks = size.div_ceil(BLOCK);
+        scan(footprint, *size, *size, [0, 0], |texels, depth| {
+            let row = texels.start / *size;
+            *rows = if rows.start == rows.end {
+                row..row + 1
+            } else {
+                usize::min(rows.start, row)..usize::max(rows.end, row + 1)
+            };
+            let first = texels.start - row * *size;
+            let blocks_of_row = &mut highest[row / BLOCK * blocks..];
+            for (column, texel) in heights[texels].iter_mut().enumerate() {
+                let height = depth.at(column);
+                if height > *texel {
+                    *texel = height;
+                    let block = &mut blocks_of_row[(first + column) / BLOCK];
+                    *block = max(*block, height);
+                }
+            }
+        });
     }
 
     /// Share of the sun's light, 0..=1, that reaches a point of a surface with unit `normal` (turned to the viewer).
     ///
     /// Mean of 3 × 3 bilinear comparisons. The point is first moved off the surface just far enough that the widest
     /// tap cannot hit the surface itself: `d / cos θ ≥ 1.5 √2 · texel · tan θ`.
+    #[cfg(test)]
     pub(crate) fn light_at(&self, point: Vec3, normal: Vec3, cos_to_sun: f32) -> f32 {
+        self.light_off(point + self.lift(normal, cos_to_sun))
+    }
+
+    /// How far a point of a surface with unit `normal` (turned to the viewer) is moved off it before [`Self::light_off`].
+    #[inline(always)]
+    pub(crate) fn lift(&self, normal: Vec3, cos_to_sun: f32) -> Vec3 {
         let sin = max(0.0, 1.0 - cos_to_sun * cos_to_sun).sqrt();
-        let [x, y, height] = self.map_from_world(point + normal * (self.texel * (0.6 + 2.2 * sin)));
+        normal * (self.texel * (0.6 + 2.2 * sin))
+    }
+
+    /// [`Self::light_at`] of a point that is moved off its surface already.
+    #[inline(always)]
+    pub(crate) fn light_off(&self, point: Vec3) -> f32 {
+        let [x, y, height] = self.map_from_world(point);
         // The last tenth fades out, so that shadows end softly where the map ends.
         let fade = 10.0 * (1.0 - max(x.abs(), y.abs()));
         if fade.is_nan() || fade <= 0.0 {
@@ -106,9 +149,25 @@ impl ShadowMap {
         if left < 0 || top < 0 || left > last || top > last {
             return 1.0;
         }
+        let (near, far) =
+            ([left, top].map(|i| i as usize / BLOCK), [left, top].map(|i| (i as usize + 3) / BLOCK));
+        let blocks = size.div_ceil(BLOCK);
+        let is_below = |column: usize, row: usize| self.highest[row * blocks + column] <= height;
+        if is_below(near[0], near[1])
+            && is_below(far[0], near[1])
+            && is_below(near[0], far[1])
+            && is_below(far[0], far[1])
+        {
+            return 1.0;
+        }
+        self.share_of_light(height, [left as usize, top as usize], [fx, fy], fade)
+    }
+
+    /// Mean of the comparisons from a texel on.
+    fn share_of_light(&self, height: f32, [left, top]: [usize; 2], [fx, fy]: [f32; 2], fade: f32) -> f32 {
         let mut hidden = 0.0;
         for (j, weight_of_row) in [1.0 - fy, 1.0, 1.0, fy].into_iter().enumerate() {
-            let start = (top as usize + j) * size + left as usize;
+            let start = (top + j) * self.size + left;
             let row = &self.heights[start..start + 4];
             let above = |i: usize| if row[i] > height { 1.0 } else { 0.0 };
             hidden += ((1.0 - fx) * above(0) + above(1) + above(2) + fx * above(3)) * weight_of_row;

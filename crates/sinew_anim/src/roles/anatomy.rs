@@ -4,11 +4,13 @@ use super::axes::{feet_lead, left_by_name, possible_ups, snap};
 use super::bind::Bound;
 use super::correct::{CorrectionError, corrected, needed};
 use super::creature::{generic_roles, up_by_feet};
+use super::gait::{Gait, Pair, Swing};
 use super::graph::{Graph, ancestors};
 use super::humanoid::{Evidence, Humanoid, Limb, Split, Stance};
 use super::names::{Part, Reading, read_names, settle_duplicates, settle_trunk};
 use super::role::{Role, Side};
 use super::symmetry::Symmetry;
+use super::units::Measured;
 use super::{Basis, NoSkin, RoleGuess};
 use crate::rig::{JointIdx, Rig};
 use sinew_math::Vec3;
@@ -23,6 +25,8 @@ pub(super) struct Anatomy {
     /// Unit, model space, at right angles to `up`.
     pub left: Vec3,
     pub notes: Vec<String>,
+    /// Longest stride in the clips, seconds, and from where its legs begin down to the floor, file units.
+    stride: Option<(f32, f32)>,
 }
 
 /// Share of all skin from which a joint named as a control counts as a bone. It need not be enough for a body: a hoof too small
@@ -36,10 +40,14 @@ const LEAD_AGAINST_NAMES: f32 = 0.04;
 /// Least distance of both elbows together behind the arms, in heights of the body, to tell more than feet that hardly do.
 const ELBOWS: f32 = 0.03;
 
+/// Least correlation of feet's height with their speed that tells which way they walk.
+const STEPS: f32 = 0.25;
+
 /// Graph, symmetry and names of a rig, as far as the names can be trusted.
 pub(super) struct Scene<'a> {
     rig: &'a Rig,
     bound: &'a Bound,
+    gait: &'a Gait,
     graph: Graph,
     symmetry: Symmetry,
     /// Per joint; empty readings where names are not trusted.
@@ -48,11 +56,30 @@ pub(super) struct Scene<'a> {
 
 impl Anatomy {
     /// Errs if no joint moves skin, or on what is `known` and cannot be.
-    pub fn of(rig: &Rig, bound: &Bound, known: &[(Role, JointIdx)]) -> Result<Self, CorrectionError> {
-        let (scene, mut notes) = Scene::of(rig, bound, known).ok_or(NoSkin)?;
+    pub fn of(
+        rig: &Rig,
+        bound: &Bound,
+        known: &[(Role, JointIdx)],
+        gait: &Gait,
+    ) -> Result<Self, CorrectionError> {
+        let (scene, mut notes) = Scene::of(rig, bound, known, gait).ok_or(NoSkin)?;
         let draft = scene.draft(&mut notes);
         let draft = corrected(&scene, draft, known, &mut notes)?;
         Ok(draft.finish(scene, notes))
+    }
+
+    /// Sizes of the body that tell the unit of its file.
+    pub fn measured(&self, bound: &Bound) -> Measured {
+        let stance = Stance::new(bound, self.up);
+        let is_head = |guess: &Option<RoleGuess>| guess.is_some_and(|guess| guess.role == Role::Head);
+        let head = self.roles.iter().position(is_head);
+        Measured {
+            humanoid: self.humanoid,
+            height: stance.height,
+            size: bound.size(),
+            head: head.map(|joint| 1.0 - stance.level(bound.model[joint].translation)),
+            stride: self.stride,
+        }
     }
 }
 
@@ -67,12 +94,18 @@ pub(super) struct Draft {
 impl Draft {
     fn finish(self, scene: Scene<'_>, notes: Vec<String>) -> Anatomy {
         let Self { roles, humanoid, up, left } = self;
-        Anatomy { graph: scene.graph, roles, humanoid, up, left, notes }
+        let stride = scene.stride(up);
+        Anatomy { graph: scene.graph, roles, humanoid, up, left, notes, stride }
     }
 }
 
 impl<'a> Scene<'a> {
-    fn of(rig: &'a Rig, bound: &'a Bound, known: &[(Role, JointIdx)]) -> Option<(Self, Vec<String>)> {
+    fn of(
+        rig: &'a Rig,
+        bound: &'a Bound,
+        known: &[(Role, JointIdx)],
+        gait: &'a Gait,
+    ) -> Option<(Self, Vec<String>)> {
         let mut notes = Vec::new();
         let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
         let parents: Vec<Option<JointIdx>> = rig.joints.iter().map(|joint| joint.parent).collect();
@@ -109,7 +142,7 @@ impl<'a> Scene<'a> {
                 graph = smaller;
             }
         }
-        Some((Self { rig, bound, graph, symmetry, readings }, notes))
+        Some((Self { rig, bound, gait, graph, symmetry, readings }, notes))
     }
 
     /// By what the file states, else by shape, else by names, else generic.
@@ -167,7 +200,64 @@ impl<'a> Scene<'a> {
     fn with_evidence<T>(&self, up: Vec3, see: impl FnOnce(&Evidence<'_>) -> T) -> T {
         let stance = Stance::new(self.bound, up);
         let readings = self.node_readings();
-        see(&Evidence { graph: &self.graph, symmetry: &self.symmetry, stance: &stance, readings: &readings })
+        see(&Evidence {
+            graph: &self.graph,
+            symmetry: &self.symmetry,
+            stance: &stance,
+            readings: &readings,
+            swing: &|end| self.swing(up, end).map_or(0.0, |(swing, _)| swing.reach),
+        })
+    }
+
+    /// Swing of the limb that ends at a node against its mirror image, and the node that begins it; `None` of what has no image.
+    fn swing(&self, up: Vec3, end: usize) -> Option<(Swing, usize)> {
+        let other = self.symmetry.other(end)?;
+        let mut line: Vec<usize> =
+            self.graph.up_from(end).take_while(|&node| !self.symmetry.on_midline(node)).collect();
+        let begin = line.pop()?;
+        let carrier = self.graph.nodes[self.graph.nodes[begin].parent?].joint;
+        let pair = Pair {
+            carrier,
+            bind: self.bound.model[carrier],
+            ends: [end, other].map(|node| self.graph.nodes[node].joint),
+            forward: self.symmetry.lateral.cross(up),
+            up,
+            height: Stance::new(self.bound, up).height,
+        };
+        Some((self.gait.swing(&pair), begin))
+    }
+
+    /// Ends of limbs that come near the floor, one of each pair.
+    fn low_ends(&self, up: Vec3) -> impl Iterator<Item = usize> + '_ {
+        let stance = Stance::new(self.bound, up);
+        (0..self.graph.nodes.len()).filter(move |&end| {
+            let node = &self.graph.nodes[end];
+            let is_first = self.symmetry.other(end).is_some_and(|other| other > end);
+            is_first && node.children.is_empty() && stance.level(node.position) < 0.25
+        })
+    }
+
+    /// Longest stride of what swings in turns near the floor, seconds, with the height above the floor at which it begins, file units.
+    fn stride(&self, up: Vec3) -> Option<(f32, f32)> {
+        if self.gait.is_empty() {
+            return None;
+        }
+        let stance = Stance::new(self.bound, up);
+        let strides = self.low_ends(up).filter_map(|end| self.swing(up, end));
+        let strides = strides.filter(|(swing, _)| swing.stride > 0.0);
+        let longest = strides.reduce(|a, b| if b.0.stride > a.0.stride { b } else { a })?;
+        let (swing, begin) = longest;
+        Some((swing.stride, stance.level(self.graph.nodes[begin].position) * stance.height))
+    }
+
+    /// Direction in which limbs that swing in turns near the floor walk: their mean correlation of height and speed along `forward`, by how
+    /// far they swing.
+    fn walks_toward(&self, up: Vec3) -> f32 {
+        let swings = self.low_ends(up).filter_map(|end| self.swing(up, end));
+        let (sum, weight) = swings.fold((0.0, 0.0), |(sum, weight), (swing, _)| {
+            (sum + swing.reach * swing.ahead, weight + swing.reach)
+        });
+        if weight > 0.0 { sum / weight } else { 0.0 }
     }
 
     /// Whether what looks like arms and what looks like legs are both named as limbs of a body on four legs.
@@ -179,15 +269,21 @@ impl<'a> Scene<'a> {
         is_named(&found.arms) && is_named(&found.legs)
     }
 
-    /// Left by the feet, else by names, else by the elbows, else so that the body faces the file's +Z.
+    /// Left by the feet, else by names, else by which way they walk, else by the elbows, else so that the body faces the file's +Z.
     fn left(&self, up: Vec3, ankles: &[Vec3], arms: Option<&Limb>, notes: &mut Vec<String>) -> Vec3 {
         let lateral = self.symmetry.lateral;
         let forward = lateral.cross(up);
         let lead = feet_lead(self.bound, &Stance::new(self.bound, up), forward, ankles);
         let named = left_by_name(&self.graph, &self.symmetry, &self.node_readings());
+        let hardly = named == 0.0 && lead.abs() < LEAD_AGAINST_NAMES;
+        let steps = if hardly { self.walks_toward(up) } else { 0.0 };
+        if steps.abs() > STEPS {
+            notes.push("the feet hardly tell which way the body faces: the way they walk does".into());
+            return lateral * steps.signum();
+        }
         let elbows =
             arms.map_or(0.0, |arms| self.with_evidence(up, |seen| seen.elbows_behind(arms, forward)));
-        if named == 0.0 && lead.abs() < LEAD_AGAINST_NAMES && elbows.abs() > ELBOWS {
+        if hardly && elbows.abs() > ELBOWS {
             notes.push("the feet hardly tell which way the body faces: the elbows do".into());
             return lateral * elbows.signum();
         }

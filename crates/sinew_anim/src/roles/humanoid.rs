@@ -75,6 +75,8 @@ pub(super) struct Evidence<'a> {
     pub stance: &'a Stance,
     /// Readings per node; all empty when the names cannot be trusted.
     pub readings: &'a [Reading],
+    /// Swing in the clips of the limb that ends at a node in turns with its image: [`Swing::reach`](super::gait::Swing::reach).
+    pub swing: &'a dyn Fn(usize) -> f32,
 }
 
 impl Evidence<'_> {
@@ -200,7 +202,8 @@ impl Evidence<'_> {
         apart < AT_WRIST * farthest || nearest > LONGEST_PALM * self.graph.distance(*before, *forearm)
     }
 
-    /// The pair of chains of at least two joints with the most skin among those that reach the floor.
+    /// The pair of chains of at least two joints that reach the floor, and swing in turns where any of them does: the one with the
+    /// most skin. What hangs down beside the legs swings less than half as far.
     fn take_legs(&self, limbs: &mut Vec<[Vec<usize>; 2]>) -> Option<[Vec<usize>; 2]> {
         let reaches_floor = |chain: &[usize]| {
             let lowest = chain.iter().map(|&i| self.level(i)).fold(f32::INFINITY, min);
@@ -208,9 +211,18 @@ impl Evidence<'_> {
             let limit = if chain.len() > 2 { 0.2 } else { 0.35 };
             chain.len() > 1 && lowest < limit && (LOWEST_HIP..0.75).contains(&self.level(chain[0]))
         };
-        let best = (0..limbs.len())
-            .filter(|&i| reaches_floor(&limbs[i][0]))
-            .map(|i| (self.graph.nodes[limbs[i][0][0]].subtree_area, i))
+        let low: Vec<usize> = (0..limbs.len()).filter(|&i| reaches_floor(&limbs[i][0])).collect();
+        let swing = |i: usize| match limbs[i][0].last() {
+            // Of one pair there is nothing to choose.
+            Some(&end) if low.len() > 1 => (self.swing)(end),
+            _ => 0.0,
+        };
+        let swings: Vec<f32> = low.iter().map(|&i| swing(i)).collect();
+        let widest = swings.iter().copied().fold(0.0, max);
+        let best = low
+            .iter()
+            .zip(swings)
+            .map(|(&i, swing)| ((2.0 * swing >= widest, self.graph.nodes[limbs[i][0][0]].subtree_area), i))
             .reduce(|a, b| if b.0 > a.0 { b } else { a })?;
         Some(limbs.swap_remove(best.1))
     }

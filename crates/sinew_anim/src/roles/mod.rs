@@ -4,7 +4,8 @@
 //! only bear witness: they settle how a limb is divided, raise the confidence where they agree and lower it where
 //! they don't. Names whose left and right do not mirror each other are not listened to at all. Where the shape shows no
 //! human (a bind pose without a mirror, feet beside the body), names alone decide, if what they name stands like one.
-//! What a name says is told by its words, not by a list of names.
+//! What a name says is told by its words, not by a list of names. Clips, where they are known ([`Hints`]), tell legs from whatever
+//! else hangs down: legs swing in turns.
 
 mod anatomy;
 mod axes;
@@ -12,16 +13,21 @@ mod bind;
 mod characters;
 mod correct;
 mod creature;
+mod gait;
 mod graph;
+mod hints;
 mod humanoid;
 mod keep;
 mod names;
 mod props;
 mod role;
 mod symmetry;
+mod units;
 
 pub use characters::characters;
 pub use correct::{Correction, CorrectionError};
+pub use gait::Gait;
+pub use hints::Hints;
 pub use role::{HUMANOID_ROLES, Role, Side};
 
 use crate::rig::{JointIdx, LocalTransform, Rig};
@@ -141,6 +147,8 @@ pub struct RigAnalysis {
     pub unit_guess: Option<UnitGuess>,
     /// Other assumptions, a sentence each.
     pub notes: Vec<String>,
+    /// Evidence from around the rig that was taken into account.
+    pub hints: Hints,
 }
 
 /// Length that a unit of a file was taken to have.
@@ -150,6 +158,8 @@ pub struct UnitGuess {
     pub note: String,
     /// True for a human in metres, whom no other unit would make one.
     pub is_sure: bool,
+    /// True if there is only one unit in which the body is of a size that bodies have.
+    pub is_only: bool,
 }
 
 impl RigAnalysis {
@@ -197,22 +207,37 @@ pub struct NoSkin;
 /// # Panics
 /// If the rig's indices (parents, skin joints, vertex slots) are out of range.
 pub fn analyze(rig: &Rig) -> Result<RigAnalysis, NoSkin> {
-    plain(analyze_bound(rig, Bound::of(rig).ok_or(NoSkin)?, &[]))
+    analyze_hinted(rig, &Hints::default())
 }
 
-/// [`analyze`] with what a person knows: see [`Correction`].
+/// [`analyze`] with evidence from around the rig: see [`Hints`].
+///
+/// # Errors
+/// As [`analyze`].
+///
+/// # Panics
+/// As [`analyze`], and if the hints are of another rig.
+pub fn analyze_hinted(rig: &Rig, hints: &Hints) -> Result<RigAnalysis, NoSkin> {
+    plain(analyze_bound(rig, Bound::of(rig).ok_or(NoSkin)?, &[], hints))
+}
+
+/// [`analyze_hinted`] with what a person knows: see [`Correction`].
 ///
 /// # Errors
 /// [`CorrectionError`]: no skin, none left, or roles that the rig cannot have.
 ///
 /// # Panics
 /// As [`analyze`], and if the correction names a joint that the rig does not have.
-pub fn analyze_corrected(rig: &Rig, correction: &Correction) -> Result<RigAnalysis, CorrectionError> {
+pub fn analyze_corrected(
+    rig: &Rig,
+    hints: &Hints,
+    correction: &Correction,
+) -> Result<RigAnalysis, CorrectionError> {
     let seen = correction.seen(rig);
     let Some(bound) = Bound::of(&seen) else {
         return Err(if correction.ignored.is_empty() { NoSkin.into() } else { CorrectionError::NothingLeft });
     };
-    let mut analysis = analyze_bound(&seen, bound, &correction.roles)?;
+    let mut analysis = analyze_bound(&seen, bound, &correction.roles, hints)?;
     // What is ignored still goes along, with the root where nothing of the body carries it.
     let mut moves_skin: Vec<JointIdx> = rig.skins.iter().flat_map(|skin| skin.joints.clone()).collect();
     moves_skin.sort_unstable();
@@ -247,17 +272,20 @@ fn plain(analyzed: Result<RigAnalysis, CorrectionError>) -> Result<RigAnalysis, 
 /// # Panics
 /// If `pose` is not as long as the rig has joints.
 pub fn analyze_skeleton(rig: &Rig, pose: &[LocalTransform]) -> Result<RigAnalysis, NoSkin> {
-    plain(analyze_bound(rig, Bound::of_bones(rig, pose).ok_or(NoSkin)?, &[]))
+    plain(analyze_bound(rig, Bound::of_bones(rig, pose).ok_or(NoSkin)?, &[], &Hints::default()))
 }
 
 fn analyze_bound(
     rig: &Rig,
     bound: Bound,
     known: &[(Role, JointIdx)],
+    hints: &Hints,
 ) -> Result<RigAnalysis, CorrectionError> {
-    let Anatomy { graph, roles, humanoid, up, left, mut notes } = Anatomy::of(rig, &bound, known)?;
+    let anatomy = Anatomy::of(rig, &bound, known, &hints.gait)?;
+    let body = anatomy.measured(&bound);
+    let Anatomy { graph, roles, humanoid, up, left, mut notes, .. } = anatomy;
     let stance = Stance::new(&bound, up);
-    let (unit_scale, unit_guess) = axes::unit_scale(stance.height, bound.size(), humanoid);
+    let (unit_scale, unit_guess) = units::unit_scale(&body, hints);
     if up.dot(Vec3::Y) < 0.9 {
         notes.push(format!("the body stands along {up} of the file, not along +Y"));
     }
@@ -286,5 +314,6 @@ fn analyze_bound(
         dropped,
         unit_guess: Some(unit_guess),
         notes,
+        hints: hints.clone(),
     })
 }

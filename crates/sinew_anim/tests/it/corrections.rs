@@ -3,9 +3,14 @@
 use crate::roles::sound;
 use crate::{rigs, toy};
 use sinew_anim::{
-    Correction, CorrectionError, Joint, LocalTransform, NoSkin, Rig, Role, Side, analyze, analyze_corrected,
+    Correction, CorrectionError, Hints, Joint, LocalTransform, NoSkin, Rig, RigAnalysis, Role, Side, analyze,
 };
 use sinew_math::{Affine, Random, Vec3};
+
+/// Where nothing but the rig is known.
+fn analyze_corrected(rig: &Rig, correction: &Correction) -> Result<RigAnalysis, CorrectionError> {
+    sinew_anim::analyze_corrected(rig, &Hints::default(), correction)
+}
 
 /// A body whose joints have numbers for names.
 fn numbered() -> Rig {

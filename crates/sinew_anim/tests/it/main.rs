@@ -6,6 +6,8 @@ mod blending;
 mod built;
 mod cleanup;
 mod corrections;
+mod creatures;
+mod hints;
 mod ik;
 mod learned_limits;
 mod mocap;

@@ -203,6 +203,19 @@ fn every_humanoid_walks() {
     }
 }
 
+/// Height of the lowest point of both soles over where it is lowest of all, at most, metres.
+fn in_the_air(rig: &Rig, analysis: &RigAnalysis, take: &Take) -> f32 {
+    let legs = Legs::of(rig, analysis).unwrap();
+    let mut model = Vec::new();
+    let mut heights = Vec::new();
+    for frame in 0..take.frames() {
+        local_to_model(rig, take.pose(frame), &analysis.character_from_file(), &mut model);
+        let soles = legs.feet.iter().flat_map(|foot| foot.points(&model)).map(|point| point.y);
+        heights.push(soles.fold(f32::INFINITY, f32::min));
+    }
+    heights.iter().copied().fold(0.0, f32::max) - heights.iter().copied().fold(f32::INFINITY, f32::min)
+}
+
 /// Hops, a run whose skeleton rests in no pose at all, motion imitation's run and get-up: all of them fit.
 #[test]
 fn every_captured_body_moves_a_character() {
@@ -237,6 +250,14 @@ fn every_captured_body_moves_a_character() {
             slide < 1.0 && found.take.poses.iter().all(|local| local.rotation.is_finite()),
             "{name}: {slide}"
         );
+        if name == "hops" {
+            let [jumped, hopped] = [
+                in_the_air(&actor.rig, &actor.analysis, &Take::of(&actor.rig, &actor.clip, 1.0 / 60.0)),
+                in_the_air(&rig, &analysis, &found.take),
+            ];
+            assert!(jumped > 0.1, "{jumped} m");
+            assert!((hopped / (jumped * found.scale) - 1.0).abs() < 0.3, "{hopped} m for {jumped} m");
+        }
         // The head is where the actor's is, over the hips or beside them.
         let source = Take::of(&actor.rig, &actor.clip, 1.0 / 60.0);
         let off = bone_error(actor, &source, &rig, &analysis, &found.take, [Role::Hips, Role::Head]);

@@ -91,7 +91,7 @@ fn of_skeleton(json: &serde_json::Value) -> Rig {
 }
 
 /// A rig with a double pyramid of skin around every bone (joint, from, to).
-fn rig_of<'a>(
+pub fn rig_of<'a>(
     names: impl Iterator<Item = &'a str>,
     parent: &dyn Fn(usize) -> Option<usize>,
     place: &dyn Fn(usize) -> Vec3,

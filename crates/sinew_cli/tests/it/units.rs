@@ -3,7 +3,9 @@
 use crate::sinew::{Folder, glb, sinew};
 use serde_json::Value;
 use sinew::anim::Rig;
+use sinew::formats::write_world;
 use sinew::math::Vec3;
+use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
 use sinew_scenes::mannequin::mannequin;
 
 /// A rig in another unit: all lengths times `factor`.
@@ -92,6 +94,70 @@ fn the_unit_its_reason_and_its_alternatives_are_a_note() {
     }
     let inches = build(&scaled(rig, 100.0), &["--unit", "in"]);
     assert!(inches["height_m"].as_f64().expect("a height") > 4.0);
+}
+
+/// 66 units tall: a man in inches, or a dwarf in centimetres.
+fn of_66_units() -> Rig {
+    scaled(mannequin().rig, 66.0 / 1.75)
+}
+
+fn of_unit(object: &Value) -> String {
+    notes(object).into_iter().find(|note| note.contains("taken as")).expect("a note")
+}
+
+#[test]
+fn files_beside_it_tell_a_unit_that_is_in_doubt() {
+    let folder = Folder::new("unit-kin");
+    let file = folder.file("dwarf.glb", glb(&of_66_units(), &[]));
+    let build = || of_unit(&sinew(&["ragdoll", "build", &file, "--json"]).json());
+    assert!(build().contains("taken as inches"), "{}", build());
+    let in_centimetres = glb(&scaled(mannequin().rig, 100.0), &[]);
+    folder.file("man.glb", in_centimetres.clone());
+    folder.file("noise.glb", b"no character at all");
+    folder.file("woman.glb", in_centimetres);
+    let note = build();
+    assert!(note.contains("taken as centimetres: 0.6"), "{note}");
+    assert!(note.contains("files beside it are in centimetres, "), "{note}");
+    assert!(note.contains("; it may also be inches (1.6"), "{note}");
+    let seen = sinew(&["inspect", &file, "--json"]).json();
+    assert!(of_unit(&seen).contains("taken as centimetres"), "{seen:#}");
+}
+
+fn block(low: [f32; 3], high: [f32; 3]) -> BodyDef {
+    let (low, high) = (Vec3::from_array(low), Vec3::from_array(high));
+    let shapes = vec![ShapeDef::new(Shape::Box { half_extents: (high - low) * 0.5 })];
+    BodyDef { kind: BodyKind::Static, position: (low + high) * 0.5, shapes, ..BodyDef::default() }
+}
+
+#[test]
+fn doors_tell_a_unit_that_is_in_doubt() {
+    let folder = Folder::new("unit-door");
+    let file = folder.file("dwarf.glb", glb(&of_66_units(), &[]));
+    let out = folder.path("fall.glb");
+    // Two rooms, and a door from one into the other; `size` times as large as those of dwarfs.
+    let rooms = |size: f32| {
+        let walls = [
+            ([-3.0, -0.1, -3.0], [3.0, 0.0, 3.0]),
+            ([-3.0, 1.0, -3.0], [3.0, 1.1, 3.0]),
+            ([-3.0, 0.0, -0.05], [-0.4, 1.0, 0.05]),
+            ([0.4, 0.0, -0.05], [3.0, 1.0, 0.05]),
+            ([-0.4, 0.8, -0.05], [0.4, 1.0, 0.05]),
+        ];
+        let walls = walls.map(|(low, high)| block(low.map(|x| x * size), high.map(|x| x * size)));
+        folder.file("world.json", write_world(&walls))
+    };
+    let bake = |size: f32| {
+        let world = rooms(size);
+        let at = format!("0,0,{}", 1.5 * size);
+        let arguments = ["bake", &file, "--world", &world, "--at", &at, "--limp-at", "0", "--seconds", "0.2"];
+        of_unit(&sinew(&[&arguments[..], &["-o", &out, "--json"]].concat()).json())
+    };
+    let (small, large) = (bake(1.0), bake(2.6));
+    assert!(
+        small.contains("taken as centimetres") && small.contains("doors of its world are 0.80 m"),
+        "{small}"
+    );
+    assert!(large.contains("taken as inches") && large.contains("doors of its world are 2.08 m"), "{large}");
 }
 
 #[test]

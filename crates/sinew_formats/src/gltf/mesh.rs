@@ -57,8 +57,12 @@ struct Mending<'w> {
 impl Mending<'_> {
     /// Tells of elements that were mended, once a place.
     fn note(&mut self, at: At<'_>, holes: &[usize], of: usize, mended: &str) {
+        // To find a place takes a look at the whole file: only where there is something to tell.
+        if holes.is_empty() {
+            return;
+        }
         let note = format!("{} of {of} elements are not finite: {mended} ({})", holes.len(), at.path());
-        if !holes.is_empty() && !self.warnings.contains(&note) {
+        if !self.warnings.contains(&note) {
             self.warnings.push(note);
         }
     }

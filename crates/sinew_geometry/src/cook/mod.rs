@@ -13,6 +13,9 @@
 //! 5. Steps that add least to the squared distance between the surfaces, dropping a box or merging two, follow until
 //!    no more are left than were asked for.
 //! 6. A box on which one can stand is laid against the ground that it stands for: treads stay level, and as high as drawn.
+//!
+//! Of few triangles few boxes come, and coarse ones. Then all is done again with half of the tolerance, and again, as long as boxes are
+//! left to spend and come closer.
 
 mod box_set;
 mod bvh;
@@ -86,7 +89,15 @@ struct Scale {
     thickness: f32,
     /// Distances that nobody sees.
     unseen: f32,
+    /// Distance at which a part may still be filled where that closes its holes: boxes that are solid hold better than plates. It goes
+    /// by the tolerance that was asked for, however fine the boxes are.
+    filled: f32,
+    /// Share of the usual size of the cells in which slanted parts are seen.
+    finer: f32,
 }
+
+/// [`Scale::filled`], in tolerances.
+const FILLED: f32 = 2.0;
 
 /// Boxes for a mesh given by its vertices (metres) and triangles, counter-clockwise seen from outside. The same boxes for
 /// the same mesh, always.
@@ -108,18 +119,52 @@ pub fn cook(
     let corners: Vec<[Vec3; 3]> = (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect();
     let bvh = MeshBvh::new(&corners);
     drop(corners);
+    let (mut boxes, mut deviation) = cook_once(&mesh, &bvh, options, 1.0, progress);
+    let finest = if mesh.triangles.len() <= FEW_TRIANGLES { FINER } else { 0 };
+    let mut finer = 1.0;
+    for _ in 0..finest {
+        let is_close = deviation.distance_p95 <= CLOSE * options.tolerance * mesh.diagonal();
+        if is_close || 2 * boxes.len() > options.max_boxes {
+            break;
+        }
+        finer *= 0.5;
+        let (more, closer) = cook_once(&mesh, &bvh, options, finer, progress);
+        if closer.distance_p95 < WORTH * deviation.distance_p95 {
+            (boxes, deviation) = (more, closer);
+        }
+    }
+    Ok(Cooked { boxes, deviation, repairs: mesh.repairs, parts: mesh.parts })
+}
+
+/// Most triangles of a mesh that is cooked again for want of boxes.
+const FEW_TRIANGLES: usize = 4096;
+/// Times that its tolerance is halved.
+const FINER: usize = 2;
+/// Boxes are close enough where 95 % of the surfaces are within this share of the tolerance: a plate is half as thick.
+const CLOSE: f32 = 0.55;
+/// More boxes are taken where they bring that down to this share at least.
+const WORTH: f32 = 0.9;
+
+/// Boxes, and their distance from the mesh, where the tolerance is `finer` times what was asked for.
+fn cook_once(
+    mesh: &SurfaceMesh,
+    bvh: &MeshBvh,
+    options: &CookOptions,
+    finer: f32,
+    progress: &mut dyn FnMut(Progress),
+) -> (Vec<Obb>, Deviation) {
     let mut random = Random::new(mesh.triangles.len() as u64);
-    let scale = scale(&mesh, options);
-    let blocks = first_boxes(&mesh, &bvh, scale, &mut random, progress);
+    let scale = scale(mesh, options, finer);
+    let blocks = first_boxes(mesh, bvh, scale, &mut random, progress);
     let blocks =
         coarse::at_most(usize::max(MOST_FIRST, options.max_boxes.saturating_mul(2)), blocks, scale.thinnest);
     let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
-    let (points, area) = sample::sample(&mesh, &all, POINTS, &mut random);
+    let (points, area) = sample::sample(mesh, &all, POINTS, &mut random);
     let area = area / POINTS as f32;
-    let reduction = Reduction::new(&bvh, &points, area, scale, &blocks);
+    let reduction = Reduction::new(bvh, &points, area, scale, &blocks);
     let boxes = reduction.run(options.max_boxes, &mut |left| progress(Progress::Boxes(left)));
-    let deviation = measure::measure(&mesh, &bvh, &boxes, &mut random);
-    Ok(Cooked { boxes, deviation, repairs: mesh.repairs, parts: mesh.parts })
+    let deviation = measure::measure(mesh, bvh, &boxes, &mut random);
+    (boxes, deviation)
 }
 
 /// Points of the mesh by which boxes are judged.
@@ -127,14 +172,16 @@ const POINTS: usize = 16_384;
 /// Boxes that the search for good merges begins with, at most, unless nearly as many are to remain.
 const MOST_FIRST: usize = 768;
 
-fn scale(mesh: &SurfaceMesh, options: &CookOptions) -> Scale {
+fn scale(mesh: &SurfaceMesh, options: &CookOptions, finer: f32) -> Scale {
     let diagonal = mesh.diagonal();
     Scale {
-        tolerance: options.tolerance * diagonal,
+        tolerance: finer * options.tolerance * diagonal,
         // What the engine can hold apart at least: a box thinner than its slop is no obstacle.
         thinnest: max(5e-4 * diagonal, 1e-6),
         thickness: 0.5 * options.tolerance * diagonal,
-        unseen: 0.15 * options.tolerance * diagonal,
+        unseen: 0.15 * finer * options.tolerance * diagonal,
+        filled: FILLED * options.tolerance * diagonal,
+        finer,
     }
 }
 

@@ -38,7 +38,7 @@ pub(super) fn blocks_of_part(
         return plates(mesh, triangles, scale);
     }
     let [there, back] = rms_distances(bvh, &points, &[one], random);
-    if there < scale.tolerance && back < FILLED * scale.tolerance && !is_seen_from_inside(bvh, &one) {
+    if there < scale.tolerance && back < scale.filled && !is_seen_from_inside(bvh, &one) {
         return vec![one];
     }
     let directions = facet_directions(mesh, triangles);
@@ -51,7 +51,7 @@ pub(super) fn blocks_of_part(
         max(there, back)
     };
     let of_filled = larger(&filled);
-    if of_filled < FILLED * scale.tolerance {
+    if of_filled < scale.filled {
         return filled;
     }
     let shell = plates(mesh, triangles, scale);
@@ -60,9 +60,6 @@ pub(super) fn blocks_of_part(
 
 /// Points of a part that boxes are held against.
 const SAMPLES: usize = 400;
-/// A part that is filled may be this many tolerances away where it closes holes: boxes that are solid hold better than
-/// plates.
-const FILLED: f32 = 2.0;
 
 /// Root of the mean squared distance from points of a part to boxes, and from the boxes' outer surface to the mesh.
 fn rms_distances(bvh: &MeshBvh, points: &[MeshPoint], blocks: &[Obb], random: &mut Random) -> [f32; 2] {
@@ -129,7 +126,7 @@ fn planes(mesh: &SurfaceMesh, triangles: &[u32], rotation: Rotation, scale: Scal
     let center = rotation.inverse() * bounds.center;
     let h = bounds.half_extents;
     let longest = 2.0 * max(max(h.x, h.y), h.z);
-    let step = if slanted > 0.05 * area { longest / CELLS } else { longest };
+    let step = if slanted > 0.05 * area { scale.finer * longest / CELLS } else { longest };
     let mut axis = 0;
     facets.map(|facets| {
         let ends = [center[axis] - h[axis], center[axis] + h[axis]];

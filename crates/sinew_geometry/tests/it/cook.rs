@@ -187,6 +187,27 @@ fn a_tread_stays_level_and_as_high_as_it_was_drawn() {
 }
 
 #[test]
+fn few_triangles_use_the_budget() {
+    // A barn: four walls with a gateway, and a gable roof on them, as a player would model it.
+    let mut mesh = Mesh::default();
+    let no_faces: [usize; 0] = [];
+    mesh.block(Vec3::new(-4.0, 1.5, 0.0), Vec3::new(0.1, 1.5, 6.0), Rotation::IDENTITY, &no_faces);
+    mesh.block(Vec3::new(4.0, 1.5, 0.0), Vec3::new(0.1, 1.5, 6.0), Rotation::IDENTITY, &no_faces);
+    mesh.block(Vec3::new(0.0, 1.5, -6.0), Vec3::new(4.0, 1.5, 0.1), Rotation::IDENTITY, &no_faces);
+    mesh.block(Vec3::new(-2.75, 1.5, 6.0), Vec3::new(1.25, 1.5, 0.1), Rotation::IDENTITY, &no_faces);
+    mesh.block(Vec3::new(2.75, 1.5, 6.0), Vec3::new(1.25, 1.5, 0.1), Rotation::IDENTITY, &no_faces);
+    let roof = Mesh::prism(&[[-4.5, 3.0], [4.5, 3.0], [0.0, 6.0]], &[&[0, 1, 2]], 13.0);
+    let first = mesh.positions.len() as u32;
+    mesh.positions.extend(roof.positions.iter().map(|p| *p - Vec3::Z * 6.5));
+    mesh.triangles.extend(roof.triangles.iter().map(|t| t.map(|i| i + first)));
+    let [few, many] = [12, 150].map(|most| mesh.cook(most));
+    assert!(few.boxes.len() <= 12 && many.boxes.len() > 15, "{} and {}", few.boxes.len(), many.boxes.len());
+    // In 13 boxes, as cells of the usual size give, 0.15 m.
+    let [few, many] = [few, many].map(|cooked| cooked.deviation.distance_p95);
+    assert!(many < 0.09 && many < 0.2 * few, "{few} and {many} m");
+}
+
+#[test]
 fn a_ball_of_boxes_is_a_ball_within_the_tolerance() {
     let mesh = Mesh::sphere(1.0, 16);
     let few = mesh.cook(20).deviation;

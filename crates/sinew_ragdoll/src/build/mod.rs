@@ -11,13 +11,13 @@ pub use takes::takes;
 use crate::def::{RagdollBodyDef, RagdollDef};
 use crate::filter::filter_pairs;
 use crate::filter::poses::{Frames, Poses, of_clips, within_limits};
-use crate::fit::surface::{BindPose, share_surface};
+use crate::fit::surface::{BindPose, share_surface, skin_triangles};
 use crate::fit::{Fit, ShapeChoice, fit_shapes};
 use crate::limits::friction::friction_torques;
 use crate::limits::learned::learned;
 use crate::limits::{JointPlan, LimitSource, joints};
 use crate::masses::de_leva::Sex;
-use crate::masses::{MassOptions, distribute};
+use crate::masses::{MassOptions, distribute, volume};
 use bones::{Anatomy, Bone, Bones};
 use sinew_anim::roles::RigAnalysis;
 use sinew_anim::{JointIdx, Rig, Take};
@@ -127,14 +127,18 @@ pub(crate) fn build_overridden(
         .collect();
     let Planned { mut plans, limits, poses } = planned(rig, &bones, bind, &fits, options, overrides.takes)?;
     let filter = filter_pairs(&bones, &mut fits, &poses);
-    let masses = distribute(&bones, &fits, MassOptions { total: options.mass, sex: options.sex });
+    let enclosed = Enclosed::of(rig, &bones, bind);
+    let mass = enclosed.as_ref().map(Enclosed::mass);
+    let weighs = MassOptions { total: options.mass, sex: options.sex, enclosed: mass };
+    let masses = distribute(&bones, &fits, weighs);
     let total_mass = masses.iter().map(|mass| mass.mass).sum();
     // Friction goes by the mass, which goes by the shapes.
     let heavy = joints(&bones, &fits, total_mass);
     for (plan, torque) in plans.iter_mut().zip(friction_torques(&bones, &fits, &masses, &heavy)) {
         plan.def.friction_torque = torque;
     }
-    let report = BuildReport::new(rig, &bones, &fits, &filter, (&plans, &limits));
+    let mut report = BuildReport::new(rig, &bones, &fits, &filter, (&plans, &limits));
+    report.notes.extend(enclosed.and_then(|enclosed| enclosed.note(total_mass)));
     let name = |joint: JointIdx| joint_name(rig, joint);
     let bodies = bones.list.into_iter().zip(fits).zip(masses).map(|((bone, fit), mass)| RagdollBodyDef {
         bone: name(bone.joint),
@@ -159,6 +163,40 @@ pub(crate) fn build_overridden(
         character_from_model,
     };
     Ok((def, report))
+}
+
+/// Volume that a creature's skin encloses, and what fills it.
+struct Enclosed {
+    /// m³.
+    volume: f32,
+    /// kg/m³.
+    density: f32,
+    matter: &'static str,
+}
+
+impl Enclosed {
+    /// `None` for humans, whose mass goes by their height, and where the skin is too open to tell.
+    fn of(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Option<Self> {
+        if bones.anatomy == Anatomy::Human {
+            return None;
+        }
+        let volume = volume::enclosed(&skin_triangles(rig, bones, bind))?;
+        let (density, matter) = volume::density(rig);
+        Some(Self { volume, density, matter })
+    }
+
+    /// kg.
+    fn mass(&self) -> f32 {
+        self.density * self.volume
+    }
+
+    /// Where the mass is from, if it is from here.
+    fn note(&self, total_mass: f32) -> Option<String> {
+        let Self { volume, matter, .. } = self;
+        let is_from_here = (self.mass() / total_mass - 1.0).abs() < 1e-3;
+        is_from_here
+            .then(|| format!("the mass is that of {volume:.3} m³ of {matter}, which the skin encloses"))
+    }
 }
 
 /// Joints, and the poses in which shapes are held against each other.

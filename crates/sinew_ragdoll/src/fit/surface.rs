@@ -115,6 +115,24 @@ pub fn share_surface(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<Vec<Sh
     skinned
 }
 
+/// All triangles that move with a body, character space at the bind pose, metres.
+pub fn skin_triangles(rig: &Rig, bones: &Bones, bind: BindPose<'_>) -> Vec<[Vec3; 3]> {
+    let owner = owners(rig, bones);
+    let mut all = Vec::new();
+    let (mut positions, mut normals) = (Vec::new(), Vec::new());
+    for (m, mesh) in rig.meshes.iter().enumerate() {
+        if mesh.skin.is_none() && owner[mesh.joint].is_none() {
+            continue;
+        }
+        for (p, primitive) in mesh.primitives.iter().enumerate() {
+            skin_vertices(rig, m, p, bind.model, &mut positions, &mut normals);
+            positions.iter_mut().for_each(|position| *position = bind.character_point(*position));
+            all.extend(triangles(primitive, &positions).map(|(_, corners)| corners));
+        }
+    }
+    all
+}
+
 /// Corner indices and corners of the triangles whose corners are there and finite.
 fn triangles<'a>(
     primitive: &'a Primitive,

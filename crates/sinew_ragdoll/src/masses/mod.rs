@@ -1,10 +1,12 @@
 //! Masses, centres and inertias of the bodies.
 //!
 //! Humans: shares of the whole by de Leva's table, never from the volumes of the shapes, whose sum is 1.3 to 2.2 times
-//! a body's (measured). Creatures: from volumes, there is no table.
+//! a body's (measured). Creatures: there is no table, so that the whole weighs what the skin encloses, and parts of it go by the
+//! volumes of the shapes.
 
 pub mod de_leva;
 mod inertia;
+pub mod volume;
 
 use crate::build::bones::{Anatomy, Bones};
 use crate::build::part::{Part, Side};
@@ -32,7 +34,12 @@ pub struct MassOptions {
     pub total: Option<f32>,
     /// Whose table.
     pub sex: Sex,
+    /// Mass of what the skin encloses, kg, for creatures; where it is not known, or has nothing to do with the shapes, these tell.
+    pub enclosed: Option<f32>,
 }
+
+/// The enclosed mass is believed within these shares of what the shapes would weigh.
+const BELIEVED: core::ops::Range<f32> = 0.1..2.0;
 
 /// Mass of a person of this height at the body mass index of the table's reference body (male 24.1, female 20.6
 /// kg/m²): 73.0 kg × (height / 1.741 m)². kg.
@@ -51,7 +58,7 @@ pub fn distribute(bones: &Bones, fits: &[Fit], options: MassOptions) -> Vec<Mass
     let sum: f32 = shares.iter().sum();
     let total = options.total.unwrap_or_else(|| match bones.anatomy {
         Anatomy::Human => default_mass(bones.height, options.sex),
-        Anatomy::Creature => sum,
+        Anatomy::Creature => options.enclosed.filter(|mass| BELIEVED.contains(&(mass / sum))).unwrap_or(sum),
     });
     let shares: Vec<_> = shares.iter().map(|share| max(share / sum, LEAST_SHARE)).collect();
     let sum: f32 = shares.iter().sum();

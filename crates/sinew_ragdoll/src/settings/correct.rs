@@ -36,7 +36,7 @@ pub(super) fn corrected(
     if correction.is_empty() {
         return placed(seen, analysis.clone(), settings);
     }
-    let analyzed = analyze_corrected(rig, correction).map_err(|error| {
+    let analyzed = analyze_corrected(rig, &analysis.hints, correction).map_err(|error| {
         let role = match error {
             CorrectionError::Twice(role)
             | CorrectionError::NoPart(role)

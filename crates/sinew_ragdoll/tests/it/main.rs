@@ -25,3 +25,4 @@ mod skin;
 mod slopes;
 mod travel;
 mod variants;
+mod volume;

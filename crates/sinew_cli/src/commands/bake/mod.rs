@@ -4,6 +4,7 @@ mod actor;
 mod aim;
 mod clip_file;
 mod clips;
+mod door;
 mod hit;
 mod notes;
 mod place;
@@ -22,6 +23,7 @@ use actor::actor;
 use aim::aim;
 use clip_file::{ClipFile, ClipFormat};
 use clips::{CLIP_NAME, Motions};
+use door::door;
 use hit::HitArg;
 use place::{Place, degrees, metres, place, point};
 use sinew::anim::KeyBound;
@@ -135,10 +137,10 @@ impl Bake {
         self.check_outputs()?;
         self.check_times()?;
         let textures = if self.picture.is_some() { Textures::Decode } else { Textures::Skip };
-        let (file, ragdoll, mut notes) = self.character(textures)?;
+        let bodies = self.bodies()?;
+        let (file, ragdoll, mut notes) = self.character(textures, &bodies)?;
         let name = self.clip_name(&file)?;
         let motions = Motions::gather(&file, &self.clips, self.clip.as_deref())?;
-        let bodies = self.bodies()?;
         let place = self.place(&bodies, ragdoll.height)?;
         let (character, gets_up_by) = actor(&file, ragdoll, motions, !self.no_builtin_motions)?;
         let character = Arc::new(character);
@@ -206,9 +208,14 @@ impl Bake {
     }
 
     /// The character, and the definition that was given or what a build gives, with what is to be said of it.
-    fn character(&self, textures: Textures) -> Result<(CharacterFile, RagdollDef, Vec<String>)> {
+    fn character(
+        &self,
+        textures: Textures,
+        world: &[BodyDef],
+    ) -> Result<(CharacterFile, RagdollDef, Vec<String>)> {
         let Some(path) = &self.ragdoll else {
-            let (file, settings) = self.settings.load_character(&self.character, textures)?;
+            let door = || self.world.as_ref().and_then(|_| door(world));
+            let (file, settings) = self.settings.load_into(&self.character, textures, door)?;
             let (def, _) = settings.build(&file, &BuildOptions::default())?;
             let guess = file.analysis.unit_guess.as_ref().filter(|guess| !guess.is_sure);
             let mut notes: Vec<String> = guess.map(unit_note).into_iter().collect();

@@ -9,8 +9,8 @@ use sinew::physics::ray::Ray;
 use sinew::physics::{BodyId, BodyKind, BodyKinds, QueryFilter};
 use sinew_picture::world::{self, Frame, Kinematic, Lines};
 use sinew_picture::{
-    Camera, Caption, EncodeError, Image, Line, LineDepth, Movie, PictureFormat, RenderSettings, Renderer,
-    Scene, Sky, Sun,
+    Camera, Caption, EncodeError, Image, Line, LineDepth, Material, Movie, PictureFormat, RenderSettings,
+    Renderer, Scene, Sky, Sun,
 };
 use sinew_scenes::scenes::{Expected, Figure, Instance, Metric, Sight, Trails};
 
@@ -95,6 +95,8 @@ struct Take {
     whole: Aabb,
     /// Ways of the centres of mass so far, each with its colour.
     trails: Vec<Trail>,
+    /// Materials of each figure.
+    looks: Vec<Vec<Material>>,
 }
 
 struct Trail {
@@ -106,7 +108,8 @@ struct Trail {
 impl Take {
     fn new(run: Instance) -> Self {
         let sight = run.sight();
-        let mut take = Self { sight, whole: Aabb::default(), trails: trails(&run, &sight), run };
+        let looks = run.figures().iter().map(|figure| skin::looks(figure.rig)).collect();
+        let mut take = Self { sight, whole: Aabb::default(), trails: trails(&run, &sight), looks, run };
         take.whole = take.now();
         take
     }
@@ -181,9 +184,8 @@ impl Take {
             ..Scene::default()
         };
         world::paint_all_but(self.run.world(), &self.run.bodies_of_figures(), &frame, &mut scene);
-        for figure in figures {
-            let looks = skin::looks(figure.rig);
-            scene.models.extend(skin::models(figure.rig, figure.world_from_joint, &looks));
+        for (figure, looks) in figures.iter().zip(&self.looks) {
+            scene.models.extend(skin::models(figure.rig, figure.world_from_joint, looks));
         }
         scene.lines.extend(self.lines().list);
         scene.lines.extend(self.trails.iter().flat_map(Trail::lines));

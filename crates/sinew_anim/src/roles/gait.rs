@@ -1,0 +1,199 @@
+//! Limbs in motion: which of them swing in turns, as legs do, which way they step, and how long a stride takes.
+
+use crate::clip::Clip;
+use crate::pose::local_to_model;
+use crate::rig::{JointIdx, LocalTransform, Rig};
+use crate::sample::{SampleCache, Wrap, sample_cached};
+use sinew_math::{Affine, Vec3, clamp, max};
+use std::sync::Arc;
+
+/// Most clips that are looked at: walks and runs by name first.
+const MOST_CLIPS: usize = 12;
+/// Poses a second, and least and most of a clip.
+const RATE: f32 = 24.0;
+const FRAMES: [f32; 2] = [16.0, 96.0];
+/// A clip of walking lasts at least that, seconds.
+const SHORTEST: f32 = 0.2;
+/// Words of clips in which legs walk.
+const WALKS: [&str; 8] = ["walk", "run", "jog", "trot", "gallop", "sprint", "march", "move"];
+
+/// Swing of one against the other has at least this many times the variance of swing together.
+const IN_TURNS: f32 = 4.0;
+/// And neither of a pair has more than so many times the variance of the other: one arm that strikes is no pair of legs.
+const ALIKE: f32 = 3.0;
+/// Least swing of legs, root mean square, share of the body's height.
+const LEAST_SWING: f32 = 0.03;
+
+/// Poses of a rig in its clips, from which legs are told by their swing. The default shows nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gait {
+    takes: Arc<Vec<Poses>>,
+}
+
+/// A clip, evenly sampled.
+#[derive(Clone, Debug, PartialEq)]
+struct Poses {
+    /// Seconds from frame to frame.
+    frame_time: f32,
+    /// Per frame the model transform of every joint, file units.
+    frames: Vec<Vec<Affine>>,
+}
+
+/// Two limbs of a pair, as they swing in turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Swing {
+    /// Half the way between the two ends, ahead and back, root mean square, file units; 0 where they swing together or not at all.
+    pub reach: f32,
+    /// Longest time from step to step of one of them, seconds; 0 if no clip has a whole one.
+    pub stride: f32,
+    /// Correlation of the ends' height with their speed ahead, -1..=1: what walks goes ahead through the air and back on the
+    /// ground.
+    pub ahead: f32,
+}
+
+/// A pair of limbs of which the swing is asked.
+pub(super) struct Pair {
+    /// The joint that carries both, and its bind pose.
+    pub carrier: JointIdx,
+    pub bind: Affine,
+    pub ends: [JointIdx; 2],
+    /// Units, model space.
+    pub forward: Vec3,
+    pub up: Vec3,
+    /// Height of the body, file units.
+    pub height: f32,
+}
+
+/// Ways of two ends through a clip as their carrier sees them, each without its mean.
+struct Ways {
+    ahead: [Vec<f32>; 2],
+    lift: [Vec<f32>; 2],
+}
+
+impl Gait {
+    /// Motion in the clips of a rig.
+    ///
+    /// # Panics
+    /// As [`sample`](crate::sample()): if a clip is not one of the rig's.
+    pub fn of(rig: &Rig, clips: &[Clip]) -> Self {
+        let lasts = |clip: &&Clip| clip.duration.is_finite() && clip.duration >= SHORTEST;
+        let mut wanted: Vec<&Clip> = clips.iter().filter(lasts).collect();
+        let walks = |clip: &Clip| {
+            let name = clip.name.to_lowercase();
+            WALKS.iter().any(|word| name.contains(word))
+        };
+        // Stable: those of a kind stay in their order.
+        wanted.sort_by_key(|clip| !walks(clip));
+        wanted.truncate(MOST_CLIPS);
+        if rig.joints.is_empty() {
+            wanted.clear();
+        }
+        Self { takes: Arc::new(wanted.into_iter().map(|clip| Poses::of(rig, clip)).collect()) }
+    }
+
+    /// True where there is no clip to look at.
+    pub(super) fn is_empty(&self) -> bool {
+        self.takes.is_empty()
+    }
+
+    /// Swing of a pair in turns: the widest of all clips, with the longest stride, and the way ahead by all of them.
+    pub(super) fn swing(&self, pair: &Pair) -> Swing {
+        let mut swing = Swing { reach: 0.0, stride: 0.0, ahead: 0.0 };
+        let (mut up_and_on, mut lifts, mut speeds) = (0.0, 0.0, 0.0);
+        for take in self.takes.iter() {
+            let Some(ways) = take.ways(pair) else { continue };
+            let reach = ways.reach();
+            if reach < LEAST_SWING * pair.height {
+                continue;
+            }
+            swing.reach = max(swing.reach, reach);
+            swing.stride = max(swing.stride, ways.stride(reach) * take.frame_time);
+            let [a, b, c] = ways.steps();
+            (up_and_on, lifts, speeds) = (up_and_on + a, lifts + b, speeds + c);
+        }
+        if lifts > 0.0 && speeds > 0.0 {
+            swing.ahead = clamp(up_and_on / (lifts * speeds).sqrt(), -1.0, 1.0);
+        }
+        swing
+    }
+}
+
+impl Poses {
+    fn of(rig: &Rig, clip: &Clip) -> Self {
+        let count = clamp((clip.duration * RATE).ceil(), FRAMES[0], FRAMES[1]) as usize;
+        let frame_time = clip.duration / count as f32;
+        let mut local = vec![LocalTransform::default(); rig.joints.len()];
+        let mut cache = SampleCache::default();
+        let pose = |frame: usize| {
+            let mut model = Vec::new();
+            sample_cached(clip, rig, frame as f32 * frame_time, Wrap::Clamp, &mut cache, &mut local);
+            local_to_model(rig, &local, &Affine::IDENTITY, &mut model);
+            model
+        };
+        Self { frame_time, frames: (0..count).map(pose).collect() }
+    }
+
+    /// `None` where a pose is not finite.
+    fn ways(&self, pair: &Pair) -> Option<Ways> {
+        let mut ways = Ways { ahead: Default::default(), lift: Default::default() };
+        for model in &self.frames {
+            // As if the carrier stood as it is bound: turns of the whole body move no leg.
+            let steady = pair.bind * model[pair.carrier].inverse();
+            for (side, &end) in pair.ends.iter().enumerate() {
+                let at = steady.point(model[end].translation);
+                if !at.is_finite() {
+                    return None;
+                }
+                ways.ahead[side].push(at.dot(pair.forward));
+                ways.lift[side].push(at.dot(pair.up));
+            }
+        }
+        for way in ways.ahead.iter_mut().chain(&mut ways.lift) {
+            let mean = way.iter().sum::<f32>() / way.len() as f32;
+            way.iter_mut().for_each(|at| *at -= mean);
+        }
+        Some(ways)
+    }
+}
+
+impl Ways {
+    /// Half of how far the first end is ahead of the other, frame by frame.
+    fn apart(&self) -> impl Iterator<Item = f32> + '_ {
+        self.ahead[0].iter().zip(&self.ahead[1]).map(|(a, b)| 0.5 * (a - b))
+    }
+
+    /// Swing in turns, root mean square; 0 where both go together, or one alone.
+    fn reach(&self) -> f32 {
+        let squared = |way: &[f32]| way.iter().map(|at| at * at).sum::<f32>();
+        let [left, right] = self.ahead.each_ref().map(|way| squared(way));
+        let apart: f32 = self.apart().map(|d| d * d).sum();
+        let together: f32 =
+            self.ahead[0].iter().zip(&self.ahead[1]).map(|(a, b)| 0.25 * (a + b) * (a + b)).sum();
+        let alike = left < ALIKE * right && right < ALIKE * left;
+        if alike && apart > IN_TURNS * together { (apart / self.ahead[0].len() as f32).sqrt() } else { 0.0 }
+    }
+
+    /// Frames from step to step, the clip taken as one that goes round; 0 if there is no whole one.
+    fn stride(&self, reach: f32) -> f32 {
+        // Past the middle by a part of the swing, or it trembles there.
+        let sides = self.apart().filter(|d| d.abs() > 0.3 * reach).map(|d| d > 0.0);
+        let sides: Vec<bool> = sides.collect();
+        let next = sides.iter().cycle().skip(1);
+        let turns = sides.iter().zip(next).filter(|(now, next)| now != next).count();
+        if turns < 2 { 0.0 } else { 2.0 * self.ahead[0].len() as f32 / turns as f32 }
+    }
+
+    /// Sums over both ends: of height times speed ahead, of height squared, of speed squared.
+    fn steps(&self) -> [f32; 3] {
+        let mut sums = [0.0; 3];
+        for (ahead, lift) in self.ahead.iter().zip(&self.lift) {
+            for i in 1..ahead.len() - 1 {
+                let speed = ahead[i + 1] - ahead[i - 1];
+                sums[0] += lift[i] * speed;
+                sums[1] += lift[i] * lift[i];
+                sums[2] += speed * speed;
+            }
+        }
+        sums
+    }
+}

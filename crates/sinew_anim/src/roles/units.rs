@@ -1,0 +1,228 @@
+//! The length of a file's unit, read off the body and what is known around it.
+
+use super::{Hints, UnitGuess};
+use core::fmt::Write as _;
+use sinew_math::{clamp, max, trig};
+
+/// Sizes of a body that tell the unit of its file.
+pub(super) struct Measured {
+    pub humanoid: bool,
+    /// From floor to crown, file units.
+    pub height: f32,
+    /// Longest side of the skin's box, file units.
+    pub size: f32,
+    /// From where the head turns to its crown, share of the height; `None` without a head.
+    pub head: Option<f32>,
+    /// Time of a stride, seconds, and from where the legs begin that take it down to the floor, file units.
+    pub stride: Option<(f32, f32)>,
+}
+
+/// A unit that files may be in.
+struct Unit {
+    metres: f32,
+    name: &'static str,
+    /// Rarity of the unit against centimetres, as a natural logarithm of sizes: of two units, one that makes the body `e` times
+    /// farther from its usual size is as likely as one that is rarer by 1.
+    rarity: f32,
+}
+
+/// Units that files are in. The last two are what is left of metres and centimetres where a program converts a file that was
+/// converted already.
+const UNITS: [Unit; 7] = [
+    Unit { metres: 1.0, name: "metres", rarity: 0.0 },
+    Unit { metres: 0.01, name: "centimetres", rarity: 0.0 },
+    Unit { metres: 0.0254, name: "inches", rarity: 1.0 },
+    Unit { metres: 0.1, name: "decimetres", rarity: 1.0 },
+    Unit { metres: 0.001, name: "millimetres", rarity: 0.5 },
+    Unit { metres: 100.0, name: "metres divided by a hundred", rarity: 0.5 },
+    Unit { metres: 0.0001, name: "centimetres times a hundred", rarity: 0.5 },
+];
+
+/// Programs, by a word of how they sign their files, and the unit in which they write them, metres.
+const EXPORTERS: [(&str, f32); 16] = [
+    ("blender", 1.0),
+    ("unity", 1.0),
+    ("univrm", 1.0),
+    ("unigltf", 1.0),
+    ("vroid", 1.0),
+    ("godot", 1.0),
+    ("unreal", 1.0),
+    ("maya", 0.01),
+    ("mixamo", 0.01),
+    ("character creator", 0.01),
+    ("iclone", 0.01),
+    ("daz", 0.01),
+    ("assimp", 0.01),
+    ("open asset import", 0.01),
+    ("makehuman", 0.1),
+    ("source engine", 0.0254),
+];
+
+/// Weight of a unit in which the program that wrote the file writes, and one that all files beside it have; in the
+/// measure of [`Unit::rarity`].
+const BY_EXPORTER: f32 = 1.0;
+const BY_KIN: f32 = 2.0;
+
+/// From where a human's head turns to its crown, metres, whatever the human's height.
+const HEAD: f32 = 0.23;
+/// Heights that a head may tell, metres.
+const BY_HEAD: [f32; 2] = [0.7, 1.8];
+/// A human's height, of the free height under a door.
+const UNDER_DOOR: f32 = 0.85;
+
+/// Acceleration of free fall, m/s², and strides of legs, in units of the square root of their length over it: between a walk's 3.6
+/// and a run's 2.3.
+const GRAVITY: f32 = 9.81;
+const STRIDE: f32 = 3.0;
+
+/// Sizes of a kind of body, metres.
+struct Sizes {
+    /// The body, and what is measured of it, for a sentence.
+    words: [&'static str; 2],
+    fits: core::ops::Range<f32>,
+    /// In centimetres, those that leave no doubt.
+    surely: core::ops::Range<f32>,
+    /// Size of most, metres.
+    usual: f32,
+    /// Narrowness of the spread of sizes against those of creatures.
+    focus: f32,
+    /// Size that is taken where no unit fits, metres.
+    assumed: f32,
+}
+
+const HUMAN: Sizes = Sizes {
+    words: ["a human", "tall"],
+    fits: 0.5..3.0,
+    surely: 0.9..3.0,
+    usual: 1.7,
+    focus: 2.0,
+    assumed: 1.75,
+};
+const CREATURE: Sizes = Sizes {
+    words: ["a creature", "long"],
+    fits: 0.1..10.0,
+    surely: 0.3..10.0,
+    usual: 1.5,
+    focus: 1.0,
+    assumed: 1.0,
+};
+
+/// Evidence of a unit beside the size of the body, and the words for it.
+struct Witnesses {
+    /// Length of legs in file units, and in metres by the time of their stride.
+    legs: Option<(f32, f32)>,
+    /// Units that its exporter writes and that files beside it have, metres.
+    exporter: Option<f32>,
+    kin: Option<f32>,
+    /// Usual size of such a body, metres.
+    usual: f32,
+    words: String,
+}
+
+impl Witnesses {
+    fn of(body: &Measured, hints: &Hints, sizes: &Sizes) -> Self {
+        let mut words = String::new();
+        let legs = body.stride.filter(|&(stride, leg)| stride > 0.0 && leg > 0.0).map(|(stride, leg)| {
+            let metres = GRAVITY * (stride / STRIDE) * (stride / STRIDE);
+            let _ = write!(words, ", a stride of {stride:.2} s is that of legs of {metres:.2} m");
+            (leg, metres)
+        });
+        let signed = hints.exporter.to_lowercase();
+        let exporter = EXPORTERS.iter().find(|(word, _)| signed.contains(word));
+        let exporter = exporter.map(|&(_, metres)| metres);
+        if let Some(unit) = exporter.and_then(unit_of) {
+            let _ = write!(words, ", {} writes {}", hints.exporter, unit.name);
+        }
+        let kin = common(&hints.kin);
+        if let Some(unit) = kin.and_then(unit_of) {
+            let _ = write!(words, ", files beside it are in {}", unit.name);
+        }
+        let mut usual = sizes.usual;
+        if let Some(door) = hints.door.filter(|_| body.humanoid) {
+            usual = UNDER_DOOR * door;
+            let _ = write!(words, ", doors of its world are {door:.2} m high");
+        } else if let Some(head) = body.head.filter(|head| body.humanoid && *head > 0.0) {
+            usual = clamp(HEAD / head, BY_HEAD[0], BY_HEAD[1]);
+            let _ = write!(words, ", its head is {:.0} % of it", 100.0 * head);
+        }
+        Self { legs, exporter, kin, usual, words }
+    }
+
+    /// Evidence against a unit, in the measure of [`Unit::rarity`].
+    fn against(&self, unit: &Unit) -> f32 {
+        let off = |(leg, metres): (f32, f32)| trig::ln(leg * unit.metres / metres).abs();
+        let same = |metres: f32| (metres / unit.metres - 1.0).abs() < 0.05;
+        let by_exporter = if self.exporter.is_some_and(same) { BY_EXPORTER } else { 0.0 };
+        let by_kin = if self.kin.is_some_and(same) { BY_KIN } else { 0.0 };
+        self.legs.map_or(0.0, off) - by_exporter - by_kin
+    }
+}
+
+fn unit_of(metres: f32) -> Option<&'static Unit> {
+    UNITS.iter().find(|unit| (metres / unit.metres - 1.0).abs() < 0.05)
+}
+
+/// The unit that most of some files have, of more than one; `None` where there is none.
+fn common(kin: &[f32]) -> Option<f32> {
+    let alike = |metres: f32| kin.iter().filter(|other| (*other / metres - 1.0).abs() < 0.05).count();
+    kin.iter().copied().find(|&metres| alike(metres) > 1 && 2 * alike(metres) > kin.len())
+}
+
+/// Metres per file unit, why, and what else it may be.
+///
+/// A humanoid between 0.5 m and 3 m is taken at its word, as is a creature whose longest side is 0.1 m to 10 m; in centimetres from
+/// 0.9 m and 0.3 m on. Else, of centimetres, inches, decimetres, millimetres and units that were converted twice, the likeliest that
+/// makes it so is taken: near the usual size, which the head and the doors of the world tell, not rare, with legs that step as those
+/// of their length do, and what its exporter writes and the files beside it have. Much of such evidence weighs against its word,
+/// too. If no unit fits, a humanoid is assumed to be 1.75 m, a creature as long as its stride makes it, else 1 m.
+pub(super) fn unit_scale(body: &Measured, hints: &Hints) -> (f32, UnitGuess) {
+    let (measure, sizes) = if body.humanoid { (body.height, HUMAN) } else { (body.size, CREATURE) };
+    let [kind, across] = sizes.words;
+    let witnesses = Witnesses::of(body, hints, &sizes);
+    let usual = format!("{kind} is {} to {} m", sizes.fits.start, sizes.fits.end);
+    let mut fitting: Vec<&Unit> =
+        UNITS.iter().filter(|unit| sizes.fits.contains(&(measure * unit.metres))).collect();
+    if fitting.is_empty() {
+        let (assumed, by) = assumed(body, &sizes, &witnesses);
+        let scale = assumed / max(measure, 1e-12);
+        let note = format!(
+            "{measure:.3} units {across} fits no unit, since {usual}: scaled to {assumed} m{by}, a unit of {scale} m; as \
+             metres it would be {measure:.2} m"
+        );
+        return (scale, UnitGuess { note, is_sure: false, is_only: false });
+    }
+    // Stable: of units as likely the one that stands first.
+    let by_size = |unit: &Unit| match unit.metres {
+        1.0 => 0.0,
+        0.01 if sizes.surely.contains(&(measure * 0.01)) => 0.0,
+        metres => 1e-3 + unit.rarity + sizes.focus * trig::ln(measure * metres / witnesses.usual).abs(),
+    };
+    let unlikely = |unit: &Unit| by_size(unit) + witnesses.against(unit);
+    fitting.sort_by(|a, b| unlikely(a).total_cmp(&unlikely(b)));
+    let unit = fitting.remove(0);
+    let others: Vec<String> =
+        fitting.iter().map(|unit| format!("{} ({:.2} m)", unit.name, measure * unit.metres)).collect();
+    let is_only = others.is_empty();
+    let is_sure = is_only && body.humanoid && unit.metres == 1.0;
+    // Where there is no choice there are no witnesses.
+    let (others, words) = if is_only {
+        ("no other unit makes it so".to_owned(), "")
+    } else {
+        (format!("it may also be {}", others.join(", ")), witnesses.words.as_str())
+    };
+    let (name, metres) = (unit.name, measure * unit.metres);
+    let note = format!(
+        "{measure:.2} units {across}, taken as {name}: {metres:.2} m, since {usual}{words}; {others}"
+    );
+    (unit.metres, UnitGuess { note, is_sure, is_only })
+}
+
+/// Size of a body that fits no unit, metres, and what it goes by.
+fn assumed(body: &Measured, sizes: &Sizes, witnesses: &Witnesses) -> (f32, &'static str) {
+    match witnesses.legs {
+        Some((leg, metres)) if !body.humanoid => {
+            (clamp(body.size * metres / leg, sizes.fits.start, sizes.fits.end), ", as its stride tells")
+        }
+        _ => (sizes.assumed, ""),
+    }
+}

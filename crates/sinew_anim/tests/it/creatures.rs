@@ -1,0 +1,106 @@
+//! Bodies that are no human's, with numbers for names: each limb is one, on one side, and hangs on the trunk.
+
+use crate::wild::rig_of;
+use sinew_anim::{RigAnalysis, Role, analyze};
+use sinew_math::Vec3;
+
+/// Joints of a body: what each hangs on, and where it is, metres.
+#[derive(Default)]
+struct Body(Vec<(Option<usize>, Vec3)>);
+
+impl Body {
+    /// Adds a line of joints, and gives the last.
+    fn line(&mut self, on: Option<usize>, places: &[[f32; 3]]) -> usize {
+        let mut parent = on;
+        for &place in places {
+            self.0.push((parent, Vec3::from_array(place)));
+            parent = Some(self.0.len() - 1);
+        }
+        self.0.len() - 1
+    }
+
+    /// Adds a line on the left and its mirror image.
+    fn pair(&mut self, on: usize, places: &[[f32; 3]]) {
+        for side in [1.0, -1.0] {
+            let places: Vec<_> = places.iter().map(|&[x, y, z]| [side * x, y, z]).collect();
+            self.line(Some(on), &places);
+        }
+    }
+
+    fn analyzed(&self) -> RigAnalysis {
+        let place = |i: usize| self.0[i].1;
+        let bone = |i: usize| {
+            let next = (0..self.0.len()).find(|&k| self.0[k].0 == Some(i));
+            let on = self.0[i].0.map_or(place(i) - Vec3::Z * 0.1, place);
+            (i, place(i), next.map_or(place(i) + (place(i) - on) * 0.5, place))
+        };
+        let bones: Vec<_> = (0..self.0.len()).map(bone).collect();
+        let names: Vec<String> = (0..self.0.len()).map(|i| i.to_string()).collect();
+        analyze(&rig_of(names.iter().map(String::as_str), &|i| self.0[i].0, &place, &bones)).expect("a skin")
+    }
+}
+
+/// Segments of each limb, after making sure that it is one.
+fn limbs(name: &str, found: &RigAnalysis) -> Vec<usize> {
+    assert!(!found.humanoid, "{name}");
+    let side = |joint: usize| {
+        let x = found.character_from_file().point(found.bind_model[joint].translation).x;
+        if x.abs() < 1e-3 { 0.0 } else { x.signum() }
+    };
+    let mut counts: Vec<usize> = Vec::new();
+    for bone in &found.kept {
+        let Role::LimbSegment { limb, .. } = bone.role else {
+            assert_eq!(side(bone.joint), 0.0, "{name}: {} is of the trunk", bone.role.name());
+            continue;
+        };
+        counts.resize(counts.len().max(usize::from(limb) + 1), 0);
+        counts[usize::from(limb)] += 1;
+        let on = &found.kept[bone.parent.expect("a limb hangs on something")];
+        match on.role {
+            Role::LimbSegment { limb: other, .. } => assert_eq!(limb, other, "{name}: a limb on a limb"),
+            _ => assert_eq!(side(on.joint), 0.0, "{name}"),
+        }
+        let own = found
+            .kept
+            .iter()
+            .filter(|other| matches!(other.role, Role::LimbSegment { limb: other, .. } if other == limb));
+        assert!(own.map(|other| side(other.joint)).all(|of| of == side(bone.joint)), "{name}: of two sides");
+    }
+    counts
+}
+
+#[test]
+fn birds_insects_snakes_and_carts_are_what_they_are() {
+    let mut bird = Body::default();
+    let hips = bird.line(None, &[[0.0, 0.3, 0.0]]);
+    bird.line(Some(hips), &[[0.0, 0.32, 0.1], [0.0, 0.36, 0.2], [0.0, 0.44, 0.3], [0.0, 0.46, 0.36]]);
+    bird.line(Some(hips), &[[0.0, 0.3, -0.1], [0.0, 0.29, -0.25]]);
+    bird.pair(hips, &[[0.05, 0.26, 0.0], [0.05, 0.16, 0.05], [0.05, 0.06, -0.02], [0.05, 0.01, 0.05]]);
+    bird.pair(hips + 1, &[[0.07, 0.35, 0.1], [0.25, 0.36, 0.06], [0.45, 0.36, 0.0]]);
+    let mut segments = limbs("bird", &bird.analyzed());
+    segments.sort_unstable();
+    assert_eq!(segments, [3, 3, 4, 4], "two legs and two wings");
+
+    let mut ant = Body::default();
+    let thorax = ant.line(None, &[[0.0, 0.1, 0.0]]);
+    ant.line(Some(thorax), &[[0.0, 0.11, 0.15], [0.0, 0.12, 0.22]]);
+    ant.line(Some(thorax), &[[0.0, 0.11, -0.12], [0.0, 0.12, -0.3]]);
+    for z in [0.08, 0.0, -0.08] {
+        ant.pair(thorax, &[[0.04, 0.1, z], [0.15, 0.16, 2.0 * z], [0.25, 0.01, 3.0 * z]]);
+    }
+    assert_eq!(limbs("ant", &ant.analyzed()), [3; 6]);
+
+    let mut snake = Body::default();
+    let places: Vec<_> = (0..14).map(|i| [0.0, 0.05, 0.1 * i as f32]).collect();
+    snake.line(None, &places);
+    let found = snake.analyzed();
+    assert!(limbs("snake", &found).is_empty() && found.kept.len() == 14, "{} bodies", found.kept.len());
+
+    let mut cart = Body::default();
+    let chassis = cart.line(None, &[[0.0, 0.5, 0.0]]);
+    cart.line(Some(chassis), &[[0.0, 0.9, 0.1]]);
+    for z in [0.8, -0.8] {
+        cart.pair(chassis, &[[0.6, 0.3, z]]);
+    }
+    assert_eq!(limbs("cart", &cart.analyzed()), [1; 4], "each wheel by itself");
+}

@@ -1,0 +1,186 @@
+//! What clips, programs, other files and doors tell of a rig that its skin and its names do not.
+
+use crate::toy;
+use sinew_anim::{
+    Channel, Clip, Hints, Interpolation, Joint, LocalTransform, Property, Rig, RigAnalysis, Role, Side,
+    analyze, analyze_hinted,
+};
+use sinew_math::{Affine, Rotation, Vec3, trig};
+use std::f32::consts::TAU;
+
+const KEYS: u8 = 24;
+
+fn turns(joint: usize, seconds: f32, angle: impl Fn(f32) -> f32) -> Channel {
+    let times: Vec<f32> = (0..=KEYS).map(|key| seconds * f32::from(key) / f32::from(KEYS)).collect();
+    let keys = times.iter().map(|time| Rotation::from_axis_angle(Vec3::X, angle(TAU * time / seconds)));
+    let values = keys.flat_map(|q| [q.x, q.y, q.z, q.w]).collect();
+    let (property, interpolation) = (Property::Rotation, Interpolation::Linear);
+    Channel { joint, property, interpolation, times, values }
+}
+
+fn joint(role: &str) -> usize {
+    toy::BODY.iter().position(|(name, ..)| *name == role).expect("a part of the toy")
+}
+
+/// Legs that walk in turns toward +Z, or toward -Z: the knee bends while its leg swings ahead.
+fn walk(seconds: f32, toward: f32) -> Clip {
+    let mut channels = Vec::new();
+    for (side, phase) in [("left", 0.0), ("right", 0.5 * TAU)] {
+        channels.push(turns(joint(&format!("{side}UpperLeg")), seconds, |t| {
+            -0.4 * toward * trig::sin(t + phase)
+        }));
+        channels.push(turns(joint(&format!("{side}LowerLeg")), seconds, |t| {
+            0.9 * toward * sinew_math::max(trig::cos(t + phase), 0.0)
+        }));
+    }
+    Clip { name: String::new(), duration: seconds, channels }
+}
+
+/// The toy with the tails of a coat beside its legs, which move more skin than they, and no names.
+fn in_a_coat() -> (Rig, Vec<usize>) {
+    let mut rig = toy::body(|_| String::new());
+    let mut tails = Vec::new();
+    for x in [0.2, -0.2] {
+        let mut parent = joint("hips");
+        for (y, z) in [(0.85, -0.1), (0.5, -0.12), (0.12, -0.14)] {
+            let place = Vec3::new(x, y, z);
+            let on = -rig.skins[0].inverse_bind[parent].translation;
+            let rest = LocalTransform { translation: place - on, ..LocalTransform::default() };
+            let new = rig.joints.len();
+            rig.joints.push(Joint { name: String::new(), parent: Some(parent), rest, source: new });
+            rig.skins[0].joints.push(new);
+            rig.skins[0].inverse_bind.push(Affine { translation: -place, ..Affine::IDENTITY });
+            let primitive = &mut rig.meshes[0].primitives[0];
+            let first = u32::try_from(primitive.positions.len()).expect("few");
+            let corners = [Vec3::X * 0.15, Vec3::Y * 0.2, -Vec3::X * 0.15, -Vec3::Y * 0.12];
+            primitive.positions.extend(corners.map(|corner| place + corner));
+            primitive.joints.extend([[u16::try_from(new).expect("few"), 0, 0, 0]; 4]);
+            primitive.weights.extend([[1.0, 0.0, 0.0, 0.0]; 4]);
+            primitive.indices.extend([0, 1, 2, 0, 2, 3].map(|corner| first + corner));
+            tails.push(new);
+            parent = new;
+        }
+    }
+    (rig, tails)
+}
+
+#[test]
+fn legs_are_what_swings_in_turns() {
+    let (rig, tails) = in_a_coat();
+    let thigh = |found: &RigAnalysis| found.joint_with(Role::UpperLeg(Side::Left)).expect("a thigh");
+    // Without clips the larger hangs down as legs do.
+    let still = analyze(&rig).expect("a skin");
+    assert!(still.humanoid && tails.contains(&thigh(&still)), "{}", thigh(&still));
+    let mut walks = walk(1.1, 1.0);
+    // The tails go along, both at once.
+    walks.channels.extend(tails.iter().map(|&tail| turns(tail, 1.1, |t| 0.3 * trig::sin(2.0 * t))));
+    // Nor is it a leg that swings while the other stands, or both of them at once.
+    let kick = Clip { duration: 1.0, channels: vec![turns(tails[0], 1.0, trig::sin)], ..Clip::default() };
+    let hop = Clip {
+        duration: 1.0,
+        channels: [tails[0], tails[3]].map(|tail| turns(tail, 1.0, trig::sin)).to_vec(),
+        ..Clip::default()
+    };
+    let found = analyze_hinted(&rig, &Hints::of_clips(&rig, &[kick, hop, walks])).expect("a skin");
+    assert!(found.humanoid, "{:?}", found.notes);
+    for (part, role) in [
+        ("leftUpperLeg", Role::UpperLeg(Side::Left)),
+        ("leftLowerLeg", Role::LowerLeg(Side::Left)),
+        ("rightFoot", Role::Foot(Side::Right)),
+    ] {
+        assert_eq!(found.joint_with(role), Some(joint(part)), "{part}");
+    }
+    assert!(tails.iter().all(|&tail| found.roles[tail].is_none()));
+}
+
+#[test]
+fn who_walks_faces_where_the_feet_go_through_the_air() {
+    let mut rig = toy::body(|_| String::new());
+    // Feet without toes point nowhere.
+    for foot in ["leftFoot", "rightFoot"].map(joint) {
+        let place = Vec3::from_array(toy::BODY[foot].2);
+        rig.meshes[0].primitives[0].positions[4 * foot + 3] = place - Vec3::Y * 0.1;
+    }
+    for toward in [1.0, -1.0] {
+        let hints = Hints::of_clips(&rig, &[walk(1.1, toward)]);
+        let found = analyze_hinted(&rig, &hints).expect("a skin");
+        let ahead = found.character_from_model.rotation.inverse() * Vec3::Z;
+        assert!((ahead - Vec3::Z * toward).length() < 1e-5, "{ahead}");
+        let left = found.joint_with(Role::Hand(Side::Left)).expect("a left hand");
+        assert_eq!(toy::BODY[left].0, if toward > 0.0 { "leftHand" } else { "rightHand" });
+        assert!(found.notes.iter().any(|note| note.contains("the way they walk does")), "{:?}", found.notes);
+    }
+    // Names say it better.
+    let mut named = toy::body(Role::name);
+    named.meshes.clone_from(&rig.meshes);
+    let backward = Hints::of_clips(&named, &[walk(1.1, -1.0)]);
+    let found = analyze_hinted(&named, &backward).expect("a skin");
+    let left = found.joint_with(Role::Hand(Side::Left)).expect("a left hand");
+    assert_eq!(toy::BODY[left].0, "leftHand");
+}
+
+/// The toy `units` tall, with a head so many times as high.
+fn tall(units: f32, head: f32) -> Rig {
+    let mut rig = toy::body(Role::name);
+    let crown = 4 * joint("head") + 3;
+    let positions = &mut rig.meshes[0].primitives[0].positions;
+    positions[crown] += Vec3::Y * (0.16 * (head - 1.0));
+    let height = positions.iter().fold(0.0, |height, at| sinew_math::max(height, at.y));
+    let factor = units / height;
+    positions.iter_mut().for_each(|at| *at *= factor);
+    rig.joints.iter_mut().for_each(|joint| joint.rest.translation *= factor);
+    rig.skins[0].inverse_bind.iter_mut().for_each(|bind| bind.translation *= factor);
+    rig
+}
+
+/// Unit and its reason.
+fn unit(rig: &Rig, hints: &Hints) -> (f32, String) {
+    let found = analyze_hinted(rig, hints).expect("a skin");
+    assert!(found.humanoid);
+    (found.unit_scale, found.unit_guess.expect("it was not given").note)
+}
+
+/// 66 units tall: a man in inches, or a dwarf in centimetres.
+#[test]
+fn a_unit_in_doubt_is_told_by_what_is_around() {
+    let rig = tall(66.0, 1.0);
+    let (scale, note) = unit(&rig, &Hints::default());
+    assert!(scale == 0.0254 && note.contains("may also be centimetres"), "{note}");
+    for (hints, reason) in [
+        (
+            Hints { exporter: "Character Creator 4.2".into(), ..Hints::default() },
+            "Character Creator 4.2 writes centimetres",
+        ),
+        (Hints { kin: vec![0.01, 1.0, 0.01], ..Hints::default() }, "files beside it are in centimetres"),
+        (Hints { door: Some(0.8), ..Hints::default() }, "doors of its world are 0.80 m high"),
+    ] {
+        let (scale, note) = unit(&rig, &hints);
+        assert!(scale == 0.01 && note.contains(reason) && note.contains("may also be inches"), "{note}");
+    }
+    // Whom nobody knows, one other file, and files that differ tell nothing; doors of men are for men.
+    for hints in [
+        Hints { exporter: "nobody".into(), ..Hints::default() },
+        Hints { kin: vec![0.01], ..Hints::default() },
+        Hints { kin: vec![0.01, 1.0], ..Hints::default() },
+        Hints { door: Some(2.05), ..Hints::default() },
+    ] {
+        assert_eq!(unit(&rig, &hints).0, 0.0254, "{hints:?}");
+    }
+    // A human in metres stays one whatever is said.
+    let hints = Hints { exporter: "DAZ".into(), kin: vec![0.01; 3], door: Some(0.8), ..Hints::default() };
+    assert_eq!(unit(&tall(1.75, 1.0), &hints).0, 1.0);
+}
+
+#[test]
+fn a_unit_in_doubt_is_told_by_the_head_and_by_the_stride() {
+    // Heads are about as large in all: of whom it is two fifths is no man.
+    let (scale, note) = unit(&tall(66.0, 7.0), &Hints::default());
+    assert!(scale == 0.01 && note.contains("its head is 4"), "{note}");
+    let rig = tall(75.0, 1.0);
+    assert_eq!(unit(&rig, &Hints::default()).0, 0.0254);
+    // Legs of 0.38 m take a step in less time than those of 0.97.
+    let (scale, note) = unit(&rig, &Hints::of_clips(&rig, &[walk(0.6, 1.0)]));
+    assert!(scale == 0.01 && note.contains("a stride of 0.60 s is that of legs of 0.39 m"), "{note}");
+    let (scale, note) = unit(&rig, &Hints::of_clips(&rig, &[walk(1.1, 1.0)]));
+    assert!(scale == 0.0254 && note.contains("a stride of 1.10 s"), "{note}");
+}

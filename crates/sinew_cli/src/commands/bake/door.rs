@@ -1,0 +1,108 @@
+//! Doors of a world: openings from the ground up with a lintel over them. They tell how large those are who live there.
+
+use sinew::math::{Vec3, min};
+use sinew::physics::boxes::Aabb;
+use sinew::physics::ray::Ray;
+use sinew::physics::{BodyDef, BodyHit, BodyKind, BodyKinds, QueryFilter, Shape, World, WorldDef};
+
+/// Places to each side of the middle from which doors are sought.
+const PLACES: i32 = 6;
+/// Heights at which is looked, shares of the room's: every so much.
+const LEVELS: u8 = 24;
+/// Heights of doors, shares of the room's.
+const DOORS: core::ops::Range<f32> = 0.5..0.97;
+/// Free way behind a door, and farthest wall with one, heights of the room.
+const BEHIND: f32 = 0.3;
+const FARTHEST: f32 = 4.0;
+/// Walls over a door are in one plane, within this share of the room's height.
+const EVEN: f32 = 0.05;
+/// Rooms, metres.
+const ROOMS: core::ops::Range<f32> = 0.3..60.0;
+
+/// Median free height of the doors of a world, metres; `None` where none is found.
+pub fn door(bodies: &[BodyDef]) -> Option<f32> {
+    let mut world = World::new(WorldDef::default());
+    let mut bounds: Option<Aabb> = None;
+    for body in bodies.iter().filter(|body| body.kind == BodyKind::Static) {
+        let ends = body.shapes.iter().all(|shape| shape.shape != Shape::HalfSpace);
+        let id = world.add_body(body);
+        if ends && !body.shapes.is_empty() {
+            let own = world.bounds(id);
+            bounds = Some(bounds.map_or(own, |all| all.merge(&own)));
+        }
+    }
+    let rays = Rays { world };
+    let bounds = bounds?;
+    let (middle, half) = (bounds.center(), (bounds.max - bounds.min) * 0.5);
+    let mut heights = Vec::new();
+    for (i, j) in (-PLACES..=PLACES).flat_map(|i| (-PLACES..=PLACES).map(move |j| (i, j))) {
+        let step = Vec3::new(half.x * i as f32, 0.0, half.z * j as f32) * (0.95 / PLACES as f32);
+        let top = middle + step + Vec3::Y * (half.y + 1.0);
+        for floor in rays.all(top, Vec3::Y * -(2.0 * half.y + 2.0)) {
+            heights.extend(rays.doors_around(floor.point));
+        }
+    }
+    heights.sort_by(f32::total_cmp);
+    heights.get(heights.len() / 2).copied()
+}
+
+struct Rays {
+    world: World,
+}
+
+impl Rays {
+    fn all(&self, origin: Vec3, direction: Vec3) -> Vec<BodyHit> {
+        let mut hits = Vec::new();
+        self.world
+            .query()
+            .filter(QueryFilter::of(BodyKinds::STATIC))
+            .all(&Ray { origin, direction }, &mut hits);
+        hits
+    }
+
+    /// Free way from a place, at most `direction` long.
+    fn way(&self, origin: Vec3, direction: Vec3) -> f32 {
+        let hits = self.all(origin, direction);
+        hits.iter().map(|hit| (hit.point - origin).length()).fold(direction.length(), min)
+    }
+
+    /// Free heights of the doors that are seen from a place on the ground of a room.
+    fn doors_around(&self, ground: Vec3) -> Vec<f32> {
+        let from = ground + Vec3::Y * 0.01;
+        let room = self.way(from, Vec3::Y * ROOMS.end) + 0.01;
+        if !ROOMS.contains(&room) || room >= ROOMS.end {
+            return Vec::new();
+        }
+        [Vec3::X, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Z]
+            .into_iter()
+            .filter_map(|way| self.door(ground, way, room))
+            .collect()
+    }
+
+    /// From the ground up free ways until a lintel, and from it up to the ceiling one wall.
+    fn door(&self, ground: Vec3, toward: Vec3, room: f32) -> Option<f32> {
+        let levels: Vec<f32> = (1..LEVELS).map(|level| room * f32::from(level) / f32::from(LEVELS)).collect();
+        let see = |&level: &f32| self.way(ground + Vec3::Y * level, toward * (FARTHEST * room));
+        let highest = see(levels.last()?);
+        if highest >= FARTHEST * room {
+            return None;
+        }
+        let is_wall = |way: f32| (way - highest).abs() < EVEN * room;
+        let is_free = |way: f32| way > highest + BEHIND * room;
+        let ways: Vec<f32> = levels.iter().map(see).collect();
+        let lintel = ways.iter().position(|&way| is_wall(way))?;
+        let is_door = lintel > 0
+            && ways[..lintel].iter().all(|&way| is_free(way))
+            && ways[lintel..].iter().all(|&way| is_wall(way));
+        // Half-way between the last free level and the first at the wall, and from there the lintel's own edge.
+        let inside = ground + Vec3::Y * 0.01 + toward * (highest + 0.02 * room);
+        let height = self.way(inside, Vec3::Y * room) + 0.01;
+        let between = [levels[lintel.saturating_sub(1)], levels[lintel]];
+        let height = if (between[0]..=between[1]).contains(&height) {
+            height
+        } else {
+            0.5 * (between[0] + between[1])
+        };
+        (is_door && DOORS.contains(&(height / room))).then_some(height)
+    }
+}

@@ -1,0 +1,36 @@
+//! Files beside a character's: what unit they are in, it may be in, too.
+
+use sinew::anim::analyze;
+use sinew::formats::{ReadOptions, Textures, load_gltf};
+use std::path::{Path, PathBuf};
+
+/// Most files that are looked at, and the largest, bytes.
+const MOST: usize = 6;
+const LARGEST: u64 = 16 << 20;
+
+/// Units, metres, of the files of one kind beside a file in which only one makes a body; the first few by name. What cannot be read
+/// says nothing.
+pub fn units_beside(path: &Path) -> Vec<f32> {
+    let folder = match path.parent() {
+        Some(folder) if folder.as_os_str().is_empty() => Path::new("."),
+        Some(folder) => folder,
+        None => return Vec::new(),
+    };
+    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    let extension = path.extension();
+    let is_kin = |other: &PathBuf| {
+        other.extension() == extension
+            && other.file_name() != path.file_name()
+            && other.metadata().is_ok_and(|data| data.is_file() && data.len() <= LARGEST)
+    };
+    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(is_kin).collect();
+    files.sort();
+    files.truncate(MOST);
+    files.iter().filter_map(|file| unit_of(file)).collect()
+}
+
+fn unit_of(file: &Path) -> Option<f32> {
+    let document = load_gltf(file, ReadOptions { textures: Textures::Skip }).ok()?;
+    let analysis = analyze(&document.rig).ok()?;
+    analysis.unit_guess.filter(|guess| guess.is_only).map(|_| analysis.unit_scale)
+}

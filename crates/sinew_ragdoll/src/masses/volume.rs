@@ -1,0 +1,142 @@
+//! Volume that a skin encloses, and what fills it.
+
+use sinew_anim::Rig;
+use sinew_math::{Vec3, clamp, max, max3, min, min3};
+
+/// Lines along each axis on which the skin is crossed, a side.
+const LINES: usize = 64;
+/// Least share of the lines that meet the skin on which it closes.
+const CLOSED: f32 = 0.6;
+/// Where in their cells the lines lie: not in the middle, where symmetric meshes have their edges.
+const OFF_MIDDLE: [f32; 2] = [0.513_7, 0.487_1];
+
+/// Volume that triangles enclose, m³: what several of them enclose counts once, and so does what is turned inside out. Lines go
+/// through it along each axis; a hole makes its lines tell nothing, and the others stand for them. `None` where most lines do so along
+/// every axis.
+pub fn enclosed(triangles: &[[Vec3; 3]]) -> Option<f32> {
+    let corners = || triangles.iter().flatten().copied();
+    let low = corners().reduce(min3)?;
+    let high = corners().reduce(max3)?;
+    let mut volumes: Vec<f32> = (0..3).filter_map(|axis| along(triangles, low, high, axis)).collect();
+    volumes.sort_by(f32::total_cmp);
+    volumes.get(volumes.len() / 2).copied()
+}
+
+/// Crossings of one line with the skin: where, and whether it goes out.
+type Crossings = Vec<(f32, bool)>;
+
+fn along(triangles: &[[Vec3; 3]], low: Vec3, high: Vec3, axis: usize) -> Option<f32> {
+    let (across, up) = ((axis + 1) % 3, (axis + 2) % 3);
+    let step = [across, up].map(|side| (high[side] - low[side]) / LINES as f32);
+    if step.iter().any(|step| *step <= 0.0) {
+        return None;
+    }
+    let mut lines: Vec<Crossings> = vec![Vec::new(); LINES * LINES];
+    for corners in triangles {
+        // In cells of the grid, so that lines stand at whole numbers.
+        let flat = corners.map(|corner| {
+            [
+                (corner[across] - low[across]) / step[0] - OFF_MIDDLE[0],
+                (corner[up] - low[up]) / step[1] - OFF_MIDDLE[1],
+            ]
+        });
+        cross(flat, corners.map(|corner| corner[axis]), &mut lines);
+    }
+    let (mut sum, mut closed, mut met) = (0.0, 0, 0);
+    for line in lines.iter_mut().filter(|line| !line.is_empty()) {
+        met += 1;
+        if let Some(length) = inside(line) {
+            closed += 1;
+            sum += length;
+        }
+    }
+    let is_closed = closed as f32 > CLOSED * met as f32;
+    is_closed.then(|| sum * step[0] * step[1] * met as f32 / closed as f32)
+}
+
+/// Adds the crossings of a triangle with the lines at whole numbers.
+fn cross(flat: [[f32; 2]; 3], heights: [f32; 3], lines: &mut [Crossings]) {
+    let [a, b, c] = flat;
+    let area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+    if area == 0.0 {
+        return;
+    }
+    let range = |side: usize| {
+        let (lo, hi) = (min(a[side], min(b[side], c[side])), max(a[side], max(b[side], c[side])));
+        let cell = |x: f32| clamp(x, 0.0, (LINES - 1) as f32);
+        cell(lo.ceil()) as usize..=cell(hi.floor()) as usize
+    };
+    for row in range(1) {
+        for column in range(0) {
+            let p = [column as f32, row as f32];
+            // Twice the area on the far side of each edge; an edge belongs to one of its two triangles.
+            let side = |from: [f32; 2], to: [f32; 2]| {
+                (to[0] - from[0]) * (p[1] - from[1]) - (p[0] - from[0]) * (to[1] - from[1])
+            };
+            let shares = [side(b, c), side(c, a), side(a, b)];
+            if shares.iter().all(|share| (*share > 0.0) == (area > 0.0) && *share != 0.0) {
+                let height = (0..3).map(|i| shares[i] * heights[i]).sum::<f32>() / area;
+                lines[row * LINES + column].push((height, area > 0.0));
+            }
+        }
+    }
+}
+
+/// Length of a line within the skin; `None` where it does not come out as often as it goes in.
+fn inside(line: &mut Crossings) -> Option<f32> {
+    line.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut depth, mut length) = (0_i32, 0.0);
+    for (index, &(at, goes_out)) in line.iter().enumerate() {
+        if depth != 0 {
+            length += at - line[index - 1].0;
+        }
+        depth += if goes_out { -1 } else { 1 };
+    }
+    (depth == 0).then_some(length)
+}
+
+/// kg/m³ of flesh: that of water, nearly, in all that live.
+const FLESH: f32 = 1000.0;
+/// kg/m³ of a machine with the air in it: cars have 200, tanks 1000.
+const MACHINE: f32 = 500.0;
+/// Words of machines.
+const MACHINES: [&str; 14] = [
+    "tank",
+    "robot",
+    "mech",
+    "gun",
+    "turret",
+    "wheel",
+    "wheels",
+    "cannon",
+    "engine",
+    "rotor",
+    "propeller",
+    "chassis",
+    "piston",
+    "drone",
+];
+
+/// Matter of a body, by the words of its joints' names: kg/m³ and a word.
+pub fn density(rig: &Rig) -> (f32, &'static str) {
+    let is_machine =
+        rig.joints.iter().any(|joint| words(&joint.name).any(|word| MACHINES.contains(&word.as_str())));
+    if is_machine { (MACHINE, "a machine") } else { (FLESH, "flesh") }
+}
+
+/// Words of a name in lower case: `TankTrack22.L` is `tank`, `track`, `l`.
+fn words(name: &str) -> impl Iterator<Item = String> {
+    let mut words: Vec<String> = Vec::new();
+    let mut before = ' ';
+    for letter in name.chars() {
+        if letter.is_alphabetic() {
+            let begins = !before.is_alphabetic() || before.is_lowercase() && letter.is_uppercase();
+            match words.last_mut().filter(|_| !begins) {
+                Some(word) => word.extend(letter.to_lowercase()),
+                None => words.push(letter.to_lowercase().collect()),
+            }
+        }
+        before = letter;
+    }
+    words.into_iter()
+}
