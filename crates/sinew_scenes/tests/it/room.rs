@@ -12,6 +12,8 @@ const FAR: i32 = 12;
 const MARGIN: f32 = 0.008;
 /// Share of the step height and of the slope limit's cosine that is asked of it.
 const SHARE: f32 = 0.9;
+/// Ground that lies deeper below the feet than this does not bear them: a rim does that is touched from the side, metres.
+const RIM: f32 = 0.1;
 /// Distance at which a place is reached, metres, and steps in which it must be.
 const REACHED: f32 = 0.02;
 const PATIENCE: u32 = 60;
@@ -107,8 +109,7 @@ fn step(world: &World, def: &MoverDef, feet: Vec3, way: Vec3) -> Option<Vec3> {
     let steepest = sinew::math::trig::cos(SHARE * def.slope_limit);
     let looks = Ray { origin: place + Vec3::Y * 0.5 * def.height, direction: Vec3::NEG_Y * def.height };
     let tread = world.query().first(&looks);
-    let bears =
-        tread.is_some_and(|tread| tread.normal.y > steepest && (tread.point.y - place.y).abs() < high.y);
+    let bears = tread.is_some_and(|tread| tread.normal.y > steepest && place.y - tread.point.y < RIM);
     // A rim that is touched from the side lets it slide.
     (bears && hit.normal.y > 0.5).then_some(place)
 }
