@@ -1,6 +1,7 @@
 //! Instructions that the kernels take, counted under valgrind: the same on a busy machine and on a quiet one.
 //!
-//! Six scenes as whole steps (`scene_step`), then kernels. `cargo xtask bench --counts` runs these and compares them with
+//! Six scenes as whole steps (`scene_step`), then kernels, one character in each of its states (`character_step`: the world and its
+//! update), and a hundred that walk, with hit bodies and without (`walkers_step`). `cargo xtask bench --counts` runs these and compares them with
 //! `bench/counts/baseline.txt`. What is not public is measured as the step of a world in which it is nearly all there is.
 
 use gungraun::Callgrind;
@@ -8,10 +9,12 @@ use gungraun::prelude::*;
 use sinew::math::{Random, Rotation, Transform, Vec3};
 use sinew::physics::collide::{Manifold, collide};
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef, SleepThresholds, Sleeping, World, WorldDef};
+use sinew::ragdoll::{Character, Detail, Preset};
 use sinew_scenes::blueprint;
 use sinew_scenes::crowd::{Crowd, CrowdScene};
 use sinew_scenes::scenes::{self, Instance};
 use std::hint::black_box;
+use std::sync::Arc;
 
 /// The mannequin of `ragdoll_drop` after `steps`, its buffers warm.
 fn ragdoll(steps: u32) -> Instance {
@@ -214,9 +217,117 @@ fn blend_two_clips(mut crowd: Crowd) -> Crowd {
     crowd
 }
 
+/// The mannequin on a floor, in one of its states.
+struct Actor {
+    world: World,
+    character: Character,
+}
+
+impl Actor {
+    fn step(&mut self) {
+        self.world.step();
+        self.character.update(&mut self.world);
+    }
+}
+
+/// It has walked for a second; then something is done to it, and so many steps go by.
+fn actor(done: fn(&mut World, &mut Character), steps: u32) -> Actor {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+    let def = Arc::new(sinew::mannequin::character());
+    let character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    let mut actor = Actor { world, character };
+    (0..60).for_each(|_| actor.step());
+    done(&mut actor.world, &mut actor.character);
+    (0..steps).for_each(|_| actor.step());
+    actor
+}
+
+fn frozen() -> Actor {
+    actor(|world, character| character.set_level_of_detail(world, Detail::Frozen), 10)
+}
+
+fn keyed() -> Actor {
+    actor(|world, character| character.set_level_of_detail(world, Detail::Keyed), 10)
+}
+
+fn hit_bodies() -> Actor {
+    actor(|_, _| {}, 10)
+}
+
+fn flinching() -> Actor {
+    actor(|world, character| drop(character.hit(world, 5, Vec3::X * 5.0)), 4)
+}
+
+fn powered() -> Actor {
+    actor(|world, character| character.set_preset(world, Preset::Powered), 60)
+}
+
+fn stumbling() -> Actor {
+    let push = |world: &mut World, character: &mut Character| {
+        character.set_preset(world, Preset::Powered);
+        character.hit(world, 2, Vec3::X * 60.0);
+    };
+    actor(push, 6)
+}
+
+fn limp() -> Actor {
+    actor(|world, character| character.go_limp(world), 40)
+}
+
+#[library_benchmark]
+#[bench::frozen(frozen())]
+#[bench::keyed(keyed())]
+#[bench::hit_bodies(hit_bodies())]
+#[bench::flinching(flinching())]
+#[bench::powered(powered())]
+#[bench::stumbling(stumbling())]
+#[bench::limp(limp())]
+fn character_step(mut actor: Actor) -> Actor {
+    actor.step();
+    actor
+}
+
+/// A hundred mannequins that walk on a floor, three metres apart.
+struct Walkers {
+    world: World,
+    characters: Vec<Character>,
+}
+
+impl Walkers {
+    fn step(&mut self) {
+        self.world.step();
+        self.characters.iter_mut().for_each(|character| character.update(&mut self.world));
+    }
+}
+
+fn walkers(detail: Detail) -> Walkers {
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+    let def = Arc::new(sinew::mannequin::character());
+    let place = |i: u8| Vec3::new(3.0 * f32::from(i % 10), 0.0, 3.0 * f32::from(i / 10));
+    let characters = (0..100).map(|i| {
+        let mut character = Character::spawn(&mut world, &def, Transform::from_translation(place(i)));
+        character.set_level_of_detail(&mut world, detail);
+        character
+    });
+    let characters = characters.collect();
+    let mut walkers = Walkers { world, characters };
+    (0..20).for_each(|_| walkers.step());
+    walkers
+}
+
+#[library_benchmark]
+#[bench::hit_bodies(walkers(Detail::Full))]
+#[bench::none(walkers(Detail::Keyed))]
+fn walkers_step(mut walkers: Walkers) -> Walkers {
+    walkers.step();
+    walkers
+}
+
 library_benchmark_group!(
     name = kernels,
-    benchmarks = [scene_step, ragdoll_step, step, collide_64, blend_two_clips]
+    benchmarks = [scene_step, ragdoll_step, step, collide_64, blend_two_clips, character_step, walkers_step]
 );
 // Caches are not simulated: instructions alone are compared, in half the time.
 main!(

@@ -26,7 +26,14 @@ pub fn phases(def: &CharacterDef, events: &[(f32, Event)]) -> Vec<Phase> {
             Event::Preparing { rolls: true } => add(time, "rolls over"),
             Event::Preparing { rolls: false } | Event::GettingUp { .. } => add(time, "gets up"),
             Event::Up => add(time, &upright(def)),
+            Event::Stumbled => add(time, "stumbles"),
+            Event::Caught { .. } => add(time, &upright(def)),
             Event::Flinched { .. } | Event::Touched | Event::NeverSettled | Event::Struck { .. } => {}
+            Event::Recovered
+            | Event::Powered
+            | Event::Clip(_)
+            | Event::Contact { .. }
+            | Event::LetGo { .. } => {}
         }
     }
     // Stable: of two at one time the later told one counts.
@@ -61,8 +68,11 @@ pub fn told(input: &BakeInput<'_>, events: &[(f32, Event)]) -> Vec<(f32, String)
             Event::Hit { body } => hit_sentence(input, time, body),
             // A hit says it better, and whoever goes limp on its feet touches the ground at once.
             Event::WentLimp if events.iter().any(|other| is_hit_at(other, time)) => continue,
-            Event::Touched | Event::Struck { .. } => continue,
+            Event::Touched | Event::Struck { .. } | Event::Recovered | Event::Powered => continue,
+            Event::Clip(_) | Event::Contact { .. } | Event::LetGo { .. } => continue,
             Event::Flinched { body } => format!("flinches at {}", input.character.ragdoll.bodies[body].role),
+            Event::Stumbled => "stumbles".to_owned(),
+            Event::Caught { steps } => format!("has caught itself after {steps} steps"),
             Event::WentLimp => "goes limp".to_owned(),
             Event::Settled { since } => {
                 told.push((since, "lies still".to_owned()));

@@ -22,8 +22,8 @@ pub mod skin;
 pub use bake::{BakeInput, Baked, Hit, HitEffect, bake};
 pub use build::{BuildError, BuildOptions, BuildReport, build};
 pub use character::{
-    AfterSettling, Blow, Character, CharacterDef, Event, GettingReady, HitBodies, InWorld, Locomotion,
-    MotionError, MotionSet, Opening, Part, Preset, State, Toughness,
+    AfterSettling, Blow, Character, CharacterDef, Detail, Distances, Event, GettingReady, Grip, HitBodies,
+    InWorld, Locomotion, MotionError, MotionSet, Opening, Part, Preset, State, Toughness,
 };
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 pub use doctor::{Patient, cure, doctor};

@@ -59,7 +59,7 @@ pub fn mannequin() -> Mannequin {
 }
 
 /// The mannequin as a character that stands where it is not moved, walks, and gets up: for
-/// [`Character::spawn`](crate::ragdoll::Character::spawn).
+/// [`Character::spawn`](crate::ragdoll::Character::spawn). Its walk tells of each `left step` and `right step` as the heel strikes.
 #[cfg(feature = "ragdoll")]
 pub fn character() -> crate::ragdoll::CharacterDef {
     use crate::ragdoll::{BuildOptions, CharacterDef, Locomotion, MotionSet, build};
@@ -67,7 +67,11 @@ pub fn character() -> crate::ragdoll::CharacterDef {
     let analysis = crate::anim::analyze(&rig).expect("the mannequin has a skin");
     let (ragdoll, _) = build(&rig, &analysis, &BuildOptions::default()).expect("and bones");
     let mut def = CharacterDef::new(rig, ragdoll, &analysis.bind_model);
+    // The walk begins as the left heel strikes, and has two equal steps.
+    let half = 0.5 * clips[motions.walk].duration;
+    let step = |foot: &str, time: f32| (motions.walk, crate::anim::Event::new(time, foot));
     let motions = MotionSet {
+        events: vec![step("left step", 0.0), step("right step", half)],
         clips,
         looped: Some(motions.walk),
         idle: Some(motions.idle),

@@ -2,6 +2,8 @@
 
 #[path = "../../examples/active_ragdoll.rs"]
 mod active_ragdoll;
+#[path = "../../examples/door_and_cape.rs"]
+mod door_and_cape;
 #[path = "../../examples/flock.rs"]
 mod flock;
 #[path = "../../examples/pendulum_clock.rs"]
@@ -10,6 +12,8 @@ mod pendulum_clock;
 mod player;
 #[path = "../../examples/probes.rs"]
 mod probes;
+#[path = "../../examples/rollback_fight.rs"]
+mod rollback_fight;
 #[path = "../../examples/shooter.rs"]
 mod shooter;
 
@@ -43,4 +47,14 @@ fn the_target_flinches_and_falls() {
 #[test]
 fn the_active_ragdoll_stands_a_push() {
     active_ragdoll::main();
+}
+
+#[test]
+fn the_walker_takes_its_cape_through_the_door() {
+    door_and_cape::main();
+}
+
+#[test]
+fn the_fight_is_the_same_with_news_that_come_late() {
+    rollback_fight::main();
 }

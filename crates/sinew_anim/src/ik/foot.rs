@@ -4,7 +4,7 @@ use super::two_bone::{Pole, TwoBone, TwoBoneGoal, two_bone_ik};
 use super::{set_rotation, shift};
 use crate::pose::smoothstep;
 use crate::rig::{JointIdx, LocalTransform, Rig};
-use sinew_math::{Affine, Rotation, Vec3, clamp, direction, max, min};
+use sinew_math::{Affine, Rotation, Transform, Vec3, clamp, direction, max, min};
 
 /// Ground below a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +75,9 @@ pub fn place_feet(
     let mut lift =
         steps.iter().filter_map(|step| step.as_ref()).map(|step| step.raise).reduce(min).unwrap_or(0.0);
     for (leg, step) in legs.iter().zip(&steps) {
-        lift = step.as_ref().map_or(lift, |step| min(lift, step.highest_pelvis(model, leg, settings)));
+        lift = step
+            .as_ref()
+            .map_or(lift, |step| min(lift, highest_pelvis(model, leg, step.target, settings.up)));
     }
     let lift = clamp(lift, -settings.max_step, settings.max_step);
     shift(rig, pelvis, settings.up * lift, local, model);
@@ -88,6 +90,47 @@ pub fn place_feet(
         *foot = PlacedFoot { raised: step.raise, tilted: step.tilt.to_scaled_axis().length(), miss };
     }
     placed
+}
+
+/// Brings both ankles to where they are wanted, by place and turn in the space of `model` (up: +Y, forward: +Z), and lowers the pelvis as far
+/// as a leg is too short for that, by `most` at most. Gives how far it was lowered. `local` and `model` have one entry per joint
+/// and are both brought up to date.
+///
+/// # Panics
+/// If the slices are not as long as the rig has joints, or a joint is not in it.
+pub fn hold_feet(
+    rig: &Rig,
+    pelvis: JointIdx,
+    legs: &[TwoBone; 2],
+    ankles: &[Transform; 2],
+    most: f32,
+    local: &mut [LocalTransform],
+    model: &mut [Affine],
+) -> f32 {
+    assert_eq!((local.len(), model.len()), (rig.joints.len(), rig.joints.len()), "two poses of one rig");
+    let highest =
+        |(leg, ankle): (&TwoBone, &Transform)| highest_pelvis(model, leg, ankle.translation, Vec3::Y);
+    let lift = legs.iter().zip(ankles).map(highest).fold(0.0, min);
+    let lift = max(lift, -most);
+    shift(rig, pelvis, Vec3::Y * lift, local, model);
+    for (leg, ankle) in legs.iter().zip(ankles) {
+        let goal = TwoBoneGoal::at(ankle.translation, Pole::Keep(Vec3::Z));
+        two_bone_ik(rig, *leg, &goal, local, model);
+        set_rotation(rig, leg.end, ankle.rotation, local, model);
+    }
+    -lift
+}
+
+/// How far a pelvis may go up before its leg is too short for a place of the ankle; negative: how far down it has to.
+fn highest_pelvis(model: &[Affine], leg: &TwoBone, target: Vec3, up: Vec3) -> f32 {
+    let place = |joint: JointIdx| model[joint].translation;
+    let long = (place(leg.lower) - place(leg.upper)).length() + (place(leg.end) - place(leg.lower)).length();
+    let way = target - place(leg.upper);
+    let down = way.dot(up);
+    let aside = (way - up * down).length();
+    let full = 0.999 * long;
+    // Out of reach sideways: no height helps.
+    if aside >= full { f32::INFINITY } else { down + (full * full - aside * aside).sqrt() }
 }
 
 /// Where a foot goes.
@@ -124,18 +167,5 @@ impl Step {
             rotation: ankle.rotation,
             tilt: Rotation::from_scaled_axis(tilt),
         })
-    }
-
-    /// How far the pelvis may go up before the leg is too short.
-    fn highest_pelvis(&self, model: &[Affine], leg: &TwoBone, settings: &FootPlacement) -> f32 {
-        let place = |joint: JointIdx| model[joint].translation;
-        let long =
-            (place(leg.lower) - place(leg.upper)).length() + (place(leg.end) - place(leg.lower)).length();
-        let way = self.target - place(leg.upper);
-        let down = way.dot(settings.up);
-        let aside = (way - settings.up * down).length();
-        let full = 0.999 * long;
-        // Out of reach sideways: no height helps.
-        if aside >= full { f32::INFINITY } else { down + (full * full - aside * aside).sqrt() }
     }
 }

@@ -10,7 +10,7 @@ mod foot;
 mod look_at;
 mod two_bone;
 
-pub use foot::{FootGround, FootPlacement, PlacedFeet, PlacedFoot, place_feet};
+pub use foot::{FootGround, FootPlacement, PlacedFeet, PlacedFoot, hold_feet, place_feet};
 pub use look_at::{Look, LookAt, look_at};
 pub use two_bone::{Pole, TwoBone, TwoBoneGoal, TwoBoneSolution, solve_two_bone, two_bone_ik};
 

@@ -167,6 +167,8 @@ struct Run {
     /// Not yet done, the latest first.
     pending: Vec<(f32, Push)>,
     events: Vec<(f32, Event)>,
+    /// Events of pushes that are noted, and told again by the next update.
+    ahead: usize,
 }
 
 /// The character as it starts: in the world, if pushes may let it flinch, for that takes bodies.
@@ -209,6 +211,7 @@ impl Run {
             meter: QualityMeter::new(&input.character.ragdoll, input.seconds),
             pending,
             events: Vec::new(),
+            ahead: 0,
         };
         run.push_due();
         run
@@ -237,7 +240,7 @@ impl Run {
             (None, _) => {}
         }
         self.character.update(&mut self.world);
-        self.note_events(0);
+        self.note_events(self.ahead);
         self.push_due();
     }
 
@@ -265,6 +268,7 @@ impl Run {
             }
         }
         self.note_events(noted);
+        self.ahead = self.character.events().len() - noted;
     }
 
     /// Keeps the character's events from the `first` on.

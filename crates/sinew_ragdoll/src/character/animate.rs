@@ -1,6 +1,6 @@
 //! The pose while clips decide it.
 
-use super::{Character, CharacterDef, Opening, ground};
+use super::{Character, CharacterDef, Event, Opening, ground};
 use sinew_anim::{Animator, TrackDef, TrackId};
 use sinew_math::{Affine, Transform, Vec3, clamp};
 use sinew_physics::World;
@@ -30,6 +30,7 @@ impl Character {
         let dt = world.def().dt();
         self.keep_pace(dt);
         self.animator.update(self.def.set(), dt);
+        self.events.extend(self.animator.events().iter().map(|&fired| Event::Clip(fired)));
         self.keep_earlier();
         self.take_pose();
         if let Some(to) = self.ride(world, self.step_of(&self.animator)) {
@@ -96,6 +97,7 @@ impl Character {
         pose.clear();
         pose.extend(ahead.pose().iter());
         self.place_feet(self.planting.ahead(seconds), &mut pose);
+        self.hold_feet(*place, seconds, &mut pose);
         self.bodies_of(&pose, *place, out);
         self.scratch.pose = pose;
     }

@@ -10,6 +10,9 @@ const GIVING: Muscle = Muscle { hertz: 3.0, damping_ratio: 1.0, strength: 0.5 };
 /// Seconds for which it gives way, and half-life of its coming back.
 const GIVES: f32 = 0.12;
 const RETURNS: f32 = 0.08;
+/// Most share of their strength that a blow takes from the legs and the trunk of a character that steps.
+const LEGS_WEAKEN: f32 = 0.2;
+const TRUNK_WEAKENS: f32 = 0.5;
 /// Half-lives after which it is as the clips have it again.
 const RETURNED: f32 = 6.0;
 
@@ -58,7 +61,7 @@ impl Character {
         is_there
             && match self.def.in_world.toughness {
                 Toughness::None => false,
-                Toughness::Impulse(least) => blow.impulse.length() < least,
+                Toughness::Impulse(least) => self.steps() || blow.impulse.length() < least,
                 Toughness::Function(fells) => !fells(self, &blow),
             }
     }
@@ -82,6 +85,10 @@ impl Character {
         impulse: Vec3,
         point: Option<Vec3>,
     ) -> f32 {
+        if self.state == State::Animated && !self.gives_way() {
+            self.events.push(Event::Flinched { body });
+            return 0.0;
+        }
         if self.state == State::Animated {
             self.take_bodies(world, DriveMode::Keyed);
             self.state = State::Flinching;
@@ -93,9 +100,26 @@ impl Character {
             self.flinching = GIVES + RETURNED * RETURNS;
         }
         self.drives.hit(&self.def.ragdoll, body, impulse.length());
-        self.drive_bodies(world);
         self.events.push(Event::Flinched { body });
+        if self.steps() {
+            self.tense();
+            self.shove(world, impulse);
+        }
+        self.drive_bodies(world);
         self.push(world, body, impulse, point)
+    }
+
+    /// What stands on its legs tenses them and its trunk: a blow takes less of their strength.
+    fn tense(&mut self) {
+        for (index, body) in self.def.ragdoll.bodies.iter().enumerate() {
+            let is_leg = ["Leg", "Foot", "Toes"].iter().any(|part| body.role.ends_with(part));
+            let is_trunk = ["hips", "spine", "chest", "upperChest"].contains(&body.role.as_str());
+            if index == 0 || is_leg {
+                self.drives.steady(index, LEGS_WEAKEN);
+            } else if is_trunk {
+                self.drives.steady(index, TRUNK_WEAKENS);
+            }
+        }
     }
 
     /// The bodies from which a blow to one makes all below give way: the limb that it is of, up to the trunk. Of the pelvis, what

@@ -65,6 +65,8 @@ pub struct MotionSet {
     pub idle: Option<usize>,
     /// Clips that start lying and end standing. Each is used as a mirror shows it, too. Default none.
     pub get_ups: Vec<usize>,
+    /// Moments of clips that [`Event::Clip`](super::Event::Clip) tells of, each with the index of its clip: steps, punches. Default none.
+    pub events: Vec<(usize, sinew_anim::Event)>,
     /// Default in place.
     pub locomotion: Locomotion,
     /// Default: the looped clip.
@@ -78,6 +80,7 @@ impl Default for MotionSet {
             looped: None,
             idle: None,
             get_ups: Vec::new(),
+            events: Vec::new(),
             locomotion: Locomotion::InPlace,
             opening: Opening::Looped,
         }

@@ -35,12 +35,12 @@ const BALL: f32 = 0.14;
 /// The legs of a humanoid that stands on them.
 #[derive(Clone, Debug)]
 pub(super) struct Feet {
-    pelvis: JointIdx,
-    legs: [TwoBone; 2],
+    pub pelvis: JointIdx,
+    pub legs: [TwoBone; 2],
     /// The ball, in the axes of the ankle without scale, metres.
-    balls: [Vec3; 2],
+    pub balls: [Vec3; 2],
     /// Height of the ankles in the bind pose, metres.
-    ankle_height: f32,
+    pub ankle_height: f32,
 }
 
 impl Feet {

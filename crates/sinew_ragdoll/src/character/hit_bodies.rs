@@ -51,8 +51,13 @@ impl Character {
             }
         };
         let own = |id: BodyId| presence.bodies.iter().position(|&body| body == id);
+        // Its own steps are no blows: what stands comes into nobody.
+        let steps = self.steps();
+        let stands = |id: BodyId| steps && world.contains(id) && world.kind(id) == BodyKind::Static;
         for hit in &world.events().hits {
             match (own(hit.a.body), own(hit.b.body)) {
+                (Some(_), None) if stands(hit.b.body) => {}
+                (None, Some(_)) if stands(hit.a.body) => {}
                 (Some(body), None) => note(body, hit.normal * -hit.impulse),
                 (None, Some(body)) => note(body, hit.normal * hit.impulse),
                 _ => {}
@@ -69,6 +74,25 @@ impl Character {
             self.events.push(Event::Struck { body, impulse: impulse.length() });
             self.strike(world, body, impulse, None);
         }
+    }
+
+    /// Tells of what its bodies began and stopped to touch in the last step.
+    pub(super) fn note_contacts(&mut self, world: &World) {
+        if !self.def.in_world.tells_contacts || self.bodies().is_empty() {
+            return;
+        }
+        let mut events = core::mem::take(&mut self.events);
+        let told = world.events();
+        for (pairs, begins) in [(&told.begin, true), (&told.end, false)] {
+            for &(a, b) in pairs {
+                match (self.body_index(a), self.body_index(b)) {
+                    (Some(body), None) => events.push(Event::Contact { body, other: b, begins }),
+                    (None, Some(body)) => events.push(Event::Contact { body, other: a, begins }),
+                    _ => {}
+                }
+            }
+        }
+        self.events = events;
     }
 
     /// Impulse that a body that goes through one of its own would give it, if the two stopped each other: N·s.

@@ -1,6 +1,9 @@
 //! A character's share of the world while its clips move it: a mover that stands, walks and falls, and bodies that can be
 //! hit. Settings, and how it comes and goes.
 
+use super::detail::Detail;
+use super::hold::Hold;
+use super::stumble::Stumble;
 use super::{Character, CharacterDef, State};
 use crate::def::RagdollDef;
 use crate::ragdoll::{BodyState, Ragdoll};
@@ -67,9 +70,16 @@ pub struct InWorld {
     pub landing_speed: f32,
     /// Rule by which blows fell it or let it flinch.
     pub toughness: Toughness,
+    /// Steps in a row with which it tries, powered, to catch itself from a push: a powered character that may step is felled by losing its
+    /// balance and not by [`toughness`](Self::toughness), unless that is a function's or none. 0: it stands or falls where it is. Humanoids with a mover only.
+    /// Default 4.
+    pub most_steps: u32,
     /// Impulse from which it feels what strikes its bodies by itself, N·s; infinite: it feels only what it is told of by
     /// [`Character::hit`]. Default 3.
     pub feels: f32,
+    /// True: [`Event::Contact`](super::Event::Contact) tells which of its bodies begin and stop to touch something. Default false: in crowds that
+    /// is much to look through.
+    pub tells_contacts: bool,
 }
 
 /// Speed that a blow gives to the whole of a character that it fells, m/s.
@@ -100,7 +110,9 @@ impl InWorld {
             air_time: 1.2,
             landing_speed: 7.0,
             toughness: Toughness::Impulse(FELLS * mass),
+            most_steps: 4,
             feels: 3.0,
+            tells_contacts: false,
         }
     }
 
@@ -138,6 +150,10 @@ pub(super) struct Presence {
     pub over: f32,
     /// It left the ground for too long or came down too fast.
     pub falls: bool,
+    /// Steps with which it catches itself.
+    pub stumble: Option<Stumble>,
+    pub detail: Detail,
+    pub holds: Vec<Hold>,
 }
 
 impl Character {
@@ -163,21 +179,24 @@ impl Character {
         }
         assert!(self.world_from_character.is_finite(), "a character stands at a finite place");
         assert!(self.state == State::Animated, "a character comes into a world standing");
-        let mut presence = Presence::default();
-        if let HitBodies::Present(yields) = self.def.in_world.hit_bodies {
-            let def = self.def.clone();
-            let mut poses = Vec::new();
-            let pose = core::mem::take(&mut self.pose);
-            self.bodies_of(&pose, self.world_from_character, &mut poses);
-            self.pose = pose;
-            let at =
-                |&world_from_body: &Transform| BodyState { world_from_body, velocity: Velocity::default() };
-            let states: Vec<BodyState> = poses.iter().map(at).collect();
-            let rule = ContactRule::Yields(yields);
-            presence.bodies = Ragdoll::spawn_kinematic(world, &def.ragdoll, &states, &def.flesh, rule);
+        self.presence = Some(Presence::default());
+        self.settle_detail(world);
+    }
+
+    /// Puts hit bodies into the world where the pose has them.
+    pub(super) fn enter_bodies(&mut self, world: &mut World) {
+        let HitBodies::Present(yields) = self.def.in_world.hit_bodies else { return };
+        let def = self.def.clone();
+        let mut poses = Vec::new();
+        let pose = self.pose().to_vec();
+        self.bodies_of(&pose, self.world_from_character, &mut poses);
+        let at = |&world_from_body: &Transform| BodyState { world_from_body, velocity: Velocity::default() };
+        let states: Vec<BodyState> = poses.iter().map(at).collect();
+        let rule = ContactRule::Yields(yields);
+        let bodies = Ragdoll::spawn_kinematic(world, &def.ragdoll, &states, &def.flesh, rule);
+        if let Some(presence) = &mut self.presence {
+            presence.bodies = bodies;
         }
-        self.presence = Some(presence);
-        self.stand_up(world, 1.0);
     }
 
     /// Takes all of it out of the world: bodies, joints, drives, mover.
@@ -193,6 +212,7 @@ impl Character {
     /// # Panics
     /// If something of it is no longer there, or it is not animated.
     fn leave(&mut self, world: &mut World) {
+        self.release_all(world, false);
         if let Some(ragdoll) = self.ragdoll.take() {
             self.drives.release(world, &ragdoll);
             ragdoll.despawn(world);
@@ -242,11 +262,15 @@ impl Character {
         presence.mover = Some(world.add_mover(&mover));
         (presence.yaw, presence.air, presence.over, presence.pace) = (0.0, 0.0, 0.0, 0.0);
         (presence.velocity, presence.falls) = (Vec3::ZERO, false);
+        presence.stumble = None;
     }
 
     /// Takes its mover out: it lies.
     pub(super) fn sit_down(&mut self, world: &mut World) {
-        let mover = self.presence.as_mut().and_then(|presence| presence.mover.take());
+        let mover = self.presence.as_mut().and_then(|presence| {
+            presence.stumble = None;
+            presence.mover.take()
+        });
         if let Some(mover) = mover.filter(|&mover| world.contains_mover(mover)) {
             world.remove_mover(mover);
         }

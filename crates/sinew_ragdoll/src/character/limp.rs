@@ -44,6 +44,7 @@ impl Character {
         if self.ragdoll.is_some() {
             return self.fall_again(world);
         }
+        self.release_all(world, true);
         self.become_bodies(world, ContactRule::Push);
         self.let_linger(world);
         self.sit_down(world);
@@ -102,6 +103,7 @@ impl Character {
         self.state = State::Limp;
         self.stillness = Stillness { touched: !powered, ..Stillness::default() };
         if powered {
+            self.release_all(world, true);
             self.let_linger(world);
             self.physical.rebase(self.def.mapping(), &self.def.rig, &self.pose);
             self.scratch.posed.clear();

@@ -6,10 +6,12 @@
 mod animate;
 mod blows;
 mod def;
+mod detail;
 mod feet;
 mod get_up;
 mod ground;
 mod hit_bodies;
+mod hold;
 mod in_world;
 mod likeness;
 mod limp;
@@ -20,12 +22,16 @@ mod prepare;
 mod recognise;
 mod save;
 mod show;
+mod size;
+mod stumble;
 mod travel;
 mod walk;
 
 pub(crate) use limp::{STILL_TIME, is_still, is_sunk, touches_world};
 
 pub use def::{AfterSettling, CharacterDef, GettingReady, Locomotion, MotionSet, Opening};
+pub use detail::{Detail, Distances};
+pub use hold::Grip;
 pub use in_world::{Blow, HitBodies, InWorld, Toughness};
 pub use moves::MotionError;
 pub use powered::{Part, Preset};
@@ -39,9 +45,9 @@ use in_world::Presence;
 use limp::Stillness;
 use prepare::Preparation;
 use show::Shown;
-use sinew_anim::{Animator, Inertia, LocalTransform, Pose};
+use sinew_anim::{Animator, FiredEvent, Inertia, LocalTransform, Pose};
 use sinew_math::{Affine, Transform, Vec3};
-use sinew_physics::{Velocity, World};
+use sinew_physics::{BodyId, Velocity, World};
 use std::sync::Arc;
 
 /// What decides the character's pose.
@@ -80,6 +86,36 @@ pub enum Event {
     Flinched {
         /// Index of the struck body in the definition.
         body: usize,
+    },
+    /// Its limb is as the clips have it again.
+    Recovered,
+    /// Muscles and pins hold it from now on.
+    Powered,
+    /// A moment of a clip came by that decides its pose ([`MotionSet::events`]); the name is [`AnimationSet::event`](sinew_anim::AnimationSet::event) of
+    /// [`CharacterDef::set`].
+    Clip(FiredEvent),
+    /// One of its bodies began or stopped to touch a body that is not its own: where [`InWorld::tells_contacts`] says so.
+    Contact {
+        /// Index of its body in the definition.
+        body: usize,
+        /// The other.
+        other: BodyId,
+        /// False: they parted.
+        begins: bool,
+    },
+    /// It let go of what one of its bodies held, or that was torn off.
+    LetGo {
+        /// Index of its body in the definition.
+        body: usize,
+        /// What was held.
+        held: BodyId,
+    },
+    /// A push would have it over: it begins to step.
+    Stumbled,
+    /// Its steps caught it; its feet are as its clips have them again.
+    Caught {
+        /// Number of steps beside those that only brought its feet home.
+        steps: u32,
     },
     /// Its bodies took over.
     WentLimp,
@@ -136,6 +172,8 @@ pub struct Character {
     stillness: Stillness,
     preparation: Preparation,
     events: Vec<Event>,
+    /// Number of events that were there at the end of the last update.
+    told: usize,
     physical: Physical,
     /// How what neither bodies nor clips move came to rest when the bodies took over.
     lingering: Inertia,
@@ -195,6 +233,7 @@ impl Character {
             stillness: Stillness::default(),
             preparation: Preparation::default(),
             events: Vec::new(),
+            told: 0,
             physical: Physical::default(),
             lingering: Inertia::default(),
             scratch: Scratch::default(),
@@ -249,7 +288,8 @@ impl Character {
         &mut self.animator
     }
 
-    /// What happened since the last [`update`](Self::update) began, in order.
+    /// What happened in the last [`update`](Self::update) and since the one before it ended, in order, and what calls have brought about
+    /// since. Who reads it after each update, and only then, is told of everything exactly once.
     pub fn events(&self) -> &[Event] {
         &self.events
     }
@@ -259,8 +299,18 @@ impl Character {
     /// # Panics
     /// If the world is not the one that the character is in.
     pub fn update(&mut self, world: &mut World) {
-        self.events.clear();
+        self.events.drain(..self.told);
         self.keep_shown();
+        self.note_contacts(world);
+        self.mind_holds(world);
+        if !self.is_frozen() {
+            self.follow(world);
+            self.settle_detail(world);
+        }
+        self.told = self.events.len();
+    }
+
+    fn follow(&mut self, world: &mut World) {
         match self.state {
             State::Limp => self.lie(world),
             State::Preparing => self.go_on_preparing(world),

@@ -78,7 +78,7 @@ impl Moves {
         let mut clips = Vec::new();
         for (index, clip) in motions.clips.iter().enumerate() {
             let is_looped = motions.looped == Some(index);
-            let played = match (is_looped && motions.locomotion == Locomotion::ByClip)
+            let mut played = match (is_looped && motions.locomotion == Locomotion::ByClip)
                 .then(|| travelling(def, clip))
                 .flatten()
             {
@@ -91,6 +91,7 @@ impl Moves {
                     played
                 }
             };
+            played.events = events_of(motions, index);
             clips.push(set.add_clip(played));
         }
         let landmarks = Landmarks::new(&def.ragdoll);
@@ -102,12 +103,22 @@ impl Moves {
             get_ups.push(GetUp { clip, id: clips[clip], starts });
             let image = mirrored(def, &mirror, &take);
             let starts = self::starts(def, &landmarks, &image);
-            let id = set.add_clip(built(def, &image.to_clip(&def.rig, &motions.clips[clip].name))?);
+            let mut mirrored = built(def, &image.to_clip(&def.rig, &motions.clips[clip].name))?;
+            mirrored.events = events_of(motions, clip);
+            let id = set.add_clip(mirrored);
             get_ups.push(GetUp { clip, id, starts });
         }
         let upright = stance(&def.rig, def.mapping(), &landmarks, &first_pose(def, motions));
         Ok(Self { set, clips, get_ups, landmarks, upright })
     }
+}
+
+/// Moments of a clip, in order of time.
+fn events_of(motions: &MotionSet, clip: usize) -> Vec<sinew_anim::Event> {
+    let own = motions.events.iter().filter(|(of, _)| *of == clip).map(|(_, event)| event.clone());
+    let mut events: Vec<sinew_anim::Event> = own.collect();
+    events.sort_by(|a, b| a.time.total_cmp(&b.time));
+    events
 }
 
 fn built(def: &CharacterDef, clip: &Clip) -> Result<AnimatedClip, MotionError> {

@@ -1,6 +1,6 @@
 //! Bodies between clips and physics: each led, pinned, held by muscles or limp, while clips and mover go on.
 
-use super::{Character, State};
+use super::{Character, Event, State};
 use crate::drive::{DriveMode, Drives, Muscle, Pin};
 use crate::ragdoll::Ragdoll;
 use sinew_math::{Transform, Vec3};
@@ -58,6 +58,7 @@ impl Character {
                 self.drives.set_all(DriveMode::Keyed, RETURNS);
                 self.flinching = 6.0 * RETURNS;
                 self.state = State::Flinching;
+                self.stumble(world);
             }
             (Preset::Animated, State::Limp | State::Preparing) => self.get_up(world),
             (Preset::Animated, _) => {}
@@ -74,9 +75,16 @@ impl Character {
                     let pin = self.powered_pin(body, gravity);
                     self.drives.set(body, DriveMode::Pinned(Muscle::ALIVE, pin), RETURNS);
                 }
-                self.state = State::Powered;
+                self.become_powered();
                 self.drive_bodies(world);
             }
+        }
+    }
+
+    fn become_powered(&mut self) {
+        if self.state != State::Powered {
+            self.state = State::Powered;
+            self.events.push(Event::Powered);
         }
     }
 
@@ -108,7 +116,7 @@ impl Character {
             self.take_bodies(world, DriveMode::Keyed);
         }
         if matches!(self.state, State::Animated | State::Flinching) {
-            self.state = State::Powered;
+            self.become_powered();
         }
         match part {
             Part::All => self.drives.set_all(mode, half_life),
@@ -179,6 +187,7 @@ impl Character {
     /// Goes on for a step while clips and physics share the bodies.
     pub(super) fn go_on_powered(&mut self, world: &mut World) {
         self.animate(world);
+        let in_vain = self.stumble(world);
         let dt = world.def().dt();
         let ragdoll = self.ragdoll.as_ref().expect("a powered character has bodies");
         let mut resting = core::mem::take(&mut self.scratch.pose);
@@ -188,12 +197,13 @@ impl Character {
         let (mapping, bodies) = (self.def.mapping(), &self.scratch.after);
         self.physical.pose_over(mapping, &self.def.rig, &resting, place, bodies, &mut self.pose);
         self.scratch.pose = resting;
-        if self.falls() || self.state == State::Powered && self.is_toppled(world) {
+        if self.falls() || in_vain || self.state == State::Powered && self.is_toppled(world) {
             return self.go_limp(world);
         }
         if self.state == State::Flinching && self.come_back(dt) {
             self.leave_bodies(world);
             self.state = State::Animated;
+            self.events.push(Event::Recovered);
             self.lead_bodies(world);
         } else {
             self.drive_bodies(world);

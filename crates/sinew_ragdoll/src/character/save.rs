@@ -1,10 +1,13 @@
 //! A character's own state, beside the world's snapshot.
 
+use super::detail::Detail;
 use super::feet::Planting;
 use super::get_up::Rising;
+use super::hold::Hold;
 use super::in_world::Presence;
 use super::limp::Stillness;
 use super::prepare::Preparation;
+use super::stumble::Stumble;
 use super::{Character, Earlier, State};
 use crate::drive::Drives;
 use crate::ragdoll::Ragdoll;
@@ -13,7 +16,7 @@ use sinew_math::{ReadError, Reader, Writer};
 use sinew_physics::{BodyId, JointId, MoverId};
 
 /// First bytes; the last is the version.
-const MAGIC: &[u8; 8] = b"sinew-c\x03";
+const MAGIC: &[u8; 8] = b"sinew-c\x04";
 /// Bit of a state: the character has its share of a world.
 const IN_WORLD: u8 = 0x80;
 /// Bytes of a local transform.
@@ -131,6 +134,7 @@ impl Character {
         }
         self.keep_shown();
         self.events.clear();
+        self.told = 0;
         self.scratch.posed.clear();
         Ok(())
     }
@@ -175,6 +179,18 @@ impl Presence {
         w.vec3(self.velocity);
         [self.yaw, self.pace, self.air, self.over].into_iter().for_each(|x| w.f32(x));
         w.bool(self.falls);
+        w.u8(self.detail as u8);
+        w.count(self.holds.len());
+        for &Hold { held, joint, body, drops } in &self.holds {
+            w.u64(held.to_bits());
+            w.u64(joint.to_bits());
+            w.u32(body);
+            w.bool(drops);
+        }
+        w.bool(self.stumble.is_some());
+        if let Some(stumble) = &self.stumble {
+            stumble.save(w);
+        }
     }
 
     fn load(r: &mut Reader<'_>, most: usize) -> Result<Self, ReadError> {
@@ -197,6 +213,22 @@ impl Presence {
         (presence.yaw, presence.pace) = (r.f32()?, r.f32()?);
         (presence.air, presence.over) = (r.f32()?, r.f32()?);
         presence.falls = r.bool()?;
+        presence.detail = match r.u8()? {
+            0 => Detail::Frozen,
+            1 => Detail::Keyed,
+            2 => Detail::HitBodies,
+            3 => Detail::Full,
+            _ => return Err(r.error("unknown detail of a character")),
+        };
+        for _ in 0..r.count(21)? {
+            let (held, joint) = (BodyId::from_bits(r.u64()?), JointId::from_bits(r.u64()?));
+            let (body, drops) = (r.u32()?, r.bool()?);
+            if body as usize >= most {
+                return Err(r.error("is of another character"));
+            }
+            presence.holds.push(Hold { held, joint, body, drops });
+        }
+        presence.stumble = if r.bool()? { Some(Stumble::load(r)?) } else { None };
         Ok(presence)
     }
 }

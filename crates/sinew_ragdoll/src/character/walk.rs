@@ -2,7 +2,7 @@
 
 use super::{Character, State};
 use sinew_anim::{ClipId, MotionTrack, TrackDef, TrackId, smoothstep};
-use sinew_math::{Rotation, Transform, Vec3, clamp, max, normalize_or, trig};
+use sinew_math::{Rotation, Transform, Vec3, clamp, max, min, normalize_or, trig};
 use sinew_physics::World;
 
 /// Share of what a step of a stair lifts it that is left after a second's part: the eye follows within a few frames, 1/s.
@@ -15,6 +15,8 @@ const STEEPEST: f32 = 1.2;
 const PACE: f32 = 10.0;
 /// Speed below which it begins to stand, m/s.
 const STANDS: f32 = 0.35;
+/// Acceleration of what stands on its own feet, m/s²: shoes give way beyond it.
+const PICKS_UP: f32 = 5.0;
 /// Most times its own speed that a clip is played.
 const FASTEST: f32 = 2.0;
 
@@ -90,6 +92,7 @@ impl Character {
         let Some(presence) = &mut self.presence else { return };
         presence.before.iter_mut().for_each(|pose| *pose = moved * *pose);
         (presence.air, presence.over, presence.velocity) = (0.0, 0.0, Vec3::ZERO);
+        presence.stumble = None;
         if let Some(mover) = presence.mover {
             let skin = world.mover(mover).def().skin;
             world.set_mover_position(mover, world_from_character.translation + Vec3::Y * skin);
@@ -136,21 +139,37 @@ impl Character {
 
     /// Tells the mover where to go in the next step, and lets it grow to its height.
     pub(super) fn steer(&mut self, world: &mut World) {
-        let step = self.step_of(&self.animator).translation;
-        let dt = world.def().dt();
-        let rotation = self.world_from_character.rotation;
-        let Some(presence) = &self.presence else { return };
-        let Some(mover) = presence.mover else { return };
-        let stands = self.state != State::GettingUp;
-        let walk = match presence.wish.filter(|_| stands) {
-            Some(wish) => wish,
-            None => rotation * step / dt * Vec3::new(1.0, 0.0, 1.0),
+        let Some(mover) = self.mover() else { return };
+        let walk = match self.stumbling() {
+            Some(stumble) => stumble.velocity,
+            None => self.reachable_walk(world),
         };
         world.set_mover_walk(mover, if walk.is_finite() { walk } else { Vec3::ZERO });
+        let stands = self.state != State::GettingUp;
         let height = self.def.in_world.mover.as_ref().map_or(0.0, |mover| mover.height);
         if world.mover(mover).def().height < height && (stands || self.lies_still() < 0.5) {
             world.set_mover_height(mover, height);
         }
+    }
+
+    /// [`wanted_walk`](Self::wanted_walk), or as near to it as what stands on its own feet gets within a step.
+    fn reachable_walk(&self, world: &World) -> Vec3 {
+        let dt = world.def().dt();
+        let wish = self.wanted_walk(dt);
+        let Some(presence) = self.presence.as_ref().filter(|_| self.steps()) else { return wish };
+        let ground = presence.mover.and_then(|mover| world.mover_ground(mover));
+        let Some(ground) = ground else { return wish };
+        let now = (presence.velocity - ground.velocity) * Vec3::new(1.0, 0.0, 1.0);
+        let change = wish - now;
+        now + change * min(PICKS_UP * dt / max(change.length(), 1e-6), 1.0)
+    }
+
+    /// Velocity over the ground at which it is to go in a step of `dt` seconds: as it was told, or as its clips go.
+    pub(super) fn wanted_walk(&self, dt: f32) -> Vec3 {
+        let stands = self.state != State::GettingUp;
+        let step = self.step_of(&self.animator).translation;
+        let wish = self.presence.as_ref().and_then(|presence| presence.wish).filter(|_| stands);
+        wish.unwrap_or(self.world_from_character.rotation * step / dt * Vec3::new(1.0, 0.0, 1.0))
     }
 
     /// Plays the looped clip as fast as the character goes, and lets it stand where it does not.

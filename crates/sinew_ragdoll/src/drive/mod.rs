@@ -195,6 +195,12 @@ impl Drives {
         }
     }
 
+    /// Leaves a body no weaker than that, share of its strength.
+    pub(crate) fn steady(&mut self, body: usize, weakness: f32) {
+        let drive = &mut self.drives[body];
+        drive.weakness = sinew_math::min(drive.weakness, weakness);
+    }
+
     /// Muscles and pins weaken where an impulse of `impulse` N·s struck, and half as much one joint on, and so on. An impulse
     /// that would move the whole ragdoll at 0.2 m/s takes all strength there. The push itself is the caller's.
     pub fn hit(&mut self, def: &RagdollDef, body: usize, impulse: f32) {

@@ -72,8 +72,15 @@ fn falls_lies_still_gets_up_and_walks_on() {
     let events = run_until(&mut world, &mut character, 12.0, |c| c.state() == State::Animated);
     let needed = events.iter().filter(|(_, event)| !matches!(event, Event::Preparing { .. }));
     let kinds: Vec<_> = needed.map(|(_, event)| core::mem::discriminant(event)).collect();
-    let expected =
-        [Event::Touched, Event::Settled { since: 0.0 }, Event::GettingUp { clip: None }, Event::Up];
+    // What the hit brought about is told by the update after it.
+    let expected = [
+        Event::WentLimp,
+        Event::Hit { body: 0 },
+        Event::Touched,
+        Event::Settled { since: 0.0 },
+        Event::GettingUp { clip: None },
+        Event::Up,
+    ];
     assert_eq!(kinds, expected.map(|event| core::mem::discriminant(&event)), "{events:?}");
     assert_eq!(world.body_ids().count(), 1, "its bodies are gone");
     assert!(place_of(&character, "head").y > 1.3);

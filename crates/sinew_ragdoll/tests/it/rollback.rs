@@ -3,8 +3,8 @@
 use crate::actor::{floor, shared, walker};
 use sinew_math::hash::hash_bytes;
 use sinew_math::{Reader, Rotation, Transform, Vec3, Writer};
-use sinew_physics::{World, WorldDef};
-use sinew_ragdoll::{Character, CharacterDef, Preset, State};
+use sinew_physics::{BodyDef, BodyId, Shape, World, WorldDef};
+use sinew_ragdoll::{Character, CharacterDef, Detail, Grip, Preset, State};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -13,6 +13,7 @@ struct Game {
     def: Arc<CharacterDef>,
     world: World,
     cast: Vec<(u32, Character)>,
+    sword: BodyId,
 }
 
 /// Who there is, beside the bytes of a frame.
@@ -25,7 +26,9 @@ impl Game {
     fn new(def: &Arc<CharacterDef>) -> Self {
         let mut world = World::new(WorldDef::default());
         world.add_body(&floor());
-        Self { def: def.clone(), world, cast: Vec::new() }
+        let blade = Shape::Box { half_extents: Vec3::new(0.02, 0.02, 0.3) };
+        let sword = world.add_body(&BodyDef::dynamic(blade).at(Vec3::new(0.0, 1.0, -3.0)));
+        Self { def: def.clone(), world, cast: Vec::new(), sword }
     }
 
     fn actor(&mut self, name: u32) -> Option<(&mut World, &mut Character)> {
@@ -46,6 +49,13 @@ impl Game {
         let impulse =
             Rotation::from_axis_angle(Vec3::Y, frame as f32) * Vec3::Z * if hard { 80.0 } else { 8.0 };
         match frame % 45 {
+            5 => {
+                let detail = [Detail::Full, Detail::Keyed, Detail::Full, Detail::HitBodies];
+                if let Some((world, actor)) = self.actor((frame / 45) % 6) {
+                    actor.set_level_of_detail(world, detail[(frame / 45) as usize % 4]);
+                }
+            }
+            10 => self.hand_over(frame / 45),
             20 => {
                 if let Some((world, actor)) = self.actor((frame / 45) % 5) {
                     actor.hit(world, body, impulse);
@@ -66,6 +76,23 @@ impl Game {
         if frame % 400 == 399 {
             let (_, actor) = self.cast.remove(0);
             actor.despawn(&mut self.world);
+        }
+    }
+
+    /// Takes the sword from whoever has it and gives it to the next who has hands.
+    fn hand_over(&mut self, round: u32) {
+        let sword = self.sword;
+        for (_, actor) in &mut self.cast {
+            actor.release(&mut self.world, sword);
+        }
+        let armed = self.actor(round % 5).filter(|(_, actor)| !actor.bodies().is_empty());
+        if let Some((world, actor)) = armed {
+            actor.hold(
+                world,
+                "rightHand",
+                sword,
+                &Grip { drops: round.is_multiple_of(2), ..Grip::default() },
+            );
         }
     }
 
@@ -103,10 +130,15 @@ fn eight_frames_back_and_forth() {
     let def = shared(walker());
     let mut game = Game::new(&def);
     let (mut frames, mut hashes, mut states) = (Vec::new(), Vec::new(), BTreeSet::new());
+    let (mut held, mut stumbled) = (BTreeSet::new(), 0);
     for frame in 0..900 {
         frames.push(game.save());
         hashes.push(game.step(frame));
-        states.extend(game.cast.iter().map(|(_, actor)| format!("{:?}", actor.state())));
+        for (_, actor) in &game.cast {
+            states.insert(format!("{:?}", actor.state()));
+            held.extend((actor.held().count() > 0).then(|| format!("{:?}", actor.state())));
+            stumbled += u32::from(actor.stumbles());
+        }
         // Every 11 frames what came last is not believed.
         if frame % 11 == 10 {
             let from = frame + 1 - BACK;
@@ -122,4 +154,5 @@ fn eight_frames_back_and_forth() {
     let all =
         [State::Animated, State::Limp, State::Preparing, State::GettingUp, State::Flinching, State::Powered];
     assert_eq!(states.len(), all.len(), "each state was there: {states:?}");
+    assert!(held.len() >= 3 && stumbled > 20, "held in {held:?}, stumbled for {stumbled} frames");
 }

@@ -22,6 +22,7 @@ mod stand;
 
 mod air;
 mod arch;
+mod arena;
 mod ballistics;
 mod blasts;
 mod blending;
@@ -154,6 +155,7 @@ const REGISTRY: &[Scene] = &[
     surfaces::SENSORS,
     movers::COURSE,
     street::STREET,
+    arena::ARENA,
     impacts::ELASTIC_PAIRS,
     impacts::NEWTONS_CRADLE,
     impacts::BOUNCING_BALLS,

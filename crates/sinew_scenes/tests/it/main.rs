@@ -8,5 +8,6 @@ mod mjcf;
 mod mocap;
 mod motions;
 mod movers;
+mod room;
 mod scenes;
 mod scenes_repeat;

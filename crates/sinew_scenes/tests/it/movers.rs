@@ -1,11 +1,14 @@
 //! Movers in worlds: the cabin, a house of triangles, pieces of a dungeon.
 
+use crate::room::Room;
 use sinew::formats::{TriangleMesh, load_mesh};
 use sinew::math::trig::{cos, sin};
 use sinew::math::{Random, Rotation, Transform, Vec3};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::ray::Ray;
-use sinew::physics::{BodyDef, MoverDef, MoverId, OverlapWith, PenetrationOf, Probe, Shape, World, WorldDef};
+use sinew::physics::{
+    BodyDef, Hull, MoverDef, MoverId, OverlapWith, PenetrationOf, Probe, Shape, World, WorldDef,
+};
 use sinew_scenes::cabin::Site;
 use std::io::Write as _;
 use std::path::Path;
@@ -86,10 +89,35 @@ fn corners(level: &TriangleMesh) -> Vec<[Vec3; 3]> {
     level.triangles.iter().map(|triangle| triangle.map(|corner| level.positions[corner as usize])).collect()
 }
 
-/// Random walks from free places within `within`, at up to 50 m/s every other time: never inside of anything and never through.
+/// Lets a mover stand, and sends it to the farthest place to which there is room: the number of places, and where it is stuck. What slides off
+/// a rim on the way looks around again from where it is then. `None`: it has no ground.
+fn explore(world: &mut World, id: MoverId) -> Option<(usize, Result<(), String>)> {
+    const TRIES: usize = 3;
+    let (mut places, mut stuck) = (0, String::new());
+    for _ in 0..TRIES {
+        world.set_mover_walk(id, Vec3::ZERO);
+        for _ in 0..60 {
+            world.step();
+        }
+        if !world.mover(id).is_grounded() {
+            break;
+        }
+        let room = Room::around(world, id);
+        places = usize::max(places, room.len());
+        match room.walk(world, id) {
+            Ok(()) => return Some((places, Ok(()))),
+            Err([to, from]) => stuck = format!("at {}, from {from} to {to}", world.mover(id).position()),
+        }
+    }
+    (places > 0).then_some((places, Err(stuck)))
+}
+
+/// Random walks from free places within `within`, at up to 50 m/s every other time: never inside of anything, never through, and from
+/// where one ends it gets to the farthest place to which a flood fill finds room.
 fn wander(world: &mut World, triangles: &[[Vec3; 3]], within: &Aabb, seed: u64, count: usize) {
     let mut random = Random::new(seed);
     let mut deepest = 0.0_f32;
+    let (mut floods, mut places, mut stuck) = (0, 0, Vec::new());
     for walk in 0..count {
         let def = loop {
             let mut between = |axis: usize| random.range(within.min[axis], within.max[axis]);
@@ -120,15 +148,24 @@ fn wander(world: &mut World, triangles: &[[Vec3; 3]], within: &Aabb, seed: u64, 
                 (now - before).length() > 0.25 && blocked(before) && blocked(before + Vec3::Y * 0.4);
             assert!(!through, "walk {walk}: through something from {before} to {now}");
         }
+        if let Some((room, result)) = explore(world, id) {
+            (floods, places) = (floods + 1, places + room);
+            stuck.extend(result.err().map(|place| format!("walk {walk}: {place}")));
+        }
         world.remove_mover(id);
     }
-    println!("deepest {deepest} m in {count} walks");
+    println!(
+        "deepest {deepest} m in {count} walks; {floods} floods of {} places",
+        places / usize::max(floods, 1)
+    );
+    assert!(floods > count / 2 && places > 20 * floods, "{floods} floods, {places} places");
+    assert!(stuck.is_empty(), "{} of {floods} stuck: {stuck:#?}", stuck.len());
 }
 
 #[test]
 fn walks_in_and_around_the_cabin() {
     let within = Aabb { min: Vec3::new(-4.0, 0.05, -8.0), max: Vec3::new(4.0, 3.0, 4.0) };
-    wander(&mut cabin(), &[], &within, 1, walks(4_000));
+    wander(&mut cabin(), &[], &within, 1, walks(3_000));
 }
 
 #[test]
@@ -136,7 +173,7 @@ fn walks_in_the_house() {
     let Some(house) = level("house_2story_stairs.glb", 3.0) else { return };
     let mut within = bounds(&house);
     within.min.y = 0.05;
-    wander(&mut with_floor(&house), &corners(&house), &within, 2, walks(3_000));
+    wander(&mut with_floor(&house), &corners(&house), &within, 2, walks(2_500));
 }
 
 #[test]
@@ -157,7 +194,49 @@ fn walks_in_the_dungeon() {
         world.add_body(&body);
     }
     let within = Aabb { min: Vec3::new(-6.0, 0.05, -6.0), max: Vec3::new(6.0, 3.0, 6.0) };
-    wander(&mut world, &triangles, &within, 3, walks(3_000));
+    wander(&mut world, &triangles, &within, 3, walks(2_500));
+}
+
+/// Solids, turned at random, half in the floor or in the air, within four walls.
+fn clutter(random: &mut Random) -> World {
+    const HALF: f32 = 6.0;
+    let mut world = World::new(WorldDef::default());
+    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+    for (x, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+        let along = |share: f32| if share == 0.0 { HALF + 1.0 } else { 0.5 };
+        let half_extents = Vec3::new(along(x), 4.0, along(z));
+        let at = Vec3::new(x, 0.0, z) * (HALF + 0.5);
+        world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at(at));
+    }
+    for kind in 0..40 {
+        let size = random.range(0.1, 1.2);
+        let mut length = || size * random.range(0.2, 1.0);
+        let (a, b, c) = (length(), length(), length());
+        let shape = match kind % 4 {
+            0 => Shape::Box { half_extents: Vec3::new(a, b, c) },
+            1 => Shape::Cylinder { half_height: a, radius: b },
+            2 => Shape::Capsule { half_height: a, radius: b },
+            _ => {
+                let points: Vec<Vec3> = (0..12).map(|_| (random.rotation() * Vec3::X) * size).collect();
+                Shape::Hull(Hull::new(&points).expect("random points span a solid").into())
+            }
+        };
+        let mut place = || random.range(-HALF, HALF);
+        let (x, z) = (place(), place());
+        let mut def = BodyDef::fixed(shape).at(Vec3::new(x, random.range(0.0, 1.5), z));
+        def.rotation = random.rotation();
+        world.add_body(&def);
+    }
+    world
+}
+
+#[test]
+fn walks_in_clutter() {
+    let within = Aabb { min: Vec3::new(-5.5, 0.05, -5.5), max: Vec3::new(5.5, 2.5, 5.5) };
+    let mut random = Random::new(4);
+    for seed in 0..walks(2_000) as u64 / 20 {
+        wander(&mut clutter(&mut random), &[], &within, 100 + seed, 20);
+    }
 }
 
 /// Out of the door, down the stairs, and back up, at speeds from a stroll to a sprint.

@@ -151,6 +151,7 @@ scenes!(
         sensors,
         mover_course,
         street,
+        arena,
         elastic_pairs,
         newtons_cradle,
         bouncing_balls,

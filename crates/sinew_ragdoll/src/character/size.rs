@@ -1,0 +1,76 @@
+//! A kind of character at another size.
+
+use super::{CharacterDef, HitBodies, Locomotion, MotionSet, Toughness};
+use crate::def::RagdollDef;
+use crate::doctor::scaled;
+use sinew_math::{Affine, Transform};
+use sinew_physics::Yields;
+
+impl CharacterDef {
+    /// The same kind of character, larger by `factor` (1: as it is): a child, a giant. Lengths and the speed of its walk grow by it, masses and forces by its
+    /// third power, torques by its fourth. One definition serves all characters of that size.
+    ///
+    /// # Panics
+    /// If the factor is not above 0 and finite.
+    pub fn scaled(&self, factor: f32) -> Self {
+        assert!(factor > 0.0 && factor < f32::INFINITY, "a factor of a size is above 0 and finite");
+        let bind: Vec<Affine> =
+            self.bind().iter().map(|&bind| self.mapping().character_from_model().inverse() * bind).collect();
+        let mut def = Self::new(self.rig.clone(), larger(&self.ragdoll, factor), &bind);
+        def.after_settling = self.after_settling;
+        def.getting_ready = self.getting_ready;
+        def.falling = self.falling;
+        def.patience = self.patience;
+        def.flesh = self.flesh;
+        def.flesh.material.rolling *= factor;
+        def.speed_bound = self.speed_bound;
+        def.in_world = self.in_world.clone();
+        let cube = factor * factor * factor;
+        if let Some(mover) = &mut def.in_world.mover {
+            mover.radius *= factor;
+            mover.height *= factor;
+            mover.step_height *= factor;
+            mover.skin *= factor;
+            mover.mass *= cube;
+            mover.push_force *= cube;
+            mover.lets_pass *= cube;
+        }
+        if let HitBodies::Present(Yields { max_force, max_impulse }) = &mut def.in_world.hit_bodies {
+            *max_force *= cube;
+            *max_impulse *= cube;
+        }
+        if let Toughness::Impulse(least) = &mut def.in_world.toughness {
+            *least *= cube;
+        }
+        def.in_world.feels *= cube;
+        let mut motions: MotionSet = self.motions().clone();
+        if let Locomotion::Forward { speed } = &mut motions.locomotion {
+            *speed *= factor;
+        }
+        def.set_motions(motions).expect("its clips could be played before");
+        def
+    }
+}
+
+fn larger(def: &RagdollDef, factor: f32) -> RagdollDef {
+    let (square, mut def) = (factor * factor, def.clone());
+    let cube = square * factor;
+    let place = |at: Transform| Transform { translation: at.translation * factor, ..at };
+    for body in &mut def.bodies {
+        body.character_from_body = place(body.character_from_body);
+        body.shape = scaled(&body.shape, factor);
+        body.mass.mass *= cube;
+        body.mass.center *= factor;
+        body.mass.inertia = body.mass.inertia * (cube * square);
+    }
+    for joint in &mut def.joints {
+        joint.frame_parent = place(joint.frame_parent);
+        joint.frame_child = place(joint.frame_child);
+        joint.friction_torque *= square * square;
+    }
+    def.total_mass *= cube;
+    def.height *= factor;
+    def.unit_scale *= factor;
+    def.character_from_model = place(def.character_from_model);
+    def
+}

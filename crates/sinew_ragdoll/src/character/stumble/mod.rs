@@ -1,0 +1,481 @@
+//! Steps with which a powered character that was pushed catches itself.
+//!
+//! A push gives its whole body a velocity. As long as the point at which that would come to rest lies over its feet its muscles and pins take
+//! it up. Beyond, it begins to stumble: its mover goes on as a pendulum goes that stands on the feet that are down, and a foot swings to where
+//! it stops that, again and again. Once it is as fast as it was to be, each foot takes a step home, to where the clips have it. Its bodies are drawn to
+//! all that by the muscles and pins that they have; in their pose only the legs are moved, by inverse kinematics.
+
+mod step;
+mod support;
+
+use super::{Character, CharacterDef, Event, State, ground};
+use sinew_anim::ik::hold_feet;
+use sinew_anim::{LocalTransform, local_to_model, smoothstep};
+use sinew_math::{ReadError, Reader, Transform, Vec3, Writer, max, min, trig};
+use sinew_physics::World;
+use step::{DROP_TIME, Pendulum, Print, STEP_TIMES};
+use support::{Support, level};
+
+/// Seconds of a step that only brings a foot home.
+const HOME_TIME: f32 = 0.25;
+/// Share of a step until which its goal may change.
+const AIMS: f32 = 0.7;
+/// Height of a step over that of the body.
+const LIFT: f32 = 0.05;
+/// Half the width of a sole, and how far the pelvis is lowered at most, over the height of the body.
+const RIM: f32 = 0.023;
+const SINKS: f32 = 0.12;
+/// A capture point that is farther than this from the feet asks for a step, metres; and where none has been taken and nothing was told
+/// of a push, farther than this.
+const MARGIN: f32 = 0.01;
+const UNTOLD: f32 = 0.08;
+/// Velocity beside the one that it is to have at which it is caught, m/s, and share of that one besides.
+const CALM: f32 = 0.15;
+const GAIT: f32 = 0.35;
+/// Metres of a place missed that a second of a quicker step is worth.
+const HURRY: f32 = 0.2;
+/// Metres of a place missed that a metre is worth by which the foot that stands is left behind too far.
+const STRAINS: f32 = 3.0;
+/// A foot in the air that comes down farther than this from where it should, over the height of the body, is put down for the other to step.
+const HOPELESS: f32 = 0.04;
+/// Way of a foot over which it is lifted all of [`LIFT`], metres.
+const WIDE: f32 = 0.2;
+/// Steps of the world after which the mover is as fast as it was told to be.
+const FOLLOWS: u32 = 4;
+/// Rate at which what was caught takes on the velocity that it is to have, 1/s.
+const RESUMES: f32 = 10.0;
+/// Ankle above its height on the floor at which a foot is in the air, metres.
+const AIRBORNE: f32 = 0.04;
+/// Seconds without ground after which there is nothing to step on.
+const FLIES: f32 = 0.15;
+/// Ground farther up or down than this is nothing to step on, metres.
+const HIGHEST: f32 = 0.4;
+
+/// Hold on a foot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Footing {
+    /// Its clips.
+    Free,
+    /// The ground: its ankle in the world.
+    Planted(Transform),
+    /// On its way for `time` seconds of `lasts`. `home`: to where its clips have it.
+    Swinging { from: Transform, to: Transform, time: f32, lasts: f32, home: bool },
+}
+
+/// A stumble as it goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stumble {
+    /// Velocity over the ground, level, m/s.
+    pub velocity: Vec3,
+    /// Velocity of the ground, m/s.
+    floor: Vec3,
+    feet: [Footing; 2],
+    steps: u32,
+    /// Steps of the world.
+    age: u32,
+    /// It goes as it is to; its feet go home.
+    caught: bool,
+}
+
+/// Stand in which its clips have it.
+struct Stand {
+    center: Vec3,
+    ankles: [Transform; 2],
+    floor: Vec3,
+    wish: Vec3,
+    omega: f32,
+}
+
+impl Character {
+    /// True while it steps to catch itself.
+    pub fn stumbles(&self) -> bool {
+        self.stumbling().is_some()
+    }
+
+    pub(super) fn stumbling(&self) -> Option<&Stumble> {
+        self.presence.as_ref()?.stumble.as_ref()
+    }
+
+    /// True if it catches itself from pushes by steps.
+    pub(super) fn steps(&self) -> bool {
+        self.state == State::Powered
+            && self.def.in_world.most_steps > 0
+            && self.def.feet().is_some()
+            && self.mover().is_some()
+    }
+
+    /// Takes up an impulse that its bodies got, N·s.
+    pub(super) fn shove(&mut self, world: &mut World, impulse: Vec3) {
+        if !self.steps() {
+            return;
+        }
+        let Some(stand) = self.clips_stand(world) else { return };
+        let push = level(impulse) / self.def.ragdoll.total_mass;
+        if let Some(stumble) = self.presence.as_mut().and_then(|presence| presence.stumble.as_mut()) {
+            stumble.velocity += push;
+            (stumble.age, stumble.steps) = (0, 0);
+            stumble.regain(&stand.ankles);
+        } else if self.is_off(&stand, push / stand.omega, MARGIN) {
+            self.begin_stumble(&stand, push);
+        }
+        self.steer(world);
+    }
+
+    /// Goes on for a step of the world; true if it can no longer catch itself.
+    pub(super) fn stumble(&mut self, world: &World) -> bool {
+        let stand = if self.steps() { self.clips_stand(world) } else { None };
+        let (Some(stand), Some(presence)) = (stand, self.presence.as_mut()) else {
+            let steps = self.steps();
+            if let Some(presence) = self.presence.as_mut().filter(|presence| !steps || presence.air > FLIES) {
+                presence.stumble = None;
+            }
+            return false;
+        };
+        let Some(mut stumble) = presence.stumble.take() else {
+            let sway = self.sway(world, &stand);
+            if self.is_off(&stand, sway, UNTOLD) {
+                self.begin_stumble(&stand, sway * stand.omega);
+            }
+            return false;
+        };
+        stumble.age += 1;
+        stumble.floor = stand.floor;
+        if stumble.age >= FOLLOWS {
+            // Walls stop it.
+            stumble.velocity = level(presence.velocity - stand.floor);
+        }
+        let dt = world.def().dt();
+        stumble.carry(dt);
+        let falls = if stumble.caught {
+            stumble.go_home(&stand, dt);
+            false
+        } else {
+            self.catch(world, &stand, &mut stumble)
+        };
+        let is_over = stumble.caught && stumble.feet == [Footing::Free; 2];
+        if is_over {
+            self.events.push(Event::Caught { steps: stumble.steps });
+        }
+        if let Some(presence) = &mut self.presence {
+            presence.stumble = (!is_over).then_some(stumble);
+        }
+        falls
+    }
+
+    fn begin_stumble(&mut self, stand: &Stand, push: Vec3) {
+        let Some(feet) = self.def.feet() else { return };
+        let Some(presence) = &mut self.presence else { return };
+        let air = presence.over + self.world_from_character.translation.y + feet.ankle_height + AIRBORNE;
+        let footing = |ankle: Transform| {
+            if ankle.translation.y < air {
+                return Footing::Planted(ankle);
+            }
+            Footing::Swinging { from: ankle, to: ankle, time: 0.0, lasts: STEP_TIMES[0], home: false }
+        };
+        presence.stumble = Some(Stumble {
+            velocity: level(presence.velocity - stand.floor) + push,
+            floor: stand.floor,
+            feet: stand.ankles.map(footing),
+            steps: 0,
+            age: 0,
+            caught: false,
+        });
+        self.events.push(Event::Stumbled);
+    }
+
+    /// Lets it fall over as far as its feet do not hold it, and swings them to where they will. True if that is in vain.
+    fn catch(&self, world: &World, stand: &Stand, stumble: &mut Stumble) -> bool {
+        let dt = world.def().dt();
+        let mut body = self.pendulum(stand, stumble.velocity);
+        let support = self.support(stumble.feet.map(Footing::planted));
+        let on = support.nearest(body.brake());
+        stumble.velocity += body.pushed(on, dt);
+        body.velocity = stumble.velocity;
+        for foot in 0..2 {
+            self.aim(world, &body, stumble, foot);
+        }
+        if stumble.feet.iter().any(|foot| matches!(foot, Footing::Swinging { .. })) {
+            return false;
+        }
+        let outside = support.outside(body.capture());
+        let off = (body.velocity - body.wish).length();
+        // Who walks is fastest as a foot comes down.
+        let calm = CALM + GAIT * body.wish.length();
+        if support.outside(body.center + body.velocity / body.omega - body.goes_on()) <= MARGIN && off < calm
+        {
+            stumble.caught = true;
+        } else if outside > MARGIN {
+            if stumble.steps >= self.def.in_world.most_steps {
+                return true;
+            }
+            self.begin_step(world, &body, stumble);
+        }
+        false
+    }
+
+    /// Has a foot that is on its way come down where it does most, and puts it down at once where the other one must step.
+    fn aim(&self, world: &World, body: &Pendulum, stumble: &mut Stumble, foot: usize) {
+        let Footing::Swinging { from, to, time, lasts, home: false } = stumble.feet[foot] else { return };
+        let Some(stance) = stumble.feet[1 - foot].planted().filter(|_| time < AIMS * lasts) else { return };
+        let mut print = self.print(body, foot, to, stance, lasts - time);
+        let mut lasts = lasts;
+        if from == to {
+            // In the air as it was pushed.
+            print = self.print(body, foot, from, stance, lasts - time);
+            if print.miss > HOPELESS * body.height {
+                lasts = DROP_TIME;
+                print = self.print(body, foot, from, stance, lasts - time);
+            }
+        }
+        let at = print.at;
+        let to = self.tread(world, foot, at);
+        stumble.feet[foot] = Footing::Swinging { from, to, time, lasts, home: false };
+    }
+
+    /// Swings the foot that gets nearer to where one is needed.
+    fn begin_step(&self, world: &World, body: &Pendulum, stumble: &mut Stumble) {
+        let plans = (0..2).flat_map(|foot| STEP_TIMES.map(|lasts| (foot, lasts)));
+        let plans = plans.filter_map(|(foot, lasts)| {
+            let (from, stance) = (stumble.feet[foot].planted()?, stumble.feet[1 - foot].planted()?);
+            let print = self.print(body, foot, from, stance, lasts);
+            let cost = print.miss + STRAINS * print.strain + HURRY * (STEP_TIMES[0] - lasts);
+            Some((cost, foot, from, print.at, lasts))
+        });
+        let Some((_, foot, from, at, lasts)) = plans.reduce(|a, b| if b.0 < a.0 { b } else { a }) else {
+            return;
+        };
+        let to = self.tread(world, foot, at);
+        stumble.feet[foot] = Footing::Swinging { from, to, time: 0.0, lasts, home: false };
+    }
+
+    fn print(&self, body: &Pendulum, foot: usize, from: Transform, stance: Transform, seconds: f32) -> Print {
+        let other = 1 - foot;
+        let on = self.support([0, 1].map(|foot| (foot == other).then_some(stance))).nearest(body.brake());
+        let middle = |ankle: Transform, foot: usize| {
+            let sole = self.sole(ankle, foot);
+            level(sole[0] + sole[1]) * 0.5
+        };
+        body.print(foot, middle(from, foot), middle(stance, other), on, seconds)
+    }
+
+    /// The ankle of a foot whose sole is to come down around a place.
+    fn tread(&self, world: &World, foot: usize, at: Vec3) -> Transform {
+        let def = &self.def;
+        let feet = def.feet().expect("it stands on feet");
+        let place = self.world_from_character;
+        let ankle = def.bind()[feet.legs[foot].end].to_rigid();
+        let rotation = (place.rotation * ankle.rotation).normalize();
+        let translation = at - level(rotation * feet.balls[foot]) * 0.5;
+        let floor = place.translation.y;
+        let own = self.bodies();
+        let over = Vec3::new(at.x, floor, at.z);
+        let ground = ground::below(world, over, HIGHEST, Some(own)).filter(|y| (y - floor).abs() < HIGHEST);
+        Transform::new(translation + Vec3::Y * (ground.unwrap_or(floor) + feet.ankle_height), rotation)
+    }
+
+    /// Heel and ball of a foot, by its ankle.
+    fn sole(&self, ankle: Transform, foot: usize) -> [Vec3; 2] {
+        let feet = self.def.feet().expect("it stands on feet");
+        [ankle.translation, ankle.point(feet.balls[foot])]
+    }
+
+    /// Ground under the feet that are down, left and right, by their ankles.
+    fn support(&self, ankles: [Option<Transform>; 2]) -> Support {
+        let mut support = Support::new(RIM * self.def.ragdoll.height);
+        for (foot, ankle) in ankles.into_iter().enumerate() {
+            if let Some(ankle) = ankle {
+                support.add(self.sole(ankle, foot));
+            }
+        }
+        support
+    }
+
+    fn pendulum(&self, stand: &Stand, velocity: Vec3) -> Pendulum {
+        Pendulum {
+            center: stand.center,
+            velocity,
+            wish: stand.wish,
+            omega: stand.omega,
+            heading: self.world_from_character.rotation,
+            height: self.def.ragdoll.height,
+        }
+    }
+
+    /// True if a capture point so far from the centre of mass leaves the feet as its clips have them.
+    fn is_off(&self, stand: &Stand, away: Vec3, margin: f32) -> bool {
+        let support = self.support(stand.ankles.map(Some));
+        let center = support.nearest(stand.center);
+        support.outside(center + away) > margin
+    }
+
+    /// Stand in which its clips have it, if they do.
+    fn clips_stand(&mut self, world: &World) -> Option<Stand> {
+        let mover = self.mover()?;
+        let ground = world.mover_ground(mover)?;
+        let def = self.def.clone();
+        let feet = def.feet()?;
+        let place = self.world_from_character;
+        let mut wanted = core::mem::take(&mut self.scratch.wanted);
+        wanted.clear();
+        wanted.extend(self.animator.pose().iter());
+        let mut bodies = core::mem::take(&mut self.scratch.before);
+        self.bodies_of(&wanted, place, &mut bodies);
+        let weighed = bodies.iter().zip(&def.ragdoll.bodies);
+        let sum =
+            weighed.fold(Vec3::ZERO, |sum, (pose, body)| sum + pose.point(body.mass.center) * body.mass.mass);
+        (self.scratch.wanted, self.scratch.before) = (wanted, bodies);
+        let center = sum / def.ragdoll.total_mass;
+        let root = def.mapping().world_from_model(place);
+        let ankle = |foot: usize| (root * self.scratch.model[feet.legs[foot].end]).to_rigid();
+        let height = max(center.y - place.translation.y, 0.2 * def.ragdoll.height);
+        Some(Stand {
+            center,
+            ankles: [ankle(0), ankle(1)],
+            floor: ground.velocity,
+            wish: level(self.wanted_walk(world.def().dt())),
+            omega: (world.def().gravity.length() / height).sqrt(),
+        })
+    }
+
+    /// Capture point of its bodies beside the one of its clips: what pushes it without telling.
+    fn sway(&self, world: &World, stand: &Stand) -> Vec3 {
+        let (Some(ragdoll), Some(presence)) = (&self.ragdoll, &self.presence) else { return Vec3::ZERO };
+        let (mut place, mut momentum) = (Vec3::ZERO, Vec3::ZERO);
+        for (&id, body) in ragdoll.bodies.iter().zip(&self.def.ragdoll.bodies) {
+            place += world.center_of_mass(id) * body.mass.mass;
+            momentum += world.velocity(id).linear * body.mass.mass;
+        }
+        let mass = self.def.ragdoll.total_mass;
+        let velocity = momentum / mass - presence.velocity;
+        level(place / mass - stand.center + velocity / stand.omega)
+    }
+
+    /// Brings the legs of a pose of the clips to where a stumble has them in so many seconds; `way`: from where it stands now to where it
+    /// will then.
+    pub(super) fn hold_feet(&mut self, way: Transform, seconds: f32, pose: &mut [LocalTransform]) {
+        let Some(&stumble) = self.stumbling() else { return };
+        let def: &CharacterDef = &self.def;
+        let Some(feet) = def.feet() else { return };
+        let model = &mut self.scratch.model;
+        local_to_model(&def.rig, pose, &def.mapping().character_from_model(), model);
+        let seen = (self.world_from_character * way).inverse();
+        let lift = LIFT * def.ragdoll.height;
+        let goals = [0, 1].map(|foot| {
+            let clips = model[feet.legs[foot].end].to_rigid();
+            let at = |ankle: Transform| {
+                seen * Transform::new(ankle.translation + stumble.floor * seconds, ankle.rotation)
+            };
+            match stumble.feet[foot] {
+                Footing::Free => clips,
+                Footing::Planted(ankle) => at(ankle),
+                Footing::Swinging { from, to, time, lasts, home } => {
+                    let share = smoothstep((time + seconds) / lasts);
+                    let (from, to) = (at(from), if home { clips } else { at(to) });
+                    let way = from.translation * (1.0 - share) + to.translation * share;
+                    let wide = min((to.translation - from.translation).length() / WIDE, 1.0);
+                    let up = 4.0 * share * (1.0 - share) * lift * wide;
+                    Transform::new(way + Vec3::Y * up, from.rotation.nlerp(to.rotation, share))
+                }
+            }
+        });
+        hold_feet(&def.rig, feet.pelvis, &feet.legs, &goals, SINKS * def.ragdoll.height, pose, model);
+    }
+}
+
+impl Footing {
+    fn planted(self) -> Option<Transform> {
+        match self {
+            Self::Planted(ankle) => Some(ankle),
+            Self::Free | Self::Swinging { .. } => None,
+        }
+    }
+}
+
+impl Stumble {
+    /// Loses its balance again: what is not on its way is down where it is.
+    fn regain(&mut self, ankles: &[Transform; 2]) {
+        self.caught = false;
+        for (foot, &ankle) in self.feet.iter_mut().zip(ankles) {
+            *foot = match *foot {
+                Footing::Free => Footing::Planted(ankle),
+                Footing::Swinging { from, time, lasts, .. } => {
+                    Footing::Swinging { from, to: ankle, time: min(time, 0.5 * lasts), lasts, home: false }
+                }
+                planted => planted,
+            };
+        }
+    }
+
+    /// Feet that are down go with the ground, others on their way.
+    fn carry(&mut self, dt: f32) {
+        let by = self.floor * dt;
+        for foot in &mut self.feet {
+            match foot {
+                Footing::Free => {}
+                Footing::Planted(ankle) => ankle.translation += by,
+                Footing::Swinging { from, to, time, lasts, home } => {
+                    from.translation += by;
+                    to.translation += by;
+                    *time += dt;
+                    let (landed, home) = (*to, *home);
+                    if *time >= *lasts {
+                        *foot = if home { Footing::Free } else { Footing::Planted(landed) };
+                        self.steps += u32::from(!home);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Takes on the velocity that it is to have, and brings its feet to where its clips have them, one by one.
+    fn go_home(&mut self, stand: &Stand, dt: f32) {
+        self.velocity += (stand.wish - self.velocity) * -trig::exp_m1(-RESUMES * dt);
+        let swings = self.feet.iter().any(|foot| matches!(foot, Footing::Swinging { .. }));
+        let off = |foot: usize| -> Option<(usize, Transform, f32)> {
+            let from = self.feet[foot].planted()?;
+            Some((foot, from, level(from.translation - stand.ankles[foot].translation).length()))
+        };
+        let farthest = [off(0), off(1)].into_iter().flatten().reduce(|a, b| if b.2 > a.2 { b } else { a });
+        if let Some((foot, from, _)) = farthest.filter(|_| !swings) {
+            self.feet[foot] =
+                Footing::Swinging { from, to: stand.ankles[foot], time: 0.0, lasts: HOME_TIME, home: true };
+        }
+    }
+
+    pub fn save(&self, w: &mut Writer) {
+        w.vec3(self.velocity);
+        w.vec3(self.floor);
+        for foot in self.feet {
+            let (tag, from, to, times) = match foot {
+                Footing::Free => (0, Transform::IDENTITY, Transform::IDENTITY, [0.0; 2]),
+                Footing::Planted(ankle) => (1, ankle, ankle, [0.0; 2]),
+                Footing::Swinging { from, to, time, lasts, home } => {
+                    (2 + u8::from(home), from, to, [time, lasts])
+                }
+            };
+            w.u8(tag);
+            w.transform(from);
+            w.transform(to);
+            times.into_iter().for_each(|x| w.f32(x));
+        }
+        w.u32(self.steps);
+        w.u32(self.age);
+        w.bool(self.caught);
+    }
+
+    pub fn load(r: &mut Reader<'_>) -> Result<Self, ReadError> {
+        let (velocity, floor) = (r.vec3()?, r.vec3()?);
+        let mut foot = || {
+            let (tag, from, to) = (r.u8()?, r.transform()?, r.transform()?);
+            let (time, lasts) = (r.f32()?, r.f32()?);
+            match tag {
+                0 => Ok(Footing::Free),
+                1 => Ok(Footing::Planted(from)),
+                2 | 3 => Ok(Footing::Swinging { from, to, time, lasts, home: tag == 3 }),
+                _ => Err(r.error("unknown way of a foot")),
+            }
+        };
+        let feet = [foot()?, foot()?];
+        Ok(Self { velocity, floor, feet, steps: r.u32()?, age: r.u32()?, caught: r.bool()? })
+    }
+}

@@ -1,0 +1,145 @@
+//! Where a step has to go: a body as a pendulum that stands on its head.
+//!
+//! With `ω² = g / h` its centre of mass `x` flees the place `p` on which it presses, `x″ = ω² (x − p)`, and comes to rest over `p` if that
+//! is the **capture point** `ξ = x + x′ / ω`, which itself flees: `ξ(t) = p + (ξ − p) exp(ω t)`. A foot that comes down at `ξ` stops it; one that
+//! comes down `u T / (exp(ω T) − 1)` before it lets it go on at the speed `u` with steps of the time `T`.
+
+use super::support::level;
+use sinew_math::{Rotation, Vec3, clamp, max, min, trig};
+
+/// Seconds that a step takes: as long as it may, and shorter ones where they catch more.
+pub(super) const STEP_TIMES: [f32; 4] = [0.3, 0.26, 0.22, 0.18];
+/// Seconds in which a foot that is in the air is put down at once.
+pub(super) const DROP_TIME: f32 = 0.1;
+/// Seconds of a step of a steady walk.
+const STRIDE_TIME: f32 = 0.28;
+/// Least way between the feet across, and farthest of a foot from the body, over its height.
+const APART: f32 = 0.08;
+const REACH: f32 = 0.3;
+/// Mean speed of a foot at most, over the height of the body, 1/s: a quick step of a person takes 0.2 s for 0.6 m.
+const SWIFT: f32 = 1.7;
+/// Way of a foot to its own side of the capture point, over the height of the body.
+const OUT: f32 = 0.015;
+
+/// A body that falls over, level but for the heights that ω is made of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pendulum {
+    /// Centre of mass, world, metres.
+    pub center: Vec3,
+    /// Of it over the ground, and the one it is to go on with, m/s.
+    pub velocity: Vec3,
+    pub wish: Vec3,
+    /// 1/s.
+    pub omega: f32,
+    pub heading: Rotation,
+    /// Of the whole body, metres.
+    pub height: f32,
+}
+
+/// A place for a foot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Print {
+    /// Middle of the sole, level.
+    pub at: Vec3,
+    /// By how much that falls short of where it should be, metres.
+    pub miss: f32,
+    /// By how much the body is then farther from the other foot than a leg reaches, metres.
+    pub strain: f32,
+}
+
+impl Pendulum {
+    /// Place where it would come to the velocity that it is to have.
+    pub fn capture(&self) -> Vec3 {
+        level(self.center) + (self.velocity - self.wish) / self.omega
+    }
+
+    /// Place on which it presses best to come to that velocity.
+    pub fn brake(&self) -> Vec3 {
+        const FIRM: f32 = 1.5;
+        level(self.center) + (self.velocity - self.wish) * (FIRM / self.omega)
+    }
+
+    /// Change of its velocity within a moment in which it presses on `on`.
+    pub fn pushed(&self, on: Vec3, seconds: f32) -> Vec3 {
+        (level(self.center) - on) * (self.omega * self.omega * seconds)
+    }
+
+    /// Way by which a foot comes down before the capture point so that it goes on at the speed that it is to have.
+    pub fn goes_on(&self) -> Vec3 {
+        self.wish * (STRIDE_TIME / (trig::exp(self.omega * STRIDE_TIME) - 1.0))
+    }
+
+    /// Place for a foot (0 left, 1 right), the middle of whose sole is at `from`, that comes down in `seconds`, while it stands on `on`, the
+    /// other foot at `stance`.
+    pub fn print(&self, foot: usize, from: Vec3, stance: Vec3, on: Vec3, seconds: f32) -> Print {
+        let (grown, shrunk) = (trig::exp(self.omega * seconds), trig::exp(-self.omega * seconds));
+        let (cosh, sinh) = (0.5 * (grown + shrunk), 0.5 * (grown - shrunk));
+        let away = level(self.center) - on;
+        let center = on + away * cosh + self.velocity * (sinh / self.omega);
+        let capture = on + (away + self.velocity / self.omega) * grown;
+        let side = if foot == 0 { 1.0 } else { -1.0 };
+        let across = self.heading * (Vec3::X * side);
+        let wanted = capture - self.goes_on() + across * (OUT * self.height);
+        let mut at = wanted;
+        // On its own side of the other foot.
+        let apart = (at - stance).dot(across);
+        at += across * max(APART * self.height - apart, 0.0);
+        let reach = at - center;
+        let far = reach.length();
+        at = center + reach * min(REACH * self.height / max(far, 1e-6), 1.0);
+        let way = at - level(from);
+        let far = way.length();
+        at = level(from) + way * min(SWIFT * self.height * seconds / max(far, 1e-6), 1.0);
+        let apart = (at - stance).dot(across);
+        at += across * clamp(APART * self.height - apart, 0.0, APART * self.height);
+        let strain = max((center - level(stance)).length() - REACH * self.height, 0.0);
+        Print { at, miss: (at - wanted).length(), strain }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pushed(velocity: Vec3, wish: Vec3) -> Pendulum {
+        let heading = Rotation::IDENTITY;
+        Pendulum { center: Vec3::Y, velocity, wish, omega: 3.1, heading, height: 1.75 }
+    }
+
+    /// Velocity after one step onto its print and as long again on that.
+    fn after_a_step(mut body: Pendulum, foot: usize, stance: Vec3) -> Vec3 {
+        let steps = 2800;
+        let dt = STRIDE_TIME / steps as f32;
+        let print = body.print(foot, body.center, stance, stance, STRIDE_TIME);
+        assert!(print.miss < 0.06, "{print:?}");
+        for step in 0..2 * steps {
+            let on = if step < steps { stance } else { print.at };
+            body.velocity += body.pushed(on, dt);
+            body.center += body.velocity * dt;
+        }
+        body.velocity
+    }
+
+    #[test]
+    fn a_step_onto_the_print_stops_it() {
+        let stance = Vec3::new(-0.05, 0.0, 0.02);
+        let after = after_a_step(pushed(Vec3::new(0.1, 0.0, 0.9), Vec3::ZERO), 0, stance);
+        assert!(after.z.abs() < 0.4 && after.z < 0.9, "{after}");
+    }
+
+    #[test]
+    fn a_step_lets_it_go_on_as_it_is_to() {
+        let (wish, stance) = (Vec3::Z * 1.0, Vec3::new(-0.08, 0.0, 0.1));
+        let body = Pendulum { center: Vec3::new(0.0, 1.0, 0.0), ..pushed(Vec3::Z * 1.0, wish) };
+        let after = after_a_step(body, 0, stance);
+        assert!((after.z - 1.0).abs() < 0.35, "{after}");
+    }
+
+    #[test]
+    fn feet_do_not_cross() {
+        let stance = Vec3::new(-0.1, 0.0, 0.0);
+        let body = pushed(Vec3::X * -1.0, Vec3::ZERO);
+        let print = body.print(0, -stance, stance, stance, STRIDE_TIME);
+        assert!(print.at.x >= stance.x + APART * 1.75 - 1e-4 && print.miss > 0.2, "{print:?}");
+    }
+}
