@@ -11,10 +11,10 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;
 use sinew_math::max;
 
-/// Where a pass stands. What lists hold of a pass before is never used: its first sweep has no energy to go on from.
+/// State of the conjugate steps of a pass. What lists hold of a pass before is never used: its first sweep has no energy to go on from.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Conjugate {
-    /// Before the sweep, then its change.
+    /// Before the sweep.
     was: State,
     /// To go on in.
     direction: State,
@@ -31,7 +31,7 @@ struct State {
     limits: Vec<f32>,
 }
 
-/// What a block does about conjugate steps when a sweep comes to it, before its visit.
+/// Share of a block in conjugate steps when a sweep comes to it, before its visit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Step {
     #[default]
@@ -75,7 +75,7 @@ fn go_on<L: Lanes>(impulse: &mut Eight, was: &mut Eight, direction: &mut Eight, 
 }
 
 impl<const N: usize, const T: usize> Block<N, T> {
-    /// What it does before a visit. What a row has changed of its own velocity counts for the next visit, however little at a time:
+    /// Takes part in a conjugate step, before a visit. What a row has changed of its own velocity counts for the next visit, however little at a time:
     /// what nobody visits would run away.
     #[inline(always)]
     pub fn step<L: Lanes>(&mut self, step: Step) {
@@ -90,16 +90,17 @@ impl<const N: usize, const T: usize> Block<N, T> {
         };
         let Self { was, direction, .. } = self;
         let mut most = L::splat(0.0);
-        let mut seen = |by: L, response: &Eight| most = L::max(most, by.abs() * L::load(response));
         for i in 0..N {
-            let by = go_on(&mut self.impulse[i], &mut was.normal[i], &mut direction.normal[i], share);
-            seen(by, &self.response[packed(i, i)]);
+            let by = go_on::<L>(&mut self.impulse[i], &mut was.normal[i], &mut direction.normal[i], share);
+            most = L::max(most, by.abs() * L::load(&self.response[packed(i, i)]));
         }
         for k in 0..2 {
-            let by = go_on(&mut self.friction[k], &mut was.friction[k], &mut direction.friction[k], share);
-            seen(by, &self.tangent_response[2 * k]);
+            let by =
+                go_on::<L>(&mut self.friction[k], &mut was.friction[k], &mut direction.friction[k], share);
+            most = L::max(most, by.abs() * L::load(&self.tangent_response[2 * k]));
         }
-        seen(go_on(&mut self.twist, &mut was.twist, &mut direction.twist, share), &self.twist_response);
+        let by = go_on::<L>(&mut self.twist, &mut was.twist, &mut direction.twist, share);
+        most = L::max(most, by.abs() * L::load(&self.twist_response));
         if share != 0.0 {
             let mut by = ZERO8;
             most.store(&mut by);

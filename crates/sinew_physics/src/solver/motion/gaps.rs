@@ -42,7 +42,8 @@ impl Form {
     }
 }
 
-/// Rows of a hinge that hold: three of its anchor, two of its axis.
+/// Rows of an anchor, and of a hinge: two more of its axis.
+const POINT_ROWS: usize = 3;
 const HINGE_ROWS: usize = 5;
 
 impl Kernel for FindErrors<'_> {
@@ -66,15 +67,14 @@ impl Kernel for FindErrors<'_> {
             for ((row, link), residual) in rows.into_iter().zip(links).zip(residuals) {
                 let mut error = ZERO6;
                 if let Some(joint) = of(link) {
-                    match Form::of(joint) {
-                        Form::Hinge => row.store(&mut error),
-                        Form::Point => {
-                            row.store(&mut error);
-                            error[3..].fill(0.0);
+                    let form = Form::of(joint);
+                    if form == Form::Other {
+                        error = joint.position_error(poses, velocities, h);
+                    } else {
+                        row.store(&mut error);
+                        if form == Form::Point {
+                            error[POINT_ROWS..].fill(0.0);
                         }
-                        Form::Other => error = joint.position_error(poses, velocities, h),
-                    }
-                    if Form::of(joint) != Form::Other {
                         joint.leave_open(&mut error);
                     }
                 }
@@ -89,7 +89,7 @@ impl Kernel for FindErrors<'_> {
     }
 }
 
-/// Of eight joints, row by row: the gap between the anchors, and how far the axis of B is out of two planes of A if any of them is a hinge.
+/// Errors of eight joints, row by row: the gap between the anchors, and how far the axis of B is out of two planes of A if any of them is a hinge.
 #[inline(always)]
 fn errors_of<L: Lanes>(eight: &[&SolverJoint; WIDTH], poses: &[Transform]) -> [L; WIDTH] {
     let (mut at_a, mut at_b) = ([&Transform::IDENTITY; WIDTH], [&Transform::IDENTITY; WIDTH]);
