@@ -11,10 +11,10 @@ pub struct Anchor {
     pub position: Vec3,
     /// With which it has come there, m/s.
     pub velocity: Vec3,
-    /// What the forces on the body will add to that within the next substep, m/s. The springs push for the interval to
+    /// Velocity that the forces on the body will add to `velocity` within the next substep, m/s. The springs push for the interval to
     /// come, so they must know what else pulls in it, or a hung body would hang lower by `g h²`.
     pub gained: Vec3,
-    /// How the point yields, 1/kg: velocity gained per impulse at the point, `I/m − [r]× J⁻¹ [r]×`. Zero if nothing
+    /// Inverse mass of the point, 1/kg: velocity gained per impulse there, `I/m − [r]× J⁻¹ [r]×`. Zero if nothing
     /// moves it.
     pub inverse_mass: Sym3,
 }
@@ -45,7 +45,7 @@ impl ParticleGroup {
         }
     }
 
-    /// What each attachment gave: all that acts on its particle and does not change that one's momentum. The particle
+    /// Adds the impulse of each attachment: all that acts on its particle and does not change that one's momentum. The particle
     /// ends where its anchor is.
     pub(super) fn let_go(&mut self, part: Part, anchors: &[Anchor]) {
         let (h, [_, to]) = (part.h(), part.shares());

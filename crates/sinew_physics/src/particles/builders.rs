@@ -142,7 +142,7 @@ impl RopeDef {
 /// A strand to be made, of hair or grass: a rope that resists bending, clamped at its root.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrandDef {
-    /// Where it grows from, and all that it has in common with a rope.
+    /// Place of the root, and all else that a strand has in common with a rope.
     pub rope: RopeDef,
     /// `B` = elastic modulus times the section's second moment of area, N·m², positive. A straight strand that is clamped
     /// level sinks under its weight `w` per length by `w L⁴ / 8B` at its tip.
@@ -181,13 +181,13 @@ pub struct ClothDef {
     pub mass: f32,
     /// Stiffness of a square of it against being pulled along a thread, N/m: elastic modulus times thickness.
     pub stretching: f32,
-    /// Likewise along a diagonal, N/m, ≥ 0; with 0 there are no springs across.
+    /// Stiffness of a square of it against being pulled along a diagonal, N/m, ≥ 0; with 0 there are no springs across.
     pub shearing: f32,
     /// Bending stiffness per width, N·m, ≥ 0: `E t³/12` of a plate; with 0 nothing resists bending.
     pub bending: f32,
     /// Share of its critical damping that each spring has, ≥ 0.
     pub damping_ratio: f32,
-    /// Of each particle, metres.
+    /// Radius of each particle, metres.
     pub radius: f32,
 }
 
@@ -319,17 +319,17 @@ pub struct BlobDef {
     pub center: Vec3,
     /// Metres, of the skin.
     pub radius: f32,
-    /// How often the faces of an icosahedron are split in four, 0 to 5: 12, 42, 162, 642, 2,562 or 10,242 particles.
+    /// Number of times that the faces of an icosahedron are split in four, 0 to 5: 12, 42, 162, 642, 2,562 or 10,242 particles.
     pub subdivisions: u32,
     /// kg, of all of it.
     pub mass: f32,
-    /// Of each spring of the skin, N/m.
+    /// Stiffness of each spring of the skin, N/m.
     pub stiffness: f32,
     /// Share of its critical damping that each spring has, ≥ 0.
     pub damping_ratio: f32,
-    /// Of what is inside, Pa, see [`VolumeDef`].
+    /// Bulk modulus of what is inside, Pa, see [`VolumeDef`].
     pub bulk_modulus: f32,
-    /// Of each particle, metres: how thick the skin is to what it touches.
+    /// Radius of each particle, metres: how thick the skin is to what it touches.
     pub skin: f32,
 }
 

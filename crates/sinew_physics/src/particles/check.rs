@@ -1,4 +1,4 @@
-//! Whether a definition makes sense.
+//! Checks of the definitions of particles.
 
 use super::{BendDef, GroupDef, ParticleDef, SpringDef, TetherDef, VolumeDef};
 
@@ -20,7 +20,7 @@ fn must(holds: bool, what: &'static str) -> Result<(), &'static str> {
 }
 
 impl GroupDef {
-    /// Whether its numbers make sense; the phrase says what is wrong.
+    /// Checks that all numbers of the definition make sense; the error is a phrase that says what is wrong.
     ///
     /// # Errors
     /// What is wrong, in lower case.

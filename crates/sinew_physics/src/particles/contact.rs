@@ -21,9 +21,9 @@ const NO_SPEED: f32 = 1e-6;
 const GRIP_ROUNDS: u32 = 8;
 /// Gap that a net may close by pressing, metres.
 const TOUCHING: f32 = 1e-4;
-/// What is less deep at the end of an iteration is left to impacts, metres.
+/// Depth at the end of an iteration below which a contact is left to impacts, metres.
 const FORESEEN_DEPTH: f32 = 1e-5;
-/// Where a way may lead is told from its length, and turned a little by what is still to push, by this factor.
+/// Factor on the length of a way within which everything is looked for: what is still to push may turn it a little.
 pub(super) const DETOUR: f32 = 1.5;
 
 /// The motion of a body that particles may touch. Its velocity changes as they do.
@@ -103,7 +103,7 @@ impl Placed {
         Self { start, end, bounds: bounds.expand(bulge) }
     }
 
-    /// Where a point goes that moves along with the shape.
+    /// World position, at the end of the iteration, of a point that moves along with the shape, metres.
     fn carried(&self, point: Vec3) -> Vec3 {
         self.end.point(self.start.inverse_point(point))
     }
@@ -120,7 +120,7 @@ fn between(from: &Transform, to: &Transform, share: f32) -> Transform {
     Transform::new(translation, from.rotation.nlerp(to.rotation, share))
 }
 
-/// What a particle did to a body.
+/// Impulse of a particle on a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyImpulse {
     /// Index in the slice of bodies.
@@ -140,13 +140,13 @@ pub(super) struct Touch {
     pub normal: Vec3,
     /// Gap, metres; negative inside. Before the solve that at the iteration's beginning, after it that at its end.
     pub gap: f32,
-    /// Where, on the surface.
+    /// Point of contact on the surface, world, metres.
     pub point: Vec3,
-    /// Of the pair of surfaces.
+    /// Combined material of the pair of surfaces.
     pub material: ContactMaterial,
     /// Slowest allowed velocity along the normal, m/s: negative while there is a gap to be closed.
     pub speed_min: f32,
-    /// How many times the body is lighter for this particle than it is: where those that touch it outweigh it, each has
+    /// Factor by which the body is lighter for this particle than it is: where those that touch it outweigh it, each has
     /// its share of the body's inertia, or their sum would push it too far.
     pub lightness: f32,
 }
@@ -170,13 +170,13 @@ impl Touch {
         n * normal + friction
     }
 
-    /// Of the body's surface where it is touched, m/s.
+    /// Velocity of the body's surface where it is touched, m/s.
     pub fn surface_velocity(&self, body: &ObstacleBody) -> Vec3 {
         body.velocity_at(self.point) + self.material.velocity
     }
 }
 
-/// How a surface holds a particle that touches it.
+/// Grip of a surface on a particle that touches it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Grip {
     /// Not at all.
@@ -214,7 +214,7 @@ impl ParticleGroup {
         }
     }
 
-    /// How far a particle looks round its surface for what it touches or may come to, metres.
+    /// Distance from its surface within which a particle looks for what it touches or may come to, metres.
     pub(super) fn sight(&self, i: usize, h: f32) -> f32 {
         self.contact_reach(i, h) + DETOUR * (self.velocities[i].length() * h)
     }
@@ -354,8 +354,8 @@ impl ParticleGroup {
         found
     }
 
-    /// What a surface does at first to a particle that comes to it with the velocity just found: if stopping it takes more
-    /// than friction may give, it slides, with the friction of what stops it along the normal.
+    /// First grip of a surface on a particle that comes to it with the velocity just found: if stopping it takes more than
+    /// friction may give, it slides, with the friction of what stops it along the normal.
     fn first_grip(&mut self, i: usize, touch: &Touch, bodies: &[ObstacleBody]) -> Grip {
         let relative = self.velocities[i] - touch.surface_velocity(&bodies[touch.body]);
         let normal = max(touch.speed_min - relative.dot(touch.normal), 0.0) * self.masses[i];
@@ -415,7 +415,7 @@ impl ParticleGroup {
         }
     }
 
-    /// What lies behind each particle that is on a surface: its share of the body's inertia along the normal.
+    /// Finds the backing of each particle that is on a surface: its share of the body's inertia along the normal.
     pub(super) fn back_contacts(&mut self, h: f32, bodies: &[ObstacleBody]) {
         for i in 0..self.positions.len() {
             (self.backings[i], self.press_normals[i], self.presses[i]) = (0.0, Vec3::ZERO, Vec3::ZERO);
@@ -489,7 +489,7 @@ impl ParticleGroup {
         impulse - normal * impulse.dot(normal)
     }
 
-    /// What the solve gave each particle that a surface holds.
+    /// Impulse that the solve gave a particle that a surface holds, N·s.
     fn contact_impulse(&self, i: usize) -> Vec3 {
         self.velocities[i] * self.masses[i] - self.system.momentum[i] - self.reactions[i]
     }

@@ -18,7 +18,7 @@ pub struct ParticleDef {
     pub radius: f32,
 }
 
-/// Which way a spring resists.
+/// Deformations that a spring resists: stretch alone, or compression, too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Resists {
     /// Longer or shorter than at rest, it pulls or pushes. Default.
@@ -41,7 +41,7 @@ pub struct SpringDef {
     pub stiffness: f32,
     /// N·s/m, ≥ 0. Default 0; see [`damped`](Self::damped).
     pub damping: f32,
-    /// Which way it resists. Default both.
+    /// Deformations that it resists. Default both.
     pub resists: Resists,
 }
 
@@ -65,7 +65,7 @@ impl SpringDef {
     }
 }
 
-/// What keeps three particles in a row straight, or as curved as they were: a force `stiffness × (c − rest)` along
+/// A bend, which keeps three particles in a row straight, or as curved as they were: a force `stiffness × (c − rest)` along
 /// `x₁ − 2 x₂ + x₃`, whose length is `c`, on the outer two, and twice its opposite on the middle one. A beam of bending
 /// stiffness `B` (N·m²) with a particle each `L` metres has a stiffness of `B/L³`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +78,7 @@ pub struct BendDef {
     pub stiffness: f32,
 }
 
-/// What keeps a particle from going further from an attached one than cloth or hair allows: long-range attachment (Kim,
+/// A tether, which keeps a particle from going further from an attached one than cloth or hair allows: long-range attachment (Kim,
 /// Chentanez and Müller 2012). It never pushes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TetherDef {
@@ -102,10 +102,10 @@ pub struct VolumeDef {
     pub bulk_modulus: f32,
 }
 
-/// How the springs of a group are solved.
+/// Scheme by which the springs of a group are solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SpringScheme {
-    /// Those that form no loops in one implicit step, exactly; those that close one are projected. For ropes and strands.
+    /// Solves springs that form no loops exactly, in one implicit step, and projects those that close one. For ropes and strands.
     /// Default.
     #[default]
     Implicit,
@@ -113,7 +113,7 @@ pub enum SpringScheme {
     Projected,
 }
 
-/// What a particle hangs on.
+/// Point that a particle hangs on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AttachmentTarget {
     /// A place in the world, metres.
@@ -132,7 +132,7 @@ pub enum AttachmentTarget {
 pub struct AttachmentDef {
     /// Index of the particle in its group.
     pub particle: u32,
-    /// Where it is held.
+    /// Point at which it is held.
     pub target: AttachmentTarget,
 }
 
@@ -143,15 +143,15 @@ pub struct GroupDef {
     pub particles: Vec<ParticleDef>,
     /// The springs. Those that form no loops are solved exactly, see [`particles`](crate::particles).
     pub springs: Vec<SpringDef>,
-    /// What resists bending; projected after the springs.
+    /// Bends, which resist bending; projected after the springs.
     pub bends: Vec<BendDef>,
-    /// How far particles may go from attached ones; projected before the springs.
+    /// Tethers, which limit how far particles may go from attached ones; projected before the springs.
     pub tethers: Vec<TetherDef>,
     /// Volumes that particles enclose; projected last.
     pub volumes: Vec<VolumeDef>,
     /// Held particles; each at most once.
     pub attachments: Vec<AttachmentDef>,
-    /// How springs are solved. Default implicit.
+    /// Scheme by which springs are solved. Default implicit.
     pub scheme: SpringScheme,
     /// Parts that a substep of the world is moved in, 1 to 64: projection is stiffer and loses less energy in shorter ones.
     /// Default 1.
@@ -162,7 +162,7 @@ pub struct GroupDef {
     pub linear_damping: f32,
     /// Factor on the world's gravity, finite. Default 1.
     pub gravity_scale: f32,
-    /// Which shapes it meets.
+    /// Filter of the shapes that it meets.
     pub filter: Filter,
 }
 

@@ -4,9 +4,9 @@ use super::ParticleGroup;
 use super::net::{enclosed_volume, stretch};
 
 impl ParticleGroup {
-    /// Of its springs, `½ k s²` each, its bends likewise, and its volumes, `½ K (V − V₀)²/V₀`, J. Tethers hold without
-    /// energy. What is projected counts with the compliance that it has in a net, `1/k + h² Σ w`: it pulls no harder than
-    /// that.
+    /// Elastic energy of its springs, `½ k s²` each, its bends likewise, and its volumes, `½ K (V − V₀)²/V₀`, J. Tethers hold
+    /// without energy. What is projected counts with the compliance that it has in a net, `1/k + h² Σ w`: it pulls no harder
+    /// than that.
     pub fn elastic_energy(&self) -> f32 {
         let solved = self.forest.solved_springs().map(|index| {
             let s = &self.springs[index as usize];
@@ -44,7 +44,7 @@ impl ParticleGroup {
         enclosed_volume(&self.volumes[index].triangles, &self.positions, |_, _| ())
     }
 
-    /// Of spring `index`: length less rest length, metres; 0 where it is slack.
+    /// Stretch of spring `index`: length less rest length, metres; 0 where it is slack.
     ///
     /// # Panics
     /// If there is no such spring.
@@ -53,7 +53,7 @@ impl ParticleGroup {
     }
 }
 
-/// Of a row with error `c`, its own compliance, and what projection adds to it.
+/// Energy of a row with error `c`, its own compliance, and what projection adds to it.
 fn energy(c: f32, compliance: f32, added: f32) -> f32 {
     0.5 * c * c / (compliance + added)
 }

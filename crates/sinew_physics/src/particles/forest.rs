@@ -1,4 +1,4 @@
-//! Which springs form trees, and the linear system of a step over them.
+//! Trees of springs, and the linear system of a step over them.
 //!
 //! Unknown are the velocities at the end of the step: `(M + h² K + h D) v⁺ = M v + h f` (Baraff & Witkin 1998), with
 //! the axial stiffness `k n nᵀ`, the geometric stiffness `k max(0, 1 − L₀/L) (I − n nᵀ)` and the axial damping of
@@ -9,7 +9,7 @@
 use super::{Resists, SpringDef};
 use sinew_math::{Sym3, Vec3, max};
 
-/// How much longer than foreseen a spring may be at the end of a step, as a share of its rest length.
+/// Length by which a spring may exceed its foreseen length at the end of a step, as a share of its rest length.
 const LENGTH_TOLERANCE: f32 = 1e-3;
 
 /// The spring between a particle and the next one toward the root.
@@ -112,7 +112,7 @@ impl Forest {
 /// A spring during one step.
 #[derive(Clone, Copy, Debug, Default)]
 struct Load {
-    /// Where B is from A where the spring is linearised, metres.
+    /// Vector from A to B where the spring is linearised, metres.
     from_a: Vec3,
     /// Force on A, newtons, extrapolated from there to where the step begins.
     force: Vec3,
@@ -146,7 +146,7 @@ impl Load {
     }
 }
 
-/// What a particle may do in a step.
+/// Freedom of a particle in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) enum Freedom {
     /// Anything.
@@ -165,14 +165,14 @@ pub(super) struct System {
     pub inertia: Vec<Sym3>,
     /// kg·m/s: momentum at the end of the step without springs and contacts.
     pub momentum: Vec<Vec3>,
-    /// What contacts add to the inertia.
+    /// Inertia that contacts add, kg.
     pub added_inertia: Vec<Sym3>,
-    /// What contacts add to the momentum.
+    /// Momentum that contacts add, kg·m/s.
     pub added_momentum: Vec<Vec3>,
     /// The velocity of a fixed particle is read from the velocities.
     pub freedom: Vec<Freedom>,
     loads: Vec<Load>,
-    /// Of each particle with all that hangs below it.
+    /// Inertia and momentum of each particle with all that hangs below it.
     gathered_inertia: Vec<Sym3>,
     gathered_momentum: Vec<Vec3>,
     /// Velocity gained per impulse while the parent keeps its velocity.

@@ -69,31 +69,31 @@ pub struct ParticleGroup {
     linear_damping: f32,
     gravity_scale: f32,
     filter: Filter,
-    /// How surfaces hold the particles.
+    /// Grip of a surface on each particle.
     grips: Vec<Grip>,
     /// Length of the last iteration, seconds; 0 before the first.
     span: f32,
     /// Impulse of a surface on each particle in the last solve.
     contact_impulses: Vec<Vec3>,
 
-    /// Where each particle was before the last step, for drawing.
+    /// Position of each particle before the last step, world, metres, for drawing.
     drawn_from: Vec<Vec3>,
 
     forest: Forest,
     system: System,
-    /// Where each particle was before the iteration.
+    /// Position of each particle before the iteration, world, metres.
     previous: Vec<Vec3>,
-    /// How projections move each particle, 1/kg: 0 for those held by what cannot move.
+    /// Inverse mass with which projections move each particle, 1/kg: 0 for those held by what cannot move.
     weights: Vec<f32>,
     /// Velocity of each particle when the iteration began, damped.
     begun: Vec<Vec3>,
-    /// Of the points that hold particles, as the iterations so far have changed it.
+    /// Velocity of each point that holds a particle, as the iterations so far have changed it, m/s.
     anchor_velocities: Vec<Vec3>,
     /// Directions in which each particle changes a volume, m².
     gradients: Vec<Vec3>,
     /// Shapes as the iteration finds them.
     placed: Vec<Placed>,
-    /// Which of them each particle may come to.
+    /// Shapes that each particle may come to.
     near: Near,
     /// Attachment of each particle, or `u32::MAX`.
     attachment_of: Vec<u32>,
@@ -101,16 +101,16 @@ pub struct ParticleGroup {
     body_impulses: Vec<BodyImpulse>,
     /// Impulse of springs, bends, tethers and volumes on each particle in this iteration.
     reactions: Vec<Vec3>,
-    /// What each particle touches in this iteration.
+    /// Surface that each particle touches in this iteration.
     touches: Vec<Option<Touch>>,
     /// Distance to any shape that each particle surely has when the iteration begins, less what the shape moves, metres.
     clearances: Vec<f32>,
     /// Share of an impulse against the surface that each particle touches that goes on to the body: its share of the body's
     /// inertia over that and its own.
     backings: Vec<f32>,
-    /// Of that surface, out of it.
+    /// Unit normal of the surface that each particle touches, out of it.
     press_normals: Vec<Vec3>,
-    /// What has gone on to the body in this iteration, N·s.
+    /// Impulse that has gone on from each particle to the body in this iteration, N·s.
     presses: Vec<Vec3>,
     /// Velocities that bring particles into the corner of two surfaces.
     wedges: Vec<Vec3>,
@@ -218,7 +218,7 @@ impl ParticleGroup {
         any
     }
 
-    /// Where particles are is from now on where they were before the step.
+    /// Takes the present positions as those before the step, for drawing.
     pub(crate) fn begin_step(&mut self) {
         self.drawn_from.copy_from_slice(&self.positions);
     }
@@ -268,7 +268,7 @@ impl ParticleGroup {
         self.gravity_scale
     }
 
-    /// Which shapes it meets.
+    /// Filter of the shapes that it meets.
     pub fn filter(&self) -> Filter {
         self.filter
     }
@@ -455,7 +455,7 @@ impl ParticleGroup {
 struct Part {
     /// From 0.
     number: u32,
-    /// How many there are.
+    /// Number of iterations in the substep.
     of: u32,
     /// The substep, seconds.
     whole: f32,

@@ -1,4 +1,4 @@
-//! Which obstacles each particle may come to, so that it need not be tried against all of them.
+//! Obstacles that each particle may come to, so that it need not be tried against all of them.
 //!
 //! A list holds as long as its particle and all obstacles stay in the room that it was made for. A particle that leaves its
 //! room is tried against all obstacles; once many have, or an obstacle has left its own, all lists are made anew. What a
@@ -23,22 +23,22 @@ const LOST_ONE_IN: usize = 16;
 pub(super) struct Near {
     /// Around each obstacle, with room to move.
     rooms: Vec<Aabb>,
-    /// Where each particle was.
+    /// Position of each particle when its list was made, world, metres.
     origins: Vec<Vec3>,
-    /// How far from its surface there all that its list leaves out is, at least, metres; `None` if it has no list.
+    /// Least distance of all that a particle's list leaves out from its surface at its origin, metres; `None` if it has no list.
     reaches: Vec<Option<f32>>,
     /// The same from where each particle is now; 0 or less where its list does not hold.
     beyond: Vec<f32>,
     /// Indices of obstacles, the list of one particle after that of another, each ascending.
     obstacles: Vec<u32>,
-    /// Where the list of each particle ends.
+    /// End of each particle's list in `obstacles`.
     ends: Vec<usize>,
-    /// What `obstacles` has room for; once it is full, or for one that does not fit, no list is made.
+    /// Capacity of `obstacles`; once it is full, or for a list that does not fit, none is made.
     most: usize,
 }
 
 impl Near {
-    /// Of so many particles: room for their lists, none made.
+    /// Room for the lists of so many particles, none made.
     pub fn new(count: usize) -> Self {
         Self {
             origins: vec![Vec3::ZERO; count],
@@ -57,7 +57,7 @@ impl Near {
         list.iter().map(|&obstacle| obstacle as usize).chain(all)
     }
 
-    /// How far from a particle's surface all that [`within`](Self::within) leaves out is, at least, metres.
+    /// Least distance from a particle's surface of all that [`within`](Self::within) leaves out, metres.
     pub fn left_out_from(&self, i: usize, distance: f32) -> f32 {
         if self.beyond[i] > distance { self.beyond[i] } else { f32::INFINITY }
     }

@@ -1,7 +1,7 @@
-//! What forms loops, each row once per iteration: `Δx = −C / (Σ w ∇C² + α/h²) w ∇C` with `α = 1/k` (Macklin et al.,
-//! "Small Steps in Physics Simulation", SCA 2019, without its multipliers). A row alone is a step of implicit Euler. Rows
-//! that share particles are solved one after the other, in the order of their definition, and those before do not hear of
-//! those after: each spring of a net yields by about `h² (w₁ + w₂)` more.
+//! Rows that form loops, each solved once per iteration: `Δx = −C / (Σ w ∇C² + α/h²) w ∇C` with `α = 1/k` (Macklin et al.,
+//! "Small Steps in Physics Simulation", SCA 2019, without its multipliers). A row alone is a step of implicit Euler. Rows that
+//! share particles are solved one after the other, in the order of their definition, and those before do not hear of those
+//! after: each spring of a net yields by about `h² (w₁ + w₂)` more.
 //!
 //! What presses a particle onto a surface moves it with its share of the body's inertia, and is handed on to the body: a ball
 //! in a cloth would else be carried by the cloth's own few grams.
@@ -29,7 +29,7 @@ impl ParticleGroup {
         self.volumes = volumes;
     }
 
-    /// What a particle moves by along a force, per impulse: `∇Cᵀ W ∇C` if `force` is as long as the gradient, 1/kg.
+    /// Mobility of a particle along a force, 1/kg: `∇Cᵀ W ∇C` if `force` is as long as the gradient.
     fn mobility(&self, i: usize, force: Vec3) -> f32 {
         let pressing = force.dot(self.press_normals[i]);
         let backed = if pressing < 0.0 { self.backings[i] * pressing * pressing } else { 0.0 };
@@ -150,7 +150,7 @@ pub(super) fn enclosed_volume(
     volume
 }
 
-/// How far a spring is from its rest length, metres; 0 where it is slack.
+/// Length of a spring less its rest length, metres; 0 where it is slack.
 pub(super) fn stretch(s: &SpringDef, positions: &[Vec3]) -> f32 {
     let stretch = (positions[s.b as usize] - positions[s.a as usize]).length() - s.rest_length;
     match s.resists {

@@ -14,10 +14,10 @@ const PARTICLE_BYTES: usize = 4 * (3 + 3 + 1 + 1 + 3 + 3) + 1;
 const SPRING_BYTES: usize = 4 * 5 + 1;
 const BEND_BYTES: usize = 4 * 5;
 const TETHER_BYTES: usize = 4 * 3;
-/// Of one without triangles.
+/// Bytes of a volume without triangles.
 const VOLUME_BYTES: usize = 4 * 3;
 const TRIANGLE_BYTES: usize = 4 * 3;
-/// Of the shortest attachment.
+/// Bytes of the shortest attachment.
 const ATTACHMENT_BYTES: usize = 4 + 1 + 12;
 
 impl ParticleGroup {

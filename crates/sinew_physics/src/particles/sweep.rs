@@ -5,7 +5,7 @@ use crate::boxes::Aabb;
 use crate::triangles::{Part, Triangle, closest_on_triangle};
 use sinew_math::{Vec3, max, max3, min3};
 
-/// Where a ball on its way meets a shape, in the shape's frame.
+/// Contact of a ball on its way with a shape, in the shape's frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Meeting {
     /// Share of the way before, 0..=1.
@@ -14,7 +14,7 @@ pub(super) struct Meeting {
     pub at: Vec3,
     /// Unit, out of the shape.
     pub normal: Vec3,
-    /// What is still between them, metres; negative where the way begins inside.
+    /// Gap that is still between them, metres; negative where the way begins inside.
     pub gap: f32,
 }
 

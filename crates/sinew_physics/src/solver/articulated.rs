@@ -189,7 +189,7 @@ pub(crate) struct Inertia<R> {
 pub(crate) type Twist<R> = [Vector3<R>; 2];
 
 impl<R: Real> Inertia<R> {
-    /// Of one body about its centre.
+    /// Inertia of one body about its centre.
     #[inline(always)]
     pub fn of_body(mass: R, rotation: Symmetric<R>) -> Self {
         let none = R::splat(0.0);
@@ -262,14 +262,14 @@ impl<R: Real> Inertia<R> {
         ([force, torque], inverse)
     }
 
-    /// What a unit of a velocity without rotation, or of a rotation alone, weighs.
+    /// Inertia in the direction `way`: its mass for a translation, its moment of inertia for a rotation (`turns`).
     #[inline(always)]
     fn along(&self, turns: bool, way: Vector3<R>) -> R {
         (if turns { &self.rotation } else { &self.mass }).times(way).dot(way)
     }
 }
 
-/// How a joint's open directions are eliminated.
+/// Elimination of a joint's open directions.
 pub(crate) trait Elimination<N> {
     /// From the leaves to the root: an impulse on the child at its centre becomes one on the parent at its own. What is kept for
     /// the way down takes the place of `kept`.
@@ -293,7 +293,7 @@ pub(crate) trait Elimination<N> {
         N: Spread<R>;
 }
 
-/// What a [`Swivel`] leaves open.
+/// Motions that a [`Swivel`] leaves open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Freedom {
     /// All: the body is the first of its tree, and nothing holds it.
@@ -322,7 +322,7 @@ pub(crate) struct Swivel<N> {
 }
 
 impl<R: Real> Swivel<R> {
-    /// Of a child with an articulated inertia about its centre.
+    /// A swivel whose child has this articulated inertia about its centre.
     #[inline(always)]
     pub fn new(freedom: Freedom, [arm, parent_arm]: [Vector3<R>; 2], child: &Inertia<R>) -> Self {
         Self {
@@ -337,7 +337,7 @@ impl<R: Real> Swivel<R> {
         }
     }
 
-    /// Of a child with an articulated inertia about the anchor.
+    /// A swivel whose child has this articulated inertia about the anchor.
     #[inline(always)]
     pub fn at_anchor(freedom: Freedom, inertia: Inertia<R>) -> Self {
         let (arm, parent_arm, gain) = (zero(), zero(), Symmetric::zero());
@@ -357,13 +357,13 @@ impl<R: Real> Swivel<R> {
         (self.pivot, self.coupled)
     }
 
-    /// Of a free body, the inverse of the mass that is left; after [`factor`](Self::factor).
+    /// Inverse of the mass that is left of a free body; valid after [`factor`](Self::factor).
     #[inline(always)]
     pub fn inverse_mass(&self) -> Symmetric<R> {
         self.free
     }
 
-    /// What the child weighs about the anchor.
+    /// Inertia of the child about the anchor in the direction `way`: mass, or moment of inertia if `turns`.
     #[inline(always)]
     pub fn weight(&self, turns: bool, way: Vector3<R>) -> R {
         self.inertia.along(turns, way)
@@ -463,7 +463,7 @@ impl<N: Copy> Elimination<N> for Swivel<N> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Opening<N> {
     turns: bool,
-    /// How the child moves by a unit.
+    /// Axis along which the child slides, or about which it turns.
     way: Vector3<N>,
     gain: N,
     /// `I s` and `1/d`.
@@ -484,7 +484,7 @@ pub(crate) struct Sequence<N> {
 }
 
 impl<R: Real> Sequence<R> {
-    /// Of a child with an articulated inertia about its centre.
+    /// A sequence without openings whose child has this articulated inertia about its centre.
     #[inline(always)]
     pub fn new([arm, parent_arm]: [Vector3<R>; 2], child: &Inertia<R>) -> Self {
         let none = R::splat(0.0);
@@ -507,7 +507,7 @@ impl<R: Real> Sequence<R> {
         self.parent_arm
     }
 
-    /// What the child weighs about the anchor.
+    /// Inertia of the child about the anchor in the direction `way`: mass, or moment of inertia if `turns`.
     #[inline(always)]
     pub fn weight(&self, turns: bool, way: Vector3<R>) -> R {
         self.inertia.along(turns, way)
@@ -581,7 +581,7 @@ mod tests {
     use super::*;
     use sinew_math::{Random, Rotation, Sym3};
 
-    /// What is open: whether it turns, its axis, its gain.
+    /// An open direction: whether it turns, its axis, its gain.
     type Open = (bool, Vector3<f64>, f64);
 
     /// A body of a kilogram or of thousands, of some shape.

@@ -33,7 +33,7 @@ const FAST_APPROACH: f32 = 1.0;
 /// At most this many bodies are solved as one tree; joints beyond become loop rows.
 const MAX_TREE: usize = 1024;
 
-/// What islands and their solvers read of the world.
+/// The world as islands and their solvers read it.
 pub(crate) struct View<'a> {
     pub bodies: &'a Arena<Body>,
     pub activity: &'a Activity,
@@ -73,7 +73,7 @@ impl Pace {
     }
 }
 
-/// Whether an island may take fewer substeps than the world's.
+/// Rule by which an island may take fewer substeps than the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Grading {
     /// It follows from what the island holds.
@@ -89,7 +89,7 @@ pub(super) struct Scratch {
     seeds: Vec<Seed>,
     /// Per tree: rows of loops.
     loop_rows: Vec<usize>,
-    /// How many of the seeds have been looked around from.
+    /// Number of seeds whose neighbours have been visited.
     grown: usize,
     /// Number of bodies of each tree.
     sizes: Vec<usize>,
@@ -114,7 +114,7 @@ pub(super) struct Scratch {
 enum Roots {
     /// Each as far as it can before the next begins.
     InTurn,
-    /// Those on fixed bodies side by side.
+    /// All trees on fixed bodies grow side by side.
     AtOnce,
 }
 
@@ -217,7 +217,7 @@ impl Scratch {
 }
 
 impl Scratch {
-    /// Whether a body of a joint or a contact is one of those that move.
+    /// True if a body of a joint or a contact is one of those that move.
     fn moves(&self, body: u32) -> bool {
         self.order.get(self.local_of[body as usize] as usize) == Some(&body)
     }
@@ -300,7 +300,7 @@ impl IslandSolver {
         }
     }
 
-    /// What only islands with joints need, also for one that has none: memory goes on to the next, which may have some.
+    /// Reserves memory that only islands with joints need, also for one that has none: it goes on to the next, which may have some.
     fn make_room(&mut self, island: &Island<'_>) {
         let s = &mut self.scratch;
         let lists = [

@@ -19,7 +19,7 @@ pub(crate) struct Columns {
     lanes: Vec<AnswerLanes>,
 }
 
-/// Where columns of the same bodies lie side by side.
+/// Place of columns of the same bodies that lie side by side: start and stride, in entries.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Strip {
     start: usize,
@@ -27,13 +27,13 @@ pub(crate) struct Strip {
 }
 
 impl Strip {
-    /// Where one of them starts.
+    /// Index of the first entry of column `k`.
     pub fn column(&self, k: usize) -> usize {
         self.start + k * self.stride
     }
 }
 
-/// Which bodies the columns of two bodies' rows speak of: the members of the tree of A, then those of the tree of B if it is
+/// Bodies that the columns of two bodies' rows cover: the members of the tree of A, then those of the tree of B if it is
 /// another one. Fixed bodies have none.
 #[derive(Clone, Copy, Debug)]
 struct Reach<'a> {
@@ -62,7 +62,7 @@ impl<'a> Reach<'a> {
 /// Changes of the impulses of rows whose columns lie side by side.
 #[derive(Clone, Debug)]
 pub(crate) struct Change {
-    /// Where the column of the first lies.
+    /// Index of the first entry of the first row's column.
     column: usize,
     count: usize,
     by: [f32; MAX_POINTS],
@@ -76,7 +76,7 @@ impl Change {
         Self { column, count: 0, by: [0.0; MAX_POINTS], push: [ZERO6; 2] }
     }
 
-    /// Of the next row.
+    /// Adds the change of the next row.
     pub fn add(&mut self, [on_a, on_b]: [&Vec6; 2], by: f32) {
         self.by[self.count] = by;
         self.count += 1;
@@ -94,7 +94,7 @@ impl Columns {
         self.entries.clear();
     }
 
-    /// Where the next columns, of these bodies, will lie.
+    /// Place at which the next columns, of these bodies, will lie.
     pub fn strip(&self, response: &Response, links: &[Link], bodies: [u32; 2]) -> Strip {
         Strip { start: self.end(), stride: Reach::new(response, links, bodies).len() }
     }
@@ -104,7 +104,7 @@ impl Columns {
         size_of_val(&self.entries[..])
     }
 
-    /// Where the next column will start.
+    /// Index of the entry at which the next column will start.
     pub fn end(&self) -> usize {
         self.entries.len()
     }

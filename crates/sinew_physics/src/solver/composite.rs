@@ -1,4 +1,4 @@
-//! What mass a joint's springs and motors move: each side of the joint as one rigid piece.
+//! Masses that a joint's springs and motors move: each side of the joint as one rigid piece.
 
 use super::tree::{Link, NONE};
 use super::{IslandSolver, SolverBody, SolverJoint};
@@ -6,7 +6,7 @@ use crate::joint::{DIRECTIONS, JointRows, TWIST};
 use crate::spatial::{Vec6, ZERO6, ZERO66, angular, linear, spd_inverse};
 use sinew_math::{Sym3, Vec3, max};
 
-/// What has no mass to speak of (both bodies held) counts as this, kg or kg·m².
+/// Mass that stands in where there is none to speak of (both bodies held), kg or kg·m².
 const LEAST_MASS: f32 = 1e-9;
 
 /// Mass, first moment and inertia of rigidly held bodies about a common reference point.
@@ -148,7 +148,7 @@ impl IslandSolver {
     }
 }
 
-/// Which open rows hold while one is asked.
+/// Open rows that are held while the mass along one of them is computed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Together {
     Nothing,

@@ -8,7 +8,7 @@ use super::sweep::Unrest;
 use super::tree::Link;
 use crate::spatial::{Vec6, add_scaled, largest};
 
-/// Where a pass stands. What lists hold of a pass before is never used: its first sweep has no energy to go on from.
+/// State of the conjugate steps of a pass. What lists hold of a pass before is never used: its first sweep has no energy to go on from.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Conjugate {
     /// Before the sweep, then its change.
@@ -27,7 +27,7 @@ struct State {
     velocities: Vec<Vec6>,
 }
 
-/// What the rows of an island and its bodies have in a pass.
+/// Rows and bodies of an island in a pass.
 pub(super) struct Rows<'a> {
     pub manifolds: &'a mut [ManifoldRows],
     pub limits: &'a mut [LimitRow],

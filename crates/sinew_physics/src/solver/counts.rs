@@ -1,4 +1,4 @@
-//! What an island's step took, in numbers, for a profiler that counts.
+//! Counts of what an island's step took, for a profiler that counts.
 
 use super::contact_rows::ManifoldRows;
 use super::sweep::Pass;
@@ -13,7 +13,7 @@ const PER_SUBSTEP: u64 = 2;
 /// Times that the rest of the step does: `prepare` and `store`.
 const PER_STEP: u64 = 2;
 
-/// What the sweeps of a step have gone through: cheap enough to be added up whether somebody asks or not.
+/// Counts of what the sweeps of a step have gone through: cheap enough to be added up whether somebody asks or not.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tally {
     pub substeps: u64,
@@ -42,7 +42,7 @@ impl Tally {
 }
 
 impl IslandSolver {
-    /// Of the step, when it is over.
+    /// Tells a profiler the counts of the step, when it is over.
     pub(super) fn tell_counts(&self, profiler: &dyn Profiler) {
         if !profiler.is_counting() {
             return;

@@ -1,4 +1,4 @@
-//! What acts in a joint's directions beside the hard constraint: springs, welds that give, motors, dry friction. Each is a
+//! Drives in a joint's directions beside the hard constraint: springs, welds that give, motors, dry friction. Each is a
 //! row of the tree factor with compliance, so that any stiffness is stable.
 
 use super::{IslandSolver, SolverJoint};
@@ -161,7 +161,7 @@ impl SolverJoint {
         soft
     }
 
-    /// What the motor would do in a direction if it had no cap.
+    /// Row of the motor in a direction as if it had no cap.
     fn motor_row(&self, direction: usize, h: f32) -> SoftRow {
         let mut row = SoftRow::default();
         let Some(motor) = self.drive.motor.filter(|motor| motor.cap(direction) > 0.0) else { return row };
@@ -202,7 +202,7 @@ impl SolverJoint {
         self.drive.motor.map_or(0.0, |motor| motor.cap(direction) * h)
     }
 
-    /// What rows with `rate` are to change by: `solve` removes the position error within the substep and lets soft rows
+    /// Change that rows with `rate` are to make to it: `solve` removes the position error within the substep and lets soft rows
     /// act, `relax` stops the rigid ones and leaves soft ones as they are, or they would act twice.
     pub(super) fn residual(&self, rate: &Vec6, solve: bool, h: f32) -> Vec6 {
         let mut out = ZERO6;
@@ -243,7 +243,7 @@ impl SolverJoint {
         self.rows.rate(of(self.a), of(self.b))
     }
 
-    /// How much further a weld that gives is off at other poses of the bodies than its rows foresaw, beyond what is made up
+    /// Position error of a weld that gives at other poses of the bodies, beyond what its rows foresaw and what is made up
     /// for: a body on a soft weld that turns would drift outward by `½ ω² r h²` in each substep, and a damper takes long to
     /// take that back.
     fn bend_error(&self, pose: &JointPose, velocities: &[Vec6], h: f32) -> Vec6 {
@@ -333,7 +333,7 @@ impl IslandSolver {
         Some(on_b)
     }
 
-    /// What drives have given in this substep: impulse times the rate after it. Kinetic energy rises by that at most, less
+    /// Adds the work of the drives in this substep: impulse times the rate after it. Kinetic energy rises by that at most, less
     /// by half of what the change of velocity would hold by itself. Motors are not asked for what they take.
     pub(super) fn add_drive_work(&mut self) {
         let (mut given, mut by_motors) = (0.0, 0.0);
@@ -373,7 +373,7 @@ impl IslandSolver {
         sum
     }
 
-    /// What springs take, J, at `s` times the present velocities: the coefficients of `s²` and `s`.
+    /// Energy that springs take, J, at `s` times the present velocities: the coefficients of `s²` and `s`.
     pub(super) fn resistance_of_springs(&self) -> (f32, f32) {
         let (mut square, mut linear) = (0.0, 0.0);
         let passive = |joint: &&SolverJoint| joint.rigid < joint.rows.count && joint.drive.motor.is_none();

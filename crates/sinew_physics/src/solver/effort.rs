@@ -1,4 +1,4 @@
-//! How hard the sweeps of an island try, and how hard its contacts are.
+//! Sweep policy: how hard the sweeps of an island try, and how hard its contacts are.
 
 use super::contact_rows::BOUNCE_SPEED;
 use super::contacts::Sweeps;
@@ -9,7 +9,7 @@ use crate::body::def::Quality;
 use crate::island::Island;
 use sinew_math::{max, min};
 
-/// How long the sweeps of a pass go on.
+/// Limits on the sweeps of a pass: how many there may be, and what ends them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Effort {
     solve: usize,
@@ -28,7 +28,7 @@ pub(super) struct Effort {
     first_conjugate: usize,
 }
 
-/// How hard a contact is.
+/// Hardness of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Firmness {
     /// Softness as a share of what the contact's frequency says.
@@ -41,8 +41,8 @@ impl Firmness {
     /// Between bodies that no joint holds. Nearly hard: what is soft sinks by a load that its own mass says nothing of, and a tower
     /// of 18 levels fell.
     pub const FREE: Self = Self { softness: 1e-3, push_speed: 3.0 };
-    /// Of a body that a joint holds. What stands on the edge of a foot must sink in a little, or it never comes to rest. What an
-    /// impact drove in comes out no faster than 5.5 cm/s: that lifts it by 0.009 J/kg a step at most.
+    /// Firmness of contacts of a body that a joint holds. What stands on the edge of a foot must sink in a little, or it never comes
+    /// to rest. What an impact drove in comes out no faster than 5.5 cm/s: that lifts it by 0.009 J/kg a step at most.
     pub const JOINTED: Self = Self { softness: 1.0, push_speed: 0.055 };
     /// Between a jointed body and one that moves by itself: what a pile bears on must be as hard as the pile, or a tower of unequal
     /// masses falls with a jointed pair on it.
@@ -52,10 +52,10 @@ impl Firmness {
     pub const WITHIN_TREE: Self = Self { softness: 0.01, push_speed: 0.5 };
 }
 
-/// Of the contacts in a pass.
+/// Order of the contacts in a pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Order {
-    /// What cannot move has the last word in each sweep.
+    /// Always forward: what cannot move has the last word in each sweep.
     #[default]
     Forward,
     /// Backward in every other sweep, the first among them. If all went one way, tall walls would lean that way.
@@ -73,8 +73,8 @@ const JOINTED: Effort = Effort {
     order: Order::Forward,
     first_conjugate: 1,
 };
-/// Of heaps in which contacts and trees are solved by turns: most sweeps of a heap at rest end with the second, those of a crash are
-/// needed (a chain of 70 links sank 85 mm into a wall with four).
+/// Effort for heaps in which contacts and trees are solved by turns: most sweeps of a heap at rest end with the second, those
+/// of a crash are needed (a chain of 70 links sank 85 mm into a wall with four).
 const TURNS: Effort = Effort {
     solve: 6,
     relax: 4,
@@ -150,14 +150,14 @@ impl Effort {
         }
     }
 
-    /// Of contacts in blocks.
+    /// Sweeps of contacts in blocks.
     pub fn of_blocks(&self, pass: Pass) -> Sweeps {
         let most = self.sweeps(pass);
         let Self { tolerance, small, order, first_conjugate, .. } = *self;
         Sweeps { most, tolerance, small, order, first_conjugate }
     }
 
-    /// Of contacts and trees by turns.
+    /// Sweeps of contacts and trees by turns.
     pub fn of_turns(&self, pass: Pass) -> Sweeps {
         Sweeps { first_conjugate: 1, ..self.of_blocks(pass) }
     }
@@ -212,7 +212,7 @@ impl IslandSolver {
         (self.h, self.substeps) = view.pace.stretched(self.stretch);
     }
 
-    /// How islands of joints come to agree with their contacts: few figures by the response of all their links, heaps by turns.
+    /// Chooses how islands of joints come to agree with their contacts: few figures by the response of all their links, heaps by turns.
     pub(super) fn choose_coupling(&mut self, contacts: usize) {
         let jointed = self.trees.iter().filter(|tree| tree.len() > 1 || self.links[tree.start].joint != NONE);
         let (trees, links) = jointed.fold((0, 0), |(trees, links), tree| (trees + 1, links + tree.len()));
@@ -241,7 +241,7 @@ impl IslandSolver {
         if self.coupling == Coupling::Turns { TURNS } else { JOINTED }
     }
 
-    /// How hard the contact of two bodies is.
+    /// Firmness of the contact of two bodies.
     pub(super) fn firmness(&self, [a, b]: [u32; 2]) -> Firmness {
         if self.coupling == Coupling::Free {
             return Firmness::FREE;
@@ -260,7 +260,7 @@ impl IslandSolver {
         }
     }
 
-    /// Of the heaviest to the lightest of those that touch each other and are not jointed, as they answer to impulses.
+    /// Mass ratio of the heaviest to the lightest of the bodies that touch each other and are not jointed, as they answer to impulses.
     pub(super) fn mass_ratio(&self) -> f32 {
         let (mut lightest, mut heaviest) = (f32::INFINITY, 0.0);
         for (body, _) in self.bodies.iter().zip(&self.paired).filter(|(_, is_paired)| **is_paired) {

@@ -1,4 +1,4 @@
-//! What keeps violent hits from adding energy. Rows are linear and hold at the pose they were made at; a limb that a
+//! Safeguards that keep violent hits from adding energy. Rows are linear and hold at the pose they were made at; a limb that a
 //! hit turns by a good part of a radian within a substep leaves that pose, and impulses that were right before can do
 //! work. None of this acts at rest or in ordinary falls.
 
@@ -56,12 +56,12 @@ impl IslandSolver {
         }
     }
 
-    /// Of the moving bodies with the given velocities, joules.
+    /// Kinetic energy of the moving bodies with the given velocities, joules.
     pub(super) fn kinetic_energy(&self, velocities: &[Vec6]) -> f32 {
         dispatch::run(KineticEnergy { bodies: &self.bodies[..velocities.len()], velocities })
     }
 
-    /// Of the moving bodies, kg.
+    /// Total mass of the moving bodies, kg.
     pub(super) fn mass(&self) -> f32 {
         self.bodies[..self.links.len()].iter().fold(0.0, |sum, body| sum + body.mass)
     }
@@ -124,13 +124,13 @@ impl IslandSolver {
         self.forget_impulses();
     }
 
-    /// Of the island as if it were one piece with the momentum of the given velocities: at rest if it touches or hangs on a
+    /// Motion of the island as if it were one piece with the momentum of the given velocities: at rest if it touches or hangs on a
     /// fixed body.
     fn motion_as_one(&self, velocities: &[Vec6]) -> RigidMotion {
         if self.is_held() { RigidMotion::default() } else { RigidMotion::of(&self.bodies, velocities) }
     }
 
-    /// Likewise with the momentum that the forces left it, at the present poses.
+    /// Motion of the island as one piece with the momentum that the forces left it, at the present poses.
     fn meant_as_one(&self) -> RigidMotion {
         if self.is_held() {
             RigidMotion::default()
@@ -144,7 +144,7 @@ impl IslandSolver {
         self.bodies.len() > self.links.len()
     }
 
-    /// Of the moving bodies as the forces leave them.
+    /// Momentum of the moving bodies as the forces leave them.
     pub(super) fn momentum_of_start(&self) -> Momentum {
         let mut momentum = Momentum::default();
         let center = center_of_mass(&self.bodies[..self.links.len()]).1;
@@ -338,7 +338,7 @@ impl RigidMotion {
     }
 }
 
-/// Of several bodies, N·s and N·m·s; angular momentum about their centre of mass.
+/// Momentum of several bodies, N·s and N·m·s; angular momentum about their centre of mass.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Momentum {
     linear: Vec3,

@@ -1,4 +1,4 @@
-//! What contacts ask of bodies: looked up once a step for each body, not for each contact.
+//! Properties of bodies that contacts ask for: looked up once a step for each body, not for each contact.
 
 use super::View;
 use super::contact_rows::Placed;
@@ -10,7 +10,7 @@ use crate::contact::ContactKey;
 /// Different materials of an island of which pairs are combined once; others are combined for each contact.
 const MATERIALS: usize = 8;
 
-/// Of a body's first shape, the only one that most have.
+/// Properties of a body's first shape, the only one that most have.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
     /// Metres.
@@ -23,14 +23,14 @@ pub(super) struct Face {
     material: u32,
 }
 
-/// Of the bodies of an island, by local index.
+/// Faces of the bodies of an island, by local index.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Faces {
     of: Vec<Face>,
     materials: Vec<Material>,
-    /// Of two materials, by their places.
+    /// Combined material of each pair of materials, by their places.
     pairs: Vec<Option<ContactMaterial>>,
-    /// What was asked for last, and of which pair, or [`NONE`].
+    /// Combined material that was asked for last, and its pair, or [`NONE`].
     material: ContactMaterial,
     pair: u32,
 }
@@ -84,7 +84,7 @@ impl Faces {
         }
     }
 
-    /// Of the two shapes of a contact.
+    /// Faces of the two shapes of a contact.
     #[inline]
     pub fn of(&self, view: &View<'_>, key: ContactKey, [a, b]: [u32; 2]) -> [Face; 2] {
         [self.one(view, key.a, key.shape_a, a), self.one(view, key.b, key.shape_b, b)]
@@ -99,7 +99,7 @@ impl Faces {
         }
     }
 
-    /// What the surfaces of a contact are to each other in this step.
+    /// Combined material of the surfaces of a contact in this step.
     #[inline]
     pub fn material(&mut self, view: &View<'_>, index: u32, [a, b]: &[Face; 2]) -> &ContactMaterial {
         let (a, b) = (a.material, b.material);

@@ -18,7 +18,7 @@ pub(super) struct Attraction {
 }
 
 impl IslandSolver {
-    /// Whether something in this step depends on how bodies move within it.
+    /// Finds out whether something in this step depends on how bodies move within it.
     pub(super) fn look_for_fields(&mut self, view: &View<'_>) {
         let lasting = |body: &SolverBody| !view.bodies.at(body.index).forces.list.is_empty();
         self.forces_vary = !view.fields.is_empty() || self.bodies[..self.links.len()].iter().any(lasting);

@@ -18,7 +18,7 @@ pub(crate) struct TakenGroup {
 }
 
 impl TakenGroup {
-    /// What fields do to the particles from where they are; not more than would stop them: see [`crate::field`].
+    /// Lists the forces of fields on the particles at their present positions, N; no more than would stop them: see [`crate::field`].
     pub fn feel(&mut self, fields: &Fields<'_>, h: f32) {
         self.group.outer_forces().clear();
         for i in 0..self.group.positions().len() {
@@ -35,7 +35,7 @@ impl TakenGroup {
 pub(crate) struct Neighbors {
     /// World body indices, ascending.
     pub bodies: Vec<u32>,
-    /// How many particles hang on each of them.
+    /// Number of particles that hang on each of `bodies`.
     pub holds: Vec<u32>,
     /// Position in `bodies`, shape number.
     pub shapes: Vec<(u32, u32)>,

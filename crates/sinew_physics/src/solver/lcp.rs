@@ -6,7 +6,7 @@ use sinew_math::max;
 /// At most this many rows.
 const N: usize = 4;
 
-/// Of the largest response: added to all.
+/// Proximal term as a share of the largest response: added to all.
 const PROXIMAL: f32 = 1e-5;
 
 /// New impulses `x ≥ 0` of `n` unilateral rows with response `k`, gap velocities `v` (at impulses `old`, bias

@@ -1,4 +1,4 @@
-//! How high the bodies of a pile stand.
+//! Support depth of the bodies of a pile: how high each of them stands.
 
 use super::squeeze::Touch;
 
@@ -12,7 +12,7 @@ pub(super) struct Levels {
 }
 
 impl Levels {
-    /// Of so many bodies, of which the first move.
+    /// Counts the levels of `bodies` bodies, of which the first `moving` move.
     pub fn count(&mut self, moving: usize, bodies: usize, touches: &[Touch]) {
         self.of.clear();
         self.of.resize(moving, UNSUPPORTED);

@@ -42,9 +42,9 @@ struct Block {
     columns: [usize; WIDTH],
     places: [[Option<usize>; 2]; WIDTH],
     count: usize,
-    /// Those that begin the pass with an impulse, bit by bit.
+    /// Rows that begin the pass with an impulse, bit by bit.
     warm: u8,
-    /// Those that have something to give or to take back at this pose, or had: they have columns. Bit by bit.
+    /// Rows that have something to give or to take back at this pose, or had: they have columns. Bit by bit.
     pushing: u8,
 }
 

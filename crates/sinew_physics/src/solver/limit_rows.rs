@@ -21,7 +21,7 @@ const BEND: f32 = 10.0;
 /// A hit turns linear speed into rotation over at least this lever, metres.
 const LEVER: f32 = 0.2;
 
-/// How a limit row answers.
+/// Hardness of a limit row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Hardness {
     /// A stop.
@@ -37,7 +37,7 @@ enum Hardness {
 #[derive(Clone, Debug)]
 pub(super) struct LimitRow {
     pub joint: u32,
-    /// Which of the joint's stops, and which memory it has.
+    /// Index of the joint's stop, and of the limit whose memory it has.
     stop: usize,
     limit: usize,
     /// Radians or metres.
@@ -46,11 +46,11 @@ pub(super) struct LimitRow {
     /// Gradient of the room, world axes.
     axis: Vec3,
     pub row: Row,
-    /// Which block it is in.
+    /// Index of the block that it is in.
     pub block: u32,
     /// Response of the row to its own impulse, with its column.
     effective: f32,
-    /// Of this substep: ≥ 0 after a visit, less between sweeps by what a conjugate step asked too much.
+    /// Impulse of this substep: ≥ 0 after a visit, less between sweeps by what a conjugate step asked too much.
     pub impulse: f32,
 }
 
@@ -289,7 +289,7 @@ impl LimitRow {
         change
     }
 
-    /// What the spring of a soft row gives in a substep.
+    /// Energy that the spring of a soft row gives in a substep, J.
     pub fn soft_work(&self, joint: &SolverJoint, velocities: &[Vec6]) -> f32 {
         let is_soft = matches!(self.hardness, Hardness::Soft(..));
         if is_soft { self.impulse * self.row.rate(joint, velocities) } else { 0.0 }

@@ -99,7 +99,7 @@ impl IslandSolver {
         supports.sort_unstable();
     }
 
-    /// Which of the bodies of a touch is nearer to what cannot move, the other, and 1 if the normal leads to that one, else -1.
+    /// Body of a touch that is nearer to what cannot move, the other one, and 1 if the normal leads to that one, else -1.
     fn standing(&self, place: u32) -> (u32, u32, f32) {
         let [a, b] = self.touches[place as usize].bodies;
         if self.levels.of(a) < self.levels.of(b) { (a, b, 1.0) } else { (b, a, -1.0) }

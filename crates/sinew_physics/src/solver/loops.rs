@@ -74,7 +74,7 @@ impl Loops {
         self.closures.is_empty() && !self.joints.is_empty()
     }
 
-    /// Those that the responses know of.
+    /// Loop joints that the responses take into account.
     pub fn closed_exactly(&self) -> &[u32] {
         if self.are_iterated() { &[] } else { &self.joints }
     }

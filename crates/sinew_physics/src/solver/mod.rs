@@ -90,9 +90,9 @@ pub(crate) struct SolverBody {
     pub mass: f32,
     /// Principal moments.
     pub inertia: Vec3,
-    /// What stability adds to the moments: geometric stiffness beyond what the inertia can carry.
+    /// Moments added for stability, kg·m²: geometric stiffness beyond what the inertia can carry.
     pub excess: Vec3,
-    /// How many times as heavy as it is it answers to forces and impulses: 1, but of what is squeezed.
+    /// Factor on mass and inertia in the body's answer to forces and impulses: 1 unless it is squeezed.
     pub ballast: f32,
     /// Inverse of inertia and excess with ballast, world axes.
     pub inverse_inertia: Sym3,
@@ -107,8 +107,8 @@ pub(crate) struct SolverBody {
     pub is_limited: bool,
 }
 
-/// What is added to the response of every row of contacts, limits and loops, as a share of what the bodies would answer if
-/// nothing held them: rows that cannot move anything, since joints hold it already, answer with rounding errors alone.
+/// Addition to the response of every row of contacts, limits and loops, as a share of what the bodies would answer if nothing
+/// held them: rows that cannot move anything, since joints hold it already, answer with rounding errors alone.
 const REDUNDANCY: f32 = 1e-5;
 
 /// A row's answer to its own impulse if nothing held the bodies; those from `moving` on are fixed.
@@ -146,20 +146,20 @@ pub(crate) struct SolverJoint {
     pub rows: JointRows,
     /// Rows that hold exactly.
     rigid: usize,
-    /// What they may leave of their errors in this substep, row by row.
+    /// Position errors that the rigid rows may leave in this substep, row by row, m or rad.
     left_open: Vec6,
     /// Rows that it may have.
     most_rows: usize,
     /// The others, row by row.
     soft: [SoftRow; DIRECTIONS],
-    /// Of these, what the motor does.
+    /// Part of the motor in the soft rows, row by row.
     driven: [SoftRow; DIRECTIONS],
-    /// How much further than along its rows a weld that gives goes in this substep, m or rad, and before the last correction.
+    /// Motion of a weld that gives beyond that along its rows in this substep, m or rad, and before the last correction.
     bent: Vec6,
     bent_before: Vec6,
-    /// What springs and motors move, direction by direction, kg or kg·m².
+    /// Masses that springs and motors move, direction by direction, kg or kg·m².
     pub mass: Vec6,
-    /// Likewise what they move at least, whatever else gives way: the joint's two bodies. Of motors; else the same.
+    /// Least masses that motors move, whatever else gives way: those of the joint's two bodies. Without a motor the same as `mass`.
     least_mass: Vec6,
     /// Rates of driven directions when the substep began.
     start_rate: Vec6,
@@ -170,7 +170,7 @@ pub(crate) struct SolverJoint {
     pub force: Vec3,
     /// Impulses of this substep if it closes a loop, row by row.
     impulse: Vec6,
-    /// Likewise of the last substep, direction by direction.
+    /// Impulses of the last substep if it closes a loop, direction by direction.
     pub warm_impulse: Vec6,
     /// Impulses of the substeps so far on B, torque about its anchor.
     pub reaction: Vec6,
@@ -178,7 +178,7 @@ pub(crate) struct SolverJoint {
     accounted: Vec6,
 }
 
-/// How contacts and joints of an island come to agree. It decides how nearly and how soon they do, nothing else.
+/// Way in which contacts and joints of an island come to agree. It decides how nearly and how soon they do, nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Coupling {
     /// There are no joints.
@@ -214,7 +214,7 @@ pub(crate) struct IslandSolver {
     bounced_from: Vec<Vec6>,
     /// One per moving body.
     links: Vec<Link>,
-    /// Where the links of each tree lie.
+    /// Range of the links of each tree.
     trees: Vec<Range<usize>>,
     /// Trees of one shape, of an island by turns.
     batches: Batches,
@@ -233,7 +233,7 @@ pub(crate) struct IslandSolver {
     unconstrained: Vec<Vec6>,
     /// Velocities when the bodies have moved, before `relax`.
     moved: Vec<Vec6>,
-    /// What bodies gain after that without having it from their joints; what contacts and loops gave before, negative.
+    /// Impulses that bodies get, once they have moved, from elsewhere than their joints; what contacts and loops gave before, negative.
     accounted: Vec<Vec6>,
     /// Fields and lasting forces act: they are taken anew in each substep.
     forces_vary: bool,
@@ -268,7 +268,7 @@ pub(crate) struct IslandSolver {
     driven: bool,
     /// Poses changed since all that depends on them was computed.
     displaced: bool,
-    /// How fast a hit may make a joint turn, rad/s: limits within reach of it get rows.
+    /// Fastest rate that a hit may give a joint, rad/s: limits within reach of it get rows.
     hit_rate: f32,
     /// Substep, seconds, how many there are in the step, and how many times as long as the world's they are: a power of two.
     h: f32,
@@ -567,7 +567,7 @@ impl IslandSolver {
         dispatch::run(RefreshInertia(&mut self.bodies[..self.links.len()]));
     }
 
-    /// Which bodies carry rows, and how they answer to impulses.
+    /// Finds the bodies that carry rows, and how they answer to impulses.
     fn refresh_response(&mut self) {
         let wanted = &mut self.scratch.wanted;
         wanted.clear();
@@ -632,7 +632,7 @@ impl IslandSolver {
         self.h * moving.map(power).fold(0.0, |sum, power| sum + power)
     }
 
-    /// How many of them this step has.
+    /// Number of substeps of the island in this step.
     pub fn substeps(&self) -> u32 {
         self.substeps
     }

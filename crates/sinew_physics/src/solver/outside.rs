@@ -1,4 +1,4 @@
-//! What the user's objects do to the moving bodies of an island between its stages.
+//! Effects of the user's objects on the moving bodies of an island between its stages.
 
 use super::build::{View, lasting_force};
 use super::{IslandSolver, advance};
@@ -39,7 +39,7 @@ impl IslandSolver {
         self.answer_one(local, impulse);
     }
 
-    /// Likewise, and bodies go where it would have taken them in the substep that is over.
+    /// An impulse after bodies have moved, through the joints; bodies go where it would have taken them in the substep that is over.
     pub fn correct(&mut self, local: usize, impulse: &Vec6) {
         let moving = self.links.len();
         self.scratch.before.clear();
@@ -56,7 +56,7 @@ impl IslandSolver {
         self.displaced = true;
     }
 
-    /// How a row on a body answers to its own impulse, joints of the trees included.
+    /// Response of a row on a body to its own impulse, joints of the trees included.
     pub fn response_along(&mut self, local: usize, row: &Vec6) -> f32 {
         if !self.is_articulated() {
             return dot(row, &self.bodies[local].velocity_change(row));

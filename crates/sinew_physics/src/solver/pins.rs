@@ -34,7 +34,7 @@ impl Pins {
         self.nearest.reserve(bodies);
     }
 
-    /// What hangs on a joint of the island if it is a pin.
+    /// Piece that hangs on a joint of the island if it is a pin.
     pub fn piece(&self, joint: usize) -> Option<Piece> {
         let place = self.joints.binary_search(&(joint as u32)).ok()?;
         self.pieces.get(place).copied()

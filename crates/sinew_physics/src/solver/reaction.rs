@@ -1,4 +1,4 @@
-//! What the joints carry: the momentum that the subtree below each gained, less what contacts, loops and particles gave
+//! Reactions of the joints: the momentum that the subtree below each gained, less what contacts, loops and particles gave
 //! it; torques about the anchor of B. Summed in two parts, since the pose changes between `solve` and `relax`: with the
 //! arms of the new one, the torque of what `solve` gave is 3 % too high for an arm that turns at 3 rad/s.
 
@@ -19,8 +19,8 @@ enum Since {
 }
 
 impl IslandSolver {
-    /// What `solve` gave, with arms and axes of the pose in which it was given: that of the substep's beginning. What
-    /// saturated motors push counts among the forces, and adds itself.
+    /// Adds the reactions to what `solve` gave, with arms and axes of the pose in which it was given: that of the substep's
+    /// beginning. What saturated motors push counts among the forces, and adds itself.
     pub(super) fn add_solve_reactions(&mut self) {
         if !self.is_articulated() {
             return;
@@ -46,7 +46,7 @@ impl IslandSolver {
         self.add_loop_reactions(-1.0);
     }
 
-    /// What `relax` gave.
+    /// Adds the reactions to what `relax` gave.
     pub(super) fn add_relax_reactions(&mut self) {
         if !self.is_articulated() {
             return;
@@ -61,7 +61,7 @@ impl IslandSolver {
         self.add_loop_reactions(1.0);
     }
 
-    /// What the moving bodies gained about their centres, N·s and N·m·s.
+    /// Sums what each moving body gained about its centre, N·s and N·m·s.
     fn sum_gains(&mut self, since: Since) {
         let before = match since {
             Since::Forces => &self.unconstrained,
@@ -137,7 +137,7 @@ impl super::SolverJoint {
         }
     }
 
-    /// Of an impulse on B at its centre, `arm` from its anchor.
+    /// Adds the reaction to an impulse on B at its centre; `arm` leads from there to the anchor, world.
     pub(super) fn add_reaction(&mut self, on_b: &Vec6, arm: Vec3) {
         let torque = angular(on_b) - arm.cross(linear(on_b));
         add_scaled(&mut self.reaction, &join(linear(on_b), torque), 1.0);

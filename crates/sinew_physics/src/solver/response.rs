@@ -293,7 +293,7 @@ impl Kernel for AnswerAll<'_> {
     }
 }
 
-/// What an impulse on the member `slot` passes on, up to the root.
+/// Passes an impulse on the member `slot` up to the root.
 #[inline(always)]
 fn ascend<L: Lanes>(
     links: &[Link],

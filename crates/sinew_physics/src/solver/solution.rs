@@ -1,4 +1,4 @@
-//! What comes of the islands' substeps, for the world to take.
+//! Results of the islands' substeps, for the world to take.
 
 use super::{IslandSolver, SolverBody};
 use crate::body::Velocity;
@@ -22,7 +22,7 @@ pub(crate) struct SolvedBody {
     pub is_limited: bool,
 }
 
-/// What a joint carries on.
+/// Values that a joint carries on.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SolvedJoint {
     /// In the world.
@@ -36,7 +36,7 @@ pub(crate) struct SolvedJoint {
     pub reaction: Vec6,
 }
 
-/// What a contact carries on.
+/// Values that a contact carries on.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SolvedContact {
     /// In the world.
@@ -46,7 +46,7 @@ pub(crate) struct SolvedContact {
     pub memory: ContactMemory,
 }
 
-/// Of all islands, one after the other.
+/// Results of all islands, one after the other.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Solution {
     pub bodies: Vec<SolvedBody>,

@@ -18,7 +18,7 @@ pub(super) const BALLASTED_RATIO: f32 = 1e3;
 /// Fastest approach of what is taken to stand already, m/s.
 const STANDING_SPEED: f32 = 0.1;
 
-/// What presses on a body in a substep, N·s.
+/// Impulses that press on a body in a substep, N·s: their vector sum, and the sum of their sizes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Pressing {
     sum: Vec3,
@@ -89,7 +89,7 @@ impl Pressing {
 }
 
 impl IslandSolver {
-    /// Where masses are very unequal, ballast follows from what presses in this substep.
+    /// Derives ballast from what presses in this substep, where masses are very unequal.
     pub(super) fn refresh_ballast(&mut self) {
         if self.is_unequal {
             self.touches.clear();

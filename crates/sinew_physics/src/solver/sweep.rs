@@ -13,7 +13,7 @@ use crate::runner::TaskRunner;
 use crate::spatial::{ZERO6, add_scaled, largest, linear};
 use sinew_math::max;
 
-/// What a pass over the rows is for.
+/// Purpose of a pass over the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pass {
     /// With bias, no friction.
@@ -24,8 +24,8 @@ pub(crate) enum Pass {
     Restitution,
 }
 
-/// How much the velocities of each tree have changed in a pass: rows whose trees lie still need no further visit, and in a
-/// heap most of them do after a few sweeps. m/s or rad/s, summed.
+/// Velocity changes of each tree in a pass, summed, m/s or rad/s: rows whose trees lie still need no further visit, and in a
+/// heap most of them do after a few sweeps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Unrest {
     /// A change below it is none.
@@ -66,7 +66,7 @@ impl Unrest {
         self.trees[tree] != self.corrected[tree]
     }
 
-    /// Of the trees of two bodies.
+    /// Sum of the changes of the trees of two bodies.
     pub fn of(&self, links: &[Link], a: u32, b: u32) -> f32 {
         let tree = |body: u32| links.get(body as usize).map_or(0.0, |link| self.trees[link.tree as usize]);
         tree(a) + tree(b)
@@ -108,7 +108,7 @@ impl Unrest {
     }
 }
 
-/// Whether enough has happened since the last visit; then this is the last one.
+/// True if enough has happened since the last visit; then this counts as the last one.
 fn wakes(seen: &mut f32, now: f32, tolerance: f32) -> bool {
     let wakes = now - *seen >= tolerance;
     if wakes {

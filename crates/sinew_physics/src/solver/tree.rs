@@ -41,12 +41,12 @@ pub(crate) struct Link {
     pub parent: u32,
     /// Local index of the joint to the parent.
     pub joint: u32,
-    /// Which tree.
+    /// Index of its tree.
     pub tree: u32,
-    /// How many rows ask for a velocity, and which.
+    /// Number of rows that ask for a velocity, and their indices.
     asking: usize,
     row: [u8; DIRECTIONS],
-    /// What a unit of each one's residual makes of this body with its parent held, and the impulse that it passes on.
+    /// Velocity of this body by a unit residual of each asking row with its parent held, and the impulse that it passes on.
     follow: [Vec6; DIRECTIONS],
     pass: [Vec6; DIRECTIONS],
     /// Rows whose gains push both bodies, bit by bit.
@@ -81,7 +81,7 @@ impl Link {
         sum(&self.carry_columns, parent)
     }
 
-    /// What an impulse on this body gives the parent.
+    /// Impulse that the parent gets from one on this body.
     #[inline(always)]
     pub fn passed_up<L: Lanes>(&self, impulse: &Vec6) -> L {
         sum(&self.carry, impulse)
@@ -166,8 +166,8 @@ impl Link {
         if joint.rows.count == 0 { Inertia::zero() } else { through }
     }
 
-    /// What an elimination makes of units of velocities and impulses, one in each lane. Formed with twice the digits: in single
-    /// precision light bodies between heavy ones would pass on more rounding than they weigh.
+    /// Computes what an elimination makes of units of velocities and impulses, one in each lane. Formed with twice the digits:
+    /// in single precision light bodies between heavy ones would pass on more rounding than they weigh.
     #[inline(always)]
     fn condense<L: Lanes>(&mut self, by: &impl Elimination<f64>) {
         let [x, y, z, u, v, w] = &UNITS;
@@ -276,7 +276,7 @@ impl Link {
     }
 }
 
-/// Those of the child and its parent, and the sign with which rows act on the child.
+/// Arms of the child and its parent, and the sign with which rows act on the child.
 #[inline(always)]
 pub(super) fn arms(rows: &JointRows, is_b: bool) -> ([Vec3; 2], f32) {
     if is_b { ([rows.arm_b, rows.arm_a], 1.0) } else { ([rows.arm_a, rows.arm_b], -1.0) }
@@ -371,7 +371,7 @@ impl Ways {
     }
 }
 
-/// Whether enough of an axis is left beside others.
+/// True if enough of an axis is left beside others.
 #[inline(always)]
 fn is_apart(axis: Vec3, others: &[Vec3]) -> bool {
     let square = axis.length_squared();

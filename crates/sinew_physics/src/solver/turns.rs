@@ -18,7 +18,7 @@ use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes};
 use sinew_math::max;
 
-/// What gave a body this change of velocity, if nothing held it.
+/// Impulse that gives a body this change of velocity if nothing holds it.
 fn impulse_of(body: &SolverBody, change: &Vec6) -> Vec6 {
     let r = body.pose.rotation;
     let inertia = (body.inertia + body.excess) * body.ballast;
@@ -280,7 +280,7 @@ impl IslandSolver {
         }
     }
 
-    /// Whether a link is part of a tree of joints.
+    /// True if a link is part of a tree of joints.
     pub(super) fn is_jointed(&self, body: u32) -> bool {
         self.coupling != Coupling::Free
             && self.links.get(body as usize).is_some_and(|link| {

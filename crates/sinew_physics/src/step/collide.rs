@@ -91,7 +91,7 @@ pub(crate) fn ask(a: &Body, b: &Body, asked: &mut Asked, ahead: f32, dt: f32) {
     asked.kept = Kept::new([a, b], asked.key, (margin, slop), &asked.manifold);
 }
 
-/// How fast a contact comes in, and what it does.
+/// Finds how fast a contact comes in, and what it does.
 fn weigh(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     contact.approach = approach_of(a, b, &contact.manifold);
     if contact.is_plain && !a.stirred && !b.stirred {
@@ -101,8 +101,8 @@ fn weigh(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     }
 }
 
-/// How far apart points of two shapes are looked for, and their slop, metres. Because of how fast the two are it is no more than
-/// `ahead`, which may be far too much.
+/// Margin up to which points of two shapes are looked for, and their slop, metres. Because of how fast the two are it is no
+/// more than `ahead`, which may be far too much.
 fn margin(a: &Body, b: &Body, key: ContactKey, ahead: f32, dt: f32) -> (f32, f32) {
     let slop = slop(smallest_extent(a, b, key));
     let least = SPECULATIVE_SLOPS * slop;
@@ -117,13 +117,13 @@ fn margin(a: &Body, b: &Body, key: ContactKey, ahead: f32, dt: f32) -> (f32, f32
     (max(least, approach * dt), slop)
 }
 
-/// Of the two shapes, metres.
+/// Smallest extent of the two shapes, metres.
 pub(crate) fn smallest_extent(a: &Body, b: &Body, key: ContactKey) -> f32 {
     let (shape_a, shape_b) = (&a.shapes[key.shape_a as usize].shape, &b.shapes[key.shape_b as usize].shape);
     min(shape_a.smallest_extent(), shape_b.smallest_extent())
 }
 
-/// How a pair moves of which one is a surface, the other toward the surface; `None` of other pairs, and of those at rest.
+/// Motion of a pair of which one is a surface, the other toward the surface; `None` of other pairs, and of those at rest.
 fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Motion> {
     let key = contact.key;
     let (a, b) = (bodies.at(key.a), bodies.at(key.b));
@@ -148,7 +148,7 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Mo
     })
 }
 
-/// How fast the points come in, m/s; the fastest counts.
+/// Approach speed of the fastest point, m/s; not negative.
 fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
     manifold.points().iter().fold(0.0, |fastest, point| {
         let p = point.position;
@@ -163,7 +163,7 @@ fn is_plain(surface: &Surface) -> bool {
     pushes && surface.sensing == Sensing::Solid
 }
 
-/// What the contact does, as far as its shapes say.
+/// Sets what the contact does, as far as its shapes say.
 fn rule(contact: &mut Contact, a: &Body, b: &Body, dt: f32) {
     let (sa, sb) = (contact.key.shape_a as usize, contact.key.shape_b as usize);
     contact.effect = Effect::Push;

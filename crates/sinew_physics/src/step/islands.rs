@@ -83,12 +83,12 @@ impl Islands {
         }
     }
 
-    /// Of drives and of bodies that move by themselves, island after island.
+    /// Work of drives and of bodies that move by themselves, island after island.
     pub fn work(&self) -> Work {
         self.solution.work[..self.count].iter().fold(Work::default(), |sum, work| sum + *work)
     }
 
-    /// What came of them.
+    /// Results of the islands.
     pub fn solution(&self) -> &Solution {
         &self.solution
     }
@@ -339,7 +339,7 @@ impl Islands {
         self.idle = idle;
     }
 
-    /// Likewise for a part of it: each island finds its workspace as the part before left it.
+    /// Calls `work` once for each island that is not flown, for a part of its step: each island finds its workspace as the part before left it.
     pub fn run_part(&mut self, runner: &dyn TaskRunner, work: impl Fn(&mut Task<'_>) + Sync) {
         let mut own = core::mem::take(&mut self.own);
         if own.len() < self.count {
@@ -407,7 +407,7 @@ struct Lists {
     /// Island and number, as they come.
     pairs: Vec<(u32, u32)>,
     numbers: Vec<u32>,
-    /// Where the list of each island ends.
+    /// End of each island's list in `numbers`.
     ends: Vec<usize>,
 }
 

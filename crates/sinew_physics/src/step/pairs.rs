@@ -161,7 +161,7 @@ impl Keeper<'_> {
         self.contacts.get(self.from).map_or(end, |contact| ContactKey { part: 0, ..contact.key })
     }
 
-    /// How many there are of a pair.
+    /// Number of contacts of a pair, from the next one on.
     fn count_of(&self, key: ContactKey) -> usize {
         let rest = &self.contacts[self.from..];
         rest.iter().take_while(|contact| contact.key.is_of_pair(key)).count()
@@ -309,7 +309,7 @@ mod tests {
         }
     }
 
-    /// What the next step will find, and whether it is what there is to find.
+    /// Checks that the next step will find the pairs that there are to find. Gives their number.
     fn check(world: &mut World, case: usize) -> usize {
         let dt = world.def.dt();
         let PairFilter { parted, version, .. } = world.parted.filter(&world.joints);

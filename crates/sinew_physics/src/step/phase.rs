@@ -18,14 +18,14 @@ pub(crate) enum Phase {
 }
 
 impl Phase {
-    /// Those of a step, in order.
+    /// Phases of a step, in order.
     pub fn of_step(substeps: u32) -> impl Iterator<Item = Self> {
         core::iter::once(Self::Prepare)
             .chain(Self::of_substeps(substeps))
             .chain(core::iter::once(Self::Store))
     }
 
-    /// Those of an island that takes so many substeps, in order, after [`Prepare`](Self::Prepare) and before [`Store`](Self::Store).
+    /// Phases of so many substeps of an island, in order, after [`Prepare`](Self::Prepare) and before [`Store`](Self::Store).
     pub fn of_substeps(substeps: u32) -> impl Iterator<Item = Self> {
         (0..substeps).flat_map(|substep| [Self::Move(substep), Self::Relax(substep)])
     }

@@ -9,14 +9,14 @@ use crate::solver::{IslandSolver, View};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
 use sinew_math::{Sym3, Transform, Vec3};
 
-/// What a particle group sees of bodies.
+/// Bodies as a particle group sees them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surroundings {
     obstacles: Vec<Obstacle>,
     anchors: Vec<Anchor>,
     bodies: Vec<ObstacleBody>,
     seen: Vec<Seen>,
-    /// Where the island's moving bodies were when the substep began.
+    /// Poses of the island's moving bodies when the substep began.
     starts: Vec<Transform>,
     /// Impulses on the bodies of the island, by local index.
     impulses: Vec<Vec6>,
@@ -81,7 +81,7 @@ fn moved(pose: &Transform, velocity: &Velocity, h: f32) -> Transform {
 }
 
 impl Surroundings {
-    /// What only islands with particles need, also for one that has none: memory goes on to the next, which may have some.
+    /// Reserves memory that only islands with particles need, also for one that has none: it goes on to the next, which may have some.
     pub fn make_room(&mut self, island: &Island<'_>) {
         self.impulses.clear();
         self.impulses.reserve(island.bodies.len());

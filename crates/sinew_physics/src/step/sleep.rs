@@ -8,14 +8,14 @@ use crate::body::{Body, Rest};
 use crate::field::Fields;
 use crate::step::islands::Islands;
 
-/// What creeps is calm wherever it gets to while it is slower than this many times the distance in the time, and than the angle
-/// in the time: limp limbs sag for seconds.
+/// Factor on the distance over the time, and on the angle over the time, of the thresholds: what creeps more slowly than that
+/// is calm wherever it gets to, since limp limbs sag for seconds.
 const CREEP: f32 = 2.0;
 /// Speed of the way in a step from which on a body without velocity is being pushed out of another, m/s: half of what bodies with joints are pushed
 /// out with.
 const PUSHED: f32 = 0.0275;
-/// What hangs on particles swings about its place, and must come to rest before it may sleep: below both of these, m/s and
-/// rad/s.
+/// Speeds below which what hangs on particles may sleep, m/s and rad/s: it swings about its place, and must come to rest
+/// before that.
 const SLOW_LINEAR: f32 = 0.02;
 const SLOW_ANGULAR: f32 = 0.05;
 

@@ -17,7 +17,7 @@ pub(crate) struct Workspace {
     pub surroundings: Surroundings,
 }
 
-/// Where islands are solved.
+/// Workspaces in which islands are solved.
 pub(crate) enum Workspaces<'a> {
     /// Wherever there is room: nothing is to last.
     Idle(&'a mut Vec<Workspace>),
@@ -50,7 +50,7 @@ impl Workspaces<'_> {
 
 /// The unit of work: an island, and all that its substeps write.
 pub(crate) struct Task<'a> {
-    /// Which of the islands.
+    /// Number of the island.
     number: usize,
     pub island: Island<'a>,
     pub groups: &'a mut [TakenGroup],

@@ -83,7 +83,7 @@ fn is_deep(bodies: &Arena<Body>, pair: &[Contact]) -> bool {
     points_of(pair).any(|point| point.separation < deep)
 }
 
-/// What joints hold to a kinematic body that moves.
+/// Wakes the bodies that joints hold to a kinematic body that moves.
 fn wake_held(bodies: &mut Arena<Body>, joints: &Arena<Joint>, activity: &mut Activity) {
     for at in 0..activity.kinematic().len() {
         let mover = activity.kinematic()[at];

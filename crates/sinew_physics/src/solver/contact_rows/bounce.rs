@@ -1,4 +1,4 @@
-//! How a manifold's points come in, and with what speed they leave.
+//! Approach and rebound of a manifold's points: how they come in, and with what speed they leave.
 
 use super::ManifoldRows;
 use crate::collide::MAX_POINTS;
@@ -13,9 +13,9 @@ pub(in crate::solver) const BOUNCE_SPEED: f32 = 1.0;
 pub(super) struct Approach {
     /// At its beginning, m/s; negative if it comes nearer.
     pub rate: f32,
-    /// Likewise, metres; 0 if it overlaps.
+    /// Gap at the beginning of the substep, metres; 0 if the surfaces overlap.
     pub gap: f32,
-    /// What forces and joints add in the substep before contacts, toward the surface, m/s; not negative.
+    /// Speed toward the surface that forces and joints add in the substep before contacts, m/s; not negative.
     pub pull: f32,
 }
 
@@ -29,7 +29,7 @@ impl Approach {
 }
 
 impl ManifoldRows {
-    /// How its points come in, when the substep begins.
+    /// Records how the points come in when the substep begins.
     pub fn begin_approach(&mut self, velocities: &[Vec6]) {
         for i in 0..self.bouncy_count() {
             let rate = self.rows[i].rate(self.pair(), velocities);
@@ -37,7 +37,7 @@ impl ManifoldRows {
         }
     }
 
-    /// What the forces and the joints have added to that.
+    /// Records the speed toward the surface that forces and joints have added.
     pub fn pull_approach(&mut self, velocities: &[Vec6]) {
         for i in 0..self.bouncy_count() {
             let rate = self.rows[i].rate(self.pair(), velocities);
@@ -66,12 +66,12 @@ impl ManifoldRows {
         if self.material.restitution > 0.0 { self.count } else { 0 }
     }
 
-    /// Whether a point leaves what it hit.
+    /// True if a point bounces off what it hit in this substep.
     pub fn bounces(&self) -> bool {
         (0..self.bouncy_count()).any(|i| self.rebound[i] > 0.0)
     }
 
-    /// What the bounce of this substep added to its impulses.
+    /// Adds the impulses of this substep's bounce to the totals of the points.
     pub fn add_bounce(&mut self) {
         for i in 0..self.count {
             let point = &mut self.memory.points[i];

@@ -58,7 +58,7 @@ impl Given {
     }
 }
 
-/// Those about which torques resist rolling.
+/// World axes about which torques resist rolling.
 const AXES: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
 
 /// Impulses on A and on B.
@@ -91,9 +91,9 @@ pub(crate) struct ManifoldRows {
     material: ContactMaterial,
     slop: f32,
     soft: Softness,
-    /// How hard it is: a share of that softness, which the bias takes no notice of, and how fast it pushes apart.
+    /// Firmness of the contact: a share of `soft`, which the bias takes no notice of, and the speed with which it pushes apart.
     firmness: Firmness,
-    /// Of the present pose.
+    /// Separations of the points at the present pose, metres; the rows are of that pose, too.
     separation: [f32; MAX_POINTS],
     rows: [Row; MAX_POINTS],
     tangents: [Row; 2],
@@ -103,17 +103,17 @@ pub(crate) struct ManifoldRows {
     weight: [f32; MAX_POINTS],
     /// Weighted distance of the points from that centre: lever of the twist friction.
     lever: f32,
-    /// Where the columns of its rows lie: of the points, the tangents, the twist, and of torques about each axis if it resists
-    /// rolling. None as long as it is idle at this pose.
+    /// Columns of its rows: of the points, the tangents, the twist, and of torques about each axis if it resists rolling. None
+    /// as long as it is idle at this pose.
     pub columns: Option<Strip>,
     /// Responses, with the columns.
     k: [[f32; MAX_POINTS]; MAX_POINTS],
     k_tangent: [[f32; 2]; 2],
     k_spin: f32,
-    /// Of the twist to the tangents.
+    /// Response of the twist to each tangent.
     k_spin_tangent: [f32; 2],
     k_roll: Mat3,
-    /// How each point comes in, in this substep.
+    /// Approach of each point in this substep.
     approach: [Approach; MAX_POINTS],
     /// Normal speed with which each point leaves what it hit in this substep, m/s; 0 if it does not bounce.
     rebound: [f32; MAX_POINTS],
@@ -121,7 +121,7 @@ pub(crate) struct ManifoldRows {
     impulse: [f32; MAX_POINTS],
     /// Sum of the normal impulses that friction is limited by.
     load: f32,
-    /// What `relax` may not go below.
+    /// Lower bound of each point's impulse in `relax`, N·s.
     floor: [f32; MAX_POINTS],
     friction: Vec3,
     twist: f32,
@@ -129,7 +129,7 @@ pub(crate) struct ManifoldRows {
     pub memory: ContactMemory,
 }
 
-/// What a manifold's rows are made from.
+/// Input from which a manifold's rows are made.
 pub(crate) struct ManifoldSource<'a> {
     pub contact: u32,
     pub a: u32,
@@ -205,7 +205,7 @@ impl ManifoldRows {
         self.firmness = firmness;
     }
 
-    /// Of its two bodies.
+    /// Poses of the manifold's two bodies in the world.
     pub fn poses(&self, bodies: &[SolverBody]) -> [Transform; 2] {
         [self.a, self.b].map(|body| bodies[body as usize].pose)
     }
@@ -366,7 +366,7 @@ impl ManifoldRows {
         self.separation[..self.count].iter().any(|s| *s < -DEEP * self.slop)
     }
 
-    /// What all rows put on the bodies in this substep.
+    /// Impulses that all rows put on the two bodies in this substep.
     pub fn total_push(&self) -> Push {
         let mut push = (ZERO6, ZERO6);
         for i in 0..self.count {
@@ -416,7 +416,7 @@ impl ManifoldRows {
     }
 }
 
-/// How a contact gives before its firmness says otherwise, in a substep of `h` seconds.
+/// Softness of a contact before its firmness is applied, in a substep of `h` seconds.
 pub(super) fn contact_softness(both_move: bool, h: f32) -> Softness {
     let hertz = if both_move { CONTACT_HERTZ } else { FIXED_HERTZ };
     Softness::new(min(hertz, 0.25 / h), CONTACT_DAMPING, h)

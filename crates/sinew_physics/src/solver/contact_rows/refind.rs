@@ -12,12 +12,13 @@ use sinew_math::{Rotation, Transform, Vec3, max, min};
 
 /// A body that turns by more than this within a substep has its contacts looked for anew, radians.
 pub(in crate::solver) const REFIND_TURN: f32 = 0.01;
-/// Likewise where a rim rolls: however slowly, what pushes from where the rim was turns the body as much as it gyrates.
+/// Turn within a substep from which on the contacts of a rolling rim are looked for anew, radians: however slowly it rolls,
+/// what pushes from where the rim was turns the body as much as it gyrates.
 pub(in crate::solver) const ROLL_TURN: f32 = 1e-4;
 /// Then points this far apart count, as a share of the smaller bounding radius: a hand between thigh and floor that spins
 /// off one corner meets the other within the substep.
 const FAR_CORNER: f32 = 0.4;
-/// What a substep may press in by points that its rows do not know, metres.
+/// Depth to which a substep may press in points that its rows do not know, metres.
 const FORESEEN_DEPTH: f32 = 1e-3;
 
 /// One of the two shapes of a manifold.
@@ -51,7 +52,7 @@ pub(in crate::solver) struct Placed<'a> {
 }
 
 impl Placed<'_> {
-    /// Whether any part of it has a rounding or a rim.
+    /// True if any part of the shape has a rounding or a rim.
     pub fn is_curved(&self) -> bool {
         !matches!(
             self.shape,
@@ -78,8 +79,8 @@ impl Placed<'_> {
         }
     }
 
-    /// Whether it meets a normal (in the principal frame) with what is curved but not by [`Self::round`]: as it rolls, other
-    /// points come down.
+    /// True if it meets a normal (in the principal frame) with a curved part that [`Self::round`] does not cover: as it rolls,
+    /// other points come down.
     pub fn has_rim(&self, normal: Vec3) -> bool {
         let axis = || self.principal_from_shape.rotation * Vec3::Y;
         match *self.shape {
@@ -91,7 +92,7 @@ impl Placed<'_> {
     }
 }
 
-/// Of a body within a substep, radians.
+/// Angle through which a body turns within a substep, radians.
 fn turn(velocities: &[Vec6], body: u32, h: f32) -> f32 {
     angular(&velocities[body as usize]).length() * h
 }
@@ -135,8 +136,8 @@ impl ManifoldRows {
         true
     }
 
-    /// How far the shapes are apart along the present normal if the bodies are at these poses: no more than by the normal that
-    /// parts them best, metres.
+    /// Gap of the shapes along the present normal if the bodies are at these poses, metres: no more than along the normal that
+    /// parts them best.
     fn apart_along_normal(&self, poses: [Transform; 2]) -> f32 {
         let origin = poses[1].translation;
         let extent = |end: usize, core: Vec3, direction: Vec3| {
@@ -153,12 +154,12 @@ impl ManifoldRows {
         -extent(0, self.core_a[0], self.normal) - extent(1, self.core_b[0], -self.normal)
     }
 
-    /// Whether a body turns so fast in this substep that other points come down.
+    /// True if a body turns so fast in this substep that other points come down.
     fn turns(&self, velocities: &[Vec6], h: f32) -> bool {
         [self.a, self.b].iter().any(|&body| turn(velocities, body, h) >= self.most_turn)
     }
 
-    /// How far apart points may be that this substep brings together, metres.
+    /// Largest separation of points that this substep may bring together, metres.
     fn margin(&self, velocities: &[Vec6], h: f32) -> f32 {
         let relative = linear(&velocities[self.b as usize]) - linear(&velocities[self.a as usize]);
         let turns = [self.a, self.b].map(|body| turn(velocities, body, h));
@@ -190,8 +191,8 @@ impl ManifoldRows {
     }
 }
 
-/// How far apart points of two shapes may be that a substep brings together in which the bodies turn by so many radians and
-/// approach by so many metres, metres.
+/// Margin of two shapes, metres: the largest separation of points that a substep may bring together in which the bodies turn by
+/// `turns` radians and approach by `approach` metres.
 pub(in crate::solver) fn margin(shapes: &[Placed<'_>; 2], turns: [f32; 2], approach: f32, slop: f32) -> f32 {
     let [a, b] = shapes.map(|placed| placed.shape.bounding_radius());
     let reach = a * turns[0] + b * turns[1];

@@ -10,18 +10,18 @@ use crate::solver::{disk, lcp};
 use crate::spatial::{Vec6, angular};
 use sinew_math::{Vec3, clamp, max, min};
 
-/// What static friction leaves of the speed of two surfaces along each other, m/s, if they slide: more than loads that have
-/// not converged make of it in a substep.
+/// Tangential speed of two surfaces, left over by static friction, above which they slide, m/s: more than loads that have not
+/// converged make of it in a substep.
 const SLIP_SPEED: f32 = 0.005;
 /// Distance over time of a point that no substep brings to touch, m/s.
 const NEVER: f32 = 1e6;
 /// Share of the slop that is left overlapping.
 const DEAD_ZONE: f32 = 0.2;
 
-/// What a manifold's normal rows are to reach: `K (x − old) + rate + soft x ≥ 0`, complementary to `x ≥ 0`.
+/// Complementarity problem of a manifold's normal rows: `K (x − old) + rate + soft x ≥ 0`, complementary to `x ≥ 0`.
 #[derive(Clone, Copy, Debug, Default)]
 struct NormalProblem {
-    /// Of the gap with what is added to it, m/s; negative if it closes too fast.
+    /// Rate of the gap with the bias added, m/s; negative if it closes too fast.
     rate: [f32; MAX_POINTS],
     /// Impulses so far, N·s.
     old: [f32; MAX_POINTS],
@@ -35,7 +35,7 @@ impl ManifoldRows {
         self.load = self.impulse[..self.count].iter().fold(0.0, |sum, p| sum + max(*p, 0.0));
     }
 
-    /// What the normal rows are to reach at the present velocities.
+    /// Problem of the normal rows at the present velocities.
     fn normal_problem(&self, velocities: &[Vec6], pass: Pass, h: f32) -> NormalProblem {
         let (pair, biased) = (self.pair(), pass == Pass::Solve);
         let mut mean = 0.0;
@@ -60,7 +60,7 @@ impl ManifoldRows {
         problem
     }
 
-    /// What a point's rate may be less than nothing, m/s.
+    /// Velocity bias of a point, m/s: its rate may fall to minus this.
     fn bias(&self, i: usize, pass: Pass, h: f32) -> f32 {
         let (s, biased) = (self.separation[i], pass == Pass::Solve);
         if pass == Pass::Restitution && self.rebound[i] > 0.0 {

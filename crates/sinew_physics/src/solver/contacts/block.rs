@@ -17,13 +17,13 @@ pub(super) const HELD: u32 = 1 << 31;
 /// No contact: an empty lane.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Where `(i, j)` of a symmetric matrix lies in its packed lower triangle, row by row.
+/// Index of `(i, j)` of a symmetric matrix in its packed lower triangle, row by row.
 #[inline(always)]
 pub(super) const fn packed(i: usize, j: usize) -> usize {
     if i >= j { i * (i + 1) / 2 + j } else { j * (j + 1) / 2 + i }
 }
 
-/// What sweeps read and write of eight manifolds with up to `N` points, whose responses to each other are `T = N (N + 1) / 2`.
+/// Data that sweeps read and write of eight manifolds with up to `N` points, whose responses to each other are `T = N (N + 1) / 2`.
 ///
 /// Points lie where they lay when the step began; a body that turns fast has its manifolds written anew. World axes, metres,
 /// kilograms, seconds.
@@ -48,9 +48,9 @@ pub(super) struct Block<const N: usize, const T: usize> {
     pub center: Eight3,
     /// Gap of each point at the present poses, negative where they overlap.
     pub separation: [Eight; N],
-    /// What a point's rate may be less than nothing in this pass, m/s.
+    /// Velocity bias of each point in this pass, m/s: its rate may fall to minus this.
     pub target: [Eight; N],
-    /// How much a point gives in this pass, m/s per N·s.
+    /// Softness of each point in this pass, m/s per N·s.
     pub soft: [Eight; N],
     /// Response of the points' rates to their impulses, packed.
     pub response: [Eight; T],
@@ -80,13 +80,13 @@ pub(super) struct Block<const N: usize, const T: usize> {
     pub surface: Eight3,
     /// Place of the rolling resistance of its manifolds, or [`NONE`].
     pub rolling: u32,
-    /// How much the velocities of its bodies had changed when it was last visited.
+    /// Sum of the velocity changes of its bodies when it was last visited, m/s or rad/s.
     pub seen: f32,
     /// A lane was written anew: the responses are to be computed again.
     pub is_stale: bool,
 }
 
-/// What of eight manifolds is looked at once a substep.
+/// Data of eight manifolds that is looked at once a substep.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Memory<const N: usize> {
@@ -115,13 +115,13 @@ pub(super) struct Memory<const N: usize> {
     pub bounce: u32,
 }
 
-/// How points come in and leave, of eight manifolds of which some may bounce.
+/// Approach and rebound of the points of eight manifolds, of which some may bounce.
 #[derive(Clone, Debug)]
 pub(super) struct Bounce<const N: usize> {
     /// Rate and gap when the substep began, m/s and metres; a point that overlaps has no gap.
     pub rate: [Eight; N],
     pub gap: [Eight; N],
-    /// What forces add toward the surface before contacts, m/s.
+    /// Speed toward the surface that forces add before contacts, m/s.
     pub pull: [Eight; N],
     /// Speed with which a point leaves, m/s; 0 if it does not.
     pub rebound: [Eight; N],
@@ -143,7 +143,7 @@ pub(super) struct Rolling {
 }
 
 impl<const N: usize, const T: usize> Block<N, T> {
-    /// Of empty lanes.
+    /// A block of empty lanes.
     pub fn empty() -> Self {
         Self {
             bodies: [[HELD; WIDTH]; 2],
@@ -182,13 +182,13 @@ impl<const N: usize, const T: usize> Block<N, T> {
 }
 
 impl<const N: usize> Bounce<N> {
-    /// Of points that do not.
+    /// Bounce of manifolds whose points do not bounce.
     pub const NONE: Self =
         Self { rate: [ZERO8; N], gap: [ZERO8; N], pull: [ZERO8; N], rebound: [ZERO8; N], held: [ZERO8; N] };
 }
 
 impl<const N: usize> Memory<N> {
-    /// Of empty lanes.
+    /// Memory of empty lanes.
     pub fn empty() -> Self {
         Self {
             contacts: [NONE; WIDTH],

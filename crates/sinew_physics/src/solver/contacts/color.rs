@@ -1,4 +1,4 @@
-//! Which contacts are solved side by side: those of a colour share no body that moves.
+//! Graph colouring of contacts, to solve them side by side: those of a colour share no body that moves.
 
 use crate::solver::effort::Firmness;
 
@@ -14,7 +14,7 @@ pub(super) struct Edge {
     pub contact: u32,
     /// Local bodies.
     pub bodies: [u32; 2],
-    /// Which class of blocks it goes to.
+    /// Class of blocks that it goes to.
     pub class: u32,
     pub firmness: Firmness,
     /// Place of what only few contacts have, or no place.
@@ -34,7 +34,7 @@ pub(super) struct Coloring {
     pub edges: Vec<Edge>,
     /// Places of edges, in order of colour, class and place.
     sorted: Vec<u32>,
-    /// Where those of each colour and class end.
+    /// End of each run of one colour and class in `sorted`.
     ends: Vec<usize>,
     /// Colours that each moving body has, in the round.
     used: Vec<u64>,

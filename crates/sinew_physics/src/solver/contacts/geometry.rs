@@ -19,7 +19,7 @@ pub(super) struct Cores {
 }
 
 impl Cores {
-    /// Of a manifold that was found at these poses.
+    /// Cores of a manifold that was found at these poses.
     pub fn new(manifold: &Manifold, poses: [Transform; 2], rounds: [f32; 2]) -> Self {
         let mut points = [[Vec3::ZERO; MAX_POINTS]; 2];
         let n = manifold.normal;
@@ -32,7 +32,7 @@ impl Cores {
     }
 }
 
-/// Which of two surfaces a contact acts on.
+/// Surface, of the two, on which a contact acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     OfA,
@@ -41,7 +41,7 @@ pub(super) enum Side {
 }
 
 impl Side {
-    /// Where a ball touches goes along with the ball, also on a table that moves away under it; else it is on what does not move.
+    /// Side of a contact: the touched place goes along with a ball, also on a table that moves away under it; else it is on what does not move.
     pub fn new(rounds: [f32; 2], moves: [bool; 2]) -> Self {
         match rounds.map(|round| round > 0.0).into() {
             (true, false) => Self::OfA,
@@ -70,7 +70,7 @@ impl Side {
     }
 }
 
-/// Of one manifold at two poses.
+/// Geometry of one manifold at two poses.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Geometry {
     normal: Vec3,
@@ -84,7 +84,7 @@ pub(super) struct Geometry {
 }
 
 impl Geometry {
-    /// Of cores at these poses. Friction acts at the centre of the points, each with its weight.
+    /// Geometry of cores at these poses. Friction acts at the centre of the points, each with its weight.
     pub fn new(cores: &Cores, poses: [Transform; 2], moves: [bool; 2], weights: &[f32; MAX_POINTS]) -> Self {
         let n = cores.normal;
         let on = |end: usize, i: usize| poses[end].point(cores.points[end][i]);

@@ -45,7 +45,7 @@ pub(super) fn warm_start<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// What all rows of a block give: impulses on B, torques about both centres; A gets the opposite.
+/// Impulses that all rows of a block give: the sum on B, and torques about both centres; A gets the opposite.
 struct Given<L> {
     impulse: Vector3<L>,
     torques: [Vector3<L>; 2],
@@ -129,7 +129,7 @@ fn rates<L: Lanes, const N: usize, const T: usize>(block: &Block<N, T>, velociti
     rates
 }
 
-/// How points come in, when the substep begins.
+/// Records how the points come in when the substep begins.
 #[inline(always)]
 pub(super) fn begin_approach<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,
@@ -145,7 +145,7 @@ pub(super) fn begin_approach<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// What the forces have added to that.
+/// Records the speed toward the surface that forces have added.
 #[inline(always)]
 pub(super) fn pull_approach<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,

@@ -70,16 +70,16 @@ pub(crate) struct Contacts {
     colors: Vec<Color>,
     rolling: Vec<Rolling>,
     coloring: Coloring,
-    /// Of what was added, in that order, and of few of them.
+    /// Records of the contacts that were added, in that order, and extras of few of them.
     records: Vec<Record>,
     extras: Vec<Extra>,
     /// A surface moves along its body, or throws off what touches it.
     drives: bool,
     /// Inverse mass and inertia of each body: 1/m, then xx, yy, zz, yz, xz, xy.
     inverse: Vec<Vec6>,
-    /// Where the centre of each body was when the step began: x, y, z.
+    /// Centre of each body in the world when the step began, metres: x, y, z.
     centers: Vec<Vec6>,
-    /// How each body has moved since the step began.
+    /// Motion of each body since the step began: translation, then rotation.
     moved: Vec<Vec6>,
     /// Per body: how much its velocity has changed in the pass.
     stir: Vec<f32>,
@@ -95,7 +95,7 @@ pub(crate) struct Contacts {
     tally: Tally,
 }
 
-/// What the sweeps of a step have gone through.
+/// Counts of what the sweeps of a step have gone through.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Tally {
     pub manifolds: u64,
@@ -200,7 +200,7 @@ visitor!(
 parted!(Measure<'_>);
 
 visitor!(
-    /// What points are to reach in a pass.
+    /// Sets what the points are to reach in a pass.
     Aim { pass: Pass, h: f32 },
     |self, block, memory, bounces| {
         block.seen = f32::NEG_INFINITY;
@@ -214,7 +214,7 @@ visitor!(
 parted!(Aim);
 
 visitor!(
-    /// What may not be taken back.
+    /// Raises the impulses below which `relax` may not go.
     RaiseFloor<'a> { velocities: &'a [Vec6], h: f32 },
     |self, block, _memory, _bounces| place::raise_floor::<L, N, T>(block, self.velocities, self.h)
 );
@@ -246,7 +246,7 @@ visitor!(
 parted!(EndSubstep);
 
 visitor!(
-    /// How points come in.
+    /// Records how the points come in.
     BeginApproach<'a> { velocities: &'a [Vec6] },
     |self, block, memory, bounces| {
         if memory.bounce != block::NONE {
@@ -256,7 +256,7 @@ visitor!(
 );
 
 visitor!(
-    /// What forces add to that.
+    /// Records the speed toward the surface that forces add.
     PullApproach<'a> { velocities: &'a [Vec6] },
     |self, block, memory, bounces| {
         if memory.bounce != block::NONE {
@@ -266,7 +266,7 @@ visitor!(
 );
 
 visitor!(
-    /// Which points will bounce.
+    /// Finds the points that will bounce.
     EndApproach { h: f32, any: bool },
     |self, block, memory, bounces| {
         if memory.bounce != block::NONE {
@@ -311,7 +311,7 @@ pub(super) struct Sweeps {
     pub first_conjugate: usize,
 }
 
-/// What a sweep did.
+/// Result of one sweep.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Swept {
     /// Largest change of a velocity component.
@@ -370,21 +370,21 @@ impl Contacts {
         self.is_spoiled = true;
     }
 
-    /// How points come in, when the substep begins.
+    /// Records how the points come in when the substep begins.
     pub fn begin_approach(&mut self, velocities: &[Vec6]) {
         if self.may_bounce() {
             self.each(BeginApproach { velocities });
         }
     }
 
-    /// What forces have added to that.
+    /// Records the speed toward the surface that forces have added.
     pub fn pull_approach(&mut self, velocities: &[Vec6]) {
         if self.may_bounce() {
             self.each(PullApproach { velocities });
         }
     }
 
-    /// Which points will bounce.
+    /// Finds the points that will bounce. Gives whether there are any.
     pub fn end_approach(&mut self, h: f32) -> bool {
         self.may_bounce() && self.each(EndApproach { h, any: false }).any
     }
@@ -481,12 +481,12 @@ impl Contacts {
         Swept { largest, energy }
     }
 
-    /// Of the step so far.
+    /// Counts of the step so far.
     pub fn tally(&self) -> Tally {
         self.tally
     }
 
-    /// Of the blocks.
+    /// Size of the blocks, bytes.
     pub fn bytes(&self) -> usize {
         self.one.bytes() + self.two.bytes() + self.four.bytes()
     }

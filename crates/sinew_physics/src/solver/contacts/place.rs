@@ -1,4 +1,4 @@
-//! What follows from where bodies are: separations, what points are to reach in a pass, and the responses of rows.
+//! Values that follow from where bodies are: separations, what points are to reach in a pass, and the responses of rows.
 
 use super::RELAX_TURN;
 use super::block::{Block, Bounce, Memory, Motion, NONE, ZERO8, gather, load3, packed, times};
@@ -11,10 +11,10 @@ const PROXIMAL: f32 = 1e-5;
 /// Distance over time of a point that no substep brings to touch, m/s.
 const NEVER: f32 = 1e6;
 
-/// How bodies have moved since the step began: translation (x, y, z), then rotation (x, y, z, w) of each.
+/// Motion of each body since the step began: translation (x, y, z), then rotation (x, y, z, w).
 pub(super) struct Moved<'a>(pub &'a [Vec6]);
 
-/// What the rotation of a body since the step began adds to a direction that it is seen along: `Rᵀ n − n`.
+/// Change of a direction, seen from a body, by the body's rotation since the step began: `Rᵀ n − n`.
 #[inline(always)]
 fn leaned<L: Lanes>(rotation: [L; 4], n: Vector3<L>) -> Vector3<L> {
     let (two, u) = (L::splat(2.0), Vector3::new(rotation[0], rotation[1], rotation[2]));
@@ -44,7 +44,7 @@ pub(super) fn measure<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// What each point is to reach in a pass, and how softly.
+/// Sets what each point is to reach in a pass, and how softly.
 #[inline(always)]
 pub(super) fn aim<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -94,8 +94,9 @@ pub(super) fn aim<L: Lanes, const N: usize, const T: usize>(
     }
 }
 
-/// What `relax` may not go below: it may take back what `solve` gave too much, but not from bodies that turned by more than a little
-/// since. An impulse taken back at another pose than it was given at puts energy in (a hand went from 70 to 2,700 rad/s).
+/// Raises the impulses below which `relax` may not go: it may take back what `solve` gave too much, but not from bodies that
+/// turned by more than a little since. An impulse taken back at another pose than it was given at puts energy in (a hand went
+/// from 70 to 2,700 rad/s).
 #[inline(always)]
 pub(super) fn raise_floor<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,

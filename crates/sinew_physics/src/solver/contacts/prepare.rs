@@ -25,10 +25,10 @@ use sinew_math::{Sym3, Vec3};
 /// Blocks for which there is room at once where another is needed.
 pub(super) const SPARE_BLOCKS: usize = 8;
 
-/// What an island's contacts are made from, when a step begins.
+/// Input from which an island's contacts are made when a step begins.
 pub(in crate::solver) struct OfStep<'a> {
     pub view: &'a View<'a>,
-    /// Those that move first, so many.
+    /// Bodies of the island; the first `moving` of them move.
     pub bodies: &'a [SolverBody],
     pub moving: usize,
     /// Substep of the island, seconds, and how many times as long as the world's it is.
@@ -119,11 +119,11 @@ impl Contacts {
     }
 }
 
-/// What lanes are written from.
+/// Data from which lanes are written.
 pub(super) struct Source<'a> {
     pub of: &'a OfStep<'a>,
     pub edges: &'a [Edge],
-    /// Of the edges.
+    /// Records of the edges, and extras of few of them.
     pub records: &'a [Record],
     pub extras: &'a [Extra],
     /// Per body: where its centre is, its inverse mass and inertia.
@@ -390,6 +390,6 @@ fn write_rolling(
 }
 
 impl Rolling {
-    /// Of lanes that do not resist.
+    /// Rolling resistance of lanes that do not resist.
     const NONE: Self = Self { lever: ZERO8, inverse: [ZERO8; 6], trace: ZERO8, impulse: [ZERO8; 3] };
 }

@@ -15,7 +15,7 @@ use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, WIDTH};
 use sinew_math::{Transform, Vec3};
 
-/// Where a record's rows are.
+/// Indices of a record's rows.
 pub(super) const SHAPE: usize = 0;
 pub(super) const POINTS: usize = 1;
 pub(super) const IMPULSES: usize = 3;
@@ -33,10 +33,10 @@ pub(super) struct Record {
     rows: [Vec6; 6],
 }
 
-/// What few contacts have.
+/// Data that only few contacts have.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extra {
-    /// Of B's surface less A's.
+    /// Velocity and spin of B's surface less A's, m/s and rad/s.
     pub velocity: Vec3,
     pub spin: Vec3,
     /// Rolling resistance: its lever, and the impulse of the last substep.
@@ -77,7 +77,7 @@ fn rounds(shapes: &[Placed<'_>; 2], poses: [&Transform; 2], normal: Vec3) -> ([f
     (rounds, rolls)
 }
 
-/// Which class of blocks a contact of so many points goes to.
+/// Class of blocks that a contact of so many points goes to.
 fn class_of(points: usize) -> u32 {
     match points {
         0 | 1 => 0,

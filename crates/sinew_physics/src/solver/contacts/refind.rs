@@ -68,7 +68,7 @@ pub(in crate::solver) struct Substep<'a> {
 }
 
 impl Substep<'_> {
-    /// Of a body in this substep, radians.
+    /// Angle through which a body turns in this substep, radians.
     fn turn(&self, body: u32) -> f32 {
         angular(&self.velocities[body as usize]).length() * self.h
     }
@@ -241,7 +241,7 @@ impl Found {
         }
     }
 
-    /// How far apart points may be that this substep brings together, metres.
+    /// Largest separation of points that this substep may bring together, metres.
     fn margin(&self, substep: &Substep<'_>, shapes: &[contact_rows::Placed<'_>; 2], slop: f32) -> f32 {
         let [a, b] = self.bodies.map(|body| linear(&substep.velocities[body as usize]));
         let turns = self.bodies.map(|body| substep.turn(body));

@@ -15,7 +15,7 @@ fn vector(rows: &[[f32; WIDTH]; 3], lane: usize) -> Vec3 {
     Vec3::new(rows[0][lane], rows[1][lane], rows[2][lane])
 }
 
-/// What a lane carries on, to substeps `times` as long.
+/// Impulses that a lane's contact carries on to substeps `times` as long.
 pub(super) fn memory_of<const N: usize, const T: usize>(
     block: &Block<N, T>,
     memory: &Memory<N>,
@@ -124,7 +124,7 @@ fn push_on<const N: usize, const T: usize>(
 }
 
 impl Contacts {
-    /// What contacts carry on, in the room for it, from substeps `stretch` times as long as the world's.
+    /// Writes to `room` what contacts carry on, from substeps `stretch` times as long as the world's.
     pub fn store(&self, stretch: f32, room: &mut [SolvedContact]) {
         let mut room = room.iter_mut();
         self.one.store((0, stretch), self, &mut room);

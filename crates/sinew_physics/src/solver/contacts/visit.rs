@@ -8,21 +8,21 @@ use crate::solver::sweep::Pass;
 use crate::spatial::Vec6;
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 
-/// What static friction leaves of the speed of two surfaces along each other, m/s, if they slide: more than loads that have
-/// not converged make of it in a substep.
+/// Tangential speed of two surfaces, left over by static friction, above which they slide, m/s: more than loads that have not
+/// converged make of it in a substep.
 const SLIP_SPEED: f32 = 0.005;
 /// Rounds of Gauss-Seidel over the points of a manifold within a visit: four points of a face share a load that one round
 /// would leave with the first.
 const ROUNDS: usize = 4;
 
-/// What a sweep over blocks works on.
+/// Data that a sweep over blocks works on.
 pub(super) struct Sweep<'a> {
     pub velocities: SharedRows<'a, Vec6>,
-    /// How much each body's velocity has changed in this pass, m/s or rad/s.
+    /// Sum of the changes of each body's velocity in this pass, m/s or rad/s.
     pub stir: SharedRows<'a, f32>,
     pub rolling: SharedRows<'a, Rolling>,
     pub pass: Pass,
-    /// What blocks do about conjugate steps.
+    /// Share of the blocks in conjugate steps.
     pub step: Step,
     /// Friction takes its loads from the impulses as they are.
     pub weighs: bool,
@@ -38,7 +38,7 @@ pub(super) struct Sweep<'a> {
 }
 
 impl Sweep<'_> {
-    /// Whether bodies of a block have changed enough since it was last visited; then this is the last visit.
+    /// True if bodies of a block have changed enough since it was last visited; then this counts as the last visit.
     #[inline(always)]
     fn wakes<const N: usize, const T: usize>(&self, block: &mut Block<N, T>) -> bool {
         let mut now = 0.0;

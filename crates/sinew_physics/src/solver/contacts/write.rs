@@ -11,7 +11,7 @@ use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 /// Share of the slop that is left overlapping.
 const DEAD_ZONE: f32 = 0.2;
 
-/// What lanes are written from one by one.
+/// Input that is collected lane by lane, before lanes are written side by side.
 struct Each {
     places: [u32; WIDTH],
     /// 1 of two bodies that are moved.
@@ -168,7 +168,7 @@ fn write_shape<L: Lanes, const N: usize, const T: usize>(
     Axes { normal, tangents: [tangent, normal.cross(tangent)] }
 }
 
-/// How contacts give.
+/// Writes the softness of the contacts.
 #[inline(always)]
 fn write_softness<L: Lanes, const N: usize>(memory: &mut Memory<N>, each: &Each, soft: &[Softness; 2]) {
     let both_move = L::gt(L::load(&each.both_move), L::splat(0.0));
@@ -187,7 +187,7 @@ fn pick<L: Lanes>(mask: L::Mask, a: f32, b: f32) -> L {
     L::select(mask, L::splat(a), L::splat(b))
 }
 
-/// What surfaces are to each other, and the friction of the last substep.
+/// Writes surface velocities, coefficients of friction and restitution, and the friction of the last substep.
 #[inline(always)]
 fn write_friction<L: Lanes, const N: usize, const T: usize>(
     block: &mut Block<N, T>,
@@ -218,7 +218,7 @@ fn write_friction<L: Lanes, const N: usize, const T: usize>(
     launch.store(&mut memory.launch);
 }
 
-/// Where bodies are.
+/// Centres of eight bodies in the world when the step began, metres.
 #[inline(always)]
 fn centers<L: Lanes>(source: &Source<'_>, bodies: &[u32; WIDTH]) -> Vector3<L> {
     let [x, y, z, ..] = gather::<L>(source.centers, bodies);

@@ -1,4 +1,4 @@
-//! How far joints are from holding at given poses, eight side by side.
+//! Position errors of joints at given poses, eight side by side.
 
 use super::turn::Turn;
 use crate::joint::def::JointKind;

@@ -239,7 +239,7 @@ fn advanced<L: Lanes>(
     poses
 }
 
-/// What geometric stiffness adds to the moments beyond the inertia, from all of it, and inverse inertias in the axes of the world.
+/// Computes by how much geometric stiffness (held in `excess` until now) exceeds the inertia, and inverse inertias in world axes.
 pub(super) struct RefreshInertia<'a>(pub &'a mut [SolverBody]);
 
 impl Kernel for RefreshInertia<'_> {

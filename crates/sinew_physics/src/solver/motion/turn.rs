@@ -78,7 +78,7 @@ impl<R: Real> Turn<R> {
         Self { vector: half * sin_over(angle), real: cos(angle) }
     }
 
-    /// Where the axes go.
+    /// Images of the three axes under the rotation: the columns of its matrix.
     #[inline(always)]
     fn columns(self) -> [Vector3<R>; 3] {
         let [x, y, z] = self.vector.to_array();

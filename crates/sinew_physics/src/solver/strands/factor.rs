@@ -71,7 +71,7 @@ struct Below<L: Lanes> {
     mass: Symmetric<L::Wide>,
     /// From the link's centre of mass to the joint, world axes.
     arm: Vector3<L>,
-    /// What the joint's pull adds to the link's moments, kg·m².
+    /// Moments that the joint's pull adds to the link, kg·m².
     stiffness: Vector3<L>,
 }
 

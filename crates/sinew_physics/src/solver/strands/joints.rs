@@ -104,7 +104,7 @@ pub(super) fn descend<L: Lanes>(links: &mut [Link], is_held: bool, mask: L::Mask
     left
 }
 
-/// Likewise, and to the poses that the velocities lead to. Gives the largest gap there, m.
+/// Goes down the strand in the lanes of the mask, and on to the poses that the velocities lead to. Gives the largest gap there, m.
 #[inline(always)]
 pub(super) fn descend_ahead<L: Lanes>(links: &mut [Link], hook: Option<&Hook>, mask: L::Mask, h: f32) -> L {
     let mut answered = [zero::<L>(); 2];

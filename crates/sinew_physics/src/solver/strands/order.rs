@@ -1,4 +1,4 @@
-//! Which islands are strands, and in what order their links follow each other.
+//! Islands that are strands, and the order in which their links follow each other.
 
 use super::super::build::View;
 use super::is_plain;

@@ -28,7 +28,7 @@ pub(super) struct Pace {
 /// nothing.
 pub(super) struct Advance<'a> {
     pub links: &'a mut [Link],
-    /// What holds them, if anything does.
+    /// Fixed bodies that hold the strands, if any do.
     pub hook: Option<&'a Hook>,
     pub pace: Pace,
     /// Strands there are, from the first lane on.
