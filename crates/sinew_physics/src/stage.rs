@@ -56,7 +56,7 @@ pub enum Counter {
     Shapes,
     /// Pairs of shapes near each other of which one is awake.
     Pairs,
-    /// Pairs of shapes near each other that have contact points.
+    /// Pairs of shapes near each other, one of them awake, that have contact points.
     PairsWithPoints,
     /// Moving bodies of an island: as many calls as there are islands.
     Bodies,

@@ -204,7 +204,7 @@ pub enum JointCollision {
 pub enum JointState {
     /// The joint acts.
     Enabled,
-    /// The joint acts as if it were not there.
+    /// The joint does nothing, as if it were not there.
     Disabled,
 }
 
