@@ -3,12 +3,12 @@
 
 use crate::{Rotation, Sym3, Transform, Vec3};
 
-/// What was wrong with the bytes, and where.
+/// Error of reading: what was wrong with the bytes, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError {
     /// Offset of the byte at which reading failed.
     pub at: usize,
-    /// What is wrong, a phrase in lower case.
+    /// Description of what is wrong, a phrase in lower case.
     pub what: &'static str,
 }
 
@@ -36,11 +36,11 @@ impl Writer {
         bytes.clear();
         Self { bytes }
     }
-    /// What was written so far.
+    /// Bytes that were written so far.
     pub fn as_bytes(&self) -> &[u8] {
         &self.bytes
     }
-    /// What was written.
+    /// Bytes that were written.
     pub fn into_bytes(self) -> Vec<u8> {
         self.bytes
     }
@@ -202,7 +202,7 @@ impl<'a> Reader<'a> {
         }
         Ok(n)
     }
-    /// What [`Writer::block`] wrote, by itself; offsets of errors remain those in the whole.
+    /// Reads what [`Writer::block`] wrote, by itself; offsets of errors remain those in the whole.
     pub fn block(&mut self) -> Result<Self, ReadError> {
         let n = self.count(1)?;
         let start = self.at;

@@ -27,7 +27,7 @@ use crate::lanes::{Lanes, Scalar};
 
 /// A loop over data, written once for all processors.
 pub trait Kernel {
-    /// What comes of it.
+    /// Result of the loop.
     type Output;
 
     /// Runs it with `L` for eight lanes. To be marked `#[inline(always)]`, as all that it calls:
@@ -35,7 +35,7 @@ pub trait Kernel {
     fn run<L: Lanes>(self) -> Self::Output;
 }
 
-/// What a processor has for eight lanes.
+/// Registers of a processor for eight lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Level {
     /// Eight times one.
@@ -54,7 +54,7 @@ impl Level {
     /// All there are, the widest of each processor last.
     pub const ALL: [Self; 5] = [Self::Scalar, Self::Sse2, Self::Avx2, Self::Neon, Self::Simd128];
 
-    /// Whether this processor, and this build, has it.
+    /// True if this processor, and this build, has it.
     #[inline]
     pub fn is_available(self) -> bool {
         match self {
@@ -69,12 +69,12 @@ impl Level {
         }
     }
 
-    /// Those that this processor has: for tests, which hold them against each other.
+    /// Levels that this processor has: for tests, which hold them against each other.
     pub fn available() -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(|level| level.is_available())
     }
 
-    /// What [`run`] takes.
+    /// Level that [`run`] takes.
     #[inline]
     pub fn best() -> Self {
         Self::ALL.into_iter().rfind(|level| level.is_available()).unwrap_or(Self::Scalar)

@@ -4,7 +4,7 @@ use crate::limits::wrap;
 use crate::{Rotation, Vec3, clamp, trig};
 use core::f32::consts::{FRAC_PI_2, PI};
 
-/// Which coordinate axes the three turns are about, in the order of the turns.
+/// Order of three turns: the coordinate axes that they are about, in the order of the turns.
 ///
 /// The first six are Tait-Bryan orders (three different axes: heading, pitch and roll are such), the last six the proper
 /// Euler orders (first and third axis the same: precession, nutation and spin of a top are such).
@@ -81,28 +81,28 @@ impl EulerOrder {
         }
     }
 
-    /// Whether the first and the third axis are the same.
+    /// True if the first and the third axis are the same.
     pub const fn is_proper(self) -> bool {
         let [first, _, third] = self.indices();
         first == third
     }
 }
 
-/// Whether the axes of the second and third turn have moved with the turns before.
+/// Axes of the second and third turn: moved by the turns before, or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EulerAxes {
-    /// They have: *intrinsic* angles, those of nested rings. The axes are the body's.
+    /// Moved by them: *intrinsic* angles, those of nested rings. The axes are the body's.
     Moving,
-    /// They have not: *extrinsic* angles. The axes are the world's.
+    /// Not moved: *extrinsic* angles. The axes are the world's.
     Fixed,
 }
 
 /// One of the 24 meanings that three angles may have. Made by [`EulerOrder::intrinsic`] and [`EulerOrder::extrinsic`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct EulerConvention {
-    /// About which axes.
+    /// Axes that the turns are about.
     pub order: EulerOrder,
-    /// Whether these move along.
+    /// Motion of these axes with the turns.
     pub axes: EulerAxes,
 }
 
@@ -113,13 +113,13 @@ impl EulerConvention {
     }
 }
 
-/// Whether the three angles can be told apart.
+/// Gimbal lock: whether the three angles can be told apart.
 ///
 /// Where the middle turn brings the third axis onto the first, both turn about the same line: one freedom of the three
 /// is lost, and of the two outer angles only a combination means anything. No convention is without such places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum GimbalLock {
-    /// They can.
+    /// The three angles can be told apart.
     Free,
     /// Only the sum of the first and the third angle is determined. The third is given as 0.
     OnlySum,
@@ -133,10 +133,10 @@ pub struct EulerAngles {
     /// In the order of the turns, radians. First and third −π..=π; the second −π/2..=π/2 of a Tait-Bryan order, 0..=π of
     /// a proper one.
     pub angles: [f32; 3],
-    /// How far the second angle is from gimbal lock, radians, 0..=π/2. The error of first and third angle is that of the
+    /// Distance of the second angle from gimbal lock, radians, 0..=π/2. The error of first and third angle is that of the
     /// rotation over the sine of this: at a margin of 0.001 an error of 1e-7 in the rotation is one of 1e-4 in each of them.
     pub lock_margin: f32,
-    /// Whether they are locked: whether [`lock_margin`](Self::lock_margin) is below [`EulerAngles::LOCKED_BELOW`].
+    /// Gimbal lock: locked if [`lock_margin`](Self::lock_margin) is below [`EulerAngles::LOCKED_BELOW`].
     pub lock: GimbalLock,
 }
 
@@ -226,9 +226,9 @@ struct Rings {
     margin: f32,
     /// The kind of that one.
     nearest_lock: GimbalLock,
-    /// What the outer angle is there when the inner one is 0.
+    /// Outer angle at that lock when the inner one is 0, radians.
     outer_alone: f32,
-    /// What the inner angle is there when the outer one is 0.
+    /// Inner angle at that lock when the outer one is 0, radians.
     inner_alone: f32,
 }
 

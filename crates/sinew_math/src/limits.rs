@@ -24,7 +24,7 @@ impl Range {
     pub fn degrees(lo: f32, hi: f32) -> Self {
         Self { lo: lo.to_radians(), hi: hi.to_radians() }
     }
-    /// How far `x` lies outside; 0 inside.
+    /// Distance of `x` from the range; 0 inside.
     pub fn excess(self, x: f32) -> f32 {
         if x < self.lo {
             self.lo - x
@@ -139,7 +139,7 @@ impl SwingTwistLimit {
         [angle + half, half - angle]
     }
 
-    /// How far the joint rotation `a⁻¹ b` is beyond the limits, radians: the larger of swing and twist excess.
+    /// Angle by which the joint rotation `a⁻¹ b` is beyond the limits, radians: the larger of swing and twist excess.
     pub fn overshoot(&self, joint: Rotation) -> f32 {
         let mut worst = -self.swing_state(joint).room;
         for state in self.twist_states(joint) {

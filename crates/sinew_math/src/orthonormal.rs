@@ -3,7 +3,7 @@
 use crate::symmetric::jacobi;
 use crate::{Mat3, Rotation, Vec3, abs3, any_orthonormal, max, max3, normalize_or};
 
-/// How far a matrix is from being a rotation matrix. A rotation has `{ deviation: 0, determinant: 1 }`, up to rounding:
+/// Distance of a matrix from the rotation matrices. A rotation has `{ deviation: 0, determinant: 1 }`, up to rounding:
 /// 2e-6 and 1.5e-6 at most for one made by [`Rotation::to_mat3`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatrixDrift {
@@ -14,13 +14,13 @@ pub struct MatrixDrift {
 }
 
 impl MatrixDrift {
-    /// Of a matrix.
+    /// Drift of a matrix.
     pub fn of(m: &Mat3) -> Self {
         Self { deviation: frobenius(&(m.transpose() * *m - Mat3::IDENTITY)), determinant: m.determinant() }
     }
 }
 
-/// How to make a rotation of a matrix that is not quite one.
+/// Method of making a rotation of a matrix that is not quite one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Orthonormalization {
     /// The rotation nearest to the matrix, in the sum of squares of the differences: the rotation part of its polar
@@ -44,14 +44,14 @@ pub struct Orthonormalized {
     pub rotation: Rotation,
     /// `‖M − R‖`, Frobenius: how much had to be changed. Infinite for a matrix that is not finite.
     pub residual: f32,
-    /// What the matrix left open.
+    /// Uniqueness of the answer.
     pub answer: Uniqueness,
 }
 
-/// Whether there was one answer.
+/// Uniqueness of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Uniqueness {
-    /// There was.
+    /// There was one answer.
     Unique,
     /// Other rotations would do as well; which one is given depends on the matrix alone. So it is with columns that are
     /// zero or parallel (the zero matrix and one that is not finite give the identity), and for [`Orthonormalization::Polar`] with mirrored
@@ -76,7 +76,7 @@ pub fn orthonormalize(m: &Mat3, method: Orthonormalization) -> Orthonormalized {
     Orthonormalized { rotation, residual: frobenius(&(*m - rotation.to_mat3())), answer }
 }
 
-/// Of a matrix that is not zero.
+/// The nearest rotation to a matrix that is not zero, and its uniqueness.
 fn nearest(m: &Mat3) -> (Rotation, Uniqueness) {
     let columns = [m.x_axis, m.y_axis, m.z_axis].map(abs3);
     let largest = max3(columns[0], max3(columns[1], columns[2]));

@@ -49,7 +49,7 @@ impl Quaternion {
         Self { scalar, vector }
     }
 
-    /// What turns and stretches `from` into `to`: `to from⁻¹ = (from·to + from×to) / |from|²`.
+    /// Quaternion that turns and stretches `from` into `to`: `to from⁻¹ = (from·to + from×to) / |from|²`.
     /// `None` if `from` is zero, or either is not finite. For opposite vectors: a negative number, which has no axis.
     pub fn quotient(to: Vec3, from: Vec3) -> Option<Self> {
         let unit = direction(from)?;
@@ -115,7 +115,7 @@ impl Quaternion {
         Self::new(self.scalar, -self.vector)
     }
 
-    /// What undoes it: `q⁻¹ = q̄ / |q|²`, with `q q⁻¹ = q⁻¹ q = 1`. `None` for zero and for what is not finite.
+    /// Quaternion that undoes it: `q⁻¹ = q̄ / |q|²`, with `q q⁻¹ = q⁻¹ q = 1`. `None` for zero and for what is not finite.
     pub fn inverse(self) -> Option<Self> {
         let versor = self.versor();
         let norm = versor.scalar * self.scalar + versor.vector.dot(self.vector);

@@ -4,9 +4,9 @@ use core::ops::Mul;
 /// A rigid motion: rotate, then translate. `a * b` applies `b` first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Transform {
-    /// Where the origin goes, metres.
+    /// Translation: the place to which the origin goes, metres.
     pub translation: Vec3,
-    /// How the axes turn.
+    /// Rotation of the axes.
     pub rotation: Rotation,
 }
 
@@ -39,7 +39,7 @@ impl Transform {
         self.rotation * p + self.translation
     }
 
-    /// Where a point was before: `self.inverse().point(p)`.
+    /// Point that the motion takes to `p`: `self.inverse().point(p)`.
     #[inline]
     pub fn inverse_point(self, p: Vec3) -> Vec3 {
         self.rotation.inverse() * (p - self.translation)
@@ -64,7 +64,7 @@ impl Mul for Transform {
 pub struct Affine {
     /// The linear part, column vectors.
     pub linear: Mat3,
-    /// Where the origin goes.
+    /// Translation: the place to which the origin goes.
     pub translation: Vec3,
 }
 

@@ -12,7 +12,7 @@ pub(crate) trait Item {
 #[derive(Clone, Debug)]
 pub(crate) struct Arena<T> {
     lineage: Lineage,
-    /// Of each slot; close together, since queries name many items that they do not look at.
+    /// Generation of each slot; close together, since queries name many items that they do not look at.
     generations: Vec<u32>,
     items: Vec<Option<T>>,
     free: Vec<u32>,

@@ -2,7 +2,7 @@
 
 use sinew_math::Vec3;
 
-/// What a line stands for; the host chooses the colours.
+/// Thing that a line stands for; the host chooses the colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrawKind {
     /// Outline of a static shape.
@@ -19,7 +19,7 @@ pub enum DrawKind {
     Spring,
     /// A contact normal, 10 cm long.
     Contact,
-    /// Of an object of the user's own.
+    /// A line of an object of the user's own.
     Object,
 }
 

@@ -131,6 +131,6 @@ id! {
 pub struct ShapeId {
     /// The body.
     pub body: BodyId,
-    /// Which of its shapes, counted from 0 as in [`BodyDef::shapes`](crate::BodyDef::shapes).
+    /// Number of the shape in its body, counted from 0 as in [`BodyDef::shapes`](crate::BodyDef::shapes).
     pub shape: u32,
 }

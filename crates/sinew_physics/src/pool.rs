@@ -31,7 +31,7 @@ struct Batch<'a> {
     count: usize,
     /// Calls that were begun, or more.
     begun: AtomicUsize,
-    /// Of the first call that panicked.
+    /// Payload of the first call that panicked.
     panic: Mutex<Option<Box<dyn Any + Send>>>,
 }
 
@@ -49,11 +49,11 @@ impl Batch<'_> {
     }
 }
 
-/// What the threads of a pool share.
+/// State that the threads of a pool share.
 #[derive(Default)]
 struct Shared {
     gate: AtomicU64,
-    /// Of the batch, while the gate is open or workers are inside.
+    /// Pointer to the batch, while the gate is open or workers are inside.
     batch: AtomicPtr<Batch<'static>>,
     /// A batch is being run: another one, such as a call's own, runs on its caller's thread alone.
     is_busy: AtomicBool,
@@ -61,10 +61,10 @@ struct Shared {
     is_closing: AtomicBool,
     /// Workers that sleep or are about to.
     asleep: AtomicUsize,
-    /// What sleepers hold while they look; nothing is in it.
+    /// Mutex that sleepers hold while they look; nothing is in it.
     sleep: Mutex<()>,
     wake: Condvar,
-    /// Likewise for who waits until the last worker is out.
+    /// Mutex for who waits until the last worker is out; nothing is in it.
     wait: Mutex<()>,
     out: Condvar,
 }

@@ -40,7 +40,7 @@ impl Threads {
         Self { pool: Arc::new(Pool::new(count.saturating_sub(1))) }
     }
 
-    /// How many there are, the caller's included.
+    /// Number of threads, the caller's included.
     pub fn count(&self) -> usize {
         self.pool.workers() + 1
     }

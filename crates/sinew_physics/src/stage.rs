@@ -5,13 +5,13 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Stage {
-    /// Which shapes may meet.
+    /// Broad phase: shapes that may meet.
     Pairs,
-    /// Where they meet: manifolds.
+    /// Narrow phase: manifolds of shapes that meet.
     Collide,
     /// Who began and who stopped touching; who wakes.
     Touch,
-    /// Which bodies hang together.
+    /// Islands: bodies that hang together.
     Islands,
     /// In which order an island's contacts are solved.
     Color,
@@ -47,8 +47,8 @@ pub enum Stage {
     Movers,
 }
 
-/// What a step counts for a [`Profiler`] that asks for it. From [`Bodies`](Self::Bodies) on each is told once for every island
-/// by the thread that solves it, `Bodies` first; of a body in flight, [`BodySubsteps`](Self::BodySubsteps) alone follows.
+/// Quantity that a step counts for a [`Profiler`] that asks for it. From [`Bodies`](Self::Bodies) on each is told once for every
+/// island by the thread that solves it, `Bodies` first; of a body in flight, [`BodySubsteps`](Self::BodySubsteps) alone follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Counter {
@@ -56,7 +56,7 @@ pub enum Counter {
     Shapes,
     /// Pairs of shapes near each other of which one is awake.
     Pairs,
-    /// Of these, pairs with points.
+    /// Pairs of shapes near each other, one of them awake, that have contact points.
     PairsWithPoints,
     /// Moving bodies of an island: as many calls as there are islands.
     Bodies,

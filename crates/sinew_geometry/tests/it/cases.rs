@@ -2,7 +2,7 @@
 
 use sinew_math::{Random, Vec3};
 
-/// Of `all` cases those that are run: a hundredth unless `SINEW_FULL` is set, as `cargo xtask ci --full` does.
+/// Number of `all` cases that are run: a hundredth unless `SINEW_FULL` is set, as `cargo xtask ci --full` does.
 pub fn cases(all: u32) -> u32 {
     if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
 }

@@ -248,7 +248,7 @@ fn terrain(random: &mut Random, side: usize) -> (Shape, Shape, Vec<[Vec3; 3]>) {
     (mesh, Shape::HeightField(Arc::new(HeightField::new(def).unwrap())), corners)
 }
 
-/// Of a shape over terrain, the contact that is nearest is that with the nearest of its triangles, each asked by itself.
+/// The nearest contact of a shape over terrain is that with the nearest of its triangles, each asked by itself.
 #[test]
 fn terrain_is_as_far_away_as_its_nearest_triangle() {
     let mut random = Random::new(45);
@@ -304,7 +304,7 @@ fn middle(shape: &Shape) -> Vec3 {
     if centred { shape.mass_properties(1.0).center } else { Vec3::ZERO }
 }
 
-/// Where a ray comes through a triangle from above, by its plane and barycentric coordinates in `f64`.
+/// Point where a ray comes through a triangle from above, by its plane and barycentric coordinates in `f64`.
 fn pierced(&[a, b, c]: &[Vec3; 3], ray: &Ray) -> Option<f64> {
     let wide = |v: Vec3| v.to_array().map(f64::from);
     let sub = |p: [f64; 3], q: [f64; 3]| core::array::from_fn::<f64, 3, _>(|k| p[k] - q[k]);

@@ -18,7 +18,7 @@ const SHAPES: [Shape; 11] = [
     Shape::HalfSpace,
 ];
 
-/// Those with an end.
+/// Shapes that have an end: all but the half-space.
 fn solids() -> &'static [Shape] {
     SHAPES.split_last().expect("there are shapes").1
 }
@@ -27,7 +27,7 @@ fn from_axis(p: Vec3) -> f32 {
     (p.x * p.x + p.z * p.z).sqrt()
 }
 
-/// Whether a point is in the shape, written down once more.
+/// True if a point is in the shape, written down once more.
 fn holds(shape: &Shape, p: Vec3) -> bool {
     match *shape {
         Shape::Box { half_extents: h } => p.x.abs() <= h.x && p.y.abs() <= h.y && p.z.abs() <= h.z,

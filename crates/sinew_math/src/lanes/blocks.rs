@@ -55,7 +55,7 @@ impl<const F: usize> Blocks<F> {
         self.len
     }
 
-    /// Whether there are none.
+    /// True if there are no records.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }

@@ -43,10 +43,10 @@ pub use first::First;
 pub use scalar::Scalar;
 pub use vector::Vector3;
 
-/// How many lanes there are, on every target.
+/// Number of lanes, the same on every target.
 pub const WIDTH: usize = 8;
 
-/// What a comparison of [`Real`]s gives: true or false, in each lane.
+/// Result of a comparison of [`Real`]s: true or false, in each lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {}
 
 /// A number, or several side by side; its operations act in each lane alone.
@@ -55,7 +55,7 @@ pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// What comparisons give.
+    /// Result of a comparison.
     type Mask: Mask;
 
     /// `value` in every lane.
@@ -121,13 +121,13 @@ pub trait LaneMask: Mask {
     /// Bit `k` is lane `k`.
     fn bits(self) -> u8;
 
-    /// Whether any lane is true.
+    /// True if any lane is true.
     #[inline(always)]
     fn any(self) -> bool {
         self.bits() != 0
     }
 
-    /// Whether all lanes are true.
+    /// True if all lanes are true.
     #[inline(always)]
     fn all(self) -> bool {
         self.bits() == u8::MAX

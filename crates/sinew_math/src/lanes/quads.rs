@@ -6,7 +6,7 @@ use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// A register of four `f32`: what a processor has to offer. Each operation is that of [`Real`] or [`Lanes`] of its name.
 pub(crate) trait Quad: Copy {
-    /// What comparisons give: all bits of a lane set, or none.
+    /// Result of a comparison: all bits of a lane set, or none.
     type Mask: Copy;
 
     fn splat(value: f32) -> Self;
@@ -38,7 +38,7 @@ pub(crate) trait Quad: Copy {
 #[derive(Clone, Copy)]
 pub(crate) struct Quads<Q>(Q, Q);
 
-/// What comparisons of [`Quads`] give.
+/// Result of a comparison of [`Quads`].
 #[derive(Clone, Copy)]
 pub(crate) struct QuadsMask<Q: Quad>(Q::Mask, Q::Mask);
 

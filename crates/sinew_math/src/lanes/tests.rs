@@ -5,7 +5,7 @@ use super::{LaneMask, Lanes, Real, WIDTH};
 use crate::dispatch::{self, Kernel, Level};
 use crate::{Random, StableHasher};
 
-/// Of the soup's results, on x86-64, aarch64 and wasm.
+/// Hash of the soup's results, on x86-64, aarch64 and wasm.
 const GOLDEN: u64 = 0xa6ab_2171_d2ba_4a5b;
 
 /// Numbers at which arithmetic goes another way.
@@ -175,7 +175,7 @@ fn golden_soup_of_operations() {
     }
 }
 
-/// What the documentation promises of NaN and −0, by name.
+/// Answers to NaN and −0 that the documentation promises, by name.
 fn answers<R: Real>() -> [R; 6] {
     let [zero, minus, nan] = [0.0, -0.0, f32::NAN].map(R::splat);
     let one = R::splat(1.0);

@@ -53,7 +53,7 @@ impl Exact {
         2.0 * norm([x, y, z]).atan2(w.abs())
     }
 
-    /// How far `r` is from this rotation, radians; a length that is not 1 counts as well.
+    /// Angle from this rotation to `r`, radians; a length that is not 1 counts as well.
     pub fn error(self, r: Rotation) -> f64 {
         let [w, x, y, z] = [r.w, r.x, r.y, r.z].map(f64::from);
         let distance = |sign: f64| {

@@ -180,7 +180,7 @@ fn normalise() {
     }
 }
 
-/// What slerp should give, from the definition: `a` turned by a share of the way to `b`; the short way and the long one.
+/// Rotations that slerp should give, from the definition: `a` turned by a share of the way to `b`; the short way and the long one.
 fn part_way(a: Exact, b: Exact, t: f64) -> [Exact; 2] {
     let [w, x, y, z] = b.then(a.inverse()).0;
     let sin = norm([x, y, z]);

@@ -23,7 +23,7 @@ struct Link {
 
 const NONE: u32 = u32::MAX;
 
-/// Which of the two bodies it is.
+/// Side of the contact that a body is on: 0 for A, 1 for B.
 fn side(key: ContactKey, body: u32) -> usize {
     usize::from(key.b == body)
 }

@@ -26,7 +26,7 @@ impl World {
         self.check_contacts();
     }
 
-    /// Those with the same number are the rings.
+    /// Panics unless the rings are the sets of sleeping bodies with the same island number.
     fn check_rings(&self) {
         let mut islands: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();
         for (index, body) in self.bodies.iter() {

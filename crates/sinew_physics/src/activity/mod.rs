@@ -1,5 +1,5 @@
-//! What is awake, what sleeps, and what falls asleep and wakes together: so that a step goes through what is awake
-//! alone.
+//! Bookkeeping of what is awake, what sleeps, and what falls asleep and wakes together: so that a step goes through what is
+//! awake alone.
 //!
 //! All of it follows from the bodies and the contacts, and is no part of the state: a world whose bookkeeping is made anew
 //! has the same future.
@@ -37,7 +37,7 @@ pub(crate) struct Activity {
 }
 
 impl Activity {
-    /// Of a world whose contacts all lie in its own list.
+    /// Bookkeeping of a world whose contacts all lie in its own list.
     pub fn new(bodies: &Arena<Body>, joints: &Arena<Joint>) -> Self {
         let mut activity = Self { joints_of: Incidence::new(joints), ..Self::default() };
         let mut sleepers = Vec::new();

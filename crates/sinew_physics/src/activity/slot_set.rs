@@ -5,7 +5,7 @@
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SlotSet {
     members: Vec<u64>,
-    /// Which words of `members` have any.
+    /// Words of `members` that are not 0, one bit each.
     words: Vec<u64>,
 }
 

@@ -1,4 +1,4 @@
-//! What becomes of a shape's contacts before they are solved: they push, let pass, or are changed.
+//! Rules for a shape's contacts before they are solved: they push, let pass, or are changed.
 
 use crate::body::Velocity;
 use crate::body::material::{ContactMaterial, Material};
@@ -6,7 +6,7 @@ use crate::collide::ManifoldPoint;
 use crate::id::ShapeId;
 use sinew_math::{Vec3, normalize_or};
 
-/// What becomes of the contacts of a shape. Those of two shapes push only if both let them.
+/// Rule for the contacts of a shape. Contacts of two shapes push only if both rules let them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ContactRule {
     /// They push. Default.
@@ -26,7 +26,7 @@ pub enum ContactRule {
 }
 
 impl ContactRule {
-    /// Whether its numbers make sense; the phrase says what is wrong.
+    /// Checks that the numbers of the rule are valid; the phrase says what is wrong.
     ///
     /// # Errors
     /// What is wrong, in lower case.
@@ -114,7 +114,7 @@ pub struct ContactSide {
     pub user_data: u64,
     /// Its material.
     pub material: Material,
-    /// Of its body.
+    /// Velocity of its body, world axes.
     pub velocity: Velocity,
     /// Centre of mass of its body, world, metres.
     pub center: Vec3,
@@ -133,7 +133,7 @@ pub struct FoundContact<'a> {
     pub step: u64,
 }
 
-/// What a contact is to be like; `None`: it does not push in this step. It is given what the two materials make of it.
+/// Function that sets the material of a contact; `None`: it does not push in this step. It is given what the two materials make of it.
 ///
 /// A pure function of what it is given, so that a snapshot holds all that decides. A plain function, not a closure: there is
 /// nothing that it could remember. For the same bits everywhere it must be made of `+ − × ÷ √` and `sinew_math`. It is called

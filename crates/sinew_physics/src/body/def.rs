@@ -20,14 +20,14 @@ pub struct WorldDef {
     pub catch_up_steps: u32,
     /// Bodies may fall asleep by themselves. Default yes.
     pub sleeping: Sleeping,
-    /// What counts as rest.
+    /// Thresholds of motion below which an island is at rest.
     pub sleep_thresholds: SleepThresholds,
     /// Most that a body moves, m/s: it is held to it when forces act, before joints and contacts. Default 4,000.
     pub max_speed: f32,
     /// Most that a body turns within a substep, radians, likewise. Beyond a quarter of a turn (the default, 377 rad/s at
     /// 1/60 s and 4 substeps) rows that are linearised at the substep's start mean little; a top may spin faster.
     pub max_turn: f32,
-    /// How fast two shapes come in along their contact's normal for [a hit](crate::Hit) to be told of, m/s, ≥ 0. Default 1:
+    /// Least speed at which two shapes come in along their contact's normal for [a hit](crate::Hit) to be told of, m/s, ≥ 0. Default 1:
     /// what lies or rolls about tells of none.
     pub hit_speed: f32,
 }
@@ -49,16 +49,16 @@ pub enum Quality {
     Exact,
 }
 
-/// Whether what is at rest is put to sleep.
+/// Permission for bodies at rest to fall asleep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sleeping {
-    /// It is.
+    /// Bodies at rest fall asleep.
     On,
-    /// It goes on being simulated.
+    /// They go on being simulated.
     Off,
 }
 
-/// What counts as rest: an island sleeps when each of its bodies has been in its place for a time. A body that creeps by
+/// Thresholds of rest: an island sleeps when each of its bodies has been in its place for a time. A body that creeps by
 /// more than twice the distance or by the angle within the time does not sleep; one that trembles less far may.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SleepThresholds {
@@ -67,11 +67,11 @@ pub struct SleepThresholds {
     /// From where the time began, metres, positive. Default 0.003: with the time, nothing sleeps that creeps faster than
     /// 12 mm/s.
     pub distance: f32,
-    /// Likewise, radians, positive. Default 0.025: 0.05 rad/s.
+    /// Angle that a body at rest may turn from where the time began, radians, positive. Default 0.025: 0.05 rad/s.
     pub angle: f32,
-    /// What is faster is not at rest even in its place, m/s, positive. Default 0.2.
+    /// Speed beyond which a body is not at rest even in its place, m/s, positive. Default 0.2.
     pub speed: f32,
-    /// Likewise, rad/s, positive. Default 1.
+    /// Angular speed beyond which a body is not at rest even in its place, rad/s, positive. Default 1.
     pub spin: f32,
 }
 
@@ -103,7 +103,7 @@ const LONGEST_STEP: u64 = 1_000_000_000_000_000_000;
 const MOST_SUBSTEPS: u32 = 1024;
 
 impl WorldDef {
-    /// Whether its numbers make sense; the phrase says what is wrong.
+    /// Checks that the numbers of the definition are valid; the phrase says what is wrong.
     ///
     /// # Errors
     /// What is wrong, in lower case.
@@ -142,27 +142,27 @@ impl WorldDef {
     }
 }
 
-/// How a body moves.
+/// Kind of a body: static, kinematic or dynamic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyKind {
-    /// Never.
+    /// Moved by nothing.
     Static,
-    /// As its velocity says; nothing pushes it.
+    /// Moved as its velocity says; nothing pushes it.
     Kinematic,
-    /// By forces.
+    /// Moved by forces.
     Dynamic,
 }
 
 /// A body to be made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyDef {
-    /// How it moves. Default dynamic.
+    /// Kind of the body. Default dynamic.
     pub kind: BodyKind,
     /// World position of the body's origin (not its centre of mass), metres.
     pub position: Vec3,
     /// World orientation.
     pub rotation: Rotation,
-    /// Of the centre of mass, m/s.
+    /// Velocity of the centre of mass, m/s, world axes.
     pub linear_velocity: Vec3,
     /// rad/s, world axes.
     pub angular_velocity: Vec3,
@@ -176,7 +176,7 @@ pub struct BodyDef {
     pub shapes: Vec<ShapeDef>,
     /// Mass, centre and inertia in the body's frame; `None`: from the shapes' densities.
     pub mass: Option<MassProperties>,
-    /// Whether it may fall asleep by itself, and with it what it touches and is joined to. Default yes.
+    /// Permission for the body to fall asleep by itself, and with it what it touches and is joined to. Default yes.
     pub sleeping: Sleeping,
     /// Work that a step does for this body and what hangs together with it; `None`: as the [world](WorldDef::quality) has it. Default
     /// `None`.

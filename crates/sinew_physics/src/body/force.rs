@@ -17,7 +17,7 @@ pub struct Wrench {
     pub torque: Vec3,
 }
 
-/// Which axes a lasting force is given in.
+/// Axes that a lasting force is given in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ForceFrame {
     /// The world's: it keeps its direction when the body turns, as a pull from far away does. Default.
@@ -34,7 +34,7 @@ pub struct ForceDef {
     pub force: Vec3,
     /// N·m, in the axes of `frame`, beside what `force` turns by its lever.
     pub torque: Vec3,
-    /// Where `force` acts, metres in the body's frame: the point goes along with the body. `None`, the default: at the
+    /// Point at which `force` acts, metres in the body's frame: the point goes along with the body. `None`, the default: at the
     /// centre of mass.
     pub point: Option<Vec3>,
     /// Axes of `force` and `torque`. Default the world's.

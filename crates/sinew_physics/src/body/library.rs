@@ -24,7 +24,7 @@ pub enum LoadError {
     UnknownShape {
         /// Offset of the hash.
         at: usize,
-        /// What it should be.
+        /// Kind of data that it should be.
         kind: DataKind,
         /// Hash of its content.
         hash: u64,

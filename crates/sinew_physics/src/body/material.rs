@@ -1,4 +1,4 @@
-//! What surfaces are made of, and how those of two shapes combine.
+//! Materials of surfaces, and how those of two shapes combine.
 
 use sinew_math::{Vec3, max, min};
 
@@ -16,9 +16,9 @@ pub struct Material {
     /// Velocity of the surface along its body, m/s in the shape's frame: a conveyor, a moving walkway. What lies on it is
     /// carried by friction; the part along the contact's normal does nothing. Default 0.
     pub surface_velocity: Vec3,
-    /// Likewise about the shape's origin, rad/s in the shape's frame: a turntable. Default 0.
+    /// Angular velocity of the surface about the shape's origin, rad/s in the shape's frame: a turntable. Default 0.
     pub surface_spin: Vec3,
-    /// How it combines with the other side's.
+    /// Rules by which it combines with the other side's material.
     pub combine: CombineRules,
     /// For the user: what it is made of, such as for sounds. Default 0.
     pub tag: u32,
@@ -37,7 +37,7 @@ impl Material {
         tag: 0,
     };
 
-    /// Whether its numbers make sense; the phrase says what is wrong.
+    /// Checks that the numbers of the material are valid; the phrase says what is wrong.
     ///
     /// # Errors
     /// What is wrong, in lower case.
@@ -74,7 +74,7 @@ impl Default for Material {
     }
 }
 
-/// How two numbers become one, later ones before earlier ones: where two surfaces ask for different rules, the later of the
+/// Rule by which two numbers become one, later ones before earlier ones: where two surfaces ask for different rules, the later of the
 /// two in this list is taken, whichever side it is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Combine {
@@ -102,14 +102,14 @@ impl Combine {
     }
 }
 
-/// Which rules a surface asks for. `None`, the default, leaves it to the other side.
+/// Rules that a surface asks for. `None`, the default, leaves the choice to the other side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct CombineRules {
-    /// Of both coefficients of friction. If neither side says: the geometric mean.
+    /// Rule for both coefficients of friction. If neither side says: the geometric mean.
     pub friction: Option<Combine>,
-    /// If neither side says: the maximum.
+    /// Rule for restitution. If neither side says: the maximum.
     pub restitution: Option<Combine>,
-    /// If neither side says: the maximum.
+    /// Rule for rolling resistance. If neither side says: the maximum.
     pub rolling: Option<Combine>,
 }
 
@@ -126,7 +126,7 @@ impl CombineRules {
     }
 }
 
-/// What two materials are where they meet.
+/// Material of a contact: what two materials are where they meet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactMaterial {
     /// Coulomb coefficient of sliding.
@@ -140,7 +140,7 @@ pub struct ContactMaterial {
     /// Velocity of B's surface less that of A's where they touch, beside the velocities of the bodies, world axes, m/s:
     /// friction brings the surfaces to rest on each other, not the bodies. Its part along the normal does nothing.
     pub velocity: Vec3,
-    /// Likewise their spin, rad/s; its part about the normal counts.
+    /// Angular velocity of B's surface less that of A's, beside those of the bodies, world axes, rad/s; its part about the normal counts.
     pub spin: Vec3,
     /// Speed with which they are to part where they touch, m/s, ≥ 0: a trampoline, a launching pad. Only a
     /// [modifier](crate::ContactModifier) sets it.
@@ -148,7 +148,7 @@ pub struct ContactMaterial {
 }
 
 impl ContactMaterial {
-    /// Of two materials; no matter which comes first. Velocities depend on the place: they are 0 here.
+    /// Contact material of two materials; no matter which comes first. Velocities depend on the place: they are 0 here.
     pub fn of(a: &Material, b: &Material) -> Self {
         let [friction, restitution, rolling] = a.combine.with(b.combine);
         Self {

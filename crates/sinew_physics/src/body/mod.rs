@@ -69,7 +69,7 @@ pub(crate) struct Body {
     /// Applied by the user for the next step, N and N·m, world axes.
     pub force: Vec3,
     pub torque: Vec3,
-    /// Those that last.
+    /// Forces that last until they are changed.
     pub forces: BodyForces,
     pub principal_from_body: Transform,
     /// kg; 0 unless dynamic.
@@ -84,11 +84,11 @@ pub(crate) struct Body {
     pub shapes: Vec<BodyShape>,
     pub surfaces: Surfaces,
     pub rest: Rest,
-    /// Whether it may fall asleep by itself.
+    /// Permission for the body to fall asleep by itself.
     pub sleeping: Sleeping,
     /// Instead of the world's.
     pub quality: Option<Quality>,
-    /// Where it was when the time it has been calm began.
+    /// Pose at which its time at rest began.
     pub place: Transform,
     /// Set when its state became non-finite: it was rolled back and takes no further part.
     pub quarantined: bool,
@@ -183,7 +183,7 @@ impl Body {
         }
     }
 
-    /// Where the principal frame of a kinematic body comes to be by its velocity, after `count` substeps of `h` seconds.
+    /// Pose of the principal frame of a kinematic body after `count` substeps of `h` seconds at its velocity, in the world.
     pub fn carried(&self, h: f32, count: u32) -> Transform {
         let mut pose = self.world_from_principal;
         for _ in 0..count {
@@ -216,7 +216,7 @@ impl Body {
         self.previous = self.world_from_principal;
     }
 
-    /// What a shape is besides geometry.
+    /// Surface of a shape: what it is besides geometry.
     pub fn surface(&self, shape: usize) -> &Surface {
         &self.surfaces.as_slice()[self.shapes[shape].surface as usize]
     }
@@ -234,7 +234,7 @@ impl Body {
         }
     }
 
-    /// How the surface of a shape moves along the body at a world point, world axes.
+    /// Velocity of the surface of a shape along the body at a world point, world axes.
     pub fn surface_velocity(&self, shape: usize, point: Vec3) -> Velocity {
         let (frame, material) = (self.world_from_shape(shape), &self.surface(shape).material);
         let angular = frame.rotation * material.surface_spin;

@@ -51,13 +51,13 @@ pub struct ShapeDef {
     pub material: Material,
     /// Whom it meets.
     pub filter: Filter,
-    /// Whether it pushes.
+    /// Solid shape or sensor.
     pub sensing: Sensing,
-    /// What becomes of its contacts. Default: as they are.
+    /// Rule for its contacts. Default: they push.
     pub rule: ContactRule,
 }
 
-/// What a shape does to those it meets.
+/// Effect of a shape on those that it meets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sensing {
     /// It pushes them. Default.
@@ -68,7 +68,7 @@ pub enum Sensing {
 }
 
 impl ShapeDef {
-    /// Whether its numbers make sense; the phrase says what is wrong.
+    /// Checks that the numbers of the definition are valid; the phrase says what is wrong.
     ///
     /// # Errors
     /// What is wrong, in lower case.

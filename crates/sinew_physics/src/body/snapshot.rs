@@ -235,7 +235,7 @@ fn load_surface(r: &mut Reader<'_>) -> Result<Surface, ReadError> {
     if surface.density.is_finite() { Ok(surface) } else { Err(r.error("a density is not finite")) }
 }
 
-/// Of items that take at least `least` bytes each.
+/// Reads a list of items that take at least `least` bytes each.
 fn load_list<'a, T, E: From<ReadError>>(
     r: &mut Reader<'a>,
     least: usize,

@@ -1,4 +1,4 @@
-//! What the shapes of a body are besides geometry. Most share it with others of their body, so that it is kept once.
+//! Surfaces: what the shapes of a body are besides geometry. Most share it with others of their body, so that it is kept once.
 
 use crate::body::contact_rule::ContactRule;
 use crate::body::material::Material;
@@ -19,7 +19,7 @@ pub(crate) struct Surface {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Surfaces(Vec<Surface>);
 
-/// How many of the last surfaces a new one is compared with: a body with a million different ones must not take the square
+/// Number of the last surfaces that a new one is compared with: a body with a million different ones must not take the square
 /// of that to be made.
 const LOOK_BACK: usize = 16;
 
@@ -36,7 +36,7 @@ impl Surface {
 }
 
 impl Surfaces {
-    /// Those that were read.
+    /// Surfaces that were read from a snapshot.
     pub fn new(surfaces: Vec<Surface>) -> Self {
         Self(surfaces)
     }

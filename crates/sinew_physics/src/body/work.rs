@@ -3,11 +3,11 @@
 /// Work done on dynamic bodies within a step, J. What it takes out of them is negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Work {
-    /// Of the motors of joints, pins included.
+    /// Work of the motors of joints, pins included.
     pub drives: f32,
-    /// Of kinematic bodies, through contacts and joints.
+    /// Work of kinematic bodies, through contacts and joints.
     pub kinematic: f32,
-    /// Energy that movers give to what they push and stand on.
+    /// Work of movers on what they push and stand on.
     pub movers: f32,
 }
 

@@ -1,9 +1,9 @@
-//! What a step tells of.
+//! Events that a step tells of.
 
 use crate::contact::hits::Hit;
 use crate::id::{BodyId, GroupId, JointId, ShapeId};
 
-/// What happened in the last step. Every list is in the order of pairs: by the two body indices, the smaller one first, then
+/// Events of the last step. Every list is in the order of pairs: by the two body indices, the smaller one first, then
 /// by the two shape numbers; so it is the same for any number of threads, and after a snapshot was loaded.
 ///
 /// Two shapes **touch** while their surfaces overlap or meet, as the bodies lie when the step begins, and if they pushed each

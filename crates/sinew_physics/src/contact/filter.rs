@@ -1,4 +1,4 @@
-//! Which shapes may meet: filters, pairs that were parted, and a function of the user's.
+//! Filters of pairs: which shapes may meet by their filters, by pairs that were parted, and by a function of the user's.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -13,13 +13,13 @@ use crate::registered::Registered;
 pub struct PairSide {
     /// The shape.
     pub shape: ShapeId,
-    /// How its body moves.
+    /// Kind of its body.
     pub kind: BodyKind,
     /// The user's number on its body.
     pub user_data: u64,
     /// Its filter.
     pub filter: Filter,
-    /// Whether it only senses.
+    /// Solid shape or sensor.
     pub sensing: Sensing,
 }
 
@@ -29,7 +29,7 @@ pub struct PairSide {
 /// remember. It is asked in every step, in no defined order.
 pub type PairFunction = fn(&PairSide, &PairSide) -> bool;
 
-/// What keeps shapes from meeting.
+/// Filter that keeps shapes from meeting.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairFilter<'a> {
     /// Body indices, smaller first, ascending.

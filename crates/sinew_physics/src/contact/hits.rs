@@ -16,17 +16,17 @@ pub struct Hit {
     pub a: ShapeId,
     /// The other.
     pub b: ShapeId,
-    /// Where, world, metres: the middle of what pushed, weighed by how much; on the surface that stands still, if one does.
+    /// Point of the hit, world, metres: the middle of what pushed, weighed by how much; on the surface that stands still, if one does.
     pub point: Vec3,
     /// From A to B, unit length, world axes.
     pub normal: Vec3,
-    /// How fast they came in along the normal, m/s: where they touched first, when the step began.
+    /// Speed at which they came in along the normal, m/s: where they touched first, when the step began.
     pub approach: f32,
     /// All that pushed along the normal, N·s: the sum over the points of contact.
     pub impulse: f32,
     /// The most of that at one point, N·s.
     pub greatest: f32,
-    /// What A and B are made of.
+    /// Materials of A and B.
     pub materials: [Material; 2],
 }
 
@@ -151,7 +151,7 @@ fn hit_of(
     }
 }
 
-/// How fast the points that pushed still come in at the end of the step, m/s.
+/// Largest speed at which the points that pushed still come in at the end of the step, m/s.
 fn closing_speed(bodies: &Arena<Body>, pair: &[Contact]) -> f32 {
     let mut fastest = 0.0;
     for contact in pair {

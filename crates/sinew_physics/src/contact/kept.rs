@@ -20,16 +20,16 @@ const ON_FACE: f32 = 0.999_999;
 pub(crate) struct Kept {
     /// Number of points; none if there is nothing to keep to.
     count: usize,
-    /// How B lay to A.
+    /// Rotation of B seen from A when the manifold was found.
     a_from_b: Rotation,
     /// The normal, in the frame of the body whose face it is of.
     normal: Vec3,
     of_b: bool,
     /// Within which points were looked for, metres.
     margin: f32,
-    /// Of the two shapes, metres.
+    /// Slop of the two shapes, metres.
     slop: f32,
-    /// Of each point, where it lies on the surfaces of A and B, in their frames.
+    /// Place of each point on the surfaces of A and B, in their frames.
     points: [[Vec3; 2]; MAX_POINTS],
 }
 
@@ -43,7 +43,7 @@ fn is_of_face(shape: &Shape, direction: Vec3) -> bool {
 }
 
 impl Kept {
-    /// What is to be kept of a manifold that was just found. Only of what lies on a face of a solid with flat faces: other
+    /// Record of a manifold that was just found. Only of what lies on a face of a solid with flat faces: other
     /// points are found as soon as renewed, and what rolls has others from step to step.
     pub fn new([a, b]: [&Body; 2], key: ContactKey, (margin, slop): (f32, f32), manifold: &Manifold) -> Self {
         let shapes = [(a, key.shape_a), (b, key.shape_b)].map(|(body, shape)| &body.shapes[shape as usize]);
@@ -111,7 +111,7 @@ impl Kept {
         true
     }
 
-    /// How far apart points are looked for at least, metres; 0 if there is nothing to keep to.
+    /// Least margin within which points are looked for, metres; 0 if there is nothing to keep to.
     pub fn least_margin(&self) -> f32 {
         if self.count > 0 { SPECULATIVE_SLOPS * self.slop } else { 0.0 }
     }

@@ -1,4 +1,4 @@
-//! Which shapes touch: what begin and end are told from.
+//! Contact tracking: which shapes touch, from which begin and end events are told.
 
 use crate::arena::Arena;
 use crate::body::Body;
@@ -9,7 +9,7 @@ use crate::contact::{Contact, ContactKey};
 use crate::id::{BodyId, ShapeId};
 use sinew_math::{ReadError, Reader, Writer};
 
-/// What the world remembers of pairs beside their contacts, which come and go with the broad phase. Part of the snapshot.
+/// Memory of the world about pairs beside their contacts, which come and go with the broad phase. Part of the snapshot.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Meetings {
     /// Solid shapes.
@@ -72,7 +72,7 @@ pub(crate) struct Touch {
 }
 
 impl Touch {
-    /// What all lists are ordered by.
+    /// Key that all lists are ordered by.
     fn shapes(&self) -> (BodyId, BodyId, u32, u32) {
         (self.a.body, self.b.body, self.a.shape, self.b.shape)
     }
@@ -102,9 +102,9 @@ fn touch_of(bodies: &Arena<Body>, key: ContactKey) -> Touch {
 pub(crate) struct Touches {
     /// Pairs that touched until their contact was dropped: the next step tells of it. Part of the snapshot.
     gone: Vec<Touch>,
-    /// What touched before this step or does now; only of bodies of which something changed, where nothing is gone.
+    /// Pairs that touched before this step or do now; only of bodies of which something changed, where nothing is gone.
     seen: Vec<Seen>,
-    /// Where those of the two bodies at hand begin, and whether anything changed of them.
+    /// Start in `seen` of the pairs of the two bodies at hand, and whether anything changed of them.
     first: usize,
     changes: bool,
     /// Both together, while they are told of.
@@ -155,7 +155,7 @@ impl Touches {
         self.seen.push(Seen { key, was, is });
     }
 
-    /// Of two bodies of which nothing changed there is nothing to tell, unless a contact of theirs is gone.
+    /// Forgets the pairs of two bodies of which nothing changed: there is nothing to tell, unless a contact is gone.
     fn forget_unchanged(&mut self) {
         if !self.changes && self.gone.is_empty() {
             self.seen.truncate(self.first);
@@ -219,7 +219,7 @@ enum Change {
     Ends,
 }
 
-/// What becomes of some pairs taken together.
+/// Change of some pairs taken together, if there is one.
 fn change(noted: &[Noted]) -> Option<Change> {
     match (noted.iter().any(|noted| noted.was), noted.iter().any(|noted| noted.is)) {
         (false, true) => Some(Change::Begins),

@@ -24,7 +24,7 @@ use sinew_math::Vec3;
 /// Points are looked for so many slops away, however slow.
 pub(crate) const SPECULATIVE_SLOPS: f32 = 4.0;
 
-/// Which two shapes: body index and shape number of each, the smaller body index first, and which part of their contact.
+/// Key of a contact: body index and shape number of both shapes, the smaller body index first, and which part of their contact.
 /// Sorting by it is the order in which everything about contacts happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ContactKey {
@@ -32,7 +32,7 @@ pub(crate) struct ContactKey {
     pub b: u32,
     pub shape_a: u32,
     pub shape_b: u32,
-    /// Which of several manifolds of the two, from 0; a pair of convex shapes has only one.
+    /// Number of the manifold among those of the two shapes, from 0; a pair of convex shapes has only one.
     pub part: u32,
 }
 
@@ -52,7 +52,7 @@ impl PartialOrd for ContactKey {
 }
 
 impl ContactKey {
-    /// Of two shapes, each given by body and number, in whatever order.
+    /// Key of two shapes, each given by body and shape number, in whatever order; part 0.
     pub fn new(p: (u32, u32), q: (u32, u32)) -> Self {
         let (a, b) = if p.0 < q.0 { (p, q) } else { (q, p) };
         Self { a: a.0, b: b.0, shape_a: a.1, shape_b: b.1, part: 0 }
@@ -82,16 +82,16 @@ pub(crate) fn ordered(a: u32, b: u32) -> (u32, u32) {
 /// Impulses of one manifold point, N·s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PointImpulse {
-    /// Of the last substep and the one before: an impact must not be repeated, so warm starting looks at both.
+    /// Impulses of the last substep and the one before: an impact must not be repeated, so warm starting looks at both.
     pub now: f32,
     pub before: f32,
-    /// Of all substeps of the step.
+    /// Sum over all substeps of the step.
     pub total: f32,
     /// Mean over some substeps: the load at rest.
     pub lasting: f32,
 }
 
-/// What a contact carries from step to step.
+/// Impulses that a contact carries from step to step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ContactMemory {
     pub points: [PointImpulse; MAX_POINTS],
@@ -132,7 +132,7 @@ impl ContactMemory {
         }
     }
 
-    /// What a new manifold of the same shapes starts with. Points keep their impulses by feature; those of points that
+    /// Memory that a new manifold of the same shapes starts with. Points keep their impulses by feature; those of points that
     /// are gone go to the new ones in equal parts, since the load stays when the shapes tip from one corner to another.
     /// Nothing is kept if the normal turned by more than about 25°.
     pub fn matched(&self, old: &Manifold, new: &Manifold) -> Self {
@@ -173,7 +173,7 @@ impl ContactMemory {
     }
 }
 
-/// What a contact does.
+/// Effect of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effect {
     /// It pushes.
@@ -200,12 +200,12 @@ pub(crate) struct Contact {
     pub sensed: bool,
     /// A shape that is solid from one side let the other pass when it was last decided.
     pub passes: bool,
-    /// How fast its points came in when the step began, m/s.
+    /// Speed at which its points came in when the step began, m/s.
     pub approach: f32,
-    /// What parted the shapes when they were last looked at. Not part of the state: it decides nothing but how soon that is
+    /// Separating axis of the shapes when they were last looked at. Not part of the state: it decides nothing but how soon that is
     /// found again.
     pub apart: Option<AxisOf>,
-    /// How far they were surely apart then, metres, if they had no points. Likewise.
+    /// Gap that surely was between them then, metres, if they had no points. Not part of the state, either.
     pub gap: f32,
     /// One of the shapes is a mesh or a height field.
     pub has_surface: bool,
@@ -240,7 +240,7 @@ impl Contact {
         self.manifold.count == 0 && !self.touching && !self.sensed
     }
 
-    /// What is known of its shapes' gap.
+    /// Separating axis and gap of its shapes, as far as they are known.
     pub fn parting(&self) -> Parting {
         Parting { axis: self.apart, gap: self.gap }
     }
@@ -260,13 +260,13 @@ impl Contact {
         self.impulses().any(|(_, impulse)| impulse > 0.0)
     }
 
-    /// Where its points are, and all that they got along the normal in the last step, N·s.
+    /// World positions of its points, m, and all that each got along the normal in the last step, N·s.
     pub fn impulses(&self) -> impl Iterator<Item = (Vec3, f32)> {
         let points = self.manifold.points().iter().zip(&self.memory.points);
         points.map(|(point, impulse)| (point.position, impulse.total))
     }
 
-    /// What its two surfaces are to each other, as the bodies lie now.
+    /// Contact material of its two surfaces, as the bodies lie now.
     pub fn material(&self, bodies: &Arena<Body>) -> ContactMaterial {
         let sides = [(self.key.a, self.key.shape_a), (self.key.b, self.key.shape_b)];
         let sides = sides.map(|(body, shape)| (bodies.at(body), shape as usize));

@@ -11,7 +11,7 @@ use crate::registered::Registered;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Modifiers {
     pub registered: Registered<ContactModifier>,
-    /// Of contacts (by their place) that were changed in this step, ascending.
+    /// Contacts (by their place) that were changed in this step, ascending, with their materials.
     changed: Vec<(u32, ContactMaterial)>,
 }
 
@@ -62,7 +62,7 @@ impl Modifiers {
         Some(&self.changed[found].1)
     }
 
-    /// What a contact is in this step.
+    /// Material of a contact in this step.
     pub fn material(&self, bodies: &Arena<Body>, contacts: &[Contact], place: u32) -> ContactMaterial {
         self.find(place).copied().unwrap_or_else(|| contacts[place as usize].material(bodies))
     }

@@ -17,7 +17,7 @@ use sinew_math::max;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NearPair {
     pub key: ContactKey,
-    /// Where their bounds are, in the order of the key.
+    /// Leaves of the trees that hold their bounds, in the order of the key.
     pub leaves: [Leaf; 2],
     /// Gap that surely is left, metres: the gap found last, or that of their bounds, less what they may have moved against
     /// each other since. Only while they have no contact.
@@ -113,7 +113,7 @@ pub(crate) struct NearPairs {
     next: Vec<NearPair>,
     /// Number that were found of shapes that strayed, and one for each time, since those went that do not overlap any more.
     strayed: usize,
-    /// Of the filter that was asked last.
+    /// Version of the filter that was asked last.
     filter_version: u64,
 }
 

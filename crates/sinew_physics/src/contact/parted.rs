@@ -5,16 +5,16 @@ use crate::contact::filter::{PairFilter, PairFunctions};
 use crate::contact::ordered;
 use crate::joint::Joint;
 
-/// Those that the user named, and those of joints whose bodies do not collide.
+/// Disabled pairs: those that the user named, and those of joints whose bodies do not collide.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PartedPairs {
     /// By the user: body indices, smaller first, ascending.
     pub disabled: Vec<(u32, u32)>,
-    /// Likewise with those of joints.
+    /// Pairs of the user and of joints together: body indices, smaller first, ascending.
     all: Vec<(u32, u32)>,
     /// `all` misses something.
     stale: bool,
-    /// How often `all` was made.
+    /// Number of times that `all` was made.
     version: u64,
     /// The user's, that part more.
     pub functions: PairFunctions,
@@ -52,7 +52,7 @@ impl PartedPairs {
         self.stale = true;
     }
 
-    /// What keeps shapes from meeting.
+    /// Filter that keeps shapes from meeting, brought up to date.
     pub fn filter(&mut self, joints: &Arena<Joint>) -> PairFilter<'_> {
         if core::mem::take(&mut self.stale) {
             let jointed = joints.iter().filter(|(_, joint)| joint.parts_bodies());

@@ -12,7 +12,7 @@ use std::sync::{Mutex, PoisonError};
 /// Cosine of the largest turn of a normal, 25°, after which a part is another one.
 const SAME_PART: f32 = 0.9;
 
-/// What is new of the pairs with parts; kept between steps for its memory.
+/// New manifolds of the pairs with parts; kept between steps for its memory.
 #[derive(Debug, Default)]
 pub(crate) struct Parts {
     pairs: Vec<Pair>,

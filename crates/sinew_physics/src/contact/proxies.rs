@@ -1,4 +1,4 @@
-//! Where all shapes of a world are: their bounds, in two trees, one for what is fixed and one for what may move. Bounds of
+//! Bounds of all shapes of a world, in two trees, one for what is fixed and one for what may move. Bounds of
 //! what moves have room to move in, so that the tree need not change in every step. The trees hold at any time, within a
 //! step and between steps, and what they answer does not depend on how they came to be: they are no part of the state.
 
@@ -21,7 +21,7 @@ pub(crate) const MARGIN: f32 = 0.02;
 const ROOM: f32 = 0.04;
 const ROOM_STEPS: f32 = 3.0;
 const ROOM_STEPS_ALONE: f32 = 12.0;
-/// Of bounds that have this many times as much room, some is taken.
+/// Multiple of its room by which a shape's bounds may exceed those that it needs; larger ones are made smaller.
 const TOO_MUCH: f32 = 3.0;
 /// Bodies with fewer shapes are put into a tree one by one.
 const FEW: usize = 64;
@@ -40,11 +40,11 @@ pub(crate) struct Proxies {
     moving: Layer,
     /// Half-spaces: their bounds would tell nothing.
     unbounded: Vec<Owner>,
-    /// Which leaves are a body's, by its index.
+    /// Leaves of each body, by its index.
     homes: Vec<Option<Home>>,
     /// Static bodies of a single shape, by index: rays meet many, and a body is spread over several lines of the cache.
     lone: Vec<Option<Placed>>,
-    /// Of each leaf of `moving`: where it may be within the coming step.
+    /// Bounds of each leaf of `moving` within the coming step, world, metres.
     reach: Vec<Aabb>,
     /// By the first leaf of each body that may move.
     traces: Vec<Trace>,
@@ -72,7 +72,7 @@ pub(crate) struct Proxies {
 /// Motion of a body in a step, metres.
 #[derive(Clone, Copy, Debug, Default)]
 struct Stride {
-    /// How its centre moved since pairs were last looked for, and how far its points did besides; without end if it was put
+    /// Motion of its centre since pairs were last looked for, and of its points besides; without end if it was put
     /// somewhere.
     shift: Vec3,
     turned: f32,
@@ -92,7 +92,7 @@ pub(crate) struct Closing {
     pub ahead: f32,
 }
 
-/// Where a body was when its bounds were last worked out.
+/// Pose and motion of a body when its bounds were last worked out.
 #[derive(Clone, Copy, Debug)]
 struct Trace {
     /// The body's reach: its shapes never change.
@@ -105,7 +105,7 @@ struct Trace {
 }
 
 impl Trace {
-    /// Of a body that was put where it is.
+    /// Trace of a body that was put where it is.
     const NONE: Self = Self {
         arm: f32::NAN,
         pose: Transform { translation: Vec3::NAN, ..Transform::IDENTITY },
@@ -120,7 +120,7 @@ impl Trace {
 const SLACK: f32 = 1e-3;
 const BLUR: f32 = 2e-6;
 
-/// How far a body's centre has moved, and how far any point within `arm` of it did besides, metres: by the chord of half the
+/// Motion of a body's centre between two poses, and the most that any point within `arm` of it did besides, metres: by the chord of half the
 /// turn, twice as long as that of a quarter.
 fn way(from: &Transform, to: &Transform, arm: f32) -> (Vec3, f32) {
     let (p, q) = (from.rotation, to.rotation.toward(from.rotation));
@@ -164,7 +164,7 @@ pub(crate) struct Placed {
 struct Layer {
     tree: Tree,
     owners: Vec<Owner>,
-    /// Of each leaf, whether its pairs are being looked for anew.
+    /// True for each leaf whose pairs are being looked for anew.
     is_loose: Vec<bool>,
     /// Numbers of leaves that are not used, by how many there are in a row.
     gaps: BTreeMap<u32, Vec<u32>>,
@@ -227,7 +227,7 @@ pub(crate) fn thick(bounds: &Aabb) -> Aabb {
     }
 }
 
-/// Where contacts of a shape are looked for: its bounds, grown by its motion and a margin.
+/// Bounds within which contacts of a shape are looked for, world: its own, grown by its motion and a margin.
 fn grown(body: &Body, shape: u32, motion: f32) -> Aabb {
     bounds(body, shape).expand(MARGIN + motion)
 }
@@ -430,7 +430,7 @@ impl Proxies {
         Closing { moved, ahead: self.ahead(key) }
     }
 
-    /// How far apart points of two bodies are looked for at most because of how fast they are, metres: as far as they come
+    /// Largest gap within which points of two bodies are looked for because of how fast they are, metres: as far as they come
     /// closer, or one of them comes, whichever is more, and what both turn.
     pub fn ahead(&self, key: ContactKey) -> f32 {
         let [p, q] = [key.a, key.b].map(|body| &self.strides[body as usize]);
@@ -509,7 +509,7 @@ impl Proxies {
         }
     }
 
-    /// What the bounds of a shape meet.
+    /// Visits the pairs of a shape with the shapes whose bounds meet its own.
     fn neighbors(
         &self,
         bodies: &Arena<Body>,
@@ -551,7 +551,7 @@ impl Proxies {
         }
     }
 
-    /// What holds a shape and all that may touch it, as long as its tree does not change.
+    /// Bounds that hold a shape and all that may touch it, as long as its tree does not change.
     fn wide_bounds(&self, body: &Body, owner: Owner, leaf: Leaf) -> Aabb {
         match (leaf.moves(), is_bounded(body, owner.shape)) {
             (true, _) => self.moving.tree.bounds(leaf.at() as u32),
@@ -560,7 +560,7 @@ impl Proxies {
         }
     }
 
-    /// Whether the bounds of two shapes in their trees do not overlap. Both are there.
+    /// True if the bounds of two shapes in their trees do not overlap. Both are there.
     pub fn are_parted(&self, leaves: [Leaf; 2]) -> bool {
         let bounds = |leaf: Leaf| {
             let tree = &self.layer(leaf.moves()).tree;
@@ -571,7 +571,7 @@ impl Proxies {
         p.is_some_and(|p| q.is_some_and(|q| !overlap(&p, &q)))
     }
 
-    /// Whether two shapes are near each other: their bounds, grown by the motion of the coming step and a margin, overlap. That
+    /// True if two shapes are near each other: their bounds, grown by the motion of the coming step and a margin, overlap. That
     /// does not depend on what the trees hold.
     pub fn are_near(&self, bodies: &Arena<Body>, key: ContactKey, leaves: [Leaf; 2]) -> bool {
         let [(p, _), (q, _)] = self.grown_bounds(bodies, key, leaves);
@@ -723,7 +723,7 @@ impl Proxies {
         fits
     }
 
-    /// What the bounds of a shape in its tree hold at least.
+    /// Least bounds that the tree must hold for a shape.
     fn needed(&self, home: Home, body: &Body, shape: u32) -> Aabb {
         thick(&if home.moves { grown(body, shape, 0.0) } else { bounds(body, shape) })
     }

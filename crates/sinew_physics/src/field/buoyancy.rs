@@ -95,7 +95,7 @@ impl Buoyancy {
         }
     }
 
-    /// What it took to push the fluid aside: `ρ |g| V` times the depth of its centre.
+    /// Energy that it took to push the fluid aside, J: `ρ |g| V` times the depth of its centre.
     pub(super) fn energy(&self, target: &Target<'_>, gravity: Vec3) -> f32 {
         let plane = self.plane();
         let pull = -gravity.dot(plane.normal);

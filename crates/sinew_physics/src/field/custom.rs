@@ -5,10 +5,10 @@ use crate::body::force::Wrench;
 use crate::registered::Registered;
 use sinew_math::Vec3;
 
-/// How many numbers a user's function is called with.
+/// Number of parameters that a user's function is called with.
 pub const PARAMETERS: usize = 8;
 
-/// What a user's field function sees: something that it acts on, and when.
+/// Input of a user's field function: something that it acts on, and when.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldPoint {
     /// Centre of mass of a body, or place of a particle, world, metres.
@@ -31,7 +31,7 @@ pub struct FieldPoint {
 /// the torque. A result that is not finite quarantines the body.
 pub type FieldFunction = fn(&FieldPoint, &[f32; PARAMETERS]) -> Wrench;
 
-/// Those of a world.
+/// Field functions of a world.
 pub(crate) type Functions = Registered<FieldFunction>;
 
 impl Functions {

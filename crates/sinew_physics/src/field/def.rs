@@ -1,4 +1,4 @@
-//! What a field is made from.
+//! Definition of a field.
 
 use super::custom::PARAMETERS;
 use super::{Buoyancy, Drag, MutualGravity, PointGravity, Region, UniformGravity, Wind};
@@ -9,23 +9,23 @@ use sinew_math::Transform;
 /// A field to be made: what it does, where, and to whom.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldDef {
-    /// What it does.
+    /// Kind of the field.
     pub kind: FieldKind,
-    /// Where, by the centre of mass of a body and the place of a particle. Default everywhere.
+    /// Region in which it acts, by the centre of mass of a body and the place of a particle. Default everywhere.
     pub region: Region,
     /// Bits of the layers ([`Filter::layers`](crate::Filter)) that it acts on: a body is reached if one of its shapes is on
     /// one of them, or if it has no shape. Default all.
     pub layers: u32,
 }
 
-/// What a field does.
+/// Kind of a field: the law by which it acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FieldKind {
     /// The same acceleration everywhere, beside the world's own.
     Uniform(UniformGravity),
     /// Toward a place.
     Point(PointGravity),
-    /// Of bodies and particles to each other.
+    /// Attraction of bodies and particles to each other.
     Mutual(MutualGravity),
     /// Moving air, with drag and lift by exposed area; still air is a wind of no speed.
     Wind(Wind),
@@ -38,7 +38,7 @@ pub enum FieldKind {
     Custom {
         /// Number of the function.
         function: u32,
-        /// What it is called with.
+        /// Parameters that it is called with.
         parameters: [f32; PARAMETERS],
     },
 }
@@ -53,7 +53,7 @@ impl FieldDef {
         Self { kind, region: Region::Everywhere, layers: u32::MAX }
     }
 
-    /// Whether its numbers make sense; the phrase says what is wrong.
+    /// Checks that the numbers of the definition are valid; the phrase says what is wrong.
     ///
     /// # Errors
     /// What is wrong, in lower case.
@@ -75,7 +75,7 @@ impl FieldDef {
 }
 
 impl FieldKind {
-    /// What it does to something at rest is another thing at another time.
+    /// True if its effect on something at rest changes with time.
     pub(crate) fn changes_by_itself(&self) -> bool {
         match self {
             Self::Wind(wind) => wind.gusts.is_some(),

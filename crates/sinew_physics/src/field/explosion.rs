@@ -20,15 +20,15 @@ pub struct Explosion {
     pub radius: f32,
     /// Impulse per area at the centre, N·s/m² (Pa·s), ≥ 0.
     pub impulse: f32,
-    /// How it falls off with distance.
+    /// Decrease of the impulse with distance.
     pub fade: Fade,
-    /// What shelters.
+    /// Obstacles that shelter from it.
     pub occlusion: Occlusion,
     /// Bits of the layers that it acts on.
     pub layers: u32,
 }
 
-/// What shelters from a blast.
+/// Obstacles that shelter from a blast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Occlusion {
     /// Nothing. Default.
@@ -44,7 +44,7 @@ impl Explosion {
         Self { center, radius, impulse, fade: Fade::Linear, occlusion: Occlusion::None, layers: u32::MAX }
     }
 
-    /// Whether its numbers make sense; the phrase says what is wrong.
+    /// Checks that the numbers of the explosion are valid; the phrase says what is wrong.
     ///
     /// # Errors
     /// What is wrong, in lower case.

@@ -1,4 +1,4 @@
-//! What a shape exposes to a stream: panels of its surface, each with an area and where it lies.
+//! Panels of a shape's surface that it exposes to a stream, each with an area and where it lies.
 
 use crate::body::shape::Shape;
 use crate::hull::Hull;

@@ -1,15 +1,15 @@
-//! What a field does to what it acts on, and how much of it a substep can bear.
+//! Loads that fields put on what they act on, and how much of them a substep can bear.
 
 use crate::body::force::Wrench;
 use sinew_math::{Vec3, min};
 
-/// What fields do to a body or particle.
+/// Load of fields on a body or particle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Load {
     pub wrench: Wrench,
-    /// How much less force comes of more velocity, `−∂F/∂v`, N·s/m: an upper bound over directions.
+    /// Decrease of the force with velocity, `−∂F/∂v`, N·s/m: an upper bound over directions.
     pub resistance: f32,
-    /// Likewise of torque and spin, N·m·s.
+    /// Decrease of the torque with spin, N·m·s: an upper bound over directions.
     pub spin_resistance: f32,
 }
 

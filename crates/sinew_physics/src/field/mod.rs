@@ -94,7 +94,7 @@ impl<'a> Fields<'a> {
         load
     }
 
-    /// Those in which bodies attract each other.
+    /// Fields in which bodies attract each other, each with its law.
     pub fn mutual(&self) -> impl Iterator<Item = (&'a FieldDef, &'a MutualGravity)> {
         self.arena.iter().filter_map(|(_, field)| match &field.kind {
             FieldKind::Mutual(law) => Some((field, law)),
@@ -111,7 +111,7 @@ impl<'a> Fields<'a> {
         })
     }
 
-    /// What attracts and is attracted wakes together. Gives a sleeper to be woken, as long as there is one.
+    /// Sleeper that is to wake next, as long as there is one: what attracts and is attracted wakes together.
     pub fn next_to_wake(&self, bodies: &Arena<Body>, activity: &Activity) -> Option<u32> {
         self.mutual().find_map(|(field, _)| {
             let reached =

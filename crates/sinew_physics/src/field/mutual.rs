@@ -37,7 +37,7 @@ impl Default for MutualGravity {
 pub(crate) struct Attractor {
     pub position: Vec3,
     pub mass: f32,
-    /// Of the field where it is.
+    /// Weight of the field at its position, 0..=1.
     pub weight: f32,
 }
 
@@ -63,7 +63,7 @@ impl MutualGravity {
         pull * (light * (a.weight * b.weight))
     }
 
-    /// Of a pair, J.
+    /// Potential energy of a pair, J.
     pub(crate) fn energy(&self, a: &Attractor, b: &Attractor) -> f32 {
         potential(b.position - a.position, self.constant * b.mass, self.softening) * a.mass
     }

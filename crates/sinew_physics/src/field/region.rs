@@ -1,9 +1,9 @@
-//! Where a field acts, and how it fades toward its border.
+//! Regions in which fields act, and how they fade toward their borders.
 
 use crate::body::shape::Shape;
 use sinew_math::{Transform, Vec3};
 
-/// How the strength of a field falls from where it is full to its border, with `u` from 1 to 0 on the way.
+/// Decrease of a field's strength from where it is full to its border, with `u` from 1 to 0 on the way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Fade {
     /// Full up to the border. Default.
@@ -29,7 +29,7 @@ impl Fade {
     }
 }
 
-/// Where a field acts.
+/// Region in which a field acts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Region {
     /// In the whole world. Default.
@@ -43,7 +43,7 @@ pub enum Region {
         world_from_shape: Transform,
         /// Metres, ≥ 0. For a ball that fades from its centre outward, the ball's radius.
         margin: f32,
-        /// How.
+        /// Decrease of the strength over the margin.
         fade: Fade,
     },
 }
@@ -76,7 +76,7 @@ impl Region {
         }
     }
 
-    /// What it is the inside of.
+    /// Shape that the region is the inside of.
     pub(crate) fn shape(&self) -> Option<&Shape> {
         match self {
             Self::Everywhere => None,

@@ -1,14 +1,14 @@
-//! What a field acts on.
+//! Targets of fields: bodies and particles.
 
 use crate::body::shape::Shape;
 use crate::body::{Body, Velocity};
 use crate::particles::ParticleGroup;
 use sinew_math::{Transform, Vec3};
 
-/// What a field finds in its reach: a body or a particle.
+/// Target of a field: a body or a particle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target<'a> {
-    /// Of the principal frame: the translation is the centre of mass.
+    /// World pose of the principal frame: the translation is the centre of mass.
     pub pose: Transform,
     pub velocity: Velocity,
     pub mass: f32,
@@ -16,7 +16,7 @@ pub(crate) struct Target<'a> {
     pub form: Form<'a>,
 }
 
-/// What of it the air and the water meet.
+/// Form of a target, as the air and the water meet it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Form<'a> {
     Body(&'a Body),

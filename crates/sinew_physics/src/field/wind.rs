@@ -22,7 +22,7 @@ use sinew_math::Vec3;
 /// r²))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wind {
-    /// Of the air, m/s, world. Default 0: still air.
+    /// Velocity of the air, m/s, world. Default 0: still air.
     pub velocity: Vec3,
     /// ρ, kg/m³, ≥ 0. Default 1.225: air at sea level, 15 °C.
     pub density: f32,
@@ -30,7 +30,7 @@ pub struct Wind {
     pub drag: f32,
     /// C_l, ≥ 0. Default 0.
     pub lift: f32,
-    /// What comes and goes. Default none.
+    /// Gusts that come and go. Default none.
     pub gusts: Option<Gusts>,
 }
 
@@ -47,7 +47,7 @@ pub struct Gusts {
     pub length: f32,
     /// Time over which they differ, seconds, at least a nanosecond.
     pub time: f32,
-    /// Which of all gusts.
+    /// Seed of the noise: the same gusts for the same seed.
     pub seed: u64,
 }
 

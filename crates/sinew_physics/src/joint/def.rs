@@ -4,7 +4,7 @@ use crate::body::Velocity;
 use crate::id::BodyId;
 use sinew_math::{Range, SwingTwistLimit, Transform, Vec3};
 
-/// What a joint leaves free. The joint's frames are `JointDef::frame_a` and `frame_b`; zero is where they agree.
+/// Kind of a joint: the motions that it leaves free. The joint's frames are `JointDef::frame_a` and `frame_b`; zero is where they agree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointKind {
     /// Three rotations, within limits.
@@ -40,7 +40,7 @@ pub enum JointKind {
     SixDof(SixDof),
 }
 
-/// Which of the six relative motions of two frames are free.
+/// Six relative motions of two frames, each locked, free or limited.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SixDof {
     /// Translation along the axes of frame A, metres.
@@ -75,7 +75,7 @@ pub enum AxisMotion {
     Limited(Range),
 }
 
-/// How hard a spring is.
+/// Stiffness and damping of a spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Softness {
     /// Whatever the masses.
@@ -102,13 +102,13 @@ pub enum Softness {
 /// the limits: a stop that a stiff spring has dragged a joint beyond pushes it back no faster than there is energy for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
-    /// How hard.
+    /// Stiffness and damping of the spring.
     pub softness: Softness,
     /// Frame B seen from frame A at rest. For [`JointKind::Distance`] the rest length is its `translation.x`.
     pub rest: Transform,
 }
 
-/// What a motor aims at.
+/// Aim of a motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Gains {
     /// The target velocity, as exactly as the caps allow.
@@ -120,11 +120,11 @@ pub enum Gains {
 /// Drives the free directions of a joint. Its targets belong inside the limits, see [`Spring`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor {
-    /// How.
+    /// Aim of the motor: velocity, or pose.
     pub gains: Gains,
     /// Frame B seen from frame A. Of a hinge's rotation only that about x counts, of a slider's translation x.
     pub target: Transform,
-    /// Of frame B seen from frame A, in A's axes, m/s and rad/s.
+    /// Target velocity of frame B seen from frame A, in A's axes, m/s and rad/s.
     pub velocity: Velocity,
     /// Most force along each free axis by itself, N, may be infinite; 0 leaves translations alone.
     pub max_force: f32,
@@ -172,7 +172,7 @@ impl Motor {
 pub struct SoftZone {
     /// So far before the stop a spring begins to push back, radians. 5° suits limbs.
     pub width: f32,
-    /// How hard; damping grows from none at the zone's edge to all of it at the stop. 10 Hz and critical suits limbs.
+    /// Stiffness and damping; damping grows from none at the zone's edge to all of it at the stop. 10 Hz and critical suits limbs.
     pub softness: Softness,
 }
 
@@ -190,21 +190,21 @@ impl Strength {
     pub const UNBREAKABLE: Self = Self { force: f32::INFINITY, torque: f32::INFINITY };
 }
 
-/// Whether the two bodies of a joint collide with each other.
+/// Collision of the two bodies of a joint with each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointCollision {
-    /// They do.
+    /// They collide.
     Enabled,
-    /// They do not, as long as the joint is enabled.
+    /// They do not collide, as long as the joint is enabled.
     Disabled,
 }
 
-/// Whether a joint acts.
+/// State of a joint: enabled or disabled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointState {
-    /// It does.
+    /// The joint acts.
     Enabled,
-    /// As if it were not there.
+    /// The joint does nothing, as if it were not there.
     Disabled,
 }
 
@@ -219,11 +219,11 @@ pub struct JointDef {
     pub frame_a: Transform,
     /// Joint frame in B's frame.
     pub frame_b: Transform,
-    /// What is free.
+    /// Kind of the joint: the motions that it leaves free.
     pub kind: JointKind,
-    /// How what is not free gives. Default `None`: it holds exactly.
+    /// Stiffness and damping of the directions that are not free. Default `None`: they hold exactly.
     pub weld: Option<Softness>,
-    /// How the limits give. Default `None`: hard stops without bounce.
+    /// Stiffness and damping of the limits. Default `None`: hard stops without bounce.
     pub limit_softness: Option<Softness>,
     /// Before hard limits of rotations. Default `None`.
     pub soft_zone: Option<SoftZone>,

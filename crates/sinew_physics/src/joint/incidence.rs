@@ -1,4 +1,4 @@
-//! Which joints a body has.
+//! Lists of the joints that each body has.
 
 use super::Joint;
 use crate::arena::Arena;
@@ -11,7 +11,7 @@ pub(crate) struct Incidence {
 }
 
 impl Incidence {
-    /// Of all joints of a world.
+    /// Incidence of all joints of a world.
     pub fn new(joints: &Arena<Joint>) -> Self {
         let mut incidence = Self::default();
         for (index, joint) in joints.iter() {

@@ -35,7 +35,7 @@ impl LimitImpulse {
     }
 }
 
-/// What acts in a joint's directions beside the hard constraint.
+/// Parameters of what acts in a joint's directions beside the hard constraint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointDrive {
     pub weld: Option<Softness>,
@@ -87,7 +87,7 @@ impl Softness {
     }
 }
 
-/// Which way a motor pushes with all it has, by direction: −1, 1, or 0 while it is strong enough.
+/// Sign of a motor's push where it pushes with all it has, by direction: −1, 1, or 0 while it is strong enough.
 pub(crate) type Saturation = [i8; DIRECTIONS];
 
 #[derive(Clone, Debug)]
@@ -109,7 +109,7 @@ pub(crate) struct Joint {
     pub warm_impulse: Vec6,
     /// Linear force of the last substep on body B, N, world axes: geometric stiffness needs it.
     pub force: Vec3,
-    /// What springs and motors moved in the last step, direction by direction, kg or kg·m².
+    /// Effective mass that springs and motors moved in the last step, direction by direction, kg or kg·m².
     pub mass: Vec6,
     /// Mean over the last step on body B, N and N·m about its anchor, world axes.
     pub reaction: Vec6,

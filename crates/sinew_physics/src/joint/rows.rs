@@ -8,10 +8,10 @@ use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3};
 /// Directions of a joint: translation along x, y, z of frame A (along the line between the anchors for a distance),
 /// then twist about x, swing about y and z.
 pub(crate) const DIRECTIONS: usize = 6;
-/// Of these, the first rotation.
+/// First rotation among the directions.
 pub(crate) const TWIST: usize = 3;
 
-/// What the rows of a joint are computed from: its definition without state.
+/// Geometry that the rows of a joint are computed from: its definition without state.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointGeometry {
     pub frame_a: Transform,
@@ -102,7 +102,7 @@ impl Row {
 pub(crate) struct JointRows {
     /// Rows in use.
     pub count: usize,
-    /// Of these, of locked directions.
+    /// Number of rows of locked directions, which come first.
     pub locked: usize,
     /// Position error of the locked rows, metres or radians.
     pub error: Vec6,
@@ -111,7 +111,7 @@ pub(crate) struct JointRows {
     pub arm_b: Vec3,
     /// World axes, row by row.
     pub axis: [Vec3; DIRECTIONS],
-    /// Which direction each row is of.
+    /// Direction of each row, 0 to 5.
     direction: [u8; DIRECTIONS],
 }
 
@@ -183,7 +183,7 @@ impl JointRows {
         if self.turns(row) { join(Vec3::ZERO, axis) } else { join(axis, arm.cross(axis)) }
     }
 
-    /// What impulses of the rows are together on B, and with the other sign on A; torques about each one's centre.
+    /// Sums of the impulses of the rows on B, and with the other sign on A; torques about each one's centre, A's first.
     pub fn impulse(&self, of_rows: &Vec6) -> [Vec6; 2] {
         let (mut force, mut torque) = (Vec3::ZERO, Vec3::ZERO);
         for row in 0..self.count {
@@ -206,7 +206,7 @@ impl JointRows {
     }
 }
 
-/// Whether rows of translation turn with A: those of a point and of a distance stand still.
+/// True if rows of translation turn with A: those of a point and of a distance stand still.
 fn turns_with_a(kind: &JointKind, locks: &[bool; 6]) -> bool {
     locks[..TWIST] != [true; 3] && !matches!(kind, JointKind::Distance { .. })
 }
@@ -221,7 +221,7 @@ pub(crate) fn locked_error(joint: &JointGeometry, pose: &JointPose) -> Vec6 {
     all
 }
 
-/// Which directions are held.
+/// True for each direction that is held.
 #[inline]
 pub(crate) fn locks(kind: &JointKind) -> [bool; DIRECTIONS] {
     match kind {
@@ -327,7 +327,7 @@ fn open_axis(kind: &JointKind, locks: &[bool; 6], pose: &JointPose, direction: u
     }
 }
 
-/// How far an open direction is from a wanted pose of frame B in frame A, metres or radians.
+/// Deviation of an open direction from a wanted pose of frame B in frame A, metres or radians.
 pub(crate) fn displacement(kind: &JointKind, pose: &JointPose, direction: usize, wanted: &Transform) -> f32 {
     if direction >= TWIST {
         let error = pose.relative() * wanted.rotation.inverse();
@@ -349,7 +349,7 @@ pub(crate) const MAX_LIMITS: usize = 5;
 /// The end of a free motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stop {
-    /// Which memory it has.
+    /// Number of its memory among the joint's limits.
     pub limit: usize,
     /// Metres or radians left; negative when violated.
     pub room: f32,
@@ -468,14 +468,14 @@ fn twist_only(twist: Range) -> SwingTwistLimit {
     SwingTwistLimit { swing_y: free, swing_z: free, twist }
 }
 
-/// How far a joint is beyond its limits of rotation, radians.
+/// Largest angle by which a joint is beyond its limits of rotation, radians; 0 inside.
 pub(crate) fn overshoot(kind: &JointKind, pose: &JointPose) -> f32 {
     let beyond = |stop: &Stop| if turns(stop.limit) { -stop.room } else { 0.0 };
     let stops = stops(kind, pose);
     stops.iter().flatten().map(beyond).fold(0.0, sinew_math::max)
 }
 
-/// How far the anchors are from where the joint allows them to be, metres.
+/// Distance of the anchors from where the joint allows them to be, metres.
 pub(crate) fn anchor_gap(kind: &JointKind, pose: &JointPose) -> f32 {
     let locks = locks(kind);
     if locks[..TWIST] == [true; 3] {

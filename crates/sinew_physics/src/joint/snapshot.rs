@@ -35,7 +35,7 @@ impl Joint {
         save_vec6(w, &self.reaction);
     }
 
-    /// What [`save`](Self::save) wrote after the bodies.
+    /// Reads what [`save`](Self::save) wrote after the bodies.
     pub fn load(r: &mut Reader<'_>, a: u32, b: u32) -> Result<Self, ReadError> {
         let (frame_a, frame_b) = (r.transform()?, r.transform()?);
         let kind = load_kind(r)?;

@@ -1,4 +1,4 @@
-//! What a mover is made from.
+//! Definition of a mover.
 
 use crate::body::shape::Filter;
 use core::f32::consts::PI;

@@ -1,4 +1,4 @@
-//! What is around a mover: shapes, triangles and other movers, gathered once a step.
+//! Obstacles around a mover: shapes, triangles and other movers, gathered once a step.
 
 use super::Mover;
 use super::segment::axis_to_triangle;

@@ -1,4 +1,4 @@
-//! What mover and dynamic bodies do to each other: hits by momentum, pushes by limited force, weight.
+//! Mutual effect of mover and dynamic bodies: hits by momentum, pushes by limited force, weight.
 
 use super::obstacle::{Owner, Sight};
 use super::{Bearer, Mover};
@@ -22,7 +22,7 @@ pub(super) struct Press {
 /// Share of what a body is too deep that it is told to leave within a second, and the fastest of that, 1/s and m/s.
 const LEAVE: f32 = 12.0;
 const FASTEST_LEAVE: f32 = 1.0;
-/// Where up is this much of the normal, what meets there bears or is borne.
+/// Upward component of a normal above which what meets there bears or is borne.
 const BEARS: f32 = 0.7;
 
 /// A mover as what hits and is hit.

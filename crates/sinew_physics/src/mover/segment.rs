@@ -1,4 +1,4 @@
-//! How the axis of a capsule lies to a triangle that is solid from one side.
+//! Position of the axis of a capsule to a triangle that is solid from one side.
 
 use crate::triangles::{Part, Triangle, closest_on_triangle};
 use sinew_math::{Vec3, clamp, normalize_or};

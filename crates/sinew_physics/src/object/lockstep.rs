@@ -12,7 +12,7 @@ use crate::stage::{Stage, zone};
 use crate::step::islands::Islands;
 use crate::step::phase::{Phase, solve};
 
-/// Where bodies and particle groups are in the course of a step, by their slots in the world.
+/// Places of bodies and particle groups in the course of a step, by their slots in the world.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Places {
     /// Island and local index of what moves.

@@ -65,7 +65,7 @@ use core::any::Any;
 use lockstep::{Places, Roused};
 use sinew_math::{ReadError, Reader, Writer};
 
-/// What a kind of the user's own does in a world. See [the module](self) for when it is asked, and for an example.
+/// Behaviour in a world of a kind of the user's own. See [the module](self) for when it is asked, and for an example.
 ///
 /// The same bits everywhere are the object's own business as well: it computes with `sinew_math`, reads no clock, and
 /// keeps what decides its future in what it [`save`](Self::save)s. A number that is not finite panics where it is handed

@@ -1,4 +1,4 @@
-//! What an object sees of a substep, and what it may do.
+//! Access of an object to a substep: what it sees, and what it may do.
 
 use super::lockstep::{Places, Roused};
 use crate::body::def::BodyKind;
@@ -104,7 +104,7 @@ impl<'a> Substep<'a> {
         }
     }
 
-    /// How a body yields at a world point: the speed that the point gains in a direction (of length 1) per impulse in
+    /// Response of a body at a world point: the speed that the point gains in a direction (of length 1) per impulse in
     /// it, 1/kg, with the joints that hold the body, but for those that close loops. 0 of what nothing moves: static,
     /// kinematic and sleeping bodies.
     ///
@@ -143,7 +143,7 @@ impl<'a> Substep<'a> {
         }
     }
 
-    /// Where a body is solved, if it moves.
+    /// Solver of a body's island and the body's number there, if it moves.
     fn moving(&self, id: BodyId) -> Option<(&IslandSolver, usize)> {
         self.expect(id);
         let (island, local) = self.places.body(id)?;

@@ -16,7 +16,7 @@ impl World {
         bounds.reduce(|a, b| a.merge(&b)).unwrap_or(Aabb { min: place, max: place })
     }
 
-    /// Where the surface of a body is closest to a point (world), over all its shapes; `None` of a body without shapes. A
+    /// Nearest point of the surface of a body to a point (world), over all its shapes; `None` of a body without shapes. A
     /// point that several shapes hold is measured in the one that holds it deepest.
     #[track_caller]
     pub fn nearest_surface(&self, id: BodyId, point: Vec3) -> Option<SurfacePoint> {
@@ -29,7 +29,7 @@ impl World {
         self.nearest_surface(id, point).is_some_and(|nearest| nearest.distance <= 0.0)
     }
 
-    /// How deep a point (world) is in a body and in which direction the way out is shortest; `None` if it is outside. The
+    /// Depth of a point (world) in a body, and direction in which the way out is shortest; `None` if it is outside. The
     /// way leads out of the shape that holds the point deepest.
     #[track_caller]
     pub fn point_penetration(&self, id: BodyId, point: Vec3) -> Option<Penetration> {

@@ -1,4 +1,4 @@
-//! Which shapes may have an answer: the one place where a question meets the trees.
+//! Candidates: shapes that may have an answer. The one place where a question meets the trees.
 
 use crate::boxes::Aabb;
 use crate::contact::proxies::{Owner, thick};
@@ -7,7 +7,7 @@ use crate::world::World;
 use core::ops::ControlFlow;
 use sinew_math::{Vec3, abs3, max, max3, min, min3};
 
-/// Where the shapes are that may answer.
+/// Region of the shapes that may answer.
 #[derive(Clone, Copy, Debug)]
 pub enum Reach {
     /// Their bounds meet a box.
@@ -18,7 +18,7 @@ pub enum Reach {
     Near(Vec3, f32),
 }
 
-/// How far a question still looks: the rank beyond which no answer counts.
+/// Rank beyond which no answer counts; a break ends the search.
 pub(super) type Limit = ControlFlow<(), f32>;
 
 /// Farther than this from the origin nothing is looked for, metres: squares of larger numbers overflow.
@@ -63,7 +63,7 @@ pub(super) fn candidates(world: &World, reach: &Reach, mut visit: impl FnMut(Own
     }
 }
 
-/// How the trees see a box that is moved; `None` where nothing is looked for.
+/// Sweep of a box that is moved, for the trees; `None` where nothing is looked for.
 pub(super) fn sweep(bounds: &Aabb, direction: Vec3) -> Option<Sweep> {
     let (origin, half_extents) = (bounds.center(), bounds.half_extents());
     let limit = min(FARTHEST / largest(direction), 1.0);
@@ -77,7 +77,7 @@ pub(super) fn what_is_left(sweep: &Sweep, limit: f32) -> f32 {
     min(max(limit, SHORTEST), sweep.limit)
 }
 
-/// Of the components' magnitudes.
+/// Largest of the components' magnitudes.
 fn largest(v: Vec3) -> f32 {
     let Vec3 { x, y, z } = abs3(v);
     max(x, max(y, z))

@@ -1,4 +1,4 @@
-//! What is on a way: rays, and shapes that are moved.
+//! Questions about what is on a way: that of a ray, or of a shape that is moved.
 
 use super::Query;
 use super::candidates::Reach;
@@ -14,20 +14,20 @@ use crate::id::{BodyId, ShapeId};
 use crate::ray::{Ray, RayHit};
 use sinew_math::{Transform, Vec3, max, normalize_or};
 
-/// Where a ray or a moved shape meets a shape of a body first.
+/// First hit of a ray or a moved shape on a shape of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyHit {
     /// The body.
     pub body: BodyId,
-    /// Which of its shapes.
+    /// Number of the shape in its body.
     pub shape: u32,
     /// Share of the way before the hit, 0..=1; 0 of a start inside.
     pub fraction: f32,
-    /// Where they meet, in the world, metres; of a start inside where the ray starts, or the middle of the overlap.
+    /// Point where they meet, in the world, metres; of a start inside where the ray starts, or the middle of the overlap.
     pub point: Vec3,
     /// Unit, out of the shape that is met, in the world; of a start inside opposite to the way.
     pub normal: Vec3,
-    /// Of a start inside how deep, and the shortest way out; else `None`.
+    /// Depth of a start inside, and the shortest way out; else `None`.
     pub start: Option<Penetration>,
 }
 
@@ -52,7 +52,7 @@ impl Reply for BodyHit {
     }
 }
 
-/// Which shapes the ray meets, from its start to its end; those that are met first come first.
+/// Asks for the shapes that the ray meets, from its start to its end; those that are met first come first.
 impl Question for Ray {
     type Answer = BodyHit;
 }
@@ -87,10 +87,10 @@ impl Ask for Ray {
     }
 }
 
-/// Which shapes a probe meets that is moved without turning; those that are met first come first.
+/// Shapes that a probe meets when it is moved without turning; those that are met first come first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShapeCast {
-    /// What is moved, where it starts.
+    /// Probe that is moved, where it starts.
     pub probe: Probe,
     /// Its way, metres.
     pub translation: Vec3,

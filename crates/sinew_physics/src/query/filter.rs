@@ -1,19 +1,19 @@
-//! Which shapes a question is about.
+//! Filter of the shapes that a question is about.
 
 use crate::body::def::BodyKind;
 use crate::body::shape::{Filter, Sensing};
 use crate::id::{BodyId, ShapeId};
 use core::ops::BitOr;
 
-/// Which shapes of a world a [`Query`](super::Query) is about. Default: every shape that is no sensor.
+/// Filter of the shapes of a world that a [`Query`](super::Query) is about. Default: every shape that is no sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct QueryFilter<'a> {
     /// As if the question were a shape with this filter: it meets those that [`Filter::meets`]. Default: on all layers,
     /// with all layers in its mask, in no group; what has an empty mask is met by nobody, and not by this.
     pub meets: Filter,
-    /// How their bodies move. Default: in any way.
+    /// Kinds of their bodies. Default: all.
     pub kinds: BodyKinds,
-    /// What becomes of sensors. Default ignored.
+    /// Treatment of sensors. Default ignored.
     pub sensors: Sensors,
     /// Bodies that are left out: a few, since each shape looks through all of them. Default none.
     pub except: &'a [BodyId],
@@ -50,7 +50,7 @@ impl<'a> QueryFilter<'a> {
     }
 }
 
-/// What becomes of sensors in a question.
+/// Treatment of sensors in a question.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sensors {
     /// They are not there. Default.
@@ -65,11 +65,11 @@ pub enum Sensors {
 pub struct BodyKinds(u8);
 
 impl BodyKinds {
-    /// What never moves.
+    /// Static bodies: they never move.
     pub const STATIC: Self = Self(1);
-    /// What moves as its velocity says.
+    /// Kinematic bodies: they move as their velocity says.
     pub const KINEMATIC: Self = Self(2);
-    /// What forces move.
+    /// Dynamic bodies: forces move them.
     pub const DYNAMIC: Self = Self(4);
     /// All three.
     pub const ALL: Self = Self(7);

@@ -1,4 +1,4 @@
-//! What a scene measures: energies, momenta, overlaps of bodies.
+//! Measures of a scene: energies, momenta, overlaps of bodies.
 
 use crate::body::def::BodyKind;
 use crate::boxes::{Aabb, Overlap};
@@ -11,9 +11,9 @@ use sinew_math::{Vec3, max};
 /// Energy, joules.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// Of motion and spin.
+    /// Kinetic energy of motion and spin, J.
     pub kinetic: f32,
-    /// Of height in uniform gravity, 0 at the origin, and of stretched springs, those of joints among them.
+    /// Potential energy of height in uniform gravity, 0 at the origin, and of stretched springs, those of joints among them, J.
     pub potential: f32,
 }
 

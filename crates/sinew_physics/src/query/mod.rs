@@ -261,7 +261,7 @@ fn keep_first<A: Reply>(best: &mut Option<A>, answer: A) {
     }
 }
 
-/// What answers are sorted by.
+/// Key that answers are sorted by: rank, body, shape.
 fn key(answer: &impl Reply) -> (f32, u32, u32) {
     let ShapeId { body, shape } = answer.shape();
     (answer.rank(), body.index, shape)

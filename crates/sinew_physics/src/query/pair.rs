@@ -7,7 +7,7 @@ use crate::boxes::Penetration;
 use crate::convex::{Gap, ShapeHit, cast_shape, gap};
 use sinew_math::{Transform, Vec3};
 
-/// How the probe lies to the shape, from the shape to the probe; of a surface only if it is within a distance.
+/// Gap from the shape to the probe; of a surface only if it is within a distance.
 pub(super) fn gap_within(
     shape: &Shape,
     world_from_shape: &Transform,
@@ -31,7 +31,7 @@ pub(super) fn penetration(shape: &Shape, world_from_shape: &Transform, probe: &P
     (gap.distance <= 0.0).then_some(Penetration { depth: -gap.distance, direction: gap.normal })
 }
 
-/// Where the probe first touches the shape on its way.
+/// First touch of the probe with the shape on its way.
 pub(super) fn cast(
     shape: &Shape,
     world_from_shape: &Transform,

@@ -1,4 +1,4 @@
-//! What is at a place: shapes that hold a point, that a probe overlaps, how deep, and what is nearest.
+//! Questions about a place: shapes that hold a point, that a probe overlaps, how deep, and what is nearest.
 
 use super::candidates::Reach;
 use super::pair;
@@ -11,7 +11,7 @@ use crate::convex::Gap;
 use crate::id::{BodyId, ShapeId};
 use sinew_math::{Transform, Vec3};
 
-/// Which shapes hold a point (world, metres), on their surfaces too; by body and shape.
+/// Shapes that hold a point (world, metres), on their surfaces too; by body and shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContainsPoint(pub Vec3);
 
@@ -41,7 +41,7 @@ impl Reply for ShapeId {
     }
 }
 
-/// Which shapes a probe overlaps; what touches overlaps, and so does what is wholly inside. By body and shape.
+/// Shapes that a probe overlaps; what touches overlaps, and so does what is wholly inside. By body and shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OverlapWith(pub Probe);
 
@@ -61,16 +61,16 @@ impl Ask for OverlapWith {
     }
 }
 
-/// How deep a probe is in the shapes that it overlaps, each by itself; the deepest first.
+/// Depth of a probe in the shapes that it overlaps, each by itself; the deepest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PenetrationOf(pub Probe);
 
-/// How deep a probe is in a shape of a body.
+/// Depth of a probe in a shape of a body, and the shortest way out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyPenetration {
     /// The body.
     pub body: BodyId,
-    /// Which of its shapes.
+    /// Number of the shape in its body.
     pub shape: u32,
     /// Metres, ≥ 0; 0 of what only touches.
     pub depth: f32,
@@ -110,7 +110,7 @@ impl Ask for PenetrationOf {
     }
 }
 
-/// Which shapes have their surface within a distance of a point, or hold it; the nearest first, and before it those that
+/// Shapes that have their surface within a distance of a point, or hold it; the nearest first, and before it those that
 /// hold the point, the deepest first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestTo {
@@ -120,12 +120,12 @@ pub struct NearestTo {
     pub within: f32,
 }
 
-/// Where the surface of a shape of a body is nearest.
+/// Nearest point of the surface of a shape of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodySurface {
     /// The body.
     pub body: BodyId,
-    /// Which of its shapes.
+    /// Number of the shape in its body.
     pub shape: u32,
     /// On the surface, in the world, metres.
     pub point: Vec3,
@@ -171,7 +171,7 @@ impl Ask for NearestTo {
     }
 }
 
-/// Which shapes have their surface within a distance of a probe's, or overlap it; the nearest first, and before it those
+/// Shapes that have their surface within a distance of a probe's, or overlap it; the nearest first, and before it those
 /// that overlap, the deepest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearestToShape {

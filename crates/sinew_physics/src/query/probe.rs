@@ -10,9 +10,9 @@ use sinew_math::{Rotation, Transform, Vec3, normalize_or};
 /// It has to be convex and bounded. Its sizes may be 0: a box without a height is a rectangle, a ball without a radius a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
-    /// What is put there.
+    /// Shape of the probe.
     pub shape: Shape,
-    /// Where, with a rotation of length 1.
+    /// Pose of the shape in the world, with a rotation of length 1.
     pub world_from_shape: Transform,
 }
 

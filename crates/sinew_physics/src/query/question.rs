@@ -1,4 +1,4 @@
-//! What can be asked: a question finds out one shape's answer, and orders the answers of several.
+//! Questions that can be asked: a question finds out one shape's answer, and orders the answers of several.
 
 use super::Query;
 use super::candidates::Reach;
@@ -6,13 +6,13 @@ use crate::body::shape::Shape;
 use crate::id::{BodyId, ShapeId};
 use sinew_math::Transform;
 
-/// What a [`Query`](super::Query) can be asked; [the module](super) lists all questions there are.
+/// Question that a [`Query`](super::Query) can be asked; [the module](super) lists all questions there are.
 pub trait Question: sealed::Ask<Found = <Self as Question>::Answer> {
-    /// What a shape answers.
+    /// Answer of a shape.
     type Answer: sealed::Reply;
 }
 
-/// What the questions have to know, kept from those who only ask them.
+/// Methods that questions have, kept from those who only ask them.
 pub(super) mod sealed {
     use super::{BodyId, Query, Reach, Shape, ShapeId, Transform};
 
@@ -20,7 +20,7 @@ pub(super) mod sealed {
         /// [`Question::Answer`](super::Question::Answer).
         type Found: Reply;
 
-        /// Where shapes that have an answer are, or `None` if no shape has one: a number is not finite.
+        /// Reach of the question, or `None` if no shape has an answer: a number is not finite.
         fn reach(&self) -> Option<Reach>;
 
         /// The answer of a placed shape, if it has one. No number in it is NaN or infinite.
@@ -45,12 +45,12 @@ pub(super) mod sealed {
         }
     }
 
-    /// What a shape answers.
+    /// Answer of a shape.
     pub trait Reply: Copy + core::fmt::Debug + PartialEq {
-        /// Which shape answered.
+        /// Shape that answered.
         fn shape(&self) -> ShapeId;
 
-        /// Where the answer stands among others: what is smaller comes first; equal ones go by body and shape.
+        /// Rank of the answer among others: what is smaller comes first; equal ones go by body and shape.
         fn rank(&self) -> f32;
     }
 }

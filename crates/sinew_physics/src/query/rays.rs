@@ -17,7 +17,7 @@ use sinew_math::dispatch::{self, Kernel, Level};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{Transform, Vec3};
 
-/// How many are under way at once: when eight of them have come to boxes, as many still go on.
+/// Number of rays under way at once: when eight of them have come to boxes, as many still go on.
 const UNDER_WAY: usize = 2 * WIDTH;
 
 /// [`first`](Query::first) of each ray. Fewer than eight go one after the other.
@@ -35,7 +35,7 @@ pub(super) fn first_each<P: Fn(BodyId, u32) -> bool>(
     }
 }
 
-/// Likewise, all together, on the registers of a level.
+/// [`first`](Query::first) of each ray, all together, on the registers of a level.
 fn first_each_at<P: Fn(BodyId, u32) -> bool>(
     level: Level,
     query: &Query<'_, P>,
@@ -54,7 +54,7 @@ fn first_each_at<P: Fn(BodyId, u32) -> bool>(
     }
 }
 
-/// Where a ray goes, if it is one that has answers.
+/// Sweep of a ray, if it is one that has answers.
 fn way(ray: &Ray) -> Option<Sweep> {
     match ray.reach()? {
         Reach::Swept(start, direction) => sweep(&start, direction),
@@ -210,7 +210,7 @@ struct Meetings {
     origins: [[f32; WIDTH]; 3],
     directions: [[f32; WIDTH]; 3],
     limits: [f32; WIDTH],
-    /// Which rider, and whose the box is.
+    /// Rider that has come to each box, and owner of the box.
     who: [(usize, Owner); WIDTH],
     count: usize,
 }
@@ -245,7 +245,7 @@ impl Meetings {
         self.count += 1;
     }
 
-    /// Which of the rays may meet their box before their limit, bit by bit: those that do, and those that start so near to it
+    /// Rays that may meet their box before their limit, bit by bit: those that do, and those that start so near to it
     /// that it takes a closer look.
     #[inline(always)]
     fn possible<L: Lanes>(&self) -> u8 {

@@ -10,8 +10,8 @@ use crate::convex::{Gap, ShapeHit, advance, apart_along, closeness, meet};
 use crate::triangles::{Surface, Triangle, normal};
 use sinew_math::{DVec3, Transform, Vec3, max, min};
 
-/// How the probe lies to the triangles within a distance, the deepest or nearest of them. Out of a triangle leads no way through
-/// its back.
+/// Gap from the triangles within a distance to the probe: that of the deepest or nearest of them. Out of a triangle leads no
+/// way through its back.
 pub(super) fn gap_within(
     surface: &Surface<'_>,
     world_from_surface: &Transform,
@@ -29,7 +29,7 @@ pub(super) fn gap_within(
     best
 }
 
-/// Where the probe first touches a triangle from its outside.
+/// First touch of the probe with a triangle from its outside.
 pub(super) fn cast(
     surface: &Surface<'_>,
     world_from_surface: &Transform,

@@ -1,11 +1,11 @@
-//! What a step went through outside of islands, for a profiler that counts.
+//! Counts of a step outside of islands, for a profiler that counts.
 
 use crate::contact::Contact;
 use crate::stage::{Counter, Profiler};
 use crate::world::World;
 
 impl World {
-    /// Of the step just taken, as it left the contacts: those of what fell asleep in it are put aside by now.
+    /// Tells the counts of the step just taken, as it left the contacts: those of what fell asleep in it are put aside by now.
     pub(crate) fn tell_counts(&self, profiler: &dyn Profiler) {
         if !profiler.is_counting() {
             return;

@@ -8,8 +8,8 @@ use crate::spatial::{angular, linear};
 use crate::world::World;
 use sinew_math::{Transform, Vec3};
 
-/// What a joint carried in the last step, as a mean over its time, on body B, world axes. While the bodies sleep it is
-/// that of the step in which they fell asleep.
+/// Force and torque that a joint carried in the last step, as means over its time, on body B, world axes. While the bodies
+/// sleep they are those of the step in which the bodies fell asleep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reaction {
     /// N.
@@ -141,7 +141,7 @@ impl World {
         self.joint_changed(id);
     }
 
-    /// What a joint carried in the last step.
+    /// Force and torque that a joint carried in the last step, on body B, world axes.
     #[track_caller]
     pub fn reaction(&self, id: JointId) -> Reaction {
         let reaction = self.expect_joint(id).reaction;
@@ -159,14 +159,14 @@ impl World {
         self.joint_pose(self.expect_joint(id)).a_from_b()
     }
 
-    /// How far the joint's anchors are from where it allows them to be, metres: of a ball joint their distance.
+    /// Distance of the joint's anchors from where it allows them to be, metres: of a ball joint that of the two anchors.
     #[track_caller]
     pub fn joint_gap(&self, id: JointId) -> f32 {
         let joint = self.expect_joint(id);
         anchor_gap(&joint.kind, &self.joint_pose(joint))
     }
 
-    /// How far the joint is beyond its limits of rotation, radians; 0 inside.
+    /// Angle by which the joint is beyond its limits of rotation, radians; 0 inside.
     #[track_caller]
     pub fn joint_overshoot(&self, id: JointId) -> f32 {
         let joint = self.expect_joint(id);

@@ -55,7 +55,7 @@ pub struct World {
     pub(crate) def: WorldDef,
     pub(crate) bodies: Arena<Body>,
     pub(crate) joints: Arena<Joint>,
-    /// Those of what is awake or moves, in order of their keys; `activity` has the others.
+    /// Contacts of what is awake or moves, in order of their keys; `activity` has the others.
     pub(crate) contacts: Vec<Contact>,
     pub(crate) activity: Activity,
     pub(crate) groups: Arena<ParticleGroup>,
@@ -75,7 +75,7 @@ pub struct World {
     pub(crate) steps: u64,
     /// Time that `update` was given and no step has used yet, nanoseconds.
     pub(crate) pending_nanoseconds: u64,
-    /// Of the last step; no part of the state.
+    /// Work of the last step; no part of the state.
     pub(crate) work: Work,
     /// Memory of `wake_neighbors`; it holds nothing from one call to the next.
     pub(crate) around: Vec<u32>,
@@ -239,12 +239,12 @@ impl World {
         self.steps as f64 * self.def.step_nanoseconds as f64 * 1e-9
     }
 
-    /// What happened in the last step.
+    /// Events of the last step.
     pub fn events(&self) -> &Events {
         &self.events
     }
 
-    /// What came in during the last step; nothing after [`load`](Self::load), until a step is taken. The energy of the
+    /// Energy that came in during the last step; nothing after [`load`](Self::load), until a step is taken. The energy of the
     /// bodies ([`energy`](Self::energy)) rises by no more than this beside what the user's forces, fields, surfaces that
     /// move and impulses between steps do.
     pub fn work(&self) -> Work {

@@ -1,4 +1,4 @@
-//! What a world's shapes are besides geometry, asked and changed while it runs, and what touches what.
+//! Surfaces of a world's shapes, asked and changed while it runs, and what touches what.
 
 use crate::body::contact_rule::ContactRule;
 use crate::body::material::{ContactMaterial, Material};
@@ -20,9 +20,9 @@ pub struct BodyContact {
     pub b: ShapeId,
     /// From A to B, unit length, world axes.
     pub normal: Vec3,
-    /// What it does.
+    /// Effect of the contact.
     pub effect: Effect,
-    /// What the two materials are to each other, before a modifier.
+    /// Contact material of the two shapes, before a modifier.
     pub material: ContactMaterial,
     /// All that friction gave B in the step, N·s, world axes; A got the opposite.
     pub friction: Vec3,
@@ -31,7 +31,7 @@ pub struct BodyContact {
 }
 
 impl BodyContact {
-    /// Where the shapes touch or are near each other, at least one.
+    /// Points where the shapes touch or are near each other, at least one.
     pub fn points(&self) -> &[ContactPoint] {
         &self.points[..self.count]
     }
@@ -92,7 +92,7 @@ impl World {
         (0..self.expect(body).shapes.len() as u32).map(move |shape| ShapeId { body, shape })
     }
 
-    /// What a shape is made of.
+    /// Material of a shape.
     #[track_caller]
     pub fn material(&self, id: ShapeId) -> Material {
         self.expect(id.body).surface(id.shape as usize).material
@@ -104,13 +104,13 @@ impl World {
         self.expect(id.body).surface(id.shape as usize).filter
     }
 
-    /// Whether a shape pushes.
+    /// Effect of a shape on those that it meets: solid or sensor.
     #[track_caller]
     pub fn sensing(&self, id: ShapeId) -> Sensing {
         self.expect(id.body).surface(id.shape as usize).sensing
     }
 
-    /// What becomes of a shape's contacts.
+    /// Rule for a shape's contacts.
     #[track_caller]
     pub fn contact_rule(&self, id: ShapeId) -> ContactRule {
         self.expect(id.body).surface(id.shape as usize).rule
@@ -176,7 +176,7 @@ impl World {
         self.wake_neighbors(id.index);
     }
 
-    /// Likewise, and nobody wakes.
+    /// Has the next step look anew at what a body touches, whatever moves; nobody wakes.
     #[track_caller]
     pub(crate) fn look_anew(&mut self, id: BodyId) {
         let body = self.expect_mut(id);

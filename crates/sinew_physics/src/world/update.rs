@@ -3,7 +3,7 @@
 use crate::world::World;
 use core::time::Duration;
 
-/// What an update did.
+/// Result of an update.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Update {
     /// Steps taken.
@@ -40,7 +40,7 @@ impl World {
         self.update_with(time, World::step)
     }
 
-    /// Likewise, with steps made by `step`: for threads and stage times ([`step_with`](Self::step_with)), for forces that
+    /// Runs the same steps as [`update`](Self::update), made by `step`: for threads and stage times ([`step_with`](Self::step_with)), for forces that
     /// every step is to feel, not only a frame's first, and for the [`events`](Self::events) of every step, not only of its
     /// last.
     ///

@@ -33,7 +33,7 @@ impl World {
         }
     }
 
-    /// Whether a body may fall asleep by itself.
+    /// Permission of a body to fall asleep by itself.
     #[track_caller]
     pub fn sleeping(&self, id: BodyId) -> Sleeping {
         self.expect(id).sleeping

@@ -17,7 +17,7 @@ use sinew_math::{Random, StableHasher, Vec3};
 /// All are run always: they take microseconds.
 const CASES: usize = 100_000;
 
-/// Of the answers to the soup, on x86-64, aarch64 and wasm.
+/// Hash of the answers to the soup, on x86-64, aarch64 and wasm.
 const GOLDEN: u64 = 0xeb39_4a58_1e5a_bc31;
 
 fn bit(bytes: &[u8], index: usize) -> bool {
@@ -219,7 +219,7 @@ fn a_point_with_nan_is_nowhere() {
     }
 }
 
-/// What every processor has to answer alike: boxes of all sizes, from the smallest numbers to the largest; NaN.
+/// Pairs of boxes that every processor has to answer alike: of all sizes, from the smallest numbers to the largest; NaN.
 fn soup() -> Vec<[Obb; 2]> {
     let mut random = Random::new(67);
     let mut soup: Vec<[Obb; 2]> = (0..2_000).map(|_| pair(&mut random)).collect();

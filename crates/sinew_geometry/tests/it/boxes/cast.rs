@@ -26,7 +26,7 @@ fn ray_about(obb: &Obb, random: &mut Random) -> Ray {
     Ray { origin: from, direction: (to - from) * random.range(0.3, 2.0) }
 }
 
-/// Where the segment enters the box, by bisection of the distance that is left to it: `None` if it misses.
+/// Share of the segment before it enters the box, by bisection of the distance that is left to it: `None` if it misses.
 fn entry(wide_box: &WideBox, ray: &Ray) -> Option<f64> {
     let (origin, along) = (wide(ray.origin), wide(ray.direction));
     let up_to = |t: f64| wide_box.distance_to_segment([origin, add(origin, along, t)]);

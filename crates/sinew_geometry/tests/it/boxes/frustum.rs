@@ -15,7 +15,7 @@ fn frustum(random: &mut Random) -> Frustum {
     Frustum::new(eye, random.range(0.2, 2.2), random.range(0.5, 2.0), near, near + random.range(1.0, 20.0))
 }
 
-/// How far a point is inside all six planes, roughly: the least of the six heights.
+/// Depth of a point inside all six planes, roughly: the least of the six heights.
 fn depth(frustum: &Frustum, eye: &WideBox, p: Wide) -> f64 {
     let [x, y, z] = eye.local(p);
     let ahead = -z;

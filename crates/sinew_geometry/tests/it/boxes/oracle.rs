@@ -1,4 +1,4 @@
-//! What holds of boxes, by enumeration and by search in `f64`.
+//! Oracle for boxes, by enumeration and by search in `f64`.
 
 use crate::wide::{Wide, add, axes, dot, length, wide};
 use sinew_geometry::boxes::PlacedBox;
@@ -59,7 +59,7 @@ impl WideBox {
         self.half.iter().sum()
     }
 
-    /// How far it reaches along a direction, from the origin.
+    /// Farthest extent of the box along a direction, from the origin.
     pub fn support(&self, n: Wide) -> f64 {
         dot(self.center, n) + (0..3).map(|k| self.half[k] * dot(self.axes[k], n).abs()).sum::<f64>()
     }
@@ -75,7 +75,7 @@ impl WideBox {
         })
     }
 
-    /// Whether a part of a segment is in the box, grown by `grow` on every side.
+    /// True if a part of a segment is in the box, grown by `grow` on every side.
     fn meets_segment(&self, ends: [Wide; 2], grow: f64) -> bool {
         let [p, q] = ends.map(|p| self.local(p));
         let (mut first, mut last) = (0.0f64, 1.0f64);
@@ -95,7 +95,7 @@ impl WideBox {
         first <= last
     }
 
-    /// Whether two boxes, the first one grown by `grow`, have a point in common: then an edge of one of them enters the
+    /// True if two boxes, the first one grown by `grow`, have a point in common: then an edge of one of them enters the
     /// other.
     pub fn meets(&self, other: &Self, grow: f64) -> bool {
         if self.half.iter().any(|h| h + grow < 0.0) {

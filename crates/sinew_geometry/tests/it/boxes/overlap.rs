@@ -48,8 +48,8 @@ pub fn check(
     Ok(())
 }
 
-/// What two boxes may be off by: roundings of their sizes, their distance, and of the centre of an aligned one; and where rounding leaves no direction across
-/// edges that are nearly parallel, what that direction is worth.
+/// Errors that two boxes may have: roundings of their sizes, their distance, and of the centre of an aligned one; and where
+/// rounding leaves no direction across edges that are nearly parallel, what that direction is worth.
 pub fn tolerances(a: &WideBox, b: &WideBox, of_center: f64) -> [f64; 2] {
     let scale = a.size() + b.size() + length(add(a.center, b.center, -1.0));
     let fine = 1e-6 * scale + of_center + 1e-12;
@@ -206,7 +206,7 @@ fn capsules_match_a_search_along_their_cores() {
     }
 }
 
-/// What touches overlaps, at depth 0.
+/// Boxes that touch overlap, at depth 0.
 #[test]
 fn touch_counts() {
     let unit = Obb::new(Vec3::ZERO, Rotation::IDENTITY, Vec3::ONE);

@@ -25,7 +25,7 @@ fn point_about(obb: &Obb, random: &mut Random) -> Vec3 {
     }
 }
 
-/// Whether everything said about a point holds.
+/// Checks everything said about a point.
 fn check(cuboid: &impl Cuboid, wide_box: &WideBox, point: Vec3, case: u32) {
     let distance = wide_box.signed_distance(wide(point));
     let tolerance = 1e-6 * (wide_box.size() + distance.abs());

@@ -46,7 +46,7 @@ pub fn pair(random: &mut Random) -> [Obb; 2] {
     [a, b]
 }
 
-/// Where B's centre has to be so that its extent along a separating axis begins where A's ends.
+/// Centre of B with which its extent along a separating axis begins where A's ends.
 fn touching(a: &Obb, b: &Obb, random: &mut Random) -> Vec3 {
     let (wa, wb) = (WideBox::from(a), WideBox::from(b));
     let (i, j) = (random.index(3), random.index(3));

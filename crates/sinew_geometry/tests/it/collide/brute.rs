@@ -105,7 +105,7 @@ fn preference(ka: Kind, kb: Kind, a: &Placed, b: &Placed, truth: f64) -> f64 {
     }
 }
 
-/// What is wrong, if something is.
+/// Verdict of a check: what is wrong, if something is.
 type Verdict = Result<(), String>;
 
 fn hold(holds: bool, otherwise: impl FnOnce() -> String) -> Verdict {
@@ -193,7 +193,7 @@ fn points_lie_between_the_surfaces() {
     assert!(off * 100 < points, "{off} of {points} points are off a surface");
 }
 
-/// How many points there are, and how many are off a surface by more than a hundredth and a twentieth of the larger shape.
+/// Number of points, and of those that are off a surface by more than a hundredth and a twentieth of the larger shape.
 #[derive(Debug, Default)]
 struct Tally {
     points: u32,
@@ -201,7 +201,7 @@ struct Tally {
     far: u32,
 }
 
-/// Whether two answers to one question are as good: along both normals the shapes are equally far apart, but for what
+/// True if two answers to one question are as good: along both normals the shapes are equally far apart, but for what
 /// [`preference`] leaves open, and the separations say so. Which of them is told is then up to rounding, and so is the place
 /// along what is level.
 fn is_tie(kind: Kind, a: &Placed, b: &Placed, ab: &Manifold, ba: &Manifold) -> bool {
@@ -230,7 +230,7 @@ fn the_order_of_the_shapes_does_not_matter() {
     assert!(ties.values().all(|&ties| ties <= 2 + cases(100_000) / 1_000), "{ties:?}");
 }
 
-/// Whether one manifold is the other one of the exchanged shapes.
+/// Checks that one manifold is the other one of the exchanged shapes.
 fn is_exchanged(ka: Kind, kb: Kind, size: f32, ab: &Manifold, ba: &Manifold) -> Verdict {
     let context = |what: &str| format!("{what}\n{ab:?}\n{ba:?}");
     hold((ab.normal + ba.normal).length() < 1e-3, || context("another normal"))?;
