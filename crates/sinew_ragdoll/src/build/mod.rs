@@ -79,7 +79,7 @@ pub(crate) struct Overrides<'a> {
     pub disable: Vec<(usize, usize)>,
     /// Pairs of bodies that shall.
     pub enable: Vec<(usize, usize)>,
-    /// Takes of what the character does.
+    /// Takes of the character's motions.
     pub takes: &'a [Take],
 }
 
