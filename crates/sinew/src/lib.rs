@@ -56,7 +56,7 @@ pub fn all_threads() -> physics::Threads {
 #[doc = include_str!("../../../README.md")]
 struct Readme;
 
-/// What is taught about worlds.
+/// The guide to worlds, whose code is tested.
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/world.md")]
 struct WorldPage;

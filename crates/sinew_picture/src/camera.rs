@@ -45,7 +45,7 @@ impl Camera {
     }
 }
 
-/// How far away a ball just fits into the field of view.
+/// Distance from the eye at which a ball just fits into the field of view, metres.
 fn framing_distance(radius: f32, fov_y: f32) -> f32 {
     radius / trig::sin(0.5 * fov_y)
 }
@@ -62,7 +62,7 @@ pub struct FollowCamera {
     pub fov_y: f32,
     /// Time in which the lag shrinks to 1/e, seconds, above 0. Default 0.35.
     pub time_constant: f32,
-    /// How far the subject may move from the middle before the camera follows, metres. Default a fifth of the radius.
+    /// Distance that the subject may move from the middle before the camera follows, metres. Default a fifth of the radius.
     pub slack: f32,
     /// The subject never gets farther than this from the middle, metres. Default 0.7 of the radius.
     pub reach: f32,

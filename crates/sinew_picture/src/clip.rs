@@ -3,8 +3,8 @@
 /// Clip space of a [`View`](crate::camera::View): x, y, w; the picture spans ±w.
 pub(crate) type ClipVertex = [f32; 3];
 
-/// How many half pictures from its middle a corner may lie. Corners within are left alone, so that cutting, which
-/// rounds, happens off screen.
+/// Distance from the picture's middle up to which a corner may lie, in half pictures. Corners within are left alone, so that
+/// cutting, which rounds, happens off screen.
 const GUARD: f32 = 2.0;
 
 /// A triangle cut by five planes has at most this many corners.
@@ -40,7 +40,7 @@ pub(crate) fn clip(triangle: [ClipVertex; 3], near: f32) -> Polygon {
     polygon
 }
 
-/// Whether one edge of the picture or the near plane has the whole triangle on its far side.
+/// True if one edge of the picture or the near plane has the whole triangle on its far side.
 fn unseen(triangle: &[ClipVertex; 3], near: f32) -> bool {
     triangle.iter().all(|v| v[0] > v[2])
         || triangle.iter().all(|v| v[0] < -v[2])
@@ -49,7 +49,7 @@ fn unseen(triangle: &[ClipVertex; 3], near: f32) -> bool {
         || triangle.iter().all(|v| v[2] < near)
 }
 
-/// How far inside a plane: 0 near, 1–4 the guard band right, left, top, bottom.
+/// Distance inside a plane: 0 near, 1–4 the guard band right, left, top, bottom.
 fn distance(plane: usize, [x, y, w]: ClipVertex, near: f32) -> f32 {
     match plane {
         0 => w - near,

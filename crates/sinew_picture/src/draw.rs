@@ -183,7 +183,7 @@ fn round_model(half_height: f32, bottom: f32, top: f32) -> Model {
     lathe(arc(-half_height, bottom, -pole, lean).chain(arc(half_height, top, lean, pole)))
 }
 
-/// Of the normals on the straight side of a tapered capsule.
+/// Latitude of the normals on the straight side of a tapered capsule, radians.
 fn side_latitude(half_height: f32, bottom: f32, top: f32) -> f32 {
     if half_height > 0.0 { trig::asin((bottom - top) / (2.0 * half_height)) } else { 0.0 }
 }

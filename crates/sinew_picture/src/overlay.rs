@@ -1,4 +1,4 @@
-//! What is drawn on the finished picture: lines and text.
+//! Overlay on the finished picture: lines and text.
 
 use crate::camera::{NEAR, View};
 use crate::color::ColorTables;

@@ -1,4 +1,4 @@
-//! Which samples of a picture a triangle covers: exact integers, so that triangles that share an edge cover every
+//! Rasterizer: the samples of a picture that a triangle covers, in exact integers, so that triangles that share an edge cover every
 //! sample between them once (top-left rule).
 
 use crate::clip::ClipVertex;
@@ -19,7 +19,7 @@ pub(crate) fn floor(x: f32) -> i32 {
 pub(crate) struct Layer {
     pub(crate) width: usize,
     pub(crate) height: usize,
-    /// Where in its pixel the sample lies, 1/256 pixel from the middle.
+    /// Position of the sample in its pixel, 1/256 pixel from the middle.
     pub(crate) offset: [i64; 2],
     /// `1 / w`: larger is nearer, 0 where nothing is.
     pub(crate) depth: Vec<f32>,
@@ -49,7 +49,7 @@ pub(crate) struct Footprint {
     id: u32,
 }
 
-/// Which way a triangle's corners run when seen from the camera.
+/// Order of a triangle's corners as seen from the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Winding {
     CounterClockwise,
@@ -151,7 +151,7 @@ impl Layer {
     }
 }
 
-/// Where one edge begins or ends a row, walked down row by row without a division.
+/// Column where one edge begins or ends a row, walked down row by row without a division.
 #[derive(Clone, Copy, Debug)]
 struct EdgeWalk {
     /// `floor(value / pace)`, with the rest, where `value` is the edge function at column 0 of the row.
@@ -159,7 +159,7 @@ struct EdgeWalk {
     rest: i64,
     quotient_step: i64,
     rest_step: i64,
-    /// How much the edge function changes per column, without its sign; 1 for a horizontal edge.
+    /// Change of the edge function per column, without its sign; 1 for a horizontal edge.
     pace: i64,
     side: Side,
 }

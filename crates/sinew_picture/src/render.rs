@@ -24,7 +24,7 @@ pub struct RenderSettings {
     pub threads: usize,
 }
 
-/// How edges are smoothed.
+/// Smoothing of edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Antialiasing {
     /// One sample in the middle of each pixel: jagged, twice as fast.
@@ -71,7 +71,7 @@ pub struct Renderer {
     footprints: Footprints,
 }
 
-/// What the layers are to draw, split by how it is seen.
+/// Footprints that the layers are to draw, split by how they are seen.
 #[derive(Clone, Debug, Default)]
 struct Footprints {
     solid: Vec<Footprint>,

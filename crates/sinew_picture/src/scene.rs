@@ -33,7 +33,7 @@ pub struct Model {
     pub colors: Vec<[f32; 3]>,
     /// Three a triangle, counter-clockwise seen from outside.
     pub indices: Vec<u32>,
-    /// How it looks.
+    /// Look of its surface.
     pub material: Material,
 }
 
@@ -54,7 +54,7 @@ pub struct Material {
     pub shadow: ShadowCasting,
 }
 
-/// What is painted on a surface beside its colour.
+/// Pattern on a surface beside its colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Pattern {
     /// Nothing.
@@ -69,7 +69,7 @@ pub enum Pattern {
     },
 }
 
-/// Which side of a triangle is drawn.
+/// Sides of a triangle that are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Faces {
     /// Both; the normal is turned to the viewer. Right for cloth, hair and meshes of unknown winding.
@@ -79,7 +79,7 @@ pub enum Faces {
     Outside,
 }
 
-/// Whether a surface darkens what lies behind it.
+/// Shadow casting of a surface: whether it darkens what lies behind it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShadowCasting {
     /// It does.
@@ -98,11 +98,11 @@ pub struct Line {
     pub to: Vec3,
     /// Linear.
     pub color: [f32; 3],
-    /// Whether surfaces hide it.
+    /// Depth test: whether surfaces hide it.
     pub depth: LineDepth,
 }
 
-/// Whether a line is hidden by surfaces in front of it.
+/// Depth test of a line: whether surfaces in front of it hide it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LineDepth {
     /// Hidden behind surfaces.
@@ -115,7 +115,7 @@ pub enum LineDepth {
 /// A line of text on the picture. Characters outside ASCII 32..=126 show as `?`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Caption {
-    /// What it says.
+    /// Text of the caption.
     pub text: String,
     /// Column of its left edge; from the right edge of the picture where negative. Pixels.
     pub x: i32,

@@ -7,8 +7,8 @@ use crate::scene::{Material, Model, Pattern, Scene, Sky};
 use crate::shadow::ShadowMap;
 use sinew::math::{Vec2, Vec3, abs3, clamp, max, min, normalize_or};
 
-/// How much of the sky's brightness falls on things. Less than all, as if much of it were hidden: shadows need to
-/// be dark to be read.
+/// Share of the sky's brightness that falls on things. Less than all, as if much of it were hidden: shadows need to be dark to
+/// be read.
 const SKY_LIGHT: f32 = 0.55;
 
 /// Pixels that [`Shader::flat_span`] shades at once.
@@ -44,7 +44,7 @@ impl Triangle {
         Self { model, corners, m: -normal, p: ac.cross(from_a), q, k: ac.dot(q), face, side }
     }
 
-    /// Where a ray meets the triangle; it is known to hit, or to pass within a pixel.
+    /// Intersection of a ray with the triangle; it is known to hit, or to pass within a pixel.
     #[inline(always)]
     fn meet(&self, eye: Vec3, ray: Vec3) -> Hit {
         let det = ray.dot(self.m);
@@ -55,14 +55,14 @@ impl Triangle {
         Hit { point: eye + ray * depth, shares: [second, third], depth, inverse }
     }
 
-    /// How far the place where a ray meets the plane moves while the ray itself moves by `step`.
+    /// Displacement of the place where a ray meets the plane while the ray itself moves by `step`.
     #[inline(always)]
     fn slip(&self, hit: &Hit, ray: Vec3, step: Vec3) -> Vec3 {
         (step - ray * (step.dot(self.m) * hit.inverse)) * hit.depth
     }
 }
 
-/// Where a ray meets the plane of a triangle.
+/// Intersection of a ray with the plane of a triangle.
 struct Hit {
     /// World space.
     point: Vec3,
@@ -74,7 +74,7 @@ struct Hit {
     inverse: f32,
 }
 
-/// What a translucent or solid surface sends to the eye.
+/// Colour and opacity of a surface as the eye sees it, translucent or solid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
     /// Linear.
@@ -110,7 +110,7 @@ impl<'a> Shader<'a> {
         &self.scene.models[triangle.model as usize]
     }
 
-    /// What triangle `id` sends to the eye at a point of the picture, in pixels.
+    /// Colour and opacity of triangle `id` as the eye sees it at a point of the picture, in pixels.
     pub(crate) fn surface(&self, id: u32, x: f32, y: f32) -> Seen {
         let triangle = &self.triangles[id as usize];
         let model = self.model(triangle);
@@ -130,7 +130,7 @@ impl<'a> Shader<'a> {
         Seen { color: mix(lit, self.scene.sky.horizon, haze), opacity: model.material.opacity }
     }
 
-    /// Whether a triangle has one normal, and one colour or a checker: [`Self::flat_span`] then shades it.
+    /// True if a triangle has one normal, and one colour or a checker: [`Self::flat_span`] then shades it.
     #[inline(always)]
     pub(crate) fn is_flat(&self, id: u32) -> bool {
         let model = self.model(&self.triangles[id as usize]);
@@ -286,7 +286,7 @@ fn triangle_wave(x: f32) -> f32 {
 /// at once.
 #[inline(always)]
 fn whole_below(x: f32) -> f32 {
-    /// Of its size numbers are whole.
+    /// Magnitude at which `f32` numbers are whole.
     const WHOLE: f32 = 12_582_912.0;
     let x = clamp(x, -4_194_304.0, 4_194_304.0);
     let nearest = (x + WHOLE) - WHOLE;

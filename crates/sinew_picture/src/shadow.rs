@@ -1,4 +1,4 @@
-//! Where the sun does not reach: an orthographic depth picture taken from the sun.
+//! Shadow map: an orthographic depth picture taken from the sun, which tells where its light does not reach.
 
 use crate::clip::clip;
 use crate::raster::{Footprint, NOTHING, ScreenVertex, floor, scan};
@@ -124,7 +124,7 @@ impl ShadowMap {
         self.light_off(point + self.lift(normal, cos_to_sun))
     }
 
-    /// How far a point of a surface with unit `normal` (turned to the viewer) is moved off it before [`Self::light_off`].
+    /// Offset by which a point of a surface with unit `normal` (turned to the viewer) is moved off it before [`Self::light_off`].
     #[inline(always)]
     pub(crate) fn lift(&self, normal: Vec3, cos_to_sun: f32) -> Vec3 {
         let sin = max(0.0, 1.0 - cos_to_sun * cos_to_sun).sqrt();

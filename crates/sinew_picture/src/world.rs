@@ -9,18 +9,18 @@ use sinew::physics::{
     BodyId, BodyKind, DebugDraw, DrawKind, JointDef, JointId, JointKind, Shape, SixDof, World,
 };
 
-/// What a picture shows of a world: thin and small things are drawn as thick as it needs to see them.
+/// Part of a world that a picture shows: thin and small things are drawn as thick as it needs to see them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// The middle, world space, metres.
     pub center: Vec3,
-    /// How far it reaches around the middle, metres, above 0.
+    /// Radius around the middle that it shows, metres, above 0.
     pub radius: f32,
-    /// How kinematic bodies are drawn.
+    /// Way in which kinematic bodies are drawn.
     pub kinematic: Kinematic,
 }
 
-/// How kinematic bodies are drawn.
+/// Way in which kinematic bodies are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kinematic {
     /// As others are.
@@ -46,9 +46,9 @@ const FLOOR: [[f32; 3]; 2] = [[0.34, 0.36, 0.38], [0.27, 0.29, 0.31]];
 const PARTICLE: [f32; 3] = [0.70, 0.34, 0.05];
 const SPRING: [f32; 3] = [0.25, 0.22, 0.18];
 const JOINT: [f32; 3] = [0.10, 0.11, 0.12];
-/// What objects of a user's own draw.
+/// Colour of what objects of a user's own draw, linear.
 const OBJECT: [f32; 3] = [0.70, 0.05, 0.30];
-/// How much of the way to this colour a body goes when it falls asleep.
+/// Share of the way to [`PALE`] that a body's colour goes when it falls asleep.
 const SLEEP: f32 = 0.3;
 const PALE: [f32; 3] = [0.75, 0.77, 0.80];
 
@@ -82,7 +82,7 @@ pub fn subject(world: &World) -> Option<Aabb> {
     })
 }
 
-/// Whether a picture is about it: floors and levels go on beyond what is of interest.
+/// True if a picture is about the shape: floors and levels go on beyond what is of interest.
 fn is_solid(shape: &Shape) -> bool {
     !matches!(shape, Shape::HalfSpace | Shape::Mesh(_) | Shape::HeightField(_))
 }
@@ -100,7 +100,7 @@ fn particle_bounds(group: &ParticleGroup) -> Aabb {
     (1..group.positions().len()).fold(ball(0), |all, i| all.merge(&ball(i)))
 }
 
-/// What a joint is drawn as: from the centre of each body that moves to its anchor, and from anchor to anchor.
+/// Lines that a joint is drawn as: from the centre of each body that moves to its anchor, and from anchor to anchor.
 fn links(world: &World, id: JointId) -> [[Vec3; 2]; 3] {
     let JointDef { body_a, body_b, frame_a, frame_b, kind, motor, .. } = world.joint(id);
     // A pin hangs where it pulls to: its anchor may be anywhere.
@@ -120,7 +120,8 @@ pub fn paint(world: &World, frame: &Frame, scene: &mut Scene) {
     paint_all_but(world, &[], frame, scene);
 }
 
-/// Likewise, without bodies that something else shows, and their joints: those of a character that is drawn by its skin.
+/// Adds what [`paint`] does, without bodies that something else shows, and their joints: those of a character that is drawn by
+/// its skin.
 pub fn paint_all_but(world: &World, shown: &[BodyId], frame: &Frame, scene: &mut Scene) {
     for (number, id) in world.body_ids().enumerate() {
         if shown.contains(&id) {
@@ -225,7 +226,7 @@ fn paint_group(group: &ParticleGroup, frame: &Frame, scene: &mut Scene) {
     thin(&springs, SPRING, frame, scene);
 }
 
-/// What of [`World::draw`], or of what else draws, no surface shows.
+/// Lines of [`World::draw`], or of what else draws, that no surface shows.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     /// In the order in which they were drawn.
@@ -240,7 +241,7 @@ impl Lines {
     }
 }
 
-/// What is drawn as surfaces; contacts are not drawn.
+/// Kinds that are no lines here: drawn as surfaces, or, as contacts, not at all.
 const SURFACES: [DrawKind; 7] = [
     DrawKind::Static,
     DrawKind::Kinematic,

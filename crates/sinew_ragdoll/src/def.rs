@@ -14,7 +14,7 @@ pub struct RagdollBodyDef {
     pub merged: Vec<usize>,
     /// VRM 1 humanoid bone name, else `spine_n`, `tail_n`, `limb_n_m`.
     pub role: String,
-    /// How sure the role is, 0..=1.
+    /// Confidence of the role, 0..=1.
     pub confidence: f32,
     /// Geometry, metres.
     pub shape: Shape,
@@ -36,7 +36,7 @@ pub struct RagdollJointDef {
     pub frame_parent: Transform,
     /// Joint frame in the child body's frame.
     pub frame_child: Transform,
-    /// What is free, with limits: a ball, hinge, universal or fixed joint.
+    /// Kind of the joint, with its limits: a ball, hinge, universal or fixed joint.
     pub kind: JointKind,
     /// N·m.
     pub friction_torque: f32,

@@ -9,16 +9,16 @@ use sinew_physics::{
     ShapeDef, ShapeId, Velocity, World,
 };
 
-/// Where a body starts.
+/// State in which a body starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BodyState {
     /// Pose of the body's frame.
     pub world_from_body: Transform,
-    /// Of its centre of mass, world axes.
+    /// Velocity of its centre of mass, and angular velocity; world axes.
     pub velocity: Velocity,
 }
 
-/// What the bodies of a ragdoll have in common.
+/// Properties that the bodies of a ragdoll have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flesh {
     /// Surface. Default: friction 0.7, no bounce, and a rolling resistance of 2 cm, without which round limbs roll for

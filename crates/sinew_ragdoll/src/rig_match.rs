@@ -1,4 +1,4 @@
-//! Whether a definition belongs to a rig.
+//! Match of a definition with the rig that it belongs to.
 
 use crate::build::joint_name;
 use crate::def::RagdollDef;

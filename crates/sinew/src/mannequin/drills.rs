@@ -13,7 +13,7 @@ use crate::math::Vec3;
 pub struct Cycle {
     /// Linear keys at 30 Hz, starting as the left heel strikes.
     pub clip: Clip,
-    /// Where it leads.
+    /// Path along which the clip moves the character.
     pub path: Path,
     /// Along the path, m/s.
     pub speed: f32,
@@ -21,7 +21,7 @@ pub struct Cycle {
     pub strikes: [f32; 2],
     /// From which share of its own cycle a foot's ball stays on its spot, and until which.
     pub ball_down: [f32; 2],
-    /// Likewise the whole sole.
+    /// Share of its own cycle from which a foot's whole sole stays on its spot, and until which.
     pub sole_down: [f32; 2],
 }
 

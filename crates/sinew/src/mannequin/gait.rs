@@ -6,7 +6,7 @@ use super::skeleton::{ANKLE_HEIGHT, Bone, Side, bind_position};
 use crate::anim::smoothstep;
 use crate::math::{Rotation, Transform, Vec3};
 
-/// Where a gait leads, seen from the character as it starts.
+/// Path of a gait, seen from the character as it starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Path {
     /// Along +Z.
@@ -16,7 +16,7 @@ pub enum Path {
 }
 
 impl Path {
-    /// Where the character is after a way along the path, metres.
+    /// Pose of the character, as seen from where it starts, after a way along the path, metres.
     pub fn at(self, way: f32) -> Transform {
         match self {
             Self::Straight => Transform::from_translation(Vec3::Z * way),
@@ -28,7 +28,7 @@ impl Path {
     }
 }
 
-/// How feet move in one cycle of two steps.
+/// Motion of the feet in one cycle of two steps.
 pub(super) struct Gait {
     /// Speed at which the planted feet do not slide, m/s.
     pub speed: f32,
@@ -36,7 +36,7 @@ pub(super) struct Gait {
     pub frames: usize,
     /// Share of the cycle that a foot is on the ground.
     pub stance: f32,
-    /// Where the heel lands, metres in front of the hips, and beside the middle.
+    /// Position where the heel lands, metres in front of the hips, and beside the middle.
     pub heel_strike: f32,
     pub aside: f32,
     /// Pitch of the foot as it lands, toes up where negative, and as it leaves, heel up; degrees.
@@ -52,11 +52,11 @@ pub(super) struct Gait {
 /// The way of a foot through the air, at three phases between leaving and landing.
 pub(super) struct Swing {
     pub phases: [f32; 3],
-    /// Of the ankle: distance from the middle, height, way in front of the hips; metres.
+    /// Path of the ankle: distance from the middle, height, way in front of the hips; metres.
     pub aside: f32,
     pub height: [f32; 3],
     pub ahead: [f32; 3],
-    /// Of the foot, heel up, and of the toes against it; degrees.
+    /// Pitch of the foot, heel up, and of the toes against it; degrees.
     pub pitch: [f32; 3],
     pub toes: [f32; 3],
 }

@@ -60,7 +60,7 @@ fn catmull_rom(t: f32) -> [f32; 4] {
     ]
 }
 
-/// Which bone moves what along an axis: bones in order, with the zone in which each hands over to the next.
+/// Chain of bones that move vertices along an axis: in order, with the zone in which each hands over to the next.
 pub(super) struct Chain {
     first: Bone,
     borders: Vec<Border>,
@@ -204,7 +204,7 @@ fn flipped(triangles: Vec<[usize; 3]>) -> Vec<[usize; 3]> {
     triangles.into_iter().map(|[a, b, c]| [a, c, b]).collect()
 }
 
-/// Whether the enclosed volume is positive: the triangles are counter-clockwise seen from outside.
+/// True if the enclosed volume is positive: the triangles are counter-clockwise seen from outside.
 fn encloses_positive(positions: &[Vec3], triangles: &[[usize; 3]]) -> bool {
     let volume: f32 =
         triangles.iter().map(|&[a, b, c]| positions[a].cross(positions[b]).dot(positions[c])).sum();

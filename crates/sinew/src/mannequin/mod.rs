@@ -30,11 +30,11 @@ pub struct Mannequin {
     pub rig: Rig,
     /// All clips, linear keys at 30 Hz; [`motions`](Self::motions) says which is which.
     pub clips: Vec<Clip>,
-    /// What the clips are for.
+    /// Indices of the clips by what they are for.
     pub motions: Motions,
 }
 
-/// Which clip does what: indices into [`Mannequin::clips`].
+/// Indices into [`Mannequin::clips`], by what each clip does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motions {
     /// A cycle of two steps on the spot, starting as the left heel strikes.

@@ -15,9 +15,9 @@ pub(super) type Turn = Vec3;
 pub(super) struct Posture {
     /// Position of the hips joint.
     pub(super) pelvis: Vec3,
-    /// Of the pelvis, against the world.
+    /// Turn of the pelvis against the world.
     pub(super) pelvis_turn: Turn,
-    /// Of each trunk joint, against its parent.
+    /// Turn of each trunk joint against its parent.
     pub(super) spine: Turn,
     pub(super) chest: Turn,
     pub(super) neck: Turn,
@@ -28,12 +28,12 @@ pub(super) struct Posture {
     pub(super) right_hand: Hand,
 }
 
-/// Where a foot is. The leg follows.
+/// Position and turn of a foot. The leg follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Foot {
     /// Position of the ankle.
     pub(super) ankle: Vec3,
-    /// Of the foot against the world; none stands flat and points along +Z.
+    /// Turn of the foot against the world; none stands flat and points along +Z.
     pub(super) turn: Turn,
     /// Toes bent up against the foot.
     pub(super) toes: f32,
@@ -41,20 +41,20 @@ pub(super) struct Foot {
     pub(super) knee_out: f32,
 }
 
-/// Where a hand is. The arm follows.
+/// Position of the wrist and pose of the hand. The arm follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Hand {
     /// Position of the wrist.
     pub(super) wrist: Vec3,
     /// 0: in line with the forearm; 1: palm flat on the floor.
     pub(super) flat: f32,
-    /// Where the fingers of a flat hand point: 0 along +Z, 90 outward.
+    /// Direction of the fingers of a flat hand, degrees: 0 along +Z, 90 outward.
     pub(super) fingers_out: f32,
     /// Elbow turned outward and up from behind the body, about the line from shoulder to wrist.
     pub(super) elbow_out: f32,
 }
 
-/// How an arm hangs from the chest, degrees.
+/// Angles of an arm that hangs from the chest, degrees.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hanging {
     /// Upper arm forward of straight down.

@@ -65,7 +65,7 @@ const JOINTS: [(Bone, &str, Option<Bone>); Bone::COUNT] = [
 
 impl Bone {
     pub(super) const COUNT: usize = 22;
-    /// How far right-side joints are behind their left twins in the order above.
+    /// Number of places by which right-side joints are behind their left twins in the order above.
     const MIRROR_STEP: usize = 8;
 
     pub(super) fn index(self) -> JointIdx {
@@ -127,7 +127,7 @@ impl Side {
 pub(super) const UPPER_ARM: f32 = 0.2817;
 /// Elbow to wrist, metres (de Leva 1996).
 pub(super) const FOREARM: f32 = 0.2689;
-/// How far the arms of the A-pose hang below the horizontal, radians (40°).
+/// Angle by which the arms of the A-pose hang below the horizontal, radians (40°).
 pub(super) const ARM_DROP: f32 = 0.698_131_7;
 /// Bend of the elbow in the bind pose, radians (8°): tells every rig analyser which way elbows go.
 pub(super) const ELBOW_REST: f32 = 0.139_626_3;

@@ -9,7 +9,7 @@ use crate::math::{Vec3, trig};
 
 /// Speed at which the planted feet of the walk do not slide, m/s along +Z.
 pub const WALK_SPEED: f32 = 1.25;
-/// Likewise of the run.
+/// Speed at which the planted feet of the run do not slide, m/s along +Z.
 pub const RUN_SPEED: f32 = 3.0;
 
 pub(super) const WALK: Gait = Gait {

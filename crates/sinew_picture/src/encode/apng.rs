@@ -72,7 +72,7 @@ fn encoder(file: &mut Vec<u8>, width: u32, height: u32) -> Encoder<'static, &mut
     encoder
 }
 
-/// Which frame, where, and for how long. Its last two bytes, zeros, say: left as it is, drawn over.
+/// Data of a frame's control chunk: sequence number, rectangle and time. The last two bytes, zeros, say: left as it is, drawn over.
 fn frame_control(sequence: u32, rect: Rect, fps: u32) -> Vec<u8> {
     let numbers = [sequence, rect.width as u32, rect.height as u32, rect.left as u32, rect.top as u32];
     let mut data: Vec<u8> = numbers.into_iter().flat_map(u32::to_be_bytes).collect();

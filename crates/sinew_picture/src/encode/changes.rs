@@ -1,4 +1,4 @@
-//! Which part of each image is new: lossless animations store that rectangle alone.
+//! Changes from image to image: lossless animations store the rectangle of what is new alone.
 
 use super::{Rect, bounds};
 use crate::image::Image;

@@ -13,7 +13,7 @@ pub(super) struct Palette {
     nearest: Vec<u8>,
 }
 
-/// How often each cell of colour occurs.
+/// Histogram of the colours: how often each cell occurs.
 pub(super) struct Histogram {
     counts: Vec<u32>,
     occupied: Vec<u32>,

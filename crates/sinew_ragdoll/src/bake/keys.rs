@@ -43,7 +43,7 @@ fn values(frames: &[Frame], joint: JointIdx, property: Property) -> Vec<f32> {
     values
 }
 
-/// Whether a value is not the rest pose's: by more than what blending the same value with itself rounds off.
+/// True if a value is not the rest pose's: by more than what blending the same value with itself rounds off.
 fn differs(property: Property, a: &LocalTransform, rest: &LocalTransform) -> bool {
     const ROUNDING: f32 = 1e-6;
     match property {

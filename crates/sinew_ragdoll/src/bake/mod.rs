@@ -21,18 +21,18 @@ pub struct Hit {
     pub impulse: Vec3,
 }
 
-/// What is to be simulated.
+/// Input of a bake: what is to be simulated.
 #[derive(Clone, Debug)]
 pub struct BakeInput<'a> {
     /// The character.
     pub character: Arc<CharacterDef>,
-    /// Where it starts.
+    /// Pose of the character in the world at the start.
     pub world_from_character: Transform,
     /// Seconds into its looped clip at the start. Default 0.
     pub phase: f32,
     /// Settings of the world. Its step is the simulation's.
     pub world: WorldDef,
-    /// What is in the world.
+    /// Bodies of the world beside the character's own.
     pub bodies: &'a [BodyDef],
     /// Pushes, in any order.
     pub hits: &'a [Hit],
@@ -44,7 +44,7 @@ pub struct BakeInput<'a> {
     pub seconds: f32,
     /// Frames per second of the clip, at least 1.
     pub fps: f32,
-    /// How far any joint of the clip may be from where the frames have it, metres and radians: keys that are not needed
+    /// Bound on the distance of any joint of the clip from where the frames have it, metres and radians: keys that are not needed
     /// for that are left out.
     pub key_bound: KeyBound,
     /// Name of the clip.
@@ -90,7 +90,7 @@ impl<'a> BakeInput<'a> {
 pub struct Frame {
     /// Seconds.
     pub time: f32,
-    /// What decided the pose.
+    /// State that decided the pose.
     pub state: State,
     /// Local transform of every joint; see [`Baked::world_from_model`].
     pub pose: Vec<LocalTransform>,
@@ -102,8 +102,8 @@ pub struct Baked {
     /// Linear keys at times of frames, for every joint that moves: rotations, and translations where they change. It
     /// starts where the file's character stands, and all root motion is in the pelvis.
     pub clip: Clip,
-    /// How far joints of the clip are from where the frames have them, at most, at the times of frames: metres and
-    /// radians, within [`BakeInput::key_bound`].
+    /// Largest error of the clip's joints against the frames, at the times of frames: metres and radians, within
+    /// [`BakeInput::key_bound`].
     pub key_error: KeyError,
     /// Keys of the clip's channels: with one for each frame, and as they are.
     pub keys: [usize; 2],
@@ -113,7 +113,7 @@ pub struct Baked {
     pub world_from_model: Affine,
     /// The figures.
     pub quality: Quality,
-    /// What happened when, seconds.
+    /// Events, each with its time in seconds.
     pub events: Vec<(f32, Event)>,
     /// Number of bodies of the ragdoll.
     pub bodies: usize,
@@ -184,7 +184,7 @@ fn spawned(input: &BakeInput<'_>, world: &mut World) -> Character {
     character
 }
 
-/// What is done to the character at a moment.
+/// Intervention in the bake at a moment: the character goes limp, or is hit.
 #[derive(Clone, Copy)]
 enum Push {
     Limp,

@@ -1,4 +1,4 @@
-//! What the stages of the build know of a rig: its kept bones in character space, parents before children.
+//! Bones of a rig as the stages of the build know them: the kept ones, in character space, parents before children.
 
 use crate::build::part::{Part, Side, part_of_role};
 use sinew_anim::JointIdx;
@@ -12,19 +12,19 @@ pub struct Bone {
     pub joint: JointIdx,
     /// Rig joints that move rigidly with it.
     pub merged: Vec<JointIdx>,
-    /// What it is to the body.
+    /// Role of the bone in the body.
     pub role: Role,
-    /// How sure the role is, 0..=1.
+    /// Confidence of the role, 0..=1.
     pub confidence: f32,
-    /// Which kind of body part the role names.
+    /// Body part that the role names.
     pub part: Part,
-    /// Which side of the body.
+    /// Side of the body.
     pub side: Side,
     /// Index of the parent bone; smaller than its own. `None` for the first.
     pub parent: Option<usize>,
     /// Pivot of the joint to the parent, character space at the bind pose, metres.
     pub head: Vec3,
-    /// Whether it is carried and no part of the body: nothing ends where it begins, and its joint is fixed.
+    /// True if it is carried and no part of the body: nothing ends where it begins, and its joint is fixed.
     pub is_prop: bool,
 }
 
@@ -35,13 +35,13 @@ pub struct Bones {
     pub list: Vec<Bone>,
     /// Indices of the children of each bone, without props.
     pub children: Vec<Vec<usize>>,
-    /// Whether the anatomy of a human applies.
+    /// Tables that apply: those of a human, or those of a creature.
     pub anatomy: Anatomy,
     /// Height at the bind pose, metres.
     pub height: f32,
 }
 
-/// Which tables apply to a character.
+/// Anatomy of a character, by the tables that apply to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anatomy {
     /// Two arms, two legs, a head: anthropometry and joint ranges of humans.
@@ -79,7 +79,7 @@ impl Bones {
             .or_else(|| (children.len() == 1 && wanted.is_empty()).then(|| children[0]))
     }
 
-    /// Where the bone ends: the pivot of its continuation, else the mean of its children's pivots. `None` at the end
+    /// End of the bone, character space: the pivot of its continuation, else the mean of its children's pivots. `None` at the end
     /// of a chain, or where that point is the bone's own pivot.
     pub fn tail(&self, bone: usize) -> Option<Vec3> {
         let children = &self.children[bone];
@@ -120,7 +120,7 @@ impl Bones {
         self.list.iter().position(|other| other.role == role.mirror())
     }
 
-    /// Whether a bone lies in the body's plane of symmetry, so that its left and right halves are one shape.
+    /// True if a bone lies in the body's plane of symmetry, so that its left and right halves are one shape.
     pub fn is_central(&self, bone: usize) -> bool {
         let bone = &self.list[bone];
         let aside = (bone.head.x - self.plane_of_symmetry()).abs();

@@ -23,7 +23,7 @@ use sinew_anim::roles::RigAnalysis;
 use sinew_anim::{JointIdx, Rig, Take};
 use sinew_math::{Transform, Vec3};
 
-/// What kind of ragdoll is wanted.
+/// Options of a build: the kind of ragdoll that is wanted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BuildOptions {
     /// Kind of shapes. Default auto.
@@ -32,7 +32,7 @@ pub struct BuildOptions {
     pub mass: Option<f32>,
     /// Whose mass distribution. Default male.
     pub sex: Sex,
-    /// Where joint limits come from. Default anatomy.
+    /// Source of joint limits. Default anatomy.
     pub limits: LimitSource,
 }
 
@@ -71,7 +71,7 @@ pub fn build(
 /// A body's index, its fit, and a way to fit a shape of another kind, to the fit that is wanted.
 type Refit<'a> = dyn Fn(usize, Fit, &dyn Fn(ShapeChoice) -> Fit) -> Fit + 'a;
 
-/// What settings change within the build.
+/// Changes that settings make within the build.
 pub(crate) struct Overrides<'a> {
     /// Another shape of a body.
     pub shape: &'a Refit<'a>,
@@ -79,7 +79,7 @@ pub(crate) struct Overrides<'a> {
     pub disable: Vec<(usize, usize)>,
     /// Pairs of bodies that shall.
     pub enable: Vec<(usize, usize)>,
-    /// What the character does.
+    /// Takes of the character's motions.
     pub takes: &'a [Take],
 }
 
@@ -190,7 +190,7 @@ impl Enclosed {
         self.density * self.volume
     }
 
-    /// Where the mass is from, if it is from here.
+    /// Note on the source of the mass, if it is from here.
     fn note(&self, total_mass: f32) -> Option<String> {
         let Self { volume, matter, .. } = self;
         let is_from_here = (self.mass() / total_mass - 1.0).abs() < 1e-3;
@@ -202,7 +202,7 @@ impl Enclosed {
 /// Joints, and the poses in which shapes are held against each other.
 struct Planned {
     plans: Vec<JointPlan>,
-    /// Where the limits of each joint are from.
+    /// Source of the limits of each joint.
     limits: Vec<LimitSource>,
     poses: Poses,
 }

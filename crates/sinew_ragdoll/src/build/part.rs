@@ -74,12 +74,12 @@ impl Part {
         }
     }
 
-    /// Whether it belongs to the trunk: what the other parts hang on.
+    /// True if it belongs to the trunk: what the other parts hang on.
     pub fn is_trunk(self) -> bool {
         matches!(self, Part::Pelvis | Part::Spine | Part::Clavicle)
     }
 
-    /// Whether it belongs to an arm or a leg.
+    /// True if it belongs to an arm or a leg.
     pub fn is_limb(self) -> bool {
         !self.is_trunk() && !matches!(self, Part::Neck | Part::Head)
     }

@@ -1,4 +1,4 @@
-//! What the build has to say about its work.
+//! Report of the build on its work.
 
 use super::bones::Bones;
 use super::joint_name;
@@ -11,7 +11,7 @@ use sinew_anim::Rig;
 /// A widening of limits below this is not worth a note, radians (1°).
 const NOTEWORTHY: f32 = 0.017;
 
-/// How a ragdoll came about.
+/// Report on how a ragdoll came about.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BuildReport {
     /// One per body, in the definition's order.
@@ -22,22 +22,22 @@ pub struct BuildReport {
     pub mean_error: f32,
     /// Sum of the shapes' volumes, m³; more than the flesh has, for shapes overlap.
     pub shape_volume: f32,
-    /// What a person should know, a sentence each.
+    /// Notes that a person should read, a sentence each.
     pub notes: Vec<String>,
 }
 
-/// How one body came about.
+/// Report on how one body came about.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyReport {
     /// Area-weighted mean distance between the bone's skin and the shape's surface, metres.
     pub error: f32,
-    /// Which skin the shape was fitted to.
+    /// Selection of the skin that the shape was fitted to.
     pub selection: Selection,
     /// Factor on the cross-section to get clear of other bodies; 1 if it was not needed.
     pub scale: f32,
-    /// How far the bind pose was beyond the table's limits of the joint to the parent, radians; they were widened.
+    /// Angle by which the bind pose was beyond the table's limits of the joint to the parent, radians; they were widened.
     pub widened: f32,
-    /// Where the limits of the joint to the parent are from.
+    /// Source of the limits of the joint to the parent.
     pub limits: LimitSource,
 }
 
@@ -106,7 +106,7 @@ fn notes(rig: &Rig, bones: &Bones, bodies: &[BodyReport], filter: &FilterReport)
     notes
 }
 
-/// Where two bodies overlap, in words.
+/// Poses in which two bodies overlap, in words.
 fn places(seen: &Seen) -> String {
     let mut places = Vec::new();
     if seen.bind > 0.0 {

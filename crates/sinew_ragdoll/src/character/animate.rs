@@ -5,7 +5,7 @@ use sinew_anim::{Animator, TrackDef, TrackId};
 use sinew_math::{Affine, Transform, Vec3, clamp};
 use sinew_physics::World;
 
-/// How fast the height of the character's origin follows the ground, m/s: a step of a stair takes a few frames.
+/// Largest speed at which the height of the character's origin follows the ground, m/s: a step of a stair takes a few frames.
 const CLIMB_SPEED: f32 = 1.2;
 
 /// The animator of a new character, with its looped clip if it opens by that.
@@ -50,7 +50,7 @@ impl Character {
         self.climbing = (to.translation.y - from.translation.y) / dt;
     }
 
-    /// How the character went in the last update of an animator: in its own space.
+    /// Motion of the character in the last update of an animator, in its own space.
     pub(super) fn step_of(&self, animator: &Animator) -> Transform {
         let root = self.def.mapping().character_from_model();
         let turn = root.to_rigid().rotation;

@@ -109,7 +109,7 @@ impl Character {
         self.push(world, body, impulse, point)
     }
 
-    /// What stands on its legs tenses them and its trunk: a blow takes less of their strength.
+    /// Tenses the legs and the trunk of a character that stands: a blow takes less of their strength.
     fn tense(&mut self) {
         for (index, body) in self.def.ragdoll.bodies.iter().enumerate() {
             let is_leg = ["Leg", "Foot", "Toes"].iter().any(|part| body.role.ends_with(part));

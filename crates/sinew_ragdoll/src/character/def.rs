@@ -1,4 +1,4 @@
-//! What characters of one kind share.
+//! Definition that characters of one kind share.
 
 use super::feet::Feet;
 use super::in_world::InWorld;
@@ -12,7 +12,7 @@ use sinew_anim::{AnimationSet, Clip, ClipId, LocalTransform, Rig, rest_pose};
 use sinew_math::Affine;
 use std::sync::Arc;
 
-/// How a character moves over the ground while its looped clip plays.
+/// Motion of a character over the ground while its looped clip plays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Locomotion {
     /// The character moves as the clip does, and with each lap is back where it began.
@@ -26,7 +26,7 @@ pub enum Locomotion {
     },
 }
 
-/// What a limp character does once it lies still.
+/// Action of a limp character once it lies still.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AfterSettling {
     /// It gets up by the clip that fits the way it lies; without such a clip it fades to its looped clip, standing.
@@ -35,7 +35,7 @@ pub enum AfterSettling {
     StayDown,
 }
 
-/// What a character that lies otherwise than any of its get-up clips begins does first.
+/// First action of a character that lies otherwise than any of its get-up clips begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GettingReady {
     /// Nothing: the difference dies away in the clip.
@@ -44,7 +44,7 @@ pub enum GettingReady {
     RollOver,
 }
 
-/// What a character does before anything has happened to it.
+/// Pose or clip of a character before anything has happened to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Opening {
     /// It plays its looped clip.
@@ -53,7 +53,7 @@ pub enum Opening {
     Rest,
 }
 
-/// What a kind of character can do. Default: nothing, it stands in its rest pose.
+/// Motions of a kind of character. Default: none, it stands in its rest pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionSet {
     /// All motions, for the indices below.
@@ -98,7 +98,7 @@ pub struct CharacterDef {
     pub after_settling: AfterSettling,
     /// Default roll over.
     pub getting_ready: GettingReady,
-    /// How its bodies are driven while it falls: powered, toward the pose that its clips go on with. Default limp.
+    /// Drive mode of its bodies while it falls: powered, toward the pose that its clips go on with. Default limp.
     pub falling: DriveMode,
     /// Seconds for which a limp character may go on moving before it gets up all the same. Default 6.
     pub patience: f32,
@@ -112,10 +112,10 @@ pub struct CharacterDef {
     rest: Vec<LocalTransform>,
     /// Bind pose in character space, metres.
     bind: Vec<Affine>,
-    /// What it stands on, if it is a humanoid.
+    /// Feet that it stands on, if it is a humanoid.
     feet: Option<Feet>,
     motions: MotionSet,
-    /// What the motions come to.
+    /// Clips and stances made of the motions.
     moves: Arc<Moves>,
 }
 
@@ -165,12 +165,12 @@ impl CharacterDef {
         Ok(())
     }
 
-    /// What it can do.
+    /// Motions of this kind of character.
     pub fn motions(&self) -> &MotionSet {
         &self.motions
     }
 
-    /// What its characters' animators play: the clips of [`motions`](Self::motions), and what was made of them.
+    /// Animation set that its characters' animators play: the clips of [`motions`](Self::motions), and what was made of them.
     pub fn set(&self) -> &AnimationSet {
         &self.moves.set
     }

@@ -11,7 +11,8 @@ use sinew_anim::{JointIdx, LocalTransform, Rig, local_to_model, smoothstep};
 use sinew_math::{Affine, Transform, Vec3, max, min, normalize_or, trig};
 use sinew_physics::World;
 
-/// How fast feet follow the ground, rad/s: a step of a stair asks for as much of a leg as a transition within 0.2 s.
+/// Natural frequency with which feet follow the ground, critically damped, rad/s: a step of a stair asks for as much of a leg as a
+/// transition within 0.2 s.
 const QUICKNESS: f32 = 12.0;
 /// Ground farther up or down than this is nothing to stand on, metres.
 const MOST: f32 = 0.32;
@@ -25,7 +26,7 @@ const PLANTED: f32 = 2.0;
 const STEEPEST: f32 = 0.6;
 /// Most that a foot tilts, radians.
 const MOST_TILT: f32 = 0.6;
-/// How far above a foot the ground is sought, metres.
+/// Height above a foot from which the ground is sought, metres.
 const ABOVE: f32 = 0.5;
 /// A character that goes this fast has its feet where its clips have them, m/s.
 const WALKS: f32 = 0.3;
@@ -111,7 +112,7 @@ impl Feet {
     }
 }
 
-/// What the ground under each foot is held to be, over the floor of the clip, and how fast that changes, per second.
+/// Smoothed ground under each foot, over the floor of the clip, and its rates of change, per second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Planting {
     /// Metres.

@@ -17,7 +17,7 @@ const INTO_LOOP: f32 = 0.3;
 const STRAIGHTENS: f32 = 0.6;
 /// Share of its height that a mover has over a body that lies.
 const LIES: f32 = 0.0;
-/// How far above the pelvis the ground is sought, metres.
+/// Height above the pelvis from which the ground is sought, metres.
 const ABOVE_PELVIS: f32 = 0.3;
 
 /// A character on its way up.
@@ -85,7 +85,7 @@ impl Character {
         self.stand_up(world, LIES);
     }
 
-    /// How much of a get-up is left until it stands upright: 1 and more as long as it still lies, 0 and less once it does.
+    /// Share of a get-up that is left until it stands upright: 1 and more as long as it still lies, 0 and less once it does.
     pub(super) fn lies_still(&self) -> f32 {
         match self.rising {
             Rising::ByClip(id) => {

@@ -1,4 +1,4 @@
-//! What a character stands on.
+//! Ground that a character stands on.
 
 use sinew_math::{Rotation, Vec3, max, min, trig};
 use sinew_physics::ray::Ray;
@@ -6,7 +6,7 @@ use sinew_physics::{BodyHit, BodyId, BodyKinds, ContactRule, QueryFilter, ShapeI
 
 /// The highest step that a walking character climbs, metres.
 pub(super) const HIGHEST_STEP: f32 = 0.45;
-/// How far down the ground is sought, metres.
+/// Depth down to which the ground is sought, metres.
 const DEPTH: f32 = 100.0;
 
 /// Height of what bears under a point, sought from `above` metres over it: of the static world for a character that is not in
@@ -58,11 +58,11 @@ pub(super) fn motion_below(world: &World, bodies: &[BodyId]) -> GroundMotion {
     GroundMotion { velocity: world.velocity(hit.body), center: world.center_of_mass(hit.body) }
 }
 
-/// How far above a point of a body that lies the ground is sought, metres.
+/// Height above a point of a body that lies from which the ground is sought, metres.
 const ABOVE: f32 = 0.3;
 /// Ground that is steeper counts as if it were not, radians.
 const STEEPEST: f32 = 0.6;
-/// What is less steep counts as level, radians.
+/// Slope below which ground counts as level, radians.
 const LEVEL: f32 = 0.02;
 
 /// The ground that a body lies on, as a plane through its heights under these points: the turn that brings the vertical to

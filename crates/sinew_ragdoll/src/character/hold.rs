@@ -10,7 +10,7 @@ use sinew_physics::{BodyId, ContactRule, JointDef, JointId, JointKind, Strength,
 pub struct Grip {
     /// From the frame of what is held to the frame of the bone's body. Default: they are one.
     pub bone_from_held: Transform,
-    /// What it is not torn off by. Default unbreakable.
+    /// Force and torque beyond which the held body is torn off. Default unbreakable.
     pub strength: Strength,
     /// It is dropped when the character goes limp. Default false.
     pub drops: bool,

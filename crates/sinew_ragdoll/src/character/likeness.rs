@@ -1,4 +1,4 @@
-//! How alike two poses are, wherever they are and whichever way they face.
+//! Similarity of two poses, wherever they are and whichever way they face.
 //!
 //! As in motion graphs (Kovar, Gleicher, Pighin, SIGGRAPH 2002, §3.1): one pose is turned about the vertical and moved so
 //! that points of the body come as near to those of the other as they can; what distance is left tells them apart.
@@ -8,7 +8,7 @@ use crate::mapping::Mapping;
 use sinew_anim::JointIdx;
 use sinew_math::{Affine, Rotation, Transform, Vec3, min, trig};
 
-/// Which points of a body count, and how much.
+/// Points of a body that count in a comparison of poses, with their weights.
 #[derive(Clone, Debug)]
 pub(super) struct Landmarks {
     /// Joints of the bodies, in their order.
@@ -17,7 +17,7 @@ pub(super) struct Landmarks {
     trunk: Vec<(usize, Rotation)>,
     /// One for each joint and each stick; they add up to 1.
     weights: Vec<f32>,
-    /// Of the sticks, metres.
+    /// Length of the sticks, metres.
     stick: f32,
 }
 
@@ -25,16 +25,16 @@ pub(super) struct Landmarks {
 #[derive(Clone, Debug)]
 pub(super) struct Stance {
     pub points: Vec<Vec3>,
-    /// How the pelvis is turned, from its bind pose.
+    /// Rotation of the pelvis from its bind pose.
     pub pelvis: Rotation,
 }
 
-/// How one stance is brought to another.
+/// Motion that brings one stance to another, and the distance that is left.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Likeness {
     /// A turn about the vertical, then a move.
     pub motion: Transform,
-    /// What is left then: root of the weighted mean of squared distances, metres.
+    /// Distance that is left then: root of the weighted mean of squared distances, metres.
     pub distance: f32,
 }
 

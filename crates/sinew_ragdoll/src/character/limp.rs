@@ -26,7 +26,7 @@ pub(crate) const STILL_ANGULAR: f32 = 0.05;
 /// Seconds that all bodies must be still.
 pub(crate) const STILL_TIME: f32 = 0.5;
 
-/// How long a limp character has been still.
+/// Time for which a limp character has been still, in steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Stillness {
     /// Steps since it went limp.
@@ -55,8 +55,8 @@ impl Character {
         self.events.push(Event::WentLimp);
     }
 
-    /// What muscles held a moment ago goes on: friction comes into the joints over [`SLACKENS`] seconds, for all of it at
-    /// once would stop a hand within a step.
+    /// Brings friction into the joints over [`SLACKENS`] seconds: what muscles held a moment ago goes on, for all of it at once
+    /// would stop a hand within a step.
     fn slacken(&self, world: &mut World) {
         let share = self.stillness.steps as f32 * world.def().dt() / SLACKENS;
         let ragdoll = self.ragdoll.as_ref().expect("a limp character has bodies");
@@ -65,7 +65,7 @@ impl Character {
         }
     }
 
-    /// What no body moves does not stop at once: toes, helpers, and where joints sit that a clip moved along.
+    /// Lets what no body moves come to rest by and by: toes, helpers, and the places of joints that a clip moved along.
     fn let_linger(&mut self, world: &World) {
         let now: Pose = self.pose.iter().copied().collect();
         let earlier: Pose = self.earlier.pose.iter().copied().collect();
@@ -122,7 +122,7 @@ impl Character {
         self.drives.set_all(self.def.falling, 0.0);
     }
 
-    /// Where the bodies are and how fast they move as the animation carries them, whatever it is made of: by where it will
+    /// Poses and velocities of the bodies as the animation carries them, whatever it is made of: by where it will
     /// have them in a moment, for tracks, weights and transitions may all have changed since the last pose.
     pub(super) fn carried(&mut self) -> Vec<BodyState> {
         let (mut now, mut ahead) =
@@ -272,7 +272,7 @@ fn laps(animator: &Animator) -> i64 {
     animator.tracks().fold(0, |sum, track| sum.wrapping_add(track.playhead().lap()))
 }
 
-/// Whether every body is slower than what counts as still.
+/// True if every body is slower than what counts as still.
 pub(crate) fn is_still(world: &World, bodies: &[BodyId]) -> bool {
     is_still_on(world, bodies, GroundMotion::default())
 }
@@ -289,12 +289,12 @@ fn is_still_on(world: &World, bodies: &[BodyId], ground: GroundMotion) -> bool {
 /// Deeper than this in what stands, a body does not lie yet, metres: it is pushed out, for which it has no speed of its own.
 const SUNK: f32 = 5e-3;
 
-/// Whether one of the bodies is on its way out of what stands.
+/// True if one of the bodies is deeper than [`SUNK`] in what stands, and on its way out.
 pub(crate) fn is_sunk(world: &World, bodies: &[BodyId]) -> bool {
     bodies.iter().any(|&body| world.penetration(body) > SUNK)
 }
 
-/// Whether one of the bodies began to touch something else in the last step.
+/// True if one of the bodies began to touch something else in the last step.
 pub(crate) fn touches_world(world: &World, bodies: &[BodyId]) -> bool {
     let own = |body: &BodyId| bodies.contains(body);
     world.events().begin.iter().any(|(a, b)| own(a) != own(b))

@@ -7,7 +7,7 @@ use super::CharacterDef;
 use sinew_anim::{JointIdx, LocalTransform, Rig, local_to_model};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
-/// Which joint is on the other side of which.
+/// Counterparts of the joints on the other side of the body.
 #[derive(Clone, Debug)]
 pub(super) struct Mirror {
     /// A joint of the midline, or one that has no counterpart, is its own.
@@ -16,10 +16,10 @@ pub(super) struct Mirror {
     bind: Vec<Rotation>,
 }
 
-/// How far off the mirror image of its counterpart a joint may be in the bind pose, share of the body's height.
+/// Largest distance of a joint from the mirror image of its counterpart in the bind pose, share of the body's height.
 const TOLERANCE: f32 = 0.03;
 
-/// How far from its rest a joint is moved along, share of its distance from its parent.
+/// Distance from its rest beyond which a joint counts as moved along, share of its distance from its parent.
 const MOVED: f32 = 1e-3;
 
 impl Mirror {
@@ -70,7 +70,7 @@ impl Mirror {
     }
 }
 
-/// Whether a pose has the joint elsewhere on its parent than it rests.
+/// True if a pose has the joint elsewhere on its parent than it rests.
 fn is_moved(rig: &Rig, pose: &[LocalTransform], joint: JointIdx) -> bool {
     let rest = rig.joints[joint].rest.translation;
     (pose[joint].translation - rest).length() > MOVED * rest.length()

@@ -50,7 +50,7 @@ use sinew_math::{Affine, Transform, Vec3};
 use sinew_physics::{BodyId, Velocity, World};
 use std::sync::Arc;
 
-/// What decides the character's pose.
+/// State of a character: what decides its pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     /// Clips; they lead its bodies, if it has any in the world.
@@ -72,7 +72,7 @@ pub enum State {
 pub enum Event {
     /// It was pushed.
     Hit {
-        /// Which body, by index in the definition.
+        /// Index of the body in the definition.
         body: usize,
     },
     /// Something struck one of its bodies: contacts tell more.
@@ -107,7 +107,7 @@ pub enum Event {
     LetGo {
         /// Index of its body in the definition.
         body: usize,
-        /// What was held.
+        /// Body that was held.
         held: BodyId,
     },
     /// A push would have it over: it begins to step.
@@ -130,7 +130,7 @@ pub enum Event {
     NeverSettled,
     /// It lies otherwise than its get-up clips begin, and is brought to where the nearest does.
     Preparing {
-        /// Whether it has to be rolled over.
+        /// True if it has to be rolled over.
         rolls: bool,
     },
     /// It began to get up.
@@ -149,16 +149,16 @@ pub struct Character {
     state: State,
     animator: Animator,
     rising: Rising,
-    /// How the ground slopes on which it gets up, as a turn from the vertical: scaled axis, world axes.
+    /// Slope of the ground on which it gets up, as a turn from the vertical: scaled axis, world axes.
     lean: Vec3,
-    /// How its feet stand on ground that is not the floor of its clips.
+    /// Ground under its feet where it is not the floor of its clips.
     planting: Planting,
     /// The pose with the feet planted, while they are.
     planted: Vec<LocalTransform>,
-    /// How fast it went over the ground in the last step, m/s.
+    /// Speed over the ground in the last step, m/s.
     speed: f32,
     world_from_character: Transform,
-    /// How fast the ground took the character's origin up in the last step, m/s.
+    /// Speed at which the ground took the character's origin up in the last step, m/s.
     climbing: f32,
     /// As bodies or clips have it.
     pose: Vec<LocalTransform>,
@@ -175,7 +175,7 @@ pub struct Character {
     /// Number of events that were there at the end of the last update.
     told: usize,
     physical: Physical,
-    /// How what neither bodies nor clips move came to rest when the bodies took over.
+    /// Motion of what neither bodies nor clips move, as it dies away after the bodies took over.
     lingering: Inertia,
     scratch: Scratch,
 }
@@ -241,12 +241,12 @@ impl Character {
         }
     }
 
-    /// What it shares with its kind.
+    /// Definition that it shares with its kind.
     pub fn def(&self) -> &Arc<CharacterDef> {
         &self.def
     }
 
-    /// What decides its pose.
+    /// State of the character: what decides its pose.
     pub fn state(&self) -> State {
         self.state
     }
@@ -256,7 +256,7 @@ impl Character {
         self.ragdoll.as_ref()
     }
 
-    /// What drives its bodies, while it has any.
+    /// Drives of its bodies, while it has any.
     pub fn drives(&self) -> &Drives {
         &self.drives
     }
@@ -266,7 +266,7 @@ impl Character {
         if self.planting.is_over() { &self.pose } else { &self.planted }
     }
 
-    /// Where it stands. While it is limp: where it stood when it went limp.
+    /// Pose of the character in the world. While it is limp: the one in which it went limp.
     pub fn world_from_character(&self) -> Transform {
         self.world_from_character
     }
@@ -276,19 +276,19 @@ impl Character {
         self.def.mapping().world_from_model(self.world_from_character)
     }
 
-    /// What plays its clips: those of [`CharacterDef::set`].
+    /// Animator that plays its clips: those of [`CharacterDef::set`].
     pub fn animator(&self) -> &Animator {
         &self.animator
     }
 
-    /// What plays its clips, to be given others: tracks, crossfades, layers. To begin with it plays the looped clip, and again
-    /// after getting up; getting up stops all other tracks of layer 0. While the character is limp, what plays still moves
+    /// Animator that plays its clips, to be given others: tracks, crossfades, layers. To begin with it plays the looped clip, and
+    /// again after getting up; getting up stops all other tracks of layer 0. While the character is limp, what plays still moves
     /// the joints that no body does ([`Mapping::free`](crate::Mapping::free)), and events go on.
     pub fn animator_mut(&mut self) -> &mut Animator {
         &mut self.animator
     }
 
-    /// What happened in the last [`update`](Self::update) and since the one before it ended, in order, and what calls have brought about
+    /// Events of the last [`update`](Self::update) and since the one before it ended, in order, and what calls have brought about
     /// since. Who reads it after each update, and only then, is told of everything exactly once.
     pub fn events(&self) -> &[Event] {
         &self.events

@@ -16,13 +16,13 @@ use sinew_math::{Affine, Transform, Vec3};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("clip '{name}': {error}")]
 pub struct MotionError {
-    /// What the clip is called.
+    /// Name of the clip.
     pub name: String,
-    /// What is wrong with it.
+    /// Reason why it cannot be played.
     pub error: BuildError,
 }
 
-/// What [`CharacterDef`] makes of its clips.
+/// Moves of a kind of character: what [`CharacterDef`] makes of its clips.
 #[derive(Clone, Debug)]
 pub(super) struct Moves {
     pub set: AnimationSet,
@@ -31,7 +31,7 @@ pub(super) struct Moves {
     /// Each with its mirror image after it.
     pub get_ups: Vec<GetUp>,
     pub landmarks: Landmarks,
-    /// How the looped clip starts, or the rest pose, in character space.
+    /// Stance at the start of the looped clip, or in the rest pose, character space.
     pub upright: Stance,
 }
 
@@ -41,7 +41,7 @@ pub(super) struct GetUp {
     /// Index into [`MotionSet::clips`].
     pub clip: usize,
     pub id: ClipId,
-    /// Where it may begin.
+    /// Moments at which it may begin.
     pub starts: Vec<Start>,
 }
 
@@ -66,7 +66,7 @@ const FRAME: f64 = 1.0 / 60.0;
 const MIRRORED_FRAME: f64 = 1.0 / 30.0;
 
 impl Moves {
-    /// Of a character that has no motions.
+    /// Moves of a character that has no motions.
     pub fn none(rig: &Rig, ragdoll: &RagdollDef, mapping: &Mapping) -> Self {
         let (landmarks, set) = (Landmarks::new(ragdoll), AnimationSet::new(Skeleton::new(rig)));
         let upright = stance(rig, mapping, &landmarks, &rest_pose(rig));
@@ -159,7 +159,7 @@ fn mirrored(def: &CharacterDef, mirror: &Mirror, take: &Take) -> Take {
     Take { poses, ..*take }
 }
 
-/// What the locomotion of the character adds to its looped clip: model space.
+/// Root motion that the locomotion of the character adds to its looped clip: model space.
 fn way(def: &CharacterDef, locomotion: Locomotion, duration: f32) -> Option<MotionTrack> {
     let Locomotion::Forward { speed } = locomotion else { return None };
     let model = def.mapping().character_from_model().inverse();

@@ -19,9 +19,9 @@ const TIME_TO_ROLL: f32 = 1.5;
 const TIME_TO_PULL: f32 = 0.5;
 /// Seconds in which half of the strength is there.
 const HALF_LIFE: f32 = 0.1;
-/// What draws the limbs.
+/// Muscle that draws the limbs.
 const PULL: Muscle = Muscle { hertz: 2.0, damping_ratio: 1.0, strength: 0.6 };
-/// How fast a trunk is turned, Hz.
+/// Frequency of the pin that turns a trunk, Hz.
 const ROLL: f32 = 2.0;
 /// Largest torque of what rolls a body over, on each part of the trunk, over its weight times its height: 90 N·m of a man.
 const STRENGTH: f32 = 0.07;

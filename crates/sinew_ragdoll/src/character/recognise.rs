@@ -1,10 +1,10 @@
-//! Which clips get a body up: by what they are called, or by what they do.
+//! Recognition of the clips that get a body up: by what they are called, or by what they do.
 
 use super::CharacterDef;
 use sinew_anim::{Clip, LocalTransform, Wrap, local_to_model, sample};
 use sinew_math::{Affine, Transform, Vec3};
 
-/// What such clips are called, without case, blanks, `-` and `_`.
+/// Names of such clips, without case, blanks, `-` and `_`.
 const NAMES: [&str; 3] = ["getup", "standup", "gettingup"];
 /// Lying, the pelvis' own up rises by no more than this over its length, and its height is no more than this share of that
 /// in the bind pose.
@@ -30,7 +30,7 @@ impl CharacterDef {
             && end.iter().zip(STANDING).all(|(value, least)| *value > least)
     }
 
-    /// How upright the pelvis is, and how high over the height of the bind pose, at a time.
+    /// Uprightness of the pelvis (1 upright), and its height over that of the bind pose, at a time.
     fn posture(&self, clip: &Clip, time: f32) -> [f32; 2] {
         let mut pose: Vec<LocalTransform> = self.rest().to_vec();
         sample(clip, &self.rig, time, Wrap::Clamp, &mut pose);

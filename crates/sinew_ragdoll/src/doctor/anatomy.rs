@@ -1,4 +1,4 @@
-//! What the body as a whole must be: finite, of a sensible size, with a head and limbs.
+//! Requirements on the body as a whole: finite, of a sensible size, with a head and limbs.
 
 use super::exam::{Exam, bones_of};
 use super::{Code, Finding, Patient, Severity};
@@ -217,7 +217,7 @@ fn expected(exam: &Exam<'_>) -> Vec<(Role, Option<usize>)> {
 /// A role below this confidence is told of.
 const UNCERTAIN: f32 = 0.4;
 
-/// What was inferred of the rig, and may be wrong.
+/// Findings about what was inferred of the rig, and may be wrong.
 pub(super) fn inferred(exam: &Exam<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     let unit = exam.def.unit_scale;

@@ -1,6 +1,6 @@
 //! Kinds of trouble.
 
-/// How bad a finding is.
+/// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// It jitters, explodes or falls apart.
@@ -41,21 +41,21 @@ macro_rules! codes {
                 }
             }
 
-            /// How bad it is, as a rule.
+            /// Severity of findings of this kind, as a rule.
             pub fn severity(self) -> Severity {
                 match self {
                     $(Self::$variant => Severity::$severity,)*
                 }
             }
 
-            /// What causes it and what comes of it, a phrase.
+            /// Cause and consequence, a phrase.
             pub fn cause(self) -> &'static str {
                 match self {
                     $(Self::$variant => $cause,)*
                 }
             }
 
-            /// What to do, a sentence.
+            /// Advice on what to do, a sentence.
             pub fn fix(self) -> &'static str {
                 match self {
                     $(Self::$variant => $fix,)*

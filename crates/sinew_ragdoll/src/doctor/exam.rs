@@ -1,4 +1,4 @@
-//! What all examinations look at.
+//! Ragdoll with what follows from it, as all examinations look at it.
 
 use super::{Code, Finding, Patient};
 use crate::build::bones::{Anatomy, Bone, Bones};
@@ -24,7 +24,7 @@ pub(super) struct Exam<'a> {
     pub size: f32,
 }
 
-/// How far a joint is beyond what it leaves free, radians.
+/// Angles by which a joint is beyond what it leaves free, radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Beyond {
     /// Beyond its limits.
@@ -80,7 +80,7 @@ impl<'a> Exam<'a> {
         parent.inverse() * (turn * rotation(joint.child) * joint.frame_child.rotation)
     }
 
-    /// Where parent and child have the joint in the bind pose, character space.
+    /// Anchors of the joint on parent and child in the bind pose, character space.
     pub fn anchors(&self, joint: usize) -> [Vec3; 2] {
         anchors(self.def, &self.def.joints[joint])
     }
@@ -121,13 +121,13 @@ fn within_half_turns(kind: JointKind) -> JointKind {
     }
 }
 
-/// Where parent and child have a joint in the bind pose, character space.
+/// Anchors of a joint on parent and child in the bind pose, character space.
 pub(super) fn anchors(def: &RagdollDef, joint: &RagdollJointDef) -> [Vec3; 2] {
     let point = |body: usize, frame: Transform| def.bodies[body].character_from_body.point(frame.translation);
     [point(joint.parent, joint.frame_parent), point(joint.child, joint.frame_child)]
 }
 
-/// How far the joint rotation `frame_a⁻¹ frame_b` is beyond what the joint leaves free.
+/// Angles by which the joint rotation `frame_a⁻¹ frame_b` is beyond what the joint leaves free, radians.
 pub(super) fn beyond(kind: &JointKind, seen: Rotation) -> Beyond {
     let (swing, twist) = seen.swing_twist(Vec3::X);
     let swung = swing.to_scaled_axis().length();
@@ -146,12 +146,12 @@ pub(super) fn beyond(kind: &JointKind, seen: Rotation) -> Beyond {
     }
 }
 
-/// How far the swing alone is outside the cone, radians.
+/// Angle by which the swing alone is outside the cone, radians.
 pub(super) fn swing_excess(limit: &SwingTwistLimit, seen: Rotation) -> f32 {
     max(0.0, -limit.swing_state(seen).room)
 }
 
-/// How far the child of a joint can turn about an axis of its own joint frame from `bind`, the joint's rotation there,
+/// Angle by which the child of a joint can turn about an axis of its own joint frame from `bind`, the joint's rotation there,
 /// before it meets a limit: radians, at most π. A universal joint's twist is let be: it shows in a swing that goes round.
 pub fn limit_reach(kind: &JointKind, bind: Rotation, axis: Vec3) -> f32 {
     const STEP: f32 = 0.02;

@@ -18,13 +18,13 @@ pub(super) fn longest(shape: &Shape) -> f32 {
     max(size.x, max(size.y, size.z))
 }
 
-/// How deep body `a` overlaps body `b` with `a` elsewhere, metres; 0 if they do not.
+/// Depth by which body `a` overlaps body `b` with `a` elsewhere, metres; 0 if they do not overlap.
 pub(super) fn depth_at(exam: &Exam<'_>, (a, place): (usize, Transform), b: usize) -> f32 {
     let (one, other) = (&exam.def.bodies[a], &exam.def.bodies[b]);
     depth_of((&one.shape, &place), (&other.shape, &other.character_from_body))
 }
 
-/// How deep two bodies overlap in the bind pose, metres.
+/// Depth by which two bodies overlap in the bind pose, metres; 0 if they do not.
 pub(super) fn depth(exam: &Exam<'_>, a: usize, b: usize) -> f32 {
     depth_at(exam, (a, exam.def.bodies[a].character_from_body), b)
 }

@@ -24,7 +24,7 @@ const LOCKED: f32 = 0.008_8;
 /// A knee or elbow may go so far beyond straight, radians (20°).
 const BACKWARDS: f32 = 0.349;
 
-/// What is wrong with joints; `findings` has what is known of their bodies and gets more.
+/// Adds what is wrong with joints to `findings`, which has what is known of their bodies.
 pub(super) fn findings(exam: &Exam<'_>, findings: &mut Vec<Finding>) {
     let joints = 0..exam.def.joints.len();
     let checks: [fn(&Exam<'_>, usize) -> Option<Finding>; 4] = [frames, pivot, at_bind, missing];
@@ -46,7 +46,7 @@ pub(super) fn findings(exam: &Exam<'_>, findings: &mut Vec<Finding>) {
     findings.extend(joints.filter_map(|joint| too_stiff(exam, joint)));
 }
 
-/// Whether something is known to be wrong with the joint's frames or limits.
+/// True if something is known to be wrong with the joint's frames or limits.
 pub(super) fn is_marked(findings: &[Finding], joint: usize) -> bool {
     use Code::{
         AnchorsApart, BendsBothWays, IdentityFrames, LimitTooNarrow, LimitViolatedAtBind, LimitsAllAlike,
@@ -127,7 +127,7 @@ fn pivot(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     })
 }
 
-/// Where the rig has the head of a body's bone, character space.
+/// Head of a body's bone as the rig has it, character space; `None` where the rig is not at hand or has no such joint.
 pub(super) fn head_of_rig(exam: &Exam<'_>, body: usize) -> Option<Vec3> {
     let rig = exam.patient.reference.as_ref()?;
     let bone = &exam.def.bodies[body].bone;
@@ -155,7 +155,7 @@ fn width(range: Range) -> f32 {
     range.hi - range.lo
 }
 
-/// Whether some direction of a joint has no limit worth the name.
+/// True if some direction of a joint has no limit worth the name.
 pub(super) fn is_unlimited(kind: &JointKind) -> bool {
     match kind {
         JointKind::Ball { limit: None }
@@ -195,7 +195,7 @@ fn ranges(kind: &JointKind) -> Vec<(&'static str, Range)> {
     }
 }
 
-/// Whether a range is neither wide enough to move in nor locked.
+/// True if a range is neither wide enough to move in nor locked.
 pub(super) fn is_narrow(range: Range) -> bool {
     (LOCKED..NARROW).contains(&width(range))
 }
@@ -300,7 +300,8 @@ pub(super) fn straight_angle(exam: &Exam<'_>, index: usize) -> f32 {
     sinew_math::limits::wrap(now + turn)
 }
 
-/// How far a cone lets the bone bend to either side of straight about the axis where the smaller of the two is largest.
+/// Angles by which a cone lets the bone bend to either side of straight, about the axis where the smaller of the two is
+/// largest; radians.
 fn cone_both_ways(exam: &Exam<'_>, index: usize, limit: &SwingTwistLimit) -> (f32, f32) {
     let joint = &exam.def.joints[index];
     let [parent, child] = [joint.parent, joint.child].map(|body| exam.direction(body));

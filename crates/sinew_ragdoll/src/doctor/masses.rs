@@ -33,7 +33,7 @@ pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
     findings
 }
 
-/// Whether a world takes a body of this mass.
+/// True if a world takes a body of this mass.
 pub(super) fn is_positive(mass: &MassProperties) -> bool {
     mass.mass > 0.0
         && mass.mass.is_finite()

@@ -12,7 +12,7 @@ use sinew_physics::{JointKind, Shape, Softness};
 
 /// Room that the bind pose gets to a limit that it had passed, radians (2°).
 const ROOM: f32 = 0.034_907;
-/// What a joint may be beyond its limits without moving anything, radians (0.1°).
+/// Angle by which a joint may be beyond its limits without moving anything, radians (0.1°).
 const STRAIN: f32 = 0.001_745;
 
 /// Mends what a finding tells of; false if nothing could be done.
@@ -269,7 +269,7 @@ fn mirror_joint(exam: &Exam<'_>, def: &mut RagdollDef, a: usize, b: usize) {
     def.joints[wrong - 1] = if max(out.limit, out.locked) > 0.01 { at_bind(exam, joint) } else { joint };
 }
 
-/// How far the ends of two limits lie apart in all, radians; a lot for different kinds.
+/// Sum of the distances between the ends of two limits, radians; a lot for different kinds.
 fn span(a: &JointKind, b: &JointKind) -> f32 {
     let apart = |a: Range, b: Range| (a.lo - b.lo).abs() + (a.hi - b.hi).abs();
     match (a, b) {

@@ -1,4 +1,4 @@
-//! Whether left and right are mirror images of each other.
+//! Symmetry of left and right: they should be mirror images of each other.
 
 use super::exam::{Exam, beyond};
 use super::geometry::longest;
@@ -43,7 +43,7 @@ fn mirrored_axis(axis: Vec3) -> Vec3 {
     Vec3::new(axis.x, -axis.y, -axis.z)
 }
 
-/// How far the child of a joint can turn about `axis` (character axes) from the bind pose, radians.
+/// Angle by which the child of a joint can turn about `axis` (character axes) from the bind pose, radians.
 fn reach(exam: &Exam<'_>, joint: usize, axis: Vec3) -> f32 {
     let kind = &exam.def.joints[joint].kind;
     if let JointKind::Hinge { .. } = kind {

@@ -32,9 +32,9 @@ pub struct Patient {
     pub def: RagdollDef,
     /// Spring or motor of each joint, in the order of the joints; `None` for a limp one. May be shorter than the joints.
     pub springs: Vec<Option<Softness>>,
-    /// What a build from the patient's rig gives, if the rig is at hand: it knows what the definition leaves out.
+    /// Ragdoll that a build from the patient's rig gives, if the rig is at hand: it knows what the definition leaves out.
     pub reference: Option<RagdollDef>,
-    /// What is wrong with its skin ([`SkinQuality::flaws`](crate::SkinQuality::flaws)), where it was measured.
+    /// Flaws of its skin ([`SkinQuality::flaws`](crate::SkinQuality::flaws)), where it was measured.
     pub skin: Vec<Flaw>,
     /// Length of a substep, seconds. Default: that of a default world, 1/240.
     pub substep: f32,
@@ -54,17 +54,17 @@ impl Patient {
 pub struct Finding {
     /// Kind of trouble.
     pub code: Code,
-    /// How bad it is.
+    /// Severity of the trouble.
     pub severity: Severity,
     /// Indices of the bodies that it is about, the one to look at first.
     pub bodies: Vec<usize>,
     /// Names of their bones; of a body that is missing, its role.
     pub bones: Vec<String>,
-    /// What was measured, a sentence with both bodies' names.
+    /// Measured evidence, a sentence with both bodies' names.
     pub evidence: String,
-    /// What to do, a sentence.
+    /// Advice on what to do, a sentence.
     pub fix: String,
-    /// Whether [`cure`] did it; false from [`doctor`].
+    /// True if [`cure`] has mended it; false from [`doctor`].
     pub fixed: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What the ragdoll does when it is left alone: in its bind pose, at rest, without gravity.
+//! Motion of the ragdoll when it is left alone: in its bind pose, at rest, without gravity.
 
 use super::exam::Exam;
 use super::{Code, Finding};
@@ -8,12 +8,12 @@ use sinew_physics::{BodyDef, BodyId, JointDef, ShapeDef, Spring, World, WorldDef
 
 /// Half a second.
 const STEPS: u32 = 30;
-/// What is not worth telling: heights, with as much again as two tolerated overlaps (10 mm), and radians (6°).
+/// Bounds below which motion is not worth telling: heights, with as much again as two tolerated overlaps (10 mm), and radians (6°).
 const MOVED: f32 = 0.015;
 const SLOP: f32 = 2.0 * TOLERATED;
 const TURNED: f32 = 0.105;
 
-/// What moved by itself. Places tell more than speeds: a solver that adds no energy mends what is wrong by moving it.
+/// Motion of the bodies that nothing has caused. Places tell more than speeds: a solver that adds no energy mends what is wrong by moving it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Unrest {
     /// Farthest way of a body, metres, and whose.
@@ -22,7 +22,7 @@ pub(super) struct Unrest {
     turned: (f32, usize),
     /// Most kinetic energy, J.
     energy: f32,
-    /// Whether a state stopped being finite.
+    /// True if a state stopped being finite.
     is_lost: bool,
 }
 
@@ -78,7 +78,7 @@ impl Unrest {
         seen
     }
 
-    /// What is worth telling, a phrase.
+    /// Phrase about what is worth telling; `None` where nothing is.
     pub fn is_notable(&self, exam: &Exam<'_>) -> Option<String> {
         if self.is_lost {
             return Some("left alone without gravity it is lost within half a second".to_owned());

@@ -20,7 +20,7 @@ const LONG_CREATURE: f32 = 1.5;
 /// A pair fights a limit that overlaps in more than this share of the joint's range.
 const FIGHT: f32 = 0.6;
 
-/// What is wrong with shapes and pairs of them.
+/// Findings about shapes and pairs of them.
 pub(super) fn findings(exam: &Exam<'_>) -> Vec<Finding> {
     let mut findings: Vec<Finding> =
         (0..exam.def.bodies.len()).filter_map(|body| out_of_size(exam, body)).collect();

@@ -82,8 +82,8 @@ impl Drives {
         }
     }
 
-    /// What the pin of a body really gave in the last step, as a mean over its time: N at its centre of mass and N·m about
-    /// it, world axes. Nothing where there is none.
+    /// Reaction that the pin of a body really gave in the last step, as a mean over its time: N at its centre of mass and N·m
+    /// about it, world axes. Zero where there is no pin.
     pub fn pin_force(&self, world: &World, body: usize) -> Reaction {
         let pin = self.drives[body].pin.filter(|&pin| world.contains_joint(pin));
         pin.map_or(Reaction::default(), |pin| world.reaction(pin))
@@ -199,7 +199,7 @@ impl Lag {
         Self { seconds: world.def().dt() * (substeps + 1.0) / (2.0 * substeps) }
     }
 
-    /// Where what turns at `rate` (axes that stand still) and will be at `end` was.
+    /// Rotation, by the lag before `end`, of what turns at `rate` (rad/s, axes that stand still).
     fn back(&self, end: Rotation, rate: Vec3) -> Rotation {
         (Rotation::from_scaled_axis(rate * -self.seconds) * end).normalize()
     }

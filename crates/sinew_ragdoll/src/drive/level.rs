@@ -31,12 +31,12 @@ impl Spring {
 
 /// Hz.
 const LEAST: f32 = 0.02;
-/// What holds a body that is on its way to being keyed.
+/// Pin that holds a body on its way to being keyed.
 const KEYING: Pin = Pin { hertz: 30.0, damping_ratio: 1.0, max_force: 1e5, max_torque: 2e4 };
 /// Half-lives after which such a body is keyed.
 const KEYED_AFTER: f32 = 5.0;
 
-/// What drives a body at present.
+/// Strength of what drives a body at present: the springs of its muscle and its pin, and the bounds on them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Level {
     pub muscle: Spring,

@@ -1,4 +1,4 @@
-//! What moves the bodies of a ragdoll beside gravity and contacts: nothing, muscles, pins to a pose in the world, or the
+//! Drives of a ragdoll, which move its bodies beside gravity and contacts: nothing, muscles, pins to a pose in the world, or the
 //! animation itself. Body by body, blended over time, as strong as a person is.
 //!
 //! | mode | what acts | what it can do |
@@ -69,7 +69,7 @@ impl Pin {
     pub const FIRM: Self = Self { hertz: 20.0, damping_ratio: 1.0, max_force: 1e4, max_torque: 2e3 };
 }
 
-/// What moves a body.
+/// Mode of a drive: what moves a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum DriveMode {
     /// Joint friction only. Default.
@@ -83,7 +83,7 @@ pub enum DriveMode {
     Keyed,
 }
 
-/// How a body is driven, and how it comes to be.
+/// Drive of a body, with its state on the way to the mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Drive {
     mode: DriveMode,
@@ -108,7 +108,7 @@ pub struct Drives {
     drives: Vec<Drive>,
     /// Per body: most torque of the joint to its parent, N·m.
     torques: Vec<f32>,
-    /// What pins hang on.
+    /// Body that pins hang on.
     ground: Option<BodyId>,
     /// Seconds in which the weakness after a hit falls to `1/e`. Default 0.45.
     pub recovery: f32,
@@ -118,7 +118,7 @@ pub struct Drives {
 const NUMBING: f32 = 0.2;
 /// Share of the weakness that one joint hands on to the next.
 const FALLOFF: f32 = 0.5;
-/// What is below this share is nothing.
+/// Threshold below which a share, or a pin's force, counts as nothing.
 const NOTHING: f32 = 1e-3;
 
 impl Drives {
@@ -141,7 +141,7 @@ impl Drives {
         Self { drives: vec![Drive::default(); def.bodies.len()], torques, ground: None, recovery: 0.45 }
     }
 
-    /// How a body is to be driven.
+    /// Mode in which a body is to be driven.
     pub fn mode(&self, body: usize) -> DriveMode {
         self.drives[body].mode
     }
@@ -223,7 +223,7 @@ fn parent(def: &RagdollDef, body: usize) -> Option<usize> {
     body.checked_sub(1).map(|joint| def.joints[joint].parent)
 }
 
-/// Whether a body is `ancestor` or below it.
+/// True if a body is `ancestor` or below it.
 fn hangs_on(def: &RagdollDef, body: usize, ancestor: usize) -> bool {
     core::iter::successors(Some(body), |&at| parent(def, at)).any(|at| at == ancestor)
 }

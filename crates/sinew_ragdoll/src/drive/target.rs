@@ -1,4 +1,4 @@
-//! What a joint's motor is to aim at so that two bodies come to lie as in a pose.
+//! Target of a joint's motor, so that two bodies come to lie as in a pose.
 
 use sinew_math::limits::{hinge_angle, wrap};
 use sinew_math::{Range, Rotation, SwingTwistLimit, Transform, Vec3, clamp, max, min};

@@ -1,4 +1,4 @@
-//! How strong the joints of a body are.
+//! Largest torques of the muscles about a body's joints.
 
 use super::{hangs_on, parent};
 use crate::def::RagdollDef;

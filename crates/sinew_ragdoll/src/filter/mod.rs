@@ -1,4 +1,4 @@
-//! Which bodies of a ragdoll collide with each other.
+//! Filter of the pairs of a ragdoll's bodies that collide with each other.
 //!
 //! Bodies that overlap where they start would be blown apart, and such as overlap wherever their joints turn would fight
 //! them for ever, so these pairs must be shrunk or left out. Shrinking is preferred where the contact is what makes a
@@ -39,24 +39,24 @@ const A_FEW: f32 = 0.02;
 pub struct Overlap {
     /// Indices of the bodies, the smaller first.
     pub pair: (usize, usize),
-    /// Where they do, before anything was done.
+    /// Poses in which they overlap, before anything was done.
     pub seen: Seen,
-    /// What was done.
+    /// Remedy that was applied.
     pub remedy: Remedy,
 }
 
-/// Where two bodies overlap.
+/// Poses in which two bodies overlap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Seen {
     /// Depth in the bind pose, metres; 0 if they do not overlap there.
     pub bind: f32,
     /// Share of the poses within the limits in which they overlap by more than [`TOLERATED`].
     pub limits: f32,
-    /// Likewise of the clips' poses; `None` where there are none.
+    /// Share of the clips' poses in which they overlap by more than [`TOLERATED`]; `None` where there are none.
     pub clips: Option<f32>,
 }
 
-/// How an overlap was dealt with.
+/// Remedy for an overlap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
     /// It is less than the solver notices, or a meeting of limbs in a few poses.
@@ -107,7 +107,7 @@ pub fn filter_pairs(bones: &Bones, fits: &mut [Fit], poses: &Poses) -> FilterRep
     report
 }
 
-/// Whether a pair is worth a look at every pose: most are apart in the first few within the limits, and in all of the
+/// True if a pair is worth a look at every pose: most are apart in the first few within the limits, and in all of the
 /// clips.
 fn may_need_room(fits: &[Fit], poses: &Poses, (a, b): (usize, usize)) -> bool {
     let meeting = Meeting::of(fits, (a, b));
@@ -134,7 +134,7 @@ impl<'a> Meeting<'a> {
         Self { pair, shapes: [&a.shape, &b.shape], reach: reach(a) + reach(b) }
     }
 
-    /// Whether they overlap by more than is tolerated.
+    /// True if they overlap by more than is tolerated.
     fn is_in(&self, pose: &[Transform]) -> bool {
         let (at, there) = (&pose[self.pair.0], &pose[self.pair.1]);
         let apart = (at.translation - there.translation).length_squared() > self.reach * self.reach;
@@ -142,7 +142,7 @@ impl<'a> Meeting<'a> {
     }
 }
 
-/// Where a pair overlaps.
+/// Looks for overlaps of a pair in all poses.
 fn look(fits: &[Fit], poses: &Poses, (a, b): (usize, usize)) -> Seen {
     let meeting = Meeting::of(fits, (a, b));
     let share = |poses: &[Vec<Transform>]| {
@@ -162,19 +162,19 @@ fn reach(fit: &Fit) -> f32 {
     max(bounds.min.length(), bounds.max.length())
 }
 
-/// Whether a pair overlaps where it should not.
+/// True if a pair overlaps where it should not.
 fn needs_more_room(bones: &Bones, seen: &Seen, (a, b): (usize, usize)) -> bool {
     seen.bind > TOLERATED || seen.clips.unwrap_or(0.0) > A_FEW || is_never_apart(bones, seen, (a, b))
 }
 
-/// Whether a pair overlaps in so many poses that it cannot collide.
+/// True if a pair overlaps in so many poses that it cannot collide.
 fn is_never_apart(bones: &Bones, seen: &Seen, (a, b): (usize, usize)) -> bool {
     let limb = |bone: usize| bones.list[bone].part.is_limb();
     let most = if limb(a) || limb(b) { MOSTLY } else { A_FEW };
     seen.limits >= ALWAYS || seen.clips.unwrap_or(0.0) > most
 }
 
-/// What was done on one side is done on the other, so that a slight asymmetry of the mesh makes no limping ragdoll.
+/// Repeats on one side what was done on the other, so that a slight asymmetry of the mesh makes no limping ragdoll.
 fn mirror_remedies(bones: &Bones, fits: &mut [Fit], poses: &Poses, report: &mut FilterReport) {
     for body in 0..fits.len() {
         let Some(twin) = bones.twin(body) else { continue };
@@ -236,7 +236,7 @@ fn remedy(
     if seen.limits < SELDOM { Remedy::OnlyBound } else { Remedy::Disabled }
 }
 
-/// Whether two bodies with one between them touch around the very joint that hangs the later one (an upper arm and the
+/// True if two bodies with one between them touch around the very joint that hangs the later one (an upper arm and the
 /// chest beside the shoulder): whatever the pose, they then overlap there.
 fn meets_at_pivot(bones: &Bones, fits: &[Fit], a: usize, b: usize) -> bool {
     let pivot = bones.list[b].head;
@@ -281,12 +281,12 @@ fn shrink_apart(
     }
 }
 
-/// How deep two fitted shapes overlap, metres; 0 if they do not.
+/// Depth by which two fitted shapes overlap, metres; 0 if they do not.
 pub fn depth(a: &Fit, b: &Fit) -> f32 {
     depth_of((&a.shape, &a.character_from_body), (&b.shape, &b.character_from_body))
 }
 
-/// How deep two placed shapes overlap, metres; 0 if they do not.
+/// Depth by which two placed shapes overlap, metres; 0 if they do not.
 pub(crate) fn depth_of((a, at): (&Shape, &Transform), (b, there): (&Shape, &Transform)) -> f32 {
     let mut manifold = Manifold::default();
     collide(a, at, b, there, 0.0, &mut manifold);

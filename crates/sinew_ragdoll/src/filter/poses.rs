@@ -19,11 +19,11 @@ const SEED: u64 = 0x00F1_17E4;
 pub struct Poses {
     /// Joints turned at random within their limits, the first body in its bind pose.
     pub within_limits: Vec<Vec<Transform>>,
-    /// Of the character's clips.
+    /// Poses of the character's clips.
     pub of_clips: Vec<Vec<Transform>>,
 }
 
-/// Which frames are looked at.
+/// Choice of the frames that are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frames {
     /// Every one.

@@ -31,15 +31,15 @@ const PAST_JOINT: f32 = 0.125;
 pub(crate) const BURDENED: f32 = 1.6;
 /// Twins whose volumes differ by more than this factor get the shape of the one that fits better.
 const UNLIKE: f32 = 1.3;
-/// What a shape's error counts for in the choice between kinds, if it is not of the kind that suits the part: another must be
-/// clearly nearer to the skin.
+/// Factor on a shape's error in the choice between kinds, if it is not of the kind that suits the part: it must be clearly nearer
+/// to the skin.
 const UNUSUAL: f32 = 1.0 / 0.6;
-/// Likewise of a tapered capsule for a limb, which is as easy to live with.
+/// Factor on the error of a tapered capsule for a limb, which is as easy to live with.
 const TAPERED: f32 = 1.0 / 0.9;
-/// Likewise of a hull: it costs several times a box's collisions.
+/// Factor on the error of a hull: it costs several times a box's collisions.
 const INTRICATE: f32 = 3.0;
 
-/// Which shapes a ragdoll is made of.
+/// Choice of the shapes that a ragdoll is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShapeChoice {
     /// Boxes only.
@@ -62,7 +62,7 @@ pub struct Fit {
     pub error: f32,
     /// m² of that skin.
     pub area: f32,
-    /// Which skin it was fitted to.
+    /// Selection of the skin that it was fitted to.
     pub selection: Selection,
 }
 
@@ -141,7 +141,7 @@ fn fit_bone(bones: &Bones, bone: usize, shares: &[Share], choice: ShapeChoice) -
     }
 }
 
-/// Of all kinds, the shape whose error, weighed by how well its kind suits the part, is least.
+/// Shape, of all kinds, with the least error, weighed by how well its kind suits the part.
 fn nearest(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     let is_square = prefers_box(bones.list[bone].part) || bones.list[bone].is_prop;
     let [flat, round] = if is_square { [1.0, UNUSUAL] } else { [UNUSUAL, 1.0] };

@@ -8,16 +8,16 @@ const SAMPLES: f32 = 400.0;
 /// A selection with less than this share of the area that the bone moves, weight by weight, is not all of its flesh.
 const LEAST_AREA: f32 = 0.4;
 
-/// Which triangles of the skin were taken for a bone.
+/// Selection of the triangles of the skin that were taken for a bone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Selection {
-    /// Those on which the bone's mean weight is at least this.
+    /// Triangles on which the bone's mean weight is at least this.
     Weight(f32),
-    /// Those on which no other bone has more weight.
+    /// Triangles on which no other bone has more weight.
     Most,
     /// None: the bone moves no skin worth the name.
     Nothing,
-    /// Those of the same bone on the other side, which is free of what this one carries.
+    /// Triangles of the same bone on the other side, which is free of what this one carries.
     Twin,
 }
 
@@ -41,11 +41,11 @@ pub struct Patch {
     pub covariance: Sym3,
     /// m².
     pub area: f32,
-    /// How its triangles were chosen.
+    /// Selection by which its triangles were chosen.
     pub selection: Selection,
 }
 
-/// Whether a patch is made even by adding its mirror image.
+/// Symmetry of a patch: as it is, or made even by adding its mirror image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Symmetry {
     /// As it is.
@@ -83,7 +83,7 @@ impl Patch {
         best
     }
 
-    /// Whether the patch extends in three directions: only then do its axes mean anything.
+    /// True if the patch extends in three directions: only then do its axes mean anything.
     fn is_solid(&self) -> bool {
         let (value, _) = self.covariance.eigen();
         value.z > 1e-4 * value.x

@@ -15,7 +15,7 @@ const NEAR_END: [f32; 2] = [0.1, 0.4];
 /// The radii of a tapered capsule differ by at most this share of the distance of their middles: a cone of 20°.
 const STEEPEST: f32 = 0.35;
 
-/// Of the axes that come into question, the capsule nearest to the skin.
+/// Capsule nearest to the skin, of all axes that come into question.
 pub(super) fn fit_capsule(bones: &Bones, bone: usize, patch: &Patch) -> Fit {
     let axis = long_axis(bones, bone, patch);
     let along = capsule_along(bones, bone, patch, axis);

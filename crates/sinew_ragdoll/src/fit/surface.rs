@@ -1,4 +1,4 @@
-//! Which part of the skin belongs to which bone.
+//! Shares of the bones in the skin: the part of it that belongs to each.
 
 use crate::build::bones::Bones;
 use sinew_anim::skinning::skin_vertices;
@@ -19,11 +19,11 @@ pub struct Share {
     pub corners: [Vec3; 3],
     /// Mean weight of the bone (with what is merged into it) on the corners, 0..=1.
     pub weight: f32,
-    /// Whether no other bone has more weight here.
+    /// True if no other bone has more weight here.
     pub most: bool,
 }
 
-/// Which bone, if any, carries each joint of the rig.
+/// Index of the bone, if any, that carries each joint of the rig.
 ///
 /// A joint that is neither kept nor merged goes with its nearest ancestor that is.
 pub fn owners(rig: &Rig, bones: &Bones) -> Vec<Option<usize>> {
@@ -55,7 +55,7 @@ pub(crate) fn carried<'a>(
     owner
 }
 
-/// Where the bind pose is, and how to bring it to character space.
+/// Bind pose of a rig, and the way from it to character space.
 #[derive(Clone, Copy, Debug)]
 pub struct BindPose<'a> {
     /// Joint to model space, per joint of the rig, file units.

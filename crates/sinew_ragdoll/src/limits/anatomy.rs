@@ -1,4 +1,4 @@
-//! How each bone of a bind pose is turned from the anatomical pose.
+//! Rotation of each bone of a bind pose from the anatomical pose.
 //!
 //! Ranges of motion are measured from a person who stands with arms hanging. Rigs are bound in a T, an A or something
 //! else, and their joints' own axes follow no rule. What can be relied on is where the bones lie: each bone is taken

@@ -1,4 +1,4 @@
-//! How much a limp joint resists.
+//! Friction with which limp joints resist.
 
 use super::JointPlan;
 use crate::build::bones::{Anatomy, Bones};

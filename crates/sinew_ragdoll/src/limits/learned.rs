@@ -88,7 +88,7 @@ fn shows_enough(limit: &LearnedLimit) -> bool {
     limit.hinge.is_some() || max(y, z) >= LEAST || limit.twist.hi - limit.twist.lo >= 2.0 * LEAST
 }
 
-/// What a hinge of a human does, with a margin as far as its anatomy goes.
+/// Range of a human's hinge as its motion shows it, with a margin as far as its anatomy goes.
 fn hinge_range(anatomical: Range, turns: &[Rotation], bind: f32) -> Option<Range> {
     let middle = anatomical.center();
     let angle = |&turn: &Rotation| middle + wrap(hinge_angle(turn) - middle);
@@ -168,7 +168,7 @@ impl Cone<'_> {
         widest.into_iter().find(|limit| self.farthest(learned, limit) <= shown).unwrap_or(bare)
     }
 
-    /// How far a rotation is beyond the anatomical limits, radians.
+    /// Angle by which a rotation is beyond the anatomical limits, radians.
     fn beyond(&self, turn: Rotation) -> f32 {
         match self.twisting {
             Twist::Free => self.anatomical.overshoot(turn),
@@ -192,7 +192,7 @@ impl Cone<'_> {
     }
 }
 
-/// What was learned, with margins: `factor` on the swing, and as much of the twist's margin as there is of the swing's.
+/// Cone that was learned, with margins: `factor` on the swing, and as much of the twist's margin as there is of the swing's.
 fn cone(learned: &LearnedLimit, factor: f32) -> SwingTwistLimit {
     let [y, z] = learned.swing.map(|half| Range::symmetric(min(max(half * factor, LEAST), WIDEST)));
     let twist = wider(learned.twist, TWIST_MARGIN * (factor - 1.0) / (SWING_FACTORS[0] - 1.0));

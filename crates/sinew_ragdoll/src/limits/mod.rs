@@ -29,13 +29,13 @@ const BELIEVED: f32 = 0.642_8;
 /// No swing half-angle is widened beyond this, radians (170°).
 const WIDEST: f32 = 2.967;
 
-/// Where limits come from.
+/// Source of joint limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LimitSource {
     /// The table of ranges of motion.
     #[default]
     Anatomy,
-    /// What the character does in its clips, within the table; of joints that the clips show too little of, the table.
+    /// Motion of the character in its clips, within the table; of joints that the clips show too little of, the table.
     Clips,
 }
 
@@ -44,7 +44,7 @@ pub enum LimitSource {
 pub struct JointPlan {
     /// The joint, in the frames of the two bodies.
     pub def: RagdollJointDef,
-    /// How far the bind pose was beyond the table's limits, radians; they were widened by it. 0 for most.
+    /// Angle by which the bind pose was beyond the table's limits, radians; they were widened by it. 0 for most.
     pub widened: f32,
 }
 
@@ -79,7 +79,7 @@ pub fn joints(bones: &Bones, fits: &[Fit], total_mass: f32) -> Vec<JointPlan> {
         .collect()
 }
 
-/// What is seen of a joint in the bind pose, in character axes: first the parent, then the child.
+/// Joint as it is seen in the bind pose, in character axes: first the parent, then the child.
 struct Seen {
     side: Side,
     /// From the anatomical pose.
@@ -177,7 +177,7 @@ impl Seen {
     }
 }
 
-/// Whether the twist counts.
+/// Twist of a joint: free within its limit, or locked.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Twist {
     Free,

@@ -4,7 +4,7 @@
 use crate::build::bones::{Anatomy, Bones};
 use crate::build::part::{Part, Side};
 
-/// How a joint may move from the anatomical pose (standing, arms hanging, palms inward, feet level).
+/// Range of motion of a joint, from the anatomical pose (standing, arms hanging, palms inward, feet level).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
     /// Swing within an elliptic cone, and twist. Angles about the [`Axes`] of the joint.
@@ -26,7 +26,7 @@ pub struct Cone {
     pub twist: [f32; 2],
 }
 
-/// Which way a joint's axes point in the anatomical pose, on the left side: x along the child bone, y the axis about
+/// Directions of a joint's axes in the anatomical pose, on the left side: x along the child bone, y the axis about
 /// which it flexes, z = x × y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axes {
@@ -42,12 +42,12 @@ pub enum Axes {
     Bind,
 }
 
-/// What the table says of one joint.
+/// Entry of the table for one joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
     /// Axes the motion is measured about.
     pub axes: Axes,
-    /// How far it goes.
+    /// Range of motion.
     pub motion: Motion,
     /// Largest torque of the muscles about it for 75 kg at 1.75 m, N·m (DeepMimic and dm_control humanoids).
     pub torque: f32,

@@ -1,4 +1,4 @@
-//! Where root motion lives: the joints just below the nodes that stay in their rest pose.
+//! Joints that carry root motion: those just below the nodes that stay in their rest pose.
 
 use super::{Mapping, with_scale_of};
 use crate::def::RagdollDef;

@@ -17,7 +17,7 @@ use heads::Head;
 use sinew_anim::{JointIdx, LocalTransform, Rig};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
-/// How a joint with a body follows it.
+/// Way in which a joint with a body follows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Follow {
     /// It turns with the body; its place is given by its parent, because joints do not stretch.
@@ -26,7 +26,7 @@ enum Follow {
     Move,
 }
 
-/// What a rig joint takes from a body.
+/// Body that a rig joint follows, and what it takes from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Driven {
     body: usize,
@@ -100,7 +100,7 @@ impl Mapping {
         &self.free
     }
 
-    /// Whether the joint is above the pelvis: in a flat pose it is at rest.
+    /// True if the joint is above the pelvis: in a flat pose it is at rest.
     pub fn carries(&self, joint: JointIdx) -> bool {
         self.carriers.binary_search(&joint).is_ok()
     }
@@ -156,7 +156,7 @@ fn with_scale_of(like: &LocalTransform, local_affine: &Affine) -> LocalTransform
     }
 }
 
-/// What each joint takes from which body.
+/// Body that each joint of the rig follows, and what it takes from it; `None` for a joint without one.
 fn driven(rig: &Rig, def: &RagdollDef) -> Vec<Option<Driven>> {
     let mut driven: Vec<Option<Driven>> = vec![None; rig.joints.len()];
     let body_of = |joint: JointIdx| def.bodies.iter().position(|body| body.joint == joint);

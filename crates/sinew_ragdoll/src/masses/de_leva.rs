@@ -56,12 +56,12 @@ pub struct Table {
     pub foot: Segment,
 }
 
-/// Of the head and neck, the neck's share: 1.2 % of the body's mass. The table has them as one; the neck is cut off as
-/// a cylinder 11 cm wide and 10 cm high.
+/// Share of the neck in head and neck: 1.2 % of the body's mass. The table has them as one; the neck is cut off as a cylinder
+/// 11 cm wide and 10 cm high.
 pub const NECK_OF_HEAD: f32 = 0.17;
-/// Of the upper trunk, the share of each shoulder girdle where it is a body of its own.
+/// Share of each shoulder girdle in the upper trunk, where it is a body of its own.
 pub const GIRDLE_OF_UPPER_TRUNK: f32 = 0.10;
-/// Of the foot, the share of the toes where they are a body of their own.
+/// Share of the toes in the foot, where they are a body of their own.
 pub const TOES_OF_FOOT: f32 = 0.2;
 
 const MALE: Table = Table {

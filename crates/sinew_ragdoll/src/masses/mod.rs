@@ -27,7 +27,7 @@ const LEAST_SHARE: f32 = 0.001;
 /// No body of the trunk takes less than this share of the trunk's length.
 const LEAST_TRUNK: f32 = 0.1;
 
-/// What to weigh a character by.
+/// Options by which a character is weighed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MassOptions {
     /// Mass of the whole, kg; `None`: [`default_mass`].

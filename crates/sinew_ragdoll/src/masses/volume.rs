@@ -7,7 +7,7 @@ use sinew_math::{Vec3, clamp, max, max3, min, min3};
 const LINES: usize = 64;
 /// Least share of the lines that meet the skin on which it closes.
 const CLOSED: f32 = 0.6;
-/// Where in their cells the lines lie: not in the middle, where symmetric meshes have their edges.
+/// Position of the lines in their cells, as shares of a cell: not in the middle, where symmetric meshes have their edges.
 const OFF_MIDDLE: [f32; 2] = [0.513_7, 0.487_1];
 
 /// Volume that triangles enclose, m³: what several of them enclose counts once, and so does what is turned inside out. Lines go

@@ -24,15 +24,15 @@ pub struct DropReport {
     pub drops: Vec<Quality>,
     /// The wall hit.
     pub wall: Quality,
-    /// How the bodies lay in each drop.
+    /// Poses of the bodies in each drop.
     pub falls: Vec<Fallen>,
-    /// What to make of it.
+    /// Verdict on the ragdoll.
     pub verdict: Verdict,
     /// Why, a sentence each.
     pub reasons: Vec<String>,
 }
 
-/// Where the bodies of a ragdoll were in a drop onto the plane y = 0.
+/// Course of a drop onto the plane y = 0: poses of the bodies, and time in the air.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fallen {
     /// World poses of the bodies, four times a second from the release on, and at last as they lay.

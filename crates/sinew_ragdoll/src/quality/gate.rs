@@ -31,7 +31,7 @@ pub struct GateReport {
     pub worst_reasons: Vec<String>,
     /// Numbers of the falls that are bad, ascending.
     pub bad: Vec<u64>,
-    /// What must hold in every fall and did not, by fall.
+    /// Misses of what must hold in every fall, by fall.
     pub misses: Vec<Miss>,
     lowest: Verdict,
 }
@@ -41,13 +41,13 @@ pub struct GateReport {
 pub struct Miss {
     /// Number of the fall: [`random_fall`] shows it alone.
     pub spawn: u64,
-    /// What does not hold.
+    /// Bar that is missed.
     pub bar: Bar,
     /// The figure.
     pub value: f32,
 }
 
-/// What must hold in every random fall (specification, section 4).
+/// Bar that every random fall must pass (specification, section 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bar {
     /// No body has a state that is not finite.
@@ -82,7 +82,7 @@ impl Bar {
     }
 }
 
-/// Where a figure is.
+/// Side of a bar on which a figure is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     Inside,
@@ -90,7 +90,7 @@ enum Side {
 }
 
 impl Default for GateReport {
-    /// Of no fall at all.
+    /// Report of no fall at all.
     fn default() -> Self {
         Self {
             spawns: 0,
@@ -272,7 +272,7 @@ fn turned_joints(def: &RagdollDef, random: &mut Random, share: f32) -> Vec<Trans
     pose
 }
 
-/// Whether two bodies that are meant to collide overlap.
+/// True if two bodies that are meant to collide overlap.
 fn overlaps(def: &RagdollDef, pose: &[Transform]) -> bool {
     let states: Vec<_> =
         pose.iter().map(|&world_from_body| BodyState { world_from_body, ..BodyState::default() }).collect();

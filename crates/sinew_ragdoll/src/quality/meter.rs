@@ -21,7 +21,7 @@ pub struct QualityMeter {
     overshoots: Vec<f32>,
     calm_steps: u32,
     calm_since: Option<f32>,
-    /// Of the bodies in the world in the last step, metres.
+    /// Deepest penetration of the bodies in the world in the last step, metres.
     penetration: f32,
     /// Nothing has moved since they slept then.
     asleep: bool,

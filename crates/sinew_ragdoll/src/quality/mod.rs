@@ -1,4 +1,4 @@
-//! How good a fall was: the figures of the contract, from queries to the world alone.
+//! Quality of a fall: the figures of the contract, from queries to the world alone.
 
 mod drop_test;
 mod gate;
@@ -30,7 +30,7 @@ pub struct Quality {
     pub limit_overshoot_p99_deg: f32,
     /// Deepest overlap with a static body while limp, metres.
     pub penetration_max_m: f32,
-    /// Likewise, once settled.
+    /// Deepest overlap with a static body once settled, metres.
     pub penetration_rest_max_m: f32,
     /// Deepest overlap of two bodies of the character that are meant to collide and that no joint connects, metres.
     pub nonadjacent_overlap_max_m: f32,

@@ -3,7 +3,7 @@
 use super::Quality;
 use super::drop_test::worse;
 
-/// Whether a ragdoll is fit for use.
+/// Verdict on whether a ragdoll is fit for use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// Some figure is beyond use.
@@ -80,7 +80,7 @@ pub fn judge_bake(quality: &Quality) -> (Verdict, Vec<String>) {
     ])
 }
 
-/// What must hold of a ragdoll's joints wherever it is.
+/// Limits that must hold of a ragdoll's joints wherever it is.
 fn of_joints(q: &Quality) -> [Limit; 5] {
     [
         Limit::of("bodies with a state that is not finite", q.nan as f32, 0.0, 0.0),

@@ -196,8 +196,8 @@ fn kind(kind: JointKind, wish: &BoneSettings) -> JointKind {
     }
 }
 
-/// What is said later wins. With `mirror` ranges are those of the left, seen from the right: swing about z and twist
-/// have the other sign there.
+/// Merges two settings of a bone: what is said later wins. With `mirror` ranges are those of the left, seen from the right:
+/// swing about z and twist have the other sign there.
 fn merged(old: BoneSettings, new: &BoneSettings, mirror: bool) -> BoneSettings {
     let turned = |range: Range| if mirror { Range::new(-range.hi, -range.lo) } else { range };
     // A hinge bends the same way on both sides.

@@ -80,7 +80,7 @@ fn kept_named(rig: &Rig, analysis: &RigAnalysis, name: &str) -> Vec<usize> {
     (0..analysis.kept.len()).filter(|&index| is(&analysis.kept[index])).collect()
 }
 
-/// Whether a setting's name means a bone of this role and name: `upperArm` means both sides.
+/// True if a setting's name means a bone of this role and name: `upperArm` means both sides.
 pub(super) fn named(name: &str, role: &str, bone: &str) -> bool {
     let without_side = ["left", "right"].iter().find_map(|side| role.strip_prefix(side));
     let both = without_side.is_some_and(|part| {

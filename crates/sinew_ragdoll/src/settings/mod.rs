@@ -1,4 +1,4 @@
-//! What a user wants otherwise than the build does it, kept beside the rig, so that it survives when the rig is exported
+//! Settings: what a user wants otherwise than the build does it, kept beside the rig, so that they survive when the rig is exported
 //! anew: by role or by bone, never by index.
 
 mod apply;
@@ -17,7 +17,7 @@ use sinew_anim::roles::{RigAnalysis, Role};
 use sinew_anim::{Rig, Take};
 use sinew_math::{Range, Vec3};
 
-/// What is wanted otherwise. The default changes nothing.
+/// Changes that are wanted to the build. The default changes nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     /// Kind of all shapes; `None`: that of the options.
@@ -26,7 +26,7 @@ pub struct Settings {
     pub mass: Option<f32>,
     /// Whose distribution of mass; `None`: that of the options.
     pub sex: Option<Sex>,
-    /// Where joint limits come from; `None`: what the options say.
+    /// Source of joint limits; `None`: what the options say.
     pub limits: Option<LimitSource>,
     /// Length of the file's unit.
     pub unit: Option<Unit>,
@@ -43,7 +43,7 @@ pub struct Settings {
     pub enable: Vec<[String; 2]>,
 }
 
-/// How long the file's unit is.
+/// Length of the file's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Unit {
     /// Metres.
@@ -52,12 +52,12 @@ pub enum Unit {
     Height(f32),
 }
 
-/// What is wanted otherwise of one bone.
+/// Changes that are wanted to the build of one bone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BoneSettings {
     /// Part of the body that it is. Only for a bone by the name of its joint, for roles are what this changes.
     pub role: Option<Role>,
-    /// Whether it gets a body.
+    /// Wish for a body of its own, or for none; `None`: as the build decides.
     pub body: Option<BodyWish>,
     /// Kind of its shape.
     pub shape: Option<ShapeWish>,
@@ -77,7 +77,7 @@ pub struct BoneSettings {
     pub friction_torque: Option<f32>,
 }
 
-/// Whether a bone gets a body.
+/// Wish for a body of a bone, or for none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodyWish {
     /// It gets one, though the build would merge it into another.
@@ -119,7 +119,7 @@ pub enum SettingsError {
     /// A setting that this rig does not allow.
     #[error("{what}")]
     Setting {
-        /// What is wrong, one line.
+        /// Description of what is wrong, one line.
         what: String,
         /// The key that says it, such as `bones.leftHand`.
         place: String,

@@ -19,10 +19,10 @@ const STRETCH_OF_CLIPS: [f32; 2] = [1.5, 3.0];
 const ASYMMETRY: f32 = 0.02;
 /// Largest difference of the drawn and the bound height, as a share of the size.
 const HEIGHT: f32 = 0.02;
-/// How deep in the floor the lowest drawn point may lie, as a share of the size: shapes lie inside the skin, so that noses, hair
+/// Largest depth of the lowest drawn point in the floor, as a share of the size: shapes lie inside the skin, so that noses, hair
 /// and fingers sink in.
 const SUNK: f32 = 0.06;
-/// How high above the floor it may be: there is no reason but a shape outside the skin.
+/// Largest height of that point above the floor, as a share of the size: there is no reason but a shape outside the skin.
 const RAISED: f32 = 0.02;
 /// Neither counts below this, metres.
 const LEAST_OFF: f32 = 0.01;
@@ -51,9 +51,9 @@ pub enum FlawKind {
 /// Something that is wrong with the skin of a ragdoll.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flaw {
-    /// What it is.
+    /// Kind of the flaw.
     pub kind: FlawKind,
-    /// What was measured against which bar, a sentence.
+    /// Measured figure and the bar that it misses, a sentence.
     pub evidence: String,
     /// Option or setting that helps, with the bones it is about.
     pub remedy: String,

@@ -1,4 +1,4 @@
-//! How well the drawn skin follows the bodies: what a person sees, where [`crate::quality`] measures what is computed.
+//! Quality of the drawn skin as it follows the bodies: what a person sees, where [`crate::quality`] measures what is computed.
 //!
 //! A ragdoll may rest quietly and still look broken: a limb without a body stays behind and tears the mesh, a hat sinks into the
 //! floor, a figure that was scaled twice floats. So the skin is drawn as a viewer would draw it, in the poses of the eight
@@ -30,7 +30,7 @@ pub struct SkinQuality {
     /// Share of the skin's vertices that are, in the bind pose, no farther than [`tolerance`](Self::tolerance) outside the shape of
     /// a body that moves them: 0..=1.
     pub covered_share: f32,
-    /// How far sides of the skin's triangles get longer over the drops than they were bound: 99.9th percentile over sides and
+    /// Growth of sides of the skin's triangles over the drops, beyond their length as bound: 99.9th percentile over sides and
     /// poses, as a share of [`size`](Self::size).
     pub edge_stretch_p999: f32,
     /// The same, largest.
@@ -48,12 +48,12 @@ pub struct SkinQuality {
     /// Height of the drawn skin's lowest point above the floor, at the end of the drop where it is farthest from it: negative in
     /// the floor; `None` where it never lay on one.
     pub rest_height_m: Option<f32>,
-    /// Whether every body is near the one that it hangs on, and every part of a limb hangs on that limb.
+    /// True if every body is near the one that it hangs on, and every part of a limb hangs on that limb.
     pub contiguous: bool,
     /// Longest time of a drop that no body was near the floor after the ragdoll had been calm, seconds;
     /// `None` where that was not looked at.
     pub airborne_s: Option<f32>,
-    /// What heights and stretches are shares of: the height of a human, of a creature the longest side of its skin's box.
+    /// Length that heights and stretches are shares of: the height of a human, of a creature the longest side of its skin's box.
     pub size: f32,
     /// Bodies to look at first.
     pub worst: Worst,

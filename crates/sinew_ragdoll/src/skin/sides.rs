@@ -70,7 +70,7 @@ fn difference(def: &RagdollDef, bones: &Bones, body: usize, twin: usize) -> f32 
     max(max((away(body) - away(twin)).abs(), (radius(body) - radius(twin)).abs()), masses)
 }
 
-/// Whether a hand is so much larger than the other that there is something in it, which its shape goes around.
+/// True if a hand is so much larger than the other that there is something in it, which its shape goes around.
 fn holds(def: &RagdollDef, bones: &Bones, hand: usize, other: usize) -> bool {
     let radius = |body: usize| def.bodies[body].shape.bounding_radius();
     bones.list[hand].part == Part::Hand && radius(hand) > BURDENED * radius(other)
@@ -122,7 +122,7 @@ fn is_loose(def: &RagdollDef, joint: &RagdollJointDef, size: f32) -> bool {
     !gap.is_some_and(|gap| gap.distance <= LOOSE * size)
 }
 
-/// Whether a part of a limb hangs on that limb, where it has a part nearer to the trunk.
+/// True if a part of a limb hangs on that limb, where it has a part nearer to the trunk.
 fn in_order(bones: &Bones, parent: usize, child: usize) -> bool {
     use Role::{Foot, Hand, LimbSegment, LowerArm, LowerLeg, TailSegment, UpperArm, UpperLeg};
     let is = |role| move |other: Role| other == role;

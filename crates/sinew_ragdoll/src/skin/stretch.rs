@@ -3,10 +3,10 @@
 use super::surface::{Side, Surface};
 use sinew_math::{Affine, max};
 
-/// What is asked of all sides in all poses: one in a thousand is longer.
+/// Percentile that is taken of all sides in all poses, as a share: one in a thousand is longer.
 const SHARE: f32 = 0.999;
 
-/// How much longer sides got, metres.
+/// Growth of sides beyond their length as bound, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Stretched {
     /// 99.9th percentile over the sides of all triangles and all poses.

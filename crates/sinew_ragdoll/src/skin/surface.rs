@@ -66,7 +66,7 @@ impl Surface {
         palette.extend(self.slots.iter().map(|slot| model[slot.joint] * slot.inverse_bind));
     }
 
-    /// Where a vertex is.
+    /// Position of a vertex, in the space that the matrices of `palette` lead to.
     pub fn place(&self, palette: &[Affine], vertex: usize) -> Vec3 {
         let Vertex { position, slots, weights } = self.vertices[vertex];
         // Most of a figure's vertices follow one joint.
@@ -181,7 +181,7 @@ impl Raw {
     }
 }
 
-/// Whether the same joints move both with the same weights.
+/// True if the same joints move both with the same weights.
 fn alike(a: &Vertex, b: &Vertex) -> bool {
     let weight = |of: &Vertex, slot: u32| -> f32 {
         of.slots.iter().zip(of.weights).filter(|(at, _)| **at == slot).map(|(_, weight)| weight).sum()

@@ -1,4 +1,4 @@
-//! Where a step has to go: a body as a pendulum that stands on its head.
+//! Place to which a step has to go: a body as a pendulum that stands on its head.
 //!
 //! With `ω² = g / h` its centre of mass `x` flees the place `p` on which it presses, `x″ = ω² (x − p)`, and comes to rest over `p` if that
 //! is the **capture point** `ξ = x + x′ / ω`, which itself flees: `ξ(t) = p + (ξ − p) exp(ω t)`. A foot that comes down at `ξ` stops it; one that
@@ -26,13 +26,13 @@ const OUT: f32 = 0.015;
 pub(super) struct Pendulum {
     /// Centre of mass, world, metres.
     pub center: Vec3,
-    /// Of it over the ground, and the one it is to go on with, m/s.
+    /// Velocity of the centre of mass over the ground, and the one it is to go on with, m/s.
     pub velocity: Vec3,
     pub wish: Vec3,
     /// 1/s.
     pub omega: f32,
     pub heading: Rotation,
-    /// Of the whole body, metres.
+    /// Height of the whole body, metres.
     pub height: f32,
 }
 

@@ -45,7 +45,7 @@ impl Support {
         if far <= self.rim { point } else { nearest + away * (self.rim / far) }
     }
 
-    /// How far outside a point is, metres; 0 inside.
+    /// Distance of a point from the support, level, metres; 0 inside.
     pub fn outside(&self, point: Vec3) -> f32 {
         (level(point) - self.nearest(point)).length()
     }
