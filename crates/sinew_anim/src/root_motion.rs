@@ -1,4 +1,4 @@
-//! Root motion: the way that a clip carries its character, taken out of the pose, so that it can move what the game moves.
+//! Root motion: the path along which a clip carries its character, taken out of the pose, so that it can move what the game moves.
 
 use crate::clip::{Channel, Clip, Interpolation, Property};
 use crate::playhead::{LoopMode, Place};
@@ -39,7 +39,7 @@ impl RootMotionOptions {
     }
 }
 
-/// Track of the way that a clip has carried its character since its start: model space, file units.
+/// Path along which a clip has carried its character since its start: model space, file units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionTrack {
     /// Seconds, increasing, at least one.
@@ -245,7 +245,7 @@ fn unwrapped(angle: f32, last: f32) -> f32 {
     angle + TURN * ((last - angle) / TURN + 0.5).floor()
 }
 
-/// Replaces a way by the part of it that a mode takes, from its first number on.
+/// Replaces the path `way` by the part of it that a mode takes, from its first number on.
 fn take(mode: AxisMotion, times: &[f32], way: &mut [f32]) {
     let first = way[0];
     let last = way[way.len() - 1] - first;

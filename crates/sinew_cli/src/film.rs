@@ -62,7 +62,7 @@ impl Film<'_> {
     }
 }
 
-/// Way in which the camera is led.
+/// Mode of the camera.
 enum Shooting {
     Following { radius: f32, camera: Option<FollowCamera> },
     Framing(Framing),

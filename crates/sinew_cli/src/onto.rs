@@ -12,7 +12,7 @@ pub struct Carried {
     pub clip: Clip,
     /// Its events, at its pace.
     pub events: Vec<Event>,
-    /// Way in which it was carried over.
+    /// Criterion by which its joints were matched.
     pub by: By,
 }
 

@@ -33,7 +33,7 @@ pub enum Transition {
     Crossfade {
         /// Duration, seconds, 0 or above.
         seconds: f32,
-        /// Course of the weights over that time.
+        /// Easing of the weights over that time.
         easing: Easing,
     },
     /// The new one plays alone at once; what the old one was beyond it dies away (see [`Inertia`]).

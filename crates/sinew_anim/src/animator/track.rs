@@ -33,7 +33,7 @@ pub enum EndAction {
     Restart,
 }
 
-/// Course of a weight from one value to another.
+/// Easing of a weight from one value to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Easing {
     /// At constant speed.

@@ -109,7 +109,7 @@ fn shifts_of(
     shifts
 }
 
-/// Way of a ball that is `below` the floor (negative: over it) down to it, metres: all of it from up to a sixtieth of
+/// Vertical shift of a ball that is `below` the floor (negative: over it), metres: all the way to it from up to a sixtieth of
 /// the leg, nothing at three times as much. A foot that is about to leave is not pressed down again.
 fn down_to(below: f32, leg: f32) -> f32 {
     let near = leg / 60.0;
@@ -127,7 +127,7 @@ fn blend_over(shifts: &mut [Vec3], from: Option<usize>, to: usize) {
     }
 }
 
-/// Way that the pelvis has to go down for a foot to reach its ankle's goal, metres; 0 where it does, or where that would
+/// Distance that the pelvis has to go down for a foot to reach its ankle's goal, metres; 0 where it does, or where that would
 /// not help.
 fn pelvis_need(model: &[Affine], foot: &Foot, shift: Vec3) -> f32 {
     let [hip, knee, ankle] =

@@ -39,7 +39,7 @@ pub struct TwoBoneGoal {
     pub softness: f32,
     /// Largest factor by which the bones may grow to reach the target, at least 1. 1: not at all.
     pub stretch: f32,
-    /// Share of the way that it goes, 0..=1.
+    /// Weight of the goal, 0..=1: the share of the way to it that is gone.
     pub weight: f32,
 }
 

@@ -26,7 +26,7 @@ pub(super) fn character_from_model(left: Vec3, up: Vec3) -> Rotation {
     Rotation::from_mat3(&Mat3::from_cols(left, up, left.cross(up)).transpose())
 }
 
-/// Lead of the feet along `forward` in front of their ankles, in heights of the body, all feet together.
+/// Distance by which the feet stick out along `forward` in front of their ankles, in heights of the body, all feet together.
 pub(super) fn feet_lead(bound: &Bound, stance: &Stance, forward: Vec3, ankles: &[Vec3]) -> f32 {
     let flat = |v: Vec3| v - stance.up * v.dot(stance.up);
     let lead = |&ankle: &Vec3| {

@@ -121,7 +121,7 @@ pub(super) const STEEL_VS_BASKETBALL: Scene = Scene {
 /// Restitution of the steel ball.
 const STEEL: f32 = 0.8;
 
-/// Course of one ball's bounce.
+/// Measurements of one ball's bounce.
 #[derive(Clone, Copy, Default)]
 struct Bounce {
     /// Speed of its middle while it fell, m/s.

@@ -237,7 +237,7 @@ impl PhysicsObject for Wire {
     }
 }
 
-/// Course of a bead, as it is seen.
+/// Measurements of a bead.
 struct Bead {
     id: BodyId,
     /// Name of the figure that is its period.

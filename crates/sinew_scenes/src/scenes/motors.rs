@@ -29,7 +29,7 @@ const LEVEL_TORQUE: f32 = 0.5 * MASS * GRAVITY * LENGTH;
 const GOAL: f32 = 0.2;
 /// Most that the weak motor may, N·m: half of what it takes to hold its arm.
 const CAP: f32 = 0.5 * LEVEL_TORQUE;
-/// Angle below level to which an arm falls that half of the torque holds which it takes: the positive root of `sin x = x / 2`,
+/// Angle below level to which an arm falls that has half of the torque that it takes: the positive root of `sin x = x / 2`,
 /// where its weight has done the work that the motor took, radians.
 const WEAK_FALL: f32 = 1.895_494_3;
 

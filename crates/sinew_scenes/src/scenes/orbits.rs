@@ -46,7 +46,7 @@ fn kepler(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Kepler { planet, particles, orbits, start, energy, drift: 0.0, turned: 0.0 })
 }
 
-/// Course of one of the two on its way.
+/// State of one of the two on its orbit.
 struct Orbit {
     position: Vec3,
     velocity: Vec3,

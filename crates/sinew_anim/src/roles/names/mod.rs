@@ -139,7 +139,7 @@ pub(super) fn settle_duplicates(
 }
 
 /// Finds the joint at which the trunk begins, of joints that move skin, and reads it as hips: what nobody calls hips but carries
-/// thighs and the rest of the trunk, too; and reads no part of the spine above it.
+/// thighs and the rest of the trunk, too. No part of the spine is above the hips.
 pub(super) fn settle_trunk(
     readings: &mut [Reading],
     parents: &[Option<usize>],

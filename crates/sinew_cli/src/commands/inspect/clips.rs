@@ -14,11 +14,11 @@ pub struct ClipFacts<'a> {
     keys: usize,
     /// As it is played; else why it cannot be.
     built: Result<BuiltClip, String>,
-    /// Way over which it carries the body, where it is known what a metre is.
+    /// Displacement of the body by the clip, where it is known what a metre is.
     way: Option<Way>,
 }
 
-/// Way of a body over a clip: its place at the end, seen from its start.
+/// Displacement of a body by a clip: its place at the end, seen from its start.
 struct Way {
     /// Metres, character axes.
     shift: Vec3,

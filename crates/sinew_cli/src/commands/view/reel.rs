@@ -24,7 +24,7 @@ const MOST_TRAILS: usize = 4;
 const TRAIL_STEPS: usize = 600;
 /// Rays that look whether something stands in the way.
 const MOST_RAYS: usize = 64;
-/// Most radii of the largest thing that moves that a picture reaches around it.
+/// Largest reach of a picture around what moves, in radii of the largest thing that moves.
 const WIDEST: f32 = 120.0;
 /// Reach of a skin over its joints, as a share of what these extend over.
 const FLESH: f32 = 0.08;
