@@ -19,7 +19,8 @@ pub struct LookAt {
     pub max_yaw: f32,
     /// Farthest pitch from the pose, radians, 0..=π. Together with yaw: an ellipse.
     pub max_pitch: f32,
-    /// Weight of the goal, 0..=1: the share of the way to it that is gone. Several joints (chest, neck, head) share a look by weights of their own.
+    /// Weight of the goal, 0..=1: the share of the way to it that is gone. Several joints (chest, neck, head) share a look by
+    /// weights of their own.
     pub weight: f32,
 }
 
