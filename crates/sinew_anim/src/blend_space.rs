@@ -1,4 +1,4 @@
-//! Which clips to blend for a speed, or for a speed and a direction.
+//! Weights of the clips to blend for a speed, or for a speed and a direction.
 
 use sinew_math::{Vec2, clamp, max};
 

@@ -3,7 +3,7 @@
 use crate::rig::{JointIdx, LocalTransform};
 use sinew_math::Rotation;
 
-/// How values between two keys come about (glTF 2.0 §3.11).
+/// Interpolation of values between two keys (glTF 2.0 §3.11).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
     /// The earlier key holds.
@@ -14,7 +14,7 @@ pub enum Interpolation {
     CubicSpline,
 }
 
-/// What a channel moves.
+/// Property of a joint that a channel moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Property {
     /// Three numbers a key, file units.
@@ -37,9 +37,9 @@ impl Property {
 pub struct Channel {
     /// The joint it moves.
     pub joint: JointIdx,
-    /// What it moves.
+    /// The property that it moves.
     pub property: Property,
-    /// How to fill in between keys.
+    /// Interpolation between keys.
     pub interpolation: Interpolation,
     /// Key times, seconds, strictly increasing, at least one.
     pub times: Vec<f32>,

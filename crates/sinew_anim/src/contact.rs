@@ -1,4 +1,4 @@
-//! Which foot stands when, and how much it slides while it does.
+//! Contacts of the feet with the ground, and the slide of the feet during these.
 
 use crate::legs::Foot;
 use crate::pose::local_to_model;
@@ -38,12 +38,12 @@ pub fn floor_under(points: &[[[Vec3; 2]; 2]]) -> f32 {
     tenth(points.iter().map(lowest).collect())
 }
 
-/// What a motion stands on.
+/// The ground that a motion stands on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ground {
     /// Metres.
     pub height: f32,
-    /// How it moves under a body that walks on the spot, m/s; zero under one that gets on. Its y is 0.
+    /// Velocity of the ground under a body that walks on the spot, m/s; zero under one that gets on. Its y is 0.
     pub velocity: Vec3,
 }
 
@@ -85,7 +85,7 @@ impl Ground {
     }
 }
 
-/// How far each sole is tilted while it stands, radians, positive for toes up, and the feet with soles that lie flat then.
+/// Tilt of each sole while it stands, radians, positive for toes up, and the feet with soles that lie flat then.
 ///
 /// A reference pose hardly says how a shoe was worn: the heights that heel and ball keep to while they are on the ground
 /// do. Tilts over 0.2 rad are those of a body that stands on its toes, and left.
@@ -190,7 +190,7 @@ fn speed(take: &Take, points: &[Vec3], frame: usize) -> f32 {
     if time > 0.0 { way.length() / time } else { 0.0 }
 }
 
-/// How feet slide while they stand.
+/// Slide of the feet while they stand.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FootSlide {
     /// Mean speed over the ground, m/s: way slid over time stood.
@@ -201,7 +201,7 @@ pub struct FootSlide {
     pub time: f32,
 }
 
-/// How far the balls of the feet get over the ground (x and z, metres) during `contacts` (seconds of the take). `points` are
+/// Slide of the balls of the feet over the ground (x and z, metres) during `contacts` (seconds of the take). `points` are
 /// those of [`sole_points`], as [seen from the ground](Ground::seen_from) where that moves, one entry per frame.
 pub fn foot_slide(
     take: &Take,

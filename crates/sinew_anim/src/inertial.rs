@@ -19,7 +19,7 @@ pub struct Decay {
 }
 
 impl Decay {
-    /// How long it takes along the offset when it may take `seconds`: shorter, down to a third, where it comes back so fast
+    /// Time that it takes along the offset when it may take `seconds`: shorter, down to a third, where it comes back so fast
     /// that it would overshoot.
     pub fn shortened(&self, seconds: f32) -> f32 {
         let size = self.offset.length();
@@ -122,7 +122,7 @@ impl Inertia {
         }));
     }
 
-    /// Whether nothing is left.
+    /// True if no offset is left.
     pub fn is_over(&self) -> bool {
         self.joints.is_empty() || self.elapsed >= self.seconds
     }

@@ -1,4 +1,4 @@
-//! What joints may do, learned from what they do: centre, ellipse of swing, range of twist, and which joints are hinges.
+//! Joint limits learned from motion: centre, ellipse of swing, range of twist, and which joints are hinges.
 
 use crate::rig::{JointIdx, LocalTransform, Rig};
 use crate::take::Take;
@@ -13,14 +13,14 @@ pub struct LearnedHinge {
     pub axis: Vec3,
     /// Angle about it, radians from [`LearnedLimit::center`].
     pub range: Range,
-    /// How far the joint turns about other axes all the same, radians.
+    /// Angle by which the joint turns about other axes all the same, radians.
     pub off_axis: f32,
 }
 
-/// What a joint did in all takes but for a few frames.
+/// Limit that a joint kept in all takes but for a few frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LearnedLimit {
-    /// Which joint.
+    /// The joint.
     pub joint: JointIdx,
     /// The joint's local rotation in the middle of its range.
     pub center: Rotation,

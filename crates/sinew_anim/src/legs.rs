@@ -1,4 +1,4 @@
-//! What a body stands on: pelvis, legs and soles, and the joints that a rig hangs elsewhere.
+//! Legs that a body stands on, with pelvis and soles, and the joints that a rig hangs elsewhere.
 
 use crate::ik::{TwoBone, set_rotation, shift};
 use crate::rig::{JointIdx, LocalTransform, Rig};

@@ -1,9 +1,9 @@
-//! Where in a clip a track is, and what it passes on its way.
+//! Place of a track in a clip, and the moments that it passes on its way.
 
 /// Laps from time 0, either way, from which a saved playhead may go on: beyond, seconds would have lost their digits.
 const MOST_LAPS: u64 = 1 << 53;
 
-/// What comes after the end of a clip.
+/// Continuation after the end of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LoopMode {
     /// The start: its end and its start are one moment.
@@ -50,7 +50,7 @@ impl Playhead {
         playhead
     }
 
-    /// What comes after the end.
+    /// Continuation after the end.
     pub fn mode(&self) -> LoopMode {
         self.mode
     }
@@ -116,7 +116,7 @@ impl Playhead {
         passage
     }
 
-    /// Whether it has come to an end, in the direction of `speed`, from which there is no way on.
+    /// True if it has come to an end, in the direction of `speed`, from which there is no way on.
     pub fn is_at_end(&self, speed: f64) -> bool {
         let end = if speed < 0.0 { 0.0 } else { self.length };
         self.mode == LoopMode::Once && speed != 0.0 && self.at.time == end
@@ -172,7 +172,7 @@ pub struct Passage {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     pub(crate) place: Place,
-    /// How far from where the passage began, clip seconds, negative backward.
+    /// Distance from where the passage began, clip seconds, negative backward.
     pub distance: f64,
 }
 
@@ -183,7 +183,7 @@ impl Crossing {
     }
 }
 
-/// Where in each period a moment of the clip lies, and how many laps a period has.
+/// Moment of a clip that recurs: its place in each period, and the number of laps of a period.
 #[derive(Clone, Copy)]
 struct Recurring {
     at: Place,
@@ -251,7 +251,7 @@ impl Passage {
         })
     }
 
-    /// Whether a start at the moment counts as passing it: the end of a loop is not its start.
+    /// True if a start at the moment counts as passing it: the end of a loop is not its start.
     fn is_fresh_at(&self, moment: &Recurring) -> bool {
         let is_end_of_loop = self.playhead.mode == LoopMode::Loop && moment.at.lap == 1;
         self.playhead.is_fresh && !is_end_of_loop

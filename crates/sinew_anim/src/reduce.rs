@@ -11,12 +11,12 @@ use crate::rig::{JointIdx, LocalTransform, Rig};
 use crate::sample::{channel_at, write_property};
 use sinew_math::{Affine, Rotation, Vec3, clamp, max, min};
 
-/// How far joints may be from where they were, in the space that [`reduce_keys`] measures in.
+/// Bound of the difference between a clip with fewer keys and the original, in the space that [`reduce_keys`] measures in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeyBound {
-    /// Of a joint's origin, units of that space. 0 keeps every key.
+    /// Distance of a joint's origin from where it was, units of that space. 0 keeps every key.
     pub distance: f32,
-    /// Of its turn, radians. 0 keeps every key.
+    /// Angle of a joint's rotation from the original one, radians. 0 keeps every key.
     pub angle: f32,
 }
 
@@ -25,12 +25,12 @@ impl KeyBound {
     pub const ALL_KEYS: Self = Self { distance: 0.0, angle: 0.0 };
 }
 
-/// How far joints are from where they were, at most: units and radians.
+/// Largest difference between a clip with fewer keys and the original: units and radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct KeyError {
-    /// Of a joint's origin.
+    /// Distance of a joint's origin from where it was.
     pub distance: f32,
-    /// Of its turn.
+    /// Angle of a joint's rotation from the original one.
     pub angle: f32,
 }
 
@@ -104,7 +104,7 @@ fn count(clip: &Clip) -> usize {
     clip.channels.iter().map(|channel| channel.times.len()).sum()
 }
 
-/// Whether two channels move the same: then what one does depends on the other, and no key is left out.
+/// True if two channels move the same: then what one does depends on the other, and no key is left out.
 fn moves_twice(rig: &Rig, clip: &Clip) -> bool {
     let mut moved = vec![[false; 3]; rig.joints.len()];
     clip.channels.iter().any(|c| core::mem::replace(&mut moved[c.joint][c.property as usize], true))
@@ -118,7 +118,7 @@ struct Meter<'a> {
     root: &'a Affine,
     /// All times of keys.
     times: Vec<f32>,
-    /// Where the joints are at these times, times the root: time by time; and whether that is elsewhere than the time
+    /// Transforms of the joints at these times, times the root: time by time; and whether a joint is elsewhere than the time
     /// before.
     model: Vec<Affine>,
     moved: Vec<bool>,
@@ -189,7 +189,7 @@ impl<'a> Meter<'a> {
         clip
     }
 
-    /// How far a value of a channel may be off that uses up the bound alone: its own units, or radians.
+    /// Error of a channel's value that uses up the bound alone: its own units, or radians.
     fn tolerance(&self, property: Property, joint: JointIdx, bound: KeyBound) -> f32 {
         match property {
             Property::Translation => bound.distance / max(self.scale[joint], 1e-12),
@@ -226,7 +226,7 @@ struct Poses {
     is_first: bool,
     local: Vec<LocalTransform>,
     model: Vec<Affine>,
-    /// Which joints are elsewhere than at the last time.
+    /// True for each joint that is elsewhere than at the last time.
     moved: Vec<bool>,
 }
 
@@ -418,7 +418,7 @@ impl Fit<'_> {
         good
     }
 
-    /// Whether all keys between two are near the line between these. The middle is where most are not.
+    /// True if all keys between two are near the line between these. The middle is where most are not.
     fn holds(&self, from: usize, to: usize) -> bool {
         let line = Line::between(self.channel, from, to);
         let holds = |key: usize| self.holds_at(key, line.at(self.channel.times[key]));
@@ -426,7 +426,7 @@ impl Fit<'_> {
         holds(middle) && (from + 1..middle).all(holds) && (middle + 1..to).all(holds)
     }
 
-    /// Whether a key is near a value: by its own units, or by radians, for small angles.
+    /// True if a key is near a value: by its own units, or by radians, for small angles.
     fn holds_at(&self, key: usize, value: [f32; 4]) -> bool {
         let own = self.channel.value(key);
         let squared = |sign: f32| {

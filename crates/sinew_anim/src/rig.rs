@@ -1,4 +1,4 @@
-//! What a character is made of: joints, skins, meshes.
+//! Parts of a character: joints, skins, meshes.
 
 use sinew_math::{Affine, Rotation, Vec2, Vec3};
 
@@ -42,7 +42,7 @@ pub struct Joint {
     pub source: usize,
 }
 
-/// Which joints move a mesh, and where they were when it was bound.
+/// Skin of a mesh: the joints that move it, and their inverse bind matrices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skin {
     /// Name in the file, or `""`.

@@ -1,4 +1,4 @@
-//! Where a clip carries its character: taken out of the pose, so that it can move what the game moves.
+//! Root motion: the path along which a clip carries its character, taken out of the pose, so that it can move what the game moves.
 
 use crate::clip::{Channel, Clip, Interpolation, Property};
 use crate::playhead::{LoopMode, Place};
@@ -6,7 +6,7 @@ use crate::rig::{JointIdx, LocalTransform, Rig};
 use crate::sample::{SampleCache, Wrap, sample_cached};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
-/// How much of a motion along an axis is taken out of the pose.
+/// Part of a motion along an axis that is taken out of the pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AxisMotion {
     /// Nothing: it stays in the pose.
@@ -18,7 +18,7 @@ pub enum AxisMotion {
     Full,
 }
 
-/// What is taken out of a clip.
+/// Choice of the motion that is taken out of a clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RootMotionOptions {
     /// The joint that carries the body: hips, or whatever is above them.
@@ -39,7 +39,7 @@ impl RootMotionOptions {
     }
 }
 
-/// Where a clip has carried its character since its start: model space, file units.
+/// Path along which a clip has carried its character since its start: model space, file units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionTrack {
     /// Seconds, increasing, at least one.
@@ -190,7 +190,7 @@ impl MotionTrack {
         Transform::new(self.positions[i], Rotation::from_axis_angle(self.up, self.turns[i]))
     }
 
-    /// Where the character is at `time`, clip seconds, limited to the clip; the identity at its start.
+    /// Place of the character at `time`, clip seconds, limited to the clip; the identity at its start.
     pub fn at(&self, time: f32) -> Transform {
         let right = self.times.partition_point(|&t| t <= time);
         if right == 0 || right == self.times.len() {
@@ -203,7 +203,7 @@ impl MotionTrack {
         Transform::new(position, Rotation::from_axis_angle(self.up, turn))
     }
 
-    /// What one lap adds: from the clip's start to its end.
+    /// Motion of one lap: from the clip's start to its end.
     pub fn lap(&self) -> Transform {
         self.at(0.0).inverse() * self.sample(self.times.len() - 1)
     }
@@ -214,7 +214,7 @@ impl MotionTrack {
         (way - self.up * self.up.dot(way)).length()
     }
 
-    /// What lies between two places, seen from the first.
+    /// Motion between two places, seen from the first.
     pub(crate) fn between(&self, from: Place, to: Place, mode: LoopMode, length: f64) -> Transform {
         let at = |place: Place| {
             let is_way_back = mode == LoopMode::PingPong && place.lap.rem_euclid(2) == 1;
@@ -245,7 +245,7 @@ fn unwrapped(angle: f32, last: f32) -> f32 {
     angle + TURN * ((last - angle) / TURN + 0.5).floor()
 }
 
-/// What a mode takes of a way that starts at its first number.
+/// Replaces the path `way` by the part of it that a mode takes, from its first number on.
 fn take(mode: AxisMotion, times: &[f32], way: &mut [f32]) {
     let first = way[0];
     let last = way[way.len() - 1] - first;

@@ -4,7 +4,7 @@ use crate::clip::{Channel, Clip, Interpolation, Property};
 use crate::rig::{LocalTransform, Rig};
 use sinew_math::{Rotation, Vec3, clamp};
 
-/// What a time outside the clip means.
+/// Meaning of a time outside the clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
     /// The first or the last pose holds.
@@ -31,7 +31,7 @@ impl Wrap {
     }
 }
 
-/// Where each channel of a clip was last read, so that playing forward need not search.
+/// Key at which each channel of a clip was last read, so that playing forward need not search.
 ///
 /// A cache made stale by another clip or a jump costs time, never a wrong pose.
 #[derive(Clone, Debug, Default)]

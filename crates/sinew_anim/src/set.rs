@@ -1,4 +1,4 @@
-//! What the characters of one rig share: clips with what belongs to them, and masks.
+//! Data that the characters of one rig share: clips with what belongs to them, and masks.
 
 use crate::built::{BuiltClip, Fill};
 use crate::event::{Event, FiredEvent};
@@ -20,11 +20,11 @@ pub struct MaskId(pub(crate) u32);
 pub struct AnimatedClip {
     /// The poses. One that was built with [`Fill::Identity`] is added to others, with [`Fill::Rest`] blended with them.
     pub clip: BuiltClip,
-    /// What happens in it, in any order.
+    /// Events of the clip, in any order.
     pub events: Vec<Event>,
-    /// What is in phase with other clips.
+    /// Markers that keep it in phase with other clips.
     pub markers: Markers,
-    /// Where it carries its character, if that was taken out of the poses.
+    /// Motion of its character, if that was taken out of the poses.
     pub motion: Option<MotionTrack>,
 }
 

@@ -83,7 +83,7 @@ fn blended(palette: &[Affine], slots: [u16; 4], weights: [f32; 4]) -> Affine {
     sum
 }
 
-/// How normals turn under a linear map, up to length: its cofactors, that is the inverse transpose times the
+/// Matrix by which normals turn under a linear map, up to length: its cofactors, that is the inverse transpose times the
 /// determinant, with the sign of the determinant taken out so that a mirrored part does not turn inside out.
 fn normal_matrix(m: &Mat3) -> Mat3 {
     let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);

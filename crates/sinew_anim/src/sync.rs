@@ -16,7 +16,7 @@ impl Default for Markers {
     }
 }
 
-/// Where a looped clip is between its markers: how many it has passed in all, and the share of the way to the next.
+/// Phase of a looped clip between its markers: how many it has passed in all, and the share of the way to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
     /// Number of the last marker, counted through all laps.

@@ -129,7 +129,7 @@ fn numbers(local: LocalTransform, property: Property) -> Vec<f32> {
     }
 }
 
-/// How many keys say what these values say: all, one where they do not change, none where they are those of rest.
+/// Number of keys that say what these values say: all, one where they do not change, none where they are those of rest.
 fn keys_needed(values: &[f32], rest: &[f32]) -> Option<usize> {
     let first = &values[..rest.len()];
     let alike = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-6 * (1.0 + b.abs()));

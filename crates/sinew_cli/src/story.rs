@@ -1,9 +1,9 @@
-//! What happens to a character, in words.
+//! Story of a character in words.
 
 use crate::table::shown;
 use sinew::ragdoll::{BakeInput, CharacterDef, Event, Locomotion, Opening};
 
-/// What the character is doing from some time on, in a word or two for the corner of a picture.
+/// Phase of a character from some time on, s: its name is a word or two for the corner of a picture.
 pub type Phase = (f32, String);
 
 /// Seconds for which a hit is called one.

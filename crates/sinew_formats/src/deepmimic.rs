@@ -10,7 +10,7 @@ use crate::json::{self, At};
 use sinew_anim::{Channel, Clip, Interpolation, Joint, JointIdx, LocalTransform, Property, Rig, Wrap};
 use sinew_math::{EulerOrder, Rotation, Vec3};
 
-/// How a joint of a DeepMimic character moves.
+/// Motion of a joint of a DeepMimic character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeepMimicJoint {
     /// The root: three numbers for its place, four for its orientation.
@@ -42,7 +42,7 @@ impl DeepMimicJoint {
 pub struct DeepMimicCharacter {
     /// Joints in file order, metres.
     pub rig: Rig,
-    /// How each moves.
+    /// Motion of each joint.
     pub joints: Vec<DeepMimicJoint>,
 }
 
@@ -51,7 +51,7 @@ pub struct DeepMimicCharacter {
 pub struct DeepMimicClip {
     /// The motion.
     pub clip: Clip,
-    /// Whether the file says that it starts over.
+    /// Meaning of a time outside the clip: the file says whether it starts over.
     pub wrap: Wrap,
 }
 
@@ -107,7 +107,7 @@ fn triple(at: At<'_>, key: &str) -> Result<Vec3> {
     Ok(Vec3::new(number("X")?, number("Y")?, number("Z")?))
 }
 
-/// How a joint is turned against its parent at rest: about fixed x, then y, then z.
+/// Rotation of a joint against its parent at rest: about fixed x, then y, then z.
 fn attached(at: At<'_>) -> Result<Rotation> {
     let angles = triple(at, "AttachTheta")?;
     Ok(Rotation::from_euler(EulerOrder::Xyz.extrinsic(), angles.to_array()))

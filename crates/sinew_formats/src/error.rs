@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// What sort of trouble a file is in.
+/// Kind of trouble that a file is in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
     /// The operating system refused to read or write.
@@ -21,9 +21,9 @@ pub struct Error {
     pub kind: ErrorKind,
     /// Name of the file as the user gave it, or `""` when only bytes are known.
     pub file: String,
-    /// What is wrong, one line.
+    /// Description of what is wrong, one line.
     pub what: String,
-    /// Where in the file: a JSON path (`nodes[3].children`), a byte offset, a line; or `""`.
+    /// Place in the file: a JSON path (`nodes[3].children`), a byte offset, a line; or `""`.
     pub where_: String,
 }
 

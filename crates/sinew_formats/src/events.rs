@@ -142,7 +142,7 @@ fn read_policy(at: At<'_>) -> Result<EventPolicy> {
     Ok(policy)
 }
 
-/// What is as usual is left out.
+/// Events as JSON; what is as usual is left out.
 fn write_list(events: &[Event]) -> Value {
     let usual = EventPolicy::default();
     let write = |event: &Event| {

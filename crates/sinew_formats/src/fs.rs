@@ -165,12 +165,12 @@ pub fn load_motion(path: impl AsRef<Path>, options: &MotionOptions<'_>) -> Resul
     Ok(file)
 }
 
-/// Where the events of a clip file are: `walk.events.json` for `walk.bvh`.
+/// Path of the events of a clip file: `walk.events.json` for `walk.bvh`.
 pub fn events_path(clip_file: impl AsRef<Path>) -> PathBuf {
     clip_file.as_ref().with_extension("events.json")
 }
 
-/// Where the settings of a character's ragdoll are: `hero.ragdoll.json` for `hero.glb`.
+/// Path of the settings of a character's ragdoll: `hero.ragdoll.json` for `hero.glb`.
 pub fn settings_path(character_file: impl AsRef<Path>) -> PathBuf {
     character_file.as_ref().with_extension("ragdoll.json")
 }

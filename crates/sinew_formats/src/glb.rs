@@ -14,7 +14,7 @@ pub(crate) struct Glb<'a> {
     pub(crate) other_chunks: &'a [u8],
 }
 
-/// Whether the bytes begin like a GLB.
+/// True if the bytes begin like a GLB.
 pub(crate) fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }

@@ -1,4 +1,4 @@
-//! What shapes of a world file are besides geometry: materials, filters, rules of contacts.
+//! Properties of shapes in a world file besides geometry: materials, filters, rules of contacts.
 
 use crate::error::{Result, quoted};
 use crate::json::{At, number, numbers};
@@ -87,7 +87,7 @@ fn read_bits(at: At<'_>) -> Result<u32> {
     u32::try_from(at.usize()?).map_err(|_| at.malformed("must fit 32 bits"))
 }
 
-/// What is not the default.
+/// A material as JSON, without what is the default.
 pub(crate) fn write_material(material: &Material) -> Value {
     let default = Material::DEFAULT;
     let mut object = Map::new();

@@ -14,7 +14,7 @@ pub struct TriangleMesh {
     pub colors: Vec<[f32; 3]>,
     /// Vertex indices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// What was left out and why, a sentence each.
+    /// Warnings of what was left out and why, a sentence each.
     pub warnings: Vec<String>,
 }
 

@@ -10,7 +10,7 @@ const MOST_CORNERS: usize = 1024;
 /// Corners that may be looked at to cut a face, for each corner that it has: enough for any outline that is drawn, and
 /// few enough that a file made of bad ones ends.
 const WORK: usize = 256;
-/// What a surface looks like of which the file says nothing here.
+/// Colour of a surface of which the file says nothing here.
 const GREY: [f32; 3] = [0.6; 3];
 
 /// The triangles of an OBJ file. Faces with more than three corners are cut, concave ones too;

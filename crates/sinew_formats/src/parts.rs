@@ -1,4 +1,4 @@
-//! What world files and ragdoll files have in common: poses, shapes, masses.
+//! Parts that world files and ragdoll files have in common: poses, shapes, masses.
 
 use crate::error::{Result, quoted};
 use crate::json::{At, number, numbers};

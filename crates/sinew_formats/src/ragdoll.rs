@@ -391,7 +391,7 @@ fn write_joint(def: &RagdollDef, joint: &RagdollJointDef) -> Value {
     object.into()
 }
 
-/// What stands as `limits_deg`; `None` for a joint without limits.
+/// JSON value of `limits_deg`; `None` for a joint without limits.
 pub(crate) fn write_limits(kind: &JointKind) -> Option<Value> {
     match kind {
         JointKind::Ball { limit } | JointKind::Universal { limit } => limit.map(|limit| {

@@ -2,7 +2,7 @@
 
 use crate::error::quoted;
 
-/// What a URI in a file refers to.
+/// Target of a URI in a file.
 pub(crate) enum Uri {
     /// The bytes themselves.
     Data(Vec<u8>),

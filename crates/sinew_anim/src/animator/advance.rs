@@ -9,7 +9,7 @@ use crate::set::{AnimatedClip, AnimationSet};
 use crate::sync::match_place;
 use sinew_math::Transform;
 
-/// What is played again and again stands still where it is shorter than this, seconds: else an update would have no end.
+/// Shortest time that is played again and again, seconds: a shorter one stands still, else an update would have no end.
 const SHORTEST: f64 = 1e-4;
 
 /// Part of an update in which a track goes on without a break.

@@ -8,7 +8,7 @@ use crate::set::AnimationSet;
 use core::cmp::Ordering;
 use sinew_math::{Rotation, Transform, Vec3};
 
-/// What a track's root has done, and the share that it has in the whole.
+/// Motion of a track's root in this update, and its weight in the whole.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WeightedMotion {
     weight: f32,
@@ -92,7 +92,8 @@ impl Animator {
         room.layers = recycled(layers);
     }
 
-    /// What a crossfade leads away from, and then each that leads on, in the order in which they began.
+    /// Blends a layer with crossfades: the tracks that they lead away from, then each that leads on, in the order in which
+    /// they began.
     fn crossfade_layer(&mut self, set: &AnimationSet, layer: u8, pose: &mut Pose) {
         let room = &mut self.room;
         room.below.copy_from(if layer == 0 { set.skeleton().rest() } else { pose });
@@ -113,7 +114,7 @@ impl Animator {
         crossfade::fill(&room.below, if layer == 0 { FILL_BELOW } else { 1.0 }, &room.weights, pose);
     }
 
-    /// Where all that a crossfade led away from is gone, its track is one like others.
+    /// Makes a crossfaded track one like others, once all that its crossfade led away from is gone.
     pub(super) fn settle_crossfades(&mut self, set: &AnimationSet) {
         for i in 0..self.slots.len() {
             let layer = self.slots[i].track.def.layer;

@@ -11,7 +11,7 @@ use crate::pose::{Mask, Pose};
 use crate::rig::LocalTransform;
 use sinew_math::{ReadError, Reader, Rotation, Vec3, Writer};
 
-/// Which way round a track's pose is from what played before it, joint by joint.
+/// Rotations from a track's pose to that of what played before it, joint by joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Crossfade {
     /// From the track's pose to the other one, each as close to that of the update before as its sign allows; none before
@@ -35,7 +35,7 @@ impl Weights {
         }
     }
 
-    /// What lacks to a sum, as a share of it.
+    /// Share of `full` that the joint's sum of weights lacks.
     fn missing(&self, joint: usize, full: f32) -> f32 {
         let sum = self.0[joint];
         if sum < full { 1.0 - sum / full } else { 0.0 }

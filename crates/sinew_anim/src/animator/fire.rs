@@ -11,7 +11,7 @@ use crate::sync::Phase;
 pub(super) struct TrackCrossing {
     pub slot: usize,
     pub event: usize,
-    /// Of the event, in the track's laps.
+    /// Place of the event, in the track's laps.
     pub place: Place,
     /// Since the update began.
     pub seconds: f64,
@@ -30,7 +30,7 @@ pub(super) struct LastFired {
     pub is_backward: bool,
 }
 
-/// Where an event is: the marker next to it, through all laps, and how far behind that, as a share of the way to the next.
+/// Place of an event: the marker next to it, through all laps, and how far behind that, as a share of the way to the next.
 #[derive(Clone, Copy)]
 struct Beside {
     marker: i64,
@@ -86,7 +86,7 @@ impl Animator {
         }
     }
 
-    /// Whether an event that the group's clips have in common is fired now: where its leader passes it, or passes no more,
+    /// True if an event that the group's clips have in common is fired now: where its leader passes it, or passes no more,
     /// since another led when it did. Each is beside one marker in every clip, and fired once each time that the group
     /// comes by that; where markers do not tell events of one name apart, it is the leader's own.
     fn is_first_of_group(&mut self, set: &AnimationSet, crossing: &TrackCrossing) -> bool {

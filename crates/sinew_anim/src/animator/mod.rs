@@ -1,4 +1,4 @@
-//! What a character plays: tracks, their weights and times, transitions, events, root motion.
+//! Animation player of one character: tracks, their weights and times, transitions, events, root motion.
 
 mod advance;
 mod compose;
@@ -24,21 +24,21 @@ use root_inertia::{RootInertia, RootVelocity};
 use sinew_math::Transform;
 use track::{Ramp, check_speed, check_weight};
 
-/// How one motion becomes another.
+/// Transition from one motion to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Transition {
     /// Both play for a while, one becoming lighter, the other heavier. Each joint turns from the old pose to the new one about
     /// one axis by the share of their weights, the way round that is shorter where the crossfade begins, and the same way
     /// for as long as it lasts, wherever the two go.
     Crossfade {
-        /// How long, 0 or above.
+        /// Duration, seconds, 0 or above.
         seconds: f32,
-        /// How weights go.
+        /// Easing of the weights over that time.
         easing: Easing,
     },
     /// The new one plays alone at once; what the old one was beyond it dies away (see [`Inertia`]).
     Inertial {
-        /// How long at most, 0 or above; joints that come toward the new motion by themselves take less.
+        /// Longest duration, seconds, 0 or above; joints that come toward the new motion by themselves take less.
         seconds: f32,
     },
 }
@@ -54,13 +54,13 @@ pub struct Animator {
     next_id: u64,
     /// Events of tracks that were stopped between updates.
     interrupted: Vec<FiredEvent>,
-    /// Of each sync group and name of an event.
+    /// Last event fired of each sync group and name of an event.
     last_fired: Vec<LastFired>,
     /// Seconds of an inertial transition that begins with the next update.
     awaits_transition: Option<f32>,
     inertia: Inertia,
     root_inertia: RootInertia,
-    /// Of the last update that took time.
+    /// Velocity of the root in the last update that took time.
     root_velocity: RootVelocity,
     pose: Pose,
     /// The pose of the update before, and how long ago that was; 0 if there was none.
@@ -78,9 +78,9 @@ struct Slot {
     track: Track,
     cursor: Cursor,
     pose: Pose,
-    /// What its root has done in this update.
+    /// Motion of the track's root in this update.
     motion: Transform,
-    /// Whether it came by a crossfade and what it takes the place of is still there: then it is not blended with the others
+    /// True if it came by a crossfade and what it takes the place of is still there: then it is not blended with the others
     /// of its layer, but follows them.
     is_crossfaded: bool,
     crossfade: Crossfade,
@@ -97,7 +97,7 @@ struct Room {
     layers: Vec<BlendLayer<'static>>,
     /// The layers below the one that is blended.
     below: Pose,
-    /// Where the motion that a transition leads to was before the update.
+    /// Pose before the update of the motion that a transition leads to.
     start: Pose,
     now: Pose,
     crossings: Vec<TrackCrossing>,
@@ -152,12 +152,12 @@ impl Animator {
         &self.pose
     }
 
-    /// What came by in the last update, by time; at one time in the order of the tracks.
+    /// Events passed in the last update, by time; at one time in the order of the tracks.
     pub fn events(&self) -> &[FiredEvent] {
         &self.events
     }
 
-    /// How the root went in the last update, seen from where it was before: the mean of the tracks of layer 0 with the
+    /// Motion of the root in the last update, seen from where it was before: the mean of the tracks of layer 0 with the
     /// weights that they have after it; model space, file units. Tracks without motion count as standing. Through an inertial
     /// transition its speed changes as smoothly as the joints' do.
     pub fn root_motion(&self) -> Transform {

@@ -11,8 +11,9 @@ pub(super) struct RootVelocity {
     pub angular: Vec3,
 }
 
-/// What the old root was faster than the new one, which dies away as the pose's offsets do: `x₀ (1 − 10 τ³ + 15 τ⁴ − 6 τ⁵)`,
-/// the quintic of [`Decay`](crate::Decay) without a velocity of its own. It goes half as far as if it lasted.
+/// Excess of the old root's velocity over the new one's, which dies away as the pose's offsets do:
+/// `x₀ (1 − 10 τ³ + 15 τ⁴ − 6 τ⁵)`, the quintic of [`Decay`](crate::Decay) without a velocity of its own. It goes half as
+/// far as if it lasted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct RootInertia {
     offset: RootVelocity,

@@ -91,7 +91,7 @@ impl Animator {
     }
 }
 
-/// Whether the tracks of each sync group are near each other.
+/// True if the tracks of each sync group are at most [`FARTHEST`] laps from each other.
 fn are_together(slots: &[Slot]) -> bool {
     slots.iter().enumerate().all(|(i, a)| {
         slots[..i].iter().all(|b| {

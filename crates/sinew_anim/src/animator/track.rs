@@ -19,7 +19,7 @@ impl TrackId {
     }
 }
 
-/// What becomes of a track at the end of a ramp, or of a clip that plays once.
+/// Action of a track at the end of a ramp, or of a clip that plays once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EndAction {
     /// It goes on: with its new weight, or holding its last pose.
@@ -33,7 +33,7 @@ pub enum EndAction {
     Restart,
 }
 
-/// How a weight goes from one value to another.
+/// Easing of a weight from one value to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Easing {
     /// At constant speed.
@@ -64,10 +64,10 @@ impl Easing {
 /// events, as that makes.
 pub const MAX_SPEED: f32 = 1_000.0;
 
-/// How a clip is played.
+/// Definition of a track: the clip that is played, and the way it is played.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackDef {
-    /// What is played.
+    /// The clip that is played.
     pub clip: ClipId,
     /// Share in the blend, ≥ 0; shares of a layer need not add up to 1.
     pub weight: f32,
@@ -75,14 +75,14 @@ pub struct TrackDef {
     pub speed: f32,
     /// Clip seconds at which it starts; in a sync group that plays already, the group's phase counts instead.
     pub start: f32,
-    /// What comes after the clip's end.
+    /// Continuation after the clip's end.
     pub loop_mode: LoopMode,
-    /// What it does at the end of a clip that plays once.
+    /// Action at the end of a clip that plays once.
     pub at_end: EndAction,
     /// Layer 0 is blended with the rest pose; the tracks of each further one cover those below as far as their weights,
     /// times their masks, add up to 1.
     pub layer: u8,
-    /// Which joints it moves; all of them by default.
+    /// Mask of the joints that it moves; all of them by default.
     pub mask: Option<MaskId>,
     /// Tracks of one group are kept in phase by the markers of their clips: they loop.
     pub sync_group: Option<u8>,
@@ -165,22 +165,22 @@ impl Track {
         self.id
     }
 
-    /// How it is played: weight and speed as they are now.
+    /// The track's definition, with weight and speed as they are now.
     pub fn def(&self) -> &TrackDef {
         &self.def
     }
 
-    /// Where it is.
+    /// The track's place in its clip.
     pub fn playhead(&self) -> &Playhead {
         &self.playhead
     }
 
-    /// Whether its time stands still.
+    /// True if its time stands still.
     pub fn is_paused(&self) -> bool {
         self.is_paused
     }
 
-    /// Whether its weight is on its way to another.
+    /// True if its weight is on its way to another.
     pub fn is_ramping(&self) -> bool {
         self.ramp.is_some()
     }

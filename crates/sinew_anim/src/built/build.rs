@@ -10,7 +10,7 @@ use sinew_math::lanes::WIDTH;
 use sinew_math::{StableHasher, Vec3, max};
 use thiserror::Error;
 
-/// What stands where a clip has no channel.
+/// Content of a built clip where the raw clip has no channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Fill {
     /// The rig's rest pose: for clips that are shown or blended.
@@ -20,10 +20,10 @@ pub enum Fill {
     Identity,
 }
 
-/// How a clip is built.
+/// Options for building a clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildOptions {
-    /// What stands where the clip has no channel.
+    /// Content where the clip has no channel.
     pub fill: Fill,
     /// By how much straight lines may be off arcs and splines, radians; more keys are put where they would be by more.
     pub rotation_tolerance: f32,
@@ -52,27 +52,27 @@ pub enum BuildError {
     /// A channel moves a joint that the rig does not have.
     #[error("channel {channel} moves joint {joint} of {joints}")]
     UnknownJoint {
-        /// Which channel.
+        /// Index of the channel in the clip.
         channel: usize,
-        /// What it moves.
+        /// The joint that it moves.
         joint: JointIdx,
-        /// How many the rig has.
+        /// Number of joints of the rig.
         joints: usize,
     },
     /// A channel without keys.
     #[error("channel {channel} has no keys")]
     NoKeys {
-        /// Which channel.
+        /// Index of the channel in the clip.
         channel: usize,
     },
     /// A channel whose values do not fit its keys.
     #[error("channel {channel} has {values} numbers where its keys take {needed}")]
     ValueCount {
-        /// Which channel.
+        /// Index of the channel in the clip.
         channel: usize,
-        /// How many numbers there are.
+        /// Count of numbers in the channel.
         values: usize,
-        /// How many there should be.
+        /// Count of numbers that its keys take.
         needed: usize,
     },
     /// A key's time is negative, not finite, or not after that of the key before.
@@ -80,9 +80,9 @@ pub enum BuildError {
         "channel {channel}, key {key}: its time, {time} s, is not after the one before it, or not a time"
     )]
     Time {
-        /// Which channel.
+        /// Index of the channel in the clip.
         channel: usize,
-        /// Which key.
+        /// Index of the key in the channel.
         key: usize,
         /// As the clip has it, seconds.
         time: f32,
@@ -90,23 +90,23 @@ pub enum BuildError {
     /// A key's value, or tangent, is not finite, or so large that differences overflow (above 1e18).
     #[error("channel {channel}, key {key}: its value is not finite, or above 1e18")]
     Value {
-        /// Which channel.
+        /// Index of the channel in the clip.
         channel: usize,
-        /// Which key.
+        /// Index of the key in the channel.
         key: usize,
     },
     /// A key's rotation is the zero quaternion.
     #[error("channel {channel}, key {key}: its rotation is zero")]
     ZeroRotation {
-        /// Which channel.
+        /// Index of the channel in the clip.
         channel: usize,
-        /// Which key.
+        /// Index of the key in the channel.
         key: usize,
     },
     /// More than 65,536 different times.
     #[error("the keys are at {times} different times; a built clip has room for 65,536")]
     TooManyTimes {
-        /// How many there are.
+        /// Number of different times.
         times: usize,
     },
 }
@@ -259,7 +259,7 @@ fn all_times(curves: &[(JointIdx, Property, Curve)]) -> Result<Vec<f32>, BuildEr
     Ok(times)
 }
 
-/// What quantisation, straight lines and rounding can do to a channel at most.
+/// Largest error of a channel that quantisation, straight lines and rounding can cause.
 fn bound_of(channel: &Channel, options: &BuildOptions) -> ClipError {
     if channel.property == Property::Rotation {
         return ClipError { rotation: ROTATION_BOUND + options.rotation_tolerance, ..ClipError::default() };
@@ -279,7 +279,7 @@ fn bound_of(channel: &Channel, options: &BuildOptions) -> ClipError {
     }
 }
 
-/// Whether the clip keeps what [`Clip`] and [`Channel`] promise.
+/// Checks that the clip keeps what [`Clip`] and [`Channel`] promise.
 fn check(clip: &Clip, rig: &Rig) -> Result<(), BuildError> {
     let joints = rig.joints.len();
     if joints == 0 {

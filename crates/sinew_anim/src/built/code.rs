@@ -11,7 +11,7 @@ pub(super) struct Key {
     pub packed: [u16; 3],
 }
 
-/// How the numbers of a track's keys come out of their bits.
+/// Decoder of the numbers of a track's keys from their bits.
 pub(super) trait Code<const N: usize>: Copy {
     fn decode(&self, packed: [u16; 3]) -> [f32; N];
 }
@@ -20,7 +20,7 @@ pub(super) trait Code<const N: usize>: Copy {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Bounds {
     pub low: [f32; 3],
-    /// What one unit of the 65,535 is.
+    /// Value of one of the 65,535 steps, axis by axis.
     pub step: [f32; 3],
 }
 

@@ -25,7 +25,7 @@ struct Span<const N: usize> {
     end: [f32; WIDTH],
     left: [[f32; WIDTH]; N],
     right: [[f32; WIDTH]; N],
-    /// Which key of its track the left one is.
+    /// Index of the left key in its track.
     key: [u32; WIDTH],
 }
 
@@ -43,7 +43,7 @@ impl<const N: usize> Span<N> {
     }
 }
 
-/// Where a character is in a clip: the keys around its last time, unpacked.
+/// Playback state of a character in a clip: the keys around its last time, unpacked.
 ///
 /// A cursor is a cache. One made stale by another clip or a jump costs time, never a wrong pose: the same time gives the
 /// same bits whatever was sampled before. It takes 360 bytes for each eight animated rotations, and 296 for translations

@@ -49,7 +49,7 @@ impl Curve {
         curve
     }
 
-    /// Whether it stays where it begins, but for rounding.
+    /// True if it stays where it begins, but for rounding.
     pub fn is_constant(&self) -> bool {
         let first = self.values[0];
         let size = first.iter().fold(0.0, |size, x| max(size, x.abs()));

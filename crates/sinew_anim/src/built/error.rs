@@ -5,7 +5,7 @@ use crate::rig::{LocalTransform, Rig};
 use crate::sample::{SampleCache, Wrap, sample_cached};
 use sinew_math::{Rotation, max};
 
-/// How far poses are apart, over all joints and times.
+/// Largest difference between poses, over all joints and times.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClipError {
     /// Angle between rotations, radians.
@@ -26,7 +26,7 @@ impl ClipError {
         }
     }
 
-    /// Whether each is no larger than in `bound`.
+    /// True if each is no larger than in `bound`.
     pub fn is_within(self, bound: Self) -> bool {
         self.rotation <= bound.rotation && self.translation <= bound.translation && self.scale <= bound.scale
     }
@@ -48,7 +48,7 @@ pub(super) fn angle_between(a: Rotation, b: Rotation) -> f32 {
 }
 
 impl BuiltClip {
-    /// How far poses are from those of the clip that this one was built from, measured at each time of a key and at
+    /// Largest difference from the poses of the clip that this one was built from, measured at each time of a key and at
     /// `between` times between each two. `rig` is the one that it was built with; for a clip that fills with identities its
     /// rest pose is that.
     ///

@@ -25,14 +25,14 @@ pub struct BuiltClip {
     duration: f32,
     /// All times of keys, seconds, increasing.
     times: Vec<f32>,
-    /// What is not animated: constant tracks, and the rest pose where there is no track.
+    /// Pose of all that is not animated: constant tracks, and the rest pose where there is no track.
     base: Pose,
     rotations: Tracks<SmallestThree>,
     translations: Tracks<Bounds>,
     scales: Tracks<Bounds>,
     fill: Fill,
     bound: ClipError,
-    /// Of all that decides a pose, so that a cursor knows its clip.
+    /// Hash of all that decides a pose, so that a cursor knows its clip.
     fingerprint: u64,
 }
 
@@ -41,7 +41,7 @@ pub struct BuiltClip {
 struct Tracks<C> {
     /// Track after track, each in order of time.
     keys: Vec<Key>,
-    /// Those blocks of the pose in which at least one joint is animated.
+    /// Blocks of the pose in which at least one joint is animated.
     blocks: Vec<TrackBlock<C>>,
 }
 
@@ -89,12 +89,12 @@ impl BuiltClip {
         self.keys() * size_of::<Key>() + self.times.len() * size_of::<f32>() + tables + base
     }
 
-    /// How far a sampled pose is from the raw clip's at most.
+    /// Upper bound of the difference between a sampled pose and the raw clip's.
     pub fn error_bound(&self) -> ClipError {
         self.bound
     }
 
-    /// What stands where the clip had no channel: whether it is shown, or added.
+    /// Content where the clip had no channel: tells whether the clip is shown, or added.
     pub fn fill(&self) -> Fill {
         self.fill
     }

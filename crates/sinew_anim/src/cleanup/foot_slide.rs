@@ -9,7 +9,7 @@ use crate::rig::Rig;
 use crate::take::Take;
 use sinew_math::{Affine, Vec3, max, min};
 
-/// What holding the feet took.
+/// Result of holding the feet on the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FootSlideReport {
     /// Contacts held.
@@ -77,7 +77,7 @@ pub fn remove_foot_slide(
     report
 }
 
-/// How far a foot has to go, frame by frame.
+/// Shift that a foot needs to stay where it stands, frame by frame, metres.
 fn shifts_of(
     take: &Take,
     foot: &Foot,
@@ -109,7 +109,7 @@ fn shifts_of(
     shifts
 }
 
-/// How far a ball that is `below` the floor (negative: over it) goes to get there: all the way from up to a sixtieth of
+/// Vertical shift of a ball that is `below` the floor (negative: over it), metres: all the way to it from up to a sixtieth of
 /// the leg, nothing at three times as much. A foot that is about to leave is not pressed down again.
 fn down_to(below: f32, leg: f32) -> f32 {
     let near = leg / 60.0;
@@ -127,7 +127,8 @@ fn blend_over(shifts: &mut [Vec3], from: Option<usize>, to: usize) {
     }
 }
 
-/// How far the pelvis has to go down for a foot to reach its ankle's goal; 0 where it does, or where that would not help.
+/// Distance that the pelvis has to go down for a foot to reach its ankle's goal, metres; 0 where it does, or where that would
+/// not help.
 fn pelvis_need(model: &[Affine], foot: &Foot, shift: Vec3) -> f32 {
     let [hip, knee, ankle] =
         [foot.leg.upper, foot.leg.lower, foot.leg.end].map(|joint| model[joint].translation);

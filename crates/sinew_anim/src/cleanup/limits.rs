@@ -5,10 +5,10 @@ use crate::rig::JointIdx;
 use crate::take::Take;
 use sinew_math::max;
 
-/// How a joint was beyond its limit.
+/// Excess of a joint beyond its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointExcess {
-    /// Which joint.
+    /// The joint.
     pub joint: JointIdx,
     /// In how many frames.
     pub frames: usize,

@@ -8,12 +8,12 @@ use crate::rig::{JointIdx, Rig};
 use crate::take::Take;
 use sinew_math::{Affine, Vec3, max, min};
 
-/// What was in the floor.
+/// Result of raising a body out of the floor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PenetrationReport {
     /// In how many frames.
     pub frames: usize,
-    /// How deep at most, metres.
+    /// Largest depth below the floor, metres.
     pub deepest: f32,
     /// Most that the body was raised, metres: no less than `deepest`.
     pub raised: f32,

@@ -4,7 +4,7 @@ use crate::rig::LocalTransform;
 use crate::take::Take;
 use sinew_math::{Rotation, Vec3, max, trig};
 
-/// How far smoothing moved things.
+/// Change of a take by smoothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SmoothReport {
     /// Most that a joint was turned, radians.

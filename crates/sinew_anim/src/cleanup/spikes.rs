@@ -4,14 +4,14 @@ use crate::rig::{JointIdx, LocalTransform};
 use crate::take::Take;
 use sinew_math::max;
 
-/// What counts as a spike.
+/// Thresholds for a spike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpikeSettings {
     /// Least turn away and back, radians.
     pub least_turn: f32,
     /// Least shift away and back, units of the rig.
     pub least_shift: f32,
-    /// How many times the usual step of the frames around it a spike is at least.
+    /// Least ratio of a spike's step to the usual step of the frames around it.
     pub times_usual: f32,
     /// Longest spike, seconds.
     pub longest: f32,
@@ -31,11 +31,11 @@ pub struct Spike {
     pub joint: JointIdx,
     /// First frame of it.
     pub frame: usize,
-    /// How many frames.
+    /// Number of frames.
     pub frames: usize,
-    /// How far the joint turned away, radians.
+    /// Angle by which the joint turned away, radians.
     pub turn: f32,
-    /// How far it was shifted away, units of the rig.
+    /// Distance by which it was shifted away, units of the rig.
     pub shift: f32,
 }
 
@@ -80,8 +80,8 @@ fn usual_steps(track: &[LocalTransform]) -> [f32; 2] {
     })
 }
 
-/// How far the joint is away between frames `before` and `after`, if both ways are jumps and there is little between the two
-/// ends.
+/// Turn and shift of the joint between frames `before` and `after` (radians, units of the rig), and `after`, if both ways are
+/// jumps and there is little between the two ends.
 fn spike_between(
     track: &[LocalTransform],
     before: usize,

@@ -1,6 +1,6 @@
 use std::collections::VecDeque;
 
-/// Where a footstep was seen first.
+/// Source that saw a footstep first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FootstepSource {
     /// An event of a clip.
@@ -12,7 +12,7 @@ pub enum FootstepSource {
 /// A foot came down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footstep {
-    /// Which foot, by a number of the user's.
+    /// The foot, by a number of the user's.
     pub foot: u32,
     /// When, seconds on the user's clock.
     pub time: f64,

@@ -7,7 +7,7 @@ pub use footsteps::{Footstep, FootstepMerger, FootstepSource};
 use crate::animator::TrackId;
 use crate::set::ClipId;
 
-/// Which of several tracks that pass an event at the same phase may fire it.
+/// Rule for which of several tracks that pass an event at the same phase may fire it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FiredBy {
     /// Each that passes it.
@@ -28,7 +28,7 @@ pub struct EventPolicy {
     pub min_weight: f32,
     /// Who fires it.
     pub fired_by: FiredBy,
-    /// Whether it is fired, whatever the weight, when its track is stopped before it in the lap: for what has to be put
+    /// True if it is fired, whatever the weight, when its track is stopped before it in the lap: for what has to be put
     /// right at the end of a motion.
     pub on_interrupt: bool,
 }
@@ -44,7 +44,7 @@ impl Default for EventPolicy {
 pub struct Event {
     /// When, seconds from the clip's start, 0 to its length.
     pub time: f32,
-    /// What; several may have one name.
+    /// Name of what happens; several events may have one name.
     pub name: String,
     /// Whatever the user needs to know of it, or `""`.
     pub payload: String,
@@ -66,7 +66,7 @@ pub struct FiredEvent {
     pub seconds: f64,
     /// The clip it is in.
     pub clip: ClipId,
-    /// Which of the clip's events.
+    /// Index in the clip's events.
     pub event: usize,
     /// The track that passed it.
     pub track: TrackId,
@@ -74,6 +74,6 @@ pub struct FiredEvent {
     pub weight: f32,
     /// The track's lap (see [`Playhead::lap`](crate::Playhead::lap)).
     pub lap: i64,
-    /// Whether it was not passed, but its track stopped before it.
+    /// True if it was not passed, but its track stopped before it.
     pub is_interrupted: bool,
 }

@@ -15,12 +15,12 @@ pub struct FootGround {
     pub normal: Vec3,
 }
 
-/// How feet are placed. Lengths in units of the pose, angles in radians.
+/// Settings for placing feet. Lengths in units of the pose, angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootPlacement {
     /// Unit, away from the ground.
     pub up: Vec3,
-    /// Where the body faces, any length: the side to which a straight knee bends.
+    /// Direction that the body faces, any length: the side to which a straight knee bends.
     pub forward: Vec3,
     /// Height of the floor that the animation was made for.
     pub floor: f32,
@@ -34,21 +34,21 @@ pub struct FootPlacement {
     pub max_tilt: f32,
 }
 
-/// What became of a foot.
+/// Result of placing one foot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlacedFoot {
-    /// How far it was raised, negative for lowered.
+    /// Height by which it was raised, negative for lowered.
     pub raised: f32,
-    /// How far it was tilted.
+    /// Angle by which it was tilted.
     pub tilted: f32,
-    /// How far its ankle stays from where it should be.
+    /// Distance of its ankle from where it should be.
     pub miss: f32,
 }
 
-/// What became of a body.
+/// Result of placing both feet of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlacedFeet {
-    /// How far the pelvis was raised, negative for lowered.
+    /// Height by which the pelvis was raised, negative for lowered.
     pub pelvis: f32,
     /// Foot by foot, in the order given.
     pub feet: [PlacedFoot; 2],
@@ -121,7 +121,7 @@ pub fn hold_feet(
     -lift
 }
 
-/// How far a pelvis may go up before its leg is too short for a place of the ankle; negative: how far down it has to.
+/// Most that a pelvis may go up before its leg is too short for a place of the ankle; negative: it has to go down by that.
 fn highest_pelvis(model: &[Affine], leg: &TwoBone, target: Vec3, up: Vec3) -> f32 {
     let place = |joint: JointIdx| model[joint].translation;
     let long = (place(leg.lower) - place(leg.upper)).length() + (place(leg.end) - place(leg.lower)).length();
@@ -133,11 +133,11 @@ fn highest_pelvis(model: &[Affine], leg: &TwoBone, target: Vec3, up: Vec3) -> f3
     if aside >= full { f32::INFINITY } else { down + (full * full - aside * aside).sqrt() }
 }
 
-/// Where a foot goes.
+/// Goal of a foot.
 struct Step {
     raise: f32,
     target: Vec3,
-    /// Of the foot before.
+    /// Rotation of the foot before.
     rotation: Rotation,
     tilt: Rotation,
 }

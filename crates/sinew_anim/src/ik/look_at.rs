@@ -4,31 +4,32 @@ use super::turn;
 use crate::rig::{JointIdx, LocalTransform, Rig};
 use sinew_math::{Affine, Rotation, Vec3, any_orthonormal, clamp, direction, max};
 
-/// What looks where.
+/// A joint that looks at a target, and its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LookAt {
     /// The joint that turns, about its origin.
     pub joint: JointIdx,
-    /// Where it looks, in the joint's own axes, any length.
+    /// Direction in which it looks, in the joint's own axes, any length.
     pub forward: Vec3,
     /// Up, in the axes of the space, any length: what yaw turns about.
     pub up: Vec3,
-    /// What it looks at: a place in the space, its unit.
+    /// Target that it looks at: a place in the space, its unit.
     pub target: Vec3,
     /// Farthest yaw from the pose, radians, 0..=π.
     pub max_yaw: f32,
     /// Farthest pitch from the pose, radians, 0..=π. Together with yaw: an ellipse.
     pub max_pitch: f32,
-    /// How much of the way it goes, 0..=1. Several joints (chest, neck, head) share a look by weights of their own.
+    /// Weight of the goal, 0..=1: the share of the way to it that is gone. Several joints (chest, neck, head) share a look by
+    /// weights of their own.
     pub weight: f32,
 }
 
-/// What became of a look.
+/// Result of a look.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
-    /// How far the joint turned, radians.
+    /// Angle by which the joint turned, radians.
     pub turned: f32,
-    /// How far it still looks past the target, radians.
+    /// Angle by which it still looks past the target, radians.
     pub left: f32,
 }
 

@@ -10,11 +10,11 @@ use sinew_math::{
 /// The joints of a limb, from the trunk outward. Others may lie between them; they go along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TwoBone {
-    /// Where the first bone begins: hip, shoulder.
+    /// Joint at which the first bone begins: hip, shoulder.
     pub upper: JointIdx,
-    /// Where the second begins: knee, elbow.
+    /// Joint at which the second bone begins: knee, elbow.
     pub lower: JointIdx,
-    /// Where it ends: ankle, wrist.
+    /// Joint at which the second bone ends: ankle, wrist.
     pub end: JointIdx,
 }
 
@@ -27,7 +27,7 @@ pub enum Pole {
     Toward(Vec3),
 }
 
-/// Where the end of a limb should be: lengths in the unit of the model pose, directions in its space.
+/// Goal for the end of a limb: lengths in the unit of the model pose, directions in its space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoBoneGoal {
     /// Place of the end joint.
@@ -37,9 +37,9 @@ pub struct TwoBoneGoal {
     /// Share of the limb's length, 0..=0.5, over which it slows down before it is straight, so that the knee does not
     /// snap. 0: none.
     pub softness: f32,
-    /// How many times longer the bones may grow to reach the target, at least 1. 1: not at all.
+    /// Largest factor by which the bones may grow to reach the target, at least 1. 1: not at all.
     pub stretch: f32,
-    /// How much of the way it goes, 0..=1.
+    /// Weight of the goal, 0..=1: the share of the way to it that is gone.
     pub weight: f32,
 }
 
@@ -50,16 +50,16 @@ impl TwoBoneGoal {
     }
 }
 
-/// How to turn a limb.
+/// Turns and stretch that bring the end of a limb to its goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoBoneSolution {
     /// Turn of the first bone about the first joint, in the axes of the space.
     pub upper: Rotation,
     /// Turn of the second bone in the axes of the space, from how it was before (not on top of `upper`).
     pub lower: Rotation,
-    /// How many times longer both bones become, at least 1.
+    /// Factor by which both bones grow, at least 1.
     pub stretch: f32,
-    /// How far the end stays from the target, at full weight. Infinite for a target that is not finite.
+    /// Distance of the end from the target, at full weight. Infinite for a target that is not finite.
     pub miss: f32,
 }
 

@@ -30,7 +30,7 @@ impl Mask {
         self.joints
     }
 
-    /// Whether there are none.
+    /// True if it has no joints.
     pub fn is_empty(&self) -> bool {
         self.joints == 0
     }
@@ -64,7 +64,7 @@ impl FromIterator<f32> for Mask {
     }
 }
 
-/// What goes into a blend.
+/// Input of a blend: a pose, its weight and its mask.
 #[derive(Clone, Copy, Debug)]
 pub struct BlendLayer<'a> {
     /// One local transform per joint.
@@ -85,7 +85,7 @@ impl<'a> BlendLayer<'a> {
         if self.weight > 0.0 { self.weight } else { 0.0 }
     }
 
-    /// Of a block's joints.
+    /// Weights of a block's joints.
     #[inline(always)]
     pub(super) fn weight<L: Lanes>(&self, index: usize) -> L {
         match self.mask {
@@ -109,7 +109,7 @@ impl<'a> BlendLayer<'a> {
     }
 }
 
-/// What the mean of several rotations is.
+/// Definition of the mean of several rotations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RotationMean {
     /// Sum of the quaternions on the hemisphere of the rest pose, brought to length 1.
@@ -120,14 +120,14 @@ pub enum RotationMean {
     Exact,
 }
 
-/// How poses are blended.
+/// Options of a blend.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BlendOptions {
     /// Below this sum of weights at a joint the rest pose makes up for what is missing, ≥ 0. With 0, the default, the only
     /// track of a character shows in full at the least weight, and jumps to the rest pose when that becomes 0; with 0.1 it
     /// takes the last tenth of its ramp for the way there.
     pub fill_below: f32,
-    /// What the mean of rotations is.
+    /// Definition of the mean of rotations.
     pub mean: RotationMean,
 }
 
@@ -231,7 +231,7 @@ impl Kernel for Blend<'_, '_> {
     }
 }
 
-/// How weights become shares that add up to 1.
+/// Factors that turn weights into shares that add up to 1.
 #[derive(Clone, Copy)]
 struct Shares<L> {
     /// Weight of the rest pose.
@@ -286,7 +286,7 @@ struct Mean<L: Lanes> {
     heaviest: Parts<L>,
     difference: Parts<L>,
     rotation: Quaternions<L>,
-    /// Where no rotation differs from the heaviest.
+    /// Lanes in which no rotation differs from the heaviest.
     unanimous: L::Mask,
 }
 

@@ -19,7 +19,7 @@ fn pose(random: &mut Random) -> Pose {
     (0..JOINTS).map(local).collect()
 }
 
-/// What `run` leaves in a pose that begins as `start`, on each level: all the same.
+/// Asserts that `run` changes a pose that begins as `start`, and leaves the same in it on each level.
 fn same_on_all(start: &Pose, run: impl Fn(Level, &mut Pose)) {
     let result = |level| {
         let mut out = start.clone();

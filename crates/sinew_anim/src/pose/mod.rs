@@ -46,7 +46,7 @@ pub fn local_to_model(rig: &Rig, local: &[LocalTransform], root: &Affine, model:
 /// Motion of a joint's frame, model axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointVelocity {
-    /// Of the joint's origin, the pose's unit of length per second.
+    /// Velocity of the joint's origin, the pose's unit of length per second.
     pub linear: Vec3,
     /// Radians per second.
     pub angular: Vec3,

@@ -9,7 +9,7 @@ use sinew_math::{Affine, Mat3, Vec3};
 /// Columns of a 4×4 matrix whose last row is 0 0 0 1.
 pub(super) type Columns = [[f32; 4]; 4];
 
-/// What the runtime needs of a [`Rig`]: who hangs on whom, and the rest pose.
+/// Parts of a [`Rig`] that the runtime needs: the parents of the joints, and the rest pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skeleton {
     /// Parent + 1, 0 for a root.
@@ -18,7 +18,7 @@ pub struct Skeleton {
 }
 
 impl Skeleton {
-    /// Of a rig.
+    /// Skeleton of a rig.
     ///
     /// # Panics
     /// If a joint's parent does not come before it, against what [`Rig`] promises.
@@ -36,7 +36,7 @@ impl Skeleton {
         self.parents.len()
     }
 
-    /// Whether there are none.
+    /// True if it has no joints.
     pub fn is_empty(&self) -> bool {
         self.parents.is_empty()
     }
@@ -81,7 +81,7 @@ impl ModelPose {
         self.joints.len().saturating_sub(1)
     }
 
-    /// Whether there are none.
+    /// True if it has no joints.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

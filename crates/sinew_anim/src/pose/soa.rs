@@ -39,7 +39,7 @@ impl Pose {
         self.joints
     }
 
-    /// Whether there are none.
+    /// True if it has no joints.
     pub fn is_empty(&self) -> bool {
         self.joints == 0
     }

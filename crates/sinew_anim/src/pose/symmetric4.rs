@@ -1,4 +1,4 @@
-//! What the exact mean of rotations is an eigenvector of.
+//! Symmetric 4×4 matrices, of which the exact mean of rotations is an eigenvector.
 
 use super::quaternions::Quaternions;
 use sinew_math::lanes::{Lanes, Vector3};

@@ -1,4 +1,4 @@
-//! How two bodies differ in their reference poses, role by role.
+//! Alignment of two bodies: the differences of their reference poses, role by role.
 
 use crate::rig::JointIdx;
 use crate::roles::{HUMANOID_ROLES, RigAnalysis, Role, Side};
@@ -11,11 +11,11 @@ pub(super) struct Pair {
     pub from: JointIdx,
     /// The character's.
     pub to: JointIdx,
-    /// What the actor's rotation is followed by to give the character's, each in its body's axes.
+    /// Rotation that follows the actor's to give the character's, each in its body's axes.
     pub correction: Rotation,
 }
 
-/// What joints correspond, and how.
+/// Correspondence of the joints of two bodies.
 pub(super) struct Alignment {
     /// By the character's joint.
     pub pairs: Vec<Pair>,

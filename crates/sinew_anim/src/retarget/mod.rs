@@ -33,7 +33,7 @@ pub struct Body<'a> {
     pub analysis: &'a RigAnalysis,
 }
 
-/// How long the motion of a larger body takes.
+/// Duration of the motion of a larger body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Pace {
     /// As long as the actor's.
@@ -45,7 +45,7 @@ pub enum Pace {
     Times(f32),
 }
 
-/// What happens at the ground.
+/// Treatment of the feet at the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Feet {
     /// They are held where the actor's stand, and lie flat on the floor while those do.
@@ -55,7 +55,7 @@ pub enum Feet {
     Free,
 }
 
-/// How to retarget.
+/// Options for retargeting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RetargetOptions {
     /// Seconds from frame to frame of the result, above 0. Default 1/60.
@@ -107,7 +107,7 @@ pub struct Retargeted {
     pub scale: f32,
     /// Duration over that of the actor's motion.
     pub pace: f32,
-    /// What the character stands on, in its own axes, metres: moving under a motion on the spot.
+    /// Ground that the character stands on, in its own axes, metres: moving under a motion on the spot.
     pub ground: Ground,
     /// Foot slide of the actor, over the same contacts, for comparison.
     pub actor_slide: FootSlide,
@@ -218,7 +218,7 @@ struct Transfer<'a> {
     scale: f32,
 }
 
-/// What the actor's feet do.
+/// Contacts and slide of the actor's feet.
 struct Steps {
     ground: Ground,
     contacts: Vec<FootContact>,
@@ -227,7 +227,7 @@ struct Steps {
     slide: FootSlide,
 }
 
-/// How much longer than the actor's a foot is held at either end, seconds: a foot on its way down hardly moves on.
+/// Time by which a foot is held longer than the actor's at either end, seconds: a foot on its way down hardly moves on.
 const HOLD: f32 = 0.02;
 /// Time over which the height of the body is matched to the floor, seconds.
 const SETTLE: f32 = 0.12;
@@ -353,7 +353,7 @@ impl<'a> Transfer<'a> {
         }
     }
 
-    /// Where the character's pelvis goes: its hip joints as far and as high as the actor's, by the length of the legs.
+    /// Target of the character's pelvis: its hip joints are as far and as high as the actor's, by the length of the legs.
     fn hips_target(&self, from: &[Affine], to: &[Affine], floor: f32) -> Vec3 {
         let [left, right] = self.actor_feet.map(|foot| from[foot.leg.upper].translation);
         let middle = (left + right) * 0.5 - Vec3::Y * floor;

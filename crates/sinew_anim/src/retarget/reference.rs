@@ -7,7 +7,7 @@ use crate::roles::{NoSkin, RigAnalysis, Role, Side, analyze_skeleton};
 use crate::sample::{Wrap, sample};
 use sinew_math::{Vec3, direction};
 
-/// Where a reference pose was found.
+/// Source of a reference pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reference {
     /// It was given: the rest pose that a file puts before its motion.
@@ -60,7 +60,7 @@ pub fn stand(
     best.map(|(_, analysis, reference)| (analysis, reference)).ok_or(NoSkin)
 }
 
-/// How upright a body stands: the least cosine of trunk, thighs and shanks with the vertical; −1 for what is no humanoid.
+/// Uprightness of a body: the least cosine of trunk, thighs and shanks with the vertical; −1 for what is no humanoid.
 fn uprightness(analysis: &RigAnalysis) -> f32 {
     let place = |role: Role| analysis.joint_with(role).map(|joint| analysis.bind_model[joint].translation);
     let up = analysis.up_axis;

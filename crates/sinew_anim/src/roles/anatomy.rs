@@ -33,8 +33,8 @@ pub(super) struct Anatomy {
 /// for one must still go with its leg.
 const LEAST_CONTROL_SHARE: f32 = 5e-4;
 
-/// How far both feet together must stick out against what left and right are named, in heights of the body: half of what
-/// a human's do.
+/// Least lead of both feet together against what left and right are named, in heights of the body: half of what a human's
+/// have.
 const LEAD_AGAINST_NAMES: f32 = 0.04;
 
 /// Least distance of both elbows together behind the arms, in heights of the body, to tell more than feet that hardly do.
@@ -260,7 +260,7 @@ impl<'a> Scene<'a> {
         if weight > 0.0 { sum / weight } else { 0.0 }
     }
 
-    /// Whether what looks like arms and what looks like legs are both named as limbs of a body on four legs.
+    /// True if what looks like arms and what looks like legs are both named as limbs of a body on four legs.
     fn is_beast(&self, found: &Humanoid) -> bool {
         let is_named = |limb: &Limb| {
             let mut joints = limb.chain.iter().flatten().map(|&node| self.graph.nodes[node].joint);
@@ -355,7 +355,7 @@ impl<'a> Scene<'a> {
         joints
     }
 
-    /// Where the foot begins: its node, or the end of the shank where the foot moves no skin of its own.
+    /// Position of the ankle: the foot's node, or the end of the shank where the foot moves no skin of its own.
     fn ankle(&self, chain: &[usize], split: Split) -> Vec3 {
         let node = chain[split.2.unwrap_or(split.1)];
         let joint = self.graph.nodes[node].joint;
@@ -447,7 +447,7 @@ impl<'a> Scene<'a> {
         (!walks_on_hands).then_some(draft)
     }
 
-    /// Whether the legs point away from the head: those of a beast that is named like a human hang across its trunk.
+    /// True if the legs point away from the head: those of a beast that is named like a human hang across its trunk.
     fn stands(&self, draft: &Draft) -> bool {
         let place = |role: Role| {
             let joint = draft.roles.iter().position(|r| r.is_some_and(|guess| guess.role == role));
@@ -504,7 +504,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// How many mirrored pairs have names that mirror each other, and how many pairs there are.
+/// Number of mirrored pairs whose names mirror each other, and number of all mirrored pairs.
 fn mirrored_names(graph: &Graph, symmetry: &Symmetry, readings: &[Reading]) -> (usize, usize) {
     let (mut agreeing, mut pairs) = (0, 0);
     for (i, node) in graph.nodes.iter().enumerate() {
@@ -516,7 +516,7 @@ fn mirrored_names(graph: &Graph, symmetry: &Symmetry, readings: &[Reading]) -> (
     (agreeing, pairs)
 }
 
-/// Whether nearly every part with a side is named on the other, too: for a bind pose in which no mirror finds its image.
+/// True if nearly every part with a side is named on the other, too: for a bind pose in which no mirror finds its image.
 fn sides_pair_up(readings: &[Reading]) -> bool {
     let mut sides: Vec<(&str, Side)> = readings
         .iter()

@@ -26,7 +26,7 @@ pub(super) fn character_from_model(left: Vec3, up: Vec3) -> Rotation {
     Rotation::from_mat3(&Mat3::from_cols(left, up, left.cross(up)).transpose())
 }
 
-/// How far the feet stick out along `forward` in front of their ankles, in heights of the body, all feet together.
+/// Distance by which the feet stick out along `forward` in front of their ankles, in heights of the body, all feet together.
 pub(super) fn feet_lead(bound: &Bound, stance: &Stance, forward: Vec3, ankles: &[Vec3]) -> f32 {
     let flat = |v: Vec3| v - stance.up * v.dot(stance.up);
     let lead = |&ankle: &Vec3| {
@@ -43,7 +43,7 @@ pub(super) fn feet_lead(bound: &Bound, stance: &Stance, forward: Vec3, ankles: &
     ankles.iter().map(lead).sum()
 }
 
-/// Which way the names put the left side: the sign along [`Symmetry::lateral`], 0 when they say nothing.
+/// Direction of the left side by name: the sign along [`Symmetry::lateral`], 0 when the names say nothing.
 pub(super) fn left_by_name(graph: &Graph, symmetry: &Symmetry, readings: &[Reading]) -> f32 {
     let vote = |i: usize| match readings[i].side {
         Some(Side::Left) => symmetry.side(graph, i),

@@ -140,7 +140,7 @@ impl Bound {
     }
 }
 
-/// Which joints have a sibling of the other side, or both none by name, in their place.
+/// True for each joint that has a sibling in its place, of the other side by name, or both without a name.
 fn twins(rig: &Rig, model: &[Affine], tolerance: f32) -> Vec<bool> {
     let names: Vec<&str> = rig.joints.iter().map(|joint| joint.name.as_str()).collect();
     let readings = read_names(&names, &[]);
@@ -204,7 +204,7 @@ fn bind_pose(rig: &Rig) -> Vec<Affine> {
     model
 }
 
-/// Where the skinned mesh stands in model space when it is in its bind pose.
+/// Transform of the skinned mesh to model space in its bind pose.
 ///
 /// In a rest pose equal to the bind pose, every joint says the same (joint × inverse bind). Where the rest pose is
 /// some other pose the joints disagree; then the mesh's own node counts if any joint confirms it, else the joint that carries

@@ -1,4 +1,4 @@
-//! What is known of a character beside its skin and its joints.
+//! Evidence about a character beside its skin and its joints.
 
 use super::Gait;
 use crate::clip::Clip;

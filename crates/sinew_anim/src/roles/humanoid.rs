@@ -7,7 +7,7 @@ use super::names::{Part, Reading};
 use super::symmetry::Symmetry;
 use sinew_math::{Vec3, clamp, max, min, trig};
 
-/// Where a posture stands: directions and measures of the bind pose under the assumption that `up` is up.
+/// Directions and measures of the bind pose under the assumption that `up` is up.
 pub(super) struct Stance {
     /// Unit, model space.
     pub up: Vec3,
@@ -68,7 +68,7 @@ const AS_HIGH: f32 = 0.02;
 /// The hips of a figure with a large head are at least this high, share of its height.
 const LOWEST_HIP: f32 = 0.1;
 
-/// What recognition looks at.
+/// Evidence for the recognition of a humanoid.
 pub(super) struct Evidence<'a> {
     pub graph: &'a Graph,
     pub symmetry: &'a Symmetry,
@@ -313,7 +313,7 @@ impl Evidence<'_> {
         Some((chain, head))
     }
 
-    /// Which joints of a chain begin the upper part, the lower part and the hand or foot: by name, else by length.
+    /// Indices in a chain at which the upper part, the lower part and the hand or foot begin: by name, else by length.
     fn split(&self, chain: &[usize], parts: [Part; 3]) -> Option<Split> {
         let place = |part: Part| chain.iter().position(|&i| self.part(i) == Some(part));
         if let (Some(upper), Some(lower)) = (place(parts[0]), place(parts[1])) {

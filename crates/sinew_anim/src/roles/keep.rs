@@ -1,4 +1,4 @@
-//! Which joints become bodies, what they take with them, and what they hang on.
+//! Selection of the joints that become bodies, what they take with them, and what they hang on.
 
 use super::bind::Bound;
 use super::graph::{Graph, ancestors};
@@ -15,7 +15,7 @@ const LEAST_SPINE_SHARE: f32 = 0.02;
 /// A clavicle shorter than this share of the height is no body.
 const LEAST_CLAVICLE: f32 = 0.05;
 
-/// What selection works on.
+/// Input of the selection.
 pub(super) struct Selection<'a> {
     pub rig: &'a Rig,
     pub bound: &'a Bound,
@@ -34,7 +34,7 @@ pub(super) struct Kept {
     pub merge_into: Vec<Option<JointIdx>>,
 }
 
-/// What carries each joint: the rig's parent; for strays what they were adopted by; for a stray without skin the bone
+/// Carrier of each joint: the rig's parent; for strays what they were adopted by; for a stray without skin the bone
 /// at whose end it sits; for what sits at a wrist beside the hand, the hand.
 pub(super) fn carriers(
     rig: &Rig,

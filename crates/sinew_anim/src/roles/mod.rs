@@ -1,4 +1,4 @@
-//! What the joints of a rig are: roles, axes, units, and which joints deserve a body.
+//! Analysis of the joints of a rig: roles, axes, units, and which joints deserve a body.
 //!
 //! Roles that the file states (VRM) come first; then geometry (mirrored chains of the bind pose) decides and names
 //! only bear witness: they settle how a limb is divided, raise the confidence where they agree and lower it where
@@ -111,11 +111,11 @@ pub struct KeptBone {
     pub merged: Vec<JointIdx>,
     /// Transform in the bind pose, model space, file units.
     pub bind_model: Affine,
-    /// Whether it is carried, as a sword or a cape without a skin is, and no part of the body: it is held fast.
+    /// True if it is carried, as a sword or a cape without a skin is, and no part of the body: it is held fast.
     pub is_prop: bool,
 }
 
-/// What [`analyze`] found out about a rig.
+/// Result of [`analyze`] for a rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RigAnalysis {
     /// Metres per file unit.

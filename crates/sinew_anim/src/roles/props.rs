@@ -1,4 +1,4 @@
-//! What a character carries and is not made of: swords, shields, capes, as meshes without a skin on a bone of the body.
+//! Props that a character carries and is not made of: swords, shields, capes, as meshes without a skin on a bone of the body.
 //!
 //! A hat that hardly reaches beyond the head goes with it. What sticks out gets a body of its own, held fast, so that it does not
 //! lie in the floor.
@@ -13,11 +13,11 @@ use sinew_math::{Vec3, max, max3, min3};
 
 /// A prop whose longest side is less than this share of the skin's is left with its carrier.
 const LEAST_SIZE: f32 = 0.1;
-/// What is farther than this share of the skin's size outside the box of its carrier's skin sticks out.
+/// Least distance outside the box of its carrier's skin, as a share of the skin's size, at which a vertex sticks out.
 const BEYOND: f32 = 0.05;
 /// Share of a prop's vertices that must stick out.
 const LEAST_SHARE: f32 = 0.1;
-/// How sure it is that such a thing is carried.
+/// Confidence that such a thing is carried.
 const CONFIDENCE: f32 = 0.5;
 
 /// An axis-aligned box in model space, file units.

@@ -1,4 +1,4 @@
-//! What a joint is to a body.
+//! Roles of joints in a body.
 
 /// Side of the character's own body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -56,9 +56,9 @@ pub enum Role {
     TailSegment(u16),
     /// Part of a creature's limb.
     LimbSegment {
-        /// Which limb, counted from 0.
+        /// Index of the limb, counted from 0.
         limb: u16,
-        /// Which part, from the trunk outward.
+        /// Index of the part, from the trunk outward.
         segment: u16,
     },
 }

@@ -15,7 +15,7 @@ pub(super) struct Symmetry {
     score: f32,
 }
 
-/// How far from its mirror image a joint may be, of the size of the skin.
+/// Farthest that a joint may be from its mirror image, as a share of the size of the skin.
 const TOLERANCE: f32 = 0.025;
 
 impl Symmetry {

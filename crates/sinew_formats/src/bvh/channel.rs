@@ -1,4 +1,4 @@
-//! What one number of a row moves.
+//! Channels of a joint: each number of a row moves one of them.
 
 use sinew_math::Vec3;
 
@@ -58,7 +58,7 @@ impl BvhChannel {
         Self::ALL.into_iter().find(|channel| channel.name().eq_ignore_ascii_case(name))
     }
 
-    /// Whether it turns the joint, and does not shift it.
+    /// True if it turns the joint, and does not shift it.
     pub fn is_rotation(self) -> bool {
         self >= Self::Xrotation
     }

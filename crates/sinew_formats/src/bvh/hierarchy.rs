@@ -14,7 +14,7 @@ pub(super) struct FileJoint {
     /// File units.
     pub offset: Vec3,
     pub channels: Vec<BvhChannel>,
-    /// Where in a row its numbers begin.
+    /// Index in a row at which its numbers begin.
     pub column: usize,
 }
 

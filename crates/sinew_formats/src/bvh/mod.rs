@@ -24,7 +24,7 @@ use motion::Motion;
 use sinew_anim::{Clip, LocalTransform, Rig};
 use words::Words;
 
-/// What to do when a file has more or fewer rows than its `Frames:` says.
+/// Treatment of a file that has more or fewer rows than its `Frames:` says.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BvhRows {
     /// Refuse it: it may have been cut.
@@ -34,12 +34,12 @@ pub enum BvhRows {
     AsPresent,
 }
 
-/// How to read a BVH file.
+/// Options for reading a BVH file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BvhOptions {
     /// Length of the file's unit. Default: inferred.
     pub unit: BvhUnit,
-    /// What becomes of a rest pose put before the motion. Default: left out of the clip.
+    /// Treatment of a rest pose put before the motion. Default: left out of the clip.
     pub rest_frame: RestFrame,
     /// Default: refuse a file whose rows are not those it declares.
     pub rows: BvhRows,
@@ -62,7 +62,7 @@ pub struct BvhDocument {
     pub channels: Vec<Vec<BvhChannel>>,
     /// The rest pose that stands as the first frame, where one does: better to tell the body by than the offsets.
     pub rest_pose: Option<Vec<LocalTransform>>,
-    /// What was assumed, mended or left out, a sentence each.
+    /// Notes on what was assumed, mended or left out, a sentence each.
     pub notes: Vec<String>,
 }
 

@@ -182,7 +182,7 @@ pub(super) fn along_positions(channels: &[BvhChannel], v: Vec3) -> Vec3 {
     Vec3::from_array(core::array::from_fn(|axis| if has(axis) { v[axis] } else { 0.0 }))
 }
 
-/// What the positions of a joint are added to, file units. Along an axis without a channel that is the offset. Along
+/// Base to which the positions of a joint are added, file units. Along an axis without a channel that is the offset. Along
 /// the others some programs write where the joint is, others how far it is from its offset; the first frame tells
 /// which of the two is meant.
 fn position_base(joint: &FileJoint, rows: &[f32]) -> (Vec3, bool) {
@@ -192,7 +192,7 @@ fn position_base(joint: &FileJoint, rows: &[f32]) -> (Vec3, bool) {
     (if added { joint.offset } else { joint.offset - shifted }, added)
 }
 
-/// Whether a position read at the first frame is meant to be added to the offset.
+/// True if a position read at the first frame is meant to be added to the offset.
 pub(super) fn is_added(first: Vec3, offset: Vec3) -> bool {
     (first - offset).length_squared() > first.length_squared()
 }

@@ -3,7 +3,7 @@
 use super::hierarchy::Hierarchy;
 use super::motion::Motion;
 
-/// What becomes of a rest pose that stands as the first frame. The BVH files of the CMU library have one: arms out,
+/// Treatment of a rest pose that stands as the first frame. The BVH files of the CMU library have one: arms out,
 /// legs straight, so that programs can tell what the body looks like at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RestFrame {
@@ -14,7 +14,7 @@ pub enum RestFrame {
     Keep,
 }
 
-/// Whether the first frame is a rest pose: set by hand, in whole degrees, where the motion after it was measured.
+/// True if the first frame is a rest pose: set by hand, in whole degrees, where the motion after it was measured.
 pub(super) fn find(
     hierarchy: &Hierarchy,
     motion: &Motion,

@@ -25,7 +25,7 @@ fn last_place(printed: &str) -> Option<f64> {
     (is_plain && fraction.len() < 15).then(|| (0..fraction.len()).fold(1.0, |place, _| place / 10.0))
 }
 
-/// Whether a number of seconds needs no more digits than those printed: then others were meant.
+/// True if a number of seconds needs no more digits than those printed: then others were meant.
 fn is_exact(seconds: f64, digit: f64) -> bool {
     let units = seconds / digit;
     (units - units.round()).abs() < 1e-9 * units

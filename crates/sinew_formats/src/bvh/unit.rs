@@ -1,4 +1,4 @@
-//! How long the unit of a file is. The format does not say; the body does.
+//! Length of the unit of a file. The format does not say; the body does.
 
 use super::hierarchy::Hierarchy;
 use sinew_math::max;
@@ -17,7 +17,7 @@ pub enum BvhUnit {
 
 /// From toe to fingertip along the bones of an adult, metres: 1.4 times the height, whatever the pose.
 const SPAN: f32 = 2.4;
-/// How many times longer or shorter it may be.
+/// Largest factor by which it may be longer or shorter.
 const SLACK: f32 = 1.5;
 /// A skeleton with fewer joints may be anything.
 const LEAST_JOINTS: usize = 12;

@@ -51,7 +51,7 @@ impl<'a> Words<'a> {
         Some(word)
     }
 
-    /// What is left of the line, up to a brace: names may have blanks in them.
+    /// Rest of the line, up to a brace: names may have blanks in them.
     pub fn rest_of_line(&mut self) -> &'a str {
         let end = self.rest.find(['{', '}']).unwrap_or(self.rest.len());
         let (name, rest) = self.rest.split_at(end);

@@ -10,7 +10,7 @@ use sinew_anim::{
 use sinew_math::{Affine, EulerOrder, Rotation, Vec3, limits::wrap};
 use std::fmt::Write as _;
 
-/// Which ends of chains are written with an End Site.
+/// Ends of chains that are written with an End Site.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BvhEnds {
     /// Joints without a name that end a chain and do not move become End Sites; nothing is added.
@@ -21,7 +21,7 @@ pub enum BvhEnds {
     EveryChain,
 }
 
-/// How to write a BVH file.
+/// Options for writing a BVH file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhWriteOptions<'a> {
     /// Seconds from frame to frame, above 0. Default 1/60.
@@ -50,7 +50,7 @@ impl Default for BvhWriteOptions<'_> {
 pub struct BvhText {
     /// The file.
     pub text: String,
-    /// What was changed or left out, a sentence each.
+    /// Notes on what was changed or left out, a sentence each.
     pub notes: Vec<String>,
 }
 
@@ -106,7 +106,7 @@ fn check(rig: &Rig, options: &BvhWriteOptions<'_>) -> Result<()> {
     Ok(())
 }
 
-/// What a joint needs to be written.
+/// Data that a joint needs to be written.
 struct Line {
     /// Metres, model axes, from the parent.
     offset: Vec3,
@@ -116,7 +116,7 @@ struct Line {
     parent: Affine,
     channels: Vec<BvhChannel>,
     is_end: bool,
-    /// Whether positions count from the offset.
+    /// True if positions count from the offset.
     added: bool,
     /// Angles of the frame before, degrees by axis.
     angles: [f64; 3],

@@ -157,7 +157,7 @@ fn not_finite(place: String) -> Error {
     Error::malformed("a number is not finite", place)
 }
 
-/// What of the scene does not become part of a rig, a sentence each.
+/// Parts of the scene that do not become part of a rig, a sentence each.
 fn left_out(scene: &Scene, pictures: Textures) -> Vec<String> {
     let counted = [
         (if pictures == Textures::Skip { scene.textures.len() } else { 0 }, "textures"),

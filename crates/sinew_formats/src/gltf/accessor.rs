@@ -130,7 +130,7 @@ pub(super) fn fill_holes<const N: usize>(elements: &mut [[f32; N]]) -> Vec<usize
 }
 
 impl<'a> Source<'a> {
-    /// How many numbers an element of the accessor at index `at` has: 1 for SCALAR to 16 for MAT4.
+    /// Count of numbers in an element of the accessor at index `at`: 1 for SCALAR to 16 for MAT4.
     pub(super) fn width(&self, at: At<'a>) -> Result<usize> {
         let kind = self.accessors[at.index(self.accessors.len(), "accessors")?].need("type")?;
         Ok(match kind.str()? {

@@ -79,7 +79,7 @@ fn read_channel<'a>(
     Ok(Channel { joint, property, interpolation, times, values })
 }
 
-/// Of keys at the same time the last one stays, so that times strictly increase.
+/// Drops keys at repeated times: the last one of a time stays, so that times strictly increase.
 fn drop_repeated_times(times: Vec<f32>, values: Vec<f32>, per_key: usize) -> (Vec<f32>, Vec<f32>) {
     if times.windows(2).all(|w| w[0] < w[1]) {
         return (times, values);

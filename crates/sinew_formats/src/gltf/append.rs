@@ -15,7 +15,7 @@ const FLOAT: u32 = 5126;
 pub struct NewClip<'a> {
     /// Its keys.
     pub clip: &'a Clip,
-    /// What the animation is called; `""` for nothing.
+    /// Name of the animation; `""` for none.
     pub name: &'a str,
     /// The animation's `extras`, such as those of [`events_extras`](crate::events_extras).
     pub extras: Option<Value>,

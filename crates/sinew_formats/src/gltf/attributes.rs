@@ -1,4 +1,4 @@
-//! What a primitive says of its vertices, plain or compressed.
+//! Attributes of a primitive's vertices, plain or compressed.
 
 use super::accessor::fill_holes;
 use super::draco::Decoded;
@@ -14,7 +14,7 @@ pub(super) struct Attributes<'s, 'a> {
 }
 
 impl<'s, 'a> Attributes<'s, 'a> {
-    /// Of a primitive whose positions are at index `position`.
+    /// Attributes of a primitive whose positions are at index `position`.
     pub(super) fn of(source: &'s Source<'a>, primitive: At<'a>, position: At<'a>) -> Result<Self> {
         let draco = Decoded::of(source, primitive, position)?;
         Ok(Self { source, at: primitive.need("attributes")?, draco })

@@ -56,12 +56,12 @@ impl<'a> Decoded<'a> {
         Ok(Some(Self { at, mesh }))
     }
 
-    /// How many vertices there are.
+    /// Number of vertices.
     pub(super) fn count(&self) -> usize {
         self.mesh.num_points()
     }
 
-    /// Whether the stream holds that attribute; others of the primitive are plain.
+    /// True if the stream holds that attribute; others of the primitive are plain.
     pub(super) fn holds(&self, name: &str) -> Result<bool> {
         Ok(self.at.need("attributes")?.get(name)?.is_some())
     }

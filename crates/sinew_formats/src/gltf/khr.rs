@@ -18,7 +18,7 @@ const SHAPES: &str = "KHR_implicit_shapes";
 pub struct KhrFile {
     /// A GLB.
     pub bytes: Vec<u8>,
-    /// What the drafts cannot hold, a sentence each.
+    /// Notes on what the drafts cannot hold, a sentence each.
     pub notes: Vec<String>,
 }
 
@@ -253,7 +253,7 @@ fn widest(limit: &SwingTwistLimit) -> f32 {
     max(y, z)
 }
 
-/// What the draft has of a joint's limits: nothing moves, and of rotations what is not free.
+/// Limits of a joint as the draft has them: no translation, and of rotations what is not free.
 fn limits(kind: &JointKind) -> Vec<Value> {
     let about = |axis: usize, range: Range| json!({"angularAxes": [axis], "min": number(range.lo), "max": number(range.hi)});
     let shut = |axes: Value| json!({"angularAxes": axes, "min": 0.0, "max": 0.0});

@@ -29,11 +29,11 @@ pub(super) struct Materials<'s, 'a> {
     pub(super) warnings: Vec<String>,
 }
 
-/// What a primitive looks like.
+/// Look of a primitive.
 pub(super) struct Look {
     pub(super) base_color: [f32; 4],
     pub(super) texture: Option<usize>,
-    /// Which set of texture coordinates the texture uses.
+    /// Index of the set of texture coordinates that the texture uses.
     pub(super) uv_set: usize,
 }
 

@@ -47,7 +47,7 @@ pub(super) fn read_all<'a>(
     Ok(out)
 }
 
-/// What is not finite in a primitive and was mended.
+/// Record of what is not finite in a primitive and was mended.
 struct Mending<'w> {
     warnings: &'w mut Vec<String>,
     /// Vertices whose weights are not finite.

@@ -33,7 +33,7 @@ use sinew_anim::{Clip, Event, Rig};
 use source::{Buffer, Source};
 use std::collections::BTreeMap;
 
-/// What the bytes were wrapped in.
+/// Container that the bytes were wrapped in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Container {
     /// Binary: JSON and one buffer in one file (also VRM and VRMA).
@@ -42,7 +42,7 @@ pub enum Container {
     Gltf,
 }
 
-/// Whether base colour pictures are decoded.
+/// Choice whether base colour pictures are decoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Textures {
     /// No: [`Rig::textures`] stays empty.
@@ -52,7 +52,7 @@ pub enum Textures {
     Decode,
 }
 
-/// What to read. Default: everything but pictures.
+/// Options for reading a glTF or FBX file. Default: everything but pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ReadOptions {
     /// Default skip.
@@ -72,9 +72,9 @@ pub struct Document {
     pub json: Value,
     /// The file's binary chunk.
     pub bin: Option<Vec<u8>>,
-    /// What the bytes were wrapped in.
+    /// Container that the bytes were wrapped in.
     pub container: Container,
-    /// What was left out and why, one line each (a picture that cannot be decoded, a missing file beside it).
+    /// Warnings of what was left out and why, one line each (a picture that cannot be decoded, a missing file beside it).
     pub warnings: Vec<String>,
     /// Bytes of the buffers that are not the binary chunk.
     buffers: Vec<Buffer>,

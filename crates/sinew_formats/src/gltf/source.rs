@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::json::At;
 use core::cell::Cell;
 
-/// Where the bytes of a buffer come from.
+/// Source of the bytes of a buffer.
 #[derive(Clone, Debug)]
 pub(super) enum Buffer {
     /// The binary chunk of the GLB.

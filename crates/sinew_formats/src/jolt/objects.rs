@@ -12,12 +12,12 @@ use crate::error::{Error, Result, quoted};
 use sinew_math::{Rotation, Vec3};
 use std::collections::BTreeMap;
 
-/// How much further in the elements of an array stand.
+/// Indentation of the elements of an array beyond that of the array, in characters.
 const STEP: usize = 2;
 /// Objects within objects.
 const DEEPEST: usize = 16;
 
-/// What a member is.
+/// Type of a member.
 #[derive(Clone, Debug, PartialEq)]
 enum Kind {
     /// Numbers on a line, so many.
@@ -119,7 +119,7 @@ impl Objects {
         }
     }
 
-    /// Likewise; it must name one.
+    /// The object that a member is or names; it must be or name one.
     pub fn need<'a>(&'a self, at: &'a At) -> Result<&'a Object> {
         self.follow(at)?.ok_or_else(|| at.malformed("names no object"))
     }
@@ -363,7 +363,7 @@ impl<'a> Lines<'a> {
         self.ahead = self.all.find(|(_, line)| !line.trim().is_empty()).map(|(i, line)| (i + 1, line));
     }
 
-    /// How far in the next line stands.
+    /// Indentation of the next line, in bytes.
     fn indent(&self) -> usize {
         self.ahead.map_or(0, |(_, line)| line.len() - line.trim_start().len())
     }

@@ -8,7 +8,7 @@ use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, max, m
 use sinew_physics::JointKind;
 use sinew_ragdoll::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 
-/// How the motor of a joint is set.
+/// Settings of a joint's motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JoltMotor {
     /// Hz.

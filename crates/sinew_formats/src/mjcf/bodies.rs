@@ -32,14 +32,14 @@ pub(super) struct Tree<'a> {
     by_name: BTreeMap<&'a str, usize>,
 }
 
-/// What is read with.
+/// Settings, classes and notes with which a document is read.
 pub(super) struct Reading<'a, 'n> {
     pub compiler: Compiler,
     pub classes: Classes<'a>,
     pub notes: &'n mut Notes,
 }
 
-/// What stands in a `<body>`.
+/// Contents of a `<body>`.
 struct Contents<'a> {
     geoms: Vec<Geom>,
     freedom: Freedom,
@@ -48,7 +48,7 @@ struct Contents<'a> {
 }
 
 impl<'a> Tree<'a> {
-    /// Of a document: what is in its `<worldbody>` elements.
+    /// Tree of a document: what is in its `<worldbody>` elements.
     pub fn read(root: Element<'a>, reading: &mut Reading<'a, '_>) -> Result<Self> {
         let mut tree = Self { links: vec![world(root)], by_name: BTreeMap::from([("world", 0)]) };
         // A list of what is still to be read, the next one last, and no recursion: the depth of the file is not that of
@@ -225,7 +225,7 @@ impl<'a> Reading<'a, '_> {
     }
 }
 
-/// Whether a body can have it: what a solid thing has.
+/// Checks that a solid body can have such a mass and inertia.
 fn check_mass(mass: &MassProperties) -> core::result::Result<(), &'static str> {
     let moments = mass.inertia.eigen().0;
     // Written so that NaN fails.

@@ -5,12 +5,12 @@ use super::xml::{Element, Value, children};
 use crate::error::Result;
 use sinew_math::{Mat3, Rotation, Vec3};
 
-/// How numbers of the file are meant.
+/// Settings by which the numbers of a file are read.
 pub(super) struct Compiler {
     angle: Angle,
     /// Axes of Euler angles, in the file's frame, and whether they turn along.
     euler: [(Vec3, Axes); 3],
-    /// Whether a joint or geom with a range is limited without saying so.
+    /// Rule by which a joint or geom with a range is limited without saying so.
     pub limits: Limits,
     pub inertia: InertiaFrom,
 }
@@ -29,14 +29,14 @@ enum Axes {
     Fixed,
 }
 
-/// Whether a joint with a range is limited if it does not say so.
+/// Rule by which a joint with a range is limited if it does not say so.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Limits {
     ByRange,
     OnlyIfSaid,
 }
 
-/// Where the masses of bodies come from.
+/// Source of the masses of bodies.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum InertiaFrom {
     /// From `<inertial>` where it is there, otherwise from geoms.
@@ -49,7 +49,7 @@ const IGNORED: [&str; 5] =
     ["boundmass", "boundinertia", "settotalmass", "balanceinertia", "inertiagrouprange"];
 
 impl Compiler {
-    /// Of a document: its `<compiler>` elements, the last of which wins.
+    /// Settings of a document: its `<compiler>` elements, the last of which wins.
     pub fn read(root: Element<'_>, notes: &mut Notes) -> Result<Self> {
         let mut compiler = Self {
             angle: Angle::Degrees,

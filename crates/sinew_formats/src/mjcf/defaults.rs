@@ -20,7 +20,7 @@ pub(super) struct Classes<'a> {
     by_name: BTreeMap<&'a str, usize>,
 }
 
-/// What a class itself says; the rest is its parent's.
+/// Defaults that a class itself states; the rest is its parent's.
 #[derive(Default)]
 struct Class<'a> {
     parent: Option<usize>,
@@ -33,7 +33,7 @@ struct Class<'a> {
 pub(super) const MAIN: usize = 0;
 
 impl<'a> Classes<'a> {
-    /// Of a document: all its `<default>` elements.
+    /// Classes of a document: all its `<default>` elements.
     pub fn read(root: Element<'a>) -> Result<Self> {
         let mut classes = Self { list: vec![Class::default()], by_name: BTreeMap::from([("main", MAIN)]) };
         for (_, element) in children(root).filter(|(tag, _)| *tag == "default") {

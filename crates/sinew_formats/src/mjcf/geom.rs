@@ -24,7 +24,7 @@ struct Segment {
 
 const UNREAD: [&str; 5] = ["solimp", "margin", "gap", "priority", "solmix"];
 
-/// What `condim` lets friction resist, as far as it is read.
+/// Motion that friction resists by `condim`, as far as it is read.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Resists {
     Sliding,

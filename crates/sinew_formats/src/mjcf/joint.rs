@@ -9,7 +9,7 @@ use core::f32::consts::PI;
 use sinew_math::{Mat3, Range, Rotation, SwingTwistLimit, Transform, Vec3, clamp, max, min};
 use sinew_physics::{AxisMotion, JointKind, SixDof, Softness, Spring};
 
-/// What lets a body move in its parent.
+/// Joints that let a body move in its parent.
 pub(super) enum Freedom {
     /// Nothing: it is a part of its parent.
     Welded,
@@ -27,13 +27,13 @@ pub(super) enum Freedom {
 pub(super) struct Pivot {
     name: String,
     anchor: Vec3,
-    /// Of length 1.
+    /// Unit axis of the joint.
     axis: Vec3,
     /// From the pose of the file; `None`: unlimited.
     range: Option<Range>,
     /// Coordinate in the pose of the file.
     reference: f32,
-    /// Where its spring rests, from the pose of the file.
+    /// Coordinate at which its spring rests, from the pose of the file.
     spring_rest: f32,
     stiffness: f32,
     damping: f32,
@@ -41,7 +41,7 @@ pub(super) struct Pivot {
     friction: f32,
 }
 
-/// What the numbers of a joint measure.
+/// Quantity that the numbers of a joint measure.
 #[derive(Clone, Copy, PartialEq)]
 enum Measure {
     Angle,
@@ -105,7 +105,7 @@ impl Freedom {
         }
     }
 
-    /// How far a body that has a joint is from the pose of the file at the `coordinates` that `value` holds; in the
+    /// Displacement of a body that has a joint from the pose of the file at the `coordinates` that `value` holds; in the
     /// body's axes, about its anchor.
     pub fn motion(&self, coordinates: &[f32], value: Value<'_>) -> Result<Transform> {
         Ok(match (self, coordinates) {
@@ -206,11 +206,11 @@ pub(super) struct BodyJoint {
 }
 
 impl BodyJoint {
-    /// Of a welded body.
+    /// Joint of a welded body.
     pub const WELD: Self =
         Self { frame: Transform::IDENTITY, kind: JointKind::Fixed, spring: None, friction: 0.0 };
 
-    /// Of a ball joint, whose one range is that of the whole angle from the pose of the file.
+    /// Joint of a ball, whose one range is that of the whole angle from the pose of the file.
     pub fn of_ball(ball: &Pivot) -> Self {
         let limit = ball.range.map(|range| {
             let within = Range::symmetric(max(range.hi, 0.0));
@@ -221,7 +221,7 @@ impl BodyJoint {
         Self { frame, kind: JointKind::Ball { limit }, spring, friction: ball.friction }
     }
 
-    /// Of a slide.
+    /// Joint of a slide.
     pub fn of_slide(slide: &Pivot) -> Self {
         let frame = Transform::new(slide.anchor, Rotation::from_arc(Vec3::X, slide.axis));
         let rest = Transform::from_translation(Vec3::X * slide.spring_rest);
@@ -229,7 +229,7 @@ impl BodyJoint {
         Self { frame, kind: JointKind::Slider { limit: slide.range }, spring, friction: slide.friction }
     }
 
-    /// Of one to three hinges at right angles to each other, the first next to the parent.
+    /// Joint of one to three hinges at right angles to each other, the first next to the parent.
     ///
     /// The body turns by `R₁ R₂ R₃`. A swing and a twist are that with the **last** hinge's axis as x: what that hinge
     /// does is the twist, exactly. With two hinges the first one is all of the swing, exactly. With three, `R₁ R₂` is a

@@ -59,7 +59,7 @@ pub struct MjcfModel {
     pub excluded_pairs: Vec<(usize, usize)>,
     /// Named poses.
     pub keyframes: Vec<MjcfKeyframe>,
-    /// What was left out or changed, a sentence each.
+    /// Notes on what was left out or changed, a sentence each.
     pub notes: Vec<String>,
 }
 
@@ -85,13 +85,13 @@ pub struct MjcfJoint {
     pub frame_a: Transform,
     /// Joint frame in the child's frame.
     pub frame_b: Transform,
-    /// What is free.
+    /// Kind of the joint: the motion that is free.
     pub kind: JointKind,
     /// The softest of its hinges': the least stiffness and the least damping.
     pub spring: Option<Spring>,
     /// N·m or N, the largest `frictionloss` of its hinges.
     pub friction_torque: f32,
-    /// Whether parent and child collide: only if nothing moves the parent.
+    /// Collision of parent and child: only if nothing moves the parent.
     pub collision: JointCollision,
 }
 
@@ -202,8 +202,8 @@ fn read_joints(tree: &Tree<'_>, notes: &mut Notes) -> Result<Vec<MjcfJoint>> {
     Ok(joints)
 }
 
-/// What `<exclude>` says, and what MuJoCo leaves out by itself: parts of one thing, and things jointed to each other.
-/// Pairs with a joint between them have that from the joint.
+/// Pairs that do not collide: those that `<exclude>` names, and those that MuJoCo leaves out by itself: parts of one thing,
+/// and things jointed to each other. Pairs with a joint between them have that from the joint.
 fn excluded_pairs(root: Element<'_>, tree: &Tree<'_>, notes: &mut Notes) -> Result<Vec<(usize, usize)>> {
     let mut pairs = Vec::new();
     let contacts = children(root).filter(|(tag, _)| *tag == "contact");

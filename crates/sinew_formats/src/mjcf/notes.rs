@@ -1,4 +1,4 @@
-//! What a reader leaves out or changes, so that nobody has to find out by surprise.
+//! Notes on what a reader leaves out or changes, so that nobody has to find out by surprise.
 
 /// Collects notes, each once, with the number of times that it applies: memory does not grow with the file.
 #[derive(Default)]

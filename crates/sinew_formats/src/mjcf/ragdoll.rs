@@ -20,7 +20,7 @@ pub struct MjcfRagdoll {
     pub def: RagdollDef,
     /// Springs of the joints, by joint.
     pub springs: Vec<Option<Softness>>,
-    /// What became something else, a sentence each.
+    /// Notes on what became something else, a sentence each.
     pub notes: Vec<String>,
 }
 

@@ -11,7 +11,7 @@ use sinew_ragdoll::{RagdollBodyDef, RagdollDef};
 pub struct MjcfText {
     /// The file.
     pub text: String,
-    /// What the format cannot hold, a sentence each.
+    /// Notes on what the format cannot hold, a sentence each.
     pub notes: Vec<String>,
 }
 

@@ -54,7 +54,7 @@ fn position(row: u32, column: u32) -> String {
     format!("line {row} column {column}")
 }
 
-/// Where an element stands.
+/// Place of an element in the file: line and column.
 pub(super) fn place(element: Element<'_>) -> String {
     place_at(element, element.range().start)
 }

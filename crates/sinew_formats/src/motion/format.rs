@@ -1,9 +1,9 @@
-//! What a file is, told by its bytes.
+//! Format of a file, told by its bytes.
 
 use crate::error::{Error, Result};
 use crate::{glb, json};
 
-/// What a file with clips is.
+/// Format of a file with clips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionFormat {
     /// glTF in its binary container; also VRM and VRMA.

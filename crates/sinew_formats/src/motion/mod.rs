@@ -11,7 +11,7 @@ use crate::gltf::{ReadOptions, Resolver, read_gltf};
 use crate::jolt::read_jolt_ragdoll;
 use sinew_anim::{Clip, Event, LocalTransform, Rig};
 
-/// How to read a file with clips.
+/// Options for reading a file with clips.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MotionOptions<'a> {
     /// For a BVH file.
@@ -25,7 +25,7 @@ pub struct MotionOptions<'a> {
 /// A rig and its clips, whatever the file was.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionFile {
-    /// What the bytes were.
+    /// Format of the file.
     pub format: MotionFormat,
     /// The program that wrote it, or `""`.
     pub generator: String,
@@ -44,7 +44,7 @@ pub struct MotionFile {
     /// A pose to tell the body by, where the file has one that is not the rig's rest pose: see
     /// [`stand`](sinew_anim::retarget::stand).
     pub rest_pose: Option<Vec<LocalTransform>>,
-    /// What was assumed, mended or left out, a sentence each.
+    /// Notes on what was assumed, mended or left out, a sentence each.
     pub notes: Vec<String>,
 }
 

@@ -159,7 +159,7 @@ fn read_pairs(root: At<'_>, key: &str) -> Result<Vec<[String; 2]>> {
     root.list(key)?.into_iter().map(read).collect()
 }
 
-/// What a word of a list means; `None` where the key is absent.
+/// Meaning of a word of a list; `None` where the key is absent.
 fn word<T: Copy>(at: At<'_>, key: &str, words: &[(&str, T)]) -> Result<Option<T>> {
     let Some(at) = at.get(key)? else { return Ok(None) };
     let said = at.str()?;

@@ -2,7 +2,7 @@
 
 use super::super::role::Side;
 
-/// What one word of a name says.
+/// Meaning of one word of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Word {
     /// Nothing about the body: what exporters put before and after their names.
@@ -15,7 +15,7 @@ pub(super) enum Word {
     Mid,
     /// Before "arm" the lower one, before "leg" one of a beast.
     Fore,
-    /// Of a body on four legs: front, hind.
+    /// Front of a body on four legs; `Back` is its hind part.
     Front,
     Back,
     Paw,
@@ -43,7 +43,7 @@ pub(super) enum Word {
     Tail,
     /// Turns with a bone's end: a helper beside a limb, a plain bone in the neck.
     Twist,
-    /// What an animator moves, and no part of a body: an appendix too, as long as it moves no skin to speak of.
+    /// Control that an animator moves, and no part of a body: an appendix too, as long as it moves no skin to speak of.
     Control,
     /// Makes the joint an appendix whatever else its name says.
     Appendix,
@@ -151,13 +151,13 @@ const WORDS: &[(Word, &str)] = &[
 const PAIRS: &[(&str, [Word; 2])] =
     &[("lu", [LEFT, Upper]), ("ru", [RIGHT, Upper]), ("lf", [LEFT, Fore]), ("rf", [RIGHT, Fore])];
 
-/// What a whole word says.
+/// Meaning of a whole word.
 pub(super) fn meaning(word: &str) -> Option<Word> {
     let said = |&&(_, words): &&(Word, &str)| words.split(' ').any(|known| known == word);
     WORDS.iter().find(said).map(|&(meaning, _)| meaning)
 }
 
-/// What a word says, whole or as several known ones glued together ("lefttoebase", "lthigh", "左足首"); `None` where some
+/// Meanings of a word, whole or as several known ones glued together ("lefttoebase", "lthigh", "左足首"); `None` where some
 /// of it is unknown.
 pub(super) fn meanings(word: &str) -> Option<Vec<Word>> {
     if let Some(whole) = meaning(word) {

@@ -1,4 +1,4 @@
-//! What a joint's name says about it. Names are a witness, not a judge: see [`super::humanoid`].
+//! Readings of joints' names. Names are a witness, not a judge: see [`super::humanoid`].
 
 mod lexicon;
 mod tokens;
@@ -32,13 +32,13 @@ pub(super) enum Part {
 /// A name taken apart.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Reading {
-    /// What the name says but for prefixes, numbers and side: equal for both joints of a mirrored pair.
+    /// Name without prefixes, numbers and side: equal for both joints of a mirrored pair.
     pub key: String,
     /// Side that the name states.
     pub side: Option<Side>,
     /// Part of the body, where the name is one of those in use.
     pub part: Option<Part>,
-    /// Whether it is an appendix only because the name speaks of a control, such as "IK".
+    /// True if it is an appendix only because the name speaks of a control, such as "IK".
     pub is_control: bool,
 }
 
@@ -138,8 +138,8 @@ pub(super) fn settle_duplicates(
     }
 }
 
-/// Where the trunk begins, of joints that move skin: what nobody calls hips but carries thighs and the rest of the trunk, and
-/// no part of the spine is above the hips.
+/// Finds the joint at which the trunk begins, of joints that move skin, and reads it as hips: what nobody calls hips but carries
+/// thighs and the rest of the trunk, too. No part of the spine is above the hips.
 pub(super) fn settle_trunk(
     readings: &mut [Reading],
     parents: &[Option<usize>],
@@ -171,7 +171,7 @@ pub(super) fn settle_trunk(
     readings[hips].part = Some(Part::Hips);
 }
 
-/// Which of several joints of one name is meant, whatever their order in the file: that nearest to the root; of siblings the
+/// The joint that is meant of several of one name, whatever their order in the file: that nearest to the root; of siblings the
 /// one in the middle by name (of three palms the second, of two the first).
 fn meant(mut same: Vec<usize>, names: &[&str], depth: &impl Fn(usize) -> Option<usize>) -> Option<usize> {
     let least = same.iter().filter_map(|&joint| depth(joint)).min()?;
@@ -180,7 +180,7 @@ fn meant(mut same: Vec<usize>, names: &[&str], depth: &impl Fn(usize) -> Option<
     same.get((same.len() - 1) / 2).copied()
 }
 
-/// What a name says by itself; some words mean one part or another by what else the rig has.
+/// Meaning of a name by itself; some words mean one part or another by what else the rig has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sense {
     Part(Part),
@@ -229,7 +229,7 @@ fn key(words: &[Word]) -> String {
     words.iter().map(|word| format!("{word:?}")).collect()
 }
 
-/// What known words make together, in any order but where it matters.
+/// Meaning of known words together, in any order but where it matters.
 fn sense(words: &[Word]) -> Option<Sense> {
     use Word::{Arm, Back, Body, Fore, Front, Leg, Lower, Mid, Paw, Twist, Upper};
     let has = |word: Word| words.contains(&word);
@@ -284,7 +284,7 @@ fn sense(words: &[Word]) -> Option<Sense> {
     if has(Twist) && !trunk { Some(Sense::Part(Part::Appendix)) } else { Some(found) }
 }
 
-/// What a word means by itself.
+/// Meaning of a word by itself.
 fn plain(word: Word) -> Option<Sense> {
     Some(match word {
         Word::Pelvis => Sense::Pelvis,

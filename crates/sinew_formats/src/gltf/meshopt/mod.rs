@@ -15,7 +15,7 @@ use crate::json::At;
 /// Both names of the extension; what the newer one adds is told by the streams themselves.
 const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-/// Whether an extension is one that this module reads.
+/// True if an extension is one that this module reads.
 pub(super) fn is_known(name: &str) -> bool {
     NAMES.contains(&name)
 }
