@@ -84,7 +84,7 @@ fn raw_clips_sampled_at_every_key_equal_the_file() {
     }
 }
 
-/// How far a local transform is from a key of the file: radians, or the length of a difference over the value's.
+/// Distance of a local transform from a key of the file: radians, or the length of a difference over the value's.
 fn key_error(channel: &Channel, key: usize, local: &LocalTransform) -> f64 {
     let width = channel.property.width();
     let start = if channel.interpolation == Interpolation::CubicSpline { 3 * key + 1 } else { key } * width;

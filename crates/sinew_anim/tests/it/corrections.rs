@@ -7,7 +7,7 @@ use sinew_anim::{
 };
 use sinew_math::{Affine, Random, Vec3};
 
-/// Where nothing but the rig is known.
+/// Analysis of a rig of which nothing else is known.
 fn analyze_corrected(rig: &Rig, correction: &Correction) -> Result<RigAnalysis, CorrectionError> {
     sinew_anim::analyze_corrected(rig, &Hints::default(), correction)
 }

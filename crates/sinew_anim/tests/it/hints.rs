@@ -1,4 +1,4 @@
-//! What clips, programs, other files and doors tell of a rig that its skin and its names do not.
+//! Clips, programs, other files and doors tell of a rig that its skin and its names do not.
 
 use crate::toy;
 use sinew_anim::{

@@ -29,7 +29,7 @@ mod toy;
 mod transitions;
 mod wild;
 
-/// How many of `all` random cases to try: a hundredth, but all with `SINEW_FULL` set.
+/// Number of `all` random cases to try: a hundredth, but all with `SINEW_FULL` set.
 fn cases(all: u32) -> u32 {
     if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
 }

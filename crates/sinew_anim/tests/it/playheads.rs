@@ -1,4 +1,4 @@
-//! What is passed, against the closed formula: exactly once, whatever the steps.
+//! Moments that are passed, against the closed formula: exactly once, whatever the steps.
 
 use crate::cases;
 use sinew_anim::{LoopMode, Passage, Playhead};
@@ -17,7 +17,7 @@ fn unfolded(playhead: &Playhead, length: i64) -> i64 {
     playhead.lap() * length + in_lap
 }
 
-/// How often `e + n · period` for whole `n` lies in (from, to] going forward, in [to, from) going backward; with `from`
+/// Number of times that `e + n · period` for whole `n` lies in (from, to] going forward, in [to, from) going backward; with `from`
 /// itself if that counts.
 fn times(from: i64, to: i64, e: i64, period: i64, counts_start: bool) -> i64 {
     let up_to = |t: i64| (t - e).div_euclid(period);

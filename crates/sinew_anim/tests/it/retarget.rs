@@ -325,7 +325,7 @@ fn drawn_clips_move_other_characters() {
     }
 }
 
-/// Where nothing is mended at the ground, bones point where the actor's point.
+/// Bones that are not mended at the ground point where the actor's point.
 #[test]
 fn bones_point_where_the_actors_do() {
     let (Some(walk), Some(man), Some(mannequin)) =

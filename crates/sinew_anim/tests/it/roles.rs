@@ -32,7 +32,7 @@ fn analyzed(file: &str) -> Option<(Rig, RigAnalysis)> {
     Some((rig, found))
 }
 
-/// What holds for every analysis, whatever the rig.
+/// Checks that hold for every analysis, whatever the rig.
 pub fn sound(rig: &Rig, found: &RigAnalysis) {
     let mut carried = vec![0; rig.joints.len()];
     for (i, bone) in found.kept.iter().enumerate() {
@@ -218,7 +218,7 @@ fn a_fox_is_no_human_whatever_its_joints_are_called() {
     );
 }
 
-/// What sticks out of the knight is held by what it hangs on; the helmet goes with the head.
+/// Parts that stick out of the knight are held by what they hang on; the helmet goes with the head.
 #[test]
 fn a_knight_holds_what_it_carries() {
     let Some((rig, found)) = analyzed("kaykit_Knight.glb") else { return };

@@ -123,7 +123,7 @@ impl Alone {
     }
 }
 
-/// How far a pair of clips is from popping: the largest acceleration over what it may be.
+/// Distance of a pair of clips from popping: the largest acceleration over what it may be.
 fn worst_of_pair(
     set: &AnimationSet,
     alone: &[Alone],

@@ -125,7 +125,7 @@ pub fn rig_of<'a>(
     rig
 }
 
-/// How many roles are right, of all that the rig has or was given.
+/// Number of roles that are right, of all that the rig has or was given.
 fn score(rig: &Rig, truth: &BTreeMap<String, String>, complaints: &mut Vec<String>) -> (usize, usize) {
     let names: Vec<String> = rig.joints.iter().map(|joint| joint.name.clone()).collect();
     score_of(rig, &names, truth, complaints)
@@ -189,7 +189,7 @@ fn numbered(rig: &Rig) -> Rig {
     rig
 }
 
-/// What was found in a file, each as (right, all).
+/// Roles found in a file, each as (right, all).
 #[derive(Clone, Copy, Default)]
 struct Scores {
     /// With names and shape.
@@ -460,7 +460,7 @@ fn add_lines(lines: &[&str], parent: Option<usize>, side: Option<usize>, out: &m
     }
 }
 
-/// Where a human's joint of that role is, metres; its toes point forward (+Z).
+/// Place of a human's joint of that role, metres; its toes point forward (+Z).
 fn human(role: &str) -> Vec3 {
     let (x, role) = match (role.strip_prefix("left"), role.strip_prefix("right")) {
         (Some(part), _) => (1.0, part),

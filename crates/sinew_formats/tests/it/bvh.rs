@@ -17,7 +17,7 @@ fn read(text: &str) -> BvhDocument {
     read_bvh(text.as_bytes(), BvhOptions { unit: BvhUnit::Metres(1.0), ..AS_IT_IS }).unwrap()
 }
 
-/// What the reader says about a text, or "" if it accepts it.
+/// Error of the reader for a text, or "" if it accepts it.
 fn complaint(text: &str) -> String {
     read_bvh(text.as_bytes(), AS_IT_IS).err().map(|e| e.to_string()).unwrap_or_default()
 }

@@ -227,12 +227,12 @@ fn mutated_streams_do_no_harm() {
     }
 }
 
-/// How many random cases: all with `SINEW_FULL` set.
+/// Number of random cases: all with `SINEW_FULL` set.
 fn cases() -> usize {
     if std::env::var_os("SINEW_FULL").is_some() { 5000 } else { 100 }
 }
 
-/// What a call allocated at most at one time, bytes.
+/// Most memory that a call allocated at one time, bytes.
 fn peak(call: impl FnOnce()) -> u64 {
     allocation_counter::measure(call).bytes_max
 }

@@ -32,7 +32,7 @@ fn key_error(rig: &Rig, clip: &Clip) -> f32 {
     worst
 }
 
-/// Of what was sampled from a key, component by component; −q is q, and what is no unit quaternion is made one.
+/// Largest difference of what was sampled from a key, component by component; −q is q, and what is no unit quaternion is made one.
 fn distance(channel: &Channel, found: LocalTransform, key: &[f32]) -> f32 {
     let largest = |off: [f32; 4]| off.into_iter().fold(0.0, |a, b: f32| sinew_math::max(a, b.abs()));
     let vector = |v: sinew_math::Vec3| largest([v.x - key[0], v.y - key[1], v.z - key[2], 0.0]);
@@ -64,7 +64,7 @@ fn interpolations(clip: &Clip) -> String {
     clip.channels.iter().map(name).collect::<BTreeSet<_>>().into_iter().collect::<Vec<_>>().join(", ")
 }
 
-/// What may stand in a cell of a table.
+/// Text as it may stand in a cell of a table.
 fn cell(text: &str) -> String {
     text.replace('|', "\\|")
 }

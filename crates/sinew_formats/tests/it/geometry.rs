@@ -1,4 +1,4 @@
-//! How vertex data may be stored: each way against the numbers that went in.
+//! Ways in which vertex data may be stored: each against the numbers that went in.
 
 use sinew_anim::{Primitive, Rig};
 use sinew_formats::{ReadOptions, no_files, read_gltf};

@@ -7,7 +7,7 @@ use std::path::Path;
 
 const DECODE: ReadOptions = ReadOptions { textures: Textures::Decode };
 
-/// What the reader says about a JSON text, or "" if it accepts it.
+/// Error of the reader for a JSON text, or "" if it accepts it.
 fn complaint(json: &str) -> String {
     read_gltf(json.as_bytes(), DECODE, &mut no_files).err().map(|e| e.to_string()).unwrap_or_default()
 }

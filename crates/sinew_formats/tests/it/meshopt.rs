@@ -14,7 +14,7 @@ struct File {
     accessors: Vec<Value>,
 }
 
-/// How a view is to be stored.
+/// Encoding in which a view is stored.
 #[derive(Clone, Copy, PartialEq)]
 enum Storage {
     Plain,

@@ -115,11 +115,11 @@ pub fn attributes(bytes: &[u8], stride: usize, version: u8) -> Vec<u8> {
     out
 }
 
-/// What follows codes 0xF0 to 0xFD: which of the other two corners is new (0), or how many vertices back.
+/// Byte that follows codes 0xF0 to 0xFD: which of the other two corners is new (0), or how many vertices back.
 const TABLE: [u8; 16] =
     [0x00, 0x12, 0x10, 0x01, 0x11, 0x21, 0x20, 0x02, 0x13, 0x31, 0x30, 0x03, 0x22, 0x33, 0, 0];
 
-/// What was pushed so many before the next.
+/// Entry that was pushed so many before the next.
 fn back_by<T: Copy>(list: &[T], by: usize) -> Option<T> {
     list.len().checked_sub(by).map(|at| list[at])
 }

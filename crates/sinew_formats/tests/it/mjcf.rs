@@ -123,7 +123,7 @@ fn assert_range(found: Range, lo: f32, hi: f32) {
     assert!(max((found.lo - expected.lo).abs(), (found.hi - expected.hi).abs()) < 1e-6, "{found:?}");
 }
 
-/// Of a joint that swings about one axis and twists.
+/// Limits of a joint that swings about one axis and twists.
 fn two_ranges(joint: &MjcfJoint) -> [Range; 2] {
     let JointKind::SixDof(six) = joint.kind else { panic!("{:?}", joint.kind) };
     assert_eq!((six.linear, six.swing_z), ([AxisMotion::Locked; 3], AxisMotion::Locked));
@@ -383,7 +383,7 @@ fn shapes_meet_where_either_is_affine_to_the_other() {
     assert_eq!(with_last, [true, true, false, false, false]);
 }
 
-/// What the reader says about contents of a `<mujoco>`, or "" if it accepts them.
+/// Error of the reader for contents of a `<mujoco>`, or "" if it accepts them.
 fn complaint(contents: &str) -> String {
     let text = format!("<mujoco>\n{contents}</mujoco>");
     read_mjcf(text.as_bytes()).err().map(|error| error.to_string()).unwrap_or_default()

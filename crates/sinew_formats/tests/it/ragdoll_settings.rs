@@ -89,7 +89,7 @@ fn bytes_changed_at_random_do_no_harm() {
     }
 }
 
-/// What is taught is what is read.
+/// Settings that are taught are those that are read.
 #[test]
 fn the_examples_of_the_page_are_read() {
     let page = include_str!("../../../../docs/ragdoll.md");
