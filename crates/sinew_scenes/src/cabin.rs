@@ -7,7 +7,7 @@ use sinew::math::{Rotation, Transform, Vec3, trig};
 use sinew::physics::def::{BodyDef, BodyKind};
 use sinew::physics::shape::{Shape, ShapeDef};
 
-/// Which world to build.
+/// World to build: with the cabin or without.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Site {
     /// The cabin on its posts, with porch and stairs.
@@ -19,7 +19,7 @@ pub enum Site {
 /// A static thing to collide with and to draw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prop {
-    /// What it is; not unique.
+    /// Name of the kind of thing; not unique.
     pub name: &'static str,
     /// One shape at the body's origin: a box, or for the ground a half-space.
     pub body: BodyDef,
@@ -27,7 +27,7 @@ pub struct Prop {
     pub color: [f32; 3],
 }
 
-/// Where the character starts.
+/// Start of the character.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spawn {
     /// World from character: soles' middle, facing +Z of the transform.
@@ -88,8 +88,8 @@ impl Site {
         props
     }
 
-    /// Where the character starts: with a cabin, inside behind the door, facing the stairs; else at the same place on
-    /// the ground.
+    /// Start of the character: with a cabin, inside behind the door, facing the stairs; else at the same place on the
+    /// ground.
     pub fn spawn(self) -> Spawn {
         let start = FRONT - 0.4;
         let height = if self == Self::CabinWithStairs { PORCH_HEIGHT } else { 0.0 };
@@ -258,7 +258,7 @@ fn roof(props: &mut Vec<Prop>) {
     props.push(block("chimney", low, v(1.65, ridge + 0.75, middle - 0.6), STONE));
 }
 
-/// What stands on the grass beside the way: crates, a wood pile, pines.
+/// Adds the things on the grass beside the way: crates, a wood pile, pines.
 fn meadow(props: &mut Vec<Prop>) {
     let yaw = |degrees: f32| Rotation::from_axis_angle(Vec3::Y, degrees.to_radians());
     props.push(turned("crate", v(2.95, 0.3, -0.7), v(0.3, 0.3, 0.3), yaw(18.0), CRATE));

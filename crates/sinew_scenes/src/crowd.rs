@@ -8,7 +8,7 @@ use sinew::math::{Affine, Random, Rotation, Vec3, trig};
 
 /// Joints of the rig.
 const JOINTS: usize = 50;
-/// Of these, joints in a row; each further row hangs on one joint of the first.
+/// Number of joints in a row; each further row hangs on one joint of the first.
 const ROW: usize = 10;
 /// Keys of each moving track: two seconds at 30 Hz.
 const KEYS: u16 = 61;
@@ -28,10 +28,10 @@ pub struct CrowdScene {
     pub characters: Vec<Character>,
 }
 
-/// What tells a character from the others.
+/// Differences of one character from the others.
 #[derive(Clone, Copy, Debug)]
 pub struct Character {
-    /// Where in each clip it begins, seconds.
+    /// Start time in each clip, seconds.
     pub start: [f32; 2],
     /// Share of the second clip.
     pub weight: f32,
@@ -116,7 +116,7 @@ impl Crowd {
         &self.sampled
     }
 
-    /// What a character came to in the last step.
+    /// Model pose of a character after the last step.
     pub fn model(&self, character: usize) -> &ModelPose {
         &self.characters[character].model
     }

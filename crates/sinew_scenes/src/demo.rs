@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Length: the walk, the fall, getting up, and a few steps; seconds.
 const SECONDS: f32 = 10.5;
-/// How far before the edge of the porch the hit comes, metres.
+/// Distance before the edge of the porch at which the hit comes, metres.
 const HIT_BEFORE_EDGE: f32 = 0.45;
 /// In the back, N·s: what a shove with both hands gives.
 const IMPULSE: Vec3 = Vec3::new(0.0, 0.0, 110.0);
@@ -22,9 +22,9 @@ const HIT_ROLE: &str = "chest";
 pub struct Demo {
     /// The mannequin with its walk and both ways to get up.
     pub character: Arc<CharacterDef>,
-    /// Where it starts.
+    /// Start pose of the character in the world.
     pub world_from_character: Transform,
-    /// What stands in the world.
+    /// Things that stand in the world.
     pub props: Vec<Prop>,
     /// The bodies of `props`.
     pub bodies: Vec<BodyDef>,
@@ -48,7 +48,7 @@ impl Demo {
         }
     }
 
-    /// What [`bake`](sinew::ragdoll::bake()) takes.
+    /// Input of [`bake`](sinew::ragdoll::bake()).
     pub fn input(&self) -> BakeInput<'_> {
         BakeInput {
             world_from_character: self.world_from_character,

@@ -1,4 +1,4 @@
-//! What scenes are put together from.
+//! Parts that scenes are put together from.
 
 use sinew::math::{Rotation, Sym3, Transform, Vec3};
 use sinew::physics::{

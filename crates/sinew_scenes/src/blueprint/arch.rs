@@ -9,10 +9,10 @@ use std::sync::Arc;
 /// Half the span, and what the middle of the stones has for the parameter of its catenary, metres: `y = −a cosh(x / a)`.
 const HALF_SPAN: f32 = 3.5;
 const PARAMETER: f32 = 2.0;
-/// Of the stones across the line of thrust, and half of it along the arch's axis, metres.
+/// Thickness of the stones across the line of thrust, and half of their width along the arch's axis, metres.
 const THICKNESS: f32 = 0.4;
 const HALF_WIDTH: f32 = 0.25;
-/// Of a pier and of a block on top, metres.
+/// Half extents of a pier and of a block on top, metres.
 const PIER_HALF: Vec3 = Vec3::new(0.6, 0.25, 0.5);
 const BLOCK_HALF: Vec3 = Vec3::new(0.3, 0.15, 0.25);
 const MASONRY: Material = Material { friction: 0.6, restitution: 0.0, rolling: 0.0, ..Material::DEFAULT };
@@ -43,7 +43,7 @@ pub fn arch(stones: usize, blocks: usize) -> Blueprint {
     scene
 }
 
-/// Where two stones meet, or one meets its pier, in the plane z = 0.
+/// Joint between two stones, or between one and its pier, in the plane z = 0.
 #[derive(Clone, Copy)]
 pub(crate) struct Joint {
     /// Half-way between its ends.

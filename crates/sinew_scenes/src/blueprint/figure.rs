@@ -117,7 +117,7 @@ fn figure(scene: &mut Blueprint, base: Vec3, yaw: f32) {
     figure_at(scene, Transform::new(base, Rotation::from_axis_angle(Vec3::Y, yaw)), 1.0);
 }
 
-/// Likewise anyhow turned, `scale` times as large.
+/// Adds a standing figure, turned in any way and `scale` times as large.
 pub(super) fn figure_at(scene: &mut Blueprint, stand: Transform, scale: f32) {
     let mut figure = Figure { scene, stand, scale };
     let pelvis = figure.cuboid([0.15, 0.09, 0.09], [0.0, 0.95, 0.0]);
@@ -136,7 +136,7 @@ struct Figure<'a> {
     scene: &'a mut Blueprint,
     /// World from the figure's own frame.
     stand: Transform,
-    /// Of all lengths.
+    /// Scale factor of all lengths.
     scale: f32,
 }
 

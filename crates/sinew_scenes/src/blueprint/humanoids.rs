@@ -41,7 +41,7 @@ pub fn humanoid() -> RagdollDef {
     def
 }
 
-/// Of a joint's twist or hinge, radians.
+/// Start angle of a joint's twist or hinge, radians.
 fn start_angle(kind: JointKind) -> f32 {
     match kind {
         JointKind::Hinge { limit: Some(range) } => clamp(0.0, range.lo, range.hi),
@@ -50,12 +50,12 @@ fn start_angle(kind: JointKind) -> f32 {
     }
 }
 
-/// What a figure's limits are in a blueprint.
+/// Joint limits of a figure in a blueprint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Limits {
-    /// Those of the ragdoll, and its joints' friction.
+    /// Limits of the ragdoll, and its joints' friction.
     Own,
-    /// Those that every engine has: round cones as wide as the ellipse in the mean, hinges, and no friction in joints.
+    /// Limits that every engine has: round cones as wide as the ellipse in the mean, hinges, and no friction in joints.
     Common,
 }
 

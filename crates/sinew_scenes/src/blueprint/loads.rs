@@ -80,7 +80,7 @@ pub(crate) fn leaning(scene: &mut Blueprint, touch: Vec3, degrees: f32, mass: f3
 /// A limp figure, `scale` times as large as a man, on its back along x, its centre of mass over the middle of a level
 /// place.
 pub(crate) fn figure(scene: &mut Blueprint, place: Transform, scale: f32) {
-    /// Of its centre of mass over its soles, and half of its chest's depth, metres.
+    /// Height of its centre of mass over its soles, and half of its chest's depth, metres.
     const CENTER: f32 = 1.04;
     const BACK: f32 = 0.1;
     let on_its_back = Rotation::from_axis_angle(Vec3::X, -FRAC_PI_2);

@@ -34,11 +34,11 @@ use sinew::physics::{
 /// A scene before any engine has it.
 #[derive(Clone, Debug)]
 pub struct Blueprint {
-    /// What people call it.
+    /// Name of the scene.
     pub name: &'static str,
     /// m/s².
     pub gravity: Vec3,
-    /// Whether bodies may fall asleep.
+    /// Setting that says whether bodies may fall asleep.
     pub sleeping: Sleeping,
     /// Steps of 1/60 s that it is run for.
     pub steps: u32,
@@ -59,13 +59,13 @@ pub struct BlueprintJoint {
     pub b: usize,
     /// Anchor and axes in the start pose; hinges and twists are about x.
     pub world_from_joint: Transform,
-    /// What is free.
+    /// Kind of joint: the degrees of freedom that it leaves.
     pub kind: JointKind,
     /// Torque that resists what is free, N·m.
     pub friction_torque: f32,
 }
 
-/// What a [`Blueprint`] has become in a world: ids in its order.
+/// Ids of a [`Blueprint`]'s bodies and joints in a world, in its order.
 #[derive(Clone, Debug, Default)]
 pub struct Built {
     /// One for each body.

@@ -74,7 +74,7 @@ fn on_floor(name: &'static str) -> Blueprint {
 const THICKNESS: f32 = 0.002;
 const LENGTH: f32 = 0.4;
 const WIDTH: f32 = 0.2;
-/// Of two cards that lean against each other, each from the plumb line, radians.
+/// Lean of two cards against each other, each from the plumb line, radians.
 const LEAN: f32 = 25.0 * PI / 180.0;
 /// From a pair to the next, metres: the lying cards reach over both tops, but not to the feet of the next storey.
 const PITCH: f32 = 0.38;

@@ -90,7 +90,7 @@ fn rolling(radius: f32) -> Material {
 
 /// Ground whose height is a product of two sines.
 pub(crate) struct Waves {
-    /// Of 1 m along each side.
+    /// Number of cells along each side, each of 1 m.
     pub cells: usize,
     /// From the middle to the crests, metres.
     pub height: f32,
@@ -99,7 +99,7 @@ pub(crate) struct Waves {
 }
 
 impl Waves {
-    /// Of the corner in a row and a column, metres.
+    /// Height of the corner in a row and a column, metres.
     fn height(&self, row: usize, column: usize) -> f32 {
         let [along_x, along_z] = self.frequencies.map(|frequency| TAU * frequency);
         self.height * trig::sin(along_x * column as f32) * trig::sin(along_z * row as f32)
@@ -111,7 +111,7 @@ impl Waves {
         (0..side).flat_map(move |row| (0..side).map(move |column| self.height(row, column)))
     }
 
-    /// Where its corner is if its middle is to be at the origin.
+    /// Position of its first corner when its middle is at the origin, metres.
     fn corner(&self) -> Vec3 {
         Vec3::new(-0.5, 0.0, -0.5) * self.cells as f32
     }

@@ -17,7 +17,7 @@ use std::sync::Arc;
 pub struct Figure<'a> {
     /// Its joints and meshes.
     pub rig: &'a Rig,
-    /// Where each joint is: from its own space to the world's, metres.
+    /// Transform of each joint from its own space to the world's, metres.
     pub world_from_joint: &'a [Affine],
 }
 
@@ -74,7 +74,7 @@ pub(super) struct Actor {
     marks: Vec<(BodyId, usize)>,
 }
 
-/// What is marked, as for motion capture.
+/// Joints that are marked, as for motion capture.
 const MARKED: [&str; 5] = ["head", "leftHand", "rightHand", "leftFoot", "rightFoot"];
 
 impl Actor {

@@ -11,7 +11,7 @@ use sinew::physics::{BodyDef, BodyId, Drag, FieldDef, FieldId, FieldKind, Filter
 /// kg/m³.
 const AIR: f32 = 1.225;
 
-/// Of bodies of a radius, without the bodies that something holds.
+/// Area of a disk of this radius, m².
 fn disk(radius: f32) -> f32 {
     PI * radius * radius
 }

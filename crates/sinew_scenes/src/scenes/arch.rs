@@ -80,7 +80,7 @@ impl Script for Arch {
     }
 }
 
-/// What one end of an arch stands on.
+/// Pier that one end of an arch stands on.
 #[derive(Clone, Copy)]
 struct Pier {
     /// N.
@@ -98,7 +98,7 @@ impl Pier {
         Self { weight: world.mass(pier).mass * GRAVITY, held }
     }
 
-    /// What it does to the arch, about the middle of their joint.
+    /// Reaction of the pier on the arch, about the middle of their joint.
     fn load(self, world: &World) -> Reaction {
         // Its own weight is right below that.
         let Reaction { force, torque } = world.reaction(self.held);
@@ -106,22 +106,22 @@ impl Pier {
     }
 }
 
-/// Where an arch's weights are, and where they are handed on.
+/// Weights of an arch, and the joints at which they are handed on.
 struct Masonry {
     /// From −x to +x.
     joints: Vec<Joint>,
-    /// Of the stones between them; with the keystone the blocks on it.
+    /// Weights of the stones between the joints; with the keystone the blocks on it.
     weights: Vec<Weight>,
 }
 
 struct Weight {
     newtons: f32,
-    /// Of its centre, metres.
+    /// Position of its centre along x, metres.
     x: f32,
 }
 
 impl Masonry {
-    /// Of stones and the blocks after them.
+    /// Masonry of stones and the blocks after them.
     fn new(world: &World, joints: Vec<Joint>, bodies: &[BodyId]) -> Self {
         let newtons = |&id: &BodyId| world.mass(id).mass * GRAVITY;
         let (stones, blocks) = bodies.split_at(joints.len() - 1);
@@ -131,8 +131,8 @@ impl Masonry {
         Self { joints, weights }
     }
 
-    /// How far from the joints' middles they are crossed by the line along which the forces go, which is known from what
-    /// the first pier does: the farthest, as a share of the way to a joint's end. At 1 the joint opens like a hinge.
+    /// Largest distance from a joint's middle at which the line of thrust crosses it, as a share of the way to the
+    /// joint's end. The line is known from the first pier's reaction. At 1 the joint opens like a hinge.
     fn line_of_thrust(&self, pier: Reaction) -> f32 {
         let mut force = pier.force;
         // About the world's z axis.
@@ -150,7 +150,7 @@ impl Masonry {
         farthest
     }
 
-    /// How hard the halves press against each other: between the least and the most at which the line of thrust is within
+    /// Thrust of the halves against each other: between the least and the most at which the line of thrust is within
     /// the foot and within the keystone's joint (Heyman 1966, "The stone skeleton").
     ///
     /// Half of the keystone's load `P` and the stones on this side of it turn about the foot at `p` one way, the thrust `H`

@@ -97,7 +97,7 @@ impl Fighter {
 struct Watch {
     /// Least distance of two movers' surfaces, metres.
     nearest: f32,
-    /// Of the referee's soles, metres.
+    /// Greatest height of the referee's soles, metres.
     highest: f32,
     /// Steps in which one that stands was outside of the ring.
     outside: u32,

@@ -16,7 +16,7 @@ pub(super) const EXPLOSION: Scene = Scene {
 };
 
 const RADIUS: f32 = 0.1;
-/// How far the blast reaches, metres.
+/// Reach of the blast, metres.
 const REACH: f32 = 4.0;
 /// From its centre to the nearest point of the balls beside it and of the one above, metres.
 const NEAR: f32 = 1.0;
@@ -47,7 +47,7 @@ struct Blast {
     /// Behind the wall, and beyond its reach.
     spared: [BodyId; 2],
     impulse: f32,
-    /// Of the one above, metres over where it was.
+    /// Greatest rise of the ball above the blast, metres over where it was.
     highest: f32,
 }
 

@@ -213,7 +213,7 @@ impl Runner {
         laps.next().zip(laps.next()).map_or(0.0, |(walk, run)| (walk - run).abs() as f32)
     }
 
-    /// Of each track, so far.
+    /// Laps of each track so far.
     fn laps(&self) -> impl Iterator<Item = f64> {
         let set = &self.actor.cast.set;
         self.actor.animator.tracks().map(|track| {

@@ -27,7 +27,7 @@ pub(super) const BLOB: Scene = Scene {
 };
 
 const MASS: Setting = Setting::number("mass", 0.6, (0.05, 10.0), "of the ball, kg");
-/// Of the balls with their skin, and of the skin, metres.
+/// Radius of the balls with their skin, and thickness of the skin, metres.
 const RADIUS: f32 = 0.12;
 const SKIN: f32 = 0.005;
 /// From which they fall, of their lowest points, metres.
@@ -121,10 +121,10 @@ pub(super) const STEEL_VS_BASKETBALL: Scene = Scene {
 /// Restitution of the steel ball.
 const STEEL: f32 = 0.8;
 
-/// What came of one ball.
+/// Record of one ball's bounce.
 #[derive(Clone, Copy, Default)]
 struct Bounce {
-    /// Of its middle while it fell, m/s.
+    /// Downward speed of its middle while it fell, m/s.
     fall: Option<f32>,
     /// Steps in which it was on the floor.
     contact: u32,

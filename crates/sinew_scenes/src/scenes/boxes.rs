@@ -15,7 +15,7 @@ pub(super) const AABB_VS_OBB: Scene = Scene {
     build: aabb_vs_obb,
 };
 
-/// Of the box across, metres.
+/// Half of the box's width, metres.
 const HALF_WIDTH: f32 = 0.25;
 /// One turn in 360 steps, rad/s.
 const TURNING: f32 = core::f32::consts::TAU / 6.0;
@@ -33,7 +33,7 @@ fn aabb_vs_obb(setup: &Setup<'_>) -> Instance {
     )
 }
 
-/// Of a body's bounds, and of the oriented box that is its shape, m³.
+/// Volumes of a body's bounds, and of the oriented box that is its shape, m³.
 fn volumes(world: &World, body: BodyId) -> [f32; 2] {
     let oriented = world.shapes(body).map(|(shape, frame)| match shape {
         Shape::Box { half_extents } => Obb::from_transform(&frame, half_extents).volume(),
@@ -45,9 +45,9 @@ fn volumes(world: &World, body: BodyId) -> [f32; 2] {
 struct Turning {
     body: BodyId,
     slenderness: f32,
-    /// Of the oriented box at the start, m³.
+    /// Volume of the oriented box at the start, m³.
     volume: f32,
-    /// Of the bounds' volume over the oriented box's, over all steps.
+    /// Sum over all steps of the bounds' volume over the oriented box's, and the largest such ratio.
     ratio_sum: f64,
     ratio_max: f32,
     /// The largest that a ratio was off its closed form, as a share of it.
@@ -114,11 +114,11 @@ pub(super) const POINT_IN_OBB: Scene = Scene {
     build: point_in_obb,
 };
 
-/// Of the box, metres.
+/// Half extents of the box, metres.
 const HALF_EXTENTS: Vec3 = Vec3::new(1.5, 0.25, 0.5);
-/// Of the probes at the start, metres.
+/// Height of the probes at the start, metres.
 const START_HEIGHT: f32 = 1.5;
-/// Where the probes come down, metres along x.
+/// Positions at which the probes come down, metres along x.
 const LINES: [f32; 5] = [-0.4, -0.2, 0.0, 0.2, 0.4];
 
 fn point_in_obb(setup: &Setup<'_>) -> Instance {
@@ -162,7 +162,7 @@ struct Probes {
     depth_off: f32,
     /// The largest that a direction was off the normal of the nearer face, radians.
     turned: f32,
-    /// How often the world said that a probe was inside where its distance said outside, or the other way round.
+    /// Number of times that the world said a probe was inside where its distance said outside, or the other way round.
     wrong_sides: u32,
 }
 

@@ -22,7 +22,7 @@ pub(super) const CABIN: Scene = Scene {
     build: cabin,
 };
 
-/// Of a ball, metres.
+/// Radius of a ball, metres.
 const RADIUS: f32 = 0.08;
 /// Lowest ball at the start, metres: above the ridge.
 const HEIGHT: f32 = 8.0;
@@ -120,7 +120,7 @@ fn rounded_box(half: Vec3, bands: usize, mut out: impl FnMut([Vec3; 3])) {
     }
 }
 
-/// How the mesh lies where balls touch boxes.
+/// Errors of the render mesh where balls touch boxes.
 #[derive(Default)]
 struct Contacts {
     count: u32,

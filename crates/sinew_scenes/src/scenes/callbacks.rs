@@ -69,7 +69,7 @@ struct Heard {
     foot: usize,
     /// Seconds from the start.
     time: f64,
-    /// Of the ball of the foot in that moment's step, in the world.
+    /// Position of the ball of the foot in that moment's step, in the world, metres.
     place: Vec3,
 }
 
@@ -180,7 +180,7 @@ impl Script for Footsteps {
     }
 }
 
-/// Of a football: 0.43 kg.
+/// Radius and density of a football, metres and kg/m³: 0.43 kg.
 const BALL_RADIUS: f32 = 0.11;
 const DENSITY: f32 = 77.0;
 /// Steps of each of the two spans of the flight that are compared.
@@ -227,7 +227,7 @@ fn punched(setup: &Setup<'_>) -> Instance {
 /// From the wrist to the knuckles, metres.
 const HAND: f32 = 0.1;
 
-/// What the callback said.
+/// Record of the punch that the callback reported.
 #[derive(Clone, Copy)]
 struct Hit {
     step: u64,
@@ -242,12 +242,12 @@ struct Punched {
     ball: BodyId,
     /// Asked for, N·s.
     impulse: f32,
-    /// Where the knuckles should be.
+    /// Position at which the knuckles should be, in the world, metres.
     fist: Vec3,
     hit: Option<Hit>,
-    /// Of the ball, at three moments of its flight, metres.
+    /// Heights of the ball at three moments of its flight, metres.
     heights: Vec<f32>,
-    /// Of the ball after the punch, m/s.
+    /// Speed of the ball after the punch, m/s.
     speed: Option<f32>,
     gone: Gone,
 }

@@ -68,7 +68,7 @@ pub(super) const HANGING_ROPE: Scene = Scene {
 
 const LINK: Setting = Setting::number("link", 0.0, (0.0, 10.0), "length of a link, m; 0: 1, 0.5 and 0.25 m");
 
-/// What a chain is held to.
+/// Limits that a chain is held to.
 struct Musts {
     gap: Expected,
     gap_per_link: Expected,

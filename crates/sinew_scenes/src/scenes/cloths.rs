@@ -25,7 +25,7 @@ pub(super) const CLOTH: Scene = Scene {
 
 const SIDE: Setting = Setting::whole("side", 12, (2, 100), "springs along each edge");
 const MASS: Setting = Setting::number("mass", 0.3, (0.01, 10.0), "of the cloth, kg");
-/// Of each edge, metres.
+/// Length of each edge, metres.
 const EDGE: f32 = 1.0;
 
 /// A square of cotton around the origin, level.
@@ -52,7 +52,7 @@ fn level(setup: &Setup<'_>) -> Cloth {
 
 struct Held {
     cloth: GroupId,
-    /// Of all that it carries, itself included, N.
+    /// Weight of all that it carries, itself included, N.
     weight: f32,
 }
 

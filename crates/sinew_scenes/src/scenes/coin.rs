@@ -24,7 +24,7 @@ pub(super) const COIN: Scene = Scene {
 /// Metres.
 const RADIUS: f32 = 0.5;
 const HALF_THICKNESS: f32 = 0.02;
-/// How long its rate is measured, seconds.
+/// Time for which its rate is measured, seconds.
 const MEASURED: f64 = 0.5;
 /// Lever of its rolling resistance from then on, metres: without any it would whirl for minutes.
 const ROLLING: f32 = 0.02;
@@ -60,7 +60,7 @@ fn rate(sin: f32, cos: f32) -> f32 {
 
 struct Coin {
     coin: BodyId,
-    /// Of its axis about the vertical.
+    /// Turn of its axis about the vertical.
     turn: Turn,
     /// Sum of the rates at which it should turn at the tilts that it had, rad/s.
     due: f32,
@@ -68,7 +68,7 @@ struct Coin {
     looks: u16,
     /// Seconds.
     asleep: Option<f32>,
-    /// Of a ball that falls, for gravity's sake.
+    /// Free fall of a ball, which checks gravity.
     flight: Flight,
 }
 

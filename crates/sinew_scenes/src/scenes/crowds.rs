@@ -35,7 +35,7 @@ pub(super) const RAIN: Scene = Scene {
 /// Boxes that fall.
 struct Rain {
     bodies: Vec<BodyId>,
-    /// Of the first.
+    /// Free fall of the first box.
     flight: Flight,
 }
 
@@ -69,7 +69,7 @@ fn pile(setup: &Setup<'_>) -> Instance {
     Instance::new(world, heap)
 }
 
-/// Of a figure.
+/// Number of bodies of one figure.
 const BODIES_OF_ONE: usize = 15;
 /// Beyond a limit, radians: what counts as exceeded.
 const EXCEEDED: f32 = 0.1;
@@ -79,7 +79,7 @@ const LOOK: u64 = 30;
 struct Pile {
     bodies: Vec<BodyId>,
     joints: Vec<JointId>,
-    /// Of the first figure.
+    /// Free fall of the first figure.
     flight: Flight,
     gap_max: f32,
     /// Most joints beyond their limits at once.

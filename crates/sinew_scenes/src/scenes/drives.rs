@@ -31,7 +31,7 @@ pub(super) const HIT_REACTION: Scene = Scene {
     build: hit_reaction,
 };
 
-/// Where the pelvis of the first is pinned: soles so high, metres.
+/// Height of the soles at which the pelvis of the first is pinned, metres.
 const STAND: f32 = 0.4;
 
 fn powered(setup: &Setup<'_>) -> Instance {
@@ -69,7 +69,7 @@ struct Held {
     ragdoll: Ragdoll,
     drives: Drives,
     targets: Vec<Transform>,
-    /// Of its drives, J.
+    /// Work of its drives, J.
     work: f32,
 }
 
@@ -79,13 +79,13 @@ impl Held {
         self.drives.apply(world, &self.def, &self.ragdoll, &self.targets, &still);
     }
 
-    /// How far a body is from where it should be, metres.
+    /// Distance of a body from where it should be, metres.
     fn off(&self, world: &World, body: usize) -> f32 {
         let center = self.def.bodies[body].mass.center;
         (world.center_of_mass(self.ragdoll.bodies[body]) - self.targets[body].point(center)).length()
     }
 
-    /// How far from straight down an upper arm hangs, degrees.
+    /// Angle between an upper arm and straight down, degrees.
     fn hang(&self, world: &World) -> f32 {
         let arm = body(&self.def, "leftUpperArm");
         let joint = self.def.joints[arm - 1];
@@ -206,7 +206,7 @@ struct Led {
     gone: Gone,
     hand: usize,
     impulse: f32,
-    /// Of drives, J.
+    /// Work of the drives, J.
     work: f32,
     /// Sum of the pins' upward forces over the steps, N·s.
     lifted: f32,
@@ -215,7 +215,7 @@ struct Led {
     /// Largest distance of the arm from where the clip has it, metres: before the hit, in the second after it, in the last
     /// second.
     arm_off: [f32; 3],
-    /// Likewise of the thighs: before the hit and since.
+    /// Largest distance of the thighs from where the clip has them, metres: before the hit and since.
     legs_off: [f32; 2],
 }
 

@@ -70,13 +70,13 @@ enum Frames {
 
 /// The same world at another frame rate.
 struct Other {
-    /// Of the figure that tells of it.
+    /// Name of the metric that counts its differences.
     name: &'static str,
     frames: Frames,
     world: World,
     /// Time that it was given.
     time: Duration,
-    /// How often its state was another one.
+    /// Number of comparisons in which its state was another one.
     differed: u32,
 }
 
@@ -101,7 +101,7 @@ impl Other {
 
 struct FrameRates {
     dropped: BodyId,
-    /// How often states were compared.
+    /// Number of comparisons of states.
     compared: u32,
     /// The world step by step, whatever the frames of who runs the scene.
     stepped: World,
@@ -154,9 +154,9 @@ pub(super) const TAUTOCHRONE: Scene = Scene {
 /// Figures in which the periods are told, from the lowest start to the highest.
 const PERIODS: [&str; 3] = ["period_low_s", "period_middle_s", "period_high_s"];
 
-/// Of the circle that draws the cycloid, metres.
+/// Radius of the circle that draws the cycloid, metres.
 const CIRCLE: f32 = 0.25;
-/// Of a bead, metres.
+/// Radius of a bead, metres.
 const BEAD: f32 = 0.03;
 
 /// Cycloids side by side along z, open to above, with a bead on each: a wire is no shape and no joint of the engine.
@@ -237,10 +237,10 @@ impl PhysicsObject for Wire {
     }
 }
 
-/// What is seen of a bead.
+/// Observations of one bead.
 struct Bead {
     id: BodyId,
-    /// Of the figure that is its period.
+    /// Name of the metric that is its period.
     name: &'static str,
     /// Energy at the start, and the farthest it was from that, J.
     start: f32,

@@ -83,7 +83,7 @@ fn energy(world: &World, ragdoll: &Ragdoll) -> Energy {
 
 struct Falls {
     falls: Vec<Fall>,
-    /// Of the first one.
+    /// Free fall of the first one.
     flight: Flight,
 }
 

@@ -23,7 +23,7 @@ impl Flight {
         Self::damped(world, bodies, 0.0)
     }
 
-    /// Of bodies at rest that lose a share of their velocity per second.
+    /// Flight of bodies at rest that lose a share of their velocity per second.
     pub fn damped(world: &World, bodies: Vec<BodyId>, damping: f32) -> Self {
         let mass = bodies.iter().map(|&id| world.mass(id).mass).sum();
         let start = momentum(world, &bodies);
@@ -39,7 +39,7 @@ impl Flight {
         }
     }
 
-    /// Whether they have met another.
+    /// True if one of them has met another body.
     pub fn landed(&self) -> bool {
         self.landed
     }

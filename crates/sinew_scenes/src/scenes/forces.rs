@@ -43,7 +43,7 @@ fn two_men(setup: &Setup<'_>) -> Instance {
 
 struct Cart {
     body: BodyId,
-    /// Of the forces on it, N along x.
+    /// Sum of the forces on it, N along x.
     sum: f32,
 }
 
@@ -92,7 +92,7 @@ pub(super) const PUSH: Scene = Scene {
     build: push,
 };
 
-/// Of the wheels, metres.
+/// Radius of the wheels, metres.
 const RADIUS: f32 = 0.2;
 
 fn push(setup: &Setup<'_>) -> Instance {
@@ -200,7 +200,7 @@ struct Shot {
     blocks: [BodyId; 3],
     mass: f32,
     speed: f32,
-    /// Of the one that hangs, metres above where it hung.
+    /// Greatest rise of the block that hangs, metres above where it hung.
     highest: f32,
 }
 

@@ -23,11 +23,11 @@ const RINGS: EulerConvention = EulerOrder::Yxz.intrinsic();
 const PITCHES: [f32; 4] = [0.0, 45.0, 80.0, 90.0];
 /// Steps in which they are.
 const PITCHING: u64 = 60;
-/// Of the body inside, about any axis, kg·m².
+/// Moment of inertia of the body inside, about any axis, kg·m².
 const INERTIA: f32 = 0.02;
-/// Of each of the two rings that it can turn, over that of the body.
+/// Moment of inertia of each of the two rings, as a share of that of the body.
 const RING: f32 = 0.1;
-/// Of a free body after the kick, rad/s.
+/// Angular speed of a free body after the kick, rad/s.
 const KICK: f32 = 0.1;
 
 fn gimbal(setup: &Setup<'_>) -> Instance {
@@ -70,9 +70,9 @@ struct Gimbal {
     motor: JointId,
     /// Aimed at, radians.
     pitch: f32,
-    /// Of the motor, J.
+    /// Work of the motor, J.
     work: f32,
-    /// Of the body about the axis of the kick right after it, rad/s.
+    /// Angular speed of the body about the axis of the kick right after it, rad/s.
     answer: Option<f32>,
     /// From lock before the kick, as three angles have it, radians.
     margin: Option<f32>,
@@ -128,7 +128,7 @@ struct Flyer {
     /// From lock where it is closest, radians.
     miss: f32,
     last: Transform,
-    /// Of the outermost of the rings that could carry it, within a step, radians.
+    /// Largest turn within a step of the outermost of the rings that could carry it, radians.
     heading_step: f32,
     margin: f32,
     /// The farthest that its angular velocity was from constant, rad/s.
@@ -190,7 +190,7 @@ impl Flyer {
 struct Gimbals {
     gimbals: [Gimbal; 4],
     free: BodyId,
-    /// Of the free body about the axis of the kick right after it, rad/s.
+    /// Angular speed of the free body about the axis of the kick right after it, rad/s.
     free_spin: Option<f32>,
     flyer: Flyer,
 }

@@ -28,7 +28,7 @@ pub(super) const ELASTIC_PAIRS: Scene = Scene {
 /// Before the hits, m/s.
 const SPEEDS: [f32; 2] = [4.0, -1.0];
 const PAIR_RADIUS: f32 = 0.1;
-/// Of the heavier ball, kg, with the names of the figures that are the speeds after the hit.
+/// Mass of the second ball of each pair, kg, with the names of the metrics that are the speeds after the hit.
 const PAIRS: [(f32, [&str; 2]); 3] = [
     (1.0, ["first_of_equal_m_s", "second_of_equal_m_s"]),
     (3.0, ["first_at_3_m_s", "second_at_3_m_s"]),
@@ -57,7 +57,7 @@ fn elastic_pairs(_: &Setup<'_>) -> Instance {
 }
 
 struct Pair {
-    /// Of the second, kg.
+    /// Mass of the second ball, kg.
     mass: f32,
     names: [&'static str; 2],
     ids: [BodyId; 2],
@@ -130,13 +130,13 @@ struct Cradle {
     balls: Vec<(BodyId, Vec3)>,
     /// Degrees.
     lift: f32,
-    /// How far the first ball was from hanging straight one step ago, degrees.
+    /// Angle of the first ball from hanging straight one step ago, degrees.
     before: f32,
     /// When it first hung straight, s.
     quarter: Option<f32>,
-    /// How far the last ball has come, degrees.
+    /// Largest angle to which the last ball has come, degrees.
     out: f32,
-    /// How far the others were from hanging straight then, degrees.
+    /// Largest angle of the others from hanging straight then, degrees.
     left_behind: f32,
 }
 

@@ -53,7 +53,7 @@ const BALL_RADIUS: f32 = 0.25;
 const FRICTION: Setting = Setting::number("friction", 0.5, (0.0, 2.0), "coefficient");
 
 const HALF_EXTENTS: Vec3 = Vec3::new(0.3, 0.1, 0.3);
-/// Where the box starts, along the slope from the origin, metres.
+/// Start of the box along the slope from the origin, metres.
 const UPHILL: f32 = 10.0;
 /// Steps until the contact has taken the weight, on a millimetre: until then friction is not all there.
 const SETTLING: u64 = 60;
@@ -85,11 +85,11 @@ struct Slope {
     uphill: Vec3,
     /// Weight along the slope, m/s².
     pull: f32,
-    /// What friction can resist, m/s².
+    /// Largest acceleration that friction can resist, m/s².
     hold: f32,
 }
 
-/// How the box moves at some moment.
+/// Motion of the box at some moment.
 #[derive(Clone, Copy)]
 struct Motion {
     /// Along the slope, metres.

@@ -44,12 +44,12 @@ pub trait Script: Send {
     /// The figures so far.
     fn metrics(&self, world: &World) -> Vec<Metric>;
 
-    /// How a picture looks at it.
+    /// View from which a picture shows it.
     fn sight(&self) -> Sight {
         Sight::default()
     }
 
-    /// What a picture shows beside the world, such as what it asks the world for.
+    /// Draws what a picture shows beside the world, such as what the scene asks the world for.
     fn draw(&self, _world: &World, _out: &mut dyn DebugDraw) {}
 
     /// Characters that a picture shows by their skins.
@@ -68,7 +68,7 @@ pub trait Script: Send {
 pub struct Part {
     /// For whom, such as characters in a state; always in the same order.
     pub name: &'static str,
-    /// How many of them.
+    /// Number of them.
     pub count: u32,
 }
 
@@ -94,12 +94,12 @@ impl Instance {
         Self { world, script: Box::new(script), health }
     }
 
-    /// Of a world that no scene made, such as a file's.
+    /// Instance of a world that no scene made, such as a file's.
     pub fn of_world(world: World) -> Self {
         Self::new(world, Unwatched)
     }
 
-    /// How a picture looks at it.
+    /// View from which a picture shows it.
     pub fn sight(&self) -> Sight {
         self.script.sight()
     }
@@ -139,7 +139,7 @@ impl Instance {
         self.step_in_parts(runner, profiler, &mut |_| {});
     }
 
-    /// Likewise; `done` is told when the world has taken its step (a part named [`WORLD`](Self::WORLD), for all its bodies),
+    /// One step in parts: `done` is told when the world has taken its step (a part named [`WORLD`](Self::WORLD), for all its bodies),
     /// and then of each part of what goes along with it, so that a host with a clock knows what took how long.
     pub fn step_in_parts(
         &mut self,
@@ -175,7 +175,7 @@ impl Instance {
         world.update_with(time, |world| step(world, script.as_mut(), health, &World::step, &mut |_| {}))
     }
 
-    /// How many figures every scene has, at the end of its own.
+    /// Number of metrics that every scene has, at the end of its own.
     pub const METRICS_OF_EVERY_SCENE: usize = 2;
 
     /// The figures so far: those of the scene, then `energy_gain_max` and `nan`, which every scene has.
@@ -204,14 +204,14 @@ fn step(
     health.after_step(world, [before, after], script.work_in(world));
 }
 
-/// Of all that moves, kg.
+/// Mass of all that moves, kg.
 fn mass_of(world: &World) -> f32 {
     let of_bodies: f32 = world.body_ids().map(|id| world.mass(id).mass).sum();
     let of_particles: f32 = world.group_ids().flat_map(|id| world.particles(id).masses()).sum();
     of_bodies + of_particles
 }
 
-/// What no scene may show, however long it runs.
+/// Faults that no scene may show, however long it runs: gain of energy, and bodies in quarantine.
 struct Health {
     mass: f32,
     /// That the mass is of.

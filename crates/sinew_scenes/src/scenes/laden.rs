@@ -1,4 +1,4 @@
-//! What stands, with something jointed on it, hanging from it, leaning on it: it stands as well as without.
+//! Stands with something jointed on them, hanging from them, leaning on them: they stand as well as without.
 
 use super::flight::Flight;
 use super::metric::{Expected, Metric};
@@ -20,7 +20,7 @@ const SETTINGS: &[Setting] = &[
     Setting::number("heavy", 1.0, (0.001, 10.0), "of the heavy pair, likewise"),
 ];
 
-/// What stands, beside copies of it that bear loads.
+/// Scene with a stand beside copies of it that bear loads.
 const fn laden(name: &'static str, about: &'static str, build: fn(&Setup<'_>) -> Instance) -> Scene {
     Scene { name, about, steps: STEPS, settings: SETTINGS, build }
 }
@@ -67,10 +67,10 @@ pub(super) const STACK: Scene = laden(
     |setup| side_by_side(setup, &tower(blueprint::loads::stack(10))),
 );
 
-/// What jointed things are put on.
+/// Stand that jointed things are put on.
 struct Host {
     plan: Blueprint,
-    /// Whether its first body is a floor, which all copies share.
+    /// True if its first body is a floor, which all copies share.
     on_floor: bool,
     /// Middle of its level top.
     top: Transform,
@@ -78,23 +78,23 @@ struct Host {
     half: f32,
     /// Over a man's, of the figure that lies there.
     figure: f32,
-    /// Of one of the bodies that bear what lies there, kg.
+    /// Mass of one of the bodies that bear what lies there, kg.
     mass: f32,
-    /// Of the rope over it.
+    /// Points of the rope over it, metres.
     rope: Vec<Vec3>,
     /// From which body a rope hangs, and where.
     edge: (usize, Vec3),
-    /// Where a plank touches it, and by how many degrees it leans.
+    /// Point at which a plank touches it, and by how many degrees the plank leans.
     touch: (Vec3, f32),
-    /// Of the plank, kg.
+    /// Mass of the plank, kg.
     plank: f32,
 }
 
-/// Of a rope over its host, as a share of half the host's width.
+/// Radius of a rope over its host, as a share of half the host's width.
 const ROPE_RADIUS: f32 = 0.06;
 /// Half of the least width on which a man lies with his trunk, metres: on narrower tops a smaller figure does.
 const CHEST: f32 = 0.35;
-/// Of the plank, as a share of the lightest body's mass.
+/// Mass of the plank, as a share of the lightest body's mass.
 const PLANK: f32 = 0.1;
 
 impl Host {
@@ -199,7 +199,7 @@ fn size_ratio() -> Host {
     Host::level(blueprint::stack_ratio(6), Vec3::Y * 7.875, 2.0, (Vec3::new(2.0, 5.0, 0.0), 20.0))
 }
 
-/// Of ten cubes of 0.5 m.
+/// Host of ten cubes of 0.5 m, one on the other.
 fn tower(plan: Blueprint) -> Host {
     Host::level(plan, Vec3::Y * 5.0, 0.25, (Vec3::new(0.25, 1.25, 0.0), 20.0))
 }
@@ -280,7 +280,7 @@ fn side_by_side(setup: &Setup<'_>, host: &Host) -> Instance {
 
 /// A host and its load.
 struct Copy {
-    /// Where the host's bodies belong.
+    /// Poses at which the host's bodies belong.
     placed: Vec<(BodyId, Transform)>,
     load: Vec<BodyId>,
 }
@@ -312,7 +312,7 @@ impl Copy {
 struct Laden {
     /// The first without a load.
     copies: Vec<Copy>,
-    /// Of a ball that falls, for gravity's sake.
+    /// Free fall of a ball, which checks gravity.
     flight: Flight,
     asleep: Option<f32>,
 }

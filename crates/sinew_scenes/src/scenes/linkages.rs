@@ -17,7 +17,7 @@ pub(super) const LINKAGE: Scene = Scene {
     build: linkage,
 };
 
-/// Of everything that hangs, metres.
+/// Height from which everything hangs, metres.
 const HEIGHT: f32 = 3.0;
 
 fn linkage(setup: &Setup<'_>) -> Instance {
@@ -46,7 +46,7 @@ struct FourBars {
     tilt: f32,
 }
 
-/// Of each bar, kg; each is 1 m long.
+/// Mass of each bar, kg; each is 1 m long.
 const BAR_MASS: f32 = 1.0;
 
 impl FourBars {
@@ -107,9 +107,9 @@ struct Crank {
     work_in: f32,
 }
 
-/// Of the crank, metres.
+/// Length of the crank, metres.
 const CRANK: f32 = 0.3;
-/// Of the connecting rod, metres.
+/// Length of the connecting rod, metres.
 const CONNECTING_ROD: f32 = 1.0;
 
 impl Crank {
@@ -203,7 +203,7 @@ struct Tied {
     joint: JointId,
 }
 
-/// Of rope and rod, metres.
+/// Length of rope and rod, metres.
 const ROPE: f32 = 1.5;
 
 impl Tied {

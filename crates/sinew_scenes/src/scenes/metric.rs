@@ -1,6 +1,6 @@
 //! Figures of a run, and what they should be.
 
-/// What a figure should be at the end of a scene's steps.
+/// Expectation for a figure at the end of a scene's steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Expected {
     /// A closed form, and how far from it is still right.
@@ -32,7 +32,7 @@ pub struct Metric {
     pub name: &'static str,
     /// `None` as long as what it tells has not happened.
     pub value: Option<f64>,
-    /// What it should be.
+    /// Expected value of the figure.
     pub expected: Expected,
 }
 
@@ -41,12 +41,12 @@ impl Metric {
         Self { name, value: Some(value.into()), expected }
     }
 
-    /// Of something that may not have happened yet.
+    /// Figure of something that may not have happened yet.
     pub(super) fn awaited(name: &'static str, value: Option<f32>, expected: Expected) -> Self {
         Self { name, value: value.map(f64::from), expected }
     }
 
-    /// Whether the figure is as expected. What is expected of something must have happened.
+    /// True if the figure is as expected. What is expected of something must have happened.
     pub fn is_met(&self) -> bool {
         match (self.expected, self.value) {
             (Expected::Anything, _) => true,

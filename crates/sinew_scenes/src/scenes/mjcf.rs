@@ -29,7 +29,7 @@ struct Start {
     names: Names,
 }
 
-/// What its figures are called.
+/// Names of its metrics.
 struct Names {
     rest_height: &'static str,
     asleep: &'static str,
@@ -90,7 +90,7 @@ fn drop(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Fallen { figures, flight })
 }
 
-/// What to do with the static body of a model.
+/// Treatment of the static body of a model.
 #[derive(Clone, Copy, PartialEq)]
 enum Ground {
     Keep,
@@ -103,7 +103,7 @@ struct Figure {
     start: &'static Start,
     bodies: Vec<BodyId>,
     joints: Vec<JointId>,
-    /// Of each joint after each step, metres and degrees.
+    /// Gap, and overshoot, of each joint after each step, metres and degrees.
     gaps: Vec<f32>,
     overshoots: Vec<f32>,
     penetration_max: f32,
@@ -155,7 +155,7 @@ impl Figure {
         self.bodies.iter().fold(0.0, |deepest, &body| max(deepest, world.penetration(body)))
     }
 
-    /// Of the whole, metres.
+    /// Height of the whole figure's centre of mass, metres.
     fn height(&self, world: &World) -> f32 {
         let mass = |body: &BodyId| world.mass(*body).mass;
         let moment: f32 = self.bodies.iter().map(|body| mass(body) * world.center_of_mass(*body).y).sum();
@@ -188,7 +188,7 @@ fn p99(values: &[f32]) -> f32 {
 
 struct Fallen {
     figures: Vec<Figure>,
-    /// Of the first.
+    /// Free fall of the first figure.
     flight: Flight,
 }
 

@@ -32,15 +32,15 @@ pub(super) const MOCAP: Scene = Scene {
     build: captured,
 };
 
-/// What a character is beside the mannequin.
+/// Proportions of a character beside the mannequin.
 struct Build {
     /// Metres.
     height: f32,
-    /// Of the legs, the arms and the head, beside a mannequin of the same trunk.
+    /// Lengths of the legs, the arms and the head, as shares of those of a mannequin of the same trunk.
     legs: f32,
     arms: f32,
     head: f32,
-    /// Where it begins.
+    /// Start position, metres.
     place: Vec3,
 }
 
@@ -51,7 +51,7 @@ const GIANT: Build =
     Build { height: 14.0, legs: 1.15, arms: 0.45, head: 1.6, place: Vec3::new(-4.5, 0.0, -3.0) };
 
 impl Build {
-    /// How much longer than the mannequin's the way to a joint is, before all is brought to its height.
+    /// Factor by which the way to a joint is longer than the mannequin's, before all is brought to its height.
     fn factor(&self, joint: &str) -> f32 {
         let is = |parts: &[&str]| parts.iter().any(|part| joint.ends_with(part));
         if is(&["LowerLeg", "Foot"]) {
@@ -128,7 +128,7 @@ pub(super) struct Performance {
 const LONGEST: f32 = 600.0;
 
 impl Performance {
-    /// Of a file, or why it cannot be carried over.
+    /// Performance of a file, or why it cannot be carried over.
     pub fn of(document: BvhDocument) -> Result<Self, String> {
         let BvhDocument { rig, clip, rest_pose, .. } = document;
         if clip.duration > LONGEST {
@@ -193,7 +193,7 @@ struct Character {
     height: f32,
     /// Along z so far, metres.
     way: f32,
-    /// How deep an ankle came to be below its height in the reference pose, metres.
+    /// Greatest depth of its toes' joints below the ground, metres.
     sunk: f32,
 }
 
@@ -222,7 +222,7 @@ impl Character {
         }
     }
 
-    /// Of its feet, cm/s for each metre of height.
+    /// Mean slide of its feet, cm/s for each metre of height.
     fn slide(&self) -> f32 {
         100.0 * self.fitted.feet.slide[1].mean / self.height
     }

@@ -85,7 +85,7 @@ use setting::Setup;
 /// A named scenario.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {
-    /// What `sinew run` calls it.
+    /// Name by which `sinew run` finds it.
     pub name: &'static str,
     /// One line for people.
     pub about: &'static str,

@@ -23,13 +23,13 @@ const LENGTH: f32 = 1.0;
 const MASS: f32 = 2.0;
 /// About the hinge at its end, kg·m².
 const MOMENT: f32 = MASS * LENGTH * LENGTH / 3.0;
-/// Of its weight about the hinge while it is level, N·m.
+/// Torque of its weight about the hinge while it is level, N·m.
 const LEVEL_TORQUE: f32 = 0.5 * MASS * GRAVITY * LENGTH;
-/// Where arms are swung to, radians from where they start.
+/// Angle that arms are swung to, radians from where they start.
 const GOAL: f32 = 0.2;
 /// Most that the weak motor may, N·m: half of what it takes to hold its arm.
 const CAP: f32 = 0.5 * LEVEL_TORQUE;
-/// How far an arm falls below the level that half the torque holds which it takes: the positive root of `sin x = x / 2`,
+/// Fall of an arm below the level when its motor has half of the torque that holds it there: the positive root of `sin x = x / 2`,
 /// where its weight has done the work that the motor took, radians.
 const WEAK_FALL: f32 = 1.895_494_3;
 
@@ -116,7 +116,7 @@ impl Oscillator {
         MOMENT * self.omega * self.omega
     }
 
-    /// Where it holds a level arm, radians below: `k x = m g l/2 cos x`, by Newton's method.
+    /// Angle below the level at which it holds an arm, radians: `k x = m g l/2 cos x`, by Newton's method.
     fn sag(&self) -> f32 {
         let weight = LEVEL_TORQUE / self.stiffness();
         (0..8).fold(0.0, |x, _| {
@@ -172,14 +172,14 @@ impl Arm {
         self.formula.see(world.step_count(), expected);
     }
 
-    /// Of the sag and of the torque that bears it, as shares of what they should be.
+    /// Errors of the sag and of the torque that bears it, as shares of what they should be.
     fn static_errors(&self, world: &World) -> [f32; 2] {
         let sag = self.oscillator.sag();
         let torque = LEVEL_TORQUE * trig::cos(sag);
         [-angle(world, self.held) / sag - 1.0, world.reaction(self.held).torque.z / torque - 1.0]
     }
 
-    /// Of the time of the peak and of the overshoot, as shares of what they should be; none without overshoot.
+    /// Errors of the time of the peak and of the overshoot, as shares of what they should be; none without overshoot.
     fn peak_errors(&self) -> Option<[f32; 2]> {
         let ((time, top), (right_time, right_top)) = self.found.found.zip(self.formula.found)?;
         Some([time / right_time - 1.0, (top - 1.0) / (right_top - 1.0) - 1.0])

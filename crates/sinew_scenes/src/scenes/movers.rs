@@ -29,9 +29,9 @@ const STEPS: u8 = 6;
 const TREAD: f32 = 0.3;
 /// Width of a lane, metres.
 const LANE: f32 = 2.4;
-/// Of the belt, m/s.
+/// Speed of the belt, m/s.
 const BELT: f32 = 0.5;
-/// Of the turntable, rad/s.
+/// Angular speed of the turntable, rad/s.
 const SPIN: f32 = 0.8;
 /// Kilograms of the crate, and the coefficient with which it slides.
 const CRATE: f32 = 60.0;
@@ -178,7 +178,7 @@ impl Script for Course {
         }
     }
 
-    /// What moves the crate is the mover behind it: against friction, and into its motion.
+    /// Work of the mover behind the crate on it, J: against friction, and into its motion.
     fn work_in(&self, world: &World) -> f32 {
         let pushed = world.transform(self.crate_).translation.x + 2.0;
         let speed = world.velocity(self.crate_).linear.length();

@@ -46,7 +46,7 @@ fn kepler(setup: &Setup<'_>) -> Instance {
     Instance::new(world, Kepler { planet, particles, orbits, start, energy, drift: 0.0, turned: 0.0 })
 }
 
-/// Where one of the two is on its way.
+/// Progress of one of the two on its way.
 struct Orbit {
     position: Vec3,
     velocity: Vec3,
@@ -79,7 +79,7 @@ impl Orbit {
         Some((self.far[rounds] - self.far[0]) / rounds as f32 * world.def().dt())
     }
 
-    /// Of the axis, radians per round.
+    /// Precession of the axis, radians per round.
     fn precession(&self) -> Option<f32> {
         let [first, last] = self.axes?;
         let rounds = max(self.far.len() as f32 - 1.0, 1.0);
@@ -137,7 +137,7 @@ pub(super) const SUN_EARTH: Scene = Scene {
     build: sun_earth,
 };
 
-/// Of the Earth in those of the Sun.
+/// Mass of the Earth over that of the Sun.
 const EARTH: f32 = 3.003_490e-6;
 
 fn sun_earth(setup: &Setup<'_>) -> Instance {
@@ -160,7 +160,7 @@ fn sun_earth(setup: &Setup<'_>) -> Instance {
     Instance::new(world, SunEarth { sun, earth, field, scale, velocities, gained: [0.0; 2], angle, momentum })
 }
 
-/// How far something has turned about y.
+/// Angle by which something has turned about y.
 struct AngleTurned {
     direction: Vec3,
     sum: f32,
@@ -234,8 +234,8 @@ pub(super) const THREE_BODIES: Scene = Scene {
     build: three_bodies,
 };
 
-/// Of the figure with `G`, masses and size 1 (Chenciner and Montgomery, Annals of Mathematics 152, 2000; numbers by
-/// Simó).
+/// Period of the figure of eight with `G`, masses and size 1 (Chenciner and Montgomery, Annals of Mathematics 152,
+/// 2000; numbers by Simó).
 const EIGHT_PERIOD: f32 = 6.325_914;
 
 fn three_bodies(setup: &Setup<'_>) -> Instance {

@@ -19,7 +19,7 @@ pub(super) const MATRIX_DRIFT: Scene = Scene {
     build: matrix_drift,
 };
 
-/// Of a turn that favours no axis of the body.
+/// Axis of a turn that favours no axis of the body.
 fn oblique() -> Vec3 {
     Vec3::new(1.0, 2.0, 2.0) / 3.0
 }
@@ -141,7 +141,7 @@ struct Journey {
 }
 
 impl Journey {
-    /// What takes the first place into the second.
+    /// Quaternion that takes the first place into the second.
     fn quotient(&self, world: &World) -> Quaternion {
         let at = |id| world.center_of_mass(id);
         Quaternion::quotient(at(self.to), at(self.from)).expect("no place is the origin")
@@ -249,7 +249,7 @@ struct Helpers {
     normalised: BodyId,
     inverse: BodyId,
     to_matrix: BodyId,
-    /// Of the body that is made from a matrix, in its own axes.
+    /// Matrix whose columns are the ends of the body that is made from it, in that body's own axes.
     columns: Mat3,
     /// rad/s.
     spin: f32,

@@ -26,7 +26,7 @@ const COUNTS: [usize; 5] = [2, 3, 4, 5, 10];
 /// Shares of the largest overhang.
 const STANDING: f32 = 0.98;
 const FALLING: f32 = 1.02;
-/// How far the top plank of a stack that stands may have moved, metres: ten soft contacts sink and tilt by 0.1 m.
+/// Greatest move of the top plank of a stack that stands, metres: ten soft contacts sink and tilt by 0.1 m.
 const MOST_MOVED: f32 = 0.12;
 
 fn block_overhang(setup: &Setup<'_>) -> Instance {
@@ -66,7 +66,7 @@ struct Overhang {
     /// Top planks with the places where they were put.
     standing: Vec<(BodyId, Vec3)>,
     falling: Vec<(BodyId, Vec3)>,
-    /// Of a ball beside them.
+    /// Free fall of a ball beside them.
     flight: Flight,
 }
 

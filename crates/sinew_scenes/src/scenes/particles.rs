@@ -18,7 +18,7 @@ pub(super) const PARTICLE: Scene = Scene {
     build: particle,
 };
 
-/// Of the particles, metres.
+/// Radius of the particles, metres.
 const RADIUS: f32 = 0.05;
 /// Above the box, metres.
 const HEIGHT: f32 = 2.0;
@@ -69,13 +69,13 @@ struct Three {
     falls: GroupId,
     slides: GroupId,
     rests: GroupId,
-    /// Of the one that slides, and of the one that rests.
+    /// Start positions of the one that slides, and of the one that rests, metres.
     start: Vec3,
     top: Vec3,
     /// Degrees.
     angle: f32,
     restitution: f32,
-    /// Of the first while it falls, m/s.
+    /// Downward speed of the first while it falls, m/s.
     speed: Option<f32>,
     /// Its greatest height after it fell, metres.
     apex: f32,
@@ -125,7 +125,7 @@ pub(super) const FAST_PARTICLE: Scene = Scene {
 /// From the middle of the room to its walls, and half of what those are thick, metres.
 const ROOM: f32 = 1.0;
 const WALL: f32 = 0.025;
-/// Of a fast particle, metres.
+/// Radius of a fast particle, metres.
 const SHOT: f32 = 0.005;
 
 fn fast_particle(setup: &Setup<'_>) -> Instance {

@@ -35,7 +35,7 @@ fn pendulum(setup: &Setup<'_>) -> Instance {
 }
 
 struct Bob {
-    /// Of the figure that is its period.
+    /// Name of the metric that is its period.
     name: &'static str,
     id: BodyId,
     joint: JointId,

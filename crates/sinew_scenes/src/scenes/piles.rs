@@ -94,12 +94,12 @@ pub(super) const DOMINOES: Scene = Scene {
 const DOMINO_HALF: Vec3 = Vec3::new(0.03, 0.25, 0.12);
 /// From one domino to the next, metres.
 const SPACING: f32 = 0.25;
-/// Of the ball, metres.
+/// Radius of the ball, metres.
 const RADIUS: f32 = 0.1;
 /// Height of the ball's centre at its lowest, where it strikes, metres.
 const STRIKE_HEIGHT: f32 = 0.4;
 const ROD: f32 = 1.0;
-/// How far behind its lowest point the ball meets the first domino, metres: it is at its fastest before it strikes.
+/// Distance behind its lowest point at which the ball meets the first domino, metres: it is at its fastest before it strikes.
 const LATE: f32 = 0.02;
 
 fn dominoes(setup: &Setup<'_>) -> Instance {

@@ -92,7 +92,7 @@ fn stairs(setup: &Setup<'_>) -> Instance {
     Instance::new(world, limp)
 }
 
-/// What joints are held to while they are struck.
+/// Limits that joints are held to while they are struck.
 struct Musts {
     gap_p99: Expected,
     gap_max: Expected,
@@ -100,7 +100,7 @@ struct Musts {
     overshoot_max: Expected,
 }
 
-/// Of the specification.
+/// Limits of the specification.
 const USUAL: Musts = Musts {
     gap_p99: Expected::AtMost(1e-3),
     gap_max: Expected::AtMost(5e-3),
@@ -108,7 +108,7 @@ const USUAL: Musts = Musts {
     overshoot_max: Expected::AtMost(4.0),
 };
 
-/// Likewise, of a throw faster than [`WALL_SPEED`].
+/// Limits for a throw faster than [`WALL_SPEED`].
 const FAST: Musts = Musts {
     gap_p99: Expected::Anything,
     gap_max: Expected::AtMost(0.01),
@@ -134,7 +134,7 @@ pub(super) struct Limp {
     left: Option<f32>,
 }
 
-/// What a hit takes, it takes in this time, seconds.
+/// Time in which a hit takes what it takes, seconds.
 const IMPACT: f32 = 0.1;
 /// Step after which the push comes: in mid-stumble.
 const PUSH_STEP: u64 = 12;
@@ -146,7 +146,7 @@ impl Limp {
         Self::spawn_of(ragdoll_of_mannequin(), world, turn, place, speed)
     }
 
-    /// Likewise of another character.
+    /// Another character in its bind pose, turned about its soles and moving as one, its lowest point at the height of `place`.
     pub fn spawn_of(def: RagdollDef, world: &mut World, turn: Rotation, place: Vec3, speed: Vec3) -> Self {
         let ragdoll = spawn_at(world, &def, &bind_pose(&def), turn, place, speed);
         let mut meter = QualityMeter::new(&def, 10.0);
@@ -200,7 +200,7 @@ pub(super) fn spawn_at(
     Ragdoll::spawn(world, def, &states, &Flesh::default())
 }
 
-/// Where the bodies of a pose are that is turned, its lowest point at the height of `place`.
+/// Poses of the bodies of a pose that is turned, its lowest point at the height of `place`.
 pub(super) fn placed(
     def: &RagdollDef,
     pose: &[Transform],

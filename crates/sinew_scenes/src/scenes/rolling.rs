@@ -45,7 +45,7 @@ struct SlideToRoll {
     rolling: Option<Moment>,
 }
 
-/// How the ball moves at some time.
+/// Motion of the ball at some time.
 #[derive(Clone, Copy)]
 struct Moment {
     /// s.
@@ -54,7 +54,7 @@ struct Moment {
     x: f32,
     /// m/s.
     speed: f32,
-    /// Of the ball over the floor where they touch, m/s.
+    /// Slip velocity of the ball over the floor where they touch, m/s.
     slip: f32,
 }
 

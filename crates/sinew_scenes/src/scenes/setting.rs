@@ -1,4 +1,4 @@
-//! What a user may change about a scene.
+//! Settings that a user may change about a scene.
 
 use super::mocap::Performance;
 use super::parts::GRAVITY;
@@ -10,7 +10,7 @@ use sinew::math::Vec3;
 use sinew::physics::{Sleeping, World, WorldDef};
 use sinew::ragdoll::RagdollDef;
 
-/// What a setting takes: which numbers, ends included, or a file.
+/// Values that a setting takes: a range of numbers, ends included, or a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Domain {
     /// Any number from the first to the second.
@@ -32,11 +32,11 @@ pub enum Domain {
 pub struct Setting {
     /// Its name.
     pub key: &'static str,
-    /// What it is, with its unit.
+    /// Description with its unit.
     pub about: &'static str,
     /// Value unless set; 0 for a file.
     pub default: f32,
-    /// What it may be.
+    /// Values that it may have.
     pub domain: Domain,
 }
 
@@ -97,9 +97,9 @@ pub enum SettingError {
     /// The scene has no such setting.
     #[error("no setting `{key}`; there is {}", list(.known))]
     UnknownKey {
-        /// What was asked for.
+        /// Name that was asked for.
         key: String,
-        /// What there is.
+        /// Names of the settings that there are.
         known: Vec<&'static str>,
     },
     /// Its value is not one that it takes.
@@ -107,9 +107,9 @@ pub enum SettingError {
     Value {
         /// The setting.
         key: &'static str,
-        /// What was given.
+        /// Value that was given.
         value: String,
-        /// What it takes.
+        /// Description of the values that it takes.
         domain: String,
     },
     /// The file that it names cannot be read.
@@ -120,7 +120,7 @@ pub enum SettingError {
     Missing {
         /// The setting.
         key: &'static str,
-        /// What it takes.
+        /// Description of the values that it takes.
         domain: String,
     },
 }
@@ -159,7 +159,7 @@ impl Settings {
         Self { declared, values, model: None, level: None, character: None, motion: None }
     }
 
-    /// What there is to set.
+    /// Settings of the scene.
     pub fn declared(&self) -> &'static [Setting] {
         self.declared
     }
@@ -215,7 +215,7 @@ impl Settings {
         Ok(true)
     }
 
-    /// Whether the scene can start.
+    /// Checks that the scene can start.
     ///
     /// # Errors
     /// A file that has to be set is not.
@@ -244,10 +244,10 @@ impl Settings {
     }
 }
 
-/// What a scene is built from.
+/// Settings and gravity that a scene is built from.
 pub(super) struct Setup<'a> {
     pub settings: &'a Settings,
-    /// Of the world's gravity over the one that expectations are made for.
+    /// World's gravity over the one that expectations are made for.
     pub gravity_factor: f32,
 }
 

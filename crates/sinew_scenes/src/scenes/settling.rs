@@ -43,7 +43,7 @@ pub(super) const ROCKS: Scene = Scene {
 /// Bodies of two figures, which touch from the start.
 const FIGURES: usize = 30;
 
-/// What a plan has, of which the first bodies touch no other before they land; all of it has to sleep after so many steps.
+/// Instance of a plan, of which the first bodies touch no other before they land; all of it has to sleep after so many steps.
 fn settling(setup: &Setup<'_>, plan: &Blueprint, first: usize, asleep_within: u32) -> Instance {
     let mut world = setup.world();
     let built = plan.build_into(&mut world);

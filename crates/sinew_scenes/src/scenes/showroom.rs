@@ -27,7 +27,7 @@ const NEXT_FLOOR: f32 = 6.5;
 const NEXT_BODY: f32 = 1.5;
 /// From a floor up to the next one, metres.
 const STAIR: f32 = 0.5;
-/// What rolls stops: where it does is no closed form.
+/// Surface on which a rolling body stops: where it does is no closed form.
 const SURFACE: Material = Material { friction: 0.6, restitution: 0.0, rolling: 0.05, ..Material::DEFAULT };
 
 fn build(setup: &Setup<'_>) -> Instance {
@@ -99,7 +99,7 @@ fn exhibits() -> [Exhibit; 7] {
     ]
 }
 
-/// What lies on one floor.
+/// Bodies that lie on one floor.
 struct Floor {
     /// Name of the figure that tells of it.
     figure: &'static str,

@@ -1,4 +1,4 @@
-//! How a picture looks at a scene.
+//! View that a picture takes of a scene.
 
 use sinew::math::Vec3;
 use sinew::physics::boxes::Aabb;
@@ -8,13 +8,13 @@ use sinew::physics::boxes::Aabb;
 pub struct Sight {
     /// Toward the camera, any length. Default a little from above and from the right of a viewer who looks along −z.
     pub direction: Vec3,
-    /// What has to be on the picture, world space, metres. Default whatever moves.
+    /// Bounds of what has to be on the picture, world space, metres. Default whatever moves.
     pub bounds: Option<Aabb>,
     /// Default those of a few bodies.
     pub trails: Trails,
 }
 
-/// Whether the ways of the bodies' centres of mass are drawn.
+/// Choice whether the ways of the bodies' centres of mass are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trails {
     /// If there are no more than a dozen bodies that move and nothing else.

@@ -80,7 +80,7 @@ fn hung(setup: &Setup<'_>, mass: f32, stiffnesses: &[f32]) -> Instance {
 
 struct Hung {
     group: GroupId,
-    /// Of each spring, by what hangs below it over `k`, metres.
+    /// Stretch of each spring, by what hangs below it over `k`, metres.
     stretches: Vec<f32>,
 }
 
@@ -115,10 +115,10 @@ pub(super) const ROPE_ON_BOX: Scene = Scene {
     build: rope_on_box,
 };
 
-/// Of the box, metres.
+/// Half extent of the box, metres.
 const HALF: f32 = 0.25;
 const ROPE_RADIUS: f32 = 0.01;
-/// Where the rope starts, metres.
+/// Height at which the rope starts, metres.
 const HEIGHT: f32 = 0.8;
 /// Steps for which it falls freely, at least.
 const FALLING: u64 = 6;

@@ -1,4 +1,4 @@
-//! What stands, if contacts hold: heavy on light, crosswise, leaning, a hundred rows high.
+//! Stacks that stand, if contacts hold: heavy on light, crosswise, leaning, a hundred rows high.
 
 use super::flight::Flight;
 use super::metric::Expected;

@@ -8,7 +8,7 @@ use sinew::math::{Transform, Vec3, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::{BodyId, World};
 
-/// How far what stands may give.
+/// Limits on how far a stand may give.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bars {
     /// Sideways, any body, metres.
@@ -27,9 +27,9 @@ pub(super) struct Bars {
 
 /// Watches bodies that stand.
 pub(super) struct Stand {
-    /// Where each belongs, the top one last.
+    /// Pose at which each belongs, the top one last.
     placed: Vec<(BodyId, Transform)>,
-    /// Of a body that falls, for gravity's sake.
+    /// Free fall of a body, which checks gravity.
     flight: Flight,
     bars: Bars,
     /// Around all of them.
@@ -38,7 +38,7 @@ pub(super) struct Stand {
 }
 
 impl Stand {
-    /// Of bodies where they are now.
+    /// Stand of bodies where they are now.
     pub fn new(world: &World, bodies: &[BodyId], flight: Flight, bars: Bars) -> Self {
         let placed: Vec<_> = bodies.iter().map(|&id| (id, center(world, id))).collect();
         let centers = placed.iter().map(|(_, at)| Aabb::around(at.translation, Vec3::ZERO));

@@ -122,7 +122,7 @@ impl Walker {
 struct Watch {
     /// Least distance of two movers' surfaces, metres.
     nearest: f32,
-    /// Of the rider on its lift, metres.
+    /// Greatest drift of the rider on its lift, metres.
     drift: f32,
     highest: f32,
     /// Steps in which one that stands was outside the walls.

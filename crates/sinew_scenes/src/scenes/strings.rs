@@ -96,7 +96,7 @@ const STIFFNESS: f32 = 1000.0;
 /// Rest length, and length at which the springs hang, metres: stretched, or the weight would fold the lower ones.
 const LENGTH: f32 = 0.5;
 const STRETCHED: f32 = 0.8;
-/// Of the swing at its start, m/s.
+/// Speed of the swing at its start, m/s.
 const SWING: f32 = 0.5;
 /// That are looked at.
 const MODES: usize = 3;
@@ -112,7 +112,7 @@ fn shape(mode: usize, i: usize) -> f32 {
     trig::sin(core::f32::consts::PI * (mode * i) as f32 / (MASSES + 1) as f32)
 }
 
-/// Where mass `i` hangs at rest, below the upper hook: its springs are stretched by what pulls, `i (N + 1 − i) m g / 2k`
+/// Distance of mass `i` below the upper hook at rest, metres: its springs are stretched by what pulls, `i (N + 1 − i) m g / 2k`
 /// lower than without weight.
 fn rest(i: usize) -> f32 {
     let sunk = MASS * GRAVITY * (i * (MASSES + 1 - i)) as f32 / (2.0 * STIFFNESS);

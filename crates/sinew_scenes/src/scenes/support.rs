@@ -1,4 +1,4 @@
-//! What holds up a world that hangs.
+//! Joints that hold up a world that hangs.
 
 use super::metric::{Expected, Metric};
 use super::parts::GRAVITY;
@@ -10,7 +10,7 @@ use sinew::physics::{BodyKind, JointId, World};
 pub(super) struct Support {
     /// To static bodies, and whether the static one is the first.
     joints: Vec<(JointId, bool)>,
-    /// Of the world, N.
+    /// Weight of the world, N.
     weight: f32,
     /// N·s.
     momentum: Vec3,

@@ -1,4 +1,4 @@
-//! What surfaces do beside stopping things: they hold, carry, let pass, and notice.
+//! Effects of surfaces beside stopping things: they hold, carry, let pass, and notice.
 
 use super::metric::{Expected, Metric};
 use super::parts::{GRAVITY, ball, body, cuboid, fixed, floor, made_of, tilt};
@@ -127,7 +127,7 @@ fn conveyor(setup: &Setup<'_>) -> Instance {
 struct Conveyor {
     belt: ShapeId,
     load: BodyId,
-    /// Of the belt, m/s.
+    /// Speed of the belt, m/s.
     speed: f32,
     friction: f32,
     /// That friction has put in, J.
@@ -190,7 +190,7 @@ struct Thrown {
     ball: BodyId,
     /// m/s.
     speed: f32,
-    /// Of its centre, metres.
+    /// Greatest height of its centre, metres.
     highest: f32,
 }
 

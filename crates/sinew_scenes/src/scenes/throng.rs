@@ -27,7 +27,7 @@ pub(super) const CROWD: Scene = Scene {
 
 /// From one character to the next at the start, metres.
 const SPACING: f32 = 0.9;
-/// Of the first wave, and from one to the next, seconds.
+/// Time of the first wave, and from one wave to the next, seconds.
 const FIRST_HIT: f32 = 0.75;
 const BETWEEN_WAVES: f32 = 1.5;
 /// From the hit until it is up, seconds: the most that it may take. A body on which others fall has six to come to rest, one
@@ -122,7 +122,7 @@ impl Throng {
         Figure { rig: &def.rig, world_from_joint: &member.model }
     }
 
-    /// Those that were hit first.
+    /// Characters that were hit first.
     fn first_wave(&self) -> impl Iterator<Item = &Member> {
         self.members.iter().step_by(self.waves)
     }

@@ -62,7 +62,7 @@ struct Flips {
     start: Momentum,
     /// Kinetic, at the start, J.
     energy: f32,
-    /// Of the middle axis along the angular momentum, one step ago.
+    /// Component of the angular momentum along the middle axis, one step ago, kg·m²/s.
     before: f32,
     /// When it turned over, s.
     flips: Vec<f64>,
@@ -120,7 +120,7 @@ pub(super) const SYMMETRIC_TOP: Scene = Scene {
     },
 };
 
-/// Of the disc, metres and kg.
+/// Radius and mass of the disc, metres and kg.
 const DISC_RADIUS: f32 = 0.1;
 const DISC_MASS: f32 = 1.0;
 /// `m R² / 2` about its axis; half of it about a diameter.
@@ -179,9 +179,9 @@ struct Wobble {
     disc: BodyId,
     /// rad/s.
     spin: f32,
-    /// Of the angular velocity, about the axis, seen from the disc.
+    /// Turn of the angular velocity about the axis, seen from the disc.
     body: Turn,
-    /// Of the axis, about the angular momentum, seen from the world.
+    /// Turn of the axis about the angular momentum, seen from the world.
     space: Turn,
 }
 
@@ -257,7 +257,7 @@ struct Top {
     /// Degrees.
     lean: f32,
     support: Support,
-    /// Of the axis about the vertical.
+    /// Turn of the axis about the vertical.
     turn: Turn,
     /// The farthest that the lean was from the start, degrees.
     nods: f32,

@@ -70,14 +70,14 @@ impl History {
         self.0.push(pose.clone());
     }
 
-    /// Of a joint, rad/s², about now.
+    /// Angular acceleration of a joint, rad/s², about now.
     fn acceleration(&self, joint: usize, dt: f32) -> f32 {
         let [a, b, c] = &self.0[..] else { return 0.0 };
         let [a, b, c] = [a, b, c].map(|pose| pose.get(joint));
         (velocity(&b, &c, dt) - velocity(&a, &b, dt)).length() / dt
     }
 
-    /// Of a joint, rad/s, since the step before.
+    /// Angular velocity of a joint, rad/s, since the step before.
     fn velocity(&self, joint: usize, dt: f32) -> Vec3 {
         match &self.0[..] {
             [.., a, b] => velocity(&a.get(joint), &b.get(joint), dt),
@@ -113,7 +113,7 @@ struct Transitions {
     alone: [(Actor, History); 2],
     clips: [ClipId; 2],
     seconds: f32,
-    /// What each joint's acceleration may be, rad/s²: what it is in either clip, and `6 |x₀|/t₁² + 4 |v₀|/t₁`, each as much
+    /// Bound on each joint's acceleration, rad/s²: what it is in either clip, and `6 |x₀|/t₁² + 4 |v₀|/t₁`, each as much
     /// as it was at most so far.
     bounds: Vec<f32>,
     gone: Gone,
@@ -167,7 +167,7 @@ impl Transitions {
     }
 }
 
-/// Of accelerations that are told by differences of poses, rad/s².
+/// Rounding error of accelerations that are told by differences of poses, rad/s².
 const ROUNDING: f32 = 0.5;
 
 impl Script for Transitions {

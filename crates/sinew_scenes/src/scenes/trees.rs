@@ -16,7 +16,7 @@ pub(super) const HEAVY_FOOT: Scene = Scene {
 };
 
 const FOOT_HALF: Vec3 = Vec3::new(0.05, 0.03, 0.11);
-/// Of the ankle, degrees: a leg that falls onto its stop has not the energy to tip over its toes.
+/// Limit of the ankle either way, degrees: a leg that falls onto its stop has not the energy to tip over its toes.
 const ANKLE: f32 = 2.0;
 
 /// A leg of 69 kg, a little tilted, on a foot that it is hinged to.

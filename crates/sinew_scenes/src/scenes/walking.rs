@@ -36,7 +36,7 @@ pub(super) const UNEVEN_GROUND: Scene = Scene {
 
 /// Half of the height of the capsule's axis, and its radius, metres.
 const CAPSULE: [f32; 2] = [0.57, 0.3];
-/// Of the mannequin, metres.
+/// Height of the mannequin, metres.
 const HEIGHT: f32 = 1.75;
 /// From the soles to the middle of the capsule.
 const MIDDLE: Vec3 = Vec3::new(0.0, CAPSULE[0] + CAPSULE[1], 0.0);
@@ -66,7 +66,7 @@ struct Ball {
     joint: usize,
     /// In the world, and as the clip by itself would have it, a step ago if it was down then.
     last: Option<[Vec3; 2]>,
-    /// Where it came down, in the world.
+    /// Positions where it came down, in the world, metres.
     prints: Vec<Vec3>,
     /// Slid so far, metres, and time down, seconds.
     slid: [f32; 2],
@@ -127,12 +127,12 @@ impl RootWalk {
     }
 }
 
-/// Where the track of an actor is in its cycle, 0..1.
+/// Phase of an actor's track in its cycle, 0..1.
 fn share_of_lap(actor: &Actor, cycle: &Cycle) -> f32 {
     actor.animator.tracks().next().map_or(0.0, |track| track.playhead().clip_time() / cycle.clip.duration)
 }
 
-/// Where a foot is in its own cycle: the right one half a cycle behind the left.
+/// Phase of a foot in its own cycle, 0..1: the right one half a cycle behind the left.
 fn phase_of(foot: usize, lap: f32) -> f32 {
     match foot {
         0 => lap,
@@ -211,7 +211,7 @@ const CORNERS: [usize; 2] = [17, 41];
 const SPACING: f32 = 0.2;
 /// From crest to crest, along x and z, metres.
 const WAVES: [f32; 2] = [3.4, 2.2];
-/// Where the two walk, metres to the left, and where they begin.
+/// Lanes of the two, metres to the left, and where they begin.
 const LANES: [f32; 2] = [-0.7, 0.7];
 const BEGIN: f32 = -3.2;
 

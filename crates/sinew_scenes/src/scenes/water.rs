@@ -17,7 +17,7 @@ pub(super) const FLOAT: Scene = Scene {
 
 const WATER: f32 = 1000.0;
 const STONE: f32 = 2500.0;
-/// Of the velocity against the water, per second.
+/// Damping of the velocity against the water, per second.
 const DAMPING: f32 = 4.0;
 
 fn float(setup: &Setup<'_>) -> Instance {
