@@ -139,8 +139,10 @@ impl Instance {
         self.step_in_parts(runner, profiler, &mut |_| {});
     }
 
-    /// One step in parts: `done` is told when the world has taken its step (a part named [`WORLD`](Self::WORLD), for all its bodies),
-    /// and then of each part of what goes along with it, so that a host with a clock knows what took how long.
+    /// One step with the host's threads and stage times, told part by part.
+    ///
+    /// `done` is told when the world has taken its step (a part named [`WORLD`](Self::WORLD), for all its bodies), and
+    /// then of each part of what goes along with it, so that a host with a clock knows what took how long.
     pub fn step_in_parts(
         &mut self,
         runner: &dyn TaskRunner,

@@ -29,7 +29,7 @@ const LEVEL_TORQUE: f32 = 0.5 * MASS * GRAVITY * LENGTH;
 const GOAL: f32 = 0.2;
 /// Most that the weak motor may, N·m: half of what it takes to hold its arm.
 const CAP: f32 = 0.5 * LEVEL_TORQUE;
-/// Fall of an arm below the level when its motor has half of the torque that holds it there: the positive root of `sin x = x / 2`,
+/// Fall of an arm below the level if its motor has half of the torque that holds it level: the positive root of `sin x = x / 2`,
 /// where its weight has done the work that the motor took, radians.
 const WEAK_FALL: f32 = 1.895_494_3;
 
