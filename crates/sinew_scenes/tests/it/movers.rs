@@ -15,7 +15,7 @@ use std::path::Path;
 
 const WORLDS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/worlds");
 
-/// How many random walks: a hundredth, but all with `SINEW_FULL` set.
+/// Number of random walks: a hundredth, but all with `SINEW_FULL` set.
 fn walks(all: usize) -> usize {
     if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
 }
@@ -65,7 +65,7 @@ fn depth(world: &World, id: MoverId) -> f32 {
     found.first().map_or(0.0, |deepest| deepest.depth)
 }
 
-/// Whether a point sees the outside of what is next to it in every direction: triangles are solid from there alone.
+/// True if a point sees the outside of what is next to it in every direction: triangles are solid from there alone.
 fn is_in_front(triangles: &[[Vec3; 3]], point: Vec3) -> bool {
     let mut random = Random::new(1);
     let mut direction = || random.rotation() * Vec3::X;

@@ -22,7 +22,7 @@ const SPEED: f32 = 1.5;
 
 /// Places to which a mover can walk from where it is, each with the one before it.
 pub struct Room {
-    /// Of its feet.
+    /// Positions of its feet, metres.
     places: Vec<Vec3>,
     before: Vec<usize>,
 }

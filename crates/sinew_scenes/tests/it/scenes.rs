@@ -86,7 +86,7 @@ fn check(name: &str) {
     assert_eq!(warm_allocations(run.world_mut()), 0, "{name} allocates");
 }
 
-/// Likewise, and under a gravity that is a little wrong something more does.
+/// Checks a scene as `check` does, and that more figures miss under a gravity that is a little wrong.
 fn check_with_gravity(name: &str) {
     check(name);
     for factor in [0.99, 1.01] {
