@@ -193,7 +193,7 @@ struct Character {
     height: f32,
     /// Along z so far, metres.
     way: f32,
-    /// Largest depth of an ankle below its height in the reference pose, metres.
+    /// Largest depth of a toe joint below the ground, metres.
     sunk: f32,
 }
 
