@@ -5,7 +5,7 @@ use sinew::math::{Affine, Vec3};
 
 /// Half the width of a bone, as a share of its length.
 const WIDTH: f32 = 0.11;
-/// Where a bone is widest, as a share of its length.
+/// Position of the widest part of a bone, as a share of its length.
 const WAIST: f32 = 0.2;
 /// Joints nearer to each other than this are in one place, as a share of the farthest joint's distance from the root.
 const COINCIDENT: f32 = 0.005;

@@ -1,4 +1,4 @@
-//! What the work cost, in processor time: other programs on the machine do not count.
+//! Cost of work in processor time: other programs on the machine do not count.
 
 use cpu_time::ProcessTime;
 

@@ -12,7 +12,7 @@ pub type Result<T, E = Failure> = std::result::Result<T, E>;
 pub enum Failure {
     /// A file, or the work on it. Exit code 1.
     File(sinew::formats::Error),
-    /// What was asked for makes no sense. Exit code 2.
+    /// A request that makes no sense. Exit code 2.
     Usage(String),
 }
 
@@ -27,7 +27,7 @@ impl Failure {
         Self::File(sinew::formats::Error::unsupported(what.to_string(), place).with_file(file))
     }
 
-    /// What the process says to its caller.
+    /// Exit code of the process.
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Self::File(_) => 1,
@@ -35,7 +35,7 @@ impl Failure {
         })
     }
 
-    /// What `--json` prints: the file, what is wrong with it, and where. Usage has none of these.
+    /// Object that `--json` prints: the file, what is wrong with it, and where. Usage has none of these.
     pub fn to_json(&self) -> Option<Value> {
         match self {
             Self::File(error) => {

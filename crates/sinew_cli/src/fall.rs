@@ -12,15 +12,15 @@ use std::path::Path;
 
 /// A bake and what it cost.
 pub struct Fall<'a> {
-    /// What was simulated.
+    /// Input of the simulation.
     pub input: &'a BakeInput<'a>,
-    /// What came of it.
+    /// Result of the simulation.
     pub baked: Baked,
     /// Simulated seconds per second of processor time.
     pub realtime_factor: f64,
-    /// Whether it is fit for use.
+    /// Verdict on whether the result is fit for use.
     pub verdict: Verdict,
-    /// What is outside its bar, a sentence each.
+    /// Values outside their bars, a sentence each.
     pub reasons: Vec<String>,
 }
 
@@ -64,7 +64,7 @@ impl<'a> Fall<'a> {
         object.into()
     }
 
-    /// What happened, how well it went, and where it is.
+    /// Report as text: what happened, how well it went, and where it is.
     pub fn to_text(&self, outputs: &[&Path]) -> String {
         let mut text = String::new();
         for (time, what) in story::told(self.input, &self.baked.events) {
@@ -88,7 +88,7 @@ impl<'a> Fall<'a> {
         text
     }
 
-    /// How many keys the clip has, and what leaving out the others did.
+    /// Line on the number of keys of the clip, and on the error that leaving out the others made.
     fn keys_text(&self) -> String {
         let (bound, error, [all, keys]) = (self.input.key_bound, self.baked.key_error, self.baked.keys);
         if keys == all {

@@ -15,7 +15,7 @@ pub struct CharacterFile {
     pub name: String,
     /// Its rig, clips and JSON.
     pub document: Document,
-    /// What its joints are.
+    /// Analysis of its joints.
     pub analysis: RigAnalysis,
 }
 
@@ -47,7 +47,7 @@ impl CharacterFile {
         Ok(file)
     }
 
-    /// Whether the file's unit may as well be another.
+    /// True if the file's unit may as well be another.
     pub fn is_in_doubt(&self) -> bool {
         self.analysis.unit_guess.as_ref().is_some_and(|guess| !guess.is_only)
     }
@@ -146,7 +146,7 @@ impl Outputs {
         self.files.first().map(|(path, bytes)| (path.as_path(), bytes.as_slice()))
     }
 
-    /// Where they go.
+    /// Paths of the files.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
         self.files.iter().map(|(path, _)| path.as_path())
     }

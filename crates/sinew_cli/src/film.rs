@@ -22,21 +22,21 @@ const FPS: u32 = 20;
 const ARROW_SECONDS: f32 = 0.35;
 const ARROW_COLOR: [f32; 3] = [0.85, 0.06, 0.03];
 
-/// What is filmed, and from where.
+/// A fall to be filmed, with its surroundings, camera and light.
 pub struct Film<'a> {
     /// The fall.
     pub fall: &'a Fall<'a>,
-    /// What stands around.
+    /// Models of what stands around.
     pub set: Vec<Model>,
     /// From the character to the camera.
     pub direction: Vec3,
-    /// What the camera shows.
+    /// View of the camera.
     pub view: View,
     /// Light.
     pub sun: Sun,
 }
 
-/// What a camera shows of a fall.
+/// View that a camera has of a fall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum View {
     /// A ball of that radius (metres) around the character, which the camera follows.
@@ -62,7 +62,7 @@ impl Film<'_> {
     }
 }
 
-/// Where the camera is.
+/// Camera of a film: it follows the character, or frames it.
 enum Shooting {
     Following { radius: f32, camera: Option<FollowCamera> },
     Framing(Framing),
@@ -171,7 +171,7 @@ impl<'a> Shots<'a> {
     }
 }
 
-/// Of the ways to look at something that moves through a world, by eighths of a turn and then from higher up, the first from
+/// Best way to look at something that moves through a world, by eighths of a turn and then from higher up: the first from
 /// which least of it is hidden behind what stands.
 fn clear_side(bodies: &[BodyDef], framing: &Framing, boxes: &[Aabb], wanted: Vec3) -> Vec3 {
     let mut world = World::new(WorldDef::default());
@@ -212,7 +212,7 @@ fn arrow(tip: Vec3, along: Vec3) -> [Model; 2] {
     ]
 }
 
-/// How much of a floor without end is drawn, metres to each side: as far as the haze lets see.
+/// Half size of what is drawn of a floor without end, metres: as far as the haze lets see.
 pub const FLOOR_HALF_SIZE: f32 = 40.0;
 
 /// The surface of a body of the world in one colour (linear); half-spaces become floors, `half_size` metres to each

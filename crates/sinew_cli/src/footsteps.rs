@@ -61,7 +61,7 @@ const SEAM: f32 = 0.1;
 /// Many loops end a frame before their first pose: what joints do in so many frames before the end comes on top of it.
 const LAST_FRAMES: usize = 4;
 
-/// Whether the last pose is the first one again, on the same spot. `leg` is a leg's length in file units.
+/// True if the last pose is the first one again, on the same spot. `leg` is a leg's length in file units.
 fn is_loop(take: &Take, leg: f32) -> bool {
     let last = take.frames() - 1;
     let before = take.pose(last.saturating_sub(LAST_FRAMES));

@@ -11,7 +11,7 @@ const MARGIN: f32 = 0.08;
 /// As long as all that is ever shown is no larger than this many times what is shown at once, the camera stands still.
 const STILL: f32 = 1.7;
 
-/// Where the camera looks from picture to picture, always from the same side and as far away.
+/// Camera from picture to picture, always on the same side and as far away.
 #[derive(Clone, Debug)]
 pub struct Framing {
     centers: Vec<Vec3>,
@@ -21,7 +21,7 @@ pub struct Framing {
 }
 
 impl Framing {
-    /// Of what is within these boxes, one for each picture (metres, world), `fps` a second.
+    /// Framing of what is within these boxes, one for each picture (metres, world), `fps` a second.
     ///
     /// # Panics
     /// If there is no box.
@@ -76,7 +76,7 @@ mod tests {
         Aabb { min: at - Vec3::new(0.4, 0.0, 0.4), max: at + Vec3::new(0.4, height, 0.4) }
     }
 
-    /// Whether the picture of a camera has all of a box: by the angles at which its corners are seen.
+    /// True if the picture of a camera has all of a box: by the angles at which its corners are seen.
     fn shows(camera: &Camera, bounds: &Aabb, aspect: f32) -> bool {
         let back = (camera.position - camera.target).normalize();
         let right = Vec3::Y.cross(back).normalize();

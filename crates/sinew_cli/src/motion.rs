@@ -13,7 +13,7 @@ pub struct Motion {
     pub name: String,
     /// Its rig and its clips.
     pub file: MotionFile,
-    /// What its joints are; `None` where there is neither a skin nor a skeleton like a human's.
+    /// Analysis of its joints; `None` where there is neither a skin nor a skeleton like a human's.
     pub analysis: Option<RigAnalysis>,
 }
 
@@ -48,7 +48,7 @@ impl Motion {
         Self { name, file, analysis }
     }
 
-    /// Whether a mesh hangs on its joints.
+    /// True if a mesh hangs on its joints.
     pub fn has_skin(&self) -> bool {
         !self.file.rig.skins.is_empty()
     }

@@ -8,15 +8,15 @@ use sinew::anim::{Channel, Clip, Event, JointIdx, LocalTransform, Rig, RigAnalys
 
 /// A clip of another rig as one of the character's.
 pub struct Carried {
-    /// Of the character's joints.
+    /// Clip that moves the character's joints.
     pub clip: Clip,
     /// Its events, at its pace.
     pub events: Vec<Event>,
-    /// How it was carried over.
+    /// Match of the joints by which it was carried over.
     pub by: By,
 }
 
-/// What joints were matched by.
+/// Way in which joints were matched.
 pub enum By {
     /// Both skeletons are the same: keys are taken as they are.
     Name {
@@ -69,7 +69,7 @@ const SAME_PLACE: f32 = 0.05;
 struct Namesakes {
     /// For each joint of the other rig.
     joints: Vec<Option<JointIdx>>,
-    /// Whether most of what moves rests alike in both: keys of one fit the other.
+    /// True if most of what moves rests alike in both: keys of one fit the other.
     rest_alike: bool,
 }
 
@@ -111,7 +111,7 @@ fn by_name(clip: &Clip, events: &[Event], same: &[Option<JointIdx>]) -> Option<C
 }
 
 impl Carried {
-    /// How it went, in a line.
+    /// Summary of how the clip was carried over, in a line.
     pub fn to_text(&self) -> String {
         let name = shown(&self.clip.name);
         match &self.by {

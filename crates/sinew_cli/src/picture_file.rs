@@ -7,16 +7,16 @@ use std::str::FromStr;
 /// Longest simulation that is written as a clip or a movie, seconds: what is longer belongs into several.
 const LONGEST: f32 = 600.0;
 
-/// Where to write a picture, of a kind that its name tells.
+/// Picture file to write, of a kind that its name tells.
 #[derive(Clone, Debug)]
 pub struct PictureFile {
     path: PathBuf,
-    /// Of its bytes.
+    /// Format of its bytes.
     pub format: PictureFormat,
 }
 
 impl PictureFile {
-    /// Where it is.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -13,7 +13,7 @@ pub struct RagdollFile {
     pub name: String,
     /// The ragdoll, its springs, and what its rig says of it.
     pub patient: Patient,
-    /// What reading and building want a person to know, a sentence each.
+    /// Notes of reading and building for a person, a sentence each.
     pub notes: Vec<String>,
     /// The rigged file that it was built from, if it is one.
     pub character: Option<CharacterFile>,
@@ -58,7 +58,7 @@ impl RagdollFile {
     }
 }
 
-/// Whether these are the bytes of a character, and not of a definition or a model.
+/// True if these are the bytes of a character, and not of a definition or a model.
 pub fn is_character(bytes: &[u8]) -> bool {
     matches!(kind_of(bytes), Kind::Character)
 }
@@ -90,7 +90,7 @@ fn kind_of(bytes: &[u8]) -> Kind {
     }
 }
 
-/// Whether an object's first key is `"sinew"`, or one after it and there is no `asset`.
+/// True if an object's first key is `"sinew"`, or one after it is and there is no `asset`.
 fn is_ours(text: &[u8]) -> bool {
     text[1..].trim_ascii_start().starts_with(b"\"sinew\"")
         || text.windows(7).any(|word| word == b"\"sinew\"")

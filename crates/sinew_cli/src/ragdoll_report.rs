@@ -1,4 +1,4 @@
-//! What `ragdoll build` says about a ragdoll.
+//! Report of `ragdoll build` on a ragdoll.
 
 use crate::quality_report::{quality_json, quality_text};
 use crate::report::{Report, number, numbers};
@@ -19,7 +19,7 @@ pub struct RagdollReport<'a> {
     pub file: &'a str,
     /// The ragdoll.
     pub def: &'a RagdollDef,
-    /// How it came about.
+    /// Report of its build.
     pub build: &'a BuildReport,
     /// Processor time from the file to the definition, milliseconds.
     pub build_ms: f64,

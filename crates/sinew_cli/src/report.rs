@@ -1,4 +1,4 @@
-//! What a command has to say.
+//! Report of a command.
 
 use serde_json::Value;
 

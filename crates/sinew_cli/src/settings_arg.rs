@@ -93,7 +93,7 @@ fn unit(text: &str) -> Result<f32, String> {
 pub struct LoadedSettings {
     /// The file as a person names it, `""` where there is none.
     pub file: String,
-    /// What they say.
+    /// Values of the settings.
     pub settings: Settings,
     /// Keys in the settings that the command line said, with the option as it was typed.
     said: Vec<(String, String)>,
@@ -116,7 +116,7 @@ impl SettingsArg {
         given.into_iter().find(|(_, is_given)| *is_given).map(|(option, _)| option)
     }
 
-    /// Where those for a character's file are: where the user said, else beside it, whether there are any or not.
+    /// Path of the settings for a character's file: where the user said, else beside it, whether there are any or not.
     pub fn path_for(&self, character: &Path) -> PathBuf {
         self.settings.clone().unwrap_or_else(|| settings_path(character))
     }

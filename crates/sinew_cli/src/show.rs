@@ -68,7 +68,7 @@ impl Show {
         })
     }
 
-    /// How long it moves, seconds; 0 where it does not.
+    /// Duration of its clip, seconds; 0 without one.
     pub fn seconds(&self) -> f32 {
         self.clip.as_ref().map_or(0.0, |clip| clip.duration)
     }
@@ -121,7 +121,7 @@ impl Show {
         model
     }
 
-    /// What is on every picture.
+    /// Scene with what is on every picture.
     fn scene(&self, framing: &Framing, whole: &Aabb) -> Scene {
         let radius = framing.radius();
         let lowest = self.floor.filter(|floor| *floor <= whole.min.y + 0.5 * radius).unwrap_or(whole.min.y);

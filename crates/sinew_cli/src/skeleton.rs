@@ -43,7 +43,7 @@ pub fn bones_only(rig: &Rig, clip: &Clip) -> (Rig, Clip, Vec<String>) {
     (bones, clip, dropped.collect())
 }
 
-/// Whether a channel of scales only repeats the rest pose, as exporters like to.
+/// True if a channel of scales only repeats the rest pose, as exporters like to.
 fn keeps_its_size(channel: &Channel, rig: &Rig) -> bool {
     let rest = rig.joints[channel.joint].rest.scale;
     let near = |value: &[f32]| (Vec3::from_slice(value) - rest).length() < 1e-4 * rest.length();

@@ -1,9 +1,9 @@
-//! What happens to a character, in words.
+//! Story of what happens to a character, in words.
 
 use crate::table::shown;
 use sinew::ragdoll::{BakeInput, CharacterDef, Event, Locomotion, Opening};
 
-/// What the character is doing from some time on, in a word or two for the corner of a picture.
+/// Phase: the time from which it lasts, s, and what the character does, in a word or two for the corner of a picture.
 pub type Phase = (f32, String);
 
 /// Seconds for which a hit is called one.

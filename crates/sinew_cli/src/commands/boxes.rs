@@ -137,7 +137,7 @@ fn height(mesh: &TriangleMesh) -> f32 {
     used().fold(f32::MIN, f32::max) - used().fold(f32::MAX, f32::min)
 }
 
-/// What was left out, and what was put right.
+/// Warnings on what was left out and what was put right.
 fn warnings(mesh: &TriangleMesh, cooked: &Cooked) -> Vec<String> {
     let repairs = cooked.repairs;
     let mut warnings = mesh.warnings.clone();

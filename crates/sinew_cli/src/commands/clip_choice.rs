@@ -1,4 +1,4 @@
-//! Which of a file's clips the user means.
+//! Choice of the clips of a file that the user means.
 
 use crate::failure::{Failure, Result};
 use crate::motion::Motion;
@@ -80,7 +80,7 @@ pub fn few(names: &[String]) -> String {
     }
 }
 
-/// What the user may call a clip.
+/// Name by which the user may call a clip.
 fn called(index: usize, name: &str) -> String {
     if name.is_empty() { format!("{index} (without a name)") } else { shown(name) }
 }

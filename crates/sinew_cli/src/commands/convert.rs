@@ -120,21 +120,21 @@ fn metres(text: &str) -> Result<f32, String> {
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be above 0".to_owned()) }
 }
 
-/// What OUT is to be.
+/// File format of OUT.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Target {
     Glb,
     Bvh,
 }
 
-/// What goes into the new file.
+/// Content of the new file.
 struct Content {
     rig: Rig,
     clips: Vec<Clip>,
     events: Vec<Vec<Event>>,
     /// Frames a second, where the source has some.
     rate: Option<f64>,
-    /// What is lost or assumed, a sentence each.
+    /// Notes on what is lost or assumed, a sentence each.
     notes: Vec<String>,
 }
 

@@ -12,7 +12,7 @@ use sinew_picture::{PictureFormat, Sun};
 use sinew_scenes::cabin::{Prop, Site};
 use std::path::{Path, PathBuf};
 
-/// How much of the meadow the file has, metres to each side; the picture shows it up to the haze.
+/// Half size of the meadow in the file, metres; the picture shows it up to the haze.
 const MEADOW_HALF_SIZE: f32 = 12.0;
 /// Every second square of the meadow.
 const MOWN: [f32; 3] = [0.19, 0.30, 0.11];

@@ -49,7 +49,7 @@ pub struct Detect {
     output: Option<PathBuf>,
 }
 
-/// What an event of a footstep is called.
+/// Name of the event of a footstep.
 const FOOTSTEP: &str = "footstep";
 /// Footsteps of one foot that are nearer to each other than this are one, seconds.
 const SAME_STEP: f32 = 0.15;

@@ -40,7 +40,7 @@ pub struct RagdollDoctor {
     settings: SettingsArg,
 }
 
-/// What is wrong with the skin of a ragdoll on its rig. One that explodes is not dropped, nor one whose bodies are known to be
+/// Flaws of the skin of a ragdoll on its rig. One that explodes is not dropped, nor one whose bodies are known to be
 /// missing: nothing would be learned of its skin.
 fn skin_flaws(patient: &Patient, character: &CharacterFile) -> Vec<Flaw> {
     let is_cause = |finding: &Finding| {

@@ -96,11 +96,11 @@ struct StepTimes {
     costs: Vec<Cost>,
 }
 
-/// What a part of the work cost over all steps.
+/// Cost of a part of the work over all steps.
 struct Cost {
     name: &'static str,
     seconds: f64,
-    /// Of how many in how many steps.
+    /// Number of things that the part worked on, summed over all steps.
     count: u64,
 }
 
@@ -203,7 +203,7 @@ impl Outcome<'_> {
     }
 }
 
-/// What a part is called in a table.
+/// Name of a part in a table.
 fn part_name(name: &str) -> String {
     if name == Instance::WORLD {
         "body, in the world".to_owned()

@@ -7,7 +7,7 @@ use sinew::anim::retarget::RetargetError;
 use sinew::motions::{BuiltinError, set_motions_with_builtin};
 use sinew::ragdoll::{AfterSettling, CharacterDef, Locomotion, MotionSet, RagdollDef};
 
-/// Where the clips come from by which a character gets up.
+/// Source of the clips by which a character gets up.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GetsUpBy {
     /// Its own, or those of `--clips`.
@@ -18,7 +18,7 @@ pub enum GetsUpBy {
     Nothing(String),
 }
 
-/// What there is to do without clips to get up by.
+/// Advice for a user who has no clips to get up by.
 const CLIPS_HELP: &str = "name a file with a clip to get up by with --clips, called such as 'get up'";
 
 /// The character, and by what it gets up; `builtin`: whether the built-in motions may fill in.

@@ -9,7 +9,7 @@ use sinew::math::Rotation;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// What a file is, by its name.
+/// Kind of a file, by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipFormat {
     /// A copy of the character's file with one clip more.
@@ -18,16 +18,16 @@ pub enum ClipFormat {
     Bvh,
 }
 
-/// Where to write the clip, and as what.
+/// File to write the clip to, and its kind.
 #[derive(Clone, Debug)]
 pub struct ClipFile {
     path: PathBuf,
-    /// Of its bytes.
+    /// Format of its bytes.
     pub format: ClipFormat,
 }
 
 impl ClipFile {
-    /// Where it is.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }

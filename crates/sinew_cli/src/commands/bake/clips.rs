@@ -1,4 +1,4 @@
-//! Which clips a bake has, and what each is for.
+//! Clips that a bake has, and what each is for.
 
 use crate::commands::clip_choice::find_clip;
 use crate::failure::{Failure, Result};
@@ -22,7 +22,7 @@ pub struct Motions {
 /// played until the next fall unless it is asked for.
 pub const CLIP_NAME: &str = "sinew";
 
-/// What a clip that gets a body up is called, without case, blanks, `-` and `_`: none to play until the fall.
+/// Words in the name of a clip that gets a body up, without case, blanks, `-` and `_`: none to play until the fall.
 const GET_UP_NAMES: [&str; 3] = ["getup", "standup", "gettingup"];
 
 impl Motions {

@@ -173,7 +173,7 @@ impl Bake {
         Ok(report)
     }
 
-    /// What is in the world: what the file says, and the floor that is asked for, at y = 0 where there is no file.
+    /// Bodies of the world: those of the file, and the floor that is asked for, at y = 0 where there is no file.
     fn bodies(&self) -> Result<Vec<BodyDef>> {
         let mut bodies = self.world.as_ref().map_or(Ok(Vec::new()), load_world)?;
         let level = self.floor.or_else(|| self.world.is_none().then_some(0.0));
@@ -181,7 +181,7 @@ impl Bake {
         Ok(bodies)
     }
 
-    /// Where a character of that height (metres) stands.
+    /// Place where a character of that height (metres) stands.
     fn place(&self, bodies: &[BodyDef], height: f32) -> Result<Place> {
         let Some(world) = &self.world else {
             let on_floor = self.at.unwrap_or(Vec3::Y * self.floor.unwrap_or(0.0));
@@ -193,7 +193,7 @@ impl Bake {
             .map_err(|what| Failure::at(&name, what, if self.at.is_some() { "--at" } else { "--world" }))
     }
 
-    /// What the user allows keys to be off by; nothing in a format that has all frames anyway.
+    /// Error bound that the user allows for the keys; all keys are kept in a format that has all frames anyway.
     fn key_bound(&self) -> Result<KeyBound> {
         match (self.output.format, self.key_error) {
             (ClipFormat::Bvh, None) => Ok(KeyBound::ALL_KEYS),

@@ -28,7 +28,7 @@ pub fn of_bake(
     all.into_iter().flatten().collect()
 }
 
-/// Where a character stands that nobody has said a place for.
+/// Note that says where a character stands that nobody has named a place for.
 pub fn stands_at(place: &Place, world: &str) -> Option<String> {
     let [x, y, z] = place.stands.translation.to_array();
     place.found.then(|| {

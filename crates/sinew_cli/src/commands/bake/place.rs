@@ -1,4 +1,4 @@
-//! Where the character stands in the world: where the user says, else on a flat place with room over it.
+//! Place of the character in the world: where the user says, else on a flat place with room over it.
 
 use sinew::math::{Rotation, Transform, Vec3};
 use sinew::physics::boxes::Aabb;
@@ -19,14 +19,14 @@ const FLAT: f32 = 0.996;
 const EVEN: f32 = 0.02;
 /// And this far around, in shares of the room.
 const AROUND: [f32; 2] = [0.5, 0.95];
-/// How far over the ground the room begins, in heights of the character: no pebble is in the way.
+/// Height over the ground at which the room begins, in heights of the character: no pebble is in the way.
 const OVER: f32 = 0.06;
 
 /// A place and a way to face, as the user says them or as they were found.
 pub struct Place {
     /// World from character.
     pub stands: Transform,
-    /// Whether it was sought.
+    /// True if the place was sought and found, false if the user named it or there is no world file.
     pub found: bool,
 }
 
@@ -82,7 +82,7 @@ impl Ground {
         !self.world.body_ids().any(stands)
     }
 
-    /// What a straight way down meets, the highest first.
+    /// Hits of a ray straight down with static bodies, the highest first; `depth` is its length, metres.
     fn below(&self, from: Vec3, depth: f32) -> Vec<BodyHit> {
         let mut hits = Vec::new();
         let ray = Ray { origin: from, direction: Vec3::Y * -depth };
@@ -90,7 +90,7 @@ impl Ground {
         hits
     }
 
-    /// Whether something stands under a place, however deep.
+    /// True if a static body lies under a place, however deep.
     fn is_under(&self, at: Vec3, height: f32) -> bool {
         const DEPTH: f32 = 1000.0;
         !self.below(at + Vec3::Y * (0.5 * height), DEPTH).is_empty()

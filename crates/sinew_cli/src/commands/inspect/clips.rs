@@ -1,4 +1,4 @@
-//! What `sinew inspect` says about clips and their events.
+//! Facts on clips and their events, for `sinew inspect`.
 
 use crate::motion::Motion;
 use crate::report::{number, numbers};
@@ -14,11 +14,11 @@ pub struct ClipFacts<'a> {
     keys: usize,
     /// As it is played; else why it cannot be.
     built: Result<BuiltClip, String>,
-    /// How far it carries the body, where it is known what a metre is.
+    /// Displacement of the body over the clip, where it is known what a metre is.
     way: Option<Way>,
 }
 
-/// Where a body is at the end of a clip, seen from its start.
+/// Pose of a body at the end of a clip, seen from its start.
 struct Way {
     /// Metres, character axes.
     shift: Vec3,
@@ -101,7 +101,7 @@ pub fn clip_table(facts: &[ClipFacts<'_>]) -> Table {
     table
 }
 
-/// What happens in the clips, as a table; empty if nothing does.
+/// Table of the events of the clips; `None` if there are none.
 pub fn event_table(facts: &[ClipFacts<'_>]) -> Option<Table> {
     let mut table = Table::titled(&["clip", "seconds", "event", "payload"]);
     for ClipFacts { clip, events, .. } in facts {

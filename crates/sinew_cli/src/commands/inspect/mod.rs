@@ -170,7 +170,7 @@ impl Content<'_> {
         self.motion.analysis.as_ref().map_or_else(Vec::new, assumed)
     }
 
-    /// What could not be read, and what cannot be played.
+    /// Warnings on what could not be read and what cannot be played.
     fn warnings(&self) -> Vec<String> {
         let unplayable = self.clips.iter().filter_map(ClipFacts::warning);
         self.motion.file.notes.iter().cloned().chain(unplayable).collect()

@@ -146,7 +146,7 @@ impl View {
     }
 }
 
-/// Whether a subject is a file of a character or a motion: no scene, world or recording.
+/// True if a subject is a file of a character or a motion: no scene, world or recording.
 fn is_motion(name: &str) -> bool {
     const OTHERS: [&str; 2] = ["json", "sinewrec"];
     let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
@@ -158,7 +158,7 @@ fn failed(file: &PictureFile) -> impl Fn(EncodeError) -> Failure {
     |error| Failure::of_file(file.path().display().to_string(), error)
 }
 
-/// What is drawn.
+/// Subject that is drawn.
 pub enum Subject<'a> {
     /// A named scene with its settings.
     Scene(&'static Scene, Box<Settings>),
@@ -208,7 +208,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// How long it takes to show what it is about.
+    /// Time in which the subject shows what it is about, s.
     fn seconds(&self) -> f32 {
         match self {
             Self::Scene(scene, settings) => scene.steps as f32 * scene.start(settings).world().def().dt(),

@@ -18,22 +18,22 @@ use sinew_scenes::scenes::{Expected, Figure, Instance, Metric, Sight, Trails};
 const FPS: u32 = 20;
 /// Figures on a picture.
 const MOST_FIGURES: usize = 3;
-/// Of more bodies no trails are drawn: nobody could tell them apart.
+/// Largest number of moving bodies with trails: of more, nobody could tell them apart.
 const MOST_TRAILS: usize = 4;
 /// Steps that trails go back.
 const TRAIL_STEPS: usize = 600;
 /// Rays that look whether something stands in the way.
 const MOST_RAYS: usize = 64;
-/// How many radii of the largest thing that moves a picture reaches around it at most.
+/// Largest reach of a picture around the largest thing that moves, in radii of that.
 const WIDEST: f32 = 120.0;
-/// How far a skin reaches over its joints, as a share of what these extend over.
+/// Margin of a skin around its joints, as a share of their extent.
 const FLESH: f32 = 0.08;
 /// Around what is shown, as a share of its size.
 const MARGIN: f32 = 0.1;
 
-/// How pictures are made, and what stands on them.
+/// Settings of pictures, and what stands on them.
 pub struct Reel<'a> {
-    /// What is shown.
+    /// Name of the scene or world file that is shown.
     pub title: &'a str,
     /// When its closed forms hold, seconds.
     pub ends: f32,
@@ -142,7 +142,7 @@ impl Take {
         self.sight.direction = sides.into_iter().min_by_key(|&side| self.hidden(side)).unwrap_or(sides[0]);
     }
 
-    /// Of the first bodies that move, how many are hidden.
+    /// Number of bodies, of the first that move, that are hidden when seen from that direction.
     fn hidden(&self, direction: Vec3) -> usize {
         let world = self.run.world();
         let size = (self.whole.max - self.whole.min).length();
@@ -161,7 +161,7 @@ impl Take {
         self.sight.bounds.or(all).unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE))
     }
 
-    /// What the scene draws beside its world.
+    /// Lines that the scene draws beside its world.
     fn lines(&self) -> Lines {
         let mut lines = Lines::default();
         self.run.draw(&mut lines);
@@ -266,7 +266,7 @@ impl Trail {
     }
 }
 
-/// Whether all that is expected of a scene has had time to happen.
+/// Moment of a picture: at the end, all that is expected of a scene has had time to happen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Moment {
     OnTheWay,
