@@ -27,10 +27,10 @@ const PATIENCE: f32 = 4.0;
 /// Birds that fly together.
 struct Flock {
     birds: Vec<BodyId>,
-    /// Where they are drawn to, and for how long yet, s.
+    /// Place that they are drawn to, and for how long yet, s.
     goal: Vec3,
     patience: f32,
-    /// Of the places to come.
+    /// Seed of the places to come.
     seed: u64,
     /// Position and velocity of each bird, as the substep finds them.
     seen: Vec<(Vec3, Vec3)>,

@@ -10,11 +10,11 @@ use sinew::math::trig;
 use sinew::prelude::*;
 use std::time::Duration;
 
-/// Of the earth, m/s².
+/// Gravity of the earth, m/s².
 const GRAVITY: f32 = 9.81;
 /// From one plumb line to the next but one, s: each swing is a second.
 const PERIOD: f32 = 2.0;
-/// How far it swings, radians.
+/// Amplitude of the pendulum, radians.
 const AMPLITUDE: f32 = 0.06;
 /// The escapement pushes so far to both sides of the plumb line, radians.
 const REACH: f32 = 0.02;
@@ -23,21 +23,21 @@ const DRAG: f32 = 0.02;
 /// The bob, metres.
 const RADIUS: f32 = 0.06;
 
-/// Of the plumb line.
+/// Side of the plumb line.
 #[derive(Clone, Copy, PartialEq)]
 enum Side {
     Left,
     Right,
 }
 
-/// What keeps a pendulum going, and counts its swings.
+/// An escapement: it keeps a pendulum going, and counts its swings.
 struct Escapement {
     pendulum: BodyId,
     /// N·m, the way the pendulum goes.
     torque: f32,
-    /// Where the pendulum was last.
+    /// Side on which the pendulum was last.
     side: Side,
-    /// How often it has passed the plumb line.
+    /// Number of times that it has passed the plumb line.
     ticks: u32,
 }
 

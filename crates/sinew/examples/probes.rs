@@ -30,7 +30,7 @@ fn level() -> (World, [BodyId; 3]) {
     (world, people)
 }
 
-/// What a ray meets first, whatever it is.
+/// First thing that a ray meets, whatever it is.
 fn laser(world: &World, from: Vec3, to: Vec3) -> Option<BodyHit> {
     world.query().first(&Ray::between(from, to))
 }
@@ -57,7 +57,7 @@ fn ground_below(world: &World, owner: BodyId, foot: Vec3) -> Option<(f32, f32)> 
     hit.start.is_none().then(|| (hit.point.y, sinew::math::trig::acos(hit.normal.y)))
 }
 
-/// Whether nobody stands where a door would be.
+/// True if nobody stands where a door would be.
 fn may_close(world: &World, doorway: Aabb) -> bool {
     !world.query().filter(QueryFilter::of(BodyKinds::DYNAMIC)).any(&OverlapWith(doorway.into()))
 }

@@ -61,7 +61,7 @@ impl Actor<'_> {
     }
 }
 
-/// What a capture file holds.
+/// Content of a capture file.
 struct Captured {
     rig: Rig,
     clip: Clip,

@@ -51,7 +51,7 @@ fn lowest(def: &CharacterDef, pose: &[LocalTransform], counts: impl Fn(&RagdollB
     bodies.map(|(body, place)| body.shape.aabb(place).min.y).fold(f32::INFINITY, f32::min)
 }
 
-/// How far a foot that stands is off the floor at most, metres: above it with its sole and its body, or in it with its body.
+/// Largest distance of a standing foot from the floor, metres: above it with its sole and its body, or in it with its body.
 fn worst_stance(def: &CharacterDef, analysis: &RigAnalysis, fit: &Retargeted) -> f32 {
     let legs = Legs::of(&def.rig, analysis).expect("legs");
     let points = sole_points(&def.rig, &analysis.character_from_file(), &legs.feet, &fit.take);

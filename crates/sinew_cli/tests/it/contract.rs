@@ -1,4 +1,4 @@
-//! What the commands print under `--json`, against `docs/contract.md`.
+//! Output of the commands under `--json`, against `docs/contract.md`.
 
 use crate::contract_table::{Row, parse, violations};
 use crate::sinew::{Folder, sinew};

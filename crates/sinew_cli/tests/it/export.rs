@@ -24,7 +24,7 @@ fn assert_same(a: Transform, b: Transform, what: &str) {
     assert!(off < 1e-4 && turned < 1e-3, "{what}: {off} m, {turned} rad");
 }
 
-/// How the definition comes back from our own reader of MuJoCo models.
+/// Checks that the definition comes back from our own reader of MuJoCo models.
 fn check_mjcf(def: &RagdollDef, text: &str, what: &str) {
     let model = read_mjcf(text.as_bytes()).unwrap_or_else(|error| panic!("{what}: {error}"));
     let back = model.to_ragdoll().unwrap_or_else(|error| panic!("{what}: {error}")).def;
@@ -140,7 +140,7 @@ fn local(node: &Value) -> Transform {
     Transform::new(Vec3::from_slice(&t), Rotation::from_xyzw(r[0], r[1], r[2], r[3]))
 }
 
-/// What the draft says of a joint: it holds together, and turns as far as the joint does about each axis.
+/// Checks what the draft says of a joint: it holds together, and turns as far as the joint does about each axis.
 fn check_limits(kind: &JointKind, limits: &[Value], what: &str) {
     let of = |key: &str, axes: &[u64]| {
         let is = |limit: &&Value| {
@@ -255,7 +255,7 @@ impl Written<'_> {
     }
 }
 
-/// What the file says, against the definition.
+/// Checks what the file says against the definition.
 fn check_khr(def: &RagdollDef, document: &Document, bind_model: &[Affine], bytes: &[u8], what: &str) {
     let back = read_gltf(bytes, ReadOptions::default(), &mut no_files)
         .unwrap_or_else(|error| panic!("{what}: {error}"));

@@ -9,7 +9,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// How a run ended.
+/// Result of a run of the command.
 #[derive(Debug)]
 pub struct Run {
     pub code: Option<i32>,
@@ -18,7 +18,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// Of a command that is ready to be started.
+    /// Runs a command that is ready to be started.
     pub fn of(command: &mut Command) -> Self {
         let Output { status, stdout, stderr } = command.output().expect("the binary starts");
         let text = |bytes| String::from_utf8(bytes).expect("it prints UTF-8");

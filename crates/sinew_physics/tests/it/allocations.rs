@@ -112,7 +112,7 @@ fn tie(world: &mut World) -> Vec<JointId> {
     moving.windows(2).map(tie).collect()
 }
 
-/// What the steps of one cycle saw.
+/// Counts over the steps of one cycle.
 #[derive(Debug, Default)]
 struct Seen {
     allocations: u64,

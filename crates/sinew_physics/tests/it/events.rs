@@ -174,7 +174,7 @@ fn random_world(r: &mut Random) -> World {
     world
 }
 
-/// What the user does between two steps.
+/// Changes the world at random between two steps, as a user may.
 fn disturb(world: &mut World, r: &mut Random, parted: &mut BTreeSet<(BodyId, BodyId)>) {
     let ids: Vec<BodyId> = world.body_ids().skip(1).collect();
     if ids.len() < 2 {
@@ -226,7 +226,7 @@ fn linger(p: &Solid, q: &Solid) -> f64 {
     (0.002 * extent(p).min(extent(q))).min(5e-4)
 }
 
-/// What touches as the bodies lie now, each pair of shapes once: surely, or surely not. `touched` did before.
+/// Tells of each pair of shapes once whether it touches as the bodies lie now: surely, or surely not. `touched` did before.
 fn look(
     world: &World,
     parted: &BTreeSet<(BodyId, BodyId)>,

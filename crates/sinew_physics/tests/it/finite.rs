@@ -56,7 +56,7 @@ fn refuses(what: &str, bad: &[f32], act: impl Fn(&mut Fixture, f32)) {
     }
 }
 
-/// Likewise with each of the components of a vector.
+/// `act` panics with each bad number in each of the components of a vector, and leaves the world as it found it.
 fn refuses_in(what: &str, act: impl Fn(&mut Fixture, Vec3)) {
     for k in 0..3 {
         refuses(what, &BAD, |fixture, x| {
@@ -67,7 +67,7 @@ fn refuses_in(what: &str, act: impl Fn(&mut Fixture, Vec3)) {
     }
 }
 
-/// Likewise in a pose.
+/// `act` panics with each bad number in a pose, and leaves the world as it found it.
 fn refuses_pose(what: &str, act: impl Fn(&mut Fixture, Transform)) {
     refuses_in(what, |f, v| act(f, Transform::from_translation(v)));
     refuses(what, &BAD, |f, x| {

@@ -92,7 +92,7 @@ pub fn figure(mut world: World, placed: Transform, velocity: Vec3) -> Figure {
     Figure { world: b.world, bodies: b.bodies, joints: b.joints }
 }
 
-/// What a run showed.
+/// Measurements of a run.
 #[derive(Debug, Default)]
 pub struct Report {
     pub gap_max: f32,

@@ -499,7 +499,7 @@ fn a_loaded_group_goes_on_as_the_saved_one() {
     }
 }
 
-/// Where a particle was before a wall slowed it must not decide whom it meets next: a snapshot does not tell.
+/// The place of a particle before a wall slowed it must not decide whom it meets next: a snapshot does not tell.
 #[test]
 fn a_particle_that_has_struck_a_wall_goes_on_alike_in_a_loaded_world() {
     // Impacts in each part of a step.

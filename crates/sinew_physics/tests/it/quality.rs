@@ -1,4 +1,4 @@
-//! What a quality of the step changes: substeps, sweeps and errors; never how hard joints and contacts are.
+//! Effects of the quality of a step: on substeps, sweeps and errors; never on how hard joints and contacts are.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use sinew_math::{Reader, Transform, Vec3, Writer};

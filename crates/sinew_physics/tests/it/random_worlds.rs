@@ -37,7 +37,7 @@ fn decades(random: &mut Random, lo: f32, hi: f32) -> f32 {
 const KNOWN: &[(&str, &[u64])] =
     &[("eight bodies in fifteen joints with springs and soft limits gain 1.5 % in one step", &[27])];
 
-/// Of the worlds beyond the first hundred, so many in a thousand do not hold yet: 279 of 9,900, none with a panic or another
+/// Worlds in a thousand, beyond the first hundred, that do not hold yet: 279 of 9,900, none with a panic or another
 /// future.
 const KNOWN_PER_THOUSAND: usize = 28;
 
@@ -75,7 +75,7 @@ fn outcomes(seeds: core::ops::Range<u64>) -> Vec<Outcome> {
     found
 }
 
-/// What `SINEW_WORLDS` says.
+/// Seeds that `SINEW_WORLDS` asks for, if it is set.
 fn asked_seeds() -> Option<core::ops::Range<u64>> {
     let range = std::env::var("SINEW_WORLDS").ok()?;
     let (lo, hi) = range.split_once("..").expect("SINEW_WORLDS is lo..hi");

@@ -1,4 +1,4 @@
-//! How cylinders, cones and tapered capsules come to rest, and how a lying cylinder rolls.
+//! Cylinders, cones and tapered capsules come to rest, and a lying cylinder rolls.
 
 use crate::build::{box_body, floor};
 use core::f32::consts::FRAC_PI_2;

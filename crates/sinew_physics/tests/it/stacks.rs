@@ -11,7 +11,7 @@ fn tower(world: &mut World, masses: &[f32]) -> Vec<BodyId> {
     masses.iter().enumerate().map(|(i, &mass)| cube(world, place(i), mass)).collect()
 }
 
-/// Of the centre of a cube of the tower.
+/// Position of the centre of a cube of the tower.
 fn place(i: usize) -> Vec3 {
     Vec3::Y * (HALF * (2 * i + 1) as f32)
 }

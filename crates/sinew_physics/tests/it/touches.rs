@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 type Pair = (BodyId, BodyId);
 
-/// What some steps told of.
+/// Events of some steps.
 #[derive(Debug, Default)]
 struct Seen {
     begin: Vec<Pair>,

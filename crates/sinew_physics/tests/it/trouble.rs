@@ -109,7 +109,7 @@ fn a_pose_is_turned_not_scaled() {
     assert_eq!(world.transform(ball).rotation.length(), 1.0);
 }
 
-/// What is beyond all measure is slowed to what the world allows, in its direction, and told of once: also where squares of it are beyond
+/// A velocity beyond all measure is reduced to what the world allows, in its direction, and told of once: also where squares of it are beyond
 /// 32 bits.
 #[test]
 fn impulses_beyond_all_measure_are_limited_and_told_of() {

@@ -1,4 +1,4 @@
-//! What is seen, against rays shot one by one and against what must not be seen.
+//! Visible surfaces, against rays shot one by one and against what must not be seen.
 
 use sinew::math::{Random, Transform, Vec2, Vec3};
 use sinew::physics::Shape;

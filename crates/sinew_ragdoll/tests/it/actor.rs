@@ -92,7 +92,7 @@ pub fn kaykit() -> Option<CharacterDef> {
     Some(def)
 }
 
-/// How the mannequin gets up from its face, on another body.
+/// Clip by which the mannequin gets up from its face, on another body.
 fn from_face_on(rig: &Rig, analysis: &RigAnalysis) -> Clip {
     let Mannequin { rig: actor, clips, motions } = mannequin();
     let own = analyze(&actor).expect("the mannequin has a skin");

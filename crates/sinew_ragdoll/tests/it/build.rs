@@ -32,7 +32,7 @@ fn body(def: &RagdollDef, role: &str) -> usize {
     def.bodies.iter().position(|body| body.role == role).unwrap_or_else(|| panic!("no {role}"))
 }
 
-/// What every definition must be, whatever the rig.
+/// Checks what every definition must be, whatever the rig.
 pub fn check_sound(name: &str, def: &RagdollDef) {
     assert!(!def.bodies.is_empty(), "{name}");
     assert_eq!(def.joints.len() + 1, def.bodies.len(), "{name}");

@@ -69,7 +69,7 @@ fn at_bind(bones: &Bones, plan: &JointPlan) -> (Rotation, Rotation) {
     (parent.inverse() * child, parent)
 }
 
-/// Where a point carried by the child goes when the joint rotation becomes `joint`, character space.
+/// Position of a point carried by the child when the joint rotation becomes `joint`, character space.
 fn moved(bones: &Bones, child: usize, joint: Rotation, point: Vec3) -> Vec3 {
     let plan = &plans(bones)[child - 1];
     let (bind, parent) = at_bind(bones, plan);

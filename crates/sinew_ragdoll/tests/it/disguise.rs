@@ -1,4 +1,4 @@
-//! What a file may do to a rig without making another character of it.
+//! Changes that a file may make to a rig without making another character of it.
 
 use sinew_anim::{Joint, JointIdx, LocalTransform, Mesh, Primitive, Rig, RigAnalysis, Role, Side};
 use sinew_math::{Affine, Random, Rotation, Transform, Vec3};

@@ -1,4 +1,4 @@
-//! What ragdolls of other tools suffer from, planted into a healthy one: the doctor names exactly that, and mends it.
+//! Flaws that ragdolls of other tools suffer from, planted into a healthy one: the doctor names exactly that, and mends it.
 
 use crate::actor::walker;
 use sinew_math::{Range, Rotation, SwingTwistLimit, Sym3, Transform, Vec3};
@@ -321,7 +321,7 @@ fn falls_well(def: &RagdollDef, what: &str) {
     assert!(gain < 0.02, "{what}: energy gain {gain}");
 }
 
-/// What the doctor calls an error must do harm: it shows in motion, and that is told.
+/// Flaws that the doctor calls errors must do harm: it shows in motion, and that is told.
 #[test]
 fn errors_show_in_motion() {
     let mut wrong = Vec::new();

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// From the hit until it is up, seconds: the most that it may take.
 const UP_WITHIN: f32 = 8.0;
 
-/// How a body lies.
+/// Posture of a body that lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Lying {
     Supine,
@@ -37,7 +37,7 @@ fn lying(character: &Character, world: &World) -> Lying {
     }
 }
 
-/// What became of one fall.
+/// Result of one fall.
 struct Fall {
     lying: Option<Lying>,
     /// From the hit, seconds.

@@ -1,4 +1,4 @@
-//! Which bodies may collide: what is seen in the bind pose, within the limits and in clips, and what is done about it.
+//! Pairs of bodies that may collide: what is seen in the bind pose, within the limits and in clips, and what is done about it.
 
 use sinew_anim::roles::{Role, Side};
 use sinew_math::{Rotation, Transform, Vec3};
@@ -60,7 +60,7 @@ fn found(report: &FilterReport, pair: (usize, usize)) -> Option<Remedy> {
     remedy
 }
 
-/// What is done about a pair that overlaps in these shares of the poses within the limits and of the clips.
+/// Remedy for a pair that overlaps in these shares of the poses within the limits and of the clips.
 fn remedy(pair: (usize, usize), distance: f32, limits: f32, clips: f32) -> Option<Remedy> {
     let (bones, mut fits) = body();
     let poses = Poses {

@@ -1,4 +1,4 @@
-//! What files do to a rig without changing the character: another order of joints, other units and axes, no names.
+//! Changes that files make to a rig without changing the character: another order of joints, other units and axes, no names.
 
 use crate::build::{OTHERS, PEOPLE, built, check_sound};
 use crate::data::rig;

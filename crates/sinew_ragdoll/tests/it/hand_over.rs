@@ -39,7 +39,7 @@ fn carried_momentum(def: &CharacterDef, at: Transform, time: f32, dt: f32) -> Ca
     momentum_of_motion(def, &before, &now, &after, 2.0 * dt)
 }
 
-/// Of bodies at `now` that go from `before` to `after` within `dt`.
+/// Momentum of bodies at `now` that go from `before` to `after` within `dt`.
 fn momentum_of_motion(
     def: &CharacterDef,
     before: &[Transform],

@@ -39,7 +39,7 @@ fn joint_turn(joint: &RagdollJointDef, parent: Rotation, child: Rotation) -> Rot
     (parent * joint.frame_parent.rotation).inverse() * (child * joint.frame_child.rotation)
 }
 
-/// How far beyond its limits, radians.
+/// Excess of a joint's rotation over its limits, radians.
 fn beyond(joint: &RagdollJointDef, turn: Rotation) -> f32 {
     match joint.kind {
         JointKind::Ball { limit: Some(limit) } => limit.overshoot(turn),

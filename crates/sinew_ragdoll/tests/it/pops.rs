@@ -1,4 +1,4 @@
-//! How far from popping a character is where its bodies take over or give back: accelerations of its joints over what offset
+//! Pops of a character where its bodies take over or give back: accelerations of its joints over what offset
 //! and time ask for, as transitions between clips are measured.
 
 use core::fmt;
@@ -53,7 +53,7 @@ fn centers(character: &Character) -> Vec<Transform> {
     bodies.iter().zip(&def.ragdoll.bodies).map(at_center).collect()
 }
 
-/// What a joint may do in a window.
+/// Budget of a joint in a window.
 #[derive(Clone, Copy, Default)]
 struct Budget([f32; 2]);
 

@@ -191,7 +191,7 @@ fn a_character_drawn_in_another_size_is_seen() {
     assert!(kinds(&skin.flaws(&subject.def)).contains(&FlawKind::Resized));
 }
 
-/// What the animator does to the skin, a fall may do and half as much again.
+/// A fall may do to the skin what the animator does, and half as much again.
 #[test]
 fn stretch_of_the_clips_is_let_pass() {
     let subject = Subject::mannequin();

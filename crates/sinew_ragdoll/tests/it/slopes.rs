@@ -41,8 +41,8 @@ fn height(world: &World, at: Vec3) -> f32 {
     hit.map_or(f32::NEG_INFINITY, |hit| hit.point.y)
 }
 
-/// How deep joints are in the ground while it gets up, at most, and how high its lower foot is over it, metres; and how hard
-/// its pelvis and feet are accelerated from when the pose of the bodies has died away until it walks, m/s².
+/// Largest depth of joints in the ground while it gets up, largest height of its lower foot over it, metres; and largest
+/// acceleration of its pelvis and feet from when the pose of the bodies has died away until it walks, m/s².
 fn gets_up(def: &Arc<CharacterDef>, ground: &[BodyDef], push: Vec3) -> [f32; 3] {
     let mut world = world_of(ground);
     let mut character = Character::new(def.clone(), Transform::IDENTITY, 0.2);
@@ -102,7 +102,7 @@ fn nobody_sinks_into_a_slope_or_floats_over_it() {
     }
 }
 
-/// Where it comes to lie on stairs is chance, and a clip that was made on a floor takes a hand or a knee through an edge now and then:
+/// The place where it comes to lie on stairs is chance, and a clip made on a floor takes a hand or a knee through an edge now and then:
 /// 3, 4 and 6 of 32 falls of three builds, by at most 16, 20 and 19 cm.
 #[test]
 fn few_reach_through_the_edge_of_a_step() {
@@ -118,7 +118,7 @@ fn few_reach_through_the_edge_of_a_step() {
     assert!(depths[63] < 0.25, "{depths:?}");
 }
 
-/// How high heel and ball of both feet are over what is under them, beyond how high they are in the pose of the file.
+/// Height of heel and ball of both feet over what is under them, beyond that in the pose of the file, metres.
 fn soles(def: &CharacterDef, world: &World, character: &Character) -> [[f32; 2]; 2] {
     let (mut model, mut stands) = (Vec::new(), Vec::new());
     local_to_model(&def.rig, character.pose(), &character.world_from_model(), &mut model);
@@ -132,7 +132,7 @@ fn soles(def: &CharacterDef, world: &World, character: &Character) -> [[f32; 2];
     })
 }
 
-/// How high feet are: across the edge of a step a foot stands on what is under its heel or under its ball.
+/// Height of both feet, metres: across the edge of a step a foot stands on what is under its heel or under its ball.
 fn held(def: &CharacterDef, world: &World, character: &Character) -> [f32; 2] {
     soles(def, world, character).map(|[heel, ball]| min(heel, ball))
 }

@@ -128,7 +128,7 @@ fn a_stumble_is_part_of_the_state() {
     }
 }
 
-/// What became of pushes of one size.
+/// Results of pushes of one size.
 #[derive(Default)]
 struct Tally {
     stood: u32,
@@ -212,7 +212,7 @@ fn motion(world: &World, def: &CharacterDef, bodies: &[BodyId]) -> [Vec3; 3] {
     [momentum, spin, center]
 }
 
-/// How far a point of the floor is outside of the soles of the feet that are down, by the joints of its pose; `None`: none is.
+/// Distance of a point of the floor from the support polygon of the feet that are down, metres, 0 within; `None` if none is down.
 fn outside(character: &Character, point: Vec3) -> Option<f32> {
     // Around the ankle and the ball: heel, toes, sides, metres; and an ankle that is up.
     let [heel, toes, rim, up] = [0.06, 0.08, 0.045, 0.15];

@@ -28,7 +28,7 @@ const FEW: u64 = 2;
 const PREFIXES: [&str; 6] = ["", "Armature|", "hero_", "rig:", "GLB_", "Char01."];
 const SUFFIXES: [&str; 4] = ["", "_jnt", ".001", "_050"];
 
-/// Which feet may be hung on the root.
+/// Feet that may be hung on the root.
 fn feet(rig: &Rig, analysis: &RigAnalysis) -> Vec<JointIdx> {
     let of = |side| analysis.joint_with(Role::Foot(side));
     if analysis.humanoid {
@@ -89,7 +89,7 @@ fn variant(rig: &Rig, analysis: &RigAnalysis, seed: u64) -> (Rig, Vec<usize>, St
     (rig, place, said.join(", "))
 }
 
-/// What differs; empty if the bodies are those of the plain rig and as heavy.
+/// Differences between two ragdolls; empty if the bodies are those of the plain rig and as heavy.
 fn differences(plain: &RagdollDef, other: &RagdollDef, place: &[usize]) -> Vec<String> {
     let mut found = Vec::new();
     for a in &plain.bodies {

@@ -1,4 +1,4 @@
-//! What single fields do.
+//! Effects of single fields.
 
 use crate::build::{box_body, capsule_body, sphere_body};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};

@@ -105,8 +105,8 @@ fn random_walks_in_clutter_are_never_inside_and_never_through() {
     println!("deepest {deepest} m");
 }
 
-/// Where a capsule of its size, with its skin, can go on by 10 cm at the same height or a little lower, a mover that is told to
-/// go there gets on.
+/// A mover gets on wherever a capsule of its size, with its skin, can go on by 10 cm at the same height or a little lower, if it
+/// is told to go there.
 #[test]
 fn it_is_never_stuck_where_there_is_room() {
     let mut random = Random::new(12);

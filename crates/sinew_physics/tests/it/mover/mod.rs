@@ -38,7 +38,7 @@ pub fn settle(world: &mut World, id: MoverId) {
     assert!(world.mover(id).is_grounded(), "it stands at {}", world.mover(id).position());
 }
 
-/// How deep a mover's capsule is in anything, by the world's own queries, metres.
+/// Largest penetration depth of a mover's capsule in anything, by the world's own queries, metres.
 pub fn depth(world: &World, id: MoverId) -> f32 {
     let mover = world.mover(id);
     let shape = Shape::Capsule { half_height: mover.half_height(), radius: mover.def().radius };
@@ -48,7 +48,7 @@ pub fn depth(world: &World, id: MoverId) -> f32 {
     found.first().map_or(0.0, |deepest| deepest.depth)
 }
 
-/// How many random cases to try: `few`, but `all` with `SINEW_FULL` set.
+/// Number of random cases to try: `few`, but `all` with `SINEW_FULL` set.
 pub fn cases(few: usize, all: usize) -> usize {
     if std::env::var_os("SINEW_FULL").is_some() { all } else { few }
 }

@@ -1,4 +1,4 @@
-//! What movers and dynamic bodies do to each other.
+//! Pushes between movers and dynamic bodies.
 
 use super::{depth, level, settle};
 use sinew_math::{Reader, Vec3, Writer};

@@ -151,7 +151,7 @@ impl<F: FnOnce(&mut Forces<'_>) + Send + Sync + 'static> PhysicsObject for Once<
     }
 }
 
-/// Likewise, when everything has moved.
+/// Does what a test says, once, when everything has moved.
 pub struct OnceMoved<F> {
     pub act: Option<F>,
 }

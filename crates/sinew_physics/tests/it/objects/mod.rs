@@ -53,7 +53,7 @@ fn act_once(world: &mut World, act: impl FnOnce(&mut Forces<'_>) + Send + Sync +
     world.remove_object(id);
 }
 
-/// Likewise, when everything has moved.
+/// Runs one step with an object that acts once, when everything has moved, and takes it out again.
 fn act_once_moved(world: &mut World, act: impl FnOnce(&mut Corrections<'_>) + Send + Sync + 'static) {
     let id = world.add_object(Box::new(OnceMoved { act: Some(act) }));
     world.step();
@@ -90,7 +90,7 @@ fn a_force_acts_substep_by_substep() {
     }
 }
 
-/// What the object pushes adds to what the world does, once: gravity as a field, and a force that lasts.
+/// The force of an object adds to what the world does, once: gravity as a field, and a force that lasts.
 #[test]
 fn a_force_adds_to_fields_and_to_forces_that_last() {
     let mut world = weightless();

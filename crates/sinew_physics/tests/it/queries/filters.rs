@@ -1,4 +1,4 @@
-//! Which shapes a question is about.
+//! Filters of queries: which shapes a question is about.
 
 use sinew_math::Vec3;
 use sinew_physics::ray::Ray;

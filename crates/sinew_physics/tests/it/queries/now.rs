@@ -76,7 +76,7 @@ fn after_every_kind_of_change() {
     }
 }
 
-/// Where a ray from above meets a body.
+/// Height at which a ray from above meets a body, metres in the world.
 fn top(world: &World, id: BodyId) -> Option<f32> {
     let at = world.center_of_mass(id);
     let ray = Ray { origin: at + Vec3::Y * 5.0, direction: Vec3::Y * -10.0 };
@@ -117,7 +117,7 @@ fn after_a_step_the_new_pose() {
     }
 }
 
-/// Whether a ray from above, a box around it, and a ball that lies on it meet a body, each by itself.
+/// True for each of a ray from above, a box around it, and a ball that lies on it that meets a body, each by itself.
 fn met(world: &mut World, id: BodyId, filter: QueryFilter<'_>) -> [bool; 3] {
     let query = world.query().filter(filter).accept(|body, _| body == id);
     let around = OverlapWith(Probe::at(Shape::Box { half_extents: Vec3::splat(2.0) }, Vec3::ZERO));
@@ -135,7 +135,7 @@ fn met(world: &mut World, id: BodyId, filter: QueryFilter<'_>) -> [bool; 3] {
     [seen[0], seen[1], touches]
 }
 
-/// Of a static body of a single shape, too, of which copies are kept beside the tree.
+/// A change of filter counts at once, also of a static body of a single shape, of which copies are kept beside the tree.
 #[test]
 fn after_a_shape_was_changed_whom_it_meets() {
     let mut world = World::new(WorldDef::default());

@@ -8,7 +8,7 @@ use sinew_math::{Random, Transform, Vec3};
 use sinew_physics::ray::Ray;
 use sinew_physics::{BodyDef, BodyHit, BodyKind, Shape, ShapeDef, World, WorldDef};
 
-/// What a world of one shape answers.
+/// First hit of a ray in a world of one shape.
 fn first(shape: &Shape, frame: &Transform, ray: &Ray) -> Option<BodyHit> {
     let mut world = World::new(WorldDef::default());
     world.add_body(&BodyDef {

@@ -1,4 +1,4 @@
-//! What a start inside means, for every shape and every question alike.
+//! Meaning of a start inside, for every shape and every question alike.
 
 use super::random::{KINDS, shape};
 use sinew_math::{Random, Transform, Vec3};
@@ -105,7 +105,7 @@ fn a_cast_that_starts_inside() {
     }
 }
 
-/// What rests on something touches it, and a cast from there hits wherever it leads; a hair above it may go its way.
+/// A shape that rests on something touches it, and a cast from there hits wherever it leads; a hair above it may go its way.
 #[test]
 fn a_cast_that_starts_on_the_surface() {
     let mut world = World::new(WorldDef::default());

@@ -11,7 +11,7 @@ use sinew_physics::{
     PenetrationOf, Probe, QueryFilter, Question, Shape, ShapeCast, ShapeId,
 };
 
-/// What one shape answers, and where the answer stands.
+/// Answer of one shape, with the rank by which answers are sorted.
 type One<'a, A> = &'a dyn Fn(ShapeId, &Shape, &Transform) -> Option<(f32, A)>;
 
 /// Asks in every way, and compares with what all shapes answer one by one.

@@ -9,7 +9,7 @@ pub struct Energies {
     pub kinetic: f64,
     /// Kinetic, of height, of springs.
     pub total: f64,
-    /// Of springs.
+    /// Energy of springs, soft welds and soft limits.
     pub elastic: f64,
     pub mass: f64,
 }

@@ -61,7 +61,7 @@ fn shape(r: &mut Random, size: f32) -> Shape {
     }
 }
 
-/// How far apart sizes and masses are.
+/// Ranges of sizes and masses, in powers of ten.
 struct Spread {
     size: [f32; 2],
     mass: [f32; 2],
@@ -128,7 +128,7 @@ fn forest(r: &mut Random, plan: &mut WorldPlan, temper: Temper) {
     }
 }
 
-/// Where a body is joined to another, and where it then lies.
+/// Place where a body is joined to another, and place where it then lies, both in the world.
 fn neighbor(r: &mut Random, parent: &BodyPlan, child: &BodyPlan) -> (Vec3, Vec3) {
     let way = r.direction();
     let on = (way + r.in_cube() * 0.5).normalize();

@@ -6,7 +6,7 @@ use core::f32::consts::PI;
 use sinew_math::{Random, Range, Rotation, SwingTwistLimit, Transform, Vec3, min};
 use sinew_physics::*;
 
-/// What a world's joints may do.
+/// Features that a world's joints may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Temper {
     /// Only what stores energy in a way that can be computed from outside, or takes it away: stiffnesses given as such
@@ -89,7 +89,7 @@ fn interval(r: &mut Random, widest: f32, temper: Temper) -> Range {
     around(r, widest)
 }
 
-/// What a net's joints are.
+/// Random kind for the joints of a net.
 pub fn net_kind(r: &mut Random) -> JointKind {
     match r.index(4) {
         0 => JointKind::Distance { range: Range::new(0.0, 1.0) },
@@ -134,14 +134,14 @@ fn six(r: &mut Random) -> SixDof {
     SixDof { linear, twist: axis(r, 3.0), swing_y: axis(r, 1.5), swing_z: axis(r, 1.5) }
 }
 
-/// Whether the energy of soft limits can be told from outside: of a cone it cannot deep beyond it, where its room is
+/// True if soft limits may be had: the energy of those of a cone cannot be told from outside deep beyond it, where its room is
 /// one to first order only.
 fn stores_limits(kind: &JointKind, temper: Temper) -> bool {
     let turns = matches!(kind, JointKind::Ball { .. } | JointKind::Universal { .. } | JointKind::SixDof(_));
     temper == Temper::Driven || !turns
 }
 
-/// Likewise of springs: those about some axes of rotation but not about others are none that store.
+/// True if springs may be had: those about some axes of rotation but not about others are none that store.
 fn stores_springs(kind: &JointKind, temper: Temper) -> bool {
     temper == Temper::Driven || !matches!(kind, JointKind::SixDof(_))
 }

@@ -42,7 +42,7 @@ pub struct JointPlan {
     pub born: u32,
     /// In A's frame; that of B agrees with it in the pose at birth, but for distances.
     pub frame_a: Transform,
-    /// Of a distance, whose range and rest length are in units of the distance at birth.
+    /// Anchor in B's frame of a distance, whose range and rest length are in units of the distance at birth.
     pub anchor_b: Vec3,
     pub kind: JointKind,
     pub weld: Option<Softness>,
@@ -55,7 +55,7 @@ pub struct JointPlan {
     pub collision: JointCollision,
 }
 
-/// What happens to a world in its run. What is no longer there is left alone.
+/// Change to a world in its run. What is no longer there is left alone.
 #[derive(Clone, Debug)]
 pub enum Change {
     RemoveJoint(usize),

@@ -48,7 +48,7 @@ pub struct Failure {
     pub fault: Fault,
 }
 
-/// What a run that held showed.
+/// Figures of a run that held.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Figures {
     /// Largest gap of an exact joint while all joints formed trees and nothing was violent, metres.
@@ -223,7 +223,7 @@ impl<'a> Run<'a> {
         true
     }
 
-    /// Of joints that hold exactly, metres.
+    /// Largest gap of joints that hold exactly, metres.
     fn gap(&self) -> f32 {
         self.enabled_joints()
             .filter(|(_, def)| def.weld.is_none() && def.limit_softness.is_none())

@@ -125,7 +125,7 @@ pub fn as_code(plan: &WorldPlan) -> String {
     code
 }
 
-/// What is in a plan, in a line.
+/// Features of a plan, in a line.
 pub fn features(plan: &WorldPlan) -> String {
     let mut found = Vec::new();
     let mut note = |there: bool, name: &str| {

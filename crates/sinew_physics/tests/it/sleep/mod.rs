@@ -1,4 +1,4 @@
-//! What falls asleep and what does not; what wakes it.
+//! Sleep: what falls asleep and what does not; what wakes it.
 
 mod particles;
 mod rest;

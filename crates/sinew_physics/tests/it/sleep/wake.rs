@@ -1,4 +1,4 @@
-//! What wakes a sleeper, and what does not.
+//! Waking: what wakes a sleeper, and what does not.
 
 use super::{ENOUGH, Nap, all_asleep, linear, nap, run, slab, steps_to_sleep};
 use crate::build::{ball, box_body, joint, sphere_body};
@@ -6,7 +6,7 @@ use sinew_math::{Range, Reader, Transform, Vec3, Writer};
 use sinew_physics::ray::Ray;
 use sinew_physics::*;
 
-/// What is done to a crate that sleeps on a floor wakes it at once, or within the next step.
+/// `act` on a crate that sleeps on a floor wakes it at once, or within the next step.
 fn wakes(what: &str, act: impl FnOnce(&mut Nap)) {
     let mut nap = nap();
     act(&mut nap);
@@ -14,7 +14,7 @@ fn wakes(what: &str, act: impl FnOnce(&mut Nap)) {
     assert!(nap.world.is_awake(nap.sleeper), "{what} wakes");
 }
 
-/// Likewise leaves it asleep, where it is.
+/// `act` leaves a crate that sleeps on a floor asleep, where it is.
 fn leaves_asleep(what: &str, act: impl FnOnce(&mut Nap)) {
     let mut nap = nap();
     let at = nap.world.transform(nap.sleeper);
