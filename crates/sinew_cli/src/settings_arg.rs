@@ -21,7 +21,7 @@ pub struct SettingsArg {
     /// below go before it
     #[arg(help_heading = HEADING, long, value_name = "FILE")]
     settings: Option<PathBuf>,
-    /// Which of the file's characters, from 1, where there are several skeletons that have no joint in common; by default all are
+    /// Number of the character in the file, from 1, where there are several skeletons that have no joint in common; by default all are
     /// taken for one
     #[arg(help_heading = HEADING, long = "character", id = "character_number", value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     character: Option<u16>,

@@ -30,7 +30,7 @@ pub struct Boxes {
     /// Most boxes
     #[arg(long, value_name = "N", default_value = "150", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     max: u16,
-    /// Where to write the world file
+    /// World file to write
     #[arg(short, long, value_name = "WORLD.json")]
     output: PathBuf,
     /// Also draw it, the boxes beside the mesh: a .gif, .png or .webp file

@@ -64,7 +64,7 @@ pub struct Convert {
     /// Metres per unit of a BVH that is read; by default told from the skeleton's size
     #[arg(long, value_name = "METRES", value_parser = metres)]
     unit_in: Option<f32>,
-    /// Which axis of a BVH that is written points up
+    /// Axis that points up in a BVH that is written
     #[arg(long, value_name = "AXIS", default_value = "y")]
     up: UpAxis,
     /// Order of the rotations in a BVH that is written

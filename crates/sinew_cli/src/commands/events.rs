@@ -13,7 +13,7 @@ use sinew::anim::Event;
 use sinew::formats::{MotionOptions, write_events};
 use std::path::PathBuf;
 
-/// What `sinew events` can do.
+/// Commands of `sinew events`.
 #[derive(Subcommand)]
 pub enum Events {
     Detect(Detect),
@@ -44,7 +44,7 @@ pub struct Detect {
     /// Only this clip, by name, or by number from 0 if it has none; repeatable
     #[arg(long = "clip", value_name = "NAME")]
     clips: Vec<String>,
-    /// Where to write the events file; NAME.events.json beside NAME.glb is read with it
+    /// Events file to write; NAME.events.json beside NAME.glb is read with it
     #[arg(short, long, value_name = "OUT.events.json")]
     output: Option<PathBuf>,
 }

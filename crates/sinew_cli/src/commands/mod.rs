@@ -20,7 +20,7 @@ use crate::report::Report;
 use clap::Subcommand;
 use later::Later;
 
-/// What `sinew` can do.
+/// Commands of `sinew`.
 #[derive(Subcommand)]
 pub enum Command {
     Demo(demo::Demo),
@@ -43,7 +43,7 @@ pub enum Command {
     Replay(Later),
 }
 
-/// What `sinew ragdoll` can do.
+/// Commands of `sinew ragdoll`.
 #[derive(Subcommand)]
 pub enum Ragdoll {
     Build(ragdoll_build::RagdollBuild),

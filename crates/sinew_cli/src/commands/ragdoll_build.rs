@@ -30,7 +30,7 @@ docs/ragdoll.md says what a definition and settings hold.")]
 pub struct RagdollBuild {
     /// A GLB, glTF, VRM or FBX file with a skinned character
     file: PathBuf,
-    /// Where to write the definition; without it there is only the report
+    /// Definition file to write; without it there is only the report
     #[arg(short, long, value_name = "OUT.sinew.json")]
     output: Option<PathBuf>,
     /// Shapes of the bodies; auto, the default, takes for each bone what fits better

@@ -30,7 +30,7 @@ pub struct RagdollDoctor {
     /// Mend what can be mended, and write the definition that comes of it
     #[arg(long, requires = "output")]
     fix: bool,
-    /// Where to write the mended definition
+    /// File to write the mended definition to
     #[arg(short, long, value_name = "OUT.sinew.json", requires = "fix")]
     output: Option<PathBuf>,
     /// The character that a definition belongs to: knows where bones begin, and which have no body

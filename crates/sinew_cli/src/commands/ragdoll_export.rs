@@ -25,7 +25,7 @@ pub struct RagdollExport {
     /// khr: glTF with KHR_physics_rigid_bodies and KHR_implicit_shapes (drafts); mjcf: a MuJoCo model
     #[arg(long = "as", value_enum, value_name = "FORMAT")]
     format: Format,
-    /// Where to write it; by default NAME.khr.glb or NAME.mjcf.xml beside the file
+    /// File to write; by default NAME.khr.glb or NAME.mjcf.xml beside the file
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     /// A ragdoll of this character from `ragdoll build`, as it is or edited; without it one is built

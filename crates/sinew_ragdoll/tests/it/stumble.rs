@@ -2,6 +2,7 @@
 
 use crate::actor::{shared, walker};
 use crate::in_world::{level, run};
+use core::f32::consts::PI;
 use core::fmt::Write as _;
 use sinew_math::{Random, Reader, Rotation, Transform, Vec3, Writer, max};
 use sinew_physics::{BodyId, World, WorldDef};
@@ -163,7 +164,7 @@ fn pushes_at_random() {
         for index in 0..each {
             let (mut world, mut character) = powered(&def, index % 2 == 0, random.index(64));
             let body = random.index(def.ragdoll.bodies.len());
-            let way = Rotation::from_axis_angle(Vec3::Y, random.range(-3.14, 3.14)) * Vec3::Z;
+            let way = Rotation::from_axis_angle(Vec3::Y, random.range(-PI, PI)) * Vec3::Z;
             character.hit(&mut world, body, way * size);
             let mut events = character.events().to_vec();
             for _ in 0..180 {
@@ -246,7 +247,7 @@ fn outside(character: &Character, point: Vec3) -> Option<f32> {
 /// The force that moves all of it, less its weight, as feet would have to give it: over a tenth of a second, where it acts on the floor
 /// outside of the soles that are down, metres, and its share along the floor of the one up.
 #[test]
-fn what_holds_it_is_little_more_than_feet_could_give() {
+fn what_holds_it_could_come_from_feet_half_of_the_time() {
     const OVER: usize = 6;
     let def = puppet();
     let chest = def.body_named("chest").expect("it has a chest");

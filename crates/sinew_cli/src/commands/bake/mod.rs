@@ -67,11 +67,11 @@ pub struct Bake {
     /// A world file (JSON) or a mesh (GLB, OBJ) to fall in; without it a floor at y = 0
     #[arg(long, value_name = "FILE")]
     world: Option<PathBuf>,
-    /// Where the character stands, metres; by default the flat place of the world nearest its middle with half as much room
+    /// Place where the character stands, metres; by default the flat place of the world nearest its middle with half as much room
     /// again over it as the character is tall, without --world the origin
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     at: Option<Vec3>,
-    /// Which way it faces, degrees from +Z toward +X
+    /// Direction in which it faces, degrees from +Z toward +X
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = degrees, allow_negative_numbers = true)]
     facing: f32,
     /// Add a floor at this height, metres
@@ -102,11 +102,11 @@ pub struct Bake {
     /// Frames per second of the clip
     #[arg(long, value_name = "N", default_value = "30", value_parser = clap::value_parser!(u16).range(1..=240))]
     fps: u16,
-    /// How far any joint of the clip may be from the simulation at a frame, mm, and by how many tenths of a degree it may
+    /// Most that any joint of the clip may be from the simulation at a frame, mm, and by how many tenths of a degree it may
     /// be turned; 0 keeps a key for every frame. Default 0.1: a tenth of a millimetre, a hundredth of a degree
     #[arg(long, value_name = "MM", value_parser = key_error, allow_negative_numbers = true)]
     key_error: Option<f32>,
-    /// Where to write: a copy of your file with the new clip in it (.glb, .vrm), or its skeleton and the clip (.bvh)
+    /// File to write: a copy of yours with the new clip in it (.glb, .vrm), or its skeleton and the clip (.bvh)
     #[arg(short, long, value_name = "OUT.(glb|vrm|bvh)")]
     output: ClipFile,
     /// Name of the new clip; by default sinew, or sinew 2 and so on where the file has that already
