@@ -6,7 +6,7 @@ use crate::body::shape::Shape;
 use crate::id::{BodyId, ShapeId};
 use sinew_math::Transform;
 
-/// Question that a [`Query`](super::Query) can be asked; [the module](super) lists all questions there are.
+/// Question that a [`Query`] can be asked; [the module](super) lists all questions there are.
 pub trait Question: sealed::Ask<Found = <Self as Question>::Answer> {
     /// Answer of a shape.
     type Answer: sealed::Reply;

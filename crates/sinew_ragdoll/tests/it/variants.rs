@@ -23,7 +23,7 @@ const RIGS: [&str; 6] = [
 
 /// Variants of each rig when all is asked for; else a few.
 const ALL: u64 = 50;
-const FEW: u64 = 2;
+const FEW: u64 = 1;
 
 const PREFIXES: [&str; 6] = ["", "Armature|", "hero_", "rig:", "GLB_", "Char01."];
 const SUFFIXES: [&str; 4] = ["", "_jnt", ".001", "_050"];
