@@ -4,7 +4,7 @@
 //! only bear witness: they settle how a limb is divided, raise the confidence where they agree and lower it where
 //! they don't. Names whose left and right do not mirror each other are not listened to at all. Where the shape shows no
 //! human (a bind pose without a mirror, feet beside the body), names alone decide, if what they name stands like one.
-//! What a name says is told by its words, not by a list of names. Clips, where they are known ([`Hints`]), tell legs from whatever
+//! Names are read by their words, not by a list of names. Clips, where they are known ([`Hints`]), tell legs from whatever
 //! else hangs down: legs swing in turns.
 
 mod anatomy;

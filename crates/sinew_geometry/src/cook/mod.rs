@@ -14,7 +14,7 @@
 //!    no more are left than were asked for.
 //! 6. A box on which one can stand is laid against the ground that it stands for: treads stay level, and as high as drawn.
 //!
-//! Of few triangles few boxes come, and coarse ones. Then all is done again with half of the tolerance, and again, as long as boxes are
+//! Few triangles make few boxes, and coarse ones. Then all is done again with half of the tolerance, and again, as long as boxes are
 //! left to spend and come closer.
 
 mod box_set;
