@@ -256,7 +256,10 @@ fn hit_bodies() -> Actor {
 }
 
 fn flinching() -> Actor {
-    actor(|world, character| drop(character.hit(world, 5, Vec3::X * 5.0)), 4)
+    let blow = |world: &mut World, character: &mut Character| {
+        character.hit(world, 5, Vec3::X * 5.0);
+    };
+    actor(blow, 4)
 }
 
 fn powered() -> Actor {
