@@ -22,7 +22,7 @@ const GRIP_ROUNDS: u32 = 8;
 /// Gap that a net may close by pressing, metres.
 const TOUCHING: f32 = 1e-4;
 /// Depth at the end of an iteration below which a contact is left to impacts, metres.
-const FORESEEN_DEPTH: f32 = 1e-5;
+const IMPACT_DEPTH: f32 = 1e-5;
 /// Factor on the length of a way within which everything is looked for: what is still to push may turn it a little.
 pub(super) const DETOUR: f32 = 1.5;
 
@@ -330,7 +330,7 @@ impl ParticleGroup {
             }
             let known = self.touches[i].map(|touch| touch.obstacle);
             let ends = (self.positions[i], self.positions[i] + way);
-            let Some((obstacle, meeting)) = self.first_met(i, ends, known, FORESEEN_DEPTH, obstacles) else {
+            let Some((obstacle, meeting)) = self.first_met(i, ends, known, IMPACT_DEPTH, obstacles) else {
                 continue;
             };
             let touch = self.touch(i, h, obstacle, &meeting, obstacles, bodies);

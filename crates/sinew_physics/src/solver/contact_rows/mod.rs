@@ -22,6 +22,7 @@ pub(super) use refind::{Placed, REFIND_TURN, ROLL_TURN, found_anew, margin};
 pub(super) use row::Softness;
 use row::{Pair, Row};
 use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max, min};
+pub(super) use visit::{DEAD_ZONE, NEVER, SLIP_SPEED};
 
 /// An impulse that grew by more than this factor since the substep before is an impact.
 pub(super) const IMPACT_JUMP: f32 = 2.0;

@@ -2,14 +2,13 @@
 
 use super::RELAX_TURN;
 use super::block::{Block, Bounce, Memory, Motion, NONE, ZERO8, gather, load3, packed, times};
+use crate::solver::contact_rows::NEVER;
 use crate::solver::sweep::Pass;
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3};
 
 /// Added to each point's response to itself, as a share of it: four points of a face leave their block singular.
 const PROXIMAL: f32 = 1e-5;
-/// Distance over time of a point that no substep brings to touch, m/s.
-const NEVER: f32 = 1e6;
 
 /// Motion of each body since the step began: translation (x, y, z), then rotation (x, y, z, w).
 pub(super) struct Moved<'a>(pub &'a [Vec6]);

@@ -4,13 +4,11 @@ use super::block::{Block, Eight, HELD, Motion, NONE, Rolling, load3, packed, sto
 use super::conjugate::Step;
 use super::disk;
 use crate::slices::SharedRows;
+use crate::solver::contact_rows::SLIP_SPEED;
 use crate::solver::sweep::Pass;
 use crate::spatial::Vec6;
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 
-/// Tangential speed of two surfaces, left over by static friction, above which they slide, m/s: more than loads that have not
-/// converged make of it in a substep.
-const SLIP_SPEED: f32 = 0.005;
 /// Rounds of Gauss-Seidel over the points of a manifold within a visit: four points of a face share a load that one round
 /// would leave with the first.
 const ROUNDS: usize = 4;

@@ -5,11 +5,8 @@ use super::block::{Block, Eight, HELD, Memory, NONE, ZERO8, gather, store3};
 use super::geometry::FAR;
 use super::prepare::Source;
 use super::record::{FRICTION, IMPULSES, POINTS, SHAPE, fields};
-use crate::solver::contact_rows::{EVENLY, OF_LOAD, Softness};
+use crate::solver::contact_rows::{DEAD_ZONE, EVENLY, OF_LOAD, Softness};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
-
-/// Share of the slop that is left overlapping.
-const DEAD_ZONE: f32 = 0.2;
 
 /// Input that is collected lane by lane, before lanes are written side by side.
 struct Each {
