@@ -7,7 +7,7 @@ use crate::body::{Body, Velocity};
 use crate::context::StepContext;
 use crate::id::{BodyId, GroupId};
 use crate::particles::ParticleGroup;
-use crate::solver::groups::TakenGroup;
+use crate::solver::boundary::groups::TakenGroup;
 use crate::solver::{IslandSolver, View};
 use crate::spatial::{Vec6, ZERO6, angular, join, linear};
 use crate::step::islands::Islands;

@@ -3,9 +3,9 @@
 //! The angular momentum stays as it is in the world but for torque and damping; spin and rotation follow from it, substep by substep,
 //! by [`middle_of_spin`].
 
-use super::build::{View, lasting_force};
+use super::boundary::build::{View, lasting_force};
+use super::boundary::solution::SolvedBody;
 use super::motion::{Turn, divided, middle_of_spin, over, within};
-use super::solution::SolvedBody;
 use crate::body::Velocity;
 use crate::body::def::Quality;
 use crate::context::StepContext;

@@ -3,41 +3,17 @@
 //! An island is one task. It reads the world, works on its copies, and the world takes the results in `store` and
 //! `finalize`, so that threads never share what they write.
 
-mod articulated;
-mod batches;
-mod build;
-mod columns;
-mod composite;
-mod conjugate;
+mod articulation;
+pub(crate) mod boundary;
 mod contact_rows;
 mod contacts;
-mod counts;
-mod disk;
-mod drives;
-mod effort;
-mod energy;
-mod faces;
-mod fields;
 pub(crate) mod flight;
-pub(crate) mod groups;
-pub(crate) mod lcp;
-mod levels;
-mod limit_blocks;
-mod limit_rows;
-mod loads;
-mod loops;
+mod limits;
 mod motion;
-mod outside;
-mod pins;
-mod reaction;
-mod response;
-mod solution;
-mod squeeze;
+mod piles;
+mod safeguards;
 pub(crate) mod strands;
 mod sweep;
-mod tree;
-mod tree_joints;
-mod turns;
 
 use crate::body::def::Quality;
 use crate::body::work::Work;
@@ -45,35 +21,34 @@ use crate::joint::{
     DIRECTIONS, JointDrive, JointGeometry, JointPose, JointRows, LimitImpulse, MAX_LIMITS, Saturation,
 };
 use crate::runner::TaskRunner;
-use crate::solver::groups::TakenGroup;
+use crate::solver::boundary::groups::TakenGroup;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
-use articulated::Inertia;
-use batches::Batches;
-pub(crate) use build::Grading;
-pub(crate) use build::{Pace, View};
-use columns::Columns;
-use conjugate::Conjugate;
+use articulation::batches::Batches;
+use articulation::drives::SoftRow;
+use articulation::elimination::Inertia;
+use articulation::joints::Corrected;
+use articulation::loops::Loops;
+use articulation::pins::Pins;
+use articulation::response::Response;
+use articulation::response_cache::Columns;
+use articulation::tree::Link;
+pub(crate) use boundary::build::{Grading, Pace, View};
+use boundary::fields::Attraction;
+pub(crate) use boundary::solution::{IslandSolution, Solution, SolvedBody, SolvedJoint, split_off};
 use contact_rows::ManifoldRows;
 use contacts::{Contacts, Substep};
 use core::ops::Range;
-use drives::SoftRow;
-use effort::Effort;
-use energy::Momentum;
-use fields::Attraction;
-use levels::Levels;
-use limit_blocks::LimitBlocks;
-use limit_rows::LimitRow;
-use loops::Loops;
+use limits::blocks::LimitBlocks;
+use limits::rows::LimitRow;
 use motion::{IntegratePosition, IntegrateVelocity, RefreshInertia};
-use pins::Pins;
-use response::Response;
+use piles::mass_scaling::{Pressing, Touch};
+use piles::support_depth::Levels;
+use safeguards::Momentum;
 use sinew_math::dispatch;
 use sinew_math::{Sym3, Transform, Vec3, abs3, normalize_or};
-pub(crate) use solution::{IslandSolution, Solution, SolvedBody, SolvedJoint, split_off};
-use squeeze::{Pressing, Touch};
+use sweep::conjugate::Conjugate;
+use sweep::policy::Effort;
 use sweep::{Pass, Unrest};
-use tree::Link;
-use tree_joints::Corrected;
 
 /// Sweeps of `relax` before which friction learns its loads anew: the impulses of `solve` first, then those that really
 /// press. From then on loads stay, or friction and normals may chase each other for ever.
@@ -274,7 +249,7 @@ pub(crate) struct IslandSolver {
     h: f32,
     substeps: u32,
     stretch: f32,
-    tally: counts::Tally,
+    tally: boundary::counts::Tally,
     /// Most that a body moves, m/s, and turns within a substep, radians.
     max_speed: f32,
     max_turn: f32,
@@ -304,9 +279,9 @@ struct Scratch {
     limits: Vec<f32>,
     /// Velocities that the joints of the substep are solved from.
     started: Vec<Vec6>,
-    loads: loads::Scratch,
-    pieces: Vec<composite::Piece>,
-    build: build::Scratch,
+    loads: piles::loads::Scratch,
+    pieces: Vec<articulation::composite::Piece>,
+    build: boundary::build::Scratch,
 }
 
 impl IslandSolver {

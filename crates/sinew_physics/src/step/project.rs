@@ -4,7 +4,7 @@ use crate::body::Velocity;
 use crate::body::def::BodyKind;
 use crate::island::Island;
 use crate::particles::{Anchor, AttachmentTarget, Obstacle, ObstacleBody};
-use crate::solver::groups::TakenGroup;
+use crate::solver::boundary::groups::TakenGroup;
 use crate::solver::{IslandSolver, View};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, join, linear};
 use sinew_math::{Sym3, Transform, Vec3};

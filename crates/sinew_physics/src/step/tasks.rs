@@ -3,7 +3,7 @@
 use crate::context::StepContext;
 use crate::island::Island;
 use crate::runner::TaskRunner;
-use crate::solver::groups::TakenGroup;
+use crate::solver::boundary::groups::TakenGroup;
 use crate::solver::{IslandSolution, IslandSolver, Solution, View, split_off};
 use crate::step::phase::{Phase, solve};
 use crate::step::project::Surroundings;

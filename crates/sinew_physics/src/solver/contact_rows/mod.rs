@@ -1,15 +1,17 @@
 //! Contact rows of one manifold: up to four normal rows solved as a block, friction at the centre, twist, rolling.
 
 mod bounce;
+mod disk;
+pub(crate) mod lcp;
 mod refind;
 mod row;
 mod visit;
 
-use super::columns::{Columns, Strip};
-use super::effort::Firmness;
-use super::limit_rows::add_row;
-use super::response::Response;
-use super::tree::Link;
+use super::articulation::response::Response;
+use super::articulation::response_cache::{Columns, Strip};
+use super::articulation::tree::Link;
+use super::limits::rows::add_row;
+use super::sweep::policy::Firmness;
 use super::{REDUNDANCY, SolverBody, free_response};
 use crate::body::material::ContactMaterial;
 use crate::collide::{MAX_POINTS, Manifold};

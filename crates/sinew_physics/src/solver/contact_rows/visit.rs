@@ -2,11 +2,11 @@
 
 use super::row::Row;
 use super::{AXES, ManifoldRows};
+use super::{disk, lcp};
 use crate::body::material::ContactMaterial;
 use crate::collide::MAX_POINTS;
-use crate::solver::columns::{Change, Strip};
+use crate::solver::articulation::response_cache::{Change, Strip};
 use crate::solver::sweep::Pass;
-use crate::solver::{disk, lcp};
 use crate::spatial::{Vec6, angular};
 use sinew_math::{Vec3, clamp, max, min};
 

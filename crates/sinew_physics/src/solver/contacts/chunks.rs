@@ -8,7 +8,7 @@ use super::visit::Sweep;
 use super::{Class, Color, Contacts, Visitor};
 use crate::runner::TaskRunner;
 use crate::slices::{MOST_NEAR, SharedRows, for_each_near};
-use crate::solver::effort::Order;
+use crate::solver::sweep::policy::Order;
 use core::ops::Range;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::Lanes;

@@ -1,6 +1,6 @@
 //! Graph colouring of contacts, to solve them side by side: those of a colour share no body that moves.
 
-use crate::solver::effort::Firmness;
+use crate::solver::sweep::policy::Firmness;
 
 /// Colours of one round: bits of a mask.
 const COLORS: u32 = u64::BITS;

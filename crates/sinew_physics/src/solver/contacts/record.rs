@@ -10,7 +10,7 @@ use crate::collide::{MAX_POINTS, ManifoldPoint};
 use crate::contact::{Contact, PointImpulse};
 use crate::solver::SolverBody;
 use crate::solver::contact_rows::Placed;
-use crate::solver::effort::Firmness;
+use crate::solver::sweep::policy::Firmness;
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, WIDTH};
 use sinew_math::{Transform, Vec3};

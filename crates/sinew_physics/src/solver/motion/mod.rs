@@ -1,6 +1,6 @@
 //! Motion of the island's bodies, eight side by side: forces to velocities, velocities to poses, inertias, energies.
 
-use super::articulated::{Inertia, Symmetric};
+use super::articulation::elimination::{Inertia, Symmetric};
 use super::{SolverBody, advance};
 use crate::spatial::{Vec6, ZERO6};
 use sinew_math::dispatch::Kernel;

@@ -1,6 +1,6 @@
 //! Arms, gaps and the factor at the pose to which the links have come.
 
-use super::super::articulated::{Freedom, Inertia, Swivel, Symmetric, zero};
+use super::super::articulation::elimination::{Freedom, Inertia, Swivel, Symmetric, zero};
 use super::super::flight::{Eight, load, store};
 use super::link::{Hook, Link, load_turn};
 use super::substep::Pace;

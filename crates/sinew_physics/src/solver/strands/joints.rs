@@ -1,6 +1,6 @@
 //! The exact solve of a strand's joints, up to its first link and down again.
 
-use super::super::articulated::{times, transposed_times, zero};
+use super::super::articulation::elimination::{times, transposed_times, zero};
 use super::super::flight::{Eight, load, store};
 use super::super::motion::Turn;
 use super::factor::kept;

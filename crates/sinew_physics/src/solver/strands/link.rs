@@ -1,6 +1,6 @@
 //! A link of eight strands side by side.
 
-use super::super::build::{View, lasting_force};
+use super::super::boundary::build::{View, lasting_force};
 use super::super::flight::{Eight, ZERO, put, take};
 use super::super::motion::Turn;
 use super::order::{NONE, Placed};
@@ -52,7 +52,7 @@ pub(super) struct Link {
     pub gap: [Eight; 3],
     /// Amount that stability adds to the moments, kg·m².
     pub excess: [Eight; 3],
-    /// The factor: see [`Swivel`](super::super::articulated::Swivel). Of the first link of free strands, the last is the inverse of
+    /// The factor: see [`Swivel`](super::super::articulation::elimination::Swivel). Of the first link of free strands, the last is the inverse of
     /// the mass that is left.
     pub pivot: [Eight; 6],
     pub coupled: [[Eight; 3]; 3],

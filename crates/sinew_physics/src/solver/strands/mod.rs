@@ -1,6 +1,6 @@
 //! Strands: unbranched chains of plain ball joints that nothing touches, up to eight of one length side by side.
 //!
-//! The method is that of the islands ([`tree_joints`](super::tree_joints)): SHAKE and RATTLE over the exact factor of the chain, with
+//! The method is that of the islands ([`joints`](super::articulation::joints)): SHAKE and RATTLE over the exact factor of the chain, with
 //! geometric stiffness. What an unbranched chain of points saves is everything around it: there are no rows, no residuals but of three
 //! directions a joint, no impulses from outside, and what one link hands to the next stays in registers. A strand that comes to where
 //! a safeguard of the islands would act has its step solved by them, from its beginning.
@@ -12,9 +12,9 @@ mod motion;
 mod order;
 mod substep;
 
-use super::build::View;
-use super::effort::stretch_of;
-use super::solution::{SolvedBody, SolvedJoint};
+use super::boundary::build::View;
+use super::boundary::solution::{SolvedBody, SolvedJoint};
+use super::sweep::policy::stretch_of;
 use crate::context::StepContext;
 use crate::island::Island;
 use crate::joint::Joint;

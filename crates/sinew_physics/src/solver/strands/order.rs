@@ -1,6 +1,6 @@
 //! Islands that are strands, and the order in which their links follow each other.
 
-use super::super::build::View;
+use super::super::boundary::build::View;
 use super::is_plain;
 use crate::island::Island;
 

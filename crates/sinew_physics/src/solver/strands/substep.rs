@@ -1,11 +1,11 @@
 //! The substeps of eight strands side by side.
 
-use super::super::drives::CLOSING;
-use super::super::energy::{ENERGY_SLACK, MAX_INNER_TURN, NONSENSE, NONSENSE_SPIN, TORN};
-use super::super::flight::load;
-use super::super::tree_joints::{
+use super::super::articulation::drives::CLOSING;
+use super::super::articulation::joints::{
     POSITION_CORRECTIONS, POSITION_ROUNDING, POSITION_TOLERANCE, RATE_SHARE, REFINEMENTS,
 };
+use super::super::flight::load;
+use super::super::safeguards::{ENERGY_SLACK, MAX_INNER_TURN, NONSENSE, NONSENSE_SPIN, TORN};
 use super::factor::{Digits, factor, place_arms, place_gaps};
 use super::joints::{Asked, ascend, descend, descend_ahead, largest, take_back};
 use super::link::{Hook, Link};

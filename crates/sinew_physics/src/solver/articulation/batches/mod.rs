@@ -1,0 +1,250 @@
+//! Batches: joint trees of one shape, up to eight side by side, one in each lane.
+//!
+//! Factor and solve are those of [`tree`](crate::solver::articulation::tree), but the elimination of a joint is kept as it is, a pivot and what it couples,
+//! instead of as 6×6 matrices of a link: in lanes that is the shorter way. A shape is which link hangs on which and how many
+//! rotations each joint holds, so that figures of one kind share a batch, whatever their sizes and poses.
+//!
+//! Heaps of figures are solved so ([`Coupling::Turns`](crate::solver::Coupling)). Trees that are held by fixed bodies, that have motors, or
+//! joints that do not hold a point, are solved one by one.
+
+mod answer;
+mod factor;
+mod node;
+mod solve;
+mod turn;
+
+use crate::joint::TWIST;
+use crate::solver::articulation::response::Push;
+use crate::solver::articulation::tree::{Link, NONE};
+use crate::solver::contacts::Contacts;
+use crate::solver::sweep::Unrest;
+use crate::solver::{SolverBody, SolverJoint};
+use crate::spatial::Vec6;
+use answer::AnswerRows;
+use core::ops::Range;
+use node::{Kind, Node, Site};
+use sinew_math::lanes::WIDTH;
+use sinew_math::{dispatch, max};
+use solve::{SolveBatch, Way};
+use turn::TurnOfBatch;
+
+/// Batches, from the last one on, in which room is looked for: more would cost more than half-empty ones where all shapes differ.
+const OPEN: usize = 16;
+/// Most links of a tree in a batch: what the factor knows of them lies on the stack.
+const MOST_LINKS: usize = 32;
+
+/// Batches of an island.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Batches {
+    /// Batches in use, and memory of earlier steps behind them.
+    batches: Vec<Batch>,
+    used: usize,
+    /// Batch and lane of each tree; `NONE` of those that are solved alone.
+    places: Vec<(u32, u32)>,
+    /// Links of the trees that are solved alone.
+    pub alone: Vec<Range<usize>>,
+    shape: Vec<Site>,
+    /// Memory for solves.
+    ways: Vec<Way>,
+}
+
+/// Velocities in a sweep by turns.
+pub(in crate::solver) struct TurnVelocities<'a> {
+    /// Velocities before the sweep, and after the limits had their turn.
+    pub before: &'a [Vec6],
+    pub limited: &'a [Vec6],
+    /// Velocities after the contacts had their turn.
+    pub now: &'a mut [Vec6],
+}
+
+/// Up to eight trees of one shape.
+#[derive(Clone, Debug)]
+pub(in crate::solver) struct Batch {
+    /// Number of each tree and its first link, lane by lane; lanes that are not filled repeat the first tree.
+    trees: [u32; WIDTH],
+    first: [usize; WIDTH],
+    lanes: usize,
+    nodes: Vec<Node>,
+}
+
+impl Batches {
+    /// For so many trees, also if there are none now: memory goes on to the next island.
+    pub fn make_room(&mut self, trees: usize) {
+        self.places.clear();
+        self.places.reserve(trees);
+        self.alone.clear();
+        self.alone.reserve(trees + 1);
+    }
+
+    /// Begins with none: all trees are solved alone.
+    pub fn clear(&mut self, links: usize) {
+        self.used = 0;
+        self.ways.resize(MOST_LINKS, Way::NONE);
+        self.places.clear();
+        self.alone.clear();
+        self.alone.push(0..links);
+    }
+
+    /// Puts all trees that can share a batch into one.
+    pub fn form(&mut self, links: &[Link], joints: &[SolverJoint], trees: &[Range<usize>]) {
+        self.clear(links.len());
+        self.alone.clear();
+        for (number, range) in trees.iter().enumerate() {
+            if !self.read_shape(links, joints, range) {
+                self.places.push((NONE, NONE));
+                match self.alone.last_mut() {
+                    Some(last) if last.end == range.start => last.end = range.end,
+                    _ => self.alone.push(range.clone()),
+                }
+                continue;
+            }
+            let shape = &self.shape;
+            let fits = |batch: &Batch| {
+                let same = |(node, site): (&Node, &Site)| node.site == *site;
+                batch.lanes < WIDTH
+                    && batch.nodes.len() == shape.len()
+                    && batch.nodes.iter().zip(shape).all(same)
+            };
+            let from = self.used.saturating_sub(OPEN);
+            let place = self.batches[from..self.used].iter().rposition(fits);
+            let place = place.map_or_else(|| self.open(), |place| from + place);
+            let batch = &mut self.batches[place];
+            self.places.push((place as u32, batch.lanes as u32));
+            batch.trees[batch.lanes..].fill(number as u32);
+            batch.first[batch.lanes..].fill(range.start);
+            batch.lanes += 1;
+        }
+        for batch in &mut self.batches[..self.used] {
+            let (tree, first) = (batch.trees[0], batch.first[0]);
+            batch.trees[batch.lanes..].fill(tree);
+            batch.first[batch.lanes..].fill(first);
+        }
+    }
+
+    /// Makes `shape` that of a tree. False if it cannot be in a batch.
+    fn read_shape(&mut self, links: &[Link], joints: &[SolverJoint], range: &Range<usize>) -> bool {
+        self.shape.clear();
+        if range.len() > MOST_LINKS {
+            return false;
+        }
+        for link in &links[range.clone()] {
+            let site = match joints.get(link.joint as usize) {
+                None => Some(Site { parent: NONE, kind: Kind::Root }),
+                Some(joint) if link.parent as usize >= range.start && (link.parent as usize) < range.end => {
+                    let parent = link.parent - range.start as u32;
+                    kind_of(joint).map(|kind| Site { parent, kind })
+                }
+                Some(_) => None,
+            };
+            match site {
+                Some(site) => self.shape.push(site),
+                None => return false,
+            }
+        }
+        true
+    }
+
+    /// Another batch, of the shape that was read.
+    fn open(&mut self) -> usize {
+        if self.used == self.batches.len() {
+            let (trees, first) = ([0; WIDTH], [0; WIDTH]);
+            self.batches.push(Batch { trees, first, lanes: 0, nodes: Vec::with_capacity(MOST_LINKS) });
+        }
+        let batch = &mut self.batches[self.used];
+        batch.lanes = 0;
+        batch.nodes.resize(self.shape.len(), Node::EMPTY);
+        for (node, site) in batch.nodes.iter_mut().zip(&self.shape) {
+            node.site = *site;
+        }
+        self.used += 1;
+        self.used - 1
+    }
+
+    /// Writes the velocity change of every body from impulses on the bodies and residuals of the rows that joints hold; no list of
+    /// residuals means none.
+    pub fn solve(&mut self, impulses: &[Vec6], residuals: &[Vec6], dv: &mut [Vec6]) {
+        let ways = &mut self.ways[..];
+        for batch in &self.batches[..self.used] {
+            dispatch::run(SolveBatch { batch, ways, impulses, residuals, dv });
+        }
+    }
+
+    /// Trees take on what impulses of limits, and of contacts in this sweep, make of the velocities before it; who did not know of it is
+    /// told. `impulses` are those of limits, and get those of contacts. Gives the largest change that the contacts did not know of.
+    pub fn take_turns(
+        &mut self,
+        impulses: &mut [Vec6],
+        velocities: &mut TurnVelocities<'_>,
+        contacts: &mut Contacts,
+        unrest: &mut Unrest,
+    ) -> f32 {
+        let (ways, mut most) = (&mut self.ways[..], 0.0);
+        for batch in &self.batches[..self.used] {
+            let turn = TurnOfBatch { batch, ways, impulses, velocities, contacts, unrest };
+            most = max(most, dispatch::run(turn));
+        }
+        most
+    }
+
+    /// Makes columns, `stride` apart from each other, the velocity changes of all links of a tree from impulses: each column from those
+    /// on one or two links, which are given with their places. False if the tree is solved alone.
+    pub fn answer(
+        &mut self,
+        tree: u32,
+        pushes: &[[Push<'_>; 2]],
+        (columns, stride): (&mut [Vec6], usize),
+    ) -> bool {
+        let Some(&(place, lane)) = self.places.get(tree as usize) else { return false };
+        let Some(batch) = self.batches.get(place as usize) else { return false };
+        let (ways, lane) = (&mut self.ways[..], lane as usize);
+        dispatch::run(AnswerRows { batch, lane, ways, pushes, columns, stride });
+        true
+    }
+
+    /// Takes on arms, axes and inertias at the present pose, and factors all trees.
+    pub fn factor(&mut self, links: &[Link], joints: &[SolverJoint], bodies: &[SolverBody]) {
+        for batch in &mut self.batches[..self.used] {
+            batch.gather(links, joints, bodies);
+            dispatch::run(factor::Factor(&mut batch.nodes));
+        }
+    }
+
+    /// True of a tree that shares a batch.
+    pub fn have(&self, tree: usize) -> bool {
+        self.places.get(tree).is_some_and(|place| place.0 != NONE)
+    }
+
+    /// Bytes that are filled.
+    pub fn bytes(&self) -> usize {
+        self.batches[..self.used].iter().map(|batch| size_of_val(&batch.nodes[..])).sum()
+    }
+}
+
+impl Batch {
+    fn gather(&mut self, links: &[Link], joints: &[SolverJoint], bodies: &[SolverBody]) {
+        let Self { first, lanes, nodes, .. } = self;
+        for (i, node) in nodes.iter_mut().enumerate() {
+            for lane in 0..*lanes {
+                let local = first[lane] + i;
+                node.write_body(lane, &bodies[local]);
+                if let Some(joint) = joints.get(links[local].joint as usize) {
+                    node.write_joint(lane, joint, joint.b as usize == local);
+                }
+            }
+            node.fill(*lanes);
+        }
+    }
+}
+
+/// Elimination of a joint in a batch; `None` if it has to be solved alone.
+fn kind_of(joint: &SolverJoint) -> Option<Kind> {
+    let rows = &joint.rows;
+    if joint.rigid != rows.locked || !rows.locks_point() || joint.drive.motor.is_some() {
+        return None;
+    }
+    Some(match rows.locked - TWIST {
+        0 if rows.count == rows.locked => Kind::Point,
+        0 => Kind::DrivenPoint,
+        held => Kind::Axes { held },
+    })
+}

@@ -1,0 +1,200 @@
+//! A link of eight trees side by side.
+
+use crate::joint::TWIST;
+use crate::solver::articulation::tree::{NONE, Ways, arms};
+use crate::solver::flight::{Eight, ZERO, put};
+use crate::solver::{SolverBody, SolverJoint};
+use sinew_math::Vec3;
+use sinew_math::lanes::{Lanes, Vector3, WIDTH};
+
+/// Elimination of a link's joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// No joint: the first link of its tree.
+    Root,
+    /// A point that turns freely.
+    Point,
+    /// A point whose rotation springs or friction resist.
+    DrivenPoint,
+    /// A point with so many rotations held; the others, which may be resisted, go one after the other.
+    Axes { held: usize },
+}
+
+/// Place of a link in its tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Site {
+    /// Place of the parent.
+    pub parent: u32,
+    pub kind: Kind,
+}
+
+/// Bodies and the joints to their parents.
+#[derive(Clone, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Node {
+    pub site: Site,
+    /// Mass that answers to impulses, kg.
+    pub mass: Eight,
+    /// Moments about the principal axes that answer to impulses, kg·m², and the rotation of these axes.
+    pub moments: [Eight; 3],
+    pub rotation: [Eight; 4],
+    /// Inertia in the axes of the world, kg·m²: xx, xy, xz, yy, yz, zz.
+    pub tensor: [Eight; 6],
+    /// World arms from the centres of mass of child and parent to the anchor.
+    pub arm: [Eight; 3],
+    pub parent_arm: [Eight; 3],
+    /// 1 if the body is the joint's second one, −1 if it is the first.
+    pub sign: Eight,
+    /// Gains that resist a point's rotation.
+    pub gain: [Eight; 6],
+    /// (B + G)⁻¹, and rows of C (B + G)⁻¹, see [`Swivel`](crate::solver::articulation::elimination::Swivel).
+    pub pivot: [Eight; 6],
+    pub coupled: [[Eight; 3]; 3],
+    /// Articulated inertia about the anchor that is passed on to the parent; of a root, `passed_mass` is the inverse of the mass that
+    /// is left.
+    pub passed_mass: [Eight; 6],
+    pub passed_coupling: [[Eight; 3]; 3],
+    pub passed_rotation: [Eight; 6],
+    pub axes: [Axis; 3],
+}
+
+/// A rotation that is held, or one that is left open.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axis {
+    /// Turn of the child by a unit of the row.
+    pub way: [Eight; 3],
+    pub gain: Eight,
+    /// Momentum and inverse pivot of an open one: see [`Sequence`](crate::solver::articulation::elimination::Sequence).
+    pub force: [Eight; 3],
+    pub torque: [Eight; 3],
+    pub inverse: Eight,
+}
+
+const ZERO3: [Eight; 3] = [ZERO; 3];
+
+impl Axis {
+    const EMPTY: Self = Self { way: ZERO3, gain: ZERO, force: ZERO3, torque: ZERO3, inverse: ZERO };
+}
+
+impl Node {
+    pub const EMPTY: Self = Self {
+        site: Site { parent: NONE, kind: Kind::Root },
+        mass: [1.0; WIDTH],
+        moments: [[1.0; WIDTH]; 3],
+        rotation: [ZERO, ZERO, ZERO, [1.0; WIDTH]],
+        tensor: [ZERO; 6],
+        arm: ZERO3,
+        parent_arm: ZERO3,
+        sign: [1.0; WIDTH],
+        gain: [ZERO; 6],
+        pivot: [ZERO; 6],
+        coupled: [ZERO3; 3],
+        passed_mass: [ZERO; 6],
+        passed_coupling: [ZERO3; 3],
+        passed_rotation: [ZERO; 6],
+        axes: [Axis::EMPTY; 3],
+    };
+
+    /// Writes a body into a lane.
+    pub fn write_body(&mut self, lane: usize, body: &SolverBody) {
+        self.mass[lane] = body.mass * body.ballast;
+        put((body.inertia + body.excess) * body.ballast, &mut self.moments, lane);
+        let r = body.pose.rotation;
+        for (row, number) in self.rotation.iter_mut().zip([r.x, r.y, r.z, r.w]) {
+            row[lane] = number;
+        }
+    }
+
+    /// Writes the joint to the parent into a lane.
+    pub fn write_joint(&mut self, lane: usize, joint: &SolverJoint, is_b: bool) {
+        let ([arm, parent_arm], sign) = arms(&joint.rows, is_b);
+        put(arm, &mut self.arm, lane);
+        put(parent_arm, &mut self.parent_arm, lane);
+        self.sign[lane] = sign;
+        let rows = &joint.rows;
+        match self.site.kind {
+            Kind::Root | Kind::Point => {}
+            Kind::DrivenPoint => {
+                self.gain.iter_mut().for_each(|row| row[lane] = 0.0);
+                for row in rows.locked..rows.count {
+                    let (v, gain) = (rows.axis[row], joint.gain(row));
+                    let u = v * gain;
+                    for (row, outer) in self.gain.iter_mut().zip([
+                        u.x * v.x,
+                        u.x * v.y,
+                        u.x * v.z,
+                        u.y * v.y,
+                        u.y * v.z,
+                        u.z * v.z,
+                    ]) {
+                        row[lane] += outer;
+                    }
+                }
+            }
+            Kind::Axes { held } => self.write_axes(lane, joint, held),
+        }
+    }
+
+    /// Ways of the rotations that are held, in the order of their rows, then of those that are open.
+    fn write_axes(&mut self, lane: usize, joint: &SolverJoint, held: usize) {
+        let rows = &joint.rows;
+        let Ways { way, row, count } = Ways::new(rows, true);
+        // A direction that others leave next to nothing of has no way: of what is torn like that, none is asked for.
+        let is_whole = count >= held && (0..held).all(|k| usize::from(row[k]) == TWIST + k);
+        for (k, axis) in self.axes.iter_mut().enumerate() {
+            let is_asked = k >= held || is_whole;
+            put(if is_asked { way[k] } else { Vec3::ZERO }, &mut axis.way, lane);
+            axis.gain[lane] = if k >= held && k < count { joint.gain(usize::from(row[k])) } else { 0.0 };
+        }
+    }
+
+    /// Lanes from `lanes` on are copies of the first, so that nothing in them takes longer than that.
+    pub fn fill(&mut self, lanes: usize) {
+        if lanes == WIDTH {
+            return;
+        }
+        let fill = |row: &mut Eight| {
+            for lane in lanes..WIDTH {
+                row[lane] = row[0];
+            }
+        };
+        let Self { mass, moments, rotation, arm, parent_arm, sign, gain, axes, .. } = self;
+        [mass, sign].into_iter().for_each(fill);
+        moments.iter_mut().chain(rotation).chain(arm).chain(parent_arm).chain(gain).for_each(fill);
+        for axis in axes {
+            axis.way.iter_mut().chain([&mut axis.gain]).for_each(fill);
+        }
+    }
+}
+
+/// Lanes filled with the numbers of a node: those of eight trees, or those of one tree in all lanes.
+pub(super) trait View<L: Lanes>: Copy {
+    fn number(self, of: &Eight) -> L;
+
+    #[inline(always)]
+    fn vector(self, of: &[Eight; 3]) -> Vector3<L> {
+        Vector3::new(self.number(&of[0]), self.number(&of[1]), self.number(&of[2]))
+    }
+}
+
+/// Eight trees, one in each lane.
+#[derive(Clone, Copy)]
+pub(super) struct Side;
+
+impl<L: Lanes> View<L> for Side {
+    #[inline(always)]
+    fn number(self, of: &Eight) -> L {
+        L::load(of)
+    }
+}
+
+/// The tree of one lane, in all of them.
+#[derive(Clone, Copy)]
+pub(super) struct One(pub usize);
+
+impl<L: Lanes> View<L> for One {
+    #[inline(always)]
+    fn number(self, of: &Eight) -> L {
+        L::splat(of[self.0 & (WIDTH - 1)])
+    }
+}

@@ -1,0 +1,97 @@
+//! The turn of the trees of a batch in a sweep by turns.
+
+use super::node::Side;
+use super::solve::{Noted, Way, begin, down, up};
+use super::{Batch, TurnVelocities};
+use crate::solver::articulation::elimination::{Symmetric, Twist};
+use crate::solver::contacts::Contacts;
+use crate::solver::flight::Eight;
+use crate::solver::sweep::Unrest;
+use crate::spatial::Vec6;
+use sinew_math::dispatch::Kernel;
+use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
+
+/// Trees take on what impulses of limits, and of contacts in this sweep, make of the velocities before it; who did not know of it is
+/// told. Gives the largest change that the contacts did not know of.
+pub(super) struct TurnOfBatch<'a, 'b> {
+    pub batch: &'a Batch,
+    pub ways: &'a mut [Way],
+    /// Impulses of limits; those of contacts, which are read from what they changed, are added.
+    pub impulses: &'a mut [Vec6],
+    pub velocities: &'a mut TurnVelocities<'b>,
+    pub contacts: &'a mut Contacts,
+    pub unrest: &'a mut Unrest,
+}
+
+impl Kernel for TurnOfBatch<'_, '_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> f32 {
+        let Self { batch, ways, impulses, velocities, contacts, unrest } = self;
+        let TurnVelocities { before, limited, now: velocities } = velocities;
+        if !is_pushed::<L>(batch, impulses, limited, velocities) {
+            return 0.0;
+        }
+        let ways = &mut ways[..batch.nodes.len()];
+        begin(ways);
+        for (i, node) in batch.nodes.iter().enumerate().rev() {
+            let [v, w] = difference(batch.twist::<L>(i, velocities), batch.twist(i, limited));
+            let [a, b, c, d, e, f] = &node.tensor;
+            let tensor = Symmetric([L::load(a), L::load(b), L::load(c), L::load(d), L::load(e), L::load(f)]);
+            let [force, torque] = batch.twist::<L>(i, impulses);
+            let impulse = [force + v * L::load(&node.mass), torque + tensor.times(w)];
+            batch.store(i, impulse, impulses);
+            up(ways, (node, i), Side, impulse, None);
+        }
+        let (mut most, mut moved) = (L::splat(0.0), L::splat(0.0));
+        for (i, node) in batch.nodes.iter().enumerate() {
+            let [v, w] = down::<L>(ways, (node, i), Side, Noted::Pushes);
+            let [v_before, w_before] = batch.twist::<L>(i, before);
+            let now = [v_before + v, w_before + w];
+            let change = largest(difference(now, batch.twist(i, velocities)));
+            most = L::max(most, change);
+            moved = L::max(moved, largest(difference(now, batch.twist(i, limited))));
+            batch.store(i, now, velocities);
+            let mut changes = [0.0; WIDTH];
+            change.store(&mut changes);
+            for (first, change) in batch.first.iter().zip(changes).take(batch.lanes) {
+                contacts.stir(first + i, change);
+            }
+        }
+        let mut all: [Eight; 2] = [[0.0; WIDTH]; 2];
+        moved.store(&mut all[0]);
+        most.store(&mut all[1]);
+        let mut largest = 0.0;
+        for lane in 0..batch.lanes {
+            unrest.stir(batch.trees[lane], all[0][lane]);
+            largest = sinew_math::max(largest, all[1][lane]);
+        }
+        largest
+    }
+}
+
+/// True if some tree has got an impulse in this sweep.
+#[inline(always)]
+fn is_pushed<L: Lanes>(batch: &Batch, impulses: &[Vec6], swept: &[Vec6], velocities: &[Vec6]) -> bool {
+    let none = L::splat(0.0);
+    batch.first.iter().take(batch.lanes).any(|&first| {
+        (first..first + batch.nodes.len()).any(|i| {
+            let still =
+                L::eq(L::load(&impulses[i]), none) & L::eq(L::load(&velocities[i]), L::load(&swept[i]));
+            !still.all()
+        })
+    })
+}
+
+#[inline(always)]
+fn difference<L: Lanes>(a: Twist<L>, b: Twist<L>) -> Twist<L> {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+/// The largest component.
+#[inline(always)]
+fn largest<L: Lanes>([v, w]: Twist<L>) -> L {
+    let (v, w) = (v.abs(), w.abs());
+    L::max(L::max(v.x, L::max(v.y, v.z)), L::max(w.x, L::max(w.y, w.z)))
+}

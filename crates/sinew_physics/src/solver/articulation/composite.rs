@@ -1,0 +1,188 @@
+//! Masses that a joint's springs and motors move: each side of the joint as one rigid piece.
+
+use crate::joint::{DIRECTIONS, JointRows, TWIST};
+use crate::solver::articulation::tree::{Link, NONE};
+use crate::solver::{IslandSolver, SolverBody, SolverJoint};
+use crate::spatial::{Vec6, ZERO6, ZERO66, angular, linear, spd_inverse};
+use sinew_math::{Sym3, Vec3, max};
+
+/// Mass that stands in where there is none to speak of (both bodies held), kg or kg·m².
+const LEAST_MASS: f32 = 1e-9;
+
+/// Mass, first moment and inertia of rigidly held bodies about a common reference point.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::solver) struct Piece {
+    mass: f32,
+    moment: Vec3,
+    inertia: Sym3,
+}
+
+impl Piece {
+    pub(in crate::solver) fn of(body: &SolverBody, reference: Vec3) -> Self {
+        let arm = body.pose.translation - reference;
+        let own = Sym3::from_rotated_diagonal(body.pose.rotation, body.inertia);
+        Self { mass: body.mass, moment: arm * body.mass, inertia: own + parallel_axis(arm) * body.mass }
+    }
+
+    pub(in crate::solver) fn plus(self, other: &Self) -> Self {
+        Self {
+            mass: self.mass + other.mass,
+            moment: self.moment + other.moment,
+            inertia: self.inertia + other.inertia,
+        }
+    }
+
+    fn minus(self, other: &Self) -> Self {
+        Self {
+            mass: self.mass - other.mass,
+            moment: self.moment - other.moment,
+            inertia: self.inertia - other.inertia,
+        }
+    }
+
+    /// Velocity response matrix of rows on this piece; each row is given for a body whose centre is at `arm` from the
+    /// reference point. Nothing for a piece without mass.
+    fn add_response(&self, rows: &[Vec6], arm: Vec3, out: &mut [Vec6; DIRECTIONS]) {
+        if self.mass <= 0.0 {
+            return;
+        }
+        let center = self.moment / self.mass;
+        let inverse = (self.inertia - parallel_axis(center) * self.mass).inverse();
+        let wrench = |row: &Vec6| (linear(row), angular(row) + (arm - center).cross(linear(row)));
+        for (i, row) in rows.iter().enumerate() {
+            let (force, torque) = wrench(row);
+            let (push, turn) = (force / self.mass, inverse * torque);
+            for (k, other) in rows.iter().enumerate() {
+                let (force, torque) = wrench(other);
+                out[i][k] += push.dot(force) + turn.dot(torque);
+            }
+        }
+    }
+}
+
+/// `|r|² 1 − r rᵀ`
+fn parallel_axis(arm: Vec3) -> Sym3 {
+    Sym3::from_diagonal(Vec3::splat(arm.length_squared())) - Sym3::outer(arm)
+}
+
+impl IslandSolver {
+    /// Masses of all joints that need them, at the step's beginning.
+    pub(in crate::solver) fn weigh_joints(&mut self) {
+        if self.joints.iter().all(|joint| !joint.drive.needs_mass()) {
+            return;
+        }
+        self.sum_pieces();
+        self.share_out();
+        let pieces = &self.scratch.pieces;
+        for j in 0..self.joints.len() {
+            if !self.joints[j].drive.needs_mass() {
+                continue;
+            }
+            let joint = &self.joints[j];
+            let rows = JointRows::new(&joint.geometry, &joint.pose, [true; DIRECTIONS]);
+            let (mut response, mut alone) = (ZERO66, ZERO66);
+            let jacobians = [JointRows::on_a, JointRows::on_b];
+            for (side, on_side) in [joint.a, joint.b].into_iter().zip(jacobians) {
+                let on_side: [Vec6; DIRECTIONS] = core::array::from_fn(|row| on_side(&rows, row));
+                let on_side = &on_side[..rows.count];
+                let Some(link) = self.links.get(side as usize) else { continue };
+                let center = self.bodies[side as usize].pose.translation;
+                // Below this joint the subtree, above it the rest of the tree, unless a fixed body holds that.
+                let (piece, reference) = if let Some(piece) = self.pins.piece(j) {
+                    (Some(piece), self.reference(link.tree))
+                } else if link.joint as usize == j {
+                    (Some(pieces[side as usize]), self.reference(link.tree))
+                } else if self.is_tree_joint(j) {
+                    let child = if side == joint.a { joint.b } else { joint.a };
+                    let root = self.root(link.tree);
+                    let free = self.links[root].joint == NONE;
+                    let rest = pieces[root].minus(&pieces[child as usize]);
+                    (free.then_some(rest), self.reference(link.tree))
+                } else {
+                    (Some(Piece::of(&self.bodies[side as usize], center)), center)
+                };
+                if let Some(piece) = piece {
+                    piece.add_response(on_side, center - reference, &mut response);
+                }
+                if joint.drive.motor.is_some() {
+                    let own = Piece::of(&self.bodies[side as usize], center);
+                    own.add_response(on_side, Vec3::ZERO, &mut alone);
+                }
+            }
+            let joint = &mut self.joints[j];
+            joint.mass = masses(joint, &rows, &response, Together::Rotations);
+            joint.least_mass = joint.mass;
+            if joint.drive.motor.is_some() {
+                joint.least_mass = masses(joint, &rows, &alone, Together::Nothing);
+            }
+        }
+    }
+
+    /// Each link's piece: itself with everything below.
+    fn sum_pieces(&mut self) {
+        self.scratch.pieces.clear();
+        for (i, link) in self.links.iter().enumerate() {
+            let reference = self.reference(link.tree);
+            self.scratch.pieces.push(Piece::of(&self.bodies[i], reference));
+        }
+        for i in (0..self.links.len()).rev() {
+            let parent = self.links[i].parent as usize;
+            if parent < self.links.len() {
+                self.scratch.pieces[parent] = self.scratch.pieces[parent].plus(&self.scratch.pieces[i]);
+            }
+        }
+    }
+
+    fn is_tree_joint(&self, joint: usize) -> bool {
+        let of =
+            |body: u32| self.links.get(body as usize).is_some_and(|link: &Link| link.joint as usize == joint);
+        of(self.joints[joint].a) || of(self.joints[joint].b)
+    }
+
+    fn root(&self, tree: u32) -> usize {
+        self.links.partition_point(|link| link.tree < tree)
+    }
+
+    pub(in crate::solver) fn reference(&self, tree: u32) -> Vec3 {
+        self.bodies[self.root(tree)].pose.translation
+    }
+}
+
+/// Open rows that are held while the mass along one of them is computed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Together {
+    Nothing,
+    /// If it is a rotation, the other ones.
+    Rotations,
+}
+
+/// By direction: the mass that answers an impulse along each row while the rigid rows hold. Open rotations are driven all
+/// together, and each counts while the others hold: the axes of a shoulder do not lie along the arm, and a row that the arm
+/// could give way to by spinning about itself would weigh next to nothing.
+fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS], together: Together) -> Vec6 {
+    let rigid = if joint.drive.weld.is_some() { 0 } else { rows.locked };
+    let turns =
+        |row: usize| together == Together::Rotations && row >= rows.locked && rows.direction(row) >= TWIST;
+    let mut out = ZERO6;
+    for row in rigid..rows.count {
+        let is_held = |k: usize| k < rigid || (turns(row) && turns(k) && k != row);
+        let mut list = [0; DIRECTIONS];
+        let mut count = 0;
+        for k in (0..rows.count).filter(|&k| is_held(k)).chain([row]) {
+            list[count] = k;
+            count += 1;
+        }
+        let mut held = ZERO66;
+        for i in 0..count {
+            for k in 0..count {
+                held[i][k] = response[list[i]][list[k]];
+            }
+        }
+        let inverse = spd_inverse(&held, count);
+        let alone = response[row][row];
+        // Rows that depend on each other (a gimbal's end) leave the row by itself.
+        let mass = inverse.map_or(if alone > 0.0 { 1.0 / alone } else { 0.0 }, |m| m[count - 1][count - 1]);
+        out[rows.direction(row)] = max(mass, LEAST_MASS);
+    }
+    out
+}

@@ -1,0 +1,464 @@
+//! Drives in a joint's directions beside the hard constraint: springs, welds that give, motors, dry friction. Each is a
+//! row of the tree factor with compliance, so that any stiffness is stable.
+
+use crate::joint::def::{Gains, Motor, Softness};
+use crate::joint::{DIRECTIONS, JointPose, JointRows, TWIST, displacement, locked_error, open_row};
+use crate::solver::{IslandSolver, SolverJoint};
+use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, linear};
+use sinew_math::{Transform, clamp, max, trig};
+
+/// Joint friction is a viscosity that gives the full torque at the joint's present rate, but never more than this slow
+/// rate would ask, rad/s or m/s: a joint that should stick creeps below it, and sleep ends the creep.
+const STICK_RATE: f32 = 0.004;
+/// A velocity motor is a viscosity that would bring what it moves to its speed within this share of a substep.
+const MOTOR_SHARE: f32 = 1e-3;
+/// Fastest that a joint which is open closes, m/s or rad/s: one attached anew at a distance does not jump.
+pub(in crate::solver) const CLOSING: f32 = 4.0;
+/// Most that a weld is off beyond what its rows foresaw, m or rad.
+const MOST_BENT: f32 = 0.1;
+/// `(ωh)²` of the fastest spring whose oscillation is kept.
+const FASTEST: f32 = 1.0;
+/// Times the least damping with which springs of too little mass are stable.
+const MARGIN: f32 = 1.1;
+/// Rounds in which motors that ask for more than their caps are saturated within a substep.
+const SATURATION_ROUNDS: usize = 4;
+
+/// Impulse of a soft row: `λ = −(gain v⁺ + carry v + push)`, with `v` its rate when the substep begins and `v⁺` when it
+/// ends.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::solver) struct SoftRow {
+    gain: f32,
+    carry: f32,
+    push: f32,
+}
+
+impl SoftRow {
+    /// A damped oscillator of the given mass, `x` from where it wants to be and meant to move at `rate` there. Its poles
+    /// and its static stiffness are those of the differential equation, whatever the substep: with poles
+    /// `e^(−ζωh ± iω_d h)` and `x⁺ = x + h v⁺`, the update `(1 + α) v⁺ = (1 − γ) v − h ω² x` has determinant
+    /// `(1 − γ)/(1 + α)` and `(1 + α)(1 + det − trace) = (ωh)²`. Implicit Euler would add a damping ratio of ωh/2.
+    /// `least`: what may move by itself while the rest gives way.
+    fn add_spring(&mut self, softness: Softness, [mass, least]: [f32; 2], x: f32, rate: f32, h: f32) {
+        let (stiffness, damping) = softness.of_mass(mass);
+        let omega2 = stiffness / mass * h * h;
+        let a = 0.5 * damping / mass * h;
+        // Faster oscillations than a substep can show, and none at all, are left to implicit Euler.
+        let shown = omega2 > 0.0 && omega2 < FASTEST;
+        let implicit = (2.0 * a + omega2, 0.0);
+        let (mut alpha, mut gamma) = if shown { exact_oscillator(omega2, a) } else { implicit };
+        // With a share `r` of the mass the update is stable as long as `4r + 2(α − γ) > (ωh)²`: what carries a figure by its hand
+        // must not shake when that is all that moves. Implicit Euler is for any.
+        if 4.0 * least + 2.0 * mass * (alpha - gamma) < MARGIN * mass * omega2 {
+            (alpha, gamma) = implicit;
+        }
+        self.gain += mass * alpha;
+        self.carry += mass * gamma;
+        self.push += h * stiffness * x - mass * (alpha + gamma) * rate;
+    }
+
+    fn add_viscosity(&mut self, gain: f32, rate: f32) {
+        self.gain += gain;
+        self.push -= gain * rate;
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.gain += other.gain;
+        self.carry += other.carry;
+        self.push += other.push;
+    }
+
+    /// Work that the row does from one rate to the other.
+    fn work(&self, before: f32, after: f32) -> f32 {
+        0.5 * self.impulse(before, after) * (before + after)
+    }
+
+    pub(in crate::solver) fn impulse(&self, before: f32, after: f32) -> f32 {
+        -(self.gain * after + self.carry * before + self.push)
+    }
+
+    /// Γ.
+    pub fn compliance(&self) -> f32 {
+        1.0 / self.gain
+    }
+
+    /// Rate that the row goes to where it moves nothing.
+    pub fn wanted(&self, before: f32) -> f32 {
+        -(self.carry * before + self.push) / self.gain
+    }
+}
+
+/// α and γ of [`SoftRow::add_spring`] from `(ωh)²` and `a = ζωh`. Differences of nearly equal numbers are avoided:
+/// `1 + det − trace = (1 − e^−a)² + 4 e^−a sin²(½ω_d h)`, or `(1 − e^(s−a))(1 − e^(−s−a))` when overdamped.
+fn exact_oscillator(omega2: f32, a: f32) -> (f32, f32) {
+    let det = trig::exp(-2.0 * a);
+    let distance = if omega2 > a * a {
+        let sin = trig::sin(0.5 * (omega2 - a * a).sqrt());
+        let fall = trig::exp_m1(-a);
+        fall * fall + 4.0 * trig::exp(-a) * sin * sin
+    } else {
+        let s = (a * a - omega2).sqrt();
+        // a − s = ω²h²/(a + s) keeps its digits.
+        trig::exp_m1(-omega2 / (a + s)) * trig::exp_m1(-a - s)
+    };
+    let one_plus_alpha = omega2 / distance;
+    (one_plus_alpha - 1.0, 1.0 - det * one_plus_alpha)
+}
+
+impl Motor {
+    /// Most force or torque in a direction.
+    pub(crate) fn cap(&self, direction: usize) -> f32 {
+        if direction < TWIST { self.max_force } else { self.max_torque }
+    }
+
+    fn rate(&self, direction: usize) -> f32 {
+        let v = if direction < TWIST { self.velocity.linear } else { self.velocity.angular };
+        [v.x, v.y, v.z][direction % TWIST]
+    }
+}
+
+impl SolverJoint {
+    /// Rows and their softness at the present pose.
+    pub(in crate::solver) fn refresh_rows(&mut self, velocities: &[Vec6], h: f32) {
+        let motor = |i: usize| self.drive.motor.is_some_and(|m| m.cap(i) > 0.0) && self.saturated[i] == 0;
+        let always = self.drive.spring.is_some() || self.drive.friction > 0.0;
+        let open = core::array::from_fn(|i| always || motor(i));
+        self.rows = JointRows::new(&self.geometry, &self.pose, open);
+        self.rigid = if self.drive.weld.is_some() { 0 } else { self.rows.locked };
+        self.left_open = self.rows.error.map(|error| error - clamp(error, -CLOSING * h, CLOSING * h));
+        self.soft = [SoftRow::default(); DIRECTIONS];
+        self.driven = [SoftRow::default(); DIRECTIONS];
+        if self.rigid < self.rows.count {
+            let rates = self.anchor_rates(velocities);
+            for row in self.rigid..self.rows.count {
+                let direction = self.rows.direction(row);
+                if self.drive.motor.is_some() && row >= self.rows.locked && self.saturated[direction] == 0 {
+                    self.driven[row] = self.motor_row(direction, h);
+                }
+                self.soft[row] = self.soft_row(row, rates, h);
+            }
+        }
+    }
+
+    fn soft_row(&self, row: usize, rates: [f32; 2], h: f32) -> SoftRow {
+        let direction = self.rows.direction(row);
+        let mut soft = SoftRow::default();
+        if row < self.rows.locked {
+            if let Some(weld) = self.drive.weld {
+                soft.add_spring(weld, [self.mass[direction]; 2], self.rows.error[row], 0.0, h);
+            }
+        } else if let Some(spring) = self.drive.spring {
+            let x = displacement(&self.geometry.kind, &self.pose, direction, &spring.rest);
+            soft.add_spring(spring.softness, [self.mass[direction]; 2], x, 0.0, h);
+        }
+        if self.drive.friction > 0.0 {
+            // Dry friction as the viscosity τ/|ω| of the present rate, implicit, so it cannot overshoot.
+            let rate = rates[usize::from(direction >= TWIST)];
+            soft.add_viscosity(h * self.drive.friction / max(rate, STICK_RATE), 0.0);
+        }
+        soft.add(&self.driven[row]);
+        // A spring of no stiffness and no damping would be a row of infinite compliance.
+        soft.gain = max(soft.gain, 1e-12);
+        soft
+    }
+
+    /// Row of the motor in a direction as if it had no cap.
+    fn motor_row(&self, direction: usize, h: f32) -> SoftRow {
+        let mut row = SoftRow::default();
+        let Some(motor) = self.drive.motor.filter(|motor| motor.cap(direction) > 0.0) else { return row };
+        let (mass, rate) = (self.mass[direction], motor.rate(direction));
+        match motor.gains {
+            Gains::Velocity => row.add_viscosity(mass / MOTOR_SHARE, rate),
+            Gains::Position(softness) => {
+                let x = displacement(&self.geometry.kind, &self.pose, direction, &motor.target);
+                row.add_spring(softness, [mass, self.least_mass[direction]], x, rate, h);
+            }
+        }
+        row
+    }
+
+    /// Speed of the anchors and of rotation relative to each other.
+    pub(in crate::solver) fn anchor_rates(&self, velocities: &[Vec6]) -> [f32; 2] {
+        let (a, b) = (&velocities[self.a as usize], &velocities[self.b as usize]);
+        let turn = angular(b) - angular(a);
+        let slide =
+            (linear(b) + angular(b).cross(self.pose.arm_b)) - (linear(a) + angular(a).cross(self.pose.arm_a));
+        [slide.length(), turn.length()]
+    }
+
+    /// Rate of an open direction.
+    pub(in crate::solver) fn open_rate(&self, direction: usize, velocities: &[Vec6]) -> f32 {
+        let row = open_row(&self.geometry.kind, &self.pose, direction);
+        dot(&row.a, &velocities[self.a as usize]) + dot(&row.b, &velocities[self.b as usize])
+    }
+
+    /// Directions in which the motor acts.
+    fn motor_directions(&self) -> impl Iterator<Item = usize> + use<> {
+        let (kind, motor) = (self.geometry.kind, self.drive.motor);
+        crate::joint::open_directions(kind).filter(move |&i| motor.is_some_and(|m| m.cap(i) > 0.0))
+    }
+
+    /// Most impulse of the motor within a substep.
+    fn motor_cap(&self, direction: usize, h: f32) -> f32 {
+        self.drive.motor.map_or(0.0, |motor| motor.cap(direction) * h)
+    }
+
+    /// Change that rows with `rate` are to make to it: `solve` removes the position error within the substep and lets soft rows
+    /// act, `relax` stops the rigid ones and leaves soft ones as they are, or they would act twice.
+    pub(in crate::solver) fn residual(&self, rate: &Vec6, solve: bool, h: f32) -> Vec6 {
+        let mut out = ZERO6;
+        for row in 0..self.rows.count {
+            out[row] = match (solve, row < self.rigid) {
+                (true, true) => -(self.rows.error[row] - self.left_open[row]) / h - rate[row],
+                (true, false) => self.wanted(row) - rate[row],
+                (false, true) => -rate[row],
+                (false, false) => 0.0,
+            };
+        }
+        out
+    }
+
+    /// Rate that a soft row goes to where it moves nothing.
+    pub(in crate::solver) fn wanted(&self, row: usize) -> f32 {
+        self.soft[row].wanted(self.start_rate[self.rows.direction(row)])
+    }
+
+    /// Γ of a row.
+    pub(in crate::solver) fn compliance(&self, row: usize) -> f32 {
+        if row < self.rigid { 0.0 } else { self.soft[row].compliance() }
+    }
+
+    /// 1/Γ of a row that is not rigid.
+    pub(in crate::solver) fn gain(&self, row: usize) -> f32 {
+        self.soft[row].gain
+    }
+
+    /// True if the anchors are held together exactly and rotations are all that is left, none of them held.
+    pub(in crate::solver) fn is_point(&self) -> bool {
+        self.rigid == TWIST && self.rows.locked == TWIST && self.rows.locks_point()
+    }
+
+    /// `J v`, row by row; bodies that `velocities` does not have stand still.
+    pub(in crate::solver) fn rate(&self, velocities: &[Vec6]) -> Vec6 {
+        let of = |body: u32| velocities.get(body as usize).unwrap_or(&ZERO6);
+        self.rows.rate(of(self.a), of(self.b))
+    }
+
+    /// Position error of a weld that gives at other poses of the bodies, beyond what its rows foresaw and what is made up
+    /// for: a body on a soft weld that turns would drift outward by `½ ω² r h²` in each substep, and a damper takes long to
+    /// take that back.
+    fn bend_error(&self, pose: &JointPose, velocities: &[Vec6], h: f32) -> Vec6 {
+        let mut bend = ZERO6;
+        if self.drive.weld.is_none() {
+            return bend;
+        }
+        let error = locked_error(&self.geometry, pose);
+        let rate = self.rate(velocities);
+        for row in 0..self.rows.locked {
+            let bent = error[row] - (self.rows.error[row] + h * rate[row]);
+            // An angle that jumped by a full turn is no displacement.
+            bend[row] = if bent.abs() < MOST_BENT { bent - self.bent[row] } else { 0.0 };
+        }
+        bend
+    }
+
+    /// Position errors that are to be corrected at other poses of the bodies, to which these velocities have led.
+    pub(in crate::solver) fn position_error(&self, poses: &[Transform], velocities: &[Vec6], h: f32) -> Vec6 {
+        let [a, b] = [self.a, self.b].map(|body| &poses[body as usize]);
+        let pose = JointPose::new(&self.geometry, a, b);
+        if self.rigid == 0 {
+            return self.bend_error(&pose, velocities, h);
+        }
+        let mut error = locked_error(&self.geometry, &pose);
+        self.leave_open(&mut error);
+        error
+    }
+
+    /// Takes from the errors of the rigid rows what this substep leaves open.
+    #[inline(always)]
+    pub(in crate::solver) fn leave_open(&self, error: &mut Vec6) {
+        for row in 0..self.rigid {
+            error[row] -= self.left_open[row];
+        }
+    }
+}
+
+impl IslandSolver {
+    /// Before the forces of a substep: rates of the soft rows, and what saturated motors push.
+    pub(in crate::solver) fn begin_drives(&mut self) {
+        for joint in &mut self.joints {
+            if joint.rigid < joint.rows.count {
+                let rate = joint.rate(&self.velocities);
+                for row in joint.rigid..joint.rows.count {
+                    joint.start_rate[joint.rows.direction(row)] = rate[row];
+                }
+            }
+            if joint.drive.motor.is_some() {
+                for i in joint.motor_directions() {
+                    joint.start_rate[i] = joint.open_rate(i, &self.velocities);
+                }
+            }
+        }
+    }
+
+    /// Puts the full push of all saturated motors on their bodies.
+    pub(in crate::solver) fn push_saturated(&mut self) {
+        for j in 0..self.joints.len() {
+            if self.joints[j].drive.motor.is_none() {
+                continue;
+            }
+            for i in 0..DIRECTIONS {
+                if let Some(on_b) = self.push_motor(j, i) {
+                    let arm = self.joints[j].pose.arm_b;
+                    self.joints[j].add_reaction(&on_b, arm);
+                }
+            }
+        }
+    }
+
+    /// Gives the impulse on B, if the motor is saturated in that direction.
+    fn push_motor(&mut self, j: usize, direction: usize) -> Option<Vec6> {
+        let joint = &self.joints[j];
+        if joint.saturated[direction] == 0 || joint.drive.motor.is_none() {
+            return None;
+        }
+        let impulse = f32::from(joint.saturated[direction]) * joint.motor_cap(direction, self.h);
+        let row = open_row(&joint.geometry.kind, &joint.pose, direction);
+        let (on_a, on_b) = (row.a.map(|x| x * impulse), row.b.map(|x| x * impulse));
+        for (body, push) in [(joint.a as usize, on_a), (joint.b as usize, on_b)] {
+            if body < self.links.len() {
+                let change = self.bodies[body].velocity_change(&push);
+                add_scaled(&mut self.velocities[body], &change, 1.0);
+            }
+        }
+        Some(on_b)
+    }
+
+    /// Adds the work of the drives in this substep: impulse times the rate after it. Kinetic energy rises by that at most, less
+    /// by half of what the change of velocity would hold by itself. Motors are not asked for what they take.
+    pub(in crate::solver) fn add_drive_work(&mut self) {
+        let (mut given, mut by_motors) = (0.0, 0.0);
+        for joint in self.joints.iter().filter(|joint| joint.rigid < joint.rows.count) {
+            let rate = joint.rate(&self.velocities);
+            for row in joint.rigid..joint.rows.count {
+                let before = joint.start_rate[joint.rows.direction(row)];
+                let rate = rate[row] + joint.bent[row] / self.h;
+                if joint.drive.motor.is_some() {
+                    by_motors += joint.soft[row].work(before, rate);
+                } else {
+                    given += joint.soft[row].impulse(before, rate) * rate;
+                }
+            }
+        }
+        for row in &self.limits {
+            given += row.soft_work(&self.joints[row.joint as usize], &self.velocities);
+        }
+        self.drive_work += max(by_motors, 0.0) + given;
+        self.work.drives += self.work_of_motors();
+    }
+
+    /// On the way that the bodies are about to go, J: force times way. Kinetic and potential energy together rise by no more.
+    pub(in crate::solver) fn work_of_motors(&self) -> f32 {
+        let mut sum = 0.0;
+        for joint in self.joints.iter().filter(|joint| joint.drive.motor.is_some()) {
+            let rate = joint.rate(&self.velocities);
+            for row in joint.rows.locked..joint.rows.count {
+                let before = joint.start_rate[joint.rows.direction(row)];
+                sum += joint.driven[row].impulse(before, rate[row]) * rate[row];
+            }
+            for i in joint.motor_directions().filter(|&i| joint.saturated[i] != 0) {
+                let impulse = f32::from(joint.saturated[i]) * joint.motor_cap(i, self.h);
+                sum += impulse * joint.open_rate(i, &self.velocities);
+            }
+        }
+        sum
+    }
+
+    /// Energy that springs take, J, at `s` times the present velocities: the coefficients of `s²` and `s`.
+    pub(in crate::solver) fn resistance_of_springs(&self) -> (f32, f32) {
+        let (mut square, mut linear) = (0.0, 0.0);
+        let passive = |joint: &&SolverJoint| joint.rigid < joint.rows.count && joint.drive.motor.is_none();
+        for joint in self.joints.iter().filter(passive) {
+            let rate = joint.rate(&self.velocities);
+            for row in joint.rigid..joint.rows.count {
+                let (soft, before) = (&joint.soft[row], joint.start_rate[joint.rows.direction(row)]);
+                let rate = rate[row] + joint.bent[row] / self.h;
+                square += soft.gain * rate * rate;
+                linear += (soft.carry * before + soft.push) * rate;
+            }
+        }
+        (square, linear)
+    }
+
+    /// Motors that ask for more than their caps push with these from now on; then the substep's joints are solved again
+    /// from `started`, its velocities before them. A motor stays saturated until it asks for less, see
+    /// [`release_motors`](Self::release_motors): without that memory the wrong ones of a chain of motors saturate.
+    pub(in crate::solver) fn saturate_motors(&mut self) {
+        if self.joints.iter().all(|joint| joint.drive.motor.is_none()) {
+            return;
+        }
+        for _ in 0..SATURATION_ROUNDS {
+            let mut changed = false;
+            self.scratch.started.swap_with_slice(&mut self.velocities[..self.links.len()]);
+            // `velocities` are now those of the beginning, `started` those that the joints led to.
+            for j in 0..self.joints.len() {
+                if self.joints[j].drive.motor.is_none() {
+                    continue;
+                }
+                for i in 0..DIRECTIONS {
+                    let asked = self.asked_of_motor(j, i);
+                    if self.joints[j].saturated[i] == 0 && asked.abs() > self.joints[j].motor_cap(i, self.h) {
+                        self.joints[j].saturated[i] = if asked > 0.0 { 1 } else { -1 };
+                        let before = self.joints[j].open_rate(i, &self.velocities);
+                        self.push_motor(j, i);
+                        let rate = 0.5 * (before + self.joints[j].open_rate(i, &self.velocities));
+                        self.drive_work += rate.abs() * self.joints[j].motor_cap(i, self.h);
+                        changed = true;
+                    }
+                }
+            }
+            if !changed {
+                self.scratch.started.swap_with_slice(&mut self.velocities[..self.links.len()]);
+                return;
+            }
+            self.scratch.started.clear();
+            self.scratch.started.extend_from_slice(&self.velocities[..self.links.len()]);
+            for joint in &mut self.joints {
+                joint.impulse = ZERO6;
+            }
+            self.refresh_rows();
+            self.factor_joints();
+            self.refresh_response();
+            self.project_joints(crate::solver::sweep::Pass::Solve);
+        }
+    }
+
+    /// Impulse that a motor would give for the velocities in `scratch.started`; 0 where there is none.
+    fn asked_of_motor(&self, j: usize, direction: usize) -> f32 {
+        let joint = &self.joints[j];
+        if !joint.motor_directions().any(|i| i == direction) {
+            return 0.0;
+        }
+        let row = open_row(&joint.geometry.kind, &joint.pose, direction);
+        let velocity = |body: u32| match self.scratch.started.get(body as usize) {
+            Some(v) => v,
+            None => &self.velocities[body as usize],
+        };
+        let rate = dot(&row.a, velocity(joint.a)) + dot(&row.b, velocity(joint.b));
+        joint.motor_row(direction, self.h).impulse(joint.start_rate[direction], rate)
+    }
+
+    /// Saturated motors that no longer ask for all they have are released, for the next substep.
+    pub(in crate::solver) fn release_motors(&mut self) {
+        for joint in self.joints.iter_mut().filter(|joint| joint.drive.motor.is_some()) {
+            for i in 0..DIRECTIONS {
+                if joint.saturated[i] != 0 {
+                    let rate = joint.open_rate(i, &self.velocities);
+                    let asked = joint.motor_row(i, self.h).impulse(rate, rate);
+                    if asked * f32::from(joint.saturated[i]) < joint.motor_cap(i, self.h) {
+                        joint.saturated[i] = 0;
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,314 @@
+//! Columns of the response: what a unit of a row's impulse makes of the velocities of all members of its trees. They are
+//! computed for rows that are not idle, once for a pose: a push then adds a multiple of a column, where the blocks would have to
+//! be multiplied for every visit. What rows answer to each other is read from them, too.
+
+use crate::collide::MAX_POINTS;
+use crate::joint::Row;
+use crate::solver::articulation::batches::Batches;
+use crate::solver::articulation::response::{AnswerLanes, Response};
+use crate::solver::articulation::tree::Link;
+use crate::spatial::{Vec6, ZERO6, add_scaled, dot, largest};
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::{Lanes, WIDTH};
+
+/// The columns of all rows that were not idle at the present pose.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Columns {
+    /// Column after column, each as its [`Reach`] says.
+    entries: Vec<Vec6>,
+    lanes: Vec<AnswerLanes>,
+}
+
+/// Place of columns of the same bodies that lie side by side: start and stride, in entries.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Strip {
+    start: usize,
+    stride: usize,
+}
+
+impl Strip {
+    /// Index of the first entry of column `k`.
+    pub fn column(&self, k: usize) -> usize {
+        self.start + k * self.stride
+    }
+}
+
+/// Bodies that the columns of two bodies' rows cover: the members of the tree of A, then those of the tree of B if it is
+/// another one. Fixed bodies have none.
+#[derive(Clone, Copy, Debug)]
+struct Reach<'a> {
+    members: [&'a [u32]; 2],
+    /// Places of A and B in a column.
+    places: [Option<usize>; 2],
+}
+
+impl<'a> Reach<'a> {
+    fn new(response: &'a Response, links: &[Link], bodies: [u32; 2]) -> Self {
+        let trees = bodies.map(|body| links.get(body as usize).map(|link| link.tree));
+        let members = |tree: Option<u32>| tree.map_or(&[][..], |tree| response.members(tree));
+        let one = trees[0] == trees[1];
+        let members = [members(trees[0]), if one { &[] } else { members(trees[1]) }];
+        let second = if one { 0 } else { members[0].len() };
+        let [a, b] = bodies.map(|body| response.slot(body));
+        Self { members, places: [a, b.map(|slot| second + slot)] }
+    }
+
+    /// Entries of a column.
+    fn len(&self) -> usize {
+        self.members[0].len() + self.members[1].len()
+    }
+}
+
+/// Changes of the impulses of rows whose columns lie side by side.
+#[derive(Clone, Debug)]
+pub(crate) struct Change {
+    /// Index of the first entry of the first row's column.
+    column: usize,
+    count: usize,
+    by: [f32; MAX_POINTS],
+    /// Impulses on A and on B.
+    pub push: [Vec6; 2],
+}
+
+impl Change {
+    /// None yet, of those from a column on.
+    pub fn from_column(column: usize) -> Self {
+        Self { column, count: 0, by: [0.0; MAX_POINTS], push: [ZERO6; 2] }
+    }
+
+    /// Adds the change of the next row.
+    pub fn add(&mut self, [on_a, on_b]: [&Vec6; 2], by: f32) {
+        self.by[self.count] = by;
+        self.count += 1;
+        add_scaled(&mut self.push[0], on_a, by);
+        add_scaled(&mut self.push[1], on_b, by);
+    }
+
+    pub fn is_zero(&self) -> bool {
+        self.by.iter().all(|by| *by == 0.0)
+    }
+}
+
+impl Columns {
+    pub fn clear(&mut self) {
+        self.entries.clear();
+    }
+
+    /// Place at which the next columns, of these bodies, will lie.
+    pub fn strip(&self, response: &Response, links: &[Link], bodies: [u32; 2]) -> Strip {
+        Strip { start: self.end(), stride: Reach::new(response, links, bodies).len() }
+    }
+
+    /// Bytes that are filled.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.entries[..])
+    }
+
+    /// Index of the entry at which the next column will start.
+    pub fn end(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// From the entry `start` on.
+    pub fn from(&self, start: usize) -> &[Vec6] {
+        &self.entries[start..]
+    }
+
+    /// Appends the column of a row. Gives the velocity changes of the row's own bodies.
+    pub fn add(
+        &mut self,
+        response: &Response,
+        links: &[Link],
+        bodies: [u32; 2],
+        row: [&Vec6; 2],
+    ) -> [Vec6; 2] {
+        let reach = Reach::new(response, links, bodies);
+        let start = self.end();
+        let second =
+            reach.places[1].map_or(0, |place| if place < reach.members[0].len() { reach.len() } else { 0 });
+        self.entries.resize(start + reach.len() + second, ZERO6);
+        let column = &mut self.entries[start..];
+        let [a, b] = bodies;
+        let (on_a, on_b) = column.split_at_mut(reach.members[0].len());
+        match reach.places {
+            // Both in one tree: the second answer goes beside the first, to be added.
+            [Some(_), Some(place)] if place < on_a.len() => {
+                response.answer_both(links, bodies, row, [on_a, on_b]);
+                self.entries.truncate(start + reach.len());
+            }
+            [of_a, of_b] => {
+                if of_a.is_some() {
+                    response.answer(links, a, row[0], on_a);
+                }
+                if of_b.is_some() {
+                    response.answer(links, b, row[1], on_b);
+                }
+            }
+        }
+        reach.places.map(|place| place.map_or(ZERO6, |place| self.entries[start + place]))
+    }
+
+    /// Appends the columns of up to eight rows of two trees, or of one, side by side. Gives where the first lies, and how far each is from
+    /// the next.
+    pub(in crate::solver) fn add_all(
+        &mut self,
+        response: &Response,
+        (links, batches): (&[Link], &mut Batches),
+        rows: &[([u32; 2], &Row)],
+    ) -> (usize, usize) {
+        let reach = Reach::new(response, links, rows[0].0);
+        let (start, stride) = (self.end(), reach.len());
+        self.entries.resize(start + rows.len() * stride, ZERO6);
+        let mut first = start;
+        for members in reach.members {
+            let Some(&member) = members.first() else { continue };
+            let tree = links[member as usize].tree;
+            let on = |body: u32, impulse| {
+                let link = links.get(body as usize).filter(|link| link.tree == tree);
+                link.and_then(|_| response.slot(body)).map(|slot| (slot, impulse))
+            };
+            let mut pushes = [[None; 2]; WIDTH];
+            for (pushes, &([a, b], row)) in pushes.iter_mut().zip(rows) {
+                *pushes = [on(a, &row.a), on(b, &row.b)];
+            }
+            let (columns, pushes) = (&mut self.entries[first..], &pushes[..rows.len()]);
+            if !batches.answer(tree, pushes, (columns, stride)) {
+                let columns = &mut self.entries[first..];
+                response.answer_all(links, tree, pushes, (columns, stride), &mut self.lanes);
+            }
+            first += members.len();
+        }
+        (start, stride)
+    }
+
+    /// Places of a row's bodies in its column.
+    pub fn places(response: &Response, links: &[Link], bodies: [u32; 2]) -> [Option<usize>; 2] {
+        Reach::new(response, links, bodies).places
+    }
+
+    /// Response of the rate of a row whose bodies have these places in a column, per unit of impulse of the column's row.
+    pub fn answer(&self, column: usize, places: [Option<usize>; 2], row: &Row) -> f32 {
+        let [a, b] = places.map(|place| place.map(|place| &self.entries[column + place]));
+        a.map_or(0.0, |on_a| dot(&row.a, on_a)) + b.map_or(0.0, |on_b| dot(&row.b, on_b))
+    }
+
+    /// Adds to the velocities what changes of the impulses of rows of two trees, or one, give. Gives the largest change.
+    pub fn push_all(
+        &self,
+        response: &Response,
+        links: &[Link],
+        bodies: [u32; 2],
+        (columns, by): (&[usize; WIDTH], &[f32; WIDTH]),
+        velocities: &mut [Vec6],
+    ) -> f32 {
+        let reach = Reach::new(response, links, bodies);
+        let (mut starts, mut shares, mut count) = ([0; WIDTH], [0.0; WIDTH], 0);
+        for (&column, &by) in columns.iter().zip(by).filter(|(_, by)| **by != 0.0) {
+            (starts[count], shares[count]) = (column, by);
+            count += 1;
+        }
+        let (entries, starts, by) = (&self.entries[..], &starts[..count], &shares[..count]);
+        dispatch::run(PushAll { entries, starts, by, members: reach.members, velocities })
+    }
+
+    /// Adds to the velocities what changes of the impulses of rows of two bodies give.
+    pub fn push(
+        &self,
+        response: &Response,
+        links: &[Link],
+        bodies: [u32; 2],
+        change: &Change,
+        velocities: &mut [Vec6],
+    ) {
+        let reach = Reach::new(response, links, bodies);
+        let (stride, by) = (reach.len(), &change.by[..change.count]);
+        let columns = &self.entries[change.column..change.column + by.len() * stride];
+        dispatch::run(Push { columns, stride, by, members: reach.members, velocities });
+    }
+}
+
+/// The sum of columns, each times the change of its row.
+struct Push<'a> {
+    columns: &'a [Vec6],
+    stride: usize,
+    by: &'a [f32],
+    members: [&'a [u32]; 2],
+    velocities: &'a mut [Vec6],
+}
+
+impl Kernel for Push<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { columns, stride, by, members, velocities } = self;
+        let mut start = 0;
+        for members in members {
+            let rows = |k: usize| &columns[k * stride + start..][..members.len()];
+            match *by {
+                [x] => add::<L, 1>(members, [rows(0)], [x], velocities),
+                [x, y] => add::<L, 2>(members, [rows(0), rows(1)], [x, y], velocities),
+                [x, y, z] => add::<L, 3>(members, [rows(0), rows(1), rows(2)], [x, y, z], velocities),
+                [x, y, z, w] => {
+                    add::<L, 4>(members, [rows(0), rows(1), rows(2), rows(3)], [x, y, z, w], velocities);
+                }
+                _ => {}
+            }
+            start += members.len();
+        }
+    }
+}
+
+/// The sum of columns that lie anywhere, each times the change of its row.
+struct PushAll<'a> {
+    entries: &'a [Vec6],
+    starts: &'a [usize],
+    by: &'a [f32],
+    members: [&'a [u32]; 2],
+    velocities: &'a mut [Vec6],
+}
+
+impl Kernel for PushAll<'_> {
+    type Output = f32;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> f32 {
+        let Self { entries, starts, by, members, velocities } = self;
+        let mut most = L::splat(0.0);
+        let mut place = 0;
+        for members in members {
+            for &body in members {
+                let mut change = L::splat(0.0);
+                for (&start, &by) in starts.iter().zip(by) {
+                    change = change + L::load(&entries[start + place]) * L::splat(by);
+                }
+                let velocity = &mut velocities[body as usize];
+                (L::load(velocity) + change).store(velocity);
+                most = L::max(most, change.abs());
+                place += 1;
+            }
+        }
+        let mut by = ZERO6;
+        most.store(&mut by);
+        largest(&by)
+    }
+}
+
+/// To the velocities of members, columns times changes.
+#[inline(always)]
+fn add<L: Lanes, const N: usize>(
+    members: &[u32],
+    columns: [&[Vec6]; N],
+    by: [f32; N],
+    velocities: &mut [Vec6],
+) {
+    let by = by.map(L::splat);
+    for (place, &body) in members.iter().enumerate() {
+        let velocity = &mut velocities[body as usize];
+        let mut sum = L::load(velocity);
+        for (column, by) in columns.iter().zip(by) {
+            sum = sum + L::load(&column[place]) * by;
+        }
+        sum.store(velocity);
+    }
+}

@@ -1,0 +1,632 @@
+//! `prepare`: from the world to the arrays of one island's solver.
+
+use crate::activity::Activity;
+use crate::arena::Arena;
+use crate::body::Body;
+use crate::body::def::{Quality, WorldDef};
+use crate::body::work::Work;
+use crate::collide::MAX_POINTS;
+use crate::contact::modifiers::Modifiers;
+use crate::contact::proxies::Proxies;
+use crate::contact::{Contact, ContactMemory, slop};
+use crate::context::StepContext;
+use crate::field::Fields;
+use crate::island::Island;
+use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
+use crate::runner::TaskRunner;
+use crate::solver::articulation::drives::SoftRow;
+use crate::solver::articulation::loops::MAX_EXACT_ROWS;
+use crate::solver::articulation::tree::{Link, NONE};
+use crate::solver::boundary::counts;
+use crate::solver::boundary::faces::Faces;
+use crate::solver::contact_rows::{ManifoldRows, ManifoldSource, PlacedShape, REFIND_TURN};
+use crate::solver::contacts::{Added, OfStep, placed};
+use crate::solver::piles::mass_scaling::{BALLASTED_RATIO, Touch};
+use crate::solver::{Coupling, IslandSolver, SolverBody, SolverJoint};
+use crate::spatial::{ZERO6, join};
+use core::ops::Range;
+use sinew_math::{Sym3, Vec3, min};
+
+/// Bodies and contacts more than an island has for which there is room: those that come and go ask for none.
+const SPARE: usize = 32;
+/// Contacts that come in faster than this may have other points before the step is over, m/s.
+const FAST_APPROACH: f32 = 1.0;
+/// At most this many bodies are solved as one tree; joints beyond become loop rows.
+const MAX_TREE: usize = 1024;
+
+/// The world as islands and their solvers read it.
+pub(crate) struct View<'a> {
+    pub bodies: &'a Arena<Body>,
+    pub activity: &'a Activity,
+    pub proxies: &'a Proxies,
+    pub joints: &'a Arena<Joint>,
+    pub contacts: &'a [Contact],
+    pub modifiers: &'a Modifiers,
+    pub def: &'a WorldDef,
+    pub fields: Fields<'a>,
+    pub pace: Pace,
+}
+
+impl View<'_> {
+    /// Quality that a body asks for.
+    pub fn quality(&self, body: u32) -> Quality {
+        self.bodies.at(body).quality.unwrap_or(self.def.quality)
+    }
+}
+
+/// Substeps of the world.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace {
+    /// Length of one, seconds, and how many a step has.
+    pub h: f32,
+    pub substeps: u32,
+    pub grading: Grading,
+}
+
+impl Pace {
+    pub fn new(context: &StepContext<'_>, grading: Grading) -> Self {
+        Self { h: context.h, substeps: context.substeps, grading }
+    }
+
+    /// Length of substeps that are some times as long, seconds, and how many a step has.
+    pub fn stretched(&self, times: f32) -> (f32, u32) {
+        (self.h * times, (self.substeps as f32 / times) as u32)
+    }
+}
+
+/// Rule by which an island may take fewer substeps than the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Grading {
+    /// It follows from what the island holds.
+    ByContent,
+    /// All take those of the world.
+    None,
+}
+
+/// Memory for building.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Scratch {
+    /// Bodies in the order in which the trees grew over them.
+    seeds: Vec<Seed>,
+    /// Per tree: rows of loops.
+    loop_rows: Vec<usize>,
+    /// Number of seeds whose neighbours have been visited.
+    grown: usize,
+    /// Number of bodies of each tree.
+    sizes: Vec<usize>,
+    /// World indices of the moving bodies in tree order.
+    order: Vec<u32>,
+    /// Per body of the island (by its place there): local index; while trees grow, no more than not `NONE`.
+    local: Vec<u32>,
+    /// World indices of the fixed bodies, ascending.
+    fixed: Vec<u32>,
+    /// Per slot of the world's bodies, of those that the island has: the place there while trees grow, then the local index.
+    local_of: Vec<u32>,
+    /// Per joint of the island: used by a tree.
+    used: Vec<bool>,
+    /// Places of the joints of each body, ascending, body after body, and where those of each body end.
+    adjacent: Vec<u32>,
+    adjacent_ends: Vec<u32>,
+    faces: Faces,
+}
+
+/// In which order the trees of an island grow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Roots {
+    /// Each as far as it can before the next begins.
+    InTurn,
+    /// All trees on fixed bodies grow side by side.
+    AtOnce,
+}
+
+/// A body that a tree has grown over.
+#[derive(Clone, Copy, Debug)]
+struct Seed {
+    tree: u32,
+    /// Its number among all.
+    found: u32,
+    /// Places in the island: of the body, of its parent, of the joint between them.
+    place: u32,
+    parent: u32,
+    joint: u32,
+}
+
+impl Scratch {
+    /// A new tree, held by the joint `ground` or free.
+    fn plant(&mut self, root: u32, ground: u32) {
+        let tree = self.sizes.len() as u32;
+        self.sizes.push(0);
+        self.add(tree, root, NONE, ground);
+    }
+
+    fn add(&mut self, tree: u32, place: u32, parent: u32, joint: u32) {
+        let found = self.seeds.len() as u32;
+        self.sizes[tree as usize] += 1;
+        self.local[place as usize] = found;
+        if joint != NONE {
+            self.used[joint as usize] = true;
+        }
+        self.seeds.push(Seed { tree, found, place, parent, joint });
+    }
+
+    /// Lets all trees grow as far as they can.
+    fn grow(&mut self, island: &Island<'_>, view: &View<'_>) {
+        while let Some(&Seed { tree, place, .. }) = self.seeds.get(self.grown) {
+            self.grown += 1;
+            let body = island.bodies[place as usize];
+            for k in self.adjacent_of(place) {
+                if self.sizes[tree as usize] >= MAX_TREE {
+                    break;
+                }
+                let j = self.adjacent[k];
+                let joint = view.joints.at(island.joints[j as usize]);
+                let other = if joint.a == body { joint.b } else { joint.a };
+                let Some(other) = self.place_of(island, other) else { continue };
+                if self.local[other as usize] == NONE {
+                    self.add(tree, other, place, j);
+                }
+            }
+        }
+    }
+
+    /// Place in the island of one of the world's bodies, if it moves with it.
+    fn place_of(&self, island: &Island<'_>, body: u32) -> Option<u32> {
+        let place = self.local_of[body as usize];
+        (island.bodies.get(place as usize) == Some(&body)).then_some(place)
+    }
+
+    /// Lists which joints each body has: a counting sort.
+    fn list_adjacent(&mut self, island: &Island<'_>, view: &View<'_>) {
+        if self.local_of.len() < view.bodies.slot_count() {
+            self.local_of.resize(view.bodies.slot_count(), NONE);
+        }
+        for (place, &body) in island.bodies.iter().enumerate() {
+            self.local_of[body as usize] = place as u32;
+        }
+        let mut ends = core::mem::take(&mut self.adjacent_ends);
+        ends.clear();
+        ends.resize(island.bodies.len(), 0);
+        let places = |s: &Self, joint: u32| {
+            let joint = view.joints.at(joint);
+            [joint.a, joint.b].map(|body| s.place_of(island, body)).into_iter().flatten()
+        };
+        for &joint in island.joints {
+            places(self, joint).for_each(|place| ends[place as usize] += 1);
+        }
+        let mut start = 0;
+        for end in &mut ends {
+            // Where the list starts, until it is filled.
+            start += core::mem::replace(end, start);
+        }
+        self.adjacent.clear();
+        self.adjacent.resize(start as usize, 0);
+        for (j, &joint) in island.joints.iter().enumerate() {
+            for place in places(self, joint) {
+                let end = &mut ends[place as usize];
+                self.adjacent[*end as usize] = j as u32;
+                *end += 1;
+            }
+        }
+        self.adjacent_ends = ends;
+    }
+
+    fn adjacent_of(&self, place: u32) -> Range<usize> {
+        let place = place as usize;
+        let start = if place == 0 { 0 } else { self.adjacent_ends[place - 1] };
+        start as usize..self.adjacent_ends[place] as usize
+    }
+}
+
+impl Scratch {
+    /// True if a body of a joint or a contact is one of those that move.
+    fn moves(&self, body: u32) -> bool {
+        self.order.get(self.local_of[body as usize] as usize) == Some(&body)
+    }
+
+    /// Lists the bodies of joints and contacts that do not move.
+    fn list_fixed(&mut self, island: &Island<'_>, view: &View<'_>) {
+        let mut fixed = core::mem::take(&mut self.fixed);
+        fixed.clear();
+        for &index in island.joints {
+            let joint = view.joints.at(index);
+            fixed.extend([joint.a, joint.b].into_iter().filter(|&body| !self.moves(body)));
+        }
+        // Contacts with them come last.
+        for &index in island.contacts.iter().rev() {
+            let key = view.contacts[index as usize].key;
+            let before = fixed.len();
+            fixed.extend([key.a, key.b].into_iter().filter(|&body| !self.moves(body)));
+            if fixed.len() == before {
+                break;
+            }
+        }
+        fixed.sort_unstable();
+        fixed.dedup();
+        self.fixed = fixed;
+    }
+}
+
+/// Force and torque that act on a body all through the step: gravity and the user's.
+pub(in crate::solver) fn lasting_force(body: &Body, view: &View<'_>) -> (Vec3, Vec3) {
+    (body.force + view.def.gravity * (body.gravity_scale * body.mass), body.torque)
+}
+
+impl IslandSolver {
+    /// Fills the solver with an island of the world.
+    pub fn prepare(&mut self, island: &Island<'_>, view: &View<'_>, runner: &dyn TaskRunner) {
+        self.choose_substeps(island, view);
+        self.displaced = false;
+        self.disturbed = false;
+        self.work = Work::default();
+        self.tally = counts::Tally::default();
+        (self.max_speed, self.max_turn) = (view.def.max_speed, view.def.max_turn);
+        self.order_trees(island, view);
+        self.make_room(island);
+        self.copy_bodies(island, view);
+        self.look_for_fields(view);
+        self.copy_joints(island, view);
+        self.weigh_joints();
+        self.refresh_rows();
+        self.choose_coupling(island.contacts.len());
+        self.form_batches();
+        self.note_touches(island, view);
+        self.refresh_inertia();
+        self.choose_effort();
+        self.limits.clear();
+        self.manifolds.clear();
+        if self.is_in_lanes() {
+            self.prepare_contacts(view, runner);
+        } else {
+            self.copy_contacts(island, view);
+        }
+        if !self.is_articulated() {
+            return;
+        }
+        self.factor_joints();
+        self.choose_limits();
+        self.refresh_response();
+    }
+
+    /// Batches of trees in heaps. Loops and pins want the answers of single links.
+    fn form_batches(&mut self) {
+        if self.coupling == Coupling::Turns && self.loops.is_empty() && self.pins.joints.is_empty() {
+            self.batches.form(&self.links, &self.joints, &self.trees);
+            for tree in (0..self.trees.len()).filter(|&tree| self.batches.have(tree)) {
+                for link in &mut self.links[self.trees[tree].clone()] {
+                    link.push_all_gains(&self.joints);
+                }
+            }
+        } else {
+            self.batches.clear(self.links.len());
+        }
+    }
+
+    /// Reserves memory that only islands with joints need, also for one that has none: it goes on to the next, which may have some.
+    fn make_room(&mut self, island: &Island<'_>) {
+        let s = &mut self.scratch;
+        let lists = [
+            &mut s.residuals,
+            &mut s.impulses,
+            &mut s.dv,
+            &mut s.swept,
+            &mut self.moved,
+            &mut self.accounted,
+        ];
+        for list in lists {
+            list.clear();
+            list.reserve(island.bodies.len());
+        }
+        s.pieces.clear();
+        s.pieces.reserve(island.bodies.len());
+        for errors in [&mut s.errors, &mut s.errors_left] {
+            errors.clear();
+            errors.reserve(island.bodies.len());
+        }
+        for trees in [&mut s.corrected, &mut s.looked_at] {
+            trees.clear();
+            trees.reserve(island.bodies.len());
+        }
+        self.batches.make_room(island.bodies.len());
+        self.pins.make_room(island.bodies.len(), island.joints.len());
+        s.loads.make_room(island.bodies.len() + SPARE, island.contacts.len() + SPARE);
+        self.conjugate.make_room(island.bodies.len(), island.contacts.len());
+        s.build.faces.make_room(island.bodies.len() + SPARE);
+        self.touches.clear();
+        self.touches.reserve(island.contacts.len() + SPARE);
+        self.paired.clear();
+        self.paired.reserve(island.bodies.len() + SPARE);
+        self.starts.clear();
+        self.starts.reserve(island.bodies.len() + SPARE);
+        self.contacts.clear();
+        self.contacts.make_room(island.bodies.len() + SPARE, island.contacts.len() + SPARE);
+        self.bounces = false;
+        self.bounced_from.clear();
+        self.bounced_from.reserve(island.bodies.len() + SPARE);
+    }
+
+    /// Spanning trees: few loops are closed exactly in one tree per thing that hangs together. Where there are too many
+    /// for that, all bodies jointed to fixed ones become roots at once, so that ropes side by side are a tree each.
+    fn order_trees(&mut self, island: &Island<'_>, view: &View<'_>) {
+        self.span(island, view, Roots::InTurn);
+        if self.is_entangled(island, view) {
+            self.span(island, view, Roots::AtOnce);
+        }
+    }
+
+    /// Spanning trees by breadth-first search: from bodies jointed to fixed ones (a tree has one ground at most), then from
+    /// the smallest body that is left.
+    fn span(&mut self, island: &Island<'_>, view: &View<'_>, roots: Roots) {
+        let s = &mut self.scratch.build;
+        s.seeds.clear();
+        s.sizes.clear();
+        s.grown = 0;
+        s.local.clear();
+        s.local.resize(island.bodies.len(), NONE);
+        s.used.clear();
+        s.used.resize(island.joints.len(), false);
+        s.list_adjacent(island, view);
+        for (j, &index) in island.joints.iter().enumerate() {
+            let joint = view.joints.at(index);
+            if let [Some(root), None] | [None, Some(root)] =
+                [joint.a, joint.b].map(|body| s.place_of(island, body))
+                && s.local[root as usize] == NONE
+                && !joint.leaves_all_free()
+            {
+                s.plant(root, j as u32);
+                if roots == Roots::InTurn {
+                    s.grow(island, view);
+                }
+            }
+        }
+        s.grow(island, view);
+        for root in 0..island.bodies.len() as u32 {
+            if s.local[root as usize] == NONE {
+                s.plant(root, NONE);
+                s.grow(island, view);
+            }
+        }
+        self.number_links(island);
+    }
+
+    /// More loops than can be closed exactly in one of its trees, or loops between trees.
+    fn is_entangled(&mut self, island: &Island<'_>, view: &View<'_>) -> bool {
+        let mut loop_rows = core::mem::take(&mut self.scratch.build.loop_rows);
+        let s = &self.scratch.build;
+        loop_rows.clear();
+        loop_rows.resize(self.trees.len(), 0);
+        let mut is_entangled = false;
+        let tree = |body: u32| {
+            let place = s.place_of(island, body)?;
+            Some(self.links[s.local[place as usize] as usize].tree as usize)
+        };
+        for (&index, _) in island.joints.iter().zip(&s.used).filter(|(_, used)| !**used) {
+            let joint = view.joints.at(index);
+            let tree = match (tree(joint.a), tree(joint.b)) {
+                (Some(a), Some(b)) if a != b => {
+                    is_entangled = true;
+                    break;
+                }
+                (Some(_), None) | (None, Some(_)) if joint.leaves_all_free() => continue,
+                (a, b) => a.or(b).unwrap_or(0),
+            };
+            loop_rows[tree] += joint.most_rows();
+        }
+        is_entangled |= loop_rows.iter().any(|&rows| rows > MAX_EXACT_ROWS);
+        self.scratch.build.loop_rows = loop_rows;
+        is_entangled
+    }
+
+    /// Local indices, tree by tree, parents first.
+    fn number_links(&mut self, island: &Island<'_>) {
+        let s = &mut self.scratch.build;
+        s.seeds.sort_unstable_by_key(|seed| (seed.tree, seed.found));
+        s.order.clear();
+        for (local, seed) in s.seeds.iter().enumerate() {
+            s.local[seed.place as usize] = local as u32;
+        }
+        self.trees.clear();
+        for (local, seed) in s.seeds.iter().enumerate() {
+            match self.trees.get_mut(seed.tree as usize) {
+                Some(tree) => tree.end = local + 1,
+                None => self.trees.push(local..local + 1),
+            }
+            let parent = if seed.parent == NONE { NONE } else { s.local[seed.parent as usize] };
+            s.order.push(island.bodies[seed.place as usize]);
+            // What links answer is written by the factor: its place need not be cleared.
+            match self.links.get_mut(local) {
+                Some(link) => (link.parent, link.joint, link.tree) = (parent, seed.joint, seed.tree),
+                None => self.links.push(Link::new(parent, seed.joint, seed.tree)),
+            }
+        }
+        self.links.truncate(s.seeds.len());
+    }
+
+    fn copy_bodies(&mut self, island: &Island<'_>, view: &View<'_>) {
+        let s = &mut self.scratch.build;
+        for (local, &index) in s.order.iter().enumerate() {
+            s.local_of[index as usize] = local as u32;
+        }
+        s.list_fixed(island, view);
+        s.faces.clear();
+        self.bodies.clear();
+        self.velocities.clear();
+        let ordered = s.order.iter().copied();
+        for index in ordered.chain(s.fixed.iter().copied()) {
+            s.local_of[index as usize] = self.bodies.len() as u32;
+            let body = view.bodies.at(index);
+            let (force, torque) = lasting_force(body, view);
+            self.bodies.push(SolverBody {
+                index,
+                pose: body.world_from_principal,
+                mass: body.mass,
+                inertia: body.inertia,
+                excess: Vec3::ZERO,
+                ballast: 1.0,
+                inverse_inertia: Sym3::ZERO,
+                force,
+                torque,
+                momentum: Vec3::ZERO,
+                linear_damping: body.linear_damping,
+                angular_damping: body.angular_damping,
+                is_limited: false,
+            });
+            let still = body.kind == crate::BodyKind::Dynamic && !body.is_active();
+            let velocity = if still { ZERO6 } else { join(body.velocity.linear, body.velocity.angular) };
+            self.velocities.push(velocity);
+            s.faces.push(body, body.velocity.angular.length() * self.h >= 0.5 * REFIND_TURN);
+        }
+        self.scratch.predicted.clear();
+        self.scratch.predicted.reserve(self.bodies.len());
+    }
+
+    /// Local index of a world body.
+    fn local(&self, body: u32) -> u32 {
+        self.scratch.build.local_of[body as usize]
+    }
+
+    fn copy_joints(&mut self, island: &Island<'_>, view: &View<'_>) {
+        self.joints.clear();
+        self.loops.clear();
+        self.pins.clear();
+        for (place, &index) in island.joints.iter().enumerate() {
+            let joint = view.joints.at(index);
+            let (a, b) = (self.local(joint.a), self.local(joint.b));
+            let geometry = joint.geometry();
+            let pose =
+                JointPose::new(&geometry, &self.bodies[a as usize].pose, &self.bodies[b as usize].pose);
+            self.joints.push(SolverJoint {
+                index,
+                a,
+                b,
+                geometry,
+                drive: joint.drive,
+                pose,
+                rows: JointRows::NONE,
+                rigid: 0,
+                left_open: ZERO6,
+                most_rows: joint.most_rows(),
+                soft: [SoftRow::default(); DIRECTIONS],
+                driven: [SoftRow::default(); DIRECTIONS],
+                bent: ZERO6,
+                bent_before: ZERO6,
+                mass: ZERO6,
+                least_mass: ZERO6,
+                start_rate: ZERO6,
+                saturated: joint.saturated,
+                limits: joint.limits.map(|limit| limit.of_substeps(self.stretch)),
+                limit_impulse: [Vec3::ZERO; MAX_LIMITS],
+                force: joint.force,
+                impulse: ZERO6,
+                warm_impulse: joint.warm_impulse.map(|impulse| impulse * self.stretch),
+                reaction: ZERO6,
+                accounted: ZERO6,
+            });
+            let moving = self.links.len() as u32;
+            if joint.leaves_all_free() && (a < moving) != (b < moving) {
+                self.pins.joints.push(place as u32);
+            } else if !self.scratch.build.used[place] {
+                self.loops.joints.push(place as u32);
+            }
+        }
+        self.loops.group(&self.joints, &self.links);
+        // A grounded root's parent is the fixed body of its joint.
+        for i in 0..self.links.len() {
+            let link = &self.links[i];
+            if link.parent == NONE && link.joint != NONE {
+                let joint = &self.joints[link.joint as usize];
+                self.links[i].parent = if joint.a as usize == i { joint.b } else { joint.a };
+            }
+        }
+    }
+
+    /// Who touches whom, and what presses on bodies that no joint holds. What lies in lanes is listed for them.
+    fn note_touches(&mut self, island: &Island<'_>, view: &View<'_>) {
+        let mut faces = core::mem::take(&mut self.scratch.build.faces);
+        let mut contacts = core::mem::take(&mut self.contacts);
+        let (in_lanes, moving) = (self.is_in_lanes(), self.links.len());
+        self.paired.clear();
+        self.paired.resize(moving, false);
+        for &index in island.contacts {
+            let contact = &view.contacts[index as usize];
+            let key = contact.key;
+            let bodies = [key.a, key.b].map(|body| self.local(body));
+            let moves = bodies.map(|body| (body as usize) < moving);
+            if moves == [true; 2] && !self.is_jointed(bodies[0]) && !self.is_jointed(bodies[1]) {
+                bodies.into_iter().for_each(|body| self.paired[body as usize] = true);
+            }
+            let sides = faces.of(view, key, bodies);
+            let slop = slop(min(sides[0].smallest_extent, sides[1].smallest_extent));
+            self.touches.push(Touch::new(bodies, contact, self.stretch, slop));
+            if !in_lanes {
+                continue;
+            }
+            // What turns or comes in fast may come down on more points within the step.
+            let is_fast = contact.approach > FAST_APPROACH || sides[0].turns || sides[1].turns;
+            let is_curved = sides[0].is_curved || sides[1].is_curved;
+            let added = Added {
+                index,
+                contact,
+                bodies,
+                moves,
+                points: if is_fast { MAX_POINTS } else { contact.manifold.count },
+                firmness: self.firmness(bodies),
+                slop,
+                material: faces.material(view, index, &sides),
+                curved: is_curved.then(|| placed(view, contact)),
+            };
+            contacts.push(&added, &self.bodies);
+        }
+        self.levels.count(moving, self.bodies.len(), &self.touches);
+        self.is_unequal = self.mass_ratio() >= BALLASTED_RATIO;
+        self.guess_loads();
+        if in_lanes {
+            for (place, (touch, &index)) in self.touches.iter().zip(island.contacts).enumerate() {
+                if let Some(points) = touch.started(&view.contacts[index as usize], self.stretch) {
+                    contacts.start_with(place, &points);
+                }
+            }
+        }
+        (self.contacts, self.scratch.build.faces) = (contacts, faces);
+        self.add_ballast();
+    }
+
+    /// Contacts in lanes.
+    fn prepare_contacts(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
+        self.starts.clear();
+        self.starts.extend(self.bodies.iter().map(|body| body.pose));
+        let (bodies, moving) = (&self.bodies, self.links.len());
+        let of_step = OfStep { view, bodies, moving, h: self.h, stretch: self.stretch, runner };
+        self.driven = self.contacts.prepare(&of_step);
+    }
+
+    fn copy_contacts(&mut self, island: &Island<'_>, view: &View<'_>) {
+        self.driven = false;
+        for (&index, touch) in island.contacts.iter().zip(&self.touches) {
+            let contact = &view.contacts[index as usize];
+            let (a, b) = (view.bodies.at(contact.key.a), view.bodies.at(contact.key.b));
+            let shape_a = &a.shapes[contact.key.shape_a as usize];
+            let shape_b = &b.shapes[contact.key.shape_b as usize];
+            let extent = min(shape_a.shape.smallest_extent(), shape_b.shape.smallest_extent());
+            let points = touch.started(contact, self.stretch).unwrap_or(contact.memory.points);
+            let memory = ContactMemory { points, ..contact.memory };
+            let source = ManifoldSource {
+                contact: index,
+                a: self.local(contact.key.a),
+                b: self.local(contact.key.b),
+                a_moves: a.is_active(),
+                b_moves: b.is_active(),
+                manifold: &contact.manifold,
+                memory: memory.of_substeps(self.stretch),
+                material: view.modifiers.material(view.bodies, view.contacts, index),
+                slop: slop(extent),
+                shapes: [shape_a, shape_b].map(|s| PlacedShape::new(s.shape.clone(), s.principal_from_shape)),
+                h: self.h,
+            };
+            self.driven |= source.material.drives();
+            let firmness = self.firmness([source.a, source.b]);
+            let mut rows = ManifoldRows::new(&source, &self.bodies);
+            rows.set_firmness(firmness);
+            self.manifolds.push(rows);
+        }
+    }
+}

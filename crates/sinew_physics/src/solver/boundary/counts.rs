@@ -1,0 +1,91 @@
+//! Counts of what an island's step took, for a profiler that counts.
+
+use crate::solver::articulation::tree::Link;
+use crate::solver::contact_rows::ManifoldRows;
+use crate::solver::limits::rows::LimitRow;
+use crate::solver::sweep::Pass;
+use crate::solver::{IslandSolver, SolverBody, SolverJoint};
+use crate::spatial::Vec6;
+use crate::stage::{Counter, Profiler};
+
+/// Times that a substep goes over all arrays: once before and once after poses change.
+const PER_SUBSTEP: u64 = 2;
+/// Times that the rest of the step does: `prepare` and `store`.
+const PER_STEP: u64 = 2;
+
+/// Counts of what the sweeps of a step have gone through: cheap enough to be added up whether somebody asks or not.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::solver) struct Tally {
+    pub substeps: u64,
+    /// Rows that were not skipped.
+    pub visits: u64,
+    /// Rows of `relax`, once for each substep.
+    pass_rows: u64,
+    /// Rows gone through, sweep by sweep.
+    solve_rows: u64,
+    relax_rows: u64,
+}
+
+impl Tally {
+    /// A sweep of a pass, the `number`th from 1, over so many rows.
+    pub fn sweep(&mut self, pass: Pass, number: usize, rows: usize) {
+        let rows = rows as u64;
+        match pass {
+            Pass::Solve => self.solve_rows += rows,
+            Pass::Relax => self.relax_rows += rows,
+            Pass::Restitution => {}
+        }
+        if pass == Pass::Relax && number == 1 {
+            self.pass_rows += rows;
+        }
+    }
+}
+
+impl IslandSolver {
+    /// Tells a profiler the counts of the step, when it is over.
+    pub(in crate::solver) fn tell_counts(&self, profiler: &dyn Profiler) {
+        if !profiler.is_counting() {
+            return;
+        }
+        let Tally { substeps, visits, pass_rows, solve_rows, relax_rows } = self.tally;
+        let resident = self.resident_bytes();
+        let row = (size_of::<ManifoldRows>() + 2 * size_of::<Vec6>()) as u64;
+        let points: usize = self.manifolds.iter().map(|rows| rows.manifold.count).sum();
+        let in_lanes = self.contacts.tally();
+        for (counter, by) in [
+            (Counter::Bodies, self.links.len() as u64),
+            (Counter::BodySubsteps, self.links.len() as u64 * substeps),
+            (Counter::Joints, self.joints.len() as u64),
+            (Counter::Manifolds, self.manifolds.len() as u64 + in_lanes.manifolds),
+            (Counter::Points, points as u64 + in_lanes.points),
+            (Counter::LimitRows, self.limits.len() as u64),
+            (Counter::PassRows, pass_rows),
+            (Counter::SolveRows, solve_rows),
+            (Counter::RelaxRows, relax_rows),
+            (Counter::Visits, visits + in_lanes.visits),
+            (Counter::ResidentBytes, resident),
+            (
+                Counter::TouchedBytes,
+                resident * (PER_STEP + PER_SUBSTEP * substeps) + visits * row + in_lanes.visited_bytes,
+            ),
+        ] {
+            profiler.count(counter, by);
+        }
+    }
+
+    /// Bodies, velocities, joints, manifolds, limits, links, their response and the columns of rows.
+    fn resident_bytes(&self) -> u64 {
+        let bytes = self.bodies.len() * size_of::<SolverBody>()
+            + self.velocities.len() * size_of::<Vec6>()
+            + self.joints.len() * size_of::<SolverJoint>()
+            + self.manifolds.len() * size_of::<ManifoldRows>()
+            + self.limits.len() * size_of::<LimitRow>()
+            + self.links.len() * size_of::<Link>()
+            + self.batches.bytes()
+            + self.contacts.bytes()
+            + self.response.bytes()
+            + self.columns.bytes()
+            + self.limit_blocks.bytes();
+        bytes as u64
+    }
+}

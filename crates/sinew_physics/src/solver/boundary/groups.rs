@@ -1,0 +1,94 @@
+//! Particle groups in an island: what fields do to them, and which bodies they may touch.
+
+use crate::body::Body;
+use crate::boxes::Overlap;
+use crate::contact::proxies::Owner;
+use crate::field::{Fields, Target};
+use crate::particles::{AttachmentTarget, ParticleGroup};
+use crate::solver::View;
+use core::ops::ControlFlow;
+
+/// A particle group, taken out of the world until `store`.
+#[derive(Clone, Debug)]
+pub(crate) struct TakenGroup {
+    /// In the world.
+    pub index: u32,
+    pub group: ParticleGroup,
+    pub near: Neighbors,
+}
+
+impl TakenGroup {
+    /// Lists the forces of fields on the particles at their present positions, N; no more than would stop them: see [`crate::field`].
+    pub fn feel(&mut self, fields: &Fields<'_>, h: f32) {
+        self.group.outer_forces().clear();
+        for i in 0..self.group.positions().len() {
+            let target = Target::of_particle(&self.group, i);
+            let weight = fields.gravity * (target.mass * target.gravity_scale);
+            let force = fields.load(&target).beside(weight, target.mass, h);
+            self.group.outer_forces().push(force);
+        }
+    }
+}
+
+/// Bodies that a group hangs on or may touch in this step, and their shapes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Neighbors {
+    /// World body indices, ascending.
+    pub bodies: Vec<u32>,
+    /// Number of particles that hang on each of `bodies`.
+    pub holds: Vec<u32>,
+    /// Position in `bodies`, shape number.
+    pub shapes: Vec<(u32, u32)>,
+    /// Body and shape of what is near, body and nothing for each particle that hangs on it.
+    found: Vec<(u32, Option<u32>)>,
+}
+
+impl Neighbors {
+    /// Everything whose bounds the group may reach within the step.
+    pub fn find(&mut self, group: &ParticleGroup, view: &View<'_>) {
+        let movers = view.activity.movers().map(|index| view.bodies.at(index));
+        let reach = 0.02 + (group.fastest() + movers.fold(0.0, fastest_point)) * view.def.dt();
+        let bounds = group.bounds().expand(reach);
+        self.found.clear();
+        let near = |Owner { body, shape }| {
+            let body = view.bodies.at(body);
+            let frame = body.world_from_shape(shape as usize);
+            // What is quarantined still holds what hangs on it, as a fixed point.
+            !body.quarantined
+                && body.surface(shape as usize).is_wall_to(group.filter())
+                && body.shapes[shape as usize].shape.aabb(&frame).overlaps(&bounds)
+        };
+        let _ = view.proxies.overlapping(&bounds, |owner| {
+            self.found.extend(near(owner).then_some((owner.body, Some(owner.shape))));
+            ControlFlow::<()>::Continue(())
+        });
+        self.found.extend(group.attachments().iter().filter_map(|a| match a.target {
+            AttachmentTarget::Body { body, .. } => Some((body.index, None)),
+            AttachmentTarget::World(_) => None,
+        }));
+        self.found.sort_unstable();
+        self.list();
+    }
+
+    /// From what was found, in order, to the lists.
+    fn list(&mut self) {
+        self.bodies.clear();
+        self.holds.clear();
+        self.shapes.clear();
+        for &(body, shape) in &self.found {
+            if self.bodies.last() != Some(&body) {
+                self.bodies.push(body);
+                self.holds.push(0);
+            }
+            let place = self.bodies.len() - 1;
+            match shape {
+                Some(shape) => self.shapes.push((place as u32, shape)),
+                None => self.holds[place] += 1,
+            }
+        }
+    }
+}
+
+fn fastest_point(most: f32, body: &Body) -> f32 {
+    sinew_math::max(most, body.velocity.linear.length() + body.velocity.angular.length() * body.reach())
+}

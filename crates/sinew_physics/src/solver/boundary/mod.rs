@@ -1,0 +1,9 @@
+//! Data that pass between the world and an island: its bodies, joints and contacts on the way in, forces between stages, results on the way out.
+
+pub(in crate::solver) mod build;
+pub(in crate::solver) mod counts;
+pub(in crate::solver) mod faces;
+pub(in crate::solver) mod fields;
+pub(crate) mod groups;
+mod outside;
+pub(in crate::solver) mod solution;

@@ -1,0 +1,140 @@
+//! Results of the islands' substeps, for the world to take.
+
+use crate::body::Velocity;
+use crate::body::work::Work;
+use crate::collide::Manifold;
+use crate::contact::ContactMemory;
+use crate::island::Island;
+use crate::joint::{LimitImpulse, MAX_LIMITS, Saturation};
+use crate::solver::{IslandSolver, SolverBody};
+use crate::spatial::{Vec6, angular, linear};
+use crate::stage::Profiler;
+use sinew_math::{Transform, Vec3};
+
+/// A moving body after the step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SolvedBody {
+    /// In the world.
+    pub index: u32,
+    pub pose: Transform,
+    pub velocity: Velocity,
+    /// In a substep it was faster than the world lets it be.
+    pub is_limited: bool,
+}
+
+/// Values that a joint carries on.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SolvedJoint {
+    /// In the world.
+    pub index: u32,
+    pub limits: [LimitImpulse; MAX_LIMITS],
+    pub force: Vec3,
+    pub warm_impulse: Vec6,
+    pub saturated: Saturation,
+    pub mass: Vec6,
+    /// Impulses of all substeps on B, torque about its anchor.
+    pub reaction: Vec6,
+}
+
+/// Values that a contact carries on.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SolvedContact {
+    /// In the world.
+    pub index: u32,
+    /// Its manifold, if it was looked for anew within the step.
+    pub found: Option<Manifold>,
+    pub memory: ContactMemory,
+}
+
+/// Results of all islands, one after the other.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Solution {
+    pub bodies: Vec<SolvedBody>,
+    pub joints: Vec<SolvedJoint>,
+    pub contacts: Vec<SolvedContact>,
+    /// One for each island.
+    pub work: Vec<Work>,
+}
+
+impl Solution {
+    /// Makes room for so many of each.
+    pub fn resize(&mut self, islands: usize, bodies: usize, joints: usize, contacts: usize) {
+        // Islands part and join, but there are never more than bodies.
+        self.work.clear();
+        self.work.reserve(bodies);
+        self.work.resize(islands, Work::default());
+        self.bodies.resize(bodies, SolvedBody::default());
+        self.joints.resize(joints, SolvedJoint::default());
+        self.contacts.resize(contacts, SolvedContact::default());
+    }
+
+    /// The room of all islands, to be split among them.
+    pub fn as_mut(&mut self) -> IslandSolution<'_> {
+        IslandSolution {
+            bodies: &mut self.bodies,
+            joints: &mut self.joints,
+            contacts: &mut self.contacts,
+            work: &mut self.work,
+        }
+    }
+}
+
+/// Room for what comes of an island, or of several.
+pub(crate) struct IslandSolution<'a> {
+    bodies: &'a mut [SolvedBody],
+    joints: &'a mut [SolvedJoint],
+    contacts: &'a mut [SolvedContact],
+    work: &'a mut [Work],
+}
+
+impl<'a> IslandSolution<'a> {
+    /// Takes the room for the first island out.
+    pub fn split_off(&mut self, island: &Island<'_>) -> Self {
+        Self {
+            bodies: split_off(&mut self.bodies, island.bodies.len()),
+            joints: split_off(&mut self.joints, island.joints.len()),
+            contacts: split_off(&mut self.contacts, island.contacts.len()),
+            work: split_off(&mut self.work, 1),
+        }
+    }
+}
+
+/// Takes the first items out of what is left.
+pub(crate) fn split_off<'a, T>(left: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    left.split_off_mut(..count).expect("there is room for each island")
+}
+
+impl IslandSolver {
+    /// Writes down what has come of the island.
+    pub fn store(&self, solution: &mut IslandSolution<'_>, profiler: &dyn Profiler) {
+        self.tell_counts(profiler);
+        for ((solved, body), v) in solution.bodies.iter_mut().zip(&self.bodies).zip(&self.velocities) {
+            let velocity = Velocity { linear: linear(v), angular: angular(v) };
+            let SolverBody { index, pose, is_limited, .. } = *body;
+            *solved = SolvedBody { index, pose, velocity, is_limited };
+        }
+        for (solved, joint) in solution.joints.iter_mut().zip(&self.joints) {
+            *solved = SolvedJoint {
+                index: joint.index,
+                limits: joint.limits.map(|limit| limit.of_substeps(1.0 / self.stretch)),
+                force: joint.force,
+                warm_impulse: joint.warm_impulse.map(|impulse| impulse / self.stretch),
+                saturated: joint.saturated,
+                mass: joint.mass,
+                reaction: joint.reaction,
+            };
+        }
+        solution.work.fill(self.work);
+        if self.is_in_lanes() {
+            self.contacts.store(self.stretch, solution.contacts);
+            return;
+        }
+        for (solved, rows) in solution.contacts.iter_mut().zip(&self.manifolds) {
+            *solved = SolvedContact {
+                index: rows.contact,
+                found: rows.found(),
+                memory: rows.memory.of_substeps(1.0 / self.stretch),
+            };
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Bodies between others that press on them with far more than they weigh.
+//!
+//! In 32 bits an ulp of the impulses on such a body, over its mass, may be more than any speed that it could have: under a
+//! tower of ten cubes, each ten times as heavy as the one that it stands on, 4 m/s. What presses from both sides gives it
+//! ballast: it answers to forces and impulses as if it were heavier, for as long as they press. That changes neither its weight
+//! nor what hits it from one side alone.
+
+use crate::collide::{MAX_POINTS, ManifoldPoint};
+use crate::contact::{Contact, PointImpulse};
+use crate::solver::IslandSolver;
+use sinew_math::{Vec3, max};
+
+/// Least mass of a body per impulse that cancels itself on it in a substep, kg/(N·s): what bears less than 4,000 times its
+/// weight has no ballast, and an ulp of that impulse is worth 1e-5 m/s.
+const BALLAST: f32 = 6e-3;
+/// Ratio of masses below which nobody has ballast.
+pub(in crate::solver) const BALLASTED_RATIO: f32 = 1e3;
+/// Fastest approach of what is taken to stand already, m/s.
+const STANDING_SPEED: f32 = 0.1;
+
+/// Impulses that press on a body in a substep, N·s: their vector sum, and the sum of their sizes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::solver) struct Pressing {
+    sum: Vec3,
+    size: f32,
+}
+
+/// Two bodies that touch, when a step begins.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::solver) struct Touch {
+    /// Local.
+    pub bodies: [u32; 2],
+    /// From A to B.
+    pub normal: Vec3,
+    /// Impulse on B along the normal in the last substep, or guessed for this one, N·s.
+    pub load: f32,
+    /// Gap below which points are taken for touching, metres.
+    slop: f32,
+    /// They touch, and do not know their load yet.
+    pub is_new: bool,
+}
+
+impl Touch {
+    /// Two bodies with what presses between them in a substep.
+    pub fn pressing(bodies: [u32; 2], normal: Vec3, load: f32) -> Self {
+        Self { bodies, normal, load, slop: 0.0, is_new: false }
+    }
+
+    /// A contact in substeps `stretch` times as long as the world's. What comes in fast does not stand there.
+    pub fn new(bodies: [u32; 2], contact: &Contact, stretch: f32, slop: f32) -> Self {
+        let points = contact.manifold.points();
+        let load =
+            stretch * contact.memory.points[..points.len()].iter().fold(0.0, |sum, point| sum + point.now);
+        let is_new = load == 0.0
+            && contact.approach < STANDING_SPEED
+            && points.iter().any(|point| point.separation < slop);
+        Self { bodies, normal: contact.manifold.normal, load, slop, is_new }
+    }
+
+    /// Impulses that the points of the contact start with if its load is guessed, in substeps of the world's: equal parts to
+    /// those that touch.
+    pub fn started(&self, contact: &Contact, stretch: f32) -> Option<[PointImpulse; MAX_POINTS]> {
+        if !self.is_new || self.load == 0.0 {
+            return None;
+        }
+        let touches = |point: &&ManifoldPoint| point.separation < self.slop;
+        let count = contact.manifold.points().iter().filter(touches).count();
+        let part = self.load / (stretch * count as f32);
+        let mut started = [PointImpulse::default(); MAX_POINTS];
+        for (impulse, _) in
+            started.iter_mut().zip(contact.manifold.points()).filter(|(_, point)| touches(point))
+        {
+            *impulse = PointImpulse { now: part, before: part, lasting: part, total: 0.0 };
+        }
+        Some(started)
+    }
+}
+
+impl Pressing {
+    fn add(&mut self, push: Vec3, size: f32) {
+        self.sum += push;
+        self.size += size;
+    }
+
+    /// The part that cancels itself.
+    fn squeeze(&self) -> f32 {
+        0.5 * (self.size - self.sum.length())
+    }
+}
+
+impl IslandSolver {
+    /// Derives ballast from what presses in this substep, where masses are very unequal.
+    pub(in crate::solver) fn refresh_ballast(&mut self) {
+        if self.is_unequal {
+            self.touches.clear();
+            self.contacts.list_pushes(&mut self.touches);
+            self.add_ballast();
+            self.contacts.spoil();
+        }
+    }
+
+    /// Gives ballast to what was squeezed in the last substep.
+    pub(in crate::solver) fn add_ballast(&mut self) {
+        self.pressing.clear();
+        self.pressing.resize(self.links.len(), Pressing::default());
+        for &Touch { bodies: [a, b], normal, load, .. } in &self.touches {
+            let (push, size) = (normal * load, load);
+            for (body, push) in [(a, -push), (b, push)] {
+                if let Some(pressing) = self.pressing.get_mut(body as usize) {
+                    pressing.add(push, size);
+                }
+            }
+        }
+        for i in 0..self.pressing.len() {
+            let (squeeze, mass) = (self.pressing[i].squeeze(), self.bodies[i].mass);
+            let is_jointed = self.is_jointed(i as u32);
+            self.bodies[i].ballast = if is_jointed { 1.0 } else { max(1.0, BALLAST * squeeze / mass) };
+        }
+    }
+}

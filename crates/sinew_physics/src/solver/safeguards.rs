@@ -1,0 +1,363 @@
+//! Safeguards that keep violent hits from adding energy. Rows are linear and hold at the pose they were made at; a limb that a
+//! hit turns by a good part of a radian within a substep leaves that pose, and impulses that were right before can do
+//! work. None of this acts at rest or in ordinary falls.
+
+use crate::joint::DIRECTIONS;
+use crate::solver::articulation::tree::NONE;
+use crate::solver::contact_rows::ManifoldRows;
+use crate::solver::motion::KineticEnergy;
+use crate::solver::sweep::Pass;
+use crate::solver::{IslandSolver, SolverBody};
+use crate::spatial::{Vec6, ZERO6, angular, difference, join, linear};
+use sinew_math::dispatch;
+use sinew_math::{Sym3, Vec3, max, min};
+
+/// Angle that a link may turn within a substep beside the motion of its tree as a whole, radians: position corrections
+/// converge below it.
+pub(in crate::solver) const MAX_INNER_TURN: f32 = 1.0;
+/// Share of the kinetic energy (of at least 1 J/kg) that warm starting or relaxing may give before it counts as an error:
+/// rounding and the give and take of resting contacts are far below.
+pub(in crate::solver) const ENERGY_SLACK: f32 = 1e-3;
+
+/// No velocity is as fast, as a multiple of the speed limit; no spin, rad/s.
+pub(in crate::solver) const NONSENSE: f32 = 2.5;
+pub(in crate::solver) const NONSENSE_SPIN: f32 = 1e4;
+/// A joint that a substep leaves open by this much more than it was has not been solved, m or rad.
+pub(in crate::solver) const TORN: f32 = 0.1;
+
+impl IslandSolver {
+    /// Impulses that hold up weights take energy away; those of an impact, repeated at another pose, add it. If they did,
+    /// the substep starts without them.
+    pub(in crate::solver) fn drop_bad_warm_start(&mut self) {
+        let moving = self.links.len();
+        let before = self.kinetic_energy(&self.unconstrained);
+        let rise = self.kinetic_energy(&self.velocities[..moving]) - before;
+        if self.is_in_lanes() || rise <= ENERGY_SLACK * max(before, self.mass()) {
+            return;
+        }
+        self.velocities[..moving].copy_from_slice(&self.unconstrained);
+        self.scratch.started.copy_from_slice(&self.unconstrained);
+        self.forget_impulses();
+        self.project_joints(Pass::Solve);
+    }
+
+    fn forget_impulses(&mut self) {
+        self.contact_push.fill(Vec3::ZERO);
+        for rows in &mut self.manifolds {
+            rows.forget();
+        }
+        self.contacts.forget();
+        for joint in &mut self.joints {
+            joint.impulse = ZERO6;
+            joint.bent = ZERO6;
+        }
+        for row in &mut self.limits {
+            row.impulse = 0.0;
+        }
+    }
+
+    /// Kinetic energy of the moving bodies with the given velocities, joules.
+    pub(in crate::solver) fn kinetic_energy(&self, velocities: &[Vec6]) -> f32 {
+        dispatch::run(KineticEnergy { bodies: &self.bodies[..velocities.len()], velocities })
+    }
+
+    /// Total mass of the moving bodies, kg.
+    pub(in crate::solver) fn mass(&self) -> f32 {
+        self.bodies[..self.links.len()].iter().fold(0.0, |sum, body| sum + body.mass)
+    }
+
+    /// Slows the inner motion of trees with links that would turn too far within the substep: towards the rigid motion
+    /// with the same momentum, by one factor for the whole tree. Joints hold as before, since their rows are linear, and
+    /// momentum stays; a clamp of single links would tear them apart. Only whips in violent hits come here.
+    pub(in crate::solver) fn calm_trees(&mut self) {
+        let most = MAX_INNER_TURN / self.h;
+        let mut first = 0;
+        while first < self.links.len() {
+            let tree = self.links[first].tree;
+            let count = self.links[first..].iter().take_while(|link| link.tree == tree).count();
+            let range = first..first + count;
+            let fast = self.velocities[range.clone()].iter().any(|v| angular(v).length() > most);
+            if count > 1 && fast {
+                self.calm_tree(range, most);
+            }
+            first += count;
+        }
+    }
+
+    fn calm_tree(&mut self, range: core::ops::Range<usize>, most: f32) {
+        let rigid = if self.links[range.start].joint == NONE {
+            RigidMotion::of(&self.bodies[range.clone()], &self.velocities[range.clone()])
+        } else {
+            RigidMotion::default() // held by a fixed body
+        };
+        let mut keep: f32 = 1.0;
+        for v in &self.velocities[range.clone()] {
+            let inner = (angular(v) - rigid.angular).length();
+            let room = max(most - rigid.angular.length(), 0.0);
+            keep = min(keep, if inner > room { room / inner } else { 1.0 });
+        }
+        self.unrest.stir(self.links[range.start].tree, most);
+        for i in range {
+            let rigid = rigid.at(self.bodies[i].pose.translation);
+            for (v, r) in self.velocities[i].iter_mut().zip(rigid) {
+                *v = r + (*v - r) * keep;
+            }
+        }
+    }
+
+    /// Rows that cannot all hold (a body dragged into the floor, joints that contradict each other) may have no solution
+    /// that means anything: not finite or beyond all measure, or one that leaves joints `torn` by so much, m or rad. Then the
+    /// island moves as one piece for this pass, with the momentum that the forces left it: no joint opens, and no energy comes
+    /// of it.
+    pub(in crate::solver) fn drop_nonsense(&mut self, torn: f32) {
+        let moving = self.links.len();
+        let most = [NONSENSE * self.max_speed, NONSENSE_SPIN];
+        let sane = |v: &Vec6| (0..DIRECTIONS).all(|k| v[k].abs() < most[k / 3]);
+        let sane = self.velocities[..moving].iter().all(sane);
+        if sane && torn < TORN {
+            return;
+        }
+        let rigid = self.meant_as_one();
+        for (body, v) in self.bodies.iter().zip(&mut self.velocities[..moving]) {
+            *v = rigid.at(body.pose.translation);
+        }
+        self.forget_impulses();
+    }
+
+    /// Motion of the island as if it were one piece with the momentum of the given velocities: at rest if it touches or hangs on a
+    /// fixed body.
+    fn motion_as_one(&self, velocities: &[Vec6]) -> RigidMotion {
+        if self.is_held() { RigidMotion::default() } else { RigidMotion::of(&self.bodies, velocities) }
+    }
+
+    /// Motion of the island as one piece with the momentum that the forces left it, at the present poses.
+    fn meant_as_one(&self) -> RigidMotion {
+        if self.is_held() {
+            RigidMotion::default()
+        } else {
+            RigidMotion::with_momentum(&self.bodies, &self.momentum_start)
+        }
+    }
+
+    /// Something fixed is in reach.
+    fn is_held(&self) -> bool {
+        self.bodies.len() > self.links.len()
+    }
+
+    /// Momentum of the moving bodies as the forces leave them.
+    pub(in crate::solver) fn momentum_of_start(&self) -> Momentum {
+        let mut momentum = Momentum::default();
+        let center = center_of_mass(&self.bodies[..self.links.len()]).1;
+        for (body, v) in self.bodies.iter().zip(&self.velocities[..self.links.len()]) {
+            momentum.add(body, center, linear(v), body.momentum);
+        }
+        momentum
+    }
+
+    /// Rigid joints and stops cannot give energy, springs and motors no more than their work. What rounding, redundant rows
+    /// or stops met at another pose than foreseen have given all the same is taken from the motion of the island beside
+    /// that as a whole: joints hold as before, since their rows are linear, and momentum stays.
+    ///
+    /// What stands on something pays for the height to which soft contacts push it: a heavy leg on a light foot would
+    /// rock higher and higher, by 0.1 J for each edge that it sinks in with and comes up from. A little is free where something
+    /// is crushed: a hand under a thigh must get out.
+    pub(in crate::solver) fn govern_energy(&mut self) {
+        let moving = self.links.len();
+        if self.pushed_from_outside || !self.is_passive() {
+            return;
+        }
+        let after = self.kinetic_energy(&self.velocities[..moving]);
+        let slack = ENERGY_SLACK * max(self.kinetic_start, self.mass());
+        let mut allowed = self.kinetic_start + self.drive_work;
+        let mut most = allowed + slack;
+        if self.is_articulated() && !self.manifolds.is_empty() {
+            let lift = if self.manifolds.iter().any(ManifoldRows::is_deep) { slack } else { 0.0 };
+            allowed = min(allowed, self.kinetic_before + self.force_work + self.drive_work + lift);
+            most = min(most, allowed);
+        }
+        if after <= most {
+            return;
+        }
+        // Whatever went wrong inside the island, its momentum is what the forces left it.
+        let (now, meant) = (self.motion_as_one(&self.velocities[..moving]), self.meant_as_one());
+        let s = &mut self.scratch;
+        s.dv.clear();
+        s.before.clear();
+        for (body, v) in self.bodies.iter().zip(&self.velocities[..moving]) {
+            s.dv.push(difference(v, &now.at(body.pose.translation)));
+            s.before.push(meant.at(body.pose.translation));
+        }
+        let inner = self.kinetic_energy(&self.scratch.dv);
+        let share = max(allowed - self.kinetic_energy(&self.scratch.before), 0.0) / inner;
+        let keep = if share < 1.0 { share.sqrt() } else { 1.0 };
+        for (i, v) in self.velocities[..moving].iter_mut().enumerate() {
+            let (meant, inner) = (&self.scratch.before[i], &self.scratch.dv[i]);
+            *v = core::array::from_fn(|k| meant[k] + inner[k] * keep);
+        }
+    }
+
+    /// Stops that were passed push back, joints that rounding has opened close, and springs may resist: what is wound up
+    /// by that must be there as kinetic energy, or motors pay for it. Where it is not, the whole motion beside that of the island as one piece is
+    /// slowed, and the rest is done later. Joints that are open by more are closed at any price.
+    pub(in crate::solver) fn pay_for_positions(&mut self) {
+        if self.pushed_from_outside || !self.is_passive() || !self.is_articulated() {
+            return;
+        }
+        let (square, mut linear) = self.resistance_of_springs();
+        let held = self.is_held() && self.manifolds.is_empty();
+        let mut there = self.kinetic_start;
+        if held {
+            linear -= self.work_of_forces();
+            there = self.kinetic_before + max(self.work_of_motors(), 0.0);
+        }
+        let slack = ENERGY_SLACK * max(there, self.mass());
+        if square + linear <= slack || !(self.stops_push_back() || self.joints_close_in_time()) {
+            return;
+        }
+        let moving = self.links.len();
+        let now = self.motion_as_one(&self.velocities[..moving]);
+        if !held {
+            let before = self.motion_as_one(&self.unconstrained);
+            let inner = |(body, v): (&SolverBody, &Vec6)| difference(v, &before.at(body.pose.translation));
+            self.scratch.dv.clear();
+            self.scratch.dv.extend(self.bodies.iter().zip(&self.unconstrained).map(inner));
+            there = self.kinetic_energy(&self.scratch.dv);
+        }
+        let there = there + slack;
+        if square + linear <= there {
+            return;
+        }
+        // square s² + linear s = there, by the form that does not cancel.
+        let root = (linear * linear + 4.0 * square * there).sqrt();
+        let keep =
+            if linear > 0.0 { 2.0 * there / (linear + root) } else { (root - linear) / (2.0 * square) };
+        let keep = min(keep, 1.0);
+        for (body, v) in self.bodies.iter().zip(&mut self.velocities[..moving]) {
+            let rigid = now.at(body.pose.translation);
+            *v = core::array::from_fn(|k| rigid[k] + (v[k] - rigid[k]) * keep);
+        }
+    }
+
+    /// No joint is left open by what it may not close in this substep.
+    fn joints_close_in_time(&self) -> bool {
+        !self.joints.iter().any(|joint| joint.left_open[..joint.rigid].iter().any(|left| *left != 0.0))
+    }
+
+    /// Points that bounce at once, each with its own speed, may ask for more energy than came in. Then the velocities go only as far
+    /// along the bounce as there is: momentum stays, and what parts goes on parting.
+    pub(in crate::solver) fn limit_bounce(&mut self) {
+        if self.pushed_from_outside || !self.is_passive() {
+            return;
+        }
+        let moving = self.links.len();
+        let allowed = self.kinetic_start + self.force_work.abs();
+        let start = self.kinetic_energy(&self.bounced_from);
+        let after = self.kinetic_energy(&self.velocities[..moving]);
+        if after <= allowed || start >= allowed {
+            return;
+        }
+        // Energy along the bounce is E(0) + b s + a s², with a that of the change itself.
+        let s = &mut self.scratch;
+        s.dv.clear();
+        s.dv.extend(self.velocities.iter().zip(&self.bounced_from).map(|(v, from)| difference(v, from)));
+        let a = self.kinetic_energy(&self.scratch.dv);
+        let b = after - start - a;
+        let room = allowed - start;
+        let root = (b * b + 4.0 * a * room).sqrt();
+        let share = if b > 0.0 { 2.0 * room / (b + root) } else { (root - b) / (2.0 * a) };
+        let share = sinew_math::clamp(share, 0.0, 1.0);
+        for (v, from) in self.velocities.iter_mut().zip(&self.bounced_from) {
+            *v = core::array::from_fn(|k| from[k] + (v[k] - from[k]) * share);
+        }
+    }
+
+    /// Nothing that rows push against moves by itself.
+    pub(in crate::solver) fn is_passive(&self) -> bool {
+        !self.driven && self.velocities[self.links.len()..].iter().all(|v| *v == ZERO6)
+    }
+
+    /// `relax` cannot give energy, but impulses taken back at another pose than they were given at can, in violent
+    /// hits. Then the velocities go only as far along the change as energy falls: joints hold on the whole way.
+    ///
+    /// [`govern_energy`](Self::govern_energy) does not make up for it: what `solve` lost it lets `relax` give, and it takes
+    /// nothing from the island's motion as one piece. Without this, of 400 random worlds as many hold, but two of the others
+    /// explode (to 8e4 and 2e14 times their energy), and a figure thrown at a wall sinks in by 10 mm instead of 1.
+    pub(in crate::solver) fn keep_energy(&mut self) {
+        let moving = self.links.len();
+        let before = &self.scratch.before[..moving];
+        let start = self.kinetic_energy(before);
+        let rise = self.kinetic_energy(&self.velocities[..moving]) - start;
+        if rise <= ENERGY_SLACK * max(start, self.mass()) {
+            return;
+        }
+        // Energy along the change is E(0) + b s + a s², with a that of the change itself.
+        let s = &mut self.scratch;
+        s.dv.clear();
+        s.dv.extend(self.velocities.iter().zip(&s.before).map(|(v, before)| difference(v, before)));
+        let a = self.kinetic_energy(&self.scratch.dv);
+        let b = rise - a;
+        let share = sinew_math::clamp(-b / (2.0 * a), 0.0, 1.0);
+        for (v, before) in self.velocities.iter_mut().zip(&self.scratch.before) {
+            *v = core::array::from_fn(|k| before[k] + (v[k] - before[k]) * share);
+        }
+    }
+}
+
+/// The motion of several bodies as if they were one.
+#[derive(Clone, Copy, Debug, Default)]
+struct RigidMotion {
+    center: Vec3,
+    linear: Vec3,
+    angular: Vec3,
+}
+
+impl RigidMotion {
+    /// With the momentum and angular momentum that the bodies have.
+    fn of(bodies: &[SolverBody], velocities: &[Vec6]) -> Self {
+        let center = center_of_mass(bodies).1;
+        let mut momentum = Momentum::default();
+        for (body, v) in bodies.iter().zip(velocities) {
+            momentum.add(body, center, linear(v), body.angular_momentum(angular(v)));
+        }
+        Self::with_momentum(bodies, &momentum)
+    }
+
+    fn with_momentum(bodies: &[SolverBody], momentum: &Momentum) -> Self {
+        let (mass, center) = center_of_mass(bodies);
+        let mut inertia = Sym3::ZERO;
+        for body in bodies {
+            let arm = body.pose.translation - center;
+            let carried = Sym3::from_diagonal(Vec3::splat(arm.length_squared())) - Sym3::outer(arm);
+            inertia += Sym3::from_rotated_diagonal(body.pose.rotation, body.inertia) + carried * body.mass;
+        }
+        Self { center, linear: momentum.linear / mass, angular: inertia.inverse() * momentum.angular }
+    }
+
+    fn at(&self, point: Vec3) -> Vec6 {
+        join(self.linear + self.angular.cross(point - self.center), self.angular)
+    }
+}
+
+/// Momentum of several bodies, N·s and N·m·s; angular momentum about their centre of mass.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::solver) struct Momentum {
+    linear: Vec3,
+    angular: Vec3,
+}
+
+impl Momentum {
+    fn add(&mut self, body: &SolverBody, center: Vec3, velocity: Vec3, spin: Vec3) {
+        self.linear += velocity * body.mass;
+        self.angular += spin + (body.pose.translation - center).cross(velocity * body.mass);
+    }
+}
+
+/// Total mass, and where its centre is.
+fn center_of_mass(bodies: &[SolverBody]) -> (f32, Vec3) {
+    let (mut mass, mut center) = (0.0, Vec3::ZERO);
+    for body in bodies {
+        mass += body.mass;
+        center += body.pose.translation * body.mass;
+    }
+    (mass, center / mass)
+}

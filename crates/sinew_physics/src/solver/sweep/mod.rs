@@ -1,0 +1,299 @@
+//! Sweeps over contact and limit rows in impulse space. While they run, only the bodies that carry rows are
+//! kept up to date, through the articulated response; then the trees are solved once with all impulses, so that the
+//! joints hold exactly.
+
+pub(in crate::solver) mod conjugate;
+pub(in crate::solver) mod policy;
+mod turns;
+
+use crate::runner::TaskRunner;
+use crate::solver::articulation::joints::Corrected;
+use crate::solver::articulation::response_cache::Change;
+use crate::solver::articulation::tree::Link;
+use crate::solver::contact_rows::ManifoldRows;
+use crate::solver::limits::rows::LimitRow;
+use crate::solver::sweep::conjugate::{Conjugate, Rows};
+use crate::solver::{Coupling, IslandSolver, WEIGHINGS};
+use crate::spatial::{ZERO6, add_scaled, largest, linear};
+use sinew_math::max;
+
+/// Purpose of a pass over the rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pass {
+    /// With bias, no friction.
+    Solve,
+    /// Without bias, with friction: friction that reacts to bias velocities pumps tall stacks.
+    Relax,
+    /// As `relax` leaves it, and what was hit bounces: what it stands on must bear that, too.
+    Restitution,
+}
+
+/// Velocity changes of each tree in a pass, summed, m/s or rad/s: rows whose trees lie still need no further visit, and in a
+/// heap most of them do after a few sweeps.
+#[derive(Clone, Debug, Default)]
+pub(in crate::solver) struct Unrest {
+    /// A change below it is none.
+    tolerance: f32,
+    trees: Vec<f32>,
+    /// Per manifold and per block of limits: the sum of its trees when it was last visited.
+    manifolds: Vec<f32>,
+    limits: Vec<f32>,
+    /// Per tree: its sum when the pass was resumed.
+    corrected: Vec<f32>,
+}
+
+impl Unrest {
+    pub fn start(&mut self, tolerance: f32, trees: usize, manifolds: usize, limits: usize) {
+        self.tolerance = tolerance;
+        for (list, count, start) in [
+            (&mut self.trees, trees, 0.0),
+            (&mut self.manifolds, manifolds, f32::NEG_INFINITY),
+            (&mut self.limits, limits, f32::NEG_INFINITY),
+        ] {
+            list.clear();
+            list.resize(count, start);
+        }
+    }
+
+    /// Goes on with a pass in which limits have got rows more, those from `first` on; so many blocks there are now.
+    pub fn resume(&mut self, blocks: usize, new: &[LimitRow]) {
+        self.limits.resize(blocks, f32::NEG_INFINITY);
+        for row in new {
+            self.limits[row.block as usize] = f32::NEG_INFINITY;
+        }
+        self.corrected.clear();
+        self.corrected.extend_from_slice(&self.trees);
+    }
+
+    /// True of a tree whose velocities have changed since the pass was [resumed](Self::resume).
+    pub fn has_stirred(&self, tree: usize) -> bool {
+        self.trees[tree] != self.corrected[tree]
+    }
+
+    /// Sum of the changes of the trees of two bodies.
+    pub fn of(&self, links: &[Link], a: u32, b: u32) -> f32 {
+        let tree = |body: u32| links.get(body as usize).map_or(0.0, |link| self.trees[link.tree as usize]);
+        tree(a) + tree(b)
+    }
+
+    /// A tree's velocities have changed by this much.
+    #[inline(always)]
+    pub fn stir(&mut self, tree: u32, change: f32) {
+        if let Some(sum) = self.trees.get_mut(tree as usize) {
+            *sum += change;
+        }
+    }
+
+    /// A row whose impulses have changed what they make of a velocity by this needs a visit, whatever its trees do.
+    pub fn stir_manifold(&mut self, i: usize, change: f32) {
+        if change >= self.tolerance {
+            self.manifolds[i] = f32::NEG_INFINITY;
+        }
+    }
+
+    /// Marks a block of limits for a visit if its own change asks for one.
+    pub fn stir_limits(&mut self, block: u32, change: f32) {
+        if change >= self.tolerance {
+            self.limits[block as usize] = f32::NEG_INFINITY;
+        }
+    }
+
+    fn wakes_manifold(&mut self, i: usize, now: f32) -> bool {
+        wakes(&mut self.manifolds[i], now, self.tolerance)
+    }
+
+    pub fn wakes_limits(&mut self, block: usize, now: f32) -> bool {
+        wakes(&mut self.limits[block], now, self.tolerance)
+    }
+
+    /// A block of limits need not be visited before its trees change again.
+    pub fn see_limits(&mut self, block: usize, now: f32) {
+        self.limits[block] = now;
+    }
+}
+
+/// True if enough has happened since the last visit; then this counts as the last one.
+fn wakes(seen: &mut f32, now: f32, tolerance: f32) -> bool {
+    let wakes = now - *seen >= tolerance;
+    if wakes {
+        *seen = now;
+    }
+    wakes
+}
+
+impl IslandSolver {
+    /// Visits all rows and gives the bodies their impulses.
+    pub(in crate::solver) fn sweep(&mut self, pass: Pass, runner: &dyn TaskRunner) {
+        match self.coupling {
+            Coupling::Free => self.sweep_free(pass, runner),
+            Coupling::Turns => self.sweep_by_turns(pass, runner),
+            Coupling::Response => self.sweep_by_response(pass),
+        }
+    }
+
+    /// Goes on with the sweeps of `solve`, since limits or contacts have got rows more. Gives the trees that may have changed.
+    pub(in crate::solver) fn sweep_again(&mut self, runner: &dyn TaskRunner) -> Corrected {
+        if self.coupling == Coupling::Turns {
+            self.resume_by_turns(runner);
+            return Corrected::Stirred;
+        }
+        self.sweep(Pass::Solve, runner);
+        Corrected::All
+    }
+
+    /// Contacts in lanes alone.
+    fn sweep_free(&mut self, pass: Pass, runner: &dyn TaskRunner) {
+        let sweeps = self.effort.of_blocks(pass);
+        let done = self.contacts.sweep(pass, sweeps, &mut self.velocities, (self.h, runner));
+        let rows = self.contacts.tally().manifolds as usize;
+        (1..=done).for_each(|sweep| self.tally.sweep(pass, sweep, rows));
+    }
+
+    fn sweep_by_response(&mut self, pass: Pass) {
+        if self.manifolds.is_empty() && self.limits.is_empty() {
+            return;
+        }
+        self.reset_impulses();
+        self.add_given(-1.0);
+        self.arrange_limits(pass);
+        let blocks = self.limit_blocks.len();
+        self.unrest.start(self.effort.tolerance, self.trees.len(), self.manifolds.len(), blocks);
+        let moving = self.links.len();
+        self.scratch.before.clear();
+        self.scratch.before.extend_from_slice(&self.velocities[..moving]);
+        let sweeps = self.effort.sweeps(pass);
+        let conjugates = pass != Pass::Restitution;
+        let enough = self.enough_energy();
+        self.conjugate.start();
+        for done in 1..=sweeps {
+            self.largest_change = 0.0;
+            self.change_energy = 0.0;
+            self.tally.sweep(pass, done, self.manifolds.len() + self.limits.len());
+            if pass == Pass::Relax && done <= WEIGHINGS {
+                self.manifolds.iter_mut().for_each(ManifoldRows::weigh);
+            }
+            if conjugates {
+                let (conjugate, rows) = self.rows_to_conjugate();
+                conjugate.before(&rows);
+            }
+            self.visit_contacts(pass);
+            self.visit_limits(pass);
+            let is_small = self.change_energy < enough || self.largest_change < self.effort.tolerance;
+            if done == sweeps || (done > 1 && is_small) {
+                break;
+            }
+            if conjugates {
+                let energy = self.change_energy;
+                let (conjugate, mut rows) = self.rows_to_conjugate();
+                conjugate.after(&mut rows, energy);
+            }
+        }
+        self.finish_sweep(pass);
+    }
+
+    /// Energy that a sweep must change for another to follow, J.
+    pub(in crate::solver) fn enough_energy(&self) -> f32 {
+        let enough = self.effort.enough;
+        0.5 * enough * enough * self.mass() / self.links.len() as f32
+    }
+
+    fn rows_to_conjugate(&mut self) -> (&mut Conjugate, Rows<'_>) {
+        let moving = self.links.len();
+        let rows = Rows {
+            manifolds: &mut self.manifolds,
+            limits: &mut self.limits,
+            velocities: &mut self.velocities[..moving],
+            links: &self.links,
+            unrest: &mut self.unrest,
+        };
+        (&mut self.conjugate, rows)
+    }
+
+    fn visit_contacts(&mut self, pass: Pass) {
+        for i in 0..self.manifolds.len() {
+            let now = self.unrest.of(&self.links, self.manifolds[i].a, self.manifolds[i].b);
+            if !self.unrest.wakes_manifold(i, now) {
+                continue;
+            }
+            let rows = &mut self.manifolds[i];
+            let strip = match rows.columns {
+                Some(strip) => strip,
+                None if rows.is_idle(&self.velocities, pass, self.h) => continue,
+                None => rows.respond(&self.bodies, &self.links, &self.response, &mut self.columns),
+            };
+            let bodies = [rows.a, rows.b];
+            self.tally.visits += 1;
+            if pass == Pass::Relax {
+                let change = self.manifolds[i].visit_friction(strip, &self.velocities);
+                self.push(bodies, &change);
+                if let Some(change) = self.manifolds[i].visit_rolling(strip, &self.velocities) {
+                    self.push(bodies, &change);
+                }
+            }
+            let change = self.manifolds[i].visit_normal(strip, &self.velocities, pass, self.h);
+            self.push(bodies, &change);
+        }
+    }
+
+    /// Puts changes of rows on two bodies and their trees.
+    pub(in crate::solver) fn push(&mut self, bodies: [u32; 2], change: &Change) {
+        if change.is_zero() {
+            return;
+        }
+        let before = bodies.map(|body| self.velocities[body as usize]);
+        self.columns.push(&self.response, &self.links, bodies, change, &mut self.velocities);
+        for (end, body) in bodies.into_iter().enumerate() {
+            let body = body as usize;
+            let Some(link) = self.links.get(body) else { continue };
+            let mut by = self.velocities[body];
+            add_scaled(&mut by, &before[end], -1.0);
+            for (x, p) in by.iter().zip(&change.push[end]) {
+                self.change_energy += x * p;
+            }
+            let largest = largest(&by);
+            self.unrest.stir(link.tree, largest);
+            self.largest_change = max(self.largest_change, largest);
+        }
+    }
+
+    pub(in crate::solver) fn reset_impulses(&mut self) {
+        self.impulses.clear();
+        self.impulses.resize(self.links.len(), ZERO6);
+    }
+
+    /// Adds the present impulses of all rows, times `sign`, to those of the sweeps.
+    pub(in crate::solver) fn add_given(&mut self, sign: f32) {
+        for rows in &self.manifolds {
+            rows.add_given(&mut self.impulses, sign);
+        }
+        for row in &self.limits {
+            row.add_given(&self.joints, &mut self.impulses, sign);
+        }
+    }
+
+    /// Velocities of all bodies from the impulses of the sweeps, exactly.
+    fn finish_sweep(&mut self, pass: Pass) {
+        self.add_given(1.0);
+        self.answer_sweep();
+        if pass == Pass::Relax && self.is_passive() {
+            self.keep_energy();
+        }
+    }
+
+    /// Velocities from those before the sweep and all impulses of it.
+    pub(in crate::solver) fn answer_sweep(&mut self) {
+        self.add_pushes();
+        let moving = self.links.len();
+        self.velocities[..moving].copy_from_slice(&self.scratch.before);
+        self.scratch.impulses.clear();
+        self.scratch.impulses.extend_from_slice(&self.impulses);
+        self.answer_impulses();
+    }
+
+    /// Adds the impulses of a sweep to those that bodies have got in this substep.
+    pub(in crate::solver) fn add_pushes(&mut self) {
+        for (push, p) in self.contact_push.iter_mut().zip(&self.impulses) {
+            *push += linear(p);
+        }
+    }
+}

@@ -1,0 +1,319 @@
+//! Sweep policy: how hard the sweeps of an island try, and how hard its contacts are.
+
+use crate::body::def::Quality;
+use crate::island::Island;
+use crate::solver::articulation::tree::NONE;
+use crate::solver::contact_rows::BOUNCE_SPEED;
+use crate::solver::contacts::Sweeps;
+use crate::solver::sweep::Pass;
+use crate::solver::{Coupling, Grading, IslandSolver, View};
+use sinew_math::{max, min};
+
+/// Limits on the sweeps of a pass: how many there may be, and what ends them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::solver) struct Effort {
+    solve: usize,
+    relax: usize,
+    /// Change of a velocity in a sweep below which there need not be another, m/s or rad/s. What rows would do about less
+    /// is left alone.
+    pub tolerance: f32,
+    /// Share of the energy of the substep's largest change that a sweep must change for another to follow: what a hit leaves beyond that
+    /// is a thirtieth of its speed (of a heap, a tenth), and the next substep goes on from there.
+    pub small: f32,
+    /// Speed at which a body of the island's mean mass has the energy that a sweep must change for another to follow, m/s; 0 where only
+    /// the tolerance ends them. Of islands with joints.
+    pub enough: f32,
+    pub order: Order,
+    /// The sweep from which on those of free bodies are conjugate steps.
+    first_conjugate: usize,
+}
+
+/// Hardness of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Firmness {
+    /// Softness as a share of what the contact's frequency says.
+    pub softness: f32,
+    /// Fastest speed with which overlap is pushed apart, m/s.
+    pub push_speed: f32,
+}
+
+impl Firmness {
+    /// Between bodies that no joint holds. Nearly hard: what is soft sinks by a load that its own mass says nothing of, and a tower
+    /// of 18 levels fell.
+    pub const FREE: Self = Self { softness: 1e-3, push_speed: 3.0 };
+    /// Firmness of contacts of a body that a joint holds. What stands on the edge of a foot must sink in a little, or it never comes
+    /// to rest. What an impact drove in comes out no faster than 5.5 cm/s: that lifts it by 0.009 J/kg a step at most.
+    pub const JOINTED: Self = Self { softness: 1.0, push_speed: 0.055 };
+    /// Between a jointed body and one that moves by itself: what a pile bears on must be as hard as the pile, or a tower of unequal
+    /// masses falls with a jointed pair on it.
+    pub const ON_FREE: Self = Self { softness: 1e-3, push_speed: 0.055 };
+    /// Between two bodies of one tree of joints: two legs under a heavy body would pass through each other (43 mm of a spider's
+    /// 1.2 m, against 5 with a hundredth of the softness).
+    pub const WITHIN_TREE: Self = Self { softness: 0.01, push_speed: 0.5 };
+}
+
+/// Order of the contacts in a pass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::solver) enum Order {
+    /// Always forward: what cannot move has the last word in each sweep.
+    #[default]
+    Forward,
+    /// Backward in every other sweep, the first among them. If all went one way, tall walls would lean that way.
+    ToAndFro,
+}
+
+/// Effort for islands with joints that are swept with the response of all links. What a sweep changes is soon next to nothing: a quarter of all
+/// passes of falling figures went through all 24 for a thousandth of the first one's energy.
+const JOINTED: Effort = Effort {
+    solve: 24,
+    relax: 24,
+    tolerance: 2e-3,
+    small: 0.0,
+    enough: 0.01,
+    order: Order::Forward,
+    first_conjugate: 1,
+};
+/// Effort for heaps in which contacts and trees are solved by turns: most sweeps of a heap at rest end with the second, those
+/// of a crash are needed (a chain of 70 links sank 85 mm into a wall with four).
+const TURNS: Effort = Effort {
+    solve: 6,
+    relax: 4,
+    tolerance: 0.05,
+    small: 0.0,
+    enough: 0.1,
+    order: Order::Forward,
+    first_conjugate: 1,
+};
+/// Effort for few bodies that weigh about the same: an overhang that all but tips over wants 24 sweeps. In `relax`
+/// two (more, the more unequal masses are), since friction of the first knows only the impulses of `solve` (1.5 % too little).
+const PILE: Effort = Effort {
+    solve: 24,
+    relax: 2,
+    tolerance: 5e-4,
+    small: 1e-3,
+    enough: 0.0,
+    order: Order::ToAndFro,
+    first_conjugate: 4,
+};
+/// Effort for a pile or heap of [`FEW_SWEEPS_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
+/// over some substeps. However unequal masses are, it has many contacts that share what one of them is wrong by.
+const HEAP: Effort = Effort { solve: 6, relax: 4, first_conjugate: 2, ..PILE };
+/// Effort for unequal masses: a light body between heavy ones tosses what they do to each other to and fro, and what cannot move must have the
+/// last word.
+const UNEQUAL: Effort =
+    Effort { solve: 96, tolerance: 2e-3, small: 0.0, order: Order::Forward, first_conjugate: 4, ..PILE };
+/// Levels of a pile that `UNEQUAL` is for. What one end of it feels reaches the other in as many sweeps as it has levels.
+const LEVELS: f32 = 10.0;
+/// The most for high and unequal ones.
+const MOST_SOLVE: f32 = 1024.0;
+const MOST_RELAX: f32 = 512.0;
+const LEAST_TOLERANCE: f32 = 1e-7;
+/// Beyond this ratio of masses the light ones are squeezed out if what cannot move does not have the last word.
+const EVEN: f32 = 4.0;
+
+impl Effort {
+    /// For a pile of so many levels and contacts with a heaviest body `ratio` times as heavy as the lightest.
+    ///
+    /// A light body between heavy ones tosses what they do to each other to and fro. Exponents and bounds are what a tower of six
+    /// cubes, each 8 times as heavy as the one below it, stands with.
+    fn of_pile(levels: u32, ratio: f32, contacts: usize) -> Self {
+        let root = ratio.sqrt();
+        if ratio <= GRADED_RATIO {
+            let relax = (PILE.relax as f32 * root) as usize;
+            let even = if contacts < FEW_SWEEPS_CONTACTS { Self { relax, ..PILE } } else { HEAP };
+            return Self { order: if ratio <= EVEN { even.order } else { Order::Forward }, ..even };
+        }
+        let height = max(1.0, levels as f32 / LEVELS);
+        Self {
+            solve: min(UNEQUAL.solve as f32 * height * root.sqrt(), MOST_SOLVE) as usize,
+            relax: min(UNEQUAL.relax as f32 * height * root, MOST_RELAX) as usize,
+            tolerance: max(UNEQUAL.tolerance / (height * ratio), LEAST_TOLERANCE),
+            ..UNEQUAL
+        }
+    }
+
+    /// Fewer or more sweeps, which end later or sooner.
+    fn of_quality(self, quality: Quality) -> Self {
+        let [sweeps, finer] = match quality {
+            Quality::Fast => [0.5, 2.0],
+            Quality::Balanced => return self,
+            Quality::Exact => [2.0, 0.25],
+        };
+        let times = |most: usize| usize::max((most as f32 * sweeps) as usize, 1);
+        Self {
+            solve: times(self.solve),
+            relax: times(self.relax),
+            tolerance: self.tolerance * finer,
+            small: self.small * finer,
+            enough: self.enough * finer,
+            ..self
+        }
+    }
+
+    /// Sweeps of contacts in blocks.
+    pub fn of_blocks(&self, pass: Pass) -> Sweeps {
+        let most = self.sweeps(pass);
+        let Self { tolerance, small, order, first_conjugate, .. } = *self;
+        Sweeps { most, tolerance, small, order, first_conjugate }
+    }
+
+    /// Sweeps of contacts and trees by turns.
+    pub fn of_turns(&self, pass: Pass) -> Sweeps {
+        Sweeps { first_conjugate: 1, ..self.of_blocks(pass) }
+    }
+
+    /// As long as the longer of two, in the order of this one: where trees have their turns, backward sweeps let what stands under
+    /// joints creep (a tower of 18 levels under a rope fell).
+    fn at_least(self, other: Self) -> Self {
+        Self {
+            solve: usize::max(self.solve, other.solve),
+            relax: usize::max(self.relax, other.relax),
+            tolerance: min(self.tolerance, other.tolerance),
+            small: min(self.small, other.small),
+            enough: min(self.enough, other.enough),
+            order: self.order,
+            first_conjugate: self.first_conjugate,
+        }
+    }
+
+    pub fn sweeps(&self, pass: Pass) -> usize {
+        match pass {
+            Pass::Relax => self.relax,
+            Pass::Solve | Pass::Restitution => self.solve,
+        }
+    }
+}
+
+/// Trees of joints, and contacts, beyond which an island is solved by turns: what contacts answer to each other grows with the product
+/// of both. A tree of many links has many contacts that never push, with itself.
+const FIGURES: usize = 8;
+const CONTACTS_OF_FIGURES: usize = 128;
+const CONTACTS_OF_LINK: usize = 4;
+/// Contacts from which on an island of free bodies is swept as a heap.
+const FEW_SWEEPS_CONTACTS: usize = 16;
+/// Contacts from which on an island of free bodies takes half of the substeps: they damp all motion, and no single one decides. With
+/// 16, a house of cards sinks by a hundredth more than it may.
+const MANY_CONTACTS: usize = 32;
+/// Contacts per body, of islands with joints: what lies takes half of them, what swings or flies all.
+const CONTACTS_PER_BODY: f32 = 0.25;
+/// With fewer contacts than this one contact decides: a foot of 1 kg under 69 kg sinks by 2.3 mm instead of 2 in half the substeps.
+const FEW_CONTACTS: usize = 4;
+/// Most that a body may turn in a substep of the longer kind, radians: rows are linearised at its beginning.
+const CALM_TURN: f32 = 0.25;
+/// Ratio of the masses in an island beyond which it takes all substeps.
+const GRADED_RATIO: f32 = 100.0;
+
+impl IslandSolver {
+    /// Number of substeps that an island takes. Balanced: half of the world's where many contacts damp all motion, nothing spins fast and
+    /// masses are alike; all of them for what swings, flies or balances. With particles all, whatever the quality.
+    pub(in crate::solver) fn choose_substeps(&mut self, island: &Island<'_>, view: &View<'_>) {
+        self.quality = quality_of(island, view);
+        self.stretch = stretch_of(island, view);
+        (self.h, self.substeps) = view.pace.stretched(self.stretch);
+    }
+
+    /// Chooses how islands of joints come to agree with their contacts: few figures by the response of all their links, heaps by turns.
+    pub(in crate::solver) fn choose_coupling(&mut self, contacts: usize) {
+        let jointed = self.trees.iter().filter(|tree| tree.len() > 1 || self.links[tree.start].joint != NONE);
+        let (trees, links) = jointed.fold((0, 0), |(trees, links), tree| (trees + 1, links + tree.len()));
+        self.coupling = match trees {
+            0 if self.pins.joints.is_empty() => Coupling::Free,
+            _ if trees > FIGURES || contacts > CONTACTS_OF_FIGURES + CONTACTS_OF_LINK * links => {
+                Coupling::Turns
+            }
+            _ => Coupling::Response,
+        };
+    }
+
+    /// Once it is known who touches.
+    pub(in crate::solver) fn choose_effort(&mut self) {
+        let of_pile = |contacts: usize| Effort::of_pile(self.levels.highest(), self.mass_ratio(), contacts);
+        self.effort = match self.coupling {
+            Coupling::Free => of_pile(self.touches.len()),
+            // What touches jointed bodies is swept as they need it, piles beside and under them as those of which each contact counts.
+            _ if self.paired.contains(&true) => self.effort_with_joints().at_least(of_pile(0)),
+            _ => self.effort_with_joints(),
+        }
+        .of_quality(self.quality);
+    }
+
+    fn effort_with_joints(&self) -> Effort {
+        if self.coupling == Coupling::Turns { TURNS } else { JOINTED }
+    }
+
+    /// Firmness of the contact of two bodies.
+    pub(in crate::solver) fn firmness(&self, [a, b]: [u32; 2]) -> Firmness {
+        if self.coupling == Coupling::Free {
+            return Firmness::FREE;
+        }
+        let tree = |body: u32| self.links.get(body as usize).map(|link| link.tree);
+        if tree(a).is_some() && tree(a) == tree(b) {
+            Firmness::WITHIN_TREE
+        } else {
+            let moving = |body: u32| (body as usize) < self.links.len();
+            match [a, b].map(|body| self.is_jointed(body)) {
+                [false, false] => Firmness::FREE,
+                [true, false] if moving(b) => Firmness::ON_FREE,
+                [false, true] if moving(a) => Firmness::ON_FREE,
+                _ => Firmness::JOINTED,
+            }
+        }
+    }
+
+    /// Mass ratio of the heaviest to the lightest of the bodies that touch each other and are not jointed, as they answer to impulses.
+    pub(in crate::solver) fn mass_ratio(&self) -> f32 {
+        let (mut lightest, mut heaviest) = (f32::INFINITY, 0.0);
+        for (body, _) in self.bodies.iter().zip(&self.paired).filter(|(_, is_paired)| **is_paired) {
+            let mass = body.mass * body.ballast;
+            lightest = min(lightest, mass);
+            heaviest = max(heaviest, mass);
+        }
+        if heaviest > lightest { heaviest / lightest } else { 1.0 }
+    }
+}
+
+/// The highest that a body of an island asks for.
+fn quality_of(island: &Island<'_>, view: &View<'_>) -> Quality {
+    island.bodies.iter().map(|&body| view.quality(body)).max().unwrap_or_default()
+}
+
+/// Length of an island's substeps over that of the world's: a power of two.
+pub(in crate::solver) fn stretch_of(island: &Island<'_>, view: &View<'_>) -> f32 {
+    let may_halve = view.pace.substeps.is_multiple_of(2);
+    match quality_of(island, view) {
+        _ if view.pace.grading == Grading::None || !island.groups.is_empty() => 1.0,
+        Quality::Exact => 0.5,
+        Quality::Balanced if may_halve && is_damped(island, view) => 2.0,
+        Quality::Fast if may_halve && is_calm(island, view) => 2.0,
+        Quality::Balanced | Quality::Fast => 1.0,
+    }
+}
+
+/// True if contacts of an island damp all motion, so that it may take longer substeps.
+fn is_damped(island: &Island<'_>, view: &View<'_>) -> bool {
+    let (contacts, bodies) = (island.contacts.len(), island.bodies.len());
+    let many = if island.joints.is_empty() {
+        contacts >= MANY_CONTACTS
+    } else {
+        contacts >= FEW_CONTACTS
+            && contacts as f32 >= CONTACTS_PER_BODY * bodies as f32
+            && island.joints.iter().all(|&joint| view.joints.at(joint).drive.is_limp())
+    };
+    let bounces = |&contact: &u32| {
+        let approach = view.contacts[contact as usize].approach;
+        approach > BOUNCE_SPEED && view.contacts[contact as usize].material(view.bodies).restitution > 0.0
+    };
+    many && !island.contacts.iter().any(bounces) && is_calm(island, view)
+}
+
+/// True if masses and spins of an island let it take longer substeps.
+fn is_calm(island: &Island<'_>, view: &View<'_>) -> bool {
+    let (mut lightest, mut heaviest, mut spin) = (f32::INFINITY, 0.0, 0.0);
+    for &index in island.bodies {
+        let body = view.bodies.at(index);
+        lightest = min(lightest, body.mass);
+        heaviest = max(heaviest, body.mass);
+        spin = max(spin, body.velocity.angular.length());
+    }
+    heaviest <= GRADED_RATIO * lightest && spin * 2.0 * view.pace.h <= CALM_TURN
+}
