@@ -10,6 +10,7 @@ pub mod measure;
 pub mod mjcf;
 mod parry;
 pub mod quality;
+pub mod resume;
 pub mod run;
 pub mod scenes;
 pub mod trace;

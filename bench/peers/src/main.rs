@@ -5,9 +5,11 @@ use clap::{Parser, Subcommand};
 use serde_json::{Value, json};
 use sinew_peers::engines::{self, ENGINES, Entry};
 use sinew_peers::mjcf::mjcf;
+use sinew_peers::resume::{resume, save};
 use sinew_peers::run::{Judging, Start, run};
 use sinew_peers::scenes::{self, Course, Field, SCENES, Scene, Work};
 use sinew_peers::trace::Trace;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// The same scenes on Sinew and on other engines.
@@ -48,6 +50,29 @@ enum Command {
         #[arg(long)]
         start: Option<u64>,
     },
+    /// Writes the state of a scene of bodies after some steps of Sinew, for `resume`.
+    Save {
+        /// As `peers list` names it.
+        #[arg(long, value_parser = parse_scene)]
+        scene: &'static Scene,
+        /// Steps before it.
+        #[arg(long)]
+        steps: u32,
+        /// As for `run`.
+        #[arg(long)]
+        start: Option<u64>,
+        /// File to write.
+        #[arg(short, long)]
+        out: PathBuf,
+    },
+    /// Goes on from a state that `save` wrote: two builds from one state, timed, or counted by callgrind (runs of few and of more steps, less each other).
+    Resume {
+        /// File that `save` wrote.
+        state: PathBuf,
+        /// Steps to go on for.
+        #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+        steps: u32,
+    },
     /// Runs a scene on an engine, on one thread.
     Run {
         /// As `peers list` names it.
@@ -83,25 +108,28 @@ fn main() -> ExitCode {
         Command::Trace { scene, steps, warm_up, threads } => {
             match (Trace { scene: &scene, steps, warm_up, threads }).run() {
                 Ok(trace) => trace,
-                Err(error) => {
-                    eprintln!("error: {error}");
-                    return ExitCode::from(2);
-                }
+                Err(error) => return failure(&error),
             }
         }
+        Command::Save { scene, steps, start, out } => {
+            match save(scene, start.map_or(Start::Own, Start::Perturbed), steps, &out) {
+                Ok(saved) => saved,
+                Err(error) => return failure(&error),
+            }
+        }
+        Command::Resume { state, steps } => match resume(&state, steps) {
+            Ok(resumed) => resumed,
+            Err(error) => return failure(&error),
+        },
         Command::Mjcf { scene, start } => match start.map_or(Start::Own, Start::Perturbed).of((scene.work)())
         {
             Work::Bodies(blueprint) if scene.field == Field::Figures => mjcf(&blueprint),
-            _ => {
-                eprintln!("error: {} is no scene of figures", scene.name);
-                return ExitCode::from(2);
-            }
+            _ => return failure(&format!("{} is no scene of figures", scene.name)),
         },
         Command::Run { engine: Entry { name, engine: None }, .. } => {
-            eprintln!(
-                "error: this binary was built without {name}: see the features in bench/peers/Cargo.toml"
-            );
-            return ExitCode::from(2);
+            return failure(&format!(
+                "this binary was built without {name}: see the features in bench/peers/Cargo.toml"
+            ));
         }
         Command::Run { engine: Entry { engine: Some(engine), .. }, scene, steps, start, quality } => {
             let start = start.map_or(Start::Own, Start::Perturbed);
@@ -111,6 +139,11 @@ fn main() -> ExitCode {
     };
     println!("{report}");
     ExitCode::SUCCESS
+}
+
+fn failure(why: &str) -> ExitCode {
+    eprintln!("error: {why}");
+    ExitCode::from(2)
 }
 
 fn list() -> Value {
