@@ -12,8 +12,9 @@
 
 /// Contacts from which on an island of free bodies takes half of the substeps, a number.
 ///
-/// They damp all motion, and no single one decides. Sensible from 16 to some hundreds. Fewer: with 16, a house of cards sinks by a
-/// hundredth more than it may (2.009 mm, bar 2.0). More: heaps cost up to twice the time. Shown by `cards`, `wave_pile`.
+/// They damp all motion, and no single one decides. Sensible from 16 to some hundreds. Fewer: with 16, 10,000 boxes take a quarter less
+/// time, but `cards` sink by 2.009 mm (bar 2.0) and `wave_pile` sleeps 52 steps too late (ADR 0015). More: heaps below it take all
+/// substeps. Shown by `cards`, `wave_pile`.
 pub(super) const DAMPED_CONTACTS: usize = 32;
 
 /// Contacts per body from which on an island with limp joints takes half of the substeps, a ratio.
@@ -95,8 +96,8 @@ pub(super) const EFFORT_LEVELS: f32 = 10.0;
 
 /// Most sweeps of `solve` for high and unequal piles, a number.
 ///
-/// A bound on `96 n r^¼`, for `n` tens of levels and masses 1 : `r` (ADR 0015). Larger: such a pile may take seconds a step. Smaller:
-/// masses of 1 : 10⁶ and beyond sink. Sensible from 256 to 4,096. Shown by `stack_mass_ratio`.
+/// A bound on `96 n r^¼`, for `n` tens of levels and masses 1 : `r` (ADR 0015). Larger: such piles take longer. Smaller: they are ended
+/// too soon, and sink. Sensible from 256 to 4,096. Shown by `stack_mass_ratio`.
 pub(super) const MOST_SOLVE_SWEEPS: f32 = 1024.0;
 
 /// Most sweeps of `relax` for high and unequal piles, a number.
@@ -113,25 +114,24 @@ pub(super) const LEAST_SWEEP_TOLERANCE: f32 = 1e-7;
 /// Ratio of masses up to which every other sweep of a pile goes backward, a number.
 ///
 /// All one way, each leaves a little motion to the side it comes from: a wall of 40 rows leaned by 2 mm in 200 steps, to and fro by 0.2
-/// (ADR 0015). Larger: light bodies are squeezed out, since what cannot move does not have the last word. At 1 all but equal masses
-/// lean. Sensible from 2 to 10. Shown by the test `stacks::a_wall_at_rest_stays_at_rest`, `stack_ratio`.
+/// (ADR 0015). Larger: light bodies are squeezed out, since what cannot move does not have the last word. Smaller: more walls lean.
+/// Sensible from 2 to 10. Shown by the test `stacks::a_wall_at_rest_stays_at_rest`, `stack_ratio`.
 pub(super) const TO_AND_FRO_RATIO: f32 = 4.0;
 
 /// Addition to the response of rows of contacts and limits, as a share of what the bodies would answer if nothing held them.
 ///
 /// Rows that cannot move anything, since joints hold it already, answer with rounding errors alone (ADR 0010). Larger: rows yield under
-/// load. Smaller, or as a share of the row's own response: a planar four-bar linkage exploded to 1e4 J. Sensible from 1e-6 to 1e-4.
-/// Shown by the test `joints::a_four_bar_linkage_of_hinges_stays_closed`, `linkage`.
+/// load. Smaller: what is held answers by rounding; as a share of the row's own response a planar four-bar linkage exploded to 1e4 J.
+/// Sensible from 1e-6 to 1e-4. Shown by the test `joints::a_four_bar_linkage_of_hinges_stays_closed`, `linkage`.
 pub(super) const REDUNDANCY: f32 = 1e-5;
 
 /// Proximal term of a manifold's normal block by response, as a share of its largest response, added to all.
 ///
 /// Four points of a face leave the block singular. Larger: points yield under load. Smaller: the active set meets pivots of rounding,
-/// cycles and falls back to trying all sets. Sensible from 1e-6 to 1e-4. No scene shows it alone; `ragdoll_drop` needs it in every
-/// landing.
+/// cycles and falls back to trying all sets. Sensible from 1e-6 to 1e-4. No scene shows it alone; `ragdoll_drop` lands on such faces.
 pub(super) const LCP_PROXIMAL: f32 = 1e-5;
 
-/// Addition to each point's response to itself in lanes, as a share of it.
+/// Addition to the response of each point, and of friction, to itself in lanes, as a share of it.
 ///
 /// Four points of a face leave their block singular. Larger: each visit gives too little, and sweeps add up. Smaller: nothing but
 /// rounding stands between a redundant point and a quotient of zeros. Sensible from 1e-6 to 1e-3. No scene shows it alone.
@@ -430,7 +430,8 @@ pub(super) const LEAST_AXIS_SQUARE: f32 = 1e-6;
 
 /// Share of an axis's square that must stand off the other axes of its joint, a number.
 ///
-/// Consequences, and the scene, of [`LEAST_AXIS_SQUARE`]. Sensible from 1e-6 to 1e-3.
+/// Larger: axes that lie nearly along each other are taken for one early. Smaller: their rows are rounding. Sensible from 1e-6 to 1e-3.
+/// Shown by `gimbal`.
 pub(super) const LEAST_AXIS_SHARE: f32 = 1e-5;
 
 // ---- Drives ----
@@ -480,7 +481,7 @@ pub(super) const LEAST_ROW_MASS: f32 = 1e-9;
 
 /// Moment of inertia that stands in where a row of rotation moves none to speak of (both bodies held), kg·m².
 ///
-/// As [`LEAST_ROW_MASS`].
+/// For the reason of [`LEAST_ROW_MASS`], and far below any body's moments. No scene shows it alone.
 pub(super) const LEAST_ROW_MOMENT: f32 = 1e-9;
 
 // ---- Loops ----
@@ -500,7 +501,7 @@ pub(super) const LOOP_ROUNDS: usize = 16;
 /// Rate that loops may keep, m/s of translations and rad/s of rotations alike.
 ///
 /// One number, since the gradients end by the sum of squares over all rows of the island's loops. Larger: nets creep. Smaller: rounds
-/// about rounding. Sensible from 1e-6 to 1e-4. Shown by `joint_grid` at rest.
+/// about rounding. Sensible from 1e-6 to 1e-4. Shown by `joint_grid`.
 pub(super) const LOOP_RATE_TOLERANCE: f32 = 1e-5;
 
 /// Share of the residual's square that ends the rounds of conjugate gradients on loops, a number.
