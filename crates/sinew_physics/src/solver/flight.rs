@@ -11,6 +11,7 @@ use crate::body::def::Quality;
 use crate::context::StepContext;
 use crate::island::Island;
 use crate::slices::for_each_mut;
+use crate::solver::tuning::MOST_FLIGHT_TURN;
 use crate::stage::Counter;
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
@@ -18,9 +19,6 @@ use sinew_math::{Rotation, Transform, Vec3, min};
 
 /// A number of each of eight bodies.
 pub(super) type Eight = [f32; WIDTH];
-
-/// Most that a body turns within a substep, should the world's limit allow more, radians: what the series for sine and cosine reach.
-const MOST_TURN: f32 = 3.0;
 
 /// True of an island of one body on which nothing acts but gravity and the forces and torques of this step.
 pub(crate) fn flies(island: &Island<'_>, view: &View<'_>) -> bool {
@@ -59,7 +57,7 @@ impl Flight {
     /// Takes all of them through a step.
     pub fn run(&mut self, view: &View<'_>, context: &StepContext<'_>) {
         let (h, substeps) = (view.pace.h, view.pace.substeps);
-        let [max_speed, max_spin] = [view.def.max_speed, min(view.def.max_turn, MOST_TURN) / h];
+        let [max_speed, max_spin] = [view.def.max_speed, min(view.def.max_turn, MOST_FLIGHT_TURN) / h];
         for_each_mut(context.runner, &mut self.flocks, |flock| {
             dispatch::run(Fly { flock, h, substeps, max_speed, max_spin });
         });

@@ -14,6 +14,7 @@ mod piles;
 mod safeguards;
 pub(crate) mod strands;
 mod sweep;
+mod tuning;
 
 use crate::body::def::Quality;
 use crate::body::work::Work;
@@ -22,6 +23,7 @@ use crate::joint::{
 };
 use crate::runner::TaskRunner;
 use crate::solver::boundary::groups::TakenGroup;
+use crate::solver::tuning::FORESIGHTS;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, join, linear};
 use articulation::batches::Batches;
 use articulation::drives::SoftRow;
@@ -50,12 +52,6 @@ use sweep::conjugate::Conjugate;
 use sweep::policy::Effort;
 use sweep::{Pass, Unrest};
 
-/// Sweeps of `relax` before which friction learns its loads anew: the impulses of `solve` first, then those that really
-/// press. From then on loads stay, or friction and normals may chase each other for ever.
-const WEIGHINGS: usize = 2;
-/// Rounds in which limits and contacts that the substep would pass by far are tightened.
-const FORESIGHTS: usize = 4;
-
 /// A body of the island. Moving ones come first, in tree order; fixed ones (static, kinematic, asleep) follow.
 #[derive(Clone, Debug)]
 pub(crate) struct SolverBody {
@@ -81,10 +77,6 @@ pub(crate) struct SolverBody {
     /// In a substep of this step it was faster than the world lets it be.
     pub is_limited: bool,
 }
-
-/// Addition to the response of every row of contacts, limits and loops, as a share of what the bodies would answer if nothing
-/// held them: rows that cannot move anything, since joints hold it already, answer with rounding errors alone.
-const REDUNDANCY: f32 = 1e-5;
 
 /// A row's answer to its own impulse if nothing held the bodies; those from `moving` on are fixed.
 fn free_response(bodies: &[SolverBody], moving: usize, ends: [(u32, &Vec6); 2]) -> f32 {

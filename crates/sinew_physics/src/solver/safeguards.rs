@@ -7,23 +7,11 @@ use crate::solver::articulation::tree::NONE;
 use crate::solver::contact_rows::ManifoldRows;
 use crate::solver::motion::KineticEnergy;
 use crate::solver::sweep::Pass;
+use crate::solver::tuning::{ENERGY_SLACK, MAX_INNER_TURN, NONSENSE_SPEED, NONSENSE_SPIN, TORN};
 use crate::solver::{IslandSolver, SolverBody};
 use crate::spatial::{Vec6, ZERO6, angular, difference, join, linear};
 use sinew_math::dispatch;
 use sinew_math::{Sym3, Vec3, max, min};
-
-/// Angle that a link may turn within a substep beside the motion of its tree as a whole, radians: position corrections
-/// converge below it.
-pub(in crate::solver) const MAX_INNER_TURN: f32 = 1.0;
-/// Share of the kinetic energy (of at least 1 J/kg) that warm starting or relaxing may give before it counts as an error:
-/// rounding and the give and take of resting contacts are far below.
-pub(in crate::solver) const ENERGY_SLACK: f32 = 1e-3;
-
-/// No velocity is as fast, as a multiple of the speed limit; no spin, rad/s.
-pub(in crate::solver) const NONSENSE: f32 = 2.5;
-pub(in crate::solver) const NONSENSE_SPIN: f32 = 1e4;
-/// A joint that a substep leaves open by this much more than it was has not been solved, m or rad.
-pub(in crate::solver) const TORN: f32 = 0.1;
 
 impl IslandSolver {
     /// Impulses that hold up weights take energy away; those of an impact, repeated at another pose, add it. If they did,
@@ -111,7 +99,7 @@ impl IslandSolver {
     /// of it.
     pub(in crate::solver) fn drop_nonsense(&mut self, torn: f32) {
         let moving = self.links.len();
-        let most = [NONSENSE * self.max_speed, NONSENSE_SPIN];
+        let most = [NONSENSE_SPEED * self.max_speed, NONSENSE_SPIN];
         let sane = |v: &Vec6| (0..DIRECTIONS).all(|k| v[k].abs() < most[k / 3]);
         let sane = self.velocities[..moving].iter().all(sane);
         if sane && torn < TORN {

@@ -2,12 +2,10 @@
 
 use crate::joint::{DIRECTIONS, JointRows, TWIST};
 use crate::solver::articulation::tree::{Link, NONE};
+use crate::solver::tuning::{LEAST_ROW_MASS, LEAST_ROW_MOMENT};
 use crate::solver::{IslandSolver, SolverBody, SolverJoint};
 use crate::spatial::{Vec6, ZERO6, ZERO66, angular, linear, spd_inverse};
 use sinew_math::{Sym3, Vec3, max};
-
-/// Mass that stands in where there is none to speak of (both bodies held), kg or kg·m².
-const LEAST_MASS: f32 = 1e-9;
 
 /// Mass, first moment and inertia of rigidly held bodies about a common reference point.
 #[derive(Clone, Copy, Debug, Default)]
@@ -182,7 +180,8 @@ fn masses(joint: &SolverJoint, rows: &JointRows, response: &[Vec6; DIRECTIONS], 
         let alone = response[row][row];
         // Rows that depend on each other (a gimbal's end) leave the row by itself.
         let mass = inverse.map_or(if alone > 0.0 { 1.0 / alone } else { 0.0 }, |m| m[count - 1][count - 1]);
-        out[rows.direction(row)] = max(mass, LEAST_MASS);
+        let least = if rows.turns(row) { LEAST_ROW_MOMENT } else { LEAST_ROW_MASS };
+        out[rows.direction(row)] = max(mass, least);
     }
     out
 }

@@ -3,25 +3,13 @@
 
 use crate::joint::def::{Gains, Motor, Softness};
 use crate::joint::{DIRECTIONS, JointPose, JointRows, TWIST, displacement, locked_error, open_row};
+use crate::solver::tuning::{
+    CLOSING_SPEED, CLOSING_SPIN, FASTEST_SPRING, MOST_BENT_ANGLE, MOST_BENT_LENGTH, MOTOR_SHARE,
+    SATURATION_ROUNDS, SPRING_MARGIN, STICK_SPEED, STICK_SPIN,
+};
 use crate::solver::{IslandSolver, SolverJoint};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, dot, linear};
 use sinew_math::{Transform, clamp, max, trig};
-
-/// Joint friction is a viscosity that gives the full torque at the joint's present rate, but never more than this slow
-/// rate would ask, rad/s or m/s: a joint that should stick creeps below it, and sleep ends the creep.
-const STICK_RATE: f32 = 0.004;
-/// A velocity motor is a viscosity that would bring what it moves to its speed within this share of a substep.
-const MOTOR_SHARE: f32 = 1e-3;
-/// Fastest that a joint which is open closes, m/s or rad/s: one attached anew at a distance does not jump.
-pub(in crate::solver) const CLOSING: f32 = 4.0;
-/// Most that a weld is off beyond what its rows foresaw, m or rad.
-const MOST_BENT: f32 = 0.1;
-/// `(ωh)²` of the fastest spring whose oscillation is kept.
-const FASTEST: f32 = 1.0;
-/// Times the least damping with which springs of too little mass are stable.
-const MARGIN: f32 = 1.1;
-/// Rounds in which motors that ask for more than their caps are saturated within a substep.
-const SATURATION_ROUNDS: usize = 4;
 
 /// Impulse of a soft row: `λ = −(gain v⁺ + carry v + push)`, with `v` its rate when the substep begins and `v⁺` when it
 /// ends.
@@ -43,12 +31,12 @@ impl SoftRow {
         let omega2 = stiffness / mass * h * h;
         let a = 0.5 * damping / mass * h;
         // Faster oscillations than a substep can show, and none at all, are left to implicit Euler.
-        let shown = omega2 > 0.0 && omega2 < FASTEST;
+        let shown = omega2 > 0.0 && omega2 < FASTEST_SPRING;
         let implicit = (2.0 * a + omega2, 0.0);
         let (mut alpha, mut gamma) = if shown { exact_oscillator(omega2, a) } else { implicit };
         // With a share `r` of the mass the update is stable as long as `4r + 2(α − γ) > (ωh)²`: what carries a figure by its hand
         // must not shake when that is all that moves. Implicit Euler is for any.
-        if 4.0 * least + 2.0 * mass * (alpha - gamma) < MARGIN * mass * omega2 {
+        if 4.0 * least + 2.0 * mass * (alpha - gamma) < SPRING_MARGIN * mass * omega2 {
             (alpha, gamma) = implicit;
         }
         self.gain += mass * alpha;
@@ -124,7 +112,10 @@ impl SolverJoint {
         let open = core::array::from_fn(|i| always || motor(i));
         self.rows = JointRows::new(&self.geometry, &self.pose, open);
         self.rigid = if self.drive.weld.is_some() { 0 } else { self.rows.locked };
-        self.left_open = self.rows.error.map(|error| error - clamp(error, -CLOSING * h, CLOSING * h));
+        self.left_open = core::array::from_fn(|row| {
+            let most = if self.rows.turns(row) { CLOSING_SPIN } else { CLOSING_SPEED };
+            self.rows.error[row] - clamp(self.rows.error[row], -most * h, most * h)
+        });
         self.soft = [SoftRow::default(); DIRECTIONS];
         self.driven = [SoftRow::default(); DIRECTIONS];
         if self.rigid < self.rows.count {
@@ -152,8 +143,9 @@ impl SolverJoint {
         }
         if self.drive.friction > 0.0 {
             // Dry friction as the viscosity τ/|ω| of the present rate, implicit, so it cannot overshoot.
-            let rate = rates[usize::from(direction >= TWIST)];
-            soft.add_viscosity(h * self.drive.friction / max(rate, STICK_RATE), 0.0);
+            let least = if direction >= TWIST { STICK_SPIN } else { STICK_SPEED };
+            let rate = max(rates[usize::from(direction >= TWIST)], least);
+            soft.add_viscosity(h * self.drive.friction / rate, 0.0);
         }
         soft.add(&self.driven[row]);
         // A spring of no stiffness and no damping would be a row of infinite compliance.
@@ -256,7 +248,8 @@ impl SolverJoint {
         for row in 0..self.rows.locked {
             let bent = error[row] - (self.rows.error[row] + h * rate[row]);
             // An angle that jumped by a full turn is no displacement.
-            bend[row] = if bent.abs() < MOST_BENT { bent - self.bent[row] } else { 0.0 };
+            let most = if self.rows.turns(row) { MOST_BENT_ANGLE } else { MOST_BENT_LENGTH };
+            bend[row] = if bent.abs() < most { bent - self.bent[row] } else { 0.0 };
         }
         bend
     }

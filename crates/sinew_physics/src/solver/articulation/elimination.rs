@@ -17,11 +17,9 @@
 //! All is generic over [`Real`]: one tree, or eight of the same shape side by side. Numbers that are the same in all lanes are
 //! [`Spread`] over them.
 
+use crate::solver::tuning::LEAST_PIVOT;
 use sinew_math::Vec3;
 use sinew_math::lanes::{Real, Vector3};
-
-/// A pivot below this share of what it started as is rounding: its direction is taken for held.
-const LEAST_PIVOT: f32 = 1e-7;
 
 /// A number, or one for each lane, as it is kept in memory.
 pub(crate) trait Spread<R>: Copy {

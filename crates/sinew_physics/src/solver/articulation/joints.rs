@@ -4,24 +4,13 @@ use crate::joint::JointPose;
 use crate::solver::articulation::tree::{self, NONE};
 use crate::solver::motion::{FindErrors, ListInertias, Predict};
 use crate::solver::sweep::Pass;
+use crate::solver::tuning::{
+    POSITION_CORRECTIONS, POSITION_CORRECTIONS_ITERATED, POSITION_TOLERANCE, RATE_SHARE, REFINEMENTS,
+    WORTH_ANOTHER,
+};
 use crate::solver::{Coupling, IslandSolver, SolverJoint};
 use crate::spatial::{Vec6, ZERO6, add_scaled, largest, linear};
 use sinew_math::{Transform, dispatch, max, min};
-
-/// Most rounds of position corrections in a pass, and with many loops.
-pub(in crate::solver) const POSITION_CORRECTIONS: usize = 6;
-const POSITION_CORRECTIONS_ITERATED: usize = 1;
-/// Error of positions that needs no correction, m or rad. With 3e-6 a triple pendulum drifts by 1.3 % of its energy.
-pub(in crate::solver) const POSITION_TOLERANCE: f32 = 1e-6;
-/// Share of a tree's error that a round may leave at most for another to follow.
-const WORTH_ANOTHER: f32 = 0.9;
-/// Share of the largest coordinate that needs none either: one and a half of its last digits, which is what rounding of two positions
-/// makes of a gap.
-pub(in crate::solver) const POSITION_ROUNDING: f32 = 1.5 * f32::EPSILON;
-
-/// Most further solves in `relax`, and the share of the fastest velocity that joints may leave.
-pub(in crate::solver) const REFINEMENTS: usize = 2;
-pub(in crate::solver) const RATE_SHARE: f32 = 1e-4;
 
 /// Trees whose positions are corrected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

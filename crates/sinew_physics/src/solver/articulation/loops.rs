@@ -6,19 +6,12 @@
 use crate::solver::articulation::response::Response;
 use crate::solver::articulation::response_cache::Columns;
 use crate::solver::articulation::tree::{self, Link, NONE};
+use crate::solver::tuning::{
+    LOOP_RATE_TOLERANCE, LOOP_REDUNDANCY, LOOP_RESIDUAL_SHARE, LOOP_ROUNDS, MAX_EXACT_ROWS,
+};
 use crate::solver::{IslandSolver, Scratch, SolverBody, SolverJoint, free_response};
 use crate::spatial::{Vec6, ZERO6, add_scaled, dot};
 use sinew_math::{clamp, max};
-
-/// At most this many rows of loops in one tree are solved exactly.
-pub(in crate::solver) const MAX_EXACT_ROWS: usize = 24;
-/// Most rounds of conjugate gradients, and the rate that needs none, m/s or rad/s.
-const ROUNDS: usize = 16;
-const RATE_TOLERANCE: f32 = 1e-5;
-/// [`REDUNDANCY`](crate::solver::REDUNDANCY) of the rows of loops: they meet the rounding of a whole way around.
-const LOOP_REDUNDANCY: f32 = 3e-5;
-/// Share of the residual's square that ends the rounds.
-const RESIDUAL_SHARE: f32 = 1e-6;
 
 /// The loops of one tree, solved together.
 #[derive(Clone, Debug)]
@@ -252,8 +245,8 @@ impl Loops {
         g.sum.resize(links.len(), ZERO6);
         g.dv.resize(links.len(), ZERO6);
         let mut square = dot_of(&g.residual, &g.residual);
-        let enough = max(RESIDUAL_SHARE * square, RATE_TOLERANCE * RATE_TOLERANCE);
-        for _ in 0..ROUNDS {
+        let enough = max(LOOP_RESIDUAL_SHARE * square, LOOP_RATE_TOLERANCE * LOOP_RATE_TOLERANCE);
+        for _ in 0..LOOP_ROUNDS {
             if square <= enough {
                 break;
             }

@@ -10,6 +10,7 @@ use crate::solver::SolverJoint;
 use crate::solver::articulation::elimination::{
     Elimination, Freedom, Inertia, Sequence, Swivel, Twist, wide,
 };
+use crate::solver::tuning::{LEAST_AXIS_SHARE, LEAST_AXIS_SQUARE};
 use crate::spatial::{Mat6, Vec6, ZERO6, ZERO66, join};
 use core::ops::Range;
 use sinew_math::dispatch::{self, Kernel};
@@ -18,10 +19,6 @@ use sinew_math::{Vec3, any_orthonormal};
 
 /// No parent, no joint, no slot.
 pub(crate) const NONE: u32 = u32::MAX;
-
-/// Square of the length below which an axis is none, and the share of that square that other axes must leave.
-const LEAST_AXIS: f32 = 1e-6;
-const LEAST_SHARE: f32 = 1e-5;
 
 /// One in each of the lanes that six numbers take.
 const SIX: Vec6 = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0];
@@ -379,7 +376,7 @@ fn is_apart(axis: Vec3, others: &[Vec3]) -> bool {
     let square = axis.length_squared();
     // Of a triangle's, of a box's edges: how much of the last one stands off the others.
     let (left, of) = match *others {
-        [] => return square > LEAST_AXIS,
+        [] => return square > LEAST_AXIS_SQUARE,
         [x] => (x.cross(axis).length_squared(), x.length_squared()),
         [x, y, ..] => {
             let across = x.cross(y);
@@ -387,7 +384,7 @@ fn is_apart(axis: Vec3, others: &[Vec3]) -> bool {
             (off * off, across.length_squared())
         }
     };
-    square > LEAST_AXIS && left > LEAST_SHARE * of * square
+    square > LEAST_AXIS_SQUARE && left > LEAST_AXIS_SHARE * of * square
 }
 
 /// Factors the trees of some links: `inertia` holds the bodies' own inertias and is overwritten by the articulated ones.

@@ -15,13 +15,13 @@ use crate::island::Island;
 use crate::joint::{DIRECTIONS, Joint, JointPose, JointRows, MAX_LIMITS};
 use crate::runner::TaskRunner;
 use crate::solver::articulation::drives::SoftRow;
-use crate::solver::articulation::loops::MAX_EXACT_ROWS;
 use crate::solver::articulation::tree::{Link, NONE};
 use crate::solver::boundary::counts;
 use crate::solver::boundary::faces::Faces;
-use crate::solver::contact_rows::{ManifoldRows, ManifoldSource, PlacedShape, REFIND_TURN};
+use crate::solver::contact_rows::{ManifoldRows, ManifoldSource, PlacedShape};
 use crate::solver::contacts::{Added, OfStep, placed};
-use crate::solver::piles::mass_scaling::{BALLASTED_RATIO, Touch};
+use crate::solver::piles::mass_scaling::Touch;
+use crate::solver::tuning::{BALLASTED_RATIO, FAST_APPROACH, MAX_EXACT_ROWS, MAX_TREE, REFIND_TURN_RESPONSE};
 use crate::solver::{Coupling, IslandSolver, SolverBody, SolverJoint};
 use crate::spatial::{ZERO6, join};
 use core::ops::Range;
@@ -29,10 +29,6 @@ use sinew_math::{Sym3, Vec3, min};
 
 /// Bodies and contacts more than an island has for which there is room: those that come and go ask for none.
 const SPARE: usize = 32;
-/// Contacts that come in faster than this may have other points before the step is over, m/s.
-const FAST_APPROACH: f32 = 1.0;
-/// At most this many bodies are solved as one tree; joints beyond become loop rows.
-const MAX_TREE: usize = 1024;
 
 /// The world as islands and their solvers read it.
 pub(crate) struct View<'a> {
@@ -473,7 +469,7 @@ impl IslandSolver {
             let still = body.kind == crate::BodyKind::Dynamic && !body.is_active();
             let velocity = if still { ZERO6 } else { join(body.velocity.linear, body.velocity.angular) };
             self.velocities.push(velocity);
-            s.faces.push(body, body.velocity.angular.length() * self.h >= 0.5 * REFIND_TURN);
+            s.faces.push(body, body.velocity.angular.length() * self.h >= 0.5 * REFIND_TURN_RESPONSE);
         }
         self.scratch.predicted.clear();
         self.scratch.predicted.reserve(self.bodies.len());

@@ -2,11 +2,9 @@
 
 use super::ManifoldRows;
 use crate::collide::MAX_POINTS;
+use crate::solver::tuning::BOUNCE_SPEED;
 use crate::spatial::Vec6;
 use sinew_math::max;
-
-/// Approach below which nothing bounces, m/s.
-pub(in crate::solver) const BOUNCE_SPEED: f32 = 1.0;
 
 /// Motion of a point along its normal, in a substep.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,13 +1,11 @@
 //! The small linear complementarity problem of one manifold's normal rows.
 
+use crate::solver::tuning::LCP_PROXIMAL;
 use crate::spatial::{ZERO66, spd_inverse};
 use sinew_math::max;
 
 /// At most this many rows.
 const N: usize = 4;
-
-/// Proximal term as a share of the largest response: added to all.
-const PROXIMAL: f32 = 1e-5;
 
 /// New impulses `x ≥ 0` of `n` unilateral rows with response `k`, gap velocities `v` (at impulses `old`, bias
 /// included) and softness `soft`: `K (x − old) + v + soft x ≥ 0`, complementary to `x`.
@@ -17,7 +15,7 @@ const PROXIMAL: f32 = 1e-5;
 /// rounding leaves none, Gauss-Seidel has the last word.
 pub(crate) fn solve(k: &[[f32; N]; N], v: &[f32; N], old: &[f32; N], soft: &[f32; N], n: usize) -> [f32; N] {
     if n == 1 && k[0][0] > 0.0 {
-        let response = k[0][0] + soft[0] + PROXIMAL * k[0][0];
+        let response = k[0][0] + soft[0] + LCP_PROXIMAL * k[0][0];
         let change = (1.0 / response) * (v[0] + soft[0] * old[0]);
         return [max(old[0] - change, 0.0), 0.0, 0.0, 0.0];
     }
@@ -25,7 +23,7 @@ pub(crate) fn solve(k: &[[f32; N]; N], v: &[f32; N], old: &[f32; N], soft: &[f32
     for i in 0..n {
         largest = max(largest, k[i][i]);
     }
-    let mut problem = Problem { m: *k, r: [0.0; N], old: *old, proximal: PROXIMAL * largest, n };
+    let mut problem = Problem { m: *k, r: [0.0; N], old: *old, proximal: LCP_PROXIMAL * largest, n };
     for i in 0..n {
         problem.m[i][i] += soft[i];
         problem.r[i] = v[i] + soft[i] * old[i];

@@ -12,33 +12,22 @@ use super::articulation::response_cache::{Columns, Strip};
 use super::articulation::tree::Link;
 use super::limits::rows::add_row;
 use super::sweep::policy::Firmness;
-use super::{REDUNDANCY, SolverBody, free_response};
+use super::{SolverBody, free_response};
 use crate::body::material::ContactMaterial;
 use crate::collide::{MAX_POINTS, Manifold};
 use crate::contact::ContactMemory;
+use crate::solver::tuning::{
+    CONTACT_DAMPING, CONTACT_HERTZ, DEEP_SLOPS, FIXED_HERTZ, IMPACT_JUMP, LASTING, REDUNDANCY,
+    REFIND_TURN_RESPONSE, REFIND_TURN_RIM, RELAX_TURN, WEIGHT_EVENLY, WEIGHT_OF_LOAD,
+};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
 use bounce::Approach;
-pub(super) use bounce::BOUNCE_SPEED;
 pub(crate) use refind::PlacedShape;
-pub(super) use refind::{Placed, REFIND_TURN, ROLL_TURN, found_anew, margin};
+pub(super) use refind::{Placed, found_anew, margin};
 pub(super) use row::Softness;
 use row::{Pair, Row};
 use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max, min};
-pub(super) use visit::{DEAD_ZONE, NEVER, SLIP_SPEED};
-
-/// An impulse that grew by more than this factor since the substep before is an impact.
-pub(super) const IMPACT_JUMP: f32 = 2.0;
-/// Overlap beyond this many slops is deep.
-const DEEP: f32 = 2.0;
-/// A body that turns by less than this within a substep counts as being where it was, radians.
-pub(super) const RELAX_TURN: f32 = 0.15;
-/// Contact stiffness as a frequency, Hz, against moving and against fixed bodies, and damping ratio.
-const CONTACT_HERTZ: f32 = 30.0;
-const FIXED_HERTZ: f32 = 60.0;
-const CONTACT_DAMPING: f32 = 10.0;
-/// Contacts are soft to changes of their load, not to the load that lasts for longer than this, seconds: a pile would sag by
-/// all the weight it bears (30 rows of cubes by a quarter of a cube). Without any delay tall piles never come to rest.
-pub(super) const LASTING: f32 = 1.0 / 60.0;
+pub(super) use visit::NEVER;
 
 /// Impulses of a manifold's rows.
 #[derive(Clone, Copy, Debug)]
@@ -158,7 +147,7 @@ impl ManifoldRows {
             is_new: false,
             shapes: source.shapes.clone(),
             rounds: [0.0; 2],
-            most_turn: REFIND_TURN,
+            most_turn: REFIND_TURN_RESPONSE,
             normal: n,
             count: source.manifold.count,
             core_a: [Vec3::ZERO; MAX_POINTS],
@@ -226,8 +215,8 @@ impl ManifoldRows {
         self.rounds = [round_a, round_b];
         // Of a rim, the points beside the one that it rolls on bear nothing.
         let (most_turn, bearing) = match a.has_rim(in_a) || b.has_rim(in_b) {
-            true => (ROLL_TURN, self.slop),
-            false => (REFIND_TURN, f32::INFINITY),
+            true => (REFIND_TURN_RIM, self.slop),
+            false => (REFIND_TURN_RESPONSE, f32::INFINITY),
         };
         self.most_turn = most_turn;
         self.weight = weights(&self.memory, &self.manifold, bearing);
@@ -366,7 +355,7 @@ impl ManifoldRows {
 
     /// Overlaps by much more than contacts at rest do.
     pub fn is_deep(&self) -> bool {
-        self.separation[..self.count].iter().any(|s| *s < -DEEP * self.slop)
+        self.separation[..self.count].iter().any(|s| *s < -DEEP_SLOPS * self.slop)
     }
 
     /// Impulses that all rows put on the two bodies in this substep.
@@ -425,10 +414,6 @@ pub(super) fn contact_softness(both_move: bool, h: f32) -> Softness {
     Softness::new(min(hertz, 0.25 / h), CONTACT_DAMPING, h)
 }
 
-/// Weights of the load that a point has, and of all alike.
-pub(super) const OF_LOAD: f32 = 0.8;
-pub(super) const EVENLY: f32 = 0.2;
-
 /// Shares of the load by point, smoothed so that a point which is about to bear some has a say: one whose separation is at
 /// most `bearing`, if there is any.
 pub(super) fn weights(memory: &ContactMemory, manifold: &Manifold, bearing: f32) -> [f32; MAX_POINTS] {
@@ -444,7 +429,7 @@ pub(super) fn weights(memory: &ContactMemory, manifold: &Manifold, bearing: f32)
             _ => 0.0,
         };
         let share = if total > 0.0 { memory.points[i].now / total } else { even };
-        weights[i] = OF_LOAD * share + EVENLY * even;
+        weights[i] = WEIGHT_OF_LOAD * share + WEIGHT_EVENLY * even;
     }
     weights
 }

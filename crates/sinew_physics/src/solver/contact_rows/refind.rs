@@ -6,20 +6,10 @@ use crate::body::shape::Shape;
 use crate::collide::{Half, Manifold, collide, is_on_face, name_as_face};
 use crate::contact::{ContactMemory, PointImpulse};
 use crate::convex::support::{Core, Posed, wide};
+use crate::solver::tuning::{FAR_CORNER, FLAT_SINE, FORESEEN_DEPTH, LYING_SINE};
 use crate::solver::{SolverBody, advance};
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::{Rotation, Transform, Vec3, max, min};
-
-/// A body that turns by more than this within a substep has its contacts looked for anew, radians.
-pub(in crate::solver) const REFIND_TURN: f32 = 0.01;
-/// Turn within a substep from which on the contacts of a rolling rim are looked for anew, radians: however slowly it rolls,
-/// what pushes from where the rim was turns the body as much as it gyrates.
-pub(in crate::solver) const ROLL_TURN: f32 = 1e-4;
-/// Then points this far apart count, as a share of the smaller bounding radius: a hand between thigh and floor that spins
-/// off one corner meets the other within the substep.
-const FAR_CORNER: f32 = 0.4;
-/// Depth to which a substep may press in points that its rows do not know, metres.
-const FORESEEN_DEPTH: f32 = 1e-3;
 
 /// One of the two shapes of a manifold.
 #[derive(Clone, Debug)]
@@ -27,12 +17,6 @@ pub(crate) struct PlacedShape {
     pub shape: Shape,
     pub principal_from_shape: Transform,
 }
-
-/// A cylinder whose axis leans by less than this sine against the plane across the normal lies on its side.
-const LYING_SINE: f32 = 0.1;
-
-/// One whose end leans by less than this sine stands on it.
-const FLAT_SINE: f32 = 0.01;
 
 impl PlacedShape {
     pub fn new(shape: Shape, principal_from_shape: Transform) -> Self {

@@ -7,16 +7,12 @@ use crate::body::material::ContactMaterial;
 use crate::collide::MAX_POINTS;
 use crate::solver::articulation::response_cache::{Change, Strip};
 use crate::solver::sweep::Pass;
+use crate::solver::tuning::{DEAD_ZONE, SLIP_SPEED};
 use crate::spatial::{Vec6, angular};
 use sinew_math::{Vec3, clamp, max, min};
 
-/// Tangential speed of two surfaces, left over by static friction, above which they slide, m/s: more than loads that have not
-/// converged make of it in a substep.
-pub(in crate::solver) const SLIP_SPEED: f32 = 0.005;
 /// Distance over time of a point that no substep brings to touch, m/s.
 pub(in crate::solver) const NEVER: f32 = 1e6;
-/// Share of the slop that is left overlapping.
-pub(in crate::solver) const DEAD_ZONE: f32 = 0.2;
 
 /// Complementarity problem of a manifold's normal rows: `K (x − old) + rate + soft x ≥ 0`, complementary to `x ≥ 0`.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,9 +1,7 @@
 //! Impulses of friction and rolling of eight manifolds, each within its disk or ball: [`crate::solver::disk`] in lanes.
 
+use crate::solver::tuning::FRICTION_RIM_STEPS;
 use sinew_math::lanes::{LaneMask, Lanes, Vector3};
-
-/// Most Newton steps to the rim.
-const RIM_STEPS: usize = 6;
 
 /// `(K + μ 1)⁻¹ b` of a symmetric 2×2 matrix (00, 01, 11).
 #[inline(always)]
@@ -30,7 +28,7 @@ pub(super) fn least_energy<L: Lanes>(k: [L; 3], b: [L; 2], most: L) -> [L; 2] {
     let mut x = solve(k, mu, b);
     let beyond = moves & L::gt(length(x), most);
     if beyond.any() {
-        for _ in 0..RIM_STEPS {
+        for _ in 0..FRICTION_RIM_STEPS {
             let y = solve(k, mu, x);
             let along = x[0] * y[0] + x[1] * y[1];
             let now = length(x);

@@ -2,8 +2,8 @@
 
 use super::block::{Block, Bounce, Memory, Motion, NONE, Rolling, load3, store3};
 use super::visit::sum;
-use super::{BOUNCE_SPEED, IMPACT_JUMP, LASTING};
 use crate::slices::SharedRows;
+use crate::solver::tuning::{BOUNCE_SPEED, IMPACT_JUMP, LASTING};
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3};
 

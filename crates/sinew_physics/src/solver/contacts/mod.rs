@@ -24,12 +24,11 @@ pub(super) use record::Added;
 pub(super) use refind::Substep;
 
 use super::SolverBody;
-use super::WEIGHINGS;
-pub(super) use super::contact_rows::{BOUNCE_SPEED, IMPACT_JUMP, LASTING, RELAX_TURN};
 use super::sweep::Pass;
 use super::sweep::policy::Order;
 use crate::runner::TaskRunner;
 use crate::slices::SharedRows;
+use crate::solver::tuning::{RELAX_TURN, WEIGHINGS};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
 use block::{Block, Bounce, Memory, Rolling};
 use chunks::{Parted, parted, shared};

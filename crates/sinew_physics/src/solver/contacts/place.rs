@@ -1,14 +1,11 @@
 //! Values that follow from where bodies are: separations, what points are to reach in a pass, and the responses of rows.
 
-use super::RELAX_TURN;
 use super::block::{Block, Bounce, Memory, Motion, NONE, ZERO8, gather, load3, packed, times};
 use crate::solver::contact_rows::NEVER;
 use crate::solver::sweep::Pass;
+use crate::solver::tuning::{POINT_PROXIMAL, RELAX_TURN};
 use crate::spatial::Vec6;
 use sinew_math::lanes::{Lanes, Vector3};
-
-/// Added to each point's response to itself, as a share of it: four points of a face leave their block singular.
-const PROXIMAL: f32 = 1e-5;
 
 /// Motion of each body since the step began: translation (x, y, z), then rotation (x, y, z, w).
 pub(super) struct Moved<'a>(pub &'a [Vec6]);
@@ -72,7 +69,7 @@ pub(super) fn aim<L: Lanes, const N: usize, const T: usize>(
         };
         target.store(&mut block.target[i]);
         soft.store(&mut block.soft[i]);
-        let response = L::load(&block.response[packed(i, i)]) * L::splat(1.0 + PROXIMAL) + soft;
+        let response = L::load(&block.response[packed(i, i)]) * L::splat(1.0 + POINT_PROXIMAL) + soft;
         let moves = L::gt(response, zero);
         (one / L::select(moves, response, one)).masked(moves).store(&mut block.gain[i]);
     }
@@ -156,7 +153,7 @@ pub(super) fn respond<L: Lanes, const N: usize, const T: usize>(block: &mut Bloc
     let [b0, b1] = [arm_b.cross(t0), arm_b.cross(t1)];
     let (ia0, ia1) = (times(&block.inertia[0], a0), times(&block.inertia[0], a1));
     let (ib0, ib1) = (times(&block.inertia[1], b0), times(&block.inertia[1], b1));
-    let raised = L::splat(1.0 + PROXIMAL);
+    let raised = L::splat(1.0 + POINT_PROXIMAL);
     ((mass + a0.dot(ia0) + b0.dot(ib0)) * raised).store(&mut block.tangent_response[0]);
     (a0.dot(ia1) + b0.dot(ib1)).store(&mut block.tangent_response[1]);
     ((mass + a1.dot(ia1) + b1.dot(ib1)) * raised).store(&mut block.tangent_response[2]);

@@ -6,7 +6,7 @@ use super::color::{Coloring, Edge};
 use super::geometry::{Cores, Geometry};
 use super::place::{respond, take_inertias};
 use super::record::{Extra, Record};
-use super::refind::{self, Found};
+use super::refind::Found;
 use super::write::write;
 use super::{Class, Color, Contacts};
 use crate::body::material::ContactMaterial;
@@ -15,6 +15,7 @@ use crate::contact::{Contact, ContactMemory};
 use crate::runner::TaskRunner;
 use crate::slices::{MOST_NEAR, for_each_near};
 use crate::solver::contact_rows::{Placed, Softness, contact_softness};
+use crate::solver::tuning::REFIND_TURN_RIM;
 use crate::solver::{SolverBody, View};
 use crate::spatial::Vec6;
 use core::ops::Range;
@@ -291,7 +292,7 @@ impl Lists<'_> {
         if extra.rolls {
             let manifold = view.contacts[edge.contact as usize].manifold;
             let cores = Cores::new(&manifold, bodies.map(|body| body.pose), extra.rounds);
-            self.found.push(Found::new(at, edge, manifold, cores, refind::ROLL_TURN));
+            self.found.push(Found::new(at, edge, manifold, cores, REFIND_TURN_RIM));
         }
         if extra.rolling <= 0.0 {
             return rolling;

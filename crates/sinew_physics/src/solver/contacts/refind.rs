@@ -10,17 +10,12 @@ use crate::collide::{MAX_POINTS, Manifold};
 use crate::contact::slop;
 use crate::runner::TaskRunner;
 use crate::slices::for_each_mut;
-pub(super) use crate::solver::contact_rows::ROLL_TURN;
 use crate::solver::contact_rows::{self, weights};
+use crate::solver::tuning::{REFIND_TURN_LANES, REFIND_TURN_RIM};
 use crate::solver::{SolverBody, View};
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::lanes::WIDTH;
 use sinew_math::{Transform, max, min};
-
-/// A body that has turned by more than this has its contacts looked for anew, radians: points that are known stay exact, and corners
-/// that swing in by less have rows, since they were within reach. With a fifth of it heaps that fall cost half as much again and are as
-/// deep.
-const FIND_TURN: f32 = 0.05;
 
 /// A manifold whose lane is written in each substep.
 #[derive(Clone, Debug)]
@@ -104,7 +99,7 @@ impl Contacts {
         for (turned, body) in self.turned[..substep.moving].iter_mut().zip(0..) {
             *turned += substep.turn(body);
         }
-        if !self.turned.iter().any(|&turned| turned >= FIND_TURN) {
+        if !self.turned.iter().any(|&turned| turned >= REFIND_TURN_LANES) {
             return;
         }
         let known = self.found.len();
@@ -130,7 +125,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
                 let (block, contact) = (&self.blocks[place], self.memory[place].contacts[lane]);
                 let bodies = [0, 1].map(|end| block.bodies[end][lane] & !HELD);
                 if contact == super::block::NONE
-                    || bodies.iter().all(|&body| turned[body as usize] < FIND_TURN)
+                    || bodies.iter().all(|&body| turned[body as usize] < REFIND_TURN_LANES)
                 {
                     continue;
                 }
@@ -148,7 +143,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
                     bodies,
                     manifold: of.manifold,
                     cores,
-                    most_turn: FIND_TURN,
+                    most_turn: REFIND_TURN_LANES,
                     turned: 0.0,
                     anew: None,
                 });
@@ -210,7 +205,7 @@ impl Found {
         }
         let in_principal = |end: usize| poses[end].rotation.inverse() * self.cores.normal;
         let rolls = shapes[0].has_rim(in_principal(0)) || shapes[1].has_rim(in_principal(1));
-        self.most_turn = if rolls { ROLL_TURN } else { FIND_TURN };
+        self.most_turn = if rolls { REFIND_TURN_RIM } else { REFIND_TURN_LANES };
         let weights = weights(&of_lane, &self.manifold, if rolls { slop_of(&shapes) } else { f32::INFINITY });
         let moves = self.bodies.map(|body| (body as usize) < substep.moving);
         let geometry = Geometry::new(&self.cores, poses, moves, &weights);

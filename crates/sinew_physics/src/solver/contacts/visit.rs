@@ -4,14 +4,10 @@ use super::block::{Block, Eight, HELD, Motion, NONE, Rolling, load3, packed, sto
 use super::conjugate::Step;
 use super::disk;
 use crate::slices::SharedRows;
-use crate::solver::contact_rows::SLIP_SPEED;
 use crate::solver::sweep::Pass;
+use crate::solver::tuning::{IMPACT_JUMP, MANIFOLD_ROUNDS, SLIP_SPEED};
 use crate::spatial::Vec6;
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
-
-/// Rounds of Gauss-Seidel over the points of a manifold within a visit: four points of a face share a load that one round
-/// would leave with the first.
-const ROUNDS: usize = 4;
 
 /// Data that a sweep over blocks works on.
 pub(super) struct Sweep<'a> {
@@ -123,7 +119,7 @@ pub(super) fn sum<L: Lanes, const N: usize>(rows: &[Eight; N]) -> L {
 #[inline(always)]
 fn weigh<L: Lanes, const N: usize, const T: usize>(block: &mut Block<N, T>) {
     let (now, last) = (sum::<L, N>(&block.impulse), L::load(&block.last_load));
-    let jump = L::splat(super::IMPACT_JUMP);
+    let jump = L::splat(IMPACT_JUMP);
     let lasts = L::le(now, jump * last) & L::le(last, jump * now);
     L::select(lasts, last, now).store(&mut block.load);
 }
@@ -147,7 +143,7 @@ fn visit_normal<L: Lanes, const N: usize, const T: usize>(
         given[i] = L::load(&block.impulse[i]);
     }
     let (old, before) = (given, rates);
-    let rounds = if N == 1 { 1 } else { ROUNDS };
+    let rounds = if N == 1 { 1 } else { MANIFOLD_ROUNDS };
     for round in 0..rounds {
         for turn in 0..N {
             // To and fro: all one way would leave a little motion to the side that comes first.

@@ -5,7 +5,8 @@ use super::block::{Block, Eight, HELD, Memory, NONE, ZERO8, gather, store3};
 use super::geometry::FAR;
 use super::prepare::Source;
 use super::record::{FRICTION, IMPULSES, POINTS, SHAPE, fields};
-use crate::solver::contact_rows::{DEAD_ZONE, EVENLY, OF_LOAD, Softness};
+use crate::solver::contact_rows::Softness;
+use crate::solver::tuning::{DEAD_ZONE, WEIGHT_EVENLY, WEIGHT_OF_LOAD};
 use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 
 /// Input that is collected lane by lane, before lanes are written side by side.
@@ -141,7 +142,7 @@ fn write_shape<L: Lanes, const N: usize, const T: usize>(
     for i in 0..N {
         let even = L::select(nobody, one / count, (one / heirs).masked(L::le(gaps[i], bearing)));
         let part = L::select(loaded, now[i] / load, even);
-        weights[i] = L::splat(OF_LOAD) * part + L::splat(EVENLY) * even;
+        weights[i] = L::splat(WEIGHT_OF_LOAD) * part + L::splat(WEIGHT_EVENLY) * even;
         center = select3(there[i], center + at[i] * weights[i], center);
         // Points that are not there answer like the first one, and are never reached.
         arms[i] = select3(there[i], at[i] - normal * round_a, arms[0]);

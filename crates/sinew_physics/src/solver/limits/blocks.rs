@@ -6,14 +6,12 @@ use crate::solver::articulation::response_cache::Columns;
 use crate::solver::articulation::tree::NONE;
 use crate::solver::limits::rows::{LimitRow, add_row};
 use crate::solver::sweep::Pass;
+use crate::solver::tuning::LIMIT_ROUNDS;
 use crate::solver::{Coupling, IslandSolver};
 use crate::spatial::{Vec6, ZERO6};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
 use sinew_math::max;
-
-/// Most rounds over the rows of a block in one visit.
-const ROUNDS: usize = 4;
 
 /// The blocks of an island.
 #[derive(Clone, Debug, Default)]
@@ -92,7 +90,7 @@ impl Block {
         (pass, h, tolerance): (Pass, f32, f32),
     ) -> ([f32; WIDTH], f32, f32) {
         let (mut given, mut energy, mut most) = ([0.0; WIDTH], 0.0, 0.0);
-        for _ in 0..ROUNDS {
+        for _ in 0..LIMIT_ROUNDS {
             most = 0.0;
             for k in lanes(self.pushing) {
                 let row = &mut limits[self.limits[k] as usize];

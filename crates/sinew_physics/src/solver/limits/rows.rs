@@ -3,23 +3,14 @@
 use crate::joint::def::Softness;
 use crate::joint::{JointPose, LimitImpulse, MAX_LIMITS, MAX_STOPS, Row, Stop, each_stop, turns};
 use crate::solver::articulation::tree::NONE;
-use crate::solver::contact_rows::IMPACT_JUMP;
 use crate::solver::sweep::Pass;
-use crate::solver::{IslandSolver, REDUNDANCY, SolverBody, SolverJoint, free_response};
+use crate::solver::tuning::{
+    HIT_LEVER, IMPACT_JUMP, LIMIT_BEND, LIMIT_MARGIN_ANGLE, LIMIT_MARGIN_LENGTH, LIMIT_PUSH_SPEED,
+    LIMIT_PUSH_SPIN, LIMIT_SLACK_ANGLE, LIMIT_SLACK_LENGTH, REDUNDANCY,
+};
+use crate::solver::{IslandSolver, SolverBody, SolverJoint, free_response};
 use crate::spatial::{Vec6, add_scaled, angular, dot, linear};
 use sinew_math::{Vec3, clamp, max, min};
-
-/// Fastest rate with which a violated limit pushes back, rad/s or m/s.
-const LIMIT_PUSH: f32 = 4.0;
-/// A limit closer than this gets a row even at rest, radians or metres.
-const LIMIT_MARGIN: f32 = 0.15;
-/// A limit may end a substep this far beyond where it should, radians or metres, before its row is tightened.
-const LIMIT_SLACK: f32 = 0.01;
-/// Most that the room of a stop may stray from its row's line, rad, per square of the angle by which the faster of the two bodies turns.
-/// Larger looks at more limits in vain; with less, a limb that turns fast passes a stop that curves away from its row.
-const BEND: f32 = 10.0;
-/// A hit turns linear speed into rotation over at least this lever, metres.
-const LEVER: f32 = 0.2;
 
 /// Hardness of a limit row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,13 +58,16 @@ impl IslandSolver {
         self.hit_rate = 0.0;
         if !(self.manifolds.is_empty() && self.contacts.is_empty()) {
             for v in &self.velocities[..self.links.len()] {
-                self.hit_rate = max(self.hit_rate, angular(v).length() + linear(v).length() / LEVER);
+                self.hit_rate = max(self.hit_rate, angular(v).length() + linear(v).length() / HIT_LEVER);
             }
         }
         let limits = &mut self.limits;
         for (index, joint) in self.joints.iter().enumerate() {
             let [slide, turn] = joint.anchor_rates(&self.velocities);
-            let reach = [slide, max(turn, self.hit_rate)].map(|rate| LIMIT_MARGIN + 2.0 * self.h * rate);
+            let reach = [
+                LIMIT_MARGIN_LENGTH + 2.0 * self.h * slide,
+                LIMIT_MARGIN_ANGLE + 2.0 * self.h * max(turn, self.hit_rate),
+            ];
             let (soft, zone) = (joint.drive.limit_softness, joint.drive.soft_zone);
             let looked_for = [reach[0], max(reach[1], zone.map_or(0.0, |zone| zone.width))];
             each_stop(&joint.geometry.kind, &joint.pose, looked_for, |place, stop| {
@@ -127,7 +121,7 @@ impl IslandSolver {
             }
             let (Some(predicted), Some(stop)) = (&predicted, &there[row.stop]) else { continue };
             let beyond = row.allowed(self.h) - stop.room;
-            if beyond < LIMIT_SLACK {
+            if beyond < row.slack() {
                 continue;
             }
             let of_stop = stop.row(&joint.geometry.kind, predicted);
@@ -233,7 +227,17 @@ impl LimitRow {
 
     /// Room that it should have at the end of a substep, radians or metres: none, or less where it must come back from far beyond.
     fn allowed(&self, h: f32) -> f32 {
-        min(self.room + LIMIT_PUSH * h, 0.0)
+        min(self.room + self.most_push() * h, 0.0)
+    }
+
+    /// Fastest rate with which it pushes back, rad/s or m/s.
+    fn most_push(&self) -> f32 {
+        if turns(self.limit) { LIMIT_PUSH_SPIN } else { LIMIT_PUSH_SPEED }
+    }
+
+    /// Room by which it may end a substep beyond where it should, radians or metres.
+    fn slack(&self) -> f32 {
+        if turns(self.limit) { LIMIT_SLACK_ANGLE } else { LIMIT_SLACK_LENGTH }
     }
 
     /// False if the velocities cannot lead beyond where it should be by more than the slack: along its own line they do not, and its
@@ -245,7 +249,7 @@ impl LimitRow {
         let [a, b] = [joint.a, joint.b].map(|body| angular(&velocities[body as usize]));
         let turn2 = max(a.length_squared(), b.length_squared()) * (h * h);
         let ahead = self.room + h * (b - a).dot(self.axis);
-        self.allowed(h) - ahead + BEND * turn2 >= LIMIT_SLACK
+        self.allowed(h) - ahead + LIMIT_BEND * turn2 >= LIMIT_SLACK_ANGLE
     }
 
     /// Takes on what it answers to its own impulse.
@@ -300,7 +304,7 @@ impl LimitRow {
     fn wanted(&self, pass: Pass, rate: f32, h: f32) -> f32 {
         match (pass, self.hardness) {
             (Pass::Solve, Hardness::Foreseen(rate)) => rate,
-            (Pass::Solve, _) if self.room < 0.0 => min(-self.room / h, LIMIT_PUSH),
+            (Pass::Solve, _) if self.room < 0.0 => min(-self.room / h, self.most_push()),
             (Pass::Solve, _) => -self.room / h,
             _ => clamp(rate, min(-self.room / h, 0.0), 0.0),
         }

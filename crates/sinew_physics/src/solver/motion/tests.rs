@@ -1,7 +1,7 @@
 //! Tests of the kernels that move bodies.
 
-use super::turn::MOST_HALF_TURN;
 use super::*;
+use crate::solver::tuning::MOST_HALF_TURN;
 use crate::spatial::{angular, join, linear};
 use sinew_math::dispatch::{Level, run_at};
 use sinew_math::{Random, Vec3};

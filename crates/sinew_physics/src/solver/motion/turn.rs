@@ -1,13 +1,9 @@
 //! Turns of eight bodies side by side, and the spin of a free body through a substep.
 
+use crate::solver::tuning::{MIDPOINT_STEPS, MIDPOINT_TOLERANCE, MOST_HALF_TURN};
 use sinew_math::lanes::{LaneMask, Lanes, Real, Vector3, WIDTH};
 use sinew_math::{Rotation, Vec3};
 
-/// Most Newton steps to the middle of a free body's spin, and the square of the relative change with which they end.
-const MIDPOINT_STEPS: usize = 4;
-const MIDPOINT_TOLERANCE: f32 = 1e-12;
-/// Most that half a substep is taken to turn on the way there, radians: within a quarter of a turn, should the world's limit allow more.
-pub const MOST_HALF_TURN: f32 = 1.2;
 /// Half of the angle up to which the series of a turn are exact, radians. Beyond it, bodies are turned one by one.
 pub const MOST_SERIES: f32 = 1.5;
 

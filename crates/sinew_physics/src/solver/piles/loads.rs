@@ -2,11 +2,9 @@
 //! stands on. A wall of a hundred rows that began without them sank by 0.15 m before sweeps had found them.
 
 use crate::solver::piles::mass_scaling::Touch;
+use crate::solver::tuning::STANDING_COSINE;
 use crate::solver::{IslandSolver, SolverBody};
 use core::cmp::Reverse;
-
-/// Cosine of the steepest slope on which what lies there is taken to stand.
-const STANDING: f32 = 0.7;
 
 /// A moving body, while loads are handed down.
 #[derive(Clone, Copy, Debug, Default)]
@@ -90,7 +88,7 @@ impl IslandSolver {
             if touch.is_new
                 && below.checked_add(1) == Some(level)
                 && !bearer.is_settled
-                && slope(&self.bodies[above as usize], touch, sign) > STANDING
+                && slope(&self.bodies[above as usize], touch, sign) > STANDING_COSINE
             {
                 bearer.supports += 1;
                 supports.push((Reverse(level), place));

@@ -8,15 +8,8 @@
 use crate::collide::{MAX_POINTS, ManifoldPoint};
 use crate::contact::{Contact, PointImpulse};
 use crate::solver::IslandSolver;
+use crate::solver::tuning::{BALLAST, STANDING_SPEED};
 use sinew_math::{Vec3, max};
-
-/// Least mass of a body per impulse that cancels itself on it in a substep, kg/(N·s): what bears less than 4,000 times its
-/// weight has no ballast, and an ulp of that impulse is worth 1e-5 m/s.
-const BALLAST: f32 = 6e-3;
-/// Ratio of masses below which nobody has ballast.
-pub(in crate::solver) const BALLASTED_RATIO: f32 = 1e3;
-/// Fastest approach of what is taken to stand already, m/s.
-const STANDING_SPEED: f32 = 0.1;
 
 /// Impulses that press on a body in a substep, N·s: their vector sum, and the sum of their sizes.
 #[derive(Clone, Copy, Debug, Default)]

@@ -4,29 +4,26 @@ use super::super::articulation::elimination::{Freedom, Inertia, Swivel, Symmetri
 use super::super::flight::{Eight, load, store};
 use super::link::{Hook, Link, load_turn};
 use super::substep::Pace;
+use crate::solver::tuning::STRAND_SINGLE_RATIO;
 use sinew_math::lanes::{Lanes, Real, Vector3};
 use sinew_math::min;
 
 /// Digits that a factor is computed with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Digits {
-    /// 32 bits, where a link feels at most [`EVEN`] times its mass.
+    /// 32 bits, where a link feels at most [`STRAND_SINGLE_RATIO`] times its mass.
     #[default]
     Single,
     /// 64 bits.
     Double,
 }
 
-/// Mass of a strand over that of its lightest link from which on the factor takes 64 bits: inertias that cancel leave `EVEN` times the last
-/// digit of 32, and a thousandth of a percent is corrected with the positions.
-const EVEN: f32 = 256.0;
-
 impl Digits {
     /// For a strand of such masses, kg.
     pub fn of(masses: impl Iterator<Item = f32>) -> Self {
         let (whole, lightest) =
             masses.fold((0.0, f32::INFINITY), |(sum, least), mass| (sum + mass, min(least, mass)));
-        if whole <= EVEN * lightest { Self::Single } else { Self::Double }
+        if whole <= STRAND_SINGLE_RATIO * lightest { Self::Single } else { Self::Double }
     }
 }
 

@@ -1,15 +1,14 @@
 //! The substeps of eight strands side by side.
 
-use super::super::articulation::drives::CLOSING;
-use super::super::articulation::joints::{
-    POSITION_CORRECTIONS, POSITION_ROUNDING, POSITION_TOLERANCE, RATE_SHARE, REFINEMENTS,
-};
 use super::super::flight::load;
-use super::super::safeguards::{ENERGY_SLACK, MAX_INNER_TURN, NONSENSE, NONSENSE_SPIN, TORN};
 use super::factor::{Digits, factor, place_arms, place_gaps};
 use super::joints::{Asked, ascend, descend, descend_ahead, largest, take_back};
 use super::link::{Hook, Link};
 use super::motion::{Kinetic, end_substep, integrate_position, integrate_velocity, work_of_forces};
+use crate::solver::tuning::{
+    CLOSING_SPEED, ENERGY_SLACK, MAX_INNER_TURN, NONSENSE_SPEED, NONSENSE_SPIN, POSITION_CORRECTIONS,
+    POSITION_ROUNDING, POSITION_TOLERANCE, RATE_SHARE, REFINEMENTS, TORN,
+};
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{First, LaneMask, Lanes, WIDTH};
 
@@ -136,7 +135,7 @@ fn solve<L: Lanes>(
         widest = L::max(widest, largest(load::<L>(&link.gap)));
     }
     // Joints that are open by more close over several substeps.
-    let mut sound = L::le(widest, L::splat(CLOSING * h));
+    let mut sound = L::le(widest, L::splat(CLOSING_SPEED * h));
     ascend::<L>(links, hook.is_some(), Asked::Closed, h);
     let mut error = descend_ahead::<L>(links, hook, all::<L>(), h);
     sound = sound & turn_within::<L>(links, MAX_INNER_TURN / h);
@@ -194,7 +193,7 @@ fn turn_within<L: Lanes>(links: &[Link], most: f32) -> L::Mask {
 /// All velocities are of this world.
 #[inline(always)]
 fn is_sane<L: Lanes>(links: &[Link], pace: &Pace) -> L::Mask {
-    let (speed, turn) = (L::splat(NONSENSE * pace.max_speed), L::splat(NONSENSE_SPIN));
+    let (speed, turn) = (L::splat(NONSENSE_SPEED * pace.max_speed), L::splat(NONSENSE_SPIN));
     let mut sane = L::le(speed, speed);
     for link in links {
         sane = sane & L::lt(largest(load::<L>(&link.velocity)), speed);

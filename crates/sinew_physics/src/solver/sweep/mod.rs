@@ -13,7 +13,8 @@ use crate::solver::articulation::tree::Link;
 use crate::solver::contact_rows::ManifoldRows;
 use crate::solver::limits::rows::LimitRow;
 use crate::solver::sweep::conjugate::{Conjugate, Rows};
-use crate::solver::{Coupling, IslandSolver, WEIGHINGS};
+use crate::solver::tuning::WEIGHINGS;
+use crate::solver::{Coupling, IslandSolver};
 use crate::spatial::{ZERO6, add_scaled, largest, linear};
 use sinew_math::max;
 

@@ -3,9 +3,13 @@
 use crate::body::def::Quality;
 use crate::island::Island;
 use crate::solver::articulation::tree::NONE;
-use crate::solver::contact_rows::BOUNCE_SPEED;
 use crate::solver::contacts::Sweeps;
 use crate::solver::sweep::Pass;
+use crate::solver::tuning::{
+    BOUNCE_SPEED, CALM_TURN, DAMPED_CONTACTS, DAMPED_CONTACTS_JOINTED, DAMPED_CONTACTS_PER_BODY,
+    EFFORT_LEVELS, GRADED_RATIO, HEAP_CONTACTS, LEAST_SWEEP_TOLERANCE, MOST_RELAX_SWEEPS, MOST_SOLVE_SWEEPS,
+    RESPONSE_CONTACTS, RESPONSE_CONTACTS_PER_LINK, RESPONSE_TREES, TO_AND_FRO_RATIO,
+};
 use crate::solver::{Coupling, Grading, IslandSolver, View};
 use sinew_math::{max, min};
 
@@ -95,21 +99,13 @@ const PILE: Effort = Effort {
     order: Order::ToAndFro,
     first_conjugate: 4,
 };
-/// Effort for a pile or heap of [`FEW_SWEEPS_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
+/// Effort for a pile or heap of [`HEAP_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
 /// over some substeps. However unequal masses are, it has many contacts that share what one of them is wrong by.
 const HEAP: Effort = Effort { solve: 6, relax: 4, first_conjugate: 2, ..PILE };
 /// Effort for unequal masses: a light body between heavy ones tosses what they do to each other to and fro, and what cannot move must have the
 /// last word.
 const UNEQUAL: Effort =
     Effort { solve: 96, tolerance: 2e-3, small: 0.0, order: Order::Forward, first_conjugate: 4, ..PILE };
-/// Levels of a pile that `UNEQUAL` is for. What one end of it feels reaches the other in as many sweeps as it has levels.
-const LEVELS: f32 = 10.0;
-/// The most for high and unequal ones.
-const MOST_SOLVE: f32 = 1024.0;
-const MOST_RELAX: f32 = 512.0;
-const LEAST_TOLERANCE: f32 = 1e-7;
-/// Beyond this ratio of masses the light ones are squeezed out if what cannot move does not have the last word.
-const EVEN: f32 = 4.0;
 
 impl Effort {
     /// For a pile of so many levels and contacts with a heaviest body `ratio` times as heavy as the lightest.
@@ -120,14 +116,17 @@ impl Effort {
         let root = ratio.sqrt();
         if ratio <= GRADED_RATIO {
             let relax = (PILE.relax as f32 * root) as usize;
-            let even = if contacts < FEW_SWEEPS_CONTACTS { Self { relax, ..PILE } } else { HEAP };
-            return Self { order: if ratio <= EVEN { even.order } else { Order::Forward }, ..even };
+            let even = if contacts < HEAP_CONTACTS { Self { relax, ..PILE } } else { HEAP };
+            return Self {
+                order: if ratio <= TO_AND_FRO_RATIO { even.order } else { Order::Forward },
+                ..even
+            };
         }
-        let height = max(1.0, levels as f32 / LEVELS);
+        let height = max(1.0, levels as f32 / EFFORT_LEVELS);
         Self {
-            solve: min(UNEQUAL.solve as f32 * height * root.sqrt(), MOST_SOLVE) as usize,
-            relax: min(UNEQUAL.relax as f32 * height * root, MOST_RELAX) as usize,
-            tolerance: max(UNEQUAL.tolerance / (height * ratio), LEAST_TOLERANCE),
+            solve: min(UNEQUAL.solve as f32 * height * root.sqrt(), MOST_SOLVE_SWEEPS) as usize,
+            relax: min(UNEQUAL.relax as f32 * height * root, MOST_RELAX_SWEEPS) as usize,
+            tolerance: max(UNEQUAL.tolerance / (height * ratio), LEAST_SWEEP_TOLERANCE),
             ..UNEQUAL
         }
     }
@@ -184,25 +183,6 @@ impl Effort {
     }
 }
 
-/// Trees of joints, and contacts, beyond which an island is solved by turns: what contacts answer to each other grows with the product
-/// of both. A tree of many links has many contacts that never push, with itself.
-const FIGURES: usize = 8;
-const CONTACTS_OF_FIGURES: usize = 128;
-const CONTACTS_OF_LINK: usize = 4;
-/// Contacts from which on an island of free bodies is swept as a heap.
-const FEW_SWEEPS_CONTACTS: usize = 16;
-/// Contacts from which on an island of free bodies takes half of the substeps: they damp all motion, and no single one decides. With
-/// 16, a house of cards sinks by a hundredth more than it may.
-const MANY_CONTACTS: usize = 32;
-/// Contacts per body, of islands with joints: what lies takes half of them, what swings or flies all.
-const CONTACTS_PER_BODY: f32 = 0.25;
-/// With fewer contacts than this one contact decides: a foot of 1 kg under 69 kg sinks by 2.3 mm instead of 2 in half the substeps.
-const FEW_CONTACTS: usize = 4;
-/// Most that a body may turn in a substep of the longer kind, radians: rows are linearised at its beginning.
-const CALM_TURN: f32 = 0.25;
-/// Ratio of the masses in an island beyond which it takes all substeps.
-const GRADED_RATIO: f32 = 100.0;
-
 impl IslandSolver {
     /// Number of substeps that an island takes. Balanced: half of the world's where many contacts damp all motion, nothing spins fast and
     /// masses are alike; all of them for what swings, flies or balances. With particles all, whatever the quality.
@@ -218,7 +198,9 @@ impl IslandSolver {
         let (trees, links) = jointed.fold((0, 0), |(trees, links), tree| (trees + 1, links + tree.len()));
         self.coupling = match trees {
             0 if self.pins.joints.is_empty() => Coupling::Free,
-            _ if trees > FIGURES || contacts > CONTACTS_OF_FIGURES + CONTACTS_OF_LINK * links => {
+            _ if trees > RESPONSE_TREES
+                || contacts > RESPONSE_CONTACTS + RESPONSE_CONTACTS_PER_LINK * links =>
+            {
                 Coupling::Turns
             }
             _ => Coupling::Response,
@@ -293,10 +275,10 @@ pub(in crate::solver) fn stretch_of(island: &Island<'_>, view: &View<'_>) -> f32
 fn is_damped(island: &Island<'_>, view: &View<'_>) -> bool {
     let (contacts, bodies) = (island.contacts.len(), island.bodies.len());
     let many = if island.joints.is_empty() {
-        contacts >= MANY_CONTACTS
+        contacts >= DAMPED_CONTACTS
     } else {
-        contacts >= FEW_CONTACTS
-            && contacts as f32 >= CONTACTS_PER_BODY * bodies as f32
+        contacts >= DAMPED_CONTACTS_JOINTED
+            && contacts as f32 >= DAMPED_CONTACTS_PER_BODY * bodies as f32
             && island.joints.iter().all(|&joint| view.joints.at(joint).drive.is_limp())
     };
     let bounces = |&contact: &u32| {
