@@ -40,20 +40,24 @@ impl ColorTables {
         self.srgb[(clamp(linear, 0.0, 1.0) * (ENCODE_STEPS - 1) as f32 + 0.5) as usize]
     }
 
-    /// [`Self::to_srgb`] of numbers side by side: the same bytes.
+    /// Writes [`Self::to_srgb3`] of pixels side by side, given by channel, into as many pixels of red, green, blue and alpha: the same
+    /// bytes.
     #[inline(always)]
-    pub(crate) fn to_srgb_lanes<L: Lanes>(&self, linear: L) -> [u8; WIDTH] {
+    pub(crate) fn write_srgb<L: Lanes>(&self, linear: [L; 3], pixels: &mut [[u8; 4]; WIDTH]) {
         /// From here on `f32` numbers are whole, and the low bits of theirs are how many more they are.
         const WHOLE: f32 = 8_388_608.0;
-        let x = limited(linear, 0.0, 1.0) * L::splat((ENCODE_STEPS - 1) as f32) + L::splat(0.5);
-        let nearest = (x + L::splat(WHOLE)) - L::splat(WHOLE);
-        let below = L::select(L::gt(nearest, x), nearest - L::splat(1.0), nearest);
-        let (mut steps, mut bytes) = ([0.0; WIDTH], [0; WIDTH]);
-        (below + L::splat(WHOLE)).store(&mut steps);
-        for i in 0..WIDTH {
-            bytes[i] = self.srgb[steps[i].to_bits() as usize % ENCODE_STEPS];
+        let mut steps = [[0.0; WIDTH]; 3];
+        for (steps, linear) in steps.iter_mut().zip(linear) {
+            let x = limited(linear, 0.0, 1.0) * L::splat((ENCODE_STEPS - 1) as f32) + L::splat(0.5);
+            let nearest = (x + L::splat(WHOLE)) - L::splat(WHOLE);
+            let below = L::select(L::gt(nearest, x), nearest - L::splat(1.0), nearest);
+            (below + L::splat(WHOLE)).store(steps);
         }
-        bytes
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            for channel in 0..3 {
+                pixel[channel] = self.srgb[steps[channel][i].to_bits() as usize % ENCODE_STEPS];
+            }
+        }
     }
 
     /// sRGB bytes of a linear colour.

@@ -1,5 +1,5 @@
 use crate::camera::{Camera, NEAR, View};
-use crate::clip::clip;
+use crate::clip::{clip, is_whole, unseen};
 use crate::color::ColorTables;
 use crate::image::Image;
 use crate::overlay;
@@ -175,8 +175,7 @@ impl Renderer {
     /// Linear colours, by channel, of pixels side by side that show one flat triangle and nothing else; `None` if they do not.
     #[inline(always)]
     fn span<L: Lanes>(&self, shader: &Shader<'_>, x: usize, y: usize) -> Option<[L; 3]> {
-        let width = self.settings.width as usize;
-        if x + SPAN > width || !self.footprints.translucent.is_empty() {
+        if !self.footprints.translucent.is_empty() {
             return None;
         }
         let ids = self.solid.ids(x, y, SPAN);
@@ -240,11 +239,11 @@ impl Kernel for ShadeRow<'_> {
         let (width, tables) = (row.len() / 4, &renderer.tables);
         let mut x = 0;
         while x < width {
-            if let Some([r, g, b]) = renderer.span::<L>(shader, x, y) {
-                let [r, g, b] = [tables.to_srgb_lanes(r), tables.to_srgb_lanes(g), tables.to_srgb_lanes(b)];
-                for (i, pixel) in row[4 * x..].chunks_exact_mut(4).take(SPAN).enumerate() {
-                    pixel[..3].copy_from_slice(&[r[i], g[i], b[i]]);
-                }
+            let pixels = row[4 * x..].as_chunks_mut::<4>().0.first_chunk_mut::<SPAN>();
+            if let Some(pixels) = pixels
+                && let Some(colors) = renderer.span::<L>(shader, x, y)
+            {
+                tables.write_srgb(colors, pixels);
                 x += SPAN;
             } else {
                 let color = renderer.pixel(shader, x, y);
@@ -292,8 +291,17 @@ fn project(
 ) -> bool {
     let before = list.len();
     let [a, b, c] = points;
-    let polygon = clip([view.clip_from_world(a), view.clip_from_world(b), view.clip_from_world(c)], NEAR);
-    let corners = polygon.corners();
+    let triangle = [view.clip_from_world(a), view.clip_from_world(b), view.clip_from_world(c)];
+    if unseen(&triangle, NEAR) {
+        return false;
+    }
+    let polygon;
+    let corners = if is_whole(&triangle, NEAR) {
+        triangle.as_slice()
+    } else {
+        polygon = clip(triangle, NEAR);
+        polygon.corners()
+    };
     for i in 2..corners.len() {
         let vertex = |i: usize| ScreenVertex::from_clip(corners[i], picture.width, picture.height);
         let fan = [vertex(0), vertex(i - 1), vertex(i)];

@@ -1,6 +1,6 @@
 //! Shadow map: an orthographic depth picture taken from the sun, which tells where its light does not reach.
 
-use crate::clip::clip;
+use crate::clip::{clip, is_whole, unseen};
 use crate::raster::{Area, Cells, Footprint, Lattice, NOTHING, Pixel, ScreenVertex, floor, scan};
 use sinew::math::dispatch::{self, Kernel};
 use sinew::math::lanes::{LaneMask, Lanes, WIDTH};
@@ -106,10 +106,17 @@ impl ShadowMap {
         let place = |i: usize| self.map_from_world(corners[i]);
         let on_map = [place(0), place(1), place(2)];
         let flat = |i: usize| [on_map[i][0], on_map[i][1], 1.0];
-        let polygon = clip([flat(0), flat(1), flat(2)], 0.5);
-        if polygon.corners().is_empty() {
+        let triangle = [flat(0), flat(1), flat(2)];
+        if unseen(&triangle, 0.5) {
             return;
         }
+        let polygon;
+        let corners = if is_whole(&triangle, 0.5) {
+            triangle.as_slice()
+        } else {
+            polygon = clip(triangle, 0.5);
+            polygon.corners()
+        };
         let half = 0.5 * self.size as f32;
         let slope = HeightOverMap::through(on_map);
         let vertex = |[x, y, _]: [f32; 3]| ScreenVertex {
@@ -117,9 +124,8 @@ impl ShadowMap {
             y: (1.0 - y) * half,
             depth: slope.at(x, y),
         };
-        let corners = polygon.corners();
-        for i in 1..corners.len() - 1 {
-            let fan = [vertex(corners[0]), vertex(corners[i]), vertex(corners[i + 1])];
+        for i in 2..corners.len() {
+            let fan = [vertex(corners[0]), vertex(corners[i - 1]), vertex(corners[i])];
             if let Some((footprint, _)) = Footprint::new(fan, NOTHING) {
                 self.casting.push(footprint);
             }
