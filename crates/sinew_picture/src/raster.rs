@@ -544,7 +544,7 @@ fn scan_large<L: Lanes>(
                 edge.next_row(&mut first, &mut last);
             }
             if first <= last {
-                (least, most) = (least.min(first), most.max(last));
+                (least, most) = (i64::min(least, first), i64::max(most, last));
             } else {
                 (first, last) = (0, -1);
             }
@@ -597,7 +597,7 @@ mod tests {
         }
     }
 
-    /// How often each sample is covered, row by row.
+    /// Counts of the coverage of each sample, row by row.
     fn coverage(vertices: [ScreenVertex; 3], offsets: &[[i64; 2]]) -> Vec<u32> {
         let stride = SIZE * offsets.len();
         let mut counts = vec![0; SIZE * stride];

@@ -45,8 +45,8 @@ impl Texels {
 
     #[inline(always)]
     fn include(&mut self, first_column: usize, last_column: usize, row: usize) {
-        self.first = [self.first[0].min(first_column), self.first[1].min(row)];
-        self.last = [self.last[0].max(last_column), self.last[1].max(row)];
+        self.first = [usize::min(self.first[0], first_column), usize::min(self.first[1], row)];
+        self.last = [usize::max(self.last[0], last_column), usize::max(self.last[1], row)];
     }
 }
 

@@ -36,7 +36,7 @@ const STRETCH: usize = 32;
 fn redraw(drawn: &mut [[u8; 4]], changed: &mut [bool], rgba: &[u8]) {
     let mut most = 0;
     for (a, b) in drawn.as_flattened().iter().zip(rgba) {
-        most = most.max(a.abs_diff(*b));
+        most = u8::max(most, a.abs_diff(*b));
     }
     if most <= UNSEEN_CHANGE {
         changed.fill(false);
