@@ -228,3 +228,89 @@ pub fn body_models(body: &BodyDef, half_size: f32, color: [f32; 3], other: [f32;
     };
     body.shapes.iter().map(model).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew::physics::ShapeDef;
+    use sinew::ragdoll::Event;
+    use sinew_picture::Antialiasing;
+    use sinew_scenes::cabin::Site;
+
+    /// The caption of a picture follows what the character does at its time.
+    #[test]
+    fn captions_follow_the_state() {
+        let demo = sinew_scenes::demo::Demo::new(Site::CabinWithStairs);
+        let input = demo.input();
+        let fall = Fall::simulate(&input);
+        let events = &fall.baked.events;
+        let at = |what: fn(&Event) -> bool| {
+            events.iter().find(|(_, event)| what(event)).expect("it comes to that").0
+        };
+        let hit = at(|event| matches!(event, Event::Hit { .. }));
+        let settled = events.iter().find_map(|(_, event)| match event {
+            Event::Settled { since } => Some(*since),
+            _ => None,
+        });
+        let rises = at(|event| matches!(event, Event::GettingUp { .. }));
+        let up = at(|event| matches!(event, Event::Up));
+        let settled = settled.expect("it lies still");
+        let frames = (fall.input.seconds * FPS as f32) as u32 + 1;
+        let film =
+            Film { fall: &fall, set: vec![], direction: Vec3::Z, view: View::Whole, sun: Sun::default() };
+        let mut shots = Shots::new(film, frames);
+        let mut renderer = Renderer::new(RenderSettings {
+            width: 32,
+            height: 18,
+            antialiasing: Antialiasing::Off,
+            shadow_texels: 16,
+            threads: 1,
+        });
+        // A picture between one event and the next, and what it must say.
+        for (from, to, expected) in [
+            (0.0, hit, "walks"),
+            (hit, hit + story::HIT_SECONDS, "is hit"),
+            (hit + story::HIT_SECONDS, settled, "falls"),
+            (settled, rises, "lies still"),
+            (rises, up, "gets up"),
+            (up, fall.input.seconds, "walks"),
+        ] {
+            let frame = (0.5 * (from + to) * FPS as f32).round() as u32;
+            shots.shoot(&mut renderer, frame);
+            let said = shots.scene.captions[0].text.clone();
+            let time = frame as f32 / FPS as f32;
+            assert_eq!(said, format!("{time:5.2} s  {expected}"), "between {from} and {to} s");
+        }
+    }
+
+    /// A wall before the camera is gone round: what it films is seen the whole way.
+    #[test]
+    fn a_wall_before_the_camera_is_gone_round() {
+        let block = |center: Vec3, half_extents: Vec3| BodyDef {
+            kind: BodyKind::Static,
+            position: center,
+            shapes: vec![ShapeDef::new(Shape::Box { half_extents })],
+            ..BodyDef::default()
+        };
+        let bodies = [block(Vec3::new(0.0, 2.0, 2.0), Vec3::new(6.0, 2.0, 0.1))];
+        let boxes: Vec<Aabb> = (0..30)
+            .map(|frame| Aabb::around(Vec3::new(0.05 * frame as f32, 0.9, 0.0), Vec3::new(0.4, 0.9, 0.4)))
+            .collect();
+        let framing = Framing::new(&boxes, FPS as f32, Vec3::Z);
+        let mut world = World::new(WorldDef::default());
+        world.add_body(&bodies[0]);
+        let stands = world.query().filter(QueryFilter::of(BodyKinds::STATIC));
+        let hidden = |side: Vec3| {
+            let seen = framing.seen_from(side);
+            let looks = boxes.iter().enumerate().filter(|(frame, bounds)| {
+                let (origin, camera) = (bounds.center(), seen.camera(*frame, 1.6).position);
+                stands.any(&Ray { origin, direction: camera - origin })
+            });
+            looks.count()
+        };
+        assert_eq!(hidden(Vec3::Z), boxes.len(), "the wall is in the way");
+        assert_eq!(hidden(clear_side(&bodies, &framing, &boxes, Vec3::Z)), 0);
+        // Without a wall it stays where it was asked to be.
+        assert_eq!(clear_side(&[], &framing, &boxes, Vec3::Z), Vec3::Z);
+    }
+}

@@ -7,7 +7,7 @@ use sinew::ragdoll::{BakeInput, CharacterDef, Event, Locomotion, Opening};
 pub type Phase = (f32, String);
 
 /// Seconds for which a hit is called one.
-const HIT_SECONDS: f32 = 0.4;
+pub const HIT_SECONDS: f32 = 0.4;
 
 const RESTS: &str = "stands in its rest pose";
 

@@ -1,3 +1,5 @@
+use crate::raster::LANE_NUMBERS;
+use sinew::math::lanes::{Lanes, Vector3};
 use sinew::math::{Vec3, clamp, max, normalize_or, trig};
 use sinew::physics::boxes::Aabb;
 
@@ -166,6 +168,14 @@ impl View {
     #[inline(always)]
     pub(crate) fn ray(&self, x: f32, y: f32) -> Vec3 {
         self.corner_ray + self.ray_per_pixel[0] * x + self.ray_per_pixel[1] * y
+    }
+
+    /// [`Self::ray`] through the middles of pixels side by side, from the one at `x` on.
+    #[inline(always)]
+    pub(crate) fn rays<L: Lanes>(&self, x: f32, y: f32) -> Vector3<L> {
+        let x = L::splat(x) + L::load(&LANE_NUMBERS) + L::splat(0.5);
+        let [across, down] = self.ray_per_pixel.map(Vector3::splat);
+        Vector3::splat(self.corner_ray) + across * x + down * L::splat(y)
     }
 
     /// Change of [`Self::ray`] from a pixel to the next, to the right and down.

@@ -41,12 +41,19 @@ pub(crate) fn clip(triangle: [ClipVertex; 3], near: f32) -> Polygon {
 }
 
 /// True if one edge of the picture or the near plane has the whole triangle on its far side.
-fn unseen(triangle: &[ClipVertex; 3], near: f32) -> bool {
+#[inline]
+pub(crate) fn unseen(triangle: &[ClipVertex; 3], near: f32) -> bool {
     triangle.iter().all(|v| v[0] > v[2])
         || triangle.iter().all(|v| v[0] < -v[2])
         || triangle.iter().all(|v| v[1] > v[2])
         || triangle.iter().all(|v| v[1] < -v[2])
         || triangle.iter().all(|v| v[2] < near)
+}
+
+/// True if nothing is cut off a triangle.
+#[inline]
+pub(crate) fn is_whole(triangle: &[ClipVertex; 3], near: f32) -> bool {
+    (0..5).all(|plane| triangle.iter().all(|&v| distance(plane, v, near) >= 0.0))
 }
 
 /// Distance inside a plane: 0 near, 1–4 the guard band right, left, top, bottom.
@@ -108,6 +115,8 @@ mod tests {
     fn a_triangle_inside_is_untouched() {
         let triangle = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.9, 1.0]];
         assert_eq!(clip(triangle, 0.1).corners(), &triangle);
+        assert!(is_whole(&triangle, 0.1) && !unseen(&triangle, 0.1));
+        assert!(!is_whole(&[[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 2.1, 1.0]], 0.1));
     }
 
     #[test]

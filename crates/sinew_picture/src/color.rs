@@ -1,5 +1,7 @@
 //! sRGB bytes ↔ linear numbers (IEC 61966-2-1).
 
+use crate::shade::limited;
+use sinew::math::lanes::{Lanes, WIDTH};
 use sinew::math::{clamp, trig};
 
 /// Entries of the encoding table: at the steep dark end one entry is 0.8 of a byte's step, so no byte is left out.
@@ -9,7 +11,7 @@ const ENCODE_STEPS: usize = 4096;
 #[derive(Clone, Debug)]
 pub(crate) struct ColorTables {
     linear: [f32; 256],
-    srgb: Vec<u8>,
+    srgb: Box<[u8; ENCODE_STEPS]>,
 }
 
 impl ColorTables {
@@ -19,7 +21,10 @@ impl ColorTables {
             *slot = decode(byte as f32 / 255.0);
         }
         let top = (ENCODE_STEPS - 1) as f32;
-        let srgb = (0..ENCODE_STEPS).map(|i| (encode(i as f32 / top) * 255.0 + 0.5) as u8).collect();
+        let mut srgb = Box::new([0; ENCODE_STEPS]);
+        for (i, byte) in srgb.iter_mut().enumerate() {
+            *byte = (encode(i as f32 / top) * 255.0 + 0.5) as u8;
+        }
         Self { linear, srgb }
     }
 
@@ -33,6 +38,26 @@ impl ColorTables {
     #[inline(always)]
     pub(crate) fn to_srgb(&self, linear: f32) -> u8 {
         self.srgb[(clamp(linear, 0.0, 1.0) * (ENCODE_STEPS - 1) as f32 + 0.5) as usize]
+    }
+
+    /// Writes [`Self::to_srgb3`] of pixels side by side, given by channel, into as many pixels of red, green, blue and alpha: the same
+    /// bytes.
+    #[inline(always)]
+    pub(crate) fn write_srgb<L: Lanes>(&self, linear: [L; 3], pixels: &mut [[u8; 4]; WIDTH]) {
+        /// From here on `f32` numbers are whole, and the low bits of theirs are how many more they are.
+        const WHOLE: f32 = 8_388_608.0;
+        let mut steps = [[0.0; WIDTH]; 3];
+        for (steps, linear) in steps.iter_mut().zip(linear) {
+            let x = limited(linear, 0.0, 1.0) * L::splat((ENCODE_STEPS - 1) as f32) + L::splat(0.5);
+            let nearest = (x + L::splat(WHOLE)) - L::splat(WHOLE);
+            let below = L::select(L::gt(nearest, x), nearest - L::splat(1.0), nearest);
+            (below + L::splat(WHOLE)).store(steps);
+        }
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            for channel in 0..3 {
+                pixel[channel] = self.srgb[steps[channel][i].to_bits() as usize % ENCODE_STEPS];
+            }
+        }
     }
 
     /// sRGB bytes of a linear colour.

@@ -3,7 +3,7 @@
 use crate::camera::{NEAR, View};
 use crate::color::ColorTables;
 use crate::image::Image;
-use crate::raster::{Layer, ScreenVertex};
+use crate::raster::{Samples, ScreenVertex};
 use crate::scene::{Caption, Line, LineDepth};
 use sinew::math::{clamp, max};
 
@@ -24,18 +24,18 @@ pub(crate) fn draw_lines(
     image: &mut Image,
     lines: &[Line],
     view: &View,
-    layer: &Layer,
+    samples: &Samples,
     tables: &ColorTables,
 ) {
     for line in lines {
-        if let Some(ends) = on_picture(line, view, layer) {
-            draw_line(image, ends, tables.to_srgb3(line.color), line.depth, layer);
+        if let Some(ends) = on_picture(line, view, samples) {
+            draw_line(image, ends, tables.to_srgb3(line.color), line.depth, samples);
         }
     }
 }
 
 /// The ends of the part of a line that is before the camera and near the picture.
-fn on_picture(line: &Line, view: &View, layer: &Layer) -> Option<[ScreenVertex; 2]> {
+fn on_picture(line: &Line, view: &View, samples: &Samples) -> Option<[ScreenVertex; 2]> {
     let [a, b] = [view.clip_from_world(line.from), view.clip_from_world(line.to)];
     let (mut first, mut last) = (0.0f32, 1.0f32);
     // Liang and Barsky 1984: the part between the near plane and the four edges of the picture.
@@ -55,14 +55,20 @@ fn on_picture(line: &Line, view: &View, layer: &Layer) -> Option<[ScreenVertex; 
     some.then(|| {
         [first, last].map(|t| {
             let v = core::array::from_fn(|i| a[i] + (b[i] - a[i]) * t);
-            ScreenVertex::from_clip(v, layer.width, layer.height)
+            ScreenVertex::from_clip(v, samples.width, samples.height)
         })
     })
 }
 
 /// Two pixels a step along the longer direction, weighted by how near the line passes (Wu, "An Efficient
 /// Antialiasing Technique", SIGGRAPH 1991), a little wider so that lines stay readable.
-fn draw_line(image: &mut Image, [a, b]: [ScreenVertex; 2], srgb: [u8; 3], depth: LineDepth, layer: &Layer) {
+fn draw_line(
+    image: &mut Image,
+    [a, b]: [ScreenVertex; 2],
+    srgb: [u8; 3],
+    depth: LineDepth,
+    samples: &Samples,
+) {
     let (dx, dy) = (b.x - a.x, b.y - a.y);
     let steep = dy.abs() > dx.abs();
     let steps = (max(dx.abs(), dy.abs()) + 1.0) as i32;
@@ -75,16 +81,16 @@ fn draw_line(image: &mut Image, [a, b]: [ScreenVertex; 2], srgb: [u8; 3], depth:
         for pixel in across.floor() as i32 - 1..=across.floor() as i32 + 2 {
             let amount = clamp(1.2 - (across - pixel as f32).abs(), 0.0, 1.0);
             let (px, py) = if steep { (pixel, along) } else { (along, pixel) };
-            if amount > 0.0 && (depth == LineDepth::OnTop || !hidden(layer, px, py, nearness)) {
+            if amount > 0.0 && (depth == LineDepth::OnTop || !hidden(samples, px, py, nearness)) {
                 image.blend(px, py, srgb, (amount * 255.0) as u8);
             }
         }
     }
 }
 
-fn hidden(layer: &Layer, x: i32, y: i32, nearness: f32) -> bool {
-    let on_it = x >= 0 && y >= 0 && x < layer.width as i32 && y < layer.height as i32;
-    on_it && layer.depth[y as usize * layer.width + x as usize] > nearness
+fn hidden(samples: &Samples, x: i32, y: i32, nearness: f32) -> bool {
+    let on_it = x >= 0 && y >= 0 && x < samples.width as i32 && y < samples.height as i32;
+    on_it && samples.depth(x as usize, y as usize) > nearness
 }
 
 pub(crate) fn draw_captions(image: &mut Image, captions: &[Caption], tables: &ColorTables) {

@@ -1,7 +1,10 @@
 //! Rasterizer: the samples of a picture that a triangle covers, in exact integers, so that triangles that share an edge cover every
-//! sample between them once (top-left rule).
+//! sample between them once (top-left rule). Eight samples go at once: those of pixels side by side.
 
 use crate::clip::ClipVertex;
+use core::ops::Range;
+use sinew::math::dispatch::{self, Kernel};
+use sinew::math::lanes::{LaneMask, Lanes, WIDTH};
 
 /// Fixed-point units per pixel.
 const UNIT: i64 = 256;
@@ -14,17 +17,19 @@ pub(crate) fn floor(x: f32) -> i32 {
     if toward_zero as f32 > x { toward_zero.saturating_sub(1) } else { toward_zero }
 }
 
-/// One depth and one triangle per pixel, for one sample position within the pixels.
+/// Depth and triangle of every sample of a picture, or of a band of its rows. The samples of a pixel are side by side.
 #[derive(Clone, Debug)]
-pub(crate) struct Layer {
+pub(crate) struct Samples {
     pub(crate) width: usize,
     pub(crate) height: usize,
-    /// Position of the sample in its pixel, 1/256 pixel from the middle.
-    pub(crate) offset: [i64; 2],
+    /// Places of the samples in a pixel, 1/256 pixel from its middle: one, or four.
+    offsets: &'static [[i64; 2]],
+    /// From a row to the next: whole lanes, so that none reaches into another row.
+    stride: usize,
     /// `1 / w`: larger is nearer, 0 where nothing is.
-    pub(crate) depth: Vec<f32>,
-    /// Triangle per pixel; [`NOTHING`] where none is.
-    pub(crate) ids: Vec<u32>,
+    depth: Vec<f32>,
+    /// Triangle per sample; [`NOTHING`] where none is.
+    ids: Vec<u32>,
 }
 
 /// The id of no triangle.
@@ -113,41 +118,118 @@ impl Ramp {
     }
 }
 
-impl Layer {
-    pub(crate) fn new(width: usize, height: usize, offset: [i64; 2]) -> Self {
-        let pixels = width * height;
-        Self { width, height, offset, depth: vec![0.0; pixels], ids: vec![NOTHING; pixels] }
+impl Samples {
+    /// # Panics
+    /// Where there are neither one nor four samples a pixel.
+    pub(crate) fn new(width: usize, height: usize, offsets: &'static [[i64; 2]]) -> Self {
+        assert!(matches!(offsets.len(), 1 | 4), "{} samples a pixel", offsets.len());
+        let stride = (width * offsets.len()).next_multiple_of(WIDTH);
+        let all = stride * height;
+        Self { width, height, offsets, stride, depth: vec![0.0; all], ids: vec![NOTHING; all] }
     }
 
+    /// Triangles of the samples of some pixels side by side.
+    #[inline(always)]
+    pub(crate) fn ids(&self, x: usize, y: usize, pixels: usize) -> &[u32] {
+        let (start, count) = (y * self.stride + x * self.offsets.len(), pixels * self.offsets.len());
+        &self.ids[start..start + count]
+    }
+
+    /// Depth of the first sample of a pixel.
+    pub(crate) fn depth(&self, x: usize, y: usize) -> f32 {
+        self.depth[y * self.stride + x * self.offsets.len()]
+    }
+
+    /// Place of a sample in its pixel, from its upper left corner, in pixels.
+    #[inline(always)]
+    pub(crate) fn place(&self, sample: usize) -> [f32; 2] {
+        self.offsets[sample].map(|o| 0.5 + o as f32 / UNIT as f32)
+    }
+
+    /// The whole of it as bands of rows, at most so many.
+    pub(crate) fn bands(&mut self, most: usize) -> impl Iterator<Item = Band<'_>> {
+        let rows = self.height.div_ceil(most.max(1)).max(1);
+        let (width, stride, height, offsets) = (self.width, self.stride, self.height, self.offsets);
+        let chunks = self.depth.chunks_mut(rows * stride).zip(self.ids.chunks_mut(rows * stride));
+        chunks.enumerate().map(move |(band, (depth, ids))| Band {
+            area: Area { width, stride, rows: band * rows..height.min((band + 1) * rows) },
+            offsets,
+            depth,
+            ids,
+        })
+    }
+}
+
+/// Rows of a picture that one thread draws.
+pub(crate) struct Band<'a> {
+    area: Area,
+    offsets: &'static [[i64; 2]],
+    depth: &'a mut [f32],
+    ids: &'a mut [u32],
+}
+
+impl Band<'_> {
     pub(crate) fn clear(&mut self) {
         self.depth.fill(0.0);
         self.ids.fill(NOTHING);
     }
 
-    /// Empties the layer so that only what is nearer than `behind` will show.
+    /// Empties the band so that only what is nearer than `behind` will show.
     pub(crate) fn clear_in_front_of(&mut self, behind: &Self) {
-        self.depth.copy_from_slice(&behind.depth);
+        self.depth.copy_from_slice(behind.depth);
         self.ids.fill(NOTHING);
     }
 
-    /// Middle of the sample in a pixel, from its upper left corner, in pixels.
-    pub(crate) fn sample_position(&self) -> [f32; 2] {
-        self.offset.map(|o| 0.5 + o as f32 / UNIT as f32)
+    /// Draws triangles in their order, each where it is nearer than what is there. At equal depths the first drawn stays.
+    pub(crate) fn draw(&mut self, footprints: &[Footprint]) {
+        dispatch::run(Draw { band: self, footprints });
     }
+}
 
-    /// Draws a triangle where it is nearer than what is there. At equal depths the first drawn stays.
-    pub(crate) fn draw(&mut self, footprint: &Footprint) {
-        let Self { width, height, offset, depth, ids } = self;
-        scan(footprint, *width, *height, *offset, |pixels, ramp| {
-            let row = depth[pixels.clone()].iter_mut().zip(&mut ids[pixels]);
-            for (column, (depth, id)) in row.enumerate() {
-                // Chosen, not branched: so that several pixels go at once.
-                let z = ramp.at(column);
-                let is_nearer = z > *depth;
-                *depth = if is_nearer { z } else { *depth };
-                *id = if is_nearer { footprint.id } else { *id };
-            }
-        });
+struct Draw<'a, 'b> {
+    band: &'a mut Band<'b>,
+    footprints: &'a [Footprint],
+}
+
+impl Kernel for Draw<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Band { area, offsets, depth, ids } = self.band;
+        let lattice = Lattice::new(offsets);
+        for footprint in self.footprints {
+            let mut nearest = Nearest { depth, ids, id: footprint.id };
+            scan::<L>(footprint, area, &lattice, &mut nearest);
+        }
+    }
+}
+
+/// Depths and triangles of samples while a triangle is drawn.
+struct Nearest<'a> {
+    depth: &'a mut [f32],
+    ids: &'a mut [u32],
+    id: u32,
+}
+
+impl Cells for Nearest<'_> {
+    #[inline(always)]
+    fn visit<L: Lanes>(&mut self, Pixel { start, .. }: Pixel, z: L, inside: L::Mask) {
+        let depth = self.depth[start..].first_chunk_mut::<WIDTH>();
+        let (Some(depth), Some(ids)) = (depth, self.ids[start..].first_chunk_mut::<WIDTH>()) else { return };
+        let old = L::load(depth);
+        let is_nearer = L::gt(z, old) & inside;
+        L::select(is_nearer, z, old).store(depth);
+        // Whole numbers are selected by their bits; that they would be odd floats is of no matter.
+        let (mut bits, mut chosen) = ([0.0; WIDTH], [0.0; WIDTH]);
+        for i in 0..WIDTH {
+            bits[i] = f32::from_bits(ids[i]);
+        }
+        let id = L::splat(f32::from_bits(self.id));
+        L::select(is_nearer, id, L::load(&bits)).store(&mut chosen);
+        for i in 0..WIDTH {
+            ids[i] = chosen[i].to_bits();
+        }
     }
 }
 
@@ -215,66 +297,285 @@ impl EdgeWalk {
     }
 }
 
-/// Depth along a row of a picture.
+/// The edge function of a small triangle at eight samples, from eight to eight: not negative on the inside.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RowDepth {
-    at_origin: f32,
-    per_x: f32,
-    /// From where the depth is `at_origin` to the row's first pixel, pixels, in two parts: the first is a whole number.
-    first: i32,
-    from_x0: f32,
+struct EdgeSteps {
+    values: [i32; WIDTH],
+    per_pixel: i32,
+    per_row: i32,
 }
 
-impl RowDepth {
-    /// Depth so many pixels after the first.
+impl EdgeSteps {
+    /// The edge from `a` to `b`, starting at the samples of the pixel with the corner `at`. All lie so near to each other that the
+    /// products fit 32 bits.
     #[inline(always)]
-    pub(crate) fn at(&self, column: usize) -> f32 {
-        self.at_origin + self.per_x * ((self.first + column as i32) as f32 + self.from_x0)
+    fn new(a: [i64; 2], b: [i64; 2], at: [i64; 2], lattice: &Lattice) -> Self {
+        let (dx, dy) = ((b[0] - a[0]) as i32, (b[1] - a[1]) as i32);
+        let (x, y) = ((at[0] - a[0]) as i32, (at[1] - a[1]) as i32);
+        // The top-left rule, as in `EdgeWalk`.
+        let belongs = i32::from(dy < 0 || (dy == 0 && dx > 0));
+        let at_corner = dx * y - dy * x + belongs - 1;
+        let mut values = [0; WIDTH];
+        for i in 0..WIDTH {
+            values[i] = at_corner + dx * lattice.y[i] - dy * lattice.x[i];
+        }
+        Self { values, per_pixel: -dy * UNIT as i32, per_row: dx * UNIT as i32 }
+    }
+
+    #[inline(always)]
+    fn step(&mut self, by: i32) {
+        for value in &mut self.values {
+            *value += by;
+        }
     }
 }
 
-/// Calls `visit(pixels, depth)` for every row of a `width × height` picture with pixels whose sample, `offset` (in 1/256 pixel)
-/// from its middle, is covered.
+/// Pixels and samples of which eight lanes are, from a pixel on.
+pub(crate) struct Lattice {
+    /// Pixels of eight samples.
+    pixels: i64,
+    /// Samples from the corner of the first pixel, 1/256 pixel.
+    x: [i32; WIDTH],
+    y: [i32; WIDTH],
+    /// Columns from that pixel on.
+    columns: [f32; WIDTH],
+    /// Samples in their own pixels, 1/256 pixel: one for each lane.
+    x_in_pixel: [f32; WIDTH],
+    y_in_pixel: [f32; WIDTH],
+    /// The same, one for each sample.
+    places: [[i64; 2]; 4],
+    samples: usize,
+}
+
+impl Lattice {
+    #[inline(always)]
+    pub(crate) fn new(offsets: &[[i64; 2]]) -> Self {
+        let samples = offsets.len();
+        let mut lattice = Self {
+            pixels: (WIDTH / samples) as i64,
+            x: [0; WIDTH],
+            y: [0; WIDTH],
+            columns: [0.0; WIDTH],
+            x_in_pixel: [0.0; WIDTH],
+            y_in_pixel: [0.0; WIDTH],
+            places: [[0; 2]; 4],
+            samples,
+        };
+        for (sample, offset) in offsets.iter().enumerate() {
+            lattice.places[sample] = [UNIT / 2 + offset[0], UNIT / 2 + offset[1]];
+        }
+        for i in 0..WIDTH {
+            let ([x, y], pixel) = (lattice.places[i % samples], i / samples);
+            lattice.x[i] = (x + pixel as i64 * UNIT) as i32;
+            lattice.y[i] = y as i32;
+            lattice.columns[i] = pixel as f32;
+            (lattice.x_in_pixel[i], lattice.y_in_pixel[i]) = (x as f32, y as f32);
+        }
+        lattice
+    }
+}
+
+/// Rows of a picture, and how they lie in memory.
+#[derive(Clone, Debug)]
+pub(crate) struct Area {
+    /// Pixels.
+    pub(crate) width: usize,
+    /// Samples from a row to the next.
+    pub(crate) stride: usize,
+    pub(crate) rows: Range<usize>,
+}
+
+/// Column and row of a pixel, and where its first sample is in an area's memory.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pixel {
+    pub(crate) column: usize,
+    pub(crate) row: usize,
+    pub(crate) start: usize,
+}
+
+/// Takes what [`scan`] finds.
+pub(crate) trait Cells {
+    /// Depths of eight samples side by side, from the first of a pixel on, and which of them are covered: at least one. To be marked
+    /// `#[inline(always)]`.
+    fn visit<L: Lanes>(&mut self, pixel: Pixel, depth: L, inside: L::Mask);
+}
+
+/// A triangle's depth at eight samples.
+#[derive(Clone, Copy)]
+struct Depths<L> {
+    at_origin: L,
+    per_x: L,
+    columns: L,
+    from_x0: L,
+}
+
+impl<L: Lanes> Depths<L> {
+    #[inline(always)]
+    fn new(ramp: &Ramp, lattice: &Lattice) -> Self {
+        Self {
+            at_origin: L::splat(0.0),
+            per_x: L::splat(ramp.per_x),
+            columns: L::load(&lattice.columns),
+            from_x0: L::load(&lattice.x_in_pixel) / L::splat(UNIT as f32) - L::splat(ramp.x0),
+        }
+    }
+
+    #[inline(always)]
+    fn on_row(self, row: i64, ramp: &Ramp, lattice: &Lattice) -> Self {
+        // Sums of whole numbers are exact.
+        let y = (L::splat((row * UNIT) as f32) + L::load(&lattice.y_in_pixel)) / L::splat(UNIT as f32);
+        let at_origin = L::splat(ramp.at_origin) + L::splat(ramp.per_y) * (y - L::splat(ramp.y0));
+        Self { at_origin, ..self }
+    }
+
+    #[inline(always)]
+    fn at(&self, column: i64) -> L {
+        self.at_origin + self.per_x * (L::splat(column as f32) + self.columns + self.from_x0)
+    }
+}
+
+/// Columns and rows of pixels with samples within a triangle's bounds.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    columns: [i64; 2],
+    rows: [i64; 2],
+    is_small: bool,
+}
+
+impl Bounds {
+    /// `None` where no sample of the area can be covered.
+    #[inline(always)]
+    fn new([a, b, c]: [[i64; 2]; 3], area: &Area) -> Option<Self> {
+        let least = [a[0].min(b[0]).min(c[0]), a[1].min(b[1]).min(c[1])];
+        let most = [a[0].max(b[0]).max(c[0]), a[1].max(b[1]).max(c[1])];
+        let first = [least[0].div_euclid(UNIT), least[1].div_euclid(UNIT)];
+        let last = [most[0].div_euclid(UNIT), most[1].div_euclid(UNIT)];
+        let columns = [first[0].max(0), last[0].min(area.width as i64 - 1)];
+        let rows = [first[1].max(area.rows.start as i64), last[1].min(area.rows.end as i64 - 1)];
+        let is_small = last[0] - first[0] < SMALL && last[1] - first[1] < SMALL;
+        (columns[0] <= columns[1] && rows[0] <= rows[1]).then_some(Self { columns, rows, is_small })
+    }
+}
+
+/// Triangles that reach over fewer columns and rows than this are found by their edge functions at all samples of their bounds; larger
+/// ones, whose numbers would not fit, by where their edges cross the rows.
+const SMALL: i64 = 48;
+
+/// Visits all samples of an area that a triangle covers, row by row.
 #[inline(always)]
-pub(crate) fn scan(
+pub(crate) fn scan<L: Lanes>(footprint: &Footprint, area: &Area, lattice: &Lattice, cells: &mut impl Cells) {
+    if let Some(bounds) = Bounds::new(footprint.corners, area) {
+        if bounds.is_small {
+            scan_small::<L>(footprint, &bounds, area, lattice, cells);
+        } else {
+            scan_large::<L>(footprint, &bounds, area, lattice, cells);
+        }
+    }
+}
+
+#[inline(always)]
+fn scan_small<L: Lanes>(
     footprint: &Footprint,
-    width: usize,
-    height: usize,
-    offset: [i64; 2],
-    mut visit: impl FnMut(core::ops::Range<usize>, RowDepth),
+    bounds: &Bounds,
+    area: &Area,
+    lattice: &Lattice,
+    cells: &mut impl Cells,
 ) {
     let [a, b, c] = footprint.corners;
-    let (sample_x, sample_y) = (UNIT / 2 + offset[0], UNIT / 2 + offset[1]);
-    let top = a[1].min(b[1]).min(c[1]) - sample_y;
-    let bottom = a[1].max(b[1]).max(c[1]) - sample_y;
-    let first_row = (-(-top).div_euclid(UNIT)).max(0);
-    let last_row = bottom.div_euclid(UNIT).min(height as i64 - 1);
-    if first_row > last_row {
-        return;
-    }
-    let y = first_row * UNIT + sample_y;
-    let mut edges = [(a, b), (b, c), (c, a)].map(|(from, to)| EdgeWalk::new(from, to, sample_x, y));
-    let ramp = footprint.depth;
-    let from_x0 = sample_x as f32 / UNIT as f32 - ramp.x0;
-    for row in first_row..=last_row {
-        let (mut first, mut last) = (0, width as i64 - 1);
-        for edge in &mut edges {
-            edge.next_row(&mut first, &mut last);
+    let pixels = lattice.pixels;
+    let (first, [top, bottom]) = (bounds.columns[0] / pixels * pixels, bounds.rows);
+    let at = [first * UNIT, top * UNIT];
+    let mut edges = [
+        EdgeSteps::new(a, b, at, lattice),
+        EdgeSteps::new(b, c, at, lattice),
+        EdgeSteps::new(c, a, at, lattice),
+    ];
+    let depths = Depths::<L>::new(&footprint.depth, lattice);
+    for row in top..=bottom {
+        let depths = depths.on_row(row, &footprint.depth, lattice);
+        let mut along = edges;
+        let start = (row as usize - area.rows.start) * area.stride;
+        let mut column = first;
+        while column <= bounds.columns[1] {
+            let mut signs = [0.0; WIDTH];
+            for i in 0..WIDTH {
+                let outside = (along[0].values[i] | along[1].values[i] | along[2].values[i]) as u32 >> 31;
+                // 1 or −1.
+                signs[i] = f32::from_bits(outside << 31 | 1f32.to_bits());
+            }
+            let inside = L::gt(L::load(&signs), L::splat(0.0));
+            if inside.any() {
+                let start = start + column as usize * lattice.samples;
+                let pixel = Pixel { column: column as usize, row: row as usize, start };
+                cells.visit(pixel, depths.at(column), inside);
+            }
+            for edge in &mut along {
+                edge.step(edge.per_pixel * pixels as i32);
+            }
+            column += pixels;
         }
-        let from_y0 = (row * UNIT + sample_y) as f32 / UNIT as f32 - ramp.y0;
-        let depth_row = ramp.at_origin + ramp.per_y * from_y0;
-        if first <= last {
-            let start = row as usize * width;
-            let depth = RowDepth { at_origin: depth_row, per_x: ramp.per_x, first: first as i32, from_x0 };
-            visit(start + first as usize..start + last as usize + 1, depth);
+        for edge in &mut edges {
+            edge.step(edge.per_row);
         }
     }
 }
+
+#[inline(always)]
+fn scan_large<L: Lanes>(
+    footprint: &Footprint,
+    bounds: &Bounds,
+    area: &Area,
+    lattice: &Lattice,
+    cells: &mut impl Cells,
+) {
+    let [a, b, c] = footprint.corners;
+    let [top, bottom] = bounds.rows;
+    let mut edges = lattice
+        .places
+        .map(|[x, y]| [(a, b), (b, c), (c, a)].map(|(from, to)| EdgeWalk::new(from, to, x, top * UNIT + y)));
+    let depths = Depths::<L>::new(&footprint.depth, lattice);
+    for row in top..=bottom {
+        let depths = depths.on_row(row, &footprint.depth, lattice);
+        let (mut from, mut to) = ([0.0; WIDTH], [0.0; WIDTH]);
+        let (mut least, mut most) = (i64::MAX, -1);
+        for (sample, edges) in edges.iter_mut().take(lattice.samples).enumerate() {
+            let (mut first, mut last) = (0, area.width as i64 - 1);
+            for edge in edges {
+                edge.next_row(&mut first, &mut last);
+            }
+            if first <= last {
+                (least, most) = (i64::min(least, first), i64::max(most, last));
+            } else {
+                (first, last) = (0, -1);
+            }
+            for lane in (sample..WIDTH).step_by(lattice.samples) {
+                (from[lane], to[lane]) = (first as f32, last as f32);
+            }
+        }
+        let (from, to) = (L::load(&from), L::load(&to));
+        let start = (row as usize - area.rows.start) * area.stride;
+        let mut column = if most < 0 { 0 } else { least / lattice.pixels * lattice.pixels };
+        while column <= most {
+            let columns = L::splat(column as f32) + depths.columns;
+            let inside = L::ge(columns, from) & L::le(columns, to);
+            if inside.any() {
+                let start = start + column as usize * lattice.samples;
+                let pixel = Pixel { column: column as usize, row: row as usize, start };
+                cells.visit(pixel, depths.at(column), inside);
+            }
+            column += lattice.pixels;
+        }
+    }
+}
+
+/// The number of each lane.
+pub(crate) const LANE_NUMBERS: [f32; WIDTH] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use sinew::math::Random;
+    use sinew::math::lanes::Scalar;
 
     const SIZE: usize = 40;
 
@@ -286,12 +587,23 @@ mod tests {
         }
     }
 
-    fn coverage(vertices: [ScreenVertex; 3], offset: [i64; 2]) -> Vec<u32> {
-        let mut counts = vec![0; SIZE * SIZE];
+    struct Counts<'a>(&'a mut [u32]);
+
+    impl Cells for Counts<'_> {
+        fn visit<L: Lanes>(&mut self, Pixel { start, .. }: Pixel, _: L, inside: L::Mask) {
+            for (lane, count) in self.0[start..start + WIDTH].iter_mut().enumerate() {
+                *count += u32::from(inside.bits() >> lane & 1);
+            }
+        }
+    }
+
+    /// Counts of the coverage of each sample, row by row.
+    fn coverage(vertices: [ScreenVertex; 3], offsets: &[[i64; 2]]) -> Vec<u32> {
+        let stride = SIZE * offsets.len();
+        let mut counts = vec![0; SIZE * stride];
         if let Some((footprint, _)) = Footprint::new(vertices, 0) {
-            scan(&footprint, SIZE, SIZE, offset, |pixels, _| {
-                counts[pixels].iter_mut().for_each(|count| *count += 1);
-            });
+            let area = Area { width: SIZE, stride, rows: 0..SIZE };
+            scan::<Scalar>(&footprint, &area, &Lattice::new(offsets), &mut Counts(&mut counts));
         }
         counts
     }
@@ -315,13 +627,15 @@ mod tests {
                 // Whole and half pixels put corners and edges exactly on samples.
                 vertices = vertices.map(|v| ScreenVertex { x: v.x.floor() + 0.5, y: v.y.floor() + 0.5, ..v });
             }
-            let offset = [[0, 0], [-32, -96], [96, -32]][case % 3];
+            let offsets: &[_] =
+                if case % 2 == 0 { &[[0, 0]] } else { &[[-32, -96], [96, -32], [32, 96], [-96, 32]] };
             let Some((footprint, _)) = Footprint::new(vertices, 0) else { continue };
-            let counts = coverage(vertices, offset);
-            for (pixel, &count) in counts.iter().enumerate() {
+            let counts = coverage(vertices, offsets);
+            for (cell, &count) in counts.iter().enumerate() {
+                let (pixel, offset) = (cell / offsets.len(), offsets[cell % offsets.len()]);
                 let x = (pixel % SIZE) as i64 * UNIT + UNIT / 2 + offset[0];
                 let y = (pixel / SIZE) as i64 * UNIT + UNIT / 2 + offset[1];
-                assert_eq!(count == 1, inside(footprint.corners, x, y), "case {case}, pixel {pixel}");
+                assert_eq!(count == 1, inside(footprint.corners, x, y), "case {case}, sample {cell}");
                 assert!(count <= 1);
             }
         }
@@ -346,7 +660,7 @@ mod tests {
                 [outside(-10.0, -10.0), outside(50.0, -10.0), outside(50.0, 50.0), outside(-10.0, 50.0)];
             let mut total = vec![0; SIZE * SIZE];
             for i in 0..4 {
-                let part = coverage([center, rim[i], rim[(i + 1) % 4]], [0, 0]);
+                let part = coverage([center, rim[i], rim[(i + 1) % 4]], &[[0, 0]]);
                 total.iter_mut().zip(part).for_each(|(sum, count)| *sum += count);
             }
             assert!(total.iter().all(|&count| count == 1));
@@ -356,20 +670,19 @@ mod tests {
     #[test]
     fn depth_is_linear_and_the_nearer_wins() {
         let corner = |x: f32, y: f32, depth: f32| ScreenVertex { x, y, depth };
-        let mut layer = Layer::new(SIZE, SIZE, [0, 0]);
-        layer.clear();
+        let mut samples = Samples::new(SIZE, SIZE, &[[0, 0]]);
         let tilted = [corner(0.0, 0.0, 0.0), corner(80.0, 0.0, 2.0), corner(0.0, 80.0, 0.0)];
         let level = [corner(0.0, 0.0, 0.5), corner(0.0, 80.0, 0.5), corner(80.0, 0.0, 0.5)];
         for (id, vertices) in [tilted, level].into_iter().enumerate() {
             let (footprint, winding) = Footprint::new(vertices, id as u32).expect("has an area");
             assert_eq!(winding, [Winding::Clockwise, Winding::CounterClockwise][id]);
-            layer.draw(&footprint);
+            samples.bands(3).for_each(|mut band| band.draw(&[footprint]));
         }
         for x in 0..SIZE {
             let slope = (x as f32 + 0.5) / 40.0;
-            assert_eq!(layer.ids[x], u32::from(slope <= 0.5), "column {x}");
+            assert_eq!(samples.ids(x, 0, 1)[0], u32::from(slope <= 0.5), "column {x}");
             let expected = if slope > 0.5 { slope } else { 0.5 };
-            assert!((layer.depth[x] - expected).abs() < 1e-6);
+            assert!((samples.depth(x, 0) - expected).abs() < 1e-6);
         }
     }
 }

@@ -1,13 +1,15 @@
 use crate::camera::{Camera, NEAR, View};
-use crate::clip::clip;
+use crate::clip::{clip, is_whole, unseen};
 use crate::color::ColorTables;
 use crate::image::Image;
 use crate::overlay;
-use crate::raster::{Footprint, Layer, NOTHING, ScreenVertex, Winding};
+use crate::raster::{Band, Footprint, NOTHING, Samples, ScreenVertex, Winding};
 use crate::scene::{Faces, Model, Scene, ShadowCasting};
 use crate::shade::{SPAN, Shader, Triangle};
 use crate::shadow::ShadowMap;
 use sinew::math::Vec3;
+use sinew::math::dispatch::{self, Kernel};
+use sinew::math::lanes::{Lanes, WIDTH};
 
 /// Size and quality of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,12 +68,12 @@ pub struct Renderer {
     tables: ColorTables,
     shadow: ShadowMap,
     triangles: Vec<Triangle>,
-    solid: Vec<Layer>,
-    translucent: Vec<Layer>,
+    solid: Samples,
+    translucent: Samples,
     footprints: Footprints,
 }
 
-/// Footprints that the layers are to draw, split by how they are seen.
+/// Footprints that are to be drawn, split by how they are seen.
 #[derive(Clone, Debug, Default)]
 struct Footprints {
     solid: Vec<Footprint>,
@@ -86,15 +88,14 @@ impl Renderer {
         assert!((1..=8192).contains(&width) && (1..=8192).contains(&height), "picture of {width} × {height}");
         assert!((16..=8192).contains(&shadow_texels), "shadow map of {shadow_texels} texels");
         assert!(threads >= 1, "a picture needs a thread");
-        let layer = |&offset: &[i64; 2]| Layer::new(width as usize, height as usize, offset);
-        let layers: Vec<Layer> = antialiasing.offsets().iter().map(layer).collect();
+        let samples = Samples::new(width as usize, height as usize, antialiasing.offsets());
         Self {
             settings,
             tables: ColorTables::new(),
             shadow: ShadowMap::new(shadow_texels as usize),
             triangles: Vec::new(),
-            solid: layers.clone(),
-            translucent: layers,
+            solid: samples.clone(),
+            translucent: samples,
             footprints: Footprints::default(),
         }
     }
@@ -114,14 +115,15 @@ impl Renderer {
         for (index, model) in scene.models.iter().enumerate() {
             self.add(model, index, &view);
         }
-        self.draw_layers();
+        self.shadow.finish();
+        self.draw();
         let mut image = self.shade(scene, &view);
-        overlay::draw_lines(&mut image, &scene.lines, &view, &self.solid[0], &self.tables);
+        overlay::draw_lines(&mut image, &scene.lines, &view, &self.solid, &self.tables);
         overlay::draw_captions(&mut image, &scene.captions, &self.tables);
         image
     }
 
-    /// Hands a model's triangles to the shadow map and to the list that the layers draw.
+    /// Hands a model's triangles to the shadow map and to the list that is drawn.
     fn add(&mut self, model: &Model, index: usize, view: &View) {
         let material = &model.material;
         let visible = material.opacity > 0.0;
@@ -137,21 +139,22 @@ impl Renderer {
                 &mut self.footprints.translucent
             };
             let id = self.triangles.len() as u32;
-            if visible && project(points, id, material.faces, view, &self.solid[0], list) {
+            if visible && project(points, id, material.faces, view, &self.solid, list) {
                 self.triangles.push(Triangle::new(index as u32, corners, points, view.eye));
             }
         }
     }
 
-    fn draw_layers(&mut self) {
+    fn draw(&mut self) {
         let footprints = &self.footprints;
-        let pairs = self.solid.iter_mut().zip(&mut self.translucent).collect();
-        share(self.settings.threads, pairs, |(solid, translucent): (&mut Layer, &mut Layer)| {
+        let threads = self.settings.threads;
+        let pairs = self.solid.bands(threads).zip(self.translucent.bands(threads)).collect();
+        share(threads, pairs, |(mut solid, mut translucent): (Band<'_>, Band<'_>)| {
             solid.clear();
-            footprints.solid.iter().for_each(|footprint| solid.draw(footprint));
+            solid.draw(&footprints.solid);
             if !footprints.translucent.is_empty() {
-                translucent.clear_in_front_of(solid);
-                footprints.translucent.iter().for_each(|footprint| translucent.draw(footprint));
+                translucent.clear_in_front_of(&solid);
+                translucent.draw(&footprints.translucent);
             }
         });
     }
@@ -164,42 +167,37 @@ impl Renderer {
         let mut rgba = vec![255; width * height * 4];
         let rows = rgba.chunks_exact_mut(width * 4).enumerate().collect();
         share(self.settings.threads, rows, |(y, row): (usize, &mut [u8])| {
-            let mut x = 0;
-            while x < width {
-                if let Some(colors) = self.span(&shader, x, y) {
-                    for (pixel, color) in row[4 * x..].chunks_exact_mut(4).zip(colors) {
-                        pixel[..3].copy_from_slice(&self.tables.to_srgb3(color));
-                    }
-                    x += SPAN;
-                } else {
-                    let color = self.pixel(&shader, x, y);
-                    row[4 * x..4 * x + 3].copy_from_slice(&self.tables.to_srgb3(color));
-                    x += 1;
-                }
-            }
+            dispatch::run(ShadeRow { renderer: self, shader: &shader, y, row });
         });
         Image { width: self.settings.width, height: self.settings.height, rgba }
     }
 
-    /// Linear colours of pixels side by side that show one flat triangle and nothing else; `None` if they do not.
+    /// Linear colours, by channel, of pixels side by side that show one flat triangle and nothing else; `None` if they do not.
     #[inline(always)]
-    fn span(&self, shader: &Shader<'_>, x: usize, y: usize) -> Option<[[f32; 3]; SPAN]> {
-        let width = self.settings.width as usize;
-        if x + SPAN > width || !self.footprints.translucent.is_empty() {
+    fn span<L: Lanes>(&self, shader: &Shader<'_>, x: usize, y: usize) -> Option<[L; 3]> {
+        if !self.footprints.translucent.is_empty() {
             return None;
         }
-        let start = y * width + x;
-        let id = self.solid[0].ids[start];
-        let shows_it = |layer: &Layer| layer.ids[start..start + SPAN].iter().all(|other| *other == id);
-        let is_one =
-            id != NOTHING && self.solid[0].ids[start + SPAN - 1] == id && self.solid.iter().all(shows_it);
-        (is_one && shader.is_flat(id)).then(|| shader.flat_span(id, x, y))
+        let ids = self.solid.ids(x, y, SPAN);
+        let id = ids[0];
+        if id == NOTHING || ids[ids.len() - 1] != id || !shader.is_flat(id) {
+            return None;
+        }
+        for ids in ids.chunks_exact(WIDTH) {
+            let mut others = 0;
+            for other in ids {
+                others |= other ^ id;
+            }
+            if others != 0 {
+                return None;
+            }
+        }
+        Some(shader.flat_span(id, x, y))
     }
 
     /// Linear colour of a pixel: every triangle in it is shaded once, in the middle of its samples.
     fn pixel(&self, shader: &Shader<'_>, x: usize, y: usize) -> [f32; 3] {
-        let index = y * self.settings.width as usize + x;
-        let solid = mean_of_layers(&self.solid, index, |id, sample| {
+        let solid = mean(&self.solid, x, y, |id, sample| {
             let (px, py) = (x as f32 + sample[0], y as f32 + sample[1]);
             if id == NOTHING { shader.sky(px, py) } else { shader.surface(id, px, py).color }
         });
@@ -207,18 +205,52 @@ impl Renderer {
             return solid;
         }
         let mut seen_through = 0.0;
-        let translucent = mean_of_layers(&self.translucent, index, |id, sample| {
+        let translucent = mean(&self.translucent, x, y, |id, sample| {
             if id == NOTHING {
                 return [0.0; 3];
             }
             let surface = shader.surface(id, x as f32 + sample[0], y as f32 + sample[1]);
             surface.color.map(|channel| channel * surface.opacity)
         });
-        for layer in &self.translucent {
-            seen_through += 1.0 - shader.opacity(layer.ids[index]);
+        let ids = self.translucent.ids(x, y, 1);
+        for &id in ids {
+            seen_through += 1.0 - shader.opacity(id);
         }
-        seen_through /= self.translucent.len() as f32;
+        seen_through /= ids.len() as f32;
         core::array::from_fn(|i| translucent[i] + solid[i] * seen_through)
+    }
+}
+
+/// Shades a row of a picture.
+struct ShadeRow<'a> {
+    renderer: &'a Renderer,
+    shader: &'a Shader<'a>,
+    y: usize,
+    row: &'a mut [u8],
+}
+
+impl Kernel for ShadeRow<'_> {
+    type Output = ();
+
+    // Spans are plain loops: what they gain here is the compiler's use of wider registers.
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { renderer, shader, y, row } = self;
+        let (width, tables) = (row.len() / 4, &renderer.tables);
+        let mut x = 0;
+        while x < width {
+            let pixels = row[4 * x..].as_chunks_mut::<4>().0.first_chunk_mut::<SPAN>();
+            if let Some(pixels) = pixels
+                && let Some(colors) = renderer.span::<L>(shader, x, y)
+            {
+                tables.write_srgb(colors, pixels);
+                x += SPAN;
+            } else {
+                let color = renderer.pixel(shader, x, y);
+                row[4 * x..4 * x + 3].copy_from_slice(&tables.to_srgb3(color));
+                x += 1;
+            }
+        }
     }
 }
 
@@ -254,13 +286,22 @@ fn project(
     id: u32,
     faces: Faces,
     view: &View,
-    picture: &Layer,
+    picture: &Samples,
     list: &mut Vec<Footprint>,
 ) -> bool {
     let before = list.len();
     let [a, b, c] = points;
-    let polygon = clip([view.clip_from_world(a), view.clip_from_world(b), view.clip_from_world(c)], NEAR);
-    let corners = polygon.corners();
+    let triangle = [view.clip_from_world(a), view.clip_from_world(b), view.clip_from_world(c)];
+    if unseen(&triangle, NEAR) {
+        return false;
+    }
+    let polygon;
+    let corners = if is_whole(&triangle, NEAR) {
+        triangle.as_slice()
+    } else {
+        polygon = clip(triangle, NEAR);
+        polygon.corners()
+    };
     for i in 2..corners.len() {
         let vertex = |i: usize| ScreenVertex::from_clip(corners[i], picture.width, picture.height);
         let fan = [vertex(0), vertex(i - 1), vertex(i)];
@@ -275,24 +316,20 @@ fn project(
 
 /// Mean over a pixel's samples of `shade(id, place in the pixel)`, called once per different id.
 #[inline(always)]
-fn mean_of_layers(
-    layers: &[Layer],
-    index: usize,
-    mut shade: impl FnMut(u32, [f32; 2]) -> [f32; 3],
-) -> [f32; 3] {
-    let first_id = layers[0].ids[index];
-    if layers[1..].iter().all(|layer| layer.ids[index] == first_id) {
+fn mean(samples: &Samples, x: usize, y: usize, mut shade: impl FnMut(u32, [f32; 2]) -> [f32; 3]) -> [f32; 3] {
+    let ids = samples.ids(x, y, 1);
+    let first_id = ids[0];
+    if ids[1..].iter().all(|&id| id == first_id) {
         return shade(first_id, [0.5; 2]);
     }
     let mut sum = [0.0; 3];
-    for (first, layer) in layers.iter().enumerate() {
-        let id = layer.ids[index];
-        if layers[..first].iter().any(|earlier| earlier.ids[index] == id) {
+    for (first, &id) in ids.iter().enumerate() {
+        if ids[..first].contains(&id) {
             continue;
         }
         let (mut count, mut place) = (0.0, [0.0; 2]);
-        for same in layers[first..].iter().filter(|later| later.ids[index] == id) {
-            let sample = same.sample_position();
+        for same in (first..ids.len()).filter(|&later| ids[later] == id) {
+            let sample = samples.place(same);
             place = [place[0] + sample[0], place[1] + sample[1]];
             count += 1.0;
         }
@@ -302,5 +339,5 @@ fn mean_of_layers(
             sum[i] += color[i] * count;
         }
     }
-    sum.map(|channel| channel / layers.len() as f32)
+    sum.map(|channel| channel / ids.len() as f32)
 }

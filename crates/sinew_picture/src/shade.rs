@@ -5,14 +5,15 @@ use crate::color::ColorTables;
 use crate::raster::NOTHING;
 use crate::scene::{Material, Model, Pattern, Scene, Sky};
 use crate::shadow::ShadowMap;
-use sinew::math::{Vec2, Vec3, abs3, clamp, max, min, normalize_or};
+use sinew::math::lanes::{Lanes, Real, Vector3, WIDTH};
+use sinew::math::{Vec2, Vec3, abs3, clamp, max, normalize_or};
 
 /// Share of the sky's brightness that falls on things. Less than all, as if much of it were hidden: shadows need to be dark to
 /// be read.
 const SKY_LIGHT: f32 = 0.55;
 
 /// Pixels that [`Shader::flat_span`] shades at once.
-pub(crate) const SPAN: usize = 16;
+pub(crate) const SPAN: usize = WIDTH;
 
 /// A drawn triangle: its number among these is its id in the layers.
 ///
@@ -139,59 +140,68 @@ impl<'a> Shader<'a> {
         !has_picture && model.normals.len() != vertices && model.colors.len() != vertices
     }
 
-    /// [`Self::surface`] of a flat triangle in the middles of pixels side by side, from `x` on in the row `y`: the same numbers, many at
-    /// a time.
-    pub(crate) fn flat_span(&self, id: u32, x: usize, y: usize) -> [[f32; 3]; SPAN] {
+    /// [`Self::surface`] of a flat triangle in the middles of pixels side by side, from `x` on in the row `y`: the same numbers, by
+    /// channel.
+    #[inline(always)]
+    pub(crate) fn flat_span<L: Lanes>(&self, id: u32, x: usize, y: usize) -> [L; 3] {
         let triangle = &self.triangles[id as usize];
         let Material { color, pattern, .. } = &self.model(triangle).material;
-        let y = y as f32 + 0.5;
-        // Plain loops over plain numbers, which the compiler does several at a time.
-        let (mut rays, mut points) = ([Vec3::ZERO; SPAN], [Vec3::ZERO; SPAN]);
-        let (mut inverses, mut depths) = ([0.0; SPAN], [0.0; SPAN]);
-        for i in 0..SPAN {
-            let ray = self.view.ray((x + i) as f32 + 0.5, y);
-            let det = ray.dot(triangle.m);
-            rays[i] = ray;
-            inverses[i] = if det == 0.0 { 0.0 } else { 1.0 / det };
-            depths[i] = triangle.k * inverses[i];
-            points[i] = self.view.eye + ray * depths[i];
-        }
-        let mut shares = [0.0; SPAN];
-        let mut other_color = *color;
+        let rays = self.view.rays::<L>(x as f32, y as f32 + 0.5);
+        let m = Vector3::splat(triangle.m);
+        let det = rays.dot(m);
+        let inverses = L::select(L::eq(det, L::splat(0.0)), L::splat(0.0), L::splat(1.0) / det);
+        let depths = L::splat(triangle.k) * inverses;
+        let points = Vector3::splat(self.view.eye) + rays * depths;
+        let (mut other_color, mut shares) = (*color, L::splat(0.0));
         if let Pattern::Checker { size, other } = *pattern {
             other_color = other;
-            let size = max(size, 1e-3);
             let [across, down] = self.view.ray_per_pixel();
-            for i in 0..SPAN {
-                let hit = Hit { point: points[i], shares: [0.0; 2], depth: depths[i], inverse: inverses[i] };
-                let covered =
-                    abs3(triangle.slip(&hit, rays[i], across)) + abs3(triangle.slip(&hit, rays[i], down));
-                shares[i] = checker(points[i], covered, size);
-            }
+            let (across, down) = (Vector3::splat(across), Vector3::splat(down));
+            let across = (across - rays * (across.dot(m) * inverses)) * depths;
+            let down = (down - rays * (down.dot(m) * inverses)) * depths;
+            let covered = across.abs() + down.abs();
+            shares = checker([points.x, points.z], [covered.x, covered.z], L::splat(max(size, 1e-3)));
         }
-        let normal = triangle.face;
-        let cos = normal.dot(self.shadow.to_sun);
-        let mut suns = [0.0; SPAN];
-        if cos > 0.0 {
-            let lift = self.shadow.lift(normal, cos);
-            for i in 0..SPAN {
-                suns[i] = cos * self.shadow.light_off(points[i] + lift);
-            }
-        }
-        let around = self.around(normal);
+        let suns = self.suns(triangle.face, points, depths);
+        let around = self.around(triangle.face);
         let (sun, horizon) = (self.scene.sun.color, self.scene.sky.horizon);
         let half_haze = max(self.scene.sky.haze_distance * self.scene.sky.haze_distance, 1e-6);
-        let mut seen = [[0.0; 3]; SPAN];
-        for i in 0..SPAN {
-            let distance_squared = depths[i] * depths[i] * rays[i].length_squared();
-            let haze = distance_squared / (distance_squared + half_haze);
-            for channel in 0..3 {
-                let base = color[channel] + (other_color[channel] - color[channel]) * shares[i];
-                let lit = base * (around[channel] + sun[channel] * suns[i]);
-                seen[i][channel] = lit + (horizon[channel] - lit) * haze;
-            }
+        let distance_squared = depths * depths * rays.dot(rays);
+        let haze = distance_squared / (distance_squared + L::splat(half_haze));
+        let mut seen = [L::splat(0.0); 3];
+        for (channel, seen) in seen.iter_mut().enumerate() {
+            let base = L::splat(color[channel]) + L::splat(other_color[channel] - color[channel]) * shares;
+            let lit = base * (L::splat(around[channel]) + L::splat(sun[channel]) * suns);
+            *seen = lit + (L::splat(horizon[channel]) - lit) * haze;
         }
         seen
+    }
+
+    /// Light of the sun on points side by side of a flat triangle.
+    #[inline(always)]
+    fn suns<L: Lanes>(&self, face: Vec3, points: Vector3<L>, depths: L) -> L {
+        let cos = face.dot(self.shadow.to_sun);
+        if cos.is_nan() || cos <= 0.0 {
+            return L::splat(0.0);
+        }
+        let lift = self.shadow.lift(face, cos);
+        let lifted = points + Vector3::splat(lift);
+        let [mut x, mut y, mut z, mut depth] = [[0.0; SPAN]; 4];
+        lifted.x.store(&mut x);
+        lifted.y.store(&mut y);
+        lifted.z.store(&mut z);
+        depths.store(&mut depth);
+        // Behind the eye the plane is met the other way round, and what is between is not between.
+        let is_before = depth[0] > 0.0 && depth[SPAN - 1] > 0.0;
+        let (first, last) = (Vec3::new(x[0], y[0], z[0]), Vec3::new(x[SPAN - 1], y[SPAN - 1], z[SPAN - 1]));
+        if is_before && self.shadow.is_lit_between(first, last) {
+            return L::splat(cos);
+        }
+        let mut suns = [0.0; SPAN];
+        for i in 0..SPAN {
+            suns[i] = cos * self.shadow.light_off(Vec3::new(x[i], y[i], z[i]));
+        }
+        L::load(&suns)
     }
 
     fn base_color(&self, model: &Model, triangle: &Triangle, hit: &Hit, ray: Vec3) -> [f32; 3] {
@@ -199,7 +209,9 @@ impl<'a> Shader<'a> {
         let mut base = *color;
         if let Pattern::Checker { size, other } = *pattern {
             let [across, down] = self.view.ray_per_pixel().map(|step| abs3(triangle.slip(hit, ray, step)));
-            base = mix(base, other, checker(hit.point, across + down, max(size, 1e-3)));
+            let covered = across + down;
+            let share = checker([hit.point.x, hit.point.z], [covered.x, covered.z], max(size, 1e-3));
+            base = mix(base, other, share);
         }
         if model.colors.len() == model.positions.len() {
             let colors = triangle.corners.map(|corner| Vec3::from_array(model.colors[corner as usize]));
@@ -259,36 +271,46 @@ fn uv_per_area([a, b, c]: [Vec2; 3], normal: Vec3) -> f32 {
     on_texture / max(normal.length(), 1e-12)
 }
 
-/// Share of the second colour in a box of `footprint` around `p`: 0 and 1 within squares, between where the box
-/// covers several. Mean of a product of two square waves, each integrated in closed form.
+/// Share of the second colour in a box of `footprint` around `p`, both along x and z: 0 and 1 within squares, between where the
+/// box covers several. Mean of a product of two square waves, each integrated in closed form.
 #[inline(always)]
-fn checker(p: Vec3, footprint: Vec3, size: f32) -> f32 {
-    0.5 - 0.5
-        * square_wave_mean(p.x / size, footprint.x / size)
-        * square_wave_mean(p.z / size, footprint.z / size)
+fn checker<R: Real>(p: [R; 2], footprint: [R; 2], size: R) -> R {
+    let half = R::splat(0.5);
+    half - half
+        * square_wave_mean(p[0] / size, footprint[0] / size)
+        * square_wave_mean(p[1] / size, footprint[1] / size)
 }
 
 /// Mean over `x ± width/2` of the wave that is 1 on [0, 1), −1 on [1, 2), and so on.
 #[inline(always)]
-fn square_wave_mean(x: f32, width: f32) -> f32 {
-    let width = clamp(width, 1e-3, 8.0);
-    clamp((triangle_wave(x + 0.5 * width) - triangle_wave(x - 0.5 * width)) / width, -1.0, 1.0)
+fn square_wave_mean<R: Real>(x: R, width: R) -> R {
+    let half = R::splat(0.5);
+    let width = limited(width, 1e-3, 8.0);
+    let mean = (triangle_wave(x + half * width) - triangle_wave(x - half * width)) / width;
+    limited(mean, -1.0, 1.0)
 }
 
 /// Integral of the square wave from 0: up to 1 at odd numbers, 0 at even ones.
 #[inline(always)]
-fn triangle_wave(x: f32) -> f32 {
-    let phase = x - 2.0 * whole_below(0.5 * x);
-    min(phase, 2.0 - phase)
+fn triangle_wave<R: Real>(x: R) -> R {
+    let two = R::splat(2.0);
+    let phase = x - two * whole_below(R::splat(0.5) * x);
+    R::min(phase, two - phase)
 }
 
 /// The whole number at or below `x`, up to 2²²; beyond it nobody sees a checker. Without a conversion to integers, so that several go
 /// at once.
 #[inline(always)]
-fn whole_below(x: f32) -> f32 {
+fn whole_below<R: Real>(x: R) -> R {
     /// Magnitude at which `f32` numbers are whole.
     const WHOLE: f32 = 12_582_912.0;
-    let x = clamp(x, -4_194_304.0, 4_194_304.0);
-    let nearest = (x + WHOLE) - WHOLE;
-    if nearest > x { nearest - 1.0 } else { nearest }
+    let x = limited(x, -4_194_304.0, 4_194_304.0);
+    let nearest = (x + R::splat(WHOLE)) - R::splat(WHOLE);
+    R::select(R::gt(nearest, x), nearest - R::splat(1.0), nearest)
+}
+
+/// [`clamp`], several at a time.
+#[inline(always)]
+pub(crate) fn limited<R: Real>(x: R, least: f32, most: f32) -> R {
+    R::min(R::max(x, R::splat(least)), R::splat(most))
 }

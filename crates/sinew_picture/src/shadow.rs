@@ -1,20 +1,24 @@
 //! Shadow map: an orthographic depth picture taken from the sun, which tells where its light does not reach.
 
-use crate::clip::clip;
-use crate::raster::{Footprint, NOTHING, ScreenVertex, floor, scan};
-use sinew::math::{Vec3, any_orthonormal, clamp, max, normalize_or};
+use crate::clip::{clip, is_whole, unseen};
+use crate::raster::{Area, Cells, Footprint, Lattice, NOTHING, Pixel, ScreenVertex, floor, scan};
+use sinew::math::dispatch::{self, Kernel};
+use sinew::math::lanes::{LaneMask, Lanes, WIDTH};
+use sinew::math::{Vec3, any_orthonormal, clamp, max, min, normalize_or};
 
 /// Depths seen from the sun around one point of the world.
 #[derive(Clone, Debug)]
 pub(crate) struct ShadowMap {
     /// Texels along a side.
     size: usize,
-    /// Height toward the sun per texel; −∞ where nothing is.
+    /// Height toward the sun per texel; −∞ where nothing is. Rows are whole lanes.
     heights: Vec<f32>,
     /// Greatest height per square of [`BLOCK`] texels: most points lie above all that could shade them.
     highest: Vec<f32>,
-    /// Rows of the map in which something is.
-    rows: core::ops::Range<usize>,
+    /// Triangles that are still to be drawn into the map.
+    casting: Vec<Footprint>,
+    /// Texels that the triangles may have raised.
+    raised: Texels,
     /// Toward the sun, unit.
     pub(crate) to_sun: Vec3,
     /// World to map: the edges of the map are at ±1.
@@ -29,19 +33,43 @@ pub(crate) struct ShadowMap {
 /// Texels along a side of a square of [`ShadowMap::highest`].
 const BLOCK: usize = 16;
 
+/// A rectangle of texels, ends included; empty where the first are beyond the last.
+#[derive(Clone, Copy, Debug)]
+struct Texels {
+    first: [usize; 2],
+    last: [usize; 2],
+}
+
+impl Texels {
+    const NONE: Self = Self { first: [usize::MAX; 2], last: [0; 2] };
+
+    #[inline(always)]
+    fn include(&mut self, first_column: usize, last_column: usize, row: usize) {
+        self.first = [usize::min(self.first[0], first_column), usize::min(self.first[1], row)];
+        self.last = [usize::max(self.last[0], last_column), usize::max(self.last[1], row)];
+    }
+}
+
 impl ShadowMap {
     pub(crate) fn new(size: usize) -> Self {
         Self {
             size,
-            heights: vec![f32::NEG_INFINITY; size * size],
+            heights: vec![f32::NEG_INFINITY; size * size.next_multiple_of(WIDTH)],
             highest: vec![f32::NEG_INFINITY; size.div_ceil(BLOCK) * size.div_ceil(BLOCK)],
-            rows: 0..0,
+            casting: Vec::new(),
+            raised: Texels::NONE,
             to_sun: Vec3::Y,
             axes: [Vec3::X, Vec3::Z],
             center: [0.0; 2],
             focus: Vec3::ZERO,
             texel: 1.0,
         }
+    }
+
+    /// Texels from a row to the next.
+    #[inline(always)]
+    fn stride(&self) -> usize {
+        self.size.next_multiple_of(WIDTH)
     }
 
     /// Starts an empty map that reaches `radius` metres around `focus`.
@@ -54,10 +82,16 @@ impl ShadowMap {
         let texel_on_map = 2.0 / self.size as f32;
         self.center = self.axes.map(|axis| (self.focus.dot(axis) / texel_on_map).floor() * texel_on_map);
         self.texel = texel_on_map * radius;
-        let used = self.rows.start * self.size..self.rows.end * self.size;
-        self.heights[used].fill(f32::NEG_INFINITY);
+        let Texels { first: [left, top], last: [right, bottom] } = self.raised;
+        if left <= right {
+            let stride = self.stride();
+            for row in self.heights.chunks_exact_mut(stride).take(bottom + 1).skip(top) {
+                row[left..=right].fill(f32::NEG_INFINITY);
+            }
+        }
         self.highest.fill(f32::NEG_INFINITY);
-        self.rows = 0..0;
+        self.casting.clear();
+        self.raised = Texels::NONE;
     }
 
     /// Position on the map, ±1 at its edges, and height toward the sun.
@@ -67,15 +101,22 @@ impl ShadowMap {
         [p.dot(across) - self.center[0], p.dot(up) - self.center[1], (p - self.focus).dot(self.to_sun)]
     }
 
-    /// Lets a triangle throw its shadow.
+    /// Lets a triangle throw its shadow, once [`Self::finish`] is called.
     pub(crate) fn cast(&mut self, corners: [Vec3; 3]) {
         let place = |i: usize| self.map_from_world(corners[i]);
         let on_map = [place(0), place(1), place(2)];
         let flat = |i: usize| [on_map[i][0], on_map[i][1], 1.0];
-        let polygon = clip([flat(0), flat(1), flat(2)], 0.5);
-        if polygon.corners().is_empty() {
+        let triangle = [flat(0), flat(1), flat(2)];
+        if unseen(&triangle, 0.5) {
             return;
         }
+        let polygon;
+        let corners = if is_whole(&triangle, 0.5) {
+            triangle.as_slice()
+        } else {
+            polygon = clip(triangle, 0.5);
+            polygon.corners()
+        };
         let half = 0.5 * self.size as f32;
         let slope = HeightOverMap::through(on_map);
         let vertex = |[x, y, _]: [f32; 3]| ScreenVertex {
@@ -83,36 +124,17 @@ impl ShadowMap {
             y: (1.0 - y) * half,
             depth: slope.at(x, y),
         };
-        let corners = polygon.corners();
-        for i in 1..corners.len() - 1 {
-            let fan = [vertex(corners[0]), vertex(corners[i]), vertex(corners[i + 1])];
+        for i in 2..corners.len() {
+            let fan = [vertex(corners[0]), vertex(corners[i - 1]), vertex(corners[i])];
             if let Some((footprint, _)) = Footprint::new(fan, NOTHING) {
-                self.raise(&footprint);
+                self.casting.push(footprint);
             }
         }
     }
 
-    fn raise(&mut self, footprint: &Footprint) {
-        let Self { size, heights, highest, rows, .. } = self;
-        let blocks = size.div_ceil(BLOCK);
-        scan(footprint, *size, *size, [0, 0], |texels, depth| {
-            let row = texels.start / *size;
-            *rows = if rows.start == rows.end {
-                row..row + 1
-            } else {
-                usize::min(rows.start, row)..usize::max(rows.end, row + 1)
-            };
-            let first = texels.start - row * *size;
-            let blocks_of_row = &mut highest[row / BLOCK * blocks..];
-            for (column, texel) in heights[texels].iter_mut().enumerate() {
-                let height = depth.at(column);
-                if height > *texel {
-                    *texel = height;
-                    let block = &mut blocks_of_row[(first + column) / BLOCK];
-                    *block = max(*block, height);
-                }
-            }
-        });
+    /// Draws what was cast into the map.
+    pub(crate) fn finish(&mut self) {
+        dispatch::run(Raise(self));
     }
 
     /// Share of the sun's light, 0..=1, that reaches a point of a surface with unit `normal` (turned to the viewer).
@@ -129,6 +151,23 @@ impl ShadowMap {
     pub(crate) fn lift(&self, normal: Vec3, cos_to_sun: f32) -> Vec3 {
         let sin = max(0.0, 1.0 - cos_to_sun * cos_to_sun).sqrt();
         normal * (self.texel * (0.6 + 2.2 * sin))
+    }
+
+    /// True if nothing shades any point on the straight way between two points that are moved off their surface already; false where
+    /// that is not plain at a glance.
+    #[inline(always)]
+    pub(crate) fn is_lit_between(&self, from: Vec3, to: Vec3) -> bool {
+        let half = 0.5 * self.size as f32;
+        let ([x0, y0, _], [x1, y1, _]) = (self.map_from_world(from), self.map_from_world(to));
+        let place = |x: f32, y: f32| [(x + 1.0) * half - 1.5, (1.0 - y) * half - 1.5];
+        let (from, to) = (place(x0, y0), place(x1, y1));
+        let Texels { first, last } = self.raised;
+        // Points between may be rounded otherwise, by far less than a texel; four of them are looked at from where a point is on.
+        let beside = |axis: usize| {
+            min(from[axis], to[axis]) > last[axis] as f32 + 1.0
+                || max(from[axis], to[axis]) < first[axis] as f32 - 5.0
+        };
+        first[0] > last[0] || beside(0) || beside(1)
     }
 
     /// [`Self::light_at`] of a point that is moved off its surface already.
@@ -167,12 +206,59 @@ impl ShadowMap {
     fn share_of_light(&self, height: f32, [left, top]: [usize; 2], [fx, fy]: [f32; 2], fade: f32) -> f32 {
         let mut hidden = 0.0;
         for (j, weight_of_row) in [1.0 - fy, 1.0, 1.0, fy].into_iter().enumerate() {
-            let start = (top + j) * self.size + left;
+            let start = (top + j) * self.stride() + left;
             let row = &self.heights[start..start + 4];
             let above = |i: usize| if row[i] > height { 1.0 } else { 0.0 };
             hidden += ((1.0 - fx) * above(0) + above(1) + above(2) + fx * above(3)) * weight_of_row;
         }
         1.0 - hidden * (1.0 / 9.0) * clamp(fade, 0.0, 1.0)
+    }
+}
+
+/// Draws all that was cast into a map.
+struct Raise<'a>(&'a mut ShadowMap);
+
+impl Kernel for Raise<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let ShadowMap { size, heights, highest, casting, raised, .. } = self.0;
+        let area = Area { width: *size, stride: size.next_multiple_of(WIDTH), rows: 0..*size };
+        let lattice = Lattice::new(&[[0, 0]]);
+        let mut rising = Rising { size: *size, heights, highest, raised };
+        for footprint in casting.iter() {
+            scan::<L>(footprint, &area, &lattice, &mut rising);
+        }
+        casting.clear();
+    }
+}
+
+/// A map while triangles are drawn into it.
+struct Rising<'a> {
+    size: usize,
+    heights: &'a mut [f32],
+    highest: &'a mut [f32],
+    raised: &'a mut Texels,
+}
+
+impl Cells for Rising<'_> {
+    #[inline(always)]
+    fn visit<L: Lanes>(&mut self, Pixel { column, row, start }: Pixel, height: L, inside: L::Mask) {
+        let Some(chunk) = self.heights[start..].first_chunk_mut::<WIDTH>() else { return };
+        let old = L::load(chunk);
+        let is_higher = L::gt(height, old) & inside;
+        if !is_higher.any() {
+            return;
+        }
+        L::select(is_higher, height, old).store(chunk);
+        self.raised.include(column, (column + WIDTH - 1).min(self.size - 1), row);
+        // Heights rise or fall all along a row: the greatest is at one of the ends.
+        let (bits, mut heights) = (is_higher.bits(), [0.0; WIDTH]);
+        height.store(&mut heights);
+        let (first, last) = (bits.trailing_zeros() as usize, 7 - bits.leading_zeros() as usize);
+        let block = &mut self.highest[row / BLOCK * self.size.div_ceil(BLOCK) + column / BLOCK];
+        *block = max(*block, max(heights[first], heights[last]));
     }
 }
 
@@ -211,6 +297,7 @@ mod tests {
             [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, z]| Vec3::new(x, 1.0, z));
         map.cast([a, b, c]);
         map.cast([a, c, d]);
+        map.finish();
         assert_eq!(map.light_at(Vec3::new(0.2, 0.0, -0.3), Vec3::Y, 1.0), 0.0);
         assert_eq!(map.light_at(Vec3::new(1.5, 0.0, 0.0), Vec3::Y, 1.0), 1.0);
         assert_eq!(map.light_at(Vec3::new(0.2, 1.0, -0.3), Vec3::Y, 1.0), 1.0);
@@ -228,6 +315,7 @@ mod tests {
             let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
             map.cast([corner(-30.0, -30.0), corner(30.0, -30.0), corner(30.0, 30.0)]);
             map.cast([corner(-30.0, -30.0), corner(30.0, 30.0), corner(-30.0, 30.0)]);
+            map.finish();
             for i in 0..400 {
                 let p = Vec3::new((i % 20) as f32 * 0.093 - 1.0, 0.0, (i / 20) as f32 * 0.087 - 1.0);
                 assert_eq!(map.light_at(p, Vec3::Y, to_sun.y), 1.0, "tilt {tilt}, {p}");

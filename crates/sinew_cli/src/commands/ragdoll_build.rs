@@ -12,8 +12,8 @@ use clap::ValueEnum;
 use sinew::formats::{Textures, write_ragdoll};
 use sinew::physics::Threads;
 use sinew::ragdoll::build::BuildReport;
-use sinew::ragdoll::quality::{GateReport, gate_on};
-use sinew::ragdoll::{BuildOptions, LimitSource, RagdollDef, Settings, Sex, ShapeChoice, Verdict, drop_test};
+use sinew::ragdoll::quality::{GateReport, gate_on, judge_doubtful};
+use sinew::ragdoll::{BuildOptions, LimitSource, RagdollDef, Settings, Sex, ShapeChoice, drop_test};
 use std::path::PathBuf;
 
 /// Build a ragdoll from a rigged file: shapes, masses, limits, collision filter, and a quality report
@@ -89,7 +89,7 @@ impl RagdollBuild {
         let (character, settings, def, build) = built?;
         let mut tested = drop_test(&def);
         if let Some(doubt) = settings.doubt(&def) {
-            tested.verdict = Verdict::min(tested.verdict, Verdict::Usable);
+            tested.verdict = judge_doubtful(&def, &tested.drop, &tested.wall);
             tested.reasons.insert(0, doubt);
         }
         let skin = SkinReport::of(&character, &def, &tested);

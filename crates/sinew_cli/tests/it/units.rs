@@ -2,7 +2,7 @@
 
 use crate::sinew::{Folder, glb, sinew};
 use serde_json::Value;
-use sinew::anim::Rig;
+use sinew::anim::{Joint, LocalTransform, Rig};
 use sinew::formats::write_world;
 use sinew::math::Vec3;
 use sinew::physics::{BodyDef, BodyKind, Shape, ShapeDef};
@@ -94,6 +94,50 @@ fn the_unit_its_reason_and_its_alternatives_are_a_note() {
     }
     let inches = build(&scaled(rig, 100.0), &["--unit", "in"]);
     assert!(inches["height_m"].as_f64().expect("a height") > 4.0);
+}
+
+/// The rig below a node of that scale, which makes up for lengths that are so many times smaller: drawn, it is the same.
+fn below_a_node(rig: &Rig, scale: f32) -> Rig {
+    let mut rig = scaled(rig.clone(), 1.0 / scale);
+    for joint in &mut rig.joints {
+        joint.parent = Some(joint.parent.map_or(0, |parent| parent + 1));
+        joint.source += 1;
+    }
+    let rest = LocalTransform { scale: Vec3::splat(scale), ..LocalTransform::default() };
+    rig.joints.insert(0, Joint { name: "RootNode".into(), parent: None, rest, source: 0 });
+    rig.skins.iter_mut().flat_map(|skin| &mut skin.joints).for_each(|joint| *joint += 1);
+    rig.meshes.iter_mut().for_each(|mesh| mesh.joint += 1);
+    rig
+}
+
+#[test]
+fn a_node_with_a_scale_above_it_all_changes_nothing() {
+    let folder = Folder::new("unit-node");
+    let rig = mannequin().rig;
+    let build = |rig: &Rig| {
+        let file = folder.file("body.glb", glb(rig, &[]));
+        sinew(&["ragdoll", "build", &file, "--json"]).json()
+    };
+    let plain = build(&rig);
+    let close = |a: &Value, b: &Value, share: f64| {
+        let (a, b) = (a.as_f64().expect("a number"), b.as_f64().expect("a number"));
+        (a - b).abs() <= share * a
+    };
+    for scale in [0.01, 39.37] {
+        let other = build(&below_a_node(&rig, scale));
+        // Measured as it is drawn, in metres: by the lengths below the node it would be in another unit.
+        assert_eq!(of_unit(&other), of_unit(&plain), "{scale}");
+        assert!(close(&plain["unit_scale"], &other["unit_scale"], 1e-3), "{scale}");
+        assert!(close(&plain["height_m"], &other["height_m"], 1e-3), "{scale}: {}", other["height_m"]);
+        assert_eq!(plain["quality"]["verdict"], other["quality"]["verdict"], "{scale}");
+        let bodies = |object: &Value| object["bodies"].as_array().expect("bodies").clone();
+        let (plain, other) = (bodies(&plain), bodies(&other));
+        assert_eq!(plain.len(), other.len(), "{scale}");
+        for (a, b) in plain.iter().zip(&other) {
+            assert_eq!((&a["bone"], &a["role"]), (&b["bone"], &b["role"]), "{scale}");
+            assert!(close(&a["mass_kg"], &b["mass_kg"], 0.02), "{scale}: {a} {b}");
+        }
+    }
 }
 
 /// 66 units tall: a man in inches, or a dwarf in centimetres.

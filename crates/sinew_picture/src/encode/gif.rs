@@ -24,9 +24,30 @@ pub(super) struct GifWriter {
     frames: u64,
     histogram: Histogram,
     palette: Palette,
-    /// The colour that each pixel had in its image when it was last drawn, before palette and dither.
-    drawn: Vec<[u8; 3]>,
+    /// The colour, as in an image, that each pixel had when it was last drawn, before palette and dither.
+    drawn: Vec<[u8; 4]>,
     changed: Vec<bool>,
+}
+
+/// Pixels that are looked at together: most stretches of a picture stay as they are.
+const STRETCH: usize = 32;
+
+/// Marks the pixels of a stretch that must be drawn, and takes their colours over.
+fn redraw(drawn: &mut [[u8; 4]], changed: &mut [bool], rgba: &[u8]) {
+    let mut most = 0;
+    for (a, b) in drawn.as_flattened().iter().zip(rgba) {
+        most = u8::max(most, a.abs_diff(*b));
+    }
+    if most <= UNSEEN_CHANGE {
+        changed.fill(false);
+        return;
+    }
+    for ((drawn, changed), rgba) in drawn.iter_mut().zip(changed).zip(rgba.chunks_exact(4)) {
+        *changed = (0..3).any(|i| drawn[i].abs_diff(rgba[i]) > UNSEEN_CHANGE);
+        if *changed {
+            *drawn = [rgba[0], rgba[1], rgba[2], rgba[3]];
+        }
+    }
 }
 
 impl GifWriter {
@@ -50,7 +71,8 @@ impl GifWriter {
         let rect = self.take_changes(image);
         self.histogram.clear();
         for pixel in rect.pixels(self.width).filter(|&pixel| self.changed[pixel]) {
-            self.histogram.add(self.drawn[pixel]);
+            let [r, g, b, _] = self.drawn[pixel];
+            self.histogram.add([r, g, b]);
         }
         self.palette.fit(&mut self.histogram);
         let transparent = self.palette.colors.len() as u8;
@@ -83,16 +105,14 @@ impl GifWriter {
 
     /// Marks the pixels that must be drawn and returns the rectangle around them. A frame needs at least one pixel.
     fn take_changes(&mut self, image: &Image) -> Rect {
-        let colors = image.rgba.chunks_exact(4).map(|rgba| [rgba[0], rgba[1], rgba[2]]);
         if self.frames == 0 {
-            self.drawn = colors.collect();
+            self.drawn =
+                image.rgba.chunks_exact(4).map(|rgba| [rgba[0], rgba[1], rgba[2], rgba[3]]).collect();
             self.changed = vec![true; self.drawn.len()];
         } else {
-            for ((drawn, changed), color) in self.drawn.iter_mut().zip(&mut self.changed).zip(colors) {
-                *changed = (0..3).any(|i| drawn[i].abs_diff(color[i]) > UNSEEN_CHANGE);
-                if *changed {
-                    *drawn = color;
-                }
+            let drawn = self.drawn.chunks_mut(STRETCH).zip(self.changed.chunks_mut(STRETCH));
+            for ((drawn, changed), rgba) in drawn.zip(image.rgba.chunks(4 * STRETCH)) {
+                redraw(drawn, changed, rgba);
             }
         }
         let first_pixel = Rect { left: 0, top: 0, width: 1, height: 1 };
@@ -103,7 +123,8 @@ impl GifWriter {
     fn shown(&mut self, pixel: usize) -> u8 {
         let threshold = BAYER[pixel / self.width % 4][pixel % self.width % 4];
         let shift = (2 * threshold - 15) * DITHER / 15;
-        self.palette.entry(self.drawn[pixel].map(|channel| (i32::from(channel) + shift).clamp(0, 255) as u8))
+        let [r, g, b, _] = self.drawn[pixel];
+        self.palette.entry([r, g, b].map(|channel| (i32::from(channel) + shift).clamp(0, 255) as u8))
     }
 
     /// Hundredths of a second to the next frame. Sums stay right where `fps` does not divide 100: 3, 3, 4 at 30.

@@ -1,6 +1,8 @@
 //! Doubts about the size and the mass that were guessed.
 
+use super::{Quality, Verdict, judge};
 use crate::def::RagdollDef;
+use sinew_math::{min, trig};
 
 /// Mass that a human may have, kg.
 const HUMAN: core::ops::RangeInclusive<f32> = 3.0..=500.0;
@@ -10,8 +12,7 @@ const CREATURE: core::ops::RangeInclusive<f32> = 0.1..=8000.0;
 /// Why hardly any body has this mass, a sentence; `None` if there are such. Where the size of a file's unit is guessed, that
 /// is what is wrong as a rule, and a verdict on the ragdoll says little.
 pub fn implausible(def: &RagdollDef) -> Option<String> {
-    let human = def.bodies.iter().any(|body| body.role == "hips");
-    let (kind, range) = if human { ("human", HUMAN) } else { ("creature", CREATURE) };
+    let (kind, range) = kin(def);
     if range.contains(&def.total_mass) {
         return None;
     }
@@ -20,6 +21,36 @@ pub fn implausible(def: &RagdollDef) -> Option<String> {
     Some(format!(
         "mass of {mass} at a height of {height:.3} m: hardly any {kind} weighs less than {least} or more than {most}"
     ))
+}
+
+/// Verdict on drops and a wall hit, as of [`judge`], of a ragdoll whose mass is [`implausible`] and was guessed: at most `usable`. The
+/// bars are metres and seconds for bodies that there are: a heavier one is judged as it would be at the size at which the heaviest
+/// would weigh as much, at which lengths shrink with the size and times with its root.
+pub fn judge_doubtful(def: &RagdollDef, drop: &Quality, wall: &Quality) -> Verdict {
+    let size = min(1.0, trig::pow(kin(def).1.end() / def.total_mass, 1.0 / 3.0));
+    let (verdict, _) = judge(&at_size(*drop, size), &at_size(*wall, size));
+    Verdict::min(verdict, Verdict::Usable)
+}
+
+/// The figures of a fall that is like this one, of a body so many times as large.
+fn at_size(quality: Quality, size: f32) -> Quality {
+    let time = |seconds: Option<f32>| seconds.map(|seconds| seconds * size.sqrt());
+    Quality {
+        joint_gap_max_m: quality.joint_gap_max_m * size,
+        joint_gap_p99_m: quality.joint_gap_p99_m * size,
+        penetration_max_m: quality.penetration_max_m * size,
+        penetration_rest_max_m: quality.penetration_rest_max_m * size,
+        nonadjacent_overlap_max_m: quality.nonadjacent_overlap_max_m * size,
+        asleep_s: time(quality.asleep_s),
+        calm_to_asleep_s: time(quality.calm_to_asleep_s),
+        ..quality
+    }
+}
+
+/// Name of what a ragdoll is taken for, and the masses that such bodies have.
+fn kin(def: &RagdollDef) -> (&'static str, core::ops::RangeInclusive<f32>) {
+    let human = def.bodies.iter().any(|body| body.role == "hips");
+    if human { ("human", HUMAN) } else { ("creature", CREATURE) }
 }
 
 /// A mass with its unit, to three digits.
@@ -31,4 +62,34 @@ fn in_words(kg: f32) -> String {
     };
     let tenths = (10.0 * value).round() / 10.0;
     format!("{tenths} {unit}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_is_too_heavy_is_judged_at_a_size_that_there_is() {
+        let of = |total_mass: f32| RagdollDef { total_mass, height: 4.6, ..RagdollDef::default() };
+        let calm = Quality {
+            asleep_s: Some(6.2),
+            calm_to_asleep_s: Some(0.7),
+            settled_omega_max: Some(0.0),
+            ..Quality::default()
+        };
+        let deep = |overlap: f32| Quality { nonadjacent_overlap_max_m: overlap, ..calm };
+        let verdict = |mass: f32, drop: Quality| judge_doubtful(&of(mass), &drop, &calm);
+        assert_eq!(judge(&deep(0.042), &calm).0, Verdict::Bad);
+        assert_eq!(verdict(24_000.0, deep(0.042)), Verdict::Usable);
+        // At 8 t the size is what it is; 50 cm are deep at any.
+        assert_eq!(verdict(8000.0, deep(0.042)), Verdict::Bad);
+        assert_eq!(verdict(24_000.0, deep(0.5)), Verdict::Bad);
+        assert_eq!(verdict(24_000.0, deep(f32::NAN)), Verdict::Bad);
+        assert_eq!(verdict(24_000.0, Quality { nan: 1, ..calm }), Verdict::Bad);
+        assert_eq!(verdict(24_000.0, Quality { asleep_s: None, ..calm }), Verdict::Bad);
+        // Nothing is good whose mass is in doubt, and the small are held to the bars as they are.
+        assert_eq!(verdict(24_000.0, Quality { asleep_s: Some(3.0), ..calm }), Verdict::Usable);
+        assert_eq!(verdict(0.013, deep(0.0)), Verdict::Usable);
+        assert_eq!(verdict(0.013, deep(0.042)), Verdict::Bad);
+    }
 }
