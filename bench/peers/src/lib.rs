@@ -13,3 +13,4 @@ pub mod quality;
 pub mod run;
 pub mod scenes;
 pub mod trace;
+pub mod walks;

@@ -66,6 +66,44 @@ fn a_hand_that_is_hit_gives_way_and_comes_back_without_a_pop() {
     assert!(way.length() < 1e-3, "it walked on: {way}");
 }
 
+/// A walker along a wall a hand's breadth from its hand, which is struck toward it.
+#[test]
+fn an_arm_is_in_a_wall_no_longer_than_the_blow_takes() {
+    let def = shared(walker());
+    let hand = def.body_named("rightHand").expect("it has hands");
+    let (mut world, mut character) = walking(&def);
+    let side = if places(&character)[hand].x > 0.0 { 1.0 } else { -1.0 };
+    let beside = |character: &Character| places(character)[hand].x * side;
+    let (mut free_world, mut free) = walking(&def);
+    let mut face = beside(&free);
+    for _ in 0..90 {
+        run(&mut free_world, &mut free, 1);
+        face = max(face, beside(&free));
+    }
+    face += 0.06;
+    let half_extents = Vec3::new(0.2, 2.0, 5.0);
+    let at = Vec3::new(side * (face + 0.2), 2.0, 0.0);
+    world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at(at));
+    let (mut ghost_world, mut ghost) = walking(&def);
+    let blow = Vec3::X * (side * 6.0);
+    ghost.hit(&mut ghost_world, hand, blow);
+    character.hit(&mut world, hand, blow);
+    let (mut inside, mut deepest, mut would) = (0, f32::NEG_INFINITY, 0.0);
+    for step in 0..90 {
+        run(&mut world, &mut character, 1);
+        run(&mut ghost_world, &mut ghost, 1);
+        would = max(would, beside(&ghost) - face);
+        deepest = max(deepest, beside(&character) - face);
+        if beside(&character) > face {
+            inside += 1;
+        }
+        println!("{step}: {} {} {:?}", beside(&character) - face, beside(&ghost) - face, character.state());
+    }
+    println!("{inside} steps, {deepest} m, without a wall {would} m");
+    assert!(would > 0.05, "without a wall it goes {would} m beyond it");
+    assert!(inside <= 12 && deepest < 0.03, "it is inside for {inside} steps, by {deepest} m");
+}
+
 #[test]
 fn thresholds_decide_between_flinch_and_fall() {
     let fells = |toughness: Toughness, size: f32| {
