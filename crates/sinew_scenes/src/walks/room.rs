@@ -11,8 +11,9 @@ const CELL: f32 = 0.1;
 const FAR: i32 = 12;
 /// Share of the step height and of the slope limit that is asked of it.
 const SHARE: f32 = 0.9;
-/// Ground that lies deeper below the feet than this does not bear them: a rim does that is touched from the side, metres.
-const RIM: f32 = 0.1;
+/// Distances behind an edge, and over and under it, at which a tread is looked for, metres.
+const BEHIND_EDGE: f32 = 0.02;
+const OVER_EDGE: f32 = 0.04;
 /// Distance at which a place is reached, metres, and steps in which it must be.
 const REACHED: f32 = 0.02;
 const PATIENCE: u32 = 60;
@@ -108,9 +109,15 @@ fn step(on: &Terrain, feet: Vec3, way: Vec3, margin: f32) -> Option<Vec3> {
     let hit = cast(feet + up + way, down)?;
     let place = feet + up + way + down * hit.fraction;
     let steepest = trig::cos(SHARE * def.slope_limit);
-    let looks = Ray { origin: place + Vec3::Y * 0.5 * def.height, direction: Vec3::NEG_Y * def.height };
-    let tread = on.world.query().first(&looks);
-    let bears = tread.is_some_and(|tread| tread.normal.y > steepest && place.y - tread.point.y < RIM);
-    // A rim that is touched from the side lets it slide.
-    (bears && hit.normal.y > 0.5).then_some(place)
+    // Flat, or the edge of a tread that is.
+    let inward = -(hit.normal * Vec3::new(1.0, 0.0, 1.0)).normalize_or_zero();
+    let looks = Ray {
+        origin: hit.point + inward * BEHIND_EDGE + Vec3::Y * OVER_EDGE,
+        direction: Vec3::NEG_Y * (2.0 * OVER_EDGE),
+    };
+    let tread = || on.world.query().accept(|body, _| body == hit.body).first(&looks);
+    // A ray that begins within a solid meets it at once.
+    let is_tread = || tread().is_some_and(|tread| tread.fraction > 0.0 && tread.normal.y > steepest);
+    let is_low = hit.point.y - feet.y < high.y;
+    (hit.normal.y > steepest || is_low && is_tread()).then_some(place)
 }

@@ -10,3 +10,4 @@ mod motions;
 mod movers;
 mod scenes;
 mod scenes_repeat;
+mod dbg;
