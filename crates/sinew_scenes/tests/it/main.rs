@@ -10,4 +10,3 @@ mod motions;
 mod movers;
 mod scenes;
 mod scenes_repeat;
-mod dbg;
