@@ -14,3 +14,4 @@ pub mod resume;
 pub mod run;
 pub mod scenes;
 pub mod trace;
+pub mod walks;

@@ -9,6 +9,7 @@ use sinew_peers::resume::{resume, save};
 use sinew_peers::run::{Judging, Start, run};
 use sinew_peers::scenes::{self, Course, Field, SCENES, Scene, Work};
 use sinew_peers::trace::Trace;
+use sinew_peers::walks;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -40,6 +41,15 @@ enum Command {
         /// On several there is the wall's time of the whole step alone.
         #[arg(long, default_value_t = 1)]
         threads: usize,
+    },
+    /// Random walks of our mover and of Rapier's controller on the same grounds: depths, sticks, steps climbed, µs per move.
+    Walks {
+        /// Number of walks on each ground.
+        #[arg(long, default_value_t = 200)]
+        count: usize,
+        /// Folder with `house_2story_stairs.glb` and `kaykit_dungeon`; without them there are the cabin and clutter.
+        #[arg(long, default_value = "../shared/data/worlds")]
+        worlds: PathBuf,
     },
     /// A scene of our own ragdolls for MuJoCo: the figure, where it starts, what it falls on.
     Mjcf {
@@ -120,6 +130,10 @@ fn main() -> ExitCode {
         Command::Resume { state, steps } => match resume(&state, steps) {
             Ok(resumed) => resumed,
             Err(error) => return failure(&error),
+        },
+        Command::Walks { count, worlds } => match walks::run(count, &worlds) {
+            Ok(table) => table,
+            Err(error) => return failure(&error.to_string()),
         },
         Command::Mjcf { scene, start } => match start.map_or(Start::Own, Start::Perturbed).of((scene.work)())
         {

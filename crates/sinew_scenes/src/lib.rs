@@ -8,3 +8,4 @@ pub mod demo;
 pub use sinew::mannequin;
 mod parts;
 pub mod scenes;
+pub mod walks;

@@ -7,7 +7,7 @@ mod jolt;
 #[cfg(feature = "ozz")]
 mod ozz;
 #[cfg(feature = "rapier")]
-mod rapier;
+pub(crate) mod rapier;
 mod sinew;
 
 use crate::engine::Engine;

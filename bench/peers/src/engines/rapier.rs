@@ -7,10 +7,12 @@ use crate::engine::{
 use crate::parry::{from_pose, from_vector, pose, shape, vector};
 use crate::scenes::{BoxPairs, ClothScene, DT, PlacedBox, RayScene};
 use core::ops::Range;
+use rapier3d::control::{CharacterAutostep, CharacterLength, KinematicCharacterController};
 use rapier3d::prelude::*;
 use sinew::math::{Transform, Vec3};
 use sinew::physics::{BodyDef, BodyKind, JointKind, ShapeDef, Sleeping};
 use sinew_scenes::blueprint::{Blueprint, BlueprintJoint};
+use sinew_scenes::walks::{Terrain, Walker, capsule};
 
 /// What this build of it is called.
 pub const NAME: &str = if cfg!(feature = "simd8") { "rapier_simd8" } else { "rapier" };
@@ -256,5 +258,85 @@ impl OverlapTester for ParryBoxes {
             parry3d::query::intersection_test(&a.0, &a.1, &b.0, &b.1).is_ok_and(|result| result.intersecting)
         };
         self.pairs[range].iter().filter(overlap).count()
+    }
+}
+
+/// A capsule led by Rapier's controller, with its defaults but for what [`capsule`] says: step and snap height, slopes, accelerations.
+struct RapierWalker {
+    world: PhysicsWorld,
+    controller: KinematicCharacterController,
+    shape: Capsule,
+    /// Centre of the capsule.
+    pose: Pose,
+    velocity: Vec3,
+    is_grounded: bool,
+}
+
+/// A walker of Rapier with its feet somewhere on a terrain.
+///
+/// # Panics
+/// If the terrain has a shape that Rapier has not.
+pub fn walker(on: &Terrain, feet: Vec3) -> Box<dyn Walker> {
+    let def = capsule();
+    let mut world = world(Vec3::new(0.0, -9.81, 0.0));
+    for body in &on.bodies {
+        let handle = world
+            .insert_body(RigidBodyBuilder::fixed().pose(pose(Transform::new(body.position, body.rotation))));
+        for part in &body.shapes {
+            let solid = ColliderBuilder::new(shape(&part.shape).expect("Rapier has the shapes of walks"));
+            let place = pose(part.body_from_shape);
+            world.insert_collider(solid.position(place), Some(handle));
+        }
+    }
+    // Builds the tree that is asked.
+    world.step();
+    let step = CharacterLength::Absolute(def.step_height);
+    let controller = KinematicCharacterController {
+        autostep: Some(CharacterAutostep { max_height: step, ..CharacterAutostep::default() }),
+        snap_to_ground: Some(step),
+        max_slope_climb_angle: def.slope_limit,
+        min_slope_slide_angle: def.slope_limit,
+        ..KinematicCharacterController::default()
+    };
+    let center = feet + Vec3::Y * (0.5 * def.height);
+    Box::new(RapierWalker {
+        world,
+        controller,
+        shape: Capsule::new_y(0.5 * def.height - def.radius, def.radius),
+        pose: pose(Transform::from_translation(center)),
+        velocity: Vec3::ZERO,
+        is_grounded: false,
+    })
+}
+
+impl Walker for RapierWalker {
+    fn feet(&self) -> Vec3 {
+        from_pose(&self.pose).translation - Vec3::Y * (0.5 * capsule().height)
+    }
+
+    fn is_grounded(&self) -> bool {
+        self.is_grounded
+    }
+
+    fn step(&mut self, wish: Vec3) {
+        let def = capsule();
+        let most = if self.is_grounded { def.ground_acceleration } else { def.air_acceleration } * DT;
+        let level = Vec3::new(self.velocity.x, 0.0, self.velocity.z);
+        let change = if !self.is_grounded && wish == Vec3::ZERO { Vec3::ZERO } else { wish - level };
+        let length = change.length();
+        self.velocity += if length > most { change * (most / length) } else { change };
+        // As its examples do: it falls from rest where the ground bore it.
+        self.velocity.y = if self.is_grounded { 0.0 } else { self.velocity.y } - 9.81 * DT;
+        let queries = self.world.query_pipeline();
+        let wanted = vector(self.velocity * DT);
+        let moved = self.controller.move_shape(DT, &queries, &self.shape, &self.pose, wanted, |_| {});
+        self.pose.translation += moved.translation;
+        self.is_grounded = moved.grounded;
+        // What stopped it stops it.
+        let went = from_vector(moved.translation) / DT;
+        let [before, after] = [self.velocity, went].map(|v| Vec3::new(v.x, 0.0, v.z).length());
+        if after < before {
+            self.velocity = Vec3::new(went.x, self.velocity.y, went.z);
+        }
     }
 }

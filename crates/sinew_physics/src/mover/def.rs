@@ -33,7 +33,8 @@ pub struct MoverDef {
     pub skin: f32,
     /// Filter of the shapes and other movers that it meets. Default all.
     pub filter: Filter,
-    /// Momentum up to which bodies that fly, faster than 2 m/s, pass it, N·s: a character leaves them to its limbs. Default 0.
+    /// Momentum up to which bodies that fly, faster than 2 m/s, pass it, N·s: a character leaves them to its limbs. What a joint ties to a static or
+    /// kinematic body, such as a door, does not fly. Default 0.
     pub lets_pass: f32,
     /// Number of the user's. Default 0.
     pub user_data: u64,

@@ -165,7 +165,7 @@ fn gather_shape(
     let surface = body.surface(number as usize);
     let passes = matches!(surface.rule, ContactRule::Ghost | ContactRule::Yields(_));
     let solid = surface.sensing == Sensing::Solid && !passes;
-    let flies = mover.def.lets_pass > 0.0 && body.kind == BodyKind::Dynamic && flies_past(body, mover);
+    let flies = body.kind == BodyKind::Dynamic && flies_past(body, mover) && !hangs(world, index);
     if flies || !solid || body.quarantined || !mover.def.filter.meets(surface.filter) {
         return;
     }
@@ -207,6 +207,14 @@ const FLIES: f32 = 2.0;
 fn flies_past(body: &Body, mover: &Mover) -> bool {
     let speed = body.velocity.linear.length();
     speed > FLIES && speed <= mover.def.lets_pass * body.inverse_mass()
+}
+
+/// True if a joint ties a body to one that is not dynamic: a door's leaf brings more than its own momentum, and comes back.
+fn hangs(world: &World, index: u32) -> bool {
+    world.activity.joints_of.body(index).iter().any(|&joint| {
+        let joint = world.joints.at(joint);
+        [joint.a, joint.b].into_iter().any(|body| world.bodies.at(body).kind != BodyKind::Dynamic)
+    })
 }
 
 /// Bounds of world bounds in another frame.

@@ -199,22 +199,30 @@ impl<'a> Move<'a> {
         if step <= 0.0 {
             return None;
         }
-        let along = missing / length;
-        // Less than this would not bring it over the edge from where its skin keeps it.
-        let length = max(length, 2.0 * mover.def.skin);
         let (share, _) = self.sight.sweep(blocked, up * step, &self.manner);
         let raised = blocked + up * (step * share);
-        let there = self.sight.slide(raised, along * length, &self.level());
-        if (there - raised).dot(along) < 0.25 * length {
-            return None;
-        }
-        let depth = (there - blocked).dot(up) + mover.def.skin;
-        let (share, hit) = self.sight.sweep(there, -up * depth, &self.manner);
-        let landed = there - up * (depth * share);
-        let touch = hit?;
         let feet = start - up * (0.5 * mover.def.height);
-        let is_low = (touch.point - feet).dot(up) <= step + mover.def.skin;
-        (is_low && self.bears(&touch, mover, landed)).then_some(landed)
+        // Less than this would not bring it over the edge from where its skin keeps it. Where it would come down on a low flank that is too steep, the
+        // tread may be behind that.
+        let radius = mover.def.radius;
+        for length in [max(length, 2.0 * mover.def.skin), 0.25 * radius, 0.5 * radius] {
+            let way = missing * (length / missing.length());
+            let there = self.sight.slide(raised, way, &self.level());
+            if (there - raised).dot(way) < 0.25 * length * length {
+                return None;
+            }
+            let depth = (there - blocked).dot(up) + mover.def.skin;
+            let (share, hit) = self.sight.sweep(there, -up * depth, &self.manner);
+            let landed = there - up * (depth * share);
+            let touch = hit?;
+            if (touch.point - feet).dot(up) > step + mover.def.skin {
+                return None;
+            }
+            if self.bears(&touch, mover, landed) {
+                return Some(landed);
+            }
+        }
+        None
     }
 
     /// Down to the ground, no farther than a step; what bears the mover there.

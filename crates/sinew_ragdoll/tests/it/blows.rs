@@ -3,10 +3,10 @@
 use crate::actor::{shared, walker};
 use crate::in_world::{level, run};
 use sinew_math::{Transform, Vec3, max};
-use sinew_physics::World;
 use sinew_physics::ray::Ray;
+use sinew_physics::{BodyDef, Shape, World};
 use sinew_ragdoll::{
-    Blow, Character, CharacterDef, DriveMode, Event, Muscle, Part, Preset, State, Toughness,
+    Blow, Character, CharacterDef, DriveMode, Event, MotionSet, Muscle, Part, Preset, State, Toughness,
 };
 use std::sync::Arc;
 
@@ -64,6 +64,62 @@ fn a_hand_that_is_hit_gives_way_and_comes_back_without_a_pop() {
     assert!(jump < 60.0, "coming back it is accelerated by {jump} m/s² beyond its clip");
     let way = character.world_from_character().translation - twin.world_from_character().translation;
     assert!(way.length() < 1e-3, "it walked on: {way}");
+}
+
+/// A walker along a wall a hand's breadth from its hand, which is struck toward it.
+#[test]
+fn an_arm_is_in_a_wall_no_longer_than_the_blow_takes() {
+    let def = shared(walker());
+    let hand = def.body_named("rightHand").expect("it has hands");
+    let (mut world, mut character) = walking(&def);
+    let side = if places(&character)[hand].x > 0.0 { 1.0 } else { -1.0 };
+    let beside = |character: &Character| places(character)[hand].x * side;
+    let (mut free_world, mut free) = walking(&def);
+    let mut face = beside(&free);
+    for _ in 0..90 {
+        run(&mut free_world, &mut free, 1);
+        face = max(face, beside(&free));
+    }
+    face += 0.06;
+    let half_extents = Vec3::new(0.2, 2.0, 5.0);
+    let at = Vec3::new(side * (face + 0.2), 2.0, 0.0);
+    world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at(at));
+    let (mut ghost_world, mut ghost) = walking(&def);
+    let blow = Vec3::X * (side * 6.0);
+    ghost.hit(&mut ghost_world, hand, blow);
+    character.hit(&mut world, hand, blow);
+    let (mut inside, mut deepest, mut would) = (0, f32::NEG_INFINITY, 0.0);
+    for _ in 0..90 {
+        run(&mut world, &mut character, 1);
+        run(&mut ghost_world, &mut ghost, 1);
+        would = max(would, beside(&ghost) - face);
+        deepest = max(deepest, beside(&character) - face);
+        inside += u32::from(beside(&character) > face);
+    }
+    assert!(would > 0.05, "without a wall it goes {would} m beyond it");
+    assert!(inside <= 6 && deepest < 0.02, "it is inside for {inside} steps, by {deepest} m");
+    assert_eq!(character.state(), State::Animated);
+}
+
+/// Who is led by code stands where a wall stops it, with hands and feet on its side. (By its clips it would walk on the spot, hands in the wall.)
+#[test]
+fn limbs_stay_on_this_side_of_a_wall_that_is_walked_against() {
+    let mut def = walker();
+    let motions = def.motions().clone();
+    def.set_motions(MotionSet { idle: Some(1), ..motions }).expect("they could be played before");
+    let def = shared(def);
+    let mut world = level();
+    let half_extents = Vec3::new(3.0, 2.0, 0.2);
+    world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at(Vec3::new(0.0, 2.0, 2.2)));
+    let mut character = Character::spawn(&mut world, &def, Transform::IDENTITY);
+    character.set_move(Vec3::Z * 1.2);
+    let mut deepest = 0.0;
+    for _ in 0..300 {
+        run(&mut world, &mut character, 1);
+        deepest = places(&character).iter().map(|at| at.z - 2.0).fold(deepest, max);
+    }
+    assert!(deepest < 0.005, "{deepest} m in the wall");
+    assert!(character.world_from_character().translation.z > 1.65, "it stands at the wall");
 }
 
 #[test]

@@ -8,6 +8,5 @@ mod mjcf;
 mod mocap;
 mod motions;
 mod movers;
-mod room;
 mod scenes;
 mod scenes_repeat;

@@ -1,23 +1,30 @@
 //! Movers in worlds: the cabin, a house of triangles, pieces of a dungeon.
 
-use crate::room::Room;
 use sinew::formats::{TriangleMesh, load_mesh};
 use sinew::math::trig::{cos, sin};
-use sinew::math::{Random, Rotation, Transform, Vec3};
+use sinew::math::{Random, Transform, Vec3};
 use sinew::physics::boxes::Aabb;
-use sinew::physics::ray::Ray;
-use sinew::physics::{
-    BodyDef, Hull, MoverDef, MoverId, OverlapWith, PenetrationOf, Probe, Shape, World, WorldDef,
-};
+use sinew::physics::{BodyDef, MoverDef, MoverId, PenetrationOf, Probe, Shape, World, WorldDef};
 use sinew_scenes::cabin::Site;
+use sinew_scenes::walks::{Ours, Tally, Terrain};
 use std::io::Write as _;
 use std::path::Path;
 
 const WORLDS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/worlds");
 
-/// Number of random walks: a hundredth, but all with `SINEW_FULL` set.
-fn walks(all: usize) -> usize {
-    if std::env::var_os("SINEW_FULL").is_some() { all } else { all / 100 }
+/// Walks that share a seed.
+const SHARE: usize = 20;
+
+/// Seeds of `all` random walks, `SHARE` of them each: the first, but all with `SINEW_FULL=1` set, or with `SINEW_FULL=k/n` the k-th of n parts.
+fn seeds(all: usize) -> impl Iterator<Item = u64> {
+    let all = (all / SHARE) as u64;
+    let part = std::env::var("SINEW_FULL").ok();
+    let (part, parts) = part.as_deref().map_or((0, all), |part| {
+        let (k, n) = part.split_once('/').unwrap_or(("1", "1"));
+        let number = |digits: &str| digits.parse::<u64>().expect("SINEW_FULL is 1 or k/n");
+        (number(k) - 1, number(n))
+    });
+    (0..all).filter(move |seed| seed % parts == part)
 }
 
 fn cabin() -> World {
@@ -53,127 +60,50 @@ fn with_floor(level: &TriangleMesh) -> World {
     world
 }
 
-fn probe(def: &MoverDef, center: Vec3, margin: f32) -> Probe {
-    let shape = Shape::Capsule { half_height: 0.5 * def.height - def.radius, radius: def.radius + margin };
-    Probe { shape, world_from_shape: Transform::from_translation(center) }
-}
-
 fn depth(world: &World, id: MoverId) -> f32 {
     let mover = world.mover(id);
+    let shape = Shape::Capsule { half_height: mover.half_height(), radius: mover.def().radius };
+    let probe = Probe { shape, world_from_shape: Transform::from_translation(mover.center()) };
     let mut found = Vec::new();
-    world.query().all(&PenetrationOf(probe(mover.def(), mover.center(), 0.0)), &mut found);
+    world.query().all(&PenetrationOf(probe), &mut found);
     found.first().map_or(0.0, |deepest| deepest.depth)
 }
 
-/// True if a point sees the outside of what is next to it in every direction: triangles are solid from there alone.
-fn is_in_front(triangles: &[[Vec3; 3]], point: Vec3) -> bool {
-    let mut random = Random::new(1);
-    let mut direction = || random.rotation() * Vec3::X;
-    (0..60).all(|_| {
-        let way = direction();
-        let meets = |&[a, b, c]: &[Vec3; 3]| {
-            let (ab, ac, from) = (b - a, c - a, point - a);
-            let across = way.cross(ac);
-            let span = ab.dot(across);
-            let u = from.dot(across) / span;
-            let along = from.cross(ab);
-            let (v, t) = (way.dot(along) / span, ac.dot(along) / span);
-            (span != 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some((t, span > 0.0))
-        };
-        let hits = triangles.iter().filter_map(meets);
-        hits.min_by(|a, b| a.0.total_cmp(&b.0)).is_none_or(|(_, in_front)| in_front)
-    })
-}
-
-fn corners(level: &TriangleMesh) -> Vec<[Vec3; 3]> {
-    level.triangles.iter().map(|triangle| triangle.map(|corner| level.positions[corner as usize])).collect()
-}
-
-/// Lets a mover stand, and sends it to the farthest place to which there is room: the number of places, and where it is stuck. What slides off
-/// a rim on the way looks around again from where it is then. `None`: it has no ground.
-fn explore(world: &mut World, id: MoverId) -> Option<(usize, Result<(), String>)> {
-    const TRIES: usize = 3;
-    let (mut places, mut stuck) = (0, String::new());
-    for _ in 0..TRIES {
-        world.set_mover_walk(id, Vec3::ZERO);
-        for _ in 0..60 {
-            world.step();
-        }
-        if !world.mover(id).is_grounded() {
-            break;
-        }
-        let room = Room::around(world, id);
-        places = usize::max(places, room.len());
-        match room.walk(world, id) {
-            Ok(()) => return Some((places, Ok(()))),
-            Err([to, from]) => stuck = format!("at {}, from {from} to {to}", world.mover(id).position()),
+/// Walks all of some number, `SHARE` for a seed, on the ground of that seed, at up to 50 m/s every other time: never inside of anything, never through, and from where one ends it gets
+/// to the farthest place to which a flood fill finds room, `places` or more on the mean.
+fn wander(name: &str, all: usize, places: usize, ground: impl Fn(u64) -> Terrain) {
+    let mut tally = Tally::default();
+    for seed in seeds(all) {
+        let terrain = ground(seed);
+        let mut random = Random::new(seed);
+        let mut world = terrain.build();
+        for walk in 0..SHARE {
+            let mut walker = Ours::new(world, terrain.free_place(&mut random));
+            let fast = if walk % 2 == 0 { 5.0 } else { 50.0 };
+            tally.walk(&terrain, &mut walker, &format!("seed {seed}, walk {walk}"), fast, &mut random);
+            world = walker.leave();
         }
     }
-    (places > 0).then_some((places, Err(stuck)))
-}
-
-/// Random walks from free places within `within`, at up to 50 m/s every other time: never inside of anything, never through, and from
-/// where one ends it gets to the farthest place to which a flood fill finds room.
-fn wander(world: &mut World, triangles: &[[Vec3; 3]], within: &Aabb, seed: u64, count: usize) {
-    let mut random = Random::new(seed);
-    let mut deepest = 0.0_f32;
-    let (mut floods, mut places, mut stuck) = (0, 0, Vec::new());
-    for walk in 0..count {
-        let def = loop {
-            let mut between = |axis: usize| random.range(within.min[axis], within.max[axis]);
-            let position = Vec3::new(between(0), between(1), between(2));
-            let def = MoverDef { ground_acceleration: 300.0, ..MoverDef::at(position) };
-            let center = position + Vec3::Y * 0.9;
-            let is_free = !world.query().any(&OverlapWith(probe(&def, center, 0.02)));
-            if is_free && is_in_front(triangles, center) {
-                break def;
-            }
-        };
-        let id = world.add_mover(&def);
-        let fast = if walk % 2 == 0 { 5.0 } else { 50.0 };
-        for step in 0..120 {
-            if step % 20 == 0 {
-                let (angle, speed) = (random.range(0.0, 6.3), random.range(0.0, fast));
-                world.set_mover_walk(id, Vec3::new(cos(angle), 0.0, sin(angle)) * speed);
-            }
-            let before = world.mover(id).center();
-            world.step();
-            let now = world.mover(id).center();
-            let deep = depth(world, id);
-            deepest = if deep > deepest { deep } else { deepest };
-            assert!(deep < 1e-3, "walk {walk}: {deep} m inside at {now}");
-            assert!(now.y > 0.89, "walk {walk}: under the ground at {now}");
-            let blocked = |from: Vec3| world.query().any(&Ray { origin: from, direction: now - from });
-            let through =
-                (now - before).length() > 0.25 && blocked(before) && blocked(before + Vec3::Y * 0.4);
-            assert!(!through, "walk {walk}: through something from {before} to {now}");
-        }
-        if let Some((room, result)) = explore(world, id) {
-            (floods, places) = (floods + 1, places + room);
-            stuck.extend(result.err().map(|place| format!("walk {walk}: {place}")));
-        }
-        world.remove_mover(id);
-    }
+    let Tally { walks, deepest, floods, ref wrong, .. } = tally;
+    let mean = tally.places / usize::max(floods, 1);
     println!(
-        "deepest {deepest} m in {count} walks; {floods} floods of {} places",
-        places / usize::max(floods, 1)
+        "{name}: deepest {deepest} m in {walks} walks, {floods} floods of {mean} places, {} wrong",
+        wrong.len()
     );
-    assert!(floods > count / 2 && places > 20 * floods, "{floods} floods, {places} places");
-    assert!(stuck.is_empty(), "{} of {floods} stuck: {stuck:#?}", stuck.len());
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    assert!(deepest < 1e-3, "{deepest} m inside");
+    assert!(floods > walks / 2 && mean >= places, "{floods} floods of {mean} places");
 }
 
 #[test]
 fn walks_in_and_around_the_cabin() {
-    let within = Aabb { min: Vec3::new(-4.0, 0.05, -8.0), max: Vec3::new(4.0, 3.0, 4.0) };
-    wander(&mut cabin(), &[], &within, 1, walks(3_000));
+    wander("cabin", 3_000, 50, |_| Terrain::cabin());
 }
 
 #[test]
 fn walks_in_the_house() {
     let Some(house) = level("house_2story_stairs.glb", 3.0) else { return };
-    let mut within = bounds(&house);
-    within.min.y = 0.05;
-    wander(&mut with_floor(&house), &corners(&house), &within, 2, walks(2_500));
+    wander("house", 2_500, 50, |_| Terrain::house(&house));
 }
 
 #[test]
@@ -183,60 +113,12 @@ fn walks_in_the_dungeon() {
     else {
         return;
     };
-    let mut world = with_floor(&stairs);
-    let mut triangles = corners(&stairs);
-    for (turn, x, z) in [(0.0, 0.0, -5.0), (0.0, 3.0, 5.0), (1.6, -4.0, 0.0), (0.7, 4.0, 1.0)] {
-        let mut body = wall.to_body().expect("it has triangles");
-        body.position = Vec3::new(x, 0.0, z);
-        body.rotation = Rotation::from_axis_angle(Vec3::Y, turn);
-        let placed = |corner: Vec3| body.rotation * corner + body.position;
-        triangles.extend(corners(&wall).into_iter().map(|triangle| triangle.map(placed)));
-        world.add_body(&body);
-    }
-    let within = Aabb { min: Vec3::new(-6.0, 0.05, -6.0), max: Vec3::new(6.0, 3.0, 6.0) };
-    wander(&mut world, &triangles, &within, 3, walks(2_500));
-}
-
-/// Solids, turned at random, half in the floor or in the air, within four walls.
-fn clutter(random: &mut Random) -> World {
-    const HALF: f32 = 6.0;
-    let mut world = World::new(WorldDef::default());
-    world.add_body(&BodyDef::fixed(Shape::HalfSpace));
-    for (x, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
-        let along = |share: f32| if share == 0.0 { HALF + 1.0 } else { 0.5 };
-        let half_extents = Vec3::new(along(x), 4.0, along(z));
-        let at = Vec3::new(x, 0.0, z) * (HALF + 0.5);
-        world.add_body(&BodyDef::fixed(Shape::Box { half_extents }).at(at));
-    }
-    for kind in 0..40 {
-        let size = random.range(0.1, 1.2);
-        let mut length = || size * random.range(0.2, 1.0);
-        let (a, b, c) = (length(), length(), length());
-        let shape = match kind % 4 {
-            0 => Shape::Box { half_extents: Vec3::new(a, b, c) },
-            1 => Shape::Cylinder { half_height: a, radius: b },
-            2 => Shape::Capsule { half_height: a, radius: b },
-            _ => {
-                let points: Vec<Vec3> = (0..12).map(|_| (random.rotation() * Vec3::X) * size).collect();
-                Shape::Hull(Hull::new(&points).expect("random points span a solid").into())
-            }
-        };
-        let mut place = || random.range(-HALF, HALF);
-        let (x, z) = (place(), place());
-        let mut def = BodyDef::fixed(shape).at(Vec3::new(x, random.range(0.0, 1.5), z));
-        def.rotation = random.rotation();
-        world.add_body(&def);
-    }
-    world
+    wander("dungeon", 2_500, 50, |_| Terrain::dungeon(&stairs, &wall));
 }
 
 #[test]
 fn walks_in_clutter() {
-    let within = Aabb { min: Vec3::new(-5.5, 0.05, -5.5), max: Vec3::new(5.5, 2.5, 5.5) };
-    let mut random = Random::new(4);
-    for seed in 0..walks(2_000) as u64 / 20 {
-        wander(&mut clutter(&mut random), &[], &within, 100 + seed, 20);
-    }
+    wander("clutter", 2_000, 50, Terrain::clutter);
 }
 
 /// Out of the door, down the stairs, and back up, at speeds from a stroll to a sprint.

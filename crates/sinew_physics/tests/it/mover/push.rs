@@ -1,7 +1,7 @@
 //! Pushes between movers and dynamic bodies.
 
 use super::{depth, level, settle};
-use sinew_math::{Reader, Vec3, Writer};
+use sinew_math::{Reader, Rotation, Transform, Vec3, Writer};
 use sinew_physics::*;
 
 fn crate_of(world: &mut World, mass: f32, at: Vec3, friction: f32) -> BodyId {
@@ -139,6 +139,43 @@ fn what_flies_passes_a_mover_that_lets_it() {
     let (speed, moved) = after(60.0, 0.5);
     assert!(speed == 20.0 && moved < 0.01, "it has gone through at {speed} m/s, the mover stands at {moved}");
     assert!(after(0.0, 0.5).0 < 1.0 && after(60.0, 5.0).0 < 19.0, "else, and if it is heavy, it is stopped");
+}
+
+/// A leaf of 16 kg that swings at 3 m/s at its middle has less momentum than the mover lets pass; on its hinge it does not pass.
+#[test]
+fn a_door_that_swings_does_not_pass_a_mover_that_lets_what_flies() {
+    let swing = |is_hung: bool| {
+        let mut world = level();
+        let id = world.add_mover(&MoverDef { lets_pass: 60.0, ..MoverDef::default() });
+        settle(&mut world, id);
+        let post = BodyDef::fixed(Shape::Sphere { radius: 0.02 }).at(Vec3::new(-0.5, 1.1, -0.9));
+        let post = world.add_body(&post);
+        let leaf = Shape::Box { half_extents: Vec3::new(0.45, 1.0, 0.02) };
+        let mut def = BodyDef::dynamic(leaf.clone()).at(Vec3::new(-0.05, 1.1, -0.9));
+        def.mass = Some(leaf.mass_properties(16.0 / leaf.mass_properties(1.0).mass));
+        (def.linear_velocity, def.angular_velocity) = (Vec3::Z * 3.0, Vec3::NEG_Y * (3.0 / 0.45));
+        let door = world.add_body(&def);
+        if is_hung {
+            let hinge = Transform::from_translation(Vec3::NEG_X * 0.45);
+            let upright = Transform::new(Vec3::ZERO, Rotation::from_arc(Vec3::X, Vec3::Y));
+            let kind = JointKind::Hinge { limit: None };
+            world.add_joint(&JointDef::between(post, door, upright, hinge * upright, kind));
+        }
+        let (mut deepest, mut farthest) = (0.0, f32::NEG_INFINITY);
+        for _ in 0..240 {
+            world.step();
+            deepest = sinew_math::max(deepest, depth(&world, id));
+            farthest = sinew_math::max(farthest, world.transform(door).translation.z);
+        }
+        (deepest, farthest, world.mover(id).position().z)
+    };
+    let (deepest, farthest, moved) = swing(true);
+    assert!(deepest < 0.005, "the leaf is {deepest} m inside of the mover");
+    // Its middle would swing to -0.45 m, if the mover were not in its way.
+    assert!((-0.85..-0.46).contains(&farthest), "the leaf comes as far as {farthest} m");
+    assert!(moved > 0.01, "it pushes the mover by {moved} m");
+    let (deepest, ..) = swing(false);
+    assert!(deepest > 0.05, "let loose it flies into the mover: {deepest} m");
 }
 
 #[test]

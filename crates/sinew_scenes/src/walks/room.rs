@@ -1,26 +1,26 @@
-//! Room that a mover has: a flood fill over moves that its step height and slope limit allow, and walks along it.
+//! Room that a walker has: a flood fill over moves that its step height and slope limit allow, and walks along it.
 
-use sinew::math::{Transform, Vec3, min};
+use super::{Terrain, Walker, capsule};
+use sinew::math::{Transform, Vec3, min, trig};
 use sinew::physics::ray::Ray;
-use sinew::physics::{BodyHit, MoverDef, MoverId, Probe, Shape, ShapeCast, World};
+use sinew::physics::{BodyHit, Probe, Shape, ShapeCast};
 use std::collections::{BTreeMap, VecDeque};
 
 /// Side of a cell, metres, and how many are looked at each way.
 const CELL: f32 = 0.1;
 const FAR: i32 = 12;
-/// Room around the mover that counts as room, metres: more than its skin of 5 mm.
-const MARGIN: f32 = 0.008;
-/// Share of the step height and of the slope limit's cosine that is asked of it.
+/// Share of the step height and of the slope limit that is asked of it.
 const SHARE: f32 = 0.9;
-/// Ground that lies deeper below the feet than this does not bear them: a rim does that is touched from the side, metres.
-const RIM: f32 = 0.1;
+/// Distances behind an edge, and over and under it, at which a tread is looked for, metres.
+const BEHIND_EDGE: f32 = 0.02;
+const OVER_EDGE: f32 = 0.04;
 /// Distance at which a place is reached, metres, and steps in which it must be.
 const REACHED: f32 = 0.02;
 const PATIENCE: u32 = 60;
 /// Speed of the walk, m/s.
 const SPEED: f32 = 1.5;
 
-/// Places to which a mover can walk from where it is, each with the one before it.
+/// Places to which a walker can go from where it is, each with the one before it.
 pub struct Room {
     /// Positions of its feet, metres.
     places: Vec<Vec3>,
@@ -28,10 +28,10 @@ pub struct Room {
 }
 
 impl Room {
-    /// Floods the cells around a mover that stands.
-    pub fn around(world: &World, id: MoverId) -> Self {
-        let mover = world.mover(id);
-        let mut room = Self { places: vec![mover.position()], before: vec![0] };
+    /// Floods the cells around feet that stand. `margin`: free space around the capsule that counts as room, metres, more than what it keeps
+    /// from what it meets.
+    pub fn around(on: &Terrain, feet: Vec3, margin: f32) -> Self {
+        let mut room = Self { places: vec![feet], before: vec![0] };
         let mut cells = BTreeMap::from([((0, 0), 0)]);
         let mut queue = VecDeque::from([(0, 0)]);
         while let Some((x, z)) = queue.pop_front() {
@@ -42,7 +42,7 @@ impl Room {
                     continue;
                 }
                 let way = Vec3::new(dx as f32, 0.0, dz as f32) * CELL;
-                if let Some(place) = step(world, mover.def(), room.places[at], way) {
+                if let Some(place) = step(on, room.places[at], way, margin) {
                     cells.insert(cell, room.places.len());
                     queue.push_back(cell);
                     room.places.push(place);
@@ -53,32 +53,33 @@ impl Room {
         room
     }
 
-    /// Number of places.
+    /// Number of places, at least 1.
+    #[expect(clippy::len_without_is_empty, reason = "the place it stands at is always there")]
     pub fn len(&self) -> usize {
         self.places.len()
     }
 
-    /// Walks to the last place that was found; else the place it does not get to, and the one before that.
-    pub fn walk(&self, world: &mut World, id: MoverId) -> Result<(), [Vec3; 2]> {
+    /// Walks to the place that was found last.
+    ///
+    /// # Errors
+    /// The place it does not get to, and the one before that.
+    pub fn walk(&self, walker: &mut dyn Walker) -> Result<(), [Vec3; 2]> {
         let mut path = vec![self.len() - 1];
         while let Some(&at) = path.last().filter(|at| **at != 0) {
             path.push(self.before[at]);
         }
-        let (dt, mut last) = (world.def().dt(), self.places[0]);
+        let mut last = self.places[0];
         for &index in path.iter().rev() {
             let place = self.places[index];
-            let off = |world: &World| (place - world.mover(id).position()) * Vec3::new(1.0, 0.0, 1.0);
             for steps in 0.. {
-                let way = off(world);
+                let way = (place - walker.feet()) * Vec3::new(1.0, 0.0, 1.0);
                 if way.length() < REACHED {
                     break;
                 }
                 if steps == PATIENCE {
                     return Err([place, last]);
                 }
-                let speed = min(SPEED, way.length() / dt);
-                world.set_mover_walk(id, way * (speed / way.length()));
-                world.step();
+                walker.step(way * (min(SPEED, way.length() * 60.0) / way.length()));
             }
             last = place;
         }
@@ -87,13 +88,14 @@ impl Room {
 }
 
 /// The place of the feet after a move of a cell; `None` where there is no room or no ground to walk on.
-fn step(world: &World, def: &MoverDef, feet: Vec3, way: Vec3) -> Option<Vec3> {
+fn step(on: &Terrain, feet: Vec3, way: Vec3, margin: f32) -> Option<Vec3> {
+    let def = capsule();
     let cast = |feet: Vec3, translation: Vec3| -> Option<BodyHit> {
         let shape =
-            Shape::Capsule { half_height: 0.5 * def.height - def.radius, radius: def.radius + MARGIN };
-        let center = feet + Vec3::Y * (0.5 * def.height + MARGIN);
+            Shape::Capsule { half_height: 0.5 * def.height - def.radius, radius: def.radius + margin };
+        let center = feet + Vec3::Y * (0.5 * def.height + margin);
         let probe = Probe { shape, world_from_shape: Transform::from_translation(center) };
-        world.query().first(&ShapeCast { probe, translation })
+        on.world.query().first(&ShapeCast { probe, translation })
     };
     let least = Vec3::Y * 0.002;
     let high = Vec3::Y * (SHARE * def.step_height);
@@ -106,10 +108,16 @@ fn step(world: &World, def: &MoverDef, feet: Vec3, way: Vec3) -> Option<Vec3> {
     let down = -(up + high);
     let hit = cast(feet + up + way, down)?;
     let place = feet + up + way + down * hit.fraction;
-    let steepest = sinew::math::trig::cos(SHARE * def.slope_limit);
-    let looks = Ray { origin: place + Vec3::Y * 0.5 * def.height, direction: Vec3::NEG_Y * def.height };
-    let tread = world.query().first(&looks);
-    let bears = tread.is_some_and(|tread| tread.normal.y > steepest && place.y - tread.point.y < RIM);
-    // A rim that is touched from the side lets it slide.
-    (bears && hit.normal.y > 0.5).then_some(place)
+    let steepest = trig::cos(SHARE * def.slope_limit);
+    // Flat, or the edge of a tread that is.
+    let inward = -(hit.normal * Vec3::new(1.0, 0.0, 1.0)).normalize_or_zero();
+    let looks = Ray {
+        origin: hit.point + inward * BEHIND_EDGE + Vec3::Y * OVER_EDGE,
+        direction: Vec3::NEG_Y * (2.0 * OVER_EDGE),
+    };
+    let tread = || on.world.query().accept(|body, _| body == hit.body).first(&looks);
+    // A ray that begins within a solid meets it at once.
+    let is_tread = || tread().is_some_and(|tread| tread.fraction > 0.0 && tread.normal.y > steepest);
+    let is_low = hit.point.y - feet.y < high.y;
+    (hit.normal.y > steepest || is_low && is_tread()).then_some(place)
 }

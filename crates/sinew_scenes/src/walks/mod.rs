@@ -1,0 +1,195 @@
+//! Random walks of a capsule over uneven ground, for our mover and for others: the ground, the wishes, and a flood fill that says where there is
+//! room to go.
+
+mod room;
+mod terrain;
+
+pub use room::Room;
+pub use terrain::Terrain;
+
+use sinew::math::trig::{cos, sin};
+use sinew::math::{Random, Vec3, max};
+use sinew::physics::{MoverDef, MoverId, World};
+
+/// Steps of a random walk, and after how many it turns elsewhere.
+pub const STEPS: usize = 120;
+const TURNS: usize = 20;
+/// Steps in which it comes to rest before its room is looked at.
+const SETTLES: usize = 60;
+/// Depth from which a capsule counts as inside of something, metres.
+pub const INSIDE: f32 = 0.005;
+/// Way in a step from which a walk may have gone through something, metres: less leaves the capsule's axis on the side it was on.
+const LONG: f32 = 0.25;
+
+/// One that walks: our mover, or the controller of another engine.
+pub trait Walker {
+    /// Lowest point of its capsule, world, metres.
+    fn feet(&self) -> Vec3;
+
+    /// True if the ground bears it.
+    fn is_grounded(&self) -> bool;
+
+    /// One step of 1/60 s with a velocity over the ground that is wanted, m/s.
+    fn step(&mut self, wish: Vec3);
+}
+
+/// Capsule of all walks: that of [`MoverDef`]'s defaults, which is on its way within a few steps.
+pub fn capsule() -> MoverDef {
+    MoverDef { ground_acceleration: 300.0, ..MoverDef::default() }
+}
+
+/// A mover of ours in a world of its own.
+pub struct Ours {
+    world: World,
+    id: MoverId,
+}
+
+impl Ours {
+    /// A mover with its feet at a place.
+    pub fn new(mut world: World, feet: Vec3) -> Self {
+        let id = world.add_mover(&MoverDef { position: feet, ..capsule() });
+        Self { world, id }
+    }
+
+    /// Its world again, without it.
+    pub fn leave(mut self) -> World {
+        self.world.remove_mover(self.id);
+        self.world
+    }
+}
+
+impl Walker for Ours {
+    fn feet(&self) -> Vec3 {
+        self.world.mover(self.id).position()
+    }
+
+    fn is_grounded(&self) -> bool {
+        self.world.mover(self.id).is_grounded()
+    }
+
+    fn step(&mut self, wish: Vec3) {
+        self.world.set_mover_walk(self.id, wish);
+        self.world.step();
+    }
+}
+
+/// Tally of walks.
+#[derive(Clone, Debug)]
+pub struct Tally {
+    /// Free space around a capsule that counts as room, metres. Default 8 mm: more than a mover's skin.
+    pub margin: f32,
+    /// Number of walks, and of their steps.
+    pub walks: usize,
+    /// Steps of all walks, those to where there is room left out.
+    pub steps: usize,
+    /// Steps after which the capsule was inside of something by more than [`INSIDE`].
+    pub inside: usize,
+    /// Deepest that it was inside of anything, metres.
+    pub deepest: f32,
+    /// Walks that went through something or under the ground, and ended there.
+    pub through: usize,
+    /// Walks that ended on ground from which a flood looked for room.
+    pub floods: usize,
+    /// Places that the floods found, all together.
+    pub places: usize,
+    /// Floods whose last place was not come to.
+    pub stuck: usize,
+    /// Each fault in words, with its seed.
+    pub wrong: Vec<String>,
+}
+
+impl Default for Tally {
+    fn default() -> Self {
+        Self {
+            margin: 0.008,
+            walks: 0,
+            steps: 0,
+            inside: 0,
+            deepest: 0.0,
+            through: 0,
+            floods: 0,
+            places: 0,
+            stuck: 0,
+            wrong: Vec::new(),
+        }
+    }
+}
+
+impl Tally {
+    /// Two seconds of random walk from where a walker is, at up to `fast` m/s, another way every third of a second; then to the farthest place to
+    /// which a flood finds room.
+    pub fn walk(
+        &mut self,
+        on: &Terrain,
+        walker: &mut dyn Walker,
+        name: &str,
+        fast: f32,
+        random: &mut Random,
+    ) {
+        self.walks += 1;
+        if let Err(what) = self.wander(on, walker, fast, random) {
+            self.wrong.push(format!("{name}: {what}"));
+        } else if let Err(what) = self.explore(on, walker) {
+            self.stuck += 1;
+            self.wrong.push(format!("{name}: stuck {what}"));
+        }
+    }
+
+    /// Walks; what was worst.
+    fn wander(
+        &mut self,
+        on: &Terrain,
+        walker: &mut dyn Walker,
+        fast: f32,
+        random: &mut Random,
+    ) -> Result<(), String> {
+        let (mut wish, mut worst, mut place) = (Vec3::ZERO, 0.0_f32, Vec3::ZERO);
+        for step in 0..STEPS {
+            if step % TURNS == 0 {
+                let (angle, speed) = (random.range(0.0, 6.3), random.range(0.0, fast));
+                wish = Vec3::new(cos(angle), 0.0, sin(angle)) * speed;
+            }
+            let before = walker.feet();
+            walker.step(wish);
+            let now = walker.feet();
+            let deep = on.depth(now);
+            self.steps += 1;
+            self.inside += usize::from(deep > INSIDE);
+            if deep > worst {
+                (worst, place) = (deep, now);
+            }
+            self.deepest = max(self.deepest, deep);
+            let is_through = (now - before).length() > LONG && on.parts(before, now);
+            if is_through || now.y < -0.01 {
+                self.through += 1;
+                return Err(format!("through something from {before} to {now}"));
+            }
+        }
+        if worst > INSIDE { Err(format!("{worst} m inside at {place}")) } else { Ok(()) }
+    }
+
+    /// Lets a walker stand, and sends it to the farthest place to which there is room; where it is stuck. What slides off a rim on the way looks around
+    /// again from where it is then.
+    fn explore(&mut self, on: &Terrain, walker: &mut dyn Walker) -> Result<(), String> {
+        const TRIES: usize = 3;
+        let (mut places, mut stuck) = (0, None);
+        for _ in 0..TRIES {
+            (0..SETTLES).for_each(|_| walker.step(Vec3::ZERO));
+            if !walker.is_grounded() {
+                break;
+            }
+            let room = Room::around(on, walker.feet(), self.margin);
+            places = usize::max(places, room.len());
+            match room.walk(walker) {
+                Ok(()) => {
+                    stuck = None;
+                    break;
+                }
+                Err([to, from]) => stuck = Some(format!("at {}, from {from} to {to}", walker.feet())),
+            }
+        }
+        self.floods += usize::from(places > 0);
+        self.places += places;
+        stuck.map_or(Ok(()), Err)
+    }
+}
