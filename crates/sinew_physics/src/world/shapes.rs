@@ -154,6 +154,9 @@ impl World {
         // Before anything is changed: it may panic.
         let weight = weight(&changed, mass);
         self.stir(id);
+        if goes(number) {
+            self.movers.forget(id);
+        }
         let body = self.bodies.at_mut(index);
         (body.shapes, body.surfaces) = (changed.shapes, changed.surfaces);
         if let Some(shape) = body.shapes.get(number as usize) {
@@ -167,7 +170,6 @@ impl World {
         let meetings = &mut self.meetings;
         let bodies = &self.bodies;
         self.activity.drop_returned(|contact| goes(&contact.key), |contact| meetings.part(bodies, &contact));
-        self.movers.forget(id);
         if let Some((mass, moments, principal_from_body)) = weight {
             let body = self.bodies.at_mut(index);
             if body.kind == BodyKind::Dynamic {
@@ -188,6 +190,9 @@ fn weight(body: &Body, mass: MassUpdate) -> Option<Weight> {
         return None;
     }
     let properties = body.mass_of_shapes();
+    if properties.mass == 0.0 && body.kind != BodyKind::Dynamic {
+        return None;
+    }
     let (moments, body_from_principal) = principal_frame(&properties);
     expect_solid(properties.mass, moments);
     Some((properties.mass, moments, body_from_principal.inverse()))
