@@ -15,7 +15,7 @@ use std::time::Instant;
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
     /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
-    /// SINEW_WORLDS, as in 100..200); 10,000 random falls of each rig, not 100; the peers that need no C; instruction counts; the oldest compiler
+    /// SINEW_WORLDS, as in 100..200); definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; instruction counts; the oldest compiler
     #[arg(long)]
     full: bool,
 }
@@ -52,6 +52,7 @@ impl Ci {
             check("large scenes", &large_scenes);
             check("all cases", &all_cases);
             check("random worlds", &random_worlds);
+            check("serde", &serde);
             check("peers", &peers);
             check("counts", &bench::check_counts);
             check("oldest compiler", &oldest_compiler);
@@ -97,6 +98,12 @@ fn random_worlds() -> Result<()> {
     command::run(test.args(["--", "--nocapture", "ten_thousand_random_worlds"]).env("SINEW_FULL", "1"))
 }
 
+/// Definitions come back from JSON as they were.
+fn serde() -> Result<()> {
+    let test = ["test", "--release", "--package", "sinew_physics", "--features", "serde", "--test", "it"];
+    command::run(command::cargo(&test).args(["--", "serde::"]))
+}
+
 /// Every random case of tests that otherwise run a hundredth: boxes, every pair of shapes, trees and questions against brute
 /// force, hostile files, rigs in many variants.
 fn all_cases() -> Result<()> {
@@ -107,7 +114,10 @@ fn all_cases() -> Result<()> {
 }
 
 pub fn clippy() -> Result<()> {
-    command::run(&mut command::cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+    // With what is off by default, so that it compiles.
+    let features = ["--features", "sinew_physics/serde"];
+    let mut clippy = command::cargo(&["clippy", "--workspace", "--all-targets"]);
+    command::run(clippy.args(features).args(["--", "-D", "warnings"]))
 }
 
 /// Licences and origins of all dependencies, by `deny.toml`.
