@@ -60,7 +60,7 @@ impl BitOr for LockedAxes {
 /// let panel = Shape::cuboid(Vec3::new(0.4, 1.0, 0.02));
 /// let panel = world.add_body(&BodyDef::dynamic(panel).at(Vec3::X * 0.5));
 /// let hinge = world.hinge(frame, panel, Vec3::X * 0.1, Vec3::Y).limited(Range { lo: 0.0, hi: 1.5 });
-/// let door = world.add_joint(&JointDef { motor: Some(Motor::spin(1.0, 50.0)), ..hinge });
+/// let door = world.add_joint(&JointDef { motor: Some(Motor::spin(1.0, 500.0)), ..hinge });
 /// (0..60).for_each(|_| world.step());
 /// let angle = world.joint_transform(door).rotation.twist_angle(Vec3::X);
 /// assert!((angle - 1.0).abs() < 0.05);
