@@ -22,8 +22,6 @@ use sinew_math::{Reader, Writer};
 /// that it wrote itself: objects are copied by their state.
 impl Clone for World {
     fn clone(&self) -> Self {
-        let mut movers = crate::mover::Movers::default();
-        movers.all = self.movers.all.clone();
         let mut copy = Self {
             def: self.def.clone(),
             bodies: self.bodies.clone(),
@@ -35,7 +33,7 @@ impl Clone for World {
             functions: self.functions.clone(),
             library: self.library.clone(),
             objects: self.objects.without_any(),
-            movers,
+            movers: self.movers.copy(),
             parted: self.parted.clone(),
             meetings: self.meetings.clone(),
             events: self.events.clone(),
