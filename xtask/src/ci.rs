@@ -15,7 +15,7 @@ use std::time::Instant;
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
     /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
-    /// SINEW_WORLDS, as in 100..200); definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; instruction counts; the oldest compiler
+    /// SINEW_WORLDS, as in 100..200); definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the plugin for Bevy; instruction counts; the oldest compiler
     #[arg(long)]
     full: bool,
 }
@@ -54,6 +54,7 @@ impl Ci {
             check("random worlds", &random_worlds);
             check("serde", &serde);
             check("peers", &peers);
+            check("bevy", &bevy);
             check("counts", &bench::check_counts);
             check("oldest compiler", &oldest_compiler);
         }
@@ -66,7 +67,8 @@ impl Ci {
 }
 
 /// Workspaces beside the root's. They are compiled only where it is worth the time, but always well formatted.
-const OTHER_WORKSPACES: &[&str] = &["bench/peers", "bench/counts", "bench/kernels", "fuzz"];
+const OTHER_WORKSPACES: &[&str] =
+    &["bench/peers", "bench/counts", "bench/kernels", "fuzz", "integrations/bevy_sinew"];
 
 pub fn fmt() -> Result<()> {
     command::run(&mut command::cargo(&["fmt", "--all", "--check"]))?;
@@ -83,6 +85,13 @@ fn peers() -> Result<()> {
         command::cargo(&["clippy", "--manifest-path", "bench/peers/Cargo.toml", "--all-targets"]);
     clippy.arg("--target-dir").arg(command::target().join("bench/check"));
     command::run(clippy.args(["--", "-D", "warnings"]))
+}
+
+/// The plugin for Bevy does what its tests say, without a window.
+fn bevy() -> Result<()> {
+    let mut test =
+        command::cargo(&["test", "--locked", "--manifest-path", "integrations/bevy_sinew/Cargo.toml"]);
+    command::run(test.arg("--target-dir").arg(command::target().join("bevy")))
 }
 
 /// Scenes that take minutes in a debug build.
