@@ -60,7 +60,8 @@ fn physics(app: &App) -> &Physics {
 fn a_scene_has_the_bits_that_the_library_gives_it() {
     let mut app = app();
     let mut world = PhysicsWorld::new(WorldDef::default());
-    let shape = |i: usize| if i % 2 == 0 { Shape::sphere(0.25) } else { Shape::cuboid(Vec3::splat(0.2)) };
+    let shape =
+        |i: usize| if i.is_multiple_of(2) { Shape::sphere(0.25) } else { Shape::cuboid(Vec3::splat(0.2)) };
     let floor = ground(&mut app);
     let mut entities = vec![floor];
     world.add_body(&BodyDef { user_data: floor.to_bits(), ..BodyDef::fixed(Shape::HalfSpace) });
@@ -237,7 +238,7 @@ fn joints_and_fields_come_change_and_go() {
     let hinge = app.world_mut().spawn(hinge).id();
     run(&mut app, 120);
     let sunk = 3.0 - at(&app, bob).y;
-    assert!((sunk - 0.5_f32.sin()).abs() < 0.02, "it hangs at its limit: {sunk}");
+    assert!((sunk - math::trig::sin(0.5)).abs() < 0.02, "it hangs at its limit: {sunk}");
     app.world_mut().get_mut::<Joint>(hinge).expect("it has one").kind = JointKind::Hinge { limit: None };
     run(&mut app, 20);
     assert!(3.0 - at(&app, bob).y > 0.6, "it swings on");
