@@ -15,7 +15,7 @@ use std::time::Instant;
 pub struct Ci {
     /// Adds what is slow: state hashes in every build × thread count, not only the diagonal; the
     /// large scenes; all random cases of shapes, questions and files; 10,000 random worlds (or the seeds of
-    /// SINEW_WORLDS, as in 100..200); 10,000 random falls of each rig, not 100; the peers that need no C; instruction counts; the oldest compiler
+    /// SINEW_WORLDS, as in 100..200); definitions through serde; 10,000 random falls of each rig, not 100; the peers that need no C; the plugin for Bevy; instruction counts; the oldest compiler
     #[arg(long)]
     full: bool,
 }
@@ -52,7 +52,9 @@ impl Ci {
             check("large scenes", &large_scenes);
             check("all cases", &all_cases);
             check("random worlds", &random_worlds);
+            check("serde", &serde);
             check("peers", &peers);
+            check("bevy", &bevy);
             check("counts", &bench::check_counts);
             check("oldest compiler", &oldest_compiler);
         }
@@ -65,7 +67,8 @@ impl Ci {
 }
 
 /// Workspaces beside the root's. They are compiled only where it is worth the time, but always well formatted.
-const OTHER_WORKSPACES: &[&str] = &["bench/peers", "bench/counts", "bench/kernels", "fuzz"];
+const OTHER_WORKSPACES: &[&str] =
+    &["bench/peers", "bench/counts", "bench/kernels", "fuzz", "integrations/bevy_sinew"];
 
 pub fn fmt() -> Result<()> {
     command::run(&mut command::cargo(&["fmt", "--all", "--check"]))?;
@@ -84,6 +87,13 @@ fn peers() -> Result<()> {
     command::run(clippy.args(["--", "-D", "warnings"]))
 }
 
+/// The plugin for Bevy does what its tests say, without a window.
+fn bevy() -> Result<()> {
+    let mut test =
+        command::cargo(&["test", "--locked", "--manifest-path", "integrations/bevy_sinew/Cargo.toml"]);
+    command::run(test.arg("--target-dir").arg(command::target().join("bevy")))
+}
+
 /// Scenes that take minutes in a debug build.
 fn large_scenes() -> Result<()> {
     let test = ["test", "--release", "--package", "sinew_scenes", "--test", "it"];
@@ -97,6 +107,12 @@ fn random_worlds() -> Result<()> {
     command::run(test.args(["--", "--nocapture", "ten_thousand_random_worlds"]).env("SINEW_FULL", "1"))
 }
 
+/// Definitions come back from JSON as they were.
+fn serde() -> Result<()> {
+    let test = ["test", "--release", "--package", "sinew_physics", "--features", "serde", "--test", "it"];
+    command::run(command::cargo(&test).args(["--", "serde::"]))
+}
+
 /// Every random case of tests that otherwise run a hundredth: boxes, every pair of shapes, trees and questions against brute
 /// force, hostile files, rigs in many variants.
 fn all_cases() -> Result<()> {
@@ -107,7 +123,10 @@ fn all_cases() -> Result<()> {
 }
 
 pub fn clippy() -> Result<()> {
-    command::run(&mut command::cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+    // With what is off by default, so that it compiles.
+    let features = ["--features", "sinew_physics/serde"];
+    let mut clippy = command::cargo(&["clippy", "--workspace", "--all-targets"]);
+    command::run(clippy.args(features).args(["--", "-D", "warnings"]))
 }
 
 /// Licences and origins of all dependencies, by `deny.toml`.

@@ -8,6 +8,7 @@
 //! | `formats` | `formats`: files in and out, `load`; needs `ragdoll` | yes |
 //! | `fbx` | FBX files among those; compiles C | no |
 //! | `parallel` | `all_threads`: a world stepped by every core of the machine | yes |
+//! | `serde` | `Serialize` and `Deserialize` for definitions (`BodyDef`, `JointDef` ...) | no |
 #![forbid(unsafe_code)]
 
 pub use sinew_anim as anim;

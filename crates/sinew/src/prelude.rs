@@ -2,15 +2,20 @@
 
 pub use sinew_anim::{Clip, Rig, analyze};
 pub use sinew_math::{Range, ReadError, Reader, Rotation, SwingTwistLimit, Transform, Vec3, Writer};
+pub use sinew_physics::particles::{
+    AttachmentDef, AttachmentTarget, BlobDef, ClothDef, GroupDef, RopeDef, StrandDef,
+};
 pub use sinew_physics::ray::Ray;
 pub use sinew_physics::{
-    Aabb, BodyDef, BodyHit, BodyId, BodyKind, BodyKinds, BodyPenetration, BodySurface, ContainsPoint,
-    Corrections, DebugDraw, DrawKind, FieldDef, FieldKind, Filter, Forces, GroupId, JointDef, JointId,
-    JointKind, Material, MoverDef, MoverGround, MoverId, NearestTo, NearestToShape, Obb, ObjectId,
-    OverlapWith, PenetrationOf, PhysicsObject, Probe, Quality, Query, QueryFilter, Question, Sensing,
-    Sensors, Shape, ShapeCast, ShapeDef, ShapeId, Sleeping, Update, Velocity, World, WorldDef,
+    Aabb, BodyDef, BodyHit, BodyId, BodyKind, BodyKinds, BodyPenetration, BodyRef, BodySurface, Buoyancy,
+    ContainsPoint, Corrections, DebugDraw, DrawKind, Events, Explosion, FieldDef, FieldId, FieldKind, Filter,
+    ForceDef, Forces, GroupId, JointDef, JointId, JointKind, LockedAxes, MassProperties, MassUpdate,
+    Material, Motor, MoverDef, MoverGround, MoverId, NearestTo, NearestToShape, Obb, ObjectId, OverlapWith,
+    PenetrationOf, PhysicsObject, Probe, Quality, Query, QueryFilter, Question, Region, Sensing, Sensors,
+    Serial, Shape, ShapeCast, ShapeDef, ShapeId, Sleeping, Softness, Spring, Strength, Threads, Update,
+    Velocity, Wind, World, WorldDef,
 };
 #[cfg(feature = "ragdoll")]
 pub use sinew_ragdoll::{
-    BuildOptions, Character, CharacterDef, MotionSet, Part, Preset, Ragdoll, RagdollDef, build,
+    BuildOptions, Character, CharacterDef, Event, MotionSet, Part, Preset, Ragdoll, RagdollDef, State, build,
 };

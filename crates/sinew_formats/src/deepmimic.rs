@@ -4,6 +4,21 @@
 //! A frame is a row of numbers: its duration; place and orientation (w, x, y, z) of the root; then joint by joint four
 //! numbers for a ball joint, one angle about z for a hinge, none for a joint that is fixed. What the numbers stand for
 //! only the character says, which is a file of its own.
+//!
+//! ```
+//! use sinew_formats::{read_deepmimic, read_deepmimic_character};
+//!
+//! let root = r#"{"Name": "root", "Type": "none", "Parent": -1, "AttachX": 0, "AttachY": 0, "AttachZ": 0,
+//!     "AttachThetaX": 0, "AttachThetaY": 0, "AttachThetaZ": 0}"#;
+//! let knee = r#"{"Name": "knee", "Type": "revolute", "Parent": 0, "AttachX": 0, "AttachY": -1, "AttachZ": 0,
+//!     "AttachThetaX": 0, "AttachThetaY": 0, "AttachThetaZ": 0}"#;
+//! let text = format!(r#"{{"Skeleton": {{"Joints": [{root}, {knee}]}}}}"#);
+//! let character = read_deepmimic_character(text.as_bytes())?;
+//! let frames = br#"{"Loop": "wrap", "Frames": [[0.5, 0, 2, 0, 1, 0, 0, 0, 0.25], [0, 0, 2, 0, 1, 0, 0, 0, 0.5]]}"#;
+//! let clip = read_deepmimic(frames, &character)?;
+//! assert_eq!(clip.clip.duration, 0.5);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::{Result, quoted};
 use crate::json::{self, At};

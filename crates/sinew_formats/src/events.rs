@@ -10,6 +10,18 @@
 //!
 //! `clip` is a name, or a number from 0 where clips have none; times are seconds. In `extras` there is no list of clips:
 //! `"sinew_events": {"version": 1, "events": […]}`, or the bare list.
+//!
+//! ```
+//! use sinew_anim::Event;
+//! use sinew_formats::{read_events, write_events};
+//!
+//! let clips = sinew::mannequin::mannequin().clips;
+//! let mut events = vec![Vec::new(); clips.len()];
+//! events[0] = vec![Event::new(0.25, "footstep")];
+//! let text = write_events(&clips, &events);
+//! assert_eq!(read_events(text.as_bytes(), &clips)?[0], Some(events[0].clone()));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::{Result, quoted};
 use crate::json::{self, At, number};

@@ -1,4 +1,17 @@
 //! The only file IO of the libraries: read, atomic write, and files beside a file that stay beside it.
+//!
+//! ```
+//! use sinew_formats::{load_world, write_atomic};
+//!
+//! let file = std::env::temp_dir().join(format!("sinew-doc-{}.json", std::process::id()));
+//! let level = r#"{"sinew": "world", "version": 1, "bodies": [{"shapes": [{"type": "half_space"}]}]}"#;
+//! write_atomic(&file, level.as_bytes())?;
+//! assert_eq!(load_world(&file)?.len(), 1);
+//! std::fs::remove_file(&file)?;
+//! let error = load_world(&file).expect_err("it is gone");
+//! assert!(error.to_string().contains("sinew-doc"), "{error}"); // errors name the file
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::deepmimic::{DeepMimicCharacter, read_deepmimic_character};
 use crate::error::{Error, Result, quoted};

@@ -1,4 +1,15 @@
 //! Render meshes as bare triangles: what `sinew boxes` starts from. From a glTF scene in its rest pose, or an OBJ.
+//!
+//! ```
+//! use sinew_formats::{ReadOptions, TriangleMesh, no_files, read_gltf, write_gltf};
+//!
+//! let file = write_gltf(&sinew::mannequin::mannequin().rig, &[])?;
+//! let document = read_gltf(&file, ReadOptions::default(), &mut no_files)?;
+//! let mesh = TriangleMesh::from_document(&document)?;
+//! let height = mesh.positions.iter().fold(0.0, |top, vertex| f32::max(top, vertex.y));
+//! assert!((height - 1.75).abs() < 0.05, "{height} m");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::{Error, Result};
 use crate::gltf::Document;

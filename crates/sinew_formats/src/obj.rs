@@ -1,4 +1,13 @@
 //! Wavefront OBJ: vertices and faces; materials, normals and texture coordinates are passed over.
+//!
+//! ```
+//! let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+//! let mesh = sinew_formats::read_obj(text.as_bytes())?;
+//! assert_eq!(mesh.triangles.len(), 2); // a face of four corners
+//! let error = sinew_formats::read_obj(b"v 0 0\nf 1 2 3").expect_err("a number is missing");
+//! assert!(error.to_string().contains("line 1"), "{error}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::{Error, Result, quoted};
 use crate::mesh::TriangleMesh;

@@ -53,6 +53,15 @@
 //!
 //! A body is referred to by its `bone`, or by its number from 0 where two have the same bone name. Shapes, poses and
 //! masses are as in [world files](crate::world). A key that is not listed here is an error.
+//!
+//! ```
+//! use sinew_formats::{read_ragdoll, write_ragdoll};
+//!
+//! let def = sinew::mannequin::character().ragdoll;
+//! let read = read_ragdoll(write_ragdoll(&def).as_bytes())?;
+//! assert_eq!((read.bodies.len(), &read.bodies[0].role), (def.bodies.len(), &def.bodies[0].role));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod settings;
 

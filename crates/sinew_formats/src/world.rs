@@ -52,6 +52,15 @@
 //! `friction`, `restitution` and `rolling`: `average`, `geometric_mean`, `minimum`, `multiply`, `maximum`.
 //!
 //! A key that is not listed here is an error, so that a typing error does not pass in silence.
+//!
+//! ```
+//! use sinew_formats::{read_world, write_world};
+//! use sinew_physics::{BodyDef, Shape};
+//!
+//! let bodies = [BodyDef::fixed(Shape::HalfSpace), BodyDef::dynamic(Shape::sphere(0.5))];
+//! assert_eq!(read_world(write_world(&bodies).as_bytes())?, bodies); // to the last bit
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::error::Result;
 use crate::json::{self, At, number, numbers};

@@ -72,6 +72,8 @@ pub mod hull;
 mod mass;
 pub mod ray;
 pub mod revolved;
+#[cfg(feature = "serde")]
+mod serial;
 mod shape;
 pub mod slabs;
 pub mod submerged;

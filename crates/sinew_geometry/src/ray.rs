@@ -7,6 +7,7 @@ use sinew_math::{Transform, Vec3, abs3, max, normalize_or};
 
 /// A stretch of a line, from `origin` to `origin + direction`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(alias = "raycast")]
 pub struct Ray {
     /// Start, metres.
     pub origin: Vec3,

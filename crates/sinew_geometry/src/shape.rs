@@ -1,13 +1,16 @@
 //! Collision shapes: their kinds and sizes.
 
 use crate::boxes::Aabb;
-use crate::hull::Hull;
-use crate::triangles::{HeightField, Mesh};
+use crate::hull::{Hull, HullError};
+use crate::triangles::{HeightField, Mesh, MeshError};
 use sinew_math::{Sym3, Vec3, abs3, max, max3, min};
 use std::sync::Arc;
 
 /// A shape in its own frame. All sizes are metres and positive. Convex, but for meshes and height fields.
+#[doc(alias = "collider")]
+#[doc(alias = "SharedShape")]
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Shape {
     /// Box around the origin.
     Box {
@@ -53,11 +56,59 @@ pub enum Shape {
     /// Everything below the plane y = 0 of its frame. Static bodies only.
     HalfSpace,
     /// Convex solid with flat faces; its origin need not be inside.
-    Hull(Arc<Hull>),
+    Hull(#[cfg_attr(feature = "serde", serde(with = "crate::serial::hull"))] Arc<Hull>),
     /// A surface of one-sided triangles. It has no mass of its own: for static and kinematic bodies, or with a given mass.
-    Mesh(Arc<Mesh>),
+    Mesh(#[cfg_attr(feature = "serde", serde(with = "crate::serial::mesh"))] Arc<Mesh>),
     /// Terrain over its x and z axes, solid from above. As for meshes.
-    HeightField(Arc<HeightField>),
+    HeightField(#[cfg_attr(feature = "serde", serde(with = "crate::serial::height_field"))] Arc<HeightField>),
+}
+
+/// Short ways to write the kinds down. None checks its sizes: [`Shape::check`] does, and so does a world that is given one.
+impl Shape {
+    /// Box around the origin, by half of each side, metres.
+    #[doc(alias = "box")]
+    pub fn cuboid(half_extents: Vec3) -> Self {
+        Self::Box { half_extents }
+    }
+
+    /// Ball around the origin, by its radius, metres.
+    #[doc(alias = "ball")]
+    pub fn sphere(radius: f32) -> Self {
+        Self::Sphere { radius }
+    }
+
+    /// Capsule along y, by half the length of its segment, which has no caps, and its radius, metres.
+    pub fn capsule(half_height: f32, radius: f32) -> Self {
+        Self::Capsule { half_height, radius }
+    }
+
+    /// Cylinder along y, by half of its length and its radius, metres.
+    pub fn cylinder(half_height: f32, radius: f32) -> Self {
+        Self::Cylinder { half_height, radius }
+    }
+
+    /// Cone along y, by half the distance from base to apex and the radius of its base, metres.
+    pub fn cone(half_height: f32, radius: f32) -> Self {
+        Self::Cone { half_height, radius }
+    }
+
+    /// Convex hull of points, metres.
+    ///
+    /// # Errors
+    /// If the points span no solid: see [`Hull::new`].
+    #[doc(alias = "convex_hull")]
+    pub fn hull(points: &[Vec3]) -> Result<Self, HullError> {
+        Hull::new(points).map(|hull| Self::Hull(Arc::new(hull)))
+    }
+
+    /// Mesh of triangles: vertices (metres) and three of their indices for each triangle, counter-clockwise seen from outside.
+    ///
+    /// # Errors
+    /// If a number is not finite or an index names no vertex: see [`Mesh::new`].
+    #[doc(alias = "trimesh")]
+    pub fn mesh(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        Mesh::new(vertices, triangles).map(|mesh| Self::Mesh(Arc::new(mesh)))
+    }
 }
 
 impl Shape {
@@ -159,6 +210,7 @@ fn reach(bounds: &Aabb) -> f32 {
 
 /// Mass, centre of mass and inertia.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MassProperties {
     /// kg.
     pub mass: f32,

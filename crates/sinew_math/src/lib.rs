@@ -33,6 +33,8 @@ mod rotation;
 mod symmetric;
 mod transform;
 pub mod trig;
+#[cfg(feature = "serde")]
+pub mod unlimited;
 
 pub use bytes::{ReadError, Reader, Writer};
 pub use euler::{EulerAngles, EulerAxes, EulerConvention, EulerOrder, GimbalLock};

@@ -4,6 +4,7 @@ use crate::{Rotation, Vec3, trig};
 
 /// A closed interval, radians unless said otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Range {
     /// Lower end.
     pub lo: f32,
@@ -45,6 +46,7 @@ impl Range {
 /// The joint rotation `frame_a⁻¹ frame_b` is split as swing × twist about the joint frame's **x axis**. `swing_y` is
 /// the rotation about y, `swing_z` about z (the y and z components of the swing's scaled axis); zero lies inside both.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SwingTwistLimit {
     /// Swing about the joint's y axis, radians, `lo ≤ 0 ≤ hi`.
     pub swing_y: Range,

@@ -30,6 +30,7 @@ use core::ops::Mul;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rotation {
     /// Coefficient of i.
     pub x: f32,

@@ -3,6 +3,7 @@ use core::ops::{Add, AddAssign, Mul, Sub};
 
 /// A symmetric 3×3 matrix: inertia tensors, stiffness blocks, covariances.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sym3 {
     /// Diagonal (xx, yy, zz).
     pub diagonal: Vec3,

@@ -3,6 +3,7 @@ use core::ops::Mul;
 
 /// A rigid motion: rotate, then translate. `a * b` applies `b` first.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Transform {
     /// Translation: the place to which the origin goes, metres.
     pub translation: Vec3,

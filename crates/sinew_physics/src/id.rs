@@ -52,6 +52,21 @@ macro_rules! id {
             }
         }
 
+        /// As its [bits](Self::to_bits).
+        #[cfg(feature = "serde")]
+        impl serde::Serialize for $name {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_u64(self.to_bits())
+            }
+        }
+
+        #[cfg(feature = "serde")]
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                u64::deserialize(deserializer).map(Self::from_bits)
+            }
+        }
+
         impl Handle for $name {
             fn new(index: u32, generation: u32, lineage: Lineage) -> Self {
                 Self { index, generation, lineage }

@@ -64,4 +64,4 @@ pub use query::{
     NearestToShape, OverlapWith, PenetrationOf, Probe, Query, QueryFilter, Question, Sensors, ShapeCast,
 };
 pub use runner::{Serial, TaskRunner, Threads};
-pub use world::{BodyContact, ContactPoint, Reaction, Update, World};
+pub use world::{BodyContact, BodyRef, ContactPoint, LockedAxes, MassUpdate, Reaction, Update, World};

@@ -1,4 +1,16 @@
 //! A ragdoll as plain data, in metres and kilograms: what `ragdoll build` writes and a game loads.
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
+//! let head = def.bodies.iter().find(|body| body.role == "head").expect("it has one");
+//! assert!(head.character_from_body.translation.y > 0.8 * def.height);
+//! assert!((3.0..8.0).contains(&head.mass.mass), "{} kg", head.mass.mass);
+//! let sum: f32 = def.bodies.iter().map(|body| body.mass.mass).sum();
+//! assert!((sum - def.total_mass).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use sinew_math::{Transform, Vec3};
 use sinew_physics::{JointKind, MassProperties, Shape};

@@ -1,4 +1,16 @@
 //! From animated to physical at the speed of the animation.
+//!
+//! ```
+//! use sinew_math::{Transform, Vec3};
+//! use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
+//!
+//! // An arm that a clip moved by 5 cm within a step, and a capture's glitch of 3 m.
+//! let (before, dt) = (Transform::IDENTITY, 1.0 / 60.0);
+//! let after = |way| Transform::from_translation(Vec3::X * way);
+//! let speed = |way| body_velocity(before, after(way), Vec3::ZERO, dt, SpeedBound::default()).linear.x;
+//! assert!((speed(0.05) - 3.0).abs() < 1e-4);
+//! assert!((speed(3.0) - 30.0).abs() < 1e-4);
+//! ```
 
 use crate::def::RagdollDef;
 use sinew_math::{Transform, Vec3};

@@ -1,4 +1,28 @@
 //! A ragdoll in a world: its bodies and joints.
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
+//! use sinew_physics::{BodyDef, Shape, Velocity, World, WorldDef};
+//! use sinew_ragdoll::{BodyState, Flesh, Ragdoll};
+//!
+//! let mut world = World::new(WorldDef::default());
+//! world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+//! let start: Vec<BodyState> = def
+//!     .bodies
+//!     .iter()
+//!     .map(|body| BodyState { world_from_body: body.character_from_body, velocity: Velocity::default() })
+//!     .collect();
+//! let ragdoll = Ragdoll::spawn(&mut world, &def, &start, &Flesh::default());
+//! (0..120).for_each(|_| world.step());
+//! let mut poses = Vec::new();
+//! ragdoll.poses(&world, &mut poses);
+//! assert!(poses[0].translation.y < 0.5 * start[0].world_from_body.translation.y, "it lies");
+//! ragdoll.despawn(&mut world);
+//! assert_eq!(world.body_ids().count(), 1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
 use crate::filter::TOLERATED;

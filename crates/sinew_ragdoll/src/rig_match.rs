@@ -1,4 +1,20 @@
 //! Match of a definition with the rig that it belongs to.
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
+//! // The file is exported anew, with a node before all others.
+//! let mut again = rig.clone();
+//! again.joints.insert(0, sinew_anim::Joint { name: "export".into(), ..again.joints[0].clone() });
+//! for (index, joint) in again.joints.iter_mut().enumerate().skip(1) {
+//!     joint.parent = Some(joint.parent.map_or(0, |parent| parent + 1));
+//!     assert_eq!(joint.name, rig.joints[index - 1].name);
+//! }
+//! let matched = def.clone().for_rig(&again)?;
+//! assert_eq!(matched.bodies[0].joint, def.bodies[0].joint + 1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::build::joint_name;
 use crate::def::RagdollDef;

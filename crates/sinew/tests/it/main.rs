@@ -2,20 +2,42 @@
 
 #[path = "../../examples/active_ragdoll.rs"]
 mod active_ragdoll;
+#[path = "../../examples/character_get_up.rs"]
+mod character_get_up;
+#[path = "../../examples/door.rs"]
+mod door;
 #[path = "../../examples/door_and_cape.rs"]
 mod door_and_cape;
+#[path = "../../examples/events.rs"]
+mod events;
 #[path = "../../examples/flock.rs"]
 mod flock;
+#[path = "../../examples/hello_box.rs"]
+mod hello_box;
+#[path = "../../examples/level.rs"]
+mod level;
 #[path = "../../examples/pendulum_clock.rs"]
 mod pendulum_clock;
 #[path = "../../examples/player.rs"]
 mod player;
 #[path = "../../examples/probes.rs"]
 mod probes;
+#[path = "../../examples/ragdoll_from_file.rs"]
+mod ragdoll_from_file;
+#[path = "../../examples/rewind.rs"]
+mod rewind;
 #[path = "../../examples/rollback_fight.rs"]
 mod rollback_fight;
+#[path = "../../examples/rope.rs"]
+mod rope;
 #[path = "../../examples/shooter.rs"]
 mod shooter;
+#[path = "../../examples/stack.rs"]
+mod stack;
+#[path = "../../examples/threads.rs"]
+mod threads;
+#[path = "../../examples/wind.rs"]
+mod wind;
 
 mod motions;
 
@@ -57,4 +79,59 @@ fn the_walker_takes_its_cape_through_the_door() {
 #[test]
 fn the_fight_is_the_same_with_news_that_come_late() {
     rollback_fight::main();
+}
+
+#[test]
+fn the_walker_is_struck_and_gets_up() {
+    character_get_up::main();
+}
+
+#[test]
+fn the_door_opens_and_closes() {
+    door::main();
+}
+
+#[test]
+fn everything_tells_of_the_ball_once() {
+    events::main();
+}
+
+#[test]
+fn the_box_falls_and_sleeps() {
+    hello_box::main();
+}
+
+#[test]
+fn the_ball_rolls_into_the_bowl() {
+    level::main();
+}
+
+#[test]
+fn the_ragdoll_falls_and_holds_together() {
+    ragdoll_from_file::main();
+}
+
+#[test]
+fn time_goes_the_same_way_again() {
+    rewind::main();
+}
+
+#[test]
+fn the_load_swings_on_its_rope() {
+    rope::main();
+}
+
+#[test]
+fn the_tower_stands_and_falls() {
+    stack::main();
+}
+
+#[test]
+fn threads_change_no_bit() {
+    threads::main();
+}
+
+#[test]
+fn wind_water_and_bombs_act() {
+    wind::main();
 }

@@ -3,6 +3,28 @@
 //! The format was never written down by its makers, so files differ in all that can differ. What this reader takes:
 //! rotation channels in any order and number, per joint; positions at any joint; joints of no length; missing End
 //! Sites; any line ends and any white space. What it assumes and mends stands in [`BvhDocument::notes`].
+//!
+//! ```
+//! use sinew_formats::{BvhOptions, BvhWriteOptions, read_bvh, write_bvh};
+//!
+//! let text = "HIERARCHY
+//! ROOT hips { OFFSET 0 0 0
+//!   CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+//!   JOINT head { OFFSET 0 80 0 CHANNELS 3 Zrotation Xrotation Yrotation End Site { OFFSET 0 20 0 } } }
+//! MOTION
+//! Frames: 2
+//! Frame Time: 0.0333333
+//! 0 90 0  0 0 0  0 0 0
+//! 0 90 5  0 0 0  0 30 0";
+//! let document = read_bvh(text.as_bytes(), BvhOptions::default())?;
+//! assert_eq!((document.frames, document.metres_per_unit), (2, 0.01)); // no one is 100 m tall
+//! println!("{}", document.notes.join("\n"));
+//!
+//! let written = write_bvh(&document.rig, &document.clip, &BvhWriteOptions::default())?;
+//! let again = read_bvh(written.text.as_bytes(), BvhOptions::default())?;
+//! assert_eq!(again.rig.joints.len(), document.rig.joints.len());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod channel;
 mod hierarchy;

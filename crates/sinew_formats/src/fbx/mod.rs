@@ -4,6 +4,12 @@
 //! that no root carries a scale; pivots, orders of rotations and scale that is not inherited are resolved into plain
 //! translation, rotation and scale; curves are sampled at the file's frame rate where they are not straight, then reduced to
 //! the keys that are needed. Of materials the base colour and its picture are kept. Morph targets, constraints, cameras and lights are left out.
+//!
+//! ```
+//! # let bytes: &[u8] = b"neither text nor binary";
+//! let error = sinew_formats::read_fbx(bytes).expect_err("this is none");
+//! println!("{error}");
+//! ```
 
 mod clips;
 mod material;

@@ -2,6 +2,22 @@
 //!
 //! The JSON is read with our own cursor rather than a typed model: every index, range and number is checked where it is
 //! used, errors can name the place, and the same value is what [`append_clip`] edits and writes back.
+//!
+//! ```
+//! use sinew_formats::{ReadOptions, append_clip, no_files, read_gltf, write_gltf};
+//!
+//! let mannequin = sinew::mannequin::mannequin();
+//! let file = write_gltf(&mannequin.rig, &mannequin.clips[..1])?;
+//! let document = read_gltf(&file, ReadOptions::default(), &mut no_files)?;
+//! assert_eq!(document.clips[0].name, mannequin.clips[0].name);
+//!
+//! // One more clip in the same file: what was there stays as it was.
+//! let slow = sinew_anim::Clip { name: "slow".into(), ..document.clips[0].clone() };
+//! let longer = append_clip(&document, &slow, "slow", None)?;
+//! let document = read_gltf(&longer, ReadOptions::default(), &mut no_files)?;
+//! assert_eq!(document.clips.len(), 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod accessor;
 mod animation;

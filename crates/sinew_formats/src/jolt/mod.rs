@@ -1,4 +1,9 @@
 //! Ragdolls and skeletal animations of Jolt Physics in its text object format (`.tof`): metres, +Y up.
+//!
+//! ```
+//! let error = sinew_formats::read_jolt_ragdoll(b"TOS 1.00\n").expect_err("an empty file");
+//! assert!(error.to_string().contains("RagdollSettings"), "{error}");
+//! ```
 
 mod clip;
 mod objects;

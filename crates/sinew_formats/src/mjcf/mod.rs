@@ -19,6 +19,22 @@
 //!   has a rectangle. Where their anchors differ, the joint's is in the middle; where their springs differ, it has the
 //!   softest.
 //! - **Friction** of a pair is the geometric mean here, and the larger in MuJoCo.
+//!
+//! ```
+//! use sinew_formats::read_mjcf;
+//! use sinew_physics::{World, WorldDef};
+//!
+//! let text = r#"<mujoco model="pendulum"><worldbody><body name="bob" pos="0 0 2">
+//!     <joint type="hinge" axis="0 1 0" pos="0 0 0.5"/><geom type="sphere" size="0.1" mass="1"/>
+//! </body></worldbody></mujoco>"#;
+//! let model = read_mjcf(text.as_bytes())?;
+//! let mut world = World::new(WorldDef::default());
+//! let bodies = model.spawn(&mut world).bodies;
+//! let bob = bodies[model.body("bob").expect("it has one")];
+//! assert_eq!(world.mass(bob).mass, 1.0);
+//! assert!((world.transform(bob).translation.y - 2.0).abs() < 1e-6); // z up became y up
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod bodies;
 mod compiler;

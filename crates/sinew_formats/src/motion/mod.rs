@@ -1,4 +1,14 @@
 //! Any file with clips by one function: glTF, GLB, VRM and VRMA, BVH, DeepMimic, FBX, and the skeleton of a Jolt ragdoll.
+//!
+//! ```
+//! use sinew_formats::{MotionFormat, MotionOptions, no_files, read_motion, write_gltf};
+//!
+//! let mannequin = sinew::mannequin::mannequin();
+//! let bytes = write_gltf(&mannequin.rig, &mannequin.clips)?; // or those of any other file
+//! let file = read_motion(&bytes, &MotionOptions::default(), &mut no_files)?;
+//! assert_eq!((file.format, file.clips.len()), (MotionFormat::Glb, mannequin.clips.len()));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod format;
 

@@ -10,6 +10,8 @@ pub const HALF_SPACE_REACH: f32 = 1.0e9;
 
 /// Axis-aligned box, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct Aabb {
     /// Lowest corner.
     pub min: Vec3,

@@ -6,6 +6,8 @@ use sinew_math::{Rotation, Transform, Vec3};
 
 /// A box with any orientation (oriented bounding box).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct Obb {
     /// Its middle, metres.
     pub center: Vec3,

@@ -9,6 +9,7 @@ use sinew_math::{StableHasher, Vec3, clamp, max, min};
 
 /// A height field to be made.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeightFieldDef {
     /// Vertices along x, at least 2.
     pub columns: usize,

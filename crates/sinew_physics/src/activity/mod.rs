@@ -91,7 +91,7 @@ impl Activity {
         self.note(index, body);
     }
 
-    /// Takes note of an awake body that forces move, or no longer.
+    /// Takes note of an awake body of another kind than before.
     pub fn change_kind(&mut self, index: u32, body: &Body) {
         self.kinematic.retain(|&other| other != index);
         self.add(index, body);
@@ -107,7 +107,12 @@ impl Activity {
         self.active.set(index, false);
         self.kinematic.retain(|&other| other != index);
         self.aside.take(index, &mut part_with);
-        self.returned.extract_if(.., |contact| contact.key.has(index)).for_each(part_with);
+        self.drop_returned(|contact| contact.key.has(index), part_with);
+    }
+
+    /// Takes out contacts among those that were recalled since the last step.
+    pub fn drop_returned(&mut self, mut goes: impl FnMut(&Contact) -> bool, part_with: impl FnMut(Contact)) {
+        self.returned.extract_if(.., |contact| goes(contact)).for_each(part_with);
     }
 
     /// Wakes a body that sleeps, and everything it fell asleep with.

@@ -8,6 +8,8 @@ use sinew_math::{Vec3, normalize_or};
 
 /// Rule for the contacts of a shape. Contacts of two shapes push only if both rules let them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[doc(alias = "one-way platform")]
 pub enum ContactRule {
     /// They push. Default.
     #[default]
@@ -44,6 +46,8 @@ impl ContactRule {
 /// What is decided when two shapes come near each other stays while they touch: what has come from below passes until it
 /// is out, on whichever side, and what lies on top goes on lying there, also when it tips over the edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct OneWay {
     /// From the platform to what it holds up, in the shape's frame; not 0. Its length does not matter. Default +y.
     pub direction: Vec3,
@@ -82,10 +86,14 @@ impl OneWay {
 ///
 /// What flies into a hand is stopped and thrown back, a ball is kicked, a crate of 50 kg is let be: the hand goes through it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct Yields {
     /// Most force with which it shoves what does not come by itself, N: over a step, and as if that were free. Default 150.
+    #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub max_force: f32,
     /// Most momentum of what comes by itself that it stops, N·s. Default 60.
+    #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub max_impulse: f32,
 }
 

@@ -6,6 +6,8 @@ use sinew_math::{Rotation, Vec3};
 
 /// Settings of a world.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct WorldDef {
     /// m/s². Default (0, −9.81, 0).
     pub gravity: Vec3,
@@ -38,6 +40,7 @@ pub struct WorldDef {
 /// An island, which is what hangs together through contacts and joints, takes the highest quality of its bodies. Where particles hang
 /// on it, or the world has [objects](crate::PhysicsObject), all substeps are those of the world, and only sweeps change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quality {
     /// Half of the world's substeps unless masses differ by more than 100 or something spins fast, and half of the sweeps: for crowds in
     /// the distance.
@@ -51,6 +54,7 @@ pub enum Quality {
 
 /// Permission for bodies at rest to fall asleep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Sleeping {
     /// Bodies at rest fall asleep.
     On,
@@ -61,6 +65,8 @@ pub enum Sleeping {
 /// Thresholds of rest: an island sleeps when each of its bodies has been in its place for a time. A body that creeps by
 /// more than twice the distance or by the angle within the time does not sleep; one that trembles less far may.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct SleepThresholds {
     /// Seconds, not negative. Default 0.5.
     pub time: f32,
@@ -144,6 +150,9 @@ impl WorldDef {
 
 /// Kind of a body: static, kinematic or dynamic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[doc(alias = "RigidBodyType")]
+#[doc(alias = "MotionType")]
 pub enum BodyKind {
     /// Moved by nothing.
     Static,
@@ -155,6 +164,10 @@ pub enum BodyKind {
 
 /// A body to be made.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
+#[doc(alias = "RigidBody")]
+#[doc(alias = "RigidBodyBuilder")]
 pub struct BodyDef {
     /// Kind of the body. Default dynamic.
     pub kind: BodyKind,

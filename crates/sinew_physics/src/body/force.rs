@@ -19,6 +19,7 @@ pub struct Wrench {
 
 /// Axes that a lasting force is given in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ForceFrame {
     /// The world's: it keeps its direction when the body turns, as a pull from far away does. Default.
     #[default]
@@ -29,6 +30,8 @@ pub enum ForceFrame {
 
 /// A force that acts on a body in every substep until it is changed or taken away.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct ForceDef {
     /// N, in the axes of `frame`.
     pub force: Vec3,

@@ -4,6 +4,12 @@ use sinew_math::{Vec3, max, min};
 
 /// Material of a shape: how it rubs, bounces and moves along.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
+#[doc(alias = "PhysicsMaterial")]
+#[doc(alias = "friction")]
+#[doc(alias = "restitution")]
+#[doc(alias = "bounciness")]
 pub struct Material {
     /// Coulomb coefficient of sliding, ≥ 0. Default 0.6.
     pub friction: f32,
@@ -77,6 +83,7 @@ impl Default for Material {
 /// Rule by which two numbers become one, later ones before earlier ones: where two surfaces ask for different rules, the later of the
 /// two in this list is taken, whichever side it is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Combine {
     /// `(a + b) / 2`.
     Average,
@@ -104,6 +111,8 @@ impl Combine {
 
 /// Rules that a surface asks for. `None`, the default, leaves the choice to the other side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct CombineRules {
     /// Rule for both coefficients of friction. If neither side says: the geometric mean.
     pub friction: Option<Combine>,

@@ -20,6 +20,7 @@ use sinew_math::{Rotation, Sym3, Transform, Vec3};
 
 /// Linear velocity of the centre of mass and angular velocity, world axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Velocity {
     /// m/s.
     pub linear: Vec3,
@@ -76,7 +77,7 @@ pub(crate) struct Body {
     pub mass: f32,
     /// Principal moments, kg·m².
     pub inertia: Vec3,
-    /// Mass and moments that it gets back when it is dynamic again; only of a body that was.
+    /// Mass and moments that it has as soon as it is dynamic; only of a body that was, or was given some.
     pub laid_by: Option<(f32, Vec3)>,
     pub linear_damping: f32,
     pub angular_damping: f32,
@@ -145,8 +146,7 @@ impl Body {
         let principal_from_body = body_from_principal.inverse();
         let mass = if def.kind == BodyKind::Dynamic { properties.mass } else { 0.0 };
         if def.kind == BodyKind::Dynamic {
-            let solid = mass > 0.0 && mass < f32::INFINITY && moments.z > 0.0 && moments.is_finite();
-            assert!(solid, "a dynamic body has positive, finite mass and inertia");
+            expect_solid(mass, moments);
         }
         let mut surfaces = Surfaces::default();
         let body_shape = |def: &ShapeDef| BodyShape {
@@ -214,6 +214,52 @@ impl Body {
         let world_from_body = Transform::new(translation, rotation.normalize());
         self.world_from_principal = world_from_body * self.principal_from_body.inverse();
         self.previous = self.world_from_principal;
+    }
+
+    /// Puts the principal frame elsewhere in the body, which stays where it is and goes on as it went.
+    pub fn set_principal_frame(&mut self, principal_from_body: Transform) {
+        let new_from_old = principal_from_body * self.principal_from_body.inverse();
+        let old_from_new = new_from_old.inverse();
+        let arm = self.world_from_principal.rotation * old_from_new.translation;
+        self.velocity.linear = self.velocity.at(arm);
+        self.torque -= arm.cross(self.force);
+        for pose in [&mut self.world_from_principal, &mut self.previous, &mut self.place] {
+            *pose = *pose * old_from_new;
+        }
+        for shape in &mut self.shapes {
+            shape.principal_from_shape = new_from_old * shape.principal_from_shape;
+        }
+        self.principal_from_body = principal_from_body;
+    }
+
+    /// Mass, centre and inertia that its shapes have by their densities, in the body's frame.
+    pub fn mass_of_shapes(&self) -> MassProperties {
+        let body_from_principal = self.principal_from_body.inverse();
+        let of = |shape: &BodyShape| {
+            let density = self.surfaces.as_slice()[shape.surface as usize].density;
+            let body_from_shape = body_from_principal * shape.principal_from_shape;
+            shape.shape.mass_properties(density).transformed(&body_from_shape)
+        };
+        self.shapes.iter().fold(MassProperties::default(), |sum, shape| sum.combine(&of(shape)))
+    }
+
+    /// One more shape, as the last.
+    pub fn push_shape(&mut self, def: &ShapeDef) {
+        let shape = BodyShape {
+            shape: def.shape.clone(),
+            principal_from_shape: self.principal_from_body * def.body_from_shape,
+            surface: self.surfaces.intern(&Surface::of(def)),
+        };
+        self.shapes.push(shape);
+    }
+
+    /// Forgets surfaces that no shape has any more.
+    pub fn tidy_surfaces(&mut self) {
+        let old = core::mem::take(&mut self.surfaces);
+        for shape in &mut self.shapes {
+            shape.surface = self.surfaces.intern(&old.as_slice()[shape.surface as usize]);
+        }
+        self.surfaces.shrink();
     }
 
     /// Surface of a shape: what it is besides geometry.
@@ -319,8 +365,15 @@ fn mass_of_shapes(shapes: &[ShapeDef]) -> MassProperties {
     sum
 }
 
+/// Panics unless a body of such mass (kg) and moments (kg·m²) may be dynamic.
+#[track_caller]
+pub(crate) fn expect_solid(mass: f32, moments: Vec3) {
+    let solid = mass > 0.0 && mass < f32::INFINITY && moments.z > 0.0 && moments.is_finite();
+    assert!(solid, "a dynamic body has positive, finite mass and inertia");
+}
+
 /// Principal moments (largest first) and the frame they belong to.
-fn principal_frame(properties: &MassProperties) -> (Vec3, Transform) {
+pub(crate) fn principal_frame(properties: &MassProperties) -> (Vec3, Transform) {
     let Sym3 { diagonal, off } = properties.inertia;
     if off == Vec3::ZERO {
         // Keeps the axes of boxes and capsules as they are.

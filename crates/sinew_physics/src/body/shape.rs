@@ -8,6 +8,12 @@ pub use sinew_geometry::{MassProperties, Shape};
 
 /// Two shapes meet if each one's mask holds the other's layer, and they are not in the same negative group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
+#[doc(alias = "collision layer")]
+#[doc(alias = "CollisionLayers")]
+#[doc(alias = "InteractionGroups")]
+#[doc(alias = "collision group")]
 pub struct Filter {
     /// Bits of the layers it is on. Default 1.
     pub layers: u32,
@@ -40,6 +46,10 @@ impl Filter {
 
 /// A shape as part of a body.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[doc(alias = "Collider")]
+#[doc(alias = "ColliderBuilder")]
+#[doc(alias = "fixture")]
 pub struct ShapeDef {
     /// Geometry.
     pub shape: Shape,
@@ -59,6 +69,10 @@ pub struct ShapeDef {
 
 /// Effect of a shape on those that it meets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[doc(alias = "trigger")]
+#[doc(alias = "sensor")]
+#[doc(alias = "is_trigger")]
 pub enum Sensing {
     /// It pushes them. Default.
     #[default]

@@ -78,10 +78,11 @@ fn load_sleeping(r: &mut Reader<'_>) -> Result<Sleeping, ReadError> {
 
 pub(crate) fn save_body(w: &mut Writer, body: &Body) {
     w.u8(match (body.kind, body.laid_by) {
-        (BodyKind::Static, _) => 0,
+        (BodyKind::Static, None) => 0,
         (BodyKind::Kinematic, None) => 1,
         (BodyKind::Dynamic, _) => 2,
         (BodyKind::Kinematic, Some(_)) => 3,
+        (BodyKind::Static, Some(_)) => 4,
     });
     if let Some((mass, inertia)) = body.laid_by {
         w.f32(mass);
@@ -134,13 +135,12 @@ fn solid(mass: f32, inertia: Vec3) -> bool {
 pub(crate) fn load_body(r: &mut Reader<'_>, library: &ShapeLibrary) -> Result<Body, LoadError> {
     let number = r.u8()?;
     let kind = match number {
-        0 => BodyKind::Static,
-        1 => BodyKind::Kinematic,
+        0 | 4 => BodyKind::Static,
+        1 | 3 => BodyKind::Kinematic,
         2 => BodyKind::Dynamic,
-        3 => BodyKind::Kinematic,
         _ => return Err(r.error("unknown kind of body").into()),
     };
-    let laid_by = if number == 3 { Some((r.f32()?, r.vec3()?)) } else { None };
+    let laid_by = if number >= 3 { Some((r.f32()?, r.vec3()?)) } else { None };
     if laid_by.is_some_and(|(mass, inertia)| !solid(mass, inertia)) {
         return Err(r.error("a body that was dynamic has no mass").into());
     }

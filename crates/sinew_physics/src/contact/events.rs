@@ -13,6 +13,9 @@ use crate::id::{BodyId, GroupId, JointId, ShapeId};
 /// then), a filter or a pair that was changed, trouble that takes a body out of the simulation. Falling asleep ends nothing:
 /// what sleeps goes on touching.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[doc(alias = "collision events")]
+#[doc(alias = "OnCollisionEnter")]
+#[doc(alias = "CollisionEvent")]
 pub struct Events {
     /// Pairs of bodies that began to touch, ghosts and what passes a one-way shape among them.
     pub begin: Vec<(BodyId, BodyId)>,

@@ -18,6 +18,8 @@ use sinew_math::{Transform, Vec3};
 /// `F = −c ρ V w`, `τ = −c ρ J ω` with `J` the shape's moment of volume. Quadratic: as that of [`Wind`](super::Wind),
 /// `½ ρ C_d A |w|²`. With linear drag alone, what sinks comes to `(ρ_b/ρ − 1) g / c`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct Buoyancy {
     /// Pose of the surface: the fluid is below y = 0 of it. Default: y = 0 of the world.
     pub world_from_surface: Transform,

@@ -8,6 +8,7 @@ use sinew_math::Transform;
 
 /// A field to be made: what it does, where, and to whom.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FieldDef {
     /// Kind of the field.
     pub kind: FieldKind,
@@ -20,6 +21,7 @@ pub struct FieldDef {
 
 /// Kind of a field: the law by which it acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FieldKind {
     /// The same acceleration everywhere, beside the world's own.
     Uniform(UniformGravity),

@@ -15,6 +15,8 @@ use sinew_math::Vec3;
 /// `√(m g / k)` without the linear one. For drag by what a body's shapes expose, take [`Wind`](super::Wind). For a body that
 /// loses a share of its velocity per second, `BodyDef::linear_damping`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct Drag {
     /// c, N·s/m, ≥ 0. Default 0.
     pub linear: f32,

@@ -13,6 +13,7 @@ use sinew_math::{Transform, Vec3, max, normalize_or};
 /// (of a ball `π r²`; of a box the faces that look at it, each by the cosine of its angle; a particle is a ball). What is not
 /// dynamic gets nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Explosion {
     /// World, metres.
     pub center: Vec3,
@@ -30,6 +31,7 @@ pub struct Explosion {
 
 /// Obstacles that shelter from a blast.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Occlusion {
     /// Nothing. Default.
     #[default]

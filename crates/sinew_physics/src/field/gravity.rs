@@ -7,6 +7,8 @@ use sinew_math::Vec3;
 /// The same acceleration for all, beside the world's own gravity: `F = s m a`, with `s` the gravity scale of the body or
 /// group.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct UniformGravity {
     /// m/s², world axes.
     pub acceleration: Vec3,
@@ -31,6 +33,8 @@ impl UniformGravity {
 /// Newton's law with Plummer's softening: at `d` from the centre `a = μ d / (d² + ε²)^(3/2)` toward it, scaled by the
 /// gravity scale of the body or group. With ε = 0 what comes to the centre itself feels nothing there.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct PointGravity {
     /// World, metres.
     pub center: Vec3,

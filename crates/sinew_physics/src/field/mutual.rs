@@ -19,6 +19,8 @@ use sinew_math::Vec3;
 /// break the third law. In a region that fades, a pair pulls with the product of its strengths at both places. The work
 /// grows with the square of the number of bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct MutualGravity {
     /// `G`. Default 6.6743e-11 m³/(kg s²) (CODATA 2018).
     pub constant: f32,

@@ -5,6 +5,7 @@ use sinew_math::{Transform, Vec3};
 
 /// Decrease of a field's strength from where it is full to its border, with `u` from 1 to 0 on the way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Fade {
     /// Full up to the border. Default.
     #[default]
@@ -31,6 +32,7 @@ impl Fade {
 
 /// Region in which a field acts.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Region {
     /// In the whole world. Default.
     #[default]

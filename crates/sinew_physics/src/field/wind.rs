@@ -21,6 +21,8 @@ use sinew_math::Vec3;
 /// a plate turns in the wind, and spin is braked. Steady speed of a ball that falls through still air: `√(2 m g / (ρ C_d π
 /// r²))`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct Wind {
     /// Velocity of the air, m/s, world. Default 0: still air.
     pub velocity: Vec3,
@@ -40,6 +42,7 @@ pub struct Wind {
 /// mean is 0; each component is within ± `speed`, with a standard deviation of about a third of it (√(0.743⁴/3)). Time is that of the
 /// step's beginning.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gusts {
     /// Bound of each component, m/s, ≥ 0.
     pub speed: f32,

@@ -6,6 +6,7 @@ use sinew_math::{Range, SwingTwistLimit, Transform, Vec3};
 
 /// Kind of a joint: the motions that it leaves free. The joint's frames are `JointDef::frame_a` and `frame_b`; zero is where they agree.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointKind {
     /// Three rotations, within limits.
     Ball {
@@ -42,6 +43,7 @@ pub enum JointKind {
 
 /// Six relative motions of two frames, each locked, free or limited.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SixDof {
     /// Translation along the axes of frame A, metres.
     pub linear: [AxisMotion; 3],
@@ -66,6 +68,7 @@ impl SixDof {
 
 /// One direction of a [`SixDof`] joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum AxisMotion {
     /// Held at zero.
     Locked,
@@ -77,6 +80,7 @@ pub enum AxisMotion {
 
 /// Stiffness and damping of a spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Softness {
     /// Whatever the masses.
     Stiffness {
@@ -101,6 +105,7 @@ pub enum Softness {
 /// Pulls the free directions toward a rest pose. Never tires; see [`Motor`] for one that may. Its rest pose belongs inside
 /// the limits: a stop that a stiff spring has dragged a joint beyond pushes it back no faster than there is energy for.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Spring {
     /// Stiffness and damping of the spring.
     pub softness: Softness,
@@ -110,6 +115,7 @@ pub struct Spring {
 
 /// Aim of a motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Gains {
     /// The target velocity, as exactly as the caps allow.
     Velocity,
@@ -119,6 +125,9 @@ pub enum Gains {
 
 /// Drives the free directions of a joint. Its targets belong inside the limits, see [`Spring`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[doc(alias = "drive")]
+#[doc(alias = "actuator")]
 pub struct Motor {
     /// Aim of the motor: velocity, or pose.
     pub gains: Gains,
@@ -127,8 +136,10 @@ pub struct Motor {
     /// Target velocity of frame B seen from frame A, in A's axes, m/s and rad/s.
     pub velocity: Velocity,
     /// Most force along each free axis by itself, N, may be infinite; 0 leaves translations alone.
+    #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub max_force: f32,
     /// Most torque about each free axis by itself, N·m, may be infinite; 0 leaves rotations alone.
+    #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub max_torque: f32,
 }
 
@@ -169,6 +180,7 @@ impl Motor {
 
 /// Softens the end of a joint's rotation. Without effect on translations, and where the limits themselves are soft.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SoftZone {
     /// So far before the stop a spring begins to push back, radians. 5° suits limbs.
     pub width: f32,
@@ -178,10 +190,13 @@ pub struct SoftZone {
 
 /// When a joint breaks. It is then disabled, and told of in `Events::broken`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Strength {
     /// Mean force over a step, N.
+    #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub force: f32,
     /// Mean torque over a step, N·m about B's anchor, springs, motors, limits and friction included.
+    #[cfg_attr(feature = "serde", serde(with = "sinew_math::unlimited"))]
     pub torque: f32,
 }
 
@@ -192,6 +207,7 @@ impl Strength {
 
 /// Collision of the two bodies of a joint with each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointCollision {
     /// They collide.
     Enabled,
@@ -201,6 +217,7 @@ pub enum JointCollision {
 
 /// State of a joint: enabled or disabled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum JointState {
     /// The joint acts.
     Enabled,
@@ -210,6 +227,10 @@ pub enum JointState {
 
 /// A joint to be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[doc(alias = "constraint")]
+#[doc(alias = "ImpulseJoint")]
+#[doc(alias = "GenericJoint")]
 pub struct JointDef {
     /// First body (the parent, where there is one).
     pub body_a: BodyId,
@@ -280,6 +301,22 @@ impl JointDef {
             collision: JointCollision::Disabled,
             state: JointState::Enabled,
         }
+    }
+
+    /// With a range of motion: radians of a hinge, metres of a slider.
+    ///
+    /// # Panics
+    /// If it is of another kind: the limits of others are fields of their [kinds](JointKind).
+    #[must_use]
+    #[track_caller]
+    pub fn limited(self, range: Range) -> Self {
+        let limit = Some(range);
+        let kind = match self.kind {
+            JointKind::Hinge { .. } => JointKind::Hinge { limit },
+            JointKind::Slider { .. } => JointKind::Slider { limit },
+            other => panic!("a hinge or a slider has one range, not {other:?}"),
+        };
+        Self { kind, ..self }
     }
 
     /// A hand that pulls a point of `body_b` toward the origin of `hand`, a static or kinematic body: move the hand, or

@@ -6,6 +6,10 @@ use sinew_math::Vec3;
 
 /// A kinematic character mover: an upright capsule that walks, falls, jumps and pushes, with no body of its own.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
+#[doc(alias = "character controller")]
+#[doc(alias = "KinematicCharacterController")]
 pub struct MoverDef {
     /// Lowest point of the capsule, world, metres. Default the origin.
     pub position: Vec3,

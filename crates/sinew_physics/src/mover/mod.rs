@@ -158,6 +158,11 @@ impl Movers {
         Self { all: Arena::new(lineage), ..Self::default() }
     }
 
+    /// The same movers, for a copy of their world.
+    pub fn copy(&self) -> Self {
+        Self { all: self.all.clone(), ..Self::default() }
+    }
+
     /// Nobody stands on a body that is taken out.
     pub fn forget(&mut self, body: BodyId) {
         let stands = |mover: &Mover| {

@@ -121,6 +121,11 @@ impl Objects {
         Self { arena: Arena::new(lineage), ..Self::default() }
     }
 
+    /// Objects of the same kinds and world, none yet.
+    pub fn without_any(&self) -> Self {
+        Self { kinds: self.kinds.clone(), ..Self::default() }
+    }
+
     /// They act in every substep of the world's, so that with any all islands take those.
     pub fn grading(&self) -> Grading {
         if self.is_empty() { Grading::ByContent } else { Grading::None }

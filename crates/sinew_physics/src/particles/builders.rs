@@ -82,6 +82,7 @@ impl GroupDef {
 
 /// A rope to be made: a row of particles joined by springs that are solved exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RopeDef {
     /// First particle, world, metres.
     pub from: Vec3,
@@ -141,6 +142,7 @@ impl RopeDef {
 
 /// A strand to be made, of hair or grass: a rope that resists bending, clamped at its root.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StrandDef {
     /// Place of the root, and all else that a strand has in common with a rope.
     pub rope: RopeDef,
@@ -166,6 +168,7 @@ impl StrandDef {
 /// A rectangle of cloth to be made: a grid of particles with springs along both threads, across them, and against
 /// bending.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothDef {
     /// The first corner, world, metres.
     pub corner: Vec3,
@@ -314,6 +317,7 @@ fn join_row(
 
 /// A ball to be made of a skin with air in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BlobDef {
     /// World, metres.
     pub center: Vec3,

@@ -7,6 +7,7 @@ use sinew_math::Vec3;
 
 /// A particle to be made.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ParticleDef {
     /// World, metres.
     pub position: Vec3,
@@ -20,6 +21,7 @@ pub struct ParticleDef {
 
 /// Deformations that a spring resists: stretch alone, or compression, too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Resists {
     /// Longer or shorter than at rest, it pulls or pushes. Default.
     #[default]
@@ -30,6 +32,7 @@ pub enum Resists {
 
 /// A spring to be made. Force on A toward B: `stiffness × (length − rest_length) + damping × speed of lengthening`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpringDef {
     /// Index of the first particle in its group.
     pub a: u32,
@@ -69,6 +72,7 @@ impl SpringDef {
 /// `x₁ − 2 x₂ + x₃`, whose length is `c`, on the outer two, and twice its opposite on the middle one. A beam of bending
 /// stiffness `B` (N·m²) with a particle each `L` metres has a stiffness of `B/L³`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BendDef {
     /// Indices of the particles in their group, the middle one between the others.
     pub particles: [u32; 3],
@@ -81,6 +85,7 @@ pub struct BendDef {
 /// A tether, which keeps a particle from going further from an attached one than cloth or hair allows: long-range attachment (Kim,
 /// Chentanez and Müller 2012). It never pushes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TetherDef {
     /// Index of the particle in its group.
     pub particle: u32,
@@ -92,6 +97,7 @@ pub struct TetherDef {
 
 /// Air or water in a closed surface of triangles.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VolumeDef {
     /// Particles of each triangle, counterclockwise from outside.
     pub triangles: Vec<[u32; 3]>,
@@ -104,6 +110,7 @@ pub struct VolumeDef {
 
 /// Scheme by which the springs of a group are solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SpringScheme {
     /// Solves springs that form no loops exactly, in one implicit step, and projects those that close one. For ropes and strands.
     /// Default.
@@ -115,6 +122,7 @@ pub enum SpringScheme {
 
 /// Point that a particle hangs on.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum AttachmentTarget {
     /// A place in the world, metres.
     World(Vec3),
@@ -129,6 +137,7 @@ pub enum AttachmentTarget {
 
 /// A particle held at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AttachmentDef {
     /// Index of the particle in its group.
     pub particle: u32,
@@ -138,6 +147,8 @@ pub struct AttachmentDef {
 
 /// Particles and springs that are made, moved and put to sleep together: rope, strand, cloth, blob.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
 pub struct GroupDef {
     /// The particles; springs and attachments name them by index.
     pub particles: Vec<ParticleDef>,

@@ -89,6 +89,8 @@ impl Ask for Ray {
 
 /// Shapes that a probe meets when it is moved without turning; those that are met first come first.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(alias = "sweep test")]
+#[doc(alias = "cast_shape")]
 pub struct ShapeCast {
     /// Probe that is moved, where it starts.
     pub probe: Probe,

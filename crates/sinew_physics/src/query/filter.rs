@@ -7,6 +7,7 @@ use core::ops::BitOr;
 
 /// Filter of the shapes of a world that a [`Query`](super::Query) is about. Default: every shape that is no sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[doc(alias = "layer mask")]
 pub struct QueryFilter<'a> {
     /// As if the question were a shape with this filter: it meets those that [`Filter::meets`]. Default: on all layers,
     /// with all layers in its mask, in no group; what has an empty mask is met by nobody, and not by this.

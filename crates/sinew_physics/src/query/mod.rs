@@ -105,6 +105,10 @@ pub struct Query<'a, P> {
 impl World {
     /// Asks about every shape that is no sensor, until a [`filter`](Query::filter) says something else. The bodies are where
     /// they are now, whether a step or [`set_transform`](World::set_transform) brought them there, asleep or awake.
+    #[doc(alias = "raycast")]
+    #[doc(alias = "cast_ray")]
+    #[doc(alias = "QueryPipeline")]
+    #[doc(alias = "sweep")]
     pub fn query(&self) -> Query<'_, impl Fn(BodyId, u32) -> bool + Copy> {
         Query { world: self, filter: QueryFilter::default(), accept: |_, _| true }
     }

@@ -41,6 +41,8 @@ pub(crate) struct Islands {
     /// Out of the world for the length of the step, island after island.
     taken: Vec<TakenGroup>,
     solution: Solution,
+    /// The solution is of the last step, not of one before a snapshot was loaded.
+    is_known: bool,
     /// True of each island that is a body in flight or a strand and has been through this step.
     flown: Vec<bool>,
     flight: Flight,
@@ -93,8 +95,19 @@ impl Islands {
         &self.solution
     }
 
+    /// Bodies that forces moved in the last step, each once; `None` if that is not known.
+    pub fn moved(&self) -> Option<impl Iterator<Item = u32>> {
+        self.is_known.then(|| self.solution.bodies.iter().map(|body| body.index))
+    }
+
+    /// Forgets the last step.
+    pub fn forget(&mut self) {
+        self.is_known = false;
+    }
+
     /// Finds the islands and takes the particle groups into them for the length of the step.
     pub fn find(&mut self, view: &View<'_>, groups: &mut Arena<ParticleGroup>) {
+        self.is_known = true;
         self.number(view, groups.slot_count());
         self.join_touching_and_held();
         let first_group = self.active.len() as u32;

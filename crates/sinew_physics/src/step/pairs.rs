@@ -219,8 +219,8 @@ mod tests {
     use crate::body::shape::{Filter, Shape, ShapeDef};
     use crate::boxes::{Aabb, Overlap};
     use crate::contact::proxies::{MARGIN, Owner};
-    use crate::id::BodyId;
-    use crate::{Velocity, World};
+    use crate::id::{BodyId, ShapeId};
+    use crate::{MassUpdate, Velocity, World};
     use sinew_math::{Random, Reader, Transform, Vec3, Writer};
 
     /// Cases: a hundredth unless `SINEW_FULL` is set.
@@ -294,12 +294,24 @@ mod tests {
     fn change(world: &mut World, random: &mut Random, range: f32) {
         let ids: Vec<BodyId> = world.body_ids().collect();
         let Some(&id) = ids.get(random.index(ids.len().max(1))) else { return };
-        match random.index(7) {
+        let shapes = world.bodies.at(id.index).shapes.len();
+        let shape = ShapeId { body: id, shape: random.index(shapes) as u32 };
+        match random.index(11) {
             0 => world.remove_body(id),
             1 | 2 => drop(add(world, random, range)),
             3 => world.set_transform(id, Transform::new(random.in_cube() * range, random.rotation())),
-            4 => world.set_velocity(id, Velocity { linear: random.in_cube() * 20.0, ..Velocity::default() }),
+            // Of what is static it means nothing, and is not looked at.
+            4 if world.kind(id) != BodyKind::Static => {
+                world.set_velocity(id, Velocity { linear: random.in_cube() * 20.0, ..Velocity::default() });
+            }
             5 => world.set_velocity(id, Velocity::default()),
+            6 => _ = world.add_shape(id, &some_shape(random, BodyKind::Dynamic), MassUpdate::Keep),
+            7 => world.set_shape(shape, &some_shape(random, BodyKind::Dynamic), MassUpdate::Keep),
+            8 if shapes > 1 => world.remove_shape(shape, MassUpdate::Keep),
+            9 if world.bodies.at(id.index).shapes.iter().all(|shape| shape.shape != Shape::HalfSpace) => {
+                let kinds = [BodyKind::Static, BodyKind::Kinematic, BodyKind::Dynamic];
+                world.set_kind(id, kinds[random.index(3)]);
+            }
             _ => {
                 let other = ids[random.index(ids.len())];
                 if other != id {

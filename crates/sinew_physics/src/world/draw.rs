@@ -14,6 +14,8 @@ const PLANE_SIZE: f32 = 10.0;
 
 impl World {
     /// Draws shapes, joints, springs, contacts, and what objects draw of themselves.
+    #[doc(alias = "debug render")]
+    #[doc(alias = "gizmos")]
     pub fn draw(&self, out: &mut dyn DebugDraw) {
         for (_, body) in self.bodies.iter() {
             let kind = match body.kind {

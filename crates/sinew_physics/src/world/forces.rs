@@ -73,6 +73,7 @@ impl World {
     /// # Panics
     /// If a number is not finite.
     #[track_caller]
+    #[doc(alias = "constant force")]
     pub fn add_force(&mut self, body: BodyId, def: &ForceDef) -> ForceId {
         assert!(def.is_finite(), "a force is finite");
         self.wake_body(body.index);

@@ -23,6 +23,9 @@ impl World {
     ///
     /// # Panics
     /// If both bodies are the same, neither is dynamic, or a number of the definition is not valid.
+    #[doc(alias = "ImpulseJoint")]
+    #[doc(alias = "constraint")]
+    #[track_caller]
     pub fn add_joint(&mut self, def: &JointDef) -> JointId {
         let (a, b) = (self.expect(def.body_a), self.expect(def.body_b));
         assert!(def.body_a != def.body_b, "a joint holds two bodies");
@@ -181,20 +184,24 @@ impl World {
         if joint.is_enabled() { joint.elastic_energy(&self.joint_pose(joint)) } else { 0.0 }
     }
 
+    #[track_caller]
     fn expect_joint(&self, id: JointId) -> &Joint {
         self.joints.expect(id)
     }
 
+    #[track_caller]
     fn expect_joint_mut(&mut self, id: JointId) -> &mut Joint {
         self.joints.expect_mut(id)
     }
 
+    #[track_caller]
     fn wake_joint(&mut self, id: JointId) {
         let &Joint { a, b, .. } = self.expect_joint(id);
         self.wake_body(a);
         self.wake_body(b);
     }
 
+    #[track_caller]
     fn joint_changed(&mut self, id: JointId) {
         self.wake_joint(id);
         self.parted.invalidate();

@@ -1,43 +1,72 @@
-//! Bodies that forces move become bodies that move by themselves, and back.
+//! Bodies become static, kinematic or dynamic.
 
 use crate::body::def::BodyKind;
+use crate::body::shape::Shape;
+use crate::body::{Velocity, expect_solid, principal_frame};
 use crate::id::BodyId;
 use crate::world::World;
 use sinew_math::Vec3;
 
 impl World {
-    /// Makes a dynamic body kinematic, or dynamic again; it wakes, and so does what touches it or hangs on it. Pose and
-    /// velocity stay: what comes back to forces goes on as fast as it was led. While it is kinematic it has no mass; what it
-    /// has then is that of before. Joints between two bodies that no force moves do nothing.
+    /// Makes a body static, kinematic or dynamic; it wakes, and so does what touches it or hangs on it. Pose and velocity
+    /// stay, but that a static body has none: what comes back to forces goes on as fast as it was led. While it is not
+    /// dynamic its mass is 0; what it has when it is so again is that of before or what [`set_mass`](Self::set_mass) gave
+    /// it since, or else what its shapes weigh by their densities. Joints between two bodies that no force moves do nothing.
+    ///
+    /// ```
+    /// use sinew_physics::{BodyDef, BodyKind, Shape, World, WorldDef};
+    ///
+    /// let mut world = World::new(WorldDef::default());
+    /// let brick = world.add_body(&BodyDef::fixed(Shape::sphere(0.1)));
+    /// world.step();
+    /// assert_eq!(world.transform(brick).translation.y, 0.0);
+    /// world.set_kind(brick, BodyKind::Dynamic);
+    /// world.step();
+    /// assert!(world.transform(brick).translation.y < 0.0);
+    /// ```
     ///
     /// # Panics
-    /// If the body is or is to be static, or was made kinematic.
+    /// If a body with a half-space is to move, or one without mass to be dynamic.
+    #[doc(alias = "set_body_type")]
+    #[doc(alias = "motion type")]
     #[track_caller]
     pub fn set_kind(&mut self, id: BodyId, kind: BodyKind) {
-        let body = self.expect_mut(id);
+        let body = self.expect(id);
         if body.kind == kind {
             return;
         }
-        assert!(
-            kind != BodyKind::Static && body.kind != BodyKind::Static,
-            "what never moves stays what it is"
-        );
-        let weight = match body.laid_by {
-            Some(weight) => weight,
-            None => {
-                assert!(body.kind == BodyKind::Dynamic, "only what was made dynamic can be so again");
-                (body.mass, body.inertia)
-            }
-        };
+        let moves = kind != BodyKind::Static;
+        let endless = body.shapes.iter().any(|shape| shape.shape == Shape::HalfSpace);
+        assert!(!(moves && endless), "half-spaces are static bodies");
+        let mut weight =
+            if body.kind == BodyKind::Dynamic { Some((body.mass, body.inertia)) } else { body.laid_by };
+        let mut principal_from_body = body.principal_from_body;
+        if kind == BodyKind::Dynamic && weight.is_none() {
+            let properties = body.mass_of_shapes();
+            let (moments, body_from_principal) = principal_frame(&properties);
+            expect_solid(properties.mass, moments);
+            weight = Some((properties.mass, moments));
+            principal_from_body = body_from_principal.inverse();
+        }
+        let was_static = body.kind == BodyKind::Static;
         self.stir(id);
         let body = self.bodies.at_mut(id.index);
         body.kind = kind;
         (body.force, body.torque) = (Vec3::ZERO, Vec3::ZERO);
-        (body.mass, body.inertia, body.laid_by) = match kind {
-            BodyKind::Dynamic => (weight.0, weight.1, None),
-            BodyKind::Kinematic | BodyKind::Static => (0.0, Vec3::ZERO, Some(weight)),
+        (body.mass, body.inertia, body.laid_by) = match (kind, weight) {
+            (BodyKind::Dynamic, Some((mass, moments))) => (mass, moments, None),
+            _ => (0.0, Vec3::ZERO, weight),
         };
+        if !moves {
+            body.velocity = Velocity::default();
+            body.previous = body.world_from_principal;
+        }
         self.activity.change_kind(id.index, self.bodies.at(id.index));
-        self.broad.proxies.refresh(id.index, self.bodies.at(id.index));
+        self.put_principal_frame(id, principal_from_body);
+        if was_static == moves {
+            self.renew_bounds(id);
+        } else {
+            self.broad.proxies.refresh(id.index, self.bodies.at(id.index));
+        }
     }
 }

@@ -1,5 +1,8 @@
 //! The world: owner of everything that is simulated.
 
+mod body_ref;
+mod connect;
+mod copy;
 mod counts;
 mod draw;
 mod explosions;
@@ -8,14 +11,20 @@ mod forces;
 mod joints;
 mod kind;
 mod library;
+mod moved;
 mod objects;
 mod pairs;
+mod shapes;
 mod snapshot;
 mod surfaces;
 mod update;
 mod waking;
+mod weight;
 
+pub use body_ref::BodyRef;
+pub use connect::LockedAxes;
 pub use joints::Reaction;
+pub use shapes::MassUpdate;
 pub use surfaces::{BodyContact, ContactPoint};
 pub use update::Update;
 
@@ -51,6 +60,9 @@ use sinew_math::{Transform, Vec3};
 /// # Panics
 /// Every method that takes an id panics if the id is stale or from another world, and every method that takes a number
 /// panics if it is not finite.
+#[doc(alias = "PhysicsWorld")]
+#[doc(alias = "PhysicsPipeline")]
+#[doc(alias = "PhysicsSystem")]
 pub struct World {
     pub(crate) def: WorldDef,
     pub(crate) bodies: Arena<Body>,
@@ -129,6 +141,9 @@ impl World {
     /// # Panics
     /// If a number is not finite, a shape is not valid or names a modifier that is not registered, or a dynamic body has no
     /// mass.
+    #[doc(alias = "spawn")]
+    #[doc(alias = "RigidBodySet::insert")]
+    #[doc(alias = "CreateBody")]
     pub fn add_body(&mut self, def: &BodyDef) -> BodyId {
         def.shapes.iter().for_each(|shape| self.expect_modifier(shape.rule));
         let id = self.bodies.insert(Body::new(def));
@@ -151,6 +166,8 @@ impl World {
     /// # Panics
     /// If particles are attached to it.
     #[track_caller]
+    #[doc(alias = "despawn")]
+    #[doc(alias = "destroy")]
     pub fn remove_body(&mut self, id: BodyId) {
         self.expect(id);
         let held = |target| matches!(target, AttachmentTarget::Body { body, .. } if body == id);
@@ -213,6 +230,9 @@ impl World {
     }
 
     /// One step on the calling thread.
+    #[doc(alias = "CCD")]
+    #[doc(alias = "continuous collision detection")]
+    #[doc(alias = "simulate")]
     pub fn step(&mut self) {
         self.step_with(&Serial, &NoProfiler);
     }
@@ -282,6 +302,8 @@ impl World {
     /// Puts a body somewhere; it wakes, and so does what touched it there or hangs on it. It does not sweep what lies
     /// between.
     #[track_caller]
+    #[doc(alias = "teleport")]
+    #[doc(alias = "set_position")]
     pub fn set_transform(&mut self, id: BodyId, world_from_body: Transform) {
         assert!(world_from_body.is_finite(), "a body's pose is finite");
         self.expect_mut(id).set_world_from_body(world_from_body);
@@ -302,12 +324,16 @@ impl World {
 
     /// Velocity of the centre of mass and angular velocity.
     #[track_caller]
+    #[doc(alias = "linvel")]
+    #[doc(alias = "angvel")]
     pub fn velocity(&self, id: BodyId) -> Velocity {
         self.expect(id).velocity
     }
 
     /// Sets the velocity of a dynamic or kinematic body; it wakes.
     #[track_caller]
+    #[doc(alias = "set_linvel")]
+    #[doc(alias = "set_angvel")]
     pub fn set_velocity(&mut self, id: BodyId, velocity: Velocity) {
         assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "a velocity is finite");
         let body = self.expect_mut(id);
@@ -325,6 +351,7 @@ impl World {
 
     /// Static, kinematic or dynamic.
     #[track_caller]
+    #[doc(alias = "body_type")]
     pub fn kind(&self, id: BodyId) -> BodyKind {
         self.expect(id).kind
     }

@@ -41,6 +41,7 @@ impl World {
 
     /// From now on two bodies pass through each other; if they touch, both wake.
     #[track_caller]
+    #[doc(alias = "ignore collision")]
     pub fn disable_pair(&mut self, a: BodyId, b: BodyId) {
         self.expect(a);
         self.expect(b);

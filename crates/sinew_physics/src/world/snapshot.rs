@@ -24,6 +24,9 @@ const MOST_STEPS: u64 = 1 << 53;
 
 impl World {
     /// Writes the state: what [`load`](Self::load) brings back, bit for bit.
+    #[doc(alias = "serialize")]
+    #[doc(alias = "snapshot")]
+    #[doc(alias = "rollback")]
     pub fn save(&self, w: &mut Writer) {
         w.raw(MAGIC);
         save_def(w, &self.def);
@@ -112,6 +115,7 @@ impl World {
         self.meetings = Meetings { modifiers, ..meetings };
         (self.groups, self.fields, self.movers.all) = (groups, fields, movers);
         self.events = Events::default();
+        self.islands.forget();
         self.work = Work::default();
         self.broad.proxies.adopt(&self.bodies);
         Ok(())

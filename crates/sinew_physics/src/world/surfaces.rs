@@ -95,25 +95,25 @@ impl World {
     /// Material of a shape.
     #[track_caller]
     pub fn material(&self, id: ShapeId) -> Material {
-        self.expect(id.body).surface(id.shape as usize).material
+        self.expect_surface(id).material
     }
 
     /// Whom a shape meets.
     #[track_caller]
     pub fn filter(&self, id: ShapeId) -> Filter {
-        self.expect(id.body).surface(id.shape as usize).filter
+        self.expect_surface(id).filter
     }
 
     /// Effect of a shape on those that it meets: solid or sensor.
     #[track_caller]
     pub fn sensing(&self, id: ShapeId) -> Sensing {
-        self.expect(id.body).surface(id.shape as usize).sensing
+        self.expect_surface(id).sensing
     }
 
     /// Rule for a shape's contacts.
     #[track_caller]
     pub fn contact_rule(&self, id: ShapeId) -> ContactRule {
-        self.expect(id.body).surface(id.shape as usize).rule
+        self.expect_surface(id).rule
     }
 
     /// Makes a shape of something else, from the next step on. Its body and what it touches wake; its mass stays.
@@ -155,9 +155,11 @@ impl World {
         self.change_surface(id, |surface| surface.rule = rule);
     }
 
+    #[track_caller]
     fn change_surface(&mut self, id: ShapeId, change: impl FnOnce(&mut Surface)) {
+        self.expect_shape(id);
         self.stir(id.body);
-        let body = self.expect_mut(id.body);
+        let body = self.bodies.at_mut(id.body.index);
         let mut surface = *body.surface(id.shape as usize);
         change(&mut surface);
         let number = body.shapes[id.shape as usize].surface;

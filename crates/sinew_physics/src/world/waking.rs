@@ -16,6 +16,8 @@ impl World {
 
     /// Wakes a body and its island. One that is awake stays so for as long as if it had just woken.
     #[track_caller]
+    #[doc(alias = "wake_up")]
+    #[doc(alias = "activate")]
     pub fn wake(&mut self, id: BodyId) {
         self.expect(id);
         self.wake_body(id.index);
@@ -25,6 +27,8 @@ impl World {
     /// whether it may fall asleep by itself or not. What wakes sleepers wakes them as well: a moving kinematic body that
     /// one of them touches does so in the next step. Nothing happens to what sleeps already, or is not dynamic.
     #[track_caller]
+    #[doc(alias = "sleep")]
+    #[doc(alias = "deactivate")]
     pub fn put_to_sleep(&mut self, id: BodyId) {
         if self.expect(id).is_active() {
             let island = self.island_of(id.index);

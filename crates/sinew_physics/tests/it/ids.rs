@@ -1,7 +1,7 @@
 //! Ids of what was removed and of other worlds are refused, with what is wrong, at the caller.
 
 use crate::build::sphere_body;
-use sinew_math::{Reader, Vec3, Writer};
+use sinew_math::{Reader, Transform, Vec3, Writer};
 use sinew_physics::*;
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -43,6 +43,71 @@ fn what_was_removed_is_named_at_the_caller() {
     assert_eq!(panic_of(|| world.transform(gone)).0, "BodyId 0v0 was removed");
     assert_eq!(panic_of(|| world.apply_impulse(gone, Vec3::X, Vec3::ZERO)).0, "BodyId 0v0 was removed");
     assert!(!world.contains(gone));
+}
+
+/// By every call that changes a body or asks for one.
+#[test]
+fn every_setter_names_what_was_removed() {
+    let mut world = world();
+    let gone = world.add_body(&sphere_body(0.1, Vec3::ZERO));
+    let other = world.add_body(&sphere_body(0.1, Vec3::X));
+    world.remove_body(gone);
+    let (pose, shape) = (Transform::IDENTITY, ShapeDef::new(Shape::sphere(0.1)));
+    let of_gone = ShapeId { body: gone, shape: 0 };
+    type Call<'a> = &'a mut dyn FnMut(&mut World);
+    let calls: [Call<'_>; 16] = [
+        &mut |w| w.set_linear_damping(gone, 0.1),
+        &mut |w| w.set_angular_damping(gone, 0.1),
+        &mut |w| w.set_gravity_scale(gone, 0.1),
+        &mut |w| w.set_user_data(gone, 1),
+        &mut |w| w.set_mass(gone, Shape::sphere(0.1).mass_properties(1.0)),
+        &mut |w| w.set_mass_of_shapes(gone),
+        &mut |w| w.set_kind(gone, BodyKind::Static),
+        &mut |w| w.move_to(gone, pose, 1.0),
+        &mut |w| _ = w.add_shape(gone, &shape, MassUpdate::Keep),
+        &mut |w| w.set_shape(of_gone, &shape, MassUpdate::Keep),
+        &mut |w| w.remove_shape(of_gone, MassUpdate::Keep),
+        &mut |w| drop(w.shape_def(of_gone)),
+        &mut |w| _ = w.add_hinge(gone, other, Vec3::ZERO, Vec3::X),
+        &mut |w| _ = w.add_fixed(other, gone),
+        &mut |w| _ = w.add_ball(gone, other, Vec3::ZERO),
+        &mut |w| _ = w.axis_locks(other, gone, LockedAxes::ROTATIONS),
+    ];
+    for (i, call) in calls.into_iter().enumerate() {
+        let (text, file) = panic_of(|| call(&mut world));
+        assert_eq!(text, "BodyId 0v0 was removed", "call {i}");
+        assert!(file.ends_with("ids.rs"), "call {i}: {file}");
+    }
+}
+
+/// Numbers that are none are refused before anything is changed.
+#[test]
+fn every_setter_refuses_bad_numbers() {
+    let mut world = world();
+    let ball = world.add_body(&sphere_body(0.1, Vec3::ZERO));
+    let other = world.add_body(&sphere_body(0.1, Vec3::X));
+    let hash = world.hash();
+    let bad = ShapeDef::new(Shape::sphere(-1.0));
+    let mass = Shape::sphere(0.1).mass_properties(1.0);
+    let nowhere = Transform::from_translation(Vec3::NAN);
+    type Call<'a> = &'a mut dyn FnMut(&mut World);
+    let calls: [Call<'_>; 11] = [
+        &mut |w| w.set_linear_damping(ball, f32::NAN),
+        &mut |w| w.set_angular_damping(ball, f32::INFINITY),
+        &mut |w| w.set_gravity_scale(ball, f32::NAN),
+        &mut |w| w.set_mass(ball, MassProperties { mass: 0.0, ..mass }),
+        &mut |w| w.set_mass(ball, MassProperties { center: Vec3::NAN, ..mass }),
+        &mut |w| w.move_to(ball, nowhere, 1.0),
+        &mut |w| w.move_to(ball, Transform::IDENTITY, 0.0),
+        &mut |w| _ = w.add_shape(ball, &bad, MassUpdate::Keep),
+        &mut |w| _ = w.add_hinge(ball, other, Vec3::ZERO, Vec3::ZERO),
+        &mut |w| _ = w.add_ball(ball, other, Vec3::NAN),
+        &mut |w| _ = w.add_rope(ball, other, Vec3::ZERO, Vec3::X, -1.0),
+    ];
+    for (i, call) in calls.into_iter().enumerate() {
+        assert!(catch_unwind(AssertUnwindSafe(|| call(&mut world))).is_err(), "call {i}");
+        assert_eq!(world.hash(), hash, "call {i}");
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@ mod boxes;
 mod build;
 #[path = "../../../sinew_geometry/tests/it/cases.rs"]
 mod cases;
+mod changes;
 mod closed_forms;
 mod events;
 mod fields;
@@ -29,6 +30,8 @@ mod random_worlds;
 mod rims;
 mod rope;
 mod round_rest;
+#[cfg(feature = "serde")]
+mod serde;
 mod sleep;
 #[path = "../../../sinew_geometry/tests/it/solids.rs"]
 mod solids;

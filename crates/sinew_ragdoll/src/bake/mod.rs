@@ -1,4 +1,18 @@
 //! A simulated stretch of a character's life, back as a clip on the user's own rig.
+//!
+//! ```
+//! use sinew_math::Vec3;
+//! use sinew_physics::{BodyDef, Shape};
+//! use sinew_ragdoll::{BakeInput, Hit, bake};
+//! use std::sync::Arc;
+//!
+//! let character = Arc::new(sinew::mannequin::character());
+//! let ground = [BodyDef::fixed(Shape::HalfSpace)];
+//! let hits = [Hit { time: 0.2, body: 0, impulse: Vec3::new(0.0, 0.0, -150.0) }];
+//! let input = BakeInput { bodies: &ground, hits: &hits, seconds: 0.5, ..BakeInput::new(character) };
+//! let baked = bake(&input);
+//! assert_eq!((baked.frames.len(), baked.clip.duration), (16, 0.5)); // at 30 frames a second
+//! ```
 
 mod keys;
 

@@ -1,4 +1,16 @@
 //! Rig → ragdoll: roles (from animation) → shapes → masses → limits → filter → definition, each a function of its own.
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! use sinew_ragdoll::{BuildOptions, build};
+//!
+//! let (def, report) = build(&rig, &analysis, &BuildOptions { mass: Some(70.0), ..BuildOptions::default() })?;
+//! assert_eq!(def.joints.len(), def.bodies.len() - 1);
+//! assert!((def.total_mass - 70.0).abs() < 1e-3);
+//! assert!(report.mean_error < 0.02, "metres between skin and shapes");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod bones;
 pub mod part;

@@ -2,6 +2,26 @@
 //! if it lies otherwise, getting up, animated again. Each change is an [`Event`].
 //!
 //! The host steps the world, then calls [`Character::update`]; poses and bodies are those of the same moment.
+//!
+//! ```
+//! use sinew_math::{Transform, Vec3};
+//! use sinew_physics::{BodyDef, Shape, World, WorldDef};
+//! use sinew_ragdoll::{Character, State};
+//! use std::sync::Arc;
+//!
+//! let mut world = World::new(WorldDef::default());
+//! world.add_body(&BodyDef::fixed(Shape::HalfSpace));
+//! let def = Arc::new(sinew::mannequin::character());
+//! let mut hero = Character::spawn(&mut world, &def, Transform::IDENTITY);
+//! hero.hit(&mut world, def.body_named("chest").expect("it has one"), Vec3::Z * -150.0);
+//! assert_eq!(hero.state(), State::Limp);
+//! for _ in 0..60 {
+//!     world.step();
+//!     hero.update(&mut world);
+//! }
+//! let chest = hero.bodies()[def.body_named("chest").expect("it has one")];
+//! assert!(world.center_of_mass(chest).y < 1.0, "it falls");
+//! ```
 
 mod animate;
 mod blows;

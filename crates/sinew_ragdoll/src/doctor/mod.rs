@@ -2,6 +2,22 @@
 //!
 //! The causes are those that other tools leave their users alone with: limits that are all alike, joints without
 //! limits, heads without bodies, frames whose zero is not the bind pose, bodies that start inside each other.
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
+//! use sinew_ragdoll::{Patient, cure, doctor};
+//!
+//! let mut patient = Patient::new(def);
+//! patient.def.bodies[3].mass.mass = 1e-4; // a slip of the hand
+//! let finding = &doctor(&patient)[0];
+//! println!("{}\n{}", finding.evidence, finding.fix);
+//! assert!(finding.bodies.contains(&3));
+//! let (cured, findings) = cure(&patient);
+//! assert!(findings[0].fixed && cured.def.bodies[3].mass.mass > 0.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod anatomy;
 mod code;

@@ -10,6 +10,31 @@
 //!
 //! Changes are exponential with a half-life, so they do not depend on the length of a step: `x += (goal − x)(1 − 2^(−dt/T))`
 //! for each number of a spring (stiffness, damping, cap).
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
+//! use sinew_physics::{Velocity, World, WorldDef};
+//! use sinew_ragdoll::{BodyState, DriveMode, Drives, Flesh, Muscle, Pin, Ragdoll};
+//!
+//! let mut world = World::new(WorldDef::default());
+//! let pose: Vec<_> = def.bodies.iter().map(|body| body.character_from_body).collect();
+//! let still = Velocity::default();
+//! let start: Vec<_> =
+//!     pose.iter().map(|&world_from_body| BodyState { world_from_body, velocity: still }).collect();
+//! let ragdoll = Ragdoll::spawn(&mut world, &def, &start, &Flesh::default());
+//! let mut drives = Drives::new(&def);
+//! drives.set_all(DriveMode::Powered(Muscle::STIFF), 0.0);
+//! drives.set(0, DriveMode::Pinned(Muscle::STIFF, Pin::FIRM), 0.0); // it hangs by its pelvis
+//! for _ in 0..60 {
+//!     drives.apply(&mut world, &def, &ragdoll, &pose, &vec![still; pose.len()]);
+//!     world.step();
+//! }
+//! let sunk = pose[0].translation - world.transform(ragdoll.bodies[0]).translation;
+//! assert!(sunk.length() < 0.1, "{sunk}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod apply;
 mod level;

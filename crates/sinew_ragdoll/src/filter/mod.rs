@@ -7,6 +7,21 @@
 //! A pair is looked at in the bind pose, in poses within the limits, and in those of the character's clips. What overlaps
 //! in a few poses alone is no fault of the shapes: limbs do meet. A ragdoll that starts in such a pose leaves the pair out
 //! by itself (`Ragdoll::spawn`).
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! use sinew_ragdoll::filter::{Remedy, TOLERATED};
+//!
+//! let (def, report) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
+//! for overlap in &report.overlaps {
+//!     let named = |body: usize| &def.bodies[body].role;
+//!     println!("{} and {}: {:?}", named(overlap.pair.0), named(overlap.pair.1), overlap.remedy);
+//!     assert_eq!(overlap.remedy == Remedy::Disabled, def.disabled_pairs.contains(&overlap.pair));
+//! }
+//! assert_eq!(TOLERATED, 0.005); // metres
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod poses;
 mod thin;

@@ -3,6 +3,18 @@
 //!
 //! Bone-aligned boxes are 3 to 4 times as large as they need be (measured on CesiumMan's arms); the axes of the
 //! area-weighted covariance are what the surface itself says.
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! use sinew_physics::Shape;
+//! use sinew_ragdoll::{BuildOptions, ShapeChoice, build};
+//!
+//! let options = BuildOptions { shapes: ShapeChoice::Capsule, ..BuildOptions::default() };
+//! let (def, _) = build(&rig, &analysis, &options)?;
+//! assert!(def.bodies.iter().all(|body| matches!(body.shape, Shape::Capsule { .. })));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod frame;
 pub mod patch;

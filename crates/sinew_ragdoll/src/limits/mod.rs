@@ -1,4 +1,18 @@
 //! Joints: where they are, which way their axes point, how far they go.
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
+//! use sinew_physics::JointKind;
+//!
+//! let shin = def.bodies.iter().position(|body| body.role == "leftLowerLeg").expect("it has one");
+//! let knee = &def.joints[shin - 1]; // `joints[i].child == i + 1`
+//! let JointKind::Hinge { limit: Some(range) } = knee.kind else { panic!("a knee is a hinge") };
+//! let degrees = (range.hi - range.lo).to_degrees();
+//! assert!((120.0..180.0).contains(&degrees), "{degrees}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod anatomy;
 pub mod friction;

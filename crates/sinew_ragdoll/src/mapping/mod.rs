@@ -6,6 +6,23 @@
 //! Root motion must end up in one place, or a clip that moves a root node above the pelvis and a ragdoll that moves the
 //! pelvis could not be blended. So all poses here are **flat**: nodes above the pelvis stay in their rest pose, and the
 //! *heads* below them (the pelvis, as a rule alone) carry all motion.
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
+//! use sinew_math::{Transform, Vec3};
+//! use sinew_ragdoll::Mapping;
+//!
+//! let mapping = Mapping::new(&rig, &def, &analysis.bind_model);
+//! let (place, mut bodies) = (Transform::from_translation(Vec3::X * 5.0), Vec::new());
+//! mapping.bodies_from_model(&analysis.bind_model, place, &mut bodies);
+//! for (body, pose) in def.bodies.iter().zip(&bodies) {
+//!     let due = place * body.character_from_body;
+//!     assert!((pose.translation - due.translation).length() < 1e-4, "{}", body.bone);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod heads;
 mod physical;

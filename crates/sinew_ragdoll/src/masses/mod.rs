@@ -3,6 +3,14 @@
 //! Humans: shares of the whole by de Leva's table, never from the volumes of the shapes, whose sum is 1.3 to 2.2 times
 //! a body's (measured). Creatures: there is no table, so that the whole weighs what the skin encloses, and parts of it go by the
 //! volumes of the shapes.
+//!
+//! ```
+//! use sinew_ragdoll::Sex;
+//! use sinew_ragdoll::masses::default_mass;
+//!
+//! assert!((default_mass(1.741, Sex::Male) - 73.0).abs() < 0.1); // kg
+//! assert!(default_mass(1.2, Sex::Female) < 40.0);
+//! ```
 
 pub mod de_leva;
 mod inertia;

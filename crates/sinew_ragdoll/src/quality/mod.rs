@@ -1,4 +1,16 @@
 //! Quality of a fall: the figures of the contract, from queries to the world alone.
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
+//! use sinew_ragdoll::{Verdict, drop_test};
+//!
+//! let report = drop_test(&def);
+//! println!("joints gape by {:.1e} m at most", report.drop.joint_gap_max_m);
+//! assert_eq!(report.verdict, Verdict::Good, "{:?}", report.reasons);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod drop_test;
 mod gate;

@@ -1,5 +1,23 @@
 //! Settings: what a user wants otherwise than the build does it, kept beside the rig, so that they survive when the rig is exported
 //! anew: by role or by bone, never by index.
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! use sinew_ragdoll::settings::{BoneSettings, ShapeWish};
+//! use sinew_ragdoll::{BuildOptions, Settings, build_with};
+//!
+//! let round = BoneSettings { shape: Some(ShapeWish::Sphere), ..BoneSettings::default() };
+//! let settings = Settings { bones: vec![("head".into(), round)], ..Settings::default() };
+//! let (def, _) = build_with(&rig, &analysis, &BuildOptions::default(), &settings)?;
+//! let head = def.bodies.iter().find(|body| body.role == "head").expect("it has one");
+//! assert!(matches!(head.shape, sinew_physics::Shape::Sphere { .. }));
+//!
+//! let slip = Settings { bones: vec![("haed".into(), round)], ..Settings::default() };
+//! let error = build_with(&rig, &analysis, &BuildOptions::default(), &slip).expect_err("no such bone");
+//! assert!(error.to_string().contains("head"), "{error}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod apply;
 mod bodies;

@@ -3,6 +3,18 @@
 //! A ragdoll may rest quietly and still look broken: a limb without a body stays behind and tears the mesh, a hat sinks into the
 //! floor, a figure that was scaled twice floats. So the skin is drawn as a viewer would draw it, in the poses of the eight
 //! drops, and held against the bodies, against the floor, and against what the file's own clips do to it.
+//!
+//! ```
+//! # let rig = sinew::mannequin::mannequin().rig;
+//! # let analysis = sinew_anim::analyze(&rig)?;
+//! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
+//! use sinew_ragdoll::SkinMeter;
+//!
+//! let skin = SkinMeter::new(&rig, &def, &analysis.bind_model, &[]).figures();
+//! println!("{:.0} % of the skin is near a body", 100.0 * skin.covered_share);
+//! assert!(skin.covered_share > 0.95 && skin.contiguous);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod judge;
 mod sides;

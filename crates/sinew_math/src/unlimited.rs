@@ -1,0 +1,19 @@
+//! Numbers that may be infinite, for formats that have no infinity: as none. Named in `serde(with)` of fields.
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// Writes a number, or none if it is infinite.
+///
+/// # Errors
+/// Those of the serializer.
+pub fn serialize<S: Serializer>(x: &f32, serializer: S) -> Result<S::Ok, S::Error> {
+    x.is_finite().then_some(*x).serialize(serializer)
+}
+
+/// Reads a number; none is infinite.
+///
+/// # Errors
+/// Those of the deserializer.
+pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f32, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f32::INFINITY))
+}

@@ -1,0 +1,199 @@
+//! Shapes of a body, added, replaced and taken away while the world runs.
+
+use crate::body::def::BodyKind;
+use crate::body::shape::{Shape, ShapeDef};
+use crate::body::surface::Surface;
+use crate::body::{Body, expect_solid, principal_frame};
+use crate::contact::ContactKey;
+use crate::id::{BodyId, ShapeId};
+use crate::world::World;
+use sinew_math::{Transform, Vec3};
+
+/// Mass of a body after a change of its shapes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MassUpdate {
+    /// Mass, centre and inertia are what the shapes then have by their densities. Default.
+    #[default]
+    FromShapes,
+    /// They stay as they are.
+    Keep,
+}
+
+/// Mass (kg), principal moments (kg·m²) and frame of a body after a change.
+type Weight = (f32, Vec3, Transform);
+
+impl World {
+    /// Adds a shape to a body, as its last; the body wakes, and so does what touches it or hangs on it. The next step tells of
+    /// what it touches.
+    ///
+    /// ```
+    /// use sinew_math::{Transform, Vec3};
+    /// use sinew_physics::*;
+    ///
+    /// let mut world = World::new(WorldDef::default());
+    /// let hammer = world.add_body(&BodyDef::dynamic(Shape::capsule(0.3, 0.02)));
+    /// let handle = world.mass(hammer).mass;
+    /// let head = ShapeDef {
+    ///     body_from_shape: Transform::from_translation(Vec3::Y * 0.3),
+    ///     density: 7800.0,
+    ///     ..ShapeDef::new(Shape::cuboid(Vec3::new(0.1, 0.03, 0.03)))
+    /// };
+    /// let head = world.add_shape(hammer, &head, MassUpdate::FromShapes);
+    /// assert!((world.mass(hammer).mass - handle - 7800.0 * 0.2 * 0.06 * 0.06).abs() < 1e-3);
+    /// world.remove_shape(head, MassUpdate::FromShapes);
+    /// assert!((world.mass(hammer).mass - handle).abs() < 1e-6);
+    /// ```
+    ///
+    /// # Panics
+    /// If the shape is not valid, is a half-space on a body that is not static, or names a modifier that is not registered,
+    /// or a dynamic body would have no mass.
+    #[doc(alias = "attach collider")]
+    #[doc(alias = "add fixture")]
+    #[track_caller]
+    pub fn add_shape(&mut self, body: BodyId, def: &ShapeDef, mass: MassUpdate) -> ShapeId {
+        self.check_shape(body, def);
+        let id = ShapeId { body, shape: self.expect(body).shapes.len() as u32 };
+        self.reshape(id, mass, |body| body.push_shape(def), |_| false);
+        id
+    }
+
+    /// Gives a body another shape in place of one that it has, under the same id; the body wakes, and so does what touches it
+    /// or hangs on it. What it touched and no longer does is told of by the next step, what it still touches is not.
+    ///
+    /// # Panics
+    /// If the body has no such shape, the new one is not valid, is a half-space on a body that is not static, or names a
+    /// modifier that is not registered, or a dynamic body would have no mass.
+    #[doc(alias = "set_collider_shape")]
+    #[track_caller]
+    pub fn set_shape(&mut self, id: ShapeId, def: &ShapeDef, mass: MassUpdate) {
+        self.expect_shape(id);
+        self.check_shape(id.body, def);
+        let change = |body: &mut Body| {
+            body.push_shape(def);
+            body.shapes.swap_remove(id.shape as usize);
+            body.tidy_surfaces();
+        };
+        self.reshape(id, mass, change, |shape| shape == id.shape);
+    }
+
+    /// Takes a shape from a body; the body wakes, and so does what touched it or hangs on it. Those after it move up: their
+    /// ids count one less from now on. The next step tells that what touched it does no longer.
+    ///
+    /// # Panics
+    /// If the body has no such shape, or would be dynamic without mass.
+    #[doc(alias = "detach collider")]
+    #[doc(alias = "destroy fixture")]
+    #[track_caller]
+    pub fn remove_shape(&mut self, id: ShapeId, mass: MassUpdate) {
+        self.expect_shape(id);
+        let change = |body: &mut Body| {
+            body.shapes.remove(id.shape as usize);
+            body.tidy_surfaces();
+        };
+        self.reshape(id, mass, change, |shape| shape >= id.shape);
+    }
+
+    /// Geometry of a shape.
+    #[track_caller]
+    pub fn shape(&self, id: ShapeId) -> &Shape {
+        self.expect_shape(id);
+        &self.bodies.at(id.body.index).shapes[id.shape as usize].shape
+    }
+
+    /// Pose of a shape in the frame of its body.
+    #[track_caller]
+    pub fn body_from_shape(&self, id: ShapeId) -> Transform {
+        self.expect_shape(id);
+        let body = self.bodies.at(id.body.index);
+        body.principal_from_body.inverse() * body.shapes[id.shape as usize].principal_from_shape
+    }
+
+    /// A shape's definition as it is now.
+    #[track_caller]
+    pub fn shape_def(&self, id: ShapeId) -> ShapeDef {
+        let body_from_shape = self.body_from_shape(id);
+        let Surface { density, material, filter, sensing, rule } = *self.expect_surface(id);
+        ShapeDef { shape: self.shape(id).clone(), body_from_shape, density, material, filter, sensing, rule }
+    }
+
+    #[track_caller]
+    pub(super) fn expect_shape(&self, id: ShapeId) {
+        let count = self.expect(id.body).shapes.len();
+        assert!((id.shape as usize) < count, "{:?} has no shape {}", id.body, id.shape);
+    }
+
+    #[track_caller]
+    pub(super) fn expect_surface(&self, id: ShapeId) -> &Surface {
+        self.expect_shape(id);
+        self.bodies.at(id.body.index).surface(id.shape as usize)
+    }
+
+    #[track_caller]
+    fn check_shape(&self, body: BodyId, def: &ShapeDef) {
+        if let Err(what) = def.check() {
+            panic!("a body's shape is valid: {what}");
+        }
+        let is_endless = def.shape == Shape::HalfSpace;
+        assert!(self.expect(body).kind == BodyKind::Static || !is_endless, "half-spaces are static bodies");
+        self.expect_modifier(def.rule);
+    }
+
+    /// Changes the shapes of a body. Contacts of the shapes that go, by their numbers before, are dropped.
+    #[track_caller]
+    fn reshape(
+        &mut self,
+        id: ShapeId,
+        mass: MassUpdate,
+        change: impl FnOnce(&mut Body),
+        goes: impl Fn(u32) -> bool,
+    ) {
+        let ShapeId { body: id, shape: number } = id;
+        let index = id.index;
+        let mut changed = self.expect(id).clone();
+        change(&mut changed);
+        // Before anything is changed: it may panic.
+        let weight = weight(&changed, mass);
+        self.stir(id);
+        if goes(number) {
+            self.movers.forget(id);
+        }
+        let body = self.bodies.at_mut(index);
+        (body.shapes, body.surfaces) = (changed.shapes, changed.surfaces);
+        if let Some(shape) = body.shapes.get(number as usize) {
+            self.library.keep(&shape.shape);
+        }
+        let goes =
+            |key: &ContactKey| key.a == index && goes(key.shape_a) || key.b == index && goes(key.shape_b);
+        for contact in self.contacts.extract_if(.., |contact| goes(&contact.key)) {
+            self.meetings.part(&self.bodies, &contact);
+        }
+        let meetings = &mut self.meetings;
+        let bodies = &self.bodies;
+        self.activity.drop_returned(|contact| goes(&contact.key), |contact| meetings.part(bodies, &contact));
+        if let Some((mass, moments, principal_from_body)) = weight {
+            let body = self.bodies.at_mut(index);
+            if body.kind == BodyKind::Dynamic {
+                (body.mass, body.inertia) = (mass, moments);
+            } else {
+                body.laid_by = Some((mass, moments));
+            }
+            self.put_principal_frame(id, principal_from_body);
+        }
+        self.renew_bounds(id);
+    }
+}
+
+/// Weight that a body with changed shapes gets; `None`: what it has, or none, stays.
+#[track_caller]
+fn weight(body: &Body, mass: MassUpdate) -> Option<Weight> {
+    if mass == MassUpdate::Keep || body.kind != BodyKind::Dynamic && body.laid_by.is_none() {
+        return None;
+    }
+    let properties = body.mass_of_shapes();
+    if properties.mass == 0.0 && body.kind != BodyKind::Dynamic {
+        return None;
+    }
+    let (moments, body_from_principal) = principal_frame(&properties);
+    expect_solid(properties.mass, moments);
+    Some((properties.mass, moments, body_from_principal.inverse()))
+}

@@ -1,0 +1,184 @@
+//! Mass, damping and the like of bodies, changed while the world runs.
+
+use crate::body::def::BodyKind;
+use crate::body::shape::MassProperties;
+use crate::body::{Velocity, expect_solid, principal_frame};
+use crate::contact::kept::Kept;
+use crate::id::BodyId;
+use crate::world::World;
+use sinew_math::Transform;
+
+impl World {
+    /// Gives a body another mass (kg), centre of mass (metres) and inertia (kg·m² about the centre), both in the body's frame.
+    /// It stays where it is, its points go on as fast as they went, and it wakes, with what touches it or hangs on it. A
+    /// body that is not dynamic has them from when it [becomes](Self::set_kind) so.
+    ///
+    /// ```
+    /// use sinew_physics::{BodyDef, MassProperties, Shape, World, WorldDef};
+    ///
+    /// let mut world = World::new(WorldDef::default());
+    /// let ball = world.add_body(&BodyDef::dynamic(Shape::sphere(0.5)));
+    /// let heavy = Shape::sphere(0.5).mass_properties(7800.0);
+    /// world.set_mass(ball, MassProperties { center: sinew_math::Vec3::Y * -0.3, ..heavy });
+    /// assert_eq!(world.mass(ball).mass, heavy.mass);
+    /// assert_eq!(world.center_of_mass(ball).y, -0.3);
+    /// ```
+    ///
+    /// # Panics
+    /// If a number is not finite, or mass or moments are not positive.
+    #[doc(alias = "set_mass_properties")]
+    #[doc(alias = "inertia tensor")]
+    #[doc(alias = "center of mass")]
+    #[track_caller]
+    pub fn set_mass(&mut self, id: BodyId, properties: MassProperties) {
+        let finite =
+            properties.mass.is_finite() && properties.center.is_finite() && properties.inertia.is_finite();
+        assert!(finite, "a body's mass, centre and inertia are finite");
+        let (moments, body_from_principal) = principal_frame(&properties);
+        expect_solid(properties.mass, moments);
+        self.stir(id);
+        let body = self.bodies.at_mut(id.index);
+        if body.kind == BodyKind::Dynamic {
+            (body.mass, body.inertia) = (properties.mass, moments);
+        } else {
+            body.laid_by = Some((properties.mass, moments));
+        }
+        self.put_principal_frame(id, body_from_principal.inverse());
+    }
+
+    /// Gives a body the mass, centre and inertia that its shapes have by their densities, as
+    /// [`set_mass`](Self::set_mass) would.
+    ///
+    /// # Panics
+    /// If they have no mass.
+    #[doc(alias = "recompute_mass_properties_from_colliders")]
+    #[track_caller]
+    pub fn set_mass_of_shapes(&mut self, id: BodyId) {
+        self.set_mass(id, self.expect(id).mass_of_shapes());
+    }
+
+    /// Puts the principal frame of a body that is awake elsewhere; what is kept in that frame follows.
+    pub(super) fn put_principal_frame(&mut self, id: BodyId, principal_from_body: Transform) {
+        let index = id.index;
+        let body = self.bodies.at_mut(index);
+        let old = body.principal_from_body;
+        if old == principal_from_body {
+            return;
+        }
+        body.set_principal_frame(principal_from_body);
+        let new_from_old = principal_from_body * old.inverse();
+        for &joint in self.activity.joints_of.body(index) {
+            let joint = self.joints.at_mut(joint);
+            let frame = if joint.a == index { &mut joint.frame_a } else { &mut joint.frame_b };
+            *frame = new_from_old * *frame;
+        }
+        // Manifolds are kept in the frames of their bodies.
+        let returned = self.activity.returned_mut();
+        for contact in self.contacts.iter_mut().chain(returned).filter(|contact| contact.key.has(index)) {
+            contact.kept = Kept::default();
+        }
+        self.renew_bounds(id);
+    }
+
+    /// Works out anew where the shapes of a body are in the trees.
+    pub(super) fn renew_bounds(&mut self, id: BodyId) {
+        self.broad.proxies.remove(id.index);
+        self.broad.proxies.add(id.index, self.bodies.at(id.index));
+    }
+
+    /// Damping of linear velocity, 1/s.
+    #[track_caller]
+    pub fn linear_damping(&self, id: BodyId) -> f32 {
+        self.expect(id).linear_damping
+    }
+
+    /// Sets the damping of linear velocity, 1/s: the share of it that is lost per second.
+    ///
+    /// # Panics
+    /// If it is not finite.
+    #[track_caller]
+    pub fn set_linear_damping(&mut self, id: BodyId, damping: f32) {
+        assert!(damping.is_finite(), "a body's damping is finite");
+        self.expect_mut(id).linear_damping = damping;
+    }
+
+    /// Damping of angular velocity, 1/s.
+    #[track_caller]
+    pub fn angular_damping(&self, id: BodyId) -> f32 {
+        self.expect(id).angular_damping
+    }
+
+    /// Sets the damping of angular velocity, 1/s: the share of it that is lost per second.
+    ///
+    /// # Panics
+    /// If it is not finite.
+    #[track_caller]
+    pub fn set_angular_damping(&mut self, id: BodyId, damping: f32) {
+        assert!(damping.is_finite(), "a body's damping is finite");
+        self.expect_mut(id).angular_damping = damping;
+    }
+
+    /// Factor on the world's gravity for a body, without unit.
+    #[track_caller]
+    pub fn gravity_scale(&self, id: BodyId) -> f32 {
+        self.expect(id).gravity_scale
+    }
+
+    /// Sets the factor on the world's gravity for a body, without unit; it wakes, if it is another than before. 0 lets it float.
+    ///
+    /// # Panics
+    /// If it is not finite.
+    #[track_caller]
+    pub fn set_gravity_scale(&mut self, id: BodyId, scale: f32) {
+        assert!(scale.is_finite(), "a body's gravity scale is finite");
+        if core::mem::replace(&mut self.expect_mut(id).gravity_scale, scale) != scale {
+            self.wake_body(id.index);
+        }
+    }
+
+    /// Sets the user's number on a body: room for an index or an entity's bits. It is part of snapshots.
+    #[track_caller]
+    pub fn set_user_data(&mut self, id: BodyId, user_data: u64) {
+        self.expect_mut(id).user_data = user_data;
+    }
+
+    /// Gives a body the velocity with which it is at a pose (world) in `seconds`: for platforms and other kinematic bodies that are to be
+    /// somewhere, and push what is in the way. It goes on at that velocity until it is told otherwise; call it before each step
+    /// with the length of the step, [`WorldDef::dt`](crate::WorldDef::dt). It turns the short way.
+    ///
+    /// ```
+    /// use sinew_math::{Transform, Vec3};
+    /// use sinew_physics::{BodyDef, Shape, World, WorldDef};
+    ///
+    /// let mut world = World::new(WorldDef::default());
+    /// let lift = world.add_body(&BodyDef::kinematic(Shape::cuboid(Vec3::new(1.0, 0.1, 1.0))));
+    /// let dt = world.def().dt();
+    /// for floor in 1..=60 {
+    ///     world.move_to(lift, Transform::from_translation(Vec3::Y * 0.02 * floor as f32), dt);
+    ///     world.step();
+    /// }
+    /// assert!((world.transform(lift).translation.y - 1.2).abs() < 1e-4);
+    /// assert!((world.velocity(lift).linear.y - 1.2).abs() < 1e-3);
+    /// ```
+    ///
+    /// # Panics
+    /// If the pose is not finite, or the time not positive and finite.
+    #[doc(alias = "set_next_kinematic_position")]
+    #[doc(alias = "MoveKinematic")]
+    #[doc(alias = "kinematic target")]
+    #[track_caller]
+    pub fn move_to(&mut self, id: BodyId, world_from_body: Transform, seconds: f32) {
+        assert!(world_from_body.is_finite(), "a body's pose is finite");
+        assert!(seconds > 0.0 && seconds < f32::INFINITY, "a time is positive and finite");
+        let body = self.expect(id);
+        let from = body.world_from_principal;
+        let Transform { translation, rotation } = world_from_body;
+        let to = Transform::new(translation, rotation.normalize()) * body.principal_from_body.inverse();
+        let velocity = Velocity {
+            linear: (to.translation - from.translation) / seconds,
+            angular: from.rotation.angular_velocity_to(to.rotation, seconds),
+        };
+        assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "a velocity is finite");
+        self.set_velocity(id, velocity);
+    }
+}

@@ -1,0 +1,103 @@
+//! Steps, and what they tell: as messages, and to observers.
+
+use crate::Physics;
+use bevy_app::App;
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use sinew_physics::BodyId;
+
+/// Two bodies began to touch.
+#[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TouchBegan {
+    /// One of them.
+    pub a: Entity,
+    /// The other.
+    pub b: Entity,
+}
+
+/// Two bodies stopped touching; one of them may be gone.
+#[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TouchEnded {
+    /// One of them.
+    pub a: Entity,
+    /// The other.
+    pub b: Entity,
+}
+
+/// Of two bodies one began to be inside a sensor of the other.
+#[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SensorEntered {
+    /// One of them.
+    pub a: Entity,
+    /// The other.
+    pub b: Entity,
+}
+
+/// Of two bodies one stopped being inside a sensor of the other; one of them may be gone.
+#[derive(Event, Message, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SensorLeft {
+    /// One of them.
+    pub a: Entity,
+    /// The other.
+    pub b: Entity,
+}
+
+/// Two bodies came in fast ([`WorldDef::hit_speed`](crate::WorldDef::hit_speed)) and stopped each other.
+#[derive(Event, Message, Clone, Copy, Debug, PartialEq)]
+pub struct HitTold {
+    /// One of them.
+    pub a: Entity,
+    /// The other.
+    pub b: Entity,
+    /// Point of the hit, world, metres.
+    pub point: Vec3,
+    /// From A to B, unit length, world axes.
+    pub normal: Vec3,
+    /// Speed along the normal, m/s.
+    pub approach: f32,
+    /// All that pushed, N·s.
+    pub impulse: f32,
+}
+
+pub(crate) fn add_messages(app: &mut App) {
+    app.add_message::<TouchBegan>().add_message::<TouchEnded>();
+    app.add_message::<SensorEntered>().add_message::<SensorLeft>().add_message::<HitTold>();
+}
+
+pub(crate) fn step(mut physics: ResMut<Physics>) {
+    physics.step();
+}
+
+pub(crate) fn tell(mut physics: ResMut<Physics>, mut commands: Commands) {
+    let told = |(a, b): (BodyId, BodyId)| Some((physics.entity(a)?, physics.entity(b)?));
+    let events = physics.events();
+    for (a, b) in events.begin.iter().copied().filter_map(told) {
+        both(&mut commands, TouchBegan { a, b });
+    }
+    for (a, b) in events.end.iter().copied().filter_map(told) {
+        both(&mut commands, TouchEnded { a, b });
+    }
+    for (a, b) in events.sensor_begin.iter().copied().filter_map(told) {
+        both(&mut commands, SensorEntered { a, b });
+    }
+    for (a, b) in events.sensor_end.iter().copied().filter_map(told) {
+        both(&mut commands, SensorLeft { a, b });
+    }
+    for hit in &events.hits {
+        let Some((a, b)) = told((hit.a.body, hit.b.body)) else { continue };
+        let (point, normal, approach, impulse) = (hit.point, hit.normal, hit.approach, hit.impulse);
+        both(&mut commands, HitTold { a, b, point, normal, approach, impulse });
+    }
+    for body in core::mem::take(&mut physics.gone) {
+        physics.entities.remove(&body);
+    }
+}
+
+/// As a message, and to observers.
+fn both<E>(commands: &mut Commands, event: E)
+where
+    E: Message + Clone + for<'a> Event<Trigger<'a>: Default>,
+{
+    commands.write_message(event.clone());
+    commands.trigger(event);
+}

@@ -1,0 +1,160 @@
+//! Sinew's physics in Bevy: bodies, shapes, velocities, joints and fields as components, stepped in `FixedPostUpdate`.
+//!
+//! ```
+//! use bevy_app::{App, Update};
+//! use bevy_ecs::prelude::*;
+//! use bevy_math::Vec3;
+//! use bevy_sinew::{Collider, RigidBody, Shape, SinewPlugin};
+//! use bevy_time::{TimePlugin, TimeUpdateStrategy};
+//! use bevy_transform::components::Transform;
+//!
+//! let mut app = App::new();
+//! app.add_plugins((TimePlugin, SinewPlugin::default())); // in a game `DefaultPlugins` bring the first
+//! app.world_mut().spawn((RigidBody::Static, Collider::from(Shape::HalfSpace)));
+//! let ball = (RigidBody::Dynamic, Collider::from(Shape::sphere(0.5)), Transform::from_xyz(0.0, 3.0, 0.0));
+//! let ball = app.world_mut().spawn(ball).id();
+//! # app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+//! (0..180).for_each(|_| app.update());
+//! let height = app.world().get::<Transform>(ball).expect("it has one").translation.y;
+//! assert!((height - 0.5).abs() < 0.01);
+//! ```
+//!
+//! # Who says what
+//!
+//! | component | read | written |
+//! |---|---|---|
+//! | [`RigidBody`], [`Collider`] | when they come or change | never |
+//! | `Transform` | when a body comes, and when it is changed by anyone else | each frame, of bodies that moved: between the last two steps |
+//! | [`Velocity`], if it is there | when it comes or changes | after each step |
+//! | [`Joint`], [`Field`] | when they come or change | never |
+//!
+//! A body is in the world, not in its parent: where an ancestor goes, it stays, and its `Transform` is made to fit. So it is when
+//! it gets another parent. Scales are kept and do not scale shapes. All else that a world can do is done by the resource
+//! [`Physics`], with the id in [`BodyHandle`].
+#![forbid(unsafe_code)]
+
+mod bodies;
+mod events;
+mod links;
+mod pose;
+
+pub use bodies::{BodyHandle, Collider, RigidBody, Velocity};
+pub use events::{HitTold, SensorEntered, SensorLeft, TouchBegan, TouchEnded};
+pub use links::{Field, FieldHandle, Joint, JointHandle};
+pub use pose::Interpolation;
+pub use sinew_math as math;
+pub use sinew_physics::{self as physics, FieldDef, FieldKind, JointKind, Shape, ShapeDef, WorldDef};
+
+use bevy_app::{App, FixedPostUpdate, Plugin, RunFixedMainLoop, RunFixedMainLoopSystems};
+use bevy_ecs::entity::Entity;
+use bevy_ecs::prelude::{IntoScheduleConfigs, Resource, SystemSet};
+use bevy_time::{Fixed, Time};
+use core::ops::{Deref, DerefMut};
+use core::time::Duration;
+use sinew_physics::{BodyId, World};
+use std::collections::BTreeMap;
+
+/// Stages of the plugin, in order. The first three run in `FixedPostUpdate`, the last in `RunFixedMainLoop`, after the fixed
+/// steps of a frame.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PhysicsSystems {
+    /// Components that came, changed or went are brought into the world.
+    Prepare,
+    /// The world takes a step.
+    Step,
+    /// Velocities are written, messages sent, observers triggered.
+    Tell,
+    /// Transforms are written.
+    Write,
+}
+
+/// The physics of an app. As a [`World`] it can do all that one can; what it is made of beside that is which entity a body is.
+#[derive(Resource)]
+pub struct Physics {
+    world: World,
+    entities: BTreeMap<BodyId, Entity>,
+    /// Bodies that are gone, until the step has told what they no longer touch.
+    gone: Vec<BodyId>,
+}
+
+impl Physics {
+    /// The entity of a body; also of one that was taken out since the last step.
+    pub fn entity(&self, body: BodyId) -> Option<Entity> {
+        self.entities.get(&body).copied()
+    }
+
+    /// Number of bodies with an entity, those among them that were taken out since the last step.
+    pub fn len(&self) -> usize {
+        self.entities.len()
+    }
+
+    /// True if no entity is a body.
+    pub fn is_empty(&self) -> bool {
+        self.entities.is_empty()
+    }
+}
+
+impl Deref for Physics {
+    type Target = World;
+
+    fn deref(&self) -> &World {
+        &self.world
+    }
+}
+
+impl DerefMut for Physics {
+    fn deref_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+}
+
+/// Order in which entities come into the world: that in which they were first made.
+pub(crate) fn order(entity: Entity) -> (u32, u64) {
+    (entity.index_u32(), entity.to_bits())
+}
+
+/// The plugin. Needs Bevy's `TimePlugin`; sets the length of the fixed step to that of the world.
+#[derive(Default)]
+pub struct SinewPlugin {
+    /// Settings of the world. Default [`WorldDef::default`].
+    pub def: WorldDef,
+}
+
+impl Plugin for SinewPlugin {
+    fn build(&self, app: &mut App) {
+        let step = Duration::from_nanos(self.def.step_nanoseconds);
+        app.insert_resource(Time::<Fixed>::from_duration(step));
+        let world = World::new(self.def.clone());
+        app.insert_resource(Physics { world, entities: BTreeMap::new(), gone: Vec::new() });
+        app.init_resource::<Interpolation>();
+        events::add_messages(app);
+        let order = (PhysicsSystems::Prepare, PhysicsSystems::Step, PhysicsSystems::Tell);
+        app.configure_sets(FixedPostUpdate, order.chain());
+        let after = RunFixedMainLoopSystems::AfterFixedMainLoop;
+        app.configure_sets(RunFixedMainLoop, PhysicsSystems::Write.in_set(after));
+        app.add_observer(bodies::forget_body);
+        app.add_observer(links::forget_joint);
+        app.add_observer(links::forget_field);
+        let prepare = (
+            bodies::add_bodies,
+            bodies::change_kinds,
+            bodies::change_shapes,
+            pose::read_transforms,
+            bodies::read_velocities,
+            links::add_joints,
+            links::change_joints,
+            links::add_fields,
+            links::change_fields,
+        );
+        app.add_systems(FixedPostUpdate, prepare.chain().in_set(PhysicsSystems::Prepare));
+        app.add_systems(FixedPostUpdate, events::step.in_set(PhysicsSystems::Step));
+        let tell = (bodies::write_velocities, events::tell);
+        app.add_systems(FixedPostUpdate, tell.chain().in_set(PhysicsSystems::Tell));
+        app.add_systems(RunFixedMainLoop, pose::write_transforms.in_set(PhysicsSystems::Write));
+    }
+}
+
+/// The README's example.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,139 @@
+//! Joints and fields.
+
+use crate::{BodyHandle, Physics, order};
+use bevy_ecs::lifecycle::HookContext;
+use bevy_ecs::prelude::*;
+use bevy_ecs::world::DeferredWorld;
+use bevy_math::Vec3;
+use sinew_physics::{FieldDef, FieldId, JointDef, JointId, JointKind};
+
+/// A joint between two bodies, on an entity of its own. It is made as soon as both are in the world, and goes with either of them.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+pub struct Joint {
+    /// First body.
+    pub a: Entity,
+    /// Second body.
+    pub b: Entity,
+    /// Point at which it holds the bodies when it is made, world, metres.
+    pub anchor: Vec3,
+    /// Its x axis then, world, any length but 0: that of a hinge or a slider.
+    pub axis: Vec3,
+    /// Motions that it leaves free.
+    pub kind: JointKind,
+}
+
+/// The joint of an entity, once the world has it.
+#[derive(Component, Clone, Copy, Debug)]
+#[component(on_remove = take_out_joint)]
+pub struct JointHandle(JointId);
+
+impl JointHandle {
+    /// Id of the joint in [`Physics`]; stale when one of its bodies is gone.
+    pub fn id(&self) -> JointId {
+        self.0
+    }
+}
+
+/// A field, everywhere or in a region of the world.
+#[derive(Component, Clone, Debug, PartialEq)]
+pub struct Field(pub FieldDef);
+
+/// The field of an entity, once the world has it.
+#[derive(Component, Clone, Copy, Debug)]
+#[component(on_remove = take_out_field)]
+pub struct FieldHandle(FieldId);
+
+impl FieldHandle {
+    /// Id of the field in [`Physics`].
+    pub fn id(&self) -> FieldId {
+        self.0
+    }
+}
+
+fn take_out_joint(mut world: DeferredWorld, context: HookContext) {
+    let Some(&JointHandle(id)) = world.get::<JointHandle>(context.entity) else { return };
+    let Some(mut physics) = world.get_resource_mut::<Physics>() else { return };
+    if physics.contains_joint(id) {
+        physics.remove_joint(id);
+    }
+}
+
+fn take_out_field(mut world: DeferredWorld, context: HookContext) {
+    let Some(&FieldHandle(id)) = world.get::<FieldHandle>(context.entity) else { return };
+    let Some(mut physics) = world.get_resource_mut::<Physics>() else { return };
+    if physics.contains_field(id) {
+        physics.remove_field(id);
+    }
+}
+
+/// The joint goes with the component that made it.
+pub(crate) fn forget_joint(removed: On<Remove, Joint>, mut commands: Commands) {
+    commands.entity(removed.event().entity).try_remove::<JointHandle>();
+}
+
+/// The field goes with the component that made it.
+pub(crate) fn forget_field(removed: On<Remove, Field>, mut commands: Commands) {
+    commands.entity(removed.event().entity).try_remove::<FieldHandle>();
+}
+
+/// Joints both of whose bodies are there, in the order of their entities.
+pub(crate) fn add_joints(
+    mut commands: Commands,
+    mut physics: ResMut<Physics>,
+    new: Query<(Entity, &Joint), Without<JointHandle>>,
+    bodies: Query<&BodyHandle>,
+) {
+    let mut new: Vec<_> = new.iter().collect();
+    new.sort_unstable_by_key(|&(entity, _)| order(entity));
+    for (entity, joint) in new {
+        let (Ok(a), Ok(b)) = (bodies.get(joint.a), bodies.get(joint.b)) else { continue };
+        // A hinge has the frames that any kind has.
+        let hinge = physics.hinge(a.id(), b.id(), joint.anchor, joint.axis);
+        let id = physics.add_joint(&JointDef { kind: joint.kind, ..hinge });
+        commands.entity(entity).insert(JointHandle(id));
+    }
+}
+
+/// Another kind or limit for a joint that is there; its bodies and frames stay.
+pub(crate) fn change_joints(
+    mut physics: ResMut<Physics>,
+    changed: Query<(Entity, &JointHandle, &Joint), Changed<Joint>>,
+) {
+    let mut changed: Vec<_> = changed.iter().collect();
+    changed.sort_unstable_by_key(|&(entity, ..)| order(entity));
+    for (_, &JointHandle(id), joint) in changed {
+        if !physics.contains_joint(id) {
+            continue;
+        }
+        let now = physics.joint(id);
+        if now.kind != joint.kind {
+            physics.set_joint(id, &JointDef { kind: joint.kind, ..now });
+        }
+    }
+}
+
+pub(crate) fn add_fields(
+    mut commands: Commands,
+    mut physics: ResMut<Physics>,
+    new: Query<(Entity, &Field), Without<FieldHandle>>,
+) {
+    let mut new: Vec<_> = new.iter().collect();
+    new.sort_unstable_by_key(|&(entity, _)| order(entity));
+    for (entity, field) in new {
+        let id = physics.add_field(&field.0);
+        commands.entity(entity).insert(FieldHandle(id));
+    }
+}
+
+pub(crate) fn change_fields(
+    mut physics: ResMut<Physics>,
+    changed: Query<(Entity, &FieldHandle, &Field), Changed<Field>>,
+) {
+    let mut changed: Vec<_> = changed.iter().collect();
+    changed.sort_unstable_by_key(|&(entity, ..)| order(entity));
+    for (_, &FieldHandle(id), field) in changed {
+        if *physics.field(id) != field.0 {
+            physics.set_field(id, &field.0);
+        }
+    }
+}
