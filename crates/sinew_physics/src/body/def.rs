@@ -175,9 +175,9 @@ pub struct BodyDef {
     pub position: Vec3,
     /// World orientation.
     pub rotation: Rotation,
-    /// Velocity of the centre of mass, m/s, world axes.
+    /// Velocity of the centre of mass, m/s, world axes; a static body has none.
     pub linear_velocity: Vec3,
-    /// rad/s, world axes.
+    /// Angular velocity, rad/s, world axes; a static body has none.
     pub angular_velocity: Vec3,
     /// 1/s: share of linear velocity lost per second. Default 0.
     pub linear_damping: f32,

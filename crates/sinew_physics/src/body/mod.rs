@@ -156,11 +156,15 @@ impl Body {
         };
         let shapes = def.shapes.iter().map(body_shape).collect();
         surfaces.shrink();
+        let velocity = match def.kind {
+            BodyKind::Static => Velocity::default(),
+            _ => Velocity { linear: def.linear_velocity, angular: def.angular_velocity },
+        };
         Self {
             kind: def.kind,
             world_from_principal: world_from_body * body_from_principal,
             previous: world_from_body * body_from_principal,
-            velocity: Velocity { linear: def.linear_velocity, angular: def.angular_velocity },
+            velocity,
             force: Vec3::ZERO,
             torque: Vec3::ZERO,
             forces: BodyForces::default(),

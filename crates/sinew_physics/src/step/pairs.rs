@@ -300,10 +300,7 @@ mod tests {
             0 => world.remove_body(id),
             1 | 2 => drop(add(world, random, range)),
             3 => world.set_transform(id, Transform::new(random.in_cube() * range, random.rotation())),
-            // Of what is static it means nothing, and is not looked at.
-            4 if world.kind(id) != BodyKind::Static => {
-                world.set_velocity(id, Velocity { linear: random.in_cube() * 20.0, ..Velocity::default() });
-            }
+            4 => world.set_velocity(id, Velocity { linear: random.in_cube() * 20.0, ..Velocity::default() }),
             5 => world.set_velocity(id, Velocity::default()),
             6 => _ = world.add_shape(id, &some_shape(random, BodyKind::Dynamic), MassUpdate::Keep),
             7 => world.set_shape(shape, &some_shape(random, BodyKind::Dynamic), MassUpdate::Keep),

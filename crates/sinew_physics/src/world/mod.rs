@@ -330,13 +330,16 @@ impl World {
         self.expect(id).velocity
     }
 
-    /// Sets the velocity of a dynamic or kinematic body; it wakes.
+    /// Sets the velocity of a dynamic or kinematic body; it wakes. A static body has none, whatever is asked.
     #[track_caller]
     #[doc(alias = "set_linvel")]
     #[doc(alias = "set_angvel")]
     pub fn set_velocity(&mut self, id: BodyId, velocity: Velocity) {
         assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "a velocity is finite");
         let body = self.expect_mut(id);
+        if body.kind == BodyKind::Static {
+            return;
+        }
         let stops = velocity.is_zero() && !body.velocity.is_zero();
         body.velocity = velocity;
         match body.kind {

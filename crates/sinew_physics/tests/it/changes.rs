@@ -612,3 +612,17 @@ fn a_body_is_found_while_it_is_there() {
     world.add_body(&sphere_body(0.5, Vec3::Y));
     assert!(world.get(ball).is_none(), "the next one at its place is another");
 }
+
+#[test]
+fn a_static_body_has_no_velocity() {
+    let mut world = world();
+    let def = BodyDef { kind: BodyKind::Static, linear_velocity: Vec3::X, ..sphere_body(0.5, Vec3::ZERO) };
+    let ground = world.add_body(&def);
+    assert_eq!(world.velocity(ground), Velocity::default());
+    world.set_velocity(ground, Velocity { linear: Vec3::Z * 9.0, ..Velocity::default() });
+    assert_eq!(world.velocity(ground), Velocity::default());
+    let ball = world.add_body(&sphere_body(0.2, Vec3::Y * 0.7));
+    run(&mut world, 30);
+    let slide = world.transform(ball).translation;
+    assert!(slide.x.abs() < 1e-4 && slide.z.abs() < 1e-4, "nothing carries it along: {slide}");
+}
