@@ -7,11 +7,11 @@
 pub mod field;
 pub mod id;
 pub mod joint;
-pub mod object;
 pub mod particles;
 pub mod query;
 pub mod runner;
 pub mod stage;
+pub mod user_object;
 
 mod activity;
 mod arena;
@@ -58,10 +58,10 @@ pub use joint::def::{
     Spring, Strength,
 };
 pub use mover::{Mover, MoverDef, MoverGround};
-pub use object::{Corrections, Forces, PhysicsObject, Substep};
 pub use query::{
     BodyHit, BodyKinds, BodyPenetration, BodySurface, ContainsPoint, Energy, Momentum, NearestTo,
     NearestToShape, OverlapWith, PenetrationOf, Probe, Query, QueryFilter, Question, Sensors, ShapeCast,
 };
 pub use runner::{Serial, TaskRunner, Threads};
+pub use user_object::{Corrections, Forces, PhysicsObject, Substep};
 pub use world::{BodyContact, BodyRef, ContactPoint, LockedAxes, MassUpdate, Reaction, Update, World};

@@ -26,7 +26,7 @@ const ROOMS: &[(&str, &[&str])] = &[(
         "field",
         "solver",
         "step",
-        "object",
+        "user_object",
         "world",
         "mover",
         "query",
@@ -37,10 +37,10 @@ const ROOMS: &[(&str, &[&str])] = &[(
 const EXCEPTIONS: &[(&str, &str)] = &[
     // The step is given the whole world, and the user's objects and the movers act on it within the step.
     ("crates/sinew_physics/src/step/mod.rs", "world"),
-    ("crates/sinew_physics/src/step/mod.rs", "object"),
+    ("crates/sinew_physics/src/step/mod.rs", "user_object"),
     ("crates/sinew_physics/src/step/mod.rs", "mover"),
     // What users write against is given the world.
-    ("crates/sinew_physics/src/object/mod.rs", "world"),
+    ("crates/sinew_physics/src/user_object/mod.rs", "world"),
     // The world owns its movers, which are nothing but what they do in a world.
     ("crates/sinew_physics/src/world/mod.rs", "mover"),
     ("crates/sinew_physics/src/world/snapshot.rs", "mover"),

@@ -16,9 +16,9 @@ pub(crate) mod touch;
 use crate::context::StepContext;
 use crate::field::Fields;
 use crate::mover;
-use crate::object::lockstep;
 use crate::solver::{Pace, View};
 use crate::stage::{Stage, zone};
+use crate::user_object::lockstep;
 use crate::world::World;
 
 /// Advances the world by one step.

@@ -46,13 +46,13 @@ use crate::id::Lineage;
 use crate::id::{BodyId, GroupId, JointId};
 use crate::joint::Joint;
 use crate::mover::Movers;
-use crate::object::Objects;
 use crate::particles::{AttachmentTarget, GroupDef, ParticleGroup};
 use crate::runner::{Serial, TaskRunner};
 use crate::stage::{NoProfiler, Profiler};
 use crate::step::islands::Islands;
 use crate::step::pairs::BroadPhase;
 use crate::step::step;
+use crate::user_object::Objects;
 use sinew_math::{Transform, Vec3};
 
 /// Bodies and joints, stepped at a fixed rate.

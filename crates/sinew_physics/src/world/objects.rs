@@ -2,7 +2,7 @@
 
 use crate::draw::DebugDraw;
 use crate::id::ObjectId;
-use crate::object::PhysicsObject;
+use crate::user_object::PhysicsObject;
 use crate::world::World;
 use core::any::Any;
 
