@@ -32,7 +32,7 @@ use articulation::joints::Corrected;
 use articulation::loops::Loops;
 use articulation::pins::Pins;
 use articulation::response::Response;
-use articulation::response_cache::Columns;
+use articulation::response_cache::ResponseCache;
 use articulation::tree::Link;
 pub(crate) use boundary::build::{Grading, Pace, View};
 use boundary::fields::Attraction;
@@ -44,13 +44,13 @@ use limits::blocks::LimitBlocks;
 use limits::rows::LimitRow;
 use motion::{IntegratePosition, IntegrateVelocity, RefreshInertia};
 use piles::mass_scaling::{Pressing, Touch};
-use piles::support_depth::Levels;
+use piles::support_depth::SupportDepth;
 use safeguards::Momentum;
 use sinew_math::dispatch;
 use sinew_math::{Sym3, Transform, Vec3, abs3, normalize_or};
 use sweep::conjugate::Conjugate;
-use sweep::policy::Effort;
-use sweep::{Pass, Unrest};
+use sweep::policy::SweepPolicy;
+use sweep::{DirtyRows, Pass};
 
 /// A body of the island. Moving ones come first, in tree order; fixed ones (static, kinematic, asleep) follow.
 #[derive(Clone, Debug)]
@@ -64,8 +64,8 @@ pub(crate) struct SolverBody {
     /// Moments added for stability, kg·m²: geometric stiffness beyond what the inertia can carry.
     pub excess: Vec3,
     /// Factor on mass and inertia in the body's answer to forces and impulses: 1 unless it is squeezed.
-    pub ballast: f32,
-    /// Inverse of inertia and excess with ballast, world axes.
+    pub mass_scale: f32,
+    /// Inverse of inertia and excess with mass scaling, world axes.
     pub inverse_inertia: Sym3,
     /// Gravity's, the user's and those of fields, N and N·m.
     pub force: Vec3,
@@ -95,7 +95,7 @@ impl SolverBody {
 
     /// Answer to an impulse if no joint held it.
     fn velocity_change(&self, p: &Vec6) -> Vec6 {
-        join(linear(p) / (self.mass * self.ballast), self.inverse_inertia * angular(p))
+        join(linear(p) / (self.mass * self.mass_scale), self.inverse_inertia * angular(p))
     }
 }
 
@@ -173,7 +173,7 @@ pub(crate) struct IslandSolver {
     touches: Vec<Touch>,
     /// Per moving body: it touches another one, and no joint holds either.
     paired: Vec<bool>,
-    /// Masses of what touches differ so much that ballast follows from substep to substep.
+    /// Masses of what touches differ so much that mass scaling follows from substep to substep.
     is_unequal: bool,
     /// A point was hit in this substep so that it bounces.
     bounces: bool,
@@ -191,7 +191,7 @@ pub(crate) struct IslandSolver {
     limits: Vec<LimitRow>,
     limit_blocks: LimitBlocks,
     response: Response,
-    columns: Columns,
+    columns: ResponseCache,
     /// Impulses of contacts and limits that the sweeps in progress have put on each moving body.
     impulses: Vec<Vec6>,
     /// Linear impulses of contacts on each moving body in this substep.
@@ -206,12 +206,12 @@ pub(crate) struct IslandSolver {
     forces_vary: bool,
     attraction: Attraction,
     scratch: Scratch,
-    levels: Levels,
+    support: SupportDepth,
     /// Per moving body.
     pressing: Vec<Pressing>,
     quality: Quality,
-    effort: Effort,
-    unrest: Unrest,
+    policy: SweepPolicy,
+    dirty: DirtyRows,
     conjugate: Conjugate,
     /// Energy that the changes of the sweep in progress have one by one, J.
     change_energy: f32,
@@ -350,7 +350,7 @@ impl IslandSolver {
         if !self.is_articulated() {
             self.contacts.pull_approach(&self.velocities);
             self.sweep(Pass::Solve, runner);
-            self.drop_nonsense(0.0);
+            self.fall_back_to_rigid(0.0);
             self.bounces = self.contacts.end_approach(self.h);
             return;
         }
@@ -362,18 +362,18 @@ impl IslandSolver {
         }
         self.contacts.pull_approach(&self.velocities);
         self.sweep(Pass::Solve, runner);
-        self.calm_trees();
+        self.limit_inner_turn();
         let mut torn = self.correct_positions(Corrected::All);
         for _ in 0..FORESIGHTS {
             let tightened = self.tighten_limits();
-            if !self.foresee_contacts() && !tightened {
+            if !self.predict_contacts() && !tightened {
                 break;
             }
             let stirred = self.sweep_again(runner);
-            self.calm_trees();
+            self.limit_inner_turn();
             torn = self.correct_positions(stirred);
         }
-        self.drop_nonsense(torn);
+        self.fall_back_to_rigid(torn);
         if self.coupling == Coupling::Turns {
             self.bounces = self.contacts.end_approach(self.h);
             self.add_drive_work();
@@ -383,7 +383,7 @@ impl IslandSolver {
             rows.end_approach(self.h);
         }
         self.bounces = self.manifolds.iter().any(ManifoldRows::bounces);
-        self.pay_for_positions();
+        self.bound_position_energy();
         self.add_drive_work();
     }
 
@@ -426,8 +426,8 @@ impl IslandSolver {
         }
         if !self.is_articulated() {
             self.sweep(Pass::Relax, runner);
-            self.drop_nonsense(0.0);
-            self.govern_energy();
+            self.fall_back_to_rigid(0.0);
+            self.bound_energy();
             self.contacts.end_substep(self.h, runner);
             return;
         }
@@ -437,11 +437,11 @@ impl IslandSolver {
         self.project_joints(Pass::Relax);
         self.refine_joints();
         self.sweep(Pass::Relax, runner);
-        self.drop_nonsense(0.0);
+        self.fall_back_to_rigid(0.0);
         if self.coupling == Coupling::Turns {
             self.contacts.end_substep(self.h, runner);
         } else {
-            self.govern_energy();
+            self.bound_energy();
         }
         for rows in &mut self.manifolds {
             rows.end_substep(self.h);
@@ -459,7 +459,7 @@ impl IslandSolver {
             self.bounced_from.extend_from_slice(&self.velocities[..self.links.len()]);
             self.sweep(Pass::Restitution, runner);
             self.limit_bounce();
-            self.drop_nonsense(0.0);
+            self.fall_back_to_rigid(0.0);
             self.contacts.end_bounce();
             for rows in &mut self.manifolds {
                 rows.add_bounce();
@@ -471,7 +471,7 @@ impl IslandSolver {
     /// Rows, inertias, factor and response at the present pose.
     fn refresh(&mut self, view: &View<'_>, runner: &dyn TaskRunner) {
         if !self.is_articulated() {
-            self.refresh_ballast();
+            self.refresh_mass_scale();
             self.refresh_inertia();
             self.place_contacts(view, runner);
             return;
@@ -568,13 +568,13 @@ impl IslandSolver {
 
     /// Contacts of jointed bodies that the substep would press in by far at other points than those of their rows. Gives whether
     /// there are any. (Without joints nothing swings in so fast, and corners that bounce at once would gain energy.)
-    fn foresee_contacts(&mut self) -> bool {
+    fn predict_contacts(&mut self) -> bool {
         let mut any = false;
         if !self.is_articulated() {
             return any;
         }
         for rows in &mut self.manifolds {
-            if rows.foresee(&self.bodies, &self.velocities, self.h) {
+            if rows.predict_points(&self.bodies, &self.velocities, self.h) {
                 rows.columns = None;
                 any = true;
             }

@@ -7,7 +7,7 @@ use crate::solver::articulation::tree::NONE;
 use crate::solver::contact_rows::ManifoldRows;
 use crate::solver::motion::KineticEnergy;
 use crate::solver::sweep::Pass;
-use crate::solver::tuning::{ENERGY_SLACK, MAX_INNER_TURN, NONSENSE_SPEED, NONSENSE_SPIN, TORN};
+use crate::solver::tuning::{DIVERGED_SPEED, DIVERGED_SPIN, ENERGY_SLACK, MAX_INNER_TURN, TORN};
 use crate::solver::{IslandSolver, SolverBody};
 use crate::spatial::{Vec6, ZERO6, angular, difference, join, linear};
 use sinew_math::dispatch;
@@ -57,7 +57,7 @@ impl IslandSolver {
     /// Slows the inner motion of trees with links that would turn too far within the substep: towards the rigid motion
     /// with the same momentum, by one factor for the whole tree. Joints hold as before, since their rows are linear, and
     /// momentum stays; a clamp of single links would tear them apart. Only whips in violent hits come here.
-    pub(in crate::solver) fn calm_trees(&mut self) {
+    pub(in crate::solver) fn limit_inner_turn(&mut self) {
         let most = MAX_INNER_TURN / self.h;
         let mut first = 0;
         while first < self.links.len() {
@@ -84,7 +84,7 @@ impl IslandSolver {
             let room = max(most - rigid.angular.length(), 0.0);
             keep = min(keep, if inner > room { room / inner } else { 1.0 });
         }
-        self.unrest.stir(self.links[range.start].tree, most);
+        self.dirty.stir(self.links[range.start].tree, most);
         for i in range {
             let rigid = rigid.at(self.bodies[i].pose.translation);
             for (v, r) in self.velocities[i].iter_mut().zip(rigid) {
@@ -97,9 +97,9 @@ impl IslandSolver {
     /// that means anything: not finite or beyond all measure, or one that leaves joints `torn` by so much, m or rad. Then the
     /// island moves as one piece for this pass, with the momentum that the forces left it: no joint opens, and no energy comes
     /// of it.
-    pub(in crate::solver) fn drop_nonsense(&mut self, torn: f32) {
+    pub(in crate::solver) fn fall_back_to_rigid(&mut self, torn: f32) {
         let moving = self.links.len();
-        let most = [NONSENSE_SPEED * self.max_speed, NONSENSE_SPIN];
+        let most = [DIVERGED_SPEED * self.max_speed, DIVERGED_SPIN];
         let sane = |v: &Vec6| (0..DIRECTIONS).all(|k| v[k].abs() < most[k / 3]);
         let sane = self.velocities[..moving].iter().all(sane);
         if sane && torn < TORN {
@@ -149,7 +149,7 @@ impl IslandSolver {
     /// What stands on something pays for the height to which soft contacts push it: a heavy leg on a light foot would
     /// rock higher and higher, by 0.1 J for each edge that it sinks in with and comes up from. A little is free where something
     /// is crushed: a hand under a thigh must get out.
-    pub(in crate::solver) fn govern_energy(&mut self) {
+    pub(in crate::solver) fn bound_energy(&mut self) {
         let moving = self.links.len();
         if self.pushed_from_outside || !self.is_passive() {
             return;
@@ -187,7 +187,7 @@ impl IslandSolver {
     /// Stops that were passed push back, joints that rounding has opened close, and springs may resist: what is wound up
     /// by that must be there as kinetic energy, or motors pay for it. Where it is not, the whole motion beside that of the island as one piece is
     /// slowed, and the rest is done later. Joints that are open by more are closed at any price.
-    pub(in crate::solver) fn pay_for_positions(&mut self) {
+    pub(in crate::solver) fn bound_position_energy(&mut self) {
         if self.pushed_from_outside || !self.is_passive() || !self.is_articulated() {
             return;
         }
@@ -267,7 +267,7 @@ impl IslandSolver {
     /// `relax` cannot give energy, but impulses taken back at another pose than they were given at can, in violent
     /// hits. Then the velocities go only as far along the change as energy falls: joints hold on the whole way.
     ///
-    /// [`govern_energy`](Self::govern_energy) does not make up for it: what `solve` lost it lets `relax` give, and it takes
+    /// [`bound_energy`](Self::bound_energy) does not make up for it: what `solve` lost it lets `relax` give, and it takes
     /// nothing from the island's motion as one piece. Without this, of 400 random worlds as many hold, but two of the others
     /// explode (to 8e4 and 2e14 times their energy), and a figure thrown at a wall sinks in by 10 mm instead of 1.
     pub(in crate::solver) fn keep_energy(&mut self) {

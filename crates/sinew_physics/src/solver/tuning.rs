@@ -79,7 +79,7 @@ pub(super) const FORESIGHTS: usize = 4;
 /// The impulses of `solve` first, then those that really press. From then on loads stay, or friction and normals may chase each other
 /// for ever (ADR 0011). One: friction is that of what `solve` gave, bias and all. More than a few: `relax` need not converge. Shown by
 /// `ragdoll_poses` (hands that tremble) and `slide_to_roll`.
-pub(super) const WEIGHINGS: usize = 2;
+pub(super) const FRICTION_BOUND_UPDATES: usize = 2;
 
 /// Contacts from which on an island of free bodies is swept as a heap, a number.
 ///
@@ -88,11 +88,11 @@ pub(super) const WEIGHINGS: usize = 2;
 /// `mesh_drop`.
 pub(super) const HEAP_CONTACTS: usize = 16;
 
-/// Levels of a pile that the effort for unequal masses is for, a number.
+/// Support depth of a pile that the policy for unequal masses is for, a number.
 ///
 /// One end of a pile feels the other after as many sweeps as it has levels, so taller ones get more in proportion. Larger: tall piles
 /// of unequal masses are ended too soon. Smaller: they cost more. Sensible from 5 to 20. Shown by `stack_mass_ratio`.
-pub(super) const EFFORT_LEVELS: f32 = 10.0;
+pub(super) const POLICY_LEVELS: f32 = 10.0;
 
 /// Most sweeps of `solve` for high and unequal piles, a number.
 ///
@@ -532,12 +532,12 @@ pub(super) const STANDING_SPEED: f32 = 0.1;
 
 /// Mass of a body at least, per impulse that cancels itself on it in a substep, kg/(N·s).
 ///
-/// What bears less than 4,000 times its weight has no ballast, and an ulp of that impulse is worth 1e-5 m/s. Larger: what is squeezed
+/// What bears less than 4,000 times its weight has no mass scaling, and an ulp of that impulse is worth 1e-5 m/s. Larger: what is squeezed
 /// is slow to move. Smaller: an ulp of the load of a tower tosses its lowest cube, by 4 m/s (ADR 0015). Sensible from 1e-3 to 0.05.
 /// Shown by `stack_mass_ratio`, the test `stacks::towers_of_any_masses_stand_on_a_floor_that_bears_their_weight`.
-pub(super) const BALLAST: f32 = 6e-3;
+pub(super) const MASS_SCALE: f32 = 6e-3;
 
-/// Ratio of masses below which nobody has ballast, a number.
+/// Ratio of masses below which nobody has mass scaling, a number.
 ///
 /// Sums of pushes are not made there. Larger: squeezed bodies are tossed. Smaller: heaps of all sizes pay for sums. Sensible from 100
 /// to 4,000. Shown by the test `stacks::what_is_not_squeezed_weighs_what_it_weighs_beside_what_is_heavy`.
@@ -561,13 +561,13 @@ pub(super) const ENERGY_SLACK: f32 = 1e-3;
 ///
 /// Beyond it, the island moves as one piece for the pass. Speed is limited before the solve, so it must be well above 1. Sensible from
 /// 1.5 to 10. Shown by the test `trouble::impulses_beyond_all_measure_are_limited_and_told_of`.
-pub(super) const NONSENSE_SPEED: f32 = 2.5;
+pub(super) const DIVERGED_SPEED: f32 = 2.5;
 
 /// Spin that no body has, rad/s.
 ///
-/// As [`NONSENSE_SPEED`], and well above what the world's limit on turns allows. Sensible from 1e3 to 1e5. Shown by the test
+/// As [`DIVERGED_SPEED`], and well above what the world's limit on turns allows. Sensible from 1e3 to 1e5. Shown by the test
 /// `trouble::spins_beyond_all_measure_are_limited_and_told_of`.
-pub(super) const NONSENSE_SPIN: f32 = 1e4;
+pub(super) const DIVERGED_SPIN: f32 = 1e4;
 
 /// Error by which a substep may leave a joint more open than it was before it counts as not solved, metres of a gap and radians alike.
 ///

@@ -168,7 +168,7 @@ impl IslandSolver {
         s.corrected.clear();
         match of {
             Corrected::All => s.corrected.resize(trees, true),
-            Corrected::Stirred => s.corrected.extend((0..trees).map(|tree| self.unrest.has_stirred(tree))),
+            Corrected::Stirred => s.corrected.extend((0..trees).map(|tree| self.dirty.has_stirred(tree))),
         }
         s.errors.resize(trees, 0.0);
         s.looked_at.clear();
@@ -200,7 +200,7 @@ impl IslandSolver {
                 self.contacts.stir(i, change);
                 most = max(most, change);
             }
-            self.unrest.stir(tree as u32, most);
+            self.dirty.stir(tree as u32, most);
         }
     }
 

@@ -4,7 +4,7 @@
 //! that hangs by its ropes is carried at once, and each round takes energy out, however early it ends.
 
 use crate::solver::articulation::response::Response;
-use crate::solver::articulation::response_cache::Columns;
+use crate::solver::articulation::response_cache::ResponseCache;
 use crate::solver::articulation::tree::{self, Link, NONE};
 use crate::solver::tuning::{
     LOOP_RATE_TOLERANCE, LOOP_REDUNDANCY, LOOP_RESIDUAL_SHARE, LOOP_ROUNDS, MAX_EXACT_ROWS,
@@ -36,7 +36,7 @@ pub(in crate::solver) struct Loops {
     /// S⁻¹ of all closures, row by row.
     inverses: Vec<f32>,
     /// `W Jᵀ` of all closures: per row, per member of the tree, a velocity change.
-    columns: Columns,
+    columns: ResponseCache,
     scratch: Vec<f32>,
     gradient: Gradient,
 }

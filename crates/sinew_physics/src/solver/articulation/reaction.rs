@@ -80,9 +80,9 @@ impl IslandSolver {
     fn take_pushes(&mut self) {
         let sums = &mut self.scratch.impulses;
         for rows in &self.manifolds {
-            rows.add_given(sums, -1.0);
+            rows.add_impulses(sums, -1.0);
         }
-        self.contacts.add_given(sums, -1.0);
+        self.contacts.add_impulses(sums, -1.0);
         for &joint in self.loops.joints.iter().chain(&self.pins.joints) {
             let joint = &self.joints[joint as usize];
             joint.push(&joint.impulse, sums, -1.0);

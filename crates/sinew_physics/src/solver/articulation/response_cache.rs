@@ -13,7 +13,7 @@ use sinew_math::lanes::{Lanes, WIDTH};
 
 /// The columns of all rows that were not idle at the present pose.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Columns {
+pub(crate) struct ResponseCache {
     /// Column after column, each as its [`Reach`] says.
     entries: Vec<Vec6>,
     lanes: Vec<AnswerLanes>,
@@ -89,7 +89,7 @@ impl Change {
     }
 }
 
-impl Columns {
+impl ResponseCache {
     pub fn clear(&mut self) {
         self.entries.clear();
     }

@@ -267,7 +267,7 @@ impl IslandSolver {
         self.form_batches();
         self.note_touches(island, view);
         self.refresh_inertia();
-        self.choose_effort();
+        self.choose_policy();
         self.limits.clear();
         self.manifolds.clear();
         if self.is_in_lanes() {
@@ -457,7 +457,7 @@ impl IslandSolver {
                 mass: body.mass,
                 inertia: body.inertia,
                 excess: Vec3::ZERO,
-                ballast: 1.0,
+                mass_scale: 1.0,
                 inverse_inertia: Sym3::ZERO,
                 force,
                 torque,
@@ -572,7 +572,7 @@ impl IslandSolver {
             };
             contacts.push(&added, &self.bodies);
         }
-        self.levels.count(moving, self.bodies.len(), &self.touches);
+        self.support.count(moving, self.bodies.len(), &self.touches);
         self.is_unequal = self.mass_ratio() >= BALLASTED_RATIO;
         self.guess_loads();
         if in_lanes {
@@ -583,7 +583,7 @@ impl IslandSolver {
             }
         }
         (self.contacts, self.scratch.build.faces) = (contacts, faces);
-        self.add_ballast();
+        self.scale_masses();
     }
 
     /// Contacts in lanes.

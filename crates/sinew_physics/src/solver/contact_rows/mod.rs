@@ -8,7 +8,7 @@ mod row;
 mod visit;
 
 use super::articulation::response::Response;
-use super::articulation::response_cache::{Columns, Strip};
+use super::articulation::response_cache::{ResponseCache, Strip};
 use super::articulation::tree::Link;
 use super::limits::rows::add_row;
 use super::sweep::policy::Firmness;
@@ -267,7 +267,7 @@ impl ManifoldRows {
         bodies: &[SolverBody],
         links: &[Link],
         response: &Response,
-        columns: &mut Columns,
+        columns: &mut ResponseCache,
     ) -> Strip {
         let pair = self.pair();
         let least =
@@ -325,11 +325,11 @@ impl ManifoldRows {
         self.floor = [0.0; MAX_POINTS];
         self.twist = self.memory.twist * share;
         self.rolling = self.memory.rolling * share;
-        self.add_given(impulses, 1.0);
+        self.add_impulses(impulses, 1.0);
     }
 
     /// Adds its present impulses, times `sign`, to those of its bodies.
-    pub fn add_given(&self, impulses: &mut [Vec6], sign: f32) {
+    pub fn add_impulses(&self, impulses: &mut [Vec6], sign: f32) {
         let push = self.total_push();
         add_row(impulses, self.a, &push.0, sign);
         add_row(impulses, self.b, &push.1, sign);

@@ -95,7 +95,7 @@ impl ManifoldRows {
     /// Looks where the velocities of this substep lead to: points that its rows do not know may come down there, and would be
     /// in by far before they are found. Then it takes the contact there, as if it had come that way along a straight line; the
     /// caller computes its responses. Gives whether it did.
-    pub fn foresee(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) -> bool {
+    pub fn predict_points(&mut self, bodies: &[SolverBody], velocities: &[Vec6], h: f32) -> bool {
         if !self.turns(velocities, h) {
             return false;
         }

@@ -27,7 +27,7 @@ struct NormalProblem {
 
 impl ManifoldRows {
     /// Takes the normal impulses as they are for the load of friction.
-    pub fn weigh(&mut self) {
+    pub fn update_friction_bound(&mut self) {
         self.load = self.impulse[..self.count].iter().fold(0.0, |sum, p| sum + max(*p, 0.0));
     }
 

@@ -78,7 +78,7 @@ impl<L: Lanes> Given<L> {
 
 /// Adds what all rows of a block give, times `sign`, to the impulses of its bodies.
 #[inline(always)]
-pub(super) fn add_given<L: Lanes, const N: usize, const T: usize>(
+pub(super) fn add_impulses<L: Lanes, const N: usize, const T: usize>(
     block: &Block<N, T>,
     rolling: &[Rolling],
     impulses: &mut [Vec6],

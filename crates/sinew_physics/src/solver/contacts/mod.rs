@@ -28,7 +28,7 @@ use super::sweep::Pass;
 use super::sweep::policy::Order;
 use crate::runner::TaskRunner;
 use crate::slices::SharedRows;
-use crate::solver::tuning::{RELAX_TURN, WEIGHINGS};
+use crate::solver::tuning::{FRICTION_BOUND_UPDATES, RELAX_TURN};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
 use block::{Block, Bounce, Memory, Rolling};
 use chunks::{Parted, parted, shared};
@@ -230,9 +230,9 @@ parted!(WarmStart<'_>);
 
 visitor!(
     /// Impulses of all rows, added to those of bodies.
-    AddGiven<'a> { rolling: &'a [Rolling], impulses: &'a mut [Vec6], sign: f32 },
+    AddImpulses<'a> { rolling: &'a [Rolling], impulses: &'a mut [Vec6], sign: f32 },
     |self, block, _memory, _bounces| {
-        memory::add_given::<L, N, T>(block, self.rolling, self.impulses, self.sign);
+        memory::add_impulses::<L, N, T>(block, self.rolling, self.impulses, self.sign);
     }
 );
 
@@ -351,7 +351,7 @@ impl Contacts {
                 return ZERO6;
             }
             let m = body.inverse_inertia;
-            let inverse_mass = 1.0 / (body.mass * body.ballast);
+            let inverse_mass = 1.0 / (body.mass * body.mass_scale);
             let (d, o) = (m.diagonal, m.off);
             [inverse_mass, d.x, d.y, d.z, o.x, o.y, o.z, 0.0]
         }));
@@ -466,7 +466,7 @@ impl Contacts {
             rolling: shared(&mut rolling),
             pass,
             step: self.conjugate.step,
-            weighs: done <= WEIGHINGS,
+            updates_friction_bound: done <= FRICTION_BOUND_UPDATES,
             tolerance: sweeps.tolerance,
             largest: 0.0,
             energy: 0.0,
@@ -499,14 +499,14 @@ impl Contacts {
     }
 
     /// Adds what all rows give in this substep, times `sign`, to the impulses of moving bodies.
-    pub fn add_given(&mut self, impulses: &mut [Vec6], sign: f32) {
+    pub fn add_impulses(&mut self, impulses: &mut [Vec6], sign: f32) {
         if self.is_empty() {
             return;
         }
         let (rolling, mut given) = (core::mem::take(&mut self.rolling), core::mem::take(&mut self.moved));
         given.clear();
         given.resize(self.inverse.len(), ZERO6);
-        self.each(AddGiven { rolling: &rolling, impulses: &mut given, sign });
+        self.each(AddImpulses { rolling: &rolling, impulses: &mut given, sign });
         for (sum, given) in impulses.iter_mut().zip(&given) {
             add_scaled(sum, given, 1.0);
         }

@@ -19,7 +19,7 @@ pub(super) struct Sweep<'a> {
     /// Share of the blocks in conjugate steps.
     pub step: Step,
     /// Friction takes its loads from the impulses as they are.
-    pub weighs: bool,
+    pub updates_friction_bound: bool,
     /// A block whose bodies changed by less than this since is left alone, m/s or rad/s.
     pub tolerance: f32,
     /// Largest change in the sweep so far.
@@ -62,8 +62,8 @@ impl Sweep<'_> {
         ];
         let mut ends = before;
         if self.pass == Pass::Relax {
-            if self.weighs {
-                weigh::<L, N, T>(block);
+            if self.updates_friction_bound {
+                update_friction_bound::<L, N, T>(block);
             }
             let energy = visit_friction(block, &mut ends);
             self.add_energy(energy);
@@ -117,7 +117,7 @@ pub(super) fn sum<L: Lanes, const N: usize>(rows: &[Eight; N]) -> L {
 /// Friction is limited by the normal impulses that the last substep ended with, unless this is a hit: what few sweeps know of
 /// this one's is off to one side, that sum is not, since it is what held the body up.
 #[inline(always)]
-fn weigh<L: Lanes, const N: usize, const T: usize>(block: &mut Block<N, T>) {
+fn update_friction_bound<L: Lanes, const N: usize, const T: usize>(block: &mut Block<N, T>) {
     let (now, last) = (sum::<L, N>(&block.impulse), L::load(&block.last_load));
     let jump = L::splat(IMPACT_JUMP);
     let lasts = L::le(now, jump * last) & L::le(last, jump * now);

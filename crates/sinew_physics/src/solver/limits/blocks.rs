@@ -2,7 +2,7 @@
 //! side. Those that push are solved among each other, by what they answer to each other, and then the bodies get what all of them
 //! give at once: a change of one row goes through eight numbers, and not through all links of the tree.
 
-use crate::solver::articulation::response_cache::Columns;
+use crate::solver::articulation::response_cache::ResponseCache;
 use crate::solver::articulation::tree::NONE;
 use crate::solver::limits::rows::{LimitRow, add_row};
 use crate::solver::sweep::Pass;
@@ -216,8 +216,8 @@ impl IslandSolver {
     pub(in crate::solver) fn visit_limits(&mut self, pass: Pass) {
         for at in 0..self.limit_blocks.len() {
             let [a, b] = self.limit_blocks.blocks[at].ends(0);
-            let now = self.unrest.of(&self.links, a, b);
-            if self.unrest.wakes_limits(at, now) {
+            let now = self.dirty.of(&self.links, a, b);
+            if self.dirty.wakes_limits(at, now) {
                 self.visit_limit_block(at, pass);
             }
         }
@@ -236,7 +236,7 @@ impl IslandSolver {
             return;
         }
         self.tally.visits += u64::from(block.pushing.count_ones());
-        let tolerance = self.effort.tolerance;
+        let tolerance = self.policy.tolerance;
         let (given, energy, left) = block.solve(&mut self.limits, rates, (pass, self.h, tolerance));
         if given == ZERO6 {
             return;
@@ -260,12 +260,12 @@ impl IslandSolver {
         self.largest_change = max(self.largest_change, moved);
         let trees = [a, b].map(|body| self.links.get(body as usize).map(|link| link.tree));
         for tree in [trees[0], trees[1].filter(|_| trees[0] != trees[1])].into_iter().flatten() {
-            self.unrest.stir(tree, moved);
+            self.dirty.stir(tree, moved);
         }
         // What they have made of themselves needs no other visit.
         if left < tolerance {
-            let now = self.unrest.of(&self.links, a, b);
-            self.unrest.see_limits(at, now);
+            let now = self.dirty.of(&self.links, a, b);
+            self.dirty.see_limits(at, now);
         }
     }
 
@@ -282,7 +282,7 @@ impl IslandSolver {
         let (mut column, stride) = columns.add_all(response, (links, batches), &rows[..count]);
         for k in lanes(new) {
             block.columns[k] = column;
-            block.places[k] = Columns::places(response, links, block.ends(k));
+            block.places[k] = ResponseCache::places(response, links, block.ends(k));
             block.pushing |= 1 << k;
             for l in lanes(block.pushing) {
                 let row = &limits[block.limits[l] as usize].row;

@@ -207,11 +207,11 @@ impl LimitRow {
         let axis = joint.pose.rotation_a.inverse() * self.axis;
         let (now, before) = (share(limit.now, axis), share(limit.before, axis));
         self.impulse = if now > IMPACT_JUMP * before { before } else { now };
-        self.add_given(joints, impulses, 1.0);
+        self.add_impulses(joints, impulses, 1.0);
     }
 
     /// Adds its present impulse, times `sign`, to those of its bodies.
-    pub fn add_given(&self, joints: &[SolverJoint], impulses: &mut [Vec6], sign: f32) {
+    pub fn add_impulses(&self, joints: &[SolverJoint], impulses: &mut [Vec6], sign: f32) {
         self.add_to(joints, impulses, sign * self.impulse);
     }
 

@@ -97,7 +97,7 @@ impl Kernel for IntegrateVelocity<'_> {
             let [linear, angular] = velocities_from::<L>(velocities, first);
             let (rotation, inertia) = (rotation!(eight, pose.rotation), vector!(eight, inertia));
             let mass = field!(eight, mass);
-            let push = h * (one / (mass * field!(eight, ballast)));
+            let push = h * (one / (mass * field!(eight, mass_scale)));
             let linear =
                 divided(linear, one + h * field!(eight, linear_damping)) + vector!(eight, force) * push;
             let [diagonal, off] =
@@ -254,7 +254,7 @@ impl Kernel for RefreshInertia<'_> {
             let inertia = vector!(eight, inertia);
             let excess = vector!(eight, excess) - inertia;
             let excess = Vector3::new(L::max(excess.x, zero), L::max(excess.y, zero), L::max(excess.z, zero));
-            let total = (inertia + excess) * field!(eight, ballast);
+            let total = (inertia + excess) * field!(eight, mass_scale);
             let inverse = Vector3::new(one / total.x, one / total.y, one / total.z);
             let [diagonal, off] = rotation!(eight, pose.rotation).rotated_diagonal(inverse);
             let (excess, diagonal, off) = (vectors(excess), vectors(diagonal), vectors(off));
@@ -266,7 +266,7 @@ impl Kernel for RefreshInertia<'_> {
     }
 }
 
-/// Masses and inertias at the centres of mass, world axes, geometric stiffness and ballast included.
+/// Masses and inertias at the centres of mass, world axes, geometric stiffness and mass scaling included.
 pub(super) struct ListInertias<'a> {
     pub bodies: &'a [SolverBody],
     pub list: &'a mut Vec<Inertia<f64>>,
@@ -281,7 +281,7 @@ impl Kernel for ListInertias<'_> {
         list.clear();
         for first in (0..bodies.len()).step_by(WIDTH) {
             let eight = eight_from(bodies, first);
-            let moments = (vector!(eight, inertia) + vector!(eight, excess)) * field!(eight, ballast);
+            let moments = (vector!(eight, inertia) + vector!(eight, excess)) * field!(eight, mass_scale);
             let [diagonal, off] = rotation!(eight, pose.rotation).rotated_diagonal(moments);
             let (diagonal, off) = (vectors(diagonal), vectors(off));
             for (k, body) in bodies[first..].iter().take(WIDTH).enumerate() {
@@ -294,7 +294,7 @@ impl Kernel for ListInertias<'_> {
                     f64::from(o.x),
                     f64::from(d.z),
                 ]);
-                list.push(Inertia::of_body(f64::from(body.mass * body.ballast), tensor));
+                list.push(Inertia::of_body(f64::from(body.mass * body.mass_scale), tensor));
             }
         }
     }

@@ -23,7 +23,7 @@ fn random_body(random: &mut Random) -> SolverBody {
         mass: random.range(0.1, 50.0),
         inertia: inertia * random.range(0.01, 2.0),
         excess: Vec3::ZERO,
-        ballast: 1.0,
+        mass_scale: 1.0,
         inverse_inertia: Sym3::from_rotated_diagonal(rotation, Vec3::ONE / inertia),
         force: random_vector(random, 100.0),
         torque: random_vector(random, 5.0),

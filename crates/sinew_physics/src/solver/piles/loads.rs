@@ -82,7 +82,7 @@ impl IslandSolver {
         supports.clear();
         for place in 0..self.touches.len() as u32 {
             let (below, above, sign) = self.standing(place);
-            let [below, level] = [below, above].map(|body| self.levels.of(body));
+            let [below, level] = [below, above].map(|body| self.support.of(body));
             let touch = &self.touches[place as usize];
             let Some(bearer) = bearers.get_mut(above as usize) else { continue };
             if touch.is_new
@@ -100,6 +100,6 @@ impl IslandSolver {
     /// Body of a touch that is nearer to what cannot move, the other one, and 1 if the normal leads to that one, else -1.
     fn standing(&self, place: u32) -> (u32, u32, f32) {
         let [a, b] = self.touches[place as usize].bodies;
-        if self.levels.of(a) < self.levels.of(b) { (a, b, 1.0) } else { (b, a, -1.0) }
+        if self.support.of(a) < self.support.of(b) { (a, b, 1.0) } else { (b, a, -1.0) }
     }
 }

@@ -2,13 +2,13 @@
 //!
 //! In 32 bits an ulp of the impulses on such a body, over its mass, may be more than any speed that it could have: under a
 //! tower of ten cubes, each ten times as heavy as the one that it stands on, 4 m/s. What presses from both sides gives it
-//! ballast: it answers to forces and impulses as if it were heavier, for as long as they press. That changes neither its weight
+//! mass scaling: it answers to forces and impulses as if it were heavier, for as long as they press. That changes neither its weight
 //! nor what hits it from one side alone.
 
 use crate::collide::{MAX_POINTS, ManifoldPoint};
 use crate::contact::{Contact, PointImpulse};
 use crate::solver::IslandSolver;
-use crate::solver::tuning::{BALLAST, STANDING_SPEED};
+use crate::solver::tuning::{MASS_SCALE, STANDING_SPEED};
 use sinew_math::{Vec3, max};
 
 /// Impulses that press on a body in a substep, N·s: their vector sum, and the sum of their sizes.
@@ -82,18 +82,18 @@ impl Pressing {
 }
 
 impl IslandSolver {
-    /// Derives ballast from what presses in this substep, where masses are very unequal.
-    pub(in crate::solver) fn refresh_ballast(&mut self) {
+    /// Derives mass scales from what presses in this substep, where masses are very unequal.
+    pub(in crate::solver) fn refresh_mass_scale(&mut self) {
         if self.is_unequal {
             self.touches.clear();
             self.contacts.list_pushes(&mut self.touches);
-            self.add_ballast();
+            self.scale_masses();
             self.contacts.spoil();
         }
     }
 
-    /// Gives ballast to what was squeezed in the last substep.
-    pub(in crate::solver) fn add_ballast(&mut self) {
+    /// Gives a mass scale to what was squeezed in the last substep.
+    pub(in crate::solver) fn scale_masses(&mut self) {
         self.pressing.clear();
         self.pressing.resize(self.links.len(), Pressing::default());
         for &Touch { bodies: [a, b], normal, load, .. } in &self.touches {
@@ -107,7 +107,7 @@ impl IslandSolver {
         for i in 0..self.pressing.len() {
             let (squeeze, mass) = (self.pressing[i].squeeze(), self.bodies[i].mass);
             let is_jointed = self.is_jointed(i as u32);
-            self.bodies[i].ballast = if is_jointed { 1.0 } else { max(1.0, BALLAST * squeeze / mass) };
+            self.bodies[i].mass_scale = if is_jointed { 1.0 } else { max(1.0, MASS_SCALE * squeeze / mass) };
         }
     }
 }

@@ -7,11 +7,11 @@ const UNSUPPORTED: u32 = u32::MAX;
 
 /// Per body: bodies on the shortest way of touch down to what cannot move, itself among them.
 #[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Levels {
+pub(in crate::solver) struct SupportDepth {
     of: Vec<u32>,
 }
 
-impl Levels {
+impl SupportDepth {
     /// Counts the levels of `bodies` bodies, of which the first `moving` move.
     pub fn count(&mut self, moving: usize, bodies: usize, touches: &[Touch]) {
         self.of.clear();

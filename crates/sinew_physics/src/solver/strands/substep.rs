@@ -6,7 +6,7 @@ use super::joints::{Asked, ascend, descend, descend_ahead, largest, take_back};
 use super::link::{Hook, Link};
 use super::motion::{Kinetic, end_substep, integrate_position, integrate_velocity, work_of_forces};
 use crate::solver::tuning::{
-    CLOSING_SPEED, ENERGY_SLACK, MAX_INNER_TURN, NONSENSE_SPEED, NONSENSE_SPIN, POSITION_CORRECTIONS,
+    CLOSING_SPEED, DIVERGED_SPEED, DIVERGED_SPIN, ENERGY_SLACK, MAX_INNER_TURN, POSITION_CORRECTIONS,
     POSITION_ROUNDING, POSITION_TOLERANCE, RATE_SHARE, REFINEMENTS, TORN,
 };
 use sinew_math::dispatch::Kernel;
@@ -193,7 +193,7 @@ fn turn_within<L: Lanes>(links: &[Link], most: f32) -> L::Mask {
 /// All velocities are of this world.
 #[inline(always)]
 fn is_sane<L: Lanes>(links: &[Link], pace: &Pace) -> L::Mask {
-    let (speed, turn) = (L::splat(NONSENSE_SPEED * pace.max_speed), L::splat(NONSENSE_SPIN));
+    let (speed, turn) = (L::splat(DIVERGED_SPEED * pace.max_speed), L::splat(DIVERGED_SPIN));
     let mut sane = L::le(speed, speed);
     for link in links {
         sane = sane & L::lt(largest(load::<L>(&link.velocity)), speed);

@@ -5,7 +5,7 @@
 use crate::solver::articulation::tree::Link;
 use crate::solver::contact_rows::{Given, ManifoldRows};
 use crate::solver::limits::rows::LimitRow;
-use crate::solver::sweep::Unrest;
+use crate::solver::sweep::DirtyRows;
 use crate::spatial::{Vec6, add_scaled, largest};
 
 /// State of the conjugate steps of a pass. What lists hold of a pass before is never used: its first sweep has no energy to go on from.
@@ -33,7 +33,7 @@ pub(in crate::solver) struct Rows<'a> {
     pub limits: &'a mut [LimitRow],
     pub velocities: &'a mut [Vec6],
     pub links: &'a [Link],
-    pub unrest: &'a mut Unrest,
+    pub dirty: &'a mut DirtyRows,
 }
 
 impl Conjugate {
@@ -98,18 +98,18 @@ impl State {
     fn go_on(&mut self, rows: &mut Rows<'_>, change: &Self, share: f32) {
         for (i, row) in rows.manifolds.iter_mut().enumerate() {
             let d = &mut self.manifolds[i];
-            rows.unrest.stir_manifold(i, row.give(d, share));
+            rows.dirty.stir_manifold(i, row.give(d, share));
             *d = change.manifolds[i].plus(d, share);
         }
         for (i, row) in rows.limits.iter_mut().enumerate() {
             let d = &mut self.limits[i];
-            rows.unrest.stir_limits(row.block, row.give(*d * share));
+            rows.dirty.stir_limits(row.block, row.give(*d * share));
             *d = change.limits[i] + *d * share;
         }
         for (i, link) in rows.links.iter().enumerate() {
             let by = self.velocities[i].map(|d| d * share);
             add_scaled(&mut rows.velocities[i], &by, 1.0);
-            rows.unrest.stir(link.tree, largest(&by));
+            rows.dirty.stir(link.tree, largest(&by));
             self.velocities[i] = change.velocities[i];
             add_scaled(&mut self.velocities[i], &by, 1.0);
         }

@@ -13,7 +13,7 @@ use crate::solver::articulation::tree::Link;
 use crate::solver::contact_rows::ManifoldRows;
 use crate::solver::limits::rows::LimitRow;
 use crate::solver::sweep::conjugate::{Conjugate, Rows};
-use crate::solver::tuning::WEIGHINGS;
+use crate::solver::tuning::FRICTION_BOUND_UPDATES;
 use crate::solver::{Coupling, IslandSolver};
 use crate::spatial::{ZERO6, add_scaled, largest, linear};
 use sinew_math::max;
@@ -32,7 +32,7 @@ pub(crate) enum Pass {
 /// Velocity changes of each tree in a pass, summed, m/s or rad/s: rows whose trees lie still need no further visit, and in a
 /// heap most of them do after a few sweeps.
 #[derive(Clone, Debug, Default)]
-pub(in crate::solver) struct Unrest {
+pub(in crate::solver) struct DirtyRows {
     /// A change below it is none.
     tolerance: f32,
     trees: Vec<f32>,
@@ -43,7 +43,7 @@ pub(in crate::solver) struct Unrest {
     corrected: Vec<f32>,
 }
 
-impl Unrest {
+impl DirtyRows {
     pub fn start(&mut self, tolerance: f32, trees: usize, manifolds: usize, limits: usize) {
         self.tolerance = tolerance;
         for (list, count, start) in [
@@ -144,7 +144,7 @@ impl IslandSolver {
 
     /// Contacts in lanes alone.
     fn sweep_free(&mut self, pass: Pass, runner: &dyn TaskRunner) {
-        let sweeps = self.effort.of_blocks(pass);
+        let sweeps = self.policy.of_blocks(pass);
         let done = self.contacts.sweep(pass, sweeps, &mut self.velocities, (self.h, runner));
         let rows = self.contacts.tally().manifolds as usize;
         (1..=done).for_each(|sweep| self.tally.sweep(pass, sweep, rows));
@@ -155,14 +155,14 @@ impl IslandSolver {
             return;
         }
         self.reset_impulses();
-        self.add_given(-1.0);
+        self.add_impulses(-1.0);
         self.arrange_limits(pass);
         let blocks = self.limit_blocks.len();
-        self.unrest.start(self.effort.tolerance, self.trees.len(), self.manifolds.len(), blocks);
+        self.dirty.start(self.policy.tolerance, self.trees.len(), self.manifolds.len(), blocks);
         let moving = self.links.len();
         self.scratch.before.clear();
         self.scratch.before.extend_from_slice(&self.velocities[..moving]);
-        let sweeps = self.effort.sweeps(pass);
+        let sweeps = self.policy.sweeps(pass);
         let conjugates = pass != Pass::Restitution;
         let enough = self.enough_energy();
         self.conjugate.start();
@@ -170,8 +170,8 @@ impl IslandSolver {
             self.largest_change = 0.0;
             self.change_energy = 0.0;
             self.tally.sweep(pass, done, self.manifolds.len() + self.limits.len());
-            if pass == Pass::Relax && done <= WEIGHINGS {
-                self.manifolds.iter_mut().for_each(ManifoldRows::weigh);
+            if pass == Pass::Relax && done <= FRICTION_BOUND_UPDATES {
+                self.manifolds.iter_mut().for_each(ManifoldRows::update_friction_bound);
             }
             if conjugates {
                 let (conjugate, rows) = self.rows_to_conjugate();
@@ -179,7 +179,7 @@ impl IslandSolver {
             }
             self.visit_contacts(pass);
             self.visit_limits(pass);
-            let is_small = self.change_energy < enough || self.largest_change < self.effort.tolerance;
+            let is_small = self.change_energy < enough || self.largest_change < self.policy.tolerance;
             if done == sweeps || (done > 1 && is_small) {
                 break;
             }
@@ -194,7 +194,7 @@ impl IslandSolver {
 
     /// Energy that a sweep must change for another to follow, J.
     pub(in crate::solver) fn enough_energy(&self) -> f32 {
-        let enough = self.effort.enough;
+        let enough = self.policy.enough;
         0.5 * enough * enough * self.mass() / self.links.len() as f32
     }
 
@@ -205,15 +205,15 @@ impl IslandSolver {
             limits: &mut self.limits,
             velocities: &mut self.velocities[..moving],
             links: &self.links,
-            unrest: &mut self.unrest,
+            dirty: &mut self.dirty,
         };
         (&mut self.conjugate, rows)
     }
 
     fn visit_contacts(&mut self, pass: Pass) {
         for i in 0..self.manifolds.len() {
-            let now = self.unrest.of(&self.links, self.manifolds[i].a, self.manifolds[i].b);
-            if !self.unrest.wakes_manifold(i, now) {
+            let now = self.dirty.of(&self.links, self.manifolds[i].a, self.manifolds[i].b);
+            if !self.dirty.wakes_manifold(i, now) {
                 continue;
             }
             let rows = &mut self.manifolds[i];
@@ -252,7 +252,7 @@ impl IslandSolver {
                 self.change_energy += x * p;
             }
             let largest = largest(&by);
-            self.unrest.stir(link.tree, largest);
+            self.dirty.stir(link.tree, largest);
             self.largest_change = max(self.largest_change, largest);
         }
     }
@@ -263,18 +263,18 @@ impl IslandSolver {
     }
 
     /// Adds the present impulses of all rows, times `sign`, to those of the sweeps.
-    pub(in crate::solver) fn add_given(&mut self, sign: f32) {
+    pub(in crate::solver) fn add_impulses(&mut self, sign: f32) {
         for rows in &self.manifolds {
-            rows.add_given(&mut self.impulses, sign);
+            rows.add_impulses(&mut self.impulses, sign);
         }
         for row in &self.limits {
-            row.add_given(&self.joints, &mut self.impulses, sign);
+            row.add_impulses(&self.joints, &mut self.impulses, sign);
         }
     }
 
     /// Velocities of all bodies from the impulses of the sweeps, exactly.
     fn finish_sweep(&mut self, pass: Pass) {
-        self.add_given(1.0);
+        self.add_impulses(1.0);
         self.answer_sweep();
         if pass == Pass::Relax && self.is_passive() {
             self.keep_energy();

@@ -7,7 +7,7 @@ use crate::solver::contacts::Sweeps;
 use crate::solver::sweep::Pass;
 use crate::solver::tuning::{
     BOUNCE_SPEED, CALM_TURN, DAMPED_CONTACTS, DAMPED_CONTACTS_JOINTED, DAMPED_CONTACTS_PER_BODY,
-    EFFORT_LEVELS, GRADED_RATIO, HEAP_CONTACTS, LEAST_SWEEP_TOLERANCE, MOST_RELAX_SWEEPS, MOST_SOLVE_SWEEPS,
+    GRADED_RATIO, HEAP_CONTACTS, LEAST_SWEEP_TOLERANCE, MOST_RELAX_SWEEPS, MOST_SOLVE_SWEEPS, POLICY_LEVELS,
     RESPONSE_CONTACTS, RESPONSE_CONTACTS_PER_LINK, RESPONSE_TREES, TO_AND_FRO_RATIO,
 };
 use crate::solver::{Coupling, Grading, IslandSolver, View};
@@ -15,7 +15,7 @@ use sinew_math::{max, min};
 
 /// Limits on the sweeps of a pass: how many there may be, and what ends them.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::solver) struct Effort {
+pub(in crate::solver) struct SweepPolicy {
     solve: usize,
     relax: usize,
     /// Change of a velocity in a sweep below which there need not be another, m/s or rad/s. What rows would do about less
@@ -66,9 +66,9 @@ pub(in crate::solver) enum Order {
     ToAndFro,
 }
 
-/// Effort for islands with joints that are swept with the response of all links. What a sweep changes is soon next to nothing: a quarter of all
+/// Sweep policy for islands with joints that are swept with the response of all links. What a sweep changes is soon next to nothing: a quarter of all
 /// passes of falling figures went through all 24 for a thousandth of the first one's energy.
-const JOINTED: Effort = Effort {
+const JOINTED: SweepPolicy = SweepPolicy {
     solve: 24,
     relax: 24,
     tolerance: 2e-3,
@@ -77,9 +77,9 @@ const JOINTED: Effort = Effort {
     order: Order::Forward,
     first_conjugate: 1,
 };
-/// Effort for heaps in which contacts and trees are solved by turns: most sweeps of a heap at rest end with the second, those
+/// Sweep policy for heaps in which contacts and trees are solved by turns: most sweeps of a heap at rest end with the second, those
 /// of a crash are needed (a chain of 70 links sank 85 mm into a wall with four).
-const TURNS: Effort = Effort {
+const TURNS: SweepPolicy = SweepPolicy {
     solve: 6,
     relax: 4,
     tolerance: 0.05,
@@ -88,9 +88,9 @@ const TURNS: Effort = Effort {
     order: Order::Forward,
     first_conjugate: 1,
 };
-/// Effort for few bodies that weigh about the same: an overhang that all but tips over wants 24 sweeps. In `relax`
+/// Sweep policy for few bodies that weigh about the same: an overhang that all but tips over wants 24 sweeps. In `relax`
 /// two (more, the more unequal masses are), since friction of the first knows only the impulses of `solve` (1.5 % too little).
-const PILE: Effort = Effort {
+const PILE: SweepPolicy = SweepPolicy {
     solve: 24,
     relax: 2,
     tolerance: 5e-4,
@@ -99,15 +99,15 @@ const PILE: Effort = Effort {
     order: Order::ToAndFro,
     first_conjugate: 4,
 };
-/// Effort for a pile or heap of [`HEAP_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
+/// Sweep policy for a pile or heap of [`HEAP_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
 /// over some substeps. However unequal masses are, it has many contacts that share what one of them is wrong by.
-const HEAP: Effort = Effort { solve: 6, relax: 4, first_conjugate: 2, ..PILE };
-/// Effort for unequal masses: a light body between heavy ones tosses what they do to each other to and fro, and what cannot move must have the
+const HEAP: SweepPolicy = SweepPolicy { solve: 6, relax: 4, first_conjugate: 2, ..PILE };
+/// Sweep policy for unequal masses: a light body between heavy ones tosses what they do to each other to and fro, and what cannot move must have the
 /// last word.
-const UNEQUAL: Effort =
-    Effort { solve: 96, tolerance: 2e-3, small: 0.0, order: Order::Forward, first_conjugate: 4, ..PILE };
+const UNEQUAL: SweepPolicy =
+    SweepPolicy { solve: 96, tolerance: 2e-3, small: 0.0, order: Order::Forward, first_conjugate: 4, ..PILE };
 
-impl Effort {
+impl SweepPolicy {
     /// For a pile of so many levels and contacts with a heaviest body `ratio` times as heavy as the lightest.
     ///
     /// A light body between heavy ones tosses what they do to each other to and fro. Exponents and bounds are what a tower of six
@@ -122,7 +122,7 @@ impl Effort {
                 ..even
             };
         }
-        let height = max(1.0, levels as f32 / EFFORT_LEVELS);
+        let height = max(1.0, levels as f32 / POLICY_LEVELS);
         Self {
             solve: min(UNEQUAL.solve as f32 * height * root.sqrt(), MOST_SOLVE_SWEEPS) as usize,
             relax: min(UNEQUAL.relax as f32 * height * root, MOST_RELAX_SWEEPS) as usize,
@@ -208,18 +208,19 @@ impl IslandSolver {
     }
 
     /// Once it is known who touches.
-    pub(in crate::solver) fn choose_effort(&mut self) {
-        let of_pile = |contacts: usize| Effort::of_pile(self.levels.highest(), self.mass_ratio(), contacts);
-        self.effort = match self.coupling {
+    pub(in crate::solver) fn choose_policy(&mut self) {
+        let of_pile =
+            |contacts: usize| SweepPolicy::of_pile(self.support.highest(), self.mass_ratio(), contacts);
+        self.policy = match self.coupling {
             Coupling::Free => of_pile(self.touches.len()),
             // What touches jointed bodies is swept as they need it, piles beside and under them as those of which each contact counts.
-            _ if self.paired.contains(&true) => self.effort_with_joints().at_least(of_pile(0)),
-            _ => self.effort_with_joints(),
+            _ if self.paired.contains(&true) => self.policy_with_joints().at_least(of_pile(0)),
+            _ => self.policy_with_joints(),
         }
         .of_quality(self.quality);
     }
 
-    fn effort_with_joints(&self) -> Effort {
+    fn policy_with_joints(&self) -> SweepPolicy {
         if self.coupling == Coupling::Turns { TURNS } else { JOINTED }
     }
 
@@ -246,7 +247,7 @@ impl IslandSolver {
     pub(in crate::solver) fn mass_ratio(&self) -> f32 {
         let (mut lightest, mut heaviest) = (f32::INFINITY, 0.0);
         for (body, _) in self.bodies.iter().zip(&self.paired).filter(|(_, is_paired)| **is_paired) {
-            let mass = body.mass * body.ballast;
+            let mass = body.mass * body.mass_scale;
             lightest = min(lightest, mass);
             heaviest = max(heaviest, mass);
         }

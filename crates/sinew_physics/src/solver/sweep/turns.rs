@@ -10,7 +10,7 @@ use crate::runner::TaskRunner;
 use crate::solver::articulation::batches::{Batches, TurnVelocities};
 use crate::solver::articulation::tree::{self, Link, NONE};
 use crate::solver::contacts::Contacts;
-use crate::solver::sweep::{Pass, Unrest};
+use crate::solver::sweep::{DirtyRows, Pass};
 use crate::solver::{Coupling, IslandSolver, SolverBody};
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, difference, join, largest, linear};
 use core::ops::Range;
@@ -21,9 +21,9 @@ use sinew_math::max;
 /// Impulse that gives a body this change of velocity if nothing holds it.
 fn impulse_of(body: &SolverBody, change: &Vec6) -> Vec6 {
     let r = body.pose.rotation;
-    let inertia = (body.inertia + body.excess) * body.ballast;
+    let inertia = (body.inertia + body.excess) * body.mass_scale;
     let spin = r * ((r.inverse() * angular(change)) * inertia);
-    join(linear(change) * (body.mass * body.ballast), spin)
+    join(linear(change) * (body.mass * body.mass_scale), spin)
 }
 
 /// Trees that have got impulses take on what those make of their velocities before the sweep; who did not know of it is told.
@@ -39,7 +39,7 @@ struct TurnOfTrees<'a> {
     swept: &'a [Vec6],
     velocities: &'a mut [Vec6],
     contacts: &'a mut Contacts,
-    unrest: &'a mut Unrest,
+    dirty: &'a mut DirtyRows,
 }
 
 impl Kernel for TurnOfTrees<'_> {
@@ -48,7 +48,7 @@ impl Kernel for TurnOfTrees<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> f32 {
         let Self { links, trees, batches, impulses, dv, .. } = self;
-        let Self { before, solved, swept, velocities, contacts, unrest, .. } = self;
+        let Self { before, solved, swept, velocities, contacts, dirty, .. } = self;
         let mut most = L::splat(0.0);
         for (tree, range) in trees.iter().enumerate() {
             if batches.have(tree) {
@@ -76,7 +76,7 @@ impl Kernel for TurnOfTrees<'_> {
                 moved = L::max(moved, (now - L::load(&swept[i])).abs());
                 now.store(&mut velocities[i]);
             }
-            unrest.stir(tree as u32, largest_of(moved));
+            dirty.stir(tree as u32, largest_of(moved));
         }
         largest_of(most)
     }
@@ -117,7 +117,7 @@ impl IslandSolver {
         }
         self.contacts.begin_pass(pass, &self.velocities, self.h, runner);
         self.arrange_limits(pass);
-        self.unrest.start(self.effort.tolerance, self.trees.len(), 0, self.limit_blocks.len());
+        self.dirty.start(self.policy.tolerance, self.trees.len(), 0, self.limit_blocks.len());
         self.run_turns(pass, 1, runner);
     }
 
@@ -128,14 +128,14 @@ impl IslandSolver {
         }
         let known = self.limit_blocks.placed();
         self.arrange_limits(Pass::Solve);
-        self.unrest.resume(self.limit_blocks.len(), &self.limits[known..]);
+        self.dirty.resume(self.limit_blocks.len(), &self.limits[known..]);
         self.contacts.start_conjugate();
         self.run_turns(Pass::Solve, 0, runner);
     }
 
     /// Takes turns until a sweep after the first `least` changes little.
     fn run_turns(&mut self, pass: Pass, least: usize, runner: &dyn TaskRunner) {
-        let sweeps = self.effort.of_turns(pass);
+        let sweeps = self.policy.of_turns(pass);
         let enough = self.enough_energy();
         let conjugate = pass != Pass::Restitution;
         for done in 1..=sweeps.most {
@@ -201,10 +201,10 @@ impl IslandSolver {
     /// Velocities from those before the sweep and the impulses of it, exactly. Trees that have got none are as they were. Gives the
     /// largest change by what the contacts did not know of.
     fn take_turn_of_trees(&mut self) -> f32 {
-        let Self { batches, impulses, scratch, velocities, contacts, unrest, .. } = self;
+        let Self { batches, impulses, scratch, velocities, contacts, dirty, .. } = self;
         let mut velocities =
             TurnVelocities { before: &scratch.before, limited: &scratch.swept, now: velocities };
-        let change = batches.take_turns(impulses, &mut velocities, contacts, unrest);
+        let change = batches.take_turns(impulses, &mut velocities, contacts, dirty);
         self.add_pushes();
         if self.batches.alone.is_empty() {
             return change;
@@ -233,7 +233,7 @@ impl IslandSolver {
             swept: &s.swept,
             velocities: &mut self.velocities[..moving],
             contacts: &mut self.contacts,
-            unrest: &mut self.unrest,
+            dirty: &mut self.dirty,
         });
         max(change, of_others)
     }
@@ -241,7 +241,7 @@ impl IslandSolver {
     /// Goes on in the direction of the last sweeps.
     fn step_conjugate(&mut self, energy: f32, runner: &dyn TaskRunner) {
         self.note_limits();
-        let Self { contacts, velocities, scratch, unrest, trees, limits, .. } = self;
+        let Self { contacts, velocities, scratch, dirty, trees, limits, .. } = self;
         let mut tree = 0;
         let stir = |body: usize, change: f32| {
             while trees.get(tree).is_some_and(|links| body >= links.end) {
@@ -250,12 +250,12 @@ impl IslandSolver {
             if tree == trees.len() {
                 return; // fixed
             }
-            unrest.stir(tree as u32, change);
+            dirty.stir(tree as u32, change);
         };
         contacts.after_conjugate(energy, (velocities, &mut scratch.limits), runner, stir);
         for (row, impulse) in limits.iter_mut().zip(&scratch.limits) {
             let change = row.give(impulse - row.impulse);
-            unrest.stir_limits(row.block, change);
+            dirty.stir_limits(row.block, change);
         }
     }
 
@@ -275,7 +275,7 @@ impl IslandSolver {
         self.contacts.warm_start(&mut self.velocities, runner);
         for (i, before) in self.scratch.swept.iter().enumerate() {
             let change = difference(&self.velocities[i], before);
-            let mass = self.bodies[i].mass * self.bodies[i].ballast;
+            let mass = self.bodies[i].mass * self.bodies[i].mass_scale;
             self.contact_push[i] += linear(&self.impulses[i]) + linear(&change) * mass;
         }
     }

@@ -17,7 +17,7 @@ use crate::joint::TWIST;
 use crate::solver::articulation::response::Push;
 use crate::solver::articulation::tree::{Link, NONE};
 use crate::solver::contacts::Contacts;
-use crate::solver::sweep::Unrest;
+use crate::solver::sweep::DirtyRows;
 use crate::solver::{SolverBody, SolverJoint};
 use crate::spatial::Vec6;
 use answer::AnswerRows;
@@ -176,11 +176,11 @@ impl Batches {
         impulses: &mut [Vec6],
         velocities: &mut TurnVelocities<'_>,
         contacts: &mut Contacts,
-        unrest: &mut Unrest,
+        dirty: &mut DirtyRows,
     ) -> f32 {
         let (ways, mut most) = (&mut self.ways[..], 0.0);
         for batch in &self.batches[..self.used] {
-            let turn = TurnOfBatch { batch, ways, impulses, velocities, contacts, unrest };
+            let turn = TurnOfBatch { batch, ways, impulses, velocities, contacts, dirty };
             most = max(most, dispatch::run(turn));
         }
         most

@@ -97,8 +97,8 @@ impl Node {
 
     /// Writes a body into a lane.
     pub fn write_body(&mut self, lane: usize, body: &SolverBody) {
-        self.mass[lane] = body.mass * body.ballast;
-        put((body.inertia + body.excess) * body.ballast, &mut self.moments, lane);
+        self.mass[lane] = body.mass * body.mass_scale;
+        put((body.inertia + body.excess) * body.mass_scale, &mut self.moments, lane);
         let r = body.pose.rotation;
         for (row, number) in self.rotation.iter_mut().zip([r.x, r.y, r.z, r.w]) {
             row[lane] = number;

@@ -6,7 +6,7 @@ use super::{Batch, TurnVelocities};
 use crate::solver::articulation::elimination::{Symmetric, Twist};
 use crate::solver::contacts::Contacts;
 use crate::solver::flight::Eight;
-use crate::solver::sweep::Unrest;
+use crate::solver::sweep::DirtyRows;
 use crate::spatial::Vec6;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
@@ -20,7 +20,7 @@ pub(super) struct TurnOfBatch<'a, 'b> {
     pub impulses: &'a mut [Vec6],
     pub velocities: &'a mut TurnVelocities<'b>,
     pub contacts: &'a mut Contacts,
-    pub unrest: &'a mut Unrest,
+    pub dirty: &'a mut DirtyRows,
 }
 
 impl Kernel for TurnOfBatch<'_, '_> {
@@ -28,7 +28,7 @@ impl Kernel for TurnOfBatch<'_, '_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> f32 {
-        let Self { batch, ways, impulses, velocities, contacts, unrest } = self;
+        let Self { batch, ways, impulses, velocities, contacts, dirty } = self;
         let TurnVelocities { before, limited, now: velocities } = velocities;
         if !is_pushed::<L>(batch, impulses, limited, velocities) {
             return 0.0;
@@ -64,7 +64,7 @@ impl Kernel for TurnOfBatch<'_, '_> {
         most.store(&mut all[1]);
         let mut largest = 0.0;
         for lane in 0..batch.lanes {
-            unrest.stir(batch.trees[lane], all[0][lane]);
+            dirty.stir(batch.trees[lane], all[0][lane]);
             largest = sinew_math::max(largest, all[1][lane]);
         }
         largest
