@@ -4,7 +4,7 @@
 use libfuzzer_sys::fuzz_target;
 use sinew_formats::{read_ragdoll, write_ragdoll};
 use sinew_physics::{World, WorldDef};
-use sinew_ragdoll::{BodyState, Flesh, Ragdoll};
+use sinew_ragdoll::{BodyState, BodySettings, Ragdoll};
 
 /// Bodies that a world is made of: more only take longer.
 const MOST_BODIES: usize = 12;
@@ -24,7 +24,7 @@ fuzz_target!(|bytes: &[u8]| {
             .iter()
             .map(|body| BodyState { world_from_body: body.character_from_body, ..BodyState::default() })
             .collect();
-        let ragdoll = Ragdoll::spawn(&mut world, &def, &states, &Flesh::default());
+        let ragdoll = Ragdoll::spawn(&mut world, &def, &states, &BodySettings::default());
         world.step();
         ragdoll.despawn(&mut world);
     }

@@ -4,10 +4,10 @@ mod counts;
 mod figures;
 mod kernels;
 mod machine;
-mod musts;
 mod needs;
 mod page;
 mod peers;
+mod requirements;
 mod results;
 pub mod table;
 mod trace;
@@ -127,7 +127,8 @@ impl Bench {
         let scenes = peers::scenes(engines.first().context("`peers list` has no engine")?)?;
         self.refuse_unknown(&scenes, &engines)?;
         let results = self.measure(&engines, &scenes)?;
-        let [joints, stands] = [musts::HOLDS, musts::STANDS].map(|rows| page::holds(&results, rows));
+        let [joints, stands] =
+            [requirements::HOLDS, requirements::STANDS].map(|rows| page::holds(&results, rows));
         let [physics, animation] = [page::glance(&results), page::animation(&results)];
         println!("{physics}\n{joints}\n{stands}\n{animation}\n{}", page::figures_alone(&results));
         println!("{}", page::speeds(&results));
@@ -212,7 +213,7 @@ impl Bench {
         if !self.check {
             return ExitCode::SUCCESS;
         }
-        let (missed, open) = musts::shortfalls(results);
+        let (missed, open) = requirements::shortfalls(results);
         for line in &missed {
             println!("falls short: {line}");
         }

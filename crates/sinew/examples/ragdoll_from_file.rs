@@ -4,7 +4,7 @@
 //! embedded mannequin.
 
 use sinew::prelude::*;
-use sinew::ragdoll::{BodyState, Flesh};
+use sinew::ragdoll::{BodySettings, BodyState};
 
 fn rig() -> Result<Rig, Box<dyn std::error::Error>> {
     match std::env::args().nth(1).filter(|path| path.ends_with(".glb") || path.ends_with(".gltf")) {
@@ -31,7 +31,7 @@ pub fn main() {
         velocity: Velocity { linear: Vec3::X, angular: Vec3::ZERO },
     };
     let states: Vec<BodyState> = def.bodies.iter().map(start).collect();
-    let ragdoll = Ragdoll::spawn(&mut world, &def, &states, &Flesh::default());
+    let ragdoll = Ragdoll::spawn(&mut world, &def, &states, &BodySettings::default());
     let top =
         |world: &World| ragdoll.bodies.iter().fold(0.0, |top, &id| f32::max(top, world.bounds(id).max.y));
     let before = top(&world);

@@ -4,7 +4,7 @@ use crate::failure::{Failure, Result};
 use crate::files::CharacterFile;
 use crate::settings_arg::SettingsArg;
 use sinew::formats::{Textures, read_bytes, read_mjcf, read_ragdoll};
-use sinew::ragdoll::{BuildOptions, Patient, RagdollDef};
+use sinew::ragdoll::{BuildOptions, RagdollDef, Repair};
 use std::path::Path;
 
 /// A ragdoll and what is known of it.
@@ -12,7 +12,7 @@ pub struct RagdollFile {
     /// As the user named it.
     pub name: String,
     /// The ragdoll, its springs, and what its rig says of it.
-    pub patient: Patient,
+    pub repair: Repair,
     /// Notes of reading and building for a person, a sentence each.
     pub notes: Vec<String>,
     /// The rigged file that it was built from, if it is one.
@@ -22,7 +22,7 @@ pub struct RagdollFile {
 impl RagdollFile {
     /// Settings change a build: of what is built already there is nothing to change.
     pub fn check_settings(&self, settings: &SettingsArg) -> Result<()> {
-        if let Some(option) = settings.given().filter(|_| self.patient.reference.is_none()) {
+        if let Some(option) = settings.given().filter(|_| self.repair.reference.is_none()) {
             let what = "changes how a ragdoll is built: name a character, not a definition or a model";
             return Err(Failure::Usage(format!("{option} {what}")));
         }
@@ -35,7 +35,7 @@ impl RagdollFile {
         let bytes = read_bytes(path)?;
         match kind_of(&bytes) {
             Kind::Definition => Ok(Self {
-                patient: Patient::new(read_ragdoll(&bytes).map_err(|error| error.with_file(&name))?),
+                repair: Repair::new(read_ragdoll(&bytes).map_err(|error| error.with_file(&name))?),
                 name,
                 notes: Vec::new(),
                 character: None,
@@ -44,15 +44,15 @@ impl RagdollFile {
                 let model = read_mjcf(&bytes).and_then(|model| Ok((model.to_ragdoll()?, model.notes)));
                 let (ragdoll, mut notes) = model.map_err(|error| error.with_file(&name))?;
                 notes.extend(ragdoll.notes);
-                let patient = Patient { springs: ragdoll.springs, ..Patient::new(ragdoll.def) };
-                Ok(Self { patient, name, notes, character: None })
+                let repair = Repair { springs: ragdoll.springs, ..Repair::new(ragdoll.def) };
+                Ok(Self { repair, name, notes, character: None })
             }
             Kind::Character => {
                 drop(bytes);
                 let (character, settings) = settings.load_character(path, textures)?;
                 let (def, report) = settings.build(&character, &BuildOptions::default())?;
-                let patient = Patient { reference: Some(def.clone()), ..Patient::new(def) };
-                Ok(Self { patient, name, notes: report.notes, character: Some(character) })
+                let repair = Repair { reference: Some(def.clone()), ..Repair::new(def) };
+                Ok(Self { repair, name, notes: report.notes, character: Some(character) })
             }
         }
     }

@@ -26,14 +26,14 @@ pub use character::{
     InWorld, Locomotion, MotionError, MotionSet, Opening, Part, Preset, State, Toughness,
 };
 pub use def::{RagdollBodyDef, RagdollDef, RagdollJointDef};
-pub use doctor::{Patient, cure, doctor};
+pub use doctor::{Repair, cure, doctor};
 pub use drive::{DriveMode, Drives, Muscle, Pin, torque_caps};
 pub use fit::ShapeChoice;
 pub use limits::LimitSource;
 pub use mapping::Mapping;
 pub use masses::de_leva::Sex;
 pub use quality::{DropReport, Quality, QualityMeter, Verdict, drop_test, gate};
-pub use ragdoll::{BodyState, Flesh, Ragdoll};
+pub use ragdoll::{BodySettings, BodyState, Ragdoll};
 pub use rig_match::RigMismatch;
 pub use settings::{Settings, SettingsError, build_moving, build_with};
 pub use skin::{Flaw, FlawKind, SkinMeter, SkinQuality, measure_skin};

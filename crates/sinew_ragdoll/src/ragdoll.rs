@@ -5,7 +5,7 @@
 //! # let analysis = sinew_anim::analyze(&rig)?;
 //! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
 //! use sinew_physics::{BodyDef, Shape, Velocity, World, WorldDef};
-//! use sinew_ragdoll::{BodyState, Flesh, Ragdoll};
+//! use sinew_ragdoll::{BodyState, BodySettings, Ragdoll};
 //!
 //! let mut world = World::new(WorldDef::default());
 //! world.add_body(&BodyDef::fixed(Shape::HalfSpace));
@@ -14,7 +14,7 @@
 //!     .iter()
 //!     .map(|body| BodyState { world_from_body: body.character_from_body, velocity: Velocity::default() })
 //!     .collect();
-//! let ragdoll = Ragdoll::spawn(&mut world, &def, &start, &Flesh::default());
+//! let ragdoll = Ragdoll::spawn(&mut world, &def, &start, &BodySettings::default());
 //! (0..120).for_each(|_| world.step());
 //! let mut poses = Vec::new();
 //! ragdoll.poses(&world, &mut poses);
@@ -44,7 +44,7 @@ pub struct BodyState {
 
 /// Properties that the bodies of a ragdoll have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Flesh {
+pub struct BodySettings {
     /// Surface. Default: friction 0.7, no bounce, and a rolling resistance of 2 cm, without which round limbs roll for
     /// ever.
     pub material: Material,
@@ -56,7 +56,7 @@ pub struct Flesh {
     pub quality: Option<Quality>,
 }
 
-impl Default for Flesh {
+impl Default for BodySettings {
     fn default() -> Self {
         Self {
             material: Material { friction: 0.7, rolling: 0.02, ..Material::DEFAULT },
@@ -88,14 +88,19 @@ impl Ragdoll {
     ///
     /// # Panics
     /// If there is not one finite state per body.
-    pub fn spawn(world: &mut World, def: &RagdollDef, states: &[BodyState], flesh: &Flesh) -> Self {
+    pub fn spawn(
+        world: &mut World,
+        def: &RagdollDef,
+        states: &[BodyState],
+        body_settings: &BodySettings,
+    ) -> Self {
         assert_eq!(states.len(), def.bodies.len(), "every body has a state");
         let bodies: Vec<BodyId> = def
             .bodies
             .iter()
             .zip(states)
             .enumerate()
-            .map(|(index, (body, state))| world.add_body(&body_def(body, state, flesh, index)))
+            .map(|(index, (body, state))| world.add_body(&body_def(body, state, body_settings, index)))
             .collect();
         for &(a, b) in &def.disabled_pairs {
             world.disable_pair(bodies[a], bodies[b]);
@@ -112,13 +117,13 @@ impl Ragdoll {
         world: &mut World,
         def: &RagdollDef,
         states: &[BodyState],
-        flesh: &Flesh,
+        body_settings: &BodySettings,
         rule: ContactRule,
     ) -> Vec<BodyId> {
         assert_eq!(states.len(), def.bodies.len(), "every body has a state");
         let mut bodies = Vec::with_capacity(states.len());
         for (index, (body, state)) in def.bodies.iter().zip(states).enumerate() {
-            let mut body = body_def(body, state, flesh, index);
+            let mut body = body_def(body, state, body_settings, index);
             body.shapes.iter_mut().for_each(|shape| shape.rule = rule);
             let id = world.add_body(&body);
             world.set_kind(id, BodyKind::Kinematic);
@@ -241,19 +246,22 @@ pub fn colliding_pairs(def: &RagdollDef) -> Vec<(usize, usize)> {
     pairs
 }
 
-fn body_def(body: &RagdollBodyDef, state: &BodyState, flesh: &Flesh, index: usize) -> BodyDef {
-    let shape =
-        ShapeDef { material: flesh.material, filter: flesh.filter, ..ShapeDef::new(body.shape.clone()) };
+fn body_def(body: &RagdollBodyDef, state: &BodyState, body_settings: &BodySettings, index: usize) -> BodyDef {
+    let shape = ShapeDef {
+        material: body_settings.material,
+        filter: body_settings.filter,
+        ..ShapeDef::new(body.shape.clone())
+    };
     BodyDef {
         position: state.world_from_body.translation,
         rotation: state.world_from_body.rotation,
         linear_velocity: state.velocity.linear,
         angular_velocity: state.velocity.angular,
-        angular_damping: flesh.angular_damping,
+        angular_damping: body_settings.angular_damping,
         shapes: vec![shape],
         mass: Some(body.mass),
         user_data: index as u64,
-        quality: flesh.quality,
+        quality: body_settings.quality,
         ..BodyDef::default()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::figures::{Figure, came_apart, headline, rounded, telling};
 use super::machine::Machine;
-use super::musts::{HOLDS, Hold, SPEEDS, STANDS, Verdict};
+use super::requirements::{HOLDS, Hold, SPEEDS, STANDS, Verdict};
 use super::results::{EngineResult, Results, SceneResult};
 use super::table::Table;
 use std::fmt::Write as _;

@@ -10,7 +10,7 @@ use crate::table::{Table, counted, shown};
 use serde_json::{Value, json};
 use sinew::formats::{Textures, write_ragdoll};
 use sinew::ragdoll::doctor::{Code, Finding, Severity};
-use sinew::ragdoll::{BuildOptions, Flaw, Patient, cure, doctor, drop_test};
+use sinew::ragdoll::{BuildOptions, Flaw, Repair, cure, doctor, drop_test};
 use std::path::PathBuf;
 
 /// Say why a ragdoll jitters, explodes or looks wrong, with what was measured, and mend it
@@ -42,15 +42,15 @@ pub struct RagdollDoctor {
 
 /// Flaws of the skin of a ragdoll on its rig. A ragdoll that explodes is not dropped, nor one whose bodies are known to be
 /// missing: nothing would be learned of its skin.
-fn skin_flaws(patient: &Patient, character: &CharacterFile) -> Vec<Flaw> {
+fn skin_flaws(repair: &Repair, character: &CharacterFile) -> Vec<Flaw> {
     let is_cause = |finding: &Finding| {
         let is_missing = matches!(finding.code, Code::HeadWithoutBody | Code::LimbWithoutBody);
         is_missing || finding.severity == Severity::Error
     };
-    if doctor(patient).iter().any(is_cause) {
+    if doctor(repair).iter().any(is_cause) {
         return Vec::new();
     }
-    match patient.def.clone().for_rig(&character.document.rig) {
+    match repair.def.clone().for_rig(&character.document.rig) {
         Ok(def) => SkinReport::of(character, &def, &drop_test(&def)).flaws,
         Err(_) => Vec::new(),
     }
@@ -67,20 +67,20 @@ impl RagdollDoctor {
         if self.rig.is_none() {
             file.check_settings(&self.settings)?;
         }
-        let RagdollFile { name, mut patient, mut notes, mut character } = file;
+        let RagdollFile { name, mut repair, mut notes, mut character } = file;
         if let Some(rig) = &self.rig {
             let (rig, settings) = self.settings.load_character(rig, Textures::Skip)?;
-            patient.reference = Some(settings.build(&rig, &BuildOptions::default())?.0);
+            repair.reference = Some(settings.build(&rig, &BuildOptions::default())?.0);
             character = Some(rig);
         }
         if let Some(character) = &character {
-            patient.skin = skin_flaws(&patient, character);
+            repair.skin = skin_flaws(&repair, character);
         }
         let findings = match &self.output {
-            None => doctor(&patient),
+            None => doctor(&repair),
             Some(output) => {
-                let (cured, findings) = cure(&patient);
-                if patient.springs.iter().any(Option::is_some) {
+                let (cured, findings) = cure(&repair);
+                if repair.springs.iter().any(Option::is_some) {
                     notes.push("springs of joints are no part of a definition: they are not written".into());
                 }
                 let mut outputs = Outputs::default();

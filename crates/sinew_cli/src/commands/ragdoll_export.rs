@@ -108,7 +108,7 @@ impl RagdollExport {
             None => {
                 let file = RagdollFile::load(&self.file, Textures::Skip, &self.settings)?;
                 file.check_settings(&self.settings)?;
-                (file.patient.def, file.notes)
+                (file.repair.def, file.notes)
             }
         };
         let name = self.file.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());

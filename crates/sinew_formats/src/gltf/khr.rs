@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use sinew_math::{Affine, Range, Rotation, SwingTwistLimit, Transform, Vec3, max};
 use sinew_physics::{JointKind, Shape};
 use sinew_ragdoll::mapping::character_from_model;
-use sinew_ragdoll::{Flesh, RagdollDef};
+use sinew_ragdoll::{BodySettings, RagdollDef};
 
 const BODIES: &str = "KHR_physics_rigid_bodies";
 const SHAPES: &str = "KHR_implicit_shapes";
@@ -196,7 +196,7 @@ impl Writer<'_> {
                 "a unit of the file is {unit} m: a reader that takes it for a metre sees a giant or a dwarf"
             ));
         }
-        let flesh = Flesh::default().material;
+        let body = BodySettings::default().material;
         let system = |body: usize| format!("{} {body}", self.def.bodies[body].bone);
         let filters: Vec<Value> = (0..self.def.bodies.len())
             .map(|body| {
@@ -210,9 +210,9 @@ impl Writer<'_> {
             })
             .collect();
         let material = json!({
-            "staticFriction": number(flesh.friction),
-            "dynamicFriction": number(flesh.friction),
-            "restitution": number(flesh.restitution),
+            "staticFriction": number(body.friction),
+            "dynamicFriction": number(body.friction),
+            "restitution": number(body.restitution),
         });
         let mut physics = json!({"physicsMaterials": [material], "collisionFilters": filters});
         if !joints.is_empty() {

@@ -6,7 +6,7 @@ use sinew_formats::{JoltRagdoll, read_jolt_animation, read_jolt_ragdoll};
 use sinew_math::{Random, Rotation, Transform, Vec3};
 use sinew_physics::{BodyDef, JointKind, Shape, World, WorldDef};
 use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
-use sinew_ragdoll::{BodyState, DriveMode, Drives, Flesh, Muscle, Pin, Ragdoll};
+use sinew_ragdoll::{BodySettings, BodyState, DriveMode, Drives, Muscle, Pin, Ragdoll};
 
 /// Two parts: a ball, and a capsule half a metre above it whose joint is half way.
 const SMALL: &str = r#"TOS 1.00
@@ -365,7 +365,7 @@ impl Stage {
         let mut world = World::new(WorldDef::default());
         world.add_body(&BodyDef::fixed(Shape::HalfSpace));
         let dt = world.def().dt();
-        let ragdoll = Ragdoll::spawn(&mut world, def, &self.states(dt, dt), &Flesh::default());
+        let ragdoll = Ragdoll::spawn(&mut world, def, &self.states(dt, dt), &BodySettings::default());
         let caps = self.ragdoll.motors.iter().map(|motor| motor.map_or(0.0, |motor| motor.max_torque));
         let mut drives = Drives::with_torques(def, caps.collect());
         drives.set_all(mode, 0.0);

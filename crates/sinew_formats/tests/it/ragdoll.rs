@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use sinew_formats::{ReadOptions, load_gltf, read_ragdoll, write_ragdoll};
 use sinew_math::{Random, Range, SwingTwistLimit, Sym3, Transform, Vec3};
 use sinew_physics::{JointKind, MassProperties, Shape};
-use sinew_ragdoll::{BuildOptions, Patient, RagdollBodyDef, RagdollDef, RagdollJointDef, build, cure};
+use sinew_ragdoll::{BuildOptions, RagdollBodyDef, RagdollDef, RagdollJointDef, Repair, build, cure};
 
 fn example() -> String {
     documented_example(include_str!("../../src/ragdoll.rs"))
@@ -213,7 +213,7 @@ fn lies_are_refused_or_examined() {
         }
         let Ok(def) = read_ragdoll(lying.to_string().as_bytes()) else { continue };
         read += 1;
-        let (cured, _) = cure(&Patient::new(def));
+        let (cured, _) = cure(&Repair::new(def));
         match read_ragdoll(write_ragdoll(&cured.def).as_bytes()) {
             Ok(back) => assert!(back == cured.def, "what is written reads back otherwise"),
             Err(error) => panic!("what a cure writes is refused: {error}"),

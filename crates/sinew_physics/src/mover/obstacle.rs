@@ -54,7 +54,7 @@ impl Obstacle {
 }
 
 /// A mover's capsule, and what is around it.
-pub(super) struct Sight<'a> {
+pub(super) struct Surroundings<'a> {
     pub bodies: &'a Arena<Body>,
     pub obstacles: &'a [Obstacle],
     pub shape: Shape,
@@ -66,7 +66,7 @@ pub(super) struct Sight<'a> {
     pub without: Option<u32>,
 }
 
-impl<'a> Sight<'a> {
+impl<'a> Surroundings<'a> {
     pub fn new(bodies: &'a Arena<Body>, obstacles: &'a [Obstacle], mover: &Mover) -> Self {
         let (radius, half) = (mover.def.radius, mover.half_height());
         Self {
@@ -190,7 +190,7 @@ fn gather_shape(
     }
     let obstacle = Obstacle { owner: owner(0), bounds, kind, form: Form::Solid(pose) };
     if let ContactRule::OneWay(one_way) = surface.rule {
-        let sight = Sight::new(&world.bodies, &[], mover);
+        let sight = Surroundings::new(&world.bodies, &[], mover);
         let gap = sight.gap(&obstacle, mover.center());
         let holds = |gap: Gap| gap.distance >= 0.0 && one_way.holds(pose.rotation.inverse() * gap.normal);
         if !gap.is_some_and(holds) {

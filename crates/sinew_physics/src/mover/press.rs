@@ -1,6 +1,6 @@
 //! Mutual effect of mover and dynamic bodies: hits by momentum, pushes by limited force, weight.
 
-use super::obstacle::{Owner, Sight};
+use super::obstacle::{Owner, Surroundings};
 use super::{Bearer, Mover};
 use crate::arena::Arena;
 use crate::body::Body;
@@ -36,7 +36,7 @@ struct Hitter {
 
 /// Impulses between a mover at `center` and the dynamic bodies that it meets within the step; gives the change of its velocity.
 pub(super) fn meet(
-    sight: &Sight<'_>,
+    sight: &Surroundings<'_>,
     mover: &Mover,
     center: Vec3,
     dt: f32,

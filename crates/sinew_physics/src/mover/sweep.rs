@@ -1,6 +1,6 @@
 //! Ways of a capsule: until it touches, along what it touches, out of what it is in.
 
-use super::obstacle::Sight;
+use super::obstacle::Surroundings;
 use super::planes::{MOST, Planes};
 use super::segment::level;
 use crate::boxes::Overlap;
@@ -104,7 +104,7 @@ impl Manner {
     }
 }
 
-impl Sight<'_> {
+impl Surroundings<'_> {
     /// Everything within `reach` of the capsule.
     fn near(&self, center: Vec3, reach: f32) -> Touches {
         let nothing = Touch { normal: Vec3::ZERO, distance: 0.0, point: Vec3::ZERO, obstacle: 0 };

@@ -1,6 +1,6 @@
 //! One move of one mover, in order.
 
-use super::obstacle::{Obstacle, Owner, Sight, gather};
+use super::obstacle::{Obstacle, Owner, Surroundings, gather};
 use super::press::{Press, meet, weigh};
 use super::sweep::{Course, Manner, Touch};
 use super::{Bearer, Footing, Mover, Movers, surface_velocity};
@@ -24,7 +24,7 @@ const WEDGED: f32 = 0.02;
 struct Move<'a> {
     world: &'a World,
     movers: &'a Arena<Mover>,
-    sight: Sight<'a>,
+    sight: Surroundings<'a>,
     manner: Manner,
     dt: f32,
 }
@@ -58,7 +58,7 @@ fn look_around(
     let (center, way) = (mover.center(), mover.velocity() * dt + carried);
     let jump = (mover.jump + gravity.length() * dt) * dt;
     let margin = LOOK + jump + 2.0 * def.step_height + 0.5 * def.radius + 4.0 * def.skin + 0.3 * way.length();
-    let bounds = Sight::new(&world.bodies, &[], mover).bounds(center, way, margin);
+    let bounds = Surroundings::new(&world.bodies, &[], mover).bounds(center, way, margin);
     gather(world, movers, index, &bounds, obstacles);
 }
 
@@ -128,7 +128,7 @@ impl<'a> Move<'a> {
         mover: &Mover,
         dt: f32,
     ) -> Self {
-        let sight = Sight::new(&world.bodies, obstacles, mover);
+        let sight = Surroundings::new(&world.bodies, obstacles, mover);
         let flattest = trig::cos(mover.def.slope_limit);
         let manner = Manner { skin: mover.def.skin, flattest, course: Course::Free };
         Self { world, movers, sight, manner, dt }

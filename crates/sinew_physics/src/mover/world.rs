@@ -1,6 +1,6 @@
 //! Movers of a world: made, steered, asked.
 
-use super::obstacle::{Sight, gather};
+use super::obstacle::{Surroundings, gather};
 use super::{Bearer, Mover, MoverDef, MoverGround};
 use crate::body::material::Material;
 use crate::body::shape::Filter;
@@ -122,15 +122,16 @@ impl World {
         let old = grown.center();
         grown.def.height = height;
         let (center, skin) = (grown.center(), grown.def.skin);
-        let bounds = Sight::new(&self.bodies, &[], &grown).bounds(center, Vec3::ZERO, skin);
+        let bounds = Surroundings::new(&self.bodies, &[], &grown).bounds(center, Vec3::ZERO, skin);
         let mut obstacles = Vec::new();
         gather(self, &self.movers.all, id.index, &bounds, &mut obstacles);
-        let sight = Sight::new(&self.bodies, &obstacles, &grown);
-        let low = Sight::new(&self.bodies, &obstacles, self.mover(id));
+        let sight = Surroundings::new(&self.bodies, &obstacles, &grown);
+        let low = Surroundings::new(&self.bodies, &obstacles, self.mover(id));
         // What it touches already it may go on touching.
         obstacles.iter().all(|obstacle| {
-            let distance =
-                |sight: &Sight<'_>, center| sight.gap(obstacle, center).map_or(skin, |gap| gap.distance);
+            let distance = |sight: &Surroundings<'_>, center| {
+                sight.gap(obstacle, center).map_or(skin, |gap| gap.distance)
+            };
             let (before, after) = (distance(&low, old), distance(&sight, center));
             after >= 0.5 * skin || after >= before - 1e-4
         })

@@ -145,7 +145,7 @@ impl World {
     /// # Panics
     /// If a number is not finite, or the mass not positive.
     #[track_caller]
-    pub fn hit_by(&mut self, id: BodyId, mass: f32, velocity: Vec3, point: Vec3) -> Vec3 {
+    pub fn apply_bullet_impact(&mut self, id: BodyId, mass: f32, velocity: Vec3, point: Vec3) -> Vec3 {
         assert!(mass > 0.0 && mass < f32::INFINITY, "a bullet's mass is positive and finite");
         assert!(velocity.is_finite() && point.is_finite(), "a bullet's velocity and place are finite");
         let body = self.expect(id);

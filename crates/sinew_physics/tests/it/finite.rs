@@ -157,11 +157,13 @@ fn forces() {
     refuses_in("torque", |f, torque| lasting(f, ForceDef { torque, ..ForceDef::default() }));
     refuses_in("point", |f, v| lasting(f, ForceDef { point: Some(v), ..ForceDef::default() }));
     let hit = |f: &mut Fixture, mass: f32, velocity: Vec3, point: Vec3| {
-        f.world.hit_by(f.body, mass, velocity, point);
+        f.world.apply_bullet_impact(f.body, mass, velocity, point);
     };
-    refuses("hit_by", &[f32::NAN, f32::INFINITY, 0.0, -1.0], |f, x| hit(f, x, Vec3::X, Vec3::ZERO));
-    refuses_in("hit_by at a speed", |f, v| hit(f, 1.0, v, Vec3::ZERO));
-    refuses_in("hit_by at", |f, v| hit(f, 1.0, Vec3::X, v));
+    refuses("apply_bullet_impact", &[f32::NAN, f32::INFINITY, 0.0, -1.0], |f, x| {
+        hit(f, x, Vec3::X, Vec3::ZERO)
+    });
+    refuses_in("apply_bullet_impact at a speed", |f, v| hit(f, 1.0, v, Vec3::ZERO));
+    refuses_in("apply_bullet_impact at", |f, v| hit(f, 1.0, Vec3::X, v));
     let blast = |f: &mut Fixture, change: &dyn Fn(&mut Explosion)| {
         let mut explosion = Explosion::new(Vec3::ZERO, 5.0, 10.0);
         change(&mut explosion);

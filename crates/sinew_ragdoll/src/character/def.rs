@@ -7,7 +7,7 @@ use crate::def::RagdollDef;
 use crate::drive::DriveMode;
 use crate::hand_over::SpeedBound;
 use crate::mapping::Mapping;
-use crate::ragdoll::Flesh;
+use crate::ragdoll::BodySettings;
 use sinew_anim::{AnimationSet, Clip, ClipId, LocalTransform, Rig, rest_pose};
 use sinew_math::Affine;
 use std::sync::Arc;
@@ -103,7 +103,7 @@ pub struct CharacterDef {
     /// Seconds for which a limp character may go on moving before it gets up all the same. Default 6.
     pub patience: f32,
     /// Surface and filter of its bodies.
-    pub flesh: Flesh,
+    pub body_settings: BodySettings,
     /// Bound on the speeds that an animation hands over.
     pub speed_bound: SpeedBound,
     /// Its share of a world while its clips move it.
@@ -142,7 +142,7 @@ impl CharacterDef {
             getting_ready: GettingReady::RollOver,
             falling: DriveMode::Limp,
             patience: 6.0,
-            flesh: Flesh::default(),
+            body_settings: BodySettings::default(),
             speed_bound: SpeedBound::default(),
         }
     }

@@ -1,7 +1,7 @@
 //! From lying to standing: which clip, from which moment, where, and which way round.
 
-use super::likeness::{Likeness, Stance};
 use super::moves::{GetUp, Start};
+use super::pose_similarity::{PoseSimilarity, Stance};
 use super::{Character, Event, State, animate, ground};
 use sinew_anim::{Animator, LoopMode, Pose, Track, TrackDef, TrackId, local_to_model, smoothstep};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
@@ -34,18 +34,22 @@ pub(super) enum Rising {
 pub(super) struct Choice<'a> {
     pub get_up: &'a GetUp,
     pub start: &'a Start,
-    pub likeness: Likeness,
+    pub pose_similarity: PoseSimilarity,
 }
 
 /// The best of all clips and moments for a body that lies like that in the world.
 pub(super) fn choose<'a>(
     get_ups: &'a [GetUp],
-    landmarks: &super::likeness::Landmarks,
+    landmarks: &super::pose_similarity::Landmarks,
     lies: &Stance,
 ) -> Option<Choice<'a>> {
     let all = get_ups.iter().flat_map(|get_up| get_up.starts.iter().map(move |start| (get_up, start)));
-    all.map(|(get_up, start)| Choice { get_up, start, likeness: landmarks.compare(&start.stance, lies) })
-        .reduce(|a, b| if b.likeness.distance < a.likeness.distance { b } else { a })
+    all.map(|(get_up, start)| Choice {
+        get_up,
+        start,
+        pose_similarity: landmarks.compare(&start.stance, lies),
+    })
+    .reduce(|a, b| if b.pose_similarity.distance < a.pose_similarity.distance { b } else { a })
 }
 
 impl Character {
@@ -66,8 +70,8 @@ impl Character {
         let def = self.def.clone();
         let moves = def.moves();
         match choose(&moves.get_ups, &moves.landmarks, &lies) {
-            Some(Choice { get_up, start, likeness }) => {
-                self.settle_into(world, likeness.motion, INTO_GET_UP);
+            Some(Choice { get_up, start, pose_similarity }) => {
+                self.settle_into(world, pose_similarity.motion, INTO_GET_UP);
                 let once =
                     TrackDef { start: start.time, loop_mode: LoopMode::Once, ..TrackDef::new(get_up.id) };
                 self.rising = Rising::ByClip(self.animator.play(def.set(), &once));

@@ -193,7 +193,7 @@ impl Character {
         let at = |&world_from_body: &Transform| BodyState { world_from_body, velocity: Velocity::default() };
         let states: Vec<BodyState> = poses.iter().map(at).collect();
         let rule = ContactRule::Yields(yields);
-        let bodies = Ragdoll::spawn_kinematic(world, &def.ragdoll, &states, &def.flesh, rule);
+        let bodies = Ragdoll::spawn_kinematic(world, &def.ragdoll, &states, &def.body_settings, rule);
         if let Some(presence) = &mut self.presence {
             presence.bodies = bodies;
         }

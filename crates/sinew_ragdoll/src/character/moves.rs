@@ -1,7 +1,7 @@
 //! A character's clips, ready to be played: made once for all characters of a kind.
 
-use super::likeness::{Landmarks, Stance};
 use super::mirror::Mirror;
+use super::pose_similarity::{Landmarks, Stance};
 use super::{CharacterDef, Locomotion, MotionSet, travel};
 use crate::def::RagdollDef;
 use crate::mapping::Mapping;

@@ -161,7 +161,7 @@ impl Character {
         let ragdoll = match hit {
             Some(bodies) => Ragdoll::wake(world, &def.ragdoll, bodies, &states, rule),
             None => {
-                let ragdoll = Ragdoll::spawn(world, &def.ragdoll, &states, &def.flesh);
+                let ragdoll = Ragdoll::spawn(world, &def.ragdoll, &states, &def.body_settings);
                 if rule != ContactRule::Push {
                     ragdoll.set_rule(world, rule);
                 }

@@ -76,7 +76,7 @@ impl Character {
         let moves = def.moves();
         let get_up = &moves.get_ups[self.preparation.get_up as usize];
         let start = &get_up.starts[self.preparation.start as usize];
-        let choice = Choice { get_up, start, likeness: moves.landmarks.compare(&start.stance, &lies) };
+        let choice = Choice { get_up, start, pose_similarity: moves.landmarks.compare(&start.stance, &lies) };
         if self.preparation.seconds <= 0.0 || self.is_like(&choice, lies.pelvis, NEAR_ENOUGH) {
             return self.get_up(world);
         }
@@ -85,7 +85,7 @@ impl Character {
     }
 
     fn is_like(&self, choice: &Choice<'_>, pelvis: Rotation, [trunk, joints]: [f32; 2]) -> bool {
-        let joints_off = choice.likeness.distance / self.def.ragdoll.height;
+        let joints_off = choice.pose_similarity.distance / self.def.ragdoll.height;
         trunk_off(choice, pelvis) < trunk && joints_off < joints
     }
 
@@ -94,7 +94,7 @@ impl Character {
         let ragdoll = self.ragdoll.as_ref().expect("a body that is rolled over has bodies");
         let targets = &mut self.scratch.before;
         targets.clear();
-        targets.extend(choice.start.bodies.iter().map(|&body| choice.likeness.motion * body));
+        targets.extend(choice.start.bodies.iter().map(|&body| choice.pose_similarity.motion * body));
         self.scratch.velocities.clear();
         self.scratch.velocities.resize(targets.len(), Velocity::default());
         self.drives.apply(world, &self.def.ragdoll, ragdoll, targets, &self.scratch.velocities);
@@ -103,5 +103,5 @@ impl Character {
 
 /// By how much the pelvis is turned from how the clip has it, radians.
 fn trunk_off(choice: &Choice<'_>, pelvis: Rotation) -> f32 {
-    (choice.likeness.motion.rotation * choice.start.stance.pelvis).angle_to(pelvis)
+    (choice.pose_similarity.motion.rotation * choice.start.stance.pelvis).angle_to(pelvis)
 }

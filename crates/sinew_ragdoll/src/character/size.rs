@@ -21,8 +21,8 @@ impl CharacterDef {
         def.getting_ready = self.getting_ready;
         def.falling = self.falling;
         def.patience = self.patience;
-        def.flesh = self.flesh;
-        def.flesh.material.rolling *= factor;
+        def.body_settings = self.body_settings;
+        def.body_settings.material.rolling *= factor;
         def.speed_bound = self.speed_bound;
         def.in_world = self.in_world.clone();
         let cube = factor * factor * factor;

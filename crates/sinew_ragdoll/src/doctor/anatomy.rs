@@ -1,7 +1,7 @@
 //! Requirements on the body as a whole: finite, of a sensible size, with a head and limbs.
 
 use super::exam::{Exam, bones_of};
-use super::{Code, Finding, Patient, Severity};
+use super::{Code, Finding, Repair, Severity};
 use crate::build::bones::Anatomy;
 use crate::build::part::{Part, Side, part_of_role};
 use crate::def::RagdollDef;
@@ -105,13 +105,13 @@ fn heights(def: &RagdollDef) -> core::ops::RangeInclusive<f32> {
     if bones_of(def).anatomy == Anatomy::Human { HEIGHTS } else { CREATURES }
 }
 
-/// The patient in metres; its rig too, where that was read in the same unit.
-pub(super) fn patient_in_metres(patient: &Patient) -> Patient {
-    let def = in_metres(&patient.def);
-    let is_same = |rig: &RagdollDef| (0.5..2.0).contains(&(rig.height / patient.def.height));
+/// The same in metres; its rig too, where that was read in the same unit.
+pub(super) fn repair_in_metres(repair: &Repair) -> Repair {
+    let def = in_metres(&repair.def);
+    let is_same = |rig: &RagdollDef| (0.5..2.0).contains(&(rig.height / repair.def.height));
     let reference =
-        patient.reference.as_ref().map(|rig| if is_same(rig) { in_metres(rig) } else { rig.clone() });
-    Patient { def, reference, ..patient.clone() }
+        repair.reference.as_ref().map(|rig| if is_same(rig) { in_metres(rig) } else { rig.clone() });
+    Repair { def, reference, ..repair.clone() }
 }
 
 /// Factor on all lengths, and the unit that it stands for.
@@ -161,7 +161,7 @@ pub(super) fn missing_bodies(exam: &Exam<'_>) -> Vec<Finding> {
     for (role, parent_is_there) in expected(exam) {
         let (part, _) = part_of_role(role);
         let code = if part == Part::Head { Code::HeadWithoutBody } else { Code::LimbWithoutBody };
-        let known = exam.patient.reference.as_ref();
+        let known = exam.repair.reference.as_ref();
         let bone = known.and_then(|rig| rig.bodies.iter().find(|body| body.role == role.name()));
         if known.is_some() && bone.is_none() {
             // The rig has no such bone: there is nothing to make a body of.
@@ -202,7 +202,7 @@ fn expected(exam: &Exam<'_>) -> Vec<(Role, Option<usize>)> {
                 match body(role) {
                     Some(found) => above = Some(found),
                     // Hands and feet may ride along on both sides; one alone is a mistake.
-                    None if at == 2 && body(role.mirror()).is_none() && exam.patient.reference.is_none() => {}
+                    None if at == 2 && body(role.mirror()).is_none() && exam.repair.reference.is_none() => {}
                     None => {
                         missing.push((role, above));
                         break;

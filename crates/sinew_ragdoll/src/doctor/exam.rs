@@ -1,6 +1,6 @@
 //! Ragdoll with what follows from it, as all examinations look at it.
 
-use super::{Code, Finding, Patient};
+use super::{Code, Finding, Repair};
 use crate::build::bones::{Anatomy, Bone, Bones};
 use crate::build::part::Part;
 use crate::def::{RagdollDef, RagdollJointDef};
@@ -15,7 +15,7 @@ use sinew_physics::JointKind;
 
 /// A ragdoll with what follows from it.
 pub(super) struct Exam<'a> {
-    pub patient: &'a Patient,
+    pub repair: &'a Repair,
     pub def: &'a RagdollDef,
     /// The bodies as the build's stages know them; heads are the pivots of the definition.
     pub bones: Bones,
@@ -34,8 +34,8 @@ pub(super) struct Beyond {
 }
 
 impl<'a> Exam<'a> {
-    pub fn new(patient: &'a Patient) -> Self {
-        let def = &patient.def;
+    pub fn new(repair: &'a Repair) -> Self {
+        let def = &repair.def;
         let bones = bones_of(def);
         let fits = def.bodies.iter().map(|body| Fit {
             shape: body.shape.clone(),
@@ -44,7 +44,7 @@ impl<'a> Exam<'a> {
             area: 0.0,
             selection: Selection::Nothing,
         });
-        Self { patient, def, bones, fits: fits.collect(), size: def.height }
+        Self { repair, def, bones, fits: fits.collect(), size: def.height }
     }
 
     /// A finding about these bodies.

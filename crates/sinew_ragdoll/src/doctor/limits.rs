@@ -129,7 +129,7 @@ fn pivot(exam: &Exam<'_>, index: usize) -> Option<Finding> {
 
 /// Head of a body's bone as the rig has it, character space; `None` where the rig is not at hand or has no such joint.
 pub(super) fn head_of_rig(exam: &Exam<'_>, body: usize) -> Option<Vec3> {
-    let rig = exam.patient.reference.as_ref()?;
+    let rig = exam.repair.reference.as_ref()?;
     let bone = &exam.def.bodies[body].bone;
     let found = rig.bodies.iter().position(|other| other.bone == *bone)?;
     let joint = rig.joints.get(found.checked_sub(1)?)?;
@@ -330,10 +330,10 @@ fn cone_both_ways(exam: &Exam<'_>, index: usize, limit: &SwingTwistLimit) -> (f3
 }
 
 fn too_stiff(exam: &Exam<'_>, index: usize) -> Option<Finding> {
-    let softness = (*exam.patient.springs.get(index)?)?;
+    let softness = (*exam.repair.springs.get(index)?)?;
     let joint = &exam.def.joints[index];
     let hertz = hertz(exam, index, softness);
-    let nyquist = 0.5 / exam.patient.substep;
+    let nyquist = 0.5 / exam.repair.substep;
     // Written so that NaN is a finding.
     if hertz <= nyquist {
         return None;
@@ -341,7 +341,7 @@ fn too_stiff(exam: &Exam<'_>, index: usize) -> Option<Finding> {
     let evidence = format!(
         "the spring between {} swings at {hertz:.0} Hz; a substep of {:.2} ms can follow {nyquist:.0} Hz",
         exam.between(index),
-        1000.0 * exam.patient.substep
+        1000.0 * exam.repair.substep
     );
     Some(exam.finding(Code::StiffnessAboveNyquist, &[joint.child, joint.parent], evidence))
 }

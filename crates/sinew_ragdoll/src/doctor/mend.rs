@@ -3,7 +3,7 @@
 use super::exam::{Exam, anchors, beyond};
 use super::geometry::{depth, full_size, longest, scaled};
 use super::limits::{head_of_rig, is_narrow, turning_inertia};
-use super::{Code, Finding, Patient, anatomy, graft, masses, mirror, shapes};
+use super::{Code, Finding, Repair, anatomy, masses, mirror, missing_bodies, shapes};
 use crate::def::{RagdollDef, RagdollJointDef};
 use crate::ragdoll::fitted;
 use core::f32::consts::PI;
@@ -16,23 +16,25 @@ const ROOM: f32 = 0.034_907;
 const STRAIN: f32 = 0.001_745;
 
 /// Mends what a finding tells of; false if nothing could be done.
-pub(super) fn mend(patient: &mut Patient, finding: &Finding) -> bool {
+pub(super) fn mend(repair: &mut Repair, finding: &Finding) -> bool {
     let Some(&body) = finding.bodies.first() else { return false };
     let other = finding.bodies.get(1).copied().unwrap_or(body);
     match finding.code {
         // Numbers that are none are lost, and whether a guess is right only a person can say.
         Code::NotFinite | Code::UnitInferred | Code::RoleUncertain => false,
         Code::WrongUnit => {
-            *patient = anatomy::patient_in_metres(patient);
+            *repair = anatomy::repair_in_metres(repair);
             true
         }
-        Code::HeadWithoutBody | Code::LimbWithoutBody => graft::missing(patient, &finding.bones[0]),
-        Code::StiffnessAboveNyquist => soften(patient, body - 1),
+        Code::HeadWithoutBody | Code::LimbWithoutBody => {
+            missing_bodies::add_missing(repair, &finding.bones[0])
+        }
+        Code::StiffnessAboveNyquist => soften(repair, body - 1),
         _ => {
-            let changed = remedied(&Exam::new(patient), finding, body, other);
-            let is_new = changed.as_ref().is_some_and(|def| *def != patient.def);
+            let changed = remedied(&Exam::new(repair), finding, body, other);
+            let is_new = changed.as_ref().is_some_and(|def| *def != repair.def);
             if let Some(def) = changed {
-                patient.def = def;
+                repair.def = def;
             }
             is_new
         }
@@ -134,8 +136,8 @@ fn moved(exam: &Exam<'_>, index: usize, code: Code) -> RagdollJointDef {
     if code == Code::IdentityFrames {
         let mut def = exam.def.clone();
         def.joints[index] = new;
-        let patient = Patient { def, ..exam.patient.clone() };
-        new = Exam::new(&patient).anatomical(index).def;
+        let repair = Repair { def, ..exam.repair.clone() };
+        new = Exam::new(&repair).anatomical(index).def;
     }
     new
 }
@@ -360,7 +362,7 @@ fn nearest_pair(exam: &Exam<'_>, body: usize) -> Option<(usize, usize)> {
 /// A shape of the size that the rig, the other side or the bone says.
 fn resize(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) {
     let own = &exam.def.bodies[body];
-    let rig = exam.patient.reference.as_ref();
+    let rig = exam.repair.reference.as_ref();
     if let Some(found) = rig.and_then(|rig| rig.bodies.iter().find(|other| other.bone == own.bone)) {
         return reshape(exam, def, body, found.shape.clone(), found.character_from_body);
     }
@@ -390,11 +392,11 @@ fn resize(exam: &Exam<'_>, def: &mut RagdollDef, body: usize) {
 }
 
 /// Half of what the substep can follow.
-fn soften(patient: &mut Patient, index: usize) -> bool {
-    let nyquist = 0.5 / patient.substep;
+fn soften(repair: &mut Repair, index: usize) -> bool {
+    let nyquist = 0.5 / repair.substep;
     let wanted = 0.5 * nyquist;
-    let inertia = turning_inertia(&Exam::new(patient), index);
-    let Some(Some(softness)) = patient.springs.get_mut(index) else { return false };
+    let inertia = turning_inertia(&Exam::new(repair), index);
+    let Some(Some(softness)) = repair.springs.get_mut(index) else { return false };
     *softness = match *softness {
         Softness::Frequency { damping_ratio, .. } => Softness::Frequency { hertz: wanted, damping_ratio },
         Softness::Stiffness { damping, .. } => {

@@ -7,14 +7,14 @@
 //! # let rig = sinew::mannequin::mannequin().rig;
 //! # let analysis = sinew_anim::analyze(&rig)?;
 //! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
-//! use sinew_ragdoll::{Patient, cure, doctor};
+//! use sinew_ragdoll::{Repair, cure, doctor};
 //!
-//! let mut patient = Patient::new(def);
-//! patient.def.bodies[3].mass.mass = 1e-4; // a slip of the hand
-//! let finding = &doctor(&patient)[0];
+//! let mut repair = Repair::new(def);
+//! repair.def.bodies[3].mass.mass = 1e-4; // a slip of the hand
+//! let finding = &doctor(&repair)[0];
 //! println!("{}\n{}", finding.evidence, finding.fix);
 //! assert!(finding.bodies.contains(&3));
-//! let (cured, findings) = cure(&patient);
+//! let (cured, findings) = cure(&repair);
 //! assert!(findings[0].fixed && cured.def.bodies[3].mass.mass > 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -23,11 +23,11 @@ mod anatomy;
 mod code;
 mod exam;
 mod geometry;
-mod graft;
 mod limits;
 mod masses;
 mod mend;
 mod mirror;
+mod missing_bodies;
 mod motion;
 mod shapes;
 
@@ -41,14 +41,14 @@ use crate::skin::{Flaw, FlawKind};
 use exam::Exam;
 use sinew_physics::{Softness, WorldDef};
 
-/// A ragdoll to be examined.
+/// A ragdoll to be examined and repaired.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Patient {
+pub struct Repair {
     /// The ragdoll.
     pub def: RagdollDef,
     /// Spring or motor of each joint, in the order of the joints; `None` for a limp one. May be shorter than the joints.
     pub springs: Vec<Option<Softness>>,
-    /// Ragdoll that a build from the patient's rig gives, if the rig is at hand: it knows what the definition leaves out.
+    /// Ragdoll that a build from its rig gives, if that is at hand: it knows what the definition leaves out.
     pub reference: Option<RagdollDef>,
     /// Flaws of its skin ([`SkinQuality::flaws`](crate::SkinQuality::flaws)), where it was measured.
     pub skin: Vec<Flaw>,
@@ -56,7 +56,7 @@ pub struct Patient {
     pub substep: f32,
 }
 
-impl Patient {
+impl Repair {
     /// A limp ragdoll whose rig is not at hand.
     pub fn new(def: RagdollDef) -> Self {
         let world = WorldDef::default();
@@ -89,8 +89,8 @@ pub struct Finding {
 /// # Panics
 /// If the definition has no bodies, or its joints are not in the order of the bodies (`joints[i].child == i + 1`, each
 /// parent before its child).
-pub fn doctor(patient: &Patient) -> Vec<Finding> {
-    let def = &patient.def;
+pub fn doctor(repair: &Repair) -> Vec<Finding> {
+    let def = &repair.def;
     assert!(
         def.joints.len() + 1 == def.bodies.len()
             && def.joints.iter().enumerate().all(|(i, joint)| joint.child == i + 1 && joint.parent <= i),
@@ -101,15 +101,15 @@ pub fn doctor(patient: &Patient) -> Vec<Finding> {
         findings = anatomy::wrong_unit(def);
         // What else is wrong shows in the right size only.
         let sized;
-        let patient = if findings.is_empty() {
-            patient
+        let repair = if findings.is_empty() {
+            repair
         } else {
-            sized = anatomy::patient_in_metres(patient);
+            sized = anatomy::repair_in_metres(repair);
             &sized
         };
-        findings.extend(in_proportion(&Exam::new(patient)));
+        findings.extend(in_proportion(&Exam::new(repair)));
     }
-    findings.extend(patient.skin.iter().map(of_skin));
+    findings.extend(repair.skin.iter().map(of_skin));
     findings.sort_by_key(|finding| (finding.severity, finding.code));
     findings
 }
@@ -164,9 +164,9 @@ const ROUNDS: usize = 6;
 ///
 /// # Panics
 /// As [`doctor`].
-pub fn cure(patient: &Patient) -> (Patient, Vec<Finding>) {
-    let mut findings = doctor(patient);
-    let mut cured = patient.clone();
+pub fn cure(repair: &Repair) -> (Repair, Vec<Finding>) {
+    let mut findings = doctor(repair);
+    let mut cured = repair.clone();
     let mut open = findings.clone();
     for _ in 0..ROUNDS {
         let mut changed = false;

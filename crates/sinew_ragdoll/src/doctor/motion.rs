@@ -47,7 +47,7 @@ impl Unrest {
         }
         for (index, joint) in def.joints.iter().enumerate() {
             let (a, b) = (bodies[joint.parent], bodies[joint.child]);
-            let softness = exam.patient.springs.get(index).copied().flatten();
+            let softness = exam.repair.springs.get(index).copied().flatten();
             let rest = joint.frame_parent.inverse()
                 * def.bodies[joint.parent].character_from_body.inverse()
                 * def.bodies[joint.child].character_from_body

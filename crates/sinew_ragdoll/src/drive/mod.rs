@@ -16,14 +16,14 @@
 //! # let analysis = sinew_anim::analyze(&rig)?;
 //! # let (def, _) = sinew_ragdoll::build(&rig, &analysis, &sinew_ragdoll::BuildOptions::default())?;
 //! use sinew_physics::{Velocity, World, WorldDef};
-//! use sinew_ragdoll::{BodyState, DriveMode, Drives, Flesh, Muscle, Pin, Ragdoll};
+//! use sinew_ragdoll::{BodyState, DriveMode, Drives, BodySettings, Muscle, Pin, Ragdoll};
 //!
 //! let mut world = World::new(WorldDef::default());
 //! let pose: Vec<_> = def.bodies.iter().map(|body| body.character_from_body).collect();
 //! let still = Velocity::default();
 //! let start: Vec<_> =
 //!     pose.iter().map(|&world_from_body| BodyState { world_from_body, velocity: still }).collect();
-//! let ragdoll = Ragdoll::spawn(&mut world, &def, &start, &Flesh::default());
+//! let ragdoll = Ragdoll::spawn(&mut world, &def, &start, &BodySettings::default());
 //! let mut drives = Drives::new(&def);
 //! drives.set_all(DriveMode::Powered(Muscle::STIFF), 0.0);
 //! drives.set(0, DriveMode::Pinned(Muscle::STIFF, Pin::FIRM), 0.0); // it hangs by its pelvis

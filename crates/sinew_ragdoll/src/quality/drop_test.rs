@@ -3,7 +3,7 @@
 use super::meter::CALM;
 use super::{Quality, QualityMeter, Verdict, judge};
 use crate::def::RagdollDef;
-use crate::ragdoll::{BodyState, Flesh, Ragdoll};
+use crate::ragdoll::{BodySettings, BodyState, Ragdoll};
 use sinew_math::{Rotation, Transform, Vec3, max, min};
 use sinew_physics::{BodyDef, BodyId, BodyKind, Shape, ShapeDef, Velocity, World, WorldDef};
 
@@ -150,7 +150,7 @@ fn released(world: &mut World, def: &RagdollDef, turn: Rotation, spin: Vec3, spe
     });
     let world_from_character = Transform::from_translation(Vec3::Y * (HEIGHT - lowest)) * turned;
     let states = carried(def, world_from_character, spin, speed);
-    Ragdoll::spawn(world, def, &states, &Flesh::default())
+    Ragdoll::spawn(world, def, &states, &BodySettings::default())
 }
 
 /// States of the bodies in the bind pose, moving as one rigid body that spins about its pelvis.

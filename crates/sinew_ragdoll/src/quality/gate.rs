@@ -4,7 +4,7 @@ use super::drop_test::{carried, measure, worse};
 use super::{Quality, Verdict, judge};
 use crate::def::RagdollDef;
 use crate::limits::sample::random_turn;
-use crate::ragdoll::{BodyState, Flesh, Ragdoll, colliding_pairs};
+use crate::ragdoll::{BodySettings, BodyState, Ragdoll, colliding_pairs};
 use sinew_math::{Random, Rotation, Transform, Vec3, min};
 use sinew_physics::{BodyDef, BodyKind, Serial, Shape, ShapeDef, TaskRunner, World, WorldDef};
 use std::sync::{Mutex, PoisonError};
@@ -180,7 +180,7 @@ pub fn random_fall(def: &RagdollDef, seed: u64) -> Quality {
     let mut world = World::new(WorldDef::default());
     terrain(&mut world, &mut random);
     let states = posed(def, &mut random);
-    let ragdoll = Ragdoll::spawn(&mut world, def, &states, &Flesh::default());
+    let ragdoll = Ragdoll::spawn(&mut world, def, &states, &BodySettings::default());
     measure(&mut world, def, &ragdoll, SECONDS)
 }
 
@@ -277,7 +277,7 @@ fn overlaps(def: &RagdollDef, pose: &[Transform]) -> bool {
     let states: Vec<_> =
         pose.iter().map(|&world_from_body| BodyState { world_from_body, ..BodyState::default() }).collect();
     let mut world = World::new(WorldDef::default());
-    let ragdoll = Ragdoll::spawn(&mut world, def, &states, &Flesh::default());
+    let ragdoll = Ragdoll::spawn(&mut world, def, &states, &BodySettings::default());
     // Those that overlap at the start are not among the colliding ones.
     ragdoll.colliding.len() < colliding_pairs(def).len()
 }

@@ -5,30 +5,30 @@ use sinew_math::{Range, Rotation, SwingTwistLimit, Sym3, Transform, Vec3};
 use sinew_physics::{Hull, JointKind, MassProperties, Shape, Softness};
 use sinew_ragdoll::doctor::{Code, Finding, Severity, limit_reach};
 use sinew_ragdoll::{
-    BuildOptions, Patient, RagdollBodyDef, RagdollDef, RagdollJointDef, build, cure, doctor, drop_test, gate,
+    BuildOptions, RagdollBodyDef, RagdollDef, RagdollJointDef, Repair, build, cure, doctor, drop_test, gate,
 };
 
 /// A healthy ragdoll whose rig is at hand.
-fn healthy() -> Patient {
+fn healthy() -> Repair {
     let def = walker().ragdoll;
-    Patient { reference: Some(def.clone()), ..Patient::new(def) }
+    Repair { reference: Some(def.clone()), ..Repair::new(def) }
 }
 
 /// The healthy ragdoll of a rig that others made, if it is there.
-fn healthy_stranger() -> Option<Patient> {
+fn healthy_stranger() -> Option<Repair> {
     let rig = crate::data::rig("mannequiny.glb")?;
     let analysis = sinew_anim::analyze(&rig).expect("a skin");
     let (def, _) = build(&rig, &analysis, &BuildOptions::default()).expect("bones");
-    Some(Patient { reference: Some(def.clone()), ..Patient::new(def) })
+    Some(Repair { reference: Some(def.clone()), ..Repair::new(def) })
 }
 
 fn body(def: &RagdollDef, role: &str) -> usize {
     def.bodies.iter().position(|body| body.role == role).unwrap_or_else(|| panic!("no {role}"))
 }
 
-fn joint<'a>(patient: &'a mut Patient, role: &str) -> &'a mut RagdollJointDef {
-    let body = body(&patient.def, role);
-    &mut patient.def.joints[body - 1]
+fn joint<'a>(repair: &'a mut Repair, role: &str) -> &'a mut RagdollJointDef {
+    let body = body(&repair.def, role);
+    &mut repair.def.joints[body - 1]
 }
 
 fn cone(y: f32, z: f32, twist: [f32; 2]) -> JointKind {
@@ -39,26 +39,26 @@ fn cone(y: f32, z: f32, twist: [f32; 2]) -> JointKind {
 }
 
 /// The joint as other tools set it up: the bind pose is its zero.
-fn zeroed(patient: &mut Patient, role: &str, kind: JointKind) {
-    let def = &patient.def;
+fn zeroed(repair: &mut Repair, role: &str, kind: JointKind) {
+    let def = &repair.def;
     let joint = def.joints[body(def, role) - 1];
     let turn = |body: usize| def.bodies[body].character_from_body.rotation;
     let axes = turn(joint.child) * joint.frame_child.rotation;
     let rotation = turn(joint.parent).inverse() * axes;
     let frame_parent = Transform { rotation, ..joint.frame_parent };
-    *self::joint(patient, role) = RagdollJointDef { frame_parent, kind, ..joint };
+    *self::joint(repair, role) = RagdollJointDef { frame_parent, kind, ..joint };
 }
 
-fn every_joint(patient: &mut Patient, kind: JointKind) {
-    for child in 1..patient.def.bodies.len() {
-        let role = patient.def.bodies[child].role.clone();
-        zeroed(patient, &role, kind);
+fn every_joint(repair: &mut Repair, kind: JointKind) {
+    for child in 1..repair.def.bodies.len() {
+        let role = repair.def.bodies[child].role.clone();
+        zeroed(repair, &role, kind);
     }
 }
 
 /// Without these bodies, and what hangs on them.
-fn without(patient: &mut Patient, roles: &[&str]) {
-    let def = &mut patient.def;
+fn without(repair: &mut Repair, roles: &[&str]) {
+    let def = &mut repair.def;
     for role in roles {
         let gone = body(def, role);
         assert!(def.joints.iter().all(|joint| joint.parent != gone), "{role} carries another");
@@ -77,9 +77,9 @@ fn without(patient: &mut Patient, roles: &[&str]) {
     }
 }
 
-fn thicker(patient: &mut Patient, role: &str, factor: f32) {
-    let body = body(&patient.def, role);
-    let shape = &mut patient.def.bodies[body].shape;
+fn thicker(repair: &mut Repair, role: &str, factor: f32) {
+    let body = body(&repair.def, role);
+    let shape = &mut repair.def.bodies[body].shape;
     *shape = match *shape {
         Shape::Capsule { half_height, radius } => Shape::Capsule { half_height, radius: factor * radius },
         Shape::TaperedCapsule { half_height, radius_bottom, radius_top } => Shape::TaperedCapsule {
@@ -92,7 +92,7 @@ fn thicker(patient: &mut Patient, role: &str, factor: f32) {
     };
 }
 
-type Plant = (&'static str, Code, fn(&mut Patient));
+type Plant = (&'static str, Code, fn(&mut Repair));
 
 /// Each failing of a tool, its code, and how it looks in a definition.
 const FAILINGS: [Plant; 28] = [
@@ -193,16 +193,16 @@ const FAILINGS: [Plant; 28] = [
     }),
 ];
 
-fn scale_mass(patient: &mut Patient, factor: f32) {
-    for body in &mut patient.def.bodies {
+fn scale_mass(repair: &mut Repair, factor: f32) {
+    for body in &mut repair.def.bodies {
         body.mass.mass *= factor;
         body.mass.inertia = body.mass.inertia * factor;
     }
-    patient.def.total_mass *= factor;
+    repair.def.total_mass *= factor;
 }
 
-fn enlarge(patient: &mut Patient, factor: f32) {
-    let def = &mut patient.def;
+fn enlarge(repair: &mut Repair, factor: f32) {
+    let def = &mut repair.def;
     let place = |at: &mut Transform| at.translation *= factor;
     for body in &mut def.bodies {
         place(&mut body.character_from_body);
@@ -244,22 +244,22 @@ fn codes(findings: &[Finding]) -> Vec<Code> {
 #[test]
 fn nothing_is_wrong_with_a_healthy_ragdoll() {
     assert_eq!(doctor(&healthy()), []);
-    assert_eq!(doctor(&Patient::new(walker().ragdoll)), []);
+    assert_eq!(doctor(&Repair::new(walker().ragdoll)), []);
 }
 
 #[test]
 fn every_failing_is_named_and_nothing_else() {
     let mut wrong = Vec::new();
     for (what, code, plant) in FAILINGS {
-        let mut patient = healthy();
-        plant(&mut patient);
-        let findings = doctor(&patient);
+        let mut repair = healthy();
+        plant(&mut repair);
+        let findings = doctor(&repair);
         if codes(&findings) != [code] {
             wrong.push(format!("{what}: {findings:#?}"));
         }
         for finding in &findings {
             // Who it is about is named, but where it is the whole body.
-            let named = finding.bodies.first().map(|&body| patient.def.bodies[body].role.as_str());
+            let named = finding.bodies.first().map(|&body| repair.def.bodies[body].role.as_str());
             let is_told = named.is_none_or(|role| finding.evidence.contains(role));
             let of_all = matches!(code, Code::MassImplausible | Code::LimitsAllAlike);
             assert!(is_told || of_all, "{what}: {}", finding.evidence);
@@ -276,10 +276,10 @@ fn strangers_are_read_as_well() {
     assert_eq!(doctor(&stranger), []);
     let mut wrong = Vec::new();
     for (what, code, plant) in FAILINGS {
-        let mut patient = stranger.clone();
-        plant(&mut patient);
-        let findings = doctor(&patient);
-        let (cured, told) = cure(&patient);
+        let mut repair = stranger.clone();
+        plant(&mut repair);
+        let findings = doctor(&repair);
+        let (cured, told) = cure(&repair);
         let left = doctor(&cured);
         if codes(&findings) != [code] || !left.is_empty() || told.iter().any(|finding| !finding.fixed) {
             wrong.push(format!("{what}: {findings:#?} left: {left:#?}"));
@@ -293,9 +293,9 @@ fn failings_are_mended_and_the_ragdoll_falls_well() {
     let stride = if std::env::var_os("SINEW_FULL").is_some() { 1 } else { 5 };
     let mut wrong = Vec::new();
     for (index, (what, code, plant)) in FAILINGS.into_iter().enumerate() {
-        let mut patient = healthy();
-        plant(&mut patient);
-        let (cured, findings) = cure(&patient);
+        let mut repair = healthy();
+        plant(&mut repair);
+        let (cured, findings) = cure(&repair);
         let left = doctor(&cured);
         if !findings.iter().all(|finding| finding.fixed) || !left.is_empty() {
             wrong.push(format!("{what} ({}): {findings:#?} left: {left:#?}", code.name()));
@@ -329,9 +329,9 @@ fn errors_show_in_motion() {
         if !matches!(code, Code::OverlapAtStart | Code::AnchorsApart | Code::LimitViolatedAtBind) {
             continue;
         }
-        let mut patient = healthy();
-        plant(&mut patient);
-        let findings = doctor(&patient);
+        let mut repair = healthy();
+        plant(&mut repair);
+        let findings = doctor(&repair);
         assert_eq!(findings[0].severity, Severity::Error, "{what}");
         if !findings[0].evidence.contains("left alone without gravity") {
             wrong.push(format!("{what}: {findings:#?}"));
@@ -391,9 +391,9 @@ fn folding(range: Range) -> RagdollDef {
 
 #[test]
 fn a_contact_that_fights_a_limit() {
-    let free = Patient::new(folding(Range::degrees(-60.0, 10.0)));
+    let free = Repair::new(folding(Range::degrees(-60.0, 10.0)));
     assert_eq!(doctor(&free), []);
-    let folded = Patient::new(folding(Range::degrees(-2.0, 60.0)));
+    let folded = Repair::new(folding(Range::degrees(-2.0, 60.0)));
     let findings = doctor(&folded);
     assert_eq!(codes(&findings), [Code::CollisionFightsLimit], "{findings:#?}");
     let (cured, _) = cure(&folded);
@@ -433,21 +433,21 @@ fn strained() -> RagdollDef {
 
 #[test]
 fn what_moves_by_itself_is_seen_by_moving() {
-    let patient = Patient::new(strained());
-    let findings = doctor(&patient);
+    let repair = Repair::new(strained());
+    let findings = doctor(&repair);
     assert_eq!(codes(&findings), [Code::MovesByItself], "{findings:#?}");
-    let (cured, told) = cure(&patient);
+    let (cured, told) = cure(&repair);
     assert!(told[0].fixed && doctor(&cured).is_empty(), "{told:#?}");
 }
 
 #[test]
 fn numbers_that_are_none_are_named_and_nothing_panics() {
-    let mut patient = healthy();
-    patient.def.bodies[3].character_from_body.translation.x = f32::NAN;
-    let findings = doctor(&patient);
+    let mut repair = healthy();
+    repair.def.bodies[3].character_from_body.translation.x = f32::NAN;
+    let findings = doctor(&repair);
     assert_eq!(codes(&findings), [Code::NotFinite]);
-    let (cured, findings) = cure(&patient);
-    assert!(!findings[0].fixed && cured.def.bodies.len() == patient.def.bodies.len());
+    let (cured, findings) = cure(&repair);
+    assert!(!findings[0].fixed && cured.def.bodies.len() == repair.def.bodies.len());
     let mut heavy = healthy();
     heavy.def.bodies[3].mass.mass = f32::INFINITY;
     assert_eq!(codes(&doctor(&heavy)), [Code::MassNotPositive]);
@@ -456,10 +456,10 @@ fn numbers_that_are_none_are_named_and_nothing_panics() {
 /// Without the rig a head cannot be grown; that is said.
 #[test]
 fn what_cannot_be_mended_is_said() {
-    let mut patient = healthy();
-    patient.reference = None;
-    without(&mut patient, &["head"]);
-    let (_, findings) = cure(&patient);
+    let mut repair = healthy();
+    repair.reference = None;
+    without(&mut repair, &["head"]);
+    let (_, findings) = cure(&repair);
     assert_eq!(codes(&findings), [Code::HeadWithoutBody]);
     assert!(!findings[0].fixed);
 }

@@ -5,7 +5,7 @@ use sinew_math::{Random, Reader, Rotation, Sym3, Transform, Vec3, Writer, max};
 use sinew_physics::{BodyDef, JointKind, MassProperties, Shape, Sleeping, Velocity, World, WorldDef};
 use sinew_ragdoll::hand_over::{SpeedBound, body_velocity};
 use sinew_ragdoll::{
-    BodyState, DriveMode, Drives, Flesh, Muscle, Pin, Quality, QualityMeter, Ragdoll, RagdollBodyDef,
+    BodySettings, BodyState, DriveMode, Drives, Muscle, Pin, Quality, QualityMeter, Ragdoll, RagdollBodyDef,
     RagdollDef, RagdollJointDef,
 };
 
@@ -66,7 +66,7 @@ impl Driven {
             .iter()
             .map(|&world_from_body| BodyState { world_from_body, velocity: Velocity::default() })
             .collect();
-        let ragdoll = Ragdoll::spawn(&mut world, &def, &states, &Flesh::default());
+        let ragdoll = Ragdoll::spawn(&mut world, &def, &states, &BodySettings::default());
         let drives = Drives::new(&def);
         Self { world, def, ragdoll, drives, targets }
     }

@@ -8,7 +8,7 @@ use sinew_anim::{
 use sinew_math::{Affine, Random, Rotation, Transform, Vec3, max};
 use sinew_physics::{Velocity, World, WorldDef};
 use sinew_ragdoll::hand_over::{SpeedBound, body_velocities, body_velocity};
-use sinew_ragdoll::{BodyState, Character, CharacterDef, Flesh, Ragdoll};
+use sinew_ragdoll::{BodySettings, BodyState, Character, CharacterDef, Ragdoll};
 use sinew_scenes::mannequin::WALK_SPEED;
 use std::sync::Arc;
 
@@ -303,8 +303,8 @@ fn ragdoll_has_the_momentum_of_any_blend() {
         let states: Vec<BodyState> =
             poses.map(|(&world_from_body, &velocity)| BodyState { world_from_body, velocity }).collect();
         let mut world = World::new(WorldDef { gravity: Vec3::ZERO, ..WorldDef::default() });
-        let flesh = Flesh { angular_damping: 0.0, ..Flesh::default() };
-        let ragdoll = Ragdoll::spawn(&mut world, &def.ragdoll, &states, &flesh);
+        let body_settings = BodySettings { angular_damping: 0.0, ..BodySettings::default() };
+        let ragdoll = Ragdoll::spawn(&mut world, &def.ragdoll, &states, &body_settings);
         let animated = momentum_of_motion(def, &before, &now, &now, dt);
         least = sinew_math::min(least, animated.linear.length());
         for step in 0..3 {

@@ -5,7 +5,9 @@ use sinew_math::{Rotation, Transform, Vec3};
 use sinew_physics::{Quality, Serial, Threads, Velocity, World, WorldDef};
 use sinew_ragdoll::quality::{GateReport, gate_on};
 use sinew_ragdoll::ragdoll::fitted;
-use sinew_ragdoll::{BodyState, Flesh, QualityMeter, Ragdoll, RagdollBodyDef, Verdict, drop_test, gate};
+use sinew_ragdoll::{
+    BodySettings, BodyState, QualityMeter, Ragdoll, RagdollBodyDef, Verdict, drop_test, gate,
+};
 
 #[test]
 fn the_mannequin_survives_drops_and_a_wall() {
@@ -56,7 +58,7 @@ fn the_meter_sees_energy_from_nothing() {
                 velocity: Velocity { linear: Vec3::X * 2.0, angular: Vec3::ZERO },
             })
             .collect();
-        let ragdoll = Ragdoll::spawn(&mut world, &def, &states, &Flesh::default());
+        let ragdoll = Ragdoll::spawn(&mut world, &def, &states, &BodySettings::default());
         let mut meter = QualityMeter::new(&def, 0.5);
         for step in 0..30 {
             meter.before_step(&world);
@@ -81,21 +83,21 @@ fn the_meter_sees_energy_from_nothing() {
 }
 
 /// The walker in its bind pose.
-fn spawn(world: &mut World, flesh: &Flesh) -> Ragdoll {
+fn spawn(world: &mut World, body_settings: &BodySettings) -> Ragdoll {
     let def = walker().ragdoll;
     let at = |body: &RagdollBodyDef| BodyState {
         world_from_body: body.character_from_body,
         ..BodyState::default()
     };
     let states: Vec<_> = def.bodies.iter().map(at).collect();
-    Ragdoll::spawn(world, &def, &states, flesh)
+    Ragdoll::spawn(world, &def, &states, body_settings)
 }
 
 #[test]
 fn despawning_leaves_nothing_behind() {
     let mut world = World::new(WorldDef::default());
     world.add_body(&floor());
-    let ragdoll = spawn(&mut world, &Flesh::default());
+    let ragdoll = spawn(&mut world, &BodySettings::default());
     world.step();
     ragdoll.despawn(&mut world);
     assert_eq!((world.body_ids().count(), world.joint_ids().count()), (1, 0));
@@ -105,7 +107,8 @@ fn despawning_leaves_nothing_behind() {
 #[test]
 fn a_ragdoll_has_its_own_quality_of_the_step() {
     let mut world = World::new(WorldDef::default());
-    let ragdoll = spawn(&mut world, &Flesh { quality: Some(Quality::Exact), ..Flesh::default() });
+    let ragdoll =
+        spawn(&mut world, &BodySettings { quality: Some(Quality::Exact), ..BodySettings::default() });
     let has = |world: &World, quality| ragdoll.bodies.iter().all(|&body| world.quality(body) == quality);
     assert!(has(&world, Some(Quality::Exact)));
     ragdoll.set_quality(&mut world, Some(Quality::Fast));
@@ -131,7 +134,7 @@ fn joints_fit_any_pose() {
                 BodyState { world_from_body: place, ..BodyState::default() }
             })
             .collect();
-        let ragdoll = Ragdoll::spawn(&mut world, &def, &states, &Flesh::default());
+        let ragdoll = Ragdoll::spawn(&mut world, &def, &states, &BodySettings::default());
         for (index, &joint) in ragdoll.joints.iter().enumerate() {
             assert!(world.joint_gap(joint) < 1e-5, "joint {index}");
             let overshoot = world.joint_overshoot(joint).to_degrees();

@@ -8,7 +8,7 @@ use sinew_ragdoll::build::takes;
 use sinew_ragdoll::doctor::Code;
 use sinew_ragdoll::quality::Fallen;
 use sinew_ragdoll::{
-    BuildOptions, Flaw, FlawKind, Patient, RagdollDef, SkinQuality, Verdict, build, doctor, drop_test,
+    BuildOptions, Flaw, FlawKind, RagdollDef, Repair, SkinQuality, Verdict, build, doctor, drop_test,
     measure_skin,
 };
 use sinew_scenes::mannequin::mannequin;
@@ -107,7 +107,7 @@ fn torn_skin_is_seen() {
     let torn = flaws.iter().find(|flaw| flaw.kind == FlawKind::Torn).expect("torn");
     assert!(torn.evidence.contains("leftLowerArm"), "{}", torn.evidence);
     // The doctor tells it with a remedy, and does not claim to have mended it.
-    let found = doctor(&Patient { skin: flaws, ..Patient::new(subject.def) });
+    let found = doctor(&Repair { skin: flaws, ..Repair::new(subject.def) });
     let finding = found.iter().find(|finding| finding.code == Code::SkinTorn).expect("a finding");
     assert!(!finding.fix.is_empty() && !finding.fixed, "{finding:?}");
 }

@@ -1,9 +1,9 @@
 //! An arch of stones without mortar: nothing but thrust and friction holds it.
 
+use super::camera_hint::CameraHint;
 use super::flight::Flight;
 use super::metric::{Expected, Metric};
 use super::parts::{GRAVITY, ball, hook};
-use super::sight::Sight;
 use super::stand::{Bars, Stand};
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::blueprint::arch::{Joint, arch, joints};
@@ -75,8 +75,8 @@ impl Script for Arch {
         metrics
     }
 
-    fn sight(&self) -> Sight {
-        self.stand.sight()
+    fn camera_hint(&self) -> CameraHint {
+        self.stand.camera_hint()
     }
 }
 

@@ -1,9 +1,9 @@
 //! An arena: powered characters walk up to each other and push; who falls gets up and goes on.
 
 use super::actors::Figure;
+use super::camera_hint::{CameraHint, Trails};
 use super::metric::{Expected, Metric};
 use super::parts::{GRAVITY, cuboid, fixed, floor};
-use super::sight::{Sight, Trails};
 use super::{Instance, Scene, Script, Setting, Setup};
 use sinew::anim::local_to_model;
 use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer, max, min};
@@ -251,8 +251,8 @@ impl Script for Arena {
         ]
     }
 
-    fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(0.4, 0.7, 1.0), bounds: None, trails: Trails::None }
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint { direction: Vec3::new(0.4, 0.7, 1.0), bounds: None, trails: Trails::None }
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {

@@ -1,9 +1,9 @@
 //! Several tracks at once.
 
 use super::actors::{Actor, Cast, Figure, Gone};
+use super::camera_hint::CameraHint;
 use super::metric::{Expected, Metric};
 use super::parts::floor;
-use super::sight::Sight;
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::mannequin::drills::{Cycle, running, walking};
 use crate::mannequin::{Path, RUN_SPEED, WALK_SPEED};
@@ -134,7 +134,7 @@ impl Script for TwoTracks {
         ]
     }
 
-    fn sight(&self) -> Sight {
+    fn camera_hint(&self) -> CameraHint {
         facing()
     }
 
@@ -144,8 +144,8 @@ impl Script for TwoTracks {
 }
 
 /// From the left and in front of those who face +Z.
-pub(super) fn facing() -> Sight {
-    Sight { direction: Vec3::new(0.75, 0.28, 1.0), ..Sight::default() }
+pub(super) fn facing() -> CameraHint {
+    CameraHint { direction: Vec3::new(0.75, 0.28, 1.0), ..CameraHint::default() }
 }
 
 /// Speeds asked for, m/s.
@@ -260,7 +260,7 @@ impl Script for Runners {
         ]
     }
 
-    fn sight(&self) -> Sight {
+    fn camera_hint(&self) -> CameraHint {
         facing()
     }
 

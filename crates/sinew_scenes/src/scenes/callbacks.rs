@@ -1,9 +1,9 @@
 //! Events on a clip's timeline.
 
 use super::actors::{Actor, Cast, Figure, Gone, mark_floor};
+use super::camera_hint::{CameraHint, Trails};
 use super::metric::{Expected, Metric};
 use super::parts::{GRAVITY, ball, cuboid, fixed, floor, made_of};
-use super::sight::{Sight, Trails};
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::mannequin::Path;
 use crate::mannequin::drills::{PUNCH_ARRIVES, punch, walking};
@@ -165,8 +165,8 @@ impl Script for Footsteps {
         ]
     }
 
-    fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(1.0, 0.45, 0.25), ..Sight::default() }
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint { direction: Vec3::new(1.0, 0.45, 0.25), ..CameraHint::default() }
     }
 
     fn draw(&self, _: &World, out: &mut dyn DebugDraw) {
@@ -309,8 +309,8 @@ impl Script for Punched {
         ]
     }
 
-    fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(-1.0, 0.25, 0.45), trails: Trails::None, ..Sight::default() }
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint { direction: Vec3::new(-1.0, 0.25, 0.45), trails: Trails::None, ..CameraHint::default() }
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {

@@ -1,10 +1,10 @@
 //! Ragdolls that are driven: held up, led through a walk, hit.
 
 use super::actors::Gone;
+use super::camera_hint::{CameraHint, Trails};
 use super::metric::{Expected, Metric};
 use super::parts::{GRAVITY, cuboid, fixed, floor};
 use super::ragdolls::{bind_pose, placed, ragdoll_of_mannequin, spawn_at};
-use super::sight::{Sight, Trails};
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::mannequin::{Mannequin, mannequin};
 use sinew::anim::{Clip, LocalTransform, Rig, Wrap, analyze, local_to_model, rest_pose, sample};
@@ -12,7 +12,8 @@ use sinew::math::{Affine, Rotation, Transform, Vec3, max};
 use sinew::physics::{Velocity, World};
 use sinew::ragdoll::hand_over::{SpeedBound, body_velocities};
 use sinew::ragdoll::{
-    BodyState, BuildOptions, CharacterDef, DriveMode, Drives, Flesh, Muscle, Pin, Ragdoll, RagdollDef, build,
+    BodySettings, BodyState, BuildOptions, CharacterDef, DriveMode, Drives, Muscle, Pin, Ragdoll, RagdollDef,
+    build,
 };
 
 pub(super) const POWERED: Scene = Scene {
@@ -123,8 +124,8 @@ impl Script for Held {
         ]
     }
 
-    fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(0.3, 0.15, 1.0), trails: Trails::None, ..Sight::default() }
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint { direction: Vec3::new(0.3, 0.15, 1.0), trails: Trails::None, ..CameraHint::default() }
     }
 }
 
@@ -144,7 +145,7 @@ fn hit_reaction(setup: &Setup<'_>) -> Instance {
     let walk = Walk { def, walk };
     let dt = world.def().dt();
     let states = walk.states(0, dt);
-    let ragdoll = Ragdoll::spawn(&mut world, &walk.def.ragdoll, &states, &Flesh::default());
+    let ragdoll = Ragdoll::spawn(&mut world, &walk.def.ragdoll, &states, &BodySettings::default());
     let mut drives = Drives::new(&walk.def.ragdoll);
     drives.set_all(DriveMode::Pinned(Muscle::ALIVE, Pin { hertz: 4.0, ..Pin::FIRM }), 0.0);
     let start = vertical_momentum(&world, &ragdoll);
@@ -310,7 +311,7 @@ impl Script for Led {
         ]
     }
 
-    fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(0.8, 0.2, 0.6), trails: Trails::None, ..Sight::default() }
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint { direction: Vec3::new(0.8, 0.2, 0.6), trails: Trails::None, ..CameraHint::default() }
     }
 }

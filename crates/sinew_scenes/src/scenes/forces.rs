@@ -214,7 +214,7 @@ impl Script for Shot {
                 let Transform { translation, .. } = world.transform(block);
                 // It comes to rest in the middle of its way.
                 let point = translation + Vec3::Y * aside;
-                world.hit_by(block, self.mass, velocity, point);
+                world.apply_bullet_impact(block, self.mass, velocity, point);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! A scene that runs.
 
 use super::actors::Figure;
+use super::camera_hint::CameraHint;
 use super::metric::{Expected, Metric};
-use super::sight::Sight;
 use core::time::Duration;
 use sinew::math::{ReadError, Reader, Writer, max};
 use sinew::physics::stage::{NoProfiler, Profiler};
@@ -45,8 +45,8 @@ pub trait Script: Send {
     fn metrics(&self, world: &World) -> Vec<Metric>;
 
     /// View of the scene in a picture.
-    fn sight(&self) -> Sight {
-        Sight::default()
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint::default()
     }
 
     /// Draws what a picture shows beside the world, such as what it asks the world for.
@@ -100,8 +100,8 @@ impl Instance {
     }
 
     /// View of the scene in a picture.
-    pub fn sight(&self) -> Sight {
-        self.script.sight()
+    pub fn camera_hint(&self) -> CameraHint {
+        self.script.camera_hint()
     }
 
     /// Draws what a picture shows beside the world.

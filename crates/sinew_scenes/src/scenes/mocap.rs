@@ -1,9 +1,9 @@
 //! One actor's motion on characters of other sizes and builds.
 
 use super::actors::{Actor, Cast, Figure, Gone};
+use super::camera_hint::{CameraHint, Trails};
 use super::metric::{Expected, Metric};
 use super::parts::floor;
-use super::sight::{Sight, Trails};
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::mannequin::{WALK_SPEED, mannequin};
 use sinew::anim::retarget::{Body, Pace, RetargetError, RetargetOptions, Retargeted, retarget, stand};
@@ -271,8 +271,8 @@ impl Script for Retarget {
         ]
     }
 
-    fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(0.9, 0.12, 1.0), trails: Trails::None, ..Sight::default() }
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint { direction: Vec3::new(0.9, 0.12, 1.0), trails: Trails::None, ..CameraHint::default() }
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {
@@ -319,8 +319,8 @@ impl Script for Captured {
         ]
     }
 
-    fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(0.9, 0.12, 1.0), trails: Trails::None, ..Sight::default() }
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint { direction: Vec3::new(0.9, 0.12, 1.0), trails: Trails::None, ..CameraHint::default() }
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {

@@ -13,11 +13,11 @@
 //! ```
 
 mod actors;
+mod camera_hint;
 mod flight;
 mod instance;
 mod metric;
 mod setting;
-mod sight;
 mod stand;
 
 mod air;
@@ -74,10 +74,10 @@ mod water;
 mod weightless;
 
 pub use actors::Figure;
+pub use camera_hint::{CameraHint, Trails};
 pub use instance::{Instance, Part, Script};
 pub use metric::{Expected, Metric};
 pub use setting::{Domain, Setting, SettingError, Settings};
-pub use sight::{Sight, Trails};
 
 use crate::parts;
 use setting::Setup;

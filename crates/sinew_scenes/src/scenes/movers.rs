@@ -1,8 +1,8 @@
 //! Movers on a course: each in a lane of its own.
 
+use super::camera_hint::{CameraHint, Trails};
 use super::metric::{Expected, Metric};
 use super::parts::{GRAVITY, cuboid, fixed, floor, ghost};
-use super::sight::{Sight, Trails};
 use super::{Instance, Scene, Script, Setting, Setup};
 use sinew::math::{Rotation, Transform, Vec3, max};
 use sinew::physics::boxes::Aabb;
@@ -211,9 +211,9 @@ impl Script for Course {
         ]
     }
 
-    fn sight(&self) -> Sight {
+    fn camera_hint(&self) -> CameraHint {
         let bounds =
             Aabb { min: Vec3::new(-5.0, 0.0, lane(0) - 1.0), max: Vec3::new(8.0, 4.0, lane(5) + 1.0) };
-        Sight { direction: Vec3::new(-0.5, 0.9, 1.0), bounds: Some(bounds), trails: Trails::None }
+        CameraHint { direction: Vec3::new(-0.5, 0.9, 1.0), bounds: Some(bounds), trails: Trails::None }
     }
 }

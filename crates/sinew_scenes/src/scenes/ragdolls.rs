@@ -9,7 +9,7 @@ use crate::mannequin::mannequin;
 use sinew::anim::{Rig, analyze};
 use sinew::math::{Rotation, Transform, Vec3, max, min};
 use sinew::physics::{BodyId, Velocity, World};
-use sinew::ragdoll::{BodyState, BuildOptions, Flesh, QualityMeter, Ragdoll, RagdollDef, build};
+use sinew::ragdoll::{BodySettings, BodyState, BuildOptions, QualityMeter, Ragdoll, RagdollDef, build};
 
 pub(super) const DROP: Scene = Scene {
     name: "ragdoll_drop",
@@ -197,7 +197,7 @@ pub(super) fn spawn_at(
     let velocity = Velocity { linear: speed, angular: Vec3::ZERO };
     let state = |world_from_body| BodyState { world_from_body, velocity };
     let states: Vec<_> = placed(def, pose, turn, place).map(state).collect();
-    Ragdoll::spawn(world, def, &states, &Flesh::default())
+    Ragdoll::spawn(world, def, &states, &BodySettings::default())
 }
 
 /// Transforms of the bodies of a pose that is turned, its lowest point at the height of `place`.

@@ -1,9 +1,9 @@
 //! Things that should stay where they are put.
 
 use super::Script;
+use super::camera_hint::{CameraHint, Trails};
 use super::flight::Flight;
 use super::metric::{Expected, Metric};
-use super::sight::{Sight, Trails};
 use sinew::math::{Transform, Vec3, max};
 use sinew::physics::boxes::Aabb;
 use sinew::physics::{BodyId, World};
@@ -97,7 +97,7 @@ impl Script for Stand {
         ]
     }
 
-    fn sight(&self) -> Sight {
-        Sight { bounds: Some(self.bounds), trails: Trails::None, ..Sight::default() }
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint { bounds: Some(self.bounds), trails: Trails::None, ..CameraHint::default() }
     }
 }

@@ -1,9 +1,9 @@
 //! A street: characters with movers walk up and down among crates, some are hit, one rides a lift, one jumps.
 
 use super::actors::Figure;
+use super::camera_hint::{CameraHint, Trails};
 use super::metric::{Expected, Metric};
 use super::parts::{GRAVITY, cuboid, fixed, floor};
-use super::sight::{Sight, Trails};
 use super::{Instance, Scene, Script, Setting, Setup};
 use sinew::anim::local_to_model;
 use sinew::math::{Affine, Random, ReadError, Reader, Rotation, Transform, Vec3, Writer, max, min};
@@ -266,8 +266,8 @@ impl Script for Street {
         ]
     }
 
-    fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(0.5, 0.7, 1.0), bounds: None, trails: Trails::None }
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint { direction: Vec3::new(0.5, 0.7, 1.0), bounds: None, trails: Trails::None }
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {

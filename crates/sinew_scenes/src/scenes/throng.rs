@@ -1,10 +1,10 @@
 //! A crowd that walks, is hit in waves, falls over each other and gets up again.
 
 use super::actors::Figure;
+use super::camera_hint::{CameraHint, Trails};
 use super::instance::Part;
 use super::metric::{Expected, Metric};
 use super::parts::floor;
-use super::sight::{Sight, Trails};
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::demo::walking_mannequin;
 use sinew::anim::local_to_model;
@@ -208,8 +208,8 @@ impl Script for Throng {
         ]
     }
 
-    fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(0.6, 0.55, 1.0), bounds: None, trails: Trails::None }
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint { direction: Vec3::new(0.6, 0.55, 1.0), bounds: None, trails: Trails::None }
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {

@@ -2,9 +2,9 @@
 
 use super::actors::{Actor, Cast, Figure, Gone};
 use super::blending::facing;
+use super::camera_hint::CameraHint;
 use super::metric::{Expected, Metric};
 use super::parts::floor;
-use super::sight::Sight;
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::mannequin::drills::{punch, running};
 use sinew::anim::{ClipId, Decay, Easing, LocalTransform, Pose, TrackDef, Transition};
@@ -191,7 +191,7 @@ impl Script for Transitions {
         ]
     }
 
-    fn sight(&self) -> Sight {
+    fn camera_hint(&self) -> CameraHint {
         facing()
     }
 

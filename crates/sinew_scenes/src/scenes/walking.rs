@@ -1,9 +1,9 @@
 //! Characters that walk through a world.
 
 use super::actors::{Actor, Cast, Figure, Gone, mark_floor};
+use super::camera_hint::{CameraHint, Trails};
 use super::metric::{Expected, Metric};
 use super::parts::{body, fixed, floor, ghost};
-use super::sight::{Sight, Trails};
 use super::{Instance, Scene, Script, Setting, Setup};
 use crate::mannequin::drills::{Cycle, walking};
 use crate::mannequin::{Path, WALK_SPEED};
@@ -191,8 +191,8 @@ impl Script for RootWalk {
         ]
     }
 
-    fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(-0.35, 0.6, 1.0), trails: Trails::None, ..Sight::default() }
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint { direction: Vec3::new(-0.35, 0.6, 1.0), trails: Trails::None, ..CameraHint::default() }
     }
 
     fn draw(&self, _: &World, out: &mut dyn DebugDraw) {
@@ -344,8 +344,8 @@ impl Script for Uneven {
         ]
     }
 
-    fn sight(&self) -> Sight {
-        Sight { direction: Vec3::new(0.8, 0.32, 1.0), trails: Trails::None, ..Sight::default() }
+    fn camera_hint(&self) -> CameraHint {
+        CameraHint { direction: Vec3::new(0.8, 0.32, 1.0), trails: Trails::None, ..CameraHint::default() }
     }
 
     fn figures(&self) -> Vec<Figure<'_>> {

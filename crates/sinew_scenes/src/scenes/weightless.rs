@@ -6,7 +6,7 @@ use super::ragdolls::ragdoll_of_mannequin;
 use super::{Instance, Scene, Script, Setting, Setup};
 use sinew::math::{Random, Rotation, Transform, Vec3, max};
 use sinew::physics::{BodyId, JointId, Momentum, Sleeping, Velocity, World, WorldDef};
-use sinew::ragdoll::{BodyState, Flesh, Ragdoll};
+use sinew::ragdoll::{BodySettings, BodyState, Ragdoll};
 
 pub(super) const ZERO_GRAVITY_PILE: Scene = Scene {
     name: "zero_gravity_pile",
@@ -111,8 +111,8 @@ fn spinning_ragdoll(setup: &Setup<'_>) -> Instance {
     let state = |pose: Transform| BodyState { world_from_body: pose, velocity: Velocity::default() };
     let states: Vec<_> = def.bodies.iter().map(|body| state(body.character_from_body)).collect();
     // Tissue that slows spin down takes angular momentum.
-    let flesh = Flesh { angular_damping: 0.0, ..Flesh::default() };
-    let Ragdoll { bodies, joints, .. } = Ragdoll::spawn(&mut world, &def, &states, &flesh);
+    let body_settings = BodySettings { angular_damping: 0.0, ..BodySettings::default() };
+    let Ragdoll { bodies, joints, .. } = Ragdoll::spawn(&mut world, &def, &states, &body_settings);
     let axis = Vec3::new(3.0, 8.0, 2.0).normalize();
     let spin = Spin::start(&mut world, &bodies, joints, axis * setup.number("spin"));
     Instance::new(world, spin)

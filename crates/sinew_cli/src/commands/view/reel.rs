@@ -12,7 +12,7 @@ use sinew_picture::{
     Camera, Caption, EncodeError, Image, Line, LineDepth, Material, Movie, PictureFormat, RenderSettings,
     Renderer, Scene, Sky, Sun,
 };
-use sinew_scenes::scenes::{Expected, Figure, Instance, Metric, Sight, Trails};
+use sinew_scenes::scenes::{CameraHint, Expected, Figure, Instance, Metric, Trails};
 
 /// Pictures a second: a whole number of a GIF's hundredths of a second.
 const FPS: u32 = 20;
@@ -77,7 +77,7 @@ impl Reel<'_> {
         let progress = Progress::new("drawing", frames as usize);
         let mut renderer = Renderer::new(self.settings);
         let mut movie = Movie::new(format, FPS);
-        let mut take = Take { sight: rehearsal.sight, ..Take::new(subject.start()) };
+        let mut take = Take { hint: rehearsal.hint, ..Take::new(subject.start()) };
         for frame in 0..frames {
             take.step_to(time(frame));
             movie.push(&take.draw(self, &rehearsal.whole, &mut renderer))?;
@@ -90,7 +90,7 @@ impl Reel<'_> {
 /// A scene on its way, and where everything has been.
 struct Take {
     run: Instance,
-    sight: Sight,
+    hint: CameraHint,
     /// Around all that a picture is about, so far.
     whole: Aabb,
     /// Ways of the centres of mass so far, each with its colour.
@@ -107,9 +107,9 @@ struct Trail {
 
 impl Take {
     fn new(run: Instance) -> Self {
-        let sight = run.sight();
+        let hint = run.camera_hint();
         let looks = run.figures().iter().map(|figure| skin::looks(figure.rig)).collect();
-        let mut take = Self { sight, whole: Aabb::default(), trails: trails(&run, &sight), looks, run };
+        let mut take = Self { hint, whole: Aabb::default(), trails: trails(&run, &hint), looks, run };
         take.whole = take.now();
         take
     }
@@ -136,10 +136,10 @@ impl Take {
 
     /// Goes around what is shown, by quarters, to where least of what moves is hidden behind what stands.
     fn turn_to_see(&mut self) {
-        let Vec3 { x, y, z } = self.sight.direction;
+        let Vec3 { x, y, z } = self.hint.direction;
         let sides = [Vec3::new(x, y, z), Vec3::new(z, y, -x), Vec3::new(-z, y, x), Vec3::new(-x, y, -z)];
         // Of equal ones the first: the one that was asked for.
-        self.sight.direction = sides.into_iter().min_by_key(|&side| self.hidden(side)).unwrap_or(sides[0]);
+        self.hint.direction = sides.into_iter().min_by_key(|&side| self.hidden(side)).unwrap_or(sides[0]);
     }
 
     /// Number of the first bodies that move that are hidden.
@@ -158,7 +158,7 @@ impl Take {
         let moving = world::subject(self.run.world()).into_iter();
         let figures = self.run.figures().into_iter().filter_map(|figure| around(&figure));
         let all = moving.chain(self.lines().bounds()).chain(figures).reduce(|a, b| a.merge(&b));
-        self.sight.bounds.or(all).unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE))
+        self.hint.bounds.or(all).unwrap_or(Aabb::around(Vec3::ZERO, Vec3::ONE))
     }
 
     /// Lines that the scene draws beside its world.
@@ -191,7 +191,7 @@ impl Take {
         scene.lines.extend(self.trails.iter().flat_map(Trail::lines));
         let size = renderer.settings();
         let aspect = size.width as f32 / size.height as f32;
-        renderer.render(&scene, &Camera::framing_box(&shown, self.sight.direction, aspect))
+        renderer.render(&scene, &Camera::framing_box(&shown, self.hint.direction, aspect))
     }
 
     /// The part of `whole` that a picture shows: all of it, unless things are then too small to be seen; always all
@@ -242,11 +242,11 @@ fn around(figure: &Figure<'_>) -> Option<Aabb> {
     Some(bones.expand(FLESH * (bones.max - bones.min).max_element()))
 }
 
-fn trails(run: &Instance, sight: &Sight) -> Vec<Trail> {
+fn trails(run: &Instance, hint: &CameraHint) -> Vec<Trail> {
     let world = run.world();
     let bodies = world.body_ids().enumerate();
     let moving: Vec<_> = bodies.filter(|&(_, id)| world.kind(id) != BodyKind::Static).collect();
-    if sight.trails == Trails::None || moving.len() > MOST_TRAILS {
+    if hint.trails == Trails::None || moving.len() > MOST_TRAILS {
         return Vec::new();
     }
     let start = |(number, body)| Trail {

@@ -85,7 +85,7 @@ fn a_bullet_leaves_its_momentum() {
     let mut world = weightless();
     let block = world.add_body(&point_mass(2.0, Vec3::ZERO, Vec3::Y));
     let velocity = Vec3::new(400.0, 0.0, 0.0);
-    let impulse = world.hit_by(block, 0.01, velocity, Vec3::ZERO);
+    let impulse = world.apply_bullet_impact(block, 0.01, velocity, Vec3::ZERO);
     // (M V + m v)/(M + m), bullet and block together.
     let expected = (Vec3::Y * 2.0 + velocity * 0.01) / 2.01;
     let after = world.velocity(block);
@@ -107,7 +107,7 @@ fn a_bullet_off_centre_moves_on_with_the_point_it_struck() {
     });
     let (mass, velocity, point) = (0.5, Vec3::new(90.0, -20.0, 10.0), Vec3::new(-0.05, 0.15, 0.1));
     let before = world.momentum();
-    let impulse = world.hit_by(block, mass, velocity, point);
+    let impulse = world.apply_bullet_impact(block, mass, velocity, point);
     let struck = world.velocity(block).at(point);
     // What the bullet has left is what it did not give.
     assert!((struck - (velocity - impulse / mass)).length() < 1e-3, "{struck}");
@@ -123,7 +123,7 @@ fn a_wall_stops_a_bullet() {
     let mut world = weightless();
     let wall = box_body(Vec3::ONE, Vec3::ZERO);
     let wall = world.add_body(&BodyDef { kind: BodyKind::Static, ..wall });
-    let impulse = world.hit_by(wall, 0.01, Vec3::X * 300.0, Vec3::NEG_X);
+    let impulse = world.apply_bullet_impact(wall, 0.01, Vec3::X * 300.0, Vec3::NEG_X);
     assert!((impulse - Vec3::X * 3.0).length() < 1e-5);
     assert!(world.velocity(wall).is_zero());
 }

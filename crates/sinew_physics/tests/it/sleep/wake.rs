@@ -32,7 +32,7 @@ fn what_is_done_to_a_body_wakes_it() {
     wakes("an impulse", |nap| nap.world.apply_impulse_at_center(nap.sleeper, tiny));
     wakes("an angular impulse", |nap| nap.world.apply_angular_impulse(nap.sleeper, tiny));
     wakes("a bullet", |nap| {
-        nap.world.hit_by(nap.sleeper, 0.01, Vec3::X, Vec3::Y * 0.2);
+        nap.world.apply_bullet_impact(nap.sleeper, 0.01, Vec3::X, Vec3::Y * 0.2);
     });
     wakes("a velocity", |nap| nap.world.set_velocity(nap.sleeper, Velocity::default()));
     wakes("a place", |nap| nap.world.set_transform(nap.sleeper, nap.world.transform(nap.sleeper)));

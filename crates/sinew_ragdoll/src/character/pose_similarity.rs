@@ -31,7 +31,7 @@ pub(super) struct Stance {
 
 /// Motion that brings one stance to another, and the distance that is left.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Likeness {
+pub(super) struct PoseSimilarity {
     /// A turn about the vertical, then a move.
     pub motion: Transform,
     /// Distance that is left then: root of the weighted mean of squared distances, metres.
@@ -103,7 +103,7 @@ impl Landmarks {
     }
 
     /// Brings `from` to `to`, which lies on the ground as `from` does: their lowest points come to one height.
-    pub fn compare(&self, from: &Stance, to: &Stance) -> Likeness {
+    pub fn compare(&self, from: &Stance, to: &Stance) -> PoseSimilarity {
         let middle = |stance: &Stance| {
             let mean =
                 self.weights.iter().zip(&stance.points).fold(Vec3::ZERO, |sum, (&w, &point)| sum + point * w);
@@ -121,6 +121,6 @@ impl Landmarks {
         let turn = Rotation::from_axis_angle(Vec3::Y, trig::atan2(sin, cos));
         let squares = pairs().fold(0.0, |sum, (w, a, b)| sum + w * (turn * a - b).length_squared());
         let motion = Transform::new(to_middle - turn * from_middle, turn);
-        Likeness { motion, distance: squares.sqrt() }
+        PoseSimilarity { motion, distance: squares.sqrt() }
     }
 }

@@ -5,7 +5,7 @@ use sinew::physics::boxes::Aabb;
 
 /// From where a picture looks at a scene, and at what.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
+pub struct CameraHint {
     /// Toward the camera, any length. Default a little from above and from the right of a viewer who looks along −z.
     pub direction: Vec3,
     /// Bounds of what has to be on the picture, world space, metres. Default whatever moves.
@@ -23,7 +23,7 @@ pub enum Trails {
     None,
 }
 
-impl Default for Sight {
+impl Default for CameraHint {
     fn default() -> Self {
         Self { direction: Vec3::new(0.35, 0.3, 1.0), bounds: None, trails: Trails::Few }
     }

@@ -1,25 +1,25 @@
 //! Bodies that a definition lacks, from a build of its rig.
 
-use super::Patient;
+use super::Repair;
 use super::exam::anchors;
 use crate::def::{RagdollDef, RagdollJointDef};
 use sinew_math::Transform;
 
 /// Adds the body of a role, and what hangs on it in the rig and is missing too; false if the rig is not at hand or has
 /// no such bone.
-pub(super) fn missing(patient: &mut Patient, role: &str) -> bool {
-    let Some(rig) = patient.reference.clone() else { return false };
+pub(super) fn add_missing(repair: &mut Repair, role: &str) -> bool {
+    let Some(rig) = repair.reference.clone() else { return false };
     let Some(found) = rig.bodies.iter().position(|body| body.role == role) else { return false };
     let mut added = false;
     for body in found..rig.bodies.len() {
         let hangs_there = body == found || is_below(&rig, body, found);
-        if hangs_there && !patient.def.bodies.iter().any(|own| own.bone == rig.bodies[body].bone) {
-            add(&mut patient.def, &rig, body);
+        if hangs_there && !repair.def.bodies.iter().any(|own| own.bone == rig.bodies[body].bone) {
+            add(&mut repair.def, &rig, body);
             added = true;
         }
     }
     if added {
-        put_in_order(&mut patient.def, &mut patient.springs);
+        put_in_order(&mut repair.def, &mut repair.springs);
     }
     added
 }
