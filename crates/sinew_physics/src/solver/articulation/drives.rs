@@ -112,10 +112,11 @@ impl SolverJoint {
         let open = core::array::from_fn(|i| always || motor(i));
         self.rows = JointRows::new(&self.geometry, &self.pose, open);
         self.rigid = if self.drive.weld.is_some() { 0 } else { self.rows.locked };
-        self.left_open = core::array::from_fn(|row| {
+        self.left_open = ZERO6;
+        for row in 0..self.rows.locked {
             let most = if self.rows.turns(row) { CLOSING_SPIN } else { CLOSING_SPEED };
-            self.rows.error[row] - clamp(self.rows.error[row], -most * h, most * h)
-        });
+            self.left_open[row] = self.rows.error[row] - clamp(self.rows.error[row], -most * h, most * h);
+        }
         self.soft = [SoftRow::default(); DIRECTIONS];
         self.driven = [SoftRow::default(); DIRECTIONS];
         if self.rigid < self.rows.count {
