@@ -601,11 +601,3 @@ pub(super) const MIDPOINT_TOLERANCE: f32 = 1e-12;
 /// Within a quarter of a turn, should the world's limit allow more: beyond `π/2` the tangent of the Cayley map changes sign. Smaller:
 /// fast spins are not on the midpoint. Sensible from 0.8 to 1.5. Shown by the tests of `solver/motion`.
 pub(super) const MOST_HALF_TURN: f32 = 1.2;
-
-/// Mass of a strand over that of its lightest link from which on its factor takes 64 bits, a ratio.
-///
-/// Inertias that cancel leave this many times the last digit of 32, and a thousandth of a percent is corrected with the positions.
-/// Larger: gaps in chains with a heavy end. Smaller: chains that need it not take two registers for one (with the first solve along
-/// arcs, `chain_100_links` went from 5.76 to 5.16 M instructions a step; ADR 0018). Sensible from 16 to 4,096. Shown by
-/// `chain_100_links` and `heavy_rope`.
-pub(super) const STRAND_SINGLE_RATIO: f32 = 256.0;

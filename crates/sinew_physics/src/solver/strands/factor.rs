@@ -2,78 +2,10 @@
 
 use super::super::articulation::elimination::{Freedom, Inertia, Swivel, Symmetric, zero};
 use super::super::flight::{Eight, load, store};
+use super::super::motion::{narrow, widen};
 use super::link::{Hook, Link, load_turn};
 use super::substep::Pace;
-use crate::solver::tuning::STRAND_SINGLE_RATIO;
-use sinew_math::lanes::{Lanes, Real, Vector3};
-use sinew_math::min;
-
-/// Digits that a factor is computed with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Digits {
-    /// 32 bits, where a link feels at most [`STRAND_SINGLE_RATIO`] times its mass.
-    #[default]
-    Single,
-    /// 64 bits.
-    Double,
-}
-
-impl Digits {
-    /// For a strand of such masses, kg.
-    pub fn of(masses: impl Iterator<Item = f32>) -> Self {
-        let (whole, lightest) =
-            masses.fold((0.0, f32::INFINITY), |(sum, least), mass| (sum + mass, min(least, mass)));
-        if whole <= STRAND_SINGLE_RATIO * lightest { Self::Single } else { Self::Double }
-    }
-}
-
-/// Numbers of eight lanes with the digits of a factor.
-trait Precise<L: Lanes> {
-    type Number: Real;
-    fn widen(number: L) -> Self::Number;
-    fn narrow(number: Self::Number) -> L;
-}
-
-struct Single;
-struct Double;
-
-impl<L: Lanes> Precise<L> for Single {
-    type Number = L;
-
-    #[inline(always)]
-    fn widen(number: L) -> L {
-        number
-    }
-
-    #[inline(always)]
-    fn narrow(number: L) -> L {
-        number
-    }
-}
-
-impl<L: Lanes> Precise<L> for Double {
-    type Number = L::Wide;
-
-    #[inline(always)]
-    fn widen(number: L) -> L::Wide {
-        number.widen()
-    }
-
-    #[inline(always)]
-    fn narrow(number: L::Wide) -> L {
-        L::narrow(number)
-    }
-}
-
-#[inline(always)]
-fn widen<L: Lanes, P: Precise<L>>(v: Vector3<L>) -> Vector3<P::Number> {
-    Vector3::new(P::widen(v.x), P::widen(v.y), P::widen(v.z))
-}
-
-#[inline(always)]
-fn narrow<L: Lanes, P: Precise<L>>(v: Vector3<P::Number>) -> Vector3<L> {
-    Vector3::new(P::narrow(v.x), P::narrow(v.y), P::narrow(v.z))
-}
+use sinew_math::lanes::{Lanes, Vector3};
 
 /// Arms of the joints at the present pose.
 #[inline(always)]
@@ -106,16 +38,8 @@ pub(super) fn place_gaps<L: Lanes>(links: &mut [Link], hook: Option<&Hook>) {
 /// inertia. All that a link feels of those below it is a mass at the joint, which depends on the direction.
 #[inline(always)]
 pub(super) fn factor<L: Lanes>(links: &mut [Link], is_held: bool, pace: &Pace) {
-    match pace.digits {
-        Digits::Single => factor_with::<L, Single>(links, is_held, pace.h),
-        Digits::Double => factor_with::<L, Double>(links, is_held, pace.h),
-    }
-}
-
-#[inline(always)]
-fn factor_with<L: Lanes, P: Precise<L>>(links: &mut [Link], is_held: bool, h: f32) {
-    let (none, h2) = (L::splat(0.0), L::splat(h * h));
-    let mut below = Below::<L, P> { mass: Symmetric::zero(), arm: zero::<L>(), stiffness: zero::<L>() };
+    let (none, h2) = (L::splat(0.0), L::splat(pace.h * pace.h));
+    let mut below = Below { mass: Symmetric::zero(), arm: zero::<L>(), stiffness: zero::<L>() };
     for (i, link) in links.iter_mut().enumerate().rev() {
         let (arm, parent_arm, force) =
             (load::<L>(&link.arm), load::<L>(&link.parent_arm), load::<L>(&link.force));
@@ -125,26 +49,26 @@ fn factor_with<L: Lanes, P: Precise<L>>(links: &mut [Link], is_held: bool, h: f3
         let excess = Vector3::new(L::max(excess.x, none), L::max(excess.y, none), L::max(excess.z, none));
         store(excess, &mut link.excess);
         let tensor = load_turn::<L>(&link.rotation).rotated_diagonal(inertia + excess);
-        let whole = at_anchor::<L, P>(tensor, L::load(&link.mass), arm, &below);
+        let whole = at_anchor::<L>(tensor, L::load(&link.mass), arm, &below);
         let is_jointed = i > 0 || is_held;
         let mut swivel = Swivel::at_anchor(if is_jointed { Freedom::Rotation } else { Freedom::All }, whole);
         let through = swivel.factor().mass;
         let (pivot, coupled) = swivel.pivots();
-        keep::<L, P>(&pivot, &mut link.pivot);
+        keep::<L>(&pivot, &mut link.pivot);
         for (row, kept) in coupled.into_iter().zip(&mut link.coupled) {
-            store(narrow::<L, P>(row), kept);
+            store(narrow::<L>(row), kept);
         }
         let passed = if is_jointed { through } else { swivel.inverse_mass() };
-        keep::<L, P>(&passed, &mut link.passed);
+        keep::<L>(&passed, &mut link.passed);
         let pull = L::max(-parent_arm.dot(force), none) * h2;
         below = Below { mass: through, arm: parent_arm, stiffness: load::<L>(&link.parent_stiffness) * pull };
     }
 }
 
 /// Inertia that a link feels of those below it.
-struct Below<L: Lanes, P: Precise<L>> {
+struct Below<L: Lanes> {
     /// At the joint, kg.
-    mass: Symmetric<P::Number>,
+    mass: Symmetric<L::Wide>,
     /// From the link's centre of mass to the joint, world axes.
     arm: Vector3<L>,
     /// Moments that the joint's pull adds to the link, kg·m².
@@ -153,15 +77,14 @@ struct Below<L: Lanes, P: Precise<L>> {
 
 /// Articulated inertia about the anchor of a link with such a tensor about its centre: diagonal, and yz, xz, xy.
 #[inline(always)]
-fn at_anchor<L: Lanes, P: Precise<L>>(
+fn at_anchor<L: Lanes>(
     [diagonal, off]: [Vector3<L>; 2],
     mass: L,
     arm: Vector3<L>,
-    below: &Below<L, P>,
-) -> Inertia<P::Number> {
-    let (d, o) = (widen::<L, P>(diagonal), widen::<L, P>(off));
-    let (mass, r) = (P::widen(mass), widen::<L, P>(arm));
-    let mut whole = below.mass.at(r - widen::<L, P>(below.arm));
+    below: &Below<L>,
+) -> Inertia<L::Wide> {
+    let (d, o, mass, r) = (widen(diagonal), widen(off), mass.widen(), widen(arm));
+    let mut whole = below.mass.at(r - widen(below.arm));
     let [a, b, c] = &mut whole.coupling;
     let m = r * mass;
     (a.y, a.z) = (a.y - m.z, a.z + m.y);
@@ -178,9 +101,9 @@ fn at_anchor<L: Lanes, P: Precise<L>>(
 
 /// With the digits of the solve.
 #[inline(always)]
-fn keep<L: Lanes, P: Precise<L>>(Symmetric(from): &Symmetric<P::Number>, to: &mut [Eight; 6]) {
+fn keep<L: Lanes>(Symmetric(from): &Symmetric<L::Wide>, to: &mut [Eight; 6]) {
     for (number, row) in from.iter().zip(to) {
-        P::narrow(*number).store(row);
+        L::narrow(*number).store(row);
     }
 }
 

@@ -42,9 +42,6 @@ pub(super) fn ascend<L: Lanes>(links: &mut [Link], is_held: bool, asked: Asked, 
         if asked != Asked::Rest {
             wanted = wanted - load::<L>(&link.gap) * rate;
         }
-        if asked == Asked::Closed {
-            wanted = wanted - bow::<L>(link, before.last()) * L::splat(0.5 * h);
-        }
         store(wanted, &mut link.asked);
         force = force - passed.times(wanted);
         arm_below = load(&link.parent_arm);
@@ -61,23 +58,6 @@ fn slide<L: Lanes>(link: &Link, parent: Option<&Link>) -> Vector3<L> {
         }
         None => of_body,
     }
-}
-
-/// Acceleration of a body's anchor against that of its parent because both go about their centres on circles, `ω × (ω × r)`: without it
-/// the first solve would open each joint by `½ h² ω² r`.
-#[inline(always)]
-fn bow<L: Lanes>(link: &Link, parent: Option<&Link>) -> Vector3<L> {
-    let of_body = inward::<L>(load(&link.spin), load(&link.arm));
-    match parent {
-        Some(parent) => of_body - inward(load(&parent.spin), load(&link.parent_arm)),
-        None => of_body,
-    }
-}
-
-/// `ω × (ω × r)`
-#[inline(always)]
-fn inward<L: Lanes>(spin: Vector3<L>, arm: Vector3<L>) -> Vector3<L> {
-    spin.cross(spin.cross(arm))
 }
 
 /// Answer of a link, from the answer of its parent.

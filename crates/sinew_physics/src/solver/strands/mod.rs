@@ -20,7 +20,6 @@ use crate::island::Island;
 use crate::joint::Joint;
 use crate::slices::for_each_mut;
 use crate::stage::Counter;
-use factor::Digits;
 use link::{Hook, Link};
 use order::Order;
 use sinew_math::Vec3;
@@ -40,25 +39,17 @@ pub(crate) struct Strands {
     order: Order,
 }
 
-/// Properties that strands side by side have in common, beside their length.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Kind {
-    /// A fixed body holds the first link.
-    is_held: bool,
-    /// Length of their substeps over that of the world's.
-    stretch: f32,
-    digits: Digits,
-}
-
-/// Up to eight strands of one length and kind.
+/// Up to eight strands of one length, each held by a fixed body or all free.
 #[derive(Clone, Debug)]
 struct Bundle {
     /// Numbers of the islands, lane by lane.
     islands: Vec<u32>,
     /// From the held end on.
     links: Vec<Link>,
-    kind: Kind,
+    is_held: bool,
     hook: Hook,
+    /// Length of its substeps over that of the world's.
+    stretch: f32,
     /// Strands beside which the other lanes have last been filled.
     filled: usize,
     /// Lanes that the islands' solver is to take, bit by bit.
@@ -84,23 +75,20 @@ impl Strands {
         if !self.order.find(island, view) {
             return;
         }
-        let count = self.order.links.len();
-        let kind = Kind {
-            is_held: self.order.is_held(),
-            stretch: stretch_of(island, view),
-            digits: Digits::of(island.bodies.iter().map(|&body| view.bodies.at(body).mass)),
-        };
+        let (count, is_held, stretch) =
+            (self.order.links.len(), self.order.is_held(), stretch_of(island, view));
         let fits = |bundle: &Bundle| {
-            bundle.islands.len() < WIDTH && bundle.links.len() == count && bundle.kind == kind
+            let has_room = bundle.islands.len() < WIDTH;
+            has_room && bundle.links.len() == count && bundle.is_held == is_held && bundle.stretch == stretch
         };
         let first = self.used.saturating_sub(OPEN);
         let place = self.bundles[first..self.used].iter().rposition(fits);
         let place = place.map_or_else(|| self.open(count), |place| first + place);
         let bundle = &mut self.bundles[place];
-        bundle.kind = kind;
+        (bundle.is_held, bundle.stretch) = (is_held, stretch);
         let lane = bundle.islands.len();
         bundle.islands.push(number as u32);
-        if let Some(first) = self.order.links.first().filter(|_| kind.is_held) {
+        if let Some(first) = self.order.links.first().filter(|_| is_held) {
             bundle.hook.write(lane, first, view);
         }
         for (link, placed) in bundle.links.iter_mut().zip(&self.order.links) {
@@ -127,14 +115,13 @@ impl Strands {
     /// Takes all of them through a step.
     pub fn run(&mut self, view: &View<'_>, context: &StepContext<'_>) {
         for_each_mut(context.runner, &mut self.bundles[..self.used], |bundle| {
-            let (h, substeps) = view.pace.stretched(bundle.kind.stretch);
-            let [max_speed, max_spin] = [view.def.max_speed, view.def.max_turn / h];
-            bundle.run(Pace { h, substeps, max_speed, max_spin, digits: bundle.kind.digits });
+            let (h, substeps) = view.pace.stretched(bundle.stretch);
+            bundle.run(Pace { h, substeps, max_speed: view.def.max_speed, max_spin: view.def.max_turn / h });
         });
         if context.profiler.is_counting() {
             for strand in self.solved() {
                 let links = strand.bundle.links.len() as u64;
-                let (_, substeps) = view.pace.stretched(strand.bundle.kind.stretch);
+                let (_, substeps) = view.pace.stretched(strand.bundle.stretch);
                 context.profiler.count(Counter::Bodies, links);
                 context.profiler.count(Counter::BodySubsteps, links * u64::from(substeps));
                 context.profiler.count(Counter::Joints, strand.joint_links().count() as u64);
@@ -155,8 +142,9 @@ impl Bundle {
     const EMPTY: Self = Self {
         islands: Vec::new(),
         links: Vec::new(),
-        kind: Kind { is_held: false, stretch: 1.0, digits: Digits::Single },
+        is_held: false,
         hook: Hook::EMPTY,
+        stretch: 1.0,
         filled: 0,
         left: 0,
     };
@@ -168,7 +156,7 @@ impl Bundle {
             self.hook.fill(lanes);
             self.filled = lanes;
         }
-        let hook = self.kind.is_held.then_some(&self.hook);
+        let hook = self.is_held.then_some(&self.hook);
         let advance = Advance { links: &mut self.links, hook, pace, lanes };
         self.left = if lanes > 1 { dispatch::run(advance) } else { dispatch::run(Alone(advance)) };
     }

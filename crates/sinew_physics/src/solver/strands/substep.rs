@@ -1,7 +1,7 @@
 //! The substeps of eight strands side by side.
 
 use super::super::flight::load;
-use super::factor::{Digits, factor, place_arms, place_gaps};
+use super::factor::{factor, place_arms, place_gaps};
 use super::joints::{Asked, ascend, descend, descend_ahead, largest, take_back};
 use super::link::{Hook, Link};
 use super::motion::{Kinetic, end_substep, integrate_position, integrate_velocity, work_of_forces};
@@ -21,7 +21,6 @@ pub(super) struct Pace {
     /// Limits, m/s and rad/s.
     pub max_speed: f32,
     pub max_spin: f32,
-    pub digits: Digits,
 }
 
 /// A step of a bundle. Gives the lanes in which a safeguard of the islands would have acted, bit by bit: what has come of these means
@@ -53,29 +52,26 @@ impl Kernel for Advance<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> u8 {
         let Self { links, hook, pace, lanes } = self;
-        let (bounds, is_held) = (Bounds::of(links), hook.is_some());
+        let bounds = Bounds::of(links);
+        place_arms::<L>(links);
+        place_gaps::<L>(links, hook);
+        factor::<L>(links, hook.is_some(), &pace);
         let used = first_lanes::<L>(lanes);
         let mut sound = used;
-        let mut started = None;
-        for substep in 0..=pace.substeps {
-            place_arms::<L>(links);
-            factor::<L>(links, is_held, &pace);
-            if let Some(Kinetic { start, .. }) = started {
-                relax::<L>(links, is_held, pace.h, used);
-                let end = end_substep::<L>(links, is_held);
-                // Joints cannot give energy.
-                let slack = L::max(start, bounds.mass) * L::splat(ENERGY_SLACK);
-                sound = sound & L::le(end, start + slack);
-            } else {
-                place_gaps::<L>(links, hook);
-            }
-            if substep == pace.substeps || !sound.any() {
-                break;
-            }
+        for _ in 0..pace.substeps {
             let kinetic = integrate_velocity::<L>(links, &pace);
             sound = sound & solve::<L>(links, hook, &pace, kinetic, bounds, used);
-            integrate_position::<L>(links, is_held, &pace);
-            started = Some(kinetic);
+            integrate_position::<L>(links, hook.is_some(), &pace);
+            place_arms::<L>(links);
+            factor::<L>(links, hook.is_some(), &pace);
+            relax::<L>(links, hook.is_some(), pace.h, used);
+            let end = end_substep::<L>(links, hook.is_some());
+            // Joints cannot give energy.
+            let slack = L::max(kinetic.start, bounds.mass) * L::splat(ENERGY_SLACK);
+            sound = sound & L::le(end, kinetic.start + slack);
+            if !sound.any() {
+                break;
+            }
         }
         !sound.bits()
     }
@@ -209,8 +205,7 @@ mod tests {
     use sinew_math::dispatch::{self, Level, run_at};
     use sinew_math::{Random, Vec3};
 
-    const PACE: Pace =
-        Pace { h: 1.0 / 240.0, substeps: 4, max_speed: 4000.0, max_spin: 377.0, digits: Digits::Double };
+    const PACE: Pace = Pace { h: 1.0 / 240.0, substeps: 4, max_speed: 4000.0, max_spin: 377.0 };
 
     /// Level strands that swing, each with masses and velocities of its own.
     fn random_links(count: usize) -> Vec<Link> {
