@@ -31,7 +31,7 @@ pub trait Kernel {
     type Output;
 
     /// Runs it with `L` for eight lanes. To be marked `#[inline(always)]`, as all that it calls:
-    /// see [`lanes`](crate::lanes).
+    /// see [`lanes`].
     fn run<L: Lanes>(self) -> Self::Output;
 }
 

@@ -160,7 +160,7 @@ fn forces() {
         f.world.apply_bullet_impact(f.body, mass, velocity, point);
     };
     refuses("apply_bullet_impact", &[f32::NAN, f32::INFINITY, 0.0, -1.0], |f, x| {
-        hit(f, x, Vec3::X, Vec3::ZERO)
+        hit(f, x, Vec3::X, Vec3::ZERO);
     });
     refuses_in("apply_bullet_impact at a speed", |f, v| hit(f, 1.0, v, Vec3::ZERO));
     refuses_in("apply_bullet_impact at", |f, v| hit(f, 1.0, Vec3::X, v));
