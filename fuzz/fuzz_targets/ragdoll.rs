@@ -4,7 +4,7 @@
 use libfuzzer_sys::fuzz_target;
 use sinew_formats::{read_ragdoll, write_ragdoll};
 use sinew_physics::{World, WorldDef};
-use sinew_ragdoll::{BodyState, BodySettings, Ragdoll};
+use sinew_ragdoll::{BodySettings, BodyState, Ragdoll};
 
 /// Bodies that a world is made of: more only take longer.
 const MOST_BODIES: usize = 12;
