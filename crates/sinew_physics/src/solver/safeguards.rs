@@ -66,13 +66,13 @@ impl IslandSolver {
             let range = first..first + count;
             let fast = self.velocities[range.clone()].iter().any(|v| angular(v).length() > most);
             if count > 1 && fast {
-                self.calm_tree(range, most);
+                self.limit_inner_turn_of(range, most);
             }
             first += count;
         }
     }
 
-    fn calm_tree(&mut self, range: core::ops::Range<usize>, most: f32) {
+    fn limit_inner_turn_of(&mut self, range: core::ops::Range<usize>, most: f32) {
         let rigid = if self.links[range.start].joint == NONE {
             RigidMotion::of(&self.bodies[range.clone()], &self.velocities[range.clone()])
         } else {

@@ -19,7 +19,7 @@ pub(super) const DAMPED_CONTACTS: usize = 32;
 
 /// Contacts per body from which on an island with limp joints takes half of the substeps, a ratio.
 ///
-/// What lies takes half of them, what swings or flies all. Sensible from 0.1 to 1. Larger: heaps of figures cost more. Smaller: what
+/// Bodies that lie take half of them, those that swing or fly all. Sensible from 0.1 to 1. Larger: heaps of figures cost more. Smaller: what
 /// hangs by its joints and hardly touches swings in the longer substep. Shown by `ragdoll_pile`; the tests of `bobs` swing beneath a
 /// heap.
 pub(super) const DAMPED_CONTACTS_PER_BODY: f32 = 0.25;
@@ -186,14 +186,14 @@ pub(super) const DEAD_ZONE: f32 = 0.2;
 
 /// Overlap in slops beyond which a contact is deep, and its island may gain the height that brings it out, a number.
 ///
-/// Where one is, 0.1 % of kinetic energy (or of 1 J/kg) is free in each substep: what is crushed must get out (ADR 0011). Larger: a
+/// If there is one, 0.1 % of kinetic energy (or of 1 J/kg) is free in each substep: what is crushed must get out (ADR 0011). Larger: a
 /// hand under a thigh stays in. Smaller: what stands on soft contacts may rock for ever. Sensible from 1 to 5. Shown by
 /// `ragdoll_poses`, `heavy_foot`.
 pub(super) const DEEP_SLOPS: f32 = 2.0;
 
 /// Factor by which an impulse must grow within a substep to count as an impact, a number.
 ///
-/// What lasts is kept, an impact is not repeated: repeating it gave 141° of limit overshoot and +214 J (docs/step.md). Contacts judge
+/// A load that lasts is kept, an impact is not repeated: repeating it gave 141° of limit overshoot and +214 J (docs/step.md). Contacts judge
 /// it for the whole manifold. Larger: blows are given twice. Near 1: loads that grow are started from too little. Sensible from 1.5 to
 /// 4. Shown by `ragdoll_wall`.
 pub(super) const IMPACT_JUMP: f32 = 2.0;
@@ -463,7 +463,7 @@ pub(super) const FASTEST_SPRING: f32 = 1.0;
 
 /// Factor on the least damping with which springs of too little mass are stable, a number.
 ///
-/// Where that is not there the spring is implicit Euler: what carries a figure by its hand must not shake when that is all that moves.
+/// Without it the spring is implicit Euler: what carries a figure by its hand must not shake when that is all that moves.
 /// Larger: more springs lose their poles. Below 1: they shake. Sensible from 1 to 2. Shown by the test
 /// `pins::an_underdamped_pin_on_a_light_end_does_not_shake`.
 pub(super) const SPRING_MARGIN: f32 = 1.1;
@@ -532,7 +532,7 @@ pub(super) const STANDING_SPEED: f32 = 0.1;
 
 /// Mass of a body at least, per impulse that cancels itself on it in a substep, kg/(N·s).
 ///
-/// What bears less than 4,000 times its weight has no mass scaling, and an ulp of that impulse is worth 1e-5 m/s. Larger: what is squeezed
+/// A body that bears less than 4,000 times its weight has no mass scaling, and an ulp of that impulse is worth 1e-5 m/s. Larger: what is squeezed
 /// is slow to move. Smaller: an ulp of the load of a tower tosses its lowest cube, by 4 m/s (ADR 0015). Sensible from 1e-3 to 0.05.
 /// Shown by `stack_mass_ratio`, the test `stacks::towers_of_any_masses_stand_on_a_floor_that_bears_their_weight`.
 pub(super) const MASS_SCALE: f32 = 6e-3;

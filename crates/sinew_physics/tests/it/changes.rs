@@ -1,4 +1,4 @@
-//! What a user changes of bodies and shapes while the world runs: the next step must know all of it.
+//! Changes of bodies and shapes by the user while the world runs: the next step must know all of them.
 
 use crate::build::{box_body, floor, sphere_body};
 use sinew_math::{Random, Range, Reader, Rotation, Transform, Vec3, Writer};
