@@ -1,7 +1,7 @@
 //! Vectors whose coordinates are [`Real`]s.
 
 use super::{Lanes, Real, WIDTH};
-use crate::Vec3;
+use crate::{Rotation, Vec3};
 use core::ops::{Add, Mul, Neg, Sub};
 
 /// A vector, or one in each lane. Sums are taken in the order in which [`Vec3`] takes them, so that the bits are equal.
@@ -26,6 +26,14 @@ impl<R: Real> Vector3<R> {
     #[inline(always)]
     pub fn splat(v: Vec3) -> Self {
         Self::new(R::splat(v.x), R::splat(v.y), R::splat(v.z))
+    }
+
+    /// The vector after a rotation, the same in every lane, with the bits of `by * v`.
+    #[inline(always)]
+    pub fn turned(self, by: Rotation) -> Self {
+        let axis = Self::splat(by.vector());
+        let across = axis.cross(self) * R::splat(2.0);
+        self + across * R::splat(by.w) + axis.cross(across)
     }
 
     /// The coordinates.

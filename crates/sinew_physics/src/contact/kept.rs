@@ -6,6 +6,8 @@ use crate::body::shape::Shape;
 use crate::collide::{MAX_POINTS, Manifold};
 use crate::contact::ContactKey;
 use crate::contact::SPECULATIVE_SLOPS;
+use sinew_math::dispatch::{self, Kernel};
+use sinew_math::lanes::{LaneMask, Lanes, Vector3, WIDTH};
 use sinew_math::{ReadError, Reader, Rotation, Transform, Vec3, Writer};
 
 /// Points of the two bodies may slip past each other by so much of the slop before the manifold is found anew: 2 mm of crates.
@@ -29,8 +31,37 @@ pub(crate) struct Kept {
     margin: f32,
     /// Slop of the two shapes, metres.
     slop: f32,
-    /// Place of each point on the surfaces of A and B, in their frames.
-    points: [[Vec3; 2]; MAX_POINTS],
+    /// Places of the points on the surfaces of A and B, in their frames.
+    places: Places,
+}
+
+/// Places of four points on two surfaces: rows of x, y and z on A, then of those on B. The last row is there so that eight numbers
+/// can be read from the start of any other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Places([[f32; MAX_POINTS]; 7]);
+
+impl Places {
+    fn put(&mut self, point: usize, on: [Vec3; 2]) {
+        for (row, number) in self.0.iter_mut().zip(on.into_iter().flat_map(|place| place.to_array())) {
+            row[point] = number;
+        }
+    }
+
+    fn get(&self, point: usize) -> [Vec3; 2] {
+        [0, 3]
+            .map(|first| Vec3::new(self.0[first][point], self.0[first + 1][point], self.0[first + 2][point]))
+    }
+
+    /// Places on a surface in the first lanes; what others hold means nothing.
+    #[inline(always)]
+    fn on<L: Lanes>(&self, side: usize) -> Vector3<L> {
+        let rows = self.0.as_flattened();
+        let row = |number: usize| {
+            let from = &rows[(3 * side + number) * MAX_POINTS..];
+            L::load(from.first_chunk().expect("there is a row more"))
+        };
+        Vector3::new(row(0), row(1), row(2))
+    }
 }
 
 /// True if a direction in the frame of a solid is that of the normal of one of its faces.
@@ -61,11 +92,12 @@ impl Kept {
         if of_b && !of_face(1, &pose_b, -n) {
             return Self::default();
         }
-        let mut points = [[Vec3::ZERO; 2]; MAX_POINTS];
-        for (kept, point) in points.iter_mut().zip(manifold.points()) {
+        let mut places = Places::default();
+        for (k, point) in manifold.points().iter().enumerate() {
             let half = n * (0.5 * point.separation);
-            *kept =
+            let on =
                 [pose_a.inverse_point(point.position - half), pose_b.inverse_point(point.position + half)];
+            places.put(k, on);
         }
         let frame = if of_b { pose_b } else { pose_a };
         Self {
@@ -75,7 +107,7 @@ impl Kept {
             of_b,
             margin,
             slop,
-            points,
+            places,
         }
     }
 
@@ -91,24 +123,7 @@ impl Kept {
             return false;
         }
         let normal = if self.of_b { pose_b } else { pose_a }.rotation * self.normal;
-        let offset = pose_b.translation - pose_a.translation;
-        let most = SLIP * self.slop * (SLIP * self.slop);
-        let mut renewed = *manifold;
-        renewed.normal = normal;
-        for (point, [on_a, on_b]) in renewed.points[..self.count].iter_mut().zip(&self.points) {
-            let arm = pose_a.rotation * *on_a;
-            let gap = offset + pose_b.rotation * *on_b - arm;
-            point.separation = gap.dot(normal);
-            point.position = pose_a.translation + (arm + gap * 0.5);
-            let slip = (gap - normal * point.separation).length_squared();
-            // Not finite is not within either.
-            let holds = slip <= most && point.separation <= margin;
-            if !holds {
-                return false;
-            }
-        }
-        *manifold = renewed;
-        true
+        dispatch::run(Renew { kept: self, poses: [pose_a, pose_b], normal, margin, manifold })
     }
 
     /// Least margin within which points are looked for, metres; 0 if there is nothing to keep to.
@@ -131,9 +146,8 @@ impl Kept {
         w.bool(self.of_b);
         w.f32(self.margin);
         w.f32(self.slop);
-        for [on_a, on_b] in &self.points[..self.count] {
-            w.vec3(*on_a);
-            w.vec3(*on_b);
+        for point in 0..self.count {
+            self.places.get(point).into_iter().for_each(|on| w.vec3(on));
         }
     }
 
@@ -147,11 +161,55 @@ impl Kept {
         }
         let (a_from_b, normal, of_b) = (r.rotation()?, r.vec3()?, r.bool()?);
         let (margin, slop) = (r.f32()?, r.f32()?);
-        let mut points = [[Vec3::ZERO; 2]; MAX_POINTS];
-        for kept in &mut points[..count] {
-            *kept = [r.vec3()?, r.vec3()?];
+        let mut places = Places::default();
+        for point in 0..count {
+            places.put(point, [r.vec3()?, r.vec3()?]);
         }
-        Ok(Self { count, a_from_b, normal, of_b, margin, slop, points })
+        Ok(Self { count, a_from_b, normal, of_b, margin, slop, places })
+    }
+}
+
+/// Brings the points of a manifold to where the bodies are, side by side; false, and nothing changed, if one has slipped too far or
+/// is farther than the margin.
+struct Renew<'a> {
+    kept: &'a Kept,
+    poses: [Transform; 2],
+    /// Of the face, as it has turned, world axes.
+    normal: Vec3,
+    margin: f32,
+    manifold: &'a mut Manifold,
+}
+
+impl Kernel for Renew<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> bool {
+        let Self { kept, poses: [a, b], normal, margin, manifold } = self;
+        let n = Vector3::<L>::splat(normal);
+        let arm = kept.places.on::<L>(0).turned(a.rotation);
+        let offset = Vector3::splat(b.translation - a.translation);
+        let gap = offset + kept.places.on::<L>(1).turned(b.rotation) - arm;
+        let separation = gap.dot(n);
+        let slip = gap - n * separation;
+        let most = SLIP * kept.slop * (SLIP * kept.slop);
+        // Not finite is not within either.
+        let holds = L::le(slip.dot(slip), L::splat(most)) & L::le(separation, L::splat(margin));
+        let all = u8::MAX >> (WIDTH - kept.count);
+        if holds.bits() & all != all {
+            return false;
+        }
+        let position = Vector3::splat(a.translation) + (arm + gap * L::splat(0.5));
+        let mut rows = [[0.0; WIDTH]; 4];
+        for (row, numbers) in rows.iter_mut().zip([position.x, position.y, position.z, separation]) {
+            numbers.store(row);
+        }
+        manifold.normal = normal;
+        for (k, point) in manifold.points[..kept.count].iter_mut().enumerate() {
+            point.position = Vec3::new(rows[0][k], rows[1][k], rows[2][k]);
+            point.separation = rows[3][k];
+        }
+        true
     }
 }
 

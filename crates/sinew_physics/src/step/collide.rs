@@ -149,12 +149,15 @@ fn surface_motion(bodies: &Arena<Body>, contact: &Contact, dt: f32) -> Option<Mo
 }
 
 /// Approach speed of the fastest point, m/s; not negative.
+///
+/// Bodies are rigid: from one point to another a rate differs by the relative spin times the way between them.
 fn approach_of(a: &Body, b: &Body, manifold: &Manifold) -> f32 {
-    manifold.points().iter().fold(0.0, |fastest, point| {
-        let p = point.position;
-        let relative = b.velocity.at(p - b.center()) - a.velocity.at(p - a.center());
-        max(fastest, -relative.dot(manifold.normal))
-    })
+    let [first, others @ ..] = manifold.points() else { return 0.0 };
+    let (p, n) = (first.position, manifold.normal);
+    let rate = (b.velocity.at(p - b.center()) - a.velocity.at(p - a.center())).dot(n);
+    let per_way = n.cross(b.velocity.angular - a.velocity.angular);
+    let least = others.iter().fold(rate, |least, other| min(least, rate + per_way.dot(other.position - p)));
+    max(0.0, -least)
 }
 
 /// True if a surface pushes, wherever it is met.

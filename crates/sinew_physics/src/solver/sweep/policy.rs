@@ -101,7 +101,7 @@ const PILE: SweepPolicy = SweepPolicy {
 };
 /// Sweep policy for a pile or heap of [`HEAP_CONTACTS`]. Loads that are known or guessed need few sweeps to be held, and what falls finds its loads
 /// over some substeps. However unequal masses are, it has many contacts that share what one of them is wrong by.
-const HEAP: SweepPolicy = SweepPolicy { solve: 6, relax: 4, first_conjugate: 2, ..PILE };
+const HEAP: SweepPolicy = SweepPolicy { solve: 5, relax: 4, first_conjugate: 2, ..PILE };
 /// Sweep policy for unequal masses: a light body between heavy ones tosses what they do to each other to and fro, and what cannot move must have the
 /// last word.
 const UNEQUAL: SweepPolicy =
