@@ -6,6 +6,7 @@
 pub mod engine;
 pub mod engines;
 mod ffi;
+pub mod limp;
 pub mod measure;
 pub mod mjcf;
 mod parry;

@@ -9,7 +9,7 @@ use sinew_peers::resume::{resume, save};
 use sinew_peers::run::{Judging, Start, run};
 use sinew_peers::scenes::{self, Course, Field, SCENES, Scene, Work};
 use sinew_peers::trace::Trace;
-use sinew_peers::walks;
+use sinew_peers::{limp, walks};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -83,6 +83,15 @@ enum Command {
         #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
         steps: u32,
     },
+    /// Lets characters fall limp until they sleep: what that costs, beside the time that passes.
+    Limp {
+        /// Rigs, as `sinew ragdoll build` reads them.
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+        /// Falls of each, from random poses.
+        #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
+        falls: u32,
+    },
     /// Runs a scene on an engine, on one thread.
     Run {
         /// As `peers list` names it.
@@ -131,6 +140,7 @@ fn main() -> ExitCode {
             Ok(resumed) => resumed,
             Err(error) => return failure(&error),
         },
+        Command::Limp { files, falls } => limp::run(&files, falls),
         Command::Walks { count, worlds } => match walks::run(count, &worlds) {
             Ok(table) => table,
             Err(error) => return failure(&error.to_string()),
