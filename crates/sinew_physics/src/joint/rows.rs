@@ -185,8 +185,11 @@ impl JointRows {
 
     /// Sums of the impulses of the rows on B, and with the other sign on A; torques about each one's centre, A's first.
     pub fn impulse(&self, of_rows: &Vec6) -> [Vec6; 2] {
-        let (mut force, mut torque) = (Vec3::ZERO, Vec3::ZERO);
-        for row in 0..self.count {
+        let [x, y, z, ..] = *of_rows;
+        let (first, mut force) =
+            if self.locks_point() { (TWIST, Vec3::new(x, y, z)) } else { (0, Vec3::ZERO) };
+        let mut torque = Vec3::ZERO;
+        for row in first..self.count {
             let part = self.axis[row] * of_rows[row];
             *(if self.turns(row) { &mut torque } else { &mut force }) += part;
         }
@@ -199,7 +202,12 @@ impl JointRows {
         let turn = angular(b) - angular(a);
         let slide = (linear(b) + angular(b).cross(self.arm_b)) - (linear(a) + angular(a).cross(self.arm_a));
         let mut out = ZERO6;
-        for row in 0..self.count {
+        let mut first = 0;
+        if self.locks_point() {
+            [out[0], out[1], out[2]] = slide.to_array();
+            first = TWIST;
+        }
+        for row in first..self.count {
             out[row] = self.axis[row].dot(if self.turns(row) { turn } else { slide });
         }
         out
