@@ -144,3 +144,8 @@ mod tests {
         }
     }
 }
+
+/// Takes the first items out of what is left.
+pub(crate) fn split_off<'a, T>(left: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    left.split_off_mut(..count).expect("there is room for each island")
+}

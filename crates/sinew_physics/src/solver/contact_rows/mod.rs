@@ -3,6 +3,7 @@
 mod bounce;
 mod disk;
 pub(crate) mod lcp;
+mod placed;
 mod refind;
 mod row;
 mod visit;
@@ -10,24 +11,21 @@ mod visit;
 use super::articulation::response::Response;
 use super::articulation::response_cache::{ResponseCache, Strip};
 use super::articulation::tree::Link;
-use super::limits::rows::add_row;
-use super::sweep::policy::Firmness;
-use super::{SolverBody, free_response};
 use crate::body::material::ContactMaterial;
 use crate::collide::{MAX_POINTS, Manifold};
 use crate::contact::ContactMemory;
+use crate::solver::body::{SolverBody, add_row, free_response};
+use crate::solver::sweep::policy::Firmness;
 use crate::solver::tuning::{
-    CONTACT_DAMPING, CONTACT_HERTZ, DEEP_SLOPS, FIXED_HERTZ, IMPACT_JUMP, LASTING, REDUNDANCY,
-    REFIND_TURN_RESPONSE, REFIND_TURN_RIM, RELAX_TURN, WEIGHT_EVENLY, WEIGHT_OF_LOAD,
+    DEEP_SLOPS, IMPACT_JUMP, LASTING, REDUNDANCY, REFIND_TURN_RESPONSE, REFIND_TURN_RIM, RELAX_TURN,
 };
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular};
 use bounce::Approach;
-pub(crate) use refind::PlacedShape;
-pub(super) use refind::{Placed, found_anew, margin};
-pub(super) use row::Softness;
+pub(crate) use placed::PlacedShape;
+pub(super) use placed::{Placed, found_anew, margin};
+pub(super) use row::{NEVER, Softness, contact_softness, weights};
 use row::{Pair, Row};
-use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max, min};
-pub(super) use visit::NEVER;
+use sinew_math::{Mat3, Transform, Vec3, any_orthonormal, max};
 
 /// Impulses of a manifold's rows.
 #[derive(Clone, Copy, Debug)]
@@ -406,30 +404,4 @@ impl ManifoldRows {
         self.memory.twist = self.twist;
         self.memory.rolling = self.rolling;
     }
-}
-
-/// Softness of a contact before its firmness is applied, in a substep of `h` seconds.
-pub(super) fn contact_softness(both_move: bool, h: f32) -> Softness {
-    let hertz = if both_move { CONTACT_HERTZ } else { FIXED_HERTZ };
-    Softness::new(min(hertz, 0.25 / h), CONTACT_DAMPING, h)
-}
-
-/// Shares of the load by point, smoothed so that a point which is about to bear some has a say: one whose separation is at
-/// most `bearing`, if there is any.
-pub(super) fn weights(memory: &ContactMemory, manifold: &Manifold, bearing: f32) -> [f32; MAX_POINTS] {
-    let points = manifold.points();
-    let total: f32 = memory.points[..points.len()].iter().map(|point| point.now).sum();
-    let bears = |separation: f32| separation <= bearing;
-    let heirs = points.iter().filter(|point| bears(point.separation)).count();
-    let mut weights = [0.0; MAX_POINTS];
-    for (i, point) in points.iter().enumerate() {
-        let even = match heirs {
-            0 => 1.0 / points.len() as f32,
-            _ if bears(point.separation) => 1.0 / heirs as f32,
-            _ => 0.0,
-        };
-        let share = if total > 0.0 { memory.points[i].now / total } else { even };
-        weights[i] = WEIGHT_OF_LOAD * share + WEIGHT_EVENLY * even;
-    }
-    weights
 }

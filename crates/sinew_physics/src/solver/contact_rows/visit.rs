@@ -1,18 +1,16 @@
 //! Visits of a manifold's rows in a sweep.
 
+use super::row::NEVER;
 use super::row::Row;
 use super::{AXES, ManifoldRows};
 use super::{disk, lcp};
 use crate::body::material::ContactMaterial;
 use crate::collide::MAX_POINTS;
 use crate::solver::articulation::response_cache::{Change, Strip};
-use crate::solver::sweep::Pass;
+use crate::solver::pass::Pass;
 use crate::solver::tuning::{DEAD_ZONE, SLIP_SPEED};
 use crate::spatial::{Vec6, angular};
 use sinew_math::{Vec3, clamp, max, min};
-
-/// Distance over time of a point that no substep brings to touch, m/s.
-pub(in crate::solver) const NEVER: f32 = 1e6;
 
 /// Complementarity problem of a manifold's normal rows: `K (x − old) + rate + soft x ≥ 0`, complementary to `x ≥ 0`.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,18 +1,20 @@
 //! Manifolds of bodies that turn fast are looked for again within the step, and written to their lanes.
 
+use super::Contacts;
 use super::block::{Block, HELD, Memory};
 use super::color::Edge;
 use super::geometry::{Cores, Geometry};
 use super::prepare::{placed, write_impulses, write_material};
 use super::store::memory_of;
-use super::{Class, Contacts};
 use crate::collide::{MAX_POINTS, Manifold};
 use crate::contact::slop;
 use crate::runner::TaskRunner;
 use crate::slices::for_each_mut;
-use crate::solver::contact_rows::{self, weights};
+use crate::solver::body::SolverBody;
+use crate::solver::contact_rows::{Placed, found_anew, margin, weights};
+use crate::solver::contacts::classes::Class;
 use crate::solver::tuning::{REFIND_TURN_LANES, REFIND_TURN_RIM};
-use crate::solver::{SolverBody, View};
+use crate::solver::view::View;
 use crate::spatial::{Vec6, angular, linear};
 use sinew_math::lanes::WIDTH;
 use sinew_math::{Transform, max, min};
@@ -153,7 +155,7 @@ impl<const N: usize, const T: usize> Class<N, T> {
 }
 
 /// Slop of two shapes, metres.
-fn slop_of(shapes: &[contact_rows::Placed<'_>; 2]) -> f32 {
+fn slop_of(shapes: &[Placed<'_>; 2]) -> f32 {
     slop(min(shapes[0].shape.smallest_extent(), shapes[1].shape.smallest_extent()))
 }
 
@@ -177,7 +179,7 @@ impl Found {
         let shapes = placed(substep.view, contact);
         let on_surfaces = [0, 1].map(|end: usize| poses[end].point(self.cores.points[end][0]));
         let margin = self.margin(substep, &shapes, slop_of(&shapes));
-        self.anew = contact_rows::found_anew(shapes, poses, margin, &self.manifold, on_surfaces);
+        self.anew = found_anew(shapes, poses, margin, &self.manifold, on_surfaces);
     }
 
     /// Writes the contact to its lane as it is now. Impulses go on by feature. A pair that has come apart keeps its rows.
@@ -237,10 +239,10 @@ impl Found {
     }
 
     /// Largest separation of points that this substep may bring together, metres.
-    fn margin(&self, substep: &Substep<'_>, shapes: &[contact_rows::Placed<'_>; 2], slop: f32) -> f32 {
+    fn margin(&self, substep: &Substep<'_>, shapes: &[Placed<'_>; 2], slop: f32) -> f32 {
         let [a, b] = self.bodies.map(|body| linear(&substep.velocities[body as usize]));
         let turns = self.bodies.map(|body| substep.turn(body));
-        contact_rows::margin(shapes, turns, (b - a).length() * substep.h, slop)
+        margin(shapes, turns, (b - a).length() * substep.h, slop)
     }
 
     pub fn place(&self) -> [u32; 3] {

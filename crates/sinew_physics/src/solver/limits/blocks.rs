@@ -2,12 +2,13 @@
 //! side. Those that push are solved among each other, by what they answer to each other, and then the bodies get what all of them
 //! give at once: a change of one row goes through eight numbers, and not through all links of the tree.
 
+use crate::solver::IslandSolver;
 use crate::solver::articulation::response_cache::ResponseCache;
 use crate::solver::articulation::tree::NONE;
-use crate::solver::limits::rows::{LimitRow, add_row};
-use crate::solver::sweep::Pass;
+use crate::solver::body::add_row;
+use crate::solver::limits::row::LimitRow;
+use crate::solver::pass::{Coupling, Pass};
 use crate::solver::tuning::LIMIT_ROUNDS;
-use crate::solver::{Coupling, IslandSolver};
 use crate::spatial::{Vec6, ZERO6};
 use sinew_math::dispatch::{self, Kernel};
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};

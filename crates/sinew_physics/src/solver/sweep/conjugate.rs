@@ -4,8 +4,8 @@
 
 use crate::solver::articulation::tree::Link;
 use crate::solver::contact_rows::{Given, ManifoldRows};
-use crate::solver::limits::rows::LimitRow;
-use crate::solver::sweep::DirtyRows;
+use crate::solver::limits::row::LimitRow;
+use crate::solver::sweep::dirty::DirtyRows;
 use crate::spatial::{Vec6, add_scaled, largest};
 
 /// State of the conjugate steps of a pass. What lists hold of a pass before is never used: its first sweep has no energy to go on from.

@@ -7,11 +7,13 @@
 //! alone, a chain of 70 links that was curled up by a wall gained five times its energy.
 
 use crate::runner::TaskRunner;
+use crate::solver::IslandSolver;
 use crate::solver::articulation::batches::{Batches, TurnVelocities};
 use crate::solver::articulation::tree::{self, Link, NONE};
+use crate::solver::body::SolverBody;
 use crate::solver::contacts::Contacts;
-use crate::solver::sweep::{DirtyRows, Pass};
-use crate::solver::{Coupling, IslandSolver, SolverBody};
+use crate::solver::pass::{Coupling, Pass};
+use crate::solver::sweep::dirty::DirtyRows;
 use crate::spatial::{Vec6, ZERO6, add_scaled, angular, difference, join, largest, linear};
 use core::ops::Range;
 use sinew_math::dispatch::{self, Kernel};

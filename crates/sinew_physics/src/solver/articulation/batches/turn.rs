@@ -6,7 +6,7 @@ use super::{Batch, TurnVelocities};
 use crate::solver::articulation::elimination::{Symmetric, Twist};
 use crate::solver::contacts::Contacts;
 use crate::solver::flight::Eight;
-use crate::solver::sweep::DirtyRows;
+use crate::solver::sweep::dirty::DirtyRows;
 use crate::spatial::Vec6;
 use sinew_math::dispatch::Kernel;
 use sinew_math::lanes::{LaneMask, Lanes, WIDTH};
