@@ -62,6 +62,7 @@
 //! batch. NaN and infinities go in and no panic comes out; what each call does with them is in its documentation.
 #![forbid(unsafe_code)]
 
+mod bounds;
 pub mod boxes;
 pub mod collide;
 pub mod convex;

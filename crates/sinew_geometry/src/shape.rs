@@ -2,7 +2,7 @@
 
 use crate::boxes::Aabb;
 use crate::hull::{Hull, HullError};
-use crate::triangles::{HeightField, Mesh, MeshError};
+use crate::triangles::{HeightField, Mesh, MeshError, Surface};
 use sinew_math::{Sym3, Vec3, abs3, max, max3, min};
 use std::sync::Arc;
 
@@ -218,4 +218,16 @@ pub struct MassProperties {
     pub center: Vec3,
     /// Inertia about the centre of mass, in the axes of the frame at hand, kg·m².
     pub inertia: Sym3,
+}
+
+impl Shape {
+    /// Its surface, if it is made of triangles.
+    #[inline]
+    pub fn surface(&self) -> Option<Surface<'_>> {
+        match self {
+            Self::Mesh(mesh) => Some(Surface::Mesh(mesh)),
+            Self::HeightField(field) => Some(Surface::HeightField(field)),
+            _ => None,
+        }
+    }
 }

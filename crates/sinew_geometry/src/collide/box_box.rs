@@ -6,8 +6,8 @@ use super::axes::{
 };
 use super::clip::{BOX_CORNERS, BoxFace, Reference};
 use super::feature::{self, WHOLE, pair};
+use super::manifold::{Manifold, Parting};
 use super::placed::{PlacedBox, Segment, sign};
-use super::{Manifold, Parting};
 use crate::boxes::separation::{Axis, AxisOf, Crossed, axis};
 use sinew_math::{Vec3, max, min, normalize_or};
 

@@ -3,8 +3,8 @@
 
 use super::feature::{self, WHOLE, pair};
 use super::line::Line;
+use super::manifold::{Manifold, Parting};
 use super::placed::{Pill, PlacedBox, Segment, largest_axis, sign};
-use super::{Manifold, Parting};
 use crate::boxes::segment::{Gap, Meeting, best_edge, best_face, cut, gap};
 use sinew_math::{Vec3, min};
 

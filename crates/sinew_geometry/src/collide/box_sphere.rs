@@ -1,9 +1,9 @@
 //! Box against sphere: the closest point of the box to the centre.
 
 use super::feature::{WHOLE, pair};
+use super::manifold::{Manifold, Parting};
 use super::placed::{Ball, PlacedBox};
-use super::{Manifold, Parting};
-use crate::distance::box_distance;
+use crate::boxes::box_distance;
 
 pub(super) fn collide(a: &PlacedBox, b: &Ball, margin: f32, parting: &mut Parting, out: &mut Manifold) {
     let (distance, normal) = box_distance(a.half, a.local_point(b.center));

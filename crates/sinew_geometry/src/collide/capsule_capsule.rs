@@ -1,8 +1,8 @@
 //! Capsule against capsule: closest points of the cores; two points where the cores run side by side.
 
 use super::feature::{WHOLE, end, pair};
+use super::manifold::{Manifold, Parting};
 use super::placed::{Pill, direction_or, sign};
-use super::{Manifold, Parting};
 use sinew_math::{Vec3, any_orthonormal, min, normalize_or};
 
 /// Cores that run side by side touch along a line; its two ends are used while the cores lie within this share of

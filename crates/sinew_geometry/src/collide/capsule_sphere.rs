@@ -2,8 +2,8 @@
 //! core is a point.
 
 use super::feature::{WHOLE, pair};
+use super::manifold::{Manifold, Parting};
 use super::placed::{Ball, Pill, direction_or};
-use super::{Manifold, Parting};
 use sinew_math::any_orthonormal;
 
 pub(super) fn collide(a: &Pill, b: &Ball, margin: f32, parting: &mut Parting, out: &mut Manifold) {

@@ -2,9 +2,9 @@
 
 use super::clip_features::{Clipped, clip};
 use super::feature::{WHOLE, pair};
+use super::manifold::{Manifold, ManifoldPoint, Parting};
 use super::placed::{Segment, sign};
 use super::reduce::push_best;
-use super::{Manifold, ManifoldPoint, Parting};
 use crate::convex::feature::Feature;
 use crate::convex::support::{Posed, Support, wide};
 use crate::convex::{Gap, apart_along, meet};

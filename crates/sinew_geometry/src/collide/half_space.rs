@@ -2,9 +2,9 @@
 
 use super::axes::tolerance;
 use super::feature::{self, WHOLE, end, pair};
+use super::manifold::{Manifold, ManifoldPoint};
 use super::placed::{Ball, Pill, PlacedBox, Plane};
 use super::reduce::push_best;
-use super::{Manifold, ManifoldPoint};
 use crate::convex::feature::MOST_CORNERS;
 use crate::convex::support::{Posed, Support, narrow, wide};
 use crate::hull::{Hull, MAX_VERTICES};

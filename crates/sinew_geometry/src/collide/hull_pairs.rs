@@ -1,8 +1,8 @@
 //! Hull against everything that has an end, in the frame of the hull.
 
 use super::axes::TIE_DIRECTION;
+use super::manifold::{Manifold, Parting};
 use super::placed::{Pill, PlacedBox};
-use super::{Manifold, Parting};
 use super::{features, hull_round, polytope};
 use crate::convex::support::{Core, Posed};
 use crate::hull::{BoxPolytope, Hull, Room};

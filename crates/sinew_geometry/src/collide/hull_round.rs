@@ -4,8 +4,8 @@
 use super::axes::{PARALLEL_SINE, choose};
 use super::feature::{self, WHOLE, pair};
 use super::line::Line;
+use super::manifold::{Manifold, Parting};
 use super::placed::Segment;
-use super::{Manifold, Parting};
 use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{Plane, Polytope};
 use sinew_math::{Vec3, max, min};

@@ -7,8 +7,8 @@ use super::axes::{
 };
 use super::clip::{PolytopeFace, Reference};
 use super::feature::{self, WHOLE, pair};
+use super::manifold::{Manifold, Parting};
 use super::placed::Segment;
-use super::{Manifold, Parting};
 use crate::boxes::separation::{Axis, AxisOf};
 use crate::hull::{MAX_VERTICES, Plane, Polytope};
 use sinew_math::{Vec3, min};

@@ -1,7 +1,7 @@
 //! Cone, cylinder and tapered capsule against sphere: the closest point of the surface to the centre.
 
-use super::Manifold;
 use super::feature::{WHOLE, pair};
+use super::manifold::Manifold;
 use super::placed::Ball;
 use crate::shape::Shape;
 use sinew_math::Transform;
