@@ -230,6 +230,7 @@ fn collide_ranked(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::boxes::separation::AxisOf;
     use crate::hull::Hull;
     use sinew_math::{Random, Rotation};
     use std::sync::Arc;
