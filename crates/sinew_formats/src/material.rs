@@ -1,7 +1,7 @@
 //! Properties of shapes in a world file besides geometry: materials, filters, rules of contacts.
 
+use crate::container::json::{At, number, numbers};
 use crate::error::{Result, quoted};
-use crate::json::{At, number, numbers};
 use crate::parts;
 use serde_json::{Map, Value, json};
 use sinew_math::Vec3;

@@ -1,7 +1,7 @@
 //! Parts that world files and ragdoll files have in common: poses, shapes, masses.
 
+use crate::container::json::{At, number, numbers};
 use crate::error::{Result, quoted};
-use crate::json::{At, number, numbers};
 use crate::surface;
 use serde_json::{Map, Value};
 use sinew_math::{Rotation, Sym3, Transform, Vec3};

@@ -1,12 +1,12 @@
 //! Pictures of a file with a skeleton, a skin or a clip: what `view FILE` and `convert --picture` draw.
 
-use crate::bones::flesh_out;
 use crate::failure::{Failure, Result};
-use crate::framing::Framing;
-use crate::motion::Motion;
-use crate::progress::Progress;
-use crate::skin;
-use crate::table::shown;
+use crate::input::motion::Motion;
+use crate::render::bones::flesh_out;
+use crate::render::framing::Framing;
+use crate::render::skin;
+use crate::report::progress::Progress;
+use crate::report::table::shown;
 use sinew::anim::{Clip, Rig, RigAnalysis, Wrap, local_to_model, rest_pose, sample, skin_vertices};
 use sinew::math::{Affine, Transform, Vec3, max};
 use sinew::physics::boxes::Aabb;

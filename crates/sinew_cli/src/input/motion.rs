@@ -1,7 +1,7 @@
 //! Files with clips, whatever they are.
 
 use crate::failure::Result;
-use crate::kin::units_beside;
+use crate::input::kin::units_beside;
 use sinew::anim::retarget::stand;
 use sinew::anim::{Clip, Hints, RigAnalysis, analyze_hinted};
 use sinew::formats::{Error, MotionFile, MotionFormat, MotionOptions, load_motion};

@@ -1,8 +1,8 @@
 //! Any file that a ragdoll comes from: a rigged character, a definition of ours, an MJCF model.
 
 use crate::failure::{Failure, Result};
-use crate::files::CharacterFile;
-use crate::settings_arg::SettingsArg;
+use crate::input::files::CharacterFile;
+use crate::input::settings_arg::SettingsArg;
 use sinew::formats::{Textures, read_bytes, read_mjcf, read_ragdoll};
 use sinew::ragdoll::{BuildOptions, RagdollDef, Repair};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! A rig as other programs want its skeleton: in metres, with the axis up that they have, without what is no bone.
 
-use crate::table::{counted, shown};
+use crate::report::table::{counted, shown};
 use sinew::anim::{Channel, Clip, Interpolation, Joint, JointIdx, Property, Rig};
 use sinew::math::{Rotation, Vec3};
 

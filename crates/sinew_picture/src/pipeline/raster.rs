@@ -1,7 +1,7 @@
 //! Rasterizer: the samples of a picture that a triangle covers, in exact integers, so that triangles that share an edge cover every
 //! sample between them once (top-left rule). Eight samples go at once: those of pixels side by side.
 
-use crate::clip::ClipVertex;
+use crate::pipeline::clip::ClipVertex;
 use core::ops::Range;
 use sinew::math::dispatch::{self, Kernel};
 use sinew::math::lanes::{LaneMask, Lanes, WIDTH};

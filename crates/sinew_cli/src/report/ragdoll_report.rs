@@ -1,9 +1,9 @@
 //! Report of `ragdoll build` on a ragdoll.
 
-use crate::quality_report::{quality_json, quality_text};
+use crate::report::quality_report::{quality_json, quality_text};
+use crate::report::skin_report::{SkinReport, skin_json, skin_text};
+use crate::report::table::{Table, shown};
 use crate::report::{Report, number, numbers};
-use crate::skin_report::{SkinReport, skin_json, skin_text};
-use crate::table::{Table, shown};
 use serde_json::{Map, Value, json};
 use sinew::math::{Range, SwingTwistLimit, Vec3};
 use sinew::physics::{JointKind, Shape};

@@ -1,10 +1,10 @@
 //! Moving pictures of a fall.
 
 use crate::fall::Fall;
-use crate::framing::Framing;
-use crate::progress::Progress;
-use crate::skin;
-use crate::story;
+use crate::render::framing::Framing;
+use crate::render::skin;
+use crate::report::progress::Progress;
+use crate::report::story;
 use sinew::anim::{Wrap, local_to_model, sample};
 use sinew::math::{Affine, Rotation, Transform, Vec3};
 use sinew::physics::boxes::Aabb;

@@ -1,5 +1,10 @@
 //! Keyframed motion as the file holds it.
 
+pub mod reduce;
+pub mod root_motion;
+pub mod sample;
+pub mod take;
+
 use crate::rig::{JointIdx, LocalTransform};
 use sinew_math::Rotation;
 

@@ -1,6 +1,6 @@
 //! Phases: what two clips of different lengths have in common.
 
-use crate::playhead::{Place, Playhead};
+use crate::playback::playhead::{Place, Playhead};
 
 /// Moments of a looped clip that match those of other clips one by one: left foot down, right foot down. Between two of
 /// them, time is stretched.

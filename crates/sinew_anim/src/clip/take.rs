@@ -1,8 +1,8 @@
 //! A motion as one pose a frame, as a camera takes it: what capture delivers and clean-up works on.
 
+use crate::clip::sample::{SampleCache, Wrap, sample_cached};
 use crate::clip::{Channel, Clip, Interpolation, Property};
 use crate::rig::{JointIdx, LocalTransform, Rig};
-use crate::sample::{SampleCache, Wrap, sample_cached};
 use sinew_math::Rotation;
 
 /// Poses of one rig, equally far apart in time.
@@ -25,7 +25,7 @@ impl Take {
     ///
     /// # Panics
     /// If `frame_time` is not above 0, the rig has no joints, the take would have more than
-    /// [`MOST_FRAMES`](Self::MOST_FRAMES), and as [`sample`](crate::sample()).
+    /// [`MOST_FRAMES`](Self::MOST_FRAMES), and as [`sample`](crate::clip::sample()).
     pub fn of(rig: &Rig, clip: &Clip, frame_time: f64) -> Self {
         assert!(frame_time > 0.0, "frames are some time apart, not {frame_time} s");
         assert!(!rig.joints.is_empty(), "a rig without joints does not move");

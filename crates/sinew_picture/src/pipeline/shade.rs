@@ -2,9 +2,9 @@
 
 use crate::camera::View;
 use crate::color::ColorTables;
-use crate::raster::NOTHING;
+use crate::pipeline::raster::NOTHING;
+use crate::pipeline::shadow::ShadowMap;
 use crate::scene::{Material, Model, Pattern, Scene, Sky};
-use crate::shadow::ShadowMap;
 use sinew::math::lanes::{Lanes, Real, Vector3, WIDTH};
 use sinew::math::{Vec2, Vec3, abs3, clamp, max, normalize_or};
 

@@ -1,9 +1,9 @@
 //! Root motion: the path along which a clip carries its character, taken out of the pose, so that it can move what the game moves.
 
+use crate::clip::sample::{SampleCache, Wrap, sample_cached};
 use crate::clip::{Channel, Clip, Interpolation, Property};
-use crate::playhead::{LoopMode, Place};
+use crate::playback::playhead::{LoopMode, Place};
 use crate::rig::{JointIdx, LocalTransform, Rig};
-use crate::sample::{SampleCache, Wrap, sample_cached};
 use sinew_math::{Affine, Rotation, Transform, Vec3};
 
 /// Part of a motion along an axis that is taken out of the pose.
@@ -62,7 +62,7 @@ const SAMPLING: f32 = 1.0 / 60.0;
 /// [`BuiltClip::build`](crate::BuiltClip::build) takes.
 ///
 /// # Panics
-/// If the joint is not in the rig, or the clip is not fit to be sampled (see [`sample`](crate::sample())).
+/// If the joint is not in the rig, or the clip is not fit to be sampled (see [`sample`](crate::clip::sample())).
 pub fn extract_root_motion(clip: &Clip, rig: &Rig, options: &RootMotionOptions) -> (Clip, MotionTrack) {
     let times = sample_times(clip);
     let poses = chain_poses(clip, rig, options.joint, &times);

@@ -1,7 +1,7 @@
 //! Reading and writing what commands work on.
 
 use crate::failure::{Failure, Result};
-use crate::kin::units_beside;
+use crate::input::kin::units_beside;
 use sinew::anim::{Hints, RigAnalysis, analyze_hinted, characters};
 use sinew::formats::{
     Document, MotionFormat, MotionOptions, ReadOptions, Textures, load_gltf, load_motion, no_files,

@@ -1,7 +1,7 @@
 //! Settings of a ragdoll: those beside the character's file or in one that was named, and over them what was asked for.
 
 use crate::failure::{Failure, Result};
-use crate::files::CharacterFile;
+use crate::input::files::CharacterFile;
 use sinew::anim::{Hints, RigAnalysis, Role, UnitGuess};
 use sinew::formats::{Textures, read_bytes, read_ragdoll_settings, settings_path};
 use sinew::ragdoll::build::{BuildReport, takes};

@@ -1,4 +1,4 @@
-use crate::orthonormal::gram_schmidt;
+use crate::rotations::orthonormal::gram_schmidt;
 use crate::{Mat3, Vec3, any_orthonormal, direction, trig};
 use core::ops::Mul;
 

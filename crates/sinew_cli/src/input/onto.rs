@@ -1,8 +1,8 @@
 //! Clips of one file on the character of another.
 
 use crate::failure::{Failure, Result};
-use crate::motion::Motion;
-use crate::table::shown;
+use crate::input::motion::Motion;
+use crate::report::table::shown;
 use sinew::anim::retarget::{Body, RetargetOptions, Retargeted, retarget};
 use sinew::anim::{Channel, Clip, Event, JointIdx, LocalTransform, Rig, RigAnalysis};
 

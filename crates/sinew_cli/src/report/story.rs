@@ -1,6 +1,6 @@
 //! Story of a character in words.
 
-use crate::table::shown;
+use crate::report::table::shown;
 use sinew::ragdoll::{BakeInput, CharacterDef, Event, Locomotion, Opening};
 
 /// Phase of a character from some time on, s: its name is a word or two for the corner of a picture.

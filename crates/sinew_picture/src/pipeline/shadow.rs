@@ -1,7 +1,7 @@
 //! Shadow map: an orthographic depth picture taken from the sun, which tells where its light does not reach.
 
-use crate::clip::{clip, is_whole, unseen};
-use crate::raster::{Area, Cells, Footprint, Lattice, NOTHING, Pixel, ScreenVertex, floor, scan};
+use crate::pipeline::clip::{clip, is_whole, unseen};
+use crate::pipeline::raster::{Area, Cells, Footprint, Lattice, NOTHING, Pixel, ScreenVertex, floor, scan};
 use sinew::math::dispatch::{self, Kernel};
 use sinew::math::lanes::{LaneMask, Lanes, WIDTH};
 use sinew::math::{Vec3, any_orthonormal, clamp, max, min, normalize_or};

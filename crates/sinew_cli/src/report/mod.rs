@@ -1,5 +1,13 @@
 //! Report of a command.
 
+pub(crate) mod footsteps;
+pub(crate) mod progress;
+pub(crate) mod quality_report;
+pub(crate) mod ragdoll_report;
+pub(crate) mod skin_report;
+pub(crate) mod story;
+pub(crate) mod table;
+
 use serde_json::Value;
 
 /// The outcome of a command: the same for a script and for a person.

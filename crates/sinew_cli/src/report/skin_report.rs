@@ -1,7 +1,7 @@
 //! The drawn skin: measured, and its figures as the contract names them and as a person reads them.
 
 use crate::fall::Fall;
-use crate::files::CharacterFile;
+use crate::input::files::CharacterFile;
 use crate::report::number;
 use serde_json::{Value, json};
 use sinew::ragdoll::bake::Frame;
