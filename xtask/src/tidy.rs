@@ -6,6 +6,7 @@
 
 mod arrows;
 mod bits;
+mod circles;
 mod contract_table;
 mod dependencies;
 mod first_words;
@@ -29,6 +30,7 @@ use std::path::Path;
 const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     arrows::check,
     rooms::check,
+    circles::check,
     libraries::check,
     bits::check,
     size::check,
