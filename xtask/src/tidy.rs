@@ -7,6 +7,7 @@
 mod arrows;
 mod bits;
 mod circles;
+mod code_map;
 mod contract_table;
 mod dependencies;
 mod first_words;
@@ -31,6 +32,7 @@ const RULES: &[fn(&Repo) -> Vec<Finding>] = &[
     arrows::check,
     rooms::check,
     circles::check,
+    code_map::check,
     libraries::check,
     bits::check,
     size::check,
